@@ -1,0 +1,44 @@
+//! `wgsl/common`: what every subsystem may use. The Rust twins are in `downpour-math`.
+
+use crate::Module;
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&OPS, &PACKING_CONSTANTS, &PACKING, &RNG_CONSTANTS, &RNG];
+
+/// Tests and small functions on scalars. Twin: `downpour_math::ops`.
+pub static OPS: Module =
+    Module { path: "common/ops.wgsl", wgsl: include_str!("../wgsl/common/ops.wgsl"), uses: &[] };
+
+/// Counter-based random numbers. Twin: `downpour_math::rng`.
+pub static RNG: Module = Module {
+    path: "common/rng.wgsl",
+    wgsl: include_str!("../wgsl/common/rng.wgsl"),
+    uses: &[&RNG_CONSTANTS],
+};
+
+/// Unit vectors in two numbers. Twin: `downpour_math::packing`.
+pub static PACKING: Module = Module {
+    path: "common/packing.wgsl",
+    wgsl: include_str!("../wgsl/common/packing.wgsl"),
+    uses: &[&PACKING_CONSTANTS],
+};
+
+shared_constants! {
+    /// Constants of the random numbers.
+    RNG_CONSTANTS at "common/rng constants" {
+        /// Multiplier of the 32-bit linear congruential step (Jarzynski & Olano 2020, after PCG).
+        RNG_PCG_MULTIPLIER: u32 = 1664525;
+        /// Increment of the same step.
+        RNG_PCG_INCREMENT: u32 = 1013904223;
+        /// 2^-24: the spacing of the uniform numbers.
+        RNG_UNIT_STEP: f32 = 5.9604645e-8;
+    }
+}
+
+shared_constants! {
+    /// Constants of the packed unit vectors.
+    PACKING_CONSTANTS at "common/packing constants" {
+        /// Below this sum of absolute components a vector has no direction.
+        PACKING_SMALLEST_NORM: f32 = 1.0e-30;
+    }
+}

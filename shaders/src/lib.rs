@@ -1,0 +1,49 @@
+//! Every WGSL file of Downpour, as data.
+//!
+//! A WGSL file is a [`Module`]: its text, and Rust references to the modules whose functions it calls.
+//! A [`Kernel`] names an entry point of a module. [`compose`] concatenates a module with everything that it
+//! uses, each once, dependencies first; that text is what a pipeline is created from. There is no
+//! preprocessor and no build script: permutations are WGSL `override` constants or another module.
+//!
+//! Names live in one flat namespace and carry the stem of their file (`rng_pcg4d` is in `common/rng.wgsl`);
+//! an entry point is `main_<stem>`. Every function has a Rust twin of the same name, and the crate
+//! `downpour-tests` fails when one is not compared with it.
+//!
+//! Constants that both languages need are declared once, by [`shared_constants!`], in the Rust file of their
+//! subsystem.
+//!
+//! ```
+//! use downpour_shaders::{common, compose};
+//! let text = compose(&[&common::RNG]);
+//! assert!(text.contains("fn rng_pcg4d"));
+//! assert!(text.contains("const RNG_PCG_MULTIPLIER"));
+//! ```
+
+#[macro_use]
+mod shared_constants;
+mod module;
+
+pub mod common;
+pub mod drop;
+
+pub use module::{Kernel, Module, compose};
+
+/// Every module of the crate, for the tests that enumerate them.
+pub fn modules() -> impl Iterator<Item = &'static Module> {
+    [
+        common::MODULES,
+        drop::distribution::MODULES,
+        drop::fall_speed::MODULES,
+        drop::optics::MODULES,
+        drop::oscillation::MODULES,
+        drop::shape::MODULES,
+    ]
+    .into_iter()
+    .flatten()
+    .copied()
+}
+
+/// Every kernel of the crate, for the tests that create a pipeline from each.
+pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
+    std::iter::empty()
+}

@@ -1,0 +1,30 @@
+// Unit vectors in two numbers of [-1, 1]: the octahedral map.
+// Source: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010; Z. Cigolle et al., JCGT 3(2), 2014.
+// Twin: downpour_math::packing.
+
+// The sign of x as 1 or -1; zero counts as positive.
+fn packing_sign(x: f32) -> f32 {
+    return select(-1.0, 1.0, x >= 0.0);
+}
+
+// Direction (any length above 0) -> square.
+fn packing_octahedral_encode(direction: vec3f) -> vec2f {
+    let norm = abs(direction.x) + abs(direction.y) + abs(direction.z);
+    let inverse = 1.0 / max(norm, PACKING_SMALLEST_NORM);
+    let x = direction.x * inverse;
+    let y = direction.y * inverse;
+    if direction.z >= 0.0 {
+        return vec2f(x, y);
+    }
+    return vec2f((1.0 - abs(y)) * packing_sign(x), (1.0 - abs(x)) * packing_sign(y));
+}
+
+// Square -> unit vector.
+fn packing_octahedral_decode(square: vec2f) -> vec3f {
+    let z = 1.0 - abs(square.x) - abs(square.y);
+    let fold = max(-z, 0.0);
+    let x = square.x - fold * packing_sign(square.x);
+    let y = square.y - fold * packing_sign(square.y);
+    let inverse = 1.0 / sqrt(x * x + y * y + z * z);
+    return vec3f(x * inverse, y * inverse, z * inverse);
+}
