@@ -1,0 +1,81 @@
+//! Buffers, checked against the device before they are made.
+
+use bytemuck::Pod;
+
+use crate::{Gpu, GpuError};
+
+impl Gpu {
+    /// A storage buffer that holds `data`, and can be copied from and to.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`], [`GpuError::OutOfMemory`] or [`GpuError::Lost`].
+    pub fn storage_buffer<T: Pod>(&self, label: &str, data: &[T]) -> Result<wgpu::Buffer, GpuError> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let buffer = self.empty_buffer(label, bytes.len() as u64, wgpu::BufferUsages::STORAGE)?;
+        self.write(&buffer, bytes);
+        Ok(buffer)
+    }
+
+    /// A uniform buffer that holds `value`.
+    ///
+    /// # Errors
+    /// As [`Gpu::storage_buffer`].
+    pub fn uniform_buffer<T: Pod>(&self, label: &str, value: &T) -> Result<wgpu::Buffer, GpuError> {
+        let bytes = bytemuck::bytes_of(value);
+        let buffer = self.empty_buffer(label, bytes.len() as u64, wgpu::BufferUsages::UNIFORM)?;
+        self.write(&buffer, bytes);
+        Ok(buffer)
+    }
+
+    /// A buffer of `bytes` bytes (at least 4, rounded up to 4) with `usage` and both copy usages.
+    ///
+    /// # Errors
+    /// As [`Gpu::storage_buffer`].
+    pub fn empty_buffer(
+        &self,
+        label: &str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let size = bytes.max(4).next_multiple_of(4);
+        let limits = self.device().limits();
+        let mut allowed = vec![("max_buffer_size", limits.max_buffer_size)];
+        if usage.contains(wgpu::BufferUsages::STORAGE) {
+            allowed.push(("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size));
+        }
+        if usage.contains(wgpu::BufferUsages::UNIFORM) {
+            allowed.push(("max_uniform_buffer_binding_size", limits.max_uniform_buffer_binding_size));
+        }
+        for (limit_name, allowed) in allowed {
+            if size > allowed {
+                return Err(GpuError::OverLimit {
+                    what: format!("buffer \"{label}\" in bytes"),
+                    found: size,
+                    limit_name,
+                    allowed,
+                });
+            }
+        }
+        self.create(&format!("buffer \"{label}\""), size, |device| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        })
+    }
+
+    /// Writes `bytes` at the start of `buffer`, padded with zeros to a multiple of 4.
+    fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
+        let whole = bytes.len() / 4 * 4;
+        if whole > 0 {
+            self.queue().write_buffer(buffer, 0, &bytes[..whole]);
+        }
+        if whole < bytes.len() {
+            let mut last = [0; 4];
+            last[..bytes.len() - whole].copy_from_slice(&bytes[whole..]);
+            self.queue().write_buffer(buffer, whole as u64, &last);
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! A device, its queue, and what is known of their health.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use crate::adapter::{self, AdapterChoice, AdapterDescription};
+use crate::{Dispatch, GpuError};
+
+/// How a device of our own is made.
+#[derive(Clone, Debug)]
+pub struct GpuOptions {
+    /// Which adapter to take.
+    pub adapter: AdapterChoice,
+    /// Which limits to ask for.
+    pub limits: LimitSet,
+    /// How long a submission may take before it counts as hung.
+    pub timeout: Duration,
+    /// Destroys the device after this many submissions, as a driver reset would. For tests of what happens then.
+    pub lose_after_submissions: Option<u64>,
+}
+
+impl Default for GpuOptions {
+    fn default() -> Self {
+        Self {
+            adapter: AdapterChoice::Auto,
+            limits: LimitSet::Adapter,
+            timeout: Duration::from_secs(30),
+            lose_after_submissions: None,
+        }
+    }
+}
+
+/// Which limits a device of our own gets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LimitSet {
+    /// All that the adapter has.
+    #[default]
+    Adapter,
+    /// What every WebGPU implementation has: what a browser gives by default.
+    WebGpuDefault,
+}
+
+/// A device and its queue, with typed errors.
+///
+/// Cloning is cheap and gives another handle to the same device.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    adapter: Arc<AdapterDescription>,
+    health: Arc<Health>,
+    timeout: Duration,
+}
+
+/// What the callbacks of a device of our own have reported. On a caller's device it stays empty: there, loss is
+/// seen by the failure of the next readback.
+#[derive(Debug, Default)]
+struct Health {
+    lost: Mutex<Option<String>>,
+    uncaptured: Mutex<Option<String>>,
+    submissions: AtomicU64,
+    lose_after: Option<u64>,
+}
+
+impl Health {
+    fn note(slot: &Mutex<Option<String>>, text: String) {
+        slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(text);
+    }
+
+    fn read(slot: &Mutex<Option<String>>) -> Option<String> {
+        slot.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl Gpu {
+    /// A device of our own on the chosen adapter, with the adapter's limits.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`], [`GpuError::AdapterNotFound`] or [`GpuError::NoDevice`].
+    pub fn open(choice: &AdapterChoice) -> Result<Self, GpuError> {
+        Self::open_with(&GpuOptions { adapter: choice.clone(), ..GpuOptions::default() })
+    }
+
+    /// A device of our own.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub fn open_with(options: &GpuOptions) -> Result<Self, GpuError> {
+        let adapter = adapter::choose(&options.adapter)?;
+        let wanted = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::FLOAT32_FILTERABLE;
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("downpour"),
+            required_features: adapter.features() & wanted,
+            required_limits: match options.limits {
+                LimitSet::Adapter => adapter.limits(),
+                LimitSet::WebGpuDefault => wgpu::Limits::default(),
+            },
+            ..Default::default()
+        }))
+        .map_err(|error| GpuError::NoDevice {
+            adapter: adapter.get_info().name,
+            reason: one_line(&error.to_string()),
+        })?;
+        let health = Arc::new(Health { lose_after: options.lose_after_submissions, ..Health::default() });
+        let (on_lost, on_error) = (Arc::clone(&health), Arc::clone(&health));
+        device.set_device_lost_callback(move |reason, message| {
+            let text = if message.is_empty() { format!("{reason:?}") } else { one_line(&message) };
+            Health::note(&on_lost.lost, text);
+        });
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            Health::note(&on_error.uncaptured, one_line(&error.to_string()));
+        }));
+        Ok(Self::assemble(device, queue, health, options.timeout))
+    }
+
+    /// A context on a caller's device and queue. Its lost-device callback and error handler stay the caller's.
+    #[must_use]
+    pub fn on_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        Self::assemble(device, queue, Arc::default(), GpuOptions::default().timeout)
+    }
+
+    fn assemble(device: wgpu::Device, queue: wgpu::Queue, health: Arc<Health>, timeout: Duration) -> Self {
+        let adapter = AdapterDescription::new(&device.adapter_info(), device.features(), &device.limits());
+        Self { device, queue, adapter: Arc::new(adapter), health, timeout }
+    }
+
+    /// The device.
+    #[must_use]
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// The queue.
+    #[must_use]
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
+    }
+
+    /// The adapter of the device; features and limits are those of the device.
+    #[must_use]
+    pub fn adapter(&self) -> &AdapterDescription {
+        &self.adapter
+    }
+
+    /// Makes something on the device, and turns what wgpu reports of it into an error.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`] (with `bytes` as the need) or [`GpuError::Refused`], both naming `what`;
+    /// [`GpuError::Lost`] if the device is known to be lost.
+    pub fn create<T>(
+        &self,
+        what: &str,
+        bytes: u64,
+        make: impl FnOnce(&wgpu::Device) -> T,
+    ) -> Result<T, GpuError> {
+        self.check()?;
+        // Scopes are a stack of this thread, innermost popped first. Each is always popped: a scope that is
+        // dropped would swallow a caller's errors.
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let made = make(&self.device);
+        let internal = pollster::block_on(internal.pop());
+        let validation = pollster::block_on(validation.pop());
+        let memory = pollster::block_on(memory.pop());
+        if memory.is_some() {
+            return Err(GpuError::OutOfMemory { what: what.to_owned(), need_bytes: bytes });
+        }
+        if let Some(error) = validation.or(internal) {
+            self.check()?;
+            return Err(GpuError::Refused { what: what.to_owned(), reason: one_line(&error.to_string()) });
+        }
+        Ok(made)
+    }
+
+    /// Submits the dispatches in order, as one command buffer. Does not wait.
+    ///
+    /// # Errors
+    /// As [`Gpu::create`]; [`GpuError::OverLimit`] if a dispatch has more workgroups than the device allows.
+    pub fn submit(&self, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
+        for dispatch in dispatches {
+            dispatch.check(&self.device.limits())?;
+        }
+        let commands = self.create("a command buffer", 0, |device| {
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+                for dispatch in dispatches {
+                    dispatch.encode_in(&mut pass);
+                }
+            }
+            encoder.finish()
+        })?;
+        self.submit_commands(commands);
+        Ok(())
+    }
+
+    /// Submits recorded commands, and loses the device if that was asked for.
+    pub(crate) fn submit_commands(&self, commands: wgpu::CommandBuffer) {
+        self.queue.submit([commands]);
+        let done = self.health.submissions.fetch_add(1, Ordering::Relaxed) + 1;
+        if self.health.lose_after == Some(done) {
+            self.device.destroy();
+        }
+    }
+
+    /// Waits until everything submitted is done.
+    ///
+    /// # Errors
+    /// [`GpuError::Hung`] after the timeout, [`GpuError::Lost`], or what an earlier call ran into.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let poll = wgpu::PollType::Wait { submission_index: None, timeout: Some(self.timeout) };
+        match self.device.poll(poll) {
+            Ok(_) => self.check(),
+            Err(wgpu::PollError::Timeout) => Err(GpuError::Hung { waited: self.timeout }),
+            Err(error) => {
+                Err(GpuError::Refused { what: "waiting".to_owned(), reason: one_line(&error.to_string()) })
+            }
+        }
+    }
+
+    /// What is known of the health of the device, without waiting.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`], or [`GpuError::Refused`] for an error that no scope caught.
+    pub fn check(&self) -> Result<(), GpuError> {
+        if let Some(reason) = Health::read(&self.health.lost) {
+            return Err(GpuError::Lost { reason });
+        }
+        match Health::read(&self.health.uncaptured) {
+            Some(reason) => Err(GpuError::Refused { what: "an earlier call".to_owned(), reason }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// wgpu's messages are paragraphs; ours are lines.
+pub(crate) fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}

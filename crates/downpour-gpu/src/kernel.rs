@@ -1,0 +1,119 @@
+//! Compute pipelines and their dispatches.
+
+use downpour_shaders::Kernel;
+
+use crate::{Gpu, GpuError};
+
+/// A compute pipeline whose buffers are the bindings 0, 1, 2, ... of group 0.
+#[derive(Clone, Debug)]
+pub struct ComputeKernel {
+    pipeline: wgpu::ComputePipeline,
+    label: String,
+}
+
+impl ComputeKernel {
+    /// The pipeline of a kernel of `downpour-shaders`, with values for its `override` constants.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`] if the workgroup is too large for the device; as [`Gpu::create`] otherwise.
+    pub fn new(gpu: &Gpu, kernel: &Kernel, overrides: &[(&str, f64)]) -> Result<Self, GpuError> {
+        let [x, y, z] = kernel.workgroup.map(u64::from);
+        let allowed = u64::from(gpu.device().limits().max_compute_invocations_per_workgroup);
+        if x * y * z > allowed {
+            return Err(GpuError::OverLimit {
+                what: format!("the workgroup of kernel \"{}\"", kernel.entry),
+                found: x * y * z,
+                limit_name: "max_compute_invocations_per_workgroup",
+                allowed,
+            });
+        }
+        Self::from_source(gpu, kernel.entry, &kernel.source(), overrides)
+    }
+
+    /// The pipeline of an entry point of any WGSL text.
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] with the compiler's words if the text is not valid; as [`Gpu::create`] otherwise.
+    pub fn from_source(
+        gpu: &Gpu,
+        entry: &str,
+        source: &str,
+        overrides: &[(&str, f64)],
+    ) -> Result<Self, GpuError> {
+        let pipeline = gpu.create(&format!("kernel \"{entry}\""), 0, |device| {
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(entry),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            });
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: None,
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: overrides,
+                    ..Default::default()
+                },
+                cache: None,
+            })
+        })?;
+        Ok(Self { pipeline, label: entry.to_owned() })
+    }
+
+    /// The buffers as bindings 0, 1, 2, ... of group 0.
+    ///
+    /// # Errors
+    /// [`GpuError::Refused`] if number, usage or size of the buffers are not what the kernel declares.
+    pub fn bind(&self, gpu: &Gpu, buffers: &[&wgpu::Buffer]) -> Result<wgpu::BindGroup, GpuError> {
+        gpu.create(&format!("bindings of \"{}\"", self.label), 0, |device| {
+            let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+                .zip(buffers)
+                .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                    binding,
+                    resource: buffer.as_entire_binding(),
+                })
+                .collect();
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(&self.label),
+                layout: &self.pipeline.get_bind_group_layout(0),
+                entries: &entries,
+            })
+        })
+    }
+
+    /// A dispatch of `groups` workgroups.
+    #[must_use]
+    pub fn dispatch<'a>(&'a self, bindings: &'a wgpu::BindGroup, groups: [u32; 3]) -> Dispatch<'a> {
+        Dispatch { kernel: self, bindings, groups }
+    }
+}
+
+/// A kernel with its bindings and its number of workgroups.
+#[derive(Clone, Copy, Debug)]
+pub struct Dispatch<'a> {
+    kernel: &'a ComputeKernel,
+    bindings: &'a wgpu::BindGroup,
+    groups: [u32; 3],
+}
+
+impl Dispatch<'_> {
+    pub(crate) fn check(&self, limits: &wgpu::Limits) -> Result<(), GpuError> {
+        let allowed = u64::from(limits.max_compute_workgroups_per_dimension);
+        match self.groups.iter().map(|&n| u64::from(n)).find(|&n| n > allowed) {
+            Some(found) => Err(GpuError::OverLimit {
+                what: format!("the number of workgroups of kernel \"{}\"", self.kernel.label),
+                found,
+                limit_name: "max_compute_workgroups_per_dimension",
+                allowed,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    pub(crate) fn encode_in(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_pipeline(&self.kernel.pipeline);
+        pass.set_bind_group(0, self.bindings, &[]);
+        let [x, y, z] = self.groups;
+        pass.dispatch_workgroups(x, y, z);
+    }
+}

@@ -1,0 +1,20 @@
+//! The registry of cases, a file per subsystem.
+
+mod common;
+
+use crate::{FunctionCase, KernelCase};
+
+/// All function-level cases.
+#[must_use]
+pub fn functions() -> Vec<FunctionCase> {
+    [common::functions()].into_iter().flatten().collect()
+}
+
+/// All kernel-level cases.
+#[must_use]
+pub fn kernels() -> Vec<KernelCase> {
+    Vec::new()
+}
+
+/// Functions without a case of their own, each with the reason.
+pub const ALLOWED: &[(&str, &str)] = &[];

@@ -1,0 +1,140 @@
+//! Function-level cases: one WGSL function against its twin, over many arguments.
+
+use downpour_gpu::{ComputeKernel, Gpu, GpuError};
+use downpour_shaders::{Module, compose};
+
+use crate::compare::{self, Comparison, Cpu, POISON, compare};
+use crate::domain::Domain;
+use crate::signature::{Signature, WordKind, parse};
+use crate::tolerance::Tol;
+use crate::words::Args;
+
+/// How many calls a case makes if it does not say.
+pub const CALLS: u32 = 8192;
+
+/// A WGSL function, where its arguments come from, and its twin.
+#[derive(Clone, Debug)]
+pub struct FunctionCase {
+    /// Name of the function in WGSL (and in Rust).
+    pub function: &'static str,
+    /// The module that holds it.
+    pub module: &'static Module,
+    /// The domains of the arguments, in order.
+    pub domains: Vec<Domain>,
+    /// The twin: reads the arguments, gives the words of the result.
+    pub cpu: fn(&mut Args<'_>) -> Vec<u32>,
+    /// How far the two may differ.
+    pub tol: Tol,
+    /// How many calls are made.
+    pub calls: u32,
+}
+
+/// The words of both sides, and how the words of the result are to be compared.
+#[derive(Debug)]
+pub struct Run {
+    /// The arguments of each call.
+    pub arguments: Vec<Vec<u32>>,
+    /// What the twin gives.
+    pub cpu: Cpu,
+    /// What the shader gives.
+    pub gpu: compare::Gpu,
+    /// The kinds of the words of one result.
+    pub kinds: Vec<WordKind>,
+}
+
+impl FunctionCase {
+    /// A case with the default number of calls.
+    #[must_use]
+    pub fn new(
+        function: &'static str,
+        module: &'static Module,
+        domains: &[Domain],
+        tol: Tol,
+        cpu: fn(&mut Args<'_>) -> Vec<u32>,
+    ) -> Self {
+        Self { function, module, domains: domains.to_vec(), cpu, tol, calls: CALLS }
+    }
+
+    /// The shader that calls the function once per invocation.
+    ///
+    /// # Panics
+    /// If the function cannot be called from words (pointers), or the domains do not fit its arguments.
+    #[must_use]
+    pub fn shader(&self, source: &str, words: usize) -> (String, Vec<WordKind>) {
+        let signature = Signature::of(&parse(source), self.function)
+            .unwrap_or_else(|| panic!("{} takes or gives something else than values", self.function));
+        assert_eq!(
+            signature.argument_words, words,
+            "{}: the domains give {words} words, the arguments take {}",
+            self.function, signature.argument_words
+        );
+        let (call, store, outputs) = (&signature.call, &signature.store, signature.result.len());
+        let calls = self.calls;
+        let text = format!(
+            "{source}
+@group(0) @binding(0) var<storage, read> parity_in: array<u32>;
+@group(0) @binding(1) var<storage, read_write> parity_out: array<u32>;
+
+@compute @workgroup_size(64)
+fn main_parity(@builtin(global_invocation_id) parity_id: vec3u) {{
+    if parity_id.x >= {calls}u {{ return; }}
+    let base_in = parity_id.x * {words}u;
+    let base_out = parity_id.x * {outputs}u;
+    let r = {call};
+{store}}}
+"
+        );
+        (text, signature.result)
+    }
+
+    /// Runs both sides. `source` is the text to test: [`compose`] of the module, or a broken one as a control.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    ///
+    /// # Panics
+    /// As [`FunctionCase::shader`]; or if the twin reads less than all words.
+    pub fn run_source(&self, gpu: &Gpu, source: &str) -> Result<Run, GpuError> {
+        let arguments = Domain::arguments(&self.domains, self.calls);
+        let (text, kinds) = self.shader(source, arguments[0].len());
+        let mut cpu = Vec::with_capacity(arguments.len() * kinds.len());
+        for words in &arguments {
+            let mut args = Args::new(words);
+            let result = (self.cpu)(&mut args);
+            assert!(args.is_empty(), "{}: the twin did not read all words", self.function);
+            assert_eq!(result.len(), kinds.len(), "{}: words of the result", self.function);
+            cpu.extend(result);
+        }
+        let kernel = ComputeKernel::from_source(gpu, "main_parity", &text, &[])?;
+        let input = gpu.storage_buffer("parity in", &arguments.concat())?;
+        let output = gpu.storage_buffer("parity out", &vec![POISON; cpu.len()])?;
+        let bindings = kernel.bind(gpu, &[&input, &output])?;
+        gpu.submit(&[kernel.dispatch(&bindings, [self.calls.div_ceil(64), 1, 1])])?;
+        let words = gpu.read::<u32>(&output)?;
+        Ok(Run { arguments, cpu: Cpu(cpu), gpu: compare::Gpu(words), kinds })
+    }
+
+    /// Runs both sides of the shader as it is.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn run(&self, gpu: &Gpu) -> Result<Run, GpuError> {
+        self.run_source(gpu, &compose(&[self.module]))
+    }
+}
+
+impl Run {
+    /// Compares the two sides.
+    #[must_use]
+    pub fn compare(&self, tol: &Tol) -> Comparison {
+        compare(&self.cpu, &self.gpu, &self.kinds, tol)
+    }
+
+    /// The arguments of the call that made a word of the result, as numbers and as words.
+    #[must_use]
+    pub fn describe_call(&self, word: usize) -> String {
+        let words = &self.arguments[word / self.kinds.len()];
+        let numbers: Vec<f32> = words.iter().map(|&w| f32::from_bits(w)).collect();
+        format!("{numbers:?} = {words:#x?}").replace('\n', "")
+    }
+}

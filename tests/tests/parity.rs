@@ -1,0 +1,83 @@
+//! Every function-level and kernel-level case on the machine's adapter, each followed by its negative controls.
+//!
+//! No adapter is a failure; `DOWNPOUR_GPU_TESTS=no` shows the cases as ignored. The worst error of each case is
+//! written to `target/parity/<adapter>.csv`.
+
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use downpour_gpu::{Gpu, GpuError};
+use downpour_tests::function::Run;
+use downpour_tests::report::{self, Report};
+use downpour_tests::{Tol, adapter, cases, control};
+use libtest_mimic::{Arguments, Failed, Trial};
+
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let off = adapter::switched_off();
+    let gpu = if off || arguments.list { None } else { Some(adapter::open()) };
+    let gpu = Arc::new(gpu);
+    let report = Arc::new(Report::default());
+
+    let mut trials = vec![{
+        let gpu = Arc::clone(&gpu);
+        Trial::test("adapter", move || open(&gpu).map(|_| ())).with_ignored_flag(off)
+    }];
+    for case in cases::functions() {
+        let (gpu, report) = (Arc::clone(&gpu), Arc::clone(&report));
+        let name = format!("function::{}", case.function);
+        let label = case.function;
+        trials.push(
+            Trial::test(name, move || judge(label, open(&gpu)?, &case.tol, &report, |gpu| case.run(gpu)))
+                .with_ignored_flag(off),
+        );
+    }
+    for case in cases::kernels() {
+        let (gpu, report) = (Arc::clone(&gpu), Arc::clone(&report));
+        trials.push(
+            Trial::test(format!("kernel::{}", case.name), move || {
+                judge(case.name, open(&gpu)?, &case.tol, &report, case.run)
+            })
+            .with_ignored_flag(off),
+        );
+    }
+
+    let conclusion = libtest_mimic::run(&arguments, trials);
+    if let Some(Ok(gpu)) = gpu.as_ref() {
+        match report.write(&gpu.adapter().name) {
+            Ok(Some(path)) => println!("worst errors on \"{}\": {}", gpu.adapter().name, path.display()),
+            Ok(None) => {}
+            Err(error) => eprintln!("the report was not written: {error}"),
+        }
+    }
+    conclusion.exit_code()
+}
+
+fn open(gpu: &Option<Result<Gpu, GpuError>>) -> Result<&Gpu, Failed> {
+    match gpu {
+        Some(Ok(gpu)) => Ok(gpu),
+        Some(Err(error)) => Err(format!("{error} (or say {}=no)", adapter::SWITCH).into()),
+        None => Err("no adapter was asked for".into()),
+    }
+}
+
+fn judge(
+    name: &str,
+    gpu: &Gpu,
+    tol: &Tol,
+    report: &Report,
+    run: impl Fn(&Gpu) -> Result<Run, GpuError>,
+) -> Result<(), Failed> {
+    let run = run(gpu)?;
+    let comparison = run.compare(tol);
+    report.note(name, &comparison, tol);
+    if let Some(failure) = &comparison.failure {
+        let details = match report::write_failure(name, &run) {
+            Ok(path) => path.display().to_string(),
+            Err(error) => format!("not written: {error}"),
+        };
+        let input = run.describe_call(comparison.worst_at);
+        return Err(format!("{failure}\nworst at input {input}\nboth sides: {details}").into());
+    }
+    control::must_go_red(&run, tol).map_err(|error| format!("negative control: {error}").into())
+}

@@ -1,0 +1,64 @@
+//! Every shader is valid, and every kernel becomes a pipeline on a device with WebGPU's default limits.
+
+use downpour_gpu::wgpu;
+use downpour_gpu::{ComputeKernel, Gpu};
+use downpour_shaders::{compose, kernels, modules};
+use downpour_tests::signature::parse;
+
+/// wgpu's noop device: it validates, and computes nothing.
+fn noop() -> Gpu {
+    let descriptor =
+        wgpu::DeviceDescriptor { required_limits: wgpu::Limits::default(), ..Default::default() };
+    let (device, queue) = wgpu::Device::noop(&descriptor);
+    Gpu::on_device(device, queue)
+}
+
+#[test]
+fn every_module_is_valid_with_what_it_uses() {
+    for module in modules() {
+        let parsed = parse(&compose(&[module]));
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            naga::valid::Capabilities::empty(),
+        );
+        if let Err(error) = validator.validate(&parsed) {
+            panic!("{}: {}", module.path, error.emit_to_string(&compose(&[module])));
+        }
+    }
+}
+
+#[test]
+fn every_kernel_makes_a_pipeline() {
+    let gpu = noop();
+    for kernel in kernels() {
+        ComputeKernel::new(&gpu, kernel, &[]).unwrap_or_else(|error| panic!("{}: {error}", kernel.entry));
+    }
+}
+
+#[test]
+fn a_broken_kernel_makes_none() {
+    let gpu = noop();
+    let error =
+        ComputeKernel::from_source(&gpu, "main_broken", "fn main_broken() -> u32 { return 1.5; }", &[])
+            .expect_err("an invalid shader was accepted");
+    assert!(error.to_string().contains("main_broken"), "{error}");
+}
+
+#[test]
+fn workgroup_sizes_are_what_the_shaders_say() {
+    for kernel in kernels() {
+        let parsed = parse(&kernel.source());
+        let entry = parsed.entry_points.iter().find(|e| e.name == kernel.entry);
+        let entry = entry.unwrap_or_else(|| panic!("{} is not in {}", kernel.entry, kernel.module.path));
+        assert_eq!(entry.workgroup_size, kernel.workgroup, "{}", kernel.entry);
+    }
+}
+
+#[test]
+fn modules_are_listed_once() {
+    let mut paths: Vec<_> = modules().map(|m| m.path).collect();
+    let n = paths.len();
+    paths.sort_unstable();
+    paths.dedup();
+    assert_eq!(paths.len(), n);
+}
