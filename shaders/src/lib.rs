@@ -25,6 +25,7 @@ mod module;
 
 pub mod common;
 pub mod drop;
+pub mod mask;
 
 pub use module::{Kernel, Module, compose};
 
@@ -37,6 +38,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         drop::optics::MODULES,
         drop::oscillation::MODULES,
         drop::shape::MODULES,
+        mask::MODULES,
     ]
     .into_iter()
     .flatten()
@@ -45,5 +47,5 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
 
 /// Every kernel of the crate, for the tests that create a pipeline from each.
 pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
-    std::iter::empty()
+    [mask::KERNELS].into_iter().flatten().copied()
 }

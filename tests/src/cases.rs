@@ -1,19 +1,21 @@
 //! The registry of cases, a file per subsystem.
 
 mod common;
+mod drop;
+mod mask;
 
 use crate::{FunctionCase, KernelCase};
 
 /// All function-level cases.
 #[must_use]
 pub fn functions() -> Vec<FunctionCase> {
-    [common::functions()].into_iter().flatten().collect()
+    [common::functions(), drop::functions(), mask::functions()].into_iter().flatten().collect()
 }
 
 /// All kernel-level cases.
 #[must_use]
 pub fn kernels() -> Vec<KernelCase> {
-    Vec::new()
+    mask::kernels()
 }
 
 /// Functions without a case of their own, each with the reason.

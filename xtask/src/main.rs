@@ -1,1 +1,48 @@
-fn main() {}
+//! Tasks of the workspace. `cargo xtask` without a task lists them.
+
+mod checks;
+mod driver;
+mod goldens;
+mod masks;
+mod run;
+mod shaders;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+cargo xtask test              run every test; makes sure of a Vulkan driver first
+cargo xtask ci                formatting, lints, each crate alone, documentation, then every test
+cargo xtask lint              the same without the tests
+cargo xtask masks [--check]   write assets/masks; with --check compare them with what the code makes, byte for byte
+cargo xtask goldens [--bless] compare the golden images of tests/goldens; with --bless write them from the CPU twins
+cargo xtask shaders [FOLDER]  write the complete WGSL text of every kernel (default target/shaders)
+cargo xtask bench             run every benchmark";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match words.as_slice() {
+        ["test"] => checks::test(),
+        ["ci"] => checks::lint().and_then(|()| checks::test()),
+        ["lint"] => checks::lint(),
+        ["masks"] => masks::write(),
+        ["masks", "--check"] => masks::check(),
+        ["goldens"] => goldens::compare(),
+        ["goldens", "--bless"] => goldens::bless(),
+        ["shaders"] => shaders::write("target/shaders"),
+        ["shaders", folder] => shaders::write(folder),
+        ["bench"] => checks::bench(),
+        [] => {
+            println!("{USAGE}");
+            return ExitCode::SUCCESS;
+        }
+        _ => Err(format!("no task \"{}\"; there are:\n{USAGE}", words.join(" "))),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("xtask: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -12,3 +12,4 @@ pub mod shape;
 pub mod water;
 
 pub use error::DropError;
+pub use shape::DropShape;

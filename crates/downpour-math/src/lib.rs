@@ -4,7 +4,7 @@
 //! - [`rng`]: counter-based random numbers, bit-equal to the GPU's;
 //! - [`packing`]: unit vectors in two numbers;
 //! - [`quadrature`]: Gauss-Legendre rules, for the integrals that physics asks for;
-//! - [`real`]: one algorithm for `f32`, `f64` and many lanes at once.
+//! - [`real`] and [`vector`]: one algorithm for `f32`, `f64` and many lanes at once.
 //!
 //! Twin of `shaders/wgsl/common`: functions of the same name do the same operations in the same order.
 
@@ -13,3 +13,4 @@ pub mod packing;
 pub mod quadrature;
 pub mod real;
 pub mod rng;
+pub mod vector;

@@ -1,0 +1,333 @@
+//! A bounding volume hierarchy over triangles, and the nearest hit of a ray.
+//!
+//! Built by the surface area heuristic over 16 bins per axis (I. Wald, "On fast construction of SAH-based
+//! bounding volume hierarchies", 2007). Nodes are stored depth first; leaves refer to a reordered list of
+//! triangles. The build depends on nothing but the triangles, so the same mesh gives the same tree.
+//!
+//! Twin of the traversal in `shaders/wgsl/mask/bvh.wgsl`.
+
+use downpour_math::vector::{cross, dot, sub};
+use downpour_shaders::mask::MASK_BVH_STACK;
+
+/// Triangles of a leaf below which it is not split.
+const LEAF: usize = 4;
+/// Bins per axis.
+const BINS: usize = 16;
+/// Barycentric slack: a ray through a shared edge must not slip between the two triangles.
+const EDGE_SLACK: f32 = downpour_shaders::mask::MASK_BVH_EDGE_SLACK;
+
+/// A node: an inner node has its first child right behind it and the second at `link`; a leaf has `count`
+/// triangles from `link` on. The same layout as `MaskBvhNode` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct BvhNode {
+    /// Lower corner.
+    pub low: [f32; 3],
+    /// Second child, or first triangle.
+    pub link: u32,
+    /// Upper corner.
+    pub high: [f32; 3],
+    /// Number of triangles; 0 for an inner node.
+    pub count: u32,
+}
+
+/// Corners of a triangle, ready to be hit. The same layout as `MaskBvhTriangle` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct BvhTriangle {
+    /// First corner.
+    pub corner: [f32; 3],
+    /// Index of the triangle in the mesh.
+    pub index: u32,
+    /// Second corner less the first.
+    pub edge_1: [f32; 3],
+    /// Padding of the WGSL layout.
+    pub padding_1: u32,
+    /// Third corner less the first.
+    pub edge_2: [f32; 3],
+    /// Padding of the WGSL layout.
+    pub padding_2: u32,
+}
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray, in units of the length of its direction.
+    pub distance: f32,
+    /// Index of the triangle in the mesh.
+    pub triangle: u32,
+    /// Weight of the second corner.
+    pub u: f32,
+    /// Weight of the third corner.
+    pub v: f32,
+}
+
+/// The hierarchy.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    /// Nodes, the root first.
+    pub nodes: Vec<BvhNode>,
+    /// Triangles in the order of the leaves.
+    pub triangles: Vec<BvhTriangle>,
+}
+
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: [f32; 3],
+    high: [f32; 3],
+}
+
+impl Bounds {
+    const NONE: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
+
+    fn with(self, point: [f32; 3]) -> Self {
+        Self {
+            low: std::array::from_fn(|k| self.low[k].min(point[k])),
+            high: std::array::from_fn(|k| self.high[k].max(point[k])),
+        }
+    }
+
+    fn union(self, other: Self) -> Self {
+        self.with(other.low).with(other.high)
+    }
+
+    /// Half of the surface area; 0 for nothing.
+    fn area(self) -> f32 {
+        let [x, y, z] = std::array::from_fn(|k| (self.high[k] - self.low[k]).max(0.0));
+        x * y + y * z + z * x
+    }
+}
+
+/// A triangle on its way into the tree.
+#[derive(Clone, Copy)]
+struct Item {
+    bounds: Bounds,
+    middle: [f32; 3],
+    index: u32,
+}
+
+impl Bvh {
+    /// Builds the tree over triangles given by their corners.
+    #[must_use]
+    pub fn new(corners: &[[[f32; 3]; 3]]) -> Self {
+        let mut items: Vec<Item> = (0u32..)
+            .zip(corners)
+            .map(|(index, triangle)| {
+                let bounds = triangle.iter().fold(Bounds::NONE, |b, &p| b.with(p));
+                let middle = std::array::from_fn(|k| 0.5 * (bounds.low[k] + bounds.high[k]));
+                Item { bounds, middle, index }
+            })
+            .collect();
+        let mut nodes = Vec::with_capacity(2 * items.len() / LEAF + 1);
+        build(&mut items, 0, 0, &mut nodes);
+        let triangles = items
+            .iter()
+            .map(|item| {
+                let [a, b, c] = corners[item.index as usize];
+                BvhTriangle {
+                    corner: a,
+                    index: item.index,
+                    edge_1: sub(b, a),
+                    padding_1: 0,
+                    edge_2: sub(c, a),
+                    padding_2: 0,
+                }
+            })
+            .collect();
+        Self { nodes, triangles }
+    }
+
+    /// The nearest hit farther than `nearest` along the ray.
+    #[must_use]
+    pub fn hit(&self, origin: [f32; 3], direction: [f32; 3], nearest: f32) -> Option<Hit> {
+        let inverse = mask_bvh_inverse(direction);
+        let mut best: Option<Hit> = None;
+        let mut stack = [0u32; MASK_BVH_STACK as usize];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let at = stack[depth];
+            let node = &self.nodes[at as usize];
+            let limit = best.map_or(f32::INFINITY, |h| h.distance);
+            if !mask_bvh_touches(node, origin, inverse, limit) {
+                continue;
+            }
+            if node.count == 0 {
+                stack[depth] = node.link;
+                stack[depth + 1] = at + 1;
+                depth += 2;
+                continue;
+            }
+            for triangle in &self.triangles[node.link as usize..(node.link + node.count) as usize] {
+                let [distance, u, v] = mask_bvh_triangle(triangle, origin, direction);
+                let limit = best.map_or(f32::INFINITY, |h| h.distance);
+                if distance > nearest && distance < limit {
+                    best = Some(Hit { distance, triangle: triangle.index, u, v });
+                }
+            }
+        }
+        best
+    }
+}
+
+/// The inverse of a direction, without infinities: a ray along an axis gets a very steep slope instead.
+#[must_use]
+pub fn mask_bvh_inverse(direction: [f32; 3]) -> [f32; 3] {
+    direction.map(|d| 1.0 / if d.abs() > 1.0e-20 { d } else { 1.0e-20 })
+}
+
+/// Whether the ray touches the box of `node` before `limit`.
+#[must_use]
+pub fn mask_bvh_touches(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32) -> bool {
+    let mut enter = 0.0f32;
+    let mut leave = limit;
+    for k in 0..3 {
+        let a = (node.low[k] - origin[k]) * inverse[k];
+        let b = (node.high[k] - origin[k]) * inverse[k];
+        enter = enter.max(a.min(b));
+        leave = leave.min(a.max(b));
+    }
+    // Rounding may put the two past each other by a few units in the last place.
+    enter <= leave * 1.000_001 + 1.0e-7
+}
+
+/// Distance and the weights of the second and third corner where the ray meets the triangle's plane; distance -1
+/// where that is outside the triangle (T. Moller, B. Trumbore, "Fast, minimum storage ray-triangle intersection",
+/// 1997).
+#[must_use]
+pub fn mask_bvh_triangle(triangle: &BvhTriangle, origin: [f32; 3], direction: [f32; 3]) -> [f32; 3] {
+    let p = cross(direction, triangle.edge_2);
+    let determinant = dot(triangle.edge_1, p);
+    let inverse = 1.0 / determinant;
+    let from = sub(origin, triangle.corner);
+    let u = dot(from, p) * inverse;
+    let q = cross(from, triangle.edge_1);
+    let v = dot(direction, q) * inverse;
+    let inside = determinant != 0.0 && u >= -EDGE_SLACK && v >= -EDGE_SLACK && u + v <= 1.0 + EDGE_SLACK;
+    if inside { [dot(triangle.edge_2, q) * inverse, u, v] } else { [-1.0, 0.0, 0.0] }
+}
+
+/// Adds the subtree over `items`, which start at `first` of the whole list.
+fn build(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<BvhNode>) {
+    let bounds = items.iter().fold(Bounds::NONE, |b, item| b.union(item.bounds));
+    let at = nodes.len();
+    nodes.push(BvhNode { low: bounds.low, link: first as u32, high: bounds.high, count: items.len() as u32 });
+    // The traversal keeps one waiting node per level.
+    let deepest = depth + 2 >= MASK_BVH_STACK as usize;
+    let Some(split) = (if items.len() <= LEAF || deepest { None } else { split(items) }) else { return };
+    nodes[at].count = 0;
+    let (left, right) = items.split_at_mut(split);
+    build(left, first, depth + 1, nodes);
+    nodes[at].link = nodes.len() as u32;
+    build(right, first + split, depth + 1, nodes);
+}
+
+/// Reorders `items` and says where to cut them.
+fn split(items: &mut [Item]) -> Option<usize> {
+    let middles = items.iter().fold(Bounds::NONE, |b, item| b.with(item.middle));
+    let mut best = (f32::INFINITY, 0, 0);
+    for axis in 0..3 {
+        let extent = middles.high[axis] - middles.low[axis];
+        if extent <= 0.0 {
+            continue;
+        }
+        let mut bins = [(Bounds::NONE, 0usize); BINS];
+        for item in items.iter() {
+            let bin = &mut bins[bin_of(item, axis, middles.low[axis], extent)];
+            *bin = (bin.0.union(item.bounds), bin.1 + 1);
+        }
+        for cut in 1..BINS {
+            let side = |bins: &[(Bounds, usize)]| {
+                let (bounds, n) =
+                    bins.iter().fold((Bounds::NONE, 0), |(b, n), bin| (b.union(bin.0), n + bin.1));
+                bounds.area() * n as f32
+            };
+            let cost = side(&bins[..cut]) + side(&bins[cut..]);
+            if cost < best.0 {
+                best = (cost, axis, cut);
+            }
+        }
+    }
+    let (cost, axis, cut) = best;
+    if cost.is_infinite() {
+        return None;
+    }
+    let extent = middles.high[axis] - middles.low[axis];
+    // A stable order keeps the tree independent of the sort.
+    items.sort_by_key(|item| bin_of(item, axis, middles.low[axis], extent) >= cut);
+    let split = items.partition_point(|item| bin_of(item, axis, middles.low[axis], extent) < cut);
+    (split > 0 && split < items.len()).then_some(split)
+}
+
+fn bin_of(item: &Item, axis: usize, low: f32, extent: f32) -> usize {
+    (((item.middle[axis] - low) / extent * BINS as f32) as usize).min(BINS - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use downpour_math::rng::{rng_draw, rng_unit};
+
+    fn soup(n: u32) -> Vec<[[f32; 3]; 3]> {
+        (0..n)
+            .map(|i| {
+                let place = rng_draw([1, 2], i, 0, 0).map(rng_unit);
+                std::array::from_fn(|corner| {
+                    let offset = rng_draw([3, 4], i, corner as u32, 0).map(rng_unit);
+                    std::array::from_fn(|k| place[k] * 4.0 + 0.5 * offset[k])
+                })
+            })
+            .collect()
+    }
+
+    /// The tree finds what a loop over all triangles finds.
+    #[test]
+    fn nearest_hit_is_that_of_brute_force() {
+        let corners = soup(800);
+        let bvh = Bvh::new(&corners);
+        let mut hits = 0;
+        for i in 0..3000 {
+            let a = rng_draw([5, 6], i, 0, 0).map(rng_unit);
+            let b = rng_draw([5, 6], i, 1, 0).map(rng_unit);
+            let origin = std::array::from_fn(|k| a[k] * 6.0 - 1.0);
+            let mut direction: [f32; 3] = std::array::from_fn(|k| b[k] - 0.5);
+            if i % 3 == 0 {
+                // Rays along an axis divide by zero.
+                direction[(i % 2) as usize] = 0.0;
+            }
+            let brute = bvh
+                .triangles
+                .iter()
+                .map(|t| (mask_bvh_triangle(t, origin, direction), t.index))
+                .filter(|(h, _)| h[0] > 1.0e-4)
+                .min_by(|x, y| x.0[0].total_cmp(&y.0[0]));
+            let found = bvh.hit(origin, direction, 1.0e-4);
+            assert_eq!(found.map(|h| h.distance), brute.map(|(h, _)| h[0]), "ray {i}");
+            hits += u32::from(found.is_some());
+        }
+        assert!(hits > 300, "only {hits} rays hit anything");
+    }
+
+    #[test]
+    fn every_triangle_is_in_one_leaf_and_in_its_boxes() {
+        let corners = soup(1000);
+        let bvh = Bvh::new(&corners);
+        let mut seen = vec![0; corners.len()];
+        for node in bvh.nodes.iter().filter(|n| n.count > 0) {
+            for t in &bvh.triangles[node.link as usize..(node.link + node.count) as usize] {
+                seen[t.index as usize] += 1;
+                for p in corners[t.index as usize] {
+                    assert!((0..3).all(|k| node.low[k] <= p[k] && p[k] <= node.high[k]));
+                }
+            }
+        }
+        assert!(seen.iter().all(|&n| n == 1));
+    }
+
+    #[test]
+    fn equal_triangles_do_not_recurse_for_ever() {
+        let one = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let bvh = Bvh::new(&vec![one; 1000]);
+        assert!(bvh.hit([0.2, 0.2, 1.0], [0.0, 0.0, -1.0], 0.0).is_some());
+    }
+}

@@ -1,0 +1,241 @@
+//! The mask of a drop of revolution. Twin of `shaders/wgsl/mask/drop.wgsl`.
+//!
+//! [`trace_drop`] is the fast path: machine vectors, rows in parallel, and, because a drop of revolution looks
+//! the same from left and right, half of the texels. [`trace_drop_scalar`] is the plain loop over all texels, the
+//! twin of the GPU's kernel; the two give the same bits. [`trace_drop_f64`] is the reference above both.
+
+use downpour_drop::shape::DropShape;
+use downpour_math::real::{Lanes, Real, Simd, WithLanes, with_widest_lanes};
+use downpour_shaders::mask::{MASK_TRACE_REFLECTIONS, MASK_TRACE_STEPS};
+use rayon::prelude::*;
+
+use crate::silhouette::mask_silhouette_cut;
+use crate::trace::{TracedDrop, mask_trace_through};
+use crate::{Mask, MaskError, MaskOptions, MaskTexel};
+
+/// More lanes than any vector has.
+const MOST_LANES: usize = 64;
+
+/// Newton steps of the reference.
+const REFERENCE_STEPS: u32 = 16;
+
+/// A texel as the tracer gives it, before it is stored.
+struct Texel<R> {
+    direction: [R; 3],
+    coverage: R,
+    reflected: [R; 3],
+    transmittance: R,
+    reflections: R,
+}
+
+/// The texel round (x, y), of width `pixel`.
+#[inline(always)]
+fn mask_drop_texel<R: Real>(drop: &TracedDrop, pixel: R, x: R, y: R) -> Texel<R> {
+    let zero = x.constant(0.0);
+    let cut = mask_silhouette_cut(drop, pixel, x, y);
+    let traced = zero.less(cut.traced);
+    if !zero.any(traced) {
+        return Texel {
+            direction: [zero; 3],
+            coverage: zero,
+            reflected: [zero; 3],
+            transmittance: zero,
+            reflections: zero,
+        };
+    }
+    let through = mask_trace_through(drop, cut.sample[0], cut.sample[1]);
+    let keep = |value: R| R::select(traced, value, zero);
+    Texel {
+        direction: through.direction.map(keep),
+        coverage: keep(cut.coverage),
+        reflected: through.reflected.map(keep),
+        transmittance: keep(through.transmittance),
+        reflections: keep(through.reflections),
+    }
+}
+
+impl Texel<f32> {
+    fn store(&self) -> MaskTexel {
+        MaskTexel {
+            direction: self.direction,
+            coverage: self.coverage,
+            reflected: self.reflected,
+            transmittance: self.transmittance,
+            reflections: self.reflections as u32,
+            padding: [0; 3],
+        }
+    }
+}
+
+/// What the tracer needs of a shape seen from somewhere, and the mask without its texels.
+pub(crate) fn prepare(shape: &DropShape, options: &MaskOptions) -> Result<(TracedDrop, Mask), MaskError> {
+    options.check()?;
+    let radius = shape.equivalent_radius();
+    let wide = shape.max_half_width() / radius;
+    let tall = 0.5 * (shape.extent_up() + shape.extent_down()) / radius;
+    let drop = TracedDrop {
+        coefficients: shape.coefficients(),
+        up: options.view.up(),
+        index: options.refractive_index,
+        inverse_wide: 1.0 / (wide * wide),
+        inverse_tall: 1.0 / (tall * tall),
+        steps: MASK_TRACE_STEPS,
+    };
+    let size = f64::from(options.size);
+    let mask = Mask {
+        size: options.size,
+        diameter: shape.diameter(),
+        view: options.view,
+        refractive_index: options.refractive_index,
+        half_extent: wide * size / (size - 2.0),
+        texels: Vec::new(),
+    };
+    Ok((drop, mask))
+}
+
+/// Traces the mask of a drop: the fast path.
+///
+/// ```
+/// use downpour_drop::DropShape;
+/// use downpour_mask::{MaskOptions, trace_drop};
+/// let mask = trace_drop(&DropShape::new(2.0e-3)?, &MaskOptions { size: 64, ..MaskOptions::default() })?;
+/// let middle = mask.texel(32, 32);
+/// assert_eq!(middle.coverage, 1.0);
+/// assert!(middle.direction[2] < -0.99); // nearly straight through
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`MaskError::Size`] or [`MaskError::OutOfRange`] if the options cannot be met.
+pub fn trace_drop(shape: &DropShape, options: &MaskOptions) -> Result<Mask, MaskError> {
+    let (drop, mut mask) = prepare(shape, options)?;
+    let size = options.size as usize;
+    mask.texels = vec![MaskTexel::default(); size * size];
+    let pixel = mask.texel_width() as f32;
+    mask.texels.par_chunks_mut(size).enumerate().for_each(|(row, texels)| {
+        let y = centre(size, size - 1 - row, pixel);
+        with_widest_lanes(Row { drop: &drop, pixel, y, texels });
+    });
+    Ok(mask)
+}
+
+/// The middle of texel `index` of `size`, from the left or from below.
+#[inline(always)]
+fn centre(size: usize, index: usize, pixel: f32) -> f32 {
+    (index as f32 + 0.5 - size as f32 * 0.5) * pixel
+}
+
+/// One row of a mask, traced with machine vectors: the right half, mirrored to the left.
+struct Row<'a> {
+    drop: &'a TracedDrop,
+    pixel: f32,
+    y: f32,
+    texels: &'a mut [MaskTexel],
+}
+
+impl WithLanes for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(mut self, simd: S) {
+        let size = self.texels.len();
+        let lanes = Lanes::<S>::COUNT;
+        debug_assert!(lanes <= MOST_LANES, "a machine with vectors of more than {MOST_LANES} numbers");
+        let mut column = size / 2;
+        while column < size {
+            let count = lanes.min(size - column);
+            let mut x = [0.0; MOST_LANES];
+            for (k, x) in x[..lanes].iter_mut().enumerate() {
+                // Lanes past the edge repeat the last texel.
+                *x = centre(size, column + k.min(count - 1), self.pixel);
+            }
+            let texel = mask_drop_texel(
+                self.drop,
+                Lanes::splat(simd, self.pixel),
+                Lanes::load(simd, &x[..lanes]),
+                Lanes::splat(simd, self.y),
+            );
+            self.write(column, count, &texel);
+            column += count;
+        }
+    }
+}
+
+impl Row<'_> {
+    /// Stores the lanes of `texel` at `column` and, mirrored, on the other side.
+    #[inline(always)]
+    fn write<S: Simd>(&mut self, column: usize, count: usize, texel: &Texel<Lanes<S>>) {
+        let [dx, dy, dz] = texel.direction;
+        let [rx, ry, rz] = texel.reflected;
+        let mut columns = [[0.0f32; MOST_LANES]; 9];
+        let fields = [dx, dy, dz, texel.coverage, rx, ry, rz, texel.transmittance, texel.reflections];
+        for (field, into) in fields.into_iter().zip(&mut columns) {
+            field.store(into);
+        }
+        let [dx, dy, dz, coverage, rx, ry, rz, transmittance, reflections] = &columns;
+        let last = self.texels.len() - 1;
+        for k in 0..count {
+            let right = MaskTexel {
+                direction: [dx[k], dy[k], dz[k]],
+                coverage: coverage[k],
+                reflected: [rx[k], ry[k], rz[k]],
+                transmittance: transmittance[k],
+                reflections: reflections[k] as u32,
+                padding: [0; 3],
+            };
+            let mut left = right;
+            left.direction[0] = -left.direction[0];
+            left.reflected[0] = -left.reflected[0];
+            // The middle column of an odd size is its own mirror: the right one is written last.
+            self.texels[last - (column + k)] = left;
+            self.texels[column + k] = right;
+        }
+    }
+}
+
+/// Traces the mask of a drop with a plain loop over all texels, one at a time: the twin of the GPU's kernel.
+///
+/// # Errors
+/// As [`trace_drop`].
+pub fn trace_drop_scalar(shape: &DropShape, options: &MaskOptions) -> Result<Mask, MaskError> {
+    let (drop, mut mask) = prepare(shape, options)?;
+    let size = options.size as usize;
+    let pixel = mask.texel_width() as f32;
+    mask.texels = (0..size * size)
+        .map(|i| {
+            let (x, y) = (centre(size, i % size, pixel), centre(size, size - 1 - i / size, pixel));
+            mask_drop_texel(&drop, pixel, x, y).store()
+        })
+        .collect();
+    Ok(mask)
+}
+
+/// Traces the mask of a drop in f64, rounded to f32 at the end: the reference of the other two.
+///
+/// # Errors
+/// As [`trace_drop`].
+pub fn trace_drop_f64(shape: &DropShape, options: &MaskOptions) -> Result<Mask, MaskError> {
+    let (mut drop, mut mask) = prepare(shape, options)?;
+    drop.steps = REFERENCE_STEPS;
+    let pixel = mask.texel_width();
+    mask.texels = (0..options.size)
+        .flat_map(|row| (0..options.size).map(move |column| (column, row)))
+        .map(|(column, row)| {
+            let [x, y] = mask.texel_centre(column, row);
+            let texel = mask_drop_texel(&drop, pixel, x, y);
+            let round = |v: f64| v as f32;
+            Texel {
+                direction: texel.direction.map(round),
+                coverage: round(texel.coverage),
+                reflected: texel.reflected.map(round),
+                transmittance: round(texel.transmittance),
+                reflections: round(texel.reflections),
+            }
+            .store()
+        })
+        .collect();
+    Ok(mask)
+}
+
+/// How [`MaskTexel::reflections`] says that the light did not find out of the drop.
+pub const LOST: u32 = MASK_TRACE_REFLECTIONS + 1;

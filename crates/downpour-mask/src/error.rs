@@ -1,0 +1,72 @@
+//! What can be wrong with a mask, a model, or a file.
+
+use downpour_drop::DropError;
+
+/// Why a mask could not be traced, written or read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MaskError {
+    /// A number is not finite or outside its range.
+    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
+    OutOfRange {
+        /// What it is.
+        quantity: &'static str,
+        /// The value, in `unit`.
+        found: f64,
+        /// The unit, as arguments write it.
+        unit: &'static str,
+        /// The range, in words.
+        allowed: &'static str,
+    },
+    /// The mask would be larger than allowed.
+    #[error("mask size is {found}; allowed: {least} to {most}")]
+    Size {
+        /// The size asked for, in pixels along an edge.
+        found: u32,
+        /// The smallest size.
+        least: u32,
+        /// The largest size.
+        most: u32,
+    },
+    /// The drop itself is not possible.
+    #[error(transparent)]
+    Drop(#[from] DropError),
+    /// A mesh is not a closed surface that light could pass through.
+    #[error("the drop model is not a closed surface: {found}; allowed: {allowed}")]
+    Mesh {
+        /// What was found, and where.
+        found: String,
+        /// What is needed.
+        allowed: &'static str,
+    },
+    /// A mask file is not what it should be.
+    #[error("{place}: found {found}; allowed: {allowed}")]
+    File {
+        /// The part of the file.
+        place: &'static str,
+        /// What is there.
+        found: String,
+        /// What could be there.
+        allowed: &'static str,
+    },
+    /// A mask could not be encoded.
+    #[error("the mask could not be written as {format}: {reason}")]
+    Encode {
+        /// The format.
+        format: &'static str,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl MaskError {
+    /// The exit code of the command for this error: 3 over a limit, 2 other bad input, 1 a failure to encode.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Size { found, most, .. } if found > most => 3,
+            Self::Encode { .. } => 1,
+            _ => 2,
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Masks over diameters as a KTX2 texture array.
+//!
+//! Format `R16G16B16A16_SFLOAT`, one level, ZLIB supercompression, two layers per mask, rows from the top:
+//! - layer 2 k: direction through the drop (x, y, z), coverage;
+//! - layer 2 k + 1: direction of the reflection outside (x, y, z), transmittance.
+//!
+//! The key `DownpourMask` holds diameters, half extents (in equivalent radii), the view's elevation and the
+//! refractive index. The number of total reflections is not kept (OpenEXR has it).
+//!
+//! Reading takes what this module writes, and checks every size before it takes memory.
+
+use half::f16;
+use ktx2::dfd::{Basic, Block};
+use ktx2::{Format, Header, Index, LevelIndex, SupercompressionScheme};
+
+use crate::file::{Description, shorten};
+use crate::{Mask, MaskError, MaskTexel, SIZES};
+
+/// The most masks of an array: a texture array has 256 layers on every WebGPU device.
+const MOST_MASKS: usize = 128;
+/// Level of the deflate encoder: 0 to 10.
+const DEFLATE_LEVEL: u8 = 9;
+/// The format of a layer.
+const FORMAT: Format = Format::R16G16B16A16_SFLOAT;
+/// Bytes of a texel of a layer.
+const TEXEL_BYTES: usize = 8;
+
+/// Masks of one size, view and refractive index as the bytes of a KTX2 file.
+///
+/// # Errors
+/// [`MaskError::File`] if the masks do not belong together, or are none or too many.
+pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
+    let Some(first) = masks.first().filter(|_| masks.len() <= MOST_MASKS) else {
+        return Err(file("masks", format!("{} masks", masks.len()), "1 to 128"));
+    };
+    let same = |m: &&Mask| {
+        (m.size, m.view) == (first.size, first.view)
+            && m.refractive_index.to_bits() == first.refractive_index.to_bits()
+    };
+    if !masks.iter().all(|m| same(&m)) {
+        return Err(file("masks", "different sizes or views".to_owned(), "one size, view and refractive index"));
+    }
+    let mut texels = Vec::with_capacity(masks.len() * first.texels.len() * 2 * TEXEL_BYTES);
+    for mask in masks {
+        for layer in 0..2 {
+            for t in &mask.texels {
+                let ([x, y, z], w) =
+                    if layer == 0 { (t.direction, t.coverage) } else { (t.reflected, t.transmittance) };
+                texels.extend([x, y, z, w].iter().flat_map(|&v| f16::from_f32(v).to_le_bytes()));
+            }
+        }
+    }
+    let packed = miniz_oxide::deflate::compress_to_vec_zlib(&texels, DEFLATE_LEVEL);
+    let descriptor = data_format(FORMAT)?;
+    let description = Description {
+        diameters: masks.iter().map(|m| m.diameter).collect(),
+        half_extents: masks.iter().map(|m| m.half_extent).collect(),
+        view: first.view,
+        refractive_index: first.refractive_index,
+    };
+    // Keys in the order of their bytes, as the format asks.
+    let keys = key_values(&[
+        ("DownpourMask", &description.write()),
+        ("KTXorientation", "rd"),
+        ("KTXwriter", concat!("downpour-mask ", env!("CARGO_PKG_VERSION"))),
+    ]);
+    let descriptor_at = Header::LENGTH + LevelIndex::LENGTH;
+    let keys_at = descriptor_at + descriptor.len();
+    let level_at = keys_at + keys.len();
+    let header = Header {
+        format: Some(FORMAT),
+        type_size: 2,
+        pixel_width: first.size,
+        pixel_height: first.size,
+        pixel_depth: 0,
+        layer_count: 2 * masks.len() as u32,
+        face_count: 1,
+        level_count: 1,
+        supercompression_scheme: Some(SupercompressionScheme::ZLIB),
+        index: Index {
+            dfd_byte_offset: descriptor_at as u32,
+            dfd_byte_length: descriptor.len() as u32,
+            kvd_byte_offset: keys_at as u32,
+            kvd_byte_length: keys.len() as u32,
+            sgd_byte_offset: 0,
+            sgd_byte_length: 0,
+        },
+    };
+    let level = LevelIndex {
+        byte_offset: level_at as u64,
+        byte_length: packed.len() as u64,
+        uncompressed_byte_length: texels.len() as u64,
+    };
+    Ok([&header.as_bytes()[..], &level.as_bytes(), &descriptor, &keys, &packed].concat())
+}
+
+/// The data format descriptor: its length and one basic block.
+fn data_format(format: Format) -> Result<Vec<u8>, MaskError> {
+    let (basic, _) = Basic::from_format(format)
+        .map_err(|error| MaskError::Encode { format: "KTX2", reason: error.to_string() })?;
+    let block = Block::Basic(basic).to_vec();
+    Ok([&(block.len() as u32 + 4).to_le_bytes()[..], &block].concat())
+}
+
+fn key_values(pairs: &[(&str, &str)]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for (key, value) in pairs {
+        bytes.extend((key.len() as u32 + value.len() as u32 + 2).to_le_bytes());
+        bytes.extend(key.bytes().chain([0]).chain(value.bytes()).chain([0]));
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+    }
+    bytes
+}
+
+/// Reads masks that [`write_ktx2`] has written. The numbers of total reflections are 0.
+///
+/// # Errors
+/// [`MaskError::File`] or [`MaskError::Size`], with what was found.
+pub fn read_ktx2(bytes: &[u8]) -> Result<Vec<Mask>, MaskError> {
+    let truncated = |place| file(place, format!("a file of {} bytes", bytes.len()), "a complete KTX2 file");
+    let header: &[u8; Header::LENGTH] =
+        bytes.first_chunk().ok_or_else(|| truncated("header"))?;
+    let header = Header::from_bytes(header)
+        .map_err(|error| file("header", shorten(&error.to_string()), "a KTX2 texture array of masks"))?;
+    let (size, layers) = check_header(&header)?;
+    let level: &[u8; LevelIndex::LENGTH] =
+        bytes[Header::LENGTH..].first_chunk().ok_or_else(|| truncated("level index"))?;
+    let level = LevelIndex::from_bytes(level);
+    let expected = size as usize * size as usize * layers * TEXEL_BYTES;
+    if level.uncompressed_byte_length != expected as u64 {
+        let found = format!("{} bytes", level.uncompressed_byte_length);
+        return Err(file("level 0, uncompressed length", found, "the length of all texels"));
+    }
+    let packed = part(bytes, level.byte_offset, level.byte_length).ok_or_else(|| truncated("level 0"))?;
+    let keys = part(bytes, header.index.kvd_byte_offset.into(), header.index.kvd_byte_length.into())
+        .ok_or_else(|| truncated("keys"))?;
+    let text = find_key(keys, "DownpourMask")
+        .ok_or_else(|| file("keys", "no DownpourMask".to_owned(), "masks written by Downpour"))?;
+    let description = Description::read("key DownpourMask", &text)?;
+    if description.diameters.len() * 2 != layers {
+        return Err(file("layers", format!("{layers}"), "two per diameter"));
+    }
+    let texels = match header.supercompression_scheme {
+        Some(_) => miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, expected)
+            .map_err(|error| file("level 0", shorten(&error.to_string()), "a ZLIB stream of all texels"))?,
+        None => packed.to_vec(),
+    };
+    if texels.len() != expected {
+        return Err(file("level 0", format!("{} bytes", texels.len()), "the length of all texels"));
+    }
+    unpack(&texels, size, &description)
+}
+
+fn file(place: &'static str, found: String, allowed: &'static str) -> MaskError {
+    MaskError::File { place, found, allowed }
+}
+
+/// Size and number of layers, if the header is that of masks.
+fn check_header(header: &Header) -> Result<(u32, usize), MaskError> {
+    if header.format != Some(FORMAT) {
+        return Err(file("vkFormat", format!("{:?}", header.format), "97 (R16G16B16A16_SFLOAT)"));
+    }
+    if !matches!(header.supercompression_scheme, None | Some(SupercompressionScheme::ZLIB)) {
+        let found = format!("{:?}", header.supercompression_scheme);
+        return Err(file("supercompressionScheme", found, "0 (none) or 3 (ZLIB)"));
+    }
+    if !SIZES.contains(&header.pixel_width) {
+        return Err(MaskError::Size { found: header.pixel_width, least: *SIZES.start(), most: *SIZES.end() });
+    }
+    let flat = header.pixel_height == header.pixel_width
+        && header.pixel_depth == 0
+        && header.face_count == 1
+        && header.level_count == 1;
+    if !flat {
+        let found = format!(
+            "{} x {} x {}, {} faces, {} levels",
+            header.pixel_width, header.pixel_height, header.pixel_depth, header.face_count, header.level_count
+        );
+        return Err(file("dimensions", found, "a square, one face, one level"));
+    }
+    let layers = header.layer_count as usize;
+    if layers == 0 || !layers.is_multiple_of(2) || layers > 2 * MOST_MASKS {
+        return Err(file("layerCount", layers.to_string(), "an even number from 2 to 256"));
+    }
+    Ok((header.pixel_width, layers))
+}
+
+/// A part of the file; `None` if it is not inside.
+fn part(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
+    let start = usize::try_from(offset).ok()?;
+    let end = start.checked_add(usize::try_from(length).ok()?)?;
+    bytes.get(start..end)
+}
+
+fn find_key(mut keys: &[u8], wanted: &str) -> Option<String> {
+    while let Some((length, rest)) = keys.split_first_chunk::<4>() {
+        let length = u32::from_le_bytes(*length) as usize;
+        let pair = rest.get(..length)?;
+        let split = pair.iter().position(|&b| b == 0)?;
+        if &pair[..split] == wanted.as_bytes() {
+            let value = pair[split + 1..].strip_suffix(&[0]).unwrap_or(&pair[split + 1..]);
+            return String::from_utf8(value.to_vec()).ok();
+        }
+        keys = rest.get(length.checked_next_multiple_of(4)?..)?;
+    }
+    None
+}
+
+fn unpack(texels: &[u8], size: u32, description: &Description) -> Result<Vec<Mask>, MaskError> {
+    let layer = size as usize * size as usize;
+    let four = |at: usize| -> [f32; 4] {
+        std::array::from_fn(|k| {
+            let i = at * TEXEL_BYTES + 2 * k;
+            f16::from_le_bytes([texels[i], texels[i + 1]]).to_f32()
+        })
+    };
+    let mut masks = Vec::with_capacity(description.diameters.len());
+    for (k, (&diameter, &half_extent)) in description.diameters.iter().zip(&description.half_extents).enumerate() {
+        let texels: Vec<MaskTexel> = (0..layer)
+            .map(|i| {
+                let [x, y, z, coverage] = four(2 * k * layer + i);
+                let [rx, ry, rz, transmittance] = four((2 * k + 1) * layer + i);
+                MaskTexel {
+                    direction: [x, y, z],
+                    coverage,
+                    reflected: [rx, ry, rz],
+                    transmittance,
+                    ..MaskTexel::default()
+                }
+            })
+            .collect();
+        let finite = |t: &MaskTexel| {
+            t.direction.iter().chain(&t.reflected).chain([&t.coverage, &t.transmittance]).all(|v| v.is_finite())
+        };
+        if let Some(i) = texels.iter().position(|t| !finite(t)) {
+            return Err(file("level 0", format!("mask {k}, texel {i} is not finite"), "finite numbers"));
+        }
+        masks.push(Mask {
+            size,
+            diameter,
+            view: description.view,
+            refractive_index: description.refractive_index,
+            half_extent,
+            texels,
+        });
+    }
+    Ok(masks)
+}

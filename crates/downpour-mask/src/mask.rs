@@ -1,0 +1,125 @@
+//! What a mask is.
+
+use crate::{MaskError, View};
+
+/// Smallest and largest number of pixels along an edge of a mask.
+pub const SIZES: std::ops::RangeInclusive<u32> = 4..=4096;
+
+/// One texel: what the drop does to the viewer's ray through it. The same layout as `MaskTexel` in WGSL.
+///
+/// Directions are in the frame of the view: x right, y up, z towards the viewer. Light that comes straight from
+/// behind the drop has the direction (0, 0, -1).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaskTexel {
+    /// Direction in which the scene is seen through the drop, of length 1; 0 where nothing was traced.
+    pub direction: [f32; 3],
+    /// Covered share of the texel, in [0, 1].
+    pub coverage: f32,
+    /// Direction in which the scene is seen by reflection on the outside, of length 1; 0 where nothing was traced.
+    pub reflected: [f32; 3],
+    /// Share of unpolarised light that comes through both interfaces, in [0, 1].
+    pub transmittance: f32,
+    /// Total reflections inside the drop on the way; 5 where the light did not find out.
+    pub reflections: u32,
+    /// Padding of the WGSL layout.
+    pub padding: [u32; 3],
+}
+
+impl MaskTexel {
+    /// Share of unpolarised light that is reflected on the outside: exact Fresnel at the angle between
+    /// `reflected` and the viewer. 0 where nothing was traced.
+    #[must_use]
+    pub fn reflectance(&self, refractive_index: f32) -> f32 {
+        if self.reflected == [0.0; 3] {
+            return 0.0;
+        }
+        // The normal halves the angle between viewer and reflection: cos^2 i = (1 + reflected.z) / 2.
+        let cosine = ((1.0 + self.reflected[2]) * 0.5).max(0.0).sqrt();
+        let [s, p] = downpour_drop::optics::optics_fresnel_polarised(cosine, refractive_index);
+        (s + p) * 0.5
+    }
+}
+
+/// A square picture of what a drop does to light, seen from one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mask {
+    /// Pixels along an edge.
+    pub size: u32,
+    /// Volume-equivalent diameter in metres.
+    pub diameter: f64,
+    /// From where the drop is seen.
+    pub view: View,
+    /// Refractive index of water relative to air.
+    pub refractive_index: f64,
+    /// Half the width of the picture in units of the volume-equivalent radius: the drop's widest half width and a
+    /// border of one texel.
+    pub half_extent: f64,
+    /// Rows from the top, each from the left.
+    pub texels: Vec<MaskTexel>,
+}
+
+impl Mask {
+    /// Width of a texel in units of the volume-equivalent radius.
+    #[must_use]
+    pub fn texel_width(&self) -> f64 {
+        2.0 * self.half_extent / f64::from(self.size)
+    }
+
+    /// The texel in column `column` of row `row`.
+    ///
+    /// # Panics
+    /// If either is not below [`Mask::size`].
+    #[must_use]
+    pub fn texel(&self, column: u32, row: u32) -> &MaskTexel {
+        assert!(column < self.size && row < self.size, "texel ({column}, {row}) of a mask of {}", self.size);
+        &self.texels[row as usize * self.size as usize + column as usize]
+    }
+
+    /// The middle of a texel in units of the volume-equivalent radius.
+    #[must_use]
+    pub fn texel_centre(&self, column: u32, row: u32) -> [f64; 2] {
+        let middle = f64::from(self.size) * 0.5;
+        let width = self.texel_width();
+        [(f64::from(column) + 0.5 - middle) * width, (middle - f64::from(row) - 0.5) * width]
+    }
+}
+
+/// How a mask is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaskOptions {
+    /// Pixels along an edge: 4 to 4096.
+    pub size: u32,
+    /// From where the drop is seen.
+    pub view: View,
+    /// Refractive index of water relative to air: above 1, to 4.
+    pub refractive_index: f64,
+}
+
+impl Default for MaskOptions {
+    /// 512 pixels, from the side, water at 20 C for the sodium line (1.3330).
+    fn default() -> Self {
+        Self { size: 512, view: View::SIDE, refractive_index: 1.333 }
+    }
+}
+
+impl MaskOptions {
+    /// Whether the options can be met.
+    ///
+    /// # Errors
+    /// [`MaskError::Size`] or [`MaskError::OutOfRange`].
+    pub fn check(&self) -> Result<(), MaskError> {
+        if !SIZES.contains(&self.size) {
+            return Err(MaskError::Size { found: self.size, least: *SIZES.start(), most: *SIZES.end() });
+        }
+        if !(self.refractive_index > 1.0 && self.refractive_index <= 4.0) {
+            return Err(MaskError::OutOfRange {
+                quantity: "refractive index",
+                found: self.refractive_index,
+                unit: "relative to air",
+                allowed: "above 1, up to 4",
+            });
+        }
+        Ok(())
+    }
+}

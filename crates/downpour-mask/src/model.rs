@@ -1,0 +1,202 @@
+//! The mask of a drop given as a mesh. Twin of `shaders/wgsl/mask/model.wgsl`.
+//!
+//! Rays are the same as for a drop of revolution: refraction at the first surface, total reflections inside,
+//! refraction at the last. Normals are interpolated over the triangles. A texel whose corners and centre agree
+//! is covered or not; the others are sampled by 8 by 8 rays and traced at the middle of those that hit, or, at
+//! the nearest of them, if the middle misses.
+//!
+//! Limits: light that leaves the mesh and would enter it again (a hollow in the outline) is not followed.
+
+use downpour_drop::optics::{optics_fresnel_polarised, optics_reflect, optics_refract};
+use downpour_math::real::Real as _;
+use downpour_math::vector::{add_scaled, dot, normalize, scale};
+use downpour_shaders::mask::{MASK_MODEL_NEAREST, MASK_MODEL_SUBSAMPLES, MASK_TRACE_REFLECTIONS};
+use rayon::prelude::*;
+
+use crate::bvh::{Bvh, Hit};
+use crate::closed_mesh::ClosedMesh;
+use crate::trace::mask_trace_plane_turn;
+use crate::{Mask, MaskError, MaskOptions, MaskTexel};
+
+/// A mesh turned into the frame of a view, with its hierarchy: what the tracer needs.
+#[derive(Clone, Debug)]
+pub struct TracedModel {
+    pub(crate) bvh: Bvh,
+    /// Normals of the three corners of each triangle.
+    pub(crate) normals: Vec<[[f32; 3]; 3]>,
+    /// Where rays start: in front of everything.
+    pub(crate) front: f32,
+    pub(crate) half_extent: f64,
+    pub(crate) index: f32,
+}
+
+impl TracedModel {
+    /// Turns a mesh into the frame of the view of `options`.
+    ///
+    /// # Errors
+    /// [`MaskError::Size`] or [`MaskError::OutOfRange`] if the options cannot be met.
+    pub fn new(mesh: &ClosedMesh, options: &MaskOptions) -> Result<Self, MaskError> {
+        options.check()?;
+        let [_, cos, sin] = options.view.up().map(|c| c as f32);
+        let turn = |p: [f32; 3]| [p[0], p[1] * cos - p[2] * sin, p[1] * sin + p[2] * cos];
+        let positions: Vec<_> = mesh.positions.iter().map(|p| turn(*p)).collect();
+        let corners: Vec<_> = mesh.triangles.iter().map(|t| t.map(|i| positions[i as usize])).collect();
+        let normals = mesh.triangles.iter().map(|t| t.map(|i| turn(mesh.normals[i as usize]))).collect();
+        let wide = corners.iter().flatten().flat_map(|p| [p[0].abs(), p[1].abs()]).fold(0.0, f32::max);
+        let front = corners.iter().flatten().map(|p| p[2]).fold(f32::NEG_INFINITY, f32::max) + 1.0;
+        let size = f64::from(options.size);
+        Ok(Self {
+            bvh: Bvh::new(&corners),
+            normals,
+            front,
+            half_extent: f64::from(wide) * size / (size - 2.0),
+            index: options.refractive_index as f32,
+        })
+    }
+
+    /// Whether the viewer's ray through (x, y) hits the mesh, and where.
+    fn mask_model_hit(&self, x: f32, y: f32) -> Option<Hit> {
+        self.bvh.hit([x, y, self.front], [0.0, 0.0, -1.0], MASK_MODEL_NEAREST)
+    }
+
+    /// The interpolated normal at a hit.
+    fn mask_model_normal(&self, hit: &Hit) -> [f32; 3] {
+        let [a, b, c] = self.normals[hit.triangle as usize];
+        let first = scale(a, 1.0 - hit.u - hit.v);
+        normalize(add_scaled(add_scaled(first, b, hit.u), c, hit.v))
+    }
+
+    /// The texel at (x, y) for a ray that hits at `hit`, with the coverage left at 0.
+    fn mask_model_through(&self, x: f32, y: f32, hit: &Hit) -> MaskTexel {
+        let incident = [0.0, 0.0, -1.0];
+        let index = self.index;
+        let mut normal = self.mask_model_normal(hit);
+        let [entry_s, entry_p] = optics_fresnel_polarised(normal[2].max(0.0), index);
+        let reflectance = (entry_s + entry_p) * 0.5;
+        let reflected = normalize(optics_reflect(incident, normal));
+        let (refracted, _) = optics_refract(incident, normal, 1.0 / index);
+        let mut inside = normalize(refracted);
+        let mut point = [x, y, self.front - hit.distance];
+        let mut polarised = (entry_p - entry_s) * 0.5;
+        for reflections in 0..=MASK_TRACE_REFLECTIONS {
+            // A ray that finds no way out has slipped along an edge of the surface: it counts as lost.
+            let Some(next) = self.bvh.hit(point, inside, MASK_MODEL_NEAREST) else { break };
+            let exit_normal = self.mask_model_normal(&next);
+            point = add_scaled(point, inside, next.distance);
+            polarised *= if reflections == 0 { mask_trace_plane_turn(inside, normal, exit_normal) } else { 0.0 };
+            normal = exit_normal;
+            let (outside, cos2) = optics_refract(inside, scale(normal, -1.0), index);
+            if cos2 >= 0.0 {
+                let cosine = dot(inside, normal).at_least(0.0);
+                let [exit_s, exit_p] = optics_fresnel_polarised(cosine, 1.0 / index);
+                let exit_mean = 1.0 - (exit_s + exit_p) * 0.5;
+                return MaskTexel {
+                    direction: normalize(outside),
+                    reflected,
+                    transmittance: (1.0 - reflectance) * exit_mean + polarised * (exit_p - exit_s) * 0.5,
+                    reflections,
+                    ..MaskTexel::default()
+                };
+            }
+            inside = normalize(optics_reflect(inside, normal));
+        }
+        MaskTexel {
+            direction: inside,
+            reflected,
+            reflections: MASK_TRACE_REFLECTIONS + 1,
+            ..MaskTexel::default()
+        }
+    }
+
+    /// The texel of width `pixel` round (x, y).
+    fn mask_model_texel(&self, x: f32, y: f32, pixel: f32) -> MaskTexel {
+        let half = 0.5 * pixel;
+        let centre = self.mask_model_hit(x, y);
+        let corners = [[-half, -half], [half, -half], [-half, half], [half, half]]
+            .map(|[dx, dy]| self.mask_model_hit(x + dx, y + dy).is_some());
+        if centre.is_none() && corners == [false; 4] {
+            return MaskTexel::default();
+        }
+        if let Some(hit) = centre.filter(|_| corners == [true; 4]) {
+            return MaskTexel { coverage: 1.0, ..self.mask_model_through(x, y, &hit) };
+        }
+        // The outline cuts the texel.
+        let n = MASK_MODEL_SUBSAMPLES;
+        let step = pixel / n as f32;
+        let place = |i: u32| {
+            let (column, row) = (i % n, i / n);
+            [x - half + (column as f32 + 0.5) * step, y - half + (row as f32 + 0.5) * step]
+        };
+        let mut count = 0u32;
+        let mut sum = [0.0f32; 2];
+        for i in 0..n * n {
+            let [px, py] = place(i);
+            if self.mask_model_hit(px, py).is_some() {
+                count += 1;
+                sum = [sum[0] + px, sum[1] + py];
+            }
+        }
+        if count == 0 {
+            return MaskTexel::default();
+        }
+        let middle = [sum[0] / count as f32, sum[1] / count as f32];
+        let coverage = count as f32 / (n * n) as f32;
+        if let Some(hit) = self.mask_model_hit(middle[0], middle[1]) {
+            return MaskTexel { coverage, ..self.mask_model_through(middle[0], middle[1], &hit) };
+        }
+        // The covered part is not convex: take the sample nearest to its middle.
+        let mut best = (f32::INFINITY, [0.0; 2], None);
+        for i in 0..n * n {
+            let [px, py] = place(i);
+            let square = (px - middle[0]) * (px - middle[0]) + (py - middle[1]) * (py - middle[1]);
+            if square < best.0
+                && let Some(hit) = self.mask_model_hit(px, py)
+            {
+                best = (square, [px, py], Some(hit));
+            }
+        }
+        match best {
+            (_, [px, py], Some(hit)) => MaskTexel { coverage, ..self.mask_model_through(px, py, &hit) },
+            _ => MaskTexel::default(),
+        }
+    }
+}
+
+/// Traces the mask of a drop model, rows in parallel. The model's own +Y is the drop's axis.
+///
+/// `diameter` is what the mask says of itself, in metres; `None` takes the model's own units for metres.
+///
+/// # Errors
+/// [`MaskError::Size`] or [`MaskError::OutOfRange`] if the options cannot be met.
+pub fn trace_model(
+    mesh: &ClosedMesh,
+    options: &MaskOptions,
+    diameter: Option<f64>,
+) -> Result<Mask, MaskError> {
+    let model = TracedModel::new(mesh, options)?;
+    let mut mask = empty(mesh, options, diameter, &model);
+    let size = options.size as usize;
+    let pixel = mask.texel_width() as f32;
+    mask.texels = vec![MaskTexel::default(); size * size];
+    let middle = size as f32 * 0.5;
+    mask.texels.par_chunks_mut(size).enumerate().for_each(|(row, texels)| {
+        let y = (middle - row as f32 - 0.5) * pixel;
+        for (column, texel) in texels.iter_mut().enumerate() {
+            let x = (column as f32 + 0.5 - middle) * pixel;
+            *texel = model.mask_model_texel(x, y, pixel);
+        }
+    });
+    Ok(mask)
+}
+
+/// A mask of the model without its texels.
+pub(crate) fn empty(mesh: &ClosedMesh, options: &MaskOptions, diameter: Option<f64>, model: &TracedModel) -> Mask {
+    Mask {
+        size: options.size,
+        diameter: diameter.unwrap_or(mesh.diameter),
+        view: options.view,
+        refractive_index: options.refractive_index,
+        half_extent: model.half_extent,
+        texels: Vec::new(),
+    }
+}

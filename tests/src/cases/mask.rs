@@ -1,0 +1,367 @@
+//! `shaders/wgsl/mask` against `downpour-mask`.
+
+use downpour_drop::DropShape;
+use downpour_gpu::{Gpu, GpuError};
+use downpour_mask::bvh::{BvhNode, BvhTriangle, mask_bvh_inverse, mask_bvh_touches, mask_bvh_triangle};
+use downpour_mask::gpu::{GpuMaskError, GpuTracer};
+use downpour_mask::silhouette::{
+    mask_silhouette_area, mask_silhouette_cut, mask_silhouette_distance, mask_silhouette_estimate,
+};
+use downpour_mask::trace::{
+    TracedDrop, mask_trace_curvature, mask_trace_meet, mask_trace_normal, mask_trace_plane_turn,
+    mask_trace_spheroid, mask_trace_step, mask_trace_surface, mask_trace_through,
+};
+use downpour_mask::{ClosedMesh, Mask, MaskOptions, MaskTexel, View, trace_drop_scalar, trace_model};
+use downpour_math::rng::rng_unit;
+use downpour_shaders::mask;
+
+use crate::Domain::{Made, OneOf, Uniform, Unit3};
+use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::{Args, IntoWords as _};
+use crate::{FunctionCase, KernelCase, Tol};
+
+/// Texels along an edge of the masks that are compared.
+const SIZE: u32 = 96;
+
+/// The words of a `MaskTracedDrop`: a drop of 0.1 to 9 mm seen from any elevation.
+fn traced_words(random: [u32; 4]) -> Vec<u32> {
+    let diameter = 1.0e-4 + 8.9e-3 * f64::from(rng_unit(random[0]));
+    let elevation = std::f64::consts::PI * (f64::from(rng_unit(random[1])) - 0.5);
+    let shape = DropShape::new(diameter).expect("a diameter of the table");
+    let up = View::from_elevation(elevation).expect("an elevation").up();
+    let radius = shape.equivalent_radius();
+    let wide = shape.max_half_width() / radius;
+    let tall = 0.5 * (shape.extent_up() + shape.extent_down()) / radius;
+    let mut words: Vec<u32> = shape.coefficients().iter().map(|&c| (c as f32).to_bits()).collect();
+    words.push(0);
+    words.extend(up.map(|c| (c as f32).to_bits()));
+    let rest = [1.333, 1.0 / (wide * wide), 1.0 / (tall * tall), 0.02];
+    words.extend(rest.map(|c: f64| (c as f32).to_bits()));
+    words.push(SIZE);
+    words
+}
+
+/// The same words as the twin takes them, and the width of a pixel.
+fn traced(args: &mut Args<'_>) -> (TracedDrop, f32) {
+    let coefficients = args.f32s::<12>();
+    let up = args.f32s::<3>().map(f64::from);
+    let [index, inverse_wide, inverse_tall, pixel] = args.f32s();
+    let _size = args.u32();
+    let drop = TracedDrop {
+        coefficients: std::array::from_fn(|n| f64::from(coefficients[n])),
+        up,
+        index: index.into(),
+        inverse_wide: inverse_wide.into(),
+        inverse_tall: inverse_tall.into(),
+        steps: downpour_shaders::mask::MASK_TRACE_STEPS,
+    };
+    (drop, pixel)
+}
+
+const SURFACE: Tol = Tol::relative(
+    1.0e-5,
+    1.0e-5,
+    "Clenshaw's sum of 11 terms, two square roots and two divisions (2.5 ulp) of numbers of order 1",
+);
+
+/// The cases.
+#[must_use]
+pub fn functions() -> Vec<FunctionCase> {
+    let drop = Made(traced_words);
+    let near = Uniform(-1.3, 1.3);
+    let inside = Uniform(-0.55, 0.55);
+    vec![
+        FunctionCase::new("mask_trace_surface", &mask::TRACE, &[drop, near, near, near], SURFACE, |a| {
+            let (drop, _) = traced(a);
+            let surface = mask_trace_surface(&drop, a.f32s());
+            (surface.half_gradient, surface.excess).words()
+        }),
+        FunctionCase::new(
+            "mask_trace_spheroid",
+            &mask::TRACE,
+            &[drop, near, near, near, near, near, near],
+            Tol::relative(1.0e-5, 4.0e-6, "sums of products of numbers up to 4; a GPU may fuse them"),
+            |a| {
+                let (drop, _) = traced(a);
+                mask_trace_spheroid(&drop, a.f32s(), a.f32s()).words()
+            },
+        ),
+        FunctionCase::new(
+            "mask_trace_curvature",
+            &mask::TRACE,
+            &[drop, Unit3],
+            Tol::relative(1.0e-5, 4.0e-6, "sums of products of numbers up to 4; a GPU may fuse them"),
+            |a| {
+                let (drop, _) = traced(a);
+                mask_trace_curvature(&drop, a.f32s()).words()
+            },
+        ),
+        FunctionCase::new(
+            "mask_trace_step",
+            &mask::TRACE,
+            &[Uniform(-0.9, 0.4), Uniform(0.7, 1.6), Uniform(0.6, 1.1), OneOf(&[-1.0, 1.0])],
+            Tol::relative(1.0e-5, 1.0e-5, "a square root of a discriminant and a division (2.5 ulp)"),
+            |a| mask_trace_step(a.f32(), a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "mask_trace_meet",
+            &mask::TRACE,
+            &[drop, inside, inside, inside, Unit3, OneOf(&[-1.0, 1.0])],
+            Tol::relative(
+                2.0e-5,
+                2.0e-5,
+                "Newton's steps converge to the surface, which both sides know to 1e-6",
+            ),
+            |a| {
+                let (drop, _) = traced(a);
+                mask_trace_meet(&drop, a.f32s(), a.f32s(), a.f32()).words()
+            },
+        ),
+        FunctionCase::new("mask_trace_normal", &mask::TRACE, &[drop, Unit3], SURFACE, |a| {
+            let (drop, _) = traced(a);
+            mask_trace_normal(&drop, a.f32s()).words()
+        }),
+        FunctionCase::new(
+            "mask_trace_plane_turn",
+            &mask::TRACE,
+            &[Unit3, Unit3, Unit3],
+            Tol::absolute(
+                1.0e-3,
+                "a quotient of squared cross products, which cancel for nearly parallel vectors",
+            )
+            .with_outliers(2.0e-3),
+            |a| mask_trace_plane_turn(a.f32s(), a.f32s(), a.f32s()).words(),
+        ),
+        FunctionCase::new(
+            "mask_trace_through",
+            &mask::TRACE,
+            &[drop, inside, inside],
+            Tol::relative(
+                1.0e-4,
+                1.0e-4,
+                "two refractions; errors grow close to total reflection and with each one",
+            )
+            .with_outliers(2.0e-2),
+            |a| {
+                let (drop, _) = traced(a);
+                let t = mask_trace_through(&drop, a.f32(), a.f32());
+                (((t.direction, t.transmittance), (t.reflected, t.reflectance)), t.reflections).words()
+            },
+        ),
+        FunctionCase::new(
+            "mask_silhouette_estimate",
+            &mask::SILHOUETTE,
+            &[drop, near, near],
+            Tol::relative(1.0e-5, 1.0e-5, "sums of products and a division (2.5 ulp)"),
+            |a| {
+                let (drop, _) = traced(a);
+                mask_silhouette_estimate(&drop, a.f32(), a.f32()).words()
+            },
+        ),
+        FunctionCase::new(
+            "mask_silhouette_distance",
+            &mask::SILHOUETTE,
+            &[drop, Uniform(0.5, 1.3), Uniform(0.3, 1.3)],
+            Tol::relative(
+                2.0e-5,
+                2.0e-5,
+                "Newton's steps to the nearest approach, then a quotient (2.5 ulp)",
+            ),
+            |a| {
+                let (drop, _) = traced(a);
+                mask_silhouette_distance(&drop, a.f32(), a.f32()).words()
+            },
+        ),
+        FunctionCase::new(
+            "mask_silhouette_area",
+            &mask::SILHOUETTE,
+            &[
+                Uniform(-0.8, 0.8),
+                Made(|r| {
+                    let phi = std::f32::consts::TAU * rng_unit(r[0]);
+                    vec![downpour_math::ops::cos(phi).to_bits(), downpour_math::ops::sin(phi).to_bits()]
+                }),
+            ],
+            Tol::absolute(4.0e-6, "quotients (2.5 ulp) of numbers up to 1"),
+            |a| mask_silhouette_area(a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "mask_silhouette_cut",
+            &mask::SILHOUETTE,
+            &[drop, near, near],
+            Tol::absolute(2.0e-3, "the distance to the outline (1e-5) in units of a pixel of 0.02")
+                .with_outliers(5.0e-4),
+            |a| {
+                let (drop, pixel) = traced(a);
+                let (x, y) = (a.f32(), a.f32());
+                let cut = mask_silhouette_cut(&drop, pixel, x, y);
+                ((cut.sample, cut.coverage), cut.traced).words()
+            },
+        ),
+        FunctionCase::new(
+            "mask_bvh_inverse",
+            &mask::BVH,
+            &[Unit3],
+            Tol::ulp(3, "a division (2.5 ulp)"),
+            |a| mask_bvh_inverse(a.f32s()).words(),
+        ),
+        FunctionCase::new(
+            "mask_bvh_touches",
+            &mask::BVH,
+            &[
+                Made(|r| {
+                    let unit = r.map(rng_unit);
+                    let low = [unit[0] - 0.5, unit[1] - 0.5, unit[2] - 0.5];
+                    let high = low.map(|c| c + 0.05 + 0.5 * unit[3]);
+                    [low.map(f32::to_bits).to_vec(), vec![1], high.map(f32::to_bits).to_vec(), vec![2]]
+                        .concat()
+                }),
+                Unit3,
+                Made(|r| {
+                    // Rays towards the middle, so that some hit and some do not.
+                    let d: [f32; 3] = std::array::from_fn(|k| rng_unit(r[k]) - 0.5);
+                    mask_bvh_inverse(d).map(f32::to_bits).to_vec()
+                }),
+                OneOf(&[0.5, 2.0, 3.0e38]),
+            ],
+            Tol::exact("a boolean: a ray that grazes a box may fall on either side").with_outliers(1.0e-3),
+            |a| {
+                let low = a.f32s();
+                let link = a.u32();
+                let high = a.f32s();
+                let count = a.u32();
+                mask_bvh_touches(&BvhNode { low, link, high, count }, a.f32s(), a.f32s(), a.f32()).words()
+            },
+        ),
+        FunctionCase::new(
+            "mask_bvh_triangle",
+            &mask::BVH,
+            &[
+                Uniform(-0.6, -0.4),
+                Uniform(-0.6, -0.4),
+                Uniform(-0.1, 0.1),
+                OneOf(&[0.0]),
+                Uniform(0.8, 1.2),
+                Uniform(-0.1, 0.1),
+                Uniform(-0.2, 0.2),
+                Uniform(-0.1, 0.1),
+                Uniform(0.8, 1.2),
+                Uniform(-0.2, 0.2),
+                Uniform(-0.4, 0.4),
+                Uniform(-0.4, 0.4),
+                Uniform(1.0, 2.0),
+                Uniform(-0.2, 0.2),
+                Uniform(-0.2, 0.2),
+                Uniform(-1.0, -0.5),
+            ],
+            Tol::absolute(
+                2.0e-5,
+                "cross products and a division (2.5 ulp); rays on an edge may fall on either side",
+            )
+            .with_outliers(1.0e-3),
+            |a| {
+                let corner = a.f32s();
+                let index = a.f32() as u32;
+                let (edge_1, edge_2) = (a.f32s(), a.f32s());
+                let triangle = BvhTriangle { corner, index, edge_1, padding_1: 0, edge_2, padding_2: 0 };
+                mask_bvh_triangle(&triangle, a.f32s(), a.f32s()).words()
+            },
+        ),
+    ]
+}
+
+/// Direction, coverage, reflection and transmittance are numbers, the count of reflections is an integer; the
+/// padding is not compared.
+fn run(cpu: &Mask, gpu: &Mask) -> Run {
+    let words = |mask: &Mask| -> Vec<u32> {
+        let texel = |t: &MaskTexel| {
+            ((t.direction, t.coverage), ((t.reflected, t.transmittance), t.reflections)).words()
+        };
+        mask.texels.iter().flat_map(texel).collect()
+    };
+    let place =
+        |i: u32| vec![(i % cpu.size) as f32, (i / cpu.size) as f32].into_iter().map(f32::to_bits).collect();
+    let mut kinds = vec![WordKind::Float; 8];
+    kinds.push(WordKind::Integer);
+    Run {
+        arguments: (0..cpu.size * cpu.size).map(place).collect(),
+        cpu: Cpu(words(cpu)),
+        gpu: FromGpu(words(gpu)),
+        kinds,
+    }
+}
+
+fn told(error: GpuMaskError) -> GpuError {
+    match error {
+        GpuMaskError::Gpu(error) => error,
+        other => GpuError::Refused { what: "a mask".to_owned(), reason: other.to_string() },
+    }
+}
+
+fn drop_case(gpu: &Gpu, diameter: f64, degrees: f64) -> Result<Run, GpuError> {
+    let shape = DropShape::new(diameter).expect("a diameter of the table");
+    let view = View::from_elevation(f64::to_radians(degrees)).expect("an elevation");
+    let options = MaskOptions { size: SIZE, view, ..MaskOptions::default() };
+    let cpu = trace_drop_scalar(&shape, &options).expect("a mask");
+    Ok(run(&cpu, &GpuTracer::new(gpu)?.trace_drop(&shape, &options).map_err(told)?))
+}
+
+fn model_case(gpu: &Gpu, degrees: f64) -> Result<Run, GpuError> {
+    let shape = DropShape::new(4.0e-3).expect("a diameter of the table");
+    let mesh = downpour_drop::mesh::DropMesh::latitude_longitude(&shape, 24, 48).expect("a mesh");
+    let mesh =
+        ClosedMesh::new(mesh.positions(), Some(mesh.normals()), mesh.triangles()).expect("a closed mesh");
+    let view = View::from_elevation(f64::to_radians(degrees)).expect("an elevation");
+    let options = MaskOptions { size: SIZE, view, ..MaskOptions::default() };
+    let cpu = trace_model(&mesh, &options, None).expect("a mask");
+    Ok(run(&cpu, &GpuTracer::new(gpu)?.trace_model(&mesh, &options, None).map_err(told)?))
+}
+
+const DROP: Tol =
+    Tol::absolute(5.0e-5, "two refractions of f32; the derivative of Snell's law grows at the rim")
+        .with_outliers(1.0e-3);
+const TILTED: Tol = Tol::absolute(
+    1.0e-3,
+    "total reflections multiply the errors before them, and close to the critical angle the count may differ",
+)
+.with_outliers(1.0e-2);
+const MODEL: Tol =
+    Tol::absolute(1.0e-3, "a ray on an edge may meet either of two facets, whose normals agree there")
+        .with_outliers(5.0e-3);
+
+/// The cases.
+#[must_use]
+pub fn kernels() -> Vec<KernelCase> {
+    let drop = |name, tol, run| KernelCase {
+        name,
+        kernel: &mask::DROP_KERNEL,
+        covers: &["mask_drop_texel"],
+        tol,
+        run,
+    };
+    let model = |name, run| KernelCase {
+        name,
+        kernel: &mask::MODEL_KERNEL,
+        covers: &[
+            "mask_bvh_hit",
+            "mask_model_hit",
+            "mask_model_normal",
+            "mask_model_through",
+            "mask_model_sample",
+            "mask_model_texel",
+        ],
+        tol: MODEL,
+        run,
+    };
+    vec![
+        drop("main_mask_drop: 1 mm from the side", DROP, |gpu| drop_case(gpu, 1.0e-3, 0.0)),
+        drop("main_mask_drop: 2 mm from the side", DROP, |gpu| drop_case(gpu, 2.0e-3, 0.0)),
+        drop("main_mask_drop: 6 mm from the side", DROP, |gpu| drop_case(gpu, 6.0e-3, 0.0)),
+        drop("main_mask_drop: 5 mm from 20 degrees above", TILTED, |gpu| drop_case(gpu, 5.0e-3, 20.0)),
+        drop("main_mask_drop: 6 mm from below", TILTED, |gpu| drop_case(gpu, 6.0e-3, -90.0)),
+        model("main_mask_model: a mesh of 4 mm from the side", |gpu| model_case(gpu, 0.0)),
+        model("main_mask_model: a mesh of 4 mm from 35 degrees below", |gpu| model_case(gpu, -35.0)),
+    ]
+}

@@ -1,0 +1,102 @@
+//! Host structs have the layout that naga gives their WGSL counterparts.
+
+use std::mem::offset_of;
+
+use downpour_drop::fall_speed::FallSpeedAir;
+use downpour_drop::oscillation::{DropOscillation, DropOscillationTime};
+use downpour_drop::shape::DropShapeCoefficients;
+use downpour_mask::MaskTexel;
+use downpour_mask::bvh::{BvhNode, BvhTriangle};
+use downpour_mask::gpu::{DropUniform, ModelUniform};
+use downpour_shaders::{Module, compose, drop, mask, modules};
+use downpour_tests::signature::parse;
+
+/// A host struct: its WGSL name, the module that declares it, its size, and its fields by their WGSL names.
+struct Host {
+    wgsl: &'static str,
+    module: &'static Module,
+    size: usize,
+    fields: Vec<(&'static str, usize)>,
+}
+
+macro_rules! host {
+    ($type:ty as $wgsl:literal in $module:expr, $($field:ident),+ $(,)?) => {
+        Host {
+            wgsl: $wgsl,
+            module: $module,
+            size: size_of::<$type>(),
+            fields: vec![$((stringify!($field), offset_of!($type, $field))),+],
+        }
+    };
+}
+
+fn hosts() -> Vec<Host> {
+    vec![
+        host!(DropShapeCoefficients as "DropShapeCoefficients" in &drop::shape::SHAPE, c0, c1, c2),
+        host!(FallSpeedAir as "FallSpeedAir" in &drop::fall_speed::FALL_SPEED,
+            stokes, slip_mm, davies_log, davies_speed, bond_log, bond_speed, density_factor, unused),
+        host!(DropOscillation as "DropOscillation" in &drop::oscillation::OSCILLATION,
+            amplitude, damping, phase, frequency),
+        host!(DropOscillationTime as "DropOscillationTime" in &drop::oscillation::OSCILLATION, ticks, offset),
+        host!(MaskTexel as "MaskTexel" in &mask::TEXEL, direction, coverage, reflected, transmittance, reflections),
+        host!(DropUniform as "MaskTracedDrop" in &mask::TRACE,
+            shape, up, index, inverse_wide, inverse_tall, pixel, size),
+        host!(ModelUniform as "MaskModelParameters" in &mask::MODEL, front, index, pixel, size, first_row),
+        host!(BvhNode as "MaskBvhNode" in &mask::BVH, low, link, high, count),
+        host!(BvhTriangle as "MaskBvhTriangle" in &mask::BVH, corner, index, edge_1, edge_2),
+    ]
+}
+
+/// What naga says of a struct: its span and the offsets of its members.
+fn layout(module: &'static Module, name: &str) -> (usize, Vec<(String, usize)>) {
+    let parsed = parse(&compose(&[module]));
+    let found = parsed.types.iter().find(|(_, t)| t.name.as_deref() == Some(name));
+    let (_, ty) = found.unwrap_or_else(|| panic!("{name} is not in {}", module.path));
+    let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
+    let members = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize)).collect();
+    (*span as usize, members)
+}
+
+#[test]
+fn host_structs_have_the_layout_of_their_wgsl() {
+    for host in hosts() {
+        let (span, members) = layout(host.module, host.wgsl);
+        assert_eq!(host.size, span, "size of {}", host.wgsl);
+        let fields: Vec<_> = host.fields.iter().map(|&(name, at)| (name.to_owned(), at)).collect();
+        assert_eq!(fields, members, "{}", host.wgsl);
+    }
+}
+
+/// A struct that a buffer holds has a host counterpart; others are the shader's own.
+#[test]
+fn every_struct_in_a_buffer_has_a_host() {
+    let hosts: Vec<_> = hosts().iter().map(|h| h.wgsl).collect();
+    for module in modules() {
+        let parsed = parse(&compose(&[module]));
+        for (_, variable) in parsed.global_variables.iter() {
+            let mut ty = variable.ty;
+            while let naga::TypeInner::Array { base, .. } = parsed.types[ty].inner {
+                ty = base;
+            }
+            if let (Some(name), naga::TypeInner::Struct { .. }) =
+                (&parsed.types[ty].name, &parsed.types[ty].inner)
+            {
+                assert!(
+                    hosts.contains(&name.as_str()),
+                    "{}: {name} has no host struct in this test",
+                    module.path
+                );
+            }
+        }
+    }
+}
+
+/// The check itself can fail: a struct with its fields in another order is seen.
+#[test]
+fn a_wrong_layout_is_seen() {
+    let (_, members) = layout(&mask::BVH, "MaskBvhNode");
+    let swapped = [("low", offset_of!(BvhNode, high)), ("high", offset_of!(BvhNode, low))];
+    for (name, at) in swapped {
+        assert!(members.iter().any(|(n, offset)| n == name && *offset != at), "{name}");
+    }
+}

@@ -1,0 +1,48 @@
+//! Tests, lints and benchmarks of the whole workspace.
+
+use crate::{driver, masks, run};
+
+/// The library crates, and the features each has to build with, alone.
+const ALONE: &[(&str, &[&str])] = &[
+    ("downpour-shaders", &[""]),
+    ("downpour-math", &[""]),
+    ("downpour-gpu", &[""]),
+    ("downpour-drop", &[""]),
+    ("downpour-mask", &["", "wgpu"]),
+    ("downpour-scene", &[""]),
+    ("downpour", &["", "wgpu"]),
+    ("downpour-cli", &["", "gpu"]),
+];
+
+/// Every test of the workspace, with documentation tests.
+pub(crate) fn test() -> Result<(), String> {
+    driver::ensure()?;
+    let runtime = run::root().join("target/runtime");
+    std::fs::create_dir_all(&runtime).map_err(|error| format!("{}: {error}", runtime.display()))?;
+    // Mesa complains of a missing run-time folder; it needs none of the session's.
+    let runtime = runtime.display().to_string();
+    run::cargo(&["test", "--workspace", "--all-features", "--locked"], &[("XDG_RUNTIME_DIR", &runtime)])?;
+    masks::check()
+}
+
+/// Formatting, lints, each crate on its own, documentation.
+pub(crate) fn lint() -> Result<(), String> {
+    run::cargo(&["fmt", "--all", "--check"], &[])?;
+    let deny = ["--", "-D", "warnings"];
+    let clippy = ["clippy", "--workspace", "--all-targets", "--all-features", "--locked"];
+    run::cargo(&[&clippy[..], &deny[..]].concat(), &[])?;
+    for (name, features) in ALONE {
+        for feature in *features {
+            let check = ["check", "--locked", "-p", name, "--no-default-features", "--features", feature];
+            run::cargo(&check, &[])?;
+        }
+    }
+    let doc = ["doc", "--workspace", "--all-features", "--no-deps", "--locked"];
+    run::cargo(&doc, &[("RUSTDOCFLAGS", "-D warnings")])
+}
+
+/// Every benchmark.
+pub(crate) fn bench() -> Result<(), String> {
+    driver::ensure()?;
+    run::cargo(&["bench", "--workspace", "--all-features", "--locked"], &[])
+}

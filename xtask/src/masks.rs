@@ -1,0 +1,85 @@
+//! assets/masks: what `cargo xtask masks` writes and `--check` compares, byte for byte.
+
+use std::path::PathBuf;
+
+use downpour_drop::DropShape;
+use downpour_mask::file::{exr, ktx2, png};
+use downpour_mask::{Mask, MaskOptions, trace_drop};
+
+use crate::run;
+
+/// Diameters of the texture array in millimetres: the range of natural rain, denser where shape changes fast.
+const ARRAY_MM: [f64; 10] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0];
+/// Texels along an edge of the array's masks. A drop with a mask of its own is a hundred pixels wide at most.
+const ARRAY_SIZE: u32 = 128;
+/// Diameters of the single masks: undistorted radii 0.5, 1, 3 and 4.5 mm, of which Rousseau 2006 prints the shapes.
+const SINGLE_MM: [f64; 4] = [1.0, 2.0, 6.0, 9.0];
+/// Texels along an edge of the single masks, as in Rousseau 2006.
+const SINGLE_SIZE: u32 = 512;
+/// The most bytes that the folder may hold.
+const BUDGET: usize = 8 << 20;
+
+type Asset = (String, Vec<u8>);
+
+fn folder() -> PathBuf {
+    run::root().join("assets/masks")
+}
+
+fn mask(diameter_mm: f64, size: u32) -> Result<Mask, String> {
+    let shape = DropShape::new(diameter_mm * 1.0e-3).map_err(|error| error.to_string())?;
+    trace_drop(&shape, &MaskOptions { size, ..MaskOptions::default() }).map_err(|error| error.to_string())
+}
+
+/// Every file of the folder that the code makes.
+fn make() -> Result<Vec<Asset>, String> {
+    let told = |error: downpour_mask::MaskError| error.to_string();
+    let array = ARRAY_MM.iter().map(|&d| mask(d, ARRAY_SIZE)).collect::<Result<Vec<_>, _>>()?;
+    let mut assets = vec![("drops.ktx2".to_owned(), ktx2::write_ktx2(&array).map_err(told)?)];
+    for d in SINGLE_MM {
+        let single = mask(d, SINGLE_SIZE)?;
+        assets.push((format!("drop_{d}mm.exr"), exr::write_exr(&single, exr::Precision::Half).map_err(told)?));
+        assets.push((format!("drop_{d}mm.png"), png::write_png(&single).map_err(told)?));
+    }
+    let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
+    if bytes > BUDGET {
+        return Err(format!("the masks take {bytes} bytes, more than {BUDGET}"));
+    }
+    Ok(assets)
+}
+
+/// Writes the folder.
+pub(crate) fn write() -> Result<(), String> {
+    let folder = folder();
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    for (name, bytes) in make()? {
+        let path = folder.join(&name);
+        let part = folder.join(format!(".{name}.part"));
+        std::fs::write(&part, &bytes)
+            .and_then(|()| std::fs::rename(&part, &path))
+            .map_err(|error| format!("{}: {error}", path.display()))?;
+        println!("{:>9} bytes  {}", bytes.len(), path.display());
+    }
+    Ok(())
+}
+
+/// Compares the folder with what the code makes.
+pub(crate) fn check() -> Result<(), String> {
+    let mut wrong = Vec::new();
+    for (name, bytes) in make()? {
+        match std::fs::read(folder().join(&name)) {
+            Ok(kept) if kept == bytes => {}
+            Ok(kept) => {
+                let at = kept.iter().zip(&bytes).position(|(a, b)| a != b).unwrap_or(kept.len().min(bytes.len()));
+                let (kept, made) = (kept.len(), bytes.len());
+                wrong.push(format!("{name}: differs from byte {at} on ({kept} bytes kept, {made} made)"));
+            }
+            Err(error) => wrong.push(format!("{name}: {error}")),
+        }
+    }
+    if wrong.is_empty() {
+        println!("assets/masks are what the code makes, byte for byte");
+        Ok(())
+    } else {
+        Err(format!("assets/masks are not what the code makes (cargo xtask masks):\n  {}", wrong.join("\n  ")))
+    }
+}
