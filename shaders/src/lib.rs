@@ -49,3 +49,8 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
 pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
     [mask::KERNELS].into_iter().flatten().copied()
 }
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

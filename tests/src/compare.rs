@@ -6,6 +6,9 @@ use crate::tolerance::Tol;
 /// What an output buffer holds before a run. As an f32 it is a NaN; as a word it is none of the small numbers.
 pub const POISON: u32 = 0x7fc0_dead;
 
+/// Relative differences are taken to at least this.
+pub const SMALLEST: f64 = 1.0e-30;
+
 /// Words that the CPU computed. Only twins make these.
 #[derive(Clone, Debug)]
 pub struct Cpu(pub Vec<u32>);
@@ -57,7 +60,7 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
                 (a != b || a.is_nan()).then(|| format!("CPU {a}, GPU {b}"))
             } else {
                 let difference = (f64::from(a) - f64::from(b)).abs();
-                let relative = difference / f64::from(a).abs().max(1.0e-30);
+                let relative = difference / f64::from(a).abs().max(SMALLEST);
                 let ulp = ulp_distance(a, b);
                 if difference > out.worst_abs {
                     out.worst_abs = difference;

@@ -5,10 +5,12 @@
 //! - [`kernel`]: a kernel-level case runs a whole kernel and its CPU counterpart;
 //! - [`compare`]: the one comparer. The two sides have different types, so that a result cannot be compared
 //!   with itself; outputs are poisoned before a run; untouched slots and NaN fail;
-//! - [`control`]: every case is followed by runs that have to fail: flipped bits, other inputs;
+//! - [`control`]: every case is followed by runs that have to fail: flipped bits, other inputs; [`broken`] has
+//!   shaders with wrong constants and formulas, which have to fail too;
 //! - [`cases`]: the registry, which the coverage test holds against all functions of all shaders.
 
 pub mod adapter;
+pub mod broken;
 pub mod cases;
 pub mod compare;
 pub mod control;

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use downpour_gpu::{Gpu, GpuError};
+use downpour_tests::broken::{BROKEN, Broken};
 use downpour_tests::function::Run;
 use downpour_tests::report::{self, Report};
 use downpour_tests::{Tol, adapter, cases, control};
@@ -42,6 +43,12 @@ fn main() -> ExitCode {
         );
     }
 
+    for broken in BROKEN {
+        let gpu = Arc::clone(&gpu);
+        let name = format!("control::{} with {}", broken.function, broken.wrong);
+        trials.push(Trial::test(name, move || must_fail(broken, open(&gpu)?)).with_ignored_flag(off));
+    }
+
     let conclusion = libtest_mimic::run(&arguments, trials);
     if let Some(Ok(gpu)) = gpu.as_ref() {
         match report.write(&gpu.adapter().name) {
@@ -58,6 +65,15 @@ fn open(gpu: &Option<Result<Gpu, GpuError>>) -> Result<&Gpu, Failed> {
         Some(Ok(gpu)) => Ok(gpu),
         Some(Err(error)) => Err(format!("{error} (or say {}=no)", adapter::SWITCH).into()),
         None => Err("no adapter was asked for".into()),
+    }
+}
+
+/// A broken shader has to be seen.
+fn must_fail(broken: &Broken, gpu: &Gpu) -> Result<(), Failed> {
+    let (case, wrong) = broken.shader(&cases::functions());
+    match case.run_source(gpu, &wrong)?.compare(&case.tol).failure {
+        Some(_) => Ok(()),
+        None => Err(format!("{} passed with \"{}\"", broken.function, broken.wrong).into()),
     }
 }
 

@@ -31,7 +31,9 @@ pub(crate) fn ensure() -> Result<(), String> {
 fn found() -> bool {
     let libraries = ["/usr/lib", "/usr/lib64", "/lib", "/usr/local/lib"];
     let loader = libraries.iter().any(|folder| has_loader(Path::new(folder)));
-    loader && (named_manifest() || ["/usr/share", "/usr/local/share", "/etc"].iter().any(|root| has_manifest(root)))
+    loader
+        && (named_manifest()
+            || ["/usr/share", "/usr/local/share", "/etc"].iter().any(|root| has_manifest(root)))
 }
 
 /// A loader in the folder or in one of its folders for an architecture.

@@ -37,7 +37,8 @@ fn make() -> Result<Vec<Asset>, String> {
     let mut assets = vec![("drops.ktx2".to_owned(), ktx2::write_ktx2(&array).map_err(told)?)];
     for d in SINGLE_MM {
         let single = mask(d, SINGLE_SIZE)?;
-        assets.push((format!("drop_{d}mm.exr"), exr::write_exr(&single, exr::Precision::Half).map_err(told)?));
+        assets
+            .push((format!("drop_{d}mm.exr"), exr::write_exr(&single, exr::Precision::Half).map_err(told)?));
         assets.push((format!("drop_{d}mm.png"), png::write_png(&single).map_err(told)?));
     }
     let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
@@ -69,7 +70,8 @@ pub(crate) fn check() -> Result<(), String> {
         match std::fs::read(folder().join(&name)) {
             Ok(kept) if kept == bytes => {}
             Ok(kept) => {
-                let at = kept.iter().zip(&bytes).position(|(a, b)| a != b).unwrap_or(kept.len().min(bytes.len()));
+                let at =
+                    kept.iter().zip(&bytes).position(|(a, b)| a != b).unwrap_or(kept.len().min(bytes.len()));
                 let (kept, made) = (kept.len(), bytes.len());
                 wrong.push(format!("{name}: differs from byte {at} on ({kept} bytes kept, {made} made)"));
             }
@@ -80,6 +82,9 @@ pub(crate) fn check() -> Result<(), String> {
         println!("assets/masks are what the code makes, byte for byte");
         Ok(())
     } else {
-        Err(format!("assets/masks are not what the code makes (cargo xtask masks):\n  {}", wrong.join("\n  ")))
+        Err(format!(
+            "assets/masks are not what the code makes (cargo xtask masks):\n  {}",
+            wrong.join("\n  ")
+        ))
     }
 }

@@ -1,9 +1,29 @@
-//! Under construction.
+//! The physics of a raindrop and of rain.
+//!
+//! One drop: its [`shape`] and [`axis_ratio`], a [`mesh`] of it, its [`fall_speed`], its [`oscillation`], its
+//! [`optics`]. Many drops: their size [`distribution`], counted from a rain rate. What they are made of and fall
+//! through: [`water`], [`air`].
+//!
+//! Units are SI: metres, seconds, kilograms, radians, pascals; temperatures in degrees Celsius where the name says
+//! `_c`, rain rates in millimetres per hour where it says `_mm_h`. A diameter is that of the sphere of the same
+//! volume. Functions whose names start with the stem of their module are twins of WGSL functions.
+//!
+//! ```
+//! use downpour_drop::DropShape;
+//! use downpour_drop::air::Air;
+//! use downpour_drop::fall_speed::{FallSpeedModel, terminal_speed};
+//!
+//! let drop = DropShape::new(2.0e-3)?;
+//! assert!((drop.axis_ratio() - 0.926).abs() < 1.0e-3);
+//! let speed = terminal_speed(FallSpeedModel::Beard1976, 2.0e-3, &Air::standard())?;
+//! assert!((speed - 6.506).abs() < 1.0e-3);
+//! # Ok::<(), downpour_drop::DropError>(())
+//! ```
 
 pub mod air;
 pub mod axis_ratio;
 pub mod distribution;
-pub mod error;
+mod error;
 pub mod fall_speed;
 pub mod mesh;
 pub mod optics;
@@ -12,4 +32,10 @@ pub mod shape;
 pub mod water;
 
 pub use error::DropError;
+pub use mesh::DropMesh;
 pub use shape::DropShape;
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -34,3 +34,8 @@ pub use context::{Gpu, GpuOptions, LimitSet};
 pub use error::GpuError;
 pub use kernel::{ComputeKernel, Dispatch};
 pub use wgpu;
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -190,10 +190,7 @@ fn averaged_normals(positions: &[[f32; 3]], places: &[u32], triangles: &[[u32; 3
             continue;
         }
         for k in 0..3 {
-            let (a, b) = (
-                sub(corners[(k + 1) % 3], corners[k]),
-                sub(corners[(k + 2) % 3], corners[k]),
-            );
+            let (a, b) = (sub(corners[(k + 1) % 3], corners[k]), sub(corners[(k + 2) % 3], corners[k]));
             let turned = cross(a, b);
             let angle = downpour_math::ops::f64::atan2(dot(turned, turned).sqrt(), dot(a, b));
             let place = places[t[k] as usize] as usize;

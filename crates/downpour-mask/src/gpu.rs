@@ -133,7 +133,8 @@ impl GpuTracer {
         let texels = self.texel_buffer(options)?;
         let nodes = self.gpu.storage_buffer("bvh nodes", &model.bvh.nodes)?;
         let triangles = self.gpu.storage_buffer("bvh triangles", &model.bvh.triangles)?;
-        let normals: Vec<[f32; 4]> = model.normals.iter().flatten().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+        let normals: Vec<[f32; 4]> =
+            model.normals.iter().flatten().map(|&[x, y, z]| [x, y, z, 0.0]).collect();
         let normals = self.gpu.storage_buffer("normals", &normals)?;
         for first_row in (0..options.size).step_by(MODEL_ROWS as usize) {
             let uniform = ModelUniform {

@@ -1,4 +1,14 @@
-//! Under construction.
+//! Refraction masks: what a raindrop does to the light behind it, texel by texel.
+//!
+//! - [`trace_drop`]: the mask of a drop of revolution from any elevation, exact through both interfaces
+//!   ([`trace`]), with the covered share of each texel ([`silhouette`]); [`trace_drop_scalar`] is the twin of the GPU's
+//!   kernel, [`trace_drop_f64`] the reference above both;
+//! - [`trace_model`]: the same for any closed mesh ([`ClosedMesh`]) through a hierarchy of boxes ([`bvh`]);
+//! - `gpu` (feature `wgpu`): both on a GPU;
+//! - [`file`]: OpenEXR, KTX2, PNG.
+//!
+//! Lengths inside a mask are in units of the drop's volume-equivalent radius; directions are in the frame of the
+//! view: x right, y up, z towards the viewer.
 
 pub mod bvh;
 mod closed_mesh;
@@ -19,3 +29,8 @@ pub use error::MaskError;
 pub use mask::{Mask, MaskOptions, MaskTexel, SIZES};
 pub use model::{TracedModel, trace_model};
 pub use view::View;
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

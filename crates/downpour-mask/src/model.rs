@@ -83,7 +83,8 @@ impl TracedModel {
             let Some(next) = self.bvh.hit(point, inside, MASK_MODEL_NEAREST) else { break };
             let exit_normal = self.mask_model_normal(&next);
             point = add_scaled(point, inside, next.distance);
-            polarised *= if reflections == 0 { mask_trace_plane_turn(inside, normal, exit_normal) } else { 0.0 };
+            polarised *=
+                if reflections == 0 { mask_trace_plane_turn(inside, normal, exit_normal) } else { 0.0 };
             normal = exit_normal;
             let (outside, cos2) = optics_refract(inside, scale(normal, -1.0), index);
             if cos2 >= 0.0 {
@@ -190,7 +191,12 @@ pub fn trace_model(
 }
 
 /// A mask of the model without its texels.
-pub(crate) fn empty(mesh: &ClosedMesh, options: &MaskOptions, diameter: Option<f64>, model: &TracedModel) -> Mask {
+pub(crate) fn empty(
+    mesh: &ClosedMesh,
+    options: &MaskOptions,
+    diameter: Option<f64>,
+    model: &TracedModel,
+) -> Mask {
     Mask {
         size: options.size,
         diameter: diameter.unwrap_or(mesh.diameter),

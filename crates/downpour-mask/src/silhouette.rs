@@ -16,7 +16,8 @@
 
 use downpour_math::real::Real;
 use downpour_shaders::mask::{
-    MASK_BLEED, MASK_EDGE_DEPTH, MASK_SILHOUETTE_INSIDE, MASK_SILHOUETTE_OUTSIDE, MASK_SILHOUETTE_STEPS, MASK_TINY,
+    MASK_BLEED, MASK_EDGE_DEPTH, MASK_SILHOUETTE_INSIDE, MASK_SILHOUETTE_OUTSIDE, MASK_SILHOUETTE_STEPS,
+    MASK_TINY,
 };
 
 use crate::trace::{TracedDrop, mask_trace_curvature, mask_trace_spheroid, mask_trace_surface};
@@ -107,10 +108,7 @@ pub fn mask_silhouette_cut<R: Real>(drop: &TracedDrop, pixel: R, x: R, y: R) -> 
     let extent = (nx.abs() + ny.abs()) * half;
     let least = pixels + one.constant(f64::from(MASK_EDGE_DEPTH));
     let inward = ((extent + pixels) * half).at_most(extent).at_least(least).at_least(zero) * pixel;
-    let sample = [
-        R::select(is_inside, x, x - nx * inward),
-        R::select(is_inside, y, y - ny * inward),
-    ];
+    let sample = [R::select(is_inside, x, x - nx * inward), R::select(is_inside, y, y - ny * inward)];
     let bleeds = one.both(is_near, pixels.less(one.constant(f64::from(MASK_BLEED))));
     let traced = R::select(one.either(is_inside, bleeds), one, zero);
     PixelCut { coverage, sample, traced }

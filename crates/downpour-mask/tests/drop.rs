@@ -87,7 +87,11 @@ fn a_sphere_lets_through_what_fresnel_says() {
         let rp = square((INDEX * ci - cr) / (INDEX * ci + cr));
         let through = mask_trace_through(&drop, 0.6 * b, 0.8 * b);
         let exact = 0.5 * (square(1.0 - rs) + square(1.0 - rp));
-        assert!((through.transmittance - exact).abs() < 1.0e-10, "b = {b}: {} for {exact}", through.transmittance);
+        assert!(
+            (through.transmittance - exact).abs() < 1.0e-10,
+            "b = {b}: {} for {exact}",
+            through.transmittance
+        );
         assert!((through.reflectance - 0.5 * (rs + rp)).abs() < 1.0e-10, "b = {b}");
         // Reflection: the angle doubles.
         let reflected = through.reflected;
@@ -102,7 +106,9 @@ fn a_sphere_lets_through_what_fresnel_says() {
 fn the_area_of_a_sphere_is_that_of_a_disc() {
     for size in [16, 63, 64, 256] {
         let mask = trace_drop(&sphere(), &options(size, 0.0)).unwrap();
-        let area: f64 = mask.texels.iter().map(|t| f64::from(t.coverage)).sum::<f64>() * mask.texel_width() * mask.texel_width();
+        let area: f64 = mask.texels.iter().map(|t| f64::from(t.coverage)).sum::<f64>()
+            * mask.texel_width()
+            * mask.texel_width();
         let error = (area / std::f64::consts::PI - 1.0).abs();
         // A tangent in place of an arc adds 1 / (12 R^2) to the area of a disc of R pixels.
         let radius = 1.0 / mask.texel_width();
@@ -180,7 +186,16 @@ impl Brute<'_> {
 /// f32 and f64 masks of drops up to 9 mm, from all sides, against the independent trace.
 #[test]
 fn drops_are_traced_as_bisection_traces_them() {
-    for (d, degrees) in [(1.0e-3, 0.0), (2.0e-3, 40.0), (3.0e-3, 0.0), (5.0e-3, -60.0), (6.0e-3, 0.0), (7.0e-3, 15.0), (9.0e-3, 0.0), (9.0e-3, 90.0)] {
+    for (d, degrees) in [
+        (1.0e-3, 0.0),
+        (2.0e-3, 40.0),
+        (3.0e-3, 0.0),
+        (5.0e-3, -60.0),
+        (6.0e-3, 0.0),
+        (7.0e-3, 15.0),
+        (9.0e-3, 0.0),
+        (9.0e-3, 90.0),
+    ] {
         let shape = DropShape::new(d).unwrap();
         let brute = Brute { shape: &shape, up: view(degrees).up() };
         let drop = traced(&shape, degrees, 16);
@@ -239,27 +254,42 @@ fn f32_is_as_good_as_f64() {
             }
         }
         let share = f64::from(outside) / f64::from(direct);
-        println!("d = {d} m at {degrees} degrees: worst {worst:e}, share above 1e-5 {share:e}, {differ} differ");
+        println!(
+            "d = {d} m at {degrees} degrees: worst {worst:e}, share above 1e-5 {share:e}, {differ} differ"
+        );
         assert!(direct > 20_000, "d = {d} at {degrees} degrees: {direct} texels of direct light");
         // Light that leaves a 9 mm drop below its hollow does so close to total reflection.
         let allowed = if d < 9.0e-3 { 1.0e-3 } else { 2.0e-3 };
-        assert!(share < allowed, "d = {d} at {degrees} degrees: {share} of the texels are off by more than 1e-5");
+        assert!(
+            share < allowed,
+            "d = {d} at {degrees} degrees: {share} of the texels are off by more than 1e-5"
+        );
         if degrees == 0.0 && d < 7.0e-3 {
             assert!(worst < 1.0e-5, "d = {d} from the side: {worst:e}");
         }
-        assert!(f64::from(differ) < 2.0e-3 * f64::from(direct), "d = {d}: {differ} texels reflect differently");
+        assert!(
+            f64::from(differ) < 2.0e-3 * f64::from(direct),
+            "d = {d}: {differ} texels reflect differently"
+        );
     }
 }
 
 #[test]
 fn lanes_and_mirror_give_the_bits_of_the_plain_loop() {
-    for (size, d, degrees) in [(64, 2.0e-3, 0.0), (63, 6.0e-3, 25.0), (37, 9.0e-3, -70.0), (5, 4.0e-3, 0.0), (4, 1.0e-3, 0.0)] {
+    for (size, d, degrees) in
+        [(64, 2.0e-3, 0.0), (63, 6.0e-3, 25.0), (37, 9.0e-3, -70.0), (5, 4.0e-3, 0.0), (4, 1.0e-3, 0.0)]
+    {
         let shape = DropShape::new(d).unwrap();
         let fast = trace_drop(&shape, &options(size, degrees)).unwrap();
         let plain = trace_drop_scalar(&shape, &options(size, degrees)).unwrap();
         for (i, (a, b)) in fast.texels.iter().zip(&plain.texels).enumerate() {
             let bits = |t: &downpour_mask::MaskTexel| -> Vec<u32> {
-                t.direction.iter().chain(&t.reflected).chain([&t.coverage, &t.transmittance]).map(|v| (v + 0.0).to_bits()).collect()
+                t.direction
+                    .iter()
+                    .chain(&t.reflected)
+                    .chain([&t.coverage, &t.transmittance])
+                    .map(|v| (v + 0.0).to_bits())
+                    .collect()
             };
             assert_eq!(bits(a), bits(b), "size {size}, texel {i}: {a:?} {b:?}");
             assert_eq!(a.reflections, b.reflections);

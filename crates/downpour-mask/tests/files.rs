@@ -110,7 +110,8 @@ fn damaged_files_are_refused() {
             if d & 2 == 0 {
                 damaged[c as usize % reach] ^= 1 << (d >> 29);
             }
-            survived += u32::from(if is_exr { read_exr(&damaged).is_ok() } else { read_ktx2(&damaged).is_ok() });
+            survived +=
+                u32::from(if is_exr { read_exr(&damaged).is_ok() } else { read_ktx2(&damaged).is_ok() });
         }
     }
     assert!(survived > 50, "only {survived} damaged files were read: the test is blind behind the header");

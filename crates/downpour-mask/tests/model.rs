@@ -10,7 +10,11 @@ fn mesh_of(shape: &DropShape, latitudes: u32) -> ClosedMesh {
 }
 
 fn options(degrees: f64) -> MaskOptions {
-    MaskOptions { size: 96, view: View::from_elevation(f64::to_radians(degrees)).unwrap(), ..MaskOptions::default() }
+    MaskOptions {
+        size: 96,
+        view: View::from_elevation(f64::to_radians(degrees)).unwrap(),
+        ..MaskOptions::default()
+    }
 }
 
 /// Root mean square difference of directions and mean difference of coverage, at the same places. The two masks
@@ -29,7 +33,8 @@ fn difference(exact: &Mask, model: &Mask, shift: f64) -> (f64, f64) {
                 continue;
             }
             let corners = [at(u, v), at(u + 1.0, v), at(u, v + 1.0), at(u + 1.0, v + 1.0)];
-            if t.coverage < 1.0 || corners.iter().any(|c| c.coverage < 1.0 || c.reflections != t.reflections) {
+            if t.coverage < 1.0 || corners.iter().any(|c| c.coverage < 1.0 || c.reflections != t.reflections)
+            {
                 continue;
             }
             let (fu, fv) = ((u - u.floor()) as f32, (v - v.floor()) as f32);
@@ -43,7 +48,9 @@ fn difference(exact: &Mask, model: &Mask, shift: f64) -> (f64, f64) {
         }
     }
     assert!(n > 1000, "only {n} texels compared");
-    let area = |m: &Mask| m.texels.iter().map(|t| f64::from(t.coverage)).sum::<f64>() * m.texel_width() * m.texel_width();
+    let area = |m: &Mask| {
+        m.texels.iter().map(|t| f64::from(t.coverage)).sum::<f64>() * m.texel_width() * m.texel_width()
+    };
     ((sum / f64::from(n)).sqrt(), (area(model) / area(exact) - 1.0).abs())
 }
 
@@ -57,7 +64,9 @@ fn meshes_converge_to_the_drop() {
         let shift = shape.centroid_height() / shape.equivalent_radius() * exact.view.up()[1];
         let errors: Vec<(f64, f64)> = [16, 32, 64]
             .iter()
-            .map(|&n| difference(&exact, &trace_model(&mesh_of(&shape, n), &options(degrees), None).unwrap(), shift))
+            .map(|&n| {
+                difference(&exact, &trace_model(&mesh_of(&shape, n), &options(degrees), None).unwrap(), shift)
+            })
             .collect();
         println!("d = {d}, {degrees} degrees: {errors:?}");
         assert!(errors[2].0 < 2.0e-3, "{errors:?}");
@@ -90,7 +99,10 @@ fn refusal(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> String {
 fn what_is_no_drop_is_refused_with_its_reason() {
     let (positions, triangles) = cube();
     let good = ClosedMesh::new(&positions, None, &triangles).unwrap();
-    assert!((good.diameter - 2.0 * downpour_math::ops::f64::cbrt(3.0 / (4.0 * std::f64::consts::PI))).abs() < 1.0e-6);
+    assert!(
+        (good.diameter - 2.0 * downpour_math::ops::f64::cbrt(3.0 / (4.0 * std::f64::consts::PI))).abs()
+            < 1.0e-6
+    );
 
     assert!(refusal(&[], &[]).contains("0 vertices"));
     assert!(refusal(&positions, &[]).contains("0 triangles"));
@@ -122,7 +134,8 @@ fn poles_and_seams_of_a_file_do_not_open_a_mesh() {
     // Vertices doubled at every triangle, as a file with face normals has them, and a collapsed triangle.
     let (positions, triangles) = cube();
     let split: Vec<[f32; 3]> = triangles.iter().flatten().map(|&i| positions[i as usize]).collect();
-    let mut faces: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let mut faces: Vec<[u32; 3]> =
+        (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     faces.push([0, 0, 1]);
     let mesh = ClosedMesh::new(&split, None, &faces).unwrap();
     assert_eq!(mesh.triangles.len(), 12);

@@ -14,3 +14,8 @@ pub mod quadrature;
 pub mod real;
 pub mod rng;
 pub mod vector;
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -11,12 +11,7 @@ pub use pulp::Simd;
 
 /// A real number, or a vector of them on which each operation works lane by lane.
 pub trait Real:
-    Copy
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The result of a comparison, lane by lane.
     type Mask: Copy;

@@ -12,7 +12,7 @@ const SCALED: Tol = Tol::exact("an integer below 2^24 converts, and a power of t
 
 /// The cases.
 #[must_use]
-pub fn functions() -> Vec<FunctionCase> {
+pub(super) fn functions() -> Vec<FunctionCase> {
     let words4 = [AnyWord; 4];
     vec![
         FunctionCase::new(

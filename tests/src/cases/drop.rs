@@ -10,7 +10,7 @@ use crate::FunctionCase;
 
 /// The cases.
 #[must_use]
-pub fn functions() -> Vec<FunctionCase> {
+pub(super) fn functions() -> Vec<FunctionCase> {
     [
         shape::functions(),
         oscillation::functions(),

@@ -68,7 +68,7 @@ const SURFACE: Tol = Tol::relative(
 
 /// The cases.
 #[must_use]
-pub fn functions() -> Vec<FunctionCase> {
+pub(super) fn functions() -> Vec<FunctionCase> {
     let drop = Made(traced_words);
     let near = Uniform(-1.3, 1.3);
     let inside = Uniform(-0.55, 0.55);
@@ -333,7 +333,7 @@ const MODEL: Tol =
 
 /// The cases.
 #[must_use]
-pub fn kernels() -> Vec<KernelCase> {
+pub(super) fn kernels() -> Vec<KernelCase> {
     let drop = |name, tol, run| KernelCase {
         name,
         kernel: &mask::DROP_KERNEL,

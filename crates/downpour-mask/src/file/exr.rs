@@ -66,7 +66,9 @@ pub fn write_exr(mask: &Mask, precision: Precision) -> core::result::Result<Vec<
     };
     let mut attributes = LayerAttributes::default();
     // One attribute only: the encoder keeps these in a map whose order changes from run to run.
-    attributes.other.insert(Text::from(ATTRIBUTE), AttributeValue::Text(Text::from(description.write().as_str())));
+    attributes
+        .other
+        .insert(Text::from(ATTRIBUTE), AttributeValue::Text(Text::from(description.write().as_str())));
     let encoding = Encoding {
         compression: Compression::ZIP16,
         blocks: Blocks::ScanLines,
@@ -101,8 +103,8 @@ pub fn read_exr(bytes: &[u8]) -> core::result::Result<Mask, MaskError> {
     let mut texels = vec![MaskTexel::default(); size as usize * size as usize];
     for (name, _, set) in FIELDS {
         let channel = image.layer_data.channel_data.list.iter().find(|c| c.name == Text::from(name));
-        let channel =
-            channel.ok_or_else(|| file("channels", format!("no channel {name}"), "the channels of a mask"))?;
+        let channel = channel
+            .ok_or_else(|| file("channels", format!("no channel {name}"), "the channels of a mask"))?;
         for (texel, value) in texels.iter_mut().zip(channel.sample_data.values_as_f32()) {
             if !value.is_finite() {
                 return Err(file("pixels", format!("{value} in channel {name}"), "finite numbers"));

@@ -38,7 +38,11 @@ pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
             && m.refractive_index.to_bits() == first.refractive_index.to_bits()
     };
     if !masks.iter().all(|m| same(&m)) {
-        return Err(file("masks", "different sizes or views".to_owned(), "one size, view and refractive index"));
+        return Err(file(
+            "masks",
+            "different sizes or views".to_owned(),
+            "one size, view and refractive index",
+        ));
     }
     let mut texels = Vec::with_capacity(masks.len() * first.texels.len() * 2 * TEXEL_BYTES);
     for mask in masks {
@@ -118,8 +122,7 @@ fn key_values(pairs: &[(&str, &str)]) -> Vec<u8> {
 /// [`MaskError::File`] or [`MaskError::Size`], with what was found.
 pub fn read_ktx2(bytes: &[u8]) -> Result<Vec<Mask>, MaskError> {
     let truncated = |place| file(place, format!("a file of {} bytes", bytes.len()), "a complete KTX2 file");
-    let header: &[u8; Header::LENGTH] =
-        bytes.first_chunk().ok_or_else(|| truncated("header"))?;
+    let header: &[u8; Header::LENGTH] = bytes.first_chunk().ok_or_else(|| truncated("header"))?;
     let header = Header::from_bytes(header)
         .map_err(|error| file("header", shorten(&error.to_string()), "a KTX2 texture array of masks"))?;
     let (size, layers) = check_header(&header)?;
@@ -174,7 +177,11 @@ fn check_header(header: &Header) -> Result<(u32, usize), MaskError> {
     if !flat {
         let found = format!(
             "{} x {} x {}, {} faces, {} levels",
-            header.pixel_width, header.pixel_height, header.pixel_depth, header.face_count, header.level_count
+            header.pixel_width,
+            header.pixel_height,
+            header.pixel_depth,
+            header.face_count,
+            header.level_count
         );
         return Err(file("dimensions", found, "a square, one face, one level"));
     }
@@ -215,7 +222,9 @@ fn unpack(texels: &[u8], size: u32, description: &Description) -> Result<Vec<Mas
         })
     };
     let mut masks = Vec::with_capacity(description.diameters.len());
-    for (k, (&diameter, &half_extent)) in description.diameters.iter().zip(&description.half_extents).enumerate() {
+    for (k, (&diameter, &half_extent)) in
+        description.diameters.iter().zip(&description.half_extents).enumerate()
+    {
         let texels: Vec<MaskTexel> = (0..layer)
             .map(|i| {
                 let [x, y, z, coverage] = four(2 * k * layer + i);
@@ -230,7 +239,11 @@ fn unpack(texels: &[u8], size: u32, description: &Description) -> Result<Vec<Mas
             })
             .collect();
         let finite = |t: &MaskTexel| {
-            t.direction.iter().chain(&t.reflected).chain([&t.coverage, &t.transmittance]).all(|v| v.is_finite())
+            t.direction
+                .iter()
+                .chain(&t.reflected)
+                .chain([&t.coverage, &t.transmittance])
+                .all(|v| v.is_finite())
         };
         if let Some(i) = texels.iter().position(|t| !finite(t)) {
             return Err(file("level 0", format!("mask {k}, texel {i} is not finite"), "finite numbers"));

@@ -21,8 +21,10 @@ pub fn write_png(mask: &Mask) -> Result<Vec<u8>, MaskError> {
             [0.5 + 0.5 * x, 0.5 + 0.5 * y, 0.5 - 0.5 * z, t.coverage].map(byte)
         })
         .collect();
-    let picture = RgbaImage::from_raw(mask.size, mask.size, pixels)
-        .ok_or_else(|| MaskError::Encode { format: "PNG", reason: "a mask without all its texels".to_owned() })?;
+    let picture = RgbaImage::from_raw(mask.size, mask.size, pixels).ok_or_else(|| MaskError::Encode {
+        format: "PNG",
+        reason: "a mask without all its texels".to_owned(),
+    })?;
     let mut bytes = Cursor::new(Vec::new());
     picture
         .write_to(&mut bytes, ImageFormat::Png)

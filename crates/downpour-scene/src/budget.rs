@@ -1,0 +1,112 @@
+//! What a caller is willing to spend on somebody else's file.
+//!
+//! A few bytes can ask for a great deal: an accessor without data, a mesh drawn ten thousand times. One
+//! [`Budget`] goes through every reader of a scene; each takes what it needs before it allocates, and what it
+//! leaves is there for the next.
+
+use crate::error::{SceneError, size};
+use std::fmt;
+
+const RAISE: &str = "raise the budget, or split or simplify the model";
+
+/// What is left to spend. A reader lowers it by what the data that it returns takes up.
+///
+/// ```
+/// use downpour_scene::Budget;
+/// let small = Budget { bytes: 64 << 20, ..Budget::default() };
+/// assert!(small.vertices > 1_000_000);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Memory, in bytes; default 2 GiB.
+    pub bytes: u64,
+    /// Pixels of all images together; default 2^28.
+    pub pixels: u64,
+    /// Vertices of all meshes together, each instance counted; default 50 million.
+    pub vertices: u64,
+    /// Nodes of all scenes together; default 1 million.
+    pub nodes: u64,
+    /// Textures and images, the larger number of both; default 4096.
+    pub textures: u64,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { bytes: 2 << 30, pixels: 1 << 28, vertices: 50_000_000, nodes: 1_000_000, textures: 4096 }
+    }
+}
+
+impl Budget {
+    /// Takes memory.
+    pub(crate) fn take_bytes(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
+        take(&mut self.bytes, wanted).map_err(|left| {
+            SceneError::limit(
+                place,
+                format!("{} needed", size(wanted)),
+                format!("{} left in the budget", size(left)),
+            )
+            .way_out(RAISE)
+        })
+    }
+
+    /// Takes vertices.
+    pub(crate) fn take_vertices(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
+        take(&mut self.vertices, wanted).map_err(|left| over(place, wanted, left, "vertices"))
+    }
+
+    /// Takes nodes.
+    pub(crate) fn take_nodes(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
+        take(&mut self.nodes, wanted).map_err(|left| over(place, wanted, left, "nodes"))
+    }
+
+    /// Takes textures.
+    pub(crate) fn take_textures(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
+        take(&mut self.textures, wanted).map_err(|left| over(place, wanted, left, "textures"))
+    }
+
+    /// An empty vector with room for `count` elements, or the limit error of a machine that is out of memory.
+    pub(crate) fn room<T>(count: usize, place: impl fmt::Display) -> Result<Vec<T>, SceneError> {
+        let mut room = Vec::new();
+        match room.try_reserve_exact(count) {
+            Ok(()) => Ok(room),
+            Err(_) => {
+                let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
+                Err(SceneError::limit(
+                    place,
+                    format!("{} needed", size(bytes)),
+                    "what the machine's memory holds",
+                )
+                .way_out(RAISE))
+            }
+        }
+    }
+}
+
+/// Lowers what is left, or returns it.
+fn take(left: &mut u64, wanted: u64) -> Result<(), u64> {
+    *left = left.checked_sub(wanted).ok_or(*left)?;
+    Ok(())
+}
+
+fn over(place: impl fmt::Display, wanted: u64, left: u64, what: &str) -> SceneError {
+    SceneError::limit(place, format!("{wanted} {what}"), format!("{left} {what} left in the budget"))
+        .way_out(RAISE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_refused_is_not_taken() {
+        let mut budget = Budget { bytes: 100, ..Budget::default() };
+        budget.take_bytes(60, "a").unwrap();
+        let error = budget.take_bytes(41, "b").unwrap_err();
+        assert_eq!(error.exit_code(), 3);
+        assert_eq!(error.fault().found, "41 bytes needed");
+        assert_eq!(error.fault().allowed, "40 bytes left in the budget");
+        budget.take_bytes(40, "c").unwrap();
+        assert_eq!(budget.bytes, 0);
+        assert!(Budget::room::<[u8; 1 << 20]>(usize::MAX, "d").is_err());
+    }
+}

@@ -1,0 +1,139 @@
+//! Triangles of a glTF 2.0 file, in world space.
+//!
+//! Source: Khronos Group, "glTF 2.0 Specification", version 2.0.1 (ISO/IEC 12113:2022). Axes are glTF's:
+//! right-handed, +Y up, metres; front faces are counter-clockwise.
+//!
+//! The order is check, then parse (the module `guard`): the JSON is read as plain values, the whole document is checked
+//! on them, and only then are the typed objects made and the buffers opened. Read are accessors of any component
+//! type (normalised and quantised integers too), sparse substitution, triangle lists, strips and fans, and node
+//! transforms in double precision. Left out, with a warning: points, lines, skins, morph targets. Not read here:
+//! materials, images, cameras, lights, animations.
+
+mod accessor;
+mod buffers;
+mod container;
+mod document;
+mod guard;
+mod instances;
+mod json;
+mod model;
+mod normals;
+mod plan;
+mod triangles;
+
+use crate::beneath::{Files, Folder, open_named};
+use crate::error::{SceneError, shown_path, size};
+use crate::warning::{WarningKind, Warnings};
+use crate::{Budget, magic};
+use std::io::Read;
+use std::path::Path;
+
+pub use model::TriangleModel;
+
+/// The largest file that is looked at, in bytes: 256 MiB, buffers beside it not counted.
+pub const MAX_FILE: u64 = 256 << 20;
+
+/// The largest number of elements of one accessor.
+pub const MAX_ELEMENTS: u64 = 50_000_000;
+
+/// How deep nodes may be nested.
+pub const MAX_DEPTH: u32 = 256;
+
+/// How far from the origin a vertex may be, in metres. Beyond it the steps between `f32` numbers are 64 m, and
+/// squares of distances come near the end of the range of `f32`.
+pub const REACH: f64 = 1e9;
+
+/// Reads the triangles of a `.gltf` or `.glb` file; buffers are looked for beneath its folder only.
+///
+/// The budget is lowered by what the model takes up. A file that holds no triangles is no error: the model is
+/// empty and a warning of the kind [`WarningKind::Empty`] says so.
+///
+/// # Errors
+/// [`SceneError`]: the file cannot be read, is not a glTF 2.0 file that Downpour can read, or is too large.
+///
+/// ```no_run
+/// use downpour_scene::{Budget, gltf::read_triangles};
+/// let mut budget = Budget::default();
+/// let model = read_triangles("street/lamp.gltf".as_ref(), &mut budget)?.strict()?;
+/// assert!(model.indices.iter().flatten().all(|&i| (i as usize) < model.positions.len()));
+/// # Ok::<(), downpour_scene::SceneError>(())
+/// ```
+pub fn read_triangles(path: &Path, budget: &mut Budget) -> Result<TriangleModel, SceneError> {
+    let name = shown_path(path);
+    let mut read = || {
+        let bytes = whole_file(path, budget.bytes)?;
+        let folder = Folder::open(path.parent().unwrap_or(Path::new("")))?;
+        read_triangles_from_bytes(&name, &bytes, &folder, budget)
+    };
+    read().map_err(|error| error.in_file(&name))
+}
+
+/// Reads the triangles of a glTF file in memory; `files` opens the buffers that it names.
+///
+/// `name` is what messages call the file.
+///
+/// # Errors
+/// As [`read_triangles`].
+///
+/// ```
+/// use downpour_scene::{Budget, WarningKind, beneath::NoFiles, gltf::read_triangles_from_bytes};
+/// let json = br#"{"asset": {"version": "2.0"}}"#;
+/// let model = read_triangles_from_bytes("empty.gltf", json, &NoFiles, &mut Budget::default())?;
+/// assert!(model.is_empty() && model.warnings[0].kind == WarningKind::Empty);
+/// # Ok::<(), downpour_scene::SceneError>(())
+/// ```
+pub fn read_triangles_from_bytes(
+    name: &str,
+    bytes: &[u8],
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<TriangleModel, SceneError> {
+    let read = |purse: &mut Budget| {
+        let mut warnings = Warnings::default();
+        let length = bytes.len() as u64;
+        if length > MAX_FILE {
+            return Err(too_long(length, MAX_FILE));
+        }
+        purse.take_bytes(length, "")?;
+        let container = container::open(bytes, &mut warnings)?;
+        let value = json::parse(container.json, purse, &mut warnings)?;
+        let checked = guard::check(value, container.binary, purse, &mut warnings)?;
+        let root = document::typed(checked)?;
+        let buffers = buffers::load(&root, container.binary, files, purse)?;
+        let source = length.saturating_add(buffers.from_files);
+        triangles::gather(&root, &buffers, source, purse, warnings)
+    };
+    // What is needed only while reading is handed back: the caller pays for the model alone.
+    let mut purse = *budget;
+    let mut model = read(&mut purse).map_err(|error| error.in_file(name))?;
+    budget.bytes = budget.bytes.saturating_sub(model.bytes());
+    budget.vertices = budget.vertices.saturating_sub(model.positions.len() as u64);
+    budget.nodes = purse.nodes;
+    name.clone_into(&mut model.name);
+    Ok(model)
+}
+
+/// The bytes of a file that the user has named.
+fn whole_file(path: &Path, left: u64) -> Result<Vec<u8>, SceneError> {
+    let file = open_named(path)?;
+    let most = MAX_FILE.min(left);
+    if file.size > most {
+        return Err(too_long(file.size, most));
+    }
+    let mut bytes = Budget::room(usize::try_from(file.size).unwrap_or(usize::MAX), "")?;
+    file.bytes.take(file.size).read_to_end(&mut bytes).map_err(|error| SceneError::io("", "", &error))?;
+    if bytes.is_empty() {
+        return Err(SceneError::bad("", magic::found(&bytes), container::GLTF));
+    }
+    Ok(bytes)
+}
+
+fn too_long(length: u64, most: u64) -> SceneError {
+    let allowed = format!("at most {most} bytes ({})", size(most));
+    SceneError::limit("", format!("a file of {length} bytes"), allowed)
+}
+
+/// A warning of the common kind: the meaning is clear, the form is not quite the specification's.
+fn irregular(warnings: &mut Warnings, place: impl std::fmt::Display, what: impl FnOnce() -> String) {
+    warnings.add(WarningKind::Irregular, place, what);
+}

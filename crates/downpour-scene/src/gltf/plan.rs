@@ -1,0 +1,158 @@
+//! What will be read and how much it is, before any of it is read.
+//!
+//! A small file can ask for a great deal: primitives that share one accessor, accessors without data, a mesh on
+//! ten thousand nodes. The sums are made first, in 64 bits, and held against the budget and against the size
+//! of what was read: a file may grow, but not without bound.
+
+use super::instances::Instance;
+use crate::Budget;
+use crate::error::{SceneError, size};
+use crate::warning::{WarningKind, Warnings};
+use gltf::json::mesh::{Mode, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{Accessor, Index, Root};
+use std::collections::BTreeMap;
+
+/// What every file may grow to in memory, in bytes, and how many bytes more for each byte that was read.
+const FREE_GROWTH: u64 = 256 << 20;
+const GROWTH: u64 = 64;
+
+/// Bytes of a vertex (position, normal) and of a triangle, and what a primitive of an instance costs in time.
+const PER_VERTEX: u64 = 24;
+const PER_TRIANGLE: u64 = 12;
+const PER_PART: u64 = 128;
+
+/// The vertices of one or more primitives.
+pub(super) struct Pool {
+    pub(super) positions: Index<Accessor>,
+    pub(super) normals: Option<Index<Accessor>>,
+}
+
+/// The triangles of one primitive.
+pub(super) struct Part {
+    pub(super) primitive: usize,
+    pub(super) pool: usize,
+    pub(super) indices: Option<Index<Accessor>>,
+    pub(super) mode: Mode,
+}
+
+/// What is read of one mesh.
+#[derive(Default)]
+pub(super) struct MeshPlan {
+    pub(super) pools: Vec<Pool>,
+    pub(super) parts: Vec<Part>,
+    vertices: u64,
+    triangles: u64,
+}
+
+/// What is read of a document.
+pub(super) struct Plan {
+    /// One for each mesh; empty for meshes that the scene does not use.
+    pub(super) meshes: Vec<MeshPlan>,
+    pub(super) vertices: usize,
+    pub(super) triangles: usize,
+    pub(super) has_normals: bool,
+}
+
+/// Plans the reading of all instances and takes its cost from the budget.
+pub(super) fn make(
+    root: &Root,
+    instances: &[Instance],
+    source: u64,
+    budget: &mut Budget,
+    warnings: &mut Warnings,
+) -> Result<Plan, SceneError> {
+    let mut used = vec![false; root.meshes.len()];
+    for instance in instances {
+        if let Some(used) = used.get_mut(instance.mesh) {
+            *used = true;
+        }
+    }
+    let one = |(index, used)| if used { mesh(root, index, warnings) } else { MeshPlan::default() };
+    let meshes: Vec<MeshPlan> = used.into_iter().enumerate().map(one).collect();
+    let (mut vertices, mut triangles, mut parts) = (0u64, 0u64, 0u64);
+    for mesh in instances.iter().filter_map(|instance| meshes.get(instance.mesh)) {
+        vertices = vertices.saturating_add(mesh.vertices);
+        triangles = triangles.saturating_add(mesh.triangles);
+        parts = parts.saturating_add(mesh.parts.len() as u64).saturating_add(1);
+    }
+    let cost = [(vertices, PER_VERTEX), (triangles, PER_TRIANGLE), (parts, PER_PART)]
+        .into_iter()
+        .fold(0u64, |sum, (count, each)| sum.saturating_add(count.saturating_mul(each)));
+    let place = "meshes";
+    budget.take_vertices(vertices, place)?;
+    let most = FREE_GROWTH.saturating_add(source.saturating_mul(GROWTH));
+    if cost > most {
+        let found = format!("{} of geometry from {} of files", size(cost), size(source));
+        return Err(SceneError::limit(place, found, format!("{} for files of this size", size(most)))
+            .way_out("instance or simplify less, or store the geometry itself"));
+    }
+    budget.take_bytes(cost, place)?;
+    let fits = |count: u64| u32::try_from(count).ok().and_then(|count| usize::try_from(count).ok());
+    match (fits(vertices), fits(triangles)) {
+        (Some(vertices), Some(triangles)) => {
+            let has_normals = meshes.iter().flat_map(|mesh| &mesh.pools).any(|pool| pool.normals.is_some());
+            Ok(Plan { meshes, vertices, triangles, has_normals })
+        }
+        _ => Err(SceneError::limit(
+            place,
+            format!("{vertices} vertices, {triangles} triangles"),
+            "2^32 of each",
+        )),
+    }
+}
+
+fn mesh(root: &Root, index: usize, warnings: &mut Warnings) -> MeshPlan {
+    let mut plan = MeshPlan::default();
+    let Some(mesh) = root.meshes.get(index) else { return plan };
+    let count = |accessor: Index<Accessor>| root.get(accessor).map_or(0, |accessor| accessor.count.0);
+    let mut pools: BTreeMap<(usize, Option<usize>), usize> = BTreeMap::new();
+    for (primitive, json) in mesh.primitives.iter().enumerate() {
+        let place = format_args!("meshes[{index}].primitives[{primitive}]");
+        let mode = match json.mode {
+            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
+            Checked::Valid(_) | Checked::Invalid => {
+                warnings.add(WarningKind::Ignored, place, || "points or lines: skipped".into());
+                continue;
+            }
+        };
+        let attribute = |semantic| json.attributes.get(&Checked::Valid(semantic)).copied();
+        let Some(positions) = attribute(Semantic::Positions) else {
+            warnings.add(WarningKind::Ignored, place, || "no POSITION: skipped".into());
+            continue;
+        };
+        // Without data all numbers are 0; so do files look whose data is in an extension that is not read.
+        if root
+            .get(positions)
+            .is_none_or(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none())
+        {
+            warnings.add(WarningKind::Dropped, place, || "dropped: POSITION has no data".into());
+            continue;
+        }
+        let normals = attribute(Semantic::Normals);
+        let corners = count(json.indices.unwrap_or(positions));
+        let triangles = match mode {
+            Mode::Triangles => corners / 3,
+            _ => corners.saturating_sub(2),
+        };
+        if triangles == 0 || (mode == Mode::Triangles && !corners.is_multiple_of(3)) {
+            warnings.add(WarningKind::Irregular, place, || {
+                format!("{corners} corners do not make up whole triangles: what is left over is ignored")
+            });
+        }
+        if json.targets.is_some() && mesh.weights.iter().flatten().any(|&weight| weight != 0.0) {
+            warnings.add(WarningKind::Ignored, place, || {
+                "morph targets are not read: the base shape is taken".into()
+            });
+        }
+        let next = plan.pools.len();
+        let pool = *pools.entry((positions.value(), normals.map(|n| n.value()))).or_insert(next);
+        if pool == next {
+            plan.vertices = plan.vertices.saturating_add(count(positions));
+            plan.pools.push(Pool { positions, normals });
+        }
+        plan.triangles = plan.triangles.saturating_add(triangles);
+        plan.parts.push(Part { primitive, pool, indices: json.indices, mode });
+    }
+    plan
+}

@@ -1,0 +1,216 @@
+//! The reading itself: vertices into world space, primitives into triangles.
+//!
+//! Front faces are counter-clockwise in each file; a mirroring transform turns them over, so there the last two
+//! corners change places. Strips and fans: glTF 2.0, section 3.7.2.1.
+
+use super::accessor::Elements;
+use super::buffers::Buffers;
+use super::instances::{self, Instance, Placement};
+use super::plan::{self, Part, Pool};
+use super::{REACH, TriangleModel, normals};
+use crate::Budget;
+use crate::error::SceneError;
+use crate::warning::{WarningKind, Warnings};
+use glam::DVec3;
+use gltf::json::Root;
+use gltf::json::mesh::Mode;
+
+/// Why the vertices of a primitive are not taken.
+enum Useless {
+    NotFinite(usize),
+    OutOfReach,
+}
+
+/// The vertices of a pool in the model.
+struct Placed {
+    start: usize,
+    count: usize,
+}
+
+/// What has been gathered so far.
+struct Gathering<'a> {
+    root: &'a Root,
+    buffers: &'a Buffers<'a>,
+    positions: Vec<[f32; 3]>,
+    /// As many as positions, or none at all. A zero vector stands for a normal that is to be made.
+    normals: Option<Vec<[f32; 3]>>,
+    indices: Vec<[u32; 3]>,
+}
+
+/// Reads all triangles of the scene. `source` is how many bytes have been read from files.
+pub(super) fn gather(
+    root: &Root,
+    buffers: &Buffers<'_>,
+    source: u64,
+    budget: &mut Budget,
+    mut warnings: Warnings,
+) -> Result<TriangleModel, SceneError> {
+    let instances = instances::find(root, budget, &mut warnings)?;
+    let plan = plan::make(root, &instances, source, budget, &mut warnings)?;
+    let mut model = Gathering {
+        root,
+        buffers,
+        positions: Budget::room(plan.vertices, "meshes")?,
+        normals: if plan.has_normals { Some(Budget::room(plan.vertices, "meshes")?) } else { None },
+        indices: Budget::room(plan.triangles, "meshes")?,
+    };
+    for instance in &instances {
+        let Some(mesh) = plan.meshes.get(instance.mesh).filter(|mesh| !mesh.parts.is_empty()) else {
+            continue;
+        };
+        let Some(placement) = instance.placement() else {
+            warnings.add(WarningKind::Dropped, instance, || {
+                "dropped: its transform has no inverse (a scale or rotation of 0, or numbers without end)"
+                    .into()
+            });
+            continue;
+        };
+        let mut pools = Vec::with_capacity(mesh.pools.len());
+        for pool in &mesh.pools {
+            pools.push(model.vertices(pool, &placement)?);
+        }
+        for part in &mesh.parts {
+            match pools.get(part.pool) {
+                Some(Ok(vertices)) => model.part(instance, part, vertices, placement.mirrored)?,
+                Some(Err(useless)) => useless.warn(instance, part, &mut warnings),
+                None => {}
+            }
+        }
+    }
+    Ok(model.finish(warnings))
+}
+
+impl Gathering<'_> {
+    /// Adds the vertices of a pool, or none of them.
+    fn vertices(
+        &mut self,
+        pool: &Pool,
+        placement: &Placement,
+    ) -> Result<Result<Placed, Useless>, SceneError> {
+        let start = self.positions.len();
+        let mut positions = Elements::open(self.root, self.buffers, pool.positions)?;
+        let mut bad = 0usize;
+        let mut reach = 0.0f64;
+        while let Some(point) = positions.vector()? {
+            let finite = point.iter().all(|part| part.is_finite());
+            bad = bad.saturating_add(usize::from(!finite));
+            let world = placement.point(point);
+            // `max` passes NaN over, but then the point is counted already or the product overflowed to infinity.
+            reach =
+                reach.max(world.abs().max_element()).max(if world.is_finite() { 0.0 } else { f64::INFINITY });
+            self.positions.push(narrow(world));
+        }
+        if let Some(all) = &mut self.normals {
+            match pool.normals {
+                None => all.resize(self.positions.len(), [0.0; 3]),
+                Some(accessor) => {
+                    let mut normals = Elements::open(self.root, self.buffers, accessor)?;
+                    while let Some(normal) = normals.vector()? {
+                        bad = bad.saturating_add(usize::from(!normal.iter().all(|part| part.is_finite())));
+                        all.push(narrow(placement.normal(normal)));
+                    }
+                }
+            }
+        }
+        let useless = match bad {
+            0 if reach <= REACH => None,
+            0 => Some(Useless::OutOfReach),
+            bad => Some(Useless::NotFinite(bad)),
+        };
+        let Some(useless) = useless else { return Ok(Ok(Placed { start, count: positions.count() })) };
+        self.positions.truncate(start);
+        if let Some(normals) = &mut self.normals {
+            normals.truncate(start);
+        }
+        Ok(Err(useless))
+    }
+
+    /// Adds the triangles of a primitive.
+    fn part(
+        &mut self,
+        instance: &Instance,
+        part: &Part,
+        vertices: &Placed,
+        mirrored: bool,
+    ) -> Result<(), SceneError> {
+        let mut elements = match part.indices {
+            Some(accessor) => Some(Elements::open(self.root, self.buffers, accessor)?),
+            None => None,
+        };
+        let corners = elements.as_ref().map_or(vertices.count, Elements::count);
+        let (mut first, mut before, mut last) = (0u32, 0u32, 0u32);
+        for nth in 0..corners {
+            let index = match &mut elements {
+                Some(elements) => elements.unsigned()?.unwrap_or(usize::MAX),
+                None => nth,
+            };
+            let vertex = vertices.start.checked_add(index).filter(|_| index < vertices.count);
+            let Some(corner) = vertex.and_then(|vertex| u32::try_from(vertex).ok()) else {
+                let place = format_args!("meshes[{}].primitives[{}].indices", instance.mesh, part.primitive);
+                let allowed =
+                    format!("0 to {}, as POSITION has {}", vertices.count.saturating_sub(1), vertices.count);
+                return Err(SceneError::bad(place, format!("index {index} at element {nth}"), allowed));
+            };
+            if nth == 0 {
+                first = corner;
+            }
+            let triangle = match part.mode {
+                Mode::Triangles => (nth % 3 == 2).then_some([before, last, corner]),
+                Mode::TriangleStrip if nth % 2 == 0 => Some([before, last, corner]),
+                Mode::TriangleStrip => Some([before, corner, last]),
+                _ => Some([last, corner, first]),
+            };
+            if let Some([a, b, c]) = triangle.filter(|_| nth >= 2) {
+                self.indices.push(if mirrored { [a, c, b] } else { [a, b, c] });
+            }
+            (before, last) = (last, corner);
+        }
+        Ok(())
+    }
+
+    fn finish(mut self, mut warnings: Warnings) -> TriangleModel {
+        if let Some(normals) = &mut self.normals {
+            let made = normals::fill(&self.positions, &self.indices, normals);
+            if made > 0 {
+                warnings.add(WarningKind::Irregular, "meshes", || {
+                    format!(
+                        "{made} vertices without a normal among others that have one: made from the faces"
+                    )
+                });
+            }
+        }
+        if self.indices.is_empty() {
+            warnings.add(WarningKind::Empty, "", || "no triangles".into());
+        }
+        TriangleModel {
+            positions: self.positions,
+            normals: self.normals,
+            indices: self.indices,
+            warnings: warnings.finish(),
+            ..TriangleModel::default()
+        }
+    }
+}
+
+impl Useless {
+    fn warn(&self, instance: &Instance, part: &Part, warnings: &mut Warnings) {
+        let place = format_args!("meshes[{}].primitives[{}]", instance.mesh, part.primitive);
+        match self {
+            Self::NotFinite(count) => warnings.add(WarningKind::Dropped, place, || {
+                format!("dropped: {count} positions or normals are not finite")
+            }),
+            Self::OutOfReach => warnings.add(WarningKind::Dropped, place, || {
+                format!("dropped at {instance}: a vertex is farther than {REACH:e} m from the origin")
+            }),
+        }
+    }
+}
+
+/// Double to single precision.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding is meant; what overflows is dropped afterwards"
+)]
+fn narrow(v: DVec3) -> [f32; 3] {
+    [v.x as f32, v.y as f32, v.z as f32]
+}

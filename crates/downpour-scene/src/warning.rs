@@ -1,0 +1,103 @@
+//! What a reader left out or made good, so that nothing is lost silently.
+
+use std::fmt;
+
+/// How many warnings are kept with their words; the others are only counted.
+const KEPT: usize = 64;
+
+/// One thing that a reader left out or made good.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Of what sort it is.
+    pub kind: WarningKind,
+    /// The place inside the file, as `meshes[0].primitives[2]`.
+    pub place: String,
+    /// What was found and what was done about it, on one line.
+    pub what: String,
+}
+
+/// The sort of a [`Warning`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum WarningKind {
+    /// Geometry was dropped because its numbers are of no use: not finite, or a transform without an inverse.
+    Dropped,
+    /// Something that is there in the file is not read: points, lines, a skin, an optional extension.
+    Ignored,
+    /// The file is not quite glTF 2.0, but its meaning is clear.
+    Irregular,
+    /// The file holds no triangles, or none were left.
+    Empty,
+    /// Further warnings, counted only.
+    More,
+}
+
+impl WarningKind {
+    /// Whether a caller that wants all or nothing should refuse the file.
+    ///
+    /// ```
+    /// use downpour_scene::WarningKind;
+    /// assert!(WarningKind::Dropped.is_loss() && !WarningKind::Irregular.is_loss());
+    /// ```
+    #[must_use]
+    pub fn is_loss(self) -> bool {
+        matches!(self, Self::Dropped | Self::Empty)
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.place.is_empty() {
+            write!(f, "{}: ", self.place)?;
+        }
+        f.write_str(&self.what)
+    }
+}
+
+/// Warnings as they are gathered: a file with a million faults must not make a million lines.
+#[derive(Debug, Default)]
+pub(crate) struct Warnings {
+    kept: Vec<Warning>,
+    more: u64,
+    loss: bool,
+}
+
+impl Warnings {
+    /// Adds one. The words are made only when they will be kept.
+    pub(crate) fn add(&mut self, kind: WarningKind, place: impl fmt::Display, what: impl FnOnce() -> String) {
+        // A loss must be seen however many small things came before it.
+        if self.kept.len() < KEPT || (kind.is_loss() && !self.loss) {
+            self.kept.push(Warning { kind, place: place.to_string(), what: what() });
+        } else {
+            self.more = self.more.saturating_add(1);
+        }
+        self.loss |= kind.is_loss();
+    }
+
+    /// All of them, with a last line for those that were only counted.
+    pub(crate) fn finish(mut self) -> Vec<Warning> {
+        if self.more > 0 {
+            let what = format!("and {} more", self.more);
+            self.kept.push(Warning { kind: WarningKind::More, place: String::new(), what });
+        }
+        self.kept
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flood_is_counted_and_a_loss_still_seen() {
+        let mut warnings = Warnings::default();
+        for _ in 0..1000 {
+            warnings.add(WarningKind::Ignored, "here", || "a point".into());
+        }
+        warnings.add(WarningKind::Dropped, "there", || "a mesh".into());
+        let all = warnings.finish();
+        assert_eq!(all.len(), KEPT + 2);
+        assert_eq!(all[KEPT].to_string(), "there: a mesh");
+        assert_eq!(all[KEPT + 1].to_string(), "and 936 more");
+    }
+}

@@ -1,0 +1,159 @@
+//! Each bad input has its exit code and its words: rows G and B of the reliability plan, and every file of
+//! `tests/data/bad_inputs`.
+
+mod accessors;
+mod buffers;
+#[path = "../document/mod.rs"]
+mod document;
+mod tree;
+
+use document::{check, check_message, data, data_uri, floats, spoiled, triangle, triangle_of};
+use downpour_scene::{Budget, WarningKind, gltf::read_triangles};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// What a row reads.
+enum Input {
+    /// A file of `tests/data/bad_inputs`.
+    File(&'static str),
+    /// A file made here.
+    Made(Vec<u8>),
+}
+
+/// One bad input.
+struct Row {
+    id: &'static str,
+    input: Input,
+    /// 0: it is read, and the words are in a warning.
+    code: u8,
+    words: &'static str,
+}
+
+fn file(id: &'static str, name: &'static str, code: u8, words: &'static str) -> Row {
+    Row { id, input: Input::File(name), code, words }
+}
+
+fn made(id: &'static str, bytes: Vec<u8>, code: u8, words: &'static str) -> Row {
+    Row { id, input: Input::Made(bytes), code, words }
+}
+
+fn doc(id: &'static str, changes: &[(&str, Value)], code: u8, words: &'static str) -> Row {
+    made(id, spoiled(changes).to_string().into_bytes(), code, words)
+}
+
+fn uri(id: &'static str, uri: &str, words: &'static str) -> Row {
+    doc(id, &[("/buffers/0/uri", json!(uri))], 2, words)
+}
+
+/// The triangle with its text changed: for numbers that a JSON value does not hold.
+fn text(id: &'static str, from: &str, to: &str, code: u8, words: &'static str) -> Row {
+    let plain = triangle().to_string();
+    assert!(plain.contains(from), "{from}");
+    made(id, plain.replacen(from, to, 1).into_bytes(), code, words)
+}
+
+fn rows() -> Vec<Row> {
+    let tables = [
+        buffers::addresses(),
+        buffers::ranges(),
+        buffers::containers(),
+        accessors::formats(),
+        accessors::contents(),
+        accessors::sparse(),
+        tree::nodes(),
+        tree::rest(),
+    ];
+    tables.into_iter().flatten().collect()
+}
+
+fn judge(row: &Row, path: &Path) -> Result<(), String> {
+    let result = read_triangles(path, &mut Budget::default());
+    let (code, said) = match &result {
+        Ok(model) => {
+            check(model);
+            (0, model.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())
+        }
+        Err(error) => {
+            let name = path.file_name().expect("a file has a name").to_string_lossy();
+            assert!(error.to_string().contains(&*name), "{error}");
+            (error.exit_code(), vec![error.to_string()])
+        }
+    };
+    said.iter().for_each(|line| check_message(line));
+    let silent = row.words.is_empty() && said.is_empty();
+    if code == row.code
+        && (silent || said.iter().any(|line| !row.words.is_empty() && line.contains(row.words)))
+    {
+        return Ok(());
+    }
+    Err(format!("{} {}: wanted {} {:?}, got {code} {said:?}", row.id, path.display(), row.code, row.words))
+}
+
+#[test]
+fn each_bad_input_has_its_code_and_its_words() {
+    let folder = tempfile::tempdir().expect("a folder for made files");
+    let mut wrong = Vec::new();
+    for (number, row) in rows().iter().enumerate() {
+        let path = match &row.input {
+            Input::File(name) => data().join("bad_inputs").join(name),
+            Input::Made(bytes) => {
+                let path = folder.path().join(format!("made_{number}.gltf"));
+                fs::write(&path, bytes).expect("a file can be made");
+                path
+            }
+        };
+        wrong.extend(judge(row, &path).err());
+    }
+    assert!(wrong.is_empty(), "{} rows:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+/// The table is whole: each row of the plan, and each file of the folder. G7 and G9 are in `opening.rs`.
+#[test]
+fn nothing_is_left_out() {
+    let rows = rows();
+    let ids: BTreeSet<&str> = rows.iter().map(|row| row.id).collect();
+    let plan = (1..=35).map(|n| format!("G{n}")).chain((1..=5).map(|n| format!("B{n}")));
+    let missing: Vec<String> =
+        plan.filter(|id| !ids.contains(id.as_str()) && id != "G7" && id != "G9").collect();
+    assert!(missing.is_empty(), "{missing:?}");
+    let named: BTreeSet<&str> = rows
+        .iter()
+        .filter_map(|row| match row.input {
+            Input::File(name) => Some(name),
+            Input::Made(_) => None,
+        })
+        .collect();
+    for entry in fs::read_dir(data().join("bad_inputs")).expect("the folder is there") {
+        let entry = entry.expect("the folder can be read");
+        let name = entry.file_name().into_string().expect("names are UTF-8");
+        let is_input = entry.path().is_file() && name != "SOURCE.md";
+        assert!(!is_input || named.contains(name.as_str()), "{name} is in no row");
+    }
+}
+
+/// A caller that wants all or nothing is told what was lost.
+#[test]
+fn strict_refuses_what_was_dropped() {
+    let scale = [("/nodes/0/scale", json!([0, 0, 0]))];
+    let error = document::read(&spoiled(&scale)).expect("a warning").strict().expect_err("a loss");
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().starts_with("test: nodes[0]: dropped"), "{error}");
+    let empty = document::read(&json!({"asset": {"version": "2.0"}})).expect("a warning");
+    assert!(empty.is_empty() && empty.warnings[0].kind == WarningKind::Empty);
+    assert_eq!(
+        empty.strict().expect_err("nothing there").to_string(),
+        "test: no triangles; allowed: a file of which all geometry is of use"
+    );
+    document::read(&triangle()).expect("valid").strict().expect("nothing lost");
+}
+
+/// Data that decodes to more than the buffer needs is cut there.
+#[test]
+fn longer_data_is_cut() {
+    let bytes = [floats(&[0.0; 20]), vec![7; 100]].concat();
+    let document = document::with(triangle_of(&bytes), &[("/buffers/0/byteLength", json!(80))]);
+    assert!(document["buffers"][0]["uri"] == json!(data_uri(&bytes)));
+    document::read(&document).expect("the rest is not looked at");
+}

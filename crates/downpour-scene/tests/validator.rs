@@ -1,0 +1,103 @@
+//! The test files of the Khronos glTF validator, as they are and with the data that most of them lack.
+//!
+//! Nothing panics; what the validator calls an error is an error or a warning here too, as far as it concerns
+//! what is read; and what it calls valid is read.
+
+mod document;
+
+use document::{check, check_message, data, data_uri};
+use downpour_scene::{Budget, WarningKind, gltf::read_triangles};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+
+/// Errors of the validator that do not concern triangles, and why.
+const OTHER_CONCERNS: [(&str, &str); 12] = [
+    ("ACCESSOR_INVALID_FLOAT", "an accessor that no mesh uses is not read"),
+    ("ACCESSOR_MIN_MISMATCH", "bounds are made from the data, never taken from the file"),
+    ("ACCESSOR_MAX_MISMATCH", "bounds are made from the data"),
+    ("ACCESSOR_ELEMENT_OUT_OF_MIN_BOUND", "bounds are made from the data"),
+    ("ACCESSOR_ELEMENT_OUT_OF_MAX_BOUND", "bounds are made from the data"),
+    ("MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS", "bounds are made from the data"),
+    ("BUFFER_VIEW_TARGET_OVERRIDE", "targets are hints for graphics interfaces"),
+    ("IMAGE_DATA_INVALID", "images are not opened"),
+    ("IMAGE_UNEXPECTED_EOS", "images are not opened"),
+    ("IMAGE_MIME_TYPE_INVALID", "images are not opened"),
+    ("IO_ERROR", "images are not opened"),
+    ("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", "materials are not read"),
+];
+
+/// Files without errors that are not read, and why.
+const NOT_READ: [(&str, &str); 3] = [
+    ("accessor/unknown_type.gltf", "an accessor of unknown size cannot be checked"),
+    ("buffer/non_relative_uri.gltf", "nothing is fetched from elsewhere"),
+    ("buffer/data_uri.glb", "data that is not base64"),
+];
+
+/// What came of a file: an exit code, or 0 and whether there is a warning that tells of more than emptiness.
+fn outcome(path: &Path) -> (u8, bool, String) {
+    match read_triangles(path, &mut Budget::default()) {
+        Ok(model) => {
+            check(&model);
+            let lines: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
+            lines.iter().for_each(|line| check_message(line));
+            (0, model.warnings.iter().any(|warning| warning.kind != WarningKind::Empty), lines.join("; "))
+        }
+        Err(error) => {
+            check_message(&error.to_string());
+            (error.exit_code(), true, error.to_string())
+        }
+    }
+}
+
+/// Gives each buffer that has none data of the length that it says, all 0. `None` if all have some.
+fn filled(path: &Path) -> Option<Value> {
+    let mut document: Value = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+    let mut changed = false;
+    for buffer in document.get_mut("buffers")?.as_array_mut()? {
+        let length = buffer.get("byteLength").and_then(Value::as_u64);
+        if let (Some(length), None) = (length, buffer.get("uri")) {
+            buffer["uri"] = json!(data_uri(&vec![0; length as usize]));
+            changed = true;
+        }
+    }
+    changed.then_some(document)
+}
+
+#[test]
+fn the_validators_files() {
+    let folder = data().join("bad_inputs/validator");
+    let made = tempfile::tempdir().expect("a folder");
+    let expected = fs::read_to_string(folder.join("expected.tsv")).expect("the expectations");
+    let (mut files, mut fillings, mut wrong) = (0, 0, Vec::new());
+    for line in expected.lines().skip(1) {
+        let columns: Vec<&str> = line.split('\t').collect();
+        let [name, errors, _, codes] = columns[..] else { panic!("{line}") };
+        let path = folder.join(name);
+        assert!(path.is_file(), "{name} is missing");
+        files += 1;
+        let mut outcome = outcome(&path);
+        if let Some(document) = filled(&path) {
+            fillings += 1;
+            assert_eq!(outcome.0, 2, "{name}: a buffer without data was read");
+            let path = made.path().join("filled.gltf");
+            fs::write(&path, document.to_string()).expect("a file can be made");
+            outcome = self::outcome(&path);
+        }
+        let (code, speaks, said) = outcome;
+        if errors == "0" {
+            if code != 0
+                && !NOT_READ.iter().any(|(file, _)| *file == name)
+                && !said.contains("no binary chunk")
+            {
+                wrong.push(format!("{name}: valid, but {said}"));
+            }
+        } else if !speaks
+            && !codes.split(' ').all(|code| OTHER_CONCERNS.iter().any(|(other, _)| *other == code))
+        {
+            wrong.push(format!("{name}: {codes}, but only {code} {said:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {files}:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(files == 161 && fillings == 17, "{files} files, {fillings} filled");
+}

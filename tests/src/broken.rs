@@ -1,0 +1,68 @@
+//! Shaders that are wrong on purpose: the third kind of negative control.
+//!
+//! Each breaks one thing that a slip of the hand could break, in a constant or in the text, and has to be seen by
+//! the case that covers it.
+
+use downpour_shaders::compose;
+
+use crate::FunctionCase;
+
+/// One wrong shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Broken {
+    /// The function whose case has to go red.
+    pub function: &'static str,
+    /// What stands in the shader.
+    pub right: &'static str,
+    /// What stands there instead.
+    pub wrong: &'static str,
+}
+
+/// All of them.
+pub const BROKEN: &[Broken] = &[
+    Broken {
+        function: "rng_pcg4d",
+        right: "RNG_PCG_MULTIPLIER: u32 = 1664525",
+        wrong: "RNG_PCG_MULTIPLIER: u32 = 1664527",
+    },
+    Broken { function: "rng_draw", right: "seed.y, 0u, 0u, dimension", wrong: "seed.y, 0u, 0u, 0u" },
+    Broken { function: "packing_octahedral_decode", right: "max(-z, 0.0)", wrong: "max(z, 0.0)" },
+    Broken {
+        function: "optics_fresnel_tatarchuk",
+        right: "OPTICS_TATARCHUK_BASE: f32 = 0.05",
+        wrong: "OPTICS_TATARCHUK_BASE: f32 = 0.0501",
+    },
+    Broken { function: "fall_speed_brandes_2002", right: "0.07934", wrong: "0.07935" },
+    Broken { function: "fall_speed_beard_flattened", right: "0.00533035", wrong: "0.00533135" },
+    Broken {
+        function: "mask_trace_meet",
+        right: "MASK_TRACE_STEPS: u32 = 4",
+        wrong: "MASK_TRACE_STEPS: u32 = 1",
+    },
+    Broken {
+        function: "mask_trace_through",
+        right: "1.0 / traced.index).xyz",
+        wrong: "1.0 / (traced.index + 0.001)).xyz",
+    },
+    Broken {
+        function: "mask_silhouette_cut",
+        right: "MASK_EDGE_DEPTH: f32 = 0.1",
+        wrong: "MASK_EDGE_DEPTH: f32 = 0.3",
+    },
+];
+
+impl Broken {
+    /// The case, and the wrong text of its shader.
+    ///
+    /// # Panics
+    /// If there is no such case, or the right text is not in its shader.
+    #[must_use]
+    pub fn shader(&self, cases: &[FunctionCase]) -> (FunctionCase, String) {
+        let case = cases.iter().find(|case| case.function == self.function);
+        let case = case.unwrap_or_else(|| panic!("no case for {}", self.function)).clone();
+        let right = compose(&[case.module]);
+        assert!(right.contains(self.right), "\"{}\" is not in the shader of {}", self.right, self.function);
+        let wrong = right.replace(self.right, self.wrong);
+        (case, wrong)
+    }
+}
