@@ -3,7 +3,7 @@
 //! - [`function`]: a function-level case needs a name, domains for its arguments, the CPU twin and a tolerance;
 //!   the shader round it is written from the signature that naga reads;
 //! - [`kernel`]: a kernel-level case runs a whole kernel and its CPU counterpart;
-//! - [`compare`]: the one comparer. The two sides have different types, so that a result cannot be compared
+//! - [`mod@compare`]: the one comparer. The two sides have different types, so that a result cannot be compared
 //!   with itself; outputs are poisoned before a run; untouched slots and NaN fail;
 //! - [`control`]: every case is followed by runs that have to fail: flipped bits, other inputs; [`broken`] has
 //!   shaders with wrong constants and formulas, which have to fail too;

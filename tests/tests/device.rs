@@ -14,10 +14,11 @@ use downpour_tests::adapter;
 use libtest_mimic::{Arguments, Failed, Trial};
 
 type Outcome = Result<(), Failed>;
+type Test = (&'static str, fn() -> Outcome);
 
 fn main() -> ExitCode {
     let off = adapter::switched_off();
-    let tests: [(&str, fn() -> Outcome); 11] = [
+    let tests: [Test; 11] = [
         ("what_is_written_is_read", what_is_written_is_read),
         ("limits_are_checked_first", limits_are_checked_first),
         ("a_lost_device_gives_nothing", a_lost_device_gives_nothing),
@@ -174,11 +175,11 @@ fn a_callers_lost_device_is_seen() -> Outcome {
 
 fn a_device_that_does_not_finish_is_hung() -> Outcome {
     let gpu = Gpu::open_with(&GpuOptions { timeout: Duration::from_nanos(1), ..options() })?;
-    let mask = mask_on(&gpu, 1600);
-    check(
-        matches!(mask, Err(GpuMaskError::Gpu(GpuError::Hung { .. }))),
-        format!("{:?}", mask.map(|m| m.size)),
-    )
+    let shape = DropShape::new(2.0e-3).expect("2 mm is a drop");
+    // Half a millisecond of work for the fastest GPU there is.
+    let options = MaskOptions { size: 1024, ..MaskOptions::default() };
+    let time = GpuTracer::new(&gpu)?.time_drop(&shape, &options, 10);
+    check(matches!(time, Err(GpuMaskError::Gpu(GpuError::Hung { .. }))), format!("{time:?}"))
 }
 
 fn threads_share_a_device() -> Outcome {

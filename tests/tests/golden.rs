@@ -3,6 +3,8 @@
 //! `DOWNPOUR_BLESS=1` writes them and then fails: a new picture counts once a person has looked at it. On a
 //! difference, what was made is written beside the report of the parity tests.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::path::PathBuf;
 
 use downpour_drop::DropShape;

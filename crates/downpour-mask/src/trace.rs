@@ -30,7 +30,7 @@ use downpour_shaders::mask::{MASK_TINY, MASK_TRACE_REFLECTIONS};
 /// A drop of revolution as the tracer needs it.
 #[derive(Clone, Copy, Debug)]
 pub struct TracedDrop {
-    /// Shape coefficients c_0 .. c_10.
+    /// Shape coefficients, from `c_0` to `c_10`.
     pub coefficients: [f64; 11],
     /// The drop's axis in the frame of the view, of length 1.
     pub up: [f64; 3],

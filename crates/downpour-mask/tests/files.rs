@@ -1,5 +1,7 @@
 //! Masks as files: what is written is read again; what is damaged is refused.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use downpour_drop::DropShape;
 use downpour_mask::file::exr::{Precision, read_exr, write_exr};
 use downpour_mask::file::ktx2::{read_ktx2, write_ktx2};

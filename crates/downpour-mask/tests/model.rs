@@ -1,5 +1,7 @@
 //! Masks of meshes against the exact masks, and meshes that are no drops.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use downpour_drop::DropShape;
 use downpour_drop::mesh::DropMesh;
 use downpour_mask::{ClosedMesh, Mask, MaskError, MaskOptions, View, trace_drop, trace_model};
@@ -117,7 +119,7 @@ fn what_is_no_drop_is_refused_with_its_reason() {
     assert!(refusal(&positions, &doubled).contains("more than two meet"));
     let flat: Vec<_> = positions.iter().map(|p| [p[0], p[1], 0.0]).collect();
     refusal(&flat, &triangles);
-    assert!(refusal(&vec![[1.0, 2.0, 3.0]; 8], &triangles).contains("degenerate"));
+    assert!(refusal(&[[1.0, 2.0, 3.0]; 8], &triangles).contains("degenerate"));
     let mut out_of_range = triangles.clone();
     out_of_range[3][1] = 8;
     assert!(refusal(&positions, &out_of_range).contains("triangle 3"));

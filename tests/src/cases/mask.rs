@@ -130,8 +130,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::absolute(
                 1.0e-3,
                 "a quotient of squared cross products, which cancel for nearly parallel vectors",
-            )
-            .with_outliers(2.0e-3),
+            ),
             |a| mask_trace_plane_turn(a.f32s(), a.f32s(), a.f32s()).words(),
         ),
         FunctionCase::new(
@@ -142,8 +141,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 1.0e-4,
                 1.0e-4,
                 "two refractions; errors grow close to total reflection and with each one",
-            )
-            .with_outliers(2.0e-2),
+            ),
             |a| {
                 let (drop, _) = traced(a);
                 let t = mask_trace_through(&drop, a.f32(), a.f32());
@@ -191,8 +189,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "mask_silhouette_cut",
             &mask::SILHOUETTE,
             &[drop, near, near],
-            Tol::absolute(2.0e-3, "the distance to the outline (1e-5) in units of a pixel of 0.02")
-                .with_outliers(5.0e-4),
+            Tol::absolute(2.0e-3, "the distance to the outline (1e-5) in units of a pixel of 0.02"),
             |a| {
                 let (drop, pixel) = traced(a);
                 let (x, y) = (a.f32(), a.f32());
@@ -259,8 +256,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::absolute(
                 2.0e-5,
                 "cross products and a division (2.5 ulp); rays on an edge may fall on either side",
-            )
-            .with_outliers(1.0e-3),
+            ),
             |a| {
                 let corner = a.f32s();
                 let index = a.f32() as u32;
@@ -320,16 +316,15 @@ fn model_case(gpu: &Gpu, degrees: f64) -> Result<Run, GpuError> {
 }
 
 const DROP: Tol =
-    Tol::absolute(5.0e-5, "two refractions of f32; the derivative of Snell's law grows at the rim")
-        .with_outliers(1.0e-3);
+    Tol::absolute(5.0e-5, "two refractions of f32; the derivative of Snell's law grows at the rim");
 const TILTED: Tol = Tol::absolute(
     1.0e-3,
     "total reflections multiply the errors before them, and close to the critical angle the count may differ",
 )
-.with_outliers(1.0e-2);
+.with_outliers(1.0e-3);
 const MODEL: Tol =
     Tol::absolute(1.0e-3, "a ray on an edge may meet either of two facets, whose normals agree there")
-        .with_outliers(5.0e-3);
+        .with_outliers(1.0e-3);
 
 /// The cases.
 #[must_use]

@@ -102,7 +102,7 @@ pub fn read_exr(bytes: &[u8]) -> core::result::Result<Mask, MaskError> {
         .map_err(|error| file("pixels", shorten(&error.to_string()), "a complete OpenEXR file"))?;
     let mut texels = vec![MaskTexel::default(); size as usize * size as usize];
     for (name, _, set) in FIELDS {
-        let channel = image.layer_data.channel_data.list.iter().find(|c| c.name == Text::from(name));
+        let channel = image.layer_data.channel_data.list.iter().find(|c| c.name == *name);
         let channel = channel
             .ok_or_else(|| file("channels", format!("no channel {name}"), "the channels of a mask"))?;
         for (texel, value) in texels.iter_mut().zip(channel.sample_data.values_as_f32()) {
