@@ -32,6 +32,8 @@ shared_constants! {
         MASK_EDGE_DEPTH: f32 = 0.1;
         /// Nodes that may wait while a tree is walked: its depth, at most.
         MASK_BVH_STACK: u32 = 48;
+        /// Beyond every distance.
+        MASK_BVH_FAR: f32 = 3.0e38;
         /// Barycentric slack of a triangle: a ray through a shared edge must not slip between two of them.
         MASK_BVH_EDGE_SLACK: f32 = 1.0e-6;
         /// Nearest distance of the next surface, in equivalent radii: a ray must not meet the point that it left.

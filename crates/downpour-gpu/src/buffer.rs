@@ -49,7 +49,7 @@ impl Gpu {
         for (limit_name, allowed) in allowed {
             if size > allowed {
                 return Err(GpuError::OverLimit {
-                    what: format!("buffer \"{label}\" in bytes"),
+                    what: format!("the size in bytes of buffer \"{label}\""),
                     found: size,
                     limit_name,
                     allowed,

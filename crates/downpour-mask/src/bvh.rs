@@ -7,7 +7,7 @@
 //! Twin of the traversal in `shaders/wgsl/mask/bvh.wgsl`.
 
 use downpour_math::vector::{cross, dot, sub};
-use downpour_shaders::mask::MASK_BVH_STACK;
+use downpour_shaders::mask::{MASK_BVH_FAR, MASK_BVH_STACK};
 
 /// Triangles of a leaf below which it is not split.
 const LEAF: usize = 4;
@@ -140,33 +140,68 @@ impl Bvh {
     /// The nearest hit farther than `nearest` along the ray.
     #[must_use]
     pub fn hit(&self, origin: [f32; 3], direction: [f32; 3], nearest: f32) -> Option<Hit> {
-        let inverse = mask_bvh_inverse(direction);
-        let mut best: Option<Hit> = None;
-        let mut stack = [0u32; MASK_BVH_STACK as usize];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let at = stack[depth];
-            let node = &self.nodes[at as usize];
-            let limit = best.map_or(f32::INFINITY, |h| h.distance);
-            if !mask_bvh_touches(node, origin, inverse, limit) {
+        mask_bvh_nearest(&self.nodes, &self.triangles, origin, direction, nearest)
+    }
+}
+
+/// The nearest hit farther than `nearest` along the ray, in the arrays of a [`Bvh`].
+#[must_use]
+pub fn mask_bvh_nearest(
+    nodes: &[BvhNode],
+    triangles: &[BvhTriangle],
+    origin: [f32; 3],
+    direction: [f32; 3],
+    nearest: f32,
+) -> Option<Hit> {
+    let inverse = mask_bvh_inverse(direction);
+    let mut best: Option<Hit> = None;
+    let mut limit = MASK_BVH_FAR;
+    let mut stack = [0u32; MASK_BVH_STACK as usize];
+    let mut depth = 0;
+    let mut at = 0u32;
+    if mask_bvh_enter(&nodes[0], origin, inverse, limit) >= MASK_BVH_FAR {
+        return None;
+    }
+    loop {
+        let node = &nodes[at as usize];
+        if node.count == 0 {
+            // The nearer child first: what it holds may hide the other.
+            let (left, right) = (at + 1, node.link);
+            let to_left = mask_bvh_enter(&nodes[left as usize], origin, inverse, limit);
+            let to_right = mask_bvh_enter(&nodes[right as usize], origin, inverse, limit);
+            let (near, far, to_near, to_far) = if to_right < to_left {
+                (right, left, to_right, to_left)
+            } else {
+                (left, right, to_left, to_right)
+            };
+            if to_near < MASK_BVH_FAR {
+                if to_far < MASK_BVH_FAR {
+                    stack[depth] = far;
+                    depth += 1;
+                }
+                at = near;
                 continue;
             }
-            if node.count == 0 {
-                stack[depth] = node.link;
-                stack[depth + 1] = at + 1;
-                depth += 2;
-                continue;
-            }
-            for triangle in &self.triangles[node.link as usize..(node.link + node.count) as usize] {
+        } else {
+            for triangle in &triangles[node.link as usize..(node.link + node.count) as usize] {
                 let [distance, u, v] = mask_bvh_triangle(triangle, origin, direction);
-                let limit = best.map_or(f32::INFINITY, |h| h.distance);
                 if distance > nearest && distance < limit {
+                    limit = distance;
                     best = Some(Hit { distance, triangle: triangle.index, u, v });
                 }
             }
         }
-        best
+        // The next waiting node that is still nearer than what was hit.
+        loop {
+            if depth == 0 {
+                return best;
+            }
+            depth -= 1;
+            at = stack[depth];
+            if mask_bvh_enter(&nodes[at as usize], origin, inverse, limit) < MASK_BVH_FAR {
+                break;
+            }
+        }
     }
 }
 
@@ -176,9 +211,9 @@ pub fn mask_bvh_inverse(direction: [f32; 3]) -> [f32; 3] {
     direction.map(|d| 1.0 / if d.abs() > 1.0e-20 { d } else { 1.0e-20 })
 }
 
-/// Whether the ray touches the box of `node` before `limit`.
+/// Where the ray enters the box of `node`, if that is before `limit`; `MASK_BVH_FAR` otherwise.
 #[must_use]
-pub fn mask_bvh_touches(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32) -> bool {
+pub fn mask_bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32) -> f32 {
     let mut enter = 0.0f32;
     let mut leave = limit;
     for k in 0..3 {
@@ -188,7 +223,7 @@ pub fn mask_bvh_touches(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], lim
         leave = leave.min(a.max(b));
     }
     // Rounding may put the two past each other by a few units in the last place.
-    enter <= leave * 1.000_001 + 1.0e-7
+    if enter <= leave * 1.000_001 + 1.0e-7 { enter } else { MASK_BVH_FAR }
 }
 
 /// Distance and the weights of the second and third corner where the ray meets the triangle's plane; distance -1

@@ -1,1 +1,42 @@
-//! Under construction.
+//! Rain that can be measured: one name for the crates of Downpour.
+//!
+//! | module | crate | what is in it |
+//! |---|---|---|
+//! | [`mod@drop`] | `downpour-drop` | one drop (shape, fall speed, oscillation, optics) and many (size distributions) |
+//! | [`mask`] | `downpour-mask` | what a drop does to light: refraction masks, traced, written and read |
+//! | [`scene`] | `downpour-scene` | geometry from glTF files, behind a guard and a budget |
+//! | `gpu` (feature `wgpu`) | `downpour-gpu` | a checked layer over wgpu, on a device of its own or on yours |
+//! | [`shaders`] | `downpour-shaders` | every WGSL file as composable modules |
+//! | [`math`] | `downpour-math` | reproducible scalar functions and random numbers |
+//!
+//! Nothing here needs a GPU. With the feature `wgpu`, whatever runs on one also runs on a caller's device and queue.
+//! Who wants the physics alone takes `downpour-drop`: it builds in seconds.
+//!
+//! ```
+//! use downpour::drop::air::Air;
+//! use downpour::drop::distribution::{DropSizeDistribution, DropSizeLaw};
+//! use downpour::drop::fall_speed::{FallSpeedModel, terminal_speed};
+//!
+//! let speed = terminal_speed(FallSpeedModel::Beard1976, 2.0e-3, &Air::standard())?;
+//! let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 10.0)?;
+//! println!("a drop of 2 mm falls at {speed:.2} m/s");
+//! println!("10 mm/h are {:.0} drops per cubic metre", rain.number_density());
+//! # assert!((speed - 6.506).abs() < 0.001);
+//! # Ok::<(), downpour::drop::DropError>(())
+//! ```
+//!
+//! Units are SI (metres, seconds, kilograms, radians); a name says so where it is something else (`rate_mm_h`,
+//! `temperature_c`). Axes are those of glTF: right-handed, +Y up.
+
+pub use downpour_drop as drop;
+#[cfg(feature = "wgpu")]
+pub use downpour_gpu as gpu;
+pub use downpour_mask as mask;
+pub use downpour_math as math;
+pub use downpour_scene as scene;
+pub use downpour_shaders as shaders;
+
+/// The text of README.md, whose Rust parts are compiled and run.
+#[cfg(all(doctest, feature = "wgpu"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

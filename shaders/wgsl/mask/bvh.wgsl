@@ -29,11 +29,8 @@ struct MaskBvhHit {
 @group(0) @binding(1) var<storage, read> mask_bvh_nodes: array<MaskBvhNode>;
 @group(0) @binding(2) var<storage, read> mask_bvh_triangles: array<MaskBvhTriangle>;
 
-// A number beyond every distance.
-const MASK_BVH_FAR: f32 = 3.0e38;
-
-// Whether the ray touches the box of a node before `limit`.
-fn mask_bvh_touches(node: MaskBvhNode, origin: vec3f, inverse: vec3f, limit: f32) -> bool {
+// Where the ray enters the box of a node, if that is before `limit`; MASK_BVH_FAR otherwise.
+fn mask_bvh_enter(node: MaskBvhNode, origin: vec3f, inverse: vec3f, limit: f32) -> f32 {
     let a = (node.low - origin) * inverse;
     let b = (node.high - origin) * inverse;
     let near = min(a, b);
@@ -41,7 +38,7 @@ fn mask_bvh_touches(node: MaskBvhNode, origin: vec3f, inverse: vec3f, limit: f32
     let enter = max(max(near.x, near.y), max(near.z, 0.0));
     let leave = min(min(far.x, far.y), min(far.z, limit));
     // Rounding may put the two past each other by a few units in the last place.
-    return enter <= leave * 1.000001 + 1.0e-7;
+    return select(MASK_BVH_FAR, enter, enter <= leave * 1.000001 + 1.0e-7);
 }
 
 // Distance and the weights of the second and third corner where the ray meets the triangle's plane; distance -1
@@ -76,29 +73,47 @@ fn mask_bvh_hit(origin: vec3f, direction: vec3f, nearest: f32) -> MaskBvhHit {
     var best = MaskBvhHit(-1.0, 0u, 0.0, 0.0);
     var limit = MASK_BVH_FAR;
     var stack: array<u32, MASK_BVH_STACK>;
-    stack[0] = 0u;
-    var depth = 1u;
-    // Each node is visited once at most, so this ends; a mesh of 65 535 nodes on one ray does not occur.
-    while depth > 0u {
-        depth -= 1u;
-        let at = stack[depth];
+    var depth = 0u;
+    var at = 0u;
+    if mask_bvh_enter(mask_bvh_nodes[0], origin, inverse, limit) >= MASK_BVH_FAR {
+        return best;
+    }
+    // Each node is visited once at most, so this ends.
+    loop {
         let node = mask_bvh_nodes[at];
-        if !mask_bvh_touches(node, origin, inverse, limit) {
-            continue;
-        }
         if node.count == 0u {
-            stack[depth] = node.link;
-            stack[depth + 1u] = at + 1u;
-            depth += 2u;
-            continue;
-        }
-        for (var k = 0u; k < node.count; k += 1u) {
-            let triangle = mask_bvh_triangles[node.link + k];
-            let hit = mask_bvh_triangle(triangle, origin, direction);
-            if hit.x > nearest && hit.x < limit {
-                limit = hit.x;
-                best = MaskBvhHit(hit.x, triangle.index, hit.y, hit.z);
+            // The nearer child first: what it holds may hide the other.
+            let to_left = mask_bvh_enter(mask_bvh_nodes[at + 1u], origin, inverse, limit);
+            let to_right = mask_bvh_enter(mask_bvh_nodes[node.link], origin, inverse, limit);
+            let swap = to_right < to_left;
+            let far = select(node.link, at + 1u, swap);
+            if min(to_left, to_right) < MASK_BVH_FAR {
+                if max(to_left, to_right) < MASK_BVH_FAR {
+                    stack[depth] = far;
+                    depth += 1u;
+                }
+                at = select(at + 1u, node.link, swap);
+                continue;
             }
+        } else {
+            for (var k = 0u; k < node.count; k += 1u) {
+                let triangle = mask_bvh_triangles[node.link + k];
+                let hit = mask_bvh_triangle(triangle, origin, direction);
+                if hit.x > nearest && hit.x < limit {
+                    limit = hit.x;
+                    best = MaskBvhHit(hit.x, triangle.index, hit.y, hit.z);
+                }
+            }
+        }
+        // The next waiting node that is still nearer than what was hit.
+        var found = false;
+        while depth > 0u && !found {
+            depth -= 1u;
+            at = stack[depth];
+            found = mask_bvh_enter(mask_bvh_nodes[at], origin, inverse, limit) < MASK_BVH_FAR;
+        }
+        if !found {
+            break;
         }
     }
     return best;

@@ -1,0 +1,125 @@
+//! What computes: a GPU, a software driver of a GPU, or the CPU.
+
+use clap::{Args, ValueEnum};
+
+use crate::failure::Failure;
+
+/// What may compute.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Backend {
+    /// A GPU, else a software driver, else the CPU.
+    Auto,
+    /// A GPU or its software driver.
+    Gpu,
+    /// The CPU.
+    Cpu,
+}
+
+/// Where to compute.
+#[derive(Debug, Args)]
+pub(crate) struct BackendArguments {
+    /// What computes.
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) backend: Backend,
+    /// Part of the name of the GPU to take, as `downpour adapters` lists them.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+}
+
+impl BackendArguments {
+    /// Whether the arguments make sense together.
+    ///
+    /// # Errors
+    /// Exit code 2 for an adapter of the CPU.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        if self.backend == Backend::Cpu && self.adapter.is_some() {
+            let message = "--adapter names a GPU; allowed: with --backend gpu or auto";
+            return Err(Failure::new(crate::failure::INPUT, message));
+        }
+        Ok(())
+    }
+}
+
+/// There is no GPU in this build.
+#[cfg(not(feature = "gpu"))]
+pub(crate) fn no_support() -> Failure {
+    let message =
+        "this build of downpour has no GPU support; build it with the feature `gpu`, or use --backend cpu";
+    Failure::new(crate::failure::GPU, message)
+}
+
+#[cfg(feature = "gpu")]
+pub(crate) use gpu::{device, finish};
+
+#[cfg(feature = "gpu")]
+mod gpu {
+    use std::time::Duration;
+
+    use downpour::gpu::{AdapterChoice, Gpu, GpuError, GpuOptions};
+    use downpour::mask::gpu::GpuMaskError;
+
+    use super::BackendArguments;
+    use crate::failure::{Failure, INPUT};
+    use crate::interrupt::Interrupt;
+    use crate::stream;
+
+    /// For tests of what happens when a GPU fails: `lost@K` destroys the device after K submissions, `hang` waits for
+    /// nothing.
+    const INJECT: &str = "DOWNPOUR_INJECT";
+
+    impl From<GpuError> for Failure {
+        fn from(error: GpuError) -> Self {
+            Self::new(error.exit_code(), error.to_string())
+        }
+    }
+
+    impl From<GpuMaskError> for Failure {
+        fn from(error: GpuMaskError) -> Self {
+            Self::new(error.exit_code(), error.to_string())
+        }
+    }
+
+    /// Opens the device that was asked for. `Ok(Err(reason))`: there is none.
+    ///
+    /// # Errors
+    /// Exit code 2 for a bad [`INJECT`], 4 if the adapter that was named is not there.
+    pub(crate) fn device(arguments: &BackendArguments) -> Result<Result<Gpu, GpuError>, Failure> {
+        let adapter = match &arguments.adapter {
+            Some(name) => AdapterChoice::Named(name.clone()),
+            None => AdapterChoice::Auto,
+        };
+        let options = inject(GpuOptions { adapter, ..GpuOptions::default() })?;
+        match Gpu::open_with(&options) {
+            Ok(gpu) => Ok(Ok(gpu)),
+            Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDevice { .. })) => Ok(Err(error)),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn inject(options: GpuOptions) -> Result<GpuOptions, Failure> {
+        let Some(text) = std::env::var_os(INJECT).filter(|text| !text.is_empty()) else { return Ok(options) };
+        let text = text.to_string_lossy();
+        if text == "hang" {
+            return Ok(GpuOptions { timeout: Duration::ZERO, ..options });
+        }
+        match text.strip_prefix("lost@").map(str::parse) {
+            Some(Ok(count)) if count > 0 => Ok(GpuOptions { lose_after_submissions: Some(count), ..options }),
+            _ => {
+                let message = format!("{INJECT} is \"{text}\"; allowed: lost@K with K from 1, or hang");
+                Err(Failure::new(INPUT, message))
+            }
+        }
+    }
+
+    /// Hands a result of a GPU on. A GPU that hangs ends the process here: dropping its device would wait for it.
+    pub(crate) fn finish<T>(
+        result: Result<T, GpuMaskError>,
+        interrupt: &Interrupt,
+    ) -> Result<T, GpuMaskError> {
+        if let Err(GpuMaskError::Gpu(error @ GpuError::Hung { .. })) = &result {
+            stream::message(&format!("error: {error}"));
+            interrupt.leave(error.exit_code());
+        }
+        result
+    }
+}

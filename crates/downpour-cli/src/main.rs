@@ -1,0 +1,56 @@
+//! The command `downpour`: physical properties of drops and rain, and refraction masks of drops.
+//!
+//! Arguments, files and exit codes are here; the physics is in the crates below. Scripts depend on the JSON keys and
+//! on the exit codes ([`failure`]).
+
+mod backend;
+mod commands;
+mod failure;
+mod interrupt;
+mod listing;
+mod output;
+mod quantity;
+mod stream;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use commands::Command;
+use failure::Failure;
+use interrupt::Interrupt;
+
+/// Rain that can be measured.
+#[derive(Debug, Parser)]
+#[command(name = "downpour", version, arg_required_else_help = true)]
+#[command(after_help = "Exit codes: 0 done, 2 bad arguments or input, 3 over a limit, 4 GPU, 5 files, \
+6 cancelled, 1 anything else.")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+fn main() -> ExitCode {
+    // A panic is a defect of ours. It ends in one line and an exit code all the same.
+    std::panic::set_hook(Box::new(|panic| {
+        stream::message(&format!("error: internal error, please report it: {panic}"));
+    }));
+    match std::panic::catch_unwind(run) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(failure)) => {
+            stream::message(&format!("error: {failure}"));
+            ExitCode::from(failure.code)
+        }
+        Err(_) => ExitCode::from(failure::OTHER),
+    }
+}
+
+fn run() -> Result<(), Failure> {
+    let interrupt = Interrupt::install()?;
+    match Arguments::try_parse() {
+        Ok(arguments) => arguments.command.run(&interrupt),
+        Err(error) if error.use_stderr() => Err(Failure::from(&error)),
+        // Help and version were asked for.
+        Err(error) => stream::print(&error.to_string()),
+    }
+}

@@ -1,0 +1,176 @@
+//! Files that are whole or not there.
+//!
+//! What is written goes into a temporary file in the folder of its place, onto the disk, and then to its name in one
+//! step. A name that exists is only given to new content if that was asked for, and only if it is a plain file: a
+//! symbolic link is neither followed nor replaced.
+//!
+//! The temporary file is locked while its process lives. One that is not locked was left by a process that was killed;
+//! whoever publishes next in that folder removes it.
+
+use std::fs::{self, File};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, NamedTempFile};
+
+use crate::failure::{FILES, Failure, shown};
+use crate::interrupt::Interrupt;
+
+/// How names of temporary files begin and end.
+const PREFIX: &str = ".downpour-";
+const SUFFIX: &str = ".part";
+
+/// A place that a file can be published at.
+#[derive(Debug)]
+pub(crate) struct Place {
+    path: PathBuf,
+    folder: PathBuf,
+    overwrite: bool,
+}
+
+impl Place {
+    /// Looks at the place before any work is done.
+    ///
+    /// # Errors
+    /// Exit code 5: there is no such folder, or the name is taken.
+    pub(crate) fn new(path: &Path, overwrite: bool) -> Result<Self, Failure> {
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        match fs::metadata(&folder) {
+            Ok(found) if found.is_dir() => {}
+            Ok(_) => return Err(Failure::new(FILES, format!("{} is not a folder", shown(&folder)))),
+            Err(error) => return Err(Failure::new(FILES, format!("folder {}: {error}", shown(&folder)))),
+        }
+        let place = Self { path: path.to_owned(), folder, overwrite };
+        place.check_name()?;
+        Ok(place)
+    }
+
+    /// Whether the name is free, or holds what may be overwritten.
+    fn check_name(&self) -> Result<(), Failure> {
+        let refused = |found: &str, way_out: &str| {
+            Err(Failure::new(FILES, format!("{} {found}; allowed: {way_out}", shown(&self.path))))
+        };
+        match fs::symlink_metadata(&self.path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+            Err(error) => Err(Failure::file(&self.path, &error)),
+            Ok(found) if found.is_symlink() => refused("is a symbolic link", "a plain file or a new name"),
+            Ok(found) if !found.is_file() => refused("is not a plain file", "a plain file or a new name"),
+            Ok(_) if !self.overwrite => refused("exists", "a new name, or --overwrite"),
+            Ok(_) => Ok(()),
+        }
+    }
+
+    /// Publishes the bytes: all of them under the name, or nothing.
+    ///
+    /// # Errors
+    /// Exit code 5, with what the system says.
+    pub(crate) fn publish(&self, bytes: &[u8], interrupt: &Interrupt) -> Result<(), Failure> {
+        remove_leftovers(&self.folder);
+        let failed = |error: &io::Error| Failure::file(&self.path, error);
+        let mut part = {
+            let mut unfinished = interrupt.unfinished();
+            let part = create(&self.folder).map_err(|error| failed(&error))?;
+            *unfinished = Some(part.path().to_owned());
+            part
+        };
+        // A file system without locks publishes as well; only leftovers stay then.
+        let _ = part.as_file().try_lock();
+        let written = part.write_all(bytes).and_then(|()| part.as_file().sync_all());
+        let mut unfinished = interrupt.unfinished();
+        let renamed = match written {
+            Ok(()) => self.check_name().and_then(|()| {
+                let done = if self.overwrite {
+                    part.persist(&self.path)
+                } else {
+                    part.persist_noclobber(&self.path)
+                };
+                done.map_err(|error| failed(&error.error))
+            }),
+            Err(error) => {
+                drop(part);
+                Err(failed(&error))
+            }
+        };
+        *unfinished = None;
+        drop(unfinished);
+        renamed?;
+        // The name is on the disk once its folder is. Not every file system can do that, and the file is whole anyway.
+        let _ = File::open(&self.folder).and_then(|folder| folder.sync_all());
+        Ok(())
+    }
+}
+
+fn create(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = Builder::new();
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    // Temporary files are private by default; this one becomes an ordinary file, with the rights of the user's umask.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+/// Removes temporary files whose process is gone.
+fn remove_leftovers(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let plain = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if plain
+            && name.starts_with(PREFIX)
+            && name.ends_with(SUFFIX)
+            && File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok())
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn leftovers_of_dead_processes_go_and_those_of_living_ones_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for name in [".downpour-dead.part", ".downpour-alive.part", ".downpour-notes.txt", "x.part"] {
+            fs::write(at(name), "x").unwrap();
+        }
+        fs::create_dir(at(".downpour-folder.part")).unwrap();
+        let alive = File::open(at(".downpour-alive.part")).unwrap();
+        alive.lock().unwrap();
+        let place = Place::new(&at("mask.exr"), false).unwrap();
+        place.publish(b"whole", &Interrupt::default()).unwrap();
+        assert_eq!(
+            names(folder.path()),
+            [".downpour-alive.part", ".downpour-folder.part", ".downpour-notes.txt", "mask.exr", "x.part"]
+        );
+        assert_eq!(fs::read(at("mask.exr")).unwrap(), b"whole");
+    }
+
+    /// A name that is taken between the first look and the end of the work.
+    #[test]
+    fn a_name_taken_meanwhile_is_not_overwritten() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mask.exr");
+        let place = Place::new(&path, false).unwrap();
+        fs::write(&path, "of someone else").unwrap();
+        let failure = place.publish(b"ours", &Interrupt::default()).unwrap_err();
+        assert_eq!(failure.code, FILES);
+        assert_eq!(fs::read(&path).unwrap(), b"of someone else");
+        assert_eq!(names(folder.path()), ["mask.exr"]);
+        Place::new(&path, true).unwrap().publish(b"ours", &Interrupt::default()).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"ours");
+    }
+}

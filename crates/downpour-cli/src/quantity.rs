@@ -1,0 +1,150 @@
+//! Numbers from arguments: finite, in range, in the unit that the argument names.
+
+use std::ops::RangeInclusive;
+
+use downpour::drop::air::PRESSURE_RANGE_PA;
+use downpour::drop::distribution::RATE_RANGE_MM_H;
+use downpour::drop::shape::{LARGEST_DIAMETER, SMALLEST_DIAMETER};
+use downpour::drop::water::TEMPERATURE_RANGE_C;
+use downpour::mask::SIZES;
+
+/// The coldest water, in Celsius, whose refractive index is known.
+const COLDEST_INDEX_C: f64 = -12.0;
+
+/// Diameter of a drop, in mm.
+pub(crate) fn diameter_mm(text: &str) -> Result<f64, String> {
+    read(text, &(SMALLEST_DIAMETER * 1.0e3..=LARGEST_DIAMETER * 1.0e3), "0.001 to 9 mm")
+}
+
+/// Temperature of air and water, in Celsius.
+pub(crate) fn temperature_c(text: &str) -> Result<f64, String> {
+    read(text, &TEMPERATURE_RANGE_C, "-20 to 40 C")
+}
+
+/// Temperature, in Celsius, of water whose refractive index is asked.
+pub(crate) fn temperature_of_index_c(text: &str) -> Result<f64, String> {
+    read(text, &(COLDEST_INDEX_C..=*TEMPERATURE_RANGE_C.end()), "-12 to 40 C")
+}
+
+/// Pressure, in hPa.
+pub(crate) fn pressure_hpa(text: &str) -> Result<f64, String> {
+    read(text, &(PRESSURE_RANGE_PA.start() * 0.01..=PRESSURE_RANGE_PA.end() * 0.01), "300 to 1100 hPa")
+}
+
+/// Rain rate, in mm/h. A rate that is not 0, but would be in single precision, is refused: it is a slip of the pen, and
+/// no rain.
+pub(crate) fn rate_mm_h(text: &str) -> Result<f64, String> {
+    let rate = read(text, &RATE_RANGE_MM_H, "0 to 500 mm/h")?;
+    if rate > 0.0 && rate < f64::from(f32::MIN_POSITIVE) {
+        return Err("too small to be told from 0; allowed: 0 to 500 mm/h".to_owned());
+    }
+    Ok(rate)
+}
+
+/// Elevation of a view, in degrees.
+pub(crate) fn elevation_deg(text: &str) -> Result<f64, String> {
+    read(text, &(-90.0..=90.0), "-90 to 90 degrees")
+}
+
+/// Refractive index relative to air.
+pub(crate) fn refractive_index(text: &str) -> Result<f64, String> {
+    let allowed = "above 1, up to 4";
+    let index = read(text, &(1.0..=4.0), allowed)?;
+    if index > 1.0 { Ok(index) } else { Err(out_of_range(allowed)) }
+}
+
+/// Wavelength of light, in nm.
+pub(crate) fn wavelength_nm(text: &str) -> Result<f64, String> {
+    read(text, &(200.0..=1100.0), "200 to 1100 nm")
+}
+
+/// Shape of a gamma distribution.
+pub(crate) fn gamma_shape(text: &str) -> Result<f64, String> {
+    read(text, &(-3.0..=8.0), "-3 to 8")
+}
+
+/// Median volume diameter, in mm.
+pub(crate) fn median_diameter_mm(text: &str) -> Result<f64, String> {
+    read(text, &(0.2..=5.0), "0.2 to 5 mm")
+}
+
+/// Intercept of a gamma distribution, in m^-3 mm^-(1 + mu).
+pub(crate) fn intercept(text: &str) -> Result<f64, String> {
+    read(text, &(1.0e-2..=1.0e10), "0.01 to 1e10 m^-3 mm^-(1 + mu)")
+}
+
+/// Edge of a mask in pixels. Any whole number is read: one that is too large is over a limit, not a bad argument.
+pub(crate) fn size(text: &str) -> Result<u64, String> {
+    let least = u64::from(*SIZES.start());
+    let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    match text.parse::<u64>() {
+        Ok(size) if size >= least => Ok(size),
+        // More digits than a u64 has.
+        Err(_) if digits => Ok(u64::MAX),
+        _ => Err(format!("allowed: a whole number from {least} to {}", SIZES.end())),
+    }
+}
+
+fn read(text: &str, range: &RangeInclusive<f64>, allowed: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| format!("not a number; allowed: {allowed}"))?;
+    if !number.is_finite() {
+        return Err(format!("not finite; allowed: {allowed}"));
+    }
+    // The ends come from numbers in other units, so they are met up to rounding; the libraries do the same.
+    const ROUNDING: f64 = 1.0e-12;
+    let (start, end) = (*range.start(), *range.end());
+    if number < start - ROUNDING * start.abs() || number > end + ROUNDING * end.abs() {
+        return Err(out_of_range(allowed));
+    }
+    // 0 has no sign here.
+    Ok(number + 0.0)
+}
+
+fn out_of_range(allowed: &str) -> String {
+    format!("out of range; allowed: {allowed}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_finite_and_in_range() {
+        assert_eq!(diameter_mm("2"), Ok(2.0));
+        assert_eq!(diameter_mm("9"), Ok(9.0));
+        assert_eq!(diameter_mm("0.001"), Ok(0.001));
+        for (text, words) in [
+            ("NaN", "not finite"),
+            ("inf", "not finite"),
+            ("-inf", "not finite"),
+            ("1e400", "not finite"),
+            ("1e39", "out of range"),
+            ("1e-46", "out of range"),
+            ("-1", "out of range"),
+            ("0", "out of range"),
+            ("9.00001", "out of range"),
+            ("2 mm", "not a number"),
+            ("", "not a number"),
+        ] {
+            assert_eq!(diameter_mm(text), Err(format!("{words}; allowed: 0.001 to 9 mm")), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_dry_rate_has_no_sign_and_a_vanishing_one_is_refused() {
+        assert!(rate_mm_h("-0").is_ok_and(|rate| rate.to_bits() == 0));
+        assert_eq!(rate_mm_h("500"), Ok(500.0));
+        assert_eq!(rate_mm_h("1e-30"), Ok(1.0e-30));
+        assert!(rate_mm_h("1e-46").is_err() && rate_mm_h("500.1").is_err() && rate_mm_h("-1e-300").is_err());
+    }
+
+    #[test]
+    fn a_size_may_be_too_large_but_not_too_small() {
+        assert_eq!(size("512"), Ok(512));
+        assert_eq!(size("1000000"), Ok(1_000_000));
+        assert_eq!(size("99999999999999999999999"), Ok(u64::MAX));
+        for text in ["0", "3", "-1", "4.5", "", "1e3", "nan"] {
+            assert_eq!(size(text), Err("allowed: a whole number from 4 to 4096".to_owned()), "{text}");
+        }
+    }
+}

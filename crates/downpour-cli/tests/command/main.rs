@@ -1,0 +1,20 @@
+//! The command as scripts see it: keys, numbers, exit codes, messages, files. Each run is a child process with limits
+//! of memory and time.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod arguments;
+mod child;
+mod drop;
+mod gltf_file;
+mod mask;
+mod models;
+mod output;
+mod rain;
+mod readme;
+#[cfg(unix)]
+mod signals;
+#[cfg(all(feature = "gpu", target_os = "linux"))]
+mod without_gpu;
+#[cfg(not(feature = "gpu"))]
+mod without_support;

@@ -1,0 +1,64 @@
+//! Signals: an orderly end, or a sudden one.
+
+use std::path::Path;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use downpour::mask::file::exr;
+
+use crate::child::{Downpour, names_in};
+
+#[test]
+fn an_interrupt_ends_the_work_at_once_and_leaves_nothing() {
+    for (signal, wait) in [("INT", 300), ("TERM", 300), ("INT", 1500)] {
+        let arguments = ["mask", "--diameter", "2", "--size", "4096", "--backend", "cpu", "-o", "m.exr"];
+        let running = Downpour::new(&arguments).start();
+        sleep(Duration::from_millis(wait));
+        let begin = Instant::now();
+        running.signal(signal);
+        let ended = running.end();
+        assert!(begin.elapsed() < Duration::from_secs(5));
+        assert_eq!(ended.code, Some(6), "{}", ended.stderr);
+        assert_eq!(ended.stderr, "downpour: cancelled\n");
+        ended.left(&[]);
+    }
+}
+
+/// The file under the final name is the old one or the new one, whenever the process is killed; the next run removes
+/// what was left.
+#[test]
+fn a_kill_never_leaves_half_a_file_under_the_final_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.exr");
+    let size_of = |path: &Path| exr::read_exr(&std::fs::read(path).unwrap()).unwrap().size;
+    let mask = |size: &str| {
+        Downpour::new(&[
+            "mask",
+            "--diameter",
+            "2",
+            "--backend=cpu",
+            "--overwrite",
+            "--size",
+            size,
+            "-o",
+            path.to_str().unwrap(),
+        ])
+    };
+    mask("16").run().succeeded();
+    let begin = Instant::now();
+    mask("256").run().succeeded();
+    let whole = begin.elapsed();
+    mask("16").run().succeeded();
+    let mut killed = 0;
+    for part in 0..16u32 {
+        let running = mask("256").start();
+        // Most of the time goes into the work; the last part is the writing.
+        sleep(whole.mul_f64(0.6 + 0.5 * f64::from(part) / 16.0));
+        running.signal("KILL");
+        killed += u32::from(running.end().code.is_none());
+        assert!(matches!(size_of(&path), 16 | 256));
+        mask("16").run().succeeded();
+        assert_eq!(names_in(folder.path()), ["m.exr"]);
+    }
+    assert!(killed > 0, "every run was over before its kill");
+}

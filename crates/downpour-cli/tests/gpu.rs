@@ -1,0 +1,202 @@
+//! Masks on the machine's GPU or software driver, through the command.
+//!
+//! No adapter is a failure; `DOWNPOUR_GPU_TESTS=no` shows the tests as ignored. `DOWNPOUR_ADAPTER` is part of the name
+//! of the adapter to take.
+
+#[allow(dead_code, reason = "the tests without a GPU use the rest")]
+#[path = "command/child.rs"]
+mod child;
+#[allow(dead_code, reason = "the tests without a GPU use the rest")]
+#[path = "command/gltf_file.rs"]
+mod gltf_file;
+
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use downpour::drop::DropShape;
+use downpour::drop::mesh::DropMesh;
+use downpour::mask::Mask;
+use downpour::mask::file::{exr, ktx2};
+use libtest_mimic::{Arguments, Trial};
+
+use child::{Downpour, downpour, names_in};
+use gltf_file::gltf;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let off = std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no");
+    let tests: [(&str, fn()); 8] = [
+        ("adapters_are_listed", adapters_are_listed),
+        ("a_mask_is_that_of_the_cpu", a_mask_is_that_of_the_cpu),
+        ("an_array_is_that_of_the_cpu", an_array_is_that_of_the_cpu),
+        ("a_model_is_that_of_the_cpu", a_model_is_that_of_the_cpu),
+        ("auto_says_what_it_took", auto_says_what_it_took),
+        ("an_adapter_is_taken_by_its_name", an_adapter_is_taken_by_its_name),
+        ("a_lost_device_publishes_nothing", a_lost_device_publishes_nothing),
+        ("a_device_that_hangs_is_left", a_device_that_hangs_is_left),
+    ];
+    let trials = tests.into_iter().map(|(name, test)| {
+        Trial::test(name, move || {
+            test();
+            Ok(())
+        })
+        .with_ignored_flag(off)
+    });
+    libtest_mimic::run(&arguments, trials.collect()).exit_code()
+}
+
+/// The arguments, on the adapter that was chosen.
+fn gpu<'a>(arguments: &[&'a str], adapter: &'a Option<String>) -> Vec<&'a str> {
+    let name = adapter.as_deref().map_or(vec![], |name| vec!["--adapter", name]);
+    [arguments, &["--backend", "gpu"], &name].concat()
+}
+
+fn adapter() -> Option<String> {
+    std::env::var("DOWNPOUR_ADAPTER").ok().filter(|name| !name.is_empty())
+}
+
+fn adapters_are_listed() {
+    let ended = downpour(&["adapters", "--json"]).succeeded();
+    let list = ended.json();
+    let list = list.as_array().expect("an array");
+    assert!(!list.is_empty());
+    let text = downpour(&["adapters"]).succeeded().stdout;
+    for adapter in list {
+        let name = adapter["name"].as_str().expect("a name");
+        assert!(text.contains(name), "{text}");
+        for key in ["driver", "driver_info", "backend", "kind"] {
+            assert!(adapter[key].is_string(), "{key} of {adapter}");
+        }
+        for key in ["software", "timestamps", "float32_filterable", "shader_f16", "subgroups"] {
+            assert!(adapter[key].is_boolean(), "{key} of {adapter}");
+        }
+        for key in ["max_texture_2d", "max_texture_layers", "max_buffer_bytes", "max_storage_binding_bytes"] {
+            assert!(adapter[key].as_u64().is_some_and(|value| value > 0), "{key} of {adapter}");
+        }
+    }
+}
+
+/// How many texels differ by more than `tolerance`, of those whose light takes the same way.
+fn differing(a: &Mask, b: &Mask, tolerance: f32) -> usize {
+    assert_eq!((a.size, a.texels.len()), (b.size, b.texels.len()));
+    let differs = |k: usize| {
+        let (a, b) = (&a.texels[k], &b.texels[k]);
+        let pairs = a.direction.iter().zip(&b.direction).chain(a.reflected.iter().zip(&b.reflected));
+        let pairs = pairs.chain([(&a.coverage, &b.coverage), (&a.transmittance, &b.transmittance)]);
+        let far = |difference: f32| difference.is_nan() || difference.abs() > tolerance;
+        a.reflections != b.reflections || pairs.into_iter().any(|(a, b)| far(a - b))
+    };
+    (0..a.texels.len()).filter(|&k| differs(k)).count()
+}
+
+/// The same arguments on both sides, with a control: another drop must differ.
+fn agree(arguments: &[&str], files: &[(&str, String)], read: fn(&[u8]) -> Mask, tolerance: f32, share: f64) {
+    let name = arguments.last().copied().expect("an output");
+    let adapter = adapter();
+    let run = |arguments: &[&str]| {
+        let run = files.iter().fold(Downpour::new(arguments), |run, (name, text)| run.with_file(name, text));
+        read(&run.run().succeeded().file(name))
+    };
+    let on_gpu = run(&gpu(arguments, &adapter));
+    let on_cpu = run(&[arguments, &["--backend", "cpu"]].concat());
+    let most = (share * on_cpu.texels.len() as f64) as usize;
+    let count = differing(&on_gpu, &on_cpu, tolerance);
+    assert!(count <= most, "{arguments:?}: {count} of {} texels differ, allowed {most}", on_cpu.texels.len());
+    let other = run(&[arguments, &["--backend", "cpu", "--refractive-index", "1.34"]].concat());
+    assert!(differing(&on_gpu, &other, tolerance) > on_cpu.texels.len() / 4, "the control does not differ");
+}
+
+fn read_exr(bytes: &[u8]) -> Mask {
+    exr::read_exr(bytes).expect("a mask")
+}
+
+/// The last mask of an array.
+fn read_ktx2(bytes: &[u8]) -> Mask {
+    ktx2::read_ktx2(bytes).expect("masks").pop().expect("a mask")
+}
+
+/// The tolerances are looser than those of the parity tests of the kernel: the numbers went through a file.
+fn a_mask_is_that_of_the_cpu() {
+    for (diameter, elevation) in [("0.5", "0"), ("2", "0"), ("5", "0"), ("4", "35"), ("3", "-90")] {
+        let arguments =
+            ["mask", "--diameter", diameter, "--elevation", elevation, "--size", "128", "-o", "m.exr"];
+        agree(&arguments, &[], read_exr, 5.0e-4, 2.0e-3);
+    }
+}
+
+fn an_array_is_that_of_the_cpu() {
+    agree(&["mask", "--diameter", "1,4", "--size", "64", "-o", "m.ktx2"], &[], read_ktx2, 1.5e-3, 2.0e-3);
+}
+
+fn a_model_is_that_of_the_cpu() {
+    let mesh =
+        DropMesh::latitude_longitude(&DropShape::new(3.0e-3).expect("a drop"), 32, 64).expect("a mesh");
+    let files = [("drop.gltf", gltf(mesh.positions(), mesh.triangles()))];
+    agree(&["mask", "--model", "drop.gltf", "--size", "96", "-o", "m.exr"], &files, read_exr, 1.0e-3, 5.0e-3);
+}
+
+fn auto_says_what_it_took() {
+    let ended = downpour(&["mask", "--diameter", "2", "--size", "32", "-o", "m.exr"]).succeeded();
+    assert!(ended.stderr.contains("downpour: backend: gpu, "), "{}", ended.stderr);
+    let quiet = downpour(&["mask", "--diameter", "2", "--size", "32", "-q", "-o", "m.exr"]).succeeded();
+    assert!(!quiet.stderr.contains("downpour:"), "{}", quiet.stderr);
+}
+
+fn an_adapter_is_taken_by_its_name() {
+    let list = downpour(&["adapters", "--json"]).succeeded().json();
+    for adapter in list.as_array().expect("an array") {
+        let name = adapter["name"].as_str().expect("a name").to_uppercase();
+        let ended = downpour(&["mask", "--diameter", "2", "--size", "32", "--adapter", &name, "-o", "m.exr"])
+            .succeeded();
+        assert!(ended.stderr.to_uppercase().contains(&format!("BACKEND: GPU, {name}")), "{}", ended.stderr);
+    }
+    for backend in ["gpu", "auto"] {
+        downpour(&[
+            "mask",
+            "--diameter",
+            "2",
+            "--backend",
+            backend,
+            "--adapter",
+            "no such thing",
+            "-o",
+            "m.exr",
+        ])
+        .failed(4, &["\"no such thing\"", "there are: "])
+        .left(&[]);
+    }
+}
+
+/// A mask is two submissions: the kernel and the readback.
+fn a_lost_device_publishes_nothing() {
+    for backend in ["auto", "gpu"] {
+        for point in ["lost@1", "lost@2"] {
+            let arguments = ["mask", "--diameter", "2", "--size", "64", "--backend", backend, "-o", "m.exr"];
+            let begin = Instant::now();
+            Downpour::new(&arguments).env("DOWNPOUR_INJECT", point).run().failed(4, &["lost"]).left(&[]);
+            assert!(begin.elapsed() < Duration::from_secs(10));
+            // What was there stays.
+            let run = Downpour::new(&[&arguments[..], &["--overwrite"]].concat()).with_file("m.exr", "old");
+            assert_eq!(
+                run.env("DOWNPOUR_INJECT", point).run().failed(4, &["lost"]).left(&["m.exr"]).file("m.exr"),
+                b"old"
+            );
+        }
+    }
+    let arguments = ["mask", "--diameter", "2", "--size", "64", "--backend", "gpu", "-o", "m.exr"];
+    Downpour::new(&arguments).env("DOWNPOUR_INJECT", "lost@1000").run().succeeded().left(&["m.exr"]);
+    for bad in ["lost@0", "lost@", "lost@-1", "lost", "x"] {
+        Downpour::new(&arguments)
+            .env("DOWNPOUR_INJECT", bad)
+            .run()
+            .failed(2, &["DOWNPOUR_INJECT", "lost@K"])
+            .left(&[]);
+    }
+}
+
+fn a_device_that_hangs_is_left() {
+    let arguments = ["mask", "--diameter", "2", "--size", "1600", "--backend", "gpu", "-o", "m.exr"];
+    let run = Downpour::new(&arguments).env("DOWNPOUR_INJECT", "hang");
+    let ended = run.run().failed(4, &["did not finish"]);
+    assert!(names_in(ended.folder.path()).is_empty());
+}
