@@ -11,6 +11,8 @@ use downpour_shaders::mask::{MASK_BVH_FAR, MASK_BVH_STACK};
 
 /// Triangles of a leaf below which it is not split.
 const LEAF: usize = 4;
+/// Depth from which on nodes are cut into halves.
+const HEURISTIC_DEPTH: usize = 24;
 /// Bins per axis.
 const BINS: usize = 16;
 /// Barycentric slack: a ray through a shared edge must not slip between the two triangles.
@@ -249,7 +251,13 @@ fn build(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<BvhNode
     nodes.push(BvhNode { low: bounds.low, link: first as u32, high: bounds.high, count: items.len() as u32 });
     // The traversal keeps one waiting node per level.
     let deepest = depth + 2 >= MASK_BVH_STACK as usize;
-    let Some(split) = (if items.len() <= LEAF || deepest { None } else { split(items) }) else { return };
+    let cut = match () {
+        () if items.len() <= LEAF || deepest => None,
+        // Far down, halves end sooner than what the heuristic takes off one by one.
+        () if depth >= HEURISTIC_DEPTH => halve(items),
+        () => split(items).or_else(|| halve(items)),
+    };
+    let Some(split) = cut else { return };
     nodes[at].count = 0;
     let (left, right) = items.split_at_mut(split);
     build(left, first, depth + 1, nodes);
@@ -275,11 +283,12 @@ fn split(items: &mut [Item]) -> Option<usize> {
             let side = |bins: &[(Bounds, usize)]| {
                 let (bounds, n) =
                     bins.iter().fold((Bounds::NONE, 0), |(b, n), bin| (b.union(bin.0), n + bin.1));
-                bounds.area() * n as f32
+                (bounds.area() * n as f32, n)
             };
-            let cost = side(&bins[..cut]) + side(&bins[cut..]);
-            if cost < best.0 {
-                best = (cost, axis, cut);
+            let ((left, in_left), (right, in_right)) = (side(&bins[..cut]), side(&bins[cut..]));
+            // A cut with nothing on one side is none, however cheap.
+            if in_left > 0 && in_right > 0 && left + right < best.0 {
+                best = (left + right, axis, cut);
             }
         }
     }
@@ -292,6 +301,19 @@ fn split(items: &mut [Item]) -> Option<usize> {
     items.sort_by_key(|item| bin_of(item, axis, middles.low[axis], extent) >= cut);
     let split = items.partition_point(|item| bin_of(item, axis, middles.low[axis], extent) < cut);
     (split > 0 && split < items.len()).then_some(split)
+}
+
+/// Sorts `items` along their longest axis and cuts them into halves; nothing where all are in one place.
+fn halve(items: &mut [Item]) -> Option<usize> {
+    let middles = items.iter().fold(Bounds::NONE, |b, item| b.with(item.middle));
+    let extent = |axis: usize| middles.high[axis] - middles.low[axis];
+    let axis = (0..3).max_by(|&a, &b| extent(a).total_cmp(&extent(b)))?;
+    if extent(axis) <= 0.0 {
+        return None;
+    }
+    // Ties are broken by the index, so that the order does not depend on the sort.
+    items.sort_by(|a, b| a.middle[axis].total_cmp(&b.middle[axis]).then(a.index.cmp(&b.index)));
+    Some(items.len() / 2)
 }
 
 fn bin_of(item: &Item, axis: usize, low: f32, extent: f32) -> usize {
@@ -357,6 +379,19 @@ mod tests {
             }
         }
         assert!(seen.iter().all(|&n| n == 1));
+    }
+
+    /// Large triangles among small ones, as a scene has them, do not end in large leaves.
+    #[test]
+    fn leaves_are_small() {
+        let mut corners = soup(3000);
+        for (i, triangle) in corners.iter_mut().enumerate().filter(|(i, _)| i % 7 == 0) {
+            triangle[0] = [-20.0 + 0.01 * i as f32, -1.0, -20.0];
+            triangle[1] = [20.0, -1.0, 0.02 * i as f32];
+        }
+        let bvh = Bvh::new(&corners);
+        let largest = bvh.nodes.iter().map(|n| n.count).max();
+        assert!(largest <= Some(LEAF as u32), "a leaf of {largest:?} triangles");
     }
 
     #[test]
