@@ -26,6 +26,7 @@ mod module;
 pub mod common;
 pub mod drop;
 pub mod mask;
+pub mod render;
 
 pub use module::{Kernel, Module, compose};
 
@@ -39,6 +40,9 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         drop::oscillation::MODULES,
         drop::shape::MODULES,
         mask::MODULES,
+        render::brdf::MODULES,
+        render::scene::MODULES,
+        render::specimen::MODULES,
     ]
     .into_iter()
     .flatten()
@@ -47,7 +51,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
 
 /// Every kernel of the crate, for the tests that create a pipeline from each.
 pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
-    [mask::KERNELS].into_iter().flatten().copied()
+    [mask::KERNELS, render::scene::KERNELS, render::specimen::KERNELS].into_iter().flatten().copied()
 }
 
 /// The examples of the README, as tests.

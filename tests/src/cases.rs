@@ -3,19 +3,24 @@
 mod common;
 mod drop;
 mod mask;
+mod render;
+mod scene;
 
 use crate::{FunctionCase, KernelCase};
 
 /// All function-level cases.
 #[must_use]
 pub fn functions() -> Vec<FunctionCase> {
-    [common::functions(), drop::functions(), mask::functions()].into_iter().flatten().collect()
+    [common::functions(), drop::functions(), mask::functions(), render::functions(), scene::functions()]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// All kernel-level cases.
 #[must_use]
 pub fn kernels() -> Vec<KernelCase> {
-    mask::kernels()
+    [mask::kernels(), render::kernels(), scene::kernels()].into_iter().flatten().collect()
 }
 
 /// Functions without a case of their own, each with the reason.

@@ -8,7 +8,10 @@ use downpour_drop::shape::DropShapeCoefficients;
 use downpour_mask::MaskTexel;
 use downpour_mask::bvh::{BvhNode, BvhTriangle};
 use downpour_mask::gpu::{DropUniform, ModelUniform};
-use downpour_shaders::{Module, compose, drop, mask, modules};
+use downpour_render::data::{RenderCorner, RenderFrame};
+use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
+use downpour_shaders::render::specimen;
+use downpour_shaders::{Module, compose, drop, mask, modules, render};
 use downpour_tests::signature::parse;
 
 /// A host struct: its WGSL name, the module that declares it, its size, and its fields by their WGSL names.
@@ -42,8 +45,15 @@ fn hosts() -> Vec<Host> {
         host!(DropUniform as "MaskTracedDrop" in &mask::TRACE,
             shape, up, index, inverse_wide, inverse_tall, pixel, size),
         host!(ModelUniform as "MaskModelParameters" in &mask::MODEL, front, index, pixel, size, first_row),
+        host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
+            eye, width, right, height, up, grid, forward, pixel_angle, slots, lights, light_count, sky_rays,
+            first_row, seed, nearest, sky_reach, sky_levels, sky_irradiance),
+        host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
         host!(BvhNode as "MaskBvhNode" in &mask::BVH, low, link, high, count),
         host!(BvhTriangle as "MaskBvhTriangle" in &mask::BVH, corner, index, edge_1, edge_2),
+        host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),
+        host!(SpecimenUniform as "SpecimenView" in &specimen::SPECIMEN,
+            traced, camera, size, sky, first_row, rows, channels),
     ]
 }
 

@@ -98,6 +98,22 @@ impl SceneError {
         self
     }
 
+    /// The same error of a file that another file names at a place: both, and the name, become the place.
+    #[must_use]
+    pub(crate) fn inside(mut self, place: impl fmt::Display) -> Self {
+        let fault = self.fault_mut();
+        let file = std::mem::take(&mut fault.file);
+        let mut whole = place.to_string();
+        for part in [file, std::mem::take(&mut fault.place)] {
+            if !part.is_empty() {
+                whole.push_str(": ");
+                whole.push_str(&part);
+            }
+        }
+        fault.place = whole;
+        self
+    }
+
     /// The process exit code that a command ends with: 2 bad input, 3 over a limit, 5 file not readable.
     ///
     /// ```

@@ -1,4 +1,4 @@
-//! Triangles of a glTF 2.0 file, in world space.
+//! Scenes of glTF 2.0 files, and their triangles alone in world space.
 //!
 //! Source: Khronos Group, "glTF 2.0 Specification", version 2.0.1 (ISO/IEC 12113:2022). Axes are glTF's:
 //! right-handed, +Y up, metres; front faces are counter-clockwise.
@@ -6,27 +6,35 @@
 //! The order is check, then parse (the module `guard`): the JSON is read as plain values, the whole document is checked
 //! on them, and only then are the typed objects made and the buffers opened. Read are accessors of any component
 //! type (normalised and quantised integers too), sparse substitution, triangle lists, strips and fans, and node
-//! transforms in double precision. Left out, with a warning: points, lines, skins, morph targets. Not read here:
-//! materials, images, cameras, lights, animations.
+//! transforms in double precision. Points and lines are left out, with a warning.
+//!
+//! [`read_scene`] reads all of it: materials with their textures, skins, morph targets, animations, lights and
+//! cameras. [`read_triangles`] reads only the triangles at rest, unposed and without morph targets, and opens no
+//! images.
 
 mod accessor;
+mod assembly;
 mod buffers;
 mod container;
 mod document;
+mod growth;
 mod guard;
 mod instances;
 mod json;
 mod model;
 mod normals;
 mod plan;
+mod scenes;
 mod triangles;
 
 use crate::beneath::{Files, Folder, open_named};
 use crate::error::{SceneError, shown_path, size};
+use crate::scene::Scene;
 use crate::warning::{WarningKind, Warnings};
 use crate::{Budget, magic};
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 pub use model::TriangleModel;
 
@@ -59,13 +67,7 @@ pub const REACH: f64 = 1e9;
 /// # Ok::<(), downpour_scene::SceneError>(())
 /// ```
 pub fn read_triangles(path: &Path, budget: &mut Budget) -> Result<TriangleModel, SceneError> {
-    let name = shown_path(path);
-    let mut read = || {
-        let bytes = whole_file(path, budget.bytes)?;
-        let folder = Folder::open(path.parent().unwrap_or(Path::new("")))?;
-        read_triangles_from_bytes(&name, &bytes, &folder, budget)
-    };
-    read().map_err(|error| error.in_file(&name))
+    with_file(path, budget, read_triangles_from_bytes)
 }
 
 /// Reads the triangles of a glTF file in memory; `files` opens the buffers that it names.
@@ -90,17 +92,10 @@ pub fn read_triangles_from_bytes(
 ) -> Result<TriangleModel, SceneError> {
     let read = |purse: &mut Budget| {
         let mut warnings = Warnings::default();
-        let length = bytes.len() as u64;
-        if length > MAX_FILE {
-            return Err(too_long(length, MAX_FILE));
-        }
-        purse.take_bytes(length, "")?;
-        let container = container::open(bytes, &mut warnings)?;
-        let value = json::parse(container.json, purse, &mut warnings)?;
-        let checked = guard::check(value, container.binary, purse, &mut warnings)?;
-        let root = document::typed(checked)?;
-        let buffers = buffers::load(&root, container.binary, files, purse)?;
-        let source = length.saturating_add(buffers.from_files);
+        let (mut checked, binary) = open(bytes, purse, &mut warnings)?;
+        let root = document::typed(&mut checked)?;
+        let buffers = buffers::load(&root, binary, files, purse)?;
+        let source = (bytes.len() as u64).saturating_add(buffers.from_files);
         triangles::gather(&root, &buffers, source, purse, warnings)
     };
     // What is needed only while reading is handed back: the caller pays for the model alone.
@@ -111,6 +106,98 @@ pub fn read_triangles_from_bytes(
     budget.nodes = purse.nodes;
     name.clone_into(&mut model.name);
     Ok(model)
+}
+
+/// Reads a whole scene from a `.gltf` or `.glb` file; buffers and images are looked for beneath its folder only.
+///
+/// The budget is lowered by what the scene takes up. A file without triangles is no error.
+///
+/// # Errors
+/// [`SceneError`]: the file, or one that it names, cannot be read, is not what Downpour can read, or is too large.
+///
+/// ```no_run
+/// use downpour_scene::{Budget, gltf::read_scene};
+/// let scene = read_scene("street/lamp.gltf".as_ref(), &mut Budget::default())?;
+/// let pose = scene.pose(None, 0.0);
+/// println!("{} meshes, {} lights", pose.instances.len(), pose.lights.len());
+/// # Ok::<(), downpour_scene::SceneError>(())
+/// ```
+pub fn read_scene(path: &Path, budget: &mut Budget) -> Result<Scene, SceneError> {
+    with_file(path, budget, read_scene_from_bytes)
+}
+
+/// Reads a whole scene from a glTF file in memory; `files` opens the buffers and images that it names.
+///
+/// `name` is what messages call the file.
+///
+/// # Errors
+/// As [`read_scene`].
+///
+/// ```
+/// use downpour_scene::{Budget, beneath::NoFiles, gltf::read_scene_from_bytes, scene::LightKind};
+/// let json = br#"{
+///     "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
+///     "scenes": [{"nodes": [0]}],
+///     "nodes": [{"translation": [0, 6, 0], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+///     "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 800}]}}
+/// }"#;
+/// let scene = read_scene_from_bytes("lamp.gltf", json, &NoFiles, &mut Budget::default())?;
+/// assert_eq!((scene.lights[0].intensity, scene.lights[0].kind), (800.0, LightKind::Point));
+/// # Ok::<(), downpour_scene::SceneError>(())
+/// ```
+pub fn read_scene_from_bytes(
+    name: &str,
+    bytes: &[u8],
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<Scene, SceneError> {
+    let read = |purse: &mut Budget| {
+        let mut warnings = Warnings::default();
+        let (checked, binary) = open(bytes, purse, &mut warnings)?;
+        scenes::read(checked, binary, bytes.len() as u64, files, purse, warnings)
+    };
+    // What is needed only while reading is handed back: the caller pays for the scene alone.
+    let mut purse = *budget;
+    let mut scene = read(&mut purse).map_err(|error| error.in_file(name))?;
+    let mut pictures: Vec<_> = scene.textures.iter().map(|texture| &texture.picture).collect();
+    pictures.sort_by_key(|picture| Arc::as_ptr(picture));
+    pictures.dedup_by(|a, b| Arc::ptr_eq(a, b));
+    let pictures =
+        pictures.iter().map(|picture| picture.pixels.bytes()).fold(scene.bytes(), u64::saturating_add);
+    *budget = Budget { bytes: budget.bytes.saturating_sub(pictures), ..purse };
+    name.clone_into(&mut scene.name);
+    Ok(scene)
+}
+
+/// Reads with the bytes of a file that the user has named, and with its folder.
+fn with_file<T>(
+    path: &Path,
+    budget: &mut Budget,
+    read: impl FnOnce(&str, &[u8], &dyn Files, &mut Budget) -> Result<T, SceneError>,
+) -> Result<T, SceneError> {
+    let name = shown_path(path);
+    let with = || {
+        let bytes = whole_file(path, budget.bytes)?;
+        let folder = Folder::open(path.parent().unwrap_or(Path::new("")))?;
+        read(&name, &bytes, &folder, budget)
+    };
+    with().map_err(|error| error.in_file(&name))
+}
+
+/// Checks a document. Returns it with the binary chunk of a GLB.
+fn open<'a>(
+    bytes: &'a [u8],
+    purse: &mut Budget,
+    warnings: &mut Warnings,
+) -> Result<(guard::Checked, Option<&'a [u8]>), SceneError> {
+    let length = bytes.len() as u64;
+    if length > MAX_FILE {
+        return Err(too_long(length, MAX_FILE));
+    }
+    purse.take_bytes(length, "")?;
+    let container = container::open(bytes, warnings)?;
+    let value = json::parse(container.json, purse, warnings)?;
+    Ok((guard::check(value, container.binary, purse, warnings)?, container.binary))
 }
 
 /// The bytes of a file that the user has named.

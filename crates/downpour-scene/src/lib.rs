@@ -5,7 +5,11 @@
 //! within the caller's [`Budget`]; what does not is a [`SceneError`] of one line that says where, what was found
 //! and what would be accepted.
 //!
-//! - [`gltf`]: triangles of a glTF 2.0 file (`.gltf`, `.glb`), in world space;
+//! - [`gltf`]: scenes of glTF 2.0 files (`.gltf`, `.glb`), and their triangles alone in world space;
+//! - [`scene`]: what a scene is, and where everything in it is at a time;
+//! - [`picture`]: PNG, JPEG, Radiance HDR and OpenEXR;
+//! - [`sky`]: equirectangular maps of the sky's radiance, and their sun;
+//! - [`weather`]: the weather file, which says what rains where and who looks at it;
 //! - [`beneath`]: opening a relative path that cannot leave its folder;
 //! - [`budget`]: what a caller is willing to spend on somebody else's file;
 //! - [`error`], [`warning`]: what was wrong, and what was left out.
@@ -41,7 +45,11 @@ pub mod beneath;
 pub mod budget;
 pub mod error;
 pub mod gltf;
+pub mod picture;
+pub mod scene;
+pub mod sky;
 pub mod warning;
+pub mod weather;
 
 pub use budget::Budget;
 pub use error::{Fault, SceneError};

@@ -3,7 +3,7 @@
 //! Alone in its binary, so that the peak of the process's memory is that of these files.
 
 use downpour_scene::beneath::NoFiles;
-use downpour_scene::gltf::read_triangles_from_bytes;
+use downpour_scene::gltf::{read_scene_from_bytes, read_triangles_from_bytes};
 use downpour_scene::{Budget, SceneError};
 use std::fs;
 use std::time::{Duration, Instant};
@@ -34,6 +34,19 @@ fn peak_kib() -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
     line.split_whitespace().nth(1)?.parse().ok()
+}
+
+/// The same as a whole scene, and one pose of it.
+fn scene(name: &str, document: &str) {
+    let started = Instant::now();
+    let result = read_scene_from_bytes(name, document.as_bytes(), &NoFiles, &mut Budget::default());
+    let said = match &result {
+        Ok(scene) => format!("{} instances", scene.pose(None, 0.0).instances.len()),
+        Err(error) => error.to_string(),
+    };
+    let took = started.elapsed();
+    println!("{took:?} {:?} KiB at most, {name} as a scene: {said}", peak_kib());
+    assert!(took < MOST_TIME, "{name}: {took:?}");
 }
 
 #[test]
@@ -91,7 +104,27 @@ fn small_files_stay_small() {
         println!("{took:?} {:?} KiB at most, {name}: {said}", peak_kib());
         assert_eq!(found, code, "{name}: {said}");
         assert!(took < MOST_TIME, "{name}: {took:?}");
+        scene(name, &document);
     }
+    // What only whole scenes hold: joints, weights and keys, each named often.
+    let joints = vec!["0"; 100_000].join(",");
+    let skinned = format!("\"skins\":[{{\"joints\":[{joints}]}}],");
+    scene(
+        "joints on nodes",
+        &filled(&format!("{}{skinned}{one},\"nodes\":[", cloud(3)), "{\"mesh\":0,\"skin\":0}", "]"),
+    );
+    let track = "\"animations\":[{\"samplers\":[{\"input\":1,\"output\":0}],\"channels\":[";
+    let channel = "{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"scale\"}}";
+    let keyed = cloud(90_000).replacen("\"accessors\":[", "\"extras\":0,\"accessors\":[", 1);
+    let keyed = keyed.trim_end_matches("],").to_owned()
+        + ",{\"componentType\":5126,\"count\":90000,\"type\":\"SCALAR\"}],\"nodes\":[{}],";
+    scene("keys of channels", &filled(&format!("{keyed}{track}"), channel, "]}]"));
+    let samplers = vec!["{\"input\":1,\"output\":0}"; 15_000].join(",");
+    let track = format!("\"animations\":[{{\"samplers\":[{samplers}],\"channels\":[");
+    scene(
+        "samplers of channels",
+        &filled(&format!("{}{track}", keyed.replace("90000", "9")), channel, "]}]"),
+    );
     if let Some(peak) = peak_kib() {
         assert!(peak < MOST_MEMORY_KIB, "{peak} KiB");
     }

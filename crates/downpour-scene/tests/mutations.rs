@@ -2,10 +2,13 @@
 //! promises of a model. `DOWNPOUR_MUTATIONS` sets how many are tried.
 
 mod document;
+#[allow(dead_code, reason = "where its data stands is for other tests")]
+#[path = "scene/figure.rs"]
+mod figure;
 
-use document::{check, check_message, data, floats, glb, spoiled, triangle, with};
+use document::{check, check_message, check_scene, data, floats, glb, spoiled, triangle, with};
 use downpour_math::rng::{rng_draw, seed_words};
-use downpour_scene::gltf::read_triangles_from_bytes;
+use downpour_scene::gltf::{read_scene_from_bytes, read_triangles_from_bytes};
 use downpour_scene::{Budget, SceneError};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -76,10 +79,45 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
         ("triangle", triangle().to_string().into_bytes()),
         ("sparse", sparse.to_string().into_bytes()),
         ("tree", tree.to_string().into_bytes()),
+        ("figure", figure::figure().to_string().into_bytes()),
+        ("painted", painted().to_string().into_bytes()),
         ("binary", glb(plain.to_string().as_bytes(), Some(&floats(&[0.0; 20])))),
         ("modes", file("gltf/MeshPrimitiveModes/MeshPrimitiveModes.gltf")),
         ("bench", file("gltf/kaykit_city/bench.gltf")),
     ]
+}
+
+/// A triangle with texture coordinates, a normal map and every extension that is read.
+fn painted() -> serde_json::Value {
+    let picture = image::RgbaImage::from_pixel(2, 2, image::Rgba([128, 128, 255, 255]));
+    let mut png = Vec::new();
+    picture.write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).expect("a PNG");
+    let turned =
+        json!({"index": 0, "extensions": {"KHR_texture_transform": {"rotation": 1, "scale": [2, 3]}}});
+    with(
+        triangle(),
+        &[
+            ("/images", json!([{"uri": document::data_uri(&png)}])),
+            ("/samplers", json!([{"wrapS": 33071, "minFilter": 9987}])),
+            ("/textures", json!([{"source": 0, "sampler": 0}])),
+            (
+                "/materials",
+                json!([{
+                    "pbrMetallicRoughness": {"baseColorTexture": turned, "roughnessFactor": 0.5},
+                    "normalTexture": {"index": 0, "scale": 2},
+                    "emissiveFactor": [1, 0.5, 0], "alphaMode": "MASK", "alphaCutoff": 0.25,
+                    "extensions": {
+                        "KHR_materials_emissive_strength": {"emissiveStrength": 3},
+                        "KHR_materials_transmission": {"transmissionFactor": 1, "transmissionTexture": {"index": 0}},
+                        "KHR_materials_ior": {"ior": 1.3}
+                    }
+                }]),
+            ),
+            ("/meshes/0/primitives/0/material", json!(0)),
+            ("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(3)),
+            ("/accessors/3", json!({"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC2"})),
+        ],
+    )
 }
 
 /// The buffers that the seeds name, spoiled too.
@@ -138,9 +176,16 @@ fn mutate(bytes: &mut Vec<u8>, mut dice: impl FnMut() -> u32) {
 }
 
 fn read(bytes: &[u8], files: &Files) -> Result<(), SceneError> {
-    let model = read_triangles_from_bytes("mutant", bytes, files, &mut Budget::default())?;
-    check(&model);
-    Ok(())
+    let model = read_triangles_from_bytes("mutant", bytes, files, &mut Budget::default());
+    if let Ok(model) = &model {
+        check(model);
+    }
+    // Images that are missing here do not count: the triangles may still be read.
+    match read_scene_from_bytes("mutant", bytes, files, &mut Budget::default()) {
+        Ok(scene) => check_scene(&scene),
+        Err(error) => check_message(&error.to_string()),
+    }
+    model.map(drop)
 }
 
 #[test]

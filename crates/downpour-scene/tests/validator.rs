@@ -5,8 +5,9 @@
 
 mod document;
 
-use document::{check, check_message, data, data_uri};
-use downpour_scene::{Budget, WarningKind, gltf::read_triangles};
+use document::{check, check_message, check_scene, data, data_uri};
+use downpour_scene::gltf::{read_scene, read_triangles};
+use downpour_scene::{Budget, WarningKind};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -100,4 +101,33 @@ fn the_validators_files() {
     }
     assert!(wrong.is_empty(), "{} of {files}:\n{}", wrong.len(), wrong.join("\n"));
     assert!(files == 161 && fillings == 17, "{files} files, {fillings} filled");
+}
+
+/// Whole scenes: nothing panics, and of the files without errors all are read whose data and images are there.
+#[test]
+fn the_validators_files_as_scenes() {
+    let folder = data().join("bad_inputs/validator");
+    let expected = fs::read_to_string(folder.join("expected.tsv")).expect("the expectations");
+    let (mut read, mut wrong) = (0, Vec::new());
+    for line in expected.lines().skip(1) {
+        let columns: Vec<&str> = line.split('\t').collect();
+        let [name, errors, ..] = columns[..] else { panic!("{line}") };
+        match read_scene(&folder.join(name), &mut Budget::default()) {
+            Ok(scene) => {
+                check_scene(&scene);
+                scene.warnings.iter().for_each(|warning| check_message(&warning.to_string()));
+                read += 1;
+            }
+            Err(error) => {
+                let said = error.to_string();
+                check_message(&said);
+                let known =
+                    NOT_READ.iter().any(|(file, _)| *file == name) || said.contains("no binary chunk");
+                if errors == "0" && !known {
+                    wrong.push(format!("{name}: valid, but {said}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty() && read > 30, "{read} read:\n{}", wrong.join("\n"));
 }

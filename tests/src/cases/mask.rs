@@ -2,7 +2,7 @@
 
 use downpour_drop::DropShape;
 use downpour_gpu::{Gpu, GpuError};
-use downpour_mask::bvh::{BvhNode, BvhTriangle, mask_bvh_inverse, mask_bvh_enter, mask_bvh_triangle};
+use downpour_mask::bvh::{BvhNode, BvhTriangle, mask_bvh_enter, mask_bvh_inverse, mask_bvh_triangle};
 use downpour_mask::gpu::{GpuMaskError, GpuTracer};
 use downpour_mask::silhouette::{
     mask_silhouette_area, mask_silhouette_cut, mask_silhouette_distance, mask_silhouette_estimate,
@@ -223,8 +223,12 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 }),
                 OneOf(&[0.5, 2.0, 3.0e38]),
             ],
-            Tol::relative(1.0e-5, 1.0e-5, "products and differences; a ray that grazes a box may fall on either side")
-                .with_outliers(1.0e-3),
+            Tol::relative(
+                1.0e-5,
+                1.0e-5,
+                "products and differences; a ray that grazes a box may fall on either side",
+            )
+            .with_outliers(1.0e-3),
             |a| {
                 let low = a.f32s();
                 let link = a.u32();

@@ -154,6 +154,26 @@ impl<'a> Elements<'a> {
         }
     }
 
+    /// The next element as `N` numbers; those that it does not have are `rest`. Not for matrices of small integers.
+    pub(super) fn numbers<const N: usize>(&mut self, rest: f64) -> Result<Option<[f64; N]>, SceneError> {
+        let Some(bytes) = self.advance()? else { return Ok(None) };
+        let mut all = [rest; N];
+        for (part, bytes) in all.iter_mut().zip(bytes.chunks_exact(self.component.size())) {
+            *part = number(self.component, self.normalized, bytes).ok_or_else(|| misplaced(self.number))?;
+        }
+        Ok(Some(all))
+    }
+
+    /// The next element as four unsigned integers.
+    pub(super) fn quartet(&mut self) -> Result<Option<[usize; 4]>, SceneError> {
+        let Some(bytes) = self.advance()? else { return Ok(None) };
+        let mut all = [0; 4];
+        for (part, bytes) in all.iter_mut().zip(bytes.chunks_exact(self.component.size())) {
+            *part = unsigned(self.component, bytes).ok_or_else(|| misplaced(self.number))?;
+        }
+        Ok(Some(all))
+    }
+
     /// The next element as an unsigned integer.
     pub(super) fn unsigned(&mut self) -> Result<Option<usize>, SceneError> {
         let Some(bytes) = self.advance()? else { return Ok(None) };

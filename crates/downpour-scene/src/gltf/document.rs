@@ -1,6 +1,7 @@
 //! From checked values to the typed objects of the `gltf` crate.
 //!
-//! Only what geometry needs is made. Each object is made by itself, so that one that does not fit is named.
+//! Only what geometry needs is made; the rest stays behind as values. Each object is made by itself, so that one
+//! that does not fit is named.
 
 use super::guard::{Checked, Trail};
 use crate::error::{SceneError, escaped};
@@ -8,16 +9,16 @@ use gltf::json::{Index, Root};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// Makes the typed objects.
-pub(super) fn typed(checked: Checked) -> Result<Root, SceneError> {
-    let mut value = checked.value;
+/// Makes the typed objects. They are taken out of the document.
+pub(super) fn typed(checked: &mut Checked) -> Result<Root, SceneError> {
+    let value = &mut checked.value;
     Ok(Root {
-        accessors: list(&mut value, "accessors")?,
-        buffers: list(&mut value, "buffers")?,
-        buffer_views: list(&mut value, "bufferViews")?,
-        meshes: list(&mut value, "meshes")?,
-        nodes: list(&mut value, "nodes")?,
-        scenes: list(&mut value, "scenes")?,
+        accessors: list(value, "accessors")?,
+        buffers: list(value, "buffers")?,
+        buffer_views: list(value, "bufferViews")?,
+        meshes: list(value, "meshes")?,
+        nodes: list(value, "nodes")?,
+        scenes: list(value, "scenes")?,
         scene: value.get("scene").and_then(Value::as_u64).and_then(|i| u32::try_from(i).ok()).map(Index::new),
         ..Root::default()
     })

@@ -23,10 +23,9 @@ use crate::warning::Warnings;
 use accessors::AccessorFacts;
 use data::ViewFacts;
 use serde_json::Value;
-use spot::Spot;
 
 pub(super) use accessors::Size;
-pub(super) use spot::Trail;
+pub(super) use spot::{Spot, Trail};
 
 /// A document in which each index, range and link holds. Nothing else makes one.
 pub(super) struct Checked {

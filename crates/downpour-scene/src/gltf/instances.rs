@@ -102,7 +102,7 @@ pub(super) fn find(
 }
 
 /// The nodes that the walk begins at.
-fn roots(root: &Root) -> Vec<usize> {
+pub(super) fn roots(root: &Root) -> Vec<usize> {
     let scene = root.scene.and_then(|scene| root.get(scene)).or(root.scenes.first());
     if let Some(scene) = scene {
         return indices(Some(&scene.nodes)).collect();

@@ -4,18 +4,16 @@
 //! ten thousand nodes. The sums are made first, in 64 bits, and held against the budget and against the size
 //! of what was read: a file may grow, but not without bound.
 
+use super::growth::Purse;
 use super::instances::Instance;
 use crate::Budget;
-use crate::error::{SceneError, size};
+use crate::error::SceneError;
 use crate::warning::{WarningKind, Warnings};
-use gltf::json::mesh::{Mode, Semantic};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index, Root};
 use std::collections::BTreeMap;
-
-/// What every file may grow to in memory, in bytes, and how many bytes more for each byte that was read.
-const FREE_GROWTH: u64 = 256 << 20;
-const GROWTH: u64 = 64;
+use std::fmt;
 
 /// Bytes of a vertex (position, normal) and of a triangle, and what a primitive of an instance costs in time.
 const PER_VERTEX: u64 = 24;
@@ -81,13 +79,7 @@ pub(super) fn make(
         .fold(0u64, |sum, (count, each)| sum.saturating_add(count.saturating_mul(each)));
     let place = "meshes";
     budget.take_vertices(vertices, place)?;
-    let most = FREE_GROWTH.saturating_add(source.saturating_mul(GROWTH));
-    if cost > most {
-        let found = format!("{} of geometry from {} of files", size(cost), size(source));
-        return Err(SceneError::limit(place, found, format!("{} for files of this size", size(most)))
-            .way_out("instance or simplify less, or store the geometry itself"));
-    }
-    budget.take_bytes(cost, place)?;
+    Purse::new(budget, source).take(cost, place)?;
     let fits = |count: u64| u32::try_from(count).ok().and_then(|count| usize::try_from(count).ok());
     match (fits(vertices), fits(triangles)) {
         (Some(vertices), Some(triangles)) => {
@@ -105,41 +97,11 @@ pub(super) fn make(
 fn mesh(root: &Root, index: usize, warnings: &mut Warnings) -> MeshPlan {
     let mut plan = MeshPlan::default();
     let Some(mesh) = root.meshes.get(index) else { return plan };
-    let count = |accessor: Index<Accessor>| root.get(accessor).map_or(0, |accessor| accessor.count.0);
     let mut pools: BTreeMap<(usize, Option<usize>), usize> = BTreeMap::new();
     for (primitive, json) in mesh.primitives.iter().enumerate() {
         let place = format_args!("meshes[{index}].primitives[{primitive}]");
-        let mode = match json.mode {
-            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
-            Checked::Valid(_) | Checked::Invalid => {
-                warnings.add(WarningKind::Ignored, place, || "points or lines: skipped".into());
-                continue;
-            }
-        };
-        let attribute = |semantic| json.attributes.get(&Checked::Valid(semantic)).copied();
-        let Some(positions) = attribute(Semantic::Positions) else {
-            warnings.add(WarningKind::Ignored, place, || "no POSITION: skipped".into());
-            continue;
-        };
-        // Without data all numbers are 0; so do files look whose data is in an extension that is not read.
-        if root
-            .get(positions)
-            .is_none_or(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none())
-        {
-            warnings.add(WarningKind::Dropped, place, || "dropped: POSITION has no data".into());
-            continue;
-        }
-        let normals = attribute(Semantic::Normals);
-        let corners = count(json.indices.unwrap_or(positions));
-        let triangles = match mode {
-            Mode::Triangles => corners / 3,
-            _ => corners.saturating_sub(2),
-        };
-        if triangles == 0 || (mode == Mode::Triangles && !corners.is_multiple_of(3)) {
-            warnings.add(WarningKind::Irregular, place, || {
-                format!("{corners} corners do not make up whole triangles: what is left over is ignored")
-            });
-        }
+        let Some(Shape { positions, mode, triangles }) = shape(root, json, place, warnings) else { continue };
+        let normals = json.attributes.get(&Checked::Valid(Semantic::Normals)).copied();
         if json.targets.is_some() && mesh.weights.iter().flatten().any(|&weight| weight != 0.0) {
             warnings.add(WarningKind::Ignored, place, || {
                 "morph targets are not read: the base shape is taken".into()
@@ -148,11 +110,60 @@ fn mesh(root: &Root, index: usize, warnings: &mut Warnings) -> MeshPlan {
         let next = plan.pools.len();
         let pool = *pools.entry((positions.value(), normals.map(|n| n.value()))).or_insert(next);
         if pool == next {
-            plan.vertices = plan.vertices.saturating_add(count(positions));
+            plan.vertices = plan.vertices.saturating_add(count(root, positions));
             plan.pools.push(Pool { positions, normals });
         }
         plan.triangles = plan.triangles.saturating_add(triangles);
         plan.parts.push(Part { primitive, pool, indices: json.indices, mode });
     }
     plan
+}
+
+/// What of a primitive can be read.
+pub(super) struct Shape {
+    pub(super) positions: Index<Accessor>,
+    pub(super) mode: Mode,
+    pub(super) triangles: u64,
+}
+
+/// How many elements an accessor has.
+pub(super) fn count(root: &Root, accessor: Index<Accessor>) -> u64 {
+    root.get(accessor).map_or(0, |accessor| accessor.count.0)
+}
+
+/// Looks at a primitive; `None`, with a warning, when there is nothing to read.
+pub(super) fn shape(
+    root: &Root,
+    json: &Primitive,
+    place: fmt::Arguments<'_>,
+    warnings: &mut Warnings,
+) -> Option<Shape> {
+    let mode = match json.mode {
+        Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
+        Checked::Valid(_) | Checked::Invalid => {
+            warnings.add(WarningKind::Ignored, place, || "points or lines: skipped".into());
+            return None;
+        }
+    };
+    let Some(&positions) = json.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+        warnings.add(WarningKind::Ignored, place, || "no POSITION: skipped".into());
+        return None;
+    };
+    // Without data all numbers are 0; so do files look whose data is in an extension that is not read.
+    if root.get(positions).is_none_or(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none())
+    {
+        warnings.add(WarningKind::Dropped, place, || "dropped: POSITION has no data".into());
+        return None;
+    }
+    let corners = count(root, json.indices.unwrap_or(positions));
+    let triangles = match mode {
+        Mode::Triangles => corners / 3,
+        _ => corners.saturating_sub(2),
+    };
+    if triangles == 0 || (mode == Mode::Triangles && !corners.is_multiple_of(3)) {
+        warnings.add(WarningKind::Irregular, place, || {
+            format!("{corners} corners do not make up whole triangles: what is left over is ignored")
+        });
+    }
+    Some(Shape { positions, mode, triangles })
 }

@@ -1,19 +1,18 @@
 //! The reading itself: vertices into world space, primitives into triangles.
 //!
 //! Front faces are counter-clockwise in each file; a mirroring transform turns them over, so there the last two
-//! corners change places. Strips and fans: glTF 2.0, section 3.7.2.1.
+//! corners change places.
 
 use super::accessor::Elements;
 use super::buffers::Buffers;
 use super::instances::{self, Instance, Placement};
 use super::plan::{self, Part, Pool};
-use super::{REACH, TriangleModel, normals};
+use super::{REACH, TriangleModel, assembly, normals};
 use crate::Budget;
 use crate::error::SceneError;
 use crate::warning::{WarningKind, Warnings};
 use glam::DVec3;
 use gltf::json::Root;
-use gltf::json::mesh::Mode;
 
 /// Why the vertices of a primitive are not taken.
 enum Useless {
@@ -133,39 +132,17 @@ impl Gathering<'_> {
         vertices: &Placed,
         mirrored: bool,
     ) -> Result<(), SceneError> {
-        let mut elements = match part.indices {
+        let elements = match part.indices {
             Some(accessor) => Some(Elements::open(self.root, self.buffers, accessor)?),
             None => None,
         };
-        let corners = elements.as_ref().map_or(vertices.count, Elements::count);
-        let (mut first, mut before, mut last) = (0u32, 0u32, 0u32);
-        for nth in 0..corners {
-            let index = match &mut elements {
-                Some(elements) => elements.unsigned()?.unwrap_or(usize::MAX),
-                None => nth,
-            };
-            let vertex = vertices.start.checked_add(index).filter(|_| index < vertices.count);
-            let Some(corner) = vertex.and_then(|vertex| u32::try_from(vertex).ok()) else {
-                let place = format_args!("meshes[{}].primitives[{}].indices", instance.mesh, part.primitive);
-                let allowed =
-                    format!("0 to {}, as POSITION has {}", vertices.count.saturating_sub(1), vertices.count);
-                return Err(SceneError::bad(place, format!("index {index} at element {nth}"), allowed));
-            };
-            if nth == 0 {
-                first = corner;
-            }
-            let triangle = match part.mode {
-                Mode::Triangles => (nth % 3 == 2).then_some([before, last, corner]),
-                Mode::TriangleStrip if nth % 2 == 0 => Some([before, last, corner]),
-                Mode::TriangleStrip => Some([before, corner, last]),
-                _ => Some([last, corner, first]),
-            };
-            if let Some([a, b, c]) = triangle.filter(|_| nth >= 2) {
-                self.indices.push(if mirrored { [a, c, b] } else { [a, b, c] });
-            }
-            (before, last) = (last, corner);
-        }
-        Ok(())
+        let place = format_args!("meshes[{}].primitives[{}]", instance.mesh, part.primitive);
+        // The plan has seen that all vertices of the model have a 32-bit index.
+        let start = u32::try_from(vertices.start).unwrap_or(u32::MAX);
+        assembly::triangles(elements, part.mode, vertices.count, place, |corners| {
+            let [a, b, c] = corners.map(|corner| start.saturating_add(corner));
+            self.indices.push(if mirrored { [a, c, b] } else { [a, b, c] });
+        })
     }
 
     fn finish(mut self, mut warnings: Warnings) -> TriangleModel {

@@ -4,6 +4,7 @@
 
 use downpour_scene::beneath::NoFiles;
 use downpour_scene::gltf::{TriangleModel, read_triangles_from_bytes};
+use downpour_scene::scene::{Scene, skin_primitive};
 use downpour_scene::{Budget, SceneError};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -129,4 +130,47 @@ pub(crate) fn check(model: &TriangleModel) {
 pub(crate) fn check_message(message: &str) {
     assert!(!message.chars().any(char::is_control), "{message:?}");
     assert!(message.chars().count() < 600, "{message}");
+}
+
+/// What is promised of every scene: no number without end, no index that leads nowhere, in any pose.
+pub(crate) fn check_scene(scene: &Scene) {
+    for part in scene.meshes.iter().flat_map(|mesh| &mesh.primitives) {
+        let count = part.positions.len();
+        assert!(count > 0 && part.positions.iter().all(|p| p.abs().max_element() <= 1e9));
+        assert!(part.normals.len() == count && part.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4));
+        for list in [part.tangents.len(), part.uvs[0].len(), part.uvs[1].len(), part.joints.len()] {
+            assert!(list == 0 || list == count);
+        }
+        assert!(part.tangents.iter().all(|t| (t.truncate().length() - 1.0).abs() < 1e-3 && t.w.abs() == 1.0));
+        assert!(part.uvs.iter().flatten().all(|uv| uv.is_finite()));
+        assert!(part.weights.iter().all(|w| (w.iter().sum::<f32>() - 1.0).abs() < 1e-5));
+        assert_eq!(part.weights.len(), part.joints.len());
+        assert!(part.indices.len() % 3 == 0 && part.indices.iter().all(|&index| (index as usize) < count));
+        assert!(part.material < scene.materials.len());
+    }
+    for material in &scene.materials {
+        assert!(material.textures().all(|used| used.texture < scene.textures.len() && used.uv_set < 2));
+        assert!(material.textures().all(|used| used.transform.is_finite()));
+        assert!(material.emissive.min_element() >= 0.0);
+    }
+    for node in &scene.nodes {
+        assert!(node.mesh.is_none_or(|mesh| mesh < scene.meshes.len()));
+        assert!(node.skin.is_none_or(|skin| skin < scene.skins.len()));
+        assert!(node.light.is_none_or(|light| light < scene.lights.len()));
+    }
+    let poses = (0..scene.animations.len().min(3)).flat_map(|i| [0.0, 0.37, 1.9].map(|time| (Some(i), time)));
+    for (animation, time) in poses.chain([(None, 0.0)]) {
+        let pose = scene.pose(animation, time);
+        for instance in &pose.instances {
+            assert!(instance.world.is_finite() && instance.normal.is_finite());
+            for part in &scene.meshes[instance.mesh].primitives {
+                let last = part.joints.iter().flatten().max().map_or(0, |&joint| usize::from(joint));
+                assert!(!part.is_skinned() || instance.joints.is_empty() || last < instance.joints.len());
+                let skinned = skin_primitive(part, instance);
+                assert!(skinned.positions.iter().chain(&skinned.normals).all(|v| v.is_finite()));
+            }
+        }
+        assert!(pose.lights.iter().all(|light| light.position.is_finite() && light.direction.is_finite()));
+        assert!(pose.cameras.iter().all(|eye| eye.eye.is_finite() && eye.up.dot(eye.forward).abs() < 1e-5));
+    }
 }

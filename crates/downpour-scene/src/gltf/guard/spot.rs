@@ -55,54 +55,61 @@ impl fmt::Display for Trail<'_> {
 
 /// A value and its place.
 #[derive(Clone, Copy)]
-pub(super) struct Spot<'a> {
-    pub(super) trail: Trail<'a>,
-    pub(super) value: &'a Value,
+pub(in crate::gltf) struct Spot<'a> {
+    pub(in crate::gltf) trail: Trail<'a>,
+    pub(in crate::gltf) value: &'a Value,
 }
 
 impl<'a> Spot<'a> {
-    pub(super) fn document(value: &'a Value) -> Self {
+    pub(in crate::gltf) fn document(value: &'a Value) -> Self {
         Self { trail: Trail::DOCUMENT, value }
     }
 
     /// An error at this place.
-    pub(super) fn wrong(&self, found: impl Into<String>, allowed: impl Into<String>) -> SceneError {
+    pub(in crate::gltf) fn wrong(&self, found: impl Into<String>, allowed: impl Into<String>) -> SceneError {
         SceneError::bad(self.trail, found, allowed)
     }
 
     /// An error that says what stands here.
-    pub(super) fn not(&self, allowed: impl Into<String>) -> SceneError {
+    pub(in crate::gltf) fn not(&self, allowed: impl Into<String>) -> SceneError {
         self.wrong(shown(self.value), allowed)
     }
 
-    pub(super) fn object(&self) -> Result<&'a Map<String, Value>, SceneError> {
+    pub(in crate::gltf) fn object(&self) -> Result<&'a Map<String, Value>, SceneError> {
         self.value.as_object().ok_or_else(|| self.not("an object"))
     }
 
     /// A member that may be missing.
-    pub(super) fn get<'s>(&'s self, key: &'s str) -> Result<Option<Spot<'s>>, SceneError> {
+    pub(in crate::gltf) fn get<'s>(&'s self, key: &'s str) -> Result<Option<Spot<'s>>, SceneError> {
         Ok(self.object()?.get(key).map(|value| Spot { trail: self.trail.key(key), value }))
     }
 
     /// A member that must be there.
-    pub(super) fn need<'s>(&'s self, key: &'s str) -> Result<Spot<'s>, SceneError> {
+    pub(in crate::gltf) fn need<'s>(&'s self, key: &'s str) -> Result<Spot<'s>, SceneError> {
         self.get(key)?.ok_or_else(|| self.wrong(format!("no {key}"), format!("an object with {key}")))
     }
 
     /// The elements of an array.
-    pub(super) fn items<'s>(&'s self) -> Result<impl Iterator<Item = Spot<'s>>, SceneError> {
+    pub(in crate::gltf) fn items<'s>(&'s self) -> Result<impl Iterator<Item = Spot<'s>>, SceneError> {
         let array = self.value.as_array().ok_or_else(|| self.not("an array"))?;
         Ok(array.iter().enumerate().map(|(index, value)| Spot { trail: self.trail.index(index), value }))
     }
 
+    /// An element of an array.
+    pub(in crate::gltf) fn item<'s>(&'s self, index: usize) -> Option<Spot<'s>> {
+        self.value.get(index).map(|value| Spot { trail: self.trail.index(index), value })
+    }
+
     /// The members of an object.
-    pub(super) fn members<'s>(&'s self) -> Result<impl Iterator<Item = (&'s str, Spot<'s>)>, SceneError> {
+    pub(in crate::gltf) fn members<'s>(
+        &'s self,
+    ) -> Result<impl Iterator<Item = (&'s str, Spot<'s>)>, SceneError> {
         let members = self.object()?.iter();
         Ok(members.map(|(key, value)| (key.as_str(), Spot { trail: self.trail.key(key), value })))
     }
 
     /// Each value that a pattern leads to: names, `[]` for each element, `*` for each member.
-    pub(super) fn each(
+    pub(in crate::gltf) fn each(
         &self,
         pattern: &[&str],
         visit: &mut dyn FnMut(&Spot<'_>) -> Result<(), SceneError>,
@@ -116,31 +123,31 @@ impl<'a> Spot<'a> {
     }
 
     /// A whole number from 0 on.
-    pub(super) fn whole(&self) -> Result<u64, SceneError> {
+    pub(in crate::gltf) fn whole(&self) -> Result<u64, SceneError> {
         self.value.as_u64().ok_or_else(|| self.not("a whole number from 0 on"))
     }
 
     /// A whole number that is missing as 0.
-    pub(super) fn whole_or_zero(&self, key: &str) -> Result<u64, SceneError> {
+    pub(in crate::gltf) fn whole_or_zero(&self, key: &str) -> Result<u64, SceneError> {
         self.get(key)?.map_or(Ok(0), |member| member.whole())
     }
 
     /// A whole number from 1 on.
-    pub(super) fn positive(&self) -> Result<u64, SceneError> {
+    pub(in crate::gltf) fn positive(&self) -> Result<u64, SceneError> {
         self.value.as_u64().filter(|&n| n > 0).ok_or_else(|| self.not("a whole number from 1 on"))
     }
 
     /// A number; that it is in the range of `f32` has been seen to.
-    pub(super) fn number(&self) -> Result<f64, SceneError> {
+    pub(in crate::gltf) fn number(&self) -> Result<f64, SceneError> {
         self.value.as_f64().ok_or_else(|| self.not("a number"))
     }
 
-    pub(super) fn text(&self) -> Result<&'a str, SceneError> {
+    pub(in crate::gltf) fn text(&self) -> Result<&'a str, SceneError> {
         self.value.as_str().ok_or_else(|| self.not("text"))
     }
 
     /// An index into a list of that many objects.
-    pub(super) fn index_into(&self, list: &str, count: usize) -> Result<usize, SceneError> {
+    pub(in crate::gltf) fn index_into(&self, list: &str, count: usize) -> Result<usize, SceneError> {
         let index = self.value.as_u64().and_then(|index| usize::try_from(index).ok());
         index.filter(|&index| index < count).ok_or_else(|| {
             let allowed = match count {
@@ -154,7 +161,7 @@ impl<'a> Spot<'a> {
 }
 
 /// A value for a message.
-pub(super) fn shown(value: &Value) -> String {
+pub(in crate::gltf) fn shown(value: &Value) -> String {
     match value {
         Value::String(text) => quoted(text),
         Value::Array(elements) => format!("an array of {}", elements.len()),

@@ -1,0 +1,129 @@
+//! Reflection at a surface: GGX microfacets over a diffuse base, metallic-roughness.
+//!
+//! Sources: B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007 (GGX); E. Heitz,
+//! JCGT 3(2), 2014 (height-correlated Smith); C. Schlick 1994; glTF 2.0 appendix B. The environment term is the fit
+//! of B. Karis, "Physically based shading on mobile", 2014.
+//!
+//! Symbols: alpha = roughness^2; all cosines in [0, 1]. Twin of `shaders/wgsl/render/brdf.wgsl`.
+
+use downpour_math::ops;
+use downpour_shaders::render::brdf::{BRDF_GRAZING, BRDF_SMALLEST};
+use glam::Vec3;
+
+/// Normal distribution times pi: D(h) pi, at a cosine to the normal.
+#[must_use]
+pub fn brdf_distribution(alpha: f32, cosine_half: f32) -> f32 {
+    let a2 = alpha * alpha;
+    let d = (cosine_half * a2 - cosine_half) * cosine_half + 1.0;
+    a2 / (d * d)
+}
+
+/// Height-correlated Smith visibility: G over 4 times both cosines.
+#[must_use]
+pub fn brdf_visibility(alpha: f32, cosine_view: f32, cosine_light: f32) -> f32 {
+    let a2 = alpha * alpha;
+    let view = cosine_light * ((cosine_view - a2 * cosine_view) * cosine_view + a2).sqrt();
+    let light = cosine_view * ((cosine_light - a2 * cosine_light) * cosine_light + a2).sqrt();
+    0.5 / (view + light).max(BRDF_SMALLEST)
+}
+
+/// Schlick's Fresnel for a reflectance at normal incidence.
+#[must_use]
+pub fn brdf_fresnel(normal_reflectance: Vec3, cosine: f32) -> Vec3 {
+    let rest = 1.0 - cosine.clamp(0.0, 1.0);
+    let square = rest * rest;
+    let fifth = square * square * rest;
+    normal_reflectance + (Vec3::ONE - normal_reflectance) * fifth
+}
+
+/// Radiance towards the viewer for light of irradiance pi from one direction, cosine at the surface included.
+#[must_use]
+pub fn brdf_direct(
+    diffuse: Vec3,
+    normal_reflectance: Vec3,
+    alpha: f32,
+    normal: Vec3,
+    view: Vec3,
+    light: Vec3,
+) -> Vec3 {
+    let cosine_light = normal.dot(light);
+    if cosine_light <= 0.0 {
+        return Vec3::ZERO;
+    }
+    let cosine_view = normal.dot(view).max(BRDF_GRAZING);
+    let sum = view + light;
+    let halfway = sum / sum.dot(sum).sqrt().max(BRDF_SMALLEST);
+    let cosine_half = normal.dot(halfway).clamp(0.0, 1.0);
+    let fresnel = brdf_fresnel(normal_reflectance, view.dot(halfway));
+    let specular = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine_light);
+    ((Vec3::ONE - fresnel) * diffuse + fresnel * specular) * cosine_light
+}
+
+/// Share of a uniform environment that microfacets reflect.
+#[must_use]
+pub fn brdf_environment(normal_reflectance: Vec3, roughness: f32, cosine_view: f32) -> Vec3 {
+    let r =
+        [-roughness + 1.0, roughness * -0.0275 + 0.0425, roughness * -0.572 + 1.04, roughness * 0.022 - 0.04];
+    let lift = (r[0] * r[0]).min(ops::exp2(-9.28 * cosine_view)) * r[0] + r[1];
+    let scale = -1.04 * lift + r[2];
+    let bias = 1.04 * lift + r[3];
+    normal_reflectance * scale + Vec3::splat(bias)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use downpour_math::ops::f64 as exact;
+
+    /// The projected area of the microfacets is that of the surface: the integral of D cos over the hemisphere is 1.
+    #[test]
+    fn microfacets_cover_the_surface() {
+        let rule = downpour_math::quadrature::GaussLegendre::new(64);
+        for roughness in [0.2f32, 0.5, 1.0] {
+            let alpha = roughness * roughness;
+            // D pi = brdf_distribution, and the azimuth gives 2 pi.
+            let sum = rule.integrate_panels(0.0, std::f64::consts::FRAC_PI_2, 64, |theta| {
+                let cosine = exact::cos(theta);
+                2.0 * f64::from(brdf_distribution(alpha, cosine as f32)) * cosine * exact::sin(theta)
+            });
+            assert!((sum - 1.0).abs() < 2.0e-3, "roughness {roughness}: {sum}");
+        }
+    }
+
+    /// No more light leaves than arrives: a white metal under a uniform sky reflects at most 1.
+    #[test]
+    fn reflection_is_at_most_all() {
+        for roughness in [0.1f32, 0.4, 0.7, 1.0] {
+            for cosine in [0.05f32, 0.3, 0.7, 1.0] {
+                let view = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+                let (n, mut sum) = (96, 0.0);
+                for i in 0..n {
+                    for j in 0..n {
+                        // Uniform in cos^2: cosine-weighted directions.
+                        let (u, v) = ((i as f32 + 0.5) / n as f32, (j as f32 + 0.5) / n as f32);
+                        let (r, phi) = (u.sqrt(), std::f32::consts::TAU * v);
+                        let light = Vec3::new(r * ops::cos(phi), r * ops::sin(phi), (1.0 - u).sqrt());
+                        let radiance = brdf_direct(
+                            Vec3::ZERO,
+                            Vec3::ONE,
+                            (roughness * roughness).max(0.05),
+                            Vec3::Z,
+                            view,
+                            light,
+                        );
+                        sum += radiance.x / light.z;
+                    }
+                }
+                let reflected = sum / (n * n) as f32;
+                assert!(reflected < 1.03, "roughness {roughness}, cosine {cosine}: {reflected}");
+            }
+        }
+    }
+
+    #[test]
+    fn environment_fit_is_the_mirror_at_no_roughness() {
+        let share = brdf_environment(Vec3::splat(0.04), 0.0, 1.0);
+        assert!((share.x - 0.04).abs() < 0.01, "{share}");
+        assert!(brdf_environment(Vec3::ONE, 0.5, 0.5).x <= 1.01);
+    }
+}

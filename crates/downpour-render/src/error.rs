@@ -1,0 +1,40 @@
+//! What can be wrong with a picture that is asked for.
+
+/// Why a picture was not made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// A number is not finite or outside its range.
+    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
+    OutOfRange {
+        /// What it is.
+        quantity: &'static str,
+        /// The value, in `unit`.
+        found: f64,
+        /// The unit, as files and arguments write it.
+        unit: &'static str,
+        /// The range, in words.
+        allowed: &'static str,
+    },
+    /// The picture is too small or too large.
+    #[error("the picture is {} x {} pixels; allowed: {least} to {most} each way", found[0], found[1])]
+    Size {
+        /// Width and height asked for.
+        found: [u32; 2],
+        /// The least.
+        least: u32,
+        /// The most.
+        most: u32,
+    },
+}
+
+impl RenderError {
+    /// The exit code of the command for this error: 3 over a limit, 2 other bad input.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Size { found, most, .. } if found.iter().any(|n| n > most) => 3,
+            _ => 2,
+        }
+    }
+}

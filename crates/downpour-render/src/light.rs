@@ -1,0 +1,77 @@
+//! Lights as rows of the scene's table.
+
+use downpour_shaders::render::scene::{SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT, SCENE_LIGHT_ROWS};
+use glam::Vec3;
+
+const ROWS: usize = SCENE_LIGHT_ROWS as usize;
+
+/// A lamp or the sun. Intensities are radiometric, in the scale of the sky map: a white surface that faces an
+/// irradiance of pi shows 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightSource {
+    /// Parallel light.
+    Directional {
+        /// Where the light goes, of length 1.
+        direction: Vec3,
+        /// Irradiance on a surface that faces it.
+        irradiance: Vec3,
+    },
+    /// Light from a point.
+    Point {
+        /// Place, metres.
+        position: Vec3,
+        /// Radiant intensity: irradiance at 1 m.
+        intensity: Vec3,
+        /// No light beyond this, metres; 0 for no end.
+        range: f32,
+    },
+    /// Light from a point in a cone.
+    Spot {
+        /// Place, metres.
+        position: Vec3,
+        /// Axis of the cone, of length 1.
+        direction: Vec3,
+        /// Radiant intensity on the axis.
+        intensity: Vec3,
+        /// No light beyond this, metres; 0 for no end.
+        range: f32,
+        /// Half angle of the full light, radians.
+        inner: f32,
+        /// Half angle of the cone, radians.
+        outer: f32,
+    },
+}
+
+impl LightSource {
+    pub(crate) fn rows(&self) -> [[u32; 4]; ROWS] {
+        let over_pi = |c: Vec3| c / std::f32::consts::PI;
+        let row = |v: Vec3, w: f32| [v.x, v.y, v.z, w].map(f32::to_bits);
+        let point = |v: Vec3, kind: u32| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), kind];
+        // The edge is clamp(cos * scale + offset, 0, 1)^2, as KHR_lights_punctual suggests.
+        let everywhere = [0.0f32, 1.0, 0.0, 0.0].map(f32::to_bits);
+        match *self {
+            Self::Directional { direction, irradiance } => [
+                point(Vec3::ZERO, SCENE_LIGHT_DIRECTIONAL),
+                row(direction, 0.0),
+                row(over_pi(irradiance), 0.0),
+                everywhere,
+            ],
+            Self::Point { position, intensity, range } => [
+                point(position, SCENE_LIGHT_POINT),
+                row(Vec3::NEG_Y, 0.0),
+                row(over_pi(intensity), range),
+                everywhere,
+            ],
+            Self::Spot { position, direction, intensity, range, inner, outer } => {
+                let (inner, outer) = (downpour_math::ops::cos(inner), downpour_math::ops::cos(outer));
+                let scale = 1.0 / (inner - outer).max(1.0e-3);
+                [
+                    point(position, SCENE_LIGHT_POINT),
+                    row(direction, 0.0),
+                    row(over_pi(intensity), range),
+                    [scale, -outer * scale, 0.0, 0.0].map(f32::to_bits),
+                ]
+            }
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Materials and textures as rows of the scene's table.
+
+use downpour_shaders::render::scene::{
+    SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_REPEAT_U, SCENE_REPEAT_V, SCENE_ROOTED, SCENE_SLOT_ROWS,
+};
+
+use crate::data::SceneBuilder;
+
+pub(crate) const MATERIAL_ROWS: usize = SCENE_MATERIAL_ROWS as usize;
+const SLOT_ROWS: usize = SCENE_SLOT_ROWS as usize;
+
+/// How a surface looks: glTF's metallic-roughness, with indices of texture slots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaterialLook {
+    /// Base colour, linear, and alpha.
+    pub base_colour: [f32; 4],
+    /// Emitted radiance.
+    pub emission: [f32; 3],
+    /// 0 dielectric, 1 metal.
+    pub metallic: f32,
+    /// 0 mirror, 1 rough.
+    pub roughness: f32,
+    /// Strength of the normal map.
+    pub normal_scale: f32,
+    /// Strength of the occlusion map.
+    pub occlusion_strength: f32,
+    /// Below this alpha a masked material has a hole.
+    pub alpha_cutoff: f32,
+    /// `SCENE_MASKED`, `SCENE_BLENDED`, `SCENE_DOUBLE_SIDED`, `SCENE_UNLIT`.
+    pub flags: u32,
+    /// Share of light that passes a thin dielectric.
+    pub transmission: f32,
+    /// Refractive index.
+    pub ior: f32,
+    /// Slots of base colour, metallic-roughness, normal, emission, occlusion, transmission.
+    pub maps: [Option<u32>; 6],
+}
+
+impl Default for MaterialLook {
+    /// glTF's default material, but not metallic: a mesh without a material is grey plastic, not a mirror.
+    fn default() -> Self {
+        Self {
+            base_colour: [1.0; 4],
+            emission: [0.0; 3],
+            metallic: 0.0,
+            roughness: 1.0,
+            normal_scale: 1.0,
+            occlusion_strength: 1.0,
+            alpha_cutoff: 0.5,
+            flags: 0,
+            transmission: 0.0,
+            ior: 1.5,
+            maps: [None; 6],
+        }
+    }
+}
+
+impl MaterialLook {
+    pub(crate) fn rows(&self, slots: u32) -> [[u32; 4]; MATERIAL_ROWS] {
+        let bits = |v: [f32; 4]| v.map(f32::to_bits);
+        let [r, g, b] = self.emission;
+        let map = |k: usize| self.maps[k].map_or(SCENE_NONE, |slot| slots + slot * SCENE_SLOT_ROWS);
+        [
+            bits(self.base_colour),
+            bits([r, g, b, self.metallic]),
+            bits([self.roughness, self.normal_scale, self.occlusion_strength, self.alpha_cutoff]),
+            [self.flags, self.transmission.to_bits(), self.ior.to_bits(), 0],
+            [map(0), map(1), map(2), map(3)],
+            [map(4), map(5), SCENE_NONE, SCENE_NONE],
+        ]
+    }
+}
+
+/// A texture as a material uses it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureSlot {
+    /// Rows of the 2 x 2 part of the coordinates' transform.
+    pub matrix: [f32; 4],
+    /// Offset of the coordinates.
+    pub offset: [f32; 2],
+    /// Which set of coordinates: 0 or 1.
+    pub uv_set: u32,
+    /// `SCENE_ROOTED`, `SCENE_REPEAT_U` and its like.
+    pub flags: u32,
+    /// Texels across.
+    pub width: u32,
+    /// Texels down.
+    pub height: u32,
+    /// First texel.
+    pub first: u32,
+    /// Levels, each half as large as the one before.
+    pub levels: u32,
+}
+
+impl TextureSlot {
+    pub(crate) fn rows(&self) -> [[u32; 4]; SLOT_ROWS] {
+        [
+            self.matrix.map(f32::to_bits),
+            [self.offset[0].to_bits(), self.offset[1].to_bits(), self.uv_set, self.flags],
+            [self.width, self.height, self.first, self.levels],
+        ]
+    }
+}
+
+/// What the numbers of a texture mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextureUse {
+    /// Colours, sRGB in the file.
+    Colour,
+    /// Numbers: normals, roughness, occlusion.
+    Data,
+}
+
+/// The largest edge of a texture: larger ones are halved until they fit.
+const LARGEST_EDGE: u32 = 2048;
+
+impl SceneBuilder {
+    /// Adds a texture of 8-bit texels with all its levels, repeating in both directions. Its slot can be changed
+    /// before it is added.
+    ///
+    /// Colours are stored as square roots of linear values, 8 bits each: as fine as sRGB, and decoded by one product.
+    #[must_use]
+    pub fn texture(&mut self, width: u32, height: u32, texels: &[[u8; 4]], of: TextureUse) -> TextureSlot {
+        let decode: Vec<f32> = (0..=255u8)
+            .map(|v| if of == TextureUse::Colour { srgb_to_linear(v) } else { f32::from(v) / 255.0 })
+            .collect();
+        let mut level: Vec<[f32; 4]> = texels
+            .iter()
+            .map(|&[r, g, b, a]| {
+                let [r, g, b] = [r, g, b].map(|v| decode[usize::from(v)]);
+                [r, g, b, f32::from(a) / 255.0]
+            })
+            .collect();
+        let (mut w, mut h) = (width, height);
+        while w.max(h) > LARGEST_EDGE {
+            (level, w, h) = halve(&level, w, h);
+        }
+        let (top_width, top_height) = (w, h);
+        let mut packed = Vec::new();
+        let mut levels = 0;
+        loop {
+            packed.extend(level.iter().map(|&[r, g, b, a]| {
+                let store = |v: f32| {
+                    let v = v.clamp(0.0, 1.0);
+                    ((if of == TextureUse::Colour { v.sqrt() } else { v }) * 255.0).round() as u8
+                };
+                u32::from_le_bytes([store(r), store(g), store(b), (a.clamp(0.0, 1.0) * 255.0).round() as u8])
+            }));
+            levels += 1;
+            if w == 1 && h == 1 {
+                break;
+            }
+            (level, w, h) = halve(&level, w, h);
+        }
+        let first = self.push_texels(&packed);
+        TextureSlot {
+            matrix: [1.0, 0.0, 0.0, 1.0],
+            offset: [0.0; 2],
+            uv_set: 0,
+            flags: SCENE_REPEAT_U | SCENE_REPEAT_V | if of == TextureUse::Colour { SCENE_ROOTED } else { 0 },
+            width: top_width,
+            height: top_height,
+            first,
+            levels,
+        }
+    }
+}
+
+/// The next level: means of 2 x 2 texels. The last row or column of an odd size counts for itself.
+fn halve(level: &[[f32; 4]], width: u32, height: u32) -> (Vec<[f32; 4]>, u32, u32) {
+    let (w, h) = ((width / 2).max(1), (height / 2).max(1));
+    let at = |x: u32, y: u32| level[(y.min(height - 1) * width + x.min(width - 1)) as usize];
+    let half = (0..h)
+        .flat_map(|y| (0..w).map(move |x| (x, y)))
+        .map(|(x, y)| {
+            let four =
+                [at(2 * x, 2 * y), at(2 * x + 1, 2 * y), at(2 * x, 2 * y + 1), at(2 * x + 1, 2 * y + 1)];
+            std::array::from_fn(|k| four.iter().map(|t| t[k]).sum::<f32>() * 0.25)
+        })
+        .collect();
+    (half, w, h)
+}
+
+/// The sRGB transfer function (IEC 61966-2-1).
+fn srgb_to_linear(value: u8) -> f32 {
+    let v = f32::from(value) / 255.0;
+    if v <= 0.04045 { v / 12.92 } else { downpour_math::ops::pow((v + 0.055) / 1.055, 2.4) }
+}

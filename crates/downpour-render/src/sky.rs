@@ -1,0 +1,68 @@
+//! The light of the sky: an equirectangular map, the same prefiltered for rough reflection, and its irradiance.
+//!
+//! +Y is up; u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top. Twin of
+//! `shaders/wgsl/render/sky.wgsl`.
+
+use downpour_math::ops;
+use downpour_shaders::render::scene::SCENE_SKY_LEVELS;
+use glam::{Vec2, Vec3};
+
+use crate::data::SceneData;
+
+/// Texture coordinates of a direction of length 1.
+#[must_use]
+pub fn sky_coordinates(direction: Vec3) -> Vec2 {
+    let u = 0.5 + ops::atan2(direction.z, direction.x) * 0.159_154_94;
+    // The angle of (y, horizontal) is asin(y), and does not lose its digits near the poles.
+    let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
+    let v = 0.5 - ops::atan2(direction.y, horizontal) * 0.318_309_87;
+    Vec2::new(u, v)
+}
+
+impl SceneData {
+    /// A level of the sky in a direction, bilinear.
+    #[must_use]
+    pub fn sky_level(&self, level: u32, direction: Vec3) -> Vec3 {
+        let size = self.sky_levels[level as usize];
+        let uv = sky_coordinates(direction);
+        let (width, height) = (size[0] as i32, size[1] as i32);
+        let x = uv.x * size[0] as f32 - 0.5;
+        let y = (uv.y * size[1] as f32 - 0.5).clamp(0.0, size[1] as f32 - 1.0);
+        let (fx, fy) = (x - x.floor(), y - y.floor());
+        let left = (x.floor() as i32).rem_euclid(width);
+        let right = (left + 1) % width;
+        let above = y.floor() as i32 * width;
+        let below = (y.floor() as i32 + 1).min(height - 1) * width;
+        let at = |i: i32| {
+            let [r, g, b, _] = self.sky[(size[2] as i32 + i) as usize];
+            Vec3::new(r, g, b)
+        };
+        (at(above + left) * (1.0 - fx) + at(above + right) * fx) * (1.0 - fy)
+            + (at(below + left) * (1.0 - fx) + at(below + right) * fx) * fy
+    }
+
+    /// The sky as a surface of some roughness reflects it.
+    #[must_use]
+    pub fn sky_reflection(&self, direction: Vec3, roughness: f32) -> Vec3 {
+        let level = roughness.clamp(0.0, 1.0) * (SCENE_SKY_LEVELS - 1) as f32;
+        let below = level as u32;
+        let fraction = level - below as f32;
+        let near = self.sky_level(below, direction);
+        if fraction == 0.0 {
+            return near;
+        }
+        near * (1.0 - fraction) + self.sky_level(below + 1, direction) * fraction
+    }
+
+    /// Irradiance over pi of the whole sky on a surface: what a white diffuse surface shows.
+    #[must_use]
+    pub fn sky_irradiance(&self, normal: Vec3) -> Vec3 {
+        let Vec3 { x, y, z } = normal;
+        let basis = [1.0, y, z, x, x * y, y * z, 3.0 * z * z - 1.0, x * z, x * x - y * y];
+        let mut sum = Vec3::ZERO;
+        for ([r, g, b, _], factor) in self.sky_irradiance.iter().zip(basis) {
+            sum += Vec3::new(*r, *g, *b) * factor;
+        }
+        sum.max(Vec3::ZERO)
+    }
+}

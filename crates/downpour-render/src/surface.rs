@@ -1,0 +1,170 @@
+//! What a ray finds: the nearest triangle that is not a hole, and its material there. Twin of
+//! `shaders/wgsl/render/surface.wgsl`.
+
+use downpour_mask::bvh::{Hit, mask_bvh_nearest};
+use downpour_math::ops;
+use downpour_shaders::render::scene::{SCENE_LAYERS, SCENE_MASKED, SCENE_MATERIAL_ROWS, SCENE_NONE};
+use glam::{Vec3, Vec4};
+
+use crate::data::{RenderCorner, SceneData};
+
+/// Everything that shading needs at a hit.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Place.
+    pub position: Vec3,
+    /// Opacity.
+    pub alpha: f32,
+    /// Normal for shading; faces the viewer.
+    pub normal: Vec3,
+    /// 0 mirror, 1 rough.
+    pub roughness: f32,
+    /// The triangle's own normal, facing the viewer.
+    pub facet: Vec3,
+    /// Share of the surroundings that the material says is seen.
+    pub occlusion: f32,
+    /// Albedo of the diffuse base.
+    pub diffuse: Vec3,
+    /// Flags of the material.
+    pub flags: u32,
+    /// Reflectance at normal incidence.
+    pub normal_reflectance: Vec3,
+    /// Share of light that passes.
+    pub transmission: f32,
+    /// Emitted radiance.
+    pub emission: Vec3,
+}
+
+impl SceneData {
+    fn corners_of(&self, hit: &Hit) -> &[RenderCorner] {
+        let first = hit.triangle as usize * 3;
+        &self.corners[first..first + 3]
+    }
+
+    fn mix(&self, hit: &Hit, field: impl Fn(&RenderCorner) -> Vec4) -> Vec4 {
+        let corners = self.corners_of(hit);
+        let w = 1.0 - hit.u - hit.v;
+        field(&corners[0]) * w + field(&corners[1]) * hit.u + field(&corners[2]) * hit.v
+    }
+
+    /// A texture of a material's row, or white.
+    fn surface_texture(&self, row: u32, uv: Vec4, spread: f32) -> Vec4 {
+        if row == SCENE_NONE { Vec4::ONE } else { self.texture_sample(row, uv, spread) }
+    }
+
+    /// The nearest surface that is not a hole of a masked material. Twelve holes in a row end the ray.
+    #[must_use]
+    pub fn surface_hit(&self, origin: Vec3, direction: Vec3, nearest: f32) -> Option<Hit> {
+        let mut from_distance = nearest;
+        for _ in 0..SCENE_LAYERS {
+            let hit = mask_bvh_nearest(
+                &self.nodes,
+                &self.triangles,
+                origin.into(),
+                direction.into(),
+                from_distance,
+            )?;
+            let material = (self.corners_of(&hit)[0].material * SCENE_MATERIAL_ROWS) as usize;
+            if self.table[material + 3][0] & SCENE_MASKED == 0 {
+                return Some(hit);
+            }
+            let slot = self.table[material + 4][0];
+            let alpha = f32::from_bits(self.table[material][3])
+                * self.surface_texture(slot, self.surface_uv(&hit), -20.0).w
+                * self.surface_colour(&hit).w;
+            if alpha >= f32::from_bits(self.table[material + 2][3]) {
+                return Some(hit);
+            }
+            from_distance = hit.distance + nearest;
+        }
+        None
+    }
+
+    /// Texture coordinates at a hit.
+    fn surface_uv(&self, hit: &Hit) -> Vec4 {
+        self.mix(hit, |c| c.uv.into())
+    }
+
+    /// Vertex colour at a hit.
+    fn surface_colour(&self, hit: &Hit) -> Vec4 {
+        self.mix(hit, |c| c.colour.into())
+    }
+
+    /// Logarithm to base 2 of the width of a ray's cone at a hit, in units of texture coordinates: the mean scale of
+    /// coordinates over the triangle, times the cone's width, over the cosine at the surface.
+    fn surface_spread(&self, hit: &Hit, geometric: Vec3, direction: Vec3, width: f32) -> f32 {
+        let corners = self.corners_of(hit);
+        let uv = |k: usize| [corners[k].uv[0], corners[k].uv[1]];
+        let [a, b, c] = [uv(0), uv(1), uv(2)];
+        let (bx, by, cx, cy) = (b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]);
+        let area_uv = (bx * cy - by * cx).abs();
+        let area = geometric.dot(geometric).sqrt();
+        let cosine = (geometric.dot(direction).abs() / area.max(1.0e-20)).max(0.05);
+        0.5 * ops::log2(area_uv.max(1.0e-20) / area.max(1.0e-20)) + ops::log2(width.max(1.0e-12) / cosine)
+    }
+
+    /// The cross product of the edges of the triangle that was hit: its normal, as long as twice its area.
+    fn surface_edges(&self, hit: &Hit) -> Vec3 {
+        let triangle = &self.triangles[hit.triangle as usize];
+        Vec3::from(triangle.edge_1).cross(Vec3::from(triangle.edge_2))
+    }
+
+    /// Everything that shading needs at a hit. `cone` is the width of the ray at distance 1.
+    #[must_use]
+    pub fn surface_at(&self, hit: &Hit, origin: Vec3, direction: Vec3, cone: f32) -> Surface {
+        let material = self.corners_of(hit)[0].material;
+        let geometric = self.surface_edges(hit);
+        let facing = if geometric.dot(direction) > 0.0 { -1.0 } else { 1.0 };
+        let facet = geometric * (facing / geometric.dot(geometric).sqrt().max(1.0e-20));
+
+        let uv = self.surface_uv(hit);
+        let spread = self.surface_spread(hit, geometric, direction, cone * hit.distance);
+        let row = (material * SCENE_MATERIAL_ROWS) as usize;
+        let numbers = |k: usize| Vec4::from(self.table[row + k].map(f32::from_bits));
+        let (base_row, glow, look) = (numbers(0), numbers(1), numbers(2));
+        let flags = self.table[row + 3][0];
+        let transmission_factor = f32::from_bits(self.table[row + 3][1]);
+        let ior = f32::from_bits(self.table[row + 3][2]);
+        let (maps, more) = (self.table[row + 4], self.table[row + 5]);
+
+        let base = base_row * self.surface_texture(maps[0], uv, spread) * self.surface_colour(hit);
+        let rough = self.surface_texture(maps[1], uv, spread);
+        let metallic = (glow.w * rough.z).clamp(0.0, 1.0);
+        let roughness = (look.x * rough.y).clamp(0.0, 1.0);
+        let emission = glow.truncate() * self.surface_texture(maps[3], uv, spread).truncate();
+        let occlusion = 1.0 + look.z * (self.surface_texture(more[0], uv, spread).x - 1.0);
+        let transmission = transmission_factor * self.surface_texture(more[1], uv, spread).x;
+
+        let mut normal = self.mix(hit, |c| Vec3::from(c.normal).extend(0.0)).truncate() * facing;
+        if maps[2] != SCENE_NONE {
+            let tangent = self.mix(hit, |c| c.tangent.into());
+            let map = self.surface_texture(maps[2], uv, spread).truncate() * 2.0 - Vec3::ONE;
+            let side = (normal * facing).cross(tangent.truncate()) * tangent.w;
+            normal =
+                tangent.truncate() * (map.x * look.y) + side * (map.y * look.y) + normal * map.z.max(0.05);
+        }
+        normal /= normal.dot(normal).sqrt().max(1.0e-20);
+        // A shading normal that faces away from the viewer is bent back to the horizon.
+        let away = normal.dot(direction);
+        if away > 0.0 {
+            normal -= direction * (away + 0.01);
+            normal /= normal.dot(normal).sqrt().max(1.0e-20);
+        }
+        let dielectric = (ior - 1.0) / (ior + 1.0);
+        let f0 = dielectric * dielectric;
+        let colour = base.truncate();
+        Surface {
+            position: origin + direction * hit.distance,
+            alpha: base.w,
+            normal,
+            roughness,
+            facet,
+            occlusion: occlusion.clamp(0.0, 1.0),
+            diffuse: colour * (1.0 - metallic),
+            flags,
+            normal_reflectance: Vec3::splat(f0) * (1.0 - metallic) + colour * metallic,
+            transmission: transmission.clamp(0.0, 1.0) * (1.0 - metallic),
+            emission,
+        }
+    }
+}

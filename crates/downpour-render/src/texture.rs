@@ -1,0 +1,83 @@
+//! Textures in a buffer, filtered by our own code, so that CPU and GPU filter in the same way. Twin of
+//! `shaders/wgsl/render/texture.wgsl`.
+
+use downpour_math::ops;
+use downpour_shaders::render::scene::{
+    SCENE_MIRROR_U, SCENE_MIRROR_V, SCENE_REPEAT_U, SCENE_REPEAT_V, SCENE_ROOTED,
+};
+use glam::{Vec2, Vec4};
+
+use crate::data::SceneData;
+
+/// A coordinate brought into the texture: the index of a texel along an edge of `n`.
+#[must_use]
+pub fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> i32 {
+    if repeats {
+        return ((i % n) + n) % n;
+    }
+    if mirrors {
+        let period = ((i % (2 * n)) + 2 * n) % (2 * n);
+        return period.min(2 * n - 1 - period);
+    }
+    i.clamp(0, n - 1)
+}
+
+impl SceneData {
+    /// One texel of a level, linear.
+    fn texture_texel(&self, first: u32, width: i32, height: i32, x: i32, y: i32, flags: u32) -> Vec4 {
+        let u = texture_wrap(x, width, flags & SCENE_REPEAT_U != 0, flags & SCENE_MIRROR_U != 0);
+        let v = texture_wrap(y, height, flags & SCENE_REPEAT_V != 0, flags & SCENE_MIRROR_V != 0);
+        let [r, g, b, a] = self.texels[first as usize + (v * width + u) as usize].to_le_bytes();
+        let texel = Vec4::new(r.into(), g.into(), b.into(), a.into()) / 255.0;
+        if flags & SCENE_ROOTED != 0 {
+            return Vec4::new(texel.x * texel.x, texel.y * texel.y, texel.z * texel.z, texel.w);
+        }
+        texel
+    }
+
+    /// A level at texture coordinates, bilinear.
+    fn texture_level(&self, first: u32, width: i32, height: i32, uv: Vec2, flags: u32) -> Vec4 {
+        let x = uv.x * width as f32 - 0.5;
+        let y = uv.y * height as f32 - 0.5;
+        let (fx, fy) = (x - x.floor(), y - y.floor());
+        let (ix, iy) = (x.floor() as i32, y.floor() as i32);
+        let at = |x: i32, y: i32| self.texture_texel(first, width, height, x, y, flags);
+        let top = at(ix, iy) * (1.0 - fx) + at(ix + 1, iy) * fx;
+        let bottom = at(ix, iy + 1) * (1.0 - fx) + at(ix + 1, iy + 1) * fx;
+        top * (1.0 - fy) + bottom * fy
+    }
+
+    /// A slot at the corner's two sets of coordinates. `spread` is the logarithm to base 2 of the width of the pixel
+    /// in units of texture coordinates.
+    #[must_use]
+    pub fn texture_sample(&self, slot: u32, uv: Vec4, spread: f32) -> Vec4 {
+        let slot = slot as usize;
+        let matrix = self.table[slot].map(f32::from_bits);
+        let place = self.table[slot + 1];
+        let image = self.table[slot + 2];
+        let chosen = if place[2] == 1 { Vec2::new(uv.z, uv.w) } else { Vec2::new(uv.x, uv.y) };
+        let moved = Vec2::new(
+            matrix[0] * chosen.x + matrix[1] * chosen.y + f32::from_bits(place[0]),
+            matrix[2] * chosen.x + matrix[3] * chosen.y + f32::from_bits(place[1]),
+        );
+        // Far outside, a coordinate has no fraction left.
+        let inside = moved.clamp(Vec2::splat(-4096.0), Vec2::splat(4096.0));
+        let texels = 0.5 * ops::log2(image[0] as f32 * image[1] as f32);
+        let lod = (spread + texels).clamp(0.0, (image[3] - 1) as f32);
+        let (mut first, mut width, mut height) = (image[2], image[0] as i32, image[1] as i32);
+        let level = lod as u32;
+        for _ in 0..level {
+            first += (width * height) as u32;
+            width = (width / 2).max(1);
+            height = (height / 2).max(1);
+        }
+        let near = self.texture_level(first, width, height, inside, place[3]);
+        let fraction = lod - level as f32;
+        if fraction == 0.0 || level + 1 >= image[3] {
+            return near;
+        }
+        let next = first + (width * height) as u32;
+        let far = self.texture_level(next, (width / 2).max(1), (height / 2).max(1), inside, place[3]);
+        near * (1.0 - fraction) + far * fraction
+    }
+}

@@ -1,0 +1,99 @@
+//! From scene-referred radiance to a picture.
+//!
+//! The curve is the neutral tone mapper of Khronos (2024): colours up to 0.8 less the toe stay as they are, brighter
+//! ones are compressed and lose saturation towards white. Exposure is a factor of 2 per stop; automatic exposure puts
+//! the logarithmic mean of the picture at middle grey.
+
+use downpour_math::ops;
+use glam::Vec3;
+
+const START: f32 = 0.8 - 0.04;
+const DESATURATION: f32 = 0.15;
+/// Middle grey.
+const GREY: f32 = 0.18;
+
+/// Luminance of linear BT.709.
+#[must_use]
+pub fn tone_luminance(colour: Vec3) -> f32 {
+    colour.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}
+
+/// The tone curve, in [0, 1].
+#[must_use]
+pub fn tone_neutral(colour: Vec3) -> Vec3 {
+    let colour = colour.max(Vec3::ZERO);
+    let least = colour.min_element();
+    let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
+    let lifted = colour - Vec3::splat(offset);
+    let peak = lifted.max_element();
+    if peak < START {
+        return lifted;
+    }
+    let d = 1.0 - START;
+    let new_peak = 1.0 - d * d / (peak + d - START);
+    let scaled = lifted * (new_peak / peak);
+    let g = 1.0 - 1.0 / (DESATURATION * (peak - new_peak) + 1.0);
+    scaled.lerp(Vec3::splat(new_peak), g)
+}
+
+/// The sRGB transfer function (IEC 61966-2-1), to 8 bits.
+#[must_use]
+pub fn tone_srgb(linear: f32) -> u8 {
+    let v = linear.clamp(0.0, 1.0);
+    let encoded = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * ops::pow(v, 1.0 / 2.4) - 0.055 };
+    (encoded * 255.0).round() as u8
+}
+
+/// The exposure that puts the logarithmic mean of the picture at middle grey, within 16 stops of 1. Pixels are
+/// radiance and anything.
+#[must_use]
+pub fn tone_automatic_exposure(pixels: &[[f32; 4]]) -> f32 {
+    let (mut sum, mut count) = (0.0f64, 0u32);
+    for [r, g, b, _] in pixels {
+        let y = tone_luminance(Vec3::new(*r, *g, *b));
+        if y.is_finite() {
+            sum += f64::from(ops::log2(y.max(1.0e-6)));
+            count += 1;
+        }
+    }
+    if count == 0 {
+        return 1.0;
+    }
+    let mean = ops::exp2((sum / f64::from(count)) as f32);
+    (GREY / mean).clamp(1.0 / 65_536.0, 65_536.0)
+}
+
+/// The 8-bit picture of linear radiance.
+#[must_use]
+pub fn tone_picture(pixels: &[[f32; 4]], exposure: f32) -> Vec<[u8; 3]> {
+    pixels
+        .iter()
+        .map(|&[r, g, b, _]| tone_neutral(Vec3::new(r, g, b) * exposure).to_array().map(tone_srgb))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dark_colours_stay_and_bright_ones_end_at_white() {
+        let dark = Vec3::new(0.2, 0.3, 0.4);
+        assert!((tone_neutral(dark) - (dark - Vec3::splat(0.04))).length() < 1.0e-6);
+        let bright = tone_neutral(Vec3::new(1.0e4, 10.0, 10.0));
+        assert!(bright.min_element() > 0.9 && bright.max_element() <= 1.0, "{bright}");
+        assert_eq!(tone_neutral(Vec3::ZERO), Vec3::ZERO);
+    }
+
+    #[test]
+    fn exposure_brings_the_mean_to_grey() {
+        let exposure = tone_automatic_exposure(&[[4.0, 4.0, 4.0, 0.0]; 10]);
+        assert!((exposure - 0.045).abs() < 1.0e-4, "{exposure}");
+        assert_eq!(tone_automatic_exposure(&[]), 1.0);
+    }
+
+    #[test]
+    fn srgb_ends_and_middle() {
+        assert_eq!([tone_srgb(0.0), tone_srgb(1.0), tone_srgb(0.5), tone_srgb(2.0)], [0, 255, 188, 255]);
+    }
+}

@@ -1,0 +1,54 @@
+//! Which extensions are drawn, and a warning for each that is not.
+
+use crate::error::{SceneError, quoted};
+use crate::gltf::guard::Spot;
+use crate::warning::{WarningKind, Warnings};
+use std::collections::BTreeMap;
+
+/// Extensions that are read, or that change nothing in a picture.
+const READ: [&str; 9] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_xmp_json_ld",
+    "KHR_xmp",
+];
+
+/// Where extensions stand that change what is drawn.
+const PLACES: [&[&str]; 4] = [
+    &["materials", "[]", "extensions"],
+    &["textures", "[]", "extensions"],
+    &["nodes", "[]", "extensions"],
+    &["extensions"],
+];
+
+/// Warns of what is not read, each extension once.
+pub(super) fn look(document: &Spot<'_>, warnings: &mut Warnings) -> Result<(), SceneError> {
+    let mut unread: BTreeMap<String, usize> = BTreeMap::new();
+    document.each(&["extensionsUsed", "[]"], &mut |name| {
+        let name = name.text()?;
+        if !READ.contains(&name) {
+            unread.entry(name.to_owned()).or_insert(0);
+        }
+        Ok(())
+    })?;
+    for place in PLACES {
+        document.each(place, &mut |extensions| {
+            for (name, _) in extensions.members()?.filter(|(name, _)| !READ.contains(name)) {
+                let count = unread.entry(name.to_owned()).or_insert(0);
+                *count = count.saturating_add(1);
+            }
+            Ok(())
+        })?;
+    }
+    for (name, count) in unread {
+        warnings.add(WarningKind::Ignored, "extensionsUsed", || {
+            format!("{} is not read; it stands at {count} objects", quoted(&name))
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,54 @@
+//! Eyes: glTF 2.0, section 3.10. A camera looks along -Z of its node with +Y up; scale has no effect on it.
+
+use glam::Vec3;
+
+/// A camera without a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// What the file calls it; may be empty.
+    pub name: String,
+    /// How it sees.
+    pub lens: Lens,
+}
+
+/// How a camera sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// Rays from one point.
+    Perspective {
+        /// The vertical angle of view in radians, between 0 and pi.
+        yfov: f32,
+        /// Width by height; `None` for that of the picture.
+        aspect: Option<f32>,
+        /// The nearest distance, in metres; above 0.
+        near: f32,
+        /// The farthest distance, in metres; `None` for no end.
+        far: Option<f32>,
+    },
+    /// Parallel rays.
+    Orthographic {
+        /// Half the width, in metres; negative for a mirrored picture.
+        xmag: f32,
+        /// Half the height, in metres; negative for a mirrored picture.
+        ymag: f32,
+        /// The nearest distance, in metres; from 0 on.
+        near: f32,
+        /// The farthest distance, in metres.
+        far: f32,
+    },
+}
+
+/// A camera in the world. The three directions are unit vectors at right angles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedCamera {
+    /// The node that it hangs on.
+    pub node: usize,
+    /// Which camera.
+    pub camera: usize,
+    /// Where it is, in metres.
+    pub eye: Vec3,
+    /// Where it looks.
+    pub forward: Vec3,
+    /// What is up in its picture.
+    pub up: Vec3,
+}

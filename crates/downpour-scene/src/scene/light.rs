@@ -1,0 +1,72 @@
+//! Lamps and suns: `KHR_lights_punctual`.
+//!
+//! Units are those of the extension: a point or spot light has its luminous intensity in candela, a directional
+//! light its illuminance in lux, `E = I / r^2` for a surface at distance `r` that faces the lamp. Lights shine along -Z of their node;
+//! scale has no effect on them.
+
+use glam::Vec3;
+
+/// A light without a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// What the file calls it; may be empty.
+    pub name: String,
+    /// Linear colour, in [0, 1].
+    pub color: Vec3,
+    /// Candela of a point or spot light, lux of a directional one; 0 or more.
+    pub intensity: f32,
+    /// The distance at which the light has faded to nothing, in metres; `None` for no end.
+    pub range: Option<f32>,
+    /// Its sort.
+    pub kind: LightKind,
+}
+
+/// The sort of a [`Light`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightKind {
+    /// Parallel light from infinitely far away.
+    Directional,
+    /// A lamp that shines to all sides.
+    Point,
+    /// A lamp with a cone.
+    Spot {
+        /// Half the angle of the cone of full intensity, in radians; from 0 on, below `outer`.
+        inner: f32,
+        /// Half the angle of the cone outside of which there is no light, in radians; up to pi/2.
+        outer: f32,
+    },
+}
+
+/// A light in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedLight {
+    /// The node that it hangs on.
+    pub node: usize,
+    /// Which light.
+    pub light: usize,
+    /// Where it is, in metres; without meaning for a directional light.
+    pub position: Vec3,
+    /// The unit direction in which it shines; without meaning for a point light.
+    pub direction: Vec3,
+}
+
+impl Light {
+    /// The part of the intensity that remains at a distance in metres because the range ends.
+    ///
+    /// `clamp(1 - (d / range)^4, 0, 1)` as the extension recommends; the fall with the square of the distance is
+    /// not in it. 1 without a range.
+    ///
+    /// ```
+    /// use downpour_scene::scene::{Light, LightKind};
+    /// let range = Some(10.0);
+    /// let lamp = Light { name: String::new(), color: [1.0; 3].into(), intensity: 100.0, range, kind: LightKind::Point };
+    /// assert_eq!((lamp.window(0.0), lamp.window(10.0), lamp.window(99.0)), (1.0, 0.0, 0.0));
+    /// ```
+    #[must_use]
+    pub fn window(&self, distance: f32) -> f32 {
+        self.range.map_or(1.0, |range| {
+            let square = (distance / range) * (distance / range);
+            (1.0 - square * square).clamp(0.0, 1.0)
+        })
+    }
+}

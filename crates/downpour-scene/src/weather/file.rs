@@ -1,0 +1,85 @@
+//! The file as it is written: tables of keys with units, before it becomes a [`Weather`].
+
+use super::fault::Places;
+use super::lamps::{Lamp, LampTable};
+use super::models::{Model, ModelTable};
+use super::quantity::{Exactly, Whole};
+use super::rain::{Rain, RainTable};
+use super::sky::{Sky, SkyTable, SunSource, SunTable};
+use super::{Camera, MAX_LIGHTS, MAX_MODELS, Weather, camera::CameraTable};
+use crate::error::{SceneError, quoted};
+use crate::uri::{Address, RelativePath, check};
+use serde::Deserialize;
+
+/// The longest path of a file, in bytes.
+const LONGEST_PATH: usize = 4096;
+
+/// All of it.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Tables {
+    rain: RainTable,
+    sky: SkyTable,
+    sun: Option<SunTable>,
+    camera: CameraTable,
+    model: Vec<ModelTable>,
+    light: Vec<LampTable>,
+    output: OutputTable,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OutputTable {
+    size: Option<Exactly<Whole<1, 16_384>, 2>>,
+}
+
+/// From text to checked values.
+pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
+    let places = Places::find(text)?;
+    let tables: Tables = toml::from_str(text).map_err(|error| places.refused(&error))?;
+    for (key, count, most) in
+        [("model", tables.model.len(), MAX_MODELS), ("light", tables.light.len(), MAX_LIGHTS)]
+    {
+        if count > most {
+            return Err(places.limit(key, format!("{count} times [[{key}]]"), format!("at most {most}")));
+        }
+    }
+    let sky = Sky::checked(&tables.sky, &places)?;
+    let default = Weather::default();
+    Ok(Weather {
+        name: String::new(),
+        rain: Rain::checked(&tables.rain, &places)?,
+        sun: SunSource::checked(tables.sun.as_ref(), &sky, &places)?,
+        sky,
+        camera: Camera::checked(&tables.camera, &places)?,
+        models: numbered(&tables.model, |i, table| Model::checked(i, table, &places))?,
+        lights: numbered(&tables.light, |i, table| Lamp::checked(i, table, &places))?,
+        size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
+    })
+}
+
+/// All entries of a list, or the first fault.
+fn numbered<T, U>(
+    tables: &[T],
+    checked: impl Fn(usize, &T) -> Result<U, SceneError>,
+) -> Result<Vec<U>, SceneError> {
+    tables.iter().enumerate().map(|(i, table)| checked(i, table)).collect()
+}
+
+/// A path that a weather file names: relative, and beneath its folder.
+pub(super) fn path(text: &str, key: &str, places: &Places<'_>) -> Result<RelativePath, SceneError> {
+    if text.len() > LONGEST_PATH {
+        let found = format!("a path of {} bytes", text.len());
+        return Err(places.bad(key, found, format!("at most {LONGEST_PATH} bytes")));
+    }
+    // Unlike an address in glTF, a path here is plain text: a percent sign is one.
+    let allowed = "only relative paths beneath the folder of the weather file or an asset root";
+    match check(&text.replace('%', "%25")) {
+        Ok(Address::File(path)) => Ok(path),
+        Ok(Address::Data { .. }) => Err(places.bad(key, "data in place of a file", allowed)),
+        Err(refused) => {
+            let why = refused.found.rsplit_once("\" ").map_or("is refused", |(_, why)| why);
+            Err(places.bad(key, format!("{} {why}", quoted(text)), allowed))
+        }
+    }
+}

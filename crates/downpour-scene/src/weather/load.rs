@@ -1,0 +1,286 @@
+//! All that a weather file names, as one scene, one sky and one sun.
+
+use super::{Lamp, Model, SkySource, SunSource, Weather};
+use crate::Budget;
+use crate::beneath::{Files, Folder, OpenFile};
+use crate::error::SceneError;
+use crate::gltf::read_scene_from_bytes;
+use crate::scene::{Light, LightKind, Local, Node, Scene};
+use crate::sky::{self, SUN_THRESHOLD, SkyMap, Sun};
+use crate::uri::{Address, RelativePath, check};
+use crate::warning::{Warning, WarningKind, Warnings};
+use downpour_math::ops::f64 as ops;
+use glam::{Affine3A, DAffine3, DQuat, DVec3};
+use std::path::Path;
+
+/// A weather with its files.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// All models with their copies, and the lamps of the file.
+    pub scene: Scene,
+    /// For each model, the animation of `scene` that plays.
+    pub animations: Vec<Option<usize>>,
+    /// The sky, turned and scaled; without the sun, if that was taken out of it.
+    pub sky: SkyMap,
+    /// The sun, if there is one.
+    pub sun: Option<Sun>,
+    /// What was left out or made good, in all files.
+    pub warnings: Vec<Warning>,
+}
+
+/// Folders in which the files of a weather are looked for, in this order: its own, then asset roots.
+#[derive(Debug)]
+pub struct Roots(Vec<Folder>);
+
+impl Roots {
+    /// Opens the folder of a weather file, and asset roots that the user has named.
+    ///
+    /// # Errors
+    /// One of them is no folder, or cannot be opened.
+    pub fn open(weather: &Path, asset_roots: &[&Path]) -> Result<Self, SceneError> {
+        let own = weather.parent().unwrap_or(Path::new(""));
+        [own].iter().chain(asset_roots).map(|folder| Folder::open(folder)).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl Files for Roots {
+    fn open(&self, path: &RelativePath) -> Result<OpenFile, SceneError> {
+        let mut first = None;
+        for folder in &self.0 {
+            match folder.open(path) {
+                // Not there: perhaps in the next one. Anything else is the answer.
+                Err(error @ SceneError::Unreadable(_)) => {
+                    first.get_or_insert(error);
+                }
+                other => return other,
+            }
+        }
+        Err(first.unwrap_or_else(|| SceneError::bad("", "no folder to look in", "a folder")))
+    }
+}
+
+/// The files beneath the folder of another file.
+struct Beside<'a> {
+    files: &'a dyn Files,
+    folder: &'a str,
+}
+
+impl Files for Beside<'_> {
+    fn open(&self, path: &RelativePath) -> Result<OpenFile, SceneError> {
+        let joined = format!("{}{}", self.folder, path.as_str());
+        match check(&joined.replace('%', "%25")) {
+            Ok(Address::File(path)) => self.files.open(&path),
+            _ => Err(SceneError::bad("", "a path that does not stay in its folder", "a relative path")),
+        }
+    }
+}
+
+/// Reads all files that a weather names, through `files`: see [`Roots`].
+///
+/// The budget is lowered by what they take up; a copy of a model costs its nodes only.
+///
+/// # Errors
+/// [`SceneError`] with the name of the file: it cannot be read, is not what Downpour can read, or is too large; or a
+/// model has no animation of the name that the weather gives.
+///
+/// ```no_run
+/// use downpour_scene::{Budget, weather::{Roots, Weather, load}};
+/// let (path, mut budget) = ("street/storm.toml".as_ref(), Budget::default());
+/// let weather = Weather::read(path, &mut budget)?;
+/// let loaded = load(&weather, &Roots::open(path, &[])?, &mut budget)?;
+/// println!("{} nodes, sun: {}", loaded.scene.nodes.len(), loaded.sun.is_some());
+/// # Ok::<(), downpour_scene::SceneError>(())
+/// ```
+pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result<Loaded, SceneError> {
+    let mut purse = *budget;
+    let mut warnings = Warnings::default();
+    let (mut sky, sun) = lights_of_the_sky(weather, files, &mut purse, &mut warnings)?;
+    let mut scene = Scene { name: weather.name.clone(), ..Scene::default() };
+    let mut animations = Vec::new();
+    for model in &weather.models {
+        animations.push(add(&mut scene, model, files, &mut purse)?);
+    }
+    for lamp in &weather.lights {
+        purse.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
+        hang(&mut scene, lamp);
+    }
+    *budget = purse;
+    let warnings = [std::mem::take(&mut sky.warnings), scene.warnings.clone(), warnings.finish()].concat();
+    Ok(Loaded { scene, animations, sky, sun, warnings })
+}
+
+/// The sky and the sun, turned and scaled.
+fn lights_of_the_sky(
+    weather: &Weather,
+    files: &dyn Files,
+    budget: &mut Budget,
+    warnings: &mut Warnings,
+) -> Result<(SkyMap, Option<Sun>), SceneError> {
+    let scale = weather.sky.scale;
+    let scaled = |colour: [f64; 3]| colour.map(|value| narrowed(value * scale));
+    let (mut sky, yaw) = match &weather.sky.source {
+        SkySource::Uniform(colour) => (SkyMap::uniform(scaled(*colour)), 0.0),
+        SkySource::Overcast(zenith) => (SkyMap::overcast(scaled(*zenith)), 0.0),
+        SkySource::File { file, yaw } => {
+            let name = file.as_str();
+            let read = |budget: &mut Budget| {
+                let bytes = sky::whole(files.open(file)?, budget)?;
+                sky::read_sky_from_bytes(name, &bytes, budget)
+            };
+            let mut sky = read(budget).map_err(|error| error.in_file(name))?;
+            for pixel in &mut sky.radiance {
+                *pixel = pixel.map(|value| narrowed(f64::from(value) * scale).min(sky::BRIGHTEST));
+            }
+            (sky, *yaw)
+        }
+    };
+    let mut sun = match weather.sun {
+        SunSource::None => None,
+        SunSource::FromSky => sky.extract_sun(SUN_THRESHOLD),
+        SunSource::Directional { towards, illuminance_lux, color, angular_radius } => {
+            let sun = Sun {
+                direction: towards.map(narrowed),
+                irradiance_rgb: color.map(|part| narrowed(part * illuminance_lux)),
+                angular_radius: narrowed(angular_radius),
+            };
+            return Ok((turned(sky, yaw), Some(sun)));
+        }
+    };
+    if let Some(sun) = &mut sun {
+        let [x, y, z] = sun.direction.map(f64::from);
+        let (s, c) = (ops::sin(yaw), ops::cos(yaw));
+        sun.direction = [c * x + s * z, y, c * z - s * x].map(narrowed);
+    } else if weather.sun == SunSource::FromSky {
+        warnings.add(WarningKind::Ignored, "sun", || "the sky map has no compact bright source".into());
+    }
+    Ok((turned(sky, yaw), sun))
+}
+
+fn turned(sky: SkyMap, yaw: f64) -> SkyMap {
+    if yaw == 0.0 { sky } else { sky.rotated(yaw) }
+}
+
+/// Adds a model with its copies. Returns the animation that plays.
+fn add(
+    scene: &mut Scene,
+    model: &Model,
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<Option<usize>, SceneError> {
+    let name = model.file.as_str();
+    let folder = name.rfind('/').and_then(|end| name.get(..=end)).unwrap_or_default();
+    let read = |budget: &mut Budget| {
+        let bytes = sky::whole(files.open(&model.file)?, budget)?;
+        read_scene_from_bytes(name, &bytes, &Beside { files, folder }, budget)
+    };
+    let other = read(budget).map_err(|error| error.in_file(name))?;
+    let chosen = match &model.animation {
+        None => (!other.animations.is_empty()).then_some(0),
+        Some(wanted) => {
+            Some(other.animations.iter().position(|one| one.name == *wanted).ok_or_else(|| {
+                let names: Vec<&str> = other.animations.iter().map(|one| one.name.as_str()).collect();
+                let found = format!("no animation {}", crate::error::quoted(wanted));
+                SceneError::bad("animations", found, crate::error::quoted(&names.join(", "))).in_file(name)
+            })?)
+        }
+    };
+    let chosen = chosen.map(|index| index.saturating_add(scene.animations.len()));
+    let (nodes, animations) = (scene.nodes.len(), scene.animations.len());
+    let mut places = model.transforms().map(|place| single(&place));
+    if let Some(first) = places.next() {
+        budget.take_nodes(1, "nodes").map_err(|error| error.in_file(name))?;
+        scene.append(other, first);
+    }
+    let part = nodes..scene.nodes.len();
+    let each = copy_bytes(scene, &part, animations);
+    for place in places {
+        budget.take_bytes(each, "nodes").map_err(|error| error.in_file(name))?;
+        budget.take_nodes(part.len() as u64, "nodes").map_err(|error| error.in_file(name))?;
+        copy(scene, part.clone(), animations, place);
+    }
+    Ok(chosen)
+}
+
+/// What a copy takes up, in bytes.
+fn copy_bytes(scene: &Scene, part: &std::ops::Range<usize>, animations: usize) -> u64 {
+    let of = |count: usize, size: usize| (count as u64).saturating_mul(size as u64);
+    let nodes = scene.nodes.get(part.clone()).unwrap_or_default().iter();
+    let nodes = nodes.map(|node| {
+        let skin = node.skin.and_then(|skin| scene.skins.get(skin));
+        let skin = skin.map_or(0, |skin| of(skin.joints.len(), size_of::<(usize, Affine3A)>()));
+        let lists = of(node.name.len(), 1).saturating_add(of(node.weights.len(), 4)).saturating_add(skin);
+        lists
+            .saturating_add(of(node.children.len(), size_of::<usize>()))
+            .saturating_add(of(1, size_of::<Node>()))
+    });
+    let channels = scene.animations.iter().skip(animations).flat_map(|animation| &animation.channels);
+    nodes.chain(channels.map(|channel| channel.track.bytes())).fold(0, u64::saturating_add)
+}
+
+/// Copies the nodes of a model, with the skins and movements that belong to them; the meshes are shared. The last
+/// node of the part is the one that all others hang on.
+fn copy(scene: &mut Scene, part: std::ops::Range<usize>, animations: usize, place: Affine3A) {
+    let by = scene.nodes.len().saturating_sub(part.start);
+    let mut nodes = scene.nodes.get(part.clone()).unwrap_or_default().to_vec();
+    for node in &mut nodes {
+        node.children.iter_mut().for_each(|child| *child = child.saturating_add(by));
+        if let Some(mut skin) = node.skin.and_then(|skin| scene.skins.get(skin)).cloned() {
+            skin.joints.iter_mut().for_each(|joint| *joint = joint.saturating_add(by));
+            node.skin = Some(scene.skins.len());
+            scene.skins.push(skin);
+        }
+    }
+    if let Some(root) = nodes.last_mut() {
+        root.local = Local::Matrix(place);
+    }
+    scene.nodes.extend(nodes);
+    scene.roots.push(scene.nodes.len().saturating_sub(1));
+    for animation in scene.animations.iter_mut().skip(animations) {
+        let moved: Vec<_> =
+            animation.channels.iter().filter(|channel| part.contains(&channel.node)).cloned().collect();
+        animation.channels.extend(moved.into_iter().map(|mut channel| {
+            channel.node = channel.node.saturating_add(by);
+            channel
+        }));
+    }
+}
+
+/// Hangs a lamp into the scene.
+fn hang(scene: &mut Scene, lamp: &Lamp) {
+    let (position, direction, color, intensity, range, kind) = match *lamp {
+        Lamp::Point { position, color, intensity_cd, range } => {
+            (position, DVec3::NEG_Z, color, intensity_cd, range, LightKind::Point)
+        }
+        Lamp::Spot { position, direction, color, intensity_cd, inner, outer, range } => {
+            let kind = LightKind::Spot { inner: narrowed(inner), outer: narrowed(outer) };
+            (position, direction, color, intensity_cd, range, kind)
+        }
+        Lamp::Directional { direction, color, illuminance_lux } => {
+            (DVec3::ZERO, direction, color, illuminance_lux, None, LightKind::Directional)
+        }
+    };
+    let light = scene.lights.len();
+    let intensity = narrowed(intensity);
+    let range = range.map(narrowed);
+    scene.lights.push(Light { name: String::new(), color: color.as_vec3(), intensity, range, kind });
+    // Lights shine along -Z of their node.
+    let rotation = DQuat::from_rotation_arc(DVec3::NEG_Z, direction);
+    let local = Local::Matrix(single(&DAffine3::from_rotation_translation(rotation, position)));
+    scene.roots.push(scene.nodes.len());
+    scene.nodes.push(Node { light: Some(light), local, ..Node::default() });
+}
+
+/// In single precision.
+fn single(place: &DAffine3) -> Affine3A {
+    let [x, y, z] = [place.matrix3.x_axis, place.matrix3.y_axis, place.matrix3.z_axis].map(DVec3::as_vec3a);
+    Affine3A { matrix3: glam::Mat3A::from_cols(x, y, z), translation: place.translation.as_vec3a() }
+}
+
+/// The nearest `f32`, within its range.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding is meant, and what is beyond the range is at its end"
+)]
+fn narrowed(value: f64) -> f32 {
+    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
+}

@@ -1,0 +1,219 @@
+//! Numbers that are checked as they are read: finite, and within their range.
+
+use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// What separates what was found from what is allowed, in errors that go through serde.
+pub(super) const ALLOWED: &str = "; allowed: ";
+
+/// A range of numbers.
+pub(super) trait Range {
+    const LOW: f64;
+    const HIGH: f64;
+    /// Whether 0 is allowed though it is below `LOW`.
+    const OR_ZERO: bool = false;
+    /// The range for a person.
+    const WORDS: &'static str;
+}
+
+macro_rules! ranges {
+    ($($name:ident: $low:expr, $high:expr, $words:expr $(, $zero:ident)?;)*) => {$(
+        #[derive(Clone, Copy, Debug)]
+        pub(super) struct $name;
+        impl Range for $name {
+            const LOW: f64 = $low;
+            const HIGH: f64 = $high;
+            $(const OR_ZERO: bool = stringify!($zero).len() > 0;)?
+            const WORDS: &'static str = $words;
+        }
+    )*};
+}
+
+ranges! {
+    RateMmH: 1e-3, 500.0, "0, or 0.001 to 500 mm/h", or_zero;
+    GammaShape: -3.0, 8.0, "-3 to 8";
+    MedianMm: 0.2, 5.0, "0.2 to 5 mm";
+    TemperatureC: -20.0, 40.0, "-20 to 40 Celsius";
+    PressureHpa: 300.0, 1100.0, "300 to 1100 hPa";
+    BoxM: 1.0, 1000.0, "1 to 1000 m";
+    Brightness: 0.0, 1e9, "0 to 1e9";
+    Tint: 0.0, 1.0, "0 to 1";
+    TurnDeg: -360.0, 360.0, "-360 to 360 degrees";
+    ElevationDeg: -90.0, 90.0, "-90 to 90 degrees";
+    PitchDeg: -89.9, 89.9, "-89.9 to 89.9 degrees";
+    Stops: -30.0, 30.0, "-30 to 30 stops";
+    Lux: 0.0, 1e9, "0 to 1e9 lux";
+    Candela: 0.0, 1e9, "0 to 1e9 cd";
+    DiscDeg: 0.0, 20.0, "0 to 20 degrees";
+    PlaceM: -1e7, 1e7, "-1e7 to 1e7 m";
+    FovDeg: 1.0, 170.0, "1 to 170 degrees";
+    DepthM: 1e-4, 1e7, "1e-4 to 1e7 m";
+    ShutterS: 0.0, 10.0, "0 to 10 s";
+    Scale: 1e-6, 1e6, "1e-6 to 1e6";
+    Part: -1e9, 1e9, "-1e9 to 1e9";
+    ConeDeg: 0.0, 89.9, "0 to 89.9 degrees";
+    RangeM: 1e-3, 1e7, "0.001 to 1e7 m";
+}
+
+/// A number within a range.
+#[derive(Debug)]
+pub(super) struct In<R>(pub(super) f64, PhantomData<R>);
+
+impl<R> Clone for In<R> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<R> Copy for In<R> {}
+
+impl<R: Range> In<R> {
+    fn checked<E: Error>(value: f64) -> Result<Self, E> {
+        if (R::LOW..=R::HIGH).contains(&value) || (R::OR_ZERO && value == 0.0) {
+            // No sign on a zero.
+            return Ok(Self(value + 0.0, PhantomData));
+        }
+        Err(E::custom(format_args!("{}{ALLOWED}{}", shown(value), R::WORDS)))
+    }
+}
+
+/// A number as a person wrote it, more or less.
+fn shown(value: f64) -> String {
+    if value.fract() == 0.0 && value.abs() < 1e15 { format!("{value:.0}") } else { format!("{value:?}") }
+}
+
+impl<'de, R: Range> Deserialize<'de> for In<R> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Number(PhantomData))
+    }
+}
+
+struct Number<R>(PhantomData<R>);
+
+impl<R: Range> Visitor<'_> for Number<R> {
+    type Value = In<R>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a number, {}", R::WORDS)
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<In<R>, E> {
+        In::checked(value)
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<In<R>, E> {
+        In::checked(value as f64)
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<In<R>, E> {
+        In::checked(value as f64)
+    }
+
+    fn visit_i128<E: Error>(self, value: i128) -> Result<In<R>, E> {
+        In::checked(value as f64)
+    }
+
+    fn visit_u128<E: Error>(self, value: u128) -> Result<In<R>, E> {
+        In::checked(value as f64)
+    }
+}
+
+/// Exactly `N` values in an array.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Exactly<T, const N: usize>(pub(super) [T; N]);
+
+impl<R, const N: usize> Exactly<In<R>, N> {
+    /// The plain numbers.
+    pub(super) fn numbers(self) -> [f64; N] {
+        self.0.map(|In(value, _)| value)
+    }
+}
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Row::<T, N>(PhantomData))
+    }
+}
+
+struct Row<T, const N: usize>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for Row<T, N> {
+    type Value = Exactly<T, N>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "an array of {N} numbers")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Exactly<T, N>, A::Error> {
+        let mut values = Vec::with_capacity(N);
+        while let Some(value) = seq.next_element()? {
+            if values.len() == N {
+                return Err(A::Error::custom(format_args!("more than {N} numbers{ALLOWED}{N} numbers")));
+            }
+            values.push(value);
+        }
+        <[T; N]>::try_from(values).map(Exactly).map_err(|values: Vec<T>| {
+            A::Error::custom(format_args!("{} numbers{ALLOWED}{N} numbers", values.len()))
+        })
+    }
+}
+
+/// One scale, or one for each axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ScaleXyz(pub(super) [f64; 3]);
+
+impl<'de> Deserialize<'de> for ScaleXyz {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(OneOrThree)
+    }
+}
+
+struct OneOrThree;
+
+impl<'de> Visitor<'de> for OneOrThree {
+    type Value = ScaleXyz;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a number or three, {}", Scale::WORDS)
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<ScaleXyz, E> {
+        In::<Scale>::checked(value).map(|In(value, _)| ScaleXyz([value; 3]))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<ScaleXyz, E> {
+        self.visit_f64(value as f64)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ScaleXyz, A::Error> {
+        Row::<In<Scale>, 3>(PhantomData).visit_seq(seq).map(|row| ScaleXyz(row.numbers()))
+    }
+}
+
+/// A whole number from `LOW` to `HIGH`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Whole<const LOW: u32, const HIGH: u32>(pub(super) u32);
+
+impl<'de, const LOW: u32, const HIGH: u32> Deserialize<'de> for Whole<LOW, HIGH> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Count<const LOW: u32, const HIGH: u32>;
+        impl<const LOW: u32, const HIGH: u32> Visitor<'_> for Count<LOW, HIGH> {
+            type Value = u32;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "a whole number, {LOW} to {HIGH}")
+            }
+
+            fn visit_i64<E: Error>(self, value: i64) -> Result<u32, E> {
+                let fits = u32::try_from(value).ok().filter(|value| (LOW..=HIGH).contains(value));
+                fits.ok_or_else(|| E::custom(format_args!("{value}{ALLOWED}{LOW} to {HIGH}")))
+            }
+
+            fn visit_u64<E: Error>(self, value: u64) -> Result<u32, E> {
+                Err(E::custom(format_args!("{value}{ALLOWED}{LOW} to {HIGH}")))
+            }
+        }
+        deserializer.deserialize_any(Count::<LOW, HIGH>).map(Self)
+    }
+}

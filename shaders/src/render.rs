@@ -1,0 +1,5 @@
+//! `wgsl/render`: pictures. The Rust twins are in `downpour-render`.
+
+pub mod brdf;
+pub mod scene;
+pub mod specimen;

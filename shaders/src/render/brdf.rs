@@ -1,0 +1,23 @@
+//! `wgsl/render/brdf.wgsl`. Twin: `downpour_render::brdf`.
+
+use crate::Module;
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&BRDF_CONSTANTS, &BRDF];
+
+shared_constants! {
+    /// Guards of the microfacet terms.
+    BRDF_CONSTANTS at "render/brdf constants" {
+        /// Keeps a quotient finite.
+        BRDF_SMALLEST: f32 = 1.0e-7;
+        /// The least cosine to the viewer: interpolated normals may face away.
+        BRDF_GRAZING: f32 = 1.0e-3;
+    }
+}
+
+/// Reflection at a surface. Twin: `downpour_render::brdf`.
+pub static BRDF: Module = Module {
+    path: "render/brdf.wgsl",
+    wgsl: include_str!("../../wgsl/render/brdf.wgsl"),
+    uses: &[&BRDF_CONSTANTS],
+};

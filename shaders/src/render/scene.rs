@@ -1,0 +1,94 @@
+//! `wgsl/render/{data,texture,sky,surface,scene}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
+//! `downpour_render::{texture, sky, surface, scene}`.
+
+use super::brdf::BRDF;
+use crate::common::{PACKING, RNG};
+use crate::mask::BVH;
+use crate::{Kernel, Module};
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&SCENE_CONSTANTS, &DATA, &TEXTURE, &SKY, &SURFACE, &SCENE];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&SCENE_KERNEL];
+
+shared_constants! {
+    /// Numbers of the scene's tables and rays.
+    SCENE_CONSTANTS at "render/scene constants" {
+        /// Rows of a material in the table.
+        SCENE_MATERIAL_ROWS: u32 = 6;
+        /// Rows of a texture slot.
+        SCENE_SLOT_ROWS: u32 = 3;
+        /// Rows of a light.
+        SCENE_LIGHT_ROWS: u32 = 4;
+        /// Says that a material has no such texture.
+        SCENE_NONE: u32 = 4294967295;
+        /// Material flag: holes where alpha is below the cutoff.
+        SCENE_MASKED: u32 = 1;
+        /// Material flag: alpha mixes with what is behind.
+        SCENE_BLENDED: u32 = 2;
+        /// Material flag: both sides are seen.
+        SCENE_DOUBLE_SIDED: u32 = 4;
+        /// Material flag: the base colour is what is seen, without light.
+        SCENE_UNLIT: u32 = 8;
+        /// Texture flag: texels are square roots of linear colours.
+        SCENE_ROOTED: u32 = 1;
+        /// Texture flag: repeats in u.
+        SCENE_REPEAT_U: u32 = 2;
+        /// Texture flag: mirrored repeat in u.
+        SCENE_MIRROR_U: u32 = 4;
+        /// Texture flag: repeats in v.
+        SCENE_REPEAT_V: u32 = 8;
+        /// Texture flag: mirrored repeat in v.
+        SCENE_MIRROR_V: u32 = 16;
+        /// Light kind: parallel light.
+        SCENE_LIGHT_DIRECTIONAL: u32 = 0;
+        /// Light kind: from a point, in a cone (a point light's cone is everything).
+        SCENE_LIGHT_POINT: u32 = 1;
+        /// See-through surfaces that a ray passes before it ends.
+        SCENE_LAYERS: u32 = 12;
+        /// Levels of the sky: the map itself, and five prefiltered for roughness 0.2 to 1.
+        SCENE_SKY_LEVELS: u32 = 6;
+        /// Dimension of the random numbers of a pixel's rays.
+        SCENE_RANDOM_DIMENSION: u32 = 4100;
+        /// Least roughness of the light of points and of the sun: a mirror would need their size.
+        SCENE_LEAST_ROUGHNESS: f32 = 0.06;
+        /// Beyond every distance.
+        SCENE_FAR: f32 = 1.0e30;
+    }
+}
+
+/// The buffers of a scene and of a frame.
+pub static DATA: Module = Module {
+    path: "render/data.wgsl",
+    wgsl: include_str!("../../wgsl/render/data.wgsl"),
+    uses: &[&SCENE_CONSTANTS],
+};
+
+/// Textures in a buffer. Twin: `downpour_render::texture`.
+pub static TEXTURE: Module = Module {
+    path: "render/texture.wgsl",
+    wgsl: include_str!("../../wgsl/render/texture.wgsl"),
+    uses: &[&DATA],
+};
+
+/// The light of the sky. Twin: `downpour_render::sky`.
+pub static SKY: Module =
+    Module { path: "render/sky.wgsl", wgsl: include_str!("../../wgsl/render/sky.wgsl"), uses: &[&DATA] };
+
+/// What a ray finds. Twin: `downpour_render::surface`.
+pub static SURFACE: Module = Module {
+    path: "render/surface.wgsl",
+    wgsl: include_str!("../../wgsl/render/surface.wgsl"),
+    uses: &[&DATA, &TEXTURE, &BVH],
+};
+
+/// The picture of a scene. Twin: `downpour_render::scene`.
+pub static SCENE: Module = Module {
+    path: "render/scene.wgsl",
+    wgsl: include_str!("../../wgsl/render/scene.wgsl"),
+    uses: &[&DATA, &SKY, &SURFACE, &BRDF, &RNG, &PACKING],
+};
+
+/// One invocation per pixel.
+pub static SCENE_KERNEL: Kernel = Kernel { entry: "main_scene", module: &SCENE, workgroup: [8, 8, 1] };

@@ -1,0 +1,56 @@
+// Reflection at a surface: GGX microfacets over a diffuse base, metallic-roughness.
+// Sources: B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007 (GGX); E. Heitz,
+// JCGT 3(2), 2014 (height-correlated Smith); C. Schlick 1994; glTF 2.0 appendix B. The environment term is the fit of
+// B. Karis, "Physically based shading on mobile", 2014.
+// Symbols: alpha = roughness^2; all cosines in [0, 1].
+// Twin: downpour_render::brdf.
+
+// Normal distribution times pi: D(h) pi, at a cosine to the normal.
+fn brdf_distribution(alpha: f32, cosine_half: f32) -> f32 {
+    let a2 = alpha * alpha;
+    let d = (cosine_half * a2 - cosine_half) * cosine_half + 1.0;
+    return a2 / (d * d);
+}
+
+// Height-correlated Smith visibility: G over 4 times both cosines.
+fn brdf_visibility(alpha: f32, cosine_view: f32, cosine_light: f32) -> f32 {
+    let a2 = alpha * alpha;
+    let view = cosine_light * sqrt((cosine_view - a2 * cosine_view) * cosine_view + a2);
+    let light = cosine_view * sqrt((cosine_light - a2 * cosine_light) * cosine_light + a2);
+    return 0.5 / max(view + light, BRDF_SMALLEST);
+}
+
+// Schlick's Fresnel for a reflectance at normal incidence.
+fn brdf_fresnel(normal_reflectance: vec3f, cosine: f32) -> vec3f {
+    let rest = 1.0 - clamp(cosine, 0.0, 1.0);
+    let square = rest * rest;
+    let fifth = square * square * rest;
+    return normal_reflectance + (vec3f(1.0) - normal_reflectance) * fifth;
+}
+
+// Radiance towards the viewer for light of irradiance pi from one direction, cosine at the surface included.
+fn brdf_direct(
+    diffuse: vec3f, normal_reflectance: vec3f, alpha: f32,
+    normal: vec3f, view: vec3f, light: vec3f,
+) -> vec3f {
+    let cosine_light = dot(normal, light);
+    if cosine_light <= 0.0 {
+        return vec3f(0.0);
+    }
+    let cosine_view = max(dot(normal, view), BRDF_GRAZING);
+    let sum = view + light;
+    let halfway = sum / max(sqrt(dot(sum, sum)), BRDF_SMALLEST);
+    let cosine_half = clamp(dot(normal, halfway), 0.0, 1.0);
+    let fresnel = brdf_fresnel(normal_reflectance, dot(view, halfway));
+    let specular = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine_light);
+    return ((vec3f(1.0) - fresnel) * diffuse + fresnel * specular) * cosine_light;
+}
+
+// Share of a uniform environment that microfacets reflect.
+fn brdf_environment(normal_reflectance: vec3f, roughness: f32, cosine_view: f32) -> vec3f {
+    let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
+    let lift = min(r.x * r.x, exp2(-9.28 * cosine_view)) * r.x + r.y;
+    let scale = -1.04 * lift + r.z;
+    let bias = 1.04 * lift + r.w;
+    return normal_reflectance * scale + vec3f(bias);
+}

@@ -1,0 +1,51 @@
+// The buffers of a scene and of a frame. Bindings 1 and 2 are the triangles' hierarchy (mask/bvh.wgsl).
+// Host types: downpour_render::data.
+
+struct RenderFrame {
+    eye: vec3f,
+    // Pixels of the picture.
+    width: u32,
+    // Half the picture's width and height at distance 1, along the camera's axes.
+    right: vec3f,
+    height: u32,
+    up: vec3f,
+    // Samples along an edge of a pixel.
+    grid: u32,
+    forward: vec3f,
+    // Width of a pixel at distance 1.
+    pixel_angle: f32,
+    // Rows of the table where slots and lights begin.
+    slots: u32,
+    lights: u32,
+    light_count: u32,
+    // Rays to the sky per sample.
+    sky_rays: u32,
+    // First row of pixels of this dispatch.
+    first_row: u32,
+    seed: u32,
+    // Nearest distance of the next surface, metres.
+    nearest: f32,
+    // How far the rays to the sky go, metres.
+    sky_reach: f32,
+    // Width, height and first texel of each level of the sky.
+    sky_levels: array<vec4u, 6>,
+    // Irradiance of the sky over pi as spherical harmonics of degree 2.
+    sky_irradiance: array<vec4f, 9>,
+}
+
+// A corner of a triangle.
+struct RenderCorner {
+    normal: vec3f,
+    material: u32,
+    // Unit tangent and handedness.
+    tangent: vec4f,
+    // Two sets of texture coordinates.
+    uv: vec4f,
+    colour: vec4f,
+}
+
+@group(0) @binding(0) var<uniform> render_frame: RenderFrame;
+@group(0) @binding(3) var<storage, read> render_corners: array<RenderCorner>;
+@group(0) @binding(4) var<storage, read> render_table: array<vec4u>;
+@group(0) @binding(5) var<storage, read> render_texels: array<u32>;
+@group(0) @binding(6) var<storage, read> render_sky: array<vec4f>;

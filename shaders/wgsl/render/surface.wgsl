@@ -1,0 +1,156 @@
+// What a ray finds: the nearest triangle that is not a hole, and its material there.
+// Twin: downpour_render::surface.
+
+struct SurfaceHit {
+    // Negative: nothing.
+    distance: f32,
+    triangle: u32,
+    u: f32,
+    v: f32,
+}
+
+struct Surface {
+    position: vec3f,
+    alpha: f32,
+    // Faces the viewer.
+    normal: vec3f,
+    roughness: f32,
+    // The triangle's own normal, facing the viewer.
+    facet: vec3f,
+    occlusion: f32,
+    diffuse: vec3f,
+    flags: u32,
+    normal_reflectance: vec3f,
+    transmission: f32,
+    emission: vec3f,
+    unused: f32,
+}
+
+// A texture of a material's row, or white.
+fn surface_texture(row: u32, uv: vec4f, spread: f32) -> vec4f {
+    if row == SCENE_NONE {
+        return vec4f(1.0);
+    }
+    return texture_sample(row, uv, spread);
+}
+
+// The nearest surface that is not a hole of a masked material. Twelve holes in a row end the ray.
+fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32) -> SurfaceHit {
+    var from_distance = nearest;
+    for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
+        let hit = mask_bvh_hit(origin, direction, from_distance);
+        if hit.distance < 0.0 {
+            break;
+        }
+        let found = SurfaceHit(hit.distance, hit.triangle, hit.u, hit.v);
+        let material = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
+        if (render_table[material + 3u].x & SCENE_MASKED) == 0u {
+            return found;
+        }
+        let slot = render_table[material + 4u].x;
+        let alpha = bitcast<f32>(render_table[material].w)
+            * surface_texture(slot, surface_uv(found), -20.0).a * surface_colour(found).a;
+        if alpha >= bitcast<f32>(render_table[material + 2u].w) {
+            return found;
+        }
+        from_distance = hit.distance + nearest;
+    }
+    return SurfaceHit(-1.0, 0u, 0.0, 0.0);
+}
+
+// Texture coordinates at a hit.
+fn surface_uv(hit: SurfaceHit) -> vec4f {
+    let first = hit.triangle * 3u;
+    let w = 1.0 - hit.u - hit.v;
+    return render_corners[first].uv * w + render_corners[first + 1u].uv * hit.u
+        + render_corners[first + 2u].uv * hit.v;
+}
+
+// Vertex colour at a hit.
+fn surface_colour(hit: SurfaceHit) -> vec4f {
+    let first = hit.triangle * 3u;
+    let w = 1.0 - hit.u - hit.v;
+    return render_corners[first].colour * w + render_corners[first + 1u].colour * hit.u
+        + render_corners[first + 2u].colour * hit.v;
+}
+
+// Logarithm to base 2 of the width of a ray's cone at a hit, in units of texture coordinates: the mean scale of
+// coordinates over the triangle, times the cone's width, over the cosine at the surface.
+fn surface_spread(hit: SurfaceHit, geometric: vec3f, direction: vec3f, width: f32) -> f32 {
+    let first = hit.triangle * 3u;
+    let a = render_corners[first].uv.xy;
+    let b = render_corners[first + 1u].uv.xy - a;
+    let c = render_corners[first + 2u].uv.xy - a;
+    let area_uv = abs(b.x * c.y - b.y * c.x);
+    let area = sqrt(dot(geometric, geometric));
+    let cosine = max(abs(dot(geometric, direction)) / max(area, 1.0e-20), 0.05);
+    return 0.5 * log2(max(area_uv, 1.0e-20) / max(area, 1.0e-20)) + log2(max(width, 1.0e-12) / cosine);
+}
+
+// The cross product of the edges of the triangle that was hit: its normal, as long as twice its area.
+fn surface_edges(hit: SurfaceHit) -> vec3f {
+    return cross(mask_bvh_triangles[hit.triangle].edge_1, mask_bvh_triangles[hit.triangle].edge_2);
+}
+
+// Everything that shading needs at a hit.
+fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Surface {
+    let first = hit.triangle * 3u;
+    let w = 1.0 - hit.u - hit.v;
+    let corner = render_corners[first];
+    let second = render_corners[first + 1u];
+    let third = render_corners[first + 2u];
+    let geometric = surface_edges(hit);
+    let facing = select(1.0, -1.0, dot(geometric, direction) > 0.0);
+    let facet = geometric * (facing / max(sqrt(dot(geometric, geometric)), 1.0e-20));
+
+    let uv = surface_uv(hit);
+    let spread = surface_spread(hit, geometric, direction, cone * hit.distance);
+    let row = corner.material * SCENE_MATERIAL_ROWS;
+    let base_row = bitcast<vec4f>(render_table[row]);
+    let glow = bitcast<vec4f>(render_table[row + 1u]);
+    let look = bitcast<vec4f>(render_table[row + 2u]);
+    let flags = render_table[row + 3u].x;
+    let transmission_factor = bitcast<f32>(render_table[row + 3u].y);
+    let ior = bitcast<f32>(render_table[row + 3u].z);
+    let maps = render_table[row + 4u];
+    let more = render_table[row + 5u];
+
+    let base = base_row * surface_texture(maps.x, uv, spread) * surface_colour(hit);
+    let rough = surface_texture(maps.y, uv, spread);
+    let metallic = clamp(glow.w * rough.b, 0.0, 1.0);
+    let roughness = clamp(look.x * rough.g, 0.0, 1.0);
+    let emission = glow.rgb * surface_texture(maps.w, uv, spread).rgb;
+    let occlusion = 1.0 + look.z * (surface_texture(more.x, uv, spread).r - 1.0);
+    let transmission = transmission_factor * surface_texture(more.y, uv, spread).r;
+
+    var normal = (corner.normal * w + second.normal * hit.u + third.normal * hit.v) * facing;
+    if maps.z != SCENE_NONE {
+        let tangent = corner.tangent * w + second.tangent * hit.u + third.tangent * hit.v;
+        let map = surface_texture(maps.z, uv, spread).xyz * 2.0 - vec3f(1.0);
+        let side = cross(normal * facing, tangent.xyz) * tangent.w;
+        normal = tangent.xyz * (map.x * look.y) + side * (map.y * look.y) + normal * max(map.z, 0.05);
+    }
+    normal = normal / max(sqrt(dot(normal, normal)), 1.0e-20);
+    // A shading normal that faces away from the viewer is bent back to the horizon.
+    let away = dot(normal, direction);
+    if away > 0.0 {
+        normal = normal - direction * (away + 0.01);
+        normal = normal / max(sqrt(dot(normal, normal)), 1.0e-20);
+    }
+    let dielectric = (ior - 1.0) / (ior + 1.0);
+    let f0 = dielectric * dielectric;
+    return Surface(
+        origin + direction * hit.distance,
+        base.a,
+        normal,
+        roughness,
+        facet,
+        clamp(occlusion, 0.0, 1.0),
+        base.rgb * (1.0 - metallic),
+        flags,
+        vec3f(f0) * (1.0 - metallic) + base.rgb * metallic,
+        clamp(transmission, 0.0, 1.0) * (1.0 - metallic),
+        emission,
+        0.0,
+    );
+}

@@ -1,0 +1,79 @@
+// Textures in a buffer, filtered in the shader, so that the CPU filters them in the same way.
+// A slot is three rows of the table: the 2 x 2 part of the coordinates' transform; its offset, the set of coordinates
+// and flags; width, height, first texel and number of levels. Levels follow each other, each half as large.
+// Twin: downpour_render::texture.
+
+// A coordinate brought into the texture: the index of a texel along an edge of n.
+fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> i32 {
+    if repeats {
+        return ((i % n) + n) % n;
+    }
+    if mirrors {
+        let period = ((i % (2 * n)) + 2 * n) % (2 * n);
+        return min(period, 2 * n - 1 - period);
+    }
+    return clamp(i, 0, n - 1);
+}
+
+// One texel of a level, linear.
+fn texture_texel(first: u32, width: i32, height: i32, x: i32, y: i32, flags: u32) -> vec4f {
+    let u = texture_wrap(x, width, (flags & SCENE_REPEAT_U) != 0u, (flags & SCENE_MIRROR_U) != 0u);
+    let v = texture_wrap(y, height, (flags & SCENE_REPEAT_V) != 0u, (flags & SCENE_MIRROR_V) != 0u);
+    let texel = unpack4x8unorm(render_texels[first + u32(v * width + u)]);
+    if (flags & SCENE_ROOTED) != 0u {
+        return vec4f(texel.rgb * texel.rgb, texel.a);
+    }
+    return texel;
+}
+
+// A level at texture coordinates, bilinear.
+fn texture_level(first: u32, width: i32, height: i32, uv: vec2f, flags: u32) -> vec4f {
+    let x = uv.x * f32(width) - 0.5;
+    let y = uv.y * f32(height) - 0.5;
+    let fx = x - floor(x);
+    let fy = y - floor(y);
+    let ix = i32(floor(x));
+    let iy = i32(floor(y));
+    let a = texture_texel(first, width, height, ix, iy, flags);
+    let b = texture_texel(first, width, height, ix + 1, iy, flags);
+    let c = texture_texel(first, width, height, ix, iy + 1, flags);
+    let d = texture_texel(first, width, height, ix + 1, iy + 1, flags);
+    let top = a * (1.0 - fx) + b * fx;
+    let bottom = c * (1.0 - fx) + d * fx;
+    return top * (1.0 - fy) + bottom * fy;
+}
+
+// A slot at the corner's two sets of coordinates. `spread` is the logarithm to base 2 of the width of the pixel in
+// units of texture coordinates.
+fn texture_sample(slot: u32, uv: vec4f, spread: f32) -> vec4f {
+    let matrix = bitcast<vec4f>(render_table[slot]);
+    let place = render_table[slot + 1u];
+    let image = render_table[slot + 2u];
+    let chosen = select(uv.xy, uv.zw, place.z == 1u);
+    let moved = vec2f(
+        matrix.x * chosen.x + matrix.y * chosen.y + bitcast<f32>(place.x),
+        matrix.z * chosen.x + matrix.w * chosen.y + bitcast<f32>(place.y),
+    );
+    // Far outside, a coordinate has no fraction left.
+    let inside = clamp(moved, vec2f(-4096.0), vec2f(4096.0));
+    let texels = 0.5 * log2(f32(image.x) * f32(image.y));
+    let lod = clamp(spread + texels, 0.0, f32(image.w - 1u));
+    var first = image.z;
+    var width = i32(image.x);
+    var height = i32(image.y);
+    let level = u32(lod);
+    for (var k = 0u; k < level; k += 1u) {
+        first += u32(width * height);
+        width = max(width / 2, 1);
+        height = max(height / 2, 1);
+    }
+    let near = texture_level(first, width, height, inside, place.w);
+    let fraction = lod - f32(level);
+    if fraction == 0.0 || level + 1u >= image.w {
+        return near;
+    }
+    let far = texture_level(
+        first + u32(width * height), max(width / 2, 1), max(height / 2, 1), inside, place.w,
+    );
+    return near * (1.0 - fraction) + far * fraction;
+}

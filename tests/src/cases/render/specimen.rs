@@ -1,0 +1,245 @@
+//! `shaders/wgsl/render/specimen.wgsl` against `downpour_render::specimen`.
+
+use downpour_drop::DropShape;
+use downpour_gpu::{Gpu, GpuError};
+use downpour_mask::trace::TracedDrop;
+use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_math::vector::{add_scaled, cross, dot, normalize, scale};
+use downpour_render::specimen::gpu::{GpuSpecimenError, SpecimenRenderer};
+use downpour_render::specimen::sky::{specimen_sky_place, specimen_turns};
+use downpour_render::specimen::trace::{
+    SpecimenCamera, SpecimenLight, SpecimenRay, specimen_bounce, specimen_enter, specimen_hits, specimen_ray,
+    upright_drop,
+};
+use downpour_render::specimen::{Image, Sky, SpecimenOptions, render_specimen};
+use downpour_shaders::mask::MASK_TRACE_STEPS;
+use downpour_shaders::render::specimen;
+
+use crate::Domain::{Made, OneOf, Uniform, Unit3};
+use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::{Args, IntoWords};
+use crate::{FunctionCase, KernelCase, Tol};
+
+/// An upright drop of 0.1 to 6 mm, as `MaskTracedDrop` holds it: twelve coefficients, axis, index, two numbers of the
+/// spheroid, and two that the specimen does not use.
+fn drop_words(random: u32) -> Vec<u32> {
+    let shape =
+        DropShape::new(1.0e-4 + 5.9e-3 * f64::from(rng_unit(random))).expect("a diameter of the table");
+    let drop = upright_drop(&shape, 1.333);
+    let mut words: Vec<u32> = drop.coefficients.iter().map(|&c| (c as f32).to_bits()).collect();
+    words.push(0);
+    words.extend(drop.up.map(|c| (c as f32).to_bits()));
+    words.extend([drop.index, drop.inverse_wide, drop.inverse_tall].map(|c| (c as f32).to_bits()));
+    words.extend([0, 0]);
+    words
+}
+
+fn drop(args: &mut Args<'_>) -> TracedDrop {
+    let coefficients = args.f32s::<12>();
+    let up = args.f32s::<3>().map(f64::from);
+    let [index, inverse_wide, inverse_tall, _pixel] = args.f32s().map(f64::from);
+    let _size = args.u32();
+    TracedDrop {
+        coefficients: std::array::from_fn(|n| f64::from(coefficients[n])),
+        up,
+        index,
+        inverse_wide,
+        inverse_tall,
+        steps: MASK_TRACE_STEPS,
+    }
+}
+
+/// A ray whose foot is at most `farthest` from the origin, seen from 100 radii.
+fn ray_of(random: [u32; 4], farthest: f32) -> SpecimenRay<f32> {
+    let unit = random.map(|w| 2.0 * rng_unit(w) - 1.0);
+    let direction = normalize([unit[0], unit[1], unit[2] + 0.01]);
+    let across = normalize(cross(direction, normalize([unit[3], 0.37, unit[0] - unit[1]])));
+    let foot = scale(across, farthest * rng_unit(random[3]));
+    // Perpendicular but for rounding.
+    let foot = add_scaled(foot, direction, -dot(foot, direction));
+    SpecimenRay { foot, reach: 100.0, direction }
+}
+
+fn drop_and_ray(random: [u32; 4], farthest: f32) -> Vec<u32> {
+    let ray = ray_of(random, farthest);
+    [drop_words(random[2] ^ random[1]), ((ray.foot, ray.reach), ray.direction).words()].concat()
+}
+
+fn drop_and_light(random: [u32; 4]) -> Vec<u32> {
+    let words = drop_words(random[2] ^ random[1]);
+    let traced = drop(&mut Args::new(&words));
+    let light = specimen_enter(&traced, &ray_of(random, 0.7));
+    [words, light_words(&light)].concat()
+}
+
+fn light_words(light: &SpecimenLight<f32>) -> Vec<u32> {
+    ((((light.point, light.share), light.exit), light.rest), light.inside).words()
+}
+
+fn ray(args: &mut Args<'_>) -> SpecimenRay<f32> {
+    let foot = args.f32s();
+    SpecimenRay { foot, reach: args.f32(), direction: args.f32s() }
+}
+
+fn light(args: &mut Args<'_>) -> SpecimenLight<f32> {
+    let point = args.f32s();
+    let share = args.f32();
+    let exit = args.f32s();
+    SpecimenLight { point, share, exit, rest: args.f32(), inside: args.f32s() }
+}
+
+/// A camera at 1.2 to 10^5 radii in which the drop fills most of a picture 400 samples high.
+fn camera_words(random: [u32; 4]) -> Vec<u32> {
+    let unit = random.map(|w| f64::from(rng_unit(w)));
+    let shape = DropShape::sphere(2.0e-3).expect("a sphere");
+    let options = SpecimenOptions {
+        distance_m: 1.2e-3 * downpour_math::ops::f64::exp(11.0 * unit[0]),
+        yaw: 7.0 * unit[1],
+        pitch: 3.0 * unit[2] - 1.5,
+        size: [400, 400],
+        samples: 1,
+        ..SpecimenOptions::default()
+    };
+    let camera = options.camera(&shape).expect("a camera");
+    let single = |v: [f64; 3]| v.map(|c| c as f32);
+    let (step, distance) = (camera.step as f32, camera.distance as f32);
+    (((((single(camera.right), step), single(camera.up)), distance), single(camera.back)), 1u32).words()
+}
+
+fn camera(args: &mut Args<'_>) -> SpecimenCamera {
+    let right = args.f32s().map(f64::from);
+    let step = args.f32().into();
+    let up = args.f32s().map(f64::from);
+    let distance = args.f32().into();
+    let back = args.f32s().map(f64::from);
+    let _samples = args.u32();
+    SpecimenCamera { right, up, back, step, distance }
+}
+
+/// The cases.
+#[must_use]
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let module = &specimen::SPECIMEN;
+    vec![
+        FunctionCase::new(
+            "specimen_ray",
+            module,
+            &[Made(camera_words), Uniform(-200.0, 200.0), Uniform(-200.0, 200.0)],
+            Tol::relative(4.0e-6, 2.0e-6, "sums of products, a division (2.5 ulp) and a square root"),
+            |a| {
+                let ray = specimen_ray(&camera(a), a.f32(), a.f32());
+                ((ray.foot, ray.reach), ray.direction).words()
+            },
+        ),
+        FunctionCase::new(
+            "specimen_hits",
+            module,
+            &[Made(|r| drop_and_ray(r, 1.3))],
+            Tol::exact("a boolean: a ray that grazes the drop may fall on either side").with_outliers(1.0e-3),
+            |a| specimen_hits(&drop(a), &ray(a)).words(),
+        ),
+        FunctionCase::new(
+            "specimen_enter",
+            module,
+            &[Made(|r| drop_and_ray(r, 0.7))],
+            Tol::absolute(2.0e-5, "Newton's steps to the surface, known to 1e-6; errors grow towards the rim"),
+            |a| light_words(&specimen_enter(&drop(a), &ray(a))),
+        ),
+        FunctionCase::new(
+            "specimen_bounce",
+            module,
+            &[Made(drop_and_light), OneOf(&[1.0e-4, 2.0])],
+            Tol::absolute(
+                1.0e-4,
+                "the same for the next interface; refraction multiplies the errors close to the critical angle",
+            )
+            .with_outliers(1.0e-3),
+            |a| light_words(&specimen_bounce(&drop(a), &light(a), a.f32())),
+        ),
+        FunctionCase::new(
+            "specimen_turns",
+            module,
+            &[Uniform(-1.0, 1.0), Uniform(-1.0, 1.0)],
+            Tol::absolute(2.0e-7, "a division (2.5 ulp) and a polynomial that a GPU may fuse"),
+            |a| specimen_turns(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "specimen_sky_place",
+            module,
+            &[Unit3],
+            Tol::absolute(4.0e-7, "two angles of the polynomial, one of them doubled"),
+            |a| specimen_sky_place(a.f32s()).words(),
+        ),
+    ]
+}
+
+/// A sky of 64 x 32 texels between 0.2 and 1.2, as rough as the world.
+fn sky_texels() -> Vec<[f32; 3]> {
+    (0..64 * 32)
+        .map(|i| {
+            let [r, g, b, _] = rng_draw([5, 6], i, 0, 0).map(|w| 0.2 + rng_unit(w));
+            [r, g, b]
+        })
+        .collect()
+}
+
+fn told(error: GpuSpecimenError) -> GpuError {
+    match error {
+        GpuSpecimenError::Gpu(error) => error,
+        other => GpuError::Refused { what: "a specimen".to_owned(), reason: other.to_string() },
+    }
+}
+
+fn picture(gpu: &Gpu, diameter: f64, options: &SpecimenOptions) -> Result<Run, GpuError> {
+    let shape = DropShape::new(diameter).expect("a diameter of the table");
+    let texels = sky_texels();
+    let sky = Sky::new(64, 32, &texels).expect("a sky");
+    let cpu = render_specimen(&shape, options, sky).expect("a picture");
+    let gpu = SpecimenRenderer::new(gpu)?.render(&shape, options, sky).map_err(told)?;
+    let words = |image: &Image| image.pixels.iter().flat_map(IntoWords::words).collect();
+    let place = |i: u32| [i % cpu.width, i / cpu.width].map(|c| (c as f32).to_bits()).to_vec();
+    Ok(Run {
+        arguments: (0..cpu.width * cpu.height).map(place).collect(),
+        cpu: Cpu(words(&cpu)),
+        gpu: FromGpu(words(&gpu)),
+        kinds: vec![WordKind::Float; 3],
+    })
+}
+
+fn options(pitch: f64, yaw: f64) -> SpecimenOptions {
+    SpecimenOptions { size: [90, 70], samples: 2, pitch, yaw, ..SpecimenOptions::default() }
+}
+
+const LEVEL: Tol = Tol::absolute(
+    5.0e-4,
+    "directions of f32 are 1e-6 turns apart, more at the rim, in a sky that changes by 60 per turn",
+)
+.with_outliers(1.0e-3);
+const TILTED: Tol = Tol::absolute(
+    2.0e-3,
+    "total reflections multiply the errors before them; close to the critical angle a ray may take another way",
+)
+.with_outliers(1.0e-3);
+
+/// The cases.
+#[must_use]
+pub(super) fn kernels() -> Vec<KernelCase> {
+    let case = |name, tol, run| KernelCase {
+        name,
+        kernel: &specimen::SPECIMEN_KERNEL,
+        covers: &["specimen_sky", "specimen_sky_texel", "specimen_radiance", "specimen_pixel"],
+        tol,
+        run,
+    };
+    vec![
+        case("main_specimen: 1 mm, level", LEVEL, |gpu| picture(gpu, 1.0e-3, &options(0.0, 0.0))),
+        case("main_specimen: 5 mm, level", LEVEL, |gpu| picture(gpu, 5.0e-3, &options(0.0, 2.0))),
+        case("main_specimen: 3 mm from above, with dispersion", TILTED, |gpu| {
+            let refractive_index = [1.3312, 1.3345, 1.3392];
+            picture(gpu, 3.0e-3, &SpecimenOptions { refractive_index, ..options(0.6, -1.0) })
+        }),
+        case("main_specimen: 6 mm from below", TILTED, |gpu| picture(gpu, 6.0e-3, &options(-0.5, 4.0))),
+    ]
+}

@@ -1,0 +1,276 @@
+//! `shaders/wgsl/render` (but the specimen) against `downpour-render`.
+
+use downpour_gpu::{Gpu, GpuError};
+use downpour_math::rng::rng_unit;
+use downpour_render::brdf::{
+    brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_visibility,
+};
+use downpour_render::camera::Viewpoint;
+use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
+use downpour_render::gpu::ScenePipeline;
+use downpour_render::light::LightSource;
+use downpour_render::material::{MaterialLook, TextureUse};
+use downpour_render::scene::{SceneView, scene_hemisphere};
+use downpour_render::sky::sky_coordinates;
+use downpour_render::sky_light::SkyLight;
+use downpour_render::texture::texture_wrap;
+use downpour_shaders::render::brdf::BRDF;
+use downpour_shaders::render::scene::{
+    SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_KERNEL, SCENE_MASKED, SCENE_UNLIT, SKY, TEXTURE,
+};
+use glam::{Affine3A, Vec3};
+
+use crate::Domain::{AnyWord, Below, Made, Uniform, Unit3};
+use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::{Args, IntoWords as _};
+use crate::{FunctionCase, KernelCase, Tol};
+
+fn vec3(args: &mut Args<'_>) -> Vec3 {
+    Vec3::from(args.f32s())
+}
+
+const FORMULA: Tol =
+    Tol::relative(2.0e-5, 1.0e-6, "products, square roots and quotients (2.5 ulp each) without cancellation");
+
+/// The cases.
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let cosine = Uniform(0.02, 1.0);
+    let alpha = Uniform(0.05, 1.0);
+    let colour = [Uniform(0.0, 1.0); 3];
+    let [r, g, b] = colour;
+    vec![
+        FunctionCase::new(
+            "brdf_distribution",
+            &BRDF,
+            &[alpha, cosine],
+            Tol::relative(
+                1.0e-3,
+                1.0e-4,
+                "the denominator cancels to alpha^2 at the peak, where f32 has 1e-7 / alpha^2",
+            ),
+            |a| brdf_distribution(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new("brdf_visibility", &BRDF, &[alpha, cosine, cosine], FORMULA, |a| {
+            brdf_visibility(a.f32(), a.f32(), a.f32()).words()
+        }),
+        FunctionCase::new("brdf_fresnel", &BRDF, &[r, g, b, Uniform(-0.2, 1.2)], FORMULA, |a| {
+            brdf_fresnel(vec3(a), a.f32()).to_array().words()
+        }),
+        FunctionCase::new(
+            "brdf_direct",
+            &BRDF,
+            &[r, g, b, r, g, b, Uniform(0.2, 1.0), Unit3, Unit3, Unit3],
+            Tol::relative(
+                1.0e-3,
+                1.0e-4,
+                "the distribution above, and a half vector that cancels for opposite directions",
+            )
+            .with_outliers(1.0e-3),
+            |a| brdf_direct(vec3(a), vec3(a), a.f32(), vec3(a), vec3(a), vec3(a)).to_array().words(),
+        ),
+        FunctionCase::new(
+            "brdf_environment",
+            &BRDF,
+            &[r, g, b, Uniform(0.0, 1.0), Uniform(0.0, 1.0)],
+            Tol::absolute(1.0e-5, "an exp2 of numbers up to 10 (3 + 2|x| ulp) and sums of numbers up to 1"),
+            |a| brdf_environment(vec3(a), a.f32(), a.f32()).to_array().words(),
+        ),
+        FunctionCase::new(
+            "texture_wrap",
+            &TEXTURE,
+            &[
+                Made(|r| vec![(r[0] % 20_001).wrapping_sub(10_000)]),
+                Made(|r| vec![1 + r[0] % 300]),
+                Below(2),
+                Below(2),
+            ],
+            Tol::exact("integers are exact"),
+            |a| {
+                let (i, n) = (a.u32() as i32, a.u32() as i32);
+                (texture_wrap(i, n, a.u32() != 0, a.u32() != 0) as u32).words()
+            },
+        ),
+        FunctionCase::new(
+            "sky_coordinates",
+            &SKY,
+            &[Unit3],
+            Tol::absolute(7.0e-4, "atan2 (4096 ulp of up to pi, over 2 pi)").with_outliers(2.0e-2),
+            |a| sky_coordinates(vec3(a)).to_array().words(),
+        ),
+        FunctionCase::new(
+            "scene_hemisphere",
+            &SCENE,
+            &[Unit3, Below(16), Made(|r| vec![16 + r[0] % 4]), AnyWord, AnyWord, AnyWord, AnyWord],
+            Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
+                .with_outliers(1.0e-3),
+            |a| {
+                let normal = vec3(a);
+                scene_hemisphere(normal, a.u32(), a.u32(), a.u32s()).to_array().words()
+            },
+        ),
+    ]
+}
+
+/// A floor, boxes of every kind of material, a masked and a see-through sheet, three kinds of lamps, a sky.
+fn scene() -> SceneData {
+    let sky: Vec<[f32; 3]> = (0..64 * 32)
+        .map(|i| {
+            let (x, y) = ((i % 64) as f32 / 64.0, (i / 64) as f32 / 32.0);
+            [0.4 + 0.3 * x, 0.6, 1.2 - y]
+        })
+        .collect();
+    let sky = SkyLight::new(64, 32, &sky);
+    let mut builder = SceneBuilder::new();
+    let noise: Vec<[u8; 4]> = (0..32 * 16)
+        .map(|i| downpour_math::rng::rng_pcg4d([i, 1, 2, 3]).map(|w| (rng_unit(w) * 255.0) as u8))
+        .collect();
+    let mut colour = builder.texture(32, 16, &noise, TextureUse::Colour);
+    colour.matrix = [2.0, 0.5, -0.5, 2.0];
+    let colour = builder.add_slot(colour);
+    let data = builder.texture(32, 16, &noise, TextureUse::Data);
+    let data = builder.add_slot(data);
+    let plain = MaterialLook::default();
+    let looks = [
+        MaterialLook { maps: [Some(colour), None, None, None, None, None], roughness: 0.6, ..plain },
+        MaterialLook { metallic: 1.0, roughness: 0.25, base_colour: [0.9, 0.6, 0.3, 1.0], ..plain },
+        MaterialLook {
+            maps: [None, Some(data), Some(data), None, Some(data), None],
+            roughness: 0.8,
+            ..plain
+        },
+        MaterialLook {
+            flags: SCENE_MASKED | SCENE_DOUBLE_SIDED,
+            maps: [Some(colour), None, None, None, None, None],
+            ..plain
+        },
+        MaterialLook { flags: SCENE_BLENDED, base_colour: [0.2, 0.9, 0.4, 0.4], ..plain },
+        MaterialLook { flags: SCENE_UNLIT, base_colour: [1.0, 0.2, 0.7, 1.0], ..plain },
+        MaterialLook { transmission: 0.8, roughness: 0.1, emission: [0.1, 0.0, 0.2], ..plain },
+    ];
+    let materials = looks.map(|look| builder.add_material(look));
+    let positions: Vec<[f32; 3]> = (0..24)
+        .map(|i| {
+            // Face i / 4 of a cube: two coordinates run, the third is at its end.
+            let (axis, end) = (i / 4 % 3, if i < 12 { -0.5 } else { 0.5 });
+            let (u, v) = ([-0.5, 0.5, 0.5, -0.5][i % 4], [-0.5, -0.5, 0.5, 0.5][i % 4]);
+            let mut p = [0.0; 3];
+            p[axis] = end;
+            p[(axis + 1) % 3] = u;
+            p[(axis + 2) % 3] = v;
+            p
+        })
+        .collect();
+    let uvs: Vec<[f32; 2]> =
+        (0..24).map(|i| [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][i % 4]).collect();
+    let tangents: Vec<[f32; 4]> = (0..24)
+        .map(|i| {
+            let mut t = [0.0, 0.0, 0.0, 1.0];
+            t[(i / 4 + 1) % 3] = 1.0;
+            t
+        })
+        .collect();
+    let indices: Vec<u32> = (0..6).flat_map(|f| [0, 1, 2, 0, 2, 3].map(|k| 4 * f + k)).collect();
+    let mut place = |material: u32, at: Vec3, size: Vec3| {
+        let part = MeshPart {
+            positions: &positions,
+            normals: None,
+            tangents: Some(&tangents),
+            uvs: [Some(&uvs), None],
+            colours: None,
+            indices: &indices,
+            material,
+        };
+        builder.add_mesh(&part, &(Affine3A::from_translation(at) * Affine3A::from_scale(size)));
+    };
+    place(materials[0], Vec3::new(0.0, -0.6, 0.0), Vec3::new(8.0, 0.2, 8.0));
+    for (k, &material) in (0i16..).zip(&materials[1..]) {
+        let x = f32::from(k) - 2.5;
+        place(
+            material,
+            Vec3::new(x, 0.1 * f32::from(k % 3), -0.7 * f32::from(k % 2)),
+            Vec3::new(0.7, 0.9, 0.7),
+        );
+    }
+    builder.add_light(LightSource::Directional {
+        direction: Vec3::new(0.4, -0.8, -0.45).normalize(),
+        irradiance: Vec3::new(3.0, 2.8, 2.5),
+    });
+    builder.add_light(LightSource::Point {
+        position: Vec3::new(-1.0, 1.5, 1.5),
+        intensity: Vec3::splat(2.0),
+        range: 6.0,
+    });
+    builder.add_light(LightSource::Spot {
+        position: Vec3::new(2.0, 2.5, 1.0),
+        direction: Vec3::new(-0.4, -0.85, -0.35).normalize(),
+        intensity: Vec3::new(6.0, 3.0, 1.0),
+        range: 0.0,
+        inner: 0.3,
+        outer: 0.6,
+    });
+    builder.build(&sky)
+}
+
+fn scene_case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
+    let scene = scene();
+    let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.9 };
+    let frame = view.frame(&scene, [96, 64], 2, sky_rays, 7).expect("a frame");
+    let cpu = SceneView { data: &scene, frame: &frame }.picture();
+    let pipeline = ScenePipeline::new(gpu)?;
+    let gpu = pipeline.picture(&pipeline.upload(&scene)?, &frame)?;
+    let words = |picture: &[[f32; 4]]| picture.iter().flatten().map(|v| v.to_bits()).collect();
+    Ok(Run {
+        arguments: (0..96u32 * 64)
+            .map(|i| vec![((i % 96) as f32).to_bits(), ((i / 96) as f32).to_bits()])
+            .collect(),
+        cpu: Cpu(words(&cpu)),
+        gpu: FromGpu(words(&gpu)),
+        kinds: vec![WordKind::Float; 4],
+    })
+}
+
+const PICTURE: Tol = Tol::relative(
+    2.0e-3,
+    2.0e-3,
+    "sums over rays; a ray at an edge, and the sky's atan2 (4096 ulp), may fall on either side",
+)
+.with_outliers(2.0e-2);
+
+/// The cases.
+pub(super) fn kernels() -> Vec<KernelCase> {
+    let case = |name, run| KernelCase {
+        name,
+        kernel: &SCENE_KERNEL,
+        covers: &[
+            "texture_texel",
+            "texture_level",
+            "texture_sample",
+            "sky_level",
+            "sky_reflection",
+            "sky_irradiance",
+            "surface_texture",
+            "surface_hit",
+            "surface_uv",
+            "surface_colour",
+            "surface_spread",
+            "surface_edges",
+            "surface_at",
+            "scene_light",
+            "scene_visibility",
+            "scene_direct",
+            "scene_glance",
+            "scene_sky_light",
+            "scene_radiance",
+            "scene_direction",
+            "scene_pixel",
+        ],
+        tol: PICTURE,
+        run,
+    };
+    vec![
+        case("main_scene: near, with rays to the sky", |gpu| scene_case(gpu, Vec3::new(0.6, 1.4, 3.0), 4)),
+        case("main_scene: far, with the open sky", |gpu| scene_case(gpu, Vec3::new(-9.0, 6.0, 12.0), 0)),
+    ]
+}
