@@ -49,7 +49,7 @@ pub(crate) fn no_support() -> Failure {
 }
 
 #[cfg(feature = "gpu")]
-pub(crate) use gpu::{device, finish};
+pub(crate) use gpu::{FromGpu, device, finish};
 
 #[cfg(feature = "gpu")]
 mod gpu {
@@ -57,6 +57,7 @@ mod gpu {
 
     use downpour::gpu::{AdapterChoice, Gpu, GpuError, GpuOptions};
     use downpour::mask::gpu::GpuMaskError;
+    use downpour::render::specimen::gpu::GpuSpecimenError;
 
     use super::BackendArguments;
     use crate::failure::{Failure, INPUT};
@@ -76,6 +77,30 @@ mod gpu {
     impl From<GpuMaskError> for Failure {
         fn from(error: GpuMaskError) -> Self {
             Self::new(error.exit_code(), error.to_string())
+        }
+    }
+
+    impl From<GpuSpecimenError> for Failure {
+        fn from(error: GpuSpecimenError) -> Self {
+            Self::new(error.exit_code(), error.to_string())
+        }
+    }
+
+    /// An error that may have come from a GPU.
+    pub(crate) trait FromGpu {
+        /// What the GPU said, if it was the GPU.
+        fn gpu(&self) -> Option<&GpuError>;
+    }
+
+    impl FromGpu for GpuMaskError {
+        fn gpu(&self) -> Option<&GpuError> {
+            if let Self::Gpu(error) = self { Some(error) } else { None }
+        }
+    }
+
+    impl FromGpu for GpuSpecimenError {
+        fn gpu(&self) -> Option<&GpuError> {
+            if let Self::Gpu(error) = self { Some(error) } else { None }
         }
     }
 
@@ -112,11 +137,8 @@ mod gpu {
     }
 
     /// Hands a result of a GPU on. A GPU that hangs ends the process here: dropping its device would wait for it.
-    pub(crate) fn finish<T>(
-        result: Result<T, GpuMaskError>,
-        interrupt: &Interrupt,
-    ) -> Result<T, GpuMaskError> {
-        if let Err(GpuMaskError::Gpu(error @ GpuError::Hung { .. })) = &result {
+    pub(crate) fn finish<T, E: FromGpu>(result: Result<T, E>, interrupt: &Interrupt) -> Result<T, E> {
+        if let Err(Some(error @ GpuError::Hung { .. })) = result.as_ref().map_err(FromGpu::gpu) {
             stream::message(&format!("error: {error}"));
             interrupt.leave(error.exit_code());
         }

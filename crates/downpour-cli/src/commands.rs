@@ -4,6 +4,7 @@ mod adapters;
 mod drop;
 mod mask;
 mod rain;
+mod specimen;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand};
@@ -17,6 +18,7 @@ pub(crate) enum Command {
     Mask(mask::MaskArguments),
     Drop(drop::DropArguments),
     Rain(rain::RainArguments),
+    Specimen(specimen::SpecimenArguments),
     Adapters(adapters::AdaptersArguments),
 }
 
@@ -26,6 +28,7 @@ impl Command {
             Self::Mask(arguments) => arguments.run(interrupt),
             Self::Drop(arguments) => arguments.run(),
             Self::Rain(arguments) => arguments.run(),
+            Self::Specimen(arguments) => arguments.run(interrupt),
             Self::Adapters(arguments) => arguments.run(),
         }
     }

@@ -6,6 +6,8 @@ use std::path::Path;
 
 use downpour::drop::DropError;
 use downpour::mask::MaskError;
+use downpour::render::RenderError;
+use downpour::render::specimen::SpecimenError;
 use downpour::scene::SceneError;
 
 /// Anything that has no code of its own, as a defect of ours.
@@ -60,6 +62,18 @@ impl From<DropError> for Failure {
 
 impl From<MaskError> for Failure {
     fn from(error: MaskError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
+    }
+}
+
+impl From<SpecimenError> for Failure {
+    fn from(error: SpecimenError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
         Self::new(error.exit_code(), error.to_string())
     }
 }

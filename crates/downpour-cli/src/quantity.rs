@@ -46,6 +46,36 @@ pub(crate) fn elevation_deg(text: &str) -> Result<f64, String> {
     read(text, &(-90.0..=90.0), "-90 to 90 degrees")
 }
 
+/// Any angle of a view, in degrees.
+pub(crate) fn yaw_deg(text: &str) -> Result<f64, String> {
+    read(text, &(-36_000.0..=36_000.0), "-36000 to 36000 degrees")
+}
+
+/// Vertical field of view, in degrees.
+pub(crate) fn fov_deg(text: &str) -> Result<f64, String> {
+    read(text, &(1.0e-4..=170.0), "0.0001 to 170 degrees")
+}
+
+/// Distance of a camera, in metres.
+pub(crate) fn distance_m(text: &str) -> Result<f64, String> {
+    read(text, &(1.0e-4..=1.0e4), "0.0001 to 10000 m")
+}
+
+/// Width and height of a picture, as `WxH`. Any whole numbers are read: what is too large is over a limit.
+pub(crate) fn picture_size(text: &str) -> Result<[u32; 2], String> {
+    let allowed = "WxH, for example 960x540, each from 1 to 16384";
+    let edge = |part: &str| -> Result<u32, String> {
+        let digits = !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+        match part.parse::<u32>() {
+            Ok(n @ 1..) => Ok(n),
+            Err(_) if digits => Ok(u32::MAX),
+            _ => Err(format!("allowed: {allowed}")),
+        }
+    };
+    let (width, height) = text.split_once('x').ok_or_else(|| format!("allowed: {allowed}"))?;
+    Ok([edge(width)?, edge(height)?])
+}
+
 /// Refractive index relative to air.
 pub(crate) fn refractive_index(text: &str) -> Result<f64, String> {
     let allowed = "above 1, up to 4";
@@ -136,6 +166,16 @@ mod tests {
         assert_eq!(rate_mm_h("500"), Ok(500.0));
         assert_eq!(rate_mm_h("1e-30"), Ok(1.0e-30));
         assert!(rate_mm_h("1e-46").is_err() && rate_mm_h("500.1").is_err() && rate_mm_h("-1e-300").is_err());
+    }
+
+    #[test]
+    fn a_picture_has_two_edges() {
+        assert_eq!(picture_size("960x540"), Ok([960, 540]));
+        assert_eq!(picture_size("16385x1"), Ok([16_385, 1]));
+        assert_eq!(picture_size("99999999999x1"), Ok([u32::MAX, 1]));
+        for text in ["0x0", "5x0", "960", "x", "1x-1", "1.5x2", "axb", "1x2x3", ""] {
+            assert!(picture_size(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -26,6 +26,14 @@ pub enum RenderError {
         /// The most.
         most: u32,
     },
+    /// A picture could not be encoded.
+    #[error("the picture could not be written as {format}: {reason}")]
+    Encode {
+        /// The format.
+        format: &'static str,
+        /// Why.
+        reason: String,
+    },
 }
 
 impl RenderError {
@@ -34,6 +42,7 @@ impl RenderError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Size { found, most, .. } if found.iter().any(|n| n > most) => 3,
+            Self::Encode { .. } => 1,
             _ => 2,
         }
     }

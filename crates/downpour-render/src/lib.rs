@@ -1,10 +1,16 @@
-//! Scenes in the rain.
+//! Pictures, on a GPU and as a CPU reference that traces the same rays.
+//!
+//! - [`specimen`]: one exact drop in front of a sky map;
+//! - [`data`], [`scene`], `gpu`: a scene of triangles under a sky, traced by rays ([`surface`], [`texture`], [`sky`],
+//!   [`brdf`]); [`sky_light`] prepares the sky, [`camera`] the frame;
+//! - [`tone`] and [`file`]: from radiance to a file.
 
 mod assemble;
 pub mod brdf;
 pub mod camera;
 pub mod data;
 mod error;
+pub mod file;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod light;
@@ -19,3 +25,8 @@ pub mod tone;
 
 pub use assemble::DAYLIGHT_EFFICACY;
 pub use error::RenderError;
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -4,7 +4,8 @@
 //! |---|---|---|
 //! | [`mod@drop`] | `downpour-drop` | one drop (shape, fall speed, oscillation, optics) and many (size distributions) |
 //! | [`mask`] | `downpour-mask` | what a drop does to light: refraction masks, traced, written and read |
-//! | [`scene`] | `downpour-scene` | geometry from glTF files, behind a guard and a budget |
+//! | [`scene`] | `downpour-scene` | glTF scenes, sky maps and weather files, behind a guard and a budget |
+//! | [`render`] | `downpour-render` | one exact drop in front of a sky map; scenes traced by rays |
 //! | `gpu` (feature `wgpu`) | `downpour-gpu` | a checked layer over wgpu, on a device of its own or on yours |
 //! | [`shaders`] | `downpour-shaders` | every WGSL file as composable modules |
 //! | [`math`] | `downpour-math` | reproducible scalar functions and random numbers |
@@ -33,6 +34,7 @@ pub use downpour_drop as drop;
 pub use downpour_gpu as gpu;
 pub use downpour_mask as mask;
 pub use downpour_math as math;
+pub use downpour_render as render;
 pub use downpour_scene as scene;
 pub use downpour_shaders as shaders;
 

@@ -14,6 +14,7 @@ mod rain;
 mod readme;
 #[cfg(unix)]
 mod signals;
+mod specimen;
 #[cfg(all(feature = "gpu", target_os = "linux"))]
 mod without_gpu;
 #[cfg(not(feature = "gpu"))]

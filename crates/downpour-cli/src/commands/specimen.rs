@@ -1,0 +1,190 @@
+//! `downpour specimen`: one exact drop, large, in front of a sky map.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use downpour::drop::DropShape;
+use downpour::render::file::{write_exr, write_png};
+use downpour::render::specimen::{Image, Sky, SpecimenOptions, render_specimen};
+use downpour::render::tone::{tone_automatic_exposure, tone_picture};
+use downpour::scene::Budget;
+use downpour::scene::sky::{SkyMap, read_sky};
+
+use crate::backend::{Backend, BackendArguments};
+use crate::failure::{Failure, INPUT, LIMIT, shown};
+use crate::interrupt::Interrupt;
+use crate::output::Place;
+use crate::{quantity, stream};
+
+/// Largest edge of a picture.
+const LARGEST_EDGE: u32 = 16_384;
+
+/// Draw one drop, exactly, in front of a sky map.
+///
+/// The drop is at the origin, its axis vertical, bottom down; the camera looks at it from `--distance` along (sin yaw cos
+/// pitch, sin pitch, cos yaw cos pitch).
+#[derive(Debug, Args)]
+pub(crate) struct SpecimenArguments {
+    /// Diameter of the drop, 0.001 to 9 mm.
+    #[arg(long, value_name = "MM", value_parser = quantity::diameter_mm, allow_hyphen_values = true)]
+    diameter: f64,
+    /// The sky map: equirectangular, +Y up, .hdr or .exr.
+    #[arg(long, value_name = "ENV.hdr")]
+    environment: PathBuf,
+    /// Distance of the camera in metres.
+    #[arg(long, value_name = "M", default_value = "0.1", value_parser = quantity::distance_m)]
+    #[arg(allow_hyphen_values = true)]
+    distance: f64,
+    /// Where the camera stands round the drop, degrees.
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = quantity::yaw_deg)]
+    #[arg(allow_hyphen_values = true)]
+    yaw: f64,
+    /// How far the camera stands above the drop, -90 to 90 degrees.
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = quantity::elevation_deg)]
+    #[arg(allow_hyphen_values = true)]
+    pitch: f64,
+    /// Vertical field of view, degrees [default: the drop fills 80 % of the height].
+    #[arg(long, value_name = "DEG", value_parser = quantity::fov_deg, allow_hyphen_values = true)]
+    fov: Option<f64>,
+    /// Width and height in pixels.
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = quantity::picture_size)]
+    size: [u32; 2],
+    /// The picture: .exr (linear radiance of the map, unexposed) or .png (exposed by itself).
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Replace the file if it exists.
+    #[arg(long)]
+    overwrite: bool,
+    #[command(flatten)]
+    backend: BackendArguments,
+    /// Say nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What the end of the file's name says.
+#[derive(Clone, Copy)]
+enum Format {
+    Exr,
+    Png,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, Failure> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("exr") => Ok(Self::Exr),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Failure::new(INPUT, format!("output {}; allowed: .exr or .png", shown(path)))),
+        }
+    }
+}
+
+impl SpecimenArguments {
+    pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
+        let format = Format::of(&self.output)?;
+        self.backend.check()?;
+        let [width, height] = self.size;
+        if width.max(height) > LARGEST_EDGE {
+            let found = format!("--size is {width}x{height}");
+            return Err(Failure::new(LIMIT, format!("{found}; allowed: 1 to {LARGEST_EDGE} each way")));
+        }
+        let shape = DropShape::new(self.diameter * 1.0e-3)?;
+        let options = SpecimenOptions {
+            distance_m: self.distance,
+            yaw: self.yaw.to_radians(),
+            pitch: self.pitch.to_radians(),
+            fov: self.fov.map(f64::to_radians),
+            size: self.size,
+            ..SpecimenOptions::default()
+        };
+        options.check(&shape)?;
+        let place = Place::new(&self.output, self.overwrite)?;
+        let map = read_sky(&self.environment, &mut Budget::default())?;
+        for warning in map.warnings.iter().take(5) {
+            self.say(&format!("warning: {}: {warning}", shown(&self.environment)));
+        }
+        let image = self.render(&shape, &options, &map, interrupt)?;
+        let bytes = match format {
+            Format::Exr => write_exr(image.width, image.height, &image.pixels)?,
+            Format::Png => {
+                let pixels: Vec<[f32; 4]> = image.pixels.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
+                let exposure = tone_automatic_exposure(&pixels);
+                write_png(image.width, image.height, &tone_picture(&pixels, exposure))?
+            }
+        };
+        place.publish(&bytes, interrupt)?;
+        self.say(&format!("wrote {}: {width} x {height}", shown(&self.output)));
+        Ok(())
+    }
+
+    fn say(&self, text: &str) {
+        if !self.quiet {
+            stream::message(text);
+        }
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn render(
+        &self,
+        shape: &DropShape,
+        options: &SpecimenOptions,
+        map: &SkyMap,
+        _: &Interrupt,
+    ) -> Result<Image, Failure> {
+        match self.backend.backend {
+            Backend::Gpu => return Err(crate::backend::no_support()),
+            Backend::Auto => self.say("backend: cpu (this build has no GPU support)"),
+            Backend::Cpu => {}
+        }
+        on_cpu(shape, options, map)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn render(
+        &self,
+        shape: &DropShape,
+        options: &SpecimenOptions,
+        map: &SkyMap,
+        interrupt: &Interrupt,
+    ) -> Result<Image, Failure> {
+        use downpour::gpu::GpuError;
+        use downpour::render::specimen::gpu::SpecimenRenderer;
+
+        use crate::backend::FromGpu as _;
+
+        let wanted = self.backend.backend;
+        if wanted == Backend::Cpu {
+            return on_cpu(shape, options, map);
+        }
+        let reason = match crate::backend::device(&self.backend)? {
+            Ok(gpu) => {
+                let adapter = gpu.adapter();
+                self.say(&format!("backend: gpu, {} ({}, {})", adapter.name, adapter.kind, adapter.backend));
+                let sky = Sky::new(map.width, map.height, &map.radiance)?;
+                let made = SpecimenRenderer::new(&gpu)?.render(shape, options, sky);
+                match crate::backend::finish(made, interrupt) {
+                    Ok(image) => return Ok(image),
+                    Err(error) => match error.gpu() {
+                        // Too much for this device is not too much for the CPU.
+                        Some(GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. })
+                            if wanted == Backend::Auto =>
+                        {
+                            error.to_string()
+                        }
+                        _ => return Err(error.into()),
+                    },
+                }
+            }
+            Err(error) if wanted == Backend::Auto => error.to_string(),
+            Err(error) => return Err(error.into()),
+        };
+        self.say(&format!("backend: cpu ({reason})"));
+        on_cpu(shape, options, map)
+    }
+}
+
+fn on_cpu(shape: &DropShape, options: &SpecimenOptions, map: &SkyMap) -> Result<Image, Failure> {
+    let sky = Sky::new(map.width, map.height, &map.radiance)?;
+    Ok(render_specimen(shape, options, sky)?)
+}
