@@ -5,7 +5,7 @@
 //!   kernel, [`trace_drop_f64`] the reference above both;
 //! - [`trace_model`]: the same for any closed mesh ([`ClosedMesh`]) through a hierarchy of boxes ([`bvh`]);
 //! - `gpu` (feature `wgpu`): both on a GPU;
-//! - [`file`]: OpenEXR, KTX2, PNG.
+//! - [`mod@file`]: OpenEXR, KTX2, PNG.
 //!
 //! Lengths inside a mask are in units of the drop's volume-equivalent radius; directions are in the frame of the
 //! view: x right, y up, z towards the viewer.

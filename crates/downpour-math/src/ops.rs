@@ -5,7 +5,7 @@
 //! are exactly specified by IEEE 754 and need no counterpart here. `clippy.toml` forbids the platform's
 //! functions in the whole workspace.
 //!
-//! Functions on `f32` stand here, functions on `f64` in [`f64`](self::f64).
+//! Functions on `f32` stand here, functions on `f64` in [`mod@f64`].
 
 macro_rules! forward {
     ($ty:ty: $( $(#[$doc:meta])* $name:ident($($arg:ident),+) = $libm:ident; )*) => {

@@ -3,7 +3,7 @@
 //! - [`specimen`]: one exact drop in front of a sky map;
 //! - [`data`], [`scene`], `gpu`: a scene of triangles under a sky, traced by rays ([`surface`], [`texture`], [`sky`],
 //!   [`brdf`]); [`sky_light`] prepares the sky, [`camera`] the frame;
-//! - [`tone`] and [`file`]: from radiance to a file.
+//! - [`tone`] and [`mod@file`]: from radiance to a file.
 
 mod assemble;
 pub mod brdf;
