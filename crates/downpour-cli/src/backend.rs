@@ -48,8 +48,26 @@ pub(crate) fn no_support() -> Failure {
     Failure::new(crate::failure::GPU, message)
 }
 
+/// Computes on the CPU: this build knows no other.
+///
+/// # Errors
+/// Exit code 4 if a GPU was asked for, or what the work says.
+#[cfg(not(feature = "gpu"))]
+pub(crate) fn compute<T>(
+    arguments: &BackendArguments,
+    say: impl Fn(&str),
+    on_cpu: impl FnOnce() -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    match arguments.backend {
+        Backend::Gpu => return Err(no_support()),
+        Backend::Auto => say("backend: cpu (this build has no GPU support)"),
+        Backend::Cpu => {}
+    }
+    on_cpu()
+}
+
 #[cfg(feature = "gpu")]
-pub(crate) use gpu::{FromGpu, device, finish};
+pub(crate) use gpu::compute;
 
 #[cfg(feature = "gpu")]
 mod gpu {
@@ -59,7 +77,7 @@ mod gpu {
     use downpour::mask::gpu::GpuMaskError;
     use downpour::render::specimen::gpu::GpuSpecimenError;
 
-    use super::BackendArguments;
+    use super::{Backend, BackendArguments};
     use crate::failure::{Failure, INPUT};
     use crate::interrupt::Interrupt;
     use crate::stream;
@@ -87,7 +105,7 @@ mod gpu {
     }
 
     /// An error that may have come from a GPU.
-    pub(crate) trait FromGpu {
+    pub(crate) trait FromGpu: std::fmt::Display {
         /// What the GPU said, if it was the GPU.
         fn gpu(&self) -> Option<&GpuError>;
     }
@@ -104,11 +122,51 @@ mod gpu {
         }
     }
 
-    /// Opens the device that was asked for. `Ok(Err(reason))`: there is none.
+    /// Computes on what was asked for, and says which that is. `auto` goes to the CPU where there is no device, or where
+    /// the work is too much for it.
     ///
     /// # Errors
-    /// Exit code 2 for a bad [`INJECT`], 4 if the adapter that was named is not there.
-    pub(crate) fn device(arguments: &BackendArguments) -> Result<Result<Gpu, GpuError>, Failure> {
+    /// Exit code 2 for a bad [`INJECT`], 4 if there is no such adapter or the device failed, or what the work says. A
+    /// lost device never falls back.
+    pub(crate) fn compute<T, E: FromGpu>(
+        arguments: &BackendArguments,
+        interrupt: &Interrupt,
+        say: impl Fn(&str),
+        on_gpu: impl FnOnce(&Gpu) -> Result<T, E>,
+        on_cpu: impl FnOnce() -> Result<T, Failure>,
+    ) -> Result<T, Failure>
+    where
+        Failure: From<E>,
+    {
+        let wanted = arguments.backend;
+        if wanted == Backend::Cpu {
+            return on_cpu();
+        }
+        let reason = match device(arguments)? {
+            Ok(gpu) => {
+                let adapter = gpu.adapter();
+                say(&format!("backend: gpu, {} ({}, {})", adapter.name, adapter.kind, adapter.backend));
+                let error = match finish(on_gpu(&gpu), interrupt) {
+                    Ok(made) => return Ok(made),
+                    Err(error) => error,
+                };
+                // Too much for this device is not too much for the CPU.
+                let too_much =
+                    matches!(error.gpu(), Some(GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. }));
+                if wanted != Backend::Auto || !too_much {
+                    return Err(error.into());
+                }
+                error.to_string()
+            }
+            Err(error) if wanted == Backend::Auto => error.to_string(),
+            Err(error) => return Err(error.into()),
+        };
+        say(&format!("backend: cpu ({reason})"));
+        on_cpu()
+    }
+
+    /// Opens the device that was asked for. `Ok(Err(reason))`: there is none.
+    fn device(arguments: &BackendArguments) -> Result<Result<Gpu, GpuError>, Failure> {
         let adapter = match &arguments.adapter {
             Some(name) => AdapterChoice::Named(name.clone()),
             None => AdapterChoice::Auto,
@@ -137,7 +195,7 @@ mod gpu {
     }
 
     /// Hands a result of a GPU on. A GPU that hangs ends the process here: dropping its device would wait for it.
-    pub(crate) fn finish<T, E: FromGpu>(result: Result<T, E>, interrupt: &Interrupt) -> Result<T, E> {
+    fn finish<T, E: FromGpu>(result: Result<T, E>, interrupt: &Interrupt) -> Result<T, E> {
         if let Err(Some(error @ GpuError::Hung { .. })) = result.as_ref().map_err(FromGpu::gpu) {
             stream::message(&format!("error: {error}"));
             interrupt.leave(error.exit_code());

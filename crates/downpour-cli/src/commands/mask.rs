@@ -10,7 +10,7 @@ use downpour::mask::file::{exr, ktx2, png};
 use downpour::mask::{ClosedMesh, MOST_TRIANGLES, Mask, MaskOptions, SIZES, View, trace_drop, trace_model};
 use downpour::scene::{Budget, gltf::read_triangles};
 
-use crate::backend::{Backend, BackendArguments};
+use crate::backend::{BackendArguments, compute};
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
 use crate::output::Place;
@@ -202,12 +202,7 @@ impl MaskArguments {
 
     #[cfg(not(feature = "gpu"))]
     fn trace(&self, subject: &Subject, options: &MaskOptions, _: &Interrupt) -> Result<Vec<Mask>, Failure> {
-        match self.backend.backend {
-            Backend::Gpu => return Err(crate::backend::no_support()),
-            Backend::Auto => self.say("backend: cpu (this build has no GPU support)"),
-            Backend::Cpu => {}
-        }
-        on_cpu(subject, options)
+        compute(&self.backend, |text| self.say(text), || on_cpu(subject, options))
     }
 
     #[cfg(feature = "gpu")]
@@ -217,31 +212,9 @@ impl MaskArguments {
         options: &MaskOptions,
         interrupt: &Interrupt,
     ) -> Result<Vec<Mask>, Failure> {
-        use downpour::gpu::GpuError;
-        use downpour::mask::gpu::GpuMaskError;
-
-        let wanted = self.backend.backend;
-        if wanted == Backend::Cpu {
-            return on_cpu(subject, options);
-        }
-        let reason = match crate::backend::device(&self.backend)? {
-            Ok(gpu) => {
-                let adapter = gpu.adapter();
-                self.say(&format!("backend: gpu, {} ({}, {})", adapter.name, adapter.kind, adapter.backend));
-                match crate::backend::finish(on_gpu(&gpu, subject, options), interrupt) {
-                    Ok(masks) => return Ok(masks),
-                    // Too much for this device is not too much for the CPU.
-                    Err(GpuMaskError::Gpu(
-                        error @ (GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. }),
-                    )) if wanted == Backend::Auto => error,
-                    Err(error) => return Err(error.into()),
-                }
-            }
-            Err(error) if wanted == Backend::Auto => error,
-            Err(error) => return Err(error.into()),
-        };
-        self.say(&format!("backend: cpu ({reason})"));
-        on_cpu(subject, options)
+        let say = |text: &str| self.say(text);
+        let gpu = |gpu: &_| on_gpu(gpu, subject, options);
+        compute(&self.backend, interrupt, say, gpu, || on_cpu(subject, options))
     }
 }
 

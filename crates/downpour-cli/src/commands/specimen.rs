@@ -8,9 +8,9 @@ use downpour::render::file::{write_exr, write_png};
 use downpour::render::specimen::{Image, Sky, SpecimenOptions, render_specimen};
 use downpour::render::tone::{tone_automatic_exposure, tone_picture};
 use downpour::scene::Budget;
-use downpour::scene::sky::{SkyMap, read_sky};
+use downpour::scene::sky::read_sky;
 
-use crate::backend::{Backend, BackendArguments};
+use crate::backend::{BackendArguments, compute};
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
 use crate::output::Place;
@@ -104,7 +104,8 @@ impl SpecimenArguments {
         for warning in map.warnings.iter().take(5) {
             self.say(&format!("warning: {}: {warning}", shown(&self.environment)));
         }
-        let image = self.render(&shape, &options, &map, interrupt)?;
+        let sky = Sky::new(map.width, map.height, &map.radiance)?;
+        let image = self.render(&shape, &options, sky, interrupt)?;
         let bytes = match format {
             Format::Exr => write_exr(image.width, image.height, &image.pixels)?,
             Format::Png => {
@@ -129,15 +130,10 @@ impl SpecimenArguments {
         &self,
         shape: &DropShape,
         options: &SpecimenOptions,
-        map: &SkyMap,
+        sky: Sky<'_>,
         _: &Interrupt,
     ) -> Result<Image, Failure> {
-        match self.backend.backend {
-            Backend::Gpu => return Err(crate::backend::no_support()),
-            Backend::Auto => self.say("backend: cpu (this build has no GPU support)"),
-            Backend::Cpu => {}
-        }
-        on_cpu(shape, options, map)
+        compute(&self.backend, |text| self.say(text), || Ok(render_specimen(shape, options, sky)?))
     }
 
     #[cfg(feature = "gpu")]
@@ -145,46 +141,12 @@ impl SpecimenArguments {
         &self,
         shape: &DropShape,
         options: &SpecimenOptions,
-        map: &SkyMap,
+        sky: Sky<'_>,
         interrupt: &Interrupt,
     ) -> Result<Image, Failure> {
-        use downpour::gpu::GpuError;
         use downpour::render::specimen::gpu::SpecimenRenderer;
-
-        use crate::backend::FromGpu as _;
-
-        let wanted = self.backend.backend;
-        if wanted == Backend::Cpu {
-            return on_cpu(shape, options, map);
-        }
-        let reason = match crate::backend::device(&self.backend)? {
-            Ok(gpu) => {
-                let adapter = gpu.adapter();
-                self.say(&format!("backend: gpu, {} ({}, {})", adapter.name, adapter.kind, adapter.backend));
-                let sky = Sky::new(map.width, map.height, &map.radiance)?;
-                let made = SpecimenRenderer::new(&gpu)?.render(shape, options, sky);
-                match crate::backend::finish(made, interrupt) {
-                    Ok(image) => return Ok(image),
-                    Err(error) => match error.gpu() {
-                        // Too much for this device is not too much for the CPU.
-                        Some(GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. })
-                            if wanted == Backend::Auto =>
-                        {
-                            error.to_string()
-                        }
-                        _ => return Err(error.into()),
-                    },
-                }
-            }
-            Err(error) if wanted == Backend::Auto => error.to_string(),
-            Err(error) => return Err(error.into()),
-        };
-        self.say(&format!("backend: cpu ({reason})"));
-        on_cpu(shape, options, map)
+        let say = |text: &str| self.say(text);
+        let gpu = |gpu: &_| SpecimenRenderer::new(gpu)?.render(shape, options, sky);
+        compute(&self.backend, interrupt, say, gpu, || Ok(render_specimen(shape, options, sky)?))
     }
-}
-
-fn on_cpu(shape: &DropShape, options: &SpecimenOptions, map: &SkyMap) -> Result<Image, Failure> {
-    let sky = Sky::new(map.width, map.height, &map.radiance)?;
-    Ok(render_specimen(shape, options, sky)?)
 }
