@@ -9,6 +9,7 @@ mod specimen;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand};
 use downpour::drop::fall_speed::FallSpeedModel;
+use downpour::scene::Warning;
 
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
@@ -31,6 +32,19 @@ impl Command {
             Self::Specimen(arguments) => arguments.run(interrupt),
             Self::Adapters(arguments) => arguments.run(),
         }
+    }
+}
+
+/// Warnings of a file that are shown.
+const MOST_WARNINGS: usize = 5;
+
+/// Says the first warnings of a file, and how many more there are.
+fn say_warnings(name: &str, warnings: &[Warning], say: impl Fn(&str)) {
+    for warning in warnings.iter().take(MOST_WARNINGS) {
+        say(&format!("warning: {name}: {warning}"));
+    }
+    if let Some(more @ 1..) = warnings.len().checked_sub(MOST_WARNINGS) {
+        say(&format!("warning: {name}: and {more} more"));
     }
 }
 

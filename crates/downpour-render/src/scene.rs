@@ -94,7 +94,7 @@ impl SceneView<'_> {
     }
 
     /// Light of lamps and sun on a surface, towards the viewer.
-    fn scene_direct(&self, surface: &Surface, view: Vec3, shadows: bool) -> Vec3 {
+    fn scene_direct(&self, surface: &Surface, view: Vec3) -> Vec3 {
         let alpha =
             (surface.roughness * surface.roughness).max(SCENE_LEAST_ROUGHNESS * SCENE_LEAST_ROUGHNESS);
         let start = surface.position + surface.facet * self.frame.nearest;
@@ -115,11 +115,7 @@ impl SceneView<'_> {
             if reflected.dot(Vec3::ONE) <= 0.0 {
                 continue;
             }
-            let visible = if shadows {
-                self.scene_visibility(start, light.direction, light.distance)
-            } else {
-                Vec3::ONE
-            };
+            let visible = self.scene_visibility(start, light.direction, light.distance);
             sum += reflected * light.irradiance * visible;
         }
         sum
@@ -132,7 +128,7 @@ impl SceneView<'_> {
         }
         let sky = self.data.sky_irradiance(surface.normal) * surface.occlusion;
         surface.emission
-            + self.scene_direct(surface, view, true)
+            + self.scene_direct(surface, view)
             + (surface.diffuse + surface.normal_reflectance) * sky * 0.5
     }
 
@@ -192,7 +188,7 @@ impl SceneView<'_> {
                 let gloss = brdf_environment(surface.normal_reflectance, surface.roughness, cosine);
                 let body = surface.diffuse * (1.0 - surface.transmission) * (Vec3::ONE - gloss);
                 shown = surface.emission
-                    + self.scene_direct(&surface, view, true)
+                    + self.scene_direct(&surface, view)
                     + (body * sky.truncate() + gloss * reflection) * surface.occlusion;
             }
             let (mut share, mut tint) = (1.0, Vec3::ZERO);

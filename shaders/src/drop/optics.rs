@@ -23,16 +23,3 @@ shared_constants! {
         OPTICS_TATARCHUK_RISE: f32 = 0.95;
     }
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_wgsl_is_valid() {
-        let text = crate::compose(&[&super::OPTICS]);
-        let module =
-            naga::front::wgsl::parse_str(&text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&text)));
-        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
-            .validate(&module)
-            .unwrap_or_else(|e| panic!("{}", e.emit_to_string(&text)));
-    }
-}

@@ -62,7 +62,7 @@ fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
 }
 
 // Light of lamps and sun on a surface, towards the viewer.
-fn scene_direct(surface: Surface, view: vec3f, shadows: bool) -> vec3f {
+fn scene_direct(surface: Surface, view: vec3f) -> vec3f {
     let alpha = max(surface.roughness * surface.roughness, SCENE_LEAST_ROUGHNESS * SCENE_LEAST_ROUGHNESS);
     let start = surface.position + surface.facet * render_frame.nearest;
     var sum = vec3f(0.0);
@@ -77,22 +77,19 @@ fn scene_direct(surface: Surface, view: vec3f, shadows: bool) -> vec3f {
         if dot(reflected, vec3f(1.0)) <= 0.0 {
             continue;
         }
-        var visible = vec3f(1.0);
-        if shadows {
-            visible = scene_visibility(start, light.direction, light.distance);
-        }
+        let visible = scene_visibility(start, light.direction, light.distance);
         sum += reflected * light.irradiance * visible;
     }
     return sum;
 }
 
-// What a surface shows without its surroundings being looked at: lamps without shadows, the whole sky.
+// What a surface shows at a glance: lamps, and half of the whole sky.
 fn scene_glance(surface: Surface, view: vec3f) -> vec3f {
     if (surface.flags & SCENE_UNLIT) != 0u {
         return surface.diffuse + surface.normal_reflectance;
     }
     let sky = sky_irradiance(surface.normal) * surface.occlusion;
-    return surface.emission + scene_direct(surface, view, true) + (surface.diffuse + surface.normal_reflectance) * sky * 0.5;
+    return surface.emission + scene_direct(surface, view) + (surface.diffuse + surface.normal_reflectance) * sky * 0.5;
 }
 
 // Direction k of n over the hemisphere round a normal, cosine-weighted, for a pixel's random words.
@@ -161,7 +158,7 @@ fn scene_radiance(origin: vec3f, direction: vec3f, cone: f32, random: vec4u) -> 
             let reflection = sky_reflection(mirrored, surface.roughness) * open;
             let gloss = brdf_environment(surface.normal_reflectance, surface.roughness, cosine);
             let body = surface.diffuse * (1.0 - surface.transmission) * (vec3f(1.0) - gloss);
-            shown = surface.emission + scene_direct(surface, view, true)
+            shown = surface.emission + scene_direct(surface, view)
                 + (body * sky.rgb + gloss * reflection) * surface.occlusion;
         }
         var share = 1.0;

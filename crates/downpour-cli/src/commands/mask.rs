@@ -11,6 +11,7 @@ use downpour::mask::{ClosedMesh, MOST_TRIANGLES, Mask, MaskOptions, SIZES, View,
 use downpour::scene::{Budget, gltf::read_triangles};
 
 use crate::backend::{BackendArguments, compute};
+use crate::commands::say_warnings;
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
 use crate::output::Place;
@@ -28,9 +29,6 @@ const BYTES_PER_TEXEL: u64 = 130;
 
 /// What a drop model may cost.
 const MODEL_BUDGET_BYTES: u64 = 1 << 30;
-
-/// Warnings of a model that are shown.
-const MOST_WARNINGS: usize = 5;
 
 /// Trace the refraction mask of a drop, or of a drop model, and write it to a file.
 #[derive(Debug, Args)]
@@ -191,12 +189,7 @@ impl MaskArguments {
         }
         let mesh = ClosedMesh::new(&model.positions, model.normals.as_deref(), &model.indices)
             .map_err(|error| Failure::new(error.exit_code(), format!("{}: {error}", model.name)))?;
-        for warning in model.warnings.iter().take(MOST_WARNINGS) {
-            self.say(&format!("warning: {}: {warning}", model.name));
-        }
-        if let Some(more @ 1..) = model.warnings.len().checked_sub(MOST_WARNINGS) {
-            self.say(&format!("warning: {}: and {more} more", model.name));
-        }
+        say_warnings(&model.name, &model.warnings, |text| self.say(text));
         Ok(Subject::Model(mesh))
     }
 

@@ -11,13 +11,11 @@ use downpour::scene::Budget;
 use downpour::scene::sky::read_sky;
 
 use crate::backend::{BackendArguments, compute};
-use crate::failure::{Failure, INPUT, LIMIT, shown};
+use crate::commands::say_warnings;
+use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
 use crate::output::Place;
 use crate::{quantity, stream};
-
-/// Largest edge of a picture.
-const LARGEST_EDGE: u32 = 16_384;
 
 /// Draw one drop, exactly, in front of a sky map.
 ///
@@ -84,11 +82,6 @@ impl SpecimenArguments {
     pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         let format = Format::of(&self.output)?;
         self.backend.check()?;
-        let [width, height] = self.size;
-        if width.max(height) > LARGEST_EDGE {
-            let found = format!("--size is {width}x{height}");
-            return Err(Failure::new(LIMIT, format!("{found}; allowed: 1 to {LARGEST_EDGE} each way")));
-        }
         let shape = DropShape::new(self.diameter * 1.0e-3)?;
         let options = SpecimenOptions {
             distance_m: self.distance,
@@ -101,9 +94,7 @@ impl SpecimenArguments {
         options.check(&shape)?;
         let place = Place::new(&self.output, self.overwrite)?;
         let map = read_sky(&self.environment, &mut Budget::default())?;
-        for warning in map.warnings.iter().take(5) {
-            self.say(&format!("warning: {}: {warning}", shown(&self.environment)));
-        }
+        say_warnings(&shown(&self.environment), &map.warnings, |text| self.say(text));
         let sky = Sky::new(map.width, map.height, &map.radiance)?;
         let image = self.render(&shape, &options, sky, interrupt)?;
         let bytes = match format {
@@ -115,7 +106,7 @@ impl SpecimenArguments {
             }
         };
         place.publish(&bytes, interrupt)?;
-        self.say(&format!("wrote {}: {width} x {height}", shown(&self.output)));
+        self.say(&format!("wrote {}: {} x {}", shown(&self.output), image.width, image.height));
         Ok(())
     }
 
