@@ -41,6 +41,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         drop::shape::MODULES,
         mask::MODULES,
         render::brdf::MODULES,
+        render::rain::MODULES,
         render::scene::MODULES,
         render::specimen::MODULES,
     ]
@@ -51,7 +52,10 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
 
 /// Every kernel of the crate, for the tests that create a pipeline from each.
 pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
-    [mask::KERNELS, render::scene::KERNELS, render::specimen::KERNELS].into_iter().flatten().copied()
+    [mask::KERNELS, render::rain::KERNELS, render::scene::KERNELS, render::specimen::KERNELS]
+        .into_iter()
+        .flatten()
+        .copied()
 }
 
 /// The examples of the README, as tests.

@@ -1,5 +1,6 @@
 //! `wgsl/render`: pictures. The Rust twins are in `downpour-render`.
 
 pub mod brdf;
+pub mod rain;
 pub mod scene;
 pub mod specimen;

@@ -3,6 +3,7 @@
 mod common;
 mod drop;
 mod mask;
+mod rain;
 mod render;
 mod scene;
 
@@ -20,7 +21,7 @@ pub fn functions() -> Vec<FunctionCase> {
 /// All kernel-level cases.
 #[must_use]
 pub fn kernels() -> Vec<KernelCase> {
-    [mask::kernels(), render::kernels(), scene::kernels()].into_iter().flatten().collect()
+    [mask::kernels(), rain::kernels(), render::kernels(), scene::kernels()].into_iter().flatten().collect()
 }
 
 /// Functions without a case of their own, each with the reason.

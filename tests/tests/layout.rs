@@ -9,6 +9,8 @@ use downpour_mask::MaskTexel;
 use downpour_mask::bvh::{BvhNode, BvhTriangle};
 use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
+use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel};
+use downpour_render::scene::SceneGather;
 use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
 use downpour_shaders::render::specimen;
 use downpour_shaders::{Module, compose, drop, mask, modules, render};
@@ -47,8 +49,15 @@ fn hosts() -> Vec<Host> {
         host!(ModelUniform as "MaskModelParameters" in &mask::MODEL, front, index, pixel, size, first_row),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
             eye, width, right, height, up, grid, forward, pixel_angle, slots, lights, light_count, sky_rays,
-            first_row, seed, nearest, sky_reach, sky_levels, sky_irradiance),
+            first_row, seed, nearest, sky_reach, projection, sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
+        host!(SceneGather as "SceneGather" in &render::scene::SCENE, sky, body, met, gloss, normal),
+        host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
+        host!(DropsFrame as "DropsFrame" in &render::rain::DROPS,
+            right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,
+            capture_forward, capture_texel, form, mask_size, tiles_across, unused),
+        host!(DropsDrop as "DropsDrop" in &render::rain::DROPS,
+            towards, distance, place, slope, half_extent, row, area, grid),
         host!(BvhNode as "MaskBvhNode" in &mask::BVH, low, link, high, count),
         host!(BvhTriangle as "MaskBvhTriangle" in &mask::BVH, corner, index, edge_1, edge_2),
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),

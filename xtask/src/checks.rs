@@ -10,6 +10,7 @@ const ALONE: &[(&str, &[&str])] = &[
     ("downpour-drop", &[""]),
     ("downpour-mask", &["", "wgpu"]),
     ("downpour-scene", &[""]),
+    ("downpour-sim", &[""]),
     ("downpour-render", &["", "wgpu"]),
     ("downpour", &["", "wgpu"]),
     ("downpour-cli", &["", "gpu"]),

@@ -6,6 +6,7 @@ mod goldens;
 mod masks;
 mod run;
 mod shaders;
+mod truth;
 
 use std::process::ExitCode;
 
@@ -16,6 +17,7 @@ cargo xtask lint              the same without the tests
 cargo xtask masks [--check]   write assets/masks; with --check compare them with what the code makes, byte for byte
 cargo xtask goldens [--bless] compare the golden images of tests/goldens; with --bless write them from the CPU twins
 cargo xtask shaders [FOLDER]  write the complete WGSL text of every kernel (default target/shaders)
+cargo xtask truth [OPTIONS]   hold `downpour specimen` against Mitsuba 3 (needs python3 and the network)
 cargo xtask bench             run every benchmark";
 
 fn main() -> ExitCode {
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         ["goldens", "--bless"] => goldens::bless(),
         ["shaders"] => shaders::write("target/shaders"),
         ["shaders", folder] => shaders::write(folder),
+        ["truth", rest @ ..] => truth::run(rest),
         ["bench"] => checks::bench(),
         [] => {
             println!("{USAGE}");

@@ -75,6 +75,7 @@ mod gpu {
 
     use downpour::gpu::{AdapterChoice, Gpu, GpuError, GpuOptions};
     use downpour::mask::gpu::GpuMaskError;
+    use downpour::render::gpu::GpuPictureError;
     use downpour::render::specimen::gpu::GpuSpecimenError;
 
     use super::{Backend, BackendArguments};
@@ -85,6 +86,10 @@ mod gpu {
     /// For tests of what happens when a GPU fails: `lost@K` destroys the device after K submissions, `hang` waits for
     /// nothing.
     const INJECT: &str = "DOWNPOUR_INJECT";
+
+    /// How long a software driver may be at one submission: it has the speed of a CPU, and its compiler alone may take half a
+    /// minute. It does not hang as a device does, and signals end it.
+    const SOFTWARE_TIMEOUT: Duration = Duration::from_secs(600);
 
     impl From<GpuError> for Failure {
         fn from(error: GpuError) -> Self {
@@ -104,6 +109,12 @@ mod gpu {
         }
     }
 
+    impl From<GpuPictureError> for Failure {
+        fn from(error: GpuPictureError) -> Self {
+            Self::new(error.exit_code(), error.to_string())
+        }
+    }
+
     /// An error that may have come from a GPU.
     pub(crate) trait FromGpu: std::fmt::Display {
         /// What the GPU said, if it was the GPU.
@@ -117,6 +128,12 @@ mod gpu {
     }
 
     impl FromGpu for GpuSpecimenError {
+        fn gpu(&self) -> Option<&GpuError> {
+            if let Self::Gpu(error) = self { Some(error) } else { None }
+        }
+    }
+
+    impl FromGpu for GpuPictureError {
         fn gpu(&self) -> Option<&GpuError> {
             if let Self::Gpu(error) = self { Some(error) } else { None }
         }
@@ -173,6 +190,10 @@ mod gpu {
         };
         let options = inject(GpuOptions { adapter, ..GpuOptions::default() })?;
         match Gpu::open_with(&options) {
+            // Reopened, since only an open device tells what it is.
+            Ok(gpu) if gpu.adapter().is_software() && options.timeout == GpuOptions::default().timeout => {
+                Ok(Ok(Gpu::open_with(&GpuOptions { timeout: SOFTWARE_TIMEOUT, ..options })?))
+            }
             Ok(gpu) => Ok(Ok(gpu)),
             Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDevice { .. })) => Ok(Err(error)),
             Err(error) => Err(error.into()),

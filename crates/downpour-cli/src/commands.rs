@@ -1,9 +1,12 @@
 //! The subcommands, one file each.
 
 mod adapters;
+mod check;
 mod drop;
+mod input;
 mod mask;
 mod rain;
+mod render;
 mod specimen;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -16,6 +19,8 @@ use crate::interrupt::Interrupt;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    Render(render::RenderArguments),
+    Check(check::CheckArguments),
     Mask(mask::MaskArguments),
     Drop(drop::DropArguments),
     Rain(rain::RainArguments),
@@ -26,6 +31,8 @@ pub(crate) enum Command {
 impl Command {
     pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         match self {
+            Self::Render(arguments) => arguments.run(interrupt),
+            Self::Check(arguments) => arguments.run(),
             Self::Mask(arguments) => arguments.run(interrupt),
             Self::Drop(arguments) => arguments.run(),
             Self::Rain(arguments) => arguments.run(),

@@ -8,7 +8,9 @@ use downpour::drop::DropError;
 use downpour::mask::MaskError;
 use downpour::render::RenderError;
 use downpour::render::specimen::SpecimenError;
+use downpour::render::stage::StageError;
 use downpour::scene::SceneError;
+use downpour::sim::SimError;
 
 /// Anything that has no code of its own, as a defect of ours.
 pub(crate) const OTHER: u8 = 1;
@@ -78,8 +80,20 @@ impl From<RenderError> for Failure {
     }
 }
 
+impl From<StageError> for Failure {
+    fn from(error: StageError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
+    }
+}
+
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
+    }
+}
+
+impl From<SimError> for Failure {
+    fn from(error: SimError) -> Self {
         Self::new(error.exit_code(), error.to_string())
     }
 }

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Number, Value};
 
+use crate::stream::one_line;
+
 /// Significant digits of numbers in JSON: more than physics knows, fewer than rounding disturbs.
 const JSON_DIGITS: usize = 10;
 
@@ -18,6 +20,12 @@ pub(crate) enum Datum {
     Unbounded(&'static str),
     /// A word.
     Word(String),
+    /// How many there are.
+    Count(u64),
+    /// Three numbers that were worked out, as a place or a colour.
+    Triple([f64; 3], usize),
+    /// Names.
+    Words(Vec<String>),
 }
 
 impl Datum {
@@ -26,12 +34,20 @@ impl Datum {
         if value.is_finite() { Self::Computed(value, digits) } else { Self::Unbounded(otherwise) }
     }
 
+    pub(crate) fn words(words: &[&str]) -> Self {
+        Self::Words(words.iter().map(|&word| word.to_owned()).collect())
+    }
+
     fn text(&self) -> String {
         match self {
             Self::Given(value) => rounded(*value, JSON_DIGITS).to_string(),
             Self::Computed(value, digits) => significant(*value, *digits),
             Self::Unbounded(word) => (*word).to_owned(),
             Self::Word(word) => word.clone(),
+            Self::Count(count) => count.to_string(),
+            Self::Triple(values, digits) => values.map(|value| significant(value, *digits)).join(" "),
+            Self::Words(words) if words.is_empty() => "none".to_owned(),
+            Self::Words(words) => words.join(", "),
         }
     }
 
@@ -40,6 +56,9 @@ impl Datum {
             Self::Given(value) | Self::Computed(value, _) => number(*value),
             Self::Unbounded(_) => Value::Null,
             Self::Word(word) => Value::String(word.clone()),
+            Self::Count(count) => Value::from(*count),
+            Self::Triple(values, _) => values.map(number).to_vec().into(),
+            Self::Words(words) => words.clone().into(),
         }
     }
 }
@@ -71,7 +90,8 @@ pub(crate) fn json(entries: &[Entry]) -> String {
 
 /// The list in columns.
 pub(crate) fn text(entries: &[Entry]) -> String {
-    let values: Vec<String> = entries.iter().map(|entry| entry.datum.text()).collect();
+    // Names come from files.
+    let values: Vec<String> = entries.iter().map(|entry| one_line(&entry.datum.text())).collect();
     let label_width = entries.iter().map(|entry| entry.label.chars().count()).max().unwrap_or(0);
     let value_width = values.iter().map(|value| value.chars().count()).max().unwrap_or(0);
     let mut out = String::new();
@@ -140,5 +160,27 @@ mod tests {
         ];
         assert_eq!(json(&entries), "{\n  \"rate_mm_h\": 0.0,\n  \"visibility_km\": null\n}\n");
         assert_eq!(text(&entries), "rain rate           0 mm/h\nvisibility  unlimited\n");
+    }
+
+    #[test]
+    fn counts_places_and_names_are_what_they_are() {
+        let entries = [
+            Entry::new("seed", "seed", Datum::Count(u64::MAX), ""),
+            Entry::new("place_m", "place", Datum::Triple([0.0, -1.5, 0.125], 2), "m"),
+            Entry::new("names", "names", Datum::words(&["a", "b\u{1b}"]), ""),
+            Entry::new("others", "others", Datum::words(&[]), ""),
+        ];
+        let value: Value = serde_json::from_str(&json(&entries)).unwrap();
+        assert_eq!(value["seed"].as_u64(), Some(u64::MAX));
+        assert_eq!(value["place_m"], serde_json::json!([0.0, -1.5, 0.125]));
+        assert_eq!(
+            (value["names"].to_string(), value["others"].to_string()),
+            (r#"["a","b\u001b"]"#.into(), "[]".into())
+        );
+        assert!(
+            text(&entries).contains("0 -1.5 0.12 m\n") && text(&entries).contains("a, b\\u{1b}\n"),
+            "{}",
+            text(&entries)
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! The command `downpour`: physical properties of drops and rain, and refraction masks of drops.
+//! The command `downpour`: scenes in the rain, physical properties of drops and rain, and refraction masks of drops.
 //!
 //! Arguments, files and exit codes are here; the physics is in the crates below. Scripts depend on the JSON keys and
 //! on the exit codes ([`failure`]).

@@ -7,6 +7,7 @@ use downpour::drop::distribution::RATE_RANGE_MM_H;
 use downpour::drop::shape::{LARGEST_DIAMETER, SMALLEST_DIAMETER};
 use downpour::drop::water::TEMPERATURE_RANGE_C;
 use downpour::mask::SIZES;
+use downpour::render::stage::LATEST_S;
 
 /// The coldest water, in Celsius, whose refractive index is known.
 const COLDEST_INDEX_C: f64 = -12.0;
@@ -74,6 +75,32 @@ pub(crate) fn picture_size(text: &str) -> Result<[u32; 2], String> {
     };
     let (width, height) = text.split_once('x').ok_or_else(|| format!("allowed: {allowed}"))?;
     Ok([edge(width)?, edge(height)?])
+}
+
+/// Time since the rain began, in seconds.
+pub(crate) fn time_s(text: &str) -> Result<f64, String> {
+    read(text, &(0.0..=LATEST_S), "0 to 1000000 s")
+}
+
+/// Samples along an edge of a pixel.
+pub(crate) fn samples(text: &str) -> Result<u32, String> {
+    whole(text, 1..=8)
+}
+
+/// Rays to the sky per sample.
+pub(crate) fn sky_rays(text: &str) -> Result<u32, String> {
+    whole(text, 0..=64)
+}
+
+/// Seed of random numbers.
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("allowed: a whole number from 0 to {}", u64::MAX))
+}
+
+fn whole(text: &str, range: RangeInclusive<u32>) -> Result<u32, String> {
+    let (start, end) = (*range.start(), *range.end());
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("allowed: a whole number from {start} to {end}"))
 }
 
 /// Refractive index relative to air.
@@ -176,6 +203,18 @@ mod tests {
         for text in ["0x0", "5x0", "960", "x", "1x-1", "1.5x2", "axb", "1x2x3", ""] {
             assert!(picture_size(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn whole_numbers_are_whole() {
+        assert_eq!((samples("1"), samples("8"), sky_rays("0")), (Ok(1), Ok(8), Ok(0)));
+        assert_eq!(seed("18446744073709551615"), Ok(u64::MAX));
+        for text in ["0", "9", "-1", "2.0", "", "nan", "99999999999"] {
+            assert_eq!(samples(text), Err("allowed: a whole number from 1 to 8".to_owned()), "{text}");
+        }
+        assert!(seed("-1").is_err() && seed("18446744073709551616").is_err() && sky_rays("65").is_err());
+        assert!(time_s("1e6").is_ok() && time_s("0").is_ok());
+        assert!(time_s("-1").is_err() && time_s("nan").is_err() && time_s("1e39").is_err());
     }
 
     #[test]

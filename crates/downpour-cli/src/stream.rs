@@ -28,7 +28,7 @@ pub(crate) fn message(text: &str) {
 }
 
 /// Text with everything escaped that would break the line or steer a terminal, and shortened if it is very long.
-fn one_line(text: &str) -> String {
+pub(crate) fn one_line(text: &str) -> String {
     let mut line = String::new();
     for c in shortened(text).chars() {
         if c.is_control()

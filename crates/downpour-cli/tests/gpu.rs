@@ -1,4 +1,4 @@
-//! Masks on the machine's GPU or software driver, through the command.
+//! Pictures and masks on the machine's GPU or software driver, through the command.
 //!
 //! No adapter is a failure; `DOWNPOUR_GPU_TESTS=no` shows the tests as ignored. `DOWNPOUR_ADAPTER` is part of the name
 //! of the adapter to take.
@@ -9,6 +9,9 @@ mod child;
 #[allow(dead_code, reason = "the tests without a GPU use the rest")]
 #[path = "command/gltf_file.rs"]
 mod gltf_file;
+#[allow(dead_code, reason = "the tests without a GPU use the rest")]
+#[path = "command/scene_files.rs"]
+mod scene_files;
 
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -19,17 +22,20 @@ use downpour::mask::Mask;
 use downpour::mask::file::{exr, ktx2};
 use libtest_mimic::{Arguments, Trial};
 
-use child::{Downpour, downpour, names_in};
+use child::{Downpour, Ended, downpour, names_in};
 use gltf_file::gltf;
+use scene_files::{model, weather};
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let off = std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no");
-    let tests: [(&str, fn()); 8] = [
+    let tests: [(&str, fn()); 10] = [
         ("adapters_are_listed", adapters_are_listed),
         ("a_mask_is_that_of_the_cpu", a_mask_is_that_of_the_cpu),
         ("an_array_is_that_of_the_cpu", an_array_is_that_of_the_cpu),
         ("a_model_is_that_of_the_cpu", a_model_is_that_of_the_cpu),
+        ("a_picture_is_that_of_the_cpu", a_picture_is_that_of_the_cpu),
+        ("a_picture_of_a_lost_device_is_not_published", a_picture_of_a_lost_device_is_not_published),
         ("auto_says_what_it_took", auto_says_what_it_took),
         ("an_adapter_is_taken_by_its_name", an_adapter_is_taken_by_its_name),
         ("a_lost_device_publishes_nothing", a_lost_device_publishes_nothing),
@@ -133,6 +139,62 @@ fn a_model_is_that_of_the_cpu() {
         DropMesh::latitude_longitude(&DropShape::new(3.0e-3).expect("a drop"), 32, 64).expect("a mesh");
     let files = [("drop.gltf", gltf(mesh.positions(), mesh.triangles()))];
     agree(&["mask", "--model", "drop.gltf", "--size", "96", "-o", "m.exr"], &files, read_exr, 1.0e-3, 5.0e-3);
+}
+
+/// The storm of the other tests, on a backend.
+fn storm(arguments: &[&str]) -> Downpour {
+    let fixed = ["render", "storm.toml", "--layers", "-o", "rain.exr", "--samples", "2", "--sky-rays", "2"];
+    let run = Downpour::new(&[&fixed, arguments].concat());
+    run.with_file("storm.toml", weather("")).with_file("floor.gltf", model())
+}
+
+/// All channels of the picture, one after the other, by their names.
+fn layers(ended: &Ended) -> Vec<(String, Vec<f32>)> {
+    use ::exr::prelude::*;
+    let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let bytes = std::io::Cursor::new(ended.file("rain.exr"));
+    let image = image.all_attributes().from_buffered(bytes).expect("a picture");
+    let list = image.layer_data.channel_data.list;
+    list.iter().map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
+}
+
+/// Rays on the two sides may pass an edge on different sides: a few pixels may differ. The control is another seed,
+/// which has other drops.
+fn a_picture_is_that_of_the_cpu() {
+    let adapter = adapter();
+    let more = ["--stats", "stats.json", "--dump-drops", "drops.csv"];
+    let on_gpu = storm(&gpu(&more, &adapter)).run().succeeded();
+    let on_cpu = storm(&[&more[..], &["--backend", "cpu"]].concat()).run().succeeded();
+    let other = storm(&["--backend", "cpu", "--seed", "8"]).run().succeeded();
+    assert_eq!(on_gpu.file("drops.csv"), on_cpu.file("drops.csv"), "the drops do not depend on the backend");
+    let stats: serde_json::Value = serde_json::from_slice(&on_gpu.file("stats.json")).expect("JSON");
+    assert_eq!(stats["backend"], "gpu");
+    assert!(stats["adapter"].as_str().is_some_and(|name| !name.is_empty() && name != "CPU"), "{stats}");
+    let differing = |a: &Ended, b: &Ended| -> Vec<(String, usize)> {
+        let count = |x: &[f32], y: &[f32]| {
+            let differ = |x: f32, y: f32| (x - y).is_nan() || (x - y).abs() > 2.0e-3 * x.abs().max(0.01);
+            x.iter().zip(y).filter(|(x, y)| differ(**x, **y)).count()
+        };
+        let pairs = layers(a).into_iter().zip(layers(b));
+        pairs.map(|((name, x), (_, y))| (name, count(&x, &y))).collect()
+    };
+    for (name, count) in differing(&on_cpu, &on_gpu) {
+        assert!(count <= 12, "{name}: {count} of 2304 pixels differ");
+    }
+    let controls = differing(&on_cpu, &other);
+    for name in ["G", "rain.G", "transmittance.Y"] {
+        let count = controls.iter().find(|(found, _)| found == name).map_or(0, |(_, count)| *count);
+        assert!(count > 100, "{name}: {count} pixels of other drops differ");
+    }
+}
+
+/// Whatever the pass during which the device goes.
+fn a_picture_of_a_lost_device_is_not_published() {
+    let adapter = adapter();
+    for point in 1..=3 {
+        let run = storm(&gpu(&[], &adapter)).env("DOWNPOUR_INJECT", format!("lost@{point}"));
+        run.run().failed(4, &["lost"]).left(&["floor.gltf", "storm.toml"]);
+    }
 }
 
 fn auto_says_what_it_took() {

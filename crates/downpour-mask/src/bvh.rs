@@ -8,6 +8,7 @@
 
 use downpour_math::vector::{cross, dot, sub};
 use downpour_shaders::mask::{MASK_BVH_FAR, MASK_BVH_STACK};
+use glam::Vec3A;
 
 /// Triangles of a leaf below which it is not split.
 const LEAF: usize = 4;
@@ -142,11 +143,11 @@ impl Bvh {
     /// The nearest hit farther than `nearest` along the ray.
     #[must_use]
     pub fn hit(&self, origin: [f32; 3], direction: [f32; 3], nearest: f32) -> Option<Hit> {
-        mask_bvh_nearest(&self.nodes, &self.triangles, origin, direction, nearest)
+        mask_bvh_nearest(&self.nodes, &self.triangles, origin, direction, nearest, MASK_BVH_FAR)
     }
 }
 
-/// The nearest hit farther than `nearest` along the ray, in the arrays of a [`Bvh`].
+/// The nearest hit along the ray that is farther than `nearest` and nearer than `farthest`, in the arrays of a [`Bvh`].
 #[must_use]
 pub fn mask_bvh_nearest(
     nodes: &[BvhNode],
@@ -154,10 +155,11 @@ pub fn mask_bvh_nearest(
     origin: [f32; 3],
     direction: [f32; 3],
     nearest: f32,
+    farthest: f32,
 ) -> Option<Hit> {
     let inverse = mask_bvh_inverse(direction);
     let mut best: Option<Hit> = None;
-    let mut limit = MASK_BVH_FAR;
+    let mut limit = farthest;
     let mut stack = [0u32; MASK_BVH_STACK as usize];
     let mut depth = 0;
     let mut at = 0u32;
@@ -214,16 +216,19 @@ pub fn mask_bvh_inverse(direction: [f32; 3]) -> [f32; 3] {
 }
 
 /// Where the ray enters the box of `node`, if that is before `limit`; `MASK_BVH_FAR` otherwise.
+#[inline(always)]
 #[must_use]
 pub fn mask_bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32) -> f32 {
-    let mut enter = 0.0f32;
-    let mut leave = limit;
-    for k in 0..3 {
-        let a = (node.low[k] - origin[k]) * inverse[k];
-        let b = (node.high[k] - origin[k]) * inverse[k];
-        enter = enter.max(a.min(b));
-        leave = leave.min(a.max(b));
-    }
+    // Machine vectors: most of a picture's time is spent here.
+    let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(inverse));
+    let a = (Vec3A::from(node.low) - origin) * inverse;
+    let b = (Vec3A::from(node.high) - origin) * inverse;
+    // No number here is NaN, so plain comparisons do.
+    let greater = |a: f32, b: f32| if a > b { a } else { b };
+    let less = |a: f32, b: f32| if a < b { a } else { b };
+    let (near, far) = (a.min(b), a.max(b));
+    let enter = greater(greater(near.x, near.y), greater(near.z, 0.0));
+    let leave = less(less(far.x, far.y), less(far.z, limit));
     // Rounding may put the two past each other by a few units in the last place.
     if enter <= leave * 1.000_001 + 1.0e-7 { enter } else { MASK_BVH_FAR }
 }

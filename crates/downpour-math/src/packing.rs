@@ -43,6 +43,36 @@ pub fn packing_octahedral_decode(square: [f32; 2]) -> [f32; 3] {
     [x * inverse, y * inverse, z * inverse]
 }
 
+/// Two numbers of [-1, 1] in 16 bits each, as WGSL's `pack2x16snorm`.
+#[inline]
+#[must_use]
+pub fn packing_pack_snorm(pair: [f32; 2]) -> u32 {
+    let [low, high] = pair.map(|v| u32::from((0.5 + 32767.0 * v.clamp(-1.0, 1.0)).floor() as i16 as u16));
+    low | high << 16
+}
+
+/// What [`packing_pack_snorm`] has packed, as WGSL's `unpack2x16snorm`.
+#[inline]
+#[must_use]
+pub fn packing_unpack_snorm(word: u32) -> [f32; 2] {
+    [word as u16, (word >> 16) as u16].map(|half| (f32::from(half as i16) / 32767.0).max(-1.0))
+}
+
+/// Two numbers of [0, 1] in 16 bits each, as WGSL's `pack2x16unorm`.
+#[inline]
+#[must_use]
+pub fn packing_pack_unorm(pair: [f32; 2]) -> u32 {
+    let [low, high] = pair.map(|v| u32::from((0.5 + 65535.0 * v.clamp(0.0, 1.0)).floor() as u16));
+    low | high << 16
+}
+
+/// What [`packing_pack_unorm`] has packed, as WGSL's `unpack2x16unorm`.
+#[inline]
+#[must_use]
+pub fn packing_unpack_unorm(word: u32) -> [f32; 2] {
+    [word as u16, (word >> 16) as u16].map(|half| f32::from(half) / 65535.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -61,5 +91,18 @@ mod tests {
                 assert!((back[k] - v[k]).abs() < 3.0e-7, "{v:?} -> {back:?}");
             }
         }
+    }
+
+    #[test]
+    fn sixteen_bits_keep_the_ends_and_the_middle() {
+        for pair in [[-1.0, 1.0], [0.0, 0.5], [-0.25, 2.0]] {
+            let back = packing_unpack_snorm(packing_pack_snorm(pair));
+            let whole = packing_unpack_unorm(packing_pack_unorm(pair));
+            for k in 0..2 {
+                assert!((back[k] - pair[k].clamp(-1.0, 1.0)).abs() <= 0.5 / 32767.0, "{pair:?} -> {back:?}");
+                assert!((whole[k] - pair[k].clamp(0.0, 1.0)).abs() <= 0.5 / 65535.0, "{pair:?} -> {whole:?}");
+            }
+        }
+        assert_eq!(packing_unpack_snorm(packing_pack_snorm([0.0, -1.0])), [0.0, -1.0]);
     }
 }

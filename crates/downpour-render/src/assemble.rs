@@ -1,62 +1,70 @@
 //! From a scene of files to the renderer's buffers: what a pose shows, its materials, textures and lamps.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hasher as _};
+use std::sync::Arc;
 
-use downpour_scene::picture::Pixels;
+use downpour_scene::picture::{Picture, Pixels};
 use downpour_scene::scene::{
-    AlphaMode, Encoding, LightKind, Material, Pose, Scene, TextureRef, Wrap, skin_primitive,
+    AlphaMode, Encoding, Instance, LightKind, Material, Pose, Scene, TextureRef, Wrap, skin_primitive,
 };
 use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_MIRROR_U, SCENE_MIRROR_V, SCENE_REPEAT_U,
     SCENE_REPEAT_V, SCENE_UNLIT,
 };
-use glam::Vec3;
+use glam::{Affine3A, DVec3};
 
 use crate::data::{MeshPart, SceneBuilder};
 use crate::light::LightSource;
 use crate::material::{MaterialLook, TextureSlot, TextureUse};
 
-/// Luminous efficacy that turns photometric lamps into the scale of the sky map: candela and lux over 683 lm/W at
-/// the eye's best would be watts; pictures use the efficacy of daylight, 100 lm/W, so that a lux of sun light and a
-/// watt of sky agree.
-pub const DAYLIGHT_EFFICACY: f32 = 100.0;
+/// Pictures that are in the scene already, each as colour and as data.
+#[derive(Default)]
+struct Stored<'a> {
+    by_place: HashMap<(*const Picture, bool), TextureSlot>,
+    /// A kit of parts has one atlas, which each of its files brings along.
+    by_content: HashMap<(u64, bool), (&'a Arc<Picture>, TextureSlot)>,
+}
 
 impl SceneBuilder {
-    /// Adds all that a pose of a scene shows. Photometric lights are multiplied by `light_scale` (1 over
-    /// [`DAYLIGHT_EFFICACY`] where the sky map is in watts).
-    pub fn add_scene(&mut self, scene: &Scene, pose: &Pose, light_scale: f32) {
-        let mut slots: HashMap<usize, TextureSlot> = HashMap::new();
+    /// Adds all that a pose of a scene shows, relative to `origin`, metres: far from the world's origin single precision
+    /// is coarse, near the eye it need not be.
+    ///
+    /// Lights keep their numbers: 1 is what the sky's radiance of 1 is, so that a lamp of `I` candela lights a surface
+    /// at a distance `r` with `I / r^2` where radiance is in cd/m^2.
+    pub fn add_scene(&mut self, scene: &Scene, pose: &Pose, origin: DVec3) {
+        let mut stored = Stored::default();
         let materials: Vec<u32> =
-            scene.materials.iter().map(|m| self.add_scene_material(scene, m, &mut slots)).collect();
+            scene.materials.iter().map(|m| self.add_scene_material(scene, m, &mut stored)).collect();
         let fallback = self.add_material(MaterialLook::default());
         for instance in &pose.instances {
             let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
+            let instance = relative(instance, pose, origin);
             for primitive in &mesh.primitives {
-                let moved = skin_primitive(primitive, instance);
-                let arrays = |v: &[Vec3]| v.iter().map(Vec3::to_array).collect::<Vec<_>>();
-                let (positions, normals) = (arrays(&moved.positions), arrays(&moved.normals));
-                let tangents: Vec<[f32; 4]> = moved.tangents.iter().map(glam::Vec4::to_array).collect();
-                let uvs: [Vec<[f32; 2]>; 2] =
-                    std::array::from_fn(|k| primitive.uvs[k].iter().map(glam::Vec2::to_array).collect());
-                let colours: Option<Vec<[f32; 4]>> =
-                    primitive.colors.as_ref().map(|c| c.iter().map(glam::Vec4::to_array).collect());
+                let moved = skin_primitive(primitive, &instance);
+                let positions: &[[f32; 3]] = bytemuck::cast_slice(&moved.positions);
+                let normals: &[[f32; 3]] = bytemuck::cast_slice(&moved.normals);
+                let tangents: &[[f32; 4]] = bytemuck::cast_slice(&moved.tangents);
+                let [first, second] = &primitive.uvs;
                 let part = MeshPart {
-                    positions: &positions,
-                    normals: (normals.len() == positions.len()).then_some(&normals),
-                    tangents: (tangents.len() == positions.len()).then_some(&tangents),
-                    uvs: [Some(&uvs[0]), Some(&uvs[1])],
-                    colours: colours.as_deref(),
+                    positions,
+                    normals: (normals.len() == positions.len()).then_some(normals),
+                    tangents: (tangents.len() == positions.len()).then_some(tangents),
+                    uvs: [Some(bytemuck::cast_slice(first)), Some(bytemuck::cast_slice(second))],
+                    colours: primitive.colors.as_deref().map(bytemuck::cast_slice),
                     indices: &primitive.indices,
                     material: materials.get(primitive.material).copied().unwrap_or(fallback),
                 };
-                self.add_mesh(&part, &glam::Affine3A::IDENTITY);
+                self.add_mesh(&part, &Affine3A::IDENTITY);
             }
         }
         for placed in &pose.lights {
             let Some(light) = scene.lights.get(placed.light) else { continue };
-            let strength = light.color * (light.intensity * light_scale);
+            let strength = light.color * light.intensity;
             let range = light.range.unwrap_or(0.0);
-            let (position, direction) = (placed.position, placed.direction);
+            let place = pose.world_f64(placed.node).map_or(placed.position.as_dvec3(), |w| w.translation);
+            let (position, direction) = ((place - origin).as_vec3(), placed.direction);
             self.add_light(match light.kind {
                 LightKind::Directional => LightSource::Directional { direction, irradiance: strength },
                 LightKind::Point => LightSource::Point { position, intensity: strength, range },
@@ -67,11 +75,11 @@ impl SceneBuilder {
         }
     }
 
-    fn add_scene_material(
+    fn add_scene_material<'a>(
         &mut self,
-        scene: &Scene,
+        scene: &'a Scene,
         material: &Material,
-        slots: &mut HashMap<usize, TextureSlot>,
+        stored: &mut Stored<'a>,
     ) -> u32 {
         let (mode, alpha_cutoff) = match material.alpha_mode {
             AlphaMode::Mask { cutoff } => (SCENE_MASKED, cutoff),
@@ -86,7 +94,7 @@ impl SceneBuilder {
             &material.occlusion_texture,
             &material.transmission_texture,
         ];
-        let maps = textures.map(|t| t.as_ref().and_then(|t| self.add_texture_use(scene, t, slots)));
+        let maps = textures.map(|t| t.as_ref().and_then(|t| self.add_texture_use(scene, t, stored)));
         self.add_material(MaterialLook {
             base_colour: material.base_color.into(),
             emission: material.emissive.into(),
@@ -105,27 +113,29 @@ impl SceneBuilder {
     }
 
     /// A slot for one use of a texture; its texels are stored once.
-    fn add_texture_use(
+    fn add_texture_use<'a>(
         &mut self,
-        scene: &Scene,
+        scene: &'a Scene,
         used: &TextureRef,
-        slots: &mut HashMap<usize, TextureSlot>,
+        stored: &mut Stored<'a>,
     ) -> Option<u32> {
         let texture = scene.textures.get(used.texture)?;
-        let stored = match slots.get(&used.texture) {
+        let colour = texture.encoding == Encoding::Srgb;
+        let picture = &texture.picture;
+        let place = (Arc::as_ptr(picture), colour);
+        let slot = match stored.by_place.get(&place) {
             Some(slot) => *slot,
             None => {
-                let of =
-                    if texture.encoding == Encoding::Srgb { TextureUse::Colour } else { TextureUse::Data };
-                let picture = &texture.picture;
-                let bytes: Vec<[u8; 4]> = match &picture.pixels {
-                    Pixels::Rgba8(pixels) => pixels.clone(),
-                    Pixels::RgbaF32(pixels) => {
-                        pixels.iter().map(|p| p.map(|v| (v.clamp(0.0, 1.0) * 255.0).round() as u8)).collect()
+                let content = (digest(picture), colour);
+                let slot = match stored.by_content.get(&content) {
+                    Some((known, slot)) if same(known, picture) => *slot,
+                    _ => {
+                        let slot = self.add_picture(picture, colour);
+                        stored.by_content.insert(content, (picture, slot));
+                        slot
                     }
                 };
-                let slot = self.texture(picture.width, picture.height, &bytes, of);
-                slots.insert(used.texture, slot);
+                stored.by_place.insert(place, slot);
                 slot
             }
         };
@@ -135,7 +145,7 @@ impl SceneBuilder {
             Wrap::MirroredRepeat => mirror,
             Wrap::ClampToEdge => 0,
         };
-        let kept = stored.flags & downpour_shaders::render::scene::SCENE_ROOTED;
+        let kept = slot.flags & downpour_shaders::render::scene::SCENE_ROOTED;
         let sampler = texture.sampler;
         let slot = TextureSlot {
             // Rows, from glam's columns.
@@ -145,8 +155,50 @@ impl SceneBuilder {
             flags: kept
                 | wrap(sampler.wrap_s, SCENE_REPEAT_U, SCENE_MIRROR_U)
                 | wrap(sampler.wrap_t, SCENE_REPEAT_V, SCENE_MIRROR_V),
-            ..stored
+            ..slot
         };
         Some(self.add_slot(slot))
     }
+
+    fn add_picture(&mut self, picture: &Picture, colour: bool) -> TextureSlot {
+        let of = if colour { TextureUse::Colour } else { TextureUse::Data };
+        let bytes: Cow<'_, [[u8; 4]]> = match &picture.pixels {
+            Pixels::Rgba8(pixels) => Cow::Borrowed(pixels),
+            Pixels::RgbaF32(pixels) => {
+                pixels.iter().map(|p| p.map(|v| (v.clamp(0.0, 1.0) * 255.0).round() as u8)).collect()
+            }
+        };
+        self.texture(picture.width, picture.height, &bytes, of)
+    }
+}
+
+/// An instance whose place is relative to `origin`.
+fn relative<'a>(instance: &'a Instance, pose: &Pose, origin: DVec3) -> Cow<'a, Instance> {
+    if origin == DVec3::ZERO {
+        return Cow::Borrowed(instance);
+    }
+    let mut moved = instance.clone();
+    if let Some(world) = pose.world_f64(instance.node) {
+        moved.world.translation = (world.translation - origin).as_vec3a();
+    }
+    for joint in &mut moved.joints {
+        joint.translation -= origin.as_vec3a();
+    }
+    Cow::Owned(moved)
+}
+
+/// A number that pictures of the same pixels share.
+fn digest(picture: &Picture) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    hasher.write_u32(picture.width);
+    hasher.write_u32(picture.height);
+    match &picture.pixels {
+        Pixels::Rgba8(pixels) => hasher.write(bytemuck::cast_slice(pixels)),
+        Pixels::RgbaF32(pixels) => hasher.write(bytemuck::cast_slice(pixels)),
+    }
+    hasher.finish()
+}
+
+fn same(a: &Picture, b: &Picture) -> bool {
+    (a.width, a.height) == (b.width, b.height) && a.pixels == b.pixels
 }

@@ -62,6 +62,10 @@ pub struct RenderFrame {
     pub nearest: f32,
     /// How far the rays to the sky go, metres.
     pub sky_reach: f32,
+    /// How a capture's texels become directions.
+    pub projection: u32,
+    /// 0.
+    pub unused: [u32; 3],
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; 6],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.

@@ -1,4 +1,14 @@
 //! Pictures as files: linear OpenEXR, and PNG to look at. Bytes only; publishing them is the caller's.
+//!
+//! [`write_exr_layers`] names its channels as compositing programs expect them, layer and component with a point between:
+//!
+//! | channels | hold |
+//! |---|---|
+//! | `R`, `G`, `B` | the picture: `clean * transmittance + rain` |
+//! | `clean.R`, `clean.G`, `clean.B` | radiance of the scene without rain |
+//! | `rain.R`, `rain.G`, `rain.B` | radiance that the rain adds |
+//! | `transmittance.Y` | share of the scene's light that comes through the rain, 0 to 1 |
+//! | `depth.Z` | distance of the nearest surface from the eye along the ray, metres; 1e30 for the sky |
 
 use std::io::Cursor;
 
@@ -12,14 +22,50 @@ use crate::RenderError;
 /// # Errors
 /// [`RenderError::Encode`] if the pixels are not `width` times `height`, or the encoder fails.
 pub fn write_exr(width: u32, height: u32, pixels: &[[f32; 3]]) -> core::result::Result<Vec<u8>, RenderError> {
+    let channels = ["R", "G", "B"].into_iter().zip(0..);
+    let channels = channels.map(|(name, k)| (name, pixels.iter().map(|p: &[f32; 3]| p[k]).collect()));
+    exr([width, height], pixels.len(), channels.collect())
+}
+
+/// A picture with all its layers as the bytes of one OpenEXR file: see [the module](self) for the channels.
+///
+/// `clean` is radiance and distance of the scene, `rain` radiance and transmittance of the rain.
+///
+/// # Errors
+/// As [`write_exr`].
+pub fn write_exr_layers(
+    width: u32,
+    height: u32,
+    clean: &[[f32; 4]],
+    rain: &[[f32; 4]],
+) -> core::result::Result<Vec<u8>, RenderError> {
+    let layer = |pixels: &[[f32; 4]], k: usize| -> Vec<f32> { pixels.iter().map(|p| p[k]).collect() };
+    let mut channels: Vec<(&str, Vec<f32>)> = Vec::new();
+    for (k, name) in ["R", "G", "B"].into_iter().enumerate() {
+        channels.push((name, clean.iter().zip(rain).map(|(c, r)| c[k] * r[3] + r[k]).collect()));
+    }
+    for (k, name) in ["clean.R", "clean.G", "clean.B", "depth.Z"].into_iter().enumerate() {
+        channels.push((name, layer(clean, k)));
+    }
+    for (k, name) in ["rain.R", "rain.G", "rain.B", "transmittance.Y"].into_iter().enumerate() {
+        channels.push((name, layer(rain, k)));
+    }
+    exr([width, height], clean.len(), channels)
+}
+
+/// Channels of 32 bits in one part, ZIP compressed.
+fn exr(
+    [width, height]: [u32; 2],
+    count: usize,
+    channels: Vec<(&str, Vec<f32>)>,
+) -> core::result::Result<Vec<u8>, RenderError> {
     let encode = |reason: String| RenderError::Encode { format: "OpenEXR", reason };
     let size = (width as usize, height as usize);
-    if pixels.len() != size.0 * size.1 {
-        return Err(encode(format!("{} pixels for {width} x {height}", pixels.len())));
+    if count != size.0 * size.1 || channels.iter().any(|(_, samples)| samples.len() != count) {
+        return Err(encode(format!("{count} pixels for {width} x {height}")));
     }
-    let channel =
-        |name: &str, k: usize| AnyChannel::new(name, FlatSamples::F32(pixels.iter().map(|p| p[k]).collect()));
-    let channels = [channel("R", 0), channel("G", 1), channel("B", 2)].into_iter().collect();
+    let channel = |(name, samples): (&str, Vec<f32>)| AnyChannel::new(name, FlatSamples::F32(samples));
+    let channels = channels.into_iter().map(channel).collect();
     let encoding = Encoding {
         compression: Compression::ZIP16,
         blocks: Blocks::ScanLines,
@@ -59,5 +105,38 @@ mod tests {
         assert!(write_png(2, 1, &[[1, 2, 3]; 2]).is_ok_and(|b| b.starts_with(b"\x89PNG")));
         assert!(write_exr(2, 2, &[[0.5; 3]; 3]).is_err());
         assert!(write_png(2, 2, &[[0; 3]; 3]).is_err());
+    }
+
+    /// Every number of every layer comes back from the file.
+    #[test]
+    fn layers_are_channels() {
+        let clean = [[1.0, 2.0, 3.0, 5.0], [4.0, 5.0, 6.0, 1.0e30]];
+        let rain = [[0.5, 0.25, 0.125, 0.5], [0.0, 0.0, 0.0, 1.0]];
+        let bytes = write_exr_layers(2, 1, &clean, &rain).expect("a file");
+        let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+        let image = image.all_attributes().from_buffered(Cursor::new(bytes)).expect("an image");
+        let found: Vec<(String, Vec<f32>)> = image
+            .layer_data
+            .channel_data
+            .list
+            .iter()
+            .map(|channel| (channel.name.to_string(), channel.sample_data.values_as_f32().collect()))
+            .collect();
+        let expected: [(&str, [f32; 2]); 11] = [
+            ("B", [1.625, 6.0]),
+            ("G", [1.25, 5.0]),
+            ("R", [1.0, 4.0]),
+            ("clean.B", [3.0, 6.0]),
+            ("clean.G", [2.0, 5.0]),
+            ("clean.R", [1.0, 4.0]),
+            ("depth.Z", [5.0, 1.0e30]),
+            ("rain.B", [0.125, 0.0]),
+            ("rain.G", [0.25, 0.0]),
+            ("rain.R", [0.5, 0.0]),
+            ("transmittance.Y", [0.5, 1.0]),
+        ];
+        assert_eq!(found, expected.map(|(name, values)| (name.to_owned(), values.to_vec())));
+        assert!(write_exr_layers(2, 2, &clean, &rain).is_err());
+        assert!(write_exr_layers(2, 1, &clean, &rain[..1]).is_err());
     }
 }

@@ -3,6 +3,7 @@
 //! - [`specimen`]: one exact drop in front of a sky map;
 //! - [`data`], [`scene`], `gpu`: a scene of triangles under a sky, traced by rays ([`surface`], [`texture`], [`sky`],
 //!   [`brdf`]); [`sky_light`] prepares the sky, [`camera`] the frame;
+//! - [`rain`]: drops before a scene; [`picture`] puts the two together;
 //! - [`tone`] and [`mod@file`]: from radiance to a file.
 
 mod assemble;
@@ -15,15 +16,18 @@ pub mod file;
 pub mod gpu;
 pub mod light;
 pub mod material;
+pub mod picture;
+pub mod rain;
 pub mod scene;
 pub mod sky;
 pub mod sky_light;
+pub mod skylight;
 pub mod specimen;
+pub mod stage;
 pub mod surface;
 pub mod texture;
 pub mod tone;
 
-pub use assemble::DAYLIGHT_EFFICACY;
 pub use error::RenderError;
 
 /// The examples of the README, as tests.

@@ -6,18 +6,23 @@
 //!
 //! - the nearest surface; see-through ones are passed, at most twelve;
 //! - direct light: each lamp and the sun, with a ray that dims at see-through surfaces ([`brdf`](crate::brdf));
-//! - light of the sky: cosine-weighted rays; one that is stopped brings the light of what it meets, lit by the lamps
-//!   and by half of the sky's irradiance, so that a shadow is not black;
+//! - light of the sky: cosine-weighted rays; one that is stopped brings the light of what it meets, lit by one lamp drawn
+//!   for all and by half of the sky's irradiance, so that a shadow is not black; [`skylight`](crate::skylight) takes
+//!   means of what neighbouring pixels have found;
 //! - reflection of the sky, prefiltered by roughness, where it is not hidden.
+//!
+//! Samples of a pixel that meet one surface are shaded once.
 //!
 //! Limits: one bounce; reflections show the sky, not the scene.
 
 use downpour_math::ops;
-use downpour_math::packing::packing_sign;
+use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_sign};
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::mask::MASK_BVH_FAR;
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_FAR, SCENE_LAYERS, SCENE_LEAST_ROUGHNESS, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS,
-    SCENE_MATERIAL_ROWS, SCENE_RANDOM_DIMENSION, SCENE_SKY_LEVELS, SCENE_UNLIT,
+    SCENE_BLENDED, SCENE_FAR, SCENE_GLANCE_CONE, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS,
+    SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_RANDOM_DIMENSION,
+    SCENE_SAME_FACET, SCENE_SAME_PLANE, SCENE_SKY_LEVELS, SCENE_UNLIT,
 };
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -28,10 +33,10 @@ use crate::surface::Surface;
 
 /// A lamp as a surface sees it.
 #[derive(Clone, Copy, Debug)]
-struct SceneLight {
-    direction: Vec3,
-    distance: f32,
-    irradiance: Vec3,
+pub(crate) struct SceneLight {
+    pub(crate) direction: Vec3,
+    pub(crate) distance: f32,
+    pub(crate) irradiance: Vec3,
 }
 
 /// A scene and a frame: what a ray needs.
@@ -45,7 +50,7 @@ pub struct SceneView<'a> {
 
 impl SceneView<'_> {
     /// The light of row `index` at a place.
-    fn scene_light(&self, index: u32, place: Vec3) -> SceneLight {
+    pub(crate) fn scene_light(&self, index: u32, place: Vec3) -> SceneLight {
         let row = (self.data.lights + index * SCENE_LIGHT_ROWS) as usize;
         let numbers = |k: usize| Vec4::from(self.data.table[row + k].map(f32::from_bits));
         let (position, axis, colour, cone) = (numbers(0), numbers(1), numbers(2), numbers(3));
@@ -69,13 +74,13 @@ impl SceneView<'_> {
     }
 
     /// Share of light that reaches a place from a distance along a direction: surfaces that let light through dim it.
-    fn scene_visibility(&self, place: Vec3, direction: Vec3, distance: f32) -> Vec3 {
+    pub(crate) fn scene_visibility(&self, place: Vec3, direction: Vec3, distance: f32) -> Vec3 {
         let nearest = self.frame.nearest;
         let mut from_distance = nearest;
         let mut visible = Vec3::ONE;
         for _ in 0..SCENE_LAYERS {
-            let hit = self.data.surface_hit(place, direction, from_distance);
-            let Some(hit) = hit.filter(|h| h.distance < distance - nearest) else { return visible };
+            let hit = self.data.surface_hit(place, direction, from_distance, distance - nearest);
+            let Some(hit) = hit else { return visible };
             let material = self.data.corners[hit.triangle as usize * 3].material;
             let row = (material * SCENE_MATERIAL_ROWS) as usize;
             let [flags, through, ..] = self.data.table[row + 3];
@@ -93,46 +98,127 @@ impl SceneView<'_> {
         Vec3::ZERO
     }
 
-    /// Light of lamps and sun on a surface, towards the viewer.
-    fn scene_direct(&self, surface: &Surface, view: Vec3) -> Vec3 {
+    /// Light of one lamp on a surface, towards the viewer, if nothing is between them.
+    fn scene_lamp(&self, surface: &Surface, view: Vec3, light: &SceneLight) -> Vec3 {
+        if surface.facet.dot(light.direction) <= 0.0 {
+            return Vec3::ZERO;
+        }
         let alpha =
             (surface.roughness * surface.roughness).max(SCENE_LEAST_ROUGHNESS * SCENE_LEAST_ROUGHNESS);
+        let (diffuse, normal_reflectance) = (surface.diffuse, surface.normal_reflectance);
+        light.irradiance
+            * brdf_direct(diffuse, normal_reflectance, alpha, surface.normal, view, light.direction)
+    }
+
+    /// Light of lamps and sun on a surface, towards the viewer. Lamps are asked in turn whether something hides them;
+    /// with `all` false only one is, drawn by what each would give (`chance` in [0, 1)), for all of them.
+    fn scene_direct(&self, surface: &Surface, view: Vec3, all: bool, chance: f32) -> Vec3 {
         let start = surface.position + surface.facet * self.frame.nearest;
-        let mut sum = Vec3::ZERO;
-        for k in 0..self.frame.light_count {
+        let count = self.frame.light_count;
+        let (mut sum, mut total) = (Vec3::ZERO, 0.0);
+        let (mut rest, mut chosen) = (chance, count);
+        // Once for what each would give, and to draw one; then the rays.
+        for k in 0..count {
             let light = self.scene_light(k, surface.position);
-            if surface.facet.dot(light.direction) <= 0.0 || light.irradiance.dot(Vec3::ONE) <= 0.0 {
-                continue;
+            let share = scene_share(self.scene_lamp(surface, view, &light));
+            total += share;
+            if share > 0.0 && rest * total < share {
+                // The part of the interval that is left is as good as a new number.
+                rest = rest * total / share;
+                chosen = k;
+            } else if share > 0.0 {
+                rest = (rest * total - share) / (total - share);
             }
-            let reflected = brdf_direct(
-                surface.diffuse,
-                surface.normal_reflectance,
-                alpha,
-                surface.normal,
-                view,
-                light.direction,
-            );
-            if reflected.dot(Vec3::ONE) <= 0.0 {
+        }
+        let lamps = if all { 0..count } else { chosen..(chosen + 1).min(count) };
+        for k in lamps {
+            let light = self.scene_light(k, surface.position);
+            let lit = self.scene_lamp(surface, view, &light);
+            let share = scene_share(lit);
+            if share <= total * SCENE_LEAST_LAMP {
                 continue;
             }
             let visible = self.scene_visibility(start, light.direction, light.distance);
-            sum += reflected * light.irradiance * visible;
+            sum += lit * visible * if all { 1.0 } else { total / share };
         }
         sum
     }
 
-    /// What a surface shows at a glance: lamps, and half of the whole sky.
-    fn scene_glance(&self, surface: &Surface, view: Vec3) -> Vec3 {
-        if surface.flags & SCENE_UNLIT != 0 {
-            return surface.diffuse + surface.normal_reflectance;
+    /// What a ray sees. Where it meets the surface that `last` met, it sees the same.
+    fn scene_path(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        cone: f32,
+        random: [u32; 4],
+        last: &ScenePath,
+    ) -> ScenePath {
+        let (frame, data) = (self.frame, self.data);
+        let mut path = ScenePath::NOTHING;
+        let mut throughput = Vec3::ONE;
+        let mut from_distance = frame.nearest;
+        for layer in 0..SCENE_LAYERS {
+            let Some(hit) = data.surface_hit(origin, direction, from_distance, MASK_BVH_FAR) else {
+                path.radiance += throughput * data.sky_level(0, direction);
+                return path;
+            };
+            let surface = data.surface_at(&hit, origin, direction, cone);
+            let material = data.corners[hit.triangle as usize * 3].material;
+            if layer == 0 {
+                if scene_goes_on(last, material, surface.facet, surface.position, hit.distance) {
+                    return *last;
+                }
+                path.distance = hit.distance;
+                path.material = material;
+                path.facet = surface.facet;
+                path.place = surface.position;
+                path.normal = surface.normal;
+            }
+            let unlit = surface.flags & SCENE_UNLIT != 0;
+            let mut direct = surface.diffuse + surface.normal_reflectance;
+            let mut sky = Vec4::ZERO;
+            if !unlit {
+                let chance = rng_unit(random[2]);
+                direct = surface.emission + self.scene_direct(&surface, -direction, true, chance);
+                sky = self.scene_sky_light(&surface, random);
+            }
+            let (mut share, mut tint) = (1.0, Vec3::ZERO);
+            if surface.flags & SCENE_BLENDED != 0 {
+                share = surface.alpha.clamp(0.0, 1.0);
+                tint = Vec3::ONE;
+            }
+            if unlit {
+                path.radiance += throughput * direct * share;
+            } else {
+                let cosine = surface.normal.dot(-direction).max(0.0);
+                let mirrored = direction - surface.normal * (2.0 * direction.dot(surface.normal));
+                let gloss = brdf_environment(surface.normal_reflectance, surface.roughness, cosine);
+                let reflection = gloss * data.sky_reflection(mirrored, surface.roughness) * surface.occlusion;
+                let body =
+                    surface.diffuse * (1.0 - surface.transmission) * (Vec3::ONE - gloss) * surface.occlusion;
+                // Where the sky is hidden, so is most of its reflection.
+                path.radiance += throughput * share * (direct + reflection * 0.1);
+                if layer == 0 && share == 1.0 && surface.transmission == 0.0 {
+                    path.body = body;
+                    path.gloss = reflection * 0.9;
+                    path.sky = sky;
+                    path.met = 1.0;
+                } else {
+                    let open = 0.9 * sky.w * sky.w;
+                    path.radiance += throughput * share * (body * sky.truncate() + reflection * open);
+                }
+            }
+            throughput *= tint * (1.0 - share) + surface.diffuse * surface.transmission * share;
+            if throughput.max_element() < 1.0e-3 {
+                break;
+            }
+            from_distance = hit.distance + frame.nearest;
         }
-        let sky = self.data.sky_irradiance(surface.normal) * surface.occlusion;
-        surface.emission
-            + self.scene_direct(surface, view)
-            + (surface.diffuse + surface.normal_reflectance) * sky * 0.5
+        path
     }
 
-    /// Light of the sky on a surface over pi, and, in w, the share of the sky that is seen.
+    /// Light of the sky on a surface over pi, and, in w, the share of the sky that is seen: turns 1 and on of the loop of
+    /// `scene_path` in WGSL.
     fn scene_sky_light(&self, surface: &Surface, random: [u32; 4]) -> Vec4 {
         let rays = self.frame.sky_rays;
         if rays == 0 {
@@ -142,19 +228,26 @@ impl SceneView<'_> {
         let start = surface.position + surface.facet * nearest;
         let (mut sum, mut seen) = (Vec3::ZERO, 0.0);
         for k in 0..rays {
-            let direction = scene_hemisphere(surface.normal, k, rays, random);
-            if direction.dot(surface.facet) <= 0.0 {
+            let along = scene_hemisphere(surface.normal, k, rays, random);
+            if along.dot(surface.facet) <= 0.0 {
                 continue;
             }
-            let hit = self.data.surface_hit(start, direction, nearest);
-            match hit.filter(|h| h.distance <= self.frame.sky_reach) {
+            match self.data.surface_hit(start, along, nearest, self.frame.sky_reach) {
                 None => {
-                    sum += self.data.sky_level(SCENE_SKY_LEVELS - 1, direction);
+                    sum += self.data.sky_level(SCENE_SKY_LEVELS - 1, along);
                     seen += 1.0;
                 }
                 Some(hit) => {
-                    let other = self.data.surface_at(&hit, start, direction, 0.05);
-                    sum += self.scene_glance(&other, -direction);
+                    let found = self.data.surface_at(&hit, start, along, SCENE_GLANCE_CONE);
+                    let colour = found.diffuse + found.normal_reflectance;
+                    if found.flags & SCENE_UNLIT != 0 {
+                        sum += colour;
+                        continue;
+                    }
+                    let chance = rng_unit(random[2].wrapping_add((k + 1).wrapping_mul(2_654_435_769)));
+                    // What it has of the sky itself: half of the whole.
+                    let own = self.data.sky_irradiance(found.normal) * (0.5 * found.occlusion);
+                    sum += found.emission + self.scene_direct(&found, -along, false, chance) + colour * own;
                 }
             }
         }
@@ -165,46 +258,9 @@ impl SceneView<'_> {
     /// at distance 1.
     #[must_use]
     pub fn scene_radiance(&self, origin: Vec3, direction: Vec3, cone: f32, random: [u32; 4]) -> Vec4 {
-        let nearest = self.frame.nearest;
-        let mut throughput = Vec3::ONE;
-        let mut radiance = Vec3::ZERO;
-        let mut from_distance = nearest;
-        let mut first = SCENE_FAR;
-        for _ in 0..SCENE_LAYERS {
-            let Some(hit) = self.data.surface_hit(origin, direction, from_distance) else {
-                return (radiance + throughput * self.data.sky_level(0, direction)).extend(first);
-            };
-            first = first.min(hit.distance);
-            let surface = self.data.surface_at(&hit, origin, direction, cone);
-            let mut shown = surface.diffuse + surface.normal_reflectance;
-            if surface.flags & SCENE_UNLIT == 0 {
-                let view = -direction;
-                let sky = self.scene_sky_light(&surface, random);
-                let cosine = surface.normal.dot(view).max(0.0);
-                let mirrored = direction - surface.normal * (2.0 * direction.dot(surface.normal));
-                // Where the sky is hidden, so is most of its reflection.
-                let open = sky.w * sky.w * 0.9 + 0.1;
-                let reflection = self.data.sky_reflection(mirrored, surface.roughness) * open;
-                let gloss = brdf_environment(surface.normal_reflectance, surface.roughness, cosine);
-                let body = surface.diffuse * (1.0 - surface.transmission) * (Vec3::ONE - gloss);
-                shown = surface.emission
-                    + self.scene_direct(&surface, view)
-                    + (body * sky.truncate() + gloss * reflection) * surface.occlusion;
-            }
-            let (mut share, mut tint) = (1.0, Vec3::ZERO);
-            if surface.flags & SCENE_BLENDED != 0 {
-                share = surface.alpha.clamp(0.0, 1.0);
-                tint = Vec3::ONE;
-            }
-            radiance += throughput * shown * share;
-            let through = tint * (1.0 - share) + surface.diffuse * surface.transmission * share;
-            throughput *= through;
-            if throughput.max_element() < 1.0e-3 {
-                break;
-            }
-            from_distance = hit.distance + nearest;
-        }
-        radiance.extend(first)
+        let path = self.scene_path(origin, direction, cone, random, &ScenePath::NOTHING);
+        let open = path.sky.w * path.sky.w;
+        (path.radiance + path.body * path.sky.truncate() + path.gloss * open).extend(path.distance)
     }
 
     /// The direction of the ray through a place of the picture, in pixels from the top left.
@@ -217,34 +273,143 @@ impl SceneView<'_> {
         direction / direction.dot(direction).sqrt()
     }
 
-    /// A pixel: mean radiance, and the distance of what stands nearest in it.
+    /// A pixel: mean radiance without the sky's light on surfaces, and the distance of what stands nearest in it; and
+    /// what it has found of the sky's light.
     #[must_use]
-    pub fn scene_pixel(&self, x: u32, y: u32) -> Vec4 {
+    pub fn scene_pixel(&self, x: u32, y: u32) -> (Vec4, SceneGather) {
         let (mut sum, mut nearest) = (Vec3::ZERO, SCENE_FAR);
+        let (mut body, mut gloss, mut normal) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+        let (mut sky, mut met) = (Vec4::ZERO, 0.0);
         let n = self.frame.grid;
+        let eye = Vec3::from(self.frame.eye);
+        let mut last = ScenePath::NOTHING;
         for k in 0..n * n {
-            let id = y * self.frame.width + x;
-            let random = rng_draw([self.frame.seed, 0], id, k, SCENE_RANDOM_DIMENSION);
             let dx = ((k % n) as f32 + 0.5) / n as f32;
             let dy = ((k / n) as f32 + 0.5) / n as f32;
             let direction = self.scene_direction(x as f32 + dx, y as f32 + dy);
-            let seen =
-                self.scene_radiance(Vec3::from(self.frame.eye), direction, self.frame.pixel_angle, random);
-            sum += seen.truncate();
-            nearest = nearest.min(seen.w);
+            let random = scene_lattice(self.frame.seed, x, y, k);
+            last = self.scene_path(eye, direction, self.frame.pixel_angle, random, &last);
+            sum += last.radiance;
+            body += last.body;
+            gloss += last.gloss;
+            sky += last.sky * last.met;
+            normal += last.normal * last.met;
+            met += last.met;
+            nearest = nearest.min(last.distance);
         }
-        (sum / (n * n) as f32).extend(nearest)
+        let share = 1.0 / (n * n) as f32;
+        let gather = SceneGather {
+            sky: (sky / met.max(1.0)).to_array(),
+            body: (body * share).to_array(),
+            met: met * share,
+            gloss: (gloss * share).to_array(),
+            normal: packing_pack_snorm(packing_octahedral_encode(normal.to_array())),
+        };
+        ((sum * share).extend(nearest), gather)
     }
 
     /// The whole picture, rows from the top, in parallel; the same bits for any number of threads.
     #[must_use]
     pub fn picture(&self) -> Vec<[f32; 4]> {
         let width = self.frame.width;
-        (0..self.frame.height)
+        let (mut picture, gather): (Vec<[f32; 4]>, Vec<SceneGather>) = (0..self.frame.height)
             .into_par_iter()
-            .flat_map_iter(|y| (0..width).map(move |x| self.scene_pixel(x, y).to_array()))
-            .collect()
+            .flat_map_iter(|y| {
+                (0..width).map(move |x| {
+                    let (pixel, gather) = self.scene_pixel(x, y);
+                    (pixel.to_array(), gather)
+                })
+            })
+            .unzip();
+        let shown = self.skylight(&picture, &gather);
+        for (pixel, shown) in picture.iter_mut().zip(shown) {
+            for k in 0..3 {
+                pixel[k] += shown[k];
+            }
+        }
+        picture
     }
+}
+
+/// What a ray of the camera finds.
+#[derive(Clone, Copy, Debug)]
+struct ScenePath {
+    /// All light but that of the sky on the first surface.
+    radiance: Vec3,
+    /// Distance of the first surface (`SCENE_FAR` for the sky).
+    distance: f32,
+    /// What the sky's light on the first surface is multiplied with.
+    body: Vec3,
+    /// 1 if there is a surface whose light of the sky is told apart.
+    met: f32,
+    /// What the square of the open share of the sky is multiplied with.
+    gloss: Vec3,
+    material: u32,
+    /// Light of the sky over pi, and the share of the sky that is seen.
+    sky: Vec4,
+    normal: Vec3,
+    facet: Vec3,
+    place: Vec3,
+}
+
+impl ScenePath {
+    /// A path that has found nothing.
+    const NOTHING: Self = Self {
+        radiance: Vec3::ZERO,
+        distance: SCENE_FAR,
+        body: Vec3::ZERO,
+        met: 0.0,
+        gloss: Vec3::ZERO,
+        material: SCENE_NONE,
+        sky: Vec4::ZERO,
+        normal: Vec3::ZERO,
+        facet: Vec3::ZERO,
+        place: Vec3::ZERO,
+    };
+}
+
+/// What a pixel has found of the sky's light, for the filter. The same layout as `SceneGather` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct SceneGather {
+    /// Light of the sky over pi, and the share of the sky that is seen: means of the samples that have met a surface.
+    pub sky: [f32; 4],
+    /// What it is multiplied with.
+    pub body: [f32; 3],
+    /// Share of the samples that have met a surface.
+    pub met: f32,
+    /// What the square of the open share is multiplied with.
+    pub gloss: [f32; 3],
+    /// The normal, octahedral, 16 bits each.
+    pub normal: u32,
+}
+
+/// What a colour weighs when lamps are compared.
+fn scene_share(colour: Vec3) -> f32 {
+    colour.x + colour.y + colour.z
+}
+
+/// Whether a surface goes on where another sample of the pixel has met it.
+fn scene_goes_on(last: &ScenePath, material: u32, facet: Vec3, place: Vec3, distance: f32) -> bool {
+    last.met > 0.0
+        && last.material == material
+        && last.facet.dot(facet) > SCENE_SAME_FACET
+        && last.facet.dot(place - last.place).abs() < SCENE_SAME_PLANE * distance
+}
+
+/// Numbers for the rays of sample k of a pixel, as words: additive recurrences in x, y and k (the powers of the plastic
+/// and the golden number), so that neighbours share the hemisphere among them.
+#[must_use]
+pub fn scene_lattice(seed: u32, x: u32, y: u32, k: u32) -> [u32; 4] {
+    let seed = rng_draw([seed, 0], k, 0, SCENE_RANDOM_DIMENSION);
+    let step =
+        |a: u32, b: u32, start: u32| x.wrapping_mul(a).wrapping_add(y.wrapping_mul(b)).wrapping_add(start);
+    [
+        step(3_242_174_889, 2_447_445_414, seed[0]),
+        step(2_700_274_807, 2_313_257_606, seed[1]),
+        step(1_640_531_527, 3_510_702_301, seed[2]),
+        seed[3],
+    ]
 }
 
 /// Direction `k` of `n` over the hemisphere round a normal, cosine-weighted, for a pixel's random words.

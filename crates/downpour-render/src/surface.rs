@@ -52,9 +52,9 @@ impl SceneData {
         if row == SCENE_NONE { Vec4::ONE } else { self.texture_sample(row, uv, spread) }
     }
 
-    /// The nearest surface that is not a hole of a masked material. Twelve holes in a row end the ray.
+    /// The nearest surface up to a distance that is not a hole of a masked material. Twelve holes in a row end the ray.
     #[must_use]
-    pub fn surface_hit(&self, origin: Vec3, direction: Vec3, nearest: f32) -> Option<Hit> {
+    pub fn surface_hit(&self, origin: Vec3, direction: Vec3, nearest: f32, farthest: f32) -> Option<Hit> {
         let mut from_distance = nearest;
         for _ in 0..SCENE_LAYERS {
             let hit = mask_bvh_nearest(
@@ -63,6 +63,7 @@ impl SceneData {
                 origin.into(),
                 direction.into(),
                 from_distance,
+                farthest,
             )?;
             let material = (self.corners_of(&hit)[0].material * SCENE_MATERIAL_ROWS) as usize;
             if self.table[material + 3][0] & SCENE_MASKED == 0 {

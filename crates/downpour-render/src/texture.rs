@@ -71,13 +71,13 @@ impl SceneData {
             width = (width / 2).max(1);
             height = (height / 2).max(1);
         }
-        let near = self.texture_level(first, width, height, inside, place[3]);
-        let fraction = lod - level as f32;
-        if fraction == 0.0 || level + 1 >= image[3] {
+        let fraction = if level + 1 >= image[3] { 0.0 } else { lod - level as f32 };
+        let near = self.texture_level(first, width, height, inside, place[3]) * (1.0 - fraction);
+        if fraction == 0.0 {
             return near;
         }
         let next = first + (width * height) as u32;
         let far = self.texture_level(next, (width / 2).max(1), (height / 2).max(1), inside, place[3]);
-        near * (1.0 - fraction) + far * fraction
+        near + far * fraction
     }
 }

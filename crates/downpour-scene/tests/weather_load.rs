@@ -2,7 +2,7 @@
 
 mod picture_files;
 
-use downpour_scene::scene::LightKind;
+use downpour_scene::scene::{LightKind, Play};
 use downpour_scene::weather::{Roots, Weather, load};
 use downpour_scene::{Budget, SceneError};
 use glam::Vec3;
@@ -65,8 +65,8 @@ fn models_are_copied_with_their_movements() {
     let loaded = load(&weather, &files(), &mut budget).unwrap();
     assert_eq!(loaded.animations, [Some(1), Some(2)]);
     let scene = &loaded.scene;
-    // Meshes are shared by the copies; each file is one mesh.
-    assert_eq!((scene.meshes.len(), scene.animations.len(), scene.lights.len()), (2, 4, 2));
+    // Meshes are shared by the copies; a file is read once.
+    assert_eq!((scene.meshes.len(), scene.animations.len(), scene.lights.len()), (1, 4, 2));
     assert_eq!(scene.nodes.len(), 6 * 3 + 3 + 2);
     assert!(budget.nodes < Budget::default().nodes && budget.bytes < Budget::default().bytes);
     let pose = scene.pose(loaded.animations[0], 0.999_999);
@@ -93,6 +93,44 @@ fn models_are_copied_with_their_movements() {
         error.to_string(),
         "models/swing.gltf: animations: no animation \"Jump\"; allowed: \"Rest, Swing\""
     );
+}
+
+/// Two entries of the same file move on their own.
+#[test]
+fn entries_of_the_same_file_share_its_meshes_and_not_its_movements() {
+    let entry = |animation: &str, x: u32, count: u32| {
+        format!(
+            "[[model]]\nfile = 'models/swing.gltf'\nanimation = '{animation}'\ntranslation_m = [{x}, 0, 0]\n\
+             repeat = {{ count = [{count}, 1, 1], step_m = [1, 0, 0] }}\n"
+        )
+    };
+    let text = entry("Swing", 0, 2) + &entry("Rest", 100, 2) + &entry("Swing", 200, 3);
+    let weather = Weather::parse("w.toml", &text).unwrap();
+    let mut budget = Budget::default();
+    let loaded = load(&weather, &files(), &mut budget).unwrap();
+    let scene = &loaded.scene;
+    assert_eq!((scene.meshes.len(), scene.animations.len()), (1, 6));
+    assert_eq!(scene.nodes.len(), 7 * 3);
+    assert_eq!(loaded.animations, [Some(1), Some(2), Some(5)]);
+    let channels: Vec<usize> = scene.animations.iter().map(|one| one.channels.len()).collect();
+    assert_eq!(channels, [0, 2, 0, 2, 0, 3]);
+    let plays: Vec<Play> =
+        loaded.animations.iter().flatten().map(|&animation| Play { animation, time_s: 0.999_999 }).collect();
+    let pose = scene.pose_of(&plays);
+    let found: Vec<Vec3> = pose.instances.iter().map(|one| one.world.translation.into()).collect();
+    let expected = [0.0, 1.0, 100.0, 101.0, 200.0, 201.0, 202.0]
+        .map(|x: f32| Vec3::new(x, 0.0, if (100.0..200.0).contains(&x) { 0.0 } else { 8.0 }));
+    for (found, expected) in found.iter().zip(expected) {
+        assert!(found.distance(expected) < 1e-3, "{found} {expected}");
+    }
+    assert_eq!(found.len(), expected.len());
+    // Many entries of a file cost what their nodes cost.
+    let mut small = Budget { vertices: 10, ..Budget::default() };
+    let many: String = (0..1000).map(|x| entry("Rest", x, 1)).collect();
+    assert!(load(&Weather::parse("w.toml", &many).unwrap(), &files(), &mut small).is_ok());
+    let mut few = Budget { nodes: 500, ..Budget::default() };
+    let error = load(&Weather::parse("w.toml", &many).unwrap(), &files(), &mut few).unwrap_err();
+    assert_eq!(error.exit_code(), 3, "{error}");
 }
 
 #[test]

@@ -5,7 +5,8 @@
 //! | [`mod@drop`] | `downpour-drop` | one drop (shape, fall speed, oscillation, optics) and many (size distributions) |
 //! | [`mask`] | `downpour-mask` | what a drop does to light: refraction masks, traced, written and read |
 //! | [`scene`] | `downpour-scene` | glTF scenes, sky maps and weather files, behind a guard and a budget |
-//! | [`render`] | `downpour-render` | one exact drop in front of a sky map; scenes traced by rays |
+//! | [`sim`] | `downpour-sim` | where the drops of a rain are, counted from mm/h |
+//! | [`render`] | `downpour-render` | one exact drop in front of a sky map; scenes in the rain |
 //! | `gpu` (feature `wgpu`) | `downpour-gpu` | a checked layer over wgpu, on a device of its own or on yours |
 //! | [`shaders`] | `downpour-shaders` | every WGSL file as composable modules |
 //! | [`math`] | `downpour-math` | reproducible scalar functions and random numbers |
@@ -37,6 +38,7 @@ pub use downpour_math as math;
 pub use downpour_render as render;
 pub use downpour_scene as scene;
 pub use downpour_shaders as shaders;
+pub use downpour_sim as sim;
 
 /// The text of README.md, whose Rust parts are compiled and run.
 #[cfg(all(doctest, feature = "wgpu"))]

@@ -1,5 +1,5 @@
-//! `wgsl/render/{data,texture,sky,surface,scene}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
-//! `downpour_render::{texture, sky, surface, scene}`.
+//! `wgsl/render/{data,texture,sky,surface,scene,skylight}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
+//! `downpour_render::{texture, sky, surface, scene, skylight}`.
 
 use super::brdf::BRDF;
 use crate::common::{PACKING, RNG};
@@ -7,10 +7,10 @@ use crate::mask::BVH;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&SCENE_CONSTANTS, &DATA, &TEXTURE, &SKY, &SURFACE, &SCENE];
+pub const MODULES: &[&Module] = &[&SCENE_CONSTANTS, &DATA, &TEXTURE, &SKY, &SURFACE, &SCENE, &SKYLIGHT];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&SCENE_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&SCENE_KERNEL, &SKYLIGHT_KERNEL];
 
 shared_constants! {
     /// Numbers of the scene's tables and rays.
@@ -53,6 +53,22 @@ shared_constants! {
         SCENE_RANDOM_DIMENSION: u32 = 4100;
         /// Least roughness of the light of points and of the sun: a mirror would need their size.
         SCENE_LEAST_ROUGHNESS: f32 = 0.06;
+        /// Width at distance 1 of a ray to the sky: textures that it meets are seen at a glance.
+        SCENE_GLANCE_CONE: f32 = 0.05;
+        /// Lamps that give less than this part of what all would give cast no ray.
+        SCENE_LEAST_LAMP: f32 = 0.001;
+        /// Cosine of the angle between facets up to which a surface goes on.
+        SCENE_SAME_FACET: f32 = 0.97;
+        /// Distance from the other facet's plane up to which a surface goes on, per distance from the eye.
+        SCENE_SAME_PLANE: f32 = 0.005;
+        /// Pixels to each side over which the sky's light is averaged.
+        SKYLIGHT_RADIUS: u32 = 3;
+        /// Distance from the plane of a pixel's surface at which a neighbour no longer counts, per distance from the eye.
+        SKYLIGHT_SLACK: f32 = 0.002;
+        /// A capture on an octahedral map.
+        SCENE_OCTAHEDRAL: u32 = 0;
+        /// A capture as a perspective picture.
+        SCENE_PERSPECTIVE: u32 = 1;
         /// Beyond every distance.
         SCENE_FAR: f32 = 1.0e30;
     }
@@ -92,3 +108,14 @@ pub static SCENE: Module = Module {
 
 /// One invocation per pixel.
 pub static SCENE_KERNEL: Kernel = Kernel { entry: "main_scene", module: &SCENE, workgroup: [8, 8, 1] };
+
+/// The sky's light over neighbouring pixels. Twin: `downpour_render::skylight`.
+pub static SKYLIGHT: Module = Module {
+    path: "render/skylight.wgsl",
+    wgsl: include_str!("../../wgsl/render/skylight.wgsl"),
+    uses: &[&SCENE, &PACKING],
+};
+
+/// One invocation per pixel.
+pub static SKYLIGHT_KERNEL: Kernel =
+    Kernel { entry: "main_skylight", module: &SKYLIGHT, workgroup: [8, 8, 1] };

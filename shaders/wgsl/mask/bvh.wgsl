@@ -67,11 +67,11 @@ fn mask_bvh_inverse(direction: vec3f) -> vec3f {
     return vec3f(1.0) / steep;
 }
 
-// The nearest hit farther than `nearest` along the ray.
-fn mask_bvh_hit(origin: vec3f, direction: vec3f, nearest: f32) -> MaskBvhHit {
+// The nearest hit along the ray that is farther than `nearest` and nearer than `farthest`.
+fn mask_bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> MaskBvhHit {
     let inverse = mask_bvh_inverse(direction);
     var best = MaskBvhHit(-1.0, 0u, 0.0, 0.0);
-    var limit = MASK_BVH_FAR;
+    var limit = farthest;
     var stack: array<u32, MASK_BVH_STACK>;
     var depth = 0u;
     var at = 0u;

@@ -18,7 +18,7 @@ struct MaskModelParameters {
 
 // Whether the viewer's ray through (x, y) hits the mesh, and where.
 fn mask_model_hit(x: f32, y: f32) -> MaskBvhHit {
-    return mask_bvh_hit(vec3f(x, y, mask_model.front), vec3f(0.0, 0.0, -1.0), MASK_MODEL_NEAREST);
+    return mask_bvh_hit(vec3f(x, y, mask_model.front), vec3f(0.0, 0.0, -1.0), MASK_MODEL_NEAREST, MASK_BVH_FAR);
 }
 
 // The interpolated normal at a hit.
@@ -40,7 +40,7 @@ fn mask_model_through(x: f32, y: f32, hit: MaskBvhHit, coverage: f32) -> MaskTex
     var point = vec3f(x, y, mask_model.front - hit.distance);
     var polarised = (entry.y - entry.x) * 0.5;
     for (var reflections = 0u; reflections <= MASK_TRACE_REFLECTIONS; reflections += 1u) {
-        let next = mask_bvh_hit(point, inside, MASK_MODEL_NEAREST);
+        let next = mask_bvh_hit(point, inside, MASK_MODEL_NEAREST, MASK_BVH_FAR);
         // A ray that finds no way out has slipped along an edge of the surface: it counts as lost.
         if next.distance < 0.0 {
             break;

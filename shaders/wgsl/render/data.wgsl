@@ -27,6 +27,11 @@ struct RenderFrame {
     nearest: f32,
     // How far the rays to the sky go, metres.
     sky_reach: f32,
+    // How a capture's texels become directions: SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
+    projection: u32,
+    unused_1: u32,
+    unused_2: u32,
+    unused_3: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, 6>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.

@@ -1,5 +1,5 @@
 // The picture of a scene: rays from the eye, light of lamps and sun with shadow rays, light of the sky with rays that
-// find what hides it.
+// find what hides it. The sky's light leaves as what one pixel has found; skylight.wgsl takes means over neighbours.
 // Twin: downpour_render::scene, where the method is described.
 
 @group(0) @binding(7) var<storage, read_write> scene_picture: array<vec4f>;
@@ -41,8 +41,8 @@ fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
     var from_distance = render_frame.nearest;
     var visible = vec3f(1.0);
     for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
-        let hit = surface_hit(place, direction, from_distance);
-        if hit.distance < 0.0 || hit.distance >= distance - render_frame.nearest {
+        let hit = surface_hit(place, direction, from_distance, distance - render_frame.nearest);
+        if hit.distance < 0.0 {
             return visible;
         }
         let row = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
@@ -61,35 +61,55 @@ fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
     return vec3f(0.0);
 }
 
-// Light of lamps and sun on a surface, towards the viewer.
-fn scene_direct(surface: Surface, view: vec3f) -> vec3f {
+// Light of one lamp on a surface, towards the viewer, if nothing is between them.
+fn scene_lamp(surface: Surface, view: vec3f, light: SceneLight) -> vec3f {
+    if dot(surface.facet, light.direction) <= 0.0 {
+        return vec3f(0.0);
+    }
     let alpha = max(surface.roughness * surface.roughness, SCENE_LEAST_ROUGHNESS * SCENE_LEAST_ROUGHNESS);
+    return light.irradiance * brdf_direct(
+        surface.diffuse, surface.normal_reflectance, alpha, surface.normal, view, light.direction,
+    );
+}
+
+// Light of lamps and sun on a surface, towards the viewer. Lamps are asked in turn whether something hides them; with
+// `all` false only one is, drawn by what each would give (`chance` in [0, 1)), for all of them.
+fn scene_direct(surface: Surface, view: vec3f, all: bool, chance: f32) -> vec3f {
     let start = surface.position + surface.facet * render_frame.nearest;
     var sum = vec3f(0.0);
+    var total = 0.0;
+    var rest = chance;
+    var chosen = render_frame.light_count;
+    // Once for what each would give, and to draw one; then the rays.
     for (var k = 0u; k < render_frame.light_count; k += 1u) {
-        let light = scene_light(k, surface.position);
-        if dot(surface.facet, light.direction) <= 0.0 || dot(light.irradiance, vec3f(1.0)) <= 0.0 {
-            continue;
+        let share = scene_share(scene_lamp(surface, view, scene_light(k, surface.position)));
+        total += share;
+        if share > 0.0 && rest * total < share {
+            // The part of the interval that is left is as good as a new number.
+            rest = rest * total / share;
+            chosen = k;
+        } else if share > 0.0 {
+            rest = (rest * total - share) / (total - share);
         }
-        let reflected = brdf_direct(
-            surface.diffuse, surface.normal_reflectance, alpha, surface.normal, view, light.direction,
-        );
-        if dot(reflected, vec3f(1.0)) <= 0.0 {
+    }
+    let first = select(chosen, 0u, all);
+    let end = select(min(chosen + 1u, render_frame.light_count), render_frame.light_count, all);
+    for (var k = first; k < end; k += 1u) {
+        let light = scene_light(k, surface.position);
+        let lit = scene_lamp(surface, view, light);
+        let share = scene_share(lit);
+        if share <= total * SCENE_LEAST_LAMP {
             continue;
         }
         let visible = scene_visibility(start, light.direction, light.distance);
-        sum += reflected * light.irradiance * visible;
+        sum += lit * visible * select(total / share, 1.0, all);
     }
     return sum;
 }
 
-// What a surface shows at a glance: lamps, and half of the whole sky.
-fn scene_glance(surface: Surface, view: vec3f) -> vec3f {
-    if (surface.flags & SCENE_UNLIT) != 0u {
-        return surface.diffuse + surface.normal_reflectance;
-    }
-    let sky = sky_irradiance(surface.normal) * surface.occlusion;
-    return surface.emission + scene_direct(surface, view) + (surface.diffuse + surface.normal_reflectance) * sky * 0.5;
+// What a colour weighs when lamps are compared.
+fn scene_share(colour: vec3f) -> f32 {
+    return colour.r + colour.g + colour.b;
 }
 
 // Direction k of n over the hemisphere round a normal, cosine-weighted, for a pixel's random words.
@@ -109,57 +129,130 @@ fn scene_hemisphere(normal: vec3f, k: u32, n: u32, random: vec4u) -> vec3f {
     return tangent * (radius * cos(angle)) + other * (radius * sin(angle)) + normal * height;
 }
 
-// Light of the sky on a surface over pi, and, in w, the share of the sky that is seen.
-fn scene_sky_light(surface: Surface, random: vec4u) -> vec4f {
-    if render_frame.sky_rays == 0u {
-        return vec4f(sky_irradiance(surface.normal), 1.0);
-    }
-    let start = surface.position + surface.facet * render_frame.nearest;
-    var sum = vec3f(0.0);
-    var seen = 0.0;
-    for (var k = 0u; k < render_frame.sky_rays; k += 1u) {
-        let direction = scene_hemisphere(surface.normal, k, render_frame.sky_rays, random);
-        if dot(direction, surface.facet) <= 0.0 {
-            continue;
-        }
-        let hit = surface_hit(start, direction, render_frame.nearest);
-        if hit.distance < 0.0 || hit.distance > render_frame.sky_reach {
-            sum += sky_level(SCENE_SKY_LEVELS - 1u, direction);
-            seen += 1.0;
-        } else {
-            let other = surface_at(hit, start, direction, 0.05);
-            sum += scene_glance(other, -direction);
-        }
-    }
-    return vec4f(sum, seen) / f32(render_frame.sky_rays);
+// Numbers for the rays of sample k of a pixel, as words: additive recurrences in x, y and k (the powers of the plastic
+// and the golden number), so that neighbours share the hemisphere among them.
+fn scene_lattice(x: u32, y: u32, k: u32) -> vec4u {
+    let seed = rng_draw(vec2u(render_frame.seed, 0u), k, 0u, SCENE_RANDOM_DIMENSION);
+    return vec4u(
+        x * 3242174889u + y * 2447445414u + seed.x,
+        x * 2700274807u + y * 2313257606u + seed.y,
+        x * 1640531527u + y * 3510702301u + seed.z,
+        seed.w,
+    );
 }
 
-// What a ray sees, and the distance of the first surface (SCENE_FAR for the sky).
-fn scene_radiance(origin: vec3f, direction: vec3f, cone: f32, random: vec4u) -> vec4f {
+// What a ray of the camera finds.
+struct ScenePath {
+    // All light but that of the sky on the first surface.
+    radiance: vec3f,
+    // Distance of the first surface (SCENE_FAR for the sky).
+    distance: f32,
+    // What the sky's light on the first surface is multiplied with.
+    body: vec3f,
+    // 1 if there is a surface whose light of the sky is told apart.
+    met: f32,
+    // What the square of the open share of the sky is multiplied with.
+    gloss: vec3f,
+    material: u32,
+    // Light of the sky over pi, and the share of the sky that is seen.
+    sky: vec4f,
+    normal: vec3f,
+    unused_1: f32,
+    facet: vec3f,
+    unused_2: f32,
+    place: vec3f,
+    unused_3: f32,
+}
+
+// A path that has found nothing.
+fn scene_nothing() -> ScenePath {
+    let none = vec3f(0.0);
+    return ScenePath(
+        none, SCENE_FAR, none, 0.0, none, SCENE_NONE, vec4f(0.0), none, 0.0, none, 0.0, none, 0.0,
+    );
+}
+
+// Whether a surface goes on where another sample of the pixel has met it.
+fn scene_goes_on(last: ScenePath, material: u32, facet: vec3f, place: vec3f, distance: f32) -> bool {
+    return last.met > 0.0 && last.material == material && dot(last.facet, facet) > SCENE_SAME_FACET
+        && abs(dot(last.facet, place - last.place)) < SCENE_SAME_PLANE * distance;
+}
+
+// What a ray sees. Where it meets the surface that `last` met, it sees the same.
+fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: ScenePath) -> ScenePath {
+    var path = scene_nothing();
     var throughput = vec3f(1.0);
-    var radiance = vec3f(0.0);
     var from_distance = render_frame.nearest;
-    var first = SCENE_FAR;
     for (var layer = 0u; layer < SCENE_LAYERS; layer += 1u) {
-        let hit = surface_hit(origin, direction, from_distance);
-        if hit.distance < 0.0 {
-            return vec4f(radiance + throughput * sky_level(0u, direction), first);
+        // Turn 0 meets the surface; the others are its rays to the sky. One text for all of them: a shader holds the
+        // hierarchy's walk and the materials once.
+        var surface = Surface();
+        var direct = vec3f(0.0);
+        var sum = vec3f(0.0);
+        var seen = 0.0;
+        var start = origin;
+        var along = direction;
+        var near = from_distance;
+        var reach = MASK_BVH_FAR;
+        var width = cone;
+        for (var k = 0u; k <= render_frame.sky_rays; k += 1u) {
+            if k > 0u {
+                if (surface.flags & SCENE_UNLIT) != 0u {
+                    break;
+                }
+                start = surface.position + surface.facet * render_frame.nearest;
+                along = scene_hemisphere(surface.normal, k - 1u, render_frame.sky_rays, random);
+                near = render_frame.nearest;
+                reach = render_frame.sky_reach;
+                width = SCENE_GLANCE_CONE;
+                if dot(along, surface.facet) <= 0.0 {
+                    continue;
+                }
+            }
+            let hit = surface_hit(start, along, near, reach);
+            if k == 0u && hit.distance < 0.0 {
+                path.radiance += throughput * sky_level(0u, direction);
+                return path;
+            }
+            if hit.distance < 0.0 {
+                sum += sky_level(SCENE_SKY_LEVELS - 1u, along);
+                seen += 1.0;
+                continue;
+            }
+            let found = surface_at(hit, start, along, width);
+            let material = render_corners[hit.triangle * 3u].material;
+            if k == 0u && layer == 0u
+                && scene_goes_on(last, material, found.facet, found.position, hit.distance) {
+                return last;
+            }
+            var lit = found.diffuse + found.normal_reflectance;
+            if (found.flags & SCENE_UNLIT) == 0u {
+                let chance = rng_unit(random.z + k * 2654435769u);
+                lit = found.emission + scene_direct(found, -along, k == 0u, chance);
+                if k > 0u {
+                    // What it has of the sky itself: half of the whole.
+                    let own = sky_irradiance(found.normal) * (0.5 * found.occlusion);
+                    lit += (found.diffuse + found.normal_reflectance) * own;
+                }
+            }
+            if k == 0u {
+                surface = found;
+                direct = lit;
+                from_distance = hit.distance + render_frame.nearest;
+                if layer == 0u {
+                    path.distance = hit.distance;
+                    path.material = material;
+                    path.facet = found.facet;
+                    path.place = found.position;
+                    path.normal = found.normal;
+                }
+            } else {
+                sum += lit;
+            }
         }
-        first = min(first, hit.distance);
-        let surface = surface_at(hit, origin, direction, cone);
-        var shown = surface.diffuse + surface.normal_reflectance;
-        if (surface.flags & SCENE_UNLIT) == 0u {
-            let view = -direction;
-            let sky = scene_sky_light(surface, random);
-            let cosine = max(dot(surface.normal, view), 0.0);
-            let mirrored = direction - surface.normal * (2.0 * dot(direction, surface.normal));
-            // Where the sky is hidden, so is most of its reflection.
-            let open = sky.w * sky.w * 0.9 + 0.1;
-            let reflection = sky_reflection(mirrored, surface.roughness) * open;
-            let gloss = brdf_environment(surface.normal_reflectance, surface.roughness, cosine);
-            let body = surface.diffuse * (1.0 - surface.transmission) * (vec3f(1.0) - gloss);
-            shown = surface.emission + scene_direct(surface, view)
-                + (body * sky.rgb + gloss * reflection) * surface.occlusion;
+        var sky = vec4f(sum, seen) / max(f32(render_frame.sky_rays), 1.0);
+        if render_frame.sky_rays == 0u {
+            sky = vec4f(sky_irradiance(surface.normal), 1.0);
         }
         var share = 1.0;
         var tint = vec3f(0.0);
@@ -167,15 +260,37 @@ fn scene_radiance(origin: vec3f, direction: vec3f, cone: f32, random: vec4u) -> 
             share = clamp(surface.alpha, 0.0, 1.0);
             tint = vec3f(1.0);
         }
-        radiance += throughput * shown * share;
-        let through = tint * (1.0 - share) + surface.diffuse * surface.transmission * share;
-        throughput *= through;
-        if max(throughput.x, max(throughput.y, throughput.z)) < 1.0e-3 {
-            return vec4f(radiance, first);
+        if (surface.flags & SCENE_UNLIT) != 0u {
+            path.radiance += throughput * direct * share;
+        } else {
+            let cosine = max(dot(surface.normal, -direction), 0.0);
+            let mirrored = direction - surface.normal * (2.0 * dot(direction, surface.normal));
+            let gloss = brdf_environment(surface.normal_reflectance, surface.roughness, cosine);
+            let reflection = gloss * sky_reflection(mirrored, surface.roughness) * surface.occlusion;
+            let body = surface.diffuse * (1.0 - surface.transmission) * (vec3f(1.0) - gloss) * surface.occlusion;
+            // Where the sky is hidden, so is most of its reflection.
+            path.radiance += throughput * share * (direct + reflection * 0.1);
+            if layer == 0u && share == 1.0 && surface.transmission == 0.0 {
+                path.body = body;
+                path.gloss = reflection * 0.9;
+                path.sky = sky;
+                path.met = 1.0;
+            } else {
+                path.radiance += throughput * share * (body * sky.rgb + reflection * (0.9 * sky.w * sky.w));
+            }
         }
-        from_distance = hit.distance + render_frame.nearest;
+        throughput *= tint * (1.0 - share) + surface.diffuse * surface.transmission * share;
+        if max(throughput.x, max(throughput.y, throughput.z)) < 1.0e-3 {
+            return path;
+        }
     }
-    return vec4f(radiance, first);
+    return path;
+}
+
+// What a ray sees, and the distance of the first surface (SCENE_FAR for the sky).
+fn scene_radiance(origin: vec3f, direction: vec3f, cone: f32, random: vec4u) -> vec4f {
+    let path = scene_path(origin, direction, cone, random, scene_nothing());
+    return vec4f(path.radiance + path.body * path.sky.rgb + path.gloss * (path.sky.w * path.sky.w), path.distance);
 }
 
 // The direction of the ray through a place of the picture, in pixels from the top left.
@@ -186,23 +301,52 @@ fn scene_direction(x: f32, y: f32) -> vec3f {
     return direction / sqrt(dot(direction, direction));
 }
 
-// A pixel: mean radiance, and the distance of what stands nearest in it.
+// What a pixel has found of the sky's light, for the filter.
+struct SceneGather {
+    // Light of the sky over pi, and the share of the sky that is seen: means of the samples that have met a surface.
+    sky: vec4f,
+    // What it is multiplied with.
+    body: vec3f,
+    // Share of the samples that have met a surface.
+    met: f32,
+    // What the square of the open share is multiplied with.
+    gloss: vec3f,
+    // The normal, octahedral, 16 bits each.
+    normal: u32,
+}
+
+@group(0) @binding(8) var<storage, read_write> scene_gather: array<SceneGather>;
+
+// A pixel: mean radiance without the sky's light on surfaces, and the distance of what stands nearest in it; what it
+// has found of the sky's light goes to the filter.
 fn scene_pixel(x: u32, y: u32) -> vec4f {
     var sum = vec3f(0.0);
+    var body = vec3f(0.0);
+    var gloss = vec3f(0.0);
+    var sky = vec4f(0.0);
+    var normal = vec3f(0.0);
+    var met = 0.0;
     var nearest = SCENE_FAR;
     let n = render_frame.grid;
+    var last = scene_nothing();
     for (var k = 0u; k < n * n; k += 1u) {
-        let random = rng_draw(
-            vec2u(render_frame.seed, 0u), y * render_frame.width + x, k, SCENE_RANDOM_DIMENSION,
-        );
         let dx = (f32(k % n) + 0.5) / f32(n);
         let dy = (f32(k / n) + 0.5) / f32(n);
         let direction = scene_direction(f32(x) + dx, f32(y) + dy);
-        let seen = scene_radiance(render_frame.eye, direction, render_frame.pixel_angle, random);
-        sum += seen.rgb;
-        nearest = min(nearest, seen.w);
+        last = scene_path(render_frame.eye, direction, render_frame.pixel_angle, scene_lattice(x, y, k), last);
+        sum += last.radiance;
+        body += last.body;
+        gloss += last.gloss;
+        sky += last.sky * last.met;
+        normal += last.normal * last.met;
+        met += last.met;
+        nearest = min(nearest, last.distance);
     }
-    return vec4f(sum / f32(n * n), nearest);
+    let share = 1.0 / f32(n * n);
+    let packed = pack2x16snorm(packing_octahedral_encode(normal));
+    scene_gather[y * render_frame.width + x] =
+        SceneGather(sky / max(met, 1.0), body * share, met * share, gloss * share, packed);
+    return vec4f(sum * share, nearest);
 }
 
 @compute @workgroup_size(8, 8, 1)

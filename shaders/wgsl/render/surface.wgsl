@@ -34,11 +34,11 @@ fn surface_texture(row: u32, uv: vec4f, spread: f32) -> vec4f {
     return texture_sample(row, uv, spread);
 }
 
-// The nearest surface that is not a hole of a masked material. Twelve holes in a row end the ray.
-fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32) -> SurfaceHit {
+// The nearest surface up to a distance that is not a hole of a masked material. Twelve holes in a row end the ray.
+fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> SurfaceHit {
     var from_distance = nearest;
     for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
-        let hit = mask_bvh_hit(origin, direction, from_distance);
+        let hit = mask_bvh_hit(origin, direction, from_distance, farthest);
         if hit.distance < 0.0 {
             break;
         }
@@ -115,18 +115,24 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
     let maps = render_table[row + 4u];
     let more = render_table[row + 5u];
 
-    let base = base_row * surface_texture(maps.x, uv, spread) * surface_colour(hit);
-    let rough = surface_texture(maps.y, uv, spread);
+    // One text for all textures: each copy of it is compiled again.
+    var rows = array<u32, 6>(maps.x, maps.y, maps.z, maps.w, more.x, more.y);
+    var texels: array<vec4f, 6>;
+    for (var k = 0u; k < 6u; k += 1u) {
+        texels[k] = surface_texture(rows[k], uv, spread);
+    }
+    let base = base_row * texels[0] * surface_colour(hit);
+    let rough = texels[1];
     let metallic = clamp(glow.w * rough.b, 0.0, 1.0);
     let roughness = clamp(look.x * rough.g, 0.0, 1.0);
-    let emission = glow.rgb * surface_texture(maps.w, uv, spread).rgb;
-    let occlusion = 1.0 + look.z * (surface_texture(more.x, uv, spread).r - 1.0);
-    let transmission = transmission_factor * surface_texture(more.y, uv, spread).r;
+    let emission = glow.rgb * texels[3].rgb;
+    let occlusion = 1.0 + look.z * (texels[4].r - 1.0);
+    let transmission = transmission_factor * texels[5].r;
 
     var normal = (corner.normal * w + second.normal * hit.u + third.normal * hit.v) * facing;
     if maps.z != SCENE_NONE {
         let tangent = corner.tangent * w + second.tangent * hit.u + third.tangent * hit.v;
-        let map = surface_texture(maps.z, uv, spread).xyz * 2.0 - vec3f(1.0);
+        let map = texels[2].xyz * 2.0 - vec3f(1.0);
         let side = cross(normal * facing, tangent.xyz) * tangent.w;
         normal = tangent.xyz * (map.x * look.y) + side * (map.y * look.y) + normal * max(map.z, 0.05);
     }

@@ -67,13 +67,16 @@ fn texture_sample(slot: u32, uv: vec4f, spread: f32) -> vec4f {
         width = max(width / 2, 1);
         height = max(height / 2, 1);
     }
-    let near = texture_level(first, width, height, inside, place.w);
-    let fraction = lod - f32(level);
-    if fraction == 0.0 || level + 1u >= image.w {
-        return near;
+    let fraction = select(lod - f32(level), 0.0, level + 1u >= image.w);
+    var share = 1.0 - fraction;
+    var sum = vec4f(0.0);
+    // Two levels, or one.
+    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
+        sum += texture_level(first, width, height, inside, place.w) * share;
+        first += u32(width * height);
+        width = max(width / 2, 1);
+        height = max(height / 2, 1);
+        share = select(0.0, fraction, k == 0u);
     }
-    let far = texture_level(
-        first + u32(width * height), max(width / 2, 1), max(height / 2, 1), inside, place.w,
-    );
-    return near * (1.0 - fraction) + far * fraction;
+    return sum;
 }

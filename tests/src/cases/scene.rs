@@ -16,7 +16,8 @@ use downpour_render::sky_light::SkyLight;
 use downpour_render::texture::texture_wrap;
 use downpour_shaders::render::brdf::BRDF;
 use downpour_shaders::render::scene::{
-    SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_KERNEL, SCENE_MASKED, SCENE_UNLIT, SKY, TEXTURE,
+    SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_KERNEL, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT_KERNEL,
+    TEXTURE,
 };
 use glam::{Affine3A, Vec3};
 
@@ -114,7 +115,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
 }
 
 /// A floor, boxes of every kind of material, a masked and a see-through sheet, three kinds of lamps, a sky.
-fn scene() -> SceneData {
+pub(super) fn scene() -> SceneData {
     let sky: Vec<[f32; 3]> = (0..64 * 32)
         .map(|i| {
             let (x, y) = ((i % 64) as f32 / 64.0, (i / 64) as f32 / 32.0);
@@ -259,9 +260,13 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "surface_at",
             "scene_light",
             "scene_visibility",
+            "scene_lamp",
             "scene_direct",
-            "scene_glance",
-            "scene_sky_light",
+            "scene_share",
+            "scene_lattice",
+            "scene_nothing",
+            "scene_goes_on",
+            "scene_path",
             "scene_radiance",
             "scene_direction",
             "scene_pixel",
@@ -269,7 +274,15 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         tol: PICTURE,
         run,
     };
+    let filter = |name, run| KernelCase {
+        name,
+        kernel: &SKYLIGHT_KERNEL,
+        covers: &["skylight_place", "skylight_mean"],
+        tol: PICTURE,
+        run,
+    };
     vec![
+        filter("main_skylight: from above", |gpu| scene_case(gpu, Vec3::new(1.6, 3.4, 2.0), 2)),
         case("main_scene: near, with rays to the sky", |gpu| scene_case(gpu, Vec3::new(0.6, 1.4, 3.0), 4)),
         case("main_scene: far, with the open sky", |gpu| scene_case(gpu, Vec3::new(-9.0, 6.0, 12.0), 0)),
     ]

@@ -5,14 +5,14 @@ use crate::child::downpour;
 #[test]
 fn help_and_version_are_results() {
     let help = downpour(&["--help"]).succeeded().stdout;
-    for word in ["mask", "drop", "rain", "adapters", "Exit codes"] {
+    for word in ["render", "check", "mask", "drop", "rain", "adapters", "Exit codes"] {
         assert!(help.contains(word), "{help}");
     }
     assert_eq!(
         downpour(&["--version"]).succeeded().stdout,
         format!("downpour {}\n", env!("CARGO_PKG_VERSION"))
     );
-    for command in ["mask", "drop", "rain", "adapters"] {
+    for command in ["render", "check", "mask", "drop", "rain", "adapters"] {
         assert!(downpour(&[command, "--help"]).succeeded().stdout.contains("Usage: downpour"), "{command}");
     }
 }

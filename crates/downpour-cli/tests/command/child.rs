@@ -154,6 +154,13 @@ impl Ended {
         self
     }
 
+    /// Nothing was written to standard error.
+    #[track_caller]
+    pub(crate) fn without_a_word(self) -> Self {
+        assert_eq!(self.stderr, "");
+        self
+    }
+
     /// The files of its folder are these, and no others: no temporary file either.
     #[track_caller]
     pub(crate) fn left(self, names: &[&str]) -> Self {

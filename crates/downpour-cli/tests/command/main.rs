@@ -4,6 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod arguments;
+mod check;
 mod child;
 mod drop;
 mod gltf_file;
@@ -12,6 +13,10 @@ mod models;
 mod output;
 mod rain;
 mod readme;
+mod render;
+mod render_bad;
+mod scene_files;
+mod scenes;
 #[cfg(unix)]
 mod signals;
 mod specimen;

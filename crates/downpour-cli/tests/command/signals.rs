@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use downpour::mask::file::exr;
 
 use crate::child::{Downpour, names_in};
+use crate::scene_files::storm;
 
 #[test]
 fn an_interrupt_ends_the_work_at_once_and_leaves_nothing() {
@@ -21,6 +22,23 @@ fn an_interrupt_ends_the_work_at_once_and_leaves_nothing() {
         assert_eq!(ended.code, Some(6), "{}", ended.stderr);
         assert_eq!(ended.stderr, "downpour: cancelled\n");
         ended.left(&[]);
+    }
+}
+
+/// In the middle of a picture, and while a weather is read.
+#[test]
+fn an_interrupt_ends_a_picture_at_once_and_leaves_nothing() {
+    for (signal, wait) in [("INT", 100), ("TERM", 1200)] {
+        let arguments = ["render", "--size=4096x2304", "-o", "a.png", "--stats", "a.json"];
+        let running = storm(&arguments).start();
+        sleep(Duration::from_millis(wait));
+        let begin = Instant::now();
+        running.signal(signal);
+        let ended = running.end();
+        assert!(begin.elapsed() < Duration::from_secs(5));
+        assert_eq!(ended.code, Some(6), "{}", ended.stderr);
+        assert_eq!(ended.stderr, "downpour: cancelled\n");
+        ended.left(&["floor.gltf", "storm.toml"]);
     }
 }
 

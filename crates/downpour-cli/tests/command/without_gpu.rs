@@ -1,6 +1,7 @@
 //! A machine whose Vulkan has no driver.
 
 use crate::child::Downpour;
+use crate::scene_files::{model, weather};
 
 fn without_driver(arguments: &[&str]) -> Downpour {
     Downpour::new(arguments).env("VK_DRIVER_FILES", "/nonexistent").env("VK_ICD_FILENAMES", "/nonexistent")
@@ -17,6 +18,28 @@ fn auto_takes_the_cpu_and_says_why() {
     assert!(!quiet.stderr.contains("downpour:"), "{}", quiet.stderr);
     let cpu = Downpour::new(&[&arguments[..], &["--backend", "cpu"]].concat()).run().succeeded();
     assert_eq!(cpu.file("m.exr"), ended.file("m.exr"));
+}
+
+#[test]
+fn a_picture_falls_back_to_the_cpu_and_says_why() {
+    let of = |backend: &[&str]| {
+        let fixed =
+            ["render", "storm.toml", "--samples=1", "--sky-rays=1", "-o", "a.exr", "--stats", "a.json"];
+        without_driver(&[&fixed, backend].concat())
+            .with_file("storm.toml", weather(""))
+            .with_file("floor.gltf", model())
+            .run()
+    };
+    let auto = of(&[]).succeeded();
+    let line =
+        auto.stderr.lines().find(|line| line.starts_with("downpour: backend: cpu (")).unwrap_or_default();
+    assert!(line.contains("no GPU adapter") && line.contains("/nonexistent"), "{}", auto.stderr);
+    let stats: serde_json::Value = serde_json::from_slice(&auto.file("a.json")).unwrap();
+    assert_eq!((stats["backend"].as_str(), stats["adapter"].as_str()), (Some("cpu"), Some("CPU")));
+    assert_eq!(auto.file("a.exr"), of(&["--backend", "cpu"]).succeeded().file("a.exr"));
+    of(&["--backend", "gpu"])
+        .failed(4, &["no GPU adapter", "--backend cpu"])
+        .left(&["floor.gltf", "storm.toml"]);
 }
 
 #[test]

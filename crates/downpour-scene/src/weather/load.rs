@@ -5,12 +5,14 @@ use crate::Budget;
 use crate::beneath::{Files, Folder, OpenFile};
 use crate::error::SceneError;
 use crate::gltf::read_scene_from_bytes;
-use crate::scene::{Light, LightKind, Local, Node, Scene};
+use crate::scene::{Animation, Light, LightKind, Local, Node, Scene};
 use crate::sky::{self, SUN_THRESHOLD, SkyMap, Sun};
 use crate::uri::{Address, RelativePath, check};
 use crate::warning::{Warning, WarningKind, Warnings};
 use downpour_math::ops::f64 as ops;
 use glam::{Affine3A, DAffine3, DQuat, DVec3};
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 /// A weather with its files.
@@ -77,7 +79,8 @@ impl Files for Beside<'_> {
 
 /// Reads all files that a weather names, through `files`: see [`Roots`].
 ///
-/// The budget is lowered by what they take up; a copy of a model costs its nodes only.
+/// The budget is lowered by what they take up; a copy of a model, be it by `repeat` or by another `[[model]]` of the
+/// same file, costs its nodes and movements only.
 ///
 /// # Errors
 /// [`SceneError`] with the name of the file: it cannot be read, is not what Downpour can read, or is too large; or a
@@ -97,8 +100,9 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
     let (mut sky, sun) = lights_of_the_sky(weather, files, &mut purse, &mut warnings)?;
     let mut scene = Scene { name: weather.name.clone(), ..Scene::default() };
     let mut animations = Vec::new();
+    let mut known = BTreeMap::new();
     for model in &weather.models {
-        animations.push(add(&mut scene, model, files, &mut purse)?);
+        animations.push(add(&mut scene, model, &mut known, files, &mut purse)?);
     }
     for lamp in &weather.lights {
         purse.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
@@ -160,51 +164,108 @@ fn turned(sky: SkyMap, yaw: f64) -> SkyMap {
     if yaw == 0.0 { sky } else { sky.rotated(yaw) }
 }
 
+/// Where the first copy of a file stands in the scene.
+struct Source {
+    nodes: Range<usize>,
+    animations: Range<usize>,
+}
+
 /// Adds a model with its copies. Returns the animation that plays.
-fn add(
+fn add<'a>(
     scene: &mut Scene,
-    model: &Model,
+    model: &'a Model,
+    known: &mut BTreeMap<&'a str, Source>,
     files: &dyn Files,
     budget: &mut Budget,
 ) -> Result<Option<usize>, SceneError> {
     let name = model.file.as_str();
-    let folder = name.rfind('/').and_then(|end| name.get(..=end)).unwrap_or_default();
-    let read = |budget: &mut Budget| {
-        let bytes = sky::whole(files.open(&model.file)?, budget)?;
-        read_scene_from_bytes(name, &bytes, &Beside { files, folder }, budget)
-    };
-    let other = read(budget).map_err(|error| error.in_file(name))?;
-    let chosen = match &model.animation {
-        None => (!other.animations.is_empty()).then_some(0),
-        Some(wanted) => {
-            Some(other.animations.iter().position(|one| one.name == *wanted).ok_or_else(|| {
-                let names: Vec<&str> = other.animations.iter().map(|one| one.name.as_str()).collect();
-                let found = format!("no animation {}", crate::error::quoted(wanted));
-                SceneError::bad("animations", found, crate::error::quoted(&names.join(", "))).in_file(name)
-            })?)
+    let mut places = model.transforms().map(|place| single(&place));
+    let first = places.next().unwrap_or(Affine3A::IDENTITY);
+    let part = match known.get(name) {
+        Some(source) => again(scene, source, first, budget).map_err(|error| error.in_file(name))?,
+        None => {
+            let part = append(scene, model, first, files, budget).map_err(|error| error.in_file(name))?;
+            let source = Source { nodes: part.nodes.clone(), animations: part.animations.clone() };
+            known.insert(name, source);
+            part
         }
     };
-    let chosen = chosen.map(|index| index.saturating_add(scene.animations.len()));
-    let (nodes, animations) = (scene.nodes.len(), scene.animations.len());
-    let mut places = model.transforms().map(|place| single(&place));
-    if let Some(first) = places.next() {
-        budget.take_nodes(1, "nodes").map_err(|error| error.in_file(name))?;
-        scene.append(other, first);
-    }
-    let part = nodes..scene.nodes.len();
-    let each = copy_bytes(scene, &part, animations);
+    let own = scene.animations.get(part.animations.clone()).unwrap_or_default();
+    let chosen = match &model.animation {
+        None => (!own.is_empty()).then_some(0),
+        Some(wanted) => Some(own.iter().position(|one| one.name == *wanted).ok_or_else(|| {
+            let names: Vec<&str> = own.iter().map(|one| one.name.as_str()).collect();
+            let found = format!("no animation {}", crate::error::quoted(wanted));
+            SceneError::bad("animations", found, crate::error::quoted(&names.join(", "))).in_file(name)
+        })?),
+    };
+    let chosen = chosen.map(|index| index.saturating_add(part.animations.start));
+    let each = copy_bytes(scene, &part);
     for place in places {
-        budget.take_bytes(each, "nodes").map_err(|error| error.in_file(name))?;
-        budget.take_nodes(part.len() as u64, "nodes").map_err(|error| error.in_file(name))?;
-        copy(scene, part.clone(), animations, place);
+        let mut take = || {
+            budget.take_bytes(each, "nodes")?;
+            budget.take_nodes(part.nodes.len() as u64, "nodes")
+        };
+        take().map_err(|error| error.in_file(name))?;
+        copy(scene, part.nodes.clone(), part.animations.clone(), place);
     }
     Ok(chosen)
 }
 
+/// Reads the file of a model and puts it at a place.
+fn append(
+    scene: &mut Scene,
+    model: &Model,
+    place: Affine3A,
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<Source, SceneError> {
+    let name = model.file.as_str();
+    let folder = name.rfind('/').and_then(|end| name.get(..=end)).unwrap_or_default();
+    let bytes = sky::whole(files.open(&model.file)?, budget)?;
+    let other = read_scene_from_bytes(name, &bytes, &Beside { files, folder }, budget)?;
+    budget.take_nodes(1, "nodes")?;
+    let (nodes, animations) = (scene.nodes.len(), scene.animations.len());
+    scene.append(other, place);
+    Ok(Source { nodes: nodes..scene.nodes.len(), animations: animations..scene.animations.len() })
+}
+
+/// Puts a file that was read before at another place: its nodes, with movements of their own.
+fn again(
+    scene: &mut Scene,
+    source: &Source,
+    place: Affine3A,
+    budget: &mut Budget,
+) -> Result<Source, SceneError> {
+    budget.take_bytes(copy_bytes(scene, source), "nodes")?;
+    budget.take_nodes(source.nodes.len() as u64, "nodes")?;
+    let (nodes, animations) = (scene.nodes.len(), scene.animations.len());
+    // Those of the first copy alone: its repetitions were added to the same movements.
+    let moved: Vec<Animation> = scene
+        .animations
+        .get(source.animations.clone())
+        .unwrap_or_default()
+        .iter()
+        .map(|animation| {
+            let own = animation.channels.iter().filter(|channel| source.nodes.contains(&channel.node));
+            Animation { name: animation.name.clone(), channels: own.cloned().collect() }
+        })
+        .collect();
+    copy(scene, source.nodes.clone(), 0..0, place);
+    let by = nodes.saturating_sub(source.nodes.start);
+    scene.animations.extend(moved.into_iter().map(|mut animation| {
+        for channel in &mut animation.channels {
+            channel.node = channel.node.saturating_add(by);
+        }
+        animation
+    }));
+    Ok(Source { nodes: nodes..scene.nodes.len(), animations: animations..scene.animations.len() })
+}
+
 /// What a copy takes up, in bytes.
-fn copy_bytes(scene: &Scene, part: &std::ops::Range<usize>, animations: usize) -> u64 {
+fn copy_bytes(scene: &Scene, source: &Source) -> u64 {
     let of = |count: usize, size: usize| (count as u64).saturating_mul(size as u64);
-    let nodes = scene.nodes.get(part.clone()).unwrap_or_default().iter();
+    let nodes = scene.nodes.get(source.nodes.clone()).unwrap_or_default().iter();
     let nodes = nodes.map(|node| {
         let skin = node.skin.and_then(|skin| scene.skins.get(skin));
         let skin = skin.map_or(0, |skin| of(skin.joints.len(), size_of::<(usize, Affine3A)>()));
@@ -213,13 +274,15 @@ fn copy_bytes(scene: &Scene, part: &std::ops::Range<usize>, animations: usize) -
             .saturating_add(of(node.children.len(), size_of::<usize>()))
             .saturating_add(of(1, size_of::<Node>()))
     });
-    let channels = scene.animations.iter().skip(animations).flat_map(|animation| &animation.channels);
+    let animations = scene.animations.get(source.animations.clone()).unwrap_or_default();
+    let channels = animations.iter().flat_map(|animation| &animation.channels);
+    let channels = channels.filter(|channel| source.nodes.contains(&channel.node));
     nodes.chain(channels.map(|channel| channel.track.bytes())).fold(0, u64::saturating_add)
 }
 
 /// Copies the nodes of a model, with the skins and movements that belong to them; the meshes are shared. The last
 /// node of the part is the one that all others hang on.
-fn copy(scene: &mut Scene, part: std::ops::Range<usize>, animations: usize, place: Affine3A) {
+fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, place: Affine3A) {
     let by = scene.nodes.len().saturating_sub(part.start);
     let mut nodes = scene.nodes.get(part.clone()).unwrap_or_default().to_vec();
     for node in &mut nodes {
@@ -235,7 +298,7 @@ fn copy(scene: &mut Scene, part: std::ops::Range<usize>, animations: usize, plac
     }
     scene.nodes.extend(nodes);
     scene.roots.push(scene.nodes.len().saturating_sub(1));
-    for animation in scene.animations.iter_mut().skip(animations) {
+    for animation in scene.animations.get_mut(animations).unwrap_or_default() {
         let moved: Vec<_> =
             animation.channels.iter().filter(|channel| part.contains(&channel.node)).cloned().collect();
         animation.channels.extend(moved.into_iter().map(|mut channel| {

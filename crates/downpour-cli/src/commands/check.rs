@@ -1,0 +1,152 @@
+//! `downpour check`: what `render` would do, without doing it.
+
+use clap::Args;
+use downpour::drop::distribution::{DistributionOptions, DropSizeDistribution};
+use downpour::render::stage::{CameraChoice, Stage};
+use downpour::scene::{Budget, scene::Texture};
+
+use super::input::{Input, InputArguments};
+use super::render::BYTES_PER_PIXEL;
+use crate::failure::Failure;
+use crate::listing::{Datum, Entry};
+use crate::{listing, stream};
+
+/// Check a scene or weather file, and tell what render would do with it.
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    #[command(flatten)]
+    input: InputArguments,
+    /// Write JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl CheckArguments {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
+        self.input.check()?;
+        let input = self.input.read(&mut Budget::default())?;
+        let stage = Stage::new(&input.weather, &input.loaded, self.input.time)?;
+        input.say_warnings(&stage, stream::message);
+        let mut entries = scene(&input, &stage);
+        entries.extend(light(&input));
+        entries.extend(rain(&input)?);
+        let [width, height] = input.weather.size.map(u64::from);
+        let bytes = stage.bytes() + width * height * BYTES_PER_PIXEL;
+        entries.push(Entry::new("memory_mib", "memory, about", Datum::Computed(mebibytes(bytes), 3), "MiB"));
+        stream::print(&if self.json { listing::json(&entries) } else { listing::text(&entries) })
+    }
+}
+
+fn mebibytes(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1u32 << 20)
+}
+
+fn count(key: &'static str, label: &'static str, number: usize) -> Entry {
+    Entry::new(key, label, Datum::Count(number as u64), "")
+}
+
+fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
+    use Datum::{Computed, Triple, Word};
+    let scene = &input.loaded.scene;
+    let playing: Vec<&str> = input
+        .loaded
+        .animations
+        .iter()
+        .flatten()
+        .filter_map(|&index| scene.animations.get(index))
+        .map(|animation| if animation.name.is_empty() { "without a name" } else { animation.name.as_str() })
+        .collect();
+    let camera = match stage.camera {
+        CameraChoice::Weather => "of the weather file".to_owned(),
+        CameraChoice::Scene(index) => {
+            let name = scene.cameras.get(index).map_or("", |camera| camera.name.as_str());
+            format!("{index} of the scene{}{name}", if name.is_empty() { "" } else { ", " })
+        }
+        CameraChoice::Framing => "in front of all that there is".to_owned(),
+        _ => "at the height of a person's eyes".to_owned(),
+    };
+    let eye = (stage.origin + stage.viewpoint.eye.as_dvec3()).to_array();
+    let forward = stage.viewpoint.forward.as_dvec3().to_array();
+    let fov = f64::from(stage.viewpoint.fov_y).to_degrees();
+    let [width, height] = stage.size.map(|edge| edge as usize);
+    vec![
+        count("triangles", "triangles", stage.triangles),
+        count("instances", "meshes at their places", stage.instances),
+        count("materials", "materials", scene.materials.len()),
+        count("textures", "textures", scene.textures.len()),
+        Entry::new(
+            "textures_mib",
+            "their pixels",
+            Computed(mebibytes(texture_bytes(&scene.textures)), 3),
+            "MiB",
+        ),
+        count("lights", "lamps", stage.lamps),
+        count("animations", "movements", scene.animations.len()),
+        Entry::new("animations_playing", "those that play", Datum::words(&playing), ""),
+        count("cameras", "cameras of the scene", scene.cameras.len()),
+        Entry::new("camera", "camera that is taken", Word(camera), ""),
+        Entry::new("camera_position_m", "its place", Triple(eye, 4), "m"),
+        Entry::new("camera_forward", "its view", Triple(forward, 3), ""),
+        Entry::new("fov_deg", "its vertical field of view", Computed(fov, 4), "degrees"),
+        count("width", "columns", width),
+        count("height", "rows", height),
+    ]
+}
+
+/// Each picture once, however many textures share it.
+fn texture_bytes(textures: &[Texture]) -> u64 {
+    let mut seen = std::collections::HashSet::new();
+    let pictures = textures.iter().map(|texture| &texture.picture);
+    pictures.filter(|picture| seen.insert(std::sync::Arc::as_ptr(picture))).map(|p| p.pixels.bytes()).sum()
+}
+
+fn light(input: &Input) -> Vec<Entry> {
+    use Datum::{Computed, Triple, Unbounded};
+    let (sky, sun) = (&input.loaded.sky, &input.loaded.sun);
+    let none = || Unbounded("none");
+    let of_sun = |datum: fn(&downpour::scene::sky::Sun) -> Datum| sun.as_ref().map_or_else(none, datum);
+    vec![
+        count("sky_width", "columns of the sky map", sky.width as usize),
+        count("sky_height", "rows of the sky map", sky.height as usize),
+        Entry::new("sky_mean_radiance", "mean radiance of the sky", Triple(sky.mean_radiance(), 3), ""),
+        Entry::new(
+            "sun_direction",
+            "direction to the sun",
+            of_sun(|sun| Triple(sun.direction.map(f64::from), 4)),
+            "",
+        ),
+        Entry::new(
+            "sun_irradiance",
+            "irradiance of the sun",
+            of_sun(|sun| Triple(sun.irradiance_rgb.map(f64::from), 3)),
+            "",
+        ),
+        Entry::new(
+            "sun_diameter_deg",
+            "diameter of its disc",
+            of_sun(|sun| Computed(2.0 * f64::from(sun.angular_radius).to_degrees(), 3)),
+            "degrees",
+        ),
+    ]
+}
+
+fn rain(input: &Input) -> Result<Vec<Entry>, Failure> {
+    use Datum::{Computed, Given, Word};
+    let rain = &input.weather.rain;
+    let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
+    let law = DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)?;
+    let median = 1.0e3 * law.median_volume_diameter();
+    Ok(vec![
+        Entry::new("rate_mm_h", "rain rate", Given(rain.rate_mm_h), "mm/h"),
+        Entry::new("distribution", "distribution", Word(rain.law.name().to_owned()), ""),
+        Entry::new("seed", "seed", Datum::Count(rain.seed), ""),
+        Entry::new("number_m3", "drops", Computed(law.number_density(), 4), "per m^3"),
+        Entry::new("median_volume_diameter_mm", "median volume diameter", Computed(median, 4), "mm"),
+        Entry::new(
+            "visibility_km",
+            "visibility",
+            Datum::bounded(law.visibility() * 1.0e-3, 3, "unlimited"),
+            "km",
+        ),
+    ])
+}

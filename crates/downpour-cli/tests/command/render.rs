@@ -1,0 +1,278 @@
+//! `downpour render` on the CPU: pictures, layers, statistics and drops.
+
+use std::collections::HashMap;
+use std::io::Cursor;
+
+use downpour::drop::air::Air;
+use downpour::drop::fall_speed::{FallSpeedModel, terminal_speed};
+use downpour::math::ops::f64 as ops;
+
+use crate::child::{Downpour, Ended};
+use crate::gltf_file::{gltf, tetrahedron};
+use crate::scene_files::{SIZE, storm, weather};
+
+/// All channels of an OpenEXR file by their names.
+fn channels(bytes: &[u8]) -> HashMap<String, Vec<f32>> {
+    use exr::prelude::*;
+    let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = image.all_attributes().from_buffered(Cursor::new(bytes)).unwrap();
+    let size = image.layer_data.size;
+    assert_eq!([size.0, size.1], SIZE.map(|edge| edge as usize));
+    let list = image.layer_data.channel_data.list;
+    list.iter().map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
+}
+
+/// A row of `--dump-drops`.
+#[derive(Debug)]
+struct Row {
+    position: [f64; 3],
+    velocity: [f64; 3],
+    diameter_mm: f64,
+}
+
+fn rows(ended: &Ended) -> HashMap<u64, Row> {
+    let text = String::from_utf8(ended.file("drops.csv")).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("id,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,diameter_mm,kind"));
+    let row = |line: &str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [id, x, y, z, vx, vy, vz, mm, kind] = fields[..] else { panic!("{line}") };
+        assert_eq!(kind, "falling");
+        let number = |text: &str| text.parse::<f64>().unwrap();
+        let row = Row {
+            position: [x, y, z].map(number),
+            velocity: [vx, vy, vz].map(number),
+            diameter_mm: number(mm),
+        };
+        (id.parse().unwrap(), row)
+    };
+    let all: Vec<(u64, Row)> = lines.map(row).collect();
+    let count = all.len();
+    let map: HashMap<u64, Row> = all.into_iter().collect();
+    assert_eq!(map.len(), count, "each drop has a number of its own");
+    map
+}
+
+#[test]
+fn a_picture_is_written_and_told_of() {
+    let ended = storm(&["render", "-o", "rain.png"]).run().succeeded();
+    assert!(ended.file("rain.png").starts_with(b"\x89PNG"));
+    assert_eq!(ended.stdout, "");
+    assert!(ended.stderr.contains("downpour: rain: 400 mm/h, "), "{}", ended.stderr);
+    assert!(ended.stderr.ends_with("downpour: wrote rain.png: 64 x 36\n"), "{}", ended.stderr);
+    ended.left(&["floor.gltf", "rain.png", "storm.toml"]);
+    let quiet = storm(&["render", "-q", "-o", "rain.exr"]).run().succeeded();
+    assert_eq!((quiet.stdout.as_str(), quiet.stderr.as_str()), ("", ""));
+    let names: Vec<String> = {
+        let mut names: Vec<String> = channels(&quiet.file("rain.exr")).into_keys().collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names, ["B", "G", "R"]);
+}
+
+/// The picture is what its layers say; the rain takes light and gives light; the floor is where it is.
+#[test]
+fn layers_add_up_to_the_picture() {
+    let ended = storm(&["render", "--layers", "-o", "rain.exr"]).run().succeeded();
+    let layers = channels(&ended.file("rain.exr"));
+    let mut names: Vec<&str> = layers.keys().map(String::as_str).collect();
+    names.sort_unstable();
+    let expected = [
+        "B",
+        "G",
+        "R",
+        "clean.B",
+        "clean.G",
+        "clean.R",
+        "depth.Z",
+        "rain.B",
+        "rain.G",
+        "rain.R",
+        "transmittance.Y",
+    ];
+    assert_eq!(names, expected);
+    let through = &layers["transmittance.Y"];
+    for name in ["R", "G", "B"] {
+        let (clean, rain) = (&layers[&format!("clean.{name}")], &layers[&format!("rain.{name}")]);
+        for (k, shown) in layers[name].iter().enumerate() {
+            let sum = clean[k] * through[k] + rain[k];
+            assert!((shown - sum).abs() <= 1.0e-5 * sum.abs(), "{name} of pixel {k}: {shown} is not {sum}");
+            assert!(clean[k] >= 0.0 && rain[k] >= 0.0, "{name} of pixel {k}");
+        }
+    }
+    assert!(through.iter().all(|t| (0.0..=1.0).contains(t)));
+    let touched = through.iter().filter(|t| **t < 0.999).count();
+    assert!(touched > 20 && touched < through.len() * 9 / 10, "{touched} pixels with rain");
+    let other_sky = storm(&["render", "--layers", "--rate", "0", "-o", "rain.exr"]).run().succeeded();
+    let dry = channels(&other_sky.file("rain.exr"));
+    assert_eq!(dry["clean.G"], layers["clean.G"], "the scene behind does not depend on the rain");
+    // Left of the tetrahedron, in the last row, the ray meets the floor.
+    let depth = &layers["depth.Z"];
+    let [width, height] = SIZE.map(|edge| edge as usize);
+    let half_height = ops::tan(6.0f64.to_radians());
+    let right = half_height * 64.0 / 36.0 * (2.0 * 8.5 / 64.0 - 1.0);
+    let up = -half_height * 35.0 / 36.0;
+    // The camera looks down by 0.6 in 6.
+    let length = (0.1f64 * 0.1 + 1.0).sqrt();
+    let downward = (0.1 - up) / length / (1.0 + right * right + up * up).sqrt();
+    let found = f64::from(depth[(height - 1) * width + 8]);
+    assert!((found - 1.2 / downward).abs() < 0.01, "{found} m, by geometry {}", 1.2 / downward);
+    assert_eq!(depth[0], 1.0e30, "the sky is far");
+}
+
+/// As `--stats` and `--dump-drops` promise. The rate that the drops carry is the one that was asked for.
+#[test]
+fn statistics_and_drops_agree() {
+    let files = ["--stats", "stats.json", "--dump-drops", "drops.csv", "--time", "2.5"];
+    let ended = storm(&[&["render", "-o", "rain.png"], &files[..]].concat()).run().succeeded();
+    let stats: serde_json::Value = serde_json::from_slice(&ended.file("stats.json")).unwrap();
+    let rows = rows(&ended);
+    let number = |key: &str| stats[key].as_f64().unwrap_or_else(|| panic!("{key} of {stats}"));
+    assert_eq!((stats["adapter"].as_str(), stats["backend"].as_str()), (Some("CPU"), Some("cpu")));
+    assert_eq!([number("width"), number("height")], SIZE.map(f64::from));
+    assert_eq!((number("asked_rate_mm_h"), number("time_s"), number("seed")), (400.0, 2.5, 7.0));
+    assert!((number("measured_rate_mm_h") / 400.0 - 1.0).abs() < 0.1, "{stats}");
+    assert_eq!(number("drops_drawn"), rows.len() as f64);
+    assert!(rows.len() > 10, "{} drops", rows.len());
+    assert!(number("drops_drawn") <= number("drops_on_screen"), "{stats}");
+    assert!(number("drops_on_screen") <= number("drops_simulated"), "{stats}");
+    let passes: f64 = stats["passes"].as_object().unwrap().values().map(|ms| ms.as_f64().unwrap()).sum();
+    assert!(passes > 0.0 && passes <= number("frame_ms") * 1.0001, "{stats}");
+    for (id, row) in &rows {
+        let speed =
+            terminal_speed(FallSpeedModel::Beard1976, row.diameter_mm * 1.0e-3, &Air::standard()).unwrap();
+        assert!((row.velocity[1] + speed).abs() < 1.0e-3 * speed, "{id}: {row:?} falls with {speed} m/s");
+        assert_eq!([row.velocity[0], row.velocity[2]], [0.0, 0.0]);
+        // In front of the eye at (0, 1.2, 6), within 12 degrees of height and 21 of width.
+        let [x, y, z] = row.position;
+        assert!(z < 6.0 && ops::hypot(x, y - 1.2) < 0.35 * (6.0 - z) + 0.02, "{id}: {row:?}");
+    }
+}
+
+/// A drop is the same drop a moment later, and has fallen by its speed.
+#[test]
+fn time_lets_drops_fall() {
+    let at = |time: &str| {
+        let arguments = ["render", "-o", "rain.png", "--dump-drops", "drops.csv", "--time", time];
+        rows(&storm(&arguments).run().succeeded())
+    };
+    let (before, after) = (at("10"), at("10.008"));
+    let mut both = 0;
+    for (id, earlier) in &before {
+        let Some(later) = after.get(id) else { continue };
+        both += 1;
+        assert_eq!(earlier.diameter_mm, later.diameter_mm);
+        for k in 0..3 {
+            let moved = later.position[k] - earlier.position[k];
+            assert!((moved - earlier.velocity[k] * 0.008).abs() < 1.0e-6, "{id}: {earlier:?} {later:?}");
+        }
+    }
+    assert!(both > 5, "{both} drops are in both pictures");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes() {
+    let run = |arguments: &[&str]| {
+        let fixed = ["render", "--layers", "-o", "rain.exr", "--dump-drops", "drops.csv"];
+        let ended = storm(&[&fixed, arguments].concat()).run().succeeded();
+        (ended.file("rain.exr"), ended.file("drops.csv"))
+    };
+    let first = run(&[]);
+    assert_eq!(first, run(&[]));
+    assert_eq!(first, run(&["--seed", "7", "--time", "0", "--rate", "400", "--size", "64x36"]));
+    let other = run(&["--seed", "18446744073709551615"]);
+    assert_ne!(first.0, other.0);
+    assert_ne!(first.1, other.1);
+    assert_ne!(first.1, run(&["--time", "1"]).1);
+}
+
+#[test]
+fn rate_0_is_a_dry_picture() {
+    let files = ["--stats", "stats.json", "--dump-drops", "drops.csv"];
+    let ended = storm(&[&["render", "--rate", "0", "--layers", "-o", "rain.exr"], &files[..]].concat())
+        .run()
+        .succeeded();
+    let layers = channels(&ended.file("rain.exr"));
+    assert!(layers["transmittance.Y"].iter().all(|t| *t == 1.0));
+    for name in ["R", "G", "B"] {
+        assert!(layers[&format!("rain.{name}")].iter().all(|v| *v == 0.0));
+        assert_eq!(layers[name], layers[&format!("clean.{name}")]);
+    }
+    assert!(rows(&ended).is_empty());
+    let stats: serde_json::Value = serde_json::from_slice(&ended.file("stats.json")).unwrap();
+    for key in ["asked_rate_mm_h", "measured_rate_mm_h", "drops_drawn", "drops_on_screen", "drops_simulated"]
+    {
+        assert_eq!(stats[key].as_f64(), Some(0.0), "{key} of {stats}");
+    }
+    // In a file as on the command line.
+    let dry = storm(&["render", "--layers", "-o", "rain.exr"]);
+    let dry = dry.with_file("storm.toml", weather("").replace("rate_mm_h = 400", "rate_mm_h = 0"));
+    assert_eq!(dry.run().succeeded().file("rain.exr"), ended.file("rain.exr"));
+}
+
+/// A bare model stands in the default weather: 10 mm/h, an overcast sky, all of it in the picture.
+#[test]
+fn a_bare_model_is_framed() {
+    let (positions, triangles) = tetrahedron();
+    let arguments = ["render", "drop.gltf", "--backend", "cpu", "--samples=1", "--size=64x36", "--layers"];
+    let run = Downpour::new(&[&arguments[..], &["-o", "a.exr", "--stats", "a.json"]].concat());
+    let ended = run.with_file("drop.gltf", gltf(&positions, &triangles)).run().succeeded();
+    let depth = &channels(&ended.file("a.exr"))["depth.Z"];
+    let near = |x: usize, y: usize| depth[y * 64 + x] < 1.0e6;
+    assert!(near(32, 18), "the model is in the middle");
+    assert!((0..64).all(|x| !near(x, 0) && !near(x, 35)) && (0..36).all(|y| !near(0, y) && !near(63, y)));
+    let rows = (0..36).filter(|&y| (0..64).any(|x| near(x, y))).count();
+    assert!(rows > 20, "it fills {rows} of 36 rows");
+    let stats: serde_json::Value = serde_json::from_slice(&ended.file("a.json")).unwrap();
+    assert_eq!((stats["asked_rate_mm_h"].as_f64(), stats["triangles"].as_u64()), (Some(10.0), Some(4)));
+}
+
+/// What is far from the world's origin looks as it does near it, and drops are told of where they are.
+#[test]
+fn ten_thousand_kilometres_away_nothing_is_lost() {
+    let far = weather("").replace("look_at_m = [0, 0.6, 0]", "look_at_m = [8388608, 0.6, 0]");
+    let far = far.replace("position_m = [0, 1.2, 6]", "position_m = [8388608, 1.2, 6]");
+    let far = far.replace("'floor.gltf'", "'floor.gltf'\ntranslation_m = [8388608, 0, 0]");
+    let arguments = ["render", "--layers", "-o", "rain.exr", "--dump-drops", "drops.csv"];
+    let ended = storm(&arguments).with_file("storm.toml", far).run().succeeded();
+    let here = storm(&arguments).run().succeeded();
+    let (there, here) = (channels(&ended.file("rain.exr")), channels(&here.file("rain.exr")));
+    for (name, least) in [("depth.Z", 2150), ("clean.G", 2150)] {
+        let close = |a: f32, b: f32| (a - b).abs() <= 2.0e-2 * a.abs();
+        let same = there[name].iter().zip(&here[name]).filter(|(a, b)| close(**a, **b)).count();
+        assert!(same > least, "{name}: {same} of 2304 pixels are the same");
+    }
+    let rows = rows(&ended);
+    assert!(rows.len() > 10 && rows.values().all(|row| (row.position[0] - 8_388_608.0).abs() < 3.0));
+    // Not on the raster of single precision, which is 1 m there.
+    assert!(rows.values().any(|row| row.position[0].fract() != 0.0));
+}
+
+#[test]
+fn what_exists_is_kept_and_nothing_is_written_twice() {
+    for taken in ["rain.png", "stats.json", "drops.csv"] {
+        let arguments = ["render", "-o", "rain.png", "--stats", "stats.json", "--dump-drops", "drops.csv"];
+        let ended = storm(&arguments).with_file(taken, "precious").run();
+        let ended = ended.failed(5, &[taken, "exists", "--overwrite"]).with_one_line();
+        assert_eq!(ended.file(taken), b"precious");
+        let mut names = ["floor.gltf", "storm.toml", taken];
+        names.sort_unstable();
+        ended.left(&names);
+    }
+    let replaced = storm(&["render", "-o", "rain.png", "--overwrite"]).with_file("rain.png", "old").run();
+    assert!(replaced.succeeded().file("rain.png").starts_with(b"\x89PNG"));
+}
+
+/// A sky that would be overwritten by the picture made of it.
+#[test]
+fn an_input_is_not_an_output() {
+    let sky = downpour::render::file::write_exr(2, 1, &[[1.0; 3]; 2]).unwrap();
+    let text = weather("").replace("zenith_color = [2, 3, 4]", "file = 'sky.exr'");
+    for name in ["sky.exr", "./sky.exr"] {
+        let run = storm(&["render", "-o", name, "--overwrite"]).with_file("sky.exr", &sky);
+        let ended = run.with_file("storm.toml", &text).run();
+        let ended = ended.failed(2, &["sky.exr is an input", "allowed: another name"]).with_one_line();
+        assert_eq!(ended.file("sky.exr"), sky);
+    }
+}

@@ -1,0 +1,95 @@
+//! A whole picture on a GPU.
+
+use downpour_gpu::{Gpu, GpuError};
+use downpour_sim::field::FallingDrop;
+
+use super::rain::RainPipeline;
+use super::scene::ScenePipeline;
+use crate::RenderError;
+use crate::camera::Viewpoint;
+use crate::data::SceneData;
+use crate::picture::{Picture, PictureOptions, timed};
+use crate::rain::{DropMasks, Rain};
+
+/// Why a picture could not be made on a GPU.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuPictureError {
+    /// The picture itself is not possible.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The GPU did not do it.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+impl GpuPictureError {
+    /// The exit code of the command for this error.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Render(error) => error.exit_code(),
+            Self::Gpu(error) => error.exit_code(),
+        }
+    }
+}
+
+/// The pipelines of a picture: made once, used for any number of pictures.
+#[derive(Clone, Debug)]
+pub struct PictureRenderer {
+    gpu: Gpu,
+    scene: ScenePipeline,
+    rain: RainPipeline,
+}
+
+impl PictureRenderer {
+    /// Makes the pipelines.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuPictureError> {
+        Ok(Self { gpu: gpu.clone(), scene: ScenePipeline::new(gpu)?, rain: RainPipeline::new(gpu)? })
+    }
+
+    /// Makes a picture: what [`render_picture`](crate::picture::render_picture) makes on the CPU.
+    ///
+    /// # Errors
+    /// [`GpuPictureError`] if the options cannot be met, or what the GPU says.
+    pub fn render(
+        &self,
+        scene: &SceneData,
+        viewpoint: &Viewpoint,
+        drops: &[FallingDrop],
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<Picture, GpuPictureError> {
+        let frame = viewpoint.frame(scene, options.size, options.grid, options.sky_rays, options.seed)?;
+        let mut passes = Vec::new();
+        let uploaded = timed(&mut passes, "upload", || {
+            Ok::<_, GpuError>((self.scene.upload(scene)?, self.rain.upload(masks)?))
+        })?;
+        let clean = timed(&mut passes, "scene", || self.scene.draw(&uploaded.0, &frame))?;
+        let eye = viewpoint.eye.as_dvec3();
+        let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
+        let pass = self.rain.prepare(&uploaded.0, &uploaded.1, &clean, &rain)?;
+        timed(&mut passes, "capture", || {
+            self.gpu.submit(&pass.capture())?;
+            self.gpu.wait()
+        })?;
+        timed(&mut passes, "drops", || {
+            self.gpu.submit(&[pass.drops()])?;
+            self.gpu.wait()
+        })?;
+        let (clean, layer) = timed(&mut passes, "readback", || {
+            Ok::<_, GpuError>((self.gpu.read::<[f32; 4]>(&clean)?, pass.layer()?))
+        })?;
+        Ok(Picture {
+            size: options.size,
+            drops_on_screen: rain.list.len(),
+            drawn: rain.drawn(&clean),
+            clean,
+            rain: layer,
+            passes,
+        })
+    }
+}

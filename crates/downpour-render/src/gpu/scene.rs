@@ -1,0 +1,136 @@
+//! The picture of a scene on a GPU: the same rays, the same buffers.
+
+use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_shaders::render::scene::{SCENE_KERNEL, SKYLIGHT_KERNEL};
+
+use crate::data::{RenderFrame, SceneData};
+use crate::scene::SceneGather;
+
+/// Most pixels of a dispatch: a submission must stay far below the time after which a driver resets.
+const PIXELS_PER_DISPATCH: u32 = 1 << 17;
+
+/// The pipeline of the scene: made once, used for any number of scenes.
+#[derive(Clone, Debug)]
+pub struct ScenePipeline {
+    gpu: Gpu,
+    kernel: ComputeKernel,
+    skylight: ComputeKernel,
+}
+
+/// A scene on the device.
+#[derive(Clone, Debug)]
+pub struct SceneOnGpu {
+    nodes: wgpu::Buffer,
+    triangles: wgpu::Buffer,
+    corners: wgpu::Buffer,
+    table: wgpu::Buffer,
+    texels: wgpu::Buffer,
+    sky: wgpu::Buffer,
+}
+
+impl ScenePipeline {
+    /// Makes the pipeline.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
+        Ok(Self { gpu: gpu.clone(), kernel: kernel(&SCENE_KERNEL)?, skylight: kernel(&SKYLIGHT_KERNEL)? })
+    }
+
+    /// Brings a scene to the device.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`] if a buffer is larger than the device allows, or what else the GPU says.
+    pub fn upload(&self, scene: &SceneData) -> Result<SceneOnGpu, GpuError> {
+        Ok(SceneOnGpu {
+            nodes: self.gpu.storage_buffer("scene nodes", &scene.nodes)?,
+            triangles: self.gpu.storage_buffer("scene triangles", &scene.triangles)?,
+            corners: self.gpu.storage_buffer("scene corners", &scene.corners)?,
+            table: self.gpu.storage_buffer("scene table", &scene.table)?,
+            texels: self.gpu.storage_buffer("scene texels", &scene.texels)?,
+            sky: self.gpu.storage_buffer("scene sky", &scene.sky)?,
+        })
+    }
+
+    /// The picture of a frame: radiance and nearest distance, rows from the top. What
+    /// [`SceneView::picture`](crate::scene::SceneView::picture) makes on the CPU.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn picture(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<Vec<[f32; 4]>, GpuError> {
+        self.gpu.read(&self.draw(scene, frame)?)
+    }
+
+    /// Makes ready to draw a frame of a scene.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn prepare(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<ScenePass<'_>, GpuError> {
+        let pixels = u64::from(frame.width) * u64::from(frame.height);
+        let picture = self.gpu.empty_buffer("picture", pixels * 16, wgpu::BufferUsages::STORAGE)?;
+        let bytes = pixels * size_of::<SceneGather>() as u64;
+        let gather = self.gpu.empty_buffer("light of the sky", bytes, wgpu::BufferUsages::STORAGE)?;
+        let rows = (PIXELS_PER_DISPATCH / frame.width.max(1)).max(8).next_multiple_of(8);
+        let (mut bands, mut filters) = (Vec::new(), Vec::new());
+        for first_row in (0..frame.height).step_by(rows as usize) {
+            let uniform = self.gpu.uniform_buffer("frame", &RenderFrame { first_row, ..*frame })?;
+            let groups = [frame.width.div_ceil(8), rows.min(frame.height - first_row).div_ceil(8), 1];
+            let [a, b, c, d, e, f, g, h] = scene.buffers(&uniform, &picture);
+            let buffers = [a, b, c, d, e, f, g, h, &gather];
+            bands.push((self.kernel.bind(&self.gpu, &buffers)?, groups));
+            filters.push((self.skylight.bind(&self.gpu, &[&uniform, &gather, &picture])?, groups));
+        }
+        Ok(ScenePass { pipeline: self, bands, filters, picture })
+    }
+
+    /// The picture, left on the device.
+    pub(super) fn draw(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<wgpu::Buffer, GpuError> {
+        let pass = self.prepare(scene, frame)?;
+        for band in pass.dispatches() {
+            self.gpu.submit(&[band])?;
+            // One submission at a time: software drivers queue without end.
+            self.gpu.wait()?;
+        }
+        Ok(pass.picture)
+    }
+}
+
+/// A frame of a scene, ready to be drawn.
+#[derive(Debug)]
+pub struct ScenePass<'a> {
+    pipeline: &'a ScenePipeline,
+    bands: Vec<(wgpu::BindGroup, [u32; 3])>,
+    filters: Vec<(wgpu::BindGroup, [u32; 3])>,
+    picture: wgpu::Buffer,
+}
+
+impl ScenePass<'_> {
+    /// The dispatches, a band of rows each: first all that trace, then all that filter.
+    #[must_use]
+    pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
+        let traced = self.bands.iter().map(|band| (&self.pipeline.kernel, band));
+        let filtered = self.filters.iter().map(|band| (&self.pipeline.skylight, band));
+        traced
+            .chain(filtered)
+            .map(|(kernel, (bindings, groups))| kernel.dispatch(bindings, *groups))
+            .collect()
+    }
+
+    /// The picture on the device: radiance and nearest distance, rows from the top.
+    #[must_use]
+    pub fn picture(&self) -> &wgpu::Buffer {
+        &self.picture
+    }
+}
+
+impl SceneOnGpu {
+    /// What a kernel that traces the scene binds, in order.
+    pub(super) fn buffers<'a>(
+        &'a self,
+        frame: &'a wgpu::Buffer,
+        picture: &'a wgpu::Buffer,
+    ) -> [&'a wgpu::Buffer; 8] {
+        [frame, &self.nodes, &self.triangles, &self.corners, &self.table, &self.texels, &self.sky, picture]
+    }
+}

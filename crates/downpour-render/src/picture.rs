@@ -1,0 +1,105 @@
+//! A whole picture: the scene, and the rain before it.
+//!
+//! [`render_picture`] makes it on the CPU, [`gpu::PictureRenderer`](crate::gpu::PictureRenderer) on a GPU: the same
+//! passes over the same buffers.
+
+use std::time::Instant;
+
+use downpour_sim::field::FallingDrop;
+
+use crate::RenderError;
+use crate::camera::Viewpoint;
+use crate::data::SceneData;
+use crate::rain::{DropMasks, Rain, RainOptions};
+use crate::scene::SceneView;
+
+/// What a picture costs and how it looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureOptions {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Samples along an edge of a pixel, 1 to 16.
+    pub grid: u32,
+    /// Rays to the sky per sample; 0: nothing hides the sky.
+    pub sky_rays: u32,
+    /// Seed of the rays.
+    pub seed: u64,
+    /// How drops are drawn.
+    pub rain: RainOptions,
+}
+
+impl Default for PictureOptions {
+    /// 1280 x 720 pixels of 2 x 2 samples with 4 rays to the sky each.
+    fn default() -> Self {
+        Self { size: [1280, 720], grid: 2, sky_rays: 4, seed: 0, rain: RainOptions::default() }
+    }
+}
+
+/// A picture in layers, rows from the top. Radiance is linear, in the unit of the sky.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// The scene without rain: radiance, and the distance of what stands nearest (1e30 for the sky).
+    pub clean: Vec<[f32; 4]>,
+    /// The rain: radiance, and the transmittance of the scene behind it.
+    pub rain: Vec<[f32; 4]>,
+    /// Drops whose outline touches the picture.
+    pub drops_on_screen: usize,
+    /// Those of them that the scene does not hide altogether: their places among the drops that were given, nearest
+    /// first.
+    pub drawn: Vec<u32>,
+    /// The passes in their order, with the milliseconds that each took.
+    pub passes: Vec<(&'static str, f64)>,
+}
+
+impl Picture {
+    /// The scene through the rain.
+    #[must_use]
+    pub fn radiance(&self) -> Vec<[f32; 3]> {
+        let through =
+            |(clean, rain): (&[f32; 4], &[f32; 4])| std::array::from_fn(|k| clean[k] * rain[3] + rain[k]);
+        self.clean.iter().zip(&self.rain).map(through).collect()
+    }
+}
+
+/// Runs a pass and notes its time.
+pub(crate) fn timed<T>(
+    passes: &mut Vec<(&'static str, f64)>,
+    name: &'static str,
+    work: impl FnOnce() -> T,
+) -> T {
+    let start = Instant::now();
+    let made = work();
+    passes.push((name, start.elapsed().as_secs_f64() * 1.0e3));
+    made
+}
+
+/// Makes a picture on the CPU: the same bits for any number of threads.
+///
+/// # Errors
+/// [`RenderError`] if the options cannot be met.
+pub fn render_picture(
+    scene: &SceneData,
+    viewpoint: &Viewpoint,
+    drops: &[FallingDrop],
+    masks: &DropMasks,
+    options: &PictureOptions,
+) -> Result<Picture, RenderError> {
+    let frame = viewpoint.frame(scene, options.size, options.grid, options.sky_rays, options.seed)?;
+    let mut passes = Vec::new();
+    let view = SceneView { data: scene, frame: &frame };
+    let clean = timed(&mut passes, "scene", || view.picture());
+    let eye = viewpoint.eye.as_dvec3();
+    let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
+    let capture = timed(&mut passes, "capture", || rain.capture.trace(scene));
+    let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture));
+    Ok(Picture {
+        size: options.size,
+        drops_on_screen: rain.list.len(),
+        drawn: rain.drawn(&clean),
+        clean,
+        rain: layer,
+        passes,
+    })
+}

@@ -1,0 +1,110 @@
+//! The masks of drops of all sizes from all elevations, packed for the shader.
+//!
+//! A drop's mask depends on its diameter (its shape) and on how far above or below it the viewer is. Masks are traced
+//! for diameters half a millimetre apart and elevations 30 degrees apart; the shader goes between them linearly.
+
+use downpour_drop::DropShape;
+use downpour_mask::{MaskError, MaskOptions, MaskTexel, View, trace_drop};
+use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_pack_unorm};
+use downpour_shaders::render::rain::{DROPS_ELEVATIONS, DROPS_TEXEL_WORDS};
+
+/// Diameters, metres, from a sphere to the largest drop that has a shape.
+const DIAMETERS: u32 = 18;
+const DIAMETER_STEP: f64 = 0.5e-3;
+
+/// Texels along an edge of a mask.
+const SIZE: u32 = 96;
+
+/// Words of a texel.
+const WORDS: usize = DROPS_TEXEL_WORDS as usize;
+
+/// Masks of drops of all sizes from all elevations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DropMasks {
+    /// Three words per texel: the refracted and the reflected direction as octahedral pairs of 16 bits, coverage and
+    /// transmittance as 16 bits each. Rows from the top, elevations within diameters.
+    pub words: Vec<u32>,
+    /// Texels along an edge of a mask.
+    pub size: u32,
+    /// Half the width of the masks of a diameter, in equivalent radii.
+    half_extents: Vec<f32>,
+    /// Area of the outline of each mask, in squared equivalent radii.
+    areas: Vec<f32>,
+}
+
+/// Where a drop is among the masks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MaskPlace {
+    pub(crate) row: [f32; 2],
+    pub(crate) half_extent: f32,
+    pub(crate) area: f32,
+}
+
+impl DropMasks {
+    /// Traces the masks of water of this refractive index.
+    ///
+    /// # Errors
+    /// [`MaskError::OutOfRange`] for an index that is none.
+    pub fn trace(refractive_index: f64) -> Result<Self, MaskError> {
+        let mut masks = Self { words: Vec::new(), size: SIZE, half_extents: Vec::new(), areas: Vec::new() };
+        for k in 1..=DIAMETERS {
+            let shape = DropShape::new(f64::from(k) * DIAMETER_STEP).map_err(|_| MaskError::OutOfRange {
+                quantity: "diameter of a mask",
+                found: f64::from(k) * DIAMETER_STEP * 1.0e3,
+                unit: "mm",
+                allowed: "a drop of the table",
+            })?;
+            for step in 0..DROPS_ELEVATIONS {
+                let half = f64::from(DROPS_ELEVATIONS - 1) * 0.5;
+                let elevation = (f64::from(step) / half - 1.0) * std::f64::consts::FRAC_PI_2;
+                let options =
+                    MaskOptions { size: SIZE, view: View::from_elevation(elevation)?, refractive_index };
+                let mask = trace_drop(&shape, &options)?;
+                if step == 0 {
+                    masks.half_extents.push(mask.half_extent as f32);
+                }
+                let width = mask.texel_width();
+                let covered: f64 = mask.texels.iter().map(|texel| f64::from(texel.coverage)).sum();
+                masks.areas.push((covered * width * width) as f32);
+                masks.words.extend(mask.texels.iter().flat_map(pack));
+            }
+        }
+        Ok(masks)
+    }
+
+    /// Where a drop of a diameter in metres is, seen from `elevation` radians above it.
+    pub(crate) fn place(&self, diameter: f32, elevation: f32) -> MaskPlace {
+        let last = self.half_extents.len().saturating_sub(1) as f32;
+        let row = (diameter / DIAMETER_STEP as f32 - 1.0).clamp(0.0, last);
+        let half = (DROPS_ELEVATIONS - 1) as f32 * 0.5;
+        let turned = (elevation / std::f32::consts::FRAC_PI_2 + 1.0) * half;
+        // A sphere is the same from everywhere: one mask does.
+        let column = if row == 0.0 { half } else { turned.clamp(0.0, 2.0 * half) };
+        let between = |values: &dyn Fn(usize) -> f32, at: f32| {
+            let low = at.floor();
+            let part = at - low;
+            let near = values(low as usize);
+            if part == 0.0 { near } else { near * (1.0 - part) + values(low as usize + 1) * part }
+        };
+        let areas = |k: usize| {
+            let first = k * DROPS_ELEVATIONS as usize;
+            between(&|j| self.areas[first + j], column)
+        };
+        MaskPlace {
+            row: [row, column],
+            half_extent: between(&|k| self.half_extents[k], row),
+            area: between(&areas, row),
+        }
+    }
+}
+
+/// A texel as the shader reads it.
+fn pack(texel: &MaskTexel) -> [u32; WORDS] {
+    // A covered texel keeps a trace of coverage, or its direction would not count.
+    let coverage = if texel.coverage > 0.0 { texel.coverage.max(1.0 / 65535.0) } else { 0.0 };
+    [
+        packing_pack_snorm(packing_octahedral_encode(texel.direction)),
+        packing_pack_snorm(packing_octahedral_encode(texel.reflected)),
+        packing_pack_unorm([coverage, texel.transmittance]),
+    ]
+}

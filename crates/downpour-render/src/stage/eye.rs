@@ -1,0 +1,69 @@
+//! Whose eye a picture is taken with.
+
+use downpour_scene::scene::{Lens, Pose};
+use downpour_scene::weather::{self, Loaded, Weather};
+use glam::{DVec3, Vec3};
+
+use crate::camera::Viewpoint;
+
+/// Whose eye it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CameraChoice {
+    /// That of the weather.
+    Weather,
+    /// This camera of the scene, the first with a perspective.
+    Scene(usize),
+    /// One that stands in front of all that there is, a little above.
+    Framing,
+    /// One at the height of a person's eyes that looks along -Z: there is nothing to frame.
+    Standing,
+}
+
+/// An eye that somebody has placed.
+pub(super) struct Seen {
+    pub(super) choice: CameraChoice,
+    pub(super) eye: DVec3,
+    forward: Vec3,
+    up: Vec3,
+    pub(super) fov: f64,
+    pub(super) near: Option<f64>,
+    pub(super) far: Option<f64>,
+}
+
+impl Seen {
+    /// That of the weather, else the first one of the scene.
+    pub(super) fn of(weather: &Weather, loaded: &Loaded, pose: &Pose) -> Option<Self> {
+        if let Some(camera) = weather.camera.pose {
+            return Some(Self {
+                choice: CameraChoice::Weather,
+                eye: camera.position,
+                forward: camera.forward.as_vec3(),
+                up: Vec3::Y,
+                fov: weather::FOV_RAD,
+                near: None,
+                far: None,
+            });
+        }
+        pose.cameras.iter().find_map(|placed| {
+            let Lens::Perspective { yfov, near, far, .. } = loaded.scene.cameras.get(placed.camera)?.lens
+            else {
+                return None;
+            };
+            let eye = pose.world_f64(placed.node).map_or(placed.eye.as_dvec3(), |world| world.translation);
+            Some(Self {
+                choice: CameraChoice::Scene(placed.camera),
+                eye,
+                forward: placed.forward,
+                up: placed.up,
+                fov: f64::from(yfov),
+                near: Some(f64::from(near)),
+                far: far.map(f64::from),
+            })
+        })
+    }
+
+    pub(super) fn viewpoint(&self, fov: f64, origin: DVec3) -> Viewpoint {
+        let eye = (self.eye - origin).as_vec3();
+        Viewpoint { eye, forward: self.forward, up: self.up, fov_y: fov as f32 }
+    }
+}

@@ -1,0 +1,344 @@
+//! Rain in still air, in closed form.
+//!
+//! The field has no borders, no state and no step: where its drops are at a time is a function of (seed, time), so any
+//! number of cameras, in any order, at any frame rate, sees the same drops.
+//!
+//! Method: diameters are cut into classes. A class has square columns on a lattice of the world's x and z. A column
+//! holds chains, as many as a Poisson law of the class's number density says; a chain is one diameter, hence one
+//! terminal speed v, and one phase. Its drops follow each other at the class's period H: they are at
+//! `y = phase H - v t + k H` for all whole k, and each k has a place in the column of its own. So
+//!
+//! - number density and sizes are those of the distribution, everywhere and always;
+//! - a drop falls straight at its own speed, and neighbours overtake each other as their sizes say;
+//! - of a column only the part in view is looked at, whatever the time.
+//!
+//! Limit: drops of one chain share their size, H apart; H is about 8 m per millimetre of diameter, up to 64 m.
+
+use downpour_drop::distribution::{DropSizeDistribution, SampleTable, SampledBy};
+use downpour_drop::fall_speed::TerminalSpeed;
+use downpour_math::ops::f64 as ops;
+use downpour_math::rng::{rng_draw, rng_pcg4d, seed_words};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::SimError;
+use crate::poisson::poisson;
+use crate::view::{Bounds, View};
+
+/// Classes of diameter per factor of two.
+const CLASSES_PER_OCTAVE: f64 = 4.0;
+
+/// The latest time, and the earliest below zero, seconds: a little more than 11 days.
+pub const LATEST_S: f64 = 1.0e6;
+
+/// Dimensions of the random numbers.
+const CHAIN_COUNT: u32 = 8200;
+const CHAIN: u32 = 8201;
+const PLACE: u32 = 8202;
+
+/// A drop at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FallingDrop {
+    /// Place of its centre, metres.
+    pub position: DVec3,
+    /// Velocity, m/s.
+    pub velocity: [f32; 3],
+    /// Volume-equivalent diameter, metres.
+    pub diameter: f32,
+    /// The same drop at another time or in another picture has the same number.
+    pub id: u64,
+}
+
+/// The drops that a camera can resolve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VisibleDrops {
+    /// The drops, in an order that depends on nothing but the question.
+    pub drops: Vec<FallingDrop>,
+    /// How many drops were looked at to find them.
+    pub simulated: u64,
+    /// The least diameter on the picture that was listed, pixels: raised where there would have been too many.
+    pub least_pixels: f64,
+}
+
+/// Drops of about one size.
+#[derive(Clone, Debug)]
+struct Class {
+    seed: [u32; 2],
+    largest: f64,
+    /// Drops per cubic metre.
+    density: f64,
+    sizes: SampleTable,
+    /// Edge of a column, metres.
+    edge: f64,
+    /// Period along the vertical, metres.
+    period: f64,
+}
+
+/// A rain without end.
+#[derive(Clone, Debug)]
+pub struct RainField {
+    classes: Vec<Class>,
+    speed: TerminalSpeed,
+}
+
+/// Where a chain is and what it carries.
+#[derive(Clone, Copy, Debug)]
+struct Chain {
+    column: [u32; 2],
+    index: u32,
+    diameter: f32,
+    speed: f64,
+    /// Height of the drop k = 0 now, metres.
+    height: f64,
+}
+
+impl RainField {
+    /// The rain of a distribution; the seed chooses which of all possible ones.
+    ///
+    /// # Errors
+    /// [`SimError::Drop`] if the distribution cannot be cut into classes.
+    pub fn new(rain: &DropSizeDistribution, seed: u64) -> Result<Self, SimError> {
+        let options = rain.options();
+        let speed = TerminalSpeed::new(options.fall_speed, &options.air);
+        let mut classes = Vec::new();
+        if rain.rate_mm_h() > 0.0 {
+            let (smallest, largest) = (options.smallest_diameter_m.max(1.0e-6), options.largest_diameter_m);
+            let count = (ops::log2(largest / smallest) * CLASSES_PER_OCTAVE).ceil().max(1.0) as u32;
+            let edge = |k: u32| {
+                let inner = smallest * ops::pow(2.0, f64::from(k) / CLASSES_PER_OCTAVE);
+                if k == count { largest } else { inner }
+            };
+            for k in 0..count {
+                // A last sliver would be too thin a class.
+                if edge(k + 1) - edge(k) < 2.0e-6 {
+                    continue;
+                }
+                let part = rain.restricted_to(edge(k), edge(k + 1))?;
+                let mm = edge(k) * 1.0e3;
+                classes.push(Class {
+                    seed: class_seed(seed, k),
+                    largest: edge(k + 1),
+                    density: part.number_density(),
+                    sizes: part.sample_table(SampledBy::Number),
+                    edge: (0.25 * mm).clamp(0.05, 2.0),
+                    period: (8.0 * mm).clamp(2.0, 64.0),
+                });
+            }
+        }
+        Ok(Self { classes, speed })
+    }
+
+    /// Drops per cubic metre.
+    #[must_use]
+    pub fn number_density(&self) -> f64 {
+        self.classes.iter().map(|class| class.density).sum()
+    }
+
+    /// The drops in a picture at a time in seconds.
+    ///
+    /// # Errors
+    /// [`SimError::OutOfRange`] for a view that is none, or a time beyond [`LATEST_S`].
+    pub fn visible(&self, view: &View, time_s: f64) -> Result<VisibleDrops, SimError> {
+        view.check()?;
+        check_time(time_s)?;
+        let least_pixels = self.affordable(view);
+        let mut drops = Vec::new();
+        let mut simulated = 0;
+        for class in &self.classes {
+            let range = view.range(class.largest, least_pixels);
+            if range < view.near {
+                continue;
+            }
+            let (found, tried) = self.visible_of(class, view, least_pixels, time_s);
+            drops.extend(found);
+            simulated += tried;
+        }
+        Ok(VisibleDrops { drops, simulated, least_pixels })
+    }
+
+    /// All drops in a box at a time in seconds, in an order that depends on nothing but the question.
+    ///
+    /// # Errors
+    /// [`SimError::OutOfRange`] for a box that is none, is farther than 10 000 km or holds more than ten million drops, or a
+    /// time beyond [`LATEST_S`].
+    pub fn in_box(&self, low: DVec3, high: DVec3, time_s: f64) -> Result<Vec<FallingDrop>, SimError> {
+        check_time(time_s)?;
+        let place = low.abs().max(high.abs()).max_element();
+        if !(low.is_finite() && high.is_finite() && place <= 1.0e7 && low.cmple(high).all()) {
+            let (quantity, unit, allowed) = ("a side of the box", "m", "-1e7 to 1e7, low below high");
+            return Err(SimError::OutOfRange { quantity, found: place, unit, allowed });
+        }
+        let found = self.number_density() * (high - low).element_product();
+        if found.is_nan() || found > 1.0e7 {
+            let (quantity, unit, allowed) = ("number of drops in the box", "", "at most 1e7");
+            return Err(SimError::OutOfRange { quantity, found, unit, allowed });
+        }
+        let bounds = Bounds { low, high };
+        let mut drops = Vec::new();
+        for class in &self.classes {
+            let [xs, zs] = class.columns(&bounds);
+            for ix in xs {
+                for iz in zs.clone() {
+                    self.drops_of_column(class, [ix, iz], &bounds, time_s, |drop| {
+                        if drop.position.cmpge(low).all() && drop.position.cmplt(high).all() {
+                            drops.push(drop);
+                        }
+                    });
+                }
+            }
+        }
+        Ok(drops)
+    }
+
+    /// A disdrometer that sees volumes: the rate, in mm/h, of the drops round a place. Of each class it takes columns
+    /// until it has seen about 2000 drops of it or 1024 columns.
+    ///
+    /// # Errors
+    /// [`SimError::OutOfRange`] for a place or a time that is none.
+    pub fn measured_rate_mm_h(&self, place: DVec3, time_s: f64) -> Result<f64, SimError> {
+        check_time(time_s)?;
+        View { eye: place, ..View::default() }.check()?;
+        let flux = |class: &Class| {
+            let per_column = class.density * class.edge * class.edge * class.period;
+            let side = (2000.0 / per_column.max(1.0e-6)).sqrt().ceil().clamp(1.0, 32.0);
+            let half = DVec3::new(side * class.edge, class.period, side * class.edge) * 0.5;
+            // Whole columns and one whole period.
+            let corner = (place / class.edge).floor() * class.edge;
+            let middle = DVec3::new(corner.x, place.y, corner.z);
+            let bounds = Bounds { low: middle - half, high: middle + half };
+            let [xs, zs] = class.columns(&bounds);
+            let columns = (xs.end() - xs.start() + 1) * (zs.end() - zs.start() + 1);
+            let mut sum = 0.0;
+            for ix in xs {
+                for iz in zs.clone() {
+                    self.drops_of_column(class, [ix, iz], &bounds, time_s, |drop| {
+                        let d = f64::from(drop.diameter);
+                        sum += d * d * d * -f64::from(drop.velocity[1]);
+                    });
+                }
+            }
+            let volume = columns as f64 * class.edge * class.edge * class.period;
+            std::f64::consts::FRAC_PI_6 * sum / volume
+        };
+        let parts: Vec<f64> = self.classes.par_iter().map(flux).collect();
+        Ok(parts.iter().sum::<f64>() * 3.6e6)
+    }
+
+    /// The least diameter in pixels that leaves no more drops than the view wants.
+    fn affordable(&self, view: &View) -> f64 {
+        let expected = |least: f64| -> f64 {
+            self.classes.iter().map(|c| c.density * view.volume(view.range(c.largest, least))).sum()
+        };
+        let most = f64::from(view.most_drops.max(1));
+        let mut least = view.least_pixels;
+        while expected(least) > most {
+            // 3 % at a time: a power law of at most the third order is at the limit in a few dozen steps.
+            least = (least * 1.03).max(1.0e-3);
+        }
+        least
+    }
+
+    fn visible_of(
+        &self,
+        class: &Class,
+        view: &View,
+        least_pixels: f64,
+        time_s: f64,
+    ) -> (Vec<FallingDrop>, u64) {
+        let range = view.range(class.largest, least_pixels);
+        let bounds = view.bounds(range);
+        let [xs, zs] = class.columns(&bounds);
+        let middle = (bounds.low.y + bounds.high.y) * 0.5;
+        let half = (bounds.high.y - bounds.low.y) * 0.5;
+        let radius = (0.5 * class.edge * class.edge + half * half).sqrt();
+        let rows: Vec<(Vec<FallingDrop>, u64)> = xs
+            .into_par_iter()
+            .map(|ix| {
+                let (mut found, mut tried) = (Vec::new(), 0);
+                for iz in zs.clone() {
+                    let x = (ix as f64 + 0.5) * class.edge;
+                    let z = (iz as f64 + 0.5) * class.edge;
+                    if !view.within_sides(DVec3::new(x, middle, z) - view.eye, radius) {
+                        continue;
+                    }
+                    self.drops_of_column(class, [ix, iz], &bounds, time_s, |drop| {
+                        tried += 1;
+                        let diameter = f64::from(drop.diameter);
+                        let range = view.range(diameter, least_pixels);
+                        if view.touches(drop.position, 0.6 * diameter, range) {
+                            found.push(drop);
+                        }
+                    });
+                }
+                (found, tried)
+            })
+            .collect();
+        let tried = rows.iter().map(|row| row.1).sum();
+        (rows.into_iter().flat_map(|row| row.0).collect(), tried)
+    }
+
+    /// Hands on the drops of a column whose height is within the bounds.
+    fn drops_of_column(
+        &self,
+        class: &Class,
+        column: [i64; 2],
+        bounds: &Bounds,
+        time_s: f64,
+        mut each: impl FnMut(FallingDrop),
+    ) {
+        let [a, b, c, d] = rng_pcg4d([column[0] as u32, column[1] as u32, class.seed[0], class.seed[1]]);
+        let key = [a ^ c, b ^ d];
+        let mean = class.density * class.edge * class.edge * class.period;
+        for index in 0..poisson(mean, key, CHAIN_COUNT) {
+            let [size, high, low, _] = rng_draw(key, index, 0, CHAIN);
+            let diameter = class.sizes.sample(size);
+            let speed = self.speed.at(f64::from(diameter)).unwrap_or(0.0);
+            let phase = (f64::from(high) + f64::from(low) / 4_294_967_296.0) / 4_294_967_296.0;
+            let height = phase * class.period - speed * time_s;
+            let chain = Chain { column: key, index, diameter, speed, height };
+            let first = ((bounds.low.y - height) / class.period).ceil() as i64;
+            let last = ((bounds.high.y - height) / class.period).floor() as i64;
+            for k in first..=last {
+                each(chain.drop(k, class, column));
+            }
+        }
+    }
+}
+
+impl Class {
+    /// Columns along x and along z that meet a box.
+    fn columns(&self, bounds: &Bounds) -> [std::ops::RangeInclusive<i64>; 2] {
+        let cell = |x: f64| (x / self.edge).floor() as i64;
+        [cell(bounds.low.x)..=cell(bounds.high.x), cell(bounds.low.z)..=cell(bounds.high.z)]
+    }
+}
+
+impl Chain {
+    fn drop(&self, k: i64, class: &Class, column: [i64; 2]) -> FallingDrop {
+        let [x, z, high, low] = rng_draw(self.column, self.index, k as u32, PLACE);
+        let unit = |word: u32| (f64::from(word) + 0.5) / 4_294_967_296.0;
+        FallingDrop {
+            position: DVec3::new(
+                (column[0] as f64 + unit(x)) * class.edge,
+                self.height + k as f64 * class.period,
+                (column[1] as f64 + unit(z)) * class.edge,
+            ),
+            velocity: [0.0, -self.speed as f32, 0.0],
+            diameter: self.diameter,
+            id: u64::from(high) << 32 | u64::from(low),
+        }
+    }
+}
+
+fn class_seed(seed: u64, class: u32) -> [u32; 2] {
+    let [a, b, ..] = rng_draw(seed_words(seed), class, 0, CHAIN);
+    [a, b]
+}
+
+fn check_time(time_s: f64) -> Result<(), SimError> {
+    if time_s.abs() <= LATEST_S {
+        return Ok(());
+    }
+    let (quantity, unit, allowed) = ("time", "s", "-1e6 to 1e6");
+    Err(SimError::OutOfRange { quantity, found: time_s, unit, allowed })
+}

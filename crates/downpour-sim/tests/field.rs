@@ -1,0 +1,172 @@
+//! The closed-form rain: its numbers, its speeds, and that it is the same for everyone.
+
+use downpour_drop::air::Air;
+use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_drop::fall_speed::{FallSpeedModel, terminal_speed};
+use downpour_sim::SimError;
+use downpour_sim::field::{FallingDrop, RainField};
+use downpour_sim::view::View;
+use glam::DVec3;
+
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+fn rain(rate: f64) -> Result<DropSizeDistribution, Box<dyn std::error::Error>> {
+    Ok(DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate)?)
+}
+
+#[test]
+fn the_asked_rate_is_what_falls() -> Outcome {
+    for rate in [1.0, 10.0, 100.0, 500.0] {
+        let field = RainField::new(&rain(rate)?, 3)?;
+        for time in [0.0, 1000.25] {
+            let measured = field.measured_rate_mm_h(DVec3::new(3.0, 50.0, -8.0), time)?;
+            assert!((measured / rate - 1.0).abs() < 0.05, "{rate} mm/h: {measured}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_number_of_drops_of_each_size_is_the_laws() -> Outcome {
+    let rain = rain(25.0)?;
+    let field = RainField::new(&rain, 11)?;
+    let (low, high) = (DVec3::new(-1.0, 4.0, 2.0), DVec3::new(2.0, 6.5, 5.0));
+    let drops = field.in_box(low, high, 77.0)?;
+    let volume = (high - low).element_product();
+    for (from, to) in [(0.1e-3, 0.3e-3), (0.3e-3, 0.7e-3), (0.7e-3, 1.5e-3), (1.5e-3, 8.0e-3)] {
+        let found = drops.iter().filter(|d| (from..to).contains(&f64::from(d.diameter))).count() as f64;
+        let asked = rain.restricted_to(from, to)?.number_density() * volume;
+        assert!((found - asked).abs() < 4.0 * asked.sqrt(), "{from} to {to}: {found}, not {asked}");
+    }
+    Ok(())
+}
+
+/// Chi-square of the counts in equal cells of a box: uniform, along the vertical at any time, and across the columns.
+#[test]
+fn drops_are_uniform_in_space() -> Outcome {
+    let field = RainField::new(&rain(50.0)?, 5)?;
+    for time in [0.0, 0.37, 500.0] {
+        let (low, size) = (DVec3::new(10.3, -7.1, 0.2), 4.0);
+        let drops = field.in_box(low, low + size, time)?;
+        const N: usize = 6;
+        let mut cells = [0u32; N * N * N];
+        for drop in &drops {
+            let cell = ((drop.position - low) / size * N as f64)
+                .floor()
+                .clamp(DVec3::ZERO, DVec3::splat(N as f64 - 1.0));
+            cells[(cell.x as usize * N + cell.y as usize) * N + cell.z as usize] += 1;
+        }
+        let mean = drops.len() as f64 / cells.len() as f64;
+        let chi: f64 = cells.iter().map(|&n| (f64::from(n) - mean) * (f64::from(n) - mean) / mean).sum();
+        let freedom = cells.len() as f64 - 1.0;
+        assert!((chi - freedom).abs() < 4.5 * (2.0 * freedom).sqrt(), "t = {time}: {chi} for {freedom}");
+    }
+    Ok(())
+}
+
+#[test]
+fn every_drop_falls_at_its_terminal_speed() -> Outcome {
+    let field = RainField::new(&rain(10.0)?, 1)?;
+    let (low, high) = (DVec3::splat(-1.5), DVec3::splat(1.5));
+    let before = field.in_box(low, high, 20.0)?;
+    let step = 1.0 / 240.0;
+    let after = field.in_box(low - DVec3::Y, high, 20.0 + step)?;
+    let mut seen = 0;
+    for drop in &before {
+        let later: Vec<&FallingDrop> = after.iter().filter(|d| d.id == drop.id).collect();
+        assert_eq!(later.len(), 1, "{drop:?}");
+        let speed = terminal_speed(FallSpeedModel::Beard1976, f64::from(drop.diameter), &Air::standard())?;
+        let moved = later[0].position - drop.position;
+        assert!((moved + DVec3::Y * speed * step).length() < 1.0e-9, "{moved}, {speed}");
+        assert_eq!(later[0].diameter, drop.diameter);
+        seen += 1;
+    }
+    assert!(seen > 10_000);
+    Ok(())
+}
+
+fn sorted(mut drops: Vec<FallingDrop>) -> Vec<FallingDrop> {
+    drops.sort_by_key(|drop| drop.id);
+    drops
+}
+
+/// What a camera sees is what is in the box round it and passes the test of the picture, written here by angles.
+#[test]
+fn a_camera_sees_the_drops_of_the_box() -> Outcome {
+    let field = RainField::new(&rain(100.0)?, 8)?;
+    let forward = DVec3::new(0.3, -0.2, -1.0).normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let eye = DVec3::new(1.0e3, 1.7, -2.0e3);
+    let view = View { eye, forward, right, up: right.cross(forward), least_pixels: 1.0, ..View::default() };
+    let seen = field.visible(&view, 9.0)?;
+    assert_eq!(seen.least_pixels, 1.0);
+    // The largest drop, 8 mm, is a pixel wide at 6.2 m.
+    let all = field.in_box(eye - 2.5, eye + 2.5, 9.0)?;
+    let inside = |drop: &FallingDrop| {
+        let offset = drop.position - eye;
+        let (distance, depth) = (offset.length(), offset.dot(forward));
+        let pixels = f64::from(drop.diameter) / distance / view.pixel_angle;
+        let angle = |along: f64, half: f64| along.abs().atan2(depth) - half.atan();
+        let margin = (0.6 * f64::from(drop.diameter) / distance).min(1.0).asin();
+        distance >= view.near
+            && pixels >= 1.0
+            && angle(offset.dot(right), view.half_width) <= margin * distance / depth.hypot(offset.dot(right))
+            && angle(offset.dot(view.up), view.half_height)
+                <= margin * distance / depth.hypot(offset.dot(view.up))
+    };
+    let near: Vec<FallingDrop> =
+        seen.drops.iter().copied().filter(|d| (d.position - eye).abs().max_element() < 2.5).collect();
+    let expected: Vec<FallingDrop> = all.into_iter().filter(inside).collect();
+    assert!(near.len() > 200, "{}", near.len());
+    assert_eq!(sorted(near), sorted(expected));
+    Ok(())
+}
+
+#[test]
+fn the_same_seed_is_the_same_rain() -> Outcome {
+    let view = View::default();
+    let first = RainField::new(&rain(25.0)?, 42)?.visible(&view, 3.0)?;
+    let again = RainField::new(&rain(25.0)?, 42)?;
+    // Another question in between changes nothing.
+    again.visible(&View { eye: DVec3::new(5.0, 1.0, 0.0), ..view }, 9.0)?;
+    assert_eq!(again.visible(&view, 3.0)?, first);
+    assert_ne!(RainField::new(&rain(25.0)?, 43)?.visible(&view, 3.0)?, first);
+    // High words of the seed count.
+    assert_ne!(RainField::new(&rain(25.0)?, 42 | 1 << 40)?.visible(&view, 3.0)?, first);
+    Ok(())
+}
+
+#[test]
+fn too_many_drops_are_cut_at_a_larger_size() -> Outcome {
+    let field = RainField::new(&rain(100.0)?, 0)?;
+    let fine = View { pixel_angle: 1.0e-4, most_drops: 50_000, ..View::default() };
+    let seen = field.visible(&fine, 0.0)?;
+    assert!(seen.least_pixels > fine.least_pixels);
+    assert!((10_000..=50_500).contains(&seen.drops.len()), "{}", seen.drops.len());
+    Ok(())
+}
+
+#[test]
+fn no_rain_has_no_drops_and_bad_questions_have_no_answer() -> Outcome {
+    let dry = RainField::new(&rain(0.0)?, 0)?;
+    assert_eq!(dry.visible(&View::default(), 0.0)?.drops.len(), 0);
+    assert_eq!(dry.measured_rate_mm_h(DVec3::ZERO, 0.0)?, 0.0);
+    let field = RainField::new(&rain(1.0)?, 0)?;
+    for time in [f64::NAN, f64::INFINITY, 1.0e7] {
+        assert!(matches!(field.visible(&View::default(), time), Err(SimError::OutOfRange { .. })));
+    }
+    let bad = [
+        View { eye: DVec3::NAN, ..View::default() },
+        View { forward: DVec3::ZERO, ..View::default() },
+        View { half_width: 0.0, ..View::default() },
+        View { near: -1.0, ..View::default() },
+        View { far: f64::INFINITY, ..View::default() },
+        View { least_pixels: f64::NAN, ..View::default() },
+    ];
+    for view in bad {
+        assert!(matches!(field.visible(&view, 0.0), Err(SimError::OutOfRange { .. })), "{view:?}");
+    }
+    assert!(field.in_box(DVec3::ONE, DVec3::ZERO, 0.0).is_err());
+    assert!(field.in_box(DVec3::splat(-1.0e6), DVec3::splat(1.0e6), 0.0).is_err());
+    Ok(())
+}

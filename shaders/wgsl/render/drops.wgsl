@@ -1,0 +1,328 @@
+// Drops as refractive particles that face the camera: what the precomputed masks say about a viewer's ray, looked up in
+// the captured surroundings.
+// Law: the light that comes through has the share that the mask's transmittance says, the rest comes from the mirrored
+// direction, so nothing is lost: in uniform surroundings a drop vanishes. The mask's directions are for parallel rays;
+// a ray of the camera turns them by what it differs from the ray to the drop's middle (first order in the drop's
+// angle).
+// A drop below a pixel covers the pixels round its middle by its area, so its light does not depend on where it falls;
+// a larger one is sampled on a grid in each pixel.
+// Limits: the surroundings are those of the eye, not of the drop; a drop does not show other drops.
+// Twin: downpour_render::rain::drops.
+
+struct DropsFrame {
+    // The camera's axes: half the picture at distance 1.
+    right: vec3f,
+    width: u32,
+    up: vec3f,
+    height: u32,
+    forward: vec3f,
+    pixel_angle: f32,
+    // Axes of the capture in the papers' form: the whole of it at distance 1.
+    capture_right: vec3f,
+    // Texels along an edge of the capture.
+    capture_size: u32,
+    capture_up: vec3f,
+    // The coarsest level of the capture.
+    capture_last: u32,
+    capture_forward: vec3f,
+    // Angle of a texel of the capture.
+    capture_texel: f32,
+    // The form of refraction: DROPS_DIRECTION or DROPS_SHIFT.
+    form: u32,
+    // Texels along an edge of a mask.
+    mask_size: u32,
+    // Tiles across the picture.
+    tiles_across: u32,
+    unused: u32,
+}
+
+// A drop on the picture.
+struct DropsDrop {
+    // From the eye to the drop's middle, of length 1.
+    towards: vec3f,
+    // Metres from the eye.
+    distance: f32,
+    // Place of the middle on the picture, pixels from the top left.
+    place: vec2f,
+    // Equivalent radius over distance.
+    slope: f32,
+    // Half the width of its mask, in equivalent radii.
+    half_extent: f32,
+    // Place in the masks: rows of diameters, and of elevations.
+    row: vec2f,
+    // Area on the picture, pixels.
+    area: f32,
+    // Samples along an edge of a pixel; 0: the drop is below a pixel.
+    grid: u32,
+}
+
+// What a mask says.
+struct DropsTexel {
+    // Direction of the light that comes through, in the frame of the view: right, up, towards the viewer.
+    direction: vec3f,
+    coverage: f32,
+    reflected: vec3f,
+    transmittance: f32,
+}
+
+@group(0) @binding(0) var<uniform> drops_frame: DropsFrame;
+@group(0) @binding(1) var<storage, read> drops_list: array<DropsDrop>;
+// First the places where the tiles' lists begin (one more than there are tiles), then the lists.
+@group(0) @binding(2) var<storage, read> drops_tiles: array<u32>;
+@group(0) @binding(3) var<storage, read> drops_masks: array<u32>;
+@group(0) @binding(4) var<storage, read> drops_capture: array<vec4f>;
+@group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
+@group(0) @binding(6) var<storage, read_write> drops_layer: array<vec4f>;
+
+// A vector of length 1, or the vector itself if it has none.
+fn drops_unit(v: vec3f) -> vec3f {
+    return v / max(sqrt(dot(v, v)), 1.0e-20);
+}
+
+// A texel of a mask.
+fn drops_mask_texel(layer: u32, column: i32, row: i32) -> DropsTexel {
+    let last = i32(drops_frame.mask_size) - 1;
+    let x = u32(clamp(column, 0, last));
+    let y = u32(clamp(row, 0, last));
+    let at = ((layer * drops_frame.mask_size + y) * drops_frame.mask_size + x) * DROPS_TEXEL_WORDS;
+    let shares = unpack2x16unorm(drops_masks[at + 2u]);
+    return DropsTexel(
+        packing_octahedral_decode(unpack2x16snorm(drops_masks[at])),
+        shares.x,
+        packing_octahedral_decode(unpack2x16snorm(drops_masks[at + 1u])),
+        shares.y,
+    );
+}
+
+// Adds a weighted texel to a sum. Texels outside the drop have no direction to add.
+fn drops_add(sum: DropsTexel, texel: DropsTexel, weight: f32) -> DropsTexel {
+    let covered = weight * texel.coverage;
+    return DropsTexel(
+        sum.direction + texel.direction * covered,
+        sum.coverage + covered,
+        sum.reflected + texel.reflected * covered,
+        sum.transmittance + texel.transmittance * covered,
+    );
+}
+
+// A mask between its texels: sums weighted by coverage. (u, v) in [0, 1] from the top left.
+fn drops_mask_layer(sum: DropsTexel, layer: u32, u: f32, v: f32, weight: f32) -> DropsTexel {
+    let x = u * f32(drops_frame.mask_size) - 0.5;
+    let y = v * f32(drops_frame.mask_size) - 0.5;
+    let left = i32(floor(x));
+    let top = i32(floor(y));
+    let fx = x - floor(x);
+    let fy = y - floor(y);
+    var s = drops_add(sum, drops_mask_texel(layer, left, top), weight * (1.0 - fx) * (1.0 - fy));
+    s = drops_add(s, drops_mask_texel(layer, left + 1, top), weight * fx * (1.0 - fy));
+    s = drops_add(s, drops_mask_texel(layer, left, top + 1), weight * (1.0 - fx) * fy);
+    return drops_add(s, drops_mask_texel(layer, left + 1, top + 1), weight * fx * fy);
+}
+
+// What the masks say for a drop at (x, y) in units of half the mask, up and right: between diameters and elevations.
+fn drops_mask(row: vec2f, x: f32, y: f32) -> DropsTexel {
+    let u = 0.5 + 0.5 * x;
+    let v = 0.5 - 0.5 * y;
+    let low = floor(row);
+    let part = row - low;
+    let first = u32(low.x) * DROPS_ELEVATIONS + u32(low.y);
+    var sum = DropsTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
+    sum = drops_mask_layer(sum, first, u, v, (1.0 - part.x) * (1.0 - part.y));
+    if part.y > 0.0 {
+        sum = drops_mask_layer(sum, first + 1u, u, v, (1.0 - part.x) * part.y);
+    }
+    if part.x > 0.0 {
+        sum = drops_mask_layer(sum, first + DROPS_ELEVATIONS, u, v, part.x * (1.0 - part.y));
+        if part.y > 0.0 {
+            sum = drops_mask_layer(sum, first + DROPS_ELEVATIONS + 1u, u, v, part.x * part.y);
+        }
+    }
+    return DropsTexel(
+        drops_unit(sum.direction),
+        sum.coverage,
+        drops_unit(sum.reflected),
+        sum.transmittance / max(sum.coverage, 1.0e-20),
+    );
+}
+
+// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+fn drops_capture_texel(level: u32, column: i32, row: i32) -> vec3f {
+    let whole = drops_frame.capture_size;
+    let size = whole >> level;
+    let edge = i32(size);
+    var x = column;
+    var y = row;
+    if drops_frame.form == DROPS_DIRECTION {
+        if x < 0 || x >= edge {
+            x = clamp(x, 0, edge - 1);
+            y = edge - 1 - y;
+        }
+        if y < 0 || y >= edge {
+            y = clamp(y, 0, edge - 1);
+            x = edge - 1 - x;
+        }
+    }
+    x = clamp(x, 0, edge - 1);
+    y = clamp(y, 0, edge - 1);
+    let first = 4u * (whole * whole - size * size) / 3u;
+    return drops_capture[first + u32(y) * size + u32(x)].rgb;
+}
+
+// A level of the capture at a place of [0, 1], bilinear.
+fn drops_capture_level(level: u32, place: vec2f) -> vec3f {
+    let size = f32(drops_frame.capture_size >> level);
+    let x = place.x * size - 0.5;
+    let y = place.y * size - 0.5;
+    let left = i32(floor(x));
+    let top = i32(floor(y));
+    let fx = x - floor(x);
+    let fy = y - floor(y);
+    let upper = drops_capture_texel(level, left, top) * (1.0 - fx)
+        + drops_capture_texel(level, left + 1, top) * fx;
+    let lower = drops_capture_texel(level, left, top + 1) * (1.0 - fx)
+        + drops_capture_texel(level, left + 1, top + 1) * fx;
+    return upper * (1.0 - fy) + lower * fy;
+}
+
+// The capture at a place of [0, 1], for a footprint of some angle.
+fn drops_capture_at(place: vec2f, footprint: f32) -> vec3f {
+    let last = f32(drops_frame.capture_last);
+    let level = clamp(log2(max(footprint / drops_frame.capture_texel, 1.0e-6)), 0.0, last);
+    let low = floor(level);
+    let part = level - low;
+    let near = drops_capture_level(u32(low), place);
+    if part == 0.0 {
+        return near;
+    }
+    return near * (1.0 - part) + drops_capture_level(u32(low) + 1u, place) * part;
+}
+
+// The captured surroundings in a direction of any length.
+fn drops_surroundings(direction: vec3f, footprint: f32) -> vec3f {
+    return drops_capture_at(packing_octahedral_encode(direction) * 0.5 + 0.5, footprint);
+}
+
+// The place in the papers' capture of a ray, shifted by what the mask says: the refracted ray meets the plane of the
+// capture as far from the ray's own place as the tangent of its deviation.
+fn drops_shifted(ray: vec3f, texel: DropsTexel) -> vec2f {
+    let depth = max(dot(ray, drops_frame.capture_forward), 1.0e-3);
+    let deep = max(-texel.direction.z, 1.0e-3);
+    let shift = vec2f(
+        texel.direction.x / deep / sqrt(dot(drops_frame.capture_right, drops_frame.capture_right)),
+        texel.direction.y / deep / sqrt(dot(drops_frame.capture_up, drops_frame.capture_up)),
+    );
+    let place = vec2f(
+        dot(ray, drops_frame.capture_right) / dot(drops_frame.capture_right, drops_frame.capture_right),
+        dot(ray, drops_frame.capture_up) / dot(drops_frame.capture_up, drops_frame.capture_up),
+    ) / depth + shift;
+    return clamp(vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y), vec2f(0.0), vec2f(1.0));
+}
+
+// The ray through a place of the picture, in pixels from the top left, of any length.
+fn drops_ray(x: f32, y: f32) -> vec3f {
+    let u = 2.0 * x / f32(drops_frame.width) - 1.0;
+    let v = 1.0 - 2.0 * y / f32(drops_frame.height);
+    return drops_frame.forward + drops_frame.right * u + drops_frame.up * v;
+}
+
+// What a drop shows at (x, y), in units of half its mask, for samples that are `spacing` equivalent radii apart:
+// radiance times coverage, and coverage. `lean` is what the ray differs from the ray to the drop's middle.
+fn drops_sample(drop: DropsDrop, x: f32, y: f32, lean: vec3f, spacing: f32) -> vec4f {
+    let texel = drops_mask(drop.row, x, y);
+    if texel.coverage <= 0.0 {
+        return vec4f(0.0);
+    }
+    // The frame of the view: the drop's axis is the world's vertical.
+    let sideways = vec3f(-drop.towards.z, 0.0, drop.towards.x);
+    let level = dot(sideways, sideways);
+    let right = select(vec3f(1.0, 0.0, 0.0), sideways / sqrt(max(level, 1.0e-20)), level > 1.0e-12);
+    let up = cross(right, drop.towards);
+    // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
+    let q = min((x * x + y * y) * drop.half_extent * drop.half_extent, 0.98);
+    let bend = 2.0 / sqrt(1.0 - q);
+    if drops_frame.form == DROPS_SHIFT {
+        let place = drops_shifted(drop.towards + lean, texel);
+        return vec4f(drops_capture_at(place, spacing * (bend - DROPS_STRAIGHT)), 1.0) * texel.coverage;
+    }
+    let through = texel.direction;
+    let passed = right * through.x + up * through.y - drop.towards * through.z;
+    let mirrored = right * texel.reflected.x + up * texel.reflected.y - drop.towards * texel.reflected.z;
+    let radiance = drops_surroundings(passed + lean, spacing * (bend - DROPS_STRAIGHT)) * texel.transmittance
+        + drops_surroundings(mirrored + lean, spacing * bend) * (1.0 - texel.transmittance);
+    return vec4f(radiance, 1.0) * texel.coverage;
+}
+
+// A drop of less than a pixel: its mean radiance, over the pixels round its middle.
+fn drops_small(drop: DropsDrop, x: u32, y: u32) -> vec4f {
+    let wx = 1.0 - abs(f32(x) + 0.5 - drop.place.x);
+    let wy = 1.0 - abs(f32(y) + 0.5 - drop.place.y);
+    if wx <= 0.0 || wy <= 0.0 {
+        return vec4f(0.0);
+    }
+    var sum = vec4f(0.0);
+    let n = DROPS_SMALL_GRID;
+    for (var k = 0u; k < n * n; k += 1u) {
+        let sx = 2.0 * (f32(k % n) + 0.5) / f32(n) - 1.0;
+        let sy = 2.0 * (f32(k / n) + 0.5) / f32(n) - 1.0;
+        sum += drops_sample(drop, sx, sy, vec3f(0.0), 2.0 * drop.half_extent / f32(n));
+    }
+    let coverage = min(drop.area * wx * wy, 1.0);
+    return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * coverage;
+}
+
+// A drop over a pixel: radiance times coverage, and coverage.
+fn drops_pixel(drop: DropsDrop, x: u32, y: u32) -> vec4f {
+    if drop.grid == 0u {
+        return drops_small(drop, x, y);
+    }
+    let sideways = vec3f(-drop.towards.z, 0.0, drop.towards.x);
+    let level = dot(sideways, sideways);
+    let right = select(vec3f(1.0, 0.0, 0.0), sideways / sqrt(max(level, 1.0e-20)), level > 1.0e-12);
+    let up = cross(right, drop.towards);
+    let n = drop.grid;
+    let extent = drop.half_extent * drop.slope;
+    let spacing = drops_frame.pixel_angle / (drop.slope * f32(n));
+    var sum = vec4f(0.0);
+    for (var k = 0u; k < n * n; k += 1u) {
+        let dx = (f32(k % n) + 0.5) / f32(n);
+        let dy = (f32(k / n) + 0.5) / f32(n);
+        let ray = drops_ray(f32(x) + dx, f32(y) + dy);
+        let depth = dot(ray, drop.towards);
+        if depth <= 0.0 {
+            continue;
+        }
+        let lean = ray / depth - drop.towards;
+        let sx = dot(lean, right) / extent;
+        let sy = dot(lean, up) / extent;
+        if abs(sx) < 1.0 && abs(sy) < 1.0 {
+            sum += drops_sample(drop, sx, sy, lean, spacing);
+        }
+    }
+    return sum / f32(n * n);
+}
+
+// The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of distance.
+fn drops_over(x: u32, y: u32) -> vec4f {
+    let tile = (y / DROPS_TILE) * drops_frame.tiles_across + x / DROPS_TILE;
+    let scene = drops_clean[y * drops_frame.width + x].w;
+    var radiance = vec3f(0.0);
+    var transmittance = 1.0;
+    for (var k = drops_tiles[tile]; k < drops_tiles[tile + 1u]; k += 1u) {
+        let drop = drops_list[drops_tiles[k]];
+        if drop.distance >= scene || transmittance < DROPS_OPAQUE {
+            break;
+        }
+        let shown = drops_pixel(drop, x, y);
+        radiance += shown.rgb * transmittance;
+        transmittance *= 1.0 - shown.w;
+    }
+    return vec4f(radiance, transmittance);
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn main_drops(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= drops_frame.width || id.y >= drops_frame.height {
+        return;
+    }
+    drops_layer[id.y * drops_frame.width + id.x] = drops_over(id.x, id.y);
+}

@@ -1,0 +1,134 @@
+//! `cargo xtask truth`: the drop of `downpour specimen` held against Mitsuba 3, which knows nothing of us but the mesh,
+//! the sky map and the camera.
+//!
+//! Aim: inside the silhouette, a mean FLIP of at most 0.03 and a mean luminance within 2 %. FLIP is LDR-FLIP
+//! (Andersson et al. 2020) at 67 pixels per degree, both pictures with the same exposure: the one that puts the
+//! logarithmic mean of Mitsuba's picture within the silhouette at 0.18, cut at 1, with the curve of sRGB.
+//!
+//! The mesh is fine enough: at 5 mm, mean FLIP is 0.019, 0.0071, 0.0034, 0.0027 and 0.0027 with 4 to 8 subdivisions of the
+//! icosahedron. Each case has its negative control: our picture mirrored has to be above the aim.
+//!
+//! Mitsuba and FLIP come from `PyPI` into `target/truth/venv` (pinned in `truth/requirements.txt`), so that the task needs
+//! the network once, and is no part of the tests. Everything that it writes is under `target/truth`.
+
+mod cases;
+mod mesh;
+mod mitsuba;
+mod options;
+mod report;
+mod sky;
+
+use std::path::{Path, PathBuf};
+
+use downpour_drop::DropShape;
+
+use crate::run;
+use cases::Case;
+use mitsuba::Mitsuba;
+use options::Options;
+use report::{Outcome, Report};
+
+/// What a wrong argument is answered with.
+const USAGE: &str = "\
+cargo xtask truth [--quick] [--no-check] [--diameter MM]... [--map FILE]... [--only] [--command FILE]
+                  [--size PIXELS] [--samples N] [--path-samples N] [--subdivisions N]
+  --quick           two diameters and one view instead of four and three
+  --no-check        a case above the aim is no failure
+  --diameter MM     these diameters (repeatable) instead of 1, 2, 3 and 5 mm
+  --map FILE        this sky map, too (repeatable)
+  --only            no maps but those of --map
+  --command FILE    a `downpour` that is built already
+  --size PIXELS     edge of the pictures (default 256)
+  --samples N       samples per pixel where Mitsuba follows all branches (default 64)
+  --path-samples N  samples per pixel of Mitsuba's path tracer (default 72)
+  --subdivisions N  fineness of the mesh, 20 * 4^N triangles, 3 to 8 (default 7)";
+
+/// Renders every case twice, compares, writes the report, and says what is above the aim.
+pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
+    let options = Options::read(arguments).map_err(|message| format!("{message}\n{USAGE}"))?;
+    let folder = run::root().join("target/truth");
+    create(&folder)?;
+    let maps = cases::maps(&options, &folder)?;
+    let program = command(&options)?;
+    let mitsuba = Mitsuba::ready(&folder)?;
+    let mut report = Report::new(&options, &mitsuba);
+    for &diameter_mm in &options.diameters_mm {
+        let shape = DropShape::new(diameter_mm * 1.0e-3).map_err(|error| error.to_string())?;
+        let mesh = folder.join("mesh.ply");
+        write(&mesh, &mesh::ply(&shape, options.subdivisions)?)?;
+        for case in cases::cases(&shape, diameter_mm, &maps, &options) {
+            let outcome = compare(&case, &program, &folder, &mesh, &mitsuba, &options)?;
+            eprintln!("{}", report.add(&case, outcome));
+        }
+    }
+    let text = report.markdown();
+    println!("{text}");
+    write(&folder.join("report.md"), text.as_bytes())?;
+    match report.misses() {
+        [] => Ok(()),
+        misses if options.check => Err(format!("above the aim:\n  {}", misses.join("\n  "))),
+        _ => Ok(()),
+    }
+}
+
+/// One case: our picture, theirs, and the numbers.
+fn compare(
+    case: &Case<'_>,
+    program: &Path,
+    folder: &Path,
+    mesh: &Path,
+    mitsuba: &Mitsuba,
+    options: &Options,
+) -> Result<Outcome, String> {
+    let name = case.name();
+    let (ours, theirs) =
+        (folder.join(format!("{name}.ours.exr")), folder.join(format!("{name}.mitsuba.exr")));
+    specimen(case, program, &ours, options.size)?;
+    let values = mitsuba.compare(&mitsuba::Job {
+        case,
+        ours: &ours,
+        mesh,
+        reference: &theirs,
+        beside: &folder.join(format!("{name}.png")),
+        options,
+    })?;
+    Outcome::read(&values).map_err(|message| format!("{name}: {message}"))
+}
+
+/// Draws the case with the command that is held against Mitsuba.
+fn specimen(case: &Case<'_>, program: &Path, output: &Path, size: u32) -> Result<(), String> {
+    let status = run::command(&program.display().to_string(), &["specimen", "--backend", "cpu", "--quiet"])
+        .args(["--overwrite", "--diameter", &case.diameter_mm.to_string()])
+        .args(["--distance", &case.view.distance_m.to_string(), "--fov", &case.fov_deg.to_string()])
+        .args(["--yaw", &case.view.yaw_deg.to_string(), "--pitch", &case.view.pitch_deg.to_string()])
+        .args(["--size", &format!("{size}x{size}"), "--environment"])
+        .arg(&case.map.file)
+        .arg("--output")
+        .arg(output)
+        .status()
+        .map_err(|error| format!("{} did not start: {error}", program.display()))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!("{}: downpour specimen failed ({status})", case.name()))
+    }
+}
+
+/// The command that is held against Mitsuba: the one given, or the one of this tree, built.
+fn command(options: &Options) -> Result<PathBuf, String> {
+    if let Some(given) = &options.command {
+        return std::path::absolute(given).map_err(|error| format!("{}: {error}", given.display()));
+    }
+    run::cargo(&["build", "--release", "--locked", "-p", "downpour-cli"], &[])?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    let name = format!("downpour{}", std::env::consts::EXE_SUFFIX);
+    Ok(run::root().join(target).join("release").join(name))
+}
+
+fn create(folder: &Path) -> Result<(), String> {
+    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))
+}
+
+fn write(file: &Path, bytes: &[u8]) -> Result<(), String> {
+    std::fs::write(file, bytes).map_err(|error| format!("{}: {error}", file.display()))
+}
