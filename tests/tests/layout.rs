@@ -10,8 +10,8 @@ use downpour_mask::bvh::{BvhNode, BvhTriangle};
 use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel};
-use downpour_render::scene::SceneGather;
 use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
+use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
 use downpour_shaders::{Module, compose, drop, mask, modules, render};
 use downpour_tests::signature::parse;
@@ -51,7 +51,7 @@ fn hosts() -> Vec<Host> {
             eye, width, right, height, up, grid, forward, pixel_angle, slots, lights, light_count, sky_rays,
             first_row, seed, nearest, sky_reach, projection, sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
-        host!(SceneGather as "SceneGather" in &render::scene::SCENE, sky, body, met, gloss, normal),
+        host!(TraceGather as "TraceGather" in &render::scene::TRACE, sky, body, met, gloss, normal),
         host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS,
             right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,

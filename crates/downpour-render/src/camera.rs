@@ -1,5 +1,6 @@
 //! Where the picture is taken from.
 
+use downpour_shaders::render::scene::SCENE_PICTURE;
 use glam::Vec3;
 
 use crate::RenderError;
@@ -101,7 +102,7 @@ impl Viewpoint {
             seed: (seed ^ (seed >> 32)) as u32,
             nearest: (extent * 1.0e-5).max(far.min(1.0e5) * 1.0e-6).max(1.0e-6),
             sky_reach: extent * 0.5,
-            projection: 0,
+            projection: SCENE_PICTURE,
             unused: [0; 3],
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,

@@ -62,7 +62,7 @@ pub struct RenderFrame {
     pub nearest: f32,
     /// How far the rays to the sky go, metres.
     pub sky_reach: f32,
-    /// How a capture's texels become directions.
+    /// What is traced: the picture, or a capture.
     pub projection: u32,
     /// 0.
     pub unused: [u32; 3],

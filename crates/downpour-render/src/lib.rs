@@ -27,6 +27,7 @@ pub mod stage;
 pub mod surface;
 pub mod texture;
 pub mod tone;
+pub mod trace;
 
 pub use error::RenderError;
 

@@ -29,9 +29,9 @@ pub struct PictureOptions {
 }
 
 impl Default for PictureOptions {
-    /// 1280 x 720 pixels of 2 x 2 samples with 4 rays to the sky each.
+    /// 1280 x 720 pixels of 2 x 2 samples with a ray to the sky each.
     fn default() -> Self {
-        Self { size: [1280, 720], grid: 2, sky_rays: 4, seed: 0, rain: RainOptions::default() }
+        Self { size: [1280, 720], grid: 2, sky_rays: 1, seed: 0, rain: RainOptions::default() }
     }
 }
 

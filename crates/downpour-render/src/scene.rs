@@ -1,31 +1,28 @@
-//! The picture of a scene: rays from the eye, light of lamps and sun with shadow rays, light of the sky with rays
-//! that find what hides it.
+//! What a ray sees of a scene: light of lamps and sun with shadow rays, light of the sky with rays that find what hides
+//! it.
 //!
 //! Twin of `shaders/wgsl/render/scene.wgsl`. Both sides trace the same rays through the same hierarchy and filter
-//! the same texels, so a machine without a driver makes the same picture. Per sample of a pixel:
+//! the same texels, so a machine without a driver makes the same picture. For a ray:
 //!
 //! - the nearest surface; see-through ones are passed, at most twelve;
 //! - direct light: each lamp and the sun, with a ray that dims at see-through surfaces ([`brdf`](crate::brdf));
 //! - light of the sky: cosine-weighted rays; one that is stopped brings the light of what it meets, lit by one lamp drawn
-//!   for all and by half of the sky's irradiance, so that a shadow is not black; [`skylight`](crate::skylight) takes
-//!   means of what neighbouring pixels have found;
+//!   for all and by half of the sky's irradiance, so that a shadow is not black;
 //! - reflection of the sky, prefiltered by roughness, where it is not hidden.
-//!
-//! Samples of a pixel that meet one surface are shaded once.
 //!
 //! Limits: one bounce; reflections show the sky, not the scene.
 
 use downpour_math::ops;
-use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_sign};
+use downpour_math::packing::packing_sign;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::mask::MASK_BVH_FAR;
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_FAR, SCENE_GLANCE_CONE, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS,
-    SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_RANDOM_DIMENSION,
-    SCENE_SAME_FACET, SCENE_SAME_PLANE, SCENE_SKY_LEVELS, SCENE_UNLIT,
+    SCENE_BLENDED, SCENE_FAR, SCENE_GLANCE_CONE, SCENE_LATTICE_SCATTER, SCENE_LATTICE_SECOND,
+    SCENE_LATTICE_THIRD, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS, SCENE_LIGHT_DIRECTIONAL,
+    SCENE_LIGHT_ROWS, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_RANDOM_DIMENSION, SCENE_SAME_FACET,
+    SCENE_SAME_PLANE, SCENE_SKY_LEVELS, SCENE_UNLIT, SKYLIGHT_RADIUS,
 };
 use glam::{Vec3, Vec4};
-use rayon::prelude::*;
 
 use crate::brdf::{brdf_direct, brdf_environment};
 use crate::data::{RenderFrame, SceneData};
@@ -145,7 +142,7 @@ impl SceneView<'_> {
     }
 
     /// What a ray sees. Where it meets the surface that `last` met, it sees the same.
-    fn scene_path(
+    pub(crate) fn scene_path(
         &self,
         origin: Vec3,
         direction: Vec3,
@@ -166,7 +163,7 @@ impl SceneView<'_> {
             let material = data.corners[hit.triangle as usize * 3].material;
             if layer == 0 {
                 if scene_goes_on(last, material, surface.facet, surface.position, hit.distance) {
-                    return *last;
+                    return ScenePath { again: true, ..*last };
                 }
                 path.distance = hit.distance;
                 path.material = material;
@@ -254,15 +251,6 @@ impl SceneView<'_> {
         sum.extend(seen) / rays as f32
     }
 
-    /// What a ray sees, and the distance of the first surface (`SCENE_FAR` for the sky). `cone` is the width of the ray
-    /// at distance 1.
-    #[must_use]
-    pub fn scene_radiance(&self, origin: Vec3, direction: Vec3, cone: f32, random: [u32; 4]) -> Vec4 {
-        let path = self.scene_path(origin, direction, cone, random, &ScenePath::NOTHING);
-        let open = path.sky.w * path.sky.w;
-        (path.radiance + path.body * path.sky.truncate() + path.gloss * open).extend(path.distance)
-    }
-
     /// The direction of the ray through a place of the picture, in pixels from the top left.
     #[must_use]
     pub fn scene_direction(&self, x: f32, y: f32) -> Vec3 {
@@ -272,89 +260,34 @@ impl SceneView<'_> {
         let direction = Vec3::from(frame.forward) + Vec3::from(frame.right) * u + Vec3::from(frame.up) * v;
         direction / direction.dot(direction).sqrt()
     }
-
-    /// A pixel: mean radiance without the sky's light on surfaces, and the distance of what stands nearest in it; and
-    /// what it has found of the sky's light.
-    #[must_use]
-    pub fn scene_pixel(&self, x: u32, y: u32) -> (Vec4, SceneGather) {
-        let (mut sum, mut nearest) = (Vec3::ZERO, SCENE_FAR);
-        let (mut body, mut gloss, mut normal) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        let (mut sky, mut met) = (Vec4::ZERO, 0.0);
-        let n = self.frame.grid;
-        let eye = Vec3::from(self.frame.eye);
-        let mut last = ScenePath::NOTHING;
-        for k in 0..n * n {
-            let dx = ((k % n) as f32 + 0.5) / n as f32;
-            let dy = ((k / n) as f32 + 0.5) / n as f32;
-            let direction = self.scene_direction(x as f32 + dx, y as f32 + dy);
-            let random = scene_lattice(self.frame.seed, x, y, k);
-            last = self.scene_path(eye, direction, self.frame.pixel_angle, random, &last);
-            sum += last.radiance;
-            body += last.body;
-            gloss += last.gloss;
-            sky += last.sky * last.met;
-            normal += last.normal * last.met;
-            met += last.met;
-            nearest = nearest.min(last.distance);
-        }
-        let share = 1.0 / (n * n) as f32;
-        let gather = SceneGather {
-            sky: (sky / met.max(1.0)).to_array(),
-            body: (body * share).to_array(),
-            met: met * share,
-            gloss: (gloss * share).to_array(),
-            normal: packing_pack_snorm(packing_octahedral_encode(normal.to_array())),
-        };
-        ((sum * share).extend(nearest), gather)
-    }
-
-    /// The whole picture, rows from the top, in parallel; the same bits for any number of threads.
-    #[must_use]
-    pub fn picture(&self) -> Vec<[f32; 4]> {
-        let width = self.frame.width;
-        let (mut picture, gather): (Vec<[f32; 4]>, Vec<SceneGather>) = (0..self.frame.height)
-            .into_par_iter()
-            .flat_map_iter(|y| {
-                (0..width).map(move |x| {
-                    let (pixel, gather) = self.scene_pixel(x, y);
-                    (pixel.to_array(), gather)
-                })
-            })
-            .unzip();
-        let shown = self.skylight(&picture, &gather);
-        for (pixel, shown) in picture.iter_mut().zip(shown) {
-            for k in 0..3 {
-                pixel[k] += shown[k];
-            }
-        }
-        picture
-    }
 }
 
 /// What a ray of the camera finds.
 #[derive(Clone, Copy, Debug)]
-struct ScenePath {
+pub(crate) struct ScenePath {
     /// All light but that of the sky on the first surface.
-    radiance: Vec3,
+    pub(crate) radiance: Vec3,
     /// Distance of the first surface (`SCENE_FAR` for the sky).
-    distance: f32,
+    pub(crate) distance: f32,
     /// What the sky's light on the first surface is multiplied with.
-    body: Vec3,
+    pub(crate) body: Vec3,
     /// 1 if there is a surface whose light of the sky is told apart.
-    met: f32,
+    pub(crate) met: f32,
     /// What the square of the open share of the sky is multiplied with.
-    gloss: Vec3,
-    material: u32,
+    pub(crate) gloss: Vec3,
+    pub(crate) material: u32,
     /// Light of the sky over pi, and the share of the sky that is seen.
-    sky: Vec4,
-    normal: Vec3,
-    facet: Vec3,
-    place: Vec3,
+    pub(crate) sky: Vec4,
+    pub(crate) normal: Vec3,
+    pub(crate) facet: Vec3,
+    pub(crate) place: Vec3,
+    /// Whether it is what the sample before has seen.
+    pub(crate) again: bool,
 }
 
 impl ScenePath {
     /// A path that has found nothing.
-    const NOTHING: Self = Self {
+    pub(crate) const NOTHING: Self = Self {
         radiance: Vec3::ZERO,
         distance: SCENE_FAR,
         body: Vec3::ZERO,
@@ -365,23 +298,13 @@ impl ScenePath {
         normal: Vec3::ZERO,
         facet: Vec3::ZERO,
         place: Vec3::ZERO,
+        again: false,
     };
-}
 
-/// What a pixel has found of the sky's light, for the filter. The same layout as `SceneGather` in WGSL.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct SceneGather {
-    /// Light of the sky over pi, and the share of the sky that is seen: means of the samples that have met a surface.
-    pub sky: [f32; 4],
-    /// What it is multiplied with.
-    pub body: [f32; 3],
-    /// Share of the samples that have met a surface.
-    pub met: f32,
-    /// What the square of the open share is multiplied with.
-    pub gloss: [f32; 3],
-    /// The normal, octahedral, 16 bits each.
-    pub normal: u32,
+    /// All that a path has seen.
+    pub(crate) fn scene_radiance(&self) -> Vec3 {
+        self.radiance + self.body * self.sky.truncate() + self.gloss * (self.sky.w * self.sky.w)
+    }
 }
 
 /// What a colour weighs when lamps are compared.
@@ -397,17 +320,20 @@ fn scene_goes_on(last: &ScenePath, material: u32, facet: Vec3, place: Vec3, dist
         && last.facet.dot(place - last.place).abs() < SCENE_SAME_PLANE * distance
 }
 
-/// Numbers for the rays of sample k of a pixel, as words: additive recurrences in x, y and k (the powers of the plastic
-/// and the golden number), so that neighbours share the hemisphere among them.
+/// Numbers for the rays of sample k of a pixel, as words. The pixels of any window of the filter's size have all the
+/// points of one lattice of rank 1 among them, each once: their mean has no pattern.
 #[must_use]
 pub fn scene_lattice(seed: u32, x: u32, y: u32, k: u32) -> [u32; 4] {
     let seed = rng_draw([seed, 0], k, 0, SCENE_RANDOM_DIMENSION);
-    let step =
-        |a: u32, b: u32, start: u32| x.wrapping_mul(a).wrapping_add(y.wrapping_mul(b)).wrapping_add(start);
+    let edge = 2 * SKYLIGHT_RADIUS + 1;
+    let points = edge * edge;
+    // Scattered, so that a part of the window has points from everywhere.
+    let index = ((x % edge) * edge + y % edge) * SCENE_LATTICE_SCATTER % points;
+    let step = u32::MAX / points;
     [
-        step(3_242_174_889, 2_447_445_414, seed[0]),
-        step(2_700_274_807, 2_313_257_606, seed[1]),
-        step(1_640_531_527, 3_510_702_301, seed[2]),
+        (index * step).wrapping_add(seed[0]),
+        (index * SCENE_LATTICE_SECOND % points * step).wrapping_add(seed[1]),
+        (index * SCENE_LATTICE_THIRD % points * step).wrapping_add(seed[2]),
         seed[3],
     ]
 }
@@ -429,4 +355,26 @@ pub fn scene_hemisphere(normal: Vec3, k: u32, n: u32, random: [u32; 4]) -> Vec3 
     let tangent = Vec3::new(1.0 + side * normal.x * normal.x * p, side * q, -side * normal.x);
     let other = Vec3::new(q, side + normal.y * normal.y * p, -normal.y);
     tangent * (radius * ops::cos(angle)) + other * (radius * ops::sin(angle)) + normal * height
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_window_has_every_point_of_the_lattice_once() {
+        let edge = 2 * SKYLIGHT_RADIUS + 1;
+        for (left, top) in [(0, 0), (3, 5), (1000, 77)] {
+            for number in 0..3 {
+                let mut words: Vec<u32> = (0..edge * edge)
+                    .map(|i| scene_lattice(9, left + i % edge, top + i / edge, 2)[number])
+                    .collect();
+                words.sort_unstable();
+                let step = u32::MAX / (edge * edge);
+                let gaps = words.windows(2).map(|w| w[1] - w[0]);
+                assert!(gaps.clone().min() >= Some(step), "{number}");
+                assert!(gaps.max() <= Some(step + edge * edge), "{number}");
+            }
+        }
+    }
 }

@@ -6,19 +6,20 @@ use downpour_shaders::render::scene::{SKYLIGHT_RADIUS, SKYLIGHT_SLACK};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-use crate::scene::{SceneGather, SceneView};
+use crate::scene::SceneView;
+use crate::trace::TraceGather;
 
 /// A picture without the sky's light, and what its pixels have found of it.
 struct Pixels<'a> {
     view: &'a SceneView<'a>,
     /// For each pixel its normal and its place relative to the eye.
     surfaces: Vec<(Vec3, Vec3)>,
-    gather: &'a [SceneGather],
+    gather: &'a [TraceGather],
 }
 
 impl SceneView<'_> {
     /// What the sky adds to each pixel.
-    pub(crate) fn skylight(&self, picture: &[[f32; 4]], gather: &[SceneGather]) -> Vec<[f32; 3]> {
+    pub(crate) fn skylight(&self, picture: &[[f32; 4]], gather: &[TraceGather]) -> Vec<[f32; 3]> {
         let (width, height) = (self.frame.width, self.frame.height);
         let surfaces = gather
             .par_iter()

@@ -1,20 +1,17 @@
-//! `wgsl/render/{capture,reduce,drops}.wgsl`: drops before a scene. Twins: `downpour_render::rain`.
+//! `wgsl/render/{reduce,drops}.wgsl`: drops before a scene. Twins: `downpour_render::rain`.
 
-use super::scene::SCENE;
 use crate::common::PACKING;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&RAIN_CONSTANTS, &CAPTURE, &REDUCE, &DROPS];
+pub const MODULES: &[&Module] = &[&RAIN_CONSTANTS, &REDUCE, &DROPS];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&CAPTURE_KERNEL, &REDUCE_KERNEL, &DROPS_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&REDUCE_KERNEL, &DROPS_KERNEL];
 
 shared_constants! {
-    /// Numbers of the capture and of the masks in a buffer.
+    /// Numbers of the masks in a buffer.
     RAIN_CONSTANTS at "render/rain constants" {
-        /// Four over pi: the area of the capture's square, for the scene's irradiance over pi.
-        CAPTURE_AREA_OVER_PI: f32 = 1.2732395;
         /// Words of a texel of a mask: two directions, and two shares.
         DROPS_TEXEL_WORDS: u32 = 3;
         /// Masks of a diameter, from below (-90 degrees) to above (90 degrees).
@@ -34,13 +31,6 @@ shared_constants! {
     }
 }
 
-/// The surroundings of the eye. Twin: `downpour_render::rain::capture`.
-pub static CAPTURE: Module = Module {
-    path: "render/capture.wgsl",
-    wgsl: include_str!("../../wgsl/render/capture.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &SCENE, &PACKING],
-};
-
 /// Coarser levels of a square map. Twin: `downpour_render::rain::reduce`.
 pub static REDUCE: Module =
     Module { path: "render/reduce.wgsl", wgsl: include_str!("../../wgsl/render/reduce.wgsl"), uses: &[] };
@@ -51,9 +41,6 @@ pub static DROPS: Module = Module {
     wgsl: include_str!("../../wgsl/render/drops.wgsl"),
     uses: &[&RAIN_CONSTANTS, &PACKING],
 };
-
-/// One invocation per texel of the capture.
-pub static CAPTURE_KERNEL: Kernel = Kernel { entry: "main_capture", module: &CAPTURE, workgroup: [8, 8, 1] };
 
 /// One invocation per texel of the level that is made.
 pub static REDUCE_KERNEL: Kernel = Kernel { entry: "main_reduce", module: &REDUCE, workgroup: [8, 8, 1] };

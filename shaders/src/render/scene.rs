@@ -1,5 +1,5 @@
-//! `wgsl/render/{data,texture,sky,surface,scene,skylight}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
-//! `downpour_render::{texture, sky, surface, scene, skylight}`.
+//! `wgsl/render/{data,texture,sky,surface,scene,capture,trace,skylight}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
+//! `downpour_render::{texture, sky, surface, scene, rain::capture, trace, skylight}`.
 
 use super::brdf::BRDF;
 use crate::common::{PACKING, RNG};
@@ -7,10 +7,11 @@ use crate::mask::BVH;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&SCENE_CONSTANTS, &DATA, &TEXTURE, &SKY, &SURFACE, &SCENE, &SKYLIGHT];
+pub const MODULES: &[&Module] =
+    &[&SCENE_CONSTANTS, &DATA, &TEXTURE, &SKY, &SURFACE, &SCENE, &CAPTURE, &TRACE, &SKYLIGHT];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&SCENE_KERNEL, &SKYLIGHT_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&TRACE_KERNEL, &SKYLIGHT_KERNEL];
 
 shared_constants! {
     /// Numbers of the scene's tables and rays.
@@ -61,14 +62,24 @@ shared_constants! {
         SCENE_SAME_FACET: f32 = 0.97;
         /// Distance from the other facet's plane up to which a surface goes on, per distance from the eye.
         SCENE_SAME_PLANE: f32 = 0.005;
+        /// Generators of the lattice of the rays' numbers: coprime with the points of the filter's window.
+        SCENE_LATTICE_SCATTER: u32 = 19;
+        /// See [`SCENE_LATTICE_SCATTER`].
+        SCENE_LATTICE_SECOND: u32 = 30;
+        /// See [`SCENE_LATTICE_SCATTER`].
+        SCENE_LATTICE_THIRD: u32 = 37;
         /// Pixels to each side over which the sky's light is averaged.
         SKYLIGHT_RADIUS: u32 = 3;
         /// Distance from the plane of a pixel's surface at which a neighbour no longer counts, per distance from the eye.
         SKYLIGHT_SLACK: f32 = 0.002;
+        /// What is traced: the picture.
+        SCENE_PICTURE: u32 = 0;
+        /// Four over pi: the area of the octahedral map's square, for an irradiance over pi.
+        CAPTURE_AREA_OVER_PI: f32 = 1.2732395;
         /// A capture on an octahedral map.
-        SCENE_OCTAHEDRAL: u32 = 0;
+        SCENE_OCTAHEDRAL: u32 = 1;
         /// A capture as a perspective picture.
-        SCENE_PERSPECTIVE: u32 = 1;
+        SCENE_PERSPECTIVE: u32 = 2;
         /// Beyond every distance.
         SCENE_FAR: f32 = 1.0e30;
     }
@@ -106,14 +117,28 @@ pub static SCENE: Module = Module {
     uses: &[&DATA, &SKY, &SURFACE, &BRDF, &RNG, &PACKING],
 };
 
+/// Pixels of the picture and of the capture. Twin: `downpour_render::trace`.
+pub static TRACE: Module = Module {
+    path: "render/trace.wgsl",
+    wgsl: include_str!("../../wgsl/render/trace.wgsl"),
+    uses: &[&SCENE, &CAPTURE, &PACKING],
+};
+
+/// The surroundings of the eye. Twin: `downpour_render::rain::capture`.
+pub static CAPTURE: Module = Module {
+    path: "render/capture.wgsl",
+    wgsl: include_str!("../../wgsl/render/capture.wgsl"),
+    uses: &[&SCENE, &PACKING],
+};
+
 /// One invocation per pixel.
-pub static SCENE_KERNEL: Kernel = Kernel { entry: "main_scene", module: &SCENE, workgroup: [8, 8, 1] };
+pub static TRACE_KERNEL: Kernel = Kernel { entry: "main_trace", module: &TRACE, workgroup: [8, 8, 1] };
 
 /// The sky's light over neighbouring pixels. Twin: `downpour_render::skylight`.
 pub static SKYLIGHT: Module = Module {
     path: "render/skylight.wgsl",
     wgsl: include_str!("../../wgsl/render/skylight.wgsl"),
-    uses: &[&SCENE, &PACKING],
+    uses: &[&TRACE, &PACKING],
 };
 
 /// One invocation per pixel.

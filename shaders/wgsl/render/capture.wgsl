@@ -6,9 +6,6 @@
 
 // The direction of a place of the map, in texels from the top left.
 fn capture_direction(x: f32, y: f32) -> vec3f {
-    if render_frame.projection == SCENE_PERSPECTIVE {
-        return scene_direction(x, y);
-    }
     let scale = 2.0 / f32(render_frame.width);
     return packing_octahedral_decode(vec2f(x * scale - 1.0, y * scale - 1.0));
 }
@@ -16,7 +13,7 @@ fn capture_direction(x: f32, y: f32) -> vec3f {
 // The light of parallel sources in a texel.
 fn capture_suns(x: u32, y: u32) -> vec3f {
     let size = f32(render_frame.width);
-    if render_frame.projection == SCENE_PERSPECTIVE {
+    if render_frame.projection != SCENE_OCTAHEDRAL {
         return vec3f(0.0);
     }
     var sum = vec3f(0.0);
@@ -38,29 +35,4 @@ fn capture_suns(x: u32, y: u32) -> vec3f {
         sum += light.irradiance * visible / texel_over_pi;
     }
     return sum;
-}
-
-// A texel: mean radiance, and the distance of what stands nearest in it.
-fn capture_texel(x: u32, y: u32) -> vec4f {
-    var sum = vec3f(0.0);
-    var nearest = SCENE_FAR;
-    let n = render_frame.grid;
-    for (var k = 0u; k < n * n; k += 1u) {
-        let random = scene_lattice(x, y, k);
-        let dx = (f32(k % n) + 0.5) / f32(n);
-        let dy = (f32(k / n) + 0.5) / f32(n);
-        let direction = capture_direction(f32(x) + dx, f32(y) + dy);
-        let seen = scene_radiance(render_frame.eye, direction, render_frame.pixel_angle, random);
-        sum += seen.rgb;
-        nearest = min(nearest, seen.w);
-    }
-    return vec4f(sum / f32(n * n) + capture_suns(x, y), nearest);
-}
-
-@compute @workgroup_size(8, 8, 1)
-fn main_capture(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= render_frame.width || id.y >= render_frame.height {
-        return;
-    }
-    scene_picture[id.y * render_frame.width + id.x] = capture_texel(id.x, id.y);
 }

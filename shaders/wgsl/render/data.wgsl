@@ -27,7 +27,7 @@ struct RenderFrame {
     nearest: f32,
     // How far the rays to the sky go, metres.
     sky_reach: f32,
-    // How a capture's texels become directions: SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
+    // What is traced: SCENE_PICTURE, SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
     projection: u32,
     unused_1: u32,
     unused_2: u32,

@@ -127,14 +127,12 @@ fn drops_mask(row: vec2f, x: f32, y: f32) -> DropsTexel {
     let part = row - low;
     let first = u32(low.x) * DROPS_ELEVATIONS + u32(low.y);
     var sum = DropsTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
-    sum = drops_mask_layer(sum, first, u, v, (1.0 - part.x) * (1.0 - part.y));
-    if part.y > 0.0 {
-        sum = drops_mask_layer(sum, first + 1u, u, v, (1.0 - part.x) * part.y);
-    }
-    if part.x > 0.0 {
-        sum = drops_mask_layer(sum, first + DROPS_ELEVATIONS, u, v, part.x * (1.0 - part.y));
-        if part.y > 0.0 {
-            sum = drops_mask_layer(sum, first + DROPS_ELEVATIONS + 1u, u, v, part.x * part.y);
+    // Two elevations of two diameters. One text for all: each copy of it is compiled again.
+    for (var k = 0u; k < 4u; k += 1u) {
+        let of_diameter = select(1.0 - part.x, part.x, k >= 2u);
+        let weight = of_diameter * select(1.0 - part.y, part.y, (k & 1u) == 1u);
+        if weight > 0.0 {
+            sum = drops_mask_layer(sum, first + (k / 2u) * DROPS_ELEVATIONS + (k & 1u), u, v, weight);
         }
     }
     return DropsTexel(
@@ -190,16 +188,13 @@ fn drops_capture_at(place: vec2f, footprint: f32) -> vec3f {
     let level = clamp(log2(max(footprint / drops_frame.capture_texel, 1.0e-6)), 0.0, last);
     let low = floor(level);
     let part = level - low;
-    let near = drops_capture_level(u32(low), place);
-    if part == 0.0 {
-        return near;
+    var share = 1.0 - part;
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
+        sum += drops_capture_level(u32(low) + k, place) * share;
+        share = select(0.0, part, k == 0u);
     }
-    return near * (1.0 - part) + drops_capture_level(u32(low) + 1u, place) * part;
-}
-
-// The captured surroundings in a direction of any length.
-fn drops_surroundings(direction: vec3f, footprint: f32) -> vec3f {
-    return drops_capture_at(packing_octahedral_encode(direction) * 0.5 + 0.5, footprint);
+    return sum;
 }
 
 // The place in the papers' capture of a ray, shifted by what the mask says: the refracted ray meets the plane of the
@@ -240,63 +235,69 @@ fn drops_sample(drop: DropsDrop, x: f32, y: f32, lean: vec3f, spacing: f32) -> v
     // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
     let q = min((x * x + y * y) * drop.half_extent * drop.half_extent, 0.98);
     let bend = 2.0 / sqrt(1.0 - q);
-    if drops_frame.form == DROPS_SHIFT {
-        let place = drops_shifted(drop.towards + lean, texel);
-        return vec4f(drops_capture_at(place, spacing * (bend - DROPS_STRAIGHT)), 1.0) * texel.coverage;
+    let shifts = drops_frame.form == DROPS_SHIFT;
+    var sum = vec3f(0.0);
+    // What comes through, then what is mirrored.
+    for (var k = 0u; k < 2u; k += 1u) {
+        let mirrored = k == 1u;
+        let seen = select(texel.direction, texel.reflected, mirrored);
+        let weight = select(texel.transmittance, 1.0 - texel.transmittance, mirrored);
+        let footprint = spacing * select(bend - DROPS_STRAIGHT, bend, mirrored);
+        let direction = right * seen.x + up * seen.y - drop.towards * seen.z + lean;
+        var place = packing_octahedral_encode(direction) * 0.5 + 0.5;
+        if shifts {
+            place = drops_shifted(drop.towards + lean, texel);
+        }
+        sum += drops_capture_at(place, footprint) * select(weight, 1.0, shifts);
+        if shifts {
+            break;
+        }
     }
-    let through = texel.direction;
-    let passed = right * through.x + up * through.y - drop.towards * through.z;
-    let mirrored = right * texel.reflected.x + up * texel.reflected.y - drop.towards * texel.reflected.z;
-    let radiance = drops_surroundings(passed + lean, spacing * (bend - DROPS_STRAIGHT)) * texel.transmittance
-        + drops_surroundings(mirrored + lean, spacing * bend) * (1.0 - texel.transmittance);
-    return vec4f(radiance, 1.0) * texel.coverage;
+    return vec4f(sum, 1.0) * texel.coverage;
 }
 
-// A drop of less than a pixel: its mean radiance, over the pixels round its middle.
-fn drops_small(drop: DropsDrop, x: u32, y: u32) -> vec4f {
-    let wx = 1.0 - abs(f32(x) + 0.5 - drop.place.x);
-    let wy = 1.0 - abs(f32(y) + 0.5 - drop.place.y);
-    if wx <= 0.0 || wy <= 0.0 {
-        return vec4f(0.0);
-    }
-    var sum = vec4f(0.0);
-    let n = DROPS_SMALL_GRID;
-    for (var k = 0u; k < n * n; k += 1u) {
-        let sx = 2.0 * (f32(k % n) + 0.5) / f32(n) - 1.0;
-        let sy = 2.0 * (f32(k / n) + 0.5) / f32(n) - 1.0;
-        sum += drops_sample(drop, sx, sy, vec3f(0.0), 2.0 * drop.half_extent / f32(n));
-    }
-    let coverage = min(drop.area * wx * wy, 1.0);
-    return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * coverage;
+// The share of a pixel that a drop of less than a pixel covers: its area, over the pixels round its middle.
+fn drops_spread(drop: DropsDrop, x: u32, y: u32) -> f32 {
+    let wx = max(1.0 - abs(f32(x) + 0.5 - drop.place.x), 0.0);
+    let wy = max(1.0 - abs(f32(y) + 0.5 - drop.place.y), 0.0);
+    return min(drop.area * wx * wy, 1.0);
 }
 
-// A drop over a pixel: radiance times coverage, and coverage.
+// A drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
 fn drops_pixel(drop: DropsDrop, x: u32, y: u32) -> vec4f {
-    if drop.grid == 0u {
-        return drops_small(drop, x, y);
+    let small = drop.grid == 0u;
+    let spread = drops_spread(drop, x, y);
+    if small && spread <= 0.0 {
+        return vec4f(0.0);
     }
     let sideways = vec3f(-drop.towards.z, 0.0, drop.towards.x);
     let level = dot(sideways, sideways);
     let right = select(vec3f(1.0, 0.0, 0.0), sideways / sqrt(max(level, 1.0e-20)), level > 1.0e-12);
     let up = cross(right, drop.towards);
-    let n = drop.grid;
+    let n = select(drop.grid, DROPS_SMALL_GRID, small);
     let extent = drop.half_extent * drop.slope;
-    let spacing = drops_frame.pixel_angle / (drop.slope * f32(n));
+    let of_mask = 2.0 * drop.half_extent / f32(n);
+    let spacing = select(drops_frame.pixel_angle / (drop.slope * f32(n)), of_mask, small);
     var sum = vec4f(0.0);
     for (var k = 0u; k < n * n; k += 1u) {
         let dx = (f32(k % n) + 0.5) / f32(n);
         let dy = (f32(k / n) + 0.5) / f32(n);
-        let ray = drops_ray(f32(x) + dx, f32(y) + dy);
-        let depth = dot(ray, drop.towards);
-        if depth <= 0.0 {
-            continue;
+        var sx = 2.0 * dx - 1.0;
+        var sy = 2.0 * dy - 1.0;
+        var lean = vec3f(0.0);
+        if !small {
+            let ray = drops_ray(f32(x) + dx, f32(y) + dy);
+            let depth = max(dot(ray, drop.towards), 1.0e-6);
+            lean = ray / depth - drop.towards;
+            sx = dot(lean, right) / extent;
+            sy = dot(lean, up) / extent;
         }
-        let lean = ray / depth - drop.towards;
-        let sx = dot(lean, right) / extent;
-        let sy = dot(lean, up) / extent;
         if abs(sx) < 1.0 && abs(sy) < 1.0 {
             sum += drops_sample(drop, sx, sy, lean, spacing);
         }
+    }
+    if small {
+        return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * spread;
     }
     return sum / f32(n * n);
 }

@@ -1,8 +1,6 @@
-// The picture of a scene: rays from the eye, light of lamps and sun with shadow rays, light of the sky with rays that
-// find what hides it. The sky's light leaves as what one pixel has found; skylight.wgsl takes means over neighbours.
+// What a ray sees of a scene: light of lamps and sun with shadow rays, light of the sky with rays that find what hides
+// it.
 // Twin: downpour_render::scene, where the method is described.
-
-@group(0) @binding(7) var<storage, read_write> scene_picture: array<vec4f>;
 
 struct SceneLight {
     // From the surface to the light, of length 1.
@@ -129,14 +127,19 @@ fn scene_hemisphere(normal: vec3f, k: u32, n: u32, random: vec4u) -> vec3f {
     return tangent * (radius * cos(angle)) + other * (radius * sin(angle)) + normal * height;
 }
 
-// Numbers for the rays of sample k of a pixel, as words: additive recurrences in x, y and k (the powers of the plastic
-// and the golden number), so that neighbours share the hemisphere among them.
+// Numbers for the rays of sample k of a pixel, as words. The pixels of any window of the filter's size have all the
+// points of one lattice of rank 1 among them, each once: their mean has no pattern.
 fn scene_lattice(x: u32, y: u32, k: u32) -> vec4u {
     let seed = rng_draw(vec2u(render_frame.seed, 0u), k, 0u, SCENE_RANDOM_DIMENSION);
+    let edge = 2u * SKYLIGHT_RADIUS + 1u;
+    let points = edge * edge;
+    // Scattered, so that a part of the window has points from everywhere.
+    let index = ((x % edge) * edge + y % edge) * SCENE_LATTICE_SCATTER % points;
+    let step = 4294967295u / points;
     return vec4u(
-        x * 3242174889u + y * 2447445414u + seed.x,
-        x * 2700274807u + y * 2313257606u + seed.y,
-        x * 1640531527u + y * 3510702301u + seed.z,
+        index * step + seed.x,
+        (index * SCENE_LATTICE_SECOND % points) * step + seed.y,
+        (index * SCENE_LATTICE_THIRD % points) * step + seed.z,
         seed.w,
     );
 }
@@ -157,7 +160,8 @@ struct ScenePath {
     // Light of the sky over pi, and the share of the sky that is seen.
     sky: vec4f,
     normal: vec3f,
-    unused_1: f32,
+    // 1 if it is what the sample before has seen.
+    again: f32,
     facet: vec3f,
     unused_2: f32,
     place: vec3f,
@@ -223,7 +227,9 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
             let material = render_corners[hit.triangle * 3u].material;
             if k == 0u && layer == 0u
                 && scene_goes_on(last, material, found.facet, found.position, hit.distance) {
-                return last;
+                var same = last;
+                same.again = 1.0;
+                return same;
             }
             var lit = found.diffuse + found.normal_reflectance;
             if (found.flags & SCENE_UNLIT) == 0u {
@@ -287,10 +293,9 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
     return path;
 }
 
-// What a ray sees, and the distance of the first surface (SCENE_FAR for the sky).
-fn scene_radiance(origin: vec3f, direction: vec3f, cone: f32, random: vec4u) -> vec4f {
-    let path = scene_path(origin, direction, cone, random, scene_nothing());
-    return vec4f(path.radiance + path.body * path.sky.rgb + path.gloss * (path.sky.w * path.sky.w), path.distance);
+// All that a path has seen.
+fn scene_radiance(path: ScenePath) -> vec3f {
+    return path.radiance + path.body * path.sky.rgb + path.gloss * (path.sky.w * path.sky.w);
 }
 
 // The direction of the ray through a place of the picture, in pixels from the top left.
@@ -299,61 +304,4 @@ fn scene_direction(x: f32, y: f32) -> vec3f {
     let v = 1.0 - 2.0 * y / f32(render_frame.height);
     let direction = render_frame.forward + render_frame.right * u + render_frame.up * v;
     return direction / sqrt(dot(direction, direction));
-}
-
-// What a pixel has found of the sky's light, for the filter.
-struct SceneGather {
-    // Light of the sky over pi, and the share of the sky that is seen: means of the samples that have met a surface.
-    sky: vec4f,
-    // What it is multiplied with.
-    body: vec3f,
-    // Share of the samples that have met a surface.
-    met: f32,
-    // What the square of the open share is multiplied with.
-    gloss: vec3f,
-    // The normal, octahedral, 16 bits each.
-    normal: u32,
-}
-
-@group(0) @binding(8) var<storage, read_write> scene_gather: array<SceneGather>;
-
-// A pixel: mean radiance without the sky's light on surfaces, and the distance of what stands nearest in it; what it
-// has found of the sky's light goes to the filter.
-fn scene_pixel(x: u32, y: u32) -> vec4f {
-    var sum = vec3f(0.0);
-    var body = vec3f(0.0);
-    var gloss = vec3f(0.0);
-    var sky = vec4f(0.0);
-    var normal = vec3f(0.0);
-    var met = 0.0;
-    var nearest = SCENE_FAR;
-    let n = render_frame.grid;
-    var last = scene_nothing();
-    for (var k = 0u; k < n * n; k += 1u) {
-        let dx = (f32(k % n) + 0.5) / f32(n);
-        let dy = (f32(k / n) + 0.5) / f32(n);
-        let direction = scene_direction(f32(x) + dx, f32(y) + dy);
-        last = scene_path(render_frame.eye, direction, render_frame.pixel_angle, scene_lattice(x, y, k), last);
-        sum += last.radiance;
-        body += last.body;
-        gloss += last.gloss;
-        sky += last.sky * last.met;
-        normal += last.normal * last.met;
-        met += last.met;
-        nearest = min(nearest, last.distance);
-    }
-    let share = 1.0 / f32(n * n);
-    let packed = pack2x16snorm(packing_octahedral_encode(normal));
-    scene_gather[y * render_frame.width + x] =
-        SceneGather(sky / max(met, 1.0), body * share, met * share, gloss * share, packed);
-    return vec4f(sum * share, nearest);
-}
-
-@compute @workgroup_size(8, 8, 1)
-fn main_scene(@builtin(global_invocation_id) id: vec3u) {
-    let y = id.y + render_frame.first_row;
-    if id.x >= render_frame.width || y >= render_frame.height {
-        return;
-    }
-    scene_picture[y * render_frame.width + id.x] = scene_pixel(id.x, y);
 }

@@ -3,7 +3,7 @@
 // A neighbour counts as far as its normal agrees and as it is on the plane through the pixel's place.
 // Twin: downpour_render::skylight.
 
-@group(0) @binding(1) var<storage, read> skylight_gather: array<SceneGather>;
+@group(0) @binding(1) var<storage, read> skylight_gather: array<TraceGather>;
 @group(0) @binding(2) var<storage, read_write> skylight_picture: array<vec4f>;
 
 // The place that a pixel shows, relative to the eye.

@@ -8,7 +8,8 @@ use downpour_render::rain::{
     DropMasks, Rain, RainOptions, ReduceLevel, RefractionForm, reduce_levels, reduce_texel,
 };
 use downpour_render::scene::SceneView;
-use downpour_shaders::render::rain::{CAPTURE_KERNEL, DROPS_KERNEL, REDUCE_KERNEL};
+use downpour_shaders::render::rain::{DROPS_KERNEL, REDUCE_KERNEL};
+use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::FallingDrop;
 use glam::{DVec3, Vec3};
 
@@ -75,7 +76,7 @@ fn rain_case(gpu: &Gpu, eye: Vec3, forward: Vec3, form: RefractionForm, part: Pa
     let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
     let uploaded = scenes.upload(&scene)?;
     let clean_buffer = gpu.storage_buffer("clean", &clean)?;
-    let pass = rains.prepare(&uploaded, &rains.upload(&masks)?, &clean_buffer, &rain)?;
+    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(&masks)?, &clean_buffer, &rain)?;
     gpu.submit(&pass.capture())?;
     match part {
         Part::Capture => {
@@ -144,11 +145,10 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_capture_texel",
             "drops_capture_level",
             "drops_capture_at",
-            "drops_surroundings",
             "drops_shifted",
             "drops_ray",
             "drops_sample",
-            "drops_small",
+            "drops_spread",
             "drops_pixel",
             "drops_over",
         ],
@@ -157,9 +157,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     };
     vec![
         KernelCase {
-            name: "main_capture: with a sun and lamps",
-            kernel: &CAPTURE_KERNEL,
-            covers: &["capture_direction", "capture_suns", "capture_texel"],
+            name: "main_trace: a capture with a sun and lamps",
+            kernel: &TRACE_KERNEL,
+            covers: &["capture_direction", "capture_suns"],
             tol: CAPTURED,
             run: |gpu| {
                 let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));

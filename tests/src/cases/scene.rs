@@ -16,8 +16,8 @@ use downpour_render::sky_light::SkyLight;
 use downpour_render::texture::texture_wrap;
 use downpour_shaders::render::brdf::BRDF;
 use downpour_shaders::render::scene::{
-    SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_KERNEL, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT_KERNEL,
-    TEXTURE,
+    SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT_KERNEL, TEXTURE,
+    TRACE_KERNEL,
 };
 use glam::{Affine3A, Vec3};
 
@@ -243,7 +243,7 @@ const PICTURE: Tol = Tol::relative(
 pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, run| KernelCase {
         name,
-        kernel: &SCENE_KERNEL,
+        kernel: &TRACE_KERNEL,
         covers: &[
             "texture_texel",
             "texture_level",
@@ -269,7 +269,8 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "scene_path",
             "scene_radiance",
             "scene_direction",
-            "scene_pixel",
+            "trace_direction",
+            "trace_pixel",
         ],
         tol: PICTURE,
         run,
@@ -283,7 +284,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     };
     vec![
         filter("main_skylight: from above", |gpu| scene_case(gpu, Vec3::new(1.6, 3.4, 2.0), 2)),
-        case("main_scene: near, with rays to the sky", |gpu| scene_case(gpu, Vec3::new(0.6, 1.4, 3.0), 4)),
-        case("main_scene: far, with the open sky", |gpu| scene_case(gpu, Vec3::new(-9.0, 6.0, 12.0), 0)),
+        case("main_trace: near, with rays to the sky", |gpu| scene_case(gpu, Vec3::new(0.6, 1.4, 3.0), 4)),
+        case("main_trace: far, with the open sky", |gpu| scene_case(gpu, Vec3::new(-9.0, 6.0, 12.0), 0)),
     ]
 }

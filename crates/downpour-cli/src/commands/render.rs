@@ -60,7 +60,7 @@ pub(crate) struct RenderArguments {
     #[arg(allow_hyphen_values = true)]
     samples: u32,
     /// Rays to the sky per sample, 0 to 64; with 0 nothing hides the sky.
-    #[arg(long, value_name = "N", default_value = "4", value_parser = quantity::sky_rays)]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::sky_rays)]
     #[arg(allow_hyphen_values = true)]
     sky_rays: u32,
     /// Replace files that exist.

@@ -7,7 +7,7 @@ use super::rain::RainPipeline;
 use super::scene::ScenePipeline;
 use crate::RenderError;
 use crate::camera::Viewpoint;
-use crate::data::SceneData;
+use crate::data::{RenderFrame, SceneData};
 use crate::picture::{Picture, PictureOptions, timed};
 use crate::rain::{DropMasks, Rain};
 
@@ -64,6 +64,9 @@ impl PictureRenderer {
         options: &PictureOptions,
     ) -> Result<Picture, GpuPictureError> {
         let frame = viewpoint.frame(scene, options.size, options.grid, options.sky_rays, options.seed)?;
+        if self.gpu.adapter().is_software() {
+            check_turns(&frame)?;
+        }
         let mut passes = Vec::new();
         let uploaded = timed(&mut passes, "upload", || {
             Ok::<_, GpuError>((self.scene.upload(scene)?, self.rain.upload(masks)?))
@@ -71,7 +74,7 @@ impl PictureRenderer {
         let clean = timed(&mut passes, "scene", || self.scene.draw(&uploaded.0, &frame))?;
         let eye = viewpoint.eye.as_dvec3();
         let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
-        let pass = self.rain.prepare(&uploaded.0, &uploaded.1, &clean, &rain)?;
+        let pass = self.rain.prepare(&self.scene, &uploaded.0, &uploaded.1, &clean, &rain)?;
         timed(&mut passes, "capture", || {
             self.gpu.submit(&pass.capture())?;
             self.gpu.wait()
@@ -92,4 +95,27 @@ impl PictureRenderer {
             passes,
         })
     }
+}
+
+/// Turns of loops after which a software driver of Mesa ends a shader, without a word.
+const MOST_TURNS: u64 = 65_535;
+
+/// Turns that a ray takes through the hierarchy, and a texture through its levels: a generous mean.
+const TURNS_PER_RAY: u64 = 200;
+
+/// # Errors
+/// [`GpuError::OverLimit`] if a pixel may take more turns than a software driver allows.
+fn check_turns(frame: &RenderFrame) -> Result<(), GpuError> {
+    let [grid, sky, lights] = [frame.grid, frame.sky_rays, frame.light_count].map(u64::from);
+    let rays = 1 + lights + 2 * sky;
+    let needed = grid * grid * (rays * TURNS_PER_RAY + 2 * lights * (1 + sky));
+    if needed <= MOST_TURNS {
+        return Ok(());
+    }
+    Err(GpuError::OverLimit {
+        what: "the work of a pixel (samples, rays to the sky, lamps), in turns of loops,".to_owned(),
+        found: needed,
+        limit_name: "LP_MAX_TGSI_LOOP_ITERATIONS",
+        allowed: MOST_TURNS,
+    })
 }

@@ -1,16 +1,16 @@
 //! Drops before a scene on a GPU.
 
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
-use downpour_shaders::render::rain::{CAPTURE_KERNEL, DROPS_KERNEL, REDUCE_KERNEL};
+use downpour_shaders::render::rain::{DROPS_KERNEL, REDUCE_KERNEL};
 
-use super::scene::SceneOnGpu;
+use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::rain::{DropMasks, Rain, reduce_levels};
+use crate::trace::TraceGather;
 
 /// The pipelines of drops: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
 pub struct RainPipeline {
     gpu: Gpu,
-    capture: ComputeKernel,
     reduce: ComputeKernel,
     drops: ComputeKernel,
 }
@@ -25,6 +25,7 @@ pub struct RainOnGpu {
 #[derive(Debug)]
 pub struct RainPass<'a> {
     pipeline: &'a RainPipeline,
+    tracer: &'a ScenePipeline,
     size: [u32; 2],
     capture: (wgpu::BindGroup, u32),
     levels: Vec<(wgpu::BindGroup, u32)>,
@@ -40,12 +41,7 @@ impl RainPipeline {
     /// What the GPU says.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
-        Ok(Self {
-            gpu: gpu.clone(),
-            capture: kernel(&CAPTURE_KERNEL)?,
-            reduce: kernel(&REDUCE_KERNEL)?,
-            drops: kernel(&DROPS_KERNEL)?,
-        })
+        Ok(Self { gpu: gpu.clone(), reduce: kernel(&REDUCE_KERNEL)?, drops: kernel(&DROPS_KERNEL)? })
     }
 
     /// Brings the masks to the device.
@@ -62,6 +58,7 @@ impl RainPipeline {
     /// As [`RainPipeline::upload`].
     pub fn prepare<'a>(
         &'a self,
+        tracer: &'a ScenePipeline,
         scene: &SceneOnGpu,
         masks: &RainOnGpu,
         clean: &wgpu::Buffer,
@@ -74,7 +71,9 @@ impl RainPipeline {
         let storage = wgpu::BufferUsages::STORAGE;
         let texels = gpu.empty_buffer("capture", u64::from(all) * 16, storage)?;
         let frame = gpu.uniform_buffer("capture frame", &rain.capture.frame)?;
-        let capture = self.capture.bind(gpu, &scene.buffers(&frame, &texels))?;
+        // A capture has no filter: nothing is written there.
+        let nothing = gpu.storage_buffer("no light of the sky", &[TraceGather::default()])?;
+        let capture = tracer.kernel.bind(gpu, &scene.buffers(&frame, &texels, &nothing))?;
         let level = |level: &crate::rain::ReduceLevel| {
             let uniform = gpu.uniform_buffer("capture level", level)?;
             Ok((self.reduce.bind(gpu, &[&uniform, &texels])?, level.size.div_ceil(8)))
@@ -91,7 +90,7 @@ impl RainPipeline {
         let tiles = gpu.storage_buffer("tiles of drops", &rain.tiles)?;
         let drops = self.drops.bind(gpu, &[&frame, &list, &tiles, &masks.masks, &texels, clean, &layer])?;
         let capture = (capture, size.div_ceil(8));
-        Ok(RainPass { pipeline: self, size: picture, capture, levels, drops, texels, layer })
+        Ok(RainPass { pipeline: self, tracer, size: picture, capture, levels, drops, texels, layer })
     }
 }
 
@@ -100,7 +99,7 @@ impl RainPass<'_> {
     #[must_use]
     pub fn capture(&self) -> Vec<Dispatch<'_>> {
         let (bindings, groups) = &self.capture;
-        let finest = self.pipeline.capture.dispatch(bindings, [*groups, *groups, 1]);
+        let finest = self.tracer.kernel.dispatch(bindings, [*groups, *groups, 1]);
         let levels = self.levels.iter();
         let coarser = levels.map(|(bindings, n)| self.pipeline.reduce.dispatch(bindings, [*n, *n, 1]));
         std::iter::once(finest).chain(coarser).collect()

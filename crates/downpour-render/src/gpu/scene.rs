@@ -1,10 +1,10 @@
 //! The picture of a scene on a GPU: the same rays, the same buffers.
 
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
-use downpour_shaders::render::scene::{SCENE_KERNEL, SKYLIGHT_KERNEL};
+use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, TRACE_KERNEL};
 
 use crate::data::{RenderFrame, SceneData};
-use crate::scene::SceneGather;
+use crate::trace::TraceGather;
 
 /// Most pixels of a dispatch: a submission must stay far below the time after which a driver resets.
 const PIXELS_PER_DISPATCH: u32 = 1 << 17;
@@ -13,7 +13,7 @@ const PIXELS_PER_DISPATCH: u32 = 1 << 17;
 #[derive(Clone, Debug)]
 pub struct ScenePipeline {
     gpu: Gpu,
-    kernel: ComputeKernel,
+    pub(super) kernel: ComputeKernel,
     skylight: ComputeKernel,
 }
 
@@ -35,7 +35,7 @@ impl ScenePipeline {
     /// What the GPU says.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
-        Ok(Self { gpu: gpu.clone(), kernel: kernel(&SCENE_KERNEL)?, skylight: kernel(&SKYLIGHT_KERNEL)? })
+        Ok(Self { gpu: gpu.clone(), kernel: kernel(&TRACE_KERNEL)?, skylight: kernel(&SKYLIGHT_KERNEL)? })
     }
 
     /// Brings a scene to the device.
@@ -69,16 +69,14 @@ impl ScenePipeline {
     pub fn prepare(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<ScenePass<'_>, GpuError> {
         let pixels = u64::from(frame.width) * u64::from(frame.height);
         let picture = self.gpu.empty_buffer("picture", pixels * 16, wgpu::BufferUsages::STORAGE)?;
-        let bytes = pixels * size_of::<SceneGather>() as u64;
+        let bytes = pixels * size_of::<TraceGather>() as u64;
         let gather = self.gpu.empty_buffer("light of the sky", bytes, wgpu::BufferUsages::STORAGE)?;
         let rows = (PIXELS_PER_DISPATCH / frame.width.max(1)).max(8).next_multiple_of(8);
         let (mut bands, mut filters) = (Vec::new(), Vec::new());
         for first_row in (0..frame.height).step_by(rows as usize) {
             let uniform = self.gpu.uniform_buffer("frame", &RenderFrame { first_row, ..*frame })?;
             let groups = [frame.width.div_ceil(8), rows.min(frame.height - first_row).div_ceil(8), 1];
-            let [a, b, c, d, e, f, g, h] = scene.buffers(&uniform, &picture);
-            let buffers = [a, b, c, d, e, f, g, h, &gather];
-            bands.push((self.kernel.bind(&self.gpu, &buffers)?, groups));
+            bands.push((self.kernel.bind(&self.gpu, &scene.buffers(&uniform, &picture, &gather))?, groups));
             filters.push((self.skylight.bind(&self.gpu, &[&uniform, &gather, &picture])?, groups));
         }
         Ok(ScenePass { pipeline: self, bands, filters, picture })
@@ -125,12 +123,14 @@ impl ScenePass<'_> {
 }
 
 impl SceneOnGpu {
-    /// What a kernel that traces the scene binds, in order.
+    /// What the kernel that traces the scene binds, in order.
     pub(super) fn buffers<'a>(
         &'a self,
         frame: &'a wgpu::Buffer,
         picture: &'a wgpu::Buffer,
-    ) -> [&'a wgpu::Buffer; 8] {
-        [frame, &self.nodes, &self.triangles, &self.corners, &self.table, &self.texels, &self.sky, picture]
+        gather: &'a wgpu::Buffer,
+    ) -> [&'a wgpu::Buffer; 9] {
+        let [nodes, triangles, corners] = [&self.nodes, &self.triangles, &self.corners];
+        [frame, nodes, triangles, corners, &self.table, &self.texels, &self.sky, picture, gather]
     }
 }

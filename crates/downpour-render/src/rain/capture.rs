@@ -4,16 +4,16 @@
 //! perspective picture 165 degrees wide.
 
 use downpour_math::packing::{packing_octahedral_decode, packing_octahedral_encode};
-use downpour_shaders::render::rain::CAPTURE_AREA_OVER_PI;
 use downpour_shaders::render::scene::{
-    SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_OCTAHEDRAL, SCENE_PERSPECTIVE,
+    CAPTURE_AREA_OVER_PI, SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_OCTAHEDRAL,
+    SCENE_PERSPECTIVE,
 };
 use glam::Vec3;
 use rayon::prelude::*;
 
 use super::{RainOptions, RefractionForm, reduce};
 use crate::data::RenderFrame;
-use crate::scene::{SceneView, scene_lattice};
+use crate::scene::SceneView;
 
 /// Tangent of half of 165 degrees: what a drop of water refracts (Rousseau 2006 has 150 in one place: a rounding).
 const WIDE: f32 = 7.595_754;
@@ -74,7 +74,7 @@ impl CaptureFrame {
         let view = &view;
         let mut texels: Vec<[f32; 4]> = (0..size)
             .into_par_iter()
-            .flat_map_iter(|y| (0..size).map(move |x| capture_texel(view, x, y)))
+            .flat_map_iter(|y| (0..size).map(move |x| view.trace_pixel(x, y).0.to_array()))
             .collect();
         reduce::reduce(&mut texels, size);
         Capture { texels, size }
@@ -82,20 +82,16 @@ impl CaptureFrame {
 }
 
 /// The direction of a place of the map, in texels from the top left.
-fn capture_direction(view: &SceneView<'_>, x: f32, y: f32) -> Vec3 {
-    let frame = view.frame;
-    if frame.projection == SCENE_PERSPECTIVE {
-        return view.scene_direction(x, y);
-    }
+pub(crate) fn capture_direction(frame: &RenderFrame, x: f32, y: f32) -> Vec3 {
     let scale = 2.0 / frame.width as f32;
     packing_octahedral_decode([x * scale - 1.0, y * scale - 1.0]).into()
 }
 
 /// The light of parallel sources in a texel.
-fn capture_suns(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
+pub(crate) fn capture_suns(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
     let frame = view.frame;
     let size = frame.width as f32;
-    if frame.projection == SCENE_PERSPECTIVE {
+    if frame.projection != SCENE_OCTAHEDRAL {
         return Vec3::ZERO;
     }
     let eye = Vec3::from(frame.eye);
@@ -118,21 +114,4 @@ fn capture_suns(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
         sum += light.irradiance * visible / texel_over_pi;
     }
     sum
-}
-
-/// A texel: mean radiance, and the distance of what stands nearest in it.
-fn capture_texel(view: &SceneView<'_>, x: u32, y: u32) -> [f32; 4] {
-    let (mut sum, mut nearest) = (Vec3::ZERO, SCENE_FAR);
-    let frame = view.frame;
-    let n = frame.grid;
-    for k in 0..n * n {
-        let random = scene_lattice(frame.seed, x, y, k);
-        let dx = ((k % n) as f32 + 0.5) / n as f32;
-        let dy = ((k / n) as f32 + 0.5) / n as f32;
-        let direction = capture_direction(view, x as f32 + dx, y as f32 + dy);
-        let seen = view.scene_radiance(Vec3::from(frame.eye), direction, frame.pixel_angle, random);
-        sum += seen.truncate();
-        nearest = nearest.min(seen.w);
-    }
-    (sum / (n * n) as f32 + capture_suns(view, x, y)).extend(nearest).to_array()
 }

@@ -182,15 +182,14 @@ impl Buffers<'_> {
         let low = row.map(f32::floor);
         let part = [row[0] - low[0], row[1] - low[1]];
         let first = low[0] as u32 * DROPS_ELEVATIONS + low[1] as u32;
-        let layer = |sum, layer, weight| self.drops_mask_layer(sum, layer, u, v, weight);
-        let mut sum = layer(DropsTexel::default(), first, (1.0 - part[0]) * (1.0 - part[1]));
-        if part[1] > 0.0 {
-            sum = layer(sum, first + 1, (1.0 - part[0]) * part[1]);
-        }
-        if part[0] > 0.0 {
-            sum = layer(sum, first + DROPS_ELEVATIONS, part[0] * (1.0 - part[1]));
-            if part[1] > 0.0 {
-                sum = layer(sum, first + DROPS_ELEVATIONS + 1, part[0] * part[1]);
+        let mut sum = DropsTexel::default();
+        // Two elevations of two diameters.
+        for k in 0..4 {
+            let of_diameter = if k >= 2 { part[0] } else { 1.0 - part[0] };
+            let weight = of_diameter * if k & 1 == 1 { part[1] } else { 1.0 - part[1] };
+            if weight > 0.0 {
+                let layer = first + (k / 2) * DROPS_ELEVATIONS + (k & 1);
+                sum = self.drops_mask_layer(sum, layer, u, v, weight);
             }
         }
         DropsTexel {
@@ -240,17 +239,11 @@ impl Buffers<'_> {
         let level = ops::log2((footprint / self.frame.capture_texel).max(1.0e-6)).clamp(0.0, last);
         let low = level.floor();
         let part = level - low;
-        let near = self.drops_capture_level(low as u32, place);
+        let near = self.drops_capture_level(low as u32, place) * (1.0 - part);
         if part == 0.0 {
             return near;
         }
-        near * (1.0 - part) + self.drops_capture_level(low as u32 + 1, place) * part
-    }
-
-    /// The captured surroundings in a direction of any length.
-    fn drops_surroundings(&self, direction: Vec3, footprint: f32) -> Vec3 {
-        let square = Vec2::from(packing_octahedral_encode(direction.to_array()));
-        self.drops_capture_at(square * 0.5 + 0.5, footprint)
+        near + self.drops_capture_level(low as u32 + 1, place) * part
     }
 
     /// The place in the papers' capture of a ray, shifted by what the mask says: the refracted ray meets the plane of the
@@ -294,56 +287,61 @@ impl Buffers<'_> {
             let radiance = self.drops_capture_at(place, spacing * (bend - DROPS_STRAIGHT));
             return radiance.extend(1.0) * texel.coverage;
         }
-        let world = |v: Vec3| right * v.x + up * v.y - towards * v.z;
-        let (passed, mirrored) = (world(texel.direction), world(texel.reflected));
-        let radiance = self.drops_surroundings(passed + lean, spacing * (bend - DROPS_STRAIGHT))
-            * texel.transmittance
-            + self.drops_surroundings(mirrored + lean, spacing * bend) * (1.0 - texel.transmittance);
-        radiance.extend(1.0) * texel.coverage
+        let mut sum = Vec3::ZERO;
+        // What comes through, then what is mirrored.
+        let shares = [
+            (texel.direction, texel.transmittance, bend - DROPS_STRAIGHT),
+            (texel.reflected, 1.0 - texel.transmittance, bend),
+        ];
+        for (seen, weight, spread) in shares {
+            let direction = right * seen.x + up * seen.y - towards * seen.z + lean;
+            let place = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
+            sum += self.drops_capture_at(place, spacing * spread) * weight;
+        }
+        sum.extend(1.0) * texel.coverage
     }
 
-    /// A drop of less than a pixel: its mean radiance, over the pixels round its middle.
-    fn drops_small(&self, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
-        let wx = 1.0 - (x as f32 + 0.5 - drop.place[0]).abs();
-        let wy = 1.0 - (y as f32 + 0.5 - drop.place[1]).abs();
-        if wx <= 0.0 || wy <= 0.0 {
-            return Vec4::ZERO;
-        }
-        let mut sum = Vec4::ZERO;
-        let n = DROPS_SMALL_GRID;
-        for k in 0..n * n {
-            let sx = 2.0 * ((k % n) as f32 + 0.5) / n as f32 - 1.0;
-            let sy = 2.0 * ((k / n) as f32 + 0.5) / n as f32 - 1.0;
-            sum += self.drops_sample(drop, sx, sy, Vec3::ZERO, 2.0 * drop.half_extent / n as f32);
-        }
-        let coverage = (drop.area * wx * wy).min(1.0);
-        (sum.truncate() / sum.w.max(1.0e-20)).extend(1.0) * coverage
+    /// The share of a pixel that a drop of less than a pixel covers: its area, over the pixels round its middle.
+    fn drops_spread(drop: &DropsDrop, x: u32, y: u32) -> f32 {
+        let wx = (1.0 - (x as f32 + 0.5 - drop.place[0]).abs()).max(0.0);
+        let wy = (1.0 - (y as f32 + 0.5 - drop.place[1]).abs()).max(0.0);
+        (drop.area * wx * wy).min(1.0)
     }
 
-    /// A drop over a pixel: radiance times coverage, and coverage.
+    /// A drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
     fn drops_pixel(&self, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
-        if drop.grid == 0 {
-            return self.drops_small(drop, x, y);
+        let small = drop.grid == 0;
+        let spread = Self::drops_spread(drop, x, y);
+        if small && spread <= 0.0 {
+            return Vec4::ZERO;
         }
         let towards = Vec3::from(drop.towards);
         let (right, up) = axes(drop);
-        let n = drop.grid;
+        let n = if small { DROPS_SMALL_GRID } else { drop.grid };
         let extent = drop.half_extent * drop.slope;
-        let spacing = self.frame.pixel_angle / (drop.slope * n as f32);
+        let spacing = if small {
+            2.0 * drop.half_extent / n as f32
+        } else {
+            self.frame.pixel_angle / (drop.slope * n as f32)
+        };
         let mut sum = Vec4::ZERO;
         for k in 0..n * n {
             let dx = ((k % n) as f32 + 0.5) / n as f32;
             let dy = ((k / n) as f32 + 0.5) / n as f32;
-            let ray = self.drops_ray(x as f32 + dx, y as f32 + dy);
-            let depth = ray.dot(towards);
-            if depth <= 0.0 {
-                continue;
+            let (mut sx, mut sy, mut lean) = (2.0 * dx - 1.0, 2.0 * dy - 1.0, Vec3::ZERO);
+            if !small {
+                let ray = self.drops_ray(x as f32 + dx, y as f32 + dy);
+                let depth = ray.dot(towards).max(1.0e-6);
+                lean = ray / depth - towards;
+                sx = lean.dot(right) / extent;
+                sy = lean.dot(up) / extent;
             }
-            let lean = ray / depth - towards;
-            let (sx, sy) = (lean.dot(right) / extent, lean.dot(up) / extent);
             if sx.abs() < 1.0 && sy.abs() < 1.0 {
                 sum += self.drops_sample(drop, sx, sy, lean, spacing);
             }
+        }
+        if small {
+            return (sum.truncate() / sum.w.max(1.0e-20)).extend(1.0) * spread;
         }
         sum / (n * n) as f32
     }
