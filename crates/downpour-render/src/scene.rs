@@ -17,10 +17,10 @@ use downpour_math::packing::packing_sign;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::mask::MASK_BVH_FAR;
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_FAR, SCENE_GLANCE_CONE, SCENE_LATTICE_SCATTER, SCENE_LATTICE_SECOND,
-    SCENE_LATTICE_THIRD, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS, SCENE_LIGHT_DIRECTIONAL,
-    SCENE_LIGHT_ROWS, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_RANDOM_DIMENSION, SCENE_SAME_FACET,
-    SCENE_SAME_PLANE, SCENE_SKY_LEVELS, SCENE_UNLIT, SKYLIGHT_RADIUS,
+    SCENE_BLENDED, SCENE_FAR, SCENE_GLANCE_CONE, SCENE_GLANCE_NEAREST, SCENE_LATTICE_SCATTER,
+    SCENE_LATTICE_SECOND, SCENE_LATTICE_THIRD, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS,
+    SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_RANDOM_DIMENSION,
+    SCENE_SAME_FACET, SCENE_SAME_PLANE, SCENE_SKY_LEVELS, SCENE_UNLIT, SKYLIGHT_RADIUS,
 };
 use glam::{Vec3, Vec4};
 
@@ -46,8 +46,8 @@ pub struct SceneView<'a> {
 }
 
 impl SceneView<'_> {
-    /// The light of row `index` at a place.
-    pub(crate) fn scene_light(&self, index: u32, place: Vec3) -> SceneLight {
+    /// The light of row `index` at a place. A lamp that is nearer than `least` is as bright as from there.
+    pub(crate) fn scene_light(&self, index: u32, place: Vec3, least: f32) -> SceneLight {
         let row = (self.data.lights + index * SCENE_LIGHT_ROWS) as usize;
         let numbers = |k: usize| Vec4::from(self.data.table[row + k].map(f32::from_bits));
         let (position, axis, colour, cone) = (numbers(0), numbers(1), numbers(2), numbers(3));
@@ -59,8 +59,8 @@ impl SceneView<'_> {
             };
         }
         let offset = position.truncate() - place;
-        let square = offset.dot(offset).max(1.0e-8);
-        let distance = square.sqrt();
+        let square = offset.dot(offset).max((least * least).max(1.0e-8));
+        let distance = offset.dot(offset).max(1.0e-8).sqrt();
         let direction = offset / distance;
         // glTF's window: no light beyond the range, if there is one.
         let part = distance / colour.w.max(1.0e-6);
@@ -111,12 +111,14 @@ impl SceneView<'_> {
     /// with `all` false only one is, drawn by what each would give (`chance` in [0, 1)), for all of them.
     fn scene_direct(&self, surface: &Surface, view: Vec3, all: bool, chance: f32) -> Vec3 {
         let start = surface.position + surface.facet * self.frame.nearest;
+        // At a glance a spot close to a lamp would be noise: it is small, and far brighter than all round it.
+        let least = if all { 0.0 } else { self.frame.sky_reach * SCENE_GLANCE_NEAREST };
         let count = self.frame.light_count;
         let (mut sum, mut total) = (Vec3::ZERO, 0.0);
         let (mut rest, mut chosen) = (chance, count);
         // Once for what each would give, and to draw one; then the rays.
         for k in 0..count {
-            let light = self.scene_light(k, surface.position);
+            let light = self.scene_light(k, surface.position, least);
             let share = scene_share(self.scene_lamp(surface, view, &light));
             total += share;
             if share > 0.0 && rest * total < share {
@@ -129,7 +131,7 @@ impl SceneView<'_> {
         }
         let lamps = if all { 0..count } else { chosen..(chosen + 1).min(count) };
         for k in lamps {
-            let light = self.scene_light(k, surface.position);
+            let light = self.scene_light(k, surface.position, least);
             let lit = self.scene_lamp(surface, view, &light);
             let share = scene_share(lit);
             if share <= total * SCENE_LEAST_LAMP {
@@ -235,16 +237,24 @@ impl SceneView<'_> {
                     seen += 1.0;
                 }
                 Some(hit) => {
-                    let found = self.data.surface_at(&hit, start, along, SCENE_GLANCE_CONE);
-                    let colour = found.diffuse + found.normal_reflectance;
-                    if found.flags & SCENE_UNLIT != 0 {
-                        sum += colour;
-                        continue;
+                    let mut found = self.data.surface_at(&hit, start, along, SCENE_GLANCE_CONE);
+                    // The mirror image of a lamp, met by chance, would be noise.
+                    found.roughness = 1.0;
+                    let mut lit = found.diffuse + found.normal_reflectance;
+                    if found.flags & SCENE_UNLIT == 0 {
+                        let chance = rng_unit(random[2].wrapping_add((k + 1).wrapping_mul(2_654_435_769)));
+                        // What it has of the sky itself: half of the whole.
+                        let own = self.data.sky_irradiance(found.normal) * (0.5 * found.occlusion);
+                        // Where there are lamps, they stand for what shines; small bright things would be noise.
+                        let shines = self.frame.light_count == 0;
+                        let emission = if shines { found.emission } else { Vec3::ZERO };
+                        lit = emission + self.scene_direct(&found, -along, false, chance) + lit * own;
                     }
-                    let chance = rng_unit(random[2].wrapping_add((k + 1).wrapping_mul(2_654_435_769)));
-                    // What it has of the sky itself: half of the whole.
-                    let own = self.data.sky_irradiance(found.normal) * (0.5 * found.occlusion);
-                    sum += found.emission + self.scene_direct(&found, -along, false, chance) + colour * own;
+                    // What a see-through surface lets pass comes from the sky behind it.
+                    let blended = found.flags & SCENE_BLENDED != 0;
+                    let share = if blended { found.alpha.clamp(0.0, 1.0) } else { 1.0 };
+                    sum += lit * share + self.data.sky_level(SCENE_SKY_LEVELS - 1, along) * (1.0 - share);
+                    seen += 1.0 - share;
                 }
             }
         }

@@ -21,7 +21,7 @@
 //! - functions whose names begin with `specimen_` are the twins of `shaders/wgsl/render/specimen.wgsl`.
 //!
 //! Limits: no diffraction (drops above some hundredths of a millimetre), no absorption (below 0.4 % in 6 mm). Light
-//! that is still inside after 32 internal reflections, or of which less than 10^-4 is left, leaves with the last
+//! that is still inside after 256 internal reflections, or of which less than 10^-4 is left, leaves with the last
 //! light that left, so that all shares sum to 1. Exact up to 5.9 mm, where drops are convex. The bottom of larger
 //! ones has a ripple (`downpour_drop::shape`): light that has left it and would meet it again goes on, and rays that
 //! graze it may be missed, which takes 0.1 % from the height of the outline at 7 mm and up to 1.5 % at 9 mm.

@@ -393,7 +393,7 @@ fn skies_and_suns_that_contradict_themselves() {
     refused("[sun]\nazimuth_deg = 3", 2, "sun: no elevation_deg");
     refused("[sun]\nazimuth_deg = 3\nelevation_deg = 91", 2, "-90 to 90 degrees");
     let sun = |text: &str| parse(text).unwrap().sun;
-    assert_eq!(sun("[sky]\nfile = 'a.hdr'"), SunSource::FromSky);
+    assert_eq!(sun("[sky]\nfile = 'a.hdr'"), SunSource::FromSkyIfAny);
     assert_eq!(sun("[sky]\nfile = 'a.hdr'\n[sun]\nfrom_sky = false"), SunSource::None);
     assert_eq!(sun("[sun]\nfrom_sky = false"), SunSource::None);
     assert!(matches!(sun("[sun]\nazimuth_deg = 0\nelevation_deg = 90"), SunSource::Directional { .. }));

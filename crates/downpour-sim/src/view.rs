@@ -38,7 +38,7 @@ pub struct View {
 }
 
 impl Default for View {
-    /// From the origin along -Z, 50 degrees high, 1280 x 720 pixels; drops from a quarter of a pixel, 5 cm to 50 m away,
+    /// From the origin along -Z, 50 degrees high, 1280 x 720 pixels; drops from 0.4 of a pixel, 5 cm to 50 m away,
     /// two million at most.
     fn default() -> Self {
         Self {
@@ -51,7 +51,7 @@ impl Default for View {
             pixel_angle: 2.0 * HALF_HEIGHT / 720.0,
             near: 0.05,
             far: 50.0,
-            least_pixels: 0.25,
+            least_pixels: 0.4,
             most_drops: 2_000_000,
         }
     }

@@ -19,7 +19,7 @@ shared_constants! {
         /// Edge of a tile of the picture, pixels.
         DROPS_TILE: u32 = 8;
         /// Samples along an edge of the mask of a drop below a pixel.
-        DROPS_SMALL_GRID: u32 = 4;
+        DROPS_SMALL_GRID: u32 = 3;
         /// Form of refraction: the direction of the refracted light is looked up.
         DROPS_DIRECTION: u32 = 0;
         /// Form of refraction: the place in the captured picture is shifted (Rousseau 2006).

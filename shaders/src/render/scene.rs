@@ -56,6 +56,8 @@ shared_constants! {
         SCENE_LEAST_ROUGHNESS: f32 = 0.06;
         /// Width at distance 1 of a ray to the sky: textures that it meets are seen at a glance.
         SCENE_GLANCE_CONE: f32 = 0.05;
+        /// Least distance of a lamp at a glance, per reach of the rays to the sky.
+        SCENE_GLANCE_NEAREST: f32 = 0.03;
         /// Lamps that give less than this part of what all would give cast no ray.
         SCENE_LEAST_LAMP: f32 = 0.001;
         /// Cosine of the angle between facets up to which a surface goes on.

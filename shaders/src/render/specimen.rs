@@ -15,7 +15,7 @@ shared_constants! {
     SPECIMEN_CONSTANTS at "render/specimen constants" {
         /// Internal reflections that are followed, total ones included. What is left then leaves with the last light
         /// that left: below 1 % of all light in any view, below 0.04 % in level views up to 6 mm.
-        SPECIMEN_REFLECTIONS: u32 = 32;
+        SPECIMEN_REFLECTIONS: u32 = 256;
         /// Share of the light below which what is left inside is not followed any further. A sky holds a sun of 10^5
         /// times its mean: this share of it would still be seen above 10^-4.
         SPECIMEN_LEAST: f32 = 0.0001;

@@ -22,7 +22,7 @@ fn capture_suns(x: u32, y: u32) -> vec3f {
         if render_table[row].w != SCENE_LIGHT_DIRECTIONAL {
             continue;
         }
-        let light = scene_light(k, render_frame.eye);
+        let light = scene_light(k, render_frame.eye, 0.0);
         let square = packing_octahedral_encode(light.direction);
         let place = clamp((square * 0.5 + 0.5) * size, vec2f(0.0), vec2f(size - 1.0));
         if u32(place.x) != x || u32(place.y) != y {

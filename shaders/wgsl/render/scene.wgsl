@@ -11,8 +11,8 @@ struct SceneLight {
     unused: f32,
 }
 
-// The light of row `index` at a place.
-fn scene_light(index: u32, place: vec3f) -> SceneLight {
+// The light of row `index` at a place. A lamp that is nearer than `least` is as bright as from there.
+fn scene_light(index: u32, place: vec3f, least: f32) -> SceneLight {
     let row = render_frame.lights + index * SCENE_LIGHT_ROWS;
     let position = bitcast<vec4f>(render_table[row]);
     let axis = bitcast<vec4f>(render_table[row + 1u]);
@@ -22,8 +22,8 @@ fn scene_light(index: u32, place: vec3f) -> SceneLight {
         return SceneLight(-axis.xyz, SCENE_FAR, colour.rgb, 0.0);
     }
     let offset = position.xyz - place;
-    let square = max(dot(offset, offset), 1.0e-8);
-    let distance = sqrt(square);
+    let square = max(dot(offset, offset), max(least * least, 1.0e-8));
+    let distance = sqrt(max(dot(offset, offset), 1.0e-8));
     let direction = offset / distance;
     // glTF's window: no light beyond the range, if there is one.
     let part = distance / max(colour.w, 1.0e-6);
@@ -74,13 +74,15 @@ fn scene_lamp(surface: Surface, view: vec3f, light: SceneLight) -> vec3f {
 // `all` false only one is, drawn by what each would give (`chance` in [0, 1)), for all of them.
 fn scene_direct(surface: Surface, view: vec3f, all: bool, chance: f32) -> vec3f {
     let start = surface.position + surface.facet * render_frame.nearest;
+    // At a glance a spot close to a lamp would be noise: it is small, and far brighter than all round it.
+    let least = select(render_frame.sky_reach * SCENE_GLANCE_NEAREST, 0.0, all);
     var sum = vec3f(0.0);
     var total = 0.0;
     var rest = chance;
     var chosen = render_frame.light_count;
     // Once for what each would give, and to draw one; then the rays.
     for (var k = 0u; k < render_frame.light_count; k += 1u) {
-        let share = scene_share(scene_lamp(surface, view, scene_light(k, surface.position)));
+        let share = scene_share(scene_lamp(surface, view, scene_light(k, surface.position, least)));
         total += share;
         if share > 0.0 && rest * total < share {
             // The part of the interval that is left is as good as a new number.
@@ -93,7 +95,7 @@ fn scene_direct(surface: Surface, view: vec3f, all: bool, chance: f32) -> vec3f 
     let first = select(chosen, 0u, all);
     let end = select(min(chosen + 1u, render_frame.light_count), render_frame.light_count, all);
     for (var k = first; k < end; k += 1u) {
-        let light = scene_light(k, surface.position);
+        let light = scene_light(k, surface.position, least);
         let lit = scene_lamp(surface, view, light);
         let share = scene_share(lit);
         if share <= total * SCENE_LEAST_LAMP {
@@ -198,6 +200,7 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
         var along = direction;
         var near = from_distance;
         var reach = MASK_BVH_FAR;
+        var beyond = vec3f(0.0);
         var width = cone;
         for (var k = 0u; k <= render_frame.sky_rays; k += 1u) {
             if k > 0u {
@@ -213,17 +216,20 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
                     continue;
                 }
             }
+            if k > 0u {
+                beyond = sky_level(SCENE_SKY_LEVELS - 1u, along);
+            }
             let hit = surface_hit(start, along, near, reach);
             if k == 0u && hit.distance < 0.0 {
                 path.radiance += throughput * sky_level(0u, direction);
                 return path;
             }
             if hit.distance < 0.0 {
-                sum += sky_level(SCENE_SKY_LEVELS - 1u, along);
+                sum += beyond;
                 seen += 1.0;
                 continue;
             }
-            let found = surface_at(hit, start, along, width);
+            var found = surface_at(hit, start, along, width);
             let material = render_corners[hit.triangle * 3u].material;
             if k == 0u && layer == 0u
                 && scene_goes_on(last, material, found.facet, found.position, hit.distance) {
@@ -231,10 +237,16 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
                 same.again = 1.0;
                 return same;
             }
+            if k > 0u {
+                // The mirror image of a lamp, met by chance, would be noise.
+                found.roughness = 1.0;
+            }
             var lit = found.diffuse + found.normal_reflectance;
             if (found.flags & SCENE_UNLIT) == 0u {
                 let chance = rng_unit(random.z + k * 2654435769u);
-                lit = found.emission + scene_direct(found, -along, k == 0u, chance);
+                // Where there are lamps, they stand for what shines; small bright things would be noise.
+                let shines = k == 0u || render_frame.light_count == 0u;
+                lit = select(vec3f(0.0), found.emission, shines) + scene_direct(found, -along, k == 0u, chance);
                 if k > 0u {
                     // What it has of the sky itself: half of the whole.
                     let own = sky_irradiance(found.normal) * (0.5 * found.occlusion);
@@ -253,7 +265,10 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
                     path.normal = found.normal;
                 }
             } else {
-                sum += lit;
+                // What a see-through surface lets pass comes from the sky behind it.
+                let share = select(1.0, clamp(found.alpha, 0.0, 1.0), (found.flags & SCENE_BLENDED) != 0u);
+                sum += lit * share + beyond * (1.0 - share);
+                seen += 1.0 - share;
             }
         }
         var sky = vec4f(sum, seen) / max(f32(render_frame.sky_rays), 1.0);

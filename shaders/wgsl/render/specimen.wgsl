@@ -6,7 +6,7 @@
 // at 0. Radiance is linear, in the units of the map.
 // Sky map: equirectangular, u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top, bilinear between the
 // middles of texels, round in u.
-// Limits: light that has left the drop does not meet it again (it is convex up to 5.9 mm); 32 internal reflections.
+// Limits: light that has left the drop does not meet it again (it is convex up to 5.9 mm); 256 internal reflections.
 // Twin: downpour_render::specimen.
 
 struct SpecimenCamera {

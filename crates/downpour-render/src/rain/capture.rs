@@ -101,7 +101,7 @@ pub(crate) fn capture_suns(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
         if view.data.table[row][3] != SCENE_LIGHT_DIRECTIONAL {
             continue;
         }
-        let light = view.scene_light(k, eye);
+        let light = view.scene_light(k, eye, 0.0);
         let square = packing_octahedral_encode(light.direction.to_array());
         let place = square.map(|s| ((s * 0.5 + 0.5) * size).clamp(0.0, size - 1.0));
         if place[0] as u32 != x || place[1] as u32 != y {

@@ -43,6 +43,50 @@ impl SkyMap {
     }
 }
 
+impl SkyMap {
+    /// The same sky above a ground that reflects the share `albedo` of what falls on it, alike to all sides: below the
+    /// horizon every pixel has `albedo E / pi`, with E the irradiance of a level surface.
+    ///
+    /// ```
+    /// use downpour_scene::sky::SkyMap;
+    /// let sky = SkyMap::overcast([9.0; 3]).with_ground(0.2);
+    /// let ground = sky.radiance([0.3, -0.8, 0.1])[1];
+    /// assert!((ground - 0.2 * 9.0 * 7.0 / 9.0).abs() < 1e-3); // Moon & Spencer: E = 7 pi Z / 9
+    /// ```
+    #[must_use]
+    pub fn with_ground(mut self, albedo: f64) -> Self {
+        let (columns, rows) = (self.width as usize, self.height);
+        if columns == 0 {
+            return self;
+        }
+        let mut irradiance = [0.0f64; 3];
+        let polar = |row: u32| std::f64::consts::PI * f64::from(row) / f64::from(rows);
+        let above = |row: u32| f64::midpoint(polar(row), polar(row + 1)) < std::f64::consts::FRAC_PI_2;
+        for (row, pixels) in (0u32..).zip(self.radiance.chunks(columns)) {
+            if above(row) {
+                // The integral of cos over a band of the sphere: half the difference of the squared sines of its edges.
+                let square = |row: u32| {
+                    let sine = ops::sin(polar(row).min(std::f64::consts::FRAC_PI_2));
+                    sine * sine
+                };
+                let band = std::f64::consts::PI * (square(row + 1) - square(row)) / columns as f64;
+                for pixel in pixels {
+                    for (sum, value) in irradiance.iter_mut().zip(pixel) {
+                        *sum += f64::from(*value) * band;
+                    }
+                }
+            }
+        }
+        let ground = irradiance.map(|e| narrowed(albedo.clamp(0.0, 1.0) * e / std::f64::consts::PI));
+        for (row, pixels) in (0u32..).zip(self.radiance.chunks_mut(columns)) {
+            if !above(row) {
+                pixels.fill(ground);
+            }
+        }
+        self
+    }
+}
+
 /// The nearest `f32`.
 #[expect(clippy::cast_possible_truncation, reason = "rounding is meant; the value is below BRIGHTEST")]
 pub(super) fn narrowed(value: f64) -> f32 {

@@ -15,6 +15,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
+/// Reflectance of the ground below the horizon of an overcast sky: a usual value for open land.
+const GROUND_ALBEDO: f64 = 0.2;
+
 /// A weather with its files.
 #[derive(Clone, Debug)]
 pub struct Loaded {
@@ -124,7 +127,7 @@ fn lights_of_the_sky(
     let scaled = |colour: [f64; 3]| colour.map(|value| narrowed(value * scale));
     let (mut sky, yaw) = match &weather.sky.source {
         SkySource::Uniform(colour) => (SkyMap::uniform(scaled(*colour)), 0.0),
-        SkySource::Overcast(zenith) => (SkyMap::overcast(scaled(*zenith)), 0.0),
+        SkySource::Overcast(zenith) => (SkyMap::overcast(scaled(*zenith)).with_ground(GROUND_ALBEDO), 0.0),
         SkySource::File { file, yaw } => {
             let name = file.as_str();
             let read = |budget: &mut Budget| {
@@ -140,7 +143,7 @@ fn lights_of_the_sky(
     };
     let mut sun = match weather.sun {
         SunSource::None => None,
-        SunSource::FromSky => sky.extract_sun(SUN_THRESHOLD),
+        SunSource::FromSky | SunSource::FromSkyIfAny => sky.extract_sun(SUN_THRESHOLD),
         SunSource::Directional { towards, illuminance_lux, color, angular_radius } => {
             let sun = Sun {
                 direction: towards.map(narrowed),

@@ -46,6 +46,8 @@ pub enum SunSource {
     None,
     /// The brightest compact source of the sky map, if there is one.
     FromSky,
+    /// The same, where the file does not speak of a sun: a map without one is no surprise.
+    FromSkyIfAny,
     /// A sun of its own.
     Directional {
         /// The unit direction towards it.
@@ -120,7 +122,7 @@ impl SunSource {
         places: &Places<'_>,
     ) -> Result<Self, SceneError> {
         let mapped = matches!(sky.source, SkySource::File { .. });
-        let Some(table) = table else { return Ok(if mapped { Self::FromSky } else { Self::None }) };
+        let Some(table) = table else { return Ok(if mapped { Self::FromSkyIfAny } else { Self::None }) };
         let own = [
             ("azimuth_deg", table.azimuth_deg.is_some()),
             ("elevation_deg", table.elevation_deg.is_some()),
