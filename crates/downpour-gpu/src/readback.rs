@@ -1,11 +1,16 @@
 //! From the device to the program: the point where loss, hangs and late errors are seen.
 
 use std::sync::mpsc;
+use std::time::Duration;
 
 use bytemuck::Pod;
 
 use crate::context::one_line;
+
 use crate::{Gpu, GpuError};
+
+/// How long a callback may stay with another thread after the device is done.
+const CALLBACK: Duration = Duration::from_secs(5);
 
 impl Gpu {
     /// Waits for everything submitted and reads the whole of `buffer`. Bytes past the last whole `T` are left.
@@ -41,8 +46,9 @@ impl Gpu {
             let _ = sender.send(result);
         });
         self.wait()?;
+        // Another thread that waits on the same device may have been handed the callback and not yet called it.
         // On a caller's device this is where loss shows: its lost-device callback is not ours to set.
-        if !matches!(receiver.try_recv(), Ok(Ok(()))) {
+        if !matches!(receiver.recv_timeout(CALLBACK), Ok(Ok(()))) {
             self.check()?;
             return Err(GpuError::Lost { reason: "a readback failed".to_owned() });
         }
