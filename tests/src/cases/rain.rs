@@ -122,14 +122,14 @@ const CAPTURED: Tol = Tol::relative(
     2.0e-3,
     "sums over rays; a ray at an edge, and the sky's atan2 (4096 ulp), may fall on either side",
 )
-.with_outliers(2.0e-2);
+.with_outliers(2.0e-3);
 
 const DRAWN: Tol = Tol::relative(
     5.0e-3,
     2.0e-3,
     "the capture above; directions of a mask's rim turn by the width of the picture in a texel",
 )
-.with_outliers(2.0e-2);
+.with_outliers(1.0e-2);
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {

@@ -237,7 +237,7 @@ const PICTURE: Tol = Tol::relative(
     2.0e-3,
     "sums over rays; a ray at an edge, and the sky's atan2 (4096 ulp), may fall on either side",
 )
-.with_outliers(2.0e-2);
+.with_outliers(2.0e-3);
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {

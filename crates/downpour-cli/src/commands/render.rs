@@ -6,13 +6,13 @@ mod report;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use downpour::drop::air::Air;
 use downpour::drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour::drop::optics::water_index_in_air;
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
 use downpour::render::picture::{Picture, PictureOptions, render_picture};
-use downpour::render::rain::DropMasks;
+use downpour::render::rain::{DropMasks, RainOptions, RefractionForm};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
@@ -33,9 +33,9 @@ const SODIUM_M: f64 = 589.3e-9;
 /// The coldest air, in Celsius, in which water's index is known.
 const COLDEST_INDEX_C: f64 = -12.0;
 
-/// Memory per pixel, in bytes, while a picture is made and written: a quarter more than a picture with all layers was seen
-/// to take at its peak.
-pub(super) const BYTES_PER_PIXEL: u64 = 130;
+/// Memory per pixel, in bytes, while a picture is made and written: the scene, what its pixels found of the sky's light
+/// (twice while threads hand in their parts), the rain, and the file.
+pub(super) const BYTES_PER_PIXEL: u64 = 220;
 
 /// Make a picture of a scene in the rain.
 #[derive(Debug, Args)]
@@ -63,6 +63,9 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::sky_rays)]
     #[arg(allow_hyphen_values = true)]
     sky_rays: u32,
+    /// How a drop's pixel finds its colour.
+    #[arg(long, value_enum, default_value = "direction")]
+    refraction: Refraction,
     /// Replace files that exist.
     #[arg(long)]
     overwrite: bool,
@@ -71,6 +74,25 @@ pub(crate) struct RenderArguments {
     /// Say nothing but errors.
     #[arg(short, long)]
     quiet: bool,
+}
+
+/// How a drop's pixel finds its colour.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Refraction {
+    /// The directions of refracted and reflected light, in all that is round the eye.
+    Direction,
+    /// The shift in a picture 165 degrees wide; no reflection.
+    #[value(name = "rousseau-2006")]
+    Rousseau2006,
+}
+
+impl From<Refraction> for RefractionForm {
+    fn from(refraction: Refraction) -> Self {
+        match refraction {
+            Refraction::Direction => Self::Direction,
+            Refraction::Rousseau2006 => Self::Rousseau2006,
+        }
+    }
 }
 
 /// The rain of a picture.
@@ -140,7 +162,7 @@ impl RenderArguments {
             grid: self.samples,
             sky_rays: self.sky_rays,
             seed,
-            ..PictureOptions::default()
+            rain: RainOptions { form: self.refraction.into(), ..RainOptions::default() },
         }
     }
 

@@ -54,6 +54,18 @@ fn rows(ended: &Ended) -> HashMap<u64, Row> {
 }
 
 #[test]
+fn the_papers_form_of_refraction_is_another_picture() {
+    let picture = |form: &str| {
+        let arguments = ["render", "-o", "rain.exr", "--layers", "--refraction", form];
+        channels(&storm(&arguments).run().succeeded().file("rain.exr"))
+    };
+    let (ours, theirs) = (picture("direction"), picture("rousseau-2006"));
+    assert_eq!(ours["clean.G"], theirs["clean.G"]);
+    assert_eq!(ours["transmittance.Y"], theirs["transmittance.Y"]);
+    assert_ne!(ours["rain.G"], theirs["rain.G"]);
+}
+
+#[test]
 fn a_picture_is_written_and_told_of() {
     let ended = storm(&["render", "-o", "rain.png"]).run().succeeded();
     assert!(ended.file("rain.png").starts_with(b"\x89PNG"));

@@ -18,6 +18,10 @@ use crate::scene::SceneView;
 /// Tangent of half of 165 degrees: what a drop of water refracts (Rousseau 2006 has 150 in one place: a rounding).
 const WIDE: f32 = 7.595_754;
 
+/// Rays to the sky of a capture's sample for each of the picture's, and the most of them.
+const SKY_RAYS: u32 = 4;
+const MOST_SKY_RAYS: u32 = 64;
+
 /// How the surroundings are captured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CaptureFrame {
@@ -59,6 +63,8 @@ impl CaptureFrame {
             forward: unit(picture.forward).into(),
             pixel_angle,
             grid: options.capture_grid.clamp(1, 16),
+            // No filter takes means over neighbours here, but the drops' lookups do.
+            sky_rays: (picture.sky_rays * SKY_RAYS).min(MOST_SKY_RAYS),
             first_row: 0,
             projection,
             ..*picture
