@@ -29,9 +29,9 @@ fn a_weather_is_told_of() {
     let place: Vec<f64> =
         json["camera_position_m"].as_array().unwrap().iter().filter_map(serde_json::Value::as_f64).collect();
     assert!((place[1] - 1.2).abs() < 1.0e-6 && place[2] == 6.0, "{json}");
-    // Moon & Spencer: half of the sphere has a mean of 2/3 of the zenith.
+    // Moon & Spencer: half of the sphere has a mean of 2/3 of the zenith's 3, the other a fifth of 7/9 of it.
     let mean = json["sky_mean_radiance"][1].as_f64().unwrap();
-    assert!((mean - 1.0).abs() < 1.0e-3, "{mean}");
+    assert!((mean - (1.0 + 0.5 * 0.2 * 3.0 * 7.0 / 9.0)).abs() < 1.0e-3, "{mean}");
     assert!(json["sun_direction"].is_null() && json["sun_irradiance"].is_null(), "{json}");
     // The rain is that of `downpour rain`.
     let rain = crate::child::downpour(&["rain", "--rate", "400", "--json"]).succeeded().json();
