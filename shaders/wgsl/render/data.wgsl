@@ -29,9 +29,6 @@ struct RenderFrame {
     sky_reach: f32,
     // What is traced: SCENE_PICTURE, SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
     projection: u32,
-    unused_1: u32,
-    unused_2: u32,
-    unused_3: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, 6>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.
