@@ -61,7 +61,8 @@ impl SkyMap {
         }
         let mut irradiance = [0.0f64; 3];
         let polar = |row: u32| std::f64::consts::PI * f64::from(row) / f64::from(rows);
-        let above = |row: u32| f64::midpoint(polar(row), polar(row + 1)) < std::f64::consts::FRAC_PI_2;
+        let above =
+            |row: u32| f64::midpoint(polar(row), polar(row.saturating_add(1))) < std::f64::consts::FRAC_PI_2;
         for (row, pixels) in (0u32..).zip(self.radiance.chunks(columns)) {
             if above(row) {
                 // The integral of cos over a band of the sphere: half the difference of the squared sines of its edges.
@@ -69,7 +70,8 @@ impl SkyMap {
                     let sine = ops::sin(polar(row).min(std::f64::consts::FRAC_PI_2));
                     sine * sine
                 };
-                let band = std::f64::consts::PI * (square(row + 1) - square(row)) / columns as f64;
+                let band =
+                    std::f64::consts::PI * (square(row.saturating_add(1)) - square(row)) / columns as f64;
                 for pixel in pixels {
                     for (sum, value) in irradiance.iter_mut().zip(pixel) {
                         *sum += f64::from(*value) * band;
