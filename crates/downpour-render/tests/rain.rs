@@ -19,7 +19,7 @@ fn viewpoint() -> Viewpoint {
 
 /// Pixels per unit of slope.
 fn scale() -> f64 {
-    f64::from(SIZE[1]) / (2.0 * 0.1f64.tan())
+    f64::from(SIZE[1]) / (2.0 * downpour_math::ops::f64::tan(0.1))
 }
 
 fn drop_at(position: DVec3, diameter: f32) -> FallingDrop {
