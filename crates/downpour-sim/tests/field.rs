@@ -1,8 +1,11 @@
 //! The closed-form rain: its numbers, its speeds, and that it is the same for everyone.
 
+use std::collections::HashMap;
+
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::fall_speed::{FallSpeedModel, terminal_speed};
+use downpour_math::ops::f64 as ops;
 use downpour_sim::SimError;
 use downpour_sim::field::{FallingDrop, RainField};
 use downpour_sim::view::View;
@@ -72,13 +75,15 @@ fn every_drop_falls_at_its_terminal_speed() -> Outcome {
     let step = 1.0 / 240.0;
     let after = field.in_box(low - DVec3::Y, high, 20.0 + step)?;
     let mut seen = 0;
+    let count = after.len();
+    let after: HashMap<u64, FallingDrop> = after.into_iter().map(|drop| (drop.id, drop)).collect();
+    assert_eq!(after.len(), count, "each drop has a number of its own");
     for drop in &before {
-        let later: Vec<&FallingDrop> = after.iter().filter(|d| d.id == drop.id).collect();
-        assert_eq!(later.len(), 1, "{drop:?}");
+        let Some(later) = after.get(&drop.id) else { panic!("{drop:?} is gone") };
         let speed = terminal_speed(FallSpeedModel::Beard1976, f64::from(drop.diameter), &Air::standard())?;
-        let moved = later[0].position - drop.position;
+        let moved = later.position - drop.position;
         assert!((moved + DVec3::Y * speed * step).length() < 1.0e-9, "{moved}, {speed}");
-        assert_eq!(later[0].diameter, drop.diameter);
+        assert_eq!(later.diameter, drop.diameter);
         seen += 1;
     }
     assert!(seen > 10_000);
@@ -106,13 +111,14 @@ fn a_camera_sees_the_drops_of_the_box() -> Outcome {
         let offset = drop.position - eye;
         let (distance, depth) = (offset.length(), offset.dot(forward));
         let pixels = f64::from(drop.diameter) / distance / view.pixel_angle;
-        let angle = |along: f64, half: f64| along.abs().atan2(depth) - half.atan();
-        let margin = (0.6 * f64::from(drop.diameter) / distance).min(1.0).asin();
+        let away = |a: f64, b: f64| (a * a + b * b).sqrt();
+        let angle = |along: f64, half: f64| ops::atan2(along.abs(), depth) - ops::atan2(half, 1.0);
+        let margin = ops::asin((0.6 * f64::from(drop.diameter) / distance).min(1.0));
         distance >= view.near
             && pixels >= 1.0
-            && angle(offset.dot(right), view.half_width) <= margin * distance / depth.hypot(offset.dot(right))
+            && angle(offset.dot(right), view.half_width) <= margin * distance / away(depth, offset.dot(right))
             && angle(offset.dot(view.up), view.half_height)
-                <= margin * distance / depth.hypot(offset.dot(view.up))
+                <= margin * distance / away(depth, offset.dot(view.up))
     };
     let near: Vec<FallingDrop> =
         seen.drops.iter().copied().filter(|d| (d.position - eye).abs().max_element() < 2.5).collect();
