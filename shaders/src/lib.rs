@@ -27,6 +27,7 @@ pub mod common;
 pub mod drop;
 pub mod mask;
 pub mod render;
+pub mod wind;
 
 pub use module::{Kernel, Module, compose};
 
@@ -44,6 +45,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::rain::MODULES,
         render::scene::MODULES,
         render::specimen::MODULES,
+        wind::MODULES,
     ]
     .into_iter()
     .flatten()
@@ -52,7 +54,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
 
 /// Every kernel of the crate, for the tests that create a pipeline from each.
 pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
-    [mask::KERNELS, render::rain::KERNELS, render::scene::KERNELS, render::specimen::KERNELS]
+    [mask::KERNELS, render::rain::KERNELS, render::scene::KERNELS, render::specimen::KERNELS, wind::KERNELS]
         .into_iter()
         .flatten()
         .copied()

@@ -49,6 +49,8 @@ pub const BROKEN: &[Broken] = &[
         right: "MASK_EDGE_DEPTH: f32 = 0.1",
         wrong: "MASK_EDGE_DEPTH: f32 = 0.3",
     },
+    Broken { function: "wind_primitive_updraft", right: "along - height", wrong: "along + height" },
+    Broken { function: "wind_field_mix", right: "(c10 - c00) * share.y", wrong: "(c10 - c00) * share.x" },
 ];
 
 impl Broken {

@@ -13,8 +13,9 @@ use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel};
 use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
-use downpour_shaders::{Module, compose, drop, mask, modules, render};
+use downpour_shaders::{Module, compose, drop, mask, modules, render, wind};
 use downpour_tests::signature::parse;
+use downpour_wind::field::WindFieldGrid;
 
 /// A host struct: its WGSL name, the module that declares it, its size, and its fields by their WGSL names.
 struct Host {
@@ -63,6 +64,7 @@ fn hosts() -> Vec<Host> {
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),
         host!(SpecimenUniform as "SpecimenView" in &specimen::SPECIMEN,
             traced, camera, size, sky, first_row, rows, channels),
+        host!(WindFieldGrid as "WindFieldGrid" in &wind::FIELD, low, primitives, cell, per_cell, size),
     ]
 }
 

@@ -11,6 +11,7 @@ const ALONE: &[(&str, &[&str])] = &[
     ("downpour-mask", &["", "wgpu"]),
     ("downpour-scene", &[""]),
     ("downpour-sim", &[""]),
+    ("downpour-wind", &[""]),
     ("downpour-render", &["", "wgpu"]),
     ("downpour", &["", "wgpu"]),
     ("downpour-cli", &["", "gpu"]),

@@ -6,6 +6,7 @@
 //! | [`mask`] | `downpour-mask` | what a drop does to light: refraction masks, traced, written and read |
 //! | [`scene`] | `downpour-scene` | glTF scenes, sky maps and weather files, behind a guard and a budget |
 //! | [`sim`] | `downpour-sim` | where the drops of a rain are, counted from mm/h |
+//! | [`wind`] | `downpour-wind` | wind primitives and the field that they make |
 //! | [`render`] | `downpour-render` | one exact drop in front of a sky map; scenes in the rain |
 //! | `gpu` (feature `wgpu`) | `downpour-gpu` | a checked layer over wgpu, on a device of its own or on yours |
 //! | [`shaders`] | `downpour-shaders` | every WGSL file as composable modules |
@@ -39,6 +40,7 @@ pub use downpour_render as render;
 pub use downpour_scene as scene;
 pub use downpour_shaders as shaders;
 pub use downpour_sim as sim;
+pub use downpour_wind as wind;
 
 /// The text of README.md, whose Rust parts are compiled and run.
 #[cfg(all(doctest, feature = "wgpu"))]

@@ -1,0 +1,193 @@
+//! The wind in the cells of a box (Rousseau 2008, 3.2 and 5.1.2). Twin of `shaders/wgsl/wind/field.wgsl`.
+
+use glam::{UVec3, Vec3};
+use rayon::prelude::*;
+
+use crate::design::WindPrimitive;
+use crate::error::WindError;
+use crate::grid::WindGrid;
+use crate::mask::WindMask;
+use crate::matrix::WindMatrix;
+use crate::primitive::velocity;
+
+/// A grid as the shader takes it. The same layout as `WindFieldGrid` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct WindFieldGrid {
+    /// Lower corner of the box, m.
+    pub low: [f32; 3],
+    /// How many matrices there are.
+    pub primitives: u32,
+    /// Edges of a cell, m.
+    pub cell: [f32; 3],
+    /// Padding of the WGSL layout.
+    pub padding_1: u32,
+    /// Their inverses, 1/m.
+    pub per_cell: [f32; 3],
+    /// Padding of the WGSL layout.
+    pub padding_2: u32,
+    /// How many cells there are along each edge.
+    pub size: [u32; 3],
+    /// Padding of the WGSL layout.
+    pub padding_3: u32,
+}
+
+impl WindFieldGrid {
+    /// A grid on which `primitives` matrices blow.
+    #[must_use]
+    pub fn new(grid: &WindGrid, primitives: u32) -> Self {
+        let cell = grid.cell();
+        Self {
+            low: grid.low().to_array(),
+            primitives,
+            cell: cell.to_array(),
+            padding_1: 0,
+            per_cell: cell.recip().to_array(),
+            padding_2: 0,
+            size: grid.size(),
+            padding_3: 0,
+        }
+    }
+}
+
+/// The cells whose centres are round a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindFieldPlace {
+    /// The lower of them along each axis.
+    pub cell: UVec3,
+    /// The upper.
+    pub next: UVec3,
+    /// How far the place is on the way from the lower to the upper, 0 to 1.
+    pub share: Vec3,
+}
+
+/// The centre of a cell, m.
+#[must_use]
+pub fn wind_field_centre(grid: &WindFieldGrid, cell: UVec3) -> Vec3 {
+    Vec3::from(grid.low) + (cell.as_vec3() + 0.5) * Vec3::from(grid.cell)
+}
+
+/// Where a cell stands in memory.
+#[must_use]
+pub fn wind_field_index(grid: &WindFieldGrid, cell: UVec3) -> u32 {
+    let [x, y, _] = grid.size;
+    (cell.z * y + cell.y) * x + cell.x
+}
+
+/// The cells round a place. A place outside the outermost centres is moved to the nearest point between them, one that is
+/// not a number to the lowest.
+#[must_use]
+pub fn wind_field_place(grid: &WindFieldGrid, at: Vec3) -> WindFieldPlace {
+    let last = UVec3::from(grid.size) - 1;
+    let x = (at - Vec3::from(grid.low)) * Vec3::from(grid.per_cell) - 0.5;
+    let x = Vec3::from_array(std::array::from_fn(|k| x[k].max(0.0).min(last[k] as f32)));
+    let lower = x.floor();
+    let cell = lower.as_uvec3().min(last);
+    WindFieldPlace { cell, next: (cell + 1).min(last), share: x - lower }
+}
+
+/// One of the eight cells: bits 0, 1 and 2 of `corner` choose along x, y and z.
+#[must_use]
+pub fn wind_field_corner(place: &WindFieldPlace, corner: u32) -> UVec3 {
+    let choose = |bit: u32, cell: u32, next: u32| if corner & bit != 0 { next } else { cell };
+    UVec3::new(
+        choose(1, place.cell.x, place.next.x),
+        choose(2, place.cell.y, place.next.y),
+        choose(4, place.cell.z, place.next.z),
+    )
+}
+
+/// What is between the values of the eight cells, in the order of their corners.
+#[must_use]
+pub fn wind_field_mix(corners: &[Vec3; 8], share: Vec3) -> Vec3 {
+    let [c0, c1, c2, c3, c4, c5, c6, c7] = *corners;
+    let c00 = c0 + (c1 - c0) * share.x;
+    let c10 = c2 + (c3 - c2) * share.x;
+    let c01 = c4 + (c5 - c4) * share.x;
+    let c11 = c6 + (c7 - c6) * share.x;
+    let c0 = c00 + (c10 - c00) * share.y;
+    let c1 = c01 + (c11 - c01) * share.y;
+    c0 + (c1 - c0) * share.z
+}
+
+/// The wind in a cell, m/s, and its openness.
+#[must_use]
+pub fn wind_field_cell(
+    grid: &WindFieldGrid,
+    matrices: &[WindMatrix],
+    openness: f32,
+    cell: UVec3,
+) -> [f32; 4] {
+    if openness <= 0.0 {
+        return [0.0; 4];
+    }
+    let [x, y, z] = (velocity(matrices, wind_field_centre(grid, cell)) * openness).to_array();
+    [x, y, z, openness]
+}
+
+/// The wind over a box, computed once and looked up between the cells' centres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WindField {
+    grid: WindGrid,
+    uniform: WindFieldGrid,
+    matrices: Vec<WindMatrix>,
+    cells: Vec<[f32; 4]>,
+}
+
+impl WindField {
+    /// The sum of any number of primitives, 0 inside the objects of a mask. The same bits for any number of threads.
+    ///
+    /// # Errors
+    /// As [`WindMatrix::encode`]; [`WindError::MaskSize`] if the mask is of another grid.
+    pub fn new(grid: &WindGrid, primitives: &[WindPrimitive], mask: &WindMask) -> Result<Self, WindError> {
+        mask.check(grid)?;
+        let matrices = WindMatrix::encode(primitives)?;
+        let uniform = WindFieldGrid::new(grid, matrices.len() as u32);
+        let cells = mask
+            .openness
+            .par_iter()
+            .enumerate()
+            .map(|(i, &openness)| {
+                wind_field_cell(&uniform, &matrices, openness, UVec3::from(grid.coordinates(i)))
+            })
+            .collect();
+        Ok(Self { grid: *grid, uniform, matrices, cells })
+    }
+
+    /// The wind at a place, m/s, trilinear between the centres of the cells. Beyond the outermost centres it is that of the
+    /// nearest point between them.
+    #[must_use]
+    pub fn sample(&self, at: Vec3) -> Vec3 {
+        let place = wind_field_place(&self.uniform, at);
+        let corners = std::array::from_fn(|k| {
+            let index = wind_field_index(&self.uniform, wind_field_corner(&place, k as u32));
+            // A cell of the place is within the grid.
+            self.cells.get(index as usize).map_or(Vec3::ZERO, |&[x, y, z, _]| Vec3::new(x, y, z))
+        });
+        wind_field_mix(&corners, place.share)
+    }
+
+    /// The grid.
+    #[must_use]
+    pub fn grid(&self) -> &WindGrid {
+        &self.grid
+    }
+
+    /// The grid as the shader takes it.
+    #[must_use]
+    pub fn uniform(&self) -> &WindFieldGrid {
+        &self.uniform
+    }
+
+    /// The matrices of the primitives.
+    #[must_use]
+    pub fn matrices(&self) -> &[WindMatrix] {
+        &self.matrices
+    }
+
+    /// Velocity, m/s, and openness of each cell, in the order of memory.
+    #[must_use]
+    pub fn cells(&self) -> &[[f32; 4]] {
+        &self.cells
+    }
+}

@@ -1,0 +1,49 @@
+//! `wgsl/wind`: wind primitives and the field that they make. The Rust twins are in `downpour-wind`.
+
+use crate::{Kernel, Module};
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&WIND_CONSTANTS, &PRIMITIVE, &FIELD];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&FIELD_KERNEL];
+
+shared_constants! {
+    /// Types of the primitives, and factors of their laws.
+    WIND_CONSTANTS at "wind/constants" {
+        /// Type: the same wind everywhere.
+        WIND_PRIMITIVE_UNIFORM: u32 = 0;
+        /// Type: out of a line.
+        WIND_PRIMITIVE_LINE_SOURCE: u32 = 1;
+        /// Type: into a line.
+        WIND_PRIMITIVE_LINE_SINK: u32 = 2;
+        /// Type: round a line.
+        WIND_PRIMITIVE_LINE_VORTEX: u32 = 3;
+        /// Type: out of a point.
+        WIND_PRIMITIVE_POINT_SOURCE: u32 = 4;
+        /// Type: into a point.
+        WIND_PRIMITIVE_POINT_SINK: u32 = 5;
+        /// Type: round an axis, fading in all directions from a point.
+        WIND_PRIMITIVE_POINT_VORTEX: u32 = 6;
+        /// Type: along a line of finite length, from its base to its top.
+        WIND_PRIMITIVE_UPDRAFT: u32 = 7;
+        /// 1 / (2 pi).
+        WIND_PRIMITIVE_LINE: f32 = 0.15915494;
+        /// 1 / (4 pi).
+        WIND_PRIMITIVE_POINT: f32 = 0.07957747;
+    }
+}
+
+/// The velocity that a primitive makes at a place. Twin: `downpour_wind::primitive`.
+pub static PRIMITIVE: Module = Module {
+    path: "wind/primitive.wgsl",
+    wgsl: include_str!("../wgsl/wind/primitive.wgsl"),
+    uses: &[&WIND_CONSTANTS],
+};
+
+/// The wind in the cells of a box. Twin: `downpour_wind::field`.
+pub static FIELD: Module =
+    Module { path: "wind/field.wgsl", wgsl: include_str!("../wgsl/wind/field.wgsl"), uses: &[&PRIMITIVE] };
+
+/// One invocation per cell.
+pub static FIELD_KERNEL: Kernel = Kernel { entry: "main_wind_field", module: &FIELD, workgroup: [4, 4, 4] };

@@ -1,0 +1,77 @@
+// Wind primitives: the velocity that one of them makes at a place, m/s.
+//
+// A primitive is a matrix of three rows (Rousseau 2008, 3.1), here the columns of a mat3x3f: (type, strength, core
+// radius), centre, up. The paper has 0 where the core radius stands. Strength: m/s (uniform), m^2/s (line forms),
+// m^3/s (point forms and the updraft); negative for sinks.
+//
+// Laws: with e the core radius, r the distance from the axis (line) or the centre (point),
+//   line   r / (2 pi (r^2 + e^2))       -> 1 / (2 pi r)     Rousseau 2008; core: Rosenhead 1930
+//   point  r / (4 pi (r^2 + e^2)^(3/2)) -> 1 / (4 pi r^2)   the same core in three dimensions
+// outward for sources, across up for vortices. The updraft is the point source's density of divergence,
+// 3 e^2 / (4 pi (r^2 + e^2)^(5/2)), spread along its line: it carries what a point sink at its base takes in to a point
+// source at its top, and the three together have no divergence anywhere.
+// Twin: downpour_wind::primitive.
+
+// The part of an offset that is across the axis.
+fn wind_primitive_across(offset: vec3f, axis: vec3f) -> vec3f {
+    return offset - axis * dot(offset, axis);
+}
+
+// Speed per distance of a line form; `squared` is the squared distance from the axis.
+fn wind_primitive_line(strength: f32, squared: f32, core: f32) -> f32 {
+    return WIND_PRIMITIVE_LINE * strength / (squared + core * core);
+}
+
+// Speed per distance of a point form; `squared` is the squared distance from the centre.
+fn wind_primitive_point(strength: f32, squared: f32, core: f32) -> f32 {
+    let regular = squared + core * core;
+    return WIND_PRIMITIVE_POINT * strength / (regular * sqrt(regular));
+}
+
+// The integral along the line of 3 / (regular + u^2)^(5/2), times `regular`, from 0 to `along`.
+fn wind_primitive_rise(regular: f32, along: f32) -> f32 {
+    let whole = regular + along * along;
+    return along / sqrt(whole) * (1.0 / whole + 2.0 / regular);
+}
+
+// Speed along the line of an updraft; `squared` is the squared distance from the line, `along` the height above its base.
+fn wind_primitive_updraft(strength: f32, squared: f32, along: f32, height: f32, core: f32) -> f32 {
+    let core_squared = core * core;
+    let regular = squared + core_squared;
+    let rise = wind_primitive_rise(regular, along) - wind_primitive_rise(regular, along - height);
+    return WIND_PRIMITIVE_POINT * strength * core_squared / regular * rise;
+}
+
+// The velocity of a primitive at a place.
+fn wind_primitive_velocity(matrix: mat3x3f, at: vec3f) -> vec3f {
+    let kind = u32(matrix[0].x);
+    let strength = matrix[0].y;
+    let core = matrix[0].z;
+    let up = matrix[2];
+    if kind == WIND_PRIMITIVE_UNIFORM {
+        return up * strength;
+    }
+    let offset = at - matrix[1];
+    if kind == WIND_PRIMITIVE_POINT_SOURCE || kind == WIND_PRIMITIVE_POINT_SINK {
+        return offset * wind_primitive_point(strength, dot(offset, offset), core);
+    }
+    if kind == WIND_PRIMITIVE_POINT_VORTEX {
+        return cross(up, offset) * wind_primitive_point(strength, dot(offset, offset), core);
+    }
+    if kind == WIND_PRIMITIVE_UPDRAFT {
+        let height = sqrt(dot(up, up));
+        let axis = up / height;
+        let across = wind_primitive_across(offset, axis);
+        let along = dot(offset, axis);
+        return axis * wind_primitive_updraft(strength, dot(across, across), along, height, core);
+    }
+    let across = wind_primitive_across(offset, up);
+    let line = wind_primitive_line(strength, dot(across, across), core);
+    if kind == WIND_PRIMITIVE_LINE_VORTEX {
+        return cross(up, across) * line;
+    }
+    if kind == WIND_PRIMITIVE_LINE_SOURCE || kind == WIND_PRIMITIVE_LINE_SINK {
+        return across * line;
+    }
+    return vec3f(0.0);
+}

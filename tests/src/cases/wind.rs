@@ -1,0 +1,252 @@
+//! `shaders/wgsl/wind` against `downpour-wind`.
+
+use downpour_gpu::{ComputeKernel, Gpu, GpuError};
+use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::wind::{FIELD, FIELD_KERNEL, PRIMITIVE};
+use downpour_wind::field::{
+    WindFieldGrid, WindFieldPlace, wind_field_centre, wind_field_corner, wind_field_index, wind_field_mix,
+    wind_field_place,
+};
+use downpour_wind::primitive::{
+    wind_primitive_across, wind_primitive_line, wind_primitive_point, wind_primitive_rise,
+    wind_primitive_updraft, wind_primitive_velocity,
+};
+use downpour_wind::{
+    WindField, WindForm, WindGrid, WindMask, WindMatrix, WindPrimitive, WindSingularity, WindTornado,
+    WindUniform,
+};
+use glam::{UVec3, Vec3};
+
+use crate::Domain::{Below, LogUniform, Made, Uniform, Unit3};
+use crate::compare::{Cpu, Gpu as FromGpu, POISON};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::{Args, IntoWords as _};
+use crate::{FunctionCase, KernelCase, Tol};
+
+fn vec3(args: &mut Args<'_>) -> Vec3 {
+    Vec3::from(args.f32s())
+}
+
+/// The words of a `mat3x3f`: a primitive of any type within 8 m, 1 to 3 m in the core.
+fn matrix_words(random: [u32; 4]) -> Vec<u32> {
+    let more =
+        |dimension: u32| rng_draw([random[0], random[1]], random[2], random[3], dimension).map(rng_unit);
+    let ([a, b, c, d], [x, y, z, _]) = (more(0), more(1));
+    let kind = (random[0] % 8) as f32;
+    let axis = Vec3::new(x - 0.5, y - 0.5, z + 0.01).normalize();
+    // The up of an updraft is as long as the updraft.
+    let up = if kind > 6.5 { axis * (6.0 + 10.0 * a) } else { axis };
+    let strength = 80.0 * b - 40.0;
+    let centre = [8.0 * c - 4.0, 8.0 * d - 4.0, 8.0 * a - 4.0];
+    [[kind, strength, 1.0 + 2.0 * c], centre, up.to_array()].words()
+}
+
+fn matrix(args: &mut Args<'_>) -> WindMatrix {
+    WindMatrix { rows: [args.f32s(), args.f32s(), args.f32s()] }
+}
+
+/// The words of a `WindFieldGrid` of 1 to 64 cells along each edge, about the origin.
+fn grid_words(random: [u32; 4]) -> Vec<u32> {
+    let size = [0, 1, 2].map(|k| 1 + random[k] % 64);
+    let [x, y, z, _] = rng_draw([random[3], 1], random[0], 0, 0).map(|w| 20.0 + 80.0 * rng_unit(w));
+    let edge = Vec3::new(x, y, z);
+    let grid = WindGrid::new(edge * -0.5, edge * 0.5, size).expect("a grid");
+    let grid = WindFieldGrid::new(&grid, 3);
+    let mut words = grid.low.words();
+    words.push(grid.primitives);
+    words.extend(grid.cell.words());
+    words.extend(grid.per_cell.words());
+    words.extend(grid.size);
+    words
+}
+
+fn grid(args: &mut Args<'_>) -> WindFieldGrid {
+    let low = args.f32s();
+    let primitives = args.u32();
+    let (cell, per_cell) = (args.f32s(), args.f32s());
+    let size = args.u32s();
+    WindFieldGrid { low, primitives, cell, padding_1: 0, per_cell, padding_2: 0, size, padding_3: 0 }
+}
+
+const QUOTIENT: Tol = Tol::relative(
+    2.0e-6,
+    0.0,
+    "products, sums of positive numbers, a square root and divisions (2.5 ulp each)",
+);
+
+/// The cases.
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let near = Uniform(-20.0, 20.0);
+    let squared = LogUniform(1.0e-2, 1.0e3);
+    let (strength, core) = (Uniform(-50.0, 50.0), Uniform(1.0, 3.0));
+    let value = Uniform(-10.0, 10.0);
+    let share = Uniform(0.0, 1.0);
+    let cell = [Below(64); 3];
+    let mut mix = vec![value; 24];
+    mix.extend([share; 3]);
+    vec![
+        FunctionCase::new(
+            "wind_primitive_across",
+            &PRIMITIVE,
+            &[near, near, near, Unit3],
+            Tol::absolute(2.0e-5, "differences of numbers up to 35; a GPU may fuse the products"),
+            |a| wind_primitive_across(vec3(a), vec3(a)).to_array().words(),
+        ),
+        FunctionCase::new("wind_primitive_line", &PRIMITIVE, &[strength, squared, core], QUOTIENT, |a| {
+            wind_primitive_line(a.f32(), a.f32(), a.f32()).words()
+        }),
+        FunctionCase::new("wind_primitive_point", &PRIMITIVE, &[strength, squared, core], QUOTIENT, |a| {
+            wind_primitive_point(a.f32(), a.f32(), a.f32()).words()
+        }),
+        FunctionCase::new("wind_primitive_rise", &PRIMITIVE, &[LogUniform(0.5, 500.0), near], QUOTIENT, |a| {
+            wind_primitive_rise(a.f32(), a.f32()).words()
+        }),
+        FunctionCase::new(
+            "wind_primitive_updraft",
+            &PRIMITIVE,
+            &[strength, squared, near, Uniform(6.0, 16.0), core],
+            Tol::relative(4.0e-6, 1.0e-5, "the difference of two rises, each up to 16 m/s and known to 5e-7 of it"),
+            |a| wind_primitive_updraft(a.f32(), a.f32(), a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "wind_primitive_velocity",
+            &PRIMITIVE,
+            &[Made(matrix_words), Uniform(-8.0, 8.0), Uniform(-8.0, 8.0), Uniform(-8.0, 8.0)],
+            Tol::relative(
+                4.0e-6,
+                5.0e-6,
+                "divisions and a square root (2.5 ulp each); f32 differs from f64 by up to 1e-6 m/s off the axis",
+            ),
+            |a| wind_primitive_velocity(&matrix(a), vec3(a)).to_array().words(),
+        ),
+        FunctionCase::new(
+            "wind_field_centre",
+            &FIELD,
+            &[Made(grid_words), cell[0], cell[1], cell[2]],
+            Tol::relative(1.0e-6, 2.0e-5, "a product of up to 6400 m, then a sum; a GPU may fuse them"),
+            |a| wind_field_centre(&grid(a), UVec3::from(a.u32s())).to_array().words(),
+        ),
+        FunctionCase::new(
+            "wind_field_index",
+            &FIELD,
+            &[Made(grid_words), cell[0], cell[1], cell[2]],
+            Tol::exact("integers are exact"),
+            |a| wind_field_index(&grid(a), UVec3::from(a.u32s())).words(),
+        ),
+        FunctionCase::new(
+            "wind_field_place",
+            &FIELD,
+            &[Made(grid_words), Uniform(-60.0, 60.0), Uniform(-60.0, 60.0), Uniform(-60.0, 60.0)],
+            Tol::absolute(
+                3.0e-5,
+                "a place of up to 64 cells, 4e-6 each operation; close to a centre it may be in the next cell",
+            )
+            .with_outliers(2.0e-4),
+            |a| {
+                let place = wind_field_place(&grid(a), vec3(a));
+                ((place.cell.to_array(), place.next.to_array()), place.share.to_array()).words()
+            },
+        ),
+        FunctionCase::new(
+            "wind_field_corner",
+            &FIELD,
+            &[cell[0], cell[1], cell[2], cell[0], cell[1], cell[2], share, share, share, Below(8)],
+            Tol::exact("a choice between integers"),
+            |a| {
+                let (cell, next) = (UVec3::from(a.u32s()), UVec3::from(a.u32s()));
+                let place = WindFieldPlace { cell, next, share: vec3(a) };
+                wind_field_corner(&place, a.u32()).to_array().words()
+            },
+        ),
+        FunctionCase::new(
+            "wind_field_mix",
+            &FIELD,
+            &mix,
+            Tol::absolute(2.0e-5, "seven differences, products and sums of numbers up to 20; a GPU may fuse them"),
+            |a| {
+                let corners = std::array::from_fn(|_| vec3(a));
+                wind_field_mix(&corners, vec3(a)).to_array().words()
+            },
+        ),
+    ]
+}
+
+/// Every primitive in every form, with slanted axes.
+fn primitives() -> Vec<WindPrimitive> {
+    let mut all = vec![
+        WindPrimitive::Uniform(WindUniform { speed: 4.0, direction: Vec3::new(1.0, 0.1, -0.4) }),
+        WindPrimitive::Tornado(WindTornado {
+            circulation: -60.0,
+            discharge: 150.0,
+            base: Vec3::new(-3.0, -8.0, 2.0),
+            axis: Vec3::new(0.1, 1.0, 0.2),
+            height: 14.0,
+            core_radius: 2.5,
+        }),
+    ];
+    for (form, x) in [(WindForm::Line, 5.0), (WindForm::Point, -4.0)] {
+        let at = WindSingularity {
+            form,
+            strength: 50.0,
+            centre: Vec3::new(x, 1.0, -2.0),
+            axis: Vec3::new(-0.3, 1.0, 0.5),
+            core_radius: 2.0,
+        };
+        all.push(WindPrimitive::Source(at));
+        all.push(WindPrimitive::Sink(WindSingularity { centre: Vec3::new(-x, 3.0, 4.0), ..at }));
+        all.push(WindPrimitive::Vortex(WindSingularity { centre: Vec3::new(x, -2.0, 6.0), ..at }));
+    }
+    all
+}
+
+/// A whole field with a ball in it.
+fn field_case(gpu: &Gpu, size: [u32; 3], cut_off: f32) -> Result<Run, GpuError> {
+    let grid = WindGrid::new(Vec3::splat(-10.0), Vec3::new(10.0, 12.0, 9.0), size).expect("a grid");
+    let mask = WindMask::from_fn(&grid, |at| (at - Vec3::new(2.0, 0.0, 1.0)).length() < 4.0);
+    let mask = mask.with_cut_off(&grid, cut_off).expect("a cut-off");
+    let field = WindField::new(&grid, &primitives(), &mask).expect("a field");
+    let matrices: Vec<[[f32; 4]; 3]> = field.matrices().iter().map(WindMatrix::padded).collect();
+    let poison = vec![[f32::from_bits(POISON); 4]; grid.cells()];
+    let cells = gpu.storage_buffer("wind cells", &poison)?;
+    let kernel = ComputeKernel::new(gpu, &FIELD_KERNEL, &[])?;
+    let bindings = kernel.bind(
+        gpu,
+        &[
+            &gpu.uniform_buffer("wind grid", field.uniform())?,
+            &gpu.storage_buffer("wind primitives", &matrices)?,
+            &gpu.storage_buffer("wind openness", mask.openness())?,
+            &cells,
+        ],
+    )?;
+    gpu.submit(&[kernel.dispatch(&bindings, size.map(|n| n.div_ceil(4)))])?;
+    let made = gpu.read::<[f32; 4]>(&cells)?;
+    let words = |cells: &[[f32; 4]]| cells.iter().flatten().map(|v| v.to_bits()).collect();
+    Ok(Run {
+        arguments: (0..grid.cells())
+            .map(|i| grid.coordinates(i).map(|c| (c as f32).to_bits()).to_vec())
+            .collect(),
+        cpu: Cpu(words(field.cells())),
+        gpu: FromGpu(words(&made)),
+        kinds: vec![WordKind::Float; 4],
+    })
+}
+
+/// The cases.
+pub(super) fn kernels() -> Vec<KernelCase> {
+    let field = |name, run| KernelCase {
+        name,
+        kernel: &FIELD_KERNEL,
+        covers: &["wind_field_cell"],
+        tol: Tol::relative(
+            1.0e-5,
+            2.0e-5,
+            "a sum of eleven velocities up to 7 m/s, each known to 1e-6 of it, at places known to 1e-6 m",
+        ),
+        run,
+    };
+    vec![
+        field("main_wind_field: every primitive round a ball", |gpu| field_case(gpu, [20, 17, 11], 0.0)),
+        field("main_wind_field: a wide cut-off", |gpu| field_case(gpu, [16, 8, 33], 3.0)),
+    ]
+}
