@@ -17,6 +17,7 @@ pub fn functions() -> Vec<FunctionCase> {
         common::functions(),
         drop::functions(),
         mask::functions(),
+        rain::functions(),
         render::functions(),
         scene::functions(),
         wind::functions(),

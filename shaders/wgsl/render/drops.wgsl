@@ -79,6 +79,13 @@ fn drops_unit(v: vec3f) -> vec3f {
     return v / max(sqrt(dot(v, v)), 1.0e-20);
 }
 
+// The right of the view of a drop whose axis is the world's vertical.
+fn drops_right(towards: vec3f) -> vec3f {
+    let sideways = vec3f(-towards.z, 0.0, towards.x);
+    let level = dot(sideways, sideways);
+    return select(vec3f(1.0, 0.0, 0.0), sideways / sqrt(max(level, 1.0e-20)), level > 1.0e-12);
+}
+
 // A texel of a mask.
 fn drops_mask_texel(layer: u32, column: i32, row: i32) -> DropsTexel {
     let last = i32(drops_frame.mask_size) - 1;
@@ -227,10 +234,7 @@ fn drops_sample(drop: DropsDrop, x: f32, y: f32, lean: vec3f, spacing: f32) -> v
     if texel.coverage <= 0.0 {
         return vec4f(0.0);
     }
-    // The frame of the view: the drop's axis is the world's vertical.
-    let sideways = vec3f(-drop.towards.z, 0.0, drop.towards.x);
-    let level = dot(sideways, sideways);
-    let right = select(vec3f(1.0, 0.0, 0.0), sideways / sqrt(max(level, 1.0e-20)), level > 1.0e-12);
+    let right = drops_right(drop.towards);
     let up = cross(right, drop.towards);
     // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
     let q = min((x * x + y * y) * drop.half_extent * drop.half_extent, 0.98);
@@ -270,9 +274,7 @@ fn drops_pixel(drop: DropsDrop, x: u32, y: u32) -> vec4f {
     if small && spread <= 0.0 {
         return vec4f(0.0);
     }
-    let sideways = vec3f(-drop.towards.z, 0.0, drop.towards.x);
-    let level = dot(sideways, sideways);
-    let right = select(vec3f(1.0, 0.0, 0.0), sideways / sqrt(max(level, 1.0e-20)), level > 1.0e-12);
+    let right = drops_right(drop.towards);
     let up = cross(right, drop.towards);
     let n = select(drop.grid, DROPS_SMALL_GRID, small);
     let extent = drop.half_extent * drop.slope;

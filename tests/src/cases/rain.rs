@@ -4,20 +4,23 @@ use downpour_gpu::{ComputeKernel, Gpu, GpuError};
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::{RainPipeline, ScenePipeline};
+use downpour_render::rain::drops::drops_right;
 use downpour_render::rain::{
     DropMasks, Rain, RainOptions, ReduceLevel, RefractionForm, reduce_levels, reduce_texel,
 };
 use downpour_render::scene::SceneView;
-use downpour_shaders::render::rain::{DROPS_KERNEL, REDUCE_KERNEL};
+use downpour_shaders::render::rain::{DROPS, DROPS_KERNEL, REDUCE_KERNEL};
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::FallingDrop;
 use glam::{DVec3, Vec3};
 
 use super::scene::scene;
+use crate::Domain::Unit3;
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
 use crate::signature::WordKind;
-use crate::{KernelCase, Tol};
+use crate::words::IntoWords as _;
+use crate::{FunctionCase, KernelCase, Tol};
 
 const SIZE: [u32; 2] = [96, 64];
 
@@ -130,6 +133,17 @@ const DRAWN: Tol = Tol::relative(
     "the capture above; directions of a mask's rim turn by the width of the picture in a texel",
 )
 .with_outliers(1.0e-2);
+
+/// The cases.
+pub(super) fn functions() -> Vec<FunctionCase> {
+    vec![FunctionCase::new(
+        "drops_right",
+        &DROPS,
+        &[Unit3],
+        Tol::relative(1.0e-6, 1.0e-7, "a square root and a division (2.5 ulp)"),
+        |a| drops_right(Vec3::from(a.f32s())).to_array().words(),
+    )]
+}
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {

@@ -138,13 +138,12 @@ fn drops_add(sum: DropsTexel, texel: DropsTexel, weight: f32) -> DropsTexel {
     }
 }
 
-/// The frame of the view of a drop whose axis is the world's vertical: right and up.
-fn axes(drop: &DropsDrop) -> (Vec3, Vec3) {
-    let towards = Vec3::from(drop.towards);
+/// The right of the view of a drop whose axis is the world's vertical.
+#[must_use]
+pub fn drops_right(towards: Vec3) -> Vec3 {
     let sideways = Vec3::new(-towards.z, 0.0, towards.x);
     let level = sideways.dot(sideways);
-    let right = if level > 1.0e-12 { sideways / level.max(1.0e-20).sqrt() } else { Vec3::X };
-    (right, right.cross(towards))
+    if level > 1.0e-12 { sideways / level.max(1.0e-20).sqrt() } else { Vec3::X }
 }
 
 impl Buffers<'_> {
@@ -278,7 +277,8 @@ impl Buffers<'_> {
             return Vec4::ZERO;
         }
         let towards = Vec3::from(drop.towards);
-        let (right, up) = axes(drop);
+        let right = drops_right(towards);
+        let up = right.cross(towards);
         // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
         let q = ((x * x + y * y) * drop.half_extent * drop.half_extent).min(0.98);
         let bend = 2.0 / (1.0 - q).sqrt();
@@ -316,7 +316,8 @@ impl Buffers<'_> {
             return Vec4::ZERO;
         }
         let towards = Vec3::from(drop.towards);
-        let (right, up) = axes(drop);
+        let right = drops_right(towards);
+        let up = right.cross(towards);
         let n = if small { DROPS_SMALL_GRID } else { drop.grid };
         let extent = drop.half_extent * drop.slope;
         let spacing = if small {
