@@ -190,9 +190,8 @@ mod gpu {
         };
         let options = inject(GpuOptions { adapter, ..GpuOptions::default() })?;
         match Gpu::open_with(&options) {
-            // Reopened, since only an open device tells what it is.
             Ok(gpu) if gpu.adapter().is_software() && options.timeout == GpuOptions::default().timeout => {
-                Ok(Ok(Gpu::open_with(&GpuOptions { timeout: SOFTWARE_TIMEOUT, ..options })?))
+                Ok(Ok(gpu.with_timeout(SOFTWARE_TIMEOUT)))
             }
             Ok(gpu) => Ok(Ok(gpu)),
             Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDevice { .. })) => Ok(Err(error)),

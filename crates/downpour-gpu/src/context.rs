@@ -114,6 +114,12 @@ impl Gpu {
         Ok(Self::assemble(device, queue, health, options.timeout))
     }
 
+    /// The same context with another patience: how long a wait may last before the device counts as hung.
+    #[must_use]
+    pub fn with_timeout(self, timeout: Duration) -> Self {
+        Self { timeout, ..self }
+    }
+
     /// A context on a caller's device and queue. Its lost-device callback and error handler stay the caller's.
     #[must_use]
     pub fn on_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {

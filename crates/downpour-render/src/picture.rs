@@ -54,6 +54,23 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// Puts the layers together.
+    pub(crate) fn new(
+        rain: &Rain,
+        clean: Vec<[f32; 4]>,
+        layer: Vec<[f32; 4]>,
+        passes: Vec<(&'static str, f64)>,
+    ) -> Self {
+        Self {
+            size: [rain.frame.width, rain.frame.height],
+            drops_on_screen: rain.list.len(),
+            drawn: rain.drawn(&clean),
+            clean,
+            rain: layer,
+            passes,
+        }
+    }
+
     /// The scene through the rain.
     #[must_use]
     pub fn radiance(&self) -> Vec<[f32; 3]> {
@@ -94,12 +111,5 @@ pub fn render_picture(
     let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
     let capture = timed(&mut passes, "capture", || rain.capture.trace(scene));
     let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture));
-    Ok(Picture {
-        size: options.size,
-        drops_on_screen: rain.list.len(),
-        drawn: rain.drawn(&clean),
-        clean,
-        rain: layer,
-        passes,
-    })
+    Ok(Picture::new(&rain, clean, layer, passes))
 }

@@ -99,7 +99,8 @@ impl From<Refraction> for RefractionForm {
 struct Shower {
     visible: VisibleDrops,
     masks: DropMasks,
-    measured_rate_mm_h: f64,
+    /// Measured for those alone who are told of it.
+    measured_rate_mm_h: Option<f64>,
 }
 
 impl RenderArguments {
@@ -119,24 +120,26 @@ impl RenderArguments {
         input.say_warnings(&stage, |text| self.say(text));
         let begin = Instant::now();
         let rain = &input.weather.rain;
-        let shower = shower(rain, &stage, self.input.time)?;
+        let shower = shower(rain, &stage, self.input.time, outputs.wants_stats())?;
         // The files have become buffers.
         drop(input.loaded);
         let (picture, computer) = self.render(&stage, &shower, rain.seed, interrupt)?;
-        let told = Told {
+        let frame_ms = begin.elapsed().as_secs_f64() * 1.0e3;
+        let drawn = picture.drawn.len();
+        self.say(&format!("rain: {} mm/h, {drawn} drops drawn", rain.rate_mm_h));
+        let told = |measured_rate_mm_h| Told {
             computer: &computer,
             rain: &shower.visible,
             asked_rate_mm_h: rain.rate_mm_h,
-            measured_rate_mm_h: shower.measured_rate_mm_h,
+            measured_rate_mm_h,
             time_s: self.input.time,
             seed: rain.seed,
             triangles: stage.triangles,
-            frame_ms: begin.elapsed().as_secs_f64() * 1.0e3,
+            frame_ms,
         };
-        let drawn = picture.drawn.len();
-        self.say(&format!("rain: {} mm/h, {drawn} drops drawn", rain.rate_mm_h));
+        let stats = shower.measured_rate_mm_h.map(|rate| report::stats(&picture, &told(rate)));
         let bytes = Bytes {
-            stats: if outputs.wants_stats() { report::stats(&picture, &told).into() } else { Vec::new() },
+            stats: stats.unwrap_or_default().into(),
             drops: if outputs.wants_drops() {
                 report::drops(&picture.drawn, &shower.visible.drops).into()
             } else {
@@ -230,13 +233,14 @@ fn on_cpu(
 }
 
 /// The drops of a rain that a picture can show, and what they do to light.
-fn shower(rain: &Rain, stage: &Stage, time_s: f64) -> Result<Shower, Failure> {
+fn shower(rain: &Rain, stage: &Stage, time_s: f64, measure: bool) -> Result<Shower, Failure> {
     let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
     let law = DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)?;
     let field = RainField::new(&law, rain.seed)?;
     let view = stage.view()?;
     let visible = field.visible(&view, time_s)?;
-    let measured_rate_mm_h = field.measured_rate_mm_h(view.eye, time_s)?;
+    let measured = || field.measured_rate_mm_h(view.eye, time_s);
+    let measured_rate_mm_h = measure.then(measured).transpose()?;
     let temperature = rain.air.temperature_c().max(COLDEST_INDEX_C);
     let masks =
         DropMasks::trace(water_index_in_air(SODIUM_M, &Air::new(temperature, rain.air.pressure_pa())?)?)?;

@@ -6,22 +6,27 @@ use std::time::{Duration, Instant};
 
 use downpour::mask::file::exr;
 
-use crate::child::{Downpour, names_in};
+use crate::child::{Downpour, Ended, Running, names_in};
 use crate::scene_files::storm;
+
+/// Sends a signal after some milliseconds: the work ends within seconds and says so.
+fn interrupted(running: Running, signal: &str, wait: u64) -> Ended {
+    sleep(Duration::from_millis(wait));
+    let begin = Instant::now();
+    running.signal(signal);
+    let ended = running.end();
+    assert!(begin.elapsed() < Duration::from_secs(5));
+    assert_eq!(ended.code, Some(6), "{}", ended.stderr);
+    assert_eq!(ended.stderr, "downpour: cancelled\n");
+    ended
+}
 
 #[test]
 fn an_interrupt_ends_the_work_at_once_and_leaves_nothing() {
     for (signal, wait) in [("INT", 300), ("TERM", 300), ("INT", 1500)] {
         let arguments = ["mask", "--diameter", "2", "--size", "4096", "--backend", "cpu", "-o", "m.exr"];
         let running = Downpour::new(&arguments).start();
-        sleep(Duration::from_millis(wait));
-        let begin = Instant::now();
-        running.signal(signal);
-        let ended = running.end();
-        assert!(begin.elapsed() < Duration::from_secs(5));
-        assert_eq!(ended.code, Some(6), "{}", ended.stderr);
-        assert_eq!(ended.stderr, "downpour: cancelled\n");
-        ended.left(&[]);
+        interrupted(running, signal, wait).left(&[]);
     }
 }
 
@@ -31,14 +36,7 @@ fn an_interrupt_ends_a_picture_at_once_and_leaves_nothing() {
     for (signal, wait) in [("INT", 100), ("TERM", 1200)] {
         let arguments = ["render", "--size=4096x2304", "-o", "a.png", "--stats", "a.json"];
         let running = storm(&arguments).start();
-        sleep(Duration::from_millis(wait));
-        let begin = Instant::now();
-        running.signal(signal);
-        let ended = running.end();
-        assert!(begin.elapsed() < Duration::from_secs(5));
-        assert_eq!(ended.code, Some(6), "{}", ended.stderr);
-        assert_eq!(ended.stderr, "downpour: cancelled\n");
-        ended.left(&["floor.gltf", "storm.toml"]);
+        interrupted(running, signal, wait).left(&["floor.gltf", "storm.toml"]);
     }
 }
 

@@ -86,14 +86,7 @@ impl PictureRenderer {
         let (clean, layer) = timed(&mut passes, "readback", || {
             Ok::<_, GpuError>((self.gpu.read::<[f32; 4]>(&clean)?, pass.layer()?))
         })?;
-        Ok(Picture {
-            size: options.size,
-            drops_on_screen: rain.list.len(),
-            drawn: rain.drawn(&clean),
-            clean,
-            rain: layer,
-            passes,
-        })
+        Ok(Picture::new(&rain, clean, layer, passes))
     }
 }
 

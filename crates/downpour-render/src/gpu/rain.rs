@@ -4,7 +4,7 @@ use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::rain::{DROPS_KERNEL, REDUCE_KERNEL};
 
 use super::scene::{SceneOnGpu, ScenePipeline};
-use crate::rain::{DropMasks, Rain, reduce_levels};
+use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, reduce_levels};
 use crate::trace::TraceGather;
 
 /// The pipelines of drops: made once, used for any number of pictures.
@@ -74,7 +74,7 @@ impl RainPipeline {
         // A capture has no filter: nothing is written there.
         let nothing = gpu.storage_buffer("no light of the sky", &[TraceGather::default()])?;
         let capture = tracer.kernel.bind(gpu, &scene.buffers(&frame, &texels, &nothing))?;
-        let level = |level: &crate::rain::ReduceLevel| {
+        let level = |level: &ReduceLevel| {
             let uniform = gpu.uniform_buffer("capture level", level)?;
             Ok((self.reduce.bind(gpu, &[&uniform, &texels])?, level.size.div_ceil(8)))
         };
@@ -84,8 +84,7 @@ impl RainPipeline {
         let layer = gpu.empty_buffer("rain", pixels * 16, storage)?;
         let frame = gpu.uniform_buffer("drops frame", &rain.frame)?;
         // A buffer has at least one element.
-        let nothing = crate::rain::DropsDrop::default();
-        let list: &[_] = if rain.list.is_empty() { &[nothing] } else { &rain.list };
+        let list: &[_] = if rain.list.is_empty() { &[DropsDrop::default()] } else { &rain.list };
         let list = gpu.storage_buffer("drops", list)?;
         let tiles = gpu.storage_buffer("tiles of drops", &rain.tiles)?;
         let drops = self.drops.bind(gpu, &[&frame, &list, &tiles, &masks.masks, &texels, clean, &layer])?;

@@ -36,8 +36,6 @@ pub struct CaptureFrame {
 pub struct Capture {
     /// Texels of all levels.
     pub texels: Vec<[f32; 4]>,
-    /// Texels along an edge of the finest level.
-    pub size: u32,
 }
 
 impl CaptureFrame {
@@ -83,7 +81,7 @@ impl CaptureFrame {
             .flat_map_iter(|y| (0..size).map(move |x| view.trace_pixel(x, y).0.to_array()))
             .collect();
         reduce::reduce(&mut texels, size);
-        Capture { texels, size }
+        Capture { texels }
     }
 }
 
