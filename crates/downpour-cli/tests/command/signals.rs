@@ -63,7 +63,7 @@ fn a_kill_never_leaves_half_a_file_under_the_final_name() {
     mask("16").run().succeeded();
     let begin = Instant::now();
     mask("256").run().succeeded();
-    let whole = begin.elapsed();
+    let mut whole = begin.elapsed();
     mask("16").run().succeeded();
     let mut killed = 0;
     for part in 0..16u32 {
@@ -71,7 +71,12 @@ fn a_kill_never_leaves_half_a_file_under_the_final_name() {
         // Most of the time goes into the work; the last part is the writing.
         sleep(whole.mul_f64(0.6 + 0.5 * f64::from(part) / 16.0));
         running.signal("KILL");
-        killed += u32::from(running.end().code.is_none());
+        if running.end().code.is_none() {
+            killed += 1;
+        } else {
+            // It was over: the machine is less busy than when the whole was timed.
+            whole = whole.mul_f64(0.8);
+        }
         assert!(matches!(size_of(&path), 16 | 256));
         mask("16").run().succeeded();
         assert_eq!(names_in(folder.path()), ["m.exr"]);
