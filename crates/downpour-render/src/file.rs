@@ -16,6 +16,7 @@ use ::exr::prelude::*;
 use image::{ImageFormat, RgbImage};
 
 use crate::RenderError;
+use crate::picture::through_rain;
 
 /// Linear radiance as the bytes of an OpenEXR file: channels R, G, B of 32 bits, ZIP compressed. Rows from the top.
 ///
@@ -42,7 +43,7 @@ pub fn write_exr_layers(
     let layer = |pixels: &[[f32; 4]], k: usize| -> Vec<f32> { pixels.iter().map(|p| p[k]).collect() };
     let mut channels: Vec<(&str, Vec<f32>)> = Vec::new();
     for (k, name) in ["R", "G", "B"].into_iter().enumerate() {
-        channels.push((name, clean.iter().zip(rain).map(|(c, r)| c[k] * r[3] + r[k]).collect()));
+        channels.push((name, through_rain(clean, rain).map(|pixel| pixel[k]).collect()));
     }
     for (k, name) in ["clean.R", "clean.G", "clean.B", "depth.Z"].into_iter().enumerate() {
         channels.push((name, layer(clean, k)));

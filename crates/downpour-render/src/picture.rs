@@ -74,10 +74,16 @@ impl Picture {
     /// The scene through the rain.
     #[must_use]
     pub fn radiance(&self) -> Vec<[f32; 3]> {
-        let through =
-            |(clean, rain): (&[f32; 4], &[f32; 4])| std::array::from_fn(|k| clean[k] * rain[3] + rain[k]);
-        self.clean.iter().zip(&self.rain).map(through).collect()
+        through_rain(&self.clean, &self.rain).collect()
     }
+}
+
+/// Radiance of a scene through the rain before it, pixel by pixel: `clean * transmittance + rain`.
+pub(crate) fn through_rain<'a>(
+    clean: &'a [[f32; 4]],
+    rain: &'a [[f32; 4]],
+) -> impl Iterator<Item = [f32; 3]> + use<'a> {
+    clean.iter().zip(rain).map(|(clean, rain)| std::array::from_fn(|k| clean[k] * rain[3] + rain[k]))
 }
 
 /// Runs a pass and notes its time.
