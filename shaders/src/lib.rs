@@ -23,10 +23,13 @@
 mod shared_constants;
 mod module;
 
+pub mod bvh;
 pub mod common;
 pub mod drop;
+pub mod lattice;
 pub mod mask;
 pub mod render;
+pub mod sim;
 pub mod wind;
 
 pub use module::{Kernel, Module, compose};
@@ -34,17 +37,22 @@ pub use module::{Kernel, Module, compose};
 /// Every module of the crate, for the tests that enumerate them.
 pub fn modules() -> impl Iterator<Item = &'static Module> {
     [
+        bvh::MODULES,
         common::MODULES,
         drop::distribution::MODULES,
         drop::fall_speed::MODULES,
         drop::optics::MODULES,
         drop::oscillation::MODULES,
         drop::shape::MODULES,
+        lattice::glass::MODULES,
+        lattice::puddle::MODULES,
         mask::MODULES,
         render::brdf::MODULES,
         render::rain::MODULES,
         render::scene::MODULES,
         render::specimen::MODULES,
+        sim::collision::MODULES,
+        sim::step::MODULES,
         wind::MODULES,
     ]
     .into_iter()
@@ -54,10 +62,20 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
 
 /// Every kernel of the crate, for the tests that create a pipeline from each.
 pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
-    [mask::KERNELS, render::rain::KERNELS, render::scene::KERNELS, render::specimen::KERNELS, wind::KERNELS]
-        .into_iter()
-        .flatten()
-        .copied()
+    [
+        lattice::glass::KERNELS,
+        lattice::puddle::KERNELS,
+        mask::KERNELS,
+        render::rain::KERNELS,
+        render::scene::KERNELS,
+        render::specimen::KERNELS,
+        sim::collision::KERNELS,
+        sim::step::KERNELS,
+        wind::KERNELS,
+    ]
+    .into_iter()
+    .flatten()
+    .copied()
 }
 
 /// The examples of the README, as tests.

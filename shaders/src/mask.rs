@@ -1,10 +1,11 @@
 //! `wgsl/mask`: refraction masks. The Rust twins are in `downpour-mask`.
 
+use crate::bvh::BVH;
 use crate::drop::{optics, shape};
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&MASK_CONSTANTS, &TEXEL, &TRACE, &SILHOUETTE, &DROP, &BVH, &MODEL];
+pub const MODULES: &[&Module] = &[&MASK_CONSTANTS, &TEXEL, &TRACE, &SILHOUETTE, &DROP, &MODEL];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&DROP_KERNEL, &MODEL_KERNEL];
@@ -30,12 +31,6 @@ shared_constants! {
         MASK_BLEED: f32 = 2.0;
         /// Depth below the outline, in pixels, above which no ray is traced.
         MASK_EDGE_DEPTH: f32 = 0.1;
-        /// Nodes that may wait while a tree is walked: its depth, at most.
-        MASK_BVH_STACK: u32 = 48;
-        /// Beyond every distance.
-        MASK_BVH_FAR: f32 = 3.0e38;
-        /// Barycentric slack of a triangle: a ray through a shared edge must not slip between two of them.
-        MASK_BVH_EDGE_SLACK: f32 = 1.0e-6;
         /// Nearest distance of the next surface, in equivalent radii: a ray must not meet the point that it left.
         MASK_MODEL_NEAREST: f32 = 1.0e-4;
         /// Rays along an edge of a texel that the outline of a model cuts.
@@ -69,10 +64,6 @@ pub static DROP: Module = Module {
 /// One texel of a mask. Host type: `downpour_mask::MaskTexel`.
 pub static TEXEL: Module =
     Module { path: "mask/texel.wgsl", wgsl: include_str!("../wgsl/mask/texel.wgsl"), uses: &[] };
-
-/// Rays among triangles. Twin: `downpour_mask::bvh`.
-pub static BVH: Module =
-    Module { path: "mask/bvh.wgsl", wgsl: include_str!("../wgsl/mask/bvh.wgsl"), uses: &[&MASK_CONSTANTS] };
 
 /// The mask of a drop given as a mesh. Twin: `downpour_mask::model`.
 pub static MODEL: Module = Module {

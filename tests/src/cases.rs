@@ -1,11 +1,16 @@
 //! The registry of cases, a file per subsystem.
 
+mod bvh;
+mod collision;
 mod common;
 mod drop;
+mod glass;
 mod mask;
+mod puddle;
 mod rain;
 mod render;
 mod scene;
+mod step;
 mod wind;
 
 use crate::{FunctionCase, KernelCase};
@@ -14,12 +19,17 @@ use crate::{FunctionCase, KernelCase};
 #[must_use]
 pub fn functions() -> Vec<FunctionCase> {
     [
+        bvh::functions(),
+        collision::functions(),
         common::functions(),
         drop::functions(),
+        glass::functions(),
         mask::functions(),
+        puddle::functions(),
         rain::functions(),
         render::functions(),
         scene::functions(),
+        step::functions(),
         wind::functions(),
     ]
     .into_iter()
@@ -30,10 +40,20 @@ pub fn functions() -> Vec<FunctionCase> {
 /// All kernel-level cases.
 #[must_use]
 pub fn kernels() -> Vec<KernelCase> {
-    [mask::kernels(), rain::kernels(), render::kernels(), scene::kernels(), wind::kernels()]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        collision::kernels(),
+        glass::kernels(),
+        mask::kernels(),
+        puddle::kernels(),
+        rain::kernels(),
+        render::kernels(),
+        scene::kernels(),
+        step::kernels(),
+        wind::kernels(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// Functions without a case of their own, each with the reason.

@@ -2,18 +2,18 @@
 
 use std::mem::offset_of;
 
+use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_drop::fall_speed::FallSpeedAir;
 use downpour_drop::oscillation::{DropOscillation, DropOscillationTime};
 use downpour_drop::shape::DropShapeCoefficients;
 use downpour_mask::MaskTexel;
-use downpour_mask::bvh::{BvhNode, BvhTriangle};
 use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel};
 use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
-use downpour_shaders::{Module, compose, drop, mask, modules, render, wind};
+use downpour_shaders::{Module, bvh, compose, drop, mask, modules, render, wind};
 use downpour_tests::signature::parse;
 use downpour_wind::field::WindFieldGrid;
 
@@ -59,8 +59,8 @@ fn hosts() -> Vec<Host> {
             capture_forward, capture_texel, form, mask_size, tiles_across, unused),
         host!(DropsDrop as "DropsDrop" in &render::rain::DROPS,
             towards, distance, place, slope, half_extent, row, area, grid),
-        host!(BvhNode as "MaskBvhNode" in &mask::BVH, low, link, high, count),
-        host!(BvhTriangle as "MaskBvhTriangle" in &mask::BVH, corner, index, edge_1, edge_2),
+        host!(BvhNode as "BvhNode" in &bvh::BVH, low, link, high, count),
+        host!(BvhTriangle as "BvhTriangle" in &bvh::BVH, corner, index, edge_1, edge_2),
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),
         host!(SpecimenUniform as "SpecimenView" in &specimen::SPECIMEN,
             traced, camera, size, sky, first_row, rows, channels),
@@ -115,7 +115,7 @@ fn every_struct_in_a_buffer_has_a_host() {
 /// The check itself can fail: a struct with its fields in another order is seen.
 #[test]
 fn a_wrong_layout_is_seen() {
-    let (_, members) = layout(&mask::BVH, "MaskBvhNode");
+    let (_, members) = layout(&bvh::BVH, "BvhNode");
     let swapped = [("low", offset_of!(BvhNode, high)), ("high", offset_of!(BvhNode, low))];
     for (name, at) in swapped {
         assert!(members.iter().any(|(n, offset)| n == name && *offset != at), "{name}");

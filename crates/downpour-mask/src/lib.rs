@@ -3,14 +3,13 @@
 //! - [`trace_drop`]: the mask of a drop of revolution from any elevation, exact through both interfaces
 //!   ([`trace`]), with the covered share of each texel ([`silhouette`]); [`trace_drop_scalar`] is the twin of the GPU's
 //!   kernel, [`trace_drop_f64`] the reference above both;
-//! - [`trace_model`]: the same for any closed mesh ([`ClosedMesh`]) through a hierarchy of boxes ([`bvh`]);
+//! - [`trace_model`]: the same for any closed mesh ([`ClosedMesh`]) through a hierarchy of boxes ([`downpour_bvh`]);
 //! - `gpu` (feature `wgpu`): both on a GPU;
 //! - [`mod@file`]: OpenEXR, KTX2, PNG.
 //!
 //! Lengths inside a mask are in units of the drop's volume-equivalent radius; directions are in the frame of the
 //! view: x right, y up, z towards the viewer.
 
-pub mod bvh;
 mod closed_mesh;
 mod drop;
 mod error;

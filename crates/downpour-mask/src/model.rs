@@ -13,10 +13,10 @@ use downpour_math::vector::{add_scaled, dot, normalize, scale};
 use downpour_shaders::mask::{MASK_MODEL_NEAREST, MASK_MODEL_SUBSAMPLES, MASK_TRACE_REFLECTIONS};
 use rayon::prelude::*;
 
-use crate::bvh::{Bvh, Hit};
 use crate::closed_mesh::ClosedMesh;
 use crate::trace::mask_trace_plane_turn;
 use crate::{Mask, MaskError, MaskOptions, MaskTexel};
+use downpour_bvh::{Bvh, Hit};
 
 /// A mesh turned into the frame of a view, with its hierarchy: what the tracer needs.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 //! Host types of `shaders/wgsl/render/data.wgsl`. Triangles are in world space and in the order of the hierarchy's
 //! leaves, so that a hit's triangle is an index into all of it.
 
-use downpour_mask::bvh::{Bvh, BvhNode, BvhTriangle};
+use downpour_bvh::{Bvh, BvhNode, BvhTriangle};
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::light::LightSource;

@@ -15,7 +15,7 @@
 use downpour_math::ops;
 use downpour_math::packing::packing_sign;
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_shaders::mask::MASK_BVH_FAR;
+use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_FAR, SCENE_GLANCE_CONE, SCENE_GLANCE_NEAREST, SCENE_LATTICE_SCATTER,
     SCENE_LATTICE_SECOND, SCENE_LATTICE_THIRD, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS,
@@ -157,7 +157,7 @@ impl SceneView<'_> {
         let mut throughput = Vec3::ONE;
         let mut from_distance = frame.nearest;
         for layer in 0..SCENE_LAYERS {
-            let Some(hit) = data.surface_hit(origin, direction, from_distance, MASK_BVH_FAR) else {
+            let Some(hit) = data.surface_hit(origin, direction, from_distance, BVH_FAR) else {
                 path.radiance += throughput * data.sky_level(0, direction);
                 return path;
             };

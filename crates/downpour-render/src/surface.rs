@@ -1,7 +1,7 @@
 //! What a ray finds: the nearest triangle that is not a hole, and its material there. Twin of
 //! `shaders/wgsl/render/surface.wgsl`.
 
-use downpour_mask::bvh::{Hit, mask_bvh_nearest};
+use downpour_bvh::{Hit, bvh_nearest};
 use downpour_math::ops;
 use downpour_shaders::render::scene::{SCENE_LAYERS, SCENE_MASKED, SCENE_MATERIAL_ROWS, SCENE_NONE};
 use glam::{Vec3, Vec4};
@@ -57,7 +57,7 @@ impl SceneData {
     pub fn surface_hit(&self, origin: Vec3, direction: Vec3, nearest: f32, farthest: f32) -> Option<Hit> {
         let mut from_distance = nearest;
         for _ in 0..SCENE_LAYERS {
-            let hit = mask_bvh_nearest(
+            let hit = bvh_nearest(
                 &self.nodes,
                 &self.triangles,
                 origin.into(),

@@ -2,8 +2,8 @@
 //! `downpour_render::{texture, sky, surface, scene, rain::capture, trace, skylight}`.
 
 use super::brdf::BRDF;
+use crate::bvh::BVH;
 use crate::common::{PACKING, RNG};
-use crate::mask::BVH;
 use crate::{Kernel, Module};
 
 /// Every module of this file.

@@ -17,19 +17,19 @@ struct MaskModelParameters {
 @group(0) @binding(4) var<storage, read_write> mask_model_texels: array<MaskTexel>;
 
 // Whether the viewer's ray through (x, y) hits the mesh, and where.
-fn mask_model_hit(x: f32, y: f32) -> MaskBvhHit {
-    return mask_bvh_hit(vec3f(x, y, mask_model.front), vec3f(0.0, 0.0, -1.0), MASK_MODEL_NEAREST, MASK_BVH_FAR);
+fn mask_model_hit(x: f32, y: f32) -> BvhHit {
+    return bvh_hit(vec3f(x, y, mask_model.front), vec3f(0.0, 0.0, -1.0), MASK_MODEL_NEAREST, BVH_FAR);
 }
 
 // The interpolated normal at a hit.
-fn mask_model_normal(hit: MaskBvhHit) -> vec3f {
+fn mask_model_normal(hit: BvhHit) -> vec3f {
     let first = hit.triangle * 3u;
     let a = mask_model_normals[first].xyz * (1.0 - hit.u - hit.v);
     return normalize(a + mask_model_normals[first + 1u].xyz * hit.u + mask_model_normals[first + 2u].xyz * hit.v);
 }
 
 // The texel at (x, y) for a ray that hits at `hit`.
-fn mask_model_through(x: f32, y: f32, hit: MaskBvhHit, coverage: f32) -> MaskTexel {
+fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
     let incident = vec3f(0.0, 0.0, -1.0);
     let index = mask_model.index;
     var normal = mask_model_normal(hit);
@@ -40,7 +40,7 @@ fn mask_model_through(x: f32, y: f32, hit: MaskBvhHit, coverage: f32) -> MaskTex
     var point = vec3f(x, y, mask_model.front - hit.distance);
     var polarised = (entry.y - entry.x) * 0.5;
     for (var reflections = 0u; reflections <= MASK_TRACE_REFLECTIONS; reflections += 1u) {
-        let next = mask_bvh_hit(point, inside, MASK_MODEL_NEAREST, MASK_BVH_FAR);
+        let next = bvh_hit(point, inside, MASK_MODEL_NEAREST, BVH_FAR);
         // A ray that finds no way out has slipped along an edge of the surface: it counts as lost.
         if next.distance < 0.0 {
             break;
@@ -114,7 +114,7 @@ fn mask_model_texel(x: f32, y: f32) -> MaskTexel {
         return mask_model_through(middle.x, middle.y, hit, coverage);
     }
     // The covered part is not convex: take the sample nearest to its middle.
-    var best = MASK_BVH_FAR;
+    var best = BVH_FAR;
     var best_place = middle;
     var best_hit = hit;
     for (var i = 0u; i < n; i += 1u) {

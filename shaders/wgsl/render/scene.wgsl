@@ -199,7 +199,7 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
         var start = origin;
         var along = direction;
         var near = from_distance;
-        var reach = MASK_BVH_FAR;
+        var reach = BVH_FAR;
         var beyond = vec3f(0.0);
         var width = cone;
         for (var k = 0u; k <= render_frame.sky_rays; k += 1u) {

@@ -38,7 +38,7 @@ fn surface_texture(row: u32, uv: vec4f, spread: f32) -> vec4f {
 fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> SurfaceHit {
     var from_distance = nearest;
     for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
-        let hit = mask_bvh_hit(origin, direction, from_distance, farthest);
+        let hit = bvh_hit(origin, direction, from_distance, farthest);
         if hit.distance < 0.0 {
             break;
         }
@@ -89,7 +89,7 @@ fn surface_spread(hit: SurfaceHit, geometric: vec3f, direction: vec3f, width: f3
 
 // The cross product of the edges of the triangle that was hit: its normal, as long as twice its area.
 fn surface_edges(hit: SurfaceHit) -> vec3f {
-    return cross(mask_bvh_triangles[hit.triangle].edge_1, mask_bvh_triangles[hit.triangle].edge_2);
+    return cross(bvh_triangles[hit.triangle].edge_1, bvh_triangles[hit.triangle].edge_2);
 }
 
 // Everything that shading needs at a hit.

@@ -2,7 +2,6 @@
 
 use downpour_drop::DropShape;
 use downpour_gpu::{Gpu, GpuError};
-use downpour_mask::bvh::{BvhNode, BvhTriangle, mask_bvh_enter, mask_bvh_inverse, mask_bvh_triangle};
 use downpour_mask::gpu::{GpuMaskError, GpuTracer};
 use downpour_mask::silhouette::{
     mask_silhouette_area, mask_silhouette_cut, mask_silhouette_distance, mask_silhouette_estimate,
@@ -197,79 +196,6 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 ((cut.sample, cut.coverage), cut.traced).words()
             },
         ),
-        FunctionCase::new(
-            "mask_bvh_inverse",
-            &mask::BVH,
-            &[Unit3],
-            Tol::ulp(3, "a division (2.5 ulp)"),
-            |a| mask_bvh_inverse(a.f32s()).words(),
-        ),
-        FunctionCase::new(
-            "mask_bvh_enter",
-            &mask::BVH,
-            &[
-                Made(|r| {
-                    let unit = r.map(rng_unit);
-                    let low = [unit[0] - 0.5, unit[1] - 0.5, unit[2] - 0.5];
-                    let high = low.map(|c| c + 0.05 + 0.5 * unit[3]);
-                    [low.map(f32::to_bits).to_vec(), vec![1], high.map(f32::to_bits).to_vec(), vec![2]]
-                        .concat()
-                }),
-                Unit3,
-                Made(|r| {
-                    // Rays towards the middle, so that some hit and some do not.
-                    let d: [f32; 3] = std::array::from_fn(|k| rng_unit(r[k]) - 0.5);
-                    mask_bvh_inverse(d).map(f32::to_bits).to_vec()
-                }),
-                OneOf(&[0.5, 2.0, 3.0e38]),
-            ],
-            Tol::relative(
-                1.0e-5,
-                1.0e-5,
-                "products and differences; a ray that grazes a box may fall on either side",
-            )
-            .with_outliers(1.0e-3),
-            |a| {
-                let low = a.f32s();
-                let link = a.u32();
-                let high = a.f32s();
-                let count = a.u32();
-                mask_bvh_enter(&BvhNode { low, link, high, count }, a.f32s(), a.f32s(), a.f32()).words()
-            },
-        ),
-        FunctionCase::new(
-            "mask_bvh_triangle",
-            &mask::BVH,
-            &[
-                Uniform(-0.6, -0.4),
-                Uniform(-0.6, -0.4),
-                Uniform(-0.1, 0.1),
-                OneOf(&[0.0]),
-                Uniform(0.8, 1.2),
-                Uniform(-0.1, 0.1),
-                Uniform(-0.2, 0.2),
-                Uniform(-0.1, 0.1),
-                Uniform(0.8, 1.2),
-                Uniform(-0.2, 0.2),
-                Uniform(-0.4, 0.4),
-                Uniform(-0.4, 0.4),
-                Uniform(1.0, 2.0),
-                Uniform(-0.2, 0.2),
-                Uniform(-0.2, 0.2),
-                Uniform(-1.0, -0.5),
-            ],
-            Tol::absolute(
-                2.0e-5,
-                "cross products and a division (2.5 ulp); rays on an edge may fall on either side",
-            ),
-            |a| {
-                let corner = a.f32s();
-                let index = a.f32() as u32;
-                let (edge_1, edge_2) = (a.f32s(), a.f32s());
-                let triangle = BvhTriangle { corner, index, edge_1, padding_1: 0, edge_2, padding_2: 0 };
-                mask_bvh_triangle(&triangle, a.f32s(), a.f32s()).words()
-            },
-        ),
     ]
 }
 
@@ -345,7 +271,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         name,
         kernel: &mask::MODEL_KERNEL,
         covers: &[
-            "mask_bvh_hit",
+            "bvh_hit",
             "mask_model_hit",
             "mask_model_normal",
             "mask_model_through",

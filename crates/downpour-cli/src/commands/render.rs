@@ -2,22 +2,19 @@
 
 mod outputs;
 mod report;
+mod shower;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use downpour::drop::air::Air;
-use downpour::drop::distribution::{DistributionOptions, DropSizeDistribution};
-use downpour::drop::optics::water_index_in_air;
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
 use downpour::render::picture::{Picture, PictureOptions, render_picture};
 use downpour::render::rain::{DropMasks, RainOptions, RefractionForm};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
-use downpour::scene::weather::Rain;
-use downpour::sim::field::{FallingDrop, RainField, VisibleDrops};
+use downpour::sim::field::FallingDrop;
 
 use super::input::InputArguments;
 use crate::backend::{BackendArguments, compute};
@@ -26,12 +23,7 @@ use crate::interrupt::Interrupt;
 use crate::{quantity, stream};
 use outputs::{Bytes, Format, Outputs};
 use report::{Computer, Told};
-
-/// The line of sodium, in metres: the wavelength at which water's index is taken.
-const SODIUM_M: f64 = 589.3e-9;
-
-/// The coldest air, in Celsius, in which water's index is known.
-const COLDEST_INDEX_C: f64 = -12.0;
+use shower::{Shower, Showers};
 
 /// Memory per pixel, in bytes, while a picture is made and written: the scene, what its pixels found of the sky's light
 /// (twice while threads hand in their parts), the rain, and the file.
@@ -95,14 +87,6 @@ impl From<Refraction> for RefractionForm {
     }
 }
 
-/// The rain of a picture.
-struct Shower {
-    visible: VisibleDrops,
-    masks: DropMasks,
-    /// Measured for those alone who are told of it.
-    measured_rate_mm_h: Option<f64>,
-}
-
 impl RenderArguments {
     pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         self.input.check()?;
@@ -120,10 +104,11 @@ impl RenderArguments {
         input.say_warnings(&stage, |text| self.say(text));
         let begin = Instant::now();
         let rain = &input.weather.rain;
-        let shower = shower(rain, &stage, self.input.time, outputs.wants_stats())?;
+        let showers = Showers::new(rain)?;
+        let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
         // The files have become buffers.
         drop(input.loaded);
-        let (picture, computer) = self.render(&stage, &shower, rain.seed, interrupt)?;
+        let (picture, computer) = self.render(&stage, &shower, &showers.masks, rain.seed, interrupt)?;
         let frame_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         let drawn = picture.drawn.len();
         self.say(&format!("rain: {} mm/h, {drawn} drops drawn", rain.rate_mm_h));
@@ -174,12 +159,13 @@ impl RenderArguments {
         &self,
         stage: &Stage,
         shower: &Shower,
+        masks: &DropMasks,
         seed: u64,
         _: &Interrupt,
     ) -> Result<(Picture, Computer), Failure> {
         let options = self.options(stage, seed);
         let drops = stage.place(&shower.visible.drops);
-        compute(&self.backend, |text| self.say(text), || on_cpu(stage, &drops, &shower.masks, &options))
+        compute(&self.backend, |text| self.say(text), || on_cpu(stage, &drops, masks, &options))
     }
 
     #[cfg(feature = "gpu")]
@@ -187,6 +173,7 @@ impl RenderArguments {
         &self,
         stage: &Stage,
         shower: &Shower,
+        masks: &DropMasks,
         seed: u64,
         interrupt: &Interrupt,
     ) -> Result<(Picture, Computer), Failure> {
@@ -196,11 +183,11 @@ impl RenderArguments {
         let say = |text: &str| self.say(text);
         let gpu = |gpu: &downpour::gpu::Gpu| {
             let renderer = PictureRenderer::new(gpu)?;
-            let picture = renderer.render(&stage.data, &stage.viewpoint, &drops, &shower.masks, &options)?;
+            let picture = renderer.render(&stage.data, &stage.viewpoint, &drops, masks, &options)?;
             let computer = Computer { adapter: gpu.adapter().name.clone(), backend: "gpu" };
             Ok::<_, GpuPictureError>((picture, computer))
         };
-        compute(&self.backend, interrupt, say, gpu, || on_cpu(stage, &drops, &shower.masks, &options))
+        compute(&self.backend, interrupt, say, gpu, || on_cpu(stage, &drops, masks, &options))
     }
 
     fn encode(&self, format: Format, stage: &Stage, picture: Picture) -> Result<Vec<u8>, Failure> {
@@ -230,21 +217,6 @@ fn on_cpu(
 ) -> Result<(Picture, Computer), Failure> {
     let picture = render_picture(&stage.data, &stage.viewpoint, drops, masks, options)?;
     Ok((picture, Computer { adapter: "CPU".to_owned(), backend: "cpu" }))
-}
-
-/// The drops of a rain that a picture can show, and what they do to light.
-fn shower(rain: &Rain, stage: &Stage, time_s: f64, measure: bool) -> Result<Shower, Failure> {
-    let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
-    let law = DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)?;
-    let field = RainField::new(&law, rain.seed)?;
-    let view = stage.view()?;
-    let visible = field.visible(&view, time_s)?;
-    let measured = || field.measured_rate_mm_h(view.eye, time_s);
-    let measured_rate_mm_h = measure.then(measured).transpose()?;
-    let temperature = rain.air.temperature_c().max(COLDEST_INDEX_C);
-    let masks =
-        DropMasks::trace(water_index_in_air(SODIUM_M, &Air::new(temperature, rain.air.pressure_pa())?)?)?;
-    Ok(Shower { visible, masks, measured_rate_mm_h })
 }
 
 /// Whether the memory that a picture will take can be had. An allocation that fails later on would end the process.

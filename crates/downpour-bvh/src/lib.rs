@@ -4,10 +4,10 @@
 //! bounding volume hierarchies", 2007). Nodes are stored depth first; leaves refer to a reordered list of
 //! triangles. The build depends on nothing but the triangles, so the same mesh gives the same tree.
 //!
-//! Twin of the traversal in `shaders/wgsl/mask/bvh.wgsl`.
+//! Twin of the traversal in `shaders/wgsl/bvh/bvh.wgsl`.
 
 use downpour_math::vector::{cross, dot, sub};
-use downpour_shaders::mask::{MASK_BVH_FAR, MASK_BVH_STACK};
+use downpour_shaders::bvh::{BVH_FAR, BVH_STACK};
 use glam::Vec3A;
 
 /// Triangles of a leaf below which it is not split.
@@ -17,10 +17,10 @@ const HEURISTIC_DEPTH: usize = 24;
 /// Bins per axis.
 const BINS: usize = 16;
 /// Barycentric slack: a ray through a shared edge must not slip between the two triangles.
-const EDGE_SLACK: f32 = downpour_shaders::mask::MASK_BVH_EDGE_SLACK;
+const EDGE_SLACK: f32 = downpour_shaders::bvh::BVH_EDGE_SLACK;
 
 /// A node: an inner node has its first child right behind it and the second at `link`; a leaf has `count`
-/// triangles from `link` on. The same layout as `MaskBvhNode` in WGSL.
+/// triangles from `link` on. The same layout as `BvhNode` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct BvhNode {
@@ -34,7 +34,7 @@ pub struct BvhNode {
     pub count: u32,
 }
 
-/// Corners of a triangle, ready to be hit. The same layout as `MaskBvhTriangle` in WGSL.
+/// Corners of a triangle, ready to be hit. The same layout as `BvhTriangle` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct BvhTriangle {
@@ -143,13 +143,13 @@ impl Bvh {
     /// The nearest hit farther than `nearest` along the ray.
     #[must_use]
     pub fn hit(&self, origin: [f32; 3], direction: [f32; 3], nearest: f32) -> Option<Hit> {
-        mask_bvh_nearest(&self.nodes, &self.triangles, origin, direction, nearest, MASK_BVH_FAR)
+        bvh_nearest(&self.nodes, &self.triangles, origin, direction, nearest, BVH_FAR)
     }
 }
 
 /// The nearest hit along the ray that is farther than `nearest` and nearer than `farthest`, in the arrays of a [`Bvh`].
 #[must_use]
-pub fn mask_bvh_nearest(
+pub fn bvh_nearest(
     nodes: &[BvhNode],
     triangles: &[BvhTriangle],
     origin: [f32; 3],
@@ -157,13 +157,13 @@ pub fn mask_bvh_nearest(
     nearest: f32,
     farthest: f32,
 ) -> Option<Hit> {
-    let inverse = mask_bvh_inverse(direction);
+    let inverse = bvh_inverse(direction);
     let mut best: Option<Hit> = None;
     let mut limit = farthest;
-    let mut stack = [0u32; MASK_BVH_STACK as usize];
+    let mut stack = [0u32; BVH_STACK as usize];
     let mut depth = 0;
     let mut at = 0u32;
-    if mask_bvh_enter(&nodes[0], origin, inverse, limit) >= MASK_BVH_FAR {
+    if bvh_enter(&nodes[0], origin, inverse, limit) >= BVH_FAR {
         return None;
     }
     loop {
@@ -171,15 +171,15 @@ pub fn mask_bvh_nearest(
         if node.count == 0 {
             // The nearer child first: what it holds may hide the other.
             let (left, right) = (at + 1, node.link);
-            let to_left = mask_bvh_enter(&nodes[left as usize], origin, inverse, limit);
-            let to_right = mask_bvh_enter(&nodes[right as usize], origin, inverse, limit);
+            let to_left = bvh_enter(&nodes[left as usize], origin, inverse, limit);
+            let to_right = bvh_enter(&nodes[right as usize], origin, inverse, limit);
             let (near, far, to_near, to_far) = if to_right < to_left {
                 (right, left, to_right, to_left)
             } else {
                 (left, right, to_left, to_right)
             };
-            if to_near < MASK_BVH_FAR {
-                if to_far < MASK_BVH_FAR {
+            if to_near < BVH_FAR {
+                if to_far < BVH_FAR {
                     stack[depth] = far;
                     depth += 1;
                 }
@@ -188,7 +188,7 @@ pub fn mask_bvh_nearest(
             }
         } else {
             for triangle in &triangles[node.link as usize..(node.link + node.count) as usize] {
-                let [distance, u, v] = mask_bvh_triangle(triangle, origin, direction);
+                let [distance, u, v] = bvh_triangle(triangle, origin, direction);
                 if distance > nearest && distance < limit {
                     limit = distance;
                     best = Some(Hit { distance, triangle: triangle.index, u, v });
@@ -202,7 +202,7 @@ pub fn mask_bvh_nearest(
             }
             depth -= 1;
             at = stack[depth];
-            if mask_bvh_enter(&nodes[at as usize], origin, inverse, limit) < MASK_BVH_FAR {
+            if bvh_enter(&nodes[at as usize], origin, inverse, limit) < BVH_FAR {
                 break;
             }
         }
@@ -211,14 +211,14 @@ pub fn mask_bvh_nearest(
 
 /// The inverse of a direction, without infinities: a ray along an axis gets a very steep slope instead.
 #[must_use]
-pub fn mask_bvh_inverse(direction: [f32; 3]) -> [f32; 3] {
+pub fn bvh_inverse(direction: [f32; 3]) -> [f32; 3] {
     direction.map(|d| 1.0 / if d.abs() > 1.0e-20 { d } else { 1.0e-20 })
 }
 
-/// Where the ray enters the box of `node`, if that is before `limit`; `MASK_BVH_FAR` otherwise.
+/// Where the ray enters the box of `node`, if that is before `limit`; `BVH_FAR` otherwise.
 #[inline(always)]
 #[must_use]
-pub fn mask_bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32) -> f32 {
+pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32) -> f32 {
     // Machine vectors: most of a picture's time is spent here.
     let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(inverse));
     let a = (Vec3A::from(node.low) - origin) * inverse;
@@ -230,14 +230,14 @@ pub fn mask_bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit
     let enter = greater(greater(near.x, near.y), greater(near.z, 0.0));
     let leave = less(less(far.x, far.y), less(far.z, limit));
     // Rounding may put the two past each other by a few units in the last place.
-    if enter <= leave * 1.000_001 + 1.0e-7 { enter } else { MASK_BVH_FAR }
+    if enter <= leave * 1.000_001 + 1.0e-7 { enter } else { BVH_FAR }
 }
 
 /// Distance and the weights of the second and third corner where the ray meets the triangle's plane; distance -1
 /// where that is outside the triangle (T. Moller, B. Trumbore, "Fast, minimum storage ray-triangle intersection",
 /// 1997).
 #[must_use]
-pub fn mask_bvh_triangle(triangle: &BvhTriangle, origin: [f32; 3], direction: [f32; 3]) -> [f32; 3] {
+pub fn bvh_triangle(triangle: &BvhTriangle, origin: [f32; 3], direction: [f32; 3]) -> [f32; 3] {
     let p = cross(direction, triangle.edge_2);
     let determinant = dot(triangle.edge_1, p);
     let inverse = 1.0 / determinant;
@@ -255,7 +255,7 @@ fn build(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<BvhNode
     let at = nodes.len();
     nodes.push(BvhNode { low: bounds.low, link: first as u32, high: bounds.high, count: items.len() as u32 });
     // The traversal keeps one waiting node per level.
-    let deepest = depth + 2 >= MASK_BVH_STACK as usize;
+    let deepest = depth + 2 >= BVH_STACK as usize;
     let cut = match () {
         () if items.len() <= LEAF || deepest => None,
         // Far down, halves end sooner than what the heuristic takes off one by one.
@@ -325,6 +325,11 @@ fn bin_of(item: &Item, axis: usize, low: f32, extent: f32) -> usize {
     (((item.middle[axis] - low) / extent * BINS as f32) as usize).min(BINS - 1)
 }
 
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -360,7 +365,7 @@ mod tests {
             let brute = bvh
                 .triangles
                 .iter()
-                .map(|t| (mask_bvh_triangle(t, origin, direction), t.index))
+                .map(|t| (bvh_triangle(t, origin, direction), t.index))
                 .filter(|(h, _)| h[0] > 1.0e-4)
                 .min_by(|x, y| x.0[0].total_cmp(&y.0[0]));
             let found = bvh.hit(origin, direction, 1.0e-4);

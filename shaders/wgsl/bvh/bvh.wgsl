@@ -1,7 +1,7 @@
 // The nearest hit of a ray among the triangles of a bounding volume hierarchy.
-// Twin: downpour_mask::bvh.
+// Twin: downpour_bvh.
 
-struct MaskBvhNode {
+struct BvhNode {
     low: vec3f,
     // Second child of an inner node (the first stands right behind it), or first triangle of a leaf.
     link: u32,
@@ -10,7 +10,7 @@ struct MaskBvhNode {
     count: u32,
 }
 
-struct MaskBvhTriangle {
+struct BvhTriangle {
     corner: vec3f,
     // Index of the triangle in the mesh.
     index: u32,
@@ -18,7 +18,7 @@ struct MaskBvhTriangle {
     edge_2: vec3f,
 }
 
-struct MaskBvhHit {
+struct BvhHit {
     // Negative: nothing was hit.
     distance: f32,
     triangle: u32,
@@ -26,11 +26,11 @@ struct MaskBvhHit {
     v: f32,
 }
 
-@group(0) @binding(1) var<storage, read> mask_bvh_nodes: array<MaskBvhNode>;
-@group(0) @binding(2) var<storage, read> mask_bvh_triangles: array<MaskBvhTriangle>;
+@group(0) @binding(1) var<storage, read> bvh_nodes: array<BvhNode>;
+@group(0) @binding(2) var<storage, read> bvh_triangles: array<BvhTriangle>;
 
-// Where the ray enters the box of a node, if that is before `limit`; MASK_BVH_FAR otherwise.
-fn mask_bvh_enter(node: MaskBvhNode, origin: vec3f, inverse: vec3f, limit: f32) -> f32 {
+// Where the ray enters the box of a node, if that is before `limit`; BVH_FAR otherwise.
+fn bvh_enter(node: BvhNode, origin: vec3f, inverse: vec3f, limit: f32) -> f32 {
     let a = (node.low - origin) * inverse;
     let b = (node.high - origin) * inverse;
     let near = min(a, b);
@@ -38,12 +38,12 @@ fn mask_bvh_enter(node: MaskBvhNode, origin: vec3f, inverse: vec3f, limit: f32) 
     let enter = max(max(near.x, near.y), max(near.z, 0.0));
     let leave = min(min(far.x, far.y), min(far.z, limit));
     // Rounding may put the two past each other by a few units in the last place.
-    return select(MASK_BVH_FAR, enter, enter <= leave * 1.000001 + 1.0e-7);
+    return select(BVH_FAR, enter, enter <= leave * 1.000001 + 1.0e-7);
 }
 
 // Distance and the weights of the second and third corner where the ray meets the triangle's plane; distance -1
 // where that is outside the triangle.
-fn mask_bvh_triangle(triangle: MaskBvhTriangle, origin: vec3f, direction: vec3f) -> vec3f {
+fn bvh_triangle(triangle: BvhTriangle, origin: vec3f, direction: vec3f) -> vec3f {
     let p = cross(direction, triangle.edge_2);
     let determinant = dot(triangle.edge_1, p);
     if determinant == 0.0 {
@@ -54,7 +54,7 @@ fn mask_bvh_triangle(triangle: MaskBvhTriangle, origin: vec3f, direction: vec3f)
     let u = dot(from_corner, p) * inverse;
     let q = cross(from_corner, triangle.edge_1);
     let v = dot(direction, q) * inverse;
-    let slack = MASK_BVH_EDGE_SLACK;
+    let slack = BVH_EDGE_SLACK;
     if u >= -slack && v >= -slack && u + v <= 1.0 + slack {
         return vec3f(dot(triangle.edge_2, q) * inverse, u, v);
     }
@@ -62,33 +62,33 @@ fn mask_bvh_triangle(triangle: MaskBvhTriangle, origin: vec3f, direction: vec3f)
 }
 
 // The inverse of a direction, without infinities: a ray along an axis gets a very steep slope instead.
-fn mask_bvh_inverse(direction: vec3f) -> vec3f {
+fn bvh_inverse(direction: vec3f) -> vec3f {
     let steep = select(vec3f(1.0e-20), direction, abs(direction) > vec3f(1.0e-20));
     return vec3f(1.0) / steep;
 }
 
 // The nearest hit along the ray that is farther than `nearest` and nearer than `farthest`.
-fn mask_bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> MaskBvhHit {
-    let inverse = mask_bvh_inverse(direction);
-    var best = MaskBvhHit(-1.0, 0u, 0.0, 0.0);
+fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhHit {
+    let inverse = bvh_inverse(direction);
+    var best = BvhHit(-1.0, 0u, 0.0, 0.0);
     var limit = farthest;
-    var stack: array<u32, MASK_BVH_STACK>;
+    var stack: array<u32, BVH_STACK>;
     var depth = 0u;
     var at = 0u;
-    if mask_bvh_enter(mask_bvh_nodes[0], origin, inverse, limit) >= MASK_BVH_FAR {
+    if bvh_enter(bvh_nodes[0], origin, inverse, limit) >= BVH_FAR {
         return best;
     }
     // Each node is visited once at most, so this ends.
     loop {
-        let node = mask_bvh_nodes[at];
+        let node = bvh_nodes[at];
         if node.count == 0u {
             // The nearer child first: what it holds may hide the other.
-            let to_left = mask_bvh_enter(mask_bvh_nodes[at + 1u], origin, inverse, limit);
-            let to_right = mask_bvh_enter(mask_bvh_nodes[node.link], origin, inverse, limit);
+            let to_left = bvh_enter(bvh_nodes[at + 1u], origin, inverse, limit);
+            let to_right = bvh_enter(bvh_nodes[node.link], origin, inverse, limit);
             let swap = to_right < to_left;
             let far = select(node.link, at + 1u, swap);
-            if min(to_left, to_right) < MASK_BVH_FAR {
-                if max(to_left, to_right) < MASK_BVH_FAR {
+            if min(to_left, to_right) < BVH_FAR {
+                if max(to_left, to_right) < BVH_FAR {
                     stack[depth] = far;
                     depth += 1u;
                 }
@@ -97,11 +97,11 @@ fn mask_bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) ->
             }
         } else {
             for (var k = 0u; k < node.count; k += 1u) {
-                let triangle = mask_bvh_triangles[node.link + k];
-                let hit = mask_bvh_triangle(triangle, origin, direction);
+                let triangle = bvh_triangles[node.link + k];
+                let hit = bvh_triangle(triangle, origin, direction);
                 if hit.x > nearest && hit.x < limit {
                     limit = hit.x;
-                    best = MaskBvhHit(hit.x, triangle.index, hit.y, hit.z);
+                    best = BvhHit(hit.x, triangle.index, hit.y, hit.z);
                 }
             }
         }
@@ -110,7 +110,7 @@ fn mask_bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) ->
         while depth > 0u && !found {
             depth -= 1u;
             at = stack[depth];
-            found = mask_bvh_enter(mask_bvh_nodes[at], origin, inverse, limit) < MASK_BVH_FAR;
+            found = bvh_enter(bvh_nodes[at], origin, inverse, limit) < BVH_FAR;
         }
         if !found {
             break;

@@ -1,0 +1,1 @@
+//! Drops on a pane of glass.

@@ -1,0 +1,1 @@
+//! Ripples on shallow water.

@@ -1,0 +1,4 @@
+//! `wgsl/sim`: where drops are. The Rust twins are in `downpour-sim`.
+
+pub mod collision;
+pub mod step;

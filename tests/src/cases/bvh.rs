@@ -1,0 +1,84 @@
+//! `shaders/wgsl/bvh` against `downpour-bvh`.
+
+use downpour_bvh::{BvhNode, BvhTriangle, bvh_enter, bvh_inverse, bvh_triangle};
+use downpour_math::rng::rng_unit;
+use downpour_shaders::bvh::BVH;
+
+use crate::Domain::{Made, OneOf, Uniform, Unit3};
+use crate::words::IntoWords as _;
+use crate::{FunctionCase, Tol};
+
+/// The cases.
+pub(super) fn functions() -> Vec<FunctionCase> {
+    vec![
+        FunctionCase::new("bvh_inverse", &BVH, &[Unit3], Tol::ulp(3, "a division (2.5 ulp)"), |a| {
+            bvh_inverse(a.f32s()).words()
+        }),
+        FunctionCase::new(
+            "bvh_enter",
+            &BVH,
+            &[
+                Made(|r| {
+                    let unit = r.map(rng_unit);
+                    let low = [unit[0] - 0.5, unit[1] - 0.5, unit[2] - 0.5];
+                    let high = low.map(|c| c + 0.05 + 0.5 * unit[3]);
+                    [low.map(f32::to_bits).to_vec(), vec![1], high.map(f32::to_bits).to_vec(), vec![2]]
+                        .concat()
+                }),
+                Unit3,
+                Made(|r| {
+                    // Rays towards the middle, so that some hit and some do not.
+                    let d: [f32; 3] = std::array::from_fn(|k| rng_unit(r[k]) - 0.5);
+                    bvh_inverse(d).map(f32::to_bits).to_vec()
+                }),
+                OneOf(&[0.5, 2.0, 3.0e38]),
+            ],
+            Tol::relative(
+                1.0e-5,
+                1.0e-5,
+                "products and differences; a ray that grazes a box may fall on either side",
+            )
+            .with_outliers(1.0e-3),
+            |a| {
+                let low = a.f32s();
+                let link = a.u32();
+                let high = a.f32s();
+                let count = a.u32();
+                bvh_enter(&BvhNode { low, link, high, count }, a.f32s(), a.f32s(), a.f32()).words()
+            },
+        ),
+        FunctionCase::new(
+            "bvh_triangle",
+            &BVH,
+            &[
+                Uniform(-0.6, -0.4),
+                Uniform(-0.6, -0.4),
+                Uniform(-0.1, 0.1),
+                OneOf(&[0.0]),
+                Uniform(0.8, 1.2),
+                Uniform(-0.1, 0.1),
+                Uniform(-0.2, 0.2),
+                Uniform(-0.1, 0.1),
+                Uniform(0.8, 1.2),
+                Uniform(-0.2, 0.2),
+                Uniform(-0.4, 0.4),
+                Uniform(-0.4, 0.4),
+                Uniform(1.0, 2.0),
+                Uniform(-0.2, 0.2),
+                Uniform(-0.2, 0.2),
+                Uniform(-1.0, -0.5),
+            ],
+            Tol::absolute(
+                2.0e-5,
+                "cross products and a division (2.5 ulp); rays on an edge may fall on either side",
+            ),
+            |a| {
+                let corner = a.f32s();
+                let index = a.f32() as u32;
+                let (edge_1, edge_2) = (a.f32s(), a.f32s());
+                let triangle = BvhTriangle { corner, index, edge_1, padding_1: 0, edge_2, padding_2: 0 };
+                bvh_triangle(&triangle, a.f32s(), a.f32s()).words()
+            },
+        ),
+    ]
+}
