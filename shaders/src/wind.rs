@@ -3,13 +3,14 @@
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&WIND_CONSTANTS, &PRIMITIVE, &FIELD];
+pub const MODULES: &[&Module] = &[&WIND_CONSTANTS, &PRIMITIVE, &TURBULENCE, &FIELD];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&FIELD_KERNEL];
 
 shared_constants! {
-    /// Types of the primitives, and factors of their laws.
+    /// Types of the primitives, and factors of their laws. The type of a line form says its core too: as it stands for
+    /// Rosenhead's, plus 8 for Rankine's, plus 16 for Lamb and Oseen's.
     WIND_CONSTANTS at "wind/constants" {
         /// Type: the same wind everywhere.
         WIND_PRIMITIVE_UNIFORM: u32 = 0;
@@ -27,6 +28,12 @@ shared_constants! {
         WIND_PRIMITIVE_POINT_VORTEX: u32 = 6;
         /// Type: along a line of finite length, from its base to its top.
         WIND_PRIMITIVE_UPDRAFT: u32 = 7;
+        /// Added to the type of a line form with Rankine's core.
+        WIND_PRIMITIVE_RANKINE: u32 = 8;
+        /// Added to the type of a line form with the core of Lamb and Oseen.
+        WIND_PRIMITIVE_LAMB_OSEEN: u32 = 16;
+        /// Below this share of the squared core radius 1 - exp(-x) is summed as a series.
+        WIND_PRIMITIVE_SERIES: f32 = 0.25;
         /// 1 / (2 pi).
         WIND_PRIMITIVE_LINE: f32 = 0.15915494;
         /// 1 / (4 pi).
@@ -41,9 +48,13 @@ pub static PRIMITIVE: Module = Module {
     uses: &[&WIND_CONSTANTS],
 };
 
+/// Waves of turbulence. Twin: `downpour_wind::turbulence`.
+pub static TURBULENCE: Module =
+    Module { path: "wind/turbulence.wgsl", wgsl: include_str!("../wgsl/wind/turbulence.wgsl"), uses: &[] };
+
 /// The wind in the cells of a box. Twin: `downpour_wind::field`.
 pub static FIELD: Module =
-    Module { path: "wind/field.wgsl", wgsl: include_str!("../wgsl/wind/field.wgsl"), uses: &[&PRIMITIVE] };
+    Module { path: "wind/field.wgsl", wgsl: include_str!("../wgsl/wind/field.wgsl"), uses: &[&PRIMITIVE, &TURBULENCE] };
 
 /// One invocation per cell.
 pub static FIELD_KERNEL: Kernel = Kernel { entry: "main_wind_field", module: &FIELD, workgroup: [4, 4, 4] };

@@ -50,6 +50,22 @@ pub const BROKEN: &[Broken] = &[
         wrong: "MASK_EDGE_DEPTH: f32 = 0.3",
     },
     Broken { function: "wind_primitive_updraft", right: "along - height", wrong: "along + height" },
+    Broken {
+        function: "wind_primitive_lamb_oseen",
+        right: "WIND_PRIMITIVE_SERIES: f32 = 0.25",
+        wrong: "WIND_PRIMITIVE_SERIES: f32 = 1.5",
+    },
+    Broken { function: "wind_turbulence_wave", right: "8.3333333e-3", wrong: "8.3343333e-3" },
+    Broken {
+        function: "collision_depths",
+        right: "above = max(above, texel.depths[k]",
+        wrong: "above = max(0.0, texel.depths[k]",
+    },
+    Broken {
+        function: "collision_column",
+        right: "select(0.0, COLLISION_CLEARANCE, first)",
+        wrong: "COLLISION_CLEARANCE",
+    },
     Broken { function: "wind_field_mix", right: "(c10 - c00) * share.y", wrong: "(c10 - c00) * share.x" },
 ];
 

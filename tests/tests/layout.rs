@@ -13,8 +13,12 @@ use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel};
 use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
-use downpour_shaders::{Module, bvh, compose, drop, mask, modules, render, wind};
+use downpour_shaders::{Module, bvh, compose, drop, mask, modules, render, sim, wind};
+use downpour_sim::collision::{CollisionFrame, CollisionTexel};
+use downpour_sim::step::{StepEvent, StepFrame};
+use downpour_sim::volume::{VolumeBack, VolumeEye};
 use downpour_tests::signature::parse;
+use downpour_wind::WindTurbulenceMode;
 use downpour_wind::field::WindFieldGrid;
 
 /// A host struct: its WGSL name, the module that declares it, its size, and its fields by their WGSL names.
@@ -64,7 +68,19 @@ fn hosts() -> Vec<Host> {
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),
         host!(SpecimenUniform as "SpecimenView" in &specimen::SPECIMEN,
             traced, camera, size, sky, first_row, rows, channels),
-        host!(WindFieldGrid as "WindFieldGrid" in &wind::FIELD, low, primitives, cell, per_cell, size),
+        host!(CollisionFrame as "CollisionMap" in &sim::collision::COLLISION,
+            low, triangles, across, steep, along, merge, fall, edge, per_edge, anchor, size),
+        host!(CollisionTexel as "CollisionTexel" in &sim::collision::COLLISION, depths, surfaces),
+        host!(StepFrame as "StepFrame" in &sim::step::STEP,
+            before, now, shift, count, size, first, centre, volume, wind, time, seed, step, elsewhere, range, farthest,
+            average, events, bounce, restitution, grip, bounced_size, bounced_time, gauge_height, gauge, unused,
+            gauge_area, back),
+        host!(StepEvent as "StepEvent" in &sim::step::STEP, place, diameter, velocity, drop),
+        host!(VolumeBack as "VolumeBack" in &sim::step::VOLUME, turn, sum),
+        host!(VolumeEye as "VolumeEye" in &sim::step::VOLUME,
+            place, half_width, right, half_height, up, unused_1, forward, unused_2),
+        host!(WindFieldGrid as "WindFieldGrid" in &wind::FIELD, low, primitives, cell, modes, per_cell, size),
+        host!(WindTurbulenceMode as "WindTurbulenceMode" in &wind::TURBULENCE, wave, phase, amplitude),
     ]
 }
 

@@ -13,7 +13,7 @@ const ALONE: &[(&str, &[&str])] = &[
     ("downpour-mask", &["", "wgpu"]),
     ("downpour-scene", &[""]),
     ("downpour-sim", &["", "wgpu"]),
-    ("downpour-wind", &[""]),
+    ("downpour-wind", &["", "wgpu"]),
     ("downpour-render", &["", "wgpu"]),
     ("downpour", &["", "wgpu"]),
     ("downpour-cli", &["", "gpu"]),

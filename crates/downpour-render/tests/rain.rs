@@ -6,7 +6,7 @@ use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
 use downpour_render::picture::{Picture, PictureOptions, render_picture};
 use downpour_render::rain::{DropMasks, RainOptions, RefractionForm};
 use downpour_render::sky_light::SkyLight;
-use downpour_sim::field::FallingDrop;
+use downpour_sim::field::{DropKind, FallingDrop};
 use glam::{Affine3A, DVec3, Vec3};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
@@ -23,7 +23,7 @@ fn scale() -> f64 {
 }
 
 fn drop_at(position: DVec3, diameter: f32) -> FallingDrop {
-    FallingDrop { position, velocity: [0.0, -4.0, 0.0], diameter, id: 1 }
+    FallingDrop { position, velocity: [0.0, -4.0, 0.0], diameter, id: 1, kind: DropKind::Falling }
 }
 
 fn picture(

@@ -30,7 +30,7 @@ pub use camera::{Camera, CameraPose, FAR_M, FOV_RAD, NEAR_M};
 pub use lamps::Lamp;
 pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
-pub use rain::Rain;
+pub use rain::{Rain, RainBounce, RainCylinder, RainDrag, RainVolume};
 pub use sky::{Sky, SkySource, SunSource};
 
 /// The longest weather file, in bytes: 4 MiB.

@@ -40,7 +40,11 @@ median_diameter_mm = 1.5
 seed = 18446744073709551615
 temperature_c = -5
 pressure_hpa = 900
+volume = "box"
 box_m = 80
+most_drops = 1073741824
+drag = "rousseau-2008"
+bounce = { share = 1, restitution = 0.5, grip = 0, size = 0.05, longest_s = 2 }
 
 [sky]
 file = "skies/park 100%.hdr"
@@ -103,6 +107,9 @@ fn every_key_arrives_in_si() {
     assert_eq!(weather.name, "w.toml");
     let rain = weather.rain;
     assert_eq!((rain.rate_mm_h, rain.seed, rain.box_m), (25.5, u64::MAX, Some(80.0)));
+    assert_eq!((rain.volume, rain.most_drops, rain.drag), (RainVolume::Box, 1 << 30, RainDrag::Rousseau2008));
+    let bounce = RainBounce { share: 1.0, restitution: 0.5, grip: 0.0, size: 0.05, longest_s: 2.0 };
+    assert_eq!(rain.bounce, bounce);
     assert_eq!((rain.air.temperature_c(), rain.air.pressure_pa()), (-5.0, 90_000.0));
     assert_eq!(rain.law, DropSizeLaw::GammaByMedian { mu: 2.0, median_volume_diameter_m: 1.5e-3 });
     let SkySource::File { file, yaw } = &weather.sky.source else { panic!("{:?}", weather.sky) };
@@ -339,11 +346,27 @@ fn t9_nesting_ends() {
 }
 
 #[test]
+fn volumes_of_rain() {
+    let cylinder = "[rain]\nvolume = \"creus-patow-2013\"\ncylinder = { radius_m = 3 }";
+    assert_eq!(
+        parse(cylinder).unwrap().rain.cylinder,
+        RainCylinder { base_m: None, radius_m: 3.0, height_m: 12.0 }
+    );
+    refused("[rain]\nbox_m = 20", 2, "allowed: volume = \"box\" or \"tariq-2007\"");
+    refused("[rain]\nvolume = \"view\"\ncylinder = {}", 2, "allowed: volume = \"creus-patow-2013\"");
+    refused("[rain]\nvolume = \"sphere\"", 2, "closed-form");
+    refused("[rain]\nmost_drops = 0", 2, "allowed: 1 to 1073741824");
+    refused("[rain]\nmost_drops = 10000000000", 2, "allowed: 1 to 1073741824");
+    refused("[rain]\nbounce = { share = 1.5 }", 2, "allowed: 0 to 1");
+    refused("[rain]\nbounce = { longest_s = nan }", 2, "allowed: 0.01 to 10 s");
+}
+
+#[test]
 fn t11_keys_are_known_and_stand_once() {
     says(
         "[rain]\n  rate = 5",
         "line 2, column 3: rain.rate: unknown key \"rate\", perhaps rate_mm_h; allowed: rate_mm_h, distribution, \
-         gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, box_m",
+         gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, volume, box_m, cylinder, most_drops, drag, bounce",
     );
     says(
         "[rian]\nrate_mm_h = 5",

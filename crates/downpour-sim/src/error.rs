@@ -2,6 +2,9 @@
 
 use downpour_drop::DropError;
 
+/// Memory of a drop, with what its making needs.
+const BYTES_PER_DROP: u64 = 34;
+
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -18,15 +21,27 @@ pub enum SimError {
         /// The range, in words.
         allowed: &'static str,
     },
+    /// The drops do not fit into memory.
+    #[error("{drops} drops need {gib:.1} GiB; allowed: what this machine has (fewer drops need less)")]
+    Memory {
+        /// How many.
+        drops: u64,
+        /// What they need.
+        gib: f64,
+    },
     /// The physics of drops does not know it.
     #[error(transparent)]
     Drop(#[from] DropError),
 }
 
 impl SimError {
-    /// The exit code of the command for this error: 2, bad input.
+    pub(crate) fn memory(drops: u64) -> Self {
+        Self::Memory { drops, gib: (drops * BYTES_PER_DROP) as f64 / f64::from(1 << 30) }
+    }
+
+    /// The exit code of the command for this error: 3 for memory, 2 for bad input.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
-        2
+        if matches!(self, Self::Memory { .. }) { 3 } else { 2 }
     }
 }

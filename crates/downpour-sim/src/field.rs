@@ -1,4 +1,4 @@
-//! Rain in still air, in closed form.
+//! Rain in still air, or in a wind that is the same everywhere, in closed form.
 //!
 //! The field has no borders, no state and no step: where its drops are at a time is a function of (seed, time), so any
 //! number of cameras, in any order, at any frame rate, sees the same drops.
@@ -12,17 +12,24 @@
 //! - a drop falls straight at its own speed, and neighbours overtake each other as their sizes say;
 //! - of a column only the part in view is looked at, whatever the time.
 //!
+//! Wind carries all drops of a chain alike: its displacement, which follows the wind as the drop's size lets it, is added to
+//! their places ([`downpour_wind::UniformWind`]). What stands in the way of drops is found along their paths
+//! ([`RainField::visible_among`]).
+//!
 //! Limit: drops of one chain share their size, H apart; H is about 8 m per millimetre of diameter, up to 64 m.
 
 use downpour_drop::distribution::{DropSizeDistribution, SampleTable, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_pcg4d, seed_words};
+use downpour_wind::{UniformWind, Wind};
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::SimError;
+use crate::drift::Drift;
 use crate::poisson::poisson;
+use crate::shelter::{Obstacles, keep_open};
 use crate::view::{Bounds, View};
 
 /// Classes of diameter per factor of two.
@@ -36,6 +43,28 @@ const CHAIN_COUNT: u32 = 8200;
 const CHAIN: u32 = 8201;
 const PLACE: u32 = 8202;
 
+/// Where a drop comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DropKind {
+    /// The sky.
+    #[default]
+    Falling,
+    /// A surface that another drop met.
+    Bounced,
+}
+
+impl DropKind {
+    /// As lists of drops name it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Falling => "falling",
+            Self::Bounced => "bounced",
+        }
+    }
+}
+
 /// A drop at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingDrop {
@@ -47,6 +76,8 @@ pub struct FallingDrop {
     pub diameter: f32,
     /// The same drop at another time or in another picture has the same number.
     pub id: u64,
+    /// Where it comes from.
+    pub kind: DropKind,
 }
 
 /// The drops that a camera can resolve.
@@ -65,6 +96,8 @@ pub struct VisibleDrops {
 struct Class {
     seed: [u32; 2],
     largest: f64,
+    /// Terminal speeds of the smallest and the largest, m/s.
+    speeds: [f64; 2],
     /// Drops per cubic metre.
     density: f64,
     sizes: SampleTable,
@@ -79,6 +112,7 @@ struct Class {
 pub struct RainField {
     classes: Vec<Class>,
     speed: TerminalSpeed,
+    wind: UniformWind,
 }
 
 /// Where a chain is and what it carries.
@@ -90,6 +124,9 @@ struct Chain {
     speed: f64,
     /// Height of the drop k = 0 now, metres.
     height: f64,
+    /// How far the wind has carried it, metres, and the velocity that it has from it.
+    carried: DVec3,
+    wind: DVec3,
 }
 
 impl RainField {
@@ -118,6 +155,7 @@ impl RainField {
                 classes.push(Class {
                     seed: class_seed(seed, k),
                     largest: edge(k + 1),
+                    speeds: [edge(k), edge(k + 1)].map(|d| speed.at(d).unwrap_or(0.0)),
                     density: part.number_density(),
                     sizes: part.sample_table(SampledBy::Number),
                     edge: (0.25 * mm).clamp(0.05, 2.0),
@@ -125,13 +163,34 @@ impl RainField {
                 });
             }
         }
-        Ok(Self { classes, speed })
+        Ok(Self { classes, speed, wind: Wind::default().air().clone() })
+    }
+
+    /// The same rain in a wind: at time 0 its drops are where they would be in still air.
+    #[must_use]
+    pub fn with_wind(self, wind: UniformWind) -> Self {
+        Self { wind, ..self }
     }
 
     /// Drops per cubic metre.
     #[must_use]
     pub fn number_density(&self) -> f64 {
         self.classes.iter().map(|class| class.density).sum()
+    }
+
+    /// The drops in a picture at a time in seconds, but for those that something has stopped on their way.
+    ///
+    /// # Errors
+    /// As [`RainField::visible`].
+    pub fn visible_among(
+        &self,
+        obstacles: &Obstacles<'_>,
+        view: &View,
+        time_s: f64,
+    ) -> Result<VisibleDrops, SimError> {
+        let mut visible = self.visible(view, time_s)?;
+        keep_open(&mut visible.drops, obstacles, &self.speed, &self.wind, time_s);
+        Ok(visible)
     }
 
     /// The drops in a picture at a time in seconds.
@@ -142,6 +201,7 @@ impl RainField {
         view.check()?;
         check_time(time_s)?;
         let least_pixels = self.affordable(view);
+        let drift = Drift::new(&self.wind, time_s);
         let mut drops = Vec::new();
         let mut simulated = 0;
         for class in &self.classes {
@@ -149,7 +209,7 @@ impl RainField {
             if range < view.near {
                 continue;
             }
-            let (found, tried) = self.visible_of(class, view, least_pixels, time_s);
+            let (found, tried) = self.visible_of(class, view, least_pixels, time_s, &drift);
             drops.extend(found);
             simulated += tried;
         }
@@ -174,12 +234,13 @@ impl RainField {
             return Err(SimError::OutOfRange { quantity, found, unit, allowed });
         }
         let bounds = Bounds { low, high };
+        let drift = Drift::new(&self.wind, time_s);
         let mut drops = Vec::new();
         for class in &self.classes {
-            let [xs, zs] = class.columns(&bounds);
+            let [xs, zs] = class.columns(&bounds, &drift);
             for ix in xs {
                 for iz in zs.clone() {
-                    self.drops_of_column(class, [ix, iz], &bounds, time_s, |drop| {
+                    self.drops_of_column(class, [ix, iz], &bounds, time_s, &drift, |drop| {
                         if drop.position.cmpge(low).all() && drop.position.cmplt(high).all() {
                             drops.push(drop);
                         }
@@ -198,6 +259,8 @@ impl RainField {
     pub fn measured_rate_mm_h(&self, place: DVec3, time_s: f64) -> Result<f64, SimError> {
         check_time(time_s)?;
         View { eye: place, ..View::default() }.check()?;
+        let drift = Drift::new(&self.wind, time_s);
+        let still = Drift::new(&Wind::default().air().clone(), 0.0);
         let flux = |class: &Class| {
             let per_column = class.density * class.edge * class.edge * class.period;
             let side = (2000.0 / per_column.max(1.0e-6)).sqrt().ceil().clamp(1.0, 32.0);
@@ -206,12 +269,13 @@ impl RainField {
             let corner = (place / class.edge).floor() * class.edge;
             let middle = DVec3::new(corner.x, place.y, corner.z);
             let bounds = Bounds { low: middle - half, high: middle + half };
-            let [xs, zs] = class.columns(&bounds);
+            // Whole columns, wherever the wind has carried them.
+            let [xs, zs] = class.columns(&bounds, &still);
             let columns = (xs.end() - xs.start() + 1) * (zs.end() - zs.start() + 1);
             let mut sum = 0.0;
             for ix in xs {
                 for iz in zs.clone() {
-                    self.drops_of_column(class, [ix, iz], &bounds, time_s, |drop| {
+                    self.drops_of_column(class, [ix, iz], &bounds, time_s, &drift, |drop| {
                         let d = f64::from(drop.diameter);
                         sum += d * d * d * -f64::from(drop.velocity[1]);
                     });
@@ -244,24 +308,27 @@ impl RainField {
         view: &View,
         least_pixels: f64,
         time_s: f64,
+        drift: &Drift,
     ) -> (Vec<FallingDrop>, u64) {
         let range = view.range(class.largest, least_pixels);
         let bounds = view.bounds(range);
-        let [xs, zs] = class.columns(&bounds);
+        let [xs, zs] = class.columns(&bounds, drift);
+        let [least, most] = drift.span(class.speeds[0], class.speeds[1]);
+        let (carried, spread) = (least.midpoint(most), 0.5 * (most - least).length());
         let middle = (bounds.low.y + bounds.high.y) * 0.5;
         let half = (bounds.high.y - bounds.low.y) * 0.5;
-        let radius = (0.5 * class.edge * class.edge + half * half).sqrt();
+        let radius = (0.5 * class.edge * class.edge + half * half).sqrt() + spread;
         let rows: Vec<(Vec<FallingDrop>, u64)> = xs
             .into_par_iter()
             .map(|ix| {
                 let (mut found, mut tried) = (Vec::new(), 0);
                 for iz in zs.clone() {
-                    let x = (ix as f64 + 0.5) * class.edge;
-                    let z = (iz as f64 + 0.5) * class.edge;
+                    let x = (ix as f64 + 0.5) * class.edge + carried.x;
+                    let z = (iz as f64 + 0.5) * class.edge + carried.z;
                     if !view.within_sides(DVec3::new(x, middle, z) - view.eye, radius) {
                         continue;
                     }
-                    self.drops_of_column(class, [ix, iz], &bounds, time_s, |drop| {
+                    self.drops_of_column(class, [ix, iz], &bounds, time_s, drift, |drop| {
                         tried += 1;
                         let diameter = f64::from(drop.diameter);
                         let range = view.range(diameter, least_pixels);
@@ -284,6 +351,7 @@ impl RainField {
         column: [i64; 2],
         bounds: &Bounds,
         time_s: f64,
+        drift: &Drift,
         mut each: impl FnMut(FallingDrop),
     ) {
         let [a, b, c, d] = rng_pcg4d([column[0] as u32, column[1] as u32, class.seed[0], class.seed[1]]);
@@ -294,8 +362,9 @@ impl RainField {
             let diameter = class.sizes.sample(size);
             let speed = self.speed.at(f64::from(diameter)).unwrap_or(0.0);
             let phase = (f64::from(high) + f64::from(low) / 4_294_967_296.0) / 4_294_967_296.0;
-            let height = phase * class.period - speed * time_s;
-            let chain = Chain { column: key, index, diameter, speed, height };
+            let [carried, wind] = drift.of(speed);
+            let height = phase * class.period - speed * time_s + carried.y;
+            let chain = Chain { column: key, index, diameter, speed, height, carried, wind };
             let first = ((bounds.low.y - height) / class.period).ceil() as i64;
             let last = ((bounds.high.y - height) / class.period).floor() as i64;
             for k in first..=last {
@@ -306,10 +375,14 @@ impl RainField {
 }
 
 impl Class {
-    /// Columns along x and along z that meet a box.
-    fn columns(&self, bounds: &Bounds) -> [std::ops::RangeInclusive<i64>; 2] {
+    /// Columns along x and along z whose drops the wind may have carried into a box.
+    fn columns(&self, bounds: &Bounds, drift: &Drift) -> [std::ops::RangeInclusive<i64>; 2] {
+        let [least, most] = drift.span(self.speeds[0], self.speeds[1]);
         let cell = |x: f64| (x / self.edge).floor() as i64;
-        [cell(bounds.low.x)..=cell(bounds.high.x), cell(bounds.low.z)..=cell(bounds.high.z)]
+        [
+            cell(bounds.low.x - most.x)..=cell(bounds.high.x - least.x),
+            cell(bounds.low.z - most.z)..=cell(bounds.high.z - least.z),
+        ]
     }
 }
 
@@ -319,13 +392,14 @@ impl Chain {
         let unit = |word: u32| (f64::from(word) + 0.5) / 4_294_967_296.0;
         FallingDrop {
             position: DVec3::new(
-                (column[0] as f64 + unit(x)) * class.edge,
+                (column[0] as f64 + unit(x)) * class.edge + self.carried.x,
                 self.height + k as f64 * class.period,
-                (column[1] as f64 + unit(z)) * class.edge,
+                (column[1] as f64 + unit(z)) * class.edge + self.carried.z,
             ),
-            velocity: [0.0, -self.speed as f32, 0.0],
+            velocity: (self.wind - DVec3::Y * self.speed).as_vec3().to_array(),
             diameter: self.diameter,
             id: u64::from(high) << 32 | u64::from(low),
+            kind: DropKind::Falling,
         }
     }
 }

@@ -1,14 +1,30 @@
 //! Where the drops of a rain are.
 //!
-//! - [`field`]: rain in still air in closed form: any place, any time, the same drops from the same seed;
-//! - [`view`]: what a camera can resolve of it.
+//! - [`field`]: rain in closed form, in still air or in a wind that is the same everywhere: any place, any time, the same
+//!   drops from the same seed, but for those that something has stopped ([`shelter`]);
+//! - [`simulation`]: rain step by step in a volume that follows the camera: any wind, bounces, impacts; on a GPU as well
+//!   (`gpu`, feature `wgpu`);
+//! - [`collision`]: what stops its drops: a map of the surfaces that the rain meets;
+//! - [`motion`], [`volume`], [`step`]: what a step is made of;
+//! - [`view`]: what a camera can resolve.
 //!
 //! Units are SI; rates are in mm/h where the name says so. Axes are those of glTF: right-handed, +Y up.
 
+pub mod collision;
+mod drift;
 mod error;
 pub mod field;
+#[cfg(feature = "wgpu")]
+pub mod gpu;
+pub mod motion;
+mod plan;
 mod poisson;
+mod population;
+pub mod shelter;
+pub mod simulation;
+pub mod step;
 pub mod view;
+pub mod volume;
 
 pub use error::SimError;
 

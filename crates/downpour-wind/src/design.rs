@@ -14,6 +14,40 @@ pub enum WindForm {
     Point,
 }
 
+/// How a line form is kept finite at its axis. Point forms have Rosenhead's core. The laws stand in
+/// [`primitive`](crate::primitive).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WindCore {
+    /// r / (r^2 + e^2): smooth, fastest at the core radius with half of what Rankine's has.
+    #[default]
+    Rosenhead,
+    /// Turns as a solid within the core radius; beyond it nothing is changed.
+    Rankine,
+    /// A normal distribution of rotation or outflow: what viscosity makes of a line.
+    LambOseen,
+}
+
+impl WindCore {
+    /// Every core.
+    pub const ALL: [Self; 3] = [Self::Rosenhead, Self::Rankine, Self::LambOseen];
+
+    /// Its name in files and arguments.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rosenhead => "rosenhead",
+            Self::Rankine => "rankine",
+            Self::LambOseen => "lamb-oseen",
+        }
+    }
+
+    /// The core of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|core| core.name() == name)
+    }
+}
+
 /// The same wind everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindUniform {
@@ -37,6 +71,8 @@ pub struct WindSingularity {
     pub axis: Vec3,
     /// 0.01 to 1e4 m. Two cells of a grid at least, if the grid is to show it.
     pub core_radius: f32,
+    /// What the core is like; points have Rosenhead's.
+    pub core: WindCore,
 }
 
 /// A sink at the base, a source at the top, a vortex about the axis (Rousseau 2008, 3.1), and the updraft that carries the
@@ -80,7 +116,7 @@ impl WindPrimitive {
     /// Nothing if every number is in its range.
     ///
     /// # Errors
-    /// [`WindError::OutOfRange`] or [`WindError::ZeroAxis`] for the first that is not.
+    /// [`WindError::OutOfRange`] or [`WindError::ZeroAxis`] for the first that is not; [`WindError::CoreOfPoint`].
     pub fn check(&self) -> Result<(), WindError> {
         match self {
             Self::Uniform(wind) => {
@@ -103,6 +139,9 @@ impl WindSingularity {
         in_range("strength", self.strength, unit_of_strength, &(smallest..=1.0e6), allowed)?;
         place("centre", self.centre)?;
         core(self.core_radius)?;
+        if self.form == WindForm::Point && self.core != WindCore::Rosenhead {
+            return Err(WindError::CoreOfPoint { found: self.core.name() });
+        }
         unit("axis", self.axis).map(|_| ())
     }
 }

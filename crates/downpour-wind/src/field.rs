@@ -1,6 +1,6 @@
 //! The wind in the cells of a box (Rousseau 2008, 3.2 and 5.1.2). Twin of `shaders/wgsl/wind/field.wgsl`.
 
-use glam::{UVec3, Vec3};
+use glam::{DVec3, UVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::design::WindPrimitive;
@@ -9,6 +9,7 @@ use crate::grid::WindGrid;
 use crate::mask::WindMask;
 use crate::matrix::WindMatrix;
 use crate::primitive::velocity;
+use crate::turbulence::{WindTurbulenceMode, wind_turbulence_velocity};
 
 /// A grid as the shader takes it. The same layout as `WindFieldGrid` in WGSL.
 #[repr(C)]
@@ -20,8 +21,8 @@ pub struct WindFieldGrid {
     pub primitives: u32,
     /// Edges of a cell, m.
     pub cell: [f32; 3],
-    /// Padding of the WGSL layout.
-    pub padding_1: u32,
+    /// How many waves of turbulence there are.
+    pub modes: u32,
     /// Their inverses, 1/m.
     pub per_cell: [f32; 3],
     /// Padding of the WGSL layout.
@@ -33,15 +34,15 @@ pub struct WindFieldGrid {
 }
 
 impl WindFieldGrid {
-    /// A grid on which `primitives` matrices blow.
+    /// A grid on which `primitives` matrices and `modes` waves of turbulence blow.
     #[must_use]
-    pub fn new(grid: &WindGrid, primitives: u32) -> Self {
+    pub fn new(grid: &WindGrid, primitives: u32, modes: u32) -> Self {
         let cell = grid.cell();
         Self {
             low: grid.low().to_array(),
             primitives,
             cell: cell.to_array(),
-            padding_1: 0,
+            modes,
             per_cell: cell.recip().to_array(),
             padding_2: 0,
             size: grid.size(),
@@ -115,13 +116,19 @@ pub fn wind_field_mix(corners: &[Vec3; 8], share: Vec3) -> Vec3 {
 pub fn wind_field_cell(
     grid: &WindFieldGrid,
     matrices: &[WindMatrix],
+    modes: &[WindTurbulenceMode],
     openness: f32,
     cell: UVec3,
 ) -> [f32; 4] {
     if openness <= 0.0 {
         return [0.0; 4];
     }
-    let [x, y, z] = (velocity(matrices, wind_field_centre(grid, cell)) * openness).to_array();
+    let at = wind_field_centre(grid, cell);
+    let offset = at - Vec3::from(grid.low);
+    let sum = modes
+        .iter()
+        .fold(velocity(matrices, at), |sum, mode| sum + wind_turbulence_velocity(mode, offset));
+    let [x, y, z] = (sum * openness).to_array();
     [x, y, z, openness]
 }
 
@@ -131,6 +138,7 @@ pub struct WindField {
     grid: WindGrid,
     uniform: WindFieldGrid,
     matrices: Vec<WindMatrix>,
+    modes: Vec<WindTurbulenceMode>,
     cells: Vec<[f32; 4]>,
 }
 
@@ -140,18 +148,39 @@ impl WindField {
     /// # Errors
     /// As [`WindMatrix::encode`]; [`WindError::MaskSize`] if the mask is of another grid.
     pub fn new(grid: &WindGrid, primitives: &[WindPrimitive], mask: &WindMask) -> Result<Self, WindError> {
+        Self::with_turbulence(grid, primitives, &[], mask)
+    }
+
+    /// The same with waves of turbulence, which are those that [`Wind::modes`](crate::Wind::modes) gives for this grid.
+    ///
+    /// # Errors
+    /// As [`WindField::new`].
+    pub fn with_turbulence(
+        grid: &WindGrid,
+        primitives: &[WindPrimitive],
+        modes: &[WindTurbulenceMode],
+        mask: &WindMask,
+    ) -> Result<Self, WindError> {
         mask.check(grid)?;
         let matrices = WindMatrix::encode(primitives)?;
-        let uniform = WindFieldGrid::new(grid, matrices.len() as u32);
+        let uniform = WindFieldGrid::new(grid, matrices.len() as u32, modes.len() as u32);
         let cells = mask
             .openness
             .par_iter()
             .enumerate()
             .map(|(i, &openness)| {
-                wind_field_cell(&uniform, &matrices, openness, UVec3::from(grid.coordinates(i)))
+                wind_field_cell(&uniform, &matrices, modes, openness, UVec3::from(grid.coordinates(i)))
             })
             .collect();
-        Ok(Self { grid: *grid, uniform, matrices, cells })
+        Ok(Self { grid: *grid, uniform, matrices, modes: modes.to_vec(), cells })
+    }
+
+    /// The same wind for places relative to `origin`, m: far from the world's origin single precision is coarse, near the eye
+    /// it need not be. Its grid and its primitives stay those of the world.
+    #[must_use]
+    pub fn relative_to(mut self, origin: DVec3) -> Self {
+        self.uniform.low = (self.grid.low().as_dvec3() - origin).as_vec3().to_array();
+        self
     }
 
     /// The wind at a place, m/s, trilinear between the centres of the cells. Beyond the outermost centres it is that of the
@@ -183,6 +212,12 @@ impl WindField {
     #[must_use]
     pub fn matrices(&self) -> &[WindMatrix] {
         &self.matrices
+    }
+
+    /// The waves of turbulence.
+    #[must_use]
+    pub fn modes(&self) -> &[WindTurbulenceMode] {
+        &self.modes
     }
 
     /// Velocity, m/s, and openness of each cell, in the order of memory.

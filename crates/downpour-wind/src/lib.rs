@@ -1,4 +1,4 @@
-//! Wind as a sum of primitives, and the field that they make over a box of cells.
+//! Wind over time as a sum of primitives, gusts and turbulence, and the field that they make over a box of cells.
 //!
 //! After P. Rousseau, V. Jolivet, D. Ghazanfarpour, "GPU rainfall", 2008, section 3 and 5.1.2, who follow J. Wejchert,
 //! D. Haumann 1991.
@@ -6,7 +6,11 @@
 //! - [`design`]: the five primitives with their ranges: uniform, source, sink, vortex, tornado;
 //! - [`matrix`]: the paper's 3x3 matrix of a primitive, and back;
 //! - [`primitive`]: the velocity that one makes, with a core that keeps it finite;
-//! - [`grid`], [`mask`], [`field`]: the sum in the cells of a box, 0 inside objects, trilinear between the cells.
+//! - [`grid`], [`mask`], [`field`]: the sum in the cells of a box, 0 inside objects, trilinear between the cells;
+//! - [`timeline`], [`part`]: parameters with keys over time;
+//! - [`gusts`], [`turbulence`]: fluctuations in time and in space, with the spectra of Kaimal and von Karman;
+//! - [`wind`]: all of it together; [`uniform`]: a wind that is the same everywhere, and what drops in it do;
+//! - `gpu` (feature `wgpu`): the field in a buffer of a GPU.
 //!
 //! Units are SI: metres, m/s. A strength is in m^2/s for line forms (flow per length, circulation) and in m^3/s for point
 //! forms (flow, circulation times length). Axes are those of glTF: right-handed, +Y up.
@@ -34,17 +38,31 @@
 pub mod design;
 mod error;
 pub mod field;
+#[cfg(feature = "wgpu")]
+pub mod gpu;
 pub mod grid;
+pub mod gusts;
 pub mod mask;
 pub mod matrix;
+pub mod part;
 pub mod primitive;
+pub mod timeline;
+pub mod turbulence;
+pub mod uniform;
+pub mod wind;
 
-pub use design::{WindForm, WindPrimitive, WindSingularity, WindTornado, WindUniform};
+pub use design::{WindCore, WindForm, WindPrimitive, WindSingularity, WindTornado, WindUniform};
 pub use error::WindError;
 pub use field::WindField;
 pub use grid::WindGrid;
+pub use gusts::Gusts;
 pub use mask::WindMask;
 pub use matrix::WindMatrix;
+pub use part::{KeyedSingularity, KeyedTornado, WindPart};
+pub use timeline::{Keyed, WIND_KEY_TIMES, WIND_KEYS};
+pub use turbulence::{Turbulence, WindTurbulenceMode};
+pub use uniform::{Followed, UniformWind, UniformWindAt};
+pub use wind::{WIND_PARTS, Wind};
 
 /// The examples of the README, as tests.
 #[cfg(doctest)]

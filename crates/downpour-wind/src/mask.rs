@@ -25,7 +25,7 @@ impl WindMask {
     /// Asks at the centre of each cell, m, whether it is inside an object; in the order of memory.
     #[must_use]
     pub fn from_fn(grid: &WindGrid, mut inside: impl FnMut(Vec3) -> bool) -> Self {
-        let uniform = WindFieldGrid::new(grid, 0);
+        let uniform = WindFieldGrid::new(grid, 0, 0);
         let openness = (0..grid.cells())
             .map(|i| {
                 let at = wind_field_centre(&uniform, UVec3::from(grid.coordinates(i)));

@@ -7,17 +7,17 @@
 //! ```
 //!
 //! The paper has 0 where the core radius stands, and prints no numbers of types: they are the constants
-//! `WIND_PRIMITIVE_*` of `downpour-shaders`. A sink's strength is negative, as in the paper's formula. A tornado is four
+//! `WIND_PRIMITIVE_*` of `downpour-shaders`; a core that is not Rosenhead's is said by the type of its line. A sink's strength is negative, as in the paper's formula. A tornado is four
 //! matrices: updraft (its up leads from base to top), point sink, point source, line vortex.
 
 use downpour_shaders::wind::{
-    WIND_PRIMITIVE_LINE_SINK, WIND_PRIMITIVE_LINE_SOURCE, WIND_PRIMITIVE_LINE_VORTEX,
-    WIND_PRIMITIVE_POINT_SINK, WIND_PRIMITIVE_POINT_SOURCE, WIND_PRIMITIVE_POINT_VORTEX,
-    WIND_PRIMITIVE_UNIFORM, WIND_PRIMITIVE_UPDRAFT,
+    WIND_PRIMITIVE_LAMB_OSEEN, WIND_PRIMITIVE_LINE_SINK, WIND_PRIMITIVE_LINE_SOURCE,
+    WIND_PRIMITIVE_LINE_VORTEX, WIND_PRIMITIVE_POINT_SINK, WIND_PRIMITIVE_POINT_SOURCE,
+    WIND_PRIMITIVE_POINT_VORTEX, WIND_PRIMITIVE_RANKINE, WIND_PRIMITIVE_UNIFORM, WIND_PRIMITIVE_UPDRAFT,
 };
 use glam::Vec3;
 
-use crate::design::{WindForm, WindPrimitive, WindSingularity, WindTornado, WindUniform, unit};
+use crate::design::{WindCore, WindForm, WindPrimitive, WindSingularity, WindTornado, WindUniform, unit};
 use crate::error::WindError;
 
 /// A part of a wind as the shader takes it. Matrices that [`WindMatrix::encode`] makes are in range; others are checked by
@@ -67,7 +67,7 @@ impl WindMatrix {
     fn singularity(at: &WindSingularity, kinds: [u32; 2], sign: f32) -> Result<Self, WindError> {
         let [line, point] = kinds;
         let kind = match at.form {
-            WindForm::Line => line,
+            WindForm::Line => line + number(at.core),
             WindForm::Point => point,
         };
         Ok(Self::new(kind, sign * at.strength, at.core_radius, at.centre, unit("axis", at.axis)?))
@@ -96,10 +96,8 @@ impl WindMatrix {
             let index = matrices.len() - rest.len();
             rest = after;
             let [[number, strength, core_radius], centre, up] = first.rows;
-            let kind = number as u32;
-            if kind as f32 != number || kind > WIND_PRIMITIVE_UPDRAFT {
-                return Err(WindError::UnknownType { index, found: number });
-            }
+            let (kind, core) =
+                type_and_core(number).ok_or(WindError::UnknownType { index, found: number })?;
             let (centre, axis) = (Vec3::from(centre), Vec3::from(up));
             let form = match kind {
                 WIND_PRIMITIVE_POINT_SOURCE | WIND_PRIMITIVE_POINT_SINK | WIND_PRIMITIVE_POINT_VORTEX => {
@@ -107,7 +105,7 @@ impl WindMatrix {
                 }
                 _ => WindForm::Line,
             };
-            let at = WindSingularity { form, strength, centre, axis, core_radius };
+            let at = WindSingularity { form, strength, centre, axis, core_radius, core };
             let primitive = match kind {
                 WIND_PRIMITIVE_UNIFORM => {
                     WindPrimitive::Uniform(WindUniform { speed: strength, direction: axis })
@@ -167,6 +165,33 @@ impl WindMatrix {
     pub fn padded(&self) -> [[f32; 4]; 3] {
         self.rows.map(|[x, y, z]| [x, y, z, 0.0])
     }
+}
+
+/// What a core adds to the type of a line.
+fn number(core: WindCore) -> u32 {
+    match core {
+        WindCore::Rosenhead => 0,
+        WindCore::Rankine => WIND_PRIMITIVE_RANKINE,
+        WindCore::LambOseen => WIND_PRIMITIVE_LAMB_OSEEN,
+    }
+}
+
+/// The type of a matrix without its core, and the core.
+fn type_and_core(number: f32) -> Option<(u32, WindCore)> {
+    let whole = number as u32;
+    if whole as f32 != number {
+        return None;
+    }
+    let core = match whole / WIND_PRIMITIVE_RANKINE {
+        0 => return Some((whole, WindCore::Rosenhead)),
+        1 => WindCore::Rankine,
+        2 => WindCore::LambOseen,
+        _ => return None,
+    };
+    let kind = whole % WIND_PRIMITIVE_RANKINE;
+    let line =
+        matches!(kind, WIND_PRIMITIVE_LINE_SOURCE | WIND_PRIMITIVE_LINE_SINK | WIND_PRIMITIVE_LINE_VORTEX);
+    line.then_some((kind, core))
 }
 
 /// The same primitive with an axis of length 1.

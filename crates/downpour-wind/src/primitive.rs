@@ -2,20 +2,24 @@
 //!
 //! With e the core radius, and r the distance from the axis (line forms) or from the centre (point forms):
 //!
-//! | form | speed of strength 1 | far away | source |
-//! |---|---|---|---|
-//! | line | r / (2 pi (r^2 + e^2)) | 1 / (2 pi r) | Rousseau 2008, 3.1; core: Rosenhead 1930 |
-//! | point | r / (4 pi (r^2 + e^2)^(3/2)) | 1 / (4 pi r^2) | the same core in three dimensions |
+//! | form | speed of strength 1 | far away | largest, and where | source |
+//! |---|---|---|---|---|
+//! | line | r / (2 pi (r^2 + e^2)) | 1 / (2 pi r) | 0.5 / (2 pi e) at e | Rousseau 2008, 3.1; core: Rosenhead 1930 |
+//! | line, Rankine | r / (2 pi max(r, e)^2) | 1 / (2 pi r) | 1 / (2 pi e) at e | Rankine 1858: turns as a solid inside |
+//! | line, Lamb-Oseen | (1 - exp(-r^2 / e^2)) / (2 pi r) | 1 / (2 pi r) | 0.63817 / (2 pi e) at 1.12091 e | Lamb 1932, Oseen 1911: a vortex that viscosity spread |
+//! | point | r / (4 pi (r^2 + e^2)^(3/2)) | 1 / (4 pi r^2) | 0.0306 / e^2 at e / sqrt 2 | Rosenhead's core in three dimensions |
 //!
-//! The speed is outward for a source, inward for a sink, and across the axis for a vortex. It is finite everywhere: at
-//! most 1 / (4 pi e), at r = e (line), or 0.0306 / e^2, at r = e / sqrt 2 (point). Outside it is less than the law without
-//! a core by at most the share e^2 / r^2 (line) or 1.5 e^2 / r^2 (point). A point vortex is the field of Biot and Savart
+//! The speed is outward for a source, inward for a sink, and across the axis for a vortex. It is finite everywhere. With
+//! Rosenhead's core it is outside less than the law without a core by at most the share e^2 / r^2 (line) or 1.5 e^2 / r^2
+//! (point); with Rankine's it is that law, with Lamb and Oseen's it is less by exp(-r^2 / e^2). A point vortex is the field of Biot and Savart
 //! about a short piece of a vortex: its strength is circulation times length.
 
+use downpour_math::ops;
 use downpour_shaders::wind::{
-    WIND_PRIMITIVE_LINE, WIND_PRIMITIVE_LINE_SINK, WIND_PRIMITIVE_LINE_SOURCE, WIND_PRIMITIVE_LINE_VORTEX,
+    WIND_PRIMITIVE_LAMB_OSEEN, WIND_PRIMITIVE_LINE, WIND_PRIMITIVE_LINE_SINK, WIND_PRIMITIVE_LINE_SOURCE, WIND_PRIMITIVE_LINE_VORTEX,
     WIND_PRIMITIVE_POINT, WIND_PRIMITIVE_POINT_SINK, WIND_PRIMITIVE_POINT_SOURCE,
-    WIND_PRIMITIVE_POINT_VORTEX, WIND_PRIMITIVE_UNIFORM, WIND_PRIMITIVE_UPDRAFT,
+    WIND_PRIMITIVE_POINT_VORTEX, WIND_PRIMITIVE_RANKINE, WIND_PRIMITIVE_SERIES, WIND_PRIMITIVE_UNIFORM,
+    WIND_PRIMITIVE_UPDRAFT,
 };
 use glam::Vec3;
 
@@ -31,6 +35,38 @@ pub fn wind_primitive_across(offset: Vec3, axis: Vec3) -> Vec3 {
 #[must_use]
 pub fn wind_primitive_line(strength: f32, squared: f32, core: f32) -> f32 {
     WIND_PRIMITIVE_LINE * strength / (squared + core * core)
+}
+
+/// Speed per distance of a line form with Rankine's core, 1/s; arguments as for [`wind_primitive_line`].
+#[must_use]
+pub fn wind_primitive_rankine(strength: f32, squared: f32, core: f32) -> f32 {
+    WIND_PRIMITIVE_LINE * strength / squared.max(core * core)
+}
+
+/// Speed per distance of a line form with the core of Lamb and Oseen, 1/s; arguments as for [`wind_primitive_line`].
+#[must_use]
+pub fn wind_primitive_lamb_oseen(strength: f32, squared: f32, core: f32) -> f32 {
+    let core_squared = core * core;
+    let x = squared / core_squared;
+    // (1 - exp(-x)) / x; near 0 the difference has no digits.
+    let mut share =
+        1.0 - x * (0.5 - x * (0.16666667 - x * (0.041666668 - x * (0.008333334 - x * 0.0013888889))));
+    if x > WIND_PRIMITIVE_SERIES {
+        share = (1.0 - ops::exp(-x)) / x;
+    }
+    WIND_PRIMITIVE_LINE * strength / core_squared * share
+}
+
+/// Speed per distance of a line form whose core is that of its type, 1/s; arguments as for [`wind_primitive_line`].
+#[must_use]
+pub fn wind_primitive_core(kind: u32, strength: f32, squared: f32, core: f32) -> f32 {
+    if kind >= WIND_PRIMITIVE_LAMB_OSEEN {
+        return wind_primitive_lamb_oseen(strength, squared, core);
+    }
+    if kind >= WIND_PRIMITIVE_RANKINE {
+        return wind_primitive_rankine(strength, squared, core);
+    }
+    wind_primitive_line(strength, squared, core)
 }
 
 /// Speed per distance of a point form, 1/s; `strength` in m^3/s, `squared` is the squared distance from the centre.
@@ -84,11 +120,12 @@ pub fn wind_primitive_velocity(matrix: &WindMatrix, at: Vec3) -> Vec3 {
         return axis * wind_primitive_updraft(strength, across.dot(across), along, height, core);
     }
     let across = wind_primitive_across(offset, up);
-    let line = wind_primitive_line(strength, across.dot(across), core);
-    if kind == WIND_PRIMITIVE_LINE_VORTEX {
+    let line = wind_primitive_core(kind, strength, across.dot(across), core);
+    let form = kind % WIND_PRIMITIVE_RANKINE;
+    if form == WIND_PRIMITIVE_LINE_VORTEX {
         return up.cross(across) * line;
     }
-    if kind == WIND_PRIMITIVE_LINE_SOURCE || kind == WIND_PRIMITIVE_LINE_SINK {
+    if form == WIND_PRIMITIVE_LINE_SOURCE || form == WIND_PRIMITIVE_LINE_SINK {
         return across * line;
     }
     Vec3::ZERO

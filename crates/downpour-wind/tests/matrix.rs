@@ -4,7 +4,7 @@ mod common;
 
 use common::{CENTRE, CORE, STRENGTH, singularity, tornado};
 use downpour_wind::{
-    WindError, WindForm, WindGrid, WindMatrix, WindPrimitive, WindSingularity, WindTornado, WindUniform,
+    WindCore, WindError, WindForm, WindGrid, WindMatrix, WindPrimitive, WindSingularity, WindTornado, WindUniform,
 };
 use glam::Vec3;
 
@@ -19,6 +19,9 @@ fn all() -> Vec<WindPrimitive> {
         WindPrimitive::Source(unit(WindForm::Point)),
         WindPrimitive::Sink(unit(WindForm::Point)),
         WindPrimitive::Vortex(unit(WindForm::Point)),
+        WindPrimitive::Vortex(WindSingularity { core: WindCore::LambOseen, ..unit(WindForm::Line) }),
+        WindPrimitive::Source(WindSingularity { core: WindCore::Rankine, ..unit(WindForm::Line) }),
+        WindPrimitive::Sink(WindSingularity { core: WindCore::LambOseen, ..unit(WindForm::Line) }),
     ]
 }
 
@@ -65,7 +68,7 @@ fn a_slanted_tornado_comes_back_to_rounding() {
 #[test]
 fn foreign_matrices_are_checked() {
     let good = WindMatrix::encode(&all()).expect("in range");
-    for kind in [-1.0, 0.5, 8.0, 1.0e20, f32::NAN, f32::INFINITY] {
+    for kind in [-1.0, 0.5, 8.0, 12.0, 15.0, 16.0, 20.0, 24.0, 25.0, 1.0e20, f32::NAN, f32::INFINITY] {
         let mut matrices = good.clone();
         matrices[2].rows[0][0] = kind;
         let error = WindMatrix::decode(&matrices).expect_err("no such type");
@@ -138,6 +141,11 @@ fn numbers_out_of_range_are_named() {
     );
     assert_eq!(found(WindPrimitive::Sink(WindSingularity { strength: -1.0, ..at })), ("strength", -1.0));
     assert!(WindMatrix::encode(&[WindPrimitive::Vortex(WindSingularity { strength: -1.0, ..at })]).is_ok());
+    let odd = WindSingularity { core: WindCore::Rankine, ..singularity(WindForm::Point) };
+    assert_eq!(
+        WindMatrix::encode(&[WindPrimitive::Source(odd)]),
+        Err(WindError::CoreOfPoint { found: "rankine" })
+    );
     let flat = WindTornado { height: 2.9, ..tornado() };
     assert_eq!(found(WindPrimitive::Tornado(flat)).0, "height");
     let text = WindMatrix::encode(&[WindPrimitive::Vortex(zero)]).expect_err("no core").to_string();

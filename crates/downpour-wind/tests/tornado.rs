@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use common::{circulation, close, flux_sphere, frame, tornado, wind};
 use downpour_wind::primitive::wind_primitive_updraft;
-use downpour_wind::{WindForm, WindPrimitive, WindSingularity, WindTornado};
+use downpour_wind::{WindCore, WindForm, WindPrimitive, WindSingularity, WindTornado};
 use glam::DVec3;
 
 const Q: f64 = 500.0;
@@ -48,6 +48,7 @@ fn line_forms_cancel_and_ours_do_not() {
         centre,
         axis: tornado.axis,
         core_radius: tornado.core_radius,
+        core: WindCore::Rosenhead,
     };
     let top = tornado.base + tornado.axis.normalize() * tornado.height;
     let printed = wind(&[WindPrimitive::Sink(line(tornado.base)), WindPrimitive::Source(line(top))]);

@@ -18,7 +18,7 @@ use downpour::render::rain::{DropMasks, Rain, RainOptions};
 use downpour::render::stage::Stage;
 use downpour::scene::Budget;
 use downpour::scene::weather::{Roots, Weather, load};
-use downpour::sim::field::FallingDrop;
+use downpour::sim::field::{DropKind, FallingDrop};
 
 /// Metres.
 const FARTHEST: f32 = 10.0;
@@ -100,5 +100,6 @@ fn drop(stage: &Stage, index: u32, diameter: f32) -> FallingDrop {
         velocity: [0.0; 3],
         diameter,
         id: u64::from(index),
+        kind: DropKind::Falling,
     }
 }

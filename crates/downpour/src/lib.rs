@@ -2,6 +2,7 @@
 //!
 //! | module | crate | what is in it |
 //! |---|---|---|
+//! | [`bvh`] | `downpour-bvh` | the nearest hit of a ray among triangles |
 //! | [`mod@drop`] | `downpour-drop` | one drop (shape, fall speed, oscillation, optics) and many (size distributions) |
 //! | [`mask`] | `downpour-mask` | what a drop does to light: refraction masks, traced, written and read |
 //! | [`scene`] | `downpour-scene` | glTF scenes, sky maps and weather files, behind a guard and a budget |
@@ -31,6 +32,7 @@
 //! Units are SI (metres, seconds, kilograms, radians); a name says so where it is something else (`rate_mm_h`,
 //! `temperature_c`). Axes are those of glTF: right-handed, +Y up.
 
+pub use downpour_bvh as bvh;
 pub use downpour_drop as drop;
 #[cfg(feature = "wgpu")]
 pub use downpour_gpu as gpu;

@@ -1,9 +1,104 @@
-//! How drops move.
+//! How drops move, and the volume that they move in.
 
+use super::collision::COLLISION;
+use crate::common::RNG;
+use crate::drop::fall_speed::FALL_SPEED;
+use crate::wind::FIELD;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[];
+pub const MODULES: &[&Module] =
+    &[&MOTION_CONSTANTS, &MOTION, &VOLUME_CONSTANTS, &VOLUME, &STEP_CONSTANTS, &STEP];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[];
+pub const KERNELS: &[&Kernel] = &[&STEP_KERNEL];
+
+shared_constants! {
+    /// Constants of a drop's motion.
+    MOTION_CONSTANTS at "sim/motion_constants" {
+        /// Diameter per step of its 16 bits, m: 65 535 of them are 9.2 mm.
+        MOTION_DIAMETER_STEP: f32 = 1.4e-7;
+        /// Entries of the table of terminal speeds per metre of diameter.
+        MOTION_TABLE_PER_METRE: f32 = 110000.0;
+        /// The last entry of that table: that of 9.3 mm.
+        MOTION_TABLE_LAST: u32 = 1023;
+        /// The shortest relaxation time, s: a drop without speed has none.
+        MOTION_SHORTEST: f32 = 1.0e-6;
+    }
+}
+
+shared_constants! {
+    /// Angles.
+    VOLUME_CONSTANTS at "sim/volume_constants" {
+        /// 2 pi.
+        VOLUME_TURN: f32 = 6.2831855;
+        /// pi.
+        VOLUME_HALF_TURN: f32 = 3.1415927;
+    }
+}
+
+shared_constants! {
+    /// Constants of the step.
+    STEP_CONSTANTS at "sim/step_constants" {
+        /// Bits of a drop's word that are its diameter.
+        STEP_DIAMETER: u32 = 0xffff;
+        /// Where its kind is in the word.
+        STEP_KIND: u32 = 16;
+        /// Kind: falls from the sky.
+        STEP_FALLING: u32 = 0;
+        /// Kind: came back from a surface.
+        STEP_BOUNCED: u32 = 1;
+        /// Kind: not there; something is above it.
+        STEP_HIDDEN: u32 = 2;
+        /// A periodic box round the eye.
+        STEP_VOLUME_BOX: u32 = 0;
+        /// The pyramid of the picture up to the distance at which a drop is resolved.
+        STEP_VOLUME_VIEW: u32 = 1;
+        /// The rain area of Im & Sung 2022 with their sampling.
+        STEP_VOLUME_AREA: u32 = 2;
+        /// A box that new drops fall into, in the manner of Tariq.
+        STEP_VOLUME_TARIQ: u32 = 3;
+        /// A cylinder that stands in the world, in the manner of Creus and Patow.
+        STEP_VOLUME_CYLINDER: u32 = 4;
+        /// Powers of two of steps that a path is followed back.
+        STEP_BACKS: u32 = 12;
+        /// Tries for a random place.
+        STEP_TRIES: u32 = 8;
+        /// Dimension of the random numbers: whether an impact bounces.
+        STEP_CHANCE: u32 = 8210;
+        /// Dimension of the random numbers: places at the top.
+        STEP_TOP: u32 = 8211;
+        /// Dimensions of the random numbers, a try each: places in the rain area.
+        STEP_AREA: u32 = 8220;
+        /// Distance from the surface at which a bounced drop starts, m.
+        STEP_CLEAR: f32 = 1.0e-3;
+        /// Where an event's word holds how the drop met what.
+        STEP_EVENT_KIND: u32 = 30;
+        /// pi / 6 in units of the gauge, 1e-13 m^3.
+        STEP_GAUGE_PER_CUBE: f32 = 5.2359878e12;
+    }
+}
+
+/// How a drop moves in the wind. Twin: `downpour_sim::motion`.
+pub static MOTION: Module = Module {
+    path: "sim/motion.wgsl",
+    wgsl: include_str!("../../wgsl/sim/motion.wgsl"),
+    uses: &[&MOTION_CONSTANTS, &FALL_SPEED],
+};
+
+/// The volume that drops are in. Twin: `downpour_sim::volume`.
+pub static VOLUME: Module = Module {
+    path: "sim/volume.wgsl",
+    wgsl: include_str!("../../wgsl/sim/volume.wgsl"),
+    uses: &[&VOLUME_CONSTANTS],
+};
+
+/// The step. Twin: `downpour_sim::step`.
+pub static STEP: Module = Module {
+    path: "sim/step.wgsl",
+    wgsl: include_str!("../../wgsl/sim/step.wgsl"),
+    uses: &[&STEP_CONSTANTS, &MOTION, &VOLUME, &COLLISION, &FIELD, &RNG],
+};
+
+/// One invocation per drop.
+pub static STEP_KERNEL: Kernel = Kernel { entry: "main_step", module: &STEP, workgroup: [256, 1, 1] };

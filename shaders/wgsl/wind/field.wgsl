@@ -1,5 +1,5 @@
-// The wind in the cells of a box: the sum of the primitives at their centres, less inside objects; and how it is
-// looked up between them.
+// The wind in the cells of a box: the sum of the primitives and of the waves of turbulence at their centres, less inside
+// objects; and how it is looked up between them.
 //
 // Rousseau 2008, 3.2 and 5.1.2. A cell is x, y, z, with x the fastest in memory. Between the centres of cells the wind is
 // trilinear; beyond the outermost centres it is that of the nearest point between them.
@@ -10,8 +10,11 @@ struct WindFieldGrid {
     low: vec3f,
     // How many primitives there are.
     primitives: u32,
-    // Edges of a cell, m, and their inverses.
+    // Edges of a cell, m.
     cell: vec3f,
+    // How many waves of turbulence there are.
+    modes: u32,
+    // Inverses of the edges, 1/m.
     per_cell: vec3f,
     // How many cells there are along each edge.
     size: vec3u,
@@ -30,6 +33,7 @@ struct WindFieldPlace {
 @group(0) @binding(2) var<storage, read> wind_field_openness: array<f32>;
 // Velocity, m/s, and openness.
 @group(0) @binding(3) var<storage, read_write> wind_field_cells: array<vec4f>;
+@group(0) @binding(4) var<storage, read> wind_field_modes: array<WindTurbulenceMode>;
 
 // The centre of a cell.
 fn wind_field_centre(grid: WindFieldGrid, cell: vec3u) -> vec3f {
@@ -76,6 +80,10 @@ fn wind_field_cell(cell: vec3u) -> vec4f {
     var sum = vec3f(0.0);
     for (var k = 0u; k < wind_field_grid.primitives; k += 1u) {
         sum += wind_primitive_velocity(wind_field_primitives[k], at);
+    }
+    let offset = at - wind_field_grid.low;
+    for (var k = 0u; k < wind_field_grid.modes; k += 1u) {
+        sum += wind_turbulence_velocity(wind_field_modes[k], offset);
     }
     return vec4f(sum * openness, openness);
 }

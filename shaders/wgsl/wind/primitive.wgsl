@@ -7,7 +7,8 @@
 // Laws: with e the core radius, r the distance from the axis (line) or the centre (point),
 //   line   r / (2 pi (r^2 + e^2))       -> 1 / (2 pi r)     Rousseau 2008; core: Rosenhead 1930
 //   point  r / (4 pi (r^2 + e^2)^(3/2)) -> 1 / (4 pi r^2)   the same core in three dimensions
-// outward for sources, across up for vortices. The updraft is the point source's density of divergence,
+// outward for sources, across up for vortices. A line may have another core, which its type says: Rankine's
+//   r / (2 pi max(r, e)^2), or Lamb and Oseen's (1 - exp(-r^2 / e^2)) / (2 pi r). The updraft is the point source's density of divergence,
 // 3 e^2 / (4 pi (r^2 + e^2)^(5/2)), spread along its line: it carries what a point sink at its base takes in to a point
 // source at its top, and the three together have no divergence anywhere.
 // Twin: downpour_wind::primitive.
@@ -20,6 +21,34 @@ fn wind_primitive_across(offset: vec3f, axis: vec3f) -> vec3f {
 // Speed per distance of a line form; `squared` is the squared distance from the axis.
 fn wind_primitive_line(strength: f32, squared: f32, core: f32) -> f32 {
     return WIND_PRIMITIVE_LINE * strength / (squared + core * core);
+}
+
+// Speed per distance of a line form with Rankine's core, which turns as a solid.
+fn wind_primitive_rankine(strength: f32, squared: f32, core: f32) -> f32 {
+    return WIND_PRIMITIVE_LINE * strength / max(squared, core * core);
+}
+
+// Speed per distance of a line form with the core of Lamb and Oseen, which is a normal distribution.
+fn wind_primitive_lamb_oseen(strength: f32, squared: f32, core: f32) -> f32 {
+    let core_squared = core * core;
+    let x = squared / core_squared;
+    // (1 - exp(-x)) / x; near 0 the difference has no digits.
+    var share = 1.0 - x * (0.5 - x * (0.16666667 - x * (0.041666668 - x * (0.008333334 - x * 0.0013888889))));
+    if x > WIND_PRIMITIVE_SERIES {
+        share = (1.0 - exp(-x)) / x;
+    }
+    return WIND_PRIMITIVE_LINE * strength / core_squared * share;
+}
+
+// Speed per distance of a line form whose core is that of its type.
+fn wind_primitive_core(kind: u32, strength: f32, squared: f32, core: f32) -> f32 {
+    if kind >= WIND_PRIMITIVE_LAMB_OSEEN {
+        return wind_primitive_lamb_oseen(strength, squared, core);
+    }
+    if kind >= WIND_PRIMITIVE_RANKINE {
+        return wind_primitive_rankine(strength, squared, core);
+    }
+    return wind_primitive_line(strength, squared, core);
 }
 
 // Speed per distance of a point form; `squared` is the squared distance from the centre.
@@ -66,11 +95,12 @@ fn wind_primitive_velocity(matrix: mat3x3f, at: vec3f) -> vec3f {
         return axis * wind_primitive_updraft(strength, dot(across, across), along, height, core);
     }
     let across = wind_primitive_across(offset, up);
-    let line = wind_primitive_line(strength, dot(across, across), core);
-    if kind == WIND_PRIMITIVE_LINE_VORTEX {
+    let line = wind_primitive_core(kind, strength, dot(across, across), core);
+    let form = kind % WIND_PRIMITIVE_RANKINE;
+    if form == WIND_PRIMITIVE_LINE_VORTEX {
         return cross(up, across) * line;
     }
-    if kind == WIND_PRIMITIVE_LINE_SOURCE || kind == WIND_PRIMITIVE_LINE_SINK {
+    if form == WIND_PRIMITIVE_LINE_SOURCE || form == WIND_PRIMITIVE_LINE_SINK {
         return across * line;
     }
     return vec3f(0.0);

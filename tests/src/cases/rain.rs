@@ -11,7 +11,7 @@ use downpour_render::rain::{
 use downpour_render::scene::SceneView;
 use downpour_shaders::render::rain::{DROPS, DROPS_KERNEL, REDUCE_KERNEL};
 use downpour_shaders::render::scene::TRACE_KERNEL;
-use downpour_sim::field::FallingDrop;
+use downpour_sim::field::{DropKind, FallingDrop};
 use glam::{DVec3, Vec3};
 
 use super::scene::scene;
@@ -39,6 +39,7 @@ fn drops(eye: Vec3, forward: Vec3) -> Vec<FallingDrop> {
                 velocity: [0.0, -5.0, 0.0],
                 diameter: 0.3e-3 + 7.7e-3 * d * d,
                 id: u64::from(k),
+                kind: DropKind::Falling,
             }
         })
         .collect()

@@ -1,21 +1,24 @@
 //! `shaders/wgsl/wind` against `downpour-wind`.
 
-use downpour_gpu::{ComputeKernel, Gpu, GpuError};
+use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_shaders::wind::{FIELD, FIELD_KERNEL, PRIMITIVE};
+use downpour_shaders::wind::{FIELD, FIELD_KERNEL, PRIMITIVE, TURBULENCE};
 use downpour_wind::field::{
     WindFieldGrid, WindFieldPlace, wind_field_centre, wind_field_corner, wind_field_index, wind_field_mix,
     wind_field_place,
 };
+use downpour_wind::gpu::{GpuWindError, GpuWindField};
 use downpour_wind::primitive::{
-    wind_primitive_across, wind_primitive_line, wind_primitive_point, wind_primitive_rise,
-    wind_primitive_updraft, wind_primitive_velocity,
+    wind_primitive_across, wind_primitive_core, wind_primitive_lamb_oseen, wind_primitive_line,
+    wind_primitive_point, wind_primitive_rankine, wind_primitive_rise, wind_primitive_updraft,
+    wind_primitive_velocity,
 };
+use downpour_wind::turbulence::{wind_turbulence_velocity, wind_turbulence_wave};
 use downpour_wind::{
-    WindField, WindForm, WindGrid, WindMask, WindMatrix, WindPrimitive, WindSingularity, WindTornado,
-    WindUniform,
+    Turbulence, WindCore, WindField, WindForm, WindGrid, WindMask, WindMatrix, WindPrimitive,
+    WindSingularity, WindTornado, WindTurbulenceMode, WindUniform,
 };
-use glam::{UVec3, Vec3};
+use glam::{DVec3, UVec3, Vec3};
 
 use crate::Domain::{Below, LogUniform, Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
@@ -33,10 +36,11 @@ fn matrix_words(random: [u32; 4]) -> Vec<u32> {
     let more =
         |dimension: u32| rng_draw([random[0], random[1]], random[2], random[3], dimension).map(rng_unit);
     let ([a, b, c, d], [x, y, z, _]) = (more(0), more(1));
-    let kind = (random[0] % 8) as f32;
+    // Lines with the two other cores come after the eight.
+    let kind = [0, 1, 2, 3, 4, 5, 6, 7, 9, 10, 11, 17, 18, 19][random[0] as usize % 14] as f32;
     let axis = Vec3::new(x - 0.5, y - 0.5, z + 0.01).normalize();
     // The up of an updraft is as long as the updraft.
-    let up = if kind > 6.5 { axis * (6.0 + 10.0 * a) } else { axis };
+    let up = if kind > 6.5 && kind < 7.5 { axis * (6.0 + 10.0 * a) } else { axis };
     let strength = 80.0 * b - 40.0;
     let centre = [8.0 * c - 4.0, 8.0 * d - 4.0, 8.0 * a - 4.0];
     [[kind, strength, 1.0 + 2.0 * c], centre, up.to_array()].words()
@@ -52,10 +56,11 @@ fn grid_words(random: [u32; 4]) -> Vec<u32> {
     let [x, y, z, _] = rng_draw([random[3], 1], random[0], 0, 0).map(|w| 20.0 + 80.0 * rng_unit(w));
     let edge = Vec3::new(x, y, z);
     let grid = WindGrid::new(edge * -0.5, edge * 0.5, size).expect("a grid");
-    let grid = WindFieldGrid::new(&grid, 3);
+    let grid = WindFieldGrid::new(&grid, 3, 5);
     let mut words = grid.low.words();
     words.push(grid.primitives);
     words.extend(grid.cell.words());
+    words.push(grid.modes);
     words.extend(grid.per_cell.words());
     words.extend(grid.size);
     words
@@ -64,9 +69,9 @@ fn grid_words(random: [u32; 4]) -> Vec<u32> {
 fn grid(args: &mut Args<'_>) -> WindFieldGrid {
     let low = args.f32s();
     let primitives = args.u32();
-    let (cell, per_cell) = (args.f32s(), args.f32s());
+    let (cell, modes, per_cell) = (args.f32s(), args.u32(), args.f32s());
     let size = args.u32s();
-    WindFieldGrid { low, primitives, cell, padding_1: 0, per_cell, padding_2: 0, size, padding_3: 0 }
+    WindFieldGrid { low, primitives, cell, modes, per_cell, padding_2: 0, size, padding_3: 0 }
 }
 
 const QUOTIENT: Tol = Tol::relative(
@@ -74,6 +79,32 @@ const QUOTIENT: Tol = Tol::relative(
     0.0,
     "products, sums of positive numbers, a square root and divisions (2.5 ulp each)",
 );
+
+const EXPONENTIAL: Tol = Tol::relative(
+    6.0e-6,
+    0.0,
+    "1 - exp(-x) for x above 0.25, where exp is promised to 4 ulp of up to 0.78, and divisions",
+);
+
+/// The type of a line with any core.
+fn line_words(random: [u32; 4]) -> Vec<u32> {
+    vec![1 + random[0] % 3 + 8 * (random[1] % 3)]
+}
+
+/// The words of a `WindTurbulenceMode`: waves of 1 to 20 m, up to 5 m/s.
+fn mode_words(random: [u32; 4]) -> Vec<u32> {
+    let [x, y, z, phase] = random.map(rng_unit);
+    let [a, b, c, length] = rng_draw([random[0], random[1]], random[2], random[3], 0).map(rng_unit);
+    let wave = Vec3::new(x - 0.5, y - 0.5, z + 0.01).normalize() / (1.0 + 19.0 * length);
+    let mut words = wave.to_array().words();
+    words.push(phase.to_bits());
+    words.extend([a, b, c].map(|v| 10.0 * v - 5.0).words());
+    words
+}
+
+fn mode(args: &mut Args<'_>) -> WindTurbulenceMode {
+    WindTurbulenceMode { wave: args.f32s(), phase: args.f32(), amplitude: args.f32s(), padding: 0 }
+}
 
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
@@ -96,6 +127,27 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("wind_primitive_line", &PRIMITIVE, &[strength, squared, core], QUOTIENT, |a| {
             wind_primitive_line(a.f32(), a.f32(), a.f32()).words()
         }),
+        FunctionCase::new(
+            "wind_primitive_rankine",
+            &PRIMITIVE,
+            &[strength, squared, core],
+            QUOTIENT,
+            |a| wind_primitive_rankine(a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "wind_primitive_lamb_oseen",
+            &PRIMITIVE,
+            &[strength, squared, core],
+            EXPONENTIAL,
+            |a| wind_primitive_lamb_oseen(a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "wind_primitive_core",
+            &PRIMITIVE,
+            &[Made(line_words), strength, squared, core],
+            EXPONENTIAL,
+            |a| wind_primitive_core(a.u32(), a.f32(), a.f32(), a.f32()).words(),
+        ),
         FunctionCase::new("wind_primitive_point", &PRIMITIVE, &[strength, squared, core], QUOTIENT, |a| {
             wind_primitive_point(a.f32(), a.f32(), a.f32()).words()
         }),
@@ -119,6 +171,20 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 "divisions and a square root (2.5 ulp each); f32 differs from f64 by up to 1e-6 m/s off the axis",
             ),
             |a| wind_primitive_velocity(&matrix(a), vec3(a)).to_array().words(),
+        ),
+        FunctionCase::new(
+            "wind_turbulence_wave",
+            &TURBULENCE,
+            &[Uniform(-100.0, 100.0)],
+            Tol::absolute(1.0e-6, "a polynomial of six terms up to pi / 2; a GPU may fuse its products"),
+            |a| wind_turbulence_wave(a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "wind_turbulence_velocity",
+            &TURBULENCE,
+            &[Made(mode_words), near, near, near],
+            Tol::absolute(2.0e-4, "up to 35 turns, known to 4e-6 of a turn, times 5 m/s; a GPU may fuse the products"),
+            |a| wind_turbulence_velocity(&mode(a), vec3(a)).to_array().words(),
         ),
         FunctionCase::new(
             "wind_field_centre",
@@ -192,35 +258,46 @@ fn primitives() -> Vec<WindPrimitive> {
             centre: Vec3::new(x, 1.0, -2.0),
             axis: Vec3::new(-0.3, 1.0, 0.5),
             core_radius: 2.0,
+            core: WindCore::Rosenhead,
         };
         all.push(WindPrimitive::Source(at));
         all.push(WindPrimitive::Sink(WindSingularity { centre: Vec3::new(-x, 3.0, 4.0), ..at }));
         all.push(WindPrimitive::Vortex(WindSingularity { centre: Vec3::new(x, -2.0, 6.0), ..at }));
     }
+    for (core, z) in [(WindCore::Rankine, -6.0), (WindCore::LambOseen, 6.0)] {
+        all.push(WindPrimitive::Vortex(WindSingularity {
+            form: WindForm::Line,
+            strength: -30.0,
+            centre: Vec3::new(0.0, 0.0, z),
+            axis: Vec3::new(1.0, 0.2, 0.1),
+            core_radius: 3.0,
+            core,
+        }));
+    }
     all
 }
 
-/// A whole field with a ball in it.
-fn field_case(gpu: &Gpu, size: [u32; 3], cut_off: f32) -> Result<Run, GpuError> {
+/// A whole field with a ball in it, by way of the field that keeps its buffers.
+fn field_case(gpu: &Gpu, size: [u32; 3], cut_off: f32, eddies: f64) -> Result<Run, GpuError> {
     let grid = WindGrid::new(Vec3::splat(-10.0), Vec3::new(10.0, 12.0, 9.0), size).expect("a grid");
     let mask = WindMask::from_fn(&grid, |at| (at - Vec3::new(2.0, 0.0, 1.0)).length() < 4.0);
     let mask = mask.with_cut_off(&grid, cut_off).expect("a cut-off");
-    let field = WindField::new(&grid, &primitives(), &mask).expect("a field");
-    let matrices: Vec<[[f32; 4]; 3]> = field.matrices().iter().map(WindMatrix::padded).collect();
-    let poison = vec![[f32::from_bits(POISON); 4]; grid.cells()];
-    let cells = gpu.storage_buffer("wind cells", &poison)?;
-    let kernel = ComputeKernel::new(gpu, &FIELD_KERNEL, &[])?;
-    let bindings = kernel.bind(
-        gpu,
-        &[
-            &gpu.uniform_buffer("wind grid", field.uniform())?,
-            &gpu.storage_buffer("wind primitives", &matrices)?,
-            &gpu.storage_buffer("wind openness", mask.openness())?,
-            &cells,
-        ],
-    )?;
-    gpu.submit(&[kernel.dispatch(&bindings, size.map(|n| n.div_ceil(4)))])?;
-    let made = gpu.read::<[f32; 4]>(&cells)?;
+    let turbulence = Turbulence { speed: eddies, length: 6.0, seed: 4 };
+    let modes = if eddies > 0.0 { turbulence.modes(&grid, DVec3::new(7.0, 0.0, 1.0e4)) } else { Vec::new() };
+    let field = WindField::with_turbulence(&grid, &primitives(), &modes, &mask).expect("a field");
+    let made = GpuWindField::new(gpu, &grid, field.matrices().len(), modes.len())
+        .and_then(|on_gpu| {
+            // Nothing of an earlier wind may stay.
+            let poison = vec![[f32::from_bits(POISON); 4]; grid.cells()];
+            gpu.queue().write_buffer(on_gpu.cells(), 0, bytemuck::cast_slice(&poison));
+            on_gpu.set_mask(&mask)?;
+            on_gpu.update(&primitives(), &modes)?;
+            Ok(gpu.read::<[f32; 4]>(on_gpu.cells())?)
+        })
+        .map_err(|error| match error {
+            GpuWindError::Gpu(error) => error,
+            other => panic!("{other}"),
+        })?;
     let words = |cells: &[[f32; 4]]| cells.iter().flatten().map(|v| v.to_bits()).collect();
     Ok(Run {
         arguments: (0..grid.cells())
@@ -241,12 +318,20 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         tol: Tol::relative(
             1.0e-5,
             2.0e-5,
-            "a sum of eleven velocities up to 7 m/s, each known to 1e-6 of it, at places known to 1e-6 m",
+            "a sum of 13 velocities up to 7 m/s, each known to 1e-6 of it, at places known to 1e-6 m",
         ),
         run,
     };
     vec![
-        field("main_wind_field: every primitive round a ball", |gpu| field_case(gpu, [20, 17, 11], 0.0)),
-        field("main_wind_field: a wide cut-off", |gpu| field_case(gpu, [16, 8, 33], 3.0)),
+        field("main_wind_field: every primitive round a ball", |gpu| field_case(gpu, [20, 17, 11], 0.0, 0.0)),
+        field("main_wind_field: a wide cut-off", |gpu| field_case(gpu, [16, 8, 33], 3.0, 0.0)),
+        KernelCase {
+            tol: Tol::relative(
+                1.0e-5,
+                1.0e-4,
+                "as without turbulence, and up to 48 waves of 2 m/s at angles known to 1e-5",
+            ),
+            ..field("main_wind_field: turbulence too", |gpu| field_case(gpu, [32, 32, 32], 1.0, 2.0))
+        },
     ]
 }

@@ -129,12 +129,6 @@ impl Input {
             let what = "not drawn: their transforms have no inverse or lead too far";
             say(&format!("warning: {}: {} meshes {what}", self.weather.name, stage.left_out));
         }
-        if self.weather.rain.box_m.is_some() {
-            say(&format!(
-                "warning: {}: rain.box_m has no effect: the rain has no borders",
-                self.weather.name
-            ));
-        }
         if stage.triangles == 0 {
             say(&format!("warning: {}: no triangles: a picture of the sky alone", self.weather.name));
         }

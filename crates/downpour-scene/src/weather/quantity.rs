@@ -37,6 +37,10 @@ ranges! {
     TemperatureC: -20.0, 40.0, "-20 to 40 Celsius";
     PressureHpa: 300.0, 1100.0, "300 to 1100 hPa";
     BoxM: 1.0, 1000.0, "1 to 1000 m";
+    RadiusM: 0.5, 1000.0, "0.5 to 1000 m";
+    Share: 0.0, 1.0, "0 to 1";
+    DropSize: 0.05, 1.0, "0.05 to 1";
+    ShortS: 0.01, 10.0, "0.01 to 10 s";
     Brightness: 0.0, 1e9, "0 to 1e9";
     Tint: 0.0, 1.0, "0 to 1";
     TurnDeg: -360.0, 360.0, "-360 to 360 degrees";

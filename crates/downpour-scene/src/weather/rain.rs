@@ -1,7 +1,9 @@
 //! `[rain]`.
 
 use super::fault::Places;
-use super::quantity::{BoxM, GammaShape, In, MedianMm, PressureHpa, RateMmH, TemperatureC};
+use super::quantity::{
+    BoxM, DropSize, Exactly, GammaShape, In, MedianMm, PlaceM, PressureHpa, RadiusM, RateMmH, Share, ShortS, TemperatureC, Whole,
+};
 use crate::error::SceneError;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
@@ -12,6 +14,86 @@ const GAMMA_SHAPE: f64 = 3.0;
 
 /// The lightest rain whose drop sizes differ, in mm/h.
 const LIGHTEST: f64 = downpour_drop::distribution::LIGHTEST_SHAPE_MM_H;
+
+/// Drops that are simulated where the file does not say how many, at most.
+const MOST_DROPS: u32 = 2_000_000;
+
+/// The part of space that is simulated, and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainVolume {
+    /// In closed form while the wind is the same everywhere, else in view.
+    #[default]
+    Auto,
+    /// In closed form: the same drops for every camera and every time.
+    ClosedForm,
+    /// Step by step in what the picture shows.
+    View,
+    /// Step by step in a box that follows the eye (Rousseau 2006).
+    Box,
+    /// The rain area of Im & Sung 2022 with their sampling.
+    #[serde(rename = "im-sung-2022")]
+    ImSung2022,
+    /// A box that drops fall into, in the manner of Tariq 2007.
+    #[serde(rename = "tariq-2007")]
+    Tariq2007,
+    /// A cylinder that stands in the world, in the manner of Creus and Patow 2013.
+    #[serde(rename = "creus-patow-2013")]
+    CreusPatow2013,
+}
+
+/// How drops follow the wind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainDrag {
+    /// As physics has it.
+    #[default]
+    Relaxation,
+    /// By averages, once a step.
+    #[serde(rename = "rousseau-2008")]
+    Rousseau2008,
+}
+
+/// What happens to drops that meet a surface, where they are simulated step by step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainBounce {
+    /// Share of impacts after which a droplet comes back, 0 to 1.
+    pub share: f64,
+    /// Share of the speed along the normal that comes back, 0 to 1.
+    pub restitution: f64,
+    /// Share of the speed along the surface that is lost, 0 to 1.
+    pub grip: f64,
+    /// Diameter of the droplet in that of the drop, 0.05 to 1.
+    pub size: f64,
+    /// The longest time of a droplet, s, 0.01 to 10.
+    pub longest_s: f64,
+}
+
+impl Default for RainBounce {
+    /// A droplet of a quarter of the drop's diameter after a tenth of the impacts.
+    fn default() -> Self {
+        Self { share: 0.1, restitution: 0.25, grip: 0.7, size: 0.25, longest_s: 1.0 }
+    }
+}
+
+/// An upright cylinder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainCylinder {
+    /// Middle of the base, m; `None`: below the eye of the first picture, by half the height.
+    pub base_m: Option<[f64; 3]>,
+    /// 0.5 to 1000 m.
+    pub radius_m: f64,
+    /// 1 to 1000 m.
+    pub height_m: f64,
+}
+
+impl Default for RainCylinder {
+    fn default() -> Self {
+        Self { base_m: None, radius_m: 12.0, height_m: 12.0 }
+    }
+}
 
 /// What rains.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,14 +106,35 @@ pub struct Rain {
     pub seed: u64,
     /// Temperature and pressure of the air.
     pub air: Air,
-    /// Side of the box of rain round the eye, in metres, 1 to 1000; `None` leaves it to the renderer.
+    /// Where and how drops are simulated.
+    pub volume: RainVolume,
+    /// Side of a box of rain, in metres, 1 to 1000; `None` leaves it to the renderer.
     pub box_m: Option<f64>,
+    /// The cylinder of rain.
+    pub cylinder: RainCylinder,
+    /// Drops that are simulated step by step, at most.
+    pub most_drops: u32,
+    /// How drops follow the wind.
+    pub drag: RainDrag,
+    /// What happens to drops that meet a surface.
+    pub bounce: RainBounce,
 }
 
 impl Default for Rain {
     /// 10 mm/h by Marshall & Palmer's law in standard air, seed 0.
     fn default() -> Self {
-        Self { rate_mm_h: 10.0, law: DropSizeLaw::default(), seed: 0, air: Air::standard(), box_m: None }
+        Self {
+            rate_mm_h: 10.0,
+            law: DropSizeLaw::default(),
+            seed: 0,
+            air: Air::standard(),
+            volume: RainVolume::default(),
+            box_m: None,
+            cylinder: RainCylinder::default(),
+            most_drops: MOST_DROPS,
+            drag: RainDrag::default(),
+            bounce: RainBounce::default(),
+        }
     }
 }
 
@@ -45,7 +148,54 @@ pub(super) struct RainTable {
     seed: Option<u64>,
     temperature_c: Option<In<TemperatureC>>,
     pressure_hpa: Option<In<PressureHpa>>,
+    volume: Option<RainVolume>,
     box_m: Option<In<BoxM>>,
+    cylinder: Option<CylinderTable>,
+    most_drops: Option<Whole<1, { 1 << 30 }>>,
+    drag: Option<RainDrag>,
+    bounce: Option<BounceTable>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CylinderTable {
+    base_m: Option<Exactly<In<PlaceM>, 3>>,
+    radius_m: Option<In<RadiusM>>,
+    height_m: Option<In<BoxM>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BounceTable {
+    share: Option<In<Share>>,
+    restitution: Option<In<Share>>,
+    grip: Option<In<Share>>,
+    size: Option<In<DropSize>>,
+    longest_s: Option<In<ShortS>>,
+}
+
+impl BounceTable {
+    fn checked(&self) -> RainBounce {
+        let usual = RainBounce::default();
+        RainBounce {
+            share: self.share.map_or(usual.share, |x| x.0),
+            restitution: self.restitution.map_or(usual.restitution, |x| x.0),
+            grip: self.grip.map_or(usual.grip, |x| x.0),
+            size: self.size.map_or(usual.size, |x| x.0),
+            longest_s: self.longest_s.map_or(usual.longest_s, |x| x.0),
+        }
+    }
+}
+
+impl CylinderTable {
+    fn checked(&self) -> RainCylinder {
+        let usual = RainCylinder::default();
+        RainCylinder {
+            base_m: self.base_m.map(Exactly::numbers),
+            radius_m: self.radius_m.map_or(usual.radius_m, |x| x.0),
+            height_m: self.height_m.map_or(usual.height_m, |x| x.0),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
@@ -91,8 +241,33 @@ impl Rain {
                 }
             }
         }
-        let (seed, box_m) = (table.seed.unwrap_or(default.seed), table.box_m.map(|side| side.0));
-        Ok(Self { rate_mm_h, law, seed, air, box_m })
+        let volume = table.volume.unwrap_or_default();
+        let boxed = matches!(volume, RainVolume::Box | RainVolume::Tariq2007);
+        for (key, given, of, allowed) in [
+            ("rain.box_m", table.box_m.is_some(), boxed, "volume = \"box\" or \"tariq-2007\""),
+            (
+                "rain.cylinder",
+                table.cylinder.is_some(),
+                volume == RainVolume::CreusPatow2013,
+                "volume = \"creus-patow-2013\"",
+            ),
+        ] {
+            if given && !of {
+                return Err(places.bad(key, "a part of another volume", allowed));
+            }
+        }
+        Ok(Self {
+            rate_mm_h,
+            law,
+            seed: table.seed.unwrap_or(default.seed),
+            air,
+            volume,
+            box_m: table.box_m.map(|side| side.0),
+            cylinder: table.cylinder.map_or(default.cylinder, |cylinder| cylinder.checked()),
+            most_drops: table.most_drops.map_or(default.most_drops, |Whole(drops)| drops),
+            drag: table.drag.unwrap_or_default(),
+            bounce: table.bounce.map_or(default.bounce, |bounce| bounce.checked()),
+        })
     }
 }
 

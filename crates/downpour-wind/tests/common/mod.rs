@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use downpour_math::ops::f64::{cos, sin};
 use downpour_wind::primitive::velocity;
-use downpour_wind::{WindForm, WindMatrix, WindPrimitive, WindSingularity, WindTornado};
+use downpour_wind::{WindCore, WindForm, WindMatrix, WindPrimitive, WindSingularity, WindTornado};
 use glam::{DVec3, Vec3};
 
 pub(crate) const STRENGTH: f32 = 40.0;
@@ -20,6 +20,7 @@ pub(crate) fn singularity(form: WindForm) -> WindSingularity {
         centre: CENTRE,
         axis: Vec3::new(1.0, 2.0, -0.5),
         core_radius: CORE,
+        core: WindCore::Rosenhead,
     }
 }
 

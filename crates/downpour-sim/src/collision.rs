@@ -1,0 +1,133 @@
+//! What stops drops: a map of the surfaces that the rain meets.
+//!
+//! Rousseau 2008, 4, looks down on the scene and keeps the height and the normal of the highest surface. This map looks along
+//! the mean fall direction, which wind slants, and keeps four surfaces of each column, so that the road under a bridge stops
+//! the drops that the wind carries there. It is made by rays through the hierarchy of triangles that pictures are made with:
+//! moving objects come with it, and the order of surfaces does not depend on a rasteriser.
+//!
+//! - A surface within a texel is its tangent plane at the centre of the texel, so a slope has no steps. It leaves the depth at
+//!   the centre by 4 texel edges at most.
+//! - Below a surface that faces the rain is solid ground if the next surface faces away, or if there is none. Between other
+//!   surfaces, rays sideways say whether the space is enclosed, as in a house that stands in the ground; if it is not, the upper
+//!   surface is a sheet (a thin roof, a leaf) with air below. Which way a surface faces is said by the order of its corners:
+//!   counter-clockwise seen from outside. Surfaces inside something solid are left out.
+//! - If a column has more than four surfaces, the fourth is the deepest top of something solid: however many leaves a tree has,
+//!   the ground is there.
+//! - Edges are known to half a texel. Surfaces that the fall direction only grazes (walls) are not in the map; a drop that
+//!   enters something solid sideways, far below its top, has met one.
+//!
+//! Outside the map's rectangle everything is open. A drop that is put on a surface may be up to 1 mm below it
+//! ([`COLLISION_CLEARANCE`](downpour_shaders::sim::collision::COLLISION_CLEARANCE)); a drop that is to leave a thin sheet
+//! downwards has to start farther below.
+//!
+//! Twin of `shaders/wgsl/sim/collision.wgsl` and `shaders/wgsl/sim/collision_map.wgsl`.
+
+mod column;
+mod find;
+mod frame;
+mod make;
+mod surface;
+
+use downpour_bvh::{Bvh, BvhNode, BvhTriangle};
+use glam::{UVec2, Vec3};
+use rayon::prelude::*;
+
+pub use column::{CollisionMeeting, CollisionPiece, collision_column};
+pub use find::{
+    CollisionHit, collision_cover, collision_find, collision_inside, collision_open, collision_place,
+    collision_texel, collision_turn, collision_wall,
+};
+pub use frame::{CollisionFrame, CollisionOptions};
+pub use make::{
+    CollisionMapHits, collision_map_add, collision_map_between, collision_map_enclosed, collision_map_faces,
+    collision_map_normal, collision_map_texel, collision_map_walk,
+};
+pub use surface::{
+    CollisionTexel, collision_count, collision_depths, collision_normal, collision_pack, collision_shallow,
+    collision_slope, collision_solid, collision_square,
+};
+
+use crate::SimError;
+
+/// The map on the CPU.
+///
+/// ```
+/// use downpour_bvh::Bvh;
+/// use downpour_sim::collision::{CollisionMap, CollisionOptions};
+/// use glam::Vec3;
+///
+/// // A floor of 10 m, 2 m below the origin.
+/// let (a, b, c, d) = ([-5.0, -2.0, -5.0], [5.0, -2.0, -5.0], [5.0, -2.0, 5.0], [-5.0, -2.0, 5.0]);
+/// let floor = Bvh::new(&[[a, c, b], [a, d, c]]);
+/// let map = CollisionMap::new(&CollisionOptions::default(), &floor)?;
+/// let hit = map.find(Vec3::new(0.3, -1.9, 0.2), Vec3::new(0.3, -2.1, 0.2)).expect("the floor is there");
+/// assert!((hit.share - 0.5).abs() < 1.0e-4 && hit.normal.y > 0.999);
+/// assert!(map.open(Vec3::ZERO) && map.inside(Vec3::new(1.0, -2.5, 1.0)));
+/// # Ok::<(), downpour_sim::SimError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct CollisionMap {
+    frame: CollisionFrame,
+    texels: Vec<CollisionTexel>,
+}
+
+impl CollisionMap {
+    /// The map of a scene. The same bits for any number of threads. Without triangles, everything is open.
+    ///
+    /// # Errors
+    /// As [`CollisionFrame::new`].
+    pub fn new(options: &CollisionOptions, scene: &Bvh) -> Result<Self, SimError> {
+        Self::from_arrays(options, &scene.nodes, &scene.triangles)
+    }
+
+    /// As [`CollisionMap::new`], from the arrays of a [`Bvh`].
+    ///
+    /// # Errors
+    /// As [`CollisionFrame::new`].
+    pub fn from_arrays(
+        options: &CollisionOptions,
+        nodes: &[BvhNode],
+        triangles: &[BvhTriangle],
+    ) -> Result<Self, SimError> {
+        let frame = CollisionFrame::from_arrays(options, nodes, triangles)?;
+        let [width, height] = frame.size;
+        let texels = (0..width * height)
+            .into_par_iter()
+            .map(|i| collision_map_texel(&frame, nodes, triangles, UVec2::new(i % width, i / width)))
+            .collect();
+        Ok(Self { frame, texels })
+    }
+
+    /// Whether nothing is between a place and the sky that the rain comes from.
+    #[must_use]
+    pub fn open(&self, at: Vec3) -> bool {
+        collision_open(&self.frame, &self.texels, at)
+    }
+
+    /// Whether a place is inside something solid.
+    #[must_use]
+    pub fn inside(&self, at: Vec3) -> bool {
+        collision_inside(&self.frame, &self.texels, at)
+    }
+
+    /// What a drop first meets on its straight way from `start` to `end`; `None` if nothing stops it.
+    ///
+    /// A way is followed through 32 texels; what is beyond is not looked at ([`collision_find`] says how far it was).
+    #[must_use]
+    pub fn find(&self, start: Vec3, end: Vec3) -> Option<CollisionHit> {
+        let hit = collision_find(&self.frame, &self.texels, start, end);
+        (hit.kind != downpour_shaders::sim::collision::COLLISION_OPEN).then_some(hit)
+    }
+
+    /// Where the map is, as the shader takes it.
+    #[must_use]
+    pub fn frame(&self) -> &CollisionFrame {
+        &self.frame
+    }
+
+    /// The texels, row by row.
+    #[must_use]
+    pub fn texels(&self) -> &[CollisionTexel] {
+        &self.texels
+    }
+}

@@ -1,0 +1,88 @@
+//! A part of a drop's way within a texel.
+
+use downpour_shaders::sim::collision::{
+    COLLISION_CLEARANCE, COLLISION_OPEN, COLLISION_START, COLLISION_SURFACE, COLLISION_WALL,
+};
+use glam::Vec3;
+
+use super::surface::{collision_count, collision_depths, collision_shallow, collision_solid};
+use super::{CollisionFrame, CollisionTexel};
+
+/// A part of a drop's way within a texel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CollisionPiece {
+    /// Where it begins: texels from the centre, and metres of depth.
+    pub start: Vec3,
+    /// Where it ends.
+    pub end: Vec3,
+    /// How many surfaces were above the drop when it left the texel before; `COLLISION_START`: there was none.
+    pub before: u32,
+}
+
+/// What stops a drop within a texel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CollisionMeeting {
+    /// `COLLISION_OPEN`, `COLLISION_SURFACE` or `COLLISION_WALL`.
+    pub kind: u32,
+    /// Share of the piece, 0 to 1.
+    pub share: f32,
+    /// Which surface.
+    pub layer: u32,
+    /// 1 if the surface was met from below.
+    pub beneath: u32,
+    /// Surfaces above the end of the piece.
+    pub count: u32,
+}
+
+/// What stops a drop within a texel (Rousseau 2008, 5.1.2 and algorithm 1).
+#[must_use]
+pub fn collision_column(
+    map: &CollisionFrame,
+    texel: &CollisionTexel,
+    piece: &CollisionPiece,
+) -> CollisionMeeting {
+    let first = piece.before == COLLISION_START;
+    let start = collision_depths(map, texel, piece.start.truncate());
+    let end = collision_depths(map, texel, piece.end.truncate());
+    let count = collision_count(&start, piece.start.z - if first { COLLISION_CLEARANCE } else { 0.0 });
+    let count_end = collision_count(&end, piece.end.z);
+    let surface = |share, layer, beneath, count| CollisionMeeting {
+        kind: COLLISION_SURFACE,
+        share,
+        layer,
+        beneath,
+        count,
+    };
+    if count > 0 {
+        let layer = count - 1;
+        let solid = collision_solid(texel.surfaces[layer as usize]);
+        let below = piece.start.z - start[layer as usize];
+        let shallow = below <= collision_shallow(map, texel.surfaces[layer as usize]);
+        // A drop that has bounced may still be a little below the surface that it leaves.
+        let leaves = first && shallow && piece.end.z - end[layer as usize] <= below;
+        if solid && !leaves {
+            let kind = if shallow { COLLISION_SURFACE } else { COLLISION_WALL };
+            return CollisionMeeting { kind, ..surface(0.0, layer, 0, count) };
+        }
+        // Planes of neighbouring texels do not meet exactly at the border.
+        if !solid && count > piece.before && shallow {
+            return surface(0.0, layer, 0, count);
+        }
+    }
+    if count_end > count {
+        let before = piece.start.z - start[count as usize];
+        let after = piece.end.z - end[count as usize];
+        let share = (-before / (after - before).max(1.0e-12)).max(0.0).min(1.0);
+        return surface(share, count, 0, count_end);
+    }
+    if count_end < count {
+        let layer = count - 1;
+        if !collision_solid(texel.surfaces[layer as usize]) {
+            let before = piece.start.z - start[layer as usize];
+            let after = piece.end.z - end[layer as usize];
+            let share = (before / (before - after).max(1.0e-12)).max(0.0).min(1.0);
+            return surface(share, layer, 1, count_end);
+        }
+    }
+    CollisionMeeting { kind: COLLISION_OPEN, share: 1.0, layer: 0, beneath: 0, count: count_end }
+}

@@ -1,0 +1,9 @@
+//! The GPU halves, behind the feature `wgpu`.
+
+pub mod collision;
+mod error;
+mod simulation;
+
+pub use collision::GpuCollisionMap;
+pub use error::GpuSimError;
+pub use simulation::{GpuMoment, GpuSimulation};

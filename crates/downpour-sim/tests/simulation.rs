@@ -1,0 +1,346 @@
+//! Rain in volumes that follow a camera: counted, uniform, and the same however fast the steps are.
+
+use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_math::ops::f64 as ops;
+use downpour_sim::simulation::{Drag, Gauge, Moment, SimVolume, Simulation, SimulationOptions};
+use downpour_sim::view::View;
+use downpour_wind::{
+    WindCore, WindField, WindForm, WindGrid, WindMask, WindPrimitive, WindSingularity, WindUniform,
+};
+use glam::{DVec3, Vec3};
+
+fn rain(rate_mm_h: f64) -> DropSizeDistribution {
+    DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h).unwrap()
+}
+
+fn moment<'a>(view: &'a View, wind: Vec3) -> Moment<'a> {
+    Moment { view, origin: DVec3::ZERO, wind, field: None, map: None }
+}
+
+/// A camera at a place that looks along an azimuth and an elevation, radians.
+fn looking(eye: DVec3, azimuth: f64, elevation: f64) -> View {
+    let (level, up) = (ops::cos(elevation), ops::sin(elevation));
+    let forward = DVec3::new(level * ops::sin(azimuth), up, -level * ops::cos(azimuth));
+    let right = forward.cross(DVec3::Y).normalize();
+    View { eye, forward, right, up: right.cross(forward), far: 8.0, ..View::default() }
+}
+
+/// A walk with pans of up to 360 degrees a second, dollies, and jumps.
+fn walk(step: u32) -> View {
+    let t = f64::from(step) / 60.0;
+    let jump = f64::from(step / 20) * 1234.5;
+    let eye = DVec3::new(3.0 * ops::sin(2.0 * t) + jump, 1.7 + ops::cos(3.0 * t), 5.0 * t);
+    looking(eye, std::f64::consts::TAU * t, 0.4 * ops::sin(5.0 * t))
+}
+
+/// Chi-square per degree of freedom of counts that should be equal, in units of its standard deviation above 1.
+fn excess(counts: &[u32]) -> f64 {
+    let mean = counts.iter().map(|&n| f64::from(n)).sum::<f64>() / counts.len() as f64;
+    assert!(mean > 20.0, "{mean} in a cell");
+    let chi: f64 = counts.iter().map(|&n| (f64::from(n) - mean) * (f64::from(n) - mean) / mean).sum();
+    let freedom = counts.len() as f64 - 1.0;
+    (chi - freedom) / (2.0 * freedom).sqrt()
+}
+
+/// Counts in 6 x 6 x 6 parts of the pyramid of equal size, each size of drops in its own.
+fn parts_of_the_view(simulation: &Simulation, view: &View) -> Vec<u32> {
+    let mut counts = vec![0; 216];
+    let (wide, high) = (view.half_width * 1.02, view.half_height * 1.02);
+    for drop in simulation.drops() {
+        let offset = Vec3::from(drop.place).as_dvec3() - view.eye;
+        let range = (f64::from(drop.diameter()) / (view.pixel_angle * view.least_pixels)).min(view.far);
+        let (x, y, z) = (offset.dot(view.right), offset.dot(view.up), offset.dot(view.forward));
+        // Equal parts of the solid angle: slices of the azimuth's share, then of the height within the slice.
+        let share_x = solid(x / z, wide, high) / solid(wide, wide, high);
+        let b = ops::sin(ops::atan2(y, (x * x + z * z).sqrt()));
+        let top = high / (1.0 + high * high + (x / z) * (x / z)).sqrt();
+        let share_y = b / top;
+        let share_z = ops::pow(offset.length() / range, 3.0);
+        let cell = |share: f64, n: f64| (share * n).floor().clamp(0.0, n - 1.0) as usize;
+        counts[cell(0.5 + 0.5 * share_x, 6.0) * 36
+            + cell(0.5 + 0.5 * share_y, 6.0) * 6
+            + cell(share_z, 6.0)] += 1;
+    }
+    counts
+}
+
+/// Signed solid angle of the picture between its middle column and that at `x`.
+fn solid(x: f64, _: f64, high: f64) -> f64 {
+    2.0 * ops::asin(x * high / ((1.0 + x * x) * (1.0 + high * high)).sqrt())
+}
+
+#[test]
+fn a_view_stays_uniform_however_the_camera_moves() {
+    let options = SimulationOptions { most_drops: 60_000, ..SimulationOptions::default() };
+    let wind = Vec3::new(4.0, 0.0, 2.0);
+    let first = walk(0);
+    let mut simulation = Simulation::new(&rain(25.0), &options, &moment(&first, wind)).unwrap();
+    let all = simulation.drops().len();
+    assert!(excess(&parts_of_the_view(&simulation, &first)) < 4.0);
+    for step in 1..=90 {
+        let view = walk(step);
+        simulation.advance(1.0 / 60.0, &moment(&view, wind)).unwrap();
+        if step % 15 == 0 {
+            let found = excess(&parts_of_the_view(&simulation, &view));
+            assert!(found < 4.0, "step {step}: {found} standard deviations");
+        }
+    }
+    assert_eq!(simulation.drops().len(), all);
+    // And when nothing but the rain moves.
+    let view = walk(90);
+    for _ in 0..60 {
+        simulation.advance(1.0 / 60.0, &moment(&view, wind)).unwrap();
+    }
+    let found = excess(&parts_of_the_view(&simulation, &view));
+    assert!(found < 4.0, "at rest: {found} standard deviations");
+}
+
+/// What the test above would say of the paper's sampling.
+#[test]
+fn the_sampling_of_im_and_sung_is_not_uniform() {
+    let view = looking(DVec3::new(0.0, 2.0, 0.0), 0.0, 0.0);
+    let options =
+        SimulationOptions { volume: SimVolume::ImSung, most_drops: 30_000, ..SimulationOptions::default() };
+    let simulation = Simulation::new(&rain(25.0), &options, &moment(&view, Vec3::ZERO)).unwrap();
+    let middle = view.eye + view.forward * 4.0;
+    let near = simulation
+        .drops()
+        .iter()
+        .filter(|drop| (Vec3::from(drop.place).as_dvec3() - middle).length() < 0.5)
+        .count();
+    // A radius uniform in (-r, r): an eighth of it holds an eighth of the drops of the sphere, and more of those in view.
+    assert!(near as f64 > 0.125 * simulation.drops().len() as f64, "{near}");
+}
+
+#[test]
+fn a_box_stays_uniform_however_the_camera_moves() {
+    let size = DVec3::new(8.0, 6.0, 8.0);
+    let options = SimulationOptions {
+        volume: SimVolume::Box { size_m: size.to_array() },
+        most_drops: 60_000,
+        ..SimulationOptions::default()
+    };
+    let wind = Vec3::new(-6.0, 0.0, 3.0);
+    let mut simulation = Simulation::new(&rain(25.0), &options, &moment(&walk(0), wind)).unwrap();
+    let all = simulation.drops().len();
+    for step in 1..=90 {
+        let view = walk(step);
+        simulation.advance(1.0 / 60.0, &moment(&view, wind)).unwrap();
+        if step % 15 == 0 {
+            let centre = view.eye + view.forward * size / 3.0;
+            let mut counts = vec![0; 216];
+            for drop in simulation.drops() {
+                let share = (Vec3::from(drop.place).as_dvec3() - centre) / size + 0.5;
+                assert!(
+                    (share.cmpge(DVec3::splat(-1.0e-4)) & share.cmple(DVec3::splat(1.0001))).all(),
+                    "{share}"
+                );
+                let [x, y, z] = (share * 6.0).floor().clamp(DVec3::ZERO, DVec3::splat(5.0)).to_array();
+                counts[x as usize * 36 + y as usize * 6 + z as usize] += 1;
+            }
+            let found = excess(&counts);
+            assert!(found < 4.0, "step {step}: {found} standard deviations");
+        }
+    }
+    assert_eq!(simulation.drops().len(), all);
+}
+
+/// The rate that falls through a plane is the asked one, wind on.
+#[test]
+fn the_gauge_reads_what_was_asked_for() {
+    let view = View { eye: DVec3::new(0.0, 10.0, 0.0), ..View::default() };
+    // The middle of the box is a third of it before the eye.
+    let size_m = if cfg!(debug_assertions) { [4.0, 4.0, 4.0] } else { [8.0, 6.0, 8.0] };
+    let middle = view.eye + view.forward * size_m[2] / 3.0;
+    let half = 0.49 * size_m[0];
+    let gauge = Gauge {
+        height_m: 10.1,
+        low_m: [middle.x - half, middle.z - half],
+        high_m: [middle.x + half, middle.z + half],
+    };
+    for (rate, most) in [(5.0, 400_000), (25.0, 400_000), (100.0, 400_000)] {
+        let options = SimulationOptions {
+            volume: SimVolume::Box { size_m },
+            most_drops: most,
+            gauge: Some(gauge),
+            ..SimulationOptions::default()
+        };
+        let now = moment(&view, Vec3::new(5.0, 0.0, -3.0));
+        let mut simulation = Simulation::new(&rain(rate), &options, &now).unwrap();
+        let state = simulation.measured_rate_mm_h();
+        assert!((state - rate).abs() < 0.02 * rate, "{rate}: the drops make {state}");
+        let mut caught = downpour_sim::step::StepCaught::default();
+        let steps = 300;
+        for _ in 0..steps {
+            let happened = simulation.advance(10.0 / f64::from(steps), &now).unwrap();
+            caught.drops += happened.caught.drops;
+            caught.volume += happened.caught.volume;
+        }
+        let found = gauge.rate_mm_h(&caught, 10.0);
+        assert!(
+            (found - rate).abs() < 0.02 * rate,
+            "{rate}: {found} through the gauge, {} drops",
+            caught.drops
+        );
+    }
+}
+
+fn vortex() -> WindField {
+    let grid = WindGrid::new(Vec3::splat(-20.0), Vec3::splat(20.0), [32; 3]).unwrap();
+    let wind = [
+        WindPrimitive::Uniform(WindUniform { speed: 3.0, direction: Vec3::X }),
+        WindPrimitive::Vortex(WindSingularity {
+            form: WindForm::Line,
+            strength: 120.0,
+            centre: Vec3::new(0.0, 0.0, -4.0),
+            axis: Vec3::Y,
+            core_radius: 3.0,
+            core: WindCore::Rosenhead,
+        }),
+    ];
+    WindField::new(&grid, &wind, &WindMask::open(&grid)).unwrap()
+}
+
+/// In a vortex drops come to the same places at 30, 60 and 240 steps a second; with the papers' average they do not.
+#[test]
+fn the_frame_rate_does_not_matter() {
+    let field = vortex();
+    let view = View { eye: DVec3::new(0.0, 0.0, 6.0), ..View::default() };
+    let places = |drag: Drag, per_second: u32| {
+        let options = SimulationOptions {
+            volume: SimVolume::Box { size_m: [30.0; 3] },
+            most_drops: 2_000,
+            drag,
+            ..SimulationOptions::default()
+        };
+        let now = Moment { field: Some(&field), ..moment(&view, Vec3::ZERO) };
+        let mut simulation = Simulation::new(&rain(10.0), &options, &now).unwrap();
+        for _ in 0..per_second / 2 {
+            simulation.advance(1.0 / f64::from(per_second), &now).unwrap();
+        }
+        simulation.drops().iter().map(|drop| Vec3::from(drop.place)).collect::<Vec<_>>()
+    };
+    // Drops near a face may have gone through it in one run and not yet in the other.
+    let median = |a: &[Vec3], b: &[Vec3]| {
+        let mut apart: Vec<f32> = a.iter().zip(b).map(|(a, b)| (*a - *b).length()).collect();
+        apart.sort_by(f32::total_cmp);
+        [apart[apart.len() / 2], apart[apart.len() * 95 / 100]]
+    };
+    let fine = places(Drag::Relaxation, 240);
+    for per_second in [30, 60] {
+        let [half, most] = median(&places(Drag::Relaxation, per_second), &fine);
+        assert!(half < 2.0e-3 && most < 2.0e-2, "{per_second}: {half} m, {most} m");
+    }
+    let [average, _] = median(&places(Drag::Rousseau2008, 30), &places(Drag::Rousseau2008, 240));
+    let [half, _] = median(&places(Drag::Relaxation, 30), &fine);
+    println!("30 against 240 steps a second: {half} m, with the papers' average {average} m");
+    assert!(average > 3.0 * half, "the papers' average: {average} m, relaxation: {half} m");
+}
+
+/// 10 km from the origin the drops of a view are where they are near it, the origin moving along.
+#[test]
+fn far_from_the_origin() {
+    let run = |far: DVec3| {
+        let options = SimulationOptions { most_drops: 5_000, ..SimulationOptions::default() };
+        let at = |step: u32| {
+            looking(far + DVec3::new(0.05, 0.01, 0.02) * f64::from(step), 0.01 * f64::from(step), 0.1)
+        };
+        let origin = |step: u32| if far == DVec3::ZERO { far } else { at(step).eye.round() };
+        let first = at(0);
+        let start = Moment { origin: origin(0), ..moment(&first, Vec3::X) };
+        let mut simulation = Simulation::new(&rain(25.0), &options, &start).unwrap();
+        for step in 1..=60 {
+            let view = at(step);
+            let now = Moment { origin: origin(step), ..moment(&view, Vec3::X) };
+            simulation.advance(1.0 / 60.0, &now).unwrap();
+        }
+        let offset = origin(60) - far;
+        simulation.drops().iter().map(|d| Vec3::from(d.place).as_dvec3() + offset).collect::<Vec<_>>()
+    };
+    let (near, far) = (run(DVec3::ZERO), run(DVec3::new(10_000.0, 0.0, -10_000.0)));
+    let same = near.iter().zip(&far).filter(|(a, b)| a.distance(**b) < 1.0e-3).count();
+    assert!(same as f64 > 0.99 * near.len() as f64, "{same} of {}", near.len());
+}
+
+/// Nearly all drops of a view are in the picture; few of a box are.
+#[test]
+fn drops_of_a_view_are_on_the_screen() {
+    let share = |volume: SimVolume| {
+        let options = SimulationOptions { volume, most_drops: 40_000, ..SimulationOptions::default() };
+        let mut simulation = Simulation::new(&rain(25.0), &options, &moment(&walk(0), Vec3::X)).unwrap();
+        let mut shares = Vec::new();
+        for step in 1..20 {
+            let view = walk(step);
+            simulation.advance(1.0 / 60.0, &moment(&view, Vec3::X)).unwrap();
+            let seen = simulation.visible(&View { near: 1.0e-3, least_pixels: 0.0, ..view });
+            shares.push(seen.drops.len() as f64 / simulation.drops().len() as f64);
+        }
+        shares.iter().sum::<f64>() / shares.len() as f64
+    };
+    assert!(share(SimVolume::View) > 0.95);
+    assert!(share(SimVolume::Box { size_m: [16.0; 3] }) < 0.3);
+}
+
+#[test]
+fn the_same_bits_for_any_number_of_threads() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let options = SimulationOptions { most_drops: 50_000, ..SimulationOptions::default() };
+            let field = vortex();
+            let now = walk(0);
+            let start = Moment { field: Some(&field), ..moment(&now, Vec3::ZERO) };
+            let mut simulation = Simulation::new(&rain(25.0), &options, &start).unwrap();
+            for step in 1..10 {
+                let view = walk(step);
+                simulation
+                    .advance(1.0 / 60.0, &Moment { field: Some(&field), ..moment(&view, Vec3::ZERO) })
+                    .unwrap();
+            }
+            (simulation.drops().to_vec(), simulation.measured_rate_mm_h())
+        })
+    };
+    assert_eq!(run(1), run(3));
+}
+
+#[test]
+fn what_is_out_of_range_is_refused() {
+    let view = View::default();
+    let now = moment(&view, Vec3::ZERO);
+    let made = |options: SimulationOptions| Simulation::new(&rain(10.0), &options, &now).map(|_| ());
+    let of = |volume: SimVolume| SimulationOptions { volume, ..SimulationOptions::default() };
+    for volume in [
+        SimVolume::Box { size_m: [0.0, 4.0, 4.0] },
+        SimVolume::Box { size_m: [f64::NAN, 4.0, 4.0] },
+        SimVolume::Tariq { size_m: [4.0, 4.0, 1001.0] },
+        SimVolume::Cylinder { base_m: [0.0; 3], radius_m: 0.0, height_m: 3.0 },
+        SimVolume::Cylinder { base_m: [f64::INFINITY; 3], radius_m: 1.0, height_m: 3.0 },
+    ] {
+        let error = made(of(volume)).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("allowed"), "{error}");
+    }
+    assert!(made(SimulationOptions { most_drops: 0, ..SimulationOptions::default() }).is_err());
+    assert!(made(SimulationOptions { most_drops: u32::MAX, ..SimulationOptions::default() }).is_err());
+    let mut simulation =
+        Simulation::new(&rain(10.0), &SimulationOptions { most_drops: 100, ..of(SimVolume::View) }, &now)
+            .unwrap();
+    let before = simulation.drops().to_vec();
+    for time in [0.0, -1.0, 10.0, f64::NAN, 1.0e-9] {
+        let error = simulation.advance(time, &now).unwrap_err();
+        assert_eq!(error.to_string(), format!("time of a step is {time} s; allowed: 1e-5 to 1"));
+    }
+    let lost = View { eye: DVec3::splat(f64::NAN), ..view };
+    assert!(simulation.advance(0.01, &moment(&lost, Vec3::ZERO)).is_err());
+    assert_eq!(simulation.drops(), before);
+}
+
+/// No rain is no drops, not a division by nothing.
+#[test]
+fn dry() {
+    let view = View::default();
+    let now = moment(&view, Vec3::ZERO);
+    let mut simulation = Simulation::new(&rain(0.0), &SimulationOptions::default(), &now).unwrap();
+    simulation.advance(0.1, &now).unwrap();
+    assert_eq!((simulation.drops().len(), simulation.measured_rate_mm_h()), (0, 0.0));
+}

@@ -1,0 +1,180 @@
+//! The field on a GPU: the cells in a buffer that other kernels read.
+
+use downpour_gpu::{ComputeKernel, Gpu, GpuError, wgpu};
+use downpour_shaders::wind::FIELD_KERNEL;
+
+use crate::design::WindPrimitive;
+use crate::error::WindError;
+use crate::field::WindFieldGrid;
+use crate::grid::WindGrid;
+use crate::mask::WindMask;
+use crate::matrix::WindMatrix;
+use crate::turbulence::WindTurbulenceMode;
+
+/// Why there is no field on a GPU.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuWindError {
+    /// The wind itself is not possible.
+    #[error(transparent)]
+    Wind(#[from] WindError),
+    /// More matrices or waves than there is room for.
+    #[error("{found} {what}; allowed: up to {allowed}, the capacity of the field")]
+    Capacity {
+        /// Matrices, or waves of turbulence.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there may be.
+        allowed: usize,
+    },
+    /// The GPU did not do it.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+impl GpuWindError {
+    /// The exit code of the command for this error.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Wind(error) => error.exit_code(),
+            Self::Capacity { .. } => 3,
+            Self::Gpu(error) => error.exit_code(),
+        }
+    }
+}
+
+/// The wind over a grid, filled by the kernel `main_wind_field`: what [`WindField`](crate::WindField) is on the CPU.
+#[derive(Debug)]
+pub struct GpuWindField {
+    gpu: Gpu,
+    kernel: ComputeKernel,
+    grid: WindGrid,
+    matrices: usize,
+    modes: usize,
+    uniform: wgpu::Buffer,
+    matrix_buffer: wgpu::Buffer,
+    openness: wgpu::Buffer,
+    mode_buffer: wgpu::Buffer,
+    cells: wgpu::Buffer,
+    bindings: wgpu::BindGroup,
+}
+
+impl GpuWindField {
+    /// A field without wind. There will be room for so many matrices (four for a tornado, one for each other primitive) and
+    /// waves of turbulence.
+    ///
+    /// # Errors
+    /// What the GPU says; [`GpuError::OverLimit`] if a buffer is larger than it allows.
+    pub fn new(gpu: &Gpu, grid: &WindGrid, matrices: usize, modes: usize) -> Result<Self, GpuWindError> {
+        let kernel = ComputeKernel::new(gpu, &FIELD_KERNEL, &[])?;
+        // A buffer of the shader has one element at least.
+        let (matrices, modes) = (matrices.max(1), modes.max(1));
+        let storage = |label: &str, count: usize, size: usize| {
+            let bytes = (count as u64).saturating_mul(size as u64);
+            gpu.empty_buffer(label, bytes, wgpu::BufferUsages::STORAGE)
+        };
+        let uniform = gpu.uniform_buffer("wind grid", &WindFieldGrid::new(grid, 0, 0))?;
+        let matrix_buffer = storage("wind primitives", matrices, size_of::<[[f32; 4]; 3]>())?;
+        let openness = gpu.storage_buffer("wind openness", WindMask::open(grid).openness())?;
+        let cells = storage("wind cells", grid.cells(), size_of::<[f32; 4]>())?;
+        let mode_buffer = storage("wind turbulence", modes, size_of::<WindTurbulenceMode>())?;
+        let bindings = kernel.bind(gpu, &[&uniform, &matrix_buffer, &openness, &cells, &mode_buffer])?;
+        Ok(Self {
+            gpu: gpu.clone(),
+            kernel,
+            grid: *grid,
+            matrices,
+            modes,
+            uniform,
+            matrix_buffer,
+            openness,
+            mode_buffer,
+            cells,
+            bindings,
+        })
+    }
+
+    /// Sets where objects are; [`update`](Self::update) takes them into account from then on.
+    ///
+    /// # Errors
+    /// [`WindError::MaskSize`] if the mask is of another grid.
+    pub fn set_mask(&self, mask: &WindMask) -> Result<(), GpuWindError> {
+        mask.check(&self.grid)?;
+        self.gpu.queue().write_buffer(&self.openness, 0, bytemuck::cast_slice(mask.openness()));
+        Ok(())
+    }
+
+    /// Fills the cells: submits the kernel and does not wait.
+    ///
+    /// # Errors
+    /// As [`WindMatrix::encode`]; [`GpuWindError::Capacity`]; what the GPU says.
+    pub fn update(
+        &self,
+        primitives: &[WindPrimitive],
+        modes: &[WindTurbulenceMode],
+    ) -> Result<(), GpuWindError> {
+        self.prepare(primitives, modes)?;
+        Ok(self.gpu.submit(&[self.kernel.dispatch(&self.bindings, self.groups())])?)
+    }
+
+    /// The time that the device takes to fill the cells, without transfers.
+    ///
+    /// # Errors
+    /// As [`GpuWindField::update`].
+    pub fn time(
+        &self,
+        primitives: &[WindPrimitive],
+        modes: &[WindTurbulenceMode],
+        repeats: u32,
+    ) -> Result<downpour_gpu::timing::PassTime, GpuWindError> {
+        self.prepare(primitives, modes)?;
+        Ok(self.gpu.time(&[self.kernel.dispatch(&self.bindings, self.groups())], repeats)?)
+    }
+
+    /// Velocity, m/s, and openness of each cell as `vec4f`, in the order of the grid.
+    #[must_use]
+    pub fn cells(&self) -> &wgpu::Buffer {
+        &self.cells
+    }
+
+    /// The uniform `WindFieldGrid` with which a kernel looks the cells up.
+    #[must_use]
+    pub fn uniform(&self) -> &wgpu::Buffer {
+        &self.uniform
+    }
+
+    /// The grid.
+    #[must_use]
+    pub fn grid(&self) -> &WindGrid {
+        &self.grid
+    }
+
+    fn groups(&self) -> [u32; 3] {
+        self.grid.size().map(|n| n.div_ceil(4))
+    }
+
+    fn prepare(
+        &self,
+        primitives: &[WindPrimitive],
+        modes: &[WindTurbulenceMode],
+    ) -> Result<(), GpuWindError> {
+        let matrices = WindMatrix::encode(primitives)?;
+        for (what, found, allowed) in [
+            ("matrices of primitives", matrices.len(), self.matrices),
+            ("waves of turbulence", modes.len(), self.modes),
+        ] {
+            if found > allowed {
+                return Err(GpuWindError::Capacity { what, found, allowed });
+            }
+        }
+        let uniform = WindFieldGrid::new(&self.grid, matrices.len() as u32, modes.len() as u32);
+        let matrices: Vec<[[f32; 4]; 3]> = matrices.iter().map(WindMatrix::padded).collect();
+        let queue = self.gpu.queue();
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        queue.write_buffer(&self.matrix_buffer, 0, bytemuck::cast_slice(&matrices));
+        queue.write_buffer(&self.mode_buffer, 0, bytemuck::cast_slice(modes));
+        Ok(())
+    }
+}

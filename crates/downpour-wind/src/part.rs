@@ -1,0 +1,199 @@
+//! Primitives whose parameters move.
+
+use glam::{DVec3, Vec3};
+
+use crate::design::{WindCore, WindForm, WindPrimitive, WindSingularity, WindTornado, WindUniform};
+use crate::error::WindError;
+use crate::timeline::{Keyed, sort_times};
+
+/// The fastest uniform wind, m/s.
+const FASTEST: f64 = 200.0;
+
+/// A source, sink or vortex over time; units and ranges as in [`WindSingularity`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyedSingularity {
+    /// Line or point.
+    pub form: WindForm,
+    /// What the core is like.
+    pub core: WindCore,
+    /// m^2/s (line) or m^3/s (point).
+    pub strength: Keyed<f64>,
+    /// A point of the axis, or the point, m.
+    pub centre: Keyed<DVec3>,
+    /// The axis; its keys have any length, and it turns from one to the next the shorter way.
+    pub axis: Keyed<DVec3>,
+    /// Metres.
+    pub core_radius: Keyed<f64>,
+}
+
+/// A tornado over time; units and ranges as in [`WindTornado`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyedTornado {
+    /// Circulation, m^2/s.
+    pub circulation: Keyed<f64>,
+    /// Air that goes in at the base and out at the top, m^3/s.
+    pub discharge: Keyed<f64>,
+    /// Middle of the base, m.
+    pub base: Keyed<DVec3>,
+    /// From base to top; its keys have any length.
+    pub axis: Keyed<DVec3>,
+    /// From base to top, m.
+    pub height: Keyed<f64>,
+    /// Metres.
+    pub core_radius: Keyed<f64>,
+}
+
+/// A primitive over time.
+///
+/// What is keyed is linear between its keys: numbers, places, and the velocity of a uniform wind. Directions of axes are
+/// straight lines between unit vectors, made unit again: the axis turns in the plane of the two keys. A uniform wind is a
+/// velocity and not a speed with a direction, so between two keys its tip moves on a straight line: a wind that turns about
+/// passes through calm, and one that is to keep its speed while it turns needs a key each few degrees.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum WindPart {
+    /// The same wind everywhere: its velocity, up to 200 m/s.
+    Uniform(Keyed<DVec3>),
+    /// Wind out of a line or a point.
+    Source(KeyedSingularity),
+    /// Wind into a line or a point.
+    Sink(KeyedSingularity),
+    /// Wind round an axis.
+    Vortex(KeyedSingularity),
+    /// All of it.
+    Tornado(KeyedTornado),
+}
+
+impl From<WindPrimitive> for WindPart {
+    /// A primitive that does not change.
+    fn from(primitive: WindPrimitive) -> Self {
+        let single = |at: WindSingularity| KeyedSingularity {
+            form: at.form,
+            core: at.core,
+            strength: f64::from(at.strength).into(),
+            centre: at.centre.as_dvec3().into(),
+            axis: at.axis.as_dvec3().into(),
+            core_radius: f64::from(at.core_radius).into(),
+        };
+        match primitive {
+            WindPrimitive::Uniform(wind) => {
+                // A direction that is none is found by the check, as no number.
+                let direction = wind.direction.as_dvec3().try_normalize().unwrap_or(DVec3::NAN);
+                Self::Uniform((direction * f64::from(wind.speed)).into())
+            }
+            WindPrimitive::Source(at) => Self::Source(single(at)),
+            WindPrimitive::Sink(at) => Self::Sink(single(at)),
+            WindPrimitive::Vortex(at) => Self::Vortex(single(at)),
+            WindPrimitive::Tornado(tornado) => Self::Tornado(KeyedTornado {
+                circulation: f64::from(tornado.circulation).into(),
+                discharge: f64::from(tornado.discharge).into(),
+                base: tornado.base.as_dvec3().into(),
+                axis: tornado.axis.as_dvec3().into(),
+                height: f64::from(tornado.height).into(),
+                core_radius: f64::from(tornado.core_radius).into(),
+            }),
+        }
+    }
+}
+
+impl WindPart {
+    /// A uniform wind of a speed, m/s, towards a direction. The velocity has the keys of both.
+    ///
+    /// # Errors
+    /// [`WindError::ZeroAxis`] for a direction that is none; a speed is checked by [`Wind::new`](crate::Wind::new).
+    pub fn uniform(speed: &Keyed<f64>, direction: &Keyed<DVec3>) -> Result<Self, WindError> {
+        for &(_, vector) in direction.keys() {
+            if !(1.0e-3..=1.0e9).contains(&vector.length()) {
+                let found = vector.as_vec3().to_array();
+                return Err(WindError::ZeroAxis { quantity: "direction of the wind", found });
+            }
+        }
+        // A direction that turns about may be none for a moment.
+        let velocity = speed.with(direction, |speed, towards| towards.normalize_or_zero() * speed);
+        Ok(Self::Uniform(velocity))
+    }
+
+    /// The primitive at a time, s. Axes have length 1.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> WindPrimitive {
+        match self {
+            Self::Uniform(velocity) => WindPrimitive::Uniform(uniform(velocity.at(time_s))),
+            Self::Source(part) => WindPrimitive::Source(part.at(time_s)),
+            Self::Sink(part) => WindPrimitive::Sink(part.at(time_s)),
+            Self::Vortex(part) => WindPrimitive::Vortex(part.at(time_s)),
+            Self::Tornado(part) => WindPrimitive::Tornado(part.at(time_s)),
+        }
+    }
+
+    /// The same part with axes of length 1, if it is in range at all times.
+    ///
+    /// All ranges are convex and all is linear between keys, so what is in range at each key is so at all times.
+    pub(crate) fn checked(mut self) -> Result<Self, WindError> {
+        let mut times = vec![0.0];
+        match &mut self {
+            Self::Uniform(velocity) => {
+                for &(_, v) in velocity.keys() {
+                    let found = v.length();
+                    // The length of a rounded vector.
+                    if !(0.0..=FASTEST * (1.0 + 1.0e-9)).contains(&found) {
+                        let (quantity, unit, allowed) = ("wind speed", "m/s", "0 to 200");
+                        return Err(WindError::OutOfRange { quantity, found, unit, allowed });
+                    }
+                }
+                return Ok(self);
+            }
+            Self::Source(part) | Self::Sink(part) | Self::Vortex(part) => {
+                part.axis = part.axis.directions("axis")?;
+                part.strength.times(&mut times);
+                part.centre.times(&mut times);
+                part.core_radius.times(&mut times);
+            }
+            Self::Tornado(part) => {
+                part.axis = part.axis.directions("axis")?;
+                for number in [&part.circulation, &part.discharge, &part.height, &part.core_radius] {
+                    number.times(&mut times);
+                }
+                part.base.times(&mut times);
+            }
+        }
+        sort_times(&mut times);
+        times.into_iter().try_for_each(|time| self.at(time).check())?;
+        Ok(self)
+    }
+}
+
+impl KeyedSingularity {
+    fn at(&self, time_s: f64) -> WindSingularity {
+        WindSingularity {
+            form: self.form,
+            strength: self.strength.at(time_s) as f32,
+            centre: self.centre.at(time_s).as_vec3(),
+            axis: axis(self.axis.at(time_s)),
+            core_radius: self.core_radius.at(time_s) as f32,
+            core: self.core,
+        }
+    }
+}
+
+impl KeyedTornado {
+    fn at(&self, time_s: f64) -> WindTornado {
+        WindTornado {
+            circulation: self.circulation.at(time_s) as f32,
+            discharge: self.discharge.at(time_s) as f32,
+            base: self.base.at(time_s).as_vec3(),
+            axis: axis(self.axis.at(time_s)),
+            height: self.height.at(time_s) as f32,
+            core_radius: self.core_radius.at(time_s) as f32,
+        }
+    }
+}
+
+/// With length 1; a wind that is still has some direction too.
+fn axis(vector: DVec3) -> Vec3 {
+    vector.try_normalize().unwrap_or(DVec3::X).as_vec3()
+}
+
+/// A velocity as a primitive, 200 m/s at most.
+pub(crate) fn uniform(velocity: DVec3) -> WindUniform {
+    WindUniform { speed: velocity.length().min(FASTEST) as f32, direction: axis(velocity) }
+}

@@ -1,0 +1,181 @@
+//! Values over time: keys, straight lines between them.
+
+use glam::DVec3;
+
+use crate::error::WindError;
+
+/// Most keys of one parameter.
+pub const WIND_KEYS: usize = 4096;
+
+/// The earliest and the latest time of a key, s.
+pub const WIND_KEY_TIMES: std::ops::RangeInclusive<f64> = -1.0e6..=1.0e6;
+
+/// Times of keys are rounded to this, s, and have to differ by it.
+const TICKS_PER_SECOND: f64 = 1.0e6;
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f64 {}
+    impl Sealed for glam::DVec3 {}
+}
+
+/// What can be keyed: a number, or a vector.
+pub trait Blend: Copy + PartialEq + sealed::Sealed {
+    /// What lies at `share`, 0 to 1, of the way from here to `other`.
+    #[must_use]
+    fn blend(self, other: Self, share: f64) -> Self;
+
+    /// The first component that is not finite.
+    fn not_finite(self) -> Option<f64>;
+}
+
+impl Blend for f64 {
+    fn blend(self, other: Self, share: f64) -> Self {
+        self + (other - self) * share
+    }
+
+    fn not_finite(self) -> Option<f64> {
+        (!self.is_finite()).then_some(self)
+    }
+}
+
+impl Blend for DVec3 {
+    fn blend(self, other: Self, share: f64) -> Self {
+        self + (other - self) * share
+    }
+
+    fn not_finite(self) -> Option<f64> {
+        self.to_array().into_iter().find_map(f64::not_finite)
+    }
+}
+
+/// A value over time: linear between its keys, that of the first key before it, that of the last one after it.
+///
+/// ```
+/// use downpour_wind::Keyed;
+/// let rising = Keyed::new(vec![(0.0, 3.0), (10.0, 12.0)])?;
+/// assert_eq!([-5.0, 0.0, 5.0, 99.0].map(|time| rising.at(time)), [3.0, 3.0, 7.5, 12.0]);
+/// assert_eq!(Keyed::from(4.0).at(2.0), 4.0);
+/// assert!(Keyed::new(vec![(10.0, 3.0), (0.0, 12.0)]).is_err());
+/// # Ok::<(), downpour_wind::WindError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keyed<T> {
+    /// Never empty; times rise.
+    keys: Vec<(f64, T)>,
+}
+
+impl<T: Blend> From<T> for Keyed<T> {
+    /// The same at all times.
+    fn from(value: T) -> Self {
+        Self { keys: vec![(0.0, value)] }
+    }
+}
+
+impl<T: Blend> Keyed<T> {
+    /// A value that goes through keys of time, s, and value. Times are rounded to a microsecond.
+    ///
+    /// # Errors
+    /// [`WindError::KeyCount`] for no keys or more than [`WIND_KEYS`]; [`WindError::KeyTime`] for times that do not rise by
+    /// a microsecond at least; [`WindError::OutOfRange`] for times outside [`WIND_KEY_TIMES`] and values that are not
+    /// finite.
+    pub fn new(mut keys: Vec<(f64, T)>) -> Result<Self, WindError> {
+        if !(1..=WIND_KEYS).contains(&keys.len()) {
+            return Err(WindError::KeyCount { found: keys.len(), allowed: WIND_KEYS });
+        }
+        let mut before = f64::NEG_INFINITY;
+        for (index, (time, value)) in keys.iter_mut().enumerate() {
+            let out_of_range = |quantity, found, unit, allowed| {
+                Err(WindError::OutOfRange { quantity, found, unit, allowed })
+            };
+            if !WIND_KEY_TIMES.contains(time) {
+                return out_of_range("time of a key", *time, "s", "-1e6 to 1e6");
+            }
+            if let Some(found) = value.not_finite() {
+                return out_of_range("value of a key", found, "(a component)", "finite numbers");
+            }
+            *time = (*time * TICKS_PER_SECOND).round() / TICKS_PER_SECOND;
+            if *time <= before {
+                return Err(WindError::KeyTime { index, found: *time, before });
+            }
+            before = *time;
+        }
+        Ok(Self { keys })
+    }
+
+    /// The value at a time, s.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> T {
+        let next = self.keys.partition_point(|&(time, _)| time <= time_s);
+        match (next.checked_sub(1).and_then(|last| self.keys.get(last)), self.keys.get(next)) {
+            (Some(&(start, from)), Some(&(end, to))) => from.blend(to, (time_s - start) / (end - start)),
+            (Some(&(_, value)), None) | (None, Some(&(_, value))) => value,
+            (None, None) => unreachable!("a value has one key at least"),
+        }
+    }
+
+    /// The keys: time in s, and value.
+    #[must_use]
+    pub fn keys(&self) -> &[(f64, T)] {
+        &self.keys
+    }
+
+    /// Another value at each key.
+    #[must_use]
+    pub fn map<U: Blend>(&self, change: impl Fn(T) -> U) -> Keyed<U> {
+        Keyed { keys: self.keys.iter().map(|&(time, value)| (time, change(value))).collect() }
+    }
+
+    /// What two values together make, at the keys of either; linear between those.
+    #[must_use]
+    pub fn with<U: Blend, V: Blend>(&self, other: &Keyed<U>, make: impl Fn(T, U) -> V) -> Keyed<V> {
+        let mut times = Vec::new();
+        self.times(&mut times);
+        other.times(&mut times);
+        // Both are constant.
+        if times.is_empty() {
+            times.push(0.0);
+        }
+        sort_times(&mut times);
+        Keyed { keys: times.into_iter().map(|time| (time, make(self.at(time), other.at(time)))).collect() }
+    }
+
+    /// Adds the times of the keys, if there are several.
+    pub(crate) fn times(&self, times: &mut Vec<f64>) {
+        if self.keys.len() > 1 {
+            times.extend(self.keys.iter().map(|&(time, _)| time));
+        }
+    }
+}
+
+/// In their order, each once.
+pub(crate) fn sort_times(times: &mut Vec<f64>) {
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+}
+
+impl Keyed<DVec3> {
+    /// The same directions with length 1 at their keys.
+    ///
+    /// # Errors
+    /// [`WindError::ZeroAxis`] for a key without direction, [`WindError::AxisReverses`] if the way from one key to the next
+    /// leads through (or within 0.01 of) no direction at all: then nothing says to which side to turn.
+    pub fn directions(&self, quantity: &'static str) -> Result<Self, WindError> {
+        let mut keys = Vec::with_capacity(self.keys.len());
+        for &(time, vector) in &self.keys {
+            let found = vector.as_vec3();
+            let length = vector.length();
+            if !(1.0e-3..=1.0e9).contains(&length) {
+                return Err(WindError::ZeroAxis { quantity, found: found.to_array() });
+            }
+            keys.push((time, vector / length));
+        }
+        for pair in keys.windows(2) {
+            let [(_, from), (time, to)] = *pair else { continue };
+            if (from + to).length() < 0.02 {
+                return Err(WindError::AxisReverses { quantity, time });
+            }
+        }
+        Ok(Self { keys })
+    }
+}

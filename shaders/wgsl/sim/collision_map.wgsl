@@ -1,0 +1,205 @@
+// Makes the map of the surfaces that stop drops: a ray along the fall direction per texel.
+//
+// Space below a surface that faces the rain and above one that faces away is solid, and so is what is below the last surface if
+// that faces the rain. Between other surfaces, rays sideways say whether the space is enclosed: a house that stands in the
+// ground without a bottom is, the space between a leaf and the ground is not.
+// Twin: downpour_sim::collision.
+
+// What a ray meets.
+struct CollisionMapHits {
+    // The nearest, ascending.
+    depths: array<f32, COLLISION_MAP_HITS>,
+    // Their places in the list of triangles.
+    slots: array<u32, COLLISION_MAP_HITS>,
+    count: u32,
+    // All surfaces met from behind less those met from the front.
+    left: i32,
+    // The deepest one that faces the ray, -1 for none, and its place in the list.
+    deepest: f32,
+    deepest_slot: u32,
+}
+
+@group(0) @binding(0) var<uniform> collision_map_frame: CollisionMap;
+@group(0) @binding(3) var<storage, read_write> collision_map_texels: array<CollisionTexel>;
+
+// Whether a triangle faces a ray.
+fn collision_map_faces(triangle: BvhTriangle, direction: vec3f) -> bool {
+    return dot(cross(triangle.edge_1, triangle.edge_2), direction) < 0.0;
+}
+
+// The normal of a triangle in the frame of the map, turned to the rain.
+fn collision_map_normal(map: CollisionMap, triangle: BvhTriangle) -> vec3f {
+    let normal = cross(triangle.edge_1, triangle.edge_2);
+    let turned = vec3f(dot(normal, map.across), dot(normal, map.along), -dot(normal, map.fall));
+    return turned * select(1.0, -1.0, turned.z < 0.0);
+}
+
+// Whether the space between two surfaces is open (0), solid (1), or has to be asked about (2). The surfaces are the faces
+// that they show to the rain, COLLISION_MAP_FRONT or COLLISION_MAP_BACK or both where several are in one place; 0 is none.
+fn collision_map_between(above: u32, below: u32) -> u32 {
+    if below == 0u {
+        return select(0u, 1u, above == COLLISION_MAP_FRONT);
+    }
+    return select(2u, 1u, above == COLLISION_MAP_FRONT && below == COLLISION_MAP_BACK);
+}
+
+// Everything on a ray.
+fn collision_map_walk(origin: vec3f, direction: vec3f) -> CollisionMapHits {
+    let inverse = bvh_inverse(direction);
+    var hits: CollisionMapHits;
+    hits.deepest = -1.0;
+    var stack: array<u32, BVH_STACK>;
+    var depth = 1u;
+    // Each node is visited once at most, so this ends.
+    while depth > 0u {
+        depth -= 1u;
+        let at = stack[depth];
+        let node = bvh_nodes[at];
+        if bvh_enter(node, origin, inverse, BVH_FAR) >= BVH_FAR {
+            continue;
+        }
+        if node.count == 0u {
+            stack[depth] = node.link;
+            stack[depth + 1u] = at + 1u;
+            depth += 2u;
+            continue;
+        }
+        for (var slot = node.link; slot < node.link + node.count; slot += 1u) {
+            let triangle = bvh_triangles[slot];
+            let distance = bvh_triangle(triangle, origin, direction).x;
+            if !(distance > 0.0 && distance < BVH_FAR) {
+                continue;
+            }
+            let faces = collision_map_faces(triangle, direction);
+            hits.left += select(1, -1, faces);
+            if faces && distance > hits.deepest {
+                hits.deepest = distance;
+                hits.deepest_slot = slot;
+            }
+            // Insertion from the far end, which falls off when there is no room.
+            var k = hits.count;
+            if k == COLLISION_MAP_HITS {
+                k -= 1u;
+                if distance >= hits.depths[k] {
+                    continue;
+                }
+            } else {
+                hits.count += 1u;
+            }
+            while k > 0u && hits.depths[k - 1u] > distance {
+                hits.depths[k] = hits.depths[k - 1u];
+                hits.slots[k] = hits.slots[k - 1u];
+                k -= 1u;
+            }
+            hits.depths[k] = distance;
+            hits.slots[k] = slot;
+        }
+    }
+    return hits;
+}
+
+// Whether a place is within something closed: three of four rays sideways leave more surfaces than they enter.
+fn collision_map_enclosed(map: CollisionMap, at: vec3f) -> bool {
+    var votes = 0u;
+    for (var k = 0u; k < 4u; k += 1u) {
+        let axis = select(map.across, map.along, k >= 2u);
+        let hits = collision_map_walk(at, axis * select(1.0, -1.0, (k & 1u) == 1u));
+        votes += select(0u, 1u, hits.left > 0);
+        // Two that say no decide it.
+        if votes + 2u <= k + 1u {
+            return false;
+        }
+    }
+    return true;
+}
+
+// A texel with one more surface, deeper than those that it has. `stored` is how many were added before; when there is no room,
+// the last place is for the deepest top of something solid, which is the ground.
+fn collision_map_add(
+    texel: CollisionTexel,
+    stored: u32,
+    depth: f32,
+    surface: u32,
+    above: bool,
+    below: bool,
+) -> CollisionTexel {
+    var added = texel;
+    let last = COLLISION_LAYERS - 1u;
+    if stored <= last {
+        added.depths[stored] = depth;
+        added.surfaces[stored] = surface | select(0u, COLLISION_SOLID, below);
+    } else if below && !above {
+        added.depths[last] = depth;
+        added.surfaces[last] = surface | COLLISION_SOLID;
+        // What was between is forgotten.
+        added.surfaces[last - 1u] &= ~COLLISION_SOLID;
+    }
+    return added;
+}
+
+// The surfaces of a texel.
+fn collision_map_texel(map: CollisionMap, cell: vec2u) -> CollisionTexel {
+    var texel = CollisionTexel(vec4f(COLLISION_NONE), vec4u(0u));
+    if map.triangles == 0u {
+        return texel;
+    }
+    let place = (vec2f(cell) + 0.5) * map.edge;
+    let origin = map.low + map.anchor + map.across * place.x + map.along * place.y;
+    let hits = collision_map_walk(origin, map.fall);
+    var stored = 0u;
+    var next = 0u;
+    // The surface whose other side is still to be found.
+    var depth = -COLLISION_NONE;
+    var surface = 0u;
+    var faces = 0u;
+    var above = false;
+    loop {
+        // The next surface: all hits that are in one place.
+        let first = next;
+        var next_depth = hits.deepest;
+        var slot = hits.deepest_slot;
+        var next_faces = 0u;
+        if first < hits.count {
+            next_depth = hits.depths[first];
+            slot = hits.slots[first];
+        } else if first == COLLISION_MAP_HITS && hits.deepest > depth + map.merge {
+            // Beyond what the list holds.
+            next_faces = COLLISION_MAP_FRONT;
+            next += 1u;
+        }
+        while next < hits.count && hits.depths[next] <= next_depth + map.merge {
+            let faced = collision_map_faces(bvh_triangles[hits.slots[next]], map.fall);
+            next_faces |= select(COLLISION_MAP_BACK, COLLISION_MAP_FRONT, faced);
+            next += 1u;
+        }
+        if first > 0u {
+            let between = collision_map_between(faces, next_faces);
+            var below = between == 1u;
+            if between == 2u {
+                let middle = depth + (next_depth - depth) * COLLISION_MAP_BETWEEN;
+                below = collision_map_enclosed(map, origin + map.fall * middle);
+            }
+            // What is inside something solid stops nothing.
+            if !(above && below) {
+                texel = collision_map_add(texel, stored, depth, surface, above, below);
+                stored += 1u;
+            }
+            above = below;
+        }
+        if next_faces == 0u {
+            break;
+        }
+        depth = next_depth;
+        faces = next_faces;
+        surface = collision_pack(collision_map_normal(map, bvh_triangles[slot]), false);
+    }
+    return texel;
+}
+
+@compute @workgroup_size(8, 8)
+fn main_collision_map(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= collision_map_frame.size) {
+        return;
+    }
+    collision_map_texels[id.y * collision_map_frame.size.x + id.x] = collision_map_texel(collision_map_frame, id.xy);
+}
