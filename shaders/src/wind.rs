@@ -53,8 +53,11 @@ pub static TURBULENCE: Module =
     Module { path: "wind/turbulence.wgsl", wgsl: include_str!("../wgsl/wind/turbulence.wgsl"), uses: &[] };
 
 /// The wind in the cells of a box. Twin: `downpour_wind::field`.
-pub static FIELD: Module =
-    Module { path: "wind/field.wgsl", wgsl: include_str!("../wgsl/wind/field.wgsl"), uses: &[&PRIMITIVE, &TURBULENCE] };
+pub static FIELD: Module = Module {
+    path: "wind/field.wgsl",
+    wgsl: include_str!("../wgsl/wind/field.wgsl"),
+    uses: &[&PRIMITIVE, &TURBULENCE],
+};
 
 /// One invocation per cell.
 pub static FIELD_KERNEL: Kernel = Kernel { entry: "main_wind_field", module: &FIELD, workgroup: [4, 4, 4] };

@@ -16,7 +16,7 @@ const ALONE: &[(&str, &[&str])] = &[
     ("downpour-wind", &["", "wgpu"]),
     ("downpour-render", &["", "wgpu"]),
     ("downpour", &["", "wgpu"]),
-    ("downpour-cli", &["", "gpu"]),
+    ("downpour-cli", &["", "gpu", "video"]),
 ];
 
 /// Every test of the workspace, with documentation tests.

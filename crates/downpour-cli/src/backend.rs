@@ -67,7 +67,7 @@ pub(crate) fn compute<T>(
 }
 
 #[cfg(feature = "gpu")]
-pub(crate) use gpu::compute;
+pub(crate) use gpu::{FromGpu, compute};
 
 #[cfg(feature = "gpu")]
 mod gpu {

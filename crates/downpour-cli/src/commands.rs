@@ -8,6 +8,7 @@ mod mask;
 mod rain;
 mod render;
 mod specimen;
+mod wind;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand};
@@ -25,6 +26,7 @@ pub(crate) enum Command {
     Drop(drop::DropArguments),
     Rain(rain::RainArguments),
     Specimen(specimen::SpecimenArguments),
+    Wind(wind::WindArguments),
     Adapters(adapters::AdaptersArguments),
 }
 
@@ -37,6 +39,7 @@ impl Command {
             Self::Drop(arguments) => arguments.run(),
             Self::Rain(arguments) => arguments.run(),
             Self::Specimen(arguments) => arguments.run(interrupt),
+            Self::Wind(arguments) => arguments.run(interrupt),
             Self::Adapters(arguments) => arguments.run(),
         }
     }

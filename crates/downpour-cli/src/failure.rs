@@ -7,10 +7,12 @@ use std::path::Path;
 use downpour::drop::DropError;
 use downpour::mask::MaskError;
 use downpour::render::RenderError;
+use downpour::render::shower::ShowerError;
 use downpour::render::specimen::SpecimenError;
 use downpour::render::stage::StageError;
 use downpour::scene::SceneError;
 use downpour::sim::SimError;
+use downpour::wind::WindError;
 
 /// Anything that has no code of its own, as a defect of ours.
 pub(crate) const OTHER: u8 = 1;
@@ -80,6 +82,12 @@ impl From<RenderError> for Failure {
     }
 }
 
+impl From<ShowerError> for Failure {
+    fn from(error: ShowerError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
+    }
+}
+
 impl From<StageError> for Failure {
     fn from(error: StageError) -> Self {
         Self::new(error.exit_code(), error.to_string())
@@ -94,6 +102,12 @@ impl From<SceneError> for Failure {
 
 impl From<SimError> for Failure {
     fn from(error: SimError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
+    }
+}
+
+impl From<WindError> for Failure {
+    fn from(error: WindError) -> Self {
         Self::new(error.exit_code(), error.to_string())
     }
 }

@@ -34,10 +34,7 @@ impl Place {
     /// # Errors
     /// Exit code 5: there is no such folder, or the name is taken.
     pub(crate) fn new(path: &Path, overwrite: bool) -> Result<Self, Failure> {
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-            _ => PathBuf::from("."),
-        };
+        let folder = folder_of(path).to_owned();
         match fs::metadata(&folder) {
             Ok(found) if found.is_dir() => {}
             Ok(_) => return Err(Failure::new(FILES, format!("{} is not a folder", shown(&folder)))),
@@ -69,6 +66,15 @@ impl Place {
     /// Exit code 5, with what the system says.
     pub(crate) fn publish(&self, bytes: &[u8], interrupt: &Interrupt) -> Result<(), Failure> {
         remove_leftovers(&self.folder);
+        self.publish_among_many(bytes, interrupt)
+    }
+
+    /// Publishes the bytes in a folder of so many files that it is not looked through for each: who does this calls
+    /// [`remove_leftovers`] once.
+    ///
+    /// # Errors
+    /// As [`publish`](Self::publish).
+    pub(crate) fn publish_among_many(&self, bytes: &[u8], interrupt: &Interrupt) -> Result<(), Failure> {
         let failed = |error: &io::Error| Failure::file(&self.path, error);
         let mut part = {
             let mut unfinished = interrupt.unfinished();
@@ -103,6 +109,14 @@ impl Place {
     }
 }
 
+/// The folder of a file.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
 fn create(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
@@ -113,7 +127,7 @@ fn create(folder: &Path) -> io::Result<NamedTempFile> {
 }
 
 /// Removes temporary files whose process is gone.
-fn remove_leftovers(folder: &Path) {
+pub(crate) fn remove_leftovers(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let name = entry.file_name();

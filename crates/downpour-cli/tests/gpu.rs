@@ -29,13 +29,14 @@ use scene_files::{model, weather};
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let off = std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no");
-    let tests: [(&str, fn()); 10] = [
+    let tests: [(&str, fn()); 11] = [
         ("adapters_are_listed", adapters_are_listed),
         ("a_mask_is_that_of_the_cpu", a_mask_is_that_of_the_cpu),
         ("an_array_is_that_of_the_cpu", an_array_is_that_of_the_cpu),
         ("a_model_is_that_of_the_cpu", a_model_is_that_of_the_cpu),
         ("a_picture_is_that_of_the_cpu", a_picture_is_that_of_the_cpu),
         ("a_picture_of_a_lost_device_is_not_published", a_picture_of_a_lost_device_is_not_published),
+        ("a_clip_of_a_lost_device_goes_on", a_clip_of_a_lost_device_goes_on),
         ("auto_says_what_it_took", auto_says_what_it_took),
         ("an_adapter_is_taken_by_its_name", an_adapter_is_taken_by_its_name),
         ("a_lost_device_publishes_nothing", a_lost_device_publishes_nothing),
@@ -194,6 +195,36 @@ fn a_picture_of_a_lost_device_is_not_published() {
     for point in 1..=3 {
         let run = storm(&gpu(&[], &adapter)).env("DOWNPOUR_INJECT", format!("lost@{point}"));
         run.run().failed(4, &["lost"]).left(&["floor.gltf", "storm.toml"]);
+    }
+}
+
+/// A device that is lost in the middle of a clip costs the frame that it was at. The frames are the same in the end, and
+/// never of two backends.
+fn a_clip_of_a_lost_device_goes_on() {
+    let adapter = adapter();
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |frames: &str, end: &str, backend: &[&str]| {
+        let output = folder.path().join(end);
+        let fixed =
+            ["render", "storm.toml", "--samples=1", "--sky-rays=1", "--size=16x16", "--fps=8", "--frames"];
+        let arguments = [&fixed[..], &[frames, "-o", output.to_str().expect("a name")], backend].concat();
+        Downpour::new(&arguments).with_file("storm.toml", weather("")).with_file("floor.gltf", model())
+    };
+    let on_gpu = gpu(&[], &adapter);
+    let lost = run("0..5", "a%d.png", &on_gpu).env("DOWNPOUR_INJECT", "lost@9").run();
+    let lost = lost.failed(4, &["lost"]);
+    let made = names_in(folder.path()).iter().filter(|name| name.ends_with(".png")).count();
+    assert!((1..5).contains(&made), "{made} frames: {}", lost.stderr);
+    assert!(lost.stderr.contains("the same command goes on"), "{}", lost.stderr);
+    run("0..5", "a%d.png", &["--backend", "cpu"]).run().failed(2, &["backend gpu, and now it is cpu"]);
+    let rest = run("0..5", "a%d.png", &on_gpu).run().succeeded();
+    assert_eq!(rest.stderr.matches("backend: gpu").count(), 1, "one device for all frames");
+    assert!(rest.stderr.contains(&format!("{made} frames are there")), "{}", rest.stderr);
+    run("0..5", "b%d.png", &on_gpu).run().succeeded();
+    for frame in 0..5 {
+        let read =
+            |start: &str| std::fs::read(folder.path().join(format!("{start}{frame}.png"))).expect("a frame");
+        assert!(read("a") == read("b"), "frame {frame}");
     }
 }
 

@@ -3,8 +3,10 @@
 //! - [`specimen`]: one exact drop in front of a sky map;
 //! - [`data`], [`scene`], `gpu`: a scene of triangles under a sky, traced by rays ([`surface`], [`texture`], [`sky`],
 //!   [`brdf`]); [`sky_light`] prepares the sky, [`camera`] the frame;
+//! - [`shower`]: which drops there are before an eye, from picture to picture;
 //! - [`rain`]: drops before a scene; [`picture`] puts the two together;
-//! - [`tone`] and [`mod@file`]: from radiance to a file.
+//! - [`tone`] and [`mod@file`]: from radiance to a file;
+//! - [`wind_picture`]: a wind as colours and streaks.
 
 mod assemble;
 pub mod brdf;
@@ -19,6 +21,7 @@ pub mod material;
 pub mod picture;
 pub mod rain;
 pub mod scene;
+pub mod shower;
 pub mod sky;
 pub mod sky_light;
 pub mod skylight;
@@ -28,6 +31,7 @@ pub mod surface;
 pub mod texture;
 pub mod tone;
 pub mod trace;
+pub mod wind_picture;
 
 pub use error::RenderError;
 

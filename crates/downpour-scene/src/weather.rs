@@ -18,11 +18,13 @@ mod models;
 mod quantity;
 mod rain;
 mod sky;
+mod wind;
 mod words;
 
 use crate::Budget;
 use crate::beneath::open_named;
 use crate::error::{SceneError, shown_path};
+use downpour_wind::Wind;
 use std::path::Path;
 
 pub use crate::uri::RelativePath;
@@ -32,6 +34,7 @@ pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
 pub use rain::{Rain, RainBounce, RainCylinder, RainDrag, RainVolume};
 pub use sky::{Sky, SkySource, SunSource};
+pub use wind::WindBox;
 
 /// The longest weather file, in bytes: 4 MiB.
 pub const MAX_FILE: u64 = 4 << 20;
@@ -48,7 +51,7 @@ pub const MAX_LIGHTS: usize = 1024;
 /// What a weather file says, checked: all numbers are finite and in the ranges of [the table](self).
 ///
 /// The default is what a bare glTF gets: 10 mm/h by Marshall & Palmer's law under an overcast sky, no sun, the
-/// model's own camera, 1280 x 720 pixels.
+/// model's own camera, no wind, 1280 x 720 pixels.
 ///
 /// ```
 /// use downpour_scene::weather::Weather;
@@ -85,6 +88,10 @@ pub struct Weather {
     pub models: Vec<Model>,
     /// Lamps, in the order of the file.
     pub lights: Vec<Lamp>,
+    /// The wind: parts, gusts, turbulence.
+    pub wind: Wind,
+    /// The box of cells in which the wind is worked out, where it differs from place to place.
+    pub wind_box: WindBox,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
 }
@@ -99,6 +106,8 @@ impl Default for Weather {
             camera: Camera::default(),
             models: Vec::new(),
             lights: Vec::new(),
+            wind: Wind::default(),
+            wind_box: WindBox::default(),
             size: [1280, 720],
         }
     }

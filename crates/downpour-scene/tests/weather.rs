@@ -370,13 +370,14 @@ fn t11_keys_are_known_and_stand_once() {
     );
     says(
         "[rian]\nrate_mm_h = 5",
-        "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: rain, sky, sun, camera, model, light, output",
+        "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: rain, sky, sun, camera, model, light, \
+         wind, gusts, turbulence, wind_field, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");
     refused("[camera]\nshutter_ms = 1", 2, "perhaps shutter_s;");
     refused("[rain]\ntemperature_k = 280", 2, "perhaps temperature_c;");
     refused("[rain]\nxyzzy = 280", 2, "unknown key \"xyzzy\"; allowed: rate_mm_h");
-    refused("wind = 3", 2, "line 1, column 1: wind: unknown key \"wind\"");
+    refused("gale = 3", 2, "line 1, column 1: gale: unknown key \"gale\"");
     refused(
         "[[light]]\npiont = { position_m = [0, 0, 0] }",
         2,

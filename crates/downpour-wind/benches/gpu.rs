@@ -27,7 +27,8 @@ fn field(c: &mut Criterion) {
     let field = GpuWindField::new(&gpu, &grid, 64, waves.len()).expect("a field");
     let mut group = c.benchmark_group(format!("field of 64^3 cells on {}", gpu.adapter().name));
     group.sample_size(10);
-    let cases: [(&str, usize, &[WindTurbulenceMode]); 2] = [("64 vortices", 64, &[]), ("turbulence", 0, &waves)];
+    let cases: [(&str, usize, &[WindTurbulenceMode]); 2] =
+        [("64 vortices", 64, &[]), ("turbulence", 0, &waves)];
     for (name, count, modes) in cases {
         let primitives = vec![vortex; count];
         group.bench_function(name, |b| {

@@ -35,7 +35,9 @@ pub enum WindError {
         allowed: usize,
     },
     /// Times of keys do not rise.
-    #[error("key {index} is at {found} s, after one at {before} s; allowed: times that rise by a microsecond at least")]
+    #[error(
+        "key {index} is at {found} s, after one at {before} s; allowed: times that rise by a microsecond at least"
+    )]
     KeyTime {
         /// Which key, from 0.
         index: usize,
@@ -45,7 +47,9 @@ pub enum WindError {
         before: f64,
     },
     /// An axis turns about, from one key to the next.
-    #[error("{quantity} turns about up to the key at {time} s; allowed: a key between, that says by which way")]
+    #[error(
+        "{quantity} turns about up to the key at {time} s; allowed: a key between, that says by which way"
+    )]
     AxisReverses {
         /// Which axis.
         quantity: &'static str,

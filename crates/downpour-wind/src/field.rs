@@ -125,9 +125,8 @@ pub fn wind_field_cell(
     }
     let at = wind_field_centre(grid, cell);
     let offset = at - Vec3::from(grid.low);
-    let sum = modes
-        .iter()
-        .fold(velocity(matrices, at), |sum, mode| sum + wind_turbulence_velocity(mode, offset));
+    let sum =
+        modes.iter().fold(velocity(matrices, at), |sum, mode| sum + wind_turbulence_velocity(mode, offset));
     let [x, y, z] = (sum * openness).to_array();
     [x, y, z, openness]
 }

@@ -11,8 +11,8 @@
 //! ```
 //!
 //! with sigma the standard deviation of each component and L the longitudinal integral length: the integral of E is 3/2
-//! sigma^2, and above k_e it goes as k^(-5/3). The waves stand at random places of equal steps of log k, from 0.1 to 1000
-//! k_e, in directions spread evenly over the sphere. The field is frozen (Taylor 1938): at time t it is that of time 0,
+//! sigma^2, and above `k_e` it goes as k^(-5/3). The waves stand at random places of equal steps of log k, from 0.1 to 1000
+//! `k_e`, in directions spread evenly over the sphere. The field is frozen (Taylor 1938): at time t it is that of time 0,
 //! moved by the way of the mean wind. Where no mean wind blows it stands.
 //!
 //! A grid shows waves of two cells at least: [`Turbulence::modes`] leaves out the shorter ones, and their energy with them.
@@ -29,10 +29,10 @@ use crate::gusts::unit;
 /// How many waves there are.
 pub const WIND_TURBULENCE_MODES: usize = 48;
 
-/// The lowest and the highest k / k_e.
+/// The lowest and the highest `k / k_e`.
 const BANDS: (f64, f64) = (0.1, 1.0e3);
 
-/// k_e L.
+/// `k_e L`.
 const PEAK: f64 = 0.746_834_200_222_186_6;
 
 /// Which numbers are drawn from the seed: not those of the gusts.

@@ -276,7 +276,10 @@ fn moments(x: f64) -> (f64, f64) {
     if x.abs() < 0.02 {
         let s = x * x;
         // The next terms are below 1e-16.
-        return (1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0)), x / 3.0 * (1.0 - s / 10.0 * (1.0 - s / 28.0)));
+        return (
+            1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0)),
+            x / 3.0 * (1.0 - s / 10.0 * (1.0 - s / 28.0)),
+        );
     }
     let (s, c) = (ops::sin(x), ops::cos(x));
     (s / x, (s - x * c) / (x * x))
@@ -321,7 +324,7 @@ impl UniformWindAt<'_> {
     /// and y of the other.
     #[must_use]
     pub fn followed(&self, relaxation_s: f64) -> Followed {
-        if !(relaxation_s > 0.0) {
+        if relaxation_s.is_nan() || relaxation_s <= 0.0 {
             return Followed { velocity: self.air, displacement: self.travel };
         }
         let tau = relaxation_s.min(LONGEST);

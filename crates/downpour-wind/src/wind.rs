@@ -43,7 +43,12 @@ pub struct Wind {
 impl Default for Wind {
     /// Still air.
     fn default() -> Self {
-        Self { parts: Vec::new(), gusts: None, turbulence: None, air: UniformWind::new(&DVec3::ZERO.into(), None) }
+        Self {
+            parts: Vec::new(),
+            gusts: None,
+            turbulence: None,
+            air: UniformWind::new(&DVec3::ZERO.into(), None),
+        }
     }
 }
 

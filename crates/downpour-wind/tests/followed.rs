@@ -61,7 +61,9 @@ fn stepped(air: &UniformWind, tau: f64, start: f64, end: f64, steps: u32) -> (DV
 fn drops_do_what_their_equation_says() {
     for (name, air) in winds() {
         for tau in [0.05, 1.0] {
-            for (start, end) in [(-100.0, -80.0), (-20.0, 2.0), (0.0, 35.0), (99_985.0, 100_000.0), (1.0e5, 1.0e5 + 21.0)] {
+            for (start, end) in
+                [(-100.0, -80.0), (-20.0, 2.0), (0.0, 35.0), (99_985.0, 100_000.0), (1.0e5, 1.0e5 + 21.0)]
+            {
                 let steps = (end - start) * 200.0;
                 let (velocity, way) = stepped(&air, tau, start, end, steps as u32);
                 let (first, last) = (air.followed(start, tau), air.followed(end, tau));
@@ -112,7 +114,10 @@ fn the_way_is_the_integral_of_the_velocity() {
                 let slope = (ahead - behind) / (2.0 * h);
                 let velocity = air.followed(time, tau).velocity;
                 // Ways of 1e6 m have 1e-10 m of digits, divided by 1e-5 s; the fastest sinusoid has 1150 rad/s.
-                assert!(slope.distance(velocity) < 2.0e-4, "{name}, tau {tau}, {time}: {slope}, not {velocity}");
+                assert!(
+                    slope.distance(velocity) < 2.0e-4,
+                    "{name}, tau {tau}, {time}: {slope}, not {velocity}"
+                );
             }
         }
     }

@@ -35,7 +35,10 @@ fn mean_and_variance_are_those_that_were_asked() {
             let (found, variance) = moments(seed, take);
             // 8192 values: a standard error of 0.011 sigma for the mean, 1.6 % for the variance.
             assert!((found - mean).abs() < 0.045 * sigma, "seed {seed}: mean {found}, not {mean}");
-            assert!((variance - wanted).abs() <= 0.06 * wanted, "seed {seed}: variance {variance}, not {wanted}");
+            assert!(
+                (variance - wanted).abs() <= 0.06 * wanted,
+                "seed {seed}: variance {variance}, not {wanted}"
+            );
         }
     }
 }
@@ -67,7 +70,10 @@ fn the_spectrum_is_kaimals() {
         let variance = transform(spectrum, 0.0);
         for (j, lag) in lags.into_iter().enumerate() {
             let (got, wanted) = (found[component][j] / number, transform(spectrum, lag));
-            assert!((got - wanted).abs() < 0.05 * variance, "component {component}, {lag} s: {got}, not {wanted}");
+            assert!(
+                (got - wanted).abs() < 0.05 * variance,
+                "component {component}, {lag} s: {got}, not {wanted}"
+            );
         }
     }
 }

@@ -4,7 +4,8 @@ mod common;
 
 use common::{CENTRE, CORE, STRENGTH, singularity, tornado};
 use downpour_wind::{
-    WindCore, WindError, WindForm, WindGrid, WindMatrix, WindPrimitive, WindSingularity, WindTornado, WindUniform,
+    WindCore, WindError, WindForm, WindGrid, WindMatrix, WindPrimitive, WindSingularity, WindTornado,
+    WindUniform,
 };
 use glam::Vec3;
 

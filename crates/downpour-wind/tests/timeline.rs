@@ -4,8 +4,8 @@ mod common;
 
 use common::{singularity, tornado};
 use downpour_wind::{
-    Gusts, Keyed, KeyedSingularity, KeyedTornado, Turbulence, WIND_KEYS, WIND_PARTS, Wind, WindCore, WindError,
-    WindForm, WindPart, WindPrimitive, WindUniform,
+    Gusts, Keyed, KeyedSingularity, KeyedTornado, Turbulence, WIND_KEYS, WIND_PARTS, Wind, WindCore,
+    WindError, WindForm, WindPart, WindPrimitive, WindUniform,
 };
 use glam::{DVec3, Vec3};
 
@@ -18,7 +18,8 @@ fn whirl() -> KeyedSingularity {
         form: WindForm::Line,
         core: WindCore::Rankine,
         strength: keyed(&[(0.0, -10.0), (4.0, 30.0)]),
-        centre: Keyed::new(vec![(0.0, DVec3::ZERO), (10.0, DVec3::new(20.0, 0.0, -10.0))]).expect("good keys"),
+        centre: Keyed::new(vec![(0.0, DVec3::ZERO), (10.0, DVec3::new(20.0, 0.0, -10.0))])
+            .expect("good keys"),
         axis: Keyed::new(vec![(1.0, DVec3::Y * 5.0), (3.0, DVec3::X * 0.1)]).expect("good keys"),
         core_radius: keyed(&[(-2.0, 1.0), (2.0, 3.0)]),
     }
@@ -58,7 +59,10 @@ fn keys_that_are_none_are_refused() {
     assert!(Keyed::new(many[1..].to_vec()).is_ok());
     assert_eq!(error(&[(2.0, 0.0), (1.0, 0.0)]), WindError::KeyTime { index: 1, found: 1.0, before: 2.0 });
     for gap in [0.0, 1.0e-7, -1.0e-3] {
-        assert!(matches!(error(&[(5.0, 0.0), (5.0 + gap, 1.0)]), WindError::KeyTime { index: 1, .. }), "{gap}");
+        assert!(
+            matches!(error(&[(5.0, 0.0), (5.0 + gap, 1.0)]), WindError::KeyTime { index: 1, .. }),
+            "{gap}"
+        );
     }
     assert!(Keyed::new(vec![(5.0, 0.0), (5.000_001, 1.0)]).is_ok());
     for bad in [f64::NAN, f64::INFINITY, -1.1e6] {
@@ -79,7 +83,10 @@ fn parts_move() {
         found
     };
     let first = at(-9.0);
-    assert_eq!((first.strength, first.centre, first.axis, first.core_radius), (-10.0, Vec3::ZERO, Vec3::Y, 1.0));
+    assert_eq!(
+        (first.strength, first.centre, first.axis, first.core_radius),
+        (-10.0, Vec3::ZERO, Vec3::Y, 1.0)
+    );
     let mid = at(2.0);
     assert_eq!((mid.strength, mid.centre, mid.core_radius), (10.0, Vec3::new(4.0, 0.0, -2.0), 3.0));
     assert!((mid.axis - Vec3::new(1.0, 1.0, 0.0).normalize()).length() < 1.0e-6, "{}", mid.axis);

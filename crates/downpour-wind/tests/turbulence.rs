@@ -174,7 +174,8 @@ fn waves_that_a_grid_cannot_show_are_left_out() {
         }
     }
     // A finer grid has the same eddies, and more.
-    let (coarse, fine) = (turbulence(7).modes(&grid(16), DVec3::ZERO), turbulence(7).modes(&grid(64), DVec3::ZERO));
+    let (coarse, fine) =
+        (turbulence(7).modes(&grid(16), DVec3::ZERO), turbulence(7).modes(&grid(64), DVec3::ZERO));
     assert_eq!(coarse[..], fine[..coarse.len()]);
 }
 
@@ -226,7 +227,8 @@ fn the_field_holds_the_eddies() {
         assert!((difference - eddies * open).length() < 1.0e-5, "{at}");
         assert_eq!(with[3], open);
     }
-    let mean_square = field.cells().iter().filter(|c| c[3] > 0.0).map(|c| (c[0] - 2.0) * (c[0] - 2.0)).sum::<f32>();
+    let mean_square =
+        field.cells().iter().filter(|c| c[3] > 0.0).map(|c| (c[0] - 2.0) * (c[0] - 2.0)).sum::<f32>();
     assert!(mean_square > 100.0, "{mean_square}");
 }
 

@@ -15,7 +15,9 @@ use downpour::sim::collision::{CollisionMap, CollisionOptions};
 use downpour::sim::gpu::{GpuCollisionMap, GpuMoment, GpuSimulation};
 use downpour::sim::simulation::{Moment, SimVolume, SimulationOptions};
 use downpour::sim::view::View;
-use downpour::wind::{WindCore, WindField, WindForm, WindGrid, WindMask, WindPrimitive, WindSingularity, WindUniform};
+use downpour::wind::{
+    WindCore, WindField, WindForm, WindGrid, WindMask, WindPrimitive, WindSingularity, WindUniform,
+};
 use glam::{DVec3, Vec3};
 
 /// Reads and writes as much as a step.
@@ -42,7 +44,7 @@ fn field() -> Result<WindField, Box<dyn Error>> {
             axis: Vec3::Y,
             core_radius: 5.0,
             form: WindForm::Line,
-            core: WindCore::Rosenhead
+            core: WindCore::Rosenhead,
         }),
     ];
     Ok(WindField::new(&grid, &wind, &WindMask::open(&grid))?)
@@ -62,12 +64,14 @@ fn map() -> Result<CollisionMap, Box<dyn Error>> {
         level([x, x + 4.0], [z, z + 4.0], f32::from(k % 7) - 4.0);
     }
     let low = Vec3::new(-50.0, -11.0, -50.0);
-    let options = CollisionOptions::covering(low, Vec3::splat(50.0), Vec3::new(0.5, -1.0, 0.0), [1024, 1024])?;
+    let options =
+        CollisionOptions::covering(low, Vec3::splat(50.0), Vec3::new(0.5, -1.0, 0.0), [1024, 1024])?;
     Ok(CollisionMap::new(&options, &downpour::bvh::Bvh::new(&corners))?)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let options = GpuOptions { adapter: AdapterChoice::Auto, limits: LimitSet::Adapter, ..GpuOptions::default() };
+    let options =
+        GpuOptions { adapter: AdapterChoice::Auto, limits: LimitSet::Adapter, ..GpuOptions::default() };
     let gpu = Gpu::open_with(&options)?;
     println!("{}", gpu.adapter().name);
     let (field, map) = (field()?, map()?);
@@ -75,7 +79,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let on_gpu = GpuCollisionMap::from_cpu(&gpu, &map)?;
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 100.0)?;
     let view = View { eye: DVec3::new(0.0, 2.0, 0.0), ..View::default() };
-    let start = Moment { view: &view, origin: DVec3::ZERO, wind: Vec3::X, field: Some(&field), map: Some(&map) };
+    let start =
+        Moment { view: &view, origin: DVec3::ZERO, wind: Vec3::X, field: Some(&field), map: Some(&map) };
     let bare = GpuMoment { view: &view, origin: DVec3::ZERO, wind: Vec3::X, field: None, map: None };
     let full = GpuMoment { field: Some((field.uniform(), &cells)), map: Some(&on_gpu), ..bare };
     let boxed = SimVolume::Box { size_m: [60.0; 3] };
@@ -92,10 +97,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             let buffers = (0..pieces)
                 .map(|_| Ok((gpu.storage_buffer("a", &words)?, gpu.storage_buffer("b", &words)?)))
                 .collect::<Result<Vec<_>, downpour::gpu::GpuError>>()?;
-            let bound = buffers.iter().map(|(a, b)| copy.bind(&gpu, &[a, b])).collect::<Result<Vec<_>, _>>()?;
+            let bound =
+                buffers.iter().map(|(a, b)| copy.bind(&gpu, &[a, b])).collect::<Result<Vec<_>, _>>()?;
             let groups = (words.len() as u32).div_ceil(256);
-            let copies: Vec<_> =
-                bound.iter().map(|b| copy.dispatch(b, [groups.min(4096), groups.div_ceil(4096), 1])).collect();
+            let copies: Vec<_> = bound
+                .iter()
+                .map(|b| copy.dispatch(b, [groups.min(4096), groups.div_ceil(4096), 1]))
+                .collect();
             let copied = (pieces * words.len()) as f64;
             let repeats = if software { 3 } else { 50 };
             let ms = |time: downpour::gpu::timing::PassTime| {

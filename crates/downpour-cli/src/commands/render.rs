@@ -1,50 +1,79 @@
-//! `downpour render`: a picture of a scene in the rain.
+//! `downpour render`: a picture of a scene in the rain, or a clip.
 
+mod clip;
+mod frames;
+mod job;
+mod journal;
+#[cfg(feature = "video")]
+mod mp4;
 mod outputs;
+mod painter;
+mod pattern;
+mod places;
+mod progress;
 mod report;
 mod shower;
+#[cfg(feature = "video")]
+mod video;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
-use downpour::render::picture::{Picture, PictureOptions, render_picture};
-use downpour::render::rain::{DropMasks, RainOptions, RefractionForm};
+use downpour::render::picture::{Picture, PictureOptions};
+use downpour::render::rain::{RainOptions, RefractionForm};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
-use downpour::sim::field::FallingDrop;
 
 use super::input::InputArguments;
-use crate::backend::{BackendArguments, compute};
+use crate::backend::BackendArguments;
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
 use crate::{quantity, stream};
+use frames::Frames;
 use outputs::{Bytes, Format, Outputs};
-use report::{Computer, Told};
-use shower::{Shower, Showers};
+use painter::with_painter;
+use report::Told;
+use shower::Showers;
 
 /// Memory per pixel, in bytes, while a picture is made and written: the scene, what its pixels found of the sky's light
 /// (twice while threads hand in their parts), the rain, and the file.
 pub(super) const BYTES_PER_PIXEL: u64 = 220;
 
-/// Make a picture of a scene in the rain.
+/// Make a picture of a scene in the rain, or a clip.
 #[derive(Debug, Args)]
+#[command(
+    after_help = "A clip: --frames 0..240 --fps 24 with -o frames/%04d.png, frames/%04d.exr or clip.mp4. Frames \
+that are there are not made again: the same command goes on where it was stopped, and a later end makes the clip longer. \
+What was done stands in .NAME.downpour-job beside the frames; for an .mp4 the frames are in .NAME.frames until it is there. \
+The exposure of a clip is that of its first frame."
+)]
 pub(crate) struct RenderArguments {
     #[command(flatten)]
     input: InputArguments,
-    /// The picture: .png (to look at) or .exr (linear radiance, unexposed).
+    /// The picture: .png (to look at) or .exr (linear radiance, unexposed). With --frames: a numbered name such as
+    /// frames/%04d.png, or .mp4 (AV1, sRGB; even width and height).
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    /// Make a clip: frames A to B - 1. Frame k is taken at --time + k / fps seconds.
+    #[arg(long, value_name = "A..B", value_parser = frames::frames, allow_hyphen_values = true)]
+    #[arg(requires = "fps")]
+    frames: Option<Frames>,
+    /// Frames per second of the clip, 0.001 to 1000.
+    #[arg(long, value_name = "N", value_parser = frames::fps, allow_hyphen_values = true)]
+    #[arg(requires = "frames")]
+    fps: Option<f64>,
     /// Write all layers into one .exr: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (metres along
     /// the ray, 1e30 for the sky).
     #[arg(long)]
     layers: bool,
-    /// Write what was done: counts of drops, rates, times.
+    /// Write what was done: counts of drops, rates, times. Of a clip: the means, and each frame's.
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
-    /// Write a row for each drop that is drawn: place and velocity in the world, diameter.
+    /// Write a row for each drop that is drawn: place and velocity in the world, diameter. Of a clip: a numbered name
+    /// such as drops/%04d.csv.
     #[arg(long, value_name = "FILE.csv")]
     dump_drops: Option<PathBuf>,
     /// Samples along an edge of a pixel, 1 to 8.
@@ -58,7 +87,7 @@ pub(crate) struct RenderArguments {
     /// How a drop's pixel finds its colour.
     #[arg(long, value_enum, default_value = "direction")]
     refraction: Refraction,
-    /// Replace files that exist.
+    /// Replace files that exist; begin a clip anew.
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]
@@ -91,12 +120,17 @@ impl RenderArguments {
     pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         self.input.check()?;
         self.backend.check()?;
+        match (self.frames, self.fps) {
+            (Some(frames), Some(fps)) => clip::run(self, frames, fps, interrupt),
+            _ => self.picture(interrupt),
+        }
+    }
+
+    /// Makes a single picture.
+    fn picture(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         let (stats, drops) = (self.stats.as_deref(), self.dump_drops.as_deref());
         let outputs = Outputs::new(&self.output, stats, drops, self.overwrite)?;
-        if self.layers && outputs.format != Format::Exr {
-            let found = format!("--layers for {}", shown(&self.output));
-            return Err(Failure::new(INPUT, format!("{found}; allowed: for .exr only")));
-        }
+        self.check_layers(outputs.format)?;
         let input = self.input.read(&mut Budget::default())?;
         outputs.keep(&input.files)?;
         reserve(input.weather.size)?;
@@ -104,37 +138,52 @@ impl RenderArguments {
         input.say_warnings(&stage, |text| self.say(text));
         let begin = Instant::now();
         let rain = &input.weather.rain;
-        let showers = Showers::new(rain)?;
+        let showers = &mut Showers::new(&input.weather)?;
         let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
         // The files have become buffers.
         drop(input.loaded);
-        let (picture, computer) = self.render(&stage, &shower, &showers.masks, rain.seed, interrupt)?;
+        let options = self.options(&stage, rain.seed);
+        let say = |text: &str| self.say(text);
+        let (picture, computer) = with_painter(&self.backend, interrupt, say, |painter| {
+            let picture = painter.paint(&stage, &shower.visible.drops, &showers.masks, &options)?;
+            Ok((picture, painter.computer().clone()))
+        })?;
         let frame_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         let drawn = picture.drawn.len();
         self.say(&format!("rain: {} mm/h, {drawn} drops drawn", rain.rate_mm_h));
-        let told = |measured_rate_mm_h| Told {
+        let told = Told {
             computer: &computer,
             rain: &shower.visible,
             asked_rate_mm_h: rain.rate_mm_h,
-            measured_rate_mm_h,
+            measured_rate_mm_h: shower.measured_rate_mm_h,
             time_s: self.input.time,
             seed: rain.seed,
             triangles: stage.triangles,
             frame_ms,
         };
-        let stats = shower.measured_rate_mm_h.map(|rate| report::stats(&picture, &told(rate)));
+        let exposure = stage.exposure(&picture.clean);
         let bytes = Bytes {
-            stats: stats.unwrap_or_default().into(),
+            stats: report::text(&report::stats(&picture, &told)).into(),
             drops: if outputs.wants_drops() {
                 report::drops(&picture.drawn, &shower.visible.drops).into()
             } else {
                 Vec::new()
             },
-            picture: self.encode(outputs.format, &stage, picture)?,
+            picture: self.encode(outputs.format, picture, exposure)?,
         };
         outputs.publish(&bytes, interrupt)?;
         let [width, height] = stage.size;
         self.say(&format!("wrote {}: {width} x {height}", shown(&self.output)));
+        Ok(())
+    }
+
+    /// # Errors
+    /// Exit code 2 for layers in a file that has none.
+    fn check_layers(&self, format: Format) -> Result<(), Failure> {
+        if self.layers && format != Format::Exr {
+            let found = format!("--layers for {}", shown(&self.output));
+            return Err(Failure::new(INPUT, format!("{found}; allowed: for .exr only")));
+        }
         Ok(())
     }
 
@@ -154,43 +203,8 @@ impl RenderArguments {
         }
     }
 
-    #[cfg(not(feature = "gpu"))]
-    fn render(
-        &self,
-        stage: &Stage,
-        shower: &Shower,
-        masks: &DropMasks,
-        seed: u64,
-        _: &Interrupt,
-    ) -> Result<(Picture, Computer), Failure> {
-        let options = self.options(stage, seed);
-        let drops = stage.place(&shower.visible.drops);
-        compute(&self.backend, |text| self.say(text), || on_cpu(stage, &drops, masks, &options))
-    }
-
-    #[cfg(feature = "gpu")]
-    fn render(
-        &self,
-        stage: &Stage,
-        shower: &Shower,
-        masks: &DropMasks,
-        seed: u64,
-        interrupt: &Interrupt,
-    ) -> Result<(Picture, Computer), Failure> {
-        use downpour::render::gpu::{GpuPictureError, PictureRenderer};
-        let options = self.options(stage, seed);
-        let drops = stage.place(&shower.visible.drops);
-        let say = |text: &str| self.say(text);
-        let gpu = |gpu: &downpour::gpu::Gpu| {
-            let renderer = PictureRenderer::new(gpu)?;
-            let picture = renderer.render(&stage.data, &stage.viewpoint, &drops, masks, &options)?;
-            let computer = Computer { adapter: gpu.adapter().name.clone(), backend: "gpu" };
-            Ok::<_, GpuPictureError>((picture, computer))
-        };
-        compute(&self.backend, interrupt, say, gpu, || on_cpu(stage, &drops, masks, &options))
-    }
-
-    fn encode(&self, format: Format, stage: &Stage, picture: Picture) -> Result<Vec<u8>, Failure> {
+    /// The file of a picture.
+    fn encode(&self, format: Format, picture: Picture, exposure: f32) -> Result<Vec<u8>, Failure> {
         let [width, height] = picture.size;
         if self.layers {
             return Ok(write_exr_layers(width, height, &picture.clean, &picture.rain)?);
@@ -199,7 +213,6 @@ impl RenderArguments {
         Ok(match format {
             Format::Exr => write_exr(width, height, &radiance)?,
             Format::Png => {
-                let exposure = stage.exposure(&picture.clean);
                 drop(picture);
                 let pixels: Vec<[f32; 4]> = radiance.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
                 drop(radiance);
@@ -207,16 +220,6 @@ impl RenderArguments {
             }
         })
     }
-}
-
-fn on_cpu(
-    stage: &Stage,
-    drops: &[FallingDrop],
-    masks: &DropMasks,
-    options: &PictureOptions,
-) -> Result<(Picture, Computer), Failure> {
-    let picture = render_picture(&stage.data, &stage.viewpoint, drops, masks, options)?;
-    Ok((picture, Computer { adapter: "CPU".to_owned(), backend: "cpu" }))
 }
 
 /// Whether the memory that a picture will take can be had. An allocation that fails later on would end the process.

@@ -6,6 +6,12 @@
 mod arguments;
 mod check;
 mod child;
+mod clip;
+mod clip_bad;
+#[cfg(unix)]
+mod clip_kill;
+#[cfg(feature = "video")]
+mod clip_video;
 mod drop;
 mod gltf_file;
 mod mask;
@@ -20,6 +26,7 @@ mod scenes;
 #[cfg(unix)]
 mod signals;
 mod specimen;
+mod wind;
 #[cfg(all(feature = "gpu", target_os = "linux"))]
 mod without_gpu;
 #[cfg(not(feature = "gpu"))]

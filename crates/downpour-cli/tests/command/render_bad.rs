@@ -45,8 +45,6 @@ fn bad_arguments_are_refused() {
         (&["-o", "a.png", "--seed", "-1"], 2, &["--seed", "0 to 18446744073709551615"]),
         (&["-o", "a.png", "--seed", "18446744073709551616"], 2, &["--seed", "0 to 18446744073709551615"]),
         (&["-o", "a.png", "--sky-rays", "65"], 2, &["--sky-rays", "0 to 64"]),
-        (&["-o", "a.png", "--frames", "1..9"], 2, &["'--frames'"]),
-        (&["-o", "a.png", "--fps", "24"], 2, &["'--fps'"]),
         (&["-o", "a.png", "--layers"], 2, &["--layers", "allowed: for .exr only"]),
         (&["-o", "a.png", "--adapter", "x"], 2, &["--adapter", "--backend gpu or auto"]),
         (&["-o", "a.png", "--asset-root", "none"], 5, &["none"]),

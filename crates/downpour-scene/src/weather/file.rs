@@ -6,6 +6,7 @@ use super::models::{Model, ModelTable};
 use super::quantity::{Exactly, Whole};
 use super::rain::{Rain, RainTable};
 use super::sky::{Sky, SkyTable, SunSource, SunTable};
+use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
 use super::{Camera, MAX_LIGHTS, MAX_MODELS, Weather, camera::CameraTable};
 use crate::error::{SceneError, quoted};
 use crate::uri::{Address, RelativePath, check};
@@ -24,6 +25,10 @@ struct Tables {
     camera: CameraTable,
     model: Vec<ModelTable>,
     light: Vec<LampTable>,
+    wind: Vec<WindTable>,
+    gusts: Option<GustsTable>,
+    turbulence: Option<TurbulenceTable>,
+    wind_field: WindFieldTable,
     output: OutputTable,
 }
 
@@ -37,9 +42,11 @@ struct OutputTable {
 pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let places = Places::find(text)?;
     let tables: Tables = toml::from_str(text).map_err(|error| places.refused(&error))?;
-    for (key, count, most) in
-        [("model", tables.model.len(), MAX_MODELS), ("light", tables.light.len(), MAX_LIGHTS)]
-    {
+    for (key, count, most) in [
+        ("model", tables.model.len(), MAX_MODELS),
+        ("light", tables.light.len(), MAX_LIGHTS),
+        ("wind", tables.wind.len(), downpour_wind::WIND_PARTS),
+    ] {
         if count > most {
             return Err(places.limit(key, format!("{count} times [[{key}]]"), format!("at most {most}")));
         }
@@ -54,6 +61,8 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         camera: Camera::checked(&tables.camera, &places)?,
         models: numbered(&tables.model, |i, table| Model::checked(i, table, &places))?,
         lights: numbered(&tables.light, |i, table| Lamp::checked(i, table, &places))?,
+        wind: wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &places)?,
+        wind_box: tables.wind_field.checked(&places)?,
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
 }

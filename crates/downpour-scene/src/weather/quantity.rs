@@ -58,6 +58,18 @@ ranges! {
     Part: -1e9, 1e9, "-1e9 to 1e9";
     ConeDeg: 0.0, 89.9, "0 to 89.9 degrees";
     RangeM: 1e-3, 1e7, "0.001 to 1e7 m";
+    KeyTimeS: -1e6, 1e6, "-1e6 to 1e6 s";
+    WindMS: 0.0, 200.0, "0 to 200 m/s";
+    Outflow: 0.0, 1e6, "0 to 1e6";
+    Turning: -1e6, 1e6, "-1e6 to 1e6";
+    WindPlaceM: -1e6, 1e6, "-1e6 to 1e6 m";
+    CoreM: 0.01, 1e4, "0.01 to 1e4 m";
+    HeightM: 0.02, 1e5, "0.02 to 1e5 m";
+    Intensity: 0.0, 1.0, "0 to 1";
+    GustM: 1.0, 1e4, "1 to 1e4 m";
+    EddyMS: 0.0, 50.0, "0 to 50 m/s";
+    EddyM: 0.1, 1e4, "0.1 to 1e4 m";
+    WindBoxM: 0.01, 1e6, "0.01 to 1e6 m";
 }
 
 /// A number within a range.
@@ -73,7 +85,7 @@ impl<R> Clone for In<R> {
 impl<R> Copy for In<R> {}
 
 impl<R: Range> In<R> {
-    fn checked<E: Error>(value: f64) -> Result<Self, E> {
+    pub(super) fn checked<E: Error>(value: f64) -> Result<Self, E> {
         if (R::LOW..=R::HIGH).contains(&value) || (R::OR_ZERO && value == 0.0) {
             // No sign on a zero.
             return Ok(Self(value + 0.0, PhantomData));

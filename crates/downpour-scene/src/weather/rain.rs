@@ -2,7 +2,8 @@
 
 use super::fault::Places;
 use super::quantity::{
-    BoxM, DropSize, Exactly, GammaShape, In, MedianMm, PlaceM, PressureHpa, RadiusM, RateMmH, Share, ShortS, TemperatureC, Whole,
+    BoxM, DropSize, Exactly, GammaShape, In, MedianMm, PlaceM, PressureHpa, RadiusM, RateMmH, Share, ShortS,
+    TemperatureC, Whole,
 };
 use crate::error::SceneError;
 use downpour_drop::air::Air;

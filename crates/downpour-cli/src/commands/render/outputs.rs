@@ -1,4 +1,4 @@
-//! Where the files of a picture go.
+//! Where the files of a single picture go.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -45,13 +45,10 @@ impl Outputs {
         let format = match extension(picture).as_deref() {
             Some("exr") => Format::Exr,
             Some("png") => Format::Png,
+            Some("mp4") => return Err(refused(picture, ".exr or .png, or --frames and --fps for a clip")),
             _ => return Err(refused(picture, ".exr or .png")),
         };
-        for (path, allowed) in [(stats, "json"), (drops, "csv")] {
-            if let Some(path) = path.filter(|path| extension(path).as_deref() != Some(allowed)) {
-                return Err(refused(path, &format!(".{allowed}")));
-            }
-        }
+        check_tables(stats, drops)?;
         let paths: Vec<PathBuf> =
             [Some(picture), stats, drops].into_iter().flatten().map(Path::to_owned).collect();
         let place = |path: Option<&Path>| path.map(|path| Place::new(path, overwrite)).transpose();
@@ -69,16 +66,7 @@ impl Outputs {
     /// # Errors
     /// Exit code 2, with the name.
     pub(super) fn keep(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
-        let kept: Vec<PathBuf> = inputs.iter().filter_map(|path| fs::canonicalize(path).ok()).collect();
-        let taken =
-            self.paths.iter().find(|path| fs::canonicalize(path).is_ok_and(|path| kept.contains(&path)));
-        match taken {
-            Some(path) => {
-                let found = format!("output {} is an input of the picture", shown(path));
-                Err(Failure::new(INPUT, format!("{found}; allowed: another name")))
-            }
-            None => Ok(()),
-        }
+        keep(self.paths.iter(), inputs)
     }
 
     pub(super) fn wants_stats(&self) -> bool {
@@ -104,10 +92,36 @@ impl Outputs {
     }
 }
 
-fn extension(path: &Path) -> Option<String> {
+/// Refuses lists whose names say another format.
+pub(super) fn check_tables(stats: Option<&Path>, drops: Option<&Path>) -> Result<(), Failure> {
+    for (path, allowed) in [(stats, "json"), (drops, "csv")] {
+        if let Some(path) = path.filter(|path| extension(path).as_deref() != Some(allowed)) {
+            return Err(refused(path, &format!(".{allowed}")));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses outputs that are inputs as well.
+pub(super) fn keep<P: AsRef<Path>>(
+    mut outputs: impl Iterator<Item = P>,
+    inputs: &[PathBuf],
+) -> Result<(), Failure> {
+    let kept: Vec<PathBuf> = inputs.iter().filter_map(|path| fs::canonicalize(path).ok()).collect();
+    let taken = outputs.find(|path| fs::canonicalize(path).is_ok_and(|path| kept.contains(&path)));
+    match taken {
+        Some(path) => {
+            let found = format!("output {} is an input of the picture", shown(path.as_ref()));
+            Err(Failure::new(INPUT, format!("{found}; allowed: another name")))
+        }
+        None => Ok(()),
+    }
+}
+
+pub(super) fn extension(path: &Path) -> Option<String> {
     path.extension().map(|e| e.to_string_lossy().to_lowercase())
 }
 
-fn refused(path: &Path, allowed: &str) -> Failure {
+pub(super) fn refused(path: &Path, allowed: &str) -> Failure {
     Failure::new(INPUT, format!("output {}; allowed: {allowed}", shown(path)))
 }

@@ -6,6 +6,7 @@ use downpour::render::picture::Picture;
 use downpour::sim::field::{FallingDrop, VisibleDrops};
 use serde_json::{Map, Value, json};
 
+use super::frames::Frames;
 use crate::listing::number;
 
 /// What computed a picture.
@@ -15,6 +16,8 @@ pub(super) struct Computer {
     pub(super) adapter: String,
     /// `gpu` or `cpu`.
     pub(super) backend: &'static str,
+    /// What else its bits depend on: the driver with its version, or the processor's architecture.
+    pub(super) driver: String,
 }
 
 /// What `--stats` tells beside the picture.
@@ -22,7 +25,8 @@ pub(super) struct Told<'a> {
     pub(super) computer: &'a Computer,
     pub(super) rain: &'a VisibleDrops,
     pub(super) asked_rate_mm_h: f64,
-    pub(super) measured_rate_mm_h: f64,
+    /// Measured for those alone who are told of it.
+    pub(super) measured_rate_mm_h: Option<f64>,
     pub(super) time_s: f64,
     pub(super) seed: u64,
     pub(super) triangles: usize,
@@ -30,13 +34,13 @@ pub(super) struct Told<'a> {
     pub(super) frame_ms: f64,
 }
 
-/// The text of `--stats`.
-pub(super) fn stats(picture: &Picture, told: &Told<'_>) -> String {
+/// What `--stats` tells of a picture.
+pub(super) fn stats(picture: &Picture, told: &Told<'_>) -> Value {
     let mut passes = Map::new();
     for (name, ms) in &picture.passes {
         passes.insert((*name).to_owned(), number(*ms));
     }
-    let object = json!({
+    json!({
         "adapter": told.computer.adapter,
         "backend": told.computer.backend,
         "width": picture.size[0],
@@ -45,15 +49,68 @@ pub(super) fn stats(picture: &Picture, told: &Told<'_>) -> String {
         "drops_drawn": picture.drawn.len(),
         "drops_on_screen": picture.drops_on_screen,
         "asked_rate_mm_h": number(told.asked_rate_mm_h),
-        "measured_rate_mm_h": number(told.measured_rate_mm_h),
+        "measured_rate_mm_h": told.measured_rate_mm_h.map(number),
         "least_pixels": number(told.rain.least_pixels),
         "time_s": number(told.time_s),
         "seed": told.seed,
         "triangles": told.triangles,
         "frame_ms": number(told.frame_ms),
         "passes": Value::Object(passes),
+    })
+}
+
+/// The text of `--stats`.
+pub(super) fn text(stats: &Value) -> String {
+    format!("{stats:#}\n")
+}
+
+/// What `--stats` tells of a clip beside its frames.
+pub(super) struct ClipTold {
+    pub(super) frames: Frames,
+    pub(super) fps: f64,
+    /// Frames that this run made; the others were there.
+    pub(super) made: u32,
+    /// How long the video took, if there is one.
+    pub(super) encode_ms: Option<f64>,
+}
+
+/// Keys whose value in a clip is the mean of its frames; `time_s` is that of the first.
+const MEANS: [&str; 5] =
+    ["drops_simulated", "drops_drawn", "drops_on_screen", "measured_rate_mm_h", "frame_ms"];
+
+/// What `--stats` tells of a clip: the keys of a picture, where counts, the measured rate and times are means of the
+/// frames, and `frames` with what it tells of each.
+pub(super) fn clip_stats(frames: &[(u32, &Value)], told: &ClipTold) -> Value {
+    let Some((_, Value::Object(first))) = frames.first() else { return Value::Null };
+    let mut clip = first.clone();
+    for key in MEANS {
+        clip.insert(key.to_owned(), mean(frames.iter().map(|(_, frame)| &frame[key])));
+    }
+    let passes = first.get("passes").and_then(Value::as_object).cloned().unwrap_or_default();
+    let passes = passes.into_iter().map(|(name, _)| {
+        let value = mean(frames.iter().map(|(_, frame)| &frame["passes"][&name]));
+        (name, value)
     });
-    format!("{object:#}\n")
+    clip.insert("passes".to_owned(), Value::Object(passes.collect()));
+    clip.insert("fps".to_owned(), number(told.fps));
+    clip.insert("first_frame".to_owned(), json!(told.frames.first));
+    clip.insert("frame_count".to_owned(), json!(told.frames.count()));
+    clip.insert("frames_made".to_owned(), json!(told.made));
+    clip.insert("encode_ms".to_owned(), told.encode_ms.map_or(Value::Null, number));
+    let each = frames.iter().map(|(number, frame)| {
+        let mut numbered = Map::new();
+        numbered.insert("frame".to_owned(), json!(number));
+        numbered.extend(frame.as_object().cloned().unwrap_or_default());
+        Value::Object(numbered)
+    });
+    clip.insert("frames".to_owned(), each.collect());
+    Value::Object(clip)
+}
+
+fn mean<'a>(values: impl Iterator<Item = &'a Value>) -> Value {
+    let (sum, count) =
+        values.filter_map(Value::as_f64).fold((0.0, 0u32), |(sum, count), v| (sum + v, count + 1));
+    number(sum / f64::from(count))
 }
 
 /// The text of `--dump-drops`: each drop that was drawn, nearest first, in the world.
@@ -62,8 +119,8 @@ pub(super) fn drops(drawn: &[u32], drops: &[FallingDrop]) -> String {
     for drop in drawn.iter().filter_map(|&index| drops.get(index as usize)) {
         let [x, y, z] = drop.position.to_array();
         let [vx, vy, vz] = drop.velocity.map(|v| v + 0.0);
-        let mm = drop.diameter * 1.0e3;
-        let _ = writeln!(text, "{},{x},{y},{z},{vx},{vy},{vz},{mm},falling", drop.id);
+        let (mm, kind) = (drop.diameter * 1.0e3, drop.kind.name());
+        let _ = writeln!(text, "{},{x},{y},{z},{vx},{vy},{vz},{mm},{kind}", drop.id);
     }
     text
 }

@@ -1,51 +1,40 @@
-//! The rain of a picture, and of all pictures of a clip.
+//! The rain of a picture, and of all pictures of a clip, for the command.
 
-use downpour::drop::air::Air;
-use downpour::drop::distribution::{DistributionOptions, DropSizeDistribution};
-use downpour::drop::optics::water_index_in_air;
 use downpour::render::rain::DropMasks;
+use downpour::render::shower::{self, Shower};
 use downpour::render::stage::Stage;
-use downpour::scene::weather::Rain;
-use downpour::sim::field::{RainField, VisibleDrops};
+use downpour::scene::weather::Weather;
+use downpour::sim::field::VisibleDrops;
 
 use crate::failure::Failure;
 
-/// The line of sodium, in metres: the wavelength at which water's index is taken.
-const SODIUM_M: f64 = 589.3e-9;
-
-/// The coldest air, in Celsius, in which water's index is known.
-const COLDEST_INDEX_C: f64 = -12.0;
-
 /// The rain of a picture.
-pub(super) struct Shower {
+pub(super) struct Seen {
     pub(super) visible: VisibleDrops,
     /// Measured for those alone who are told of it.
     pub(super) measured_rate_mm_h: Option<f64>,
 }
 
-/// A rain, at any time.
+/// A rain, from picture to picture, and what its drops do to light.
 pub(super) struct Showers {
-    field: RainField,
-    /// What drops do to light.
+    shower: Shower,
     pub(super) masks: DropMasks,
 }
 
 impl Showers {
-    pub(super) fn new(rain: &Rain) -> Result<Self, Failure> {
-        let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
-        let law = DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)?;
-        let field = RainField::new(&law, rain.seed)?;
-        let temperature = rain.air.temperature_c().max(COLDEST_INDEX_C);
-        let air = Air::new(temperature, rain.air.pressure_pa())?;
-        let masks = DropMasks::trace(water_index_in_air(SODIUM_M, &air)?)?;
-        Ok(Self { field, masks })
+    pub(super) fn new(weather: &Weather) -> Result<Self, Failure> {
+        Ok(Self { shower: Shower::new(weather)?, masks: shower::masks(weather)? })
+    }
+
+    /// Whether any picture can be made without those before it.
+    pub(super) fn is_closed_form(&self) -> bool {
+        self.shower.is_closed_form()
     }
 
     /// The drops that a picture can show at a time in seconds.
-    pub(super) fn at(&self, stage: &Stage, time_s: f64, measure: bool) -> Result<Shower, Failure> {
-        let view = stage.view()?;
-        let visible = self.field.visible(&view, time_s)?;
-        let measured = || self.field.measured_rate_mm_h(view.eye, time_s);
-        Ok(Shower { visible, measured_rate_mm_h: measure.then(measured).transpose()? })
+    pub(super) fn at(&mut self, stage: &Stage, time_s: f64, measure: bool) -> Result<Seen, Failure> {
+        let visible = self.shower.at(stage, time_s)?;
+        let measured = || self.shower.measured_rate_mm_h(stage, time_s);
+        Ok(Seen { visible, measured_rate_mm_h: measure.then(measured).transpose()? })
     }
 }

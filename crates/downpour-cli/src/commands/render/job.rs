@@ -1,0 +1,69 @@
+//! What the frames of a clip depend on: two runs with the same job make the same frames, bit for bit.
+
+use std::fmt::{self, Write as _};
+
+use downpour::render::stage::Stage;
+use downpour::scene::weather::{Loaded, Weather};
+use sha2::{Digest as _, Sha256};
+
+/// Names and values, in a fixed order. Values are texts, so that no number is rounded on its way through a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Job(pub(super) Vec<(&'static str, String)>);
+
+/// The digest of bytes, in hexadecimal digits.
+pub(super) fn digest(bytes: &[u8]) -> String {
+    hexadecimal(Sha256::new_with_prefix(bytes))
+}
+
+/// The digest of a scene: its buffers and its eye at the first frame, all that the weather says, and all by which the
+/// scene will move.
+pub(super) fn scene_digest(weather: &Weather, loaded: &Loaded, first: &Stage) -> String {
+    let mut sum = Sha256::new();
+    let data = &first.data;
+    let buffers: [&[u8]; 6] = [
+        bytemuck::cast_slice(&data.nodes),
+        bytemuck::cast_slice(&data.triangles),
+        bytemuck::cast_slice(&data.corners),
+        bytemuck::cast_slice(&data.table),
+        bytemuck::cast_slice(&data.texels),
+        bytemuck::cast_slice(&data.sky),
+    ];
+    for buffer in buffers {
+        sum.update((buffer.len() as u64).to_le_bytes());
+        sum.update(buffer);
+    }
+    let rest = (data.slots, data.lights, data.light_count, data.sky_levels, data.sky_irradiance);
+    let mut text = Text(sum);
+    // What messages call the file is no part of the scene.
+    let weather = Weather { name: String::new(), ..weather.clone() };
+    // Nothing that is formatted fails, and neither does the digest.
+    let _ = write!(text, "{rest:?} {:?} {:?} {weather:?}", first.viewpoint, (first.origin, first.depth));
+    if moves(loaded) {
+        let scene = &loaded.scene;
+        let _ = write!(text, "{:?} {:?} {:?}", loaded.animations, scene.animations, scene.nodes);
+        let _ = write!(text, "{:?} {:?} {:?}", scene.skins, scene.meshes, scene.roots);
+    }
+    hexadecimal(text.0)
+}
+
+/// Whether anything but the rain moves.
+pub(super) fn moves(loaded: &Loaded) -> bool {
+    loaded.animations.iter().any(Option::is_some)
+}
+
+/// Text that is digested as it is written.
+struct Text(Sha256);
+
+impl fmt::Write for Text {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}
+
+fn hexadecimal(sum: Sha256) -> String {
+    sum.finalize().iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}

@@ -1,0 +1,285 @@
+//! What a clip has done so far, in a file beside its frames: `.NAME.downpour-job`.
+//!
+//! The first line tells the [`Job`]. Then comes a line for the exposure, and one for each frame *before* the frame gets its
+//! name: whatever stands under a frame's name is known by its digest, or was not ours. Each line begins with a digest of the
+//! rest of it, so that a line that was cut or edited counts as not written. The file is locked while a process works on it.
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read as _, Write as _};
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value, json};
+
+use super::job::{Job, digest};
+use crate::failure::{FILES, Failure, INPUT, LIMIT, shown};
+use crate::interrupt::Interrupt;
+
+/// The version of the file.
+const VERSION: u64 = 1;
+
+/// The longest file that is read, in bytes: a thousand for each frame of the longest clip.
+const LONGEST: u64 = 1 << 30;
+
+/// Digits of a line's digest.
+const CHECK_DIGITS: usize = 16;
+
+/// What is known of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Record {
+    /// The digest of the picture's file.
+    pub(super) picture: String,
+    /// That of the list of drops, if there is one.
+    pub(super) drops: Option<String>,
+    /// What `--stats` tells of it.
+    pub(super) stats: Value,
+}
+
+/// The journal of a clip that this process works on.
+#[derive(Debug)]
+pub(super) struct Journal {
+    path: PathBuf,
+    file: File,
+    content: Content,
+}
+
+/// What a journal says.
+#[derive(Debug, Default)]
+struct Content {
+    overwrite: bool,
+    exposure: Option<f32>,
+    frames: BTreeMap<u32, Record>,
+    video: Option<String>,
+}
+
+/// The journal of files with this name.
+pub(super) fn place(name: &Path) -> PathBuf {
+    let file = name.file_name().unwrap_or_default().to_string_lossy();
+    name.with_file_name(format!(".{file}.downpour-job"))
+}
+
+impl Journal {
+    /// Opens or begins a journal, and locks it. `anew`: what it says does not count.
+    ///
+    /// # Errors
+    /// Exit code 2 for the journal of another job, or one that cannot be read; 5 if another process works on it, or for
+    /// a place that cannot be written.
+    pub(super) fn open(path: &Path, job: &Job, anew: bool, interrupt: &Interrupt) -> Result<Self, Failure> {
+        let failed = |error: &io::Error| Failure::file(path, error);
+        let mut file = locked(path)?;
+        let mut bytes = Vec::new();
+        if !anew {
+            if file.metadata().map_err(|error| failed(&error))?.len() > LONGEST {
+                let found = format!("{}: more than {LONGEST} bytes", shown(path));
+                return Err(Failure::new(
+                    LIMIT,
+                    format!("{found}; allowed: a journal of downpour, or --overwrite"),
+                ));
+            }
+            file.read_to_end(&mut bytes).map_err(|error| failed(&error))?;
+        }
+        // A last line without an end was being written when its process was killed.
+        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+        bytes.truncate(whole);
+        let text = String::from_utf8_lossy(&bytes);
+        let (header, content) = read(&text);
+        let same = header.as_ref().is_some_and(|header| *header == header_of(job));
+        let worked = !content.frames.is_empty();
+        if worked && !same {
+            return Err(other_job(path, header.as_ref(), job));
+        }
+        let mut journal = Self { path: path.to_owned(), file, content };
+        if worked {
+            journal.file.set_len(whole as u64).map_err(|error| failed(&error))?;
+        } else {
+            journal.content = Content::default();
+            journal.file.set_len(0).map_err(|error| failed(&error))?;
+            journal.append(&header_of(job), interrupt)?;
+            if anew {
+                journal.append(&json!({ "overwrite": true }), interrupt)?;
+                journal.content.overwrite = true;
+            }
+        }
+        Ok(journal)
+    }
+
+    /// Whether the clip was begun over files that were there. It goes on so.
+    pub(super) fn overwrites(&self) -> bool {
+        self.content.overwrite
+    }
+
+    /// The exposure of the clip, once it is known.
+    pub(super) fn exposure(&self) -> Option<f32> {
+        self.content.exposure
+    }
+
+    pub(super) fn frame(&self, number: u32) -> Option<&Record> {
+        self.content.frames.get(&number)
+    }
+
+    /// The digest of the video, if one was about to get its name.
+    pub(super) fn video(&self) -> Option<&str> {
+        self.content.video.as_deref()
+    }
+
+    /// # Errors
+    /// As [`record`](Self::record).
+    pub(super) fn expose(&mut self, exposure: f32, interrupt: &Interrupt) -> Result<(), Failure> {
+        self.append(&json!({ "exposure_bits": exposure.to_bits(), "exposure": exposure }), interrupt)?;
+        self.content.exposure = Some(exposure);
+        Ok(())
+    }
+
+    /// Writes down a frame that will get its name at once.
+    ///
+    /// # Errors
+    /// Exit code 5, with what the system says.
+    pub(super) fn record(
+        &mut self,
+        number: u32,
+        record: Record,
+        interrupt: &Interrupt,
+    ) -> Result<(), Failure> {
+        let Record { picture, drops, stats } = &record;
+        let line = json!({ "frame": number, "picture": picture, "drops": drops, "stats": stats });
+        self.append(&line, interrupt)?;
+        self.content.frames.insert(number, record);
+        Ok(())
+    }
+
+    /// # Errors
+    /// As [`record`](Self::record).
+    pub(super) fn record_video(&mut self, digest: String, interrupt: &Interrupt) -> Result<(), Failure> {
+        self.append(&json!({ "video": digest }), interrupt)?;
+        self.content.video = Some(digest);
+        Ok(())
+    }
+
+    fn append(&mut self, value: &Value, interrupt: &Interrupt) -> Result<(), Failure> {
+        let text = value.to_string();
+        let line = format!("{} {text}\n", check(&text));
+        // A signal waits until the line is whole.
+        let _unfinished = interrupt.unfinished();
+        let written = self.file.write_all(line.as_bytes()).and_then(|()| self.file.sync_data());
+        written.map_err(|error| Failure::file(&self.path, &error))
+    }
+
+    /// The numbers of all frames that were ever written down.
+    pub(super) fn numbers(&self) -> Vec<u32> {
+        self.content.frames.keys().copied().collect()
+    }
+
+    /// Removes the file. The lock goes after it.
+    pub(super) fn remove(self) {
+        let _ = fs::remove_file(&self.path);
+    }
+
+    /// Leaves no file behind if there is nothing in it to go on with.
+    pub(super) fn close(self) {
+        if self.content.frames.is_empty() {
+            self.remove();
+        }
+    }
+}
+
+/// Opens the file and locks it. A symbolic link is not followed.
+fn locked(path: &Path) -> Result<File, Failure> {
+    let failed = |error: &io::Error| Failure::file(path, error);
+    let plain = |found: io::Result<fs::Metadata>| match found {
+        Ok(found) if found.is_file() => Ok(true),
+        Ok(_) => {
+            Err(Failure::new(FILES, format!("{} is not a plain file; allowed: a plain file", shown(path))))
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(failed(&error)),
+    };
+    let is_there = plain(fs::symlink_metadata(path))?;
+    let mut options = OpenOptions::new();
+    options.read(true).append(true);
+    let opened = if is_there { options.open(path) } else { options.create_new(true).open(path) };
+    let busy = || {
+        let found = format!("{}: another downpour works on this clip", shown(path));
+        Failure::new(FILES, format!("{found}; allowed: to wait for it, or another name"))
+    };
+    let file = match opened {
+        Ok(file) => file,
+        // Somebody made it in between.
+        Err(error) if !is_there && error.kind() == io::ErrorKind::AlreadyExists => return Err(busy()),
+        Err(error) => return Err(failed(&error)),
+    };
+    match file.try_lock() {
+        Err(fs::TryLockError::WouldBlock) => return Err(busy()),
+        // A file system without locks does without.
+        Ok(()) | Err(fs::TryLockError::Error(_)) => {}
+    }
+    // Who held the lock before may have removed the file.
+    if !plain(fs::symlink_metadata(path))? { Err(busy()) } else { Ok(file) }
+}
+
+fn header_of(job: &Job) -> Value {
+    let job: Map<String, Value> =
+        job.0.iter().map(|(key, value)| ((*key).to_owned(), json!(value))).collect();
+    json!({ "downpour_job": VERSION, "job": job })
+}
+
+/// The first line, and what the others say. Lines that do not hold are as if they were not there.
+fn read(text: &str) -> (Option<Value>, Content) {
+    let mut lines = text.lines().map(line);
+    let header = lines.next().flatten();
+    let mut content = Content::default();
+    for value in lines.flatten() {
+        if let Some(bits) = value["exposure_bits"].as_u64().and_then(|bits| u32::try_from(bits).ok()) {
+            content.exposure = Some(f32::from_bits(bits)).filter(|exposure| exposure.is_finite());
+        } else if value["overwrite"] == true {
+            content.overwrite = true;
+        } else if let Some(digest) = value["video"].as_str() {
+            content.video = Some(digest.to_owned());
+        } else if let Some((number, record)) = record(&value) {
+            content.frames.insert(number, record);
+        }
+    }
+    (header, content)
+}
+
+fn record(value: &Value) -> Option<(u32, Record)> {
+    let number = u32::try_from(value["frame"].as_u64()?).ok()?;
+    let picture = value["picture"].as_str()?.to_owned();
+    let drops = value["drops"].as_str().map(str::to_owned);
+    Some((number, Record { picture, drops, stats: value["stats"].clone() }))
+}
+
+fn line(line: &str) -> Option<Value> {
+    let (found, text) = line.split_once(' ')?;
+    if found != check(text) {
+        return None;
+    }
+    serde_json::from_str(text).ok()
+}
+
+fn check(text: &str) -> String {
+    digest(text.as_bytes()).chars().take(CHECK_DIGITS).collect()
+}
+
+/// Says what of the job is not what it was.
+fn other_job(path: &Path, header: Option<&Value>, job: &Job) -> Failure {
+    let allowed = "the same as before to go on, another name, or --overwrite to begin anew";
+    let of = |found: &str| Failure::new(INPUT, format!("{}: {found}; allowed: {allowed}", shown(path)));
+    let Some(header) = header else { return of("the first line is damaged") };
+    match header["downpour_job"].as_u64() {
+        Some(VERSION) => {}
+        Some(version) => return of(&format!("a journal of version {version}, this is {VERSION}")),
+        None => return of("not a journal of downpour"),
+    }
+    let was = |key: &str| header["job"][key].as_str().unwrap_or("nothing").to_owned();
+    let differing = job.0.iter().find(|(key, value)| was(key) != *value);
+    match differing {
+        Some((key @ "scene", _)) => of(&format!("the clip was begun with another {key}")),
+        Some((key, value)) => {
+            of(&format!("the clip was begun with {key} {}, and now it is {value}", was(key)))
+        }
+        None => of("the clip was begun by another version"),
+    }
+}

@@ -1,0 +1,49 @@
+//! What can be wrong with a rain before an eye.
+
+use downpour_drop::DropError;
+use downpour_mask::MaskError;
+use downpour_sim::SimError;
+use downpour_wind::WindError;
+
+use crate::RenderError;
+
+/// Why there is no rain.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShowerError {
+    /// Closed form in a wind that has none.
+    #[error(
+        "rain.volume is \"closed-form\" in a wind that differs from place to place; allowed: \"auto\", \"view\", \"box\", \
+         or uniform wind and gusts alone"
+    )]
+    NotUniform,
+    /// The drops' motion.
+    #[error(transparent)]
+    Sim(#[from] SimError),
+    /// The wind.
+    #[error(transparent)]
+    Wind(#[from] WindError),
+    /// The physics of drops.
+    #[error(transparent)]
+    Drop(#[from] DropError),
+    /// The eye.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The drops' masks.
+    #[error(transparent)]
+    Mask(#[from] MaskError),
+}
+
+impl ShowerError {
+    /// The exit code of the command for this error.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Sim(error) => error.exit_code(),
+            Self::Wind(error) => error.exit_code(),
+            Self::Render(error) => error.exit_code(),
+            Self::Mask(error) => error.exit_code(),
+            Self::NotUniform | Self::Drop(_) => 2,
+        }
+    }
+}
