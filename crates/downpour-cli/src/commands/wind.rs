@@ -20,7 +20,7 @@ use crate::{listing, quantity, stream};
 
 /// Draw the wind of a weather file in a slice: speed as colour, direction as streaks and arrows.
 ///
-/// What is drawn is the sum of the primitives without cells and objects, and turbulence as the cells of [wind_field] show it.
+/// What is drawn is the sum of the primitives without cells and objects, and turbulence as the cells of `[wind_field]` show it.
 #[derive(Debug, Args)]
 pub(crate) struct WindArguments {
     /// A weather file (.toml) with a wind.
@@ -33,7 +33,7 @@ pub(crate) struct WindArguments {
     /// Which slice: xy=Z, xz=Y (from above) or yz=X, in metres.
     #[arg(long, value_name = "PLANE=M", value_parser = slice, allow_hyphen_values = true)]
     slice: (WindPlane, f32),
-    /// What the picture shows at least: the lower corner and the upper, metres [default: the box of the weather's wind_field].
+    /// What the picture shows at least: the lower corner and the upper, metres [default: the weather's box of cells].
     #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", value_parser = corners, allow_hyphen_values = true)]
     region: Option<[f32; 6]>,
     /// Width and height in pixels, 64 to 4096.

@@ -49,7 +49,7 @@ fn arrow(canvas: &mut Canvas, flow: &Flow, [x, y]: [f32; 2], [u, v]: [f32; 2], l
             let at = [column as f32 + 0.5, row as f32 + 0.5];
             let away = lines.iter().map(|line| distance(at, *line)).fold(f32::INFINITY, f32::min);
             let cover = |width: f32| (0.5 + width - away).clamp(0.0, 1.0);
-            canvas.blend(column, row, [0.0; 3], 0.55 * cover(1.5 * dot));
+            canvas.blend(column, row, [0.0; 3], 0.8 * cover(1.4 * dot));
             canvas.blend(column, row, [1.0; 3], cover(0.55 * dot));
         }
     }

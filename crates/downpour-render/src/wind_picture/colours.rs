@@ -5,18 +5,23 @@ use downpour_math::ops;
 /// Linear light for a share of the scale, 0 to 1: from a dark blue over green to a light yellow.
 pub(super) fn of_speed(share: f32) -> [f32; 3] {
     let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
-    let lightness = 0.24 + 0.68 * share;
+    let lightness = 0.24 + 0.65 * share;
     let hue = (282.0 - 180.0 * share).to_radians();
-    let chroma = 0.115 + 0.03 * share;
-    // Less colourful until it is a colour that a screen has.
-    for step in 0u8..20 {
-        let less = chroma * (1.0 - 0.05 * f32::from(step));
-        let colour = from_oklab(lightness, less * ops::cos(hue), less * ops::sin(hue));
-        if colour.iter().all(|c| (0.0..=1.0).contains(c)) {
-            return colour;
-        }
+    let (a, b) = (ops::cos(hue), ops::sin(hue));
+    let within = |chroma: f32| {
+        let colour = from_oklab(lightness, chroma * a, chroma * b);
+        colour.iter().all(|c| (0.0..=1.0).contains(c)).then_some(colour)
+    };
+    // Less colourful until it is a colour that a screen has. By halves: steps would show as lines.
+    let (mut inside, mut outside) = (0.0, 0.115 + 0.03 * share);
+    if let Some(colour) = within(outside) {
+        return colour;
     }
-    from_oklab(lightness, 0.0, 0.0).map(|c| c.clamp(0.0, 1.0))
+    for _ in 0..14 {
+        let middle = 0.5 * (inside + outside);
+        if within(middle).is_some() { inside = middle } else { outside = middle }
+    }
+    within(inside).unwrap_or([share; 3])
 }
 
 /// Linear sRGB of a colour in Oklab (B. Ottosson, "A perceptual color space for image processing", 2020).
@@ -50,6 +55,6 @@ mod tests {
             assert_eq!(of_speed(bad), of_speed(0.0));
         }
         assert_eq!(of_speed(f32::INFINITY), of_speed(1.0));
-        assert!((lightness(0.0), lightness(1.0)) > (5.0, 85.0));
+        assert!(lightness(0.0) < 20.0 && lightness(1.0) > 80.0);
     }
 }

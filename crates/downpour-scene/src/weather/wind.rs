@@ -47,6 +47,7 @@ impl WindBox {
     ///
     /// # Errors
     /// As [`WindGrid::new`]: the box is farther than 1e6 m from the origin.
+    #[expect(clippy::arithmetic_side_effects, reason = "of floats: what is too far is refused by the grid")]
     pub fn grid(&self, eye: DVec3) -> Result<WindGrid, WindError> {
         let (middle, half) = (self.centre.unwrap_or(eye), self.edges * 0.5);
         WindGrid::new((middle - half).as_vec3(), (middle + half).as_vec3(), self.size)

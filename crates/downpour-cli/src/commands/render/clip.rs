@@ -108,10 +108,6 @@ impl Clip<'_> {
         match self.make_missing(painter, &mut journal) {
             Ok(made) => Ok((journal, made)),
             Err(error) => {
-                if let made @ 1.. = journal.numbers().len() {
-                    self.arguments
-                        .say(&format!("{made} frames are made: the same command goes on from there"));
-                }
                 journal.close();
                 self.places.remove_empty_folder();
                 Err(error)
@@ -137,7 +133,8 @@ impl Clip<'_> {
         let mut progress = Progress::new("frame", missing, self.arguments.quiet);
         for number in self.frames.numbers() {
             if !kept.contains(&number) {
-                self.make_frame(number, painter, showers, journal)?;
+                let made = self.make_frame(number, painter, showers, journal);
+                made.inspect_err(|_| self.say_how_to_go_on(journal))?;
                 progress.step();
             } else if !showers.is_closed_form() {
                 // What comes later begins where this frame ends.
@@ -145,6 +142,13 @@ impl Clip<'_> {
             }
         }
         Ok(missing)
+    }
+
+    fn say_how_to_go_on(&self, journal: &Journal) {
+        if let made @ 1.. = journal.numbers().len() {
+            let how = if self.arguments.overwrite { "without --overwrite" } else { "with the same command" };
+            self.arguments.say(&format!("{made} frames are made: the clip goes on {how}"));
+        }
     }
 
     /// The frames that are there and as they were made. Names that are taken by something else are an error.

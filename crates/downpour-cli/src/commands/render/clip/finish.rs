@@ -15,6 +15,7 @@ use super::Clip;
 #[cfg(feature = "video")]
 use crate::failure::FILES;
 use crate::failure::{Failure, shown};
+use crate::output::remove_leftovers;
 
 impl Clip<'_> {
     /// Whether the video of this very journal has its name already: only the cleaning up was missed.
@@ -84,11 +85,17 @@ impl Clip<'_> {
         Ok((None, None))
     }
 
-    /// Removes the frames of a video, and nothing else that may be in their folder.
+    /// Removes the frames of a video, those of an earlier clip as well, and nothing else that may be in their folder.
     fn remove_frames(&self, journal: Journal) {
-        for number in journal.numbers() {
-            let _ = fs::remove_file(self.places.pictures.path(number));
+        let folder = self.places.pictures.folder();
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let number = name.strip_suffix(".png").unwrap_or_default();
+            if !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()) {
+                let _ = fs::remove_file(entry.path());
+            }
         }
+        remove_leftovers(folder);
         journal.remove();
         self.places.remove_empty_folder();
     }
