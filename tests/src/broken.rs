@@ -63,8 +63,8 @@ pub const BROKEN: &[Broken] = &[
     },
     Broken {
         function: "collision_column",
-        right: "select(0.0, COLLISION_CLEARANCE, first)",
-        wrong: "COLLISION_CLEARANCE",
+        right: "if !collision_solid(texel.surfaces[layer])",
+        wrong: "if collision_solid(texel.surfaces[layer])",
     },
     Broken { function: "wind_field_mix", right: "(c10 - c00) * share.y", wrong: "(c10 - c00) * share.x" },
 ];

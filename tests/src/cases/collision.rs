@@ -152,7 +152,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 collision_pack(normal, a.u32() != 0).words()
             },
         ),
-        FunctionCase::new("collision_solid", &COLLISION, &[a_surface], Tol::exact("a bit"), |a| {
+        FunctionCase::new("collision_solid", &COLLISION, &[a_surface], Tol::exact("a bit of a word"), |a| {
             collision_solid(a.u32()).words()
         }),
         FunctionCase::new(
