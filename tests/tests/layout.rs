@@ -60,7 +60,7 @@ fn hosts() -> Vec<Host> {
         host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS,
             right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,
-            capture_forward, capture_texel, form, mask_size, tiles_across, unused),
+            capture_forward, capture_texel, form, mask_size, tiles_across, veil_beyond, veil),
         host!(DropsDrop as "DropsDrop" in &render::rain::DROPS,
             towards, distance, place, slope, half_extent, row, area, grid),
         host!(BvhNode as "BvhNode" in &bvh::BVH, low, link, high, count),

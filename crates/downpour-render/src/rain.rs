@@ -13,6 +13,7 @@ pub mod drops;
 pub mod masks;
 mod reduce;
 mod tiles;
+mod veil;
 
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 
@@ -21,6 +22,7 @@ pub use drops::{DropsDrop, DropsFrame};
 pub use masks::DropMasks;
 pub use reduce::{ReduceLevel, reduce_levels, reduce_texel};
 pub use tiles::Rain;
+pub use veil::Veil;
 
 /// How a drop's pixel finds its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -44,11 +46,13 @@ pub struct RainOptions {
     pub capture_size: u32,
     /// Samples along an edge of a texel of the capture, 1 to 16.
     pub capture_grid: u32,
+    /// Drops that are not drawn one by one.
+    pub veil: Veil,
 }
 
 impl Default for RainOptions {
     /// 256 x 256 texels of one sample: 0.8 degrees, finer than a pixel of any drop of less than 200 pixels.
     fn default() -> Self {
-        Self { form: RefractionForm::Direction, capture_size: 256, capture_grid: 1 }
+        Self { form: RefractionForm::Direction, capture_size: 256, capture_grid: 1, veil: Veil::default() }
     }
 }

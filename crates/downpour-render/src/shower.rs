@@ -10,7 +10,7 @@ use downpour_scene::weather::{RainVolume, Weather};
 use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::shelter::Obstacles;
 
-use crate::rain::DropMasks;
+use crate::rain::{DropMasks, Veil};
 use crate::stage::Stage;
 pub use error::ShowerError;
 use stepped::Stepped;
@@ -31,6 +31,7 @@ enum Form {
 /// The rain of a weather.
 #[derive(Clone, Debug)]
 pub struct Shower {
+    law: DropSizeDistribution,
     form: Form,
 }
 
@@ -49,9 +50,9 @@ impl Shower {
                 Form::Closed(Box::new(RainField::new(&law, rain.seed)?.with_wind(wind)))
             }
             (RainVolume::ClosedForm, None) => return Err(ShowerError::NotUniform),
-            _ => Form::Stepped(Box::new(Stepped::new(law, weather))),
+            _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
-        Ok(Self { form })
+        Ok(Self { law, form })
     }
 
     /// Whether a picture of any time can be made by itself. If not, pictures of a clip are made in order of time, and each
@@ -79,6 +80,15 @@ impl Shower {
             }
             Form::Stepped(stepped) => stepped.at(stage, &view, time_s),
         }
+    }
+
+    /// What becomes of the drops that were not listed for a picture: `visible` is what [`Shower::at`] gave.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub fn veil(&self, stage: &Stage, visible: &VisibleDrops) -> Result<Veil, ShowerError> {
+        let view = stage.view()?;
+        Ok(Veil::new(&self.law, |diameter| view.range(diameter, visible.least_pixels))?)
     }
 
     /// The rate, mm/h, of the drops about the eye (in closed form) or in the simulated volume, with those that something

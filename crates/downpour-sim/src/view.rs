@@ -100,8 +100,9 @@ impl View {
         Ok(())
     }
 
-    /// How far a drop is resolved.
-    pub(crate) fn range(&self, diameter: f64, least_pixels: f64) -> f64 {
+    /// How far, in metres, a drop of a diameter in metres is resolved if it has to have so many pixels.
+    #[must_use]
+    pub fn range(&self, diameter: f64, least_pixels: f64) -> f64 {
         let range = diameter / (self.pixel_angle * least_pixels).max(1.0e-12);
         range.min(self.far)
     }

@@ -26,6 +26,14 @@ shared_constants! {
         DROPS_SHIFT: u32 = 1;
         /// Below this transmittance the rest of the drops is not seen.
         DROPS_OPAQUE: f32 = 1.0e-3;
+        /// Quarters of the table of optical depths of drops that are not drawn.
+        DROPS_VEIL_QUARTERS: u32 = 8;
+        /// Distance of the table's first entry, m.
+        DROPS_VEIL_NEAR: f32 = 0.25;
+        /// Width of what such drops show of their surroundings, radians.
+        DROPS_VEIL_SPREAD: f32 = 1.0;
+        /// Beyond this distance, m, is the sky.
+        DROPS_SKY: f32 = 1.0e29;
         /// Twice the inverse of water's refractive index: the middle of a sphere bends by 2 - 2 / n per radius.
         DROPS_STRAIGHT: f32 = 1.5;
     }

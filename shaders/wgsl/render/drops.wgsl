@@ -7,6 +7,8 @@
 // A drop below a pixel covers the pixels round its middle by its area, so its light does not depend on where it falls;
 // a larger one is sampled on a grid in each pixel.
 // Limits: the surroundings are those of the eye, not of the drop; a drop does not show other drops.
+// Drops that are not drawn are a veil: they take out as much of what is behind them as their cross-sections say, and show
+// the mean of what is about the ray instead. The sky is taken to be as it is seen through them.
 // Twin: downpour_render::rain::drops.
 
 struct DropsFrame {
@@ -33,7 +35,11 @@ struct DropsFrame {
     mask_size: u32,
     // Tiles across the picture.
     tiles_across: u32,
-    unused: u32,
+    // What the optical depth grows by beyond the table, 1/m.
+    veil_beyond: f32,
+    // Optical depths of the drops that are too small or too far to be drawn: at DROPS_VEIL_NEAR metres, then a factor of
+    // 2^(1/3) farther each.
+    veil: array<vec4f, DROPS_VEIL_QUARTERS>,
 }
 
 // A drop on the picture.
@@ -304,6 +310,32 @@ fn drops_pixel(drop: DropsDrop, x: u32, y: u32) -> vec4f {
     return sum / f32(n * n);
 }
 
+// The optical depth of the drops that are not drawn, up to a distance.
+fn drops_veil(distance: f32) -> f32 {
+    let last = 4u * DROPS_VEIL_QUARTERS - 1u;
+    let position = 3.0 * log2(max(distance / DROPS_VEIL_NEAR, 1.0));
+    let entry = min(u32(position), last);
+    let next = min(entry + 1u, last);
+    let here = drops_frame.veil[entry / 4u][entry % 4u];
+    let there = drops_frame.veil[next / 4u][next % 4u];
+    let farthest = DROPS_VEIL_NEAR * exp2(f32(last) / 3.0);
+    return here + (there - here) * min(position - f32(entry), 1.0) + drops_frame.veil_beyond * max(distance - farthest, 0.0);
+}
+
+// What drops that are not drawn show before a pixel, and what is left of what is behind them.
+fn drops_veiled(x: u32, y: u32, distance: f32) -> vec4f {
+    if distance >= DROPS_SKY {
+        return vec4f(0.0, 0.0, 0.0, 1.0);
+    }
+    let left = exp(-drops_veil(distance));
+    let ray = drops_ray(f32(x) + 0.5, f32(y) + 0.5);
+    var place = packing_octahedral_encode(ray) * 0.5 + 0.5;
+    if drops_frame.form == DROPS_SHIFT {
+        place = drops_shifted(ray, DropsTexel(vec3f(0.0, 0.0, -1.0), 1.0, vec3f(0.0), 1.0));
+    }
+    return vec4f(drops_capture_at(place, DROPS_VEIL_SPREAD) * (1.0 - left), left);
+}
+
 // The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of distance.
 fn drops_over(x: u32, y: u32) -> vec4f {
     let tile = (y / DROPS_TILE) * drops_frame.tiles_across + x / DROPS_TILE;
@@ -319,7 +351,8 @@ fn drops_over(x: u32, y: u32) -> vec4f {
         radiance += shown.rgb * transmittance;
         transmittance *= 1.0 - shown.w;
     }
-    return vec4f(radiance, transmittance);
+    let veiled = drops_veiled(x, y, scene);
+    return vec4f(radiance + veiled.rgb * transmittance, veiled.w * transmittance);
 }
 
 @compute @workgroup_size(8, 8, 1)

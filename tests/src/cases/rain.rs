@@ -1,12 +1,13 @@
 //! `shaders/wgsl/render/{capture,reduce,drops}.wgsl` against `downpour_render::rain`.
 
+use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_gpu::{ComputeKernel, Gpu, GpuError};
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::{RainPipeline, ScenePipeline};
 use downpour_render::rain::drops::drops_right;
 use downpour_render::rain::{
-    DropMasks, Rain, RainOptions, ReduceLevel, RefractionForm, reduce_levels, reduce_texel,
+    DropMasks, Rain, RainOptions, ReduceLevel, RefractionForm, Veil, reduce_levels, reduce_texel,
 };
 use downpour_render::scene::SceneView;
 use downpour_shaders::render::rain::{DROPS, DROPS_KERNEL, REDUCE_KERNEL};
@@ -60,6 +61,12 @@ fn run(width: u32, cpu: &[[f32; 4]], gpu: &[[f32; 4]]) -> Run {
     }
 }
 
+/// A veil that is thick within a few metres.
+fn veil() -> Veil {
+    let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 500.0).expect("a rain");
+    Veil::new(&rain, |diameter| 400.0 * diameter).expect("a veil")
+}
+
 /// What is compared of a picture.
 #[derive(Clone, Copy)]
 enum Part {
@@ -72,7 +79,7 @@ fn rain_case(gpu: &Gpu, eye: Vec3, forward: Vec3, form: RefractionForm, part: Pa
     let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
     let frame = view.frame(&scene, SIZE, 1, 1, 7).expect("a frame");
     let masks = DropMasks::trace(1.333).expect("masks");
-    let options = RainOptions { form, capture_size: 64, capture_grid: 2 };
+    let options = RainOptions { form, capture_size: 64, capture_grid: 2, veil: veil() };
     let rain = Rain::new(&frame, DVec3::from(eye), &drops(eye, forward), &masks, &options);
     assert!(rain.list.len() > 100, "{} drops", rain.list.len());
     let clean = SceneView { data: &scene, frame: &frame }.picture();
@@ -166,6 +173,8 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_spread",
             "drops_pixel",
             "drops_over",
+            "drops_veil",
+            "drops_veiled",
         ],
         tol: DRAWN,
         run,

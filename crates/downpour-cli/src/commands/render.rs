@@ -22,7 +22,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
 use downpour::render::picture::{Picture, PictureOptions};
-use downpour::render::rain::{RainOptions, RefractionForm};
+use downpour::render::rain::{RainOptions, RefractionForm, Veil};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
@@ -142,7 +142,7 @@ impl RenderArguments {
         let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
         // The files have become buffers.
         drop(input.loaded);
-        let options = self.options(&stage, rain.seed);
+        let options = self.options(&stage, rain.seed, shower.veil);
         let say = |text: &str| self.say(text);
         let (picture, computer) = with_painter(&self.backend, interrupt, say, |painter| {
             let picture = painter.paint(&stage, &shower.visible.drops, &showers.masks, &options)?;
@@ -193,13 +193,13 @@ impl RenderArguments {
         }
     }
 
-    fn options(&self, stage: &Stage, seed: u64) -> PictureOptions {
+    fn options(&self, stage: &Stage, seed: u64, veil: Veil) -> PictureOptions {
         PictureOptions {
             size: stage.size,
             grid: self.samples,
             sky_rays: self.sky_rays,
             seed,
-            rain: RainOptions { form: self.refraction.into(), ..RainOptions::default() },
+            rain: RainOptions { form: self.refraction.into(), veil, ..RainOptions::default() },
         }
     }
 

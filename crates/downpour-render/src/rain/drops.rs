@@ -6,14 +6,14 @@ use downpour_math::packing::{
     packing_octahedral_decode, packing_octahedral_encode, packing_unpack_snorm, packing_unpack_unorm,
 };
 use downpour_shaders::render::rain::{
-    DROPS_DIRECTION, DROPS_ELEVATIONS, DROPS_OPAQUE, DROPS_SHIFT, DROPS_SMALL_GRID, DROPS_STRAIGHT,
-    DROPS_TEXEL_WORDS, DROPS_TILE,
+    DROPS_DIRECTION, DROPS_ELEVATIONS, DROPS_OPAQUE, DROPS_SHIFT, DROPS_SKY, DROPS_SMALL_GRID,
+    DROPS_STRAIGHT, DROPS_TEXEL_WORDS, DROPS_TILE, DROPS_VEIL_NEAR, DROPS_VEIL_QUARTERS, DROPS_VEIL_SPREAD,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::capture::{Capture, CaptureFrame};
-use super::{DropMasks, Rain};
+use super::{DropMasks, Rain, Veil};
 use crate::data::RenderFrame;
 
 /// The picture as the drops' shader knows it. The same layout as `DropsFrame` in WGSL.
@@ -50,8 +50,10 @@ pub struct DropsFrame {
     pub mask_size: u32,
     /// Tiles across the picture.
     pub tiles_across: u32,
-    /// 0.
-    pub unused: u32,
+    /// What the optical depth grows by beyond the table, 1/m.
+    pub veil_beyond: f32,
+    /// Optical depths of the drops that are not drawn ([`Veil`]).
+    pub veil: [[f32; 4]; DROPS_VEIL_QUARTERS as usize],
 }
 
 /// A drop on the picture. The same layout as `DropsDrop` in WGSL.
@@ -82,6 +84,7 @@ impl DropsFrame {
         capture: &CaptureFrame,
         masks: &DropMasks,
         tiles_across: u32,
+        veil: &Veil,
     ) -> Self {
         Self {
             right: picture.right,
@@ -99,9 +102,24 @@ impl DropsFrame {
             form: capture.form as u32,
             mask_size: masks.size,
             tiles_across,
-            unused: 0,
+            veil_beyond: veil.beyond,
+            veil: veil.table(),
         }
     }
+}
+
+/// The optical depth of the drops that are not drawn, up to a distance in metres.
+#[must_use]
+pub fn drops_veil(frame: &DropsFrame, distance: f32) -> f32 {
+    let last = 4 * DROPS_VEIL_QUARTERS - 1;
+    let position = 3.0 * ops::log2((distance / DROPS_VEIL_NEAR).max(1.0));
+    let entry = (position as u32).min(last);
+    let next = (entry + 1).min(last);
+    let at = |k: u32| frame.veil[(k / 4) as usize][(k % 4) as usize];
+    let farthest = DROPS_VEIL_NEAR * ops::exp2(last as f32 / 3.0);
+    at(entry)
+        + (at(next) - at(entry)) * (position - entry as f32).min(1.0)
+        + frame.veil_beyond * (distance - farthest).max(0.0)
 }
 
 /// What a mask says.
@@ -347,6 +365,21 @@ impl Buffers<'_> {
         sum / (n * n) as f32
     }
 
+    /// What drops that are not drawn show before a pixel, and what is left of what is behind them.
+    fn drops_veiled(&self, x: u32, y: u32, distance: f32) -> Vec4 {
+        if distance >= DROPS_SKY {
+            return Vec4::W;
+        }
+        let left = ops::exp(-drops_veil(self.frame, distance));
+        let ray = self.drops_ray(x as f32 + 0.5, y as f32 + 0.5);
+        let place = if self.frame.form == DROPS_SHIFT {
+            self.drops_shifted(ray, &DropsTexel { direction: Vec3::NEG_Z, ..DropsTexel::default() })
+        } else {
+            Vec2::from(packing_octahedral_encode(ray.to_array())) * 0.5 + 0.5
+        };
+        (self.drops_capture_at(place, DROPS_VEIL_SPREAD) * (1.0 - left)).extend(left)
+    }
+
     /// The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of distance.
     fn drops_over(&self, x: u32, y: u32) -> Vec4 {
         let tile = ((y / DROPS_TILE) * self.frame.tiles_across + x / DROPS_TILE) as usize;
@@ -362,7 +395,8 @@ impl Buffers<'_> {
             radiance += shown.truncate() * transmittance;
             transmittance *= 1.0 - shown.w;
         }
-        radiance.extend(transmittance)
+        let veiled = self.drops_veiled(x, y, scene);
+        (radiance + veiled.truncate() * transmittance).extend(veiled.w * transmittance)
     }
 }
 

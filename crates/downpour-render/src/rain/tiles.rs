@@ -77,7 +77,7 @@ impl Rain {
             }
         }
         Self {
-            frame: DropsFrame::new(picture, &capture, masks, across),
+            frame: DropsFrame::new(picture, &capture, masks, across, &options.veil),
             capture,
             list: placed.iter().map(|p| p.1).collect(),
             given: placed.iter().map(|p| p.0).collect(),

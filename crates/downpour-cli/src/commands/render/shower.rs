@@ -1,6 +1,6 @@
 //! The rain of a picture, and of all pictures of a clip, for the command.
 
-use downpour::render::rain::DropMasks;
+use downpour::render::rain::{DropMasks, Veil};
 use downpour::render::shower::{self, Shower};
 use downpour::render::stage::Stage;
 use downpour::scene::weather::Weather;
@@ -11,6 +11,8 @@ use crate::failure::Failure;
 /// The rain of a picture.
 pub(super) struct Seen {
     pub(super) visible: VisibleDrops,
+    /// The drops that are not among them.
+    pub(super) veil: Veil,
     /// Measured for those alone who are told of it.
     pub(super) measured_rate_mm_h: Option<f64>,
 }
@@ -35,6 +37,7 @@ impl Showers {
     pub(super) fn at(&mut self, stage: &Stage, time_s: f64, measure: bool) -> Result<Seen, Failure> {
         let visible = self.shower.at(stage, time_s)?;
         let measured = || self.shower.measured_rate_mm_h(stage, time_s);
-        Ok(Seen { visible, measured_rate_mm_h: measure.then(measured).transpose()? })
+        let veil = self.shower.veil(stage, &visible)?;
+        Ok(Seen { visible, veil, measured_rate_mm_h: measure.then(measured).transpose()? })
     }
 }
