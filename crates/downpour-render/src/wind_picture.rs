@@ -154,7 +154,7 @@ pub struct WindPicture {
     pub mean: f64,
     /// The greatest speed, m/s.
     pub fastest: f64,
-    /// The root of the mean squared divergence, 1/s, from differences over two pixels.
+    /// The root of the mean squared divergence, 1/s, from differences over a fifth of a pixel.
     pub divergence_rms: f64,
 }
 
@@ -217,7 +217,7 @@ pub fn draw_wind(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> Wind
     }
 }
 
-/// The divergence at some pixels, from the flow through a cube of two pixels.
+/// The divergence at some pixels. A whole pixel may be as wide as the smallest eddy, whose slopes it would not see.
 fn divergence(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> f64 {
     let step = |n: u32| n.div_ceil(PROBES).max(1);
     let (across, down) = (step(slice.size[0]), step(slice.rows));
@@ -225,7 +225,7 @@ fn divergence(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> f64 {
         .step_by(down as usize)
         .flat_map(|row| (0..slice.size[0]).step_by(across as usize).map(move |column| [column, row]))
         .collect();
-    let h = slice.pixel;
+    let h = 0.1 * slice.pixel;
     let squares: Vec<f64> = places
         .par_iter()
         .map(|&[column, row]| {

@@ -19,7 +19,7 @@ const DOWN: Vec3 = Vec3::NEG_Y;
 /// A map of `n` x `n` texels over `size` metres round the origin.
 fn map(scene: &[Triangle], fall: Vec3, size: f32, n: u32) -> CollisionMap {
     let options = CollisionOptions { fall, size: [size; 2], texels: [n; 2], ..CollisionOptions::default() };
-    CollisionMap::new(&options, &Bvh::new(scene)).unwrap()
+    CollisionMap::new(&options, &Bvh::new(scene)).expect("a map")
 }
 
 fn at(x: f32, y: f32, z: f32) -> Vec3 {
@@ -78,7 +78,7 @@ fn outside_the_map_and_without_a_scene_everything_is_open() {
         assert_eq!(hilly.find(place, place + at(0.01, -1.0, 0.0)), None, "{place}");
     }
     assert!(empty.open(at(0.0, -100.0, 0.0)) && empty.find(Vec3::ZERO, at(0.0, -100.0, 0.0)).is_none());
-    assert!(empty.texels().iter().all(|t| t.depths == [COLLISION_NONE; 4]));
+    assert!(empty.texels().iter().all(|t| t.depths[0] >= COLLISION_NONE));
     // A way that crosses the whole map is looked at for 32 texels and no farther: it says so.
     let hit = downpour_sim::collision::collision_find(
         hilly.frame(),
@@ -117,8 +117,8 @@ fn a_tilted_plane_is_met_where_it_is() {
                 let met = target + way * (hit.share - 0.6);
                 worst = worst.max((met - target).dot(normal).abs());
             }
-            // 1 % of a texel of 0.1 m; measured 0.17 %.
-            assert!(worst < 1.0e-3, "{slope_x} {slope_z} {fall}: {worst} m");
+            // 0.1 % of a texel of 0.1 m; measured 0.03 %.
+            assert!(worst < 1.0e-4, "{slope_x} {slope_z} {fall}: {worst} m");
         }
     }
 }
@@ -281,8 +281,8 @@ fn a_slanted_fall_is_a_straight_one_on_a_turned_scene() {
         different += u32::from(!same || slanted.open(start) != straight.open(turn * start));
     }
     assert!(hits > n / 20, "{hits}");
-    // Rays that pass an edge within rounding see it on one side or the other; measured 5 of 4000.
-    assert!(different * 200 <= n, "{different} of {n}");
+    // Rays that pass an edge within rounding may see it on either side; measured none.
+    assert!(different * 1000 <= n, "{different} of {n}");
 }
 
 /// How often drops that fall until they are stopped are stopped by the map more than a texel before, or behind, the plane of the
@@ -320,13 +320,41 @@ fn strays(scene: &[Triangle], map: &CollisionMap, way: Vec3, size: f32, n: u32) 
 #[test]
 fn drops_stop_where_exact_rays_do() {
     let scene = boxes(60);
-    for (fall, way, bound) in
-        [(0.0, 0.0, 0.01), (30.0, 30.0, 0.01), (0.0, 10.0, 0.02), (30.0, 20.0, 0.02), (0.0, 30.0, 0.03)]
-    {
+    // Measured at most 0.34 % too early and 0.54 % too late, at edges, which are known to half a texel.
+    for (fall, way) in [(0.0, 0.0), (30.0, 30.0), (0.0, 10.0), (30.0, 20.0), (0.0, 30.0)] {
         let map = map(&scene, slanted(fall), 26.0, 520);
         let [early, late] = strays(&scene, &map, slanted(way), 14.0, 20_000);
         assert!(early < 0.006 && late < 0.008, "fall {fall}, way {way}: early {early}, late {late}");
     }
+}
+
+/// Single steps of drops, from anywhere that is not inside something: whether they are stopped, and where.
+#[test]
+fn random_ways_are_stopped_as_exact_rays_are() {
+    let scene = boxes(60);
+    let bvh = Bvh::new(&scene);
+    let map = map(&scene, DOWN, 26.0, 520);
+    let (mut different, mut hits, mut ways) = (0, 0, 0);
+    for i in 0..100_000 {
+        let ([a, b, c, d], [e, f, ..]) = (units(i, 7), units(i, 8));
+        let start = at(14.0 * a - 7.0, 4.0 * b, 14.0 * c - 7.0);
+        if map.inside(start) {
+            continue;
+        }
+        ways += 1;
+        let way = slanted(60.0 * d - 30.0) * (0.05 + 0.25 * e) + at(0.0, 0.0, 0.2 * f - 0.1);
+        let exact = bvh.hit(start.to_array(), way.to_array(), 0.0).filter(|hit| hit.distance <= 1.0);
+        let found = map.find(start, start + way);
+        hits += u32::from(exact.is_some());
+        different += u32::from(match (exact, found) {
+            // A texel, 5 cm.
+            (Some(exact), Some(found)) => (exact.distance - found.share).abs() * way.length() > 0.05,
+            (exact, found) => exact.is_some() != found.is_some(),
+        });
+    }
+    assert!(hits > 3000, "{hits}");
+    // Measured 436 of 92 745, of which 5 650 are stopped: edges again.
+    assert!(different * 100 < ways, "{different} of {ways}, {hits} of them stopped");
 }
 
 /// A house of the street scene, in its ground.
@@ -385,8 +413,8 @@ fn far_from_the_origin_the_digits_are_kept() {
         };
         different += u32::from(!same);
     }
-    // The corners of the far scene are rounded to 0.5 mm; measured 11 of 4000.
-    assert!(different < 40 && hits > 400, "{different} of {hits}");
+    // The corners of the far scene are rounded to 0.5 mm; measured none.
+    assert!(different <= 4 && hits > 400, "{different} of {hits}");
 }
 
 #[test]

@@ -72,7 +72,7 @@ pub fn collision_column(
     if count_end > count {
         let before = piece.start.z - start[count as usize];
         let after = piece.end.z - end[count as usize];
-        let share = (-before / (after - before).max(1.0e-12)).max(0.0).min(1.0);
+        let share = share(-before, after - before);
         return surface(share, count, 0, count_end);
     }
     if count_end < count {
@@ -80,9 +80,15 @@ pub fn collision_column(
         if !collision_solid(texel.surfaces[layer as usize]) {
             let before = piece.start.z - start[layer as usize];
             let after = piece.end.z - end[layer as usize];
-            let share = (before / (before - after).max(1.0e-12)).max(0.0).min(1.0);
+            let share = share(before, before - after);
             return surface(share, layer, 1, count_end);
         }
     }
     CollisionMeeting { kind: COLLISION_OPEN, share: 1.0, layer: 0, beneath: 0, count: count_end }
+}
+
+/// A part of something as a share, 0 to 1.
+#[expect(clippy::manual_clamp, reason = "the bits of the twin, and 0 for what is not a number")]
+fn share(part: f32, whole: f32) -> f32 {
+    (part / whole.max(1.0e-12)).max(0.0).min(1.0)
 }
