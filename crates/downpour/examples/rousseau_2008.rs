@@ -78,7 +78,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cells = gpu.storage_buffer("cells", field.cells())?;
     let on_gpu = GpuCollisionMap::from_cpu(&gpu, &map)?;
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 100.0)?;
-    let view = View { eye: DVec3::new(0.0, 2.0, 0.0), ..View::default() };
+    // As fine as it takes for as many drops as are asked for.
+    let view = View { eye: DVec3::new(0.0, 2.0, 0.0), least_pixels: 1.0e-3, ..View::default() };
     let start =
         Moment { view: &view, origin: DVec3::ZERO, wind: Vec3::X, field: Some(&field), map: Some(&map) };
     let bare = GpuMoment { view: &view, origin: DVec3::ZERO, wind: Vec3::X, field: None, map: None };

@@ -95,7 +95,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let step = [velocity, velocity, velocity, wind, wind, wind, Uniform(0.3, 9.5), Uniform(1.0e-3, 0.1)];
     let sphere = Tol::absolute(3.0e-3, "sine and cosine (2^-11), times radii up to 4");
     vec![
-        FunctionCase::new("motion_diameter", &MOTION, &[Below(65_536)], Tol::ulp(1, "a product"), |a| {
+        FunctionCase::new("motion_diameter", &MOTION, &[Below(65_536)], Tol::ulp(1, "one product, rounded once"), |a| {
             motion_diameter(a.u32()).words()
         }),
         FunctionCase::new(
@@ -116,7 +116,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "motion_settled",
             &MOTION,
             &[wind, wind, wind, Uniform(0.0, 9.5)],
-            Tol::ulp(1, "a difference"),
+            Tol::ulp(1, "one difference, rounded once"),
             |a| motion_settled(vec3(a), a.f32()).to_array().words(),
         ),
         FunctionCase::new("motion_relax", &MOTION, &step, MOTIONS, |a| {
@@ -165,14 +165,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "volume_in_view",
             &VOLUME,
             &[Made(eye_words), near, near, near, Uniform(2.0, 9.0)],
-            Tol::exact("a choice").with_outliers(1.0e-3),
+            Tol::exact("a choice by comparisons of products that a GPU may fuse").with_outliers(1.0e-3),
             |a| volume_in_view(&eye(a), vec3(a), a.f32()).words(),
         ),
         FunctionCase::new(
             "volume_in_area",
             &VOLUME,
             &[Made(eye_words), near, near, near, Uniform(2.0, 9.0)],
-            Tol::exact("a choice").with_outliers(1.0e-3),
+            Tol::exact("a choice by comparisons of products that a GPU may fuse").with_outliers(1.0e-3),
             |a| volume_in_area(&eye(a), vec3(a), a.f32()).words(),
         ),
         FunctionCase::new(
@@ -192,7 +192,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("volume_on_disc", &VOLUME, &[share, share], sphere, |a| {
             volume_on_disc(Vec2::new(a.f32(), a.f32())).to_array().words()
         }),
-        FunctionCase::new("step_shown", &STEP, &[Below(3 << 16), share], Tol::ulp(2, "two products"), |a| {
+        FunctionCase::new("step_shown", &STEP, &[Below(3 << 16), share], Tol::ulp(2, "two products, each rounded once"), |a| {
             step_shown(a.u32(), a.f32()).words()
         }),
         FunctionCase::new(
