@@ -4,7 +4,7 @@
 //! cargo run --release -p downpour --features wgpu --example rousseau_2008
 //! ```
 //!
-//! `bare` has neither wind field nor map; `full` has both, with wrap, bounces and events. Bytes of a step: 32 read and 32
+//! `bare` has neither wind field nor map; `wind` has the field; `full` has both, with wrap, bounces and events. Bytes of a step: 32 read and 32
 //! written for each drop, as the copy does.
 
 use std::error::Error;
@@ -83,10 +83,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start =
         Moment { view: &view, origin: DVec3::ZERO, wind: Vec3::X, field: Some(&field), map: Some(&map) };
     let bare = GpuMoment { view: &view, origin: DVec3::ZERO, wind: Vec3::X, field: None, map: None };
+    let windy = GpuMoment { field: Some((field.uniform(), &cells)), ..bare };
     let full = GpuMoment { field: Some((field.uniform(), &cells)), map: Some(&on_gpu), ..bare };
     let boxed = SimVolume::Box { size_m: [60.0; 3] };
     let software = gpu.adapter().is_software();
-    println!("drops | volume | copy ms | bare ms | full ms | bare / copy | full / copy | bare GB/s");
+    println!("drops | volume | copy ms | bare ms | wind ms | full ms | bare / copy | full / copy | bare GB/s");
     for most in if software { [1 << 16, 1 << 18, 1 << 20] } else { [1 << 20, 1 << 22, 1 << 24] } {
         for (name, volume) in [("box", boxed), ("view", SimVolume::View)] {
             let options = SimulationOptions { volume, most_drops: most, ..SimulationOptions::default() };
@@ -116,18 +117,19 @@ fn main() -> Result<(), Box<dyn Error>> {
             for _ in 0..7 {
                 let copy_ms = ms(gpu.time(&copies, repeats)?) * count as f64 / copied;
                 let bare_ms = ms(simulation.time(1.0 / 60.0, &bare, repeats)?);
+                let wind_ms = ms(simulation.time(1.0 / 60.0, &windy, repeats)?);
                 let full_ms = ms(simulation.time(1.0 / 60.0, &full, repeats)?);
-                rounds.push([copy_ms, bare_ms, full_ms, copy_ms / bare_ms, copy_ms / full_ms]);
+                rounds.push([copy_ms, bare_ms, wind_ms, full_ms, copy_ms / bare_ms, copy_ms / full_ms]);
             }
             let median = |k: usize| {
                 let mut all: Vec<f64> = rounds.iter().map(|round| round[k]).collect();
                 all.sort_by(f64::total_cmp);
                 all[all.len() / 2]
             };
-            let [copy, bare, full, share, whole] = std::array::from_fn(median);
+            let [copy, bare, wind, full, share, whole] = std::array::from_fn(median);
             let rate = 64.0e-6 * count as f64 / bare;
             println!(
-                "{count} | {name} | {copy:.3} | {bare:.3} | {full:.3} | {:.0} % | {:.0} % | {rate:.0}",
+                "{count} | {name} | {copy:.3} | {bare:.3} | {wind:.3} | {full:.3} | {:.0} % | {:.0} % | {rate:.0}",
                 100.0 * share,
                 100.0 * whole
             );

@@ -136,6 +136,10 @@ fn collision_shallow(map: CollisionMap, surface: u32) -> f32 {
 
 // What stops a drop within a texel.
 fn collision_column(map: CollisionMap, texel: CollisionTexel, piece: CollisionPiece) -> CollisionMeeting {
+    // Most drops are far above everything.
+    if max(piece.start.z, piece.end.z) + map.steep < texel.depths.x {
+        return CollisionMeeting(COLLISION_OPEN, 1.0, 0u, 0u, 0u);
+    }
     let first = piece.before == COLLISION_START;
     let start = collision_depths(map, texel, piece.start.xy);
     let end = collision_depths(map, texel, piece.end.xy);

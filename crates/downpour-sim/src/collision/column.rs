@@ -41,6 +41,10 @@ pub fn collision_column(
     texel: &CollisionTexel,
     piece: &CollisionPiece,
 ) -> CollisionMeeting {
+    // Most drops are far above everything.
+    if piece.start.z.max(piece.end.z) + map.steep < texel.depths[0] {
+        return CollisionMeeting { kind: COLLISION_OPEN, share: 1.0, layer: 0, beneath: 0, count: 0 };
+    }
     let first = piece.before == COLLISION_START;
     let start = collision_depths(map, texel, piece.start.truncate());
     let end = collision_depths(map, texel, piece.end.truncate());
