@@ -49,6 +49,13 @@ pub const BROKEN: &[Broken] = &[
         right: "MASK_EDGE_DEPTH: f32 = 0.1",
         wrong: "MASK_EDGE_DEPTH: f32 = 0.3",
     },
+    Broken { function: "puddle_laplacian", right: "(nw + ne) + (sw + se)", wrong: "(nw + ne) + (sw + sw)" },
+    Broken {
+        function: "puddle_corner",
+        right: "links, bits.y), links, bits.x)",
+        wrong: "links, bits.x), links, bits.y)",
+    },
+    Broken { function: "puddle_normal_slopes", right: "2.0 * (e - w)", wrong: "2.0 * (w - e)" },
     Broken { function: "wind_primitive_updraft", right: "along - height", wrong: "along + height" },
     Broken {
         function: "wind_primitive_lamb_oseen",
@@ -65,6 +72,12 @@ pub const BROKEN: &[Broken] = &[
         function: "collision_column",
         right: "if !collision_solid(texel.surfaces[layer])",
         wrong: "if collision_solid(texel.surfaces[layer])",
+    },
+    Broken { function: "glass_motion_slide", right: "if size <= hold", wrong: "if size < hold" },
+    Broken {
+        function: "glass_motion_turn",
+        right: "(v * 3 + along) / 4",
+        wrong: "(v * 3 + along) >> vec2u(2u)",
     },
     Broken { function: "wind_field_mix", right: "(c10 - c00) * share.y", wrong: "(c10 - c00) * share.x" },
 ];

@@ -6,6 +6,11 @@ use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_drop::fall_speed::FallSpeedAir;
 use downpour_drop::oscillation::{DropOscillation, DropOscillationTime};
 use downpour_drop::shape::DropShapeCoefficients;
+use downpour_lattice::glass::blade::GlassBlade;
+use downpour_lattice::glass::frame::GlassFrame;
+use downpour_lattice::glass::size::{GlassSizeRow, GlassTable};
+use downpour_lattice::puddle::PuddleSeed;
+use downpour_lattice::puddle::lattice::PuddleGrid;
 use downpour_mask::MaskTexel;
 use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
@@ -13,7 +18,7 @@ use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel};
 use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
-use downpour_shaders::{Module, bvh, compose, drop, mask, modules, render, sim, wind};
+use downpour_shaders::{Module, bvh, compose, drop, lattice, mask, modules, render, sim, wind};
 use downpour_sim::collision::{CollisionFrame, CollisionTexel};
 use downpour_sim::step::{StepEvent, StepFrame};
 use downpour_sim::volume::{VolumeBack, VolumeEye};
@@ -63,6 +68,11 @@ fn hosts() -> Vec<Host> {
             capture_forward, capture_texel, form, mask_size, tiles_across, veil_beyond, veil),
         host!(DropsDrop as "DropsDrop" in &render::rain::DROPS,
             towards, distance, place, slope, half_extent, row, area, grid),
+        host!(PuddleGrid as "PuddleGrid" in &lattice::puddle::PUDDLE,
+            size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
+            steps, halo, half_storage, slope),
+        host!(PuddleSeed as "PuddleSeed" in &lattice::puddle::PUDDLE_SEED,
+            place, per_length, amplitude, lift, reach, shape, unused),
         host!(BvhNode as "BvhNode" in &bvh::BVH, low, link, high, count),
         host!(BvhTriangle as "BvhTriangle" in &bvh::BVH, corner, index, edge_1, edge_2),
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),
@@ -81,6 +91,15 @@ fn hosts() -> Vec<Host> {
             place, half_width, right, half_height, up, unused_1, forward, unused_2),
         host!(WindFieldGrid as "WindFieldGrid" in &wind::FIELD, low, primitives, cell, modes, per_cell, size),
         host!(WindTurbulenceMode as "WindTurbulenceMode" in &wind::TURBULENCE, wave, phase, amplitude),
+        host!(GlassSizeRow as "GlassSizeRow" in &lattice::glass::SIZE,
+            radius, hold, slow, air, sphere, loss, unused_1, unused_2),
+        host!(GlassTable as "GlassTable" in &lattice::glass::TABLE, rows, landing),
+        host!(GlassBlade as "GlassBlade" in &lattice::glass::BLADE,
+            before, after, pivot, reach, turn, leaves, unused_1, unused_2),
+        host!(GlassFrame as "GlassFrame" in &lattice::glass::FRAME,
+            size, seed, first_step, first_clock, clock_step, blades, gravity, air, kinetic, trail_chance,
+            trail_mass, wet_life, wet_ease, affinity_pull, wet_pull, unused, rain_few, rain_many),
+        host!(WindFieldGrid as "WindFieldGrid" in &wind::FIELD, low, primitives, cell, per_cell, size),
     ]
 }
 

@@ -87,7 +87,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let full = GpuMoment { field: Some((field.uniform(), &cells)), map: Some(&on_gpu), ..bare };
     let boxed = SimVolume::Box { size_m: [60.0; 3] };
     let software = gpu.adapter().is_software();
-    println!("drops | volume | copy ms | bare ms | wind ms | full ms | bare / copy | full / copy | bare GB/s");
+    println!(
+        "drops | volume | copy ms | bare ms | wind ms | full ms | bare / copy | full / copy | bare GB/s"
+    );
     for most in if software { [1 << 16, 1 << 18, 1 << 20] } else { [1 << 20, 1 << 22, 1 << 24] } {
         for (name, volume) in [("box", boxed), ("view", SimVolume::View)] {
             let options = SimulationOptions { volume, most_drops: most, ..SimulationOptions::default() };

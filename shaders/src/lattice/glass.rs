@@ -1,9 +1,193 @@
-//! Drops on a pane.
+//! `wgsl/lattice/glass*`: drops on a pane. The Rust twins are in `downpour_lattice::glass`.
 
+use crate::common::RNG;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[];
+pub const MODULES: &[&Module] = &[
+    &GLASS_CONSTANTS,
+    &SIZE,
+    &MOTION,
+    &BLADE,
+    &FRAME,
+    &TABLE,
+    &CLAIM,
+    &DECIDE,
+    &TRANSFER,
+    &SETTLE,
+    &NEXT,
+    &HEIGHT,
+    &SMOOTH,
+    &NORMAL,
+];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[];
+pub const KERNELS: &[&Kernel] = &[
+    &CLAIM_KERNEL,
+    &DECIDE_KERNEL,
+    &TRANSFER_KERNEL,
+    &SETTLE_KERNEL,
+    &NEXT_KERNEL,
+    &HEIGHT_KERNEL,
+    &SMOOTH_KERNEL,
+    &NORMAL_KERNEL,
+];
+
+shared_constants! {
+    /// Units and marks of the lattice of drops.
+    GLASS_CONSTANTS at "lattice/glass constants" {
+        /// The largest mass of a cell, in units of a nanolitre: a drop of 7.9 mm.
+        GLASS_LARGEST: u32 = 262144;
+        /// Classes of mass, with one above the last that is only interpolated to.
+        GLASS_CLASSES: u32 = 130;
+        /// Masses of landing drops, in groups of four.
+        GLASS_LANDING_QUADS: u32 = 1024;
+        /// A velocity of one cell in one tick; unit vectors have this length too.
+        GLASS_CELL: i32 = 16384;
+        /// The way to a cell across the corner.
+        GLASS_DIAGONAL: i32 = 23170;
+        /// How far before itself a blade pushes water, in half cells.
+        GLASS_BLADE_AHEAD: i32 = 4;
+        /// Mark of a surface: water cannot go there.
+        GLASS_OBSTACLE: u32 = 65536;
+        /// How much another drop draws one: as glass of this wetness.
+        GLASS_WATER_PULL: u32 = 510;
+        /// Bits of a word that are the place of a cell.
+        GLASS_INDEX: u32 = 16777215;
+        /// Mark of a target: a larger drop takes this one.
+        GLASS_TAKEN: u32 = 1073741824;
+        /// Target beyond the edge of the pane.
+        GLASS_OUT: u32 = 4294967295;
+        /// Speed at which a running drop is drawn out by 1/256 of its radius.
+        GLASS_HEIGHT_STRETCH: u32 = 32;
+        /// Word of the totals: the tick of the call.
+        GLASS_TOTAL_TICK: u32 = 0;
+        /// Words of the totals, low and high: mass that has landed.
+        GLASS_TOTAL_LANDED: u32 = 2;
+        /// Mass that has left over the edge.
+        GLASS_TOTAL_EDGE: u32 = 4;
+        /// Mass that has dried.
+        GLASS_TOTAL_EVAPORATED: u32 = 6;
+        /// Mass that blades have pushed off the pane.
+        GLASS_TOTAL_WIPED: u32 = 8;
+        /// Mass above the largest of a cell.
+        GLASS_TOTAL_SPILLED: u32 = 10;
+        /// How often a cell had more than the largest mass.
+        GLASS_TOTAL_SATURATED: u32 = 12;
+    }
+}
+
+/// Classes of mass. Twin: `downpour_lattice::glass::size`.
+pub static SIZE: Module = Module {
+    path: "lattice/glass_size.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_size.wgsl"),
+    uses: &[&GLASS_CONSTANTS],
+};
+
+/// Forces, friction and choice of direction. Twin: `downpour_lattice::glass::motion`.
+pub static MOTION: Module = Module {
+    path: "lattice/glass_motion.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_motion.wgsl"),
+    uses: &[&SIZE],
+};
+
+/// The blades of wipers. Twin: `downpour_lattice::glass::blade`.
+pub static BLADE: Module = Module {
+    path: "lattice/glass_blade.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_blade.wgsl"),
+    uses: &[&GLASS_CONSTANTS],
+};
+
+/// What holds for a call. Twin: `downpour_lattice::glass::frame`.
+pub static FRAME: Module = Module {
+    path: "lattice/glass_frame.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_frame.wgsl"),
+    uses: &[],
+};
+
+/// What the host has computed of drops.
+pub static TABLE: Module = Module {
+    path: "lattice/glass_table.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_table.wgsl"),
+    uses: &[&SIZE],
+};
+
+/// Who wets which cell. Twin: `downpour_lattice::glass::claim`.
+pub static CLAIM: Module = Module {
+    path: "lattice/glass_claim.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_claim.wgsl"),
+    uses: &[&FRAME, &TABLE],
+};
+
+/// Where drops go. Twin: `downpour_lattice::glass::decide`.
+pub static DECIDE: Module = Module {
+    path: "lattice/glass_decide.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_decide.wgsl"),
+    uses: &[&FRAME, &TABLE, &MOTION, &RNG],
+};
+
+/// Water goes there. Twin: `downpour_lattice::glass::transfer`.
+pub static TRANSFER: Module = Module {
+    path: "lattice/glass_transfer.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_transfer.wgsl"),
+    uses: &[&FRAME, &TABLE, &BLADE, &RNG],
+};
+
+/// What has come becomes drops. Twin: `downpour_lattice::glass::settle`.
+pub static SETTLE: Module = Module {
+    path: "lattice/glass_settle.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_settle.wgsl"),
+    uses: &[&FRAME, &MOTION],
+};
+
+/// The number of the tick.
+pub static NEXT: Module = Module {
+    path: "lattice/glass_next.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_next.wgsl"),
+    uses: &[&GLASS_CONSTANTS],
+};
+
+/// Heights. Twin: `downpour_lattice::glass::height`.
+pub static HEIGHT: Module = Module {
+    path: "lattice/glass_height.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_height.wgsl"),
+    uses: &[&FRAME, &TABLE, &MOTION],
+};
+
+/// Smoother heights. Twin: `downpour_lattice::glass::smooth`.
+pub static SMOOTH: Module = Module {
+    path: "lattice/glass_smooth.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_smooth.wgsl"),
+    uses: &[&FRAME],
+};
+
+/// Normals. Twin: `downpour_lattice::glass::normal`.
+pub static NORMAL: Module = Module {
+    path: "lattice/glass_normal.wgsl",
+    wgsl: include_str!("../../wgsl/lattice/glass_normal.wgsl"),
+    uses: &[&FRAME],
+};
+
+/// One invocation per cell.
+pub static CLAIM_KERNEL: Kernel =
+    Kernel { entry: "main_glass_claim", module: &CLAIM, workgroup: [16, 16, 1] };
+/// One invocation per cell.
+pub static DECIDE_KERNEL: Kernel =
+    Kernel { entry: "main_glass_decide", module: &DECIDE, workgroup: [16, 16, 1] };
+/// One invocation per cell.
+pub static TRANSFER_KERNEL: Kernel =
+    Kernel { entry: "main_glass_transfer", module: &TRANSFER, workgroup: [16, 16, 1] };
+/// One invocation per cell.
+pub static SETTLE_KERNEL: Kernel =
+    Kernel { entry: "main_glass_settle", module: &SETTLE, workgroup: [16, 16, 1] };
+/// One invocation.
+pub static NEXT_KERNEL: Kernel = Kernel { entry: "main_glass_next", module: &NEXT, workgroup: [1, 1, 1] };
+/// One invocation per cell.
+pub static HEIGHT_KERNEL: Kernel =
+    Kernel { entry: "main_glass_height", module: &HEIGHT, workgroup: [16, 16, 1] };
+/// One invocation per cell.
+pub static SMOOTH_KERNEL: Kernel =
+    Kernel { entry: "main_glass_smooth", module: &SMOOTH, workgroup: [16, 16, 1] };
+/// One invocation per cell.
+pub static NORMAL_KERNEL: Kernel =
+    Kernel { entry: "main_glass_normal", module: &NORMAL, workgroup: [16, 16, 1] };

@@ -1,13 +1,446 @@
-//! `shaders/wgsl/lattice`: glass.
+//! `shaders/wgsl/lattice/glass*` against `downpour_lattice::glass`.
 
-use crate::{FunctionCase, KernelCase};
+use downpour_gpu::{Gpu, GpuError};
+use downpour_lattice::glass::blade::{GlassBlade, glass_blade_push, glass_blade_side, glass_blade_sweeps};
+use downpour_lattice::glass::frame::{
+    GlassFrame, glass_frame_cell, glass_frame_holds, glass_frame_index, glass_frame_landing,
+};
+use downpour_lattice::glass::height::{glass_height_cap, glass_height_squared, glass_height_stretch};
+use downpour_lattice::glass::motion::{
+    glass_motion_choose, glass_motion_length, glass_motion_merged, glass_motion_octant, glass_motion_offset,
+    glass_motion_pack, glass_motion_root, glass_motion_slide, glass_motion_turn, glass_motion_unit,
+    glass_motion_unpack, glass_motion_weight, glass_motion_wetness,
+};
+use downpour_lattice::glass::normal::glass_normal_unit;
+use downpour_lattice::glass::size::{
+    GlassSizeRow, glass_size_class, glass_size_floor, glass_size_key, glass_size_mix, glass_size_row,
+    glass_size_share,
+};
+use downpour_lattice::glass::{
+    Glass, GlassAir, GlassOptions, GlassRain, GlassWiper, GlassWiperMotion, GlassWornBand,
+};
+use downpour_lattice::gpu::glass::{GpuGlass, GpuGlassError};
+use downpour_math::rng::rng_draw;
+use downpour_shaders::lattice::glass as shaders;
+use glam::{IVec2, UVec2, UVec3};
+
+use crate::Domain::{AnyWord, Below, Made};
+use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::{Args, IntoWords as _};
+use crate::{FunctionCase, KernelCase, Tol};
+
+const INTEGERS: Tol = Tol::exact("integers are exact");
+
+/// A component between -`limit` and `limit`.
+fn within(word: u32, limit: i32) -> u32 {
+    ((word % (2 * limit as u32 + 1)) as i32 - limit) as u32
+}
+
+/// The words of a velocity of at most a cell in a tick in each direction; every eighth is small.
+fn velocity(random: [u32; 4]) -> Vec<u32> {
+    let limit = if random[2] & 7 == 0 { 3 } else { 11_585 };
+    vec![within(random[0], limit), within(random[1], limit)]
+}
+
+/// The words of what drives a drop.
+fn drive(random: [u32; 4]) -> Vec<u32> {
+    vec![within(random[0], 16_383), within(random[1], 16_383)]
+}
+
+/// The words of a cell up to 4096 cells from the corner.
+fn cell(random: [u32; 4]) -> Vec<u32> {
+    vec![random[0] % 4096, random[1] % 4096]
+}
+
+/// A mass of any size.
+fn mass(random: [u32; 4]) -> Vec<u32> {
+    vec![1 + (random[0] % shaders::GLASS_LARGEST >> (random[1] % 18))]
+}
+
+fn ivec2(args: &mut Args<'_>) -> IVec2 {
+    IVec2::from(args.u32s::<2>().map(|w| w as i32))
+}
+
+fn words(v: IVec2) -> Vec<u32> {
+    v.to_array().map(|c| c as u32).to_vec()
+}
+
+/// The words of a row, each below 2^20.
+fn row_words(random: [u32; 4]) -> Vec<u32> {
+    let more = rng_draw([random[0], random[1]], random[2], random[3], 1);
+    let mut words: Vec<u32> = random.into_iter().chain(more).map(|w| w >> 12).collect();
+    words[6..].fill(0);
+    words
+}
+
+fn row(args: &mut Args<'_>) -> GlassSizeRow {
+    let [radius, hold, slow, air, sphere, loss, unused_1, unused_2] = args.u32s();
+    GlassSizeRow { radius, hold, slow, air, sphere, loss, unused_1, unused_2 }
+}
+
+/// The words of a blade that turns somewhere about the pane.
+fn blade_words(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, c, d] = rng_draw([random[0], random[1]], random[2], random[3], 2);
+    let angle = f64::from(random[0]) * 1.0e-9;
+    let turned = angle + (f64::from(random[1]) / f64::from(u32::MAX) - 0.5) * 0.1;
+    let points = |angle: f64| {
+        use downpour_math::ops::f64 as ops;
+        [ops::cos(angle), ops::sin(angle)].map(|c| (16384.0 * c).round() as i32 as u32)
+    };
+    let turn = (random[2] % 3) as i32 - 1;
+    let mut words = [points(angle), points(turned)].concat();
+    words.extend([within(a, 8000), within(b, 8000), c % 4000, 4000 + d % 4000]);
+    words.extend([turn as u32, random[3] % 257, 0, 0]);
+    words
+}
+
+fn blade(args: &mut Args<'_>) -> GlassBlade {
+    let before = ivec2(args).to_array();
+    let after = ivec2(args).to_array();
+    let pivot = ivec2(args).to_array();
+    let reach = ivec2(args).to_array();
+    let [turn, leaves, unused_1, unused_2] = args.u32s();
+    GlassBlade { before, after, pivot, reach, turn: turn as i32, leaves, unused_1, unused_2 }
+}
+
+/// The words of a frame of 8 to 4103 cells along each edge; limits of the rain that fall.
+fn frame_words(random: [u32; 4]) -> Vec<u32> {
+    let mut words = vec![8 + random[0] % 4096, 8 + random[1] % 4096];
+    words.extend([0; 18]);
+    words.extend((0..8).map(|k| random[2] >> (3 * k)));
+    words
+}
+
+fn frame(args: &mut Args<'_>) -> GlassFrame {
+    let words: [u32; 28] = args.u32s();
+    let (mut frame, [.., a, b, c, d, e, f, g, h]) = (GlassFrame::default(), words);
+    frame.size = [words[0], words[1]];
+    (frame.rain_few, frame.rain_many) = ([a, b, c, d], [e, f, g, h]);
+    frame
+}
+
+/// A cell on or near a pane.
+fn near(random: [u32; 4]) -> Vec<u32> {
+    vec![within(random[0], 4200), within(random[1], 4200)]
+}
+
+fn sizes() -> Vec<FunctionCase> {
+    let m = &shaders::SIZE;
+    let (mass, row_of) = (Made(mass), Made(row_words));
+    vec![
+        FunctionCase::new("glass_size_class", m, &[mass], INTEGERS, |a| glass_size_class(a.u32()).words()),
+        FunctionCase::new("glass_size_floor", m, &[Below(130)], INTEGERS, |a| {
+            glass_size_floor(a.u32()).words()
+        }),
+        FunctionCase::new("glass_size_share", m, &[mass], INTEGERS, |a| glass_size_share(a.u32()).words()),
+        FunctionCase::new("glass_size_key", m, &[mass, Below(1 << 24)], INTEGERS, |a| {
+            glass_size_key(a.u32(), a.u32()).words()
+        }),
+        FunctionCase::new(
+            "glass_size_mix",
+            m,
+            &[Below(1 << 22), Below(1 << 22), Below(257)],
+            INTEGERS,
+            |a| glass_size_mix(a.u32(), a.u32(), a.u32()).words(),
+        ),
+        FunctionCase::new("glass_size_row", m, &[row_of, row_of, Below(257)], INTEGERS, |a| {
+            let r = glass_size_row(row(a), row(a), a.u32());
+            vec![r.radius, r.hold, r.slow, r.air, r.sphere, r.loss, r.unused_1, r.unused_2]
+        }),
+    ]
+}
+
+fn motions() -> Vec<FunctionCase> {
+    let m = &shaders::MOTION;
+    let (v, octant) = (Made(velocity), Below(16));
+    vec![
+        FunctionCase::new("glass_motion_root", m, &[Below(1 << 31)], INTEGERS, |a| {
+            glass_motion_root(a.u32()).words()
+        }),
+        FunctionCase::new("glass_motion_length", m, &[v], INTEGERS, |a| {
+            glass_motion_length(ivec2(a)).words()
+        }),
+        FunctionCase::new("glass_motion_pack", m, &[v], INTEGERS, |a| glass_motion_pack(ivec2(a)).words()),
+        FunctionCase::new("glass_motion_unpack", m, &[AnyWord], INTEGERS, |a| {
+            words(glass_motion_unpack(a.u32()))
+        }),
+        FunctionCase::new("glass_motion_octant", m, &[v], INTEGERS, |a| {
+            glass_motion_octant(ivec2(a)).words()
+        }),
+        FunctionCase::new("glass_motion_offset", m, &[octant], INTEGERS, |a| {
+            words(glass_motion_offset(a.u32()))
+        }),
+        FunctionCase::new("glass_motion_unit", m, &[octant], INTEGERS, |a| {
+            vec![glass_motion_unit(a.u32()) as u32]
+        }),
+        FunctionCase::new(
+            "glass_motion_slide",
+            m,
+            &[v, Made(drive), Below(12_000), Below(16_385)],
+            INTEGERS,
+            |a| words(glass_motion_slide(ivec2(a), ivec2(a), a.u32(), a.u32())),
+        ),
+        FunctionCase::new(
+            "glass_motion_weight",
+            m,
+            &[v, octant, Below(256), Below(511), Below(65), Below(65)],
+            INTEGERS,
+            |a| glass_motion_weight(ivec2(a), a.u32(), a.u32(), a.u32(), UVec2::from(a.u32s())).words(),
+        ),
+        FunctionCase::new(
+            "glass_motion_choose",
+            m,
+            &[Below(3000), Below(3000), Below(16_385), AnyWord],
+            INTEGERS,
+            |a| glass_motion_choose(UVec3::from(a.u32s()), a.u32()).words(),
+        ),
+        FunctionCase::new("glass_motion_turn", m, &[v, octant], INTEGERS, |a| {
+            words(glass_motion_turn(ivec2(a), a.u32()))
+        }),
+        FunctionCase::new("glass_motion_merged", m, &[v, Below(128), Made(mass)], INTEGERS, |a| {
+            words(glass_motion_merged(ivec2(a), a.u32(), a.u32()))
+        }),
+        FunctionCase::new(
+            "glass_motion_wetness",
+            m,
+            &[Below(1 << 20), Below(1 << 20), Made(|r| vec![1 + r[0] % 16_000])],
+            INTEGERS,
+            |a| glass_motion_wetness(a.u32(), a.u32(), a.u32()).words(),
+        ),
+    ]
+}
+
+fn places() -> Vec<FunctionCase> {
+    let (blade_of, frame_of, at) = (Made(blade_words), Made(frame_words), Made(near));
+    vec![
+        FunctionCase::new("glass_blade_side", &shaders::BLADE, &[Made(drive), Made(drive)], INTEGERS, |a| {
+            vec![glass_blade_side(ivec2(a), ivec2(a)) as u32]
+        }),
+        FunctionCase::new("glass_blade_sweeps", &shaders::BLADE, &[blade_of, Made(cell)], INTEGERS, |a| {
+            glass_blade_sweeps(&blade(a), ivec2(a)).words()
+        }),
+        FunctionCase::new("glass_blade_push", &shaders::BLADE, &[blade_of, Made(cell)], INTEGERS, |a| {
+            words(glass_blade_push(&blade(a), ivec2(a)))
+        }),
+        FunctionCase::new("glass_frame_index", &shaders::FRAME, &[frame_of, Made(cell)], INTEGERS, |a| {
+            glass_frame_index(&frame(a), ivec2(a)).words()
+        }),
+        FunctionCase::new("glass_frame_cell", &shaders::FRAME, &[frame_of, Below(1 << 24)], INTEGERS, |a| {
+            words(glass_frame_cell(&frame(a), a.u32()))
+        }),
+        FunctionCase::new("glass_frame_holds", &shaders::FRAME, &[frame_of, at], INTEGERS, |a| {
+            glass_frame_holds(&frame(a), ivec2(a)).words()
+        }),
+        FunctionCase::new("glass_frame_landing", &shaders::FRAME, &[frame_of, AnyWord], INTEGERS, |a| {
+            glass_frame_landing(&frame(a), a.u32()).words()
+        }),
+    ]
+}
+
+fn heights() -> Vec<FunctionCase> {
+    let m = &shaders::HEIGHT;
+    vec![
+        FunctionCase::new("glass_height_stretch", m, &[Below(20_000)], INTEGERS, |a| {
+            glass_height_stretch(a.u32()).words()
+        }),
+        FunctionCase::new(
+            "glass_height_squared",
+            m,
+            &[Made(|r| vec![within(r[0], 97), within(r[1], 97)]), Made(velocity)],
+            INTEGERS,
+            |a| glass_height_squared(ivec2(a), ivec2(a)).words(),
+        ),
+        FunctionCase::new(
+            "glass_height_cap",
+            m,
+            &[Made(|r| vec![r[0] % 8193, 8192 + r[1] % 36_000]), Below(1 << 26)],
+            INTEGERS,
+            |a| glass_height_cap(a.u32(), a.u32(), a.u32()).words(),
+        ),
+        FunctionCase::new(
+            "glass_normal_unit",
+            &shaders::NORMAL,
+            &[Made(|r| vec![within(r[0], 20_000), within(r[1], 20_000)])],
+            Tol::relative(1.0e-6, 1.0e-7, "a square root and a division (2.5 ulp each)"),
+            |a| glass_normal_unit(ivec2(a)).to_array().words(),
+        ),
+    ]
+}
 
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
-    Vec::new()
+    [sizes(), motions(), places(), heights()].into_iter().flatten().collect()
+}
+
+/// A small windshield with everything: rain, air, drying, obstacles, a wiper with a worn band.
+fn everything() -> GlassOptions {
+    let size = [72, 50];
+    let wiper = GlassWiper {
+        pivot_m: [0.02, 0.032],
+        inner_m: 0.004,
+        outer_m: 0.025,
+        motion: GlassWiperMotion::Sweep { from_rad: 0.1, to_rad: 2.9, period_s: 1.5 },
+        worn: vec![GlassWornBand { from_m: 0.012, to_m: 0.015, leaves: 0.5 }],
+    };
+    GlassOptions {
+        size,
+        tilt_rad: 0.9,
+        rain: GlassRain { rate_mm_h: 200.0, towards_m_s: 15.0, ..GlassRain::default() },
+        air: GlassAir { speed_m_s: 17.0, direction_rad: 1.2, ..GlassAir::default() },
+        obstacles: Some((0..size[0] * size[1]).map(|i| i % 72 > 50 && i % 72 < 56 && i / 72 > 30).collect()),
+        evaporation_mm_h: 20.0,
+        wipers: vec![wiper],
+        seed: 0x1234_5678_9abc,
+        ..GlassOptions::default()
+    }
+}
+
+/// A window down which drops run.
+fn window() -> GlassOptions {
+    GlassOptions {
+        size: [64, 96],
+        rain: GlassRain { rate_mm_h: 300.0, towards_m_s: 12.0, ..GlassRain::default() },
+        seed: 5,
+        ..GlassOptions::default()
+    }
+}
+
+fn told(error: GpuGlassError) -> GpuError {
+    match error {
+        GpuGlassError::Gpu(error) => error,
+        other => GpuError::Refused { what: "a pane".to_owned(), reason: other.to_string() },
+    }
+}
+
+/// Mass, motion and heights of each cell after some seconds with a few large drops poured at the start.
+fn cells(gpu: &Gpu, options: &GlassOptions) -> Result<(Glass, GpuGlass), GpuError> {
+    let mut cpu = Glass::new(options).expect("a pane");
+    let mut twin = GpuGlass::new(gpu, options).map_err(told)?;
+    for (x, y) in [(10, 5), (30, 8), (40, 20)] {
+        cpu.pour(x, y, 25.0e-9).expect("a free cell");
+        twin.pour(x, y, 25.0e-9).map_err(told)?;
+    }
+    for dt in [0.3, 0.01, 0.69, 1.0] {
+        cpu.step(dt).expect("a step");
+        twin.step(dt).map_err(told)?;
+    }
+    Ok((cpu, twin))
+}
+
+fn arguments(options: &GlassOptions) -> Vec<Vec<u32>> {
+    (0..options.size[0] * options.size[1]).map(|i| vec![i % options.size[0], i / options.size[0]]).collect()
+}
+
+/// The lattice: mass, velocity, progress, and the totals in each result so that all are compared.
+fn lattice_case(gpu: &Gpu, options: &GlassOptions) -> Result<Run, GpuError> {
+    let (cpu, twin) = cells(gpu, options)?;
+    let totals = |t: downpour_lattice::glass::GlassTotals| -> Vec<u32> {
+        [t.landed, t.poured, t.stored, t.over_edge, t.evaporated, t.wiped, t.spilled, t.saturated]
+            .into_iter()
+            .flat_map(|n| [n as u32, (n >> 32) as u32])
+            .collect()
+    };
+    let words = |mass: &[u32], motion: &[[u32; 2]], totals: &[u32]| -> Vec<u32> {
+        let total = |i: usize| totals[i % totals.len()];
+        mass.iter().zip(motion).enumerate().flat_map(|(i, (&m, &[v, p]))| [m, v, p, total(i)]).collect()
+    };
+    Ok(Run {
+        arguments: arguments(options),
+        cpu: Cpu(words(cpu.mass(), cpu.motion(), &totals(cpu.totals()))),
+        gpu: FromGpu(words(&twin.mass()?, &twin.motion()?, &totals(twin.totals()?))),
+        kinds: vec![WordKind::Integer; 4],
+    })
+}
+
+fn height_case(gpu: &Gpu) -> Result<Run, GpuError> {
+    let (cpu, twin) = cells(gpu, &window())?;
+    Ok(Run {
+        arguments: arguments(&window()),
+        cpu: Cpu(cpu.height_units()),
+        gpu: FromGpu(gpu.read(&twin.height_buffer()?)?),
+        kinds: vec![WordKind::Integer],
+    })
+}
+
+fn normal_case(gpu: &Gpu) -> Result<Run, GpuError> {
+    let (cpu, twin) = cells(gpu, &everything())?;
+    let words = |normals: &[glam::Vec3]| normals.iter().flat_map(|n| n.to_array().words()).collect();
+    Ok(Run {
+        arguments: arguments(&everything()),
+        cpu: Cpu(words(&cpu.normals())),
+        gpu: FromGpu(words(&twin.normals()?)),
+        kinds: vec![WordKind::Float; 3],
+    })
 }
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    Vec::new()
+    let case = |name, kernel, covers, run| KernelCase { name, kernel, covers, tol: INTEGERS, run };
+    let all: fn(&Gpu) -> Result<Run, GpuError> = |gpu| lattice_case(gpu, &everything());
+    let runs: fn(&Gpu) -> Result<Run, GpuError> = |gpu| lattice_case(gpu, &window());
+    vec![
+        case("main_glass_claim: a window", &shaders::CLAIM_KERNEL, &["glass_claim_drop"], runs),
+        case(
+            "main_glass_decide: a windshield with everything",
+            &shaders::DECIDE_KERNEL,
+            &[
+                "glass_decide_key",
+                "glass_decide_touch",
+                "glass_decide_wetness",
+                "glass_decide_open",
+                "glass_decide_weight",
+                "glass_decide_octant",
+                "glass_decide_hold",
+                "glass_decide_drop",
+            ],
+            all,
+        ),
+        case(
+            "main_glass_transfer: a windshield with everything, other seed",
+            &shaders::TRANSFER_KERNEL,
+            &[
+                "glass_transfer_count",
+                "glass_transfer_put",
+                "glass_transfer_open",
+                "glass_transfer_land",
+                "glass_transfer_dry",
+                "glass_transfer_bead",
+                "glass_transfer_blade",
+                "glass_transfer_bring",
+                "glass_transfer_goal",
+                "glass_transfer_trail",
+                "glass_transfer_drop",
+            ],
+            |gpu| lattice_case(gpu, &GlassOptions { seed: 77, ..everything() }),
+        ),
+        case(
+            "main_glass_settle: a level pane that floods",
+            &shaders::SETTLE_KERNEL,
+            &["glass_settle_spill", "glass_settle_motion_of"],
+            |gpu| {
+                let rain = GlassRain { rate_mm_h: 500.0, towards_m_s: 0.0, ..GlassRain::default() };
+                let pane = GlassOptions { tilt_rad: 0.0, cell_m: 5.0e-3, rain, ..window() };
+                lattice_case(gpu, &pane)
+            },
+        ),
+        case("main_glass_next: another window", &shaders::NEXT_KERNEL, &[], |gpu| {
+            lattice_case(gpu, &GlassOptions { seed: 6, ..window() })
+        }),
+        case("main_glass_height: a window", &shaders::HEIGHT_KERNEL, &["glass_height_drop"], height_case),
+        case(
+            "main_glass_smooth: a window",
+            &shaders::SMOOTH_KERNEL,
+            &["glass_smooth_at", "glass_smooth_mean"],
+            height_case,
+        ),
+        KernelCase {
+            name: "main_glass_normal: a windshield",
+            kernel: &shaders::NORMAL_KERNEL,
+            covers: &["glass_normal_at", "glass_normal_sobel"],
+            tol: Tol::absolute(1.0e-6, "a square root and a division (2.5 ulp each) of numbers up to 1"),
+            run: normal_case,
+        },
+    ]
 }

@@ -1,0 +1,86 @@
+//! Heights of the water, smoothed, and normals of its surface. Twin of `shaders/wgsl/lattice/glass_height.wgsl`.
+//!
+//! Each drop is a cap of a sphere over its disc, drawn out behind it if it runs; where several stand, the highest counts.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use downpour_shaders::lattice::glass::{GLASS_CELL, GLASS_HEIGHT_STRETCH};
+use glam::IVec2;
+use rayon::prelude::*;
+
+use super::cells::Cells;
+use super::frame::{GlassFrame, glass_frame_cell, glass_frame_holds, glass_frame_index};
+use super::motion::{glass_motion_length, glass_motion_root, glass_motion_unpack};
+use super::size::GlassTable;
+
+/// How much longer a drop is behind its middle than before it, of 256.
+#[inline]
+#[must_use]
+pub fn glass_height_stretch(speed: u32) -> u32 {
+    256 + speed.min(GLASS_CELL as u32) / GLASS_HEIGHT_STRETCH
+}
+
+/// The squared distance of a cell from the middle of a drop, as if the drop were round, in (cells / 256)^2.
+#[inline]
+#[must_use]
+pub fn glass_height_squared(away: IVec2, v: IVec2) -> u32 {
+    let speed = glass_motion_length(v) as i32;
+    if speed == 0 {
+        return ((away.x * away.x + away.y * away.y) as u32) << 16;
+    }
+    let along = (away.x * v.x + away.y * v.y) * 16 / speed * 16;
+    let across = (away.y * v.x - away.x * v.y) * 16 / speed * 16;
+    let behind = along * 256 / glass_height_stretch(speed as u32) as i32;
+    let far = if along > 0 { along } else { behind };
+    (far * far) as u32 + (across * across) as u32
+}
+
+/// The height of a cap at a squared distance, all in cells / 256.
+#[inline]
+#[must_use]
+pub fn glass_height_cap(radius: u32, sphere: u32, squared: u32) -> u32 {
+    if squared >= radius * radius {
+        return 0;
+    }
+    glass_motion_root(sphere * sphere - squared) - glass_motion_root(sphere * sphere - radius * radius)
+}
+
+/// Adds the cap of the drop of a cell.
+fn glass_height_drop(
+    cells: &Cells,
+    frame: &GlassFrame,
+    table: &GlassTable,
+    heights: &[AtomicU32],
+    cell: IVec2,
+) {
+    let index = glass_frame_index(frame, cell) as usize;
+    let row = table.row(cells.mass[index]);
+    let v = glass_motion_unpack(cells.motion[index][0]);
+    // The rim may lie 15 % beyond the disc.
+    let reach = (row.radius * glass_height_stretch(glass_motion_length(v)) / 56000) as i32 + 1;
+    for y in -reach..=reach {
+        for x in -reach..=reach {
+            let to = cell + IVec2::new(x, y);
+            if !glass_frame_holds(frame, to) {
+                continue;
+            }
+            let at = glass_frame_index(frame, to) as usize;
+            // The rim follows the glass: in towards what repels, out towards what draws.
+            let rim = 320 - (cells.surface[at] & 255) / 2;
+            let squared = (glass_height_squared(IVec2::new(x, y), v) >> 8) * rim;
+            let height = glass_height_cap(row.radius, row.sphere, squared);
+            if height != 0 {
+                heights[at].fetch_max(height, Ordering::Relaxed);
+            }
+        }
+    }
+}
+
+/// Heights of all cells, in cells / 256, before they are smoothed.
+pub(super) fn caps(cells: &Cells, frame: &GlassFrame, table: &GlassTable) -> Vec<u32> {
+    let heights: Vec<AtomicU32> = cells.mass.iter().map(|_| AtomicU32::new(0)).collect();
+    cells.drops.par_iter().for_each(|&index| {
+        glass_height_drop(cells, frame, table, &heights, glass_frame_cell(frame, index));
+    });
+    heights.into_iter().map(AtomicU32::into_inner).collect()
+}

@@ -1,0 +1,204 @@
+//! What a pane is asked to be.
+
+use downpour_drop::distribution::DropSizeLaw;
+
+use super::contact::GlassContact;
+use super::error::{GlassError, in_range};
+use super::wiper::GlassWiper;
+
+/// Cells along an edge.
+const EDGE: std::ops::RangeInclusive<u32> = 8..=4096;
+
+/// Rain on the pane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlassRain {
+    /// Rate on level ground, mm/h: 0 to 500.
+    pub rate_mm_h: f64,
+    /// The drop sizes.
+    pub law: DropSizeLaw,
+    /// How fast the air with the rain in it comes at the pane horizontally, m/s: the car's speed, or the wind on a window. 0
+    /// to 100. Without it no rain reaches a vertical pane.
+    pub towards_m_s: f64,
+}
+
+impl Default for GlassRain {
+    /// No rain.
+    fn default() -> Self {
+        Self { rate_mm_h: 0.0, law: DropSizeLaw::default(), towards_m_s: 0.0 }
+    }
+}
+
+/// Air that flows along the pane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlassAir {
+    /// Speed along the pane, m/s: 0 to 100.
+    pub speed_m_s: f64,
+    /// Direction along the pane, radians from +x towards the top: pi/2 is up, as over a windshield.
+    pub direction_rad: f64,
+    /// Drag coefficient of a drop with the speed far from the pane, which holds the boundary layer's share: 0 to 2.
+    pub drag: f64,
+}
+
+impl Default for GlassAir {
+    /// Still air.
+    fn default() -> Self {
+        Self { speed_m_s: 0.0, direction_rad: std::f64::consts::FRAC_PI_2, drag: 0.5 }
+    }
+}
+
+/// What a running drop leaves behind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlassTrail {
+    /// Mean distance between beads, m: 1e-4 to 1; infinite for none.
+    pub spacing_m: f64,
+    /// Diameter of the sphere with a bead's mean volume, m: 0 to 2e-3.
+    pub bead_m: f64,
+}
+
+impl Default for GlassTrail {
+    fn default() -> Self {
+        Self { spacing_m: 3.0e-3, bead_m: 0.55e-3 }
+    }
+}
+
+/// How glass over which water has moved differs from dry glass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlassWetting {
+    /// How long it stays wet, s: 0.1 to 3600.
+    pub life_s: f64,
+    /// Share of the friction that fresh wetness takes away, 0 to 1.
+    pub ease: f64,
+    /// How strongly it draws drops, 0 to 4: with 1, wet glass is twice as likely as dry.
+    pub pull: f64,
+}
+
+impl Default for GlassWetting {
+    fn default() -> Self {
+        Self { life_s: 20.0, ease: 0.35, pull: 1.5 }
+    }
+}
+
+/// A number per cell of the pane.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GlassTexture {
+    /// The same everywhere.
+    Even,
+    /// Smooth noise from the seed, as of a pane that is not quite clean.
+    Noise {
+        /// Width of the largest spots, m: 1e-4 to 1.
+        spot_m: f64,
+        /// How much of the range it takes, 0 to 1.
+        share: f64,
+    },
+    /// Given row by row from the top.
+    Given(Vec<f32>),
+}
+
+/// A pane and what happens on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlassOptions {
+    /// Cells along x (right) and y (down): 8 to 4096 each.
+    pub size: [u32; 2],
+    /// Edge of a cell, m: 0.25e-3 to 5e-3. A drop is to be wider than a cell: 0.6e-3 is good.
+    pub cell_m: f64,
+    /// Tilt from the horizontal, rad: 0 to pi/2, a window.
+    pub tilt_rad: f64,
+    /// Contact angles.
+    pub contact: GlassContact,
+    /// Temperature of the water, Celsius: -20 to 40.
+    pub temperature_c: f64,
+    /// Rain.
+    pub rain: GlassRain,
+    /// Air along the pane.
+    pub air: GlassAir,
+    /// Trails.
+    pub trail: GlassTrail,
+    /// Wet glass.
+    pub wetting: GlassWetting,
+    /// How the glass draws water: 0 repels, 1 draws.
+    pub affinity: GlassTexture,
+    /// How strongly affinity turns drops, 0 to 4.
+    pub affinity_pull: f64,
+    /// Friction of the glass as a multiple of Furmidge's: 0 to 1.99. Noise is about 1, by its share.
+    pub friction: GlassTexture,
+    /// Cells where no water can be, row by row from the top.
+    pub obstacles: Option<Vec<bool>>,
+    /// Drying as depth of water over the wetted area, mm/h: 0 to 100.
+    pub evaporation_mm_h: f64,
+    /// Wipers.
+    pub wipers: Vec<GlassWiper>,
+    /// The fastest that drops run, m/s: 0.01 to 5. It sets the length of a tick: a drop moves by at most a cell.
+    pub speed_limit_m_s: f64,
+    /// Seed of all that is random.
+    pub seed: u64,
+}
+
+impl Default for GlassOptions {
+    /// A dry vertical window of 256 x 256 cells of 0.6 mm.
+    fn default() -> Self {
+        Self {
+            size: [256, 256],
+            cell_m: 0.6e-3,
+            tilt_rad: std::f64::consts::FRAC_PI_2,
+            contact: GlassContact::default(),
+            temperature_c: 20.0,
+            rain: GlassRain::default(),
+            air: GlassAir::default(),
+            trail: GlassTrail::default(),
+            wetting: GlassWetting::default(),
+            affinity: GlassTexture::Noise { spot_m: 8.0e-3, share: 1.0 },
+            affinity_pull: 1.0,
+            friction: GlassTexture::Noise { spot_m: 12.0e-3, share: 0.35 },
+            obstacles: None,
+            evaporation_mm_h: 0.0,
+            wipers: Vec::new(),
+            speed_limit_m_s: 0.3,
+            seed: 0,
+        }
+    }
+}
+
+impl GlassOptions {
+    /// How many cells there are.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+
+    /// Whether all numbers are in their ranges.
+    ///
+    /// # Errors
+    /// [`GlassError`] that names the first that is not.
+    pub fn check(&self) -> Result<(), GlassError> {
+        for (quantity, edge) in ["columns of the pane", "rows of the pane"].into_iter().zip(self.size) {
+            if !EDGE.contains(&edge) {
+                let found = edge.into();
+                return Err(GlassError::OutOfRange { quantity, found, unit: "cells", allowed: "8 to 4096" });
+            }
+        }
+        let degrees = 180.0 / std::f64::consts::PI;
+        in_range("edge of a cell", self.cell_m, 0.25e-3..=5.0e-3, 1.0e3, "mm", "0.25 to 5")?;
+        in_range("tilt", self.tilt_rad, 0.0..=std::f64::consts::FRAC_PI_2, degrees, "degrees", "0 to 90")?;
+        self.contact.check()?;
+        in_range("temperature", self.temperature_c, -20.0..=40.0, 1.0, "C", "-20 to 40")?;
+        in_range("rain rate", self.rain.rate_mm_h, 0.0..=500.0, 1.0, "mm/h", "0 to 500")?;
+        in_range("speed of the rain's air", self.rain.towards_m_s, 0.0..=100.0, 1.0, "m/s", "0 to 100")?;
+        in_range("air speed", self.air.speed_m_s, 0.0..=100.0, 1.0, "m/s", "0 to 100")?;
+        in_range("air direction", self.air.direction_rad, -10.0..=10.0, 1.0, "rad", "-10 to 10")?;
+        in_range("drag coefficient", self.air.drag, 0.0..=2.0, 1.0, "", "0 to 2")?;
+        if self.trail.spacing_m != f64::INFINITY {
+            in_range("spacing of beads", self.trail.spacing_m, 1.0e-4..=1.0, 1.0e3, "mm", "0.1 to 1000")?;
+        }
+        in_range("diameter of beads", self.trail.bead_m, 0.0..=2.0e-3, 1.0e3, "mm", "0 to 2")?;
+        in_range("life of wetness", self.wetting.life_s, 0.1..=3600.0, 1.0, "s", "0.1 to 3600")?;
+        in_range("ease of wet glass", self.wetting.ease, 0.0..=1.0, 1.0, "", "0 to 1")?;
+        in_range("pull of wet glass", self.wetting.pull, 0.0..=4.0, 1.0, "", "0 to 4")?;
+        in_range("pull of affinity", self.affinity_pull, 0.0..=4.0, 1.0, "", "0 to 4")?;
+        in_range("evaporation", self.evaporation_mm_h, 0.0..=100.0, 1.0, "mm/h", "0 to 100")?;
+        in_range("speed limit", self.speed_limit_m_s, 0.01..=5.0, 1.0, "m/s", "0.01 to 5")?;
+        for (index, wiper) in self.wipers.iter().enumerate() {
+            wiper.check(index, self)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,182 @@
+//! Water goes where the drops have decided: with them, left behind as beads, dried, before a blade, or off the pane. And rain
+//! lands. All sums are of integers, so that their order is of no account.
+//! Twin of `shaders/wgsl/lattice/glass_transfer.wgsl`.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use downpour_math::rng::rng_draw;
+use downpour_shaders::lattice::glass::{GLASS_INDEX, GLASS_OBSTACLE, GLASS_OUT, GLASS_TAKEN};
+use glam::IVec2;
+
+use super::blade::{glass_blade_push, glass_blade_sweeps};
+use super::cells::{Cells, Tick, load};
+use super::frame::{glass_frame_cell, glass_frame_holds, glass_frame_index, glass_frame_landing};
+use super::size::{glass_size_class, glass_size_key};
+use super::totals::Counters;
+
+/// Adds to a total.
+fn glass_transfer_count(total: &AtomicU64, mass: u32) {
+    total.fetch_add(mass.into(), Ordering::Relaxed);
+}
+
+/// Puts water into a cell. The first to do so notes it in `come`.
+fn glass_transfer_put(cells: &Cells, tick: &Tick<'_>, cell: IVec2, mass: u32, come: &mut Vec<u32>) {
+    let index = glass_frame_index(tick.frame, cell);
+    if mass != 0 && cells.next[index as usize].fetch_add(mass, Ordering::Relaxed) == 0 {
+        come.push(index);
+    }
+}
+
+/// Whether a cell can hold water.
+fn glass_transfer_open(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> bool {
+    glass_frame_holds(tick.frame, cell)
+        && cells.surface[glass_frame_index(tick.frame, cell) as usize] & GLASS_OBSTACLE == 0
+}
+
+/// The drops that land in the block of cells that begins at a cell.
+pub(super) fn glass_transfer_land(
+    cells: &Cells,
+    tick: &Tick<'_>,
+    counters: &Counters,
+    corner: IVec2,
+    come: &mut Vec<u32>,
+) {
+    let frame = tick.frame;
+    let block = glass_frame_index(frame, corner);
+    let drops = glass_frame_landing(frame, rng_draw(frame.seed, block, tick.step, 1)[0]);
+    for k in 0..drops {
+        let [x, y, z, _] = rng_draw(frame.seed, block, tick.step, 2 + k);
+        let cell = corner + IVec2::new((x >> 28) as i32, (y >> 28) as i32);
+        if !glass_transfer_open(cells, tick, cell) {
+            continue;
+        }
+        let mass = tick.table.landing[(z >> 22) as usize][(z >> 20) as usize & 3];
+        glass_transfer_put(cells, tick, cell, mass, come);
+        glass_transfer_count(&counters.landed, mass);
+    }
+}
+
+/// What dries of a drop in one tick.
+fn glass_transfer_dry(mass: u32, loss: u32, word: u32) -> u32 {
+    mass.min((loss >> 16) + u32::from(word & 0xffff < loss & 0xffff))
+}
+
+/// What a drop leaves behind it in a bead.
+fn glass_transfer_bead(tick: &Tick<'_>, mass: u32, words: [u32; 4]) -> u32 {
+    if words[1] >= tick.frame.trail_chance {
+        return 0;
+    }
+    // From half to one and a half of the mean.
+    let mean = tick.frame.trail_mass;
+    (mean / 2 + ((mean * (words[2] >> 20)) >> 12)).min(mass / 4)
+}
+
+/// The part of a blade that passes over a cell; none if none does.
+fn glass_transfer_blade(tick: &Tick<'_>, cell: IVec2) -> u32 {
+    let found = tick.blades.iter().position(|blade| glass_blade_sweeps(blade, cell));
+    found.map_or(GLASS_OUT, |k| k as u32)
+}
+
+/// Brings water to a cell, or to where a blade pushes it. Whether it stays on its way.
+fn glass_transfer_bring(
+    cells: &Cells,
+    tick: &Tick<'_>,
+    counters: &Counters,
+    cell: IVec2,
+    mass: u32,
+    come: &mut Vec<u32>,
+) -> bool {
+    let which = glass_transfer_blade(tick, cell);
+    if which == GLASS_OUT {
+        glass_transfer_put(cells, tick, cell, mass, come);
+        return true;
+    }
+    let blade = &tick.blades[which as usize];
+    let to = glass_blade_push(blade, cell);
+    if glass_frame_holds(tick.frame, to) && !glass_transfer_open(cells, tick, to) {
+        glass_transfer_put(cells, tick, cell, mass, come);
+        return false;
+    }
+    let left = (mass * blade.leaves) >> 8;
+    glass_transfer_put(cells, tick, cell, left, come);
+    if glass_transfer_open(cells, tick, to) {
+        glass_transfer_put(cells, tick, to, mass - left, come);
+    } else {
+        glass_transfer_count(&counters.wiped, mass - left);
+    }
+    false
+}
+
+/// Where the drop of a cell goes, by way of the larger one that takes it.
+fn glass_transfer_goal(cells: &Cells, index: u32) -> u32 {
+    let goal = load(&cells.target, index);
+    if goal == GLASS_OUT || goal & GLASS_TAKEN == 0 {
+        return goal;
+    }
+    let after = load(&cells.target, goal & GLASS_INDEX);
+    if after == GLASS_OUT { GLASS_OUT } else { after & GLASS_INDEX }
+}
+
+/// The bead goes where the drop and the bead do not touch.
+fn glass_transfer_trail(
+    cells: &Cells,
+    tick: &Tick<'_>,
+    cell: IVec2,
+    step: IVec2,
+    drop_radius: u32,
+    bead: u32,
+    come: &mut Vec<u32>,
+) -> bool {
+    let bead_radius = tick.table.rows.as_flattened()[glass_size_class(bead) as usize + 1].radius;
+    let behind = cell - step * ((drop_radius + bead_radius + 512) >> 8) as i32;
+    if bead == 0
+        || !glass_transfer_open(cells, tick, behind)
+        || glass_transfer_blade(tick, behind) != GLASS_OUT
+    {
+        return false;
+    }
+    glass_transfer_put(cells, tick, behind, bead, come);
+    true
+}
+
+/// Moves the water of a cell.
+pub(super) fn glass_transfer_drop(
+    cells: &Cells,
+    tick: &Tick<'_>,
+    counters: &Counters,
+    cell: IVec2,
+    come: &mut Vec<u32>,
+) {
+    let frame = tick.frame;
+    let index = glass_frame_index(frame, cell);
+    let mut mass = cells.mass[index as usize];
+    if mass == 0 {
+        return;
+    }
+    let key = glass_size_key(mass, index);
+    let row = tick.table.row(mass);
+    let decided = load(&cells.target, index);
+    let free = decided == GLASS_OUT || decided & GLASS_TAKEN == 0;
+    let goal = glass_transfer_goal(cells, index);
+    let moves = free && goal != index;
+    if moves || row.loss != 0 {
+        let words = rng_draw(frame.seed, index, tick.step, 16);
+        let dried = glass_transfer_dry(mass, row.loss, words[0]);
+        glass_transfer_count(&counters.evaporated, dried);
+        mass -= dried;
+        let bead = if moves && goal != GLASS_OUT { glass_transfer_bead(tick, mass, words) } else { 0 };
+        let to = if goal == GLASS_OUT { index } else { goal };
+        let step = glass_frame_cell(frame, to) - cell;
+        if glass_transfer_trail(cells, tick, cell, step, row.radius, bead, come) {
+            mass -= bead;
+        }
+    }
+    if goal == GLASS_OUT {
+        glass_transfer_count(&counters.over_edge, mass);
+    } else if glass_transfer_bring(cells, tick, counters, glass_frame_cell(frame, goal), mass, come)
+        && free
+        && mass != 0
+    {
+        cells.arrival[goal as usize].fetch_max(key, Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,200 @@
+//! Wipers: blades that turn about a pivot and push the water before them.
+
+use std::f64::consts::PI;
+
+use downpour_math::ops::f64 as ops;
+
+use super::blade::{GlassBlade, glass_blade_side};
+use super::error::{GlassError, in_range};
+use super::options::GlassOptions;
+
+/// The angle of a blade at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlassWiperKey {
+    /// Time, s.
+    pub time_s: f64,
+    /// Angle, rad, as in [`GlassWiperMotion::Sweep`].
+    pub angle_rad: f64,
+}
+
+/// How a blade turns. Angles are radians from +x (right) towards the top of the pane, -7 to 7.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GlassWiperMotion {
+    /// There and back in a period, as a crank drives it: `(1 - cos(2 pi t / period)) / 2` of the way.
+    Sweep {
+        /// Angle at the start.
+        from_rad: f64,
+        /// Angle after half of the period.
+        to_rad: f64,
+        /// Period, s.
+        period_s: f64,
+    },
+    /// Angles at times that rise, linear between them, held before the first and after the last.
+    Keys(Vec<GlassWiperKey>),
+}
+
+/// A part of a blade that leaves water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlassWornBand {
+    /// Where it begins, m from the pivot.
+    pub from_m: f64,
+    /// Where it ends, m from the pivot.
+    pub to_m: f64,
+    /// Share of the water that stays behind, 0 to 1.
+    pub leaves: f64,
+}
+
+/// A wiper. Its blade turns by at most 20 rad/s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlassWiper {
+    /// The pivot, m right of and below the upper left corner of the pane; at most as far outside as the pane is wide.
+    pub pivot_m: [f64; 2],
+    /// Where the blade begins, m from the pivot.
+    pub inner_m: f64,
+    /// Where it ends, m from the pivot.
+    pub outer_m: f64,
+    /// How it turns.
+    pub motion: GlassWiperMotion,
+    /// Worn parts, in order from the pivot, apart from each other.
+    pub worn: Vec<GlassWornBand>,
+}
+
+const FASTEST: f64 = 20.0;
+
+impl GlassWiper {
+    pub(super) fn check(&self, index: usize, options: &GlassOptions) -> Result<(), GlassError> {
+        let [width, height] = options.size.map(|n| f64::from(n) * options.cell_m);
+        let [x, y] = self.pivot_m;
+        let outside = GlassError::WiperOutside { index, x, y };
+        if !(-width..=2.0 * width).contains(&x) || !(-height..=2.0 * height).contains(&y) {
+            return Err(outside);
+        }
+        let reach = 2.0 * (width + height);
+        in_range("end of a blade", self.outer_m, 1.0e-3..=reach, 1.0, "m", "0.001 to twice the pane")?;
+        in_range("start of a blade", self.inner_m, 0.0..=self.outer_m, 1.0, "m", "0 to the blade's end")?;
+        let away = |at: f64, size: f64| (-at).max(at - size).max(0.0);
+        let far = |at: f64, size: f64| at.abs().max((at - size).abs());
+        if ops::hypot(away(x, width), away(y, height)) > self.outer_m
+            || ops::hypot(far(x, width), far(y, height)) < self.inner_m
+        {
+            return Err(outside);
+        }
+        let mut from = self.inner_m;
+        for band in &self.worn {
+            in_range(
+                "start of a worn band",
+                band.from_m,
+                from..=self.outer_m,
+                1.0,
+                "m",
+                "on the blade, in order",
+            )?;
+            in_range("end of a worn band", band.to_m, band.from_m..=self.outer_m, 1.0, "m", "on the blade")?;
+            in_range("share that a worn band leaves", band.leaves, 0.0..=1.0, 1.0, "", "0 to 1")?;
+            from = band.to_m;
+        }
+        self.check_motion()
+    }
+
+    fn check_motion(&self) -> Result<(), GlassError> {
+        let angle = |a: f64| in_range("angle of a blade", a, -7.0..=7.0, 1.0, "rad", "-7 to 7");
+        match &self.motion {
+            GlassWiperMotion::Sweep { from_rad, to_rad, period_s } => {
+                angle(*from_rad)?;
+                angle(*to_rad)?;
+                in_range("period of a wiper", *period_s, 0.1..=1.0e6, 1.0, "s", "0.1 to 1e6")?;
+            }
+            GlassWiperMotion::Keys(keys) => {
+                in_range("number of a wiper's keys", keys.len() as f64, 1.0..=1.0e6, 1.0, "", "1 to 1e6")?;
+                let mut before = f64::NEG_INFINITY;
+                for key in keys {
+                    angle(key.angle_rad)?;
+                    let apart = before + 1.0e-3;
+                    in_range(
+                        "time of a wiper's key",
+                        key.time_s,
+                        apart.max(-1.0e9)..=1.0e9,
+                        1.0,
+                        "s",
+                        "rising by 1 ms at least",
+                    )?;
+                    before = key.time_s;
+                }
+            }
+        }
+        in_range("speed of a blade", self.fastest(), 0.0..=FASTEST, 1.0, "rad/s", "0 to 20")?;
+        Ok(())
+    }
+
+    /// The highest speed of the blade, rad/s.
+    pub(super) fn fastest(&self) -> f64 {
+        match &self.motion {
+            GlassWiperMotion::Sweep { from_rad, to_rad, period_s } => {
+                (to_rad - from_rad).abs() * PI / period_s
+            }
+            GlassWiperMotion::Keys(keys) => keys
+                .windows(2)
+                .map(|w| match w {
+                    [a, b] => ((b.angle_rad - a.angle_rad) / (b.time_s - a.time_s)).abs(),
+                    _ => 0.0,
+                })
+                .fold(0.0, f64::max),
+        }
+    }
+
+    /// The angle of the blade at a time, rad.
+    #[must_use]
+    pub fn angle(&self, time_s: f64) -> f64 {
+        match &self.motion {
+            GlassWiperMotion::Sweep { from_rad, to_rad, period_s } => {
+                from_rad + (to_rad - from_rad) * 0.5 * (1.0 - ops::cos(2.0 * PI * time_s / period_s))
+            }
+            GlassWiperMotion::Keys(keys) => {
+                let after = keys.partition_point(|key| key.time_s <= time_s);
+                match (after.checked_sub(1).and_then(|k| keys.get(k)), keys.get(after)) {
+                    (Some(a), Some(b)) => {
+                        let share = (time_s - a.time_s) / (b.time_s - a.time_s);
+                        a.angle_rad + (b.angle_rad - a.angle_rad) * share
+                    }
+                    (Some(key), None) | (None, Some(key)) => key.angle_rad,
+                    (None, None) => 0.0,
+                }
+            }
+        }
+    }
+
+    /// How many parts the blade has.
+    pub(super) fn parts(&self) -> usize {
+        2 * self.worn.len() + 1
+    }
+
+    /// The parts of the blade during a tick, as many as [`GlassWiper::parts`].
+    pub(super) fn blades(&self, from_s: f64, to_s: f64, cell_m: f64, blades: &mut Vec<GlassBlade>) {
+        let half = |m: f64| (2.0 * m / cell_m).round() as i32;
+        let points = |time: f64| {
+            let angle = self.angle(time);
+            [ops::cos(angle), -ops::sin(angle)].map(|c| (16384.0 * c).round() as i32)
+        };
+        let (before, after) = (points(from_s), points(to_s));
+        let turn = glass_blade_side(before.into(), after.into()).signum();
+        let mut part = |from: f64, to: f64, leaves: f64| {
+            blades.push(GlassBlade {
+                before,
+                after,
+                pivot: self.pivot_m.map(half),
+                reach: [half(from), half(to)],
+                turn,
+                leaves: (256.0 * leaves).round() as u32,
+                unused_1: 0,
+                unused_2: 0,
+            });
+        };
+        let mut from = self.inner_m;
+        for band in &self.worn {
+            part(from, band.from_m, 0.0);
+            part(band.from_m, band.to_m, band.leaves);
+            from = band.to_m;
+        }
+        part(from, self.outer_m, 0.0);
+    }
+}

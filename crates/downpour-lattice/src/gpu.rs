@@ -1,0 +1,4 @@
+//! The GPU halves.
+
+pub mod glass;
+pub mod puddle;

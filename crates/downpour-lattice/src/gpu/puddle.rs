@@ -1,0 +1,328 @@
+//! A puddle on a GPU: the same numbers as [`Puddle`](crate::puddle::Puddle), several time steps per dispatch.
+
+use downpour_gpu::{ComputeKernel, Gpu, GpuError, timing::PassTime, wgpu};
+use downpour_math::ops::ops_is_finite;
+use downpour_math::packing::packing_unpack_snorm;
+use downpour_shaders::lattice::puddle::{NORMAL_KERNEL, PUDDLE_STEP_TILE, SEED_KERNEL, STEP_KERNEL};
+
+use crate::error::LatticeError;
+use crate::puddle::lattice::{PuddleGrid, puddle_state_pack, puddle_state_unpack};
+use crate::puddle::{
+    Impact, Model, PuddleOptions, PuddleSeed, PuddleStorage, SeedSquares, Wake, craters, footprints,
+    whole_normal,
+};
+
+/// Seeds of one dispatch: a driver may end an invocation that loops too long.
+const SEEDS: usize = 4096;
+
+/// Why a puddle on a GPU did not do what it was asked.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuPuddleError {
+    /// What was asked is not possible.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// The GPU did not do it.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+impl GpuPuddleError {
+    /// The exit code of the command for this error.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Lattice(error) => error.exit_code(),
+            Self::Gpu(error) => error.exit_code(),
+        }
+    }
+}
+
+/// A puddle on a GPU.
+#[derive(Debug)]
+pub struct GpuPuddle {
+    gpu: Gpu,
+    model: Model,
+    step: ComputeKernel,
+    seed: ComputeKernel,
+    normal: ComputeKernel,
+    links: wgpu::Buffer,
+    /// The two copies of the state, and which is the newer.
+    states: [wgpu::Buffer; 2],
+    newer: usize,
+    reset: wgpu::Buffer,
+    reset_before: u64,
+    steps: u64,
+}
+
+impl GpuPuddle {
+    /// Level water over the whole lattice.
+    ///
+    /// # Errors
+    /// [`GpuPuddleError::Lattice`] names the option that is not possible; else what the GPU says.
+    pub fn new(gpu: &Gpu, options: &PuddleOptions) -> Result<Self, GpuPuddleError> {
+        Self::assemble(gpu, Model::new(options, None)?)
+    }
+
+    /// Level water where `land` is false.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_land(gpu: &Gpu, options: &PuddleOptions, land: &[bool]) -> Result<Self, GpuPuddleError> {
+        Self::assemble(gpu, Model::new(options, Some(land))?)
+    }
+
+    fn assemble(gpu: &Gpu, model: Model) -> Result<Self, GpuPuddleError> {
+        let cells = (model.links.stride() * model.links.size[1]) as u64;
+        let bytes = cells * if model.options.storage == PuddleStorage::Half { 4 } else { 8 };
+        let state = || gpu.empty_buffer("puddle state", bytes, wgpu::BufferUsages::STORAGE);
+        Ok(Self {
+            step: ComputeKernel::new(gpu, &STEP_KERNEL, &[])?,
+            seed: ComputeKernel::new(gpu, &SEED_KERNEL, &[])?,
+            normal: ComputeKernel::new(gpu, &NORMAL_KERNEL, &[])?,
+            links: gpu.storage_buffer("puddle links", &model.links.bytes)?,
+            // New buffers are zero.
+            states: [state()?, state()?],
+            newer: 0,
+            reset: gpu.storage_buffer("puddle resets", &[0u32])?,
+            reset_before: 0,
+            steps: 0,
+            gpu: gpu.clone(),
+            model,
+        })
+    }
+
+    /// The options.
+    #[must_use]
+    pub fn options(&self) -> &PuddleOptions {
+        &self.model.options
+    }
+
+    /// Lets time pass. Gives into how many steps it was cut. Does not wait.
+    ///
+    /// # Errors
+    /// [`GpuPuddleError::Lattice`] if the time is not possible; else what the GPU says.
+    pub fn step(&mut self, dt_s: f32) -> Result<u32, GpuPuddleError> {
+        let substeps = self.model.substeps(f64::from(dt_s))?;
+        let dt = f64::from(dt_s) / f64::from(substeps);
+        let full = self.model.steps_per_sweep();
+        let (whole, rest) = (substeps / full, substeps % full);
+        let mut sweeps = vec![full; whole as usize];
+        sweeps.extend((rest > 0).then_some(rest));
+        let uniforms = [full, rest.max(1)]
+            .map(|steps| self.gpu.uniform_buffer("puddle grid", &self.model.grid(dt, steps)));
+        let [full_uniform, rest_uniform] = uniforms;
+        let (full_uniform, rest_uniform) = (full_uniform?, rest_uniform?);
+        let bind = |uniform: &wgpu::Buffer, from: usize| {
+            let buffers = [uniform, &self.links, &self.states[from], &self.states[1 - from], &self.reset];
+            self.step.bind(&self.gpu, &buffers)
+        };
+        // One for each direction between the copies, and one for what is left over.
+        let last_from = (self.newer + whole as usize) % 2;
+        let bindings = [bind(&full_uniform, 0)?, bind(&full_uniform, 1)?, bind(&rest_uniform, last_from)?];
+        let mut from = self.newer;
+        let mut dispatches = Vec::with_capacity(sweeps.len());
+        for steps in sweeps {
+            let binding = if steps == full { &bindings[from] } else { &bindings[2] };
+            dispatches.push(self.step.dispatch(binding, self.groups(steps)));
+            from = 1 - from;
+        }
+        self.gpu.submit(&dispatches)?;
+        drop(dispatches);
+        self.newer = from;
+        self.steps += u64::from(substeps);
+        Ok(substeps)
+    }
+
+    /// Workgroups of a sweep: what a tile writes is what its halo leaves.
+    fn groups(&self, steps: u32) -> [u32; 3] {
+        let halo = (self.model.degree * steps).next_multiple_of(4);
+        let inner = PUDDLE_STEP_TILE - 2 * halo;
+        let [nx, ny] = self.model.options.size;
+        [nx.div_ceil(inner), ny.div_ceil(inner), 1]
+    }
+
+    /// The time that the device takes for `repeats` sweeps of `steps` time steps each (at most what the options allow),
+    /// as the mean of one. Time passes for the puddle.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn time_sweep(&mut self, dt_s: f32, steps: u32, repeats: u32) -> Result<PassTime, GpuPuddleError> {
+        self.model.substeps(f64::from(dt_s))?;
+        let steps = steps.clamp(1, self.model.steps_per_sweep());
+        let dt = f64::from(dt_s).min(self.model.limit());
+        let uniform = self.gpu.uniform_buffer("puddle grid", &self.model.grid(dt, steps))?;
+        let bind = |from: usize| {
+            let buffers = [&uniform, &self.links, &self.states[from], &self.states[1 - from], &self.reset];
+            self.step.bind(&self.gpu, &buffers)
+        };
+        let (there, back) = (bind(self.newer)?, bind(1 - self.newer)?);
+        let groups = self.groups(steps);
+        let pair = [self.step.dispatch(&there, groups), self.step.dispatch(&back, groups)];
+        let pairs = repeats.div_ceil(2);
+        let time = self.gpu.time(&pair, pairs)?;
+        self.steps += u64::from(2 * pairs) * u64::from(steps);
+        Ok(PassTime { device: time.device.map(|t| t / 2), wall: time.wall / 2 })
+    }
+
+    /// Drops meet the water: a crater for each.
+    ///
+    /// # Errors
+    /// As [`Puddle::seed`](crate::puddle::Puddle::seed); else what the GPU says.
+    pub fn seed(&mut self, impacts: &[Impact]) -> Result<(), GpuPuddleError> {
+        let seeds = craters(&self.model, impacts)?;
+        self.add(&seeds)
+    }
+
+    /// An object moves through the water.
+    ///
+    /// # Errors
+    /// As [`Puddle::displace`](crate::puddle::Puddle::displace); else what the GPU says.
+    pub fn displace(&mut self, wake: &Wake) -> Result<(), GpuPuddleError> {
+        let seeds = footprints(&self.model, wake)?;
+        self.add(&seeds)
+    }
+
+    fn add(&mut self, seeds: &[PuddleSeed]) -> Result<(), GpuPuddleError> {
+        for seeds in seeds.chunks(SEEDS) {
+            let squares = SeedSquares::new(&self.model.links, seeds);
+            if squares.entries.is_empty() {
+                continue;
+            }
+            let (uniform, groups) = self.whole()?;
+            let list = self.gpu.storage_buffer("puddle seeds", seeds)?;
+            let first = self.gpu.storage_buffer("puddle seeds of squares", &squares.first)?;
+            let entries = self.gpu.storage_buffer("puddle seed entries", &squares.entries)?;
+            let [from, to] = [self.newer, 1 - self.newer];
+            let buffers =
+                [&uniform, &self.links, &self.states[from], &list, &first, &entries, &self.states[to]];
+            let bindings = self.seed.bind(&self.gpu, &buffers)?;
+            self.gpu.submit(&[self.seed.dispatch(&bindings, groups)])?;
+            self.newer = to;
+        }
+        Ok(())
+    }
+
+    /// The lattice for kernels that do not step, and their workgroups.
+    fn whole(&mut self) -> Result<(wgpu::Buffer, [u32; 3]), GpuPuddleError> {
+        let dt = match self.model.fitted() {
+            (_, dt) if dt > 0.0 => dt,
+            _ => self.model.limit(),
+        };
+        let grid: PuddleGrid = self.model.grid(dt, 1);
+        let uniform = self.gpu.uniform_buffer("puddle grid", &grid)?;
+        Ok((uniform, [grid.quads.div_ceil(16), grid.size[1].div_ceil(16), 1]))
+    }
+
+    /// Heights over the level, m, and velocities, m/s, row by row. Waits.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn state(&self) -> Result<[Vec<f32>; 2], GpuPuddleError> {
+        let buffer = &self.states[self.newer];
+        let quads: Vec<[[f32; 4]; 2]> = match self.model.options.storage {
+            PuddleStorage::Full => self.gpu.read(buffer)?,
+            PuddleStorage::Half => {
+                let words: Vec<[u32; 4]> = self.gpu.read(buffer)?;
+                let unpack = |quad: &[u32; 4]| [0, 1].map(|k| quad.map(|word| puddle_state_unpack(word)[k]));
+                words.iter().map(unpack).collect()
+            }
+        };
+        Ok([0, 1].map(|k| {
+            let [nx, _] = self.model.links.size;
+            let rows = quads.chunks_exact(self.model.links.stride() / 4);
+            rows.flat_map(|row| row.iter().flat_map(move |quad| quad[k]).take(nx)).collect()
+        }))
+    }
+
+    /// Heights over the level, m, row by row. Waits.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn heights(&self) -> Result<Vec<f32>, GpuPuddleError> {
+        let [heights, _] = self.state()?;
+        Ok(heights)
+    }
+
+    /// Heights and velocities from elsewhere, as [`Puddle::set_state`](crate::puddle::Puddle::set_state).
+    ///
+    /// # Errors
+    /// As there; else what the GPU says.
+    pub fn set_state(&mut self, heights: &[f32], velocities: &[f32]) -> Result<u64, GpuPuddleError> {
+        let cells = self.model.cells();
+        for (quantity, values) in [("the field of heights", heights), ("the field of velocities", velocities)]
+        {
+            if values.len() != cells {
+                return Err(LatticeError::Cells { quantity, found: values.len(), allowed: cells }.into());
+            }
+        }
+        let ([nx, ny], stride) = (self.model.links.size, self.model.links.stride());
+        let mut quads = vec![[[0.0f32; 4]; 2]; stride / 4 * ny];
+        let mut bad = 0;
+        for (i, (&height, &velocity)) in heights.iter().zip(velocities).enumerate() {
+            let (x, y) = (i % nx, i / nx);
+            if !self.model.links.is_water(x, y) {
+                continue;
+            }
+            if ops_is_finite(height) && ops_is_finite(velocity) {
+                let quad = &mut quads[(y * stride + x) / 4];
+                quad[0][x % 4] = height;
+                quad[1][x % 4] = velocity;
+            } else {
+                bad += 1;
+            }
+        }
+        self.reset_before += bad;
+        self.states[self.newer] = match self.model.options.storage {
+            PuddleStorage::Full => self.gpu.storage_buffer("puddle state", &quads)?,
+            PuddleStorage::Half => {
+                let words: Vec<[u32; 4]> = quads
+                    .iter()
+                    .map(|[h, v]| std::array::from_fn(|i| puddle_state_pack(h[i], v[i])))
+                    .collect();
+                self.gpu.storage_buffer("puddle state", &words)?
+            }
+        };
+        Ok(bad)
+    }
+
+    /// Normals of the surface, as [`Puddle::normals`](crate::puddle::Puddle::normals), known to 3e-5. Waits.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn normals(&mut self) -> Result<Vec<[f32; 3]>, GpuPuddleError> {
+        let (uniform, groups) = self.whole()?;
+        let stride = self.model.links.stride();
+        let bytes = (stride * self.model.links.size[1] * 4) as u64;
+        let words = self.gpu.empty_buffer("puddle normals", bytes, wgpu::BufferUsages::STORAGE)?;
+        let buffers = [&uniform, &self.links, &self.states[self.newer], &words];
+        let bindings = self.normal.bind(&self.gpu, &buffers)?;
+        self.gpu.submit(&[self.normal.dispatch(&bindings, groups)])?;
+        let words: Vec<u32> = self.gpu.read(&words)?;
+        let rows = words.chunks_exact(stride);
+        let [nx, _] = self.model.links.size;
+        Ok(rows.flat_map(|row| row.iter().take(nx).map(|&w| whole_normal(packing_unpack_snorm(w)))).collect())
+    }
+
+    /// How many cells had to be set to rest because they were not finite. Waits.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn reset_cells(&self) -> Result<u64, GpuPuddleError> {
+        let count: Vec<u32> = self.gpu.read(&self.reset)?;
+        Ok(self.reset_before + count.first().copied().map_or(0, u64::from))
+    }
+
+    /// How many time steps have been made.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The buffer of the newest state, for one's own shaders: a quad of heights and one of velocities for each four cells of a
+    /// row, as f32, or four words of two 16-bit numbers in units of 1/1024. The other copy is the newest after each call.
+    #[must_use]
+    pub fn state_buffer(&self) -> &wgpu::Buffer {
+        &self.states[self.newer]
+    }
+}

@@ -1,0 +1,65 @@
+//! Normals of the water by Sobel's sums. Twin of `shaders/wgsl/lattice/puddle_normal.wgsl`.
+//!
+//! x runs along the rows of the lattice, z along its columns, y is up. What is not linked counts as
+//! for the ripples: as level, or mirrored in the wall.
+
+use rayon::prelude::*;
+
+use super::lattice::{Links, PuddleQuad, linked};
+
+/// Slopes along x and z of a cell. Rows are three heights each, west to east; `scale` is the inverse of eight cells.
+#[inline(always)]
+fn slope(north: [f32; 3], here: [f32; 3], south: [f32; 3], links: u32, scale: f32) -> [f32; 2] {
+    let [[nw, n, ne], [w, _, e], [sw, s, se]] = linked(north, here, south, links);
+    let x = ((ne - nw) + (se - sw)) + 2.0 * (e - w);
+    let z = ((sw - nw) + (se - ne)) + 2.0 * (s - n);
+    [x * scale, z * scale]
+}
+
+/// Slopes along x and z of a quad. Rows are the quads west of, at and east of a place.
+#[must_use]
+pub fn puddle_normal_slopes(
+    north: [PuddleQuad; 3],
+    here: [PuddleQuad; 3],
+    south: [PuddleQuad; 3],
+    links: u32,
+    scale: f32,
+) -> [PuddleQuad; 2] {
+    let slopes: [[f32; 2]; 4] = std::array::from_fn(|i| {
+        let pick = |row: [PuddleQuad; 3]| row.map(|quad| quad[i]);
+        slope(pick(north), pick(here), pick(south), links >> (8 * i), scale)
+    });
+    [0, 1].map(|axis| slopes.map(|s| s[axis]))
+}
+
+/// The x and z components of the normal of a surface with these slopes.
+#[inline(always)]
+#[must_use]
+pub fn puddle_normal_lean(slope: [f32; 2]) -> [f32; 2] {
+    let length = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+    slope.map(|s| -s / length)
+}
+
+/// The whole normal: its y component is what is left of 1.
+#[inline(always)]
+pub(crate) fn whole([x, z]: [f32; 2]) -> [f32; 3] {
+    [x, (1.0 - x * x - z * z).max(0.0).sqrt(), z]
+}
+
+/// The normals of all cells, from heights row by row.
+pub(crate) fn normals(links: &Links, heights: &[f32], scale: f32) -> Vec<[f32; 3]> {
+    let [nx, ny] = links.size;
+    let at = |x: isize, y: isize| {
+        let inside = x >= 0 && y >= 0 && x < nx as isize && y < ny as isize;
+        if inside { heights[y as usize * nx + x as usize] } else { 0.0 }
+    };
+    (0..nx * ny)
+        .into_par_iter()
+        .map(|i| {
+            let (x, y) = ((i % nx) as isize, (i / nx) as isize);
+            let row = |y: isize| [at(x - 1, y), at(x, y), at(x + 1, y)];
+            let bits = u32::from(links.bytes[y as usize * links.stride() + x as usize]);
+            whole(puddle_normal_lean(slope(row(y - 1), row(y), row(y + 1), bits, scale)))
+        })
+        .collect()
+}

@@ -1,0 +1,247 @@
+//! What impacts and moving objects do to the surface. Twin of `shaders/wgsl/lattice/puddle_seed.wgsl`.
+//!
+//! Tatarchuk & Isidoro 2006 seed a damped sine by the drop's mass. Here its shape is
+//!
+//! > -a (2 / sqrt 3) exp(-q) sin(sqrt(3) q + pi / 3),   q = distance / length:
+//!
+//! the damped sine that is smooth in the middle and whose rim holds exactly the water of its hollow, so that a drop makes
+//! rings and does not lift the puddle. (The drop's own water is not added: a puddle in the rain overflows or drains.)
+//!
+//! Length: the hollow, 1.209 lengths wide, is the crater whose potential energy, pi/4 rho g R^4 + pi sigma R^2 for a
+//! half sphere, is a quarter of the drop's kinetic energy. Amplitude: the energy of the damped sine,
+//! pi a^2 (3/16 rho g length^2 + 3/4 sigma), is [`wave_energy_share`](super::PuddleOptions::wave_energy_share) of the
+//! drop's. The two shares are chosen, not measured. Slopes and hollows stay within what the linear law can carry: a is at
+//! most half a length and half the depth, and a length is at least 1.25 cells.
+
+use std::f64::consts::PI;
+
+use downpour_math::ops;
+use downpour_shaders::lattice::puddle::{
+    PUDDLE_SEED_BUMP, PUDDLE_SEED_CRATER, PUDDLE_SEED_HEIGHT, PUDDLE_SEED_SHIFT, PUDDLE_SEED_TURN,
+};
+
+use super::lattice::Links;
+use super::model::Model;
+use crate::error::{LatticeError, in_range};
+
+/// Share of a drop's kinetic energy that opens the crater.
+const CRATER_SHARE: f64 = 0.25;
+/// Radius of the hollow of a damped sine, in lengths.
+const HOLLOW: f64 = 1.209_2;
+/// Radius beyond which a damped sine is cut, in lengths.
+const REACH: f64 = 6.0;
+/// The shortest length, in cells.
+const SHORTEST: f64 = 1.25;
+
+/// A drop that meets the water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// Where, m from the corner of the first cell, along x and y.
+    pub place_m: [f32; 2],
+    /// How fast, m/s: 0 to 30.
+    pub speed_m_s: f32,
+    /// How large, m: up to 9e-3.
+    pub diameter_m: f32,
+}
+
+/// A round object that moves through the surface from one place to another: it presses the water down where it is, and
+/// what it leaves comes up again. Drawn step by step it leaves a wake.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wake {
+    /// Where it was, m.
+    pub from_m: [f32; 2],
+    /// Where it is now, m.
+    pub to_m: [f32; 2],
+    /// Radius of its footprint, m: 2 cells and more.
+    pub radius_m: f32,
+    /// How deep it presses the water down, m: up to the depth.
+    pub draught_m: f32,
+}
+
+/// A crater or a bump as the shader takes it. The same layout as `PuddleSeed` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct PuddleSeed {
+    /// Cells, from the corner of the first.
+    pub place: [f32; 2],
+    /// Inverse of the length, 1/cells.
+    pub per_length: f32,
+    /// m, upwards.
+    pub amplitude: f32,
+    /// Share of exp(-q) that makes up for what the cells, the border and the land take from the volume.
+    pub lift: f32,
+    /// Cells beyond which there is nothing.
+    pub reach: f32,
+    /// `PUDDLE_SEED_CRATER` or `PUDDLE_SEED_BUMP`.
+    pub shape: u32,
+    /// Padding.
+    pub unused: u32,
+}
+
+/// A seed of amplitude 1 without lift, at a distance in lengths.
+#[must_use]
+pub fn puddle_seed_shape(shape: u32, q: f32) -> f32 {
+    if shape == PUDDLE_SEED_BUMP {
+        let hill = (1.0 - q * q).max(0.0);
+        return hill * hill;
+    }
+    PUDDLE_SEED_HEIGHT * ops::exp(-q) * ops::sin(PUDDLE_SEED_TURN * (q + PUDDLE_SEED_SHIFT))
+}
+
+/// What a seed adds to the height of a cell.
+#[must_use]
+pub fn puddle_seed_height(seed: &PuddleSeed, cell: [f32; 2]) -> f32 {
+    let [x, y] = [0, 1].map(|axis| cell[axis] + 0.5 - seed.place[axis]);
+    let distance = (x * x + y * y).sqrt();
+    let q = distance * seed.per_length;
+    if distance < seed.reach {
+        seed.amplitude * (puddle_seed_shape(seed.shape, q) + seed.lift * ops::exp(-q))
+    } else {
+        0.0
+    }
+}
+
+impl PuddleSeed {
+    /// The cells that a seed may touch: columns and rows.
+    fn cells(&self, size: [usize; 2]) -> [std::ops::Range<usize>; 2] {
+        [0, 1].map(|axis| {
+            // A cast from f32 saturates, and NaN becomes 0.
+            let low = (self.place[axis] - self.reach).floor().max(0.0) as usize;
+            let high = (self.place[axis] + self.reach).ceil().max(0.0) as usize;
+            low.min(size[axis])..high.min(size[axis])
+        })
+    }
+
+    /// Calls `visit` with the cells of water that the seed touches, row by row.
+    pub(crate) fn visit(&self, links: &Links, mut visit: impl FnMut(usize, usize)) {
+        let [columns, rows] = self.cells(links.size);
+        for y in rows {
+            for x in columns.clone() {
+                if links.is_water(x, y) {
+                    visit(x, y);
+                }
+            }
+        }
+    }
+
+    /// The sums over the cells of water of the shape and of exp(-q).
+    fn sums(&self, links: &Links) -> [f64; 2] {
+        let unit = Self { amplitude: 1.0, lift: 0.0, ..*self };
+        let lift = Self { lift: 1.0, ..unit };
+        let mut sums = [0.0; 2];
+        self.visit(links, |x, y| {
+            let cell = [x as f32, y as f32];
+            let shape = f64::from(puddle_seed_height(&unit, cell));
+            sums[0] += shape;
+            sums[1] += f64::from(puddle_seed_height(&lift, cell)) - shape;
+        });
+        sums
+    }
+}
+
+/// The craters of some impacts.
+pub(crate) fn craters(model: &Model, impacts: &[Impact]) -> Result<Vec<PuddleSeed>, LatticeError> {
+    impacts.iter().map(|impact| crater(model, impact)).collect()
+}
+
+fn place(model: &Model, place_m: [f32; 2]) -> Result<[f32; 2], LatticeError> {
+    for v in place_m {
+        in_range("place", f64::from(v), "m", &(-1.0e6..=1.0e6), 1.0, "-1e6 to 1e6 m")?;
+    }
+    Ok(place_m.map(|v| (f64::from(v) / model.cell()) as f32))
+}
+
+fn crater(model: &Model, impact: &Impact) -> Result<PuddleSeed, LatticeError> {
+    let place = place(model, impact.place_m)?;
+    let d = f64::from(impact.diameter_m);
+    let d = in_range("diameter of a drop", d, "mm", &(1.0e-6..=9.001e-3), 1.0e3, "0.001 to 9 mm")?;
+    let speed = f64::from(impact.speed_m_s);
+    let speed = in_range("speed of an impact", speed, "m/s", &(0.0..=30.0), 1.0, "0 to 30 m/s")?;
+    let water = &model.law.water;
+    let weight = water.density * water.gravity;
+    let energy = PI / 12.0 * water.density * d * d * d * speed * speed;
+    // weight R^4 / 4 + sigma R^2 = share of the energy / pi
+    let sigma = water.surface_tension;
+    let square = 2.0 / weight * ((sigma * sigma + weight * CRATER_SHARE * energy / PI).sqrt() - sigma);
+    let length = (square.max(0.0).sqrt() / HOLLOW).max(SHORTEST * model.cell());
+    let stiffness = PI * (3.0 / 16.0 * weight * length * length + 0.75 * sigma);
+    let share = f64::from(model.options.wave_energy_share);
+    let amplitude = (share * energy / stiffness).sqrt().min(0.5 * length).min(0.5 * model.law.depth);
+    let length = length / model.cell();
+    let mut seed = PuddleSeed {
+        place,
+        per_length: (1.0 / length) as f32,
+        amplitude: -amplitude as f32,
+        lift: 0.0,
+        reach: (REACH * length) as f32,
+        shape: PUDDLE_SEED_CRATER,
+        unused: 0,
+    };
+    let [shape, lift] = seed.sums(&model.links);
+    if lift > 0.0 {
+        seed.lift = (-shape / lift) as f32;
+    }
+    Ok(seed)
+}
+
+/// The bump that an object leaves, and the hollow that it makes; the hollow takes as much as the bump gives.
+pub(crate) fn footprints(model: &Model, wake: &Wake) -> Result<Vec<PuddleSeed>, LatticeError> {
+    let (from, to) = (place(model, wake.from_m)?, place(model, wake.to_m)?);
+    let radius = f64::from(wake.radius_m) / model.cell();
+    let radius = in_range("radius of a footprint", radius, "cells", &(2.0..=4096.0), 1.0, "2 to 4096 cells")?;
+    let draught = f64::from(wake.draught_m);
+    in_range("draught", draught, "mm", &(0.0..=model.law.depth), 1.0e3, "0 to the depth of the water")?;
+    let bump = |place, amplitude: f64| PuddleSeed {
+        place,
+        per_length: (1.0 / radius) as f32,
+        amplitude: amplitude as f32,
+        lift: 0.0,
+        reach: radius as f32,
+        shape: PUDDLE_SEED_BUMP,
+        unused: 0,
+    };
+    let (left, made) = (bump(from, draught), bump(to, -draught));
+    let (up, down) = (left.sums(&model.links)[0], made.sums(&model.links)[0]);
+    if !(up > 0.0 && down > 0.0) {
+        // It comes from beyond the water or goes there: what it displaces is not on the lattice.
+        return Ok(Vec::new());
+    }
+    Ok(vec![left, bump(to, -draught * up / down)])
+}
+
+/// Seeds by squares of cells, as the shader wants them.
+#[cfg(feature = "wgpu")]
+#[derive(Clone, Debug)]
+pub(crate) struct SeedSquares {
+    /// The first entry of each square, and one more.
+    pub(crate) first: Vec<u32>,
+    /// Numbers of seeds, in their order in each square.
+    pub(crate) entries: Vec<u32>,
+}
+
+#[cfg(feature = "wgpu")]
+impl SeedSquares {
+    pub(crate) fn new(links: &Links, seeds: &[PuddleSeed]) -> Self {
+        let edge = downpour_shaders::lattice::puddle::PUDDLE_SEED_SQUARE as usize;
+        let across = links.stride().div_ceil(edge);
+        let mut squares = vec![Vec::new(); across * links.size[1].div_ceil(edge)];
+        for (number, seed) in (0..).zip(seeds) {
+            let [columns, rows] = seed.cells(links.size);
+            if columns.is_empty() || rows.is_empty() {
+                continue;
+            }
+            for y in rows.start / edge..=(rows.end - 1) / edge {
+                for x in columns.start / edge..=(columns.end - 1) / edge {
+                    squares[y * across + x].push(number);
+                }
+            }
+        }
+        let mut first = vec![0];
+        let mut entries = Vec::new();
+        for square in squares {
+            entries.extend(square);
+            first.push(entries.len() as u32);
+        }
+        Self { first, entries }
+    }
+}
