@@ -99,7 +99,6 @@ fn hosts() -> Vec<Host> {
         host!(GlassFrame as "GlassFrame" in &lattice::glass::FRAME,
             size, seed, first_step, first_clock, clock_step, blades, gravity, air, kinetic, trail_chance,
             trail_mass, wet_life, wet_ease, affinity_pull, wet_pull, unused, rain_few, rain_many),
-        host!(WindFieldGrid as "WindFieldGrid" in &wind::FIELD, low, primitives, cell, per_cell, size),
     ]
 }
 
