@@ -73,7 +73,7 @@ pub const BROKEN: &[Broken] = &[
         right: "if !collision_solid(texel.surfaces[layer])",
         wrong: "if collision_solid(texel.surfaces[layer])",
     },
-    Broken { function: "glass_motion_slide", right: "if size <= hold", wrong: "if size < hold" },
+    Broken { function: "glass_motion_slide", right: "if size <= hold", wrong: "if size > hold" },
     Broken {
         function: "glass_motion_turn",
         right: "(v * 3 + along) / 4",

@@ -277,3 +277,24 @@ fn a_resting_drop_is_a_cap_of_its_volume() {
     assert!(normals[32 * 64 + 38].x > 0.3 && normals[32 * 64 + 26].x < -0.3);
     assert!(normals.iter().all(|n| (n.length() - 1.0).abs() < 1.0e-5));
 }
+
+#[test]
+fn weather_changes_on_the_way() {
+    let mut glass =
+        Glass::new(&GlassOptions { size: [128, 128], ..GlassOptions::default() }).expect("a pane");
+    glass.step(0.5).expect("a step");
+    assert_eq!(glass.totals().landed, 0);
+    glass.set_weather(&rain(100.0, 10.0), &GlassAir::default()).expect("rain");
+    glass.step(0.5).expect("a step");
+    let landed = glass.totals().landed;
+    assert!(landed > 0);
+    glass.set_weather(&rain(0.0, 10.0), &GlassAir::default()).expect("no rain");
+    glass.step(0.5).expect("a step");
+    assert_eq!(glass.totals().landed, landed);
+    assert!(glass.set_weather(&rain(f64::NAN, 0.0), &GlassAir::default()).is_err());
+    let options = GlassOptions { cell_m: 5.0e-3, speed_limit_m_s: 0.1, ..GlassOptions::default() };
+    let mut coarse = Glass::new(&options).expect("a pane");
+    let told =
+        coarse.set_weather(&rain(500.0, 100.0), &GlassAir::default()).expect_err("too dense").to_string();
+    assert!(told.contains("drops in a block and tick"), "{told}");
+}

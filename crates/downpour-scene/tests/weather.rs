@@ -1,7 +1,10 @@
 //! The weather file: every key, and rows T1 to T13 of the reliability plan.
 
 use downpour_drop::distribution::DropSizeLaw;
-use downpour_scene::weather::{Camera, CameraPose, Lamp, Rain, Repeat, Sky, SkySource, SunSource, Weather};
+use downpour_scene::weather::{
+    Camera, CameraPose, Lamp, Rain, RainBounce, RainCylinder, RainDrag, RainVolume, Repeat, Sky, SkySource,
+    SunSource, Weather,
+};
 use downpour_scene::{Budget, SceneError};
 use glam::{DQuat, DVec3};
 use std::fmt::Write as _;

@@ -18,7 +18,8 @@ fn glass_height_stretch(speed: u32) -> u32 {
 // The squared distance of a cell from the middle of a drop, as if the drop were round, in (cells / 256)^2.
 fn glass_height_squared(away: vec2i, v: vec2i) -> u32 {
     let speed = i32(glass_motion_length(v));
-    if speed == 0 {
+    // So slow a drop is round; its direction is not known to the digits that follow.
+    if speed < 4 {
         return u32(away.x * away.x + away.y * away.y) << 16u;
     }
     let along = (away.x * v.x + away.y * v.y) * 16 / speed * 16;

@@ -16,6 +16,9 @@ use super::transfer::{glass_transfer_drop, glass_transfer_land};
 /// Drops that a thread takes at once, at least.
 const CHUNK: usize = 256;
 
+/// After how many ticks the drops are put in the order of memory. It changes no result.
+const SORTED: u32 = 32;
+
 /// Velocity and progress of a drop: a packed velocity, and how far it is to the next cell (an i32).
 pub(super) type Motion = [u32; 2];
 
@@ -110,6 +113,10 @@ impl Cells {
             })
             .reduce(Vec::new, joined);
         come.extend(self.land(tick, counters));
+        if tick.step.is_multiple_of(SORTED) {
+            // Neighbours in the pane are then neighbours in time, and in the caches.
+            come.sort_unstable();
+        }
         self.settle(come, counters);
     }
 

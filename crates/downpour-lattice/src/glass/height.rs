@@ -25,7 +25,8 @@ pub fn glass_height_stretch(speed: u32) -> u32 {
 #[must_use]
 pub fn glass_height_squared(away: IVec2, v: IVec2) -> u32 {
     let speed = glass_motion_length(v) as i32;
-    if speed == 0 {
+    // So slow a drop is round; its direction is not known to the digits that follow.
+    if speed < 4 {
         return ((away.x * away.x + away.y * away.y) as u32) << 16;
     }
     let along = (away.x * v.x + away.y * v.y) * 16 / speed * 16;

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::cells::{Cells, Tick, load};
 use super::error::{GlassError, in_range};
 use super::motion::{glass_motion_unpack, glass_motion_wetness};
-use super::options::GlassOptions;
+use super::options::{GlassAir, GlassOptions, GlassRain};
 use super::plan::Plan;
 use super::totals::{Counters, GlassTotals};
 use super::{height, normal, smooth, surface};
@@ -77,6 +77,15 @@ impl Glass {
             }
         });
         Ok(())
+    }
+
+    /// Other rain and other air from now on: weather that changes, a car that speeds up.
+    ///
+    /// # Errors
+    /// [`GlassError::OutOfRange`] for numbers out of their ranges, and for rain that is too dense for the tick, which the
+    /// options of [`Glass::new`] set; the pane then stays as it is.
+    pub fn set_weather(&mut self, rain: &GlassRain, air: &GlassAir) -> Result<(), GlassError> {
+        self.plan.set_weather(rain, air)
     }
 
     /// Puts water into a cell, m^3; it is rounded to whole units. What was there stays.

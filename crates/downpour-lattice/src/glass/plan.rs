@@ -12,7 +12,7 @@ use super::blade::GlassBlade;
 use super::error::{GlassError, in_range};
 use super::frame::GlassFrame;
 use super::lattice::UNIT_M3;
-use super::options::GlassOptions;
+use super::options::{GlassAir, GlassOptions, GlassRain};
 use super::rain::{BLOCK, Landing, MOST_PER_BLOCK};
 use super::size::{GlassSizeRow, GlassTable, glass_size_floor};
 
@@ -58,6 +58,28 @@ impl Plan {
             done: 0,
             backlog_s: 0.0,
         })
+    }
+
+    /// Other rain and other air from now on. The tick stays.
+    pub(crate) fn set_weather(&mut self, rain: &GlassRain, air: &GlassAir) -> Result<(), GlassError> {
+        let options = GlassOptions { rain: *rain, air: *air, ..self.options.clone() };
+        options.check()?;
+        let landing = Landing::new(&options)?;
+        let edge = BLOCK * options.cell_m;
+        in_range(
+            "rain on the pane",
+            landing.number * edge * edge * self.tick_s,
+            0.0..=1.001 * MOST_PER_BLOCK,
+            1.0,
+            "drops in a block and tick",
+            "0 to 0.5: make the pane with its heaviest rain, which sets the tick",
+        )?;
+        self.table = table(&options, &landing, self.tick_s)?;
+        let new = frame(&options, &landing, self.tick_s);
+        let (first_step, first_clock) = (self.frame.first_step, self.frame.first_clock);
+        self.frame = GlassFrame { first_step, first_clock, ..new };
+        self.options = options;
+        Ok(())
     }
 
     pub(crate) fn options(&self) -> &GlassOptions {

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use crate::glass::blade::GlassBlade;
 use crate::glass::frame::GlassFrame;
 use crate::glass::host::{Plan, Ticks, free_cell, poured_units, surface};
-use crate::glass::{GlassError, GlassOptions, GlassTotals};
+use crate::glass::{GlassAir, GlassError, GlassOptions, GlassRain, GlassTotals};
 
 /// Ticks per submission: a submission must stay far below the time after which a driver resets.
 const TICKS: u32 = 64;
@@ -155,6 +155,16 @@ impl GpuGlass {
         self.gpu.submit(&many)
     }
 
+    /// Other rain and other air from now on, as [`Glass::set_weather`](crate::glass::Glass::set_weather).
+    ///
+    /// # Errors
+    /// [`GpuGlassError::Glass`] as there.
+    pub fn set_weather(&mut self, rain: &GlassRain, air: &GlassAir) -> Result<(), GpuGlassError> {
+        self.plan.set_weather(rain, air)?;
+        self.gpu.queue().write_buffer(&self.buffers.table, 0, bytemuck::bytes_of(&*self.plan.table));
+        Ok(())
+    }
+
     /// Puts water into a cell, as [`Glass::pour`](crate::glass::Glass::pour). It waits for the device.
     ///
     /// # Errors
@@ -179,6 +189,12 @@ impl GpuGlass {
     #[must_use]
     pub fn tick_s(&self) -> f64 {
         self.plan.tick_s()
+    }
+
+    /// How many ticks have been submitted.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.plan.done()
     }
 
     /// Mass of each cell in units of [`Glass::UNIT_M3`](crate::glass::Glass::UNIT_M3), row by row from the top.
