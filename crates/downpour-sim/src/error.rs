@@ -3,7 +3,7 @@
 use downpour_drop::DropError;
 
 /// Memory of a drop, with what its making needs.
-const BYTES_PER_DROP: u64 = 34;
+pub(crate) const BYTES_PER_DROP: u64 = 34;
 
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::SimError;
+use crate::error::BYTES_PER_DROP;
 use crate::motion::{motion_diameter, motion_diameter_bits};
 use crate::simulation::SimVolume;
 use crate::view::View;
@@ -118,6 +119,10 @@ impl Population {
             counts[k] = (sum.floor() - before) as u32;
         }
         let all = counts.iter().map(|&n| u64::from(n)).sum::<u64>();
+        // All that the drops will take is asked for before any of it is worked out.
+        let mut room: Vec<[u8; BYTES_PER_DROP as usize]> = Vec::new();
+        room.try_reserve_exact(all as usize).map_err(|_| SimError::memory(all))?;
+        drop(room);
         let mut sizes: Vec<u16> = Vec::new();
         sizes.try_reserve_exact(all as usize).map_err(|_| SimError::memory(all))?;
         let mut number = 0;

@@ -15,6 +15,7 @@ use downpour::sim::collision::{CollisionMap, CollisionOptions};
 use downpour::sim::gpu::{GpuCollisionMap, GpuMoment, GpuSimulation};
 use downpour::sim::simulation::{Moment, SimVolume, SimulationOptions};
 use downpour::sim::view::View;
+use downpour::wind::gpu::GpuWindField;
 use downpour::wind::{
     WindCore, WindField, WindForm, WindGrid, WindMask, WindPrimitive, WindSingularity, WindUniform,
 };
@@ -67,6 +68,37 @@ fn map() -> Result<CollisionMap, Box<dyn Error>> {
     let options =
         CollisionOptions::covering(low, Vec3::splat(50.0), Vec3::new(0.5, -1.0, 0.0), [1024, 1024])?;
     Ok(CollisionMap::new(&options, &downpour::bvh::Bvh::new(&corners))?)
+}
+
+/// The field of 64 primitives in 64^3 cells, on the CPU and on the GPU.
+fn wind_speed(gpu: &Gpu) -> Result<(), Box<dyn Error>> {
+    let grid = WindGrid::new(Vec3::splat(-50.0), Vec3::splat(50.0), [64; 3])?;
+    let primitives: Vec<WindPrimitive> = (0..64u8)
+        .map(|k| {
+            let at = WindSingularity {
+                strength: 20.0,
+                centre: Vec3::new(f32::from(k % 8), 1.0, f32::from(k / 8)) * 10.0 - 35.0,
+                axis: Vec3::Y,
+                core_radius: 4.0,
+                form: WindForm::Line,
+                core: WindCore::Rosenhead,
+            };
+            if k % 2 == 0 { WindPrimitive::Vortex(at) } else { WindPrimitive::Source(at) }
+        })
+        .collect();
+    let open = WindMask::open(&grid);
+    let start = std::time::Instant::now();
+    let field = WindField::new(&grid, &primitives, &open)?;
+    let cpu_ms = start.elapsed().as_secs_f64() * 1.0e3;
+    let on_gpu = GpuWindField::new(gpu, &grid, field.matrices().len(), 0)?;
+    let time = on_gpu.time(&primitives, &[], if gpu.adapter().is_software() { 3 } else { 100 })?;
+    let gpu_ms = if gpu.adapter().is_software() { time.wall } else { time.device.unwrap_or(time.wall) };
+    let threads = std::thread::available_parallelism()?;
+    println!(
+        "64^3 cells, 64 primitives: CPU ({threads} threads) {cpu_ms:.1} ms, GPU {:.3} ms",
+        gpu_ms.as_secs_f64() * 1.0e3
+    );
+    Ok(())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -137,6 +169,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             );
         }
     }
+    wind_speed(&gpu)?;
     println!("Rousseau 2008, table 1, first column: steps per second of a box, with wind and map");
     for most in [1, 5_000, 10_000, 20_000, 40_000, 100_000, 1_000_000] {
         let options = SimulationOptions { volume: boxed, most_drops: most, ..SimulationOptions::default() };

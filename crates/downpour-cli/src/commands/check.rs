@@ -2,6 +2,7 @@
 
 use clap::Args;
 use downpour::drop::distribution::{DistributionOptions, DropSizeDistribution};
+use downpour::render::shower::Shower;
 use downpour::render::stage::{CameraChoice, Stage};
 use downpour::scene::{Budget, scene::Texture};
 
@@ -30,6 +31,7 @@ impl CheckArguments {
         let mut entries = scene(&input, &stage);
         entries.extend(light(&input));
         entries.extend(rain(&input)?);
+        entries.extend(motion(&input)?);
         let [width, height] = input.weather.size.map(u64::from);
         let bytes = stage.bytes() + width * height * BYTES_PER_PIXEL;
         entries.push(Entry::new("memory_mib", "memory, about", Datum::Computed(mebibytes(bytes), 3), "MiB"));
@@ -128,6 +130,24 @@ fn light(input: &Input) -> Vec<Entry> {
             "degrees",
         ),
     ]
+}
+
+/// How the rain is worked out, and in what wind.
+fn motion(input: &Input) -> Result<Vec<Entry>, Failure> {
+    let wind = &input.weather.wind;
+    let form = if Shower::new(&input.weather)?.is_closed_form() { "in closed form" } else { "step by step" };
+    let or_none = |there: bool, word: &'static str| Datum::Word(if there { word } else { "none" }.to_owned());
+    Ok(vec![
+        Entry::new("rain_is_worked_out", "rain is worked out", Datum::Word(form.to_owned()), ""),
+        count("wind_primitives", "primitives of the wind", wind.parts().len()),
+        Entry::new("gusts", "gusts", or_none(wind.gusts().is_some(), "everywhere at once"), ""),
+        Entry::new(
+            "turbulence",
+            "turbulence",
+            or_none(wind.turbulence().is_some(), "carried by the wind"),
+            "",
+        ),
+    ])
 }
 
 fn rain(input: &Input) -> Result<Vec<Entry>, Failure> {
