@@ -22,7 +22,7 @@ pub enum SimError {
         allowed: &'static str,
     },
     /// The drops do not fit into memory.
-    #[error("{drops} drops need {gib:.1} GiB; allowed: what this machine has (fewer drops need less)")]
+    #[error("{drops} drops need {gib:.1} GiB; allowed: up to 268435456 drops, and what this machine has")]
     Memory {
         /// How many.
         drops: u64,

@@ -21,6 +21,9 @@ const BINS_PER_OCTAVE: f64 = 20.0;
 /// The most drops that a word can number.
 pub(crate) const MOST_DROPS: u64 = 1 << 30;
 
+/// The most drops that are ever made: 8.5 GiB of them.
+pub(crate) const MOST_IN_MEMORY: u64 = 1 << 28;
+
 /// Dimensions of the random numbers.
 const COUNT: u32 = 8230;
 const SIZE: u32 = 8231;

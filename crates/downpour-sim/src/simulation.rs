@@ -21,7 +21,7 @@ use crate::collision::CollisionMap;
 use crate::field::{DropKind, FallingDrop, VisibleDrops};
 use crate::motion::{motion_diameter, motion_settled, motion_table, motion_table_entry, motion_table_speed};
 use crate::plan::Plan;
-use crate::population::{MOST_DROPS, Population, volume_of};
+use crate::population::{MOST_DROPS, MOST_IN_MEMORY, Population, volume_of};
 use crate::step::{StepCaught, StepDrop, StepEvent, StepFrame, StepWorld, step_shown};
 use crate::view::View;
 
@@ -125,7 +125,7 @@ pub struct SimulationOptions {
     pub volume: SimVolume,
     /// Same seed, same drops.
     pub seed: u64,
-    /// 1 to 2^30. A view leaves out drops that are small on the picture, other volumes small drops, to have no more.
+    /// 1 to 2^28. A view leaves out drops that are small on the picture, other volumes small drops, to have no more.
     pub most_drops: u32,
     /// How drops follow the wind.
     pub drag: Drag,
@@ -176,6 +176,9 @@ impl SimulationOptions {
             SimVolume::View | SimVolume::ImSung => {}
         }
         within("most drops", self.most_drops.into(), "", 1.0..=MOST_DROPS as f64, "1 to 2^30")?;
+        if u64::from(self.most_drops) > MOST_IN_MEMORY {
+            return Err(SimError::memory(self.most_drops.into()));
+        }
         let Bounce { share, restitution, grip, size, longest_s } = self.bounce;
         within("share of impacts that bounce", share.into(), "", 0.0..=1.0, "0 to 1")?;
         within("restitution", restitution.into(), "", 0.0..=1.0, "0 to 1")?;

@@ -40,6 +40,8 @@ shared_constants! {
         COLLISION_WALL: u32 = 2;
         /// Nearest hits of a ray that are kept while a texel is made.
         COLLISION_MAP_HITS: u32 = 16;
+        /// Surfaces of a ray sideways within which it has to leave something: one, and two for what stands in between.
+        COLLISION_MAP_LEAVES: u32 = 3;
         /// Where between two surfaces the rays start that ask whether the space is enclosed. Not the middle, where meshes have
         /// edges.
         COLLISION_MAP_BETWEEN: f32 = 0.4637;

@@ -12,8 +12,6 @@ struct CollisionMapHits {
     // Their places in the list of triangles.
     slots: array<u32, COLLISION_MAP_HITS>,
     count: u32,
-    // All surfaces met from behind less those met from the front.
-    left: i32,
     // The deepest one that faces the ray, -1 for none, and its place in the list.
     deepest: f32,
     deepest_slot: u32,
@@ -43,11 +41,12 @@ fn collision_map_between(above: u32, below: u32) -> u32 {
     return select(2u, 1u, above == COLLISION_MAP_FRONT && below == COLLISION_MAP_BACK);
 }
 
-// Everything on a ray.
-fn collision_map_walk(origin: vec3f, direction: vec3f) -> CollisionMapHits {
+// The first surfaces on a ray, `keep` at most. Only if that is all that there is room for, the deepest one is looked for as well.
+fn collision_map_walk(origin: vec3f, direction: vec3f, keep: u32) -> CollisionMapHits {
     let inverse = bvh_inverse(direction);
     var hits: CollisionMapHits;
     hits.deepest = -1.0;
+    var limit = BVH_FAR;
     var stack: array<u32, BVH_STACK>;
     var depth = 1u;
     // Each node is visited once at most, so this ends.
@@ -55,30 +54,37 @@ fn collision_map_walk(origin: vec3f, direction: vec3f) -> CollisionMapHits {
         depth -= 1u;
         let at = stack[depth];
         let node = bvh_nodes[at];
-        if bvh_enter(node, origin, inverse, BVH_FAR) >= BVH_FAR {
+        if bvh_enter(node, origin, inverse, limit) >= BVH_FAR {
             continue;
         }
         if node.count == 0u {
-            stack[depth] = node.link;
-            stack[depth + 1u] = at + 1u;
-            depth += 2u;
+            // The nearer child is taken first: what it holds may make the other needless.
+            let to_left = bvh_enter(bvh_nodes[at + 1u], origin, inverse, limit);
+            let to_right = bvh_enter(bvh_nodes[node.link], origin, inverse, limit);
+            let swap = to_right < to_left;
+            if max(to_left, to_right) < BVH_FAR {
+                stack[depth] = select(node.link, at + 1u, swap);
+                depth += 1u;
+            }
+            if min(to_left, to_right) < BVH_FAR {
+                stack[depth] = select(at + 1u, node.link, swap);
+                depth += 1u;
+            }
             continue;
         }
         for (var slot = node.link; slot < node.link + node.count; slot += 1u) {
             let triangle = bvh_triangles[slot];
             let distance = bvh_triangle(triangle, origin, direction).x;
-            if !(distance > 0.0 && distance < BVH_FAR) {
+            if !(distance > 0.0 && distance < limit) {
                 continue;
             }
-            let faces = collision_map_faces(triangle, direction);
-            hits.left += select(1, -1, faces);
-            if faces && distance > hits.deepest {
+            if distance > hits.deepest && collision_map_faces(triangle, direction) {
                 hits.deepest = distance;
                 hits.deepest_slot = slot;
             }
             // Insertion from the far end, which falls off when there is no room.
             var k = hits.count;
-            if k == COLLISION_MAP_HITS {
+            if k == keep {
                 k -= 1u;
                 if distance >= hits.depths[k] {
                     continue;
@@ -93,24 +99,34 @@ fn collision_map_walk(origin: vec3f, direction: vec3f) -> CollisionMapHits {
             }
             hits.depths[k] = distance;
             hits.slots[k] = slot;
+            if hits.count == keep && keep < COLLISION_MAP_HITS {
+                limit = hits.depths[keep - 1u];
+            }
         }
     }
     return hits;
 }
 
-// Whether a place is within something closed: three of four rays sideways leave more surfaces than they enter.
+// Whether a place is within something closed: two of three rays sideways soon leave more than they enter.
 fn collision_map_enclosed(map: CollisionMap, at: vec3f) -> bool {
     var votes = 0u;
-    for (var k = 0u; k < 4u; k += 1u) {
-        let axis = select(map.across, map.along, k >= 2u);
-        let hits = collision_map_walk(at, axis * select(1.0, -1.0, (k & 1u) == 1u));
-        votes += select(0u, 1u, hits.left > 0);
-        // Two that say no decide it.
-        if votes + 2u <= k + 1u {
-            return false;
+    for (var turn = 0u; turn < 3u; turn += 1u) {
+        let axis = select(map.across, map.along, turn == 1u);
+        let direction = axis * select(1.0, -1.0, turn == 2u);
+        let hits = collision_map_walk(at, direction, COLLISION_MAP_LEAVES);
+        var left = 0;
+        var leaves = 0u;
+        for (var k = 0u; k < hits.count; k += 1u) {
+            left += select(1, -1, collision_map_faces(bvh_triangles[hits.slots[k]], direction));
+            leaves |= select(0u, 1u, left > 0);
+        }
+        votes += leaves;
+        // The first two may be enough.
+        if turn == 1u && votes != 1u {
+            break;
         }
     }
-    return true;
+    return votes >= 2u;
 }
 
 // A texel with one more surface, deeper than those that it has. `stored` is how many were added before; when there is no room,
@@ -145,7 +161,7 @@ fn collision_map_texel(map: CollisionMap, cell: vec2u) -> CollisionTexel {
     }
     let place = (vec2f(cell) + 0.5) * map.edge;
     let origin = map.low + map.anchor + map.across * place.x + map.along * place.y;
-    let hits = collision_map_walk(origin, map.fall);
+    let hits = collision_map_walk(origin, map.fall, COLLISION_MAP_HITS);
     var stored = 0u;
     var next = 0u;
     // The surface whose other side is still to be found.

@@ -55,7 +55,8 @@ fn thin_water_is_right_at_every_wavelength() {
                     "{depth_m} m, wave of {wavelength} m, dt {dt}: {speed}, law {law}"
                 );
                 let told = Puddle::new(&options).expect("a puddle").speed_error(wavelength);
-                assert!((error - told).abs() < 6.0e-3, "{wavelength} m: {error}, told {told}");
+                // The law is fitted again for each step; what is told is for the usual one.
+                assert!((error - told).abs() < 8.0e-3, "{wavelength} m: {error}, told {told}");
             }
         }
     }

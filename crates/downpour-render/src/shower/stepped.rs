@@ -27,10 +27,13 @@ const APART_S: f64 = 10.0;
 const STEP_S: f64 = 1.0 / 60.0;
 
 /// Edge of a texel of the map of what stops drops, m, where the map is not too large for it.
-const TEXEL_M: f32 = 0.04;
+const TEXEL_M: f32 = 0.06;
 
 /// The most texels along an edge of it.
-const MOST_TEXELS: f32 = 768.0;
+const MOST_TEXELS: f32 = 512.0;
+
+/// Steps of the slope at which the map looks.
+const SLOPE_STEP: f32 = 0.125;
 
 /// The map looks at most so far from straight down: tan of the angle.
 const STEEPEST: f32 = 4.0;
@@ -238,8 +241,10 @@ impl Surroundings {
 fn slanted(wind: Vec3, speed: f32) -> Vec3 {
     let down = (speed - wind.y).max(0.1);
     let across = Vec3::new(wind.x, 0.0, wind.z);
-    let most = STEEPEST * down;
-    (across.clamp_length_max(most) - Vec3::Y * down).normalize()
+    // In steps, so that gusts do not ask for a new map each time: drops that fall otherwise than the map looks are stopped too.
+    let slope = (across / down).clamp_length_max(STEEPEST);
+    let snapped = (slope / SLOPE_STEP).round() * SLOPE_STEP;
+    (snapped - Vec3::Y).normalize()
 }
 
 /// A number that is the same for the same triangles.

@@ -4,7 +4,7 @@ use downpour_bvh::{BvhNode, BvhTriangle, bvh_enter, bvh_inverse, bvh_triangle};
 use downpour_shaders::bvh::{BVH_FAR, BVH_STACK};
 use downpour_shaders::sim::collision::{
     COLLISION_LAYERS, COLLISION_MAP_BACK, COLLISION_MAP_BETWEEN, COLLISION_MAP_FRONT, COLLISION_MAP_HITS,
-    COLLISION_NONE, COLLISION_SOLID,
+    COLLISION_MAP_LEAVES, COLLISION_NONE, COLLISION_SOLID,
 };
 use glam::{UVec2, Vec2, Vec3};
 
@@ -25,8 +25,6 @@ pub struct CollisionMapHits {
     pub slots: [u32; HITS],
     /// How many.
     pub count: usize,
-    /// All surfaces met from behind less those met from the front.
-    pub left: i32,
     /// The deepest one that faces the ray, -1 for none.
     pub deepest: f32,
     /// Its place in the list of triangles.
@@ -63,54 +61,59 @@ pub fn collision_map_between(above: u32, below: u32) -> u32 {
     if above == COLLISION_MAP_FRONT && below == COLLISION_MAP_BACK { 1 } else { 2 }
 }
 
-/// Everything on a ray.
+/// The first surfaces on a ray, `keep` at most. Only if that is all that there is room for, the deepest one is looked for as
+/// well.
 #[must_use]
 pub fn collision_map_walk(
     nodes: &[BvhNode],
     triangles: &[BvhTriangle],
     origin: Vec3,
     direction: Vec3,
+    keep: u32,
 ) -> CollisionMapHits {
     let (from, towards) = (origin.to_array(), direction.to_array());
     let inverse = bvh_inverse(towards);
-    let mut hits = CollisionMapHits {
-        depths: [0.0; HITS],
-        slots: [0; HITS],
-        count: 0,
-        left: 0,
-        deepest: -1.0,
-        deepest_slot: 0,
-    };
+    let keep = keep as usize;
+    let mut hits =
+        CollisionMapHits { depths: [0.0; HITS], slots: [0; HITS], count: 0, deepest: -1.0, deepest_slot: 0 };
+    let mut limit = BVH_FAR;
     let mut stack = [0u32; BVH_STACK as usize];
     let mut depth = 1;
     while depth > 0 {
         depth -= 1;
         let at = stack[depth];
         let node = &nodes[at as usize];
-        if bvh_enter(node, from, inverse, BVH_FAR) >= BVH_FAR {
+        if bvh_enter(node, from, inverse, limit) >= BVH_FAR {
             continue;
         }
         if node.count == 0 {
-            stack[depth] = node.link;
-            stack[depth + 1] = at + 1;
-            depth += 2;
+            // The nearer child is taken first: what it holds may make the other needless.
+            let to_left = bvh_enter(&nodes[at as usize + 1], from, inverse, limit);
+            let to_right = bvh_enter(&nodes[node.link as usize], from, inverse, limit);
+            let swap = to_right < to_left;
+            if to_left.max(to_right) < BVH_FAR {
+                stack[depth] = if swap { at + 1 } else { node.link };
+                depth += 1;
+            }
+            if to_left.min(to_right) < BVH_FAR {
+                stack[depth] = if swap { node.link } else { at + 1 };
+                depth += 1;
+            }
             continue;
         }
         for slot in node.link..node.link + node.count {
             let triangle = &triangles[slot as usize];
             let [distance, ..] = bvh_triangle(triangle, from, towards);
-            if !(distance > 0.0 && distance < BVH_FAR) {
+            if !(distance > 0.0 && distance < limit) {
                 continue;
             }
-            let faces = collision_map_faces(triangle, direction);
-            hits.left += if faces { -1 } else { 1 };
-            if faces && distance > hits.deepest {
+            if distance > hits.deepest && collision_map_faces(triangle, direction) {
                 hits.deepest = distance;
                 hits.deepest_slot = slot;
             }
             // Insertion from the far end, which falls off when there is no room.
             let mut k = hits.count;
-            if k == HITS {
+            if k == keep {
                 k -= 1;
                 if distance >= hits.depths[k] {
                     continue;
@@ -125,12 +128,15 @@ pub fn collision_map_walk(
             }
             hits.depths[k] = distance;
             hits.slots[k] = slot;
+            if hits.count == keep && keep < HITS {
+                limit = hits.depths[keep - 1];
+            }
         }
     }
     hits
 }
 
-/// Whether a place is within something closed: three of four rays sideways leave more surfaces than they enter.
+/// Whether a place is within something closed: two of three rays sideways soon leave more than they enter.
 #[must_use]
 pub fn collision_map_enclosed(
     map: &CollisionFrame,
@@ -139,16 +145,22 @@ pub fn collision_map_enclosed(
     at: Vec3,
 ) -> bool {
     let mut votes = 0;
-    for k in 0..4 {
-        let axis = Vec3::from(if k >= 2 { map.along } else { map.across });
-        let hits = collision_map_walk(nodes, triangles, at, axis * if k & 1 == 1 { -1.0 } else { 1.0 });
-        votes += u32::from(hits.left > 0);
-        // Two that say no decide it.
-        if votes + 2 <= k + 1 {
-            return false;
+    for turn in 0..3 {
+        let axis = Vec3::from(if turn == 1 { map.along } else { map.across });
+        let direction = axis * if turn == 2 { -1.0 } else { 1.0 };
+        let hits = collision_map_walk(nodes, triangles, at, direction, COLLISION_MAP_LEAVES);
+        let (mut left, mut leaves) = (0, false);
+        for &slot in &hits.slots[..hits.count] {
+            left += if collision_map_faces(&triangles[slot as usize], direction) { -1 } else { 1 };
+            leaves |= left > 0;
+        }
+        votes += u32::from(leaves);
+        // The first two may be enough.
+        if turn == 1 && votes != 1 {
+            break;
         }
     }
-    true
+    votes >= 2
 }
 
 /// A texel with one more surface, deeper than those that it has. `stored` is how many were added before; when there is no room,
@@ -194,7 +206,7 @@ pub fn collision_map_texel(
         + Vec3::from(map.anchor)
         + Vec3::from(map.across) * place.x
         + Vec3::from(map.along) * place.y;
-    let hits = collision_map_walk(nodes, triangles, origin, fall);
+    let hits = collision_map_walk(nodes, triangles, origin, fall, COLLISION_MAP_HITS);
     let mut stored = 0;
     let mut next = 0;
     // The surface whose other side is still to be found.
