@@ -2,6 +2,7 @@
 
 mod checks;
 mod driver;
+mod figures;
 mod goldens;
 mod masks;
 mod run;
@@ -18,6 +19,7 @@ cargo xtask masks [--check]   write assets/masks; with --check compare them with
 cargo xtask goldens [--bless] compare the golden images of tests/goldens; with --bless write them from the CPU twins
 cargo xtask shaders [FOLDER]  write the complete WGSL text of every kernel (default target/shaders)
 cargo xtask truth [OPTIONS]   hold `downpour specimen` against Mitsuba 3 (needs python3 and the network)
+cargo xtask figures [NAME]    make a paper's figures again, with our rain beside theirs; without a name list them
 cargo xtask bench             run every benchmark";
 
 fn main() -> ExitCode {
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
         ["shaders"] => shaders::write("target/shaders"),
         ["shaders", folder] => shaders::write(folder),
         ["truth", rest @ ..] => truth::run(rest),
+        ["figures", rest @ ..] => figures::run(rest),
         ["bench"] => checks::bench(),
         [] => {
             println!("{USAGE}");

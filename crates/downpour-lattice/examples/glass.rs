@@ -61,7 +61,8 @@ fn made_up() -> RgbImage {
         let colour = if c < 0.6 { [255, 205, 130] } else { [235, 70, 50] };
         for j in (y - r) as u32..(y + r) as u32 {
             for i in (x - r).max(0.0) as u32..((x + r) as u32).min(width) {
-                if (i as f32 - x).powi(2) + (j as f32 - y).powi(2) < r * r {
+                let (dx, dy) = (i as f32 - x, j as f32 - y);
+                if dx * dx + dy * dy < r * r {
                     street.put_pixel(i, j.min(height - 1), Rgb(colour));
                 }
             }
@@ -87,7 +88,7 @@ fn look(glass: &Glass, photo: &RgbImage, blurred: &RgbImage) -> RgbImage {
         let Rgb(seen) = *photo.get_pixel(at(x, slope.x, width), at(y, slope.y, height));
         let Rgb(behind) = *blurred.get_pixel(x, y);
         // Steep rims reflect the dark room.
-        let through = 1.0 - 0.9 * (1.0 - normal.z).powi(2) * 4.0;
+        let through = 1.0 - 3.6 * (1.0 - normal.z) * (1.0 - normal.z);
         let cover = (deep / 25.0e-6).min(1.0);
         Rgb(std::array::from_fn(|c| {
             let drop = f32::from(seen[c]) * through.max(0.25);

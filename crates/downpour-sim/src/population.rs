@@ -199,7 +199,7 @@ impl Population {
                 let local = (0..TRIES)
                     .map(|attempt| volume_in_sphere(draw(attempt).0.as_vec3(), far))
                     .find(|&local| volume_in_area(&seen, local, far));
-                on_axes(local.map_or(DVec3::Z * 0.5 * view.far, |local| local.as_dvec3())).as_vec3()
+                on_axes(local.map_or(DVec3::Z * 0.5 * view.far, Vec3::as_dvec3)).as_vec3()
             }
             SimVolume::Tariq { size_m } => (eye + (draw(0).0 - 0.5) * DVec3::from(size_m)).as_vec3(),
             SimVolume::Cylinder { base_m, radius_m, height_m } => {

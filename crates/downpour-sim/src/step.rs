@@ -299,25 +299,26 @@ impl StepWorld<'_> {
         // What stands in its way.
         let mut event = None;
         if let Some(map) = self.map {
-            if kind != STEP_HIDDEN && frame.elsewhere == 0 {
-                if let Some(hit) = map.find(from_place, place) {
-                    let at = from_place + displacement * hit.share;
-                    let how = hit.kind - 1 + if kind == STEP_BOUNCED { 2 } else { 0 };
-                    event = Some(StepEvent {
-                        place: at.to_array(),
-                        diameter,
-                        velocity: velocity.to_array(),
-                        drop: drop | how << STEP_EVENT_KIND,
-                    });
-                    let [chance, ..] = rng_draw(frame.seed, drop, frame.step, STEP_CHANCE).map(rng_unit);
-                    if kind == STEP_FALLING && hit.kind == COLLISION_SURFACE && chance < frame.bounce {
-                        kind = STEP_BOUNCED;
-                        velocity = motion_bounce(velocity, hit.normal, frame.restitution, frame.grip);
-                        place = at + hit.normal * STEP_CLEAR;
-                        seconds = 0.0;
-                    } else {
-                        kind = STEP_HIDDEN;
-                    }
+            if kind != STEP_HIDDEN
+                && frame.elsewhere == 0
+                && let Some(hit) = map.find(from_place, place)
+            {
+                let at = from_place + displacement * hit.share;
+                let how = hit.kind - 1 + if kind == STEP_BOUNCED { 2 } else { 0 };
+                event = Some(StepEvent {
+                    place: at.to_array(),
+                    diameter,
+                    velocity: velocity.to_array(),
+                    drop: drop | how << STEP_EVENT_KIND,
+                });
+                let [chance, ..] = rng_draw(frame.seed, drop, frame.step, STEP_CHANCE).map(rng_unit);
+                if kind == STEP_FALLING && hit.kind == COLLISION_SURFACE && chance < frame.bounce {
+                    kind = STEP_BOUNCED;
+                    velocity = motion_bounce(velocity, hit.normal, frame.restitution, frame.grip);
+                    place = at + hit.normal * STEP_CLEAR;
+                    seconds = 0.0;
+                } else {
+                    kind = STEP_HIDDEN;
                 }
             }
             if kind == STEP_BOUNCED && seconds > frame.bounced_time {

@@ -9,7 +9,7 @@
 use bytemuck::{Pod, Zeroable};
 use downpour_math::ops;
 use downpour_math::ops::f64 as ops64;
-use downpour_shaders::sim::step::{STEP_BACKS, VOLUME_HALF_TURN, VOLUME_TURN};
+use downpour_shaders::sim::step::{STEP_BACKS, VOLUME_TURN};
 use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
 
 use crate::view::View;
@@ -147,7 +147,7 @@ pub fn volume_in_sphere(random: Vec3, range: f32) -> Vec3 {
     let radius = 0.5 * range;
     let along = 2.0 * random.y - 1.0;
     let across = (1.0 - along * along).max(0.0).sqrt();
-    let angle = VOLUME_TURN * random.x - VOLUME_HALF_TURN;
+    let angle = VOLUME_TURN * (random.x - 0.5);
     let distance = radius * (2.0 * random.z - 1.0);
     Vec3::new(
         distance * across * ops::cos(angle),
@@ -159,7 +159,7 @@ pub fn volume_in_sphere(random: Vec3, range: f32) -> Vec3 {
 /// A place on a disc of radius 1, from two random numbers of [0, 1).
 #[must_use]
 pub fn volume_on_disc(random: Vec2) -> Vec2 {
-    let angle = VOLUME_TURN * random.x - VOLUME_HALF_TURN;
+    let angle = VOLUME_TURN * (random.x - 0.5);
     random.y.sqrt() * Vec2::new(ops::cos(angle), ops::sin(angle))
 }
 

@@ -9,22 +9,22 @@ use downpour_wind::{Gusts, Keyed, UniformWind, Wind, WindPart};
 use glam::DVec3;
 
 fn rain(rate_mm_h: f64) -> RainField {
-    let law = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h).unwrap();
-    RainField::new(&law, 3).unwrap()
+    let law = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h).expect("in range");
+    RainField::new(&law, 3).expect("in range")
 }
 
 fn steady(velocity: DVec3) -> UniformWind {
     if velocity == DVec3::ZERO {
         return Wind::default().air().clone();
     }
-    let part = WindPart::uniform(&Keyed::from(velocity.length()), &velocity.into()).unwrap();
-    Wind::new(vec![part], None, None).unwrap().uniform().unwrap()
+    let part = WindPart::uniform(&Keyed::from(velocity.length()), &velocity.into()).expect("in range");
+    Wind::new(vec![part], None, None).expect("in range").uniform().expect("in range")
 }
 
 fn gusty() -> UniformWind {
-    let speed = Keyed::new(vec![(0.0, 3.0), (4.0, 9.0), (20.0, 6.0)]).unwrap();
-    let part = WindPart::uniform(&speed, &DVec3::new(1.0, 0.0, 0.4).into()).unwrap();
-    Wind::new(vec![part], Some(Gusts::default()), None).unwrap().uniform().unwrap()
+    let speed = Keyed::new(vec![(0.0, 3.0), (4.0, 9.0), (20.0, 6.0)]).expect("in range");
+    let part = WindPart::uniform(&speed, &DVec3::new(1.0, 0.0, 0.4).into()).expect("in range");
+    Wind::new(vec![part], Some(Gusts::default()), None).expect("in range").uniform().expect("in range")
 }
 
 fn by_id(mut drops: Vec<FallingDrop>) -> Vec<FallingDrop> {
@@ -38,8 +38,8 @@ fn drops_move_at_their_velocity() {
     let rain = rain(20.0).with_wind(gusty());
     let (low, high) = (DVec3::new(-3.0, 0.0, -3.0), DVec3::new(3.0, 4.0, 3.0));
     for time in [2.0, 9.0, 5000.0] {
-        let now = by_id(rain.in_box(low, high, time).unwrap());
-        let then = by_id(rain.in_box(low - 0.1, high + 0.1, time + 1.0e-3).unwrap());
+        let now = by_id(rain.in_box(low, high, time).expect("in range"));
+        let then = by_id(rain.in_box(low - 0.1, high + 0.1, time + 1.0e-3).expect("in range"));
         assert!(now.len() > 5000);
         let mut slanted = 0;
         for drop in &now {
@@ -59,7 +59,7 @@ fn wind_keeps_the_rain() {
     let rain = rain(20.0).with_wind(steady(DVec3::new(8.0, 0.0, -3.0)));
     let size = DVec3::new(8.0, 5.0, 8.0);
     for (low, time) in [(DVec3::ZERO, 0.0), (DVec3::new(70.0, 3.0, -9.0), 40.0), (DVec3::ZERO, 1.0e5)] {
-        let drops = rain.in_box(low, low + size, time).unwrap();
+        let drops = rain.in_box(low, low + size, time).expect("in range");
         let expected = rain.number_density() * size.element_product();
         assert!(
             (drops.len() as f64 - expected).abs() < 5.0 * expected.sqrt(),
@@ -75,7 +75,7 @@ fn wind_keeps_the_rain() {
         let chi: f64 = counts.iter().map(|n| (n - mean) * (n - mean) / mean).sum();
         // 63 degrees of freedom; 5 standard deviations.
         assert!(chi < 63.0 + 5.0 * (126.0f64).sqrt(), "{chi}");
-        let rate = rain.measured_rate_mm_h(low, time).unwrap();
+        let rate = rain.measured_rate_mm_h(low, time).expect("in range");
         assert!((rate - 20.0).abs() < 1.0, "{rate}");
     }
 }
@@ -85,8 +85,8 @@ fn wind_keeps_the_rain() {
 fn a_camera_sees_the_drops_of_the_box() {
     let rain = rain(20.0).with_wind(gusty());
     let view = View { eye: DVec3::new(3.0, 2.0, 1.0), least_pixels: 0.5, far: 3.0, ..View::default() };
-    let seen = by_id(rain.visible(&view, 12.3).unwrap().drops);
-    let all = rain.in_box(view.eye - 3.1, view.eye + 3.1, 12.3).unwrap();
+    let seen = by_id(rain.visible(&view, 12.3).expect("in range").drops);
+    let all = rain.in_box(view.eye - 3.1, view.eye + 3.1, 12.3).expect("in range");
     let expected = by_id(
         all.into_iter()
             .filter(|drop| {
@@ -118,8 +118,8 @@ fn below_the_roof(wind: UniformWind, time: f64) -> [Vec<FallingDrop>; 2] {
     let bvh = roof();
     let obstacles = Obstacles { nodes: &bvh.nodes, triangles: &bvh.triangles, origin: DVec3::ZERO };
     let view = View { eye: DVec3::new(0.0, 1.5, 3.0), far: 12.0, ..View::default() };
-    let all = rain.visible(&view, time).unwrap().drops;
-    let open = rain.visible_among(&obstacles, &view, time).unwrap().drops;
+    let all = rain.visible(&view, time).expect("in range").drops;
+    let open = rain.visible_among(&obstacles, &view, time).expect("in range").drops;
     [all, open]
 }
 

@@ -10,7 +10,7 @@ use downpour_wind::{
 use glam::{DVec3, Vec3};
 
 fn rain(rate_mm_h: f64) -> DropSizeDistribution {
-    DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h).unwrap()
+    DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h).expect("in range")
 }
 
 fn moment<'a>(view: &'a View, wind: Vec3) -> Moment<'a> {
@@ -74,12 +74,12 @@ fn a_view_stays_uniform_however_the_camera_moves() {
     let options = SimulationOptions { most_drops: 60_000, ..SimulationOptions::default() };
     let wind = Vec3::new(4.0, 0.0, 2.0);
     let first = walk(0);
-    let mut simulation = Simulation::new(&rain(25.0), &options, &moment(&first, wind)).unwrap();
+    let mut simulation = Simulation::new(&rain(25.0), &options, &moment(&first, wind)).expect("in range");
     let all = simulation.drops().len();
     assert!(excess(&parts_of_the_view(&simulation, &first)) < 4.0);
     for step in 1..=90 {
         let view = walk(step);
-        simulation.advance(1.0 / 60.0, &moment(&view, wind)).unwrap();
+        simulation.advance(1.0 / 60.0, &moment(&view, wind)).expect("in range");
         if step % 15 == 0 {
             let found = excess(&parts_of_the_view(&simulation, &view));
             assert!(found < 4.0, "step {step}: {found} standard deviations");
@@ -89,7 +89,7 @@ fn a_view_stays_uniform_however_the_camera_moves() {
     // And when nothing but the rain moves.
     let view = walk(90);
     for _ in 0..60 {
-        simulation.advance(1.0 / 60.0, &moment(&view, wind)).unwrap();
+        simulation.advance(1.0 / 60.0, &moment(&view, wind)).expect("in range");
     }
     let found = excess(&parts_of_the_view(&simulation, &view));
     assert!(found < 4.0, "at rest: {found} standard deviations");
@@ -101,7 +101,7 @@ fn the_sampling_of_im_and_sung_is_not_uniform() {
     let view = looking(DVec3::new(0.0, 2.0, 0.0), 0.0, 0.0);
     let options =
         SimulationOptions { volume: SimVolume::ImSung, most_drops: 30_000, ..SimulationOptions::default() };
-    let simulation = Simulation::new(&rain(25.0), &options, &moment(&view, Vec3::ZERO)).unwrap();
+    let simulation = Simulation::new(&rain(25.0), &options, &moment(&view, Vec3::ZERO)).expect("in range");
     let middle = view.eye + view.forward * 4.0;
     let near = simulation
         .drops()
@@ -121,11 +121,11 @@ fn a_box_stays_uniform_however_the_camera_moves() {
         ..SimulationOptions::default()
     };
     let wind = Vec3::new(-6.0, 0.0, 3.0);
-    let mut simulation = Simulation::new(&rain(25.0), &options, &moment(&walk(0), wind)).unwrap();
+    let mut simulation = Simulation::new(&rain(25.0), &options, &moment(&walk(0), wind)).expect("in range");
     let all = simulation.drops().len();
     for step in 1..=90 {
         let view = walk(step);
-        simulation.advance(1.0 / 60.0, &moment(&view, wind)).unwrap();
+        simulation.advance(1.0 / 60.0, &moment(&view, wind)).expect("in range");
         if step % 15 == 0 {
             let centre = view.eye + view.forward * size / 3.0;
             let mut counts = vec![0; 216];
@@ -166,13 +166,13 @@ fn the_gauge_reads_what_was_asked_for() {
             ..SimulationOptions::default()
         };
         let now = moment(&view, Vec3::new(5.0, 0.0, -3.0));
-        let mut simulation = Simulation::new(&rain(rate), &options, &now).unwrap();
+        let mut simulation = Simulation::new(&rain(rate), &options, &now).expect("in range");
         let state = simulation.measured_rate_mm_h();
         assert!((state - rate).abs() < 0.02 * rate, "{rate}: the drops make {state}");
         let mut caught = downpour_sim::step::StepCaught::default();
         let steps = 300;
         for _ in 0..steps {
-            let happened = simulation.advance(10.0 / f64::from(steps), &now).unwrap();
+            let happened = simulation.advance(10.0 / f64::from(steps), &now).expect("in range");
             caught.drops += happened.caught.drops;
             caught.volume += happened.caught.volume;
         }
@@ -186,7 +186,7 @@ fn the_gauge_reads_what_was_asked_for() {
 }
 
 fn vortex() -> WindField {
-    let grid = WindGrid::new(Vec3::splat(-20.0), Vec3::splat(20.0), [32; 3]).unwrap();
+    let grid = WindGrid::new(Vec3::splat(-20.0), Vec3::splat(20.0), [32; 3]).expect("in range");
     let wind = [
         WindPrimitive::Uniform(WindUniform { speed: 3.0, direction: Vec3::X }),
         WindPrimitive::Vortex(WindSingularity {
@@ -198,7 +198,7 @@ fn vortex() -> WindField {
             core: WindCore::Rosenhead,
         }),
     ];
-    WindField::new(&grid, &wind, &WindMask::open(&grid)).unwrap()
+    WindField::new(&grid, &wind, &WindMask::open(&grid)).expect("in range")
 }
 
 /// In a vortex drops come to the same places at 30, 60 and 240 steps a second; with the papers' average they do not.
@@ -214,9 +214,9 @@ fn the_frame_rate_does_not_matter() {
             ..SimulationOptions::default()
         };
         let now = Moment { field: Some(&field), ..moment(&view, Vec3::ZERO) };
-        let mut simulation = Simulation::new(&rain(10.0), &options, &now).unwrap();
+        let mut simulation = Simulation::new(&rain(10.0), &options, &now).expect("in range");
         for _ in 0..per_second / 2 {
-            simulation.advance(1.0 / f64::from(per_second), &now).unwrap();
+            simulation.advance(1.0 / f64::from(per_second), &now).expect("in range");
         }
         simulation.drops().iter().map(|drop| Vec3::from(drop.place)).collect::<Vec<_>>()
     };
@@ -248,11 +248,11 @@ fn far_from_the_origin() {
         let origin = |step: u32| if far == DVec3::ZERO { far } else { at(step).eye.round() };
         let first = at(0);
         let start = Moment { origin: origin(0), ..moment(&first, Vec3::X) };
-        let mut simulation = Simulation::new(&rain(25.0), &options, &start).unwrap();
+        let mut simulation = Simulation::new(&rain(25.0), &options, &start).expect("in range");
         for step in 1..=60 {
             let view = at(step);
             let now = Moment { origin: origin(step), ..moment(&view, Vec3::X) };
-            simulation.advance(1.0 / 60.0, &now).unwrap();
+            simulation.advance(1.0 / 60.0, &now).expect("in range");
         }
         let offset = origin(60) - far;
         simulation.drops().iter().map(|d| Vec3::from(d.place).as_dvec3() + offset).collect::<Vec<_>>()
@@ -267,11 +267,12 @@ fn far_from_the_origin() {
 fn drops_of_a_view_are_on_the_screen() {
     let share = |volume: SimVolume| {
         let options = SimulationOptions { volume, most_drops: 40_000, ..SimulationOptions::default() };
-        let mut simulation = Simulation::new(&rain(25.0), &options, &moment(&walk(0), Vec3::X)).unwrap();
+        let mut simulation =
+            Simulation::new(&rain(25.0), &options, &moment(&walk(0), Vec3::X)).expect("in range");
         let mut shares = Vec::new();
         for step in 1..20 {
             let view = walk(step);
-            simulation.advance(1.0 / 60.0, &moment(&view, Vec3::X)).unwrap();
+            simulation.advance(1.0 / 60.0, &moment(&view, Vec3::X)).expect("in range");
             let seen = simulation.visible(&View { near: 1.0e-3, least_pixels: 0.0, ..view });
             shares.push(seen.drops.len() as f64 / simulation.drops().len() as f64);
         }
@@ -284,18 +285,18 @@ fn drops_of_a_view_are_on_the_screen() {
 #[test]
 fn the_same_bits_for_any_number_of_threads() {
     let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("in range");
         pool.install(|| {
             let options = SimulationOptions { most_drops: 50_000, ..SimulationOptions::default() };
             let field = vortex();
             let now = walk(0);
             let start = Moment { field: Some(&field), ..moment(&now, Vec3::ZERO) };
-            let mut simulation = Simulation::new(&rain(25.0), &options, &start).unwrap();
+            let mut simulation = Simulation::new(&rain(25.0), &options, &start).expect("in range");
             for step in 1..10 {
                 let view = walk(step);
                 simulation
                     .advance(1.0 / 60.0, &Moment { field: Some(&field), ..moment(&view, Vec3::ZERO) })
-                    .unwrap();
+                    .expect("in range");
             }
             (simulation.drops().to_vec(), simulation.measured_rate_mm_h())
         })
@@ -324,7 +325,7 @@ fn what_is_out_of_range_is_refused() {
     assert!(made(SimulationOptions { most_drops: u32::MAX, ..SimulationOptions::default() }).is_err());
     let mut simulation =
         Simulation::new(&rain(10.0), &SimulationOptions { most_drops: 100, ..of(SimVolume::View) }, &now)
-            .unwrap();
+            .expect("in range");
     let before = simulation.drops().to_vec();
     for time in [0.0, -1.0, 10.0, f64::NAN, 1.0e-9] {
         let error = simulation.advance(time, &now).unwrap_err();
@@ -340,8 +341,8 @@ fn what_is_out_of_range_is_refused() {
 fn dry() {
     let view = View::default();
     let now = moment(&view, Vec3::ZERO);
-    let mut simulation = Simulation::new(&rain(0.0), &SimulationOptions::default(), &now).unwrap();
-    simulation.advance(0.1, &now).unwrap();
+    let mut simulation = Simulation::new(&rain(0.0), &SimulationOptions::default(), &now).expect("in range");
+    simulation.advance(0.1, &now).expect("in range");
     assert_eq!((simulation.drops().len(), simulation.measured_rate_mm_h()), (0, 0.0));
 }
 

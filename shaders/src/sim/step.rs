@@ -32,8 +32,6 @@ shared_constants! {
     VOLUME_CONSTANTS at "sim/volume_constants" {
         /// 2 pi.
         VOLUME_TURN: f32 = 6.2831855;
-        /// pi.
-        VOLUME_HALF_TURN: f32 = 3.1415927;
     }
 }
 

@@ -67,13 +67,13 @@ fn volume_in_sphere(random: vec3f, range: f32) -> vec3f {
     let radius = 0.5 * range;
     let along = 2.0 * random.y - 1.0;
     let across = sqrt(max(1.0 - along * along, 0.0));
-    let angle = VOLUME_TURN * random.x - VOLUME_HALF_TURN;
+    let angle = VOLUME_TURN * (random.x - 0.5);
     let distance = radius * (2.0 * random.z - 1.0);
     return vec3f(distance * across * cos(angle), distance * across * sin(angle), radius + distance * along);
 }
 
 // A place on a disc of radius 1, from two random numbers of [0, 1).
 fn volume_on_disc(random: vec2f) -> vec2f {
-    let angle = VOLUME_TURN * random.x - VOLUME_HALF_TURN;
+    let angle = VOLUME_TURN * (random.x - 0.5);
     return sqrt(random.y) * vec2f(cos(angle), sin(angle));
 }

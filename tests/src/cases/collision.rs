@@ -339,7 +339,7 @@ fn map_case(gpu: &Gpu, angle: f32) -> Result<Run, GpuError> {
     let triangles = gpu.storage_buffer("bvh triangles", &scene.triangles)?;
     let [width, height] = map.frame().size;
     let there = GpuCollisionMap::new(gpu, [width, height])?;
-    let poison = vec![POISON; map.texels().len() * size_of::<CollisionTexel>() / 4];
+    let poison = vec![POISON; size_of_val(map.texels()) / 4];
     gpu.queue().write_buffer(there.texels(), 0, bytemuck::cast_slice(&poison));
     there.update(gpu, map.frame(), &nodes, &triangles)?;
     let made = there.read(gpu)?;

@@ -29,7 +29,7 @@ fn link_words(random: [u32; 4]) -> Vec<u32> {
 
 /// Weights of the membrane or of real water.
 fn weight_words(random: [u32; 4]) -> Vec<u32> {
-    let weights: [f32; 3] = if random[0] % 2 == 0 { [4.0, 1.0, 0.0] } else { [20.0, 4.0, 1.0] };
+    let weights: [f32; 3] = if random[0].is_multiple_of(2) { [4.0, 1.0, 0.0] } else { [20.0, 4.0, 1.0] };
     weights.words()
 }
 
@@ -159,7 +159,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "puddle_state_float",
             &PUDDLE_STATE,
-            &[Made(|random| vec![random[0] % 0x7c00 | (random[1] & 0x8000)])],
+            &[Made(|random| vec![(random[0] % 0x7c00) | (random[1] & 0x8000)])],
             Tol::exact("16 bits widen exactly"),
             |a| puddle_state_float(a.u32()).words(),
         ),

@@ -7,6 +7,7 @@
 //! stable on open water is stable everywhere.
 
 use downpour_math::ops::ops_is_finite;
+use downpour_math::real::Real;
 use downpour_shaders::lattice::puddle::{
     PUDDLE_HALF_SCALE, PUDDLE_LINK_EAST, PUDDLE_LINK_NORTH, PUDDLE_LINK_NORTH_EAST, PUDDLE_LINK_NORTH_WEST,
     PUDDLE_LINK_SOUTH, PUDDLE_LINK_SOUTH_EAST, PUDDLE_LINK_SOUTH_WEST, PUDDLE_LINK_WEST, PUDDLE_SMALLEST,
@@ -98,7 +99,7 @@ pub(crate) fn linked(north: [f32; 3], here: [f32; 3], south: [f32; 3], links: u3
 
 /// The weighted sum over the neighbours of one cell. `north`, `here` and `south` are three values each, west to east.
 #[inline(always)]
-pub(crate) fn laplacian(north: [f32; 3], here: [f32; 3], south: [f32; 3], weights: [f32; 3]) -> f32 {
+pub(crate) fn laplacian<R: Real>(north: [R; 3], here: [R; 3], south: [R; 3], weights: [R; 3]) -> R {
     let straight = (north[1] + south[1]) + (here[0] + here[2]);
     let diagonal = (north[0] + north[2]) + (south[0] + south[2]);
     weights[0] * here[1] - (weights[1] * straight + weights[2] * diagonal)
@@ -136,7 +137,7 @@ pub fn puddle_laplacian(
 /// The next sum of Clenshaw's recurrence.
 #[inline(always)]
 #[must_use]
-pub fn puddle_recur(wave: f32, sum: f32, now: f32, before: f32) -> f32 {
+pub fn puddle_recur<R: Real>(wave: R, sum: R, now: R, before: R) -> R {
     (wave + sum) - (now + before)
 }
 

@@ -4,10 +4,12 @@
 //! part is written to the other copy of the state. Each cell is computed by the same operations whatever tile it is in,
 //! so the result has the same bits for any number of threads, rows per band and steps per sweep.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use downpour_math::ops::ops_is_finite;
-use downpour_math::real::{Simd, WithLanes, with_widest_lanes};
+use downpour_math::real::{Lanes, Real, Simd, WithLanes, with_widest_lanes};
+use downpour_shaders::lattice::puddle::PUDDLE_SMALLEST;
 use rayon::prelude::*;
 
 use super::lattice::{
@@ -59,9 +61,9 @@ pub(crate) fn sweep(grid: &PuddleGrid, links: &Links, from: &State, to: &mut Sta
 #[derive(Debug, Default)]
 struct Tile {
     /// Cells that are written, as columns and rows.
-    inner: [std::ops::Range<usize>; 2],
+    inner: [Range<usize>; 2],
     /// Cells that are read.
-    outer: [std::ops::Range<usize>; 2],
+    outer: [Range<usize>; 2],
     /// Cells of the lattice.
     size: [usize; 2],
     halo: usize,
@@ -72,7 +74,7 @@ struct Tile {
 }
 
 impl Tile {
-    fn place(&mut self, grid: &PuddleGrid, links: &Links, inner: [std::ops::Range<usize>; 2]) {
+    fn place(&mut self, grid: &PuddleGrid, links: &Links, inner: [Range<usize>; 2]) {
         self.halo = (grid.degree * grid.steps) as usize;
         self.size = links.size;
         self.inner = inner;
@@ -85,9 +87,9 @@ impl Tile {
     }
 
     /// The inner cells and those within `cells` of them.
-    fn reach(&self, cells: usize) -> [std::ops::Range<usize>; 2] {
+    fn reach(&self, cells: usize) -> [Range<usize>; 2] {
         [0, 1].map(|axis| {
-            let range: &std::ops::Range<usize> = &self.inner[axis];
+            let range: &Range<usize> = &self.inner[axis];
             range.start.saturating_sub(cells)..(range.end + cells).min(self.size[axis])
         })
     }
@@ -132,58 +134,70 @@ impl WithLanes for Advance<'_> {
     type Output = u64;
 
     #[inline(always)]
-    fn run<S: Simd>(self, _simd: S) -> u64 {
+    fn run<S: Simd>(self, simd: S) -> u64 {
         let Self { tile, grid, links, keep } = self;
-        let mut reset = 0;
-        let mut left = tile.halo;
-        for _ in 0..grid.steps {
-            left = if grid.weights[2] == 0.0 {
-                argument::<false>(tile, grid, links, left)
-            } else {
-                argument::<true>(tile, grid, links, left)
-            };
-            left -= 1;
-            let [columns, rows] = tile.reach(left);
-            // Cells of the halo are reset as well, but each is counted where it is written.
-            let [inner, inner_rows] = tile.inner.clone();
-            for y in rows {
-                for part in [columns.start..inner.start, inner.clone(), inner.end..columns.end] {
-                    let count = if grid.weights[2] == 0.0 {
-                        kick_row::<false>(tile, grid, links, keep, &part, y)
-                    } else {
-                        kick_row::<true>(tile, grid, links, keep, &part, y)
-                    };
-                    if inner_rows.contains(&y) && part == inner {
-                        reset += count;
-                    }
+        if grid.weights[2] == 0.0 {
+            advance::<S, false>(simd, tile, grid, links, keep)
+        } else {
+            advance::<S, true>(simd, tile, grid, links, keep)
+        }
+    }
+}
+
+#[inline(always)]
+fn advance<S: Simd, const DIAGONAL: bool>(
+    simd: S,
+    tile: &mut Tile,
+    grid: &PuddleGrid,
+    links: &Links,
+    keep: &[Vec<f32>; 2],
+) -> u64 {
+    let mut reset = 0;
+    let mut left = tile.halo;
+    for _ in 0..grid.steps {
+        left = argument::<S, DIAGONAL>(simd, tile, grid, links, left) - 1;
+        let [columns, rows] = tile.reach(left);
+        // Cells of the halo are reset as well, but each is counted where it is written.
+        let [inner, inner_rows] = tile.inner.clone();
+        for y in rows {
+            for part in [columns.start..inner.start, inner.clone(), inner.end..columns.end] {
+                let count = kick_row::<S, DIAGONAL>(simd, tile, grid, links, keep, &part, y);
+                if inner_rows.contains(&y) && part == inner {
+                    reset += count;
                 }
             }
         }
-        reset
     }
+    reset
 }
 
 /// Leaves in `now` the argument of the last weighted sum. Gives how many cells of the halo are still good.
 #[inline(always)]
-fn argument<const DIAGONAL: bool>(tile: &mut Tile, grid: &PuddleGrid, links: &Links, halo: usize) -> usize {
+fn argument<S: Simd, const DIAGONAL: bool>(
+    simd: S,
+    tile: &mut Tile,
+    grid: &PuddleGrid,
+    links: &Links,
+    halo: usize,
+) -> usize {
     let coefficient = |j: u32| grid.coefficients[(j / 4) as usize % 4][(j % 4) as usize];
     let mut left = halo;
     let [columns, rows] = tile.reach(left);
-    let top = coefficient(grid.degree - 1);
-    let plain = grid.degree == 1;
+    let top = Lanes::splat(simd, coefficient(grid.degree - 1));
+    let viscosity = Lanes::splat(simd, grid.viscosity);
+    let zero = Lanes::splat(simd, 0.0);
+    let n = columns.len();
     for y in rows {
-        let range = tile.row(y) + columns.start - tile.outer[0].start..;
-        let (h, v) = (&tile.heights[range.clone()], &tile.velocities[range.clone()]);
-        let (now, before) = (&mut tile.now[range.clone()], &mut tile.before[range]);
-        let n = columns.len();
-        if plain {
-            for ((now, h), v) in now[..n].iter_mut().zip(&h[..n]).zip(&v[..n]) {
-                *now = h + grid.viscosity * v;
-            }
-        } else {
-            for ((now, before), h) in now[..n].iter_mut().zip(&mut before[..n]).zip(&h[..n]) {
-                *now = top * h;
-                *before = 0.0;
+        let at = tile.row(y) + columns.start - tile.outer[0].start;
+        let (h, v) = (&tile.heights[at..at + n], &tile.velocities[at..at + n]);
+        let (now, before) = (&mut tile.now[at..at + n], &mut tile.before[at..at + n]);
+        for part in parts::<S>(n) {
+            let height = Lanes::load(simd, &h[part.clone()]);
+            if grid.degree == 1 {
+                (height + viscosity * Lanes::load(simd, &v[part.clone()])).store(&mut now[part]);
+            } else {
+                (top * height).store(&mut now[part.clone()]);
+                zero.store(&mut before[part]);
             }
         }
     }
@@ -191,29 +205,73 @@ fn argument<const DIAGONAL: bool>(tile: &mut Tile, grid: &PuddleGrid, links: &Li
         left -= 1;
         let [columns, rows] = tile.reach(left);
         for y in rows {
-            recur_row::<DIAGONAL>(tile, grid, links, &columns, y, coefficient(j), j == 0);
+            recur_row::<S, DIAGONAL>(simd, tile, grid, links, &columns, y, coefficient(j), j == 0);
         }
         std::mem::swap(&mut tile.now, &mut tile.before);
     }
     left
 }
 
-/// One row of Clenshaw's recurrence, into `before`.
+/// A row in parts as wide as the machine's vectors.
 #[inline(always)]
-fn recur_row<const DIAGONAL: bool>(
+fn parts<S: Simd>(n: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..n).step_by(Lanes::<S>::COUNT).map(move |i| i..n.min(i + Lanes::<S>::COUNT))
+}
+
+/// Three rows of the argument, from one cell before a run to one behind it.
+#[derive(Clone, Copy)]
+struct Rows<'a>([&'a [f32]; 3]);
+
+impl<'a> Rows<'a> {
+    #[inline(always)]
+    fn new(now: &'a [f32], at: usize, n: usize, stride: usize) -> Self {
+        Self([at - stride, at, at + stride].map(|at| &now[at - 1..at + n + 1]))
+    }
+
+    /// The weighted sums of a part of the run, all of whose cells are linked.
+    #[inline(always)]
+    fn sums<S: Simd, const DIAGONAL: bool>(
+        self,
+        simd: S,
+        part: &Range<usize>,
+        weights: [f32; 3],
+    ) -> [Lanes<S>; 2] {
+        let zero = Lanes::splat(simd, 0.0);
+        let load =
+            |row: usize, shift: usize| Lanes::load(simd, &self.0[row][part.start + shift..part.end + shift]);
+        // The weight of the diagonal is 0 for a membrane.
+        let corner = |row, shift| if DIAGONAL { load(row, shift) } else { zero };
+        let here = [load(1, 0), load(1, 1), load(1, 2)];
+        let north = [corner(0, 0), load(0, 1), corner(0, 2)];
+        let south = [corner(2, 0), load(2, 1), corner(2, 2)];
+        [laplacian(north, here, south, weights.map(|w| Lanes::splat(simd, w))), here[1]]
+    }
+
+    /// The weighted sum of cell `i` with its links, and its value.
+    #[inline(always)]
+    fn sum(self, i: usize, links: u8, weights: [f32; 3]) -> [f32; 2] {
+        let [north, here, south] = self.0.map(|row| [row[i], row[i + 1], row[i + 2]]);
+        [laplacian_linked(north, here, south, u32::from(links), weights), here[1]]
+    }
+}
+
+/// One row of Clenshaw's recurrence, into `before`.
+#[expect(clippy::too_many_arguments, reason = "a row of a pass has that many inputs")]
+#[inline(always)]
+fn recur_row<S: Simd, const DIAGONAL: bool>(
+    simd: S,
     tile: &mut Tile,
     grid: &PuddleGrid,
     links: &Links,
-    columns: &std::ops::Range<usize>,
+    columns: &Range<usize>,
     y: usize,
     coefficient: f32,
     last: bool,
 ) {
     // The last sum is multiplied by y = 2 x - 1 alone, those before by 2 y.
     let (twice, share) = if last { (grid.twice, 1.0) } else { (2.0 * grid.twice, 2.0) };
-    let stride = tile.stride();
-    let row = tile.row(y);
-    let link_row = y * links.stride();
+    let splat = |value| Lanes::splat(simd, value);
+    let (stride, row) = (tile.stride(), tile.row(y));
     let mut start = columns.start;
     for &(end, open) in &links.runs[y] {
         let end = end.min(columns.end);
@@ -222,22 +280,27 @@ fn recur_row<const DIAGONAL: bool>(
         }
         let n = end - start;
         let at = row + start - tile.outer[0].start;
-        let north = &tile.now[at - stride - 1..][..n + 2];
-        let here = &tile.now[at - 1..][..n + 2];
-        let south = &tile.now[at + stride - 1..][..n + 2];
-        let before = &mut tile.before[at..][..n];
-        let h = &tile.heights[at..][..n];
-        let v = &tile.velocities[at..][..n];
-        let bytes = &links.bytes[link_row + start..][..n];
-        for i in 0..n {
-            let [a, b, c] = neighbours::<DIAGONAL>(north, here, south, i);
-            let sum = if open {
-                laplacian(a, b, c, grid.weights)
-            } else {
-                laplacian_linked(a, b, c, u32::from(bytes[i]), grid.weights)
-            };
-            let value = puddle_recur(coefficient * h[i], twice * sum, share * b[1], before[i]);
-            before[i] = if last { value + grid.viscosity * v[i] } else { value };
+        let rows = Rows::new(&tile.now, at, n, stride);
+        let (before, h) = (&mut tile.before[at..at + n], &tile.heights[at..at + n]);
+        let v = &tile.velocities[at..at + n];
+        if open {
+            for part in parts::<S>(n) {
+                let [sum, now] = rows.sums::<S, DIAGONAL>(simd, &part, grid.weights);
+                let wave = splat(coefficient) * Lanes::load(simd, &h[part.clone()]);
+                let older = Lanes::load(simd, &before[part.clone()]);
+                let mut value = puddle_recur(wave, splat(twice) * sum, splat(share) * now, older);
+                if last {
+                    value = value + splat(grid.viscosity) * Lanes::load(simd, &v[part.clone()]);
+                }
+                value.store(&mut before[part]);
+            }
+        } else {
+            let bytes = &links.bytes[y * links.stride() + start..][..n];
+            for i in 0..n {
+                let [sum, now] = rows.sum(i, bytes[i], grid.weights);
+                let value = puddle_recur(coefficient * h[i], twice * sum, share * now, before[i]);
+                before[i] = if last { value + grid.viscosity * v[i] } else { value };
+            }
         }
         start = end;
     }
@@ -245,20 +308,18 @@ fn recur_row<const DIAGONAL: bool>(
 
 /// One row of new velocities and heights. Gives how many cells had to be reset.
 #[inline(always)]
-fn kick_row<const DIAGONAL: bool>(
+fn kick_row<S: Simd, const DIAGONAL: bool>(
+    simd: S,
     tile: &mut Tile,
     grid: &PuddleGrid,
     links: &Links,
     keep: &[Vec<f32>; 2],
-    columns: &std::ops::Range<usize>,
+    columns: &Range<usize>,
     y: usize,
 ) -> u64 {
-    let stride = tile.stride();
-    let row = tile.row(y);
-    let link_row = y * links.stride();
-    let keep_y = keep[1][y];
-    let mut start = columns.start;
-    let mut reset = 0;
+    let splat = |value| Lanes::splat(simd, value);
+    let (stride, row, keep_y) = (tile.stride(), tile.row(y), keep[1][y]);
+    let (mut start, mut reset) = (columns.start, 0);
     for &(end, open) in &links.runs[y] {
         let end = end.min(columns.end);
         if end <= start {
@@ -266,46 +327,49 @@ fn kick_row<const DIAGONAL: bool>(
         }
         let n = end - start;
         let at = row + start - tile.outer[0].start;
-        let north = &tile.now[at - stride - 1..][..n + 2];
-        let here = &tile.now[at - 1..][..n + 2];
-        let south = &tile.now[at + stride - 1..][..n + 2];
-        let h = &mut tile.heights[at..][..n];
-        let v = &mut tile.velocities[at..][..n];
-        let keep_x = &keep[0][start..][..n];
-        let bytes = &links.bytes[link_row + start..][..n];
-        let mut bad = 0u32;
-        for i in 0..n {
-            let [a, b, c] = neighbours::<DIAGONAL>(north, here, south, i);
-            let sum = if open {
-                laplacian(a, b, c, grid.weights)
-            } else {
-                laplacian_linked(a, b, c, u32::from(bytes[i]), grid.weights)
-            };
-            let velocity = (v[i] - grid.kick * sum) * keep_x[i].min(keep_y);
-            let height = h[i] + grid.dt * velocity;
-            bad += u32::from(!(ops_is_finite(height) & ops_is_finite(velocity)));
-            v[i] = puddle_settle(velocity);
-            h[i] = puddle_settle(height);
+        let rows = Rows::new(&tile.now, at, n, stride);
+        let (h, v) = (&mut tile.heights[at..at + n], &mut tile.velocities[at..at + n]);
+        let keep_x = &keep[0][start..end];
+        if open {
+            let mut bad = splat(0.0);
+            for part in parts::<S>(n) {
+                let [sum, _] = rows.sums::<S, DIAGONAL>(simd, &part, grid.weights);
+                let left = Lanes::load(simd, &keep_x[part.clone()]).at_most(splat(keep_y));
+                let velocity = (Lanes::load(simd, &v[part.clone()]) - splat(grid.kick) * sum) * left;
+                let height = Lanes::load(simd, &h[part.clone()]) + splat(grid.dt) * velocity;
+                let infinite = splat(f32::INFINITY);
+                let finite = bad.both(height.abs().less(infinite), velocity.abs().less(infinite));
+                bad = bad + Lanes::select(finite, splat(0.0), splat(1.0));
+                settle(velocity).store(&mut v[part.clone()]);
+                settle(height).store(&mut h[part]);
+            }
+            // Fewer than 2^24 per lane: exact. What lies beyond the end of the run is 0, which is finite.
+            let mut counts = [0.0; 64];
+            bad.store(&mut counts[..Lanes::<S>::COUNT.min(64)]);
+            reset += counts.iter().sum::<f32>() as u64;
+        } else {
+            let bytes = &links.bytes[y * links.stride() + start..][..n];
+            for i in 0..n {
+                let [sum, _] = rows.sum(i, bytes[i], grid.weights);
+                let velocity = (v[i] - grid.kick * sum) * keep_x[i].min(keep_y);
+                let height = h[i] + grid.dt * velocity;
+                reset += u64::from(!(ops_is_finite(height) && ops_is_finite(velocity)));
+                v[i] = puddle_settle(velocity);
+                h[i] = puddle_settle(height);
+            }
         }
-        reset += u64::from(bad);
         start = end;
     }
     reset
 }
 
-/// The three by three cells round cell `i` of slices that begin one cell before.
+/// `puddle_settle` for lanes: comparisons with NaN are false.
 #[inline(always)]
-fn neighbours<const DIAGONAL: bool>(north: &[f32], here: &[f32], south: &[f32], i: usize) -> [[f32; 3]; 3] {
-    if DIAGONAL {
-        [
-            [north[i], north[i + 1], north[i + 2]],
-            [here[i], here[i + 1], here[i + 2]],
-            [south[i], south[i + 1], south[i + 2]],
-        ]
-    } else {
-        // The weight of the diagonal is 0.
-        [[0.0, north[i + 1], 0.0], [here[i], here[i + 1], here[i + 2]], [0.0, south[i + 1], 0.0]]
-    }
+fn settle<S: Simd>(value: Lanes<S>) -> Lanes<S> {
+    let size = value.abs();
+    let below = size.constant(f64::from(PUDDLE_SMALLEST.next_down()));
+    let kept = size.both(below.less(size), size.less(size.constant(f64::INFINITY)));
+    Lanes::select(kept, value, size.constant(0.0))
 }
 
 #[cfg(test)]
