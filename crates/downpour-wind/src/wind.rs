@@ -57,7 +57,7 @@ impl Wind {
     ///
     /// # Errors
     /// [`WindError::TooManyParts`]; [`WindError::KeyCount`] if the uniform parts have more than
-    /// [`WIND_KEYS`](crate::WIND_KEYS) different times of keys together; else the first parameter that is out of its range
+    /// [`WIND_KEYS`] different times of keys together; else the first parameter that is out of its range
     /// at some key, or an axis that turns about.
     pub fn new(
         parts: Vec<WindPart>,
