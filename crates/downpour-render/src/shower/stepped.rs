@@ -26,6 +26,9 @@ const APART_S: f64 = 10.0;
 /// The longest step, s.
 const STEP_S: f64 = 1.0 / 60.0;
 
+/// The wind and the map are made anew after so many steps, and for each picture.
+const STEPS_PER_WIND: u32 = 6;
+
 /// Edge of a texel of the map of what stops drops, m, where the map is not too large for it.
 const TEXEL_M: f32 = 0.06;
 
@@ -121,7 +124,9 @@ impl Stepped {
         let step_s = (time_s - running.time_s) / steps.max(1.0);
         for step in 1..=steps as u32 {
             let now = running.time_s + step_s * f64::from(step);
-            running.surroundings = self.surroundings(stage, view, now, running.surroundings)?;
+            if step == 1 || step.is_multiple_of(STEPS_PER_WIND) {
+                running.surroundings = self.surroundings(stage, view, now, running.surroundings)?;
+            }
             let moment = running.surroundings.moment(view, stage.origin);
             running.simulation.advance(step_s, &moment)?;
         }
