@@ -133,6 +133,7 @@ impl<'a> Maker<'a> {
         let clip = self.folder.join(&name);
         create(&clip)?;
         let [width, height] = self.options.size;
+        let stats = clip.join("stats.json");
         let mut call = run::command(&self.program.display().to_string(), &["render", "--quiet"]);
         call.arg(self.folder.join(&weather))
             .args(["--samples", SAMPLES, "--sky-rays", "0", "--backend", &self.options.backend])
@@ -142,17 +143,19 @@ impl<'a> Maker<'a> {
             .arg("--dump-drops")
             .arg(clip.join("%04d.csv"))
             .arg("--stats")
-            .arg(clip.join("stats.json"));
+            .arg(&stats);
         if !self.options.go_on {
             call.arg("--overwrite");
+        } else if stats.exists() {
+            // Told anew, of old frames and new ones.
+            std::fs::remove_file(&stats).map_err(|error| in_file(&stats, error))?;
         }
         let status = call.status();
         let status = status.map_err(|error| format!("{} did not start: {error}", self.program.display()))?;
         if !status.success() {
             return Err(format!("{name}: downpour render failed ({status})"));
         }
-        let file = clip.join("stats.json");
-        let frames = stats::read(&read(&file)?).map_err(|message| in_file(&file, message))?;
+        let frames = stats::read(&read(&stats)?).map_err(|message| in_file(&stats, message))?;
         let run = Run { set, name, rain, frames };
         let [mean, least] = run.share();
         eprintln!("{}: {:.1} % on screen, least {:.1} %", run.name, 100.0 * mean, 100.0 * least);

@@ -13,7 +13,7 @@ const STREAK_S: f64 = 1.0 / 60.0;
 const BEHIND: f64 = 0.4;
 
 /// How white a streak is, 0 to 1.
-const WHITE: f64 = 0.55;
+const WHITE: f64 = 0.35;
 
 /// A drop in the world: m and m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,8 +63,9 @@ pub(super) fn draw(picture: &RgbImage, eye: &Eye, fov_deg: f64, drops: &[Drop]) 
     }
     let size = [picture.width(), picture.height()];
     for drop in drops {
-        let end = std::array::from_fn(|axis| drop.place[axis] + drop.velocity[axis] * STREAK_S);
-        let ends = project(eye, fov_deg, size, drop.place).zip(project(eye, fov_deg, size, end));
+        let at = |time: f64| std::array::from_fn(|axis| drop.place[axis] + drop.velocity[axis] * time);
+        let end = |time: f64| project(eye, fov_deg, size, at(time));
+        let ends = end(-0.5 * STREAK_S).zip(end(0.5 * STREAK_S));
         if let Some((from, to)) = ends {
             line(&mut drawn, from, to);
         }
@@ -113,16 +114,16 @@ mod tests {
     }
 
     #[test]
-    fn a_streak_falls_from_its_drop() {
+    fn a_streak_is_about_its_drop() {
         let list = "id,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,diameter_mm,kind\n7,0,0,-10,0,-6,0,3,falling\n";
         let drops = read(list).expect("a drop");
         let eye = Eye { place: [0.0; 3], yaw: 0.0 };
         let picture = RgbImage::from_pixel(SIZE[0], SIZE[1], Rgb([100; 3]));
         let drawn = draw(&picture, &eye, 10.0, &drops);
         let lit: Vec<(u32, u32)> =
-            drawn.enumerate_pixels().filter(|(_, _, p)| p.0[0] > 100).map(|(x, y, _)| (x, y)).collect();
+            drawn.enumerate_pixels().filter(|(_, _, p)| p.0[0] > 40).map(|(x, y, _)| (x, y)).collect();
         // 0.1 m at 10 m: 2.06 of the 36 rows of 1.75 m.
-        assert_eq!(lit, [(32, 18), (32, 19), (32, 20)]);
+        assert_eq!(lit, [(32, 16), (32, 17), (32, 18), (32, 19)]);
         assert_eq!(drawn.get_pixel(0, 0).0, [40; 3]);
     }
 

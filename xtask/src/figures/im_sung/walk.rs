@@ -1,10 +1,10 @@
 //! What the camera does.
 
 /// It stands, then moves ahead, then turns about, then stands again. s.
-const STANDS_S: f64 = 0.125;
+const STANDS_S: f64 = 0.25;
 const MOVES_S: f64 = 1.0;
 const TURNS_S: f64 = 0.5;
-const RESTS_S: f64 = 0.375;
+const RESTS_S: f64 = 0.25;
 
 /// How far it moves along -Z, m.
 pub(super) const WAY_M: f64 = 9.0;
