@@ -14,7 +14,7 @@ use downpour_lattice::puddle::lattice::PuddleGrid;
 use downpour_mask::MaskTexel;
 use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
-use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel};
+use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
 use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
@@ -63,11 +63,15 @@ fn hosts() -> Vec<Host> {
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
         host!(TraceGather as "TraceGather" in &render::scene::TRACE, sky, body, met, gloss, normal),
         host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
-        host!(DropsFrame as "DropsFrame" in &render::rain::DROPS,
+        host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,
-            capture_forward, capture_texel, form, mask_size, tiles_across, veil_beyond, veil),
-        host!(DropsDrop as "DropsDrop" in &render::rain::DROPS,
-            towards, distance, place, slope, half_extent, row, area, grid),
+            capture_forward, capture_texel, form, mask_size, tiles_across, veil_beyond, veil, streak_samples,
+            streak_colour, unused),
+        host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
+            towards, distance, place, slope, half_extent, row, area, grid, start, along, first, way, oval, recede,
+            swing, turns, share, spread, nearest, kind, shape, unused),
+        host!(StreakShape as "StreakShape" in &render::rain::STREAK_TABLE,
+            velocity, row, half_extent, chords, unused, ovals),
         host!(PuddleGrid as "PuddleGrid" in &lattice::puddle::PUDDLE,
             size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
             steps, halo, half_storage, slope),

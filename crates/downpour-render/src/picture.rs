@@ -116,6 +116,7 @@ pub fn render_picture(
     let eye = viewpoint.eye.as_dvec3();
     let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
     let capture = timed(&mut passes, "capture", || rain.capture.trace(scene));
-    let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture));
+    let table = timed(&mut passes, "streaks", || rain.streak_table(masks, &capture));
+    let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture, &table, &[]));
     Ok(Picture::new(&rain, clean, layer, passes))
 }

@@ -3,24 +3,39 @@
 //! 1. [`DropMasks`]: masks of drops of all sizes from all elevations, traced once, in milliseconds;
 //! 2. [`Rain`]: the drops of a picture, nearest first, and for each tile of 8 x 8 pixels those that touch it;
 //! 3. [`capture`]: what is round the eye, on an octahedral map (default) or as the papers' wide picture;
-//! 4. [`drops`]: pixel by pixel, what the drops show of it.
+//! 4. [`streak_table`]: what drops that move while the shutter is open show on the mean, made once per frame;
+//! 5. [`drops`]: pixel by pixel, what drops and streaks show of it.
 //!
-//! Source: Rousseau, Jolivet, Ghazanfarpour 2006, section 4. Where the default differs it is said at
-//! [`RefractionForm`].
+//! Source: Rousseau, Jolivet, Ghazanfarpour 2006, sections 4 and 5; Rousseau 2008, section 2.2.3. Where the default
+//! differs it is said at [`RefractionForm`] and [`StreakSamples`].
 
 pub mod capture;
 pub mod drops;
+mod drops_capture;
+mod drops_frame;
+pub mod drops_mask;
+mod drops_shade;
+pub mod exposure;
 pub mod masks;
+mod project;
 mod reduce;
+mod shapes;
+pub mod streak;
+pub mod streak_lookup;
+pub mod streak_table;
 mod tiles;
 mod veil;
 
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 
 pub use capture::{Capture, CaptureFrame};
-pub use drops::{DropsDrop, DropsFrame};
+pub use drops_frame::DropsFrame;
+pub use exposure::{Exposure, EyeMotion, StreakColour, StreakSamples};
 pub use masks::DropMasks;
 pub use reduce::{ReduceLevel, reduce_levels, reduce_texel};
+pub use streak::DropsDrop;
+pub use streak_lookup::StreakTable;
+pub use streak_table::StreakShape;
 pub use tiles::Rain;
 pub use veil::Veil;
 
@@ -48,11 +63,19 @@ pub struct RainOptions {
     pub capture_grid: u32,
     /// Drops that are not drawn one by one.
     pub veil: Veil,
+    /// In which time light is gathered.
+    pub exposure: Exposure,
 }
 
 impl Default for RainOptions {
     /// 256 x 256 texels of one sample: 0.8 degrees, finer than a pixel of any drop of less than 200 pixels.
     fn default() -> Self {
-        Self { form: RefractionForm::Direction, capture_size: 256, capture_grid: 1, veil: Veil::default() }
+        Self {
+            form: RefractionForm::Direction,
+            capture_size: 256,
+            capture_grid: 1,
+            veil: Veil::default(),
+            exposure: Exposure::default(),
+        }
     }
 }

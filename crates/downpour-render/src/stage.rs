@@ -25,6 +25,7 @@ use crate::RenderError;
 use crate::camera::{PIXELS, Viewpoint};
 use crate::data::{SceneBuilder, SceneData};
 use crate::light::LightSource;
+use crate::rain::EyeMotion;
 use crate::tone::{tone_automatic_exposure, tone_luminance};
 pub use error::StageError;
 pub use eye::CameraChoice;
@@ -45,6 +46,12 @@ const NEAR_ORIGIN_M: f64 = 1000.0;
 /// The latest time of a picture, in seconds, and the earliest below 0.
 pub const LATEST_S: f64 = downpour_sim::field::LATEST_S;
 
+/// The eye's motion is taken over this time at least, s.
+const LEAST_APART_S: f64 = 1.0e-3;
+
+/// Drops in a storm are hardly faster, m/s.
+const FASTEST_DROP_M_S: f64 = 30.0;
+
 /// Pixels darker than this part of the mean have no say in the exposure.
 const UNLIT: f32 = 1.0e-4;
 
@@ -57,6 +64,10 @@ pub struct Stage {
     pub viewpoint: Viewpoint,
     /// What the buffers are relative to: 0 unless the eye is more than 1 km from it.
     pub origin: DVec3,
+    /// How the eye moves.
+    pub motion: EyeMotion,
+    /// How long the shutter is open, in seconds.
+    pub shutter_s: f64,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
     /// The picture is multiplied by two to this power.
@@ -119,6 +130,8 @@ impl Stage {
             data,
             viewpoint,
             origin,
+            motion: motion(weather, loaded, time_s),
+            shutter_s: weather.camera.shutter,
             size: weather.size,
             exposure_ev: weather.camera.exposure_ev as f32,
             depth: [near, far],
@@ -138,6 +151,10 @@ impl Stage {
         let [right, up, forward] = self.viewpoint.axes()?.map(|axis| axis.as_dvec3().normalize());
         let [width, height] = self.size.map(f64::from);
         let half_height = downpour_math::ops::f64::tan(f64::from(self.viewpoint.fov_y) * 0.5);
+        let half_width = half_height * width / height;
+        // What comes into the picture while the shutter is open.
+        let turned = 0.5 * self.shutter_s * f64::from(self.motion.turning.length());
+        let speed = f64::from(self.motion.velocity.length());
         let usual = View::default();
         // The drops that a picture can resolve end before the scene does.
         let near = self.depth[0].min(1000.0);
@@ -147,11 +164,12 @@ impl Stage {
             right,
             up,
             forward,
-            half_width: half_height * width / height,
-            half_height,
+            half_width: half_width + turned * (1.0 + half_width * half_width),
+            half_height: half_height + turned * (1.0 + half_height * half_height),
             pixel_angle: 2.0 * half_height / height,
             near,
             far,
+            margin: 0.5 * self.shutter_s * (FASTEST_DROP_M_S + speed),
             ..usual
         })
     }
@@ -198,6 +216,20 @@ impl Stage {
         .into_iter()
         .map(|bytes| bytes as u64)
         .sum()
+    }
+}
+
+/// How the eye moves at a time: from where it is when the shutter opens and closes.
+fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
+    let moves = weather.camera.pose.is_none() && loaded.animations.iter().any(Option::is_some);
+    if !moves {
+        return EyeMotion::default();
+    }
+    let apart_s = weather.camera.shutter.max(LEAST_APART_S);
+    let at = |half: f64| Seen::of(weather, loaded, &posed(loaded, time_s + half * apart_s));
+    match (at(-0.5), at(0.5)) {
+        (Some(before), Some(after)) => Seen::motion(&before, &after, apart_s),
+        _ => EyeMotion::default(),
     }
 }
 

@@ -18,6 +18,7 @@ mod models;
 mod quantity;
 mod rain;
 mod sky;
+mod streaks;
 mod wind;
 mod words;
 
@@ -34,6 +35,7 @@ pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
 pub use rain::{Rain, RainBounce, RainCylinder, RainDrag, RainVolume};
 pub use sky::{Sky, SkySource, SunSource};
+pub use streaks::{StreakLook, Streaks};
 pub use wind::WindBox;
 
 /// The longest weather file, in bytes: 4 MiB.
@@ -92,6 +94,8 @@ pub struct Weather {
     pub wind: Wind,
     /// The box of cells in which the wind is worked out, where it differs from place to place.
     pub wind_box: WindBox,
+    /// How moving drops are drawn.
+    pub streaks: Streaks,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
 }
@@ -108,6 +112,7 @@ impl Default for Weather {
             lights: Vec::new(),
             wind: Wind::default(),
             wind_box: WindBox::default(),
+            streaks: Streaks::default(),
             size: [1280, 720],
         }
     }

@@ -325,7 +325,7 @@ impl RainField {
                 for iz in zs.clone() {
                     let x = (ix as f64 + 0.5) * class.edge + carried.x;
                     let z = (iz as f64 + 0.5) * class.edge + carried.z;
-                    if !view.within_sides(DVec3::new(x, middle, z) - view.eye, radius) {
+                    if !view.within_sides(DVec3::new(x, middle, z) - view.eye, radius + view.margin) {
                         continue;
                     }
                     self.drops_of_column(class, [ix, iz], &bounds, time_s, drift, |drop| {

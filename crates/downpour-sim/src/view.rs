@@ -33,6 +33,8 @@ pub struct View {
     pub far: f64,
     /// The least diameter on the picture, pixels.
     pub least_pixels: f64,
+    /// Drops so far outside the sides are listed too, metres: half of what they move while a shutter is open.
+    pub margin: f64,
     /// The least diameter is raised until no more drops than this are to be expected.
     pub most_drops: u32,
 }
@@ -52,6 +54,7 @@ impl Default for View {
             near: 0.05,
             far: 50.0,
             least_pixels: 0.4,
+            margin: 0.0,
             most_drops: 2_000_000,
         }
     }
@@ -97,6 +100,9 @@ impl View {
         if !(self.least_pixels >= 0.0 && self.least_pixels.is_finite()) {
             return error("least diameter of drops", self.least_pixels, "pixels", "0 or more");
         }
+        if !(0.0..=1000.0).contains(&self.margin) {
+            return error("margin of the picture", self.margin, "m", "0 to 1000");
+        }
         Ok(())
     }
 
@@ -120,8 +126,8 @@ impl View {
             low = low.min(self.eye + corner * range);
             high = high.max(self.eye + corner * range);
         }
-        let reach = DVec3::splat(range);
-        Bounds { low: low.max(self.eye - reach), high: high.min(self.eye + reach) }
+        let (reach, margin) = (DVec3::splat(range), DVec3::splat(self.margin));
+        Bounds { low: low.max(self.eye - reach) - margin, high: high.min(self.eye + reach) + margin }
     }
 
     /// Whether a sphere touches the picture between the nearest distance and `range`.
@@ -131,7 +137,7 @@ impl View {
         if distance < self.near || distance > range {
             return false;
         }
-        self.within_sides(offset, radius)
+        self.within_sides(offset, radius + self.margin)
     }
 
     /// Whether a sphere at `offset` from the eye touches the pyramid's four sides or is between them.

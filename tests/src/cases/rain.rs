@@ -1,16 +1,21 @@
 //! `shaders/wgsl/render/{capture,reduce,drops}.wgsl` against `downpour_render::rain`.
 
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_drop::oscillation::Amplitudes;
 use downpour_gpu::{ComputeKernel, Gpu, GpuError};
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::{RainPipeline, ScenePipeline};
-use downpour_render::rain::drops::drops_right;
+use downpour_render::rain::drops_mask::drops_mask_right;
+use downpour_render::rain::streak_lookup::streak_numbers;
 use downpour_render::rain::{
-    DropMasks, Rain, RainOptions, ReduceLevel, RefractionForm, Veil, reduce_levels, reduce_texel,
+    DropMasks, Exposure, EyeMotion, Rain, RainOptions, ReduceLevel, RefractionForm, StreakColour,
+    StreakSamples, Veil, reduce_levels, reduce_texel,
 };
 use downpour_render::scene::SceneView;
-use downpour_shaders::render::rain::{DROPS, DROPS_KERNEL, REDUCE_KERNEL};
+use downpour_shaders::render::rain::{
+    DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK_RAYS, STREAK_SUMS, STREAK_TABLE_KERNEL,
+};
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
 use glam::{DVec3, Vec3};
@@ -71,15 +76,36 @@ fn veil() -> Veil {
 #[derive(Clone, Copy)]
 enum Part {
     Capture,
+    Table,
     Drops,
 }
 
-fn rain_case(gpu: &Gpu, eye: Vec3, forward: Vec3, form: RefractionForm, part: Part) -> Result<Run, GpuError> {
+/// An exposure of some seconds, out of focus by a little, with drops that swing.
+fn exposure(shutter_s: f64, samples: StreakSamples) -> Exposure {
+    Exposure {
+        shutter_s,
+        samples,
+        time_s: 2.5,
+        eye: EyeMotion { velocity: Vec3::new(0.3, 0.0, -1.0), turning: Vec3::new(0.0, 0.4, 0.0) },
+        oscillation: Amplitudes::GARG_NAYAR_OBLATE,
+        aperture_m: 2.0e-3,
+        focus_m: 3.0,
+        ..Exposure::default()
+    }
+}
+
+fn rain_case(
+    gpu: &Gpu,
+    [eye, forward]: [Vec3; 2],
+    form: RefractionForm,
+    exposure: Exposure,
+    part: Part,
+) -> Result<Run, GpuError> {
     let scene = scene();
     let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
     let frame = view.frame(&scene, SIZE, 1, 1, 7).expect("a frame");
     let masks = DropMasks::trace(1.333).expect("masks");
-    let options = RainOptions { form, capture_size: 64, capture_grid: 2, veil: veil() };
+    let options = RainOptions { form, capture_size: 64, capture_grid: 2, veil: veil(), exposure };
     let rain = Rain::new(&frame, DVec3::from(eye), &drops(eye, forward), &masks, &options);
     assert!(rain.list.len() > 100, "{} drops", rain.list.len());
     let clean = SceneView { data: &scene, frame: &frame }.picture();
@@ -95,9 +121,18 @@ fn rain_case(gpu: &Gpu, eye: Vec3, forward: Vec3, form: RefractionForm, part: Pa
             let finest = 64 * 64;
             Ok(run(64, &capture.texels[..finest], &pass.surroundings()?[..finest]))
         }
+        Part::Table => {
+            gpu.submit(&pass.streaks().into_iter().collect::<Vec<_>>())?;
+            let table = rain.streak_table(&masks, &capture);
+            let numbers = |words: &[[u32; 2]]| words.iter().map(|&pair| streak_numbers(pair)).collect();
+            let (cpu, gpu): (Vec<[f32; 4]>, Vec<[f32; 4]>) =
+                (numbers(&table.words), numbers(&pass.streak_table()?));
+            Ok(run(STREAK_RAYS * STREAK_SUMS, &cpu, &gpu))
+        }
         Part::Drops => {
-            gpu.submit(&[pass.drops()])?;
-            Ok(run(SIZE[0], &rain.layer(&clean, &masks, &capture), &pass.layer()?))
+            gpu.submit(&pass.streaks().into_iter().chain([pass.drops()]).collect::<Vec<_>>())?;
+            let table = rain.streak_table(&masks, &capture);
+            Ok(run(SIZE[0], &rain.layer(&clean, &masks, &capture, &table, &[]), &pass.layer()?))
         }
     }
 }
@@ -142,14 +177,25 @@ const DRAWN: Tol = Tol::relative(
 )
 .with_outliers(1.0e-2);
 
+const TABLED: Tol = Tol::relative(
+    5.0e-3,
+    4.0e-3,
+    "the capture above; numbers are kept as halves (1 / 2048), rounded either way",
+)
+.with_outliers(1.0e-2);
+
+/// Where the eye is, and where it looks.
+const LEVEL: [Vec3; 2] = [Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0)];
+const ABOVE: [Vec3; 2] = [Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1)];
+
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
     vec![FunctionCase::new(
-        "drops_right",
-        &DROPS,
+        "drops_mask_right",
+        &DROPS_MASK,
         &[Unit3],
         Tol::relative(1.0e-6, 1.0e-7, "a square root and a division (2.5 ulp)"),
-        |a| drops_right(Vec3::from(a.f32s())).to_array().words(),
+        |a| drops_mask_right(Vec3::from(a.f32s())).to_array().words(),
     )]
 }
 
@@ -159,22 +205,42 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         name,
         kernel: &DROPS_KERNEL,
         covers: &[
-            "drops_unit",
+            "drops_mask_unit",
             "drops_mask_texel",
-            "drops_add",
+            "drops_mask_add",
             "drops_mask_layer",
             "drops_mask",
             "drops_capture_texel",
             "drops_capture_level",
             "drops_capture_at",
-            "drops_shifted",
-            "drops_ray",
-            "drops_sample",
-            "drops_spread",
+            "drops_frame_ray",
+            "drops_shade_shifted",
+            "drops_shade",
+            "drops_on_plane",
+            "drops_still",
+            "drops_chord",
+            "drops_streak",
+            "drops_depth",
             "drops_pixel",
             "drops_over",
             "drops_veil",
             "drops_veiled",
+            "streak_time",
+            "streak_nearest",
+            "streak_depth",
+            "streak_stretch",
+            "streak_chord",
+            "streak_place",
+            "streak_box",
+            "streak_within",
+            "streak_mean",
+            "streak_cover",
+            "streak_lookup_entry",
+            "streak_lookup_rays",
+            "streak_lookup_sum",
+            "streak_lookup_until",
+            "streak_lookup",
+            "streak_lookup_mean",
         ],
         tol: DRAWN,
         run,
@@ -187,7 +253,8 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             tol: CAPTURED,
             run: |gpu| {
                 let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
-                rain_case(gpu, eye, forward, RefractionForm::Direction, Part::Capture)
+                let still = Exposure::default();
+                rain_case(gpu, [eye, forward], RefractionForm::Direction, still, Part::Capture)
             },
         },
         KernelCase {
@@ -199,15 +266,43 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         },
         drops("main_drops: level", |gpu| {
             let (eye, forward) = (Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0));
-            rain_case(gpu, eye, forward, RefractionForm::Direction, Part::Drops)
+            rain_case(gpu, [eye, forward], RefractionForm::Direction, Exposure::default(), Part::Drops)
         }),
         drops("main_drops: from above", |gpu| {
             let (eye, forward) = (Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1));
-            rain_case(gpu, eye, forward, RefractionForm::Direction, Part::Drops)
+            rain_case(gpu, [eye, forward], RefractionForm::Direction, Exposure::default(), Part::Drops)
         }),
         drops("main_drops: Rousseau 2006", |gpu| {
             let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
-            rain_case(gpu, eye, forward, RefractionForm::Rousseau2006, Part::Drops)
+            rain_case(gpu, [eye, forward], RefractionForm::Rousseau2006, Exposure::default(), Part::Drops)
+        }),
+        KernelCase {
+            name: "main_streak_table: all shapes",
+            kernel: &STREAK_TABLE_KERNEL,
+            covers: &[
+                "streak_table_elevation",
+                "streak_table_oval",
+                "streak_table_direction",
+                "streak_table_write",
+            ],
+            tol: TABLED,
+            run: |gpu| {
+                let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
+                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Table)
+            },
+        },
+        drops("main_drops: streaks by the table", |gpu| {
+            let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
+            rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Drops)
+        }),
+        drops("main_drops: short streaks by a loop", |gpu| {
+            let exposure = exposure(1.0 / 1000.0, StreakSamples::Loop(5));
+            rain_case(gpu, ABOVE, RefractionForm::Direction, exposure, Part::Drops)
+        }),
+        drops("main_drops: white streaks", |gpu| {
+            let white =
+                Exposure { colour: StreakColour::White, ..exposure(1.0 / 250.0, StreakSamples::Table) };
+            rain_case(gpu, LEVEL, RefractionForm::Direction, white, Part::Drops)
         }),
     ]
 }

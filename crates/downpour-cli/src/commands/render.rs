@@ -22,10 +22,11 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
 use downpour::render::picture::{Picture, PictureOptions};
-use downpour::render::rain::{RainOptions, RefractionForm, Veil};
+use downpour::render::rain::{Exposure, RainOptions, RefractionForm, Veil};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
+use downpour::scene::weather::Weather;
 
 use super::input::InputArguments;
 use crate::backend::BackendArguments;
@@ -142,7 +143,7 @@ impl RenderArguments {
         let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
         // The files have become buffers.
         drop(input.loaded);
-        let options = self.options(&stage, rain.seed, shower.veil);
+        let options = self.options(&stage, &input.weather, self.input.time, shower.veil);
         let say = |text: &str| self.say(text);
         let (picture, computer) = with_painter(&self.backend, interrupt, say, |painter| {
             let picture = painter.paint(&stage, &shower.visible.drops, &showers.masks, &options)?;
@@ -193,13 +194,14 @@ impl RenderArguments {
         }
     }
 
-    fn options(&self, stage: &Stage, seed: u64, veil: Veil) -> PictureOptions {
+    fn options(&self, stage: &Stage, weather: &Weather, time_s: f64, veil: Veil) -> PictureOptions {
+        let exposure = Exposure::of_weather(weather, stage.motion, time_s);
         PictureOptions {
             size: stage.size,
             grid: self.samples,
             sky_rays: self.sky_rays,
-            seed,
-            rain: RainOptions { form: self.refraction.into(), veil, ..RainOptions::default() },
+            seed: weather.rain.seed,
+            rain: RainOptions { form: self.refraction.into(), veil, exposure, ..RainOptions::default() },
         }
     }
 

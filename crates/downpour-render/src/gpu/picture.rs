@@ -79,6 +79,10 @@ impl PictureRenderer {
             self.gpu.submit(&pass.capture())?;
             self.gpu.wait()
         })?;
+        timed(&mut passes, "streaks", || {
+            self.gpu.submit(&pass.streaks().into_iter().collect::<Vec<_>>())?;
+            self.gpu.wait()
+        })?;
         timed(&mut passes, "drops", || {
             self.gpu.submit(&[pass.drops()])?;
             self.gpu.wait()

@@ -1,10 +1,13 @@
 //! Drops before a scene on a GPU.
 
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
-use downpour_shaders::render::rain::{DROPS_KERNEL, REDUCE_KERNEL};
+use downpour_shaders::render::rain::{
+    DROPS_KERNEL, REDUCE_KERNEL, STREAK_ACROSS, STREAK_RAYS, STREAK_TABLE_KERNEL,
+};
 
 use super::scene::{SceneOnGpu, ScenePipeline};
-use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, reduce_levels};
+use crate::rain::streak_lookup::STREAK_SHAPE_BYTES;
+use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, StreakShape, reduce_levels};
 use crate::trace::TraceGather;
 
 /// The pipelines of drops: made once, used for any number of pictures.
@@ -12,6 +15,7 @@ use crate::trace::TraceGather;
 pub struct RainPipeline {
     gpu: Gpu,
     reduce: ComputeKernel,
+    streaks: ComputeKernel,
     drops: ComputeKernel,
 }
 
@@ -29,8 +33,10 @@ pub struct RainPass<'a> {
     size: [u32; 2],
     capture: (wgpu::BindGroup, u32),
     levels: Vec<(wgpu::BindGroup, u32)>,
+    streaks: (wgpu::BindGroup, u32),
     drops: wgpu::BindGroup,
     texels: wgpu::Buffer,
+    table: wgpu::Buffer,
     layer: wgpu::Buffer,
 }
 
@@ -41,7 +47,12 @@ impl RainPipeline {
     /// What the GPU says.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
-        Ok(Self { gpu: gpu.clone(), reduce: kernel(&REDUCE_KERNEL)?, drops: kernel(&DROPS_KERNEL)? })
+        Ok(Self {
+            gpu: gpu.clone(),
+            reduce: kernel(&REDUCE_KERNEL)?,
+            streaks: kernel(&STREAK_TABLE_KERNEL)?,
+            drops: kernel(&DROPS_KERNEL)?,
+        })
     }
 
     /// Brings the masks to the device.
@@ -87,9 +98,29 @@ impl RainPipeline {
         let list: &[_] = if rain.list.is_empty() { &[DropsDrop::default()] } else { &rain.list };
         let list = gpu.storage_buffer("drops", list)?;
         let tiles = gpu.storage_buffer("tiles of drops", &rain.tiles)?;
-        let drops = self.drops.bind(gpu, &[&frame, &list, &tiles, &masks.masks, &texels, clean, &layer])?;
+        let none = [StreakShape::default()];
+        let shapes: &[_] = if rain.shapes.is_empty() { &none } else { &rain.shapes };
+        let bytes = (shapes.len() * STREAK_SHAPE_BYTES) as u64;
+        let table = gpu.empty_buffer("streak radiance", bytes, storage)?;
+        let shapes = gpu.storage_buffer("shapes of streaks", shapes)?;
+        let streaks = self.streaks.bind(gpu, &[&frame, &texels, &masks.masks, &shapes, &table])?;
+        let streaks = (streaks, rain.shapes.len() as u32);
+        let light = gpu.storage_buffer("light on drops", &vec![[0.0f32; 4]; rain.list.len().max(1)])?;
+        let bindings = [&frame, &texels, &masks.masks, &list, &tiles, clean, &layer, &table, &light];
+        let drops = self.drops.bind(gpu, &bindings)?;
         let capture = (capture, size.div_ceil(8));
-        Ok(RainPass { pipeline: self, tracer, size: picture, capture, levels, drops, texels, layer })
+        Ok(RainPass {
+            pipeline: self,
+            tracer,
+            size: picture,
+            capture,
+            levels,
+            streaks,
+            drops,
+            texels,
+            table,
+            layer,
+        })
     }
 }
 
@@ -102,6 +133,14 @@ impl RainPass<'_> {
         let levels = self.levels.iter();
         let coarser = levels.map(|(bindings, n)| self.pipeline.reduce.dispatch(bindings, [*n, *n, 1]));
         std::iter::once(finest).chain(coarser).collect()
+    }
+
+    /// The streak radiance table; nothing where no drop moves.
+    #[must_use]
+    pub fn streaks(&self) -> Option<Dispatch<'_>> {
+        let (bindings, shapes) = &self.streaks;
+        let groups = [(STREAK_RAYS * STREAK_RAYS).div_ceil(64), STREAK_ACROSS + 1, *shapes];
+        (*shapes > 0).then(|| self.pipeline.streaks.dispatch(bindings, groups))
     }
 
     /// The drops.
@@ -117,6 +156,14 @@ impl RainPass<'_> {
     /// What the GPU says.
     pub fn layer(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         self.pipeline.gpu.read(&self.layer)
+    }
+
+    /// Reads the streak radiance table.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn streak_table(&self) -> Result<Vec<[u32; 2]>, GpuError> {
+        self.pipeline.gpu.read(&self.table)
     }
 
     /// Reads the capture, all levels.

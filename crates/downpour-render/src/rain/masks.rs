@@ -4,9 +4,11 @@
 //! for diameters half a millimetre apart and elevations 30 degrees apart; the shader goes between them linearly.
 
 use downpour_drop::DropShape;
-use downpour_mask::{MaskError, MaskOptions, MaskTexel, View, trace_drop};
+use downpour_mask::{Mask, MaskError, MaskOptions, MaskTexel, View, trace_drop};
 use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_pack_unorm};
 use downpour_shaders::render::rain::{DROPS_ELEVATIONS, DROPS_TEXEL_WORDS};
+
+use super::streak_table::StreakShape;
 
 /// Diameters, metres, from a sphere to the largest drop that has a shape.
 const DIAMETERS: u32 = 18;
@@ -30,6 +32,8 @@ pub struct DropMasks {
     half_extents: Vec<f32>,
     /// Area of the outline of each mask, in squared equivalent radii.
     areas: Vec<f32>,
+    /// The oval of each outline: half its width, half its height, and how far its middle is up, in equivalent radii.
+    ovals: Vec<[f32; 3]>,
 }
 
 /// Where a drop is among the masks.
@@ -38,6 +42,7 @@ pub(crate) struct MaskPlace {
     pub(crate) row: [f32; 2],
     pub(crate) half_extent: f32,
     pub(crate) area: f32,
+    pub(crate) oval: [f32; 3],
 }
 
 impl DropMasks {
@@ -46,7 +51,13 @@ impl DropMasks {
     /// # Errors
     /// [`MaskError::OutOfRange`] for an index that is none.
     pub fn trace(refractive_index: f64) -> Result<Self, MaskError> {
-        let mut masks = Self { words: Vec::new(), size: SIZE, half_extents: Vec::new(), areas: Vec::new() };
+        let mut masks = Self {
+            words: Vec::new(),
+            size: SIZE,
+            half_extents: Vec::new(),
+            areas: Vec::new(),
+            ovals: Vec::new(),
+        };
         for k in 1..=DIAMETERS {
             let shape = DropShape::new(f64::from(k) * DIAMETER_STEP).map_err(|_| MaskError::OutOfRange {
                 quantity: "diameter of a mask",
@@ -66,6 +77,7 @@ impl DropMasks {
                 let width = mask.texel_width();
                 let covered: f64 = mask.texels.iter().map(|texel| f64::from(texel.coverage)).sum();
                 masks.areas.push((covered * width * width) as f32);
+                masks.ovals.push(oval(&mask));
                 masks.words.extend(mask.texels.iter().flat_map(pack));
             }
         }
@@ -86,16 +98,47 @@ impl DropMasks {
             let near = values(low as usize);
             if part == 0.0 { near } else { near * (1.0 - part) + values(low as usize + 1) * part }
         };
-        let areas = |k: usize| {
-            let first = k * DROPS_ELEVATIONS as usize;
-            between(&|j| self.areas[first + j], column)
-        };
+        let first = |k: usize| k * DROPS_ELEVATIONS as usize;
+        let areas = |k: usize| between(&|j| self.areas[first(k) + j], column);
+        let oval = |part: usize| between(&|k| between(&|j| self.ovals[first(k) + j][part], column), row);
         MaskPlace {
             row: [row, column],
             half_extent: between(&|k| self.half_extents[k], row),
             area: between(&areas, row),
+            oval: [oval(0), oval(1), oval(2)],
         }
     }
+
+    /// The class of drops of a row of diameters, at rest.
+    pub(super) fn shape(&self, row: f32) -> StreakShape {
+        let first = row as usize * DROPS_ELEVATIONS as usize;
+        StreakShape {
+            row,
+            half_extent: self.half_extents[row as usize],
+            ovals: std::array::from_fn(|k| {
+                let [wide, tall, up] = self.ovals[first + k];
+                [wide, tall, up, 0.0]
+            }),
+            ..StreakShape::default()
+        }
+    }
+}
+
+/// The ellipse of the shape of the box round an outline, and of its area.
+fn oval(mask: &Mask) -> [f32; 3] {
+    let (width, half) = (mask.texel_width(), mask.half_extent);
+    let size = mask.size as usize;
+    let (mut area, mut wide, mut low, mut high) = (0.0, 0.0f64, f64::INFINITY, f64::NEG_INFINITY);
+    for (i, texel) in mask.texels.iter().enumerate().filter(|(_, texel)| texel.coverage > 0.0) {
+        // The texel's middle, right and up.
+        let x = (i % size) as f64 * width + 0.5 * width - half;
+        let y = half - 0.5 * width - (i / size) as f64 * width;
+        (wide, low, high) = (wide.max(x.abs()), low.min(y), high.max(y));
+        area += f64::from(texel.coverage) * width * width;
+    }
+    let (tall, middle) = (0.5 * (high - low), 0.5 * (high + low));
+    let scale = (area / (std::f64::consts::PI * wide * tall)).sqrt();
+    [(wide * scale) as f32, (tall * scale) as f32, middle as f32]
 }
 
 /// A texel as the shader reads it.

@@ -1,17 +1,16 @@
 //! The drops of a picture, nearest first, and for each tile of the picture those that touch it.
 
-use downpour_math::ops;
 use downpour_shaders::render::rain::DROPS_TILE;
 use downpour_sim::field::FallingDrop;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2};
 
 use super::capture::CaptureFrame;
-use super::drops::{DropsDrop, DropsFrame};
-use super::{DropMasks, RainOptions};
+use super::drops_frame::DropsFrame;
+use super::project::{Projected, project};
+use super::streak::DropsDrop;
+use super::streak_table::StreakShape;
+use super::{DropMasks, RainOptions, shapes};
 use crate::data::RenderFrame;
-
-/// Drops of a smaller diameter on the picture, in pixels, are spread over the pixels round them.
-const SMALL: f32 = 1.0;
 
 /// The drops of one picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +19,8 @@ pub struct Rain {
     pub frame: DropsFrame,
     /// How the surroundings are captured.
     pub capture: CaptureFrame,
+    /// Classes of the drops that move, for the streak radiance table; none if nothing moves.
+    pub shapes: Vec<StreakShape>,
     /// The drops on the picture, nearest first.
     pub list: Vec<DropsDrop>,
     /// Where each tile's list begins (one more than there are tiles), then the lists.
@@ -41,25 +42,21 @@ impl Rain {
         options: &RainOptions,
     ) -> Self {
         let capture = CaptureFrame::new(picture, options);
-        let mut placed: Vec<(u32, DropsDrop, [u32; 4])> = (0u32..)
+        let [width, height] = [picture.width, picture.height];
+        let mut placed: Vec<(u32, Projected)> = (0u32..)
             .zip(drops)
-            .filter_map(|(k, drop)| {
-                let (shown, pixels) = project(picture, eye, drop, masks)?;
-                Some((k, shown, pixels))
-            })
+            .filter_map(|(k, drop)| Some((k, project(picture, eye, drop, masks, &options.exposure)?)))
+            .filter(|(_, shown)| pixels(shown, width, height).is_some())
             .collect();
         // Two drops at one distance go in the order in which they were given.
-        placed.sort_by(|a, b| a.1.distance.total_cmp(&b.1.distance).then(a.0.cmp(&b.0)));
-        let across = picture.width.div_ceil(DROPS_TILE);
-        let count = (across * picture.height.div_ceil(DROPS_TILE)) as usize;
-        let touched = |[left, right, top, bottom]: [u32; 4]| {
-            (top / DROPS_TILE..=bottom / DROPS_TILE).flat_map(move |row| {
-                (left / DROPS_TILE..=right / DROPS_TILE).map(move |column| (row * across + column) as usize)
-            })
-        };
+        placed.sort_by(|a, b| a.1.drop.nearest.total_cmp(&b.1.drop.nearest).then(a.0.cmp(&b.0)));
+        let shapes = shapes::classify(&mut placed, masks);
+        let across = width.div_ceil(DROPS_TILE);
+        let count = (across * height.div_ceil(DROPS_TILE)) as usize;
+        let touched = |shown: &Projected| tiles_of(*shown, width, height);
         let mut tiles = vec![0u32; count + 1];
-        for (_, _, pixels) in &placed {
-            for tile in touched(*pixels) {
+        for (_, shown) in &placed {
+            for tile in touched(shown) {
                 tiles[tile + 1] += 1;
             }
         }
@@ -70,18 +67,19 @@ impl Rain {
         }
         let mut next = tiles.clone();
         tiles.resize(first as usize, 0);
-        for (index, (_, _, pixels)) in (0u32..).zip(&placed) {
-            for tile in touched(*pixels) {
+        for (index, (_, shown)) in (0u32..).zip(&placed) {
+            for tile in touched(shown) {
                 tiles[next[tile] as usize] = index;
                 next[tile] += 1;
             }
         }
         Self {
-            frame: DropsFrame::new(picture, &capture, masks, across, &options.veil),
+            frame: DropsFrame::new(picture, &capture, masks, across, options),
             capture,
-            list: placed.iter().map(|p| p.1).collect(),
+            shapes,
+            list: placed.iter().map(|p| p.1.drop).collect(),
             given: placed.iter().map(|p| p.0).collect(),
-            boxes: placed.iter().map(|p| p.2).collect(),
+            boxes: placed.iter().filter_map(|p| pixels(&p.1, width, height)).collect(),
             tiles,
         }
     }
@@ -93,7 +91,7 @@ impl Rain {
         let seen = |drop: &DropsDrop, [left, right, top, bottom]: [u32; 4]| {
             (top as usize..=bottom as usize).any(|row| {
                 let row = &clean[row * width..(row + 1) * width];
-                row[left as usize..=right as usize].iter().any(|pixel| drop.distance < pixel[3])
+                row[left as usize..=right as usize].iter().any(|pixel| drop.nearest < pixel[3])
             })
         };
         let all = self.list.iter().zip(&self.boxes).zip(&self.given);
@@ -101,55 +99,42 @@ impl Rain {
     }
 }
 
-/// A drop on the picture, and the pixels that it may touch; `None` where it touches none.
-fn project(
-    picture: &RenderFrame,
-    eye: DVec3,
-    drop: &FallingDrop,
-    masks: &DropMasks,
-) -> Option<(DropsDrop, [u32; 4])> {
-    let offset = (drop.position - eye).as_vec3();
-    let distance = offset.length();
-    let radius = 0.5 * drop.diameter;
-    if !(distance > 2.0 * radius && distance.is_finite() && radius > 0.0) {
-        return None;
-    }
-    let towards = offset / distance;
-    let cosine = towards.dot(Vec3::from(picture.forward));
-    if cosine < 0.05 {
-        return None;
-    }
-    let (right, up) = (Vec3::from(picture.right), Vec3::from(picture.up));
-    let (width, height) = (picture.width as f32, picture.height as f32);
-    let x = (0.5 + 0.5 * towards.dot(right) / (right.dot(right) * cosine)) * width;
-    let y = (0.5 - 0.5 * towards.dot(up) / (up.dot(up) * cosine)) * height;
-    let elevation = ops::asin((-towards.y).clamp(-1.0, 1.0));
-    let place = masks.place(drop.diameter, elevation);
-    let slope = radius / distance;
-    // The plane of the picture is farther away, and slanted, away from the middle.
-    let pixels = slope / (picture.pixel_angle * cosine);
-    let grid = match 2.0 * pixels {
-        d if d < SMALL => 0,
-        d if d < 2.0 => 8,
-        d if d < 16.0 => 4,
-        _ => 2,
-    };
-    let reach = if grid == 0 { 1.0 } else { place.half_extent * pixels / cosine * 1.02 + 1.0 };
-    let (left, right) = ((x - reach).floor(), (x + reach).ceil() - 1.0);
-    let (top, bottom) = ((y - reach).floor(), (y + reach).ceil() - 1.0);
-    if !(right >= 0.0 && left < width && bottom >= 0.0 && top < height) {
-        return None;
-    }
-    let inside = |v: f32, size: f32| v.clamp(0.0, size - 1.0) as u32;
-    let shown = DropsDrop {
-        towards: towards.into(),
-        distance,
-        place: [x, y],
-        slope,
-        half_extent: place.half_extent,
-        row: place.row,
-        area: place.area * pixels * pixels / cosine,
-        grid,
-    };
-    Some((shown, [inside(left, width), inside(right, width), inside(top, height), inside(bottom, height)]))
+/// Columns and rows from the first to the last that lie within a range; `None` if none does.
+fn within(low: f32, high: f32, count: u32) -> Option<[u32; 2]> {
+    let (first, last) = (low.floor(), high.ceil() - 1.0);
+    // The comparison is false for what is no number.
+    (last >= 0.0 && first < count as f32 && first <= last)
+        .then(|| [first, last].map(|v| v.clamp(0.0, count as f32 - 1.0) as u32))
+}
+
+/// The pixels that a drop may touch: first and last column, first and last row.
+fn pixels(shown: &Projected, width: u32, height: u32) -> Option<[u32; 4]> {
+    let (from, reach) = (Vec2::from(shown.drop.first), shown.reach);
+    let to = from + Vec2::from(shown.drop.way);
+    let (low, high) = (from.min(to) - reach, from.max(to) + reach);
+    let [left, right] = within(low.x, high.x, width)?;
+    let [top, bottom] = within(low.y, high.y, height)?;
+    Some([left, right, top, bottom])
+}
+
+/// The tiles that a drop may touch: row by row those that its path passes there.
+fn tiles_of(shown: Projected, width: u32, height: u32) -> impl Iterator<Item = usize> {
+    let across = width.div_ceil(DROPS_TILE);
+    let (from, way, reach) = (Vec2::from(shown.drop.first), Vec2::from(shown.drop.way), shown.reach);
+    let box_of = pixels(&shown, width, height);
+    let rows = box_of.map_or(1..=0, |[_, _, top, bottom]| top / DROPS_TILE..=bottom / DROPS_TILE);
+    rows.flat_map(move |row| {
+        let top = (row * DROPS_TILE) as f32 - reach;
+        let bottom = ((row + 1) * DROPS_TILE) as f32 + reach;
+        // The part of the path that is as high as this row.
+        let (mut low, mut high) = (0.0f32, 1.0f32);
+        if way.y.abs() > 1.0e-3 {
+            let (a, b) = ((top - from.y) / way.y, (bottom - from.y) / way.y);
+            (low, high) = (low.max(a.min(b)), high.min(a.max(b)));
+        }
+        let (a, b) = (from.x + way.x * low, from.x + way.x * high);
+        let columns = if low <= high { within(a.min(b) - reach, a.max(b) + reach, width) } else { None };
+        let columns = columns.map_or(1..=0, |[left, right]| left / DROPS_TILE..=right / DROPS_TILE);
+        columns.map(move |column| (row * across + column) as usize)
+    })
 }

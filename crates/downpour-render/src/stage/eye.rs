@@ -5,6 +5,11 @@ use downpour_scene::weather::{self, Loaded, Weather};
 use glam::{DVec3, Vec3};
 
 use crate::camera::Viewpoint;
+use crate::rain::EyeMotion;
+
+/// What moves faster, in m/s or rad/s, has been cut to another place.
+const FASTEST_M_S: f32 = 100.0;
+const FASTEST_RAD_S: f32 = 30.0;
 
 /// Whose eye it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,6 +65,23 @@ impl Seen {
                 far: far.map(f64::from),
             })
         })
+    }
+
+    /// How the eye moves about a time, from where it is so many seconds apart.
+    pub(super) fn motion(before: &Self, after: &Self, apart_s: f64) -> EyeMotion {
+        let velocity = (after.eye - before.eye).as_vec3() / apart_s as f32;
+        let axes = |seen: &Self| {
+            let right = seen.forward.cross(seen.up).normalize_or_zero();
+            [right, right.cross(seen.forward), seen.forward]
+        };
+        // The sum of the cross products of the axes is twice the sine of the angle, along the axis.
+        let pairs = axes(before).into_iter().zip(axes(after));
+        let turned = pairs.map(|(from, to)| from.cross(to)).sum::<Vec3>() * 0.5;
+        let sine = turned.length();
+        let angle = downpour_math::ops::asin(sine.min(1.0));
+        let turning = if sine > 1.0e-9 { turned * (angle / sine / apart_s as f32) } else { Vec3::ZERO };
+        let jumps = !(velocity.length() <= FASTEST_M_S && turning.length() <= FASTEST_RAD_S);
+        if jumps { EyeMotion::default() } else { EyeMotion { velocity, turning } }
     }
 
     pub(super) fn viewpoint(&self, fov: f64, origin: DVec3) -> Viewpoint {

@@ -1,7 +1,9 @@
 //! `[camera]`.
 
 use super::fault::Places;
-use super::quantity::{DepthM, Exactly, FovDeg, In, PitchDeg, PlaceM, ShutterS, Stops, TurnDeg};
+use super::quantity::{
+    ApertureMm, DepthM, Exactly, FocusM, FovDeg, In, PitchDeg, PlaceM, ShutterS, Stops, TurnDeg,
+};
 use crate::error::SceneError;
 use downpour_math::ops::f64 as ops;
 use glam::DVec3;
@@ -31,6 +33,10 @@ pub struct Camera {
     pub exposure_ev: f64,
     /// How long the shutter is open, in seconds; 0 freezes the drops.
     pub shutter: f64,
+    /// Diameter of the lens's pupil, in metres; 0: all is in focus.
+    pub aperture: f64,
+    /// The distance in focus, in metres; `None` for the far.
+    pub focus: Option<f64>,
 }
 
 /// Where the eye is and looks. Up is +Y; `forward` is never vertical.
@@ -45,7 +51,16 @@ pub struct CameraPose {
 impl Default for Camera {
     /// The model's own camera, 1/60 s.
     fn default() -> Self {
-        Self { pose: None, fov: None, near: None, far: None, exposure_ev: 0.0, shutter: 1.0 / 60.0 }
+        Self {
+            pose: None,
+            fov: None,
+            near: None,
+            far: None,
+            exposure_ev: 0.0,
+            shutter: 1.0 / 60.0,
+            aperture: 0.0,
+            focus: None,
+        }
     }
 }
 
@@ -61,6 +76,8 @@ pub(super) struct CameraTable {
     far_m: Option<In<DepthM>>,
     exposure_ev: Option<In<Stops>>,
     shutter_s: Option<In<ShutterS>>,
+    aperture_mm: Option<In<ApertureMm>>,
+    focus_m: Option<In<FocusM>>,
 }
 
 impl Camera {
@@ -80,6 +97,8 @@ impl Camera {
             far,
             exposure_ev: table.exposure_ev.map_or(default.exposure_ev, |ev| ev.0),
             shutter: table.shutter_s.map_or(default.shutter, |shutter| shutter.0),
+            aperture: table.aperture_mm.map_or(default.aperture, |pupil| pupil.0 * 1.0e-3),
+            focus: table.focus_m.map(|focus| focus.0),
         })
     }
 }

@@ -6,6 +6,7 @@ use super::models::{Model, ModelTable};
 use super::quantity::{Exactly, Whole};
 use super::rain::{Rain, RainTable};
 use super::sky::{Sky, SkyTable, SunSource, SunTable};
+use super::streaks::StreaksTable;
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
 use super::{Camera, MAX_LIGHTS, MAX_MODELS, Weather, camera::CameraTable};
 use crate::error::{SceneError, quoted};
@@ -29,6 +30,7 @@ struct Tables {
     gusts: Option<GustsTable>,
     turbulence: Option<TurbulenceTable>,
     wind_field: WindFieldTable,
+    streaks: StreaksTable,
     output: OutputTable,
 }
 
@@ -63,6 +65,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         lights: numbered(&tables.light, |i, table| Lamp::checked(i, table, &places))?,
         wind: wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &places)?,
         wind_box: tables.wind_field.checked(&places)?,
+        streaks: tables.streaks.checked(),
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
 }

@@ -53,7 +53,10 @@ ranges! {
     PlaceM: -1e7, 1e7, "-1e7 to 1e7 m";
     FovDeg: 1.0, 170.0, "1 to 170 degrees";
     DepthM: 1e-4, 1e7, "1e-4 to 1e7 m";
-    ShutterS: 0.0, 10.0, "0 to 10 s";
+    ShutterS: 0.0, 1.0, "0 to 1 s";
+    ApertureMm: 0.0, 500.0, "0 to 500 mm";
+    FocusM: 0.01, 1e7, "0.01 to 1e7 m";
+    Amplitude: 0.0, 0.3, "0 to 0.3";
     Scale: 1e-6, 1e6, "1e-6 to 1e6";
     Part: -1e9, 1e9, "-1e9 to 1e9";
     ConeDeg: 0.0, 89.9, "0 to 89.9 degrees";

@@ -186,7 +186,7 @@ impl Clip<'_> {
         let time_s = time_s(self.arguments.input.time, number, self.fps);
         let stage = &*self.stage(number, time_s)?;
         let shower = showers.at(stage, time_s, self.places.stats.is_some())?;
-        let options = self.arguments.options(stage, rain.seed, shower.veil);
+        let options = self.arguments.options(stage, &self.input.weather, time_s, shower.veil);
         let picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
         let told = Told {
             computer: painter.computer(),

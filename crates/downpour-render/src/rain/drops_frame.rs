@@ -1,0 +1,113 @@
+//! The picture as the drops' kernels know it. Twin of `shaders/wgsl/render/drops_frame.wgsl`.
+
+use downpour_shaders::render::rain::DROPS_VEIL_QUARTERS;
+use glam::Vec3;
+
+use super::capture::CaptureFrame;
+use super::exposure::{MOST_STREAK_SAMPLES, StreakSamples};
+use super::{DropMasks, RainOptions};
+use crate::data::RenderFrame;
+
+/// Samples of a streak for which the table has no entry: too short, or across the others.
+const STREAK_SPARE: u32 = 16;
+
+/// The picture as the drops' shader knows it. The same layout as `DropsFrame` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct DropsFrame {
+    /// The camera's axes: half the picture at distance 1.
+    pub right: [f32; 3],
+    /// Pixels across.
+    pub width: u32,
+    /// See `right`.
+    pub up: [f32; 3],
+    /// Pixels down.
+    pub height: u32,
+    /// The view direction.
+    pub forward: [f32; 3],
+    /// Width of a pixel at distance 1.
+    pub pixel_angle: f32,
+    /// Axes of the capture in the papers' form: the whole of it at distance 1.
+    pub capture_right: [f32; 3],
+    /// Texels along an edge of the capture.
+    pub capture_size: u32,
+    /// See `capture_right`.
+    pub capture_up: [f32; 3],
+    /// The coarsest level of the capture.
+    pub capture_last: u32,
+    /// The view direction of the capture.
+    pub capture_forward: [f32; 3],
+    /// Angle of a texel of the capture.
+    pub capture_texel: f32,
+    /// The form of refraction.
+    pub form: u32,
+    /// Texels along an edge of a mask.
+    pub mask_size: u32,
+    /// Tiles across the picture.
+    pub tiles_across: u32,
+    /// What the optical depth grows by beyond the table, 1/m.
+    pub veil_beyond: f32,
+    /// Optical depths of the drops that are not drawn ([`Veil`]).
+    pub veil: [[f32; 4]; DROPS_VEIL_QUARTERS as usize],
+    /// Samples along the chord of a streak that is averaged by a loop.
+    pub streak_samples: u32,
+    /// The colour of streaks.
+    pub streak_colour: u32,
+    /// 0.
+    pub unused: [u32; 2],
+}
+
+/// What the drops' kernels read besides the drops.
+#[derive(Clone, Copy)]
+pub(crate) struct DropsView<'a> {
+    pub(crate) frame: &'a DropsFrame,
+    pub(crate) masks: &'a [u32],
+    pub(crate) capture: &'a [[f32; 4]],
+}
+
+impl DropsFrame {
+    pub(crate) fn new(
+        picture: &RenderFrame,
+        capture: &CaptureFrame,
+        masks: &DropMasks,
+        tiles_across: u32,
+        options: &RainOptions,
+    ) -> Self {
+        let streak_samples = match options.exposure.samples {
+            StreakSamples::Table => STREAK_SPARE,
+            StreakSamples::Loop(samples) => samples.clamp(1, MOST_STREAK_SAMPLES),
+        };
+        Self {
+            right: picture.right,
+            width: picture.width,
+            up: picture.up,
+            height: picture.height,
+            forward: picture.forward,
+            pixel_angle: picture.pixel_angle,
+            capture_right: capture.frame.right,
+            capture_size: capture.frame.width,
+            capture_up: capture.frame.up,
+            capture_last: capture.frame.width.ilog2(),
+            capture_forward: capture.frame.forward,
+            capture_texel: capture.frame.pixel_angle,
+            form: capture.form as u32,
+            mask_size: masks.size,
+            tiles_across,
+            veil_beyond: options.veil.beyond,
+            veil: options.veil.table(),
+            streak_samples,
+            streak_colour: options.exposure.colour as u32,
+            unused: [0; 2],
+        }
+    }
+}
+
+impl DropsView<'_> {
+    /// The ray through a place of the picture, in pixels from the top left, of any length.
+    pub(super) fn drops_frame_ray(&self, x: f32, y: f32) -> Vec3 {
+        let frame = self.frame;
+        let u = 2.0 * x / frame.width as f32 - 1.0;
+        let v = 1.0 - 2.0 * y / frame.height as f32;
+        Vec3::from(frame.forward) + Vec3::from(frame.right) * u + Vec3::from(frame.up) * v
+    }
+}

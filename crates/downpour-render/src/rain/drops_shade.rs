@@ -1,0 +1,70 @@
+//! What one ray sees through a drop. Twin of `shaders/wgsl/render/drops_shade.wgsl`, where the method is described.
+
+use downpour_math::packing::packing_octahedral_encode;
+use downpour_shaders::render::rain::{DROPS_SHIFT, DROPS_STRAIGHT};
+use glam::{Vec2, Vec3, Vec4};
+
+use super::drops_frame::DropsView;
+use super::drops_mask::{DropsTexel, drops_mask_right};
+
+/// A drop as a ray meets it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DropsShade {
+    /// From the eye to the drop's middle, of length 1.
+    pub(super) towards: Vec3,
+    /// Half the width of its mask, in equivalent radii.
+    pub(super) half_extent: f32,
+    /// What the ray differs from `towards`, where it is as far along.
+    pub(super) lean: Vec3,
+    /// Equivalent radii between samples.
+    pub(super) spacing: f32,
+    /// Place in the masks: rows of diameters, and of elevations.
+    pub(super) row: [f32; 2],
+}
+
+impl DropsView<'_> {
+    /// The place in the papers' capture of a ray, shifted by what the mask says: the refracted ray meets the plane of the
+    /// capture as far from the ray's own place as the tangent of its deviation.
+    pub(super) fn drops_shade_shifted(&self, ray: Vec3, texel: &DropsTexel) -> Vec2 {
+        let frame = self.frame;
+        let [right, up, forward] =
+            [frame.capture_right, frame.capture_up, frame.capture_forward].map(Vec3::from);
+        let depth = ray.dot(forward).max(1.0e-3);
+        let deep = (-texel.direction.z).max(1.0e-3);
+        let shift = Vec2::new(
+            texel.direction.x / deep / right.dot(right).sqrt(),
+            texel.direction.y / deep / up.dot(up).sqrt(),
+        );
+        let place = Vec2::new(ray.dot(right) / right.dot(right), ray.dot(up) / up.dot(up)) / depth + shift;
+        Vec2::new(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y).clamp(Vec2::ZERO, Vec2::ONE)
+    }
+
+    /// What a drop shows at (x, y), in units of half its mask: radiance times coverage, and coverage.
+    pub(super) fn drops_shade(&self, drop: &DropsShade, x: f32, y: f32) -> Vec4 {
+        let texel = self.drops_mask(drop.row, x, y);
+        if texel.coverage <= 0.0 {
+            return Vec4::ZERO;
+        }
+        let right = drops_mask_right(drop.towards);
+        let up = right.cross(drop.towards);
+        // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
+        let q = ((x * x + y * y) * drop.half_extent * drop.half_extent).min(0.98);
+        let bend = 2.0 / (1.0 - q).sqrt();
+        if self.frame.form == DROPS_SHIFT {
+            let place = self.drops_shade_shifted(drop.towards + drop.lean, &texel);
+            let sum = self.drops_capture_at(place, drop.spacing * (bend - DROPS_STRAIGHT));
+            return sum.extend(1.0) * texel.coverage;
+        }
+        let mut sum = Vec3::ZERO;
+        // What comes through, then what is mirrored.
+        for (seen, weight, footprint) in [
+            (texel.direction, texel.transmittance, drop.spacing * (bend - DROPS_STRAIGHT)),
+            (texel.reflected, 1.0 - texel.transmittance, drop.spacing * bend),
+        ] {
+            let direction = right * seen.x + up * seen.y - drop.towards * seen.z + drop.lean;
+            let place = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
+            sum += self.drops_capture_at(place, footprint) * weight;
+        }
+        sum.extend(1.0) * texel.coverage
+    }
+}

@@ -1,0 +1,273 @@
+//! A falling drop on the picture: its path during the exposure, its oval, its oscillation.
+
+use std::f32::consts::TAU;
+
+use downpour_drop::oscillation::{Fluids, FrequencyLaw, Oscillation, drop_oscillation_azimuth};
+use downpour_math::ops;
+use downpour_math::rng::seed_words;
+use downpour_shaders::render::rain::{DROPS_LOOP, DROPS_STILL, DROPS_TABLE};
+use downpour_sim::field::FallingDrop;
+use glam::{DVec3, Vec2, Vec3};
+
+use super::drops_mask::drops_mask_right;
+use super::exposure::{Exposure, LONGEST_EXPOSURE_S, StreakSamples};
+use super::masks::MaskPlace;
+use super::streak::DropsDrop;
+use super::{DropMasks, shapes};
+use crate::data::RenderFrame;
+
+/// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels round them.
+const SMALL: f32 = 1.0;
+
+/// So are the streaks of drops below this diameter.
+const THIN: f32 = 1.5;
+
+/// Drops whose path is shorter than this share of their radius stand still.
+const STILL: f32 = 0.05;
+
+/// Samples of a pixel of a streak of less than this many pixels across, and of a wider one. No multiples of
+/// `STREAK_LATTICE`.
+const NARROW: f32 = 4.0;
+const NARROW_SAMPLES: u32 = 8;
+const WIDE_SAMPLES: u32 = 5;
+
+/// Diameters, metres, of drops that oscillate.
+const OSCILLATING: std::ops::RangeInclusive<f64> = 0.05e-3..=9.0e-3;
+
+/// A drop on the picture, and the pixels that it may touch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Projected {
+    pub(super) drop: DropsDrop,
+    /// How far from its path it reaches, pixels.
+    pub(super) reach: f32,
+    /// Velocity relative to the picture, m/s.
+    pub(super) velocity: Vec3,
+}
+
+/// `v` turned about an axis by the axis's length, in radians.
+fn turned(v: Vec3, axis: Vec3) -> Vec3 {
+    let angle = axis.length();
+    if angle < 1.0e-9 {
+        return v;
+    }
+    let axis = axis / angle;
+    let (sine, cosine) = (ops::sin(angle), ops::cos(angle));
+    v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine))
+}
+
+/// The share of a path from `from` to `to` on which it is at least `least`.
+fn ahead(from: f32, to: f32, least: f32) -> [f32; 2] {
+    match (from >= least, to >= least) {
+        (true, true) => [0.0, 1.0],
+        (true, false) => [0.0, (from - least) / (from - to)],
+        (false, true) => [(least - from) / (to - from), 1.0],
+        (false, false) => [1.0, 0.0],
+    }
+}
+
+/// A place before the eye on the picture, pixels from the top left.
+fn pixel(picture: &RenderFrame, p: Vec3) -> Vec2 {
+    let (right, up) = (Vec3::from(picture.right), Vec3::from(picture.up));
+    let depth = p.dot(picture.forward.into());
+    Vec2::new(
+        (0.5 + 0.5 * p.dot(right) / (right.dot(right) * depth)) * picture.width as f32,
+        (0.5 - 0.5 * p.dot(up) / (up.dot(up) * depth)) * picture.height as f32,
+    )
+}
+
+/// A drop on the picture; `None` where it is on none.
+pub(super) fn project(
+    picture: &RenderFrame,
+    eye: DVec3,
+    drop: &FallingDrop,
+    masks: &DropMasks,
+    exposure: &Exposure,
+) -> Option<Projected> {
+    let offset = (drop.position - eye).as_vec3();
+    let length = offset.length();
+    let radius = 0.5 * drop.diameter;
+    if !(length > 2.0 * radius && length.is_finite() && radius > 0.0) {
+        return None;
+    }
+    let towards = offset / length;
+    let cosine = towards.dot(Vec3::from(picture.forward));
+    if cosine < 0.05 {
+        return None;
+    }
+    let elevation = ops::asin((-towards.y).clamp(-1.0, 1.0));
+    let place = masks.place(drop.diameter, elevation);
+    let path = Path::of(picture, drop, offset, towards, radius, exposure);
+    let distance = if path.moves { path.depth } else { length };
+    let slope = radius / distance;
+    // The plane of the picture is farther away, and slanted, away from the middle.
+    let pixels = slope / (picture.pixel_angle * cosine);
+    let blur = blur(exposure, distance) / picture.pixel_angle;
+    let width = 2.0 * pixels;
+    let blurred = blur >= 1.0 && blur > 0.7 * width;
+    let grid = match width {
+        _ if blurred => 0,
+        d if path.moves && d < THIN => 0,
+        d if path.moves && d < NARROW => NARROW_SAMPLES,
+        _ if path.moves => WIDE_SAMPLES,
+        d if d < SMALL => 0,
+        d if d < 2.0 => 8,
+        d if d < 16.0 => 4,
+        _ => 2,
+    };
+    let spread = if blurred { (0.75 * width * width + blur * blur).sqrt().max(1.0) } else { 1.0 };
+    let larger = if path.moves { distance / path.nearest } else { 1.0 };
+    let swing = if path.moves { Swing::of(drop, towards, exposure, &path.part) } else { Swing::default() };
+    let reach = if grid == 0 {
+        0.5 * (spread + 1.0)
+    } else {
+        place.half_extent * pixels * larger * (1.0 + swing.most) / cosine * 1.02 + 1.0
+    };
+    let [first, last] = path.ends.map(|p| pixel(picture, p));
+    let (right, up) = (drops_mask_right(towards), drops_mask_right(towards).cross(towards));
+    let [start, end] = path.ends.map(|p| Vec2::new(p.dot(right), p.dot(up)) / p.dot(towards));
+    let shown = DropsDrop {
+        towards: towards.into(),
+        distance,
+        place: pixel(picture, offset).into(),
+        slope,
+        half_extent: place.half_extent,
+        row: place.row,
+        area: place.area * pixels * pixels / cosine,
+        grid,
+        start: start.into(),
+        along: (end - start).into(),
+        first: first.into(),
+        way: (last - first).into(),
+        oval: place.oval,
+        recede: path.recede,
+        swing: swing.swing,
+        turns: swing.turns,
+        share: path.part[1] - path.part[0],
+        spread,
+        nearest: path.nearest - 2.0 * radius,
+        kind: kind(&path, &place, slope, (end - start).length(), exposure),
+        shape: shapes::of_row(place.row[0]),
+        unused: 0,
+    };
+    Some(Projected { drop: shown, reach, velocity: path.velocity })
+}
+
+/// How a drop's light is found.
+fn kind(path: &Path, place: &MaskPlace, slope: f32, length: f32, exposure: &Exposure) -> u32 {
+    match exposure.samples {
+        _ if !path.moves => DROPS_STILL,
+        // Below a drop's own length the table's sums are too coarse.
+        StreakSamples::Table if length >= 2.0 * slope * place.oval[1] => DROPS_TABLE,
+        _ => DROPS_LOOP,
+    }
+}
+
+/// Diameter of the circle of confusion, radians: of a thin lens.
+fn blur(exposure: &Exposure, distance: f32) -> f32 {
+    let vergence = 1.0 / f64::from(distance) - 1.0 / exposure.focus_m;
+    (exposure.aperture_m * vergence.abs()) as f32
+}
+
+/// Where a drop is during the exposure, relative to the eye.
+struct Path {
+    /// Where it is when the exposure begins and ends, or as long as it is before the eye.
+    ends: [Vec3; 2],
+    /// That part of the exposure.
+    part: [f32; 2],
+    /// Mean depth along the direction to the drop, m.
+    depth: f32,
+    /// The least of it.
+    nearest: f32,
+    /// Depth at the end over that at the beginning.
+    recede: f32,
+    velocity: Vec3,
+    moves: bool,
+}
+
+impl Path {
+    fn of(
+        picture: &RenderFrame,
+        drop: &FallingDrop,
+        offset: Vec3,
+        towards: Vec3,
+        radius: f32,
+        exposure: &Exposure,
+    ) -> Self {
+        let distance = offset.length();
+        let still = Self {
+            ends: [offset; 2],
+            part: [0.0, 1.0],
+            depth: distance,
+            nearest: distance,
+            recede: 1.0,
+            velocity: Vec3::ZERO,
+            moves: false,
+        };
+        let shutter = exposure.shutter_s.clamp(0.0, LONGEST_EXPOSURE_S) as f32;
+        if shutter == 0.0 || !shutter.is_finite() {
+            return still;
+        }
+        let velocity = Vec3::from(drop.velocity) - exposure.eye.velocity;
+        let at = |time: f32| turned(offset + velocity * time, -exposure.eye.turning * time);
+        let [open, close] = [-0.5, 0.5].map(|half| at(half * shutter));
+        let forward = Vec3::from(picture.forward);
+        let in_front = ahead(open.dot(forward), close.dot(forward), 2.0 * radius + 0.02);
+        let beside = ahead(open.dot(towards), close.dot(towards), 0.2 * distance);
+        let part = [in_front[0].max(beside[0]), in_front[1].min(beside[1])];
+        let ends = part.map(|share| open + (close - open) * share);
+        let depths = ends.map(|p| p.dot(towards));
+        let across = (ends[1] / depths[1].max(1.0e-6) - ends[0] / depths[0].max(1.0e-6)).length();
+        if part[1] <= part[0] || !across.is_finite() || across < STILL * radius / distance {
+            return still;
+        }
+        Self {
+            ends,
+            part,
+            depth: 0.5 * (depths[0] + depths[1]),
+            nearest: depths[0].min(depths[1]),
+            recede: depths[1] / depths[0],
+            velocity: (close - open) / shutter,
+            moves: true,
+        }
+    }
+}
+
+/// How a drop oscillates during the exposure.
+#[derive(Clone, Copy, Debug, Default)]
+struct Swing {
+    swing: [f32; 4],
+    turns: [f32; 2],
+    /// No part of the surface goes farther, as a share of the radius.
+    most: f32,
+}
+
+impl Swing {
+    fn of(drop: &FallingDrop, towards: Vec3, exposure: &Exposure, part: &[f32; 2]) -> Self {
+        let diameter = f64::from(drop.diameter);
+        if exposure.oscillation.pair() == [0.0; 2] || !OSCILLATING.contains(&diameter) {
+            return Self::default();
+        }
+        let made =
+            Oscillation::new(diameter, exposure.oscillation, &Fluids::AT_20_C, FrequencyLaw::Rayleigh1879);
+        let Ok(oscillation) = made else {
+            return Self::default();
+        };
+        let seed = seed_words(exposure.seed);
+        let id = drop.id as u32 ^ (drop.id >> 32) as u32;
+        let oscillation = oscillation.of_drop(seed, id);
+        let [a20, a31] = exposure.oscillation.pair().map(|a| a as f32);
+        // Where the mode (3,1) bulges, against the right of the view.
+        let azimuth = TAU * drop_oscillation_azimuth(seed, id);
+        let right = drops_mask_right(towards);
+        let cosine = ops::cos(azimuth) * right.x + ops::sin(azimuth) * right.z;
+        let begin = exposure.time_s + exposure.shutter_s * (f64::from(part[0]) - 0.5);
+        let open = exposure.shutter_s * f64::from(part[1] - part[0]);
+        let (frequency, phase) = (oscillation.frequency(), oscillation.phase());
+        let at = [0, 1].map(|mode| (frequency[mode] * begin + phase[mode]).rem_euclid(1.0) as f32);
+        Self {
+            swing: [a20, a31 * cosine, at[0], at[1]],
+            turns: frequency.map(|f| (f * open) as f32),
+            most: a20 + 1.5 * a31,
+        }
+    }
+}

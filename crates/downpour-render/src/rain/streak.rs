@@ -1,0 +1,204 @@
+//! Which part of the exposure a ray passes a moving drop, and where. Twin of `shaders/wgsl/render/streak.wgsl`, where the
+//! method is described.
+
+use downpour_drop::oscillation::{
+    drop_oscillation_outline, drop_oscillation_radius, drop_oscillation_sine, drop_oscillation_state,
+};
+use downpour_shaders::render::rain::STREAK_GAUSS;
+use glam::{Vec2, Vec3};
+
+/// A drop on the picture. The same layout as `DropsDrop` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct DropsDrop {
+    /// From the eye to the drop's middle at mid-exposure, of length 1.
+    pub towards: [f32; 3],
+    /// Metres from the eye, in the middle of its path.
+    pub distance: f32,
+    /// Place of the middle on the picture, pixels from the top left.
+    pub place: [f32; 2],
+    /// Equivalent radius over distance.
+    pub slope: f32,
+    /// Half the width of its mask, in equivalent radii.
+    pub half_extent: f32,
+    /// Place in the masks: rows of diameters, and of elevations.
+    pub row: [f32; 2],
+    /// Area on the picture, pixels.
+    pub area: f32,
+    /// Samples along an edge of a pixel; of a streak: samples of a pixel. 0: below a pixel, or out of focus.
+    pub grid: u32,
+    /// Where the exposure begins: on the plane at distance 1, along the right and up of the drop's view.
+    pub start: [f32; 2],
+    /// The way to where it ends.
+    pub along: [f32; 2],
+    /// `start` on the picture, pixels.
+    pub first: [f32; 2],
+    /// `along` on the picture, pixels.
+    pub way: [f32; 2],
+    /// Half the width and half the height of the oval round its outline, and how far its middle is up, in equivalent
+    /// radii.
+    pub oval: [f32; 3],
+    /// Depth at the end over that at the beginning.
+    pub recede: f32,
+    /// Amplitudes of the modes (2,0) and (3,1), the latter times the cosine of its azimuth, and phases at the beginning,
+    /// in turns.
+    pub swing: [f32; 4],
+    /// Turns of both modes until the end.
+    pub turns: [f32; 2],
+    /// Share of the exposure in which it is before the eye.
+    pub share: f32,
+    /// Width over which a drop that is not sampled is spread, pixels.
+    pub spread: f32,
+    /// No part of it is nearer, m.
+    pub nearest: f32,
+    /// Still, by the table, or by a loop.
+    pub kind: u32,
+    /// Which table.
+    pub shape: u32,
+    /// 0.
+    pub unused: u32,
+}
+
+/// Where a ray passes a moving drop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StreakChord {
+    /// Unit direction of the motion on the oval, which is a circle of radius 1 here.
+    pub direction: Vec2,
+    /// Where the chord is across the motion, -1 to 1.
+    pub across: f32,
+    /// Half its length.
+    pub half: f32,
+    /// The part of it that passes during the exposure, in units of `half`; none if `high` is not above `low`.
+    pub low: f32,
+    /// See `low`.
+    pub high: f32,
+    /// Share of the exposure in which the whole chord would pass.
+    pub share: f32,
+}
+
+/// The time, as a share of the exposure, at which the drop is at a share of its way on the picture.
+#[must_use]
+pub fn streak_time(recede: f32, way: f32) -> f32 {
+    way / (way + (1.0 - way) * recede).max(1.0e-20)
+}
+
+/// The share of the way that is nearest to a place on the plane.
+#[must_use]
+pub fn streak_nearest(drop: &DropsDrop, at: Vec2) -> f32 {
+    let along = Vec2::from(drop.along);
+    ((at - Vec2::from(drop.start)).dot(along) / along.dot(along).max(1.0e-20)).clamp(0.0, 1.0)
+}
+
+/// The depth at a time, over that in the middle of the exposure.
+#[must_use]
+pub fn streak_depth(recede: f32, time: f32) -> f32 {
+    (1.0 + (recede - 1.0) * time) * 2.0 / (1.0 + recede)
+}
+
+/// How much wider the oval is on the left and on the right, and how much taller, at a time.
+#[must_use]
+pub fn streak_stretch(swing: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 {
+    let s2 = swing[0] * drop_oscillation_sine(swing[2] + turns[0] * time);
+    let s3 = swing[1] * drop_oscillation_sine(swing[3] + turns[1] * time);
+    let state = drop_oscillation_state([s2, s3]);
+    let [right, left] = drop_oscillation_outline(state, 1.0);
+    Vec3::new(right, left, drop_oscillation_radius(state, 1.0, 0.0))
+}
+
+/// Where a ray through a place of the plane passes the drop.
+#[must_use]
+pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
+    let (start, path) = (Vec2::from(drop.start), Vec2::from(drop.along));
+    let way = streak_nearest(drop, at);
+    let time = streak_time(drop.recede, way);
+    let scale = drop.slope / streak_depth(drop.recede, time);
+    let stretch = streak_stretch(drop.swing, drop.turns, time);
+    let offset = (at - start - path * way) / scale;
+    let side = if offset.x < 0.0 { stretch.y } else { stretch.x };
+    let oval = Vec2::new(drop.oval[0] * side, drop.oval[1] * stretch.z);
+    let on_oval = (offset - Vec2::new(0.0, drop.oval[2] * stretch.z)) / oval;
+    let moved = path / (scale * oval);
+    let length = moved.dot(moved).sqrt().max(1.0e-12);
+    let direction = moved / length;
+    let across = on_oval.x * direction.y - on_oval.y * direction.x;
+    let along = on_oval.dot(direction);
+    let half = (1.0 - across * across).max(0.0).sqrt();
+    let per_half = 1.0 / half.max(1.0e-6);
+    let faster = way + (1.0 - way) * drop.recede;
+    let share = 2.0 * half / length * drop.recede / (faster * faster).max(1.0e-12);
+    StreakChord {
+        direction,
+        across,
+        half,
+        low: ((along - length * (1.0 - way)) * per_half).max(-1.0),
+        high: if half <= 1.0e-6 { -2.0 } else { ((along + length * way) * per_half).min(1.0) },
+        share: share * drop.share,
+    }
+}
+
+/// The place in the mask, in units of half of it, of a place on a chord, in units of half its length.
+#[must_use]
+pub fn streak_place(drop: &DropsDrop, chord: &StreakChord, v: f32) -> Vec2 {
+    let away = Vec2::new(chord.direction.y, -chord.direction.x);
+    let at =
+        (away * chord.across + chord.direction * (v * chord.half)) * Vec2::new(drop.oval[0], drop.oval[1]);
+    (at + Vec2::new(0.0, drop.oval[2])) / drop.half_extent
+}
+
+/// The share of a pixel's width that a box of some width (1 or more), `off` pixels from the pixel's middle, covers, over that
+/// width: over all pixels it is 1.
+#[must_use]
+pub fn streak_box(width: f32, off: f32) -> f32 {
+    ((width + 1.0) * 0.5 - off.abs()).clamp(0.0, 1.0) / width
+}
+
+/// Both edges, as shares of the way, of where a path is less than `reach` from 0.
+#[must_use]
+pub fn streak_within(from: f32, way: f32, reach: f32) -> Vec2 {
+    if way.abs() < 1.0e-6 {
+        return if from.abs() < reach { Vec2::new(0.0, 1.0) } else { Vec2::new(2.0, -1.0) };
+    }
+    let a = (-reach - from) / way;
+    let b = (reach - from) / way;
+    Vec2::new(a.min(b), a.max(b))
+}
+
+/// The mean of the box over a path: exact, by pieces in which both edges are straight.
+#[must_use]
+pub fn streak_mean(from: Vec2, way: Vec2, width: f32) -> f32 {
+    let outer_x = streak_within(from.x, way.x, (width + 1.0) * 0.5);
+    let outer_y = streak_within(from.y, way.y, (width + 1.0) * 0.5);
+    let low = outer_x.x.max(outer_y.x).max(0.0);
+    let high = outer_x.y.min(outer_y.y).min(1.0);
+    if high <= low {
+        return 0.0;
+    }
+    let inner_x = streak_within(from.x, way.x, (width - 1.0) * 0.5);
+    let inner_y = streak_within(from.y, way.y, (width - 1.0) * 0.5);
+    // Edges of pieces, in order: two pairs, each in order, merged.
+    let x = inner_x.clamp(Vec2::splat(low), Vec2::splat(high));
+    let y = inner_y.clamp(Vec2::splat(low), Vec2::splat(high));
+    let first = x.x.min(x.y).min(y.x.min(y.y));
+    let last = x.x.max(x.y).max(y.x.max(y.y));
+    let starts = x.x.min(x.y).max(y.x.min(y.y));
+    let ends = x.x.max(x.y).min(y.x.max(y.y));
+    let edges = [low, first, starts.min(ends), starts.max(ends), last, high];
+    let mut sum = 0.0;
+    for pair in edges.windows(2) {
+        let middle = (pair[0] + pair[1]) * 0.5;
+        let reach = (pair[1] - pair[0]) * 0.5;
+        // Gauss's two points are exact for cubics.
+        for side in [-1.0, 1.0] {
+            let at = from + way * (middle + side * reach * STREAK_GAUSS);
+            sum += streak_box(width, at.x) * streak_box(width, at.y) * reach;
+        }
+    }
+    sum
+}
+
+/// The share of a pixel that a drop which is not sampled covers.
+#[must_use]
+pub fn streak_cover(drop: &DropsDrop, x: u32, y: u32) -> f32 {
+    let from = Vec2::from(drop.first) - Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+    (drop.area * drop.share * streak_mean(from, Vec2::from(drop.way), drop.spread)).min(1.0)
+}

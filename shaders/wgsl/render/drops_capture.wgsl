@@ -1,0 +1,59 @@
+// What was captured round the eye, between its texels and its levels.
+// Law: octahedral (the square goes on beyond an edge at the edge's mirror image) or the papers' wide picture; trilinear.
+// Twin: downpour_render::rain::drops_capture.
+
+@group(0) @binding(1) var<storage, read> drops_capture: array<vec4f>;
+
+// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+fn drops_capture_texel(level: u32, column: i32, row: i32) -> vec3f {
+    let whole = drops_frame.capture_size;
+    let size = whole >> level;
+    let edge = i32(size);
+    var x = column;
+    var y = row;
+    if drops_frame.form == DROPS_DIRECTION {
+        if x < 0 || x >= edge {
+            x = clamp(x, 0, edge - 1);
+            y = edge - 1 - y;
+        }
+        if y < 0 || y >= edge {
+            y = clamp(y, 0, edge - 1);
+            x = edge - 1 - x;
+        }
+    }
+    x = clamp(x, 0, edge - 1);
+    y = clamp(y, 0, edge - 1);
+    let first = 4u * (whole * whole - size * size) / 3u;
+    return drops_capture[first + u32(y) * size + u32(x)].rgb;
+}
+
+// A level of the capture at a place of [0, 1], bilinear.
+fn drops_capture_level(level: u32, place: vec2f) -> vec3f {
+    let size = f32(drops_frame.capture_size >> level);
+    let x = place.x * size - 0.5;
+    let y = place.y * size - 0.5;
+    let left = i32(floor(x));
+    let top = i32(floor(y));
+    let fx = x - floor(x);
+    let fy = y - floor(y);
+    let upper = drops_capture_texel(level, left, top) * (1.0 - fx)
+        + drops_capture_texel(level, left + 1, top) * fx;
+    let lower = drops_capture_texel(level, left, top + 1) * (1.0 - fx)
+        + drops_capture_texel(level, left + 1, top + 1) * fx;
+    return upper * (1.0 - fy) + lower * fy;
+}
+
+// The capture at a place of [0, 1], for a footprint of some angle.
+fn drops_capture_at(place: vec2f, footprint: f32) -> vec3f {
+    let last = f32(drops_frame.capture_last);
+    let level = clamp(log2(max(footprint / drops_frame.capture_texel, 1.0e-6)), 0.0, last);
+    let low = floor(level);
+    let part = level - low;
+    var share = 1.0 - part;
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
+        sum += drops_capture_level(u32(low) + k, place) * share;
+        share = select(0.0, part, k == 0u);
+    }
+    return sum;
+}

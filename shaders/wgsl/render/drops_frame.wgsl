@@ -1,0 +1,47 @@
+// The picture as the drops' kernels know it: its camera, its capture, its masks, and the drops that are not drawn.
+// Twin: downpour_render::rain::drops_frame.
+
+struct DropsFrame {
+    // The camera's axes: half the picture at distance 1.
+    right: vec3f,
+    width: u32,
+    up: vec3f,
+    height: u32,
+    forward: vec3f,
+    pixel_angle: f32,
+    // Axes of the capture in the papers' form: the whole of it at distance 1.
+    capture_right: vec3f,
+    // Texels along an edge of the capture.
+    capture_size: u32,
+    capture_up: vec3f,
+    // The coarsest level of the capture.
+    capture_last: u32,
+    capture_forward: vec3f,
+    // Angle of a texel of the capture.
+    capture_texel: f32,
+    // The form of refraction: DROPS_DIRECTION or DROPS_SHIFT.
+    form: u32,
+    // Texels along an edge of a mask.
+    mask_size: u32,
+    // Tiles across the picture.
+    tiles_across: u32,
+    // What the optical depth grows by beyond the table, 1/m.
+    veil_beyond: f32,
+    // Optical depths of the drops that are too small or too far to be drawn: at DROPS_VEIL_NEAR metres, then a factor of
+    // 2^(1/3) farther each.
+    veil: array<vec4f, DROPS_VEIL_QUARTERS>,
+    // Samples along the chord of a streak that is averaged by a loop.
+    streak_samples: u32,
+    // The colour of streaks: STREAK_REFRACTED, or STREAK_WHITE.
+    streak_colour: u32,
+    unused: vec2u,
+}
+
+@group(0) @binding(0) var<uniform> drops_frame: DropsFrame;
+
+// The ray through a place of the picture, in pixels from the top left, of any length.
+fn drops_frame_ray(x: f32, y: f32) -> vec3f {
+    let u = 2.0 * x / f32(drops_frame.width) - 1.0;
+    let v = 1.0 - 2.0 * y / f32(drops_frame.height);
+    return drops_frame.forward + drops_frame.right * u + drops_frame.up * v;
+}
