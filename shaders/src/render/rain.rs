@@ -59,13 +59,13 @@ shared_constants! {
         /// Streaks have one colour, the mean of the surroundings.
         STREAK_WHITE: u32 = 1;
         /// Rays of the streak radiance table along an edge of the picture.
-        STREAK_RAYS: u32 = 24;
+        STREAK_RAYS: u32 = 32;
         /// Places across the motion.
-        STREAK_ACROSS: u32 = 40;
+        STREAK_ACROSS: u32 = 36;
         /// Running sums along a chord.
-        STREAK_SUMS: u32 = 8;
+        STREAK_SUMS: u32 = 4;
         /// Samples along a chord of the table; a multiple of the sums.
-        STREAK_TAPS: u32 = 32;
+        STREAK_TAPS: u32 = 16;
         /// Samples along an edge of the square round a drop, for its mean.
         STREAK_MEAN_GRID: u32 = 12;
         /// The brightest entry: halves end at 65 504.

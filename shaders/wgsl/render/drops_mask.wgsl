@@ -51,6 +51,16 @@ fn drops_mask_add(sum: DropsTexel, texel: DropsTexel, weight: f32) -> DropsTexel
     );
 }
 
+// What a sum of weighted texels says.
+fn drops_mask_mean(sum: DropsTexel) -> DropsTexel {
+    return DropsTexel(
+        drops_mask_unit(sum.direction),
+        sum.coverage,
+        drops_mask_unit(sum.reflected),
+        sum.transmittance / max(sum.coverage, 1.0e-20),
+    );
+}
+
 // A mask between its texels: sums weighted by coverage. (u, v) in [0, 1] from the top left.
 fn drops_mask_layer(sum: DropsTexel, layer: u32, u: f32, v: f32, weight: f32) -> DropsTexel {
     let x = u * f32(drops_frame.mask_size) - 0.5;
@@ -81,10 +91,23 @@ fn drops_mask(row: vec2f, x: f32, y: f32) -> DropsTexel {
             sum = drops_mask_layer(sum, first + (k / 2u) * DROPS_ELEVATIONS + (k & 1u), u, v, weight);
         }
     }
-    return DropsTexel(
-        drops_mask_unit(sum.direction),
-        sum.coverage,
-        drops_mask_unit(sum.reflected),
-        sum.transmittance / max(sum.coverage, 1.0e-20),
-    );
+    return drops_mask_mean(sum);
+}
+
+// The same at the nearest texel of the nearest diameter, for means over many places.
+fn drops_mask_near(row: vec2f, x: f32, y: f32) -> DropsTexel {
+    let size = f32(drops_frame.mask_size);
+    let column = i32((0.5 + 0.5 * x) * size);
+    let line = i32((0.5 - 0.5 * y) * size);
+    let low = floor(row.y);
+    let part = row.y - low;
+    let first = u32(row.x + 0.5) * DROPS_ELEVATIONS + u32(low);
+    var sum = DropsTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
+    for (var k = 0u; k < 2u; k += 1u) {
+        let weight = select(1.0 - part, part, k == 1u);
+        if weight > 0.0 {
+            sum = drops_mask_add(sum, drops_mask_texel(first + k, column, line), weight);
+        }
+    }
+    return drops_mask_mean(sum);
 }

@@ -31,6 +31,16 @@ fn drops_mask_add(sum: DropsTexel, texel: DropsTexel, weight: f32) -> DropsTexel
     }
 }
 
+/// What a sum of weighted texels says.
+fn drops_mask_mean(sum: DropsTexel) -> DropsTexel {
+    DropsTexel {
+        direction: drops_mask_unit(sum.direction),
+        coverage: sum.coverage,
+        reflected: drops_mask_unit(sum.reflected),
+        transmittance: sum.transmittance / sum.coverage.max(1.0e-20),
+    }
+}
+
 /// The right of the view of a drop whose axis is the world's vertical.
 #[must_use]
 pub fn drops_mask_right(towards: Vec3) -> Vec3 {
@@ -84,11 +94,22 @@ impl DropsView<'_> {
                 sum = self.drops_mask_layer(sum, layer, u, v, weight);
             }
         }
-        DropsTexel {
-            direction: drops_mask_unit(sum.direction),
-            coverage: sum.coverage,
-            reflected: drops_mask_unit(sum.reflected),
-            transmittance: sum.transmittance / sum.coverage.max(1.0e-20),
+        drops_mask_mean(sum)
+    }
+
+    /// The same at the nearest texel of the nearest diameter, for means over many places.
+    pub(super) fn drops_mask_near(&self, row: [f32; 2], x: f32, y: f32) -> DropsTexel {
+        let size = self.frame.mask_size as f32;
+        let (column, line) = (((0.5 + 0.5 * x) * size) as i32, ((0.5 - 0.5 * y) * size) as i32);
+        let low = row[1].floor();
+        let part = row[1] - low;
+        let first = (row[0] + 0.5) as u32 * DROPS_ELEVATIONS + low as u32;
+        let mut sum = DropsTexel::default();
+        for (k, weight) in [(0, 1.0 - part), (1, part)] {
+            if weight > 0.0 {
+                sum = drops_mask_add(sum, self.drops_mask_texel(first + k, column, line), weight);
+            }
         }
+        drops_mask_mean(sum)
     }
 }
