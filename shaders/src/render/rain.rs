@@ -65,7 +65,7 @@ shared_constants! {
         /// Running sums along a chord.
         STREAK_SUMS: u32 = 4;
         /// Samples along a chord of the table; a multiple of the sums.
-        STREAK_TAPS: u32 = 16;
+        STREAK_TAPS: u32 = 32;
         /// Samples along an edge of the square round a drop, for its mean.
         STREAK_MEAN_GRID: u32 = 12;
         /// The brightest entry: halves end at 65 504.

@@ -93,21 +93,3 @@ fn drops_mask(row: vec2f, x: f32, y: f32) -> DropsTexel {
     }
     return drops_mask_mean(sum);
 }
-
-// The same at the nearest texel of the nearest diameter, for means over many places.
-fn drops_mask_near(row: vec2f, x: f32, y: f32) -> DropsTexel {
-    let size = f32(drops_frame.mask_size);
-    let column = i32((0.5 + 0.5 * x) * size);
-    let line = i32((0.5 - 0.5 * y) * size);
-    let low = floor(row.y);
-    let part = row.y - low;
-    let first = u32(row.x + 0.5) * DROPS_ELEVATIONS + u32(low);
-    var sum = DropsTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
-    for (var k = 0u; k < 2u; k += 1u) {
-        let weight = select(1.0 - part, part, k == 1u);
-        if weight > 0.0 {
-            sum = drops_mask_add(sum, drops_mask_texel(first + k, column, line), weight);
-        }
-    }
-    return drops_mask_mean(sum);
-}

@@ -38,11 +38,7 @@ fn drops_shade_shifted(ray: vec3f, texel: DropsTexel) -> vec2f {
 
 // What a drop shows at (x, y), in units of half its mask: radiance times coverage, and coverage.
 fn drops_shade(drop: DropsShade, x: f32, y: f32) -> vec4f {
-    return drops_shade_texel(drop, drops_mask(drop.row, x, y), x, y);
-}
-
-// The same for what the mask says there.
-fn drops_shade_texel(drop: DropsShade, texel: DropsTexel, x: f32, y: f32) -> vec4f {
+    let texel = drops_mask(drop.row, x, y);
     if texel.coverage <= 0.0 {
         return vec4f(0.0);
     }

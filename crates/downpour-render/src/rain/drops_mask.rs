@@ -96,20 +96,4 @@ impl DropsView<'_> {
         }
         drops_mask_mean(sum)
     }
-
-    /// The same at the nearest texel of the nearest diameter, for means over many places.
-    pub(super) fn drops_mask_near(&self, row: [f32; 2], x: f32, y: f32) -> DropsTexel {
-        let size = self.frame.mask_size as f32;
-        let (column, line) = (((0.5 + 0.5 * x) * size) as i32, ((0.5 - 0.5 * y) * size) as i32);
-        let low = row[1].floor();
-        let part = row[1] - low;
-        let first = (row[0] + 0.5) as u32 * DROPS_ELEVATIONS + low as u32;
-        let mut sum = DropsTexel::default();
-        for (k, weight) in [(0, 1.0 - part), (1, part)] {
-            if weight > 0.0 {
-                sum = drops_mask_add(sum, self.drops_mask_texel(first + k, column, line), weight);
-            }
-        }
-        drops_mask_mean(sum)
-    }
 }

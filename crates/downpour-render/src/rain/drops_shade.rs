@@ -41,11 +41,7 @@ impl DropsView<'_> {
 
     /// What a drop shows at (x, y), in units of half its mask: radiance times coverage, and coverage.
     pub(super) fn drops_shade(&self, drop: &DropsShade, x: f32, y: f32) -> Vec4 {
-        self.drops_shade_texel(drop, &self.drops_mask(drop.row, x, y), x, y)
-    }
-
-    /// The same for what the mask says there.
-    pub(super) fn drops_shade_texel(&self, drop: &DropsShade, texel: &DropsTexel, x: f32, y: f32) -> Vec4 {
+        let texel = self.drops_mask(drop.row, x, y);
         if texel.coverage <= 0.0 {
             return Vec4::ZERO;
         }
@@ -55,7 +51,7 @@ impl DropsView<'_> {
         let q = ((x * x + y * y) * drop.half_extent * drop.half_extent).min(0.98);
         let bend = 2.0 / (1.0 - q).sqrt();
         if self.frame.form == DROPS_SHIFT {
-            let place = self.drops_shade_shifted(drop.towards + drop.lean, texel);
+            let place = self.drops_shade_shifted(drop.towards + drop.lean, &texel);
             let sum = self.drops_capture_at(place, drop.spacing * (bend - DROPS_STRAIGHT));
             return sum.extend(1.0) * texel.coverage;
         }

@@ -1,0 +1,211 @@
+//! Tables 1 and 2 of Rousseau 2008 again: what streaks cost and how far they are from the truth, by samples per streak.
+//!
+//! `cargo run --release -p downpour --features wgpu --example persistence -- WEATHER.toml [--quick]`
+//!
+//! 1024 x 768 pixels, 1/60 s, drops uniform in the picture's pyramid, all of one radius, at their terminal speed. Times are
+//! of the device, without the scene (drawn by rays here) and the transfer of the picture; on a software driver those of the
+//! clock. A streak of less than 1.5 pixels across takes the mean of its drop from the table whatever the samples, so a
+//! second set of drops is near the eye, where streaks are wide. The error is the root mean square of the rain's difference
+//! to 512 samples, over that of the rain.
+
+use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
+
+use downpour::drop::air::Air;
+use downpour::drop::fall_speed::{FallSpeedModel, TerminalSpeed};
+use downpour::drop::oscillation::Amplitudes;
+use downpour::gpu::{AdapterChoice, Dispatch, Gpu, wgpu};
+use downpour::mask::MaskOptions;
+use downpour::math::rng::{rng_draw, rng_unit};
+use downpour::render::gpu::{RainOnGpu, RainPipeline, SceneOnGpu, ScenePipeline};
+use downpour::render::rain::streak_lookup::STREAK_SHAPE_BYTES;
+use downpour::render::rain::{DropMasks, Exposure, Rain, RainOptions, StreakColour, StreakSamples};
+use downpour::render::stage::Stage;
+use downpour::scene::Budget;
+use downpour::scene::weather::{Roots, Weather, load};
+use downpour::sim::field::{DropKind, FallingDrop};
+
+/// Seconds.
+const SHUTTER: f64 = 1.0 / 60.0;
+
+/// Samples that count as the truth.
+const TRUTH: u32 = 512;
+
+/// Metres: where drops are in the papers' picture, and where all streaks are wide.
+const FAR: [f32; 2] = [0.1, 10.0];
+const NEAR: [f32; 2] = [0.2, 1.0];
+
+/// What all pictures share.
+struct Bench<'a> {
+    gpu: &'a Gpu,
+    stage: &'a Stage,
+    frame: downpour::render::data::RenderFrame,
+    masks: DropMasks,
+    scenes: ScenePipeline,
+    rains: RainPipeline,
+    scene: SceneOnGpu,
+    uploaded: RainOnGpu,
+    clean: wgpu::Buffer,
+}
+
+/// Milliseconds and bytes of one picture.
+struct Cost {
+    binning: f64,
+    capture: f64,
+    table: f64,
+    drops: f64,
+    layer: Vec<[f32; 4]>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let path = std::env::args_os().nth(1).ok_or("which weather file?")?;
+    let quick = std::env::args().any(|argument| argument == "--quick");
+    let path = Path::new(&path);
+    let mut budget = Budget::default();
+    let weather = Weather::read(path, &mut budget)?;
+    let loaded = load(&weather, &Roots::open(path, &[])?, &mut budget)?;
+    let stage = Stage::new(&weather, &loaded, 0.0)?;
+    let gpu = Gpu::open(&AdapterChoice::Auto)?;
+    let size = if quick { [320, 240] } else { [1024, 768] };
+    println!("adapter: {}; {} x {}, shutter 1/60 s", gpu.adapter().name, size[0], size[1]);
+
+    let masks = DropMasks::trace(MaskOptions::default().refractive_index)?;
+    let (scenes, rains) = (ScenePipeline::new(&gpu)?, RainPipeline::new(&gpu)?);
+    let frame = stage.viewpoint.frame(&stage.data, size, 1, 1, 0)?;
+    let (scene, uploaded) = (scenes.upload(&stage.data)?, rains.upload(&masks)?);
+    let drawn = scenes.prepare(&scene, &frame)?;
+    println!("scene by rays, one sample, one ray to the sky: {:.3} ms", time(&gpu, &drawn.dispatches())?);
+    let clean = drawn.picture().clone();
+    let bench = Bench { gpu: &gpu, stage: &stage, frame, masks, scenes, rains, scene, uploaded, clean };
+    println!("table: {:.2} MB a shape", STREAK_SHAPE_BYTES as f64 * 1.0e-6);
+    bench.by_count(quick)?;
+    bench.by_samples(FAR, if quick { 1000 } else { 10_000 }, quick)?;
+    bench.by_samples(NEAR, if quick { 200 } else { 2000 }, quick)
+}
+
+impl Bench<'_> {
+    /// Table 1: radius 1 mm, 0 to 40 000 drops.
+    fn by_count(&self, quick: bool) -> Result<(), Box<dyn Error>> {
+        println!(
+            "\n| streaks, r = 1 mm | binning (CPU) ms | capture ms | white ms | still drops ms | table ms | streaks ms | rain, frames/s |"
+        );
+        println!("|---|---|---|---|---|---|---|---|");
+        for count in [0, 5000, 10_000, 20_000, 40_000] {
+            let count = if quick { count / 10 } else { count };
+            let drops = self.drops(count, 1.0e-3, FAR)?;
+            let white = Exposure { colour: StreakColour::White, ..exposure(StreakSamples::Table) };
+            let white = self.picture(&drops, white)?.drops;
+            let still = self.picture(&drops, Exposure::default())?.drops;
+            let Cost { binning, capture, table, drops, .. } =
+                self.picture(&drops, exposure(StreakSamples::Table))?;
+            let rate = 1.0e3 / (capture + table + drops);
+            println!(
+                "| {count} | {binning:.2} | {capture:.3} | {white:.3} | {still:.3} | {table:.3} | {drops:.3} | {rate:.0} |"
+            );
+        }
+        Ok(())
+    }
+
+    /// Table 2: by radius and samples.
+    fn by_samples(&self, range: [f32; 2], count: u32, quick: bool) -> Result<(), Box<dyn Error>> {
+        println!(
+            "\n{count} streaks {} to {} m from the eye: milliseconds of the streaks (error)",
+            range[0], range[1]
+        );
+        println!("| radius mm | 1 | 5 | 10 | 20 | 50 | table | its making ms |");
+        println!("|---|---|---|---|---|---|---|---|");
+        for radius in [0.5e-3, 1.0e-3, 2.0e-3, 5.0e-3] {
+            let drops = self.drops(count, radius, range)?;
+            let truth =
+                self.picture(&drops, exposure(StreakSamples::Loop(if quick { 64 } else { TRUTH })))?.layer;
+            let mut row = format!("| {} |", radius * 1.0e3);
+            for samples in [1, 5, 10, 20, 50] {
+                let cost = self.picture(&drops, exposure(StreakSamples::Loop(samples)))?;
+                row += &format!(" {:.3} ({:.2} %) |", cost.drops, 100.0 * error(&cost.layer, &truth));
+            }
+            let cost = self.picture(&drops, exposure(StreakSamples::Table))?;
+            let error = 100.0 * error(&cost.layer, &truth);
+            println!("{row} {:.3} ({error:.2} %) | {:.3} |", cost.drops, cost.table);
+        }
+        Ok(())
+    }
+
+    fn picture(&self, drops: &[FallingDrop], exposure: Exposure) -> Result<Cost, Box<dyn Error>> {
+        let options = RainOptions { exposure, ..RainOptions::default() };
+        let start = Instant::now();
+        let eye = self.stage.viewpoint.eye.as_dvec3();
+        let rain = Rain::new(&self.frame, eye, drops, &self.masks, &options);
+        let binning = ms(start.elapsed());
+        let pass = self.rains.prepare(&self.scenes, &self.scene, &self.uploaded, &self.clean, &rain)?;
+        let capture = time(self.gpu, &pass.capture())?;
+        let streaks: Vec<Dispatch<'_>> = pass.streaks().into_iter().collect();
+        let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
+        let drops = time(self.gpu, &[pass.drops()])?;
+        Ok(Cost { binning, capture, table, drops, layer: pass.layer()? })
+    }
+
+    /// Drops somewhere in the picture, uniform in space, as they fall.
+    fn drops(
+        &self,
+        count: u32,
+        radius: f32,
+        [near, far]: [f32; 2],
+    ) -> Result<Vec<FallingDrop>, Box<dyn Error>> {
+        let diameter = 2.0 * radius;
+        // The largest of the table is no drop of rain: it falls as fast as the largest that is.
+        let speed = TerminalSpeed::new(FallSpeedModel::default(), &Air::standard())
+            .at(f64::from(diameter).min(7.0e-3))?;
+        let view = &self.stage.viewpoint;
+        let forward = view.forward.normalize();
+        let right = forward.cross(view.up).normalize();
+        let up = right.cross(forward);
+        let half = downpour::math::ops::tan(0.5 * view.fov_y);
+        let of = |index| {
+            let [a, b, c, _] = rng_draw([2008, 0], index, 0, 0).map(rng_unit);
+            let across = right * ((2.0 * a - 1.0) * half * 4.0 / 3.0) + up * ((2.0 * b - 1.0) * half);
+            // Uniform in a pyramid: the cube of the depth is uniform.
+            let cube = near * near * near + (far * far * far - near * near * near) * c;
+            let depth = downpour::math::ops::pow(cube, 1.0 / 3.0);
+            FallingDrop {
+                position: (view.eye + (forward + across) * depth).as_dvec3(),
+                velocity: [0.0, -speed as f32, 0.0],
+                diameter,
+                id: u64::from(index),
+                kind: DropKind::Falling,
+            }
+        };
+        Ok((0..count).map(of).collect())
+    }
+}
+
+fn exposure(samples: StreakSamples) -> Exposure {
+    Exposure { shutter_s: SHUTTER, samples, oscillation: Amplitudes::GARG_NAYAR_EVEN, ..Exposure::default() }
+}
+
+/// Milliseconds of the device; of the clock where a software driver gives no time. As many runs as a quarter of a second
+/// takes.
+fn time(gpu: &Gpu, dispatches: &[Dispatch<'_>]) -> Result<f64, Box<dyn Error>> {
+    let first = ms(gpu.time(dispatches, 1)?.wall);
+    let time = gpu.time(dispatches, (250.0 / first).clamp(1.0, 50.0) as u32)?;
+    if gpu.adapter().is_software() {
+        return Ok(ms(time.wall));
+    }
+    Ok(ms(time.device.unwrap_or(time.wall)))
+}
+
+fn ms(time: std::time::Duration) -> f64 {
+    time.as_secs_f64() * 1.0e3
+}
+
+/// Root mean square of the difference of two rains, over that of the second.
+fn error(found: &[[f32; 4]], expected: &[[f32; 4]]) -> f64 {
+    let (mut squares, mut all) = (0.0, 0.0);
+    for (a, b) in found.iter().zip(expected) {
+        for k in 0..3 {
+            squares += f64::from(a[k] - b[k]) * f64::from(a[k] - b[k]);
+            all += f64::from(b[k]) * f64::from(b[k]);
+        }
+    }
+    (squares / f64::max(all, 1.0e-30)).sqrt()
+}
