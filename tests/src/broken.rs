@@ -79,6 +79,9 @@ pub const BROKEN: &[Broken] = &[
         right: "(v * 3 + along) / 4",
         wrong: "(v * 3 + along) >> vec2u(2u)",
     },
+    Broken { function: "drop_glint_angle", right: "0.25 - octant", wrong: "0.25 + octant" },
+    Broken { function: "drop_glint_rousseau", right: "across * (1.0 + lit)", wrong: "across * (1.0 - lit)" },
+    Broken { function: "drop_light_mean", right: "- towards * sqrt", wrong: "+ towards * sqrt" },
     Broken { function: "wind_field_mix", right: "(c10 - c00) * share.y", wrong: "(c10 - c00) * share.x" },
 ];
 

@@ -4,6 +4,7 @@ mod bvh;
 mod collision;
 mod common;
 mod drop;
+mod drop_light;
 mod glass;
 mod mask;
 mod puddle;
@@ -23,6 +24,7 @@ pub fn functions() -> Vec<FunctionCase> {
         collision::functions(),
         common::functions(),
         drop::functions(),
+        drop_light::functions(),
         glass::functions(),
         mask::functions(),
         puddle::functions(),
@@ -42,6 +44,7 @@ pub fn functions() -> Vec<FunctionCase> {
 pub fn kernels() -> Vec<KernelCase> {
     [
         collision::kernels(),
+        drop_light::kernels(),
         glass::kernels(),
         mask::kernels(),
         puddle::kernels(),

@@ -15,6 +15,7 @@ use downpour_mask::MaskTexel;
 use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
+use downpour_render::rain::light::DropLightFrame;
 use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
@@ -59,7 +60,7 @@ fn hosts() -> Vec<Host> {
         host!(ModelUniform as "MaskModelParameters" in &mask::MODEL, front, index, pixel, size, first_row),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
             eye, width, right, height, up, grid, forward, pixel_angle, slots, lights, light_count, sky_rays,
-            first_row, seed, nearest, sky_reach, projection, sky_levels, sky_irradiance),
+            first_row, seed, nearest, sky_reach, projection, suns_out, sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
         host!(TraceGather as "TraceGather" in &render::scene::TRACE, sky, body, met, gloss, normal),
         host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
@@ -72,6 +73,8 @@ fn hosts() -> Vec<Host> {
             swing, turns, share, spread, nearest, kind, shape, unused),
         host!(StreakShape as "StreakShape" in &render::rain::STREAK_TABLE,
             velocity, row, half_extent, chords, unused, ovals),
+        host!(DropLightFrame as "DropLightFrame" in &render::drop_light::DROP_LIGHT,
+            count, form, glints, first_light),
         host!(PuddleGrid as "PuddleGrid" in &lattice::puddle::PUDDLE,
             size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
             steps, halo, half_storage, slope),

@@ -9,11 +9,13 @@
 //! - [`water_index`], [`air_index`], [`water_index_in_air`], [`rgb_indices`]: refractive indices;
 //! - [`critical_angle`], [`brewster_angle`], [`maximal_deviation`], [`field_of_view`], [`deviation`], [`rainbow`],
 //!   [`diffuse_reflectance`]: what follows for a sphere;
+//! - [`SphereScattering`], [`scattered_ray`], [`scattered_share`]: where a sphere sends light, order by order;
 //! - functions whose names begin with `optics_` are the twins of `shaders/wgsl/drop/optics.wgsl`. They are generic:
 //!   with `f32` they have the bits of the twin, with `f64` they are the reference, with lanes the fast path.
 
 mod angles;
 mod index;
+mod scattering;
 
 use downpour_math::real::Real;
 use downpour_shaders::drop::optics as shared;
@@ -25,6 +27,10 @@ pub use angles::{
 pub use index::{
     RGB_WAVELENGTHS_M, WATER_INDEX, air_index, rgb_indices, water_index, water_index_iapws_1997,
     water_index_in_air,
+};
+pub use scattering::{
+    SCATTERING_ORDERS, SCATTERING_PATHS, SUN_DIAMETER, ScatteredRay, ScatteringPath, SphereScattering,
+    scattered_ray, scattered_share,
 };
 
 /// Direction of the refracted ray, and the square of the cosine of its angle to the normal.

@@ -103,7 +103,8 @@ impl Viewpoint {
             nearest: (extent * 1.0e-5).max(far.min(1.0e5) * 1.0e-6).max(1.0e-6),
             sky_reach: extent * 0.5,
             projection: SCENE_PICTURE,
-            unused: [0; 3],
+            suns_out: 0,
+            unused: [0; 2],
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,
         })

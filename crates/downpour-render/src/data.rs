@@ -64,8 +64,10 @@ pub struct RenderFrame {
     pub sky_reach: f32,
     /// What is traced: the picture, or a capture.
     pub projection: u32,
+    /// 1: the capture leaves parallel light out, since drops are lit by it on their own ([`crate::rain::light`]).
+    pub suns_out: u32,
     /// 0.
-    pub unused: [u32; 3],
+    pub unused: [u32; 2],
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; 6],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.

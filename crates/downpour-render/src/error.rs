@@ -26,6 +26,14 @@ pub enum RenderError {
         /// The most.
         most: u32,
     },
+    /// A lamp's light is no light.
+    #[error("light {index} has a colour of {found}; allowed: finite numbers from 0 to 1e30")]
+    Light {
+        /// Its place among the lights of the scene.
+        index: u32,
+        /// The first number that is wrong.
+        found: f32,
+    },
     /// A picture could not be encoded.
     #[error("the picture could not be written as {format}: {reason}")]
     Encode {

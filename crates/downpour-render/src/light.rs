@@ -1,7 +1,12 @@
 //! Lights as rows of the scene's table.
 
+use std::f32::consts::PI;
+
 use downpour_shaders::render::scene::{SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT, SCENE_LIGHT_ROWS};
 use glam::Vec3;
+
+use crate::RenderError;
+use crate::data::SceneData;
 
 const ROWS: usize = SCENE_LIGHT_ROWS as usize;
 
@@ -44,7 +49,7 @@ pub enum LightSource {
 
 impl LightSource {
     pub(crate) fn rows(&self) -> [[u32; 4]; ROWS] {
-        let over_pi = |c: Vec3| c / std::f32::consts::PI;
+        let over_pi = |c: Vec3| c / PI;
         let row = |v: Vec3, w: f32| [v.x, v.y, v.z, w].map(f32::to_bits);
         let point = |v: Vec3, kind: u32| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), kind];
         // The edge is clamp(cos * scale + offset, 0, 1)^2, as KHR_lights_punctual suggests.
@@ -74,4 +79,24 @@ impl LightSource {
             }
         }
     }
+}
+
+/// The brightest light: a tenth of a millimetre from the lamp it is still within an `f32`.
+const BRIGHTEST: f32 = 1.0e30;
+
+/// Whether all lights of a scene are light.
+///
+/// # Errors
+/// [`RenderError::Light`] if a colour is not finite, negative, or above 1e30.
+pub fn check_lights(scene: &SceneData) -> Result<(), RenderError> {
+    for index in 0..scene.light_count {
+        let row = (scene.lights + index * SCENE_LIGHT_ROWS) as usize + 2;
+        let colour = scene.table.get(row).map_or([0; 4], |&row| row);
+        for found in colour.into_iter().take(3).map(|word| f32::from_bits(word) * PI) {
+            if !(0.0..=BRIGHTEST).contains(&found) {
+                return Err(RenderError::Light { index, found });
+            }
+        }
+    }
+    Ok(())
 }

@@ -4,7 +4,8 @@
 //! 2. [`Rain`]: the drops of a picture, nearest first, and for each tile of 8 x 8 pixels those that touch it;
 //! 3. [`capture`]: what is round the eye, on an octahedral map (default) or as the papers' wide picture;
 //! 4. [`streak_table`]: what drops that move while the shutter is open show on the mean, made once per frame;
-//! 5. [`drops`]: pixel by pixel, what drops and streaks show of it.
+//! 5. [`light`]: what lamps and sun add, drop by drop; [`glint`]: where on a drop;
+//! 6. [`drops`]: pixel by pixel, what drops and streaks show of it.
 //!
 //! Source: Rousseau, Jolivet, Ghazanfarpour 2006, sections 4 and 5; Rousseau 2008, section 2.2.3. Where the default
 //! differs it is said at [`RefractionForm`] and [`StreakSamples`].
@@ -16,6 +17,8 @@ mod drops_frame;
 pub mod drops_mask;
 mod drops_shade;
 pub mod exposure;
+pub mod glint;
+pub mod light;
 pub mod masks;
 mod project;
 mod reduce;

@@ -318,7 +318,7 @@ impl ScenePath {
 }
 
 /// What a colour weighs when lamps are compared.
-fn scene_share(colour: Vec3) -> f32 {
+pub(crate) fn scene_share(colour: Vec3) -> f32 {
     colour.x + colour.y + colour.z
 }
 

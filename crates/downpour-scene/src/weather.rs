@@ -33,7 +33,7 @@ pub use camera::{Camera, CameraPose, FAR_M, FOV_RAD, NEAR_M};
 pub use lamps::Lamp;
 pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
-pub use rain::{Rain, RainBounce, RainCylinder, RainDrag, RainVolume};
+pub use rain::{Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume};
 pub use sky::{Sky, SkySource, SunSource};
 pub use streaks::{StreakLook, Streaks};
 pub use wind::WindBox;

@@ -2,8 +2,8 @@
 
 use downpour_drop::distribution::DropSizeLaw;
 use downpour_scene::weather::{
-    Camera, CameraPose, Lamp, Rain, RainBounce, RainCylinder, RainDrag, RainVolume, Repeat, Sky, SkySource,
-    SunSource, Weather,
+    Camera, CameraPose, Lamp, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume, Repeat,
+    Sky, SkySource, SunSource, Weather,
 };
 use downpour_scene::{Budget, SceneError};
 use glam::{DQuat, DVec3};
@@ -48,6 +48,7 @@ box_m = 80
 most_drops = 1073741824
 drag = "rousseau-2008"
 bounce = { share = 1, restitution = 0.5, grip = 0, size = 0.05, longest_s = 2 }
+drop_light = "im-sung-2022"
 
 [sky]
 file = "skies/park 100%.hdr"
@@ -113,6 +114,7 @@ fn every_key_arrives_in_si() {
     assert_eq!((rain.volume, rain.most_drops, rain.drag), (RainVolume::Box, 1 << 30, RainDrag::Rousseau2008));
     let bounce = RainBounce { share: 1.0, restitution: 0.5, grip: 0.0, size: 0.05, longest_s: 2.0 };
     assert_eq!(rain.bounce, bounce);
+    assert_eq!(rain.drop_light, RainDropLight::ImSung2022);
     assert_eq!((rain.air.temperature_c(), rain.air.pressure_pa()), (-5.0, 90_000.0));
     assert_eq!(rain.law, DropSizeLaw::GammaByMedian { mu: 2.0, median_volume_diameter_m: 1.5e-3 });
     let SkySource::File { file, yaw } = &weather.sky.source else { panic!("{:?}", weather.sky) };
@@ -358,6 +360,7 @@ fn volumes_of_rain() {
     refused("[rain]\nbox_m = 20", 2, "allowed: volume = \"box\" or \"tariq-2007\"");
     refused("[rain]\nvolume = \"view\"\ncylinder = {}", 2, "allowed: volume = \"creus-patow-2013\"");
     refused("[rain]\nvolume = \"sphere\"", 2, "closed-form");
+    refused("[rain]\ndrop_light = \"glitter\"", 2, "im-sung-2022");
     refused("[rain]\nmost_drops = 0", 2, "allowed: 1 to 1073741824");
     refused("[rain]\nmost_drops = 10000000000", 2, "allowed: 1 to 1073741824");
     refused("[rain]\nbounce = { share = 1.5 }", 2, "allowed: 0 to 1");
@@ -369,7 +372,7 @@ fn t11_keys_are_known_and_stand_once() {
     says(
         "[rain]\n  rate = 5",
         "line 2, column 3: rain.rate: unknown key \"rate\", perhaps rate_mm_h; allowed: rate_mm_h, distribution, \
-         gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, volume, box_m, cylinder, most_drops, drag, bounce",
+         gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, volume, box_m, cylinder, most_drops, drag, bounce, drop_light",
     );
     says(
         "[rian]\nrate_mm_h = 5",

@@ -13,7 +13,7 @@ fn capture_direction(x: f32, y: f32) -> vec3f {
 // The light of parallel sources in a texel.
 fn capture_suns(x: u32, y: u32) -> vec3f {
     let size = f32(render_frame.width);
-    if render_frame.projection != SCENE_OCTAHEDRAL {
+    if render_frame.projection != SCENE_OCTAHEDRAL || render_frame.suns_out > 0u {
         return vec3f(0.0);
     }
     var sum = vec3f(0.0);

@@ -29,6 +29,8 @@ struct RenderFrame {
     sky_reach: f32,
     // What is traced: SCENE_PICTURE, SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
     projection: u32,
+    // 1: the capture leaves parallel light out.
+    suns_out: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, 6>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.

@@ -95,7 +95,7 @@ pub(crate) fn capture_direction(frame: &RenderFrame, x: f32, y: f32) -> Vec3 {
 pub(crate) fn capture_suns(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
     let frame = view.frame;
     let size = frame.width as f32;
-    if frame.projection != SCENE_OCTAHEDRAL {
+    if frame.projection != SCENE_OCTAHEDRAL || frame.suns_out > 0 {
         return Vec3::ZERO;
     }
     let eye = Vec3::from(frame.eye);

@@ -57,6 +57,24 @@ pub enum RainDrag {
     Rousseau2008,
 }
 
+/// What lamps and sun do to drops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainDropLight {
+    /// As geometric optics has it: a sphere's rays of orders 0 to 3, bows included.
+    #[default]
+    Traced,
+    /// The formula of Rousseau 2006, section 6.
+    #[serde(rename = "rousseau-2006")]
+    Rousseau2006,
+    /// Spots only: the cone of Im & Sung 2022, section III.C.
+    #[serde(rename = "im-sung-2022")]
+    ImSung2022,
+    /// Nothing: drops show the scene behind and round them only.
+    None,
+}
+
 /// What happens to drops that meet a surface, where they are simulated step by step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainBounce {
@@ -119,6 +137,8 @@ pub struct Rain {
     pub drag: RainDrag,
     /// What happens to drops that meet a surface.
     pub bounce: RainBounce,
+    /// What lamps and sun do to drops.
+    pub drop_light: RainDropLight,
 }
 
 impl Default for Rain {
@@ -135,6 +155,7 @@ impl Default for Rain {
             most_drops: MOST_DROPS,
             drag: RainDrag::default(),
             bounce: RainBounce::default(),
+            drop_light: RainDropLight::default(),
         }
     }
 }
@@ -155,6 +176,7 @@ pub(super) struct RainTable {
     most_drops: Option<Whole<1, { 1 << 30 }>>,
     drag: Option<RainDrag>,
     bounce: Option<BounceTable>,
+    drop_light: Option<RainDropLight>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -268,6 +290,7 @@ impl Rain {
             most_drops: table.most_drops.map_or(default.most_drops, |Whole(drops)| drops),
             drag: table.drag.unwrap_or_default(),
             bounce: table.bounce.map_or(default.bounce, |bounce| bounce.checked()),
+            drop_light: table.drop_light.unwrap_or_default(),
         })
     }
 }

@@ -129,6 +129,12 @@ fn rows() -> Vec<Row> {
             "lights[0].intensity: 1e+39, not finite",
         ),
         (
+            "/extensions/KHR_lights_punctual/lights/0/intensity",
+            json!(2e30),
+            2,
+            "lights[0]: a color times an intensity of 2e30; allowed: up to 1e30",
+        ),
+        (
             "/extensions/KHR_lights_punctual/lights/0/range",
             json!(0),
             2,

@@ -10,6 +10,9 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 const EXTENSION: &str = "KHR_lights_punctual";
 
+/// The largest product of color and intensity: a tenth of a millimetre from the lamp it is still within an `f32`.
+const BRIGHTEST: f32 = 1.0e30;
+
 /// All lights.
 pub(super) fn read(document: &Spot<'_>, warnings: &mut Warnings) -> Result<Vec<Light>, SceneError> {
     let mut all = Vec::new();
@@ -55,13 +58,15 @@ fn one(light: &Spot<'_>, warnings: &mut Warnings) -> Result<Light, SceneError> {
         }
         irregular(warnings, spot.trail, || "more than 1: taken as it is".into());
     }
-    Ok(Light {
-        name: fields::name(light)?,
-        color: color.into(),
-        intensity: fields::from(light, "intensity", 0.0, 1.0)?,
-        range,
-        kind,
-    })
+    let intensity = fields::from(light, "intensity", 0.0, 1.0)?;
+    if color.iter().any(|part| !(0.0..=BRIGHTEST).contains(&(part * intensity))) {
+        let found = format!(
+            "a color times an intensity of {:e}",
+            color.iter().fold(0.0f32, |a, &b| a.max(b)) * intensity
+        );
+        return Err(light.wrong(found, "up to 1e30"));
+    }
+    Ok(Light { name: fields::name(light)?, color: color.into(), intensity, range, kind })
 }
 
 fn spot(cone: &Spot<'_>, warnings: &mut Warnings) -> Result<LightKind, SceneError> {

@@ -1,0 +1,106 @@
+//! Light of lamps on drops on a GPU: what [`DropLights::light`] makes on the CPU.
+
+use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_shaders::render::drop_light::DROP_LIGHT_KERNEL;
+
+use super::scene::SceneOnGpu;
+use crate::rain::light::{DropLightTable, DropLights};
+
+/// The pipeline of the light on drops: made once, used for any number of pictures.
+#[derive(Clone, Debug)]
+pub struct DropLightPipeline {
+    gpu: Gpu,
+    kernel: ComputeKernel,
+}
+
+/// The table on the device.
+#[derive(Clone, Debug)]
+pub struct DropLightOnGpu {
+    table: wgpu::Buffer,
+}
+
+/// The light on the drops of a picture, ready to be worked out.
+#[derive(Debug)]
+pub struct DropLightPass<'a> {
+    pipeline: &'a DropLightPipeline,
+    parts: Vec<wgpu::BindGroup>,
+    groups: u32,
+    rows: usize,
+    light: wgpu::Buffer,
+}
+
+impl DropLightPipeline {
+    /// Makes the pipeline.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { gpu: gpu.clone(), kernel: ComputeKernel::new(gpu, &DROP_LIGHT_KERNEL, &[])? })
+    }
+
+    /// Brings the table to the device.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn upload(&self, table: &DropLightTable) -> Result<DropLightOnGpu, GpuError> {
+        Ok(DropLightOnGpu { table: self.gpu.storage_buffer("scattering of drops", table.rows())? })
+    }
+
+    /// Makes ready to light drops ([`drop_light_rows`](crate::rain::light::drop_light_rows)). `scene` is that of
+    /// `lights`.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`] if there are more drops than the device takes, or what else the GPU says.
+    pub fn prepare<'a>(
+        &'a self,
+        scene: &SceneOnGpu,
+        table: &DropLightOnGpu,
+        lights: &DropLights<'_>,
+        drops: &[[f32; 4]],
+    ) -> Result<DropLightPass<'a>, GpuError> {
+        let gpu = &self.gpu;
+        let rows = drops.len() * lights.stride();
+        let light =
+            gpu.empty_buffer("light on drops", rows.max(1) as u64 * 16, wgpu::BufferUsages::STORAGE)?;
+        let frame = gpu.uniform_buffer("frame", lights.view.frame)?;
+        // A buffer has at least one element.
+        let list: &[_] = if drops.is_empty() { &[[0.0; 4]] } else { drops };
+        let list = gpu.storage_buffer("places of drops", list)?;
+        let [frame, nodes, triangles, corners, rows_of_scene, texels, ..] =
+            scene.buffers(&frame, &light, &light);
+        let mut parts = Vec::new();
+        for part in lights.frames(drops.len() as u32) {
+            let part = gpu.uniform_buffer("lamps", &part)?;
+            let buffers =
+                [frame, nodes, triangles, corners, rows_of_scene, texels, &list, &table.table, &light, &part];
+            parts.push(self.kernel.bind(gpu, &buffers)?);
+        }
+        let groups = (drops.len() as u32).div_ceil(64).max(1);
+        Ok(DropLightPass { pipeline: self, parts, groups, rows, light })
+    }
+}
+
+impl DropLightPass<'_> {
+    /// The dispatches, a part of the lamps each, in this order.
+    #[must_use]
+    pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
+        let kernel = &self.pipeline.kernel;
+        self.parts.iter().map(|bindings| kernel.dispatch(bindings, [self.groups, 1, 1])).collect()
+    }
+
+    /// The light on the device, laid out as by [`DropLights::light`]; one row of nothing if there are no drops.
+    #[must_use]
+    pub fn light(&self) -> &wgpu::Buffer {
+        &self.light
+    }
+
+    /// Reads the light.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn read(&self) -> Result<Vec<[f32; 4]>, GpuError> {
+        let mut light = self.pipeline.gpu.read(&self.light)?;
+        light.truncate(self.rows);
+        Ok(light)
+    }
+}

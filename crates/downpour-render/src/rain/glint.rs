@@ -1,0 +1,94 @@
+//! Where the light of a lamp leaves a drop, as the viewer sees it. Twin of `shaders/wgsl/render/drop_glint.wgsl`.
+//!
+//! `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Places on the
+//! disc are in radii, along the right and the up of the view.
+
+use downpour_math::ops;
+use downpour_shaders::render::drop_light::{
+    DROP_GLINT_AXIS, DROP_GLINT_RANGE, DROP_GLINT_STEPS, DROP_GLINT_TINY,
+};
+use downpour_shaders::render::specimen::SPECIMEN_TURN;
+use glam::{Vec2, Vec3};
+
+/// The right of the view of a drop, level; where the view is plumb, +x. Up is `right.cross(towards)`.
+#[must_use]
+pub fn drop_glint_right(towards: Vec3) -> Vec3 {
+    let sideways = Vec3::new(-towards.z, 0.0, towards.x);
+    let level = sideways.dot(sideways);
+    if level > DROP_GLINT_AXIS { sideways / level.max(DROP_GLINT_TINY).sqrt() } else { Vec3::X }
+}
+
+/// The scattering angle over pi: 0 for a lamp behind the drop, 1 for one behind the eye.
+///
+/// ```
+/// use downpour_render::rain::glint::drop_glint_angle;
+/// use glam::Vec3;
+/// assert_eq!(drop_glint_angle(Vec3::Z, Vec3::Z), 0.0);
+/// assert_eq!(drop_glint_angle(Vec3::Y, Vec3::Z), 0.5);
+/// assert_eq!(drop_glint_angle(Vec3::NEG_Z, Vec3::Z), 1.0);
+/// ```
+#[must_use]
+pub fn drop_glint_angle(light: Vec3, towards: Vec3) -> f32 {
+    let apart = light - towards;
+    let along = light + towards;
+    // Sine and cosine of half the angle, twice: exact at both ends, where a cosine of the angle would not be.
+    let (s, c) = (apart.dot(apart).sqrt(), along.dot(along).sqrt());
+    let t = s.min(c) / s.max(c).max(DROP_GLINT_TINY);
+    let square = t * t;
+    let mut sum = SPECIMEN_TURN[8];
+    for n in (0..8).rev() {
+        sum = sum * square + SPECIMEN_TURN[n];
+    }
+    let octant = sum * t;
+    4.0 * if c < s { 0.25 - octant } else { octant }
+}
+
+/// The side of the disc on which the lamp stands, of length 1; right where it stands on none.
+#[must_use]
+pub fn drop_glint_side(light: Vec3, right: Vec3, up: Vec3) -> Vec2 {
+    let side = Vec2::new(light.dot(right), light.dot(up));
+    let square = side.dot(side);
+    if square > DROP_GLINT_AXIS { side / square.max(DROP_GLINT_TINY).sqrt() } else { Vec2::X }
+}
+
+/// A place on the disc as one number, a whole one below 2^24: within 1/4094 of a radius.
+#[must_use]
+pub fn drop_glint_pack(place: Vec2) -> f32 {
+    let steps = (place.clamp(Vec2::NEG_ONE, Vec2::ONE) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE).floor();
+    steps.x * DROP_GLINT_RANGE + steps.y
+}
+
+/// The place that was packed.
+#[must_use]
+pub fn drop_glint_unpack(word: f32) -> Vec2 {
+    // Whole numbers: a compiler of shaders may add in another order, and 2^23 + 0.5 is no f32.
+    let (steps, range) = (word as u32, DROP_GLINT_RANGE as u32);
+    (Vec2::new((steps / range) as f32, (steps % range) as f32) + 0.5 - 0.5 * DROP_GLINT_RANGE)
+        / DROP_GLINT_STEPS
+}
+
+/// A glint of unit mean over the disc: a normal distribution `width` radii wide, `offset` radii from its middle.
+#[must_use]
+pub fn drop_glint_spot(offset: Vec2, width: f32) -> f32 {
+    let square = width * width;
+    0.5 / square * ops::exp(-0.5 * offset.dot(offset) / square)
+}
+
+/// The level part of a direction, (x, z), of length 1; nothing of a plumb one.
+#[must_use]
+pub fn drop_glint_level(direction: Vec3) -> Vec2 {
+    let level = Vec2::new(direction.x, direction.z);
+    level / level.dot(level).max(DROP_GLINT_TINY).sqrt()
+}
+
+/// Rousseau 2006, section 6, at a place with a normal: `(V_PE . V_N) (A_2 + A_3)`, to be multiplied with the lamp's colour
+/// and attenuation. The plane in which rays do not go sideways is the level one.
+#[must_use]
+pub fn drop_glint_rousseau(normal: Vec3, to_eye: Vec3, light: Vec3) -> f32 {
+    let facing = to_eye.dot(normal);
+    let lit = light.dot(normal);
+    let outside = lit.max(0.0);
+    let across = -drop_glint_level(light).dot(drop_glint_level(normal));
+    let within = (across * (1.0 + lit)).max(0.0);
+    facing * (outside + within)
+}

@@ -1,0 +1,299 @@
+//! Light of lamps and sun on falling drops. Twin of `shaders/wgsl/render/drop_light.wgsl`.
+//!
+//! A drop shows what is behind and round it through its mask; a lamp is far smaller than a texel of that. Here is what
+//! lamps add: for each drop the mean radiance over its disc, and where on the disc its brightest glints stand. Each lamp
+//! is looked up at the drop's own place (distance, cone, range), with one ray for what stands between.
+//!
+//! Law of the default form: a drop of radius a in an irradiance E sends E pi a^2 phase(theta) per steradian towards the
+//! eye ([`SphereScattering`](downpour_drop::optics::SphereScattering)); seen as a disc of pi a^2, its mean radiance is
+//! L = E phase(theta). The drop is a sphere: a flattened one has its bows elsewhere, but nearly the same mean.
+//!
+//! - [`DropLightForm`], [`DropLightOptions`]: what is asked for;
+//! - [`DropLightTable`]: the scattering of water for red, green and blue;
+//! - [`DropLights`]: the lamps of a scene, on drops.
+
+mod table;
+
+use std::f32::consts::PI;
+
+use downpour_math::ops;
+use downpour_shaders::render::drop_light::{
+    DROP_GLINT_TINY, DROP_LIGHT_ENTRIES, DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG, DROP_LIGHT_LAMPS,
+    DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_PLACES, DROP_LIGHT_RINGS, DROP_LIGHT_ROUSSEAU,
+    DROP_LIGHT_TRACED,
+};
+use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS};
+use downpour_sim::field::FallingDrop;
+use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::glint::{
+    drop_glint_angle, drop_glint_pack, drop_glint_right, drop_glint_rousseau, drop_glint_side,
+};
+use crate::RenderError;
+use crate::data::{RenderFrame, SceneData};
+use crate::light::check_lights;
+use crate::scene::{SceneView, scene_share};
+
+pub use table::DropLightTable;
+
+/// What lamps do to a drop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum DropLightForm {
+    /// Geometric optics of a sphere of water: Fresnel's equations, orders 0 to 3, bows in their colours.
+    #[default]
+    Traced = DROP_LIGHT_TRACED,
+    /// Rousseau 2006, section 6: `C_L DistFact (V_PE . V_N) (A_2 + A_3)`, as printed, without exponents. `C_L DistFact` is
+    /// taken as the irradiance over pi at the drop: what a white surface shows.
+    Rousseau2006 = DROP_LIGHT_ROUSSEAU,
+    /// Im & Sung 2022, equations (7) to (10): drops in a spot's cone have the light's colour, others nothing; point lights
+    /// and parallel ones are left out. The cone is as high as the lamp's range. Here its edge is soft, from the inner
+    /// cone to the outer, and the intensity falls with the distance (their light has one intensity everywhere).
+    ImSung2022 = DROP_LIGHT_IM_SUNG,
+    /// Nothing.
+    None = DROP_LIGHT_NONE,
+}
+
+/// What is asked of the light on drops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DropLightOptions {
+    /// What lamps do to a drop.
+    pub form: DropLightForm,
+    /// Brightest glints that are told of each drop, 0 to 16; the traced form alone has some.
+    pub glints: u32,
+}
+
+/// What a dispatch is about. The same layout as `DropLightFrame` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct DropLightFrame {
+    /// Drops.
+    pub count: u32,
+    /// [`DropLightForm`].
+    pub form: u32,
+    /// Glints that are kept of each drop.
+    pub glints: u32,
+    /// First lamp of the dispatch.
+    pub first_light: u32,
+}
+
+/// A place on a drop's disc where light of a lamp leaves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DropGlint {
+    /// Which lamp of the scene.
+    pub light: u32,
+    /// Internal reflections plus 1; 0: reflected at the outside.
+    pub order: u32,
+    /// Place on the disc, radii along the right ([`drop_glint_right`]) and the up of the view.
+    pub place: Vec2,
+    /// Its part of the mean radiance over the disc: a glint that covers a share s of the disc is 1/s times as bright.
+    pub radiance: Vec3,
+}
+
+/// The lamps of a scene, on drops before an eye.
+#[derive(Clone, Copy, Debug)]
+pub struct DropLights<'a> {
+    pub(crate) view: SceneView<'a>,
+    pub(crate) table: &'a DropLightTable,
+    pub(crate) options: DropLightOptions,
+}
+
+/// Drops as the light wants them: place relative to the scene's origin, and radius, metres.
+#[must_use]
+pub fn drop_light_rows(drops: &[FallingDrop]) -> Vec<[f32; 4]> {
+    let row = |drop: &FallingDrop| drop.position.as_vec3().extend(0.5 * drop.diameter).to_array();
+    drops.iter().map(row).collect()
+}
+
+impl<'a> DropLights<'a> {
+    /// The lamps of `scene`, seen from the frame's eye.
+    ///
+    /// # Errors
+    /// [`RenderError::Light`] if a lamp's colour is not finite, or negative; [`RenderError::OutOfRange`] above 16 glints.
+    pub fn new(
+        scene: &'a SceneData,
+        frame: &'a RenderFrame,
+        table: &'a DropLightTable,
+        options: DropLightOptions,
+    ) -> Result<Self, RenderError> {
+        check_lights(scene)?;
+        if options.glints > DROP_LIGHT_GLINTS {
+            return Err(RenderError::OutOfRange {
+                quantity: "number of glints of a drop",
+                found: f64::from(options.glints),
+                unit: "",
+                allowed: "0 to 16",
+            });
+        }
+        Ok(Self { view: SceneView { data: scene, frame }, table, options })
+    }
+
+    /// Numbers of a drop in [`DropLights::light`]: its mean, and its glints.
+    #[must_use]
+    pub fn stride(&self) -> usize {
+        1 + self.options.glints as usize
+    }
+
+    /// The dispatches of so many drops: all lamps, a part of them each.
+    #[must_use]
+    pub fn frames(&self, count: u32) -> Vec<DropLightFrame> {
+        let DropLightOptions { form, glints } = self.options;
+        let frame = |first_light| DropLightFrame { count, form: form as u32, glints, first_light };
+        let lights = if form == DropLightForm::None { 1 } else { self.view.frame.light_count.max(1) };
+        (0..lights).step_by(DROP_LIGHT_LAMPS as usize).map(frame).collect()
+    }
+
+    /// The light on drops ([`drop_light_rows`]), in parallel; the same bits for any number of threads. For each drop
+    /// [`DropLights::stride`] rows: the mean radiance over its disc and 0; then its brightest glints in no order, their part
+    /// of the mean and their place ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more.
+    #[must_use]
+    pub fn light(&self, drops: &[[f32; 4]]) -> Vec<[f32; 4]> {
+        let mut out = vec![[0.0; 4]; drops.len() * self.stride()];
+        out.par_chunks_mut(self.stride()).zip(drops).for_each(|(slot, drop)| self.drop_light_of(drop, slot));
+        out
+    }
+
+    /// All glints of a drop in the traced form, lamp by lamp and way by way, without those that have no light. Their
+    /// sum is the mean radiance, up to the table's rounding.
+    #[must_use]
+    pub fn glints(&self, drop: [f32; 4]) -> Vec<DropGlint> {
+        let (place, least) = (Vec4::from(drop).truncate(), drop[3]);
+        let (towards, right, up) = self.facing(place);
+        let mut all = Vec::new();
+        for k in 0..self.view.frame.light_count {
+            let light = self.view.scene_light(k, place, least);
+            let visible = self.view.scene_visibility(place, light.direction, light.distance);
+            let irradiance = light.irradiance * visible * PI;
+            let angle = drop_glint_angle(light.direction, towards);
+            let side = drop_glint_side(light.direction, right, up);
+            for (path, order) in (1..=DROP_LIGHT_PATHS).zip([0, 1, 2, 2, 3, 3]) {
+                let entry = drop_light_entry(self.table, path, angle);
+                let radiance = irradiance * entry.truncate();
+                if scene_share(radiance) > 0.0 {
+                    all.push(DropGlint { light: k, order, place: side * entry.w, radiance });
+                }
+            }
+        }
+        all
+    }
+
+    /// Direction of a place from the eye, and right and up of its view.
+    fn facing(&self, place: Vec3) -> (Vec3, Vec3, Vec3) {
+        let offset = place - Vec3::from(self.view.frame.eye);
+        let towards = offset / offset.dot(offset).max(DROP_GLINT_TINY).sqrt();
+        let right = drop_glint_right(towards);
+        (towards, right, right.cross(towards))
+    }
+
+    /// Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles.
+    /// What is within the inner cone is lit, between the two cones light fades. Nothing of other lamps.
+    fn drop_light_cone(&self, index: u32, place: Vec3, least: f32) -> Vec3 {
+        let row = (self.view.data.lights + index * SCENE_LIGHT_ROWS) as usize;
+        let numbers = |k: usize| Vec4::from(self.view.data.table[row + k].map(f32::from_bits));
+        let (position, axis, colour, cone) = (numbers(0), numbers(1).truncate(), numbers(2), numbers(3));
+        if self.view.data.table[row][3] == SCENE_LIGHT_DIRECTIONAL || cone.x <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let offset = place - position.truncate();
+        let below = offset.dot(axis);
+        let height = if colour.w > 0.0 { colour.w } else { SCENE_FAR };
+        if below <= 0.0 || below > height {
+            return Vec3::ZERO;
+        }
+        let outer = (-cone.y / cone.x).clamp(1.0e-3, 1.0);
+        let inner = ((1.0 - cone.y) / cone.x).clamp(outer, 1.0);
+        let circle = below * (1.0 - outer * outer).max(0.0).sqrt() / outer;
+        let core = below * (1.0 - inner * inner).max(0.0).sqrt() / inner;
+        let aside = offset - axis * below;
+        let away = aside.dot(aside).sqrt();
+        let share = ((circle - away) / (circle - core).max(1.0e-6 * below)).clamp(0.0, 1.0);
+        let square = offset.dot(offset).max((least * least).max(1.0e-8));
+        colour.truncate() * (share / square)
+    }
+
+    /// The light on a drop: its mean, then its glints.
+    fn drop_light_of(&self, drop: &[f32; 4], slot: &mut [[f32; 4]]) {
+        let Some((mean, glints)) = slot.split_first_mut() else { return };
+        let (place, radius) = (Vec4::from(*drop).truncate(), drop[3]);
+        let mut sum = Vec3::ZERO;
+        let (towards, right, up) = self.facing(place);
+        let form = self.options.form;
+        let count = if form == DropLightForm::None { 0 } else { self.view.frame.light_count };
+        for k in 0..count {
+            let light = self.view.scene_light(k, place, radius);
+            let mut lit = light.irradiance;
+            if form == DropLightForm::ImSung2022 {
+                lit = self.drop_light_cone(k, place, radius);
+            }
+            if scene_share(lit) <= 0.0 {
+                continue;
+            }
+            lit *= self.view.scene_visibility(place, light.direction, light.distance);
+            match form {
+                DropLightForm::ImSung2022 => sum += lit,
+                DropLightForm::Rousseau2006 => sum += lit * drop_light_mean(towards, light.direction),
+                DropLightForm::Traced | DropLightForm::None => {
+                    let angle = drop_glint_angle(light.direction, towards);
+                    let side = drop_glint_side(light.direction, right, up);
+                    let irradiance = lit * PI;
+                    sum += irradiance * drop_light_entry(self.table, 0, angle).truncate();
+                    for path in 1..=DROP_LIGHT_PATHS {
+                        if glints.is_empty() {
+                            break;
+                        }
+                        let entry = drop_light_entry(self.table, path, angle);
+                        let radiance = irradiance * entry.truncate();
+                        drop_light_keep(glints, radiance.extend(drop_glint_pack(side * entry.w)));
+                    }
+                }
+            }
+        }
+        *mean = sum.extend(0.0).to_array();
+    }
+}
+
+/// A row of the table at a scattering angle over pi: linear between the middles of the intervals.
+fn drop_light_entry(table: &DropLightTable, row: u32, angle: f32) -> Vec4 {
+    let last = DROP_LIGHT_ENTRIES - 1;
+    let position = (angle * DROP_LIGHT_ENTRIES as f32 - 0.5).clamp(0.0, last as f32);
+    let low = position as u32;
+    let part = position - low as f32;
+    let first = row * DROP_LIGHT_ENTRIES;
+    let at = |k: u32| table.rows().get((first + k) as usize).map_or(Vec4::ZERO, |&row| Vec4::from(row));
+    let here = at(low);
+    here + (at((low + 1).min(last)) - here) * part
+}
+
+/// The mean over a drop's disc of what Rousseau's formula gives at its pixels.
+#[must_use]
+pub fn drop_light_mean(towards: Vec3, light: Vec3) -> f32 {
+    let right = drop_glint_right(towards);
+    let up = right.cross(towards);
+    let mut sum = 0.0;
+    for k in 0..DROP_LIGHT_RINGS * DROP_LIGHT_PLACES {
+        let square = ((k / DROP_LIGHT_PLACES) as f32 + 0.5) / DROP_LIGHT_RINGS as f32;
+        let angle = 2.0 * PI * ((k % DROP_LIGHT_PLACES) as f32 + 0.5) / DROP_LIGHT_PLACES as f32;
+        let away = square.sqrt();
+        let normal = right * (away * ops::cos(angle)) + up * (away * ops::sin(angle))
+            - towards * (1.0 - square).sqrt();
+        sum += drop_glint_rousseau(normal, -towards, light);
+    }
+    sum / (DROP_LIGHT_RINGS * DROP_LIGHT_PLACES) as f32
+}
+
+/// Keeps a glint of a drop if it is brighter than the least of those that are kept.
+fn drop_light_keep(glints: &mut [[f32; 4]], glint: Vec4) {
+    let share = |glint: &[f32; 4]| scene_share(Vec4::from(*glint).truncate());
+    let mut least = scene_share(glint.truncate());
+    let mut weakest = None;
+    for kept in glints {
+        if share(kept) < least {
+            least = share(kept);
+            weakest = Some(kept);
+        }
+    }
+    if let Some(weakest) = weakest {
+        *weakest = glint.to_array();
+    }
+}

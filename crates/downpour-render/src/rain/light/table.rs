@@ -1,0 +1,60 @@
+//! The scattering of water for red, green and blue, as the shader reads it.
+
+use downpour_drop::DropError;
+use downpour_drop::air::Air;
+use downpour_drop::optics::{SCATTERING_PATHS, SUN_DIAMETER, SphereScattering, rgb_indices};
+use downpour_shaders::render::drop_light::{DROP_LIGHT_ENTRIES, DROP_LIGHT_PATHS};
+
+const _: () = assert!(SCATTERING_PATHS == DROP_LIGHT_PATHS as usize);
+
+/// Cross-sections over the scattering angle, made once.
+///
+/// Row 0: (dsigma/dOmega) / (pi a^2) in 1/sr, red, green, blue. Rows 1 to 6: the same for each
+/// [`ScatteringPath`](downpour_drop::optics::ScatteringPath), and green's place on the disc.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DropLightTable {
+    rows: Vec<[f32; 4]>,
+}
+
+impl DropLightTable {
+    /// The table for three refractive indices, 1.2 to 1.4, and lamps whose discs have a diameter in radians, 0 to 0.2.
+    ///
+    /// # Errors
+    /// [`DropError::OutOfRange`] outside these ranges.
+    pub fn new(indices: [f64; 3], diameter: f64) -> Result<Self, DropError> {
+        let entries = DROP_LIGHT_ENTRIES as usize;
+        let mut colours = Vec::with_capacity(indices.len());
+        for index in indices {
+            colours.push(SphereScattering::new(index, entries, diameter)?);
+        }
+        let mut rows = vec![[0.0; 4]; entries * (1 + SCATTERING_PATHS)];
+        let (whole, paths) = rows.split_at_mut(entries);
+        for (colour, sphere) in colours.iter().enumerate() {
+            for (row, path) in paths.chunks_exact_mut(entries).zip(sphere.paths()) {
+                for (k, entry) in row.iter_mut().enumerate() {
+                    let phase = path.phase[k] as f32;
+                    entry[colour] = phase;
+                    whole[k][colour] += phase;
+                    if colour == 1 {
+                        entry[3] = path.place[k] as f32;
+                    }
+                }
+            }
+        }
+        Ok(Self { rows })
+    }
+
+    /// The table of water in standard air under lamps as wide as the sun. Three sweeps of 50 000 rays.
+    ///
+    /// # Errors
+    /// None that is known: those of [`DropLightTable::new`] for the indices of water.
+    pub fn water() -> Result<Self, DropError> {
+        Self::new(rgb_indices(&Air::standard())?, SUN_DIAMETER)
+    }
+
+    /// All rows, one after the other.
+    #[must_use]
+    pub fn rows(&self) -> &[[f32; 4]] {
+        &self.rows
+    }
+}

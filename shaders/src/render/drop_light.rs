@@ -1,0 +1,64 @@
+//! `wgsl/render/{drop_glint,drop_light}.wgsl`: light of lamps and sun on drops. Twins:
+//! `downpour_render::rain::{glint, light}`.
+
+use super::scene::SCENE;
+use super::specimen::SPECIMEN_TABLES;
+use crate::{Kernel, Module};
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&DROP_LIGHT_CONSTANTS, &DROP_GLINT, &DROP_LIGHT];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&DROP_LIGHT_KERNEL];
+
+shared_constants! {
+    /// Numbers of the light on drops.
+    DROP_LIGHT_CONSTANTS at "render/drop light constants" {
+        /// Form: geometric optics of a sphere.
+        DROP_LIGHT_TRACED: u32 = 0;
+        /// Form: the formula of Rousseau 2006, section 6.
+        DROP_LIGHT_ROUSSEAU: u32 = 1;
+        /// Form: the cones of Im & Sung 2022, section III.C.
+        DROP_LIGHT_IM_SUNG: u32 = 2;
+        /// Form: no light.
+        DROP_LIGHT_NONE: u32 = 3;
+        /// Entries of a row of the table: equal intervals of the scattering angle.
+        DROP_LIGHT_ENTRIES: u32 = 256;
+        /// Ways of light that are told apart; row 0 of the table is their sum.
+        DROP_LIGHT_PATHS: u32 = 6;
+        /// Glints that are kept of a drop, at most.
+        DROP_LIGHT_GLINTS: u32 = 16;
+        /// Lamps of a dispatch.
+        DROP_LIGHT_LAMPS: u32 = 64;
+        /// Rings of equal area for the mean over a drop's disc.
+        DROP_LIGHT_RINGS: u32 = 4;
+        /// Places along a ring.
+        DROP_LIGHT_PLACES: u32 = 8;
+        /// Steps of a packed coordinate from the middle of the disc to its rim.
+        DROP_GLINT_STEPS: f32 = 2047.0;
+        /// Steps of a packed coordinate, both signs.
+        DROP_GLINT_RANGE: f32 = 4096.0;
+        /// Below this, a vector has no direction.
+        DROP_GLINT_TINY: f32 = 1.0e-30;
+        /// Below this squared distance from the axis a direction has no side.
+        DROP_GLINT_AXIS: f32 = 1.0e-12;
+    }
+}
+
+/// Where light leaves a drop; needs no buffers. Twin: `downpour_render::rain::glint`.
+pub static DROP_GLINT: Module = Module {
+    path: "render/drop_glint.wgsl",
+    wgsl: include_str!("../../wgsl/render/drop_glint.wgsl"),
+    uses: &[&DROP_LIGHT_CONSTANTS, &SPECIMEN_TABLES],
+};
+
+/// Light of all lamps on drops. Twin: `downpour_render::rain::light`.
+pub static DROP_LIGHT: Module = Module {
+    path: "render/drop_light.wgsl",
+    wgsl: include_str!("../../wgsl/render/drop_light.wgsl"),
+    uses: &[&DROP_GLINT, &SCENE],
+};
+
+/// One invocation per drop.
+pub static DROP_LIGHT_KERNEL: Kernel =
+    Kernel { entry: "main_drop_light", module: &DROP_LIGHT, workgroup: [64, 1, 1] };

@@ -1,0 +1,78 @@
+// Where the light of a lamp leaves a drop, as the viewer sees it; and what a pixel of a drop shows of a lamp in the form of
+// Rousseau 2006. Nothing here reads a buffer: any shader may use it.
+// `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Places on the
+// disc are in radii, along the right and the up of the view.
+// Twin: downpour_render::rain::glint.
+
+// The right of the view of a drop, level; where the view is plumb, +x.
+fn drop_glint_right(towards: vec3f) -> vec3f {
+    let sideways = vec3f(-towards.z, 0.0, towards.x);
+    let level = dot(sideways, sideways);
+    return select(vec3f(1.0, 0.0, 0.0), sideways / sqrt(max(level, DROP_GLINT_TINY)), level > DROP_GLINT_AXIS);
+}
+
+// The scattering angle over pi: 0 for a lamp behind the drop, 1 for one behind the eye.
+fn drop_glint_angle(light: vec3f, towards: vec3f) -> f32 {
+    let apart = light - towards;
+    let along = light + towards;
+    // Sine and cosine of half the angle, twice: exact at both ends, where a cosine of the angle would not be.
+    let s = sqrt(dot(apart, apart));
+    let c = sqrt(dot(along, along));
+    let t = min(s, c) / max(max(s, c), DROP_GLINT_TINY);
+    let square = t * t;
+    var sum = SPECIMEN_TURN[8];
+    sum = sum * square + SPECIMEN_TURN[7];
+    sum = sum * square + SPECIMEN_TURN[6];
+    sum = sum * square + SPECIMEN_TURN[5];
+    sum = sum * square + SPECIMEN_TURN[4];
+    sum = sum * square + SPECIMEN_TURN[3];
+    sum = sum * square + SPECIMEN_TURN[2];
+    sum = sum * square + SPECIMEN_TURN[1];
+    sum = sum * square + SPECIMEN_TURN[0];
+    let octant = sum * t;
+    return 4.0 * select(octant, 0.25 - octant, c < s);
+}
+
+// The side of the disc on which the lamp stands, of length 1; right where it stands on none.
+fn drop_glint_side(light: vec3f, right: vec3f, up: vec3f) -> vec2f {
+    let side = vec2f(dot(light, right), dot(light, up));
+    let square = dot(side, side);
+    return select(vec2f(1.0, 0.0), side / sqrt(max(square, DROP_GLINT_TINY)), square > DROP_GLINT_AXIS);
+}
+
+// A place on the disc as one number, a whole one below 2^24: within 1/4094 of a radius.
+fn drop_glint_pack(place: vec2f) -> f32 {
+    let steps = floor(clamp(place, vec2f(-1.0), vec2f(1.0)) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE);
+    return steps.x * DROP_GLINT_RANGE + steps.y;
+}
+
+// The place that was packed.
+fn drop_glint_unpack(word: f32) -> vec2f {
+    // Whole numbers: a compiler may add in another order, and 2^23 + 0.5 is no f32.
+    let steps = u32(word);
+    let range = u32(DROP_GLINT_RANGE);
+    return (vec2f(f32(steps / range), f32(steps % range)) + 0.5 - 0.5 * DROP_GLINT_RANGE) / DROP_GLINT_STEPS;
+}
+
+// A glint of unit mean over the disc: a normal distribution `width` radii wide, `offset` radii from its middle.
+fn drop_glint_spot(offset: vec2f, width: f32) -> f32 {
+    let square = width * width;
+    return 0.5 / square * exp(-0.5 * dot(offset, offset) / square);
+}
+
+// The level part of a direction, (x, z), of length 1; nothing of a plumb one.
+fn drop_glint_level(direction: vec3f) -> vec2f {
+    let level = direction.xz;
+    return level / sqrt(max(dot(level, level), DROP_GLINT_TINY));
+}
+
+// Rousseau 2006, section 6, at a place with a normal: (V_PE . V_N) (A_2 + A_3), to be multiplied with the lamp's colour and
+// attenuation. The plane in which rays do not go sideways is the level one.
+fn drop_glint_rousseau(normal: vec3f, to_eye: vec3f, light: vec3f) -> f32 {
+    let facing = dot(to_eye, normal);
+    let lit = dot(light, normal);
+    let outside = max(0.0, lit);
+    let across = -dot(drop_glint_level(light), drop_glint_level(normal));
+    let within = max(0.0, across * (1.0 + lit));
+    return facing * (outside + within);
+}

@@ -1,0 +1,152 @@
+// Light of lamps and sun on falling drops: for each drop the mean radiance over its disc, and its brightest glints.
+// Forms: geometric optics of a sphere, by a table over the scattering angle; the formula of Rousseau 2006, section 6; the
+// cones of Im & Sung 2022, section III.C. One ray per drop and lamp says what of the lamp is hidden.
+// Twin: downpour_render::rain::light, where the method is described.
+
+const DROP_LIGHT_PI: f32 = 3.1415927;
+
+struct DropLightFrame {
+    // Drops.
+    count: u32,
+    // DROP_LIGHT_TRACED, DROP_LIGHT_ROUSSEAU, DROP_LIGHT_IM_SUNG or DROP_LIGHT_NONE.
+    form: u32,
+    // Glints that are kept of each drop.
+    glints: u32,
+    // First lamp of this dispatch, which has DROP_LIGHT_LAMPS of them at most.
+    first_light: u32,
+}
+
+// Place relative to the scene's origin, and radius, metres.
+@group(0) @binding(6) var<storage, read> drop_light_drops: array<vec4f>;
+// Row 0: (dsigma/dOmega) / (pi a^2) in 1/sr, red, green, blue; the other rows: the same for each way of light, and its
+// place on the disc.
+@group(0) @binding(7) var<storage, read> drop_light_table: array<vec4f>;
+// For each drop its mean radiance, then its glints: their part of the mean, and their place, packed.
+@group(0) @binding(8) var<storage, read_write> drop_light_out: array<vec4f>;
+@group(0) @binding(9) var<uniform> drop_light_frame: DropLightFrame;
+
+// A row of the table at a scattering angle over pi: linear between the middles of the intervals.
+fn drop_light_entry(row: u32, angle: f32) -> vec4f {
+    let last = DROP_LIGHT_ENTRIES - 1u;
+    let position = clamp(angle * f32(DROP_LIGHT_ENTRIES) - 0.5, 0.0, f32(last));
+    let low = u32(position);
+    let part = position - f32(low);
+    let first = row * DROP_LIGHT_ENTRIES;
+    let here = drop_light_table[first + low];
+    let there = drop_light_table[first + min(low + 1u, last)];
+    return here + (there - here) * part;
+}
+
+// Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles. What is
+// within the inner cone is lit, between the two cones light fades. Nothing of other lamps.
+fn drop_light_cone(index: u32, place: vec3f, least: f32) -> vec3f {
+    let row = render_frame.lights + index * SCENE_LIGHT_ROWS;
+    let position = bitcast<vec4f>(render_table[row]);
+    let axis = bitcast<vec4f>(render_table[row + 1u]);
+    let colour = bitcast<vec4f>(render_table[row + 2u]);
+    let cone = bitcast<vec4f>(render_table[row + 3u]);
+    if render_table[row].w == SCENE_LIGHT_DIRECTIONAL || cone.x <= 0.0 {
+        return vec3f(0.0);
+    }
+    let offset = place - position.xyz;
+    let below = dot(offset, axis.xyz);
+    let height = select(SCENE_FAR, colour.w, colour.w > 0.0);
+    if below <= 0.0 || below > height {
+        return vec3f(0.0);
+    }
+    let outer = clamp(-cone.y / cone.x, 1.0e-3, 1.0);
+    let inner = clamp((1.0 - cone.y) / cone.x, outer, 1.0);
+    let circle = below * sqrt(max(1.0 - outer * outer, 0.0)) / outer;
+    let core = below * sqrt(max(1.0 - inner * inner, 0.0)) / inner;
+    let aside = offset - axis.xyz * below;
+    let away = sqrt(dot(aside, aside));
+    let share = clamp((circle - away) / max(circle - core, 1.0e-6 * below), 0.0, 1.0);
+    let square = max(dot(offset, offset), max(least * least, 1.0e-8));
+    return colour.rgb * (share / square);
+}
+
+// The mean over a drop's disc of what Rousseau's formula gives at its pixels.
+fn drop_light_mean(towards: vec3f, light: vec3f) -> f32 {
+    let right = drop_glint_right(towards);
+    let up = cross(right, towards);
+    var sum = 0.0;
+    for (var k = 0u; k < DROP_LIGHT_RINGS * DROP_LIGHT_PLACES; k += 1u) {
+        let square = (f32(k / DROP_LIGHT_PLACES) + 0.5) / f32(DROP_LIGHT_RINGS);
+        let angle = 2.0 * DROP_LIGHT_PI * (f32(k % DROP_LIGHT_PLACES) + 0.5) / f32(DROP_LIGHT_PLACES);
+        let away = sqrt(square);
+        let normal = right * (away * cos(angle)) + up * (away * sin(angle)) - towards * sqrt(1.0 - square);
+        sum += drop_glint_rousseau(normal, -towards, light);
+    }
+    return sum / f32(DROP_LIGHT_RINGS * DROP_LIGHT_PLACES);
+}
+
+// Keeps a glint of a drop if it is brighter than the least of those that are kept.
+fn drop_light_keep(first: u32, glint: vec4f) {
+    var weakest = first;
+    var least = scene_share(glint.rgb);
+    var found = false;
+    for (var k = 0u; k < drop_light_frame.glints; k += 1u) {
+        let share = scene_share(drop_light_out[first + k].rgb);
+        if share < least {
+            least = share;
+            weakest = first + k;
+            found = true;
+        }
+    }
+    if found {
+        drop_light_out[weakest] = glint;
+    }
+}
+
+// The light on a drop: adds this dispatch's lamps to those before.
+fn drop_light_of(index: u32) {
+    let drop = drop_light_drops[index];
+    let slot = index * (1u + drop_light_frame.glints);
+    var sum = vec3f(0.0);
+    if drop_light_frame.first_light > 0u {
+        sum = drop_light_out[slot].rgb;
+    } else {
+        for (var k = 1u; k <= drop_light_frame.glints; k += 1u) {
+            drop_light_out[slot + k] = vec4f(0.0);
+        }
+    }
+    let offset = drop.xyz - render_frame.eye;
+    let towards = offset / sqrt(max(dot(offset, offset), DROP_GLINT_TINY));
+    let right = drop_glint_right(towards);
+    let up = cross(right, towards);
+    let form = drop_light_frame.form;
+    let end = min(drop_light_frame.first_light + DROP_LIGHT_LAMPS, render_frame.light_count);
+    for (var k = drop_light_frame.first_light; k < end && form != DROP_LIGHT_NONE; k += 1u) {
+        let light = scene_light(k, drop.xyz, drop.w);
+        var lit = light.irradiance;
+        if form == DROP_LIGHT_IM_SUNG {
+            lit = drop_light_cone(k, drop.xyz, drop.w);
+        }
+        if scene_share(lit) <= 0.0 {
+            continue;
+        }
+        lit *= scene_visibility(drop.xyz, light.direction, light.distance);
+        if form == DROP_LIGHT_IM_SUNG {
+            sum += lit;
+        } else if form == DROP_LIGHT_ROUSSEAU {
+            sum += lit * drop_light_mean(towards, light.direction);
+        } else {
+            let angle = drop_glint_angle(light.direction, towards);
+            let side = drop_glint_side(light.direction, right, up);
+            let irradiance = lit * DROP_LIGHT_PI;
+            sum += irradiance * drop_light_entry(0u, angle).rgb;
+            for (var path = 1u; path <= DROP_LIGHT_PATHS && drop_light_frame.glints > 0u; path += 1u) {
+                let entry = drop_light_entry(path, angle);
+                drop_light_keep(slot + 1u, vec4f(irradiance * entry.rgb, drop_glint_pack(side * entry.w)));
+            }
+        }
+    }
+    drop_light_out[slot] = vec4f(sum, 0.0);
+}
+
+@compute @workgroup_size(64, 1, 1)
+fn main_drop_light(@builtin(global_invocation_id) id: vec3u) {
+    if id.x < drop_light_frame.count {
+        drop_light_of(id.x);
+    }
+}

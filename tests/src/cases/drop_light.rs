@@ -1,0 +1,190 @@
+//! `shaders/wgsl/render/{drop_glint,drop_light}.wgsl` against `downpour_render::rain::{glint, light}`.
+
+use downpour_gpu::{Gpu, GpuError};
+use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_render::camera::Viewpoint;
+use downpour_render::data::{SceneBuilder, SceneData};
+use downpour_render::gpu::{DropLightPipeline, ScenePipeline};
+use downpour_render::light::LightSource;
+use downpour_render::rain::glint::{
+    drop_glint_angle, drop_glint_level, drop_glint_pack, drop_glint_right, drop_glint_rousseau,
+    drop_glint_side, drop_glint_spot, drop_glint_unpack,
+};
+use downpour_render::rain::light::{
+    DropLightForm, DropLightOptions, DropLightTable, DropLights, drop_light_mean,
+};
+use downpour_render::sky_light::SkyLight;
+use downpour_shaders::render::drop_light::{DROP_GLINT, DROP_LIGHT, DROP_LIGHT_KERNEL};
+use glam::{Vec2, Vec3};
+
+use super::scene::scene;
+use crate::Domain::{Made, Uniform, Unit3};
+use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::{Args, IntoWords};
+use crate::{FunctionCase, KernelCase, Tol};
+
+fn vec3(args: &mut Args<'_>) -> Vec3 {
+    Vec3::from(args.f32s())
+}
+
+/// A packed place.
+fn packed(random: [u32; 4]) -> Vec<u32> {
+    let place = Vec2::new(rng_unit(random[0]), rng_unit(random[1])) * 2.0 - 1.0;
+    drop_glint_pack(place).words()
+}
+
+/// Two directions that are no worse than a hundredth of a radian from each other's line.
+fn apart(random: [u32; 4]) -> Vec<u32> {
+    let unit = |a: u32, b: u32| {
+        let v = Vec3::new(rng_unit(a) - 0.5, rng_unit(b) - 0.5, rng_unit(a ^ b.rotate_left(7)) - 0.4999);
+        v.normalize()
+    };
+    let (light, towards) = (unit(random[0], random[1]), unit(random[2], random[3]));
+    let towards = if light.cross(towards).length() < 0.01 { light.any_orthonormal_vector() } else { towards };
+    [light.to_array(), towards.to_array()].words()
+}
+
+/// The cases.
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let case =
+        |function, domains: &[_], tol, cpu| FunctionCase::new(function, &DROP_GLINT, domains, tol, cpu);
+    let root = Tol::absolute(2.0e-6, "products of unit vectors, a square root and a division (2.5 ulp)");
+    let place = Uniform(-1.0, 1.0);
+    vec![
+        case("drop_glint_right", &[Unit3], root, |a| drop_glint_right(vec3(a)).to_array().words()),
+        case(
+            "drop_glint_angle",
+            &[Made(apart)],
+            Tol::absolute(2.0e-6, "square roots, a division and a polynomial up to 1/8, times 4"),
+            |a| drop_glint_angle(vec3(a), vec3(a)).words(),
+        ),
+        case(
+            "drop_glint_side",
+            &[Unit3, Unit3, Unit3],
+            Tol::absolute(1.0e-4, "two dot products that may cancel to 1e-3, over their length")
+                .with_outliers(2.0e-3),
+            |a| drop_glint_side(vec3(a), vec3(a), vec3(a)).to_array().words(),
+        ),
+        case(
+            "drop_glint_pack",
+            &[place, place],
+            Tol::absolute(1.0, "a whole number; at its border a fused product may give the next")
+                .with_outliers(1.0e-3),
+            |a| drop_glint_pack(Vec2::from(a.f32s())).words(),
+        ),
+        case(
+            "drop_glint_unpack",
+            &[Made(packed)],
+            Tol::absolute(1.0e-6, "whole numbers, and a division (2.5 ulp) of numbers up to 1"),
+            |a| drop_glint_unpack(a.f32()).to_array().words(),
+        ),
+        case(
+            "drop_glint_spot",
+            &[place, place, Uniform(0.05, 1.0)],
+            Tol::relative(1.0e-3, 1.0e-6, "exp of numbers down to -400 (3 + 2|x| ulp)"),
+            |a| drop_glint_spot(Vec2::from(a.f32s()), a.f32()).words(),
+        ),
+        case("drop_glint_level", &[Unit3], root, |a| drop_glint_level(vec3(a)).to_array().words()),
+        case(
+            "drop_glint_rousseau",
+            &[Unit3, Unit3, Unit3],
+            Tol::absolute(1.0e-5, "sums of products of unit vectors, one of them made level"),
+            |a| drop_glint_rousseau(vec3(a), vec3(a), vec3(a)).words(),
+        ),
+        FunctionCase::new(
+            "drop_light_mean",
+            &DROP_LIGHT,
+            &[Unit3, Unit3],
+            Tol::absolute(2.0e-3, "sine and cosine (2^-11) of numbers up to 2 pi"),
+            |a| drop_light_mean(vec3(a), vec3(a)).words(),
+        ),
+    ]
+}
+
+/// Drops round what stands in the scene.
+fn drops() -> Vec<[f32; 4]> {
+    (0..600)
+        .map(|k| {
+            let [a, b, c, d] = rng_draw([8, 1], k, 0, 0).map(rng_unit);
+            [8.0 * a - 4.0, 3.0 * b - 0.3, 8.0 * c - 4.0, 1.0e-4 + 3.0e-3 * d]
+        })
+        .collect()
+}
+
+/// More lamps than a dispatch takes, of all kinds.
+fn many() -> SceneData {
+    let mut builder = SceneBuilder::new();
+    for k in 0..150 {
+        let [a, b, c, d] = rng_draw([8, 2], k, 0, 0).map(rng_unit);
+        let position = Vec3::new(12.0 * a - 6.0, 1.0 + 3.0 * b, 12.0 * c - 6.0);
+        let intensity = Vec3::new(1.0 + d, 2.0 - d, 0.5 + a) * 4.0;
+        let direction = Vec3::new(b - 0.5, -1.0, d - 0.5).normalize();
+        builder.add_light(match k % 4 {
+            0 => LightSource::Directional { direction, irradiance: intensity * 0.01 },
+            1 => LightSource::Point { position, intensity, range: 8.0 * c },
+            _ => LightSource::Spot { position, direction, intensity, range: 0.0, inner: 0.4 * c, outer: 0.6 },
+        });
+    }
+    builder.build(&SkyLight::new(64, 32, &vec![[0.5; 3]; 64 * 32]))
+}
+
+fn light_case(gpu: &Gpu, scene: &SceneData, form: DropLightForm, glints: u32) -> Result<Run, GpuError> {
+    let view = Viewpoint { eye: Vec3::new(0.6, 1.4, 5.0), forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
+    let frame = view.frame(scene, [64, 64], 1, 0, 7).expect("a frame");
+    let table = DropLightTable::water().expect("water");
+    let options = DropLightOptions { form, glints };
+    let lights = DropLights::new(scene, &frame, &table, options).expect("lights");
+    let drops = drops();
+    let cpu = lights.light(&drops);
+    let (scenes, pipeline) = (ScenePipeline::new(gpu)?, DropLightPipeline::new(gpu)?);
+    let pass = pipeline.prepare(&scenes.upload(scene)?, &pipeline.upload(&table)?, &lights, &drops)?;
+    gpu.submit(&pass.dispatches())?;
+    // Places are compared as places.
+    let words = |rows: &[[f32; 4]]| -> Vec<u32> {
+        let of_drop = |rows: &[[f32; 4]]| {
+            let mut words = rows[0].words();
+            for row in &rows[1..] {
+                words.extend([row[0], row[1], row[2]].words());
+                words.extend(drop_glint_unpack(row[3]).to_array().words());
+            }
+            words
+        };
+        rows.chunks_exact(lights.stride()).flat_map(of_drop).collect()
+    };
+    Ok(Run {
+        arguments: drops.iter().map(IntoWords::words).collect(),
+        cpu: Cpu(words(&cpu)),
+        gpu: FromGpu(words(&pass.read()?)),
+        kinds: vec![WordKind::Float; 4 + 5 * glints as usize],
+    })
+}
+
+/// The cases.
+pub(super) fn kernels() -> Vec<KernelCase> {
+    let case = |name, run| KernelCase {
+        name,
+        kernel: &DROP_LIGHT_KERNEL,
+        covers: &["drop_light_entry", "drop_light_cone", "drop_light_keep", "drop_light_of"],
+        tol: Tol::relative(
+            2.0e-3,
+            1.0e-4,
+            "a table with steep bows at angles known to 1e-6; a ray at an edge may fall on either side",
+        )
+        .with_outliers(3.0e-3),
+        run,
+    };
+    vec![
+        case("main_drop_light: traced, with glints", |gpu| {
+            light_case(gpu, &scene(), DropLightForm::Traced, 6)
+        }),
+        case("main_drop_light: traced, more lamps than a dispatch takes", |gpu| {
+            light_case(gpu, &many(), DropLightForm::Traced, 3)
+        }),
+        case("main_drop_light: Rousseau 2006", |gpu| {
+            light_case(gpu, &scene(), DropLightForm::Rousseau2006, 0)
+        }),
+        case("main_drop_light: Im & Sung 2022", |gpu| light_case(gpu, &many(), DropLightForm::ImSung2022, 0)),
+    ]
+}
