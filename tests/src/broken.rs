@@ -49,6 +49,10 @@ pub const BROKEN: &[Broken] = &[
         right: "MASK_EDGE_DEPTH: f32 = 0.1",
         wrong: "MASK_EDGE_DEPTH: f32 = 0.3",
     },
+    Broken { function: "atlas_light", right: "cross(y, view)", wrong: "cross(view, y)" },
+    Broken { function: "atlas_map", right: "abs(direction.x)", wrong: "direction.x" },
+    Broken { function: "atlas_rank", right: "vec4f(value) > high", wrong: "vec4f(value) > low" },
+    Broken { function: "atlas_draw", right: "id, which, ATLAS", wrong: "id, 0u, ATLAS" },
     Broken { function: "puddle_laplacian", right: "(nw + ne) + (sw + se)", wrong: "(nw + ne) + (sw + sw)" },
     Broken {
         function: "puddle_corner",

@@ -1,5 +1,6 @@
 //! The registry of cases, a file per subsystem.
 
+mod atlas;
 mod bvh;
 mod collision;
 mod common;
@@ -20,6 +21,7 @@ use crate::{FunctionCase, KernelCase};
 #[must_use]
 pub fn functions() -> Vec<FunctionCase> {
     [
+        atlas::functions(),
         bvh::functions(),
         collision::functions(),
         common::functions(),
@@ -43,6 +45,7 @@ pub fn functions() -> Vec<FunctionCase> {
 #[must_use]
 pub fn kernels() -> Vec<KernelCase> {
     [
+        atlas::kernels(),
         collision::kernels(),
         drop_light::kernels(),
         glass::kernels(),

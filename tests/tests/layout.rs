@@ -12,6 +12,8 @@ use downpour_lattice::glass::size::{GlassSizeRow, GlassTable};
 use downpour_lattice::puddle::PuddleSeed;
 use downpour_lattice::puddle::lattice::PuddleGrid;
 use downpour_mask::MaskTexel;
+use downpour_mask::atlas::gpu::AtlasQuery;
+use downpour_mask::atlas::lookup::{AtlasFrame, AtlasPlace, AtlasTriangle};
 use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
@@ -58,6 +60,13 @@ fn hosts() -> Vec<Host> {
         host!(DropUniform as "MaskTracedDrop" in &mask::TRACE,
             shape, up, index, inverse_wide, inverse_tall, pixel, size),
         host!(ModelUniform as "MaskModelParameters" in &mask::MODEL, front, index, pixel, size, first_row),
+        host!(AtlasFrame as "AtlasFrame" in &mask::ATLAS,
+            size, half_extent, pick, counts, seed, unused, diameters, elevations, first, unused_1),
+        host!(AtlasTriangle as "AtlasTriangle" in &mask::ATLAS,
+            a, b, c, unused, directions, unused_1, next, unused_2),
+        host!(AtlasPlace as "AtlasPlace" in &mask::ATLAS, layers, side, weights, unused),
+        host!(AtlasQuery as "AtlasQuery" in &mask::ATLAS_QUERY,
+            light, diameter, view, id, axis, across, turns, unused),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
             eye, width, right, height, up, grid, forward, pixel_angle, slots, lights, light_count, sky_rays,
             first_row, seed, nearest, sky_reach, projection, suns_out, sky_levels, sky_irradiance),

@@ -1,6 +1,6 @@
 //! Tests, lints and benchmarks of the whole workspace.
 
-use crate::{driver, masks, run};
+use crate::{atlas, driver, masks, run};
 
 /// The library crates, and the features each has to build with, alone.
 const ALONE: &[(&str, &[&str])] = &[
@@ -27,7 +27,8 @@ pub(crate) fn test() -> Result<(), String> {
     // Mesa complains of a missing run-time folder; it needs none of the session's.
     let runtime = runtime.display().to_string();
     run::cargo(&["test", "--workspace", "--all-features", "--locked"], &[("XDG_RUNTIME_DIR", &runtime)])?;
-    masks::check()
+    masks::check()?;
+    atlas::check(true)
 }
 
 /// Formatting, lints, each crate on its own, documentation.

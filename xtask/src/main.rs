@@ -1,5 +1,6 @@
 //! Tasks of the workspace. `cargo xtask` without a task lists them.
 
+mod atlas;
 mod checks;
 mod driver;
 mod figures;
@@ -16,6 +17,7 @@ cargo xtask test              run every test; makes sure of a Vulkan driver firs
 cargo xtask ci                formatting, lints, each crate alone, documentation, then every test
 cargo xtask lint              the same without the tests
 cargo xtask masks [--check]   write assets/masks; with --check compare them with what the code makes, byte for byte
+cargo xtask atlas [OPTIONS]   write assets/streaks; --check compares them; --columbia imports the streak database
 cargo xtask goldens [--bless] compare the golden images of tests/goldens; with --bless write them from the CPU twins
 cargo xtask shaders [FOLDER]  write the complete WGSL text of every kernel (default target/shaders)
 cargo xtask truth [OPTIONS]   hold `downpour specimen` against Mitsuba 3 (needs python3 and the network)
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         ["lint"] => checks::lint(),
         ["masks"] => masks::write(),
         ["masks", "--check"] => masks::check(),
+        ["atlas", rest @ ..] => atlas::run(rest),
         ["goldens"] => goldens::compare(),
         ["goldens", "--bless"] => goldens::bless(),
         ["shaders"] => shaders::write("target/shaders"),

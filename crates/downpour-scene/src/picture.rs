@@ -13,6 +13,7 @@
 
 mod exr;
 mod exr_header;
+mod grey;
 mod radiance;
 mod raster;
 
@@ -21,6 +22,8 @@ use crate::error::{SceneError, quoted, size};
 use crate::magic;
 use crate::warning::Warning;
 use std::path::Path;
+
+pub use grey::{Grey16, decode_grey16};
 
 /// The longest side of a picture, in pixels.
 pub const MAX_SIDE: u32 = 65_535;

@@ -99,14 +99,14 @@ pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
 }
 
 /// The data format descriptor: its length and one basic block.
-fn data_format(format: Format) -> Result<Vec<u8>, MaskError> {
+pub(crate) fn data_format(format: Format) -> Result<Vec<u8>, MaskError> {
     let (basic, _) = Basic::from_format(format)
         .map_err(|error| MaskError::Encode { format: "KTX2", reason: error.to_string() })?;
     let block = Block::Basic(basic).to_vec();
     Ok([&(block.len() as u32 + 4).to_le_bytes()[..], &block].concat())
 }
 
-fn key_values(pairs: &[(&str, &str)]) -> Vec<u8> {
+pub(crate) fn key_values(pairs: &[(&str, &str)]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for (key, value) in pairs {
         bytes.extend((key.len() as u32 + value.len() as u32 + 2).to_le_bytes());
@@ -193,13 +193,13 @@ fn check_header(header: &Header) -> Result<(u32, usize), MaskError> {
 }
 
 /// A part of the file; `None` if it is not inside.
-fn part(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
+pub(crate) fn part(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
     let start = usize::try_from(offset).ok()?;
     let end = start.checked_add(usize::try_from(length).ok()?)?;
     bytes.get(start..end)
 }
 
-fn find_key(mut keys: &[u8], wanted: &str) -> Option<String> {
+pub(crate) fn find_key(mut keys: &[u8], wanted: &str) -> Option<String> {
     while let Some((length, rest)) = keys.split_first_chunk::<4>() {
         let length = u32::from_le_bytes(*length) as usize;
         let pair = rest.get(..length)?;

@@ -1,0 +1,138 @@
+//! assets/streaks: what `cargo xtask atlas` writes and `--check` compares, byte for byte; the Columbia database in the
+//! same form.
+
+mod columbia;
+mod sheet;
+
+use std::path::{Path, PathBuf};
+
+use downpour_mask::atlas::{StreakOptions, StreakOscillation, StreakSet, light_directions, write_streaks};
+
+use crate::run;
+
+const USAGE: &str = "\
+cargo xtask atlas [--check] [--quick]              write assets/streaks, or compare it; --quick: one set of it
+cargo xtask atlas --columbia FOLDER WIDTH OUTPUT   the Columbia database's streaks of 4, 8, 16 or 32 columns as KTX2";
+
+/// Diameters in millimetres. Between 1 and 4 mm a drop goes from a sphere to a bun; larger ones are rare.
+const DIAMETERS_MM: [f64; 3] = [1.0, 2.0, 4.0];
+/// Elevations of the viewer in degrees: rain is seen across, from some way below or above.
+const ELEVATIONS_DEG: [f64; 3] = [-40.0, 0.0, 40.0];
+/// The most bytes that the folder may hold.
+const BUDGET: usize = 4 << 20;
+
+type Asset = (String, Vec<u8>);
+
+/// Does what the arguments say.
+pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
+    match arguments {
+        [] => write(false),
+        ["--quick"] => write(true),
+        ["--check"] => check(false),
+        ["--check", "--quick"] | ["--quick", "--check"] => check(true),
+        ["--columbia", folder, width, output] => columbia::run(folder.as_ref(), width, output.as_ref()),
+        _ => Err(format!("atlas {}: not understood; there is:\n{USAGE}", arguments.join(" "))),
+    }
+}
+
+fn folder() -> PathBuf {
+    run::root().join("assets/streaks")
+}
+
+fn set(diameter_mm: f64, oscillation: usize) -> Result<StreakSet, String> {
+    let elevations = ELEVATIONS_DEG.map(f64::to_radians);
+    let kind = &StreakOscillation::COMMITTED[oscillation];
+    StreakSet::trace(diameter_mm * 1.0e-3, kind, &elevations, &light_directions(), &StreakOptions::default())
+        .map_err(|error| error.to_string())
+}
+
+/// Every file of the folder that the code makes; `quick`: the first of 2 mm alone.
+fn make(quick: bool) -> Result<Vec<Asset>, String> {
+    let (mut assets, mut shown) = (Vec::new(), Vec::new());
+    let diameters: &[f64] = if quick { &DIAMETERS_MM[1..2] } else { &DIAMETERS_MM };
+    let oscillations = if quick { 1 } else { StreakOscillation::COMMITTED.len() };
+    for &diameter in diameters {
+        for oscillation in 0..oscillations {
+            let set = set(diameter, oscillation)?;
+            let bytes = write_streaks(&set).map_err(|error| error.to_string())?;
+            assets.push((format!("streak_{diameter}mm_{}.ktx2", oscillation + 1), bytes));
+            if (oscillation < 2) && diameter >= 2.0 {
+                shown.push(set);
+            }
+        }
+    }
+    if !quick {
+        assets.push(("preview.png".to_owned(), sheet::sheet(&shown)?));
+    }
+    let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
+    if bytes > BUDGET {
+        return Err(format!("the streaks take {bytes} bytes, more than {BUDGET}"));
+    }
+    Ok(assets)
+}
+
+/// Writes a file so that it is never there in part.
+fn publish(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
+    let path = folder.join(name);
+    let part = folder.join(format!(".{name}.part"));
+    std::fs::write(&part, bytes)
+        .and_then(|()| std::fs::rename(&part, &path))
+        .map_err(|error| format!("{}: {error}", path.display()))?;
+    println!("{:>9} bytes  {}", bytes.len(), path.display());
+    Ok(())
+}
+
+fn write(quick: bool) -> Result<(), String> {
+    let folder = folder();
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    make(quick)?.iter().try_for_each(|(name, bytes)| publish(&folder, name, bytes))
+}
+
+/// Compares the folder with what the code makes.
+pub(crate) fn check(quick: bool) -> Result<(), String> {
+    let mut wrong = Vec::new();
+    for (name, bytes) in make(quick)? {
+        match std::fs::read(folder().join(&name)) {
+            Ok(kept) if kept == bytes => {}
+            Ok(kept) => {
+                let at =
+                    kept.iter().zip(&bytes).position(|(a, b)| a != b).unwrap_or(kept.len().min(bytes.len()));
+                let (kept, made) = (kept.len(), bytes.len());
+                wrong.push(format!("{name}: differs from byte {at} on ({kept} bytes kept, {made} made)"));
+            }
+            Err(error) => wrong.push(format!("{name}: {error}")),
+        }
+    }
+    let which = if quick { "one of assets/streaks is" } else { "assets/streaks are" };
+    if wrong.is_empty() {
+        println!("{which} what the code makes, byte for byte");
+        Ok(())
+    } else {
+        Err(format!(
+            "assets/streaks are not what the code makes (cargo xtask atlas):\n  {}",
+            wrong.join("\n  ")
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use downpour_mask::atlas::StreakAtlas;
+
+    #[test]
+    fn what_is_not_understood_is_answered_with_the_usage() {
+        let message = super::run(&["--chekc"]).expect_err("no such option");
+        assert!(
+            message.contains("--chekc") && message.contains("--columbia FOLDER WIDTH OUTPUT"),
+            "{message}"
+        );
+    }
+
+    /// The committed files are an atlas, and each of them is a texture array on any device.
+    #[test]
+    fn the_committed_atlas_is_loaded() {
+        let atlas = StreakAtlas::load(&super::folder()).expect("assets/streaks");
+        assert_eq!(atlas.data().frame.counts, [3, 4, 3, 41]);
+        assert!(atlas.sets().iter().all(|set| set.layers() <= 256));
+    }
+}
