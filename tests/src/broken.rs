@@ -53,6 +53,21 @@ pub const BROKEN: &[Broken] = &[
     Broken { function: "atlas_map", right: "abs(direction.x)", wrong: "direction.x" },
     Broken { function: "atlas_rank", right: "vec4f(value) > high", wrong: "vec4f(value) > low" },
     Broken { function: "atlas_draw", right: "id, which, ATLAS", wrong: "id, 0u, ATLAS" },
+    Broken {
+        function: "specimen_wobble_surface",
+        right: "- 15.0 * drop.state.y",
+        wrong: "- 14.0 * drop.state.y",
+    },
+    Broken {
+        function: "specimen_wobble_cross",
+        right: "SPECIMEN_WOBBLE_STEPS: u32 = 4",
+        wrong: "SPECIMEN_WOBBLE_STEPS: u32 = 1",
+    },
+    Broken {
+        function: "specimen_streak_passage",
+        right: "level / streak.inverse_tall",
+        wrong: "level / streak.inverse_wide",
+    },
     Broken { function: "puddle_laplacian", right: "(nw + ne) + (sw + se)", wrong: "(nw + ne) + (sw + sw)" },
     Broken {
         function: "puddle_corner",

@@ -16,9 +16,9 @@ use downpour_mask::atlas::gpu::AtlasQuery;
 use downpour_mask::atlas::lookup::{AtlasFrame, AtlasPlace, AtlasTriangle};
 use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
-use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
 use downpour_render::rain::light::DropLightFrame;
-use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform};
+use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
+use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform, StreakUniform};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
 use downpour_shaders::{Module, bvh, compose, drop, lattice, mask, modules, render, sim, wind};
@@ -94,6 +94,8 @@ fn hosts() -> Vec<Host> {
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),
         host!(SpecimenUniform as "SpecimenView" in &specimen::SPECIMEN,
             traced, camera, size, sky, first_row, rows, channels),
+        host!(StreakUniform as "SpecimenStreak" in &specimen::SPECIMEN_STREAK,
+            oscillation, volume, volume_last, inverse_wide, inverse_tall, speed, farthest, instants, first, count),
         host!(CollisionFrame as "CollisionMap" in &sim::collision::COLLISION,
             low, triangles, across, steep, along, merge, fall, edge, per_edge, anchor, size),
         host!(CollisionTexel as "CollisionTexel" in &sim::collision::COLLISION, depths, surfaces),

@@ -8,6 +8,8 @@
 //! The mesh is fine enough: at 5 mm, mean FLIP is 0.019, 0.0071, 0.0034, 0.0027 and 0.0027 with 4 to 8 subdivisions of the
 //! icosahedron. Each case has its negative control: our picture mirrored has to be above the aim.
 //!
+//! Streaks (`streaks`) are held against the mean of Mitsuba's pictures of their instants.
+//!
 //! Mitsuba and FLIP come from `PyPI` into `target/truth/venv` (pinned in `truth/requirements.txt`), so that the task needs
 //! the network once, and is no part of the tests. Everything that it writes is under `target/truth`.
 
@@ -17,6 +19,7 @@ mod mitsuba;
 mod options;
 mod report;
 mod sky;
+mod streaks;
 
 use std::path::{Path, PathBuf};
 
@@ -30,10 +33,11 @@ use report::{Outcome, Report};
 
 /// What a wrong argument is answered with.
 const USAGE: &str = "\
-cargo xtask truth [--quick] [--no-check] [--diameter MM]... [--map FILE]... [--only] [--command FILE]
+cargo xtask truth [--quick] [--no-check] [--streaks] [--diameter MM]... [--map FILE]... [--only] [--command FILE]
                   [--size PIXELS] [--samples N] [--path-samples N] [--subdivisions N]
   --quick           two diameters and one view instead of four and three
   --no-check        a case above the aim is no failure
+  --streaks         nothing but the streaks of 2 and 4 mm
   --diameter MM     these diameters (repeatable) instead of 1, 2, 3 and 5 mm
   --map FILE        this sky map, too (repeatable)
   --only            no maps but those of --map
@@ -52,7 +56,8 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
     let program = command(&options)?;
     let mitsuba = Mitsuba::ready(&folder)?;
     let mut report = Report::new(&options, &mitsuba);
-    for &diameter_mm in &options.diameters_mm {
+    let diameters_mm = if options.streaks { &[][..] } else { &options.diameters_mm[..] };
+    for &diameter_mm in diameters_mm {
         let shape = DropShape::new(diameter_mm * 1.0e-3).map_err(|error| error.to_string())?;
         let mesh = folder.join("mesh.ply");
         write(&mesh, &mesh::ply(&shape, options.subdivisions)?)?;
@@ -61,10 +66,11 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
             eprintln!("{}", report.add(&case, outcome));
         }
     }
-    let text = report.markdown();
+    let (of_streaks, above) = streaks::compare(&options, &maps, &program, &folder, &mitsuba)?;
+    let text = if options.streaks { of_streaks } else { format!("{}\n{of_streaks}", report.markdown()) };
     println!("{text}");
     write(&folder.join("report.md"), text.as_bytes())?;
-    match report.misses() {
+    match [report.misses(), &above].concat().as_slice() {
         [] => Ok(()),
         misses if options.check => Err(format!("above the aim:\n  {}", misses.join("\n  "))),
         _ => Ok(()),

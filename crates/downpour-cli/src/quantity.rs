@@ -4,9 +4,11 @@ use std::ops::RangeInclusive;
 
 use downpour::drop::air::PRESSURE_RANGE_PA;
 use downpour::drop::distribution::RATE_RANGE_MM_H;
+use downpour::drop::oscillation::Amplitudes;
 use downpour::drop::shape::{LARGEST_DIAMETER, SMALLEST_DIAMETER};
 use downpour::drop::water::TEMPERATURE_RANGE_C;
 use downpour::mask::SIZES;
+use downpour::render::specimen::LONGEST_EXPOSURE_S;
 use downpour::render::stage::LATEST_S;
 
 /// The coldest water, in Celsius, whose refractive index is known.
@@ -80,6 +82,43 @@ pub(crate) fn picture_size(text: &str) -> Result<[u32; 2], String> {
 /// Time since the rain began, in seconds.
 pub(crate) fn time_s(text: &str) -> Result<f64, String> {
     read(text, &(0.0..=LATEST_S), "0 to 1000000 s")
+}
+
+/// Exposure of a streak, in seconds.
+pub(crate) fn exposure_s(text: &str) -> Result<f64, String> {
+    read(text, &(0.0..=LONGEST_EXPOSURE_S), "0 to 1 s")
+}
+
+/// Instants of an exposure. Any whole number is read: what is too large is over a limit.
+pub(crate) fn instants(text: &str) -> Result<u32, String> {
+    if text == "table" {
+        return Err("not available for the specimen yet; allowed: a whole number from 1 to 4096".to_owned());
+    }
+    let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    match text.parse::<u32>() {
+        Ok(n @ 1..) => Ok(n),
+        Err(_) if digits => Ok(u32::MAX),
+        _ => Err("allowed: a whole number from 1 to 4096, or table".to_owned()),
+    }
+}
+
+/// Amplitudes of an oscillation: `none`, or those of the modes (2,0) and (3,1).
+pub(crate) fn oscillation(text: &str) -> Result<Amplitudes, String> {
+    if text == "none" {
+        return Ok(Amplitudes::NONE);
+    }
+    let [a20, a31] = pair(text, &(0.0..=0.3), "none, or two numbers from 0 to 0.3, as 0.2,0.1")?;
+    Amplitudes::new(a20, a31).map_err(|error| error.to_string())
+}
+
+/// Phases of the modes (2,0) and (3,1), in turns.
+pub(crate) fn phase(text: &str) -> Result<[f64; 2], String> {
+    pair(text, &(-1000.0..=1000.0), "two numbers from -1000 to 1000, as 0.25,0")
+}
+
+fn pair(text: &str, range: &RangeInclusive<f64>, allowed: &str) -> Result<[f64; 2], String> {
+    let (first, second) = text.split_once(',').ok_or_else(|| format!("allowed: {allowed}"))?;
+    Ok([read(first, range, allowed)?, read(second, range, allowed)?])
 }
 
 /// Samples along an edge of a pixel.

@@ -18,13 +18,19 @@
 //! - [`render_specimen_f64`]: the reference above it;
 //! - [`gpu::SpecimenRenderer`] (feature `wgpu`): the same on a GPU;
 //! - [`SpecimenOptions`], [`default_fov`]: the camera;
-//! - functions whose names begin with `specimen_` are the twins of `shaders/wgsl/render/specimen.wgsl`.
+//! - functions whose names begin with `specimen_` are the twins of `shaders/wgsl/render/specimen.wgsl` and of its two
+//!   neighbours.
+//!
+//! With an exposure, or an oscillation, the picture is that of a streak: the mean over the exposure of the drop that falls at
+//! its terminal speed, at the origin at mid-exposure, and oscillates ([`streak`], [`wobble`], [`SpecimenMotion`]). Without
+//! either it is that of the drop at rest, bit for bit.
 //!
 //! Limits: no diffraction (drops above some hundredths of a millimetre), no absorption (below 0.4 % in 6 mm). Light
 //! that is still inside after 256 internal reflections, or of which less than 10^-4 is left, leaves with the last
 //! light that left, so that all shares sum to 1. Exact up to 5.9 mm, where drops are convex. The bottom of larger
 //! ones has a ripple (`downpour_drop::shape`): light that has left it and would meet it again goes on, and rays that
-//! graze it may be missed, which takes 0.1 % from the height of the outline at 7 mm and up to 1.5 % at 9 mm.
+//! graze it may be missed, which takes 0.1 % from the height of the outline at 7 mm and up to 1.5 % at 9 mm. In a streak no
+//! ray is missed, and 128 internal reflections are followed.
 //!
 //! ```
 //! use downpour_drop::DropShape;
@@ -45,14 +51,18 @@ mod error;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 mod image;
+mod motion;
 mod options;
 mod render;
 pub mod sky;
+pub mod streak;
 pub mod trace;
+pub mod wobble;
 
 pub use camera::default_fov;
 pub use error::SpecimenError;
 pub use image::Image;
-pub use options::{LARGEST_SIZE, SpecimenOptions};
+pub use motion::SpecimenMotion;
+pub use options::{LARGEST_SIZE, LONGEST_EXPOSURE_S, SpecimenOptions};
 pub use render::{render_specimen, render_specimen_f64, render_specimen_scalar};
 pub use sky::Sky;

@@ -1,14 +1,22 @@
-//! `wgsl/render/specimen.wgsl`. Twin: `downpour_render::specimen`.
+//! `wgsl/render/specimen.wgsl` and its streak. Twin: `downpour_render::specimen`.
 
-use crate::drop::optics;
+use crate::common::RNG;
+use crate::drop::{optics, oscillation, shape};
 use crate::mask;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&SPECIMEN_CONSTANTS, &SPECIMEN_TABLES, &SPECIMEN];
+pub const MODULES: &[&Module] = &[
+    &SPECIMEN_CONSTANTS,
+    &SPECIMEN_TABLES,
+    &SPECIMEN,
+    &SPECIMEN_STREAK_CONSTANTS,
+    &SPECIMEN_WOBBLE,
+    &SPECIMEN_STREAK,
+];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&SPECIMEN_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&SPECIMEN_KERNEL, &SPECIMEN_STREAK_KERNEL];
 
 shared_constants! {
     /// Constants of the specimen.
@@ -54,3 +62,72 @@ pub static SPECIMEN: Module = Module {
 /// One invocation per pixel of a band of rows.
 pub static SPECIMEN_KERNEL: Kernel =
     Kernel { entry: "main_specimen", module: &SPECIMEN, workgroup: [8, 8, 1] };
+
+shared_constants! {
+    /// Constants of a drop that falls and oscillates.
+    SPECIMEN_STREAK_CONSTANTS at "render/specimen_streak constants" {
+        /// Parts in which a line is walked through the drop: a fifth of its width or less.
+        SPECIMEN_WOBBLE_PARTS: u32 = 5;
+        /// One part.
+        SPECIMEN_WOBBLE_PART: f32 = 0.2;
+        /// Steps to an extremum of the gauge between two places where it turns.
+        SPECIMEN_WOBBLE_TURNS: u32 = 4;
+        /// Steps from a bracket to the surface, one more without a look.
+        SPECIMEN_WOBBLE_STEPS: u32 = 4;
+        /// Least curvature of the parabola of a step: below, it is a step on the tangent.
+        SPECIMEN_WOBBLE_FLAT: f32 = 0.001;
+        /// How far a step may leave its bracket and is put back to its end.
+        SPECIMEN_WOBBLE_SLACK: f32 = 0.0001;
+        /// Internal reflections that are followed in a streak.
+        SPECIMEN_STREAK_REFLECTIONS: u32 = 128;
+        /// Instants per sample of the picture, at most.
+        SPECIMEN_STREAK_INSTANTS: u32 = 4096;
+        /// Traces of one invocation. Each passes a loop at most 2861 times: 1 + 130 crossings of 5 parts, 4 turns in
+        /// every second of them, 4 steps and itself; a driver may stop at 65 535.
+        SPECIMEN_STREAK_TRACES: u32 = 16;
+        /// The dimension of the random numbers of a streak.
+        SPECIMEN_STREAK_DIMENSION: u32 = 4207;
+    }
+}
+
+/// A ray through a drop that oscillates. Twin: `downpour_render::specimen::wobble`.
+pub static SPECIMEN_WOBBLE: Module = Module {
+    path: "render/specimen_wobble.wgsl",
+    wgsl: include_str!("../../wgsl/render/specimen_wobble.wgsl"),
+    uses: &[
+        &SPECIMEN_STREAK_CONSTANTS,
+        &SPECIMEN,
+        &mask::MASK_CONSTANTS,
+        &mask::TRACE,
+        &optics::OPTICS,
+        &oscillation::OSCILLATION,
+        &shape::SHAPE,
+    ],
+};
+
+/// The mean of a drop over an exposure. Twin: `downpour_render::specimen::streak`.
+pub static SPECIMEN_STREAK: Module = Module {
+    path: "render/specimen_streak.wgsl",
+    wgsl: include_str!("../../wgsl/render/specimen_streak.wgsl"),
+    uses: &[&SPECIMEN_STREAK_CONSTANTS, &SPECIMEN, &SPECIMEN_WOBBLE, &oscillation::OSCILLATION, &RNG],
+};
+
+/// One invocation per pixel of a band of rows, for some of its traces.
+pub static SPECIMEN_STREAK_KERNEL: Kernel =
+    Kernel { entry: "main_specimen_streak", module: &SPECIMEN_STREAK, workgroup: [8, 8, 1] };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_invocation_comes_to_the_limit_of_loops() {
+        let crossing = SPECIMEN_WOBBLE_PARTS
+            + SPECIMEN_WOBBLE_PARTS.div_ceil(2) * SPECIMEN_WOBBLE_TURNS
+            + SPECIMEN_WOBBLE_STEPS
+            + 1;
+        let trace = (SPECIMEN_STREAK_REFLECTIONS + 2) * crossing + 1;
+        assert!(SPECIMEN_STREAK_TRACES * trace + 3 < 65_535, "{trace}");
+        assert_eq!(SPECIMEN_WOBBLE_PART * SPECIMEN_WOBBLE_PARTS as f32, 1.0);
+    }
+}

@@ -1,17 +1,18 @@
 //! `shaders/wgsl/render` against `downpour-render`, a file per shader.
 
 mod specimen;
+mod streak;
 
 use crate::{FunctionCase, KernelCase};
 
 /// The cases.
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
-    specimen::functions()
+    [specimen::functions(), streak::functions()].concat()
 }
 
 /// The cases.
 #[must_use]
 pub(super) fn kernels() -> Vec<KernelCase> {
-    specimen::kernels()
+    specimen::kernels().into_iter().chain(streak::kernels()).collect()
 }

@@ -10,6 +10,11 @@ pub(super) const UNITS_PER_METRE: f64 = 1.0e5;
 /// A binary PLY with normals: 20 * 4^`subdivisions` triangles.
 pub(super) fn ply(shape: &DropShape, subdivisions: u32) -> Result<Vec<u8>, String> {
     let mesh = DropMesh::icosphere(shape, subdivisions).map_err(|error| error.to_string())?;
+    Ok(moved_ply(&mesh, 0.0))
+}
+
+/// A binary PLY with normals, of a drop whose origin is `height` metres above the world's.
+pub(super) fn moved_ply(mesh: &DropMesh, height: f64) -> Vec<u8> {
     let (vertices, faces) = (mesh.positions().len(), mesh.triangles().len());
     let mut bytes = format!(
         "ply\nformat binary_little_endian 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\n\
@@ -18,14 +23,15 @@ pub(super) fn ply(shape: &DropShape, subdivisions: u32) -> Result<Vec<u8>, Strin
     )
     .into_bytes();
     for (position, normal) in mesh.positions().iter().zip(mesh.normals()) {
-        let scaled = position.map(|p| (f64::from(p) * UNITS_PER_METRE) as f32);
+        let [x, y, z] = position.map(f64::from);
+        let scaled = [x, y + height, z].map(|p| (p * UNITS_PER_METRE) as f32);
         bytes.extend(scaled.iter().chain(normal).flat_map(|v| v.to_le_bytes()));
     }
     for triangle in mesh.triangles() {
         bytes.push(3);
         bytes.extend(triangle.iter().flat_map(|v| v.to_le_bytes()));
     }
-    Ok(bytes)
+    bytes
 }
 
 #[cfg(test)]

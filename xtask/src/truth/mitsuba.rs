@@ -98,17 +98,34 @@ impl Mitsuba {
             command.arg(format!("{name}={value}"));
         }
         command.args(["--variant", self.variant()]);
-        let text = told(&format!("Mitsuba on {}", case.name()), command.output())?;
-        Ok(text
-            .lines()
-            .filter_map(|line| line.split_once(' '))
-            .filter_map(|(name, value)| Some((name.to_owned(), value.trim().parse().ok()?)))
-            .collect())
+        Ok(read(&told(&format!("Mitsuba on {}", case.name()), command.output())?))
+    }
+
+    /// Runs another script with files and numbers as its arguments: the names and values that it prints.
+    pub(super) fn values(
+        &self,
+        what: &str,
+        script: &str,
+        files: &[(&str, PathBuf)],
+        numbers: &[(&str, f64)],
+    ) -> Result<BTreeMap<String, f64>, String> {
+        let mut command = self.named_script(script, None);
+        for (name, file) in files {
+            command.arg(format!("--{name}")).arg(file);
+        }
+        for (name, value) in numbers {
+            command.arg(format!("--{name}={value}"));
+        }
+        Ok(read(&told(&format!("Mitsuba on {what}"), command.output())?))
     }
 
     fn script(&self, llvm: Option<&Path>) -> Command {
+        self.named_script("case.py", llvm)
+    }
+
+    fn named_script(&self, name: &str, llvm: Option<&Path>) -> Command {
         let mut command = run::command(&self.python.display().to_string(), &[]);
-        command.arg(run::root().join("xtask/src/truth/case.py")).env("PYTHONDONTWRITEBYTECODE", "1");
+        command.arg(run::root().join("xtask/src/truth").join(name)).env("PYTHONDONTWRITEBYTECODE", "1");
         if let Some(llvm) = llvm {
             command.env("DRJIT_LIBLLVM_PATH", llvm);
         }
@@ -123,6 +140,14 @@ impl Mitsuba {
         };
         llvm_libraries().into_iter().find(works)
     }
+}
+
+/// The lines `name value` of a script.
+fn read(text: &str) -> BTreeMap<String, f64> {
+    text.lines()
+        .filter_map(|line| line.split_once(' '))
+        .filter_map(|(name, value)| Some((name.to_owned(), value.trim().parse().ok()?)))
+        .collect()
 }
 
 /// The Python of a virtual environment with the packages, made if it is not there or holds others.

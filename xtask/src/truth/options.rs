@@ -10,6 +10,7 @@ pub(super) struct Options {
     pub(super) quick: bool,
     pub(super) check: bool,
     pub(super) only: bool,
+    pub(super) streaks: bool,
     pub(super) diameters_mm: Vec<f64>,
     pub(super) maps: Vec<PathBuf>,
     pub(super) command: Option<PathBuf>,
@@ -26,6 +27,7 @@ impl Options {
             quick: false,
             check: true,
             only: false,
+            streaks: false,
             diameters_mm: Vec::new(),
             maps: Vec::new(),
             command: None,
@@ -40,6 +42,7 @@ impl Options {
             match name {
                 "--quick" => options.quick = true,
                 "--no-check" => options.check = false,
+                "--streaks" => options.streaks = true,
                 "--only" => options.only = true,
                 "--map" => options.maps.push(value()?.into()),
                 "--command" => options.command = Some(value()?.into()),

@@ -1,9 +1,10 @@
-//! `downpour specimen`: one exact drop, large, in front of a sky map.
+//! `downpour specimen`: one exact drop, large, in front of a sky map, at rest or as a streak.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use downpour::drop::DropShape;
+use downpour::drop::oscillation::Amplitudes;
 use downpour::render::file::{write_exr, write_png};
 use downpour::render::specimen::{Image, Sky, SpecimenOptions, render_specimen};
 use downpour::render::tone::{tone_automatic_exposure, tone_picture};
@@ -20,7 +21,8 @@ use crate::{quantity, stream};
 /// Draw one drop, exactly, in front of a sky map.
 ///
 /// The drop is at the origin, its axis vertical, bottom down; the camera looks at it from `--distance` along (sin yaw cos
-/// pitch, sin pitch, cos yaw cos pitch).
+/// pitch, sin pitch, cos yaw cos pitch). With `--exposure` it falls at its terminal speed, is at the origin at mid-exposure, and
+/// the picture is the mean over the exposure.
 #[derive(Debug, Args)]
 pub(crate) struct SpecimenArguments {
     /// Diameter of the drop, 0.001 to 9 mm.
@@ -41,9 +43,25 @@ pub(crate) struct SpecimenArguments {
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = quantity::elevation_deg)]
     #[arg(allow_hyphen_values = true)]
     pitch: f64,
-    /// Vertical field of view, degrees [default: the drop fills 80 % of the height].
+    /// Vertical field of view, degrees [default: the drop, or all of its path, fills 80 % of the height].
     #[arg(long, value_name = "DEG", value_parser = quantity::fov_deg, allow_hyphen_values = true)]
     fov: Option<f64>,
+    /// Exposure in seconds, 0 to 1; 0 is a drop at rest.
+    #[arg(long, value_name = "S", default_value = "0", value_parser = quantity::exposure_s)]
+    #[arg(allow_hyphen_values = true)]
+    exposure: f64,
+    /// Instants of the exposure for each of the 16 samples of a pixel, 1 to 4096.
+    #[arg(long, value_name = "N|table", default_value = "4", value_parser = quantity::instants)]
+    #[arg(allow_hyphen_values = true)]
+    samples: u32,
+    /// How the drop oscillates: `none`, or the amplitudes of the modes (2,0) and (3,1) over the radius, as 0.2,0.1.
+    #[arg(long, value_name = "A20,A31", default_value = "none", value_parser = quantity::oscillation)]
+    #[arg(allow_hyphen_values = true)]
+    oscillation: Amplitudes,
+    /// Phases of the two modes at mid-exposure, in turns.
+    #[arg(long, value_name = "T20,T31", default_value = "0,0", value_parser = quantity::phase)]
+    #[arg(allow_hyphen_values = true)]
+    phase: [f64; 2],
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = quantity::picture_size)]
     size: [u32; 2],
@@ -89,6 +107,10 @@ impl SpecimenArguments {
             pitch: self.pitch.to_radians(),
             fov: self.fov.map(f64::to_radians),
             size: self.size,
+            exposure_s: self.exposure,
+            instants: self.samples,
+            oscillation: self.oscillation,
+            phase: self.phase,
             ..SpecimenOptions::default()
         };
         options.check(&shape)?;

@@ -47,6 +47,37 @@ fn a_picture_of_one_pixel_is_one() {
     assert!(png.file("d.png").starts_with(b"\x89PNG"));
 }
 
+/// Without an exposure and an oscillation, or with those that are nothing, the picture is that of the drop at rest.
+#[test]
+fn a_streak_of_no_exposure_is_the_drop_at_rest() {
+    let picture = |more: &[&str]| {
+        let arguments = ["--diameter", "3", "--size", "24x24", "-o", "d.exr"];
+        specimen(&[&arguments[..], more].concat()).succeeded().file("d.exr")
+    };
+    let still = picture(&[]);
+    assert!(still == picture(&["--exposure", "0", "--oscillation", "none", "--samples", "5"]));
+    assert!(still == picture(&["--oscillation", "0,0", "--phase", "0.3,0.1"]));
+    assert!(
+        still != picture(&["--oscillation", "0.2,0.1", "--phase", "0.25,0.25"]),
+        "a drop that is drawn out"
+    );
+}
+
+/// In 1/500 s a drop of 2 mm falls 13 mm: six and a half diameters.
+#[test]
+fn a_streak_is_as_long_as_the_fall() {
+    let arguments = ["--diameter", "2", "--exposure", "0.002", "--samples", "4", "--size", "33x99"];
+    let ended = specimen(&[&arguments[..], &["-o", "d.exr"]].concat()).succeeded();
+    let (width, height, pixels) = pixels(&ended);
+    let bare: Vec<f32> = (0..height).map(|y| pixels[(y * width) as usize][2]).collect();
+    let rows: Vec<u32> = (0..height)
+        .filter(|&y| (pixels[(y * width + 16) as usize][2] - bare[y as usize]).abs() > 1.0e-3)
+        .collect();
+    let (first, last) = (rows[0], rows[rows.len() - 1]);
+    // 80 % of 99 rows, and the sky behind is nearly the same all over the picture.
+    assert!((9..=13).contains(&first) && (85..=90).contains(&last), "{first} {last}");
+}
+
 #[test]
 fn bad_arguments_are_refused() {
     for (arguments, code, words) in [
@@ -59,6 +90,23 @@ fn bad_arguments_are_refused() {
         (&["--diameter", "2", "--fov", "180", "-o", "d.exr"], 2, "170 degrees"),
         (&["--diameter", "2", "--pitch", "91", "-o", "d.exr"], 2, "-90 to 90"),
         (&["--diameter", "2", "-o", "d.jpg"], 2, ".exr or .png"),
+        (&["--diameter", "2", "--exposure", "-0.01", "-o", "d.exr"], 2, "0 to 1 s"),
+        (&["--diameter", "2", "--exposure", "NaN", "-o", "d.exr"], 2, "not finite"),
+        (&["--diameter", "2", "--exposure", "1.01", "-o", "d.exr"], 2, "0 to 1 s"),
+        (&["--diameter", "2", "--exposure", "1/60", "-o", "d.exr"], 2, "not a number"),
+        (&["--diameter", "2", "--samples", "0", "-o", "d.exr"], 2, "1 to 4096"),
+        (&["--diameter", "2", "--samples", "-4", "-o", "d.exr"], 2, "1 to 4096"),
+        (&["--diameter", "2", "--samples", "many", "-o", "d.exr"], 2, "1 to 4096, or table"),
+        (&["--diameter", "2", "--samples", "table", "-o", "d.exr"], 2, "not available for the specimen yet"),
+        (&["--diameter", "2", "--samples", "4097", "-o", "d.exr"], 3, "4096"),
+        (&["--diameter", "2", "--samples", "1000000", "-o", "d.exr"], 3, "4096"),
+        (&["--diameter", "2", "--samples", "99999999999", "-o", "d.exr"], 3, "4096"),
+        (&["--diameter", "2", "--oscillation", "0.1", "-o", "d.exr"], 2, "0 to 0.3"),
+        (&["--diameter", "2", "--oscillation", "0.1,0.4", "-o", "d.exr"], 2, "0 to 0.3"),
+        (&["--diameter", "2", "--oscillation", "nan,0", "-o", "d.exr"], 2, "not finite"),
+        (&["--diameter", "0.04", "--oscillation", "0.1,0.1", "-o", "d.exr"], 2, "0.05 to 9"),
+        (&["--diameter", "2", "--phase", "0,inf", "-o", "d.exr"], 2, "not finite"),
+        (&["--diameter", "2", "--exposure", "1", "--pitch", "90", "-o", "d.exr"], 2, "path of the drop"),
         (&["--diameter", "2", "-o", "nowhere/d.exr"], 5, "nowhere"),
     ] {
         specimen(arguments).failed(code, &[words]).left(&["sky.exr"]);

@@ -69,6 +69,13 @@ impl Moments {
         let [n0, n1] = self.p31;
         1.0 + s2 * (3.0 * m1 + s2 * (3.0 * m2 + s2 * m3)) + 1.5 * s3 * s3 * (n0 + s2 * n1)
     }
+
+    /// The coefficients of the same.
+    fn polynomial(&self) -> [f64; 5] {
+        let [m1, m2, m3] = self.p20;
+        let [n0, n1] = self.p31;
+        [3.0 * m1, 3.0 * m2, m3, 1.5 * n0, 1.5 * n1]
+    }
 }
 
 impl OscillatingDrop {
@@ -98,11 +105,24 @@ impl OscillatingDrop {
         &self.oscillation
     }
 
+    /// `[a, b, c, d, e]`, with which the volume over that of the shape at rest is
+    /// `1 + s2 (a + s2 (b + s2 c)) + s3^2 (d + s2 e)` before it is kept.
+    #[must_use]
+    pub fn volume_polynomial(&self) -> [f64; 5] {
+        self.moments.polynomial()
+    }
+
+    /// What the radius is multiplied with to keep the volume, for displacements (s2, s3).
+    #[must_use]
+    pub fn scale(&self, displacement: [f64; 2]) -> f64 {
+        1.0 / ops::f64::cbrt(self.moments.volume(displacement))
+    }
+
     /// The drop at a time in s; `age` is the time in s since the disturbance, for one that is damped.
     #[must_use]
     pub fn at(&self, time: f64, age: f64) -> DropInstant {
         let displacement = self.oscillation.displacement(time, age);
-        let scale = 1.0 / ops::f64::cbrt(self.moments.volume(displacement));
+        let scale = self.scale(displacement);
         DropInstant { shape: self.shape, state: [displacement[0], displacement[1], scale] }
     }
 

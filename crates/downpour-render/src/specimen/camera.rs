@@ -8,7 +8,7 @@ use downpour_drop::DropShape;
 use downpour_math::ops::f64 as ops;
 
 use super::SpecimenError;
-use super::options::SpecimenOptions;
+use super::options::{LARGEST_FOV_DEG, SpecimenOptions};
 use super::trace::SpecimenCamera;
 
 /// Share of the height that the drop fills by default.
@@ -39,18 +39,41 @@ pub(crate) fn bounding_radius(shape: &DropShape) -> f64 {
 /// [`SpecimenError::OutOfRange`] if the distance is not outside the drop, or the pitch not within [-pi/2, pi/2].
 pub fn default_fov(shape: &DropShape, distance_m: f64, pitch: f64) -> Result<f64, SpecimenError> {
     SpecimenOptions { distance_m, pitch, ..SpecimenOptions::default() }.check(shape)?;
-    let height = outline(shape, distance_m, pitch, 1.0) + outline(shape, distance_m, pitch, -1.0);
+    let height = outline(shape, distance_m, pitch, 1.0, 0.0) + outline(shape, distance_m, pitch, -1.0, 0.0);
     Ok(2.0 * ops::atan(height / (2.0 * FILLED)))
 }
 
+/// The same for a drop that falls from `half_path` metres above the origin to as far below it: the farther end of its path
+/// is 80 % of the way to the edge of the picture.
+pub(crate) fn path_fov(
+    shape: &DropShape,
+    distance_m: f64,
+    pitch: f64,
+    half_path: f64,
+) -> Result<f64, SpecimenError> {
+    SpecimenOptions { distance_m, pitch, ..SpecimenOptions::default() }.check(shape)?;
+    let widest = LARGEST_FOV_DEG.to_radians();
+    let toward = half_path * ops::sin(pitch).abs() + bounding_radius(shape);
+    if toward >= distance_m {
+        // An end of the path is beside or behind the camera.
+        return Ok(widest);
+    }
+    let (up, down) = (
+        outline(shape, distance_m, pitch, 1.0, half_path),
+        outline(shape, distance_m, pitch, -1.0, -half_path),
+    );
+    Ok((2.0 * ops::atan(up.max(down) / FILLED)).min(widest))
+}
+
 /// Slope (tangent of the angle to the axis of the camera) of the upper (`side` = 1) or lower (-1) end of the outline,
-/// away from the axis.
-pub(crate) fn outline(shape: &DropShape, distance_m: f64, pitch: f64, side: f64) -> f64 {
+/// away from the axis, for a drop `lift` metres above the origin.
+pub(crate) fn outline(shape: &DropShape, distance_m: f64, pitch: f64, side: f64, lift: f64) -> f64 {
     let (sin, cos) = (ops::sin(pitch), ops::cos(pitch));
     // theta from the downward axis, on the camera's side for positive theta.
     let slope = |theta: f64| {
         let radius = shape.radius(theta.abs());
         let (toward, down) = (radius * ops::sin(theta), radius * ops::cos(theta));
+        let down = down - lift;
         side * (-toward * sin - down * cos) / (distance_m - (toward * cos - down * sin))
     };
     let step = std::f64::consts::TAU / f64::from(PROFILE_POINTS);

@@ -1,10 +1,12 @@
 //! The specimen on a GPU. Pixels come from the same formulas as on the CPU; the parity tests hold the two equal.
 
 use downpour_drop::DropShape;
+use downpour_drop::oscillation::DropOscillation;
 use downpour_gpu::{ComputeKernel, Gpu, GpuError, wgpu};
 use downpour_mask::gpu::DropUniform;
-use downpour_shaders::render::specimen::SPECIMEN_KERNEL;
+use downpour_shaders::render::specimen::{SPECIMEN_KERNEL, SPECIMEN_STREAK_KERNEL, SPECIMEN_STREAK_TRACES};
 
+use super::motion::SpecimenMotion;
 use super::options::SpecimenOptions;
 use super::render::{View, views};
 use super::sky::Sky;
@@ -73,6 +75,52 @@ pub struct SpecimenUniform {
     pub padding: u32,
 }
 
+/// What the drop does in the exposure. The same layout as `SpecimenStreak` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct StreakUniform {
+    /// The oscillation.
+    pub oscillation: DropOscillation,
+    /// The first four coefficients of the volume.
+    pub volume: [f32; 4],
+    /// The fifth.
+    pub volume_last: f32,
+    /// 1 / A^2 and 1 / B^2 of the spheroid that holds the drop at any time.
+    pub inverse_wide: f32,
+    /// As `inverse_wide`.
+    pub inverse_tall: f32,
+    /// Radii per second.
+    pub speed: f32,
+    /// Radii of fall in half of the exposure.
+    pub farthest: f32,
+    /// Instants per sample of the picture.
+    pub instants: u32,
+    /// The first trace of the dispatch.
+    pub first: u32,
+    /// The number of its traces.
+    pub count: u32,
+}
+
+impl StreakUniform {
+    /// The traces of one dispatch.
+    #[must_use]
+    pub fn new(motion: &SpecimenMotion, first: u32, count: u32) -> Self {
+        let [v1, v2, v3, w0, volume_last] = motion.drop.volume_polynomial().map(|v| v as f32);
+        Self {
+            oscillation: motion.drop.oscillation().gpu(),
+            volume: [v1, v2, v3, w0],
+            volume_last,
+            inverse_wide: motion.inverse_wide as f32,
+            inverse_tall: motion.inverse_tall as f32,
+            speed: motion.speed as f32,
+            farthest: motion.farthest as f32,
+            instants: motion.instants,
+            first,
+            count,
+        }
+    }
+}
+
 /// Samples per dispatch: a submission must stay far below the time after which a driver resets.
 const SAMPLES_PER_BAND: u64 = 1 << 21;
 
@@ -118,6 +166,11 @@ impl SpecimenRenderer {
         sky: Sky<'_>,
     ) -> Result<Image, GpuSpecimenError> {
         let views = views(shape, options)?;
+        let streak = match options.motion(shape)? {
+            // Made where it is needed: a picture of a drop at rest does not wait for its compiler.
+            Some(motion) => Some((motion, ComputeKernel::new(&self.gpu, &SPECIMEN_STREAK_KERNEL, &[])?)),
+            None => None,
+        };
         let [width, height] = options.size;
         let map = self.gpu.storage_buffer("sky map", sky.radiance())?;
         let band = band_rows(options);
@@ -129,9 +182,20 @@ impl SpecimenRenderer {
             for view in &views {
                 let uniform = uniform(shape, view, sky, first_row, rows);
                 let uniform = self.gpu.uniform_buffer("specimen view", &uniform)?;
-                let bindings = self.kernel.bind(&self.gpu, &[&uniform, &map, &target])?;
                 let groups = [width.div_ceil(8), rows.div_ceil(GROUP_ROWS), 1];
-                self.gpu.submit(&[self.kernel.dispatch(&bindings, groups)])?;
+                let Some((motion, kernel)) = &streak else {
+                    let bindings = self.kernel.bind(&self.gpu, &[&uniform, &map, &target])?;
+                    self.gpu.submit(&[self.kernel.dispatch(&bindings, groups)])?;
+                    continue;
+                };
+                let traces = options.samples * options.samples * options.instants;
+                for first in (0..traces).step_by(SPECIMEN_STREAK_TRACES as usize) {
+                    let count = SPECIMEN_STREAK_TRACES.min(traces - first);
+                    let of_streak = StreakUniform::new(motion, first, count);
+                    let of_streak = self.gpu.uniform_buffer("specimen streak", &of_streak)?;
+                    let bindings = kernel.bind(&self.gpu, &[&uniform, &map, &target, &of_streak])?;
+                    self.gpu.submit(&[kernel.dispatch(&bindings, groups)])?;
+                }
             }
             let read = self.gpu.read::<[f32; 3]>(&target)?;
             pixels.extend_from_slice(&read[..width as usize * rows as usize]);

@@ -2,16 +2,22 @@
 
 use downpour_drop::DropShape;
 use downpour_drop::optics::WATER_INDEX;
-use downpour_shaders::render::specimen::SPECIMEN_SAMPLES;
+use downpour_drop::oscillation::Amplitudes;
+use downpour_math::ops::f64 as ops;
+use downpour_shaders::render::specimen::{SPECIMEN_SAMPLES, SPECIMEN_STREAK_INSTANTS};
 
 use super::SpecimenError;
-use super::camera::{bounding_radius, default_fov};
+use super::camera::{bounding_radius, default_fov, path_fov};
+use super::motion::{SpecimenMotion, fall_speed};
 
 /// The largest width and height of a picture, in pixels.
 pub const LARGEST_SIZE: u32 = 16_384;
 
+/// The longest exposure, in seconds.
+pub const LONGEST_EXPOSURE_S: f64 = 1.0;
+
 const LARGEST_DISTANCE_M: f64 = 1000.0;
-const LARGEST_FOV_DEG: f64 = 175.0;
+pub(crate) const LARGEST_FOV_DEG: f64 = 175.0;
 const LARGEST_INDEX: f64 = 4.0;
 
 /// The camera, the picture and the water. By default the drop fills 80 % of the height from 0.1 m, seen level from
@@ -35,6 +41,15 @@ pub struct SpecimenOptions {
     /// Refractive index of water against air for red, green and blue, each 1 to 4. Three different ones take three
     /// times as long (`downpour_drop::optics::rgb_indices` has those of real water).
     pub refractive_index: [f64; 3],
+    /// How long the picture is exposed, in seconds, 0 to [`LONGEST_EXPOSURE_S`]: the drop falls at its terminal speed and
+    /// is at the origin at mid-exposure.
+    pub exposure_s: f64,
+    /// Instants for each sample of a pixel, 1 to 4096, spread over the time in which the drop may cover it.
+    pub instants: u32,
+    /// How far the drop oscillates about its shape at rest.
+    pub oscillation: Amplitudes,
+    /// Phases of the modes (2,0) and (3,1) at mid-exposure, in turns: any finite numbers.
+    pub phase: [f64; 2],
 }
 
 impl Default for SpecimenOptions {
@@ -47,6 +62,10 @@ impl Default for SpecimenOptions {
             size: [960, 540],
             samples: 4,
             refractive_index: [WATER_INDEX; 3],
+            exposure_s: 0.0,
+            instants: 4,
+            oscillation: Amplitudes::NONE,
+            phase: [0.0; 2],
         }
     }
 }
@@ -93,14 +112,59 @@ impl SpecimenOptions {
         };
         size("picture width", self.size[0], LARGEST_SIZE)?;
         size("picture height", self.size[1], LARGEST_SIZE)?;
-        size("samples along an edge of a pixel", self.samples, SPECIMEN_SAMPLES)
+        size("samples along an edge of a pixel", self.samples, SPECIMEN_SAMPLES)?;
+        size("instants of an exposure", self.instants, SPECIMEN_STREAK_INSTANTS)?;
+        within("exposure", self.exposure_s, 0.0, LONGEST_EXPOSURE_S, "s", 1.0, "0 to 1")?;
+        for turns in self.phase {
+            within("phase of the oscillation", turns, f64::MIN, f64::MAX, "turns", 1.0, "a finite number")?;
+        }
+        self.check_path(shape)
     }
 
-    /// The vertical field of view in radians: the one given, or that in which the drop fills 80 % of the height.
+    /// The drop must not meet the camera on its way.
+    fn check_path(&self, shape: &DropShape) -> Result<(), SpecimenError> {
+        let Some(motion) = SpecimenMotion::of(shape, self)? else { return Ok(()) };
+        let (sin, cos) = (ops::sin(self.pitch), ops::cos(self.pitch));
+        let height = self.distance_m * sin;
+        let beyond = height - height.clamp(-self.half_path(shape)?, self.half_path(shape)?);
+        let (found, nearest) = (ops::hypot(self.distance_m * cos, beyond), motion.bounding_radius());
+        if found > nearest {
+            return Ok(());
+        }
+        Err(SpecimenError::OutOfRange {
+            quantity: "distance of the camera from the path of the drop",
+            found,
+            unit: "m",
+            allowed: format!("above {nearest:.6}"),
+        })
+    }
+
+    /// Fall in half of the exposure, in metres.
+    pub(crate) fn half_path(&self, shape: &DropShape) -> Result<f64, SpecimenError> {
+        Ok(0.5 * self.exposure_s * fall_speed(shape)?)
+    }
+
+    /// What the drop does during the exposure; `None` for a drop at rest.
+    ///
+    /// # Errors
+    /// What [`SpecimenOptions::check`] says.
+    pub fn motion(&self, shape: &DropShape) -> Result<Option<SpecimenMotion>, SpecimenError> {
+        self.check(shape)?;
+        SpecimenMotion::of(shape, self)
+    }
+
+    /// The vertical field of view in radians: the one given, or that in which the drop, or all of its path in the
+    /// exposure, fills 80 % of the height, but at most 175 degrees.
     ///
     /// # Errors
     /// As [`default_fov`].
     pub fn fov(&self, shape: &DropShape) -> Result<f64, SpecimenError> {
-        self.fov.map_or_else(|| default_fov(shape, self.distance_m, self.pitch), Ok)
+        match self.fov {
+            Some(fov) => Ok(fov),
+            None if self.exposure_s > 0.0 => {
+                path_fov(shape, self.distance_m, self.pitch, self.half_path(shape)?)
+            }
+            None => default_fov(shape, self.distance_m, self.pitch),
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! The picture of a specimen on the CPU. Twin of `shaders/wgsl/render/specimen.wgsl`.
 //!
 //! [`render_specimen`] is the fast path: machine vectors of samples, rows in parallel. [`render_specimen_scalar`] is the
-//! plain loop, the twin of the GPU's kernel; the two give the same bits. [`render_specimen_f64`] is the reference.
+//! plain loop, the twin of the GPU's kernel; the two give the same bits. [`render_specimen_f64`] is the reference. A streak has
+//! one path for both of the first.
 
 use downpour_drop::DropShape;
 use downpour_mask::trace::TracedDrop;
@@ -11,6 +12,7 @@ use rayon::prelude::*;
 
 use super::options::SpecimenOptions;
 use super::sky::{Sky, sky_f64, specimen_sky, specimen_sky_place};
+use super::streak::{Precision, Streak};
 use super::trace::{Receiver, SpecimenCamera, specimen_light, specimen_radiance, upright_drop};
 use super::{Image, SpecimenError};
 
@@ -53,13 +55,13 @@ pub(crate) fn views(shape: &DropShape, options: &SpecimenOptions) -> Result<Vec<
 
 impl View {
     /// Height of the samples of line `line` (counted from the top) above the middle of the picture.
-    fn line_height(&self, line: u32) -> f32 {
+    pub(crate) fn line_height(&self, line: u32) -> f32 {
         (self.size[1] * self.samples) as f32 * 0.5 - (line as f32 + 0.5)
     }
 
     /// Place of sample `index` of a line, from the middle of the picture.
     #[inline(always)]
-    fn sample_place(&self, index: u32) -> f32 {
+    pub(crate) fn sample_place(&self, index: u32) -> f32 {
         index as f32 + 0.5 - (self.size[0] * self.samples) as f32 * 0.5
     }
 
@@ -82,6 +84,29 @@ impl View {
             }
         }
     }
+}
+
+/// The picture of a streak, each pixel in the precision `R`; `None` for a drop at rest.
+fn streak<R: Precision>(
+    shape: &DropShape,
+    options: &SpecimenOptions,
+    sky: Sky<'_>,
+) -> Result<Option<Image>, SpecimenError> {
+    let Some(motion) = options.motion(shape)? else { return Ok(None) };
+    let mut image = empty(options);
+    for view in views(shape, options)? {
+        let oscillation = motion.drop.oscillation().gpu();
+        let streak = Streak { view: &view, motion: &motion, oscillation, sky };
+        image.pixels.par_chunks_mut(options.size[0] as usize).enumerate().for_each(|(row, pixels)| {
+            for (column, pixel) in (0..).zip(pixels) {
+                let made = streak.pixel::<R>(column, row as u32);
+                for c in (0..3).filter(|&c| view.channels[c]) {
+                    pixel[c] = made[c];
+                }
+            }
+        });
+    }
+    Ok(Some(image))
 }
 
 fn empty(options: &SpecimenOptions) -> Image {
@@ -109,6 +134,9 @@ pub fn render_specimen(
     options: &SpecimenOptions,
     sky: Sky<'_>,
 ) -> Result<Image, SpecimenError> {
+    if let Some(image) = streak::<f32>(shape, options, sky)? {
+        return Ok(image);
+    }
     let mut image = empty(options);
     for view in views(shape, options)? {
         image.pixels.par_chunks_mut(options.size[0] as usize).enumerate().for_each(|(row, pixels)| {
@@ -127,6 +155,9 @@ pub fn render_specimen_scalar(
     options: &SpecimenOptions,
     sky: Sky<'_>,
 ) -> Result<Image, SpecimenError> {
+    if let Some(image) = streak::<f32>(shape, options, sky)? {
+        return Ok(image);
+    }
     let mut image = empty(options);
     for view in views(shape, options)? {
         for (row, pixels) in (0..).zip(image.pixels.chunks_mut(options.size[0] as usize)) {
@@ -216,6 +247,9 @@ pub fn render_specimen_f64(
     options: &SpecimenOptions,
     sky: Sky<'_>,
 ) -> Result<Image, SpecimenError> {
+    if let Some(image) = streak::<f64>(shape, options, sky)? {
+        return Ok(image);
+    }
     let mut image = empty(options);
     for mut view in views(shape, options)? {
         view.drop.steps = REFERENCE_STEPS;

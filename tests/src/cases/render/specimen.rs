@@ -52,7 +52,7 @@ fn drop(args: &mut Args<'_>) -> TracedDrop {
 }
 
 /// A ray whose foot is at most `farthest` from the origin, seen from 100 radii.
-fn ray_of(random: [u32; 4], farthest: f32) -> SpecimenRay<f32> {
+pub(super) fn ray_of(random: [u32; 4], farthest: f32) -> SpecimenRay<f32> {
     let unit = random.map(|w| 2.0 * rng_unit(w) - 1.0);
     let direction = normalize([unit[0], unit[1], unit[2] + 0.01]);
     let across = normalize(cross(direction, normalize([unit[3], 0.37, unit[0] - unit[1]])));
@@ -74,16 +74,16 @@ fn drop_and_light(random: [u32; 4]) -> Vec<u32> {
     [words, light_words(&light)].concat()
 }
 
-fn light_words(light: &SpecimenLight<f32>) -> Vec<u32> {
+pub(super) fn light_words(light: &SpecimenLight<f32>) -> Vec<u32> {
     ((((light.point, light.share), light.exit), light.rest), light.inside).words()
 }
 
-fn ray(args: &mut Args<'_>) -> SpecimenRay<f32> {
+pub(super) fn ray(args: &mut Args<'_>) -> SpecimenRay<f32> {
     let foot = args.f32s();
     SpecimenRay { foot, reach: args.f32(), direction: args.f32s() }
 }
 
-fn light(args: &mut Args<'_>) -> SpecimenLight<f32> {
+pub(super) fn light(args: &mut Args<'_>) -> SpecimenLight<f32> {
     let point = args.f32s();
     let share = args.f32();
     let exit = args.f32s();
@@ -192,7 +192,7 @@ fn told(error: GpuSpecimenError) -> GpuError {
     }
 }
 
-fn picture(gpu: &Gpu, diameter: f64, options: &SpecimenOptions) -> Result<Run, GpuError> {
+pub(super) fn picture(gpu: &Gpu, diameter: f64, options: &SpecimenOptions) -> Result<Run, GpuError> {
     let shape = DropShape::new(diameter).expect("a diameter of the table");
     let texels = sky_texels();
     let sky = Sky::new(64, 32, &texels).expect("a sky");

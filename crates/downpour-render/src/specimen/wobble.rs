@@ -1,0 +1,246 @@
+//! A ray through a drop that oscillates: a surface that is not one of revolution, and need not be convex.
+//!
+//! r = rho(x) f(x, h) scale, with f = 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h: the shape at rest times the factor of
+//! `downpour_drop::oscillation`. p is a point, x = -p.y / |p| and h = p.x / |p|; lengths are in units of the
+//! volume-equivalent radius, the drop's origin is at 0, its axis is +Y. The gauge squared is G = |p|^2 / r^2; with
+//! q = rho' / rho + f_x / f and k = f_h / f,
+//!
+//! > 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2,
+//!
+//! whose direction is the outward normal.
+//!
+//! A line is walked in equal parts; in a part at whose ends G turns, its extremum is looked for, so that no bulge or hollow
+//! wider than a part is missed. The crossing that is found is closed in on by the steps of `mask_trace_step`, and by halves
+//! where these leave the bracket.
+//!
+//! Limits: light that has left the drop does not meet it again.
+//!
+//! Generic over [`Real`]; with `f32` the twin of `shaders/wgsl/render/specimen_wobble.wgsl`.
+
+use downpour_drop::optics::{optics_fresnel, optics_reflect, optics_refract};
+use downpour_drop::oscillation::drop_oscillation_legendre_20;
+use downpour_drop::shape::{COEFFICIENTS, drop_shape_radius_slope};
+use downpour_mask::trace::{Surface, mask_trace_step};
+use downpour_math::real::Real;
+use downpour_math::vector::{add_scaled, dot, normalize, scale, select};
+use downpour_shaders::mask::MASK_TINY;
+use downpour_shaders::render::specimen::{
+    SPECIMEN_WOBBLE_FLAT, SPECIMEN_WOBBLE_PART, SPECIMEN_WOBBLE_PARTS, SPECIMEN_WOBBLE_SLACK,
+    SPECIMEN_WOBBLE_STEPS, SPECIMEN_WOBBLE_TURNS,
+};
+
+use super::trace::{SpecimenLight, SpecimenRay};
+
+/// A drop at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct SpecimenWobble<R> {
+    /// Shape coefficients, from `c_0` to `c_10`.
+    pub coefficients: [f64; COEFFICIENTS],
+    /// s2, s3, and what keeps the volume.
+    pub state: [R; 3],
+    /// Refractive index of water relative to air.
+    pub index: f64,
+    /// 1 / A^2, with A the half width across the axis of a spheroid that holds the drop.
+    pub inverse_wide: f64,
+    /// 1 / B^2, with B its half height along the axis.
+    pub inverse_tall: f64,
+}
+
+/// G - 1 and half of grad G at a point.
+#[inline]
+#[must_use]
+pub fn specimen_wobble_surface<R: Real>(drop: &SpecimenWobble<R>, point: [R; 3]) -> Surface<R> {
+    let one = point[0].constant(1.0);
+    let c = |value: f64| one.constant(value);
+    let square = dot(point, point).at_least(c(f64::from(MASK_TINY)));
+    let length = square.sqrt();
+    let inverse_length = one / length;
+    let x = -(point[1] * inverse_length);
+    let h = point[0] * inverse_length;
+    let [s2, s3, size] = drop.state;
+    let [rho, slope] = drop_shape_radius_slope(&drop.coefficients, x);
+    let lobe = c(1.5) * s3 * (one - c(5.0) * x * x);
+    let factor = one + s2 * drop_oscillation_legendre_20(x) + lobe * h;
+    let by_x = c(3.0) * s2 * x - c(15.0) * s3 * x * h;
+    let inverse_factor = one / factor;
+    let q = slope / rho + by_x * inverse_factor;
+    let k = lobe * inverse_factor;
+    let inverse = one / (rho * factor * size);
+    let scale_all = inverse * inverse;
+    let along = one + q * x + k * h;
+    let [px, py, pz] = scale(point, along);
+    let gradient = [px - length * k, py + length * q, pz];
+    Surface { excess: square * scale_all - one, half_gradient: scale(gradient, scale_all) }
+}
+
+/// G - 1 and half of dG/ds at the place `s` of a line.
+#[inline]
+#[must_use]
+pub fn specimen_wobble_along<R: Real>(
+    drop: &SpecimenWobble<R>,
+    origin: [R; 3],
+    direction: [R; 3],
+    s: R,
+) -> [R; 2] {
+    let surface = specimen_wobble_surface(drop, add_scaled(origin, direction, s));
+    [surface.excess, dot(surface.half_gradient, direction)]
+}
+
+/// Where a line enters and leaves the spheroid that holds the drop; the second is below the first if it does not.
+#[inline]
+#[must_use]
+pub fn specimen_wobble_span<R: Real<Mask = bool>>(
+    drop: &SpecimenWobble<R>,
+    origin: [R; 3],
+    direction: [R; 3],
+) -> [R; 2] {
+    let one = origin[0].constant(1.0);
+    let (wide, tall) = (one.constant(drop.inverse_wide), one.constant(drop.inverse_tall));
+    let across = |a: [R; 3]| [a[0] * wide, a[1] * tall, a[2] * wide];
+    let curvature = dot(across(direction), direction);
+    let slope = dot(across(origin), direction);
+    let excess = dot(across(origin), origin) - one;
+    let discriminant = slope * slope - curvature * excess;
+    if discriminant.less(one.constant(0.0)) {
+        return [one, -one];
+    }
+    let root = discriminant.sqrt();
+    [(-slope - root) / curvature, (root - slope) / curvature]
+}
+
+/// The first place between `start` and `end` at which a line goes into the drop (`side` = -1) or out of it (`side` = 1);
+/// `None` if there is none. At `start` it is on the other side, or on the surface.
+#[inline]
+#[must_use]
+pub fn specimen_wobble_cross<R: Real<Mask = bool>>(
+    drop: &SpecimenWobble<R>,
+    origin: [R; 3],
+    direction: [R; 3],
+    start: R,
+    end: R,
+    side: R,
+) -> Option<R> {
+    let zero = side.constant(0.0);
+    let at = |s: R| specimen_wobble_along(drop, origin, direction, s);
+    let beyond = |value: R| zero.less(side * value);
+    let part = (end - start) * side.constant(f64::from(SPECIMEN_WOBBLE_PART));
+    let (mut a, mut b) = (start, start);
+    let mut at_a = at(start);
+    let mut at_b = at_a;
+    let mut found = false;
+    for k in 1..=SPECIMEN_WOBBLE_PARTS {
+        b = start + part * side.constant(f64::from(k));
+        at_b = at(b);
+        found = beyond(at_b[0]);
+        if !found && beyond(at_a[1]) && (side * at_b[1]).less(zero) {
+            // G turns towards the other side: its extremum by the rule of the false position.
+            let (mut low, mut high) = ([a, at_a[1]], [b, at_b[1]]);
+            for _ in 0..SPECIMEN_WOBBLE_TURNS {
+                let middle = low[0] + (high[0] - low[0]) * (low[1] / (low[1] - high[1]));
+                let at_middle = at(middle);
+                if beyond(at_middle[0]) {
+                    (found, b, at_b) = (true, middle, at_middle);
+                    break;
+                }
+                if beyond(at_middle[1]) {
+                    low = [middle, at_middle[1]];
+                } else {
+                    high = [middle, at_middle[1]];
+                }
+            }
+        }
+        if found {
+            break;
+        }
+        (a, at_a) = (b, at_b);
+    }
+    if !found {
+        return None;
+    }
+    let flat = side.constant(f64::from(SPECIMEN_WOBBLE_FLAT));
+    let slack = side.constant(f64::from(SPECIMEN_WOBBLE_SLACK));
+    let curvature = ((at_b[1] - at_a[1]) / (b - a)).at_least(flat);
+    // From the end that is outside, where a step to the root on the right side is never ambiguous.
+    let (mut s, mut at_s) = if zero.less(side) { (b, at_b) } else { (a, at_a) };
+    for _ in 0..SPECIMEN_WOBBLE_STEPS {
+        let next = s + mask_trace_step(at_s[0], at_s[1], curvature, side);
+        let strays = next.less(a - slack) | (b + slack).less(next);
+        s = if strays { side.constant(0.5) * (a + b) } else { next.at_least(a).at_most(b) };
+        at_s = at(s);
+        if beyond(at_s[0]) {
+            b = s;
+        } else {
+            a = s;
+        }
+    }
+    let last = s + mask_trace_step(at_s[0], at_s[1], curvature, side);
+    Some(last.at_least(a).at_most(b))
+}
+
+/// Where a ray of the camera meets the drop; `None` if it misses.
+#[inline]
+#[must_use]
+pub fn specimen_wobble_meet<R: Real<Mask = bool>>(
+    drop: &SpecimenWobble<R>,
+    ray: &SpecimenRay<R>,
+) -> Option<R> {
+    let [near, far] = specimen_wobble_span(drop, ray.foot, ray.direction);
+    let start = near.at_least(-ray.reach);
+    if !start.less(far) {
+        return None;
+    }
+    specimen_wobble_cross(drop, ray.foot, ray.direction, start, far, -far.constant(1.0))
+}
+
+/// The first interface, at the place `s` of the ray: what is reflected outside leaves, the rest enters.
+#[inline]
+#[must_use]
+pub fn specimen_wobble_enter<R: Real>(
+    drop: &SpecimenWobble<R>,
+    ray: &SpecimenRay<R>,
+    s: R,
+) -> SpecimenLight<R> {
+    let one = s.constant(1.0);
+    let index = s.constant(drop.index);
+    let point = add_scaled(ray.foot, ray.direction, s);
+    let normal = normalize(specimen_wobble_surface(drop, point).half_gradient);
+    let reflectance = optics_fresnel(-dot(ray.direction, normal), index);
+    let (inside, _) = optics_refract(ray.direction, normal, one / index);
+    SpecimenLight {
+        point,
+        share: reflectance,
+        exit: optics_reflect(ray.direction, normal),
+        rest: one - reflectance,
+        inside: normalize(inside),
+    }
+}
+
+/// The next interface from inside. If less than `least` would stay inside, all leaves: along the last direction in
+/// which light left, if nothing passes here.
+#[inline]
+#[must_use]
+pub fn specimen_wobble_bounce<R: Real<Mask = bool>>(
+    drop: &SpecimenWobble<R>,
+    light: &SpecimenLight<R>,
+    least: R,
+) -> SpecimenLight<R> {
+    let zero = least.constant(0.0);
+    let one = least.constant(1.0);
+    let index = one.constant(drop.index);
+    let [_, end] = specimen_wobble_span(drop, light.point, light.inside);
+    let s = specimen_wobble_cross(drop, light.point, light.inside, zero, end, one).unwrap_or(end);
+    let point = add_scaled(light.point, light.inside, s);
+    let normal = normalize(specimen_wobble_surface(drop, point).half_gradient);
+    let reflectance = optics_fresnel(dot(light.inside, normal), one / index);
+    let (through, _) = optics_refract(light.inside, scale(normal, -one), index);
+    let passes = reflectance.less(one);
+    let kept = light.rest * reflectance;
+    let rest = R::select(kept.less(least), zero, kept);
+    SpecimenLight {
+        point,
+        share: light.rest - rest,
+        exit: select(passes, through, light.exit),
+        rest,
+        inside: optics_reflect(light.inside, normal),
+    }
+}

@@ -1,0 +1,164 @@
+// A ray through a drop that oscillates: r = rho(x) f(x, h) scale, with f = 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h.
+// p is a point, x = -p.y / |p| and h = p.x / |p|. Lengths are in units of the volume-equivalent radius; the drop's origin is
+// at 0, its axis is +Y. The gauge squared is G = |p|^2 / r^2. With q = rho' / rho + f_x / f and k = f_h / f,
+// 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2.
+// Such a drop need not be convex. A line is walked in equal parts; in a part at whose ends G turns, its extremum is looked
+// for, so that no bulge or hollow wider than a part is missed. The crossing that is found is closed in on by the steps of
+// mask_trace_step, and by halves where these leave the bracket.
+// Limits: light that has left the drop does not meet it again.
+// Twin: downpour_render::specimen::wobble.
+
+// A drop at one instant.
+struct SpecimenWobble {
+    shape: DropShapeCoefficients,
+    // s2, s3, and what keeps the volume.
+    state: vec3f,
+    // Refractive index of water relative to air.
+    index: f32,
+    // 1 / A^2 across and 1 / B^2 along the axis of a spheroid that holds the drop.
+    inverse_wide: f32,
+    inverse_tall: f32,
+}
+
+// G - 1 and half of grad G at a point.
+fn specimen_wobble_surface(drop: SpecimenWobble, point: vec3f) -> MaskTraceSurface {
+    let square = max(dot(point, point), MASK_TINY);
+    let length = sqrt(square);
+    let inverse_length = 1.0 / length;
+    let x = -(point.y * inverse_length);
+    let h = point.x * inverse_length;
+    let radius_slope = drop_shape_radius_slope(drop.shape, x);
+    let lobe = 1.5 * drop.state.y * (1.0 - 5.0 * x * x);
+    let factor = 1.0 + drop.state.x * drop_oscillation_legendre_20(x) + lobe * h;
+    let by_x = 3.0 * drop.state.x * x - 15.0 * drop.state.y * x * h;
+    let inverse_factor = 1.0 / factor;
+    let q = radius_slope.y / radius_slope.x + by_x * inverse_factor;
+    let k = lobe * inverse_factor;
+    let inverse = 1.0 / (radius_slope.x * factor * drop.state.z);
+    let scale_all = inverse * inverse;
+    let along = 1.0 + q * x + k * h;
+    let gradient = point * along + vec3f(-(length * k), length * q, 0.0);
+    return MaskTraceSurface(gradient * scale_all, square * scale_all - 1.0);
+}
+
+// G - 1 and half of dG/ds at the place s of a line.
+fn specimen_wobble_along(drop: SpecimenWobble, origin: vec3f, direction: vec3f, s: f32) -> vec2f {
+    let surface = specimen_wobble_surface(drop, origin + direction * s);
+    return vec2f(surface.excess, dot(surface.half_gradient, direction));
+}
+
+// Where a line enters and leaves the spheroid that holds the drop; the second is below the first if it does not.
+fn specimen_wobble_span(drop: SpecimenWobble, origin: vec3f, direction: vec3f) -> vec2f {
+    let across = vec3f(drop.inverse_wide, drop.inverse_tall, drop.inverse_wide);
+    let curvature = dot(direction * across, direction);
+    let slope = dot(origin * across, direction);
+    let excess = dot(origin * across, origin) - 1.0;
+    let discriminant = slope * slope - curvature * excess;
+    let root = sqrt(max(discriminant, 0.0));
+    let near = (-slope - root) / curvature;
+    let far = (root - slope) / curvature;
+    return select(vec2f(near, far), vec2f(1.0, -1.0), discriminant < 0.0);
+}
+
+// The first place between `start` and `end` at which a line goes into the drop (side = -1) or out of it (side = 1), and 1;
+// the second is 0 if there is none. At `start` it is on the other side, or on the surface.
+fn specimen_wobble_cross(
+    drop: SpecimenWobble,
+    origin: vec3f,
+    direction: vec3f,
+    start: f32,
+    end: f32,
+    side: f32,
+) -> vec2f {
+    let part = (end - start) * SPECIMEN_WOBBLE_PART;
+    var a = start;
+    var b = start;
+    var at_a = specimen_wobble_along(drop, origin, direction, start);
+    var at_b = at_a;
+    var found = false;
+    for (var k = 1u; k <= SPECIMEN_WOBBLE_PARTS; k += 1u) {
+        b = start + part * f32(k);
+        at_b = specimen_wobble_along(drop, origin, direction, b);
+        found = side * at_b.x > 0.0;
+        if !found && side * at_a.y > 0.0 && side * at_b.y < 0.0 {
+            // G turns towards the other side: its extremum by the rule of the false position.
+            var low = vec2f(a, at_a.y);
+            var high = vec2f(b, at_b.y);
+            for (var m = 0u; m < SPECIMEN_WOBBLE_TURNS; m += 1u) {
+                let middle = low.x + (high.x - low.x) * (low.y / (low.y - high.y));
+                let at_middle = specimen_wobble_along(drop, origin, direction, middle);
+                if side * at_middle.x > 0.0 {
+                    found = true;
+                    b = middle;
+                    at_b = at_middle;
+                    break;
+                }
+                if side * at_middle.y > 0.0 {
+                    low = vec2f(middle, at_middle.y);
+                } else {
+                    high = vec2f(middle, at_middle.y);
+                }
+            }
+        }
+        if found {
+            break;
+        }
+        a = b;
+        at_a = at_b;
+    }
+    if !found {
+        return vec2f(end, 0.0);
+    }
+    let curvature = max((at_b.y - at_a.y) / (b - a), SPECIMEN_WOBBLE_FLAT);
+    // From the end that is outside, where a step to the root on the right side is never ambiguous.
+    var s = select(a, b, side > 0.0);
+    var at_s = select(at_a, at_b, side > 0.0);
+    for (var m = 0u; m < SPECIMEN_WOBBLE_STEPS; m += 1u) {
+        let next = s + mask_trace_step(at_s.x, at_s.y, curvature, side);
+        let strays = next < a - SPECIMEN_WOBBLE_SLACK || next > b + SPECIMEN_WOBBLE_SLACK;
+        s = select(min(max(next, a), b), 0.5 * (a + b), strays);
+        at_s = specimen_wobble_along(drop, origin, direction, s);
+        if side * at_s.x > 0.0 {
+            b = s;
+        } else {
+            a = s;
+        }
+    }
+    let last = s + mask_trace_step(at_s.x, at_s.y, curvature, side);
+    return vec2f(min(max(last, a), b), 1.0);
+}
+
+// Where a ray of the camera meets the drop, and 1; the second is 0 if it misses.
+fn specimen_wobble_meet(drop: SpecimenWobble, ray: SpecimenRay) -> vec2f {
+    let span = specimen_wobble_span(drop, ray.foot, ray.direction);
+    let start = max(span.x, -ray.reach);
+    if start >= span.y {
+        return vec2f(0.0);
+    }
+    return specimen_wobble_cross(drop, ray.foot, ray.direction, start, span.y, -1.0);
+}
+
+// The first interface, at the place s of the ray: what is reflected outside leaves, the rest enters.
+fn specimen_wobble_enter(drop: SpecimenWobble, ray: SpecimenRay, s: f32) -> SpecimenLight {
+    let point = ray.foot + ray.direction * s;
+    let normal = normalize(specimen_wobble_surface(drop, point).half_gradient);
+    let reflectance = optics_fresnel(-dot(ray.direction, normal), drop.index);
+    let inside = optics_refract(ray.direction, normal, 1.0 / drop.index).xyz;
+    let exit = optics_reflect(ray.direction, normal);
+    return SpecimenLight(point, reflectance, exit, 1.0 - reflectance, normalize(inside));
+}
+
+// The next interface from inside. If less than `least` would stay inside, all leaves.
+fn specimen_wobble_bounce(drop: SpecimenWobble, light: SpecimenLight, least: f32) -> SpecimenLight {
+    let end = specimen_wobble_span(drop, light.point, light.inside).y;
+    let s = specimen_wobble_cross(drop, light.point, light.inside, 0.0, end, 1.0).x;
+    let point = light.point + light.inside * s;
+    let normal = normalize(specimen_wobble_surface(drop, point).half_gradient);
+    let reflectance = optics_fresnel(dot(light.inside, normal), 1.0 / drop.index);
+    let through = optics_refract(light.inside, -normal, drop.index).xyz;
+    let total = !(reflectance < 1.0);
+    let kept = light.rest * reflectance;
+    let rest = select(kept, 0.0, kept < least);
+    let exit = select(through, light.exit, total);
+    return SpecimenLight(point, light.rest - rest, exit, rest, optics_reflect(light.inside, normal));
+}
