@@ -9,7 +9,8 @@ use downpour_sim::field::FallingDrop;
 
 use crate::RenderError;
 use crate::camera::Viewpoint;
-use crate::data::SceneData;
+use crate::data::{RenderFrame, SceneData};
+use crate::rain::light::DropLightForm;
 use crate::rain::{DropMasks, Rain, RainOptions};
 use crate::scene::SceneView;
 
@@ -98,6 +99,18 @@ pub(crate) fn timed<T>(
     made
 }
 
+/// The frame of a picture.
+pub(crate) fn framed(
+    scene: &SceneData,
+    viewpoint: &Viewpoint,
+    options: &PictureOptions,
+) -> Result<RenderFrame, RenderError> {
+    let frame = viewpoint.frame(scene, options.size, options.grid, options.sky_rays, options.seed)?;
+    // What is worked out drop by drop is not in the capture too.
+    let suns_out = u32::from(options.rain.light.form == DropLightForm::Traced);
+    Ok(RenderFrame { suns_out, ..frame })
+}
+
 /// Makes a picture on the CPU: the same bits for any number of threads.
 ///
 /// # Errors
@@ -109,7 +122,7 @@ pub fn render_picture(
     masks: &DropMasks,
     options: &PictureOptions,
 ) -> Result<Picture, RenderError> {
-    let frame = viewpoint.frame(scene, options.size, options.grid, options.sky_rays, options.seed)?;
+    let frame = framed(scene, viewpoint, options)?;
     let mut passes = Vec::new();
     let view = SceneView { data: scene, frame: &frame };
     let clean = timed(&mut passes, "scene", || view.picture());
@@ -117,6 +130,8 @@ pub fn render_picture(
     let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
     let capture = timed(&mut passes, "capture", || rain.capture.trace(scene));
     let table = timed(&mut passes, "streaks", || rain.streak_table(masks, &capture));
-    let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture, &table, &[]));
+    let lights = rain.lights(scene, masks)?;
+    let light = timed(&mut passes, "lamps", || lights.light(&rain.rows));
+    let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture, &table, &light));
     Ok(Picture::new(&rain, clean, layer, passes))
 }

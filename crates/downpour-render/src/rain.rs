@@ -34,6 +34,7 @@ use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 pub use capture::{Capture, CaptureFrame};
 pub use drops_frame::DropsFrame;
 pub use exposure::{Exposure, EyeMotion, StreakColour, StreakSamples};
+use light::DropLightOptions;
 pub use masks::DropMasks;
 pub use reduce::{ReduceLevel, reduce_levels, reduce_texel};
 pub use streak::DropsDrop;
@@ -41,6 +42,9 @@ pub use streak_lookup::StreakTable;
 pub use streak_table::StreakShape;
 pub use tiles::Rain;
 pub use veil::Veil;
+
+/// Glints that are kept of a drop where nothing else is said.
+const GLINTS: u32 = 4;
 
 /// How a drop's pixel finds its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -68,6 +72,8 @@ pub struct RainOptions {
     pub veil: Veil,
     /// In which time light is gathered.
     pub exposure: Exposure,
+    /// What lamps and the sun add.
+    pub light: DropLightOptions,
 }
 
 impl Default for RainOptions {
@@ -79,6 +85,7 @@ impl Default for RainOptions {
             capture_grid: 1,
             veil: Veil::default(),
             exposure: Exposure::default(),
+            light: DropLightOptions { glints: GLINTS, ..DropLightOptions::default() },
         }
     }
 }

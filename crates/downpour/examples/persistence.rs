@@ -137,7 +137,9 @@ impl Bench<'_> {
         let eye = self.stage.viewpoint.eye.as_dvec3();
         let rain = Rain::new(&self.frame, eye, drops, &self.masks, &options);
         let binning = ms(start.elapsed());
-        let pass = self.rains.prepare(&self.scenes, &self.scene, &self.uploaded, &self.clean, &rain)?;
+        let lights = rain.lights(&self.stage.data, &self.masks)?;
+        let pass =
+            self.rains.prepare(&self.scenes, &self.scene, &self.uploaded, &self.clean, &rain, &lights)?;
         let capture = time(self.gpu, &pass.capture())?;
         let streaks: Vec<Dispatch<'_>> = pass.streaks().into_iter().collect();
         let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };

@@ -56,7 +56,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             let eye = stage.viewpoint.eye.as_dvec3();
             let rain = Rain::new(&frame, eye, &drops, &masks, &RainOptions::default());
             let binning = ms(start.elapsed());
-            let pass = rains.prepare(&scenes, &scene, &uploaded, drawn.picture(), &rain)?;
+            let lights = rain.lights(&stage.data, &masks)?;
+            let pass = rains.prepare(&scenes, &scene, &uploaded, drawn.picture(), &rain, &lights)?;
             let capture = time(&gpu, &pass.capture())?;
             let shown = time(&gpu, &[pass.drops()])?;
             let rate = 1.0e3 / (capture + shown);

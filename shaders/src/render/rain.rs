@@ -1,5 +1,6 @@
 //! `wgsl/render/{reduce,drops*,streak*}.wgsl`: drops before a scene. Twins: `downpour_render::rain`.
 
+use super::drop_light::DROP_GLINT;
 use crate::common::PACKING;
 use crate::drop::oscillation::OSCILLATION;
 use crate::{Kernel, Module};
@@ -72,6 +73,10 @@ shared_constants! {
         STREAK_BRIGHTEST: f32 = 65000.0;
         /// Step of the lattice of a pixel's samples.
         STREAK_LATTICE: u32 = 3;
+        /// The least width of a glint, in radii.
+        DROPS_GLINT: f32 = 0.03;
+        /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disc.
+        DROPS_LINE: f32 = 1.2533141;
         /// Place of Gauss's two points: 1 / sqrt(3).
         STREAK_GAUSS: f32 = 0.57735026;
         /// 2 / pi: radians to quarters of a turn.
@@ -145,6 +150,7 @@ pub static DROPS: Module = Module {
         &DROPS_SHADE,
         &STREAK,
         &STREAK_LOOKUP,
+        &DROP_GLINT,
     ],
 };
 

@@ -12,7 +12,7 @@
 @group(0) @binding(4) var<storage, read> drops_tiles: array<u32>;
 @group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
 @group(0) @binding(6) var<storage, read_write> drops_layer: array<vec4f>;
-// What lamps add to each drop of the list.
+// What lamps add to each drop of the list: the mean over it, and its brightest glints.
 @group(0) @binding(8) var<storage, read> drops_light: array<vec4f>;
 
 // The place of a ray on the plane at distance 1 through a drop's middle, along the right and up of its view.
@@ -20,8 +20,47 @@ fn drops_on_plane(towards: vec3f, ray: vec3f) -> vec3f {
     return ray / max(dot(ray, towards), 1.0e-6) - towards;
 }
 
+// The first of a drop's numbers of light.
+fn drops_light_row(index: u32) -> u32 {
+    return index * (1u + drops_frame.glints);
+}
+
+// Light of lamps at a place of a drop's disc, in radii: its glints as spots of some width, and the rest everywhere.
+fn drops_spots(index: u32, at: vec2f, width: f32) -> vec3f {
+    let row = drops_light_row(index);
+    var light = drops_light[row].rgb;
+    for (var k = 1u; k <= drops_frame.glints; k += 1u) {
+        let glint = drops_light[row + k];
+        if glint.w > 0.0 {
+            light += glint.rgb * (drop_glint_spot(at - drop_glint_unpack(glint.w), width) - 1.0);
+        }
+    }
+    return max(light, vec3f(0.0));
+}
+
+// The same of a drop that passes, for as long as it does: spots have become lines.
+fn drops_lines(index: u32, chord: StreakChord, width: f32) -> vec3f {
+    let row = drops_light_row(index);
+    let part = (chord.high - chord.low) * 0.5;
+    var light = drops_light[row].rgb * chord.share;
+    for (var k = 1u; k <= drops_frame.glints; k += 1u) {
+        let glint = drops_light[row + k];
+        if glint.w > 0.0 {
+            let place = drop_glint_unpack(glint.w);
+            let off = chord.aside - (place.x * chord.path.y - place.y * chord.path.x);
+            light += glint.rgb * (drops_line(off, width) * chord.pace - chord.share);
+        }
+    }
+    return max(light, vec3f(0.0)) * part;
+}
+
+// A spot of unit mean over the disc, summed along a line that passes it at some distance; all in radii.
+fn drops_line(off: f32, width: f32) -> f32 {
+    return DROPS_LINE / width * exp(-0.5 * off * off / (width * width));
+}
+
 // A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
-fn drops_still(drop: DropsDrop, x: u32, y: u32) -> vec4f {
+fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     let small = drop.grid == 0u;
     let spread = streak_cover(drop, x, y);
     if small && spread <= 0.0 {
@@ -46,13 +85,24 @@ fn drops_still(drop: DropsDrop, x: u32, y: u32) -> vec4f {
             sy = dot(lean, up) / extent;
         }
         if abs(sx) < 1.0 && abs(sy) < 1.0 {
-            sum += drops_shade(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.row), sx, sy);
+            var shown = drops_shade(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.row), sx, sy);
+            if !small {
+                let at = vec2f(sx, sy) * drop.half_extent;
+                shown += vec4f(drops_spots(index, at, drops_glint_width(drop)) * shown.w, 0.0);
+            }
+            sum += shown;
         }
     }
     if small {
-        return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * spread;
+        let mean = sum.rgb / max(sum.w, 1.0e-20) + drops_light[drops_light_row(index)].rgb;
+        return vec4f(mean, 1.0) * spread;
     }
     return sum / f32(n * n);
+}
+
+// The width of a glint, in radii: no line is thinner than half a pixel.
+fn drops_glint_width(drop: DropsDrop) -> f32 {
+    return max(0.5 * drops_frame.pixel_angle / drop.slope, DROPS_GLINT);
 }
 
 // The part of a chord that passes during the exposure, by the mean over its middle points: what a table keeps beforehand.
@@ -72,7 +122,7 @@ fn drops_chord(drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
 }
 
 // The streak of a drop over a pixel: radiance times coverage, and coverage.
-fn drops_streak(drop: DropsDrop, x: u32, y: u32) -> vec4f {
+fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     let size = vec2f(f32(drops_frame.width), f32(drops_frame.height));
     if drop.grid == 0u {
         let cover = streak_cover(drop, x, y);
@@ -80,7 +130,8 @@ fn drops_streak(drop: DropsDrop, x: u32, y: u32) -> vec4f {
             return vec4f(0.0);
         }
         let place = vec2f(f32(x) + 0.5, f32(y) + 0.5) / size;
-        return vec4f(streak_lookup_mean(drop.shape, place), 1.0) * cover;
+        let mean = streak_lookup_mean(drop.shape, place) + drops_light[drops_light_row(index)].rgb;
+        return vec4f(mean, 1.0) * cover;
     }
     let right = drops_mask_right(drop.towards);
     let up = cross(right, drop.towards);
@@ -101,7 +152,7 @@ fn drops_streak(drop: DropsDrop, x: u32, y: u32) -> vec4f {
         } else {
             shown = drops_chord(drop, chord, ray);
         }
-        sum += shown * chord.share;
+        sum += shown * chord.share + vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
     }
     sum /= f32(drop.grid);
     return sum / max(sum.w, 1.0);
@@ -121,9 +172,9 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     let drop = drops_list[index];
     var shown = vec4f(0.0);
     if drop.kind == DROPS_STILL {
-        shown = drops_still(drop, x, y);
+        shown = drops_still(index, drop, x, y);
     } else {
-        shown = drops_streak(drop, x, y);
+        shown = drops_streak(index, drop, x, y);
     }
     if shown.w <= 0.0 {
         return shown;
@@ -131,7 +182,6 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     if drops_frame.streak_colour == STREAK_WHITE {
         shown = vec4f(drops_capture_texel(drops_frame.capture_last, 0, 0) * shown.w, shown.w);
     }
-    shown = vec4f(shown.rgb + drops_light[index].rgb * shown.w, shown.w);
     // A drop that meets a surface goes into it over its own size.
     let before = (scene - drops_depth(drop, x, y)) / (2.0 * drop.slope * drop.distance) + 0.5;
     return shown * clamp(before, 0.0, 1.0);

@@ -34,7 +34,9 @@ struct DropsFrame {
     streak_samples: u32,
     // The colour of streaks: STREAK_REFRACTED, or STREAK_WHITE.
     streak_colour: u32,
-    unused: vec2u,
+    // Glints that are kept of each drop.
+    glints: u32,
+    unused: u32,
 }
 
 @group(0) @binding(0) var<uniform> drops_frame: DropsFrame;

@@ -68,6 +68,12 @@ struct StreakChord {
     high: f32,
     // Share of the exposure in which the whole chord would pass.
     share: f32,
+    // Share of the exposure in which it moves by an equivalent radius.
+    pace: f32,
+    // Place of the ray across the path, in equivalent radii.
+    aside: f32,
+    // Unit direction of the motion.
+    path: vec2f,
 }
 
 // The time, as a share of the exposure, at which the drop is at a share of its way on the picture.
@@ -111,14 +117,19 @@ fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
     let half = sqrt(max(1.0 - across * across, 0.0));
     let per_half = 1.0 / max(half, 1.0e-6);
     let faster = way + (1.0 - way) * drop.recede;
-    let share = 2.0 * half / length * drop.recede / max(faster * faster, 1.0e-12);
+    let rate = drop.share * drop.recede / max(faster * faster, 1.0e-12);
+    let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
+    let path = drop.along / moves;
     return StreakChord(
         direction,
         across,
         half,
         max((along - length * (1.0 - way)) * per_half, -1.0),
         select(min((along + length * way) * per_half, 1.0), -2.0, half <= 1.0e-6),
-        share * drop.share,
+        2.0 * half / length * rate,
+        rate * scale / moves,
+        offset.x * path.y - offset.y * path.x,
+        path,
     );
 }
 

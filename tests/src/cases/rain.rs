@@ -105,7 +105,14 @@ fn rain_case(
     let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
     let frame = view.frame(&scene, SIZE, 1, 1, 7).expect("a frame");
     let masks = DropMasks::trace(1.333).expect("masks");
-    let options = RainOptions { form, capture_size: 64, capture_grid: 2, veil: veil(), exposure };
+    let options = RainOptions {
+        form,
+        capture_size: 64,
+        capture_grid: 2,
+        veil: veil(),
+        exposure,
+        ..RainOptions::default()
+    };
     let rain = Rain::new(&frame, DVec3::from(eye), &drops(eye, forward), &masks, &options);
     assert!(rain.list.len() > 100, "{} drops", rain.list.len());
     let clean = SceneView { data: &scene, frame: &frame }.picture();
@@ -113,7 +120,8 @@ fn rain_case(
     let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
     let uploaded = scenes.upload(&scene)?;
     let clean_buffer = gpu.storage_buffer("clean", &clean)?;
-    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(&masks)?, &clean_buffer, &rain)?;
+    let lights = rain.lights(&scene, &masks).expect("lamps");
+    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(&masks)?, &clean_buffer, &rain, &lights)?;
     gpu.submit(&pass.capture())?;
     match part {
         Part::Capture => {
@@ -130,9 +138,15 @@ fn rain_case(
             Ok(run(STREAK_RAYS * STREAK_SUMS, &cpu, &gpu))
         }
         Part::Drops => {
-            gpu.submit(&pass.streaks().into_iter().chain([pass.drops()]).collect::<Vec<_>>())?;
+            gpu.submit(
+                &pass.streaks().into_iter().chain(pass.lamps()).chain([pass.drops()]).collect::<Vec<_>>(),
+            )?;
             let table = rain.streak_table(&masks, &capture);
-            Ok(run(SIZE[0], &rain.layer(&clean, &masks, &capture, &table, &[]), &pass.layer()?))
+            Ok(run(
+                SIZE[0],
+                &rain.layer(&clean, &masks, &capture, &table, &lights.light(&rain.rows)),
+                &pass.layer()?,
+            ))
         }
     }
 }
@@ -218,6 +232,11 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_shade_shifted",
             "drops_shade",
             "drops_on_plane",
+            "drops_light_row",
+            "drops_spots",
+            "drops_lines",
+            "drops_line",
+            "drops_glint_width",
             "drops_still",
             "drops_chord",
             "drops_streak",

@@ -22,6 +22,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
 use downpour::render::picture::{Picture, PictureOptions};
+use downpour::render::rain::light::DropLightOptions;
 use downpour::render::rain::{Exposure, RainOptions, RefractionForm, Veil};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
@@ -195,13 +196,20 @@ impl RenderArguments {
     }
 
     fn options(&self, stage: &Stage, weather: &Weather, time_s: f64, veil: Veil) -> PictureOptions {
+        let usual = RainOptions::default();
         let exposure = Exposure::of_weather(weather, stage.motion, time_s);
         PictureOptions {
             size: stage.size,
             grid: self.samples,
             sky_rays: self.sky_rays,
             seed: weather.rain.seed,
-            rain: RainOptions { form: self.refraction.into(), veil, exposure, ..RainOptions::default() },
+            rain: RainOptions {
+                form: self.refraction.into(),
+                veil,
+                exposure,
+                light: DropLightOptions { form: weather.rain.drop_light.into(), ..usual.light },
+                ..usual
+            },
         }
     }
 

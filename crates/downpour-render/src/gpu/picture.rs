@@ -8,7 +8,7 @@ use super::scene::ScenePipeline;
 use crate::RenderError;
 use crate::camera::Viewpoint;
 use crate::data::{RenderFrame, SceneData};
-use crate::picture::{Picture, PictureOptions, timed};
+use crate::picture::{Picture, PictureOptions, framed, timed};
 use crate::rain::{DropMasks, Rain};
 
 /// Why a picture could not be made on a GPU.
@@ -63,7 +63,7 @@ impl PictureRenderer {
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<Picture, GpuPictureError> {
-        let frame = viewpoint.frame(scene, options.size, options.grid, options.sky_rays, options.seed)?;
+        let frame = framed(scene, viewpoint, options)?;
         if self.gpu.adapter().is_software() {
             check_turns(&frame)?;
         }
@@ -74,13 +74,18 @@ impl PictureRenderer {
         let clean = timed(&mut passes, "scene", || self.scene.draw(&uploaded.0, &frame))?;
         let eye = viewpoint.eye.as_dvec3();
         let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
-        let pass = self.rain.prepare(&self.scene, &uploaded.0, &uploaded.1, &clean, &rain)?;
+        let lights = rain.lights(scene, masks)?;
+        let pass = self.rain.prepare(&self.scene, &uploaded.0, &uploaded.1, &clean, &rain, &lights)?;
         timed(&mut passes, "capture", || {
             self.gpu.submit(&pass.capture())?;
             self.gpu.wait()
         })?;
         timed(&mut passes, "streaks", || {
             self.gpu.submit(&pass.streaks().into_iter().collect::<Vec<_>>())?;
+            self.gpu.wait()
+        })?;
+        timed(&mut passes, "lamps", || {
+            self.gpu.submit(&pass.lamps())?;
             self.gpu.wait()
         })?;
         timed(&mut passes, "drops", || {

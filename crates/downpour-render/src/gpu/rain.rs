@@ -5,7 +5,9 @@ use downpour_shaders::render::rain::{
     DROPS_KERNEL, REDUCE_KERNEL, STREAK_ACROSS, STREAK_RAYS, STREAK_TABLE_KERNEL,
 };
 
+use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::scene::{SceneOnGpu, ScenePipeline};
+use crate::rain::light::DropLights;
 use crate::rain::streak_lookup::STREAK_SHAPE_BYTES;
 use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, StreakShape, reduce_levels};
 use crate::trace::TraceGather;
@@ -16,6 +18,7 @@ pub struct RainPipeline {
     gpu: Gpu,
     reduce: ComputeKernel,
     streaks: ComputeKernel,
+    lamps: DropLightPipeline,
     drops: ComputeKernel,
 }
 
@@ -23,6 +26,7 @@ pub struct RainPipeline {
 #[derive(Clone, Debug)]
 pub struct RainOnGpu {
     masks: wgpu::Buffer,
+    light: DropLightOnGpu,
 }
 
 /// The drops of one picture, ready to be drawn.
@@ -34,6 +38,7 @@ pub struct RainPass<'a> {
     capture: (wgpu::BindGroup, u32),
     levels: Vec<(wgpu::BindGroup, u32)>,
     streaks: (wgpu::BindGroup, u32),
+    lamps: DropLightPass<'a>,
     drops: wgpu::BindGroup,
     texels: wgpu::Buffer,
     table: wgpu::Buffer,
@@ -51,6 +56,7 @@ impl RainPipeline {
             gpu: gpu.clone(),
             reduce: kernel(&REDUCE_KERNEL)?,
             streaks: kernel(&STREAK_TABLE_KERNEL)?,
+            lamps: DropLightPipeline::new(gpu)?,
             drops: kernel(&DROPS_KERNEL)?,
         })
     }
@@ -60,7 +66,10 @@ impl RainPipeline {
     /// # Errors
     /// [`GpuError::OverLimit`] if they are larger than the device allows, or what else the GPU says.
     pub fn upload(&self, masks: &DropMasks) -> Result<RainOnGpu, GpuError> {
-        Ok(RainOnGpu { masks: self.gpu.storage_buffer("masks of drops", &masks.words)? })
+        Ok(RainOnGpu {
+            masks: self.gpu.storage_buffer("masks of drops", &masks.words)?,
+            light: self.lamps.upload(&masks.light)?,
+        })
     }
 
     /// Makes ready to draw drops over a scene. `clean` is the scene's picture with its distances.
@@ -74,6 +83,7 @@ impl RainPipeline {
         masks: &RainOnGpu,
         clean: &wgpu::Buffer,
         rain: &Rain,
+        lights: &DropLights<'_>,
     ) -> Result<RainPass<'a>, GpuError> {
         let gpu = &self.gpu;
         let size = rain.capture.frame.width;
@@ -105,8 +115,8 @@ impl RainPipeline {
         let shapes = gpu.storage_buffer("shapes of streaks", shapes)?;
         let streaks = self.streaks.bind(gpu, &[&frame, &texels, &masks.masks, &shapes, &table])?;
         let streaks = (streaks, rain.shapes.len() as u32);
-        let light = gpu.storage_buffer("light on drops", &vec![[0.0f32; 4]; rain.list.len().max(1)])?;
-        let bindings = [&frame, &texels, &masks.masks, &list, &tiles, clean, &layer, &table, &light];
+        let lamps = self.lamps.prepare(scene, &masks.light, lights, &rain.rows)?;
+        let bindings = [&frame, &texels, &masks.masks, &list, &tiles, clean, &layer, &table, lamps.light()];
         let drops = self.drops.bind(gpu, &bindings)?;
         let capture = (capture, size.div_ceil(8));
         Ok(RainPass {
@@ -116,6 +126,7 @@ impl RainPipeline {
             capture,
             levels,
             streaks,
+            lamps,
             drops,
             texels,
             table,
@@ -141,6 +152,12 @@ impl RainPass<'_> {
         let (bindings, shapes) = &self.streaks;
         let groups = [(STREAK_RAYS * STREAK_RAYS).div_ceil(64), STREAK_ACROSS + 1, *shapes];
         (*shapes > 0).then(|| self.pipeline.streaks.dispatch(bindings, groups))
+    }
+
+    /// The light of lamps on the drops, in this order.
+    #[must_use]
+    pub fn lamps(&self) -> Vec<Dispatch<'_>> {
+        self.lamps.dispatches()
     }
 
     /// The drops.

@@ -4,8 +4,9 @@
 use downpour_math::ops;
 use downpour_math::packing::packing_octahedral_encode;
 use downpour_shaders::render::rain::{
-    DROPS_OPAQUE, DROPS_SHIFT, DROPS_SKY, DROPS_SMALL_GRID, DROPS_STILL, DROPS_TABLE, DROPS_TILE,
-    DROPS_VEIL_NEAR, DROPS_VEIL_QUARTERS, DROPS_VEIL_SPREAD, STREAK_ACROSS, STREAK_LATTICE, STREAK_WHITE,
+    DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SHIFT, DROPS_SKY, DROPS_SMALL_GRID, DROPS_STILL,
+    DROPS_TABLE, DROPS_TILE, DROPS_VEIL_NEAR, DROPS_VEIL_QUARTERS, DROPS_VEIL_SPREAD, STREAK_ACROSS,
+    STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -14,6 +15,7 @@ use super::capture::Capture;
 use super::drops_frame::{DropsFrame, DropsView};
 use super::drops_mask::{DropsTexel, drops_mask_right, drops_mask_unit};
 use super::drops_shade::DropsShade;
+use super::glint::{drop_glint_spot, drop_glint_unpack};
 use super::streak::{
     DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_nearest, streak_place,
     streak_time,
@@ -41,6 +43,12 @@ pub fn drops_on_plane(towards: Vec3, ray: Vec3) -> Vec3 {
     ray / ray.dot(towards).max(1.0e-6) - towards
 }
 
+/// A spot of unit mean over the disc, summed along a line that passes it at some distance; all in radii.
+#[must_use]
+pub fn drops_line(off: f32, width: f32) -> f32 {
+    DROPS_LINE / width * ops::exp(-0.5 * off * off / (width * width))
+}
+
 /// What the kernel reads.
 struct Buffers<'a> {
     view: DropsView<'a>,
@@ -51,8 +59,44 @@ struct Buffers<'a> {
 }
 
 impl Buffers<'_> {
+    /// A drop's numbers of light.
+    fn drops_light_row(&self, index: u32) -> &[[f32; 4]] {
+        let stride = 1 + self.view.frame.glints as usize;
+        let first = index as usize * stride;
+        self.light.get(first..first + stride).unwrap_or(&[[0.0; 4]])
+    }
+
+    /// Light of lamps at a place of a drop's disc, in radii: its glints as spots of some width, and the rest everywhere.
+    fn drops_spots(&self, index: u32, at: Vec2, width: f32) -> Vec3 {
+        let row = self.drops_light_row(index);
+        let mut light = Vec4::from(row[0]).truncate();
+        for glint in row[1..].iter().filter(|glint| glint[3] > 0.0) {
+            let spot = drop_glint_spot(at - drop_glint_unpack(glint[3]), width);
+            light += Vec4::from(*glint).truncate() * (spot - 1.0);
+        }
+        light.max(Vec3::ZERO)
+    }
+
+    /// The same of a drop that passes, for as long as it does: spots have become lines.
+    fn drops_lines(&self, index: u32, chord: &StreakChord, width: f32) -> Vec3 {
+        let row = self.drops_light_row(index);
+        let part = (chord.high - chord.low) * 0.5;
+        let mut light = Vec4::from(row[0]).truncate() * chord.share;
+        for glint in row[1..].iter().filter(|glint| glint[3] > 0.0) {
+            let place = drop_glint_unpack(glint[3]);
+            let off = chord.aside - (place.x * chord.path.y - place.y * chord.path.x);
+            light += Vec4::from(*glint).truncate() * (drops_line(off, width) * chord.pace - chord.share);
+        }
+        light.max(Vec3::ZERO) * part
+    }
+
+    /// The width of a glint, in radii: no line is thinner than half a pixel.
+    fn drops_glint_width(&self, drop: &DropsDrop) -> f32 {
+        (0.5 * self.view.frame.pixel_angle / drop.slope).max(DROPS_GLINT)
+    }
+
     /// A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
-    fn drops_still(&self, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
+    fn drops_still(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
         let small = drop.grid == 0;
         let spread = streak_cover(drop, x, y);
         if small && spread <= 0.0 {
@@ -81,11 +125,18 @@ impl Buffers<'_> {
             if sx.abs() < 1.0 && sy.abs() < 1.0 {
                 let shade =
                     DropsShade { towards, half_extent: drop.half_extent, lean, spacing, row: drop.row };
-                sum += self.view.drops_shade(&shade, sx, sy);
+                let mut shown = self.view.drops_shade(&shade, sx, sy);
+                if !small {
+                    let at = Vec2::new(sx, sy) * drop.half_extent;
+                    let spots = self.drops_spots(index, at, self.drops_glint_width(drop));
+                    shown += (spots * shown.w).extend(0.0);
+                }
+                sum += shown;
             }
         }
         if small {
-            return (sum.truncate() / sum.w.max(1.0e-20)).extend(1.0) * spread;
+            let light = Vec4::from(self.drops_light_row(index)[0]).truncate();
+            return (sum.truncate() / sum.w.max(1.0e-20) + light).extend(1.0) * spread;
         }
         sum / (n * n) as f32
     }
@@ -112,7 +163,7 @@ impl Buffers<'_> {
     }
 
     /// The streak of a drop over a pixel: radiance times coverage, and coverage.
-    fn drops_streak(&self, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
+    fn drops_streak(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
         let size = Vec2::new(self.view.frame.width as f32, self.view.frame.height as f32);
         if drop.grid == 0 {
             let cover = streak_cover(drop, x, y);
@@ -120,7 +171,8 @@ impl Buffers<'_> {
                 return Vec4::ZERO;
             }
             let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
-            return self.table.streak_lookup_mean(drop.shape, place).extend(1.0) * cover;
+            let light = Vec4::from(self.drops_light_row(index)[0]).truncate();
+            return (self.table.streak_lookup_mean(drop.shape, place) + light).extend(1.0) * cover;
         }
         let towards = Vec3::from(drop.towards);
         let right = drops_mask_right(towards);
@@ -142,7 +194,8 @@ impl Buffers<'_> {
             } else {
                 self.drops_chord(drop, &chord, ray)
             };
-            sum += shown * chord.share;
+            let lines = self.drops_lines(index, &chord, self.drops_glint_width(drop));
+            sum += shown * chord.share + lines.extend(0.0);
         }
         sum /= drop.grid as f32;
         sum / sum.w.max(1.0)
@@ -162,9 +215,9 @@ impl Buffers<'_> {
     fn drops_pixel(&self, index: u32, x: u32, y: u32, scene: f32) -> Vec4 {
         let drop = &self.rain.list[index as usize];
         let mut shown = if drop.kind == DROPS_STILL {
-            self.drops_still(drop, x, y)
+            self.drops_still(index, drop, x, y)
         } else {
-            self.drops_streak(drop, x, y)
+            self.drops_streak(index, drop, x, y)
         };
         if shown.w <= 0.0 {
             return shown;
@@ -173,8 +226,6 @@ impl Buffers<'_> {
             let white = self.view.drops_capture_texel(self.view.frame.capture_last, 0, 0);
             shown = (white * shown.w).extend(shown.w);
         }
-        let light = Vec4::from(self.light.get(index as usize).copied().unwrap_or_default());
-        shown = (shown.truncate() + light.truncate() * shown.w).extend(shown.w);
         // A drop that meets a surface goes into it over its own size.
         let before = (scene - self.drops_depth(drop, x, y)) / (2.0 * drop.slope * drop.distance) + 0.5;
         shown * before.clamp(0.0, 1.0)
@@ -227,7 +278,8 @@ impl Rain {
     }
 
     /// The rain over a scene: radiance, and the transmittance of the scene behind it; rows from the top. `clean` is the
-    /// scene's picture with its distances, `light` what lamps add to each drop of the list (nothing where it ends).
+    /// scene's picture with its distances, `light` what lamps add to each drop of the list ([`DropLights::light`](super::light::DropLights::light); nothing
+    /// where it is empty).
     #[must_use]
     pub fn layer(
         &self,

@@ -53,8 +53,10 @@ pub struct DropsFrame {
     pub streak_samples: u32,
     /// The colour of streaks.
     pub streak_colour: u32,
+    /// Glints that are kept of each drop.
+    pub glints: u32,
     /// 0.
-    pub unused: [u32; 2],
+    pub unused: u32,
 }
 
 /// What the drops' kernels read besides the drops.
@@ -97,7 +99,8 @@ impl DropsFrame {
             veil: options.veil.table(),
             streak_samples,
             streak_colour: options.exposure.colour as u32,
-            unused: [0; 2],
+            glints: options.light.glints,
+            unused: 0,
         }
     }
 }

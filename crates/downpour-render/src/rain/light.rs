@@ -17,6 +17,7 @@ mod table;
 use std::f32::consts::PI;
 
 use downpour_math::ops;
+use downpour_scene::weather::RainDropLight;
 use downpour_shaders::render::drop_light::{
     DROP_GLINT_TINY, DROP_LIGHT_ENTRIES, DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG, DROP_LIGHT_LAMPS,
     DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_PLACES, DROP_LIGHT_RINGS, DROP_LIGHT_ROUSSEAU,
@@ -53,6 +54,17 @@ pub enum DropLightForm {
     ImSung2022 = DROP_LIGHT_IM_SUNG,
     /// Nothing.
     None = DROP_LIGHT_NONE,
+}
+
+impl From<RainDropLight> for DropLightForm {
+    fn from(form: RainDropLight) -> Self {
+        match form {
+            RainDropLight::Rousseau2006 => Self::Rousseau2006,
+            RainDropLight::ImSung2022 => Self::ImSung2022,
+            RainDropLight::None => Self::None,
+            _ => Self::Traced,
+        }
+    }
 }
 
 /// What is asked of the light on drops.
@@ -101,9 +113,9 @@ pub struct DropLights<'a> {
 
 /// Drops as the light wants them: place relative to the scene's origin, and radius, metres.
 #[must_use]
-pub fn drop_light_rows(drops: &[FallingDrop]) -> Vec<[f32; 4]> {
+pub fn drop_light_rows<'a>(drops: impl IntoIterator<Item = &'a FallingDrop>) -> Vec<[f32; 4]> {
     let row = |drop: &FallingDrop| drop.position.as_vec3().extend(0.5 * drop.diameter).to_array();
-    drops.iter().map(row).collect()
+    drops.into_iter().map(row).collect()
 }
 
 impl<'a> DropLights<'a> {

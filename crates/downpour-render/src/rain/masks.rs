@@ -8,6 +8,7 @@ use downpour_mask::{Mask, MaskError, MaskOptions, MaskTexel, View, trace_drop};
 use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_pack_unorm};
 use downpour_shaders::render::rain::{DROPS_ELEVATIONS, DROPS_TEXEL_WORDS};
 
+use super::light::DropLightTable;
 use super::streak_table::StreakShape;
 
 /// Diameters, metres, from a sphere to the largest drop that has a shape.
@@ -28,6 +29,8 @@ pub struct DropMasks {
     pub words: Vec<u32>,
     /// Texels along an edge of a mask.
     pub size: u32,
+    /// How a drop scatters the light of lamps.
+    pub light: DropLightTable,
     /// Half the width of the masks of a diameter, in equivalent radii.
     half_extents: Vec<f32>,
     /// Area of the outline of each mask, in squared equivalent radii.
@@ -54,6 +57,12 @@ impl DropMasks {
         let mut masks = Self {
             words: Vec::new(),
             size: SIZE,
+            light: DropLightTable::water().map_err(|_| MaskError::OutOfRange {
+                quantity: "refractive index of water",
+                found: refractive_index,
+                unit: "",
+                allowed: "1.2 to 1.4",
+            })?,
             half_extents: Vec::new(),
             areas: Vec::new(),
             ovals: Vec::new(),

@@ -74,6 +74,12 @@ pub struct StreakChord {
     pub high: f32,
     /// Share of the exposure in which the whole chord would pass.
     pub share: f32,
+    /// Share of the exposure in which it moves by an equivalent radius.
+    pub pace: f32,
+    /// Place of the ray across the path, in equivalent radii.
+    pub aside: f32,
+    /// Unit direction of the motion.
+    pub path: Vec2,
 }
 
 /// The time, as a share of the exposure, at which the drop is at a share of its way on the picture.
@@ -125,14 +131,19 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     let half = (1.0 - across * across).max(0.0).sqrt();
     let per_half = 1.0 / half.max(1.0e-6);
     let faster = way + (1.0 - way) * drop.recede;
-    let share = 2.0 * half / length * drop.recede / (faster * faster).max(1.0e-12);
+    let rate = drop.share * drop.recede / (faster * faster).max(1.0e-12);
+    let moves = path.dot(path).sqrt().max(1.0e-20);
+    let path = path / moves;
     StreakChord {
         direction,
         across,
         half,
         low: ((along - length * (1.0 - way)) * per_half).max(-1.0),
         high: if half <= 1.0e-6 { -2.0 } else { ((along + length * way) * per_half).min(1.0) },
-        share: share * drop.share,
+        share: 2.0 * half / length * rate,
+        pace: rate * scale / moves,
+        aside: offset.x * path.y - offset.y * path.x,
+        path,
     }
 }
 

@@ -6,11 +6,13 @@ use glam::{DVec3, Vec2};
 
 use super::capture::CaptureFrame;
 use super::drops_frame::DropsFrame;
+use super::light::{DropLightOptions, DropLights, drop_light_rows};
 use super::project::{Projected, project};
 use super::streak::DropsDrop;
 use super::streak_table::StreakShape;
 use super::{DropMasks, RainOptions, shapes};
-use crate::data::RenderFrame;
+use crate::RenderError;
+use crate::data::{RenderFrame, SceneData};
 
 /// The drops of one picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +27,12 @@ pub struct Rain {
     pub list: Vec<DropsDrop>,
     /// Where each tile's list begins (one more than there are tiles), then the lists.
     pub tiles: Vec<u32>,
+    /// The drops of `list` as lamps light them: place relative to the scene's origin, and radius, m.
+    pub rows: Vec<[f32; 4]>,
+    /// The picture that they are on.
+    picture: RenderFrame,
+    /// How lamps light them.
+    light: DropLightOptions,
     /// For each drop of `list`, its place among the drops that were given.
     pub given: Vec<u32>,
     /// Pixels that each drop may touch: first and last column, first and last row.
@@ -78,10 +86,25 @@ impl Rain {
             capture,
             shapes,
             list: placed.iter().map(|p| p.1.drop).collect(),
+            rows: drop_light_rows(placed.iter().filter_map(|p| drops.get(p.0 as usize))),
+            picture: *picture,
+            light: options.light,
             given: placed.iter().map(|p| p.0).collect(),
             boxes: placed.iter().filter_map(|p| pixels(&p.1, width, height)).collect(),
             tiles,
         }
+    }
+
+    /// The lamps of a scene on these drops.
+    ///
+    /// # Errors
+    /// As [`DropLights::new`].
+    pub fn lights<'a>(
+        &'a self,
+        scene: &'a SceneData,
+        masks: &'a DropMasks,
+    ) -> Result<DropLights<'a>, RenderError> {
+        DropLights::new(scene, &self.picture, &masks.light, self.light)
     }
 
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given.
