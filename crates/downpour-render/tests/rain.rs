@@ -4,7 +4,7 @@ use downpour_drop::DropShape;
 use downpour_render::camera::Viewpoint;
 use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
 use downpour_render::picture::{Picture, PictureOptions, render_picture};
-use downpour_render::rain::{DropMasks, Rain, RainOptions, RefractionForm, Veil};
+use downpour_render::rain::{DropMasks, Rain, RainOptions, RefractionForm, StreakTable, Veil};
 use downpour_render::sky_light::SkyLight;
 use downpour_sim::field::{DropKind, FallingDrop};
 use glam::{Affine3A, DVec3, Vec3};
@@ -200,7 +200,7 @@ fn drops_that_are_not_drawn_are_a_veil() {
         let masks = DropMasks::trace(1.333).unwrap();
         let rain = Rain::new(&frame, DVec3::ZERO, &[], &masks, &options);
         let clean = vec![[1.0, 1.0, 1.0, distance as f32]; 16 * 8];
-        let layer = rain.layer(&clean, &masks, &rain.capture.trace(&scene));
+        let layer = rain.layer(&clean, &masks, &rain.capture.trace(&scene), &StreakTable::default(), &[]);
         let expected = downpour_math::ops::f64::exp(-law.extinction() * (distance - drawn_m));
         for pixel in &layer {
             assert!(
@@ -218,6 +218,12 @@ fn drops_that_are_not_drawn_are_a_veil() {
     let picture = view.frame(&scene, [16, 8], 1, 0, 1).unwrap();
     let masks = DropMasks::trace(1.333).unwrap();
     let rain = Rain::new(&picture, DVec3::ZERO, &[], &masks, &frame);
-    let sky = rain.layer(&[[1.0, 1.0, 1.0, 1.0e30]; 16 * 8], &masks, &rain.capture.trace(&scene));
+    let sky = rain.layer(
+        &[[1.0, 1.0, 1.0, 1.0e30]; 16 * 8],
+        &masks,
+        &rain.capture.trace(&scene),
+        &StreakTable::default(),
+        &[],
+    );
     assert!(sky.iter().all(|pixel| *pixel == [0.0, 0.0, 0.0, 1.0]));
 }

@@ -377,9 +377,18 @@ fn t11_keys_are_known_and_stand_once() {
     says(
         "[rian]\nrate_mm_h = 5",
         "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: rain, sky, sun, camera, model, light, \
-         wind, gusts, turbulence, wind_field, output",
+         wind, gusts, turbulence, wind_field, streaks, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");
+    refused("[camera]\nshutter_s = 1.5", 2, "0 to 1 s");
+    refused("[camera]\nshutter_s = -0.01", 2, "0 to 1 s");
+    refused("[camera]\naperture_mm = nan", 2, "camera.aperture_mm");
+    refused("[camera]\nfocus_m = 0", 2, "0.01 to 1e7 m");
+    refused("[streaks]\nsamples = 0", 2, "streaks.samples");
+    refused("[streaks]\nsamples = 1000000", 2, "1 to 4096");
+    refused("[streaks]\nsamples = \"tabel\"", 2, "\"table\", or 1 to 4096");
+    refused("[streaks]\noscillation = [0.1, 0.5]", 2, "0 to 0.3");
+    refused("[streaks]\ncolour = \"blue\"", 2, "streaks.colour");
     refused("[camera]\nshutter_ms = 1", 2, "perhaps shutter_s;");
     refused("[rain]\ntemperature_k = 280", 2, "perhaps temperature_c;");
     refused("[rain]\nxyzzy = 280", 2, "unknown key \"xyzzy\"; allowed: rate_mm_h");

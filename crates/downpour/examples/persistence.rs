@@ -19,6 +19,7 @@ use downpour::gpu::{AdapterChoice, Dispatch, Gpu, wgpu};
 use downpour::mask::MaskOptions;
 use downpour::math::rng::{rng_draw, rng_unit};
 use downpour::render::gpu::{RainOnGpu, RainPipeline, SceneOnGpu, ScenePipeline};
+use downpour::render::rain::light::{DropLightForm, DropLightOptions};
 use downpour::render::rain::streak_lookup::STREAK_SHAPE_BYTES;
 use downpour::render::rain::{DropMasks, Exposure, Rain, RainOptions, StreakColour, StreakSamples};
 use downpour::render::stage::Stage;
@@ -49,11 +50,12 @@ struct Bench<'a> {
     clean: wgpu::Buffer,
 }
 
-/// Milliseconds and bytes of one picture.
+/// Milliseconds of one picture.
 struct Cost {
     binning: f64,
     capture: f64,
     table: f64,
+    lamps: f64,
     drops: f64,
     layer: Vec<[f32; 4]>,
 }
@@ -80,6 +82,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let bench = Bench { gpu: &gpu, stage: &stage, frame, masks, scenes, rains, scene, uploaded, clean };
     println!("table: {:.2} MB a shape", STREAK_SHAPE_BYTES as f64 * 1.0e-6);
     bench.by_count(quick)?;
+    bench.by_light(if quick { 1000 } else { 10_000 })?;
     bench.by_samples(FAR, if quick { 1000 } else { 10_000 }, quick)?;
     bench.by_samples(NEAR, if quick { 200 } else { 2000 }, quick)
 }
@@ -103,6 +106,37 @@ impl Bench<'_> {
             println!(
                 "| {count} | {binning:.2} | {capture:.3} | {white:.3} | {still:.3} | {table:.3} | {drops:.3} | {rate:.0} |"
             );
+        }
+        Ok(())
+    }
+
+    /// What lamps cost: the drops of table 1, without and with them.
+    fn by_light(&self, count: u32) -> Result<(), Box<dyn Error>> {
+        let drops = self.drops(count, 1.0e-3, FAR)?;
+        let of = |form, glints| {
+            let light = DropLightOptions { form, glints };
+            self.cost(
+                &drops,
+                &RainOptions { exposure: exposure(StreakSamples::Table), light, ..RainOptions::default() },
+            )
+        };
+        let without = of(DropLightForm::None, 0)?;
+        println!(
+            "\n{count} streaks, r = 1 mm, {} lamps: {:.3} ms without their light",
+            self.stage.lamps, without.drops
+        );
+        println!("| form | lamps ms | streaks ms | of capture, table and streaks without them |");
+        println!("|---|---|---|---|");
+        let all = without.capture + without.table + without.drops;
+        for (name, form, glints) in [
+            ("traced, 4 glints", DropLightForm::Traced, 4),
+            ("traced, means", DropLightForm::Traced, 0),
+            ("Rousseau 2006", DropLightForm::Rousseau2006, 0),
+            ("Im & Sung 2022", DropLightForm::ImSung2022, 0),
+        ] {
+            let Cost { lamps, drops, .. } = of(form, glints)?;
+            let more = 100.0 * (lamps + drops - without.drops) / all;
+            println!("| {name} | {lamps:.3} | {drops:.3} | {more:+.1} % |");
         }
         Ok(())
     }
@@ -132,10 +166,13 @@ impl Bench<'_> {
     }
 
     fn picture(&self, drops: &[FallingDrop], exposure: Exposure) -> Result<Cost, Box<dyn Error>> {
-        let options = RainOptions { exposure, ..RainOptions::default() };
+        self.cost(drops, &RainOptions { exposure, ..RainOptions::default() })
+    }
+
+    fn cost(&self, drops: &[FallingDrop], options: &RainOptions) -> Result<Cost, Box<dyn Error>> {
         let start = Instant::now();
         let eye = self.stage.viewpoint.eye.as_dvec3();
-        let rain = Rain::new(&self.frame, eye, drops, &self.masks, &options);
+        let rain = Rain::new(&self.frame, eye, drops, &self.masks, options);
         let binning = ms(start.elapsed());
         let lights = rain.lights(&self.stage.data, &self.masks)?;
         let pass =
@@ -143,8 +180,9 @@ impl Bench<'_> {
         let capture = time(self.gpu, &pass.capture())?;
         let streaks: Vec<Dispatch<'_>> = pass.streaks().into_iter().collect();
         let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
+        let lamps = time(self.gpu, &pass.lamps())?;
         let drops = time(self.gpu, &[pass.drops()])?;
-        Ok(Cost { binning, capture, table, drops, layer: pass.layer()? })
+        Ok(Cost { binning, capture, table, lamps, drops, layer: pass.layer()? })
     }
 
     /// Drops somewhere in the picture, uniform in space, as they fall.

@@ -60,7 +60,7 @@ shared_constants! {
         /// Streaks have one colour, the mean of the surroundings.
         STREAK_WHITE: u32 = 1;
         /// Rays of the streak radiance table along an edge of the picture.
-        STREAK_RAYS: u32 = 32;
+        STREAK_RAYS: u32 = 24;
         /// Places across the motion.
         STREAK_ACROSS: u32 = 36;
         /// Running sums along a chord.

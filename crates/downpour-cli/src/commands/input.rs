@@ -31,6 +31,9 @@ pub(crate) struct InputArguments {
     /// Width and height in pixels [default: the weather's].
     #[arg(long, value_name = "WxH", value_parser = quantity::picture_size, allow_hyphen_values = true)]
     pub(crate) size: Option<[u32; 2]>,
+    /// How long the shutter is open, 0 to 1 s: drops become streaks; 0 freezes them [default: the weather's].
+    #[arg(long, value_name = "S", value_parser = quantity::exposure_s, allow_hyphen_values = true)]
+    pub(crate) shutter: Option<f64>,
     /// Same seed, same drops [default: the weather's].
     #[arg(long, value_name = "N", value_parser = quantity::seed, allow_hyphen_values = true)]
     pub(crate) seed: Option<u64>,
@@ -91,6 +94,7 @@ impl InputArguments {
         input.files.push(self.input.clone());
         let weather = &mut input.weather;
         weather.rain.rate_mm_h = self.rate.unwrap_or(weather.rain.rate_mm_h);
+        weather.camera.shutter = self.shutter.unwrap_or(weather.camera.shutter);
         weather.rain.seed = self.seed.unwrap_or(weather.rain.seed);
         weather.size = self.size.unwrap_or(weather.size);
         Ok(input)
