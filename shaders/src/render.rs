@@ -2,6 +2,7 @@
 
 pub mod brdf;
 pub mod drop_light;
+pub mod glass;
 pub mod rain;
 pub mod scene;
 pub mod specimen;

@@ -101,6 +101,9 @@ pub const BROKEN: &[Broken] = &[
     Broken { function: "drop_glint_angle", right: "0.25 - octant", wrong: "0.25 + octant" },
     Broken { function: "drop_glint_rousseau", right: "across * (1.0 + lit)", wrong: "across * (1.0 - lit)" },
     Broken { function: "drop_light_mean", right: "- towards * sqrt", wrong: "+ towards * sqrt" },
+    Broken { function: "glass_picture_water_cap", right: "+ l.y * (2.0 * x * y)", wrong: "+ l.y * (x * y)" },
+    Broken { function: "glass_picture_water_leave", right: "side == 2", wrong: "side == 1" },
+    Broken { function: "glass_picture_spline", right: "0.75 - t * t", wrong: "0.75 + t * t" },
     Broken { function: "wind_field_mix", right: "(c10 - c00) * share.y", wrong: "(c10 - c00) * share.x" },
 ];
 

@@ -7,6 +7,7 @@ mod common;
 mod drop;
 mod drop_light;
 mod glass;
+mod glass_picture;
 mod mask;
 mod puddle;
 mod rain;
@@ -28,6 +29,7 @@ pub fn functions() -> Vec<FunctionCase> {
         drop::functions(),
         drop_light::functions(),
         glass::functions(),
+        glass_picture::functions(),
         mask::functions(),
         puddle::functions(),
         rain::functions(),
@@ -49,6 +51,7 @@ pub fn kernels() -> Vec<KernelCase> {
         collision::kernels(),
         drop_light::kernels(),
         glass::kernels(),
+        glass_picture::kernels(),
         mask::kernels(),
         puddle::kernels(),
         rain::kernels(),

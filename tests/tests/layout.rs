@@ -19,6 +19,7 @@ use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
 use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform, StreakUniform};
+use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
 use downpour_shaders::{Module, bvh, compose, drop, lattice, mask, modules, render, sim, wind};
@@ -84,6 +85,12 @@ fn hosts() -> Vec<Host> {
             velocity, row, half_extent, chords, unused, ovals),
         host!(DropLightFrame as "DropLightFrame" in &render::drop_light::DROP_LIGHT,
             count, form, glints, first_light),
+        host!(GlassPictureDrop as "GlassPictureDrop" in &render::glass::WATER,
+            centre, radius, sphere, along, behind, lean, droop, unused, lobes),
+        host!(GlassPictureFrame as "GlassPictureFrame" in &render::glass::GLASS_PICTURE,
+            right, width, up, height, forward, pixel_angle, across, columns, down, rows, outward, bins, corner, cells,
+            size, wet_size, lens, focus, fresnel, room, samples, last, capture_size, capture_last, capture_texel, film,
+            water, first_row, levels),
         host!(PuddleGrid as "PuddleGrid" in &lattice::puddle::PUDDLE,
             size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
             steps, halo, half_storage, slope),

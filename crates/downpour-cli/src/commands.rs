@@ -4,6 +4,7 @@ mod adapters;
 mod check;
 mod drop;
 mod input;
+mod lattice;
 mod mask;
 mod rain;
 mod render;
@@ -27,6 +28,7 @@ pub(crate) enum Command {
     Rain(rain::RainArguments),
     Specimen(specimen::SpecimenArguments),
     Wind(wind::WindArguments),
+    Lattice(lattice::LatticeArguments),
     Adapters(adapters::AdaptersArguments),
 }
 
@@ -40,6 +42,7 @@ impl Command {
             Self::Rain(arguments) => arguments.run(),
             Self::Specimen(arguments) => arguments.run(interrupt),
             Self::Wind(arguments) => arguments.run(interrupt),
+            Self::Lattice(arguments) => arguments.run(interrupt),
             Self::Adapters(arguments) => arguments.run(),
         }
     }

@@ -5,8 +5,11 @@ use std::io;
 use std::path::Path;
 
 use downpour::drop::DropError;
+use downpour::lattice::LatticeError;
+use downpour::lattice::glass::GlassError;
 use downpour::mask::MaskError;
 use downpour::render::RenderError;
+use downpour::render::glass::PaneError;
 use downpour::render::shower::ShowerError;
 use downpour::render::specimen::SpecimenError;
 use downpour::render::stage::StageError;
@@ -61,6 +64,24 @@ impl fmt::Display for Failure {
 impl From<DropError> for Failure {
     fn from(error: DropError) -> Self {
         Self::new(INPUT, error.to_string())
+    }
+}
+
+impl From<GlassError> for Failure {
+    fn from(error: GlassError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
+    }
+}
+
+impl From<PaneError> for Failure {
+    fn from(error: PaneError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
+    }
+}
+
+impl From<LatticeError> for Failure {
+    fn from(error: LatticeError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
     }
 }
 

@@ -121,6 +121,37 @@ fn pair(text: &str, range: &RangeInclusive<f64>, allowed: &str) -> Result<[f64; 
     Ok([read(first, range, allowed)?, read(second, range, allowed)?])
 }
 
+/// Edge of a cell of a lattice, in mm.
+pub(crate) fn cell_mm(text: &str) -> Result<f64, String> {
+    read(text, &(0.1..=1000.0), "0.1 to 1000 mm")
+}
+
+/// Depth of water, in mm.
+pub(crate) fn depth_mm(text: &str) -> Result<f64, String> {
+    read(text, &(0.1..=1.0e6), "0.1 to 1000000 mm")
+}
+
+/// Tilt of a pane from the horizontal, in degrees.
+pub(crate) fn tilt_deg(text: &str) -> Result<f64, String> {
+    read(text, &(0.0..=90.0), "0 to 90 degrees")
+}
+
+/// Speed of air, in m/s.
+pub(crate) fn speed_m_s(text: &str) -> Result<f64, String> {
+    read(text, &(0.0..=100.0), "0 to 100 m/s")
+}
+
+/// A time step, in seconds.
+pub(crate) fn step_s(text: &str) -> Result<f64, String> {
+    read(text, &(1.0e-6..=1.0), "0.000001 to 1 s")
+}
+
+/// How many steps of a lattice.
+pub(crate) fn steps(text: &str) -> Result<u64, String> {
+    let number = text.parse().ok().filter(|steps| (1..=1_000_000_000).contains(steps));
+    number.ok_or_else(|| "allowed: a whole number from 1 to 1000000000".to_owned())
+}
+
 /// Samples along an edge of a pixel.
 pub(crate) fn samples(text: &str) -> Result<u32, String> {
     whole(text, 1..=8)

@@ -1,11 +1,13 @@
 //! Pictures on a GPU: the same rays and the same drops as on the CPU, from the same buffers.
 
 mod drop_light;
+mod glass;
 mod picture;
 mod rain;
 mod scene;
 
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
+pub use glass::GlassRenderer;
 pub use picture::{GpuPictureError, PictureRenderer};
 pub use rain::{RainOnGpu, RainPass, RainPipeline};
 pub use scene::{SceneOnGpu, ScenePass, ScenePipeline};

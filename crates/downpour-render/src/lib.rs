@@ -5,6 +5,7 @@
 //!   [`brdf`]); [`sky_light`] prepares the sky, [`camera`] the frame;
 //! - [`shower`]: which drops there are before an eye, from picture to picture;
 //! - [`rain`]: drops before a scene; [`picture`] puts the two together;
+//! - [`glass`]: rain on a pane before the camera, and the picture through it;
 //! - [`tone`] and [`mod@file`]: from radiance to a file;
 //! - [`wind_picture`]: a wind as colours and streaks.
 
@@ -14,6 +15,7 @@ pub mod camera;
 pub mod data;
 mod error;
 pub mod file;
+pub mod glass;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod light;

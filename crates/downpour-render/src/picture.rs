@@ -50,6 +50,10 @@ pub struct Picture {
     /// Those of them that the scene does not hide altogether: their places among the drops that were given, nearest
     /// first.
     pub drawn: Vec<u32>,
+    /// What is round the eye, all levels of an octahedral map.
+    pub surroundings: Vec<[f32; 4]>,
+    /// The scene through the rain and through a pane of glass, if there is one.
+    pub through_glass: Option<Vec<[f32; 3]>>,
     /// The passes in their order, with the milliseconds that each took.
     pub passes: Vec<(&'static str, f64)>,
 }
@@ -60,6 +64,7 @@ impl Picture {
         rain: &Rain,
         clean: Vec<[f32; 4]>,
         layer: Vec<[f32; 4]>,
+        surroundings: Vec<[f32; 4]>,
         passes: Vec<(&'static str, f64)>,
     ) -> Self {
         Self {
@@ -68,13 +73,25 @@ impl Picture {
             drawn: rain.drawn(&clean),
             clean,
             rain: layer,
+            surroundings,
+            through_glass: None,
             passes,
         }
     }
 
-    /// The scene through the rain.
+    /// The scene through the rain with its distances: what stands behind a pane of glass.
+    #[must_use]
+    pub fn behind_glass(&self) -> Vec<[f32; 4]> {
+        let distances = self.clean.iter().map(|pixel| pixel[3]);
+        through_rain(&self.clean, &self.rain).zip(distances).map(|([r, g, b], d)| [r, g, b, d]).collect()
+    }
+
+    /// The scene through the rain, and through the pane of glass if there is one.
     #[must_use]
     pub fn radiance(&self) -> Vec<[f32; 3]> {
+        if let Some(seen) = &self.through_glass {
+            return seen.clone();
+        }
         through_rain(&self.clean, &self.rain).collect()
     }
 }
@@ -133,5 +150,5 @@ pub fn render_picture(
     let lights = rain.lights(scene, masks)?;
     let light = timed(&mut passes, "lamps", || lights.light(&rain.rows));
     let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture, &table, &light));
-    Ok(Picture::new(&rain, clean, layer, passes))
+    Ok(Picture::new(&rain, clean, layer, capture.texels, passes))
 }

@@ -12,6 +12,7 @@
 mod camera;
 mod fault;
 mod file;
+mod glass;
 mod lamps;
 mod load;
 mod models;
@@ -30,6 +31,7 @@ use std::path::Path;
 
 pub use crate::uri::RelativePath;
 pub use camera::{Camera, CameraPose, FAR_M, FOV_RAD, NEAR_M};
+pub use glass::{Pane, PaneFocus, PaneFresnel};
 pub use lamps::Lamp;
 pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
@@ -96,6 +98,8 @@ pub struct Weather {
     pub wind_box: WindBox,
     /// How moving drops are drawn.
     pub streaks: Streaks,
+    /// A pane before the camera.
+    pub glass: Option<Pane>,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
 }
@@ -113,6 +117,7 @@ impl Default for Weather {
             wind: Wind::default(),
             wind_box: WindBox::default(),
             streaks: Streaks::default(),
+            glass: None,
             size: [1280, 720],
         }
     }

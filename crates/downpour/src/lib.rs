@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`bvh`] | `downpour-bvh` | the nearest hit of a ray among triangles |
 //! | [`mod@drop`] | `downpour-drop` | one drop (shape, fall speed, oscillation, optics) and many (size distributions) |
+//! | [`lattice`] | `downpour-lattice` | water on surfaces: ripples of puddles, drops on glass |
 //! | [`mask`] | `downpour-mask` | what a drop does to light: refraction masks, traced, written and read |
 //! | [`scene`] | `downpour-scene` | glTF scenes, sky maps and weather files, behind a guard and a budget |
 //! | [`sim`] | `downpour-sim` | where the drops of a rain are, counted from mm/h |
@@ -36,6 +37,7 @@ pub use downpour_bvh as bvh;
 pub use downpour_drop as drop;
 #[cfg(feature = "wgpu")]
 pub use downpour_gpu as gpu;
+pub use downpour_lattice as lattice;
 pub use downpour_mask as mask;
 pub use downpour_math as math;
 pub use downpour_render as render;

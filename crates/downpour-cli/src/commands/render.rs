@@ -8,6 +8,7 @@ mod journal;
 mod mp4;
 mod outputs;
 mod painter;
+mod pane;
 mod pattern;
 mod places;
 mod progress;
@@ -16,6 +17,7 @@ mod shower;
 #[cfg(feature = "video")]
 mod video;
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -37,12 +39,13 @@ use crate::{quantity, stream};
 use frames::Frames;
 use outputs::{Bytes, Format, Outputs};
 use painter::with_painter;
+use pane::Pane;
 use report::Told;
 use shower::Showers;
 
 /// Memory per pixel, in bytes, while a picture is made and written: the scene, what its pixels found of the sky's light
-/// (twice while threads hand in their parts), the rain, and the file.
-pub(super) const BYTES_PER_PIXEL: u64 = 220;
+/// (twice while threads hand in their parts), the rain, the pane with what is behind it, and the file.
+pub(super) const BYTES_PER_PIXEL: u64 = 300;
 
 /// Make a picture of a scene in the rain, or a clip.
 #[derive(Debug, Args)]
@@ -142,12 +145,16 @@ impl RenderArguments {
         let rain = &input.weather.rain;
         let showers = &mut Showers::new(&input.weather)?;
         let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
+        let pane = &mut Pane::new(&input.weather, &stage, self.input.time)?;
         // The files have become buffers.
         drop(input.loaded);
         let options = self.options(&stage, &input.weather, self.input.time, shower.veil);
         let say = |text: &str| self.say(text);
+        let pane = RefCell::new(pane);
         let (picture, computer) = with_painter(&self.backend, interrupt, say, |painter| {
-            let picture = painter.paint(&stage, &shower.visible.drops, &showers.masks, &options)?;
+            let mut picture = painter.paint(&stage, &shower.visible.drops, &showers.masks, &options)?;
+            let through = pane.borrow_mut().before(&stage, &picture, &options, self.input.time)?;
+            painter.look(&mut picture, through)?;
             Ok((picture, painter.computer().clone()))
         })?;
         let frame_ms = begin.elapsed().as_secs_f64() * 1.0e3;

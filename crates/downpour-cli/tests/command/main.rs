@@ -14,6 +14,7 @@ mod clip_kill;
 mod clip_video;
 mod drop;
 mod gltf_file;
+mod lattice;
 mod mask;
 mod models;
 mod output;

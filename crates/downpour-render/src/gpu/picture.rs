@@ -92,10 +92,10 @@ impl PictureRenderer {
             self.gpu.submit(&[pass.drops()])?;
             self.gpu.wait()
         })?;
-        let (clean, layer) = timed(&mut passes, "readback", || {
-            Ok::<_, GpuError>((self.gpu.read::<[f32; 4]>(&clean)?, pass.layer()?))
+        let (clean, layer, surroundings) = timed(&mut passes, "readback", || {
+            Ok::<_, GpuError>((self.gpu.read::<[f32; 4]>(&clean)?, pass.layer()?, pass.surroundings()?))
         })?;
-        Ok(Picture::new(&rain, clean, layer, passes))
+        Ok(Picture::new(&rain, clean, layer, surroundings, passes))
     }
 }
 

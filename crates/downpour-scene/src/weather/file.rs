@@ -1,6 +1,7 @@
 //! The file as it is written: tables of keys with units, before it becomes a [`Weather`].
 
 use super::fault::Places;
+use super::glass::GlassTable;
 use super::lamps::{Lamp, LampTable};
 use super::models::{Model, ModelTable};
 use super::quantity::{Exactly, Whole};
@@ -31,6 +32,7 @@ struct Tables {
     turbulence: Option<TurbulenceTable>,
     wind_field: WindFieldTable,
     streaks: StreaksTable,
+    glass: Option<GlassTable>,
     output: OutputTable,
 }
 
@@ -54,10 +56,12 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         }
     }
     let sky = Sky::checked(&tables.sky, &places)?;
+    let rain = Rain::checked(&tables.rain, &places)?;
     let default = Weather::default();
     Ok(Weather {
         name: String::new(),
-        rain: Rain::checked(&tables.rain, &places)?,
+        glass: tables.glass.map(|glass| glass.checked(&rain, &places)).transpose()?,
+        rain,
         sun: SunSource::checked(tables.sun.as_ref(), &sky, &places)?,
         sky,
         camera: Camera::checked(&tables.camera, &places)?,

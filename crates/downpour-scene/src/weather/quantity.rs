@@ -73,6 +73,20 @@ ranges! {
     EddyMS: 0.0, 50.0, "0 to 50 m/s";
     EddyM: 0.1, 1e4, "0.1 to 1e4 m";
     WindBoxM: 0.01, 1e6, "0.01 to 1e6 m";
+    ReachM: 0.02, 10.0, "0.02 to 10 m";
+    PaneTiltDeg: 10.0, 90.0, "10 to 90 degrees";
+    PaneM: 0.01, 10.0, "0.01 to 10 m";
+    CellMm: 0.25, 5.0, "0.25 to 5 mm";
+    PaneMS: 0.0, 100.0, "0 to 100 m/s";
+    BeforeS: 0.0, 3600.0, "0 to 3600 s";
+    ApertureMm: 0.0, 100.0, "0 to 100 mm";
+    AdvancingDeg: 5.0, 120.0, "5 to 120 degrees";
+    RecedingDeg: 0.0, 120.0, "0 to 120 degrees";
+    FilmUm: 0.0, 200.0, "0 to 200 um";
+    DryingMmH: 0.0, 100.0, "0 to 100 mm/h";
+    PivotM: -20.0, 20.0, "-20 to 20 m";
+    BladeM: 0.0, 20.0, "0 to 20 m";
+    PeriodS: 0.1, 1e6, "0.1 to 1e6 s";
 }
 
 /// A number within a range.

@@ -1,6 +1,6 @@
 //! `[[wind]]`, `[gusts]`, `[turbulence]` and `[wind_field]`.
 
-mod keys;
+pub(super) mod keys;
 
 use super::fault::Places;
 use super::quantity::{

@@ -19,6 +19,7 @@ use super::job::{Job, digest, moves, scene_digest};
 use super::journal::{Journal, Record};
 use super::outputs::Format;
 use super::painter::{PaintError, Painter, with_painter};
+use super::pane::Pane;
 use super::places::Places;
 use super::progress::Progress;
 use super::report::{self, Told};
@@ -130,10 +131,15 @@ impl Clip<'_> {
             remove_leftovers(drops.folder());
         }
         let showers = &mut Showers::new(&self.input.weather)?;
+        let pane = &mut Pane::new(
+            &self.input.weather,
+            &self.first,
+            time_s(self.arguments.input.time, self.frames.first, self.fps),
+        )?;
         let mut progress = Progress::new("frame", missing, self.arguments.quiet);
         for number in self.frames.numbers() {
             if !kept.contains(&number) {
-                let made = self.make_frame(number, painter, showers, journal);
+                let made = self.make_frame(number, painter, showers, pane, journal);
                 made.inspect_err(|_| self.say_how_to_go_on(journal))?;
                 progress.step();
             } else if !showers.is_closed_form() {
@@ -179,6 +185,7 @@ impl Clip<'_> {
         number: u32,
         painter: &Painter,
         showers: &mut Showers,
+        pane: &mut Pane,
         journal: &mut Journal,
     ) -> Result<(), PaintError> {
         let begin = Instant::now();
@@ -187,7 +194,9 @@ impl Clip<'_> {
         let stage = &*self.stage(number, time_s)?;
         let shower = showers.at(stage, time_s, self.places.stats.is_some())?;
         let options = self.arguments.options(stage, &self.input.weather, time_s, shower.veil);
-        let picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
+        let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
+        let through = pane.before(stage, &picture, &options, time_s)?;
+        painter.look(&mut picture, through)?;
         let told = Told {
             computer: painter.computer(),
             rain: &shower.visible,

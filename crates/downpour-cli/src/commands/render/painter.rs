@@ -6,6 +6,7 @@ use downpour::render::rain::DropMasks;
 use downpour::render::stage::Stage;
 use downpour::sim::field::FallingDrop;
 
+use super::pane::Through;
 use super::report::Computer;
 use crate::backend::{BackendArguments, compute};
 use crate::failure::Failure;
@@ -16,6 +17,8 @@ pub(super) struct Painter {
     computer: Computer,
     #[cfg(feature = "gpu")]
     renderer: Option<downpour::render::gpu::PictureRenderer>,
+    #[cfg(feature = "gpu")]
+    glass: Option<downpour::gpu::Gpu>,
 }
 
 /// Why there is no picture: what was wrong with it, or with what makes it.
@@ -34,6 +37,8 @@ impl Painter {
             computer,
             #[cfg(feature = "gpu")]
             renderer: None,
+            #[cfg(feature = "gpu")]
+            glass: None,
         }
     }
 
@@ -45,7 +50,8 @@ impl Painter {
             backend: "gpu",
             driver: format!("{} {} {}", adapter.backend, adapter.driver, adapter.driver_info),
         };
-        Ok(Self { computer, renderer: Some(downpour::render::gpu::PictureRenderer::new(gpu)?) })
+        let renderer = Some(downpour::render::gpu::PictureRenderer::new(gpu)?);
+        Ok(Self { computer, renderer, glass: Some(gpu.clone()) })
     }
 
     pub(super) fn computer(&self) -> &Computer {
@@ -69,6 +75,28 @@ impl Painter {
             return Ok(renderer.render(&stage.data, &stage.viewpoint, &drops, masks, options)?);
         }
         Ok(render_picture(&stage.data, &stage.viewpoint, &drops, masks, options)?)
+    }
+}
+
+impl Painter {
+    /// Looks at a picture through a pane, if there is one.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub(super) fn look(&self, picture: &mut Picture, through: Option<Through>) -> Result<(), PaintError> {
+        let Some(Through { glass, behind, capture }) = through else { return Ok(()) };
+        let begin = std::time::Instant::now();
+        #[cfg(feature = "gpu")]
+        if let Some(gpu) = &self.glass {
+            let renderer = downpour::render::gpu::GlassRenderer::new(gpu);
+            let seen = renderer.and_then(|renderer| renderer.through(&glass, &behind, &capture));
+            picture.through_glass = Some(seen.map_err(downpour::render::gpu::GpuPictureError::from)?);
+        }
+        if picture.through_glass.is_none() {
+            picture.through_glass = Some(glass.through(&behind, &capture));
+        }
+        picture.passes.push(("glass", begin.elapsed().as_secs_f64() * 1.0e3));
+        Ok(())
     }
 }
 

@@ -12,7 +12,7 @@ use std::marker::PhantomData;
 
 /// A number, or keys of it.
 #[derive(Debug)]
-pub(super) struct NumberKeys<R>(Moving<f64>, PhantomData<R>);
+pub(in crate::weather) struct NumberKeys<R>(Moving<f64>, PhantomData<R>);
 
 /// Three numbers, or keys of them.
 #[derive(Debug)]
@@ -58,12 +58,16 @@ pub(super) fn keyed<T: Blend>(
 
 impl<R> NumberKeys<R> {
     /// The number over time.
-    pub(super) fn keyed(&self, path: &str, places: &Places<'_>) -> Result<Keyed<f64>, SceneError> {
+    pub(in crate::weather) fn keyed(
+        &self,
+        path: &str,
+        places: &Places<'_>,
+    ) -> Result<Keyed<f64>, SceneError> {
         self.0.keyed(path, places)
     }
 
     /// The keys as they stand in the file; one at time 0 for a number.
-    pub(super) fn raw(&self) -> Vec<(f64, f64)> {
+    pub(in crate::weather) fn raw(&self) -> Vec<(f64, f64)> {
         match &self.0 {
             Moving::Still(value) => vec![(0.0, *value)],
             Moving::Keys(keys) => keys.clone(),

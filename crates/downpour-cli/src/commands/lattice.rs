@@ -1,0 +1,75 @@
+//! `downpour lattice`: one lattice of water alone, what it conserves, and pictures of it.
+
+mod glass;
+mod picture;
+mod puddle;
+
+use clap::{Args, Subcommand};
+
+use crate::failure::{Failure, OTHER};
+use crate::interrupt::Interrupt;
+use crate::listing::Entry;
+use crate::{listing, stream};
+
+/// Run one lattice of water alone, tell what it conserves, and draw it.
+#[derive(Debug, Args)]
+pub(crate) struct LatticeArguments {
+    #[command(subcommand)]
+    lattice: Lattice,
+}
+
+#[derive(Debug, Subcommand)]
+enum Lattice {
+    Glass(glass::GlassArguments),
+    Puddle(puddle::PuddleArguments),
+}
+
+impl LatticeArguments {
+    pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
+        match &self.lattice {
+            Lattice::Glass(arguments) => arguments.run(interrupt),
+            Lattice::Puddle(arguments) => arguments.run(interrupt),
+        }
+    }
+}
+
+/// What both lattices are told.
+#[derive(Debug, Args)]
+struct Common {
+    /// Rain rate in mm/h, 0 to 500.
+    #[arg(long, value_name = "MM_H", default_value = "0", value_parser = crate::quantity::rate_mm_h)]
+    #[arg(allow_hyphen_values = true)]
+    rate: f64,
+    /// Seed of the rain.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = crate::quantity::seed)]
+    #[arg(allow_hyphen_values = true)]
+    seed: u64,
+    /// The picture: .png, or .exr with the numbers themselves.
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<std::path::PathBuf>,
+    /// Replace the file if it exists.
+    #[arg(long)]
+    overwrite: bool,
+    /// Write the invariants as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Say nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Prints the list, then fails if what was to be checked does not hold.
+///
+/// # Errors
+/// Exit code 1 for a law that is broken: a defect of the lattice.
+fn report(common: &Common, entries: &[Entry], broken: Option<String>) -> Result<(), Failure> {
+    if common.json {
+        stream::print(&listing::json(entries))?;
+    } else if !common.quiet {
+        stream::print(&listing::text(entries))?;
+    }
+    match broken {
+        Some(what) => Err(Failure::new(OTHER, what)),
+        None => Ok(()),
+    }
+}

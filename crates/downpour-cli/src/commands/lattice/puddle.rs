@@ -1,0 +1,177 @@
+//! `downpour lattice puddle`: ripples on shallow water.
+
+use clap::{Args, ValueEnum};
+use downpour::drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour::lattice::puddle::{Impact, Puddle, PuddleBorder, PuddleDamping, PuddleOptions, PuddleRain};
+
+use super::picture::{Field, Target};
+use super::{Common, report};
+use crate::failure::{Failure, INPUT};
+use crate::interrupt::Interrupt;
+use crate::listing::{Datum, Entry};
+use crate::{quantity, stream};
+
+/// How far the energy may drift, as a share of it.
+const ENERGY_DRIFT: f64 = 1.0e-4;
+
+/// How far the volume may drift, as a share of all that is above or below the level.
+const VOLUME_DRIFT: f64 = 1.0e-4;
+
+/// Let rain fall on a puddle.
+#[derive(Debug, Args)]
+pub(super) struct PuddleArguments {
+    /// Cells of the puddle, 64 to 4096 each way.
+    #[arg(long, value_name = "WxH", default_value = "256x256", value_parser = quantity::picture_size)]
+    size: [u32; 2],
+    /// Edge of a cell in mm, 0.1 to 1000.
+    #[arg(long, value_name = "MM", default_value = "2", value_parser = quantity::cell_mm)]
+    #[arg(allow_hyphen_values = true)]
+    cell: f64,
+    /// Depth of the water in mm, 0.1 to 1000000.
+    #[arg(long, value_name = "MM", default_value = "5", value_parser = quantity::depth_mm)]
+    #[arg(allow_hyphen_values = true)]
+    depth: f64,
+    /// Length of a step in seconds, 0.000001 to 1.
+    #[arg(long, value_name = "S", default_value = "0.005", value_parser = quantity::step_s)]
+    #[arg(allow_hyphen_values = true)]
+    step: f64,
+    /// How many steps.
+    #[arg(long, value_name = "N", default_value = "1000", value_parser = quantity::steps)]
+    #[arg(allow_hyphen_values = true)]
+    steps: u64,
+    /// The border absorbs what comes, as if there were more water.
+    #[arg(long)]
+    open: bool,
+    /// What has to hold: the exit code is 1 if it does not. Checks are made without rain.
+    #[arg(long, value_enum)]
+    check: Option<Check>,
+    /// What the picture shows.
+    #[arg(long, value_enum, default_value = "height")]
+    show: Show,
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Check {
+    /// The energy of the ripples of a drop of 3 mm, without damping, stays within a ten-thousandth.
+    Energy,
+    /// The volume of the water stays.
+    Mass,
+    /// Level water stays level, bit for bit.
+    Rest,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Show {
+    /// Height over the level in metres; in a .png grey is the level, black and white are three times the rms.
+    Height,
+    /// Normals: x along the rows, y up, z along the columns.
+    Normal,
+}
+
+impl PuddleArguments {
+    pub(super) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
+        if self.check.is_some() && (self.common.rate > 0.0 || self.open) {
+            let message =
+                "--check with --rate or --open; allowed: without them, since both bring or take energy";
+            return Err(Failure::new(INPUT, message));
+        }
+        let target = Target::new(&self.common)?;
+        let undamped = matches!(self.check, Some(Check::Energy));
+        let options = PuddleOptions {
+            size: self.size,
+            cell_m: (self.cell * 1.0e-3) as f32,
+            depth_m: (self.depth * 1.0e-3) as f32,
+            damping: if undamped { PuddleDamping::None } else { PuddleDamping::Water },
+            border: if self.open { PuddleBorder::Open } else { PuddleBorder::Reflecting },
+            ..PuddleOptions::default()
+        };
+        let mut puddle = Puddle::new(&options)?;
+        let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, self.common.rate)?;
+        let rain = (self.common.rate > 0.0).then(|| PuddleRain::new(&rain, self.common.seed));
+        if matches!(self.check, Some(Check::Energy | Check::Mass)) {
+            let place_m = puddle.extent_m().map(|edge| 0.4 * edge);
+            puddle.seed(&[Impact { place_m, speed_m_s: 8.0, diameter_m: 3.0e-3 }])?;
+        }
+        let dt = self.step as f32;
+        let mut drops = 0u64;
+        let mut drift = 0.0f64;
+        let mut first = None;
+        for step in 0..self.steps {
+            if let Some(rain) = &rain {
+                let impacts = rain.impacts(puddle.extent_m(), step, dt)?;
+                drops += impacts.len() as u64;
+                puddle.seed(&impacts)?;
+            }
+            puddle.step(dt)?;
+            // Looking at all cells each time would take as long as the steps.
+            if step < 4 || step % 64 == 0 || step + 1 == self.steps {
+                let energy = puddle.energy();
+                let begun = *first.get_or_insert(energy);
+                drift = drift.max((energy - begun).abs() / begun.abs().max(f64::MIN_POSITIVE));
+            }
+        }
+        if let (Some(target), Some(path)) = (target, &self.common.output) {
+            target.write(&self.field(&puddle), path, self.common.quiet, interrupt)?;
+        }
+        self.tell(&puddle, drops, drift)
+    }
+
+    fn tell(&self, puddle: &Puddle, drops: u64, drift: f64) -> Result<(), Failure> {
+        let heights = puddle.heights();
+        let cell = f64::from(puddle.options().cell_m);
+        let volume = puddle.volume();
+        let moved: f64 = heights.iter().map(|&h| f64::from(h.abs())).sum::<f64>() * cell * cell;
+        let highest = heights.iter().fold(0.0f32, |most, h| most.max(h.abs()));
+        let share = volume.abs() / moved.max(f64::MIN_POSITIVE);
+        let entry = Entry::new;
+        let entries = [
+            entry("steps", "steps", Datum::Count(puddle.steps()), ""),
+            entry("degree", "degree of the operator", Datum::Count(puddle.degree().into()), ""),
+            entry("drops", "drops", Datum::Count(drops), ""),
+            entry("highest_mm", "highest ripple", Datum::Computed(f64::from(highest) * 1.0e3, 4), "mm"),
+            entry("energy_m4_s2", "energy", Datum::Computed(puddle.energy(), 6), "m^4/s^2"),
+            entry("energy_drift", "drift of the energy", Datum::Computed(drift, 3), ""),
+            entry("volume_m3", "volume over the level", Datum::Computed(volume, 3), "m^3"),
+            entry("volume_share", "share of the moved volume", Datum::Computed(share, 3), ""),
+            entry("reset_cells", "cells that were reset", Datum::Count(puddle.reset_cells()), ""),
+        ];
+        let level = heights.iter().all(|h| h.to_bits() == 0);
+        let broken = match self.check {
+            Some(Check::Energy) if drift.is_nan() || drift > ENERGY_DRIFT => {
+                Some(format!("energy: it drifts by {drift:.2e}; allowed: {ENERGY_DRIFT:.0e}"))
+            }
+            Some(Check::Mass) if share.is_nan() || share > VOLUME_DRIFT => {
+                Some(format!("mass: {share:.2e} of the moved volume; allowed: {VOLUME_DRIFT:.0e}"))
+            }
+            Some(Check::Rest) if !level => {
+                Some("rest: level water has moved; allowed: heights of 0, bit for bit".to_owned())
+            }
+            _ => None,
+        };
+        if !self.common.quiet && self.check.is_some() && broken.is_none() {
+            stream::message("the check holds");
+        }
+        report(&self.common, &entries, broken)
+    }
+
+    fn field(&self, puddle: &Puddle) -> Field {
+        let size = self.size;
+        match self.show {
+            Show::Height => {
+                let heights = puddle.heights();
+                let mean = heights.iter().map(|&h| f64::from(h * h)).sum::<f64>() / heights.len() as f64;
+                Field {
+                    size,
+                    numbers: heights.into_iter().map(|h| [h; 3]).collect(),
+                    shade: |h, scale| 0.5 + h / scale,
+                    scale: (6.0 * mean.sqrt()).max(1.0e-9) as f32,
+                }
+            }
+            Show::Normal => {
+                Field { size, numbers: puddle.normals(), shade: |n, _| 0.5 * n + 0.5, scale: 1.0 }
+            }
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! The pane of glass of a picture, and of all pictures of a clip, for the command.
+
+use downpour::render::glass::{GlassPicture, WetPane};
+use downpour::render::picture::Picture;
+use downpour::render::picture::PictureOptions;
+use downpour::render::rain::{CaptureFrame, RainOptions, RefractionForm};
+use downpour::render::stage::Stage;
+use downpour::scene::weather::Weather;
+
+use crate::failure::Failure;
+
+/// A pane with the rain on it, if the weather has one.
+pub(super) struct Pane(Option<WetPane>);
+
+/// What a picture through a pane is made of.
+pub(super) struct Through {
+    pub(super) glass: GlassPicture,
+    pub(super) behind: Vec<[f32; 4]>,
+    pub(super) capture: Vec<[f32; 4]>,
+}
+
+impl Pane {
+    /// The dry pane; `first_s` is the time of the first picture.
+    ///
+    /// # Errors
+    /// Exit code 2 for a pane that cannot be.
+    pub(super) fn new(weather: &Weather, stage: &Stage, first_s: f64) -> Result<Self, Failure> {
+        Ok(Self(WetPane::new(weather, stage, first_s)?))
+    }
+
+    /// What a picture at a time in seconds needs to be seen through the pane; times rise.
+    ///
+    /// # Errors
+    /// As [`Pane::new`].
+    pub(super) fn before(
+        &mut self,
+        stage: &Stage,
+        picture: &Picture,
+        options: &PictureOptions,
+        time_s: f64,
+    ) -> Result<Option<Through>, Failure> {
+        let Some(pane) = &mut self.0 else { return Ok(None) };
+        pane.advance(time_s)?;
+        let (size, grid) = (options.size, options.grid);
+        let frame = stage.viewpoint.frame(&stage.data, size, grid, options.sky_rays, options.seed)?;
+        let capture = if options.rain.form == RefractionForm::Direction {
+            picture.surroundings.clone()
+        } else {
+            // The papers' capture does not show all that is round the eye.
+            CaptureFrame::new(&frame, &RainOptions::default()).trace(&stage.data).texels
+        };
+        let glass = pane.picture(stage, &frame, capture.len())?;
+        Ok(Some(Through { glass, behind: picture.behind_glass(), capture }))
+    }
+}

@@ -1,0 +1,24 @@
+//! Rain on a pane of glass before the camera, and the picture through it.
+//!
+//! 1. [`WetPane`]: the pane of a weather, whose lattice ([`downpour_lattice::glass`]) goes on from picture to picture;
+//! 2. [`GlassPicture`]: its drops as smooth surfaces, sorted into bins, with what a picture asks of pane and lens;
+//! 3. [`GlassPicture::through`] (or [`gpu::GlassRenderer`](crate::gpu::GlassRenderer)): the picture through it, ray by ray.
+//!
+//! The lattice says where the water is; its cells are as large as small drops, so that surfaces are not read from its
+//! heights but made of its drops: [`water`].
+//!
+//! Source: Tatarchuk & Isidoro 2006, section 5, has normals from the mass, a refracted picture and a Fresnel term. Here rays
+//! follow Snell's law, so that a drop shows the far scene upside down, and its rim is dark where light is totally reflected.
+
+mod drops;
+mod error;
+mod frame;
+mod pane;
+mod picture;
+pub mod water;
+
+pub use error::PaneError;
+pub use frame::{GlassPicture, GlassPictureFrame};
+pub use pane::WetPane;
+pub use picture::glass_picture_spline;
+pub use water::GlassPictureDrop;

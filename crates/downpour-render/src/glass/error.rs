@@ -1,0 +1,40 @@
+//! What can be wrong with a pane before a camera.
+
+use downpour_lattice::glass::GlassError;
+
+use crate::RenderError;
+
+/// Why there is no pane.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PaneError {
+    /// The lattice cannot be what is asked for.
+    #[error("glass: {0}")]
+    Glass(#[from] GlassError),
+    /// The camera is none.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The camera does not look through the pane.
+    #[error(
+        "glass: a pane tilted by {tilt_deg:.1} degrees is seen edge on or from outside by a camera that looks {pitch_deg:.1} \
+         degrees up; allowed: a tilt and a pitch that add up to 2 to 178 degrees"
+    )]
+    EdgeOn {
+        /// Tilt of the pane, degrees from the horizontal.
+        tilt_deg: f64,
+        /// Pitch of the camera, degrees.
+        pitch_deg: f64,
+    },
+}
+
+impl PaneError {
+    /// The exit code of the command for this error.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Glass(error) => error.exit_code(),
+            Self::Render(error) => error.exit_code(),
+            Self::EdgeOn { .. } => 2,
+        }
+    }
+}

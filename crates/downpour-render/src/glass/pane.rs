@@ -1,0 +1,214 @@
+//! The pane of a weather, from picture to picture.
+
+use std::f64::consts::PI;
+
+use downpour_drop::optics::water_index_in_air;
+use downpour_lattice::glass::{Glass, GlassError};
+use downpour_math::ops::f64 as ops;
+use downpour_scene::weather::{Pane, PaneFocus, PaneFresnel, Rain, Weather};
+use downpour_shaders::render::glass::{
+    GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE, GLASS_PICTURE_TATARCHUK,
+};
+use glam::DVec3;
+
+use super::drops::binned;
+use super::error::PaneError;
+use super::frame::{GlassPicture, GlassPictureFrame, levels, samples};
+use crate::data::RenderFrame;
+use crate::stage::Stage;
+
+/// Largest width and height of a pane whose size is that of the picture, m.
+const LARGEST_M: f64 = 2.4;
+
+/// How much larger than the picture such a pane is.
+const MARGIN: f64 = 1.04;
+
+/// Air and rain on the pane follow their keys at times this far apart, s.
+const WEATHER_S: f64 = 0.1;
+
+/// Water where its index is not known.
+const WATER_INDEX: f64 = 1.333;
+
+/// The line of sodium, m.
+const SODIUM_M: f64 = 589.3e-9;
+
+/// A pane before the camera, with the rain on it.
+#[derive(Debug)]
+pub struct WetPane {
+    pane: Pane,
+    rain: Rain,
+    size: [f64; 2],
+    begin_s: f64,
+    water: f64,
+    glass: Glass,
+}
+
+impl WetPane {
+    /// The dry pane of a weather, if it has one; `first_s` is the time of the first picture, before which it has rained for
+    /// as long as the weather says.
+    ///
+    /// # Errors
+    /// [`PaneError`] if the pane cannot be what is asked for, or the camera does not look through it.
+    pub fn new(weather: &Weather, stage: &Stage, first_s: f64) -> Result<Option<Self>, PaneError> {
+        let Some(pane) = &weather.glass else { return Ok(None) };
+        let place = Place::new(pane, stage)?;
+        let size = pane.size.unwrap_or_else(|| place.shown(stage));
+        let begin_s = first_s - pane.before;
+        let mut glass = Glass::new(&pane.options(size, &weather.rain, begin_s))?;
+        let (rain, air) = pane.weather(&weather.rain, pane.speed.at(begin_s));
+        glass.set_weather(&rain, &air)?;
+        let water = water_index_in_air(SODIUM_M, &weather.rain.air).unwrap_or(WATER_INDEX);
+        Ok(Some(Self { pane: pane.clone(), rain: weather.rain.clone(), size, begin_s, water, glass }))
+    }
+
+    /// Lets rain fall and wipers go until a time in seconds. The same drops for any division of the time.
+    ///
+    /// # Errors
+    /// [`GlassError`], as the lattice's step.
+    pub fn advance(&mut self, time_s: f64) -> Result<(), GlassError> {
+        let tick = self.glass.tick_s();
+        let until = ((time_s - self.begin_s) / tick + 1.0e-6).floor().max(0.0) as u64;
+        let every = (WEATHER_S / tick).ceil().max(1.0) as u64;
+        let moves = self.pane.speed.keys().len() > 1;
+        while self.glass.ticks() < until {
+            let done = self.glass.ticks();
+            if moves && done.is_multiple_of(every) {
+                let speed = self.pane.speed.at(self.begin_s + done as f64 * tick);
+                let (rain, air) = self.pane.weather(&self.rain, speed);
+                self.glass.set_weather(&rain, &air)?;
+            }
+            let count = (every - done % every).min(until - done);
+            self.glass.step(count as f64 * tick)?;
+        }
+        Ok(())
+    }
+
+    /// The lattice.
+    #[must_use]
+    pub fn glass(&self) -> &Glass {
+        &self.glass
+    }
+
+    /// Width and height of the pane, m.
+    #[must_use]
+    pub fn size_m(&self) -> [f64; 2] {
+        self.size
+    }
+
+    /// The pane as it is now, before a picture. `capture_texels` is how many texels the capture has, all levels.
+    ///
+    /// # Errors
+    /// As [`WetPane::new`].
+    pub fn picture(
+        &self,
+        stage: &Stage,
+        frame: &RenderFrame,
+        capture_texels: usize,
+    ) -> Result<GlassPicture, PaneError> {
+        let place = Place::new(&self.pane, stage)?;
+        let binned = binned(&self.glass)?;
+        let [width, height] = self.size;
+        let corner = place.middle - place.across * (0.5 * width) - place.down * (0.5 * height);
+        let options = self.glass.options();
+        let vector = |v: DVec3| v.as_vec3().to_array();
+        let (levels, last) = levels([frame.width, frame.height]);
+        // (4 n^2 - 1) / 3 texels in all levels of n x n.
+        let capture_size = ((capture_texels as f64 * 0.75).sqrt().round() as u32).max(1);
+        let lens = (0.5 * self.pane.aperture) as f32;
+        let lens_places = samples(frame.grid, lens);
+        let wet = self.glass.traversal();
+        let word = |bytes: &[u8]| {
+            bytes.iter().enumerate().fold(0u32, |word, (k, &byte)| word | (u32::from(byte) << (8 * k)))
+        };
+        Ok(GlassPicture {
+            frame: GlassPictureFrame {
+                right: frame.right,
+                width: frame.width,
+                up: frame.up,
+                height: frame.height,
+                forward: frame.forward,
+                pixel_angle: frame.pixel_angle,
+                across: vector(place.across),
+                columns: binned.columns,
+                down: vector(place.down),
+                rows: binned.rows,
+                outward: vector(place.outward),
+                bins: binned.per_metre as f32,
+                corner: vector(corner),
+                cells: (1.0 / options.cell_m) as f32,
+                size: [width as f32, height as f32],
+                wet_size: options.size,
+                lens,
+                focus: match self.pane.focus {
+                    PaneFocus::Scene => GLASS_PICTURE_SCENE,
+                    PaneFocus::Glass => GLASS_PICTURE_GLASS,
+                },
+                fresnel: match self.pane.fresnel {
+                    PaneFresnel::Exact => GLASS_PICTURE_EXACT,
+                    PaneFresnel::Tatarchuk2006 => GLASS_PICTURE_TATARCHUK,
+                },
+                room: self.pane.room as f32,
+                samples: lens_places.len() as u32,
+                last,
+                capture_size,
+                capture_last: capture_size.ilog2(),
+                capture_texel: ((4.0 * PI).sqrt() / f64::from(capture_size)) as f32,
+                film: self.pane.film as f32,
+                water: self.water as f32,
+                first_row: 0,
+                levels,
+            },
+            // A buffer has at least one element.
+            drops: if binned.drops.is_empty() { vec![Default::default()] } else { binned.drops },
+            bins: binned.bins,
+            wet: wet.chunks(4).map(word).collect(),
+            lens: lens_places,
+        })
+    }
+}
+
+/// Where a pane is, relative to the eye.
+struct Place {
+    across: DVec3,
+    down: DVec3,
+    outward: DVec3,
+    middle: DVec3,
+}
+
+impl Place {
+    fn new(pane: &Pane, stage: &Stage) -> Result<Self, PaneError> {
+        let [right, _, forward] = stage.viewpoint.axes()?.map(|axis| axis.as_dvec3());
+        // A pane stands upright however the camera is turned about its own axis.
+        let level = DVec3::Y.cross(right);
+        let across = DVec3::new(right.x, 0.0, right.z).try_normalize().unwrap_or(DVec3::X);
+        let ahead = DVec3::Y.cross(across);
+        debug_assert!(ahead.dot(level) >= 0.0, "right stays right");
+        let (sin, cos) = (ops::sin(pane.tilt), ops::cos(pane.tilt));
+        let outward = ahead * sin + DVec3::Y * cos;
+        let down = ahead * cos - DVec3::Y * sin;
+        if forward.dot(outward) < ops::sin(2f64.to_radians()) {
+            let pitch_deg = ops::asin(forward.y.clamp(-1.0, 1.0)).to_degrees();
+            return Err(PaneError::EdgeOn { tilt_deg: pane.tilt.to_degrees(), pitch_deg });
+        }
+        Ok(Self { across, down, outward, middle: forward * pane.distance })
+    }
+
+    /// Width and height of the pane that the picture shows, m.
+    fn shown(&self, stage: &Stage) -> [f64; 2] {
+        let mut half = [0.0f64; 2];
+        let Ok(view) = stage.view() else { return [LARGEST_M; 2] };
+        for k in 0..4u32 {
+            let sign = |bit: u32| if k & bit == 0 { -1.0 } else { 1.0 };
+            let ray = view.forward
+                + view.right * (view.half_width * sign(1))
+                + view.up * (view.half_height * sign(2));
+            let towards = ray.dot(self.outward);
+            // A ray that misses the pane sees it up to its end.
+            let far = self.middle.dot(self.outward) / towards.max(1.0e-3);
+            let off = ray * far - self.middle;
+            half[0] = half[0].max(off.dot(self.across).abs());
+            half[1] = half[1].max(off.dot(self.down).abs());
+        }
+        half.map(|half| (2.0 * MARGIN * half).clamp(0.02, LARGEST_M))
+    }
+}

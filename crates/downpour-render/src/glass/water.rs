@@ -1,0 +1,111 @@
+//! Water on a pane as smooth surfaces. Twin of `shaders/wgsl/render/glass_picture_water.wgsl`.
+//!
+//! Each drop is a cap of a sphere over its disc, with an outline that is not quite round, drawn out behind if it runs, and
+//! steeper on the side to which its weight pulls it: from the receding angle to the advancing one.
+
+use downpour_shaders::render::glass::GLASS_PICTURE_TURNS;
+use glam::{Vec2, Vec3};
+
+/// A drop on a pane, in metres: x right, y down, z out of the pane. The same layout as `GlassPictureDrop` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct GlassPictureDrop {
+    /// Middle of the disc.
+    pub centre: [f32; 2],
+    /// Radius of the disc.
+    pub radius: f32,
+    /// Radius of the sphere whose cap it is.
+    pub sphere: f32,
+    /// Where it runs to, of length 1.
+    pub along: [f32; 2],
+    /// Inverse of how much longer it is behind its middle than before it.
+    pub behind: f32,
+    /// How much steeper it is on one side than on the other, as a share.
+    pub lean: f32,
+    /// Which side that is, of length 1.
+    pub droop: [f32; 2],
+    /// 0.
+    pub unused: [f32; 2],
+    /// The outline: what is added to the squared distance with the cosine and the sine of twice the angle, and of thrice.
+    pub lobes: [f32; 4],
+}
+
+/// Height over the glass, and its slopes along x and y. Beyond the outline the height is below 0.
+#[must_use]
+pub fn glass_picture_water_cap(drop: &GlassPictureDrop, place: Vec2) -> Vec3 {
+    let away = place - Vec2::from(drop.centre);
+    let (along, droop) = (Vec2::from(drop.along), Vec2::from(drop.droop));
+    let ahead = away.x * along.x + away.y * along.y;
+    let stretch = if ahead > 0.0 { 1.0 } else { drop.behind };
+    let x = ahead * stretch;
+    let y = away.y * along.x - away.x * along.y;
+    let l = drop.lobes;
+    let r = 1.0 / drop.radius;
+    let squared = x * x
+        + y * y
+        + l[0] * (x * x - y * y)
+        + l[1] * (2.0 * x * y)
+        + (l[2] * (x * x * x - 3.0 * x * y * y) + l[3] * (3.0 * x * x * y - y * y * y)) * r;
+    let of_x = 2.0 * x
+        + l[0] * (2.0 * x)
+        + l[1] * (2.0 * y)
+        + (l[2] * (3.0 * x * x - 3.0 * y * y) + l[3] * (6.0 * x * y)) * r;
+    let of_y = 2.0 * y - l[0] * (2.0 * y)
+        + l[1] * (2.0 * x)
+        + (l[3] * (3.0 * x * x - 3.0 * y * y) - l[2] * (6.0 * x * y)) * r;
+    let whole = drop.sphere * drop.sphere;
+    let root = (whole - squared).max(whole * 1.0e-4).sqrt();
+    let height = root - (whole - drop.radius * drop.radius).sqrt();
+    let steep = -0.5 / root;
+    let down_x = steep * of_x * stretch;
+    let down_y = steep * of_y;
+    let slope = along * down_x + Vec2::new(-along.y, along.x) * down_y;
+    let pulled = drop.lean * r;
+    let share = (1.0 + pulled * (away.x * droop.x + away.y * droop.y)).max(0.1);
+    let slope = slope * share + droop * (height * pulled);
+    Vec3::new(height * share, slope.x, slope.y)
+}
+
+/// The highest that a drop may be.
+#[must_use]
+pub fn glass_picture_water_top(drop: &GlassPictureDrop) -> f32 {
+    let whole = drop.sphere * drop.sphere;
+    (drop.sphere - (whole - drop.radius * drop.radius).sqrt()) * (1.0 + 1.5 * drop.lean)
+}
+
+/// Height at which a ray that enters a drop at a place of the glass leaves it. `aside` is how far it goes along the pane for
+/// each metre away from it. The bracket of regula falsi (Illinois).
+#[must_use]
+pub fn glass_picture_water_leave(drop: &GlassPictureDrop, place: Vec2, aside: Vec2) -> f32 {
+    let mut low = 0.0;
+    let mut high = glass_picture_water_top(drop);
+    let mut above = glass_picture_water_cap(drop, place).x;
+    let mut below = glass_picture_water_cap(drop, place + aside * high).x - high;
+    if below >= 0.0 {
+        return high;
+    }
+    let mut z = 0.0;
+    let mut side = 0;
+    for _ in 0..GLASS_PICTURE_TURNS {
+        z = low + (high - low) * (above / (above - below));
+        let off = glass_picture_water_cap(drop, place + aside * z).x - z;
+        if off > 0.0 {
+            low = z;
+            above = off;
+            below = if side == 1 { 0.5 * below } else { below };
+            side = 1;
+        } else {
+            high = z;
+            below = off;
+            above = if side == 2 { 0.5 * above } else { above };
+            side = 2;
+        }
+    }
+    z
+}
+
+/// The unit normal of a surface from its slopes.
+#[must_use]
+pub fn glass_picture_water_normal(slope: Vec2) -> Vec3 {
+    Vec3::new(-slope.x, -slope.y, 1.0) / (1.0 + slope.x * slope.x + slope.y * slope.y).sqrt()
+}

@@ -1,0 +1,262 @@
+//! Wet glass before a scene: energy, lenses, focus, and the lattice that goes on.
+
+use downpour_render::glass::water::{
+    glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal, glass_picture_water_top,
+};
+use downpour_render::glass::{GlassPicture, GlassPictureDrop, WetPane};
+use downpour_render::stage::Stage;
+use downpour_scene::scene::Scene;
+use downpour_scene::sky::SkyMap;
+use downpour_scene::weather::{Loaded, Weather};
+use glam::Vec2;
+
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+const SIZE: [u32; 2] = [96, 64];
+const CAPTURE: usize = (4 * 64 * 64 - 1) / 3;
+
+/// A stage under an even sky, looking along -z.
+fn stage(glass: &str) -> Result<(Weather, Stage), Box<dyn std::error::Error>> {
+    let text = format!(
+        "[rain]\nrate_mm_h = 100\n[camera]\nposition_m = [0, 1.5, 0]\nfov_deg = 14\n[output]\nsize = [96, 64]\n[glass]\n{glass}"
+    );
+    let weather = Weather::parse("w.toml", &text)?;
+    let sky = SkyMap::uniform([1.0; 3]);
+    let loaded =
+        Loaded { scene: Scene::default(), animations: Vec::new(), sky, sun: None, warnings: Vec::new() };
+    let stage = Stage::new(&weather, &loaded, 0.0)?;
+    Ok((weather, stage))
+}
+
+/// The pane of a weather, ready to be looked through.
+fn picture(glass: &str) -> Result<GlassPicture, Box<dyn std::error::Error>> {
+    let (weather, stage) = stage(glass)?;
+    let mut pane = WetPane::new(&weather, &stage, 0.0)?.ok_or("no pane")?;
+    pane.advance(0.0)?;
+    let frame = stage.viewpoint.frame(&stage.data, SIZE, 1, 0, 0)?;
+    Ok(pane.picture(&stage, &frame, CAPTURE)?)
+}
+
+/// A picture far away, and a capture, of a radiance by the height of a direction: -1 to 1.
+fn round(glass: &GlassPicture, radiance: impl Fn(f32) -> f32) -> [Vec<[f32; 4]>; 2] {
+    let row = |y: u32| {
+        let up = glass.frame.up[1] * (1.0 - 2.0 * (y as f32 + 0.5) / SIZE[1] as f32);
+        let value = radiance(up);
+        vec![[value, value, value, 1.0e30]; SIZE[0] as usize]
+    };
+    let picture = (0..SIZE[1]).flat_map(row).collect();
+    let mut capture: Vec<[f32; 4]> = Vec::new();
+    let mut size = 64u32;
+    loop {
+        for k in 0..size * size {
+            let at = [k % size, k / size].map(|c| 2.0 * (c as f32 + 0.5) / size as f32 - 1.0);
+            let [_, y, _] = downpour_math::packing::packing_octahedral_decode(at);
+            let value = radiance(y);
+            capture.push([value, value, value, 1.0e30]);
+        }
+        if size == 1 {
+            break;
+        }
+        size /= 2;
+    }
+    [picture, capture]
+}
+
+/// One round drop in the middle of the pane, in all bins.
+fn with_drop(glass: &mut GlassPicture, radius: f32) {
+    let [width, height] = glass.frame.size;
+    glass.drops = vec![drop([0.5 * width, 0.5 * height], radius)];
+    let bins = (glass.frame.columns * glass.frame.rows) as usize;
+    glass.bins = (0..=bins).map(|k| (bins + 1 + k) as u32).chain(std::iter::repeat_n(0, bins)).collect();
+}
+
+fn drop(centre: [f32; 2], radius: f32) -> GlassPictureDrop {
+    GlassPictureDrop {
+        centre,
+        radius,
+        sphere: radius * 1.4,
+        along: [0.0, 1.0],
+        behind: 1.0,
+        droop: [0.0, 1.0],
+        ..GlassPictureDrop::default()
+    }
+}
+
+/// What is let through and what is reflected is all that comes: before even light, whatever is on the glass vanishes.
+#[test]
+fn in_even_light_a_wet_pane_vanishes() -> Outcome {
+    for keys in [
+        "room = 1\nbefore_s = 4\naperture_mm = 6\nfocus = 'glass'",
+        "room = 1\nbefore_s = 4\naperture_mm = 6",
+        "room = 1\nbefore_s = 3\naperture_mm = 0\ntilt_deg = 30\nspeed_m_s = 15\nadvancing_deg = 110\nreceding_deg = 60",
+        "room = 1\nbefore_s = 3\nfresnel = 'tatarchuk-2006'",
+    ] {
+        let glass = picture(keys)?;
+        assert!(glass.drops.len() > 50, "{keys}: {} drops", glass.drops.len());
+        let [behind, capture] = round(&glass, |_| 2.0);
+        for (k, [r, g, b]) in glass.through(&behind, &capture).into_iter().enumerate() {
+            assert!((r - 2.0).abs() < 2.0e-4 && r == g && g == b, "{keys}: pixel {k} is {r}");
+        }
+    }
+    Ok(())
+}
+
+/// Dry glass lets (1 - R) / (1 + R) through, and moves nothing.
+#[test]
+fn a_dry_pane_dims_and_moves_nothing() -> Outcome {
+    let glass = picture("room = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
+    let [mut behind, capture] = round(&glass, |_| 1.0);
+    for (k, pixel) in behind.iter_mut().enumerate() {
+        *pixel = [(k * 7919 % 101) as f32, 1.0, 0.0, 20.0];
+    }
+    let reflected = 0.26f32 * 0.26 / (2.52 * 2.52) * 4.0;
+    let through = (1.0 - reflected) / (1.0 + reflected);
+    for (k, seen) in glass.through(&behind, &capture).into_iter().enumerate() {
+        let wanted = behind[k][0] * through;
+        assert!((seen[0] - wanted).abs() < 0.02 + 4.0e-3 * wanted, "pixel {k}: {} not {wanted}", seen[0]);
+    }
+    Ok(())
+}
+
+/// The sky stands below the ground in a drop; round it, it stands above.
+#[test]
+fn a_drop_shows_the_far_scene_upside_down() -> Outcome {
+    let mut glass = picture("room = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
+    // 24 pixels across.
+    let radius = 0.19 * 0.5 * glass.frame.size[1];
+    with_drop(&mut glass, radius);
+    let [behind, capture] = round(&glass, |up| if up > 0.0 { 1.0 } else { 0.0 });
+    let seen = glass.through(&behind, &capture);
+    let at = |x: u32, y: u32| seen[(y * SIZE[0] + x) as usize][0];
+    let mut compared = 0;
+    for off in 2..5 {
+        for x in 46..50 {
+            assert!(at(x, 31 - off) < 0.05, "above the middle, {off} pixels: {}", at(x, 31 - off));
+            assert!(at(x, 32 + off) > 0.8, "below the middle, {off} pixels: {}", at(x, 32 + off));
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 12);
+    assert!(at(10, 20) > 0.8 && at(10, 45) < 0.05, "beside the drop");
+    Ok(())
+}
+
+/// The cap is that of a sphere, and a ray leaves it where it meets the sphere.
+#[test]
+fn a_round_drop_is_a_cap_of_a_sphere() {
+    let drop = drop([0.01, 0.02], 2.0e-3);
+    let base = (2.8e-3f32.powf_2() - 2.0e-3f32.powf_2()).sqrt();
+    for k in 0..200u32 {
+        let angle = k as f32 * 2.4;
+        let r = 1.9e-3 * (k as f32 / 200.0);
+        let off = Vec2::new(downpour_math::ops::cos(angle), downpour_math::ops::sin(angle)) * r;
+        let place = Vec2::from(drop.centre) + off;
+        let cap = glass_picture_water_cap(&drop, place);
+        let height = (2.8e-3f32.powf_2() - r * r).sqrt() - base;
+        assert!((cap.x - height).abs() < 2.0e-8, "{k}: {} {height}", cap.x);
+        let normal = glass_picture_water_normal(Vec2::new(cap.y, cap.z));
+        let radial = (off / 2.8e-3).extend((height + base) / 2.8e-3);
+        assert!((normal - radial).length() < 1.0e-4, "{k}: {normal} {radial}");
+        // A slanted ray, against the quadratic.
+        let aside = Vec2::new(0.6, -0.3);
+        let z = glass_picture_water_leave(&drop, place, aside);
+        let on = off + aside * z;
+        let miss = (on.length_squared() + (z + base) * (z + base)).sqrt() - 2.8e-3;
+        assert!(miss.abs() < 3.0e-6, "{k}: {miss} off the sphere");
+        assert!(z <= glass_picture_water_top(&drop));
+    }
+}
+
+trait Squared {
+    fn powf_2(self) -> f32;
+}
+
+impl Squared for f32 {
+    fn powf_2(self) -> f32 {
+        self * self
+    }
+}
+
+/// Slopes are those of the height, for a drop with all that it may have.
+#[test]
+fn slopes_are_those_of_the_height() {
+    let odd = GlassPictureDrop {
+        along: [0.6, 0.8],
+        behind: 0.6,
+        lean: 0.5,
+        droop: [-0.28, 0.96],
+        lobes: [0.1, -0.2, 0.15, 0.1],
+        ..drop([0.0, 0.0], 2.0e-3)
+    };
+    let step = 2.0e-5;
+    for k in 0..400u32 {
+        let place = Vec2::new((k % 20) as f32 - 9.7, (k / 20) as f32 - 9.6) * 1.4e-4;
+        let cap = glass_picture_water_cap(&odd, place);
+        let slope = |x, y| {
+            let by = Vec2::new(x, y) * step;
+            (glass_picture_water_cap(&odd, place + by).x - glass_picture_water_cap(&odd, place - by).x)
+                / (2.0 * step)
+        };
+        let off = Vec2::new(slope(1.0, 0.0) - cap.y, slope(0.0, 1.0) - cap.z).length();
+        assert!(off < 0.02, "{k} at {place}: {off}");
+    }
+}
+
+/// A lens moves light about and takes none: the mean of a picture that goes on beyond its edge stays.
+#[test]
+fn blur_keeps_the_light() -> Outcome {
+    let sharp = picture("room = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
+    let blurred = picture("room = 0\nbefore_s = 0\naperture_mm = 20\nfocus = 'glass'\nspeed_m_s = 0")?;
+    let light = |glass: &GlassPicture| -> (f64, f32) {
+        let [mut behind, capture] = round(glass, |_| 0.0);
+        // A lamp of 4 x 4 pixels in the middle of darkness.
+        for (x, y) in (0..16).map(|k| (46 + k % 4, 30 + k / 4)) {
+            behind[y * SIZE[0] as usize + x] = [100.0, 100.0, 100.0, 50.0];
+        }
+        let seen = glass.through(&behind, &capture);
+        (seen.iter().map(|p| f64::from(p[0])).sum(), seen.iter().fold(0.0, |most, p| p[0].max(most)))
+    };
+    let ((sum, peak), (blurred_sum, blurred_peak)) = (light(&sharp), light(&blurred));
+    assert!((blurred_sum / sum - 1.0).abs() < 0.03, "{blurred_sum} {sum}");
+    assert!(blurred_peak < 0.6 * peak, "{blurred_peak} {peak}");
+    Ok(())
+}
+
+#[test]
+fn time_may_be_divided_as_one_likes() -> Outcome {
+    let keys = "before_s = 2\nspeed_m_s = [[-2, 0], [0, 8], [1, 3]]\nsize_m = [0.1, 0.08]\n[[glass.wiper]]\npivot_m = [0.05, \
+                0.09]\nlength_m = 0.08\nfrom_deg = 20\nto_deg = 160\nperiod_s = 1.3\n";
+    let (weather, stage) = stage(keys)?;
+    let ends = |times: &[f64]| -> Result<Vec<u32>, Box<dyn std::error::Error>> {
+        let mut pane = WetPane::new(&weather, &stage, 0.0)?.ok_or("no pane")?;
+        for &time in times {
+            pane.advance(time)?;
+        }
+        assert!(pane.glass().is_sound());
+        Ok(pane.glass().mass().to_vec())
+    };
+    let whole = ends(&[1.0])?;
+    assert!(whole.iter().filter(|&&mass| mass > 0).count() > 20);
+    assert_eq!(ends(&[-1.7, 0.0, 0.033, 0.41, 0.41, 1.0])?, whole);
+    assert_ne!(ends(&[0.9])?, whole);
+    Ok(())
+}
+
+#[test]
+fn a_pane_that_is_not_before_the_eye_is_refused() -> Outcome {
+    let (weather, _) = stage("tilt_deg = 20")?;
+    let text = "[camera]\nposition_m = [0, 2, 0]\npitch_deg = -30\n";
+    let looks_down = Weather::parse("w.toml", text)?;
+    let loaded = Loaded {
+        scene: Scene::default(),
+        animations: Vec::new(),
+        sky: SkyMap::uniform([1.0; 3]),
+        sun: None,
+        warnings: Vec::new(),
+    };
+    let down = Stage::new(&looks_down, &loaded, 0.0)?;
+    let error = WetPane::new(&weather, &down, 0.0).err().ok_or("a pane from outside")?;
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().starts_with("glass: a pane tilted by 20.0 degrees"), "{error}");
+    Ok(())
+}

@@ -1,0 +1,55 @@
+//! `wgsl/render/glass_picture*.wgsl`: pictures through wet glass. Twins: `downpour_render::glass`.
+
+use crate::common::PACKING;
+use crate::drop::optics::OPTICS;
+use crate::{Kernel, Module};
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&GLASS_PICTURE_CONSTANTS, &WATER, &GLASS_PICTURE];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&GLASS_PICTURE_KERNEL];
+
+shared_constants! {
+    /// Numbers of the pane and of its picture.
+    GLASS_PICTURE_CONSTANTS at "render/glass_picture constants" {
+        /// Levels of the picture behind the pane: for 16384 pixels.
+        GLASS_PICTURE_LEVELS: u32 = 15;
+        /// Turns of regula falsi until a ray has left a drop.
+        GLASS_PICTURE_TURNS: u32 = 5;
+        /// Refractive index of window glass (soda lime).
+        GLASS_PICTURE_INDEX: f32 = 1.52;
+        /// Distance, m, beyond which all is equally far.
+        GLASS_PICTURE_FAR: f32 = 1.0e6;
+        /// Width of what a pane mirrors of the eye's side, radians: a room is out of focus.
+        GLASS_PICTURE_MIRROR: f32 = 0.1;
+        /// Distance of neighbouring places of a lens with one sample, in its radius: the root of pi.
+        GLASS_PICTURE_APART: f32 = 1.7724539;
+        /// Focus on what is behind the pane.
+        GLASS_PICTURE_SCENE: u32 = 0;
+        /// Focus on the pane.
+        GLASS_PICTURE_GLASS: u32 = 1;
+        /// Fresnel's equations.
+        GLASS_PICTURE_EXACT: u32 = 0;
+        /// The reflectance of Tatarchuk and Isidoro 2006.
+        GLASS_PICTURE_TATARCHUK: u32 = 1;
+    }
+}
+
+/// Drops on a pane as surfaces. Twin: `downpour_render::glass::water`.
+pub static WATER: Module = Module {
+    path: "render/glass_picture_water.wgsl",
+    wgsl: include_str!("../../wgsl/render/glass_picture_water.wgsl"),
+    uses: &[&GLASS_PICTURE_CONSTANTS],
+};
+
+/// A picture through a pane. Twin: `downpour_render::glass::picture`.
+pub static GLASS_PICTURE: Module = Module {
+    path: "render/glass_picture.wgsl",
+    wgsl: include_str!("../../wgsl/render/glass_picture.wgsl"),
+    uses: &[&WATER, &OPTICS, &PACKING],
+};
+
+/// One invocation per pixel.
+pub static GLASS_PICTURE_KERNEL: Kernel =
+    Kernel { entry: "main_glass_picture", module: &GLASS_PICTURE, workgroup: [8, 8, 1] };

@@ -1,0 +1,383 @@
+// A picture through a pane of glass with water on it, ray by ray through the lens.
+// Law: a ray from the lens meets the pane, goes straight through it, leaves the water by Snell's law at the local normal,
+// and shows what stands in its new direction: the picture where that is in it, else the capture of what is round the eye.
+// Where a place is, is told by the distance in its own direction. What is not let through (Fresnel, exact, incoherent sum
+// over the reflections within the pane) shows the eye's side, whose light is a share of that of the surroundings; so does
+// what is totally reflected back to the eye. A lens of some size is a set of places: what is out of focus is blurred by as
+// much as the lens says, and no light is lost.
+// Limits: the pane's thickness does not shift what is behind it; light that is totally reflected within a drop and leaves
+// it elsewhere goes on without a second refraction.
+// Twin: downpour_render::glass::picture.
+
+struct GlassPictureFrame {
+    // The camera's axes: half the picture at distance 1.
+    right: vec3f,
+    width: u32,
+    up: vec3f,
+    height: u32,
+    forward: vec3f,
+    pixel_angle: f32,
+    // The pane's axes in the world, of length 1: right, down, out of it.
+    across: vec3f,
+    // Bins along x and y.
+    columns: u32,
+    down: vec3f,
+    rows: u32,
+    outward: vec3f,
+    // Bins in a metre.
+    bins: f32,
+    // From the eye to the pane's upper left corner.
+    corner: vec3f,
+    // Cells of the lattice in a metre.
+    cells: f32,
+    size: vec2f,
+    wet_size: vec2u,
+    // Radius of the lens, m.
+    lens: f32,
+    focus: u32,
+    fresnel: u32,
+    // Light of the eye's side, of that of the surroundings.
+    room: f32,
+    samples: u32,
+    // The coarsest level of the picture, and of the capture.
+    last: u32,
+    capture_size: u32,
+    capture_last: u32,
+    // Angle of a texel of the capture.
+    capture_texel: f32,
+    // Height of the film where glass is as wet as it can be, m.
+    film: f32,
+    // Refractive indices.
+    water: f32,
+    first_row: u32,
+    // Width, height and first texel of each level of the picture.
+    levels: array<vec4u, GLASS_PICTURE_LEVELS>,
+}
+
+// What a ray finds on the pane.
+struct GlassPictureMet {
+    normal: vec3f,
+    // 0 where the glass is dry.
+    wet: f32,
+    // How fast the normal turns, 1/m.
+    curvature: f32,
+}
+
+@group(0) @binding(0) var<uniform> glass_picture_frame: GlassPictureFrame;
+@group(0) @binding(1) var<storage, read> glass_picture_drops: array<GlassPictureDrop>;
+// First the places where the bins' lists begin (one more than there are bins), then the lists.
+@group(0) @binding(2) var<storage, read> glass_picture_bins: array<u32>;
+// How wet the cells are, four to a word.
+@group(0) @binding(3) var<storage, read> glass_picture_wet: array<u32>;
+@group(0) @binding(4) var<storage, read> glass_picture_lens: array<vec4f>;
+@group(0) @binding(5) var<storage, read> glass_picture_behind: array<vec4f>;
+@group(0) @binding(6) var<storage, read> glass_picture_capture: array<vec4f>;
+@group(0) @binding(7) var<storage, read_write> glass_picture_made: array<vec4f>;
+
+// How wet a cell is, 0 to 1.
+fn glass_picture_wetness(column: i32, row: i32) -> f32 {
+    let size = vec2i(glass_picture_frame.wet_size);
+    let x = u32(clamp(column, 0, size.x - 1));
+    let y = u32(clamp(row, 0, size.y - 1));
+    let index = y * glass_picture_frame.wet_size.x + x;
+    let byte = (glass_picture_wet[index / 4u] >> (8u * (index % 4u))) & 255u;
+    return f32(byte) / 255.0;
+}
+
+// Height of the film and its slopes: the quadratic B-spline over the cells.
+fn glass_picture_film(place: vec2f) -> vec3f {
+    let at = place * glass_picture_frame.cells - 0.5;
+    let middle = floor(at + 0.5);
+    let t = at - middle;
+    var sum = vec3f(0.0);
+    for (var j = 0; j < 3; j += 1) {
+        let wy = glass_picture_spline(t.y, j);
+        for (var i = 0; i < 3; i += 1) {
+            let wet = glass_picture_wetness(i32(middle.x) + i - 1, i32(middle.y) + j - 1);
+            let wx = glass_picture_spline(t.x, i);
+            sum += vec3f(wx.x * wy.x, wx.y * wy.x, wx.x * wy.y) * wet;
+        }
+    }
+    let per_metre = glass_picture_frame.film * glass_picture_frame.cells;
+    return vec3f(sum.x * glass_picture_frame.film, sum.y * per_metre, sum.z * per_metre);
+}
+
+// Weight of the cell before, at or after a place, and how it changes; t is -0.5 to 0.5.
+fn glass_picture_spline(t: f32, which: i32) -> vec2f {
+    if which == 0 {
+        return vec2f(0.5 * (0.5 - t) * (0.5 - t), t - 0.5);
+    }
+    if which == 1 {
+        return vec2f(0.75 - t * t, -2.0 * t);
+    }
+    return vec2f(0.5 * (0.5 + t) * (0.5 + t), t + 0.5);
+}
+
+// The surface that a ray leaves by, which enters the water at a place of the glass.
+fn glass_picture_meet(place: vec2f, aside: vec2f) -> GlassPictureMet {
+    let column = min(u32(max(place.x * glass_picture_frame.bins, 0.0)), glass_picture_frame.columns - 1u);
+    let row = min(u32(max(place.y * glass_picture_frame.bins, 0.0)), glass_picture_frame.rows - 1u);
+    let bin = row * glass_picture_frame.columns + column;
+    var highest = 0.0;
+    var found = 0u;
+    for (var k = glass_picture_bins[bin]; k < glass_picture_bins[bin + 1u]; k += 1u) {
+        let index = glass_picture_bins[k];
+        let height = glass_picture_water_cap(glass_picture_drops[index], place).x;
+        if height > highest {
+            highest = height;
+            found = index;
+        }
+    }
+    if highest > 0.0 {
+        let drop = glass_picture_drops[found];
+        let z = glass_picture_water_leave(drop, place, aside);
+        let cap = glass_picture_water_cap(drop, place + aside * z);
+        return GlassPictureMet(glass_picture_water_normal(cap.yz), 1.0, 1.0 / drop.sphere);
+    }
+    if glass_picture_frame.film <= 0.0 {
+        return GlassPictureMet(vec3f(0.0, 0.0, 1.0), 0.0, 0.0);
+    }
+    let film = glass_picture_film(place);
+    return GlassPictureMet(glass_picture_water_normal(film.yz), select(0.0, 1.0, film.x > 0.0), 0.0);
+}
+
+// A texel of a level of the picture; the nearest where there is none.
+fn glass_picture_texel(level: u32, column: i32, row: i32) -> vec4f {
+    let size = glass_picture_frame.levels[level];
+    let x = u32(clamp(column, 0, i32(size.x) - 1));
+    let y = u32(clamp(row, 0, i32(size.y) - 1));
+    return glass_picture_behind[size.z + y * size.x + x];
+}
+
+// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+fn glass_picture_round_texel(level: u32, column: i32, row: i32) -> vec4f {
+    let whole = glass_picture_frame.capture_size;
+    let size = whole >> level;
+    let edge = i32(size);
+    var x = column;
+    var y = row;
+    if x < 0 || x >= edge {
+        x = clamp(x, 0, edge - 1);
+        y = edge - 1 - y;
+    }
+    if y < 0 || y >= edge {
+        y = clamp(y, 0, edge - 1);
+        x = edge - 1 - x;
+    }
+    let first = 4u * (whole * whole - size * size) / 3u;
+    return glass_picture_capture[first + u32(clamp(y, 0, edge - 1)) * size + u32(clamp(x, 0, edge - 1))];
+}
+
+// A level of the picture or of the capture at a place of [0, 1], bilinear.
+fn glass_picture_level(of_capture: bool, level: u32, place: vec2f) -> vec3f {
+    var size = vec2f(f32(glass_picture_frame.capture_size >> level));
+    if !of_capture {
+        size = vec2f(glass_picture_frame.levels[level].xy);
+    }
+    let at = place * size - 0.5;
+    let low = floor(at);
+    let part = at - low;
+    var sum = vec3f(0.0);
+    for (var k = 0; k < 4; k += 1) {
+        let step = vec2i(k & 1, k >> 1u);
+        let share = select(1.0 - part.x, part.x, step.x == 1) * select(1.0 - part.y, part.y, step.y == 1);
+        let cell = vec2i(low) + step;
+        if share > 0.0 {
+            if of_capture {
+                sum += glass_picture_round_texel(level, cell.x, cell.y).rgb * share;
+            } else {
+                sum += glass_picture_texel(level, cell.x, cell.y).rgb * share;
+            }
+        }
+    }
+    return sum;
+}
+
+// The picture or the capture at a place of [0, 1], for a footprint in texels of its finest level.
+fn glass_picture_at(of_capture: bool, place: vec2f, footprint: f32) -> vec3f {
+    let last = f32(select(glass_picture_frame.last, glass_picture_frame.capture_last, of_capture));
+    let level = clamp(log2(max(footprint, 1.0e-6)), 0.0, last);
+    let low = floor(level);
+    let part = level - low;
+    var share = 1.0 - part;
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
+        sum += glass_picture_level(of_capture, u32(low) + k, place) * share;
+        share = select(0.0, part, k == 0u);
+    }
+    return sum;
+}
+
+// What stands round the eye in a direction, for a footprint of some angle.
+fn glass_picture_round(direction: vec3f, footprint: f32) -> vec3f {
+    let place = packing_octahedral_encode(direction) * 0.5 + 0.5;
+    return glass_picture_at(true, place, footprint / glass_picture_frame.capture_texel);
+}
+
+// Where a direction is on the picture: -1 to 1 right and up, and its depth.
+fn glass_picture_project(direction: vec3f) -> vec3f {
+    let depth = dot(direction, glass_picture_frame.forward);
+    let near = max(depth, 1.0e-6);
+    return vec3f(
+        dot(direction, glass_picture_frame.right) / dot(glass_picture_frame.right, glass_picture_frame.right) / near,
+        dot(direction, glass_picture_frame.up) / dot(glass_picture_frame.up, glass_picture_frame.up) / near,
+        depth,
+    );
+}
+
+// What a ray shows that begins at an offset from the eye. Its footprint is an angle.
+fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint: f32) -> vec3f {
+    let size = vec2f(f32(glass_picture_frame.width), f32(glass_picture_frame.height));
+    let guess = glass_picture_project(direction);
+    var distance = 0.0;
+    if guess.z > 0.0 && abs(guess.x) < 1.0 && abs(guess.y) < 1.0 {
+        let pixel = vec2f(0.5 + 0.5 * guess.x, 0.5 - 0.5 * guess.y) * size;
+        distance = glass_picture_texel(0u, i32(pixel.x), i32(pixel.y)).w;
+    } else {
+        let texel = (packing_octahedral_encode(direction) * 0.5 + 0.5) * f32(glass_picture_frame.capture_size);
+        distance = glass_picture_round_texel(0u, i32(texel.x), i32(texel.y)).w;
+    }
+    let to = direction + from_eye / clamp(distance, 0.1, GLASS_PICTURE_FAR);
+    let place = glass_picture_project(to);
+    let texels = max(footprint / glass_picture_frame.pixel_angle, 1.0);
+    // Towards the picture's edge the capture takes over, within the footprint.
+    let at = vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) + shift / size;
+    let inside = min(min(at.x, 1.0 - at.x) * size.x, min(at.y, 1.0 - at.y) * size.y);
+    let share = select(0.0, clamp((inside + 0.5) / texels, 0.0, 1.0), place.z > 0.0);
+    var sum = vec3f(0.0);
+    if share > 0.0 {
+        sum = glass_picture_at(false, at, texels) * share;
+    }
+    if share < 1.0 {
+        sum += glass_picture_round(to, footprint) * (1.0 - share);
+    }
+    return sum;
+}
+
+// A direction of the pane in the world.
+fn glass_picture_world(v: vec3f) -> vec3f {
+    return glass_picture_frame.across * v.x + glass_picture_frame.down * v.y + glass_picture_frame.outward * v.z;
+}
+
+// What of the room a ray shows that leaves water towards the eye's side in a direction of the pane.
+fn glass_picture_inside(v: vec3f) -> vec3f {
+    let aside = v.xy * glass_picture_frame.water;
+    let out = vec3f(aside, -sqrt(max(1.0 - dot(aside, aside), 1.0e-4)));
+    return glass_picture_round(glass_picture_world(out), GLASS_PICTURE_MIRROR) * glass_picture_frame.room;
+}
+
+// Share of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
+fn glass_picture_outer(cosine: f32, met: GlassPictureMet, within: f32) -> f32 {
+    if met.wet == 0.0 {
+        return optics_fresnel(cosine, GLASS_PICTURE_INDEX);
+    }
+    var surface = optics_fresnel(within, 1.0 / glass_picture_frame.water);
+    if glass_picture_frame.fresnel == GLASS_PICTURE_TATARCHUK && surface < 1.0 {
+        surface = optics_fresnel_tatarchuk(within);
+    }
+    let glass = sqrt(max(1.0 - (1.0 - cosine * cosine) / (GLASS_PICTURE_INDEX * GLASS_PICTURE_INDEX), 0.0));
+    let inner = optics_fresnel(glass, glass_picture_frame.water / GLASS_PICTURE_INDEX);
+    return 1.0 - (1.0 - surface) * (1.0 - inner);
+}
+
+// What a ray shows that meets the pane at a place in a direction of the pane. `from_eye` is the place from the eye; `spread`
+// are the angle between neighbouring rays, and their distance on the pane.
+fn glass_picture_through(place: vec2f, d: vec3f, from_eye: vec3f, shift: vec2f, spread: vec2f) -> vec3f {
+    let water = glass_picture_frame.water;
+    let aside = d.xy / water;
+    let w = vec3f(aside, sqrt(max(1.0 - dot(aside, aside), 0.0)));
+    let met = glass_picture_meet(place, w.xy / w.z);
+    let within = dot(w, met.normal);
+    let first = optics_fresnel(d.z, GLASS_PICTURE_INDEX);
+    let outer = glass_picture_outer(d.z, met, max(within, 0.0));
+    let bent = optics_refract(w, -met.normal, water);
+    let total = met.wet > 0.0 && (bent.w <= 0.0 || within <= 0.0);
+    let leaves = select(select(vec3f(d), bent.xyz, met.wet > 0.0), w, total);
+    let through = select((1.0 - first) * (1.0 - outer) / (1.0 - first * outer), 0.0, total);
+    var sum = vec3f(0.0);
+    if through > 0.0 {
+        let turned = (water - 1.0) * met.curvature / max(dot(leaves, met.normal), 0.2);
+        let footprint = spread.x + spread.y * turned;
+        sum = glass_picture_seen(from_eye, glass_picture_world(leaves), shift, footprint) * through;
+    }
+    let back = optics_reflect(w, -met.normal);
+    var rest = 1.0 - through;
+    if total && back.z > 0.0 {
+        // Out on the other side of the drop.
+        let footprint = spread.x + 2.0 * spread.y * met.curvature;
+        sum = glass_picture_seen(from_eye, glass_picture_world(back), shift, footprint) * (1.0 - first);
+        rest = first;
+    }
+    if glass_picture_frame.room > 0.0 {
+        let mirror = glass_picture_world(vec3f(d.xy, -d.z));
+        sum += glass_picture_round(mirror, GLASS_PICTURE_MIRROR) * (glass_picture_frame.room * first);
+        let away = select(back, vec3f(back.xy, -back.z), back.z > 0.0);
+        sum += glass_picture_inside(away) * max(rest - first, 0.0);
+    }
+    return sum;
+}
+
+// The ray through a place of the picture, in pixels from the top left, of length 1.
+fn glass_picture_ray(x: f32, y: f32) -> vec3f {
+    let u = 2.0 * x / f32(glass_picture_frame.width) - 1.0;
+    let v = 1.0 - 2.0 * y / f32(glass_picture_frame.height);
+    let ray = glass_picture_frame.forward + glass_picture_frame.right * u + glass_picture_frame.up * v;
+    return ray / sqrt(dot(ray, ray));
+}
+
+// A sample of a pixel: a place of the lens (xy, in its radius) and of the pixel (zw).
+fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f) -> vec3f {
+    let ray = glass_picture_ray(x + at.z, y + at.w);
+    let right = glass_picture_frame.right / sqrt(dot(glass_picture_frame.right, glass_picture_frame.right));
+    let up = glass_picture_frame.up / sqrt(dot(glass_picture_frame.up, glass_picture_frame.up));
+    let from_eye = (right * at.x + up * at.y) * glass_picture_frame.lens;
+    // What is behind is looked up for the pixel's middle: it is sampled already.
+    let shift = vec2f(0.5 - at.z, 0.5 - at.w);
+    let plane = dot(glass_picture_frame.corner, glass_picture_frame.outward);
+    let towards = dot(ray, glass_picture_frame.outward);
+    let far = min(distance, GLASS_PICTURE_FAR);
+    let pane = plane / max(towards, 1.0e-6);
+    if towards < 1.0e-3 || pane > far {
+        return glass_picture_seen(vec3f(0.0), ray, shift, glass_picture_frame.pixel_angle);
+    }
+    let depth = select(far, pane, glass_picture_frame.focus == GLASS_PICTURE_GLASS);
+    let aim = ray * depth - from_eye;
+    let direction = aim / sqrt(dot(aim, aim));
+    let d = vec3f(
+        dot(direction, glass_picture_frame.across),
+        dot(direction, glass_picture_frame.down),
+        max(dot(direction, glass_picture_frame.outward), 1.0e-4),
+    );
+    let way = (plane - dot(from_eye, glass_picture_frame.outward)) / d.z;
+    let met = from_eye + direction * way;
+    let on = met - glass_picture_frame.corner;
+    let place = vec2f(dot(on, glass_picture_frame.across), dot(on, glass_picture_frame.down));
+    let among = sqrt(1.0 / f32(glass_picture_frame.samples));
+    let apart = glass_picture_frame.lens * GLASS_PICTURE_APART * among;
+    let pixel = glass_picture_frame.pixel_angle;
+    if place.x < 0.0 || place.y < 0.0 || place.x > glass_picture_frame.size.x || place.y > glass_picture_frame.size.y {
+        return glass_picture_seen(from_eye, direction, shift, pixel + apart * abs(1.0 / depth - 1.0 / far));
+    }
+    let angle = pixel * among + apart * abs(1.0 / depth - 1.0 / far);
+    let spread = vec2f(angle, pixel * pane * among + apart * abs(1.0 - pane / depth));
+    return glass_picture_through(place, d, met, shift, spread);
+}
+
+// A pixel.
+fn glass_picture_pixel(x: u32, y: u32) -> vec3f {
+    let distance = glass_picture_texel(0u, i32(x), i32(y)).w;
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < glass_picture_frame.samples; k += 1u) {
+        sum += glass_picture_sample(f32(x), f32(y), distance, glass_picture_lens[k]);
+    }
+    return sum / f32(glass_picture_frame.samples);
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn main_glass_picture(@builtin(global_invocation_id) id: vec3u) {
+    let y = id.y + glass_picture_frame.first_row;
+    if id.x >= glass_picture_frame.width || y >= glass_picture_frame.height {
+        return;
+    }
+    glass_picture_made[y * glass_picture_frame.width + id.x] = vec4f(glass_picture_pixel(id.x, y), 1.0);
+}

@@ -1,0 +1,209 @@
+//! `shaders/wgsl/render/glass_picture*.wgsl` against `downpour_render::glass`.
+
+use downpour_gpu::{Gpu, GpuError};
+use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_render::glass::water::{
+    glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal, glass_picture_water_top,
+};
+use downpour_render::glass::{GlassPicture, GlassPictureDrop, WetPane, glass_picture_spline};
+use downpour_render::gpu::GlassRenderer;
+use downpour_render::stage::Stage;
+use downpour_scene::scene::Scene;
+use downpour_scene::sky::SkyMap;
+use downpour_scene::weather::{Loaded, Weather};
+use downpour_shaders::render::glass::{GLASS_PICTURE, GLASS_PICTURE_KERNEL, WATER};
+use glam::Vec2;
+
+use crate::Domain::{Made, Uniform};
+use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::{Args, IntoWords as _};
+use crate::{FunctionCase, KernelCase, Tol};
+
+const SIZE: [u32; 2] = [96, 64];
+const CAPTURE: u32 = 64;
+
+/// A drop of 0.4 to 4 mm with all that it may have, as words.
+fn drop(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, c, d] = random.map(rng_unit);
+    let [e, f, g, h] = rng_draw([random[0], random[1]], 0, 0, 0).map(rng_unit);
+    let radius = 0.2e-3 + 1.8e-3 * a;
+    let (x, y) = (e - 0.5, f - 0.5 + 1.0e-3);
+    let length = (x * x + y * y).sqrt();
+    let along = [x / length, y / length];
+    let lobe = |u: f32| 0.3 * u - 0.15;
+    [
+        0.01,
+        0.02,
+        radius,
+        radius * (1.05 + b),
+        along[0],
+        along[1],
+        0.4 + 0.6 * c,
+        0.6 * d,
+        -along[1],
+        along[0],
+        0.0,
+        0.0,
+        lobe(g),
+        lobe(h),
+        lobe(c),
+        lobe(e),
+    ]
+    .map(f32::to_bits)
+    .to_vec()
+}
+
+fn read(a: &mut Args<'_>) -> GlassPictureDrop {
+    bytemuck::cast::<[f32; 16], GlassPictureDrop>(a.f32s())
+}
+
+const CAP: Tol = Tol::relative(
+    2.0e-5,
+    2.0e-6,
+    "two roots (2.5 ulp) whose difference is a height of a tenth of a millimetre, in metres; slopes of about 1",
+);
+
+/// The cases.
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let place = [Uniform(0.0085, 0.0115), Uniform(0.0185, 0.0215)];
+    vec![
+        FunctionCase::new(
+            "glass_picture_water_cap",
+            &WATER,
+            &[Made(drop), place[0], place[1]],
+            CAP.with_outliers(2.0e-3),
+            |a| glass_picture_water_cap(&read(a), Vec2::from(a.f32s())).to_array().words(),
+        ),
+        FunctionCase::new(
+            "glass_picture_water_top",
+            &WATER,
+            &[Made(drop)],
+            Tol::relative(1.0e-5, 1.0e-8, "a root (2.5 ulp) taken off a number of the same size"),
+            |a| glass_picture_water_top(&read(a)).words(),
+        ),
+        FunctionCase::new(
+            "glass_picture_water_leave",
+            &WATER,
+            &[Made(drop), place[0], place[1], Uniform(-0.8, 0.8), Uniform(-0.8, 0.8)],
+            Tol::relative(1.0e-3, 2.0e-6, "five turns of regula falsi; a turn may take the other side")
+                .with_outliers(1.0e-2),
+            |a| {
+                let drop = read(a);
+                glass_picture_water_leave(&drop, Vec2::from(a.f32s()), Vec2::from(a.f32s())).words()
+            },
+        ),
+        FunctionCase::new(
+            "glass_picture_water_normal",
+            &WATER,
+            &[Uniform(-4.0, 4.0), Uniform(-4.0, 4.0)],
+            Tol::relative(1.0e-6, 1.0e-7, "a root and a division (2.5 ulp each)"),
+            |a| glass_picture_water_normal(Vec2::from(a.f32s())).to_array().words(),
+        ),
+        FunctionCase::new(
+            "glass_picture_spline",
+            &GLASS_PICTURE,
+            &[Uniform(-0.5, 0.5), Made(|random| vec![random[0] % 3])],
+            Tol::relative(1.0e-6, 1.0e-7, "products that may be fused with sums"),
+            |a| {
+                let t = a.f32();
+                glass_picture_spline(t, a.u32() as i32).to_array().words()
+            },
+        ),
+    ]
+}
+
+/// A pane after some seconds of rain.
+fn pane(keys: &str) -> GlassPicture {
+    let text = format!(
+        "[rain]\nrate_mm_h = 200\n[camera]\nposition_m = [0, 1.5, 0]\nfov_deg = 12\n[output]\nsize = [96, 64]\n[glass]\n{keys}"
+    );
+    let weather = Weather::parse("w.toml", &text).expect("a weather");
+    let sky = SkyMap::uniform([1.0; 3]);
+    let loaded =
+        Loaded { scene: Scene::default(), animations: Vec::new(), sky, sun: None, warnings: Vec::new() };
+    let stage = Stage::new(&weather, &loaded, 0.0).expect("a stage");
+    let mut pane = WetPane::new(&weather, &stage, 0.0).expect("a lattice").expect("a pane");
+    pane.advance(0.0).expect("time");
+    let frame = stage.viewpoint.frame(&stage.data, SIZE, 1, 0, 0).expect("a frame");
+    let texels = (4 * CAPTURE * CAPTURE - 1) / 3;
+    pane.picture(&stage, &frame, texels as usize).expect("a picture")
+}
+
+/// Smooth light of some colours, at distances of 1 to 30 m.
+fn light(k: u32, width: u32) -> [f32; 4] {
+    let (x, y) = ((k % width) as f32 / width as f32, (k / width) as f32 / width as f32);
+    [1.0 + x, 1.0 + y * y, 2.0 - x * y, 1.0 + 29.0 * x]
+}
+
+fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
+    let glass = pane(keys);
+    assert!(glass.drops.len() > 30, "{} drops", glass.drops.len());
+    let behind: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|k| light(k, SIZE[0])).collect();
+    let mut capture = Vec::new();
+    let mut size = CAPTURE;
+    while size > 0 {
+        capture.extend((0..size * size).map(|k| light(k, size)));
+        size /= 2;
+    }
+    let words = |pixels: Vec<[f32; 3]>| pixels.into_iter().flatten().map(f32::to_bits).collect();
+    let cpu = glass.through(&behind, &capture);
+    let made = GlassRenderer::new(gpu)?.through(&glass, &behind, &capture)?;
+    Ok(Run {
+        arguments: (0..SIZE[0] * SIZE[1])
+            .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())
+            .collect(),
+        cpu: Cpu(words(cpu)),
+        gpu: FromGpu(words(made)),
+        kinds: vec![WordKind::Float; 3],
+    })
+}
+
+/// The cases.
+pub(super) fn kernels() -> Vec<KernelCase> {
+    let case = |name, run| {
+        KernelCase {
+        name,
+        kernel: &GLASS_PICTURE_KERNEL,
+        covers: &[
+            "glass_picture_wetness",
+            "glass_picture_film",
+            "glass_picture_meet",
+            "glass_picture_texel",
+            "glass_picture_round_texel",
+            "glass_picture_level",
+            "glass_picture_at",
+            "glass_picture_round",
+            "glass_picture_project",
+            "glass_picture_seen",
+            "glass_picture_world",
+            "glass_picture_inside",
+            "glass_picture_outer",
+            "glass_picture_through",
+            "glass_picture_ray",
+            "glass_picture_sample",
+            "glass_picture_pixel",
+        ],
+        tol: Tol::relative(
+            2.0e-3,
+            2.0e-3,
+            "sums over samples; one at a drop's outline or at the rim of total reflection may fall on either side",
+        )
+        .with_outliers(1.0e-2),
+        run,
+    }
+    };
+    vec![
+        case("main_glass_picture: a window, the scene in focus", |gpu| {
+            self::case(gpu, "before_s = 8\naperture_mm = 2\nroom = 0.3\nfilm_um = 30\nspeed_m_s = 6")
+        }),
+        case("main_glass_picture: a windshield, the glass in focus", |gpu| {
+            self::case(
+                gpu,
+                "before_s = 6\nfocus = 'glass'\ntilt_deg = 35\nspeed_m_s = 12\nadvancing_deg = 100\nfresnel = \
+                 'tatarchuk-2006'",
+            )
+        }),
+    ]
+}
