@@ -3,7 +3,7 @@
 use super::Rain;
 use super::fault::Places;
 use super::quantity::{
-    AdvancingDeg, ApertureMm, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, In, PaneM, PaneMS,
+    AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, In, PaneApertureMm, PaneM, PaneMS,
     PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, Share, TurnDeg,
 };
 use super::wind::keys::NumberKeys;
@@ -140,7 +140,7 @@ pub(super) struct GlassTable {
     speed_m_s: Option<NumberKeys<PaneMS>>,
     before_s: Option<In<BeforeS>>,
     focus: Option<PaneFocus>,
-    aperture_mm: Option<In<ApertureMm>>,
+    aperture_mm: Option<In<PaneApertureMm>>,
     room: Option<In<Share>>,
     fresnel: Option<PaneFresnel>,
     advancing_deg: Option<In<AdvancingDeg>>,

@@ -79,7 +79,7 @@ ranges! {
     CellMm: 0.25, 5.0, "0.25 to 5 mm";
     PaneMS: 0.0, 100.0, "0 to 100 m/s";
     BeforeS: 0.0, 3600.0, "0 to 3600 s";
-    ApertureMm: 0.0, 100.0, "0 to 100 mm";
+    PaneApertureMm: 0.0, 100.0, "0 to 100 mm";
     AdvancingDeg: 5.0, 120.0, "5 to 120 degrees";
     RecedingDeg: 0.0, 120.0, "0 to 120 degrees";
     FilmUm: 0.0, 200.0, "0 to 200 um";
