@@ -133,7 +133,7 @@ impl StreakAtlas {
             let found = format!("{} mm differs from {} mm", other.diameter * 1.0e3, first.diameter * 1.0e3);
             return Err(wrong("sets of streaks", found, "one size, extent, and list of directions"));
         }
-        let groups: Vec<&[StreakSet]> = sets.chunk_by(|a, b| same_diameter(a, b)).collect();
+        let groups: Vec<&[StreakSet]> = sets.chunk_by(same_diameter).collect();
         let oscillations = groups.iter().map(|group| group.len()).max().unwrap_or(0);
         if let Some(short) = groups.iter().find(|group| group.len() != oscillations) {
             let found = format!("{} at {} mm", short.len(), short[0].diameter * 1.0e3);

@@ -58,7 +58,7 @@ impl WetPane {
         let (rain, air) = pane.weather(&weather.rain, pane.speed.at(begin_s));
         glass.set_weather(&rain, &air)?;
         let water = water_index_in_air(SODIUM_M, &weather.rain.air).unwrap_or(WATER_INDEX);
-        Ok(Some(Self { pane: pane.clone(), rain: weather.rain.clone(), size, begin_s, water, glass }))
+        Ok(Some(Self { pane: pane.clone(), rain: weather.rain, size, begin_s, water, glass }))
     }
 
     /// Lets rain fall and wipers go until a time in seconds. The same drops for any division of the time.
@@ -177,7 +177,7 @@ struct Place {
 
 impl Place {
     fn new(pane: &Pane, stage: &Stage) -> Result<Self, PaneError> {
-        let [right, _, forward] = stage.viewpoint.axes()?.map(|axis| axis.as_dvec3());
+        let [right, _, forward] = stage.viewpoint.axes()?.map(DVec3::from);
         // A pane stands upright however the camera is turned about its own axis.
         let level = DVec3::Y.cross(right);
         let across = DVec3::new(right.x, 0.0, right.z).try_normalize().unwrap_or(DVec3::X);

@@ -145,7 +145,7 @@ fn tiles_of(shown: Projected, width: u32, height: u32) -> impl Iterator<Item = u
     let across = width.div_ceil(DROPS_TILE);
     let (from, way, reach) = (Vec2::from(shown.drop.first), Vec2::from(shown.drop.way), shown.reach);
     let box_of = pixels(&shown, width, height);
-    let rows = box_of.map_or(1..=0, |[_, _, top, bottom]| top / DROPS_TILE..=bottom / DROPS_TILE);
+    let rows = box_of.map_or(0..0, |[_, _, top, bottom]| top / DROPS_TILE..bottom / DROPS_TILE + 1);
     rows.flat_map(move |row| {
         let top = (row * DROPS_TILE) as f32 - reach;
         let bottom = ((row + 1) * DROPS_TILE) as f32 + reach;
@@ -157,7 +157,7 @@ fn tiles_of(shown: Projected, width: u32, height: u32) -> impl Iterator<Item = u
         }
         let (a, b) = (from.x + way.x * low, from.x + way.x * high);
         let columns = if low <= high { within(a.min(b) - reach, a.max(b) + reach, width) } else { None };
-        let columns = columns.map_or(1..=0, |[left, right]| left / DROPS_TILE..=right / DROPS_TILE);
+        let columns = columns.map_or(0..0, |[left, right]| left / DROPS_TILE..right / DROPS_TILE + 1);
         columns.map(move |column| (row * across + column) as usize)
     })
 }
