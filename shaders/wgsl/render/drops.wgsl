@@ -85,7 +85,7 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
             sy = dot(lean, up) / extent;
         }
         if abs(sx) < 1.0 && abs(sy) < 1.0 {
-            var shown = drops_shade(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.row), sx, sy);
+            var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.row), sx, sy);
             if !small {
                 let at = vec2f(sx, sy) * drop.half_extent;
                 shown += vec4f(drops_spots(index, at, drops_glint_width(drop)) * shown.w, 0.0);
@@ -115,7 +115,7 @@ fn drops_chord(drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
         let part = (f32(k) + 0.5) / f32(drops_frame.streak_samples);
         let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
         if abs(at.x) < 1.0 && abs(at.y) < 1.0 {
-            sum += drops_shade(shade, at.x, at.y);
+            sum += drops_shade_ray(shade, at.x, at.y);
         }
     }
     return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * ((chord.high - chord.low) * 0.5);
@@ -148,7 +148,7 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         }
         var shown = vec4f(0.0);
         if drop.kind == DROPS_TABLE {
-            shown = streak_lookup(drop.shape, chord.across, at / size, chord.low, chord.high);
+            shown = streak_lookup_part(drop.shape, chord.across, at / size, chord.low, chord.high);
         } else {
             shown = drops_chord(drop, chord, ray);
         }

@@ -76,7 +76,7 @@ fn drops_mask_layer(sum: DropsTexel, layer: u32, u: f32, v: f32, weight: f32) ->
 }
 
 // What the masks say for a drop at (x, y) in units of half the mask, up and right: between diameters and elevations.
-fn drops_mask(row: vec2f, x: f32, y: f32) -> DropsTexel {
+fn drops_mask_at(row: vec2f, x: f32, y: f32) -> DropsTexel {
     let u = 0.5 + 0.5 * x;
     let v = 0.5 - 0.5 * y;
     let low = floor(row);

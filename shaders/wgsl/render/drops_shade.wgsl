@@ -37,8 +37,8 @@ fn drops_shade_shifted(ray: vec3f, texel: DropsTexel) -> vec2f {
 }
 
 // What a drop shows at (x, y), in units of half its mask: radiance times coverage, and coverage.
-fn drops_shade(drop: DropsShade, x: f32, y: f32) -> vec4f {
-    let texel = drops_mask(drop.row, x, y);
+fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
+    let texel = drops_mask_at(drop.row, x, y);
     if texel.coverage <= 0.0 {
         return vec4f(0.0);
     }

@@ -52,7 +52,7 @@ fn streak_lookup_until(shape: u32, across: f32, place: vec2f, v: f32) -> vec4f {
 }
 
 // The part of a chord from `low` to `high`, as a share of what the whole shows.
-fn streak_lookup(shape: u32, across: f32, place: vec2f, low: f32, high: f32) -> vec4f {
+fn streak_lookup_part(shape: u32, across: f32, place: vec2f, low: f32, high: f32) -> vec4f {
     if low <= -1.0 && high >= 1.0 {
         return streak_lookup_sum(shape, across, place, STREAK_SUMS);
     }

@@ -87,7 +87,7 @@ fn main_streak_table(@builtin(global_invocation_id) id: vec3u) {
         }
         let place = (at * oval.xy + vec2f(0.0, oval.z)) / extent;
         if abs(place.x) < 1.0 && abs(place.y) < 1.0 {
-            sum += drops_shade(drop, place.x, place.y);
+            sum += drops_shade_ray(drop, place.x, place.y);
         }
         if !mean && (tap + 1u) % (STREAK_TAPS / STREAK_SUMS) == 0u {
             let part = f32(tap + 1u) / f32(STREAK_TAPS);

@@ -125,7 +125,7 @@ impl Buffers<'_> {
             if sx.abs() < 1.0 && sy.abs() < 1.0 {
                 let shade =
                     DropsShade { towards, half_extent: drop.half_extent, lean, spacing, row: drop.row };
-                let mut shown = self.view.drops_shade(&shade, sx, sy);
+                let mut shown = self.view.drops_shade_ray(&shade, sx, sy);
                 if !small {
                     let at = Vec2::new(sx, sy) * drop.half_extent;
                     let spots = self.drops_spots(index, at, self.drops_glint_width(drop));
@@ -156,7 +156,7 @@ impl Buffers<'_> {
             let part = (k as f32 + 0.5) / frame.streak_samples as f32;
             let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
             if at.x.abs() < 1.0 && at.y.abs() < 1.0 {
-                sum += self.view.drops_shade(&shade, at.x, at.y);
+                sum += self.view.drops_shade_ray(&shade, at.x, at.y);
             }
         }
         (sum.truncate() / sum.w.max(1.0e-20)).extend(1.0) * ((chord.high - chord.low) * 0.5)
@@ -190,7 +190,7 @@ impl Buffers<'_> {
                 continue;
             }
             let shown = if drop.kind == DROPS_TABLE {
-                self.table.streak_lookup(drop.shape, chord.across, at / size, chord.low, chord.high)
+                self.table.streak_lookup_part(drop.shape, chord.across, at / size, chord.low, chord.high)
             } else {
                 self.drops_chord(drop, &chord, ray)
             };

@@ -79,7 +79,7 @@ impl DropsView<'_> {
     }
 
     /// What the masks say for a drop at (x, y) in units of half the mask, up and right: between diameters and elevations.
-    pub(super) fn drops_mask(&self, row: [f32; 2], x: f32, y: f32) -> DropsTexel {
+    pub(super) fn drops_mask_at(&self, row: [f32; 2], x: f32, y: f32) -> DropsTexel {
         let (u, v) = (0.5 + 0.5 * x, 0.5 - 0.5 * y);
         let low = row.map(f32::floor);
         let part = [row[0] - low[0], row[1] - low[1]];

@@ -40,8 +40,8 @@ impl DropsView<'_> {
     }
 
     /// What a drop shows at (x, y), in units of half its mask: radiance times coverage, and coverage.
-    pub(super) fn drops_shade(&self, drop: &DropsShade, x: f32, y: f32) -> Vec4 {
-        let texel = self.drops_mask(drop.row, x, y);
+    pub(super) fn drops_shade_ray(&self, drop: &DropsShade, x: f32, y: f32) -> Vec4 {
+        let texel = self.drops_mask_at(drop.row, x, y);
         if texel.coverage <= 0.0 {
             return Vec4::ZERO;
         }

@@ -77,7 +77,14 @@ impl StreakTable {
     }
 
     /// The part of a chord from `low` to `high`, as a share of what the whole shows.
-    pub(super) fn streak_lookup(&self, shape: u32, across: f32, place: Vec2, low: f32, high: f32) -> Vec4 {
+    pub(super) fn streak_lookup_part(
+        &self,
+        shape: u32,
+        across: f32,
+        place: Vec2,
+        low: f32,
+        high: f32,
+    ) -> Vec4 {
         if low <= -1.0 && high >= 1.0 {
             return self.streak_lookup_sum(shape, across, place, STREAK_SUMS);
         }

@@ -102,7 +102,7 @@ impl DropsView<'_> {
             };
             let place = (at * Vec2::new(oval.x, oval.y) + Vec2::new(0.0, oval.z)) / extent;
             if place.x.abs() < 1.0 && place.y.abs() < 1.0 {
-                sum += self.drops_shade(&drop, place.x, place.y);
+                sum += self.drops_shade_ray(&drop, place.x, place.y);
             }
             if !mean && (tap + 1).is_multiple_of(STREAK_TAPS / STREAK_SUMS) {
                 let entry = &mut entries[(tap / (STREAK_TAPS / STREAK_SUMS)) as usize];
