@@ -60,8 +60,8 @@ pub const BROKEN: &[Broken] = &[
     },
     Broken {
         function: "specimen_wobble_cross",
-        right: "SPECIMEN_WOBBLE_STEPS: u32 = 4",
-        wrong: "SPECIMEN_WOBBLE_STEPS: u32 = 1",
+        right: "found = side * at_b.x > 0.0",
+        wrong: "found = at_b.x > 0.0",
     },
     Broken {
         function: "specimen_streak_passage",

@@ -77,7 +77,7 @@ fn hosts() -> Vec<Host> {
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, tiles_across, veil_beyond, veil, streak_samples,
-            streak_colour, unused),
+            streak_colour, glints, unused),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
             towards, distance, place, slope, half_extent, row, area, grid, start, along, first, way, oval, recede,
             swing, turns, share, spread, nearest, kind, shape, unused),

@@ -21,13 +21,13 @@ use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform};
 use crate::words::{Args, IntoWords};
 use crate::{FunctionCase, KernelCase, Tol};
 
-/// A drop of 0.5 to 6 mm in an exposure of up to 0.02 s.
+/// A drop of 0.5 to 6 mm in an exposure of 0.001 to 0.02 s.
 fn motion_of(random: u32) -> SpecimenMotion {
     let unit = |shift: u32| f64::from(rng_unit(random.rotate_left(shift)));
     let shape = DropShape::new(0.5e-3 + 5.5e-3 * unit(0)).expect("a diameter of the table");
     let options = SpecimenOptions {
         distance_m: 1.0,
-        exposure_s: 0.02 * unit(3),
+        exposure_s: 1.0e-3 + 0.019 * unit(3),
         instants: 1 + random % 9,
         oscillation: Amplitudes::new(0.2 * unit(7), 0.12 * unit(11)).expect("small amplitudes"),
         phase: [unit(17), unit(23)],
