@@ -1,7 +1,5 @@
 //! The importer of the streak database, on a database of the same names made here.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use std::collections::BTreeMap;
 
 use downpour_mask::MaskError;
@@ -44,7 +42,7 @@ fn database() -> Database {
                 }
                 text += &format!("h{h}");
                 for k in 0..OSCILLATIONS {
-                    text += &format!(" {}", (200 - h) as f64 / 1000.0 + k as f64 * 1.0e-3);
+                    text += &format!(" {}", f64::from(200 - h) / 1000.0 + k as f64 * 1.0e-3);
                     let values =
                         (0..height * 4).map(|i| if i / 4 < height / 2 { 65535 } else { 0 }).collect();
                     let picture = GreyPicture { width: 4, height, values };

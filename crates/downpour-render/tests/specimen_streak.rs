@@ -143,9 +143,9 @@ fn f32_agrees_with_f64() {
 }
 
 fn motion(diameter: f64, amplitudes: [f64; 2]) -> SpecimenMotion {
-    let oscillation = Amplitudes::new(amplitudes[0], amplitudes[1]).unwrap();
+    let oscillation = Amplitudes::new(amplitudes[0], amplitudes[1]).expect("amplitudes within their range");
     let options = SpecimenOptions { oscillation, phase: [0.1, 0.6], ..SpecimenOptions::default() };
-    options.motion(&drop(diameter)).unwrap().unwrap()
+    options.motion(&drop(diameter)).expect("a motion").expect("not at rest")
 }
 
 fn wobble(motion: &SpecimenMotion, seconds: f64) -> SpecimenWobble<f64> {

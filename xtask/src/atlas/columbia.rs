@@ -98,7 +98,7 @@ mod tests {
             for v in LIGHT_ELEVATIONS {
                 text += &format!("v{v}\n");
                 for h in LIGHT_AZIMUTHS.into_iter().filter(|&h| v.abs() != 90 || h == 170) {
-                    text += &format!("h{h} {}\n", vec!["0.25"; OSCILLATIONS].join(" "));
+                    text += &format!("h{h} {}\n", ["0.25"; OSCILLATIONS].join(" "));
                     for k in 0..OSCILLATIONS {
                         std::fs::write(folder.join(picture_name(4, view, v, h, k)), png.get_ref())
                             .expect("a picture");

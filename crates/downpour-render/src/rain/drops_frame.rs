@@ -47,7 +47,7 @@ pub struct DropsFrame {
     pub tiles_across: u32,
     /// What the optical depth grows by beyond the table, 1/m.
     pub veil_beyond: f32,
-    /// Optical depths of the drops that are not drawn ([`Veil`]).
+    /// Optical depths of the drops that are not drawn ([`Veil`](super::Veil)).
     pub veil: [[f32; 4]; DROPS_VEIL_QUARTERS as usize],
     /// Samples along the chord of a streak that is averaged by a loop.
     pub streak_samples: u32,
