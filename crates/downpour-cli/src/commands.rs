@@ -6,6 +6,7 @@ mod drop;
 mod input;
 mod lattice;
 mod mask;
+mod pattern;
 mod rain;
 mod render;
 mod specimen;

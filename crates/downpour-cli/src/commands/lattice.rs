@@ -44,10 +44,14 @@ struct Common {
     #[arg(long, value_name = "N", default_value = "0", value_parser = crate::quantity::seed)]
     #[arg(allow_hyphen_values = true)]
     seed: u64,
-    /// The picture: .png, or .exr with the numbers themselves.
+    /// The picture: .png, or .exr with the numbers themselves. With --every a name with a number, as frames/%04d.png.
     #[arg(short, long, value_name = "OUT")]
     output: Option<std::path::PathBuf>,
-    /// Replace the file if it exists.
+    /// Make a clip: a picture every N steps, the first before any step.
+    #[arg(long, value_name = "N", requires = "output", value_parser = crate::quantity::steps)]
+    #[arg(allow_hyphen_values = true)]
+    every: Option<u64>,
+    /// Replace files that exist.
     #[arg(long)]
     overwrite: bool,
     /// Write the invariants as JSON.

@@ -9,7 +9,6 @@ mod mp4;
 mod outputs;
 mod painter;
 mod pane;
-mod pattern;
 mod places;
 mod progress;
 mod report;

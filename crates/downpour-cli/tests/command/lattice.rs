@@ -48,6 +48,31 @@ fn ripples_keep_what_they_should() {
     );
 }
 
+/// Damping leaves next to nothing of the ripples, and rounding leaves what it left of the volume.
+#[test]
+fn the_volume_is_compared_with_what_was_moved_at_first() {
+    let arguments =
+        ["puddle", "--size", "64x64", "--depth", "0.5", "--steps", "4000", "--check", "mass", "--json"];
+    let json = lattice(&arguments).run().succeeded().json();
+    assert!(json["highest_mm"].as_f64().is_some_and(|highest| highest < 1.0e-4), "{json}");
+}
+
+#[test]
+fn a_clip_has_a_picture_every_few_steps() {
+    let puddle = ["puddle", "--size", "64x64", "--rate", "100", "--steps", "25"];
+    let ended = lattice(&[&puddle[..], &["--every", "10", "-o", "%02d.png"]].concat()).run().succeeded();
+    let ended = ended.left(&["00.png", "01.png", "02.png"]);
+    assert!(ended.stderr.contains("wrote %02d.png: 64 x 64, 3 pictures"), "{}", ended.stderr);
+    assert_ne!(ended.file("01.png"), ended.file("02.png"));
+
+    let glass = ["glass", "--size", "64x64", "--rate", "300", "--speed", "12", "--steps", "1200"];
+    let clip = lattice(&[&glass[..], &["--every", "600", "-o", "%d.exr"]].concat()).run().succeeded();
+    let clip = clip.left(&["0.exr", "1.exr", "2.exr"]);
+    let alone = lattice(&[&glass[..], &["-o", "a.exr"]].concat()).run().succeeded();
+    assert_eq!(clip.file("2.exr"), alone.file("a.exr"), "a picture changes nothing of what comes");
+    assert_ne!(clip.file("1.exr"), clip.file("2.exr"));
+}
+
 #[test]
 fn what_is_no_lattice_is_refused() {
     let refused = |arguments: &[&str], code: i32, words: &[&str]| {
@@ -63,6 +88,19 @@ fn what_is_no_lattice_is_refused() {
     refused(&["puddle", "--size", "64x63"], 2, &["size of the lattice", "64 to 4096"]);
     refused(&["puddle", "--check", "energy", "--rate", "5"], 2, &["--check with --rate", "without them"]);
     refused(&["puddle", "--depth", "0"], 2, &["--depth", "0.1 to 1000000 mm"]);
+    refused(&["glass", "--every", "5"], 2, &["--output"]);
+    refused(&["glass", "--every", "0", "-o", "%d.png"], 2, &["--every", "from 1"]);
+    refused(&["glass", "--every", "5", "-o", "a.png"], 2, &["a.png", "%04d"]);
+    refused(
+        &["glass", "--steps", "5000000", "--every", "5", "-o", "%d.png"],
+        2,
+        &["1000001", "at most 1000000"],
+    );
+    lattice(&["glass", "--size", "8x8", "--steps", "9", "--every", "3", "-o", "%d.png"])
+        .with_file("2.png", "mine")
+        .run()
+        .failed(5, &["2.png"])
+        .left(&["2.png"]);
     lattice(&["glass", "--size", "8x8", "--steps", "1", "-o", "a.png"])
         .with_file("a.png", "mine")
         .run()

@@ -74,17 +74,21 @@ impl GlassArguments {
             seed: self.common.seed,
             ..GlassOptions::default()
         };
-        let target = Target::new(&self.common)?;
+        let mut target = Target::new(&self.common, self.steps)?;
         let mut glass = Glass::new(&options)?;
-        let mut left = self.steps;
-        while left > 0 {
+        let mut done = 0;
+        loop {
+            if let Some(target) = target.as_mut().filter(|target| target.is_due(done)) {
+                target.write(&self.field(&glass), done, interrupt)?;
+            }
+            if done == self.steps {
+                break;
+            }
             // A second or so at once.
-            let count = left.min(500);
+            let most = target.as_ref().map_or(500, |target| target.steps_to_next(done).min(500));
+            let count = most.min(self.steps - done);
             glass.step(count as f64 * glass.tick_s())?;
-            left -= count;
-        }
-        if let (Some(target), Some(path)) = (target, &self.common.output) {
-            target.write(&self.field(&glass), path, self.common.quiet, interrupt)?;
+            done += count;
         }
         let totals = glass.totals();
         let entry = Entry::new;

@@ -1,19 +1,32 @@
 //! Pictures of lattices: heights as grey, normals as the usual colours, masses as brightness.
 
-use std::path::Path;
-
 use downpour::render::file::{write_exr, write_png};
 
 use super::Common;
+use crate::commands::pattern::Pattern;
 use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
-use crate::output::Place;
+use crate::output::{Place, remove_leftovers};
 use crate::stream;
 
-/// Where a picture goes, and in which format.
+/// The most pictures of a clip.
+const MOST_PICTURES: u64 = 1_000_000;
+
+/// Where the pictures go, in which format, and after which steps.
 pub(super) struct Target {
-    place: Place,
+    names: Names,
+    shown: String,
     exr: bool,
+    quiet: bool,
+    steps: u64,
+    /// The largest scale so far: a clip must not flicker.
+    scale: f32,
+}
+
+/// One picture after the last step, or one every few steps.
+enum Names {
+    One(Place),
+    Numbered { pattern: Pattern, every: u64, overwrite: bool },
 }
 
 /// Numbers of all cells, and how they become grey or colours.
@@ -28,42 +41,81 @@ pub(super) struct Field {
 }
 
 impl Target {
-    /// The place of the picture that was asked for, if one was.
+    /// The places of the pictures that were asked for, if any were.
     ///
     /// # Errors
-    /// Exit code 2 for another format, 5 for a file that exists.
-    pub(super) fn new(common: &Common) -> Result<Option<Self>, Failure> {
+    /// Exit code 2 for another format, a name without a number for many, or too many; 5 for a file that exists.
+    pub(super) fn new(common: &Common, steps: u64) -> Result<Option<Self>, Failure> {
         let Some(path) = &common.output else { return Ok(None) };
         let exr = match path.extension().and_then(|end| end.to_str()).map(str::to_lowercase).as_deref() {
             Some("exr") => true,
             Some("png") => false,
             _ => return Err(Failure::new(INPUT, format!("output {}; allowed: .png or .exr", shown(path)))),
         };
-        Ok(Some(Self { place: Place::new(path, common.overwrite)?, exr }))
+        let overwrite = common.overwrite;
+        let names = match common.every {
+            Some(every) => {
+                let pattern = Pattern::parse(path)?;
+                let last = steps / every;
+                if last >= MOST_PICTURES {
+                    let found = format!("--every {every} of {steps} steps: {} pictures", last + 1);
+                    return Err(Failure::new(INPUT, format!("{found}; allowed: at most {MOST_PICTURES}")));
+                }
+                for number in 0..=last as u32 {
+                    Place::new(&pattern.path(number), overwrite)?;
+                }
+                remove_leftovers(pattern.folder());
+                Names::Numbered { pattern, every, overwrite }
+            }
+            None => Names::One(Place::new(path, overwrite)?),
+        };
+        Ok(Some(Self { names, shown: shown(path), exr, quiet: common.quiet, steps, scale: 0.0 }))
     }
 
-    /// Writes the picture.
+    /// Whether there is a picture after so many steps.
+    pub(super) fn is_due(&self, done: u64) -> bool {
+        match &self.names {
+            Names::One(_) => done == self.steps,
+            Names::Numbered { every, .. } => done.is_multiple_of(*every),
+        }
+    }
+
+    /// How many steps it is to the next picture: at least 1.
+    pub(super) fn steps_to_next(&self, done: u64) -> u64 {
+        match &self.names {
+            Names::One(_) => self.steps.saturating_sub(done).max(1),
+            Names::Numbered { every, .. } => every - done % every,
+        }
+    }
+
+    /// Writes the picture after so many steps.
     ///
     /// # Errors
     /// What the encoder or the file system says.
-    pub(super) fn write(
-        &self,
-        field: &Field,
-        path: &Path,
-        quiet: bool,
-        interrupt: &Interrupt,
-    ) -> Result<(), Failure> {
+    pub(super) fn write(&mut self, field: &Field, done: u64, interrupt: &Interrupt) -> Result<(), Failure> {
         let [width, height] = field.size;
+        self.scale = self.scale.max(field.scale);
         let bytes = if self.exr {
             write_exr(width, height, &field.numbers)?
         } else {
-            let byte = |number| (255.0 * (field.shade)(number, field.scale)).clamp(0.0, 255.0) as u8;
+            let byte = |number| (255.0 * (field.shade)(number, self.scale)).clamp(0.0, 255.0) as u8;
             let pixels: Vec<[u8; 3]> = field.numbers.iter().map(|cell| cell.map(byte)).collect();
             write_png(width, height, &pixels)?
         };
-        self.place.publish(&bytes, interrupt)?;
-        if !quiet {
-            stream::message(&format!("wrote {}: {width} x {height}", shown(path)));
+        let pictures = match &self.names {
+            Names::One(place) => {
+                place.publish(&bytes, interrupt)?;
+                String::new()
+            }
+            Names::Numbered { pattern, every, overwrite } => {
+                let number = (done / every) as u32;
+                Place::new(&pattern.path(number), *overwrite)?.publish_among_many(&bytes, interrupt)?;
+                format!(", {} pictures", number + 1)
+            }
+        };
+        // Of a clip only the end is told.
+        if !self.quiet && done + self.steps_to_next(done) > self.steps {
+            stream::message(&format!("wrote {}: {width} x {height}{pictures}", self.shown));
         }
         Ok(())
     }

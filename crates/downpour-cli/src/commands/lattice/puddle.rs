@@ -14,7 +14,8 @@ use crate::{quantity, stream};
 /// How far the energy may drift, as a share of it.
 const ENERGY_DRIFT: f64 = 1.0e-4;
 
-/// How far the volume may drift, as a share of all that is above or below the level.
+/// How far the volume may drift, as a share of the most that was above or below the level: what damping leaves of the
+/// ripples says nothing of what was moved.
 const VOLUME_DRIFT: f64 = 1.0e-4;
 
 /// Let rain fall on a puddle.
@@ -64,7 +65,8 @@ enum Check {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Show {
-    /// Height over the level in metres; in a .png grey is the level, black and white are three times the rms.
+    /// Height over the level in metres; in a .png grey is the level, black and white are three times the rms; in a
+    /// clip three times the largest rms so far.
     Height,
     /// Normals: x along the rows, y up, z along the columns.
     Normal,
@@ -77,7 +79,7 @@ impl PuddleArguments {
                 "--check with --rate or --open; allowed: without them, since both bring or take energy";
             return Err(Failure::new(INPUT, message));
         }
-        let target = Target::new(&self.common)?;
+        let mut target = Target::new(&self.common, self.steps)?;
         let undamped = matches!(self.check, Some(Check::Energy));
         let options = PuddleOptions {
             size: self.size,
@@ -97,7 +99,14 @@ impl PuddleArguments {
         let dt = self.step as f32;
         let mut drops = 0u64;
         let mut drift = 0.0f64;
+        let mut moved = moved_volume(&puddle);
         let mut first = None;
+        let mut draw = |puddle: &Puddle, done: u64| match target.as_mut().filter(|target| target.is_due(done))
+        {
+            Some(target) => target.write(&self.field(puddle), done, interrupt),
+            None => Ok(()),
+        };
+        draw(&puddle, 0)?;
         for step in 0..self.steps {
             if let Some(rain) = &rain {
                 let impacts = rain.impacts(puddle.extent_m(), step, dt)?;
@@ -105,24 +114,21 @@ impl PuddleArguments {
                 puddle.seed(&impacts)?;
             }
             puddle.step(dt)?;
+            draw(&puddle, step + 1)?;
             // Looking at all cells each time would take as long as the steps.
             if step < 4 || step % 64 == 0 || step + 1 == self.steps {
                 let energy = puddle.energy();
                 let begun = *first.get_or_insert(energy);
+                moved = moved.max(moved_volume(&puddle));
                 drift = drift.max((energy - begun).abs() / begun.abs().max(f64::MIN_POSITIVE));
             }
         }
-        if let (Some(target), Some(path)) = (target, &self.common.output) {
-            target.write(&self.field(&puddle), path, self.common.quiet, interrupt)?;
-        }
-        self.tell(&puddle, drops, drift)
+        self.tell(&puddle, drops, drift, moved)
     }
 
-    fn tell(&self, puddle: &Puddle, drops: u64, drift: f64) -> Result<(), Failure> {
+    fn tell(&self, puddle: &Puddle, drops: u64, drift: f64, moved: f64) -> Result<(), Failure> {
         let heights = puddle.heights();
-        let cell = f64::from(puddle.options().cell_m);
         let volume = puddle.volume();
-        let moved: f64 = heights.iter().map(|&h| f64::from(h.abs())).sum::<f64>() * cell * cell;
         let highest = heights.iter().fold(0.0f32, |most, h| most.max(h.abs()));
         let share = volume.abs() / moved.max(f64::MIN_POSITIVE);
         let entry = Entry::new;
@@ -134,7 +140,7 @@ impl PuddleArguments {
             entry("energy_m4_s2", "energy", Datum::Computed(puddle.energy(), 6), "m^4/s^2"),
             entry("energy_drift", "drift of the energy", Datum::Computed(drift, 3), ""),
             entry("volume_m3", "volume over the level", Datum::Computed(volume, 3), "m^3"),
-            entry("volume_share", "share of the moved volume", Datum::Computed(share, 3), ""),
+            entry("volume_share", "share of the most moved volume", Datum::Computed(share, 3), ""),
             entry("reset_cells", "cells that were reset", Datum::Count(puddle.reset_cells()), ""),
         ];
         let level = heights.iter().all(|h| h.to_bits() == 0);
@@ -174,4 +180,10 @@ impl PuddleArguments {
             }
         }
     }
+}
+
+/// Volume above the level and missing below it, m^3.
+fn moved_volume(puddle: &Puddle) -> f64 {
+    let cell = f64::from(puddle.options().cell_m);
+    puddle.heights().iter().map(|&h| f64::from(h.abs())).sum::<f64>() * cell * cell
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::frames::Frames;
 use super::journal;
 use super::outputs::{Format, check_tables, extension, keep, refused};
-use super::pattern::Pattern;
+use crate::commands::pattern::Pattern;
 use crate::failure::{FILES, Failure, INPUT, shown};
 use crate::output::{Place, folder_of};
 

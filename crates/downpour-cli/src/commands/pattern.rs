@@ -28,7 +28,7 @@ impl Pattern {
     pub(super) fn parse(path: &Path) -> Result<Self, Failure> {
         let refused = || {
             let allowed = "a name with one %d or %04d, for example frames/%04d.png (%% is a percent sign)";
-            Failure::new(INPUT, format!("output {} for --frames; allowed: {allowed}", shown(path)))
+            Failure::new(INPUT, format!("output {} for numbered files; allowed: {allowed}", shown(path)))
         };
         let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(refused)?;
         let (mut parts, mut digits) = ((String::new(), String::new()), None);
@@ -57,7 +57,7 @@ impl Pattern {
         let digits = digits.ok_or_else(refused)?;
         // A number may have seven digits where fewer are asked for.
         if parts.0.len() + parts.1.len() + digits.max(7) > LONGEST {
-            let found = format!("output {} for --frames", shown(path));
+            let found = format!("output {} for numbered files", shown(path));
             return Err(Failure::new(INPUT, format!("{found}; allowed: a name of at most {LONGEST} bytes")));
         }
         Ok(Self { whole: path.to_owned(), before: parts.0, digits, after: parts.1 })
