@@ -211,7 +211,7 @@ fn a_clip_of_a_lost_device_goes_on() {
         Downpour::new(&arguments).with_file("storm.toml", weather("")).with_file("floor.gltf", model())
     };
     let on_gpu = gpu(&[], &adapter);
-    let lost = run("0..5", "a%d.png", &on_gpu).env("DOWNPOUR_INJECT", "lost@9").run();
+    let lost = run("0..5", "a%d.png", &on_gpu).env("DOWNPOUR_INJECT", "lost@20").run();
     let lost = lost.failed(4, &["lost"]);
     let made = names_in(folder.path()).iter().filter(|name| name.ends_with(".png")).count();
     assert!((1..5).contains(&made), "{made} frames: {}", lost.stderr);
