@@ -7,17 +7,15 @@
 //! Reading takes what this module writes, and checks every size before it takes memory.
 
 use half::f16;
-use ktx2::{Format, Header, Index, LevelIndex, SupercompressionScheme};
+use ktx2::{Format, Header, LevelIndex, SupercompressionScheme};
 
 use super::{StreakSet, description};
 use crate::MaskError;
-use crate::file::ktx2::{data_format, find_key, key_values, part};
+use crate::file::ktx2::{TextureArray, find_key, part, write_array};
 use crate::file::shorten;
 
 const FORMAT: Format = Format::R16_SFLOAT;
 const TEXEL_BYTES: usize = 2;
-/// Level of the deflate encoder: 0 to 10.
-const DEFLATE_LEVEL: u8 = 9;
 /// The most layers of a texture array on common GPUs; WebGPU promises 256.
 const MOST_LAYERS: u32 = 2048;
 /// The most that the texels of a file may need, in bytes.
@@ -32,42 +30,15 @@ pub fn write_streaks(set: &StreakSet) -> Result<Vec<u8>, MaskError> {
     let (columns, rows, layers) = (set.options.columns, set.options.rows, set.layers() as u32);
     check_size(columns, rows, layers)?;
     let texels: Vec<u8> = set.texels.iter().flat_map(|v| v.to_le_bytes()).collect();
-    let packed = miniz_oxide::deflate::compress_to_vec_zlib(&texels, DEFLATE_LEVEL);
-    let descriptor = data_format(FORMAT)?;
-    // Keys in the order of their bytes, as the format asks.
-    let keys = key_values(&[
-        ("DownpourStreaks", &description::write(set, &texels)),
-        ("KTXorientation", "rd"),
-        ("KTXwriter", concat!("downpour-mask ", env!("CARGO_PKG_VERSION"))),
-    ]);
-    let descriptor_at = Header::LENGTH + LevelIndex::LENGTH;
-    let keys_at = descriptor_at + descriptor.len();
-    let level_at = keys_at + keys.len();
-    let header = Header {
-        format: Some(FORMAT),
+    write_array(&TextureArray {
+        format: FORMAT,
         type_size: TEXEL_BYTES as u32,
-        pixel_width: columns,
-        pixel_height: rows,
-        pixel_depth: 0,
-        layer_count: layers,
-        face_count: 1,
-        level_count: 1,
-        supercompression_scheme: Some(SupercompressionScheme::ZLIB),
-        index: Index {
-            dfd_byte_offset: descriptor_at as u32,
-            dfd_byte_length: descriptor.len() as u32,
-            kvd_byte_offset: keys_at as u32,
-            kvd_byte_length: keys.len() as u32,
-            sgd_byte_offset: 0,
-            sgd_byte_length: 0,
-        },
-    };
-    let level = LevelIndex {
-        byte_offset: level_at as u64,
-        byte_length: packed.len() as u64,
-        uncompressed_byte_length: texels.len() as u64,
-    };
-    Ok([&header.as_bytes()[..], &level.as_bytes(), &descriptor, &keys, &packed].concat())
+        size: [columns, rows],
+        layers,
+        key: "DownpourStreaks",
+        description: &description::write(set, &texels),
+        texels: &texels,
+    })
 }
 
 /// Reads a set that [`write_streaks`] has written.

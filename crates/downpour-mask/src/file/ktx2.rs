@@ -54,17 +54,45 @@ pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
             }
         }
     }
-    let packed = miniz_oxide::deflate::compress_to_vec_zlib(&texels, DEFLATE_LEVEL);
-    let descriptor = data_format(FORMAT)?;
     let description = Description {
         diameters: masks.iter().map(|m| m.diameter).collect(),
         half_extents: masks.iter().map(|m| m.half_extent).collect(),
         view: first.view,
         refractive_index: first.refractive_index,
     };
+    write_array(&TextureArray {
+        format: FORMAT,
+        type_size: 2,
+        size: [first.size; 2],
+        layers: 2 * masks.len() as u32,
+        key: "DownpourMask",
+        description: &description.write(),
+        texels: &texels,
+    })
+}
+
+/// A texture array of one level.
+pub(crate) struct TextureArray<'a> {
+    pub(crate) format: Format,
+    /// Bytes of a number of a texel.
+    pub(crate) type_size: u32,
+    /// Columns and rows.
+    pub(crate) size: [u32; 2],
+    pub(crate) layers: u32,
+    /// The name of the project's own key, and what it says.
+    pub(crate) key: &'a str,
+    pub(crate) description: &'a str,
+    /// Layer by layer, rows from the top.
+    pub(crate) texels: &'a [u8],
+}
+
+/// A texture array as the bytes of a KTX2 file, its texels deflated.
+pub(crate) fn write_array(array: &TextureArray<'_>) -> Result<Vec<u8>, MaskError> {
+    let packed = miniz_oxide::deflate::compress_to_vec_zlib(array.texels, DEFLATE_LEVEL);
+    let descriptor = data_format(array.format)?;
     // Keys in the order of their bytes, as the format asks.
     let keys = key_values(&[
-        ("DownpourMask", &description.write()),
+        (array.key, array.description),
         ("KTXorientation", "rd"),
         ("KTXwriter", concat!("downpour-mask ", env!("CARGO_PKG_VERSION"))),
     ]);
@@ -72,12 +100,12 @@ pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
     let keys_at = descriptor_at + descriptor.len();
     let level_at = keys_at + keys.len();
     let header = Header {
-        format: Some(FORMAT),
-        type_size: 2,
-        pixel_width: first.size,
-        pixel_height: first.size,
+        format: Some(array.format),
+        type_size: array.type_size,
+        pixel_width: array.size[0],
+        pixel_height: array.size[1],
         pixel_depth: 0,
-        layer_count: 2 * masks.len() as u32,
+        layer_count: array.layers,
         face_count: 1,
         level_count: 1,
         supercompression_scheme: Some(SupercompressionScheme::ZLIB),
@@ -93,7 +121,7 @@ pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
     let level = LevelIndex {
         byte_offset: level_at as u64,
         byte_length: packed.len() as u64,
-        uncompressed_byte_length: texels.len() as u64,
+        uncompressed_byte_length: array.texels.len() as u64,
     };
     Ok([&header.as_bytes()[..], &level.as_bytes(), &descriptor, &keys, &packed].concat())
 }
