@@ -19,6 +19,8 @@ pub(super) struct Painter {
     renderer: Option<downpour::render::gpu::PictureRenderer>,
     #[cfg(feature = "gpu")]
     glass: Option<downpour::gpu::Gpu>,
+    #[cfg(feature = "gpu")]
+    glass_renderer: std::cell::OnceCell<downpour::render::gpu::GlassRenderer>,
 }
 
 /// Why there is no picture: what was wrong with it, or with what makes it.
@@ -39,6 +41,8 @@ impl Painter {
             renderer: None,
             #[cfg(feature = "gpu")]
             glass: None,
+            #[cfg(feature = "gpu")]
+            glass_renderer: std::cell::OnceCell::new(),
         }
     }
 
@@ -51,7 +55,7 @@ impl Painter {
             driver: format!("{} {} {}", adapter.backend, adapter.driver, adapter.driver_info),
         };
         let renderer = Some(downpour::render::gpu::PictureRenderer::new(gpu)?);
-        Ok(Self { computer, renderer, glass: Some(gpu.clone()) })
+        Ok(Self { computer, renderer, glass: Some(gpu.clone()), glass_renderer: std::cell::OnceCell::new() })
     }
 
     pub(super) fn computer(&self) -> &Computer {
@@ -88,9 +92,17 @@ impl Painter {
         let begin = std::time::Instant::now();
         #[cfg(feature = "gpu")]
         if let Some(gpu) = &self.glass {
-            let renderer = downpour::render::gpu::GlassRenderer::new(gpu);
-            let seen = renderer.and_then(|renderer| renderer.through(&glass, &behind, &capture));
-            picture.through_glass = Some(seen.map_err(downpour::render::gpu::GpuPictureError::from)?);
+            use downpour::render::gpu::{GlassRenderer, GpuPictureError};
+            // Made for the first picture that is seen through a pane.
+            let renderer = match self.glass_renderer.get() {
+                Some(renderer) => renderer,
+                None => {
+                    let made = GlassRenderer::new(gpu).map_err(GpuPictureError::from)?;
+                    self.glass_renderer.get_or_init(|| made)
+                }
+            };
+            let seen = renderer.through(&glass, &behind, &capture).map_err(GpuPictureError::from)?;
+            picture.through_glass = Some(seen);
         }
         if picture.through_glass.is_none() {
             picture.through_glass = Some(glass.through(&behind, &capture));
