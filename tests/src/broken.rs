@@ -49,6 +49,16 @@ pub const BROKEN: &[Broken] = &[
         right: "MASK_EDGE_DEPTH: f32 = 0.1",
         wrong: "MASK_EDGE_DEPTH: f32 = 0.3",
     },
+    Broken {
+        function: "puddle_water_albedo",
+        right: "PUDDLE_WATER_INSIDE: f32 = 0.4745906",
+        wrong: "PUDDLE_WATER_INSIDE: f32 = 0.4645906",
+    },
+    Broken {
+        function: "puddle_water_refracted",
+        right: "normal * (eta * cosine - inner)",
+        wrong: "normal * (cosine - inner)",
+    },
     Broken { function: "atlas_light", right: "cross(y, view)", wrong: "cross(view, y)" },
     Broken { function: "atlas_map", right: "abs(direction.x)", wrong: "direction.x" },
     Broken { function: "atlas_rank", right: "vec4f(value) > high", wrong: "vec4f(value) > low" },

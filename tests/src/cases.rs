@@ -10,6 +10,7 @@ mod glass;
 mod glass_picture;
 mod mask;
 mod puddle;
+mod puddle_water;
 mod rain;
 mod render;
 mod scene;
@@ -32,6 +33,7 @@ pub fn functions() -> Vec<FunctionCase> {
         glass_picture::functions(),
         mask::functions(),
         puddle::functions(),
+        puddle_water::functions(),
         rain::functions(),
         render::functions(),
         scene::functions(),
@@ -54,6 +56,7 @@ pub fn kernels() -> Vec<KernelCase> {
         glass_picture::kernels(),
         mask::kernels(),
         puddle::kernels(),
+        puddle_water::kernels(),
         rain::kernels(),
         render::kernels(),
         scene::kernels(),

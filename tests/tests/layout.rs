@@ -70,7 +70,7 @@ fn hosts() -> Vec<Host> {
             light, diameter, view, id, axis, across, turns, unused),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
             eye, width, right, height, up, grid, forward, pixel_angle, slots, lights, light_count, sky_rays,
-            first_row, seed, nearest, sky_reach, projection, suns_out, sky_levels, sky_irradiance),
+            first_row, seed, nearest, sky_reach, projection, suns_out, puddles, puddle_count, sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
         host!(TraceGather as "TraceGather" in &render::scene::TRACE, sky, body, met, gloss, normal),
         host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),

@@ -10,6 +10,7 @@ use downpour::lattice::glass::GlassError;
 use downpour::mask::MaskError;
 use downpour::render::RenderError;
 use downpour::render::glass::PaneError;
+use downpour::render::puddle::PuddleError;
 use downpour::render::shower::ShowerError;
 use downpour::render::specimen::SpecimenError;
 use downpour::render::stage::StageError;
@@ -76,6 +77,16 @@ impl From<GlassError> for Failure {
 impl From<PaneError> for Failure {
     fn from(error: PaneError) -> Self {
         Self::new(error.exit_code(), error.to_string())
+    }
+}
+
+impl From<PuddleError> for Failure {
+    fn from(error: PuddleError) -> Self {
+        match error {
+            PuddleError::Lattice(error) => error.into(),
+            PuddleError::Rain(error) => error.into(),
+            error => Self::new(INPUT, error.to_string()),
+        }
     }
 }
 

@@ -104,7 +104,8 @@ impl Viewpoint {
             sky_reach: extent * 0.5,
             projection: SCENE_PICTURE,
             suns_out: 0,
-            unused: [0; 2],
+            puddles: scene.puddles,
+            puddle_count: scene.puddle_count,
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,
         })

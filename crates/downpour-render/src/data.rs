@@ -66,8 +66,10 @@ pub struct RenderFrame {
     pub projection: u32,
     /// 1: the capture leaves parallel light out, since drops are lit by it on their own ([`crate::rain::light`]).
     pub suns_out: u32,
-    /// 0.
-    pub unused: [u32; 2],
+    /// Row of the table where puddles begin.
+    pub puddles: u32,
+    /// Number of puddles.
+    pub puddle_count: u32,
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; 6],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.
@@ -233,6 +235,8 @@ impl SceneBuilder {
             slots,
             lights,
             light_count: self.lights.len() as u32,
+            puddles: 0,
+            puddle_count: 0,
             sky: sky.texels.clone(),
             sky_levels: sky.levels,
             sky_irradiance: sky.irradiance,
@@ -249,7 +253,7 @@ pub struct SceneData {
     pub triangles: Vec<BvhTriangle>,
     /// Three corners per triangle.
     pub corners: Vec<RenderCorner>,
-    /// Materials, texture slots and lights, as rows.
+    /// Materials, texture slots, lights and puddles, as rows.
     pub table: Vec<[u32; 4]>,
     /// Texels of all levels of all textures.
     pub texels: Vec<u32>,
@@ -259,6 +263,10 @@ pub struct SceneData {
     pub lights: u32,
     /// Number of lights.
     pub light_count: u32,
+    /// Row where puddles begin.
+    pub puddles: u32,
+    /// Number of puddles.
+    pub puddle_count: u32,
     /// Texels of all levels of the sky.
     pub sky: Vec<[f32; 4]>,
     /// Width, height and first texel of each level of the sky.

@@ -21,6 +21,7 @@ pub mod gpu;
 pub mod light;
 pub mod material;
 pub mod picture;
+pub mod puddle;
 pub mod rain;
 pub mod scene;
 pub mod shower;

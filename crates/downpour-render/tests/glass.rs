@@ -22,8 +22,14 @@ fn stage(glass: &str) -> Result<(Weather, Stage), Box<dyn std::error::Error>> {
     );
     let weather = Weather::parse("w.toml", &text)?;
     let sky = SkyMap::uniform([1.0; 3]);
-    let loaded =
-        Loaded { scene: Scene::default(), animations: Vec::new(), sky, sun: None, warnings: Vec::new() };
+    let loaded = Loaded {
+        scene: Scene::default(),
+        animations: Vec::new(),
+        sky,
+        sun: None,
+        masks: Vec::new(),
+        warnings: Vec::new(),
+    };
     let stage = Stage::new(&weather, &loaded, 0.0)?;
     Ok((weather, stage))
 }
@@ -252,6 +258,7 @@ fn a_pane_that_is_not_before_the_eye_is_refused() -> Outcome {
         animations: Vec::new(),
         sky: SkyMap::uniform([1.0; 3]),
         sun: None,
+        masks: Vec::new(),
         warnings: Vec::new(),
     };
     let down = Stage::new(&looks_down, &loaded, 0.0)?;

@@ -16,6 +16,7 @@ mod glass;
 mod lamps;
 mod load;
 mod models;
+mod puddle;
 mod quantity;
 mod rain;
 mod sky;
@@ -35,6 +36,7 @@ pub use glass::{Pane, PaneFocus, PaneFresnel};
 pub use lamps::Lamp;
 pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
+pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleShape};
 pub use rain::{Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume};
 pub use sky::{Sky, SkySource, SunSource};
 pub use streaks::{StreakLook, Streaks};
@@ -51,6 +53,9 @@ pub const MAX_MODELS: usize = 4096;
 
 /// The largest number of entries `[[light]]`.
 pub const MAX_LIGHTS: usize = 1024;
+
+/// The largest number of entries `[[puddle]]`.
+pub const MAX_PUDDLES: usize = 16;
 
 /// What a weather file says, checked: all numbers are finite and in the ranges of [the table](self).
 ///
@@ -100,6 +105,8 @@ pub struct Weather {
     pub streaks: Streaks,
     /// A pane before the camera.
     pub glass: Option<Pane>,
+    /// Water that stands on the ground, in the order of the file.
+    pub puddles: Vec<Puddle>,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
 }
@@ -118,6 +125,7 @@ impl Default for Weather {
             wind_box: WindBox::default(),
             streaks: Streaks::default(),
             glass: None,
+            puddles: Vec::new(),
             size: [1280, 720],
         }
     }

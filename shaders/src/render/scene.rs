@@ -2,8 +2,10 @@
 //! `downpour_render::{texture, sky, surface, scene, rain::capture, trace, skylight}`.
 
 use super::brdf::BRDF;
+use super::puddle_water::PUDDLE_WATER;
 use crate::bvh::BVH;
 use crate::common::{PACKING, RNG};
+use crate::drop::optics::OPTICS;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -116,7 +118,7 @@ pub static SURFACE: Module = Module {
 pub static SCENE: Module = Module {
     path: "render/scene.wgsl",
     wgsl: include_str!("../../wgsl/render/scene.wgsl"),
-    uses: &[&DATA, &SKY, &SURFACE, &BRDF, &RNG, &PACKING],
+    uses: &[&DATA, &SKY, &SURFACE, &BRDF, &OPTICS, &PUDDLE_WATER, &RNG, &PACKING],
 };
 
 /// Pixels of the picture and of the capture. Twin: `downpour_render::trace`.

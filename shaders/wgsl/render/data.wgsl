@@ -31,6 +31,9 @@ struct RenderFrame {
     projection: u32,
     // 1: the capture leaves parallel light out.
     suns_out: u32,
+    // Row of the table where puddles begin, and how many there are.
+    puddles: u32,
+    puddle_count: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, 6>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.

@@ -189,53 +189,97 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
     var path = scene_nothing();
     var throughput = vec3f(1.0);
     var from_distance = render_frame.nearest;
+    var from_place = origin;
+    var towards = direction;
+    // Water that the ray has come through, and whether it was the first thing that it met.
+    var clear = 1.0;
+    var wet_row = PUDDLE_WATER_NONE;
+    var under = false;
+    var first_is_water = false;
     for (var layer = 0u; layer < SCENE_LAYERS; layer += 1u) {
-        // Turn 0 meets the surface; the others are its rays to the sky. One text for all of them: a shader holds the
-        // hierarchy's walk and the materials once.
+        // Turn 0 meets the surface; the others are its rays to the sky, or those that water mirrors. One text for all of
+        // them: a shader holds the hierarchy's walk and the materials once.
         var surface = Surface();
         var direct = vec3f(0.0);
         var sum = vec3f(0.0);
         var seen = 0.0;
-        var start = origin;
-        var along = direction;
+        var start = from_place;
+        var along = towards;
         var near = from_distance;
         var reach = BVH_FAR;
         var beyond = vec3f(0.0);
         var width = cone;
-        for (var k = 0u; k <= render_frame.sky_rays; k += 1u) {
+        var turns = render_frame.sky_rays;
+        var water = PuddleWater(PUDDLE_WATER_NONE, 0.0, 0.0, 0.0);
+        var ripple = vec3f(0.0);
+        var mirrored_share = 0.0;
+        var share_of_turn = 1.0;
+        for (var k = 0u; k <= turns; k += 1u) {
+            let of_water = water.puddle != PUDDLE_WATER_NONE;
             if k > 0u {
                 if (surface.flags & SCENE_UNLIT) != 0u {
                     break;
                 }
                 start = surface.position + surface.facet * render_frame.nearest;
-                along = scene_hemisphere(surface.normal, k - 1u, render_frame.sky_rays, random);
                 near = render_frame.nearest;
-                reach = render_frame.sky_reach;
-                width = SCENE_GLANCE_CONE;
-                if dot(along, surface.facet) <= 0.0 {
-                    continue;
+                if of_water {
+                    let a = fract(rng_unit(random.x) + f32(k) * 0.618034);
+                    let b = fract(rng_unit(random.y) + f32(k) * 0.7548777);
+                    let normal = puddle_water_normal(ripple, a, b);
+                    along = puddle_water_mirrored(towards, normal);
+                    share_of_turn = optics_fresnel(max(-dot(towards, normal), PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
+                    mirrored_share += share_of_turn;
+                    reach = BVH_FAR;
+                    width = cone + PUDDLE_WATER_CONE;
+                    beyond = sky_level(0u, along);
+                } else {
+                    along = scene_hemisphere(surface.normal, k - 1u, turns, random);
+                    reach = render_frame.sky_reach;
+                    width = SCENE_GLANCE_CONE;
+                    if dot(along, surface.facet) <= 0.0 {
+                        continue;
+                    }
+                    beyond = sky_level(SCENE_SKY_LEVELS - 1u, along);
                 }
-            }
-            if k > 0u {
-                beyond = sky_level(SCENE_SKY_LEVELS - 1u, along);
             }
             let hit = surface_hit(start, along, near, reach);
             if k == 0u && hit.distance < 0.0 {
-                path.radiance += throughput * sky_level(0u, direction);
+                path.radiance += throughput * sky_level(0u, towards);
                 return path;
             }
             if hit.distance < 0.0 {
-                sum += beyond;
+                sum += beyond * share_of_turn;
                 seen += 1.0;
                 continue;
             }
             var found = surface_at(hit, start, along, width);
             let material = render_corners[hit.triangle * 3u].material;
-            if k == 0u && layer == 0u
+            var distance = hit.distance;
+            if k == 0u && wet_row == PUDDLE_WATER_NONE {
+                water = puddle_water_find(found.position, found.facet.y);
+            }
+            let is_water = k == 0u && water.puddle != PUDDLE_WATER_NONE;
+            if is_water {
+                // Back along the ray to where it came through the surface.
+                distance = max(hit.distance - water.rise / max(-towards.y, 0.01), near);
+                found = scene_water(from_place + towards * distance);
+                let footprint = cone * distance / sqrt(max(-towards.y, 0.02));
+                ripple = puddle_water_ripple(water.puddle, found.position, footprint, water.depth, water.open);
+                found.normal = puddle_water_normal(vec3f(ripple.xy, 0.0), 0.0, 0.0);
+                // Beckmann's alpha squared is the variance of the slope.
+                found.roughness = clamp(sqrt(sqrt(ripple.z)), 0.0, 1.0);
+                turns = max(turns, select(1u, PUDDLE_WATER_RAYS, ripple.z > PUDDLE_WATER_RIPPLED));
+            } else if k == 0u && layer == 0u
                 && scene_goes_on(last, material, found.facet, found.position, hit.distance) {
                 var same = last;
                 same.again = 1.0;
                 return same;
+            }
+            if k == 0u && under {
+                let look = bitcast<vec4f>(render_table[wet_row + 4u]);
+                found.diffuse = puddle_water_albedo(found.diffuse * clear + look.rgb * (1.0 - clear));
+                found.normal_reflectance = puddle_water_reflectance(found.normal_reflectance) * clear;
+                found.emission = found.emission * clear;
             }
             if k > 0u {
                 // The mirror image of a lamp, met by chance, would be noise.
@@ -245,7 +289,7 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
             if (found.flags & SCENE_UNLIT) == 0u {
                 let chance = rng_unit(random.z + k * 2654435769u);
                 // Where there are lamps, they stand for what shines; small bright things would be noise.
-                let shines = k == 0u || render_frame.light_count == 0u;
+                let shines = k == 0u || of_water || render_frame.light_count == 0u;
                 lit = select(vec3f(0.0), found.emission, shines) + scene_direct(found, -along, k == 0u, chance);
                 if k > 0u {
                     // What it has of the sky itself: half of the whole.
@@ -258,18 +302,39 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
                 direct = lit;
                 from_distance = hit.distance + render_frame.nearest;
                 if layer == 0u {
-                    path.distance = hit.distance;
-                    path.material = material;
+                    path.distance = distance;
+                    path.material = select(material, PUDDLE_WATER_MATERIAL, is_water);
                     path.facet = found.facet;
                     path.place = found.position;
+                    path.normal = found.normal;
+                }
+                if under {
                     path.normal = found.normal;
                 }
             } else {
                 // What a see-through surface lets pass comes from the sky behind it.
                 let share = select(1.0, clamp(found.alpha, 0.0, 1.0), (found.flags & SCENE_BLENDED) != 0u);
-                sum += lit * share + beyond * (1.0 - share);
+                sum += (lit * share + beyond * (1.0 - share)) * share_of_turn;
                 seen += 1.0 - share;
             }
+        }
+        if water.puddle != PUDDLE_WATER_NONE {
+            let mirrored = 1.0 / f32(turns);
+            path.radiance += throughput * (direct + sum * mirrored);
+            throughput *= 1.0 - mirrored_share * mirrored;
+            // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
+            wet_row = render_frame.puddles + water.puddle * PUDDLE_WATER_ROWS;
+            let extinction = bitcast<f32>(render_table[wet_row + 4u].w);
+            towards = puddle_water_refracted(towards, surface.normal);
+            let steep = max(-towards.y, 0.1);
+            clear = exp(-extinction * water.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
+            let aside = max(water.depth - water.rise, 0.0) / steep;
+            from_place = surface.position + vec3f(towards.x * aside, 0.0, towards.z * aside)
+                - towards * (4.0 * render_frame.nearest);
+            from_distance = render_frame.nearest;
+            under = true;
+            first_is_water = layer == 0u;
+            continue;
         }
         var sky = vec4f(sum, seen) / max(f32(render_frame.sky_rays), 1.0);
         if render_frame.sky_rays == 0u {
@@ -284,28 +349,36 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
         if (surface.flags & SCENE_UNLIT) != 0u {
             path.radiance += throughput * direct * share;
         } else {
-            let cosine = max(dot(surface.normal, -direction), 0.0);
-            let mirrored = direction - surface.normal * (2.0 * dot(direction, surface.normal));
+            let cosine = max(dot(surface.normal, -towards), 0.0);
+            let mirrored = towards - surface.normal * (2.0 * dot(towards, surface.normal));
             let gloss = brdf_environment(surface.normal_reflectance, surface.roughness, cosine);
             let reflection = gloss * sky_reflection(mirrored, surface.roughness) * surface.occlusion;
             let body = surface.diffuse * (1.0 - surface.transmission) * (vec3f(1.0) - gloss) * surface.occlusion;
             // Where the sky is hidden, so is most of its reflection.
             path.radiance += throughput * share * (direct + reflection * 0.1);
-            if layer == 0u && share == 1.0 && surface.transmission == 0.0 {
-                path.body = body;
-                path.gloss = reflection * 0.9;
+            if (layer == 0u || (under && first_is_water)) && share == 1.0 && surface.transmission == 0.0 {
+                path.body = throughput * body;
+                path.gloss = throughput * reflection * 0.9;
                 path.sky = sky;
                 path.met = 1.0;
             } else {
                 path.radiance += throughput * share * (body * sky.rgb + reflection * (0.9 * sky.w * sky.w));
             }
         }
+        under = false;
         throughput *= tint * (1.0 - share) + surface.diffuse * surface.transmission * share;
         if max(throughput.x, max(throughput.y, throughput.z)) < 1.0e-3 {
             return path;
         }
     }
     return path;
+}
+
+// The surface of water at a place.
+fn scene_water(place: vec3f) -> Surface {
+    let up = vec3f(0.0, 1.0, 0.0);
+    let none = vec3f(0.0);
+    return Surface(place, 1.0, up, 0.0, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0);
 }
 
 // All that a path has seen.

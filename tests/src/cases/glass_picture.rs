@@ -121,8 +121,14 @@ fn pane(keys: &str) -> GlassPicture {
     );
     let weather = Weather::parse("w.toml", &text).expect("a weather");
     let sky = SkyMap::uniform([1.0; 3]);
-    let loaded =
-        Loaded { scene: Scene::default(), animations: Vec::new(), sky, sun: None, warnings: Vec::new() };
+    let loaded = Loaded {
+        scene: Scene::default(),
+        animations: Vec::new(),
+        sky,
+        sun: None,
+        masks: Vec::new(),
+        warnings: Vec::new(),
+    };
     let stage = Stage::new(&weather, &loaded, 0.0).expect("a stage");
     let mut pane = WetPane::new(&weather, &stage, 0.0).expect("a lattice").expect("a pane");
     pane.advance(0.0).expect("time");

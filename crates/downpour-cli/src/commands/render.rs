@@ -2,6 +2,7 @@
 
 mod clip;
 mod frames;
+mod ground;
 mod job;
 mod journal;
 #[cfg(feature = "video")]
@@ -16,6 +17,7 @@ mod shower;
 #[cfg(feature = "video")]
 mod video;
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -36,6 +38,7 @@ use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
 use crate::{quantity, stream};
 use frames::Frames;
+use ground::Puddles;
 use outputs::{Bytes, Format, Outputs};
 use painter::with_painter;
 use pane::Pane;
@@ -145,14 +148,16 @@ impl RenderArguments {
         let showers = &mut Showers::new(&input.weather)?;
         let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
         let pane = &mut Pane::new(&input.weather, &stage, self.input.time)?;
+        let mut puddles = Puddles::new(&input.weather, &input.loaded, &stage, self.input.time)?;
+        let stage = &*puddles.lay(Cow::Owned(stage), self.input.time)?;
         // The files have become buffers.
         drop(input.loaded);
-        let options = self.options(&stage, &input.weather, self.input.time, shower.veil);
+        let options = self.options(stage, &input.weather, self.input.time, shower.veil);
         let say = |text: &str| self.say(text);
         let pane = RefCell::new(pane);
         let (picture, computer) = with_painter(&self.backend, interrupt, say, |painter| {
-            let mut picture = painter.paint(&stage, &shower.visible.drops, &showers.masks, &options)?;
-            let through = pane.borrow_mut().before(&stage, &picture, &options, self.input.time)?;
+            let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
+            let through = pane.borrow_mut().before(stage, &picture, &options, self.input.time)?;
             painter.look(&mut picture, through)?;
             Ok((picture, painter.computer().clone()))
         })?;

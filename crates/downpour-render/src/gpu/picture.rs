@@ -1,6 +1,7 @@
 //! A whole picture on a GPU.
 
 use downpour_gpu::{Gpu, GpuError};
+use downpour_shaders::render::puddle_water::PUDDLE_WATER_RAYS;
 use downpour_sim::field::FallingDrop;
 
 use super::rain::RainPipeline;
@@ -109,7 +110,9 @@ const TURNS_PER_RAY: u64 = 200;
 /// [`GpuError::OverLimit`] if a pixel may take more turns than a software driver allows.
 fn check_turns(frame: &RenderFrame) -> Result<(), GpuError> {
     let [grid, sky, lights] = [frame.grid, frame.sky_rays, frame.light_count].map(u64::from);
-    let rays = 1 + lights + 2 * sky;
+    // Water adds what it mirrors, lit by a lamp each.
+    let mirrored = if frame.puddle_count > 0 { 2 * sky.max(u64::from(PUDDLE_WATER_RAYS)) } else { 0 };
+    let rays = 1 + lights + 2 * sky + mirrored;
     let needed = grid * grid * (rays * TURNS_PER_RAY + 2 * lights * (1 + sky));
     if needed <= MOST_TURNS {
         return Ok(());

@@ -4,12 +4,13 @@ use super::fault::Places;
 use super::glass::GlassTable;
 use super::lamps::{Lamp, LampTable};
 use super::models::{Model, ModelTable};
+use super::puddle::{self, Puddle, PuddleTable};
 use super::quantity::{Exactly, Whole};
 use super::rain::{Rain, RainTable};
 use super::sky::{Sky, SkyTable, SunSource, SunTable};
 use super::streaks::StreaksTable;
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
-use super::{Camera, MAX_LIGHTS, MAX_MODELS, Weather, camera::CameraTable};
+use super::{Camera, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable};
 use crate::error::{SceneError, quoted};
 use crate::uri::{Address, RelativePath, check};
 use serde::Deserialize;
@@ -33,6 +34,7 @@ struct Tables {
     wind_field: WindFieldTable,
     streaks: StreaksTable,
     glass: Option<GlassTable>,
+    puddle: Vec<PuddleTable>,
     output: OutputTable,
 }
 
@@ -49,6 +51,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     for (key, count, most) in [
         ("model", tables.model.len(), MAX_MODELS),
         ("light", tables.light.len(), MAX_LIGHTS),
+        ("puddle", tables.puddle.len(), MAX_PUDDLES),
         ("wind", tables.wind.len(), downpour_wind::WIND_PARTS),
     ] {
         if count > most {
@@ -58,6 +61,8 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     let sky = Sky::checked(&tables.sky, &places)?;
     let rain = Rain::checked(&tables.rain, &places)?;
     let default = Weather::default();
+    let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &places))?;
+    puddle::check_all(&puddles, &places)?;
     Ok(Weather {
         name: String::new(),
         glass: tables.glass.map(|glass| glass.checked(&rain, &places)).transpose()?,
@@ -70,6 +75,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         wind: wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &places)?,
         wind_box: tables.wind_field.checked(&places)?,
         streaks: tables.streaks.checked(),
+        puddles,
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
 }

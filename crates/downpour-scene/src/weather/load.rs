@@ -1,10 +1,12 @@
 //! All that a weather file names, as one scene, one sky and one sun.
 
-use super::{Lamp, Model, SkySource, SunSource, Weather};
+use super::puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, PuddleShape};
+use super::{Lamp, Model, Puddle, SkySource, SunSource, Weather};
 use crate::Budget;
 use crate::beneath::{Files, Folder, OpenFile};
 use crate::error::SceneError;
 use crate::gltf::read_scene_from_bytes;
+use crate::picture::{self, Picture};
 use crate::scene::{Animation, Light, LightKind, Local, Node, Scene};
 use crate::sky::{self, SUN_THRESHOLD, SkyMap, Sun};
 use crate::uri::{Address, RelativePath, check};
@@ -29,6 +31,8 @@ pub struct Loaded {
     pub sky: SkyMap,
     /// The sun, if there is one.
     pub sun: Option<Sun>,
+    /// For each puddle, the picture of its depth if it is painted.
+    pub masks: Vec<Option<Picture>>,
     /// What was left out or made good, in all files.
     pub warnings: Vec<Warning>,
 }
@@ -111,9 +115,40 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
         purse.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
         hang(&mut scene, lamp);
     }
+    let masks = masks(weather, files, &mut purse)?;
     *budget = purse;
     let warnings = [std::mem::take(&mut sky.warnings), scene.warnings.clone(), warnings.finish()].concat();
-    Ok(Loaded { scene, animations, sky, sun, warnings })
+    Ok(Loaded { scene, animations, sky, sun, masks, warnings })
+}
+
+/// The pictures of the depths of painted puddles.
+fn masks(
+    weather: &Weather,
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<Vec<Option<Picture>>, SceneError> {
+    let mut cells = 0;
+    let read = |puddle: &Puddle| {
+        let PuddleShape::Painted(file) = &puddle.shape else { return Ok(None) };
+        let name = file.as_str();
+        let mut read = || {
+            let bytes = sky::whole(files.open(file)?, budget)?;
+            let mask = picture::decode(name, &bytes, budget)?;
+            let found = format!("a mask of {} x {} pixels", mask.width, mask.height);
+            if mask.width.max(mask.height) > MAX_PUDDLE_CELLS || mask.width.min(mask.height) < 2 {
+                let allowed = format!("2 to {MAX_PUDDLE_CELLS} pixels each way");
+                return Err(SceneError::limit("", found, allowed));
+            }
+            cells += u64::from(mask.width) * u64::from(mask.height);
+            if cells > MAX_ALL_PUDDLE_CELLS {
+                let found = format!("{cells} pixels in all masks so far");
+                return Err(SceneError::limit("", found, format!("at most {MAX_ALL_PUDDLE_CELLS}")));
+            }
+            Ok(mask)
+        };
+        read().map(Some).map_err(|error| error.in_file(name))
+    };
+    weather.puddles.iter().map(read).collect()
 }
 
 /// The sky and the sun, turned and scaled.

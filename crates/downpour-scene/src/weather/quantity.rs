@@ -38,6 +38,14 @@ ranges! {
     PressureHpa: 300.0, 1100.0, "300 to 1100 hPa";
     BoxM: 1.0, 1000.0, "1 to 1000 m";
     RadiusM: 0.5, 1000.0, "0.5 to 1000 m";
+    PuddleM: 0.1, 1000.0, "0.1 to 1000 m";
+    PuddleReachM: 0.01, 100.0, "0.01 to 100 m";
+    PuddleDepthMm: 0.1, 10_000.0, "0.1 to 10000 mm";
+    ReliefMm: 0.0, 100.0, "0 to 100 mm";
+    FieldCellMm: 2.0, 1000.0, "2 to 1000 mm";
+    RippleScale: 0.1, 10.0, "0.1 to 10";
+    Influence: 0.0, 10.0, "0 to 10";
+    ClearM: 0.001, 1000.0, "0.001 to 1000 m";
     Share: 0.0, 1.0, "0 to 1";
     DropSize: 0.05, 1.0, "0.05 to 1";
     ShortS: 0.01, 10.0, "0.01 to 10 s";

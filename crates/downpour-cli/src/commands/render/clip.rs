@@ -15,6 +15,7 @@ use downpour::render::stage::{LATEST_S, Stage};
 use serde_json::Value;
 
 use super::frames::Frames;
+use super::ground::Puddles;
 use super::job::{Job, digest, moves, scene_digest};
 use super::journal::{Journal, Record};
 use super::outputs::Format;
@@ -98,6 +99,12 @@ struct Clip<'a> {
     interrupt: &'a Interrupt,
 }
 
+/// What holds water, from frame to frame.
+struct Surfaces {
+    pane: Pane,
+    puddles: Puddles,
+}
+
 impl Clip<'_> {
     /// Makes the frames that are not there. Returns how many those were.
     fn make(&self, painter: &Painter) -> Result<(Journal, u32), PaintError> {
@@ -131,15 +138,16 @@ impl Clip<'_> {
             remove_leftovers(drops.folder());
         }
         let showers = &mut Showers::new(&self.input.weather)?;
-        let pane = &mut Pane::new(
-            &self.input.weather,
-            &self.first,
-            time_s(self.arguments.input.time, self.frames.first, self.fps),
-        )?;
+        let (weather, loaded) = (&self.input.weather, &self.input.loaded);
+        let first_s = time_s(self.arguments.input.time, self.frames.first, self.fps);
+        let surfaces = &mut Surfaces {
+            pane: Pane::new(weather, &self.first, first_s)?,
+            puddles: Puddles::new(weather, loaded, &self.first, first_s)?,
+        };
         let mut progress = Progress::new("frame", missing, self.arguments.quiet);
         for number in self.frames.numbers() {
             if !kept.contains(&number) {
-                let made = self.make_frame(number, painter, showers, pane, journal);
+                let made = self.make_frame(number, painter, showers, surfaces, journal);
                 made.inspect_err(|_| self.say_how_to_go_on(journal))?;
                 progress.step();
             } else if !showers.is_closed_form() {
@@ -185,13 +193,13 @@ impl Clip<'_> {
         number: u32,
         painter: &Painter,
         showers: &mut Showers,
-        pane: &mut Pane,
+        Surfaces { pane, puddles }: &mut Surfaces,
         journal: &mut Journal,
     ) -> Result<(), PaintError> {
         let begin = Instant::now();
         let rain = &self.input.weather.rain;
         let time_s = time_s(self.arguments.input.time, number, self.fps);
-        let stage = &*self.stage(number, time_s)?;
+        let stage = &*puddles.lay(self.stage(number, time_s)?, time_s)?;
         let shower = showers.at(stage, time_s, self.places.stats.is_some())?;
         let options = self.arguments.options(stage, &self.input.weather, time_s, shower.veil);
         let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;

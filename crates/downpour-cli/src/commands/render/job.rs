@@ -3,6 +3,7 @@
 use std::fmt::{self, Write as _};
 
 use downpour::render::stage::Stage;
+use downpour::scene::picture::Pixels;
 use downpour::scene::weather::{Loaded, Weather};
 use sha2::{Digest as _, Sha256};
 
@@ -31,6 +32,15 @@ pub(super) fn scene_digest(weather: &Weather, loaded: &Loaded, first: &Stage) ->
     for buffer in buffers {
         sum.update((buffer.len() as u64).to_le_bytes());
         sum.update(buffer);
+    }
+    for mask in &loaded.masks {
+        let bytes: &[u8] = match mask.as_ref().map(|mask| &mask.pixels) {
+            Some(Pixels::Rgba8(pixels)) => bytemuck::cast_slice(pixels),
+            Some(Pixels::RgbaF32(pixels)) => bytemuck::cast_slice(pixels),
+            None => &[],
+        };
+        sum.update((bytes.len() as u64).to_le_bytes());
+        sum.update(bytes);
     }
     let rest = (data.slots, data.lights, data.light_count, data.sky_levels, data.sky_irradiance);
     let mut text = Text(sum);

@@ -1,0 +1,22 @@
+//! Puddles on the surfaces of a scene (Tatarchuk & Isidoro 2006, section 4).
+//!
+//! 1. [`PuddleMap`]: where water stands and how deep, painted or found from the scene by filling its hollows ([`fill`]), on
+//!    ground whose unevenness may be finer than its model ([`relief`]);
+//! 2. [`WetGround`]: the maps of a weather, and the ripples of the rain on them, from picture to picture;
+//! 3. [`SceneData::lay_puddles`](crate::data::SceneData::lay_puddles): both as rows of the scene's table;
+//! 4. [`water`]: what a ray finds of them, on CPU and GPU.
+
+mod error;
+pub mod fill;
+mod map;
+pub mod relief;
+mod ripples;
+mod rows;
+pub mod water;
+mod wet_ground;
+
+pub use error::PuddleError;
+pub use map::{Ground, PuddleMap};
+pub use ripples::{Ripples, slope_levels};
+pub use rows::{PuddleLook, PuddleRows};
+pub use wet_ground::WetGround;

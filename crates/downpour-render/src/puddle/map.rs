@@ -1,0 +1,171 @@
+//! Where water stands, and how deep.
+
+use downpour_shaders::bvh::BVH_FAR;
+use downpour_shaders::render::puddle_water::PUDDLE_WATER_LEAST;
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::fill::{Hollows, fill};
+use super::relief::Relief;
+use crate::data::SceneData;
+
+/// Land beside water tells how far it lies over the water's level up to this far, m: the shore runs between the cells.
+const SHORE_M: f32 = 5.0e-3;
+
+/// Cells round the water that know its level.
+const SHORE_CELLS: u32 = 2;
+
+/// What is land for certain, m.
+const LAND_M: f32 = -1.0;
+
+/// From where rays look up for a roof, m over the ground.
+const OVER_GROUND_M: f32 = 0.02;
+
+/// A rectangle of the ground, seen from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// Its middle, m; the ground is looked for from `reach` over it to `reach` under it.
+    pub middle: Vec3,
+    /// Edges, m.
+    pub size: Vec2,
+    /// Turn about the vertical axis, rad, from +X towards +Z.
+    pub turn: f32,
+    /// How far over and under the middle the ground is looked for, m.
+    pub reach: f32,
+}
+
+/// Depths of water over a rectangle of the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PuddleMap {
+    /// The rectangle.
+    pub ground: Ground,
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// For each cell: height of the ground over the middle (m), rise of the water's surface over that (m), depth (m, below
+    /// 0 on land), share of the rain that arrives.
+    pub cells: Vec<[f32; 4]>,
+}
+
+impl Ground {
+    /// The place over a part of the rectangle, 0 to 1 along its edges, at its middle's height.
+    fn place(&self, u: f32, v: f32) -> Vec3 {
+        let turn = Vec2::from_angle(self.turn);
+        let offset = turn.rotate(Vec2::new(u - 0.5, v - 0.5) * self.size);
+        self.middle + Vec3::new(offset.x, 0.0, offset.y)
+    }
+
+    /// Height over the middle of the highest surface within reach, and the share of the rain that arrives there; not a
+    /// number where there is none.
+    fn measure(&self, scene: &SceneData, size: [usize; 2]) -> (Vec<f32>, Vec<f32>) {
+        let [columns, rows] = size;
+        let cell = |i: usize| {
+            let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
+            let top = self.place(part(i % columns, columns), part(i / columns, rows)) + Vec3::Y * self.reach;
+            let down = scene.surface_hit(top, Vec3::NEG_Y, 0.0, 2.0 * self.reach);
+            let Some(hit) = down else { return (f32::NAN, 0.0) };
+            let height = self.reach - hit.distance;
+            let over = Vec3::new(top.x, self.middle.y + height + OVER_GROUND_M, top.z);
+            let roofed = scene.surface_hit(over, Vec3::Y, 0.0, BVH_FAR).is_some();
+            (height, if roofed { 0.0 } else { 1.0 })
+        };
+        (0..columns * rows).into_par_iter().map(cell).unzip()
+    }
+}
+
+impl PuddleMap {
+    /// Water in the hollows of a scene. `relief` is what the ground has beside its model; `share`, `deepest` (m) and `least`
+    /// (m) are those of [`Hollows`].
+    #[must_use]
+    pub fn found(
+        scene: &SceneData,
+        ground: &Ground,
+        size: [usize; 2],
+        relief: &Relief,
+        [share, deepest, least]: [f32; 3],
+    ) -> Self {
+        let (model, open) = ground.measure(scene, size);
+        let [columns, rows] = size;
+        let uneven: Vec<f32> = (0..columns * rows)
+            .into_par_iter()
+            .map(|i| {
+                let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
+                let place = ground.place(part(i % columns, columns), part(i / columns, rows));
+                model[i] + relief.height(Vec2::new(place.x, place.z))
+            })
+            .collect();
+        let mut levels = fill(&Hollows { size, ground: &uneven, share, deepest, least });
+        // Who is beside water knows its level too, so that the shore runs between the cells.
+        let wet: Vec<bool> = levels.iter().map(Option::is_some).collect();
+        for _ in 0..SHORE_CELLS {
+            levels = spread(&levels, size);
+        }
+        let cell = |i: usize| {
+            let height = if model[i].is_finite() { model[i] } else { -2.0 * ground.reach };
+            let Some(level) = levels[i].filter(|_| uneven[i].is_finite()) else {
+                return [height, 0.0, LAND_M, open[i]];
+            };
+            let depth = level - uneven[i];
+            // Land that is lower than water beside it is behind a shore.
+            let depth = if wet[i] { depth } else { depth.clamp(-SHORE_M, -0.1 * PUDDLE_WATER_LEAST) };
+            [height, (level - model[i]).max(0.0), depth, open[i]]
+        };
+        Self { ground: *ground, size, cells: (0..columns * rows).map(cell).collect() }
+    }
+
+    /// Water as deep as is painted (m, row by row), on the surface of the model. A number that is not above 0 is land.
+    ///
+    /// # Panics
+    /// If there are not as many depths as cells.
+    #[must_use]
+    pub fn painted(scene: &SceneData, ground: &Ground, size: [usize; 2], depths: &[f32]) -> Self {
+        assert_eq!(depths.len(), size[0] * size[1], "as many depths as cells");
+        let (model, open) = ground.measure(scene, size);
+        let cell = |((&height, &open), &depth): ((&f32, &f32), &f32)| {
+            if height.is_finite() {
+                [height, 0.0, if depth > 0.0 { depth } else { -0.1 * PUDDLE_WATER_LEAST }, open]
+            } else {
+                [-2.0 * ground.reach, 0.0, LAND_M, 0.0]
+            }
+        };
+        Self { ground: *ground, size, cells: model.iter().zip(&open).zip(depths).map(cell).collect() }
+    }
+
+    /// Area under water, m^2.
+    #[must_use]
+    pub fn area_m2(&self) -> f32 {
+        let wet = self.cells.iter().filter(|cell| cell[2] >= PUDDLE_WATER_LEAST).count();
+        wet as f32 * self.cell_m2()
+    }
+
+    /// Volume of the water, m^3.
+    #[must_use]
+    pub fn volume_m3(&self) -> f32 {
+        self.cells.iter().map(|cell| cell[2].max(0.0)).sum::<f32>() * self.cell_m2()
+    }
+
+    /// The greatest depth, m.
+    #[must_use]
+    pub fn deepest_m(&self) -> f32 {
+        self.cells.iter().map(|cell| cell[2]).fold(0.0, f32::max)
+    }
+
+    fn cell_m2(&self) -> f32 {
+        self.ground.size.x * self.ground.size.y / self.cells.len().max(1) as f32
+    }
+}
+
+/// Levels with those of their neighbours: the highest of them where there is none.
+fn spread(levels: &[Option<f32>], [columns, rows]: [usize; 2]) -> Vec<Option<f32>> {
+    let at = |x: isize, y: isize| {
+        let inside = x >= 0 && y >= 0 && x < columns as isize && y < rows as isize;
+        inside.then(|| levels[y as usize * columns + x as usize]).flatten()
+    };
+    let cell = |i: usize| {
+        let (x, y) = ((i % columns) as isize, (i / columns) as isize);
+        levels[i].or_else(|| {
+            let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
+            around.filter_map(|(dx, dy)| at(x + dx, y + dy)).reduce(f32::max)
+        })
+    };
+    (0..columns * rows).map(cell).collect()
+}

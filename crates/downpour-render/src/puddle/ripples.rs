@@ -1,0 +1,107 @@
+//! The ripples of rain on water, of all puddles: a lattice of the simulator, and its slopes in levels.
+
+use downpour_drop::distribution::DropSizeDistribution;
+use downpour_lattice::puddle::{Puddle, PuddleBorder, PuddleOptions, PuddleRain};
+
+use super::PuddleError;
+
+/// Cells along an edge of the lattice: a power of two, so that each level has half of those of the one before.
+const CELLS: u32 = 512;
+
+/// Edge of a cell, m. Ripples of drops are longer than 8 mm.
+const CELL_M: f32 = 2.5e-3;
+
+/// Depth of the water for the speed of ripples, m.
+const DEPTH_M: f32 = 8.0e-3;
+
+/// Length of a step, s: rain is drawn for each.
+const STEP_S: f64 = 5.0e-3;
+
+/// Ripples older than this have gone, s.
+const MEMORY_S: f64 = 2.5;
+
+/// The surface of water in the rain.
+#[derive(Debug)]
+pub struct Ripples {
+    lattice: Puddle,
+    rain: Option<PuddleRain>,
+    /// The step that has been made, counted from time 0.
+    step: i64,
+}
+
+impl Ripples {
+    /// Level water before a time in seconds, so long before that at that time ripples are as many as they will be.
+    ///
+    /// # Errors
+    /// [`PuddleError`] if the lattice refuses.
+    pub fn new(rain: Option<&DropSizeDistribution>, seed: u64, time_s: f64) -> Result<Self, PuddleError> {
+        let options = PuddleOptions {
+            size: [CELLS; 2],
+            cell_m: CELL_M,
+            depth_m: DEPTH_M,
+            border: PuddleBorder::Open,
+            ..PuddleOptions::default()
+        };
+        let lattice = Puddle::new(&options)?;
+        let rain = rain.map(|rain| PuddleRain::new(rain, seed));
+        Ok(Self { lattice, rain, step: step_of(time_s - MEMORY_S) })
+    }
+
+    /// Lets rain fall until a time in seconds. The same ripples for any division of the time. A time long after the last
+    /// one begins anew: nothing is left of what was.
+    ///
+    /// # Errors
+    /// As [`Ripples::new`].
+    pub fn advance(&mut self, time_s: f64) -> Result<(), PuddleError> {
+        let Some(rain) = &self.rain else { return Ok(()) };
+        let until = step_of(time_s);
+        self.step = self.step.max(step_of(time_s - 2.0 * MEMORY_S));
+        let extent = self.lattice.extent_m();
+        while self.step < until {
+            let impacts = rain.impacts(extent, self.step as u64, STEP_S as f32)?;
+            self.lattice.seed(&impacts)?;
+            self.lattice.step(STEP_S as f32)?;
+            self.step += 1;
+        }
+        Ok(())
+    }
+
+    /// Cells along an edge of the finest level, the number of levels, and the edge of a cell (m).
+    #[must_use]
+    pub fn shape(&self) -> (u32, u32, f32) {
+        (CELLS, CELLS.ilog2(), CELL_M)
+    }
+
+    /// Slopes along the lattice's axes, and the mean of the square of the slope, of all levels, the finest first.
+    #[must_use]
+    pub fn slopes(&self) -> Vec<[f32; 4]> {
+        let finest = self.lattice.normals().into_iter().map(|[x, y, z]| {
+            let [sx, sz] = [-x / y.max(1.0e-3), -z / y.max(1.0e-3)];
+            [sx, sz, sx * sx + sz * sz, 0.0]
+        });
+        slope_levels(finest.collect(), CELLS as usize)
+    }
+}
+
+/// A square of texels, `size` (a power of two) each way, with all levels that are means of four of the one before, down to
+/// two by two: what [`PuddleRows`](super::PuddleRows) takes.
+#[must_use]
+pub fn slope_levels(mut texels: Vec<[f32; 4]>, size: usize) -> Vec<[f32; 4]> {
+    let (mut first, mut edge) = (0, size);
+    while edge > 2 {
+        let half = edge / 2;
+        for i in 0..half * half {
+            let corner = first + (i / half * 2) * edge + i % half * 2;
+            let four = [corner, corner + 1, corner + edge, corner + edge + 1];
+            texels.push(std::array::from_fn(|k| four.iter().map(|&at| texels[at][k]).sum::<f32>() * 0.25));
+        }
+        first += edge * edge;
+        edge = half;
+    }
+    texels
+}
+
+/// The number of the step that ends at or before a time, from time 0.
+fn step_of(time_s: f64) -> i64 {
+    (time_s / STEP_S + 1.0e-6).floor() as i64
+}

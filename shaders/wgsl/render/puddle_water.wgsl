@@ -1,0 +1,194 @@
+// Puddles as rays meet them: depth maps over the ground, ripples of one lattice, what water does to the ground beneath it.
+// Rows of a puddle in the table: middle, height and kind of the map; axes and half edges; columns, rows and first texel of
+// the map; ripples; colour and extinction of the water. After the puddles, one row of the ripples, and their texels.
+// Twin: downpour_render::puddle::water, where the method is described.
+
+// Water over a place.
+struct PuddleWater {
+    // Number of the puddle, or PUDDLE_WATER_NONE.
+    puddle: u32,
+    // Depth, m.
+    depth: f32,
+    // How far the surface is over the place, m.
+    rise: f32,
+    // Share of the rain that arrives.
+    open: f32,
+}
+
+// A texel of a map: ground over the map's height (m), rise of the surface over the ground (m), depth (m, below 0 on
+// land), share of the rain that arrives.
+fn puddle_water_texel(row: u32, x: i32, y: i32) -> vec4f {
+    let size = render_table[row + 2u];
+    let column = clamp(x, 0, i32(size.x) - 1);
+    let line = clamp(y, 0, i32(size.y) - 1);
+    return bitcast<vec4f>(render_table[size.z + u32(line) * size.x + u32(column)]);
+}
+
+// The map over a place, bilinear. Beyond the map all is land.
+fn puddle_water_map(row: u32, place: vec3f) -> vec4f {
+    let base = bitcast<vec4f>(render_table[row]);
+    let axes = bitcast<vec4f>(render_table[row + 1u]);
+    let size = render_table[row + 2u];
+    let dx = place.x - base.x;
+    let dz = place.z - base.z;
+    let along = dx * axes.x + dz * axes.y;
+    let across = dz * axes.x - dx * axes.y;
+    if abs(along) >= axes.z || abs(across) >= axes.w {
+        return vec4f(0.0, 0.0, -1.0, 0.0);
+    }
+    let u = (along / axes.z * 0.5 + 0.5) * f32(size.x) - 0.5;
+    let v = (across / axes.w * 0.5 + 0.5) * f32(size.y) - 0.5;
+    let x = i32(floor(u));
+    let y = i32(floor(v));
+    let fx = u - floor(u);
+    let fy = v - floor(v);
+    let upper = puddle_water_texel(row, x, y) * (1.0 - fx) + puddle_water_texel(row, x + 1, y) * fx;
+    let lower = puddle_water_texel(row, x, y + 1) * (1.0 - fx) + puddle_water_texel(row, x + 1, y + 1) * fx;
+    return upper * (1.0 - fy) + lower * fy;
+}
+
+// The water over a place that a ray has met, on ground whose facet rises by `upward`, or in the water.
+fn puddle_water_find(place: vec3f, upward: f32) -> PuddleWater {
+    for (var k = 0u; k < render_frame.puddle_count; k += 1u) {
+        let row = render_frame.puddles + k * PUDDLE_WATER_ROWS;
+        let found = puddle_water_map(row, place);
+        if found.z < PUDDLE_WATER_LEAST {
+            continue;
+        }
+        let height = place.y - bitcast<f32>(render_table[row].y) - found.x;
+        let rise = clamp(found.y - height, 0.0, max(found.y, 0.0));
+        let stands = height > 0.0 && rise > 0.0;
+        let lies = abs(height) <= PUDDLE_WATER_SLACK && upward > 0.7;
+        if stands || lies {
+            return PuddleWater(k, max(found.z - max(height, 0.0), 0.0), rise, clamp(found.w, 0.0, 1.0));
+        }
+    }
+    return PuddleWater(PUDDLE_WATER_NONE, 0.0, 0.0, 0.0);
+}
+
+// A texel of a level of the ripples: slopes along the lattice's axes, and the mean of the square of the slope.
+fn puddle_water_slope(first: u32, size: u32, x: i32, y: i32) -> vec4f {
+    let column = u32(clamp(x, 0, i32(size) - 1));
+    let line = u32(clamp(y, 0, i32(size) - 1));
+    return bitcast<vec4f>(render_table[first + line * size + column]);
+}
+
+// A piece of the ripples round a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
+// from the vertex, in the mesh's steps; `level` has size, first row and texels per step.
+fn puddle_water_piece(vertex: vec2i, offset: vec2f, first: u32, size: u32, steps: f32) -> vec3f {
+    let words = rng_draw(vec2u(0u, 0u), bitcast<u32>(vertex.x), bitcast<u32>(vertex.y), PUDDLE_WATER_DIMENSION);
+    // Anywhere as long as the piece lies within the lattice: a step to each side of its middle.
+    let room = max(f32(size) - 2.0 * steps, 0.0);
+    let u = steps + rng_unit(words.x) * room + offset.x * steps - 0.5;
+    let v = steps + rng_unit(words.y) * room + offset.y * steps - 0.5;
+    let x = i32(floor(u));
+    let y = i32(floor(v));
+    let fx = u - floor(u);
+    let fy = v - floor(v);
+    let upper = puddle_water_slope(first, size, x, y) * (1.0 - fx) + puddle_water_slope(first, size, x + 1, y) * fx;
+    let lower = puddle_water_slope(first, size, x, y + 1) * (1.0 - fx)
+        + puddle_water_slope(first, size, x + 1, y + 1) * fx;
+    let mixed = upper * (1.0 - fy) + lower * fy;
+    return vec3f(mixed.xy, max(mixed.z - dot(mixed.xy, mixed.xy), 0.0));
+}
+
+// Slopes along x and z of the water's surface, and the variance of the slope within a footprint (m). One lattice serves
+// all water: pieces of it, from a place of its own for each vertex of a mesh of triangles, are mixed so that the variance
+// stays.
+fn puddle_water_ripple(puddle: u32, place: vec3f, footprint: f32, depth: f32, open: f32) -> vec3f {
+    let row = render_frame.puddles + puddle * PUDDLE_WATER_ROWS;
+    let look = bitcast<vec4f>(render_table[row + 3u]);
+    let more = bitcast<vec4f>(render_table[row + 5u]);
+    let head = render_table[render_frame.puddles + render_frame.puddle_count * PUDDLE_WATER_ROWS];
+    let cell = bitcast<f32>(head.w);
+    // look: scale, cosine and sine of the angle, influence.
+    let strength = look.w * open * smoothstep(0.0, max(more.x, 1.0e-6), depth);
+    if head.x == 0u || strength <= 0.0 {
+        return vec3f(0.0);
+    }
+    let finest = footprint / (look.x * cell);
+    let level = min(u32(max(floor(log2(max(finest, 1.0)) + 0.5), 0.0)), head.y - 1u);
+    // Levels of n x n, n / 2 x n / 2, ...: 4/3 n^2 (1 - 4^-level) texels before this one.
+    let size = max(head.x >> level, 1u);
+    let first = head.z + (head.x * head.x - size * size) / 3u * 4u;
+    let steps = PUDDLE_WATER_MESH / cell * f32(size) / f32(head.x);
+
+    let px = (place.x * look.y + place.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
+    let pz = (place.z * look.y - place.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
+    // Skewed, so that triangles become halves of squares.
+    let sx = px - pz * 0.57735027;
+    let sz = pz * 1.1547005;
+    let corner = vec2i(i32(floor(sx)), i32(floor(sz)));
+    let fx = sx - floor(sx);
+    let fz = sz - floor(sz);
+    let under = fx + fz < 1.0;
+    let third = 1.0 - fx - fz;
+    let weights = select(vec3f(-third, 1.0 - fz, 1.0 - fx), vec3f(third, fz, fx), under);
+    var sum = vec2f(0.0);
+    var spread = 0.0;
+    var square = 0.0;
+    for (var k = 0u; k < 3u; k += 1u) {
+        var step = vec2i(select(1, 0, under), select(1, 0, under));
+        if k == 1u {
+            step = vec2i(select(1, 0, under), select(0, 1, under));
+        }
+        if k == 2u {
+            step = vec2i(select(0, 1, under), select(1, 0, under));
+        }
+        let vertex = corner + step;
+        let middle = vec2f(f32(vertex.x) + 0.5 * f32(vertex.y), 0.8660254 * f32(vertex.y));
+        let piece = puddle_water_piece(vertex, vec2f(px, pz) - middle, first, size, steps);
+        let weight = weights[k];
+        sum += piece.xy * weight;
+        spread += piece.z * weight * weight;
+        square += weight * weight;
+    }
+    let slope = sum * (strength / sqrt(square));
+    // Back to the world's axes.
+    return vec3f(
+        slope.x * look.y - slope.y * look.z,
+        slope.y * look.y + slope.x * look.z,
+        spread / square * strength * strength,
+    );
+}
+
+// The normal of a surface with these slopes, and with a deviation drawn by two numbers in [0, 1).
+fn puddle_water_normal(ripple: vec3f, a: f32, b: f32) -> vec3f {
+    // Normal deviates along both axes, each with half of the variance.
+    let radius = sqrt(-ripple.z * log(max(1.0 - a, 1.0e-6)));
+    let angle = 6.2831853 * b;
+    let x = -(ripple.x + radius * cos(angle));
+    let z = -(ripple.y + radius * sin(angle));
+    return vec3f(x, 1.0, z) / sqrt(1.0 + x * x + z * z);
+}
+
+// A mirrored direction above the water.
+fn puddle_water_mirrored(direction: vec3f, normal: vec3f) -> vec3f {
+    let along = direction - normal * (2.0 * dot(direction, normal));
+    let raised = vec3f(along.x, max(abs(along.y), PUDDLE_WATER_GRAZING), along.z);
+    return raised / sqrt(dot(raised, raised));
+}
+
+// The direction beneath the surface.
+fn puddle_water_refracted(direction: vec3f, normal: vec3f) -> vec3f {
+    let eta = 1.0 / PUDDLE_WATER_INDEX;
+    let cosine = max(-dot(direction, normal), 0.0);
+    let inner = sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0));
+    let along = direction * eta + normal * (eta * cosine - inner);
+    return along / sqrt(dot(along, along));
+}
+
+// Albedo of what lies under water, as seen through its surface over the share that comes out along the ray: light goes
+// in diffusely, and is thrown back between ground and surface. White stays white.
+fn puddle_water_albedo(albedo: vec3f) -> vec3f {
+    let out = (1.0 - PUDDLE_WATER_OUTSIDE) / (PUDDLE_WATER_INDEX * PUDDLE_WATER_INDEX);
+    return albedo * out / (vec3f(1.0) - albedo * PUDDLE_WATER_INSIDE);
+}
+
+// Reflectance at normal incidence of what lies under water, from that in air.
+fn puddle_water_reflectance(in_air: vec3f) -> vec3f {
+    let root = sqrt(clamp(in_air, vec3f(0.0), vec3f(0.98)));
+    let index = (vec3f(1.0) + root) / (vec3f(1.0) - root);
+    let ratio = (index - vec3f(PUDDLE_WATER_INDEX)) / (index + vec3f(PUDDLE_WATER_INDEX));
+    return ratio * ratio;
+}

@@ -1,0 +1,151 @@
+//! `shaders/wgsl/render/puddle_water.wgsl` against `downpour_render::puddle::water`.
+
+use downpour_gpu::{Gpu, GpuError};
+use downpour_math::ops;
+use downpour_math::rng::{rng_pcg4d, rng_unit};
+use downpour_render::camera::Viewpoint;
+use downpour_render::gpu::ScenePipeline;
+use downpour_render::puddle::water::{
+    puddle_water_albedo, puddle_water_mirrored, puddle_water_normal, puddle_water_reflectance,
+    puddle_water_refracted,
+};
+use downpour_render::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
+use downpour_render::scene::SceneView;
+use downpour_shaders::render::puddle_water::PUDDLE_WATER;
+use downpour_shaders::render::scene::TRACE_KERNEL;
+use glam::{Vec2, Vec3};
+
+use crate::Domain::{Uniform, Unit3};
+use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::{Args, IntoWords as _};
+use crate::{FunctionCase, KernelCase, Tol};
+
+fn vec3(args: &mut Args<'_>) -> Vec3 {
+    Vec3::from(args.f32s())
+}
+
+const DIRECTION: Tol = Tol::relative(
+    1.0e-4,
+    2.0e-5,
+    "roots and quotients (2.5 ulp each); components near 0 are differences of numbers up to 1",
+);
+
+/// The cases.
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let slope = Uniform(-0.5, 0.5);
+    let share = Uniform(0.0, 1.0);
+    vec![
+        FunctionCase::new(
+            "puddle_water_normal",
+            &PUDDLE_WATER,
+            &[slope, slope, Uniform(0.0, 0.1), share, share],
+            Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
+                .with_outliers(1.0e-3),
+            |a| puddle_water_normal(vec3(a), a.f32(), a.f32()).to_array().words(),
+        ),
+        FunctionCase::new("puddle_water_mirrored", &PUDDLE_WATER, &[Unit3, Unit3], DIRECTION, |a| {
+            puddle_water_mirrored(vec3(a), vec3(a)).to_array().words()
+        }),
+        FunctionCase::new("puddle_water_refracted", &PUDDLE_WATER, &[Unit3, Unit3], DIRECTION, |a| {
+            puddle_water_refracted(vec3(a), vec3(a)).to_array().words()
+        }),
+        FunctionCase::new("puddle_water_albedo", &PUDDLE_WATER, &[share, share, share], DIRECTION, |a| {
+            puddle_water_albedo(vec3(a)).to_array().words()
+        }),
+        FunctionCase::new(
+            "puddle_water_reflectance",
+            &PUDDLE_WATER,
+            &[share, share, share],
+            Tol::relative(2.0e-3, 1.0e-5, "a difference of refractive indices, and 1 - root(0.98), cancel"),
+            |a| puddle_water_reflectance(vec3(a)).to_array().words(),
+        ),
+    ]
+}
+
+/// Two puddles on the floor of the scene of the other cases: one beneath the surface that the rays meet, one on it.
+fn maps() -> [(PuddleMap, PuddleLook); 2] {
+    let ground =
+        Ground { middle: Vec3::new(-1.4, -0.5, 0.3), size: Vec2::new(2.6, 3.0), turn: 0.4, reach: 0.3 };
+    let size = [24, 28];
+    let cell = |i: usize| {
+        let (x, y) = ((i % size[0]) as f32, (i / size[0]) as f32);
+        let depth = 0.06 * ops::sin(0.4 * x) * ops::cos(0.35 * y);
+        [-0.02, depth.max(0.0) + 0.01, depth, rng_unit(rng_pcg4d([i as u32, 0, 0, 9])[0])]
+    };
+    let sunk = PuddleMap { ground, size, cells: (0..size[0] * size[1]).map(cell).collect() };
+    let flat = PuddleMap {
+        ground: Ground { middle: Vec3::new(1.6, -0.497, 0.4), turn: -0.2, ..ground },
+        cells: sunk.cells.iter().map(|&[_, _, depth, open]| [0.0, 0.0, depth + 0.01, open]).collect(),
+        ..sunk
+    };
+    let look = PuddleLook { influence: 1.4, angle: 0.7, scale: 0.8, ..PuddleLook::default() };
+    [(sunk, PuddleLook::default()), (flat, look)]
+}
+
+fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
+    let mut scene = super::scene::scene();
+    let finest = (0..128 * 128u32).map(|i| {
+        let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| rng_unit(word) - 0.5);
+        let [x, y] = [(i % 128) as f32, (i / 128) as f32];
+        let slopes = [0.2 * ops::sin(0.5 * x + 0.2 * y) + 0.1 * a, 0.2 * ops::cos(0.6 * y) + 0.1 * b];
+        [slopes[0], slopes[1], slopes[0] * slopes[0] + slopes[1] * slopes[1], 0.0]
+    });
+    scene.lay_puddles(&PuddleRows {
+        puddles: &maps(),
+        shape: (128, 7, 0.01),
+        slopes: &slope_levels(finest.collect(), 128),
+        shift: Vec3::ZERO,
+    });
+    let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.9 };
+    let frame = view.frame(&scene, [96, 64], 2, sky_rays, 7).expect("a frame");
+    let cpu = SceneView { data: &scene, frame: &frame }.picture();
+    let pipeline = ScenePipeline::new(gpu)?;
+    let gpu = pipeline.picture(&pipeline.upload(&scene)?, &frame)?;
+    let words = |picture: &[[f32; 4]]| picture.iter().flatten().map(|v| v.to_bits()).collect();
+    Ok(Run {
+        arguments: (0..96u32 * 64)
+            .map(|i| vec![((i % 96) as f32).to_bits(), ((i / 96) as f32).to_bits()])
+            .collect(),
+        cpu: Cpu(words(&cpu)),
+        gpu: FromGpu(words(&gpu)),
+        kinds: vec![WordKind::Float; 4],
+    })
+}
+
+/// The cases.
+pub(super) fn kernels() -> Vec<KernelCase> {
+    let case = |name, run| {
+        KernelCase {
+        name,
+        kernel: &TRACE_KERNEL,
+        covers: &[
+            "puddle_water_texel",
+            "puddle_water_map",
+            "puddle_water_find",
+            "puddle_water_slope",
+            "puddle_water_piece",
+            "puddle_water_ripple",
+            "scene_water",
+        ],
+        tol: Tol::relative(
+            4.0e-3,
+            4.0e-3,
+            "sums over rays whose directions go through log2, sine and cosine; a ray at an edge, and a level of the ripples \
+             at its bound, may fall on either side",
+        )
+        .with_outliers(6.0e-3),
+        run,
+    }
+    };
+    vec![case("main_trace: puddles from near", case_near), case("main_trace: puddles from afar", case_far)]
+}
+
+fn case_near(gpu: &Gpu) -> Result<Run, GpuError> {
+    case(gpu, Vec3::new(0.6, 1.0, 2.6), 2)
+}
+
+fn case_far(gpu: &Gpu) -> Result<Run, GpuError> {
+    case(gpu, Vec3::new(-3.0, 3.0, 9.0), 0)
+}
