@@ -98,7 +98,7 @@ fn clear_water_on_white_ground_is_not_seen() -> Outcome {
     Ok(())
 }
 
-/// Ground of albedo 0.2 under water: (1 - F_d) / n^2 of it, times what is thrown back, and Fresnel's share of the sky.
+/// Ground of albedo 0.2 under water: (1 - `F_d`) / n^2 of it, times what is thrown back, and Fresnel's share of the sky.
 #[test]
 fn dark_ground_is_darker_under_water_and_mirrors_by_fresnel() -> Outcome {
     for angle in [12.0f32, 30.0, 89.0] {

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use downpour::drop::distribution::{DistributionOptions, DropSizeDistribution};
+use downpour::render::puddle::{PuddleMap, WetGround};
 use downpour::render::shower::Shower;
 use downpour::render::stage::{CameraChoice, Stage};
 use downpour::scene::{Budget, scene::Texture};
@@ -32,6 +33,7 @@ impl CheckArguments {
         entries.extend(light(&input));
         entries.extend(rain(&input)?);
         entries.extend(motion(&input)?);
+        entries.extend(water(&input, &stage)?);
         let [width, height] = input.weather.size.map(u64::from);
         let bytes = stage.bytes() + width * height * BYTES_PER_PIXEL;
         entries.push(Entry::new("memory_mib", "memory, about", Datum::Computed(mebibytes(bytes), 3), "MiB"));
@@ -146,6 +148,31 @@ fn motion(input: &Input) -> Result<Vec<Entry>, Failure> {
             "turbulence",
             or_none(wind.turbulence().is_some(), "carried by the wind"),
             "",
+        ),
+    ])
+}
+
+/// The water that stands on the ground.
+fn water(input: &Input, stage: &Stage) -> Result<Vec<Entry>, Failure> {
+    let ground = WetGround::new(&input.weather, &input.loaded, stage, 0.0)?;
+    let sum = |of: fn(&PuddleMap) -> f32| {
+        ground.iter().flat_map(WetGround::maps).map(|map| f64::from(of(map))).sum::<f64>()
+    };
+    let deepest = ground.iter().flat_map(WetGround::maps).map(PuddleMap::deepest_m).fold(0.0, f32::max);
+    Ok(vec![
+        count("puddles", "rectangles with puddles", input.weather.puddles.len()),
+        Entry::new("puddle_area_m2", "area under water", Datum::Computed(sum(PuddleMap::area_m2), 4), "m^2"),
+        Entry::new(
+            "puddle_volume_l",
+            "volume of the water",
+            Datum::Computed(1.0e3 * sum(PuddleMap::volume_m3), 4),
+            "l",
+        ),
+        Entry::new(
+            "puddle_deepest_mm",
+            "its greatest depth",
+            Datum::Computed(1.0e3 * f64::from(deepest), 3),
+            "mm",
         ),
     ])
 }

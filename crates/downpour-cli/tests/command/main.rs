@@ -18,6 +18,7 @@ mod lattice;
 mod mask;
 mod models;
 mod output;
+mod puddle;
 mod rain;
 mod readme;
 mod render;

@@ -116,6 +116,7 @@ fn neighbours([columns, rows]: [usize; 2], cell: usize) -> impl Iterator<Item = 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec2;
 
     fn filled(size: [usize; 2], share: f32, ground: impl Fn(f32, f32) -> f32) -> Vec<Option<f32>> {
         let ground: Vec<f32> =
@@ -127,7 +128,7 @@ mod tests {
     #[test]
     fn a_bowl_fills_up_to_the_lowest_part_of_its_rim() {
         let ground = |x: f32, y: f32| {
-            let bowl = |cx: f32, rim: f32| rim * ((x - cx).hypot(y - 10.0) / 6.0).min(1.0);
+            let bowl = |cx: f32, rim: f32| rim * (Vec2::new(x - cx, y - 10.0).length() / 6.0).min(1.0);
             if x < 15.0 {
                 bowl(8.0, 1.0)
             } else if y == 10.0 && x > 22.0 {
@@ -150,7 +151,7 @@ mod tests {
     fn a_slope_and_a_hollow_with_a_hole_hold_nothing() {
         assert!(filled([20, 20], 1.0, |x, y| 0.01 * x + 0.02 * y).iter().all(Option::is_none));
         let holed = |x: f32, y: f32| {
-            if (x, y) == (10.0, 10.0) { f32::NAN } else { 0.1 * (x - 10.0).hypot(y - 10.0) }
+            if (x, y) == (10.0, 10.0) { f32::NAN } else { 0.1 * Vec2::new(x - 10.0, y - 10.0).length() }
         };
         assert!(filled([21, 21], 1.0, holed).iter().all(Option::is_none));
     }

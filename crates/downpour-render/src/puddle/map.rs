@@ -1,5 +1,6 @@
 //! Where water stands, and how deep.
 
+use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_LEAST;
 use glam::{Vec2, Vec3};
@@ -49,7 +50,7 @@ pub struct PuddleMap {
 impl Ground {
     /// The place over a part of the rectangle, 0 to 1 along its edges, at its middle's height.
     fn place(&self, u: f32, v: f32) -> Vec3 {
-        let turn = Vec2::from_angle(self.turn);
+        let turn = turned(self.turn);
         let offset = turn.rotate(Vec2::new(u - 0.5, v - 0.5) * self.size);
         self.middle + Vec3::new(offset.x, 0.0, offset.y)
     }
@@ -152,6 +153,11 @@ impl PuddleMap {
     fn cell_m2(&self) -> f32 {
         self.ground.size.x * self.ground.size.y / self.cells.len().max(1) as f32
     }
+}
+
+/// The direction of an angle, the same bits on any platform.
+pub(super) fn turned(angle: f32) -> Vec2 {
+    Vec2::new(ops::cos(angle), ops::sin(angle))
 }
 
 /// Levels with those of their neighbours: the highest of them where there is none.

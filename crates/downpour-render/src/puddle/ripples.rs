@@ -35,27 +35,24 @@ impl Ripples {
     /// # Errors
     /// [`PuddleError`] if the lattice refuses.
     pub fn new(rain: Option<&DropSizeDistribution>, seed: u64, time_s: f64) -> Result<Self, PuddleError> {
-        let options = PuddleOptions {
-            size: [CELLS; 2],
-            cell_m: CELL_M,
-            depth_m: DEPTH_M,
-            border: PuddleBorder::Open,
-            ..PuddleOptions::default()
-        };
-        let lattice = Puddle::new(&options)?;
+        let lattice = level_water()?;
         let rain = rain.map(|rain| PuddleRain::new(rain, seed));
         Ok(Self { lattice, rain, step: step_of(time_s - MEMORY_S) })
     }
 
-    /// Lets rain fall until a time in seconds. The same ripples for any division of the time. A time long after the last
-    /// one begins anew: nothing is left of what was.
+    /// Lets rain fall until a time in seconds. The same ripples for any division of the time into parts of up to 5 s; a time
+    /// longer after the last one begins anew with level water.
     ///
     /// # Errors
     /// As [`Ripples::new`].
     pub fn advance(&mut self, time_s: f64) -> Result<(), PuddleError> {
         let Some(rain) = &self.rain else { return Ok(()) };
         let until = step_of(time_s);
-        self.step = self.step.max(step_of(time_s - 2.0 * MEMORY_S));
+        let anew = step_of(time_s - 2.0 * MEMORY_S);
+        if self.step < anew {
+            self.lattice = level_water()?;
+            self.step = anew;
+        }
         let extent = self.lattice.extent_m();
         while self.step < until {
             let impacts = rain.impacts(extent, self.step as u64, STEP_S as f32)?;
@@ -81,6 +78,16 @@ impl Ripples {
         });
         slope_levels(finest.collect(), CELLS as usize)
     }
+}
+
+fn level_water() -> Result<Puddle, PuddleError> {
+    Ok(Puddle::new(&PuddleOptions {
+        size: [CELLS; 2],
+        cell_m: CELL_M,
+        depth_m: DEPTH_M,
+        border: PuddleBorder::Open,
+        ..PuddleOptions::default()
+    })?)
 }
 
 /// A square of texels, `size` (a power of two) each way, with all levels that are means of four of the one before, down to

@@ -3,7 +3,7 @@
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_MOST;
 use glam::{Vec2, Vec3};
 
-use super::map::PuddleMap;
+use super::map::{PuddleMap, turned};
 use crate::data::SceneData;
 
 /// How a puddle looks.
@@ -67,9 +67,9 @@ impl SceneData {
         let mut first = self.puddles + head as u32;
         for (k, (map, look)) in (0u16..).zip(puddles) {
             let middle = map.ground.middle + rows.shift;
-            let turn = Vec2::from_angle(map.ground.turn);
+            let turn = turned(map.ground.turn);
             let half = map.ground.size * 0.5;
-            let ripples = Vec2::from_angle(look.angle);
+            let ripples = turned(look.angle);
             // Each puddle has its own part of the ripples.
             let own = Vec2::new(3.7, 11.3) * f32::from(k);
             self.table.extend([

@@ -139,7 +139,7 @@ fn masks(
                 let allowed = format!("2 to {MAX_PUDDLE_CELLS} pixels each way");
                 return Err(SceneError::limit("", found, allowed));
             }
-            cells += u64::from(mask.width) * u64::from(mask.height);
+            cells = u64::saturating_add(cells, u64::from(mask.width).saturating_mul(u64::from(mask.height)));
             if cells > MAX_ALL_PUDDLE_CELLS {
                 let found = format!("{cells} pixels in all masks so far");
                 return Err(SceneError::limit("", found, format!("at most {MAX_ALL_PUDDLE_CELLS}")));

@@ -154,7 +154,7 @@ fn cells(edge: f64, cell: f64) -> u32 {
 /// Whether the maps of all puddles are too many cells.
 pub(super) fn check_all(puddles: &[Puddle], places: &Places<'_>) -> Result<(), SceneError> {
     let of = |puddle: &Puddle| match puddle.shape {
-        PuddleShape::Found { cells: [width, depth], .. } => u64::from(width) * u64::from(depth),
+        PuddleShape::Found { cells: [width, depth], .. } => u64::from(width).saturating_mul(u64::from(depth)),
         PuddleShape::Painted(_) => 0,
     };
     let all: u64 = puddles.iter().map(of).sum();

@@ -150,9 +150,12 @@ impl Clip<'_> {
                 let made = self.make_frame(number, painter, showers, surfaces, journal);
                 made.inspect_err(|_| self.say_how_to_go_on(journal))?;
                 progress.step();
-            } else if !showers.is_closed_form() {
+            } else {
                 // What comes later begins where this frame ends.
-                self.pass_frame(number, showers)?;
+                surfaces.puddles.pass(time_s(self.arguments.input.time, number, self.fps))?;
+                if !showers.is_closed_form() {
+                    self.pass_frame(number, showers)?;
+                }
             }
         }
         Ok(missing)

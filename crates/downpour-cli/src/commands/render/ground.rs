@@ -25,6 +25,14 @@ impl Puddles {
         Ok(Self(WetGround::new(weather, loaded, stage, first_s)?))
     }
 
+    /// Lets the rain go on past a picture that is there.
+    ///
+    /// # Errors
+    /// As [`Puddles::new`].
+    pub(super) fn pass(&mut self, time_s: f64) -> Result<(), Failure> {
+        Ok(self.0.as_mut().map_or(Ok(()), |ground| ground.advance(time_s))?)
+    }
+
     /// The stage with the water as it is at a time in seconds; times rise.
     ///
     /// # Errors
