@@ -19,7 +19,7 @@ use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
-use downpour_render::specimen::gpu::{CameraUniform, SpecimenUniform, StreakUniform};
+use downpour_render::specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
 use downpour_shaders::{Module, bvh, compose, drop, lattice, mask, modules, render, sim, wind};
@@ -77,7 +77,7 @@ fn hosts() -> Vec<Host> {
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, tiles_across, veil_beyond, veil, streak_samples,
-            streak_colour, glints, unused),
+            streak_colour, glints, atlas),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
             towards, distance, place, slope, half_extent, row, area, grid, start, along, first, way, oval, recede,
             swing, turns, share, spread, nearest, kind, shape, unused),
@@ -101,6 +101,7 @@ fn hosts() -> Vec<Host> {
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),
         host!(SpecimenUniform as "SpecimenView" in &specimen::SPECIMEN,
             traced, camera, size, sky, first_row, rows, channels),
+        host!(LampUniform as "SpecimenLamp" in &specimen::SPECIMEN, direction, reach, radiance),
         host!(StreakUniform as "SpecimenStreak" in &specimen::SPECIMEN_STREAK,
             oscillation, volume, volume_last, inverse_wide, inverse_tall, speed, farthest, instants, first, count),
         host!(CollisionFrame as "CollisionMap" in &sim::collision::COLLISION,

@@ -8,7 +8,8 @@
 //! The mesh is fine enough: at 5 mm, mean FLIP is 0.019, 0.0071, 0.0034, 0.0027 and 0.0027 with 4 to 8 subdivisions of the
 //! icosahedron. Each case has its negative control: our picture mirrored has to be above the aim.
 //!
-//! Streaks (`streaks`) are held against the mean of Mitsuba's pictures of their instants.
+//! Streaks (`streaks`) are held against the mean of Mitsuba's pictures of their instants, before the same maps and under lamps:
+//! back-lit at 20 degrees from the axis, and from beside.
 //!
 //! Mitsuba and FLIP come from `PyPI` into `target/truth/venv` (pinned in `truth/requirements.txt`), so that the task needs
 //! the network once, and is no part of the tests. Everything that it writes is under `target/truth`.
@@ -37,7 +38,7 @@ cargo xtask truth [--quick] [--no-check] [--streaks] [--diameter MM]... [--map F
                   [--size PIXELS] [--samples N] [--path-samples N] [--subdivisions N]
   --quick           two diameters and one view instead of four and three
   --no-check        a case above the aim is no failure
-  --streaks         nothing but the streaks of 2 and 4 mm
+  --streaks         nothing but the streaks of 2 and 4 mm, before the maps and under lamps
   --diameter MM     these diameters (repeatable) instead of 1, 2, 3 and 5 mm
   --map FILE        this sky map, too (repeatable)
   --only            no maps but those of --map

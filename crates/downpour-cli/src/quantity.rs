@@ -8,7 +8,7 @@ use downpour::drop::oscillation::Amplitudes;
 use downpour::drop::shape::{LARGEST_DIAMETER, SMALLEST_DIAMETER};
 use downpour::drop::water::TEMPERATURE_RANGE_C;
 use downpour::mask::SIZES;
-use downpour::render::specimen::LONGEST_EXPOSURE_S;
+use downpour::render::specimen::{LONGEST_EXPOSURE_S, SpecimenLamp};
 use downpour::render::stage::LATEST_S;
 
 /// The coldest water, in Celsius, whose refractive index is known.
@@ -92,13 +92,15 @@ pub(crate) fn exposure_s(text: &str) -> Result<f64, String> {
 /// Instants of an exposure. Any whole number is read: what is too large is over a limit.
 pub(crate) fn instants(text: &str) -> Result<u32, String> {
     if text == "table" {
-        return Err("not available for the specimen yet; allowed: a whole number from 1 to 4096".to_owned());
+        return Err("a specimen is exact, and has no table; allowed: a whole number from 1 to 4096 (render has the table: \
+                    [streaks] samples = \"table\")"
+            .to_owned());
     }
     let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     match text.parse::<u32>() {
         Ok(n @ 1..) => Ok(n),
         Err(_) if digits => Ok(u32::MAX),
-        _ => Err("allowed: a whole number from 1 to 4096, or table".to_owned()),
+        _ => Err("allowed: a whole number from 1 to 4096".to_owned()),
     }
 }
 
@@ -109,6 +111,29 @@ pub(crate) fn oscillation(text: &str) -> Result<Amplitudes, String> {
     }
     let [a20, a31] = pair(text, &(0.0..=0.3), "none, or two numbers from 0 to 0.3, as 0.2,0.1")?;
     Amplitudes::new(a20, a31).map_err(|error| error.to_string())
+}
+
+/// A lamp far away: yaw, pitch and angular radius in degrees, and radiance, grey or as red, green, blue.
+pub(crate) fn lamp(text: &str) -> Result<SpecimenLamp, String> {
+    const ALLOWED: &str = "YAW,PITCH,RADIUS,L or YAW,PITCH,RADIUS,R,G,B, as 160,5,2,500";
+    let number = |part: &str, low: f64, high: f64, what: &str| {
+        read(part.trim(), &(low..=high), what).map_err(|error| format!("\"{part}\" in {ALLOWED}: {error}"))
+    };
+    let parts: Vec<&str> = text.split(',').collect();
+    let (yaw, pitch, radius, colours) = match parts[..] {
+        [yaw, pitch, radius, grey] => (yaw, pitch, radius, [grey; 3]),
+        [yaw, pitch, radius, red, green, blue] => (yaw, pitch, radius, [red, green, blue]),
+        _ => return Err(format!("allowed: {ALLOWED}")),
+    };
+    let yaw = number(yaw, -36_000.0, 36_000.0, "YAW -36000 to 36000 degrees")?;
+    let pitch = number(pitch, -90.0, 90.0, "PITCH -90 to 90 degrees")?;
+    let radius = number(radius, 0.01, 90.0, "RADIUS 0.01 to 90 degrees")?;
+    let mut radiance = [0.0; 3];
+    for (colour, part) in radiance.iter_mut().zip(colours) {
+        *colour = number(part, 0.0, 1.0e9, "radiance 0 to 1e9")? as f32;
+    }
+    SpecimenLamp::new(yaw.to_radians(), pitch.to_radians(), radius.to_radians(), radiance)
+        .map_err(|error| error.to_string())
 }
 
 /// Phases of the modes (2,0) and (3,1), in turns.

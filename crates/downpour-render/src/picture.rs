@@ -124,7 +124,8 @@ pub(crate) fn framed(
 ) -> Result<RenderFrame, RenderError> {
     let frame = viewpoint.frame(scene, options.size, options.grid, options.sky_rays, options.seed)?;
     // What is worked out drop by drop is not in the capture too.
-    let suns_out = u32::from(options.rain.light.form == DropLightForm::Traced);
+    let traced = matches!(options.rain.light.form, DropLightForm::Traced | DropLightForm::Atlas);
+    let suns_out = u32::from(traced);
     Ok(RenderFrame { suns_out, ..frame })
 }
 

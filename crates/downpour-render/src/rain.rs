@@ -12,6 +12,7 @@
 
 pub mod capture;
 pub mod drops;
+mod drops_atlas;
 mod drops_capture;
 mod drops_frame;
 pub mod drops_mask;

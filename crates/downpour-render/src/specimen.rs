@@ -12,7 +12,7 @@
 //! the units of the map, unexposed.
 //!
 //! Sky maps are equirectangular: u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top, bilinear
-//! between the middles of texels, round in u.
+//! between the middles of texels, round in u. Lamps far away ([`SpecimenLamp`], [`Sky::with_lamps`]) add to them.
 //!
 //! - [`render_specimen`]: the picture on the CPU, the same bits for any number of threads;
 //! - [`render_specimen_f64`]: the reference above it;
@@ -51,6 +51,7 @@ mod error;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 mod image;
+pub mod lamp;
 mod motion;
 mod options;
 mod render;
@@ -62,6 +63,7 @@ pub mod wobble;
 pub use camera::default_fov;
 pub use error::SpecimenError;
 pub use image::Image;
+pub use lamp::SpecimenLamp;
 pub use motion::SpecimenMotion;
 pub use options::{LARGEST_SIZE, LONGEST_EXPOSURE_S, SpecimenOptions};
 pub use render::{render_specimen, render_specimen_f64, render_specimen_scalar};

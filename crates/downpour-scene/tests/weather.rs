@@ -389,6 +389,7 @@ fn t11_keys_are_known_and_stand_once() {
     refused("[streaks]\nsamples = \"tabel\"", 2, "\"table\", or 1 to 4096");
     refused("[streaks]\noscillation = [0.1, 0.5]", 2, "0 to 0.3");
     refused("[streaks]\ncolour = \"blue\"", 2, "streaks.colour");
+    refused("[streaks]\ncolour = \"atlas_random\"", 2, "atlas-random");
     refused("[camera]\nshutter_ms = 1", 2, "perhaps shutter_s;");
     refused("[rain]\ntemperature_k = 280", 2, "perhaps temperature_c;");
     refused("[rain]\nxyzzy = 280", 2, "unknown key \"xyzzy\"; allowed: rate_mm_h");

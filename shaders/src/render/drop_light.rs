@@ -3,10 +3,12 @@
 
 use super::scene::SCENE;
 use super::specimen::SPECIMEN_TABLES;
+use crate::mask::{ATLAS, ATLAS_CONSTANTS};
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&DROP_LIGHT_CONSTANTS, &DROP_GLINT, &DROP_LIGHT];
+pub const MODULES: &[&Module] =
+    &[&DROP_LIGHT_CONSTANTS, &DROP_GLINT, &DROP_LIGHT_TABLE, &DROP_ATLAS, &DROP_LIGHT];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&DROP_LIGHT_KERNEL];
@@ -22,6 +24,8 @@ shared_constants! {
         DROP_LIGHT_IM_SUNG: u32 = 2;
         /// Form: no light.
         DROP_LIGHT_NONE: u32 = 3;
+        /// Form: the streaks of an atlas.
+        DROP_LIGHT_ATLAS: u32 = 4;
         /// Entries of a row of the table: equal intervals of the scattering angle.
         DROP_LIGHT_ENTRIES: u32 = 256;
         /// Ways of light that are told apart; row 0 of the table is their sum.
@@ -40,6 +44,20 @@ shared_constants! {
         DROP_GLINT_RANGE: f32 = 4096.0;
         /// Below this, a vector has no direction.
         DROP_GLINT_TINY: f32 = 1.0e-30;
+        /// Row of an atlas: numbers of diameters, oscillations, elevations and directions.
+        DROP_ATLAS_COUNTS: u32 = 0;
+        /// Row of an atlas: by angle or at random, and the first row of the layers' means.
+        DROP_ATLAS_PICK: u32 = 1;
+        /// Row of an atlas: the seed, in four parts of 16 bits.
+        DROP_ATLAS_SEED: u32 = 2;
+        /// First of two rows of an atlas: thresholds of diameters.
+        DROP_ATLAS_SIZES: u32 = 3;
+        /// First of two rows of an atlas: thresholds of elevations.
+        DROP_ATLAS_RISES: u32 = 5;
+        /// First of three rows of an atlas: first triangles of the elevations.
+        DROP_ATLAS_FIRST: u32 = 7;
+        /// First row of an atlas' triangles, three each.
+        DROP_ATLAS_TRIANGLES: u32 = 10;
         /// Below this squared distance from the axis a direction has no side.
         DROP_GLINT_AXIS: f32 = 1.0e-12;
     }
@@ -52,11 +70,25 @@ pub static DROP_GLINT: Module = Module {
     uses: &[&DROP_LIGHT_CONSTANTS, &SPECIMEN_TABLES],
 };
 
+/// How drops scatter. Host: `downpour_render::rain::light::DropLightTable`.
+pub static DROP_LIGHT_TABLE: Module = Module {
+    path: "render/drop_light_table.wgsl",
+    wgsl: include_str!("../../wgsl/render/drop_light_table.wgsl"),
+    uses: &[],
+};
+
+/// Which streaks of an atlas a drop shows. Twin: `downpour_render::rain::light::atlas`.
+pub static DROP_ATLAS: Module = Module {
+    path: "render/drop_atlas.wgsl",
+    wgsl: include_str!("../../wgsl/render/drop_atlas.wgsl"),
+    uses: &[&DROP_LIGHT_CONSTANTS, &DROP_LIGHT_TABLE, &ATLAS_CONSTANTS, &ATLAS],
+};
+
 /// Light of all lamps on drops. Twin: `downpour_render::rain::light`.
 pub static DROP_LIGHT: Module = Module {
     path: "render/drop_light.wgsl",
     wgsl: include_str!("../../wgsl/render/drop_light.wgsl"),
-    uses: &[&DROP_GLINT, &SCENE],
+    uses: &[&DROP_LIGHT_CONSTANTS, &DROP_GLINT, &DROP_LIGHT_TABLE, &ATLAS, &DROP_ATLAS, &SCENE],
 };
 
 /// One invocation per drop.

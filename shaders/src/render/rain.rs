@@ -16,6 +16,7 @@ pub const MODULES: &[&Module] = &[
     &STREAK,
     &STREAK_LOOKUP,
     &STREAK_TABLE,
+    &DROPS_ATLAS,
     &DROPS,
 ];
 
@@ -62,7 +63,9 @@ shared_constants! {
         /// Rays of the streak radiance table along an edge of the picture.
         STREAK_RAYS: u32 = 24;
         /// Places across the motion.
-        STREAK_ACROSS: u32 = 36;
+        STREAK_ACROSS: u32 = 72;
+        /// Places across a drop as far apart as what they show is smoothed: for points and chords alike.
+        STREAK_FINE: u32 = 36;
         /// Running sums along a chord.
         STREAK_SUMS: u32 = 4;
         /// Samples along a chord of the table; a multiple of the sums.
@@ -79,6 +82,10 @@ shared_constants! {
         DROPS_LINE: f32 = 1.2533141;
         /// Place of Gauss's two points: 1 / sqrt(3).
         STREAK_GAUSS: f32 = 0.57735026;
+        /// Words before the texels of an atlas.
+        DROPS_ATLAS_HEAD: u32 = 4;
+        /// Samples of a streak's length in a pixel, where it has no width.
+        DROPS_ATLAS_TAPS: u32 = 4;
         /// 2 / pi: radians to quarters of a turn.
         STREAK_PER_QUARTER: f32 = 0.63661975;
     }
@@ -137,6 +144,13 @@ pub static STREAK_TABLE: Module = Module {
     uses: &[&RAIN_CONSTANTS, &DROPS_FRAME, &DROPS_MASK, &DROPS_SHADE],
 };
 
+/// The streaks of an atlas between their texels. Twin: `downpour_render::rain::drops_atlas`.
+pub static DROPS_ATLAS: Module = Module {
+    path: "render/drops_atlas.wgsl",
+    wgsl: include_str!("../../wgsl/render/drops_atlas.wgsl"),
+    uses: &[&RAIN_CONSTANTS, &DROPS_FRAME, &DROPS_MASK],
+};
+
 /// Drops through their masks. Twin: `downpour_render::rain::drops`.
 pub static DROPS: Module = Module {
     path: "render/drops.wgsl",
@@ -150,6 +164,7 @@ pub static DROPS: Module = Module {
         &DROPS_SHADE,
         &STREAK,
         &STREAK_LOOKUP,
+        &DROPS_ATLAS,
         &DROP_GLINT,
     ],
 };

@@ -37,6 +37,8 @@ shared_constants! {
         /// most 175 passes of a loop (5 + 4 to the entry, 33 times 1 + 4 inside, itself): below the 65 535 at which
         /// a driver may stop.
         SPECIMEN_SAMPLES: u32 = 16;
+        /// Lamps before the sky, at most. The shader has a line for each.
+        SPECIMEN_LAMPS: u32 = 8;
     }
 }
 

@@ -1,5 +1,5 @@
 // Light of lamps and sun on falling drops: for each drop the mean radiance over its disc, and its brightest glints.
-// Forms: geometric optics of a sphere, by a table over the scattering angle; the formula of Rousseau 2006, section 6; the
+// Forms: geometric optics of a sphere, by a table over the scattering angle; the streaks of an atlas; the formula of Rousseau 2006, section 6; the
 // cones of Im & Sung 2022, section III.C. One ray per drop and lamp says what of the lamp is hidden.
 // Twin: downpour_render::rain::light, where the method is described.
 
@@ -8,20 +8,19 @@ const DROP_LIGHT_PI: f32 = 3.1415927;
 struct DropLightFrame {
     // Drops.
     count: u32,
-    // DROP_LIGHT_TRACED, DROP_LIGHT_ROUSSEAU, DROP_LIGHT_IM_SUNG or DROP_LIGHT_NONE.
+    // DROP_LIGHT_TRACED, DROP_LIGHT_ATLAS, DROP_LIGHT_ROUSSEAU, DROP_LIGHT_IM_SUNG or DROP_LIGHT_NONE.
     form: u32,
-    // Glints that are kept of each drop.
+    // Rows that are kept of each drop besides its mean: glints, one each, or streaks of an atlas, two each.
     glints: u32,
     // First lamp of this dispatch, which has DROP_LIGHT_LAMPS of them at most.
     first_light: u32,
 }
 
-// Place relative to the scene's origin, and radius, metres.
+// Place relative to the scene's origin, and radius, metres. For the atlas then for each drop its axis, against its motion
+// as the eye sees it, and its id.
 @group(0) @binding(6) var<storage, read> drop_light_drops: array<vec4f>;
-// Row 0: (dsigma/dOmega) / (pi a^2) in 1/sr, red, green, blue; the other rows: the same for each way of light, and its
-// place on the disc.
-@group(0) @binding(7) var<storage, read> drop_light_table: array<vec4f>;
-// For each drop its mean radiance, then its glints: their part of the mean, and their place, packed.
+// For each drop its mean radiance, then its glints: their part of the mean, and their place, packed. Or its streaks: their part
+// of the mean, and 1 + the first layer's share, below 0 if it is mirrored; the three layers, and the second one's share.
 @group(0) @binding(8) var<storage, read_write> drop_light_out: array<vec4f>;
 @group(0) @binding(9) var<uniform> drop_light_frame: DropLightFrame;
 
@@ -98,6 +97,25 @@ fn drop_light_keep(first: u32, glint: vec4f) {
     }
 }
 
+// Keeps a streak of a drop if it is brighter than the least of those that are kept.
+fn drop_light_keep_streak(first: u32, light: vec4f, layers: vec4f) {
+    var weakest = first;
+    var least = scene_share(light.rgb);
+    var found = false;
+    for (var k = 0u; k + 1u < drop_light_frame.glints; k += 2u) {
+        let share = scene_share(drop_light_out[first + k].rgb);
+        if share < least {
+            least = share;
+            weakest = first + k;
+            found = true;
+        }
+    }
+    if found {
+        drop_light_out[weakest] = light;
+        drop_light_out[weakest + 1u] = layers;
+    }
+}
+
 // The light on a drop: adds this dispatch's lamps to those before.
 fn drop_light_of(index: u32) {
     let drop = drop_light_drops[index];
@@ -130,6 +148,14 @@ fn drop_light_of(index: u32) {
             sum += lit;
         } else if form == DROP_LIGHT_ROUSSEAU {
             sum += lit * drop_light_mean(towards, light.direction);
+        } else if form == DROP_LIGHT_ATLAS {
+            let about = drop_light_drops[drop_light_frame.count + index];
+            let place = drop_atlas_place(u32(about.w), 2.0 * drop.w, about.xyz, light.direction, -towards);
+            let shares = drop_atlas_shares(place);
+            let radiance = lit * (DROP_LIGHT_PI * shares.w);
+            sum += radiance;
+            let layers = vec4f(vec3f(place.layers), shares.y);
+            drop_light_keep_streak(slot + 1u, vec4f(radiance, place.side * (1.0 + shares.x)), layers);
         } else {
             let angle = drop_glint_angle(light.direction, towards);
             let side = drop_glint_side(light.direction, right, up);

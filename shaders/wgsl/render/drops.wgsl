@@ -29,7 +29,9 @@ fn drops_light_row(index: u32) -> u32 {
 fn drops_spots(index: u32, at: vec2f, width: f32) -> vec3f {
     let row = drops_light_row(index);
     var light = drops_light[row].rgb;
-    for (var k = 1u; k <= drops_frame.glints; k += 1u) {
+    // An atlas has streaks, and nothing of a drop that stands still but its mean.
+    let count = select(drops_frame.glints, 0u, drops_frame.atlas > 0u);
+    for (var k = 1u; k <= count; k += 1u) {
         let glint = drops_light[row + k];
         if glint.w > 0.0 {
             light += glint.rgb * (drop_glint_spot(at - drop_glint_unpack(glint.w), width) - 1.0);
@@ -52,6 +54,53 @@ fn drops_lines(index: u32, chord: StreakChord, width: f32) -> vec3f {
         }
     }
     return max(light, vec3f(0.0)) * part;
+}
+
+// The phase of the mode (2,0), in turns, where a passing drop is at a share of its way.
+fn drops_turns(drop: DropsDrop, way: f32) -> f32 {
+    return drop.swing.z + drop.turns.x * streak_time(drop.recede, way);
+}
+
+// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a place on the plane.
+fn drops_streaks(index: u32, drop: DropsDrop, chord: StreakChord, at: vec2f) -> vec3f {
+    let row = drops_light_row(index);
+    let part = (chord.high - chord.low) * 0.5;
+    let turns = drops_turns(drop, streak_nearest(drop, at));
+    var light = drops_light[row].rgb * chord.share;
+    for (var k = 1u; k < drops_frame.glints; k += 2u) {
+        let first = drops_light[row + k];
+        if first.w != 0.0 {
+            let streak = drops_atlas_streak(first, drops_light[row + k + 1u]);
+            let shown = drops_atlas_across(streak, -chord.aside, turns);
+            light += first.rgb * (shown * 2.0 * chord.pace - chord.share);
+        }
+    }
+    return max(light, vec3f(0.0)) * part;
+}
+
+// Light of lamps on a drop that is not sampled, as a radiance over all of it: with an atlas bright and dark along its path.
+fn drops_beads(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
+    let row = drops_light_row(index);
+    var light = drops_light[row].rgb;
+    if drops_frame.atlas == 0u || drop.spread > 1.0 {
+        return light;
+    }
+    let square = max(dot(drop.way, drop.way), 1.0);
+    let at = dot(vec2f(f32(x), f32(y)) + 0.5 - drop.first, drop.way) / square;
+    let pixel = 1.0 / sqrt(square);
+    for (var k = 1u; k < drops_frame.glints; k += 2u) {
+        let first = drops_light[row + k];
+        if first.w != 0.0 {
+            let streak = drops_atlas_streak(first, drops_light[row + k + 1u]);
+            var mean = 0.0;
+            for (var n = 0u; n < DROPS_ATLAS_TAPS; n += 1u) {
+                let off = (f32(n) + 0.5) / f32(DROPS_ATLAS_TAPS) - 0.5;
+                mean += drops_atlas_along(streak, drops_turns(drop, clamp(at + off * pixel, 0.0, 1.0)));
+            }
+            light += first.rgb * (mean / f32(DROPS_ATLAS_TAPS) - 1.0);
+        }
+    }
+    return max(light, vec3f(0.0));
 }
 
 // A spot of unit mean over the disc, summed along a line that passes it at some distance; all in radii.
@@ -108,7 +157,7 @@ fn drops_glint_width(drop: DropsDrop) -> f32 {
 // The part of a chord that passes during the exposure, by the mean over its middle points: what a table keeps beforehand.
 fn drops_chord(drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
     let towards = drops_mask_unit(ray);
-    let spacing = 2.0 * drop.oval.x / f32(STREAK_ACROSS);
+    let spacing = 2.0 * drop.oval.x / f32(STREAK_FINE);
     let shade = DropsShade(towards, drop.half_extent, vec3f(0.0), spacing, drop.row);
     var sum = vec4f(0.0);
     for (var k = 0u; k < drops_frame.streak_samples; k += 1u) {
@@ -130,7 +179,7 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
             return vec4f(0.0);
         }
         let place = vec2f(f32(x) + 0.5, f32(y) + 0.5) / size;
-        let mean = streak_lookup_mean(drop.shape, place) + drops_light[drops_light_row(index)].rgb;
+        let mean = streak_lookup_mean(drop.shape, place) + drops_beads(index, drop, x, y);
         return vec4f(mean, 1.0) * cover;
     }
     let right = drops_mask_right(drop.towards);
@@ -142,7 +191,8 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         let at = vec2f(f32(x), f32(y)) + (vec2f(f32(k), f32(turned)) + 0.5) / f32(drop.grid);
         let ray = drops_frame_ray(at.x, at.y);
         let lean = drops_on_plane(drop.towards, ray);
-        let chord = streak_chord(drop, vec2f(dot(lean, right), dot(lean, up)));
+        let place = vec2f(dot(lean, right), dot(lean, up));
+        let chord = streak_chord(drop, place);
         if chord.high <= chord.low {
             continue;
         }
@@ -152,7 +202,11 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         } else {
             shown = drops_chord(drop, chord, ray);
         }
-        sum += shown * chord.share + vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
+        if drops_frame.atlas > 0u {
+            sum += shown * chord.share + vec4f(drops_streaks(index, drop, chord, place), 0.0);
+        } else {
+            sum += shown * chord.share + vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
+        }
     }
     sum /= f32(drop.grid);
     return sum / max(sum.w, 1.0);

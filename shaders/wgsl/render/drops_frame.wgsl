@@ -34,9 +34,10 @@ struct DropsFrame {
     streak_samples: u32,
     // The colour of streaks: STREAK_REFRACTED, or STREAK_WHITE.
     streak_colour: u32,
-    // Glints that are kept of each drop.
+    // Rows of light of each drop besides its mean: glints, or streaks of the atlas.
     glints: u32,
-    unused: u32,
+    // First word of the atlas behind the masks; 0: there is none.
+    atlas: u32,
 }
 
 @group(0) @binding(0) var<uniform> drops_frame: DropsFrame;

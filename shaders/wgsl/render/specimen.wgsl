@@ -5,7 +5,7 @@
 // Lengths are in units of the drop's volume-equivalent radius; the frame is the world's: +Y up, the drop's origin
 // at 0. Radiance is linear, in the units of the map.
 // Sky map: equirectangular, u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top, bilinear between the
-// middles of texels, round in u.
+// middles of texels, round in u. To its light come lamps far away: discs of even radiance on the sphere of the sky.
 // Limits: light that has left the drop does not meet it again (it is convex up to 5.9 mm); 256 internal reflections.
 // Twin: downpour_render::specimen.
 
@@ -56,9 +56,17 @@ struct SpecimenLight {
     inside: vec3f,
 }
 
+// A disc of the sky: towards its middle, the squared chord from there to its edge, and its radiance. Zeros are no lamp.
+struct SpecimenLamp {
+    direction: vec3f,
+    reach: f32,
+    radiance: vec3f,
+}
+
 @group(0) @binding(0) var<uniform> specimen_view: SpecimenView;
 @group(0) @binding(1) var<storage, read> specimen_map: array<f32>;
 @group(0) @binding(2) var<storage, read_write> specimen_pixels: array<f32>;
+@group(0) @binding(3) var<uniform> specimen_lamps: array<SpecimenLamp, SPECIMEN_LAMPS>;
 
 // The ray through the point (x, y) of the picture, in samples from its middle.
 fn specimen_ray(camera: SpecimenCamera, x: f32, y: f32) -> SpecimenRay {
@@ -172,14 +180,38 @@ fn specimen_sky(place: vec2f) -> vec3f {
     return upper + (lower - upper) * fy;
 }
 
+// The radiance of one lamp in a direction of length 1.
+fn specimen_lamp(lamp: SpecimenLamp, direction: vec3f) -> vec3f {
+    let apart = direction - lamp.direction;
+    return select(vec3f(0.0), lamp.radiance, dot(apart, apart) < lamp.reach);
+}
+
+// The radiance of all lamps along a direction of length 1. Written out: a loop would come to a driver's limit of turns.
+fn specimen_sky_lamps(direction: vec3f) -> vec3f {
+    var light = specimen_lamp(specimen_lamps[0], direction);
+    light += specimen_lamp(specimen_lamps[1], direction);
+    light += specimen_lamp(specimen_lamps[2], direction);
+    light += specimen_lamp(specimen_lamps[3], direction);
+    light += specimen_lamp(specimen_lamps[4], direction);
+    light += specimen_lamp(specimen_lamps[5], direction);
+    light += specimen_lamp(specimen_lamps[6], direction);
+    light += specimen_lamp(specimen_lamps[7], direction);
+    return light;
+}
+
+// The radiance of the map and of the lamps along a direction of length 1.
+fn specimen_sky_light(direction: vec3f) -> vec3f {
+    return specimen_sky(specimen_sky_place(direction)) + specimen_sky_lamps(direction);
+}
+
 // The radiance of the sample (x, y), in samples from the middle of the picture.
 fn specimen_radiance(view: SpecimenView, x: f32, y: f32) -> vec3f {
     let ray = specimen_ray(view.camera, x, y);
     if !specimen_hits(view.traced, ray) {
-        return specimen_sky(specimen_sky_place(ray.direction));
+        return specimen_sky_light(ray.direction);
     }
     var light = specimen_enter(view.traced, ray);
-    var radiance = specimen_sky(specimen_sky_place(light.exit)) * light.share;
+    var radiance = specimen_sky_light(light.exit) * light.share;
     for (var k = 0u; k <= SPECIMEN_REFLECTIONS; k += 1u) {
         if light.rest <= 0.0 {
             break;
@@ -187,7 +219,7 @@ fn specimen_radiance(view: SpecimenView, x: f32, y: f32) -> vec3f {
         let least = select(SPECIMEN_LEAST, SPECIMEN_ALL, k == SPECIMEN_REFLECTIONS);
         light = specimen_bounce(view.traced, light, least);
         if light.share > 0.0 {
-            radiance += specimen_sky(specimen_sky_place(light.exit)) * light.share;
+            radiance += specimen_sky_light(light.exit) * light.share;
         }
     }
     return radiance;

@@ -38,7 +38,7 @@ struct SpecimenPassage {
     cover: f32,
 }
 
-@group(0) @binding(3) var<uniform> specimen_streak: SpecimenStreak;
+@group(0) @binding(4) var<uniform> specimen_streak: SpecimenStreak;
 
 // The interval in which a ray meets the spheroid that holds the drop.
 fn specimen_streak_passage(streak: SpecimenStreak, ray: SpecimenRay) -> SpecimenPassage {
@@ -82,10 +82,10 @@ fn specimen_streak_offset(pixel: u32, sample: u32) -> f32 {
 fn specimen_streak_radiance(drop: SpecimenWobble, ray: SpecimenRay) -> vec3f {
     let meets = specimen_wobble_meet(drop, ray);
     if meets.y == 0.0 {
-        return specimen_sky(specimen_sky_place(ray.direction));
+        return specimen_sky_light(ray.direction);
     }
     var light = specimen_wobble_enter(drop, ray, meets.x);
-    var radiance = specimen_sky(specimen_sky_place(light.exit)) * light.share;
+    var radiance = specimen_sky_light(light.exit) * light.share;
     for (var k = 0u; k <= SPECIMEN_STREAK_REFLECTIONS; k += 1u) {
         if light.rest <= 0.0 {
             break;
@@ -93,7 +93,7 @@ fn specimen_streak_radiance(drop: SpecimenWobble, ray: SpecimenRay) -> vec3f {
         let least = select(SPECIMEN_LEAST, SPECIMEN_ALL, k == SPECIMEN_STREAK_REFLECTIONS);
         light = specimen_wobble_bounce(drop, light, least);
         if light.share > 0.0 {
-            radiance += specimen_sky(specimen_sky_place(light.exit)) * light.share;
+            radiance += specimen_sky_light(light.exit) * light.share;
         }
     }
     return radiance;
@@ -111,7 +111,7 @@ fn specimen_streak_trace(view: SpecimenView, streak: SpecimenStreak, column: u32
     let passage = specimen_streak_passage(streak, ray);
     var sum = vec3f(0.0);
     if instant == 0u {
-        sum = specimen_sky(specimen_sky_place(ray.direction)) * (1.0 - passage.cover);
+        sum = specimen_sky_light(ray.direction) * (1.0 - passage.cover);
     }
     if passage.cover > 0.0 {
         let inverse = 1.0 / f32(streak.instants);

@@ -75,7 +75,7 @@ fn main_streak_table(@builtin(global_invocation_id) id: vec3u) {
     let taps = select(STREAK_TAPS, STREAK_MEAN_GRID * STREAK_MEAN_GRID, mean);
     let across = (f32(id.y) + 0.5) * (2.0 / f32(STREAK_ACROSS)) - 1.0;
     let half = sqrt(max(1.0 - across * across, 0.0));
-    let spacing = select(2.0 * oval.x / f32(STREAK_ACROSS), 2.0 * oval.x / f32(STREAK_MEAN_GRID), mean);
+    let spacing = select(2.0 * oval.x / f32(STREAK_FINE), 2.0 * oval.x / f32(STREAK_MEAN_GRID), mean);
     let drop = DropsShade(towards, extent, vec3f(0.0), spacing, vec2f(row, elevation));
     var sum = vec4f(0.0);
     for (var tap = 0u; tap < taps; tap += 1u) {

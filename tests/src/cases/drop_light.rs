@@ -1,6 +1,7 @@
 //! `shaders/wgsl/render/{drop_glint,drop_light}.wgsl` against `downpour_render::rain::{glint, light}`.
 
 use downpour_gpu::{Gpu, GpuError};
+use downpour_mask::atlas::{StreakAtlas, StreakPick};
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::data::{SceneBuilder, SceneData};
@@ -130,20 +131,49 @@ fn many() -> SceneData {
     builder.build(&SkyLight::new(64, 32, &vec![[0.5; 3]; 64 * 32]))
 }
 
+/// The project's streak atlas.
+pub(super) fn atlas(pick: StreakPick) -> StreakAtlas {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/streaks");
+    StreakAtlas::load(&folder).expect("the project's atlas").with_pick(pick).with_seed(77)
+}
+
+/// Lamps on drops that fall aslant, by the streaks of an atlas.
+fn atlas_case(gpu: &Gpu, scene: &SceneData, pick: StreakPick) -> Result<Run, GpuError> {
+    let table = DropLightTable::water().expect("water").with_atlas(&atlas(pick));
+    let axes = (0..drops().len() as u32).map(|k| {
+        let [a, b, c, _] = rng_draw([8, 3], k, 0, 0).map(rng_unit);
+        Vec3::new(a - 0.5, 0.4 + b, c - 0.5).normalize().extend(k as f32).to_array()
+    });
+    let rows: Vec<[f32; 4]> = drops().into_iter().chain(axes).collect();
+    rows_case(gpu, scene, &table, DropLightOptions::ATLAS, &rows)
+}
+
 fn light_case(gpu: &Gpu, scene: &SceneData, form: DropLightForm, glints: u32) -> Result<Run, GpuError> {
+    let table = DropLightTable::water().expect("water");
+    rows_case(gpu, scene, &table, DropLightOptions { form, glints }, &drops())
+}
+
+fn rows_case(
+    gpu: &Gpu,
+    scene: &SceneData,
+    table: &DropLightTable,
+    options: DropLightOptions,
+    drops: &[[f32; 4]],
+) -> Result<Run, GpuError> {
     let view = Viewpoint { eye: Vec3::new(0.6, 1.4, 5.0), forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
     let frame = view.frame(scene, [64, 64], 1, 0, 7).expect("a frame");
-    let table = DropLightTable::water().expect("water");
-    let options = DropLightOptions { form, glints };
-    let lights = DropLights::new(scene, &frame, &table, options).expect("lights");
-    let drops = drops();
-    let cpu = lights.light(&drops);
+    let lights = DropLights::new(scene, &frame, table, options).expect("lights");
+    let cpu = lights.light(drops);
     let (scenes, pipeline) = (ScenePipeline::new(gpu)?, DropLightPipeline::new(gpu)?);
-    let pass = pipeline.prepare(&scenes.upload(scene)?, &pipeline.upload(&table)?, &lights, &drops)?;
+    let pass = pipeline.prepare(&scenes.upload(scene)?, &pipeline.upload(table)?, &lights, drops)?;
     gpu.submit(&pass.dispatches())?;
-    // Places are compared as places.
+    // Places are compared as places, streaks of an atlas as they are.
+    let glints = if options.form == DropLightForm::Atlas { 0 } else { options.glints };
     let words = |rows: &[[f32; 4]]| -> Vec<u32> {
         let of_drop = |rows: &[[f32; 4]]| {
+            if glints == 0 {
+                return rows.iter().flat_map(IntoWords::words).collect();
+            }
             let mut words = rows[0].words();
             for row in &rows[1..] {
                 words.extend([row[0], row[1], row[2]].words());
@@ -154,10 +184,10 @@ fn light_case(gpu: &Gpu, scene: &SceneData, form: DropLightForm, glints: u32) ->
         rows.chunks_exact(lights.stride()).flat_map(of_drop).collect()
     };
     Ok(Run {
-        arguments: drops.iter().map(IntoWords::words).collect(),
+        arguments: drops[..cpu.len() / lights.stride()].iter().map(IntoWords::words).collect(),
         cpu: Cpu(words(&cpu)),
         gpu: FromGpu(words(&pass.read()?)),
-        kinds: vec![WordKind::Float; 4 + 5 * glints as usize],
+        kinds: vec![WordKind::Float; if glints == 0 { 4 * lights.stride() } else { 4 + 5 * glints as usize }],
     })
 }
 
@@ -166,7 +196,19 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, run| KernelCase {
         name,
         kernel: &DROP_LIGHT_KERNEL,
-        covers: &["drop_light_entry", "drop_light_cone", "drop_light_keep", "drop_light_of"],
+        covers: &[
+            "drop_light_entry",
+            "drop_light_cone",
+            "drop_light_keep",
+            "drop_light_keep_streak",
+            "drop_light_of",
+            "drop_atlas_row",
+            "drop_atlas_seed",
+            "drop_atlas_triangle",
+            "drop_atlas_mean",
+            "drop_atlas_place",
+            "drop_atlas_shares",
+        ],
         tol: Tol::relative(
             2.0e-3,
             1.0e-4,
@@ -181,6 +223,10 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         }),
         case("main_drop_light: traced, more lamps than a dispatch takes", |gpu| {
             light_case(gpu, &many(), DropLightForm::Traced, 3)
+        }),
+        case("main_drop_light: an atlas, by angle", |gpu| atlas_case(gpu, &scene(), StreakPick::ByAngle)),
+        case("main_drop_light: an atlas, by chance, more lamps than a dispatch takes", |gpu| {
+            atlas_case(gpu, &many(), StreakPick::Random)
         }),
         case("main_drop_light: Rousseau 2006", |gpu| {
             light_case(gpu, &scene(), DropLightForm::Rousseau2006, 0)

@@ -3,10 +3,12 @@
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::oscillation::Amplitudes;
 use downpour_gpu::{ComputeKernel, Gpu, GpuError};
+use downpour_mask::atlas::StreakPick;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::{RainPipeline, ScenePipeline};
 use downpour_render::rain::drops_mask::drops_mask_right;
+use downpour_render::rain::light::DropLightOptions;
 use downpour_render::rain::streak_lookup::streak_numbers;
 use downpour_render::rain::{
     DropMasks, Exposure, EyeMotion, Rain, RainOptions, ReduceLevel, RefractionForm, StreakColour,
@@ -20,6 +22,7 @@ use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
 use glam::{DVec3, Vec3};
 
+use super::drop_light::atlas;
 use super::scene::scene;
 use crate::Domain::Unit3;
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
@@ -96,32 +99,43 @@ fn exposure(shutter_s: f64, samples: StreakSamples) -> Exposure {
 
 fn rain_case(
     gpu: &Gpu,
-    [eye, forward]: [Vec3; 2],
+    place: [Vec3; 2],
     form: RefractionForm,
     exposure: Exposure,
+    part: Part,
+) -> Result<Run, GpuError> {
+    let options = RainOptions { form, exposure, ..RainOptions::default() };
+    masks_case(gpu, place, options, &DropMasks::trace(1.333).expect("masks"), part)
+}
+
+/// Streaks with the light of an atlas.
+fn atlas_case(gpu: &Gpu, place: [Vec3; 2], shutter_s: f64, pick: StreakPick) -> Result<Run, GpuError> {
+    let masks = DropMasks::trace(1.333).expect("masks").with_atlas(&atlas(pick));
+    let exposure = Exposure { aperture_m: 0.0, ..exposure(shutter_s, StreakSamples::Table) };
+    let options = RainOptions { exposure, light: DropLightOptions::ATLAS, ..RainOptions::default() };
+    masks_case(gpu, place, options, &masks, Part::Drops)
+}
+
+fn masks_case(
+    gpu: &Gpu,
+    [eye, forward]: [Vec3; 2],
+    options: RainOptions,
+    masks: &DropMasks,
     part: Part,
 ) -> Result<Run, GpuError> {
     let scene = scene();
     let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
     let frame = view.frame(&scene, SIZE, 1, 1, 7).expect("a frame");
-    let masks = DropMasks::trace(1.333).expect("masks");
-    let options = RainOptions {
-        form,
-        capture_size: 64,
-        capture_grid: 2,
-        veil: veil(),
-        exposure,
-        ..RainOptions::default()
-    };
-    let rain = Rain::new(&frame, DVec3::from(eye), &drops(eye, forward), &masks, &options);
+    let options = RainOptions { capture_size: 64, capture_grid: 2, veil: veil(), ..options };
+    let rain = Rain::new(&frame, DVec3::from(eye), &drops(eye, forward), masks, &options);
     assert!(rain.list.len() > 100, "{} drops", rain.list.len());
     let clean = SceneView { data: &scene, frame: &frame }.picture();
     let capture = rain.capture.trace(&scene);
     let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
     let uploaded = scenes.upload(&scene)?;
     let clean_buffer = gpu.storage_buffer("clean", &clean)?;
-    let lights = rain.lights(&scene, &masks).expect("lamps");
-    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(&masks)?, &clean_buffer, &rain, &lights)?;
+    let lights = rain.lights(&scene, masks).expect("lamps");
+    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(masks)?, &clean_buffer, &rain, &lights)?;
     gpu.submit(&pass.capture())?;
     match part {
         Part::Capture => {
@@ -131,7 +145,7 @@ fn rain_case(
         }
         Part::Table => {
             gpu.submit(&pass.streaks().into_iter().collect::<Vec<_>>())?;
-            let table = rain.streak_table(&masks, &capture);
+            let table = rain.streak_table(masks, &capture);
             let numbers = |words: &[[u32; 2]]| words.iter().map(|&pair| streak_numbers(pair)).collect();
             let (cpu, gpu): (Vec<[f32; 4]>, Vec<[f32; 4]>) =
                 (numbers(&table.words), numbers(&pass.streak_table()?));
@@ -141,10 +155,10 @@ fn rain_case(
             gpu.submit(
                 &pass.streaks().into_iter().chain(pass.lamps()).chain([pass.drops()]).collect::<Vec<_>>(),
             )?;
-            let table = rain.streak_table(&masks, &capture);
+            let table = rain.streak_table(masks, &capture);
             Ok(run(
                 SIZE[0],
-                &rain.layer(&clean, &masks, &capture, &table, &lights.light(&rain.rows)),
+                &rain.layer(&clean, masks, &capture, &table, &lights.light(&rain.rows)),
                 &pass.layer()?,
             ))
         }
@@ -237,6 +251,16 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_lines",
             "drops_line",
             "drops_glint_width",
+            "drops_turns",
+            "drops_streaks",
+            "drops_beads",
+            "drops_atlas_streak",
+            "drops_atlas_half",
+            "drops_atlas_texel",
+            "drops_atlas_within",
+            "drops_atlas_layer",
+            "drops_atlas_across",
+            "drops_atlas_along",
             "drops_still",
             "drops_chord",
             "drops_streak",
@@ -318,6 +342,12 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         drops("main_drops: short streaks by a loop", |gpu| {
             let exposure = exposure(1.0 / 1000.0, StreakSamples::Loop(5));
             rain_case(gpu, ABOVE, RefractionForm::Direction, exposure, Part::Drops)
+        }),
+        drops("main_drops: streaks of an atlas by angle", |gpu| {
+            atlas_case(gpu, LEVEL, 1.0 / 60.0, StreakPick::ByAngle)
+        }),
+        drops("main_drops: streaks of an atlas by chance", |gpu| {
+            atlas_case(gpu, ABOVE, 1.0 / 120.0, StreakPick::Random)
         }),
         drops("main_drops: white streaks", |gpu| {
             let white =

@@ -12,6 +12,9 @@ const BOTTOM: f32 = 0.2;
 /// Brightness of the dark chequers against the light ones.
 const DARK: f32 = 0.3;
 
+/// The sky behind lamps.
+const DUSK: [f32; 3] = [0.125, 0.125, 0.1875];
+
 /// The map as a Radiance HDR file. No two quarters, and no two heights, look the same.
 pub(super) fn chequers() -> Vec<u8> {
     let [width, height] = SIZE;
@@ -24,6 +27,15 @@ pub(super) fn chequers() -> Vec<u8> {
             let light = (TOP + (BOTTOM - TOP) * down) * if field.is_multiple_of(2) { 1.0 } else { DARK };
             bytes.extend(rgbe(quarter.map(|c| c * light)));
         }
+    }
+    bytes
+}
+
+/// An even, dim sky as a Radiance HDR file.
+pub(super) fn dusk() -> Vec<u8> {
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
+    for _ in 0..8 {
+        bytes.extend(rgbe(DUSK));
     }
     bytes
 }
@@ -53,6 +65,12 @@ mod tests {
             }
             assert!(r.max(g).max(b) >= 128, "{colour:?} wastes digits");
         }
+    }
+
+    #[test]
+    fn dusk_is_even() {
+        let bytes = dusk();
+        assert!(bytes[bytes.len() - 32..].chunks(4).all(|texel| texel == rgbe(DUSK)));
     }
 
     #[test]

@@ -2,7 +2,8 @@
 prints `name value` lines.
 
 Each instant is a mesh file, its drop where it is at that time; Mitsuba's own path tracer draws the rows round it, with the sky
-hidden where it is seen directly. What is left out of a pixel over all instants shows the sky.
+hidden where it is seen directly. What is left out of a pixel over all instants shows the sky. A lamp is a bright disc a kilometre
+away, which the camera does not see directly.
 """
 
 import argparse
@@ -11,6 +12,8 @@ from pathlib import Path
 import mitsuba as mi
 import numpy as np
 
+# Distance of a lamp in the units of the meshes, of which a drop has some hundreds and a path ten thousand.
+LAMP_DISTANCE = 1.0e8
 # Share of the exposure below which a pixel is not of the streak, against the most covered one.
 LEAST_COVER = 0.1
 
@@ -23,6 +26,8 @@ def arguments():
         parser.add_argument(f"--{name}", required=True, type=float)
     for name in ("width", "height", "path-samples"):
         parser.add_argument(f"--{name}", required=True, type=int)
+    for name in ("yaw", "pitch", "radius", "red", "green", "blue"):
+        parser.add_argument(f"--lamp-{name}", type=float)
     return parser.parse_args()
 
 
@@ -36,6 +41,23 @@ def sensor(given, rows=None):
         film |= {"crop_offset_x": 0, "crop_offset_y": rows[0]}
         film |= {"crop_width": given.width, "crop_height": rows[1] - rows[0]}
     return mi.load_dict(sensor | {"film": film, "sampler": {"type": "independent"}})
+
+
+def lamps(given):
+    """The lamp as a part of a scene, if there is one."""
+    if given.lamp_radius is None:
+        return {}
+    yaw, pitch, radius = np.radians([given.lamp_yaw, given.lamp_pitch, given.lamp_radius])
+    towards = np.array([np.sin(yaw) * np.cos(pitch), np.sin(pitch), np.cos(yaw) * np.cos(pitch)])
+    place = mi.ScalarTransform4f().look_at((LAMP_DISTANCE * towards).tolist(), [0, 0, 0], [0, 1, 0])
+    light = {"type": "rgb", "value": [given.lamp_red, given.lamp_green, given.lamp_blue]}
+    return {
+        "lamp": {
+            "type": "disk",
+            "to_world": place.scale(float(LAMP_DISTANCE * np.tan(radius))),
+            "emitter": {"type": "area", "radiance": light},
+        }
+    }
 
 
 def rows_of(mesh, given):
@@ -74,7 +96,7 @@ def main(given):
         if rows[0] >= rows[1]:
             continue
         camera = sensor(given, rows)
-        world = mi.load_dict({"type": "scene", "sky": sky, "camera": camera, "drop": mesh})
+        world = mi.load_dict({"type": "scene", "sky": sky, "camera": camera, "drop": mesh} | lamps(given))
         seen = mi.render(world, integrator=path, spp=given.path_samples, seed=seed)
         layer[rows[0] : rows[1]] += np.array(seen)[..., :4]
     layer /= len(meshes)

@@ -4,6 +4,10 @@
 //! diameter of fall, 64 at least. A streak of 1/60 s covers a pixel for 2 % of the time, and any wrong one would pass as
 //! a picture; so the streak is compared alone as well, divided by the share of the time in which it covers a pixel. Its negative
 //! control is the sky in its place.
+//!
+//! Lamps are discs of some degrees, far away, before a dusk that is even: a point would be met by no ray of either. What they
+//! show on a drop are glints of a thousandth of its area, and both sides need more samples for the same noise. They are not
+//! seen directly.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -28,7 +32,7 @@ const PHASE: [f64; 2] = [0.1, 0.3];
 const PER_DIAMETER: f64 = 32.0;
 const LEAST_INSTANTS: u32 = 64;
 /// Instants of ours for each sample.
-const OURS: &str = "16";
+const OURS: u32 = 16;
 /// Pixels of a diameter, in short and in long streaks.
 const PIXELS: [f64; 2] = [24.0, 8.0];
 const SUBDIVISIONS: u32 = 4;
@@ -36,6 +40,45 @@ const PATH_SAMPLES: u32 = 32;
 
 const MOST_FLIP: f64 = 0.03;
 const MOST_LUMINANCE: f64 = 0.02;
+
+/// A lamp, as `downpour specimen --light` has it: degrees.
+#[derive(Clone, Copy, Debug)]
+struct Lamp {
+    name: &'static str,
+    yaw_deg: f64,
+    pitch_deg: f64,
+    radius_deg: f64,
+    radiance: [f64; 3],
+}
+
+/// What a streak is drawn before.
+#[derive(Clone, Copy, Debug)]
+struct Before<'a> {
+    map: &'a Map,
+    lamp: Option<&'a Lamp>,
+}
+
+/// 20 degrees from the axis behind the drop, and beside it, where a drop is fainter. Each lights a white surface as brightly as the
+/// sky of dusk would if it were 2 and 55 times as bright.
+const LAMPS: [Lamp; 2] = [
+    Lamp {
+        name: "behind",
+        yaw_deg: 163.0,
+        pitch_deg: 10.6,
+        radius_deg: 2.0,
+        radiance: [250.0, 200.0, 130.0],
+    },
+    Lamp {
+        name: "beside",
+        yaw_deg: 95.0,
+        pitch_deg: 12.0,
+        radius_deg: 4.0,
+        radiance: [1500.0, 1400.0, 1200.0],
+    },
+];
+/// Instants of ours, and Mitsuba's samples, where there is a lamp.
+const OURS_LIT: u32 = 512;
+const PATH_SAMPLES_LIT: u32 = 512;
 
 /// Compares all streaks; returns the table, and what is above the aim.
 pub(super) fn compare(
@@ -46,16 +89,23 @@ pub(super) fn compare(
     mitsuba: &Mitsuba,
 ) -> Result<(String, Vec<String>), String> {
     let (mut rows, mut misses) = (Vec::new(), Vec::new());
-    let (exposures, maps) =
-        if options.quick { (&EXPOSURES[..1], &maps[..1]) } else { (&EXPOSURES[..], maps) };
+    let (exposures, maps, lamps) = if options.quick {
+        (&EXPOSURES[..1], &maps[..1], &LAMPS[..1])
+    } else {
+        (&EXPOSURES[..], maps, &LAMPS[..])
+    };
+    let dusk = Map { name: "lamp".to_owned(), file: folder.join("dusk.hdr") };
+    write(&dusk.file, &super::sky::dusk())?;
     for diameter_mm in DIAMETERS_MM {
         for (&exposure, pixels) in exposures.iter().zip(PIXELS) {
             let streak = Streak::new(diameter_mm, exposure, pixels)?;
             let meshes = folder.join("instants");
             streak.write_meshes(&meshes)?;
-            for map in maps {
-                let name = format!("{}-{diameter_mm}mm-streak-{}", map.name, exposure.0);
-                let values = streak.compare(&name, map, program, folder, &meshes, mitsuba)?;
+            let lit = lamps.iter().map(|lamp| Before { map: &dusk, lamp: Some(lamp) });
+            for before in maps.iter().map(|map| Before { map, lamp: None }).chain(lit) {
+                let of_lamp = before.lamp.map_or_else(String::new, |lamp| format!("-{}", lamp.name));
+                let name = format!("{}{of_lamp}-{diameter_mm}mm-streak-{}", before.map.name, exposure.0);
+                let values = streak.compare(&name, before, program, folder, &meshes, mitsuba)?;
                 let (row, above) = judge(&name, &values)?;
                 eprintln!("{row}");
                 rows.push(row);
@@ -66,7 +116,7 @@ pub(super) fn compare(
     }
     let text = format!(
         "# Streaks and Mitsuba\n\n`downpour specimen --exposure S --oscillation 0.2,0.1 --samples {OURS}` against the mean of instants by \
-         Mitsuba's path tracer (`scalar_rgb`, {PATH_SAMPLES} samples per pixel each). `alone`: the streak divided by the share of the \
+         Mitsuba's path tracer (`scalar_rgb`, {PATH_SAMPLES} samples per pixel each; with a lamp {OURS_LIT} and {PATH_SAMPLES_LIT}). `alone`: the streak divided by the share of the \
          exposure in which it covers a pixel; `absent`: the sky in its place.\n\n\
          | streak | instants | cover | mean FLIP | luminance | FLIP alone | luminance alone | FLIP absent | sky outside |\n\
          |---|---|---|---|---|---|---|---|---|\n{}\n",
@@ -163,7 +213,7 @@ impl Streak {
     fn compare(
         &self,
         name: &str,
-        map: &Map,
+        Before { map, lamp }: Before<'_>,
         program: &Path,
         folder: &Path,
         meshes: &Path,
@@ -171,6 +221,12 @@ impl Streak {
     ) -> Result<BTreeMap<String, f64>, String> {
         let ours = folder.join(format!("{name}.ours.exr"));
         let [width, height] = self.size;
+        let (instants, path_samples) =
+            if lamp.is_some() { (OURS_LIT, PATH_SAMPLES_LIT) } else { (OURS, PATH_SAMPLES) };
+        let light = lamp.map(|lamp| {
+            let [r, g, b] = lamp.radiance;
+            format!("{},{},{},{r},{g},{b}", lamp.yaw_deg, lamp.pitch_deg, lamp.radius_deg)
+        });
         let status =
             run::command(&program.display().to_string(), &["specimen", "--backend", "cpu", "--quiet"])
                 .args(["--overwrite", "--diameter", &self.diameter_mm.to_string()])
@@ -179,13 +235,14 @@ impl Streak {
                     "--exposure",
                     &self.exposure_s.to_string(),
                     "--samples",
-                    OURS,
+                    &instants.to_string(),
                     "--oscillation",
                     "0.2,0.1",
                 ])
                 .args(["--phase", &format!("{},{}", PHASE[0], PHASE[1])])
                 .args(["--size", &format!("{width}x{height}"), "--environment"])
                 .arg(&map.file)
+                .args(light.iter().flat_map(|light| ["--light", light]))
                 .arg("--output")
                 .arg(&ours)
                 .status()
@@ -200,15 +257,21 @@ impl Streak {
             ("beside", folder.join(format!("{name}.png"))),
             ("reference", folder.join(format!("{name}.mitsuba.exr"))),
         ];
-        let values = [
+        let mut values = vec![
             ("index", downpour_drop::optics::WATER_INDEX),
             ("distance", DISTANCE_M * UNITS_PER_METRE),
             ("reach", self.reach_m * UNITS_PER_METRE),
             ("fov", self.fov_deg),
             ("width", width.into()),
             ("height", height.into()),
-            ("path-samples", PATH_SAMPLES.into()),
+            ("path-samples", path_samples.into()),
         ];
+        if let Some(lamp) = lamp {
+            let [red, green, blue] = lamp.radiance;
+            values.extend([("lamp-yaw", lamp.yaw_deg), ("lamp-pitch", lamp.pitch_deg)]);
+            values.extend([("lamp-radius", lamp.radius_deg), ("lamp-red", red)]);
+            values.extend([("lamp-green", green), ("lamp-blue", blue)]);
+        }
         mitsuba.values(name, "streak.py", &files, &values)
     }
 }

@@ -23,14 +23,15 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
+use downpour::mask::atlas::{StreakAtlas, StreakPick};
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
 use downpour::render::picture::{Picture, PictureOptions};
-use downpour::render::rain::light::DropLightOptions;
+use downpour::render::rain::light::{DropLightForm, DropLightOptions};
 use downpour::render::rain::{Exposure, RainOptions, RefractionForm, Veil};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
-use downpour::scene::weather::Weather;
+use downpour::scene::weather::{StreakLook, Weather};
 
 use super::input::InputArguments;
 use crate::backend::BackendArguments;
@@ -91,6 +92,10 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::sky_rays)]
     #[arg(allow_hyphen_values = true)]
     sky_rays: u32,
+    /// Folder of the streak atlas, for a weather whose [streaks] colour is atlas or atlas-random: the project's is
+    /// assets/streaks.
+    #[arg(long, value_name = "FOLDER")]
+    streaks: Option<PathBuf>,
     /// How a drop's pixel finds its colour.
     #[arg(long, value_enum, default_value = "direction")]
     refraction: Refraction,
@@ -141,11 +146,12 @@ impl RenderArguments {
         let input = self.input.read(&mut Budget::default())?;
         outputs.keep(&input.files)?;
         reserve(input.weather.size)?;
+        let atlas = self.atlas(&input.weather)?;
         let stage = Stage::new(&input.weather, &input.loaded, self.input.time)?;
         input.say_warnings(&stage, |text| self.say(text));
         let begin = Instant::now();
         let rain = &input.weather.rain;
-        let showers = &mut Showers::new(&input.weather)?;
+        let showers = &mut Showers::new(&input.weather, atlas.as_ref())?;
         let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
         let pane = &mut Pane::new(&input.weather, &stage, self.input.time)?;
         let mut puddles = Puddles::new(&input.weather, &input.loaded, &stage, self.input.time)?;
@@ -200,6 +206,26 @@ impl RenderArguments {
         Ok(())
     }
 
+    /// The streak atlas, if the weather wants one.
+    ///
+    /// # Errors
+    /// Exit code 2 if it is not said where it is, or what reading it says.
+    fn atlas(&self, weather: &Weather) -> Result<Option<StreakAtlas>, Failure> {
+        if DropLightOptions::of_weather(weather).form != DropLightForm::Atlas {
+            return Ok(None);
+        }
+        let Some(folder) = &self.streaks else {
+            let found = "streaks.colour is \"atlas\" or \"atlas-random\", and no --streaks";
+            let allowed = "with --streaks FOLDER, where the streak atlas is";
+            return Err(Failure::new(INPUT, format!("{found}; allowed: {allowed}")));
+        };
+        let pick = match weather.streaks.look {
+            StreakLook::AtlasRandom => StreakPick::Random,
+            _ => StreakPick::ByAngle,
+        };
+        Ok(Some(StreakAtlas::load(folder)?.with_pick(pick).with_seed(weather.rain.seed)))
+    }
+
     fn say(&self, text: &str) {
         if !self.quiet {
             stream::message(text);
@@ -218,7 +244,7 @@ impl RenderArguments {
                 form: self.refraction.into(),
                 veil,
                 exposure,
-                light: DropLightOptions { form: weather.rain.drop_light.into(), ..usual.light },
+                light: DropLightOptions::of_weather(weather),
                 ..usual
             },
         }

@@ -6,7 +6,7 @@ use clap::Args;
 use downpour::drop::DropShape;
 use downpour::drop::oscillation::Amplitudes;
 use downpour::render::file::{write_exr, write_png};
-use downpour::render::specimen::{Image, Sky, SpecimenOptions, render_specimen};
+use downpour::render::specimen::{Image, Sky, SpecimenLamp, SpecimenOptions, render_specimen};
 use downpour::render::tone::{tone_automatic_exposure, tone_picture};
 use downpour::scene::Budget;
 use downpour::scene::sky::read_sky;
@@ -51,7 +51,7 @@ pub(crate) struct SpecimenArguments {
     #[arg(allow_hyphen_values = true)]
     exposure: f64,
     /// Instants of the exposure for each of the 16 samples of a pixel, 1 to 4096.
-    #[arg(long, value_name = "N|table", default_value = "4", value_parser = quantity::instants)]
+    #[arg(long, value_name = "N", default_value = "4", value_parser = quantity::instants)]
     #[arg(allow_hyphen_values = true)]
     samples: u32,
     /// How the drop oscillates: `none`, or the amplitudes of the modes (2,0) and (3,1) over the radius, as 0.2,0.1.
@@ -62,6 +62,12 @@ pub(crate) struct SpecimenArguments {
     #[arg(long, value_name = "T20,T31", default_value = "0,0", value_parser = quantity::phase)]
     #[arg(allow_hyphen_values = true)]
     phase: [f64; 2],
+    /// A lamp far away: where it stands as `--yaw` and `--pitch` say of the camera, angular radius in degrees (0.01 to 90), and
+    /// radiance in the units of the map, one number or red, green, blue. Yaw 180 is behind the drop as yaw 0 sees it. Repeatable, up
+    /// to 8.
+    #[arg(long, value_name = "YAW,PITCH,RADIUS,L|R,G,B", value_parser = quantity::lamp)]
+    #[arg(allow_hyphen_values = true)]
+    light: Vec<SpecimenLamp>,
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = quantity::picture_size)]
     size: [u32; 2],
@@ -114,10 +120,11 @@ impl SpecimenArguments {
             ..SpecimenOptions::default()
         };
         options.check(&shape)?;
+        SpecimenLamp::check_count(&self.light)?;
         let place = Place::new(&self.output, self.overwrite)?;
         let map = read_sky(&self.environment, &mut Budget::default())?;
         say_warnings(&shown(&self.environment), &map.warnings, |text| self.say(text));
-        let sky = Sky::new(map.width, map.height, &map.radiance)?;
+        let sky = Sky::new(map.width, map.height, &map.radiance)?.with_lamps(&self.light)?;
         let image = self.render(&shape, &options, sky, interrupt)?;
         let bytes = match format {
             Format::Exr => write_exr(image.width, image.height, &image.pixels)?,

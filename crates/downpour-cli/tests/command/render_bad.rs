@@ -238,3 +238,44 @@ fn nothing_outside_the_folder_is_read() {
         .run()
         .failed(2, &["--asset-root", ".toml"]);
 }
+
+/// A weather whose streaks are of an atlas, and what `--streaks` may be.
+#[test]
+fn a_streak_atlas_that_is_none_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, bytes: &[u8]| {
+        fs::create_dir_all(folder.path().join(name)).unwrap();
+        fs::write(folder.path().join(name).join("streak_2mm_1.ktx2"), bytes).unwrap();
+    };
+    let whole =
+        fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/streaks/streak_2mm_1.ktx2")).unwrap();
+    put("cut", &whole[..whole.len() / 2]);
+    put("none", b"no streaks at all");
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    // A word of the key that holds all numbers: another version has another.
+    let at = whole.windows(15).position(|w| w == b"DownpourStreaks").unwrap();
+    let mut other = whole.clone();
+    other[at + 8] = b'X';
+    put("other", &other);
+    for word in ["atlas", "atlas-random"] {
+        let run = |more: &[&str]| {
+            let fixed = ["render", "storm.toml", "--backend", "cpu", "--samples", "1", "-o", "a.png"];
+            Downpour::new(&[&fixed, more].concat())
+                .with_file("storm.toml", weather(&format!("[streaks]\ncolour = '{word}'\n")))
+                .with_file("floor.gltf", model())
+                .run()
+        };
+        let files = ["floor.gltf", "storm.toml"];
+        run(&[]).failed(2, &["streaks.colour", "--streaks FOLDER"]).with_one_line().left(&files);
+        for (name, code, words) in [
+            ("missing", 5, "missing"),
+            ("empty", 5, "no .ktx2 file"),
+            ("cut", 2, "streak_2mm_1.ktx2"),
+            ("none", 2, "streak_2mm_1.ktx2"),
+            ("other", 2, "streak_2mm_1.ktx2"),
+        ] {
+            let path = folder.path().join(name).display().to_string();
+            run(&["--streaks", &path]).failed(code, &[words]).with_one_line().left(&files);
+        }
+    }
+}

@@ -96,8 +96,12 @@ fn bad_arguments_are_refused() {
         (&["--diameter", "2", "--exposure", "1/60", "-o", "d.exr"], 2, "not a number"),
         (&["--diameter", "2", "--samples", "0", "-o", "d.exr"], 2, "1 to 4096"),
         (&["--diameter", "2", "--samples", "-4", "-o", "d.exr"], 2, "1 to 4096"),
-        (&["--diameter", "2", "--samples", "many", "-o", "d.exr"], 2, "1 to 4096, or table"),
-        (&["--diameter", "2", "--samples", "table", "-o", "d.exr"], 2, "not available for the specimen yet"),
+        (
+            &["--diameter", "2", "--samples", "many", "-o", "d.exr"],
+            2,
+            "allowed: a whole number from 1 to 4096",
+        ),
+        (&["--diameter", "2", "--samples", "table", "-o", "d.exr"], 2, "[streaks] samples"),
         (&["--diameter", "2", "--samples", "4097", "-o", "d.exr"], 3, "4096"),
         (&["--diameter", "2", "--samples", "1000000", "-o", "d.exr"], 3, "4096"),
         (&["--diameter", "2", "--samples", "99999999999", "-o", "d.exr"], 3, "4096"),
@@ -107,10 +111,34 @@ fn bad_arguments_are_refused() {
         (&["--diameter", "0.04", "--oscillation", "0.1,0.1", "-o", "d.exr"], 2, "0.05 to 9"),
         (&["--diameter", "2", "--phase", "0,inf", "-o", "d.exr"], 2, "not finite"),
         (&["--diameter", "2", "--exposure", "1", "--pitch", "90", "-o", "d.exr"], 2, "path of the drop"),
+        (&["--diameter", "2", "--light", "1,2,3", "-o", "d.exr"], 2, "YAW,PITCH,RADIUS,L"),
+        (&["--diameter", "2", "--light", "1,2,3,4,5", "-o", "d.exr"], 2, "YAW,PITCH,RADIUS,L"),
+        (&["--diameter", "2", "--light", "nan,0,1,1", "-o", "d.exr"], 2, "not finite"),
+        (&["--diameter", "2", "--light", "0,91,1,1", "-o", "d.exr"], 2, "PITCH -90 to 90"),
+        (&["--diameter", "2", "--light", "0,0,0,1", "-o", "d.exr"], 2, "RADIUS 0.01 to 90"),
+        (&["--diameter", "2", "--light", "0,0,1,-1", "-o", "d.exr"], 2, "radiance 0 to 1e9"),
+        (&["--diameter", "2", "--light", "0,0,1,1,NaN,1", "-o", "d.exr"], 2, "not finite"),
         (&["--diameter", "2", "-o", "nowhere/d.exr"], 5, "nowhere"),
     ] {
         specimen(arguments).failed(code, &[words]).left(&["sky.exr"]);
     }
+}
+
+#[test]
+fn more_lamps_than_there_is_room_for_are_refused() {
+    let lamps = ["--light", "180,0,1,5"].repeat(9);
+    let arguments = [&["--diameter", "2", "-o", "d.exr"][..], &lamps].concat();
+    specimen(&arguments).failed(3, &["number of lamps is 9; allowed: 0 to 8"]).left(&["sky.exr"]);
+}
+
+/// A red lamp from the side is mirrored by the drop on that side, and by none of the other's.
+#[test]
+fn a_lamp_glints_on_its_side() {
+    let arguments = ["--diameter", "2", "--size", "60x60", "--light", "90,0,10,50,0,0", "-o", "d.exr"];
+    let (width, _, pixels) = pixels(&specimen(&arguments).succeeded());
+    let reddest = (0..pixels.len()).max_by(|&a, &b| pixels[a][0].total_cmp(&pixels[b][0])).unwrap();
+    let (x, y) = (reddest % width as usize, reddest / width as usize);
+    assert!(pixels[reddest][0] > 1.0 + pixels[reddest][2] && x > 35 && (25..35).contains(&y), "{x} {y}");
 }
 
 #[test]

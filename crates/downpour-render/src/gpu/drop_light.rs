@@ -59,7 +59,8 @@ impl DropLightPipeline {
         drops: &[[f32; 4]],
     ) -> Result<DropLightPass<'a>, GpuError> {
         let gpu = &self.gpu;
-        let rows = drops.len() * lights.stride();
+        let count = lights.count(drops);
+        let rows = count * lights.stride();
         let light =
             gpu.empty_buffer("light on drops", rows.max(1) as u64 * 16, wgpu::BufferUsages::STORAGE)?;
         let frame = gpu.uniform_buffer("frame", lights.view.frame)?;
@@ -69,13 +70,13 @@ impl DropLightPipeline {
         let [frame, nodes, triangles, corners, rows_of_scene, texels, ..] =
             scene.buffers(&frame, &light, &light);
         let mut parts = Vec::new();
-        for part in lights.frames(drops.len() as u32) {
+        for part in lights.frames(count as u32) {
             let part = gpu.uniform_buffer("lamps", &part)?;
             let buffers =
                 [frame, nodes, triangles, corners, rows_of_scene, texels, &list, &table.table, &light, &part];
             parts.push(self.kernel.bind(gpu, &buffers)?);
         }
-        let groups = (drops.len() as u32).div_ceil(64).max(1);
+        let groups = (count as u32).div_ceil(64).max(1);
         Ok(DropLightPass { pipeline: self, parts, groups, rows, light })
     }
 }

@@ -4,14 +4,15 @@
 use downpour_math::ops;
 use downpour_math::packing::packing_octahedral_encode;
 use downpour_shaders::render::rain::{
-    DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SHIFT, DROPS_SKY, DROPS_SMALL_GRID, DROPS_STILL,
-    DROPS_TABLE, DROPS_TILE, DROPS_VEIL_NEAR, DROPS_VEIL_QUARTERS, DROPS_VEIL_SPREAD, STREAK_ACROSS,
-    STREAK_LATTICE, STREAK_WHITE,
+    DROPS_ATLAS_TAPS, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SHIFT, DROPS_SKY, DROPS_SMALL_GRID,
+    DROPS_STILL, DROPS_TABLE, DROPS_TILE, DROPS_VEIL_NEAR, DROPS_VEIL_QUARTERS, DROPS_VEIL_SPREAD,
+    STREAK_FINE, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::capture::Capture;
+use super::drops_atlas::{DropsAtlas, DropsAtlasStreak, drops_atlas_streak};
 use super::drops_frame::{DropsFrame, DropsView};
 use super::drops_mask::{DropsTexel, drops_mask_right, drops_mask_unit};
 use super::drops_shade::DropsShade;
@@ -49,6 +50,12 @@ pub fn drops_line(off: f32, width: f32) -> f32 {
     DROPS_LINE / width * ops::exp(-0.5 * off * off / (width * width))
 }
 
+/// The phase of the mode (2,0), in turns, where a passing drop is at a share of its way.
+#[must_use]
+pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
+    drop.swing[2] + drop.turns[0] * streak_time(drop.recede, way)
+}
+
 /// What the kernel reads.
 struct Buffers<'a> {
     view: DropsView<'a>,
@@ -70,7 +77,9 @@ impl Buffers<'_> {
     fn drops_spots(&self, index: u32, at: Vec2, width: f32) -> Vec3 {
         let row = self.drops_light_row(index);
         let mut light = Vec4::from(row[0]).truncate();
-        for glint in row[1..].iter().filter(|glint| glint[3] > 0.0) {
+        // An atlas has streaks, and nothing of a drop that stands still but its mean.
+        let glints = if self.view.frame.atlas > 0 { &[] } else { &row[1..] };
+        for glint in glints.iter().filter(|glint| glint[3] > 0.0) {
             let spot = drop_glint_spot(at - drop_glint_unpack(glint[3]), width);
             light += Vec4::from(*glint).truncate() * (spot - 1.0);
         }
@@ -88,6 +97,55 @@ impl Buffers<'_> {
             light += Vec4::from(*glint).truncate() * (drops_line(off, width) * chord.pace - chord.share);
         }
         light.max(Vec3::ZERO) * part
+    }
+
+    /// The streaks of a drop's row of light: their colours, and where they are in the atlas.
+    fn streaks(&self, index: u32) -> impl Iterator<Item = (Vec3, DropsAtlasStreak)> {
+        let (pairs, _) = self.drops_light_row(index)[1..].as_chunks::<2>();
+        pairs.iter().filter(|[first, _]| first[3] != 0.0).map(|&[first, second]| {
+            let (first, second) = (Vec4::from(first), Vec4::from(second));
+            (first.truncate(), drops_atlas_streak(first, second))
+        })
+    }
+
+    fn atlas(&self) -> DropsAtlas<'_> {
+        DropsAtlas { masks: self.view.masks, first: self.view.frame.atlas }
+    }
+
+    /// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a place on the plane.
+    fn drops_streaks(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, at: Vec2) -> Vec3 {
+        let row = self.drops_light_row(index);
+        let part = (chord.high - chord.low) * 0.5;
+        let turns = drops_turns(drop, streak_nearest(drop, at));
+        let mut light = Vec4::from(row[0]).truncate() * chord.share;
+        for (colour, streak) in self.streaks(index) {
+            let shown = self.atlas().drops_atlas_across(&streak, -chord.aside, turns);
+            light += colour * (shown * 2.0 * chord.pace - chord.share);
+        }
+        light.max(Vec3::ZERO) * part
+    }
+
+    /// Light of lamps on a drop that is not sampled, as a radiance over all of it: with an atlas bright and dark along its
+    /// path.
+    fn drops_beads(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec3 {
+        let mut light = Vec4::from(self.drops_light_row(index)[0]).truncate();
+        if self.view.frame.atlas == 0 || drop.spread > 1.0 {
+            return light;
+        }
+        let way = Vec2::from(drop.way);
+        let square = way.dot(way).max(1.0);
+        let at = (Vec2::new(x as f32, y as f32) + 0.5 - Vec2::from(drop.first)).dot(way) / square;
+        let pixel = 1.0 / square.sqrt();
+        for (colour, streak) in self.streaks(index) {
+            let mut mean = 0.0;
+            for n in 0..DROPS_ATLAS_TAPS {
+                let off = (n as f32 + 0.5) / DROPS_ATLAS_TAPS as f32 - 0.5;
+                let turns = drops_turns(drop, (at + off * pixel).clamp(0.0, 1.0));
+                mean += self.atlas().drops_atlas_along(&streak, turns);
+            }
+            light += colour * (mean / DROPS_ATLAS_TAPS as f32 - 1.0);
+        }
+        light.max(Vec3::ZERO)
     }
 
     /// The width of a glint, in radii: no line is thinner than half a pixel.
@@ -148,7 +206,7 @@ impl Buffers<'_> {
             towards: drops_mask_unit(ray),
             half_extent: drop.half_extent,
             lean: Vec3::ZERO,
-            spacing: 2.0 * drop.oval[0] / STREAK_ACROSS as f32,
+            spacing: 2.0 * drop.oval[0] / STREAK_FINE as f32,
             row: drop.row,
         };
         let mut sum = Vec4::ZERO;
@@ -171,7 +229,7 @@ impl Buffers<'_> {
                 return Vec4::ZERO;
             }
             let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
-            let light = Vec4::from(self.drops_light_row(index)[0]).truncate();
+            let light = self.drops_beads(index, drop, x, y);
             return (self.table.streak_lookup_mean(drop.shape, place) + light).extend(1.0) * cover;
         }
         let towards = Vec3::from(drop.towards);
@@ -185,7 +243,8 @@ impl Buffers<'_> {
                 Vec2::new(x as f32, y as f32) + (Vec2::new(k as f32, turned as f32) + 0.5) / drop.grid as f32;
             let ray = self.view.drops_frame_ray(at.x, at.y);
             let lean = drops_on_plane(towards, ray);
-            let chord = streak_chord(drop, Vec2::new(lean.dot(right), lean.dot(up)));
+            let place = Vec2::new(lean.dot(right), lean.dot(up));
+            let chord = streak_chord(drop, place);
             if chord.high <= chord.low {
                 continue;
             }
@@ -194,7 +253,11 @@ impl Buffers<'_> {
             } else {
                 self.drops_chord(drop, &chord, ray)
             };
-            let lines = self.drops_lines(index, &chord, self.drops_glint_width(drop));
+            let lines = if self.view.frame.atlas > 0 {
+                self.drops_streaks(index, drop, &chord, place)
+            } else {
+                self.drops_lines(index, &chord, self.drops_glint_width(drop))
+            };
             sum += shown * chord.share + lines.extend(0.0);
         }
         sum /= drop.grid as f32;

@@ -5,6 +5,7 @@ use glam::Vec3;
 
 use super::capture::CaptureFrame;
 use super::exposure::{MOST_STREAK_SAMPLES, StreakSamples};
+use super::light::DropLightForm;
 use super::{DropMasks, RainOptions};
 use crate::data::RenderFrame;
 
@@ -53,10 +54,10 @@ pub struct DropsFrame {
     pub streak_samples: u32,
     /// The colour of streaks.
     pub streak_colour: u32,
-    /// Glints that are kept of each drop.
+    /// Rows of light of each drop besides its mean: glints, or streaks of the atlas.
     pub glints: u32,
-    /// 0.
-    pub unused: u32,
+    /// First word of the atlas behind the masks; 0: there is none.
+    pub atlas: u32,
 }
 
 /// What the drops' kernels read besides the drops.
@@ -100,7 +101,7 @@ impl DropsFrame {
             streak_samples,
             streak_colour: options.exposure.colour as u32,
             glints: options.light.glints,
-            unused: 0,
+            atlas: if options.light.form == DropLightForm::Atlas { masks.atlas } else { 0 },
         }
     }
 }

@@ -8,26 +8,31 @@
 //! eye ([`SphereScattering`](downpour_drop::optics::SphereScattering)); seen as a disc of pi a^2, its mean radiance is
 //! L = E phase(theta). The drop is a sphere: a flattened one has its bows elsewhere, but nearly the same mean.
 //!
+//! With the form [`DropLightForm::Atlas`] the drop's light is that of a streak atlas ([`downpour_mask::atlas`]): traced with the
+//! shape and the oscillation of a falling drop, bright and dark along its path.
+//!
 //! - [`DropLightForm`], [`DropLightOptions`]: what is asked for;
 //! - [`DropLightTable`]: the scattering of water for red, green and blue;
 //! - [`DropLights`]: the lamps of a scene, on drops.
 
+mod atlas;
 mod table;
 
 use std::f32::consts::PI;
 
 use downpour_math::ops;
-use downpour_scene::weather::RainDropLight;
+use downpour_scene::weather::{RainDropLight, StreakLook, Weather};
 use downpour_shaders::render::drop_light::{
-    DROP_GLINT_TINY, DROP_LIGHT_ENTRIES, DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG, DROP_LIGHT_LAMPS,
-    DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_PLACES, DROP_LIGHT_RINGS, DROP_LIGHT_ROUSSEAU,
-    DROP_LIGHT_TRACED,
+    DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG,
+    DROP_LIGHT_LAMPS, DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_PLACES, DROP_LIGHT_RINGS,
+    DROP_LIGHT_ROUSSEAU, DROP_LIGHT_TRACED,
 };
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS};
 use downpour_sim::field::FallingDrop;
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
+use super::GLINTS;
 use super::glint::{
     drop_glint_angle, drop_glint_pack, drop_glint_right, drop_glint_rousseau, drop_glint_side,
 };
@@ -36,6 +41,8 @@ use crate::data::{RenderFrame, SceneData};
 use crate::light::check_lights;
 use crate::scene::{SceneView, scene_share};
 
+pub(crate) use atlas::layer_means;
+use atlas::{drop_atlas_place, drop_atlas_shares};
 pub use table::DropLightTable;
 
 /// What lamps do to a drop.
@@ -52,6 +59,9 @@ pub enum DropLightForm {
     /// and parallel ones are left out. The cone is as high as the lamp's range. Here its edge is soft, from the inner
     /// cone to the outer, and the intensity falls with the distance (their light has one intensity everywhere).
     ImSung2022 = DROP_LIGHT_IM_SUNG,
+    /// The streaks of an atlas, picked by the directions of lamp and viewer or at random: for drops that move. One that
+    /// stands still shows the mean of its streak.
+    Atlas = DROP_LIGHT_ATLAS,
     /// Nothing.
     None = DROP_LIGHT_NONE,
 }
@@ -72,8 +82,25 @@ impl From<RainDropLight> for DropLightForm {
 pub struct DropLightOptions {
     /// What lamps do to a drop.
     pub form: DropLightForm,
-    /// Brightest glints that are told of each drop, 0 to 16; the traced form alone has some.
+    /// Rows that are told of each drop besides its mean, 0 to 16: in the traced form its brightest glints; of an atlas its
+    /// brightest streaks, two rows each. The other forms have none.
     pub glints: u32,
+}
+
+impl DropLightOptions {
+    /// The light of an atlas, four streaks of each drop.
+    pub const ATLAS: Self = Self { form: DropLightForm::Atlas, glints: 8 };
+
+    /// What a weather asks for: its `drop_light`, traced light by the streaks of an atlas if its streaks are of one.
+    #[must_use]
+    pub fn of_weather(weather: &Weather) -> Self {
+        let form = weather.rain.drop_light.into();
+        let of_atlas = matches!(weather.streaks.look, StreakLook::Atlas | StreakLook::AtlasRandom);
+        if of_atlas && form == DropLightForm::Traced {
+            return Self::ATLAS;
+        }
+        Self { form, glints: GLINTS }
+    }
 }
 
 /// What a dispatch is about. The same layout as `DropLightFrame` in WGSL.
@@ -84,7 +111,7 @@ pub struct DropLightFrame {
     pub count: u32,
     /// [`DropLightForm`].
     pub form: u32,
-    /// Glints that are kept of each drop.
+    /// Rows that are kept of each drop besides its mean.
     pub glints: u32,
     /// First lamp of the dispatch.
     pub first_light: u32,
@@ -111,6 +138,21 @@ pub struct DropLights<'a> {
     pub(crate) options: DropLightOptions,
 }
 
+/// What an atlas has to know of drops: for each the axis, a unit vector against its velocity as the eye sees it (up, where it has
+/// none), and a number that stays with it.
+#[must_use]
+pub(crate) fn drop_light_axes<'a>(drops: impl IntoIterator<Item = (&'a FallingDrop, Vec3)>) -> Vec<[f32; 4]> {
+    let row = |(drop, velocity): (&FallingDrop, Vec3)| {
+        let id = (drop.id as u32 ^ (drop.id >> 32) as u32) & DROP_IDS;
+        let axis = (-velocity).try_normalize().unwrap_or(Vec3::Y);
+        axis.extend(id as f32).to_array()
+    };
+    drops.into_iter().map(row).collect()
+}
+
+/// Numbers of drops are below 2^24: single precision has them exactly.
+const DROP_IDS: u32 = 0x00ff_ffff;
+
 /// Drops as the light wants them: place relative to the scene's origin, and radius, metres.
 #[must_use]
 pub fn drop_light_rows<'a>(drops: impl IntoIterator<Item = &'a FallingDrop>) -> Vec<[f32; 4]> {
@@ -122,7 +164,8 @@ impl<'a> DropLights<'a> {
     /// The lamps of `scene`, seen from the frame's eye.
     ///
     /// # Errors
-    /// [`RenderError::Light`] if a lamp's colour is not finite, or negative; [`RenderError::OutOfRange`] above 16 glints.
+    /// [`RenderError::Light`] if a lamp's colour is not finite, or negative; [`RenderError::OutOfRange`] above 16 glints, or for
+    /// the form of an atlas if the table has none.
     pub fn new(
         scene: &'a SceneData,
         frame: &'a RenderFrame,
@@ -136,6 +179,14 @@ impl<'a> DropLights<'a> {
                 found: f64::from(options.glints),
                 unit: "",
                 allowed: "0 to 16",
+            });
+        }
+        if options.form == DropLightForm::Atlas && !table.has_atlas() {
+            return Err(RenderError::OutOfRange {
+                quantity: "number of streak atlases",
+                found: 0.0,
+                unit: "",
+                allowed: "1 (DropMasks::with_atlas)",
             });
         }
         Ok(Self { view: SceneView { data: scene, frame }, table, options })
@@ -156,13 +207,23 @@ impl<'a> DropLights<'a> {
         (0..lights).step_by(DROP_LIGHT_LAMPS as usize).map(frame).collect()
     }
 
-    /// The light on drops ([`drop_light_rows`]), in parallel; the same bits for any number of threads. For each drop
+    /// How many drops rows are of: those of an atlas have two each.
+    pub(crate) fn count(&self, rows: &[[f32; 4]]) -> usize {
+        if self.options.form == DropLightForm::Atlas { rows.len() / 2 } else { rows.len() }
+    }
+
+    /// The light on drops ([`drop_light_rows`]; for an atlas then a row for each drop with its axis, against its motion, and its
+    /// id below 2^24), in parallel; the same bits for any number of threads. For each drop
     /// [`DropLights::stride`] rows: the mean radiance over its disc and 0; then its brightest glints in no order, their part
-    /// of the mean and their place ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more.
+    /// of the mean and their place ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas:
+    /// its streaks, two rows each as in the shader.
     #[must_use]
     pub fn light(&self, drops: &[[f32; 4]]) -> Vec<[f32; 4]> {
+        let (drops, about) = drops.split_at(self.count(drops));
         let mut out = vec![[0.0; 4]; drops.len() * self.stride()];
-        out.par_chunks_mut(self.stride()).zip(drops).for_each(|(slot, drop)| self.drop_light_of(drop, slot));
+        out.par_chunks_mut(self.stride()).zip(drops).enumerate().for_each(|(index, (slot, drop))| {
+            self.drop_light_of(drop, about.get(index).copied().unwrap_or_default(), slot);
+        });
         out
     }
 
@@ -225,7 +286,7 @@ impl<'a> DropLights<'a> {
     }
 
     /// The light on a drop: its mean, then its glints.
-    fn drop_light_of(&self, drop: &[f32; 4], slot: &mut [[f32; 4]]) {
+    fn drop_light_of(&self, drop: &[f32; 4], about: [f32; 4], slot: &mut [[f32; 4]]) {
         let Some((mean, glints)) = slot.split_first_mut() else { return };
         let (place, radius) = (Vec4::from(*drop).truncate(), drop[3]);
         let mut sum = Vec3::ZERO;
@@ -245,6 +306,17 @@ impl<'a> DropLights<'a> {
             match form {
                 DropLightForm::ImSung2022 => sum += lit,
                 DropLightForm::Rousseau2006 => sum += lit * drop_light_mean(towards, light.direction),
+                DropLightForm::Atlas => {
+                    let (axis, id) = (Vec4::from(about).truncate(), about[3] as u32);
+                    let diameter = 2.0 * radius;
+                    let place = drop_atlas_place(self.table, id, diameter, axis, light.direction, -towards);
+                    let [first, second, _, whole] = drop_atlas_shares(self.table, &place);
+                    let radiance = lit * (PI * whole);
+                    sum += radiance;
+                    let [a, b, c] = place.layers.map(|layer| layer as f32);
+                    let streak = radiance.extend(place.side * (1.0 + first));
+                    drop_light_keep_streak(glints, streak, [a, b, c, second]);
+                }
                 DropLightForm::Traced | DropLightForm::None => {
                     let angle = drop_glint_angle(light.direction, towards);
                     let side = drop_glint_side(light.direction, right, up);
@@ -307,5 +379,21 @@ fn drop_light_keep(glints: &mut [[f32; 4]], glint: Vec4) {
     }
     if let Some(weakest) = weakest {
         *weakest = glint.to_array();
+    }
+}
+
+/// Keeps a streak of a drop if it is brighter than the least of those that are kept.
+fn drop_light_keep_streak(rows: &mut [[f32; 4]], light: Vec4, layers: [f32; 4]) {
+    let share = |row: &[f32; 4]| scene_share(Vec4::from(*row).truncate());
+    let mut least = scene_share(light.truncate());
+    let mut weakest = None;
+    for kept in rows.chunks_exact_mut(2) {
+        if share(&kept[0]) < least {
+            least = share(&kept[0]);
+            weakest = Some(kept);
+        }
+    }
+    if let Some(weakest) = weakest {
+        weakest.copy_from_slice(&[light.to_array(), layers]);
     }
 }

@@ -4,10 +4,12 @@
 //! for diameters half a millimetre apart and elevations 30 degrees apart; the shader goes between them linearly.
 
 use downpour_drop::DropShape;
+use downpour_mask::atlas::StreakAtlas;
 use downpour_mask::{Mask, MaskError, MaskOptions, MaskTexel, View, trace_drop};
 use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_pack_unorm};
 use downpour_shaders::render::rain::{DROPS_ELEVATIONS, DROPS_TEXEL_WORDS};
 
+use super::drops_atlas;
 use super::light::DropLightTable;
 use super::streak_table::StreakShape;
 
@@ -25,10 +27,13 @@ const WORDS: usize = DROPS_TEXEL_WORDS as usize;
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropMasks {
     /// Three words per texel: the refracted and the reflected direction as octahedral pairs of 16 bits, coverage and
-    /// transmittance as 16 bits each. Rows from the top, elevations within diameters.
+    /// transmittance as 16 bits each. Rows from the top, elevations within diameters. Behind them the streak atlas, if there
+    /// is one.
     pub words: Vec<u32>,
     /// Texels along an edge of a mask.
     pub size: u32,
+    /// First word of the streak atlas behind the masks; 0: there is none.
+    pub(crate) atlas: u32,
     /// How a drop scatters the light of lamps.
     pub light: DropLightTable,
     /// Half the width of the masks of a diameter, in equivalent radii.
@@ -57,6 +62,7 @@ impl DropMasks {
         let mut masks = Self {
             words: Vec::new(),
             size: SIZE,
+            atlas: 0,
             light: DropLightTable::water().map_err(|_| MaskError::OutOfRange {
                 quantity: "refractive index of water",
                 found: refractive_index,
@@ -91,6 +97,19 @@ impl DropMasks {
             }
         }
         Ok(masks)
+    }
+
+    /// The same, with the streaks of an atlas for [`DropLightForm::Atlas`](super::light::DropLightForm::Atlas), instead of those of
+    /// another.
+    #[must_use]
+    pub fn with_atlas(mut self, atlas: &StreakAtlas) -> Self {
+        if self.atlas > 0 {
+            self.words.truncate(self.atlas as usize);
+        }
+        self.atlas = self.words.len() as u32;
+        self.words.extend(drops_atlas::words(atlas));
+        self.light = self.light.with_atlas(atlas);
+        self
     }
 
     /// Where a drop of a diameter in metres is, seen from `elevation` radians above it.

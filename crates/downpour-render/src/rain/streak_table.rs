@@ -2,8 +2,8 @@
 
 use downpour_math::ops;
 use downpour_shaders::render::rain::{
-    DROPS_ELEVATIONS, STREAK_ACROSS, STREAK_BRIGHTEST, STREAK_MEAN_GRID, STREAK_PER_QUARTER, STREAK_RAYS,
-    STREAK_SUMS, STREAK_TAPS,
+    DROPS_ELEVATIONS, STREAK_ACROSS, STREAK_BRIGHTEST, STREAK_FINE, STREAK_MEAN_GRID, STREAK_PER_QUARTER,
+    STREAK_RAYS, STREAK_SUMS, STREAK_TAPS,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -82,7 +82,7 @@ impl DropsView<'_> {
         let taps = if mean { STREAK_MEAN_GRID * STREAK_MEAN_GRID } else { STREAK_TAPS };
         let across = (place as f32 + 0.5) * (2.0 / STREAK_ACROSS as f32) - 1.0;
         let half = (1.0 - across * across).max(0.0).sqrt();
-        let spacing = 2.0 * oval.x / if mean { STREAK_MEAN_GRID } else { STREAK_ACROSS } as f32;
+        let spacing = 2.0 * oval.x / if mean { STREAK_MEAN_GRID } else { STREAK_FINE } as f32;
         let drop = DropsShade {
             towards,
             half_extent: extent,

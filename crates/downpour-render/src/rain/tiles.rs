@@ -6,7 +6,7 @@ use glam::{DVec3, Vec2};
 
 use super::capture::CaptureFrame;
 use super::drops_frame::DropsFrame;
-use super::light::{DropLightOptions, DropLights, drop_light_rows};
+use super::light::{DropLightForm, DropLightOptions, DropLights, drop_light_axes, drop_light_rows};
 use super::project::{Projected, project};
 use super::streak::DropsDrop;
 use super::streak_table::StreakShape;
@@ -27,7 +27,8 @@ pub struct Rain {
     pub list: Vec<DropsDrop>,
     /// Where each tile's list begins (one more than there are tiles), then the lists.
     pub tiles: Vec<u32>,
-    /// The drops of `list` as lamps light them: place relative to the scene's origin, and radius, m.
+    /// The drops of `list` as lamps light them: place relative to the scene's origin, and radius, m. For an atlas then their
+    /// axes and ids.
     pub rows: Vec<[f32; 4]>,
     /// The picture that they are on.
     picture: RenderFrame,
@@ -81,12 +82,17 @@ impl Rain {
                 next[tile] += 1;
             }
         }
+        let given = || placed.iter().filter_map(|p| Some((drops.get(p.0 as usize)?, p.1.velocity)));
+        let mut rows = drop_light_rows(given().map(|(drop, _)| drop));
+        if options.light.form == DropLightForm::Atlas {
+            rows.extend(drop_light_axes(given()));
+        }
         Self {
             frame: DropsFrame::new(picture, &capture, masks, across, options),
             capture,
             shapes,
             list: placed.iter().map(|p| p.1.drop).collect(),
-            rows: drop_light_rows(placed.iter().filter_map(|p| drops.get(p.0 as usize))),
+            rows,
             picture: *picture,
             light: options.light,
             given: placed.iter().map(|p| p.0).collect(),

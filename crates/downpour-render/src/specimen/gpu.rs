@@ -4,8 +4,11 @@ use downpour_drop::DropShape;
 use downpour_drop::oscillation::DropOscillation;
 use downpour_gpu::{ComputeKernel, Gpu, GpuError, wgpu};
 use downpour_mask::gpu::DropUniform;
-use downpour_shaders::render::specimen::{SPECIMEN_KERNEL, SPECIMEN_STREAK_KERNEL, SPECIMEN_STREAK_TRACES};
+use downpour_shaders::render::specimen::{
+    SPECIMEN_KERNEL, SPECIMEN_LAMPS, SPECIMEN_STREAK_KERNEL, SPECIMEN_STREAK_TRACES,
+};
 
+use super::lamp::SpecimenLamp;
 use super::motion::SpecimenMotion;
 use super::options::SpecimenOptions;
 use super::render::{View, views};
@@ -73,6 +76,31 @@ pub struct SpecimenUniform {
     pub channels: u32,
     /// Nothing.
     pub padding: u32,
+}
+
+/// A lamp. The same layout as `SpecimenLamp` in WGSL; one of zeros is none.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct LampUniform {
+    /// Towards the middle, of length 1.
+    pub direction: [f32; 3],
+    /// The squared chord from the middle to the edge.
+    pub reach: f32,
+    /// Linear radiance.
+    pub radiance: [f32; 3],
+    /// Nothing.
+    pub padding: u32,
+}
+
+impl From<&SpecimenLamp> for LampUniform {
+    fn from(lamp: &SpecimenLamp) -> Self {
+        Self {
+            direction: lamp.direction.map(|c| c as f32),
+            reach: lamp.reach as f32,
+            radiance: lamp.radiance,
+            padding: 0,
+        }
+    }
 }
 
 /// What the drop does in the exposure. The same layout as `SpecimenStreak` in WGSL.
@@ -173,6 +201,11 @@ impl SpecimenRenderer {
         };
         let [width, height] = options.size;
         let map = self.gpu.storage_buffer("sky map", sky.radiance())?;
+        let mut lamps = [LampUniform::default(); SPECIMEN_LAMPS as usize];
+        for (slot, lamp) in lamps.iter_mut().zip(sky.lamps()) {
+            *slot = lamp.into();
+        }
+        let lamps = self.gpu.uniform_buffer("specimen lamps", &lamps)?;
         let band = band_rows(options);
         let bytes = u64::from(width) * u64::from(band.min(height)) * size_of::<[f32; 3]>() as u64;
         let target = self.gpu.empty_buffer("specimen", bytes, wgpu::BufferUsages::STORAGE)?;
@@ -184,7 +217,7 @@ impl SpecimenRenderer {
                 let uniform = self.gpu.uniform_buffer("specimen view", &uniform)?;
                 let groups = [width.div_ceil(8), rows.div_ceil(GROUP_ROWS), 1];
                 let Some((motion, kernel)) = &streak else {
-                    let bindings = self.kernel.bind(&self.gpu, &[&uniform, &map, &target])?;
+                    let bindings = self.kernel.bind(&self.gpu, &[&uniform, &map, &target, &lamps])?;
                     self.gpu.submit(&[self.kernel.dispatch(&bindings, groups)])?;
                     continue;
                 };
@@ -193,7 +226,7 @@ impl SpecimenRenderer {
                     let count = SPECIMEN_STREAK_TRACES.min(traces - first);
                     let of_streak = StreakUniform::new(motion, first, count);
                     let of_streak = self.gpu.uniform_buffer("specimen streak", &of_streak)?;
-                    let bindings = kernel.bind(&self.gpu, &[&uniform, &map, &target, &of_streak])?;
+                    let bindings = kernel.bind(&self.gpu, &[&uniform, &map, &target, &lamps, &of_streak])?;
                     self.gpu.submit(&[kernel.dispatch(&bindings, groups)])?;
                 }
             }

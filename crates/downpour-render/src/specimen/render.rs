@@ -11,7 +11,7 @@ use downpour_math::vector::{add, add_scaled, scale};
 use rayon::prelude::*;
 
 use super::options::SpecimenOptions;
-use super::sky::{Sky, sky_f64, specimen_sky, specimen_sky_place};
+use super::sky::{Sky, sky_f64, specimen_sky, specimen_sky_lamps, specimen_sky_place};
 use super::streak::{Precision, Streak};
 use super::trace::{Receiver, SpecimenCamera, specimen_light, specimen_radiance, upright_drop};
 use super::{Image, SpecimenError};
@@ -189,14 +189,18 @@ impl<S: Simd> Receiver<Lanes<S>> for LaneSums<'_> {
     #[inline(always)]
     fn receive(&mut self, direction: [Lanes<S>; 3], share: Lanes<S>) {
         let [u, v] = specimen_sky_place(direction);
-        let mut stored = [[0.0f32; MOST_LANES]; 3];
-        for (lanes, into) in [u, v, share].into_iter().zip(&mut stored) {
+        let [x, y, z] = direction;
+        let mut stored = [[0.0f32; MOST_LANES]; 6];
+        let kept = if self.sky.lamps().is_empty() { 3 } else { 6 };
+        for (lanes, into) in [u, v, share, x, y, z].into_iter().zip(&mut stored[..kept]) {
             lanes.store(into);
         }
-        let [u, v, share] = &stored;
+        let [u, v, share, x, y, z] = &stored;
         for (k, sum) in self.sums.iter_mut().enumerate() {
             if share[k] > 0.0 {
-                *sum = add_scaled(*sum, specimen_sky(self.sky, [u[k], v[k]]), share[k]);
+                let lamps = specimen_sky_lamps(self.sky, [x[k], y[k], z[k]]);
+                let light = add(specimen_sky(self.sky, [u[k], v[k]]), lamps);
+                *sum = add_scaled(*sum, light, share[k]);
             }
         }
     }

@@ -7,14 +7,17 @@
 //! Both angles come from one polynomial in units of turns ([`specimen_turns`]), within 4e-8 turns in f32: the
 //! inverse functions of WGSL may be wrong by 4096 units in the last place.
 //!
+//! To the map's light come the lamps of [`super::lamp`].
+//!
 //! Twin of `shaders/wgsl/render/specimen.wgsl`.
 
 use downpour_math::ops::f64 as ops;
 use downpour_math::real::Real;
-use downpour_math::vector::{add_scaled, dot, sub};
+use downpour_math::vector::{add, add_scaled, dot, scale, sub};
 use downpour_shaders::render::specimen::{SPECIMEN_TINY, SPECIMEN_TURN};
 
 use super::SpecimenError;
+use super::lamp::{SpecimenLamp, specimen_lamp};
 
 /// The largest width and height of a sky map: more would not fit an f32's 24 bits between its texels.
 const LARGEST_SIZE: u32 = 32_768;
@@ -25,6 +28,7 @@ pub struct Sky<'a> {
     width: u32,
     height: u32,
     radiance: &'a [[f32; 3]],
+    lamps: &'a [SpecimenLamp],
 }
 
 impl<'a> Sky<'a> {
@@ -54,7 +58,22 @@ impl<'a> Sky<'a> {
                 allowed: "finite numbers".to_owned(),
             });
         }
-        Ok(Self { width, height, radiance })
+        Ok(Self { width, height, radiance, lamps: &[] })
+    }
+
+    /// The same map with lamps before it, up to 8. Where lamps overlap, their light adds.
+    ///
+    /// # Errors
+    /// [`SpecimenError::Size`] for more lamps.
+    pub fn with_lamps(self, lamps: &'a [SpecimenLamp]) -> Result<Self, SpecimenError> {
+        SpecimenLamp::check_count(lamps)?;
+        Ok(Self { lamps, ..self })
+    }
+
+    /// The lamps.
+    #[must_use]
+    pub fn lamps(self) -> &'a [SpecimenLamp] {
+        self.lamps
     }
 
     /// Texels along a row.
@@ -137,6 +156,21 @@ pub fn specimen_sky(sky: Sky<'_>, [u, v]: [f32; 2]) -> [f32; 3] {
     add_scaled(upper, sub(lower, upper), fy)
 }
 
+/// The radiance of all lamps along a direction of length 1.
+#[inline]
+#[must_use]
+pub fn specimen_sky_lamps<R: Real<Mask = bool>>(sky: Sky<'_>, direction: [R; 3]) -> [R; 3] {
+    let none = [direction[0].constant(0.0); 3];
+    sky.lamps.iter().fold(none, |light, lamp| add(light, specimen_lamp(lamp, direction)))
+}
+
+/// The radiance of the map and of the lamps along a direction of length 1.
+#[inline]
+#[must_use]
+pub fn specimen_sky_light(sky: Sky<'_>, direction: [f32; 3]) -> [f32; 3] {
+    add(specimen_sky(sky, specimen_sky_place(direction)), specimen_sky_lamps(sky, direction))
+}
+
 /// The radiance of the sky along a direction, in f64 and with the library's inverse functions: the reference.
 pub(crate) fn sky_f64(sky: Sky<'_>, direction: [f64; 3]) -> [f64; 3] {
     let length = dot(direction, direction).sqrt();
@@ -155,5 +189,6 @@ pub(crate) fn sky_f64(sky: Sky<'_>, direction: [f64; 3]) -> [f64; 3] {
     let (c, d) = (texel(left, top + 1.0), texel(left + 1.0, top + 1.0));
     let upper = add_scaled(a, sub(b, a), x - left);
     let lower = add_scaled(c, sub(d, c), x - left);
-    add_scaled(upper, sub(lower, upper), y - top)
+    let map = add_scaled(upper, sub(lower, upper), y - top);
+    add(map, specimen_sky_lamps(sky, scale(direction, 1.0 / length)))
 }

@@ -22,7 +22,7 @@ use downpour_shaders::render::specimen::{
 
 use super::motion::SpecimenMotion;
 use super::render::View;
-use super::sky::{Sky, sky_f64, specimen_sky, specimen_sky_place};
+use super::sky::{Sky, sky_f64, specimen_sky_light};
 use super::trace::{SpecimenRay, specimen_ray};
 use super::wobble::{SpecimenWobble, specimen_wobble_bounce, specimen_wobble_enter, specimen_wobble_meet};
 
@@ -124,7 +124,7 @@ impl Precision for f32 {
         specimen_streak_state(oscillation, motion.drop.volume_polynomial(), seconds)
     }
     fn sky(sky: Sky<'_>, direction: [Self; 3]) -> [Self; 3] {
-        specimen_sky(sky, specimen_sky_place(direction))
+        specimen_sky_light(sky, direction)
     }
 }
 

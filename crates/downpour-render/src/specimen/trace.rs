@@ -24,7 +24,7 @@ use downpour_shaders::render::specimen::{
     SPECIMEN_ALL, SPECIMEN_LEAST, SPECIMEN_NEAREST_STEPS, SPECIMEN_REFLECTIONS,
 };
 
-use super::sky::{Sky, specimen_sky, specimen_sky_place};
+use super::sky::{Sky, specimen_sky_light};
 
 /// A drop with its axis along +Y, as the tracer needs it. `index` is the refractive index of water against air.
 #[must_use]
@@ -219,8 +219,7 @@ impl Receiver<f32> for Sum<'_> {
     #[inline(always)]
     fn receive(&mut self, direction: [f32; 3], share: f32) {
         if share > 0.0 {
-            let light = specimen_sky(self.sky, specimen_sky_place(direction));
-            self.radiance = add_scaled(self.radiance, light, share);
+            self.radiance = add_scaled(self.radiance, specimen_sky_light(self.sky, direction), share);
         }
     }
 }

@@ -18,6 +18,10 @@ pub enum StreakLook {
     Refracted,
     /// One colour for all.
     White,
+    /// What their drops refract and reflect, and the light of lamps out of a streak atlas, by the directions of lamp and viewer.
+    Atlas,
+    /// The same, each drop with any of the atlas' streaks.
+    AtlasRandom,
 }
 
 /// How drops that move while the shutter is open are drawn.

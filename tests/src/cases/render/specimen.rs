@@ -6,12 +6,13 @@ use downpour_mask::trace::TracedDrop;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_math::vector::{add_scaled, cross, dot, normalize, scale};
 use downpour_render::specimen::gpu::{GpuSpecimenError, SpecimenRenderer};
+use downpour_render::specimen::lamp::specimen_lamp;
 use downpour_render::specimen::sky::{specimen_sky_place, specimen_turns};
 use downpour_render::specimen::trace::{
     SpecimenCamera, SpecimenLight, SpecimenRay, specimen_bounce, specimen_enter, specimen_hits, specimen_ray,
     upright_drop,
 };
-use downpour_render::specimen::{Image, Sky, SpecimenOptions, render_specimen};
+use downpour_render::specimen::{Image, Sky, SpecimenLamp, SpecimenOptions, render_specimen};
 use downpour_shaders::mask::MASK_TRACE_STEPS;
 use downpour_shaders::render::specimen;
 
@@ -118,6 +119,19 @@ fn camera(args: &mut Args<'_>) -> SpecimenCamera {
     SpecimenCamera { right, up, back, step, distance }
 }
 
+/// A lamp of 0.05 to 30 degrees, as `SpecimenLamp`, and a direction up to twice its radius from its middle.
+fn lamp_and_direction(random: [u32; 4]) -> Vec<u32> {
+    let unit = random.map(|w| f64::from(rng_unit(w)));
+    let radius = 8.7e-4 * downpour_math::ops::f64::exp(6.4 * unit[0]);
+    let (yaw, pitch) = (6.0 * unit[1], 2.0 * unit[2] - 1.0);
+    let lamp = SpecimenLamp::new(yaw, pitch, radius, [1.5, 0.25, 3.0]).expect("a lamp");
+    let aside =
+        SpecimenLamp::new(yaw, pitch + 2.0 * radius * (unit[3] - 0.5), radius, [0.0; 3]).expect("as good");
+    let single = |v: [f64; 3]| v.map(|c| c as f32);
+    let words = (((single(lamp.direction), lamp.reach as f32), lamp.radiance), 0u32);
+    (words, single(aside.direction)).words()
+}
+
 /// The cases.
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
@@ -166,6 +180,19 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| specimen_turns(a.f32(), a.f32()).words(),
         ),
         FunctionCase::new(
+            "specimen_lamp",
+            module,
+            &[Made(lamp_and_direction)],
+            Tol::exact("the edge is drawn by a sum of squares that a GPU may fuse").with_outliers(1.0e-3),
+            |a| {
+                let direction = a.f32s().map(f64::from);
+                let reach = a.f32().into();
+                let lamp = SpecimenLamp { direction, reach, radiance: a.f32s() };
+                let _padding = a.u32();
+                specimen_lamp(&lamp, a.f32s::<3>()).words()
+            },
+        ),
+        FunctionCase::new(
             "specimen_sky_place",
             module,
             &[Unit3],
@@ -193,9 +220,27 @@ fn told(error: GpuSpecimenError) -> GpuError {
 }
 
 pub(super) fn picture(gpu: &Gpu, diameter: f64, options: &SpecimenOptions) -> Result<Run, GpuError> {
+    lit_picture(gpu, diameter, options, &[])
+}
+
+/// Two lamps of a few degrees, one of them behind the drop as seen from yaw 0.
+pub(super) fn lamps() -> Vec<SpecimenLamp> {
+    [(2.8, 0.1, 0.1, [4.0, 3.0, 2.0]), (1.6, -0.2, 0.15, [0.5, 1.0, 2.5])]
+        .map(|(yaw, pitch, radius, radiance)| {
+            SpecimenLamp::new(yaw, pitch, radius, radiance).expect("a lamp")
+        })
+        .to_vec()
+}
+
+pub(super) fn lit_picture(
+    gpu: &Gpu,
+    diameter: f64,
+    options: &SpecimenOptions,
+    lamps: &[SpecimenLamp],
+) -> Result<Run, GpuError> {
     let shape = DropShape::new(diameter).expect("a diameter of the table");
     let texels = sky_texels();
-    let sky = Sky::new(64, 32, &texels).expect("a sky");
+    let sky = Sky::new(64, 32, &texels).expect("a sky").with_lamps(lamps).expect("few lamps");
     let cpu = render_specimen(&shape, options, sky).expect("a picture");
     let gpu = SpecimenRenderer::new(gpu)?.render(&shape, options, sky).map_err(told)?;
     let words = |image: &Image| image.pixels.iter().flat_map(IntoWords::words).collect();
@@ -224,13 +269,24 @@ const TILTED: Tol = Tol::absolute(
 )
 .with_outliers(5.0e-3);
 
+const LAMPS: Tol =
+    Tol::absolute(2.0e-3, "as without; a sample on the edge of a lamp may fall on either side")
+        .with_outliers(1.0e-2);
+
 /// The cases.
 #[must_use]
 pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, tol, run| KernelCase {
         name,
         kernel: &specimen::SPECIMEN_KERNEL,
-        covers: &["specimen_sky", "specimen_sky_texel", "specimen_radiance", "specimen_pixel"],
+        covers: &[
+            "specimen_sky",
+            "specimen_sky_texel",
+            "specimen_radiance",
+            "specimen_pixel",
+            "specimen_sky_lamps",
+            "specimen_sky_light",
+        ],
         tol,
         run,
     };
@@ -240,6 +296,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         case("main_specimen: 3 mm from above, with dispersion", TILTED, |gpu| {
             let refractive_index = [1.3312, 1.3345, 1.3392];
             picture(gpu, 3.0e-3, &SpecimenOptions { refractive_index, ..options(0.6, -1.0) })
+        }),
+        case("main_specimen: 2 mm before lamps", LAMPS, |gpu| {
+            lit_picture(gpu, 2.0e-3, &options(0.1, 0.0), &lamps())
         }),
         case("main_specimen: 6 mm from below", TILTED, |gpu| picture(gpu, 6.0e-3, &options(-0.5, 4.0))),
     ]

@@ -16,7 +16,7 @@ use downpour_render::specimen::wobble::{
 use downpour_render::specimen::{SpecimenMotion, SpecimenOptions};
 use downpour_shaders::render::specimen;
 
-use super::specimen::{light, light_words, picture, ray, ray_of};
+use super::specimen::{lamps, light, light_words, lit_picture, picture, ray, ray_of};
 use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform};
 use crate::words::{Args, IntoWords};
 use crate::{FunctionCase, KernelCase, Tol};
@@ -309,6 +309,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         case("main_specimen_streak: 2 mm in 1/250 s from above, with dispersion", |gpu| {
             let refractive_index = [1.3312, 1.3345, 1.3392];
             picture(gpu, 2.0e-3, &SpecimenOptions { refractive_index, ..options(0.004, 0.5) })
+        }),
+        case("main_specimen_streak: 3 mm before lamps", |gpu| {
+            lit_picture(gpu, 3.0e-3, &options(0.001, 0.1), &lamps())
         }),
         case("main_specimen_streak: 4 mm, an instant", |gpu| picture(gpu, 4.0e-3, &options(0.0, -0.3))),
     ]

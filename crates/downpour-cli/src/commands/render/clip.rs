@@ -16,7 +16,7 @@ use serde_json::Value;
 
 use super::frames::Frames;
 use super::ground::Puddles;
-use super::job::{Job, digest, moves, scene_digest};
+use super::job::{Job, atlas_digest, digest, moves, scene_digest};
 use super::journal::{Journal, Record};
 use super::outputs::Format;
 use super::painter::{PaintError, Painter, with_painter};
@@ -58,6 +58,7 @@ pub(super) fn run(
         super::video::check_size(input.weather.size)?;
     }
     reserve(input.weather.size)?;
+    let atlas = arguments.atlas(&input.weather)?;
     let first = Stage::new(&input.weather, &input.loaded, time_s(arguments.input.time, frames.first, fps))?;
     input.say_warnings(&first, |text| arguments.say(text));
     let scene = scene_digest(&input.weather, &input.loaded, &first);
@@ -66,7 +67,7 @@ pub(super) fn run(
         // The files have become buffers.
         input.loaded = downpour::scene::weather::Loaded { scene: Default::default(), ..input.loaded };
     }
-    let clip = Clip { arguments, frames, fps, places, input, first, scene, moving, interrupt };
+    let clip = Clip { arguments, frames, fps, places, input, atlas, first, scene, moving, interrupt };
     let rain = &clip.input.weather.rain;
     arguments.say(&format!("rain: {} mm/h, {} frames", rain.rate_mm_h, frames.count()));
     let (journal, made) = with_painter(
@@ -91,6 +92,7 @@ struct Clip<'a> {
     places: Places,
     input: Input,
     /// The scene at the first frame.
+    atlas: Option<downpour::mask::atlas::StreakAtlas>,
     first: Stage,
     /// The digest of the scene.
     scene: String,
@@ -137,7 +139,7 @@ impl Clip<'_> {
         if let Some(drops) = &self.places.drops {
             remove_leftovers(drops.folder());
         }
-        let showers = &mut Showers::new(&self.input.weather)?;
+        let showers = &mut Showers::new(&self.input.weather, self.atlas.as_ref())?;
         let (weather, loaded) = (&self.input.weather, &self.input.loaded);
         let first_s = time_s(self.arguments.input.time, self.frames.first, self.fps);
         let surfaces = &mut Surfaces {
@@ -298,6 +300,7 @@ impl Clip<'_> {
             ("sky rays", arguments.sky_rays.to_string()),
             ("refraction", format!("{:?}", arguments.refraction)),
             ("layers", arguments.layers.to_string()),
+            ("streak atlas", self.atlas.as_ref().map_or_else(|| "none".to_owned(), atlas_digest)),
             ("scene", self.scene.clone()),
         ])
     }

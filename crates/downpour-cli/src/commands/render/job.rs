@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Write as _};
 
+use downpour::mask::atlas::StreakAtlas;
 use downpour::render::stage::Stage;
 use downpour::scene::picture::Pixels;
 use downpour::scene::weather::{Loaded, Weather};
@@ -14,6 +15,16 @@ pub(super) struct Job(pub(super) Vec<(&'static str, String)>);
 /// The digest of bytes, in hexadecimal digits.
 pub(super) fn digest(bytes: &[u8]) -> String {
     hexadecimal(Sha256::new_with_prefix(bytes))
+}
+
+/// The digest of a streak atlas.
+pub(super) fn atlas_digest(atlas: &StreakAtlas) -> String {
+    let data = atlas.data();
+    let mut sum = Sha256::new();
+    sum.update(bytemuck::bytes_of(data.frame));
+    sum.update(bytemuck::cast_slice::<_, u8>(data.triangles));
+    sum.update(bytemuck::cast_slice::<_, u8>(data.texels));
+    hexadecimal(sum)
 }
 
 /// The digest of a scene: its buffers and its eye at the first frame, all that the weather says, and all by which the

@@ -1,5 +1,6 @@
 //! The rain of a picture, and of all pictures of a clip, for the command.
 
+use downpour::mask::atlas::StreakAtlas;
 use downpour::render::rain::{DropMasks, Veil};
 use downpour::render::shower::{self, Shower};
 use downpour::render::stage::Stage;
@@ -24,8 +25,10 @@ pub(super) struct Showers {
 }
 
 impl Showers {
-    pub(super) fn new(weather: &Weather) -> Result<Self, Failure> {
-        Ok(Self { shower: Shower::new(weather)?, masks: shower::masks(weather)? })
+    pub(super) fn new(weather: &Weather, atlas: Option<&StreakAtlas>) -> Result<Self, Failure> {
+        let masks = shower::masks(weather)?;
+        let masks = if let Some(atlas) = atlas { masks.with_atlas(atlas) } else { masks };
+        Ok(Self { shower: Shower::new(weather)?, masks })
     }
 
     /// Whether any picture can be made without those before it.

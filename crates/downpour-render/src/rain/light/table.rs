@@ -3,14 +3,18 @@
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
 use downpour_drop::optics::{SCATTERING_PATHS, SUN_DIAMETER, SphereScattering, rgb_indices};
+use downpour_mask::atlas::StreakAtlas;
 use downpour_shaders::render::drop_light::{DROP_LIGHT_ENTRIES, DROP_LIGHT_PATHS};
+
+use super::atlas;
 
 const _: () = assert!(SCATTERING_PATHS == DROP_LIGHT_PATHS as usize);
 
 /// Cross-sections over the scattering angle, made once.
 ///
 /// Row 0: (dsigma/dOmega) / (pi a^2) in 1/sr, red, green, blue. Rows 1 to 6: the same for each
-/// [`ScatteringPath`](downpour_drop::optics::ScatteringPath), and green's place on the disc.
+/// [`ScatteringPath`](downpour_drop::optics::ScatteringPath), and green's place on the disc. Behind them, if there is one, what has
+/// to be known of a streak atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropLightTable {
     rows: Vec<[f32; 4]>,
@@ -50,6 +54,20 @@ impl DropLightTable {
     /// None that is known: those of [`DropLightTable::new`] for the indices of water.
     pub fn water() -> Result<Self, DropError> {
         Self::new(rgb_indices(&Air::standard())?, SUN_DIAMETER)
+    }
+
+    /// The same, with the streaks of an atlas instead of those of another.
+    #[must_use]
+    pub fn with_atlas(mut self, atlas: &StreakAtlas) -> Self {
+        self.rows.truncate(atlas::FIRST_ROW as usize);
+        self.rows.extend(atlas::rows(atlas));
+        self
+    }
+
+    /// Whether there is an atlas.
+    #[must_use]
+    pub fn has_atlas(&self) -> bool {
+        self.rows.len() > atlas::FIRST_ROW as usize
     }
 
     /// All rows, one after the other.

@@ -1,0 +1,207 @@
+//! Which streaks of an atlas a drop shows under a lamp. Twin of `shaders/wgsl/render/drop_atlas.wgsl`.
+//!
+//! The choice is that of [`downpour_mask::atlas`], from the same triangles. Here they are rows of four numbers behind the
+//! table of scattering, since the kernel has no buffer to spare: counts; by angle or at random, and the first row of the means;
+//! the seed in parts of 16 bits; thresholds of diameters and of elevations, two rows each; first triangles, three rows; three rows
+//! for each triangle (places of its corners, triangles across with -1 for the rim, its directions); the layers' means, four a row.
+//!
+//! A layer's mean is the radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius that sends as much light to
+//! the viewer as the drop of the streak does: a texel is averaged over the time in which the drop moves on by its diameter, so
+//! that a layer of mean m and half width h is a disc of 4 h m / pi.
+
+use std::f32::consts::FRAC_1_PI;
+
+use downpour_mask::atlas::StreakAtlas;
+use downpour_mask::atlas::lookup::{
+    AtlasPlace, atlas_clamp, atlas_draw, atlas_light, atlas_map, atlas_rank, atlas_weights,
+};
+use downpour_shaders::mask::{ATLAS_NONE, ATLAS_RANDOM, ATLAS_STEPS};
+use downpour_shaders::render::drop_light::{
+    DROP_ATLAS_COUNTS, DROP_ATLAS_FIRST, DROP_ATLAS_PICK, DROP_ATLAS_RISES, DROP_ATLAS_SEED,
+    DROP_ATLAS_SIZES, DROP_ATLAS_TRIANGLES, DROP_GLINT_TINY, DROP_LIGHT_ENTRIES, DROP_LIGHT_PATHS,
+};
+use glam::Vec3;
+
+use super::DropLightTable;
+
+/// Rows before those of an atlas.
+pub(super) const FIRST_ROW: u32 = DROP_LIGHT_ENTRIES * (1 + DROP_LIGHT_PATHS);
+
+/// The mean of each layer, as a disc of the equivalent radius.
+pub(crate) fn layer_means(atlas: &StreakAtlas) -> Vec<f32> {
+    let data = atlas.data();
+    let [columns, rows] = data.frame.size;
+    let texels = (columns * rows) as usize;
+    let halves = |word: &u32| [*word as u16, (*word >> 16) as u16].map(|h| half::f16::from_bits(h).to_f32());
+    let all: Vec<f32> = data.texels.iter().flat_map(halves).collect();
+    let scale = 4.0 * data.frame.half_extent * FRAC_1_PI;
+    let mean = |layer: &[f32]| layer.iter().map(|&t| f64::from(t)).sum::<f64>() / texels as f64;
+    all.chunks_exact(texels.max(1)).map(|layer| scale * mean(layer) as f32).collect()
+}
+
+/// An atlas as rows of the table.
+pub(super) fn rows(atlas: &StreakAtlas) -> Vec<[f32; 4]> {
+    let (frame, triangles) = (atlas.data().frame, atlas.data().triangles);
+    let whole = |numbers: [u32; 4]| numbers.map(|n| n as f32);
+    let means = layer_means(atlas);
+    let first_mean = DROP_ATLAS_TRIANGLES + 3 * triangles.len() as u32;
+    let [low, high] = frame.seed;
+    let mut rows = vec![
+        whole(frame.counts),
+        whole([frame.pick, first_mean, 0, 0]),
+        whole([low & 0xffff, low >> 16, high & 0xffff, high >> 16]),
+    ];
+    rows.extend(frame.diameters);
+    rows.extend(frame.elevations);
+    rows.extend(frame.first.map(whole));
+    for triangle in triangles {
+        let next = triangle.next.map(|n| if n == ATLAS_NONE { -1.0 } else { n as f32 });
+        let [d0, d1, d2] = triangle.directions.map(|d| d as f32);
+        let ([ax, ay], [bx, by], [cx, cy]) = (triangle.a, triangle.b, triangle.c);
+        rows.extend([[ax, ay, bx, by], [cx, cy, next[0], next[1]], [next[2], d0, d1, d2]]);
+    }
+    rows.extend(means.chunks(4).map(|four| std::array::from_fn(|k| four.get(k).copied().unwrap_or(0.0))));
+    rows
+}
+
+/// Three directions: places in the map, what is across from each corner (below 0: the rim), and their numbers.
+#[derive(Clone, Copy, Debug)]
+struct DropAtlasTriangle {
+    a: [f32; 2],
+    b: [f32; 2],
+    c: [f32; 2],
+    next: [f32; 3],
+    directions: [f32; 3],
+}
+
+/// A row of the atlas' numbers.
+fn drop_atlas_row(table: &DropLightTable, k: u32) -> [f32; 4] {
+    table.rows().get((FIRST_ROW + k) as usize).copied().unwrap_or_default()
+}
+
+/// The seed of all choices by chance.
+fn drop_atlas_seed(table: &DropLightTable) -> [u32; 2] {
+    let [a, b, c, d] = drop_atlas_row(table, DROP_ATLAS_SEED).map(|half| half as u32);
+    [a | (b << 16), c | (d << 16)]
+}
+
+/// A triangle of the map.
+fn drop_atlas_triangle(table: &DropLightTable, k: u32) -> DropAtlasTriangle {
+    let row = DROP_ATLAS_TRIANGLES + 3 * k;
+    let [ax, ay, bx, by] = drop_atlas_row(table, row);
+    let [cx, cy, next_a, next_b] = drop_atlas_row(table, row + 1);
+    let [next_c, d0, d1, d2] = drop_atlas_row(table, row + 2);
+    DropAtlasTriangle {
+        a: [ax, ay],
+        b: [bx, by],
+        c: [cx, cy],
+        next: [next_a, next_b, next_c],
+        directions: [d0, d1, d2],
+    }
+}
+
+/// The mean of a layer.
+fn drop_atlas_mean(table: &DropLightTable, layer: u32) -> f32 {
+    let first = drop_atlas_row(table, DROP_ATLAS_PICK)[1] as u32;
+    drop_atlas_row(table, first + (layer >> 2))[(layer & 3) as usize]
+}
+
+/// The three layers for a drop's id, diameter in metres and axis, and the unit vectors to its light and viewer.
+pub(super) fn drop_atlas_place(
+    table: &DropLightTable,
+    id: u32,
+    diameter: f32,
+    axis: Vec3,
+    light: Vec3,
+    view: Vec3,
+) -> AtlasPlace {
+    let row = |k| drop_atlas_row(table, k);
+    let [sizes, oscillations, elevations, directions] = row(DROP_ATLAS_COUNTS).map(|n| n as u32);
+    let seed = drop_atlas_seed(table);
+    let within = atlas_light(light.to_array(), view.to_array(), axis.to_array());
+    let side = if within[0] < 0.0 { -1.0 } else { 1.0 };
+    if row(DROP_ATLAS_PICK)[0] as u32 == ATLAS_RANDOM {
+        let layer = atlas_draw(seed, id, 1, sizes * oscillations * elevations * directions);
+        return AtlasPlace { layers: [layer; 3], side, weights: [1.0, 0.0, 0.0], unused: 0.0 };
+    }
+    let size = atlas_rank(row(DROP_ATLAS_SIZES), row(DROP_ATLAS_SIZES + 1), diameter);
+    let rise = view.dot(axis);
+    let elevation = atlas_rank(row(DROP_ATLAS_RISES), row(DROP_ATLAS_RISES + 1), rise);
+    let oscillation = atlas_draw(seed, id, 0, oscillations);
+    let base = ((size * oscillations + oscillation) * elevations + elevation) * directions;
+    let first = row(DROP_ATLAS_FIRST + (elevation >> 2))[(elevation & 3) as usize] as u32;
+    let point = atlas_map(within);
+    let mut triangle = drop_atlas_triangle(table, first);
+    let mut weights = atlas_weights(triangle.a, triangle.b, triangle.c, point);
+    for _ in 0..ATLAS_STEPS {
+        let least = weights[0].min(weights[1].min(weights[2]));
+        let over = if weights[0] == least {
+            triangle.next[0]
+        } else if weights[1] == least {
+            triangle.next[1]
+        } else {
+            triangle.next[2]
+        };
+        if least >= 0.0 || over < 0.0 {
+            break;
+        }
+        triangle = drop_atlas_triangle(table, first + over as u32);
+        weights = atlas_weights(triangle.a, triangle.b, triangle.c, point);
+    }
+    AtlasPlace {
+        layers: triangle.directions.map(|direction| base + direction as u32),
+        side,
+        weights: atlas_clamp(weights),
+        unused: 0.0,
+    }
+}
+
+/// The parts of three layers in the mean of their mixture, and this mean.
+pub(super) fn drop_atlas_shares(table: &DropLightTable, place: &AtlasPlace) -> [f32; 4] {
+    let part = |k: usize| place.weights[k] * drop_atlas_mean(table, place.layers[k]);
+    let parts = [part(0), part(1), part(2)];
+    let whole = parts[0] + parts[1] + parts[2];
+    let [a, b, c] = parts.map(|part| part / whole.max(DROP_GLINT_TINY));
+    [a, b, c, whole]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use downpour_mask::atlas::{
+        StreakOptions, StreakOscillation, StreakParticle, StreakPick, light_directions,
+    };
+    use downpour_math::rng::{rng_draw, rng_unit};
+
+    fn small() -> StreakAtlas {
+        let options = StreakOptions { columns: 4, rows: 2, rays: 4, ..StreakOptions::default() };
+        let oscillations = &StreakOscillation::COMMITTED[..2];
+        StreakAtlas::trace(&[1.0e-3, 3.0e-3], oscillations, &[-0.3, 0.3], &light_directions(), &options)
+            .unwrap()
+    }
+
+    /// The rows lead to the layers that the atlas itself picks.
+    #[test]
+    fn the_choice_is_that_of_the_atlas() {
+        for pick in [StreakPick::ByAngle, StreakPick::Random] {
+            let atlas = small().with_pick(pick).with_seed(0x1234_5678_9abc_def0);
+            let table = DropLightTable::water().unwrap().with_atlas(&atlas);
+            for k in 0..500 {
+                let unit = |which| {
+                    let [a, b, c, _] = rng_draw([3, 4], k, which, 0).map(|w| 2.0 * rng_unit(w) - 1.0);
+                    Vec3::new(a, b, c + 0.001).normalize()
+                };
+                let (light, view) = (unit(0), unit(1));
+                let diameter = 0.5e-3 + 1.0e-5 * k as f32;
+                let particle = StreakParticle { diameter, axis: [0.0, 1.0, 0.0], id: k };
+                let wanted = atlas.place(&particle, light.to_array(), view.to_array());
+                let found = drop_atlas_place(&table, k, diameter, Vec3::Y, light, view);
+                assert_eq!(found, wanted, "{k}");
+                let shares = drop_atlas_shares(&table, &found);
+                let means = layer_means(&atlas);
+                let mean: f32 = (0..3).map(|n| wanted.weights[n] * means[wanted.layers[n] as usize]).sum();
+                assert!((shares[3] - mean).abs() <= 1.0e-6 * mean, "{k}: {} for {mean}", shares[3]);
+            }
+        }
+    }
+}

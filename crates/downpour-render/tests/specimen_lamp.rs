@@ -1,0 +1,119 @@
+//! Lamps of the specimen against closed forms: solid angles, reflection on a sphere, the balance of light.
+
+use downpour_drop::DropShape;
+use downpour_drop::optics::optics_fresnel;
+use downpour_math::ops::f64 as ops;
+use downpour_render::specimen::{
+    Image, Sky, SpecimenError, SpecimenLamp, SpecimenOptions, render_specimen, render_specimen_f64,
+    render_specimen_scalar,
+};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+
+const DARK: [[f32; 3]; 2] = [[0.0; 3]; 2];
+
+fn lamp(yaw: f64, pitch: f64, radius: f64, radiance: f32) -> SpecimenLamp {
+    SpecimenLamp::new(yaw, pitch, radius, [radiance, 0.5 * radiance, 0.0]).unwrap()
+}
+
+fn picture(shape: &DropShape, options: &SpecimenOptions, lamps: &[SpecimenLamp]) -> Image {
+    let sky = Sky::new(2, 1, &DARK).unwrap().with_lamps(lamps).unwrap();
+    render_specimen(shape, options, sky).unwrap()
+}
+
+/// Seen beside the drop, a lamp covers 2 pi (1 - cos r) of the directions.
+#[test]
+fn a_lamp_has_its_solid_angle() {
+    let shape = DropShape::sphere(1.0e-4).unwrap();
+    for (radius_deg, pitch) in [(1.0f64, 0.1), (6.0, -0.12)] {
+        let options = SpecimenOptions {
+            distance_m: 10.0,
+            fov: Some(0.6),
+            size: [150, 150],
+            samples: 4,
+            ..SpecimenOptions::default()
+        };
+        let radius = radius_deg.to_radians();
+        let image = picture(&shape, &options, &[lamp(PI + 0.1, pitch, radius, 3.0)]);
+        let step = 2.0 * ops::tan(0.3) / 150.0;
+        let mut light = 0.0;
+        for (i, pixel) in image.pixels.iter().enumerate() {
+            let [x, y] = [i % 150, i / 150].map(|c| (c as f64 - 74.5) * step);
+            let square = 1.0 + x * x + y * y;
+            light += f64::from(pixel[0]) * step * step / (square * square.sqrt());
+        }
+        let wanted = 3.0 * TAU * (1.0 - ops::cos(radius));
+        assert!((light / wanted - 1.0).abs() < 0.02, "{radius_deg}: {light} for {wanted}");
+    }
+}
+
+/// A lamp at 90 degrees to the axis is mirrored by a sphere where its surface is turned by 45 degrees, with the radiance that
+/// Fresnel's law leaves it, and shows itself in its colour.
+#[test]
+fn a_sphere_mirrors_a_lamp_where_and_as_it_should() {
+    let shape = DropShape::sphere(2.0e-3).unwrap();
+    let options = SpecimenOptions { distance_m: 10.0, size: [80, 80], ..SpecimenOptions::default() };
+    let image = picture(&shape, &options, &[lamp(FRAC_PI_2, 0.0, 0.15, 100.0)]);
+    // The drop fills 80 % of 80 pixels.
+    let place = 40.0 + 32.0 * ops::sin(FRAC_PI_4);
+    let pixel = image.pixel(place as u32, 39);
+    let wanted = 100.0 * optics_fresnel(ops::cos(FRAC_PI_4), 1.333) as f32;
+    assert!((pixel[0] / wanted - 1.0).abs() < 0.01, "{pixel:?}, wanted {wanted}");
+    assert!((pixel[1] / pixel[0] - 0.5).abs() < 1.0e-6 && pixel[2] == 0.0, "{pixel:?}");
+    assert_eq!(image.pixel(80 - place as u32, 39)[0], 0.0, "the other side");
+}
+
+/// Two lamps that are half of the sky each make an even sky, in which a drop is not seen.
+#[test]
+fn a_sky_of_two_lamps_hides_drop_and_streak() {
+    let shape = DropShape::new(3.0e-3).unwrap();
+    let halves = [lamp(0.7, 0.3, FRAC_PI_2, 2.0), lamp(0.7 + PI, -0.3, FRAC_PI_2, 2.0)];
+    for exposure_s in [0.0, 1.0e-3] {
+        let options =
+            SpecimenOptions { size: [24, 24], pitch: 0.4, exposure_s, ..SpecimenOptions::default() };
+        let image = picture(&shape, &options, &halves);
+        let worst = image.pixels.iter().map(|p| (p[0] - 2.0).abs()).fold(0.0, f32::max);
+        assert!(worst < 4.0e-3, "{exposure_s}: {worst}");
+    }
+}
+
+#[test]
+fn lanes_scalars_and_doubles_see_the_same_lamps() {
+    let shape = DropShape::new(2.0e-3).unwrap();
+    let lamps = [lamp(2.9, 0.1, 0.2, 5.0), lamp(1.5, -0.3, 0.3, 2.0)];
+    let map = vec![[0.3; 3]; 32];
+    let sky = Sky::new(8, 4, &map).unwrap().with_lamps(&lamps).unwrap();
+    let options = SpecimenOptions { size: [37, 29], samples: 3, ..SpecimenOptions::default() };
+    let fast = render_specimen(&shape, &options, sky).unwrap();
+    let plain = render_specimen_scalar(&shape, &options, sky).unwrap();
+    assert!(fast == plain, "lanes have the bits of scalars");
+    let exact = render_specimen_f64(&shape, &options, sky).unwrap();
+    let pairs = fast.pixels.iter().zip(&exact.pixels);
+    let apart = pairs.filter(|(a, b)| (a[0] - b[0]).abs() > 1.0e-3).count();
+    assert!(apart * 100 < fast.pixels.len(), "{apart} pixels");
+    let unlit = render_specimen(&shape, &options, Sky::new(8, 4, &map).unwrap()).unwrap();
+    let brighter = fast.pixels.iter().zip(&unlit.pixels).filter(|(a, b)| a[0] > b[0] + 0.1).count();
+    assert!(brighter > 20, "{brighter} pixels show a lamp");
+}
+
+#[test]
+fn bad_lamps_are_refused() {
+    for (yaw, pitch, radius, radiance, words) in [
+        (f64::NAN, 0.0, 0.1, 1.0, "yaw of a lamp"),
+        (0.0, 1.6, 0.1, 1.0, "pitch of a lamp is 91"),
+        (0.0, f64::NAN, 0.1, 1.0, "pitch of a lamp"),
+        (0.0, 0.0, 0.0, 1.0, "angular radius of a lamp is 0 degrees; allowed: 0.01 to 90"),
+        (0.0, 0.0, 1.6, 1.0, "angular radius"),
+        (0.0, 0.0, 0.1, -1.0, "radiance of a lamp is -1"),
+        (0.0, 0.0, 0.1, f32::INFINITY, "radiance"),
+        (0.0, 0.0, 0.1, f32::NAN, "radiance"),
+    ] {
+        let error = SpecimenLamp::new(yaw, pitch, radius, [1.0, radiance, 0.0]).unwrap_err();
+        assert!(error.to_string().contains(words) && error.exit_code() == 2, "{error}");
+    }
+    let many = [lamp(0.0, 0.0, 0.1, 1.0); 9];
+    let error = Sky::new(2, 1, &DARK).unwrap().with_lamps(&many).unwrap_err();
+    assert!(
+        matches!(error, SpecimenError::Size { found: 9, most: 8, .. }) && error.exit_code() == 3,
+        "{error}"
+    );
+}
