@@ -119,7 +119,6 @@ fn a_streak_of_an_atlas_has_the_light_of_its_mean() -> Outcome {
             let whole = light(DropLightOptions::ATLAS)? / light(traced)?;
             let wanted =
                 mean(&masks, &scene, 5.0, DropLightOptions::ATLAS)? / mean(&masks, &scene, 5.0, traced)?;
-            println!("{pick:?} {away} m: {whole} for {wanted}");
             assert!((whole / wanted - 1.0).abs() < 0.1, "{pick:?}, {away} m: {whole} for {wanted}");
         }
     }

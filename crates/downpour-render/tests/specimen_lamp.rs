@@ -12,12 +12,12 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 const DARK: [[f32; 3]; 2] = [[0.0; 3]; 2];
 
 fn lamp(yaw: f64, pitch: f64, radius: f64, radiance: f32) -> SpecimenLamp {
-    SpecimenLamp::new(yaw, pitch, radius, [radiance, 0.5 * radiance, 0.0]).unwrap()
+    SpecimenLamp::new(yaw, pitch, radius, [radiance, 0.5 * radiance, 0.0]).expect("a lamp")
 }
 
 fn picture(shape: &DropShape, options: &SpecimenOptions, lamps: &[SpecimenLamp]) -> Image {
-    let sky = Sky::new(2, 1, &DARK).unwrap().with_lamps(lamps).unwrap();
-    render_specimen(shape, options, sky).unwrap()
+    let sky = Sky::new(2, 1, &DARK).and_then(|sky| sky.with_lamps(lamps)).expect("a sky");
+    render_specimen(shape, options, sky).expect("a picture")
 }
 
 /// Seen beside the drop, a lamp covers 2 pi (1 - cos r) of the directions.

@@ -52,7 +52,7 @@ impl SpecimenLamp {
             return wrong("yaw of a lamp", yaw, "degrees", "a finite number");
         }
         // A NaN is in no range.
-        if !(pitch.abs() <= most) {
+        if !(-most..=most).contains(&pitch) {
             return wrong("pitch of a lamp", pitch.to_degrees(), "degrees", "-90 to 90");
         }
         if !(least..=most).contains(&radius) {

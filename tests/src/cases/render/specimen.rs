@@ -128,7 +128,7 @@ fn lamp_and_direction(random: [u32; 4]) -> Vec<u32> {
     let aside =
         SpecimenLamp::new(yaw, pitch + 2.0 * radius * (unit[3] - 0.5), radius, [0.0; 3]).expect("as good");
     let single = |v: [f64; 3]| v.map(|c| c as f32);
-    let words = (((single(lamp.direction), lamp.reach as f32), lamp.radiance), 0u32);
+    let words = ((single(lamp.direction), lamp.reach as f32), lamp.radiance);
     (words, single(aside.direction)).words()
 }
 
@@ -188,7 +188,6 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 let direction = a.f32s().map(f64::from);
                 let reach = a.f32().into();
                 let lamp = SpecimenLamp { direction, reach, radiance: a.f32s() };
-                let _padding = a.u32();
                 specimen_lamp(&lamp, a.f32s::<3>()).words()
             },
         ),
