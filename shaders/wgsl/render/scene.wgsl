@@ -2,6 +2,9 @@
 // it.
 // Twin: downpour_render::scene, where the method is described.
 
+// Whether there are puddles: what they need slows down the rest.
+override SCENE_WET: bool = true;
+
 struct SceneLight {
     // From the surface to the light, of length 1.
     direction: vec3f,
@@ -215,7 +218,7 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
         var mirrored_share = 0.0;
         var share_of_turn = 1.0;
         for (var k = 0u; k <= turns; k += 1u) {
-            let of_water = water.puddle != PUDDLE_WATER_NONE;
+            let of_water = SCENE_WET && water.puddle != PUDDLE_WATER_NONE;
             if k > 0u {
                 if (surface.flags & SCENE_UNLIT) != 0u {
                     break;
@@ -255,10 +258,10 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
             var found = surface_at(hit, start, along, width);
             let material = render_corners[hit.triangle * 3u].material;
             var distance = hit.distance;
-            if k == 0u && wet_row == PUDDLE_WATER_NONE {
+            if SCENE_WET && k == 0u && wet_row == PUDDLE_WATER_NONE {
                 water = puddle_water_find(found.position, found.facet.y);
             }
-            let is_water = k == 0u && water.puddle != PUDDLE_WATER_NONE;
+            let is_water = SCENE_WET && k == 0u && water.puddle != PUDDLE_WATER_NONE;
             if is_water {
                 // Back along the ray to where it came through the surface.
                 distance = max(hit.distance - water.rise / max(-towards.y, 0.01), near);
@@ -275,7 +278,7 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
                 same.again = 1.0;
                 return same;
             }
-            if k == 0u && under {
+            if SCENE_WET && k == 0u && under {
                 let look = bitcast<vec4f>(render_table[wet_row + 4u]);
                 found.diffuse = puddle_water_albedo(found.diffuse * clear + look.rgb * (1.0 - clear));
                 found.normal_reflectance = puddle_water_reflectance(found.normal_reflectance) * clear;
@@ -308,7 +311,7 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
                     path.place = found.position;
                     path.normal = found.normal;
                 }
-                if under {
+                if SCENE_WET && under {
                     path.normal = found.normal;
                 }
             } else {
@@ -318,7 +321,7 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
                 seen += 1.0 - share;
             }
         }
-        if water.puddle != PUDDLE_WATER_NONE {
+        if SCENE_WET && water.puddle != PUDDLE_WATER_NONE {
             let mirrored = 1.0 / f32(turns);
             path.radiance += throughput * (direct + sum * mirrored);
             throughput *= 1.0 - mirrored_share * mirrored;
@@ -356,7 +359,7 @@ fn scene_path(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: S
             let body = surface.diffuse * (1.0 - surface.transmission) * (vec3f(1.0) - gloss) * surface.occlusion;
             // Where the sky is hidden, so is most of its reflection.
             path.radiance += throughput * share * (direct + reflection * 0.1);
-            if (layer == 0u || (under && first_is_water)) && share == 1.0 && surface.transmission == 0.0 {
+            if (layer == 0u || (SCENE_WET && under && first_is_water)) && share == 1.0 && surface.transmission == 0.0 {
                 path.body = throughput * body;
                 path.gloss = throughput * reflection * 0.9;
                 path.sky = sky;

@@ -33,7 +33,7 @@ pub struct RainOnGpu {
 #[derive(Debug)]
 pub struct RainPass<'a> {
     pipeline: &'a RainPipeline,
-    tracer: &'a ScenePipeline,
+    tracer: &'a ComputeKernel,
     size: [u32; 2],
     capture: (wgpu::BindGroup, u32),
     levels: Vec<(wgpu::BindGroup, u32)>,
@@ -94,7 +94,8 @@ impl RainPipeline {
         let frame = gpu.uniform_buffer("capture frame", &rain.capture.frame)?;
         // A capture has no filter: nothing is written there.
         let nothing = gpu.storage_buffer("no light of the sky", &[TraceGather::default()])?;
-        let capture = tracer.kernel.bind(gpu, &scene.buffers(&frame, &texels, &nothing))?;
+        let tracer = tracer.tracer(&rain.capture.frame)?;
+        let capture = tracer.bind(gpu, &scene.buffers(&frame, &texels, &nothing))?;
         let level = |level: &ReduceLevel| {
             let uniform = gpu.uniform_buffer("capture level", level)?;
             Ok((self.reduce.bind(gpu, &[&uniform, &texels])?, level.size.div_ceil(8)))
@@ -140,7 +141,7 @@ impl RainPass<'_> {
     #[must_use]
     pub fn capture(&self) -> Vec<Dispatch<'_>> {
         let (bindings, groups) = &self.capture;
-        let finest = self.tracer.kernel.dispatch(bindings, [*groups, *groups, 1]);
+        let finest = self.tracer.dispatch(bindings, [*groups, *groups, 1]);
         let levels = self.levels.iter();
         let coarser = levels.map(|(bindings, n)| self.pipeline.reduce.dispatch(bindings, [*n, *n, 1]));
         std::iter::once(finest).chain(coarser).collect()

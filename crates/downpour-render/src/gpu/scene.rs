@@ -1,5 +1,7 @@
 //! The picture of a scene on a GPU: the same rays, the same buffers.
 
+use std::sync::OnceLock;
+
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, TRACE_KERNEL};
 
@@ -13,7 +15,9 @@ const PIXELS_PER_DISPATCH: u32 = 1 << 17;
 #[derive(Clone, Debug)]
 pub struct ScenePipeline {
     gpu: Gpu,
-    pub(super) kernel: ComputeKernel,
+    dry: ComputeKernel,
+    /// Made for the first scene with puddles.
+    wet: OnceLock<ComputeKernel>,
     skylight: ComputeKernel,
 }
 
@@ -34,8 +38,21 @@ impl ScenePipeline {
     /// # Errors
     /// What the GPU says.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
-        Ok(Self { gpu: gpu.clone(), kernel: kernel(&TRACE_KERNEL)?, skylight: kernel(&SKYLIGHT_KERNEL)? })
+        let dry = ComputeKernel::new(gpu, &TRACE_KERNEL, &[("SCENE_WET", 0.0)])?;
+        let skylight = ComputeKernel::new(gpu, &SKYLIGHT_KERNEL, &[])?;
+        Ok(Self { gpu: gpu.clone(), dry, wet: OnceLock::new(), skylight })
+    }
+
+    /// The kernel that traces a frame: with puddles or without.
+    pub(super) fn tracer(&self, frame: &RenderFrame) -> Result<&ComputeKernel, GpuError> {
+        if frame.puddle_count == 0 {
+            return Ok(&self.dry);
+        }
+        if let Some(kernel) = self.wet.get() {
+            return Ok(kernel);
+        }
+        let made = ComputeKernel::new(&self.gpu, &TRACE_KERNEL, &[("SCENE_WET", 1.0)])?;
+        Ok(self.wet.get_or_init(|| made))
     }
 
     /// Brings a scene to the device.
@@ -72,14 +89,15 @@ impl ScenePipeline {
         let bytes = pixels * size_of::<TraceGather>() as u64;
         let gather = self.gpu.empty_buffer("light of the sky", bytes, wgpu::BufferUsages::STORAGE)?;
         let rows = (PIXELS_PER_DISPATCH / frame.width.max(1)).max(8).next_multiple_of(8);
+        let tracer = self.tracer(frame)?;
         let (mut bands, mut filters) = (Vec::new(), Vec::new());
         for first_row in (0..frame.height).step_by(rows as usize) {
             let uniform = self.gpu.uniform_buffer("frame", &RenderFrame { first_row, ..*frame })?;
             let groups = [frame.width.div_ceil(8), rows.min(frame.height - first_row).div_ceil(8), 1];
-            bands.push((self.kernel.bind(&self.gpu, &scene.buffers(&uniform, &picture, &gather))?, groups));
+            bands.push((tracer.bind(&self.gpu, &scene.buffers(&uniform, &picture, &gather))?, groups));
             filters.push((self.skylight.bind(&self.gpu, &[&uniform, &gather, &picture])?, groups));
         }
-        Ok(ScenePass { pipeline: self, bands, filters, picture })
+        Ok(ScenePass { pipeline: self, tracer, bands, filters, picture })
     }
 
     /// The picture, left on the device.
@@ -98,6 +116,7 @@ impl ScenePipeline {
 #[derive(Debug)]
 pub struct ScenePass<'a> {
     pipeline: &'a ScenePipeline,
+    tracer: &'a ComputeKernel,
     bands: Vec<(wgpu::BindGroup, [u32; 3])>,
     filters: Vec<(wgpu::BindGroup, [u32; 3])>,
     picture: wgpu::Buffer,
@@ -107,7 +126,7 @@ impl ScenePass<'_> {
     /// The dispatches, a band of rows each: first all that trace, then all that filter.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
-        let traced = self.bands.iter().map(|band| (&self.pipeline.kernel, band));
+        let traced = self.bands.iter().map(|band| (self.tracer, band));
         let filtered = self.filters.iter().map(|band| (&self.pipeline.skylight, band));
         traced
             .chain(filtered)
