@@ -16,7 +16,7 @@ use downpour_mask::atlas::gpu::AtlasQuery;
 use downpour_mask::atlas::lookup::{AtlasFrame, AtlasPlace, AtlasTriangle};
 use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
-use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame};
+use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
 use downpour_render::specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
@@ -90,7 +90,8 @@ fn hosts() -> Vec<Host> {
         host!(GlassPictureFrame as "GlassPictureFrame" in &render::glass::GLASS_PICTURE,
             right, width, up, height, forward, pixel_angle, across, columns, down, rows, outward, bins, corner, cells,
             size, wet_size, lens, focus, fresnel, room, samples, last, capture_size, capture_last, capture_texel, film,
-            water, first_row, levels),
+            water, first_row, lights, lit_from, unused, levels),
+        host!(GlassPictureLight as "GlassPictureLight" in &render::glass::LIGHT, place, radius, colour, distance),
         host!(PuddleGrid as "PuddleGrid" in &lattice::puddle::PUDDLE,
             size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
             steps, halo, half_storage, slope),

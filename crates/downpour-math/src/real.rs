@@ -115,13 +115,46 @@ impl<S: Simd> Lanes<S> {
     /// The first [`COUNT`](Self::COUNT) numbers of `slice`; zero where it ends earlier.
     #[inline(always)]
     pub fn load(simd: S, slice: &[f32]) -> Self {
-        Self { simd, value: simd.partial_load_f32s(slice) }
+        // Loads of parts of vectors are slow.
+        match S::as_simd_f32s(slice).0.first() {
+            Some(&value) => Self { simd, value },
+            None => Self { simd, value: simd.partial_load_f32s(slice) },
+        }
+    }
+
+    /// The whole vectors at the beginning of a slice, for loops without a test for each: [`of`](Self::of) reads one.
+    #[inline(always)]
+    #[must_use]
+    pub fn vectors(slice: &[f32]) -> &[S::f32s] {
+        S::as_simd_f32s(slice).0
+    }
+
+    /// As [`vectors`](Self::vectors), to be written by [`put`](Self::put).
+    #[inline(always)]
+    #[must_use]
+    pub fn vectors_mut(slice: &mut [f32]) -> &mut [S::f32s] {
+        S::as_mut_simd_f32s(slice).0
+    }
+
+    /// A vector of [`vectors`](Self::vectors).
+    #[inline(always)]
+    pub fn of(simd: S, vector: &S::f32s) -> Self {
+        Self { simd, value: *vector }
+    }
+
+    /// Writes all lanes to a vector of [`vectors_mut`](Self::vectors_mut).
+    #[inline(always)]
+    pub fn put(self, vector: &mut S::f32s) {
+        *vector = self.value;
     }
 
     /// Writes the lanes to `slice`, as many as it has room for.
     #[inline(always)]
     pub fn store(self, slice: &mut [f32]) {
-        self.simd.partial_store_f32s(slice, self.value);
+        match S::as_mut_simd_f32s(slice).0.first_mut() {
+            Some(vector) => *vector = self.value,
+            None => self.simd.partial_store_f32s(slice, self.value),
+        }
     }
 }
 

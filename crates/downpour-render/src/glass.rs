@@ -4,6 +4,8 @@
 //! 2. [`GlassPicture`]: its drops as smooth surfaces, sorted into bins, with what a picture asks of pane and lens;
 //! 3. [`GlassPicture::through`] (or [`gpu::GlassRenderer`](crate::gpu::GlassRenderer)): the picture through it, ray by ray.
 //!
+//! Lamps and the sun are points that no picture shows; drops show them as bright spots: [`light`].
+//!
 //! The lattice says where the water is; its cells are as large as small drops, so that surfaces are not read from its
 //! heights but made of its drops: [`water`].
 //!
@@ -13,12 +15,16 @@
 mod drops;
 mod error;
 mod frame;
+pub mod light;
+mod meet;
 mod pane;
 mod picture;
+mod seen;
 pub mod water;
 
 pub use error::PaneError;
 pub use frame::{GlassPicture, GlassPictureFrame};
+pub use light::GlassPictureLight;
+pub use meet::glass_picture_spline;
 pub use pane::WetPane;
-pub use picture::glass_picture_spline;
 pub use water::GlassPictureDrop;

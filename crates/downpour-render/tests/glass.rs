@@ -3,7 +3,7 @@
 use downpour_render::glass::water::{
     glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal, glass_picture_water_top,
 };
-use downpour_render::glass::{GlassPicture, GlassPictureDrop, WetPane};
+use downpour_render::glass::{GlassPicture, GlassPictureDrop, GlassPictureLight, WetPane};
 use downpour_render::stage::Stage;
 use downpour_scene::scene::Scene;
 use downpour_scene::sky::SkyMap;
@@ -225,6 +225,70 @@ fn blur_keeps_the_light() -> Outcome {
     let ((sum, peak), (blurred_sum, blurred_peak)) = (light(&sharp), light(&blurred));
     assert!((blurred_sum / sum - 1.0).abs() < 0.03, "{blurred_sum} {sum}");
     assert!(blurred_peak < 0.6 * peak, "{blurred_peak} {peak}");
+    Ok(())
+}
+
+/// How large a paraboloid of a source of integral 1 looks through a drop, as the sum over rings of the picture: a ray at an
+/// angle from the drop's axis meets glass and sphere, in a plane.
+fn shown(spread: f64, pane: f64, radius: f64) -> f64 {
+    use downpour_math::ops::f64 as ops;
+    let (sphere, index) = (1.4 * radius, 1.333);
+    let step = 1.0e-5;
+    let ring = |k: u32| {
+        let angle = (f64::from(k) + 0.5) * step;
+        let place = pane * ops::sin(angle) / ops::cos(angle);
+        let inside = ops::asin(ops::sin(angle) / index);
+        let mut x = place;
+        for _ in 0..20 {
+            let height = (sphere * sphere - x * x).sqrt() - (sphere * sphere - radius * radius).sqrt();
+            x = place + ops::sin(inside) / ops::cos(inside) * height;
+        }
+        let normal = ops::asin(x / sphere);
+        let out = normal - ops::asin(index * ops::sin(normal - inside));
+        let share = (1.0 - out * out / (spread * spread)).max(0.0);
+        share * 2.0 / (std::f64::consts::PI * spread * spread) * std::f64::consts::TAU * angle * step
+    };
+    (0..6000).map(ring).sum()
+}
+
+/// A drop is a lens: all the light of a lamp that it shows is the irradiance that its image takes, whatever the resolution.
+#[test]
+fn a_drop_shows_a_lamp_as_bright_as_it_is() -> Outcome {
+    let mut glass = picture("room = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
+    let [behind, capture] = round(&glass, |_| 0.0);
+    let frame = &glass.frame;
+    let ahead = glam::Vec3::from(frame.forward);
+    let pane = ahead.dot(glam::Vec3::from(frame.corner)) / ahead.dot(ahead).sqrt();
+    let radius = 0.4 * frame.size[1];
+    let pixel = frame.pixel_angle;
+    with_drop(&mut glass, radius);
+    let dark = glass.through(&behind, &capture);
+    assert!(dark.iter().all(|p| p[0] == 0.0), "a lamp where there is none");
+    // Far away, straight ahead, with an irradiance of 5.
+    let mut light = |half_angle: f32, least: f32| -> (f32, usize) {
+        glass.lights = vec![GlassPictureLight {
+            place: (ahead * 1.0e5).to_array(),
+            radius: half_angle,
+            colour: [5.0; 3],
+            distance: 1.0e5,
+        }];
+        glass.frame.lights = 1;
+        glass.frame.lit_from = least;
+        let seen = glass.through(&behind, &capture);
+        let lit = seen.iter().filter(|p| p[0] > 0.0).count();
+        (seen.iter().map(|p| p[0] * pixel * pixel).sum(), lit)
+    };
+    let reflected = 1.0 - 0.04 - 0.02;
+    for half_angle in [0.0, 0.03] {
+        let (sum, lit) = light(half_angle, 0.0);
+        // Spread over one and a half of what samples a half pixel apart see, as they are turned apart in the middle.
+        let apart = 0.5 * pixel * (1.0 + pane * (1.333 - 1.0) / (1.4 * radius));
+        let spread = (half_angle * half_angle + 2.25 * apart * apart).sqrt();
+        let law = 5.0 * reflected * shown(f64::from(spread), f64::from(pane), f64::from(radius)) as f32;
+        println!("{half_angle}: {sum}, law {law}, {lit} pixels");
+        assert!((sum / law - 1.0).abs() < 0.02, "{half_angle}: {sum}, law {law}, {lit} pixels");
+    }
+    assert_eq!(light(0.0, 1.1 * radius), (0.0, 0), "a drop below the threshold shows it");
     Ok(())
 }
 

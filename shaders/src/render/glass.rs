@@ -5,7 +5,7 @@ use crate::drop::optics::OPTICS;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&GLASS_PICTURE_CONSTANTS, &WATER, &GLASS_PICTURE];
+pub const MODULES: &[&Module] = &[&GLASS_PICTURE_CONSTANTS, &WATER, &LIGHT, &GLASS_PICTURE];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&GLASS_PICTURE_KERNEL];
@@ -25,6 +25,10 @@ shared_constants! {
         GLASS_PICTURE_MIRROR: f32 = 0.1;
         /// Distance of neighbouring places of a lens with one sample, in its radius: the root of pi.
         GLASS_PICTURE_APART: f32 = 1.7724539;
+        /// Height of a paraboloid of radius 1 whose integral is 1: 2 / pi.
+        GLASS_PICTURE_LIGHT_PEAK: f32 = 0.63661975;
+        /// Radius over which a lamp's image is spread, in what neighbouring rays see apart: smooth for any places of rays.
+        GLASS_PICTURE_LIGHT_WIDTH: f32 = 1.5;
         /// Focus on what is behind the pane.
         GLASS_PICTURE_SCENE: u32 = 0;
         /// Focus on the pane.
@@ -43,11 +47,18 @@ pub static WATER: Module = Module {
     uses: &[&GLASS_PICTURE_CONSTANTS],
 };
 
+/// Lamps in drops on a pane. Twin: `downpour_render::glass::light`.
+pub static LIGHT: Module = Module {
+    path: "render/glass_picture_light.wgsl",
+    wgsl: include_str!("../../wgsl/render/glass_picture_light.wgsl"),
+    uses: &[&GLASS_PICTURE_CONSTANTS],
+};
+
 /// A picture through a pane. Twin: `downpour_render::glass::picture`.
 pub static GLASS_PICTURE: Module = Module {
     path: "render/glass_picture.wgsl",
     wgsl: include_str!("../../wgsl/render/glass_picture.wgsl"),
-    uses: &[&WATER, &OPTICS, &PACKING],
+    uses: &[&WATER, &LIGHT, &OPTICS, &PACKING],
 };
 
 /// One invocation per pixel.

@@ -50,6 +50,10 @@ struct GlassPictureFrame {
     // Refractive indices.
     water: f32,
     first_row: u32,
+    // Lamps, and the least radius of the discs of drops that show them, m.
+    lights: u32,
+    lit_from: f32,
+    unused: vec2u,
     // Width, height and first texel of each level of the picture.
     levels: array<vec4u, GLASS_PICTURE_LEVELS>,
 }
@@ -61,6 +65,8 @@ struct GlassPictureMet {
     wet: f32,
     // How fast the normal turns, 1/m.
     curvature: f32,
+    // 1 where it is a drop that shows lamps.
+    lit: f32,
 }
 
 @group(0) @binding(0) var<uniform> glass_picture_frame: GlassPictureFrame;
@@ -73,6 +79,8 @@ struct GlassPictureMet {
 @group(0) @binding(5) var<storage, read> glass_picture_behind: array<vec4f>;
 @group(0) @binding(6) var<storage, read> glass_picture_capture: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> glass_picture_made: array<vec4f>;
+// Those that shine on the pane, at least one.
+@group(0) @binding(8) var<storage, read> glass_picture_sources: array<GlassPictureLight>;
 
 // How wet a cell is, 0 to 1.
 fn glass_picture_wetness(column: i32, row: i32) -> f32 {
@@ -132,13 +140,14 @@ fn glass_picture_meet(place: vec2f, aside: vec2f) -> GlassPictureMet {
         let drop = glass_picture_drops[found];
         let z = glass_picture_water_leave(drop, place, aside);
         let cap = glass_picture_water_cap(drop, place + aside * z);
-        return GlassPictureMet(glass_picture_water_normal(cap.yz), 1.0, 1.0 / drop.sphere);
+        let lit = select(0.0, 1.0, drop.radius >= glass_picture_frame.lit_from);
+        return GlassPictureMet(glass_picture_water_normal(cap.yz), 1.0, 1.0 / drop.sphere, lit);
     }
     if glass_picture_frame.film <= 0.0 {
-        return GlassPictureMet(vec3f(0.0, 0.0, 1.0), 0.0, 0.0);
+        return GlassPictureMet(vec3f(0.0, 0.0, 1.0), 0.0, 0.0, 0.0);
     }
     let film = glass_picture_film(place);
-    return GlassPictureMet(glass_picture_water_normal(film.yz), select(0.0, 1.0, film.x > 0.0), 0.0);
+    return GlassPictureMet(glass_picture_water_normal(film.yz), select(0.0, 1.0, film.x > 0.0), 0.0, 0.0);
 }
 
 // A texel of a level of the picture; the nearest where there is none.
@@ -254,6 +263,15 @@ fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint
     return sum;
 }
 
+// What a drop shows of the lamps and the sun: they are points, and in no picture of what is behind the pane.
+fn glass_picture_lights(from_eye: vec3f, direction: vec3f, footprint: f32) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < glass_picture_frame.lights; k += 1u) {
+        sum += glass_picture_light_seen(glass_picture_sources[k], from_eye, direction, footprint);
+    }
+    return sum;
+}
+
 // A direction of the pane in the world.
 fn glass_picture_world(v: vec3f) -> vec3f {
     return glass_picture_frame.across * v.x + glass_picture_frame.down * v.y + glass_picture_frame.outward * v.z;
@@ -299,6 +317,9 @@ fn glass_picture_through(place: vec2f, d: vec3f, from_eye: vec3f, shift: vec2f, 
         let turned = (water - 1.0) * met.curvature / max(dot(leaves, met.normal), 0.2);
         let footprint = spread.x + spread.y * turned;
         sum = glass_picture_seen(from_eye, glass_picture_world(leaves), shift, footprint) * through;
+        if met.lit > 0.0 {
+            sum += glass_picture_lights(from_eye, glass_picture_world(leaves), footprint) * through;
+        }
     }
     let back = optics_reflect(w, -met.normal);
     var rest = 1.0 - through;

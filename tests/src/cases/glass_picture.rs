@@ -2,17 +2,20 @@
 
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_render::glass::light::{glass_picture_light_lobe, glass_picture_light_seen};
 use downpour_render::glass::water::{
     glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal, glass_picture_water_top,
 };
-use downpour_render::glass::{GlassPicture, GlassPictureDrop, WetPane, glass_picture_spline};
+use downpour_render::glass::{
+    GlassPicture, GlassPictureDrop, GlassPictureLight, WetPane, glass_picture_spline,
+};
 use downpour_render::gpu::GlassRenderer;
 use downpour_render::stage::Stage;
 use downpour_scene::scene::Scene;
-use downpour_scene::sky::SkyMap;
+use downpour_scene::sky::{SkyMap, Sun};
 use downpour_scene::weather::{Loaded, Weather};
-use downpour_shaders::render::glass::{GLASS_PICTURE, GLASS_PICTURE_KERNEL, WATER};
-use glam::Vec2;
+use downpour_shaders::render::glass::{GLASS_PICTURE, GLASS_PICTURE_KERNEL, LIGHT, WATER};
+use glam::{Vec2, Vec3};
 
 use crate::Domain::{Made, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu};
@@ -53,6 +56,21 @@ fn drop(random: [u32; 4]) -> Vec<u32> {
     ]
     .map(f32::to_bits)
     .to_vec()
+}
+
+/// A lamp 5 to 40 m ahead, as words.
+fn lamp(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, c, d] = random.map(rng_unit);
+    let distance = 5.0 + 35.0 * a;
+    let place = [distance * (0.4 * b - 0.2), distance * (0.4 * c - 0.2), -distance];
+    [place[0], place[1], place[2], 0.01 * d, 1.0 + b, 1.0, 0.5 + c, distance].map(f32::to_bits).to_vec()
+}
+
+/// A direction of length 1, about forward, as words.
+fn towards(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, ..] = random.map(rng_unit);
+    let direction = Vec3::new(0.6 * a - 0.3, 0.6 * b - 0.3, -1.0).normalize();
+    direction.to_array().map(f32::to_bits).to_vec()
 }
 
 fn read(a: &mut Args<'_>) -> GlassPictureDrop {
@@ -102,6 +120,35 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| glass_picture_water_normal(Vec2::from(a.f32s())).to_array().words(),
         ),
         FunctionCase::new(
+            "glass_picture_light_lobe",
+            &LIGHT,
+            &[Uniform(0.0, 0.02), Uniform(0.02, 0.2)],
+            Tol::relative(1.0e-5, 2.0e-4, "quotients (2.5 ulp) taken off 1, then up to 1600 of them"),
+            |a| glass_picture_light_lobe(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "glass_picture_light_seen",
+            &LIGHT,
+            &[
+                Made(lamp),
+                Uniform(-0.3, 0.3),
+                Uniform(-0.3, 0.3),
+                Uniform(-0.6, -0.4),
+                Made(towards),
+                Uniform(0.02, 0.2),
+            ],
+            Tol::relative(
+                1.0e-4,
+                2.0e-3,
+                "a root and quotients (2.5 ulp); the squared distance is a difference",
+            ),
+            |a| {
+                let light = bytemuck::cast::<[f32; 8], GlassPictureLight>(a.f32s());
+                let (from_eye, direction) = (Vec3::from(a.f32s()), Vec3::from(a.f32s()));
+                glass_picture_light_seen(&light, from_eye, direction, a.f32()).to_array().words()
+            },
+        ),
+        FunctionCase::new(
             "glass_picture_spline",
             &GLASS_PICTURE,
             &[Uniform(-0.5, 0.5), Made(|random| vec![random[0] % 3])],
@@ -121,11 +168,14 @@ fn pane(keys: &str) -> GlassPicture {
     );
     let weather = Weather::parse("w.toml", &text).expect("a weather");
     let sky = SkyMap::uniform([1.0; 3]);
+    // Straight ahead, a little above: drops show it.
+    let sun =
+        Some(Sun { direction: [0.0, 0.1, -0.995], irradiance_rgb: [3.0, 2.0, 1.0], angular_radius: 4.65e-3 });
     let loaded = Loaded {
         scene: Scene::default(),
         animations: Vec::new(),
         sky,
-        sun: None,
+        sun,
         masks: Vec::new(),
         warnings: Vec::new(),
     };
@@ -146,6 +196,7 @@ fn light(k: u32, width: u32) -> [f32; 4] {
 fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
     let glass = pane(keys);
     assert!(glass.drops.len() > 30, "{} drops", glass.drops.len());
+    assert_eq!(glass.frame.lights, 1);
     let behind: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|k| light(k, SIZE[0])).collect();
     let mut capture = Vec::new();
     let mut size = CAPTURE;
@@ -183,6 +234,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "glass_picture_round",
             "glass_picture_project",
             "glass_picture_seen",
+            "glass_picture_lights",
             "glass_picture_world",
             "glass_picture_inside",
             "glass_picture_outer",

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use downpour::drop::distribution::{DistributionOptions, DropSizeDistribution};
+use downpour::render::glass::WetPane;
 use downpour::render::puddle::{PuddleMap, WetGround};
 use downpour::render::shower::Shower;
 use downpour::render::stage::{CameraChoice, Stage};
@@ -12,6 +13,9 @@ use super::render::BYTES_PER_PIXEL;
 use crate::failure::Failure;
 use crate::listing::{Datum, Entry};
 use crate::{listing, stream};
+
+/// Eleven words: mass, motion, claims, wetness, what was decided and what comes.
+const PANE_BYTES_PER_CELL: u64 = 44;
 
 /// Check a scene or weather file, and tell what render would do with it.
 #[derive(Debug, Args)]
@@ -34,8 +38,10 @@ impl CheckArguments {
         entries.extend(rain(&input)?);
         entries.extend(motion(&input)?);
         entries.extend(water(&input, &stage)?);
+        let (of_pane, pane_bytes) = pane(&input, &stage, self.input.time)?;
+        entries.extend(of_pane);
         let [width, height] = input.weather.size.map(u64::from);
-        let bytes = stage.bytes() + width * height * BYTES_PER_PIXEL;
+        let bytes = stage.bytes() + width * height * BYTES_PER_PIXEL + pane_bytes;
         entries.push(Entry::new("memory_mib", "memory, about", Datum::Computed(mebibytes(bytes), 3), "MiB"));
         stream::print(&if self.json { listing::json(&entries) } else { listing::text(&entries) })
     }
@@ -175,6 +181,28 @@ fn water(input: &Input, stage: &Stage) -> Result<Vec<Entry>, Failure> {
             "mm",
         ),
     ])
+}
+
+/// The pane before the camera, and how much memory it takes.
+fn pane(input: &Input, stage: &Stage, first_s: f64) -> Result<(Vec<Entry>, u64), Failure> {
+    let Some(wet) = WetPane::new(&input.weather, stage, first_s)? else {
+        return Ok((vec![Entry::new("pane", "pane before the camera", Datum::Unbounded("none"), "")], 0));
+    };
+    let options = wet.glass().options();
+    let [columns, rows] = options.size;
+    let [width, height] = wet.size_m();
+    let per_minute = options.landings()? * width * height * 60.0;
+    let bytes = u64::from(columns) * u64::from(rows) * PANE_BYTES_PER_CELL;
+    let entries = vec![
+        Entry::new("pane", "pane before the camera", Datum::Word(format!("{columns} x {rows} cells")), ""),
+        Entry::new("pane_width_m", "its width", Datum::Computed(width, 4), "m"),
+        Entry::new("pane_height_m", "its height", Datum::Computed(height, 4), "m"),
+        Entry::new("pane_drops", "drops that land on it", Datum::Computed(per_minute, 4), "per minute"),
+        count("pane_wipers", "its wipers", options.wipers.len()),
+        Entry::new("pane_tick_ms", "its tick", Datum::Computed(wet.glass().tick_s() * 1.0e3, 4), "ms"),
+        Entry::new("pane_mib", "its memory", Datum::Computed(mebibytes(bytes), 3), "MiB"),
+    ];
+    Ok((entries, bytes))
 }
 
 fn rain(input: &Input) -> Result<Vec<Entry>, Failure> {

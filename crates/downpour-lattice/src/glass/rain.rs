@@ -22,6 +22,16 @@ const STEPS: usize = 4000;
 const SMALLEST_M: f64 = 0.2e-3;
 const LARGEST_M: f64 = 7.5e-3;
 
+impl GlassOptions {
+    /// Drops that land on a square metre of the pane in a second, as rain, tilt and speed have it.
+    ///
+    /// # Errors
+    /// [`GlassError::Rain`] if the rain is not possible.
+    pub fn landings(&self) -> Result<f64, GlassError> {
+        Ok(Landing::new(self)?.number)
+    }
+}
+
 /// Rain as the pane gets it.
 #[derive(Clone, Debug)]
 pub(super) struct Landing {

@@ -98,6 +98,12 @@ impl GpuPuddle {
         &self.model.options
     }
 
+    /// How many time steps a dispatch makes, at most: what the options and the degree of the operator allow.
+    #[must_use]
+    pub fn steps_per_sweep(&self) -> u32 {
+        self.model.steps_per_sweep()
+    }
+
     /// Lets time pass. Gives into how many steps it was cut. Does not wait.
     ///
     /// # Errors

@@ -7,20 +7,23 @@
 mod row;
 mod tile;
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use downpour_math::real::{Lanes, Simd, WithLanes, with_widest_lanes};
+use downpour_math::real::{Simd, WithLanes, with_widest_lanes};
 use rayon::prelude::*;
 
 use super::lattice::{Links, PuddleGrid, puddle_border, puddle_keep};
 use super::storage::State;
-use row::{kick_row, parts, recur_row};
+use row::{argument_row, first_row, kick_row, recur_row};
 use tile::Tile;
 
 /// Rows of a band.
 const BAND: usize = 64;
 /// Columns of a tile: five buffers of it stay in a second-level cache.
 const TILE: usize = 512;
+/// Columns of a membrane's tile: some rows of it stay in a first-level cache.
+const MEMBRANE_TILE: usize = 256;
 
 /// Makes `grid.steps` time steps, from one copy of the state to the other; gives how many cells had to be reset.
 pub(crate) fn sweep(grid: &PuddleGrid, links: &Links, from: &State, to: &mut State) -> u64 {
@@ -38,12 +41,13 @@ pub(crate) fn sweep(grid: &PuddleGrid, links: &Links, from: &State, to: &mut Sta
     let stride = links.stride();
     // Narrower bands when there are few rows, so that every thread has some.
     let band = BAND.min((ny / (2 * rayon::current_num_threads())).max(16));
+    let width = if grid.degree == 1 { MEMBRANE_TILE } else { TILE };
     let bands = to.heights.bands(band * stride).zip(to.velocities.bands(band * stride)).enumerate();
     bands.for_each_init(Tile::default, |tile, (index, (mut heights, mut velocities))| {
         let first = index * band;
         let rows = first..(first + band).min(ny);
-        for start in (0..nx).step_by(TILE) {
-            let columns = start..(start + TILE).min(nx);
+        for start in (0..nx).step_by(width) {
+            let columns = start..(start + width).min(nx);
             tile.place(grid, links, [columns.clone(), rows.clone()]);
             tile.load(from, stride);
             let count = with_widest_lanes(Advance { tile, grid, links, keep: &keep });
@@ -86,26 +90,69 @@ fn advance<S: Simd, const DIAGONAL: bool>(
     links: &Links,
     keep: &[Vec<f32>; 2],
 ) -> u64 {
+    if grid.degree == 1 {
+        return advance_membrane::<S, DIAGONAL>(simd, tile, grid, links, keep);
+    }
     let mut reset = 0;
     let mut left = tile.halo;
     for _ in 0..grid.steps {
         left = argument::<S, DIAGONAL>(simd, tile, grid, links, left) - 1;
         let [columns, rows] = tile.reach(left);
-        // Cells of the halo are reset as well, but each is counted where it is written.
-        let [inner, inner_rows] = tile.inner.clone();
         for y in rows {
-            for part in [columns.start..inner.start, inner.clone(), inner.end..columns.end] {
-                let count = kick_row::<S, DIAGONAL>(simd, tile, grid, links, keep, &part, y);
-                if inner_rows.contains(&y) && part == inner {
-                    reset += count;
-                }
-            }
+            let counted = tile.counted(y);
+            reset += kick_row::<S, DIAGONAL>(simd, tile, grid, links, keep, &columns, &counted, y);
         }
     }
     reset
 }
 
-/// Leaves in `now` the argument of the last weighted sum. Gives how many cells of the halo are still good.
+/// The same for degree 1. Each step goes over the tile two rows behind the one before it, so that what is worked on stays
+/// in the nearest cache: one row behind, it would still be read when it is overwritten.
+#[inline(always)]
+fn advance_membrane<S: Simd, const DIAGONAL: bool>(
+    simd: S,
+    tile: &mut Tile,
+    grid: &PuddleGrid,
+    links: &Links,
+    keep: &[Vec<f32>; 2],
+) -> u64 {
+    let steps = grid.steps as usize;
+    let mut reset = 0;
+    let mut stages: Vec<Stage> = (0..steps).map(|step| Stage::new(tile, step)).collect();
+    let [_, rows] = tile.reach(tile.halo);
+    for front in rows.start..rows.end + 2 * steps {
+        for (step, stage) in stages.iter_mut().enumerate() {
+            let Some(y) = front.checked_sub(2 * step).filter(|y| stage.kicked[1].contains(y)) else {
+                continue;
+            };
+            let argued = stage.argued[1].end.min(y + 2);
+            for row in stage.next..argued {
+                argument_row(simd, tile, grid, &stage.argued[0], row);
+            }
+            stage.next = stage.next.max(argued);
+            let counted = tile.counted(y);
+            reset += kick_row::<S, DIAGONAL>(simd, tile, grid, links, keep, &stage.kicked[0], &counted, y);
+        }
+    }
+    reset
+}
+
+/// What of a tile a step of a membrane needs and what it gives: columns and rows.
+struct Stage {
+    argued: [Range<usize>; 2],
+    kicked: [Range<usize>; 2],
+    /// The first row whose argument is not yet there.
+    next: usize,
+}
+
+impl Stage {
+    fn new(tile: &Tile, step: usize) -> Self {
+        let argued = tile.reach(tile.halo - step);
+        Self { next: argued[1].start, argued, kicked: tile.reach(tile.halo - step - 1) }
+    }
+}
+
+/// Leaves in `now` the argument of the last weighted sum of a degree above 1. Gives how many cells of the halo are still good.
 #[inline(always)]
 fn argument<S: Simd, const DIAGONAL: bool>(
     simd: S,
@@ -117,23 +164,8 @@ fn argument<S: Simd, const DIAGONAL: bool>(
     let coefficient = |j: u32| grid.coefficients[(j / 4) as usize % 4][(j % 4) as usize];
     let mut left = halo;
     let [columns, rows] = tile.reach(left);
-    let top = Lanes::splat(simd, coefficient(grid.degree - 1));
-    let viscosity = Lanes::splat(simd, grid.viscosity);
-    let zero = Lanes::splat(simd, 0.0);
-    let n = columns.len();
     for y in rows {
-        let at = tile.row(y) + columns.start - tile.outer[0].start;
-        let (h, v) = (&tile.heights[at..at + n], &tile.velocities[at..at + n]);
-        let (now, before) = (&mut tile.now[at..at + n], &mut tile.before[at..at + n]);
-        for part in parts::<S>(n) {
-            let height = Lanes::load(simd, &h[part.clone()]);
-            if grid.degree == 1 {
-                (height + viscosity * Lanes::load(simd, &v[part.clone()])).store(&mut now[part]);
-            } else {
-                (top * height).store(&mut now[part.clone()]);
-                zero.store(&mut before[part]);
-            }
-        }
+        first_row(simd, tile, coefficient(grid.degree - 1), &columns, y);
     }
     for j in (0..grid.degree.saturating_sub(1)).rev() {
         left -= 1;

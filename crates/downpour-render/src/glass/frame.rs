@@ -3,6 +3,7 @@
 use downpour_math::ops;
 use downpour_shaders::render::glass::GLASS_PICTURE_LEVELS;
 
+use super::light::GlassPictureLight;
 use super::picture::Look;
 use super::water::GlassPictureDrop;
 
@@ -75,6 +76,12 @@ pub struct GlassPictureFrame {
     pub water: f32,
     /// First row of pixels of a dispatch.
     pub first_row: u32,
+    /// Number of lamps.
+    pub lights: u32,
+    /// Least radius of the discs of drops that show lamps, m.
+    pub lit_from: f32,
+    /// 0.
+    pub unused: [u32; 2],
     /// Width, height and first texel of each level of the picture.
     pub levels: [[u32; 4]; GLASS_PICTURE_LEVELS as usize],
 }
@@ -92,6 +99,8 @@ pub struct GlassPicture {
     pub wet: Vec<u32>,
     /// Samples: a place of the lens, in its radius, and of the pixel.
     pub lens: Vec<[f32; 4]>,
+    /// Lamps and the sun, or one that gives no light.
+    pub lights: Vec<GlassPictureLight>,
 }
 
 impl GlassPicture {

@@ -14,6 +14,7 @@ use glam::DVec3;
 use super::drops::binned;
 use super::error::PaneError;
 use super::frame::{GlassPicture, GlassPictureFrame, levels, samples};
+use super::light::{GlassPictureLight, sources};
 use crate::data::RenderFrame;
 use crate::stage::Stage;
 
@@ -117,6 +118,8 @@ impl WetPane {
         let lens = (0.5 * self.pane.aperture) as f32;
         let lens_places = samples(frame.grid, lens);
         let wet = self.glass.traversal();
+        let lights = sources(&stage.data, frame);
+        let diameter = self.pane.highlight;
         let word = |bytes: &[u8]| {
             bytes.iter().enumerate().fold(0u32, |word, (k, &byte)| word | (u32::from(byte) << (8 * k)))
         };
@@ -156,6 +159,9 @@ impl WetPane {
                 film: self.pane.film as f32,
                 water: self.water as f32,
                 first_row: 0,
+                lights: lights.len() as u32,
+                lit_from: options.contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32,
+                unused: [0; 2],
                 levels,
             },
             // A buffer has at least one element.
@@ -163,6 +169,7 @@ impl WetPane {
             bins: binned.bins,
             wet: wet.chunks(4).map(word).collect(),
             lens: lens_places,
+            lights: if lights.is_empty() { vec![GlassPictureLight::default()] } else { lights },
         })
     }
 }

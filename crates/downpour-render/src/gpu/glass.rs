@@ -40,6 +40,7 @@ impl GlassRenderer {
         let bins = gpu.storage_buffer("bins of drops on glass", &glass.bins)?;
         let wet = gpu.storage_buffer("wetness of glass", &glass.wet)?;
         let lens = gpu.storage_buffer("places of the lens", &glass.lens)?;
+        let lights = gpu.storage_buffer("lamps before glass", &glass.lights)?;
         let behind = gpu.storage_buffer("picture behind glass", &glass.levelled(behind))?;
         let capture = gpu.storage_buffer("capture round the eye", capture)?;
         let pixels = u64::from(frame.width) * u64::from(frame.height);
@@ -49,8 +50,8 @@ impl GlassRenderer {
         for first_row in (0..frame.height).step_by(rows as usize) {
             let band = GlassPictureFrame { first_row, ..*frame };
             let uniform = gpu.uniform_buffer("glass picture frame", &band)?;
-            let bindings =
-                self.kernel.bind(gpu, &[&uniform, &drops, &bins, &wet, &lens, &behind, &capture, &made])?;
+            let buffers = [&uniform, &drops, &bins, &wet, &lens, &behind, &capture, &made, &lights];
+            let bindings = self.kernel.bind(gpu, &buffers)?;
             let groups = [frame.width.div_ceil(8), rows.min(frame.height - first_row).div_ceil(8), 1];
             gpu.submit(&[self.kernel.dispatch(&bindings, groups)])?;
             // One submission at a time: software drivers queue without end.

@@ -3,8 +3,8 @@
 use super::Rain;
 use super::fault::Places;
 use super::quantity::{
-    AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, In, PaneApertureMm, PaneM, PaneMS,
-    PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, Share, TurnDeg,
+    AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, HighlightMm, In, PaneApertureMm,
+    PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, Share, TurnDeg,
 };
 use super::wind::keys::NumberKeys;
 use crate::error::SceneError;
@@ -68,6 +68,9 @@ pub struct Pane {
     pub room: f64,
     /// How much is reflected.
     pub fresnel: PaneFresnel,
+    /// Diameter, m, of the sphere of water from which on a drop shows lamps and the sun as bright spots: the mass above
+    /// which Tatarchuk & Isidoro 2006 draw highlights. 0: all drops, as optics has it; small ones have small spots.
+    pub highlight: f64,
     /// How the glass holds water.
     pub contact: GlassContact,
     /// Thickness of the film that water leaves where it has run, m.
@@ -143,6 +146,7 @@ pub(super) struct GlassTable {
     aperture_mm: Option<In<PaneApertureMm>>,
     room: Option<In<Share>>,
     fresnel: Option<PaneFresnel>,
+    highlight_mm: Option<In<HighlightMm>>,
     advancing_deg: Option<In<AdvancingDeg>>,
     receding_deg: Option<In<RecedingDeg>>,
     film_um: Option<In<FilmUm>>,
@@ -192,6 +196,7 @@ impl GlassTable {
             aperture: number(self.aperture_mm.map(|mm| mm.0), 4.0) * 1.0e-3,
             room: number(self.room.map(|share| share.0), 0.1),
             fresnel: self.fresnel.unwrap_or_default(),
+            highlight: number(self.highlight_mm.map(|mm| mm.0), 0.0) * 1.0e-3,
             contact: GlassContact {
                 advancing_rad: self.advancing_deg.map_or(contact.advancing_rad, |deg| deg.0.to_radians()),
                 receding_rad: self.receding_deg.map_or(contact.receding_rad, |deg| deg.0.to_radians()),

@@ -10,15 +10,16 @@ use downpour_shaders::lattice::puddle::PUDDLE_SMALLEST;
 use super::tile::Tile;
 use crate::puddle::lattice::{Links, PuddleGrid, laplacian, laplacian_linked, puddle_recur, puddle_settle};
 
-/// A row in parts as wide as the machine's vectors.
-#[inline(always)]
-pub(super) fn parts<S: Simd>(n: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..n).step_by(Lanes::<S>::COUNT).map(move |i| i..n.min(i + Lanes::<S>::COUNT))
-}
+/// Three by three vectors: a place, and its neighbours.
+type Round<S> = [[Lanes<S>; 3]; 3];
 
 /// Three rows of the argument, from one cell before a run to one behind it.
 #[derive(Clone, Copy)]
 struct Rows<'a>([&'a [f32]; 3]);
+
+/// The whole vectors of a run, and of the runs that lie one cell beside it.
+#[derive(Clone, Copy)]
+struct Whole<'a, S: Simd>([[&'a [S::f32s]; 3]; 3]);
 
 impl<'a> Rows<'a> {
     #[inline(always)]
@@ -26,23 +27,25 @@ impl<'a> Rows<'a> {
         Self([at - stride, at, at + stride].map(|at| &now[at - 1..at + n + 1]))
     }
 
-    /// The weighted sums of a part of the run, all of whose cells are linked.
     #[inline(always)]
-    fn sums<S: Simd, const DIAGONAL: bool>(
-        self,
-        simd: S,
-        part: &Range<usize>,
-        weights: [f32; 3],
-    ) -> [Lanes<S>; 2] {
+    fn whole<S: Simd>(self, count: usize) -> Whole<'a, S> {
+        let [north, here, south] = self.0;
+        Whole([beside::<S>(north, count), beside::<S>(here, count), beside::<S>(south, count)])
+    }
+
+    /// The values round a part of the run that is shorter than a vector.
+    #[inline(always)]
+    fn part<S: Simd, const DIAGONAL: bool>(self, simd: S, part: &Range<usize>) -> Round<S> {
         let zero = Lanes::splat(simd, 0.0);
-        let load =
-            |row: usize, shift: usize| Lanes::load(simd, &self.0[row][part.start + shift..part.end + shift]);
-        // The weight of the diagonal is 0 for a membrane.
-        let corner = |row, shift| if DIAGONAL { load(row, shift) } else { zero };
-        let here = [load(1, 0), load(1, 1), load(1, 2)];
-        let north = [corner(0, 0), load(0, 1), corner(0, 2)];
-        let south = [corner(2, 0), load(2, 1), corner(2, 2)];
-        [laplacian(north, here, south, weights.map(|w| Lanes::splat(simd, w))), here[1]]
+        let mut round = [[zero; 3]; 3];
+        for (row, (lanes, cells)) in round.iter_mut().zip(self.0).enumerate() {
+            for (shift, lane) in lanes.iter_mut().enumerate() {
+                if DIAGONAL || row == 1 || shift == 1 {
+                    *lane = Lanes::load(simd, &cells[part.start + shift..part.end + shift]);
+                }
+            }
+        }
+        round
     }
 
     /// The weighted sum of cell `i` with its links, and its value.
@@ -50,6 +53,98 @@ impl<'a> Rows<'a> {
     fn sum(self, i: usize, links: u8, weights: [f32; 3]) -> [f32; 2] {
         let [north, here, south] = self.0.map(|row| [row[i], row[i + 1], row[i + 2]]);
         [laplacian_linked(north, here, south, u32::from(links), weights), here[1]]
+    }
+}
+
+/// How many whole vectors a run has, and its last cells: as many as a vector has, or all. They are computed before the
+/// others, from what the row was, and written after them: loads of parts of vectors are slow.
+#[inline(always)]
+fn ends<S: Simd>(n: usize) -> (usize, Range<usize>) {
+    (n / Lanes::<S>::COUNT, n.saturating_sub(Lanes::<S>::COUNT)..n)
+}
+
+#[inline(always)]
+fn beside<S: Simd>(row: &[f32], count: usize) -> [&[S::f32s]; 3] {
+    [
+        &Lanes::<S>::vectors(row)[..count],
+        &Lanes::<S>::vectors(&row[1..])[..count],
+        &Lanes::<S>::vectors(&row[2..])[..count],
+    ]
+}
+
+impl<S: Simd> Whole<'_, S> {
+    /// The values round vector `k`. The weight of the diagonal is 0 for a membrane.
+    #[inline(always)]
+    fn at<const DIAGONAL: bool>(self, simd: S, k: usize) -> Round<S> {
+        let [[nw, n, ne], [w, own, e], [sw, s, se]] = self.0;
+        let zero = Lanes::splat(simd, 0.0);
+        let straight = [&n[k], &w[k], &own[k], &e[k], &s[k]];
+        let [n, w, own, e, s] = straight.map(|vector| Lanes::of(simd, vector));
+        if !DIAGONAL {
+            return [[zero, n, zero], [w, own, e], [zero, s, zero]];
+        }
+        let [nw, ne, sw, se] = [&nw[k], &ne[k], &sw[k], &se[k]].map(|vector| Lanes::of(simd, vector));
+        [[nw, n, ne], [w, own, e], [sw, s, se]]
+    }
+}
+
+/// Numbers that are the same in all lanes.
+#[derive(Clone, Copy)]
+struct Recur<S: Simd> {
+    weights: [Lanes<S>; 3],
+    coefficient: Lanes<S>,
+    twice: Lanes<S>,
+    share: Lanes<S>,
+    viscosity: Lanes<S>,
+}
+
+impl<S: Simd> Recur<S> {
+    #[inline(always)]
+    fn value(self, [north, here, south]: Round<S>, height: Lanes<S>, older: Lanes<S>) -> Lanes<S> {
+        let sum = laplacian(north, here, south, self.weights);
+        puddle_recur(self.coefficient * height, self.twice * sum, self.share * here[1], older)
+    }
+}
+
+/// The argument of the only weighted sum of a membrane, for a row.
+#[inline(always)]
+pub(super) fn argument_row<S: Simd>(
+    simd: S,
+    tile: &mut Tile,
+    grid: &PuddleGrid,
+    columns: &Range<usize>,
+    y: usize,
+) {
+    let n = columns.len();
+    let at = tile.row(y) + columns.start - tile.outer[0].start;
+    let (h, v) = (&tile.heights[at..at + n], &tile.velocities[at..at + n]);
+    let now = &mut tile.now[at..at + n];
+    let viscosity = Lanes::splat(simd, grid.viscosity);
+    let (count, end) = ends::<S>(n);
+    let last = Lanes::load(simd, &h[end.clone()]) + viscosity * Lanes::load(simd, &v[end.clone()]);
+    last.store(&mut now[end]);
+    let (heights, velocities) = (&Lanes::<S>::vectors(h)[..count], &Lanes::<S>::vectors(v)[..count]);
+    let out = &mut Lanes::<S>::vectors_mut(now)[..count];
+    for k in 0..count {
+        (Lanes::of(simd, &heights[k]) + viscosity * Lanes::of(simd, &velocities[k])).put(&mut out[k]);
+    }
+}
+
+/// The first sum of Clenshaw's recurrence, for a row.
+#[inline(always)]
+pub(super) fn first_row<S: Simd>(simd: S, tile: &mut Tile, top: f32, columns: &Range<usize>, y: usize) {
+    let n = columns.len();
+    let at = tile.row(y) + columns.start - tile.outer[0].start;
+    let h = &tile.heights[at..at + n];
+    let now = &mut tile.now[at..at + n];
+    tile.before[at..at + n].fill(0.0);
+    let (count, end) = ends::<S>(n);
+    let lanes = Lanes::splat(simd, top);
+    (lanes * Lanes::load(simd, &h[end.clone()])).store(&mut now[end]);
+    let heights = &Lanes::<S>::vectors(h)[..count];
+    let out = &mut Lanes::<S>::vectors_mut(now)[..count];
+    for k in 0..count {
+        (lanes * Lanes::of(simd, &heights[k])).put(&mut out[k]);
     }
 }
 
@@ -68,7 +163,14 @@ pub(super) fn recur_row<S: Simd, const DIAGONAL: bool>(
 ) {
     // The last sum is multiplied by y = 2 x - 1 alone, those before by 2 y.
     let (twice, share) = if last { (grid.twice, 1.0) } else { (2.0 * grid.twice, 2.0) };
-    let splat = |value| Lanes::splat(simd, value);
+    let [a, b, c] = grid.weights;
+    let same = Recur {
+        weights: [Lanes::splat(simd, a), Lanes::splat(simd, b), Lanes::splat(simd, c)],
+        coefficient: Lanes::splat(simd, coefficient),
+        twice: Lanes::splat(simd, twice),
+        share: Lanes::splat(simd, share),
+        viscosity: Lanes::splat(simd, grid.viscosity),
+    };
     let (stride, row) = (tile.stride(), tile.row(y));
     let mut start = columns.start;
     for &(end, open) in &links.runs[y] {
@@ -82,16 +184,25 @@ pub(super) fn recur_row<S: Simd, const DIAGONAL: bool>(
         let (before, h) = (&mut tile.before[at..at + n], &tile.heights[at..at + n]);
         let v = &tile.velocities[at..at + n];
         if open {
-            for part in parts::<S>(n) {
-                let [sum, now] = rows.sums::<S, DIAGONAL>(simd, &part, grid.weights);
-                let wave = splat(coefficient) * Lanes::load(simd, &h[part.clone()]);
-                let older = Lanes::load(simd, &before[part.clone()]);
-                let mut value = puddle_recur(wave, splat(twice) * sum, splat(share) * now, older);
+            let (count, end) = ends::<S>(n);
+            let round = rows.part::<S, DIAGONAL>(simd, &end);
+            let older = Lanes::load(simd, &before[end.clone()]);
+            let value = same.value(round, Lanes::load(simd, &h[end.clone()]), older);
+            let more = same.viscosity * Lanes::load(simd, &v[end.clone()]);
+            let at_end = if last { value + more } else { value };
+            let whole = rows.whole::<S>(count);
+            let (heights, velocities) = (&Lanes::<S>::vectors(h)[..count], &Lanes::<S>::vectors(v)[..count]);
+            let out = &mut Lanes::<S>::vectors_mut(before)[..count];
+            for k in 0..count {
+                let round = whole.at::<DIAGONAL>(simd, k);
+                let value = same.value(round, Lanes::of(simd, &heights[k]), Lanes::of(simd, &out[k]));
                 if last {
-                    value = value + splat(grid.viscosity) * Lanes::load(simd, &v[part.clone()]);
+                    (value + same.viscosity * Lanes::of(simd, &velocities[k])).put(&mut out[k]);
+                } else {
+                    value.put(&mut out[k]);
                 }
-                value.store(&mut before[part]);
             }
+            at_end.store(&mut before[end]);
         } else {
             let bytes = &links.bytes[y * links.stride() + start..][..n];
             for i in 0..n {
@@ -104,7 +215,73 @@ pub(super) fn recur_row<S: Simd, const DIAGONAL: bool>(
     }
 }
 
-/// One row of new velocities and heights. Gives how many cells had to be reset.
+/// 1 in the lanes of cells that are not finite, 0 in the others.
+#[derive(Clone, Copy)]
+struct Bad<S: Simd>(Lanes<S>);
+
+impl<S: Simd> Bad<S> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        let zero = self.0.constant(0.0);
+        zero.any(zero.less(self.0))
+    }
+
+    /// How many there are among the cells from `first` on that are in a range.
+    #[inline(always)]
+    fn count(self, first: usize, counted: &Range<usize>) -> u64 {
+        let mut lanes = [0.0; 64];
+        self.0.store(&mut lanes[..Lanes::<S>::COUNT.min(64)]);
+        let mut count = 0;
+        for (i, &lane) in lanes.iter().enumerate() {
+            count += u64::from(lane > 0.0 && counted.contains(&(first + i)));
+        }
+        count
+    }
+}
+
+/// Numbers that are the same in all lanes of a kick.
+#[derive(Clone, Copy)]
+struct Kick<S: Simd> {
+    weights: [Lanes<S>; 3],
+    kick: Lanes<S>,
+    dt: Lanes<S>,
+    keep: Lanes<S>,
+    zero: Lanes<S>,
+    one: Lanes<S>,
+    infinite: Lanes<S>,
+    below: Lanes<S>,
+}
+
+impl<S: Simd> Kick<S> {
+    /// Height and velocity, and where one of the two was not finite.
+    #[inline(always)]
+    fn values(
+        self,
+        [north, here, south]: Round<S>,
+        height: Lanes<S>,
+        velocity: Lanes<S>,
+        keep: Lanes<S>,
+    ) -> ([Lanes<S>; 2], Bad<S>) {
+        let sum = laplacian(north, here, south, self.weights);
+        let velocity = (velocity - self.kick * sum) * keep.at_most(self.keep);
+        let height = height + self.dt * velocity;
+        // Not finite is what is not below infinity: NaN is not.
+        let finite = self.zero.both(height.abs().less(self.infinite), velocity.abs().less(self.infinite));
+        let bad = Bad(Lanes::select(finite, self.zero, self.one));
+        ([self.settle(height), self.settle(velocity)], bad)
+    }
+
+    /// `puddle_settle` for lanes: comparisons with NaN are false.
+    #[inline(always)]
+    fn settle(self, value: Lanes<S>) -> Lanes<S> {
+        let size = value.abs();
+        let kept = size.both(self.below.less(size), size.less(self.infinite));
+        Lanes::select(kept, value, self.zero)
+    }
+}
+
+/// One row of new velocities and heights. Gives how many cells of some columns had to be reset.
+#[expect(clippy::too_many_arguments, reason = "a row of a pass has that many inputs")]
 #[inline(always)]
 pub(super) fn kick_row<S: Simd, const DIAGONAL: bool>(
     simd: S,
@@ -113,10 +290,21 @@ pub(super) fn kick_row<S: Simd, const DIAGONAL: bool>(
     links: &Links,
     keep: &[Vec<f32>; 2],
     columns: &Range<usize>,
+    counted: &Range<usize>,
     y: usize,
 ) -> u64 {
-    let splat = |value| Lanes::splat(simd, value);
     let (stride, row, keep_y) = (tile.stride(), tile.row(y), keep[1][y]);
+    let [a, b, c] = grid.weights;
+    let same = Kick {
+        weights: [Lanes::splat(simd, a), Lanes::splat(simd, b), Lanes::splat(simd, c)],
+        kick: Lanes::splat(simd, grid.kick),
+        dt: Lanes::splat(simd, grid.dt),
+        keep: Lanes::splat(simd, keep_y),
+        zero: Lanes::splat(simd, 0.0),
+        one: Lanes::splat(simd, 1.0),
+        infinite: Lanes::splat(simd, f32::INFINITY),
+        below: Lanes::splat(simd, PUDDLE_SMALLEST.next_down()),
+    };
     let (mut start, mut reset) = (columns.start, 0);
     for &(end, open) in &links.runs[y] {
         let end = end.min(columns.end);
@@ -129,29 +317,42 @@ pub(super) fn kick_row<S: Simd, const DIAGONAL: bool>(
         let (h, v) = (&mut tile.heights[at..at + n], &mut tile.velocities[at..at + n]);
         let keep_x = &keep[0][start..end];
         if open {
-            let mut bad = splat(0.0);
-            for part in parts::<S>(n) {
-                let [sum, _] = rows.sums::<S, DIAGONAL>(simd, &part, grid.weights);
-                let left = Lanes::load(simd, &keep_x[part.clone()]).at_most(splat(keep_y));
-                let velocity = (Lanes::load(simd, &v[part.clone()]) - splat(grid.kick) * sum) * left;
-                let height = Lanes::load(simd, &h[part.clone()]) + splat(grid.dt) * velocity;
-                let infinite = splat(f32::INFINITY);
-                let finite = bad.both(height.abs().less(infinite), velocity.abs().less(infinite));
-                bad = bad + Lanes::select(finite, splat(0.0), splat(1.0));
-                settle(velocity).store(&mut v[part.clone()]);
-                settle(height).store(&mut h[part]);
+            let (count, end) = ends::<S>(n);
+            let round = rows.part::<S, DIAGONAL>(simd, &end);
+            let (height, velocity) = (Lanes::load(simd, &h[end.clone()]), Lanes::load(simd, &v[end.clone()]));
+            let (at_end, bad_at_end) =
+                same.values(round, height, velocity, Lanes::load(simd, &keep_x[end.clone()]));
+            let whole = rows.whole::<S>(count);
+            let keeps = &Lanes::<S>::vectors(keep_x)[..count];
+            let heights = &mut Lanes::<S>::vectors_mut(h)[..count];
+            let velocities = &mut Lanes::<S>::vectors_mut(v)[..count];
+            for k in 0..count {
+                let round = whole.at::<DIAGONAL>(simd, k);
+                let (height, velocity) = (Lanes::of(simd, &heights[k]), Lanes::of(simd, &velocities[k]));
+                let ([height, velocity], bad) =
+                    same.values(round, height, velocity, Lanes::of(simd, &keeps[k]));
+                height.put(&mut heights[k]);
+                velocity.put(&mut velocities[k]);
+                if bad.any() {
+                    reset += bad.count(start + k * Lanes::<S>::COUNT, counted);
+                }
             }
-            // Fewer than 2^24 per lane: exact. What lies beyond the end of the run is 0, which is finite.
-            let mut counts = [0.0; 64];
-            bad.store(&mut counts[..Lanes::<S>::COUNT.min(64)]);
-            reset += counts.iter().sum::<f32>() as u64;
+            let [height, velocity] = at_end;
+            height.store(&mut h[end.clone()]);
+            velocity.store(&mut v[end.clone()]);
+            if bad_at_end.any() {
+                // Those that are in a whole vector have been counted.
+                let left = start + (count * Lanes::<S>::COUNT).min(n);
+                reset += bad_at_end.count(start + end.start, &(counted.start.max(left)..counted.end));
+            }
         } else {
             let bytes = &links.bytes[y * links.stride() + start..][..n];
             for i in 0..n {
                 let [sum, _] = rows.sum(i, bytes[i], grid.weights);
                 let velocity = (v[i] - grid.kick * sum) * keep_x[i].min(keep_y);
                 let height = h[i] + grid.dt * velocity;
-                reset += u64::from(!(ops_is_finite(height) && ops_is_finite(velocity)));
+                let bad = !(ops_is_finite(height) && ops_is_finite(velocity));
+                reset += u64::from(bad && counted.contains(&(start + i)));
                 v[i] = puddle_settle(velocity);
                 h[i] = puddle_settle(height);
             }
@@ -159,13 +360,4 @@ pub(super) fn kick_row<S: Simd, const DIAGONAL: bool>(
         start = end;
     }
     reset
-}
-
-/// `puddle_settle` for lanes: comparisons with NaN are false.
-#[inline(always)]
-fn settle<S: Simd>(value: Lanes<S>) -> Lanes<S> {
-    let size = value.abs();
-    let below = size.constant(f64::from(PUDDLE_SMALLEST.next_down()));
-    let kept = size.both(below.less(size), size.less(size.constant(f64::INFINITY)));
-    Lanes::select(kept, value, size.constant(0.0))
 }

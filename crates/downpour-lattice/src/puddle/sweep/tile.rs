@@ -28,9 +28,11 @@ impl Tile {
         self.inner = inner;
         self.outer = self.reach(self.halo);
         let cells = self.stride() * (self.outer[1].len() + 2);
+        // What was there before is overwritten, or taken for no cell: no link leads to it.
         for buffer in [&mut self.heights, &mut self.velocities, &mut self.now, &mut self.before] {
-            buffer.clear();
-            buffer.resize(cells, 0.0);
+            if buffer.len() < cells {
+                buffer.resize(cells, 0.0);
+            }
         }
     }
 
@@ -40,6 +42,12 @@ impl Tile {
             let range: &Range<usize> = &self.inner[axis];
             range.start.saturating_sub(cells)..(range.end + cells).min(self.size[axis])
         })
+    }
+
+    /// Columns of a row whose cells this tile writes.
+    pub(super) fn counted(&self, y: usize) -> Range<usize> {
+        let [columns, rows] = &self.inner;
+        if rows.contains(&y) { columns.clone() } else { 0..0 }
     }
 
     pub(super) fn stride(&self) -> usize {

@@ -1,0 +1,79 @@
+//! Lamps and the sun as a drop on a pane shows them: bright spots. Twin of `shaders/wgsl/render/glass_picture_light.wgsl`.
+//!
+//! Tatarchuk & Isidoro 2006, section 5, draw a quasi-caustic highlight in drops above a mass that an artist says. Here it is
+//! the image of the source in the lens that a drop is: as bright as its irradiance says, spread over what a pixel sees, so that
+//! the light in the picture does not depend on resolution. Sources are points or discs that no picture of the scene shows.
+
+use std::f32::consts::PI;
+
+use downpour_shaders::render::glass::{
+    GLASS_PICTURE_FAR, GLASS_PICTURE_LIGHT_PEAK, GLASS_PICTURE_LIGHT_WIDTH,
+};
+use glam::Vec3;
+
+use crate::data::{RenderFrame, SceneData};
+use crate::scene::SceneView;
+
+/// A lamp or the sun before a pane. The same layout as `GlassPictureLight` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct GlassPictureLight {
+    /// From the eye, m; a sun is far.
+    pub place: [f32; 3],
+    /// Half the angle that it takes, radians.
+    pub radius: f32,
+    /// Irradiance at the eye of a surface that faces it.
+    pub colour: [f32; 3],
+    /// From the eye, m.
+    pub distance: f32,
+}
+
+/// Share of a source's light per solid angle, at a squared distance in direction from its middle: a paraboloid whose
+/// integral is 1.
+#[must_use]
+pub fn glass_picture_light_lobe(away: f32, radius: f32) -> f32 {
+    let squared = radius * radius;
+    (1.0 - away / squared).max(0.0) * GLASS_PICTURE_LIGHT_PEAK / squared
+}
+
+/// Radiance of a source in a direction from a place of the pane (m from the eye), for a footprint in radians.
+#[must_use]
+pub fn glass_picture_light_seen(
+    light: &GlassPictureLight,
+    from_eye: Vec3,
+    direction: Vec3,
+    footprint: f32,
+) -> Vec3 {
+    let way = Vec3::from(light.place) - from_eye;
+    let squared = way.dot(way).max(1.0e-6);
+    let away = direction - way / squared.sqrt();
+    let width = footprint * GLASS_PICTURE_LIGHT_WIDTH;
+    let radius = (light.radius * light.radius + width * width).sqrt();
+    let nearer = light.distance * light.distance / squared;
+    Vec3::from(light.colour) * (nearer * glass_picture_light_lobe(away.dot(away), radius))
+}
+
+/// Half the sun's disc, radians.
+const SUN_RAD: f32 = 4.65e-3;
+
+/// The lamps and the sun that the eye sees, with one ray for what stands between.
+pub(super) fn sources(data: &SceneData, frame: &RenderFrame) -> Vec<GlassPictureLight> {
+    let view = SceneView { data, frame };
+    let eye = Vec3::from(frame.eye);
+    let source = |k: u32| {
+        let light = view.scene_light(k, eye, 0.0);
+        let lit = light.irradiance * PI;
+        let colour = lit * view.scene_visibility(eye, light.direction, light.distance);
+        let sun = light.distance >= GLASS_PICTURE_FAR;
+        let distance = light.distance.min(GLASS_PICTURE_FAR);
+        let place = light.direction * distance;
+        let radius = if sun { SUN_RAD } else { 0.0 };
+        (colour.max_element() > 0.0).then(|| GlassPictureLight {
+            place: place.into(),
+            radius,
+            colour: colour.into(),
+            distance,
+        })
+    };
+    (0..frame.light_count).filter_map(source).collect()
+}

@@ -1,0 +1,137 @@
+//! What stands in a direction: the picture behind the pane where that is in it, else the capture of what is round the eye.
+//! Twin of a part of `shaders/wgsl/render/glass_picture.wgsl`.
+
+use downpour_math::ops;
+use downpour_math::packing::packing_octahedral_encode;
+use downpour_shaders::render::glass::GLASS_PICTURE_FAR;
+use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
+
+use super::picture::Look;
+
+impl Look<'_> {
+    /// A texel of a level of the picture; the nearest where there is none.
+    pub(super) fn glass_picture_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
+        let [width, height, first, _] = self.glass.frame.levels[level as usize];
+        let x = column.clamp(0, width as i32 - 1) as u32;
+        let y = row.clamp(0, height as i32 - 1) as u32;
+        Vec4::from(self.behind[(first + y * width + x) as usize])
+    }
+
+    /// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+    fn glass_picture_round_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
+        let whole = self.glass.frame.capture_size;
+        let size = whole >> level;
+        let edge = size as i32;
+        let (mut x, mut y) = (column, row);
+        if x < 0 || x >= edge {
+            x = x.clamp(0, edge - 1);
+            y = edge - 1 - y;
+        }
+        if y < 0 || y >= edge {
+            y = y.clamp(0, edge - 1);
+            x = edge - 1 - x;
+        }
+        let first = 4 * (whole * whole - size * size) / 3;
+        let (x, y) = (x.clamp(0, edge - 1) as u32, y.clamp(0, edge - 1) as u32);
+        Vec4::from(self.capture[(first + y * size + x) as usize])
+    }
+
+    /// A level of the picture or of the capture at a place of [0, 1], bilinear.
+    fn glass_picture_level(&self, of_capture: bool, level: u32, place: Vec2) -> Vec3 {
+        let frame = &self.glass.frame;
+        let size = if of_capture {
+            Vec2::splat((frame.capture_size >> level) as f32)
+        } else {
+            let [width, height, ..] = frame.levels[level as usize];
+            UVec2::new(width, height).as_vec2()
+        };
+        let at = place * size - 0.5;
+        let low = at.floor();
+        let part = at - low;
+        let mut sum = Vec3::ZERO;
+        for k in 0..4 {
+            let step = IVec2::new(k & 1, k >> 1);
+            let share_x = if step.x == 1 { part.x } else { 1.0 - part.x };
+            let share = share_x * if step.y == 1 { part.y } else { 1.0 - part.y };
+            let cell = low.as_ivec2() + step;
+            if share > 0.0 {
+                let texel = if of_capture {
+                    self.glass_picture_round_texel(level, cell.x, cell.y)
+                } else {
+                    self.glass_picture_texel(level, cell.x, cell.y)
+                };
+                sum += texel.truncate() * share;
+            }
+        }
+        sum
+    }
+
+    /// The picture or the capture at a place of [0, 1], for a footprint in texels of its finest level.
+    fn glass_picture_at(&self, of_capture: bool, place: Vec2, footprint: f32) -> Vec3 {
+        let frame = &self.glass.frame;
+        let last = (if of_capture { frame.capture_last } else { frame.last }) as f32;
+        let level = ops::log2(footprint.max(1.0e-6)).clamp(0.0, last);
+        let low = level.floor();
+        let part = level - low;
+        let mut sum = self.glass_picture_level(of_capture, low as u32, place) * (1.0 - part);
+        if part > 0.0 {
+            sum += self.glass_picture_level(of_capture, low as u32 + 1, place) * part;
+        }
+        sum
+    }
+
+    /// What stands round the eye in a direction, for a footprint of some angle.
+    pub(super) fn glass_picture_round(&self, direction: Vec3, footprint: f32) -> Vec3 {
+        let place = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
+        self.glass_picture_at(true, place, footprint / self.glass.frame.capture_texel)
+    }
+
+    /// Where a direction is on the picture: -1 to 1 right and up, and its depth.
+    fn glass_picture_project(&self, direction: Vec3) -> Vec3 {
+        let frame = &self.glass.frame;
+        let [right, up, forward] = [frame.right, frame.up, frame.forward].map(Vec3::from);
+        let depth = direction.dot(forward);
+        let near = depth.max(1.0e-6);
+        Vec3::new(
+            direction.dot(right) / right.dot(right) / near,
+            direction.dot(up) / up.dot(up) / near,
+            depth,
+        )
+    }
+
+    /// What a ray shows that begins at an offset from the eye. Its footprint is an angle.
+    pub(super) fn glass_picture_seen(
+        &self,
+        from_eye: Vec3,
+        direction: Vec3,
+        shift: Vec2,
+        footprint: f32,
+    ) -> Vec3 {
+        let frame = &self.glass.frame;
+        let size = Vec2::new(frame.width as f32, frame.height as f32);
+        let guess = self.glass_picture_project(direction);
+        let distance = if guess.z > 0.0 && guess.x.abs() < 1.0 && guess.y.abs() < 1.0 {
+            let pixel = Vec2::new(0.5 + 0.5 * guess.x, 0.5 - 0.5 * guess.y) * size;
+            self.glass_picture_texel(0, pixel.x as i32, pixel.y as i32).w
+        } else {
+            let square = Vec2::from(packing_octahedral_encode(direction.to_array()));
+            let texel = (square * 0.5 + 0.5) * frame.capture_size as f32;
+            self.glass_picture_round_texel(0, texel.x as i32, texel.y as i32).w
+        };
+        let to = direction + from_eye / distance.clamp(0.1, GLASS_PICTURE_FAR);
+        let place = self.glass_picture_project(to);
+        let texels = (footprint / frame.pixel_angle).max(1.0);
+        // Towards the picture's edge the capture takes over, within the footprint.
+        let at = Vec2::new(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) + shift / size;
+        let inside = (at.x.min(1.0 - at.x) * size.x).min(at.y.min(1.0 - at.y) * size.y);
+        let share = if place.z > 0.0 { ((inside + 0.5) / texels).clamp(0.0, 1.0) } else { 0.0 };
+        let mut sum = Vec3::ZERO;
+        if share > 0.0 {
+            sum = self.glass_picture_at(false, at, texels) * share;
+        }
+        if share < 1.0 {
+            sum += self.glass_picture_round(to, footprint) * (1.0 - share);
+        }
+        sum
+    }
+}
