@@ -8,7 +8,7 @@ pub const MODULES: &[&Module] =
     &[&PUDDLE_CONSTANTS, &PUDDLE, &PUDDLE_STATE, &PUDDLE_STEP, &PUDDLE_SEED, &PUDDLE_NORMAL];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&STEP_KERNEL, &SEED_KERNEL, &NORMAL_KERNEL];
+pub const KERNELS: &[&Kernel] = &[&STEP_KERNEL, &DIRECT_KERNEL, &SEED_KERNEL, &NORMAL_KERNEL];
 
 shared_constants! {
     /// Links between cells, limits and shapes.
@@ -88,6 +88,10 @@ pub static PUDDLE_NORMAL: Module = Module {
 /// One workgroup per tile; an invocation has four quads above each other.
 pub static STEP_KERNEL: Kernel =
     Kernel { entry: "main_puddle_step", module: &PUDDLE_STEP, workgroup: [16, 16, 1] };
+
+/// One step of degree 1; one invocation per quad.
+pub static DIRECT_KERNEL: Kernel =
+    Kernel { entry: "main_puddle_step_direct", module: &PUDDLE_STEP, workgroup: [32, 8, 1] };
 
 /// One invocation per quad.
 pub static SEED_KERNEL: Kernel =

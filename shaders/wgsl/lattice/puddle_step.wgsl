@@ -178,3 +178,57 @@ fn main_puddle_step(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
         atomicAdd(&puddle_step_reset[0], bad);
     }
 }
+
+// What the sum over the neighbours is of, when the degree is 1; beyond the lattice, that of the nearest quad, to which no
+// link leads.
+fn puddle_step_direct(column: i32, row: i32) -> vec4f {
+    let x = u32(clamp(column, 0, i32(puddle_grid.quads) - 1));
+    let y = u32(clamp(row, 0, i32(puddle_grid.size.y) - 1));
+    let quad = puddle_state_load(y * puddle_grid.quads + x);
+    return quad.height + quad.velocity * puddle_grid.viscosity;
+}
+
+// A row round a quad, as puddle_step_row.
+fn puddle_step_direct_row(column: i32, row: i32) -> mat3x4f {
+    return puddle_step_shift(
+        puddle_step_direct(column - 1, row).w,
+        puddle_step_direct(column, row),
+        puddle_step_direct(column + 1, row).x,
+    );
+}
+
+// One time step of degree 1: a quad per invocation, out of memory and back. Neighbours share what the caches hold.
+@compute @workgroup_size(32, 8)
+fn main_puddle_step_direct(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= puddle_grid.quads || id.y >= puddle_grid.size.y {
+        return;
+    }
+    let column = i32(id.x);
+    let row = i32(id.y);
+    let at = id.y * puddle_grid.quads + id.x;
+    let quad = puddle_state_load(at);
+    let sums = puddle_laplacian(
+        puddle_step_direct_row(column, row - 1),
+        puddle_step_direct_row(column, row),
+        puddle_step_direct_row(column, row + 1),
+        puddle_links[at],
+        puddle_grid.weights,
+    );
+    let keep = puddle_step_keep(puddle_grid, id.x * 4u, id.y);
+    let velocity = (quad.velocity - sums * puddle_grid.kick) * keep;
+    let height = quad.height + velocity * puddle_grid.dt;
+    let good = puddle_is_finite(height) & puddle_is_finite(velocity);
+    let counts = select(vec4u(1u), vec4u(0u), good);
+    let bad = counts.x + counts.y + counts.z + counts.w;
+    let settled_height = puddle_step_settle(height);
+    let settled_velocity = puddle_step_settle(velocity);
+    if puddle_grid.half_storage != 0u {
+        puddle_step_next[at] = puddle_state_words(settled_height, settled_velocity);
+    } else {
+        puddle_step_next[2u * at] = bitcast<vec4u>(settled_height);
+        puddle_step_next[2u * at + 1u] = bitcast<vec4u>(settled_velocity);
+    }
+    if bad > 0u {
+        atomicAdd(&puddle_step_reset[0], bad);
+    }
+}

@@ -12,7 +12,8 @@ use downpour_lattice::puddle::{
 };
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::lattice::puddle::{
-    NORMAL_KERNEL, PUDDLE, PUDDLE_NORMAL, PUDDLE_SEED, PUDDLE_STATE, PUDDLE_STEP, SEED_KERNEL, STEP_KERNEL,
+    DIRECT_KERNEL, NORMAL_KERNEL, PUDDLE, PUDDLE_NORMAL, PUDDLE_SEED, PUDDLE_STATE, PUDDLE_STEP, SEED_KERNEL,
+    STEP_KERNEL,
 };
 
 use crate::Domain::{AnyWord, Below, Made, OneOf, Uniform};
@@ -336,11 +337,38 @@ pub(super) fn kernels() -> Vec<KernelCase> {
                 PuddleOptions { size: [203, 131], border: PuddleBorder::Open, ..PuddleOptions::default() };
             steps(gpu, &options, 0.03, 1)
         }),
-        step("main_puddle_step: the membrane, eight steps per dispatch", STEPS, |gpu| {
-            let form = PuddleForm::Membrane { speed_m_s: 0.3 };
-            let options = PuddleOptions { size: [256, 64], form, cell_m: 0.01, ..PuddleOptions::default() };
-            steps(gpu, &options, 0.2, 1)
-        }),
+        step(
+            "main_puddle_step: the membrane in sixteen bits, eight steps per dispatch",
+            Tol::absolute(2.0e-6, "as the step in sixteen bits"),
+            |gpu| {
+                let (form, storage) = (PuddleForm::Membrane { speed_m_s: 0.3 }, PuddleStorage::Half);
+                let options = PuddleOptions {
+                    size: [256, 64],
+                    form,
+                    storage,
+                    cell_m: 0.01,
+                    ..PuddleOptions::default()
+                };
+                steps(gpu, &options, 0.2, 1)
+            },
+        ),
+        KernelCase {
+            name: "main_puddle_step_direct: the membrane among islands, with an open border",
+            kernel: &DIRECT_KERNEL,
+            covers: &["puddle_step_direct", "puddle_step_direct_row"],
+            tol: STEPS,
+            run: |gpu| {
+                let (form, border) = (PuddleForm::Membrane { speed_m_s: 0.3 }, PuddleBorder::Open);
+                let options = PuddleOptions {
+                    size: [203, 101],
+                    form,
+                    border,
+                    cell_m: 0.01,
+                    ..PuddleOptions::default()
+                };
+                steps(gpu, &options, 0.2, 1)
+            },
+        },
         step("main_puddle_step: one step of twelve passes", STEPS, |gpu| {
             let options = PuddleOptions {
                 size: [97, 101],

@@ -134,7 +134,7 @@ fn more_lamps_than_there_is_room_for_are_refused() {
 /// A red lamp from the side is mirrored by the drop on that side, and by none of the other's.
 #[test]
 fn a_lamp_glints_on_its_side() {
-    let arguments = ["--diameter", "2", "--size", "60x60", "--light", "90,0,10,50,0,0", "-o", "d.exr"];
+    let arguments = ["--diameter", "2", "--size", "60x60", "--light", "90,0,10,500,0,0", "-o", "d.exr"];
     let (width, _, pixels) = pixels(&specimen(&arguments).succeeded());
     let reddest = (0..pixels.len()).max_by(|&a, &b| pixels[a][0].total_cmp(&pixels[b][0])).unwrap();
     let (x, y) = (reddest % width as usize, reddest / width as usize);

@@ -1,9 +1,12 @@
-//! A puddle on a GPU: the same numbers as [`Puddle`](crate::puddle::Puddle), several time steps per dispatch.
+//! A puddle on a GPU: the same numbers as [`Puddle`](crate::puddle::Puddle), several time steps per dispatch, in tiles; of the
+//! membrane one, without.
 
 use downpour_gpu::{ComputeKernel, Gpu, GpuError, timing::PassTime, wgpu};
 use downpour_math::ops::ops_is_finite;
 use downpour_math::packing::packing_unpack_snorm;
-use downpour_shaders::lattice::puddle::{NORMAL_KERNEL, PUDDLE_STEP_TILE, SEED_KERNEL, STEP_KERNEL};
+use downpour_shaders::lattice::puddle::{
+    DIRECT_KERNEL, NORMAL_KERNEL, PUDDLE_STEP_TILE, SEED_KERNEL, STEP_KERNEL,
+};
 
 use crate::error::LatticeError;
 use crate::puddle::lattice::{PuddleGrid, puddle_state_pack, puddle_state_unpack};
@@ -44,6 +47,8 @@ pub struct GpuPuddle {
     gpu: Gpu,
     model: Model,
     step: ComputeKernel,
+    /// A step at a time: faster than tiles where the degree is 1.
+    direct: Option<ComputeKernel>,
     seed: ComputeKernel,
     normal: ComputeKernel,
     links: wgpu::Buffer,
@@ -76,7 +81,11 @@ impl GpuPuddle {
         let cells = (model.links.stride() * model.links.size[1]) as u64;
         let bytes = cells * if model.options.storage == PuddleStorage::Half { 4 } else { 8 };
         let state = || gpu.empty_buffer("puddle state", bytes, wgpu::BufferUsages::STORAGE);
+        // Numbers in 16 bits are rounded once per sweep, so that the steps of a sweep are part of the result.
+        let plain = model.degree == 1 && model.options.storage == PuddleStorage::Full;
+        let direct = plain.then(|| ComputeKernel::new(gpu, &DIRECT_KERNEL, &[]));
         Ok(Self {
+            direct: direct.transpose()?,
             step: ComputeKernel::new(gpu, &STEP_KERNEL, &[])?,
             seed: ComputeKernel::new(gpu, &SEED_KERNEL, &[])?,
             normal: ComputeKernel::new(gpu, &NORMAL_KERNEL, &[])?,
@@ -111,7 +120,8 @@ impl GpuPuddle {
     pub fn step(&mut self, dt_s: f32) -> Result<u32, GpuPuddleError> {
         let substeps = self.model.substeps(f64::from(dt_s))?;
         let dt = f64::from(dt_s) / f64::from(substeps);
-        let full = self.model.steps_per_sweep();
+        let full = if self.direct.is_some() { 1 } else { self.model.steps_per_sweep() };
+        let kernel = self.direct.as_ref().unwrap_or(&self.step);
         let (whole, rest) = (substeps / full, substeps % full);
         let mut sweeps = vec![full; whole as usize];
         sweeps.extend((rest > 0).then_some(rest));
@@ -121,7 +131,7 @@ impl GpuPuddle {
         let (full_uniform, rest_uniform) = (full_uniform?, rest_uniform?);
         let bind = |uniform: &wgpu::Buffer, from: usize| {
             let buffers = [uniform, &self.links, &self.states[from], &self.states[1 - from], &self.reset];
-            self.step.bind(&self.gpu, &buffers)
+            kernel.bind(&self.gpu, &buffers)
         };
         // One for each direction between the copies, and one for what is left over.
         let last_from = (self.newer + whole as usize) % 2;
@@ -130,7 +140,7 @@ impl GpuPuddle {
         let mut dispatches = Vec::with_capacity(sweeps.len());
         for steps in sweeps {
             let binding = if steps == full { &bindings[from] } else { &bindings[2] };
-            dispatches.push(self.step.dispatch(binding, self.groups(steps)));
+            dispatches.push(kernel.dispatch(binding, self.groups(steps, self.direct.is_some())));
             from = 1 - from;
         }
         self.gpu.submit(&dispatches)?;
@@ -141,7 +151,11 @@ impl GpuPuddle {
     }
 
     /// Workgroups of a sweep: what a tile writes is what its halo leaves.
-    fn groups(&self, steps: u32) -> [u32; 3] {
+    fn groups(&self, steps: u32, direct: bool) -> [u32; 3] {
+        if direct {
+            let [_, ny] = self.model.options.size;
+            return [(self.model.links.stride() as u32 / 4).div_ceil(32), ny.div_ceil(8), 1];
+        }
         let halo = (self.model.degree * steps).next_multiple_of(4);
         let inner = PUDDLE_STEP_TILE - 2 * halo;
         let [nx, ny] = self.model.options.size;
@@ -158,13 +172,15 @@ impl GpuPuddle {
         let steps = steps.clamp(1, self.model.steps_per_sweep());
         let dt = f64::from(dt_s).min(self.model.limit());
         let uniform = self.gpu.uniform_buffer("puddle grid", &self.model.grid(dt, steps))?;
+        let direct = self.direct.as_ref().filter(|_| steps == 1);
+        let kernel = direct.unwrap_or(&self.step);
         let bind = |from: usize| {
             let buffers = [&uniform, &self.links, &self.states[from], &self.states[1 - from], &self.reset];
-            self.step.bind(&self.gpu, &buffers)
+            kernel.bind(&self.gpu, &buffers)
         };
         let (there, back) = (bind(self.newer)?, bind(1 - self.newer)?);
-        let groups = self.groups(steps);
-        let pair = [self.step.dispatch(&there, groups), self.step.dispatch(&back, groups)];
+        let groups = self.groups(steps, direct.is_some());
+        let pair = [kernel.dispatch(&there, groups), kernel.dispatch(&back, groups)];
         let pairs = repeats.div_ceil(2);
         let time = self.gpu.time(&pair, pairs)?;
         self.steps += u64::from(2 * pairs) * u64::from(steps);

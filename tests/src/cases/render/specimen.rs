@@ -123,10 +123,10 @@ fn camera(args: &mut Args<'_>) -> SpecimenCamera {
 fn lamp_and_direction(random: [u32; 4]) -> Vec<u32> {
     let unit = random.map(|w| f64::from(rng_unit(w)));
     let radius = 8.7e-4 * downpour_math::ops::f64::exp(6.4 * unit[0]);
-    let (yaw, pitch) = (6.0 * unit[1], 2.0 * unit[2] - 1.0);
+    let (yaw, pitch) = (6.0 * unit[1], unit[2] - 0.5);
     let lamp = SpecimenLamp::new(yaw, pitch, radius, [1.5, 0.25, 3.0]).expect("a lamp");
     let aside =
-        SpecimenLamp::new(yaw, pitch + 2.0 * radius * (unit[3] - 0.5), radius, [0.0; 3]).expect("as good");
+        SpecimenLamp::new(yaw, pitch + 4.0 * radius * (unit[3] - 0.5), radius, [0.0; 3]).expect("as good");
     let single = |v: [f64; 3]| v.map(|c| c as f32);
     let words = ((single(lamp.direction), lamp.reach as f32), lamp.radiance);
     (words, single(aside.direction)).words()
