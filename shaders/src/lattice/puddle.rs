@@ -91,7 +91,7 @@ pub static STEP_KERNEL: Kernel =
 
 /// One step of degree 1; one invocation per quad.
 pub static DIRECT_KERNEL: Kernel =
-    Kernel { entry: "main_puddle_step_direct", module: &PUDDLE_STEP, workgroup: [32, 8, 1] };
+    Kernel { entry: "main_lattice_puddle_step_direct", module: &PUDDLE_STEP, workgroup: [32, 8, 1] };
 
 /// One invocation per quad.
 pub static SEED_KERNEL: Kernel =

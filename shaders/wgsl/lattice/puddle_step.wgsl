@@ -199,7 +199,7 @@ fn puddle_step_direct_row(column: i32, row: i32) -> mat3x4f {
 
 // One time step of degree 1: a quad per invocation, out of memory and back. Neighbours share what the caches hold.
 @compute @workgroup_size(32, 8)
-fn main_puddle_step_direct(@builtin(global_invocation_id) id: vec3u) {
+fn main_lattice_puddle_step_direct(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= puddle_grid.quads || id.y >= puddle_grid.size.y {
         return;
     }

@@ -353,7 +353,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             },
         ),
         KernelCase {
-            name: "main_puddle_step_direct: the membrane among islands, with an open border",
+            name: "main_lattice_puddle_step_direct: the membrane among islands, with an open border",
             kernel: &DIRECT_KERNEL,
             covers: &["puddle_step_direct", "puddle_step_direct_row"],
             tol: STEPS,
