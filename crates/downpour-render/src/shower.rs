@@ -3,10 +3,11 @@
 mod error;
 mod stepped;
 
+use downpour_drop::DropError;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::optics::water_index_in_air;
-use downpour_scene::weather::{RainVolume, Weather};
+use downpour_scene::weather::{Rain, RainVolume, Weather};
 use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::shelter::Obstacles;
 
@@ -43,8 +44,7 @@ impl Shower {
     /// [`ShowerError::Sim`], [`ShowerError::Drop`] for a rain that is none.
     pub fn new(weather: &Weather) -> Result<Self, ShowerError> {
         let rain = &weather.rain;
-        let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
-        let law = DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)?;
+        let law = law(rain)?;
         let form = match (rain.volume, weather.wind.uniform()) {
             (RainVolume::Auto | RainVolume::ClosedForm, Some(wind)) => {
                 Form::Closed(Box::new(RainField::new(&law, rain.seed)?.with_wind(wind)))
@@ -102,6 +102,15 @@ impl Shower {
             Form::Stepped(stepped) => Ok(stepped.measured_rate_mm_h()),
         }
     }
+}
+
+/// The sizes of the drops of a rain.
+///
+/// # Errors
+/// [`DropError`] for a rain that is none.
+pub fn law(rain: &Rain) -> Result<DropSizeDistribution, DropError> {
+    let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
+    DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)
 }
 
 /// What drops do to light in the air of a weather.

@@ -3,22 +3,18 @@
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
-use downpour_render::camera::Viewpoint;
-use downpour_render::gpu::ScenePipeline;
 use downpour_render::puddle::water::{
     puddle_water_albedo, puddle_water_mirrored, puddle_water_normal, puddle_water_reflectance,
     puddle_water_refracted,
 };
 use downpour_render::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
-use downpour_render::scene::SceneView;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER;
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use glam::{Vec2, Vec3};
 
+use super::scene::{picture, scene};
 use crate::Domain::{Uniform, Unit3};
-use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
-use crate::signature::WordKind;
 use crate::words::{Args, IntoWords as _};
 use crate::{FunctionCase, KernelCase, Tol};
 
@@ -85,7 +81,7 @@ fn maps() -> [(PuddleMap, PuddleLook); 2] {
 }
 
 fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
-    let mut scene = super::scene::scene();
+    let mut scene = scene();
     let finest = (0..128 * 128u32).map(|i| {
         let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| rng_unit(word) - 0.5);
         let [x, y] = [(i % 128) as f32, (i / 128) as f32];
@@ -98,26 +94,19 @@ fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
         slopes: &slope_levels(finest.collect(), 128),
         shift: Vec3::ZERO,
     });
-    let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.9 };
-    let frame = view.frame(&scene, [96, 64], 2, sky_rays, 7).expect("a frame");
-    let cpu = SceneView { data: &scene, frame: &frame }.picture();
-    let pipeline = ScenePipeline::new(gpu)?;
-    let gpu = pipeline.picture(&pipeline.upload(&scene)?, &frame)?;
-    let words = |picture: &[[f32; 4]]| picture.iter().flatten().map(|v| v.to_bits()).collect();
-    Ok(Run {
-        arguments: (0..96u32 * 64)
-            .map(|i| vec![((i % 96) as f32).to_bits(), ((i / 96) as f32).to_bits()])
-            .collect(),
-        cpu: Cpu(words(&cpu)),
-        gpu: FromGpu(words(&gpu)),
-        kinds: vec![WordKind::Float; 4],
-    })
+    picture(gpu, &scene, eye, sky_rays)
 }
+
+const WATER: Tol = Tol::relative(
+    4.0e-3,
+    4.0e-3,
+    "sums over rays whose directions go through log2, sine and cosine; a ray at an edge, and a level of the ripples, may fall on either side",
+)
+.with_outliers(6.0e-3);
 
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
-    let case = |name, run| {
-        KernelCase {
+    let case = |name, run| KernelCase {
         name,
         kernel: &TRACE_KERNEL,
         covers: &[
@@ -129,15 +118,8 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "puddle_water_ripple",
             "scene_water",
         ],
-        tol: Tol::relative(
-            4.0e-3,
-            4.0e-3,
-            "sums over rays whose directions go through log2, sine and cosine; a ray at an edge, and a level of the ripples \
-             at its bound, may fall on either side",
-        )
-        .with_outliers(6.0e-3),
+        tol: WATER,
         run,
-    }
     };
     vec![case("main_trace: puddles from near", case_near), case("main_trace: puddles from afar", case_far)]
 }

@@ -215,12 +215,16 @@ pub(super) fn scene() -> SceneData {
 }
 
 fn scene_case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
-    let scene = scene();
+    picture(gpu, &scene(), eye, sky_rays)
+}
+
+/// A picture of a scene, from an eye that looks at its middle.
+pub(super) fn picture(gpu: &Gpu, scene: &SceneData, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.9 };
-    let frame = view.frame(&scene, [96, 64], 2, sky_rays, 7).expect("a frame");
-    let cpu = SceneView { data: &scene, frame: &frame }.picture();
+    let frame = view.frame(scene, [96, 64], 2, sky_rays, 7).expect("a frame");
+    let cpu = SceneView { data: scene, frame: &frame }.picture();
     let pipeline = ScenePipeline::new(gpu)?;
-    let gpu = pipeline.picture(&pipeline.upload(&scene)?, &frame)?;
+    let gpu = pipeline.picture(&pipeline.upload(scene)?, &frame)?;
     let words = |picture: &[[f32; 4]]| picture.iter().flatten().map(|v| v.to_bits()).collect();
     Ok(Run {
         arguments: (0..96u32 * 64)

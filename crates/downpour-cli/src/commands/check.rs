@@ -1,10 +1,9 @@
 //! `downpour check`: what `render` would do, without doing it.
 
 use clap::Args;
-use downpour::drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour::render::glass::WetPane;
 use downpour::render::puddle::{PuddleMap, WetGround};
-use downpour::render::shower::Shower;
+use downpour::render::shower::{Shower, law};
 use downpour::render::stage::{CameraChoice, Stage};
 use downpour::scene::{Budget, scene::Texture};
 
@@ -208,8 +207,7 @@ fn pane(input: &Input, stage: &Stage, first_s: f64) -> Result<(Vec<Entry>, u64),
 fn rain(input: &Input) -> Result<Vec<Entry>, Failure> {
     use Datum::{Computed, Given, Word};
     let rain = &input.weather.rain;
-    let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
-    let law = DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)?;
+    let law = law(rain)?;
     let median = 1.0e3 * law.median_volume_diameter();
     Ok(vec![
         Entry::new("rate_mm_h", "rain rate", Given(rain.rate_mm_h), "mm/h"),

@@ -1,6 +1,5 @@
 //! The puddles of a weather, from picture to picture.
 
-use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_scene::picture::{Picture, Pixels};
 use downpour_scene::weather::{Loaded, Puddle, PuddleShape, Weather};
 use glam::{DVec3, Vec2, Vec3};
@@ -9,6 +8,7 @@ use super::map::{Ground, PuddleMap};
 use super::relief::Relief;
 use super::rows::{PuddleLook, PuddleRows};
 use super::{PuddleError, Ripples};
+use crate::shower::law;
 use crate::stage::Stage;
 
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.
@@ -39,10 +39,7 @@ impl WetGround {
             return Ok(None);
         }
         let rain = &weather.rain;
-        let law = (rain.rate_mm_h > 0.0).then(|| {
-            let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
-            DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)
-        });
+        let law = (rain.rate_mm_h > 0.0).then(|| law(rain));
         let ripples = Ripples::new(law.transpose()?.as_ref(), rain.seed ^ SEED, first_s)?;
         let masks = loaded.masks.iter().map(Option::as_ref).chain(std::iter::repeat(None));
         let puddles =

@@ -91,8 +91,9 @@ struct Clip<'a> {
     fps: f64,
     places: Places,
     input: Input,
-    /// The scene at the first frame.
+    /// The streaks of lamps, if the weather takes them from an atlas.
     atlas: Option<downpour::mask::atlas::StreakAtlas>,
+    /// The scene at the first frame.
     first: Stage,
     /// The digest of the scene.
     scene: String,
