@@ -38,8 +38,8 @@ cargo xtask truth [--quick] [--no-check] [--streaks] [--diameter MM]... [--map F
                   [--size PIXELS] [--samples N] [--path-samples N] [--subdivisions N]
   --quick           two diameters and one view instead of four and three
   --no-check        a case above the aim is no failure
-  --streaks         nothing but the streaks of 2 and 4 mm, before the maps and under lamps
-  --diameter MM     these diameters (repeatable) instead of 1, 2, 3 and 5 mm
+  --streaks         nothing but streaks, before the maps and under lamps
+  --diameter MM     these diameters (repeatable) instead of 1, 2, 3 and 5 mm (streaks: 2 and 4 mm)
   --map FILE        this sky map, too (repeatable)
   --only            no maps but those of --map
   --command FILE    a `downpour` that is built already

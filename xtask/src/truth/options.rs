@@ -58,7 +58,11 @@ impl Options {
             return Err("--only without a --map leaves nothing to compare".to_owned());
         }
         if options.diameters_mm.is_empty() {
-            options.diameters_mm = if options.quick { vec![2.0, 5.0] } else { vec![1.0, 2.0, 3.0, 5.0] };
+            options.diameters_mm = match (options.streaks, options.quick) {
+                (true, _) => vec![2.0, 4.0],
+                (false, true) => vec![2.0, 5.0],
+                (false, false) => vec![1.0, 2.0, 3.0, 5.0],
+            };
         }
         Ok(options)
     }
@@ -84,6 +88,7 @@ mod tests {
         assert_eq!(options.diameters_mm, [1.0, 2.0, 3.0, 5.0]);
         assert!(options.check && !options.quick);
         assert_eq!(Options::read(&["--quick"]).expect("quick").diameters_mm, [2.0, 5.0]);
+        assert_eq!(Options::read(&["--streaks"]).expect("streaks").diameters_mm, [2.0, 4.0]);
     }
 
     #[test]

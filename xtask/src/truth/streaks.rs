@@ -24,7 +24,6 @@ use super::mesh::{UNITS_PER_METRE, moved_ply};
 use super::mitsuba::Mitsuba;
 use super::{Options, create, run, write};
 
-const DIAMETERS_MM: [f64; 2] = [2.0, 4.0];
 const EXPOSURES: [(&str, f64); 2] = [("1-500", 1.0 / 500.0), ("1-60", 1.0 / 60.0)];
 const DISTANCE_M: f64 = 0.4;
 const PHASE: [f64; 2] = [0.1, 0.3];
@@ -96,7 +95,7 @@ pub(super) fn compare(
     };
     let dusk = Map { name: "lamp".to_owned(), file: folder.join("dusk.hdr") };
     write(&dusk.file, &super::sky::dusk())?;
-    for diameter_mm in DIAMETERS_MM {
+    for &diameter_mm in &options.diameters_mm {
         for (&exposure, pixels) in exposures.iter().zip(PIXELS) {
             let streak = Streak::new(diameter_mm, exposure, pixels)?;
             let meshes = folder.join("instants");
