@@ -82,7 +82,7 @@ fn hosts() -> Vec<Host> {
             towards, distance, place, slope, half_extent, row, area, grid, start, along, first, way, oval, recede,
             swing, turns, share, spread, nearest, kind, shape, unused),
         host!(StreakShape as "StreakShape" in &render::rain::STREAK_TABLE,
-            velocity, row, half_extent, chords, unused, ovals),
+            velocity, row, half_extent, wanted, unused, ovals),
         host!(DropLightFrame as "DropLightFrame" in &render::drop_light::DROP_LIGHT,
             count, form, glints, first_light),
         host!(GlassPictureDrop as "GlassPictureDrop" in &render::glass::WATER,

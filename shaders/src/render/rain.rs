@@ -61,17 +61,21 @@ shared_constants! {
         /// Streaks have one colour, the mean of the surroundings.
         STREAK_WHITE: u32 = 1;
         /// Rays of the streak radiance table along an edge of the picture.
-        STREAK_RAYS: u32 = 24;
+        STREAK_RAYS: u32 = 25;
         /// Places across the motion.
-        STREAK_ACROSS: u32 = 72;
+        STREAK_ACROSS: u32 = 96;
         /// Places across a drop as far apart as what they show is smoothed: for points and chords alike.
         STREAK_FINE: u32 = 36;
         /// Running sums along a chord.
         STREAK_SUMS: u32 = 4;
-        /// Samples along a chord of the table; a multiple of the sums.
-        STREAK_TAPS: u32 = 32;
-        /// Samples along an edge of the square round a drop, for its mean.
+        /// Samples along a chord of the table: closer than what they show is smoothed; a multiple of the sums.
+        STREAK_TAPS: u32 = 48;
+        /// Samples along an edge of the square round a drop, for its mean; a multiple of the sums.
         STREAK_MEAN_GRID: u32 = 12;
+        /// The mean of a class of drops is wanted.
+        STREAK_MEAN: u32 = 1;
+        /// Its chords are wanted, too.
+        STREAK_CHORDS: u32 = 2;
         /// The brightest entry: halves end at 65 504.
         STREAK_BRIGHTEST: f32 = 65000.0;
         /// Step of the lattice of a pixel's samples.

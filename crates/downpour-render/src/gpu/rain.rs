@@ -2,7 +2,7 @@
 
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::rain::{
-    DROPS_KERNEL, REDUCE_KERNEL, STREAK_ACROSS, STREAK_RAYS, STREAK_TABLE_KERNEL,
+    DROPS_KERNEL, REDUCE_KERNEL, STREAK_ACROSS, STREAK_RAYS, STREAK_SUMS, STREAK_TABLE_KERNEL,
 };
 
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
@@ -151,7 +151,7 @@ impl RainPass<'_> {
     #[must_use]
     pub fn streaks(&self) -> Option<Dispatch<'_>> {
         let (bindings, shapes) = &self.streaks;
-        let groups = [(STREAK_RAYS * STREAK_RAYS).div_ceil(64), STREAK_ACROSS + 1, *shapes];
+        let groups = [(STREAK_RAYS * STREAK_RAYS * STREAK_SUMS).div_ceil(64), STREAK_ACROSS + 1, *shapes];
         (*shapes > 0).then(|| self.pipeline.streaks.dispatch(bindings, groups))
     }
 

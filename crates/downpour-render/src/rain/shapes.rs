@@ -1,6 +1,6 @@
 //! Classes of drops for the streak radiance table: about one size, about one velocity.
 
-use downpour_shaders::render::rain::{DROPS_LOOP, DROPS_TABLE};
+use downpour_shaders::render::rain::{DROPS_LOOP, DROPS_STILL, DROPS_TABLE, STREAK_CHORDS, STREAK_MEAN};
 use glam::{DVec3, Vec3};
 
 use super::DropMasks;
@@ -42,6 +42,9 @@ pub(super) fn classify(drops: &mut [(u32, Projected)], masks: &DropMasks) -> Vec
     for (_, projected) in drops.iter_mut() {
         let drop = &mut projected.drop;
         let shape = &mut shapes[drop.shape as usize];
+        if drop.kind != DROPS_STILL && drop.grid == 0 {
+            shape.wanted = shape.wanted.max(STREAK_MEAN);
+        }
         if drop.kind != DROPS_TABLE || drop.grid == 0 {
             continue;
         }
@@ -53,7 +56,7 @@ pub(super) fn classify(drops: &mut [(u32, Projected)], masks: &DropMasks) -> Vec
         if way(shape.velocity.into()).dot(way(projected.velocity)) < ALIKE {
             drop.kind = DROPS_LOOP;
         } else {
-            shape.chords = 1;
+            shape.wanted = STREAK_CHORDS;
         }
     }
     shapes.into()

@@ -2,8 +2,8 @@
 
 use downpour_math::ops;
 use downpour_shaders::render::rain::{
-    DROPS_ELEVATIONS, STREAK_ACROSS, STREAK_BRIGHTEST, STREAK_FINE, STREAK_MEAN_GRID, STREAK_PER_QUARTER,
-    STREAK_RAYS, STREAK_SUMS, STREAK_TAPS,
+    DROPS_ELEVATIONS, STREAK_ACROSS, STREAK_BRIGHTEST, STREAK_CHORDS, STREAK_FINE, STREAK_MEAN,
+    STREAK_MEAN_GRID, STREAK_PER_QUARTER, STREAK_RAYS, STREAK_SUMS, STREAK_TAPS,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -12,6 +12,8 @@ use super::drops_frame::DropsView;
 use super::drops_mask::{drops_mask_right, drops_mask_unit};
 use super::drops_shade::DropsShade;
 use super::streak_lookup::{StreakTable, pack};
+
+const SUMS: usize = STREAK_SUMS as usize;
 
 /// Drops of about one size. The same layout as `StreakShape` in WGSL.
 #[repr(C)]
@@ -23,8 +25,8 @@ pub struct StreakShape {
     pub row: f32,
     /// Half the width of their mask, in equivalent radii.
     pub half_extent: f32,
-    /// Whether chords are wanted, or the mean of the drop alone.
-    pub chords: u32,
+    /// What is wanted of them: nothing, their mean ([`STREAK_MEAN`]), or chords, too ([`STREAK_CHORDS`]).
+    pub wanted: u32,
     /// 0.
     pub unused: [u32; 2],
     /// For each elevation: half the width and half the height of the oval, and how far its middle is up.
@@ -66,8 +68,8 @@ fn streak_table_write(value: Vec4) -> [u32; 2] {
 }
 
 impl DropsView<'_> {
-    /// The entries of one ray, place across the motion (or the mean), and shape.
-    fn streak_table_entries(&self, shape: &StreakShape, place: u32, index: u32) -> Vec<[u32; 2]> {
+    /// The light of one part of a chord, or of a drop: the sum over its taps.
+    fn streak_table_part(&self, shape: &StreakShape, place: u32, index: u32, part: u32) -> Vec4 {
         let mean = place == STREAK_ACROSS;
         let last = (STREAK_RAYS - 1) as f32;
         let (column, line) = ((index % STREAK_RAYS) as f32 / last, (index / STREAK_RAYS) as f32 / last);
@@ -79,7 +81,7 @@ impl DropsView<'_> {
         let oval = streak_table_oval(shape, elevation);
         let extent = shape.half_extent;
         let direction = streak_table_direction(right, up, Vec3::from(shape.velocity), oval);
-        let taps = if mean { STREAK_MEAN_GRID * STREAK_MEAN_GRID } else { STREAK_TAPS };
+        let taps = if mean { STREAK_MEAN_GRID * STREAK_MEAN_GRID } else { STREAK_TAPS } / STREAK_SUMS;
         let across = (place as f32 + 0.5) * (2.0 / STREAK_ACROSS as f32) - 1.0;
         let half = (1.0 - across * across).max(0.0).sqrt();
         let spacing = 2.0 * oval.x / if mean { STREAK_MEAN_GRID } else { STREAK_FINE } as f32;
@@ -91,8 +93,7 @@ impl DropsView<'_> {
             row: [shape.row, elevation],
         };
         let mut sum = Vec4::ZERO;
-        let mut entries = vec![[0; 2]; STREAK_SUMS as usize];
-        for tap in 0..taps {
+        for tap in part * taps..(part + 1) * taps {
             let at = if mean {
                 let cell = Vec2::new((tap % STREAK_MEAN_GRID) as f32, (tap / STREAK_MEAN_GRID) as f32);
                 (cell + 0.5) * (2.0 / STREAK_MEAN_GRID as f32) - 1.0
@@ -104,14 +105,22 @@ impl DropsView<'_> {
             if place.x.abs() < 1.0 && place.y.abs() < 1.0 {
                 sum += self.drops_shade_ray(&drop, place.x, place.y);
             }
-            if !mean && (tap + 1).is_multiple_of(STREAK_TAPS / STREAK_SUMS) {
-                let entry = &mut entries[(tap / (STREAK_TAPS / STREAK_SUMS)) as usize];
-                let part = (tap + 1) as f32 / STREAK_TAPS as f32;
-                let colour = sum.truncate() / sum.w.max(1.0e-20);
-                *entry = streak_table_write(colour.extend(1.0) * part);
-            }
         }
-        if mean {
+        sum
+    }
+
+    /// The entries of one ray, place across the motion (or the mean), and shape.
+    fn streak_table_entries(&self, shape: &StreakShape, place: u32, index: u32) -> [[u32; 2]; SUMS] {
+        let mut entries = [[0; 2]; SUMS];
+        let mut sum = Vec4::ZERO;
+        for (entry, part) in entries.iter_mut().zip(0..STREAK_SUMS) {
+            sum += self.streak_table_part(shape, place, index, part);
+            let colour = sum.truncate() / sum.w.max(1.0e-20);
+            let share = (part + 1) as f32 / STREAK_SUMS as f32;
+            *entry = streak_table_write(colour.extend(1.0) * share);
+        }
+        if place == STREAK_ACROSS {
+            entries = [[0; 2]; SUMS];
             entries[0] = streak_table_write(sum / sum.w.max(1.0e-20));
         }
         entries
@@ -128,7 +137,7 @@ impl DropsView<'_> {
             .into_par_iter()
             .flat_map_iter(|(shape, place)| {
                 let shape = &shapes[shape];
-                if place < STREAK_ACROSS && shape.chords == 0 {
+                if shape.wanted < if place < STREAK_ACROSS { STREAK_CHORDS } else { STREAK_MEAN } {
                     return vec![[0; 2]; entries as usize];
                 }
                 (0..rays).flat_map(|ray| self.streak_table_entries(shape, place, ray)).collect()
