@@ -50,6 +50,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::brdf::MODULES,
         render::drop_light::MODULES,
         render::glass::MODULES,
+        render::pane_shadow::MODULES,
         render::puddle_water::MODULES,
         render::rain::MODULES,
         render::scene::MODULES,

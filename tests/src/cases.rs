@@ -9,6 +9,7 @@ mod drop_light;
 mod glass;
 mod glass_picture;
 mod mask;
+mod pane_shadow;
 mod puddle;
 mod puddle_water;
 mod rain;
@@ -56,6 +57,7 @@ pub fn kernels() -> Vec<KernelCase> {
         glass_picture::kernels(),
         mask::kernels(),
         puddle::kernels(),
+        pane_shadow::kernels(),
         puddle_water::kernels(),
         rain::kernels(),
         render::kernels(),

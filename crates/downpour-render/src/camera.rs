@@ -106,6 +106,10 @@ impl Viewpoint {
             suns_out: 0,
             puddles: scene.puddles,
             puddle_count: scene.puddle_count,
+            pane: scene.pane,
+            unused_0: 0,
+            unused_1: 0,
+            unused_2: 0,
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,
         })

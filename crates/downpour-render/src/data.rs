@@ -70,6 +70,14 @@ pub struct RenderFrame {
     pub puddles: u32,
     /// Number of puddles.
     pub puddle_count: u32,
+    /// Row of the table where the pane begins that throws shadows; 0: none.
+    pub pane: u32,
+    /// 0.
+    pub unused_0: u32,
+    /// 0.
+    pub unused_1: u32,
+    /// 0.
+    pub unused_2: u32,
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; 6],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.
@@ -237,6 +245,7 @@ impl SceneBuilder {
             light_count: self.lights.len() as u32,
             puddles: 0,
             puddle_count: 0,
+            pane: 0,
             sky: sky.texels.clone(),
             sky_levels: sky.levels,
             sky_irradiance: sky.irradiance,
@@ -253,7 +262,7 @@ pub struct SceneData {
     pub triangles: Vec<BvhTriangle>,
     /// Three corners per triangle.
     pub corners: Vec<RenderCorner>,
-    /// Materials, texture slots, lights and puddles, as rows.
+    /// Materials, texture slots, lights, puddles and a pane, as rows.
     pub table: Vec<[u32; 4]>,
     /// Texels of all levels of all textures.
     pub texels: Vec<u32>,
@@ -267,6 +276,8 @@ pub struct SceneData {
     pub puddles: u32,
     /// Number of puddles.
     pub puddle_count: u32,
+    /// Row where the pane begins that throws shadows; 0: none.
+    pub pane: u32,
     /// Texels of all levels of the sky.
     pub sky: Vec<[f32; 4]>,
     /// Width, height and first texel of each level of the sky.

@@ -6,6 +6,9 @@
 //!
 //! Lamps and the sun are points that no picture shows; drops show them as bright spots: [`light`].
 //!
+//! Light of lamps and the sun that falls in through the pane has the shadows of its drops: [`PaneShade`], laid into the scene
+//! before it is traced ([`SceneData::hang_pane`](crate::data::SceneData::hang_pane)).
+//!
 //! The lattice says where the water is; its cells are as large as small drops, so that surfaces are not read from its
 //! heights but made of its drops: [`water`].
 //!
@@ -20,6 +23,8 @@ mod meet;
 mod pane;
 mod picture;
 mod seen;
+mod shade;
+mod shadow;
 pub mod water;
 
 pub use error::PaneError;
@@ -27,4 +32,5 @@ pub use frame::{GlassPicture, GlassPictureFrame};
 pub use light::GlassPictureLight;
 pub use meet::glass_picture_spline;
 pub use pane::WetPane;
+pub use shade::{PaneShade, PaneShadows};
 pub use water::GlassPictureDrop;

@@ -1,14 +1,20 @@
 //! Wet glass before a scene: energy, lenses, focus, and the lattice that goes on.
 
+use downpour_render::camera::Viewpoint;
+use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
 use downpour_render::glass::water::{
     glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal, glass_picture_water_top,
 };
 use downpour_render::glass::{GlassPicture, GlassPictureDrop, GlassPictureLight, WetPane};
+use downpour_render::light::LightSource;
+use downpour_render::material::MaterialLook;
+use downpour_render::scene::SceneView;
+use downpour_render::sky_light::SkyLight;
 use downpour_render::stage::Stage;
 use downpour_scene::scene::Scene;
 use downpour_scene::sky::SkyMap;
 use downpour_scene::weather::{Loaded, Weather};
-use glam::Vec2;
+use glam::{Affine3A, Vec2, Vec3};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
@@ -329,5 +335,53 @@ fn a_pane_that_is_not_before_the_eye_is_refused() -> Outcome {
     let error = WetPane::new(&weather, &down, 0.0).err().ok_or("a pane from outside")?;
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().starts_with("glass: a pane tilted by 20.0 degrees"), "{error}");
+    Ok(())
+}
+
+/// A sill between the eye and the pane, under a lamp outside, is lit through it: on the whole by what glass lets through, with the
+/// shadows of the drops. With nothing on the eye's side no pane is hung.
+#[test]
+fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
+    let glass = "distance_m = 0.5\nsize_m = [0.4, 0.3]\ncell_mm = 1.0\nbefore_s = 20";
+    let (weather, mut stage) = stage(glass)?;
+    let mut pane = WetPane::new(&weather, &stage, 0.0)?.ok_or("no pane")?;
+    pane.advance(0.0)?;
+    assert!(!pane.is_before_lamps(&stage), "there is nothing that could be lit");
+    let mut builder = SceneBuilder::new();
+    let white = builder.add_material(MaterialLook::default());
+    let positions = [[-0.1, 1.36, -0.49], [0.1, 1.36, -0.49], [0.1, 1.36, -0.3], [-0.1, 1.36, -0.3]];
+    let part = MeshPart {
+        positions: &positions,
+        normals: None,
+        tangents: None,
+        uvs: [None, None],
+        colours: None,
+        indices: &[0, 2, 1, 0, 3, 2],
+        material: white,
+    };
+    builder.add_mesh(&part, &Affine3A::IDENTITY);
+    let lamp = Vec3::new(0.0, 1.5, -1.5);
+    builder.add_light(LightSource::Point { position: lamp, intensity: Vec3::splat(100.0), range: 0.0 });
+    stage.data = builder.build(&SkyLight::uniform([0.0; 3]));
+    assert!(pane.is_before_lamps(&stage));
+    // Straight down on the middle of the sill.
+    let above =
+        Viewpoint { eye: Vec3::new(0.0, 2.36, -0.42), forward: Vec3::NEG_Y, up: Vec3::NEG_Z, fov_y: 0.1 };
+    let lit = |data: &SceneData| -> Result<Vec<f32>, Box<dyn std::error::Error>> {
+        let frame = above.frame(data, [96, 96], 1, 0, 0)?;
+        Ok(SceneView { data, frame: &frame }.picture().iter().map(|pixel| pixel[0]).collect())
+    };
+    let open = lit(&stage.data)?;
+    pane.hang(&mut stage)?;
+    let through = lit(&stage.data)?;
+    let shares: Vec<f32> = through.iter().zip(&open).map(|(a, b)| a / b).collect();
+    let mean = shares.iter().sum::<f32>() / shares.len() as f32;
+    assert!((0.85..0.97).contains(&mean), "{mean}");
+    let dark = shares.iter().filter(|&&share| share < 0.5 * mean).count() as f32 / shares.len() as f32;
+    assert!((0.01..0.5).contains(&dark), "{dark} of the sill is in shadow");
+    // The same again takes the place of the first.
+    let rows = stage.data.table.len();
+    pane.hang(&mut stage)?;
+    assert_eq!(stage.data.table.len(), rows);
     Ok(())
 }

@@ -32,7 +32,7 @@ use std::path::Path;
 
 pub use crate::uri::RelativePath;
 pub use camera::{Camera, CameraPose, FAR_M, FOV_RAD, NEAR_M};
-pub use glass::{Pane, PaneFocus, PaneFresnel};
+pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
 pub use lamps::Lamp;
 pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};

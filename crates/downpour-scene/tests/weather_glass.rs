@@ -1,7 +1,7 @@
 //! The pane of a weather file: every key, and what is refused.
 
 use downpour_lattice::glass::{GlassWiperMotion, GlassWornBand};
-use downpour_scene::weather::{PaneFocus, PaneFresnel, Weather};
+use downpour_scene::weather::{PaneFocus, PaneFresnel, PaneShadow, Weather};
 
 const ALL: &str = r#"
 [rain]
@@ -19,6 +19,7 @@ aperture_mm = 8
 room = 0.2
 fresnel = "tatarchuk-2006"
 highlight_mm = 2.5
+shadows = "tatarchuk-2006"
 advancing_deg = 70
 receding_deg = 30
 film_um = 20
@@ -48,7 +49,7 @@ fn every_key_arrives() {
     assert_eq!((pane.distance, pane.size, pane.cell), (0.7, Some([1.2, 0.6]), 0.5e-3));
     assert_eq!((pane.focus, pane.fresnel, pane.seed), (PaneFocus::Glass, PaneFresnel::Tatarchuk2006, 9));
     assert_eq!((pane.before, pane.aperture, pane.room, pane.film), (12.0, 8.0e-3, 0.2, 20.0 * 1.0e-6));
-    assert_eq!(pane.highlight, 2.5e-3);
+    assert_eq!((pane.highlight, pane.shadows), (2.5e-3, PaneShadow::Tatarchuk2006));
     assert_eq!((pane.speed.at(10.0), pane.drying_mm_h), (20.0, 0.5));
     assert!((pane.tilt.to_degrees() - 30.0).abs() < 1.0e-9);
     assert!((pane.contact.advancing_rad.to_degrees() - 70.0).abs() < 1.0e-9);

@@ -2,6 +2,7 @@
 //! `downpour_render::{texture, sky, surface, scene, rain::capture, trace, skylight}`.
 
 use super::brdf::BRDF;
+use super::pane_shadow::PANE_SHADOW;
 use super::puddle_water::PUDDLE_WATER;
 use crate::bvh::BVH;
 use crate::common::{PACKING, RNG};
@@ -118,7 +119,7 @@ pub static SURFACE: Module = Module {
 pub static SCENE: Module = Module {
     path: "render/scene.wgsl",
     wgsl: include_str!("../../wgsl/render/scene.wgsl"),
-    uses: &[&DATA, &SKY, &SURFACE, &BRDF, &OPTICS, &PUDDLE_WATER, &RNG, &PACKING],
+    uses: &[&DATA, &SKY, &SURFACE, &BRDF, &OPTICS, &PANE_SHADOW, &PUDDLE_WATER, &RNG, &PACKING],
 };
 
 /// Pixels of the picture and of the capture. Twin: `downpour_render::trace`.

@@ -34,6 +34,11 @@ struct RenderFrame {
     // Row of the table where puddles begin, and how many there are.
     puddles: u32,
     puddle_count: u32,
+    // Row of the table where the pane begins that throws shadows; 0: none.
+    pane: u32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, 6>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.

@@ -4,6 +4,8 @@
 
 // Whether there are puddles: what they need slows down the rest.
 override SCENE_WET: bool = true;
+// Whether a pane throws shadows: likewise.
+override SCENE_PANE: bool = true;
 
 struct SceneLight {
     // From the surface to the light, of length 1.
@@ -11,7 +13,8 @@ struct SceneLight {
     distance: f32,
     // Irradiance over pi on a surface that faces it.
     irradiance: vec3f,
-    unused: f32,
+    // Half the angle that the light takes.
+    spread: f32,
 }
 
 // The light of row `index` at a place. A lamp that is nearer than `least` is as bright as from there.
@@ -22,7 +25,7 @@ fn scene_light(index: u32, place: vec3f, least: f32) -> SceneLight {
     let colour = bitcast<vec4f>(render_table[row + 2u]);
     let cone = bitcast<vec4f>(render_table[row + 3u]);
     if render_table[row].w == SCENE_LIGHT_DIRECTIONAL {
-        return SceneLight(-axis.xyz, SCENE_FAR, colour.rgb, 0.0);
+        return SceneLight(-axis.xyz, SCENE_FAR, colour.rgb, PANE_SHADOW_SUN);
     }
     let offset = position.xyz - place;
     let square = max(dot(offset, offset), max(least * least, 1.0e-8));
@@ -105,7 +108,11 @@ fn scene_direct(surface: Surface, view: vec3f, all: bool, chance: f32) -> vec3f 
             continue;
         }
         let visible = scene_visibility(start, light.direction, light.distance);
-        sum += lit * visible * select(total / share, 1.0, all);
+        var share_of_pane = 1.0;
+        if SCENE_PANE {
+            share_of_pane = pane_shadow_share(start, light.direction, light.distance, light.spread);
+        }
+        sum += lit * visible * (share_of_pane * select(total / share, 1.0, all));
     }
     return sum;
 }

@@ -18,7 +18,6 @@ mod shower;
 mod video;
 
 use std::borrow::Cow;
-use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -153,17 +152,17 @@ impl RenderArguments {
         let rain = &input.weather.rain;
         let showers = &mut Showers::new(&input.weather, atlas.as_ref())?;
         let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
-        let pane = &mut Pane::new(&input.weather, &stage, self.input.time)?;
+        let mut pane = Pane::new(&input.weather, &stage, self.input.time)?;
         let mut puddles = Puddles::new(&input.weather, &input.loaded, &stage, self.input.time)?;
-        let stage = &*puddles.lay(Cow::Owned(stage), self.input.time)?;
+        let stage = puddles.lay(Cow::Owned(stage), self.input.time)?;
+        let stage = &*pane.hang(stage, self.input.time)?;
         // The files have become buffers.
         drop(input.loaded);
         let options = self.options(stage, &input.weather, self.input.time, shower.veil);
         let say = |text: &str| self.say(text);
-        let pane = RefCell::new(pane);
         let (picture, computer) = with_painter(&self.backend, interrupt, say, |painter| {
             let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
-            let through = pane.borrow_mut().before(stage, &picture, &options, self.input.time)?;
+            let through = pane.before(stage, &picture, &options)?;
             painter.look(&mut picture, through)?;
             Ok((picture, painter.computer().clone()))
         })?;

@@ -53,9 +53,6 @@ pub fn glass_picture_light_seen(
     Vec3::from(light.colour) * (nearer * glass_picture_light_lobe(away.dot(away), radius))
 }
 
-/// Half the sun's disc, radians.
-const SUN_RAD: f32 = 4.65e-3;
-
 /// The lamps and the sun that the eye sees, with one ray for what stands between.
 pub(super) fn sources(data: &SceneData, frame: &RenderFrame) -> Vec<GlassPictureLight> {
     let view = SceneView { data, frame };
@@ -64,13 +61,11 @@ pub(super) fn sources(data: &SceneData, frame: &RenderFrame) -> Vec<GlassPicture
         let light = view.scene_light(k, eye, 0.0);
         let lit = light.irradiance * PI;
         let colour = lit * view.scene_visibility(eye, light.direction, light.distance);
-        let sun = light.distance >= GLASS_PICTURE_FAR;
         let distance = light.distance.min(GLASS_PICTURE_FAR);
         let place = light.direction * distance;
-        let radius = if sun { SUN_RAD } else { 0.0 };
         (colour.max_element() > 0.0).then(|| GlassPictureLight {
             place: place.into(),
-            radius,
+            radius: light.spread,
             colour: colour.into(),
             distance,
         })

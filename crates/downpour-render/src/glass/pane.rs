@@ -5,16 +5,17 @@ use std::f64::consts::PI;
 use downpour_drop::optics::water_index_in_air;
 use downpour_lattice::glass::{Glass, GlassError};
 use downpour_math::ops::f64 as ops;
-use downpour_scene::weather::{Pane, PaneFocus, PaneFresnel, Rain, Weather};
+use downpour_scene::weather::{Pane, PaneFocus, PaneFresnel, PaneShadow, Rain, Weather};
 use downpour_shaders::render::glass::{
     GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE, GLASS_PICTURE_TATARCHUK,
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::drops::binned;
 use super::error::PaneError;
 use super::frame::{GlassPicture, GlassPictureFrame, levels, samples};
 use super::light::{GlassPictureLight, sources};
+use super::shade::{PaneShade, PaneShadows};
 use crate::data::RenderFrame;
 use crate::stage::Stage;
 
@@ -96,6 +97,53 @@ impl WetPane {
         self.size
     }
 
+    /// Whether anything that the picture may show is lit through the pane: something on the eye's side of it, within the
+    /// box round the eye and the pane, and a lamp or a sun.
+    #[must_use]
+    pub fn is_before_lamps(&self, stage: &Stage) -> bool {
+        let Ok(place) = Place::new(&self.pane, stage) else { return false };
+        if stage.data.light_count == 0 || self.pane.shadows == PaneShadow::None {
+            return false;
+        }
+        let eye = DVec3::from(stage.viewpoint.eye);
+        let corner = place.corner(self.size);
+        let [right, down] = [place.across * self.size[0], place.down * self.size[1]];
+        let corners = [corner, corner + right, corner + down, corner + right + down];
+        let low = corners.iter().fold(DVec3::ZERO, |low, &at| low.min(at));
+        let high = corners.iter().fold(DVec3::ZERO, |high, &at| high.max(at));
+        let (low, high) = ((eye + low).as_vec3(), (eye + high).as_vec3());
+        stage.data.triangles.iter().any(|triangle| {
+            let a = Vec3::from(triangle.corner);
+            let (b, c) = (a + Vec3::from(triangle.edge_1), a + Vec3::from(triangle.edge_2));
+            low.cmple(a.max(b).max(c)).all() && high.cmpge(a.min(b).min(c)).all()
+        })
+    }
+
+    /// Hangs the pane as it is now before the lamps of a stage, so that they throw the shadows of its drops.
+    ///
+    /// # Errors
+    /// As [`WetPane::new`].
+    pub fn hang(&self, stage: &mut Stage) -> Result<(), PaneError> {
+        let form = match self.pane.shadows {
+            PaneShadow::Lens => PaneShadows::Lens,
+            PaneShadow::Tatarchuk2006 => PaneShadows::Tatarchuk2006,
+            PaneShadow::None => return Ok(()),
+        };
+        let place = Place::new(&self.pane, stage)?;
+        let corner = place.corner(self.size) + DVec3::from(stage.viewpoint.eye);
+        let drops = binned(&self.glass)?.drops;
+        let shade = PaneShade::new(self.size, &drops, form, self.highlight_radius(), self.water as f32);
+        let axes = [corner, place.across, place.down, place.outward];
+        stage.data.hang_pane(&shade, axes.map(|axis: DVec3| axis.as_vec3()));
+        Ok(())
+    }
+
+    /// Radius, m, of the discs of drops from which on they are bright.
+    fn highlight_radius(&self) -> f32 {
+        let diameter = self.pane.highlight;
+        self.glass.options().contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32
+    }
+
     /// The pane as it is now, before a picture. `capture_texels` is how many texels the capture has, all levels.
     ///
     /// # Errors
@@ -109,7 +157,7 @@ impl WetPane {
         let place = Place::new(&self.pane, stage)?;
         let binned = binned(&self.glass)?;
         let [width, height] = self.size;
-        let corner = place.middle - place.across * (0.5 * width) - place.down * (0.5 * height);
+        let corner = place.corner(self.size);
         let options = self.glass.options();
         let vector = |v: DVec3| v.as_vec3().to_array();
         let (levels, last) = levels([frame.width, frame.height]);
@@ -119,7 +167,6 @@ impl WetPane {
         let lens_places = samples(frame.grid, lens);
         let wet = self.glass.traversal();
         let lights = sources(&stage.data, frame);
-        let diameter = self.pane.highlight;
         let word = |bytes: &[u8]| {
             bytes.iter().enumerate().fold(0u32, |word, (k, &byte)| word | (u32::from(byte) << (8 * k)))
         };
@@ -160,7 +207,7 @@ impl WetPane {
                 water: self.water as f32,
                 first_row: 0,
                 lights: lights.len() as u32,
-                lit_from: options.contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32,
+                lit_from: self.highlight_radius(),
                 unused: [0; 2],
                 levels,
             },
@@ -198,6 +245,11 @@ impl Place {
             return Err(PaneError::EdgeOn { tilt_deg: pane.tilt.to_degrees(), pitch_deg });
         }
         Ok(Self { across, down, outward, middle: forward * pane.distance })
+    }
+
+    /// The upper left corner of a pane of a size.
+    fn corner(&self, [width, height]: [f64; 2]) -> DVec3 {
+        self.middle - self.across * (0.5 * width) - self.down * (0.5 * height)
     }
 
     /// Width and height of the pane that the picture shows, m.

@@ -15,9 +15,9 @@ const PIXELS_PER_DISPATCH: u32 = 1 << 17;
 #[derive(Clone, Debug)]
 pub struct ScenePipeline {
     gpu: Gpu,
-    dry: ComputeKernel,
-    /// Made for the first scene with puddles.
-    wet: OnceLock<ComputeKernel>,
+    plain: ComputeKernel,
+    /// Made for the first scene that has them: puddles, a pane that throws shadows, both.
+    others: [OnceLock<ComputeKernel>; 3],
     skylight: ComputeKernel,
 }
 
@@ -38,21 +38,26 @@ impl ScenePipeline {
     /// # Errors
     /// What the GPU says.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let dry = ComputeKernel::new(gpu, &TRACE_KERNEL, &[("SCENE_WET", 0.0)])?;
+        let plain = tracer(gpu, false, false)?;
         let skylight = ComputeKernel::new(gpu, &SKYLIGHT_KERNEL, &[])?;
-        Ok(Self { gpu: gpu.clone(), dry, wet: OnceLock::new(), skylight })
+        Ok(Self { gpu: gpu.clone(), plain, others: Default::default(), skylight })
     }
 
-    /// The kernel that traces a frame: with puddles or without.
+    /// The kernel that traces a frame: with puddles and a pane's shadows, or without.
     pub(super) fn tracer(&self, frame: &RenderFrame) -> Result<&ComputeKernel, GpuError> {
-        if frame.puddle_count == 0 {
-            return Ok(&self.dry);
-        }
-        if let Some(kernel) = self.wet.get() {
+        let (wet, paned) = (frame.puddle_count > 0, frame.pane > 0);
+        let [of_wet, of_paned, of_both] = &self.others;
+        let place = match (wet, paned) {
+            (false, false) => return Ok(&self.plain),
+            (true, false) => of_wet,
+            (false, true) => of_paned,
+            (true, true) => of_both,
+        };
+        if let Some(kernel) = place.get() {
             return Ok(kernel);
         }
-        let made = ComputeKernel::new(&self.gpu, &TRACE_KERNEL, &[("SCENE_WET", 1.0)])?;
-        Ok(self.wet.get_or_init(|| made))
+        let made = tracer(&self.gpu, wet, paned)?;
+        Ok(place.get_or_init(|| made))
     }
 
     /// Brings a scene to the device.
@@ -110,6 +115,12 @@ impl ScenePipeline {
         }
         Ok(pass.picture)
     }
+}
+
+/// The kernel that traces scenes: with what they have not, it would be slower for all.
+fn tracer(gpu: &Gpu, wet: bool, paned: bool) -> Result<ComputeKernel, GpuError> {
+    let number = |on: bool| if on { 1.0 } else { 0.0 };
+    ComputeKernel::new(gpu, &TRACE_KERNEL, &[("SCENE_WET", number(wet)), ("SCENE_PANE", number(paned))])
 }
 
 /// A frame of a scene, ready to be drawn.

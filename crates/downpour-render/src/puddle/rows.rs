@@ -51,8 +51,13 @@ pub struct PuddleRows<'a> {
 }
 
 impl SceneData {
-    /// Lays puddles on the ground, in place of those that lie there.
+    /// Lays puddles on the ground, in place of those that lie there. A pane is hung after that
+    /// ([`SceneData::hang_pane`]): it is taken down.
     pub fn lay_puddles(&mut self, rows: &PuddleRows<'_>) {
+        if self.pane > 0 {
+            self.table.truncate(self.pane as usize);
+            self.pane = 0;
+        }
         if self.puddle_count > 0 {
             self.table.truncate(self.puddles as usize);
         }

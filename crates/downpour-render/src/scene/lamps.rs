@@ -1,5 +1,6 @@
 //! The light of lamps and sun on a surface, with rays that find what hides it.
 
+use downpour_shaders::render::pane_shadow::PANE_SHADOW_SUN;
 use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_FAR, SCENE_GLANCE_NEAREST, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS,
     SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_MATERIAL_ROWS,
@@ -16,6 +17,8 @@ pub(crate) struct SceneLight {
     pub(crate) direction: Vec3,
     pub(crate) distance: f32,
     pub(crate) irradiance: Vec3,
+    /// Half the angle that the light takes.
+    pub(crate) spread: f32,
 }
 
 impl SceneView<'_> {
@@ -29,6 +32,7 @@ impl SceneView<'_> {
                 direction: -axis.truncate(),
                 distance: SCENE_FAR,
                 irradiance: colour.truncate(),
+                spread: PANE_SHADOW_SUN,
             };
         }
         let offset = position.truncate() - place;
@@ -40,7 +44,8 @@ impl SceneView<'_> {
         let fourth = part * part * part * part;
         let window = if colour.w > 0.0 { (1.0 - fourth).clamp(0.0, 1.0) } else { 1.0 };
         let edge = ((-direction).dot(axis.truncate()) * cone.x + cone.y).clamp(0.0, 1.0);
-        SceneLight { direction, distance, irradiance: colour.truncate() * (window * edge * edge / square) }
+        let irradiance = colour.truncate() * (window * edge * edge / square);
+        SceneLight { direction, distance, irradiance, spread: 0.0 }
     }
 
     /// Share of light that reaches a place from a distance along a direction: surfaces that let light through dim it.
@@ -111,7 +116,8 @@ impl SceneView<'_> {
                 continue;
             }
             let visible = self.scene_visibility(start, light.direction, light.distance);
-            sum += lit * visible * if all { 1.0 } else { total / share };
+            let pane = self.pane_shadow_share(start, light.direction, light.distance, light.spread);
+            sum += lit * visible * (pane * if all { 1.0 } else { total / share });
         }
         sum
     }

@@ -45,6 +45,20 @@ pub enum PaneFresnel {
     Tatarchuk2006,
 }
 
+/// What the drops do to light that falls through the pane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PaneShadow {
+    /// They are lenses, whose light comes together behind them and is spread beyond.
+    #[default]
+    Lens,
+    /// Their shadows have highlights in the middle, however far they fall.
+    #[serde(rename = "tatarchuk-2006")]
+    Tatarchuk2006,
+    /// Nothing.
+    None,
+}
+
 /// A pane that goes with the camera: a window or a windshield, the eye inside, rain outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pane {
@@ -71,6 +85,8 @@ pub struct Pane {
     /// Diameter, m, of the sphere of water from which on a drop shows lamps and the sun as bright spots: the mass above
     /// which Tatarchuk & Isidoro 2006 draw highlights. 0: all drops, as optics has it; small ones have small spots.
     pub highlight: f64,
+    /// Shadows of the drops where light of lamps and the sun falls through the pane.
+    pub shadows: PaneShadow,
     /// How the glass holds water.
     pub contact: GlassContact,
     /// Thickness of the film that water leaves where it has run, m.
@@ -147,6 +163,7 @@ pub(super) struct GlassTable {
     room: Option<In<Share>>,
     fresnel: Option<PaneFresnel>,
     highlight_mm: Option<In<HighlightMm>>,
+    shadows: Option<PaneShadow>,
     advancing_deg: Option<In<AdvancingDeg>>,
     receding_deg: Option<In<RecedingDeg>>,
     film_um: Option<In<FilmUm>>,
@@ -196,6 +213,7 @@ impl GlassTable {
             aperture: number(self.aperture_mm.map(|mm| mm.0), 4.0) * 1.0e-3,
             room: number(self.room.map(|share| share.0), 0.1),
             fresnel: self.fresnel.unwrap_or_default(),
+            shadows: self.shadows.unwrap_or_default(),
             highlight: number(self.highlight_mm.map(|mm| mm.0), 0.0) * 1.0e-3,
             contact: GlassContact {
                 advancing_rad: self.advancing_deg.map_or(contact.advancing_rad, |deg| deg.0.to_radians()),

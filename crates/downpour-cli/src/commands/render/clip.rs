@@ -205,11 +205,12 @@ impl Clip<'_> {
         let begin = Instant::now();
         let rain = &self.input.weather.rain;
         let time_s = time_s(self.arguments.input.time, number, self.fps);
-        let stage = &*puddles.lay(self.stage(number, time_s)?, time_s)?;
+        let stage = puddles.lay(self.stage(number, time_s)?, time_s)?;
+        let stage = &*pane.hang(stage, time_s)?;
         let shower = showers.at(stage, time_s, self.places.stats.is_some())?;
         let options = self.arguments.options(stage, &self.input.weather, time_s, shower.veil);
         let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
-        let through = pane.before(stage, &picture, &options, time_s)?;
+        let through = pane.before(stage, &picture, &options)?;
         painter.look(&mut picture, through)?;
         let told = Told {
             computer: painter.computer(),

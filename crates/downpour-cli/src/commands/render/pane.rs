@@ -1,5 +1,7 @@
 //! The pane of glass of a picture, and of all pictures of a clip, for the command.
 
+use std::borrow::Cow;
+
 use downpour::render::glass::{GlassPicture, WetPane};
 use downpour::render::picture::Picture;
 use downpour::render::picture::PictureOptions;
@@ -28,19 +30,35 @@ impl Pane {
         Ok(Self(WetPane::new(weather, stage, first_s)?))
     }
 
-    /// What a picture at a time in seconds needs to be seen through the pane; times rise.
+    /// The stage with what the pane does to the light that falls through it at a time in seconds; times rise.
+    ///
+    /// # Errors
+    /// As [`Pane::new`].
+    pub(super) fn hang<'a>(
+        &mut self,
+        mut stage: Cow<'a, Stage>,
+        time_s: f64,
+    ) -> Result<Cow<'a, Stage>, Failure> {
+        if let Some(pane) = &mut self.0 {
+            pane.advance(time_s)?;
+            if pane.is_before_lamps(&stage) {
+                pane.hang(stage.to_mut())?;
+            }
+        }
+        Ok(stage)
+    }
+
+    /// What a picture needs to be seen through the pane that [`Pane::hang`] has brought to its time.
     ///
     /// # Errors
     /// As [`Pane::new`].
     pub(super) fn before(
-        &mut self,
+        &self,
         stage: &Stage,
         picture: &Picture,
         options: &PictureOptions,
-        time_s: f64,
     ) -> Result<Option<Through>, Failure> {
-        let Some(pane) = &mut self.0 else { return Ok(None) };
-        pane.advance(time_s)?;
+        let Some(pane) = &self.0 else { return Ok(None) };
         let (size, grid) = (options.size, options.grid);
         let frame = stage.viewpoint.frame(&stage.data, size, grid, options.sky_rays, options.seed)?;
         let capture = if options.rain.form == RefractionForm::Direction {

@@ -1,0 +1,228 @@
+//! The drops of a pane as a picture that light of lamps is cast through: where they are, and where they gather it.
+
+use downpour_math::ops;
+use downpour_shaders::render::pane_shadow::{
+    PANE_SHADOW_LENS, PANE_SHADOW_LEVELS, PANE_SHADOW_PEAK, PANE_SHADOW_TATARCHUK,
+};
+use glam::{Vec2, Vec3};
+
+use super::water::{GlassPictureDrop, glass_picture_water_cap};
+use crate::data::SceneData;
+
+/// Least edge of a texel, m: small drops are two of them across.
+const TEXEL_M: f64 = 2.5e-4;
+
+/// Most texels of the finest level.
+const MOST_TEXELS: f64 = 1048576.0;
+
+/// Width of the spot to which a drop gathers light, in its radii: with the drop's light it is not quite
+/// [`PANE_SHADOW_PEAK`] high.
+const SPOT: f32 = 0.26;
+
+/// Radii at which the spot ends.
+const SPOT_END: f32 = 0.7;
+
+/// Where a texel is asked whether a drop is on it, in its edge from its middle.
+const CORNERS: [[f32; 2]; 4] = [[-0.125, -0.375], [0.375, -0.125], [0.125, 0.375], [-0.375, 0.125]];
+
+/// How the light of lamps and the sun falls through a wet pane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PaneShadows {
+    /// Each drop is a lens: its light comes together at its focus and is spread behind it.
+    #[default]
+    Lens,
+    /// The shadow of a heavy drop has a highlight in its middle at any distance (Tatarchuk & Isidoro 2006).
+    Tatarchuk2006,
+    /// Not dimmed: there is no pane for light.
+    None,
+}
+
+/// Cover and gathered cover of a pane, in levels.
+#[derive(Clone, Debug)]
+pub struct PaneShade {
+    size_m: [f32; 2],
+    per_metre: f32,
+    form: u32,
+    /// Mean radius and focal length of the drops, m.
+    mean: [f32; 2],
+    /// Columns, rows and first texel of each level.
+    levels: Vec<[u32; 3]>,
+    /// Cover and gathered cover over [`PANE_SHADOW_PEAK`], in 255ths.
+    texels: Vec<[u8; 2]>,
+}
+
+impl PaneShade {
+    /// The shade of a pane of a size in metres with these drops. Those whose disc is at least `gathers_m` in radius gather
+    /// light; `water` is their refractive index.
+    #[must_use]
+    pub fn new(
+        size_m: [f64; 2],
+        drops: &[GlassPictureDrop],
+        form: PaneShadows,
+        gathers_m: f32,
+        water: f32,
+    ) -> Self {
+        let edge = TEXEL_M.max((size_m[0] * size_m[1] / MOST_TEXELS).sqrt());
+        let [columns, rows] = size_m.map(|size| ((size / edge).round() as usize).max(1));
+        let edge = edge as f32;
+        let mut finest = vec![Vec2::ZERO; columns * rows];
+        let mut sums = [0.0f32; 3];
+        for drop in drops.iter().filter(|drop| drop.radius > 0.0) {
+            let area = drop.radius * drop.radius;
+            sums[0] += area;
+            sums[1] += area * drop.radius;
+            sums[2] += area * drop.sphere / (water - 1.0).max(0.01);
+            cast(&mut finest, [columns, rows], edge, drop, drop.radius >= gathers_m);
+        }
+        let all = sums[0].max(1.0e-20);
+        let mean = if sums[0] > 0.0 { [sums[1] / all, sums[2] / all] } else { [1.0e-3, 1.0e-2] };
+        let (mut levels, mut texels) = (Vec::new(), Vec::new());
+        let (mut size, mut level) = ([columns, rows], finest);
+        loop {
+            levels.push([size[0] as u32, size[1] as u32, texels.len() as u32]);
+            let byte = |share: f32| (share.clamp(0.0, 1.0) * 255.0).round() as u8;
+            texels.extend(level.iter().map(|at| [byte(at.x), byte(at.y / PANE_SHADOW_PEAK)]));
+            if size[0].min(size[1]) == 1 {
+                break;
+            }
+            (level, size) = halved(&level, size);
+        }
+        let form = if form == PaneShadows::Tatarchuk2006 { PANE_SHADOW_TATARCHUK } else { PANE_SHADOW_LENS };
+        Self { size_m: size_m.map(|edge| edge as f32), per_metre: 1.0 / edge, form, mean, levels, texels }
+    }
+}
+
+/// Adds a drop. Its gathered light is as much as its cover, texel by texel, whatever their edge.
+fn cast(texels: &mut [Vec2], [columns, rows]: [usize; 2], edge: f32, drop: &GlassPictureDrop, gathers: bool) {
+    let centre = Vec2::from(drop.centre);
+    let reach = drop.radius * 1.5 / drop.behind;
+    let range = |at: f32, most: usize| {
+        let low = ((at - reach) / edge).floor().max(0.0) as usize;
+        low.min(most)..(((at + reach) / edge).ceil().max(0.0) as usize).min(most)
+    };
+    let spot = |place: Vec2| {
+        let away = (place - centre).length_squared() / (drop.radius * drop.radius);
+        if away < SPOT_END * SPOT_END { ops::exp(-0.5 * away / (SPOT * SPOT)) } else { 0.0 }
+    };
+    let (mut covered, mut spots) = (0.0, 0.0);
+    for step in [false, true] {
+        for row in range(centre.y, rows) {
+            for column in range(centre.x, columns) {
+                let place = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * edge;
+                let cover = CORNERS
+                    .iter()
+                    .filter(|&&at| glass_picture_water_cap(drop, place + Vec2::from(at) * edge).x > 0.0)
+                    .count() as f32
+                    * 0.25;
+                let texel = &mut texels[row * columns + column];
+                if !step {
+                    covered += cover;
+                    spots += spot(place);
+                } else if cover > 0.0 || spot(place) > 0.0 {
+                    // Drops may overlap: none takes more light than there is.
+                    let taken = cover * (1.0 - texel.x);
+                    let share = if spots > 0.0 { covered * spot(place) / spots } else { cover };
+                    texel.x += taken;
+                    texel.y += if gathers { share } else { taken };
+                }
+            }
+        }
+    }
+}
+
+/// The level of half the size.
+fn halved(level: &[Vec2], [columns, rows]: [usize; 2]) -> (Vec<Vec2>, [usize; 2]) {
+    let size = [columns / 2, rows / 2];
+    let mean = |i: usize| {
+        let at = (i / size[0] * 2) * columns + i % size[0] * 2;
+        (level[at] + level[at + 1] + level[at + columns] + level[at + columns + 1]) * 0.25
+    };
+    ((0..size[0] * size[1]).map(mean).collect(), size)
+}
+
+impl SceneData {
+    /// Hangs a pane before the lamps, in place of the one that hangs there; `place`: its corner, right, down and outward, in
+    /// the scene's coordinates. Puddles are laid before.
+    pub fn hang_pane(&mut self, shade: &PaneShade, place: [Vec3; 4]) {
+        if self.pane > 0 {
+            self.table.truncate(self.pane as usize);
+        }
+        self.pane = self.table.len() as u32;
+        let [corner, across, down, outward] = place;
+        let first = self.pane + PANE_SHADOW_LEVELS + shade.levels.len() as u32;
+        // There is at least one level.
+        let [columns, rows, _] = shade.levels.first().copied().unwrap_or_default();
+        let last = (shade.levels.len() as u32).saturating_sub(1);
+        let row = |v: Vec3, w: f32| [v.x, v.y, v.z, w].map(f32::to_bits);
+        let form = f32::from_bits(shade.form);
+        self.table.extend([
+            row(corner, shade.per_metre),
+            row(across, shade.size_m[0]),
+            row(down, shade.size_m[1]),
+            row(outward, form),
+            [columns, rows, first, last],
+            [shade.mean[0].to_bits(), shade.mean[1].to_bits(), 0, 0],
+        ]);
+        self.table.extend(shade.levels.iter().map(|&[columns, rows, first]| [columns, rows, first, 0]));
+        let word = |pairs: &[[u8; 2]]| {
+            pairs.iter().rev().fold(0u32, |word, &[a, b]| (word << 16) | u32::from(a) | (u32::from(b) << 8))
+        };
+        self.table.extend(shade.texels.chunks(8).map(|eight| {
+            let mut words = [0; 4];
+            words.iter_mut().zip(eight.chunks(2)).for_each(|(into, pairs)| *into = word(pairs));
+            words
+        }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::PI;
+
+    use super::*;
+
+    /// A texel that no drop is on is clear, a drop covers its disc, and gathers as much.
+    #[test]
+    fn a_drop_covers_its_disc_and_gathers_as_much() {
+        let drop = GlassPictureDrop {
+            centre: [0.01, 0.012],
+            radius: 2.0e-3,
+            sphere: 2.5e-3,
+            along: [0.0, 1.0],
+            behind: 1.0,
+            droop: [0.0, 1.0],
+            ..Default::default()
+        };
+        let shade = PaneShade::new([0.02, 0.024], &[drop], PaneShadows::Lens, 0.0, 1.333);
+        let [columns, rows, _] = shade.levels[0];
+        let finest = &shade.texels[..(columns * rows) as usize];
+        let area = |channel: usize, peak: f32| {
+            finest.iter().map(|texel| f32::from(texel[channel]) / 255.0 * peak).sum::<f32>() * 6.25e-8
+        };
+        let disc = PI * 4.0e-6;
+        assert!((area(0, 1.0) / disc - 1.0).abs() < 0.02, "{}", area(0, 1.0) / disc);
+        assert!(
+            (area(1, PANE_SHADOW_PEAK) / disc - 1.0).abs() < 0.03,
+            "{}",
+            area(1, PANE_SHADOW_PEAK) / disc
+        );
+        assert_eq!(finest[0], [0, 0]);
+        assert!((shade.mean[0] - 2.0e-3).abs() < 1.0e-8 && (shade.mean[1] - 2.5e-3 / 0.333).abs() < 1.0e-6);
+    }
+
+    /// Below the threshold by mass a drop gathers nothing: its light goes on as it came.
+    #[test]
+    fn small_drops_do_not_gather() {
+        let drop = GlassPictureDrop {
+            centre: [0.01, 0.01],
+            radius: 1.0e-3,
+            sphere: 1.2e-3,
+            along: [0.0, 1.0],
+            behind: 1.0,
+            droop: [0.0, 1.0],
+            ..Default::default()
+        };
+        let shade = PaneShade::new([0.02, 0.02], &[drop], PaneShadows::Lens, 1.5e-3, 1.333);
+        assert!(shade.texels.iter().all(|&[cover, gathered]| gathered <= cover));
+    }
+}
