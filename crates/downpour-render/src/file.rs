@@ -4,7 +4,7 @@
 //!
 //! | channels | hold |
 //! |---|---|
-//! | `R`, `G`, `B` | the picture: `clean * transmittance + rain` |
+//! | `R`, `G`, `B` | the picture: `clean * transmittance + rain`, or that through a pane of wet glass; the other channels are behind the pane |
 //! | `clean.R`, `clean.G`, `clean.B` | radiance of the scene without rain |
 //! | `rain.R`, `rain.G`, `rain.B` | radiance that the rain adds |
 //! | `transmittance.Y` | share of the scene's light that comes through the rain, 0 to 1 |
@@ -30,7 +30,8 @@ pub fn write_exr(width: u32, height: u32, pixels: &[[f32; 3]]) -> core::result::
 
 /// A picture with all its layers as the bytes of one OpenEXR file: see [the module](self) for the channels.
 ///
-/// `clean` is radiance and distance of the scene, `rain` radiance and transmittance of the rain.
+/// `clean` is radiance and distance of the scene, `rain` radiance and transmittance of the rain, `glass` the picture through a
+/// pane, if there is one.
 ///
 /// # Errors
 /// As [`write_exr`].
@@ -39,11 +40,16 @@ pub fn write_exr_layers(
     height: u32,
     clean: &[[f32; 4]],
     rain: &[[f32; 4]],
+    glass: Option<&[[f32; 3]]>,
 ) -> core::result::Result<Vec<u8>, RenderError> {
     let layer = |pixels: &[[f32; 4]], k: usize| -> Vec<f32> { pixels.iter().map(|p| p[k]).collect() };
     let mut channels: Vec<(&str, Vec<f32>)> = Vec::new();
     for (k, name) in ["R", "G", "B"].into_iter().enumerate() {
-        channels.push((name, through_rain(clean, rain).map(|pixel| pixel[k]).collect()));
+        let seen = match glass {
+            Some(glass) => glass.iter().map(|pixel| pixel[k]).collect(),
+            None => through_rain(clean, rain).map(|pixel| pixel[k]).collect(),
+        };
+        channels.push((name, seen));
     }
     for (k, name) in ["clean.R", "clean.G", "clean.B", "depth.Z"].into_iter().enumerate() {
         channels.push((name, layer(clean, k)));
@@ -113,17 +119,7 @@ mod tests {
     fn layers_are_channels() {
         let clean = [[1.0, 2.0, 3.0, 5.0], [4.0, 5.0, 6.0, 1.0e30]];
         let rain = [[0.5, 0.25, 0.125, 0.5], [0.0, 0.0, 0.0, 1.0]];
-        let bytes = write_exr_layers(2, 1, &clean, &rain).expect("a file");
-        let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
-        let image = image.all_attributes().from_buffered(Cursor::new(bytes)).expect("an image");
-        let found: Vec<(String, Vec<f32>)> = image
-            .layer_data
-            .channel_data
-            .list
-            .iter()
-            .map(|channel| (channel.name.to_string(), channel.sample_data.values_as_f32().collect()))
-            .collect();
-        let expected: [(&str, [f32; 2]); 11] = [
+        let expected = [
             ("B", [1.625, 6.0]),
             ("G", [1.25, 5.0]),
             ("R", [1.0, 4.0]),
@@ -136,8 +132,24 @@ mod tests {
             ("rain.R", [0.5, 0.0]),
             ("transmittance.Y", [0.5, 1.0]),
         ];
-        assert_eq!(found, expected.map(|(name, values)| (name.to_owned(), values.to_vec())));
-        assert!(write_exr_layers(2, 2, &clean, &rain).is_err());
-        assert!(write_exr_layers(2, 1, &clean, &rain[..1]).is_err());
+        let written = |glass| channels(write_exr_layers(2, 1, &clean, &rain, glass).expect("a file"));
+        assert_eq!(written(None), expected.map(|(name, values)| (name.to_owned(), values.to_vec())));
+        // Through glass: the picture alone is another.
+        let mut seen = expected;
+        seen[..3].copy_from_slice(&[("B", [0.3, 0.6]), ("G", [0.2, 0.5]), ("R", [0.1, 0.4])]);
+        let glass = [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]];
+        assert_eq!(written(Some(&glass)), seen.map(|(name, values)| (name.to_owned(), values.to_vec())));
+        assert!(write_exr_layers(2, 2, &clean, &rain, None).is_err());
+        assert!(write_exr_layers(2, 1, &clean, &rain[..1], None).is_err());
+        assert!(write_exr_layers(2, 1, &clean, &rain, Some(&glass[..1])).is_err());
+    }
+
+    fn channels(bytes: Vec<u8>) -> Vec<(String, Vec<f32>)> {
+        let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+        let image = image.all_attributes().from_buffered(Cursor::new(bytes)).expect("an image");
+        let list = &image.layer_data.channel_data.list;
+        list.iter()
+            .map(|channel| (channel.name.to_string(), channel.sample_data.values_as_f32().collect()))
+            .collect()
     }
 }

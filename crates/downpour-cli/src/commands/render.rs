@@ -253,7 +253,8 @@ impl RenderArguments {
     fn encode(&self, format: Format, picture: Picture, exposure: f32) -> Result<Vec<u8>, Failure> {
         let [width, height] = picture.size;
         if self.layers {
-            return Ok(write_exr_layers(width, height, &picture.clean, &picture.rain)?);
+            let glass = picture.through_glass.as_deref();
+            return Ok(write_exr_layers(width, height, &picture.clean, &picture.rain, glass)?);
         }
         let radiance = picture.radiance();
         Ok(match format {
