@@ -7,7 +7,7 @@
 //! clock. A streak of less than 1.5 pixels across takes the mean of its drop from the table whatever the samples, so a
 //! second set of drops is near the eye, where streaks are wide. The error is the root mean square of the rain's difference
 //! to 512 samples (64 with `--quick` and on a software driver), over that of the rain. `--radius` is the one radius of the second
-//! table, where there is not time for all.
+//! table, where there is not time for all. The light of lamps by the streaks of an atlas is that of `assets/streaks`.
 
 use std::error::Error;
 use std::path::Path;
@@ -18,6 +18,7 @@ use downpour::drop::fall_speed::{FallSpeedModel, TerminalSpeed};
 use downpour::drop::oscillation::Amplitudes;
 use downpour::gpu::{AdapterChoice, Dispatch, Gpu, wgpu};
 use downpour::mask::MaskOptions;
+use downpour::mask::atlas::StreakAtlas;
 use downpour::math::rng::{rng_draw, rng_unit};
 use downpour::render::gpu::{RainOnGpu, RainPipeline, SceneOnGpu, ScenePipeline};
 use downpour::render::rain::light::{DropLightForm, DropLightOptions};
@@ -43,11 +44,11 @@ struct Bench<'a> {
     gpu: &'a Gpu,
     stage: &'a Stage,
     frame: downpour::render::data::RenderFrame,
-    masks: DropMasks,
+    masks: [DropMasks; 2],
     scenes: ScenePipeline,
     rains: RainPipeline,
     scene: SceneOnGpu,
-    uploaded: RainOnGpu,
+    uploaded: [RainOnGpu; 2],
     clean: wgpu::Buffer,
 }
 
@@ -81,7 +82,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let masks = DropMasks::trace(MaskOptions::default().refractive_index)?;
     let (scenes, rains) = (ScenePipeline::new(&gpu)?, RainPipeline::new(&gpu)?);
     let frame = stage.viewpoint.frame(&stage.data, size, 1, 1, 0)?;
-    let (scene, uploaded) = (scenes.upload(&stage.data)?, rains.upload(&masks)?);
+    // Without and with the streaks of an atlas.
+    let masks = [masks.clone(), masks.with_atlas(&StreakAtlas::load(Path::new("assets/streaks"))?)];
+    let scene = scenes.upload(&stage.data)?;
+    let uploaded = [rains.upload(&masks[0])?, rains.upload(&masks[1])?];
     let drawn = scenes.prepare(&scene, &frame)?;
     println!("scene by rays, one sample, one ray to the sky: {:.3} ms", time(&gpu, &drawn.dispatches())?);
     let clean = drawn.picture().clone();
@@ -141,6 +145,7 @@ impl Bench<'_> {
             ("traced, means", DropLightForm::Traced, 0),
             ("Rousseau 2006", DropLightForm::Rousseau2006, 0),
             ("Im & Sung 2022", DropLightForm::ImSung2022, 0),
+            ("atlas, 4 lamps a drop", DropLightForm::Atlas, 8),
         ] {
             let Cost { lamps, drops, .. } = of(form, glints)?;
             let more = 100.0 * (lamps + drops - without.drops) / all;
@@ -185,11 +190,12 @@ impl Bench<'_> {
     fn cost(&self, drops: &[FallingDrop], options: &RainOptions) -> Result<Cost, Box<dyn Error>> {
         let start = Instant::now();
         let eye = self.stage.viewpoint.eye.as_dvec3();
-        let rain = Rain::new(&self.frame, eye, drops, &self.masks, options);
+        let of_atlas = usize::from(options.light.form == DropLightForm::Atlas);
+        let (masks, uploaded) = (&self.masks[of_atlas], &self.uploaded[of_atlas]);
+        let rain = Rain::new(&self.frame, eye, drops, masks, options);
         let binning = ms(start.elapsed());
-        let lights = rain.lights(&self.stage.data, &self.masks)?;
-        let pass =
-            self.rains.prepare(&self.scenes, &self.scene, &self.uploaded, &self.clean, &rain, &lights)?;
+        let lights = rain.lights(&self.stage.data, masks)?;
+        let pass = self.rains.prepare(&self.scenes, &self.scene, uploaded, &self.clean, &rain, &lights)?;
         let capture = time(self.gpu, &pass.capture())?;
         let streaks: Vec<Dispatch<'_>> = pass.streaks().into_iter().collect();
         let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
