@@ -10,6 +10,7 @@ mod pattern;
 mod rain;
 mod render;
 mod specimen;
+mod streaks;
 mod wind;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};

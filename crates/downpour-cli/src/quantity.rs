@@ -89,18 +89,23 @@ pub(crate) fn exposure_s(text: &str) -> Result<f64, String> {
     read(text, &(0.0..=LONGEST_EXPOSURE_S), "0 to 1 s")
 }
 
-/// Instants of an exposure. Any whole number is read: what is too large is over a limit.
-pub(crate) fn instants(text: &str) -> Result<u32, String> {
-    if text == "table" {
-        return Err("a specimen is exact, and has no table; allowed: a whole number from 1 to 4096 (render has the table: \
-                    [streaks] samples = \"table\")"
-            .to_owned());
-    }
+/// How the streak of a specimen is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StreakOfSpecimen {
+    /// Exactly, with so many instants for each sample of a pixel.
+    Instants(u32),
+    /// As the renderer of rain does it, by its table.
+    Table,
+}
+
+/// Instants of an exposure, or `table`. Any whole number is read: what is too large is over a limit.
+pub(crate) fn streak_of_specimen(text: &str) -> Result<StreakOfSpecimen, String> {
     let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     match text.parse::<u32>() {
-        Ok(n @ 1..) => Ok(n),
-        Err(_) if digits => Ok(u32::MAX),
-        _ => Err("allowed: a whole number from 1 to 4096".to_owned()),
+        _ if text == "table" => Ok(StreakOfSpecimen::Table),
+        Ok(n @ 1..) => Ok(StreakOfSpecimen::Instants(n)),
+        Err(_) if digits => Ok(StreakOfSpecimen::Instants(u32::MAX)),
+        _ => Err("allowed: a whole number from 1 to 4096, or table".to_owned()),
     }
 }
 

@@ -9,6 +9,8 @@ mod child;
 #[allow(dead_code, reason = "the tests without a GPU use the rest")]
 #[path = "command/gltf_file.rs"]
 mod gltf_file;
+#[path = "command/on_gpu.rs"]
+mod on_gpu;
 #[allow(dead_code, reason = "the tests without a GPU use the rest")]
 #[path = "command/scene_files.rs"]
 mod scene_files;
@@ -29,7 +31,7 @@ use scene_files::{model, weather};
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let off = std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no");
-    let tests: [(&str, fn()); 11] = [
+    let tests: [(&str, fn()); 15] = [
         ("adapters_are_listed", adapters_are_listed),
         ("a_mask_is_that_of_the_cpu", a_mask_is_that_of_the_cpu),
         ("an_array_is_that_of_the_cpu", an_array_is_that_of_the_cpu),
@@ -41,6 +43,14 @@ fn main() -> ExitCode {
         ("an_adapter_is_taken_by_its_name", an_adapter_is_taken_by_its_name),
         ("a_lost_device_publishes_nothing", a_lost_device_publishes_nothing),
         ("a_device_that_hangs_is_left", a_device_that_hangs_is_left),
+        ("a_pane_is_that_of_the_cpu", || on_gpu::a_pane_is_that_of_the_cpu(&gpu(&[], &adapter()))),
+        ("a_puddle_is_that_of_the_cpu", || on_gpu::a_puddle_is_that_of_the_cpu(&gpu(&[], &adapter()))),
+        ("a_lattice_of_a_lost_device_is_not_told_of", || {
+            on_gpu::a_lattice_of_a_lost_device_is_not_told_of(&gpu(&[], &adapter()));
+        }),
+        ("a_streak_by_the_table_is_that_of_the_cpu", || {
+            on_gpu::a_streak_by_the_table_is_that_of_the_cpu(&gpu(&[], &adapter()));
+        }),
     ];
     let trials = tests.into_iter().map(|(name, test)| {
         Trial::test(name, move || {

@@ -17,6 +17,7 @@
 //! - [`render_specimen`]: the picture on the CPU, the same bits for any number of threads;
 //! - [`render_specimen_f64`]: the reference above it;
 //! - [`gpu::SpecimenRenderer`] (feature `wgpu`): the same on a GPU;
+//! - [`render_specimen_table`]: a streak as the renderer of rain draws it, by its table;
 //! - [`SpecimenOptions`], [`default_fov`]: the camera;
 //! - functions whose names begin with `specimen_` are the twins of `shaders/wgsl/render/specimen.wgsl` and of its two
 //!   neighbours.
@@ -57,6 +58,7 @@ mod options;
 mod render;
 pub mod sky;
 pub mod streak;
+mod table;
 pub mod trace;
 pub mod wobble;
 
@@ -68,3 +70,4 @@ pub use motion::SpecimenMotion;
 pub use options::{LARGEST_SIZE, LONGEST_EXPOSURE_S, SpecimenOptions};
 pub use render::{render_specimen, render_specimen_f64, render_specimen_scalar};
 pub use sky::Sky;
+pub use table::{LARGEST_TABLE_LAMP_DEG, check_specimen_table, render_specimen_table};

@@ -9,6 +9,7 @@ use downpour::scene::{Budget, scene::Texture};
 
 use super::input::{Input, InputArguments};
 use super::render::BYTES_PER_PIXEL;
+use super::streaks::{Streaks, StreaksArgument};
 use crate::failure::Failure;
 use crate::listing::{Datum, Entry};
 use crate::{listing, stream};
@@ -17,10 +18,14 @@ use crate::{listing, stream};
 const PANE_BYTES_PER_CELL: u64 = 44;
 
 /// Check a scene or weather file, and tell what render would do with it.
+///
+/// The exit code is that of render: of a weather that asks for the streak atlas, without --streaks, 2, after the list.
 #[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
     #[command(flatten)]
     input: InputArguments,
+    #[command(flatten)]
+    streaks: StreaksArgument,
     /// Write JSON.
     #[arg(long)]
     json: bool,
@@ -30,19 +35,25 @@ impl CheckArguments {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         self.input.check()?;
         let input = self.input.read(&mut Budget::default())?;
+        let streaks = self.streaks.read(&input.weather)?;
         let stage = Stage::new(&input.weather, &input.loaded, self.input.time)?;
         input.say_warnings(&stage, stream::message);
         let mut entries = scene(&input, &stage);
         entries.extend(light(&input));
         entries.extend(rain(&input)?);
         entries.extend(motion(&input)?);
+        entries.push(Entry::new("streak_atlas", "streak atlas", Datum::Word(streaks.text()), ""));
         entries.extend(water(&input, &stage)?);
         let (of_pane, pane_bytes) = pane(&input, &stage, self.input.time)?;
         entries.extend(of_pane);
         let [width, height] = input.weather.size.map(u64::from);
-        let bytes = stage.bytes() + width * height * BYTES_PER_PIXEL + pane_bytes;
+        let bytes = stage.bytes() + width * height * BYTES_PER_PIXEL + pane_bytes + streaks.bytes();
         entries.push(Entry::new("memory_mib", "memory, about", Datum::Computed(mebibytes(bytes), 3), "MiB"));
-        stream::print(&if self.json { listing::json(&entries) } else { listing::text(&entries) })
+        stream::print(&if self.json { listing::json(&entries) } else { listing::text(&entries) })?;
+        match streaks {
+            Streaks::Nowhere => Err(Streaks::nowhere()),
+            Streaks::Unwanted | Streaks::Atlas(_) => Ok(()),
+        }
     }
 }
 

@@ -1,11 +1,15 @@
 //! `downpour lattice`: one lattice of water alone, what it conserves, and pictures of it.
 
+mod device;
 mod glass;
+mod pane;
 mod picture;
 mod puddle;
+mod water;
 
 use clap::{Args, Subcommand};
 
+use crate::backend::{Backend, BackendArguments};
 use crate::failure::{Failure, OTHER};
 use crate::interrupt::Interrupt;
 use crate::listing::Entry;
@@ -57,9 +61,32 @@ struct Common {
     /// Write the invariants as JSON.
     #[arg(long)]
     json: bool,
+    /// What computes. A lattice alone is small: the CPU is at its end before a software driver of a GPU has begun, and has the
+    /// same bits on every machine. A GPU is for large ones.
+    #[arg(long, value_enum, default_value = "cpu")]
+    backend: Backend,
+    /// Part of the name of the GPU to take, as `downpour adapters` lists them.
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
     /// Say nothing but errors.
     #[arg(short, long)]
     quiet: bool,
+}
+
+impl Common {
+    /// # Errors
+    /// As [`BackendArguments::check`].
+    fn backend(&self) -> Result<BackendArguments, Failure> {
+        let backend = BackendArguments { backend: self.backend, adapter: self.adapter.clone() };
+        backend.check()?;
+        Ok(backend)
+    }
+
+    fn say(&self, text: &str) {
+        if !self.quiet {
+            stream::message(text);
+        }
+    }
 }
 
 /// Prints the list, then fails if what was to be checked does not hold.

@@ -22,17 +22,17 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use downpour::mask::atlas::{StreakAtlas, StreakPick};
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
 use downpour::render::picture::{Picture, PictureOptions};
-use downpour::render::rain::light::{DropLightForm, DropLightOptions};
+use downpour::render::rain::light::DropLightOptions;
 use downpour::render::rain::{Exposure, RainOptions, RefractionForm, Veil};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
-use downpour::scene::weather::{StreakLook, Weather};
+use downpour::scene::weather::Weather;
 
 use super::input::InputArguments;
+use super::streaks::StreaksArgument;
 use crate::backend::BackendArguments;
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
@@ -91,10 +91,8 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::sky_rays)]
     #[arg(allow_hyphen_values = true)]
     sky_rays: u32,
-    /// Folder of the streak atlas, for a weather whose [streaks] colour is atlas or atlas-random: the project's is
-    /// assets/streaks.
-    #[arg(long, value_name = "FOLDER")]
-    streaks: Option<PathBuf>,
+    #[command(flatten)]
+    streaks: StreaksArgument,
     /// How a drop's pixel finds its colour.
     #[arg(long, value_enum, default_value = "direction")]
     refraction: Refraction,
@@ -145,7 +143,7 @@ impl RenderArguments {
         let input = self.input.read(&mut Budget::default())?;
         outputs.keep(&input.files)?;
         reserve(input.weather.size)?;
-        let atlas = self.atlas(&input.weather)?;
+        let atlas = self.streaks.read(&input.weather)?.atlas()?;
         let stage = Stage::new(&input.weather, &input.loaded, self.input.time)?;
         input.say_warnings(&stage, |text| self.say(text));
         let begin = Instant::now();
@@ -203,26 +201,6 @@ impl RenderArguments {
             return Err(Failure::new(INPUT, format!("{found}; allowed: for .exr only")));
         }
         Ok(())
-    }
-
-    /// The streak atlas, if the weather wants one.
-    ///
-    /// # Errors
-    /// Exit code 2 if it is not said where it is, or what reading it says.
-    fn atlas(&self, weather: &Weather) -> Result<Option<StreakAtlas>, Failure> {
-        if DropLightOptions::of_weather(weather).form != DropLightForm::Atlas {
-            return Ok(None);
-        }
-        let Some(folder) = &self.streaks else {
-            let found = "streaks.colour is \"atlas\" or \"atlas-random\", and no --streaks";
-            let allowed = "with --streaks FOLDER, where the streak atlas is";
-            return Err(Failure::new(INPUT, format!("{found}; allowed: {allowed}")));
-        };
-        let pick = match weather.streaks.look {
-            StreakLook::AtlasRandom => StreakPick::Random,
-            _ => StreakPick::ByAngle,
-        };
-        Ok(Some(StreakAtlas::load(folder)?.with_pick(pick).with_seed(weather.rain.seed)))
     }
 
     fn say(&self, text: &str) {

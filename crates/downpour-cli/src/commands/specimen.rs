@@ -6,7 +6,9 @@ use clap::Args;
 use downpour::drop::DropShape;
 use downpour::drop::oscillation::Amplitudes;
 use downpour::render::file::{write_exr, write_png};
-use downpour::render::specimen::{Image, Sky, SpecimenLamp, SpecimenOptions, render_specimen};
+use downpour::render::specimen::{
+    Image, Sky, SpecimenLamp, SpecimenOptions, check_specimen_table, render_specimen, render_specimen_table,
+};
 use downpour::render::tone::{tone_automatic_exposure, tone_picture};
 use downpour::scene::Budget;
 use downpour::scene::sky::read_sky;
@@ -16,6 +18,7 @@ use crate::commands::say_warnings;
 use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
 use crate::output::Place;
+use crate::quantity::StreakOfSpecimen;
 use crate::{quantity, stream};
 
 /// Draw one drop, exactly, in front of a sky map.
@@ -50,10 +53,12 @@ pub(crate) struct SpecimenArguments {
     #[arg(long, value_name = "S", default_value = "0", value_parser = quantity::exposure_s)]
     #[arg(allow_hyphen_values = true)]
     exposure: f64,
-    /// Instants of the exposure for each of the 16 samples of a pixel, 1 to 4096.
-    #[arg(long, value_name = "N", default_value = "4", value_parser = quantity::instants)]
+    /// Instants of the exposure for each of the 16 samples of a pixel, 1 to 4096: exact. `table`: the streak as `render` draws
+    /// it, through masks and by its streak radiance table, to hold beside the exact one; with `--exposure`, for drops of 0.5 to
+    /// 9 mm, under lamps of at most 5 degrees, which light the drop as parallel light.
+    #[arg(long, value_name = "N|table", default_value = "4", value_parser = quantity::streak_of_specimen)]
     #[arg(allow_hyphen_values = true)]
-    samples: u32,
+    samples: StreakOfSpecimen,
     /// How the drop oscillates: `none`, or the amplitudes of the modes (2,0) and (3,1) over the radius, as 0.2,0.1.
     #[arg(long, value_name = "A20,A31", default_value = "none", value_parser = quantity::oscillation)]
     #[arg(allow_hyphen_values = true)]
@@ -114,13 +119,17 @@ impl SpecimenArguments {
             fov: self.fov.map(f64::to_radians),
             size: self.size,
             exposure_s: self.exposure,
-            instants: self.samples,
+            instants: match self.samples {
+                StreakOfSpecimen::Instants(instants) => instants,
+                StreakOfSpecimen::Table => SpecimenOptions::default().instants,
+            },
             oscillation: self.oscillation,
             phase: self.phase,
             ..SpecimenOptions::default()
         };
         options.check(&shape)?;
         SpecimenLamp::check_count(&self.light)?;
+        self.check_table(&shape, &options)?;
         let place = Place::new(&self.output, self.overwrite)?;
         let map = read_sky(&self.environment, &mut Budget::default())?;
         say_warnings(&shown(&self.environment), &map.warnings, |text| self.say(text));
@@ -139,6 +148,29 @@ impl SpecimenArguments {
         Ok(())
     }
 
+    fn by_table(&self) -> bool {
+        self.samples == StreakOfSpecimen::Table
+    }
+
+    /// # Errors
+    /// Exit code 2 for what has no table.
+    fn check_table(&self, shape: &DropShape, options: &SpecimenOptions) -> Result<(), Failure> {
+        if !self.by_table() {
+            return Ok(());
+        }
+        if self.exposure == 0.0 {
+            let found = "--samples table with --exposure 0: a drop at rest has no streak";
+            return Err(Failure::new(INPUT, format!("{found}; allowed: --exposure above 0, up to 1")));
+        }
+        check_specimen_table(shape, options, &self.light)
+            .map_err(|error| Failure::new(INPUT, format!("--samples table: {error}")))
+    }
+
+    fn on_cpu(&self, shape: &DropShape, options: &SpecimenOptions, sky: Sky<'_>) -> Result<Image, Failure> {
+        let render = if self.by_table() { render_specimen_table } else { render_specimen };
+        Ok(render(shape, options, sky)?)
+    }
+
     fn say(&self, text: &str) {
         if !self.quiet {
             stream::message(text);
@@ -153,7 +185,7 @@ impl SpecimenArguments {
         sky: Sky<'_>,
         _: &Interrupt,
     ) -> Result<Image, Failure> {
-        compute(&self.backend, |text| self.say(text), || Ok(render_specimen(shape, options, sky)?))
+        compute(&self.backend, |text| self.say(text), || self.on_cpu(shape, options, sky))
     }
 
     #[cfg(feature = "gpu")]
@@ -164,9 +196,14 @@ impl SpecimenArguments {
         sky: Sky<'_>,
         interrupt: &Interrupt,
     ) -> Result<Image, Failure> {
-        use downpour::render::specimen::gpu::SpecimenRenderer;
+        use downpour::render::specimen::gpu::{SpecimenRenderer, SpecimenTableRenderer};
         let say = |text: &str| self.say(text);
-        let gpu = |gpu: &_| SpecimenRenderer::new(gpu)?.render(shape, options, sky);
-        compute(&self.backend, interrupt, say, gpu, || Ok(render_specimen(shape, options, sky)?))
+        let gpu = |gpu: &_| {
+            if self.by_table() {
+                return SpecimenTableRenderer::new(gpu)?.render(shape, options, sky);
+            }
+            SpecimenRenderer::new(gpu)?.render(shape, options, sky)
+        };
+        compute(&self.backend, interrupt, say, gpu, || self.on_cpu(shape, options, sky))
     }
 }

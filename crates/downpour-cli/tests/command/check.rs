@@ -93,3 +93,32 @@ fn the_camera_of_a_model_is_taken() {
     let text = run(&[]).stdout;
     assert!(!text.contains('\u{1b}') && text.contains("front\\u{1b}"), "{text:?}");
 }
+
+/// The atlas is told of where it is asked for: what its folder has, and the memory that it takes.
+#[test]
+fn the_streak_atlas_is_told_of() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/streaks");
+    let check = |look: &str, more: &[&str]| {
+        storm(&[&["check", "--json"], more].concat())
+            .with_file("storm.toml", weather(&format!("[streaks]\ncolour = '{look}'\n")))
+            .run()
+            .succeeded()
+            .json()
+    };
+    let of = |json: &serde_json::Value| json["streak_atlas"].as_str().unwrap().to_owned();
+    let without = check("refracted", &["--streaks", folder]);
+    assert_eq!(of(&without), "not asked for");
+    assert_eq!(of(&check("refracted", &["--streaks", "no such folder"])), "not asked for");
+    for look in ["atlas", "atlas-random"] {
+        let json = check(look, &["--streaks", folder]);
+        let text = of(&json);
+        assert!(text.contains(" streaks of drops of 1, 2, 4 mm in 12 files, "), "{text}");
+        let number = |word: usize| text.split_whitespace().nth(word).unwrap().parse::<f64>().unwrap();
+        let bytes = number(text.split_whitespace().count() - 2);
+        // Each streak has texels of two bytes.
+        assert!(number(0) > 100.0 && bytes > 2.0 * 32.0 * number(0), "{text}");
+        let memory = |json: &serde_json::Value| json["memory_mib"].as_f64().unwrap() * f64::from(1u32 << 20);
+        let more = memory(&json) - memory(&without);
+        assert!((more / bytes - 1.0).abs() < 1.0e-6, "{more} bytes more of memory for {text}");
+    }
+}

@@ -88,6 +88,8 @@ fn what_is_no_lattice_is_refused() {
     refused(&["puddle", "--size", "64x63"], 2, &["size of the lattice", "64 to 4096"]);
     refused(&["puddle", "--check", "energy", "--rate", "5"], 2, &["--check with --rate", "without them"]);
     refused(&["puddle", "--depth", "0"], 2, &["--depth", "0.1 to 1000000 mm"]);
+    refused(&["glass", "--adapter", "x"], 2, &["--adapter names a GPU", "--backend gpu or auto"]);
+    refused(&["puddle", "--adapter", "x"], 2, &["--adapter names a GPU", "--backend gpu or auto"]);
     refused(&["glass", "--every", "5"], 2, &["--output"]);
     refused(&["glass", "--every", "0", "-o", "%d.png"], 2, &["--every", "from 1"]);
     refused(&["glass", "--every", "5", "-o", "a.png"], 2, &["a.png", "%04d"]);

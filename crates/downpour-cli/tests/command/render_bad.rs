@@ -265,8 +265,18 @@ fn a_streak_atlas_that_is_none_is_refused() {
                 .with_file("floor.gltf", model())
                 .run()
         };
+        let check = |more: &[&str]| {
+            Downpour::new(&[&["check", "storm.toml", "--json"], more].concat())
+                .with_file("storm.toml", weather(&format!("[streaks]\ncolour = '{word}'\n")))
+                .with_file("floor.gltf", model())
+                .run()
+        };
         let files = ["floor.gltf", "storm.toml"];
-        run(&[]).failed(2, &["streaks.colour", "--streaks FOLDER"]).with_one_line().left(&files);
+        let told = run(&[]).failed(2, &["streaks.colour", "--streaks FOLDER"]).with_one_line().left(&files);
+        // The check tells the rest, and ends as the picture does.
+        let checked = check(&[]).failed(2, &["streaks.colour", "--streaks FOLDER"]).left(&files);
+        assert_eq!(checked.stderr, told.stderr);
+        assert!(checked.json()["streak_atlas"].as_str().unwrap().contains("no --streaks: render ends"));
         for (name, code, words) in [
             ("missing", 5, "missing"),
             ("empty", 5, "no .ktx2 file"),
@@ -275,7 +285,9 @@ fn a_streak_atlas_that_is_none_is_refused() {
             ("other", 2, "streak_2mm_1.ktx2"),
         ] {
             let path = folder.path().join(name).display().to_string();
-            run(&["--streaks", &path]).failed(code, &[words]).with_one_line().left(&files);
+            let told = run(&["--streaks", &path]).failed(code, &[words]).with_one_line().left(&files);
+            let checked = check(&["--streaks", &path]).failed(code, &[words]).with_one_line().left(&files);
+            assert_eq!(checked.stderr, told.stderr);
         }
     }
 }

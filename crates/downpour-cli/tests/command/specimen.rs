@@ -99,9 +99,8 @@ fn bad_arguments_are_refused() {
         (
             &["--diameter", "2", "--samples", "many", "-o", "d.exr"],
             2,
-            "allowed: a whole number from 1 to 4096",
+            "allowed: a whole number from 1 to 4096, or table",
         ),
-        (&["--diameter", "2", "--samples", "table", "-o", "d.exr"], 2, "[streaks] samples"),
         (&["--diameter", "2", "--samples", "4097", "-o", "d.exr"], 3, "4096"),
         (&["--diameter", "2", "--samples", "1000000", "-o", "d.exr"], 3, "4096"),
         (&["--diameter", "2", "--samples", "99999999999", "-o", "d.exr"], 3, "4096"),
@@ -121,6 +120,53 @@ fn bad_arguments_are_refused() {
         (&["--diameter", "2", "-o", "nowhere/d.exr"], 5, "nowhere"),
     ] {
         specimen(arguments).failed(code, &[words]).left(&["sky.exr"]);
+    }
+}
+
+/// The table's picture is another than the exact one, and shows the same: as much light, in the same pixels.
+#[test]
+fn a_streak_by_the_table_is_beside_the_exact_one() {
+    let picture = |diameter, exposure, samples| {
+        let arguments = ["--exposure", exposure, "--samples", samples, "--fov", "10", "--size", "33x99"];
+        pixels(&specimen(&[&["--diameter", diameter, "-o", "d.exr"][..], &arguments].concat()).succeeded()).2
+    };
+    let (exact, table) = (picture("2", "0.002", "8"), picture("2", "0.002", "table"));
+    let (faint, other) = (picture("2", "0.5", "1"), picture("3", "0.002", "table"));
+    let streak: Vec<usize> = (0..exact.len()).filter(|&k| (exact[k][2] - faint[k][2]).abs() > 0.02).collect();
+    assert!(streak.len() > 200, "{}", streak.len());
+    let apart = |a: &[[f32; 4]]| -> f64 {
+        let squares =
+            streak.iter().map(|&k| f64::from(a[k][2] - exact[k][2]) * f64::from(a[k][2] - exact[k][2]));
+        (squares.sum::<f64>() / streak.len() as f64).sqrt()
+    };
+    assert!(exact != table);
+    let (found, of_other) = (apart(&table), apart(&other));
+    assert!(found < 0.05 && of_other > 3.0 * found, "{found}, and of another drop {of_other}");
+}
+
+#[test]
+fn what_has_no_table_is_refused() {
+    let with_light = ["--light", "180,0,6,5"];
+    for (more, words) in [
+        (&["--diameter", "2"][..], &["--samples table", "--exposure 0", "above 0"][..]),
+        (
+            &["--diameter", "0.3", "--exposure", "0.01"],
+            &["--samples table", "diameter", "0.3 mm", "0.5 to 9"],
+        ),
+        (&["--diameter", "2", "--exposure", "0.0001"], &["length of a streak", "from 1"]),
+        (&["--diameter", "2", "--exposure", "1e-7"], &["length of a streak", "from 1"]),
+        (
+            &["--diameter", "2", "--exposure", "0.01", "--distance", "0.01"],
+            &["--samples table", "camera distance", "0.01 m", "from 0.022"],
+        ),
+        (&["--diameter", "2", "--exposure", "0.01", "--fov", "0.001"], &["field of view", "above 0.006"]),
+        (
+            &[&["--diameter", "2", "--exposure", "0.01"], &with_light[..]].concat(),
+            &["--samples table", "radius of a lamp", "6.0", "0.01 to 5"],
+        ),
+    ] {
+        let arguments = [&["--samples", "table", "-o", "d.exr"], more].concat();
+        specimen(&arguments).failed(2, words).with_one_line().left(&["sky.exr"]);
     }
 }
 

@@ -58,3 +58,16 @@ fn the_list_of_adapters_is_empty_and_an_error() {
     assert_eq!(ended.stdout, "[]\n");
     assert_eq!(without_driver(&["adapters"]).run().failed(4, &["no GPU adapter"]).stdout, "");
 }
+
+#[test]
+fn a_lattice_falls_back_to_the_cpu_and_says_why() {
+    for kind in [&["glass", "--size", "16x16"][..], &["puddle", "--size", "64x64"]] {
+        let arguments = [&["lattice"], kind, &["--steps", "5", "--rate", "50", "--json"]].concat();
+        let auto = without_driver(&[&arguments[..], &["--backend", "auto"]].concat()).run().succeeded();
+        assert!(auto.stderr.contains("backend: cpu (no GPU adapter"), "{}", auto.stderr);
+        let cpu = Downpour::new(&[&arguments[..], &["--backend", "cpu"]].concat()).run().succeeded();
+        assert_eq!(cpu.stdout, auto.stdout);
+        let gpu = without_driver(&[&arguments[..], &["--backend", "gpu"]].concat()).run();
+        assert_eq!(gpu.failed(4, &["no GPU adapter"]).stdout, "");
+    }
+}

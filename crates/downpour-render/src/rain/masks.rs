@@ -14,8 +14,8 @@ use super::light::DropLightTable;
 use super::streak_table::StreakShape;
 
 /// Diameters, metres, from a sphere to the largest drop that has a shape.
-const DIAMETERS: u32 = 18;
-const DIAMETER_STEP: f64 = 0.5e-3;
+pub(crate) const DIAMETERS: u32 = 18;
+pub(crate) const DIAMETER_STEP: f64 = 0.5e-3;
 
 /// Texels along an edge of a mask.
 const SIZE: u32 = 96;

@@ -1,6 +1,9 @@
 //! What can be wrong with a specimen.
 
 use downpour_drop::DropError;
+use downpour_mask::MaskError;
+
+use crate::RenderError;
 
 /// Why a specimen cannot be rendered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -41,6 +44,12 @@ pub enum SpecimenError {
     /// The drop itself is not possible.
     #[error(transparent)]
     Drop(#[from] DropError),
+    /// Its masks are not possible.
+    #[error(transparent)]
+    Mask(#[from] MaskError),
+    /// The renderer of rain cannot draw it.
+    #[error(transparent)]
+    Render(#[from] RenderError),
 }
 
 impl SpecimenError {
@@ -49,6 +58,8 @@ impl SpecimenError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Size { found, most, .. } if found > most => 3,
+            Self::Mask(error) => error.exit_code(),
+            Self::Render(error) => error.exit_code(),
             _ => 2,
         }
     }

@@ -15,6 +15,10 @@ use super::render::{View, views};
 use super::sky::Sky;
 use super::{Image, SpecimenError};
 
+mod table;
+
+pub use table::SpecimenTableRenderer;
+
 /// Why a specimen could not be rendered on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]

@@ -69,6 +69,17 @@ impl SpecimenLamp {
         Ok(Self { direction, reach: chord * chord, radiance })
     }
 
+    /// The angular radius, in radians.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        2.0 * ops::asin((0.5 * self.reach.sqrt()).min(1.0))
+    }
+
+    /// The squared sine of the angular radius: over pi times the radiance it is the irradiance of what faces the lamp.
+    pub(crate) fn sine_squared(&self) -> f64 {
+        self.reach * (1.0 - 0.25 * self.reach)
+    }
+
     /// Says whether there is room for so many lamps.
     ///
     /// # Errors

@@ -109,7 +109,7 @@ fn streak<R: Precision>(
     Ok(Some(image))
 }
 
-fn empty(options: &SpecimenOptions) -> Image {
+pub(super) fn empty(options: &SpecimenOptions) -> Image {
     let [width, height] = options.size;
     Image { width, height, pixels: vec![[0.0; 3]; width as usize * height as usize] }
 }

@@ -1,14 +1,18 @@
 //! `downpour lattice glass`: drops on a pane.
 
-use clap::{Args, ValueEnum};
-use downpour::lattice::glass::{Glass, GlassAir, GlassOptions, GlassRain};
+use std::cell::RefCell;
 
+use clap::{Args, ValueEnum};
+use downpour::lattice::glass::{GlassAir, GlassOptions, GlassRain};
+
+use super::device::{RunError, with_device};
+use super::pane::Pane;
 use super::picture::{Field, Target};
 use super::{Common, report};
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::listing::{Datum, Entry};
-use crate::{quantity, stream};
+use crate::quantity;
 
 /// Let rain fall on a pane of glass.
 ///
@@ -62,6 +66,7 @@ enum Show {
 
 impl GlassArguments {
     pub(super) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
+        let backend = self.common.backend()?;
         let options = GlassOptions {
             size: self.size,
             cell_m: self.cell * 1.0e-3,
@@ -74,31 +79,52 @@ impl GlassArguments {
             seed: self.common.seed,
             ..GlassOptions::default()
         };
-        let mut target = Target::new(&self.common, self.steps)?;
-        let mut glass = Glass::new(&options)?;
+        let target = RefCell::new(Target::new(&self.common, self.steps)?);
+        let say = |text: &str| self.common.say(text);
+        let (entries, broken) = with_device(&backend, interrupt, say, &options, |mut pane| {
+            self.step(&mut pane, target.borrow_mut().as_mut(), interrupt)?;
+            self.invariants(&pane)
+        })?;
+        if self.check.is_some() && broken.is_none() {
+            self.common.say("mass: every nanolitre is there");
+        }
+        report(&self.common, &entries, broken)
+    }
+
+    /// Makes all steps, with their pictures.
+    fn step(
+        &self,
+        pane: &mut Pane,
+        mut target: Option<&mut Target>,
+        interrupt: &Interrupt,
+    ) -> Result<(), RunError> {
         let mut done = 0;
         loop {
             if let Some(target) = target.as_mut().filter(|target| target.is_due(done)) {
-                target.write(&self.field(&glass), done, interrupt)?;
+                target.write(&self.field(pane)?, done, interrupt)?;
             }
             if done == self.steps {
-                break;
+                return Ok(());
             }
             // A second or so at once.
             let most = target.as_ref().map_or(500, |target| target.steps_to_next(done).min(500));
             let count = most.min(self.steps - done);
-            glass.step(count as f64 * glass.tick_s())?;
+            pane.step(count as f64 * pane.tick_s())?;
             done += count;
         }
-        let totals = glass.totals();
+    }
+
+    /// What is told in the end, and what is broken of what had to hold.
+    fn invariants(&self, pane: &Pane) -> Result<([Entry; 11], Option<String>), RunError> {
+        let totals = pane.totals()?;
         let entry = Entry::new;
         let count = Datum::Count;
-        let drops = glass.mass().iter().filter(|&&mass| mass != 0).count();
+        let drops = pane.mass()?.iter().filter(|&&mass| mass != 0).count();
         let lost = totals.lost();
-        let sound = glass.is_sound();
+        let sound = pane.is_sound()?;
         let entries = [
-            entry("steps", "steps", count(glass.ticks()), ""),
-            entry("step_s", "length of a step", Datum::Computed(glass.tick_s(), 6), "s"),
+            entry("steps", "steps", count(pane.ticks()), ""),
+            entry("step_s", "length of a step", Datum::Computed(pane.tick_s(), 6), "s"),
             entry("drops", "drops", count(drops as u64), ""),
             entry("landed_nl", "landed", count(totals.landed), "nl"),
             entry("stored_nl", "on the pane", count(totals.stored), "nl"),
@@ -115,31 +141,28 @@ impl GlassArguments {
             }
             _ => None,
         };
-        if !self.common.quiet && self.check.is_some() && broken.is_none() {
-            stream::message("mass: every nanolitre is there");
-        }
-        report(&self.common, &entries, broken)
+        Ok((entries, broken))
     }
 
-    fn field(&self, glass: &Glass) -> Field {
+    fn field(&self, pane: &Pane) -> Result<Field, RunError> {
         let size = self.size;
         let grey = |numbers: Vec<f32>| numbers.into_iter().map(|n| [n; 3]).collect();
-        match self.show {
+        Ok(match self.show {
             Show::Height => {
-                Field { size, numbers: grey(glass.heights()), shade: |h, scale| h / scale, scale: 1.2e-3 }
+                Field { size, numbers: grey(pane.heights()?), shade: |h, scale| h / scale, scale: 1.2e-3 }
             }
             Show::Normal => Field {
                 size,
-                numbers: glass.normals().into_iter().map(|n| n.to_array()).collect(),
+                numbers: pane.normals()?.into_iter().map(|n| n.to_array()).collect(),
                 shade: |n, _| 0.5 * n + 0.5,
                 scale: 1.0,
             },
             Show::Mass => Field {
                 size,
-                numbers: grey(glass.mass().iter().map(|&m| m as f32).collect()),
+                numbers: grey(pane.mass()?.into_iter().map(|m| m as f32).collect()),
                 shade: |m, scale| downpour::math::ops::cbrt(m / scale),
                 scale: 1.0e4,
             },
-        }
+        })
     }
 }

@@ -1,15 +1,19 @@
 //! `downpour lattice puddle`: ripples on shallow water.
 
+use std::cell::RefCell;
+
 use clap::{Args, ValueEnum};
 use downpour::drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour::lattice::puddle::{Impact, Puddle, PuddleBorder, PuddleDamping, PuddleOptions, PuddleRain};
 
+use super::device::{RunError, with_device};
 use super::picture::{Field, Target};
+use super::water::Water;
 use super::{Common, report};
 use crate::failure::{Failure, INPUT};
 use crate::interrupt::Interrupt;
 use crate::listing::{Datum, Entry};
-use crate::{quantity, stream};
+use crate::quantity;
 
 /// How far the energy may drift, as a share of it.
 const ENERGY_DRIFT: f64 = 1.0e-4;
@@ -74,12 +78,13 @@ enum Show {
 
 impl PuddleArguments {
     pub(super) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
+        let backend = self.common.backend()?;
         if self.check.is_some() && (self.common.rate > 0.0 || self.open) {
             let message =
                 "--check with --rate or --open; allowed: without them, since both bring or take energy";
             return Err(Failure::new(INPUT, message));
         }
-        let mut target = Target::new(&self.common, self.steps)?;
+        let target = RefCell::new(Target::new(&self.common, self.steps)?);
         let undamped = matches!(self.check, Some(Check::Energy));
         let options = PuddleOptions {
             size: self.size,
@@ -89,51 +94,74 @@ impl PuddleArguments {
             border: if self.open { PuddleBorder::Open } else { PuddleBorder::Reflecting },
             ..PuddleOptions::default()
         };
-        let mut puddle = Puddle::new(&options)?;
         let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, self.common.rate)?;
         let rain = (self.common.rate > 0.0).then(|| PuddleRain::new(&rain, self.common.seed));
-        if matches!(self.check, Some(Check::Energy | Check::Mass)) {
-            let place_m = puddle.extent_m().map(|edge| 0.4 * edge);
-            puddle.seed(&[Impact { place_m, speed_m_s: 8.0, diameter_m: 3.0e-3 }])?;
+        let say = |text: &str| self.common.say(text);
+        let (entries, broken) = with_device(&backend, interrupt, say, &options, |mut water| {
+            let seen = self.step(&mut water, rain.as_ref(), target.borrow_mut().as_mut(), interrupt)?;
+            self.invariants(&mut water, &seen)
+        })?;
+        if self.check.is_some() && broken.is_none() {
+            self.common.say("the check holds");
         }
-        let dt = self.step as f32;
-        let mut drops = 0u64;
-        let mut drift = 0.0f64;
-        let mut moved = moved_volume(&puddle);
-        let mut first = None;
-        let mut draw = |puddle: &Puddle, done: u64| match target.as_mut().filter(|target| target.is_due(done))
-        {
-            Some(target) => target.write(&self.field(puddle), done, interrupt),
-            None => Ok(()),
-        };
-        draw(&puddle, 0)?;
-        for step in 0..self.steps {
-            if let Some(rain) = &rain {
-                let impacts = rain.impacts(puddle.extent_m(), step, dt)?;
-                drops += impacts.len() as u64;
-                puddle.seed(&impacts)?;
-            }
-            puddle.step(dt)?;
-            draw(&puddle, step + 1)?;
-            // Looking at all cells each time would take as long as the steps.
-            if step < 4 || step % 64 == 0 || step + 1 == self.steps {
-                let energy = puddle.energy();
-                let begun = *first.get_or_insert(energy);
-                moved = moved.max(moved_volume(&puddle));
-                drift = drift.max((energy - begun).abs() / begun.abs().max(f64::MIN_POSITIVE));
-            }
-        }
-        self.tell(&puddle, drops, drift, moved)
+        report(&self.common, &entries, broken)
     }
 
-    fn tell(&self, puddle: &Puddle, drops: u64, drift: f64, moved: f64) -> Result<(), Failure> {
+    /// Makes all steps, with their pictures.
+    fn step(
+        &self,
+        water: &mut Water,
+        rain: Option<&PuddleRain>,
+        mut target: Option<&mut Target>,
+        interrupt: &Interrupt,
+    ) -> Result<Seen, RunError> {
+        if matches!(self.check, Some(Check::Energy | Check::Mass)) {
+            let place_m = water.extent_m().map(|edge| 0.4 * edge);
+            water.seed(&[Impact { place_m, speed_m_s: 8.0, diameter_m: 3.0e-3 }])?;
+        }
+        let dt = self.step as f32;
+        let mut seen = Seen { drops: 0, drift: 0.0, moved: moved_volume(water.look()?) };
+        let mut first = None;
+        let mut draw = |water: &mut Water, done: u64| match target
+            .as_mut()
+            .filter(|target| target.is_due(done))
+        {
+            Some(target) => target.write(&self.field(water.look()?), done, interrupt).map_err(RunError::from),
+            None => Ok(()),
+        };
+        draw(water, 0)?;
+        for step in 0..self.steps {
+            if let Some(rain) = rain {
+                let impacts = rain.impacts(water.extent_m(), step, dt)?;
+                seen.drops += impacts.len() as u64;
+                water.seed(&impacts)?;
+            }
+            water.step(dt)?;
+            draw(water, step + 1)?;
+            // Looking at all cells each time would take as long as the steps. A GPU is waited for then.
+            if step < 4 || step % 64 == 0 || step + 1 == self.steps {
+                let puddle = water.look()?;
+                let energy = puddle.energy();
+                let begun = *first.get_or_insert(energy);
+                seen.moved = seen.moved.max(moved_volume(puddle));
+                seen.drift = seen.drift.max((energy - begun).abs() / begun.abs().max(f64::MIN_POSITIVE));
+            }
+        }
+        Ok(seen)
+    }
+
+    /// What is told in the end, and what is broken of what had to hold.
+    fn invariants(&self, water: &mut Water, seen: &Seen) -> Result<([Entry; 9], Option<String>), RunError> {
+        let (steps, reset_cells) = (water.steps(), water.reset_cells()?);
+        let puddle = water.look()?;
+        let &Seen { drops, drift, moved } = seen;
         let heights = puddle.heights();
         let volume = puddle.volume();
         let highest = heights.iter().fold(0.0f32, |most, h| most.max(h.abs()));
         let share = volume.abs() / moved.max(f64::MIN_POSITIVE);
         let entry = Entry::new;
         let entries = [
-            entry("steps", "steps", Datum::Count(puddle.steps()), ""),
+            entry("steps", "steps", Datum::Count(steps), ""),
             entry("degree", "degree of the operator", Datum::Count(puddle.degree().into()), ""),
             entry("drops", "drops", Datum::Count(drops), ""),
             entry("highest_mm", "highest ripple", Datum::Computed(f64::from(highest) * 1.0e3, 4), "mm"),
@@ -141,7 +169,7 @@ impl PuddleArguments {
             entry("energy_drift", "drift of the energy", Datum::Computed(drift, 3), ""),
             entry("volume_m3", "volume over the level", Datum::Computed(volume, 3), "m^3"),
             entry("volume_share", "share of the most moved volume", Datum::Computed(share, 3), ""),
-            entry("reset_cells", "cells that were reset", Datum::Count(puddle.reset_cells()), ""),
+            entry("reset_cells", "cells that were reset", Datum::Count(reset_cells), ""),
         ];
         let level = heights.iter().all(|h| h.to_bits() == 0);
         let broken = match self.check {
@@ -156,10 +184,7 @@ impl PuddleArguments {
             }
             _ => None,
         };
-        if !self.common.quiet && self.check.is_some() && broken.is_none() {
-            stream::message("the check holds");
-        }
-        report(&self.common, &entries, broken)
+        Ok((entries, broken))
     }
 
     fn field(&self, puddle: &Puddle) -> Field {
@@ -180,6 +205,16 @@ impl PuddleArguments {
             }
         }
     }
+}
+
+/// What was seen on the way.
+struct Seen {
+    /// Drops of the rain.
+    drops: u64,
+    /// The largest drift of the energy, as a share of it.
+    drift: f64,
+    /// The largest volume that was above or below the level, m^3.
+    moved: f64,
 }
 
 /// Volume above the level and missing below it, m^3.

@@ -58,7 +58,7 @@ pub(super) fn run(
         super::video::check_size(input.weather.size)?;
     }
     reserve(input.weather.size)?;
-    let atlas = arguments.atlas(&input.weather)?;
+    let atlas = arguments.streaks.read(&input.weather)?.atlas()?;
     let first = Stage::new(&input.weather, &input.loaded, time_s(arguments.input.time, frames.first, fps))?;
     input.say_warnings(&first, |text| arguments.say(text));
     let scene = scene_digest(&input.weather, &input.loaded, &first);

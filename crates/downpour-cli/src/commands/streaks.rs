@@ -1,0 +1,93 @@
+//! The streak atlas, of a weather that takes the light of lamps on streaks from one.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use downpour::mask::atlas::{StreakAtlas, StreakPick};
+use downpour::render::rain::light::{DropLightForm, DropLightOptions};
+use downpour::scene::weather::{StreakLook, Weather};
+
+use crate::failure::{Failure, INPUT};
+
+/// Where the streak atlas is.
+#[derive(Debug, Args)]
+pub(crate) struct StreaksArgument {
+    /// Folder of the streak atlas, for a weather whose [streaks] colour is atlas or atlas-random: the project's is
+    /// assets/streaks.
+    #[arg(long, value_name = "FOLDER")]
+    streaks: Option<PathBuf>,
+}
+
+/// What a weather wants of a streak atlas, and what there is.
+#[derive(Debug)]
+pub(crate) enum Streaks {
+    /// No drop asks for it.
+    Unwanted,
+    /// It is asked for, and not said where it is.
+    Nowhere,
+    /// What its folder has.
+    Atlas(Box<StreakAtlas>),
+}
+
+impl StreaksArgument {
+    /// Reads the atlas, if the weather wants it.
+    ///
+    /// # Errors
+    /// What reading says.
+    pub(crate) fn read(&self, weather: &Weather) -> Result<Streaks, Failure> {
+        if DropLightOptions::of_weather(weather).form != DropLightForm::Atlas {
+            return Ok(Streaks::Unwanted);
+        }
+        let Some(folder) = &self.streaks else { return Ok(Streaks::Nowhere) };
+        let pick = match weather.streaks.look {
+            StreakLook::AtlasRandom => StreakPick::Random,
+            _ => StreakPick::ByAngle,
+        };
+        let atlas = StreakAtlas::load(folder)?.with_pick(pick).with_seed(weather.rain.seed);
+        Ok(Streaks::Atlas(Box::new(atlas)))
+    }
+}
+
+impl Streaks {
+    /// What `render` does where it is not said where the atlas is: it ends with exit code 2.
+    pub(crate) fn nowhere() -> Failure {
+        let found = "streaks.colour is \"atlas\" or \"atlas-random\", and no --streaks";
+        let allowed = "with --streaks FOLDER, where the streak atlas is";
+        Failure::new(INPUT, format!("{found}; allowed: {allowed}"))
+    }
+
+    /// The atlas to render with.
+    ///
+    /// # Errors
+    /// [`Streaks::nowhere`].
+    pub(crate) fn atlas(self) -> Result<Option<StreakAtlas>, Failure> {
+        match self {
+            Self::Unwanted => Ok(None),
+            Self::Nowhere => Err(Self::nowhere()),
+            Self::Atlas(atlas) => Ok(Some(*atlas)),
+        }
+    }
+
+    /// The atlas in one line.
+    pub(crate) fn text(&self) -> String {
+        let Self::Atlas(atlas) = self else {
+            let nowhere = matches!(self, Self::Nowhere);
+            return if nowhere { "asked for, but no --streaks: render ends" } else { "not asked for" }
+                .to_owned();
+        };
+        let mut sizes: Vec<String> =
+            atlas.sets().iter().map(|set| format!("{}", (set.diameter * 1.0e6).round() * 1.0e-3)).collect();
+        // They are in order of their diameters.
+        sizes.dedup();
+        let (files, sizes) = (atlas.sets().len(), sizes.join(", "));
+        format!("{} streaks of drops of {sizes} mm in {files} files, {} bytes", atlas.layers(), self.bytes())
+    }
+
+    /// Its memory.
+    pub(crate) fn bytes(&self) -> u64 {
+        let Self::Atlas(atlas) = self else { return 0 };
+        let data = atlas.data();
+        let bytes = size_of_val(data.frame) + size_of_val(data.triangles) + size_of_val(data.texels);
+        bytes as u64
+    }
+}
