@@ -355,7 +355,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
             name: "main_lattice_puddle_step_direct: the membrane among islands, with an open border",
             kernel: &DIRECT_KERNEL,
-            covers: &["puddle_step_direct", "puddle_step_direct_row"],
+            covers: &["puddle_step_direct", "puddle_step_direct_side", "puddle_step_direct_straight"],
             tol: STEPS,
             run: |gpu| {
                 let (form, border) = (PuddleForm::Membrane { speed_m_s: 0.3 }, PuddleBorder::Open);
@@ -367,6 +367,16 @@ pub(super) fn kernels() -> Vec<KernelCase> {
                     ..PuddleOptions::default()
                 };
                 steps(gpu, &options, 0.2, 1)
+            },
+        },
+        KernelCase {
+            name: "main_lattice_puddle_step_direct: water of degree 1, whose diagonal neighbours have a weight",
+            kernel: &DIRECT_KERNEL,
+            covers: &["puddle_step_direct_row"],
+            tol: STEPS,
+            run: |gpu| {
+                let options = PuddleOptions { size: [97, 131], degree: Some(1), ..PuddleOptions::default() };
+                steps(gpu, &options, 0.03, 1)
             },
         },
         step("main_puddle_step: one step of twelve passes", STEPS, |gpu| {

@@ -328,6 +328,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
                 "streak_table_oval",
                 "streak_table_direction",
                 "streak_table_write",
+                "streak_table_part",
             ],
             tol: TABLED,
             run: |gpu| {

@@ -75,8 +75,8 @@ const LAMPS: [Lamp; 2] = [
         radiance: [1500.0, 1400.0, 1200.0],
     },
 ];
-/// Instants of ours per second, and Mitsuba's samples, where there is a lamp: a pixel sees as many in a long exposure as in a short one.
-const OURS_LIT_PER_S: f64 = 246_000.0;
+/// Instants of ours, and Mitsuba's samples, where there is a lamp.
+const OURS_LIT: u32 = 512;
 const PATH_SAMPLES_LIT: u32 = 512;
 
 /// Compares all streaks; returns the table, and what is above the aim.
@@ -115,7 +115,7 @@ pub(super) fn compare(
     }
     let text = format!(
         "# Streaks and Mitsuba\n\n`downpour specimen --exposure S --oscillation 0.2,0.1 --samples {OURS}` against the mean of instants by \
-         Mitsuba's path tracer (`scalar_rgb`, {PATH_SAMPLES} samples per pixel each; with a lamp {OURS_LIT_PER_S} a second and {PATH_SAMPLES_LIT}). `alone`: the streak divided by the share of the \
+         Mitsuba's path tracer (`scalar_rgb`, {PATH_SAMPLES} samples per pixel each; with a lamp {OURS_LIT} and {PATH_SAMPLES_LIT}). `alone`: the streak divided by the share of the \
          exposure in which it covers a pixel; `absent`: the sky in its place.\n\n\
          | streak | instants | cover | mean FLIP | luminance | FLIP alone | luminance alone | FLIP absent | sky outside |\n\
          |---|---|---|---|---|---|---|---|---|\n{}\n",
@@ -193,11 +193,6 @@ impl Streak {
         })
     }
 
-    /// Instants of ours under a lamp: at most what `downpour specimen` allows.
-    fn ours_lit(&self) -> u32 {
-        ((self.exposure_s * OURS_LIT_PER_S).round() as u32).min(4096)
-    }
-
     /// A mesh for each instant, where the drop is then.
     fn write_meshes(&self, folder: &Path) -> Result<(), String> {
         if folder.exists() {
@@ -226,7 +221,7 @@ impl Streak {
         let ours = folder.join(format!("{name}.ours.exr"));
         let [width, height] = self.size;
         let (instants, path_samples) =
-            if lamp.is_some() { (self.ours_lit(), PATH_SAMPLES_LIT) } else { (OURS, PATH_SAMPLES) };
+            if lamp.is_some() { (OURS_LIT, PATH_SAMPLES_LIT) } else { (OURS, PATH_SAMPLES) };
         let light = lamp.map(|lamp| {
             let [r, g, b] = lamp.radiance;
             format!("{},{},{},{r},{g},{b}", lamp.yaw_deg, lamp.pitch_deg, lamp.radius_deg)
