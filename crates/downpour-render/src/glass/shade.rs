@@ -33,8 +33,6 @@ pub enum PaneShadows {
     Lens,
     /// The shadow of a heavy drop has a highlight in its middle at any distance (Tatarchuk & Isidoro 2006).
     Tatarchuk2006,
-    /// Not dimmed: there is no pane for light.
-    None,
 }
 
 /// Cover and gathered cover of a pane, in levels.
@@ -141,12 +139,18 @@ fn halved(level: &[Vec2], [columns, rows]: [usize; 2]) -> (Vec<Vec2>, [usize; 2]
 }
 
 impl SceneData {
+    /// Takes down the pane, if one hangs: its rows are the last of the table.
+    pub(crate) fn take_pane_down(&mut self) {
+        if self.pane > 0 {
+            self.table.truncate(self.pane as usize);
+            self.pane = 0;
+        }
+    }
+
     /// Hangs a pane before the lamps, in place of the one that hangs there; `place`: its corner, right, down and outward, in
     /// the scene's coordinates. Puddles are laid before.
     pub fn hang_pane(&mut self, shade: &PaneShade, place: [Vec3; 4]) {
-        if self.pane > 0 {
-            self.table.truncate(self.pane as usize);
-        }
+        self.take_pane_down();
         self.pane = self.table.len() as u32;
         let [corner, across, down, outward] = place;
         let first = self.pane + PANE_SHADOW_LEVELS + shade.levels.len() as u32;

@@ -54,10 +54,7 @@ impl SceneData {
     /// Lays puddles on the ground, in place of those that lie there. A pane is hung after that
     /// ([`SceneData::hang_pane`]): it is taken down.
     pub fn lay_puddles(&mut self, rows: &PuddleRows<'_>) {
-        if self.pane > 0 {
-            self.table.truncate(self.pane as usize);
-            self.pane = 0;
-        }
+        self.take_pane_down();
         if self.puddle_count > 0 {
             self.table.truncate(self.puddles as usize);
         }
