@@ -87,8 +87,7 @@ impl Shower {
     /// # Errors
     /// As [`Shower::at`].
     pub fn veil(&self, stage: &Stage, visible: &VisibleDrops) -> Result<Veil, ShowerError> {
-        let view = stage.view()?;
-        Ok(Veil::new(&self.law, |diameter| view.range(diameter, visible.least_pixels))?)
+        Ok(Veil::new(&self.law, |diameter| visible.resolved.range(diameter))?)
     }
 
     /// The rate, mm/h, of the drops about the eye (in closed form) or in the simulated volume, with those that something

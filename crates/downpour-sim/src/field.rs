@@ -29,6 +29,7 @@ use rayon::prelude::*;
 use crate::SimError;
 use crate::drift::Drift;
 use crate::poisson::poisson;
+use crate::resolved::Resolved;
 use crate::shelter::{Obstacles, keep_open};
 use crate::view::{Bounds, View};
 
@@ -87,8 +88,9 @@ pub struct VisibleDrops {
     pub drops: Vec<FallingDrop>,
     /// How many drops were looked at to find them.
     pub simulated: u64,
-    /// The least diameter on the picture that was listed, pixels: raised where there would have been too many.
-    pub least_pixels: f64,
+    /// Limits of the list; all other drops of the rain are unresolved. `least_pixels` is raised where there would have been
+    /// too many.
+    pub resolved: Resolved,
 }
 
 /// Drops of about one size.
@@ -213,7 +215,7 @@ impl RainField {
             drops.extend(found);
             simulated += tried;
         }
-        Ok(VisibleDrops { drops, simulated, least_pixels })
+        Ok(VisibleDrops { drops, simulated, resolved: Resolved::of(view, least_pixels) })
     }
 
     /// All drops in a box at a time in seconds, in an order that depends on nothing but the question.

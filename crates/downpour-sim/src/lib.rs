@@ -6,7 +6,7 @@
 //!   (`gpu`, feature `wgpu`);
 //! - [`collision`]: what stops its drops: a map of the surfaces that the rain meets;
 //! - [`motion`], [`volume`], [`step`]: what a step is made of;
-//! - [`view`]: what a camera can resolve.
+//! - [`view`]: what a camera can resolve; [`resolved`]: which drops a list for a picture holds.
 //!
 //! Units are SI; rates are in mm/h where the name says so. Axes are those of glTF: right-handed, +Y up.
 
@@ -20,6 +20,7 @@ pub mod motion;
 mod plan;
 mod poisson;
 mod population;
+pub mod resolved;
 pub mod shelter;
 pub mod simulation;
 pub mod step;

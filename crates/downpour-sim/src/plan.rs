@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3};
 
 use crate::SimError;
 use crate::population::{Population, box_centre};
+use crate::resolved::{Region, Resolved};
 use crate::simulation::{Drag, SimVolume, SimulationOptions, WIDER};
 use crate::step::StepFrame;
 use crate::view::View;
@@ -25,6 +26,7 @@ const TIMES_S: std::ops::RangeInclusive<f64> = 1.0e-5..=1.0;
 pub(crate) struct Plan {
     pub(crate) options: SimulationOptions,
     pub(crate) least_pixels: f64,
+    pub(crate) least_diameter: f64,
     view: View,
     origin: DVec3,
     step: u32,
@@ -42,8 +44,9 @@ impl Plan {
         view.check()?;
         let wide = widened(view);
         let drops = Population::new(rain, &options.volume, &wide, options.most_drops, options.seed)?;
-        let least_pixels = drops.least_pixels;
-        Ok((Self { options: options.clone(), least_pixels, view: wide, origin, step: 0 }, drops))
+        let Population { least_pixels, least_diameter, .. } = drops;
+        let options = options.clone();
+        Ok((Self { options, least_pixels, least_diameter, view: wide, origin, step: 0 }, drops))
     }
 
     /// The view of now, as wide as drops are simulated.
@@ -53,6 +56,26 @@ impl Plan {
 
     pub(crate) fn origin(&self) -> DVec3 {
         self.origin
+    }
+
+    /// Limits of the list of drops that a picture can show.
+    pub(crate) fn resolved(&self, view: &View) -> Resolved {
+        let region = match self.options.volume {
+            SimVolume::View => Region::Everywhere,
+            SimVolume::Box { size_m } => {
+                let size = DVec3::from(size_m);
+                Region::Box { center: box_centre(&self.view, size), size }
+            }
+            SimVolume::ImSung => {
+                let radius = 0.5 * self.view.far;
+                Region::Sphere { center: self.view.eye + self.view.forward * radius, radius }
+            }
+            SimVolume::Tariq { size_m } => Region::Box { center: self.view.eye, size: size_m.into() },
+            SimVolume::Cylinder { base_m, radius_m, height_m } => {
+                Region::Cylinder { base: base_m.into(), radius: radius_m, height: height_m }
+            }
+        };
+        Resolved { least_diameter: self.least_diameter, region, ..Resolved::of(view, self.least_pixels) }
     }
 
     /// The frames of a time in which the camera comes to `view`: one, or as many as the time is too long for.

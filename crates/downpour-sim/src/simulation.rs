@@ -228,7 +228,6 @@ pub struct Simulation {
     pub(crate) plan: Plan,
     pub(crate) speeds: Vec<f32>,
     pub(crate) drops: Vec<StepDrop>,
-    pub(crate) least_diameter: f64,
 }
 
 impl Simulation {
@@ -245,7 +244,7 @@ impl Simulation {
         let law = TerminalSpeed::new(rain.options().fall_speed, &rain.options().air);
         let speeds = motion_table(&law);
         let drops = begin(&plan, &population, &speeds, moment)?;
-        Ok(Self { plan, speeds, drops, least_diameter: population.least_diameter })
+        Ok(Self { plan, speeds, drops })
     }
 
     /// Lets time pass, up to 1 s; the camera comes to the moment's. Times above 1/30 s are cut into equal steps.
@@ -301,7 +300,7 @@ impl Simulation {
     /// The least diameter, m: smaller drops are left to extinction.
     #[must_use]
     pub fn least_diameter(&self) -> f64 {
-        self.least_diameter
+        self.plan.least_diameter
     }
 
     /// The drops that a picture can show.
@@ -367,7 +366,7 @@ pub(crate) fn visible(plan: &Plan, drops: &[StepDrop], view: &View) -> VisibleDr
     VisibleDrops {
         drops: drops.par_iter().enumerate().filter_map(shown).collect(),
         simulated: drops.len() as u64,
-        least_pixels,
+        resolved: plan.resolved(view),
     }
 }
 

@@ -104,7 +104,7 @@ fn a_camera_sees_the_drops_of_the_box() -> Outcome {
     let eye = DVec3::new(1.0e3, 1.7, -2.0e3);
     let view = View { eye, forward, right, up: right.cross(forward), least_pixels: 1.0, ..View::default() };
     let seen = field.visible(&view, 9.0)?;
-    assert_eq!(seen.least_pixels, 1.0);
+    assert_eq!(seen.resolved.least_pixels, 1.0);
     // The largest drop, 8 mm, is a pixel wide at 6.2 m.
     let all = field.in_box(eye - 2.5, eye + 2.5, 9.0)?;
     let inside = |drop: &FallingDrop| {
@@ -147,7 +147,7 @@ fn too_many_drops_are_cut_at_a_larger_size() -> Outcome {
     let field = RainField::new(&rain(100.0)?, 0)?;
     let fine = View { pixel_angle: 1.0e-4, most_drops: 50_000, ..View::default() };
     let seen = field.visible(&fine, 0.0)?;
-    assert!(seen.least_pixels > fine.least_pixels);
+    assert!(seen.resolved.least_pixels > fine.resolved.least_pixels);
     assert!((10_000..=50_500).contains(&seen.drops.len()), "{}", seen.drops.len());
     Ok(())
 }

@@ -64,7 +64,6 @@ pub struct GpuSimulation {
     /// By whether there is a wind field, and a map.
     kernels: [Option<ComputeKernel>; 4],
     drops: u64,
-    least_diameter: f64,
 }
 
 impl GpuSimulation {
@@ -86,7 +85,7 @@ impl GpuSimulation {
     /// # Errors
     /// [`GpuError`] for what the device does not hold.
     pub fn from_cpu(gpu: &Gpu, simulation: &Simulation) -> Result<Self, GpuError> {
-        let Simulation { mut plan, speeds, drops, least_diameter } = simulation.clone();
+        let Simulation { mut plan, speeds, drops } = simulation.clone();
         let most_events = plan.options.most_events.min(MOST_EVENTS);
         plan.options.most_events = most_events;
         let pieces = (0u32..).step_by(PIECE).zip(drops.chunks(PIECE)).map(|(first, drops)| {
@@ -114,7 +113,6 @@ impl GpuSimulation {
             nowhere: gpu.uniform_buffer("nowhere", &[0u32; 64])?,
             kernels: [const { None }; 4],
             drops: drops.len() as u64,
-            least_diameter,
             gpu: gpu.clone(),
             plan,
         })
@@ -235,7 +233,7 @@ impl GpuSimulation {
     /// The least diameter, m: smaller drops are left to extinction.
     #[must_use]
     pub fn least_diameter(&self) -> f64 {
-        self.least_diameter
+        self.plan.least_diameter
     }
 
     /// The drops that a picture can show.

@@ -50,7 +50,7 @@ pub(super) fn stats(picture: &Picture, told: &Told<'_>) -> Value {
         "drops_on_screen": picture.drops_on_screen,
         "asked_rate_mm_h": number(told.asked_rate_mm_h),
         "measured_rate_mm_h": told.measured_rate_mm_h.map(number),
-        "least_pixels": number(told.rain.least_pixels),
+        "least_pixels": number(told.rain.resolved.least_pixels),
         "time_s": number(told.time_s),
         "seed": told.seed,
         "triangles": told.triangles,
