@@ -86,7 +86,7 @@ impl Shower {
     ///
     /// # Errors
     /// As [`Shower::at`].
-    pub fn veil(&self, stage: &Stage, visible: &VisibleDrops) -> Result<Veil, ShowerError> {
+    pub fn veil(&self, visible: &VisibleDrops) -> Result<Veil, ShowerError> {
         Ok(Veil::new(&self.law, |diameter| visible.resolved.range(diameter))?)
     }
 

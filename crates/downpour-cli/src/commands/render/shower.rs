@@ -40,7 +40,7 @@ impl Showers {
     pub(super) fn at(&mut self, stage: &Stage, time_s: f64, measure: bool) -> Result<Seen, Failure> {
         let visible = self.shower.at(stage, time_s)?;
         let measured = || self.shower.measured_rate_mm_h(stage, time_s);
-        let veil = self.shower.veil(stage, &visible)?;
+        let veil = self.shower.veil(&visible)?;
         Ok(Seen { visible, veil, measured_rate_mm_h: measure.then(measured).transpose()? })
     }
 }
