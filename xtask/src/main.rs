@@ -7,6 +7,7 @@ mod figures;
 mod goldens;
 mod masks;
 mod run;
+mod scenes;
 mod shaders;
 mod truth;
 
@@ -17,6 +18,8 @@ cargo xtask test              run every test; makes sure of a Vulkan driver firs
 cargo xtask ci                formatting, lints, each crate alone, documentation, then every test
 cargo xtask lint              the same without the tests
 cargo xtask masks [--check]   write assets/masks; with --check compare them with what the code makes, byte for byte
+cargo xtask scenes [--check]  write assets/scenes/street; with --check compare it, byte for byte
+cargo xtask scenes skies      capture the street into the sky maps of assets/skies (--command FILE: a `downpour` that is built)
 cargo xtask atlas [OPTIONS]   write assets/streaks; --check compares them; --columbia imports the streak database
 cargo xtask goldens [--bless] compare the golden images of tests/goldens; with --bless write them from the CPU twins
 cargo xtask shaders [FOLDER]  write the complete WGSL text of every kernel (default target/shaders)
@@ -34,6 +37,10 @@ fn main() -> ExitCode {
         ["masks"] => masks::write(),
         ["masks", "--check"] => masks::check(),
         ["atlas", rest @ ..] => atlas::run(rest),
+        ["scenes"] => scenes::write(),
+        ["scenes", "--check"] => scenes::check(),
+        ["scenes", "skies"] => scenes::write_skies(None),
+        ["scenes", "skies", "--command", program] => scenes::write_skies(Some(program)),
         ["goldens"] => goldens::compare(),
         ["goldens", "--bless"] => goldens::bless(),
         ["shaders"] => shaders::write("target/shaders"),

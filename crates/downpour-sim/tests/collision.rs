@@ -357,24 +357,28 @@ fn random_ways_are_stopped_as_exact_rays_are() {
     assert!(different * 100 < ways, "{different} of {ways}, {hits} of them stopped");
 }
 
-/// A house of the street scene, in its ground.
+/// A house of the street with its neighbours' walls, its shop and its awning.
 #[test]
 fn a_roof_of_the_street_does_not_leak() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/street/models/building_A.gltf");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/street/models/street.gltf");
     let mut budget = downpour_scene::Budget::default();
     let model = downpour_scene::gltf::read_triangles(path.as_ref(), &mut budget).unwrap();
-    let mut scene: Vec<Triangle> = model
-        .indices
-        .iter()
-        .map(|t| t.map(|i| (Vec3::from(model.positions[i as usize]) * 6.0 - at(0.0, 0.45, 0.0)).to_array()))
-        .collect();
+    let middle = at(-10.5, 0.0, -9.25);
+    let corner = |i: u32| Vec3::from(model.positions[i as usize]) - middle;
+    let near = |t: &&[u32; 3]| t.iter().all(|&i| corner(i).with_y(0.0).abs().max_element() < 7.0);
+    let mut scene: Vec<Triangle> =
+        model.indices.iter().filter(near).map(|t| t.map(|i| corner(i).to_array())).collect();
+    assert!(scene.len() > 5000, "{} triangles of a house", scene.len());
     scene.extend(floor([-30.0, -30.0], [30.0, 30.0], 0.0));
-    // What is got wrong beside the fall of the map are balconies: more than four surfaces above each other, open at a side.
-    // Measured late: 0.06 %, 0.14 %, 1.06 %; early: 0.06 %, 0.15 %, 0.07 %.
-    for (fall, way, bound) in [(0.0, 0.0, 0.002), (30.0, 30.0, 0.003), (0.0, 30.0, 0.015)] {
+    // Edges are known to half a texel, 2.5 cm: gutters, ledges and the awning have some 60 m of them in 100 m^2. Beside the fall of
+    // the map there are also more than four surfaces above each other, open at a side.
+    // Measured late: 0.35 %, 0.18 %, 0.45 %; early: 0.06 %, 0.03 %, 0.63 %.
+    for (fall, way, most_early, most_late) in
+        [(0.0, 0.0, 0.002, 0.005), (30.0, 30.0, 0.002, 0.004), (0.0, 30.0, 0.009, 0.007)]
+    {
         let map = map(&scene, slanted(fall), 24.0, 480);
         let [early, late] = strays(&scene, &map, slanted(way), 10.0, 100_000);
-        assert!(late < bound && early < 0.003, "fall {fall}, way {way}: early {early}, late {late}");
+        assert!(late < most_late && early < most_early, "fall {fall}, way {way}: early {early}, late {late}");
     }
 }
 
