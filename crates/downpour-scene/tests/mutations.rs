@@ -6,7 +6,7 @@ mod document;
 #[path = "scene/figure.rs"]
 mod figure;
 
-use document::{check, check_message, check_scene, data, floats, glb, spoiled, triangle, with};
+use document::{check, check_message, check_scene, floats, glb, modes, spoiled, triangle, with};
 use downpour_math::rng::{rng_draw, seed_words};
 use downpour_scene::gltf::{read_scene_from_bytes, read_triangles_from_bytes};
 use downpour_scene::{Budget, SceneError};
@@ -47,7 +47,6 @@ const TOKENS: [&str; 24] = [
 
 /// Small valid files of several kinds.
 fn seeds() -> Vec<(&'static str, Vec<u8>)> {
-    let file = |name: &str| fs::read(data().join(name)).expect("a test file");
     let mut sparse = floats(&[0.0; 18]);
     sparse.extend([0, 0, 1, 0, 2, 0, 0, 0, 1, 0, 2, 0]);
     let sparse = with(
@@ -82,8 +81,8 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
         ("figure", figure::figure().to_string().into_bytes()),
         ("painted", painted().to_string().into_bytes()),
         ("binary", glb(plain.to_string().as_bytes(), Some(&floats(&[0.0; 20])))),
-        ("modes", file("gltf/MeshPrimitiveModes/MeshPrimitiveModes.gltf")),
-        ("bench", file("gltf/kaykit_city/bench.gltf")),
+        ("modes", modes::document().to_string().into_bytes()),
+        ("bench", model("bench.gltf")),
     ]
 }
 
@@ -120,18 +119,22 @@ fn painted() -> serde_json::Value {
     )
 }
 
+/// A file of the street's models.
+fn model(name: &str) -> Vec<u8> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/street/models");
+    fs::read(format!("{folder}/{name}")).expect("a model of the street")
+}
+
 /// The buffers that the seeds name, spoiled too.
-fn files(mut dice: impl FnMut() -> u32) -> Files {
+fn files(buffers: &Files, mut dice: impl FnMut() -> u32) -> Files {
     let mut files = Files::new();
-    for (name, path) in
-        [("buffer.bin", "gltf/MeshPrimitiveModes/buffer.bin"), ("bench.bin", "gltf/kaykit_city/bench.bin")]
-    {
-        let mut bytes = fs::read(data().join(path)).expect("a test file");
+    for (name, bytes) in buffers {
+        let mut bytes = bytes.clone();
         if dice().is_multiple_of(2) {
             let at = dice() as usize % bytes.len();
             bytes[at] = dice() as u8;
         }
-        files.insert(name.to_owned(), bytes);
+        files.insert(name.clone(), bytes);
     }
     files
 }
@@ -191,7 +194,11 @@ fn read(bytes: &[u8], files: &Files) -> Result<(), SceneError> {
 #[test]
 fn mutated_files_never_panic() {
     let seeds = seeds();
-    let whole = files(|| 1);
+    let buffers = Files::from([
+        ("hexagon.bin".to_owned(), modes::buffer()),
+        ("bench.bin".to_owned(), model("bench.bin")),
+    ]);
+    let whole = files(&buffers, || 1);
     for (name, seed) in &seeds {
         read(seed, &whole).unwrap_or_else(|error| panic!("{name}: {error}"));
     }
@@ -206,7 +213,8 @@ fn mutated_files_never_panic() {
         let (name, seed) = &seeds[dice() as usize % seeds.len()];
         let mut bytes = seed.clone();
         mutate(&mut bytes, &mut dice);
-        let files = if matches!(*name, "modes" | "bench") { files(&mut dice) } else { Files::new() };
+        let files =
+            if matches!(*name, "modes" | "bench") { files(&buffers, &mut dice) } else { Files::new() };
         match catch_unwind(|| read(&bytes, &files)) {
             Ok(Ok(())) => passed += 1,
             Ok(Err(error)) => {

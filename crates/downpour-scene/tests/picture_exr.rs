@@ -15,11 +15,6 @@ fn read(bytes: &[u8]) -> Read {
     decode("a.exr", bytes, &mut Budget::default())
 }
 
-fn bad_input(name: &str) -> Vec<u8> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/bad_inputs");
-    std::fs::read(format!("{folder}/{name}")).expect("a file of the repository")
-}
-
 /// Refused at once, with this code and these words.
 #[track_caller]
 fn refused(bytes: &[u8], code: u8, words: &str) {
@@ -133,8 +128,6 @@ fn grey_is_read_and_chroma_is_not() {
 
 #[test]
 fn e1_e2_dwa_is_refused_by_its_header() {
-    refused(&bad_input("p_dwa_v1.exr"), 2, "DWA");
-    refused(&bad_input("exr_dwa_alloc.exr"), 2, "DWA");
     for (scheme, name) in [(8, "DWAA"), (9, "DWAB"), (10, "HTJ2K"), (77, "an unknown scheme (77)")] {
         refused(&with(|file| file.compression = scheme), 2, name);
     }
@@ -142,14 +135,14 @@ fn e1_e2_dwa_is_refused_by_its_header() {
 
 #[test]
 fn e3_b44_is_refused_by_its_header() {
-    refused(&bad_input("imgexr_abort.exr"), 2, "B44");
     refused(&with(|file| file.compression = 6), 2, "B44 (6) is not supported; allowed: none, RLE, ZIPS");
     refused(&with(|file| file.compression = 7), 2, "save the file again");
 }
 
 #[test]
 fn e4_e5_sizes_are_limited_before_memory_is_taken() {
-    refused(&bad_input("a2_100k_sq.exr"), 3, "100000 x 100000 pixels");
+    let huge = [0, 0, 99_999, 99_999];
+    refused(&with(|file| (file.data, file.display) = (huge, huge)), 3, "100000 x 100000 pixels");
     refused(&tiled(16_384, [1, 1], 1), 3, "");
     refused(&tiled(6000, [1, 1], 1), 3, "");
     refused(&tiled(1500, [1, 1], 1), 3, "blocks; allowed: at most 1048576");

@@ -152,9 +152,9 @@ pub(super) fn make() -> Vec<WeatherFile> {
                 "\n[camera]\nposition_m = [1.2, 1.2, 9]\nlook_at_m = [-0.2, 1.5, -20]\nfov_deg = 40\nshutter_s = 0.0167\n\
                  exposure_ev = -1.8\n",
                 SIZE,
-                "\n[glass]\ndistance_m = 0.42\ntilt_deg = 60\nsize_m = [0.6, 0.44]\ncell_mm = 1\nspeed_m_s = 8\n\
-                 focus = \"glass\"\naperture_mm = 6\nbefore_s = 60.45\n[[glass.wiper]]\npivot_m = [0.3, 0.48]\nlength_m = 0.42\n\
-                 from_deg = 10\nto_deg = 170\nperiod_s = 3\nworn = [{ from_m = 0.28, to_m = 0.29 }]\n",
+                "\n[glass]\ndistance_m = 0.34\ntilt_deg = 60\nsize_m = [0.5, 0.37]\ncell_mm = 0.85\nspeed_m_s = 8\n\
+                 focus = \"glass\"\naperture_mm = 6\nbefore_s = 60.45\n[[glass.wiper]]\npivot_m = [0.25, 0.41]\nlength_m = 0.36\n\
+                 from_deg = 10\nto_deg = 170\nperiod_s = 3\nworn = [{ from_m = 0.24, to_m = 0.249 }]\n",
             ],
         ),
     ]

@@ -7,7 +7,6 @@ mod document;
 mod figure;
 mod materials;
 mod moving;
-mod samples;
 mod shapes;
 
 use document::{check_message, data_uri};

@@ -1,27 +1,14 @@
-//! Models that others have made. Those that are not in the repository are looked for in the folder that
-//! `DOWNPOUR_MODELS` names, then in `shared/data/gltf` beside the repository; a test whose model is nowhere says so
-//! and ends.
+//! Sample models: what is read is what they are known to hold.
 
-use crate::document::{check_scene, data};
+use crate::document::check_scene;
+use crate::folder;
 use downpour_scene::gltf::{read_scene, read_triangles};
 use downpour_scene::scene::{AlphaMode, Interpolation, Lens, LightKind, Scene, skin_primitive};
 use downpour_scene::{Budget, WarningKind};
 use glam::{Vec2, Vec3};
-use std::path::PathBuf;
 
-fn place(name: &str) -> Option<PathBuf> {
-    let beside = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/gltf"));
-    let named = std::env::var_os("DOWNPOUR_MODELS").map(PathBuf::from);
-    let folders = [Some(data().join("gltf")), named, Some(beside)];
-    let found = folders.into_iter().flatten().map(|folder| folder.join(name)).find(|path| path.is_file());
-    if found.is_none() {
-        println!("{name} is not there: nothing is tested of it");
-    }
-    found
-}
-
-fn model(name: &str) -> Option<Scene> {
-    let path = place(name)?;
+fn model(name: &str) -> Scene {
+    let path = folder("gltf").join(name);
     let scene = read_scene(&path, &mut Budget::default()).unwrap_or_else(|error| panic!("{error}"));
     check_scene(&scene);
     // The reader of triangles agrees on where everything is, unless skins bend it.
@@ -34,7 +21,7 @@ fn model(name: &str) -> Option<Scene> {
             assert!(near(low, l) && near(high, h), "{name}");
         }
     }
-    Some(scene)
+    scene
 }
 
 /// Meshes, nodes, materials, textures, animations, lights, cameras, triangles.
@@ -51,8 +38,7 @@ fn counts(scene: &Scene) -> [usize; 8] {
     ]
 }
 
-#[test]
-fn models_are_read_whole() {
+pub(crate) fn models_are_read_whole() {
     let expected = [
         ("AlphaBlendModeTest/AlphaBlendModeTest.glb", [9, 9, 6, 4, 0, 0, 0, 61]),
         ("CesiumMilkTruck/CesiumMilkTruck.glb", [2, 6, 4, 1, 1, 0, 0, 2856]),
@@ -69,7 +55,8 @@ fn models_are_read_whole() {
         ("playcanvas/Lights.glb", [1, 11, 1, 0, 0, 4, 1, 12]),
     ];
     for (name, expected) in expected {
-        if let Some(scene) = model(name) {
+        {
+            let scene = model(name);
             assert_eq!(counts(&scene), expected, "{name}");
             assert!(
                 scene.warnings.iter().all(|warning| !warning.kind.is_loss()),
@@ -80,9 +67,8 @@ fn models_are_read_whole() {
     }
 }
 
-#[test]
-fn the_toy_car_has_glass_and_eyes() {
-    let Some(scene) = model("ToyCar/ToyCar.gltf") else { return };
+pub(crate) fn the_toy_car_has_glass_and_eyes() {
+    let scene = model("ToyCar/ToyCar.gltf");
     let [car, fabric, glass] = &scene.materials[..] else { panic!("three materials") };
     assert_eq!((glass.transmission, glass.roughness, glass.ior), (1.0, 0.0, 1.5));
     assert_eq!(fabric.normal_texture.expect("a map").at(Vec2::ONE), Vec2::splat(3.0));
@@ -105,9 +91,9 @@ fn the_toy_car_has_glass_and_eyes() {
     assert!(pose.cameras[0].forward.dot(-pose.cameras[0].eye.normalize()) > 0.8);
 }
 
-#[test]
-fn lamps_stand_where_the_file_says() {
-    if let Some(scene) = model("LightsPunctualLamp/LightsPunctualLamp.gltf") {
+pub(crate) fn lamps_stand_where_the_file_says() {
+    {
+        let scene = model("LightsPunctualLamp/LightsPunctualLamp.gltf");
         let candela: Vec<f32> = scene.lights.iter().map(|light| light.intensity).collect();
         assert_eq!(candela, [15.0, 1.5, 80.0, 80.0, 180.0]);
         let pose = scene.pose(None, 0.0);
@@ -117,7 +103,8 @@ fn lamps_stand_where_the_file_says() {
         assert_eq!(scene.materials[1].alpha_mode, AlphaMode::Blend);
         assert!(scene.meshes.iter().flat_map(|mesh| &mesh.primitives).all(|part| !part.tangents.is_empty()));
     }
-    if let Some(scene) = model("playcanvas/Lights.glb") {
+    {
+        let scene = model("playcanvas/Lights.glb");
         let pose = scene.pose(None, 0.0);
         assert_eq!(
             scene.lights[1].kind,
@@ -131,15 +118,16 @@ fn lamps_stand_where_the_file_says() {
     }
 }
 
-#[test]
-fn strengths_and_cutoffs() {
-    if let Some(scene) = model("EmissiveStrengthTest/EmissiveStrengthTest.glb") {
+pub(crate) fn strengths_and_cutoffs() {
+    {
+        let scene = model("EmissiveStrengthTest/EmissiveStrengthTest.glb");
         for (material, strength) in [(0, 4.0), (2, 2.0), (3, 1.0), (4, 8.0), (5, 16.0)] {
             let expected = Vec3::new(0.1, 0.5, 0.9) * strength;
             assert!(scene.materials[material].emissive.distance(expected) < 1e-5, "{material}");
         }
     }
-    if let Some(scene) = model("AlphaBlendModeTest/AlphaBlendModeTest.glb") {
+    {
+        let scene = model("AlphaBlendModeTest/AlphaBlendModeTest.glb");
         let modes: Vec<AlphaMode> = scene.materials.iter().map(|material| material.alpha_mode).collect();
         let mask = |cutoff| AlphaMode::Mask { cutoff };
         assert_eq!(
@@ -147,7 +135,8 @@ fn strengths_and_cutoffs() {
             [AlphaMode::Opaque, AlphaMode::Blend, mask(0.25), mask(0.75), mask(0.5), AlphaMode::Opaque]
         );
     }
-    if let Some(scene) = model("GlassBrokenWindow/GlassBrokenWindow.glb") {
+    {
+        let scene = model("GlassBrokenWindow/GlassBrokenWindow.glb");
         assert_eq!(
             (scene.materials[1].transmission, scene.materials[1].alpha_mode),
             (1.0, AlphaMode::Mask { cutoff: 0.5 })
@@ -156,9 +145,8 @@ fn strengths_and_cutoffs() {
 }
 
 /// Nine cubes, each moving in its way: at each key the key's value, between them the formula's.
-#[test]
-fn cubes_move_in_nine_ways() {
-    let Some(scene) = model("InterpolationTest/InterpolationTest.glb") else { return };
+pub(crate) fn cubes_move_in_nine_ways() {
+    let scene = model("InterpolationTest/InterpolationTest.glb");
     let mut kinds = Vec::new();
     for (index, animation) in scene.animations.iter().enumerate() {
         let [channel] = &animation.channels[..] else { panic!("one channel") };
@@ -213,9 +201,8 @@ fn cubes_move_in_nine_ways() {
 }
 
 /// The wheels of the truck turn about their axles: the axle stays, the rim moves.
-#[test]
-fn wheels_turn() {
-    let Some(scene) = model("CesiumMilkTruck/CesiumMilkTruck.glb") else { return };
+pub(crate) fn wheels_turn() {
+    let scene = model("CesiumMilkTruck/CesiumMilkTruck.glb");
     let length = scene.animations[0].length_s();
     let (start, quarter) = (scene.pose(Some(0), 0.0), scene.pose(Some(0), length * 0.25));
     for node in [0, 2] {
@@ -231,9 +218,8 @@ fn wheels_turn() {
 }
 
 /// 84 skinned instances, nested deeply: all finite, and inside the box that the pose gives.
-#[test]
-fn recursive_skeletons_stay_finite() {
-    let Some(scene) = model("RecursiveSkeletons/RecursiveSkeletons.glb") else { return };
+pub(crate) fn recursive_skeletons_stay_finite() {
+    let scene = model("RecursiveSkeletons/RecursiveSkeletons.glb");
     for time in [0.0, 0.3, 1.7] {
         let pose = scene.pose(Some(0), time);
         assert_eq!((pose.instances.len(), pose.left_out), (84, 0));
@@ -256,9 +242,8 @@ fn recursive_skeletons_stay_finite() {
 }
 
 /// Mirrored instances are known, and their triangles face the same way as those of the other reader.
-#[test]
-fn negative_scales_are_known() {
-    let Some(scene) = model("NegativeScaleTest/NegativeScaleTest.glb") else { return };
+pub(crate) fn negative_scales_are_known() {
+    let scene = model("NegativeScaleTest/NegativeScaleTest.glb");
     let pose = scene.pose(None, 0.0);
     let mirrored = pose.instances.iter().filter(|instance| instance.mirrored).count();
     assert!(mirrored > 0 && mirrored < pose.instances.len(), "{mirrored}");
