@@ -349,10 +349,8 @@ fn middle(
         };
         let visible = RainField::new(&law(rate), seed)?.visible(&seen, 3.0)?;
         let medium = RainMedium::new(&law(rate), &visible.resolved, masks, &MediumOptions::default())?;
-        let exposure = Exposure { shutter_s: 1.0 / 60.0, ..Exposure::default() };
         let rain = RainOptions {
             medium,
-            exposure,
             capture_size: 64,
             light: DropLightOptions::default(),
             ..RainOptions::default()

@@ -46,8 +46,11 @@ shared_constants! {
         MEDIUM_LAMP_REACH: f32 = 1000.0;
         /// Intervals of the scattering angle.
         MEDIUM_ANGLES: u32 = 256;
-        /// Parts of a ray for each lamp.
-        MEDIUM_PARTS: u32 = 16;
+        /// Parts of a ray for each lamp, at most: a slice each, cut where the direction to the lamp turns by more than
+        /// MEDIUM_TURN.
+        MEDIUM_PARTS: u32 = 32;
+        /// Angle, radians: 13 parts of half a turn.
+        MEDIUM_TURN: f32 = 0.25;
         /// Number of the lattice of a pixel's ray to a lamp.
         MEDIUM_LATTICE: u32 = 4096;
         /// Dimension of the random numbers of the grid.

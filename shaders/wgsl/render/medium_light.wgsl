@@ -119,30 +119,29 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
     let h = sqrt(dot(aside, aside) + least * least + 1.0e-8);
     // The angle at the lamp, between the ray's direction and the place, runs from behind the drops to before them.
     let first = atan2(h, nearest - lit.x);
-    let last = atan2(h, nearest - lit.y);
     var next = sum;
     var near = lit.x;
     var near_depth = medium_depth(near, region, outline);
+    var near_angle = first;
     var near_phase = medium_light_phase(first);
-    for (var part = 1u; part <= MEDIUM_PARTS; part += 1u) {
-        let along = f32(part) / f32(MEDIUM_PARTS);
-        let angle = first + (last - first) * along;
-        var far = select(nearest - h * cos(angle) / max(sin(angle), 1.0e-6), lit.y, part == MEDIUM_PARTS);
-        if parallel {
-            far = lit.x + (lit.y - lit.x) * along * along;
-        }
-        far = clamp(far, near, lit.y);
+    for (var part = 0u; part < MEDIUM_PARTS && near < lit.y; part += 1u) {
+        // To the end of the slice, or as far as the direction to the lamp turns by some degrees.
+        let slice = medium_node(2u * u32(0.5 * (3.0 * log2(max(near * 1.001 / MEDIUM_NEAR, 1.0)) + 1.0)) + 1u);
+        let turned = near_angle + MEDIUM_TURN;
+        let turn = select(nearest - h * cos(turned) / max(sin(turned), 1.0e-6), MEDIUM_FAR, parallel || turned > 3.1);
+        let far = select(min(min(slice, max(turn, near * 1.001)), lit.y), lit.y, part + 1u == MEDIUM_PARTS);
         let far_depth = medium_depth(far, region, outline);
-        let far_phase = medium_light_phase(angle);
-        let middle = 0.5 * (near + far);
-        let light = scene_light(index, eye + direction * middle, 0.0);
+        let far_angle = atan2(h, nearest - far);
+        let far_phase = medium_light_phase(far_angle);
+        let middle = nearest - h * cos(0.5 * (near_angle + far_angle)) / max(sin(0.5 * (near_angle + far_angle)), 1.0e-6);
+        let light = scene_light(index, eye + direction * clamp(middle, near, far), 0.0);
         var given = light.irradiance * 3.1415927;
         if parallel {
             // Half an interval of the table to each side.
-            let turned = drop_glint_angle(light.direction, direction) * 3.1415927;
+            let toward = drop_glint_angle(light.direction, direction) * 3.1415927;
             let width = 3.1415927 / f32(MEDIUM_ANGLES);
-            let low = max(turned - 0.5 * width, 0.0);
-            let high = min(turned + 0.5 * width, 3.1415927);
+            let low = max(toward - 0.5 * width, 0.0);
+            let high = min(toward + 0.5 * width, 3.1415927);
             let phase = (medium_light_phase(high) - medium_light_phase(low)) / (high - low);
             given *= phase * (exp(-near_depth) - exp(-far_depth));
         } else {
@@ -153,6 +152,7 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
         next = medium_light_add(next, max(given, vec3f(0.0)), index, near, far);
         near = far;
         near_depth = far_depth;
+        near_angle = far_angle;
         near_phase = far_phase;
     }
     return next;

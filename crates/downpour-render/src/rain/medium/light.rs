@@ -7,15 +7,15 @@ use downpour_math::ops;
 use downpour_math::rng::rng_unit;
 use downpour_shaders::render::drop_light::DROP_LIGHT_ENTRIES;
 use downpour_shaders::render::medium::{
-    MEDIUM_ANGLES, MEDIUM_DARK, MEDIUM_FAR, MEDIUM_LAMP_REACH, MEDIUM_LAMPS, MEDIUM_LATTICE, MEDIUM_PARTS,
-    MEDIUM_SKY, MEDIUM_SKY_REACH, MEDIUM_SLICES, MEDIUM_SPOTS,
+    MEDIUM_ANGLES, MEDIUM_DARK, MEDIUM_FAR, MEDIUM_LAMP_REACH, MEDIUM_LAMPS, MEDIUM_LATTICE, MEDIUM_NEAR,
+    MEDIUM_PARTS, MEDIUM_SKY, MEDIUM_SKY_REACH, MEDIUM_SLICES, MEDIUM_SPOTS, MEDIUM_TURN,
 };
 use downpour_shaders::render::scene::{SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS};
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::MediumFrame;
-use super::frame::{medium_both, medium_roots};
+use super::frame::{medium_both, medium_node, medium_roots};
 use crate::rain::glint::drop_glint_angle;
 use crate::rain::light::{DropLightForm, DropLightTable, DropLights, drop_light_mean};
 use crate::scene::{SceneView, scene_lattice, scene_share};
@@ -204,33 +204,34 @@ impl<'a> MediumLight<'a> {
         let least = 0.284 * pixel * nearest.max(0.0);
         let h = (aside.dot(aside) + least * least + 1.0e-8).sqrt();
         let first = ops::atan2(h, nearest - lit.x);
-        let last = ops::atan2(h, nearest - lit.y);
+        // Distance at which the lamp stands at an angle.
+        let at_angle = |angle: f32| nearest - h * ops::cos(angle) / ops::sin(angle).max(1.0e-6);
         let mut next = sum;
         let mut near = lit.x;
         let mut near_depth = medium.medium_depth(near, region, outline);
+        let mut near_angle = first;
         let mut near_phase = self.medium_light_phase(first);
-        for part in 1..=MEDIUM_PARTS {
-            let along = part as f32 / MEDIUM_PARTS as f32;
-            let angle = first + (last - first) * along;
-            let mut far = if part == MEDIUM_PARTS {
-                lit.y
-            } else {
-                nearest - h * ops::cos(angle) / ops::sin(angle).max(1.0e-6)
-            };
-            if parallel {
-                far = lit.x + (lit.y - lit.x) * along * along;
+        for part in 0..MEDIUM_PARTS {
+            if near >= lit.y {
+                break;
             }
-            far = far.clamp(near, lit.y);
+            let position = 3.0 * ops::log2((near * 1.001 / MEDIUM_NEAR).max(1.0));
+            let slice = medium_node(2 * (0.5 * (position + 1.0)) as u32 + 1);
+            let turned = near_angle + MEDIUM_TURN;
+            let turn = if parallel || turned > 3.1 { MEDIUM_FAR } else { at_angle(turned) };
+            let ends = part + 1 == MEDIUM_PARTS;
+            let far = if ends { lit.y } else { slice.min(turn.max(near * 1.001)).min(lit.y) };
             let far_depth = medium.medium_depth(far, region, outline);
-            let far_phase = self.medium_light_phase(angle);
-            let middle = 0.5 * (near + far);
-            let light = self.view.scene_light(index, eye + direction * middle, 0.0);
+            let far_angle = ops::atan2(h, nearest - far);
+            let far_phase = self.medium_light_phase(far_angle);
+            let middle = at_angle(0.5 * (near_angle + far_angle));
+            let light = self.view.scene_light(index, eye + direction * middle.clamp(near, far), 0.0);
             let mut given = light.irradiance * PI;
             if parallel {
-                let turned = drop_glint_angle(light.direction, direction) * PI;
+                let toward = drop_glint_angle(light.direction, direction) * PI;
                 let width = PI / MEDIUM_ANGLES as f32;
-                let low = (turned - 0.5 * width).max(0.0);
-                let high = (turned + 0.5 * width).min(PI);
+                let low = (toward - 0.5 * width).max(0.0);
+                let high = (toward + 0.5 * width).min(PI);
                 let phase = (self.medium_light_phase(high) - self.medium_light_phase(low)) / (high - low);
                 given *= phase * (ops::exp(-near_depth) - ops::exp(-far_depth));
             } else {
@@ -240,7 +241,7 @@ impl<'a> MediumLight<'a> {
                 given *= (far_phase - near_phase) * (square / h * density * passed);
             }
             next = medium_light_add(next, given.max(Vec3::ZERO), index, near, far);
-            (near, near_depth, near_phase) = (far, far_depth, far_phase);
+            (near, near_depth, near_angle, near_phase) = (far, far_depth, far_angle, far_phase);
         }
         next
     }
