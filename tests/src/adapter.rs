@@ -14,6 +14,16 @@ pub fn switched_off() -> bool {
     std::env::var(SWITCH).is_ok_and(|v| v == "no")
 }
 
+/// What to do where no adapter opens, in one line.
+#[must_use]
+pub fn missing(error: &GpuError) -> String {
+    let said = error.to_string().replace('\n', " ");
+    format!(
+        "no GPU to test on ({said}): run `cargo xtask test`, which installs a software driver where it may, or install one \
+         (Debian: apt-get install libvulkan1 mesa-vulkan-drivers), or set {SWITCH}=no to leave these tests out"
+    )
+}
+
 /// A device with the limits that every WebGPU implementation has.
 ///
 /// # Errors

@@ -17,7 +17,14 @@ type Outcome = Result<(), Failed>;
 type Test = (&'static str, fn() -> Outcome);
 
 fn main() -> ExitCode {
-    let off = adapter::switched_off();
+    let (arguments, off) = (Arguments::from_args(), adapter::switched_off());
+    if !off
+        && !arguments.list
+        && let Err(error) = adapter::open()
+    {
+        eprintln!("{}", adapter::missing(&error));
+        return ExitCode::FAILURE;
+    }
     let tests: [Test; 11] = [
         ("what_is_written_is_read", what_is_written_is_read),
         ("limits_are_checked_first", limits_are_checked_first),
@@ -33,7 +40,7 @@ fn main() -> ExitCode {
     ];
     let trials =
         tests.into_iter().map(|(name, test)| Trial::test(name, test).with_ignored_flag(off)).collect();
-    libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
+    libtest_mimic::run(&arguments, trials).exit_code()
 }
 
 fn check(holds: bool, what: impl Into<String>) -> Outcome {

@@ -1,6 +1,6 @@
 //! Every function-level and kernel-level case on the machine's adapter, each followed by its negative controls.
 //!
-//! No adapter is a failure; `DOWNPOUR_GPU_TESTS=no` shows the cases as ignored. The worst error of each case is
+//! No adapter is a failure, told in one line; `DOWNPOUR_GPU_TESTS=no` shows the cases as ignored. The worst error of each case is
 //! written to `target/parity/<adapter>.csv`.
 
 use std::process::ExitCode;
@@ -17,6 +17,10 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let off = adapter::switched_off();
     let gpu = if off || arguments.list { None } else { Some(adapter::open()) };
+    if let Some(Err(error)) = &gpu {
+        eprintln!("{}", adapter::missing(error));
+        return ExitCode::FAILURE;
+    }
     let gpu = Arc::new(gpu);
     let report = Arc::new(Report::default());
 
@@ -63,7 +67,7 @@ fn main() -> ExitCode {
 fn open(gpu: &Option<Result<Gpu, GpuError>>) -> Result<&Gpu, Failed> {
     match gpu {
         Some(Ok(gpu)) => Ok(gpu),
-        Some(Err(error)) => Err(format!("{error} (or say {}=no)", adapter::SWITCH).into()),
+        Some(Err(error)) => Err(error.to_string().into()),
         None => Err("no adapter was asked for".into()),
     }
 }

@@ -1,6 +1,8 @@
 //! A Vulkan driver for the tests: found, or installed where that can be done without asking.
 
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::time::Duration;
 
 use crate::run::command;
 
@@ -62,14 +64,89 @@ fn is_root() -> bool {
     uid.is_ok_and(|out| String::from_utf8_lossy(&out.stdout).trim() == "0")
 }
 
+/// How long another run of the package manager is waited for.
+const PATIENCE: Duration = Duration::from_secs(600);
+const PAUSE: Duration = Duration::from_secs(3);
+
+/// Runs apt-get; while another one holds its lock, waits.
 fn apt(arguments: &[&str]) -> Result<(), String> {
-    let status = command("apt-get", arguments)
-        .env("DEBIAN_FRONTEND", "noninteractive")
-        .status()
-        .map_err(|error| format!("apt-get did not start: {error}"))?;
-    if status.success() {
-        Ok(())
-    } else {
-        Err(format!("apt-get {} failed; by hand:\n  {BY_HAND}", arguments.join(" ")))
+    // The option covers the lock of the installed packages; the one of the lists is waited for here.
+    let timeout = format!("DPkg::Lock::Timeout={}", PATIENCE.as_secs());
+    let arguments = [&["-o", &timeout], arguments].concat();
+    let attempt = || {
+        let out = command("apt-get", &arguments)
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .env("LC_ALL", "C")
+            .stdin(Stdio::null())
+            .output()
+            .map_err(|error| format!("apt-get did not start: {error}"))?;
+        let said = String::from_utf8_lossy(&out.stderr).into_owned();
+        Ok(if out.status.success() { Ok(()) } else { Err(said) })
+    };
+    let pauses = PATIENCE.as_secs() / PAUSE.as_secs();
+    match patiently(pauses, attempt, || std::thread::sleep(PAUSE))? {
+        Ok(()) => Ok(()),
+        Err(said) => {
+            eprint!("{said}");
+            Err(format!("apt-get {} failed; by hand:\n  {BY_HAND}", arguments.join(" ")))
+        }
+    }
+}
+
+/// The result of the first attempt that no lock stands against, or of the last one after so many pauses.
+fn patiently(
+    pauses: u64,
+    mut attempt: impl FnMut() -> Result<Result<(), String>, String>,
+    mut pause: impl FnMut(),
+) -> Result<Result<(), String>, String> {
+    for count in 0..pauses {
+        match attempt()? {
+            Err(said) if is_locked(&said) => {
+                if count == 0 {
+                    println!("another run of the package manager holds its lock; waiting");
+                }
+                pause();
+            }
+            ended => return Ok(ended),
+        }
+    }
+    attempt()
+}
+
+/// Whether apt-get ended as another process holds a lock.
+fn is_locked(said: &str) -> bool {
+    ["Could not get lock", "Unable to lock", "Unable to acquire the dpkg frontend lock", "is another process using it"]
+        .iter()
+        .any(|words| said.contains(words))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LOCKED: &str = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (apt-get)\n\
+        E: Unable to lock directory /var/lib/apt/lists/\n";
+
+    /// Ends as in the list, one after the other: attempts, pauses, and how it ended.
+    fn run(ends: &[Result<(), &str>], pauses: u64) -> (usize, usize, Result<(), String>) {
+        let (mut attempts, mut waited) = (0, 0);
+        let ended = patiently(
+            pauses,
+            || {
+                attempts += 1;
+                Ok(ends[attempts - 1].map_err(str::to_owned))
+            },
+            || waited += 1,
+        );
+        (attempts, waited, ended.expect("it starts"))
+    }
+
+    #[test]
+    fn a_lock_of_the_package_manager_is_waited_for() {
+        assert_eq!(run(&[Ok(())], 9), (1, 0, Ok(())));
+        assert_eq!(run(&[Err(LOCKED), Err(LOCKED), Ok(())], 9), (3, 2, Ok(())));
+        // Other errors end at once, and patience ends.
+        assert_eq!(run(&[Err("E: no network"), Ok(())], 9), (1, 0, Err("E: no network".to_owned())));
+        assert_eq!(run(&[Err(LOCKED); 4], 3), (4, 3, Err(LOCKED.to_owned())));
     }
 }

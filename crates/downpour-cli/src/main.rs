@@ -11,6 +11,7 @@ mod listing;
 mod output;
 mod quantity;
 mod stream;
+mod threads;
 
 use std::process::ExitCode;
 
@@ -31,8 +32,12 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    // A panic is a defect of ours. It ends in one line and an exit code all the same.
+    // A panic is a defect of ours. It ends in one line and an exit code all the same. One in a decoder of pictures becomes an error
+    // that names the file.
     std::panic::set_hook(Box::new(|panic| {
+        if downpour::scene::picture::is_guarded() {
+            return;
+        }
         stream::message(&format!("error: internal error, please report it: {panic}"));
     }));
     match std::panic::catch_unwind(run) {
@@ -47,6 +52,7 @@ fn main() -> ExitCode {
 
 fn run() -> Result<(), Failure> {
     let interrupt = Interrupt::install()?;
+    threads::start()?;
     match Arguments::try_parse() {
         Ok(arguments) => arguments.command.run(&interrupt),
         Err(error) if error.use_stderr() => Err(Failure::from(&error)),

@@ -1,6 +1,6 @@
 //! Pictures and masks on the machine's GPU or software driver, through the command.
 //!
-//! No adapter is a failure; `DOWNPOUR_GPU_TESTS=no` shows the tests as ignored. `DOWNPOUR_ADAPTER` is part of the name
+//! No adapter is a failure, told in one line; `DOWNPOUR_GPU_TESTS=no` shows the tests as ignored. `DOWNPOUR_ADAPTER` is part of the name
 //! of the adapter to take.
 
 #[allow(dead_code, reason = "the tests without a GPU use the rest")]
@@ -16,7 +16,6 @@ mod on_gpu;
 mod scene_files;
 
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
 
 use downpour::drop::DropShape;
 use downpour::drop::mesh::DropMesh;
@@ -31,6 +30,13 @@ use scene_files::{model, weather};
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let off = std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no");
+    if !off && !arguments.list && Downpour::new(&["adapters"]).run().code != Some(0) {
+        eprintln!(
+            "no GPU to test on: run `cargo xtask test`, which installs a software driver where it may, or install one (Debian: \
+             apt-get install libvulkan1 mesa-vulkan-drivers), or set DOWNPOUR_GPU_TESTS=no to leave these tests out"
+        );
+        return ExitCode::FAILURE;
+    }
     let tests: [(&str, fn()); 15] = [
         ("adapters_are_listed", adapters_are_listed),
         ("a_mask_is_that_of_the_cpu", a_mask_is_that_of_the_cpu),
@@ -275,9 +281,7 @@ fn a_lost_device_publishes_nothing() {
     for backend in ["auto", "gpu"] {
         for point in ["lost@1", "lost@2"] {
             let arguments = ["mask", "--diameter", "2", "--size", "64", "--backend", backend, "-o", "m.exr"];
-            let begin = Instant::now();
             Downpour::new(&arguments).env("DOWNPOUR_INJECT", point).run().failed(4, &["lost"]).left(&[]);
-            assert!(begin.elapsed() < Duration::from_secs(10));
             // What was there stays.
             let run = Downpour::new(&[&arguments[..], &["--overwrite"]].concat()).with_file("m.exr", "old");
             assert_eq!(

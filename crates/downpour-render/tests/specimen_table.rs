@@ -101,10 +101,10 @@ fn the_table_shows_what_the_exact_streak_does() {
     }
 }
 
-/// Before a real sky, whose sun is smaller than a texel of the capture.
+/// Before a street under a low sun, which is smaller than a texel of the capture.
 #[test]
-fn the_table_has_the_light_of_a_real_sky() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/skies/potsdamer_platz_1k.hdr");
+fn the_table_has_the_light_of_a_street_under_a_low_sun() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/skies/street_low_sun.hdr");
     let map = read_sky(&path, &mut Budget::default()).unwrap();
     let sky = Sky::new(map.width, map.height, &map.radiance).unwrap();
     let (shape, options) = (drop(2.0), options(1.0e-3, Amplitudes::NONE));

@@ -246,9 +246,23 @@ fn check_cost(
     Ok(())
 }
 
+std::thread_local! {
+    static IS_GUARDED: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
+
+/// Whether this thread is within a decoder of another crate whose panics become errors. A program's panic hook can ask it, and
+/// stay silent: the error says what there is to say.
+#[must_use]
+pub fn is_guarded() -> bool {
+    IS_GUARDED.get()
+}
+
 /// Runs a decoder of another crate. A panic in it is the file's fault, and must not be the caller's end.
 fn guarded<T>(decoder: impl FnOnce() -> Result<T, SceneError>) -> Result<T, SceneError> {
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(decoder)).unwrap_or_else(|_| {
+    let before = IS_GUARDED.replace(true);
+    let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(decoder));
+    IS_GUARDED.set(before);
+    result.unwrap_or_else(|_| {
         Err(SceneError::bad("pixels", "data that the decoder stumbles over", "a whole and undamaged picture"))
     })
 }

@@ -1,13 +1,15 @@
 //! OpenEXR: what is read, and rows E1 to E16 of the reliability plan.
 
+mod effort;
 mod picture_files;
 
 use downpour_scene::picture::{Picture, Pixels, decode};
 use downpour_scene::{Budget, SceneError, WarningKind};
+use effort::measured;
 use exr::prelude::*;
 use picture_files::{ExrFile, exr_attribute, zlib};
 use std::io::Cursor;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 type Read = std::result::Result<Picture, SceneError>;
 
@@ -18,9 +20,9 @@ fn read(bytes: &[u8]) -> Read {
 /// Refused at once, with this code and these words.
 #[track_caller]
 fn refused(bytes: &[u8], code: u8, words: &str) {
-    let started = Instant::now();
-    let error = read(bytes).map(|p| (p.width, p.height)).expect_err(words);
-    assert!(started.elapsed() < Duration::from_millis(200), "{:?}", started.elapsed());
+    let (result, took) = measured(|| read(bytes).map(|p| (p.width, p.height)));
+    let error = result.expect_err(words);
+    assert!(took < Duration::from_millis(200), "{took:?}");
     assert_eq!(error.exit_code(), code, "{error}");
     let said = error.to_string();
     assert!(said.starts_with("a.exr: ") && said.contains(words), "{said}\n  has not: {words}");

@@ -131,8 +131,7 @@ fn mesh_primitive_modes() {
         read_triangles_from_bytes("modes", text.as_bytes(), &files, &mut Budget::default()).expect("valid");
     check(&model);
     let skipped = model.warnings.iter().filter(|warning| warning.kind == WarningKind::Ignored).count();
-    // The others' normals are made.
-    assert_eq!((skipped, model.warnings.len()), (4, 5), "{:?}", model.warnings);
+    assert_eq!((skipped, model.warnings.len()), (4, 4), "{:?}", model.warnings);
     let hexagon = 1.5 * 3.0f64.sqrt();
     let (mut areas, mut count) = ([0.0f64; 3], 0);
     for &triangle in &model.indices {

@@ -1,14 +1,17 @@
 //! The weather file: every key, and rows T1 to T13 of the reliability plan.
 
+mod effort;
+
 use downpour_drop::distribution::DropSizeLaw;
 use downpour_scene::weather::{
     Camera, CameraPose, Lamp, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume, Repeat,
     Sky, SkySource, SunSource, Weather,
 };
 use downpour_scene::{Budget, SceneError};
+use effort::measured;
 use glam::{DQuat, DVec3};
 use std::fmt::Write as _;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 fn parse(text: &str) -> Result<Weather, SceneError> {
     Weather::parse("w.toml", text)
@@ -25,9 +28,9 @@ fn says(text: &str, message: &str) {
 /// Refused with this code and these words.
 #[track_caller]
 fn refused(text: &str, code: u8, words: &str) {
-    let started = Instant::now();
-    let error = parse(text).expect_err(words);
-    assert!(started.elapsed() < Duration::from_secs(5), "{:?}", started.elapsed());
+    let (result, took) = measured(|| parse(text));
+    let error = result.expect_err(words);
+    assert!(took < Duration::from_secs(5), "{took:?}");
     assert_eq!(error.exit_code(), code, "{error}");
     let said = error.to_string();
     assert!(said.contains(words) && said.len() < 600 && !said.contains('\n'), "{said}\n  has not: {words}");

@@ -52,7 +52,7 @@ impl Case<'_> {
 pub(super) fn maps(options: &Options, folder: &Path) -> Result<Vec<Map>, String> {
     let mut maps = Vec::new();
     if !options.only {
-        maps.push(named(run::root().join("assets/skies/potsdamer_platz_1k.hdr"))?);
+        maps.push(named(run::root().join("assets/skies/street_low_sun.hdr"))?);
         let made = folder.join("chequers.hdr");
         write(&made, &sky::chequers())?;
         maps.push(named(made)?);
@@ -118,10 +118,10 @@ mod tests {
 
     #[test]
     fn two_maps_of_one_name_are_refused() {
-        let here = run::root().join("assets/skies/potsdamer_platz_1k.hdr").display().to_string();
+        let here = run::root().join("assets/skies/street_low_sun.hdr").display().to_string();
         let options = Options::read(&["--only", "--map", &here, "--map", &here]).expect("right");
         let error = maps(&options, Path::new("unused")).expect_err("twice the same");
-        assert!(error.contains("potsdamer_platz_1k"), "{error}");
+        assert!(error.contains("street_low_sun"), "{error}");
         let options = Options::read(&["--only", "--map", "no such.hdr"]).expect("right");
         assert!(maps(&options, Path::new("unused")).expect_err("missing").starts_with("no sky map "));
     }

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// How long a run may take on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// How long a run is waited for on a busy machine before it is said that it hangs.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(600);
 
 /// A run of the command in a folder of its own.
 pub(crate) struct Downpour {

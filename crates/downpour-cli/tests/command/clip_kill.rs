@@ -5,7 +5,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::child::{Running, names_in};
+use crate::child::{PATIENCE, Running, names_in};
 use crate::clip::{clip, content};
 
 const ARGUMENTS: [&str; 6] = ["--frames", "0..8", "-o", "@%02d.png", "--dump-drops", "@%02d.csv"];
@@ -18,7 +18,7 @@ fn start(folder: &Path, arguments: &[&str]) -> Running {
 fn wait_for(folder: &Path, end: &str, count: usize) {
     let begin = Instant::now();
     while names_in(folder).iter().filter(|name| name.ends_with(end)).count() < count {
-        assert!(begin.elapsed() < Duration::from_secs(60), "{count} files {end}");
+        assert!(begin.elapsed() < PATIENCE, "{count} files {end}");
         sleep(Duration::from_millis(1));
     }
 }
@@ -63,10 +63,8 @@ fn an_interrupt_drops_the_frame_and_keeps_the_clip() {
         let before = names_in(folder.path()).iter().filter(|name| name.ends_with(".png")).count();
         let running = start(folder.path(), &["--frames", "0..100000", "-q", "-o", "@%d.png"]);
         wait_for(folder.path(), ".png", before + 2);
-        let begin = Instant::now();
         running.signal(signal);
         let ended = running.end();
-        assert!(begin.elapsed() < Duration::from_secs(5));
         assert_eq!((ended.code, ended.stderr.as_str()), (Some(6), "downpour: cancelled\n"));
         assert!(names_in(folder.path()).iter().all(|name| !name.ends_with(".part")));
     }

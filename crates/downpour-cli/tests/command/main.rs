@@ -4,6 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod arguments;
+mod broken;
 mod check;
 mod child;
 mod clip;
@@ -12,6 +13,7 @@ mod clip_bad;
 mod clip_kill;
 #[cfg(feature = "video")]
 mod clip_video;
+mod document;
 mod drop;
 mod gltf_file;
 mod lattice;

@@ -9,7 +9,7 @@ mod tests;
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, BufRead, BufReader, Write as _};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
@@ -23,6 +23,9 @@ const VERSION: u64 = 1;
 
 /// The longest file that is read, in bytes: a thousand for each frame of the longest clip.
 const LONGEST: u64 = 1 << 30;
+
+/// The longest line that is read, in bytes: longer ones count as not written.
+const LONGEST_LINE: usize = 1 << 20;
 
 /// Digits of a line's digest.
 const CHECK_DIGITS: usize = 16;
@@ -69,8 +72,8 @@ impl Journal {
     /// a place that cannot be written.
     pub(super) fn open(path: &Path, job: &Job, anew: bool, interrupt: &Interrupt) -> Result<Self, Failure> {
         let failed = |error: &io::Error| Failure::file(path, error);
-        let mut file = locked(path)?;
-        let mut bytes = Vec::new();
+        let file = locked(path)?;
+        let mut found = Found::default();
         if !anew {
             if file.metadata().map_err(|error| failed(&error))?.len() > LONGEST {
                 let found = format!("{}: more than {LONGEST} bytes", shown(path));
@@ -79,13 +82,9 @@ impl Journal {
                     format!("{found}; allowed: a journal of downpour, or --overwrite"),
                 ));
             }
-            file.read_to_end(&mut bytes).map_err(|error| failed(&error))?;
+            found = read(BufReader::new(&file), &header_of(job)).map_err(|error| failed(&error))?;
         }
-        // A last line without an end was being written when its process was killed.
-        let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-        bytes.truncate(whole);
-        let text = String::from_utf8_lossy(&bytes);
-        let (header, content) = read(&text);
+        let Found { whole, header, content } = found;
         let same = header.as_ref().is_some_and(|header| *header == header_of(job));
         let worked = !content.frames.is_empty();
         if worked && !same {
@@ -93,7 +92,7 @@ impl Journal {
         }
         let mut journal = Self { path: path.to_owned(), file, content };
         if worked {
-            journal.file.set_len(whole as u64).map_err(|error| failed(&error))?;
+            journal.file.set_len(whole).map_err(|error| failed(&error))?;
         } else {
             journal.content = Content::default();
             journal.file.set_len(0).map_err(|error| failed(&error))?;
@@ -225,23 +224,76 @@ fn header_of(job: &Job) -> Value {
     json!({ "downpour_job": VERSION, "job": job })
 }
 
-/// The first line, and what the others say. Lines that do not hold are as if they were not there.
-fn read(text: &str) -> (Option<Value>, Content) {
-    let mut lines = text.lines().map(line);
-    let header = lines.next().flatten();
-    let mut content = Content::default();
-    for value in lines.flatten() {
-        if let Some(bits) = value["exposure_bits"].as_u64().and_then(|bits| u32::try_from(bits).ok()) {
-            content.exposure = Some(f32::from_bits(bits)).filter(|exposure| exposure.is_finite());
-        } else if value["overwrite"] == true {
-            content.overwrite = true;
-        } else if let Some(digest) = value["video"].as_str() {
-            content.video = Some(digest.to_owned());
-        } else if let Some((number, record)) = record(&value) {
-            content.frames.insert(number, record);
+/// What a file says.
+#[derive(Debug, Default)]
+struct Found {
+    /// Bytes up to the end of the last line that has one: another was being written when its process was killed.
+    whole: u64,
+    /// The first line.
+    header: Option<Value>,
+    content: Content,
+}
+
+/// Reads a file line by line. Lines that do not hold are as if they were not there; of another job's file no more is kept than that
+/// there is a frame.
+fn read(mut input: impl BufRead, expected: &Value) -> io::Result<Found> {
+    let mut found = Found::default();
+    let mut bytes = Vec::new();
+    for number in 0u64.. {
+        let Some(length) = next_line(&mut input, &mut bytes)? else { break };
+        found.whole += length;
+        let value = line(&String::from_utf8_lossy(&bytes));
+        if number == 0 {
+            found.header = value;
+        } else if let Some(value) = value {
+            found.content.hear(&value);
+        }
+        if found.header.as_ref() != Some(expected) && !found.content.frames.is_empty() {
+            break;
         }
     }
-    (header, content)
+    Ok(found)
+}
+
+/// Reads a line without its end, and returns its length with it. `None` if nothing follows that has an end. Of a line that is too long,
+/// nothing is kept.
+fn next_line(input: &mut impl BufRead, bytes: &mut Vec<u8>) -> io::Result<Option<u64>> {
+    bytes.clear();
+    let mut length = 0;
+    loop {
+        let part = input.fill_buf()?;
+        if part.is_empty() {
+            return Ok(None);
+        }
+        let end = part.iter().position(|byte| *byte == b'\n');
+        let text = &part[..end.unwrap_or(part.len())];
+        if bytes.len() + text.len() <= LONGEST_LINE && length as usize == bytes.len() {
+            bytes.extend(text);
+        } else {
+            bytes.clear();
+        }
+        let taken = text.len() + usize::from(end.is_some());
+        length += taken as u64;
+        input.consume(taken);
+        if end.is_some() {
+            return Ok(Some(length));
+        }
+    }
+}
+
+impl Content {
+    /// Takes in what a line says.
+    fn hear(&mut self, value: &Value) {
+        if let Some(bits) = value["exposure_bits"].as_u64().and_then(|bits| u32::try_from(bits).ok()) {
+            self.exposure = Some(f32::from_bits(bits)).filter(|exposure| exposure.is_finite());
+        } else if value["overwrite"] == true {
+            self.overwrite = true;
+        } else if let Some(digest) = value["video"].as_str() {
+            self.video = Some(digest.to_owned());
+        } else if let Some((number, record)) = record(value) {
+            self.frames.insert(number, record);
+        }
+    }
 }
 
 fn record(value: &Value) -> Option<(u32, Record)> {

@@ -94,3 +94,24 @@ fn two_do_not_work_on_one_clip() {
     drop(first);
     Journal::open(&path, &job("5"), false, &Interrupt::default()).unwrap();
 }
+
+/// A line without an end, and one that is too long, take no more memory than the longest line.
+#[test]
+fn a_long_journal_is_read_in_pieces() {
+    let mut bytes = Vec::new();
+    let endless = io::Read::take(io::repeat(b'x'), 1 << 28);
+    assert_eq!(next_line(&mut BufReader::new(endless), &mut bytes).unwrap(), None);
+    assert!(bytes.capacity() <= 2 * LONGEST_LINE, "{}", bytes.capacity());
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("journal");
+    written(&path);
+    let old = fs::read(&path).unwrap();
+    let long = [&vec![b'x'; 3 * LONGEST_LINE][..], b"\n"].concat();
+    let head = old.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+    fs::write(&path, [&old[..head], &long, &old[head..], &long[1..long.len() - 1]].concat()).unwrap();
+    let journal = Journal::open(&path, &job("5"), false, &Interrupt::default()).unwrap();
+    assert_eq!((journal.numbers(), journal.exposure()), (vec![0, 1, 2], Some(0.1)));
+    // What had no end is cut off.
+    assert_eq!(fs::metadata(&path).unwrap().len(), (old.len() + long.len()) as u64);
+}

@@ -1,0 +1,60 @@
+//! The threads that all work is dealt out to.
+//!
+//! Rayon starts them where they are first needed, and panics where the system has no memory for them. Here they are
+//! started one by one before anything else: with fewer than asked for the work takes longer, and with none this thread does it.
+
+use std::num::NonZeroUsize;
+use std::sync::mpsc::{Sender, channel};
+use std::thread;
+
+use rayon::{ThreadBuilder, ThreadPoolBuildError, ThreadPoolBuilder};
+
+use crate::failure::{Failure, LIMIT};
+
+/// How many threads there shall be: Rayon's variable, or one for each core.
+fn wanted() -> usize {
+    let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse::<NonZeroUsize>().ok());
+    asked.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
+}
+
+/// Threads that wait for their part, as many as the system gives.
+fn waiting(count: usize) -> Vec<Sender<ThreadBuilder>> {
+    let mut ready = Vec::new();
+    for number in 0..count {
+        let (send, receive) = channel::<ThreadBuilder>();
+        let body = move || {
+            if let Ok(part) = receive.recv() {
+                part.run();
+            }
+        };
+        match thread::Builder::new().name(format!("worker {number}")).spawn(body) {
+            Ok(_) => ready.push(send),
+            Err(_) => break,
+        }
+    }
+    ready
+}
+
+/// A pool of threads that wait; without any, of this one.
+fn pool(mut ready: Vec<Sender<ThreadBuilder>>) -> Result<(), ThreadPoolBuildError> {
+    if ready.is_empty() {
+        return ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
+    }
+    ThreadPoolBuilder::new()
+        .num_threads(ready.len())
+        .spawn_handler(|part| {
+            let gone = || std::io::Error::other("a thread has ended");
+            ready.pop().ok_or_else(gone)?.send(part).map_err(|_| gone())
+        })
+        .build_global()
+}
+
+/// Starts the threads.
+///
+/// # Errors
+/// Exit code 3 where there is no memory for a pool.
+pub(crate) fn start() -> Result<(), Failure> {
+    pool(waiting(wanted())).map_err(|error| {
+        Failure::new(LIMIT, format!("no threads: {error}; allowed: memory and processes for one"))
+    })
+}
