@@ -1,6 +1,6 @@
 //! Tests, lints and benchmarks of the whole workspace.
 
-use crate::{atlas, driver, masks, run};
+use crate::{atlas, driver, masks, run, scenes};
 
 /// The library crates, and the features each has to build with, alone.
 const ALONE: &[(&str, &[&str])] = &[
@@ -19,8 +19,8 @@ const ALONE: &[(&str, &[&str])] = &[
     ("downpour-cli", &["", "gpu", "video"]),
 ];
 
-/// Every test of the workspace, with documentation tests.
-pub(crate) fn test() -> Result<(), String> {
+/// Every test of the workspace, with documentation tests; `all`: and the sweeps that take minutes.
+pub(crate) fn test(all: bool) -> Result<(), String> {
     driver::ensure()?;
     let runtime = run::root().join("target/runtime");
     std::fs::create_dir_all(&runtime).map_err(|error| format!("{}: {error}", runtime.display()))?;
@@ -28,7 +28,27 @@ pub(crate) fn test() -> Result<(), String> {
     let runtime = runtime.display().to_string();
     run::cargo(&["test", "--workspace", "--all-features", "--locked"], &[("XDG_RUNTIME_DIR", &runtime)])?;
     masks::check()?;
-    atlas::check(true)
+    scenes::check()?;
+    atlas::check(true)?;
+    if all { sweep() } else { Ok(()) }
+}
+
+/// Spoiled files by the hundred thousand, and lattices over a million steps.
+fn sweep() -> Result<(), String> {
+    let mutations = ["test", "--locked", "-p", "downpour-scene", "--all-features", "--test", "mutations"];
+    run::cargo(&mutations, &[("DOWNPOUR_MUTATIONS", "300000")])?;
+    let lattice = [
+        "test",
+        "--release",
+        "--locked",
+        "-p",
+        "downpour-lattice",
+        "--test",
+        "puddle",
+        "--test",
+        "glass_water",
+    ];
+    run::cargo(&[&lattice[..], &["--", "--ignored"]].concat(), &[])
 }
 
 /// Formatting, lints, each crate on its own, documentation.

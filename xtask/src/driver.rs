@@ -115,9 +115,14 @@ fn patiently(
 
 /// Whether apt-get ended as another process holds a lock.
 fn is_locked(said: &str) -> bool {
-    ["Could not get lock", "Unable to lock", "Unable to acquire the dpkg frontend lock", "is another process using it"]
-        .iter()
-        .any(|words| said.contains(words))
+    [
+        "Could not get lock",
+        "Unable to lock",
+        "Unable to acquire the dpkg frontend lock",
+        "is another process using it",
+    ]
+    .iter()
+    .any(|words| said.contains(words))
 }
 
 #[cfg(test)]

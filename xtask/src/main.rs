@@ -14,12 +14,13 @@ mod truth;
 use std::process::ExitCode;
 
 const USAGE: &str = "\
-cargo xtask test              run every test; makes sure of a Vulkan driver first
-cargo xtask ci                formatting, lints, each crate alone, documentation, then every test
+cargo xtask test [--all]      run every test; makes sure of a Vulkan driver first; --all: the long sweeps too
+cargo xtask ci                formatting, lints, each crate alone, documentation, then every test and sweep
 cargo xtask lint              the same without the tests
 cargo xtask masks [--check]   write assets/masks; with --check compare them with what the code makes, byte for byte
 cargo xtask scenes [--check]  write assets/scenes/street; with --check compare it, byte for byte
-cargo xtask scenes skies      capture the street into the sky maps of assets/skies (--command FILE: a `downpour` that is built)
+cargo xtask scenes skies      capture the street into the sky maps of assets/skies, minutes each; with --check compare them, byte
+                              for byte (--command FILE: a `downpour` that is built)
 cargo xtask atlas [OPTIONS]   write assets/streaks; --check compares them; --columbia imports the streak database
 cargo xtask goldens [--bless] compare the golden images of tests/goldens; with --bless write them from the CPU twins
 cargo xtask shaders [FOLDER]  write the complete WGSL text of every kernel (default target/shaders)
@@ -31,16 +32,16 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words.as_slice() {
-        ["test"] => checks::test(),
-        ["ci"] => checks::lint().and_then(|()| checks::test()),
+        ["test"] => checks::test(false),
+        ["test", "--all"] => checks::test(true),
+        ["ci"] => checks::lint().and_then(|()| checks::test(true)),
         ["lint"] => checks::lint(),
         ["masks"] => masks::write(),
         ["masks", "--check"] => masks::check(),
         ["atlas", rest @ ..] => atlas::run(rest),
         ["scenes"] => scenes::write(),
         ["scenes", "--check"] => scenes::check(),
-        ["scenes", "skies"] => scenes::write_skies(None),
-        ["scenes", "skies", "--command", program] => scenes::write_skies(Some(program)),
+        ["scenes", "skies", rest @ ..] => scenes::skies(rest),
         ["goldens"] => goldens::compare(),
         ["goldens", "--bless"] => goldens::bless(),
         ["shaders"] => shaders::write("target/shaders"),

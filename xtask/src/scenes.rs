@@ -63,8 +63,8 @@ fn make() -> Result<Vec<Asset>, String> {
     Ok(assets)
 }
 
-/// Writes `assets/skies` with pictures of the street.
-pub(crate) use skies::write as write_skies;
+/// Writes `assets/skies` with pictures of the street, or compares them.
+pub(crate) use skies::run as skies;
 
 /// Writes the folder.
 pub(crate) fn write() -> Result<(), String> {

@@ -1,8 +1,8 @@
 //! `cargo xtask scenes skies`: the maps of `assets/skies`, captures of the street from its middle.
 //!
 //! A capture is six square pictures of the dry street by `downpour render --backend cpu`, resampled into an equirectangular map. Where a ray
-//! meets nothing and the sky is clear, the map has the sun's disc as well. As the pictures are the renderer's, the maps change
-//! with it: nothing compares them byte for byte.
+//! meets nothing and the sky is clear, the map has the sun's disc as well. The CPU's pictures are the same bytes on every machine, and
+//! so are the maps; as they are the renderer's, they change with it, and are made again then.
 
 use std::path::{Path, PathBuf};
 
@@ -41,8 +41,15 @@ fn captures() -> [Capture; 3] {
     ]
 }
 
-/// Writes the maps. `command` is a `downpour` that is built already.
-pub(crate) fn write(command: Option<&str>) -> Result<(), String> {
+/// Writes the maps, or compares them. Options: `--check`, and `--command FILE`, a `downpour` that is built already.
+pub(crate) fn run(options: &[&str]) -> Result<(), String> {
+    let (is_check, command) = match options {
+        [] => (false, None),
+        ["--check"] => (true, None),
+        ["--command", file] => (false, Some(*file)),
+        ["--check", "--command", file] | ["--command", file, "--check"] => (true, Some(*file)),
+        _ => return Err(format!("scenes skies {}; allowed: [--check] [--command FILE]", options.join(" "))),
+    };
     let program = match command {
         Some(given) => std::path::absolute(given).map_err(|error| format!("{given}: {error}"))?,
         None => build()?,
@@ -50,16 +57,29 @@ pub(crate) fn write(command: Option<&str>) -> Result<(), String> {
     let folder = run::root().join("assets/skies");
     let at = |error: std::io::Error| format!("{}: {error}", folder.display());
     std::fs::create_dir_all(&folder).map_err(at)?;
+    let mut wrong = Vec::new();
     for capture in captures() {
         let bytes = capture.make(&program)?;
         if bytes.len() > BUDGET {
             return Err(format!("{} takes {} bytes, more than {BUDGET}", capture.name, bytes.len()));
         }
         let path = folder.join(format!("{}.hdr", capture.name));
-        std::fs::write(&path, &bytes).map_err(at)?;
-        println!("{:>9} bytes  {}", bytes.len(), path.display());
+        if is_check {
+            match std::fs::read(&path) {
+                Ok(kept) if kept == bytes => println!("{} is what the code makes", path.display()),
+                Ok(_) => wrong.push(format!("{} differs", path.display())),
+                Err(error) => wrong.push(format!("{}: {error}", path.display())),
+            }
+        } else {
+            std::fs::write(&path, &bytes).map_err(at)?;
+            println!("{:>9} bytes  {}", bytes.len(), path.display());
+        }
     }
-    Ok(())
+    if wrong.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("(cargo xtask scenes skies):\n  {}", wrong.join("\n  ")))
+    }
 }
 
 fn build() -> Result<PathBuf, String> {
