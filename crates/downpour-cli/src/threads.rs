@@ -17,10 +17,21 @@ fn wanted() -> usize {
     asked.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
 
-/// Threads that wait for their part, as many as the system gives.
+/// Bytes that are left for the work: a stack is only taken while there are more.
+const RESERVE: usize = 64 << 20;
+
+/// Whether the system would still give the reserve.
+fn has_room() -> bool {
+    Vec::<u8>::new().try_reserve_exact(RESERVE).is_ok()
+}
+
+/// Threads that wait for their part, as many as the system gives without want of memory.
 fn waiting(count: usize) -> Vec<Sender<ThreadBuilder>> {
     let mut ready = Vec::new();
     for number in 0..count {
+        if !has_room() {
+            break;
+        }
         let (send, receive) = channel::<ThreadBuilder>();
         let body = move || {
             if let Ok(part) = receive.recv() {

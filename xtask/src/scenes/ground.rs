@@ -361,14 +361,12 @@ mod tests {
     #[test]
     fn the_road_has_a_crown_and_hollows() {
         assert!(road_height(0.0, -20.0) > road_height(3.1, -20.0) + 0.04);
-        let [x, z, reach, _, depth] = HOLLOWS[0];
-        let rim = (0..16)
-            .map(|k| {
-                let angle = k as f32 / 16.0 * std::f32::consts::TAU;
-                road_height(x + 2.0 * reach * ops::cos(angle), z + 2.5 * reach * ops::sin(angle))
-            })
-            .fold(f32::MAX, f32::min);
-        assert!(rim - road_height(x, z) > 0.2 * depth, "{}", rim - road_height(x, z));
+        for [x, z, _, reach, depth] in HOLLOWS {
+            for end in [z - 2.0 * reach, z + 2.0 * reach] {
+                let fall = road_height(x, end) - road_height(x, z);
+                assert!(fall > 0.4 * depth, "{fall} of {depth} at {x}, {z}");
+            }
+        }
     }
 
     #[test]

@@ -35,8 +35,8 @@ struct Capture {
 fn captures() -> [Capture; 3] {
     let low_sun = ClearSky::new(3.0, 24.0, 101.0);
     [
-        Capture { name: "street_day", is_night: false, sky: None, eye: [0.3, 1.6, -6.0] },
         Capture { name: "street_low_sun", is_night: false, sky: Some(low_sun), eye: [-0.4, 1.6, -21.5] },
+        Capture { name: "street_day", is_night: false, sky: None, eye: [0.3, 1.6, -6.0] },
         Capture { name: "street_night", is_night: true, sky: None, eye: [0.6, 1.6, -11.0] },
     ]
 }

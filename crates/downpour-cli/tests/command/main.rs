@@ -17,6 +17,8 @@ mod document;
 mod drop;
 mod gltf_file;
 mod lattice;
+#[cfg(target_os = "linux")]
+mod little_memory;
 mod mask;
 mod models;
 mod output;
