@@ -272,3 +272,20 @@ fn damaged(error: &impl std::fmt::Display) -> SceneError {
     let found = format!("cannot be decoded: {}", crate::error::escaped(&error.to_string()));
     SceneError::bad("pixels", found, "a whole and undamaged picture")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_of_a_decoder_is_an_error_and_a_hook_can_tell() {
+        let error = guarded::<()>(|| {
+            assert!(is_guarded());
+            // The report of this panic is the test's own hook's.
+            panic!("a decoder stumbles")
+        })
+        .expect_err("a panic");
+        assert!(!is_guarded() && error.to_string().contains("stumbles over"), "{error}");
+        assert!(guarded(|| Ok(is_guarded())).expect("no panic"));
+    }
+}

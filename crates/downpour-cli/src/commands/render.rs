@@ -150,7 +150,7 @@ impl RenderArguments {
         let rain = &input.weather.rain;
         let showers = &mut Showers::new(&input.weather, atlas.as_ref())?;
         let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
-        let mut pane = Pane::new(&input.weather, &stage, self.input.time)?;
+        let mut pane = Pane::new(&input.weather, &stage, self.input.time, self.quiet)?;
         let mut puddles = Puddles::new(&input.weather, &input.loaded, &stage, self.input.time)?;
         let stage = puddles.lay(Cow::Owned(stage), self.input.time)?;
         let stage = &*pane.hang(stage, self.input.time)?;

@@ -89,6 +89,12 @@ impl WetPane {
         Ok(())
     }
 
+    /// The time that rain and wipers have come to, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.begin_s + self.glass.ticks() as f64 * self.glass.tick_s()
+    }
+
     /// The lattice.
     #[must_use]
     pub fn glass(&self) -> &Glass {

@@ -144,7 +144,7 @@ impl Clip<'_> {
         let (weather, loaded) = (&self.input.weather, &self.input.loaded);
         let first_s = time_s(self.arguments.input.time, self.frames.first, self.fps);
         let surfaces = &mut Surfaces {
-            pane: Pane::new(weather, &self.first, first_s)?,
+            pane: Pane::new(weather, &self.first, first_s, self.arguments.quiet)?,
             puddles: Puddles::new(weather, loaded, &self.first, first_s)?,
         };
         let mut progress = Progress::new("frame", missing, self.arguments.quiet);
