@@ -6,6 +6,7 @@ use downpour_sim::SimError;
 use downpour_wind::WindError;
 
 use crate::RenderError;
+use crate::stage::StageError;
 
 /// Why there is no rain.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +30,9 @@ pub enum ShowerError {
     /// The eye.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The scene between pictures.
+    #[error(transparent)]
+    Stage(#[from] StageError),
     /// The drops' masks.
     #[error(transparent)]
     Mask(#[from] MaskError),
@@ -42,6 +46,7 @@ impl ShowerError {
             Self::Sim(error) => error.exit_code(),
             Self::Wind(error) => error.exit_code(),
             Self::Render(error) => error.exit_code(),
+            Self::Stage(error) => error.exit_code(),
             Self::Mask(error) => error.exit_code(),
             Self::NotUniform | Self::Drop(_) => 2,
         }
