@@ -273,6 +273,8 @@ pub struct Happened {
     pub overflow: u64,
     /// What went through the gauge.
     pub caught: StepCaught,
+    /// Drops that came into a view on a GPU and found no slot: they are missing.
+    pub lost: u64,
 }
 
 impl Moment<'_> {

@@ -122,8 +122,8 @@ struct StepEvent {
 @group(0) @binding(3) var<storage, read> step_tables: array<u32>;
 @group(0) @binding(4) var<storage, read> step_cells: array<vec4f>;
 @group(0) @binding(5) var<storage, read_write> step_events: array<StepEvent>;
-// Events; drops through the gauge; their volume in units of STEP_GAUGE_UNIT, low and high word.
-@group(0) @binding(6) var<storage, read_write> step_counts: array<atomic<u32>, 4>;
+// Events; drops through the gauge; their volume in units of STEP_GAUGE_UNIT, low and high word; drops that found no slot.
+@group(0) @binding(6) var<storage, read_write> step_counts: array<atomic<u32>, 5>;
 @group(0) @binding(7) var<uniform> step_grid: WindFieldGrid;
 
 // Kind of a drop.

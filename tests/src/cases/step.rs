@@ -450,9 +450,11 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
         ..GpuMoment::new(&last, DVec3::ZERO, wind)
     };
     twin.advance(1.0 / 60.0, &moment).map_err(of_gpu)?;
+    let happened_there = twin.happened().map_err(of_gpu)?;
+    assert_eq!(happened_there.lost, 0);
     Ok(Both {
         drops: [cpu.drops().to_vec(), twin.drops().map_err(of_gpu)?],
-        happened: [happened, twin.happened().map_err(of_gpu)?],
+        happened: [happened, happened_there],
     })
 }
 

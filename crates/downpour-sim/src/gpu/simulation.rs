@@ -291,14 +291,14 @@ impl GpuSimulation {
     /// [`GpuError`].
     pub fn happened(&self) -> Result<Happened, GpuSimError> {
         let counts = self.gpu.read::<u32>(&self.counts)?;
-        let &[events, drops, low, high, ..] = &counts[..] else { return Ok(Happened::default()) };
+        let &[events, drops, low, high, lost] = &counts[..] else { return Ok(Happened::default()) };
         let noted = events.min(self.plan.options.most_events);
         let mut list = if noted > 0 { self.gpu.read::<StepEvent>(&self.events)? } else { Vec::new() };
         list.truncate(noted as usize);
         list.sort_by_key(|event| (event.drop & 0x3fff_ffff, event.drop >> 30, event.place.map(f32::to_bits)));
         self.gpu.queue().write_buffer(&self.counts, 0, bytemuck::bytes_of(&[0u32; COUNTS]));
         let caught = StepCaught { drops: drops.into(), volume: u64::from(high) << 32 | u64::from(low) };
-        Ok(Happened { events: list, overflow: (events - noted).into(), caught })
+        Ok(Happened { events: list, overflow: (events - noted).into(), caught, lost: lost.into() })
     }
 
     /// The state: of a view in the order of the steps in which drops came, and of their words; else in the order of their
