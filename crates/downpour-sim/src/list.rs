@@ -17,7 +17,9 @@ use crate::motion::{motion_bounce, motion_diameter, motion_relax};
 use crate::plan::Plan;
 use crate::population::box_centre;
 use crate::simulation::{SimVolume, speed_of};
-use crate::step::{StepDrop, bounces, step_column, step_count, step_kind, step_shown, step_word};
+use crate::step::{
+    StepDrop, bounces, step_column, step_count, step_image, step_kind, step_pack, step_shown, step_word,
+};
 use crate::view::View;
 
 /// A question for the drops of a picture.
@@ -58,6 +60,9 @@ impl Listing<'_> {
         let half = 0.5 * view.shutter_s;
         let velocity = Vec3::from(drop.velocity);
         let (word, place) = self.there(number, drop, velocity);
+        if step_kind(word) == STEP_HIDDEN {
+            return [None, None].into_iter().flatten();
+        }
         let diameter = step_shown(word, self.plan.options.bounce.size);
         let seen = |at: Vec3, velocity: Vec3, diameter: f32, part: [f64; 2]| {
             let position = self.plan.origin() + at.as_dvec3();
@@ -103,17 +108,24 @@ impl Listing<'_> {
         let SimVolume::Box { size_m } = self.plan.options.volume else { return (drop.word, place) };
         let size = DVec3::from(size_m);
         let centre = box_centre(self.view, size) - self.plan.origin();
-        let images = ((place.as_dvec3() - centre) / size + 0.5).floor();
-        if images == DVec3::ZERO {
+        let images = |at: DVec3| ((at - centre) / size + 0.5).floor();
+        let away = images(place.as_dvec3());
+        if away == DVec3::ZERO {
             return (drop.word, place);
         }
         let count = step_count(drop.word);
-        let image = count.wrapping_add_signed(images.y as i32) & STEP_COUNT;
-        let seed = seed_words(self.plan.options.seed);
-        let column = |count: u32| step_column(seed, number, count, size.as_vec3()).as_dvec2();
-        let moved = column(image) - column(count);
-        let at = place.as_dvec3() - size * images + DVec3::new(moved.x, 0.0, moved.y);
-        let at = (at - size * ((at - centre) / size + 0.5).floor()).as_vec3();
+        let mut image = step_image(count, step_pack(away.as_vec3()));
+        let mut at = place.as_dvec3() - size * away;
+        if away.y != 0.0 {
+            let seed = seed_words(self.plan.options.seed);
+            let column = |image: u32| step_column(seed, number, image, size.as_vec3()).as_dvec2();
+            let moved = column(image) - column(count);
+            at += DVec3::new(moved.x, 0.0, moved.y);
+            let across = images(at) * DVec3::new(1.0, 0.0, 1.0);
+            image = step_image(image, step_pack(across.as_vec3()));
+            at -= size * across;
+        }
+        let at = at.as_vec3();
         let open = self.map.is_none_or(|map| map.open(at - velocity * self.after_s as f32));
         let kind = if open { STEP_FALLING } else { STEP_HIDDEN };
         (step_word(drop.word & STEP_DIAMETER, kind, image), at)

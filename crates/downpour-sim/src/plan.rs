@@ -18,7 +18,7 @@ use crate::inflow::regions;
 use crate::population::{Bin, affordable_pixels, bins, box_centre, reserve};
 use crate::resolved::{Region, Resolved};
 use crate::simulation::{Drag, SimVolume, SimulationOptions};
-use crate::step::StepFrame;
+use crate::step::{StepFrame, step_pack};
 use crate::view::View;
 use crate::volume::VolumeEye;
 
@@ -208,7 +208,7 @@ impl Plan {
                 let size = DVec3::from(size_m);
                 let whole = (shift / size).round();
                 shift -= size * whole;
-                boxes = -whole.y as i32;
+                boxes = step_pack(-whole.as_vec3());
                 elsewhere = (view.eye - before.eye).abs().cmpgt(0.5 * size).any();
             }
             SimVolume::View => {

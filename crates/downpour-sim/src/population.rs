@@ -7,7 +7,7 @@ use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, seed_words};
 use downpour_shaders::sim::enter::ENTER_SIZES;
-use downpour_shaders::sim::step::{MOTION_DIAMETER_STEP, STEP_COUNT};
+use downpour_shaders::sim::step::MOTION_DIAMETER_STEP;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -16,7 +16,7 @@ use crate::error::BYTES_PER_DROP;
 use crate::frustum::Frustum;
 use crate::poisson::poisson_at;
 use crate::simulation::SimVolume;
-use crate::step::step_column;
+use crate::step::{step_column, step_image, step_pack};
 use crate::view::View;
 use crate::volume::{VolumeEye, volume_in_area, volume_in_sphere};
 
@@ -209,13 +209,15 @@ pub(crate) fn place(drop: u32, volume: &SimVolume, view: &View, origin: DVec3, s
         SimVolume::Box { size_m } => {
             // The same rain for every camera: its boxes stand in the world.
             let size = DVec3::from(size_m);
+            let images = |at: DVec3| ((at - box_centre(view, size)) / size + 0.5).floor();
             let start = draw(0).0 * size;
-            let images = ((start - box_centre(view, size)) / size + 0.5).floor();
-            let count = images.y as i64 as u32 & STEP_COUNT;
-            let [across, along] = step_column(seed, drop, count, size.as_vec3()).to_array().map(f64::from);
-            let wrapped = start + DVec3::new(across, 0.0, along);
-            let images = ((wrapped - box_centre(view, size)) / size + 0.5).floor();
-            return ((wrapped - size * images - origin).as_vec3(), count);
+            let away = images(start);
+            let image = step_image(0, step_pack(away.as_vec3()));
+            let column = step_column(seed, drop, image, size.as_vec3());
+            let moved = start - size * away + DVec3::new(column.x.into(), 0.0, column.y.into());
+            let across = images(moved) * DVec3::new(1.0, 0.0, 1.0);
+            let at = moved - size * across - origin;
+            return (at.as_vec3(), step_image(image, step_pack(across.as_vec3())));
         }
         SimVolume::View | SimVolume::ImSung => {
             let seen = VolumeEye::new(view, origin);

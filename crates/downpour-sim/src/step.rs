@@ -12,8 +12,9 @@ use downpour_shaders::sim::enter::ENTER_SIZES;
 use downpour_shaders::sim::step::{
     STEP_AGO_1, STEP_AGO_2, STEP_AREA, STEP_BOUNCED, STEP_CHANCE, STEP_CLEAR, STEP_COLUMN, STEP_COUNT,
     STEP_COUNT_SHIFT, STEP_DIAMETER, STEP_EVENT_KIND, STEP_FALLING, STEP_GAUGE_PER_CUBE, STEP_GONE,
-    STEP_HIDDEN, STEP_KIND, STEP_LAGS, STEP_TOP, STEP_TRIES, STEP_VOLUME_AREA, STEP_VOLUME_BOX,
-    STEP_VOLUME_TARIQ, STEP_WEIGHT_1, STEP_WEIGHT_2, VOLUME_INSIDE, VOLUME_PLANES,
+    STEP_HIDDEN, STEP_IMAGE_X, STEP_IMAGE_Y, STEP_IMAGE_Z, STEP_KIND, STEP_LAGS, STEP_TOP, STEP_TRIES,
+    STEP_VOLUME_AREA, STEP_VOLUME_BOX, STEP_VOLUME_TARIQ, STEP_WEIGHT_1, STEP_WEIGHT_2, VOLUME_INSIDE,
+    VOLUME_PLANES,
 };
 use downpour_wind::WindField;
 use glam::{Vec2, Vec3, Vec3Swizzles as _, Vec4, Vec4Swizzles as _};
@@ -26,7 +27,7 @@ use crate::motion::{
 };
 use crate::volume::{
     VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
-    volume_offset, volume_on_disc, volume_wrap,
+    volume_offset, volume_on_disc,
 };
 
 /// What all drops share in a step. The same layout as `StepFrame` in WGSL.
@@ -77,8 +78,8 @@ pub struct StepFrame {
     pub gauge_height: f32,
     /// 1: there is a gauge.
     pub gauge: u32,
-    /// Boxes by which the origin has moved up and `shift` does not say.
-    pub boxes: i32,
+    /// Boxes by which the origin has moved and `shift` does not say, as [`step_pack`] has them.
+    pub boxes: u32,
     /// Padding of the WGSL layout.
     pub unused_1: u32,
     /// The gauge's rectangle: lower x and z, upper x and z, m.
@@ -204,8 +205,8 @@ pub fn step_kind(word: u32) -> u32 {
     (word >> STEP_KIND) & 3
 }
 
-/// Count of a drop: in a frustum its number among those that came with it, or the step in which it bounced; in a box that of
-/// the box along the vertical that it is in; else how often it has come in.
+/// Count of a drop: in a frustum its number among those that came with it, or the step in which it bounced; in a box the image
+/// of the box that it is in; else how often it has come in.
 #[must_use]
 pub fn step_count(word: u32) -> u32 {
     word >> STEP_COUNT_SHIFT
@@ -224,10 +225,25 @@ pub fn step_shown(word: u32, bounced_size: f32) -> f32 {
     if step_kind(word) == STEP_BOUNCED { diameter * bounced_size } else { diameter }
 }
 
+/// Images of a box, in the bits of a count.
+#[must_use]
+pub fn step_pack(images: Vec3) -> u32 {
+    let [x, y, z] = images.to_array().map(|image| image as i32 as u32);
+    y & STEP_IMAGE_Y | (x & 7) << STEP_IMAGE_X | (z & 7) << STEP_IMAGE_Z
+}
+
+/// The image of a box that is some images away.
+#[must_use]
+pub fn step_image(count: u32, away: u32) -> u32 {
+    let x = ((count >> STEP_IMAGE_X) + (away >> STEP_IMAGE_X)) & 7;
+    let z = ((count >> STEP_IMAGE_Z) + (away >> STEP_IMAGE_Z)) & 7;
+    count.wrapping_add(away) & STEP_IMAGE_Y | x << STEP_IMAGE_X | z << STEP_IMAGE_Z
+}
+
 /// Where the column of a drop of a box stands in the image of the box with a number, m along x and z.
 #[must_use]
 pub fn step_column(seed: [u32; 2], drop: u32, count: u32, size: Vec3) -> Vec2 {
-    let [x, z, ..] = rng_draw(seed, drop, count, STEP_COLUMN).map(rng_unit);
+    let [x, z, ..] = rng_draw(seed, drop, count & STEP_IMAGE_Y, STEP_COLUMN).map(rng_unit);
     Vec2::new(x, z) * size.xz()
 }
 
@@ -420,15 +436,16 @@ impl StepWorld<'_> {
             STEP_VOLUME_BOX => {
                 let images = volume_images(place, centre, size);
                 let kept = place - size * images;
-                let risen = images.y as i32 + frame.boxes;
-                if risen == 0 {
-                    return (kept, count);
+                let image = step_image(step_image(count, step_pack(images)), frame.boxes);
+                if (image ^ count) & STEP_IMAGE_Y == 0 {
+                    return (kept, image);
                 }
                 // No drop keeps its column (Rousseau 2006, 7.3), and all boxes of one rain agree.
-                let image = count.wrapping_add_signed(risen) & STEP_COUNT;
                 let column =
                     step_column(frame.seed, drop, image, size) - step_column(frame.seed, drop, count, size);
-                (volume_wrap(kept + Vec3::new(column.x, 0.0, column.y), centre, size), image)
+                let moved = kept + Vec3::new(column.x, 0.0, column.y);
+                let across = volume_images(moved, centre, size) * Vec3::new(1.0, 0.0, 1.0);
+                (moved - size * across, step_image(image, step_pack(across)))
             }
             STEP_VOLUME_AREA => {
                 if volume_in_area(eye, volume_local(eye, place - eye_place), frame.farthest) {

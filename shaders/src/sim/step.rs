@@ -54,6 +54,12 @@ shared_constants! {
         STEP_COUNT_SHIFT: u32 = 18;
         /// Largest count.
         STEP_COUNT: u32 = 0x3fff;
+        /// Bits of the count of a drop of a box that number the image of the box along the vertical.
+        STEP_IMAGE_Y: u32 = 0xff;
+        /// Where the image along x is in it, and along z; three bits each.
+        STEP_IMAGE_X: u32 = 8;
+        /// Where the image along z is in it.
+        STEP_IMAGE_Z: u32 = 11;
         /// Kind: falls from the sky.
         STEP_FALLING: u32 = 0;
         /// Kind: came back from a surface.

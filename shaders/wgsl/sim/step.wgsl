@@ -50,8 +50,8 @@ struct StepFrame {
     // Height of the gauge, m, and whether there is one.
     gauge_height: f32,
     gauge: u32,
-    // Boxes by which the origin has moved up and `shift` does not say.
-    boxes: i32,
+    // Boxes by which the origin has moved and `shift` does not say, as `step_pack` has them.
+    boxes: u32,
     unused_1: u32,
     // The gauge's rectangle: lower x and z, upper x and z, m.
     gauge_area: vec4f,
@@ -131,8 +131,8 @@ fn step_kind(word: u32) -> u32 {
     return (word >> STEP_KIND) & 3u;
 }
 
-// Count of a drop: in a frustum its number among those that came with it, or the step in which it bounced; in a box that of
-// the box along the vertical that it is in; else how often it has come in.
+// Count of a drop: in a frustum its number among those that came with it, or the step in which it bounced; in a box the image
+// of the box that it is in; else how often it has come in.
 fn step_count(word: u32) -> u32 {
     return word >> STEP_COUNT_SHIFT;
 }
@@ -148,9 +148,22 @@ fn step_shown(word: u32, bounced_size: f32) -> f32 {
     return select(diameter, diameter * bounced_size, step_kind(word) == STEP_BOUNCED);
 }
 
+// Images of a box, in the bits of a count.
+fn step_pack(images: vec3f) -> u32 {
+    let bits = vec3u(vec3i(images)) & vec3u(7u, STEP_IMAGE_Y, 7u);
+    return bits.y | bits.x << STEP_IMAGE_X | bits.z << STEP_IMAGE_Z;
+}
+
+// The image of a box that is some images away.
+fn step_image(count: u32, away: u32) -> u32 {
+    let x = ((count >> STEP_IMAGE_X) + (away >> STEP_IMAGE_X)) & 7u;
+    let z = ((count >> STEP_IMAGE_Z) + (away >> STEP_IMAGE_Z)) & 7u;
+    return ((count + away) & STEP_IMAGE_Y) | x << STEP_IMAGE_X | z << STEP_IMAGE_Z;
+}
+
 // Where the column of a drop of a box stands in the image of the box with a number, m along x and z.
 fn step_column(seed: vec2u, drop: u32, count: u32, size: vec3f) -> vec2f {
-    let words = rng_draw(seed, drop, count, STEP_COLUMN);
+    let words = rng_draw(seed, drop, count & STEP_IMAGE_Y, STEP_COLUMN);
     return vec2f(rng_unit(words.x), rng_unit(words.y)) * size.xz;
 }
 
@@ -336,17 +349,17 @@ fn step_relocate(drop: u32, count: u32, place: vec3f) -> StepKept {
     switch step_frame.volume {
         case STEP_VOLUME_BOX: {
             let images = volume_images(place, step_frame.centre, step_frame.size);
-            var kept = place - step_frame.size * images;
-            let risen = i32(images.y) + step_frame.boxes;
-            if risen == 0 {
-                return StepKept(kept, count);
+            let kept = place - step_frame.size * images;
+            let image = step_image(step_image(count, step_pack(images)), step_frame.boxes);
+            if ((image ^ count) & STEP_IMAGE_Y) == 0u {
+                return StepKept(kept, image);
             }
             // No drop keeps its column (Rousseau 2006, 7.3), and all boxes of one rain agree.
-            let image = u32(i32(count) + risen) & STEP_COUNT;
             let column = step_column(step_frame.seed, drop, image, step_frame.size)
                 - step_column(step_frame.seed, drop, count, step_frame.size);
-            kept = volume_wrap(kept + vec3f(column.x, 0.0, column.y), step_frame.centre, step_frame.size);
-            return StepKept(kept, image);
+            let moved = kept + vec3f(column.x, 0.0, column.y);
+            let across = volume_images(moved, step_frame.centre, step_frame.size) * vec3f(1.0, 0.0, 1.0);
+            return StepKept(moved - step_frame.size * across, step_image(image, step_pack(across)));
         }
         case STEP_VOLUME_AREA: {
             if volume_in_area(eye, volume_local(eye, place - eye.place), step_frame.farthest) {

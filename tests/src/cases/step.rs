@@ -18,7 +18,9 @@ use downpour_sim::motion::{
 use downpour_sim::simulation::{
     Bounce, Drag, Gauge, Happened, Moment, SimVolume, Simulation, SimulationOptions,
 };
-use downpour_sim::step::{StepDrop, step_column, step_count, step_kind, step_measure, step_shown, step_word};
+use downpour_sim::step::{
+    StepDrop, step_column, step_count, step_image, step_kind, step_measure, step_pack, step_shown, step_word,
+};
 use downpour_sim::view::View;
 use downpour_sim::volume::{
     VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
@@ -277,6 +279,12 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::exact("bits of a word"),
             |a| step_word(a.u32(), a.u32(), a.u32()).words(),
         ),
+        FunctionCase::new("step_pack", &STEP, &[near, near, near], Tol::exact("whole parts and bits"), |a| {
+            step_pack(vec3(a)).words()
+        }),
+        FunctionCase::new("step_image", &STEP, &[Below(1 << 14), Below(1 << 14)], Tol::exact("bits"), |a| {
+            step_image(a.u32(), a.u32()).words()
+        }),
         FunctionCase::new(
             "step_column",
             &STEP,
