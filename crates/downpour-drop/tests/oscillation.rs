@@ -349,3 +349,22 @@ fn refused_numbers() {
     assert_eq!(size_of::<DropOscillation>(), 32);
     assert_eq!(size_of::<DropOscillationTime>(), 8);
 }
+
+/// Water as warm as the air: published values at 5 and 30 C, and frequencies that go with the root of the surface tension.
+#[test]
+fn the_air_decides_what_the_water_is_like() {
+    use downpour_drop::air::Air;
+    for (celsius, tension, density, viscosity) in
+        [(5.0, 0.074942, 999.964, 1.5183e-6), (30.0, 0.071194, 995.647, 0.8007e-6)]
+    {
+        let fluids = Fluids::in_air(&Air::new(celsius, 101_325.0).unwrap());
+        assert!((fluids.surface_tension / tension - 1.0).abs() < 2.0e-4, "{fluids:?}");
+        assert!((fluids.water_density / density - 1.0).abs() < 2.0e-4, "{fluids:?}");
+        assert!((fluids.kinematic_viscosity / viscosity - 1.0).abs() < 5.0e-3, "{fluids:?}");
+        let law = FrequencyLaw::Rayleigh1879;
+        let ratio =
+            law.frequency(2, 2.0e-3, &fluids).unwrap() / law.frequency(2, 2.0e-3, &Fluids::AT_20_C).unwrap();
+        let expected = (tension / density * 998.204 / 0.072736f64).sqrt();
+        assert!((ratio / expected - 1.0).abs() < 2.0e-4, "{ratio}, not {expected}");
+    }
+}

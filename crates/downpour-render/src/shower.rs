@@ -6,16 +6,19 @@ mod stepped;
 
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
-use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
+use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution, ExtinctionEfficiency};
+use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::optics::water_index_in_air;
-use downpour_scene::weather::{Rain, RainDrag, RainVolume, Weather};
+use downpour_scene::weather::{Rain, RainDrag, RainExtinction, RainVolume, Weather};
 use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
 use downpour_wind::UniformWind;
+use glam::DVec3;
 
-use crate::rain::{DropMasks, Veil};
+use crate::glass::pane_plane;
+use crate::rain::{DropMasks, MediumOptions, RainMedium};
 use crate::stage::Stage;
 pub use error::ShowerError;
 pub use scenery::{MovingScenery, Scenery, Still};
@@ -38,7 +41,7 @@ enum Form {
 #[derive(Clone, Debug)]
 pub struct Shower {
     law: DropSizeDistribution,
-    most_drops: u32,
+    weather: Weather,
     bounce: Bounce,
     form: Form,
 }
@@ -47,7 +50,8 @@ impl Shower {
     /// The rain of a weather.
     ///
     /// # Errors
-    /// [`ShowerError::NotUniform`] if closed form is asked for in a wind that differs from place to place;
+    /// [`ShowerError::NotUniform`] if closed form is asked for in a wind that differs from place to place,
+    /// [`ShowerError::DragByStep`] for a drag that has none;
     /// [`ShowerError::Sim`], [`ShowerError::Drop`] for a rain that is none.
     pub fn new(weather: &Weather) -> Result<Self, ShowerError> {
         let rain = &weather.rain;
@@ -56,11 +60,12 @@ impl Shower {
         let relaxes = rain.drag == RainDrag::Relaxation;
         let form = match (rain.volume, weather.wind.uniform()) {
             (RainVolume::Auto, Some(wind)) if relaxes => closed(&law, rain, wind)?,
+            (RainVolume::ClosedForm, Some(_)) if !relaxes => return Err(ShowerError::DragByStep),
             (RainVolume::ClosedForm, Some(wind)) => closed(&law, rain, wind)?,
             (RainVolume::ClosedForm, None) => return Err(ShowerError::NotUniform),
             _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
-        Ok(Self { law, most_drops: rain.most_drops, bounce: bounce(rain), form })
+        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), form })
     }
 
     /// Whether drops are where they are in closed form, and not step by step.
@@ -92,9 +97,9 @@ impl Shower {
         time_s: f64,
         passed: &mut dyn FnMut(u32, u32),
     ) -> Result<VisibleDrops, ShowerError> {
-        match &mut self.form {
+        let mut visible = match &mut self.form {
             Form::Closed(field) => {
-                let view = View { most_drops: self.most_drops, ..stage.view()? };
+                let view = View { most_drops: self.weather.rain.most_drops, ..stage.view()? };
                 let obstacles = Obstacles {
                     nodes: &stage.data.nodes,
                     triangles: &stage.data.triangles,
@@ -103,18 +108,41 @@ impl Shower {
                 let mut visible = field.visible_among(&obstacles, &view, time_s)?;
                 let least = visible.resolved.least_pixels;
                 visible.drops.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
-                Ok(visible)
+                visible
             }
-            Form::Stepped(stepped) => stepped.at(scenery, stage, time_s, passed),
+            Form::Stepped(stepped) => stepped.at(scenery, stage, time_s, passed)?,
+        };
+        // A pane keeps the rain outside.
+        if let Some(pane) = pane_plane(&self.weather, stage)? {
+            let eye = stage.view()?.eye;
+            visible.drops.retain(|drop| !pane.is_before((drop.position - eye).as_vec3()));
         }
+        Ok(visible)
     }
 
-    /// What becomes of the drops that were not listed for a picture: `visible` is what [`Shower::at`] gave.
+    /// The drops that were not listed for a picture at a time in seconds: `visible` is what [`Shower::at`] gave.
     ///
     /// # Errors
     /// As [`Shower::at`].
-    pub fn veil(&self, visible: &VisibleDrops) -> Result<Veil, ShowerError> {
-        Ok(Veil::new(&self.law, |diameter| visible.resolved.range(diameter))?)
+    pub fn medium(
+        &self,
+        stage: &Stage,
+        visible: &VisibleDrops,
+        masks: &DropMasks,
+        time_s: f64,
+    ) -> Result<RainMedium, ShowerError> {
+        let speeds = TerminalSpeed::new(self.law.options().fall_speed, &self.law.options().air);
+        let speed = speeds.at(self.law.effective_diameter()).unwrap_or_default();
+        let options = MediumOptions {
+            efficiency: match self.weather.rain.extinction {
+                RainExtinction::Total => ExtinctionEfficiency::Total,
+                _ => ExtinctionEfficiency::Camera,
+            },
+            velocity: (self.weather.wind.air().velocity(time_s) - DVec3::Y * speed).as_vec3(),
+            origin: stage.origin,
+            pane: pane_plane(&self.weather, stage)?,
+        };
+        Ok(RainMedium::new(&self.law, &visible.resolved, masks, &options)?)
     }
 
     /// The rate, mm/h, of the drops about the eye (in closed form) or in the simulated volume, with those that something

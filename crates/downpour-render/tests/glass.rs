@@ -385,3 +385,56 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
     assert_eq!(stage.data.table.len(), rows);
     Ok(())
 }
+
+/// Water in bands of 3 cm from the top of what is seen of a pane, m^3: caps of spheres.
+fn bands(above_m: f64, seeds: u32) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+    let mut sums = vec![0.0; 8];
+    for seed in 0..seeds {
+        let glass = picture(&format!(
+            "size_m = [0.12, 0.24]\ncell_mm = 1.5\nbefore_s = 60\nspeed_m_s = 4\nabove_m = {above_m}\nseed = {seed}"
+        ))?;
+        for drop in &glass.drops {
+            let (r, sphere) = (f64::from(drop.radius), f64::from(drop.sphere));
+            let height = sphere - (sphere * sphere - r * r).max(0.0).sqrt();
+            let volume = std::f64::consts::PI * height * height * (sphere - height / 3.0);
+            let band = (f64::from(drop.centre[1]) / 0.03).floor();
+            if (0.0..8.0).contains(&band) {
+                sums[band as usize] += volume;
+            }
+        }
+    }
+    Ok(sums)
+}
+
+/// Drops run into what is seen of a pane from above it: its upper edge is not where they gather.
+#[test]
+fn a_pane_holds_as_much_water_at_the_top_of_the_picture_as_below() -> Outcome {
+    let with_edge = bands(0.0, 3)?;
+    let lower: f64 = with_edge[1..].iter().sum::<f64>() / 7.0;
+    assert!(with_edge[0] > 1.3 * lower, "the edge of the glass: {with_edge:?}");
+    let inflow = bands(0.15, 2)?;
+    let mean: f64 = inflow.iter().sum::<f64>() / 8.0;
+    assert!((0.4..1.4).contains(&(inflow[0] / mean)), "{inflow:?}");
+    let halves: f64 = inflow[..4].iter().sum::<f64>() / inflow[4..].iter().sum::<f64>();
+    assert!((0.65..1.5).contains(&halves), "{inflow:?}");
+    Ok(())
+}
+
+/// Temperature and pressure of a weather reach the water of its pane and the frequencies of its drops.
+#[test]
+fn the_air_of_a_weather_reaches_pane_and_oscillation() -> Outcome {
+    use downpour_render::rain::{Exposure, EyeMotion};
+    let weather = Weather::parse(
+        "w.toml",
+        "[rain]\ntemperature_c = 5\npressure_hpa = 700\n[glass]\nsize_m = [0.1, 0.1]",
+    )?;
+    let pane = weather.glass.clone().ok_or("no pane")?;
+    let options = pane.options([0.1, 0.1], &weather.rain, 0.0);
+    assert_eq!(options.temperature_c, 5.0);
+    assert_eq!(options.rain.air.pressure_pa(), 7.0e4);
+    let exposure = Exposure::of_weather(&weather, EyeMotion::default(), 0.0);
+    // Surface tension and density of water at 5 C (IAPWS).
+    assert!((exposure.fluids.surface_tension - 0.074942).abs() < 1.0e-5);
+    assert!((exposure.fluids.water_density - 999.964).abs() < 0.02);
+    Ok(())
+}

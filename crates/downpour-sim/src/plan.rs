@@ -148,6 +148,7 @@ impl Plan {
     }
 
     /// Drops that a frustum holds, about.
+    #[cfg(feature = "wgpu")]
     pub(crate) fn expected(&self) -> f64 {
         let of = |bin: &Bin| bin.density * self.frustum.about_volume(bin.diameters[1], bin.speeds[1]);
         self.bins.iter().map(of).sum()

@@ -112,11 +112,11 @@ impl View {
             return error("time of the shutter", self.shutter_s, "s", "0 to 10");
         }
         let speed = self.velocity.length();
-        if !(speed <= 1.0e4) {
+        if !(0.0..=1.0e4).contains(&speed) {
             return error("speed of the eye", speed, "m/s", "0 to 1e4");
         }
         let turning = self.turning.length();
-        if !(turning <= 1.0e3) {
+        if !(0.0..=1.0e3).contains(&turning) {
             return error("angular speed of the camera", turning, "rad/s", "0 to 1000");
         }
         Ok(())

@@ -116,20 +116,20 @@ fn run(name: &str, options: &SimulationOptions, wind: &UniformWind, path: impl F
     }
 }
 
-fn uniform(speed: Keyed<f64>, towards: DVec3, gusts: Option<Gusts>) -> UniformWind {
-    let part = WindPart::uniform(&speed, &towards.into()).expect("in range");
+fn uniform(speed: impl Into<Keyed<f64>>, towards: DVec3, gusts: Option<Gusts>) -> UniformWind {
+    let part = WindPart::uniform(&speed.into(), &towards.into()).expect("in range");
     Wind::new(vec![part], gusts, None).expect("in range").air().clone()
 }
 
 fn steady() -> UniformWind {
-    uniform(4.5.into(), DVec3::new(2.0, 0.0, 1.0), None)
+    uniform(4.5, DVec3::new(2.0, 0.0, 1.0), None)
 }
 
 #[test]
 fn density_is_the_rains_when_only_the_rain_moves() {
     let options = SimulationOptions::default();
-    run("fall", &options, &uniform(0.0.into(), DVec3::X, None), |_| looking(DVec3::ZERO, 0.3, 0.1));
-    let storm = uniform(23.0.into(), DVec3::new(2.0, 0.1, -1.2), None);
+    run("fall", &options, &uniform(0.0, DVec3::X, None), |_| looking(DVec3::ZERO, 0.3, 0.1));
+    let storm = uniform(23.0, DVec3::new(2.0, 0.1, -1.2), None);
     run("storm", &options, &storm, |_| looking(DVec3::ZERO, 0.3, 0.1));
     // From a breeze to a storm and back within a second.
     let keys = Keyed::new(vec![(0.0, 2.0), (0.4, 20.0), (0.8, 0.0)]).expect("in range");

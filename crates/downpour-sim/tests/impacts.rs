@@ -24,8 +24,8 @@ fn rain(wind: UniformWind) -> RainField {
     RainField::new(&law(), 5).expect("in range").with_wind(wind)
 }
 
-fn uniform(speed: Keyed<f64>, towards: DVec3, gusts: Option<Gusts>) -> UniformWind {
-    let part = WindPart::uniform(&speed, &towards.into()).expect("in range");
+fn uniform(speed: impl Into<Keyed<f64>>, towards: DVec3, gusts: Option<Gusts>) -> UniformWind {
+    let part = WindPart::uniform(&speed.into(), &towards.into()).expect("in range");
     Wind::new(vec![part], gusts, None).expect("in range").air().clone()
 }
 
@@ -74,7 +74,7 @@ fn as_many_drops_hit_the_ground_as_fall() {
     // Beside the house, on the side that the wind comes from.
     let (low, high) = (DVec3::new(-14.0, -0.1, 4.0), DVec3::new(-10.0, 0.1, 9.0));
     let span = [3.0, 3.3];
-    for wind in [still(), uniform(7.0.into(), DVec3::new(1.0, 0.0, -2.0), None), gusty()] {
+    for wind in [still(), uniform(7.0, DVec3::new(1.0, 0.0, -2.0), None), gusty()] {
         let impacts = rain(wind).impacts(&obstacles(&bvh), low, high, span, edges[0]).expect("in range");
         let ids: BTreeSet<u64> = impacts.iter().map(|impact| impact.id).collect();
         assert_eq!(ids.len(), impacts.len(), "no drop lands twice");
@@ -97,7 +97,7 @@ fn nothing_lands_below_a_roof() {
     let bvh = yard();
     let (low, high) = (DVec3::new(-5.0, -0.5, -5.0), DVec3::new(2.0, 5.0, 1.0));
     for across in [0.0, 4.0] {
-        let wind = if across > 0.0 { uniform(across.into(), DVec3::X, None) } else { still() };
+        let wind = if across > 0.0 { uniform(across, DVec3::X, None) } else { still() };
         let impacts = rain(wind).impacts(&obstacles(&bvh), low, high, [7.0, 7.15], 0.6e-3).expect("in range");
         let (mut on_roof, mut near) = (0, 0);
         for impact in &impacts {
@@ -139,7 +139,7 @@ fn nothing_lands_below_a_roof() {
 fn spans_of_time_can_be_cut() {
     let bvh = yard();
     let (low, high) = (DVec3::new(-5.0, -0.5, -5.0), DVec3::new(1.0, 5.0, 1.0));
-    for wind in [uniform(7.0.into(), DVec3::X, None), gusty()] {
+    for wind in [uniform(7.0, DVec3::X, None), gusty()] {
         let rain = rain(wind);
         let of = |span: [f64; 2]| -> BTreeMap<u64, Impact> {
             let impacts = rain.impacts(&obstacles(&bvh), low, high, span, 0.5e-3).expect("in range");
@@ -167,7 +167,7 @@ fn spans_of_time_can_be_cut() {
 #[test]
 fn impacts_are_those_of_the_drops_that_are_seen() {
     let bvh = yard();
-    let rain = rain(uniform(5.0.into(), DVec3::X, None));
+    let rain = rain(uniform(5.0, DVec3::X, None));
     let view = View { eye: DVec3::new(5.0, 1.0, 5.0), least_pixels: 0.5, far: 4.0, ..View::default() };
     let seen = rain.visible_among(&obstacles(&bvh), &view, 6.0).expect("in range").drops;
     let (low, high) = (DVec3::new(3.0, -0.1, 1.0), DVec3::new(12.0, 0.1, 7.0));
@@ -198,7 +198,7 @@ fn droplets(wind: &UniformWind, time_s: f64, bounce: &Bounce) -> Vec<FallingDrop
 /// Each droplet starts at its impact with what is left of the velocity, and then obeys dv/dt = -slip / tau.
 #[test]
 fn droplets_fly_as_the_law_says() {
-    let wind = uniform(3.0.into(), DVec3::X, None);
+    let wind = uniform(3.0, DVec3::X, None);
     let bounce = Bounce { share: 1.0, ..Bounce::default() };
     let bvh = yard();
     let time = 5.0;

@@ -100,7 +100,7 @@ fn scatter(rain: &DropSizeDistribution, volume: f64) -> f64 {
     let sum = |power: i32| -> f64 {
         let of = |k: u32| {
             let d = 0.1e-3 + 7.9e-3 * (f64::from(k) + 0.5) / 2000.0;
-            rain.concentration(d) * (d * d * d * speed(d)).powi(power) * 7.9e-3 / 2000.0
+            rain.concentration(d) * ops::pow(d * d * d * speed(d), f64::from(power)) * 7.9e-3 / 2000.0
         };
         (0..2000).map(of).sum()
     };

@@ -7,7 +7,7 @@ use downpour_sim::view::View;
 use glam::{DVec3, Vec3};
 
 const BINS: usize = 21;
-const SEEDS: u64 = 120;
+const SEEDS: u64 = 40;
 
 fn edge(k: usize) -> f64 {
     // All drops of 0.2 to 3.2 mm.

@@ -6,7 +6,6 @@ use downpour::drop::air::Air;
 use downpour::drop::fall_speed::{FallSpeedModel, distance_to_share, fall_numbers, relaxation};
 use downpour::drop::optics::{field_of_view, water_index_in_air};
 use downpour::drop::oscillation::{Fluids, FrequencyLaw, lamb_damping_time};
-use downpour::drop::water::kinematic_viscosity;
 
 use super::FallSpeedArgument;
 use crate::failure::Failure;
@@ -51,12 +50,7 @@ impl DropArguments {
         let shape = DropShape::new(diameter)?;
         let fall = fall_numbers(model, diameter, &air)?;
         let times = relaxation(fall.speed_m_s);
-        let fluids = Fluids {
-            surface_tension: air.water_surface_tension(),
-            water_density: air.water_density(),
-            air_density: air.density(),
-            kinematic_viscosity: kinematic_viscosity(air.temperature_c())?,
-        };
+        let fluids = Fluids::in_air(&air);
         let law = FrequencyLaw::default();
         let index = water_index_in_air(SODIUM_M, &air)?;
         let entry = Entry::new;

@@ -114,8 +114,13 @@ fn layers_add_up_to_the_picture() {
         }
     }
     assert!(through.iter().all(|t| (0.0..=1.0).contains(t)));
-    let touched = through.iter().filter(|t| **t < 0.999).count();
-    assert!(touched > 20 && touched < through.len() * 9 / 10, "{touched} pixels with rain");
+    // Rain that is not drawn drop by drop stands before every pixel, a drop before some.
+    let mut sorted = through.clone();
+    sorted.sort_by(f32::total_cmp);
+    let most = sorted[sorted.len() / 10 * 9];
+    assert!(most > 0.5 && most < 1.0, "{most}");
+    let touched = through.iter().filter(|t| **t < most - 0.01).count();
+    assert!(touched > 20 && touched < through.len() * 9 / 10, "{touched} pixels with drops");
     let other_sky = storm(&["render", "--layers", "--rate", "0", "-o", "rain.exr"]).run().succeeded();
     let dry = channels(&other_sky.file("rain.exr"));
     assert_eq!(dry["clean.G"], layers["clean.G"], "the scene behind does not depend on the rain");

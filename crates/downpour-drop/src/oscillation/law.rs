@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::DropError;
+use crate::air::Air;
 use crate::shape::check_diameter;
+use crate::water::kinematic_viscosity;
 
 /// What the water and the air of a drop are like. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +28,19 @@ impl Fluids {
         air_density: 1.204,
         kinematic_viscosity: 1.0034e-6,
     };
+
+    /// Water as warm as the air that it falls through.
+    #[must_use]
+    pub fn in_air(air: &Air) -> Self {
+        Self {
+            surface_tension: air.water_surface_tension(),
+            water_density: air.water_density(),
+            air_density: air.density(),
+            // Air is never outside the range of water's laws.
+            kinematic_viscosity: kinematic_viscosity(air.temperature_c())
+                .unwrap_or(Self::AT_20_C.kinematic_viscosity),
+        }
+    }
 
     fn check(&self) -> Result<(), DropError> {
         let of = |quantity, found: f64, range: std::ops::RangeInclusive<f64>, unit, allowed| {

@@ -1,5 +1,6 @@
 //! What a pane is asked to be.
 
+use downpour_drop::air::Air;
 use downpour_drop::distribution::DropSizeLaw;
 
 use super::contact::GlassContact;
@@ -16,6 +17,8 @@ pub struct GlassRain {
     pub rate_mm_h: f64,
     /// The drop sizes.
     pub law: DropSizeLaw,
+    /// The air that the rain falls through: its temperature and pressure decide how fast.
+    pub air: Air,
     /// How fast the air with the rain in it comes at the pane horizontally, m/s: the car's speed, or the wind on a window. 0
     /// to 100. Without it no rain reaches a vertical pane.
     pub towards_m_s: f64,
@@ -24,7 +27,7 @@ pub struct GlassRain {
 impl Default for GlassRain {
     /// No rain.
     fn default() -> Self {
-        Self { rate_mm_h: 0.0, law: DropSizeLaw::default(), towards_m_s: 0.0 }
+        Self { rate_mm_h: 0.0, law: DropSizeLaw::default(), air: Air::standard(), towards_m_s: 0.0 }
     }
 }
 

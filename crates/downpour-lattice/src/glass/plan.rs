@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use downpour_drop::air::{Air, STANDARD_GRAVITY};
+use downpour_drop::air::STANDARD_GRAVITY;
 use downpour_drop::water;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::seed_words;
@@ -180,7 +180,7 @@ fn table(options: &GlassOptions, landing: &Landing, tick_s: f64) -> Result<Box<G
     let mu = water::viscosity(options.temperature_c)?;
     let velocity = options.cell_m / tick_s / f64::from(GLASS_CELL);
     let wind =
-        0.5 * Air::standard().density() * options.air.speed_m_s * options.air.speed_m_s * options.air.drag;
+        0.5 * options.rain.air.density() * options.air.speed_m_s * options.air.speed_m_s * options.air.drag;
     let dries = options.evaporation_mm_h * 1.0e-3 / 3600.0 * tick_s / UNIT_M3;
     let row = |class: u32| {
         let volume = f64::from(glass_size_floor(class).max(1)) * UNIT_M3;

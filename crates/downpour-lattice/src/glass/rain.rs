@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::fall_speed::{FallSpeedModel, TerminalSpeed};
 use downpour_math::ops::f64 as ops;
@@ -49,10 +48,11 @@ impl Landing {
         let diameters = DistributionOptions {
             smallest_diameter_m: SMALLEST_M,
             largest_diameter_m: LARGEST_M,
+            air: options.rain.air,
             ..DistributionOptions::default()
         };
         let rain = DropSizeDistribution::with_options(options.rain.law, options.rain.rate_mm_h, &diameters)?;
-        let speed = TerminalSpeed::new(FallSpeedModel::default(), &Air::standard());
+        let speed = TerminalSpeed::new(FallSpeedModel::default(), &options.rain.air);
         let (sin, cos) = (ops::sin(options.tilt_rad), ops::cos(options.tilt_rad));
         let width = (LARGEST_M - SMALLEST_M) / STEPS as f64;
         // Number and volume that land of drops up to a diameter.

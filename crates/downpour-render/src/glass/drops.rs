@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use downpour_drop::air::{Air, STANDARD_GRAVITY};
+use downpour_drop::air::STANDARD_GRAVITY;
 use downpour_drop::water;
 use downpour_lattice::glass::height::glass_height_stretch;
 use downpour_lattice::glass::motion::{
@@ -54,25 +54,27 @@ struct Common<'a> {
     air_density: f64,
 }
 
-/// All drops of a pane.
+/// All drops of a pane whose uppermost rows are above what is seen of it. Places are from the corner of what is seen.
 ///
 /// # Errors
 /// [`GlassError::Rain`] if water at the pane's temperature is not known.
-pub(super) fn binned(glass: &Glass) -> Result<Binned, GlassError> {
+pub(super) fn binned(glass: &Glass, above: u32) -> Result<Binned, GlassError> {
     let options = glass.options();
     let common = Common {
         options,
         seed: seed_words(options.seed ^ 0x70616e65),
         density: water::density(options.temperature_c)?,
         tension: water::surface_tension(options.temperature_c)?,
-        air_density: Air::standard().density(),
+        air_density: options.rain.air.density(),
     };
     let cells = glass.mass().iter().zip(glass.motion()).enumerate();
     let drops: Vec<GlassPictureDrop> = cells
         .filter(|(_, (mass, _))| **mass != 0)
         .map(|(index, (&mass, motion))| common.drop(index as u32, mass, *motion))
+        .filter_map(|drop| lowered(drop, f64::from(above) * options.cell_m))
         .collect();
-    let size = options.size.map(|edge| f64::from(edge) * options.cell_m);
+    let [columns, rows] = options.size;
+    let size = [columns, rows - above].map(|edge| f64::from(edge) * options.cell_m);
     let [columns, rows] = size.map(|edge| ((edge / BIN_M).ceil() as u32).max(1));
     let count = (columns * rows) as usize;
     let place = |at: f64, most: u32| ((at / BIN_M).max(0.0) as u32).min(most - 1);
@@ -102,6 +104,12 @@ pub(super) fn binned(glass: &Glass) -> Result<Binned, GlassError> {
         }
     }
     Ok(Binned { drops, bins, columns, rows, per_metre: 1.0 / BIN_M })
+}
+
+/// A drop from a corner that is so many meters lower; `None` if it is all above.
+fn lowered(mut drop: GlassPictureDrop, by: f64) -> Option<GlassPictureDrop> {
+    drop.centre[1] -= by as f32;
+    (drop.centre[1] + 1.5 * drop.radius / drop.behind > 0.0).then_some(drop)
 }
 
 impl Common<'_> {

@@ -17,6 +17,7 @@ use super::frame::{GlassPicture, GlassPictureFrame, levels, samples};
 use super::light::{GlassPictureLight, sources};
 use super::shade::{PaneShade, PaneShadows};
 use crate::data::RenderFrame;
+use crate::rain::PanePlane;
 use crate::stage::Stage;
 
 /// Largest width and height of a pane whose size is that of the picture, m.
@@ -42,6 +43,8 @@ pub struct WetPane {
     size: [f64; 2],
     begin_s: f64,
     water: f64,
+    /// Rows of the lattice above what is seen of it.
+    above: u32,
     glass: Glass,
 }
 
@@ -60,7 +63,8 @@ impl WetPane {
         let (rain, air) = pane.weather(&weather.rain, pane.speed.at(begin_s));
         glass.set_weather(&rain, &air)?;
         let water = water_index_in_air(SODIUM_M, &weather.rain.air).unwrap_or(WATER_INDEX);
-        Ok(Some(Self { pane: pane.clone(), rain: weather.rain, size, begin_s, water, glass }))
+        let above = pane.rows_above(size);
+        Ok(Some(Self { pane: pane.clone(), rain: weather.rain, size, begin_s, water, above, glass }))
     }
 
     /// Lets rain fall and wipers go until a time in seconds. The same drops for any division of the time.
@@ -131,7 +135,7 @@ impl WetPane {
         };
         let place = Place::new(&self.pane, stage)?;
         let corner = place.corner(self.size) + DVec3::from(stage.viewpoint.eye);
-        let drops = binned(&self.glass)?.drops;
+        let drops = binned(&self.glass, self.above)?.drops;
         let shade = PaneShade::new(self.size, &drops, form, self.highlight_radius(), self.water as f32);
         let axes = [corner, place.across, place.down, place.outward];
         stage.data.hang_pane(&shade, axes.map(|axis: DVec3| axis.as_vec3()));
@@ -155,7 +159,7 @@ impl WetPane {
         capture_texels: usize,
     ) -> Result<GlassPicture, PaneError> {
         let place = Place::new(&self.pane, stage)?;
-        let binned = binned(&self.glass)?;
+        let binned = binned(&self.glass, self.above)?;
         let [width, height] = self.size;
         let corner = place.corner(self.size);
         let options = self.glass.options();
@@ -165,7 +169,9 @@ impl WetPane {
         let capture_size = ((capture_texels as f64 * 0.75).sqrt().round() as u32).max(1);
         let lens = (0.5 * self.pane.aperture) as f32;
         let lens_places = samples(frame.grid, lens);
-        let wet = self.glass.traversal();
+        let [columns, rows] = options.size;
+        let hidden = (columns * self.above) as usize;
+        let wet = self.glass.traversal().split_off(hidden);
         let lights = sources(&stage.data, frame);
         let word = |bytes: &[u8]| {
             bytes.iter().enumerate().fold(0u32, |word, (k, &byte)| word | (u32::from(byte) << (8 * k)))
@@ -187,7 +193,7 @@ impl WetPane {
                 corner: vector(corner),
                 cells: (1.0 / options.cell_m) as f32,
                 size: [width as f32, height as f32],
-                wet_size: options.size,
+                wet_size: [columns, rows - self.above],
                 lens,
                 focus: match self.pane.focus {
                     PaneFocus::Scene => GLASS_PICTURE_SCENE,
@@ -219,6 +225,17 @@ impl WetPane {
             lights: if lights.is_empty() { vec![GlassPictureLight::default()] } else { lights },
         })
     }
+}
+
+/// The plane of a weather's pane before the eye of a stage, if there is one.
+///
+/// # Errors
+/// [`PaneError::EdgeOn`] if the eye looks along it, or what is wrong with the eye.
+pub fn pane_plane(weather: &Weather, stage: &Stage) -> Result<Option<PanePlane>, PaneError> {
+    let Some(pane) = &weather.glass else { return Ok(None) };
+    let place = Place::new(pane, stage)?;
+    let distance = place.middle.dot(place.outward) as f32;
+    Ok(Some(PanePlane { outward: place.outward.as_vec3(), distance }))
 }
 
 /// Where a pane is, relative to the eye.

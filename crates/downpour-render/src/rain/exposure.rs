@@ -1,6 +1,6 @@
 //! How long the shutter is open, how the eye moves meanwhile, and how what passes it is averaged.
 
-use downpour_drop::oscillation::Amplitudes;
+use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_scene::weather::{StreakLook, Weather};
 use downpour_shaders::render::rain::{STREAK_REFRACTED, STREAK_WHITE};
 use glam::Vec3;
@@ -59,6 +59,8 @@ pub struct Exposure {
     pub colour: StreakColour,
     /// How far drops oscillate.
     pub oscillation: Amplitudes,
+    /// The drops' water and the air, on which their frequencies depend.
+    pub fluids: Fluids,
     /// Seed of the drops' phases.
     pub seed: u64,
     /// Diameter of the lens's pupil, m; 0: everything is in focus.
@@ -84,6 +86,7 @@ impl Exposure {
             },
             // A weather holds none that are out of range.
             oscillation: Amplitudes::new(a20, a31).unwrap_or(Amplitudes::NONE),
+            fluids: Fluids::in_air(&weather.rain.air),
             seed: weather.rain.seed,
             aperture_m: camera.aperture,
             focus_m: camera.focus.unwrap_or(f64::INFINITY),
@@ -101,6 +104,7 @@ impl Default for Exposure {
             samples: StreakSamples::default(),
             colour: StreakColour::default(),
             oscillation: Amplitudes::NONE,
+            fluids: Fluids::AT_20_C,
             seed: 0,
             aperture_m: 0.0,
             focus_m: f64::INFINITY,

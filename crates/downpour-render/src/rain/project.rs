@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use downpour_drop::oscillation::{Fluids, FrequencyLaw, Oscillation, drop_oscillation_azimuth};
+use downpour_drop::oscillation::{FrequencyLaw, Oscillation, drop_oscillation_azimuth};
 use downpour_math::ops;
 use downpour_math::rng::seed_words;
 use downpour_shaders::render::rain::{DROPS_LOOP, DROPS_STILL, DROPS_TABLE};
@@ -296,7 +296,7 @@ impl Swing {
             return Self::default();
         }
         let made =
-            Oscillation::new(diameter, exposure.oscillation, &Fluids::AT_20_C, FrequencyLaw::Rayleigh1879);
+            Oscillation::new(diameter, exposure.oscillation, &exposure.fluids, FrequencyLaw::Rayleigh1879);
         let Ok(oscillation) = made else {
             return Self::default();
         };

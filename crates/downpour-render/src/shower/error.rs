@@ -6,6 +6,7 @@ use downpour_sim::SimError;
 use downpour_wind::WindError;
 
 use crate::RenderError;
+use crate::glass::PaneError;
 use crate::stage::StageError;
 
 /// Why there is no rain.
@@ -18,6 +19,12 @@ pub enum ShowerError {
          or uniform wind and gusts alone"
     )]
     NotUniform,
+    /// A drag that has no closed form.
+    #[error(
+        "rain.drag is \"rousseau-2008\", which has no closed form, and rain.volume is \"closed-form\"; allowed: \
+         rain.drag = \"relaxation\", or rain.volume = \"auto\", \"view\" or \"box\""
+    )]
+    DragByStep,
     /// The drops' motion.
     #[error(transparent)]
     Sim(#[from] SimError),
@@ -36,6 +43,9 @@ pub enum ShowerError {
     /// The drops' masks.
     #[error(transparent)]
     Mask(#[from] MaskError),
+    /// The pane before the eye.
+    #[error(transparent)]
+    Pane(#[from] PaneError),
 }
 
 impl ShowerError {
@@ -48,7 +58,8 @@ impl ShowerError {
             Self::Render(error) => error.exit_code(),
             Self::Stage(error) => error.exit_code(),
             Self::Mask(error) => error.exit_code(),
-            Self::NotUniform | Self::Drop(_) => 2,
+            Self::Pane(error) => error.exit_code(),
+            Self::NotUniform | Self::DragByStep | Self::Drop(_) => 2,
         }
     }
 }

@@ -3,8 +3,8 @@
 use super::Rain;
 use super::fault::Places;
 use super::quantity::{
-    AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, HighlightMm, In, PaneApertureMm,
-    PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, Share, TurnDeg,
+    AboveM, AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, HighlightMm, In,
+    PaneApertureMm, PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, Share, TurnDeg,
 };
 use super::wind::keys::NumberKeys;
 use crate::error::SceneError;
@@ -18,6 +18,9 @@ use serde::Deserialize;
 
 /// The fastest that drops run on a pane of a weather, m/s.
 const SPEED_LIMIT_M_S: f64 = 0.4;
+
+/// Rows of cells that the lattice takes.
+const MAX_ROWS: u32 = 4096;
 
 /// Keys of a wiper that the lattice takes.
 const LARGEST_RAD: f64 = 7.0;
@@ -70,6 +73,8 @@ pub struct Pane {
     pub size: Option<[f64; 2]>,
     /// Edge of a cell, m.
     pub cell: f64,
+    /// Height of the pane above what is seen of it, m: from there water runs down into it.
+    pub above: f64,
     /// How fast the air with the rain comes at the pane, m/s, over time.
     pub speed: Keyed<f64>,
     /// How long it has rained on the pane before the first picture, s.
@@ -107,20 +112,36 @@ impl Pane {
         size.map(|edge| (edge / self.cell).round().clamp(1.0, 1.0e9) as u32)
     }
 
-    /// The lattice for a pane of a size in metres, in a rain, from a time in seconds on. The tick is that of the fastest air.
+    /// Rows of cells above what is seen of the pane, a size in meters; fewer where the lattice would have too many.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, reason = "whole, and within the range of u32")]
+    pub fn rows_above(&self, size: [f64; 2]) -> u32 {
+        let [_, rows] = self.cells(size);
+        ((self.above / self.cell).round().clamp(0.0, 4096.0) as u32).min(MAX_ROWS.saturating_sub(rows))
+    }
+
+    /// The lattice for a pane of which a size in metres is seen, in a rain, from a time in seconds on: its uppermost
+    /// [`Pane::rows_above`] rows are above that. The tick is that of the fastest air.
     #[must_use]
     pub fn options(&self, size: [f64; 2], rain: &Rain, begin_s: f64) -> GlassOptions {
         let fastest = self.speed.keys().iter().fold(0.0, |most: f64, &(_, speed)| most.max(speed));
         let (rain, air) = self.weather(rain, fastest);
+        let [columns, rows] = self.cells(size);
+        let above = self.rows_above(size);
         GlassOptions {
-            size: self.cells(size),
+            size: [columns, rows.saturating_add(above)],
             cell_m: self.cell,
             tilt_rad: self.tilt,
             contact: self.contact,
             rain,
             air,
             evaporation_mm_h: self.drying_mm_h,
-            wipers: self.wipers.iter().map(|wiper| shifted(wiper, begin_s)).collect(),
+            temperature_c: rain.air.temperature_c(),
+            wipers: self
+                .wipers
+                .iter()
+                .map(|wiper| shifted(wiper, begin_s, f64::from(above) * self.cell))
+                .collect(),
             speed_limit_m_s: SPEED_LIMIT_M_S,
             seed: self.seed,
             ..GlassOptions::default()
@@ -132,21 +153,22 @@ impl Pane {
     pub fn weather(&self, rain: &Rain, speed_m_s: f64) -> (GlassRain, GlassAir) {
         let along = speed_m_s * ops::cos(self.tilt).max(0.0);
         (
-            GlassRain { rate_mm_h: rain.rate_mm_h, law: rain.law, towards_m_s: speed_m_s },
+            GlassRain { rate_mm_h: rain.rate_mm_h, law: rain.law, air: rain.air, towards_m_s: speed_m_s },
             GlassAir { speed_m_s: along, ..GlassAir::default() },
         )
     }
 }
 
-/// The wiper with its keys in the lattice's own time.
-fn shifted(wiper: &GlassWiper, begin_s: f64) -> GlassWiper {
+/// The wiper with its keys in the lattice's own time, and its pivot so many meters lower.
+fn shifted(wiper: &GlassWiper, begin_s: f64, lower: f64) -> GlassWiper {
     let motion = match &wiper.motion {
         GlassWiperMotion::Keys(keys) => GlassWiperMotion::Keys(
             keys.iter().map(|key| GlassWiperKey { time_s: key.time_s - begin_s, ..*key }).collect(),
         ),
         sweep @ GlassWiperMotion::Sweep { .. } => sweep.clone(),
     };
-    GlassWiper { motion, ..wiper.clone() }
+    let [x, y] = wiper.pivot_m;
+    GlassWiper { motion, pivot_m: [x, y + lower], ..wiper.clone() }
 }
 
 #[derive(Debug, Deserialize)]
@@ -156,6 +178,7 @@ pub(super) struct GlassTable {
     tilt_deg: Option<In<PaneTiltDeg>>,
     size_m: Option<Exactly<In<PaneM>, 2>>,
     cell_mm: Option<In<CellMm>>,
+    above_m: Option<In<AboveM>>,
     speed_m_s: Option<NumberKeys<PaneMS>>,
     before_s: Option<In<BeforeS>>,
     focus: Option<PaneFocus>,
@@ -204,6 +227,7 @@ impl GlassTable {
             tilt: number(self.tilt_deg.map(|deg| deg.0), 90.0).to_radians(),
             size: self.size_m.map(Exactly::numbers),
             cell: number(self.cell_mm.map(|mm| mm.0), 0.6) * 1.0e-3,
+            above: number(self.above_m.map(|m| m.0), 0.15),
             speed: match &self.speed_m_s {
                 Some(keys) => keys.keyed("glass.speed_m_s", places)?,
                 None => 3.0.into(),

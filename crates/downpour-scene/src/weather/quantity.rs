@@ -84,6 +84,7 @@ ranges! {
     ReachM: 0.02, 10.0, "0.02 to 10 m";
     PaneTiltDeg: 10.0, 90.0, "10 to 90 degrees";
     PaneM: 0.01, 10.0, "0.01 to 10 m";
+    AboveM: 0.0, 1.0, "0 to 1 m";
     CellMm: 0.25, 5.0, "0.25 to 5 mm";
     PaneMS: 0.0, 100.0, "0 to 100 m/s";
     BeforeS: 0.0, 3600.0, "0 to 3600 s";
