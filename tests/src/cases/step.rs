@@ -282,7 +282,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("step_pack", &STEP, &[near, near, near], Tol::exact("whole parts and bits"), |a| {
             step_pack(vec3(a)).words()
         }),
-        FunctionCase::new("step_image", &STEP, &[Below(1 << 14), Below(1 << 14)], Tol::exact("bits"), |a| {
+        FunctionCase::new("step_image", &STEP, &[Below(1 << 14), Below(1 << 14)], Tol::exact("bits of a word"), |a| {
             step_image(a.u32(), a.u32()).words()
         }),
         FunctionCase::new(
