@@ -14,7 +14,7 @@ use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
-use downpour_wind::UniformWind;
+use downpour_wind::{UniformWind, WindField};
 use glam::DVec3;
 
 use crate::glass::pane_plane;
@@ -118,6 +118,22 @@ impl Shower {
             visible.drops.retain(|drop| !pane.is_before((drop.position - eye).as_vec3()));
         }
         Ok(visible)
+    }
+
+    /// The wind that the drops feel at a time in seconds, in its cells and relative to the stage's origin: none blows in
+    /// objects. `None` where it is the same everywhere, which drops in closed form feel in the lee of objects too.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub fn wind_field(
+        &mut self,
+        scenery: &dyn Scenery,
+        time_s: f64,
+    ) -> Result<Option<WindField>, ShowerError> {
+        match &mut self.form {
+            Form::Closed(_) => Ok(None),
+            Form::Stepped(stepped) => stepped.wind_field(scenery, time_s),
+        }
     }
 
     /// The drops that were not listed for a picture at a time in seconds: `visible` is what [`Shower::at`] gave.

@@ -186,6 +186,16 @@ impl Stepped {
         Ok(visible)
     }
 
+    /// The wind that a step at a time meets.
+    pub(super) fn wind_field(
+        &mut self,
+        scenery: &dyn Scenery,
+        time_s: f64,
+    ) -> Result<Option<WindField>, ShowerError> {
+        self.begin(scenery)?;
+        Ok(self.surroundings(scenery, time_s, None)?.field)
+    }
+
     pub(super) fn measured_rate_mm_h(&self) -> f64 {
         let measured =
             |running: &Running| running.simulation.measured_rate_mm_h(running.surroundings.map.as_ref());
