@@ -6,7 +6,7 @@ mod stepped;
 
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
-use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution, ExtinctionEfficiency};
+use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::optics::water_index_in_air;
 use downpour_scene::weather::{Rain, RainDrag, RainExtinction, RainVolume, Weather};
@@ -196,8 +196,7 @@ fn bounce(rain: &Rain) -> Bounce {
 /// # Errors
 /// [`DropError`] for a rain that is none.
 pub fn law(rain: &Rain) -> Result<DropSizeDistribution, DropError> {
-    let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
-    DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)
+    rain.sizes()
 }
 
 /// What drops do to light in the air of a weather.

@@ -10,7 +10,7 @@
 use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::TerminalSpeed;
-use downpour_scene::weather::{RainDrag, RainVolume, Weather};
+use downpour_scene::weather::{RAIN_BOX_M, RainDrag, RainVolume, Weather};
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
 use downpour_sim::field::VisibleDrops;
 use downpour_sim::simulation::{Drag, Moment, SimVolume, Simulation, SimulationOptions, least_pixels};
@@ -21,9 +21,6 @@ use glam::{DVec3, Vec3};
 use super::scenery::Scenery;
 use super::{ShowerError, bounce};
 use crate::stage::Stage;
-
-/// Side of a box of rain where the weather does not say, m.
-const BOX_M: f64 = 10.0;
 
 /// Steps of a second.
 const STEPS_PER_S: f64 = 60.0;
@@ -89,7 +86,7 @@ struct Surroundings {
 impl Stepped {
     pub(super) fn new(law: DropSizeDistribution, weather: &Weather) -> Self {
         let rain = &weather.rain;
-        let size_m = [rain.box_m.unwrap_or(BOX_M); 3];
+        let size_m = [rain.box_m.unwrap_or(RAIN_BOX_M); 3];
         let options = SimulationOptions {
             volume: match rain.volume {
                 RainVolume::Box => SimVolume::Box { size_m },
