@@ -57,6 +57,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::scene::MODULES,
         render::specimen::MODULES,
         sim::collision::MODULES,
+        sim::enter::MODULES,
         sim::step::MODULES,
         wind::MODULES,
     ]
@@ -78,6 +79,7 @@ pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
         render::scene::KERNELS,
         render::specimen::KERNELS,
         sim::collision::KERNELS,
+        sim::enter::KERNELS,
         sim::step::KERNELS,
         wind::KERNELS,
     ]

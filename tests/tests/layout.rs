@@ -25,8 +25,9 @@ use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
 use downpour_shaders::{Module, bvh, compose, drop, lattice, mask, modules, render, sim, wind};
 use downpour_sim::collision::{CollisionFrame, CollisionTexel};
+use downpour_sim::enter::EnterRegion;
 use downpour_sim::step::{StepEvent, StepFrame};
-use downpour_sim::volume::{VolumeBack, VolumeEye};
+use downpour_sim::volume::{VolumeEye, VolumeFrustum};
 use downpour_tests::signature::parse;
 use downpour_wind::WindTurbulenceMode;
 use downpour_wind::field::WindFieldGrid;
@@ -113,11 +114,15 @@ fn hosts() -> Vec<Host> {
             low, triangles, across, steep, along, merge, fall, edge, per_edge, anchor, size),
         host!(CollisionTexel as "CollisionTexel" in &sim::collision::COLLISION, depths, surfaces),
         host!(StepFrame as "StepFrame" in &sim::step::STEP,
-            before, now, shift, count, size, first, centre, volume, wind, time, seed, step, elsewhere, range, farthest,
-            average, events, bounce, restitution, grip, bounced_size, bounced_time, gauge_height, gauge, unused,
-            gauge_area, back),
+            now, shift, count, size, first, centre, volume, wind, time, seed, step, elsewhere, farthest, average,
+            events, bounce, restitution, grip, bounced_size, bounced_time, gauge_height, gauge, boxes, unused_1, gauge_area,
+            frustum, frustum_before, tangents, lags, oldest, candidates, regions, regions_first, sizes_first, pieces,
+            piece, unused_2),
         host!(StepEvent as "StepEvent" in &sim::step::STEP, place, diameter, velocity, drop),
-        host!(VolumeBack as "VolumeBack" in &sim::step::VOLUME, turn, sum),
+        host!(EnterRegion as "EnterRegion" in &sim::enter::ENTER,
+            face, bin, first, first_of_bin, low, high, begin, end, slope, width, middle, unused),
+        host!(VolumeFrustum as "VolumeFrustum" in &sim::step::VOLUME,
+            planes, eye, air, half_horizon, half_wait, spread, spread_slope, spread_most, range, farthest, unused),
         host!(VolumeEye as "VolumeEye" in &sim::step::VOLUME,
             place, half_width, right, half_height, up, unused_1, forward, unused_2),
         host!(WindFieldGrid as "WindFieldGrid" in &wind::FIELD, low, primitives, cell, modes, per_cell, size),

@@ -1,22 +1,27 @@
 //! The rain of a weather before an eye, at one time after the other: in closed form, or step by step.
 
 mod error;
+mod scenery;
 mod stepped;
 
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
-use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution, ExtinctionEfficiency};
+use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::optics::water_index_in_air;
-use downpour_scene::weather::{Rain, RainExtinction, RainVolume, Weather};
+use downpour_scene::weather::{Rain, RainDrag, RainExtinction, RainVolume, Weather};
 use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::shelter::Obstacles;
+use downpour_sim::simulation::Bounce;
+use downpour_sim::view::View;
+use downpour_wind::{UniformWind, WindField};
 use glam::DVec3;
 
 use crate::glass::pane_plane;
 use crate::rain::{DropMasks, MediumOptions, RainMedium};
 use crate::stage::Stage;
 pub use error::ShowerError;
+pub use scenery::{MovingScenery, Scenery, Still};
 use stepped::Stepped;
 
 /// The line of sodium, in metres: the wavelength at which water's index is taken.
@@ -37,6 +42,7 @@ enum Form {
 pub struct Shower {
     law: DropSizeDistribution,
     weather: Weather,
+    bounce: Bounce,
     form: Form,
 }
 
@@ -44,51 +50,90 @@ impl Shower {
     /// The rain of a weather.
     ///
     /// # Errors
-    /// [`ShowerError::NotUniform`] if closed form is asked for in a wind that differs from place to place;
+    /// [`ShowerError::NotUniform`] if closed form is asked for in a wind that differs from place to place,
+    /// [`ShowerError::DragByStep`] for a drag that has none;
     /// [`ShowerError::Sim`], [`ShowerError::Drop`] for a rain that is none.
     pub fn new(weather: &Weather) -> Result<Self, ShowerError> {
         let rain = &weather.rain;
         let law = law(rain)?;
+        // The papers' drag has no closed form.
+        let relaxes = rain.drag == RainDrag::Relaxation;
         let form = match (rain.volume, weather.wind.uniform()) {
-            (RainVolume::Auto | RainVolume::ClosedForm, Some(wind)) => {
-                Form::Closed(Box::new(RainField::new(&law, rain.seed)?.with_wind(wind)))
-            }
+            (RainVolume::Auto, Some(wind)) if relaxes => closed(&law, rain, wind)?,
+            (RainVolume::ClosedForm, Some(_)) if !relaxes => return Err(ShowerError::DragByStep),
+            (RainVolume::ClosedForm, Some(wind)) => closed(&law, rain, wind)?,
             (RainVolume::ClosedForm, None) => return Err(ShowerError::NotUniform),
             _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
-        Ok(Self { law, weather: weather.clone(), form })
+        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), form })
     }
 
-    /// Whether a picture of any time can be made by itself. If not, pictures of a clip are made in order of time, and each
-    /// of them has to be asked for.
+    /// Whether drops are where they are in closed form, and not step by step.
     #[must_use]
     pub fn is_closed_form(&self) -> bool {
         matches!(self.form, Form::Closed(_))
     }
 
-    /// The drops that the stage's picture shows at a time in seconds.
+    /// Whether a picture of any time can be made by itself, and is the same as among others. If not, pictures of a clip are
+    /// made in order of time, and each of them has to be asked for.
+    #[must_use]
+    pub fn can_seek(&self) -> bool {
+        match &self.form {
+            Form::Closed(_) => true,
+            Form::Stepped(stepped) => stepped.forgets(),
+        }
+    }
+
+    /// The drops that a picture of a scene shows at a time in seconds; `stage` is the scene at that time. Of work that takes
+    /// long `passed` is told how many steps are done, and how many there are to do.
     ///
     /// # Errors
     /// As [`RainField::visible`] and [`Simulation::advance`](downpour_sim::simulation::Simulation::advance);
-    /// [`ShowerError::Wind`] for a wind field that is none.
-    pub fn at(&mut self, stage: &Stage, time_s: f64) -> Result<VisibleDrops, ShowerError> {
-        let view = stage.view()?;
+    /// [`ShowerError::Wind`] for a wind field that is none; [`ShowerError::Stage`].
+    pub fn at(
+        &mut self,
+        scenery: &dyn Scenery,
+        stage: &Stage,
+        time_s: f64,
+        passed: &mut dyn FnMut(u32, u32),
+    ) -> Result<VisibleDrops, ShowerError> {
         let mut visible = match &mut self.form {
             Form::Closed(field) => {
+                let view = View { most_drops: self.weather.rain.most_drops, ..stage.view()? };
                 let obstacles = Obstacles {
                     nodes: &stage.data.nodes,
                     triangles: &stage.data.triangles,
                     origin: stage.origin,
                 };
-                field.visible_among(&obstacles, &view, time_s)?
+                let mut visible = field.visible_among(&obstacles, &view, time_s)?;
+                let least = visible.resolved.least_pixels;
+                visible.drops.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
+                visible
             }
-            Form::Stepped(stepped) => stepped.at(stage, &view, time_s)?,
+            Form::Stepped(stepped) => stepped.at(scenery, stage, time_s, passed)?,
         };
         // A pane keeps the rain outside.
         if let Some(pane) = pane_plane(&self.weather, stage)? {
-            visible.drops.retain(|drop| !pane.is_before((drop.position - view.eye).as_vec3()));
+            let eye = stage.view()?.eye;
+            visible.drops.retain(|drop| !pane.is_before((drop.position - eye).as_vec3()));
         }
         Ok(visible)
+    }
+
+    /// The wind that the drops feel at a time in seconds, in its cells and relative to the stage's origin: none blows in
+    /// objects. `None` where it is the same everywhere, which drops in closed form feel in the lee of objects too.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub fn wind_field(
+        &mut self,
+        scenery: &dyn Scenery,
+        time_s: f64,
+    ) -> Result<Option<WindField>, ShowerError> {
+        match &mut self.form {
+            Form::Closed(_) => Ok(None),
+            Form::Stepped(stepped) => stepped.wind_field(scenery, time_s),
+        }
     }
 
     /// The drops that were not listed for a picture at a time in seconds: `visible` is what [`Shower::at`] gave.
@@ -129,13 +174,29 @@ impl Shower {
     }
 }
 
+/// Rain in closed form.
+fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<Form, ShowerError> {
+    Ok(Form::Closed(Box::new(RainField::new(law, rain.seed)?.with_wind(wind))))
+}
+
+/// What happens to drops that meet a surface.
+fn bounce(rain: &Rain) -> Bounce {
+    let bounce = &rain.bounce;
+    Bounce {
+        share: bounce.share as f32,
+        restitution: bounce.restitution as f32,
+        grip: bounce.grip as f32,
+        size: bounce.size as f32,
+        longest_s: bounce.longest_s as f32,
+    }
+}
+
 /// The sizes of the drops of a rain.
 ///
 /// # Errors
 /// [`DropError`] for a rain that is none.
 pub fn law(rain: &Rain) -> Result<DropSizeDistribution, DropError> {
-    let options = DistributionOptions { air: rain.air, ..DistributionOptions::default() };
-    DropSizeDistribution::with_options(rain.law, rain.rate_mm_h, &options)
+    rain.sizes()
 }
 
 /// What drops do to light in the air of a weather.

@@ -26,6 +26,7 @@ use crate::camera::{PIXELS, Viewpoint};
 use crate::data::{SceneBuilder, SceneData};
 use crate::light::LightSource;
 use crate::rain::EyeMotion;
+use crate::rain::exposure::LONGEST_EXPOSURE_S;
 use crate::tone::{tone_automatic_exposure, tone_luminance};
 pub use error::StageError;
 pub use eye::CameraChoice;
@@ -48,9 +49,6 @@ pub const LATEST_S: f64 = downpour_sim::field::LATEST_S;
 
 /// The eye's motion is taken over this time at least, s.
 const LEAST_APART_S: f64 = 1.0e-3;
-
-/// Drops in a storm are hardly faster, m/s.
-const FASTEST_DROP_M_S: f64 = 30.0;
 
 /// Pixels darker than this part of the mean have no say in the exposure.
 const UNLIT: f32 = 1.0e-4;
@@ -102,7 +100,7 @@ impl Stage {
         check_cost(loaded, &pose)?;
         let seen = Seen::of(weather, loaded, &pose);
         let anchor = seen.as_ref().map_or_else(|| middle(loaded, &pose), |seen| seen.eye);
-        let origin = if anchor.abs().max_element() > NEAR_ORIGIN_M { anchor.round() } else { DVec3::ZERO };
+        let origin = origin_near(anchor);
         let mut builder = SceneBuilder::new();
         builder.add_scene(&loaded.scene, &pose, origin);
         if let Some(sun) = loaded.sun {
@@ -124,8 +122,6 @@ impl Stage {
         };
         // A camera that is none is told of here and not in the middle of the work.
         viewpoint.axes()?;
-        let near = weather.camera.near.or_else(|| seen.as_ref()?.near).unwrap_or(weather::NEAR_M);
-        let far = weather.camera.far.or_else(|| seen.as_ref()?.far).unwrap_or(weather::FAR_M);
         Ok(Self {
             data,
             viewpoint,
@@ -134,7 +130,7 @@ impl Stage {
             shutter_s: weather.camera.shutter,
             size: weather.size,
             exposure_ev: weather.camera.exposure_ev as f32,
-            depth: [near, far],
+            depth: depth(weather, seen.as_ref()),
             camera,
             triangles,
             instances: pose.instances.len(),
@@ -148,30 +144,23 @@ impl Stage {
     /// # Errors
     /// As [`Viewpoint::axes`].
     pub fn view(&self) -> Result<View, RenderError> {
-        let [right, up, forward] = self.viewpoint.axes()?.map(|axis| axis.as_dvec3().normalize());
-        let [width, height] = self.size.map(f64::from);
-        let half_height = downpour_math::ops::f64::tan(f64::from(self.viewpoint.fov_y) * 0.5);
-        let half_width = half_height * width / height;
-        // What comes into the picture while the shutter is open.
-        let turned = 0.5 * self.shutter_s * f64::from(self.motion.turning.length());
-        let speed = f64::from(self.motion.velocity.length());
-        let usual = View::default();
-        // The drops that a picture can resolve end before the scene does.
-        let near = self.depth[0].min(1000.0);
-        let far = usual.far.min(self.depth[1]).max(near);
-        Ok(View {
-            eye: self.origin + self.viewpoint.eye.as_dvec3(),
-            right,
-            up,
-            forward,
-            half_width: half_width + turned * (1.0 + half_width * half_width),
-            half_height: half_height + turned * (1.0 + half_height * half_height),
-            pixel_angle: 2.0 * half_height / height,
-            near,
-            far,
-            margin: 0.5 * self.shutter_s * (FASTEST_DROP_M_S + speed),
-            ..usual
-        })
+        view_of(&self.viewpoint, self.origin, self.size, self.depth, self.shutter_s, &self.motion)
+    }
+
+    /// The part of space that a picture at a time in seconds would show: [`Stage::view`] of [`Stage::new`], without the scene
+    /// where the eye does not depend on it.
+    ///
+    /// # Errors
+    /// As [`Stage::new`].
+    pub fn view_at(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, StageError> {
+        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s)) else {
+            return Ok(Self::new(weather, loaded, time_s)?.view()?);
+        };
+        let origin = origin_near(seen.eye);
+        let viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), origin);
+        let depth = depth(weather, Some(&seen));
+        let motion = motion(weather, loaded, time_s);
+        Ok(view_of(&viewpoint, origin, weather.size, depth, weather.camera.shutter, &motion)?)
     }
 
     /// Drops of the world as the picture takes them, relative to `origin`.
@@ -217,6 +206,51 @@ impl Stage {
         .map(|bytes| bytes as u64)
         .sum()
     }
+}
+
+/// What buffers are relative to, for an eye at a place.
+fn origin_near(eye: DVec3) -> DVec3 {
+    if eye.abs().max_element() > NEAR_ORIGIN_M { eye.round() } else { DVec3::ZERO }
+}
+
+/// Distances from the eye between which drops are drawn, m.
+fn depth(weather: &Weather, seen: Option<&Seen>) -> [f64; 2] {
+    let near = weather.camera.near.or_else(|| seen?.near).unwrap_or(weather::NEAR_M);
+    let far = weather.camera.far.or_else(|| seen?.far).unwrap_or(weather::FAR_M);
+    [near, far]
+}
+
+/// The part of space that a picture shows.
+fn view_of(
+    viewpoint: &Viewpoint,
+    origin: DVec3,
+    size: [u32; 2],
+    depth: [f64; 2],
+    shutter_s: f64,
+    motion: &EyeMotion,
+) -> Result<View, RenderError> {
+    let [right, up, forward] = viewpoint.axes()?.map(|axis| axis.as_dvec3().normalize());
+    let [width, height] = size.map(f64::from);
+    let half_height = downpour_math::ops::f64::tan(f64::from(viewpoint.fov_y) * 0.5);
+    let usual = View::default();
+    // The drops that a picture can resolve end before the scene does.
+    let near = depth[0].min(1000.0);
+    let far = usual.far.min(depth[1]).max(near);
+    Ok(View {
+        eye: origin + viewpoint.eye.as_dvec3(),
+        right,
+        up,
+        forward,
+        half_width: half_height * width / height,
+        half_height,
+        pixel_angle: 2.0 * half_height / height,
+        near,
+        far,
+        shutter_s: shutter_s.clamp(0.0, LONGEST_EXPOSURE_S),
+        velocity: motion.velocity.as_dvec3(),
+        turning: motion.turning.as_dvec3(),
+        ..usual
+    })
 }
 
 /// How the eye moves at a time: from where it is when the shutter opens and closes.

@@ -57,6 +57,7 @@ fn drawn(
         diameter: 2.0e-3,
         id: 5,
         kind: DropKind::Falling,
+        present_s: FallingDrop::ALWAYS,
     };
     let exposure = Exposure {
         shutter_s: SHUTTER_S,

@@ -23,7 +23,8 @@ fn scale() -> f64 {
 }
 
 fn drop_at(position: DVec3, diameter: f32) -> FallingDrop {
-    FallingDrop { position, velocity: [0.0, -4.0, 0.0], diameter, id: 1, kind: DropKind::Falling }
+    let (velocity, present_s) = ([0.0, -4.0, 0.0], FallingDrop::ALWAYS);
+    FallingDrop { position, velocity, diameter, id: 1, kind: DropKind::Falling, present_s }
 }
 
 fn picture(

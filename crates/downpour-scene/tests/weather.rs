@@ -3,6 +3,7 @@
 mod effort;
 
 use downpour_drop::distribution::DropSizeLaw;
+use downpour_drop::fall_speed::FallSpeedModel;
 use downpour_scene::weather::{
     Camera, CameraPose, Lamp, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume, Repeat,
     Sky, SkySource, SunSource, Weather,
@@ -238,6 +239,37 @@ fn all_laws_of_drop_sizes_have_their_name() {
     );
 }
 
+/// Drops that are counted have the rate of their water: count, volume, sphere and speed of fall.
+#[test]
+fn counted_drops_of_one_size_have_a_rate() {
+    let rain = |text: &str| parse(&format!("[rain]\n{text}")).map(|weather| weather.rain);
+    let found =
+        rain("drops = { count = 20000, diameter_mm = 2 }\nfall_speed = \"gunn-kinzer-1949\"\nbox_m = 8");
+    let found = found.unwrap();
+    assert_eq!(found.volume, RainVolume::Box);
+    // Gunn & Kinzer 1949: 6.49 m/s at 2 mm.
+    let expected = 20_000.0 / 512.0 * std::f64::consts::FRAC_PI_6 * 8.0e-9 * 6.49 * 3.6e6;
+    assert!((found.rate_mm_h / expected - 1.0).abs() < 1.0e-3, "{} mm/h, {expected}", found.rate_mm_h);
+    let sizes = found.sizes().unwrap();
+    assert!((sizes.number_density() * 512.0 - 20_000.0).abs() < 1.0);
+    assert!((sizes.median_volume_diameter() - 2.0e-3).abs() < 1.0e-6);
+    let faster =
+        rain("drops = { count = 20000, diameter_mm = 2 }\nfall_speed = \"rousseau-2006\"\nbox_m = 8");
+    assert_eq!(faster.unwrap().fall_speed, FallSpeedModel::Rousseau2006);
+    let refused = |text: &str, words: &[&str]| {
+        let error = rain(text).unwrap_err().to_string();
+        assert!(words.iter().all(|word| error.contains(word)), "{error}");
+    };
+    let drops = "drops = { count = 20000, diameter_mm = 2 }";
+    refused(&format!("{drops}\nrate_mm_h = 3"), &["rain.rate_mm_h", "rain.drops"]);
+    refused(&format!("{drops}\ndistribution = \"best\""), &["rain.distribution", "rain.drops"]);
+    refused(&format!("{drops}\nvolume = \"view\""), &["rain.drops", "tariq-2007"]);
+    refused(&format!("{drops}\nmost_drops = 10000"), &["rain.drops.count", "20000", "10000"]);
+    refused("drops = { count = 2, diameter_mm = 8 }", &["diameter_mm", "0.2 to 7.5 mm"]);
+    refused("drops = { count = 2000000, diameter_mm = 7 }\nbox_m = 5", &["mm/h", "0.001 to 500"]);
+    refused("drops = { count = 1, diameter_mm = 0.2 }\nbox_m = 1000", &["mm/h", "0.001 to 500"]);
+}
+
 #[test]
 fn t1_t2_rates_are_finite_and_in_range() {
     for (value, shown) in [
@@ -375,7 +407,8 @@ fn t11_keys_are_known_and_stand_once() {
     says(
         "[rain]\n  rate = 5",
         "line 2, column 3: rain.rate: unknown key \"rate\", perhaps rate_mm_h; allowed: rate_mm_h, distribution, \
-         gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, volume, box_m, cylinder, most_drops, drag, bounce, drop_light, extinction",
+         gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, fall_speed, drops, volume, box_m, \
+         cylinder, most_drops, drag, bounce, drop_light, extinction",
     );
     says(
         "[rian]\nrate_mm_h = 5",

@@ -38,11 +38,9 @@ fn step(criterion: &mut Criterion) {
         ("view in wind with map", SimVolume::View, true, true),
     ] {
         let moment = Moment {
-            view: &view,
-            origin: DVec3::ZERO,
-            wind: Vec3::X,
             field: windy.then_some(&field),
             map: walls.then_some(&map),
+            ..Moment::new(&view, DVec3::ZERO, Vec3::X)
         };
         let options = SimulationOptions { volume, most_drops: 200_000, ..SimulationOptions::default() };
         let mut simulation = Simulation::new(&rain(), &options, &moment).expect("a simulation");

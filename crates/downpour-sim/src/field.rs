@@ -14,7 +14,8 @@
 //!
 //! Wind carries all drops of a chain alike: its displacement, which follows the wind as the drop's size lets it, is added to
 //! their places ([`downpour_wind::UniformWind`]). What stands in the way of drops is found along their paths
-//! ([`RainField::visible_among`]).
+//! ([`RainField::visible_among`]), and where they meet it ([`RainField::impacts`]). The wind blows through what stands there:
+//! it throws no shadow in the wind.
 //!
 //! Limit: drops of one chain share their size, H apart; H is about 8 m per millimetre of diameter, up to 64 m.
 
@@ -22,16 +23,18 @@ use downpour_drop::distribution::{DropSizeDistribution, SampleTable, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_pcg4d, seed_words};
+use downpour_shaders::sim::step::VOLUME_RADIUS;
 use downpour_wind::{UniformWind, Wind};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::SimError;
 use crate::drift::Drift;
+pub use crate::falling::{DropKind, FallingDrop, VisibleDrops};
 use crate::poisson::poisson;
 use crate::resolved::Resolved;
 use crate::shelter::{Obstacles, keep_open};
-use crate::view::{Bounds, View};
+use crate::view::{Bounds, View, within};
 
 /// Classes of diameter per factor of two.
 const CLASSES_PER_OCTAVE: f64 = 4.0;
@@ -44,62 +47,13 @@ const CHAIN_COUNT: u32 = 8200;
 const CHAIN: u32 = 8201;
 const PLACE: u32 = 8202;
 
-/// Where a drop comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum DropKind {
-    /// The sky.
-    #[default]
-    Falling,
-    /// A surface that another drop met.
-    Bounced,
-}
-
-impl DropKind {
-    /// As lists of drops name it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Falling => "falling",
-            Self::Bounced => "bounced",
-        }
-    }
-}
-
-/// A drop at an instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FallingDrop {
-    /// Place of its centre, metres.
-    pub position: DVec3,
-    /// Velocity, m/s.
-    pub velocity: [f32; 3],
-    /// Volume-equivalent diameter, metres.
-    pub diameter: f32,
-    /// The same drop at another time or in another picture has the same number.
-    pub id: u64,
-    /// Where it comes from.
-    pub kind: DropKind,
-}
-
-/// The drops that a camera can resolve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VisibleDrops {
-    /// The drops, in an order that depends on nothing but the question.
-    pub drops: Vec<FallingDrop>,
-    /// How many drops were looked at to find them.
-    pub simulated: u64,
-    /// Limits of the list; all other drops of the rain are unresolved. `least_pixels` is raised where there would have been
-    /// too many.
-    pub resolved: Resolved,
-}
-
 /// Drops of about one size.
 #[derive(Clone, Debug)]
-struct Class {
+pub(crate) struct Class {
     seed: [u32; 2],
-    largest: f64,
+    pub(crate) largest: f64,
     /// Terminal speeds of the smallest and the largest, m/s.
-    speeds: [f64; 2],
+    pub(crate) speeds: [f64; 2],
     /// Drops per cubic metre.
     density: f64,
     sizes: SampleTable,
@@ -112,9 +66,9 @@ struct Class {
 /// A rain without end.
 #[derive(Clone, Debug)]
 pub struct RainField {
-    classes: Vec<Class>,
-    speed: TerminalSpeed,
-    wind: UniformWind,
+    pub(crate) classes: Vec<Class>,
+    pub(crate) speed: TerminalSpeed,
+    pub(crate) wind: UniformWind,
 }
 
 /// Where a chain is and what it carries.
@@ -191,7 +145,7 @@ impl RainField {
         time_s: f64,
     ) -> Result<VisibleDrops, SimError> {
         let mut visible = self.visible(view, time_s)?;
-        keep_open(&mut visible.drops, obstacles, &self.speed, &self.wind, time_s);
+        keep_open(&mut visible.drops, obstacles, &self.speed, &self.wind, time_s, view.shutter_s);
         Ok(visible)
     }
 
@@ -313,7 +267,10 @@ impl RainField {
         drift: &Drift,
     ) -> (Vec<FallingDrop>, u64) {
         let range = view.range(class.largest, least_pixels);
-        let bounds = view.bounds(range);
+        let sides = view.sides();
+        let swept = view.swept_sides();
+        let margin = class.half_way(view, drift) + f64::from(VOLUME_RADIUS) * class.largest;
+        let bounds = view.bounds(range, margin);
         let [xs, zs] = class.columns(&bounds, drift);
         let [least, most] = drift.span(class.speeds[0], class.speeds[1]);
         let (carried, spread) = (least.midpoint(most), 0.5 * (most - least).length());
@@ -327,14 +284,17 @@ impl RainField {
                 for iz in zs.clone() {
                     let x = (ix as f64 + 0.5) * class.edge + carried.x;
                     let z = (iz as f64 + 0.5) * class.edge + carried.z;
-                    if !view.within_sides(DVec3::new(x, middle, z) - view.eye, radius + view.margin) {
+                    if !within(&swept, DVec3::new(x, middle, z) - view.eye, radius + margin) {
                         continue;
                     }
                     self.drops_of_column(class, [ix, iz], &bounds, time_s, drift, |drop| {
                         tried += 1;
                         let diameter = f64::from(drop.diameter);
                         let range = view.range(diameter, least_pixels);
-                        if view.touches(drop.position, 0.6 * diameter, range) {
+                        let velocity = Vec3::from(drop.velocity).as_dvec3();
+                        let radius = f64::from(VOLUME_RADIUS) * diameter;
+                        let all = [f64::NEG_INFINITY, f64::INFINITY];
+                        if view.shows(&sides, drop.position, velocity, radius, range, all) {
                             found.push(drop);
                         }
                     });
@@ -344,6 +304,33 @@ impl RainField {
             .collect();
         let tried = rows.iter().map(|row| row.1).sum();
         (rows.into_iter().flat_map(|row| row.0).collect(), tried)
+    }
+
+    /// What `make` makes of the drops of a class that are within bounds at a time; it is given their terminal speeds too.
+    pub(crate) fn gathered<T: Send>(
+        &self,
+        class: &Class,
+        bounds: &Bounds,
+        time_s: f64,
+        drift: &Drift,
+        make: impl Fn(&FallingDrop, f64) -> Option<T> + Sync,
+    ) -> Vec<T> {
+        let [xs, zs] = class.columns(bounds, drift);
+        let of_row = |ix: i64| {
+            let mut made = Vec::new();
+            for iz in zs.clone() {
+                self.drops_of_column(class, [ix, iz], bounds, time_s, drift, |drop| {
+                    let at = drop.position;
+                    if at.cmpge(bounds.low).all() && at.cmple(bounds.high).all() {
+                        let speed = self.speed.at(f64::from(drop.diameter)).unwrap_or(0.0);
+                        made.extend(make(&drop, speed));
+                    }
+                });
+            }
+            made
+        };
+        let rows: Vec<Vec<T>> = xs.into_par_iter().map(of_row).collect();
+        rows.into_iter().flatten().collect()
     }
 
     /// Hands on the drops of a column whose height is within the bounds.
@@ -377,6 +364,14 @@ impl RainField {
 }
 
 impl Class {
+    /// How far, m, a drop moves relative to the eye in half the time that the shutter is open, at most.
+    fn half_way(&self, view: &View, drift: &Drift) -> f64 {
+        let [slow, fast] = self.speeds;
+        let way = |speed: f64| view.half_way(drift.of(speed)[1] - DVec3::Y * speed);
+        // Between the speeds of the table the velocity is linear, and nearly so over a class.
+        1.05 * way(slow).max(way(slow.midpoint(fast))).max(way(fast))
+    }
+
     /// Columns along x and along z whose drops the wind may have carried into a box.
     fn columns(&self, bounds: &Bounds, drift: &Drift) -> [std::ops::RangeInclusive<i64>; 2] {
         let [least, most] = drift.span(self.speeds[0], self.speeds[1]);
@@ -402,6 +397,7 @@ impl Chain {
             diameter: self.diameter,
             id: u64::from(high) << 32 | u64::from(low),
             kind: DropKind::Falling,
+            present_s: FallingDrop::ALWAYS,
         }
     }
 }
@@ -411,7 +407,7 @@ fn class_seed(seed: u64, class: u32) -> [u32; 2] {
     [a, b]
 }
 
-fn check_time(time_s: f64) -> Result<(), SimError> {
+pub(crate) fn check_time(time_s: f64) -> Result<(), SimError> {
     if time_s.abs() <= LATEST_S {
         return Ok(());
     }

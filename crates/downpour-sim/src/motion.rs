@@ -72,8 +72,9 @@ pub fn motion_relax(velocity: Vec3, wind: Vec3, speed: f32, time: f32) -> Motion
     let settled = motion_settled(wind, speed);
     let slip = velocity - settled;
     let [along, across] = fall_speed_relaxation(speed).map(|t| t.max(MOTION_SHORTEST));
-    let (left_along, left_across) = (ops::exp(-time / along), ops::exp(-time / across));
-    let stay = Vec3::new(left_across, left_along, left_across);
+    // Along the fall the slip relaxes twice as fast.
+    let left = ops::exp(-time / across);
+    let stay = Vec3::new(left, left * left, left);
     let reach = Vec3::new(across, along, across) * (1.0 - stay);
     MotionStep { velocity: settled + slip * stay, displacement: settled * time + slip * reach }
 }

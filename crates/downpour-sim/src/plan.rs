@@ -1,19 +1,26 @@
 //! What all drops share in each step, made from what the camera does: the one source of frames for the CPU and the GPU.
 
 use downpour_drop::distribution::DropSizeDistribution;
+use downpour_drop::fall_speed::relaxation;
 use downpour_math::rng::seed_words;
+use downpour_shaders::sim::enter::ENTER_SIZES;
 use downpour_shaders::sim::step::{
-    STEP_VOLUME_AREA, STEP_VOLUME_BOX, STEP_VOLUME_CYLINDER, STEP_VOLUME_TARIQ, STEP_VOLUME_VIEW,
+    MOTION_TABLE_LAST, STEP_LAGS, STEP_VOLUME_AREA, STEP_VOLUME_BOX, STEP_VOLUME_CYLINDER, STEP_VOLUME_TARIQ,
+    STEP_VOLUME_VIEW,
 };
+use downpour_wind::UniformWindAt;
 use glam::{DVec3, Vec3};
 
 use crate::SimError;
-use crate::population::{Population, box_centre};
+use crate::enter::EnterRegion;
+use crate::frustum::{Frustum, PLANES};
+use crate::inflow::regions;
+use crate::population::{Bin, affordable_pixels, bins, box_centre, reserve};
 use crate::resolved::{Region, Resolved};
-use crate::simulation::{Drag, SimVolume, SimulationOptions, WIDER};
-use crate::step::StepFrame;
+use crate::simulation::{Drag, SimVolume, SimulationOptions};
+use crate::step::{StepFrame, step_pack};
 use crate::view::View;
-use crate::volume::{VolumeEye, volume_backs};
+use crate::volume::VolumeEye;
 
 /// The longest step, s: longer times are cut.
 const LONGEST_STEP_S: f64 = 1.0 / 30.0;
@@ -21,41 +28,135 @@ const LONGEST_STEP_S: f64 = 1.0 / 30.0;
 /// The times that can be asked for at once, s.
 const TIMES_S: std::ops::RangeInclusive<f64> = 1.0e-5..=1.0;
 
+/// How far the velocity that drops keep of a wind leaves it, m/s, though the wind is the same everywhere.
+const LAG_M_S: f64 = 0.05;
+
+/// What drops keep of a wind that differs from place to place is that of so far before, m.
+const BEFORE_M: f64 = 2.0;
+
+/// In a wind that does not change.
+pub(crate) const STILL_LAGS: Lags = [[0.0; 4]; STEP_LAGS as usize];
+
+/// By how much drops lag behind a wind that changes, m/s, for speeds of 0, 1, 2, ... m/s.
+pub(crate) type Lags = [[f32; 4]; STEP_LAGS as usize];
+
+/// What the air does about the eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct AirAtEye {
+    /// Where there is no field, and at the eye, m/s.
+    pub(crate) wind: Vec3,
+    /// How far it leaves that: per m of distance, 1/s, and at most, m/s.
+    pub(crate) spread: [f32; 2],
+    pub(crate) lags: Lags,
+}
+
+/// By how much drops lag behind the uniform part of a wind.
+pub(crate) fn lags(air: Option<&UniformWindAt<'_>>) -> Lags {
+    let Some(air) = air else { return STILL_LAGS };
+    std::array::from_fn(|speed| {
+        let relaxation = relaxation(speed as f64);
+        let across = air.followed(relaxation.horizontal_s).velocity;
+        let along = air.followed(relaxation.vertical_s).velocity;
+        let lag = DVec3::new(across.x, along.y, across.z) - air.velocity();
+        lag.as_vec3().extend(0.0).to_array()
+    })
+}
+
+/// A step: its frame, and the regions that drops come from.
+#[derive(Clone, Debug)]
+pub(crate) struct Turn {
+    pub(crate) frame: StepFrame,
+    /// With one that marks their end; empty where nothing comes in.
+    pub(crate) regions: Vec<EnterRegion>,
+}
+
 /// Makes the frames of a simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub(crate) options: SimulationOptions,
     pub(crate) least_pixels: f64,
     pub(crate) least_diameter: f64,
+    pub(crate) bins: Vec<Bin>,
     view: View,
+    frustum: Frustum,
     origin: DVec3,
     step: u32,
+    /// How long the last step was, s.
+    time_s: f64,
 }
 
 impl Plan {
-    /// The plan and the drops that it begins with.
+    /// The plan of a rain; drops are not made by it.
     pub(crate) fn new(
         rain: &DropSizeDistribution,
         options: &SimulationOptions,
         view: &View,
         origin: DVec3,
-    ) -> Result<(Self, Population), SimError> {
+        air: AirAtEye,
+    ) -> Result<Self, SimError> {
         options.check()?;
-        view.check()?;
-        let wide = widened(view);
-        let drops = Population::new(rain, &options.volume, &wide, options.most_drops, options.seed)?;
-        let Population { least_pixels, least_diameter, .. } = drops;
+        check(view, origin)?;
+        let bins = bins(rain)?;
+        let times = [options.horizon_s(), options.wait_s];
+        let least_pixels = match options.volume {
+            SimVolume::View => affordable_pixels(&bins, view, times, options.most_drops),
+            _ => view.least_pixels,
+        };
+        let frustum = frustum(view, least_pixels, air, times);
         let options = options.clone();
-        Ok((Self { options, least_pixels, least_diameter, view: wide, origin, step: 0 }, drops))
+        let step = options.first_step;
+        Ok(Self {
+            options,
+            least_pixels,
+            least_diameter: 0.0,
+            bins,
+            view: *view,
+            frustum,
+            origin,
+            step,
+            time_s: LONGEST_STEP_S,
+        })
     }
 
-    /// The view of now, as wide as drops are simulated.
+    /// The view of now.
     pub(crate) fn view(&self) -> &View {
         &self.view
     }
 
+    pub(crate) fn frustum(&self) -> &Frustum {
+        &self.frustum
+    }
+
     pub(crate) fn origin(&self) -> DVec3 {
         self.origin
+    }
+
+    /// The farthest distance at which a drop of a view is resolved, m.
+    pub(crate) fn farthest(&self, view: &View) -> f64 {
+        let largest = self.bins.last().map_or(0.0, |bin| bin.diameters[1]);
+        view.range(largest, self.least_pixels)
+    }
+
+    /// Whether drops come and go, and are no fixed number.
+    pub(crate) fn is_open(&self) -> bool {
+        self.options.volume == SimVolume::View
+    }
+
+    /// Quantiles of the diameters of each bin.
+    pub(crate) fn sizes(&self) -> Vec<[f32; ENTER_SIZES as usize]> {
+        self.bins.iter().map(|bin| bin.sizes).collect()
+    }
+
+    /// Drops that a frustum holds, about.
+    #[cfg(feature = "wgpu")]
+    pub(crate) fn expected(&self) -> f64 {
+        let of = |bin: &Bin| bin.density * self.frustum.about_volume(bin.diameters[1], bin.speeds[1]);
+        self.bins.iter().map(of).sum()
+    }
+
+    /// Number of the step in which something happens so long after the state, s.
+    pub(crate) fn step_after(&self, time_s: f64) -> u32 {
+        self.step.wrapping_add(1).wrapping_add((time_s / self.time_s).max(0.0) as u32)
     }
 
     /// Limits of the list of drops that a picture can show.
@@ -64,7 +165,7 @@ impl Plan {
             SimVolume::View => Region::Everywhere,
             SimVolume::Box { size_m } => {
                 let size = DVec3::from(size_m);
-                Region::Box { center: box_centre(&self.view, size), size }
+                Region::Box { center: box_centre(view, size), size }
             }
             SimVolume::ImSung => {
                 let radius = 0.5 * self.view.far;
@@ -78,78 +179,100 @@ impl Plan {
         Resolved { least_diameter: self.least_diameter, region, ..Resolved::of(view, self.least_pixels) }
     }
 
-    /// The frames of a time in which the camera comes to `view`: one, or as many as the time is too long for.
-    pub(crate) fn frames(
+    /// The steps of a time in which the camera comes to `view`: one, or as many as the time is too long for.
+    pub(crate) fn turns(
         &mut self,
         time_s: f64,
         view: &View,
         origin: DVec3,
-        wind: Vec3,
-    ) -> Result<Vec<StepFrame>, SimError> {
+        air: AirAtEye,
+    ) -> Result<Vec<Turn>, SimError> {
         if !TIMES_S.contains(&time_s) {
             let (quantity, unit, allowed) = ("time of a step", "s", "1e-5 to 1");
             return Err(SimError::OutOfRange { quantity, found: time_s, unit, allowed });
         }
-        view.check()?;
-        if !(origin.is_finite() && (view.eye - origin).abs().max_element() <= 1.0e5) {
-            let found = (view.eye - origin).abs().max_element();
-            let (quantity, unit, allowed) = ("distance of the eye from the origin", "m", "up to 1e5");
-            return Err(SimError::OutOfRange { quantity, found, unit, allowed });
-        }
+        check(view, origin)?;
         let steps = (time_s / LONGEST_STEP_S).ceil().max(1.0);
-        let frames = (0..steps as u32).map(|_| self.frame(time_s / steps, &widened(view), origin, wind));
-        Ok(frames.collect())
+        (0..steps as u32).map(|_| self.turn(time_s / steps, view, origin, air)).collect()
     }
 
-    fn frame(&mut self, time_s: f64, view: &View, origin: DVec3, wind: Vec3) -> StepFrame {
-        let options = &self.options;
+    fn turn(&mut self, time_s: f64, view: &View, origin: DVec3, air: AirAtEye) -> Result<Turn, SimError> {
         let before = std::mem::replace(&mut self.view, *view);
-        let moved_origin = origin - std::mem::replace(&mut self.origin, origin);
-        let mut shift = moved_origin;
-        let (mut size, mut centre) = (DVec3::ONE, view.eye);
-        let mut elsewhere = false;
-        let volume = match options.volume {
+        let mut shift = origin - std::mem::replace(&mut self.origin, origin);
+        let next = frustum(view, self.least_pixels, air, [self.options.horizon_s(), self.options.wait_s]);
+        let frustum_before = std::mem::replace(&mut self.frustum, next);
+        self.step = self.step.wrapping_add(1);
+        self.time_s = time_s;
+        let (mut elsewhere, mut boxes, mut list) = (false, 0, Vec::new());
+        match self.options.volume {
             SimVolume::Box { size_m } => {
-                size = DVec3::from(size_m);
-                centre = box_centre(view, size);
-                shift -= size * (shift / size).round();
+                let size = DVec3::from(size_m);
+                let whole = (shift / size).round();
+                shift -= size * whole;
+                boxes = step_pack(-whole.as_vec3());
                 elsewhere = (view.eye - before.eye).abs().cmpgt(0.5 * size).any();
-                STEP_VOLUME_BOX
             }
             SimVolume::View => {
                 elsewhere = view.eye.distance(before.eye) > view.far;
-                STEP_VOLUME_VIEW
+                if !elsewhere {
+                    let wind = air.wind.as_dvec3();
+                    let seed = self.options.seed;
+                    list = regions(&frustum_before, &next, &self.bins, wind, time_s, seed, self.step);
+                }
             }
-            SimVolume::ImSung => STEP_VOLUME_AREA,
-            SimVolume::Tariq { size_m } => {
-                size = DVec3::from(size_m);
-                STEP_VOLUME_TARIQ
+            _ => {}
+        }
+        let candidates = list.last().map_or(0, |end: &EnterRegion| end.first);
+        reserve(candidates.into())?;
+        let mut tangents = [[0.0; 4]; PLANES];
+        for (tangent, made) in tangents.iter_mut().zip(frustum_before.tangents()) {
+            *tangent = made.as_vec3().extend(0.0).to_array();
+        }
+        let frame = StepFrame {
+            shift: shift.as_vec3().to_array(),
+            time: time_s as f32,
+            elsewhere: elsewhere.into(),
+            boxes,
+            frustum_before: frustum_before.relative_to(origin),
+            tangents,
+            oldest: (self.options.oldest_s / time_s).ceil().min(2.0e9) as u32,
+            candidates,
+            regions: (list.len() as u32).saturating_sub(1),
+            ..self.standing(air)
+        };
+        Ok(Turn { frame, regions: list })
+    }
+
+    /// The frame of a step in which no time passes.
+    pub(crate) fn standing(&self, air: AirAtEye) -> StepFrame {
+        let Self { options, view, frustum, origin, .. } = self;
+        let (volume, size, centre) = match options.volume {
+            SimVolume::Box { size_m } => {
+                (STEP_VOLUME_BOX, DVec3::from(size_m), box_centre(view, DVec3::from(size_m)))
             }
+            SimVolume::View => (STEP_VOLUME_VIEW, DVec3::ONE, view.eye),
+            SimVolume::ImSung => (STEP_VOLUME_AREA, DVec3::ONE, view.eye),
+            SimVolume::Tariq { size_m } => (STEP_VOLUME_TARIQ, DVec3::from(size_m), view.eye),
             SimVolume::Cylinder { base_m, radius_m, height_m } => {
-                size = DVec3::new(radius_m, height_m, 1.0);
-                centre = DVec3::from(base_m) + DVec3::Y * (0.5 * height_m);
-                STEP_VOLUME_CYLINDER
+                let middle = DVec3::from(base_m) + DVec3::Y * (0.5 * height_m);
+                (STEP_VOLUME_CYLINDER, DVec3::new(radius_m, height_m, 1.0), middle)
             }
         };
         let gauge = options.gauge.unwrap_or_default();
-        let old_origin = origin - moved_origin;
-        let step = self.step;
-        self.step = step.wrapping_add(1);
+        let sizes_first = MOTION_TABLE_LAST + 1;
         StepFrame {
-            before: VolumeEye::new(&before, old_origin),
-            now: VolumeEye::new(view, origin),
-            shift: shift.as_vec3().to_array(),
+            now: VolumeEye::new(view, *origin),
+            shift: [0.0; 3],
             count: 0,
             size: size.as_vec3().to_array(),
             first: 0,
             centre: (centre - origin).as_vec3().to_array(),
             volume,
-            wind: wind.to_array(),
-            time: time_s as f32,
+            wind: air.wind.to_array(),
+            time: 0.0,
             seed: seed_words(options.seed),
-            step,
-            elsewhere: elsewhere.into(),
-            range: (1.0 / (view.pixel_angle * self.least_pixels).max(1.0e-12)) as f32,
+            step: self.step,
+            elsewhere: 0,
             farthest: view.far as f32,
             average: (options.drag == Drag::Rousseau2008).into(),
             events: options.most_events,
@@ -160,20 +283,43 @@ impl Plan {
             bounced_time: options.bounce.longest_s,
             gauge_height: (gauge.height_m - origin.y) as f32,
             gauge: options.gauge.is_some().into(),
-            unused: 0,
+            boxes: 0,
+            unused_1: 0,
             gauge_area: {
                 let ([x0, z0], [x1, z1]) = (gauge.low_m, gauge.high_m);
                 [x0 - origin.x, z0 - origin.z, x1 - origin.x, z1 - origin.z].map(|x| x as f32)
             },
-            back: volume_backs(
-                [before.right, before.up, before.forward],
-                [view.right, view.up, view.forward],
-            ),
+            frustum: frustum.relative_to(*origin),
+            frustum_before: frustum.relative_to(*origin),
+            tangents: [[0.0; 4]; PLANES],
+            lags: air.lags,
+            oldest: u32::MAX,
+            candidates: 0,
+            regions: 0,
+            regions_first: sizes_first + self.bins.len() as u32 * ENTER_SIZES,
+            sizes_first,
+            pieces: 1,
+            piece: 0,
+            unused_2: 0,
         }
     }
 }
 
-/// A view a little wider than the picture: drops whose middle is outside still show their edge.
-fn widened(view: &View) -> View {
-    View { half_width: view.half_width * WIDER, half_height: view.half_height * WIDER, ..*view }
+fn frustum(view: &View, least_pixels: f64, air: AirAtEye, times: [f64; 2]) -> Frustum {
+    let [slope, most] = air.spread.map(f64::from);
+    let lag = air.lags.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z).length()).fold(0.0, f32::max);
+    let least = LAG_M_S + f64::from(lag);
+    let spread = [least + slope * BEFORE_M, slope, least + most];
+    Frustum::new(view, least_pixels, air.wind.as_dvec3(), spread, times)
+}
+
+/// Whether a view and an origin are such that single precision can hold what is about the eye.
+fn check(view: &View, origin: DVec3) -> Result<(), SimError> {
+    view.check()?;
+    let found = (view.eye - origin).abs().max_element();
+    if origin.is_finite() && found <= 1.0e5 {
+        return Ok(());
+    }
+    let (quantity, unit, allowed) = ("distance of the eye from the origin", "m", "up to 1e5");
+    Err(SimError::OutOfRange { quantity, found, unit, allowed })
 }

@@ -11,11 +11,16 @@ const PORTION: f64 = 16.0;
 ///
 /// Means above [`PORTION`] are the sum of independent portions.
 pub(crate) fn poisson(mean: f64, seed: [u32; 2], dimension: u32) -> u32 {
+    poisson_at(mean, seed, 0, dimension)
+}
+
+/// The same for a step of time.
+pub(crate) fn poisson_at(mean: f64, seed: [u32; 2], step: u32, dimension: u32) -> u32 {
     let mut rest = mean;
     let mut count = 0;
     let mut portion = 0;
     while rest > 0.0 {
-        let [high, low, ..] = rng_draw(seed, portion, 0, dimension);
+        let [high, low, ..] = rng_draw(seed, portion, step, dimension);
         let unit = (f64::from(high) * 4_294_967_296.0 + f64::from(low) + 0.5) / 18_446_744_073_709_551_616.0;
         count += quantile(rest.min(PORTION), unit);
         rest -= PORTION;

@@ -1,12 +1,17 @@
-//! Which drops of the rain in closed form have come as far as they are: those with nothing in their way.
+//! Which drops of the rain in closed form have come as far as they are: those with nothing in their way when the shutter
+//! opens. What they meet while it is open ends their streaks.
 //!
 //! The path of a drop is known, so that it is looked at backwards, from where the drop is to above all that stands there.
 //! With a steady wind it is one straight line and the answer is exact. Else it is cut at whole quarters of a second, the
-//! same for every time that is asked about, so that drops do not come and go.
+//! same for every time that is asked about, so that drops do not come and go. While the shutter is open it is straight, as
+//! it is drawn.
+//!
+//! The wind that blows on drops is the same everywhere: it blows through what stands there, which throws no shadow in it but
+//! the one in the rain.
 //!
 //! What moves is taken where it is now: behind a car, its shadow in the rain is straight.
 
-use downpour_bvh::{BvhNode, BvhTriangle, bvh_nearest};
+use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_nearest};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
@@ -35,77 +40,123 @@ pub struct Obstacles<'a> {
     pub origin: DVec3,
 }
 
-/// The past of the wind, as far as paths are followed.
-struct Past<'a> {
-    law: &'a TerminalSpeed,
-    now: Drift,
-    time_s: f64,
-    /// At the last whole quarter of a second, and before; empty with a steady wind.
+/// The ways of drops from the sky to a time.
+pub(crate) struct SkyPaths<'a> {
+    obstacles: &'a Obstacles<'a>,
+    /// Corners of all that stands there.
+    low: Vec3,
+    high: Vec3,
+    /// What the wind has done to drops by that time.
+    open: Drift,
+    open_s: f64,
+    /// The same at the last whole quarter of a second, and before; empty with a steady wind.
     cuts: Vec<Drift>,
     last_cut_s: f64,
 }
 
-/// Drops of the sky that nothing has stopped: the others are left out, in place.
-pub(crate) fn keep_open(
-    drops: &mut Vec<FallingDrop>,
-    obstacles: &Obstacles<'_>,
-    law: &TerminalSpeed,
-    wind: &UniformWind,
-    time_s: f64,
-) {
-    let Some(root) = obstacles.nodes.first() else { return };
-    if obstacles.triangles.is_empty() {
-        return;
+impl<'a> SkyPaths<'a> {
+    /// The ways to a time of drops that are no slower than a speed, m/s, and no lower than a height, m, relative to the
+    /// obstacles' origin. `None` where nothing stands.
+    pub(crate) fn new(
+        obstacles: &'a Obstacles<'a>,
+        wind: &UniformWind,
+        open_s: f64,
+        slowest: f64,
+        deepest: f64,
+    ) -> Option<Self> {
+        let root = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty())?;
+        let (low, high) = (Vec3::from(root.low), Vec3::from(root.high));
+        let last_cut_s = (open_s / CUT_S).floor() * CUT_S;
+        // Slow drops are near the eye and seldom; they decide how far back the wind must be known.
+        let longest = ((f64::from(high.y) - deepest).max(0.0) / slowest.max(0.05)).min(LONGEST_S);
+        let cuts = if wind.is_steady() { 0 } else { (longest / CUT_S).ceil() as usize + 1 };
+        let cut = |k: usize| Drift::new(wind, last_cut_s - k as f64 * CUT_S);
+        let cuts = (0..cuts).into_par_iter().map(cut).collect();
+        Some(Self { obstacles, low, high, open: Drift::new(wind, open_s), open_s, cuts, last_cut_s })
     }
-    let (low, high) = (Vec3::from(root.low), Vec3::from(root.high));
-    let steady = wind.is_steady();
-    let last_cut_s = (time_s / CUT_S).floor() * CUT_S;
-    // Slow drops are near the eye and seldom; they decide how far back the wind must be known.
-    let slowest = drops.iter().map(|drop| speed(law, drop)).fold(f64::INFINITY, f64::min);
-    let deepest = drops.iter().map(|d| d.position.y - obstacles.origin.y).fold(f64::INFINITY, f64::min);
-    let longest = ((f64::from(high.y) - deepest).max(0.0) / slowest.max(0.05)).min(LONGEST_S);
-    let cuts = if steady { 0 } else { (longest / CUT_S).ceil() as usize + 1 };
-    let past = Past {
-        law,
-        now: Drift::new(wind, time_s),
-        time_s,
-        cuts: (0..cuts).into_par_iter().map(|k| Drift::new(wind, last_cut_s - k as f64 * CUT_S)).collect(),
-        last_cut_s,
-    };
-    let open: Vec<bool> = drops.par_iter().map(|drop| past.is_open(drop, obstacles, low, high)).collect();
-    let mut open = open.into_iter();
-    drops.retain(|_| open.next().unwrap_or(true));
-}
 
-fn speed(law: &TerminalSpeed, drop: &FallingDrop) -> f64 {
-    law.at(f64::from(drop.diameter)).unwrap_or(0.0)
-}
+    /// What the wind has done to drops by the time.
+    pub(crate) fn drift(&self) -> &Drift {
+        &self.open
+    }
 
-impl Past<'_> {
-    fn is_open(&self, drop: &FallingDrop, obstacles: &Obstacles<'_>, low: Vec3, high: Vec3) -> bool {
-        let speed = speed(self.law, drop);
-        let [displacement, velocity] = self.now.of(speed);
-        let here = drop.position - obstacles.origin;
-        let mut from = here.as_vec3();
+    /// Whether nothing is between the sky and `from`, which is about `at`, where a drop of a terminal speed is at the time;
+    /// its velocity is for a steady wind. Positions are relative to the obstacles' origin.
+    pub(crate) fn is_open(&self, mut from: Vec3, at: DVec3, speed: f64, velocity: Vec3) -> bool {
         if self.cuts.is_empty() {
-            let back = -(velocity - DVec3::Y * speed).as_vec3();
-            return clear(obstacles, from, back.normalize_or(Vec3::Y), f32::MAX);
+            return clear(self.obstacles, from, (-velocity).normalize_or(Vec3::Y), f32::MAX);
         }
+        let displacement = self.open.of(speed)[0];
         for (k, cut) in self.cuts.iter().enumerate() {
-            if from.y > high.y || !could_meet(from, low, high, speed) {
+            if from.y > self.high.y || !self.could_meet(from, speed) {
                 return true;
             }
-            let age = self.time_s - (self.last_cut_s - k as f64 * CUT_S);
-            let to = (here - (displacement - cut.of(speed)[0]) + DVec3::Y * (speed * age)).as_vec3();
+            let age = self.open_s - (self.last_cut_s - k as f64 * CUT_S);
+            let to = (at - (displacement - cut.of(speed)[0]) + DVec3::Y * (speed * age)).as_vec3();
             let way = to - from;
             let length = way.length();
-            if length > 0.0 && !clear(obstacles, from, way / length, length) {
+            if length > 0.0 && !clear(self.obstacles, from, way / length, length) {
                 return false;
             }
             from = to;
         }
         true
     }
+
+    /// Whether a drop beside all that stands there could have come from it: nothing is carried by more than 60 m/s.
+    fn could_meet(&self, from: Vec3, speed: f64) -> bool {
+        let (low, high) = (self.low, self.high);
+        let reach = (high.y - from.y).max(0.0) * (60.0 / speed.max(0.1)) as f32;
+        from.x > low.x - reach && from.x < high.x + reach && from.z > low.z - reach && from.z < high.z + reach
+    }
+}
+
+/// Drops of the sky that nothing has stopped when the shutter opens, half of its time before the picture's: the others are
+/// left out, in place, and those that are stopped while it is open are told when.
+pub(crate) fn keep_open(
+    drops: &mut Vec<FallingDrop>,
+    obstacles: &Obstacles<'_>,
+    law: &TerminalSpeed,
+    wind: &UniformWind,
+    time_s: f64,
+    shutter_s: f64,
+) {
+    let half = 0.5 * shutter_s;
+    let slowest = drops.iter().map(|drop| speed(law, drop)).fold(f64::INFINITY, f64::min);
+    let height = |drop: &FallingDrop| drop.position.y - obstacles.origin.y;
+    let deepest = drops.iter().map(height).fold(f64::INFINITY, f64::min);
+    let Some(paths) = SkyPaths::new(obstacles, wind, time_s - half, slowest, deepest) else { return };
+    let picture = Drift::new(wind, time_s);
+    let until = |drop: &FallingDrop| {
+        let (speed, velocity) = (speed(law, drop), Vec3::from(drop.velocity));
+        let here = drop.position - obstacles.origin;
+        // As it is drawn, and as it has come.
+        let from = here.as_vec3() - velocity * half as f32;
+        let back = picture.of(speed)[0] - paths.drift().of(speed)[0] - DVec3::Y * (speed * half);
+        if !paths.is_open(from, here - back, speed, velocity) {
+            return None;
+        }
+        let met = (shutter_s > 0.0).then(|| met(obstacles, from, velocity, shutter_s as f32)).flatten();
+        Some(met.map_or(f32::INFINITY, |hit| hit.distance - half as f32))
+    };
+    let open: Vec<Option<f32>> = drops.par_iter().map(until).collect();
+    let mut open = open.into_iter();
+    drops.retain_mut(|drop| {
+        let until = open.next().flatten();
+        drop.present_s[1] = until.unwrap_or(drop.present_s[1]);
+        drop.position += (Vec3::from(drop.velocity) * drop.seen_s()).as_dvec3();
+        until.is_some()
+    });
+}
+
+fn speed(law: &TerminalSpeed, drop: &FallingDrop) -> f64 {
+    law.at(f64::from(drop.diameter)).unwrap_or(0.0)
+}
+
+/// What is first met at a velocity within a time; the hit's distance is a time, s.
+pub(crate) fn met(obstacles: &Obstacles<'_>, from: Vec3, velocity: Vec3, time_s: f32) -> Option<Hit> {
+    let (origin, way) = (from.to_array(), velocity.to_array());
+    bvh_nearest(obstacles.nodes, obstacles.triangles, origin, way, 0.0, time_s)
 }
 
 /// Whether nothing is met within a distance.
@@ -113,10 +164,4 @@ fn clear(obstacles: &Obstacles<'_>, from: Vec3, direction: Vec3, distance: f32) 
     let (origin, direction) = (from.to_array(), direction.to_array());
     let far = distance.min(downpour_shaders::bvh::BVH_FAR);
     bvh_nearest(obstacles.nodes, obstacles.triangles, origin, direction, CLEAR_M, far).is_none()
-}
-
-/// Whether a drop beside all that stands there could have come from it: nothing is carried by more than 60 m/s.
-fn could_meet(from: Vec3, low: Vec3, high: Vec3, speed: f64) -> bool {
-    let reach = (high.y - from.y).max(0.0) * (60.0 / speed.max(0.1)) as f32;
-    from.x > low.x - reach && from.x < high.x + reach && from.z > low.z - reach && from.z < high.z + reach
 }

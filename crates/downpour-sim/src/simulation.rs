@@ -2,41 +2,46 @@
 //!
 //! What is the same again:
 //! - the same options, rain and steps give the same bits, for any number of threads;
-//! - a box ([`SimVolume::Box`]) begins with the same drops for every camera, and as long as nothing is in their way they
-//!   stay the same for all cameras that step alike;
-//! - the drops of a view belong to its camera and its steps; who seeks begins anew. Rain that can be seeked, and looked at
-//!   by any number of cameras, is that of [`crate::field`].
-
-use std::f64::consts::FRAC_PI_6;
+//! - a view ([`SimVolume::View`]) forgets: its drops depend on the steps of the last [`SimulationOptions::oldest_s`] alone,
+//!   so that a simulation that begins so much earlier, at any step of the same numbering, has the same drops with the same
+//!   ids. They belong to their camera and to the size of its picture;
+//! - a box ([`SimVolume::Box`]) begins with the same drops for every camera and size of the picture, and as long as nothing
+//!   is in their way they stay the same for all cameras that step alike from the same beginning;
+//! - rain that is the same for any number of cameras, at any time, is that of [`crate::field`].
 
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::TerminalSpeed;
-use downpour_shaders::sim::step::{STEP_BOUNCED, STEP_FALLING, STEP_HIDDEN, STEP_KIND};
-use downpour_wind::WindField;
+use downpour_shaders::sim::enter::ENTER_SIZES;
+use downpour_shaders::sim::step::{STEP_FALLING, STEP_GONE, STEP_HIDDEN};
+use downpour_wind::{UniformWindAt, WindField};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::SimError;
 use crate::collision::CollisionMap;
-use crate::field::{DropKind, FallingDrop, VisibleDrops};
+use crate::enter::EnterRegion;
+use crate::field::VisibleDrops;
+use crate::fill::fill;
+use crate::list::{Listing, listed};
 use crate::motion::{motion_diameter, motion_settled, motion_table, motion_table_entry, motion_table_speed};
-use crate::plan::Plan;
-use crate::population::{MOST_DROPS, MOST_IN_MEMORY, Population, volume_of};
-use crate::step::{StepCaught, StepDrop, StepEvent, StepFrame, StepWorld, step_shown};
+use crate::plan::{AirAtEye, Plan, Turn, lags};
+use crate::population::{MAX_DROPS, MAX_DROPS_IN_MEMORY, Population, affordable_pixels, bins, place};
+use crate::step::{StepCaught, StepDrop, StepEvent, StepFrame, StepMade, StepWorld, step_word};
 use crate::view::View;
 
-/// How much wider than the picture a view is simulated.
-pub(crate) const WIDER: f64 = 1.02;
-
 /// Drops of one piece of work.
-const PIECE: usize = 1 << 14;
+pub(crate) const PIECE: usize = 1 << 14;
+
+/// Regions of one piece of work.
+const REGIONS: usize = 1 << 6;
 
 /// The part of space that is simulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum SimVolume {
-    /// What the picture shows, each size up to the distance at which it is resolved (Im & Sung 2022, 3.A and B, with
-    /// uniform density).
+    /// What the picture shows while the shutter is open, each size up to the distance at which it is resolved (after
+    /// Im & Sung 2022, 3.A and B, with the density of the rain): drops come in from the rain around it, and are gone when
+    /// they leave or something stops them.
     #[default]
     View,
     /// A periodic box that follows eye and view (Rousseau 2006, 7). Edges 1 to 1000 m.
@@ -125,8 +130,17 @@ pub struct SimulationOptions {
     pub volume: SimVolume,
     /// Same seed, same drops.
     pub seed: u64,
-    /// 1 to 2^28. A view leaves out drops that are small on the picture, other volumes small drops, to have no more.
+    /// 1 to 2^28. A view leaves out drops that are small on the picture, other volumes small drops, so that no more are
+    /// expected.
     pub most_drops: u32,
+    /// Number of the first step: steps of the same number draw the same random numbers.
+    pub first_step: u32,
+    /// The longest time for which the shutter of a picture is open, s, 0 to 10; of a view.
+    pub shutter_s: f64,
+    /// The longest time from a state to the opening of the shutter of a picture of it, s, 0 to 1; of a view.
+    pub wait_s: f64,
+    /// A drop that has been in a view for so long is taken out, 0.1 to 1000 s: few are, in an updraft.
+    pub oldest_s: f64,
     /// How drops follow the wind.
     pub drag: Drag,
     /// What happens to drops that meet a surface.
@@ -144,6 +158,10 @@ impl Default for SimulationOptions {
             volume: SimVolume::View,
             seed: 0,
             most_drops: 2_000_000,
+            first_step: 0,
+            shutter_s: 0.0,
+            wait_s: 0.0,
+            oldest_s: 30.0,
             drag: Drag::Relaxation,
             bounce: Bounce::default(),
             most_events: 1 << 16,
@@ -153,6 +171,11 @@ impl Default for SimulationOptions {
 }
 
 impl SimulationOptions {
+    /// Time that pictures of one state cover, s.
+    pub(crate) fn horizon_s(&self) -> f64 {
+        self.shutter_s + self.wait_s
+    }
+
     pub(crate) fn check(&self) -> Result<(), SimError> {
         let within = |quantity, found: f64, unit, range: std::ops::RangeInclusive<f64>, allowed| {
             if range.contains(&found) {
@@ -175,10 +198,13 @@ impl SimulationOptions {
             }
             SimVolume::View | SimVolume::ImSung => {}
         }
-        within("most drops", self.most_drops.into(), "", 1.0..=MOST_DROPS as f64, "1 to 2^30")?;
-        if u64::from(self.most_drops) > MOST_IN_MEMORY {
+        within("most drops", self.most_drops.into(), "", 1.0..=MAX_DROPS as f64, "1 to 2^30")?;
+        if u64::from(self.most_drops) > MAX_DROPS_IN_MEMORY {
             return Err(SimError::memory(self.most_drops.into()));
         }
+        within("time of the shutter", self.shutter_s, "s", 0.0..=10.0, "0 to 10")?;
+        within("time from a state to the shutter's opening", self.wait_s, "s", 0.0..=1.0, "0 to 1")?;
+        within("time of a drop in view", self.oldest_s, "s", 0.1..=1000.0, "0.1 to 1000")?;
         let Bounce { share, restitution, grip, size, longest_s } = self.bounce;
         within("share of impacts that bounce", share.into(), "", 0.0..=1.0, "0 to 1")?;
         within("restitution", restitution.into(), "", 0.0..=1.0, "0 to 1")?;
@@ -196,10 +222,26 @@ impl SimulationOptions {
     }
 }
 
+/// The least diameter on the picture, pixels, of the drops of a view that holds about as many drops as its options allow; no
+/// less than the view asks for.
+///
+/// # Errors
+/// [`SimError::OutOfRange`] for options or a camera outside their ranges, [`SimError::Drop`].
+pub fn least_pixels(
+    rain: &DropSizeDistribution,
+    options: &SimulationOptions,
+    view: &View,
+) -> Result<f64, SimError> {
+    options.check()?;
+    view.check()?;
+    let times = [options.horizon_s(), options.wait_s];
+    Ok(affordable_pixels(&bins(rain)?, view, times, options.most_drops))
+}
+
 /// What there is at the end of a step. Wind and map are relative to `origin`.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
-    /// The camera.
+    /// The camera; for a view the one in the middle of the time that pictures of this state cover.
     pub view: &'a View,
     /// What single precision is relative to, m. It may move from step to step.
     pub origin: DVec3,
@@ -209,6 +251,17 @@ pub struct Moment<'a> {
     pub field: Option<&'a WindField>,
     /// What stops drops.
     pub map: Option<&'a CollisionMap>,
+    /// The part of the wind that is the same everywhere, as it changes: what comes into a view lags behind it as the drops
+    /// that are there. `None`: it does not change.
+    pub air: Option<&'a UniformWindAt<'a>>,
+}
+
+impl<'a> Moment<'a> {
+    /// A camera in a wind that is the same everywhere and does not change; nothing stops drops.
+    #[must_use]
+    pub fn new(view: &'a View, origin: DVec3, wind: Vec3) -> Self {
+        Self { view, origin, wind, field: None, map: None, air: None }
+    }
 }
 
 /// What happened in a time.
@@ -220,6 +273,18 @@ pub struct Happened {
     pub overflow: u64,
     /// What went through the gauge.
     pub caught: StepCaught,
+    /// Drops that came into a view on a GPU and found no slot: they are missing.
+    pub lost: u64,
+}
+
+impl Moment<'_> {
+    /// What the air does about the eye.
+    fn air(&self, reach: f64) -> AirAtEye {
+        let lags = lags(self.air);
+        let Some(field) = self.field else { return AirAtEye { wind: self.wind, spread: [0.0; 2], lags } };
+        let eye = (self.view.eye - self.origin).as_vec3();
+        AirAtEye { wind: field.sample(eye), spread: field.spread(eye, reach as f32), lags }
+    }
 }
 
 /// A rain on the CPU.
@@ -227,6 +292,7 @@ pub struct Happened {
 pub struct Simulation {
     pub(crate) plan: Plan,
     pub(crate) speeds: Vec<f32>,
+    pub(crate) sizes: Vec<[f32; ENTER_SIZES as usize]>,
     pub(crate) drops: Vec<StepDrop>,
 }
 
@@ -240,83 +306,200 @@ impl Simulation {
         options: &SimulationOptions,
         moment: &Moment<'_>,
     ) -> Result<Self, SimError> {
-        let (plan, population) = Plan::new(rain, options, moment.view, moment.origin)?;
+        let air = moment.air(moment.view.far);
+        let mut plan = Plan::new(rain, options, moment.view, moment.origin, air)?;
         let law = TerminalSpeed::new(rain.options().fall_speed, &rain.options().air);
         let speeds = motion_table(&law);
-        let drops = begin(&plan, &population, &speeds, moment)?;
-        Ok(Self { plan, speeds, drops })
+        let sizes = plan.sizes();
+        let drops = if plan.is_open() {
+            let frame = plan.standing(air);
+            filled(&plan, &world(&frame, &speeds, &sizes, &[], moment))?
+        } else {
+            let (view, seed) = (plan.view(), options.seed);
+            let population = Population::new(&plan.bins, &options.volume, view, options.most_drops, seed)?;
+            plan.least_diameter = population.least_diameter;
+            begin(&plan, &population, &speeds, moment)?
+        };
+        Ok(Self { plan, speeds, sizes, drops })
     }
 
     /// Lets time pass, up to 1 s; the camera comes to the moment's. Times above 1/30 s are cut into equal steps.
     ///
     /// # Errors
     /// [`SimError::OutOfRange`] for a time that is none or a camera that is none; nothing has moved then.
+    /// [`SimError::Memory`].
     pub fn advance(&mut self, time_s: f64, moment: &Moment<'_>) -> Result<Happened, SimError> {
-        let frames = self.plan.frames(time_s, moment.view, moment.origin, moment.wind)?;
+        let air = moment.air(self.plan.farthest(moment.view));
+        let turns = self.plan.turns(time_s, moment.view, moment.origin, air)?;
         let mut happened = Happened::default();
-        for frame in &frames {
-            self.step(frame, moment, &mut happened);
+        for turn in &turns {
+            if self.plan.is_open() {
+                self.step_open(turn, moment, &mut happened)?;
+            } else {
+                self.step_slots(turn, moment, &mut happened);
+            }
         }
         Ok(happened)
     }
 
-    fn step(&mut self, frame: &StepFrame, moment: &Moment<'_>, happened: &mut Happened) {
-        let world = StepWorld { frame, speeds: &self.speeds, field: moment.field, map: moment.map };
-        let pieces: Vec<(Vec<StepEvent>, StepCaught)> = self
-            .drops
-            .par_chunks_mut(PIECE)
-            .enumerate()
-            .map(|(piece, drops)| {
-                let (mut events, mut caught) = (Vec::new(), StepCaught::default());
-                for (drop, number) in drops.iter_mut().zip((piece * PIECE) as u32..) {
-                    let made = world.step(number, drop);
-                    *drop = made.drop;
-                    events.extend(made.event);
-                    if let Some(volume) = made.caught {
-                        caught.drops += 1;
-                        caught.volume += u64::from(volume);
-                    }
+    /// A step of a view.
+    fn step_open(
+        &mut self,
+        turn: &Turn,
+        moment: &Moment<'_>,
+        happened: &mut Happened,
+    ) -> Result<(), SimError> {
+        let frame = &turn.frame;
+        let world = world(frame, &self.speeds, &self.sizes, &turn.regions, moment);
+        if frame.elsewhere == 1 {
+            self.drops = filled(&self.plan, &world)?;
+            return Ok(());
+        }
+        let told = self.drops.par_chunks_mut(PIECE).map(|drops| {
+            let mut told = Told::default();
+            for drop in drops {
+                *drop = told.note(world.step_view(&shifted(drop, frame)));
+            }
+            told
+        });
+        let told: Vec<Told> = told.collect();
+        self.drops.retain(|drop| drop.kind() != STEP_GONE);
+        let come = turn.regions.par_windows(2).with_min_len(REGIONS).map(|pair| {
+            let (mut told, mut come) = (Told::default(), Vec::new());
+            if let [region, next] = pair {
+                for number in 0..next.first - region.first {
+                    come.extend(world.enter_drop(region, number).map(|made| told.note(made)));
                 }
-                (events, caught)
-            })
-            .collect();
+            }
+            come.retain(|drop: &StepDrop| drop.kind() != STEP_GONE);
+            (told, come)
+        });
+        let come: Vec<(Told, Vec<StepDrop>)> = come.collect();
+        let count = come.iter().map(|(_, drops)| drops.len()).sum();
+        self.drops.try_reserve(count).map_err(|_| SimError::memory((self.drops.len() + count) as u64))?;
         let mut room = frame.events as usize;
-        for (events, caught) in pieces {
-            let noted = events.len().min(room);
-            room -= noted;
-            happened.overflow += (events.len() - noted) as u64;
-            happened.events.extend_from_slice(&events[..noted]);
-            happened.caught.drops += caught.drops;
-            happened.caught.volume += caught.volume;
+        for told in told {
+            told.tell(&mut room, happened);
+        }
+        for (told, drops) in come {
+            self.drops.extend_from_slice(&drops);
+            told.tell(&mut room, happened);
+        }
+        Ok(())
+    }
+
+    /// A step of a volume that keeps its number of drops.
+    fn step_slots(&mut self, turn: &Turn, moment: &Moment<'_>, happened: &mut Happened) {
+        let frame = &turn.frame;
+        let world = world(frame, &self.speeds, &self.sizes, &[], moment);
+        let pieces = self.drops.par_chunks_mut(PIECE).enumerate().map(|(piece, drops)| {
+            let mut told = Told::default();
+            for (drop, number) in drops.iter_mut().zip((piece * PIECE) as u32..) {
+                *drop = told.note(world.step_slot(number, &shifted(drop, frame)));
+            }
+            told
+        });
+        let pieces: Vec<Told> = pieces.collect();
+        let mut room = frame.events as usize;
+        for told in pieces {
+            told.tell(&mut room, happened);
         }
     }
 
-    /// The state, in the order of the drops' numbers.
+    /// The state: of a view in the order in which drops came, else in the order of their numbers.
     #[must_use]
     pub fn drops(&self) -> &[StepDrop] {
         &self.drops
     }
 
-    /// The least diameter, m: smaller drops are left to extinction.
+    /// The least diameter, m: smaller drops are unresolved.
     #[must_use]
     pub fn least_diameter(&self) -> f64 {
         self.plan.least_diameter
     }
 
-    /// The drops that a picture can show.
+    /// The farthest distance from the eye of a view at which a drop is resolved, m.
     #[must_use]
-    pub fn visible(&self, view: &View) -> VisibleDrops {
-        visible(&self.plan, &self.drops, view)
+    pub fn farthest_m(&self, view: &View) -> f64 {
+        self.plan.farthest(view)
     }
 
-    /// The rate, mm/h, of the drops in the volume, those that something hides among them.
+    /// The drops that a picture of now can show. While the shutter is open they go on at their velocity.
     #[must_use]
-    pub fn measured_rate_mm_h(&self) -> f64 {
-        measured(&self.plan, &self.drops)
+    pub fn visible(&self, view: &View) -> VisibleDrops {
+        self.visible_after(0.0, view, None)
+    }
+
+    /// The drops that a picture can show some time after the state, s: no less than half the time of its shutter, if drops
+    /// that land meanwhile are to be among them. Nothing is stored.
+    #[must_use]
+    pub fn visible_after(&self, after_s: f64, view: &View, map: Option<&CollisionMap>) -> VisibleDrops {
+        listed(&Listing { plan: &self.plan, speeds: &self.speeds, view, after_s, map }, &self.drops)
+    }
+
+    /// The rate, mm/h, of the drops that fall in the volume, by the part of it that is open to the sky; of a view, in the
+    /// picture as far as each size is resolved.
+    #[must_use]
+    pub fn measured_rate_mm_h(&self, map: Option<&CollisionMap>) -> f64 {
+        crate::disdrometer::rate_mm_h(&self.plan, &self.drops, map)
     }
 }
 
-/// The drops at first, at rest in the air about them.
+/// The drops of a frustum that is filled anew.
+fn filled(plan: &Plan, world: &StepWorld<'_>) -> Result<Vec<StepDrop>, SimError> {
+    let mut drops = fill(plan, world)?;
+    drops.par_iter_mut().for_each(|drop| *drop = world.step_begin(drop));
+    drops.retain(|drop| drop.kind() != STEP_GONE);
+    Ok(drops)
+}
+
+/// What a step reads.
+fn world<'a>(
+    frame: &'a StepFrame,
+    speeds: &'a [f32],
+    sizes: &'a [[f32; ENTER_SIZES as usize]],
+    regions: &'a [EnterRegion],
+    moment: &Moment<'a>,
+) -> StepWorld<'a> {
+    StepWorld { frame, speeds, sizes, regions, field: moment.field, map: moment.map }
+}
+
+/// A drop relative to the origin after the step.
+fn shifted(drop: &StepDrop, frame: &StepFrame) -> StepDrop {
+    let place = Vec3::from(drop.place) - Vec3::from(frame.shift);
+    StepDrop { place: place.to_array(), ..*drop }
+}
+
+/// What has happened to some of the drops.
+#[derive(Default)]
+struct Told {
+    events: Vec<StepEvent>,
+    caught: StepCaught,
+}
+
+impl Told {
+    /// Notes what happened to a drop.
+    fn note(&mut self, made: StepMade) -> StepDrop {
+        self.events.extend(made.event);
+        if let Some(volume) = made.caught {
+            self.caught.drops += 1;
+            self.caught.volume += u64::from(volume);
+        }
+        made.drop
+    }
+
+    /// Adds it to what is told; `room` is how many events may still be noted.
+    fn tell(self, room: &mut usize, happened: &mut Happened) {
+        let noted = self.events.len().min(*room);
+        *room -= noted;
+        happened.overflow += (self.events.len() - noted) as u64;
+        happened.events.extend_from_slice(&self.events[..noted]);
+        happened.caught.drops += self.caught.drops;
+        happened.caught.volume += self.caught.volume;
+    }
+}
+
+/// The drops at first of a volume that keeps its number of drops, at rest in the air about them.
 fn begin(
     plan: &Plan,
     population: &Population,
@@ -328,59 +511,24 @@ fn begin(
     drops.try_reserve_exact(count).map_err(|_| SimError::memory(count as u64))?;
     let options = &plan.options;
     drops.par_extend(population.sizes.par_iter().enumerate().map(|(number, &size)| {
-        let place =
-            population.place(number as u32, &options.volume, plan.view(), plan.origin(), options.seed);
-        let diameter = motion_diameter(size.into());
-        let entry = motion_table_entry(diameter) as usize;
-        let at = |k: usize| speeds.get(k).copied().unwrap_or(0.0);
-        let speed = motion_table_speed(at(entry), at(entry + 1), diameter);
-        let wind = moment.field.map_or(moment.wind, |field| field.sample(place));
-        let open = moment.map.is_none_or(|map| map.open(place));
+        let (at, count) = place(number as u32, &options.volume, plan.view(), plan.origin(), options.seed);
+        let speed = speed_of(speeds, motion_diameter(size.into()));
+        let wind = moment.field.map_or(moment.wind, |field| field.sample(at));
+        let open = moment.map.is_none_or(|map| map.open(at));
         let kind = if open { STEP_FALLING } else { STEP_HIDDEN };
         StepDrop {
-            place: place.to_array(),
-            word: u32::from(size) | kind << STEP_KIND,
+            place: at.to_array(),
+            word: step_word(size.into(), kind, count),
             velocity: motion_settled(wind, speed).to_array(),
-            seconds: 0.0,
+            last: 0,
         }
     }));
     Ok(drops)
 }
 
-/// The drops of a state that a picture can show.
-pub(crate) fn visible(plan: &Plan, drops: &[StepDrop], view: &View) -> VisibleDrops {
-    let bounced_size = plan.options.bounce.size;
-    let least_pixels = plan.least_pixels;
-    let shown = |(number, drop): (usize, &StepDrop)| {
-        let diameter = step_shown(drop.word, bounced_size);
-        let position = plan.origin() + Vec3::from(drop.place).as_dvec3();
-        let range = view.range(diameter.into(), least_pixels);
-        let kind = match drop.kind() {
-            STEP_FALLING => DropKind::Falling,
-            STEP_BOUNCED => DropKind::Bounced,
-            _ => return None,
-        };
-        let seen = view.touches(position, 0.6 * f64::from(diameter), range);
-        seen.then_some(FallingDrop { position, velocity: drop.velocity, diameter, id: number as u64, kind })
-    };
-    VisibleDrops {
-        drops: drops.par_iter().enumerate().filter_map(shown).collect(),
-        simulated: drops.len() as u64,
-        resolved: plan.resolved(view),
-    }
-}
-
-/// The rate of a state, mm/h.
-pub(crate) fn measured(plan: &Plan, drops: &[StepDrop]) -> f64 {
-    let flux = |drop: &StepDrop| {
-        if drop.kind() == STEP_BOUNCED {
-            return 0.0;
-        }
-        let diameter = f64::from(drop.diameter());
-        let volume = volume_of(&plan.options.volume, plan.view(), plan.least_pixels, diameter);
-        -f64::from(drop.velocity[1]) * diameter * diameter * diameter / volume
-    };
-    // In pieces, so that the sum does not depend on the threads.
-    let pieces: Vec<f64> = drops.par_chunks(PIECE).map(|piece| piece.iter().map(flux).sum()).collect();
-    FRAC_PI_6 * pieces.iter().sum::<f64>() * 3.6e6
+/// Terminal speed of a diameter by the table, m/s.
+pub(crate) fn speed_of(speeds: &[f32], diameter: f32) -> f32 {
+    let entry = motion_table_entry(diameter) as usize;
+    let at = |k: usize| speeds.get(k).copied().unwrap_or(0.0);
+    motion_table_speed(at(entry), at(entry + 1), diameter)
 }

@@ -1,5 +1,6 @@
 //! What a camera can resolve of a rain.
 
+use downpour_math::ops::f64 as ops;
 use glam::DVec3;
 
 use crate::SimError;
@@ -9,8 +10,9 @@ const HALF_HEIGHT: f64 = 0.466_307_658_154_998_6;
 
 /// The part of space that a perspective picture shows, and how fine its pixels are.
 ///
-/// A drop is listed if it touches the pyramid of the picture between `near` and `far`, and if its diameter is at least
-/// `least_pixels` pixels on it. What is smaller or farther is left to extinction.
+/// A drop is listed if its path while the shutter is open touches the pyramid of the picture, if it is between `near` and
+/// `far` in the middle of that time, and if its diameter is then at least `least_pixels` pixels on the picture. All others
+/// are unresolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// The eye, metres.
@@ -33,8 +35,12 @@ pub struct View {
     pub far: f64,
     /// The least diameter on the picture, pixels.
     pub least_pixels: f64,
-    /// Drops so far outside the sides are listed too, metres: half of what they move while a shutter is open.
-    pub margin: f64,
+    /// Time in seconds in which the shutter is open; the picture's time is in the middle of it.
+    pub shutter_s: f64,
+    /// Velocity of the eye, m/s.
+    pub velocity: DVec3,
+    /// Axis about which the camera turns, right-handed, of the length of its angular speed, rad/s.
+    pub turning: DVec3,
     /// The least diameter is raised until no more drops than this are to be expected.
     pub most_drops: u32,
 }
@@ -54,7 +60,9 @@ impl Default for View {
             near: 0.05,
             far: 50.0,
             least_pixels: 0.4,
-            margin: 0.0,
+            shutter_s: 0.0,
+            velocity: DVec3::ZERO,
+            turning: DVec3::ZERO,
             most_drops: 2_000_000,
         }
     }
@@ -100,8 +108,16 @@ impl View {
         if !(self.least_pixels >= 0.0 && self.least_pixels.is_finite()) {
             return error("least diameter of drops", self.least_pixels, "pixels", "0 or more");
         }
-        if !(0.0..=1000.0).contains(&self.margin) {
-            return error("margin of the picture", self.margin, "m", "0 to 1000");
+        if !(0.0..=10.0).contains(&self.shutter_s) {
+            return error("time of the shutter", self.shutter_s, "s", "0 to 10");
+        }
+        let speed = self.velocity.length();
+        if !(0.0..=1.0e4).contains(&speed) {
+            return error("speed of the eye", speed, "m/s", "0 to 1e4");
+        }
+        let turning = self.turning.length();
+        if !(0.0..=1.0e3).contains(&turning) {
+            return error("angular speed of the camera", turning, "rad/s", "0 to 1000");
         }
         Ok(())
     }
@@ -118,37 +134,86 @@ impl View {
         4.0 * self.half_width * self.half_height * range * range * range / 3.0
     }
 
-    /// A box round the picture up to a distance. Wide pictures are cut to the sphere of that distance.
-    pub(crate) fn bounds(&self, range: f64) -> Bounds {
+    /// A box round the picture up to a distance, with a margin. Wide pictures are cut to the sphere of that distance.
+    pub(crate) fn bounds(&self, range: f64, margin: f64) -> Bounds {
         let (mut low, mut high) = (self.eye, self.eye);
+        let half = self.swept_half();
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
-            let corner = self.forward + self.right * (x * self.half_width) + self.up * (y * self.half_height);
+            let corner = self.forward + self.right * (x * half[0]) + self.up * (y * half[1]);
             low = low.min(self.eye + corner * range);
             high = high.max(self.eye + corner * range);
         }
-        let (reach, margin) = (DVec3::splat(range), DVec3::splat(self.margin));
+        let (reach, margin) = (DVec3::splat(range), DVec3::splat(margin));
         Bounds { low: low.max(self.eye - reach) - margin, high: high.min(self.eye + reach) + margin }
     }
 
-    /// Whether a sphere touches the picture between the nearest distance and `range`.
-    pub(crate) fn touches(&self, centre: DVec3, radius: f64, range: f64) -> bool {
-        let offset = centre - self.eye;
+    /// Half the picture's width and height at distance 1, wider by what the camera turns while the shutter is open.
+    fn swept_half(&self) -> [f64; 2] {
+        let turned = 0.5 * self.shutter_s * self.turning.length();
+        [self.half_width, self.half_height].map(|half| half + turned * (1.0 + half * half))
+    }
+
+    /// How far, m, a drop of a velocity moves relative to the eye in half the time that the shutter is open.
+    pub(crate) fn half_way(&self, velocity: DVec3) -> f64 {
+        0.5 * self.shutter_s * (velocity - self.velocity).length()
+    }
+
+    /// Outward normals of the pyramid's sides: right, left, top and bottom; and of the plane through the eye that is behind.
+    pub(crate) fn sides(&self) -> [DVec3; 5] {
+        let side = |along: DVec3, half: f64| (along - self.forward * half) / (1.0 + half * half).sqrt();
+        [
+            side(self.right, self.half_width),
+            side(-self.right, self.half_width),
+            side(self.up, self.half_height),
+            side(-self.up, self.half_height),
+            -self.forward,
+        ]
+    }
+
+    /// Sides of the pyramid that holds all that the camera sees while the shutter is open.
+    pub(crate) fn swept_sides(&self) -> [DVec3; 5] {
+        let [half_width, half_height] = self.swept_half();
+        Self { half_width, half_height, ..*self }.sides()
+    }
+
+    /// Whether the path of a sphere touches the picture during a part of the exposure, and it is between the nearest distance
+    /// and `range` at the picture's time. `part`: times relative to the picture's, s.
+    pub(crate) fn shows(
+        &self,
+        sides: &[DVec3; 5],
+        center: DVec3,
+        velocity: DVec3,
+        radius: f64,
+        range: f64,
+        part: [f64; 2],
+    ) -> bool {
+        let offset = center - self.eye;
         let distance = offset.length();
         if distance < self.near || distance > range {
             return false;
         }
-        self.within_sides(offset, radius + self.margin)
+        let half = 0.5 * self.shutter_s;
+        let relative = velocity - self.velocity;
+        let ends = part.map(|time| {
+            let time = time.clamp(-half, half);
+            turned(offset + relative * time, -self.turning * time)
+        });
+        sides.iter().all(|side| side.dot(ends[0]).min(side.dot(ends[1])) <= radius)
     }
+}
 
-    /// Whether a sphere at `offset` from the eye touches the pyramid's four sides or is between them.
-    pub(crate) fn within_sides(&self, offset: DVec3, radius: f64) -> bool {
-        let depth = offset.dot(self.forward);
-        let beyond = |along: f64, half: f64| {
-            // Distance from the side plane through the eye.
-            (along.abs() - depth * half) / (1.0 + half * half).sqrt() > radius
-        };
-        depth > -radius
-            && !beyond(offset.dot(self.right), self.half_width)
-            && !beyond(offset.dot(self.up), self.half_height)
+/// `v` turned about an axis by the axis's length, in radians.
+fn turned(v: DVec3, axis: DVec3) -> DVec3 {
+    let angle = axis.length();
+    if angle < 1.0e-12 {
+        return v;
     }
+    let axis = axis / angle;
+    let (sine, cosine) = (ops::sin(angle), ops::cos(angle));
+    v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine))
+}
+
+/// Whether a sphere at `offset` from the eye is within a margin of planes through the eye.
+pub(crate) fn within(sides: &[DVec3; 5], offset: DVec3, margin: f64) -> bool {
+    sides.iter().all(|side| side.dot(offset) <= margin)
 }

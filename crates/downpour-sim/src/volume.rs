@@ -1,16 +1,14 @@
-//! The part of space that drops are simulated in, and where a drop goes that has left it. Twin of
-//! `shaders/wgsl/sim/volume.wgsl`.
+//! The part of space that drops are simulated in. Twin of `shaders/wgsl/sim/volume.wgsl`.
 //!
-//! In a box (Rousseau 2006, 7; 2008, 2.1) the rain is periodic: a drop goes to the opposite face. In a view (Im & Sung
-//! 2022, 3.A and B) it is the pyramid of the picture up to the distance at which its size is resolved: the drop goes back
-//! along the path that it came relative to the picture, to the first place on it that is in view. Both map the volume
-//! onto itself and keep every part's size, so that a uniform density stays uniform however the camera moves.
+//! In a box (Rousseau 2006, 7; 2008, 2.1) the rain is periodic: a drop goes to the opposite face. In a view it is the
+//! frustum of the picture up to the distance at which a size is resolved (after Im & Sung 2022, 3.A and B), wider by the way
+//! of a drop during the horizon, the time that pictures of one state cover: five planes and a ball.
 
 use bytemuck::{Pod, Zeroable};
 use downpour_math::ops;
 use downpour_math::ops::f64 as ops64;
-use downpour_shaders::sim::step::{STEP_BACKS, VOLUME_TURN};
-use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
+use downpour_shaders::sim::step::{VOLUME_BALL, VOLUME_INSIDE, VOLUME_PLANES, VOLUME_RADIUS, VOLUME_TURN};
+use glam::{DVec3, Vec2, Vec3, Vec4, Vec4Swizzles as _};
 
 use crate::view::View;
 
@@ -53,52 +51,76 @@ impl VolumeEye {
     }
 }
 
-/// A number of steps backwards of the path relative to the picture, for a drop whose own way is `s` in each of them: from
-/// c to turn c - sum s. The same layout as `VolumeBack` in WGSL.
+/// The frustum of a picture, with margins, about which drops are where they will be in the middle of the horizon. The same
+/// layout as `VolumeFrustum` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct VolumeBack {
-    /// Columns, each with a number of padding.
-    pub turn: [[f32; 4]; 3],
-    /// Columns, each with a number of padding.
-    pub sum: [[f32; 4]; 3],
+pub struct VolumeFrustum {
+    /// Outward unit normals of right, left, top, bottom and back; the speed along them, relative to the eye, of the air at
+    /// the eye, m/s. All planes go through the eye.
+    pub planes: [[f32; 4]; VOLUME_PLANES as usize],
+    /// m.
+    pub eye: [f32; 3],
+    /// Speed of the air at the eye relative to the eye, m/s.
+    pub air: f32,
+    /// Half the time that pictures of one state cover, s.
+    pub half_horizon: f32,
+    /// Half the longest time from a state to the opening of the shutter, s.
+    pub half_wait: f32,
+    /// How far the wind, and what drops keep of it, leaves that at the eye, m/s.
+    pub spread: f32,
+    /// The same per m of distance, 1/s.
+    pub spread_slope: f32,
+    /// The same at most, m/s.
+    pub spread_most: f32,
+    /// Distance at which a drop is resolved, per diameter.
+    pub range: f32,
+    /// At most, m.
+    pub farthest: f32,
+    /// Padding of the WGSL layout.
+    pub unused: u32,
 }
 
-/// The widest turn of one look back, radians: between two places in view that are no farther apart on their path, the path
-/// does not leave the view and come back.
-const WIDEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
-
-/// 1, 2, 4, ... steps back of a camera whose axes (right, up, forward) turn from `before` to `now` in each. Where the turn
-/// would be wider than an eighth of a circle, the last that is not stands again.
+/// Number of edges of a box around `centre` by which a position is away from its periodic image in the box.
 #[must_use]
-pub fn volume_backs(before: [DVec3; 3], now: [DVec3; 3]) -> [VolumeBack; STEP_BACKS as usize] {
-    let axes = |[right, up, forward]: [DVec3; 3]| DMat3::from_cols(right, up, forward);
-    // A step forwards turns what the camera sees by now^T before; this is its inverse.
-    let mut turn = axes(before).transpose() * axes(now);
-    let mut sum = turn;
-    let mut angle =
-        ops64::acos(((turn.x_axis.x + turn.y_axis.y + turn.z_axis.z - 1.0) * 0.5).clamp(-1.0, 1.0));
-    std::array::from_fn(|_| {
-        let columns = |m: DMat3| m.to_cols_array_2d().map(|[x, y, z]| [x as f32, y as f32, z as f32, 0.0]);
-        let back = VolumeBack { turn: columns(turn), sum: columns(sum) };
-        if angle <= 0.5 * WIDEST_TURN {
-            sum += turn * sum;
-            turn *= turn;
-            angle *= 2.0;
-        }
-        back
-    })
+pub fn volume_images(place: Vec3, centre: Vec3, size: Vec3) -> Vec3 {
+    ((place - centre) / size + 0.5).floor()
 }
 
-fn matrix(columns: &[[f32; 4]; 3]) -> Mat3 {
-    let [x, y, z] = columns.map(|[x, y, z, _]| Vec3::new(x, y, z));
-    Mat3::from_cols(x, y, z)
-}
-
-/// A place in the periodic image of a box that is round `centre`.
+/// The periodic image of a position in the box around `centre`.
 #[must_use]
 pub fn volume_wrap(place: Vec3, centre: Vec3, size: Vec3) -> Vec3 {
-    place - size * ((place - centre) / size + 0.5).floor()
+    place - size * volume_images(place, centre, size)
+}
+
+/// Distance at which a diameter is resolved, m.
+#[must_use]
+pub fn volume_range(frustum: &VolumeFrustum, diameter: f32) -> f32 {
+    (diameter * frustum.range).min(frustum.farthest)
+}
+
+/// Bound on the difference of the wind from that at the eye within a distance, and of what drops keep of it, m/s.
+#[must_use]
+pub fn volume_spread(frustum: &VolumeFrustum, range: f32) -> f32 {
+    (frustum.spread + frustum.spread_slope * range).min(frustum.spread_most)
+}
+
+/// Index of the first limit of the frustum beyond which a drop is that is at `offset` from the eye: a plane, `VOLUME_BALL`,
+/// or `VOLUME_INSIDE`. `speed` is its terminal speed.
+#[must_use]
+pub fn volume_limit(frustum: &VolumeFrustum, offset: Vec3, diameter: f32, speed: f32) -> u32 {
+    let range = volume_range(frustum, diameter);
+    let spread = volume_spread(frustum, range);
+    let radius = VOLUME_RADIUS * diameter;
+    for (k, plane) in (0..).zip(&frustum.planes) {
+        let plane = Vec4::from(*plane);
+        let margin = radius + frustum.half_horizon * ((plane.w - speed * plane.y).abs() + spread);
+        if plane.xyz().dot(offset) > margin {
+            return k;
+        }
+    }
+    let reach = range + frustum.half_wait * (speed + frustum.air + spread);
+    if offset.dot(offset) > reach * reach { VOLUME_BALL } else { VOLUME_INSIDE }
 }
 
 /// What the eye sees of an offset from it: to the right, up, and ahead.
@@ -115,20 +137,6 @@ pub fn volume_local(eye: &VolumeEye, offset: Vec3) -> Vec3 {
 #[must_use]
 pub fn volume_offset(eye: &VolumeEye, local: Vec3) -> Vec3 {
     Vec3::from(eye.right) * local.x + Vec3::from(eye.up) * local.y + Vec3::from(eye.forward) * local.z
-}
-
-/// Whether a place is in the pyramid of the picture and no farther than `range`.
-#[must_use]
-pub fn volume_in_view(eye: &VolumeEye, local: Vec3, range: f32) -> bool {
-    local.x.abs() <= local.z * eye.half_width
-        && local.y.abs() <= local.z * eye.half_height
-        && local.dot(local) <= range * range
-}
-
-/// A place on the path some steps ago.
-#[must_use]
-pub fn volume_back(back: &VolumeBack, local: Vec3, way: Vec3) -> Vec3 {
-    matrix(&back.turn) * local - matrix(&back.sum) * way
 }
 
 /// Whether a place is in the rain area of Im & Sung: in the pyramid and in the sphere between eye and `range`.
@@ -193,25 +201,5 @@ mod tests {
     #[test]
     fn the_face_of_a_cube() {
         assert_relative_eq!(solid_angle(1.0, 1.0), 4.0 * std::f64::consts::PI / 6.0, max_relative = 1.0e-12);
-    }
-
-    /// Powers of the step back are the step back, repeated.
-    #[test]
-    fn steps_back_are_repeated_steps() {
-        let turned = |angle: f64| {
-            let (s, c) = (downpour_math::ops::f64::sin(angle), downpour_math::ops::f64::cos(angle));
-            [DVec3::new(c, 0.0, s), DVec3::Y, DVec3::new(s, 0.0, -c)]
-        };
-        let backs = volume_backs(turned(0.3), turned(0.31));
-        let way = Vec3::new(0.01, -0.1, 0.03);
-        let start = Vec3::new(0.5, 1.0, 4.0);
-        let mut one = start;
-        for step in 1..=64u32 {
-            one = volume_back(&backs[0], one, way);
-            if step.is_power_of_two() {
-                let at_once = volume_back(&backs[step.ilog2() as usize], start, way);
-                assert!((at_once - one).length() < 2.0e-4, "{step}: {at_once}, {one}");
-            }
-        }
     }
 }

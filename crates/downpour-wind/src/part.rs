@@ -125,6 +125,17 @@ impl WindPart {
         }
     }
 
+    /// The least radius of its core at any time, m; none of a uniform wind.
+    #[must_use]
+    pub fn least_core(&self) -> Option<f64> {
+        let radius = match self {
+            Self::Uniform(_) => return None,
+            Self::Source(part) | Self::Sink(part) | Self::Vortex(part) => &part.core_radius,
+            Self::Tornado(part) => &part.core_radius,
+        };
+        radius.keys().iter().map(|&(_, radius)| radius).reduce(f64::min)
+    }
+
     /// The same part with axes of length 1, if it is in range at all times.
     ///
     /// All ranges are convex and all is linear between keys, so what is in range at each key is so at all times.

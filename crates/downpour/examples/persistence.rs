@@ -232,6 +232,7 @@ impl Bench<'_> {
                 diameter,
                 id: u64::from(index),
                 kind: DropKind::Falling,
+                present_s: FallingDrop::ALWAYS,
             }
         };
         Ok((0..count).map(of).collect())

@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let map = CollisionMap::new(&map_options, &Bvh::new(&floor))?;
     // Every drop counts, however small it is on a picture.
     let view = View { least_pixels: 1.0e-3, ..View::default() };
-    let moment = Moment { view: &view, origin: DVec3::ZERO, wind: Vec3::ZERO, field: None, map: Some(&map) };
+    let moment = Moment { map: Some(&map), ..Moment::new(&view, DVec3::ZERO, Vec3::ZERO) };
     let volume = SimVolume::Box { size_m: [3.0; 3] };
     let options = SimulationOptions { volume, seed: 4, ..SimulationOptions::default() };
     let mut simulation = Simulation::new(&rain, &options, &moment)?;

@@ -102,5 +102,6 @@ fn drop(stage: &Stage, index: u32, diameter: f32) -> FallingDrop {
         diameter,
         id: u64::from(index),
         kind: DropKind::Falling,
+        present_s: FallingDrop::ALWAYS,
     }
 }

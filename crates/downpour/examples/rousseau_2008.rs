@@ -112,11 +112,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 100.0)?;
     // As fine as it takes for as many drops as are asked for.
     let view = View { eye: DVec3::new(0.0, 2.0, 0.0), least_pixels: 1.0e-3, ..View::default() };
+    let eye = view.eye.as_vec3();
     let start =
-        Moment { view: &view, origin: DVec3::ZERO, wind: Vec3::X, field: Some(&field), map: Some(&map) };
-    let bare = GpuMoment { view: &view, origin: DVec3::ZERO, wind: Vec3::X, field: None, map: None };
-    let windy = GpuMoment { field: Some((field.uniform(), &cells)), ..bare };
-    let full = GpuMoment { field: Some((field.uniform(), &cells)), map: Some(&on_gpu), ..bare };
+        Moment { field: Some(&field), map: Some(&map), ..Moment::new(&view, DVec3::ZERO, field.sample(eye)) };
+    let bare = GpuMoment::new(&view, DVec3::ZERO, field.sample(eye));
+    let spread = field.spread(eye, view.far as f32);
+    let windy = GpuMoment { field: Some((field.uniform(), &cells)), spread, ..bare };
+    let full = GpuMoment { map: Some(&on_gpu), ..windy };
     let boxed = SimVolume::Box { size_m: [60.0; 3] };
     let software = gpu.adapter().is_software();
     println!(

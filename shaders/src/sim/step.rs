@@ -28,10 +28,18 @@ shared_constants! {
 }
 
 shared_constants! {
-    /// Angles.
+    /// Constants of the volume.
     VOLUME_CONSTANTS at "sim/volume_constants" {
         /// 2 pi.
         VOLUME_TURN: f32 = 6.2831855;
+        /// Planes of a frustum: right, left, top, bottom, back.
+        VOLUME_PLANES: u32 = 5;
+        /// The limit that is the ball.
+        VOLUME_BALL: u32 = 5;
+        /// Within all limits.
+        VOLUME_INSIDE: u32 = 6;
+        /// Radius of a drop in its diameter, with room for its oscillation.
+        VOLUME_RADIUS: f32 = 0.6;
     }
 }
 
@@ -40,17 +48,29 @@ shared_constants! {
     STEP_CONSTANTS at "sim/step_constants" {
         /// Bits of a drop's word that are its diameter.
         STEP_DIAMETER: u32 = 0xffff;
-        /// Where its kind is in the word.
+        /// Where its kind is in the word: two bits.
         STEP_KIND: u32 = 16;
+        /// Where its count is in the word.
+        STEP_COUNT_SHIFT: u32 = 18;
+        /// Largest count.
+        STEP_COUNT: u32 = 0x3fff;
+        /// Bits of the count of a drop of a box that number the image of the box along the vertical.
+        STEP_IMAGE_Y: u32 = 0xff;
+        /// Where the image along x is in it, and along z; three bits each.
+        STEP_IMAGE_X: u32 = 8;
+        /// Where the image along z is in it.
+        STEP_IMAGE_Z: u32 = 11;
         /// Kind: falls from the sky.
         STEP_FALLING: u32 = 0;
         /// Kind: came back from a surface.
         STEP_BOUNCED: u32 = 1;
         /// Kind: not there; something is above it.
         STEP_HIDDEN: u32 = 2;
+        /// Kind: the slot holds no drop.
+        STEP_GONE: u32 = 3;
         /// A periodic box round the eye.
         STEP_VOLUME_BOX: u32 = 0;
-        /// The pyramid of the picture up to the distance at which a drop is resolved.
+        /// The frustum of the picture up to the distance at which a drop is resolved.
         STEP_VOLUME_VIEW: u32 = 1;
         /// The rain area of Im & Sung 2022 with their sampling.
         STEP_VOLUME_AREA: u32 = 2;
@@ -58,16 +78,27 @@ shared_constants! {
         STEP_VOLUME_TARIQ: u32 = 3;
         /// A cylinder that stands in the world, in the manner of Creus and Patow.
         STEP_VOLUME_CYLINDER: u32 = 4;
-        /// Powers of two of steps that a path is followed back.
-        STEP_BACKS: u32 = 12;
         /// Tries for a random place.
         STEP_TRIES: u32 = 8;
         /// Dimension of the random numbers: whether an impact bounces.
         STEP_CHANCE: u32 = 8210;
         /// Dimension of the random numbers: places at the top.
         STEP_TOP: u32 = 8211;
+        /// Dimension of the random numbers: columns of a box.
+        STEP_COLUMN: u32 = 8212;
         /// Dimensions of the random numbers, a try each: places in the rain area.
         STEP_AREA: u32 = 8220;
+        /// Entries of the table of lags, one per m/s of the terminal speed.
+        STEP_LAGS: u32 = 13;
+        /// What drops keep of a wind is about that of these shares of their relaxation time ago, with these weights: the
+        /// integral over an exponential by Gauss and Laguerre.
+        STEP_AGO_1: f32 = 0.58578644;
+        /// The weight of the first.
+        STEP_WEIGHT_1: f32 = 0.8535534;
+        /// The second.
+        STEP_AGO_2: f32 = 3.4142136;
+        /// The weight of the second.
+        STEP_WEIGHT_2: f32 = 0.14644661;
         /// Distance from the surface at which a bounced drop starts, m.
         STEP_CLEAR: f32 = 1.0e-3;
         /// Where an event's word holds how the drop met what.

@@ -39,8 +39,9 @@ fn motion_relax(velocity: vec3f, wind: vec3f, speed: f32, time: f32) -> MotionSt
     let settled = motion_settled(wind, speed);
     let slip = velocity - settled;
     let relaxation = max(fall_speed_relaxation(speed), vec2f(MOTION_SHORTEST));
-    let left = vec2f(exp(-time / relaxation.x), exp(-time / relaxation.y));
-    let stay = left.yxy;
+    // Along the fall the slip relaxes twice as fast.
+    let left = exp(-time / relaxation.y);
+    let stay = vec3f(left, left * left, left);
     let reach = relaxation.yxy * (1.0 - stay);
     return MotionStep(settled + slip * stay, settled * time + slip * reach);
 }

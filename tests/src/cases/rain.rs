@@ -51,6 +51,7 @@ fn drops(eye: Vec3, forward: Vec3) -> Vec<FallingDrop> {
                 diameter: 0.3e-3 + 7.7e-3 * d * d,
                 id: u64::from(k),
                 kind: DropKind::Falling,
+                present_s: FallingDrop::ALWAYS,
             }
         })
         .collect()

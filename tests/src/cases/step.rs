@@ -1,11 +1,15 @@
 //! `shaders/wgsl/sim/{motion,volume,step}.wgsl` against `downpour-sim`.
 
+use std::cmp::Ordering;
+
 use downpour_bvh::Bvh;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::rng_unit;
-use downpour_shaders::sim::step::{MOTION, STEP, STEP_KERNEL, VOLUME};
+use downpour_shaders::sim::enter::{ENTER, ENTER_KERNEL};
+use downpour_shaders::sim::step::{MOTION, STEP, STEP_KERNEL, VOLUME, VOLUME_BALL};
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
+use downpour_sim::enter::{EnterRegion, enter_chance, enter_code, enter_offset};
 use downpour_sim::gpu::{GpuCollisionMap, GpuMoment, GpuSimError, GpuSimulation};
 use downpour_sim::motion::{
     motion_average, motion_bounce, motion_diameter, motion_relax, motion_settled, motion_table_entry,
@@ -14,18 +18,21 @@ use downpour_sim::motion::{
 use downpour_sim::simulation::{
     Bounce, Drag, Gauge, Happened, Moment, SimVolume, Simulation, SimulationOptions,
 };
-use downpour_sim::step::{StepDrop, step_measure, step_shown};
+use downpour_sim::step::{
+    StepDrop, step_column, step_count, step_image, step_kind, step_measure, step_pack, step_shown, step_word,
+};
 use downpour_sim::view::View;
 use downpour_sim::volume::{
-    VolumeBack, VolumeEye, volume_back, volume_in_area, volume_in_sphere, volume_in_view, volume_local,
-    volume_offset, volume_on_disc, volume_wrap,
+    VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
+    volume_offset, volume_on_disc, volume_range, volume_spread, volume_wrap,
 };
 use downpour_wind::{
-    WindCore, WindField, WindForm, WindGrid, WindMask, WindPrimitive, WindSingularity, WindUniform,
+    Keyed, UniformWind, Wind, WindCore, WindField, WindForm, WindGrid, WindMask, WindPart, WindPrimitive,
+    WindSingularity, WindUniform,
 };
 use glam::{DVec3, Vec2, Vec3};
 
-use crate::Domain::{Below, Made, Uniform, Unit3};
+use crate::Domain::{AnyWord, Below, Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -64,23 +71,70 @@ fn eye(args: &mut Args<'_>) -> VolumeEye {
     VolumeEye { place, half_width, right, half_height, up, unused_1, forward, unused_2: args.u32() }
 }
 
-/// The words of a `VolumeBack`: a turn of up to half a radian, and a sum.
-fn back_words(random: [u32; 4]) -> Vec<u32> {
-    let angle = rng_unit(random[0]) - 0.5;
-    let (s, c) = (downpour_math::ops::sin(angle), downpour_math::ops::cos(angle));
-    let turn = [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]];
-    let sum = turn.map(|column| column.map(|x| x * 7.0));
-    (turn, sum).words()
+/// The words of a `VolumeFrustum` that looks somewhere, its eye at the origin.
+fn frustum_words(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, c, d] = random.map(rng_unit);
+    let forward = Vec3::new(a - 0.5, 0.8 * b - 0.4, c - 1.2).normalize();
+    let right = forward.cross(Vec3::Y).normalize();
+    let up = right.cross(forward);
+    let half = 0.3 + d;
+    let normals =
+        [right - forward * half, -right - forward * half, up - forward * 0.4, -up - forward * 0.4, -forward];
+    let mut words = Vec::new();
+    for normal in normals.map(Vec3::normalize) {
+        words.extend(normal.extend(4.0 * b - 3.0 * normal.x).to_array().words());
+    }
+    // Eye, air, half horizon and wait, spread with slope and bound, range per diameter, farthest.
+    words.extend(
+        [0.0, 0.0, 0.0, 2.0 + a, 0.02 * c, 0.01 * d, 0.1, 0.5 * a, 1.5, 1500.0 + 500.0 * b, 6.0].words(),
+    );
+    words.push(0);
+    words
 }
 
-fn back(args: &mut Args<'_>) -> VolumeBack {
-    let mut columns = || {
-        std::array::from_fn(|_| {
-            let [x, y, z] = args.f32s();
-            [x, y, z, 0.0]
-        })
-    };
-    VolumeBack { turn: columns(), sum: columns() }
+fn frustum(args: &mut Args<'_>) -> VolumeFrustum {
+    let planes = std::array::from_fn(|_| args.f32s());
+    VolumeFrustum {
+        planes,
+        eye: args.f32s(),
+        air: args.f32(),
+        half_horizon: args.f32(),
+        half_wait: args.f32(),
+        spread: args.f32(),
+        spread_slope: args.f32(),
+        spread_most: args.f32(),
+        range: args.f32(),
+        farthest: args.f32(),
+        unused: args.u32(),
+    }
+}
+
+/// The words of an `EnterRegion`, of a plane or of the ball.
+fn region_words(random: [u32; 4]) -> Vec<u32> {
+    let [a, b, c, _] = random.map(rng_unit);
+    let face = if random[3].is_multiple_of(3) { VOLUME_BALL } else { 1 };
+    let mut words = vec![face, 3, 100, 20];
+    words.extend([0.1 + a, 1.2 + a, -0.1 * b, 1.0 + b, 0.2 + 0.5 * c, 0.3 * a + 0.1, 0.2 - 0.1 * c].words());
+    words.push(0);
+    words
+}
+
+fn region(args: &mut Args<'_>) -> EnterRegion {
+    let [face, bin, first, first_of_bin] = args.u32s();
+    EnterRegion {
+        face,
+        bin,
+        first,
+        first_of_bin,
+        low: args.f32(),
+        high: args.f32(),
+        begin: args.f32(),
+        end: args.f32(),
+        slope: args.f32(),
+        width: args.f32(),
+        middle: args.f32(),
+        unused: args.u32(),
+    }
 }
 
 const MOTIONS: Tol =
@@ -159,18 +213,41 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             .with_outliers(1.0e-3),
             |a| volume_wrap(vec3(a), vec3(a), vec3(a)).to_array().words(),
         ),
+        FunctionCase::new(
+            "volume_images",
+            &VOLUME,
+            &[
+                Uniform(-50.0, 50.0),
+                Uniform(-50.0, 50.0),
+                Uniform(-50.0, 50.0),
+                near,
+                near,
+                near,
+                Uniform(4.0, 9.0),
+                Uniform(4.0, 9.0),
+                Uniform(4.0, 9.0),
+            ],
+            Tol::exact("the whole part of a quotient; on a face it may go either way").with_outliers(1.0e-3),
+            |a| volume_images(vec3(a), vec3(a), vec3(a)).to_array().words(),
+        ),
         FunctionCase::new("volume_local", &VOLUME, &[Made(eye_words), near, near, near], MOTIONS, |a| {
             volume_local(&eye(a), vec3(a)).to_array().words()
         }),
         FunctionCase::new("volume_offset", &VOLUME, &[Made(eye_words), near, near, near], MOTIONS, |a| {
             volume_offset(&eye(a), vec3(a)).to_array().words()
         }),
+        FunctionCase::new("volume_range", &VOLUME, &[Made(frustum_words), diameter], MOTIONS, |a| {
+            volume_range(&frustum(a), a.f32()).words()
+        }),
+        FunctionCase::new("volume_spread", &VOLUME, &[Made(frustum_words), Uniform(0.0, 8.0)], MOTIONS, |a| {
+            volume_spread(&frustum(a), a.f32()).words()
+        }),
         FunctionCase::new(
-            "volume_in_view",
+            "volume_limit",
             &VOLUME,
-            &[Made(eye_words), near, near, near, Uniform(2.0, 9.0)],
+            &[Made(frustum_words), near, near, near, diameter, Uniform(0.3, 9.5)],
             Tol::exact("a choice by comparisons of products that a GPU may fuse").with_outliers(1.0e-3),
-            |a| volume_in_view(&eye(a), vec3(a), a.f32()).words(),
+            |a| volume_limit(&frustum(a), vec3(a), a.f32(), a.f32()).words(),
         ),
         FunctionCase::new(
             "volume_in_area",
@@ -178,13 +255,6 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Made(eye_words), near, near, near, Uniform(2.0, 9.0)],
             Tol::exact("a choice by comparisons of products that a GPU may fuse").with_outliers(1.0e-3),
             |a| volume_in_area(&eye(a), vec3(a), a.f32()).words(),
-        ),
-        FunctionCase::new(
-            "volume_back",
-            &VOLUME,
-            &[Made(back_words), near, near, near, share, share, share],
-            MOTIONS,
-            |a| volume_back(&back(a), vec3(a), vec3(a)).to_array().words(),
         ),
         FunctionCase::new(
             "volume_in_sphere",
@@ -196,10 +266,58 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("volume_on_disc", &VOLUME, &[share, share], sphere, |a| {
             volume_on_disc(Vec2::new(a.f32(), a.f32())).to_array().words()
         }),
+        FunctionCase::new("step_kind", &STEP, &[AnyWord], Tol::exact("bits of a word"), |a| {
+            step_kind(a.u32()).words()
+        }),
+        FunctionCase::new("step_count", &STEP, &[AnyWord], Tol::exact("bits of a word"), |a| {
+            step_count(a.u32()).words()
+        }),
+        FunctionCase::new(
+            "step_word",
+            &STEP,
+            &[Below(1 << 16), Below(4), Below(1 << 14)],
+            Tol::exact("bits of a word"),
+            |a| step_word(a.u32(), a.u32(), a.u32()).words(),
+        ),
+        FunctionCase::new("step_pack", &STEP, &[near, near, near], Tol::exact("whole parts and bits"), |a| {
+            step_pack(vec3(a)).words()
+        }),
+        FunctionCase::new("step_image", &STEP, &[Below(1 << 14), Below(1 << 14)], Tol::exact("bits of a word"), |a| {
+            step_image(a.u32(), a.u32()).words()
+        }),
+        FunctionCase::new(
+            "step_column",
+            &STEP,
+            &[AnyWord, AnyWord, AnyWord, AnyWord, near, near, near],
+            Tol::ulp(1, "a product of a multiple of 2^-24, rounded once"),
+            |a| step_column(a.u32s(), a.u32(), a.u32(), vec3(a)).to_array().words(),
+        ),
+        FunctionCase::new(
+            "enter_code",
+            &ENTER,
+            &[Uniform(700.0, 60_000.0), Uniform(700.0, 60_000.0), share],
+            Tol::exact("a product and sums, which a GPU may fuse, and their whole part").with_outliers(2.0e-2),
+            |a| enter_code(a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "enter_chance",
+            &ENTER,
+            &[AnyWord, AnyWord, AnyWord, AnyWord],
+            Tol::exact("a whole number of 24 bits times a power of two"),
+            |a| enter_chance(a.u32s()).words(),
+        ),
+        FunctionCase::new(
+            "enter_offset",
+            &ENTER,
+            &[Made(region_words), Unit3, Unit3, share, share, share, share],
+            Tol::absolute(2.0e-5, "roots, a quotient and products of numbers up to 3; at the edge of the disc or by chance it may be none")
+                .with_outliers(1.0e-3),
+            |a| enter_offset(&region(a), vec3(a), vec3(a), vec3(a), a.f32()).to_array().words(),
+        ),
         FunctionCase::new(
             "step_shown",
             &STEP,
-            &[Below(3 << 16), share],
+            &[AnyWord, share],
             Tol::ulp(2, "two products, each rounded once"),
             |a| step_shown(a.u32(), a.f32()).words(),
         ),
@@ -212,6 +330,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| step_measure(a.f32()).words(),
         ),
     ]
+}
+
+/// A wind that freshens.
+fn gusts() -> UniformWind {
+    let speed = Keyed::new(vec![(0.0, 1.0), (5.0, 11.0)]).expect("keys");
+    let part = WindPart::uniform(&speed, &DVec3::X.into()).expect("a wind");
+    Wind::new(vec![part], None, None).expect("a wind").air().clone()
 }
 
 fn vortex() -> WindField {
@@ -263,7 +388,12 @@ struct Scenario {
     drag: Drag,
     windy: bool,
     walls: bool,
+    /// The last step leads elsewhere.
+    jumps: bool,
 }
+
+const TURNING: Scenario =
+    Scenario { volume: SimVolume::View, drag: Drag::Relaxation, windy: true, walls: true, jumps: false };
 
 /// What a step leaves behind on both sides.
 struct Both {
@@ -279,6 +409,8 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
         volume: scenario.volume,
         seed: 11,
         most_drops: 6000,
+        shutter_s: 1.0 / 48.0,
+        wait_s: 1.0 / 60.0,
         drag: scenario.drag,
         bounce: Bounce { share: 0.5, ..Bounce::default() },
         gauge: Some(Gauge {
@@ -292,13 +424,20 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
     let map = scenario.walls.then(yard);
     let wind = Vec3::new(2.0, 0.0, -1.0);
     let first = view(0);
-    let start = Moment { view: &first, origin: DVec3::ZERO, wind, field: field.as_ref(), map: map.as_ref() };
+    let air = gusts();
+    let air = air.prepared(3.0);
+    let start = Moment {
+        field: field.as_ref(),
+        map: map.as_ref(),
+        air: Some(&air),
+        ..Moment::new(&first, DVec3::ZERO, wind)
+    };
     let mut cpu = Simulation::new(&rain, &options, &start).expect("a simulation");
     for step in 1..=20 {
         cpu.advance(1.0 / 60.0, &Moment { view: &view(step), ..start }).expect("a step");
     }
     let mut twin = GpuSimulation::from_cpu(gpu, &cpu)?;
-    let last = view(21);
+    let last = if scenario.jumps { View { eye: view(21).eye + 9.0, ..view(21) } } else { view(21) };
     let happened = cpu.advance(1.0 / 60.0, &Moment { view: &last, ..start }).expect("a step");
     let on_gpu = match &map {
         Some(map) => Some(GpuCollisionMap::from_cpu(gpu, map)?),
@@ -308,17 +447,22 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
         Some(field) => Some((field, gpu.storage_buffer("cells", field.cells())?)),
         None => None,
     };
+    let eye = last.eye.as_vec3();
     let moment = GpuMoment {
-        view: &last,
-        origin: DVec3::ZERO,
-        wind,
+        // Of a field: at the eye.
+        wind: field.as_ref().map_or(wind, |field| field.sample(eye)),
         field: cells.as_ref().map(|(field, cells)| (field.uniform(), cells)),
+        spread: field.as_ref().map_or([0.0; 2], |field| field.spread(eye, cpu.farthest_m(&last) as f32)),
         map: on_gpu.as_ref(),
+        air: Some(&air),
+        ..GpuMoment::new(&last, DVec3::ZERO, wind)
     };
     twin.advance(1.0 / 60.0, &moment).map_err(of_gpu)?;
+    let happened_there = twin.happened().map_err(of_gpu)?;
+    assert_eq!(happened_there.lost, 0);
     Ok(Both {
         drops: [cpu.drops().to_vec(), twin.drops().map_err(of_gpu)?],
-        happened: [happened, twin.happened().map_err(of_gpu)?],
+        happened: [happened, happened_there],
     })
 }
 
@@ -335,16 +479,41 @@ fn words(drops: &[StepDrop]) -> Vec<u32> {
         .flat_map(|d| {
             let [x, y, z] = d.place.map(f32::to_bits);
             let [u, v, w] = d.velocity.map(f32::to_bits);
-            [x, y, z, d.word, u, v, w, d.seconds.to_bits()]
+            [x, y, z, d.word, u, v, w, d.last]
         })
         .collect()
 }
 
+/// The drops of both, each beside itself: of a view the order is the device's own. What one of them has not is nothing.
+fn side_by_side([mut cpu, mut gpu]: [Vec<StepDrop>; 2]) -> [Vec<StepDrop>; 2] {
+    let key = |drop: &StepDrop| (drop.last, drop.word);
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    cpu.sort_by_key(key);
+    gpu.sort_by_key(key);
+    let (mut cpu, mut gpu) = (cpu.into_iter().peekable(), gpu.into_iter().peekable());
+    loop {
+        let order = match (cpu.peek(), gpu.peek()) {
+            (Some(a), Some(b)) => key(a).cmp(&key(b)),
+            (Some(_), None) => Ordering::Less,
+            (None, Some(_)) => Ordering::Greater,
+            (None, None) => return [left, right],
+        };
+        let nothing = StepDrop { place: [0.0; 3], word: 0, velocity: [0.0; 3], last: 0 };
+        left.push(if order.is_le() { cpu.next().unwrap_or(nothing) } else { nothing });
+        right.push(if order.is_ge() { gpu.next().unwrap_or(nothing) } else { nothing });
+    }
+}
+
 fn step_case(gpu: &Gpu, scenario: Scenario) -> Result<Run, GpuError> {
     let both = both(gpu, scenario)?;
-    let [cpu, made] = both.drops.map(|drops| words(&drops));
+    let open = scenario.volume == SimVolume::View;
+    let sides = if open { side_by_side(both.drops) } else { both.drops };
+    let [cpu, made] = sides.map(|drops| words(&drops));
     let mut kinds = vec![WordKind::Float; 8];
     kinds[3] = WordKind::Integer;
+    if open {
+        kinds[7] = WordKind::Integer;
+    }
     Ok(Run {
         arguments: (0..cpu.len() as u32 / 8).map(|k| vec![(k as f32).to_bits()]).collect(),
         cpu: Cpu(cpu),
@@ -393,35 +562,87 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     vec![
         case(
             "main_step: a box in a vortex, with a roof",
-            &["step_speed", "step_wind", "step_relocate", "collision_find", "collision_open"],
+            &[
+                "step_speed",
+                "step_wind",
+                "step_relocate",
+                "step_fly",
+                "step_slot",
+                "collision_find",
+                "collision_open",
+            ],
             STEPPED,
-            |gpu| step_case(gpu, Scenario { volume: BOX, drag: Drag::Relaxation, windy: true, walls: true }),
+            |gpu| {
+                step_case(
+                    gpu,
+                    Scenario { volume: BOX, drag: Drag::Relaxation, windy: true, walls: true, jumps: false },
+                )
+            },
         ),
         case(
             "main_step: what happened",
             &["step_note", "step_catch", "step_through"],
             Tol::exact("sorted by drop; places to the millimetre").with_outliers(2.0e-2),
             |gpu| {
-                happened_case(gpu, Scenario { volume: BOX, drag: Drag::Relaxation, windy: true, walls: true })
+                happened_case(
+                    gpu,
+                    Scenario { volume: BOX, drag: Drag::Relaxation, windy: true, walls: true, jumps: false },
+                )
             },
         ),
-        case("main_step: a view that turns", &["step_entry"], STEPPED, |gpu| {
+        case("main_step: a view that turns", &["step_view", "step_inside"], STEPPED, |gpu| {
             step_case(
                 gpu,
-                Scenario { volume: SimVolume::View, drag: Drag::Relaxation, windy: false, walls: true },
+                Scenario {
+                    volume: SimVolume::View,
+                    drag: Drag::Relaxation,
+                    windy: false,
+                    walls: true,
+                    jumps: false,
+                },
             )
+        }),
+        KernelCase {
+            name: "main_enter: a view in a vortex, with a roof",
+            kernel: &ENTER_KERNEL,
+            covers: &["enter_region", "enter_find", "enter_drop", "step_coming"],
+            tol: STEPPED,
+            run: |gpu| {
+                step_case(
+                    gpu,
+                    Scenario {
+                        volume: SimVolume::View,
+                        drag: Drag::Relaxation,
+                        windy: true,
+                        walls: true,
+                        jumps: false,
+                    },
+                )
+            },
+        },
+        case("main_step: the eye is elsewhere", &["step_begin"], STEPPED, |gpu| {
+            step_case(gpu, Scenario { jumps: true, volume: SimVolume::View, ..TURNING })
         }),
         case("main_step: the rain area of Im and Sung", &["step_area"], STEPPED, |gpu| {
             let volume = SimVolume::ImSung;
-            step_case(gpu, Scenario { volume, drag: Drag::Relaxation, windy: false, walls: false })
+            step_case(
+                gpu,
+                Scenario { volume, drag: Drag::Relaxation, windy: false, walls: false, jumps: false },
+            )
         }),
         case("main_step: a box that drops fall into", &[], STEPPED, |gpu| {
             let volume = SimVolume::Tariq { size_m: [6.0; 3] };
-            step_case(gpu, Scenario { volume, drag: Drag::Rousseau2008, windy: true, walls: false })
+            step_case(
+                gpu,
+                Scenario { volume, drag: Drag::Rousseau2008, windy: true, walls: false, jumps: false },
+            )
         }),
         case("main_step: a cylinder", &[], STEPPED, |gpu| {
             let volume = SimVolume::Cylinder { base_m: [0.0, 0.0, 0.0], radius_m: 4.0, height_m: 6.0 };
-            step_case(gpu, Scenario { volume, drag: Drag::Relaxation, windy: true, walls: false })
+            step_case(
+                gpu,
+                Scenario { volume, drag: Drag::Relaxation, windy: true, walls: false, jumps: false },
+            )
         }),
     ]
 }

@@ -26,6 +26,7 @@ use downpour::render::file::{write_exr, write_exr_layers, write_png};
 use downpour::render::picture::{Picture, PictureOptions};
 use downpour::render::rain::light::DropLightOptions;
 use downpour::render::rain::{Exposure, RainMedium, RainOptions, RefractionForm};
+use downpour::render::shower::{MovingScenery, Scenery, Still};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
@@ -39,11 +40,12 @@ use crate::interrupt::Interrupt;
 use crate::{quantity, stream};
 use frames::Frames;
 use ground::Puddles;
+use job::moves;
 use outputs::{Bytes, Format, Outputs};
 use painter::with_painter;
 use pane::Pane;
 use report::Told;
-use shower::Showers;
+use shower::{Ask, Showers};
 
 /// Memory per pixel, in bytes, while a picture is made and written: the scene, what its pixels found of the sky's light
 /// (twice while threads hand in their parts), the rain, the pane with what is behind it, and the file.
@@ -149,7 +151,11 @@ impl RenderArguments {
         let begin = Instant::now();
         let rain = &input.weather.rain;
         let showers = &mut Showers::new(&input.weather, atlas.as_ref())?;
-        let shower = showers.at(&stage, self.input.time, outputs.wants_stats())?;
+        let ask = Ask { measure: outputs.wants_stats(), quiet: self.quiet };
+        let moving = MovingScenery { weather: &input.weather, loaded: &input.loaded };
+        let still = Still(&stage);
+        let scenery: &dyn Scenery = if moves(&input.loaded) { &moving } else { &still };
+        let shower = showers.at(scenery, &stage, self.input.time, &ask)?;
         let mut pane = Pane::new(&input.weather, &stage, self.input.time, self.quiet)?;
         let mut puddles = Puddles::new(&input.weather, &input.loaded, &stage, self.input.time)?;
         let stage = puddles.lay(Cow::Owned(stage), self.input.time)?;

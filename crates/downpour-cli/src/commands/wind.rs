@@ -2,16 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use downpour::render::file::write_png;
+use downpour::render::shower::{Shower, Still};
+use downpour::render::stage::Stage;
 use downpour::render::wind_picture::{WindPicture, WindPlane, WindSlice, draw_wind};
 use downpour::scene::Budget;
 use downpour::scene::weather::Weather;
 use downpour::wind::primitive::velocity;
 use downpour::wind::turbulence::wind_turbulence_velocity;
-use downpour::wind::{WindGrid, WindMatrix};
+use downpour::wind::{WindField, WindGrid, WindMatrix};
 use glam::{DVec3, Vec3};
 
+use super::input::{Input, InputArguments};
 use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
 use crate::listing::{Datum, Entry};
@@ -20,7 +23,8 @@ use crate::{listing, quantity, stream};
 
 /// Draw the wind of a weather file in a slice: speed as colour, direction as streaks and arrows.
 ///
-/// What is drawn is the sum of the primitives without cells and objects, and turbulence as the cells of `[wind_field]` show it.
+/// What is drawn is what the rain feels: a wind that differs from place to place in the cells of `[wind_field]`, and none in
+/// objects; one that is the same everywhere without the lee of objects.
 #[derive(Debug, Args)]
 pub(crate) struct WindArguments {
     /// A weather file (.toml) with a wind.
@@ -39,6 +43,12 @@ pub(crate) struct WindArguments {
     /// Width and height in pixels, 64 to 4096.
     #[arg(long, value_name = "WxH", default_value = "960x720", value_parser = quantity::picture_size)]
     size: [u32; 2],
+    /// The wind that is drawn.
+    #[arg(long, value_enum, default_value_t = Form::Cells)]
+    form: Form,
+    /// Another folder in which the files of a weather may lie; may be given several times.
+    #[arg(long, value_name = "FOLDER")]
+    asset_root: Vec<PathBuf>,
     /// The picture, .png.
     #[arg(short, long, value_name = "OUT.png")]
     output: PathBuf,
@@ -51,6 +61,15 @@ pub(crate) struct WindArguments {
     /// Say nothing but errors.
     #[arg(short, long)]
     quiet: bool,
+}
+
+/// Which wind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// As the rain feels it, in cells and round objects.
+    Cells,
+    /// The sum of the primitives and of the turbulence, without cells and objects.
+    Primitives,
 }
 
 /// A plane and where it is.
@@ -84,7 +103,8 @@ impl WindArguments {
         check_name(&self.input, "toml", "input", "a weather file (.toml): a model has no wind")?;
         check_name(&self.output, "png", "output", ".png")?;
         let place = Place::new(&self.output, self.overwrite)?;
-        let weather = Weather::read(&self.input, &mut Budget::default())?;
+        let input = self.input()?;
+        let weather = &input.weather;
         if weather.wind.is_still() {
             let allowed = "a weather file with [[wind]] or [turbulence]";
             return Err(Failure::new(
@@ -100,7 +120,8 @@ impl WindArguments {
         };
         let (plane, offset) = self.slice;
         let slice = WindSlice::new(plane, offset, low, high, self.size)?;
-        let (picture, entries) = self.draw(&weather, &grid, &slice)?;
+        let field = self.field(&input)?;
+        let (picture, entries) = self.draw(weather, &grid, &slice, field.as_ref())?;
         let [width, height] = picture.size;
         place.publish(&write_png(width, height, &picture.pixels)?, interrupt)?;
         if self.json {
@@ -113,17 +134,49 @@ impl WindArguments {
         Ok(())
     }
 
+    /// The weather with what stands in it.
+    fn input(&self) -> Result<Input, Failure> {
+        let arguments = InputArguments {
+            input: self.input.clone(),
+            rate: None,
+            time: self.time,
+            size: None,
+            shutter: None,
+            seed: None,
+            asset_root: self.asset_root.clone(),
+        };
+        let input = arguments.read(&mut Budget::default())?;
+        if !self.quiet {
+            input.say_cores(stream::message);
+        }
+        Ok(input)
+    }
+
+    /// The wind that the rain feels, and what it is relative to, if that is asked for and differs from place to place.
+    fn field(&self, input: &Input) -> Result<Option<(WindField, Vec3)>, Failure> {
+        if self.form == Form::Primitives || input.weather.wind.uniform().is_some() {
+            return Ok(None);
+        }
+        let stage = Stage::new(&input.weather, &input.loaded, self.time)?;
+        let field = Shower::new(&input.weather)?.wind_field(&Still(&stage), self.time)?;
+        Ok(field.map(|field| (field, stage.origin.as_vec3())))
+    }
+
     fn draw(
         &self,
         weather: &Weather,
         grid: &WindGrid,
         slice: &WindSlice,
+        field: Option<&(WindField, Vec3)>,
     ) -> Result<(WindPicture, Vec<Entry>), Failure> {
         let primitives = weather.wind.at(self.time);
         let matrices = WindMatrix::encode(&primitives)?;
         let modes = weather.wind.modes(self.time, grid);
         let low = grid.low();
         let picture = draw_wind(slice, &|at| {
+            if let Some((field, origin)) = field {
+                return field.sample(at - *origin);
+            }
             let start = velocity(&matrices, at);
             modes.iter().fold(start, |sum, mode| sum + wind_turbulence_velocity(mode, at - low))
         });

@@ -1,7 +1,8 @@
 //! What a pane is asked to be.
 
 use downpour_drop::air::Air;
-use downpour_drop::distribution::DropSizeLaw;
+use downpour_drop::distribution::{DistributionOptions, DropSizeLaw};
+use downpour_drop::fall_speed::FallSpeedModel;
 
 use super::contact::GlassContact;
 use super::error::{GlassError, in_range};
@@ -17,6 +18,10 @@ pub struct GlassRain {
     pub rate_mm_h: f64,
     /// The drop sizes.
     pub law: DropSizeLaw,
+    /// Its smallest and its largest diameter, m. Of them those from 0.2 to 7.5 mm land.
+    pub diameters_m: [f64; 2],
+    /// The law of terminal speed.
+    pub fall_speed: FallSpeedModel,
     /// The air that the rain falls through: its temperature and pressure decide how fast.
     pub air: Air,
     /// How fast the air with the rain in it comes at the pane horizontally, m/s: the car's speed, or the wind on a window. 0
@@ -27,7 +32,15 @@ pub struct GlassRain {
 impl Default for GlassRain {
     /// No rain.
     fn default() -> Self {
-        Self { rate_mm_h: 0.0, law: DropSizeLaw::default(), air: Air::standard(), towards_m_s: 0.0 }
+        let drops = DistributionOptions::default();
+        Self {
+            rate_mm_h: 0.0,
+            law: DropSizeLaw::default(),
+            diameters_m: [drops.smallest_diameter_m, drops.largest_diameter_m],
+            fall_speed: drops.fall_speed,
+            air: drops.air,
+            towards_m_s: 0.0,
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
-use downpour_drop::fall_speed::{FallSpeedModel, TerminalSpeed};
+use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::lattice::glass::{GLASS_LANDING_QUADS, GLASS_LARGEST};
 
@@ -45,21 +45,23 @@ impl Landing {
     /// it comes at u.
     pub(super) fn new(options: &GlassOptions) -> Result<Self, GlassError> {
         let shares = 4 * GLASS_LANDING_QUADS as usize;
+        let [least, most] = options.rain.diameters_m;
+        let (smallest, largest) = (least.max(SMALLEST_M), most.min(LARGEST_M));
         let diameters = DistributionOptions {
-            smallest_diameter_m: SMALLEST_M,
-            largest_diameter_m: LARGEST_M,
+            smallest_diameter_m: smallest,
+            largest_diameter_m: largest,
+            fall_speed: options.rain.fall_speed,
             air: options.rain.air,
-            ..DistributionOptions::default()
         };
         let rain = DropSizeDistribution::with_options(options.rain.law, options.rain.rate_mm_h, &diameters)?;
-        let speed = TerminalSpeed::new(FallSpeedModel::default(), &options.rain.air);
+        let speed = TerminalSpeed::new(options.rain.fall_speed, &options.rain.air);
         let (sin, cos) = (ops::sin(options.tilt_rad), ops::cos(options.tilt_rad));
-        let width = (LARGEST_M - SMALLEST_M) / STEPS as f64;
+        let width = (largest - smallest) / STEPS as f64;
         // Number and volume that land of drops up to a diameter.
         let mut sums = vec![(0.0, 0.0)];
         let (mut number, mut volume) = (0.0, 0.0);
         for step in 0..STEPS {
-            let d = SMALLEST_M + (step as f64 + 0.5) * width;
+            let d = smallest + (step as f64 + 0.5) * width;
             let flux = rain.concentration(d)
                 * (speed.at(d)? * cos + options.rain.towards_m_s * sin).max(0.0)
                 * width;

@@ -83,7 +83,10 @@ pub(super) fn project(
     masks: &DropMasks,
     exposure: &Exposure,
 ) -> Option<Projected> {
-    let offset = (drop.position - eye).as_vec3();
+    let present = present(drop, exposure)?;
+    // The middle of the part of its path that is there.
+    let middle = (present[0].midpoint(present[1]) - 0.5) * shutter(exposure);
+    let offset = Travel::of(drop, eye, exposure).at(middle);
     let length = offset.length();
     let radius = 0.5 * drop.diameter;
     if !(length > 2.0 * radius && length.is_finite() && radius > 0.0) {
@@ -96,7 +99,7 @@ pub(super) fn project(
     }
     let elevation = ops::asin((-towards.y).clamp(-1.0, 1.0));
     let place = masks.place(drop.diameter, elevation);
-    let path = Path::of(picture, drop, offset, towards, radius, exposure);
+    let path = Path::of(picture, drop, eye, offset, radius, present, exposure)?;
     let distance = if path.moves { path.depth } else { length };
     let slope = radius / distance;
     // The plane of the picture is farther away, and slanted, away from the middle.
@@ -184,16 +187,61 @@ struct Path {
     moves: bool,
 }
 
+/// How long the shutter is open, s.
+fn shutter(exposure: &Exposure) -> f32 {
+    let shutter = exposure.shutter_s.clamp(0.0, LONGEST_EXPOSURE_S) as f32;
+    if shutter.is_finite() { shutter } else { 0.0 }
+}
+
+/// The part of the exposure in which a drop is there: something stops it meanwhile, or it comes back from something. `None`:
+/// it is not there at all.
+fn present(drop: &FallingDrop, exposure: &Exposure) -> Option<[f32; 2]> {
+    let shutter = shutter(exposure);
+    let [begin, end] = drop.present_s;
+    if shutter == 0.0 {
+        return (begin <= 0.0 && end >= 0.0).then_some([0.0, 1.0]);
+    }
+    let part = [begin, end].map(|time| (time / shutter + 0.5).clamp(0.0, 1.0));
+    (part[0] < part[1]).then_some(part)
+}
+
+/// A drop relative to the eye.
+struct Travel {
+    /// At the picture's time, if it is there then.
+    offset: Vec3,
+    velocity: Vec3,
+    turning: Vec3,
+}
+
+impl Travel {
+    fn of(drop: &FallingDrop, eye: DVec3, exposure: &Exposure) -> Self {
+        let seen = Vec3::from(drop.velocity) * drop.seen_s();
+        Self {
+            offset: (drop.position - eye).as_vec3() - seen,
+            velocity: Vec3::from(drop.velocity) - exposure.eye.velocity,
+            turning: exposure.eye.turning,
+        }
+    }
+
+    /// Where it is at a time from the picture's, s.
+    fn at(&self, time: f32) -> Vec3 {
+        turned(self.offset + self.velocity * time, -self.turning * time)
+    }
+}
+
 impl Path {
+    /// The path of a drop whose middle is at `offset`; `None` if too little of it is there to be seen.
     fn of(
         picture: &RenderFrame,
         drop: &FallingDrop,
+        eye: DVec3,
         offset: Vec3,
-        towards: Vec3,
         radius: f32,
+        present: [f32; 2],
         exposure: &Exposure,
-    ) -> Self {
+    ) -> Option<Self> {
         let distance = offset.length();
+        let towards = offset / distance;
         let still = Self {
             ends: [offset; 2],
             part: [0.0, 1.0],
@@ -203,24 +251,24 @@ impl Path {
             velocity: Vec3::ZERO,
             moves: false,
         };
-        let shutter = exposure.shutter_s.clamp(0.0, LONGEST_EXPOSURE_S) as f32;
-        if shutter == 0.0 || !shutter.is_finite() {
-            return still;
+        let shutter = shutter(exposure);
+        if shutter == 0.0 {
+            return Some(still);
         }
-        let velocity = Vec3::from(drop.velocity) - exposure.eye.velocity;
-        let at = |time: f32| turned(offset + velocity * time, -exposure.eye.turning * time);
-        let [open, close] = [-0.5, 0.5].map(|half| at(half * shutter));
+        let travel = Travel::of(drop, eye, exposure);
+        let [open, close] = [-0.5, 0.5].map(|half| travel.at(half * shutter));
         let forward = Vec3::from(picture.forward);
         let in_front = ahead(open.dot(forward), close.dot(forward), 2.0 * radius + 0.02);
         let beside = ahead(open.dot(towards), close.dot(towards), 0.2 * distance);
-        let part = [in_front[0].max(beside[0]), in_front[1].min(beside[1])];
+        let part = [in_front[0].max(beside[0]).max(present[0]), in_front[1].min(beside[1]).min(present[1])];
         let ends = part.map(|share| open + (close - open) * share);
         let depths = ends.map(|p| p.dot(towards));
         let across = (ends[1] / depths[1].max(1.0e-6) - ends[0] / depths[0].max(1.0e-6)).length();
         if part[1] <= part[0] || !across.is_finite() || across < STILL * radius / distance {
-            return still;
+            // A drop that stands before the eye, or what is left of one that is there for a moment.
+            return (present == [0.0, 1.0]).then_some(still);
         }
-        Self {
+        Some(Self {
             ends,
             part,
             depth: 0.5 * (depths[0] + depths[1]),
@@ -228,7 +276,7 @@ impl Path {
             recede: depths[1] / depths[0],
             velocity: (close - open) / shutter,
             moves: true,
-        }
+        })
     }
 }
 

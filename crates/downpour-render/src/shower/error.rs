@@ -7,6 +7,7 @@ use downpour_wind::WindError;
 
 use crate::RenderError;
 use crate::glass::PaneError;
+use crate::stage::StageError;
 
 /// Why there is no rain.
 #[derive(Debug, thiserror::Error)]
@@ -18,6 +19,12 @@ pub enum ShowerError {
          or uniform wind and gusts alone"
     )]
     NotUniform,
+    /// A drag that has no closed form.
+    #[error(
+        "rain.drag is \"rousseau-2008\", which has no closed form, and rain.volume is \"closed-form\"; allowed: \
+         rain.drag = \"relaxation\", or rain.volume = \"auto\", \"view\" or \"box\""
+    )]
+    DragByStep,
     /// The drops' motion.
     #[error(transparent)]
     Sim(#[from] SimError),
@@ -30,6 +37,9 @@ pub enum ShowerError {
     /// The eye.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The scene between pictures.
+    #[error(transparent)]
+    Stage(#[from] StageError),
     /// The drops' masks.
     #[error(transparent)]
     Mask(#[from] MaskError),
@@ -46,9 +56,10 @@ impl ShowerError {
             Self::Sim(error) => error.exit_code(),
             Self::Wind(error) => error.exit_code(),
             Self::Render(error) => error.exit_code(),
+            Self::Stage(error) => error.exit_code(),
             Self::Mask(error) => error.exit_code(),
             Self::Pane(error) => error.exit_code(),
-            Self::NotUniform | Self::Drop(_) => 2,
+            Self::NotUniform | Self::DragByStep | Self::Drop(_) => 2,
         }
     }
 }

@@ -181,6 +181,7 @@ impl TableStreak {
             diameter: 2.0 * shape.equivalent_radius() as f32,
             id: ID.into(),
             kind: DropKind::Falling,
+            present_s: FallingDrop::ALWAYS,
         };
         let mut rain = Rain::new(&frame, eye, &[drop], &masks, &of_rain);
         for drop in &mut rain.list {

@@ -129,7 +129,7 @@ impl Pane {
         let [columns, rows] = self.cells(size);
         let above = self.rows_above(size);
         GlassOptions {
-            size: [columns, rows + above],
+            size: [columns, rows.saturating_add(above)],
             cell_m: self.cell,
             tilt_rad: self.tilt,
             contact: self.contact,
@@ -152,8 +152,16 @@ impl Pane {
     #[must_use]
     pub fn weather(&self, rain: &Rain, speed_m_s: f64) -> (GlassRain, GlassAir) {
         let along = speed_m_s * ops::cos(self.tilt).max(0.0);
+        let drops = rain.options();
         (
-            GlassRain { rate_mm_h: rain.rate_mm_h, law: rain.law, air: rain.air, towards_m_s: speed_m_s },
+            GlassRain {
+                rate_mm_h: rain.rate_mm_h,
+                law: rain.law,
+                diameters_m: [drops.smallest_diameter_m, drops.largest_diameter_m],
+                fall_speed: drops.fall_speed,
+                air: rain.air,
+                towards_m_s: speed_m_s,
+            },
             GlassAir { speed_m_s: along, ..GlassAir::default() },
         )
     }

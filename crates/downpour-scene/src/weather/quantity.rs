@@ -36,6 +36,7 @@ ranges! {
     MedianMm: 0.2, 5.0, "0.2 to 5 mm";
     TemperatureC: -20.0, 40.0, "-20 to 40 Celsius";
     PressureHpa: 300.0, 1100.0, "300 to 1100 hPa";
+    OneMm: 0.2, 7.5, "0.2 to 7.5 mm";
     BoxM: 1.0, 1000.0, "1 to 1000 m";
     RadiusM: 0.5, 1000.0, "0.5 to 1000 m";
     PuddleM: 0.1, 1000.0, "0.1 to 1000 m";

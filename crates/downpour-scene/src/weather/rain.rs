@@ -2,12 +2,14 @@
 
 use super::fault::Places;
 use super::quantity::{
-    BoxM, DropSize, Exactly, GammaShape, In, MedianMm, PlaceM, PressureHpa, RadiusM, RateMmH, Share, ShortS,
-    TemperatureC, Whole,
+    BoxM, DropSize, Exactly, GammaShape, In, MedianMm, OneMm, PlaceM, PressureHpa, RadiusM, RateMmH, Share,
+    ShortS, TemperatureC, Whole,
 };
 use crate::error::SceneError;
+use downpour_drop::DropError;
 use downpour_drop::air::Air;
-use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution, DropSizeLaw};
+use downpour_drop::fall_speed::FallSpeedModel;
 use serde::Deserialize;
 
 /// Shape of the gamma law where none is given.
@@ -15,6 +17,16 @@ const GAMMA_SHAPE: f64 = 3.0;
 
 /// The lightest rain whose drop sizes differ, in mm/h.
 const LIGHTEST: f64 = downpour_drop::distribution::LIGHTEST_SHAPE_MM_H;
+
+/// Drops of one size differ by this share of their diameter, and at least by so many m.
+const ONE_SHARE: f64 = 1.0e-3;
+const ONE_LEAST_M: f64 = 1.0e-6;
+
+/// The heaviest rain, mm/h.
+const HEAVIEST_MM_H: f64 = 500.0;
+
+/// Side of a box of rain where the weather does not say, m.
+pub const RAIN_BOX_M: f64 = 10.0;
 
 /// Drops that are simulated where the file does not say how many, at most.
 const MOST_DROPS: u32 = 2_000_000;
@@ -42,6 +54,42 @@ pub enum RainVolume {
     /// A cylinder that stands in the world, in the manner of Creus and Patow 2013.
     #[serde(rename = "creus-patow-2013")]
     CreusPatow2013,
+}
+
+/// Names of the laws of terminal speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+enum FallSpeed {
+    #[serde(rename = "beard-1976")]
+    Beard1976,
+    #[serde(rename = "gunn-kinzer-1949")]
+    GunnKinzer1949,
+    #[serde(rename = "rousseau-2006")]
+    Rousseau2006,
+    #[serde(rename = "atlas-1973")]
+    Atlas1973,
+    #[serde(rename = "atlas-ulbrich-1977")]
+    AtlasUlbrich1977,
+    #[serde(rename = "brandes-2002")]
+    Brandes2002,
+    #[serde(rename = "van-dijk-2002")]
+    VanDijk2002,
+    #[serde(rename = "lhermitte-1988")]
+    Lhermitte1988,
+}
+
+impl From<FallSpeed> for FallSpeedModel {
+    fn from(law: FallSpeed) -> Self {
+        match law {
+            FallSpeed::Beard1976 => Self::Beard1976,
+            FallSpeed::GunnKinzer1949 => Self::GunnKinzer1949,
+            FallSpeed::Rousseau2006 => Self::Rousseau2006,
+            FallSpeed::Atlas1973 => Self::Atlas1973,
+            FallSpeed::AtlasUlbrich1977 => Self::AtlasUlbrich1977,
+            FallSpeed::Brandes2002 => Self::Brandes2002,
+            FallSpeed::VanDijk2002 => Self::VanDijk2002,
+            FallSpeed::Lhermitte1988 => Self::Lhermitte1988,
+        }
+    }
 }
 
 /// How drops follow the wind.
@@ -137,6 +185,10 @@ pub struct Rain {
     pub seed: u64,
     /// Temperature and pressure of the air.
     pub air: Air,
+    /// The law of terminal speed.
+    pub fall_speed: FallSpeedModel,
+    /// Diameter of all drops, m, 0.2e-3 to 7.5e-3, if they are of one size.
+    pub one_diameter: Option<f64>,
     /// Where and how drops are simulated.
     pub volume: RainVolume,
     /// Side of a box of rain, in metres, 1 to 1000; `None` leaves it to the renderer.
@@ -163,6 +215,8 @@ impl Default for Rain {
             law: DropSizeLaw::default(),
             seed: 0,
             air: Air::standard(),
+            fall_speed: FallSpeedModel::default(),
+            one_diameter: None,
             volume: RainVolume::default(),
             box_m: None,
             cylinder: RainCylinder::default(),
@@ -185,6 +239,8 @@ pub(super) struct RainTable {
     seed: Option<u64>,
     temperature_c: Option<In<TemperatureC>>,
     pressure_hpa: Option<In<PressureHpa>>,
+    fall_speed: Option<FallSpeed>,
+    drops: Option<DropsTable>,
     volume: Option<RainVolume>,
     box_m: Option<In<BoxM>>,
     cylinder: Option<CylinderTable>,
@@ -193,6 +249,14 @@ pub(super) struct RainTable {
     bounce: Option<BounceTable>,
     drop_light: Option<RainDropLight>,
     extinction: Option<RainExtinction>,
+}
+
+/// So many drops of one size.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DropsTable {
+    count: Whole<1, { 1 << 30 }>,
+    diameter_mm: In<OneMm>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -251,6 +315,32 @@ enum Distribution {
 }
 
 impl Rain {
+    /// Which drops there are, and how fast they fall.
+    #[must_use]
+    #[expect(clippy::arithmetic_side_effects, reason = "of floats in range")]
+    pub fn options(&self) -> DistributionOptions {
+        let usual = DistributionOptions { fall_speed: self.fall_speed, air: self.air, ..Default::default() };
+        match self.one_diameter {
+            None => usual,
+            Some(diameter) => {
+                let half = (diameter * ONE_SHARE).max(ONE_LEAST_M);
+                DistributionOptions {
+                    smallest_diameter_m: diameter - half,
+                    largest_diameter_m: diameter + half,
+                    ..usual
+                }
+            }
+        }
+    }
+
+    /// The sizes of the drops, and how many there are.
+    ///
+    /// # Errors
+    /// [`DropError`] for a rain that is none.
+    pub fn sizes(&self) -> Result<DropSizeDistribution, DropError> {
+        DropSizeDistribution::with_options(self.law, self.rate_mm_h, &self.options())
+    }
+
     pub(super) fn checked(table: &RainTable, places: &Places<'_>) -> Result<Self, SceneError> {
         let default = Self::default();
         let rate_mm_h = table.rate_mm_h.map_or(default.rate_mm_h, |rate| rate.0);
@@ -280,7 +370,9 @@ impl Rain {
                 }
             }
         }
-        let volume = table.volume.unwrap_or_default();
+        // Drops that are counted are counted in a box.
+        let usual = if table.drops.is_some() { RainVolume::Box } else { RainVolume::default() };
+        let volume = table.volume.unwrap_or(usual);
         let boxed = matches!(volume, RainVolume::Box | RainVolume::Tariq2007);
         for (key, given, of, allowed) in [
             ("rain.box_m", table.box_m.is_some(), boxed, "volume = \"box\" or \"tariq-2007\""),
@@ -295,11 +387,13 @@ impl Rain {
                 return Err(places.bad(key, "a part of another volume", allowed));
             }
         }
-        Ok(Self {
+        let rain = Self {
             rate_mm_h,
             law,
             seed: table.seed.unwrap_or(default.seed),
             air,
+            fall_speed: table.fall_speed.map_or(default.fall_speed, FallSpeedModel::from),
+            one_diameter: table.drops.map(|drops| drops.diameter_mm.0 * 1.0e-3),
             volume,
             box_m: table.box_m.map(|side| side.0),
             cylinder: table.cylinder.map_or(default.cylinder, |cylinder| cylinder.checked()),
@@ -308,7 +402,52 @@ impl Rain {
             bounce: table.bounce.map_or(default.bounce, |bounce| bounce.checked()),
             drop_light: table.drop_light.unwrap_or_default(),
             extinction: table.extinction.unwrap_or_default(),
-        })
+        };
+        match table.drops {
+            None => Ok(rain),
+            Some(drops) => rain.counted(table, drops.count.0, places),
+        }
+    }
+
+    /// The rain with the rate at which so many drops of its one size are in its volume, on average.
+    #[expect(clippy::arithmetic_side_effects, reason = "of floats in range")]
+    fn counted(self, table: &RainTable, count: u32, places: &Places<'_>) -> Result<Self, SceneError> {
+        let allowed = "one or the other";
+        for (key, given) in [
+            ("rain.rate_mm_h", table.rate_mm_h.is_some()),
+            ("rain.distribution", table.distribution.is_some()),
+        ] {
+            if given {
+                return Err(places.bad(key, "a rain that is counted by rain.drops", allowed));
+            }
+        }
+        let side = self.box_m.unwrap_or(RAIN_BOX_M);
+        let volume = match self.volume {
+            RainVolume::Box | RainVolume::Tariq2007 => side * side * side,
+            RainVolume::CreusPatow2013 => {
+                std::f64::consts::PI
+                    * self.cylinder.radius_m
+                    * self.cylinder.radius_m
+                    * self.cylinder.height_m
+            }
+            _ => {
+                let allowed = "volume = \"box\", \"tariq-2007\" or \"creus-patow-2013\"";
+                return Err(places.bad("rain.drops", "drops that are counted in no volume", allowed));
+            }
+        };
+        if count > self.most_drops {
+            let found = format!("{count} drops, more than rain.most_drops = {}", self.most_drops);
+            return Err(places.bad("rain.drops.count", found, "1 to rain.most_drops"));
+        }
+        // The number goes with the rate.
+        let bad = |error: DropError| places.bad("rain.drops", error.to_string(), "drops of the laws of fall");
+        let of_one = Self { rate_mm_h: 1.0, ..self }.sizes().map_err(bad)?;
+        let rate_mm_h = f64::from(count) / (of_one.number_density() * volume);
+        if !(LIGHTEST..=HEAVIEST_MM_H).contains(&rate_mm_h) {
+            let found = format!("{count} drops in {volume:.4} m^3 are {rate_mm_h:.4} mm/h");
+            return Err(places.bad("rain.drops.count", found, "drops of 0.001 to 500 mm/h"));
+        }
+        Ok(Self { rate_mm_h, ..self })
     }
 }
 

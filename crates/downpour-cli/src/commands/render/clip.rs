@@ -11,6 +11,7 @@ use std::fs;
 use std::time::Instant;
 
 use downpour::render::picture::Picture;
+use downpour::render::shower::{MovingScenery, Scenery, Still};
 use downpour::render::stage::{LATEST_S, Stage};
 use serde_json::Value;
 
@@ -24,7 +25,7 @@ use super::pane::Pane;
 use super::places::Places;
 use super::progress::Progress;
 use super::report::{self, Told};
-use super::shower::Showers;
+use super::shower::{Ask, Showers};
 use super::{RenderArguments, reserve};
 use crate::commands::input::Input;
 use crate::failure::{Failure, INPUT};
@@ -156,7 +157,7 @@ impl Clip<'_> {
             } else {
                 // What comes later begins where this frame ends.
                 surfaces.puddles.pass(time_s(self.arguments.input.time, number, self.fps))?;
-                if !showers.is_closed_form() {
+                if !showers.can_seek() {
                     self.pass_frame(number, showers)?;
                 }
             }
@@ -207,7 +208,7 @@ impl Clip<'_> {
         let time_s = time_s(self.arguments.input.time, number, self.fps);
         let stage = puddles.lay(self.stage(number, time_s)?, time_s)?;
         let stage = &*pane.hang(stage, time_s)?;
-        let shower = showers.at(stage, time_s, self.places.stats.is_some())?;
+        let shower = showers.at(self.scenery().as_ref(), stage, time_s, &self.ask(true))?;
         let options = self.arguments.options(stage, &self.input.weather, time_s, shower.medium);
         let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
         let through = pane.before(stage, &picture, &options)?;
@@ -236,7 +237,20 @@ impl Clip<'_> {
     fn pass_frame(&self, number: u32, showers: &mut Showers) -> Result<(), Failure> {
         let time_s = time_s(self.arguments.input.time, number, self.fps);
         let stage = self.stage(number, time_s)?;
-        showers.at(&stage, time_s, false).map(|_| ())
+        showers.at(self.scenery().as_ref(), &stage, time_s, &self.ask(false)).map(|_| ())
+    }
+
+    fn ask(&self, made: bool) -> Ask {
+        Ask { measure: made && self.places.stats.is_some(), quiet: self.arguments.quiet }
+    }
+
+    /// The scene over time, as the rain asks for it between frames.
+    fn scenery(&self) -> Box<dyn Scenery + '_> {
+        if !self.moving {
+            return Box::new(Still(&self.first));
+        }
+        let Input { weather, loaded, .. } = &self.input;
+        Box::new(MovingScenery { weather, loaded })
     }
 
     /// The scene at a frame.

@@ -27,6 +27,12 @@ impl Progress {
         self.show();
     }
 
+    /// So many are done.
+    pub(super) fn set(&mut self, done: u32) {
+        self.done = done;
+        self.show();
+    }
+
     fn show(&self) {
         if self.shown {
             let text = line(self.what, self.done, self.total, self.begin.elapsed().as_secs_f64());

@@ -2,11 +2,12 @@
 
 use downpour::mask::atlas::StreakAtlas;
 use downpour::render::rain::{DropMasks, RainMedium};
-use downpour::render::shower::{self, Shower};
+use downpour::render::shower::{self, Scenery, Shower};
 use downpour::render::stage::Stage;
 use downpour::scene::weather::Weather;
 use downpour::sim::field::VisibleDrops;
 
+use super::progress::Progress;
 use crate::failure::Failure;
 
 /// The rain of a picture.
@@ -17,6 +18,17 @@ pub(super) struct Seen {
     /// Measured for those alone who are told of it.
     pub(super) measured_rate_mm_h: Option<f64>,
 }
+
+/// How a rain is asked for.
+pub(super) struct Ask {
+    /// Whether its rate is to be measured.
+    pub(super) measure: bool,
+    /// Whether nothing is said of how far it is.
+    pub(super) quiet: bool,
+}
+
+/// Steps from which on somebody waits.
+const LONG_STEPS: u32 = 120;
 
 /// A rain, from picture to picture, and what its drops do to light.
 pub(super) struct Showers {
@@ -32,15 +44,28 @@ impl Showers {
     }
 
     /// Whether any picture can be made without those before it.
-    pub(super) fn is_closed_form(&self) -> bool {
-        self.shower.is_closed_form()
+    pub(super) fn can_seek(&self) -> bool {
+        self.shower.can_seek()
     }
 
-    /// The drops that a picture can show at a time in seconds.
-    pub(super) fn at(&mut self, stage: &Stage, time_s: f64, measure: bool) -> Result<Seen, Failure> {
-        let visible = self.shower.at(stage, time_s)?;
+    /// The drops that a picture can show at a time in seconds. Who waits for long is told how far the rain is.
+    pub(super) fn at(
+        &mut self,
+        scenery: &dyn Scenery,
+        stage: &Stage,
+        time_s: f64,
+        ask: &Ask,
+    ) -> Result<Seen, Failure> {
+        let mut progress: Option<Progress> = None;
+        let visible = self.shower.at(scenery, stage, time_s, &mut |done, all| {
+            if all >= LONG_STEPS {
+                let progress = progress.get_or_insert_with(|| Progress::new("rain: step", all, ask.quiet));
+                progress.set(done);
+            }
+        })?;
+        drop(progress);
         let measured = || self.shower.measured_rate_mm_h(stage, time_s);
         let medium = self.shower.medium(stage, &visible, &self.masks, time_s)?;
-        Ok(Seen { visible, medium, measured_rate_mm_h: measure.then(measured).transpose()? })
+        Ok(Seen { visible, medium, measured_rate_mm_h: ask.measure.then(measured).transpose()? })
     }
 }

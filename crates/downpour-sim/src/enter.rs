@@ -1,0 +1,126 @@
+//! Drops that come into a frustum: candidates in thin regions about its planes and its ball, as many as the rain has there,
+//! each moved by a step as any drop and kept if it arrives. Twin of `shaders/wgsl/sim/enter.wgsl`.
+//!
+//! A region's candidates are uniform between two distances from its plane and in a trapezoid along it, or between two radii
+//! of the ball and in a cone of directions. The first limit that a candidate violates before the step has to be that of its
+//! region: no part of space is filled twice.
+
+use bytemuck::{Pod, Zeroable};
+use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::sim::enter::{ENTER_DRAW, ENTER_SIZES, ENTER_UNIT};
+use downpour_shaders::sim::step::{STEP_COUNT, STEP_FALLING, STEP_GONE, VOLUME_BALL, VOLUME_PLANES};
+use glam::{Vec3, Vec3Swizzles as _, Vec4, Vec4Swizzles as _};
+
+use crate::motion::motion_diameter;
+use crate::step::{StepDrop, StepMade, StepWorld, step_word};
+use crate::volume::volume_limit;
+
+/// A part of space that candidates of a bin of sizes come from. The same layout as `EnterRegion` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct EnterRegion {
+    /// The plane, or `VOLUME_BALL`.
+    pub face: u32,
+    /// The bin.
+    pub bin: u32,
+    /// Number of its first candidate among all.
+    pub first: u32,
+    /// Number of its first candidate among those of its bin.
+    pub first_of_bin: u32,
+    /// Least distance from the plane, or radius, m.
+    pub low: f32,
+    /// Largest distance from the plane, or radius, m.
+    pub high: f32,
+    /// Beginning along the tangent, m.
+    pub begin: f32,
+    /// End along the tangent, m.
+    pub end: f32,
+    /// Growth of half the width per m along the tangent. Of the ball 1 - cos of the cone's half angle.
+    pub slope: f32,
+    /// Half the width at the eye, m.
+    pub width: f32,
+    /// Middle across, m.
+    pub middle: f32,
+    /// Padding of the WGSL layout.
+    pub unused: u32,
+}
+
+/// Diameter in 16 bits between two quantiles.
+#[must_use]
+pub fn enter_code(lower: f32, upper: f32, share: f32) -> u32 {
+    (lower + (upper - lower) * share + 0.5) as u32
+}
+
+/// A number in [0, 1) of the low bits of three words, which [`rng_unit`] leaves out.
+#[must_use]
+pub fn enter_chance([x, y, z, _]: [u32; 4]) -> f32 {
+    (x & 255 | (y & 255) << 8 | (z & 255) << 16) as f32 * ENTER_UNIT
+}
+
+/// Offset from the eye of a candidate, and 1; 0 for one that is none. `normal` and `tangent` are those of the plane, of the
+/// ball those of the back.
+#[must_use]
+pub fn enter_offset(region: &EnterRegion, normal: Vec3, tangent: Vec3, random: Vec3, chance: f32) -> Vec4 {
+    let across = normal.cross(tangent);
+    let distance = region.low + (region.high - region.low) * random.x;
+    if region.face == VOLUME_BALL {
+        let disc = 2.0 * random.yz() - 1.0;
+        let square = disc.dot(disc);
+        let lean = square * region.slope;
+        let aside = disc * (region.slope * (2.0 - lean).max(0.0)).sqrt();
+        let direction = tangent * aside.x + across * aside.y - normal * (1.0 - lean);
+        let there = square <= 1.0 && chance * region.high * region.high <= distance * distance;
+        return (direction * distance).extend(if there { 1.0 } else { 0.0 });
+    }
+    // The density along the tangent grows with the width.
+    let near = region.width + region.slope * region.begin;
+    let far = region.width + region.slope * region.end;
+    let root = (near * near + random.y * (far * far - near * near)).max(0.0).sqrt();
+    let share = random.y * (near + far) / (near + root).max(1.0e-12);
+    let along = region.begin + (region.end - region.begin) * share;
+    let aside = region.middle + (region.width + region.slope * along) * (2.0 * random.z - 1.0);
+    (normal * distance + tangent * along + across * aside).extend(1.0)
+}
+
+impl StepWorld<'_> {
+    /// The drop that a candidate of a region becomes, if it comes in.
+    #[must_use]
+    pub fn enter_drop(&self, region: &EnterRegion, number: u32) -> Option<StepMade> {
+        let frame = self.frame;
+        let dimension = ENTER_DRAW + region.bin * (VOLUME_BALL + 1) + region.face;
+        let words = rng_draw(frame.seed, number, frame.step, dimension);
+        let [x, y, z, w] = words.map(rng_unit);
+        let position = w * (ENTER_SIZES - 1) as f32;
+        let sizes = self.sizes.get(region.bin as usize)?;
+        let size = |entry: usize| sizes.get(entry).copied().unwrap_or(0.0);
+        let entry = position as usize;
+        let bits = enter_code(size(entry), size(entry + 1), position - position.floor());
+        let plane = region.face.min(VOLUME_PLANES - 1) as usize;
+        let normal = Vec4::from(frame.frustum_before.planes[plane]).xyz();
+        let tangent = Vec4::from(frame.tangents[plane]).xyz();
+        let offset = enter_offset(region, normal, tangent, Vec3::new(x, y, z), enter_chance(words));
+        if offset.w == 0.0 {
+            return None;
+        }
+        let diameter = motion_diameter(bits);
+        let speed = self.step_speed(diameter);
+        if volume_limit(&frame.frustum_before, offset.xyz(), diameter, speed) != region.face {
+            return None;
+        }
+        // Where it will be in the middle of the horizon, and where it is.
+        let ahead = Vec3::from(frame.frustum_before.eye) + offset.xyz();
+        let velocity = self.step_coming(ahead, speed);
+        let place = ahead - velocity * frame.frustum_before.half_horizon;
+        if self.map.is_some_and(|map| !map.open(place)) {
+            return None;
+        }
+        let count = region.first_of_bin.wrapping_add(number) & STEP_COUNT;
+        let made = self.step_view(&StepDrop {
+            place: place.to_array(),
+            word: step_word(bits, STEP_FALLING, count),
+            velocity: velocity.to_array(),
+            last: frame.step,
+        });
+        (made.drop.kind() != STEP_GONE || made.event.is_some() || made.caught.is_some()).then_some(made)
+    }
+}

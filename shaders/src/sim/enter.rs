@@ -1,0 +1,40 @@
+//! Drops that come into a frustum.
+
+use super::step::STEP;
+use crate::{Kernel, Module};
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&ENTER_CONSTANTS, &ENTER];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&ENTER_KERNEL];
+
+shared_constants! {
+    /// Constants of what comes in.
+    ENTER_CONSTANTS at "sim/enter_constants" {
+        /// Quantiles of the diameters of a bin.
+        ENTER_SIZES: u32 = 9;
+        /// Words of a region in the tables.
+        ENTER_REGION_WORDS: u32 = 12;
+        /// Steps of a binary search: 2^16 regions.
+        ENTER_SEARCH: u32 = 16;
+        /// Slots that are tried for a drop.
+        ENTER_TRIES: u32 = 64;
+        /// First dimension of the random numbers of candidates: one of each bin and face.
+        ENTER_DRAW: u32 = 16384;
+        /// First dimension of the random numbers of slots, a try each.
+        ENTER_SLOT: u32 = 12288;
+        /// 2^-24.
+        ENTER_UNIT: f32 = 5.9604645e-8;
+    }
+}
+
+/// What comes in. Twin: `downpour_sim::enter`.
+pub static ENTER: Module = Module {
+    path: "sim/enter.wgsl",
+    wgsl: include_str!("../../wgsl/sim/enter.wgsl"),
+    uses: &[&ENTER_CONSTANTS, &STEP],
+};
+
+/// One invocation per candidate.
+pub static ENTER_KERNEL: Kernel = Kernel { entry: "main_enter", module: &ENTER, workgroup: [256, 1, 1] };
