@@ -104,7 +104,7 @@ pub(crate) fn check() -> Result<(), String> {
         match std::fs::read(folder.join(name)) {
             Ok(kept) if kept == *bytes => {}
             Ok(kept) => {
-                wrong.push(format!("{name}: differs ({} bytes kept, {} made)", kept.len(), bytes.len()))
+                wrong.push(format!("{name}: differs ({} bytes kept, {} made)", kept.len(), bytes.len()));
             }
             Err(error) => wrong.push(format!("{name}: {error}")),
         }

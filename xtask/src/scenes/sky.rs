@@ -2,7 +2,7 @@
 //!
 //! Luminance and chromaticity are each `F(theta, gamma) / F(0, theta_s)` times that of the zenith with Perez' distribution
 //! `F = (1 + A exp(B / cos theta)) (1 + C exp(D gamma) + E cos^2 gamma)` (their equation 3); theta is the angle from the zenith, gamma that
-//! from the sun, theta_s the sun's angle from the zenith. Coefficients and zenith values are those of their appendix A.2. Valid for
+//! from the sun, `theta_s` the sun's angle from the zenith. Coefficients and zenith values are those of their appendix A.2. Valid for
 //! turbidity 2 to 6 and a sun above the horizon. Their zenith makes the sky about twice as bright as measured ones are; only its
 //! distribution and colors are used.
 //!
@@ -31,7 +31,7 @@ const PEREZ: [[[f64; 2]; 5]; 3] = [
     [[-0.0193, -0.2592], [-0.0665, 0.0008], [-0.0004, 0.2125], [-0.0641, -0.8989], [-0.0033, 0.0452]],
     [[-0.0167, -0.2608], [-0.0950, 0.0092], [-0.0079, 0.2102], [-0.0441, -1.6537], [-0.0109, 0.0529]],
 ];
-/// Chromaticity of the zenith: for each power of the turbidity from 2 to 0, factors of powers of theta_s from 3 to 0.
+/// Chromaticity of the zenith: for each power of the turbidity from 2 to 0, factors of powers of `theta_s` from 3 to 0.
 const ZENITH: [[[f64; 4]; 3]; 2] = [
     [
         [0.00166, -0.00375, 0.00209, 0.0],

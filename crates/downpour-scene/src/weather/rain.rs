@@ -317,7 +317,6 @@ enum Distribution {
 impl Rain {
     /// Which drops there are, and how fast they fall.
     #[must_use]
-    #[expect(clippy::arithmetic_side_effects, reason = "of floats in range")]
     pub fn options(&self) -> DistributionOptions {
         let usual = DistributionOptions { fall_speed: self.fall_speed, air: self.air, ..Default::default() };
         match self.one_diameter {
@@ -410,7 +409,6 @@ impl Rain {
     }
 
     /// The rain with the rate at which so many drops of its one size are in its volume, on average.
-    #[expect(clippy::arithmetic_side_effects, reason = "of floats in range")]
     fn counted(self, table: &RainTable, count: u32, places: &Places<'_>) -> Result<Self, SceneError> {
         let allowed = "one or the other";
         for (key, given) in [

@@ -90,7 +90,7 @@ pub(super) fn leaf(house: &House, x: f32, mesh: &mut Mesh) {
     );
     mesh.block(brass, [middle - 0.11, low + 0.83, z + 0.03], [0.22, 0.045, 0.015]);
     let light = Opening { x: [l, r], y: [low + LEAF_M + 0.08, top - 0.06], is_window: true };
-    window::glaze(mesh, house.seed % 3 == 0, 5, &light, z + 0.01);
+    window::glaze(mesh, house.seed.is_multiple_of(3), 5, &light, z + 0.01);
     mesh.cuboid(
         frame,
         Vec3::new(x - 0.012, low + LEAF_M + 0.08, z),

@@ -233,5 +233,5 @@ fn room(mesh: &mut Mesh, seed: u32, [left, right]: [f32; 2], low: f32, lamps: &m
         intensity_cd: 240.0,
         range_m: 8.0,
     });
-    debug_assert!(ROOM_M < DEPTH_M);
+    const { assert!(ROOM_M < DEPTH_M) };
 }
