@@ -11,7 +11,7 @@ pub(crate) fn photographs_of_skies() {
         ("potsdamer_platz_1k.hdr", None),
         ("dikhololo_night_1k.hdr", None),
     ] {
-        let mut sky = read_sky(&folder("hdr").join(file), &mut Budget::default()).unwrap();
+        let mut sky = read_sky(&folder("hdr").join(file), &mut Budget::default()).expect(file);
         assert_eq!((sky.width, sky.height), (1024, 512));
         let before = sky.mean_radiance();
         let sun = sky.extract_sun(SUN_THRESHOLD);
@@ -20,7 +20,7 @@ pub(crate) fn photographs_of_skies() {
         println!("{file}: mean {before:?}, {share:.3} of green in {sun:?}");
         if let Some(expected) = sun_share {
             assert!(expected.contains(&share), "{file}: {share}");
-            let sun = sun.unwrap();
+            let sun = sun.expect("a sun in the park");
             assert!(sun.direction[1] > 0.1 && sun.angular_radius < 0.03, "{sun:?}");
         }
         if let Some(sun) = sun {
