@@ -1,8 +1,8 @@
 //! Pixels by rays: of the picture, and of the capture of the surroundings. Twin of `shaders/wgsl/render/trace.wgsl`.
 //!
 //! Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others
-//! are taken to do so too. [`skylight`](crate::skylight) takes means of what neighbouring pixels have found of the
-//! sky's light.
+//! are taken to do so too. [`skylight`](crate::skylight) takes means of what neighbouring pixels have found of the light of
+//! sky and surfaces.
 
 use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm};
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE};
@@ -10,22 +10,33 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::rain::capture::{capture_direction, capture_suns};
-use crate::scene::{ScenePath, SceneView, scene_lattice};
+use crate::path::{ViewPath, path_lattice, path_most};
+use crate::scene::SceneView;
 
-/// What a pixel has found of the sky's light, for the filter. The same layout as `TraceGather` in WGSL.
+/// Light that a pixel's surface has of sky and other surfaces, for the filter. The same layout as `TraceGather` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TraceGather {
-    /// Light of the sky over pi, and the share of the sky that is seen: means of the samples that have met a surface.
-    pub sky: [f32; 4],
+    /// On the diffuse base, over pi: the mean of the samples that have met a surface.
+    pub sky: [f32; 3],
+    /// Roughness of the gloss.
+    pub roughness: f32,
     /// What it is multiplied with.
     pub body: [f32; 3],
     /// Share of the samples that have met a surface.
     pub met: f32,
-    /// What the square of the open share is multiplied with.
+    /// In the gloss.
+    pub mirror: [f32; 3],
+    /// The direction that a mirror would show, octahedral, 16 bits each.
+    pub mirrored: u32,
+    /// What it is multiplied with.
     pub gloss: [f32; 3],
     /// The normal, octahedral, 16 bits each.
     pub normal: u32,
+    /// The place.
+    pub place: [f32; 3],
+    /// How far from its plane another place may be.
+    pub slack: f32,
 }
 
 impl SceneView<'_> {
@@ -37,17 +48,19 @@ impl SceneView<'_> {
         self.scene_direction(x, y)
     }
 
-    /// A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the sky's light on surfaces
-    /// is left out; it is the second of the two.
+    /// A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and
+    /// surfaces on the first surface is left out; it is the second of the two.
     #[must_use]
     pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceGather) {
         let is_picture = self.frame.projection == SCENE_PICTURE;
         let (mut sum, mut nearest) = (Vec3::ZERO, SCENE_FAR);
-        let (mut body, mut gloss, mut normal) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        let (mut sky, mut met) = (Vec4::ZERO, 0.0);
+        let (mut body, mut gloss, mut sky, mut mirror) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+        let (mut normal, mut mirrored, mut roughness) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+        let (mut met, mut glossy) = (0.0, 0.0);
+        let (mut place_shown, mut slack) = (Vec3::ZERO, 0.0);
         let n = self.frame.grid;
         let eye = Vec3::from(self.frame.eye);
-        let mut last = ScenePath::NOTHING;
+        let mut last = ViewPath::NOTHING;
         let mut count = 0u16;
         for k in 0..n * n {
             // First the opposite corners.
@@ -59,14 +72,22 @@ impl SceneView<'_> {
             let dx = ((place % n) as f32 + 0.5) / n as f32;
             let dy = ((place / n) as f32 + 0.5) / n as f32;
             let direction = self.trace_direction(x as f32 + dx, y as f32 + dy);
-            let random = scene_lattice(self.frame.seed, x, y, place);
-            let path = self.scene_path(eye, direction, self.frame.pixel_angle, random, &last);
-            sum += if is_picture { path.radiance } else { path.scene_radiance() };
+            let random = path_lattice(self.frame.seed, x, y, place);
+            let path = self.path_trace(eye, direction, self.frame.pixel_angle, random, &last);
+            sum += if is_picture { path.radiance } else { path.path_radiance() };
             body += path.body;
             gloss += path.gloss;
             sky += path.sky * path.met;
-            normal += path.normal * path.met;
+            let weight = path_most(path.gloss);
+            normal += path.normal * path.met.max(weight);
+            if slack == 0.0 && path.met.max(weight) > 0.0 {
+                (place_shown, slack) = (path.shown, path.slack);
+            }
             met += path.met;
+            mirror += path.mirror * weight;
+            mirrored += path.mirrored * weight;
+            roughness += path.roughness * weight;
+            glossy += weight;
             nearest = nearest.min(path.distance);
             count += 1;
             let both_sky = path.distance >= SCENE_FAR && last.distance >= SCENE_FAR;
@@ -80,12 +101,20 @@ impl SceneView<'_> {
             let radiance = sum * share + capture_suns(self, x, y);
             return (radiance.extend(nearest), TraceGather::default());
         }
+        let per_met = 1.0 / met.max(1.0);
+        let per_gloss = 1.0 / glossy.max(1.0e-6);
+        let packed = |direction: Vec3| packing_pack_snorm(packing_octahedral_encode(direction.to_array()));
         let gather = TraceGather {
-            sky: (sky / met.max(1.0)).to_array(),
+            sky: (sky * per_met).to_array(),
+            roughness: roughness * per_gloss,
             body: (body * share).to_array(),
             met: met * share,
+            mirror: (mirror * per_gloss).to_array(),
+            mirrored: packed(mirrored),
             gloss: (gloss * share).to_array(),
-            normal: packing_pack_snorm(packing_octahedral_encode(normal.to_array())),
+            normal: packed(normal),
+            place: place_shown.to_array(),
+            slack,
         };
         ((sum * share).extend(nearest), gather)
     }
@@ -103,7 +132,7 @@ impl SceneView<'_> {
                 })
             })
             .unzip();
-        let shown = self.skylight(&picture, &gather);
+        let shown = self.skylight(&gather);
         for (pixel, shown) in picture.iter_mut().zip(shown) {
             for k in 0..3 {
                 pixel[k] += shown[k];

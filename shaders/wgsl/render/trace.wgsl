@@ -1,25 +1,35 @@
 // Pixels by rays: of the picture, and of the capture of the surroundings. Both are one kernel, since a software driver
 // compiles the walk through the scene anew for each.
 // Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others are
-// taken to do so too. The sky's light on surfaces leaves the picture's kernel as what one pixel has found of it;
-// skylight.wgsl takes means over neighbours.
+// taken to do so too. Light of sky and surfaces on the first surface leaves the picture's kernel as what one pixel has found
+// of it; skylight.wgsl takes means over neighbours.
 // Twin: downpour_render::trace.
 
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> trace_gather: array<TraceGather>;
 
-// What a pixel has found of the sky's light, for the filter.
+// Light that a pixel's surface has of sky and other surfaces, for the filter.
 struct TraceGather {
-    // Light of the sky over pi, and the share of the sky that is seen: means of the samples that have met a surface.
-    sky: vec4f,
+    // On the diffuse base, over pi: the mean of the samples that have met a surface.
+    sky: vec3f,
+    // Roughness of the gloss.
+    roughness: f32,
     // What it is multiplied with.
     body: vec3f,
     // Share of the samples that have met a surface.
     met: f32,
-    // What the square of the open share is multiplied with.
+    // In the gloss.
+    mirror: vec3f,
+    // The direction that a mirror would show, octahedral, 16 bits each.
+    mirrored: u32,
+    // What it is multiplied with.
     gloss: vec3f,
     // The normal, octahedral, 16 bits each.
     normal: u32,
+    // The place.
+    place: vec3f,
+    // How far from its plane another place may be.
+    slack: f32,
 }
 
 // The direction of a place of the picture or of the capture, in pixels from the top left.
@@ -37,12 +47,18 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
     var sum = vec3f(0.0);
     var body = vec3f(0.0);
     var gloss = vec3f(0.0);
-    var sky = vec4f(0.0);
+    var sky = vec3f(0.0);
+    var mirror = vec3f(0.0);
     var normal = vec3f(0.0);
+    var mirrored = vec3f(0.0);
+    var roughness = 0.0;
     var met = 0.0;
+    var glossy = 0.0;
+    var place_shown = vec3f(0.0);
+    var slack = 0.0;
     var nearest = SCENE_FAR;
     let n = render_frame.grid;
-    var last = scene_nothing();
+    var last = path_nothing();
     var count = 0u;
     for (var k = 0u; k < n * n; k += 1u) {
         // First the opposite corners.
@@ -50,17 +66,26 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
         let dx = (f32(place % n) + 0.5) / f32(n);
         let dy = (f32(place / n) + 0.5) / f32(n);
         let direction = trace_direction(f32(x) + dx, f32(y) + dy);
-        let path = scene_path(render_frame.eye, direction, render_frame.pixel_angle, scene_lattice(x, y, place), last);
+        let path = path_trace(render_frame.eye, direction, render_frame.pixel_angle, path_lattice(x, y, place), last);
         if is_picture {
             sum += path.radiance;
         } else {
-            sum += scene_radiance(path);
+            sum += path_radiance(path);
         }
         body += path.body;
         gloss += path.gloss;
         sky += path.sky * path.met;
-        normal += path.normal * path.met;
+        let weight = path_most(path.gloss);
+        normal += path.normal * max(path.met, weight);
+        if slack == 0.0 && max(path.met, weight) > 0.0 {
+            place_shown = path.shown;
+            slack = path.slack;
+        }
         met += path.met;
+        mirror += path.mirror * weight;
+        mirrored += path.mirrored * weight;
+        roughness += path.roughness * weight;
+        glossy += weight;
         nearest = min(nearest, path.distance);
         count += 1u;
         let both_sky = path.distance >= SCENE_FAR && last.distance >= SCENE_FAR;
@@ -71,9 +96,13 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
     }
     let share = 1.0 / f32(count);
     if is_picture {
-        let packed = pack2x16snorm(packing_octahedral_encode(normal));
-        trace_gather[y * render_frame.width + x] =
-            TraceGather(sky / max(met, 1.0), body * share, met * share, gloss * share, packed);
+        let per_met = 1.0 / max(met, 1.0);
+        let per_gloss = 1.0 / max(glossy, 1.0e-6);
+        trace_gather[y * render_frame.width + x] = TraceGather(
+            sky * per_met, roughness * per_gloss, body * share, met * share, mirror * per_gloss,
+            pack2x16snorm(packing_octahedral_encode(mirrored)), gloss * share,
+            pack2x16snorm(packing_octahedral_encode(normal)), place_shown, slack,
+        );
         return vec4f(sum * share, nearest);
     }
     return vec4f(sum * share + capture_suns(x, y), nearest);

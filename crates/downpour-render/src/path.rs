@@ -1,0 +1,468 @@
+//! What a ray of the camera sees: surfaces, water, and the light that comes to them from lamps, sky and one another. Twin of
+//! `shaders/wgsl/render/path.wgsl`.
+//!
+//! Both sides trace the same rays through the same hierarchy and filter the same texels, so a machine without a driver
+//! makes the same picture. For a ray:
+//!
+//! - the nearest surface; see-through ones are passed, at most twelve;
+//! - the water of a puddle before it: what it mirrors, and what lies beneath, lit through the water
+//!   ([`puddle`](crate::puddle));
+//! - direct light: each lamp and the sun, with a ray that dims at see-through surfaces ([`scene`](crate::scene));
+//! - light of the sky and of other surfaces: rays that are drawn for the diffuse base and for the gloss
+//!   ([`scatter`](crate::scatter)). Such a ray finds the sky at the level of its own width, or a surface, which has light of
+//!   its own: of one lamp drawn for all, and of the next ray. At most `PATH_BOUNCES` follow each other, and fewer where
+//!   surfaces are dark: each goes on with the probability of its albedo. The light that falls on the last surface is taken to
+//!   be the mean of what the path has met, and a fifth of the open sky's.
+//!
+//! [`skylight`](crate::skylight) takes means of this light over neighbouring pixels, but for that of mirrors.
+//!
+//! Limits: what a diffuse base finds reflects diffusely (no caustics); things that shine light up others only where
+//! there are no lamps, which else stand for them; rays that look for light do not see the water of puddles.
+
+mod draw;
+mod plan;
+
+use downpour_math::ops;
+use downpour_shaders::bvh::BVH_FAR;
+use downpour_shaders::render::path::{
+    PATH_BOUNCES, PATH_CURVED, PATH_GLANCE, PATH_LATER_SHARE, PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS,
+    PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SHINES,
+};
+use downpour_shaders::render::puddle_water::{
+    PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED, PUDDLE_WATER_ROWS,
+};
+use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LAYERS, SCENE_NONE, SCENE_UNLIT, SKYLIGHT_SLACK};
+use glam::{Vec2, Vec3, Vec4};
+
+use crate::puddle::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
+use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
+use crate::scene::SceneView;
+use crate::surface::Surface;
+pub use draw::{path_lattice, path_numbers};
+use draw::{path_onward, path_replaced, path_water_ray};
+pub(crate) use plan::path_most;
+use plan::{PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface};
+
+/// What a ray of the camera finds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ViewPath {
+    /// All light but that which is told apart below.
+    pub(crate) radiance: Vec3,
+    /// Distance of the first surface (`SCENE_FAR` for the sky).
+    pub(crate) distance: f32,
+    /// Factor of the light on the diffuse base.
+    pub(crate) body: Vec3,
+    /// 1 if there is a surface whose light is told apart.
+    pub(crate) met: f32,
+    /// Factor of the light that the gloss shows.
+    pub(crate) gloss: Vec3,
+    pub(crate) material: u32,
+    /// Light of sky and surfaces on the diffuse base, over pi.
+    pub(crate) sky: Vec3,
+    /// Roughness of the gloss.
+    pub(crate) roughness: f32,
+    /// Light that the gloss shows.
+    pub(crate) mirror: Vec3,
+    /// Whether it is what the sample before has seen.
+    pub(crate) again: bool,
+    pub(crate) normal: Vec3,
+    /// Whether what it shows is the same over a pixel: no mirror.
+    pub(crate) plain: bool,
+    pub(crate) facet: Vec3,
+    /// Half the width of what counts as one plane where means are taken.
+    pub(crate) slack: f32,
+    pub(crate) place: Vec3,
+    /// What stands for `place` where means are taken.
+    pub(crate) shown: Vec3,
+    /// The direction that a mirror in place of the gloss would show.
+    pub(crate) mirrored: Vec3,
+}
+
+impl ViewPath {
+    /// A path that has found nothing.
+    pub(crate) const NOTHING: Self = Self {
+        radiance: Vec3::ZERO,
+        distance: SCENE_FAR,
+        body: Vec3::ZERO,
+        met: 0.0,
+        gloss: Vec3::ZERO,
+        material: SCENE_NONE,
+        sky: Vec3::ZERO,
+        roughness: 0.0,
+        mirror: Vec3::ZERO,
+        again: false,
+        normal: Vec3::ZERO,
+        plain: true,
+        facet: Vec3::ZERO,
+        slack: 0.0,
+        place: Vec3::ZERO,
+        shown: Vec3::ZERO,
+        mirrored: Vec3::ZERO,
+    };
+
+    /// All that a path has seen.
+    pub(crate) fn path_radiance(&self) -> Vec3 {
+        self.radiance + self.body * self.sky + self.gloss * self.mirror
+    }
+}
+
+/// Light that rays have found for a surface.
+#[derive(Clone, Copy, Debug)]
+struct PathLight {
+    /// On its diffuse base, over pi, or on that of what it mirrors.
+    base: Vec3,
+    /// In its gloss.
+    mirror: Vec3,
+    /// Fraction that water mirrors.
+    mirrored: f32,
+    /// What a mirror shows, its distance, and the weight of its light.
+    shown: Option<(Surface, f32, Vec3)>,
+}
+
+/// Water that a ray has come through.
+#[derive(Clone, Copy, Debug)]
+struct PathWater {
+    /// What was found of it.
+    found: PuddleWater,
+    /// Slopes of its surface, and their variance.
+    ripple: Vec3,
+    /// Height of its surface.
+    level: f32,
+    /// Fraction of the light of what lies beneath that it lets through.
+    clear: f32,
+    /// Albedo of the water itself.
+    murk: Vec3,
+}
+
+/// A surface that a ray of the camera has met.
+#[derive(Clone, Copy, Debug)]
+struct PathMeeting {
+    surface: Surface,
+    direct: Vec3,
+    plan: PathPlan,
+    /// Whether means over neighbouring pixels are taken of its light.
+    told: bool,
+}
+
+/// Whether a surface is the same where another sample of the pixel has met it.
+fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, place: Vec3, distance: f32) -> bool {
+    last.met > 0.0
+        && last.plain
+        && last.material == material
+        && last.facet.dot(facet) > PATH_SAME_FACET
+        && last.facet.dot(place - last.place).abs() < PATH_SAME_PLANE * distance
+}
+
+impl SceneView<'_> {
+    /// What a ray sees. Where it meets the surface that `last` met, it sees the same.
+    pub(crate) fn path_trace(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        cone: f32,
+        random: [u32; 4],
+        last: &ViewPath,
+    ) -> ViewPath {
+        let (frame, data) = (self.frame, self.data);
+        let mut path = ViewPath::NOTHING;
+        let mut throughput = Vec3::ONE;
+        let (mut start, mut towards, mut near) = (origin, direction, frame.nearest);
+        // Water that the ray has come through, and whether it has met nothing since.
+        let mut water: Option<PathWater> = None;
+        let mut under = false;
+        for layer in 0..SCENE_LAYERS {
+            let Some(hit) = data.surface_hit(start, towards, near, BVH_FAR) else {
+                path.radiance += throughput * data.sky_level(0, towards);
+                return path;
+            };
+            let mut found = data.surface_at(&hit, start, towards, cone);
+            let mut material = data.corners[hit.triangle as usize * 3].material;
+            let mut distance = hit.distance;
+            let mut depth = Vec2::ZERO;
+            let met = match water {
+                None => self.puddle_water_find(found.position, found.facet.y),
+                Some(_) => None,
+            };
+            if let Some(met) = met {
+                // Back along the ray to where it came through the surface.
+                distance = (hit.distance - met.rise / (-towards.y).max(0.01)).max(near);
+                let place = start + towards * distance;
+                let footprint = cone * distance / (-towards.y).max(0.02).sqrt();
+                let ripple = self.puddle_water_ripple(met.puddle, place, footprint, met.depth, met.open);
+                found = path_water_surface(start, towards, distance, ripple);
+                material = PUDDLE_WATER_MATERIAL;
+                water =
+                    Some(PathWater { found: met, ripple, level: place.y, clear: 1.0, murk: Vec3::ZERO });
+            } else if layer == 0
+                && path_same_surface(last, material, found.facet, found.position, hit.distance)
+            {
+                return ViewPath { again: true, ..*last };
+            }
+            if let (true, Some(water)) = (under, &water) {
+                let rise = (water.level - found.position.y).max(0.0);
+                depth = Vec2::new(rise + (water.found.depth - water.found.rise).max(0.0), rise);
+                found = path_soaked(&found, water.clear, water.murk);
+            }
+            if layer == 0 {
+                path.distance = distance;
+                path.material = material;
+                path.facet = found.facet;
+                path.place = found.position;
+                path.normal = found.normal;
+                path.shown = found.position;
+                path.slack = distance * (cone * 2.0 + SKYLIGHT_SLACK);
+            }
+            near = hit.distance + frame.nearest;
+            let unlit = found.flags & SCENE_UNLIT != 0;
+            let mut direct = found.diffuse;
+            if !unlit {
+                direct = found.emission + self.scene_direct(&found, -towards, 0, 0.0, 0.0, depth);
+            }
+            let told = path.met == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
+            let mut plan = PathPlan::NONE;
+            if let (Some(_), Some(water)) = (met, &water) {
+                let rippled = water.ripple.z > PUDDLE_WATER_RIPPLED;
+                let mirrors = frame.sky_rays.max(if rippled { PUDDLE_WATER_RAYS } else { 1 });
+                plan = PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn: rippled, ..plan };
+            } else if !unlit {
+                plan = self.path_plan(&found, -towards, cone * hit.distance, told, under);
+            }
+            let ripple = if met.is_some() { water.map(|water| water.ripple) } else { None };
+            let meeting = PathMeeting { surface: found, direct, plan, told };
+            let light = self.path_light(&meeting, towards, cone, random, ripple, under);
+            if let (Some(_), Some(water)) = (met, &mut water) {
+                throughput *= path.path_show_water(&meeting, &light, towards, layer, throughput);
+                // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
+                let row = frame.puddles + water.found.puddle * PUDDLE_WATER_ROWS;
+                let look = Vec4::from(data.table[row as usize + 4].map(f32::from_bits));
+                towards = puddle_water_refracted(towards, found.normal);
+                let steep = (-towards.y).max(0.1);
+                water.murk = look.truncate();
+                water.clear = ops::exp(-look.w * water.found.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
+                let aside = (water.found.depth - water.found.rise).max(0.0) / steep;
+                start = found.position + Vec3::new(towards.x * aside, 0.0, towards.z * aside)
+                    - towards * (4.0 * frame.nearest);
+                near = frame.nearest;
+                under = true;
+                continue;
+            }
+            self.path_show(&mut path, &meeting, &light, towards, layer, throughput);
+            under = false;
+            throughput *= path_open(&found);
+            if path_most(throughput) < 1.0e-3 {
+                return path;
+            }
+        }
+        path
+    }
+
+    /// Light that rays find for a surface: turns 1 and on of the loop of `path_trace` in WGSL. Of water, with the part
+    /// that it mirrors.
+    fn path_light(
+        &self,
+        meeting: &PathMeeting,
+        towards: Vec3,
+        cone: f32,
+        random: [u32; 4],
+        ripple: Option<Vec3>,
+        under: bool,
+    ) -> PathLight {
+        let (frame, data) = (self.frame, self.data);
+        let plan = &meeting.plan;
+        let mut light = PathLight { base: Vec3::ZERO, mirror: Vec3::ZERO, mirrored: 0.0, shown: None };
+        for turn in 1..=plan.mirrors + plan.rays {
+            let (mut at, mut view) = (meeting.surface, -towards);
+            let mut ray = ScatterRay::ALL;
+            let (mut from, mut passes, mut given) = (at.position, false, Vec3::ZERO);
+            for bounce in 0..PATH_BOUNCES {
+                let is_mirror = turn <= plan.mirrors;
+                let (index, count) =
+                    if is_mirror { (turn - 1, plan.mirrors) } else { (turn - 1 - plan.mirrors, plan.rays) };
+                let [a, b, goes_on, chance] = path_numbers(random, turn, bounce, index, count);
+                if !passes {
+                    let is_first = bounce == 0;
+                    let mut next = match ripple {
+                        Some(ripple) if is_first => path_water_ray(ripple, at.roughness, view, cone, a, b),
+                        _ if plan.drawn || !is_mirror || !is_first => {
+                            let of_both = scatter_chance(at.diffuse, at.normal_reflectance);
+                            let of_first = if is_mirror { 1.0 } else { plan.chance };
+                            let gloss = if is_first { plan.gloss } else { Vec3::ONE };
+                            let of_gloss = if is_first { of_first } else { of_both };
+                            let share = if is_first { plan.share } else { PATH_LATER_SHARE };
+                            if is_first && a >= of_gloss {
+                                let own = (a - of_gloss) / (1.0 - of_gloss);
+                                let (numbers, weight) = self.path_candidate(&at, own, b, goes_on, share);
+                                let a = of_gloss + numbers.x * (1.0 - of_gloss);
+                                let mut next =
+                                    scatter_draw(&at, view, gloss, of_gloss, a, numbers.y, share * weight);
+                                next.diffuse *= weight;
+                                next.mirror *= weight;
+                                next
+                            } else {
+                                scatter_draw(&at, view, gloss, of_gloss, a, b, share)
+                            }
+                        }
+                        _ => scatter_mirror(&at, view),
+                    };
+                    if is_first && ripple.is_some() {
+                        light.mirrored += next.mirror.x;
+                    }
+                    if under && is_first && is_mirror {
+                        next.along = puddle_water_above(next.along);
+                        next.mirror *= if next.along.y > 0.0 { 1.0 } else { 0.0 };
+                    }
+                    from = at.position + at.facet * frame.nearest;
+                    if is_first {
+                        ray = next;
+                        ray.width += cone + plan.spread;
+                    } else if plan.replaced && bounce == 1 {
+                        ray = path_replaced(&ray, &next);
+                    } else {
+                        ray = path_onward(&ray, &next, &at, goes_on);
+                    }
+                    if path_most(ray.diffuse + ray.mirror) <= 0.0 {
+                        break;
+                    }
+                }
+                let Some(hit) = data.surface_hit(from, ray.along, frame.nearest, BVH_FAR) else {
+                    let beyond = data.sky_cone(ray.along, ray.width);
+                    light.base += ray.diffuse * beyond;
+                    light.mirror += ray.mirror * beyond;
+                    break;
+                };
+                let found = data.surface_at(&hit, from, ray.along, ray.width);
+                let found = path_glance(&found, ray.roughness);
+                let lamps = if ray.roughness < PATH_GLANCE { PATH_MIRROR_LAMPS } else { 1 };
+                let standoff = hit.distance * ray.width * 0.5;
+                // Where there are lamps, they stand for what shines; small bright things would be noise.
+                let shines = ray.roughness < PATH_SHINES || frame.light_count == 0;
+                let unlit = found.flags & SCENE_UNLIT != 0;
+                let mut lit = found.diffuse;
+                if !unlit {
+                    lit = if shines { found.emission } else { Vec3::ZERO }
+                        + self.scene_direct(&found, -ray.along, lamps, chance, standoff, Vec2::ZERO);
+                }
+                let cover = path_cover(&found);
+                light.base += ray.diffuse * lit * cover;
+                light.mirror += ray.mirror * lit * cover;
+                let open = path_open(&found);
+                if unlit && cover == 1.0 {
+                    break;
+                }
+                if plan.replaced && bounce == 0 {
+                    ray.diffuse = Vec3::ZERO;
+                    light.shown = Some((found, hit.distance, ray.mirror));
+                }
+                let mut ambient = Vec3::ZERO;
+                passes = path_most(open) > PATH_OPEN;
+                if passes && !unlit {
+                    // What it reflects of the sky itself: half of the whole.
+                    ambient = data.sky_irradiance(found.normal) * (0.5 * found.occlusion * cover);
+                } else if bounce + 1 == PATH_BOUNCES {
+                    ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
+                }
+                let own = (found.diffuse * (1.0 - found.transmission) + found.normal_reflectance) * ambient;
+                light.base += ray.diffuse * own;
+                light.mirror += ray.mirror * own;
+                given += lit;
+                if passes {
+                    ray.diffuse *= open;
+                    ray.mirror *= open;
+                    from = found.position;
+                }
+                (at, view) = (found, -ray.along);
+            }
+        }
+        light
+    }
+
+    /// Adds what a surface shows to a path.
+    fn path_show(
+        &self,
+        path: &mut ViewPath,
+        meeting: &PathMeeting,
+        light: &PathLight,
+        towards: Vec3,
+        layer: u32,
+        throughput: Vec3,
+    ) {
+        let PathMeeting { surface, direct, mut plan, told } = *meeting;
+        let cover = path_cover(&surface);
+        path.radiance += throughput * direct * cover;
+        if surface.flags & SCENE_UNLIT != 0 {
+            return;
+        }
+        let mirrored = towards - surface.normal * (2.0 * towards.dot(surface.normal));
+        let of_gloss = if plan.chance > 0.0 { plan.rays } else { plan.mirrors };
+        let mut base = light.base / plan.rays.max(1) as f32;
+        let mut mirror = light.mirror / of_gloss.max(1) as f32;
+        if plan.mirrors + plan.rays == 0 {
+            base = self.data.sky_irradiance(surface.normal);
+            mirror = self.data.sky_cone(mirrored, scatter_mirror(&surface, -towards).width);
+        } else if plan.mirrors == 0 && plan.chance == 0.0 {
+            // Too little for rays of its own.
+            plan.body += plan.gloss;
+            plan.gloss = Vec3::ZERO;
+        }
+        let of_base = throughput * plan.body * cover;
+        let of_gloss = throughput * plan.gloss * cover;
+        if let Some((shown, distance, weight)) = light.shown {
+            path.body = of_gloss * weight * path_albedo(&shown);
+            path.sky = base;
+            path.met = 1.0;
+            path.plain = false;
+            path.normal = shown.normal;
+            path.shown = shown.position;
+            path.slack += distance * (2.0 * plan.spread + SKYLIGHT_SLACK);
+        } else if told {
+            path.body = of_base;
+            path.sky = base;
+            path.met = 1.0;
+            path.normal = surface.normal;
+            path.plain = !(plan.mirrors > 0
+                && surface.roughness < PATH_CURVED
+                && path_most(plan.gloss) > PATH_PLAIN_GLOSS);
+            if layer > 0 {
+                path.plain = false;
+                path.shown = surface.position;
+            }
+        } else {
+            path.radiance += of_base * base;
+        }
+        if told && plan.drawn {
+            path.gloss = of_gloss;
+            path.mirror = mirror;
+            path.roughness = surface.roughness;
+            path.mirrored = mirrored;
+        } else {
+            path.radiance += of_gloss * mirror;
+        }
+    }
+}
+
+impl ViewPath {
+    /// Adds what water mirrors, and returns the fraction of the light from beneath that comes out.
+    fn path_show_water(
+        &mut self,
+        meeting: &PathMeeting,
+        light: &PathLight,
+        towards: Vec3,
+        layer: u32,
+        throughput: Vec3,
+    ) -> f32 {
+        let surface = &meeting.surface;
+        let share = light.mirrored / meeting.plan.mirrors as f32;
+        let gloss = throughput * share;
+        let mirror = light.mirror / light.mirrored.max(1.0e-6);
+        self.radiance += throughput * meeting.direct;
+        if meeting.plan.drawn && layer == 0 {
+            self.gloss = gloss;
+            self.mirror = mirror;
+            self.roughness = surface.roughness;
+            self.mirrored = towards - surface.normal * (2.0 * towards.dot(surface.normal));
+        } else {
+            self.radiance += gloss * mirror;
+        }
+        1.0 - share
+    }
+}
