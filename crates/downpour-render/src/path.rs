@@ -50,32 +50,44 @@ pub(crate) struct ViewPath {
     pub(crate) radiance: Vec3,
     /// Distance of the first surface (`SCENE_FAR` for the sky).
     pub(crate) distance: f32,
-    /// Factor of the light on the diffuse base.
-    pub(crate) body: Vec3,
-    /// 1 if there is a surface whose light is told apart.
-    pub(crate) met: f32,
-    /// Factor of the light that the gloss shows.
-    pub(crate) gloss: Vec3,
+    pub(crate) facet: Vec3,
     pub(crate) material: u32,
-    /// Light of sky and surfaces on the diffuse base, over pi.
-    pub(crate) sky: Vec3,
-    /// Roughness of the gloss.
-    pub(crate) roughness: f32,
-    /// Light that the gloss shows.
-    pub(crate) mirror: Vec3,
+    pub(crate) place: Vec3,
     /// Whether it is what the sample before has seen.
     pub(crate) again: bool,
-    pub(crate) normal: Vec3,
-    /// Whether what it shows is the same over a pixel: no mirror.
+    /// Whether what it shows is the same over a pixel: no mirror, nothing behind a pane.
     pub(crate) plain: bool,
-    pub(crate) facet: Vec3,
-    /// Half the width of what counts as one plane where means are taken.
+    /// Light of sky and surfaces on the diffuse base of the first opaque surface, over pi.
+    pub(crate) base: PathSlot,
+    /// Light that the first gloss or mirror shows: of a mirror, on the diffuse base of what stands in it.
+    pub(crate) mirror: PathSlot,
+}
+
+/// Light of which means are taken over neighbouring pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PathSlot {
+    pub(crate) light: Vec3,
+    /// How far from a place's plane another may be; 0: there is no light.
     pub(crate) slack: f32,
+    /// What it is multiplied with.
+    pub(crate) factor: Vec3,
+    /// Roughness of a gloss; 0 for light on a diffuse base.
+    pub(crate) roughness: f32,
+    /// The surface's normal; of a gloss, the direction that a mirror would show.
+    pub(crate) normal: Vec3,
     pub(crate) place: Vec3,
-    /// What stands for `place` where means are taken.
-    pub(crate) shown: Vec3,
-    /// The direction that a mirror in place of the gloss would show.
-    pub(crate) mirrored: Vec3,
+}
+
+impl PathSlot {
+    /// No light.
+    pub(crate) const NONE: Self = Self {
+        light: Vec3::ZERO,
+        slack: 0.0,
+        factor: Vec3::ZERO,
+        roughness: 0.0,
+        normal: Vec3::ZERO,
+        place: Vec3::ZERO,
+    };
 }
 
 impl ViewPath {
@@ -83,40 +95,61 @@ impl ViewPath {
     pub(crate) const NOTHING: Self = Self {
         radiance: Vec3::ZERO,
         distance: SCENE_FAR,
-        body: Vec3::ZERO,
-        met: 0.0,
-        gloss: Vec3::ZERO,
-        material: SCENE_NONE,
-        sky: Vec3::ZERO,
-        roughness: 0.0,
-        mirror: Vec3::ZERO,
-        again: false,
-        normal: Vec3::ZERO,
-        plain: true,
         facet: Vec3::ZERO,
-        slack: 0.0,
+        material: SCENE_NONE,
         place: Vec3::ZERO,
-        shown: Vec3::ZERO,
-        mirrored: Vec3::ZERO,
+        again: false,
+        plain: false,
+        base: PathSlot::NONE,
+        mirror: PathSlot::NONE,
     };
 
     /// All that a path has seen.
     pub(crate) fn path_radiance(&self) -> Vec3 {
-        self.radiance + self.body * self.sky + self.gloss * self.mirror
+        self.radiance + self.base.factor * self.base.light + self.mirror.factor * self.mirror.light
     }
 }
 
 /// Light that rays have found for a surface.
 #[derive(Clone, Copy, Debug)]
 struct PathLight {
-    /// On its diffuse base, over pi, or on that of what it mirrors.
+    /// On its diffuse base, over pi.
     base: Vec3,
     /// In its gloss.
     mirror: Vec3,
     /// Fraction that water mirrors.
     mirrored: f32,
-    /// What a mirror shows, its distance, and the weight of its light.
-    shown: Option<(Surface, f32, Vec3)>,
+    /// On the diffuse base of what a mirror shows.
+    shown: Vec3,
+    /// Factor of that light, its distance, and where it is.
+    factor: Vec3,
+    distance: f32,
+    normal: Vec3,
+    place: Vec3,
+}
+
+impl PathLight {
+    const NONE: Self = Self {
+        base: Vec3::ZERO,
+        mirror: Vec3::ZERO,
+        mirrored: 0.0,
+        shown: Vec3::ZERO,
+        factor: Vec3::ZERO,
+        distance: -1.0,
+        normal: Vec3::ZERO,
+        place: Vec3::ZERO,
+    };
+
+    /// With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
+    fn path_gathered(self, ray: &ScatterRay, radiance: Vec3, of_shown: bool) -> Self {
+        let of_base = ray.diffuse * radiance;
+        Self {
+            base: if of_shown { self.base } else { self.base + of_base },
+            shown: if of_shown { self.shown + of_base } else { self.shown },
+            mirror: self.mirror + ray.mirror * radiance,
+            ..self
+        }
+    }
 }
 
 /// Water that a ray has come through.
@@ -142,12 +175,13 @@ struct PathMeeting {
     plan: PathPlan,
     /// Whether means over neighbouring pixels are taken of its light.
     told: bool,
+    /// How far from its plane the surface of a neighbouring pixel may be.
+    slack: f32,
 }
 
 /// Whether a surface is the same where another sample of the pixel has met it.
 fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, place: Vec3, distance: f32) -> bool {
-    last.met > 0.0
-        && last.plain
+    last.plain
         && last.material == material
         && last.facet.dot(facet) > PATH_SAME_FACET
         && last.facet.dot(place - last.place).abs() < PATH_SAME_PLANE * distance
@@ -208,9 +242,6 @@ impl SceneView<'_> {
                 path.material = material;
                 path.facet = found.facet;
                 path.place = found.position;
-                path.normal = found.normal;
-                path.shown = found.position;
-                path.slack = distance * (cone * 2.0 + SKYLIGHT_SLACK);
             }
             near = hit.distance + frame.nearest;
             let unlit = found.flags & SCENE_UNLIT != 0;
@@ -218,20 +249,25 @@ impl SceneView<'_> {
             if !unlit {
                 direct = found.emission + self.scene_direct(&found, -towards, 0, 0.0, 0.0, depth);
             }
-            let told = path.met == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
+            let told = path.base.slack == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
+            let free = path.mirror.slack == 0.0;
             let mut plan = PathPlan::NONE;
             if let (Some(_), Some(water)) = (met, &water) {
                 let rippled = water.ripple.z > PUDDLE_WATER_RIPPLED;
                 let mirrors = frame.sky_rays.max(if rippled { PUDDLE_WATER_RAYS } else { 1 });
-                plan = PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn: rippled, ..plan };
+                let (drawn, replaced) = (rippled && free, !rippled && free);
+                plan = PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn, replaced, ..plan };
             } else if !unlit {
-                plan = self.path_plan(&found, -towards, cone * hit.distance, told, under);
+                plan = self.path_plan(&found, -towards, cone * hit.distance, told, free && !under);
             }
+            // Neighbouring pixels are on one plane if they are no farther from it than this.
+            let from_eye = found.position - origin;
+            let slack = from_eye.dot(from_eye).sqrt() * (cone * 2.0 + SKYLIGHT_SLACK);
             let ripple = if met.is_some() { water.map(|water| water.ripple) } else { None };
-            let meeting = PathMeeting { surface: found, direct, plan, told };
+            let meeting = PathMeeting { surface: found, direct, plan, told, slack };
             let light = self.path_light(&meeting, towards, cone, random, ripple, under);
             if let (Some(_), Some(water)) = (met, &mut water) {
-                throughput *= path.path_show_water(&meeting, &light, towards, layer, throughput);
+                throughput *= path.path_show_water(&meeting, &light, towards, throughput);
                 // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
                 let row = frame.puddles + water.found.puddle * PUDDLE_WATER_ROWS;
                 let look = Vec4::from(data.table[row as usize + 4].map(f32::from_bits));
@@ -269,13 +305,14 @@ impl SceneView<'_> {
     ) -> PathLight {
         let (frame, data) = (self.frame, self.data);
         let plan = &meeting.plan;
-        let mut light = PathLight { base: Vec3::ZERO, mirror: Vec3::ZERO, mirrored: 0.0, shown: None };
+        let mut light = PathLight::NONE;
         for turn in 1..=plan.mirrors + plan.rays {
             let (mut at, mut view) = (meeting.surface, -towards);
             let mut ray = ScatterRay::ALL;
             let (mut from, mut passes, mut given) = (at.position, false, Vec3::ZERO);
             for bounce in 0..PATH_BOUNCES {
                 let is_mirror = turn <= plan.mirrors;
+                let of_shown = plan.replaced && is_mirror;
                 let (index, count) =
                     if is_mirror { (turn - 1, plan.mirrors) } else { (turn - 1 - plan.mirrors, plan.rays) };
                 let [a, b, goes_on, chance] = path_numbers(random, turn, bounce, index, count);
@@ -315,7 +352,7 @@ impl SceneView<'_> {
                     if is_first {
                         ray = next;
                         ray.width += cone + plan.spread;
-                    } else if plan.replaced && bounce == 1 {
+                    } else if of_shown && bounce == 1 {
                         ray = path_replaced(&ray, &next);
                     } else {
                         ray = path_onward(&ray, &next, &at, goes_on);
@@ -326,8 +363,7 @@ impl SceneView<'_> {
                 }
                 let Some(hit) = data.surface_hit(from, ray.along, frame.nearest, BVH_FAR) else {
                     let beyond = data.sky_cone(ray.along, ray.width);
-                    light.base += ray.diffuse * beyond;
-                    light.mirror += ray.mirror * beyond;
+                    light = light.path_gathered(&ray, beyond, of_shown);
                     break;
                 };
                 let found = data.surface_at(&hit, from, ray.along, ray.width);
@@ -343,15 +379,16 @@ impl SceneView<'_> {
                         + self.scene_direct(&found, -ray.along, lamps, chance, standoff, Vec2::ZERO);
                 }
                 let cover = path_cover(&found);
-                light.base += ray.diffuse * lit * cover;
-                light.mirror += ray.mirror * lit * cover;
+                light = light.path_gathered(&ray, lit * cover, of_shown);
                 let open = path_open(&found);
                 if unlit && cover == 1.0 {
                     break;
                 }
-                if plan.replaced && bounce == 0 {
-                    ray.diffuse = Vec3::ZERO;
-                    light.shown = Some((found, hit.distance, ray.mirror));
+                if of_shown && bounce == 0 {
+                    light.factor = ray.mirror * path_albedo(&found);
+                    light.distance = hit.distance;
+                    light.normal = found.normal;
+                    light.place = found.position;
                 }
                 let mut ambient = Vec3::ZERO;
                 passes = path_most(open) > PATH_OPEN;
@@ -362,8 +399,7 @@ impl SceneView<'_> {
                     ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
                 }
                 let own = (found.diffuse * (1.0 - found.transmission) + found.normal_reflectance) * ambient;
-                light.base += ray.diffuse * own;
-                light.mirror += ray.mirror * own;
+                light = light.path_gathered(&ray, own, of_shown);
                 given += lit;
                 if passes {
                     ray.diffuse *= open;
@@ -386,7 +422,7 @@ impl SceneView<'_> {
         layer: u32,
         throughput: Vec3,
     ) {
-        let PathMeeting { surface, direct, mut plan, told } = *meeting;
+        let PathMeeting { surface, direct, mut plan, told, slack } = *meeting;
         let cover = path_cover(&surface);
         path.radiance += throughput * direct * cover;
         if surface.flags & SCENE_UNLIT != 0 {
@@ -406,62 +442,66 @@ impl SceneView<'_> {
         }
         let of_base = throughput * plan.body * cover;
         let of_gloss = throughput * plan.gloss * cover;
-        if let Some((shown, distance, weight)) = light.shown {
-            path.body = of_gloss * weight * path_albedo(&shown);
-            path.sky = base;
-            path.met = 1.0;
-            path.plain = false;
-            path.normal = shown.normal;
-            path.shown = shown.position;
-            path.slack += distance * (2.0 * plan.spread + SKYLIGHT_SLACK);
-        } else if told {
-            path.body = of_base;
-            path.sky = base;
-            path.met = 1.0;
-            path.normal = surface.normal;
-            path.plain = !(plan.mirrors > 0
+        let slot = PathSlot { slack, place: surface.position, ..PathSlot::NONE };
+        if told {
+            path.base = PathSlot { light: base, factor: of_base, normal: surface.normal, ..slot };
+            let mirrors = plan.mirrors > 0
                 && surface.roughness < PATH_CURVED
-                && path_most(plan.gloss) > PATH_PLAIN_GLOSS);
-            if layer > 0 {
-                path.plain = false;
-                path.shown = surface.position;
-            }
+                && path_most(plan.gloss) > PATH_PLAIN_GLOSS;
+            path.plain = !(mirrors || layer > 0);
         } else {
             path.radiance += of_base * base;
         }
-        if told && plan.drawn {
-            path.gloss = of_gloss;
-            path.mirror = mirror;
-            path.roughness = surface.roughness;
-            path.mirrored = mirrored;
+        if plan.drawn {
+            let roughness = surface.roughness;
+            path.mirror = PathSlot { light: mirror, factor: of_gloss, roughness, normal: mirrored, ..slot };
         } else {
             path.radiance += of_gloss * mirror;
+            path.path_show_mirrored(light, of_gloss, meeting);
         }
     }
 }
 
 impl ViewPath {
+    /// Adds the light on what a mirror shows.
+    fn path_show_mirrored(&mut self, light: &PathLight, gloss: Vec3, meeting: &PathMeeting) {
+        if light.distance < 0.0 {
+            return;
+        }
+        self.mirror = PathSlot {
+            light: light.shown,
+            factor: gloss * light.factor,
+            slack: meeting.slack + light.distance * (2.0 * meeting.plan.spread + SKYLIGHT_SLACK),
+            roughness: 0.0,
+            normal: light.normal,
+            place: light.place,
+        };
+    }
+
     /// Adds what water mirrors, and returns the fraction of the light from beneath that comes out.
     fn path_show_water(
         &mut self,
         meeting: &PathMeeting,
         light: &PathLight,
         towards: Vec3,
-        layer: u32,
         throughput: Vec3,
     ) -> f32 {
         let surface = &meeting.surface;
-        let share = light.mirrored / meeting.plan.mirrors as f32;
-        let gloss = throughput * share;
-        let mirror = light.mirror / light.mirrored.max(1.0e-6);
+        let all = meeting.plan.mirrors as f32;
+        let share = light.mirrored / all;
         self.radiance += throughput * meeting.direct;
-        if meeting.plan.drawn && layer == 0 {
-            self.gloss = gloss;
-            self.mirror = mirror;
-            self.roughness = surface.roughness;
-            self.mirrored = towards - surface.normal * (2.0 * towards.dot(surface.normal));
+        if meeting.plan.drawn {
+            self.mirror = PathSlot {
+                light: light.mirror / light.mirrored.max(1.0e-6),
+                factor: throughput * share,
+                slack: meeting.slack,
+                roughness: surface.roughness,
+                normal: towards - surface.normal * (2.0 * towards.dot(surface.normal)),
+                place: surface.position,
+            };
         } else {
-            self.radiance += gloss * mirror;
+            self.radiance += throughput * light.mirror / all;
+            self.path_show_mirrored(light, throughput / all, meeting);
         }
         1.0 - share
     }

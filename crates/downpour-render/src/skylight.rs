@@ -1,43 +1,38 @@
-//! Light of sky and surfaces on surfaces: the mean of what the pixels round a pixel have found on the same surface. Twin of
+//! Light of sky and surfaces on surfaces: means over what the pixels round a pixel have found on the same surface. Twin of
 //! `shaders/wgsl/render/skylight.wgsl`.
+//!
+//! First the mean of a window of 7 x 7 pixels, whose rays are one lattice ([`path`](crate::path)), with the variance of that
+//! mean. Then means of such means, 7 and 14 pixels apart: as far as two of them differ by no more than their noise (H.
+//! Dammertz et al., HPG 2010, for the steps; C. Schied et al., HPG 2017, for the variance).
 //!
 //! A neighbour counts as far as its normal agrees and as it is on the plane through the pixel's place; in the gloss, as far
 //! as it mirrors the same direction, within the lobe.
 
 use downpour_math::packing::{packing_octahedral_decode, packing_unpack_snorm};
-use downpour_shaders::render::scene::{SKYLIGHT_LOBE, SKYLIGHT_RADIUS};
-use glam::Vec3;
+use downpour_shaders::render::scene::{
+    SKYLIGHT_LOBE, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
+};
+use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-use crate::path::path_most;
 use crate::scene::SceneView;
-use crate::trace::TraceGather;
+use crate::trace::{TraceGather, TraceSlot};
 
-/// A picture without this light, and what its pixels have found of it.
-struct Pixels<'a> {
-    view: &'a SceneView<'a>,
-    /// For each pixel its normal, and what a mirror would show.
-    surfaces: Vec<(Vec3, Vec3)>,
-    gather: &'a [TraceGather],
+/// A slot of a pixel, unpacked.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SkylightSlot {
+    /// Of the surface.
+    normal: Vec3,
+    /// Of what counts as the same: the normal, or the direction that a mirror would show.
+    direction: Vec3,
+    place: Vec3,
+    slack: f32,
+    roughness: f32,
 }
 
-impl SceneView<'_> {
-    /// What the light of sky and surfaces adds to each pixel.
-    pub(crate) fn skylight(&self, gather: &[TraceGather]) -> Vec<[f32; 3]> {
-        let (width, height) = (self.frame.width, self.frame.height);
-        let unpacked = |word: u32| Vec3::from(packing_octahedral_decode(packing_unpack_snorm(word)));
-        let surfaces =
-            gather.par_iter().map(|gather| (unpacked(gather.normal), unpacked(gather.mirrored))).collect();
-        let pixels = &Pixels { view: self, surfaces, gather };
-        let shown = |x, y| {
-            let own = &gather[(y * width + x) as usize];
-            if own.met <= 0.0 && path_most(own.gloss.into()) <= 0.0 {
-                return [0.0; 3];
-            }
-            pixels.skylight_mean(x, y).to_array()
-        };
-        (0..height).into_par_iter().flat_map_iter(|y| (0..width).map(move |x| shown(x, y))).collect()
-    }
+/// The luminance of a color, for comparisons.
+fn skylight_luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
 /// How far two mirrored directions agree within the lobe of a roughness.
@@ -47,41 +42,148 @@ pub fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
     (1.0 - (1.0 - cosine) / (SKYLIGHT_LOBE * alpha * alpha).max(1.0e-7)).max(0.0)
 }
 
+/// How far two pixels show one surface.
+fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
+    if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
+        return 0.0;
+    }
+    let off = own.normal.dot(other.place - own.place).abs();
+    let near = (1.0 - off / own.slack).max(0.0);
+    let cosine = own.direction.dot(other.direction);
+    if own.roughness > 0.0 {
+        return skylight_lobe(cosine, own.roughness) * near;
+    }
+    let agrees = cosine.max(0.0);
+    let fourth = agrees * agrees * agrees * agrees;
+    fourth * fourth * near
+}
+
+/// How far two means are the same but for their noise: variances are those of the means.
+#[must_use]
+pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
+    let apart = skylight_luminance(own.truncate()) - skylight_luminance(other.truncate());
+    (1.0 - apart * apart / (SKYLIGHT_NOISE * (own.w + other.w)).max(1.0e-20)).max(0.0)
+}
+
+/// What pixels have found, and the means so far of each of their two slots: color, and the variance of its luminance.
+struct Pixels<'a> {
+    width: u32,
+    height: u32,
+    gather: &'a [TraceGather],
+    slots: Vec<[SkylightSlot; 2]>,
+}
+
+impl SceneView<'_> {
+    /// What the light of sky and surfaces adds to each pixel.
+    pub(crate) fn skylight(&self, gather: &[TraceGather]) -> Vec<[f32; 3]> {
+        let eye = Vec3::from(self.frame.eye);
+        let slots = gather
+            .par_iter()
+            .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
+            .collect();
+        let (width, height) = (self.frame.width, self.frame.height);
+        let pixels = &Pixels { width, height, gather, slots };
+        let all = |of: &(dyn Fn(u32, u32, usize) -> Vec4 + Sync)| -> Vec<[Vec4; 2]> {
+            (0..height)
+                .into_par_iter()
+                .flat_map_iter(|y| (0..width).map(move |x| [of(x, y, 0), of(x, y, 1)]))
+                .collect()
+        };
+        let mut means = all(&|x, y, k| pixels.skylight_mean(x, y, k));
+        for pass in 0..SKYLIGHT_PASSES {
+            means = all(&|x, y, k| pixels.skylight_wide(&means, x, y, k, SKYLIGHT_STEP << pass));
+        }
+        let shown = |(pixel, [base, mirror]): (&TraceGather, &[Vec4; 2])| {
+            let base = Vec3::from(pixel.base.factor) * base.truncate();
+            (base + Vec3::from(pixel.mirror.factor) * mirror.truncate()).to_array()
+        };
+        gather.par_iter().zip(&means).map(shown).collect()
+    }
+}
+
+/// A slot, unpacked.
+fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
+    let direction = Vec3::from(packing_octahedral_decode(packing_unpack_snorm(slot.normal)));
+    let place = Vec3::from(slot.place);
+    let mut normal = direction;
+    if slot.roughness > 0.0 {
+        // Between what is seen and what is mirrored.
+        let seen = place - eye;
+        let sum = direction - seen / seen.dot(seen).sqrt().max(1.0e-20);
+        normal = sum / sum.dot(sum).sqrt().max(1.0e-20);
+    }
+    SkylightSlot { normal, direction, place, slack: slot.slack, roughness: slot.roughness }
+}
+
 impl Pixels<'_> {
-    /// What the light of sky and surfaces makes of a pixel, from the pixels round it.
-    fn skylight_mean(&self, x: u32, y: u32) -> Vec3 {
-        let frame = self.view.frame;
-        let index = |x: u32, y: u32| (y * frame.width + x) as usize;
-        let own = &self.gather[index(x, y)];
-        let (normal, mirrored) = self.surfaces[index(x, y)];
-        let place = Vec3::from(own.place);
-        let glossy = path_most(own.gloss.into());
-        let (mut sky, mut met) = (Vec3::from(own.sky) * own.met, own.met);
-        let (mut mirror, mut weight) = (Vec3::from(own.mirror) * glossy, glossy);
+    /// The light of a slot of a pixel.
+    fn light(&self, index: usize, slot: usize) -> Vec3 {
+        let pixel = &self.gather[index];
+        Vec3::from(if slot == 0 { pixel.base.light } else { pixel.mirror.light })
+    }
+
+    /// The mean of the window round a pixel, and the variance of its luminance.
+    fn skylight_mean(&self, x: u32, y: u32, slot: usize) -> Vec4 {
+        let index = |x: u32, y: u32| (y * self.width + x) as usize;
+        let own = &self.slots[index(x, y)][slot];
+        if own.slack <= 0.0 {
+            return Vec4::ZERO;
+        }
+        let (mut sum, mut squares, mut weight, mut weights) = (Vec3::ZERO, 0.0, 0.0, 0.0);
         let around =
             |at: u32, size: u32| at.saturating_sub(SKYLIGHT_RADIUS)..=(at + SKYLIGHT_RADIUS).min(size - 1);
-        for row in around(y, frame.height) {
-            for column in around(x, frame.width) {
-                let other = &self.gather[index(column, row)];
-                let its_gloss = path_most(other.gloss.into());
-                if (other.met <= 0.0 && its_gloss <= 0.0) || (row == y && column == x) {
-                    continue;
+        for row in around(y, self.height) {
+            for column in around(x, self.width) {
+                let other = index(column, row);
+                let mut counts = 1.0;
+                if row != y || column != x {
+                    counts = skylight_same(own, &self.slots[other][slot]);
                 }
-                let (its_normal, its_mirrored) = self.surfaces[index(column, row)];
-                let agrees = normal.dot(its_normal).max(0.0);
-                let fourth = agrees * agrees * agrees * agrees;
-                let off = normal.dot(Vec3::from(other.place) - place).abs();
-                let near = (1.0 - off / own.slack).max(0.0);
-                let counts = fourth * fourth * near * other.met;
-                sky += Vec3::from(other.sky) * counts;
-                met += counts;
-                if glossy > 0.0 && its_gloss > 0.0 {
-                    let same = skylight_lobe(mirrored.dot(its_mirrored), own.roughness) * near * its_gloss;
-                    mirror += Vec3::from(other.mirror) * same;
-                    weight += same;
+                if counts > 0.0 {
+                    let light = self.light(other, slot);
+                    let luminance = skylight_luminance(light);
+                    sum += light * counts;
+                    squares += luminance * luminance * counts;
+                    weight += counts;
+                    weights += counts * counts;
                 }
             }
         }
-        Vec3::from(own.body) * (sky / met.max(1.0e-6)) + Vec3::from(own.gloss) * (mirror / weight.max(1.0e-6))
+        let mean = sum / weight;
+        let luminance = skylight_luminance(mean);
+        let variance = (squares / weight - luminance * luminance).max(0.0);
+        // How many there are; of one alone nothing is known.
+        let count = weight * weight / weights;
+        mean.extend(variance / (count - 1.0).max(0.5) + luminance * luminance / (count * count))
+    }
+
+    /// The mean of means `step` pixels apart that show the same.
+    fn skylight_wide(&self, means: &[[Vec4; 2]], x: u32, y: u32, slot: usize, step: u32) -> Vec4 {
+        let here = (y * self.width + x) as usize;
+        let (own, mean) = (&self.slots[here][slot], means[here][slot]);
+        if own.slack <= 0.0 {
+            return Vec4::ZERO;
+        }
+        let (mut sum, mut variance, mut weight) = (mean.truncate() * 4.0, mean.w * 16.0, 4.0);
+        for k in 0..9 {
+            let (column, row) = (x + k % 3 * step, y + k / 3 * step);
+            if k == 4
+                || column < step
+                || row < step
+                || column - step >= self.width
+                || row - step >= self.height
+            {
+                continue;
+            }
+            let other = ((row - step) * self.width + column - step) as usize;
+            let its = means[other][slot];
+            let kernel = if k % 2 == 0 { 1.0 } else { 2.0 };
+            let counts =
+                kernel * skylight_same(own, &self.slots[other][slot]) * skylight_alike(mean, its);
+            sum += its.truncate() * counts;
+            variance += its.w * counts * counts;
+            weight += counts;
+        }
+        (sum / weight).extend(variance / (weight * weight))
     }
 }

@@ -9,34 +9,81 @@ use downpour_shaders::render::scene::{SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
+use crate::path::{PathSlot, ViewPath, path_lattice, path_most};
 use crate::rain::capture::{capture_direction, capture_suns};
-use crate::path::{ViewPath, path_lattice, path_most};
 use crate::scene::SceneView;
 
-/// Light that a pixel's surface has of sky and other surfaces, for the filter. The same layout as `TraceGather` in WGSL.
+/// Light of which means are taken over neighbouring pixels. The same layout as `TraceSlot` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TraceSlot {
+    /// The light: the mean of the samples that have found some.
+    pub light: [f32; 3],
+    /// The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
+    pub normal: u32,
+    /// What it is multiplied with.
+    pub factor: [f32; 3],
+    /// How far from the plane another place may be; 0: there is no light.
+    pub slack: f32,
+    /// Where it is, metres.
+    pub place: [f32; 3],
+    /// Roughness of a gloss; 0 for light on a diffuse base.
+    pub roughness: f32,
+}
+
+/// Light of sky and surfaces that a pixel shows. The same layout as `TraceGather` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TraceGather {
-    /// On the diffuse base, over pi: the mean of the samples that have met a surface.
-    pub sky: [f32; 3],
-    /// Roughness of the gloss.
-    pub roughness: f32,
-    /// What it is multiplied with.
-    pub body: [f32; 3],
-    /// Share of the samples that have met a surface.
-    pub met: f32,
-    /// In the gloss.
-    pub mirror: [f32; 3],
-    /// The direction that a mirror would show, octahedral, 16 bits each.
-    pub mirrored: u32,
-    /// What it is multiplied with.
-    pub gloss: [f32; 3],
-    /// The normal, octahedral, 16 bits each.
-    pub normal: u32,
-    /// The place.
-    pub place: [f32; 3],
-    /// How far from its plane another place may be.
-    pub slack: f32,
+    /// On the diffuse base of the first opaque surface, over pi.
+    pub base: TraceSlot,
+    /// In the first gloss or mirror.
+    pub mirror: TraceSlot,
+}
+
+/// The sum of what samples have found, each with its weight.
+#[derive(Clone, Copy, Debug)]
+struct TraceSum {
+    slot: PathSlot,
+    weight: f32,
+}
+
+impl TraceSum {
+    const NONE: Self = Self { slot: PathSlot::NONE, weight: 0.0 };
+
+    /// The sum with a sample. Where it is, is where the first sample is that has some.
+    fn trace_add(&self, sample: &PathSlot) -> Self {
+        if sample.slack <= 0.0 {
+            return *self;
+        }
+        let weight = path_most(sample.factor).max(1.0e-6);
+        let first = if self.weight > 0.0 { self.slot } else { *sample };
+        Self {
+            slot: PathSlot {
+                light: self.slot.light + sample.light * weight,
+                factor: self.slot.factor + sample.factor,
+                normal: self.slot.normal + sample.normal * weight,
+                ..first
+            },
+            weight: self.weight + weight,
+        }
+    }
+
+    /// The mean, where `share` is one over the number of all samples.
+    fn trace_mean(&self, share: f32) -> TraceSlot {
+        if self.weight <= 0.0 {
+            return TraceSlot::default();
+        }
+        let slot = &self.slot;
+        TraceSlot {
+            light: (slot.light / self.weight).to_array(),
+            normal: packing_pack_snorm(packing_octahedral_encode(slot.normal.to_array())),
+            factor: (slot.factor * share).to_array(),
+            slack: slot.slack,
+            place: slot.place.to_array(),
+            roughness: slot.roughness,
+        }
+    }
 }
 
 impl SceneView<'_> {
@@ -54,10 +101,7 @@ impl SceneView<'_> {
     pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceGather) {
         let is_picture = self.frame.projection == SCENE_PICTURE;
         let (mut sum, mut nearest) = (Vec3::ZERO, SCENE_FAR);
-        let (mut body, mut gloss, mut sky, mut mirror) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        let (mut normal, mut mirrored, mut roughness) = (Vec3::ZERO, Vec3::ZERO, 0.0);
-        let (mut met, mut glossy) = (0.0, 0.0);
-        let (mut place_shown, mut slack) = (Vec3::ZERO, 0.0);
+        let (mut base, mut mirror) = (TraceSum::NONE, TraceSum::NONE);
         let n = self.frame.grid;
         let eye = Vec3::from(self.frame.eye);
         let mut last = ViewPath::NOTHING;
@@ -75,19 +119,8 @@ impl SceneView<'_> {
             let random = path_lattice(self.frame.seed, x, y, place);
             let path = self.path_trace(eye, direction, self.frame.pixel_angle, random, &last);
             sum += if is_picture { path.radiance } else { path.path_radiance() };
-            body += path.body;
-            gloss += path.gloss;
-            sky += path.sky * path.met;
-            let weight = path_most(path.gloss);
-            normal += path.normal * path.met.max(weight);
-            if slack == 0.0 && path.met.max(weight) > 0.0 {
-                (place_shown, slack) = (path.shown, path.slack);
-            }
-            met += path.met;
-            mirror += path.mirror * weight;
-            mirrored += path.mirrored * weight;
-            roughness += path.roughness * weight;
-            glossy += weight;
+            base = base.trace_add(&path.base);
+            mirror = mirror.trace_add(&path.mirror);
             nearest = nearest.min(path.distance);
             count += 1;
             let both_sky = path.distance >= SCENE_FAR && last.distance >= SCENE_FAR;
@@ -101,21 +134,7 @@ impl SceneView<'_> {
             let radiance = sum * share + capture_suns(self, x, y);
             return (radiance.extend(nearest), TraceGather::default());
         }
-        let per_met = 1.0 / met.max(1.0);
-        let per_gloss = 1.0 / glossy.max(1.0e-6);
-        let packed = |direction: Vec3| packing_pack_snorm(packing_octahedral_encode(direction.to_array()));
-        let gather = TraceGather {
-            sky: (sky * per_met).to_array(),
-            roughness: roughness * per_gloss,
-            body: (body * share).to_array(),
-            met: met * share,
-            mirror: (mirror * per_gloss).to_array(),
-            mirrored: packed(mirrored),
-            gloss: (gloss * share).to_array(),
-            normal: packed(normal),
-            place: place_shown.to_array(),
-            slack,
-        };
+        let gather = TraceGather { base: base.trace_mean(share), mirror: mirror.trace_mean(share) };
         ((sum * share).extend(nearest), gather)
     }
 

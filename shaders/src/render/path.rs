@@ -32,7 +32,7 @@ shared_constants! {
         /// Roughness below which gloss is that of a mirror: its lobe is narrower than some pixels.
         PATH_SHARP: f32 = 0.1;
         /// Alphas that neighbouring pixels' mirror images are apart from which gloss is that of a mirror.
-        PATH_APART: f32 = 0.5;
+        PATH_APART: f32 = 1.5;
         /// Directions among which the one of a ray of the diffuse base is drawn.
         PATH_CANDIDATES: u32 = 8;
         /// What a direction weighs in that, at least, in the mean of the sky.
@@ -40,9 +40,7 @@ shared_constants! {
         /// Roughness from which one ray serves the diffuse base and the gloss, by chance.
         PATH_MIXED: f32 = 0.35;
         /// Gloss that is worth rays of its own.
-        PATH_MIN_GLOSS: f32 = 0.002;
-        /// The same, of what lies under water.
-        PATH_UNDER_GLOSS: f32 = 0.1;
+        PATH_MIN_GLOSS: f32 = 0.005;
         /// Gloss and roughness from which, and below which, each sample of a pixel sees for itself what is mirrored.
         PATH_PLAIN_GLOSS: f32 = 0.1;
         /// See [`PATH_PLAIN_GLOSS`].

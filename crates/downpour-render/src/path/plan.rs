@@ -1,7 +1,7 @@
 //! Surfaces as rays take them, and the rays that look for their light.
 
 use downpour_shaders::render::path::{
-    PATH_APART, PATH_ENCLOSED, PATH_GLANCE, PATH_MIN_GLOSS, PATH_MIXED, PATH_SHARP, PATH_UNDER_GLOSS,
+    PATH_APART, PATH_ENCLOSED, PATH_GLANCE, PATH_MIN_GLOSS, PATH_MIXED, PATH_SHARP,
 };
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_NORMAL;
 use downpour_shaders::render::scene::SCENE_BLENDED;
@@ -115,14 +115,14 @@ pub(super) fn path_glance(surface: &Surface, roughness: f32) -> Surface {
 
 impl SceneView<'_> {
     /// The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
-    /// neighbouring pixels are taken of what they find.
+    /// neighbouring pixels are taken of what they find; `free`: of what the gloss shows, too.
     pub(super) fn path_plan(
         &self,
         surface: &Surface,
         view: Vec3,
         footprint: f32,
         told: bool,
-        under: bool,
+        free: bool,
     ) -> PathPlan {
         let cosine = surface.normal.dot(view).max(0.0);
         // Neighbouring pixels mirror directions as far apart as this.
@@ -134,7 +134,7 @@ impl SceneView<'_> {
         let body = path_albedo(surface);
         let rays = self.frame.sky_rays;
         let share = if told { self.frame.ray_share } else { 1.0 / rays.max(1) as f32 };
-        let drawn = told && !sharp && !under && rays > 0;
+        let drawn = told && free && !sharp && rays > 0;
         let mut plan = PathPlan {
             body,
             mirrors: 0,
@@ -146,18 +146,17 @@ impl SceneView<'_> {
             replaced: false,
             spread,
         };
-        let least = if under { PATH_UNDER_GLOSS } else { PATH_MIN_GLOSS };
         if rays == 0 {
             plan.body = body * (Vec3::ONE - gloss);
         } else if path_most(body) <= 0.0 {
             plan.rays = 0;
             plan.mirrors = if drawn { rays } else { 1 };
-            plan.replaced = told && !drawn && !under;
         } else if surface.roughness < PATH_MIXED {
-            plan.mirrors = u32::from(path_most(gloss) > least);
+            plan.mirrors = u32::from(path_most(gloss) > PATH_MIN_GLOSS);
         } else if drawn {
             plan.chance = scatter_chance(body, gloss);
         }
+        plan.replaced = free && !drawn && plan.mirrors > 0;
         plan
     }
 
