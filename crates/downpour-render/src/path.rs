@@ -310,7 +310,8 @@ impl SceneView<'_> {
             let (mut at, mut view) = (meeting.surface, -towards);
             let mut ray = ScatterRay::ALL;
             let (mut from, mut passes, mut given) = (at.position, false, Vec3::ZERO);
-            for bounce in 0..PATH_BOUNCES {
+            let bounces = crate::tune(0, PATH_BOUNCES as f32) as u32;
+            for bounce in 0..bounces {
                 let is_mirror = turn <= plan.mirrors;
                 let of_shown = plan.replaced && is_mirror;
                 let (index, count) =
@@ -325,7 +326,7 @@ impl SceneView<'_> {
                             let of_first = if is_mirror { 1.0 } else { plan.chance };
                             let gloss = if is_first { plan.gloss } else { Vec3::ONE };
                             let of_gloss = if is_first { of_first } else { of_both };
-                            let share = if is_first { plan.share } else { PATH_LATER_SHARE };
+                            let share = if is_first { plan.share } else { crate::tune(5, PATH_LATER_SHARE) };
                             if is_first && a >= of_gloss {
                                 let own = (a - of_gloss) / (1.0 - of_gloss);
                                 let (numbers, weight) = self.path_candidate(&at, own, b, goes_on, share);
@@ -355,7 +356,7 @@ impl SceneView<'_> {
                     } else if of_shown && bounce == 1 {
                         ray = path_replaced(&ray, &next);
                     } else {
-                        ray = path_onward(&ray, &next, &at, goes_on);
+                        ray = path_onward(&ray, &next, &at, if (bounce as f32) < crate::tune(1, 1.0) { 0.0 } else { goes_on }, (bounce as f32) < crate::tune(1, 1.0));
                     }
                     if path_most(ray.diffuse + ray.mirror) <= 0.0 {
                         break;
@@ -369,7 +370,7 @@ impl SceneView<'_> {
                 let found = data.surface_at(&hit, from, ray.along, ray.width);
                 let found = path_glance(&found, ray.roughness);
                 let lamps = if ray.roughness < PATH_GLANCE { PATH_MIRROR_LAMPS } else { 1 };
-                let standoff = hit.distance * ray.width * 0.5;
+                let standoff = hit.distance * ray.width * crate::tune(6, 0.5);
                 // Where there are lamps, they stand for what shines; small bright things would be noise.
                 let shines = ray.roughness < PATH_SHINES || frame.light_count == 0;
                 let unlit = found.flags & SCENE_UNLIT != 0;
@@ -395,7 +396,7 @@ impl SceneView<'_> {
                 if passes && !unlit {
                     // What it reflects of the sky itself: half of the whole.
                     ambient = data.sky_irradiance(found.normal) * (0.5 * found.occlusion * cover);
-                } else if bounce + 1 == PATH_BOUNCES {
+                } else if bounce + 1 == bounces {
                     ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
                 }
                 let own = (found.diffuse * (1.0 - found.transmission) + found.normal_reflectance) * ambient;

@@ -150,3 +150,92 @@ pub fn scatter_chance(body: Vec3, gloss: Vec3) -> f32 {
     }
     gloss / (body + gloss)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use downpour_math::ops::f64 as exact;
+    use glam::DVec3;
+
+    fn surface(diffuse: f32, normal_reflectance: f32, roughness: f32) -> Surface {
+        Surface {
+            position: Vec3::ZERO,
+            alpha: 1.0,
+            normal: Vec3::Y,
+            roughness,
+            facet: Vec3::Y,
+            occlusion: 1.0,
+            diffuse: Vec3::splat(diffuse),
+            flags: 0,
+            normal_reflectance: Vec3::splat(normal_reflectance),
+            transmission: 0.0,
+            emission: Vec3::ZERO,
+            bend: 0.0,
+        }
+    }
+
+    /// glTF 2.0, appendix B, in double precision: diffuse and glossy part of the light of a uniform sky that one side
+    /// of the sky (x > 0) gives, seen at a cosine along x.
+    fn quadrature(diffuse: f64, f0: f64, roughness: f64, cosine: f64) -> [f64; 2] {
+        let a2 = (roughness * roughness) * (roughness * roughness);
+        let view = DVec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
+        let (n, mut sums) = (700u32, [0.0; 2]);
+        for i in 0..n {
+            // The light's height, finer towards the horizon.
+            let u = (f64::from(i) + 0.5) / f64::from(n);
+            let polar = std::f64::consts::FRAC_PI_2 * u;
+            let (height, flat) = (exact::cos(polar), exact::sin(polar));
+            for j in 0..n {
+                let turn = std::f64::consts::PI * ((f64::from(j) + 0.5) / f64::from(n) - 0.5);
+                let light = DVec3::new(flat * exact::cos(turn), height, flat * exact::sin(turn));
+                let half = (view + light).normalize();
+                let rest = 1.0 - view.dot(half);
+                let fresnel = f0 + (1.0 - f0) * (rest * rest * rest * rest * rest);
+                let d = a2 / (std::f64::consts::PI * (half.y * half.y * (a2 - 1.0) + 1.0).powi(2));
+                let smith = |c: f64, other: f64| other * (c * c * (1.0 - a2) + a2).sqrt();
+                let visibility = 0.5 / (smith(cosine, height) + smith(height, cosine));
+                let angle = flat * std::f64::consts::FRAC_PI_2 * std::f64::consts::PI / f64::from(n * n);
+                sums[0] += (1.0 - fresnel) * diffuse / std::f64::consts::PI * height * angle;
+                sums[1] += fresnel * d * visibility * height * angle;
+            }
+        }
+        sums
+    }
+
+    /// However rays are shared out, both parts get the light that they reflect.
+    #[test]
+    fn rays_bring_the_light_of_the_reflection_law() {
+        for (diffuse, f0, roughness, cosine) in [
+            (0.8f32, 0.04f32, 1.0f32, 0.7f32),
+            (0.5, 0.04, 0.5, 0.3),
+            (0.0, 0.9, 0.4, 0.6),
+            (0.3, 0.5, 0.7, 0.15),
+        ] {
+            let surface = surface(diffuse, f0, roughness);
+            let view = Vec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
+            let expected =
+                quadrature(diffuse.into(), f0.into(), roughness.into(), cosine.into()).map(|v| v as f32);
+            for chance in [0.2, 0.7] {
+                let (n, mut sums) = (400u16, [0.0; 2]);
+                for i in 0..n {
+                    for j in 0..n {
+                        let (a, b) = ((f32::from(i) + 0.5) / f32::from(n), (f32::from(j) + 0.5) / f32::from(n));
+                        let ray = scatter_draw(&surface, view, Vec3::ONE, chance, a, b, 1.0);
+                        if ray.along.x > 0.0 {
+                            sums[0] += diffuse * ray.diffuse.x;
+                            sums[1] += ray.mirror.x;
+                        }
+                    }
+                }
+                for (sum, expected) in sums.into_iter().zip(expected) {
+                    let found = sum / (f32::from(n) * f32::from(n));
+                    let off = (found - expected).abs();
+                    assert!(
+                        off < 2.0e-3 + 0.01 * expected,
+                        "{diffuse} {f0} {roughness} {cosine}, {chance}: {found}, {expected}"
+                    );
+                }
+            }
+        }
+    }
+}

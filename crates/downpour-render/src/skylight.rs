@@ -62,7 +62,7 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
 #[must_use]
 pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
     let apart = skylight_luminance(own.truncate()) - skylight_luminance(other.truncate());
-    (1.0 - apart * apart / (SKYLIGHT_NOISE * (own.w + other.w)).max(1.0e-20)).max(0.0)
+    (1.0 - apart * apart / (crate::tune(3, SKYLIGHT_NOISE) * (own.w + other.w)).max(1.0e-20)).max(0.0)
 }
 
 /// What pixels have found, and the means so far of each of their two slots: color, and the variance of its luminance.
@@ -90,7 +90,7 @@ impl SceneView<'_> {
                 .collect()
         };
         let mut means = all(&|x, y, k| pixels.skylight_mean(x, y, k));
-        for pass in 0..SKYLIGHT_PASSES {
+        for pass in 0..crate::tune(8, SKYLIGHT_PASSES as f32) as u32 {
             means = all(&|x, y, k| pixels.skylight_wide(&means, x, y, k, SKYLIGHT_STEP << pass));
         }
         let shown = |(pixel, [base, mirror]): (&TraceGather, &[Vec4; 2])| {

@@ -41,6 +41,9 @@ pub struct TraceGather {
     pub mirror: TraceSlot,
 }
 
+/// Cosine of the angle between normals up to which samples of a pixel are of one surface.
+const TRACE_SAME_NORMAL: f32 = 0.9;
+
 /// The sum of what samples have found, each with its weight.
 #[derive(Clone, Copy, Debug)]
 struct TraceSum {
@@ -56,13 +59,15 @@ impl TraceSum {
         if sample.slack <= 0.0 {
             return *self;
         }
-        let weight = path_most(sample.factor).max(1.0e-6);
         let first = if self.weight > 0.0 { self.slot } else { *sample };
+        // Another surface's light is not told apart, and taken to be the same.
+        let off = first.normal.dot(sample.place - first.place).abs();
+        let same = off < first.slack && first.normal.dot(sample.normal) > TRACE_SAME_NORMAL;
+        let weight = if same { path_most(sample.factor).max(1.0e-6) } else { 0.0 };
         Self {
             slot: PathSlot {
                 light: self.slot.light + sample.light * weight,
                 factor: self.slot.factor + sample.factor,
-                normal: self.slot.normal + sample.normal * weight,
                 ..first
             },
             weight: self.weight + weight,

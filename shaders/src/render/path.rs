@@ -47,6 +47,8 @@ shared_constants! {
         PATH_CURVED: f32 = 0.3;
         /// Roughness of a path from which surfaces are seen at a glance: as diffuse, with one lamp for all.
         PATH_GLANCE: f32 = 0.25;
+        /// The most that a surface reflects as gloss, seen at a glance.
+        PATH_GLANCE_GLOSS: f32 = 0.05;
         /// Roughness of a path from which lamps stand for what shines.
         PATH_SHINES: f32 = 0.6;
         /// Lamps that are drawn for all where a mirror shows a surface.

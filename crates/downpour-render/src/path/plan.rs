@@ -1,7 +1,7 @@
 //! Surfaces as rays take them, and the rays that look for their light.
 
 use downpour_shaders::render::path::{
-    PATH_APART, PATH_ENCLOSED, PATH_GLANCE, PATH_MIN_GLOSS, PATH_MIXED, PATH_SHARP,
+    PATH_APART, PATH_ENCLOSED, PATH_GLANCE, PATH_GLANCE_GLOSS, PATH_MIN_GLOSS, PATH_MIXED, PATH_SHARP,
 };
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_NORMAL;
 use downpour_shaders::render::scene::SCENE_BLENDED;
@@ -100,14 +100,15 @@ pub(super) fn path_soaked(surface: &Surface, clear: f32, murk: Vec3) -> Surface 
     }
 }
 
-/// A surface as it looks to rays that are not a mirror's: all that it reflects, it reflects diffusely.
+/// A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
 pub(super) fn path_glance(surface: &Surface, roughness: f32) -> Surface {
     if roughness < PATH_GLANCE {
         return *surface;
     }
+    let gloss = surface.normal_reflectance.min(Vec3::splat(PATH_GLANCE_GLOSS));
     Surface {
-        diffuse: surface.diffuse + surface.normal_reflectance,
-        normal_reflectance: Vec3::ZERO,
+        diffuse: surface.diffuse + surface.normal_reflectance - gloss,
+        normal_reflectance: gloss,
         roughness: 1.0,
         ..*surface
     }
@@ -164,7 +165,7 @@ impl SceneView<'_> {
     /// and a part of the open sky's.
     pub(super) fn path_ambient(&self, surface: &Surface, given: Vec3) -> Vec3 {
         let albedo = (surface.diffuse + surface.normal_reflectance).min(Vec3::ONE);
-        let sky = self.data.sky_irradiance(surface.normal) * (surface.occlusion * (1.0 - PATH_ENCLOSED));
-        (given * PATH_ENCLOSED + sky) / (Vec3::ONE - albedo * PATH_ENCLOSED)
+        let sky = self.data.sky_irradiance(surface.normal) * (surface.occlusion * (1.0 - crate::tune(2, PATH_ENCLOSED)));
+        (given * crate::tune(2, PATH_ENCLOSED) + sky) / (Vec3::ONE - albedo * crate::tune(2, PATH_ENCLOSED))
     }
 }
