@@ -44,16 +44,3 @@ pub use error::RenderError;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;
-
-/// Temporary.
-pub fn tune(k: usize, default: f32) -> f32 {
-    static T: std::sync::OnceLock<Vec<Option<f32>>> = std::sync::OnceLock::new();
-    T.get_or_init(|| {
-        let text = std::env::var("TUNE").unwrap_or_default();
-        text.split(',').map(|t| t.parse().ok()).collect()
-    })
-    .get(k)
-    .copied()
-    .flatten()
-    .unwrap_or(default)
-}

@@ -25,7 +25,8 @@ mod plan;
 use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
-    PATH_BOUNCES, PATH_CURVED, PATH_GLANCE, PATH_LATER_SHARE, PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS,
+    PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_PART, PATH_CURVED_SHARE, PATH_GLANCE, PATH_LATER_SHARE,
+    PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS,
     PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
@@ -34,6 +35,7 @@ use downpour_shaders::render::puddle_water::{
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LAYERS, SCENE_NONE, SCENE_UNLIT, SKYLIGHT_SLACK};
 use glam::{Vec2, Vec3, Vec4};
 
+use crate::brdf::brdf_fresnel;
 use crate::puddle::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
 use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
 use crate::scene::SceneView;
@@ -41,7 +43,9 @@ use crate::surface::Surface;
 pub use draw::{path_lattice, path_numbers};
 use draw::{path_onward, path_replaced, path_water_ray};
 pub(crate) use plan::path_most;
-use plan::{PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface};
+use plan::{
+    PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface,
+};
 
 /// What a ray of the camera finds.
 #[derive(Clone, Copy, Debug)]
@@ -179,6 +183,21 @@ struct PathMeeting {
     slack: f32,
 }
 
+/// How a ray leaves the surface that it has met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PathLeave {
+    /// It is the first, and looks for the light of the surface that the ray of the camera has met.
+    First,
+    /// Through it.
+    Straight,
+    /// Mirrored by a metal in a mirror.
+    Mirror,
+    /// From what a mirror shows.
+    Shown,
+    /// As chance has it.
+    Onward,
+}
+
 /// Whether a surface is the same where another sample of the pixel has met it.
 fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, place: Vec3, distance: f32) -> bool {
     last.plain
@@ -256,7 +275,7 @@ impl SceneView<'_> {
                 let rippled = water.ripple.z > PUDDLE_WATER_RIPPLED;
                 let mirrors = frame.sky_rays.max(if rippled { PUDDLE_WATER_RAYS } else { 1 });
                 let (drawn, replaced) = (rippled && free, !rippled && free);
-                plan = PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn, replaced, ..plan };
+                plan = PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn, kept: drawn, replaced, ..plan };
             } else if !unlit {
                 plan = self.path_plan(&found, -towards, cone * hit.distance, told, free && !under);
             }
@@ -309,54 +328,43 @@ impl SceneView<'_> {
         for turn in 1..=plan.mirrors + plan.rays {
             let (mut at, mut view) = (meeting.surface, -towards);
             let mut ray = ScatterRay::ALL;
-            let (mut from, mut passes, mut given) = (at.position, false, Vec3::ZERO);
-            let bounces = crate::tune(0, PATH_BOUNCES as f32) as u32;
-            for bounce in 0..bounces {
-                let is_mirror = turn <= plan.mirrors;
-                let of_shown = plan.replaced && is_mirror;
-                let (index, count) =
-                    if is_mirror { (turn - 1, plan.mirrors) } else { (turn - 1 - plan.mirrors, plan.rays) };
-                let [a, b, goes_on, chance] = path_numbers(random, turn, bounce, index, count);
-                if !passes {
-                    let is_first = bounce == 0;
-                    let mut next = match ripple {
-                        Some(ripple) if is_first => path_water_ray(ripple, at.roughness, view, cone, a, b),
-                        _ if plan.drawn || !is_mirror || !is_first => {
-                            let of_both = scatter_chance(at.diffuse, at.normal_reflectance);
-                            let of_first = if is_mirror { 1.0 } else { plan.chance };
-                            let gloss = if is_first { plan.gloss } else { Vec3::ONE };
-                            let of_gloss = if is_first { of_first } else { of_both };
-                            let share = if is_first { plan.share } else { crate::tune(5, PATH_LATER_SHARE) };
-                            if is_first && a >= of_gloss {
-                                let own = (a - of_gloss) / (1.0 - of_gloss);
-                                let (numbers, weight) = self.path_candidate(&at, own, b, goes_on, share);
-                                let a = of_gloss + numbers.x * (1.0 - of_gloss);
-                                let mut next =
-                                    scatter_draw(&at, view, gloss, of_gloss, a, numbers.y, share * weight);
-                                next.diffuse *= weight;
-                                next.mirror *= weight;
-                                next
-                            } else {
-                                scatter_draw(&at, view, gloss, of_gloss, a, b, share)
-                            }
+            let (mut from, mut leaves, mut given) = (at.position, PathLeave::First, Vec3::ZERO);
+            let is_mirror = turn <= plan.mirrors;
+            let of_shown = plan.replaced && is_mirror;
+            let (index, count) =
+                if is_mirror { (turn - 1, plan.mirrors) } else { (turn - 1 - plan.mirrors, plan.rays) };
+            for bounce in 0..PATH_BOUNCES {
+                let numbers = path_numbers(random, turn, bounce, index, count);
+                if leaves != PathLeave::Straight {
+                    let mut next = match (leaves, ripple) {
+                        (PathLeave::First, Some(ripple)) => {
+                            path_water_ray(ripple, at.roughness, view, cone, numbers[0], numbers[1])
                         }
-                        _ => scatter_mirror(&at, view),
+                        (PathLeave::First, None) if is_mirror && !plan.drawn => scatter_mirror(&at, view),
+                        (PathLeave::Mirror, _) => scatter_mirror(&at, view),
+                        _ => self.path_draw(&at, view, plan, leaves, is_mirror, numbers),
                     };
-                    if is_first && ripple.is_some() {
-                        light.mirrored += next.mirror.x;
-                    }
-                    if under && is_first && is_mirror {
-                        next.along = puddle_water_above(next.along);
-                        next.mirror *= if next.along.y > 0.0 { 1.0 } else { 0.0 };
-                    }
                     from = at.position + at.facet * frame.nearest;
-                    if is_first {
-                        ray = next;
-                        ray.width += cone + plan.spread;
-                    } else if of_shown && bounce == 1 {
-                        ray = path_replaced(&ray, &next);
-                    } else {
-                        ray = path_onward(&ray, &next, &at, if (bounce as f32) < crate::tune(1, 1.0) { 0.0 } else { goes_on }, (bounce as f32) < crate::tune(1, 1.0));
+                    match leaves {
+                        PathLeave::First => {
+                            if ripple.is_some() {
+                                light.mirrored += next.mirror.x;
+                            }
+                            if under && is_mirror {
+                                next.along = puddle_water_above(next.along);
+                                next.mirror *= if next.along.y > 0.0 { 1.0 } else { 0.0 };
+                            }
+                            ray = next;
+                            ray.width += cone + plan.spread;
+                        }
+                        PathLeave::Mirror => {
+                            let cosine = at.normal.dot(view).max(0.0);
+                            next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, cosine);
+                            next.width += ray.width;
+                            ray = next;
+                        }
+                        PathLeave::Shown => ray = path_replaced(&ray, &next),
+                        _ => ray = path_onward(&ray, &next, &at, numbers[2]),
                     }
                     if path_most(ray.diffuse + ray.mirror) <= 0.0 {
                         break;
@@ -368,41 +376,48 @@ impl SceneView<'_> {
                     break;
                 };
                 let found = data.surface_at(&hit, from, ray.along, ray.width);
-                let found = path_glance(&found, ray.roughness);
+                let mut found = path_glance(&found, ray.roughness);
                 let lamps = if ray.roughness < PATH_GLANCE { PATH_MIRROR_LAMPS } else { 1 };
-                let standoff = hit.distance * ray.width * crate::tune(6, 0.5);
+                let standoff = hit.distance * ray.width * 0.5;
                 // Where there are lamps, they stand for what shines; small bright things would be noise.
                 let shines = ray.roughness < PATH_SHINES || frame.light_count == 0;
                 let unlit = found.flags & SCENE_UNLIT != 0;
                 let mut lit = found.diffuse;
                 if !unlit {
                     lit = if shines { found.emission } else { Vec3::ZERO }
-                        + self.scene_direct(&found, -ray.along, lamps, chance, standoff, Vec2::ZERO);
+                        + self.scene_direct(&found, -ray.along, lamps, numbers[3], standoff, Vec2::ZERO);
                 }
                 let cover = path_cover(&found);
                 light = light.path_gathered(&ray, lit * cover, of_shown);
-                let open = path_open(&found);
                 if unlit && cover == 1.0 {
                     break;
                 }
-                if of_shown && bounce == 0 {
-                    light.factor = ray.mirror * path_albedo(&found);
-                    light.distance = hit.distance;
-                    light.normal = found.normal;
-                    light.place = found.position;
-                }
+                let open = path_open(&found);
                 let mut ambient = Vec3::ZERO;
-                passes = path_most(open) > PATH_OPEN;
-                if passes && !unlit {
-                    // What it reflects of the sky itself: half of the whole.
-                    ambient = data.sky_irradiance(found.normal) * (0.5 * found.occlusion * cover);
-                } else if bounce + 1 == bounces {
+                leaves = PathLeave::Onward;
+                if path_most(open) > PATH_OPEN {
+                    leaves = PathLeave::Straight;
+                    if !unlit {
+                        // What it reflects of the sky itself: half of the whole.
+                        ambient = data.sky_irradiance(found.normal) * (0.5 * found.occlusion * cover);
+                    }
+                } else if of_shown && light.distance < 0.0 {
+                    leaves = PathLeave::Mirror;
+                    if path_most(path_albedo(&found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                        leaves = PathLeave::Shown;
+                        found = path_glance(&found, 1.0);
+                        light.factor = ray.mirror * (path_albedo(&found) + found.normal_reflectance * 0.5);
+                        light.distance = hit.distance;
+                        light.normal = found.normal;
+                        light.place = found.position;
+                    }
+                } else if bounce + 1 == PATH_BOUNCES {
                     ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
                 }
-                let own = (found.diffuse * (1.0 - found.transmission) + found.normal_reflectance) * ambient;
+                let own = (path_albedo(&found) + found.normal_reflectance) * ambient;
                 light = light.path_gathered(&ray, own, of_shown);
                 given += lit;
-                if passes {
+                if leaves == PathLeave::Straight {
                     ray.diffuse *= open;
                     ray.mirror *= open;
                     from = found.position;
@@ -411,6 +426,44 @@ impl SceneView<'_> {
             }
         }
         light
+    }
+
+    /// A ray drawn for a surface.
+    fn path_draw(
+        &self,
+        at: &Surface,
+        view: Vec3,
+        plan: &PathPlan,
+        leaves: PathLeave,
+        is_mirror: bool,
+        numbers: [f32; 4],
+    ) -> ScatterRay {
+        let [mut a, mut b, number, _] = numbers;
+        let mut gloss = Vec3::ONE;
+        let mut chance = scatter_chance(at.diffuse, at.normal_reflectance);
+        let (mut share, mut weight) = (PATH_LATER_SHARE, 1.0);
+        if leaves == PathLeave::Shown {
+            chance = 0.0;
+        }
+        if leaves == PathLeave::First {
+            gloss = plan.gloss;
+            chance = if is_mirror { 1.0 } else { plan.chance };
+            share = plan.share;
+            if is_mirror && !plan.kept {
+                // Few rays: far out in the lobe they would be noise.
+                (share, a) = (PATH_CURVED_SHARE, a * PATH_CURVED_PART);
+            }
+            if a >= chance {
+                let own = (a - chance) / (1.0 - chance);
+                let (numbers, factor) = self.path_candidate(at, own, b, number, share);
+                (a, b, weight) = (chance + numbers.x * (1.0 - chance), numbers.y, factor);
+                share /= PATH_CANDIDATES as f32;
+            }
+        }
+        let mut ray = scatter_draw(at, view, gloss, chance, a, b, share);
+        ray.diffuse *= weight;
+        ray.mirror *= weight;
+        ray
     }
 
     /// Adds what a surface shows to a path.
@@ -447,13 +500,13 @@ impl SceneView<'_> {
         if told {
             path.base = PathSlot { light: base, factor: of_base, normal: surface.normal, ..slot };
             let mirrors = plan.mirrors > 0
-                && surface.roughness < PATH_CURVED
+                && (surface.roughness < PATH_CURVED || !plan.kept)
                 && path_most(plan.gloss) > PATH_PLAIN_GLOSS;
             path.plain = !(mirrors || layer > 0);
         } else {
             path.radiance += of_base * base;
         }
-        if plan.drawn {
+        if plan.kept {
             let roughness = surface.roughness;
             path.mirror = PathSlot { light: mirror, factor: of_gloss, roughness, normal: mirrored, ..slot };
         } else {
@@ -491,7 +544,7 @@ impl ViewPath {
         let all = meeting.plan.mirrors as f32;
         let share = light.mirrored / all;
         self.radiance += throughput * meeting.direct;
-        if meeting.plan.drawn {
+        if meeting.plan.kept {
             self.mirror = PathSlot {
                 light: light.mirror / light.mirrored.max(1.0e-6),
                 factor: throughput * share,

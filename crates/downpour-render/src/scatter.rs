@@ -59,6 +59,12 @@ pub fn scatter_hemisphere(normal: Vec3, a: f32, b: f32) -> Vec3 {
     tangent * (radius * ops::cos(angle)) + other * (radius * ops::sin(angle)) + normal * height
 }
 
+/// A direction, thrown back by the facet if it goes into it: at the rim of a round thing, interpolated normals send it there.
+#[must_use]
+pub fn scatter_above(facet: Vec3, along: Vec3) -> Vec3 {
+    along - facet * (2.0 * facet.dot(along).min(0.0))
+}
+
 /// Alpha of the lobe of a roughness.
 #[must_use]
 pub fn scatter_alpha(roughness: f32) -> f32 {
@@ -101,9 +107,10 @@ pub(crate) fn scatter_draw(
     } else {
         along = scatter_hemisphere(along, (a - chance) / (1.0 - chance), b);
     }
+    along = scatter_above(surface.facet, along);
     let none = ScatterRay { along, width: 0.0, diffuse: Vec3::ZERO, roughness, mirror: Vec3::ZERO };
     let cosine = normal.dot(along);
-    if cosine <= 0.0 || surface.facet.dot(along) <= 0.0 {
+    if cosine <= 0.0 {
         return none;
     }
     let sum = view + along;
@@ -131,13 +138,12 @@ pub(crate) fn scatter_mirror(surface: &Surface, view: Vec3) -> ScatterRay {
     let cosine = surface.normal.dot(view).max(0.0);
     let along = surface.normal * (2.0 * surface.normal.dot(view)) - view;
     let density = brdf_visible_density(scatter_alpha(surface.roughness), 1.0, cosine.max(BRDF_GRAZING));
-    let open = surface.facet.dot(along) > 0.0;
     ScatterRay {
-        along,
+        along: scatter_above(surface.facet, along),
         width: (SCATTER_DISC / density.max(SCATTER_SMALLEST)).sqrt().min(SCATTER_MAX_WIDTH),
         diffuse: Vec3::ZERO,
         roughness: surface.roughness,
-        mirror: if open { Vec3::ONE } else { Vec3::ZERO },
+        mirror: Vec3::ONE,
     }
 }
 

@@ -2,7 +2,7 @@
 //! `shaders/wgsl/render/skylight.wgsl`.
 //!
 //! First the mean of a window of 7 x 7 pixels, whose rays are one lattice ([`path`](crate::path)), with the variance of that
-//! mean. Then means of such means, 7 and 14 pixels apart: as far as two of them differ by no more than their noise (H.
+//! mean. Then means of such means, 7, 14 and 28 pixels apart: as far as two of them differ by no more than their noise (H.
 //! Dammertz et al., HPG 2010, for the steps; C. Schied et al., HPG 2017, for the variance).
 //!
 //! A neighbour counts as far as its normal agrees and as it is on the plane through the pixel's place; in the gloss, as far
@@ -62,7 +62,7 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
 #[must_use]
 pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
     let apart = skylight_luminance(own.truncate()) - skylight_luminance(other.truncate());
-    (1.0 - apart * apart / (crate::tune(3, SKYLIGHT_NOISE) * (own.w + other.w)).max(1.0e-20)).max(0.0)
+    (1.0 - apart * apart / (SKYLIGHT_NOISE * (own.w + other.w)).max(1.0e-20)).max(0.0)
 }
 
 /// What pixels have found, and the means so far of each of their two slots: color, and the variance of its luminance.
@@ -90,7 +90,7 @@ impl SceneView<'_> {
                 .collect()
         };
         let mut means = all(&|x, y, k| pixels.skylight_mean(x, y, k));
-        for pass in 0..crate::tune(8, SKYLIGHT_PASSES as f32) as u32 {
+        for pass in 0..SKYLIGHT_PASSES {
             means = all(&|x, y, k| pixels.skylight_wide(&means, x, y, k, SKYLIGHT_STEP << pass));
         }
         let shown = |(pixel, [base, mirror]): (&TraceGather, &[Vec4; 2])| {

@@ -36,7 +36,7 @@ shared_constants! {
         /// Directions among which the one of a ray of the diffuse base is drawn.
         PATH_CANDIDATES: u32 = 8;
         /// What a direction weighs in that, at least, in the mean of the sky.
-        PATH_FLOOR: f32 = 0.4;
+        PATH_FLOOR: f32 = 1.0;
         /// Roughness from which one ray serves the diffuse base and the gloss, by chance.
         PATH_MIXED: f32 = 0.35;
         /// Gloss that is worth rays of its own.
@@ -45,6 +45,20 @@ shared_constants! {
         PATH_PLAIN_GLOSS: f32 = 0.1;
         /// See [`PATH_PLAIN_GLOSS`].
         PATH_CURVED: f32 = 0.3;
+        /// Part of all rays that one is of a gloss of which no means over neighbours are taken: there are some per pixel.
+        PATH_CURVED_SHARE: f32 = 0.25;
+        /// The inner part of such a gloss that rays are drawn from.
+        PATH_CURVED_PART: f32 = 0.8;
+        /// How a ray leaves what it has met: the surface that the ray of the camera has met, whose light it looks for.
+        PATH_FIRST: u32 = 0;
+        /// Through it.
+        PATH_STRAIGHT: u32 = 1;
+        /// Mirrored by a metal in a mirror.
+        PATH_MIRROR: u32 = 2;
+        /// From what a mirror shows.
+        PATH_SHOWN: u32 = 3;
+        /// As chance has it.
+        PATH_ONWARD: u32 = 4;
         /// Roughness of a path from which surfaces are seen at a glance: as diffuse, with one lamp for all.
         PATH_GLANCE: f32 = 0.25;
         /// The most that a surface reflects as gloss, seen at a glance.
@@ -54,11 +68,11 @@ shared_constants! {
         /// Lamps that are drawn for all where a mirror shows a surface.
         PATH_MIRROR_LAMPS: u32 = 4;
         /// Part of all rays that one is which has met a surface.
-        PATH_LATER_SHARE: f32 = 0.25;
+        PATH_LATER_SHARE: f32 = 0.01;
         /// Fraction of light let through from which a surface is seen through.
         PATH_OPEN: f32 = 0.02;
         /// Part of its surroundings that surfaces take up, for a surface that a path of surfaces has led to.
-        PATH_ENCLOSED: f32 = 0.8;
+        PATH_ENCLOSED: f32 = 0.85;
     }
 }
 

@@ -72,9 +72,9 @@ shared_constants! {
         /// Pixels between the means of which the first wider mean is taken: the width of a window.
         SKYLIGHT_STEP: u32 = 7;
         /// Wider means, each of twice the step.
-        SKYLIGHT_PASSES: u32 = 2;
+        SKYLIGHT_PASSES: u32 = 3;
         /// Square of the difference of two means, in the sum of their variances, from which they are not the same.
-        SKYLIGHT_NOISE: f32 = 9.0;
+        SKYLIGHT_NOISE: f32 = 25.0;
         /// What is traced: the picture.
         SCENE_PICTURE: u32 = 0;
         /// Four over pi: the area of the octahedral map's square, for an irradiance over pi.

@@ -43,8 +43,8 @@ pub fn path_numbers(random: [u32; 4], turn: u32, bounce: u32, index: u32, count:
     }
     let fract = |x: f32| x - x.floor();
     // Not quite on the lattice's points, so that their images are not seen one by one.
-    let a = fract(rng_unit(random[0]) + own[0] * crate::tune(4, PATH_JITTER));
-    let b = fract(rng_unit(random[1]) + own[1] * crate::tune(4, PATH_JITTER));
+    let a = fract(rng_unit(random[0]) + own[0] * PATH_JITTER);
+    let b = fract(rng_unit(random[1]) + own[1] * PATH_JITTER);
     let k = index as f32;
     [
         fract((k + a) / count as f32),
@@ -86,9 +86,9 @@ pub(super) fn path_replaced(ray: &ScatterRay, next: &ScatterRay) -> ScatterRay {
 }
 
 /// A ray that goes on from a surface that the ray before has met; without weight if it does not.
-pub(super) fn path_onward(ray: &ScatterRay, next: &ScatterRay, surface: &Surface, number: f32, all: bool) -> ScatterRay {
+pub(super) fn path_onward(ray: &ScatterRay, next: &ScatterRay, surface: &Surface, number: f32) -> ScatterRay {
     let factor = path_albedo(surface) * next.diffuse + next.mirror;
-    let probability = if all { 1.0 } else { path_most(factor).min(1.0) };
+    let probability = path_most(factor).min(1.0);
     let weight = if number < probability { 1.0 / probability.max(1.0e-6) } else { 0.0 };
     ScatterRay {
         diffuse: ray.diffuse * factor * weight,
@@ -113,7 +113,7 @@ impl SceneView<'_> {
         share: f32,
     ) -> (Vec2, f32) {
         let sky = self.data.sky_irradiance(surface.normal);
-        let floor = (sky.x + sky.y + sky.z) * crate::tune(7, PATH_FLOOR) + 1.0e-6;
+        let floor = (sky.x + sky.y + sky.z) * PATH_FLOOR + 1.0e-6;
         let fract = |x: f32| x - x.floor();
         let (mut sum, mut chosen, mut weight, mut rest) = (0.0, Vec2::new(a, b), 0.0, number);
         for k in 0..PATH_CANDIDATES {

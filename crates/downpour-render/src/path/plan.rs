@@ -29,7 +29,9 @@ pub(super) struct PathPlan {
     pub(super) share: f32,
     /// Whether rays of the gloss are drawn from its lobe; else they are a mirror's.
     pub(super) drawn: bool,
-    /// Whether what the mirror shows takes the surface's place where means over neighbouring pixels are taken.
+    /// Whether means over neighbouring pixels are taken of what the gloss shows.
+    pub(super) kept: bool,
+    /// Whether they are of the light on what the gloss shows.
     pub(super) replaced: bool,
     /// Width of the mirror's ray by what the surface turns within a pixel.
     pub(super) spread: f32,
@@ -45,6 +47,7 @@ impl PathPlan {
         chance: 0.0,
         share: 0.0,
         drawn: false,
+        kept: false,
         replaced: false,
         spread: 0.0,
     };
@@ -128,22 +131,23 @@ impl SceneView<'_> {
         let cosine = surface.normal.dot(view).max(0.0);
         // Neighbouring pixels mirror directions as far apart as this.
         let spread = 2.0 * surface.bend * footprint / cosine.max(0.2);
-        let sharp =
-            surface.roughness < PATH_SHARP || surface.roughness * surface.roughness < spread * PATH_APART;
+        let sharp = surface.roughness < PATH_SHARP;
         let gloss = scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp)
             * surface.occlusion;
         let body = path_albedo(surface);
         let rays = self.frame.sky_rays;
-        let share = if told { self.frame.ray_share } else { 1.0 / rays.max(1) as f32 };
         let drawn = told && free && !sharp && rays > 0;
+        // Where neighbours mirror other things, a mean over them would be wider than the lobe.
+        let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
         let mut plan = PathPlan {
             body,
             mirrors: 0,
             gloss,
             rays,
             chance: 0.0,
-            share,
+            share: if told { self.frame.ray_share } else { 1.0 / rays.max(1) as f32 },
             drawn,
+            kept,
             replaced: false,
             spread,
         };
@@ -154,10 +158,10 @@ impl SceneView<'_> {
             plan.mirrors = if drawn { rays } else { 1 };
         } else if surface.roughness < PATH_MIXED {
             plan.mirrors = u32::from(path_most(gloss) > PATH_MIN_GLOSS);
-        } else if drawn {
+        } else if kept {
             plan.chance = scatter_chance(body, gloss);
         }
-        plan.replaced = free && !drawn && plan.mirrors > 0;
+        plan.replaced = free && !kept && plan.mirrors > 0;
         plan
     }
 
@@ -165,7 +169,7 @@ impl SceneView<'_> {
     /// and a part of the open sky's.
     pub(super) fn path_ambient(&self, surface: &Surface, given: Vec3) -> Vec3 {
         let albedo = (surface.diffuse + surface.normal_reflectance).min(Vec3::ONE);
-        let sky = self.data.sky_irradiance(surface.normal) * (surface.occlusion * (1.0 - crate::tune(2, PATH_ENCLOSED)));
-        (given * crate::tune(2, PATH_ENCLOSED) + sky) / (Vec3::ONE - albedo * crate::tune(2, PATH_ENCLOSED))
+        let sky = self.data.sky_irradiance(surface.normal) * (surface.occlusion * (1.0 - PATH_ENCLOSED));
+        (given * PATH_ENCLOSED + sky) / (Vec3::ONE - albedo * PATH_ENCLOSED)
     }
 }
