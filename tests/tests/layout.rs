@@ -18,6 +18,7 @@ use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
 use downpour_render::rain::light::DropLightFrame;
+use downpour_render::rain::medium::MediumFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
 use downpour_render::specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_render::trace::TraceGather;
@@ -78,8 +79,10 @@ fn hosts() -> Vec<Host> {
         host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,
-            capture_forward, capture_texel, form, mask_size, tiles_across, veil_beyond, veil, streak_samples,
+            capture_forward, capture_texel, form, mask_size, tiles_across, unused, streak_samples,
             streak_colour, glints, atlas),
+        host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
+            depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
             towards, distance, place, slope, half_extent, row, area, grid, start, along, first, way, oval, recede,
             swing, turns, share, spread, nearest, kind, shape, unused),

@@ -5,7 +5,8 @@
 //! 3. [`capture`]: what is round the eye, on an octahedral map (default) or as the papers' wide picture;
 //! 4. [`streak_table`]: what drops that move while the shutter is open show on the mean, made once per frame;
 //! 5. [`light`]: what lamps and sun add, drop by drop; [`glint`]: where on a drop;
-//! 6. [`drops`]: pixel by pixel, what drops and streaks show of it.
+//! 6. [`medium`]: drops that are not drawn one by one, with the light of lamps on them;
+//! 7. [`drops`]: pixel by pixel, what drops and streaks show of it.
 //!
 //! Source: Rousseau, Jolivet, Ghazanfarpour 2006, sections 4 and 5; Rousseau 2008, section 2.2.3. Where the default
 //! differs it is said at [`RefractionForm`] and [`StreakSamples`].
@@ -21,6 +22,7 @@ pub mod exposure;
 pub mod glint;
 pub mod light;
 pub mod masks;
+pub mod medium;
 mod project;
 mod reduce;
 mod shapes;
@@ -28,7 +30,6 @@ pub mod streak;
 pub mod streak_lookup;
 pub mod streak_table;
 mod tiles;
-mod veil;
 
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 
@@ -37,12 +38,12 @@ pub use drops_frame::DropsFrame;
 pub use exposure::{Exposure, EyeMotion, StreakColour, StreakSamples};
 use light::DropLightOptions;
 pub use masks::DropMasks;
+pub use medium::{MediumOptions, PanePlane, RainMedium};
 pub use reduce::{ReduceLevel, reduce_levels, reduce_texel};
 pub use streak::DropsDrop;
 pub use streak_lookup::StreakTable;
 pub use streak_table::StreakShape;
 pub use tiles::Rain;
-pub use veil::Veil;
 
 /// Glints that are kept of a drop where nothing else is said.
 const GLINTS: u32 = 4;
@@ -70,7 +71,7 @@ pub struct RainOptions {
     /// Samples along an edge of a texel of the capture, 1 to 16.
     pub capture_grid: u32,
     /// Drops that are not drawn one by one.
-    pub veil: Veil,
+    pub medium: RainMedium,
     /// In which time light is gathered.
     pub exposure: Exposure,
     /// What lamps and the sun add.
@@ -84,7 +85,7 @@ impl Default for RainOptions {
             form: RefractionForm::Direction,
             capture_size: 256,
             capture_grid: 1,
-            veil: Veil::default(),
+            medium: RainMedium::default(),
             exposure: Exposure::default(),
             light: DropLightOptions { glints: GLINTS, ..DropLightOptions::default() },
         }

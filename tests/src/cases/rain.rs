@@ -11,15 +11,17 @@ use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::DropLightOptions;
 use downpour_render::rain::streak_lookup::streak_numbers;
 use downpour_render::rain::{
-    DropMasks, Exposure, EyeMotion, Rain, RainOptions, ReduceLevel, RefractionForm, StreakColour,
-    StreakSamples, Veil, reduce_levels, reduce_texel,
+    DropMasks, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions, ReduceLevel,
+    RefractionForm, StreakColour, StreakSamples, reduce_levels, reduce_texel,
 };
 use downpour_render::scene::SceneView;
+use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
     DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK_RAYS, STREAK_SUMS, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
+use downpour_sim::resolved::{Region, Resolved};
 use glam::{DVec3, Vec3};
 
 use super::drop_light::atlas;
@@ -69,10 +71,22 @@ fn run(width: u32, cpu: &[[f32; 4]], gpu: &[[f32; 4]]) -> Run {
     }
 }
 
-/// A veil that is thick within a few metres.
-fn veil() -> Veil {
+/// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside a box round the eye, small ones everywhere.
+fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 500.0).expect("a rain");
-    Veil::new(&rain, |diameter| 400.0 * diameter).expect("a veil")
+    let region = Region::Box { center: eye.as_dvec3() + DVec3::new(0.5, 0.2, -1.0), size: DVec3::splat(7.0) };
+    let resolved = Resolved {
+        near: 0.05,
+        far: 50.0,
+        pixel_angle: 0.0025,
+        least_pixels: 1.0,
+        least_diameter: 0.4e-3,
+        region,
+    };
+    let pane = Some(PanePlane { outward: Vec3::new(0.0, 0.28, -0.96), distance: 0.7 });
+    let velocity = Vec3::new(1.0, -4.0, 0.5);
+    let options = MediumOptions { velocity, pane, ..MediumOptions::default() };
+    RainMedium::new(&rain, &resolved, masks, &options).expect("a medium")
 }
 
 /// What is compared of a picture.
@@ -80,6 +94,10 @@ fn veil() -> Veil {
 enum Part {
     Capture,
     Table,
+    Open,
+    Medium,
+    Seen,
+    Filter,
     Drops,
 }
 
@@ -126,7 +144,8 @@ fn masks_case(
     let scene = scene();
     let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
     let frame = view.frame(&scene, SIZE, 1, 1, 7).expect("a frame");
-    let options = RainOptions { capture_size: 64, capture_grid: 2, veil: veil(), ..options };
+    let medium = medium(masks, eye);
+    let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
     let rain = Rain::new(&frame, DVec3::from(eye), &drops(eye, forward), masks, &options);
     assert!(rain.list.len() > 100, "{} drops", rain.list.len());
     let clean = SceneView { data: &scene, frame: &frame }.picture();
@@ -153,14 +172,59 @@ fn masks_case(
         }
         Part::Drops => {
             gpu.submit(
-                &pass.streaks().into_iter().chain(pass.lamps()).chain([pass.drops()]).collect::<Vec<_>>(),
+                &pass
+                    .streaks()
+                    .into_iter()
+                    .chain(pass.lamps())
+                    .chain(pass.medium())
+                    .chain([pass.drops()])
+                    .collect::<Vec<_>>(),
             )?;
             let table = rain.streak_table(masks, &capture);
-            Ok(run(
-                SIZE[0],
-                &rain.layer(&clean, masks, &capture, &table, &lights.light(&rain.rows)),
-                &pass.layer()?,
-            ))
+            let medium = rain.medium_light(&lights).layer(&clean);
+            let layer = rain.layer(&clean, masks, &capture, &table, &lights.light(&rain.rows), &medium);
+            Ok(run(SIZE[0], &layer, &pass.layer()?))
+        }
+        Part::Open => {
+            gpu.submit(&pass.medium())?;
+            let medium = rain.medium_light(&lights);
+            let cells = medium.found(&clean).len() - 2 * clean.len();
+            Ok(run(16, &medium.found(&clean)[..cells], &pass.medium_found()?[..cells]))
+        }
+        Part::Medium => {
+            gpu.submit(&pass.medium())?;
+            let medium = rain.medium_light(&lights);
+            let pixels = medium.found(&clean).len() - 2 * clean.len();
+            let whole = |found: &[[f32; 4]]| found[pixels..].iter().step_by(2).copied().collect::<Vec<_>>();
+            Ok(run(SIZE[0], &whole(&medium.found(&clean)), &whole(&pass.medium_found()?)))
+        }
+        Part::Seen => {
+            gpu.submit(&pass.medium())?;
+            let medium = rain.medium_light(&lights);
+            let pixels = medium.found(&clean).len() - 2 * clean.len();
+            // Means over blocks: which part of a ray chance draws may differ, what comes of it may not.
+            let blocks = |found: &[[f32; 4]]| {
+                let [across, down] = SIZE.map(|edge| edge as usize / 16);
+                let mut sums = vec![[0.0; 4]; across * down];
+                for (i, row) in found[pixels..].iter().skip(1).step_by(2).enumerate() {
+                    let block = (i / SIZE[0] as usize / 16) * across + i % SIZE[0] as usize / 16;
+                    for (sum, value) in sums[block].iter_mut().zip(row) {
+                        *sum += value / 256.0;
+                    }
+                }
+                sums
+            };
+            Ok(run(SIZE[0] / 16, &blocks(&medium.found(&clean)), &blocks(&pass.medium_found()?)))
+        }
+        Part::Filter => {
+            gpu.submit(&pass.medium())?;
+            let numbers = |layer: &[[f32; 4]]| -> Vec<[f32; 4]> {
+                // The last number is two halves, which the case of what was found holds.
+                layer.iter().map(|&[r, g, b, _]| [r, g, b, 0.0]).collect()
+            };
+            // From the same findings.
+            let medium = rain.medium_light(&lights).filtered(&clean, &pass.medium_found()?);
+            Ok(run(SIZE[0], &numbers(&medium), &numbers(&pass.layer()?)))
         }
     }
 }
@@ -202,6 +266,20 @@ const DRAWN: Tol = Tol::relative(
     5.0e-3,
     2.0e-3,
     "the capture above; directions of a mask's rim turn by the width of the picture in a texel",
+)
+.with_outliers(1.0e-2);
+
+const SCATTERED: Tol = Tol::relative(
+    3.0e-3,
+    1.0e-4,
+    "differences of a table between angles (atan2, 4096 ulp); a ray at an edge may fall on either side",
+)
+.with_outliers(1.0e-2);
+
+const SEEN: Tol = Tol::relative(
+    2.0e-2,
+    1.0e-4,
+    "the light above; the part of a ray that chance draws may be its neighbor, of which means are taken",
 )
 .with_outliers(1.0e-2);
 
@@ -267,8 +345,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_depth",
             "drops_pixel",
             "drops_over",
-            "drops_veil",
-            "drops_veiled",
+            "drops_medium",
             "streak_time",
             "streak_nearest",
             "streak_depth",
@@ -289,6 +366,38 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         tol: DRAWN,
         run,
     };
+    let medium = |name, kernel, run| KernelCase {
+        name,
+        kernel,
+        covers: &[
+            "medium_outline",
+            "medium_node",
+            "medium_within",
+            "medium_slab",
+            "medium_roots",
+            "medium_both",
+            "medium_region",
+            "medium_begin",
+            "medium_span",
+            "medium_path",
+            "medium_depth",
+            "medium_open_end",
+            "medium_open_slice",
+            "medium_open_ray",
+            "medium_open_column",
+            "medium_open_cell",
+            "medium_open_at",
+            "medium_light_phase",
+            "medium_light_span",
+            "medium_light_add",
+            "medium_light_lamp",
+            "medium_light_pixel",
+            "medium_filter_weight",
+            "medium_filter_pixel",
+        ],
+        tol: SCATTERED,
+        run,
+    };
     vec![
         KernelCase {
             name: "main_trace: a capture with a sun and lamps",
@@ -307,6 +416,27 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             covers: &["reduce_texel"],
             tol: Tol::relative(1.0e-6, 0.0, "the mean of four: three sums, each rounded once"),
             run: reduce_case,
+        },
+        medium("main_medium_open: a grid", &MEDIUM_OPEN_KERNEL, |gpu| {
+            rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Open)
+        }),
+        medium("main_medium_light: lamps and sun", &MEDIUM_LIGHT_KERNEL, |gpu| {
+            rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Medium)
+        }),
+        medium("main_medium_light: from above", &MEDIUM_LIGHT_KERNEL, |gpu| {
+            rain_case(gpu, ABOVE, RefractionForm::Direction, Exposure::default(), Part::Medium)
+        }),
+        KernelCase {
+            tol: SEEN,
+            ..medium("main_medium_light: shadows", &MEDIUM_LIGHT_KERNEL, |gpu| {
+                rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Seen)
+            })
+        },
+        KernelCase {
+            tol: Tol::relative(1.0e-4, 1.0e-6, "two sums of 49 numbers, and a division (2.5 ulp)"),
+            ..medium("main_medium_filter: lamps and sun", &MEDIUM_FILTER_KERNEL, |gpu| {
+                rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Filter)
+            })
         },
         drops("main_drops: level", |gpu| {
             let (eye, forward) = (Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0));

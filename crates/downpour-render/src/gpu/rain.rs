@@ -6,6 +6,7 @@ use downpour_shaders::render::rain::{
 };
 
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
+use super::medium::{MediumPass, MediumPipeline};
 use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::rain::light::DropLights;
 use crate::rain::streak_lookup::STREAK_SHAPE_BYTES;
@@ -19,6 +20,7 @@ pub struct RainPipeline {
     reduce: ComputeKernel,
     streaks: ComputeKernel,
     lamps: DropLightPipeline,
+    medium: MediumPipeline,
     drops: ComputeKernel,
 }
 
@@ -39,6 +41,7 @@ pub struct RainPass<'a> {
     levels: Vec<(wgpu::BindGroup, u32)>,
     streaks: (wgpu::BindGroup, u32),
     lamps: DropLightPass<'a>,
+    medium: MediumPass<'a>,
     drops: wgpu::BindGroup,
     texels: wgpu::Buffer,
     table: wgpu::Buffer,
@@ -57,6 +60,7 @@ impl RainPipeline {
             reduce: kernel(&REDUCE_KERNEL)?,
             streaks: kernel(&STREAK_TABLE_KERNEL)?,
             lamps: DropLightPipeline::new(gpu)?,
+            medium: MediumPipeline::new(gpu)?,
             drops: kernel(&DROPS_KERNEL)?,
         })
     }
@@ -72,7 +76,8 @@ impl RainPipeline {
         })
     }
 
-    /// Makes ready to draw drops over a scene. `clean` is the scene's picture with its distances.
+    /// Makes ready to draw drops over a scene. `clean` is the scene's picture with its distances; `lights` are
+    /// those of `rain`.
     ///
     /// # Errors
     /// As [`RainPipeline::upload`].
@@ -117,7 +122,19 @@ impl RainPipeline {
         let streaks = self.streaks.bind(gpu, &[&frame, &texels, &masks.masks, &shapes, &table])?;
         let streaks = (streaks, rain.shapes.len() as u32);
         let lamps = self.lamps.prepare(scene, &masks.light, lights, &rain.rows)?;
-        let bindings = [&frame, &texels, &masks.masks, &list, &tiles, clean, &layer, &table, lamps.light()];
+        let medium = self.medium.prepare(scene, &rain.medium_light(lights), clean, &layer)?;
+        let bindings = [
+            &frame,
+            &texels,
+            &masks.masks,
+            &list,
+            &tiles,
+            clean,
+            &layer,
+            &table,
+            lamps.light(),
+            medium.frame(),
+        ];
         let drops = self.drops.bind(gpu, &bindings)?;
         let capture = (capture, size.div_ceil(8));
         Ok(RainPass {
@@ -128,6 +145,7 @@ impl RainPipeline {
             levels,
             streaks,
             lamps,
+            medium,
             drops,
             texels,
             table,
@@ -159,6 +177,20 @@ impl RainPass<'_> {
     #[must_use]
     pub fn lamps(&self) -> Vec<Dispatch<'_>> {
         self.lamps.dispatches()
+    }
+
+    /// The drops that are not drawn one by one, in this order; before [`RainPass::drops`].
+    #[must_use]
+    pub fn medium(&self) -> [Dispatch<'_>; 3] {
+        self.medium.dispatches()
+    }
+
+    /// Reads what was found of the drops that are not drawn, as [`MediumLight::found`].
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn medium_found(&self) -> Result<Vec<[f32; 4]>, GpuError> {
+        self.medium.found()
     }
 
     /// The drops.

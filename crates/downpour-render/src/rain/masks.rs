@@ -137,6 +137,11 @@ impl DropMasks {
         }
     }
 
+    /// Area that a drop covers, seen from `elevation` radians above it, over that of the disc of its diameter.
+    pub(super) fn outline(&self, diameter: f32, elevation: f32) -> f64 {
+        f64::from(self.place(diameter, elevation).area) / std::f64::consts::PI
+    }
+
     /// The class of drops of a row of diameters, at rest.
     pub(super) fn shape(&self, row: f32) -> StreakShape {
         let first = row as usize * DROPS_ELEVATIONS as usize;

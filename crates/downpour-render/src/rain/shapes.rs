@@ -23,8 +23,13 @@ pub(super) fn of_row(row: f32) -> u32 {
     (0..ROWS.len() as u32).min_by(nearer).unwrap_or(0)
 }
 
-/// The classes of these drops, none if no drop moves. Drops that move otherwise than their class go to the loop.
-pub(super) fn classify(drops: &mut [(u32, Projected)], masks: &DropMasks) -> Vec<StreakShape> {
+/// The classes of these drops, none if no drop moves. Drops that move otherwise than their class go to the loop. Of the
+/// class `medium`, if there is one, the mean is wanted in any case.
+pub(super) fn classify(
+    drops: &mut [(u32, Projected)],
+    masks: &DropMasks,
+    medium: Option<u32>,
+) -> Vec<StreakShape> {
     let mut sums = [(DVec3::ZERO, 0u32); ROWS.len()];
     let moves = |projected: &Projected| projected.velocity != Vec3::ZERO;
     for (_, projected) in drops.iter().filter(|(_, projected)| moves(projected)) {
@@ -32,12 +37,15 @@ pub(super) fn classify(drops: &mut [(u32, Projected)], masks: &DropMasks) -> Vec
         *sum += projected.velocity.as_dvec3();
         *count += 1;
     }
-    if sums.iter().all(|(_, count)| *count == 0) {
+    if medium.is_none() && sums.iter().all(|(_, count)| *count == 0) {
         return Vec::new();
     }
     let mut shapes = ROWS.map(|row| masks.shape(row));
     for (shape, (sum, count)) in shapes.iter_mut().zip(sums) {
         shape.velocity = (sum / f64::from(count.max(1))).as_vec3().into();
+    }
+    if let Some(shape) = medium.and_then(|medium| shapes.get_mut(medium as usize)) {
+        shape.wanted = STREAK_MEAN;
     }
     for (_, projected) in drops.iter_mut() {
         let drop = &mut projected.drop;

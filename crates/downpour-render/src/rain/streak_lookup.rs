@@ -16,7 +16,7 @@ pub struct StreakTable {
 }
 
 /// Both halves of a word.
-fn unpack(word: u32) -> [f32; 2] {
+pub(super) fn unpack(word: u32) -> [f32; 2] {
     [f16::from_bits(word as u16).to_f32(), f16::from_bits((word >> 16) as u16).to_f32()]
 }
 

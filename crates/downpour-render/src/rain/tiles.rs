@@ -7,6 +7,7 @@ use glam::{DVec3, Vec2};
 use super::capture::CaptureFrame;
 use super::drops_frame::DropsFrame;
 use super::light::{DropLightForm, DropLightOptions, DropLights, drop_light_axes, drop_light_rows};
+use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::project::{Projected, project};
 use super::streak::DropsDrop;
 use super::streak_table::StreakShape;
@@ -19,6 +20,8 @@ use crate::data::{RenderFrame, SceneData};
 pub struct Rain {
     /// What the shader knows of the picture.
     pub frame: DropsFrame,
+    /// Drops that are not drawn one by one.
+    pub medium: MediumFrame,
     /// How the surroundings are captured.
     pub capture: CaptureFrame,
     /// Classes of the drops that move, for the streak radiance table; none if nothing moves.
@@ -59,7 +62,8 @@ impl Rain {
             .collect();
         // Two drops at one distance go in the order in which they were given.
         placed.sort_by(|a, b| a.1.drop.nearest.total_cmp(&b.1.drop.nearest).then(a.0.cmp(&b.0)));
-        let shapes = shapes::classify(&mut placed, masks);
+        let medium = options.medium.row().map(shapes::of_row);
+        let shapes = shapes::classify(&mut placed, masks, medium);
         let across = width.div_ceil(DROPS_TILE);
         let count = (across * height.div_ceil(DROPS_TILE)) as usize;
         let touched = |shown: &Projected| tiles_of(*shown, width, height);
@@ -89,6 +93,10 @@ impl Rain {
         }
         Self {
             frame: DropsFrame::new(picture, &capture, masks, across, options),
+            medium: MediumFrame {
+                lit: lamps_of(options.light.form),
+                ..MediumFrame::new(&options.medium, eye.as_vec3(), [width, height])
+            },
             capture,
             shapes,
             list: placed.iter().map(|p| p.1.drop).collect(),
@@ -111,6 +119,12 @@ impl Rain {
         masks: &'a DropMasks,
     ) -> Result<DropLights<'a>, RenderError> {
         DropLights::new(scene, &self.picture, &masks.light, self.light)
+    }
+
+    /// The drops that are not drawn one by one, before a scene; `lights` are those of [`Rain::lights`].
+    #[must_use]
+    pub fn medium_light<'a>(&self, lights: &DropLights<'a>) -> MediumLight<'a> {
+        MediumLight::new(&self.medium, lights)
     }
 
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given.

@@ -89,7 +89,7 @@ pub fn render_specimen_table(
         let capture = rain.capture.trace(scene);
         let table = rain.streak_table(masks, &capture);
         let light = streak.lights()?.light(&rain.rows);
-        streak.show(&rain.layer(clean, masks, &capture, &table, &light), &mut image);
+        streak.show(&rain.layer(clean, masks, &capture, &table, &light, &[]), &mut image);
     }
     Ok(image)
 }
