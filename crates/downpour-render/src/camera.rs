@@ -110,7 +110,7 @@ impl Viewpoint {
             puddles: scene.puddles,
             puddle_count: scene.puddle_count,
             pane: scene.pane,
-            unused_0: 0,
+            skylight_pass: 0,
             unused_1: 0,
             unused_2: 0,
             sky_levels: scene.sky_levels,

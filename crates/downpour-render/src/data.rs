@@ -73,8 +73,8 @@ pub struct RenderFrame {
     pub puddle_count: u32,
     /// Row of the table where the pane begins that throws shadows; 0: none.
     pub pane: u32,
-    /// 0.
-    pub unused_0: u32,
+    /// Pass of the means over neighbouring pixels.
+    pub skylight_pass: u32,
     /// 0.
     pub unused_1: u32,
     /// 0.

@@ -12,7 +12,7 @@
 //!   ([`scatter`](crate::scatter)). Such a ray finds the sky at the level of its own width, or a surface, which has light of
 //!   its own: of one lamp drawn for all, and of the next ray. At most `PATH_BOUNCES` follow each other, and fewer where
 //!   surfaces are dark: each goes on with the probability of its albedo. The light that falls on the last surface is taken to
-//!   be the mean of what the path has met, and a fifth of the open sky's.
+//!   be the mean of what the path has met, and a tenth of the open sky's.
 //!
 //! [`skylight`](crate::skylight) takes means of this light over neighbouring pixels, but for that of mirrors.
 //!
@@ -20,14 +20,15 @@
 //! there are no lamps, which else stand for them; rays that look for light do not see the water of puddles.
 
 mod draw;
+mod lattice;
 mod plan;
 
 use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
-    PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_PART, PATH_CURVED_SHARE, PATH_GLANCE, PATH_LATER_SHARE,
-    PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS,
-    PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SHINES,
+    PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_PART, PATH_CURVED_SHARE, PATH_GLANCE,
+    PATH_LATER_SHARE, PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE,
+    PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED, PUDDLE_WATER_ROWS,
@@ -40,12 +41,10 @@ use crate::puddle::water::{PuddleWater, puddle_water_above, puddle_water_refract
 use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
 use crate::scene::SceneView;
 use crate::surface::Surface;
-pub use draw::{path_lattice, path_numbers};
 use draw::{path_onward, path_replaced, path_water_ray};
+pub use lattice::{path_lattice_numbers, path_lattice_words};
 pub(crate) use plan::path_most;
-use plan::{
-    PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface,
-};
+use plan::{PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface};
 
 /// What a ray of the camera finds.
 #[derive(Clone, Copy, Debug)]
@@ -244,8 +243,7 @@ impl SceneView<'_> {
                 let ripple = self.puddle_water_ripple(met.puddle, place, footprint, met.depth, met.open);
                 found = path_water_surface(start, towards, distance, ripple);
                 material = PUDDLE_WATER_MATERIAL;
-                water =
-                    Some(PathWater { found: met, ripple, level: place.y, clear: 1.0, murk: Vec3::ZERO });
+                water = Some(PathWater { found: met, ripple, level: place.y, clear: 1.0, murk: Vec3::ZERO });
             } else if layer == 0
                 && path_same_surface(last, material, found.facet, found.position, hit.distance)
             {
@@ -275,7 +273,8 @@ impl SceneView<'_> {
                 let rippled = water.ripple.z > PUDDLE_WATER_RIPPLED;
                 let mirrors = frame.sky_rays.max(if rippled { PUDDLE_WATER_RAYS } else { 1 });
                 let (drawn, replaced) = (rippled && free, !rippled && free);
-                plan = PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn, kept: drawn, replaced, ..plan };
+                plan =
+                    PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn, kept: drawn, replaced, ..plan };
             } else if !unlit {
                 plan = self.path_plan(&found, -towards, cone * hit.distance, told, free && !under);
             }
@@ -334,7 +333,7 @@ impl SceneView<'_> {
             let (index, count) =
                 if is_mirror { (turn - 1, plan.mirrors) } else { (turn - 1 - plan.mirrors, plan.rays) };
             for bounce in 0..PATH_BOUNCES {
-                let numbers = path_numbers(random, turn, bounce, index, count);
+                let numbers = path_lattice_numbers(random, turn, bounce, index, count);
                 if leaves != PathLeave::Straight {
                     let mut next = match (leaves, ripple) {
                         (PathLeave::First, Some(ripple)) => {

@@ -9,7 +9,9 @@
 use downpour_math::ops;
 use downpour_math::packing::packing_sign;
 use downpour_shaders::render::brdf::BRDF_GRAZING;
-use downpour_shaders::render::scatter::{SCATTER_DISC, SCATTER_MAX_WIDTH, SCATTER_MIN_ALPHA, SCATTER_SMALLEST};
+use downpour_shaders::render::scatter::{
+    SCATTER_DISC, SCATTER_MAX_WIDTH, SCATTER_MIN_ALPHA, SCATTER_SMALLEST,
+};
 use glam::Vec3;
 
 use crate::brdf::{
@@ -225,7 +227,8 @@ mod tests {
                 let (n, mut sums) = (400u16, [0.0; 2]);
                 for i in 0..n {
                     for j in 0..n {
-                        let (a, b) = ((f32::from(i) + 0.5) / f32::from(n), (f32::from(j) + 0.5) / f32::from(n));
+                        let (a, b) =
+                            ((f32::from(i) + 0.5) / f32::from(n), (f32::from(j) + 0.5) / f32::from(n));
                         let ray = scatter_draw(&surface, view, Vec3::ONE, chance, a, b, 1.0);
                         if ray.along.x > 0.0 {
                             sums[0] += diffuse * ray.diffuse.x;

@@ -184,16 +184,14 @@ mod tests {
     #[test]
     fn each_level_has_the_mean_of_the_map() {
         for (w, h) in [(64, 32), (100, 50), (37, 19), (1, 32), (9, 64)] {
-            let radiance: Vec<[f32; 3]> =
-                (0..w * h).map(|i| [((i * 7919) % 101) as f32, 1.0, 2.0]).collect();
+            let radiance: Vec<[f32; 3]> = (0..w * h).map(|i| [((i * 7919) % 101) as f32, 1.0, 2.0]).collect();
             let sky = SkyLight::new(w, h, &radiance);
             let mean = |[width, height, first, _]: [u32; 4]| {
                 let (mut sum, mut weight) = (0.0f64, 0.0f64);
                 for y in 0..height {
                     // The exact solid angle of a row.
-                    let cosine = |row: u32| {
-                        ops::f64::cos(std::f64::consts::PI * f64::from(row) / f64::from(height))
-                    };
+                    let cosine =
+                        |row: u32| ops::f64::cos(std::f64::consts::PI * f64::from(row) / f64::from(height));
                     let area = cosine(y) - cosine(y + 1);
                     for x in 0..width {
                         sum += f64::from(sky.texels[(first + y * width + x) as usize][0]) * area;

@@ -2,25 +2,27 @@
 //! `shaders/wgsl/render/skylight.wgsl`.
 //!
 //! First the mean of a window of 7 x 7 pixels, whose rays are one lattice ([`path`](crate::path)), with the variance of that
-//! mean. Then means of such means, 7, 14 and 28 pixels apart: as far as two of them differ by no more than their noise (H.
+//! mean. Then means of such means, 6, 12 and 24 pixels apart: as far as two of them differ by no more than their noise (H.
 //! Dammertz et al., HPG 2010, for the steps; C. Schied et al., HPG 2017, for the variance).
 //!
 //! A neighbour counts as far as its normal agrees and as it is on the plane through the pixel's place; in the gloss, as far
 //! as it mirrors the same direction, within the lobe.
 
-use downpour_math::packing::{packing_octahedral_decode, packing_unpack_snorm};
 use downpour_shaders::render::scene::{
     SKYLIGHT_LOBE, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
 };
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
+use crate::path::PathSlot;
 use crate::scene::SceneView;
-use crate::trace::{TraceGather, TraceSlot};
+use crate::trace::{TraceGather, TraceSlot, trace_unpack};
 
 /// A slot of a pixel, unpacked.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SkylightSlot {
+struct SkylightSlot {
+    light: Vec3,
+    factor: Vec3,
     /// Of the surface.
     normal: Vec3,
     /// Of what counts as the same: the normal, or the direction that a mirror would show.
@@ -69,20 +71,19 @@ pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
 struct Pixels<'a> {
     width: u32,
     height: u32,
-    gather: &'a [TraceGather],
-    slots: Vec<[SkylightSlot; 2]>,
+    slots: &'a [[SkylightSlot; 2]],
 }
 
 impl SceneView<'_> {
     /// What the light of sky and surfaces adds to each pixel.
     pub(crate) fn skylight(&self, gather: &[TraceGather]) -> Vec<[f32; 3]> {
         let eye = Vec3::from(self.frame.eye);
-        let slots = gather
+        let slots: Vec<[SkylightSlot; 2]> = gather
             .par_iter()
             .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
             .collect();
         let (width, height) = (self.frame.width, self.frame.height);
-        let pixels = &Pixels { width, height, gather, slots };
+        let pixels = &Pixels { width, height, slots: &slots };
         let all = |of: &(dyn Fn(u32, u32, usize) -> Vec4 + Sync)| -> Vec<[Vec4; 2]> {
             (0..height)
                 .into_par_iter()
@@ -93,35 +94,27 @@ impl SceneView<'_> {
         for pass in 0..SKYLIGHT_PASSES {
             means = all(&|x, y, k| pixels.skylight_wide(&means, x, y, k, SKYLIGHT_STEP << pass));
         }
-        let shown = |(pixel, [base, mirror]): (&TraceGather, &[Vec4; 2])| {
-            let base = Vec3::from(pixel.base.factor) * base.truncate();
-            (base + Vec3::from(pixel.mirror.factor) * mirror.truncate()).to_array()
+        let shown = |([base, mirror], [of_base, of_mirror]): (&[SkylightSlot; 2], &[Vec4; 2])| {
+            (base.factor * of_base.truncate() + mirror.factor * of_mirror.truncate()).to_array()
         };
-        gather.par_iter().zip(&means).map(shown).collect()
+        slots.par_iter().zip(&means).map(shown).collect()
     }
 }
 
 /// A slot, unpacked.
 fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
-    let direction = Vec3::from(packing_octahedral_decode(packing_unpack_snorm(slot.normal)));
-    let place = Vec3::from(slot.place);
+    let PathSlot { light, slack, factor, roughness, normal: direction, place } = trace_unpack(slot, eye);
     let mut normal = direction;
-    if slot.roughness > 0.0 {
+    if roughness > 0.0 {
         // Between what is seen and what is mirrored.
         let seen = place - eye;
         let sum = direction - seen / seen.dot(seen).sqrt().max(1.0e-20);
         normal = sum / sum.dot(sum).sqrt().max(1.0e-20);
     }
-    SkylightSlot { normal, direction, place, slack: slot.slack, roughness: slot.roughness }
+    SkylightSlot { light, factor, normal, direction, place, slack, roughness }
 }
 
 impl Pixels<'_> {
-    /// The light of a slot of a pixel.
-    fn light(&self, index: usize, slot: usize) -> Vec3 {
-        let pixel = &self.gather[index];
-        Vec3::from(if slot == 0 { pixel.base.light } else { pixel.mirror.light })
-    }
-
     /// The mean of the window round a pixel, and the variance of its luminance.
     fn skylight_mean(&self, x: u32, y: u32, slot: usize) -> Vec4 {
         let index = |x: u32, y: u32| (y * self.width + x) as usize;
@@ -140,7 +133,7 @@ impl Pixels<'_> {
                     counts = skylight_same(own, &self.slots[other][slot]);
                 }
                 if counts > 0.0 {
-                    let light = self.light(other, slot);
+                    let light = self.slots[other][slot].light;
                     let luminance = skylight_luminance(light);
                     sum += light * counts;
                     squares += luminance * luminance * counts;
@@ -178,8 +171,7 @@ impl Pixels<'_> {
             let other = ((row - step) * self.width + column - step) as usize;
             let its = means[other][slot];
             let kernel = if k % 2 == 0 { 1.0 } else { 2.0 };
-            let counts =
-                kernel * skylight_same(own, &self.slots[other][slot]) * skylight_alike(mean, its);
+            let counts = kernel * skylight_same(own, &self.slots[other][slot]) * skylight_alike(mean, its);
             sum += its.truncate() * counts;
             variance += its.w * counts * counts;
             weight += counts;

@@ -6,6 +6,7 @@ use downpour_math::ops;
 use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_UNLIT, SURFACE_OPEN,
 };
+use downpour_sim::shelter::Holes;
 use glam::{Vec3, Vec4};
 
 use crate::data::{RenderCorner, SceneData};
@@ -39,6 +40,14 @@ pub struct Surface {
     pub bend: f32,
 }
 
+/// Rain falls through what is not seen: where a masked material is below its cutoff, or one that is blended has no alpha. Where
+/// one is blended and has some, it is there: glass keeps off the rain.
+impl Holes for SceneData {
+    fn is_hole(&self, hit: &Hit) -> bool {
+        self.surface_is_open(hit)
+    }
+}
+
 impl SceneData {
     fn corners_of(&self, hit: &Hit) -> &[RenderCorner] {
         let first = hit.triangle as usize * 3;
@@ -65,6 +74,18 @@ impl SceneData {
             * self.surface_colour(hit).w
     }
 
+    /// Whether there is a hole at a hit.
+    fn surface_is_open(&self, hit: &Hit) -> bool {
+        let material = (self.corners_of(hit)[0].material * SCENE_MATERIAL_ROWS) as usize;
+        let flags = self.table[material + 3][0];
+        if flags & (SCENE_MASKED | SCENE_BLENDED) == 0 {
+            return false;
+        }
+        let cutoff = f32::from_bits(self.table[material + 2][3]);
+        let least = if flags & SCENE_MASKED != 0 { cutoff } else { SURFACE_OPEN };
+        self.surface_alpha(hit) < least
+    }
+
     /// The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is
     /// blended has no alpha. Twelve holes in a row end the ray.
     #[must_use]
@@ -79,14 +100,7 @@ impl SceneData {
                 from_distance,
                 farthest,
             )?;
-            let material = (self.corners_of(&hit)[0].material * SCENE_MATERIAL_ROWS) as usize;
-            let flags = self.table[material + 3][0];
-            if flags & (SCENE_MASKED | SCENE_BLENDED) == 0 {
-                return Some(hit);
-            }
-            let cutoff = f32::from_bits(self.table[material + 2][3]);
-            let least = if flags & SCENE_MASKED != 0 { cutoff } else { SURFACE_OPEN };
-            if self.surface_alpha(&hit) >= least {
+            if !self.surface_is_open(&hit) {
                 return Some(hit);
             }
             from_distance = hit.distance + nearest;

@@ -4,31 +4,33 @@
 //! are taken to do so too. [`skylight`](crate::skylight) takes means of what neighbouring pixels have found of the light of
 //! sky and surfaces.
 
-use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm};
-use downpour_shaders::render::scene::{SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE};
+use downpour_math::packing::{
+    packing_octahedral_decode, packing_octahedral_encode, packing_pack_snorm, packing_unpack_snorm,
+};
+use downpour_shaders::render::scene::{SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE, TRACE_SAME_NORMAL};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-use crate::path::{PathSlot, ViewPath, path_lattice, path_most};
+use crate::path::{PathSlot, ViewPath, path_lattice_words, path_most};
 use crate::rain::capture::{capture_direction, capture_suns};
+use crate::rain::streak_lookup::{pack, unpack};
 use crate::scene::SceneView;
 
-/// Light of which means are taken over neighbouring pixels. The same layout as `TraceSlot` in WGSL.
+/// Light of which means are taken over neighbouring pixels, packed. The same layout as `TraceSlot` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TraceSlot {
-    /// The light: the mean of the samples that have found some.
-    pub light: [f32; 3],
-    /// The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
-    pub normal: u32,
-    /// What it is multiplied with.
-    pub factor: [f32; 3],
-    /// How far from the plane another place may be; 0: there is no light.
-    pub slack: f32,
     /// Where it is, metres.
     pub place: [f32; 3],
-    /// Roughness of a gloss; 0 for light on a diffuse base.
-    pub roughness: f32,
+    /// The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
+    pub normal: u32,
+    /// Sum of the light's red, green and blue: the mean of the samples that have found some.
+    pub light: f32,
+    /// Fractions of it that are red and green, 12 bits each, and the roughness of a gloss, 8 bits; 0: a diffuse base.
+    pub look: u32,
+    /// What it is multiplied with, and how far from the plane another place may be, per distance from the eye (0: there is
+    /// no light), as halves.
+    pub factor: [u32; 2],
 }
 
 /// Light of sky and surfaces that a pixel shows. The same layout as `TraceGather` in WGSL.
@@ -41,8 +43,47 @@ pub struct TraceGather {
     pub mirror: TraceSlot,
 }
 
-/// Cosine of the angle between normals up to which samples of a pixel are of one surface.
-const TRACE_SAME_NORMAL: f32 = 0.9;
+/// A slot, packed, as an eye sees it.
+fn trace_pack(slot: &PathSlot, eye: Vec3) -> TraceSlot {
+    if slot.slack <= 0.0 {
+        return TraceSlot::default();
+    }
+    let sum = slot.light.x + slot.light.y + slot.light.z;
+    let scale = 1.0 / sum.max(1.0e-30);
+    let part = |x: f32| ((x * scale).clamp(0.0, 1.0) * 4095.0 + 0.5) as u32;
+    let rough = if slot.roughness <= 0.0 {
+        0
+    } else {
+        ((slot.roughness.clamp(0.0, 1.0) * 255.0 + 0.5) as u32).max(1)
+    };
+    let from_eye = slot.place - eye;
+    let slack = (slot.slack / from_eye.dot(from_eye).sqrt().max(1.0e-20)).clamp(1.0e-4, 6.0e4);
+    let factor = slot.factor.min(Vec3::splat(6.0e4));
+    TraceSlot {
+        place: slot.place.to_array(),
+        normal: packing_pack_snorm(packing_octahedral_encode(slot.normal.to_array())),
+        light: sum,
+        look: part(slot.light.x) | part(slot.light.y) << 12 | rough << 24,
+        factor: [pack([factor.x, factor.y]), pack([factor.z, slack])],
+    }
+}
+
+/// A slot as it was before it was packed.
+pub(crate) fn trace_unpack(slot: &TraceSlot, eye: Vec3) -> PathSlot {
+    let red = (slot.look & 4095) as f32 * (slot.light / 4095.0);
+    let green = (slot.look >> 12 & 4095) as f32 * (slot.light / 4095.0);
+    let [low, high] = slot.factor.map(unpack);
+    let place = Vec3::from(slot.place);
+    let from_eye = place - eye;
+    PathSlot {
+        light: Vec3::new(red, green, (slot.light - red - green).max(0.0)),
+        slack: high[1] * from_eye.dot(from_eye).sqrt(),
+        factor: Vec3::new(low[0], low[1], high[0]),
+        roughness: (slot.look >> 24) as f32 / 255.0,
+        normal: Vec3::from(packing_octahedral_decode(packing_unpack_snorm(slot.normal))),
+        place,
+    }
+}
 
 /// The sum of what samples have found, each with its weight.
 #[derive(Clone, Copy, Debug)]
@@ -75,19 +116,13 @@ impl TraceSum {
     }
 
     /// The mean, where `share` is one over the number of all samples.
-    fn trace_mean(&self, share: f32) -> TraceSlot {
+    fn trace_mean(&self, share: f32, eye: Vec3) -> TraceSlot {
         if self.weight <= 0.0 {
             return TraceSlot::default();
         }
         let slot = &self.slot;
-        TraceSlot {
-            light: (slot.light / self.weight).to_array(),
-            normal: packing_pack_snorm(packing_octahedral_encode(slot.normal.to_array())),
-            factor: (slot.factor * share).to_array(),
-            slack: slot.slack,
-            place: slot.place.to_array(),
-            roughness: slot.roughness,
-        }
+        let mean = PathSlot { light: slot.light / self.weight, factor: slot.factor * share, ..*slot };
+        trace_pack(&mean, eye)
     }
 }
 
@@ -121,7 +156,7 @@ impl SceneView<'_> {
             let dx = ((place % n) as f32 + 0.5) / n as f32;
             let dy = ((place / n) as f32 + 0.5) / n as f32;
             let direction = self.trace_direction(x as f32 + dx, y as f32 + dy);
-            let random = path_lattice(self.frame.seed, x, y, place);
+            let random = path_lattice_words(self.frame.seed, x, y, place);
             let path = self.path_trace(eye, direction, self.frame.pixel_angle, random, &last);
             sum += if is_picture { path.radiance } else { path.path_radiance() };
             base = base.trace_add(&path.base);
@@ -139,7 +174,7 @@ impl SceneView<'_> {
             let radiance = sum * share + capture_suns(self, x, y);
             return (radiance.extend(nearest), TraceGather::default());
         }
-        let gather = TraceGather { base: base.trace_mean(share), mirror: mirror.trace_mean(share) };
+        let gather = TraceGather { base: base.trace_mean(share, eye), mirror: mirror.trace_mean(share, eye) };
         ((sum * share).extend(nearest), gather)
     }
 
@@ -163,5 +198,34 @@ impl SceneView<'_> {
             }
         }
         picture
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slot_is_unpacked_as_it_was() {
+        let eye = Vec3::new(3.0, 1.0, -2.0);
+        let slot = PathSlot {
+            light: Vec3::new(3.0e5, 100.0, 2.0e4),
+            slack: 0.02,
+            factor: Vec3::new(0.5, 0.02, 0.9),
+            roughness: 0.4,
+            normal: Vec3::new(0.6, -0.64, 0.48),
+            place: Vec3::new(7.0, 1.0, 1.0),
+        };
+        let found = trace_unpack(&trace_pack(&slot, eye), eye);
+        // 12 bits of the sum; 11 of a half; 8 of the roughness; 16 of the normal.
+        assert!((found.light - slot.light).abs().max_element() < 3.3e5 / 4095.0, "{found:?}");
+        assert!(((found.factor - slot.factor) / slot.factor).abs().max_element() < 5.0e-4, "{found:?}");
+        assert!((found.slack / slot.slack - 1.0).abs() < 5.0e-4, "{found:?}");
+        assert!((found.roughness - slot.roughness).abs() <= 0.5 / 255.0, "{found:?}");
+        assert!((found.normal - slot.normal).length() < 1.0e-4 && found.place == slot.place, "{found:?}");
+        // A smooth gloss stays one.
+        let smooth = trace_unpack(&trace_pack(&PathSlot { roughness: 1.0e-4, ..slot }, eye), eye);
+        assert!(smooth.roughness > 0.0);
+        assert_eq!(trace_pack(&PathSlot::NONE, eye), TraceSlot::default());
     }
 }

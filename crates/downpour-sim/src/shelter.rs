@@ -5,8 +5,11 @@
 //! same for every time that is asked about, so that drops do not come and go.
 //!
 //! What moves is taken where it is now: behind a car, its shadow in the rain is straight.
+//!
+//! Surfaces may have holes, as the cards that leaves are painted on ([`Holes`]): rain falls through them. What is there at
+//! all stops drops, however well it is seen through: a pane of glass is a roof.
 
-use downpour_bvh::{BvhNode, BvhTriangle, bvh_nearest};
+use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_nearest};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
@@ -24,6 +27,15 @@ const LONGEST_S: f64 = 120.0;
 /// A drop on a surface is not behind it, m.
 const CLEAR_M: f32 = 1.0e-4;
 
+/// Holes in a way to the sky, at most: a way through more ends in the open.
+const MOST_HOLES: u32 = 64;
+
+/// Where triangles are not there, though they are in the list: alpha of a texture, say.
+pub trait Holes: std::fmt::Debug + Sync {
+    /// Whether there is nothing at a hit.
+    fn is_hole(&self, hit: &Hit) -> bool;
+}
+
 /// What stands in the rain: the arrays of a `downpour_bvh::Bvh`, relative to `origin`.
 #[derive(Clone, Copy, Debug)]
 pub struct Obstacles<'a> {
@@ -31,6 +43,8 @@ pub struct Obstacles<'a> {
     pub nodes: &'a [BvhNode],
     /// Triangles.
     pub triangles: &'a [BvhTriangle],
+    /// Where they have holes; none: nowhere.
+    pub holes: Option<&'a dyn Holes>,
     /// m.
     pub origin: DVec3,
 }
@@ -112,7 +126,16 @@ impl Past<'_> {
 fn clear(obstacles: &Obstacles<'_>, from: Vec3, direction: Vec3, distance: f32) -> bool {
     let (origin, direction) = (from.to_array(), direction.to_array());
     let far = distance.min(downpour_shaders::bvh::BVH_FAR);
-    bvh_nearest(obstacles.nodes, obstacles.triangles, origin, direction, CLEAR_M, far).is_none()
+    let mut near = CLEAR_M;
+    for _ in 0..MOST_HOLES {
+        let hit = bvh_nearest(obstacles.nodes, obstacles.triangles, origin, direction, near, far);
+        let Some(hit) = hit else { return true };
+        if !obstacles.holes.is_some_and(|holes| holes.is_hole(&hit)) {
+            return false;
+        }
+        near = hit.distance.max(near) + CLEAR_M;
+    }
+    true
 }
 
 /// Whether a drop beside all that stands there could have come from it: nothing is carried by more than 60 m/s.

@@ -2,13 +2,13 @@
 
 use super::puddle_water::PUDDLE_WATER;
 use super::scatter::SCATTER;
-use super::scene::{SCENE, SKY, SURFACE};
+use super::scene::{DATA, SCENE, SKY, SURFACE};
 use crate::Module;
 use crate::common::RNG;
 use crate::drop::optics::OPTICS;
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&PATH_CONSTANTS, &PATH];
+pub const MODULES: &[&Module] = &[&PATH_CONSTANTS, &PATH_LATTICE, &PATH];
 
 shared_constants! {
     /// Numbers of the rays of the camera.
@@ -24,7 +24,7 @@ shared_constants! {
         /// How far a ray's numbers are from the lattice's point, at most: about the distance of neighbouring points.
         PATH_JITTER: f32 = 0.14;
         /// Rays that follow each other, at most.
-        PATH_BOUNCES: u32 = 4;
+        PATH_BOUNCES: u32 = 6;
         /// Cosine of the angle between facets up to which a surface is the same.
         PATH_SAME_FACET: f32 = 0.97;
         /// Distance from the other facet's plane up to which a surface is the same, per distance from the eye.
@@ -72,13 +72,20 @@ shared_constants! {
         /// Fraction of light let through from which a surface is seen through.
         PATH_OPEN: f32 = 0.02;
         /// Part of its surroundings that surfaces take up, for a surface that a path of surfaces has led to.
-        PATH_ENCLOSED: f32 = 0.85;
+        PATH_ENCLOSED: f32 = 0.9;
     }
 }
+
+/// Random numbers of a pixel's rays. Twin: `downpour_render::path::lattice`.
+pub static PATH_LATTICE: Module = Module {
+    path: "render/path_lattice.wgsl",
+    wgsl: include_str!("../../wgsl/render/path_lattice.wgsl"),
+    uses: &[&PATH_CONSTANTS, &DATA, &RNG],
+};
 
 /// What a ray of the camera sees. Twin: `downpour_render::path`.
 pub static PATH: Module = Module {
     path: "render/path.wgsl",
     wgsl: include_str!("../../wgsl/render/path.wgsl"),
-    uses: &[&PATH_CONSTANTS, &SCENE, &SCATTER, &SKY, &SURFACE, &PUDDLE_WATER, &OPTICS, &RNG],
+    uses: &[&PATH_CONSTANTS, &PATH_LATTICE, &SCENE, &SCATTER, &SKY, &SURFACE, &PUDDLE_WATER, &OPTICS],
 };

@@ -3,8 +3,8 @@
 //! [`path`](super::path).
 
 use super::brdf::BRDF;
-use super::path::PATH;
 use super::pane_shadow::PANE_SHADOW;
+use super::path::PATH;
 use super::puddle_water::PUDDLE_WATER;
 use crate::bvh::BVH;
 use crate::common::PACKING;
@@ -69,12 +69,15 @@ shared_constants! {
         SKYLIGHT_SLACK: f32 = 0.002;
         /// Half the square of the angle, in alphas, at which a neighbour's gloss no longer counts.
         SKYLIGHT_LOBE: f32 = 2.0;
-        /// Pixels between the means of which the first wider mean is taken: the width of a window.
-        SKYLIGHT_STEP: u32 = 7;
+        /// Pixels between the means of which the first wider mean is taken: about the width of a window, but not a multiple
+        /// of it, so that what the windows repeat is smoothed too.
+        SKYLIGHT_STEP: u32 = 6;
         /// Wider means, each of twice the step.
         SKYLIGHT_PASSES: u32 = 3;
         /// Square of the difference of two means, in the sum of their variances, from which they are not the same.
         SKYLIGHT_NOISE: f32 = 25.0;
+        /// Cosine of the angle between normals up to which samples of a pixel are of one surface.
+        TRACE_SAME_NORMAL: f32 = 0.9;
         /// What is traced: the picture.
         SCENE_PICTURE: u32 = 0;
         /// Four over pi: the area of the octahedral map's square, for an irradiance over pi.

@@ -36,7 +36,8 @@ struct RenderFrame {
     puddle_count: u32,
     // Row of the table where the pane begins that throws shadows; 0: none.
     pane: u32,
-    unused_0: u32,
+    // Pass of the means over neighbouring pixels.
+    skylight_pass: u32,
     unused_1: u32,
     unused_2: u32,
     // Width, height and first texel of each level of the sky.

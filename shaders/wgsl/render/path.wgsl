@@ -1,51 +1,54 @@
 // What a ray of the camera sees: surfaces, water, and the light that comes to them from lamps, sky and one another.
 // Twin: downpour_render::path, where the method is described.
 
+// Light of which means are taken over neighbouring pixels.
+struct PathSlot {
+    light: vec3f,
+    // How far from a place's plane another may be; 0: there is no light.
+    slack: f32,
+    // What it is multiplied with.
+    factor: vec3f,
+    // Roughness of a gloss; 0 for light on a diffuse base.
+    roughness: f32,
+    // The surface's normal; of a gloss, the direction that a mirror would show.
+    normal: vec3f,
+    place: vec3f,
+}
+
 // What a ray of the camera finds.
 struct ViewPath {
     // All light but that which is told apart below.
     radiance: vec3f,
     // Distance of the first surface (SCENE_FAR for the sky).
     distance: f32,
-    // Factor of the light on the diffuse base.
-    body: vec3f,
-    // 1 if there is a surface whose light is told apart.
-    met: f32,
-    // Factor of the light that the gloss shows.
-    gloss: vec3f,
-    material: u32,
-    // Light of sky and surfaces on the diffuse base, over pi.
-    sky: vec3f,
-    // Roughness of the gloss.
-    roughness: f32,
-    // Light that the gloss shows.
-    mirror: vec3f,
-    // 1 if it is what the sample before has seen.
-    again: f32,
-    normal: vec3f,
-    // 1 if what it shows is the same over a pixel: no mirror.
-    plain: f32,
     facet: vec3f,
-    // Half the width of what counts as one plane where means are taken.
-    slack: f32,
+    material: u32,
     place: vec3f,
-    unused_1: f32,
-    // What stands for `place` where means are taken.
-    shown: vec3f,
-    unused_2: f32,
-    // The direction that a mirror in place of the gloss would show.
-    mirrored: vec3f,
-    unused_3: f32,
+    // Whether it is what the sample before has seen.
+    again: bool,
+    // Whether what it shows is the same over a pixel: no mirror, nothing behind a pane.
+    plain: bool,
+    // Light of sky and surfaces on the diffuse base of the first opaque surface, over pi.
+    base: PathSlot,
+    // Light that the first gloss or mirror shows: of a mirror, on the diffuse base of what stands in it.
+    mirror: PathSlot,
 }
 
 // Light that rays have found for a surface.
 struct PathLight {
-    // On its diffuse base, over pi, or on that of what it mirrors.
+    // On its diffuse base, over pi.
     base: vec3f,
     // In its gloss.
     mirror: vec3f,
     // Fraction that water mirrors.
     mirrored: f32,
+    // On the diffuse base of what a mirror shows.
+    shown: vec3f,
+    // Factor of that light, its distance (-1: there is none), and where it is.
+    factor: vec3f,
+    distance: f32,
+    normal: vec3f,
+    place: vec3f,
 }
 
 // The rays that look for the light of a surface.
@@ -64,7 +67,9 @@ struct PathPlan {
     share: f32,
     // Whether rays of the gloss are drawn from its lobe; else they are a mirror's.
     drawn: bool,
-    // Whether what the mirror shows takes the surface's place where means over neighbouring pixels are taken.
+    // Whether means over neighbouring pixels are taken of what the gloss shows.
+    kept: bool,
+    // Whether they are of the light on what the gloss shows.
     replaced: bool,
     // Width of the mirror's ray by what the surface turns within a pixel.
     spread: f32,
@@ -72,23 +77,36 @@ struct PathPlan {
 
 // A path that has found nothing.
 fn path_nothing() -> ViewPath {
-    let none = vec3f(0.0);
-    return ViewPath(
-        none, SCENE_FAR, none, 0.0, none, SCENE_NONE, none, 0.0, none, 0.0, none, 1.0, none, 0.0, none, 0.0, none, 0.0,
-        none, 0.0,
-    );
+    var path = ViewPath();
+    path.distance = SCENE_FAR;
+    path.material = SCENE_NONE;
+    return path;
 }
 
 // All that a path has seen.
 fn path_radiance(path: ViewPath) -> vec3f {
-    return path.radiance + path.body * path.sky + path.gloss * path.mirror;
+    return path.radiance + path.base.factor * path.base.light + path.mirror.factor * path.mirror.light;
 }
 
 // Whether a surface is the same where another sample of the pixel has met it.
 fn path_same_surface(last: ViewPath, material: u32, facet: vec3f, place: vec3f, distance: f32) -> bool {
-    return last.met > 0.0 && last.plain > 0.0 && last.material == material
+    return last.plain
+        && last.material == material
         && dot(last.facet, facet) > PATH_SAME_FACET
         && abs(dot(last.facet, place - last.place)) < PATH_SAME_PLANE * distance;
+}
+
+// With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
+fn path_gathered(light: PathLight, ray: ScatterRay, radiance: vec3f, of_shown: bool) -> PathLight {
+    var sum = light;
+    let of_base = ray.diffuse * radiance;
+    if of_shown {
+        sum.shown += of_base;
+    } else {
+        sum.base += of_base;
+    }
+    sum.mirror += ray.mirror * radiance;
+    return sum;
 }
 
 // The greatest part of a color.
@@ -112,66 +130,37 @@ fn path_open(surface: Surface) -> vec3f {
     return vec3f(1.0 - cover) + surface.diffuse * (surface.transmission * cover);
 }
 
-// Words for the rays of sample k of a pixel. The first three are those of a lattice of rank 1, of which the pixels of any
-// window of the filter's size have each point once; the last is the pixel's own.
-fn path_lattice(x: u32, y: u32, k: u32) -> vec4u {
-    let seed = rng_draw(vec2u(render_frame.seed, 0u), k, 0u, PATH_DIMENSION);
-    let edge = 2u * SKYLIGHT_RADIUS + 1u;
-    let points = edge * edge;
-    // Scattered, so that a part of the window has points from everywhere.
-    let index = ((x % edge) * edge + y % edge) * PATH_LATTICE_SCATTER % points;
-    let step = 4294967295u / points;
-    return vec4u(
-        index * step + seed.x,
-        (index * PATH_LATTICE_SECOND % points) * step + seed.y,
-        (index * PATH_LATTICE_THIRD % points) * step + seed.z,
-        rng_pcg4d(vec4u(x, y, k, seed.w)).x,
-    );
-}
-
-// Numbers in [0, 1) for ray `index` of `count` of a turn: two for its direction, one for whether it goes on, one for a lamp.
-fn path_numbers(random: vec4u, turn: u32, bounce: u32, index: u32, count: u32) -> vec4f {
-    let words = rng_pcg4d(vec4u(random.w, turn, bounce, PATH_DIMENSION));
-    let own = vec4f(rng_unit(words.x), rng_unit(words.y), rng_unit(words.z), rng_unit(words.w));
-    if bounce > 0u {
-        return own;
-    }
-    // Not quite on the lattice's points, so that their images are not seen one by one.
-    let a = fract(rng_unit(random.x) + own.x * PATH_JITTER);
-    let b = fract(rng_unit(random.y) + own.y * PATH_JITTER);
-    let k = f32(index);
-    return vec4f(fract((k + a) / f32(count)), fract(k * 0.618034 + b), own.z, fract(k * 0.618034 + rng_unit(random.z)));
-}
-
 // The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
-// neighbouring pixels are taken of what they find.
-fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, under: bool) -> PathPlan {
+// neighbouring pixels are taken of what they find; `free`: of what the gloss shows, too.
+fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bool) -> PathPlan {
     let cosine = max(dot(surface.normal, view), 0.0);
     // Neighbouring pixels mirror directions as far apart as this.
     let spread = 2.0 * surface.bend * footprint / max(cosine, 0.2);
-    let sharp = surface.roughness < PATH_SHARP || surface.roughness * surface.roughness < spread * PATH_APART;
+    let sharp = surface.roughness < PATH_SHARP;
     let gloss = scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
     let body = path_albedo(surface);
     let rays = render_frame.sky_rays;
+    let drawn = told && free && !sharp && rays > 0u;
+    // Where neighbours mirror other things, a mean over them would be wider than the lobe.
+    let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
     let share = select(1.0 / f32(max(rays, 1u)), render_frame.ray_share, told);
-    let drawn = told && !sharp && !under && rays > 0u;
-    var plan = PathPlan(body, 0u, gloss, rays, 0.0, share, drawn, false, spread);
+    var plan = PathPlan(body, 0u, gloss, rays, 0.0, share, drawn, kept, false, spread);
     if rays == 0u {
         plan.body = body * (vec3f(1.0) - gloss);
     } else if path_most(body) <= 0.0 {
         plan.rays = 0u;
         plan.mirrors = select(1u, rays, drawn);
-        plan.replaced = told && !drawn && !under;
     } else if surface.roughness < PATH_MIXED {
-        plan.mirrors = select(0u, 1u, path_most(gloss) > select(PATH_MIN_GLOSS, PATH_UNDER_GLOSS, under));
-    } else if drawn {
+        plan.mirrors = select(0u, 1u, path_most(gloss) > PATH_MIN_GLOSS);
+    } else if kept {
         plan.chance = scatter_chance(body, gloss);
     }
+    plan.replaced = free && !kept && plan.mirrors > 0u;
     return plan;
 }
 
 // The surface of a puddle that a ray has come through, `distance` along the ray.
-fn path_water_surface(water: PuddleWater, start: vec3f, along: vec3f, distance: f32, ripple: vec3f) -> Surface {
+fn path_water_surface(start: vec3f, along: vec3f, distance: f32, ripple: vec3f) -> Surface {
     let up = vec3f(0.0, 1.0, 0.0);
     let none = vec3f(0.0);
     let normal = puddle_water_normal(vec3f(ripple.xy, 0.0), 0.0, 0.0);
@@ -198,12 +187,13 @@ fn path_soaked(surface: Surface, clear: f32, murk: vec3f) -> Surface {
     return soaked;
 }
 
-// A surface as it looks to rays that are not a mirror's: all that it reflects, it reflects diffusely.
+// A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
 fn path_glance(surface: Surface, roughness: f32) -> Surface {
     var seen = surface;
     if roughness >= PATH_GLANCE {
-        seen.diffuse = surface.diffuse + surface.normal_reflectance;
-        seen.normal_reflectance = vec3f(0.0);
+        let gloss = min(surface.normal_reflectance, vec3f(PATH_GLANCE_GLOSS));
+        seen.diffuse = surface.diffuse + surface.normal_reflectance - gloss;
+        seen.normal_reflectance = gloss;
         seen.roughness = 1.0;
     }
     return seen;
@@ -270,6 +260,50 @@ fn path_ambient(surface: Surface, given: vec3f) -> vec3f {
     return (given * PATH_ENCLOSED + sky) / (vec3f(1.0) - albedo * PATH_ENCLOSED);
 }
 
+// A ray drawn for a surface, which the ray before leaves as `leaves` says.
+fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: bool, numbers: vec4f) -> ScatterRay {
+    var a = numbers.x;
+    var b = numbers.y;
+    var gloss = vec3f(1.0);
+    var chance = scatter_chance(at.diffuse, at.normal_reflectance);
+    var share = PATH_LATER_SHARE;
+    var weight = 1.0;
+    if leaves == PATH_SHOWN {
+        chance = 0.0;
+    }
+    if leaves == PATH_FIRST {
+        gloss = plan.gloss;
+        chance = select(plan.chance, 1.0, is_mirror);
+        share = plan.share;
+        if is_mirror && !plan.kept {
+            // Few rays: far out in the lobe they would be noise.
+            share = PATH_CURVED_SHARE;
+            a = a * PATH_CURVED_PART;
+        }
+        if a >= chance {
+            let own = (a - chance) / (1.0 - chance);
+            let drawn = path_candidate(at, own, b, numbers.z, share);
+            a = chance + drawn.x * (1.0 - chance);
+            b = drawn.y;
+            weight = drawn.z;
+            share /= f32(PATH_CANDIDATES);
+        }
+    }
+    var ray = scatter_draw(at, view, gloss, chance, a, b, share);
+    ray.diffuse *= weight;
+    ray.mirror *= weight;
+    return ray;
+}
+
+// The slot of what a mirror shows; the one before if it shows no diffuse base.
+fn path_show_mirrored(slot: PathSlot, light: PathLight, gloss: vec3f, slack: f32, spread: f32) -> PathSlot {
+    if light.distance < 0.0 {
+        return slot;
+    }
+    let its_slack = slack + light.distance * (2.0 * spread + SKYLIGHT_SLACK);
+    return PathSlot(light.shown, its_slack, gloss * light.factor, 0.0, light.normal, light.place);
+}
+
 // What a ray sees. Where it meets the surface that `last` met, it sees the same.
 fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: ViewPath) -> ViewPath {
     var path = path_nothing();
@@ -288,63 +322,54 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         // the hierarchy's walk and the materials once.
         var surface = Surface();
         var plan = PathPlan();
-        var light = PathLight(vec3f(0.0), vec3f(0.0), 0.0);
+        var light = PathLight();
+        light.distance = -1.0;
         var direct = vec3f(0.0);
         var told = false;
+        var slack = 0.0;
         var of_water = false;
         var ripple = vec3f(0.0);
-        // What a mirror shows.
-        var shown = Surface();
-        var shown_distance = -1.0;
-        var shown_weight = vec3f(0.0);
         for (var turn = 0u; turn <= plan.mirrors + plan.rays; turn += 1u) {
             var ray = ScatterRay(towards, cone, vec3f(1.0), 0.0, vec3f(1.0));
             var from_place = start;
             var nearest = near;
             var at = surface;
             var view = -towards;
-            var passes = turn == 0u;
+            var leaves = select(PATH_FIRST, PATH_STRAIGHT, turn == 0u);
             var given = vec3f(0.0);
+            let is_mirror = turn <= plan.mirrors;
+            let of_shown = plan.replaced && is_mirror;
             for (var bounce = 0u; bounce < PATH_BOUNCES; bounce += 1u) {
-                let is_mirror = turn <= plan.mirrors;
                 var numbers = vec4f(0.0);
                 if turn > 0u {
                     let index = turn - 1u - select(plan.mirrors, 0u, is_mirror);
-                    numbers = path_numbers(random, turn, bounce, index, select(plan.rays, plan.mirrors, is_mirror));
+                    numbers = path_lattice_numbers(random, turn, bounce, index, select(plan.rays, plan.mirrors, is_mirror));
                 }
-                if !passes {
-                    let is_first = bounce == 0u;
-                    var next = scatter_mirror(at, view);
+                if leaves != PATH_STRAIGHT {
+                    let is_first = leaves == PATH_FIRST;
+                    var next = ScatterRay();
                     if SCENE_WET && of_water && is_first {
                         next = path_water_ray(ripple, at.roughness, view, cone, numbers.x, numbers.y);
                         light.mirrored += next.mirror.x;
-                    } else if plan.drawn || !is_mirror || !is_first {
-                        let of_both = scatter_chance(at.diffuse, at.normal_reflectance);
-                        let of_first = select(plan.chance, 1.0, is_mirror);
-                        let of_gloss = select(of_both, of_first, is_first);
-                        let share = select(PATH_LATER_SHARE, plan.share, is_first);
-                        var drawn = vec3f(numbers.xy, 1.0);
-                        if is_first && numbers.x >= of_gloss {
-                            let own = (numbers.x - of_gloss) / (1.0 - of_gloss);
-                            drawn = path_candidate(at, own, numbers.y, numbers.z, share);
-                            drawn.x = of_gloss + drawn.x * (1.0 - of_gloss);
-                        }
-                        next = scatter_draw(
-                            at, view, select(vec3f(1.0), plan.gloss, is_first), of_gloss, drawn.x, drawn.y, share * drawn.z,
-                        );
-                        next.diffuse *= drawn.z;
-                        next.mirror *= drawn.z;
-                    }
-                    if SCENE_WET && under && is_first && is_mirror {
-                        next.along = puddle_water_above(next.along);
-                        next.mirror *= select(0.0, 1.0, next.along.y > 0.0);
+                    } else if leaves == PATH_MIRROR || (is_first && is_mirror && !plan.drawn) {
+                        next = scatter_mirror(at, view);
+                    } else {
+                        next = path_draw(at, view, plan, leaves, is_mirror, numbers);
                     }
                     from_place = at.position + at.facet * render_frame.nearest;
                     nearest = render_frame.nearest;
                     if is_first {
+                        if SCENE_WET && under && is_mirror {
+                            next.along = puddle_water_above(next.along);
+                            next.mirror *= select(0.0, 1.0, next.along.y > 0.0);
+                        }
                         ray = next;
                         ray.width += cone + plan.spread;
-                    } else if plan.replaced && bounce == 1u {
+                    } else if leaves == PATH_MIRROR {
+                        next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, max(dot(at.normal, view), 0.0));
+                        next.width += ray.width;
+                        ray = next;
+                    } else if leaves == PATH_SHOWN {
                         ray = path_replaced(ray, next);
                     } else {
                         ray = path_onward(ray, next, at, numbers.z);
@@ -359,9 +384,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         path.radiance += throughput * sky_level(0u, towards);
                         return path;
                     }
-                    let beyond = sky_cone(ray.along, ray.width);
-                    light.base += ray.diffuse * beyond;
-                    light.mirror += ray.mirror * beyond;
+                    light = path_gathered(light, ray, sky_cone(ray.along, ray.width), of_shown);
                     break;
                 }
                 var found = surface_at(hit, from_place, ray.along, ray.width);
@@ -383,11 +406,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         let place = start + towards * distance;
                         let footprint = cone * distance / sqrt(max(-towards.y, 0.02));
                         ripple = puddle_water_ripple(water.puddle, place, footprint, water.depth, water.open);
-                        found = path_water_surface(water, start, towards, distance, ripple);
+                        found = path_water_surface(start, towards, distance, ripple);
                     } else if layer == 0u
                         && path_same_surface(last, material, found.facet, found.position, hit.distance) {
                         var same = last;
-                        same.again = 1.0;
+                        same.again = true;
                         return same;
                     }
                     if SCENE_WET && under {
@@ -400,9 +423,6 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         path.material = select(material, PUDDLE_WATER_MATERIAL, of_water);
                         path.facet = found.facet;
                         path.place = found.position;
-                        path.normal = found.normal;
-                        path.shown = found.position;
-                        path.slack = distance * (cone * 2.0 + SKYLIGHT_SLACK);
                     }
                     near = hit.distance + render_frame.nearest;
                 } else {
@@ -421,42 +441,55 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 if turn == 0u {
                     surface = found;
                     direct = lit;
+                    told = path.base.slack == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
+                    let free = path.mirror.slack == 0.0;
                     if SCENE_WET && of_water {
                         let rippled = ripple.z > PUDDLE_WATER_RIPPLED;
-                        let turns = max(render_frame.sky_rays, select(1u, PUDDLE_WATER_RAYS, rippled));
-                        plan = PathPlan(vec3f(0.0), turns, vec3f(1.0), 0u, 0.0, 1.0, rippled, false, 0.0);
+                        plan.mirrors = max(render_frame.sky_rays, select(1u, PUDDLE_WATER_RAYS, rippled));
+                        plan.gloss = vec3f(1.0);
+                        plan.share = 1.0;
+                        plan.drawn = rippled && free;
+                        plan.kept = plan.drawn;
+                        plan.replaced = !rippled && free;
                     } else if !unlit {
-                        told = path.met == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
-                        plan = path_plan(found, -towards, cone * hit.distance, told, under);
+                        plan = path_plan(found, -towards, cone * hit.distance, told, free && !under);
                     }
+                    // Neighbouring pixels are on one plane if they are no farther from it than this.
+                    let from_eye = found.position - origin;
+                    slack = sqrt(dot(from_eye, from_eye)) * (cone * 2.0 + SKYLIGHT_SLACK);
                     break;
                 }
                 let cover = path_cover(found);
-                light.base += ray.diffuse * lit * cover;
-                light.mirror += ray.mirror * lit * cover;
-                let open = path_open(found);
+                light = path_gathered(light, ray, lit * cover, of_shown);
                 if unlit && cover == 1.0 {
                     break;
                 }
-                if plan.replaced && bounce == 0u {
-                    ray.diffuse = vec3f(0.0);
-                    shown = found;
-                    shown_distance = hit.distance;
-                    shown_weight = ray.mirror;
-                }
+                let open = path_open(found);
                 var ambient = vec3f(0.0);
-                passes = path_most(open) > PATH_OPEN;
-                if passes && !unlit {
-                    // What it reflects of the sky itself: half of the whole.
-                    ambient = sky_irradiance(found.normal) * (0.5 * found.occlusion * cover);
+                leaves = PATH_ONWARD;
+                if path_most(open) > PATH_OPEN {
+                    leaves = PATH_STRAIGHT;
+                    if !unlit {
+                        // What it reflects of the sky itself: half of the whole.
+                        ambient = sky_irradiance(found.normal) * (0.5 * found.occlusion * cover);
+                    }
+                } else if of_shown && light.distance < 0.0 {
+                    leaves = PATH_MIRROR;
+                    if path_most(path_albedo(found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                        leaves = PATH_SHOWN;
+                        found = path_glance(found, 1.0);
+                        light.factor = ray.mirror * (path_albedo(found) + found.normal_reflectance * 0.5);
+                        light.distance = hit.distance;
+                        light.normal = found.normal;
+                        light.place = found.position;
+                    }
                 } else if bounce + 1u == PATH_BOUNCES {
                     ambient = path_ambient(found, (given + lit) / f32(bounce + 1u));
                 }
-                let own = (found.diffuse * (1.0 - found.transmission) + found.normal_reflectance) * ambient;
-                light.base += ray.diffuse * own;
-                light.mirror += ray.mirror * own;
+                let own = (path_albedo(found) + found.normal_reflectance) * ambient;
+                light = path_gathered(light, ray, own, of_shown);
                 given += lit;
-                if passes {
+                if leaves == PATH_STRAIGHT {
                     ray.diffuse *= open;
                     ray.mirror *= open;
                     from_place = found.position;
@@ -468,17 +501,17 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         }
         let mirrored = towards - surface.normal * (2.0 * dot(towards, surface.normal));
         if SCENE_WET && of_water {
-            let share = light.mirrored / f32(plan.mirrors);
-            let gloss = throughput * share;
-            let mirror = light.mirror / max(light.mirrored, 1.0e-6);
+            let all = f32(plan.mirrors);
+            let share = light.mirrored / all;
             path.radiance += throughput * direct;
-            if plan.drawn && layer == 0u {
-                path.gloss = gloss;
-                path.mirror = mirror;
-                path.roughness = surface.roughness;
-                path.mirrored = mirrored;
+            if plan.kept {
+                path.mirror = PathSlot(
+                    light.mirror / max(light.mirrored, 1.0e-6), slack, throughput * share, surface.roughness, mirrored,
+                    surface.position,
+                );
             } else {
-                path.radiance += gloss * mirror;
+                path.radiance += throughput * light.mirror / all;
+                path.mirror = path_show_mirrored(path.mirror, light, throughput / all, slack, plan.spread);
             }
             throughput *= 1.0 - share;
             // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
@@ -498,8 +531,9 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         let cover = path_cover(surface);
         path.radiance += throughput * direct * cover;
         if (surface.flags & SCENE_UNLIT) == 0u {
+            let rays_of_gloss = select(plan.mirrors, plan.rays, plan.chance > 0.0);
             var base = light.base / f32(max(plan.rays, 1u));
-            var mirror = light.mirror / f32(max(select(plan.mirrors, plan.rays, plan.chance > 0.0), 1u));
+            var mirror = light.mirror / f32(max(rays_of_gloss, 1u));
             if plan.mirrors + plan.rays == 0u {
                 base = sky_irradiance(surface.normal);
                 mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
@@ -510,35 +544,19 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
             }
             let of_base = throughput * plan.body * cover;
             let of_gloss = throughput * plan.gloss * cover;
-            if shown_distance >= 0.0 {
-                path.body = of_gloss * shown_weight * path_albedo(shown);
-                path.sky = base;
-                path.met = 1.0;
-                path.plain = 0.0;
-                path.normal = shown.normal;
-                path.shown = shown.position;
-                path.slack += shown_distance * (2.0 * plan.spread + SKYLIGHT_SLACK);
-            } else if told {
-                path.body = of_base;
-                path.sky = base;
-                path.met = 1.0;
-                path.normal = surface.normal;
-                let mirrors = plan.mirrors > 0u && surface.roughness < PATH_CURVED
+            if told {
+                path.base = PathSlot(base, slack, of_base, 0.0, surface.normal, surface.position);
+                let mirrors = plan.mirrors > 0u && (surface.roughness < PATH_CURVED || !plan.kept)
                     && path_most(plan.gloss) > PATH_PLAIN_GLOSS;
-                path.plain = select(1.0, 0.0, mirrors || layer > 0u);
-                if layer > 0u {
-                    path.shown = surface.position;
-                }
+                path.plain = !(mirrors || layer > 0u);
             } else {
                 path.radiance += of_base * base;
             }
-            if told && plan.drawn {
-                path.gloss = of_gloss;
-                path.mirror = mirror;
-                path.roughness = surface.roughness;
-                path.mirrored = mirrored;
+            if plan.kept {
+                path.mirror = PathSlot(mirror, slack, of_gloss, surface.roughness, mirrored, surface.position);
             } else {
                 path.radiance += of_gloss * mirror;
+                path.mirror = path_show_mirrored(path.mirror, light, of_gloss, slack, plan.spread);
             }
         }
         under = false;

@@ -33,6 +33,11 @@ fn scatter_hemisphere(normal: vec3f, a: f32, b: f32) -> vec3f {
     return tangent * (radius * cos(angle)) + other * (radius * sin(angle)) + normal * height;
 }
 
+// A direction, thrown back by the facet if it goes into it: at the rim of a round thing, interpolated normals send it there.
+fn scatter_above(facet: vec3f, along: vec3f) -> vec3f {
+    return along - facet * (2.0 * min(dot(facet, along), 0.0));
+}
+
 // Alpha of the lobe of a roughness.
 fn scatter_alpha(roughness: f32) -> f32 {
     return max(roughness * roughness, SCATTER_MIN_ALPHA);
@@ -67,9 +72,10 @@ fn scatter_draw(
     } else {
         along = scatter_hemisphere(along, (a - chance) / (1.0 - chance), b);
     }
+    along = scatter_above(surface.facet, along);
     var ray = ScatterRay(along, 0.0, vec3f(0.0), roughness, vec3f(0.0));
     let cosine = dot(normal, along);
-    if cosine <= 0.0 || dot(surface.facet, along) <= 0.0 {
+    if cosine <= 0.0 {
         return ray;
     }
     let sum = view + along;
@@ -96,8 +102,7 @@ fn scatter_mirror(surface: Surface, view: vec3f) -> ScatterRay {
     let along = surface.normal * (2.0 * dot(surface.normal, view)) - view;
     let density = brdf_visible_density(scatter_alpha(surface.roughness), 1.0, max(cosine, BRDF_GRAZING));
     let width = min(sqrt(SCATTER_DISC / max(density, SCATTER_SMALLEST)), SCATTER_MAX_WIDTH);
-    let open = select(0.0, 1.0, dot(surface.facet, along) > 0.0);
-    return ScatterRay(along, width, vec3f(0.0), surface.roughness, vec3f(open));
+    return ScatterRay(scatter_above(surface.facet, along), width, vec3f(0.0), surface.roughness, vec3f(1.0));
 }
 
 // The part of rays that are drawn for the gloss of a surface, by what both parts of it show.

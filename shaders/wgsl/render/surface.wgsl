@@ -43,6 +43,18 @@ fn surface_alpha(hit: SurfaceHit) -> f32 {
         * surface_texture(slot, surface_uv(hit), -20.0).a * surface_colour(hit).a;
 }
 
+// Whether there is a hole at a hit.
+fn surface_is_open(hit: SurfaceHit) -> bool {
+    let material = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
+    let flags = render_table[material + 3u].x;
+    if (flags & (SCENE_MASKED | SCENE_BLENDED)) == 0u {
+        return false;
+    }
+    let cutoff = bitcast<f32>(render_table[material + 2u].w);
+    let least = select(SURFACE_OPEN, cutoff, (flags & SCENE_MASKED) != 0u);
+    return surface_alpha(hit) < least;
+}
+
 // The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is
 // blended has no alpha. Twelve holes in a row end the ray.
 fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> SurfaceHit {
@@ -53,14 +65,7 @@ fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> 
             break;
         }
         let found = SurfaceHit(hit.distance, hit.triangle, hit.u, hit.v);
-        let material = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
-        let flags = render_table[material + 3u].x;
-        if (flags & (SCENE_MASKED | SCENE_BLENDED)) == 0u {
-            return found;
-        }
-        let cutoff = bitcast<f32>(render_table[material + 2u].w);
-        let least = select(SURFACE_OPEN, cutoff, (flags & SCENE_MASKED) != 0u);
-        if surface_alpha(found) >= least {
+        if !surface_is_open(found) {
             return found;
         }
         from_distance = hit.distance + nearest;

@@ -4,8 +4,8 @@ use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_render::puddle::water::{
-    puddle_water_above, puddle_water_albedo, puddle_water_beneath, puddle_water_entry, puddle_water_mirrored, puddle_water_normal, puddle_water_reflectance,
-    puddle_water_refracted,
+    puddle_water_above, puddle_water_albedo, puddle_water_beneath, puddle_water_entry, puddle_water_mirrored,
+    puddle_water_normal, puddle_water_reflectance, puddle_water_refracted,
 };
 use downpour_render::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
 use downpour_shaders::render::puddle_water::PUDDLE_WATER;

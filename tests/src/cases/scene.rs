@@ -11,9 +11,9 @@ use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
 use downpour_render::gpu::ScenePipeline;
 use downpour_render::light::LightSource;
 use downpour_render::material::{MaterialLook, TextureUse};
-use downpour_render::path::path_numbers;
+use downpour_render::path::path_lattice_numbers;
 use downpour_render::scatter::{
-    scatter_alpha, scatter_chance, scatter_gloss, scatter_hemisphere, scatter_tangent,
+    scatter_above, scatter_alpha, scatter_chance, scatter_gloss, scatter_hemisphere, scatter_tangent,
 };
 use downpour_render::scene::SceneView;
 use downpour_render::sky::sky_coordinates;
@@ -21,7 +21,7 @@ use downpour_render::sky_light::SkyLight;
 use downpour_render::skylight::skylight_lobe;
 use downpour_render::texture::texture_wrap;
 use downpour_shaders::render::brdf::BRDF;
-use downpour_shaders::render::path::PATH;
+use downpour_shaders::render::path::PATH_LATTICE;
 use downpour_shaders::render::scatter::SCATTER;
 use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT, SKYLIGHT_KERNEL, TEXTURE,
@@ -141,6 +141,9 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 .with_outliers(1.0e-3),
             |a| scatter_hemisphere(vec3(a), a.f32(), a.f32()).to_array().words(),
         ),
+        FunctionCase::new("scatter_above", &SCATTER, &[Unit3, Unit3], FORMULA, |a| {
+            scatter_above(vec3(a), vec3(a)).to_array().words()
+        }),
         FunctionCase::new("scatter_alpha", &SCATTER, &[share], FORMULA, |a| scatter_alpha(a.f32()).words()),
         FunctionCase::new(
             "scatter_gloss",
@@ -156,14 +159,23 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             scatter_chance(vec3(a), vec3(a)).words()
         }),
         FunctionCase::new(
-            "path_numbers",
-            &PATH,
-            &[AnyWord, AnyWord, AnyWord, AnyWord, Below(64), Below(4), Below(16), Made(|r| vec![16 + r[0] % 4])],
+            "path_lattice_numbers",
+            &PATH_LATTICE,
+            &[
+                AnyWord,
+                AnyWord,
+                AnyWord,
+                AnyWord,
+                Below(64),
+                Below(4),
+                Below(16),
+                Made(|r| vec![16 + r[0] % 4]),
+            ],
             Tol::absolute(2.0e-6, "products and sums of numbers up to 17, of which the fraction is kept")
                 .with_outliers(1.0e-3),
             |a| {
                 let random = a.u32s();
-                path_numbers(random, a.u32(), a.u32(), a.u32(), a.u32()).words()
+                path_lattice_numbers(random, a.u32(), a.u32(), a.u32(), a.u32()).words()
             },
         ),
         FunctionCase::new(
@@ -319,6 +331,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "sky_irradiance",
             "surface_texture",
             "surface_alpha",
+            "surface_is_open",
             "surface_hit",
             "surface_uv",
             "surface_colour",
@@ -342,15 +355,21 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "path_albedo",
             "path_cover",
             "path_open",
-            "path_lattice",
+            "path_lattice_words",
             "path_plan",
             "path_glance",
             "path_replaced",
             "path_onward",
             "path_candidate",
             "path_ambient",
+            "path_gathered",
+            "path_draw",
+            "path_show_mirrored",
             "path_trace",
             "trace_direction",
+            "trace_add",
+            "trace_mean",
+            "trace_pack",
             "trace_pixel",
         ],
         tol: PICTURE,
@@ -359,7 +378,15 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let filter = |name, run| KernelCase {
         name,
         kernel: &SKYLIGHT_KERNEL,
-        covers: &["skylight_mean"],
+        covers: &[
+            "trace_unpack",
+            "skylight_luminance",
+            "skylight_slot",
+            "skylight_same",
+            "skylight_alike",
+            "skylight_mean",
+            "skylight_wide",
+        ],
         tol: PICTURE,
         run,
     };

@@ -180,7 +180,11 @@ impl Scene {
     /// The weather file: no rain, this sky, these lamps, this eye.
     fn weather(&self, folder: &Path) -> Result<String, String> {
         let beneath = |file: &Path| {
-            file.strip_prefix(folder).unwrap_or(file).to_str().map(str::to_owned).ok_or("a path that is no text")
+            file.strip_prefix(folder)
+                .unwrap_or(file)
+                .to_str()
+                .map(str::to_owned)
+                .ok_or("a path that is no text")
         };
         let mut text = format!(
             "model = [{{ file = {:?} }}]\n[rain]\nrate_mm_h = 0\n[sky]\nfile = {:?}\nintensity = {}\n[camera]\nposition_m = {:?}\n\
@@ -210,8 +214,7 @@ mod tests {
 
     #[test]
     fn each_aim_can_be_missed() {
-        let good =
-            [("flip", 0.05), ("luminance", -0.01), ("noise", 0.01), ("mirrored", 0.4), ("share", 0.8)];
+        let good = [("flip", 0.05), ("luminance", -0.01), ("noise", 0.01), ("mirrored", 0.4), ("share", 0.8)];
         let with = |key: &str, value: f64| -> BTreeMap<String, f64> {
             good.iter().map(|&(k, v)| (k.to_owned(), if k == key { value } else { v })).collect()
         };

@@ -132,8 +132,8 @@ impl SceneView<'_> {
         // Neighbouring pixels mirror directions as far apart as this.
         let spread = 2.0 * surface.bend * footprint / cosine.max(0.2);
         let sharp = surface.roughness < PATH_SHARP;
-        let gloss = scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp)
-            * surface.occlusion;
+        let gloss =
+            scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
         let body = path_albedo(surface);
         let rays = self.frame.sky_rays;
         let drawn = told && free && !sharp && rays > 0;

@@ -194,8 +194,7 @@ impl SceneView<'_> {
                 continue;
             }
             let visible = self.scene_visibility(arrival.start, arrival.along, arrival.distance);
-            let pane =
-                self.pane_shadow_share(arrival.start, arrival.along, arrival.distance, arrival.spread);
+            let pane = self.pane_shadow_share(arrival.start, arrival.along, arrival.distance, arrival.spread);
             sum += lit * visible * (pane * weight);
         }
         sum

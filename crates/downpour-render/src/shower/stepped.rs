@@ -168,7 +168,8 @@ impl Stepped {
                 if before.made_of == Some(made_of) {
                     (before.made_of, before.map)
                 } else {
-                    let map = CollisionMap::from_arrays(&options, &stage.data.nodes, &stage.data.triangles)?;
+                    let data = &stage.data;
+                    let map = CollisionMap::from_arrays(&options, &data.nodes, &data.triangles, Some(data))?;
                     (Some(made_of), Some(map))
                 }
             }

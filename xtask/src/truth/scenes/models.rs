@@ -207,7 +207,11 @@ impl Model {
         for (k, (Look(base, metallic, roughness), part)) in self.parts.iter().enumerate() {
             let count = part.places.len();
             for list in [&part.places, &part.normals] {
-                views.push(format!("{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{}}}", bytes.len(), 12 * count));
+                views.push(format!(
+                    "{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{}}}",
+                    bytes.len(),
+                    12 * count
+                ));
                 bytes.extend(list.iter().flatten().flat_map(|&v| (v as f32).to_le_bytes()));
             }
             views.push(format!(
