@@ -41,7 +41,7 @@ use crate::puddle::water::{PuddleWater, puddle_water_above, puddle_water_refract
 use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
 use crate::scene::SceneView;
 use crate::surface::Surface;
-use draw::{path_onward, path_replaced, path_water_ray};
+use draw::{path_onward, path_replaced, path_water_ray, path_water_share};
 pub use lattice::{path_lattice_numbers, path_lattice_words};
 pub(crate) use plan::path_most;
 use plan::{PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface};
@@ -120,8 +120,6 @@ struct PathLight {
     base: Vec3,
     /// In its gloss.
     mirror: Vec3,
-    /// Fraction that water mirrors.
-    mirrored: f32,
     /// On the diffuse base of what a mirror shows.
     shown: Vec3,
     /// Factor of that light, its distance, and where it is.
@@ -135,7 +133,6 @@ impl PathLight {
     const NONE: Self = Self {
         base: Vec3::ZERO,
         mirror: Vec3::ZERO,
-        mirrored: 0.0,
         shown: Vec3::ZERO,
         factor: Vec3::ZERO,
         distance: -1.0,
@@ -285,7 +282,7 @@ impl SceneView<'_> {
             let meeting = PathMeeting { surface: found, direct, plan, told, slack };
             let light = self.path_light(&meeting, towards, cone, random, ripple, under);
             if let (Some(_), Some(water)) = (met, &mut water) {
-                throughput *= path.path_show_water(&meeting, &light, towards, throughput);
+                throughput *= path.path_show_water(&meeting, &light, water.ripple, towards, throughput);
                 // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
                 let row = frame.puddles + water.found.puddle * PUDDLE_WATER_ROWS;
                 let look = Vec4::from(data.table[row as usize + 4].map(f32::from_bits));
@@ -310,8 +307,7 @@ impl SceneView<'_> {
         path
     }
 
-    /// Light that rays find for a surface: turns 1 and on of the loop of `path_trace` in WGSL. Of water, with the part
-    /// that it mirrors.
+    /// Light that rays find for a surface: turns 1 and on of the loop of `path_trace` in WGSL.
     fn path_light(
         &self,
         meeting: &PathMeeting,
@@ -346,9 +342,6 @@ impl SceneView<'_> {
                     from = at.position + at.facet * frame.nearest;
                     match leaves {
                         PathLeave::First => {
-                            if ripple.is_some() {
-                                light.mirrored += next.mirror.x;
-                            }
                             if under && is_mirror {
                                 next.along = puddle_water_above(next.along);
                                 next.mirror *= if next.along.y > 0.0 { 1.0 } else { 0.0 };
@@ -536,16 +529,17 @@ impl ViewPath {
         &mut self,
         meeting: &PathMeeting,
         light: &PathLight,
+        ripple: Vec3,
         towards: Vec3,
         throughput: Vec3,
     ) -> f32 {
         let surface = &meeting.surface;
         let all = meeting.plan.mirrors as f32;
-        let share = light.mirrored / all;
+        let share = path_water_share(ripple, -towards);
         self.radiance += throughput * meeting.direct;
         if meeting.plan.kept {
             self.mirror = PathSlot {
-                light: light.mirror / light.mirrored.max(1.0e-6),
+                light: light.mirror / (all * share).max(1.0e-6),
                 factor: throughput * share,
                 slack: meeting.slack,
                 roughness: surface.roughness,

@@ -49,6 +49,8 @@ shared_constants! {
         PATH_CURVED_SHARE: f32 = 0.25;
         /// The inner part of such a gloss that rays are drawn from.
         PATH_CURVED_PART: f32 = 0.8;
+        /// Facets of rippled water of which the reflectance is the mean.
+        PATH_WATER_FACETS: u32 = 16;
         /// How a ray leaves what it has met: the surface that the ray of the camera has met, whose light it looks for.
         PATH_FIRST: u32 = 0;
         /// Through it.

@@ -40,8 +40,6 @@ struct PathLight {
     base: vec3f,
     // In its gloss.
     mirror: vec3f,
-    // Fraction that water mirrors.
-    mirrored: f32,
     // On the diffuse base of what a mirror shows.
     shown: vec3f,
     // Factor of that light, its distance (-1: there is none), and where it is.
@@ -176,6 +174,18 @@ fn path_water_ray(ripple: vec3f, roughness: f32, view: vec3f, cone: f32, a: f32,
     let along = puddle_water_mirrored(-view, normal);
     let share = optics_fresnel(max(dot(view, normal), PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
     return ScatterRay(along, cone + PUDDLE_WATER_CONE, vec3f(0.0), roughness, vec3f(share));
+}
+
+// Fraction of light that water mirrors towards a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
+// has no noise.
+fn path_water_share(ripple: vec3f, view: vec3f) -> f32 {
+    let count = select(1u, PATH_WATER_FACETS, ripple.z > PUDDLE_WATER_RIPPLED);
+    var sum = 0.0;
+    for (var k = 0u; k < count; k += 1u) {
+        let normal = puddle_water_normal(ripple, (f32(k) + 0.5) / f32(count), fract(f32(k) * 0.618034));
+        sum += optics_fresnel(max(dot(view, normal), PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
+    }
+    return sum / f32(count);
 }
 
 // A surface as it looks under water of which a fraction `clear` of the light is left.
@@ -350,7 +360,6 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     var next = ScatterRay();
                     if SCENE_WET && of_water && is_first {
                         next = path_water_ray(ripple, at.roughness, view, cone, numbers.x, numbers.y);
-                        light.mirrored += next.mirror.x;
                     } else if leaves == PATH_MIRROR || (is_first && is_mirror && !plan.drawn) {
                         next = scatter_mirror(at, view);
                     } else {
@@ -502,11 +511,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         let mirrored = towards - surface.normal * (2.0 * dot(towards, surface.normal));
         if SCENE_WET && of_water {
             let all = f32(plan.mirrors);
-            let share = light.mirrored / all;
+            let share = path_water_share(ripple, -towards);
             path.radiance += throughput * direct;
             if plan.kept {
                 path.mirror = PathSlot(
-                    light.mirror / max(light.mirrored, 1.0e-6), slack, throughput * share, surface.roughness, mirrored,
+                    light.mirror / max(all * share, 1.0e-6), slack, throughput * share, surface.roughness, mirrored,
                     surface.position,
                 );
             } else {

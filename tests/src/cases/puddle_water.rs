@@ -131,6 +131,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "puddle_water_ripple",
             "path_water_surface",
             "path_water_ray",
+            "path_water_share",
             "path_soaked",
         ],
         tol: WATER,

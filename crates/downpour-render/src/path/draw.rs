@@ -1,8 +1,10 @@
 //! Rays that are drawn, and rays that go on.
 
 use downpour_drop::optics::optics_fresnel;
-use downpour_shaders::render::path::{PATH_CANDIDATES, PATH_FLOOR};
-use downpour_shaders::render::puddle_water::{PUDDLE_WATER_CONE, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX};
+use downpour_shaders::render::path::{PATH_CANDIDATES, PATH_FLOOR, PATH_WATER_FACETS};
+use downpour_shaders::render::puddle_water::{
+    PUDDLE_WATER_CONE, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_RIPPLED,
+};
 use downpour_shaders::render::scatter::SCATTER_DISC;
 use glam::{Vec2, Vec3};
 
@@ -31,6 +33,19 @@ pub(super) fn path_water_ray(
         roughness,
         mirror: Vec3::splat(share),
     }
+}
+
+/// Fraction of light that water mirrors towards a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
+/// has no noise.
+pub(super) fn path_water_share(ripple: Vec3, view: Vec3) -> f32 {
+    let count = if ripple.z > PUDDLE_WATER_RIPPLED { PATH_WATER_FACETS } else { 1 };
+    let mut sum = 0.0;
+    for k in 0..count {
+        let turn = k as f32 * 0.618_034;
+        let normal = puddle_water_normal(ripple, (k as f32 + 0.5) / count as f32, turn - turn.floor());
+        sum += optics_fresnel(view.dot(normal).max(PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
+    }
+    sum / count as f32
 }
 
 /// A ray that goes on from what a mirror shows, whose diffuse base takes the mirror's place.
