@@ -199,7 +199,8 @@ mod tests {
                 let half = (view + light).normalize();
                 let rest = 1.0 - view.dot(half);
                 let fresnel = f0 + (1.0 - f0) * (rest * rest * rest * rest * rest);
-                let d = a2 / (std::f64::consts::PI * (half.y * half.y * (a2 - 1.0) + 1.0).powi(2));
+                let narrow = half.y * half.y * (a2 - 1.0) + 1.0;
+                let d = a2 / (std::f64::consts::PI * narrow * narrow);
                 let smith = |c: f64, other: f64| other * (c * c * (1.0 - a2) + a2).sqrt();
                 let visibility = 0.5 / (smith(cosine, height) + smith(height, cosine));
                 let angle = flat * std::f64::consts::FRAC_PI_2 * std::f64::consts::PI / f64::from(n * n);
