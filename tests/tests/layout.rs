@@ -21,7 +21,7 @@ use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
 use downpour_render::specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
-use downpour_render::trace::TraceGather;
+use downpour_render::trace::{TraceGather, TraceSlot};
 use downpour_shaders::render::specimen;
 use downpour_shaders::{Module, bvh, compose, drop, lattice, mask, modules, render, sim, wind};
 use downpour_sim::collision::{CollisionFrame, CollisionTexel};
@@ -72,10 +72,11 @@ fn hosts() -> Vec<Host> {
             light, diameter, view, id, axis, across, turns, unused),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
             eye, width, right, height, up, grid, forward, pixel_angle, slots, lights, light_count, sky_rays,
-            first_row, seed, nearest, sky_reach, projection, suns_out, puddles, puddle_count, pane,
-            unused_0, unused_1, unused_2, sky_levels, sky_irradiance),
+            first_row, seed, nearest, ray_share, projection, suns_out, puddles, puddle_count, pane,
+            skylight_pass, unused_1, unused_2, sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
-        host!(TraceGather as "TraceGather" in &render::scene::TRACE, sky, body, met, gloss, normal),
+        host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, place, normal, light, look, factor),
+        host!(TraceGather as "TraceGather" in &render::scene::TRACE, base, mirror),
         host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,

@@ -19,6 +19,7 @@ mod mesh;
 mod mitsuba;
 mod options;
 mod report;
+mod scenes;
 mod sky;
 mod streaks;
 
@@ -56,6 +57,16 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
     let maps = cases::maps(&options, &folder)?;
     let program = command(&options)?;
     let mitsuba = Mitsuba::ready(&folder)?;
+    if options.scenes {
+        let (text, misses) = scenes::compare(&options, &program, &folder, &mitsuba)?;
+        println!("{text}");
+        write(&folder.join("scenes.md"), text.as_bytes())?;
+        return if misses.is_empty() || !options.check {
+            Ok(())
+        } else {
+            Err(format!("above the aim:\n  {}", misses.join("\n  ")))
+        };
+    }
     let mut report = Report::new(&options, &mitsuba);
     let diameters_mm = if options.streaks { &[][..] } else { &options.diameters_mm[..] };
     for &diameter_mm in diameters_mm {

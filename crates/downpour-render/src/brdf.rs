@@ -4,6 +4,8 @@
 //! JCGT 3(2), 2014 (height-correlated Smith); C. Schlick 1994; glTF 2.0 appendix B. The environment term is the fit
 //! of B. Karis, "Physically based shading on mobile", 2014.
 //!
+//! Reflected rays are drawn by the normals that the viewer sees (E. Heitz, JCGT 7(4), 2018).
+//!
 //! Symbols: alpha = roughness^2; all cosines in [0, 1]. Twin of `shaders/wgsl/render/brdf.wgsl`.
 
 use downpour_math::ops;
@@ -57,6 +59,42 @@ pub fn brdf_direct(
     let fresnel = brdf_fresnel(normal_reflectance, view.dot(halfway));
     let specular = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine_light);
     ((Vec3::ONE - fresnel) * diffuse + fresnel * specular) * cosine_light
+}
+
+/// Smith's masking: fraction of the microfacets facing a direction that is visible from it.
+#[must_use]
+pub fn brdf_masking(alpha: f32, cosine: f32) -> f32 {
+    let a2 = alpha * alpha;
+    2.0 * cosine / (cosine + ((cosine - a2 * cosine) * cosine + a2).sqrt()).max(BRDF_SMALLEST)
+}
+
+/// Normal of a microfacet, drawn from those that a viewer sees. `view` points to the viewer, in axes whose third is the
+/// surface's normal; `a` and `b` are uniform in [0, 1).
+#[must_use]
+pub fn brdf_visible_normal(view: Vec3, alpha: f32, a: f32, b: f32) -> Vec3 {
+    // Stretched, so that the surface is one of roughness 1.
+    let stretched = Vec3::new(alpha * view.x, alpha * view.y, view.z);
+    let v = stretched / stretched.dot(stretched).sqrt().max(BRDF_SMALLEST);
+    let flat = v.x * v.x + v.y * v.y;
+    let level = if flat > 0.0 { Vec3::new(-v.y, v.x, 0.0) / flat.sqrt() } else { Vec3::X };
+    let rising = v.cross(level);
+    // A point of the disc that the hemisphere of normals shows: half of it is foreshortened.
+    let radius = a.sqrt();
+    let angle = std::f32::consts::TAU * b;
+    let x = radius * ops::cos(angle);
+    let share = 0.5 * (1.0 + v.z);
+    let y = (1.0 - share) * (1.0 - x * x).max(0.0).sqrt() + share * (radius * ops::sin(angle));
+    let z = (1.0 - x * x - y * y).max(0.0).sqrt();
+    let normal = level * x + rising * y + v * z;
+    let back = Vec3::new(alpha * normal.x, alpha * normal.y, normal.z.max(0.0));
+    back / back.dot(back).sqrt().max(BRDF_SMALLEST)
+}
+
+/// Density, per solid angle, of reflections drawn with [`brdf_visible_normal`], times pi.
+#[must_use]
+pub fn brdf_visible_density(alpha: f32, cosine_half: f32, cosine_view: f32) -> f32 {
+    brdf_distribution(alpha, cosine_half) * brdf_masking(alpha, cosine_view) * 0.25
+        / cosine_view.max(BRDF_SMALLEST)
 }
 
 /// Share of a uniform environment that microfacets reflect.

@@ -1,6 +1,6 @@
 //! Where the picture is taken from.
 
-use downpour_shaders::render::scene::SCENE_PICTURE;
+use downpour_shaders::render::scene::{SCENE_PICTURE, SKYLIGHT_RADIUS};
 use glam::Vec3;
 
 use crate::RenderError;
@@ -8,6 +8,9 @@ use crate::data::{RenderFrame, SceneData};
 
 /// Smallest and largest number of pixels along an edge.
 pub const PIXELS: std::ops::RangeInclusive<u32> = 1..=16384;
+
+/// Part of the pixels over which the filter takes means that one is.
+const WINDOW_SHARE: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
 
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,13 +104,13 @@ impl Viewpoint {
             first_row: 0,
             seed: (seed ^ (seed >> 32)) as u32,
             nearest: (extent * 1.0e-5).max(far.min(1.0e5) * 1.0e-6).max(1.0e-6),
-            sky_reach: extent * 0.5,
+            ray_share: WINDOW_SHARE / sky_rays.max(1) as f32,
             projection: SCENE_PICTURE,
             suns_out: 0,
             puddles: scene.puddles,
             puddle_count: scene.puddle_count,
             pane: scene.pane,
-            unused_0: 0,
+            skylight_pass: 0,
             unused_1: 0,
             unused_2: 0,
             sky_levels: scene.sky_levels,

@@ -4,6 +4,7 @@
 //! leaves, so that a hit's triangle is an index into all of it.
 
 use downpour_bvh::{Bvh, BvhNode, BvhTriangle};
+use downpour_shaders::render::scene::SCENE_SKY_LEVELS;
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::light::LightSource;
@@ -52,16 +53,16 @@ pub struct RenderFrame {
     pub lights: u32,
     /// Number of lights.
     pub light_count: u32,
-    /// Rays to the sky per sample.
+    /// Rays per sample that look for the light of sky and surfaces.
     pub sky_rays: u32,
     /// First row of pixels of a dispatch.
     pub first_row: u32,
-    /// Seed of the rays to the sky.
+    /// Seed of these rays.
     pub seed: u32,
     /// Nearest distance of the next surface, metres.
     pub nearest: f32,
-    /// How far the rays to the sky go, metres.
-    pub sky_reach: f32,
+    /// Part of the rays that look for the light of a surface that one of them is.
+    pub ray_share: f32,
     /// What is traced: the picture, or a capture.
     pub projection: u32,
     /// 1: the capture leaves parallel light out, since drops are lit by it on their own ([`crate::rain::light`]).
@@ -72,14 +73,14 @@ pub struct RenderFrame {
     pub puddle_count: u32,
     /// Row of the table where the pane begins that throws shadows; 0: none.
     pub pane: u32,
-    /// 0.
-    pub unused_0: u32,
+    /// Pass of the means over neighbouring pixels.
+    pub skylight_pass: u32,
     /// 0.
     pub unused_1: u32,
     /// 0.
     pub unused_2: u32,
     /// Width, height and first texel of each level of the sky.
-    pub sky_levels: [[u32; 4]; 6],
+    pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi as spherical harmonics of degree 2.
     pub sky_irradiance: [[f32; 4]; 9],
 }
@@ -281,7 +282,7 @@ pub struct SceneData {
     /// Texels of all levels of the sky.
     pub sky: Vec<[f32; 4]>,
     /// Width, height and first texel of each level of the sky.
-    pub sky_levels: [[u32; 4]; 6],
+    pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi.
     pub sky_irradiance: [[f32; 4]; 9],
 }

@@ -1,8 +1,8 @@
 //! Pictures, on a GPU and as a CPU reference that traces the same rays.
 //!
 //! - [`specimen`]: one exact drop in front of a sky map;
-//! - [`data`], [`scene`], `gpu`: a scene of triangles under a sky, traced by rays ([`surface`], [`texture`], [`sky`],
-//!   [`brdf`]); [`sky_light`] prepares the sky, [`camera`] the frame;
+//! - [`data`], [`scene`], `gpu`: a scene of triangles under a sky, traced by rays ([`path`], [`scatter`], [`surface`],
+//!   [`texture`], [`sky`], [`brdf`]); [`sky_light`] prepares the sky, [`camera`] the frame;
 //! - [`shower`]: which drops there are before an eye, from picture to picture;
 //! - [`rain`]: drops before a scene; [`picture`] puts the two together;
 //! - [`glass`]: rain on a pane before the camera, and the picture through it;
@@ -20,9 +20,11 @@ pub mod glass;
 pub mod gpu;
 pub mod light;
 pub mod material;
+pub mod path;
 pub mod picture;
 pub mod puddle;
 pub mod rain;
+pub mod scatter;
 pub mod scene;
 pub mod shower;
 pub mod sky;

@@ -5,6 +5,7 @@
 
 use std::time::Instant;
 
+use downpour_math::rng::rng_draw;
 use downpour_sim::field::FallingDrop;
 
 use crate::RenderError;
@@ -13,6 +14,19 @@ use crate::data::{RenderFrame, SceneData};
 use crate::rain::light::DropLightForm;
 use crate::rain::{DropMasks, Rain, RainOptions};
 use crate::scene::SceneView;
+
+/// Dimension of the random numbers of a picture's seed.
+const SEED_DIMENSION: u32 = 4120;
+
+/// The seed of the rays of a picture of a time in seconds: each has a noise of its own, and a picture by itself has that of
+/// the clip's frame of its time.
+#[must_use]
+pub fn noise_seed(seed: u64, time_s: f64) -> u64 {
+    let time = time_s.to_bits();
+    let [low, high, ..] =
+        rng_draw([seed as u32, (seed >> 32) as u32], time as u32, (time >> 32) as u32, SEED_DIMENSION);
+    u64::from(low) | u64::from(high) << 32
+}
 
 /// What a picture costs and how it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +37,7 @@ pub struct PictureOptions {
     pub grid: u32,
     /// Rays to the sky per sample; 0: nothing hides the sky.
     pub sky_rays: u32,
-    /// Seed of the rays.
+    /// Seed of the rays: [`noise_seed`] for the frames of a clip.
     pub seed: u64,
     /// How drops are drawn.
     pub rain: RainOptions,

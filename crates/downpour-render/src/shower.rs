@@ -103,6 +103,7 @@ impl Shower {
                 let obstacles = Obstacles {
                     nodes: &stage.data.nodes,
                     triangles: &stage.data.triangles,
+                    holes: Some(&stage.data),
                     origin: stage.origin,
                 };
                 let mut visible = field.visible_among(&obstacles, &view, time_s)?;

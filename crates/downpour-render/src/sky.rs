@@ -1,10 +1,10 @@
-//! The light of the sky: an equirectangular map, the same prefiltered for rough reflection, and its irradiance.
+//! The light of the sky: an equirectangular map, the same at coarser levels, and its irradiance.
 //!
 //! +Y is up; u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top. Twin of
 //! `shaders/wgsl/render/sky.wgsl`.
 
 use downpour_math::ops;
-use downpour_shaders::render::scene::SCENE_SKY_LEVELS;
+use downpour_shaders::render::scene::{SCENE_SKY_LEVELS, SKY_CONE_TEXELS};
 use glam::{Vec2, Vec3};
 
 use crate::data::SceneData;
@@ -41,10 +41,12 @@ impl SceneData {
             + (at(below + left) * (1.0 - fx) + at(below + right) * fx) * fy
     }
 
-    /// The sky as a surface of some roughness reflects it.
+    /// The sky as a ray sees it that is as wide as `width` at distance 1.
     #[must_use]
-    pub fn sky_reflection(&self, direction: Vec3, roughness: f32) -> Vec3 {
-        let level = roughness.clamp(0.0, 1.0) * (SCENE_SKY_LEVELS - 1) as f32;
+    pub fn sky_cone(&self, direction: Vec3, width: f32) -> Vec3 {
+        // Texels of the map across the ray; a texel between its neighbours is wider than one alone.
+        let texels = width * self.sky_levels[0][1] as f32 * SKY_CONE_TEXELS;
+        let level = ops::log2(texels.max(1.0)).min((SCENE_SKY_LEVELS - 1) as f32);
         let below = level as u32;
         let fraction = level - below as f32;
         let near = self.sky_level(below, direction);

@@ -1,18 +1,15 @@
-//! The sky as light: the map itself, the same prefiltered for rough reflection, and its irradiance.
+//! The sky as light: the map itself, the same at coarser and coarser levels, and its irradiance.
 //!
-//! Rough reflection is the mean of the sky weighted by the GGX lobe of a viewer who looks along the normal (B. Karis,
-//! "Real shading in Unreal Engine 4", 2013); irradiance is the projection on spherical harmonics of degree 2
-//! (R. Ramamoorthi, P. Hanrahan, SIGGRAPH 2001).
+//! Each level has half the texels of the one before along both edges: means over solid angle, so that a ray as wide as a
+//! texel finds the light of all that it covers. Irradiance is the projection on spherical harmonics of degree 2
+//! (R. Ramamoorthi, P. Hanrahan, SIGGRAPH 2001); it serves where no ray is traced.
 
 use downpour_math::ops;
 use downpour_shaders::render::scene::SCENE_SKY_LEVELS;
 use glam::Vec3;
-use rayon::prelude::*;
 
-/// Size of the prefiltered levels.
-const FILTERED: (u32, u32) = (128, 64);
-/// Directions per texel of a prefiltered level.
-const SAMPLES: u32 = 96;
+/// Rows of the coarsest level, at least.
+const COARSEST: u32 = 4;
 
 /// The sky as the shaders read it.
 #[derive(Clone, Debug)]
@@ -33,35 +30,21 @@ struct Level {
 }
 
 impl Level {
-    fn bilinear(&self, direction: Vec3) -> Vec3 {
-        let u = 0.5 + ops::atan2(direction.z, direction.x) / std::f32::consts::TAU;
-        let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
-        let v = 0.5 - ops::atan2(direction.y, horizontal) / std::f32::consts::PI;
-        let (w, h) = (self.width as i32, self.height as i32);
-        let x = u * w as f32 - 0.5;
-        let y = (v * h as f32 - 0.5).clamp(0.0, h as f32 - 1.0);
-        let (fx, fy) = (x - x.floor(), y - y.floor());
-        let column = |k: i32| (x.floor() as i32 + k).rem_euclid(w);
-        let row = |k: i32| (y.floor() as i32 + k).min(h - 1);
-        let at = |i: i32, j: i32| self.texels[(j * w + i) as usize];
-        let top = at(column(0), row(0)) * (1.0 - fx) + at(column(1), row(0)) * fx;
-        let bottom = at(column(0), row(1)) * (1.0 - fx) + at(column(1), row(1)) * fx;
-        top * (1.0 - fy) + bottom * fy
-    }
-
-    /// The next coarser level: means over the sphere, not over the map.
+    /// The next coarser level: means over the sphere, not over the map. Texels that two of the new ones share count for
+    /// both by their parts.
     fn halve(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
-        let (sx, sy) = (self.width / width, self.height / height);
-        let texels = (0..height)
-            .flat_map(|y| (0..width).map(move |x| (x, y)))
-            .map(|(x, y)| {
+        let (columns, rows) = (parts(self.width, width), parts(self.height, height));
+        let texels = rows
+            .iter()
+            .flat_map(|row| columns.iter().map(move |column| (row, column)))
+            .map(|(row, column)| {
                 let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
-                for j in y * sy..(y + 1) * sy {
-                    let area = row_area(j, self.height);
-                    for i in x * sx..(x + 1) * sx {
-                        sum += self.texels[(j * self.width + i) as usize] * area;
-                        weight += area;
+                for &(y, high) in row {
+                    let area = row_area(y, self.height) * high;
+                    for &(x, wide) in column {
+                        sum += self.texels[(y * self.width + x) as usize] * (area * wide);
+                        weight += area * wide;
                     }
                 }
                 sum / weight
@@ -69,6 +52,23 @@ impl Level {
             .collect();
         Self { width, height, texels }
     }
+}
+
+/// Old texels under each of `new` texels along an edge of `old`, with their parts.
+fn parts(old: u32, new: u32) -> Vec<Vec<(u32, f32)>> {
+    // In units of an old texel over `new`: whole numbers.
+    (0..u64::from(new))
+        .map(|k| {
+            let [old, new] = [u64::from(old), u64::from(new)];
+            let (low, high) = (k * old, (k + 1) * old);
+            (low / new..high.div_ceil(new))
+                .map(|i| {
+                    let inside = high.min((i + 1) * new) - low.max(i * new);
+                    (i as u32, inside as f32 / new as f32)
+                })
+                .collect()
+        })
+        .collect()
 }
 
 /// Solid angle of a texel of row `j`, up to a factor.
@@ -97,15 +97,15 @@ impl SkyLight {
         let irradiance = irradiance(&source);
         let mut texels: Vec<[f32; 4]> = source.texels.iter().map(|c| [c.x, c.y, c.z, 0.0]).collect();
         let mut levels = [[width, height, 0, 0]; SCENE_SKY_LEVELS as usize];
-        let mut chain = vec![source];
-        while chain[chain.len() - 1].width > 8 && chain[chain.len() - 1].height > 4 {
-            let next = chain[chain.len() - 1].halve();
-            chain.push(next);
-        }
-        for (k, level) in levels.iter_mut().enumerate().skip(1) {
-            let roughness = k as f32 / (SCENE_SKY_LEVELS - 1) as f32;
-            *level = [FILTERED.0, FILTERED.1, texels.len() as u32, 0];
-            texels.extend(prefilter(&chain, roughness));
+        let mut level = source;
+        for k in 1..levels.len() {
+            // Beyond the coarsest level, all are the same.
+            levels[k] = levels[k - 1];
+            if level.height > COARSEST {
+                level = level.halve();
+                levels[k] = [level.width, level.height, texels.len() as u32, 0];
+                texels.extend(level.texels.iter().map(|c| [c.x, c.y, c.z, 0.0]));
+            }
         }
         Self { texels, levels, irradiance }
     }
@@ -115,48 +115,6 @@ impl SkyLight {
     pub fn uniform(radiance: [f32; 3]) -> Self {
         Self::new(8, 4, &[radiance; 32])
     }
-}
-
-/// A level of the sky as a surface of some roughness reflects it.
-fn prefilter(chain: &[Level], roughness: f32) -> Vec<[f32; 4]> {
-    let alpha2 = (roughness * roughness) * (roughness * roughness);
-    // Microfacet normals at equal shares of the lobe, and the level whose texels are as wide as a share.
-    let texel_angle = |level: &Level| std::f32::consts::PI / level.height as f32;
-    let lobe: Vec<(Vec3, f32, usize)> = (0..SAMPLES)
-        .map(|k| {
-            let u = (k as f32 + 0.5) / SAMPLES as f32;
-            let phi = std::f32::consts::TAU * ((k as f32 * 0.618_034) % 1.0);
-            let cosine2 = (1.0 - u) / (1.0 + (alpha2 - 1.0) * u);
-            let (cosine, sine) = (cosine2.sqrt(), (1.0 - cosine2).max(0.0).sqrt());
-            let half = Vec3::new(sine * ops::cos(phi), sine * ops::sin(phi), cosine);
-            let light = half * (2.0 * cosine) - Vec3::Z;
-            let d = alpha2
-                / (std::f32::consts::PI
-                    * ((cosine2 * (alpha2 - 1.0) + 1.0) * (cosine2 * (alpha2 - 1.0) + 1.0)));
-            // The light's density is that of the half vector over 4 cos.
-            let share = 1.0 / (SAMPLES as f32 * (d * 0.25).max(1.0e-6));
-            let width = share.sqrt();
-            let level = chain.iter().position(|l| texel_angle(l) >= width * 0.7).unwrap_or(chain.len() - 1);
-            (light, light.z.max(0.0), level)
-        })
-        .collect();
-    (0..FILTERED.0 * FILTERED.1)
-        .into_par_iter()
-        .map(|i| {
-            let normal = direction_of(i % FILTERED.0, i / FILTERED.0, FILTERED.0, FILTERED.1);
-            let (tangent, other) = normal.any_orthonormal_pair();
-            let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
-            for &(light, cosine, level) in &lobe {
-                if cosine > 0.0 {
-                    let direction = tangent * light.x + other * light.y + normal * light.z;
-                    sum += chain[level].bilinear(direction) * cosine;
-                    weight += cosine;
-                }
-            }
-            let mean = sum / weight;
-            [mean.x, mean.y, mean.z, 0.0]
-        })
-        .collect()
 }
 
 /// Irradiance over pi: the map's projection on the nine harmonics, each times its share of a cosine lobe.
@@ -220,6 +178,34 @@ mod tests {
         }
         // The first harmonic is the mean; the others vanish up to the coarseness of the map.
         assert!((sky.irradiance[0][1] - 2.0).abs() < 0.06, "{:?}", sky.irradiance[0]);
+    }
+
+    /// Every level has the light of the map, whatever its size.
+    #[test]
+    fn each_level_has_the_mean_of_the_map() {
+        for (w, h) in [(64, 32), (100, 50), (37, 19), (1, 32), (9, 64)] {
+            let radiance: Vec<[f32; 3]> = (0..w * h).map(|i| [((i * 7919) % 101) as f32, 1.0, 2.0]).collect();
+            let sky = SkyLight::new(w, h, &radiance);
+            let mean = |[width, height, first, _]: [u32; 4]| {
+                let (mut sum, mut weight) = (0.0f64, 0.0f64);
+                for y in 0..height {
+                    // The exact solid angle of a row.
+                    let cosine =
+                        |row: u32| ops::f64::cos(std::f64::consts::PI * f64::from(row) / f64::from(height));
+                    let area = cosine(y) - cosine(y + 1);
+                    for x in 0..width {
+                        sum += f64::from(sky.texels[(first + y * width + x) as usize][0]) * area;
+                        weight += area;
+                    }
+                }
+                sum / weight
+            };
+            for level in sky.levels {
+                let ratio = mean(level) / mean(sky.levels[0]);
+                assert!((ratio - 1.0).abs() < 0.01, "{w} x {h}, {level:?}: {ratio}");
+            }
+            assert!(sky.levels[SCENE_SKY_LEVELS as usize - 1][1] <= 2 * COARSEST);
+        }
     }
 
     /// A sky that is bright above by cos: the irradiance of a surface that looks up is 2/3 of the peak.

@@ -1,83 +1,181 @@
-//! The light of the sky on surfaces: the mean of what the pixels round a pixel have found on the same surface. Twin of
+//! Light of sky and surfaces on surfaces: means over what the pixels round a pixel have found on the same surface. Twin of
 //! `shaders/wgsl/render/skylight.wgsl`.
+//!
+//! First the mean of a window of 7 x 7 pixels, whose rays are one lattice ([`path`](crate::path)), with the variance of that
+//! mean. Then means of such means, 6, 12 and 24 pixels apart: as far as two of them differ by no more than their noise (H.
+//! Dammertz et al., HPG 2010, for the steps; C. Schied et al., HPG 2017, for the variance).
+//!
+//! A neighbour counts as far as its normal agrees and as it is on the plane through the pixel's place; in the gloss, as far
+//! as it mirrors the same direction, within the lobe.
 
-use downpour_math::packing::{packing_octahedral_decode, packing_unpack_snorm};
-use downpour_shaders::render::scene::{SKYLIGHT_RADIUS, SKYLIGHT_SLACK};
+use downpour_shaders::render::scene::{
+    SKYLIGHT_LOBE, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
+};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
+use crate::path::PathSlot;
 use crate::scene::SceneView;
-use crate::trace::TraceGather;
+use crate::trace::{TraceGather, TraceSlot, trace_unpack};
 
-/// A picture without the sky's light, and what its pixels have found of it.
+/// A slot of a pixel, unpacked.
+#[derive(Clone, Copy, Debug)]
+struct SkylightSlot {
+    light: Vec3,
+    factor: Vec3,
+    /// Of the surface.
+    normal: Vec3,
+    /// Of what counts as the same: the normal, or the direction that a mirror would show.
+    direction: Vec3,
+    place: Vec3,
+    slack: f32,
+    roughness: f32,
+}
+
+/// The luminance of a color, for comparisons.
+fn skylight_luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}
+
+/// How far two mirrored directions agree within the lobe of a roughness.
+#[must_use]
+pub fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
+    let alpha = roughness * roughness;
+    (1.0 - (1.0 - cosine) / (SKYLIGHT_LOBE * alpha * alpha).max(1.0e-7)).max(0.0)
+}
+
+/// How far two pixels show one surface.
+fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
+    if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
+        return 0.0;
+    }
+    let off = own.normal.dot(other.place - own.place).abs();
+    let near = (1.0 - off / own.slack).max(0.0);
+    let cosine = own.direction.dot(other.direction);
+    if own.roughness > 0.0 {
+        return skylight_lobe(cosine, own.roughness) * near;
+    }
+    let agrees = cosine.max(0.0);
+    let fourth = agrees * agrees * agrees * agrees;
+    fourth * fourth * near
+}
+
+/// How far two means are the same but for their noise: variances are those of the means.
+#[must_use]
+pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
+    let apart = skylight_luminance(own.truncate()) - skylight_luminance(other.truncate());
+    (1.0 - apart * apart / (SKYLIGHT_NOISE * (own.w + other.w)).max(1.0e-20)).max(0.0)
+}
+
+/// What pixels have found, and the means so far of each of their two slots: color, and the variance of its luminance.
 struct Pixels<'a> {
-    view: &'a SceneView<'a>,
-    /// For each pixel its normal and its place relative to the eye.
-    surfaces: Vec<(Vec3, Vec3)>,
-    gather: &'a [TraceGather],
+    width: u32,
+    height: u32,
+    slots: &'a [[SkylightSlot; 2]],
 }
 
 impl SceneView<'_> {
-    /// What the sky adds to each pixel.
-    pub(crate) fn skylight(&self, picture: &[[f32; 4]], gather: &[TraceGather]) -> Vec<[f32; 3]> {
-        let (width, height) = (self.frame.width, self.frame.height);
-        let surfaces = gather
+    /// What the light of sky and surfaces adds to each pixel.
+    pub(crate) fn skylight(&self, gather: &[TraceGather]) -> Vec<[f32; 3]> {
+        let eye = Vec3::from(self.frame.eye);
+        let slots: Vec<[SkylightSlot; 2]> = gather
             .par_iter()
-            .enumerate()
-            .map(|(i, gather)| {
-                let (x, y) = (i as u32 % width, i as u32 / width);
-                let normal = packing_octahedral_decode(packing_unpack_snorm(gather.normal));
-                (Vec3::from(normal), self.skylight_place(picture, x, y))
-            })
+            .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
             .collect();
-        let pixels = &Pixels { view: self, surfaces, gather };
-        let shown = |x, y| {
-            let own = &gather[(y * width + x) as usize];
-            if own.met <= 0.0 {
-                return [0.0; 3];
-            }
-            let sky = pixels.skylight_mean(x, y);
-            (Vec3::from(own.body) * sky.truncate() + Vec3::from(own.gloss) * (sky.w * sky.w)).to_array()
+        let (width, height) = (self.frame.width, self.frame.height);
+        let pixels = &Pixels { width, height, slots: &slots };
+        let all = |of: &(dyn Fn(u32, u32, usize) -> Vec4 + Sync)| -> Vec<[Vec4; 2]> {
+            (0..height)
+                .into_par_iter()
+                .flat_map_iter(|y| (0..width).map(move |x| [of(x, y, 0), of(x, y, 1)]))
+                .collect()
         };
-        (0..height).into_par_iter().flat_map_iter(|y| (0..width).map(move |x| shown(x, y))).collect()
-    }
-
-    /// The place that a pixel shows, relative to the eye.
-    fn skylight_place(&self, picture: &[[f32; 4]], x: u32, y: u32) -> Vec3 {
-        self.scene_direction(x as f32 + 0.5, y as f32 + 0.5) * picture[(y * self.frame.width + x) as usize][3]
+        let mut means = all(&|x, y, k| pixels.skylight_mean(x, y, k));
+        for pass in 0..SKYLIGHT_PASSES {
+            means = all(&|x, y, k| pixels.skylight_wide(&means, x, y, k, SKYLIGHT_STEP << pass));
+        }
+        let shown = |([base, mirror], [of_base, of_mirror]): (&[SkylightSlot; 2], &[Vec4; 2])| {
+            (base.factor * of_base.truncate() + mirror.factor * of_mirror.truncate()).to_array()
+        };
+        slots.par_iter().zip(&means).map(shown).collect()
     }
 }
 
+/// A slot, unpacked.
+fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
+    let PathSlot { light, slack, factor, roughness, normal: direction, place } = trace_unpack(slot, eye);
+    let mut normal = direction;
+    if roughness > 0.0 {
+        // Between what is seen and what is mirrored.
+        let seen = place - eye;
+        let sum = direction - seen / seen.dot(seen).sqrt().max(1.0e-20);
+        normal = sum / sum.dot(sum).sqrt().max(1.0e-20);
+    }
+    SkylightSlot { light, factor, normal, direction, place, slack, roughness }
+}
+
 impl Pixels<'_> {
-    /// Light of the sky over pi, and the open share of the sky, over the pixels round a pixel.
-    fn skylight_mean(&self, x: u32, y: u32) -> Vec4 {
-        let frame = self.view.frame;
-        let index = |x: u32, y: u32| (y * frame.width + x) as usize;
-        let own = &self.gather[index(x, y)];
-        let (normal, place) = self.surfaces[index(x, y)];
-        let distance = place.dot(place).sqrt();
-        // How far from the plane a neighbour may be: what two pixels are apart, and a little more where it is slanted.
-        let slack = distance * (frame.pixel_angle * 2.0 + SKYLIGHT_SLACK);
-        let mut sum = Vec4::from(own.sky) * own.met;
-        let mut weight = own.met;
+    /// The mean of the window round a pixel, and the variance of its luminance.
+    fn skylight_mean(&self, x: u32, y: u32, slot: usize) -> Vec4 {
+        let index = |x: u32, y: u32| (y * self.width + x) as usize;
+        let own = &self.slots[index(x, y)][slot];
+        if own.slack <= 0.0 {
+            return Vec4::ZERO;
+        }
+        let (mut sum, mut squares, mut weight, mut weights) = (Vec3::ZERO, 0.0, 0.0, 0.0);
         let around =
             |at: u32, size: u32| at.saturating_sub(SKYLIGHT_RADIUS)..=(at + SKYLIGHT_RADIUS).min(size - 1);
-        for row in around(y, frame.height) {
-            for column in around(x, frame.width) {
-                let other = &self.gather[index(column, row)];
-                if other.met <= 0.0 || (row == y && column == x) {
-                    continue;
+        for row in around(y, self.height) {
+            for column in around(x, self.width) {
+                let other = index(column, row);
+                let mut counts = 1.0;
+                if row != y || column != x {
+                    counts = skylight_same(own, &self.slots[other][slot]);
                 }
-                let (its_normal, its_place) = self.surfaces[index(column, row)];
-                let agrees = normal.dot(its_normal).max(0.0);
-                let fourth = agrees * agrees * agrees * agrees;
-                let off = normal.dot(its_place - place).abs();
-                let near = (1.0 - off / slack).max(0.0);
-                let counts = fourth * fourth * near * other.met;
-                sum += Vec4::from(other.sky) * counts;
-                weight += counts;
+                if counts > 0.0 {
+                    let light = self.slots[other][slot].light;
+                    let luminance = skylight_luminance(light);
+                    sum += light * counts;
+                    squares += luminance * luminance * counts;
+                    weight += counts;
+                    weights += counts * counts;
+                }
             }
         }
-        sum / weight.max(1.0e-6)
+        let mean = sum / weight;
+        let luminance = skylight_luminance(mean);
+        let variance = (squares / weight - luminance * luminance).max(0.0);
+        // How many there are; of one alone nothing is known.
+        let count = weight * weight / weights;
+        mean.extend(variance / (count - 1.0).max(0.5) + luminance * luminance / (count * count))
+    }
+
+    /// The mean of means `step` pixels apart that show the same.
+    fn skylight_wide(&self, means: &[[Vec4; 2]], x: u32, y: u32, slot: usize, step: u32) -> Vec4 {
+        let here = (y * self.width + x) as usize;
+        let (own, mean) = (&self.slots[here][slot], means[here][slot]);
+        if own.slack <= 0.0 {
+            return Vec4::ZERO;
+        }
+        let (mut sum, mut variance, mut weight) = (mean.truncate() * 4.0, mean.w * 16.0, 4.0);
+        for k in 0..9 {
+            let (column, row) = (x + k % 3 * step, y + k / 3 * step);
+            if k == 4
+                || column < step
+                || row < step
+                || column - step >= self.width
+                || row - step >= self.height
+            {
+                continue;
+            }
+            let other = ((row - step) * self.width + column - step) as usize;
+            let its = means[other][slot];
+            let kernel = if k % 2 == 0 { 1.0 } else { 2.0 };
+            let counts = kernel * skylight_same(own, &self.slots[other][slot]) * skylight_alike(mean, its);
+            sum += its.truncate() * counts;
+            variance += its.w * counts * counts;
+            weight += counts;
+        }
+        (sum / weight).extend(variance / (weight * weight))
     }
 }

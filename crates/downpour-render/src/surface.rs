@@ -3,7 +3,10 @@
 
 use downpour_bvh::{Hit, bvh_nearest};
 use downpour_math::ops;
-use downpour_shaders::render::scene::{SCENE_LAYERS, SCENE_MASKED, SCENE_MATERIAL_ROWS, SCENE_NONE};
+use downpour_shaders::render::scene::{
+    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_UNLIT, SURFACE_OPEN,
+};
+use downpour_sim::shelter::Holes;
 use glam::{Vec3, Vec4};
 
 use crate::data::{RenderCorner, SceneData};
@@ -33,6 +36,16 @@ pub struct Surface {
     pub transmission: f32,
     /// Emitted radiance.
     pub emission: Vec3,
+    /// Curvature, 1/m: how much the normal turns per metre.
+    pub bend: f32,
+}
+
+/// Rain falls through what is not seen: where a masked material is below its cutoff, or one that is blended has no alpha. Where
+/// one is blended and has some, it is there: glass keeps off the rain.
+impl Holes for SceneData {
+    fn is_hole(&self, hit: &Hit) -> bool {
+        self.surface_is_open(hit)
+    }
 }
 
 impl SceneData {
@@ -52,7 +65,29 @@ impl SceneData {
         if row == SCENE_NONE { Vec4::ONE } else { self.texture_sample(row, uv, spread) }
     }
 
-    /// The nearest surface up to a distance that is not a hole of a masked material. Twelve holes in a row end the ray.
+    /// Alpha at a hit.
+    pub(crate) fn surface_alpha(&self, hit: &Hit) -> f32 {
+        let material = (self.corners_of(hit)[0].material * SCENE_MATERIAL_ROWS) as usize;
+        let slot = self.table[material + 4][0];
+        f32::from_bits(self.table[material][3])
+            * self.surface_texture(slot, self.surface_uv(hit), -20.0).w
+            * self.surface_colour(hit).w
+    }
+
+    /// Whether there is a hole at a hit.
+    fn surface_is_open(&self, hit: &Hit) -> bool {
+        let material = (self.corners_of(hit)[0].material * SCENE_MATERIAL_ROWS) as usize;
+        let flags = self.table[material + 3][0];
+        if flags & (SCENE_MASKED | SCENE_BLENDED) == 0 {
+            return false;
+        }
+        let cutoff = f32::from_bits(self.table[material + 2][3]);
+        let least = if flags & SCENE_MASKED != 0 { cutoff } else { SURFACE_OPEN };
+        self.surface_alpha(hit) < least
+    }
+
+    /// The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is
+    /// blended has no alpha. Twelve holes in a row end the ray.
     #[must_use]
     pub fn surface_hit(&self, origin: Vec3, direction: Vec3, nearest: f32, farthest: f32) -> Option<Hit> {
         let mut from_distance = nearest;
@@ -65,15 +100,7 @@ impl SceneData {
                 from_distance,
                 farthest,
             )?;
-            let material = (self.corners_of(&hit)[0].material * SCENE_MATERIAL_ROWS) as usize;
-            if self.table[material + 3][0] & SCENE_MASKED == 0 {
-                return Some(hit);
-            }
-            let slot = self.table[material + 4][0];
-            let alpha = f32::from_bits(self.table[material][3])
-                * self.surface_texture(slot, self.surface_uv(&hit), -20.0).w
-                * self.surface_colour(&hit).w;
-            if alpha >= f32::from_bits(self.table[material + 2][3]) {
+            if !self.surface_is_open(&hit) {
                 return Some(hit);
             }
             from_distance = hit.distance + nearest;
@@ -108,6 +135,16 @@ impl SceneData {
     fn surface_edges(&self, hit: &Hit) -> Vec3 {
         let triangle = &self.triangles[hit.triangle as usize];
         Vec3::from(triangle.edge_1).cross(Vec3::from(triangle.edge_2))
+    }
+
+    /// How much the corners' normals turn per metre of the triangle that was hit.
+    fn surface_bend(&self, hit: &Hit) -> f32 {
+        let triangle = &self.triangles[hit.triangle as usize];
+        let [a, b, c] = [0, 1, 2].map(|k| Vec3::from(self.corners_of(hit)[k].normal));
+        let (edge_1, edge_2) = (Vec3::from(triangle.edge_1), Vec3::from(triangle.edge_2));
+        let turned = (b - a).dot(b - a) + (c - a).dot(c - a);
+        let length = edge_1.dot(edge_1) + edge_2.dot(edge_2);
+        (turned / length.max(1.0e-20)).sqrt()
     }
 
     /// Everything that shading needs at a hit. `cone` is the width of the ray at distance 1.
@@ -151,8 +188,11 @@ impl SceneData {
             normal -= direction * (away + 0.01);
             normal /= normal.dot(normal).sqrt().max(1.0e-20);
         }
+        // Unlit, the base colour is all that is seen.
+        let unlit = flags & SCENE_UNLIT != 0;
         let dielectric = (ior - 1.0) / (ior + 1.0);
-        let f0 = dielectric * dielectric;
+        let f0 = if unlit { 0.0 } else { dielectric * dielectric };
+        let metallic = if unlit { 0.0 } else { metallic };
         let colour = base.truncate();
         Surface {
             position: origin + direction * hit.distance,
@@ -166,6 +206,7 @@ impl SceneData {
             normal_reflectance: Vec3::splat(f0) * (1.0 - metallic) + colour * metallic,
             transmission: transmission.clamp(0.0, 1.0) * (1.0 - metallic),
             emission,
+            bend: self.surface_bend(hit),
         }
     }
 }

@@ -92,8 +92,9 @@ fn clear_water_on_white_ground_is_not_seen() -> Outcome {
         let dry = seen(&scene, angle)?;
         flood(&mut scene, 0.02, clear);
         let wet = seen(&scene, angle)?;
-        // The dry ground's own gloss is a fit that keeps a few parts in a hundred to itself at grazing angles.
-        assert!((wet - 1.0).abs() < 5.0e-3, "{angle}: dry {dry}, wet {wet}");
+        // The ground's own gloss is a fit that keeps a few parts in a hundred to itself at grazing angles, and under water, where
+        // it is a tenth, a few in a thousand.
+        assert!((wet - 1.0).abs() < 6.0e-3, "{angle}: dry {dry}, wet {wet}");
     }
     Ok(())
 }

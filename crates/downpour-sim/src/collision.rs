@@ -48,6 +48,7 @@ pub use surface::{
 };
 
 use crate::SimError;
+use crate::shelter::Holes;
 
 /// The map on the CPU.
 ///
@@ -77,10 +78,10 @@ impl CollisionMap {
     /// # Errors
     /// As [`CollisionFrame::new`].
     pub fn new(options: &CollisionOptions, scene: &Bvh) -> Result<Self, SimError> {
-        Self::from_arrays(options, &scene.nodes, &scene.triangles)
+        Self::from_arrays(options, &scene.nodes, &scene.triangles, None)
     }
 
-    /// As [`CollisionMap::new`], from the arrays of a [`Bvh`].
+    /// As [`CollisionMap::new`], from the arrays of a [`Bvh`], whose triangles may have holes.
     ///
     /// # Errors
     /// As [`CollisionFrame::new`].
@@ -88,12 +89,13 @@ impl CollisionMap {
         options: &CollisionOptions,
         nodes: &[BvhNode],
         triangles: &[BvhTriangle],
+        holes: Option<&dyn Holes>,
     ) -> Result<Self, SimError> {
         let frame = CollisionFrame::from_arrays(options, nodes, triangles)?;
         let [width, height] = frame.size;
         let texels = (0..width * height)
             .into_par_iter()
-            .map(|i| collision_map_texel(&frame, nodes, triangles, UVec2::new(i % width, i / width)))
+            .map(|i| collision_map_texel(&frame, nodes, triangles, holes, UVec2::new(i % width, i / width)))
             .collect();
         Ok(Self { frame, texels })
     }

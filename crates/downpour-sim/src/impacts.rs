@@ -16,7 +16,7 @@
 //! let rain = RainField::new(&DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 25.0)?, 7)?;
 //! let [a, b, c, d] = [[-3.0, 0.0, -3.0], [-3.0, 0.0, 3.0], [3.0, 0.0, 3.0], [3.0, 0.0, -3.0]];
 //! let ground = Bvh::new(&[[a, b, c], [a, c, d]]);
-//! let obstacles = Obstacles { nodes: &ground.nodes, triangles: &ground.triangles, origin: DVec3::ZERO };
+//! let obstacles = Obstacles { nodes: &ground.nodes, triangles: &ground.triangles, holes: None, origin: DVec3::ZERO };
 //! let (low, high) = (DVec3::new(-0.5, -0.1, -0.5), DVec3::new(0.5, 0.1, 0.5));
 //! // What has hit a square metre within the last tenth of a second.
 //! let impacts = rain.impacts(&obstacles, low, high, [12.4, 12.5], 0.5e-3)?;

@@ -10,6 +10,9 @@
 //! the one in the rain.
 //!
 //! What moves is taken where it is now: behind a car, its shadow in the rain is straight.
+//!
+//! Surfaces may have holes, as the cards that leaves are painted on ([`Holes`]): rain falls through them. What is there at
+//! all stops drops, however well it is seen through: a pane of glass is a roof.
 
 use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_nearest};
 use downpour_drop::fall_speed::TerminalSpeed;
@@ -29,6 +32,15 @@ const LONGEST_S: f64 = 120.0;
 /// A drop on a surface is not behind it, m.
 const CLEAR_M: f32 = 1.0e-4;
 
+/// Holes in a way to the sky, at most: a way through more ends in the open.
+const MOST_HOLES: u32 = 64;
+
+/// Where triangles are not there, though they are in the list: alpha of a texture, say.
+pub trait Holes: std::fmt::Debug + Sync {
+    /// Whether there is nothing at a hit.
+    fn is_hole(&self, hit: &Hit) -> bool;
+}
+
 /// What stands in the rain: the arrays of a `downpour_bvh::Bvh`, relative to `origin`.
 #[derive(Clone, Copy, Debug)]
 pub struct Obstacles<'a> {
@@ -36,6 +48,8 @@ pub struct Obstacles<'a> {
     pub nodes: &'a [BvhNode],
     /// Triangles.
     pub triangles: &'a [BvhTriangle],
+    /// Where they have holes; none: nowhere.
+    pub holes: Option<&'a dyn Holes>,
     /// m.
     pub origin: DVec3,
 }
@@ -155,13 +169,25 @@ fn speed(law: &TerminalSpeed, drop: &FallingDrop) -> f64 {
 
 /// What is first met at a velocity within a time; the hit's distance is a time, s.
 pub(crate) fn met(obstacles: &Obstacles<'_>, from: Vec3, velocity: Vec3, time_s: f32) -> Option<Hit> {
-    let (origin, way) = (from.to_array(), velocity.to_array());
-    bvh_nearest(obstacles.nodes, obstacles.triangles, origin, way, 0.0, time_s)
+    first_solid(obstacles, from, velocity, 0.0, time_s)
 }
 
 /// Whether nothing is met within a distance.
 fn clear(obstacles: &Obstacles<'_>, from: Vec3, direction: Vec3, distance: f32) -> bool {
-    let (origin, direction) = (from.to_array(), direction.to_array());
     let far = distance.min(downpour_shaders::bvh::BVH_FAR);
-    bvh_nearest(obstacles.nodes, obstacles.triangles, origin, direction, CLEAR_M, far).is_none()
+    first_solid(obstacles, from, direction, CLEAR_M, far).is_none()
+}
+
+/// The nearest hit that is no hole, at a distance from `near` to `far` times the length of `way`.
+fn first_solid(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, mut near: f32, far: f32) -> Option<Hit> {
+    let (origin, direction) = (from.to_array(), way.to_array());
+    let step = CLEAR_M / way.length().max(CLEAR_M);
+    for _ in 0..MOST_HOLES {
+        let hit = bvh_nearest(obstacles.nodes, obstacles.triangles, origin, direction, near, far)?;
+        if !obstacles.holes.is_some_and(|holes| holes.is_hole(&hit)) {
+            return Some(hit);
+        }
+        near = hit.distance.max(near) + step;
+    }
+    None
 }

@@ -1,9 +1,9 @@
 //! The rain in closed form in a wind, and behind what stands in it.
 
-use downpour_bvh::Bvh;
+use downpour_bvh::{Bvh, Hit};
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_sim::field::{FallingDrop, RainField};
-use downpour_sim::shelter::Obstacles;
+use downpour_sim::shelter::{Holes, Obstacles};
 use downpour_sim::view::View;
 use downpour_wind::{Gusts, Keyed, UniformWind, Wind, WindPart};
 use glam::DVec3;
@@ -114,9 +114,13 @@ fn roof() -> Bvh {
 }
 
 fn below_the_roof(wind: UniformWind, time: f64) -> [Vec<FallingDrop>; 2] {
+    below(wind, time, None)
+}
+
+fn below(wind: UniformWind, time: f64, holes: Option<&dyn Holes>) -> [Vec<FallingDrop>; 2] {
     let rain = rain(50.0).with_wind(wind);
     let bvh = roof();
-    let obstacles = Obstacles { nodes: &bvh.nodes, triangles: &bvh.triangles, origin: DVec3::ZERO };
+    let obstacles = Obstacles { nodes: &bvh.nodes, triangles: &bvh.triangles, holes, origin: DVec3::ZERO };
     let view = View { eye: DVec3::new(0.0, 1.5, 3.0), far: 12.0, ..View::default() };
     let all = rain.visible(&view, time).expect("in range").drops;
     let open = rain.visible_among(&obstacles, &view, time).expect("in range").drops;
@@ -144,6 +148,36 @@ fn a_roof_keeps_off_the_rain() {
         }
         assert!(kept_off > 200, "{kept_off} of {}", all.len());
     }
+}
+
+/// A roof whose first triangle (x - z > 4 of its square) is not there.
+#[derive(Debug)]
+struct Half;
+
+impl Holes for Half {
+    fn is_hole(&self, hit: &Hit) -> bool {
+        hit.triangle == 0
+    }
+}
+
+/// Rain falls through the hole of a roof, and not through the rest of it.
+#[test]
+fn rain_falls_through_holes() {
+    let [all, open] = below(steady(DVec3::ZERO), 7.0, Some(&Half));
+    let open_ids: std::collections::BTreeSet<u64> = open.iter().map(|drop| drop.id).collect();
+    let (mut through, mut kept_off) = (0, 0);
+    for drop in &all {
+        let [x, y, z] = drop.position.to_array();
+        // The diagonal from (-2, -6) to (2, -2) parts the triangles.
+        if y >= 3.0 || x.abs() >= 2.0 || (z + 4.0).abs() >= 2.0 || (x - (z + 4.0)).abs() < 1.0e-4 {
+            continue;
+        }
+        let hole = x > z + 4.0;
+        assert_eq!(open_ids.contains(&drop.id), hole, "{drop:?}");
+        through += u32::from(hole);
+        kept_off += u32::from(!hole);
+    }
+    assert!(through > 100 && kept_off > 100, "{through}, {kept_off}");
 }
 
 /// In gusts a drop that was stopped stays away, and one that was not stays there: nothing comes or goes in mid-air.

@@ -50,7 +50,7 @@ fn yard() -> Bvh {
 }
 
 fn obstacles(bvh: &Bvh) -> Obstacles<'_> {
-    Obstacles { nodes: &bvh.nodes, triangles: &bvh.triangles, origin: DVec3::ZERO }
+    Obstacles { nodes: &bvh.nodes, triangles: &bvh.triangles, holes: None, origin: DVec3::ZERO }
 }
 
 fn speed(diameter: f64) -> f64 {
@@ -289,7 +289,7 @@ fn what_is_out_of_range_is_refused() {
         ask(0.0, [1.0, 0.0]).is_err() && ask(0.0, [0.0, 61.0]).is_err() && ask(0.0, [0.0, f64::NAN]).is_err()
     );
     assert_eq!(ask(0.5, [0.0, 1.0]).expect("in range"), 0, "nothing stands there");
-    let nothing = Obstacles { nodes: &[], triangles: &[], origin: DVec3::ZERO };
+    let nothing = Obstacles { nodes: &[], triangles: &[], holes: None, origin: DVec3::ZERO };
     let impacts = rain.impacts(&nothing, DVec3::ZERO, DVec3::ONE, [0.0, 1.0], 0.0);
     assert!(impacts.expect("in range").is_empty());
 }

@@ -1,6 +1,7 @@
 //! `wgsl/render/medium*.wgsl`: drops that a picture does not draw one by one. Twins: `downpour_render::rain::medium`.
 
 use super::drop_light::DROP_GLINT;
+use super::path::PATH_LATTICE;
 use super::scene::SCENE;
 use crate::common::RNG;
 use crate::{Kernel, Module};
@@ -76,7 +77,7 @@ pub static MEDIUM_OPEN: Module = Module {
 pub static MEDIUM_LIGHT: Module = Module {
     path: "render/medium_light.wgsl",
     wgsl: include_str!("../../wgsl/render/medium_light.wgsl"),
-    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_OPEN, &DROP_GLINT, &SCENE],
+    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_OPEN, &DROP_GLINT, &PATH_LATTICE, &SCENE],
 };
 
 /// Means over neighbors. Twin: `downpour_render::rain::medium::filter`.

@@ -1,11 +1,13 @@
 //! `wgsl/render/{data,texture,sky,surface,scene,capture,trace,skylight}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
-//! `downpour_render::{texture, sky, surface, scene, rain::capture, trace, skylight}`.
+//! `downpour_render::{texture, sky, surface, scene, rain::capture, trace, skylight}`. The rays of the camera are in
+//! [`path`](super::path).
 
 use super::brdf::BRDF;
 use super::pane_shadow::PANE_SHADOW;
+use super::path::PATH;
 use super::puddle_water::PUDDLE_WATER;
 use crate::bvh::BVH;
-use crate::common::{PACKING, RNG};
+use crate::common::PACKING;
 use crate::drop::optics::OPTICS;
 use crate::{Kernel, Module};
 
@@ -33,6 +35,8 @@ shared_constants! {
         SCENE_BLENDED: u32 = 2;
         /// Material flag: both sides are seen.
         SCENE_DOUBLE_SIDED: u32 = 4;
+        /// Alpha below which a blended material is a hole.
+        SURFACE_OPEN: f32 = 0.002;
         /// Material flag: the base colour is what is seen, without light.
         SCENE_UNLIT: u32 = 8;
         /// Texture flag: texels are square roots of linear colours.
@@ -51,32 +55,29 @@ shared_constants! {
         SCENE_LIGHT_POINT: u32 = 1;
         /// See-through surfaces that a ray passes before it ends.
         SCENE_LAYERS: u32 = 12;
-        /// Levels of the sky: the map itself, and five prefiltered for roughness 0.2 to 1.
-        SCENE_SKY_LEVELS: u32 = 6;
-        /// Dimension of the random numbers of a pixel's rays.
-        SCENE_RANDOM_DIMENSION: u32 = 4100;
+        /// Levels of the sky: the map itself, and means of it down to 4 rows from 16384.
+        SCENE_SKY_LEVELS: u32 = 13;
+        /// Texels of a map of one row, over pi, across a ray of width 1: a texel between its neighbours is wider than one.
+        SKY_CONE_TEXELS: f32 = 0.2;
         /// Least roughness of the light of points and of the sun: a mirror would need their size.
         SCENE_LEAST_ROUGHNESS: f32 = 0.06;
-        /// Width at distance 1 of a ray to the sky: textures that it meets are seen at a glance.
-        SCENE_GLANCE_CONE: f32 = 0.05;
-        /// Least distance of a lamp at a glance, per reach of the rays to the sky.
-        SCENE_GLANCE_NEAREST: f32 = 0.03;
         /// Lamps that give less than this part of what all would give cast no ray.
         SCENE_LEAST_LAMP: f32 = 0.001;
-        /// Cosine of the angle between facets up to which a surface goes on.
-        SCENE_SAME_FACET: f32 = 0.97;
-        /// Distance from the other facet's plane up to which a surface goes on, per distance from the eye.
-        SCENE_SAME_PLANE: f32 = 0.005;
-        /// Generators of the lattice of the rays' numbers: coprime with the points of the filter's window.
-        SCENE_LATTICE_SCATTER: u32 = 19;
-        /// See [`SCENE_LATTICE_SCATTER`].
-        SCENE_LATTICE_SECOND: u32 = 30;
-        /// See [`SCENE_LATTICE_SCATTER`].
-        SCENE_LATTICE_THIRD: u32 = 37;
         /// Pixels to each side over which the sky's light is averaged.
         SKYLIGHT_RADIUS: u32 = 3;
         /// Distance from the plane of a pixel's surface at which a neighbour no longer counts, per distance from the eye.
         SKYLIGHT_SLACK: f32 = 0.002;
+        /// Half the square of the angle, in alphas, at which a neighbour's gloss no longer counts.
+        SKYLIGHT_LOBE: f32 = 2.0;
+        /// Pixels between the means of which the first wider mean is taken: about the width of a window, but not a multiple
+        /// of it, so that what the windows repeat is smoothed too.
+        SKYLIGHT_STEP: u32 = 6;
+        /// Wider means, each of twice the step.
+        SKYLIGHT_PASSES: u32 = 3;
+        /// Square of the difference of two means, in the sum of their variances, from which they are not the same.
+        SKYLIGHT_NOISE: f32 = 25.0;
+        /// Cosine of the angle between normals up to which samples of a pixel are of one surface.
+        TRACE_SAME_NORMAL: f32 = 0.9;
         /// What is traced: the picture.
         SCENE_PICTURE: u32 = 0;
         /// Four over pi: the area of the octahedral map's square, for an irradiance over pi.
@@ -115,18 +116,18 @@ pub static SURFACE: Module = Module {
     uses: &[&DATA, &TEXTURE, &BVH],
 };
 
-/// The picture of a scene. Twin: `downpour_render::scene`.
+/// The light of lamps in a scene. Twin: `downpour_render::scene`.
 pub static SCENE: Module = Module {
     path: "render/scene.wgsl",
     wgsl: include_str!("../../wgsl/render/scene.wgsl"),
-    uses: &[&DATA, &SKY, &SURFACE, &BRDF, &OPTICS, &PANE_SHADOW, &PUDDLE_WATER, &RNG, &PACKING],
+    uses: &[&DATA, &SURFACE, &BRDF, &OPTICS, &PANE_SHADOW, &PUDDLE_WATER],
 };
 
 /// Pixels of the picture and of the capture. Twin: `downpour_render::trace`.
 pub static TRACE: Module = Module {
     path: "render/trace.wgsl",
     wgsl: include_str!("../../wgsl/render/trace.wgsl"),
-    uses: &[&SCENE, &CAPTURE, &PACKING],
+    uses: &[&SCENE, &PATH, &CAPTURE, &PACKING],
 };
 
 /// The surroundings of the eye. Twin: `downpour_render::rain::capture`.

@@ -2,6 +2,7 @@
 // Sources: B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007 (GGX); E. Heitz,
 // JCGT 3(2), 2014 (height-correlated Smith); C. Schlick 1994; glTF 2.0 appendix B. The environment term is the fit of
 // B. Karis, "Physically based shading on mobile", 2014.
+// Reflected rays are drawn by the normals that the viewer sees (E. Heitz, JCGT 7(4), 2018).
 // Symbols: alpha = roughness^2; all cosines in [0, 1].
 // Twin: downpour_render::brdf.
 
@@ -44,6 +45,42 @@ fn brdf_direct(
     let fresnel = brdf_fresnel(normal_reflectance, dot(view, halfway));
     let specular = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine_light);
     return ((vec3f(1.0) - fresnel) * diffuse + fresnel * specular) * cosine_light;
+}
+
+// Smith's masking: fraction of the microfacets facing a direction that is visible from it.
+fn brdf_masking(alpha: f32, cosine: f32) -> f32 {
+    let a2 = alpha * alpha;
+    return 2.0 * cosine / max(cosine + sqrt((cosine - a2 * cosine) * cosine + a2), BRDF_SMALLEST);
+}
+
+// Normal of a microfacet, drawn from those that a viewer sees. `view` points to the viewer, in axes whose third is the
+// surface's normal; `a` and `b` are uniform in [0, 1).
+fn brdf_visible_normal(view: vec3f, alpha: f32, a: f32, b: f32) -> vec3f {
+    // Stretched, so that the surface is one of roughness 1.
+    let stretched = vec3f(alpha * view.x, alpha * view.y, view.z);
+    let v = stretched / max(sqrt(dot(stretched, stretched)), BRDF_SMALLEST);
+    let flat_part = v.x * v.x + v.y * v.y;
+    var level = vec3f(1.0, 0.0, 0.0);
+    if flat_part > 0.0 {
+        level = vec3f(-v.y, v.x, 0.0) / sqrt(flat_part);
+    }
+    let rising = cross(v, level);
+    // A point of the disc that the hemisphere of normals shows: half of it is foreshortened.
+    let radius = sqrt(a);
+    let angle = 6.2831853 * b;
+    let x = radius * cos(angle);
+    let share = 0.5 * (1.0 + v.z);
+    let y = (1.0 - share) * sqrt(max(1.0 - x * x, 0.0)) + share * (radius * sin(angle));
+    let z = sqrt(max(1.0 - x * x - y * y, 0.0));
+    let normal = level * x + rising * y + v * z;
+    let back = vec3f(alpha * normal.x, alpha * normal.y, max(normal.z, 0.0));
+    return back / max(sqrt(dot(back, back)), BRDF_SMALLEST);
+}
+
+// Density, per solid angle, of reflections drawn with brdf_visible_normal, times pi.
+fn brdf_visible_density(alpha: f32, cosine_half: f32, cosine_view: f32) -> f32 {
+    return brdf_distribution(alpha, cosine_half) * brdf_masking(alpha, cosine_view) * 0.25
+        / max(cosine_view, BRDF_SMALLEST);
 }
 
 // Share of a uniform environment that microfacets reflect.

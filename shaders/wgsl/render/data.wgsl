@@ -25,8 +25,8 @@ struct RenderFrame {
     seed: u32,
     // Nearest distance of the next surface, metres.
     nearest: f32,
-    // How far the rays to the sky go, metres.
-    sky_reach: f32,
+    // Part of the rays that look for the light of a surface that one of them is.
+    ray_share: f32,
     // What is traced: SCENE_PICTURE, SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
     projection: u32,
     // 1: the capture leaves parallel light out.
@@ -36,11 +36,12 @@ struct RenderFrame {
     puddle_count: u32,
     // Row of the table where the pane begins that throws shadows; 0: none.
     pane: u32,
-    unused_0: u32,
+    // Pass of the means over neighbouring pixels.
+    skylight_pass: u32,
     unused_1: u32,
     unused_2: u32,
     // Width, height and first texel of each level of the sky.
-    sky_levels: array<vec4u, 6>,
+    sky_levels: array<vec4u, SCENE_SKY_LEVELS>,
     // Irradiance of the sky over pi as spherical harmonics of degree 2.
     sky_irradiance: array<vec4f, 9>,
 }

@@ -170,7 +170,7 @@ fn medium_light_pixel(x: u32, y: u32) {
     var sum = MediumLight(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec2f(0.0), 0u);
     var seen = vec3f(0.0);
     if medium_frame.lit != MEDIUM_DARK && medium_frame.all > 0.0 {
-        let random = scene_lattice(x, y, MEDIUM_LATTICE);
+        let random = path_lattice_words(x, y, MEDIUM_LATTICE);
         sum.rest = rng_unit(random.x);
         let reach = vec2f(min(scene, MEDIUM_SKY_REACH), min(scene, MEDIUM_LAMP_REACH));
         for (var k = 0u; k < render_frame.light_count; k += 1u) {

@@ -178,6 +178,28 @@ fn puddle_water_refracted(direction: vec3f, normal: vec3f) -> vec3f {
     return along / sqrt(dot(along, along));
 }
 
+// The direction beneath level water of light from above, both towards where it comes from.
+fn puddle_water_beneath(direction: vec3f) -> vec3f {
+    let x = direction.x / PUDDLE_WATER_INDEX;
+    let z = direction.z / PUDDLE_WATER_INDEX;
+    return vec3f(x, sqrt(max(1.0 - x * x - z * z, 0.0)), z);
+}
+
+// Where light that falls on a place under a depth of level water has come through the surface, from the place's own spot
+// on the surface.
+fn puddle_water_entry(direction: vec3f, depth: f32) -> vec3f {
+    let below = puddle_water_beneath(direction);
+    let aside = depth / max(below.y, 0.1);
+    return vec3f(below.x * aside, 0.0, below.z * aside);
+}
+
+// The direction above level water of light from beneath it; its height is 0 where it does not come out.
+fn puddle_water_above(direction: vec3f) -> vec3f {
+    let x = direction.x * PUDDLE_WATER_INDEX;
+    let z = direction.z * PUDDLE_WATER_INDEX;
+    return vec3f(x, sqrt(max(1.0 - x * x - z * z, 0.0)), z);
+}
+
 // Albedo of what lies under water, as seen through its surface over the share that comes out along the ray: light goes
 // in diffusely, and is thrown back between ground and surface. White stays white.
 fn puddle_water_albedo(albedo: vec3f) -> vec3f {

@@ -1,4 +1,4 @@
-// The light of the sky: an equirectangular map, the same prefiltered for rough reflection, and its irradiance.
+// The light of the sky: an equirectangular map, the same at coarser levels, and its irradiance.
 // +Y is up; u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top.
 // Twin: downpour_render::sky.
 
@@ -33,16 +33,21 @@ fn sky_level(level: u32, direction: vec3f) -> vec3f {
     return (a * (1.0 - fx) + b * fx) * (1.0 - fy) + (c * (1.0 - fx) + d * fx) * fy;
 }
 
-// The sky as a surface of some roughness reflects it.
-fn sky_reflection(direction: vec3f, roughness: f32) -> vec3f {
-    let level = clamp(roughness, 0.0, 1.0) * f32(SCENE_SKY_LEVELS - 1u);
+// The sky as a ray sees it that is as wide as `width` at distance 1.
+fn sky_cone(direction: vec3f, width: f32) -> vec3f {
+    // Texels of the map across the ray; a texel between its neighbours is wider than one alone.
+    let texels = width * f32(render_frame.sky_levels[0].y) * SKY_CONE_TEXELS;
+    let level = min(log2(max(texels, 1.0)), f32(SCENE_SKY_LEVELS - 1u));
     let below = u32(level);
     let fraction = level - f32(below);
-    let near = sky_level(below, direction);
-    if fraction == 0.0 {
-        return near;
+    var share = 1.0 - fraction;
+    var sum = vec3f(0.0);
+    // Two levels, or one.
+    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
+        sum += sky_level(below + k, direction) * share;
+        share = select(0.0, fraction, k == 0u);
     }
-    return near * (1.0 - fraction) + sky_level(below + 1u, direction) * fraction;
+    return sum;
 }
 
 // Irradiance over pi of the whole sky on a surface: what a white diffuse surface shows.

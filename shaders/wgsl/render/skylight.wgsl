@@ -1,44 +1,139 @@
-// The light of the sky on surfaces: the mean of what the pixels round a pixel have found on the same surface, times what
-// the surface makes of it.
-// A neighbour counts as far as its normal agrees and as it is on the plane through the pixel's place.
-// Twin: downpour_render::skylight.
+// Light of sky and surfaces on surfaces: means over what the pixels round a pixel have found on the same surface, times what
+// the surface makes of it. The kernel makes one pass: means over windows, then wider means of them; the last adds them to the
+// picture.
+// Twin: downpour_render::skylight, where the method is described.
 
 @group(0) @binding(1) var<storage, read> skylight_gather: array<TraceGather>;
-@group(0) @binding(2) var<storage, read_write> skylight_picture: array<vec4f>;
+// Means of each pixel's two slots: colour, and the variance of its luminance.
+@group(0) @binding(2) var<storage, read> skylight_before: array<vec4f>;
+@group(0) @binding(3) var<storage, read_write> skylight_means: array<vec4f>;
+@group(0) @binding(4) var<storage, read_write> skylight_picture: array<vec4f>;
 
-// The place that a pixel shows, relative to the eye.
-fn skylight_place(x: u32, y: u32) -> vec3f {
-    return scene_direction(f32(x) + 0.5, f32(y) + 0.5) * skylight_picture[y * render_frame.width + x].w;
+// A slot of a pixel, unpacked.
+struct SkylightSlot {
+    light: vec3f,
+    slack: f32,
+    // Of the surface.
+    normal: vec3f,
+    roughness: f32,
+    // Of what counts as the same: the normal, or the direction that a mirror would show.
+    direction: vec3f,
+    place: vec3f,
 }
 
-// Light of the sky over pi, and the open share of the sky, over the pixels round a pixel.
-fn skylight_mean(x: u32, y: u32) -> vec4f {
-    let own = skylight_gather[y * render_frame.width + x];
-    let normal = packing_octahedral_decode(unpack2x16snorm(own.normal));
-    let place = skylight_place(x, y);
-    let distance = sqrt(dot(place, place));
-    // How far from the plane a neighbour may be: what two pixels are apart, and a little more where it is slanted.
-    let slack = distance * (render_frame.pixel_angle * 2.0 + SKYLIGHT_SLACK);
-    var sum = own.sky * own.met;
-    var weight = own.met;
+// The luminance of a color, for comparisons.
+fn skylight_luminance(color: vec3f) -> f32 {
+    return dot(color, vec3f(0.2126, 0.7152, 0.0722));
+}
+
+// How far two mirrored directions agree within the lobe of a roughness.
+fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
+    let alpha = roughness * roughness;
+    return max(1.0 - (1.0 - cosine) / max(SKYLIGHT_LOBE * alpha * alpha, 1.0e-7), 0.0);
+}
+
+// A slot of a pixel, unpacked.
+fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
+    var packed = skylight_gather[pixel].base;
+    if slot > 0u {
+        packed = skylight_gather[pixel].mirror;
+    }
+    let found = trace_unpack(packed);
+    var normal = found.normal;
+    if found.roughness > 0.0 {
+        // Between what is seen and what is mirrored.
+        let seen = found.place - render_frame.eye;
+        let sum = found.normal - seen / max(sqrt(dot(seen, seen)), 1.0e-20);
+        normal = sum / max(sqrt(dot(sum, sum)), 1.0e-20);
+    }
+    return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, found.place);
+}
+
+// How far two pixels show one surface.
+fn skylight_same(own: SkylightSlot, other: SkylightSlot) -> f32 {
+    if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
+        return 0.0;
+    }
+    let off = abs(dot(own.normal, other.place - own.place));
+    let near = max(1.0 - off / own.slack, 0.0);
+    let cosine = dot(own.direction, other.direction);
+    if own.roughness > 0.0 {
+        return skylight_lobe(cosine, own.roughness) * near;
+    }
+    let agrees = max(cosine, 0.0);
+    let fourth = agrees * agrees * agrees * agrees;
+    return fourth * fourth * near;
+}
+
+// How far two means are the same but for their noise: variances are those of the means.
+fn skylight_alike(own: vec4f, other: vec4f) -> f32 {
+    let apart = skylight_luminance(own.xyz) - skylight_luminance(other.xyz);
+    return max(1.0 - apart * apart / max(SKYLIGHT_NOISE * (own.w + other.w), 1.0e-20), 0.0);
+}
+
+// The mean of the window round a pixel, and the variance of its luminance.
+fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
+    let own = skylight_slot(y * render_frame.width + x, slot);
+    if own.slack <= 0.0 {
+        return vec4f(0.0);
+    }
+    var sum = vec3f(0.0);
+    var squares = 0.0;
+    var weight = 0.0;
+    var weights = 0.0;
     let left = max(x, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
     let top = max(y, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
     for (var row = top; row <= min(y + SKYLIGHT_RADIUS, render_frame.height - 1u); row += 1u) {
         for (var column = left; column <= min(x + SKYLIGHT_RADIUS, render_frame.width - 1u); column += 1u) {
-            let other = skylight_gather[row * render_frame.width + column];
-            if other.met <= 0.0 || (row == y && column == x) {
-                continue;
+            let other = skylight_slot(row * render_frame.width + column, slot);
+            var counts = 1.0;
+            if row != y || column != x {
+                counts = skylight_same(own, other);
             }
-            let agrees = max(dot(normal, packing_octahedral_decode(unpack2x16snorm(other.normal))), 0.0);
-            let fourth = agrees * agrees * agrees * agrees;
-            let off = abs(dot(normal, skylight_place(column, row) - place));
-            let near = max(1.0 - off / slack, 0.0);
-            let counts = fourth * fourth * near * other.met;
-            sum += other.sky * counts;
-            weight += counts;
+            if counts > 0.0 {
+                let luminance = skylight_luminance(other.light);
+                sum += other.light * counts;
+                squares += luminance * luminance * counts;
+                weight += counts;
+                weights += counts * counts;
+            }
         }
     }
-    return sum / max(weight, 1.0e-6);
+    let mean = sum / weight;
+    let luminance = skylight_luminance(mean);
+    let variance = max(squares / weight - luminance * luminance, 0.0);
+    // How many there are; of one alone nothing is known.
+    let count = weight * weight / weights;
+    return vec4f(mean, variance / max(count - 1.0, 0.5) + luminance * luminance / (count * count));
+}
+
+// The mean of means `step` pixels apart that show the same.
+fn skylight_wide(x: u32, y: u32, slot: u32, step: u32) -> vec4f {
+    let here = y * render_frame.width + x;
+    let own = skylight_slot(here, slot);
+    let mean = skylight_before[2u * here + slot];
+    if own.slack <= 0.0 {
+        return vec4f(0.0);
+    }
+    var sum = mean.xyz * 4.0;
+    var variance = mean.w * 16.0;
+    var weight = 4.0;
+    for (var k = 0u; k < 9u; k += 1u) {
+        let column = x + k % 3u * step;
+        let row = y + k / 3u * step;
+        if k == 4u || column < step || row < step || column - step >= render_frame.width
+            || row - step >= render_frame.height {
+            continue;
+        }
+        let other = (row - step) * render_frame.width + column - step;
+        let its = skylight_before[2u * other + slot];
+        let kernel = select(2.0, 1.0, k % 2u == 0u);
+        let counts = kernel * skylight_same(own, skylight_slot(other, slot)) * skylight_alike(mean, its);
+        sum += its.xyz * counts;
+        variance += its.w * counts * counts;
+        weight += counts;
+    }
+    return vec4f(sum / weight, variance / (weight * weight));
 }
 
 @compute @workgroup_size(8, 8, 1)
@@ -48,13 +143,19 @@ fn main_skylight(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let index = y * render_frame.width + id.x;
-    let own = skylight_gather[index];
-    if own.met > 0.0 {
-        let sky = skylight_mean(id.x, y);
-        let shown = own.body * sky.rgb + own.gloss * (sky.w * sky.w);
-        // The distance is not touched: other pixels read it.
-        skylight_picture[index].x += shown.x;
-        skylight_picture[index].y += shown.y;
-        skylight_picture[index].z += shown.z;
+    let step = render_frame.skylight_pass;
+    for (var slot = 0u; slot < 2u; slot += 1u) {
+        var mean = vec4f(0.0);
+        if step == 0u {
+            mean = skylight_mean(id.x, y, slot);
+        } else {
+            mean = skylight_wide(id.x, y, slot, SKYLIGHT_STEP << (step - 1u));
+        }
+        skylight_means[2u * index + slot] = mean;
+    }
+    if step == SKYLIGHT_PASSES {
+        let of_base = trace_unpack(skylight_gather[index].base).factor * skylight_means[2u * index].xyz;
+        let of_mirror = trace_unpack(skylight_gather[index].mirror).factor * skylight_means[2u * index + 1u].xyz;
+        skylight_picture[index] += vec4f(of_base + of_mirror, 0.0);
     }
 }

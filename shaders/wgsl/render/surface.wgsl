@@ -23,7 +23,8 @@ struct Surface {
     normal_reflectance: vec3f,
     transmission: f32,
     emission: vec3f,
-    unused: f32,
+    // Curvature, 1/m: how much the normal turns per metre.
+    bend: f32,
 }
 
 // A texture of a material's row, or white.
@@ -34,7 +35,28 @@ fn surface_texture(row: u32, uv: vec4f, spread: f32) -> vec4f {
     return texture_sample(row, uv, spread);
 }
 
-// The nearest surface up to a distance that is not a hole of a masked material. Twelve holes in a row end the ray.
+// Alpha at a hit.
+fn surface_alpha(hit: SurfaceHit) -> f32 {
+    let material = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
+    let slot = render_table[material + 4u].x;
+    return bitcast<f32>(render_table[material].w)
+        * surface_texture(slot, surface_uv(hit), -20.0).a * surface_colour(hit).a;
+}
+
+// Whether there is a hole at a hit.
+fn surface_is_open(hit: SurfaceHit) -> bool {
+    let material = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
+    let flags = render_table[material + 3u].x;
+    if (flags & (SCENE_MASKED | SCENE_BLENDED)) == 0u {
+        return false;
+    }
+    let cutoff = bitcast<f32>(render_table[material + 2u].w);
+    let least = select(SURFACE_OPEN, cutoff, (flags & SCENE_MASKED) != 0u);
+    return surface_alpha(hit) < least;
+}
+
+// The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is
+// blended has no alpha. Twelve holes in a row end the ray.
 fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> SurfaceHit {
     var from_distance = nearest;
     for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
@@ -43,14 +65,7 @@ fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> 
             break;
         }
         let found = SurfaceHit(hit.distance, hit.triangle, hit.u, hit.v);
-        let material = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
-        if (render_table[material + 3u].x & SCENE_MASKED) == 0u {
-            return found;
-        }
-        let slot = render_table[material + 4u].x;
-        let alpha = bitcast<f32>(render_table[material].w)
-            * surface_texture(slot, surface_uv(found), -20.0).a * surface_colour(found).a;
-        if alpha >= bitcast<f32>(render_table[material + 2u].w) {
+        if !surface_is_open(found) {
             return found;
         }
         from_distance = hit.distance + nearest;
@@ -92,6 +107,19 @@ fn surface_edges(hit: SurfaceHit) -> vec3f {
     return cross(bvh_triangles[hit.triangle].edge_1, bvh_triangles[hit.triangle].edge_2);
 }
 
+// How much the corners' normals turn per metre of the triangle that was hit.
+fn surface_bend(hit: SurfaceHit) -> f32 {
+    let first = hit.triangle * 3u;
+    let a = render_corners[first].normal;
+    let b = render_corners[first + 1u].normal;
+    let c = render_corners[first + 2u].normal;
+    let edge_1 = bvh_triangles[hit.triangle].edge_1;
+    let edge_2 = bvh_triangles[hit.triangle].edge_2;
+    let turned = dot(b - a, b - a) + dot(c - a, c - a);
+    let length = dot(edge_1, edge_1) + dot(edge_2, edge_2);
+    return sqrt(turned / max(length, 1.0e-20));
+}
+
 // Everything that shading needs at a hit.
 fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Surface {
     let first = hit.triangle * 3u;
@@ -123,7 +151,9 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
     }
     let base = base_row * texels[0] * surface_colour(hit);
     let rough = texels[1];
-    let metallic = clamp(glow.w * rough.b, 0.0, 1.0);
+    // Unlit, the base colour is all that is seen.
+    let unlit = (flags & SCENE_UNLIT) != 0u;
+    let metallic = select(clamp(glow.w * rough.b, 0.0, 1.0), 0.0, unlit);
     let roughness = clamp(look.x * rough.g, 0.0, 1.0);
     let emission = glow.rgb * texels[3].rgb;
     let occlusion = 1.0 + look.z * (texels[4].r - 1.0);
@@ -144,7 +174,7 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
         normal = normal / max(sqrt(dot(normal, normal)), 1.0e-20);
     }
     let dielectric = (ior - 1.0) / (ior + 1.0);
-    let f0 = dielectric * dielectric;
+    let f0 = select(dielectric * dielectric, 0.0, unlit);
     return Surface(
         origin + direction * hit.distance,
         base.a,
@@ -157,6 +187,6 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
         vec3f(f0) * (1.0 - metallic) + base.rgb * metallic,
         clamp(transmission, 0.0, 1.0) * (1.0 - metallic),
         emission,
-        0.0,
+        surface_bend(hit),
     );
 }

@@ -1,25 +1,104 @@
 // Pixels by rays: of the picture, and of the capture of the surroundings. Both are one kernel, since a software driver
 // compiles the walk through the scene anew for each.
 // Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others are
-// taken to do so too. The sky's light on surfaces leaves the picture's kernel as what one pixel has found of it;
-// skylight.wgsl takes means over neighbours.
+// taken to do so too. Light of sky and surfaces on the first surface leaves the picture's kernel as what one pixel has found
+// of it; skylight.wgsl takes means over neighbours.
 // Twin: downpour_render::trace.
 
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> trace_gather: array<TraceGather>;
 
-// What a pixel has found of the sky's light, for the filter.
-struct TraceGather {
-    // Light of the sky over pi, and the share of the sky that is seen: means of the samples that have met a surface.
-    sky: vec4f,
-    // What it is multiplied with.
-    body: vec3f,
-    // Share of the samples that have met a surface.
-    met: f32,
-    // What the square of the open share is multiplied with.
-    gloss: vec3f,
-    // The normal, octahedral, 16 bits each.
+// Light of which means are taken over neighbouring pixels, packed.
+struct TraceSlot {
+    place: vec3f,
+    // The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
     normal: u32,
+    // Sum of the light's red, green and blue.
+    light: f32,
+    // Fractions of it that are red and green, 12 bits each, and the roughness of a gloss, 8 bits; 0: a diffuse base.
+    look: u32,
+    // What it is multiplied with, and how far from the plane another place may be, per distance from the eye (0: there is
+    // no light), as halves.
+    factor: vec2u,
+}
+
+// Light of sky and surfaces that a pixel shows.
+struct TraceGather {
+    // On the diffuse base of the first opaque surface, over pi.
+    base: TraceSlot,
+    // In the first gloss or mirror.
+    mirror: TraceSlot,
+}
+
+// The sum of what samples have found, each with its weight.
+struct TraceSum {
+    slot: PathSlot,
+    weight: f32,
+}
+
+// A slot, packed.
+fn trace_pack(slot: PathSlot) -> TraceSlot {
+    if slot.slack <= 0.0 {
+        return TraceSlot();
+    }
+    let sum = slot.light.x + slot.light.y + slot.light.z;
+    let parts = slot.light.xy * (1.0 / max(sum, 1.0e-30));
+    let rough = select(max(u32(clamp(slot.roughness, 0.0, 1.0) * 255.0 + 0.5), 1u), 0u, slot.roughness <= 0.0);
+    let look = u32(clamp(parts.x, 0.0, 1.0) * 4095.0 + 0.5) | u32(clamp(parts.y, 0.0, 1.0) * 4095.0 + 0.5) << 12u | rough << 24u;
+    let from_eye = slot.place - render_frame.eye;
+    let slack = clamp(slot.slack / max(sqrt(dot(from_eye, from_eye)), 1.0e-20), 1.0e-4, 6.0e4);
+    let factor = min(slot.factor, vec3f(6.0e4));
+    return TraceSlot(
+        slot.place, pack2x16snorm(packing_octahedral_encode(slot.normal)), sum, look,
+        vec2u(pack2x16float(factor.xy), pack2x16float(vec2f(factor.z, slack))),
+    );
+}
+
+// A slot as it was before it was packed.
+fn trace_unpack(slot: TraceSlot) -> PathSlot {
+    let red = f32(slot.look & 4095u) * (slot.light / 4095.0);
+    let green = f32(slot.look >> 12u & 4095u) * (slot.light / 4095.0);
+    let light = vec3f(red, green, max(slot.light - red - green, 0.0));
+    let low = unpack2x16float(slot.factor.x);
+    let high = unpack2x16float(slot.factor.y);
+    let from_eye = slot.place - render_frame.eye;
+    return PathSlot(
+        light, high.y * sqrt(dot(from_eye, from_eye)), vec3f(low, high.x), f32(slot.look >> 24u) / 255.0,
+        packing_octahedral_decode(unpack2x16snorm(slot.normal)), slot.place,
+    );
+}
+
+// The sum with a sample. Where it is, is where the first sample is that has some.
+fn trace_add(sum: TraceSum, sample: PathSlot) -> TraceSum {
+    if sample.slack <= 0.0 {
+        return sum;
+    }
+    var next = sum;
+    if sum.weight <= 0.0 {
+        let before = sum.slot;
+        next.slot = sample;
+        next.slot.light = before.light;
+        next.slot.factor = before.factor;
+    }
+    // Another surface's light is not told apart, and taken to be the same.
+    let off = abs(dot(next.slot.normal, sample.place - next.slot.place));
+    let same = off < next.slot.slack && dot(next.slot.normal, sample.normal) > TRACE_SAME_NORMAL;
+    let weight = select(0.0, max(path_most(sample.factor), 1.0e-6), same);
+    next.slot.light += sample.light * weight;
+    next.slot.factor += sample.factor;
+    next.weight += weight;
+    return next;
+}
+
+// The mean, where `share` is one over the number of all samples.
+fn trace_mean(sum: TraceSum, share: f32) -> TraceSlot {
+    if sum.weight <= 0.0 {
+        return TraceSlot();
+    }
+    var mean = sum.slot;
+    mean.light /= sum.weight;
+    mean.factor *= share;
+    return trace_pack(mean);
 }
 
 // The direction of a place of the picture or of the capture, in pixels from the top left.
@@ -30,19 +109,16 @@ fn trace_direction(x: f32, y: f32) -> vec3f {
     return scene_direction(x, y);
 }
 
-// A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the sky's light on surfaces is
-// left out and goes to the filter.
+// A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and surfaces on the
+// first surface is left out and goes to the filter.
 fn trace_pixel(x: u32, y: u32) -> vec4f {
     let is_picture = render_frame.projection == SCENE_PICTURE;
     var sum = vec3f(0.0);
-    var body = vec3f(0.0);
-    var gloss = vec3f(0.0);
-    var sky = vec4f(0.0);
-    var normal = vec3f(0.0);
-    var met = 0.0;
+    var base = TraceSum();
+    var mirror = TraceSum();
     var nearest = SCENE_FAR;
     let n = render_frame.grid;
-    var last = scene_nothing();
+    var last = path_nothing();
     var count = 0u;
     for (var k = 0u; k < n * n; k += 1u) {
         // First the opposite corners.
@@ -50,30 +126,26 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
         let dx = (f32(place % n) + 0.5) / f32(n);
         let dy = (f32(place / n) + 0.5) / f32(n);
         let direction = trace_direction(f32(x) + dx, f32(y) + dy);
-        let path = scene_path(render_frame.eye, direction, render_frame.pixel_angle, scene_lattice(x, y, place), last);
+        let random = path_lattice_words(x, y, place);
+        let path = path_trace(render_frame.eye, direction, render_frame.pixel_angle, random, last);
         if is_picture {
             sum += path.radiance;
         } else {
-            sum += scene_radiance(path);
+            sum += path_radiance(path);
         }
-        body += path.body;
-        gloss += path.gloss;
-        sky += path.sky * path.met;
-        normal += path.normal * path.met;
-        met += path.met;
+        base = trace_add(base, path.base);
+        mirror = trace_add(mirror, path.mirror);
         nearest = min(nearest, path.distance);
         count += 1u;
         let both_sky = path.distance >= SCENE_FAR && last.distance >= SCENE_FAR;
-        if k == 1u && (path.again > 0.0 || both_sky) {
+        if k == 1u && (path.again || both_sky) {
             break;
         }
         last = path;
     }
     let share = 1.0 / f32(count);
     if is_picture {
-        let packed = pack2x16snorm(packing_octahedral_encode(normal));
-        trace_gather[y * render_frame.width + x] =
-            TraceGather(sky / max(met, 1.0), body * share, met * share, gloss * share, packed);
+        trace_gather[y * render_frame.width + x] = TraceGather(trace_mean(base, share), trace_mean(mirror, share));
         return vec4f(sum * share, nearest);
     }
     return vec4f(sum * share + capture_suns(x, y), nearest);

@@ -4,8 +4,8 @@ use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_render::puddle::water::{
-    puddle_water_albedo, puddle_water_mirrored, puddle_water_normal, puddle_water_reflectance,
-    puddle_water_refracted,
+    puddle_water_above, puddle_water_albedo, puddle_water_beneath, puddle_water_entry, puddle_water_mirrored,
+    puddle_water_normal, puddle_water_reflectance, puddle_water_refracted,
 };
 use downpour_render::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
 use downpour_shaders::render::puddle_water::PUDDLE_WATER;
@@ -47,6 +47,19 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("puddle_water_refracted", &PUDDLE_WATER, &[Unit3, Unit3], DIRECTION, |a| {
             puddle_water_refracted(vec3(a), vec3(a)).to_array().words()
         }),
+        FunctionCase::new("puddle_water_beneath", &PUDDLE_WATER, &[Unit3], DIRECTION, |a| {
+            puddle_water_beneath(vec3(a)).to_array().words()
+        }),
+        FunctionCase::new("puddle_water_entry", &PUDDLE_WATER, &[Unit3, share], DIRECTION, |a| {
+            puddle_water_entry(vec3(a), a.f32()).to_array().words()
+        }),
+        FunctionCase::new(
+            "puddle_water_above",
+            &PUDDLE_WATER,
+            &[Unit3],
+            Tol::absolute(2.0e-3, "the root of a difference, which cancels at total reflection"),
+            |a| puddle_water_above(vec3(a)).to_array().words(),
+        ),
         FunctionCase::new("puddle_water_albedo", &PUDDLE_WATER, &[share, share, share], DIRECTION, |a| {
             puddle_water_albedo(vec3(a)).to_array().words()
         }),
@@ -116,7 +129,10 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "puddle_water_slope",
             "puddle_water_piece",
             "puddle_water_ripple",
-            "scene_water",
+            "path_water_surface",
+            "path_water_ray",
+            "path_water_share",
+            "path_soaked",
         ],
         tol: WATER,
         run,

@@ -3,20 +3,28 @@
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::rng_unit;
 use downpour_render::brdf::{
-    brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_visibility,
+    brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
+    brdf_visible_density, brdf_visible_normal,
 };
 use downpour_render::camera::Viewpoint;
 use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
 use downpour_render::gpu::ScenePipeline;
 use downpour_render::light::LightSource;
 use downpour_render::material::{MaterialLook, TextureUse};
-use downpour_render::scene::{SceneView, scene_hemisphere};
+use downpour_render::path::path_lattice_numbers;
+use downpour_render::scatter::{
+    scatter_above, scatter_alpha, scatter_chance, scatter_gloss, scatter_hemisphere, scatter_tangent,
+};
+use downpour_render::scene::SceneView;
 use downpour_render::sky::sky_coordinates;
 use downpour_render::sky_light::SkyLight;
+use downpour_render::skylight::skylight_lobe;
 use downpour_render::texture::texture_wrap;
 use downpour_shaders::render::brdf::BRDF;
+use downpour_shaders::render::path::PATH_LATTICE;
+use downpour_shaders::render::scatter::SCATTER;
 use downpour_shaders::render::scene::{
-    SCENE, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT_KERNEL, TEXTURE,
+    SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT, SKYLIGHT_KERNEL, TEXTURE,
     TRACE_KERNEL,
 };
 use glam::{Affine3A, Vec3};
@@ -38,6 +46,7 @@ const FORMULA: Tol =
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
     let cosine = Uniform(0.02, 1.0);
+    let share = Uniform(0.0, 1.0);
     let alpha = Uniform(0.05, 1.0);
     let colour = [Uniform(0.0, 1.0); 3];
     let [r, g, b] = colour;
@@ -100,16 +109,81 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::absolute(7.0e-4, "atan2 (4096 ulp of up to pi, over 2 pi)").with_outliers(2.0e-2),
             |a| sky_coordinates(vec3(a)).to_array().words(),
         ),
+        FunctionCase::new("brdf_masking", &BRDF, &[alpha, cosine], FORMULA, |a| {
+            brdf_masking(a.f32(), a.f32()).words()
+        }),
         FunctionCase::new(
-            "scene_hemisphere",
-            &SCENE,
-            &[Unit3, Below(16), Made(|r| vec![16 + r[0] % 4]), AnyWord, AnyWord, AnyWord, AnyWord],
-            Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
+            "brdf_visible_normal",
+            &BRDF,
+            &[Unit3, alpha, share, share],
+            Tol::absolute(3.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
                 .with_outliers(1.0e-3),
             |a| {
-                let normal = vec3(a);
-                scene_hemisphere(normal, a.u32(), a.u32(), a.u32s()).to_array().words()
+                let view = vec3(a);
+                brdf_visible_normal(view, a.f32(), a.f32(), a.f32()).to_array().words()
             },
+        ),
+        FunctionCase::new(
+            "brdf_visible_density",
+            &BRDF,
+            &[Uniform(0.2, 1.0), cosine, cosine],
+            Tol::relative(1.0e-3, 1.0e-4, "the distribution above"),
+            |a| brdf_visible_density(a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new("scatter_tangent", &SCATTER, &[Unit3], FORMULA.with_outliers(1.0e-3), |a| {
+            scatter_tangent(vec3(a)).to_array().words()
+        }),
+        FunctionCase::new(
+            "scatter_hemisphere",
+            &SCATTER,
+            &[Unit3, share, share],
+            Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
+                .with_outliers(1.0e-3),
+            |a| scatter_hemisphere(vec3(a), a.f32(), a.f32()).to_array().words(),
+        ),
+        FunctionCase::new("scatter_above", &SCATTER, &[Unit3, Unit3], FORMULA, |a| {
+            scatter_above(vec3(a), vec3(a)).to_array().words()
+        }),
+        FunctionCase::new("scatter_alpha", &SCATTER, &[share], FORMULA, |a| scatter_alpha(a.f32()).words()),
+        FunctionCase::new(
+            "scatter_gloss",
+            &SCATTER,
+            &[r, g, b, share, share, Below(2)],
+            Tol::absolute(1.0e-5, "an exp2 of numbers up to 10 (3 + 2|x| ulp) and sums of numbers up to 1"),
+            |a| {
+                let normal_reflectance = vec3(a);
+                scatter_gloss(normal_reflectance, a.f32(), a.f32(), a.u32() != 0).to_array().words()
+            },
+        ),
+        FunctionCase::new("scatter_chance", &SCATTER, &[r, g, b, r, g, b], FORMULA, |a| {
+            scatter_chance(vec3(a), vec3(a)).words()
+        }),
+        FunctionCase::new(
+            "path_lattice_numbers",
+            &PATH_LATTICE,
+            &[
+                AnyWord,
+                AnyWord,
+                AnyWord,
+                AnyWord,
+                Below(64),
+                Below(4),
+                Below(16),
+                Made(|r| vec![16 + r[0] % 4]),
+            ],
+            Tol::absolute(2.0e-6, "products and sums of numbers up to 17, of which the fraction is kept")
+                .with_outliers(1.0e-3),
+            |a| {
+                let random = a.u32s();
+                path_lattice_numbers(random, a.u32(), a.u32(), a.u32(), a.u32()).words()
+            },
+        ),
+        FunctionCase::new(
+            "skylight_lobe",
+            &SKYLIGHT,
+            &[Uniform(0.9, 1.0), Uniform(0.3, 1.0)],
+            Tol::absolute(1.0e-4, "a difference of cosines near 1, over the fourth power of 0.3"),
+            |a| skylight_lobe(a.f32(), a.f32()).words(),
         ),
     ]
 }
@@ -253,27 +327,49 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "texture_level",
             "texture_sample",
             "sky_level",
-            "sky_reflection",
+            "sky_cone",
             "sky_irradiance",
             "surface_texture",
+            "surface_alpha",
+            "surface_is_open",
             "surface_hit",
             "surface_uv",
             "surface_colour",
             "surface_spread",
             "surface_edges",
+            "surface_bend",
             "surface_at",
             "scene_light",
             "scene_visibility",
+            "scene_arrival",
             "scene_lamp",
             "scene_direct",
             "scene_share",
-            "scene_lattice",
-            "scene_nothing",
-            "scene_goes_on",
-            "scene_path",
-            "scene_radiance",
             "scene_direction",
+            "scatter_draw",
+            "scatter_mirror",
+            "path_nothing",
+            "path_radiance",
+            "path_same_surface",
+            "path_most",
+            "path_albedo",
+            "path_cover",
+            "path_open",
+            "path_lattice_words",
+            "path_plan",
+            "path_glance",
+            "path_replaced",
+            "path_onward",
+            "path_candidate",
+            "path_ambient",
+            "path_gathered",
+            "path_draw",
+            "path_show_mirrored",
+            "path_trace",
             "trace_direction",
+            "trace_add",
+            "trace_mean",
+            "trace_pack",
             "trace_pixel",
         ],
         tol: PICTURE,
@@ -282,7 +378,15 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let filter = |name, run| KernelCase {
         name,
         kernel: &SKYLIGHT_KERNEL,
-        covers: &["skylight_place", "skylight_mean"],
+        covers: &[
+            "trace_unpack",
+            "skylight_luminance",
+            "skylight_slot",
+            "skylight_same",
+            "skylight_alike",
+            "skylight_mean",
+            "skylight_wide",
+        ],
         tol: PICTURE,
         run,
     };

@@ -109,7 +109,7 @@ impl Mitsuba {
         files: &[(&str, PathBuf)],
         numbers: &[(&str, f64)],
     ) -> Result<BTreeMap<String, f64>, String> {
-        let mut command = self.named_script(script, None);
+        let mut command = self.named_script(script, self.llvm.as_deref());
         for (name, file) in files {
             command.arg(format!("--{name}")).arg(file);
         }

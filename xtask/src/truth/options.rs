@@ -11,6 +11,9 @@ pub(super) struct Options {
     pub(super) check: bool,
     pub(super) only: bool,
     pub(super) streaks: bool,
+    pub(super) scenes: bool,
+    pub(super) keep: bool,
+    pub(super) scene: Option<String>,
     pub(super) diameters_mm: Vec<f64>,
     pub(super) maps: Vec<PathBuf>,
     pub(super) command: Option<PathBuf>,
@@ -28,6 +31,9 @@ impl Options {
             check: true,
             only: false,
             streaks: false,
+            scenes: false,
+            keep: false,
+            scene: None,
             diameters_mm: Vec::new(),
             maps: Vec::new(),
             command: None,
@@ -43,6 +49,12 @@ impl Options {
                 "--quick" => options.quick = true,
                 "--no-check" => options.check = false,
                 "--streaks" => options.streaks = true,
+                "--scenes" => options.scenes = true,
+                "--keep" => options.keep = true,
+                "--scene" => {
+                    options.scenes = true;
+                    options.scene = Some(value()?.to_owned());
+                }
                 "--only" => options.only = true,
                 "--map" => options.maps.push(value()?.into()),
                 "--command" => options.command = Some(value()?.into()),

@@ -41,7 +41,7 @@ pub(super) fn dusk() -> Vec<u8> {
 }
 
 /// A colour with a common exponent: c = byte / 256 * 2^(exponent - 128) (Ward, "Radiance File Formats").
-fn rgbe(colour: [f32; 3]) -> [u8; 4] {
+pub(super) fn rgbe(colour: [f32; 3]) -> [u8; 4] {
     let most = colour.into_iter().fold(f32::MIN_POSITIVE, f32::max);
     // 2^exponent is the least power of two above `most`.
     let exponent = (most.to_bits() >> 23) as i32 - 126;

@@ -23,7 +23,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
-use downpour::render::picture::{Picture, PictureOptions};
+use downpour::render::picture::{Picture, PictureOptions, noise_seed};
 use downpour::render::rain::light::DropLightOptions;
 use downpour::render::rain::{Exposure, RainMedium, RainOptions, RefractionForm};
 use downpour::render::shower::{MovingScenery, Scenery, Still};
@@ -227,7 +227,7 @@ impl RenderArguments {
             size: stage.size,
             grid: self.samples,
             sky_rays: self.sky_rays,
-            seed: weather.rain.seed,
+            seed: noise_seed(weather.rain.seed, time_s),
             rain: RainOptions {
                 form: self.refraction.into(),
                 medium,

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
-use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, TRACE_KERNEL};
+use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL};
 
 use crate::data::{RenderFrame, SceneData};
 use crate::trace::TraceGather;
@@ -95,12 +95,22 @@ impl ScenePipeline {
         let gather = self.gpu.empty_buffer("light of the sky", bytes, wgpu::BufferUsages::STORAGE)?;
         let rows = (PIXELS_PER_DISPATCH / frame.width.max(1)).max(8).next_multiple_of(8);
         let tracer = self.tracer(frame)?;
+        let means = || self.gpu.empty_buffer("means of light", pixels * 32, wgpu::BufferUsages::STORAGE);
+        let means = [means()?, means()?];
         let (mut bands, mut filters) = (Vec::new(), Vec::new());
-        for first_row in (0..frame.height).step_by(rows as usize) {
-            let uniform = self.gpu.uniform_buffer("frame", &RenderFrame { first_row, ..*frame })?;
-            let groups = [frame.width.div_ceil(8), rows.min(frame.height - first_row).div_ceil(8), 1];
-            bands.push((tracer.bind(&self.gpu, &scene.buffers(&uniform, &picture, &gather))?, groups));
-            filters.push((self.skylight.bind(&self.gpu, &[&uniform, &gather, &picture])?, groups));
+        for skylight_pass in 0..=SKYLIGHT_PASSES {
+            let [from, to] = [&means[(skylight_pass as usize + 1) % 2], &means[skylight_pass as usize % 2]];
+            for first_row in (0..frame.height).step_by(rows as usize) {
+                let frame = RenderFrame { first_row, skylight_pass, ..*frame };
+                let uniform = self.gpu.uniform_buffer("frame", &frame)?;
+                let groups = [frame.width.div_ceil(8), rows.min(frame.height - first_row).div_ceil(8), 1];
+                if skylight_pass == 0 {
+                    let bound = tracer.bind(&self.gpu, &scene.buffers(&uniform, &picture, &gather))?;
+                    bands.push((bound, groups));
+                }
+                let bound = self.skylight.bind(&self.gpu, &[&uniform, &gather, from, to, &picture])?;
+                filters.push((bound, groups));
+            }
         }
         Ok(ScenePass { pipeline: self, tracer, bands, filters, picture })
     }

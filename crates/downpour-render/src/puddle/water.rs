@@ -202,6 +202,29 @@ pub fn puddle_water_refracted(direction: Vec3, normal: Vec3) -> Vec3 {
     along / along.dot(along).sqrt()
 }
 
+/// The direction beneath level water of light from above, both towards where it comes from.
+#[must_use]
+pub fn puddle_water_beneath(direction: Vec3) -> Vec3 {
+    let (x, z) = (direction.x / PUDDLE_WATER_INDEX, direction.z / PUDDLE_WATER_INDEX);
+    Vec3::new(x, (1.0 - x * x - z * z).max(0.0).sqrt(), z)
+}
+
+/// Where light that falls on a place under a depth of level water has come through the surface, from the place's own spot
+/// on the surface.
+#[must_use]
+pub fn puddle_water_entry(direction: Vec3, depth: f32) -> Vec3 {
+    let below = puddle_water_beneath(direction);
+    let aside = depth / below.y.max(0.1);
+    Vec3::new(below.x * aside, 0.0, below.z * aside)
+}
+
+/// The direction above level water of light from beneath it; its height is 0 where it does not come out.
+#[must_use]
+pub fn puddle_water_above(direction: Vec3) -> Vec3 {
+    let (x, z) = (direction.x * PUDDLE_WATER_INDEX, direction.z * PUDDLE_WATER_INDEX);
+    Vec3::new(x, (1.0 - x * x - z * z).max(0.0).sqrt(), z)
+}
+
 /// Albedo of what lies under water, as seen through its surface over the share that comes out along the ray: light goes
 /// in diffusely, and is thrown back between ground and surface. White stays white.
 #[must_use]

@@ -22,6 +22,9 @@ const WIDE: f32 = 7.595_754;
 const SKY_RAYS: u32 = 4;
 const MOST_SKY_RAYS: u32 = 64;
 
+/// Texels over which a drop's lookups take means, at least.
+const LOOKUP_TEXELS: f32 = 8.0;
+
 /// How the surroundings are captured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CaptureFrame {
@@ -53,6 +56,7 @@ impl CaptureFrame {
             // In the middle of the picture, where it is coarsest.
             RefractionForm::Rousseau2006 => (SCENE_PERSPECTIVE, 2.0 * WIDE / size as f32),
         };
+        let sky_rays = (picture.sky_rays * SKY_RAYS).min(MOST_SKY_RAYS);
         let frame = RenderFrame {
             width: size,
             height: size,
@@ -62,7 +66,8 @@ impl CaptureFrame {
             pixel_angle,
             grid: options.capture_grid.clamp(1, 16),
             // No filter takes means over neighbours here, but the drops' lookups do.
-            sky_rays: (picture.sky_rays * SKY_RAYS).min(MOST_SKY_RAYS),
+            sky_rays,
+            ray_share: 1.0 / (LOOKUP_TEXELS * sky_rays.max(1) as f32),
             first_row: 0,
             projection,
             ..*picture

@@ -16,12 +16,12 @@ pub struct StreakTable {
 }
 
 /// Both halves of a word.
-pub(super) fn unpack(word: u32) -> [f32; 2] {
+pub(crate) fn unpack(word: u32) -> [f32; 2] {
     [f16::from_bits(word as u16).to_f32(), f16::from_bits((word >> 16) as u16).to_f32()]
 }
 
 /// Two numbers as halves, rounded to the nearest.
-pub(super) fn pack(pair: [f32; 2]) -> u32 {
+pub(crate) fn pack(pair: [f32; 2]) -> u32 {
     let [low, high] = pair.map(|x| u32::from(f16::from_f32(x).to_bits()));
     low | high << 16
 }

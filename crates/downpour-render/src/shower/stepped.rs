@@ -305,7 +305,8 @@ impl Stepped {
         if known == Some(made_of) {
             return Ok(Some((made_of, None)));
         }
-        let map = CollisionMap::from_arrays(&options, &stage.data.nodes, &stage.data.triangles)?;
+        let map =
+            CollisionMap::from_arrays(&options, &stage.data.nodes, &stage.data.triangles, Some(&stage.data))?;
         Ok(Some((made_of, Some(map))))
     }
 

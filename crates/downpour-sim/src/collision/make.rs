@@ -1,6 +1,8 @@
 //! Makes the texels of a map: a ray along the fall direction each.
+//!
+//! Surfaces may have holes ([`Holes`]). The kernel of the same name knows none: a map of surfaces with holes is made here.
 
-use downpour_bvh::{BvhNode, BvhTriangle, bvh_enter, bvh_inverse, bvh_triangle};
+use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_enter, bvh_inverse, bvh_triangle};
 use downpour_shaders::bvh::{BVH_FAR, BVH_STACK};
 use downpour_shaders::sim::collision::{
     COLLISION_LAYERS, COLLISION_MAP_BACK, COLLISION_MAP_BETWEEN, COLLISION_MAP_FRONT, COLLISION_MAP_HITS,
@@ -10,6 +12,7 @@ use glam::{UVec2, Vec2, Vec3};
 
 use super::surface::collision_pack;
 use super::{CollisionFrame, CollisionTexel};
+use crate::shelter::Holes;
 
 /// Hits that are kept.
 const HITS: usize = COLLISION_MAP_HITS as usize;
@@ -67,6 +70,7 @@ pub fn collision_map_between(above: u32, below: u32) -> u32 {
 pub fn collision_map_walk(
     nodes: &[BvhNode],
     triangles: &[BvhTriangle],
+    holes: Option<&dyn Holes>,
     origin: Vec3,
     direction: Vec3,
     keep: u32,
@@ -103,8 +107,11 @@ pub fn collision_map_walk(
         }
         for slot in node.link..node.link + node.count {
             let triangle = &triangles[slot as usize];
-            let [distance, ..] = bvh_triangle(triangle, from, towards);
+            let [distance, u, v] = bvh_triangle(triangle, from, towards);
             if !(distance > 0.0 && distance < limit) {
+                continue;
+            }
+            if holes.is_some_and(|holes| holes.is_hole(&Hit { distance, triangle: triangle.index, u, v })) {
                 continue;
             }
             if distance > hits.deepest && collision_map_faces(triangle, direction) {
@@ -142,13 +149,14 @@ pub fn collision_map_enclosed(
     map: &CollisionFrame,
     nodes: &[BvhNode],
     triangles: &[BvhTriangle],
+    holes: Option<&dyn Holes>,
     at: Vec3,
 ) -> bool {
     let mut votes = 0;
     for turn in 0..3 {
         let axis = Vec3::from(if turn == 1 { map.along } else { map.across });
         let direction = axis * if turn == 2 { -1.0 } else { 1.0 };
-        let hits = collision_map_walk(nodes, triangles, at, direction, COLLISION_MAP_LEAVES);
+        let hits = collision_map_walk(nodes, triangles, holes, at, direction, COLLISION_MAP_LEAVES);
         let (mut left, mut leaves) = (0, false);
         for &slot in &hits.slots[..hits.count] {
             left += if collision_map_faces(&triangles[slot as usize], direction) { -1 } else { 1 };
@@ -194,6 +202,7 @@ pub fn collision_map_texel(
     map: &CollisionFrame,
     nodes: &[BvhNode],
     triangles: &[BvhTriangle],
+    holes: Option<&dyn Holes>,
     cell: UVec2,
 ) -> CollisionTexel {
     let mut texel = CollisionTexel::OPEN;
@@ -206,7 +215,7 @@ pub fn collision_map_texel(
         + Vec3::from(map.anchor)
         + Vec3::from(map.across) * place.x
         + Vec3::from(map.along) * place.y;
-    let hits = collision_map_walk(nodes, triangles, origin, fall, COLLISION_MAP_HITS);
+    let hits = collision_map_walk(nodes, triangles, holes, origin, fall, COLLISION_MAP_HITS);
     let mut stored = 0;
     let mut next = 0;
     // The surface whose other side is still to be found.
@@ -232,7 +241,7 @@ pub fn collision_map_texel(
             let between = collision_map_between(faces, next_faces);
             let below = if between == 2 {
                 let middle = depth + (next_depth - depth) * COLLISION_MAP_BETWEEN;
-                collision_map_enclosed(map, nodes, triangles, origin + fall * middle)
+                collision_map_enclosed(map, nodes, triangles, holes, origin + fall * middle)
             } else {
                 between == 1
             };

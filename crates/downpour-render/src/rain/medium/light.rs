@@ -16,9 +16,10 @@ use rayon::prelude::*;
 
 use super::MediumFrame;
 use super::frame::{medium_both, medium_node, medium_roots};
+use crate::path::path_lattice_words;
 use crate::rain::glint::drop_glint_angle;
 use crate::rain::light::{DropLightForm, DropLightTable, DropLights, drop_light_mean};
-use crate::scene::{SceneView, scene_lattice, scene_share};
+use crate::scene::{SceneView, scene_share};
 
 const _: () = assert!(MEDIUM_ANGLES == DROP_LIGHT_ENTRIES);
 
@@ -257,7 +258,7 @@ impl<'a> MediumLight<'a> {
         let mut sum = Found::default();
         let mut seen = Vec3::ZERO;
         if medium.lit != MEDIUM_DARK && medium.all > 0.0 {
-            let random = scene_lattice(frame.seed, x, y, MEDIUM_LATTICE);
+            let random = path_lattice_words(frame.seed, x, y, MEDIUM_LATTICE);
             sum.rest = rng_unit(random[0]);
             let reach = Vec2::new(scene.min(MEDIUM_SKY_REACH), scene.min(MEDIUM_LAMP_REACH));
             for k in 0..frame.light_count {

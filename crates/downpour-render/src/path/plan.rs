@@ -1,0 +1,175 @@
+//! Surfaces as rays take them, and the rays that look for their light.
+
+use downpour_shaders::render::path::{
+    PATH_APART, PATH_ENCLOSED, PATH_GLANCE, PATH_GLANCE_GLOSS, PATH_MIN_GLOSS, PATH_MIXED, PATH_SHARP,
+};
+use downpour_shaders::render::puddle_water::PUDDLE_WATER_NORMAL;
+use downpour_shaders::render::scene::SCENE_BLENDED;
+use glam::Vec3;
+
+use crate::puddle::water::{puddle_water_albedo, puddle_water_normal, puddle_water_reflectance};
+use crate::scatter::{scatter_chance, scatter_gloss};
+use crate::scene::SceneView;
+use crate::surface::Surface;
+
+/// The rays that look for the light of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathPlan {
+    /// Factor of the light on the diffuse base.
+    pub(super) body: Vec3,
+    /// Rays of the gloss alone; they come first.
+    pub(super) mirrors: u32,
+    /// Factor of the light that the gloss shows.
+    pub(super) gloss: Vec3,
+    /// Rays of the diffuse base, or of both.
+    pub(super) rays: u32,
+    /// Part of the latter that is drawn for the gloss.
+    pub(super) chance: f32,
+    /// Part of all rays that one is.
+    pub(super) share: f32,
+    /// Whether rays of the gloss are drawn from its lobe; else they are a mirror's.
+    pub(super) drawn: bool,
+    /// Whether means over neighbouring pixels are taken of what the gloss shows.
+    pub(super) kept: bool,
+    /// Whether they are of the light on what the gloss shows.
+    pub(super) replaced: bool,
+    /// Width of the mirror's ray by what the surface turns within a pixel.
+    pub(super) spread: f32,
+}
+
+impl PathPlan {
+    /// No rays.
+    pub(super) const NONE: Self = Self {
+        body: Vec3::ZERO,
+        mirrors: 0,
+        gloss: Vec3::ZERO,
+        rays: 0,
+        chance: 0.0,
+        share: 0.0,
+        drawn: false,
+        kept: false,
+        replaced: false,
+        spread: 0.0,
+    };
+}
+
+/// The greatest part of a color.
+pub(crate) fn path_most(color: Vec3) -> f32 {
+    color.max_element()
+}
+
+/// Fraction of the light on its diffuse base that a surface gives back.
+pub(super) fn path_albedo(surface: &Surface) -> Vec3 {
+    surface.diffuse * ((1.0 - surface.transmission) * surface.occlusion)
+}
+
+/// Opacity of a surface.
+pub(super) fn path_cover(surface: &Surface) -> f32 {
+    if surface.flags & SCENE_BLENDED == 0 { 1.0 } else { surface.alpha.clamp(0.0, 1.0) }
+}
+
+/// Fraction of the light behind a surface that it lets through, straight on.
+pub(super) fn path_open(surface: &Surface) -> Vec3 {
+    let cover = path_cover(surface);
+    Vec3::splat(1.0 - cover) + surface.diffuse * (surface.transmission * cover)
+}
+
+/// The surface of a puddle that a ray has come through, `distance` along the ray.
+pub(super) fn path_water_surface(start: Vec3, along: Vec3, distance: f32, ripple: Vec3) -> Surface {
+    Surface {
+        position: start + along * distance,
+        alpha: 1.0,
+        normal: puddle_water_normal(Vec3::new(ripple.x, ripple.y, 0.0), 0.0, 0.0),
+        // Beckmann's alpha squared is the variance of the slope.
+        roughness: ripple.z.sqrt().sqrt().clamp(0.0, 1.0),
+        facet: Vec3::Y,
+        occlusion: 1.0,
+        diffuse: Vec3::ZERO,
+        flags: 0,
+        normal_reflectance: Vec3::splat(PUDDLE_WATER_NORMAL),
+        transmission: 0.0,
+        emission: Vec3::ZERO,
+        bend: 0.0,
+    }
+}
+
+/// A surface as it looks under water of which a fraction `clear` of the light is left.
+pub(super) fn path_soaked(surface: &Surface, clear: f32, murk: Vec3) -> Surface {
+    Surface {
+        diffuse: puddle_water_albedo(surface.diffuse * clear + murk * (1.0 - clear)),
+        normal_reflectance: puddle_water_reflectance(surface.normal_reflectance) * clear,
+        emission: surface.emission * clear,
+        ..*surface
+    }
+}
+
+/// A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
+pub(super) fn path_glance(surface: &Surface, roughness: f32) -> Surface {
+    if roughness < PATH_GLANCE {
+        return *surface;
+    }
+    let gloss = surface.normal_reflectance.min(Vec3::splat(PATH_GLANCE_GLOSS));
+    Surface {
+        diffuse: surface.diffuse + surface.normal_reflectance - gloss,
+        normal_reflectance: gloss,
+        roughness: 1.0,
+        ..*surface
+    }
+}
+
+impl SceneView<'_> {
+    /// The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
+    /// neighbouring pixels are taken of what they find; `free`: of what the gloss shows, too.
+    pub(super) fn path_plan(
+        &self,
+        surface: &Surface,
+        view: Vec3,
+        footprint: f32,
+        told: bool,
+        free: bool,
+    ) -> PathPlan {
+        let cosine = surface.normal.dot(view).max(0.0);
+        // Neighbouring pixels mirror directions as far apart as this.
+        let spread = 2.0 * surface.bend * footprint / cosine.max(0.2);
+        let sharp = surface.roughness < PATH_SHARP;
+        let gloss =
+            scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
+        let body = path_albedo(surface);
+        let rays = self.frame.sky_rays;
+        let drawn = told && free && !sharp && rays > 0;
+        // Where neighbours mirror other things, a mean over them would be wider than the lobe.
+        let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
+        let mut plan = PathPlan {
+            body,
+            mirrors: 0,
+            gloss,
+            rays,
+            chance: 0.0,
+            share: if told { self.frame.ray_share } else { 1.0 / rays.max(1) as f32 },
+            drawn,
+            kept,
+            replaced: false,
+            spread,
+        };
+        if rays == 0 {
+            plan.body = body * (Vec3::ONE - gloss);
+        } else if path_most(body) <= 0.0 {
+            plan.rays = 0;
+            plan.mirrors = if drawn { rays } else { 1 };
+        } else if surface.roughness < PATH_MIXED {
+            plan.mirrors = u32::from(path_most(gloss) > PATH_MIN_GLOSS);
+        } else if kept {
+            plan.chance = scatter_chance(body, gloss);
+        }
+        plan.replaced = free && !kept && plan.mirrors > 0;
+        plan
+    }
+
+    /// Light that falls on the last surface of a path, over pi: the mean of what its surfaces gave, thrown back and forth,
+    /// and a part of the open sky's.
+    pub(super) fn path_ambient(&self, surface: &Surface, given: Vec3) -> Vec3 {
+        let albedo = (surface.diffuse + surface.normal_reflectance).min(Vec3::ONE);
+        let sky = self.data.sky_irradiance(surface.normal) * (surface.occlusion * (1.0 - PATH_ENCLOSED));
+        (given * PATH_ENCLOSED + sky) / (Vec3::ONE - albedo * PATH_ENCLOSED)
+    }
+}

@@ -1,0 +1,93 @@
+//! `wgsl/render/path.wgsl`: what a ray of the camera sees. Twin: `downpour_render::path`.
+
+use super::puddle_water::PUDDLE_WATER;
+use super::scatter::SCATTER;
+use super::scene::{DATA, SCENE, SKY, SURFACE};
+use crate::Module;
+use crate::common::RNG;
+use crate::drop::optics::OPTICS;
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&PATH_CONSTANTS, &PATH_LATTICE, &PATH];
+
+shared_constants! {
+    /// Numbers of the rays of the camera.
+    PATH_CONSTANTS at "render/path constants" {
+        /// Dimension of the random numbers of a pixel's rays.
+        PATH_DIMENSION: u32 = 4100;
+        /// Generators of the lattice of the rays' numbers: coprime with the points of the filter's window.
+        PATH_LATTICE_SCATTER: u32 = 19;
+        /// See [`PATH_LATTICE_SCATTER`].
+        PATH_LATTICE_SECOND: u32 = 30;
+        /// See [`PATH_LATTICE_SCATTER`].
+        PATH_LATTICE_THIRD: u32 = 37;
+        /// How far a ray's numbers are from the lattice's point, at most: about the distance of neighbouring points.
+        PATH_JITTER: f32 = 0.14;
+        /// Rays that follow each other, at most.
+        PATH_BOUNCES: u32 = 6;
+        /// Cosine of the angle between facets up to which a surface is the same.
+        PATH_SAME_FACET: f32 = 0.97;
+        /// Distance from the other facet's plane up to which a surface is the same, per distance from the eye.
+        PATH_SAME_PLANE: f32 = 0.005;
+        /// Roughness below which gloss is that of a mirror: its lobe is narrower than some pixels.
+        PATH_SHARP: f32 = 0.1;
+        /// Alphas that neighbouring pixels' mirror images are apart from which gloss is that of a mirror.
+        PATH_APART: f32 = 1.5;
+        /// Directions among which the one of a ray of the diffuse base is drawn.
+        PATH_CANDIDATES: u32 = 8;
+        /// What a direction weighs in that, at least, in the mean of the sky.
+        PATH_FLOOR: f32 = 1.0;
+        /// Roughness from which one ray serves the diffuse base and the gloss, by chance.
+        PATH_MIXED: f32 = 0.35;
+        /// Gloss that is worth rays of its own.
+        PATH_MIN_GLOSS: f32 = 0.005;
+        /// Gloss and roughness from which, and below which, each sample of a pixel sees for itself what is mirrored.
+        PATH_PLAIN_GLOSS: f32 = 0.1;
+        /// See [`PATH_PLAIN_GLOSS`].
+        PATH_CURVED: f32 = 0.3;
+        /// Part of all rays that one is of a gloss of which no means over neighbours are taken: there are some per pixel.
+        PATH_CURVED_SHARE: f32 = 0.25;
+        /// The inner part of such a gloss that rays are drawn from.
+        PATH_CURVED_PART: f32 = 0.8;
+        /// Facets of rippled water of which the reflectance is the mean.
+        PATH_WATER_FACETS: u32 = 16;
+        /// How a ray leaves what it has met: the surface that the ray of the camera has met, whose light it looks for.
+        PATH_FIRST: u32 = 0;
+        /// Through it.
+        PATH_STRAIGHT: u32 = 1;
+        /// Mirrored by a metal in a mirror.
+        PATH_MIRROR: u32 = 2;
+        /// From what a mirror shows.
+        PATH_SHOWN: u32 = 3;
+        /// As chance has it.
+        PATH_ONWARD: u32 = 4;
+        /// Roughness of a path from which surfaces are seen at a glance: as diffuse, with one lamp for all.
+        PATH_GLANCE: f32 = 0.25;
+        /// The most that a surface reflects as gloss, seen at a glance.
+        PATH_GLANCE_GLOSS: f32 = 0.05;
+        /// Roughness of a path from which lamps stand for what shines.
+        PATH_SHINES: f32 = 0.6;
+        /// Lamps that are drawn for all where a mirror shows a surface.
+        PATH_MIRROR_LAMPS: u32 = 4;
+        /// Part of all rays that one is which has met a surface.
+        PATH_LATER_SHARE: f32 = 0.01;
+        /// Fraction of light let through from which a surface is seen through.
+        PATH_OPEN: f32 = 0.02;
+        /// Part of its surroundings that surfaces take up, for a surface that a path of surfaces has led to.
+        PATH_ENCLOSED: f32 = 0.9;
+    }
+}
+
+/// Random numbers of a pixel's rays. Twin: `downpour_render::path::lattice`.
+pub static PATH_LATTICE: Module = Module {
+    path: "render/path_lattice.wgsl",
+    wgsl: include_str!("../../wgsl/render/path_lattice.wgsl"),
+    uses: &[&PATH_CONSTANTS, &DATA, &RNG],
+};
+
+/// What a ray of the camera sees. Twin: `downpour_render::path`.
+pub static PATH: Module = Module {
+    path: "render/path.wgsl",
+    wgsl: include_str!("../../wgsl/render/path.wgsl"),
+    uses: &[&PATH_CONSTANTS, &PATH_LATTICE, &SCENE, &SCATTER, &SKY, &SURFACE, &PUDDLE_WATER, &OPTICS],
+};

@@ -1,0 +1,578 @@
+// What a ray of the camera sees: surfaces, water, and the light that comes to them from lamps, sky and one another.
+// Twin: downpour_render::path, where the method is described.
+
+// Light of which means are taken over neighbouring pixels.
+struct PathSlot {
+    light: vec3f,
+    // How far from a place's plane another may be; 0: there is no light.
+    slack: f32,
+    // What it is multiplied with.
+    factor: vec3f,
+    // Roughness of a gloss; 0 for light on a diffuse base.
+    roughness: f32,
+    // The surface's normal; of a gloss, the direction that a mirror would show.
+    normal: vec3f,
+    place: vec3f,
+}
+
+// What a ray of the camera finds.
+struct ViewPath {
+    // All light but that which is told apart below.
+    radiance: vec3f,
+    // Distance of the first surface (SCENE_FAR for the sky).
+    distance: f32,
+    facet: vec3f,
+    material: u32,
+    place: vec3f,
+    // Whether it is what the sample before has seen.
+    again: bool,
+    // Whether what it shows is the same over a pixel: no mirror, nothing behind a pane.
+    plain: bool,
+    // Light of sky and surfaces on the diffuse base of the first opaque surface, over pi.
+    base: PathSlot,
+    // Light that the first gloss or mirror shows: of a mirror, on the diffuse base of what stands in it.
+    mirror: PathSlot,
+}
+
+// Light that rays have found for a surface.
+struct PathLight {
+    // On its diffuse base, over pi.
+    base: vec3f,
+    // In its gloss.
+    mirror: vec3f,
+    // On the diffuse base of what a mirror shows.
+    shown: vec3f,
+    // Factor of that light, its distance (-1: there is none), and where it is.
+    factor: vec3f,
+    distance: f32,
+    normal: vec3f,
+    place: vec3f,
+}
+
+// The rays that look for the light of a surface.
+struct PathPlan {
+    // Factor of the light on the diffuse base.
+    body: vec3f,
+    // Rays of the gloss alone; they come first.
+    mirrors: u32,
+    // Factor of the light that the gloss shows.
+    gloss: vec3f,
+    // Rays of the diffuse base, or of both.
+    rays: u32,
+    // Part of the latter that is drawn for the gloss.
+    chance: f32,
+    // Part of all rays that one is.
+    share: f32,
+    // Whether rays of the gloss are drawn from its lobe; else they are a mirror's.
+    drawn: bool,
+    // Whether means over neighbouring pixels are taken of what the gloss shows.
+    kept: bool,
+    // Whether they are of the light on what the gloss shows.
+    replaced: bool,
+    // Width of the mirror's ray by what the surface turns within a pixel.
+    spread: f32,
+}
+
+// A path that has found nothing.
+fn path_nothing() -> ViewPath {
+    var path = ViewPath();
+    path.distance = SCENE_FAR;
+    path.material = SCENE_NONE;
+    return path;
+}
+
+// All that a path has seen.
+fn path_radiance(path: ViewPath) -> vec3f {
+    return path.radiance + path.base.factor * path.base.light + path.mirror.factor * path.mirror.light;
+}
+
+// Whether a surface is the same where another sample of the pixel has met it.
+fn path_same_surface(last: ViewPath, material: u32, facet: vec3f, place: vec3f, distance: f32) -> bool {
+    return last.plain
+        && last.material == material
+        && dot(last.facet, facet) > PATH_SAME_FACET
+        && abs(dot(last.facet, place - last.place)) < PATH_SAME_PLANE * distance;
+}
+
+// With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
+fn path_gathered(light: PathLight, ray: ScatterRay, radiance: vec3f, of_shown: bool) -> PathLight {
+    var sum = light;
+    let of_base = ray.diffuse * radiance;
+    if of_shown {
+        sum.shown += of_base;
+    } else {
+        sum.base += of_base;
+    }
+    sum.mirror += ray.mirror * radiance;
+    return sum;
+}
+
+// The greatest part of a color.
+fn path_most(color: vec3f) -> f32 {
+    return max(color.x, max(color.y, color.z));
+}
+
+// Fraction of the light on its diffuse base that a surface gives back.
+fn path_albedo(surface: Surface) -> vec3f {
+    return surface.diffuse * ((1.0 - surface.transmission) * surface.occlusion);
+}
+
+// Opacity of a surface.
+fn path_cover(surface: Surface) -> f32 {
+    return select(1.0, clamp(surface.alpha, 0.0, 1.0), (surface.flags & SCENE_BLENDED) != 0u);
+}
+
+// Fraction of the light behind a surface that it lets through, straight on.
+fn path_open(surface: Surface) -> vec3f {
+    let cover = path_cover(surface);
+    return vec3f(1.0 - cover) + surface.diffuse * (surface.transmission * cover);
+}
+
+// The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
+// neighbouring pixels are taken of what they find; `free`: of what the gloss shows, too.
+fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bool) -> PathPlan {
+    let cosine = max(dot(surface.normal, view), 0.0);
+    // Neighbouring pixels mirror directions as far apart as this.
+    let spread = 2.0 * surface.bend * footprint / max(cosine, 0.2);
+    let sharp = surface.roughness < PATH_SHARP;
+    let gloss = scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
+    let body = path_albedo(surface);
+    let rays = render_frame.sky_rays;
+    let drawn = told && free && !sharp && rays > 0u;
+    // Where neighbours mirror other things, a mean over them would be wider than the lobe.
+    let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
+    let share = select(1.0 / f32(max(rays, 1u)), render_frame.ray_share, told);
+    var plan = PathPlan(body, 0u, gloss, rays, 0.0, share, drawn, kept, false, spread);
+    if rays == 0u {
+        plan.body = body * (vec3f(1.0) - gloss);
+    } else if path_most(body) <= 0.0 {
+        plan.rays = 0u;
+        plan.mirrors = select(1u, rays, drawn);
+    } else if surface.roughness < PATH_MIXED {
+        plan.mirrors = select(0u, 1u, path_most(gloss) > PATH_MIN_GLOSS);
+    } else if kept {
+        plan.chance = scatter_chance(body, gloss);
+    }
+    plan.replaced = free && !kept && plan.mirrors > 0u;
+    return plan;
+}
+
+// The surface of a puddle that a ray has come through, `distance` along the ray.
+fn path_water_surface(start: vec3f, along: vec3f, distance: f32, ripple: vec3f) -> Surface {
+    let up = vec3f(0.0, 1.0, 0.0);
+    let none = vec3f(0.0);
+    let normal = puddle_water_normal(vec3f(ripple.xy, 0.0), 0.0, 0.0);
+    // Beckmann's alpha squared is the variance of the slope.
+    let roughness = clamp(sqrt(sqrt(ripple.z)), 0.0, 1.0);
+    let place = start + along * distance;
+    return Surface(place, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0);
+}
+
+// A ray that water mirrors: drawn from its ripples. Its weight is Fresnel's.
+fn path_water_ray(ripple: vec3f, roughness: f32, view: vec3f, cone: f32, a: f32, b: f32) -> ScatterRay {
+    let normal = puddle_water_normal(ripple, a, b);
+    let along = puddle_water_mirrored(-view, normal);
+    let share = optics_fresnel(max(dot(view, normal), PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
+    return ScatterRay(along, cone + PUDDLE_WATER_CONE, vec3f(0.0), roughness, vec3f(share));
+}
+
+// Fraction of light that water mirrors towards a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
+// has no noise.
+fn path_water_share(ripple: vec3f, view: vec3f) -> f32 {
+    let count = select(1u, PATH_WATER_FACETS, ripple.z > PUDDLE_WATER_RIPPLED);
+    var sum = 0.0;
+    for (var k = 0u; k < count; k += 1u) {
+        let normal = puddle_water_normal(ripple, (f32(k) + 0.5) / f32(count), fract(f32(k) * 0.618034));
+        sum += optics_fresnel(max(dot(view, normal), PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
+    }
+    return sum / f32(count);
+}
+
+// A surface as it looks under water of which a fraction `clear` of the light is left.
+fn path_soaked(surface: Surface, clear: f32, murk: vec3f) -> Surface {
+    var soaked = surface;
+    soaked.diffuse = puddle_water_albedo(surface.diffuse * clear + murk * (1.0 - clear));
+    soaked.normal_reflectance = puddle_water_reflectance(surface.normal_reflectance) * clear;
+    soaked.emission = surface.emission * clear;
+    return soaked;
+}
+
+// A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
+fn path_glance(surface: Surface, roughness: f32) -> Surface {
+    var seen = surface;
+    if roughness >= PATH_GLANCE {
+        let gloss = min(surface.normal_reflectance, vec3f(PATH_GLANCE_GLOSS));
+        seen.diffuse = surface.diffuse + surface.normal_reflectance - gloss;
+        seen.normal_reflectance = gloss;
+        seen.roughness = 1.0;
+    }
+    return seen;
+}
+
+// A ray that goes on from what a mirror shows, whose diffuse base takes the mirror's place.
+fn path_replaced(ray: ScatterRay, next: ScatterRay) -> ScatterRay {
+    var onward = next;
+    onward.mirror = ray.mirror * next.mirror;
+    onward.roughness = max(ray.roughness, next.roughness);
+    return onward;
+}
+
+// A ray that goes on from a surface that the ray before has met; without weight if it does not.
+fn path_onward(ray: ScatterRay, next: ScatterRay, surface: Surface, number: f32) -> ScatterRay {
+    let factor = path_albedo(surface) * next.diffuse + next.mirror;
+    let probability = min(path_most(factor), 1.0);
+    var onward = next;
+    let weight = select(0.0, 1.0 / max(probability, 1.0e-6), number < probability);
+    onward.diffuse = ray.diffuse * factor * weight;
+    onward.mirror = ray.mirror * factor * weight;
+    onward.roughness = max(ray.roughness, next.roughness);
+    return onward;
+}
+
+// A direction for a ray of the diffuse base, as numbers for scatter_hemisphere, drawn among some of the hemisphere by the
+// light of the open sky from each: numbers, and the factor of the ray's weight. What is drawn often counts less (J. Talbot et
+// al., EGSR 2005).
+fn path_candidate(surface: Surface, a: f32, b: f32, number: f32, share: f32) -> vec3f {
+    let sky = sky_irradiance(surface.normal);
+    let least = (sky.x + sky.y + sky.z) * PATH_FLOOR + 1.0e-6;
+    var sum = 0.0;
+    var chosen = vec2f(a, b);
+    var weight = 0.0;
+    var rest = number;
+    for (var k = 0u; k < PATH_CANDIDATES; k += 1u) {
+        let x = fract(a + f32(k) / f32(PATH_CANDIDATES));
+        let y = fract(b + f32(k) * 0.618034);
+        let along = scatter_hemisphere(surface.normal, x, y);
+        if dot(surface.facet, along) <= 0.0 {
+            continue;
+        }
+        let width = sqrt(SCATTER_DISC * share / (f32(PATH_CANDIDATES) * sqrt(max(1.0 - x, 0.01))));
+        let seen = sky_cone(along, width);
+        let light = seen.x + seen.y + seen.z + least;
+        sum += light;
+        // The part of the interval that is left is as good as a new number.
+        if rest * sum < light {
+            rest = rest * sum / light;
+            chosen = vec2f(x, y);
+            weight = light;
+        } else {
+            rest = (rest * sum - light) / (sum - light);
+        }
+    }
+    return vec3f(chosen, select(0.0, sum / (f32(PATH_CANDIDATES) * weight), weight > 0.0));
+}
+
+// Light that falls on the last surface of a path, over pi: the mean of what its surfaces gave, thrown back and forth, and a
+// part of the open sky's.
+fn path_ambient(surface: Surface, given: vec3f) -> vec3f {
+    let albedo = min(surface.diffuse + surface.normal_reflectance, vec3f(1.0));
+    let sky = sky_irradiance(surface.normal) * (surface.occlusion * (1.0 - PATH_ENCLOSED));
+    return (given * PATH_ENCLOSED + sky) / (vec3f(1.0) - albedo * PATH_ENCLOSED);
+}
+
+// A ray drawn for a surface, which the ray before leaves as `leaves` says.
+fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: bool, numbers: vec4f) -> ScatterRay {
+    var a = numbers.x;
+    var b = numbers.y;
+    var gloss = vec3f(1.0);
+    var chance = scatter_chance(at.diffuse, at.normal_reflectance);
+    var share = PATH_LATER_SHARE;
+    var weight = 1.0;
+    if leaves == PATH_SHOWN {
+        chance = 0.0;
+    }
+    if leaves == PATH_FIRST {
+        gloss = plan.gloss;
+        chance = select(plan.chance, 1.0, is_mirror);
+        share = plan.share;
+        if is_mirror && !plan.kept {
+            // Few rays: far out in the lobe they would be noise.
+            share = PATH_CURVED_SHARE;
+            a = a * PATH_CURVED_PART;
+        }
+        if a >= chance {
+            let own = (a - chance) / (1.0 - chance);
+            let drawn = path_candidate(at, own, b, numbers.z, share);
+            a = chance + drawn.x * (1.0 - chance);
+            b = drawn.y;
+            weight = drawn.z;
+            share /= f32(PATH_CANDIDATES);
+        }
+    }
+    var ray = scatter_draw(at, view, gloss, chance, a, b, share);
+    ray.diffuse *= weight;
+    ray.mirror *= weight;
+    return ray;
+}
+
+// The slot of what a mirror shows; the one before if it shows no diffuse base.
+fn path_show_mirrored(slot: PathSlot, light: PathLight, gloss: vec3f, slack: f32, spread: f32) -> PathSlot {
+    if light.distance < 0.0 {
+        return slot;
+    }
+    let its_slack = slack + light.distance * (2.0 * spread + SKYLIGHT_SLACK);
+    return PathSlot(light.shown, its_slack, gloss * light.factor, 0.0, light.normal, light.place);
+}
+
+// What a ray sees. Where it meets the surface that `last` met, it sees the same.
+fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: ViewPath) -> ViewPath {
+    var path = path_nothing();
+    var throughput = vec3f(1.0);
+    var start = origin;
+    var towards = direction;
+    var near = render_frame.nearest;
+    // Water that the ray has come through, and whether it has met nothing since.
+    var water = PuddleWater(PUDDLE_WATER_NONE, 0.0, 0.0, 0.0);
+    var wet_row = 0u;
+    var clear = 1.0;
+    var level = 0.0;
+    var under = false;
+    for (var layer = 0u; layer < SCENE_LAYERS; layer += 1u) {
+        // Turn 0 meets the surface; the others are rays that look for its light. One text for all of them: a shader holds
+        // the hierarchy's walk and the materials once.
+        var surface = Surface();
+        var plan = PathPlan();
+        var light = PathLight();
+        light.distance = -1.0;
+        var direct = vec3f(0.0);
+        var told = false;
+        var slack = 0.0;
+        var of_water = false;
+        var ripple = vec3f(0.0);
+        for (var turn = 0u; turn <= plan.mirrors + plan.rays; turn += 1u) {
+            var ray = ScatterRay(towards, cone, vec3f(1.0), 0.0, vec3f(1.0));
+            var from_place = start;
+            var nearest = near;
+            var at = surface;
+            var view = -towards;
+            var leaves = select(PATH_FIRST, PATH_STRAIGHT, turn == 0u);
+            var given = vec3f(0.0);
+            let is_mirror = turn <= plan.mirrors;
+            let of_shown = plan.replaced && is_mirror;
+            for (var bounce = 0u; bounce < PATH_BOUNCES; bounce += 1u) {
+                var numbers = vec4f(0.0);
+                if turn > 0u {
+                    let index = turn - 1u - select(plan.mirrors, 0u, is_mirror);
+                    numbers = path_lattice_numbers(random, turn, bounce, index, select(plan.rays, plan.mirrors, is_mirror));
+                }
+                if leaves != PATH_STRAIGHT {
+                    let is_first = leaves == PATH_FIRST;
+                    var next = ScatterRay();
+                    if SCENE_WET && of_water && is_first {
+                        next = path_water_ray(ripple, at.roughness, view, cone, numbers.x, numbers.y);
+                    } else if leaves == PATH_MIRROR || (is_first && is_mirror && !plan.drawn) {
+                        next = scatter_mirror(at, view);
+                    } else {
+                        next = path_draw(at, view, plan, leaves, is_mirror, numbers);
+                    }
+                    from_place = at.position + at.facet * render_frame.nearest;
+                    nearest = render_frame.nearest;
+                    if is_first {
+                        if SCENE_WET && under && is_mirror {
+                            next.along = puddle_water_above(next.along);
+                            next.mirror *= select(0.0, 1.0, next.along.y > 0.0);
+                        }
+                        ray = next;
+                        ray.width += cone + plan.spread;
+                    } else if leaves == PATH_MIRROR {
+                        next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, max(dot(at.normal, view), 0.0));
+                        next.width += ray.width;
+                        ray = next;
+                    } else if leaves == PATH_SHOWN {
+                        ray = path_replaced(ray, next);
+                    } else {
+                        ray = path_onward(ray, next, at, numbers.z);
+                    }
+                    if path_most(ray.diffuse + ray.mirror) <= 0.0 {
+                        break;
+                    }
+                }
+                let hit = surface_hit(from_place, ray.along, nearest, BVH_FAR);
+                if hit.distance < 0.0 {
+                    if turn == 0u {
+                        path.radiance += throughput * sky_level(0u, towards);
+                        return path;
+                    }
+                    light = path_gathered(light, ray, sky_cone(ray.along, ray.width), of_shown);
+                    break;
+                }
+                var found = surface_at(hit, from_place, ray.along, ray.width);
+                // All lamps, of the first surface; else some drawn for all, at a glance.
+                var lamps = 0u;
+                var standoff = 0.0;
+                var depth = vec2f(0.0);
+                var shines = true;
+                if turn == 0u {
+                    let material = render_corners[hit.triangle * 3u].material;
+                    var distance = hit.distance;
+                    if SCENE_WET && water.puddle == PUDDLE_WATER_NONE {
+                        water = puddle_water_find(found.position, found.facet.y);
+                        of_water = water.puddle != PUDDLE_WATER_NONE;
+                    }
+                    if SCENE_WET && of_water {
+                        // Back along the ray to where it came through the surface.
+                        distance = max(hit.distance - water.rise / max(-towards.y, 0.01), near);
+                        let place = start + towards * distance;
+                        let footprint = cone * distance / sqrt(max(-towards.y, 0.02));
+                        ripple = puddle_water_ripple(water.puddle, place, footprint, water.depth, water.open);
+                        found = path_water_surface(start, towards, distance, ripple);
+                    } else if layer == 0u
+                        && path_same_surface(last, material, found.facet, found.position, hit.distance) {
+                        var same = last;
+                        same.again = true;
+                        return same;
+                    }
+                    if SCENE_WET && under {
+                        let rise = max(level - found.position.y, 0.0);
+                        depth = vec2f(rise + max(water.depth - water.rise, 0.0), rise);
+                        found = path_soaked(found, clear, bitcast<vec3f>(render_table[wet_row + 4u].xyz));
+                    }
+                    if layer == 0u {
+                        path.distance = distance;
+                        path.material = select(material, PUDDLE_WATER_MATERIAL, of_water);
+                        path.facet = found.facet;
+                        path.place = found.position;
+                    }
+                    near = hit.distance + render_frame.nearest;
+                } else {
+                    found = path_glance(found, ray.roughness);
+                    lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_GLANCE);
+                    standoff = hit.distance * ray.width * 0.5;
+                    // Where there are lamps, they stand for what shines; small bright things would be noise.
+                    shines = ray.roughness < PATH_SHINES || render_frame.light_count == 0u;
+                }
+                let unlit = (found.flags & SCENE_UNLIT) != 0u;
+                var lit = found.diffuse;
+                if !unlit {
+                    lit = select(vec3f(0.0), found.emission, shines)
+                        + scene_direct(found, -ray.along, lamps, numbers.w, standoff, depth);
+                }
+                if turn == 0u {
+                    surface = found;
+                    direct = lit;
+                    told = path.base.slack == 0.0 && path_cover(found) == 1.0 && found.transmission == 0.0;
+                    let free = path.mirror.slack == 0.0;
+                    if SCENE_WET && of_water {
+                        let rippled = ripple.z > PUDDLE_WATER_RIPPLED;
+                        plan.mirrors = max(render_frame.sky_rays, select(1u, PUDDLE_WATER_RAYS, rippled));
+                        plan.gloss = vec3f(1.0);
+                        plan.share = 1.0;
+                        plan.drawn = rippled && free;
+                        plan.kept = plan.drawn;
+                        plan.replaced = !rippled && free;
+                    } else if !unlit {
+                        plan = path_plan(found, -towards, cone * hit.distance, told, free && !under);
+                    }
+                    // Neighbouring pixels are on one plane if they are no farther from it than this.
+                    let from_eye = found.position - origin;
+                    slack = sqrt(dot(from_eye, from_eye)) * (cone * 2.0 + SKYLIGHT_SLACK);
+                    break;
+                }
+                let cover = path_cover(found);
+                light = path_gathered(light, ray, lit * cover, of_shown);
+                if unlit && cover == 1.0 {
+                    break;
+                }
+                let open = path_open(found);
+                var ambient = vec3f(0.0);
+                leaves = PATH_ONWARD;
+                if path_most(open) > PATH_OPEN {
+                    leaves = PATH_STRAIGHT;
+                    if !unlit {
+                        // What it reflects of the sky itself: half of the whole.
+                        ambient = sky_irradiance(found.normal) * (0.5 * found.occlusion * cover);
+                    }
+                } else if of_shown && light.distance < 0.0 {
+                    leaves = PATH_MIRROR;
+                    if path_most(path_albedo(found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                        leaves = PATH_SHOWN;
+                        found = path_glance(found, 1.0);
+                        light.factor = ray.mirror * (path_albedo(found) + found.normal_reflectance * 0.5);
+                        light.distance = hit.distance;
+                        light.normal = found.normal;
+                        light.place = found.position;
+                    }
+                } else if bounce + 1u == PATH_BOUNCES {
+                    ambient = path_ambient(found, (given + lit) / f32(bounce + 1u));
+                }
+                let own = (path_albedo(found) + found.normal_reflectance) * ambient;
+                light = path_gathered(light, ray, own, of_shown);
+                given += lit;
+                if leaves == PATH_STRAIGHT {
+                    ray.diffuse *= open;
+                    ray.mirror *= open;
+                    from_place = found.position;
+                    nearest = render_frame.nearest;
+                }
+                at = found;
+                view = -ray.along;
+            }
+        }
+        let mirrored = towards - surface.normal * (2.0 * dot(towards, surface.normal));
+        if SCENE_WET && of_water {
+            let all = f32(plan.mirrors);
+            let share = path_water_share(ripple, -towards);
+            path.radiance += throughput * direct;
+            if plan.kept {
+                path.mirror = PathSlot(
+                    light.mirror / max(all * share, 1.0e-6), slack, throughput * share, surface.roughness, mirrored,
+                    surface.position,
+                );
+            } else {
+                path.radiance += throughput * light.mirror / all;
+                path.mirror = path_show_mirrored(path.mirror, light, throughput / all, slack, plan.spread);
+            }
+            throughput *= 1.0 - share;
+            // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
+            wet_row = render_frame.puddles + water.puddle * PUDDLE_WATER_ROWS;
+            let extinction = bitcast<f32>(render_table[wet_row + 4u].w);
+            towards = puddle_water_refracted(towards, surface.normal);
+            let steep = max(-towards.y, 0.1);
+            clear = exp(-extinction * water.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
+            let aside = max(water.depth - water.rise, 0.0) / steep;
+            start = surface.position + vec3f(towards.x * aside, 0.0, towards.z * aside)
+                - towards * (4.0 * render_frame.nearest);
+            level = surface.position.y;
+            near = render_frame.nearest;
+            under = true;
+            continue;
+        }
+        let cover = path_cover(surface);
+        path.radiance += throughput * direct * cover;
+        if (surface.flags & SCENE_UNLIT) == 0u {
+            let rays_of_gloss = select(plan.mirrors, plan.rays, plan.chance > 0.0);
+            var base = light.base / f32(max(plan.rays, 1u));
+            var mirror = light.mirror / f32(max(rays_of_gloss, 1u));
+            if plan.mirrors + plan.rays == 0u {
+                base = sky_irradiance(surface.normal);
+                mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
+            } else if plan.mirrors == 0u && plan.chance == 0.0 {
+                // Too little for rays of its own.
+                plan.body += plan.gloss;
+                plan.gloss = vec3f(0.0);
+            }
+            let of_base = throughput * plan.body * cover;
+            let of_gloss = throughput * plan.gloss * cover;
+            if told {
+                path.base = PathSlot(base, slack, of_base, 0.0, surface.normal, surface.position);
+                let mirrors = plan.mirrors > 0u && (surface.roughness < PATH_CURVED || !plan.kept)
+                    && path_most(plan.gloss) > PATH_PLAIN_GLOSS;
+                path.plain = !(mirrors || layer > 0u);
+            } else {
+                path.radiance += of_base * base;
+            }
+            if plan.kept {
+                path.mirror = PathSlot(mirror, slack, of_gloss, surface.roughness, mirrored, surface.position);
+            } else {
+                path.radiance += of_gloss * mirror;
+                path.mirror = path_show_mirrored(path.mirror, light, of_gloss, slack, plan.spread);
+            }
+        }
+        under = false;
+        throughput *= path_open(surface);
+        if path_most(throughput) < 1.0e-3 {
+            return path;
+        }
+    }
+    return path;
+}

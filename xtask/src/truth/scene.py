@@ -1,0 +1,132 @@
+"""Renders a glTF scene with Mitsuba's path tracer, compares it with a picture of `downpour render`, and prints `name value` lines.
+
+The file is read here anew: triangles, metallic-roughness materials with textures of base colour, point lamps. Surfaces have glTF's own
+reflection (gltf_bsdf.py), so that what differs is the light and not the material.
+"""
+
+import argparse
+import json
+from pathlib import Path
+
+import mitsuba as mi
+import numpy as np
+
+# Bounces; the last of them give less than a thousandth in the whitest of the rooms.
+DEPTH = 24
+# Batches, whose scatter is the reference's own noise.
+BATCHES = 4
+
+
+def arguments():
+    parser = argparse.ArgumentParser()
+    for name in ("scene", "sky", "ours", "beside", "reference"):
+        parser.add_argument(f"--{name}", required=True)
+    parser.add_argument("--lamps", default="")
+    for name in ("eye-x", "eye-y", "eye-z", "at-x", "at-y", "at-z", "fov", "scale"):
+        parser.add_argument(f"--{name}", required=True, type=float)
+    for name in ("width", "height", "path-samples"):
+        parser.add_argument(f"--{name}", required=True, type=float)
+    parser.add_argument("--bsdf", default="gltf")
+    parser.add_argument("--keep", type=float, default=0.0)
+    return parser.parse_args()
+
+
+def sensor(given):
+    eye = [given.eye_x, given.eye_y, given.eye_z]
+    at = [given.at_x, given.at_y, given.at_z]
+    return {
+        "type": "perspective",
+        "fov": given.fov,
+        "fov_axis": "y",
+        "near_clip": 1.0e-2,
+        "far_clip": 1.0e4,
+        "to_world": mi.ScalarTransform4f().look_at(eye, at, [0, 1, 0]),
+        "film": {
+            "type": "hdrfilm",
+            "width": int(given.width),
+            "height": int(given.height),
+            "rfilter": {"type": "box"},
+            "pixel_format": "rgb",
+            "component_format": "float32",
+        },
+        "sampler": {"type": "independent"},
+    }
+
+
+def lamps(text):
+    """Point lamps: `x,y,z,r,g,b` each, separated by semicolons; the colour is radiant intensity."""
+    found = {}
+    for k, lamp in enumerate(part for part in text.split(";") if part):
+        x, y, z, *colour = (float(number) for number in lamp.split(","))
+        found[f"lamp_{k}"] = {
+            "type": "point",
+            "position": [x, y, z],
+            "intensity": {"type": "rgb", "value": colour},
+        }
+    return found
+
+
+def world(given):
+    import gltf
+    import reference
+
+    sky = reference.environment(given.sky)
+    sky["scale"] = given.scale
+    parts = {"type": "scene", "sky": sky, "camera": sensor(given)}
+    parts |= lamps(given.lamps)
+    parts |= gltf.shapes(given.scene, given.bsdf)
+    return mi.load_dict(parts)
+
+
+def surfaces(scene, given):
+    """Where all of a pixel shows surfaces: a picture of the depth's being there."""
+    aov = mi.load_dict({"type": "aov", "aovs": "there:shape_index"})
+    seen = np.array(mi.render(scene, integrator=aov, spp=16, seed=1))
+    depth = mi.load_dict({"type": "aov", "aovs": "far:depth"})
+    far = np.array(mi.render(scene, integrator=depth, spp=16, seed=1))[..., -1]
+    del seen
+    return far > 0.0
+
+
+def render(scene, given):
+    path = mi.load_dict({"type": "path", "max_depth": DEPTH, "rr_depth": 6})
+    samples = max(int(given.path_samples) // BATCHES, 1)
+    return [np.array(mi.render(scene, integrator=path, spp=samples, seed=seed)) for seed in range(BATCHES)]
+
+
+def main(given):
+    mi.set_variant("llvm_ad_rgb")
+    mi.set_log_level(mi.LogLevel.Error)
+    import compare
+    import gltf_bsdf  # noqa: F401  makes the material known
+    import reference
+
+    scene = world(given)
+    within = surfaces(scene, given)
+    kept = Path(given.reference)
+    if given.keep > 0 and kept.exists():
+        theirs = reference.linear(given.reference)
+        batches = [theirs] * 2
+    else:
+        batches = render(scene, given)
+        theirs = np.mean(batches, axis=0)
+        mi.Bitmap(theirs.astype(np.float32)).write(given.reference)
+    ours = reference.linear(given.ours)
+    factor = compare.exposure(theirs, within)
+    mean = compare.mean_luminance(theirs, within)
+    halves = [np.mean(batches[k::2], axis=0) for k in range(2)]
+    values = {
+        "flip": compare.mean_flip(theirs, ours, within, factor),
+        "luminance": compare.mean_luminance(ours, within) / mean - 1.0,
+        "noise": compare.mean_flip(halves[0], halves[1], within, factor),
+        "mirrored": compare.mean_flip(theirs, np.ascontiguousarray(ours[:, ::-1]), within, factor),
+        "share": float(within.mean()),
+        "exposure": factor,
+    }
+    compare.beside(theirs, ours, factor, given.beside)
+    for name, value in values.items():
+        print(name, repr(float(value)))
+
+
+if __name__ == "__main__":
+    main(arguments())

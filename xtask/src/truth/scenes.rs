@@ -1,0 +1,227 @@
+//! Whole scenes: the light of a picture of `downpour render`, without rain, held against Mitsuba's path tracer.
+//!
+//! Aim: on surfaces, a mean luminance within 5 % and a mean FLIP of at most 0.10. The scenes are made here: a street of boxes, a shed
+//! that is open on one side, an arcade, metal and glossy spheres on the ground, a courtyard; under a low sun, an overcast sky, and lamps
+//! at night. Mitsuba reads the same glTF file with a reader of its own and has glTF's own reflection (`truth/gltf_bsdf.py`), so that
+//! what differs is the light.
+
+mod models;
+mod skies;
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::mitsuba::Mitsuba;
+use super::{Options, create, run, write};
+
+/// Mean FLIP on surfaces.
+const MAX_FLIP: f64 = 0.10;
+/// Relative error of the mean luminance on surfaces.
+const MAX_LUMINANCE: f64 = 0.05;
+/// Columns and rows.
+const SIZE: [u32; 2] = [480, 270];
+
+/// A picture to compare.
+#[derive(Clone, Debug)]
+struct Scene {
+    name: String,
+    model: PathBuf,
+    sky: PathBuf,
+    /// Factor of the sky map.
+    scale: f64,
+    /// Point lamps: position in meters, intensity in the map's unit.
+    lamps: Vec<([f64; 3], [f64; 3])>,
+    eye: [f64; 3],
+    at: [f64; 3],
+    fov_deg: f64,
+}
+
+/// Compares all scenes; returns the table, and what is above the aim.
+pub(super) fn compare(
+    options: &Options,
+    program: &Path,
+    folder: &Path,
+    mitsuba: &Mitsuba,
+) -> Result<(String, Vec<String>), String> {
+    let folder = folder.join("scenes");
+    create(&folder)?;
+    let (mut rows, mut misses) = (Vec::new(), Vec::new());
+    for scene in scenes(options, &folder)? {
+        let values = scene.compare(options, program, &folder, mitsuba)?;
+        let (row, above) = judge(&scene.name, &values)?;
+        eprintln!("{row}");
+        rows.push(row);
+        misses.extend(above);
+    }
+    let [width, height] = SIZE;
+    let text = format!(
+        "# Scenes and Mitsuba\n\n`downpour render --rate 0` at {width} x {height} with its usual samples against Mitsuba's path tracer, on \
+         surfaces. `noise`: FLIP between two halves of Mitsuba's own samples. `mirrored`: our picture the wrong way round, which \
+         has to be seen.\n\n\
+         | scene | surfaces | mean FLIP | luminance | noise | FLIP mirrored |\n|---|---|---|---|---|---|\n{}\n",
+        rows.join("\n")
+    );
+    Ok((text, misses))
+}
+
+/// The row of the table, and what is above the aim.
+fn judge(name: &str, values: &BTreeMap<String, f64>) -> Result<(String, Vec<String>), String> {
+    let value = |key: &str| {
+        values.get(key).copied().ok_or_else(|| format!("{name}: the comparison did not say \"{key}\""))
+    };
+    let (flip, luminance, mirrored) = (value("flip")?, value("luminance")?, value("mirrored")?);
+    let row = format!(
+        "| {name} | {:.2} | {flip:.4} | {:+.2} % | {:.4} | {mirrored:.4} |",
+        value("share")?,
+        100.0 * luminance,
+        value("noise")?,
+    );
+    let mut misses = Vec::new();
+    let mut check = |what: &str, found: f64, most: f64| {
+        if found.is_nan() || found.abs() > most {
+            misses.push(format!("{name}: {what} {found:.4}, allowed {most:.4}"));
+        }
+    };
+    check("mean FLIP", flip, MAX_FLIP);
+    check("luminance", luminance, MAX_LUMINANCE);
+    if mirrored.is_nan() || mirrored <= MAX_FLIP {
+        misses.push(format!("{name}: mirrored, mean FLIP is only {mirrored:.4}: this case cannot fail"));
+    }
+    Ok((row, misses))
+}
+
+/// All scenes of the set, their files written under a folder.
+fn scenes(options: &Options, folder: &Path) -> Result<Vec<Scene>, String> {
+    let mut skies = Vec::new();
+    for (name, bytes, scale) in skies::all() {
+        let file = folder.join(format!("{name}.hdr"));
+        write(&file, &bytes)?;
+        skies.push((name.to_owned(), file, scale));
+    }
+    for map in &options.maps {
+        let file = std::path::absolute(map).map_err(|error| format!("{}: {error}", map.display()))?;
+        let name = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        skies.push((name, file, 1.0));
+    }
+    let mut found = Vec::new();
+    for model in models::all() {
+        let file = folder.join(format!("{}.gltf", model.name));
+        model.write(&file)?;
+        for (sky, map, scale) in &skies {
+            let night = sky == "night";
+            if model.of_night != night || (options.quick && sky != "low-sun" && !night) {
+                continue;
+            }
+            found.push(Scene {
+                name: format!("{}-{sky}", model.name),
+                model: file.clone(),
+                sky: map.clone(),
+                scale: *scale,
+                lamps: if night { model.lamps.clone() } else { Vec::new() },
+                eye: model.eye,
+                at: model.at,
+                fov_deg: model.fov_deg,
+            });
+        }
+    }
+    found.retain(|scene| options.scene.as_ref().is_none_or(|wanted| scene.name.contains(wanted)));
+    Ok(found)
+}
+
+impl Scene {
+    fn compare(
+        &self,
+        options: &Options,
+        program: &Path,
+        folder: &Path,
+        mitsuba: &Mitsuba,
+    ) -> Result<BTreeMap<String, f64>, String> {
+        let weather = folder.join(format!("{}.toml", self.name));
+        write(&weather, self.weather(folder)?.as_bytes())?;
+        let ours = folder.join(format!("{}.ours.exr", self.name));
+        let mut command = run::command(&program.display().to_string(), &["render", "--backend", "cpu"]);
+        let status = command
+            .args(["--quiet", "--overwrite", "--asset-root", "/"])
+            .arg(&weather)
+            .arg("--output")
+            .arg(&ours)
+            .status()
+            .map_err(|error| format!("{} did not start: {error}", program.display()))?;
+        if !status.success() {
+            return Err(format!("{}: downpour render failed ({status})", self.name));
+        }
+        let lamps: Vec<String> = self
+            .lamps
+            .iter()
+            .map(|(place, colour)| {
+                place.iter().chain(colour).map(f64::to_string).collect::<Vec<_>>().join(",")
+            })
+            .collect();
+        let files = [
+            ("scene", self.model.clone()),
+            ("sky", self.sky.clone()),
+            ("ours", ours),
+            ("beside", folder.join(format!("{}.png", self.name))),
+            ("reference", folder.join(format!("{}.mitsuba.exr", self.name))),
+            ("lamps", PathBuf::from(lamps.join(";"))),
+        ];
+        let [width, height] = SIZE.map(f64::from);
+        let mut values = vec![("fov", self.fov_deg), ("scale", self.scale)];
+        values.extend([("width", width), ("height", height)]);
+        values.push(("path-samples", options.path_samples.into()));
+        values.push(("keep", if options.keep { 1.0 } else { 0.0 }));
+        for (names, place) in [(["eye-x", "eye-y", "eye-z"], self.eye), (["at-x", "at-y", "at-z"], self.at)] {
+            values.extend(names.into_iter().zip(place));
+        }
+        mitsuba.values(&self.name, "scene.py", &files, &values)
+    }
+
+    /// The weather file: no rain, this sky, these lamps, this eye.
+    fn weather(&self, folder: &Path) -> Result<String, String> {
+        let beneath = |file: &Path| {
+            file.strip_prefix(folder)
+                .unwrap_or(file)
+                .to_str()
+                .map(str::to_owned)
+                .ok_or("a path that is no text")
+        };
+        let mut text = format!(
+            "model = [{{ file = {:?} }}]\n[rain]\nrate_mm_h = 0\n[sky]\nfile = {:?}\nintensity = {}\n[camera]\nposition_m = {:?}\n\
+             look_at_m = {:?}\nfov_deg = {:?}\n[output]\nsize = {SIZE:?}\n",
+            beneath(&self.model)?,
+            beneath(&self.sky)?,
+            self.scale,
+            self.eye,
+            self.at,
+            self.fov_deg,
+        );
+        for (place, colour) in &self.lamps {
+            let most = colour.iter().copied().fold(0.0, f64::max);
+            let tint = colour.map(|c| c / most);
+            let _ = writeln!(
+                text,
+                "[[light]]\npoint = {{ position_m = {place:?}, color = {tint:?}, intensity_cd = {most:?} }}"
+            );
+        }
+        Ok(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_aim_can_be_missed() {
+        let good = [("flip", 0.05), ("luminance", -0.01), ("noise", 0.01), ("mirrored", 0.4), ("share", 0.8)];
+        let with = |key: &str, value: f64| -> BTreeMap<String, f64> {
+            good.iter().map(|&(k, v)| (k.to_owned(), if k == key { value } else { v })).collect()
+        };
+        assert_eq!(judge("a", &with("none", 0.0)).expect("whole").1, Vec::<String>::new());
+        for (key, bad) in [("flip", 0.11), ("luminance", 0.06), ("luminance", -0.06), ("mirrored", 0.05)] {
+            assert_eq!(judge("a", &with(key, bad)).expect("whole").1.len(), 1, "{key}");
+        }
+        assert!(judge("a", &BTreeMap::new()).is_err());
+    }
+}
