@@ -109,10 +109,12 @@ pub(crate) fn scatter_draw(
     } else {
         along = scatter_hemisphere(along, (a - chance) / (1.0 - chance), b);
     }
+    // What goes into the surface is lost; only what goes into the facet alone is thrown back.
+    let above = normal.dot(along) > 0.0;
     along = scatter_above(surface.facet, along);
     let none = ScatterRay { along, width: 0.0, diffuse: Vec3::ZERO, roughness, mirror: Vec3::ZERO };
     let cosine = normal.dot(along);
-    if cosine <= 0.0 {
+    if !above || cosine <= 0.0 {
         return none;
     }
     let sum = view + along;

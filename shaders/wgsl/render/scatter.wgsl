@@ -72,10 +72,12 @@ fn scatter_draw(
     } else {
         along = scatter_hemisphere(along, (a - chance) / (1.0 - chance), b);
     }
+    // What goes into the surface is lost; only what goes into the facet alone is thrown back.
+    let above = dot(normal, along) > 0.0;
     along = scatter_above(surface.facet, along);
     var ray = ScatterRay(along, 0.0, vec3f(0.0), roughness, vec3f(0.0));
     let cosine = dot(normal, along);
-    if cosine <= 0.0 {
+    if !above || cosine <= 0.0 {
         return ray;
     }
     let sum = view + along;
