@@ -284,7 +284,7 @@ impl GlassTable {
         for (i, table) in self.wiper.iter().enumerate() {
             let wiper = table.wiper(&format!("glass.wiper[{i}]"), places)?;
             // Alone, so that what is wrong with it is told with its place.
-            let alone = Pane { wipers: vec![wiper.clone()], ..pane.clone() };
+            let alone = Pane { wipers: vec![wiper.clone()], above: 0.0, ..pane.clone() };
             let checked = alone.options(size, rain, 0.0).check();
             checked.map_err(|error| refused(&format!("glass.wiper[{i}]"), size, &error, places))?;
             wipers.push(wiper);
