@@ -229,8 +229,9 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
     let mean = 1.0 / (samples * samples) as f32;
     let pixel = |column: u32, row: u32| {
         let light = (0..samples * samples).fold([0.0; 3], |sum, k| {
-            let x = view.sample_place(column * samples + k % samples);
-            let y = view.line_height(row * samples + k / samples);
+            let line = row * samples + k / samples;
+            let x = view.sample_place(column * samples + k % samples, line);
+            let y = view.line_height(line);
             add(sum, specimen_sky_light(sky, specimen_ray(&view.camera, x, y).direction))
         });
         let [r, g, b] = scale(light, mean);
