@@ -9,7 +9,7 @@ use downpour_shaders::render::scene::{SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-use crate::rain::capture::{capture_direction, capture_suns};
+use crate::rain::capture::{capture_direction, capture_sky, capture_suns};
 use crate::scene::{ScenePath, SceneView, scene_lattice};
 
 /// What a pixel has found of the sky's light, for the filter. The same layout as `TraceGather` in WGSL.
@@ -77,7 +77,9 @@ impl SceneView<'_> {
         }
         let share = 1.0 / f32::from(count);
         if !is_picture {
-            let radiance = sum * share + capture_suns(self, x, y);
+            let is_sky = nearest >= SCENE_FAR && self.frame.projection == SCENE_OCTAHEDRAL;
+            let seen = if is_sky { capture_sky(self, x, y) } else { sum * share };
+            let radiance = seen + capture_suns(self, x, y);
             return (radiance.extend(nearest), TraceGather::default());
         }
         let gather = TraceGather {

@@ -110,8 +110,8 @@ pub static SPECIMEN_WOBBLE: Module = Module {
         &SPECIMEN,
         &mask::MASK_CONSTANTS,
         &mask::TRACE,
+        &mask::WOBBLE,
         &optics::OPTICS,
-        &oscillation::OSCILLATION,
         &shape::SHAPE,
     ],
 };

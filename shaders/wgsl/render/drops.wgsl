@@ -192,20 +192,24 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         let ray = drops_frame_ray(at.x, at.y);
         let lean = drops_on_plane(drop.towards, ray);
         let place = vec2f(dot(lean, right), dot(lean, up));
+        let by_profile = drop.kind == DROPS_TABLE;
+        if by_profile {
+            sum += streak_lookup_shown(drop, place);
+        }
+        if by_profile && drops_frame.atlas == 0u {
+            continue;
+        }
         let chord = streak_chord(drop, place);
         if chord.high <= chord.low {
             continue;
         }
-        var shown = vec4f(0.0);
-        if drop.kind == DROPS_TABLE {
-            shown = streak_lookup_part(drop.shape, chord.across, at / size, chord.low, chord.high);
-        } else {
-            shown = drops_chord(drop, chord, ray);
+        if !by_profile {
+            sum += drops_chord(drop, chord, ray) * chord.share;
         }
         if drops_frame.atlas > 0u {
-            sum += shown * chord.share + vec4f(drops_streaks(index, drop, chord, place), 0.0);
+            sum += vec4f(drops_streaks(index, drop, chord, place), 0.0);
         } else {
-            sum += shown * chord.share + vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
+            sum += vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
         }
     }
     sum /= f32(drop.grid);
@@ -262,7 +266,7 @@ fn drops_veiled(x: u32, y: u32, distance: f32) -> vec4f {
     let ray = drops_frame_ray(f32(x) + 0.5, f32(y) + 0.5);
     var place = packing_octahedral_encode(ray) * 0.5 + 0.5;
     if drops_frame.form == DROPS_SHIFT {
-        place = drops_shade_shifted(ray, DropsTexel(vec3f(0.0, 0.0, -1.0), 1.0, vec3f(0.0), 1.0));
+        place = drops_shade_shifted(ray, DropsTexel(vec3f(0.0, 0.0, -1.0), 1.0, vec3f(0.0), 1.0, vec3f(0.0), 0.0, 0.0));
     }
     return vec4f(drops_capture_at(place, DROPS_VEIL_SPREAD) * (1.0 - left), left);
 }

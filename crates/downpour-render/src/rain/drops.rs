@@ -22,7 +22,7 @@ use super::streak::{
     streak_time,
 };
 use super::streak_lookup::StreakTable;
-use super::{DropMasks, Rain};
+use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
 
 /// The optical depth of the drops that are not drawn, up to a distance in metres.
 #[must_use]
@@ -244,21 +244,26 @@ impl Buffers<'_> {
             let ray = self.view.drops_frame_ray(at.x, at.y);
             let lean = drops_on_plane(towards, ray);
             let place = Vec2::new(lean.dot(right), lean.dot(up));
+            let by_profile = drop.kind == DROPS_TABLE;
+            if by_profile {
+                sum += self.table.streak_lookup_shown(drop, place);
+            }
+            if by_profile && self.view.frame.atlas == 0 {
+                continue;
+            }
             let chord = streak_chord(drop, place);
             if chord.high <= chord.low {
                 continue;
             }
-            let shown = if drop.kind == DROPS_TABLE {
-                self.table.streak_lookup_part(drop.shape, chord.across, at / size, chord.low, chord.high)
-            } else {
-                self.drops_chord(drop, &chord, ray)
-            };
+            if !by_profile {
+                sum += self.drops_chord(drop, &chord, ray) * chord.share;
+            }
             let lines = if self.view.frame.atlas > 0 {
                 self.drops_streaks(index, drop, &chord, place)
             } else {
                 self.drops_lines(index, &chord, self.drops_glint_width(drop))
             };
-            sum += shown * chord.share + lines.extend(0.0);
+            sum += lines.extend(0.0);
         }
         sum /= drop.grid as f32;
         sum / sum.w.max(1.0)
@@ -333,11 +338,18 @@ impl Buffers<'_> {
 }
 
 impl Rain {
-    /// The streak radiance table of the picture.
+    /// The streak radiance table of the picture. `lamps` is what lamps add to the streaks that have profiles
+    /// ([`Rain::streak_lights`]).
     #[must_use]
-    pub fn streak_table(&self, masks: &DropMasks, capture: &Capture) -> StreakTable {
+    pub fn streak_table(&self, masks: &DropMasks, capture: &Capture, lamps: &[[f32; 4]]) -> StreakTable {
         let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &capture.texels };
-        view.streak_table(&self.shapes)
+        let StreakProfiles { classes, paths, ray_jobs, rays, entries: count, .. } = &self.profiles;
+        let mut entries = view.streak_means(classes);
+        entries.resize(*count as usize, [0.0; 4]);
+        let mut traced = vec![StreakRay::default(); *rays as usize];
+        streak_rays::trace(paths, &self.list, ray_jobs, &mut entries, &mut traced);
+        streak_light::light(view, paths, &self.list, &traced, lamps, &mut entries);
+        StreakTable { entries }
     }
 
     /// The rain over a scene: radiance, and the transmittance of the scene behind it; rows from the top. `clean` is the

@@ -7,10 +7,10 @@ use glam::{DVec3, Vec2};
 use super::capture::CaptureFrame;
 use super::drops_frame::DropsFrame;
 use super::light::{DropLightForm, DropLightOptions, DropLights, drop_light_axes, drop_light_rows};
+use super::profiles::StreakProfiles;
 use super::project::{Projected, project};
 use super::streak::DropsDrop;
-use super::streak_table::StreakShape;
-use super::{DropMasks, RainOptions, shapes};
+use super::{DropMasks, RainOptions};
 use crate::RenderError;
 use crate::data::{RenderFrame, SceneData};
 
@@ -21,8 +21,8 @@ pub struct Rain {
     pub frame: DropsFrame,
     /// How the surroundings are captured.
     pub capture: CaptureFrame,
-    /// Classes of the drops that move, for the streak radiance table; none if nothing moves.
-    pub shapes: Vec<StreakShape>,
+    /// What the streak radiance table has of the drops that move.
+    pub profiles: StreakProfiles,
     /// The drops on the picture, nearest first.
     pub list: Vec<DropsDrop>,
     /// Where each tile's list begins (one more than there are tiles), then the lists.
@@ -59,7 +59,7 @@ impl Rain {
             .collect();
         // Two drops at one distance go in the order in which they were given.
         placed.sort_by(|a, b| a.1.drop.nearest.total_cmp(&b.1.drop.nearest).then(a.0.cmp(&b.0)));
-        let shapes = shapes::classify(&mut placed, masks);
+        let profiles = StreakProfiles::new(&mut placed, drops, masks, &options.exposure);
         let across = width.div_ceil(DROPS_TILE);
         let count = (across * height.div_ceil(DROPS_TILE)) as usize;
         let touched = |shown: &Projected| tiles_of(*shown, width, height);
@@ -90,7 +90,7 @@ impl Rain {
         Self {
             frame: DropsFrame::new(picture, &capture, masks, across, options),
             capture,
-            shapes,
+            profiles,
             list: placed.iter().map(|p| p.1.drop).collect(),
             rows,
             picture: *picture,
@@ -111,6 +111,24 @@ impl Rain {
         masks: &'a DropMasks,
     ) -> Result<DropLights<'a>, RenderError> {
         DropLights::new(scene, &self.picture, &masks.light, self.light)
+    }
+
+    /// The lamps of a scene on the streaks that have profiles, lamp by lamp.
+    ///
+    /// # Errors
+    /// As [`DropLights::new`].
+    pub fn streak_lights<'a>(
+        &'a self,
+        scene: &'a SceneData,
+        masks: &'a DropMasks,
+    ) -> Result<DropLights<'a>, RenderError> {
+        DropLights::of_streaks(scene, &self.picture, &masks.light, self.light)
+    }
+
+    /// The streaks that have profiles, as lamps light them.
+    #[must_use]
+    pub fn streak_rows(&self) -> Vec<[f32; 4]> {
+        self.profiles.paths.iter().map(|path| self.rows[path.drop as usize]).collect()
     }
 
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given.

@@ -18,6 +18,7 @@ use downpour_drop::oscillation::{Amplitudes, drop_oscillation_phase};
 use downpour_math::rng::seed_words;
 use downpour_math::vector::{add, scale};
 use downpour_shaders::render::rain::{DROPS_STILL, DROPS_TABLE};
+use downpour_scene::sky::{SUN_THRESHOLD, SkyMap};
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_SKY_LEVELS};
 use downpour_sim::field::{DropKind, FallingDrop};
 use glam::{DVec3, Vec2, Vec3};
@@ -87,7 +88,8 @@ pub fn render_specimen_table(
     for streak in table_streaks(shape, options, sky)? {
         let TableStreak { scene, masks, rain, clean, .. } = &streak;
         let capture = rain.capture.trace(scene);
-        let table = rain.streak_table(masks, &capture);
+        let lamps = streak.streak_lights()?.light(&rain.streak_rows());
+        let table = rain.streak_table(masks, &capture, &lamps);
         let light = streak.lights()?.light(&rain.rows);
         streak.show(&rain.layer(clean, masks, &capture, &table, &light), &mut image);
     }
@@ -187,12 +189,21 @@ impl TableStreak {
             check_table(drop)?;
             set_phases(drop, options);
         }
+        for path in &mut rain.profiles.paths {
+            // Towards +X.
+            path.lobe = [1.0, 0.0];
+        }
         Ok(Self { scene, masks, rain, clean: background(view, sky), channels: view.channels })
     }
 
     /// The lamps on the drop.
     pub(crate) fn lights(&self) -> Result<DropLights<'_>, SpecimenError> {
         Ok(self.rain.lights(&self.scene, &self.masks)?)
+    }
+
+    /// The lamps on its profile.
+    pub(crate) fn streak_lights(&self) -> Result<DropLights<'_>, SpecimenError> {
+        Ok(self.rain.streak_lights(&self.scene, &self.masks)?)
     }
 
     /// Writes the colours that this streak is for into a picture. `layer` is the rain over the background.
@@ -205,22 +216,36 @@ impl TableStreak {
     }
 }
 
-/// A scene that is nothing but the sky.
+/// A scene that is nothing but the sky. As a weather does it, the sun of the map is taken out of it and made parallel light.
 fn scene(sky: Sky<'_>) -> SceneData {
+    let mut map = SkyMap {
+        width: sky.width(),
+        height: sky.height(),
+        radiance: sky.radiance().to_vec(),
+        warnings: Vec::new(),
+    };
+    let sun = map.extract_sun(SUN_THRESHOLD);
     // No surface asks for the levels of rough reflection, nor for irradiance.
     let light = SkyLight {
-        texels: sky.radiance().iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect(),
-        levels: [[sky.width(), sky.height(), 0, 0]; SCENE_SKY_LEVELS as usize],
+        texels: map.radiance.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect(),
+        levels: [[map.width, map.height, 0, 0]; SCENE_SKY_LEVELS as usize],
         irradiance: [[0.0; 4]; 9],
     };
+    let of_lamps = sky.lamps().iter().map(|lamp| {
+        let irradiance = Vec3::from(lamp.radiance) * (PI * lamp.sine_squared() as f32);
+        (DVec3::from(lamp.direction).as_vec3(), irradiance, lamp.radius() as f32)
+    });
+    let of_sun = sun.map(|sun| (sun.direction.into(), sun.irradiance_rgb.into(), sun.angular_radius));
+    let lights: Vec<(Vec3, Vec3, f32)> = of_lamps.chain(of_sun).collect();
     let mut builder = SceneBuilder::new();
-    for lamp in sky.lamps() {
-        builder.add_light(LightSource::Directional {
-            direction: -DVec3::from(lamp.direction).as_vec3(),
-            irradiance: Vec3::from(lamp.radiance) * (PI * lamp.sine_squared() as f32),
-        });
+    for &(towards, irradiance, _) in &lights {
+        builder.add_light(LightSource::Directional { direction: -towards, irradiance });
     }
-    builder.build(&light)
+    let mut scene = builder.build(&light);
+    for (k, &(_, _, radius)) in (0u32..).zip(&lights) {
+        scene.set_light_radius(k, radius);
+    }
+    scene
 }
 
 /// The map and its lamps, each pixel the mean of its samples, and the distance of the sky.
