@@ -3,6 +3,7 @@
 pub mod brdf;
 pub mod drop_light;
 pub mod glass;
+pub mod medium;
 pub mod pane_shadow;
 pub mod puddle_water;
 pub mod rain;

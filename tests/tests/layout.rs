@@ -18,7 +18,8 @@ use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
 use downpour_render::rain::light::DropLightFrame;
-use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
+use downpour_render::rain::medium::MediumFrame;
+use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakPath, StreakRay};
 use downpour_render::specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_render::trace::TraceGather;
 use downpour_shaders::render::specimen;
@@ -78,13 +79,17 @@ fn hosts() -> Vec<Host> {
         host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,
-            capture_forward, capture_texel, form, mask_size, tiles_across, veil_beyond, veil, streak_samples,
+            capture_forward, capture_texel, form, mask_size, tiles_across, unused, streak_samples,
             streak_colour, glints, atlas),
+        host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
+            depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
             towards, distance, place, slope, half_extent, row, area, grid, start, along, first, way, oval, recede,
-            swing, turns, share, spread, nearest, kind, shape, unused),
-        host!(StreakShape as "StreakShape" in &render::rain::STREAK_TABLE,
-            velocity, row, half_extent, wanted, unused, ovals),
+            swing, turns, share, spread, nearest, kind, shape, profile),
+        host!(StreakPath as "StreakPath" in &render::rain::STREAK_PATH,
+            shape, volume, volume_last, wide, tall, index, lobe, amplitudes, rows, columns, profile_rows, fine,
+            first_ray, first_entry, drop, unused),
+        host!(StreakRay as "StreakRay" in &render::rain::STREAK_RAY, exits, shares, interfaces, unused),
         host!(DropLightFrame as "DropLightFrame" in &render::drop_light::DROP_LIGHT,
             count, form, glints, first_light),
         host!(GlassPictureDrop as "GlassPictureDrop" in &render::glass::WATER,

@@ -38,7 +38,7 @@ use crate::air::Air;
 use crate::error::in_range;
 use crate::fall_speed::{FallSpeedModel, LARGEST_DIAMETER_M, TerminalSpeed};
 
-pub use extinction::{EXTINCTION_EFFICIENCY, ExtinctionLaw, KOSCHMIEDER, visibility};
+pub use extinction::{ExtinctionEfficiency, ExtinctionLaw, KOSCHMIEDER, visibility};
 pub use law::DropSizeLaw;
 pub use sampling::{
     DistributionPosition, SampleTable, SampledBy, distribution_lerp, distribution_probability,
@@ -270,10 +270,17 @@ impl DropSizeDistribution {
         self.integrate(|d| self.speed.unchecked(d))
     }
 
-    /// Extinction of light in 1/m: the cross-sections of the drops times [`EXTINCTION_EFFICIENCY`].
+    /// Geometric cross-section of the drops per volume, 1/m: spheres of their diameters.
+    #[must_use]
+    pub fn cross_section(&self) -> f64 {
+        PI / 4.0 * self.integrate(|d| d * d)
+    }
+
+    /// Extinction of light in 1/m: the cross-sections of the drops times the efficiency of all that leaves a beam,
+    /// diffracted light with it ([`ExtinctionEfficiency::Total`]).
     #[must_use]
     pub fn extinction(&self) -> f64 {
-        EXTINCTION_EFFICIENCY * PI / 4.0 * self.integrate(|d| d * d)
+        ExtinctionEfficiency::Total.factor() * self.cross_section()
     }
 
     /// Meteorological visibility in metres (Koschmieder); infinite in dry weather.

@@ -4,7 +4,7 @@ use downpour_shaders::Kernel;
 
 use crate::{Gpu, GpuError};
 
-/// A compute pipeline whose buffers are the bindings 0, 1, 2, ... of group 0.
+/// A compute pipeline whose buffers are bindings of group 0.
 #[derive(Clone, Debug)]
 pub struct ComputeKernel {
     pipeline: wgpu::ComputePipeline,
@@ -65,14 +65,24 @@ impl ComputeKernel {
     /// # Errors
     /// [`GpuError::Refused`] if number, usage or size of the buffers are not what the kernel declares.
     pub fn bind(&self, gpu: &Gpu, buffers: &[&wgpu::Buffer]) -> Result<wgpu::BindGroup, GpuError> {
+        self.bind_at(gpu, (0..).zip(buffers.iter().copied()))
+    }
+
+    /// Buffers as bindings of group 0, each with its number.
+    ///
+    /// # Errors
+    /// As [`ComputeKernel::bind`].
+    pub fn bind_at<'a>(
+        &self,
+        gpu: &Gpu,
+        buffers: impl IntoIterator<Item = (u32, &'a wgpu::Buffer)>,
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        let entry = |(binding, buffer): (u32, &'a wgpu::Buffer)| wgpu::BindGroupEntry {
+            binding,
+            resource: buffer.as_entire_binding(),
+        };
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = buffers.into_iter().map(entry).collect();
         gpu.create(&format!("bindings of \"{}\"", self.label), 0, |device| {
-            let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
-                .zip(buffers)
-                .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                    binding,
-                    resource: buffer.as_entire_binding(),
-                })
-                .collect();
             device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(&self.label),
                 layout: &self.pipeline.get_bind_group_layout(0),

@@ -182,8 +182,21 @@ impl Row<'_> {
         for (field, into) in fields.zip(&mut columns) {
             field.store(into);
         }
-        let [dx, dy, dz, rx, ry, rz, ix, iy, iz, coverage, transmittance, internal_transmittance, reflections] =
-            &columns;
+        let [
+            dx,
+            dy,
+            dz,
+            rx,
+            ry,
+            rz,
+            ix,
+            iy,
+            iz,
+            coverage,
+            transmittance,
+            internal_transmittance,
+            reflections,
+        ] = &columns;
         let last = self.texels.len() - 1;
         for k in 0..count {
             let right = MaskTexel {

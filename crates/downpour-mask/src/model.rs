@@ -75,7 +75,14 @@ impl TracedModel {
             point = add_scaled(point, inside, hit.distance);
             let (outside, cos2) = optics_refract(inside, scale(normal, -1.0), self.index);
             if cos2 >= 0.0 {
-                return Some(Exit { point, normal, inside, outside, reflections: reflections as f32, lost: 0.0 });
+                return Some(Exit {
+                    point,
+                    normal,
+                    inside,
+                    outside,
+                    reflections: reflections as f32,
+                    lost: 0.0,
+                });
             }
             inside = normalize(optics_reflect(inside, normal));
         }

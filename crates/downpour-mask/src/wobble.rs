@@ -97,12 +97,7 @@ pub fn mask_wobble_spheroid<R: Real>(drop: &WobbleDrop<R>, a: [R; 3], b: [R; 3])
 /// nearest approach; the nearest approach where it misses.
 #[inline(always)]
 #[must_use]
-pub fn mask_wobble_meet<R: Real>(
-    drop: &WobbleDrop<R>,
-    origin: [R; 3],
-    direction: [R; 3],
-    side: R,
-) -> [R; 3] {
+pub fn mask_wobble_meet<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], direction: [R; 3], side: R) -> [R; 3] {
     let curvature = mask_wobble_spheroid(drop, direction, direction);
     let excess = mask_wobble_spheroid(drop, origin, origin) - side.constant(1.0);
     let slope = mask_wobble_spheroid(drop, origin, direction);
@@ -118,12 +113,7 @@ pub fn mask_wobble_meet<R: Real>(
 /// How far along a line its nearest approach is, from a guess.
 #[inline(always)]
 #[must_use]
-pub fn mask_wobble_nearest<R: Real>(
-    drop: &WobbleDrop<R>,
-    origin: [R; 3],
-    direction: [R; 3],
-    guess: R,
-) -> R {
+pub fn mask_wobble_nearest<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], direction: [R; 3], guess: R) -> R {
     let curvature = mask_wobble_spheroid(drop, direction, direction);
     let mut along = guess;
     for _ in 0..MASK_WOBBLE_NEAREST_STEPS {
@@ -137,15 +127,12 @@ pub fn mask_wobble_nearest<R: Real>(
 /// Where the light of a ray leaves the drop. The ray should meet it; one that misses is treated as grazing.
 #[inline(always)]
 #[must_use]
-pub fn mask_wobble_light<R: Real>(
-    drop: &WobbleDrop<R>,
-    origin: [R; 3],
-    direction: [R; 3],
-) -> WobbleLight<R> {
+pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], direction: [R; 3]) -> WobbleLight<R> {
     let zero = origin[0].constant(0.0);
     let one = origin[0].constant(1.0);
     let index = one.constant(drop.index);
-    let normal_at = |point| normalize(mask_wobble_surface(&drop.coefficients, drop.state, point).half_gradient);
+    let normal_at =
+        |point| normalize(mask_wobble_surface(&drop.coefficients, drop.state, point).half_gradient);
     let mut point = mask_wobble_meet(drop, origin, direction, -one);
     let normal = normal_at(point);
     let reflectance = optics_fresnel(-dot(direction, normal), index);
@@ -186,7 +173,8 @@ pub fn mask_wobble_light<R: Real>(
     }
     for exit in 1..=MASK_WOBBLE_EXITS as usize {
         let number = one.constant(exit as f64);
-        let is_last = one.both(number.less(found + one.constant(0.5)), found.less(number + one.constant(0.5)));
+        let is_last =
+            one.both(number.less(found + one.constant(0.5)), found.less(number + one.constant(0.5)));
         light.shares[exit] = light.shares[exit] + R::select(is_last, rest, zero);
     }
     light

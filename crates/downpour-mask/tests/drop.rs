@@ -121,7 +121,8 @@ fn a_sphere_sends_back_what_it_reflects_inside() {
             let reflected = amplitude * amplitude;
             0.5 * (1.0 - reflected) * (1.0 - reflected) * reflected
         };
-        let exact = share((ci - INDEX * cr) / (ci + INDEX * cr)) + share((INDEX * ci - cr) / (INDEX * ci + cr));
+        let exact =
+            share((ci - INDEX * cr) / (ci + INDEX * cr)) + share((INDEX * ci - cr) / (INDEX * ci + cr));
         let found = through.internal_transmittance;
         assert!((found - exact).abs() < 1.0e-9, "b = {b}: {found} for {exact}");
     }

@@ -31,6 +31,6 @@ pub use error::PaneError;
 pub use frame::{GlassPicture, GlassPictureFrame};
 pub use light::GlassPictureLight;
 pub use meet::glass_picture_spline;
-pub use pane::WetPane;
+pub use pane::{WetPane, pane_plane};
 pub use shade::{PaneShade, PaneShadows};
 pub use water::GlassPictureDrop;

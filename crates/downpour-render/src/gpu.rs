@@ -2,12 +2,14 @@
 
 mod drop_light;
 mod glass;
+mod medium;
 mod picture;
 mod rain;
 mod scene;
 
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 pub use glass::GlassRenderer;
+pub use medium::{MediumPass, MediumPipeline};
 pub use picture::{GpuPictureError, PictureRenderer};
 pub use rain::{RainOnGpu, RainPass, RainPipeline};
 pub use scene::{SceneOnGpu, ScenePass, ScenePipeline};

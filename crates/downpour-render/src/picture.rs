@@ -153,6 +153,7 @@ pub fn render_picture(
     });
     let lights = rain.lights(scene, masks)?;
     let light = timed(&mut passes, "lamps", || lights.light(&rain.rows));
-    let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture, &table, &light));
+    let medium = timed(&mut passes, "unresolved", || rain.medium_light(&lights).layer(&clean));
+    let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture, &table, &light, &medium));
     Ok(Picture::new(&rain, clean, layer, capture.texels, passes))
 }

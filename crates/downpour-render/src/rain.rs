@@ -6,7 +6,8 @@
 //! 4. [`light`]: what lamps and sun add, drop by drop; [`glint`]: where on a drop;
 //! 5. [`StreakTable`]: what drops that move while the shutter is open show on the mean, made once per frame: a profile of each
 //!    streak that is wider than a pixel ([`StreakProfiles`]), a mean for the others;
-//! 6. [`drops`]: pixel by pixel, what drops and streaks show of it.
+//! 6. [`medium`]: drops that are not drawn one by one, with the light of lamps on them;
+//! 7. [`drops`]: pixel by pixel, what drops and streaks show of it.
 //!
 //! Source: Rousseau, Jolivet, Ghazanfarpour 2006, sections 4 and 5; Rousseau 2008, section 2.2.3. Where the default
 //! differs it is said at [`RefractionForm`] and [`StreakSamples`].
@@ -22,6 +23,7 @@ pub mod exposure;
 pub mod glint;
 pub mod light;
 pub mod masks;
+pub mod medium;
 mod profiles;
 mod project;
 mod reduce;
@@ -34,7 +36,6 @@ pub mod streak_place;
 mod streak_rays;
 mod streak_table;
 mod tiles;
-mod veil;
 
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 
@@ -43,6 +44,7 @@ pub use drops_frame::DropsFrame;
 pub use exposure::{Exposure, EyeMotion, StreakColour, StreakSamples};
 use light::DropLightOptions;
 pub use masks::DropMasks;
+pub use medium::{MediumOptions, PanePlane, RainMedium};
 pub use profiles::StreakProfiles;
 pub use reduce::{ReduceLevel, reduce_levels, reduce_texel};
 pub use streak::DropsDrop;
@@ -50,7 +52,6 @@ pub use streak_lookup::StreakTable;
 pub use streak_path::StreakPath;
 pub use streak_rays::StreakRay;
 pub use tiles::Rain;
-pub use veil::Veil;
 
 /// Glints that are kept of a drop where nothing else is said.
 const GLINTS: u32 = 4;
@@ -78,7 +79,7 @@ pub struct RainOptions {
     /// Samples along an edge of a texel of the capture, 1 to 16.
     pub capture_grid: u32,
     /// Drops that are not drawn one by one.
-    pub veil: Veil,
+    pub medium: RainMedium,
     /// In which time light is gathered.
     pub exposure: Exposure,
     /// What lamps and the sun add.
@@ -92,7 +93,7 @@ impl Default for RainOptions {
             form: RefractionForm::Direction,
             capture_size: 256,
             capture_grid: 1,
-            veil: Veil::default(),
+            medium: RainMedium::default(),
             exposure: Exposure::default(),
             light: DropLightOptions { glints: GLINTS, ..DropLightOptions::default() },
         }

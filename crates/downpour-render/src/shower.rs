@@ -5,13 +5,16 @@ mod stepped;
 
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
-use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
+use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution, ExtinctionEfficiency};
+use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::optics::water_index_in_air;
-use downpour_scene::weather::{Rain, RainVolume, Weather};
+use downpour_scene::weather::{Rain, RainExtinction, RainVolume, Weather};
 use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::shelter::Obstacles;
+use glam::DVec3;
 
-use crate::rain::{DropMasks, Veil};
+use crate::glass::pane_plane;
+use crate::rain::{DropMasks, MediumOptions, RainMedium};
 use crate::stage::Stage;
 pub use error::ShowerError;
 use stepped::Stepped;
@@ -33,6 +36,7 @@ enum Form {
 #[derive(Clone, Debug)]
 pub struct Shower {
     law: DropSizeDistribution,
+    weather: Weather,
     form: Form,
 }
 
@@ -52,7 +56,7 @@ impl Shower {
             (RainVolume::ClosedForm, None) => return Err(ShowerError::NotUniform),
             _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
         };
-        Ok(Self { law, form })
+        Ok(Self { law, weather: weather.clone(), form })
     }
 
     /// Whether a picture of any time can be made by itself. If not, pictures of a clip are made in order of time, and each
@@ -69,25 +73,47 @@ impl Shower {
     /// [`ShowerError::Wind`] for a wind field that is none.
     pub fn at(&mut self, stage: &Stage, time_s: f64) -> Result<VisibleDrops, ShowerError> {
         let view = stage.view()?;
-        match &mut self.form {
+        let mut visible = match &mut self.form {
             Form::Closed(field) => {
                 let obstacles = Obstacles {
                     nodes: &stage.data.nodes,
                     triangles: &stage.data.triangles,
                     origin: stage.origin,
                 };
-                Ok(field.visible_among(&obstacles, &view, time_s)?)
+                field.visible_among(&obstacles, &view, time_s)?
             }
-            Form::Stepped(stepped) => stepped.at(stage, &view, time_s),
+            Form::Stepped(stepped) => stepped.at(stage, &view, time_s)?,
+        };
+        // A pane keeps the rain outside.
+        if let Some(pane) = pane_plane(&self.weather, stage)? {
+            visible.drops.retain(|drop| !pane.is_before((drop.position - view.eye).as_vec3()));
         }
+        Ok(visible)
     }
 
-    /// What becomes of the drops that were not listed for a picture: `visible` is what [`Shower::at`] gave.
+    /// The drops that were not listed for a picture at a time in seconds: `visible` is what [`Shower::at`] gave.
     ///
     /// # Errors
     /// As [`Shower::at`].
-    pub fn veil(&self, visible: &VisibleDrops) -> Result<Veil, ShowerError> {
-        Ok(Veil::new(&self.law, |diameter| visible.resolved.range(diameter))?)
+    pub fn medium(
+        &self,
+        stage: &Stage,
+        visible: &VisibleDrops,
+        masks: &DropMasks,
+        time_s: f64,
+    ) -> Result<RainMedium, ShowerError> {
+        let speeds = TerminalSpeed::new(self.law.options().fall_speed, &self.law.options().air);
+        let speed = speeds.at(self.law.effective_diameter()).unwrap_or_default();
+        let options = MediumOptions {
+            efficiency: match self.weather.rain.extinction {
+                RainExtinction::Total => ExtinctionEfficiency::Total,
+                _ => ExtinctionEfficiency::Camera,
+            },
+            velocity: (self.weather.wind.air().velocity(time_s) - DVec3::Y * speed).as_vec3(),
+            origin: stage.origin,
+            pane: pane_plane(&self.weather, stage)?,
+        };
+        Ok(RainMedium::new(&self.law, &visible.resolved, masks, &options)?)
     }
 
     /// The rate, mm/h, of the drops about the eye (in closed form) or in the simulated volume, with those that something

@@ -4,7 +4,7 @@ use downpour_drop::DropShape;
 use downpour_render::camera::Viewpoint;
 use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
 use downpour_render::picture::{Picture, PictureOptions, render_picture};
-use downpour_render::rain::{DropMasks, Rain, RainOptions, RefractionForm, StreakTable, Veil};
+use downpour_render::rain::{DropMasks, RainOptions, RefractionForm};
 use downpour_render::sky_light::SkyLight;
 use downpour_sim::field::{DropKind, FallingDrop};
 use glam::{Affine3A, DVec3, Vec3};
@@ -183,47 +183,4 @@ fn the_order_of_drops_does_not_matter() -> Outcome {
     drops.reverse();
     assert_eq!(picture(&scene, &drops, RefractionForm::Direction)?.rain, first.rain);
     Ok(())
-}
-
-/// What is not drawn takes out of a wall what the extinction of the rain says, and the rain layer brings back the mean of
-/// what is about: in uniform surroundings nothing is to be seen of it.
-#[test]
-fn drops_that_are_not_drawn_are_a_veil() {
-    use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
-    let law = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 100.0).unwrap();
-    for (drawn_m, distance) in [(0.0, 20.0), (0.0, 900.0), (5.0, 20.0), (50.0, 300.0)] {
-        let veil = Veil::new(&law, |_| drawn_m).unwrap();
-        let options = RainOptions { veil, capture_size: 64, ..RainOptions::default() };
-        let scene = sky(|_| [1.0; 3]);
-        let view = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.5 };
-        let frame = view.frame(&scene, [16, 8], 1, 0, 1).unwrap();
-        let masks = DropMasks::trace(1.333).unwrap();
-        let rain = Rain::new(&frame, DVec3::ZERO, &[], &masks, &options);
-        let clean = vec![[1.0, 1.0, 1.0, distance as f32]; 16 * 8];
-        let layer = rain.layer(&clean, &masks, &rain.capture.trace(&scene), &StreakTable::default(), &[]);
-        let expected = downpour_math::ops::f64::exp(-law.extinction() * (distance - drawn_m));
-        for pixel in &layer {
-            assert!(
-                (f64::from(pixel[3]) - expected).abs() < 5.0e-3,
-                "{drawn_m} {distance}: {pixel:?}, {expected}"
-            );
-            assert!((pixel[0] + pixel[3] - 1.0).abs() < 1.0e-3, "{pixel:?}");
-        }
-    }
-    // A sky is as it is seen through the rain.
-    let veil = Veil::new(&law, |_| 0.0).unwrap();
-    let frame = RainOptions { veil, capture_size: 64, ..RainOptions::default() };
-    let scene = sky(|_| [1.0; 3]);
-    let view = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.5 };
-    let picture = view.frame(&scene, [16, 8], 1, 0, 1).unwrap();
-    let masks = DropMasks::trace(1.333).unwrap();
-    let rain = Rain::new(&picture, DVec3::ZERO, &[], &masks, &frame);
-    let sky = rain.layer(
-        &[[1.0, 1.0, 1.0, 1.0e30]; 16 * 8],
-        &masks,
-        &rain.capture.trace(&scene),
-        &StreakTable::default(),
-        &[],
-    );
-    assert!(sky.iter().all(|pixel| *pixel == [0.0, 0.0, 0.0, 1.0]));
 }

@@ -142,7 +142,8 @@ fn sphere_shows(scattering: f64, radius: f64) -> f64 {
             };
             // The part of the ring of that angle that lies in the lamp's disc.
             let (s, c) = (ops::sin(angle) * ops::sin(scattering), ops::cos(angle) * ops::cos(scattering));
-            let edge = if s.abs() < 1.0e-12 { -2.0 * f64::from(c >= lamp) + 1.0 } else { (lamp - c) / s.abs() };
+            let edge =
+                if s.abs() < 1.0e-12 { -2.0 * f64::from(c >= lamp) + 1.0 } else { (lamp - c) / s.abs() };
             let within = ops::acos(edge.clamp(-1.0, 1.0)) / PI;
             sum += 2.0 * b / f64::from(steps) * share * within;
         }

@@ -37,7 +37,7 @@ pub use lamps::Lamp;
 pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
 pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleShape};
-pub use rain::{Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume};
+pub use rain::{Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainExtinction, RainVolume};
 pub use sky::{Sky, SkySource, SunSource};
 pub use streaks::{StreakLook, Streaks};
 pub use wind::WindBox;

@@ -1,6 +1,7 @@
 //! `wgsl/render/{reduce,drops*,streak*}.wgsl`: drops before a scene. Twins: `downpour_render::rain`.
 
 use super::drop_light::DROP_GLINT;
+use super::medium::MEDIUM;
 use crate::common::PACKING;
 use crate::drop::oscillation::OSCILLATION;
 use crate::drop::shape::SHAPE;
@@ -28,13 +29,8 @@ pub const MODULES: &[&Module] = &[
 ];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[
-    &REDUCE_KERNEL,
-    &STREAK_TABLE_KERNEL,
-    &STREAK_RAYS_KERNEL,
-    &STREAK_LIGHT_KERNEL,
-    &DROPS_KERNEL,
-];
+pub const KERNELS: &[&Kernel] =
+    &[&REDUCE_KERNEL, &STREAK_TABLE_KERNEL, &STREAK_RAYS_KERNEL, &STREAK_LIGHT_KERNEL, &DROPS_KERNEL];
 
 shared_constants! {
     /// Numbers of the masks in a buffer.
@@ -53,14 +49,6 @@ shared_constants! {
         DROPS_SHIFT: u32 = 1;
         /// Below this transmittance the rest of the drops is not seen.
         DROPS_OPAQUE: f32 = 1.0e-3;
-        /// Quarters of the table of optical depths of drops that are not drawn.
-        DROPS_VEIL_QUARTERS: u32 = 8;
-        /// Distance of the table's first entry, m.
-        DROPS_VEIL_NEAR: f32 = 0.25;
-        /// Width of what such drops show of their surroundings, radians.
-        DROPS_VEIL_SPREAD: f32 = 1.0;
-        /// Beyond this distance, m, is the sky.
-        DROPS_SKY: f32 = 1.0e29;
         /// Twice the inverse of water's refractive index: the middle of a sphere bends by 2 - 2 / n per radius.
         DROPS_STRAIGHT: f32 = 1.5;
         /// A drop that does not move on the picture.
@@ -281,6 +269,7 @@ pub static DROPS: Module = Module {
         &STREAK_LOOKUP,
         &DROPS_ATLAS,
         &DROP_GLINT,
+        &MEDIUM,
     ],
 };
 

@@ -3,14 +3,14 @@
 // Law: a drop below a pixel, or out of focus, covers the pixels round its path by its area and its share of the exposure, so
 // its light does not depend on where it falls; a larger one is sampled in each pixel. What lamps add is the mean over the
 // drop.
-// Drops that are not drawn are a veil: they take out as much of what is behind them as their cross-sections say, and show
-// the mean of what is about the ray instead. The sky is taken to be as it is seen through them.
+// Unresolved drops are a medium between them (medium.wgsl): it shows the mean radiance of a drop, and the light of lamps.
 // Twin: downpour_render::rain::drops.
 
 @group(0) @binding(3) var<storage, read> drops_list: array<DropsDrop>;
 // First the places where the tiles' lists begin (one more than there are tiles), then the lists.
 @group(0) @binding(4) var<storage, read> drops_tiles: array<u32>;
 @group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
+// At first the medium (medium_filter.wgsl): light of lamps, and mean distance and optical depth as halves. Then the rain.
 @group(0) @binding(6) var<storage, read_write> drops_layer: array<vec4f>;
 // What lamps add to each drop of the list: the mean over it, and its brightest glints.
 @group(0) @binding(8) var<storage, read> drops_light: array<vec4f>;
@@ -245,50 +245,63 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     return shown * clamp(before, 0.0, 1.0);
 }
 
-// The optical depth of the drops that are not drawn, up to a distance.
-fn drops_veil(distance: f32) -> f32 {
-    let last = 4u * DROPS_VEIL_QUARTERS - 1u;
-    let position = 3.0 * log2(max(distance / DROPS_VEIL_NEAR, 1.0));
-    let entry = min(u32(position), last);
-    let next = min(entry + 1u, last);
-    let here = drops_frame.veil[entry / 4u][entry % 4u];
-    let there = drops_frame.veil[next / 4u][next % 4u];
-    let farthest = DROPS_VEIL_NEAR * exp2(f32(last) / 3.0);
-    return here + (there - here) * min(position - f32(entry), 1.0) + drops_frame.veil_beyond * max(distance - farthest, 0.0);
-}
-
-// What drops that are not drawn show before a pixel, and what is left of what is behind them.
-fn drops_veiled(x: u32, y: u32, distance: f32) -> vec4f {
-    if distance >= DROPS_SKY {
-        return vec4f(0.0, 0.0, 0.0, 1.0);
+// Mean radiance of an unresolved drop before a pixel.
+fn drops_medium(x: u32, y: u32) -> vec3f {
+    if drops_frame.streak_colour == STREAK_WHITE {
+        return drops_capture_texel(drops_frame.capture_last, 0, 0);
     }
-    let left = exp(-drops_veil(distance));
-    let ray = drops_frame_ray(f32(x) + 0.5, f32(y) + 0.5);
-    var place = packing_octahedral_encode(ray) * 0.5 + 0.5;
-    if drops_frame.form == DROPS_SHIFT {
-        place = drops_shade_shifted(ray, DropsTexel(vec3f(0.0, 0.0, -1.0), 1.0, vec3f(0.0), 1.0, vec3f(0.0), 0.0, 0.0));
-    }
-    return vec4f(drops_capture_at(place, DROPS_VEIL_SPREAD) * (1.0 - left), left);
+    let size = vec2f(f32(drops_frame.width), f32(drops_frame.height));
+    return streak_lookup_mean(medium_frame.shape, vec2f(f32(x) + 0.5, f32(y) + 0.5) / size);
 }
 
 // The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of their nearest
-// points.
+// points, with the medium between them.
 fn drops_over(x: u32, y: u32) -> vec4f {
     let tile = (y / DROPS_TILE) * drops_frame.tiles_across + x / DROPS_TILE;
-    let scene = drops_clean[y * drops_frame.width + x].w;
+    let index = y * drops_frame.width + x;
+    let scene = drops_clean[index].w;
+    let lamps = drops_layer[index];
+    // Mean distance of the medium's light of lamps, and its optical depth.
+    let pair = unpack2x16float(bitcast<u32>(lamps.w));
+    let direction = drops_mask_unit(drops_frame_ray(f32(x) + 0.5, f32(y) + 0.5));
+    let span = medium_span(direction);
+    let end = select(scene, MEDIUM_SKY_REACH, scene >= MEDIUM_SKY);
+    // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
+    let thinned = pair.y / max(medium_depth(end, span, 1.0), 1.0e-12);
+    var shown_medium = vec3f(0.0);
+    if pair.y > 0.0 {
+        shown_medium = drops_medium(x, y);
+    }
     var radiance = vec3f(0.0);
     var transmittance = 1.0;
+    var behind = true;
+    // What the medium lets through up to here.
+    var left = 1.0;
     for (var k = drops_tiles[tile]; k < drops_tiles[tile + 1u]; k += 1u) {
-        let index = drops_tiles[k];
-        if drops_list[index].nearest >= scene || transmittance < DROPS_OPAQUE {
+        let drop = drops_tiles[k];
+        if drops_list[drop].nearest >= scene || transmittance < DROPS_OPAQUE {
             break;
         }
-        let shown = drops_pixel(index, x, y, scene);
-        radiance += shown.rgb * transmittance;
+        let shown = drops_pixel(drop, x, y, scene);
+        if shown.w <= 0.0 {
+            continue;
+        }
+        let distance = min(drops_list[drop].distance, end);
+        if behind && distance > pair.x {
+            radiance += lamps.rgb * transmittance;
+            behind = false;
+        }
+        let here = min(exp(-medium_depth(distance, span, 1.0) * thinned), left);
+        radiance += transmittance * (shown_medium * (left - here) + shown.rgb * here);
         transmittance *= 1.0 - shown.w;
+        left = here;
     }
-    let veiled = drops_veiled(x, y, scene);
-    return vec4f(radiance + veiled.rgb * transmittance, veiled.w * transmittance);
+    if behind {
+        radiance += lamps.rgb * transmittance;
+    }
+    let last = min(exp(-pair.y), left);
+    radiance += shown_medium * (transmittance * (left - last));
+    return vec4f(radiance, transmittance * last);
 }
 
 @compute @workgroup_size(8, 8, 1)

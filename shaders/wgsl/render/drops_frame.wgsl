@@ -1,4 +1,4 @@
-// The picture as the drops' kernels know it: its camera, its capture, its masks, and the drops that are not drawn.
+// The picture as the drops' kernels know it: its camera, its capture, its masks.
 // Twin: downpour_render::rain::drops_frame.
 
 struct DropsFrame {
@@ -25,11 +25,7 @@ struct DropsFrame {
     mask_size: u32,
     // Tiles across the picture.
     tiles_across: u32,
-    // What the optical depth grows by beyond the table, 1/m.
-    veil_beyond: f32,
-    // Optical depths of the drops that are too small or too far to be drawn: at DROPS_VEIL_NEAR metres, then a factor of
-    // 2^(1/3) farther each.
-    veil: array<vec4f, DROPS_VEIL_QUARTERS>,
+    unused: u32,
     // Samples along the chord of a streak that is averaged by a loop.
     streak_samples: u32,
     // The colour of streaks: STREAK_REFRACTED, or STREAK_WHITE.

@@ -10,8 +10,8 @@
 var<workgroup> streak_table_parts: array<vec4f, STREAK_MEAN_GROUP>;
 
 // One of the points of a class's mean: radiance, and 1 if it meets the drop, else 0.
-fn streak_table_point(class: u32, towards: vec3f, point: u32) -> vec4f {
-    var path = streak_classes[class];
+fn streak_table_point(kind: u32, towards: vec3f, point: u32) -> vec4f {
+    var path = streak_classes[kind];
     let number = f32(point) + 0.5;
     let phases = fract(number * vec3f(STREAK_MEAN_SECOND, STREAK_MEAN_THIRD, STREAK_MEAN_FOURTH));
     let azimuth = STREAK_TURN * phases.z;
@@ -62,7 +62,7 @@ fn streak_table_point(class: u32, towards: vec3f, point: u32) -> vec4f {
 @compute @workgroup_size(64, 1, 1)
 fn main_streak_table(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) index: u32) {
     let ray = group.x;
-    let class = group.y;
+    let kind = group.y;
     let last = f32(STREAK_RAYS - 1u);
     let column = f32(ray % STREAK_RAYS) / last;
     let line = f32(ray / STREAK_RAYS) / last;
@@ -70,9 +70,9 @@ fn main_streak_table(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
         normalize(drops_frame_ray(column * f32(drops_frame.width), line * f32(drops_frame.height)));
     var sum = vec4f(0.0);
     // A class without rows is not wanted.
-    let points = select(0u, STREAK_MEAN_POINTS, streak_classes[class].rows > 0u);
+    let points = select(0u, STREAK_MEAN_POINTS, streak_classes[kind].rows > 0u);
     for (var point = index; point < points; point += STREAK_MEAN_GROUP) {
-        sum += streak_table_point(class, towards, point);
+        sum += streak_table_point(kind, towards, point);
     }
     streak_table_parts[index] = sum;
     workgroupBarrier();
@@ -80,6 +80,6 @@ fn main_streak_table(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
         for (var part = 1u; part < STREAK_MEAN_GROUP; part += 1u) {
             sum += streak_table_parts[part];
         }
-        streak_made[class * STREAK_RAYS * STREAK_RAYS + ray] = vec4f(sum.rgb / max(sum.w, 1.0), 0.0);
+        streak_made[kind * STREAK_RAYS * STREAK_RAYS + ray] = vec4f(sum.rgb / max(sum.w, 1.0), 0.0);
     }
 }

@@ -7,8 +7,9 @@ use downpour_mask::silhouette::{
     mask_silhouette_area, mask_silhouette_cut, mask_silhouette_distance, mask_silhouette_estimate,
 };
 use downpour_mask::trace::{
-    Exit, TracedDrop, mask_trace_curvature, mask_trace_exit, mask_trace_meet, mask_trace_normal, mask_trace_plane_turn, mask_trace_reflectance,
-    mask_trace_spheroid, mask_trace_step, mask_trace_surface, mask_trace_through,
+    Exit, TracedDrop, mask_trace_curvature, mask_trace_exit, mask_trace_meet, mask_trace_normal,
+    mask_trace_plane_turn, mask_trace_reflectance, mask_trace_spheroid, mask_trace_step, mask_trace_surface,
+    mask_trace_through,
 };
 use downpour_mask::{ClosedMesh, Mask, MaskOptions, MaskTexel, View, trace_drop_scalar, trace_model};
 use downpour_math::rng::rng_unit;

@@ -8,23 +8,26 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::{RainPipeline, ScenePipeline};
 use downpour_render::rain::drops_mask::drops_mask_right;
-use downpour_render::rain::light::DropLightOptions;
-use downpour_render::rain::streak_lookup::streak_numbers;
+use downpour_render::rain::light::{DropLightForm, DropLightOptions};
+use downpour_render::rain::streak_place::{streak_place_index, streak_place_position};
 use downpour_render::rain::{
-    DropMasks, Exposure, EyeMotion, Rain, RainOptions, ReduceLevel, RefractionForm, StreakColour,
-    StreakSamples, Veil, reduce_levels, reduce_texel,
+    DropMasks, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions, ReduceLevel,
+    RefractionForm, StreakColour, StreakProfiles, StreakSamples, reduce_levels, reduce_texel,
 };
 use downpour_render::scene::SceneView;
+use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
-    DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK_RAYS, STREAK_SUMS, STREAK_TABLE_KERNEL,
+    DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK_LIGHT_KERNEL, STREAK_PLACE, STREAK_RAYS,
+    STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
+use downpour_sim::resolved::{Region, Resolved};
 use glam::{DVec3, Vec3};
 
 use super::drop_light::atlas;
 use super::scene::scene;
-use crate::Domain::Unit3;
+use crate::Domain::{Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -69,17 +72,35 @@ fn run(width: u32, cpu: &[[f32; 4]], gpu: &[[f32; 4]]) -> Run {
     }
 }
 
-/// A veil that is thick within a few metres.
-fn veil() -> Veil {
+/// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside a box round the eye, small ones everywhere.
+fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 500.0).expect("a rain");
-    Veil::new(&rain, |diameter| 400.0 * diameter).expect("a veil")
+    let region = Region::Box { center: eye.as_dvec3() + DVec3::new(0.5, 0.2, -1.0), size: DVec3::splat(7.0) };
+    let resolved = Resolved {
+        near: 0.05,
+        far: 50.0,
+        pixel_angle: 0.0025,
+        least_pixels: 1.0,
+        least_diameter: 0.4e-3,
+        region,
+    };
+    let pane = Some(PanePlane { outward: Vec3::new(0.0, 0.28, -0.96), distance: 0.7 });
+    let velocity = Vec3::new(1.0, -4.0, 0.5);
+    let options = MediumOptions { velocity, pane, ..MediumOptions::default() };
+    RainMedium::new(&rain, &resolved, masks, &options).expect("a medium")
 }
 
 /// What is compared of a picture.
 #[derive(Clone, Copy)]
 enum Part {
     Capture,
-    Table,
+    Means,
+    Chords,
+    Profiles,
+    Open,
+    Medium,
+    Seen,
+    Filter,
     Drops,
 }
 
@@ -116,6 +137,23 @@ fn atlas_case(gpu: &Gpu, place: [Vec3; 2], shutter_s: f64, pick: StreakPick) -> 
     masks_case(gpu, place, options, &masks, Part::Drops)
 }
 
+/// The entries of the streak radiance table that a part is about.
+fn entries(profiles: &StreakProfiles, part: Part) -> Vec<usize> {
+    let rays = (STREAK_RAYS * STREAK_RAYS) as usize;
+    if matches!(part, Part::Means) {
+        let wanted = |k: &usize| profiles.classes[k / rays].rows > 0;
+        return (0..profiles.classes.len() * rays).filter(wanted).collect();
+    }
+    let mut all = Vec::new();
+    let ends = profiles.paths.iter().skip(1).map(|path| path.first_entry).chain([profiles.entries]);
+    for (path, end) in profiles.paths.iter().zip(ends) {
+        let [first, end] = [path.first_entry, end].map(|k| k as usize);
+        let light = first + 1 + (path.rows * path.columns) as usize;
+        all.extend(if matches!(part, Part::Chords) { first..light } else { light..end });
+    }
+    all
+}
+
 fn masks_case(
     gpu: &Gpu,
     [eye, forward]: [Vec3; 2],
@@ -126,7 +164,8 @@ fn masks_case(
     let scene = scene();
     let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
     let frame = view.frame(&scene, SIZE, 1, 1, 7).expect("a frame");
-    let options = RainOptions { capture_size: 64, capture_grid: 2, veil: veil(), ..options };
+    let medium = medium(masks, eye);
+    let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
     let rain = Rain::new(&frame, DVec3::from(eye), &drops(eye, forward), masks, &options);
     assert!(rain.list.len() > 100, "{} drops", rain.list.len());
     let clean = SceneView { data: &scene, frame: &frame }.picture();
@@ -134,8 +173,11 @@ fn masks_case(
     let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
     let uploaded = scenes.upload(&scene)?;
     let clean_buffer = gpu.storage_buffer("clean", &clean)?;
-    let lights = rain.lights(&scene, masks).expect("lamps");
-    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(masks)?, &clean_buffer, &rain, &lights)?;
+    let both =
+        [rain.lights(&scene, masks).expect("lamps"), rain.streak_lights(&scene, masks).expect("lamps")];
+    let lights = &both[0];
+    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(masks)?, &clean_buffer, &rain, &both)?;
+    let table = || rain.streak_table(masks, &capture, &both[1].light(&rain.streak_rows()));
     gpu.submit(&pass.capture())?;
     match part {
         Part::Capture => {
@@ -143,24 +185,67 @@ fn masks_case(
             let finest = 64 * 64;
             Ok(run(64, &capture.texels[..finest], &pass.surroundings()?[..finest]))
         }
-        Part::Table => {
-            gpu.submit(&pass.streaks().into_iter().collect::<Vec<_>>())?;
-            let table = rain.streak_table(masks, &capture);
-            let numbers = |words: &[[u32; 2]]| words.iter().map(|&pair| streak_numbers(pair)).collect();
-            let (cpu, gpu): (Vec<[f32; 4]>, Vec<[f32; 4]>) =
-                (numbers(&table.words), numbers(&pass.streak_table()?));
-            Ok(run(STREAK_RAYS * STREAK_SUMS, &cpu, &gpu))
+        Part::Means | Part::Chords | Part::Profiles => {
+            gpu.submit(&pass.lamps())?;
+            gpu.submit(&pass.streaks())?;
+            let wanted = entries(&rain.profiles, part);
+            let of_part = |table: &[[f32; 4]]| wanted.iter().map(|&k| table[k]).collect::<Vec<_>>();
+            Ok(run(STREAK_RAYS, &of_part(&table().entries), &of_part(&pass.streak_table()?)))
         }
         Part::Drops => {
             gpu.submit(
-                &pass.streaks().into_iter().chain(pass.lamps()).chain([pass.drops()]).collect::<Vec<_>>(),
+                &pass
+                    .lamps()
+                    .into_iter()
+                    .chain(pass.streaks())
+                    .chain(pass.medium())
+                    .chain([pass.drops()])
+                    .collect::<Vec<_>>(),
             )?;
-            let table = rain.streak_table(masks, &capture);
-            Ok(run(
-                SIZE[0],
-                &rain.layer(&clean, masks, &capture, &table, &lights.light(&rain.rows)),
-                &pass.layer()?,
-            ))
+            let medium = rain.medium_light(lights).layer(&clean);
+            let layer = rain.layer(&clean, masks, &capture, &table(), &lights.light(&rain.rows), &medium);
+            Ok(run(SIZE[0], &layer, &pass.layer()?))
+        }
+        Part::Open => {
+            gpu.submit(&pass.medium())?;
+            let medium = rain.medium_light(lights);
+            let cells = medium.found(&clean).len() - 2 * clean.len();
+            Ok(run(16, &medium.found(&clean)[..cells], &pass.medium_found()?[..cells]))
+        }
+        Part::Medium => {
+            gpu.submit(&pass.medium())?;
+            let medium = rain.medium_light(lights);
+            let pixels = medium.found(&clean).len() - 2 * clean.len();
+            let whole = |found: &[[f32; 4]]| found[pixels..].iter().step_by(2).copied().collect::<Vec<_>>();
+            Ok(run(SIZE[0], &whole(&medium.found(&clean)), &whole(&pass.medium_found()?)))
+        }
+        Part::Seen => {
+            gpu.submit(&pass.medium())?;
+            let medium = rain.medium_light(lights);
+            let pixels = medium.found(&clean).len() - 2 * clean.len();
+            // Means over blocks: which part of a ray chance draws may differ, what comes of it may not.
+            let blocks = |found: &[[f32; 4]]| {
+                let [across, down] = SIZE.map(|edge| edge as usize / 16);
+                let mut sums = vec![[0.0; 4]; across * down];
+                for (i, row) in found[pixels..].iter().skip(1).step_by(2).enumerate() {
+                    let block = (i / SIZE[0] as usize / 16) * across + i % SIZE[0] as usize / 16;
+                    for (sum, value) in sums[block].iter_mut().zip(row) {
+                        *sum += value / 256.0;
+                    }
+                }
+                sums
+            };
+            Ok(run(SIZE[0] / 16, &blocks(&medium.found(&clean)), &blocks(&pass.medium_found()?)))
+        }
+        Part::Filter => {
+            gpu.submit(&pass.medium())?;
+            let numbers = |layer: &[[f32; 4]]| -> Vec<[f32; 4]> {
+                // The last number is two halves, which the case of what was found holds.
+                layer.iter().map(|&[r, g, b, _]| [r, g, b, 0.0]).collect()
+            };
+            // From the same findings.
+            let medium = rain.medium_light(lights).filtered(&clean, &pass.medium_found()?);
+            Ok(run(SIZE[0], &numbers(&medium), &numbers(&pass.layer()?)))
         }
     }
 }
@@ -205,26 +290,70 @@ const DRAWN: Tol = Tol::relative(
 )
 .with_outliers(1.0e-2);
 
-const TABLED: Tol = Tol::relative(
-    5.0e-3,
-    4.0e-3,
-    "the capture above; numbers are kept as halves (1 / 2048), rounded either way",
+const SCATTERED: Tol = Tol::relative(
+    3.0e-3,
+    1.0e-4,
+    "differences of a table between angles (atan2, 4096 ulp); a ray at an edge may fall on either side",
 )
 .with_outliers(1.0e-2);
+
+const SEEN: Tol = Tol::relative(
+    2.0e-2,
+    1.0e-4,
+    "the light above; the part of a ray that chance draws may be its neighbor, of which means are taken",
+)
+.with_outliers(1.0e-2);
+
+const TABLED: Tol = Tol::relative(5.0e-3, 4.0e-3, "the capture above; directions in which rays leave a drop")
+    .with_outliers(1.0e-2);
+
+const OUTLINED: Tol = Tol::relative(
+    1.0e-3,
+    1.0e-3,
+    "sines (2^-11) of angles and of phases; steps to an outline, which find it",
+);
+
+const PROFILED: Tol = Tol::relative(
+    1.0e-2,
+    5.0e-3,
+    "the outlines and the capture above; a point of a patch at the edge of a lamp's disc may fall on either side",
+)
+.with_outliers(2.0e-2);
 
 /// Where the eye is, and where it looks.
 const LEVEL: [Vec3; 2] = [Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0)];
 const ABOVE: [Vec3; 2] = [Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1)];
 
+/// A number of cells, from 1 to 24.
+fn cells(random: [u32; 4]) -> Vec<u32> {
+    vec![1 + random[0] % 24]
+}
+
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
-    vec![FunctionCase::new(
-        "drops_mask_right",
-        &DROPS_MASK,
-        &[Unit3],
-        Tol::relative(1.0e-6, 1.0e-7, "a square root and a division (2.5 ulp)"),
-        |a| drops_mask_right(Vec3::from(a.f32s())).to_array().words(),
-    )]
+    vec![
+        FunctionCase::new(
+            "drops_mask_right",
+            &DROPS_MASK,
+            &[Unit3],
+            Tol::relative(1.0e-6, 1.0e-7, "a square root and a division (2.5 ulp)"),
+            |a| drops_mask_right(Vec3::from(a.f32s())).to_array().words(),
+        ),
+        FunctionCase::new(
+            "streak_place_position",
+            &STREAK_PLACE,
+            &[Uniform(0.0, 24.0), Made(cells)],
+            Tol::absolute(6.0e-4, "sine (2^-11) of numbers up to pi / 2"),
+            |a| streak_place_position(a.f32(), a.u32()).words(),
+        ),
+        FunctionCase::new(
+            "streak_place_index",
+            &STREAK_PLACE,
+            &[Uniform(-1.5, 1.5), Made(cells)],
+            Tol::absolute(1.2e-2, "arc sine (4096 ulp) of numbers up to 1, times up to 24 / pi"),
+            |a| streak_place_index(a.f32(), a.u32()).words(),
+        ),
+    ]
 }
 
 /// The cases.
@@ -267,8 +396,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_depth",
             "drops_pixel",
             "drops_over",
-            "drops_veil",
-            "drops_veiled",
+            "drops_medium",
             "streak_time",
             "streak_nearest",
             "streak_depth",
@@ -279,21 +407,80 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "streak_within",
             "streak_mean",
             "streak_cover",
-            "streak_lookup_entry",
-            "streak_lookup_rays",
+            "streak_lookup_chord",
+            "streak_lookup_passage",
+            "streak_lookup_column",
             "streak_lookup_sum",
             "streak_lookup_until",
-            "streak_lookup_part",
+            "streak_lookup_shown",
             "streak_lookup_mean",
         ],
         tol: DRAWN,
+        run,
+    };
+    let medium = |name, kernel, run| KernelCase {
+        name,
+        kernel,
+        covers: &[
+            "medium_outline",
+            "medium_node",
+            "medium_within",
+            "medium_slab",
+            "medium_roots",
+            "medium_both",
+            "medium_region",
+            "medium_begin",
+            "medium_span",
+            "medium_path",
+            "medium_depth",
+            "medium_open_end",
+            "medium_open_slice",
+            "medium_open_ray",
+            "medium_open_column",
+            "medium_open_cell",
+            "medium_open_at",
+            "medium_light_phase",
+            "medium_light_span",
+            "medium_light_add",
+            "medium_light_lamp",
+            "medium_light_pixel",
+            "medium_filter_weight",
+            "medium_filter_pixel",
+        ],
+        tol: SCATTERED,
+        run,
+    };
+    let profiles = |name, run| KernelCase {
+        name,
+        kernel: &STREAK_LIGHT_KERNEL,
+        covers: &[
+            "mask_wobble_light",
+            "mask_wobble_meet",
+            "streak_path_back",
+            "streak_rays_ray",
+            "streak_light_change",
+            "streak_light_column",
+            "streak_light_direction",
+            "streak_light_exit",
+            "streak_light_facing",
+            "streak_light_mixed",
+            "streak_light_patch",
+            "streak_light_size",
+            "streak_light_spot",
+            "streak_light_view",
+            "drop_light_keep_lamp",
+            "drop_light_reach",
+            "drop_light_whole",
+            "drops_capture_shifted",
+        ],
+        tol: PROFILED,
         run,
     };
     vec![
         KernelCase {
             name: "main_trace: a capture with a sun and lamps",
             kernel: &TRACE_KERNEL,
-            covers: &["capture_direction", "capture_suns"],
+            covers: &["capture_direction", "capture_sky", "capture_suns"],
             tol: CAPTURED,
             run: |gpu| {
                 let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
@@ -308,6 +495,27 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             tol: Tol::relative(1.0e-6, 0.0, "the mean of four: three sums, each rounded once"),
             run: reduce_case,
         },
+        medium("main_medium_open: a grid", &MEDIUM_OPEN_KERNEL, |gpu| {
+            rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Open)
+        }),
+        medium("main_medium_light: lamps and sun", &MEDIUM_LIGHT_KERNEL, |gpu| {
+            rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Medium)
+        }),
+        medium("main_medium_light: from above", &MEDIUM_LIGHT_KERNEL, |gpu| {
+            rain_case(gpu, ABOVE, RefractionForm::Direction, Exposure::default(), Part::Medium)
+        }),
+        KernelCase {
+            tol: SEEN,
+            ..medium("main_medium_light: shadows", &MEDIUM_LIGHT_KERNEL, |gpu| {
+                rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Seen)
+            })
+        },
+        KernelCase {
+            tol: Tol::relative(1.0e-4, 1.0e-6, "two sums of 49 numbers, and a division (2.5 ulp)"),
+            ..medium("main_medium_filter: lamps and sun", &MEDIUM_FILTER_KERNEL, |gpu| {
+                rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Filter)
+            })
+        },
         drops("main_drops: level", |gpu| {
             let (eye, forward) = (Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0));
             rain_case(gpu, [eye, forward], RefractionForm::Direction, Exposure::default(), Part::Drops)
@@ -321,21 +529,50 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             rain_case(gpu, [eye, forward], RefractionForm::Rousseau2006, Exposure::default(), Part::Drops)
         }),
         KernelCase {
-            name: "main_streak_table: all shapes",
+            name: "main_streak_table: all classes",
             kernel: &STREAK_TABLE_KERNEL,
-            covers: &[
-                "streak_table_elevation",
-                "streak_table_oval",
-                "streak_table_direction",
-                "streak_table_write",
-                "streak_table_part",
-            ],
+            covers: &["streak_table_point", "drops_capture_about"],
             tol: TABLED,
             run: |gpu| {
                 let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
-                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Table)
+                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Means)
             },
         },
+        KernelCase {
+            name: "main_streak_rays: outlines and chords",
+            kernel: &STREAK_RAYS_KERNEL,
+            covers: &[
+                "streak_path_axes",
+                "streak_path_body",
+                "streak_path_displacement",
+                "streak_path_instant",
+                "streak_path_line",
+                "streak_path_turned",
+                "streak_rays_chord",
+                "streak_rays_outline",
+                "streak_rays_width",
+                "mask_wobble_nearest",
+                "mask_wobble_spheroid",
+                "mask_wobble_surface",
+            ],
+            tol: OUTLINED,
+            run: |gpu| {
+                let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
+                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Chords)
+            },
+        },
+        profiles("main_streak_light: profiles", |gpu| {
+            let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
+            rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Profiles)
+        }),
+        profiles("main_streak_light: profiles, Rousseau 2006", |gpu| {
+            let exposure = exposure(1.0 / 250.0, StreakSamples::Table);
+            let light = DropLightOptions { form: DropLightForm::Rousseau2006, glints: 4 };
+            let form = RefractionForm::Rousseau2006;
+            let options = RainOptions { form, exposure, light, ..RainOptions::default() };
+            let masks = DropMasks::trace(1.333).expect("masks");
+            masks_case(gpu, ABOVE, options, &masks, Part::Profiles)
+        }),
         drops("main_drops: streaks by the table", |gpu| {
             let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
             rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Drops)

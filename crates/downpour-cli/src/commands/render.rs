@@ -25,7 +25,7 @@ use clap::{Args, ValueEnum};
 use downpour::render::file::{write_exr, write_exr_layers, write_png};
 use downpour::render::picture::{Picture, PictureOptions};
 use downpour::render::rain::light::DropLightOptions;
-use downpour::render::rain::{Exposure, RainOptions, RefractionForm, Veil};
+use downpour::render::rain::{Exposure, RainMedium, RainOptions, RefractionForm};
 use downpour::render::stage::Stage;
 use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
@@ -156,7 +156,7 @@ impl RenderArguments {
         let stage = &*pane.hang(stage, self.input.time)?;
         // The files have become buffers.
         drop(input.loaded);
-        let options = self.options(stage, &input.weather, self.input.time, shower.veil);
+        let options = self.options(stage, &input.weather, self.input.time, shower.medium);
         let say = |text: &str| self.say(text);
         let (picture, computer) = with_painter(&self.backend, interrupt, say, |painter| {
             let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
@@ -166,12 +166,17 @@ impl RenderArguments {
         })?;
         let frame_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         let drawn = picture.drawn.len();
-        self.say(&format!("rain: {} mm/h, {drawn} drops drawn", rain.rate_mm_h));
+        let unresolved = (100.0 * shower.medium.unresolved_fraction()).round();
+        self.say(&format!(
+            "rain: {} mm/h, {drawn} drops drawn; {unresolved} % of its cross-section to 50 m is unresolved",
+            rain.rate_mm_h
+        ));
         let told = Told {
             computer: &computer,
             rain: &shower.visible,
             asked_rate_mm_h: rain.rate_mm_h,
             measured_rate_mm_h: shower.measured_rate_mm_h,
+            medium: &shower.medium,
             time_s: self.input.time,
             seed: rain.seed,
             triangles: stage.triangles,
@@ -209,7 +214,7 @@ impl RenderArguments {
         }
     }
 
-    fn options(&self, stage: &Stage, weather: &Weather, time_s: f64, veil: Veil) -> PictureOptions {
+    fn options(&self, stage: &Stage, weather: &Weather, time_s: f64, medium: RainMedium) -> PictureOptions {
         let usual = RainOptions::default();
         let exposure = Exposure::of_weather(weather, stage.motion, time_s);
         PictureOptions {
@@ -219,7 +224,7 @@ impl RenderArguments {
             seed: weather.rain.seed,
             rain: RainOptions {
                 form: self.refraction.into(),
-                veil,
+                medium,
                 exposure,
                 light: DropLightOptions::of_weather(weather),
                 ..usual

@@ -124,7 +124,9 @@ impl SpecimenArguments {
             ..SpecimenOptions::default()
         };
         let options = match self.samples {
-            SpecimenSamples::Number(instants) if options.is_streak() => SpecimenOptions { instants, ..options },
+            SpecimenSamples::Number(instants) if options.is_streak() => {
+                SpecimenOptions { instants, ..options }
+            }
             SpecimenSamples::Number(samples) => SpecimenOptions { samples, ..options },
             SpecimenSamples::Table => options,
         };

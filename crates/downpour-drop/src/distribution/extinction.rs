@@ -13,8 +13,27 @@ use super::RATE_RANGE_MM_H;
 use crate::DropError;
 use crate::error::in_range;
 
-/// Q of a drop much larger than the wavelength.
-pub const EXTINCTION_EFFICIENCY: f64 = 2.0;
+/// Light that a drop much larger than the wavelength takes out of a beam, over the light that falls on its cross-section.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ExtinctionEfficiency {
+    /// 1: light that is refracted and reflected. A camera keeps the diffracted light, which goes on within a few
+    /// hundredths of a degree (1.22 wavelengths over the diameter: 0.04 degrees for 1 mm), below a pixel.
+    #[default]
+    Camera,
+    /// 2: diffracted light as well, as an instrument with a narrow beam and a far receiver loses it.
+    Total,
+}
+
+impl ExtinctionEfficiency {
+    /// The factor, often called Q.
+    #[must_use]
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Camera => 1.0,
+            Self::Total => 2.0,
+        }
+    }
+}
 
 /// -ln 0.02: visibility times extinction.
 pub const KOSCHMIEDER: f64 = 3.912;

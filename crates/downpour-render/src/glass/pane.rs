@@ -17,6 +17,7 @@ use super::frame::{GlassPicture, GlassPictureFrame, levels, samples};
 use super::light::{GlassPictureLight, sources};
 use super::shade::{PaneShade, PaneShadows};
 use crate::data::RenderFrame;
+use crate::rain::PanePlane;
 use crate::stage::Stage;
 
 /// Largest width and height of a pane whose size is that of the picture, m.
@@ -219,6 +220,17 @@ impl WetPane {
             lights: if lights.is_empty() { vec![GlassPictureLight::default()] } else { lights },
         })
     }
+}
+
+/// The plane of a weather's pane before the eye of a stage, if there is one.
+///
+/// # Errors
+/// [`PaneError::EdgeOn`] if the eye looks along it, or what is wrong with the eye.
+pub fn pane_plane(weather: &Weather, stage: &Stage) -> Result<Option<PanePlane>, PaneError> {
+    let Some(pane) = &weather.glass else { return Ok(None) };
+    let place = Place::new(pane, stage)?;
+    let distance = place.middle.dot(place.outward) as f32;
+    Ok(Some(PanePlane { outward: place.outward.as_vec3(), distance }))
 }
 
 /// Where a pane is, relative to the eye.

@@ -89,6 +89,13 @@ impl PictureRenderer {
             self.gpu.submit(&pass.streaks())?;
             self.gpu.wait()
         })?;
+        timed(&mut passes, "unresolved", || {
+            for dispatch in pass.medium() {
+                self.gpu.submit(&[dispatch])?;
+                self.gpu.wait()?;
+            }
+            Ok::<_, GpuError>(())
+        })?;
         timed(&mut passes, "drops", || {
             self.gpu.submit(&[pass.drops()])?;
             self.gpu.wait()

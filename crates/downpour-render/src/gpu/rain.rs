@@ -6,6 +6,7 @@ use downpour_shaders::render::rain::{
 };
 
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
+use super::medium::{MediumPass, MediumPipeline};
 use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::rain::light::DropLights;
 use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, StreakPath, StreakRay, reduce_levels};
@@ -20,6 +21,7 @@ pub struct RainPipeline {
     rays: ComputeKernel,
     light: ComputeKernel,
     lamps: DropLightPipeline,
+    medium: MediumPipeline,
     drops: ComputeKernel,
 }
 
@@ -41,6 +43,7 @@ pub struct RainPass<'a> {
     means: Option<(wgpu::BindGroup, u32)>,
     profiles: Option<Profiles>,
     lamps: [DropLightPass<'a>; 2],
+    medium: MediumPass<'a>,
     drops: wgpu::BindGroup,
     texels: wgpu::Buffer,
     table: wgpu::Buffer,
@@ -75,6 +78,7 @@ impl RainPipeline {
             rays: kernel(&STREAK_RAYS_KERNEL)?,
             light: kernel(&STREAK_LIGHT_KERNEL)?,
             lamps: DropLightPipeline::new(gpu)?,
+            medium: MediumPipeline::new(gpu)?,
             drops: kernel(&DROPS_KERNEL)?,
         })
     }
@@ -90,8 +94,8 @@ impl RainPipeline {
         })
     }
 
-    /// Makes ready to draw drops over a scene. `clean` is the scene's picture with its distances; `lights` are the lamps on the
-    /// drops, and those on the profiles of streaks.
+    /// Makes ready to draw drops over a scene. `clean` is the scene's picture with its distances; `lights` are the lamps of
+    /// `rain` on the drops, and those on the profiles of streaks.
     ///
     /// # Errors
     /// As [`RainPipeline::upload`].
@@ -155,8 +159,19 @@ impl RainPipeline {
                 light: (lit, groups(made.light_jobs.len())),
             });
         }
-        let bindings =
-            [&frame, &texels, &masks.masks, &list, &tiles, clean, &layer, &table, lamps[0].light()];
+        let medium = self.medium.prepare(scene, &rain.medium_light(&lights[0]), clean, &layer)?;
+        let bindings = [
+            &frame,
+            &texels,
+            &masks.masks,
+            &list,
+            &tiles,
+            clean,
+            &layer,
+            &table,
+            lamps[0].light(),
+            medium.frame(),
+        ];
         let drops = self.drops.bind(gpu, &bindings)?;
         let capture = (capture, size.div_ceil(8));
         Ok(RainPass {
@@ -168,6 +183,7 @@ impl RainPipeline {
             means,
             profiles,
             lamps,
+            medium,
             drops,
             texels,
             table,
@@ -206,6 +222,20 @@ impl RainPass<'_> {
             all.push(pipeline.light.dispatch(&light.0, light.1));
         }
         all
+    }
+
+    /// The drops that are not drawn one by one, in this order; before [`RainPass::drops`].
+    #[must_use]
+    pub fn medium(&self) -> [Dispatch<'_>; 3] {
+        self.medium.dispatches()
+    }
+
+    /// Reads what was found of the drops that are not drawn, as [`MediumLight::found`].
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn medium_found(&self) -> Result<Vec<[f32; 4]>, GpuError> {
+        self.medium.found()
     }
 
     /// The drops.

@@ -5,8 +5,8 @@
 
 use downpour_math::packing::{packing_octahedral_decode, packing_octahedral_encode};
 use downpour_shaders::render::scene::{
-    CAPTURE_AREA_OVER_PI, CAPTURE_SKY, SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_OCTAHEDRAL,
-    SCENE_PERSPECTIVE,
+    CAPTURE_AREA_OVER_PI, CAPTURE_SKY, SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS,
+    SCENE_OCTAHEDRAL, SCENE_PERSPECTIVE,
 };
 use glam::Vec3;
 use rayon::prelude::*;

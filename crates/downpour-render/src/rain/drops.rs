@@ -2,41 +2,27 @@
 //! method is described.
 
 use downpour_math::ops;
-use downpour_math::packing::packing_octahedral_encode;
+use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
-    DROPS_ATLAS_TAPS, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SHIFT, DROPS_SKY, DROPS_SMALL_GRID,
-    DROPS_STILL, DROPS_TABLE, DROPS_TILE, DROPS_VEIL_NEAR, DROPS_VEIL_QUARTERS, DROPS_VEIL_SPREAD,
-    STREAK_FINE, STREAK_LATTICE, STREAK_WHITE,
+    DROPS_ATLAS_TAPS, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL, DROPS_TABLE,
+    DROPS_TILE, STREAK_FINE, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::capture::Capture;
 use super::drops_atlas::{DropsAtlas, DropsAtlasStreak, drops_atlas_streak};
-use super::drops_frame::{DropsFrame, DropsView};
-use super::drops_mask::{DropsTexel, drops_mask_right, drops_mask_unit};
+use super::drops_frame::DropsView;
+use super::drops_mask::{drops_mask_right, drops_mask_unit};
 use super::drops_shade::DropsShade;
 use super::glint::{drop_glint_spot, drop_glint_unpack};
+use super::medium::filter::unpack;
 use super::streak::{
     DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_nearest, streak_place,
     streak_time,
 };
 use super::streak_lookup::StreakTable;
 use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
-
-/// The optical depth of the drops that are not drawn, up to a distance in metres.
-#[must_use]
-pub fn drops_veil(frame: &DropsFrame, distance: f32) -> f32 {
-    let last = 4 * DROPS_VEIL_QUARTERS - 1;
-    let position = 3.0 * ops::log2((distance / DROPS_VEIL_NEAR).max(1.0));
-    let entry = (position as u32).min(last);
-    let next = (entry + 1).min(last);
-    let at = |k: u32| frame.veil[(k / 4) as usize][(k % 4) as usize];
-    let farthest = DROPS_VEIL_NEAR * ops::exp2(last as f32 / 3.0);
-    at(entry)
-        + (at(next) - at(entry)) * (position - entry as f32).min(1.0)
-        + frame.veil_beyond * (distance - farthest).max(0.0)
-}
 
 /// The place of a ray on the plane at distance 1 through a drop's middle.
 #[must_use]
@@ -63,6 +49,7 @@ struct Buffers<'a> {
     table: &'a StreakTable,
     light: &'a [[f32; 4]],
     clean: &'a [[f32; 4]],
+    medium: &'a [[f32; 4]],
 }
 
 impl Buffers<'_> {
@@ -299,41 +286,64 @@ impl Buffers<'_> {
         shown * before.clamp(0.0, 1.0)
     }
 
-    /// What drops that are not drawn show before a pixel, and what is left of what is behind them.
-    fn drops_veiled(&self, x: u32, y: u32, distance: f32) -> Vec4 {
-        if distance >= DROPS_SKY {
-            return Vec4::W;
-        }
+    /// Mean radiance of an unresolved drop before a pixel.
+    fn drops_medium(&self, x: u32, y: u32) -> Vec3 {
         let frame = self.view.frame;
-        let left = ops::exp(-drops_veil(frame, distance));
-        let ray = self.view.drops_frame_ray(x as f32 + 0.5, y as f32 + 0.5);
-        let place = if frame.form == DROPS_SHIFT {
-            let straight = DropsTexel { direction: Vec3::NEG_Z, ..DropsTexel::default() };
-            self.view.drops_shade_shifted(ray, &straight)
-        } else {
-            Vec2::from(packing_octahedral_encode(ray.to_array())) * 0.5 + 0.5
-        };
-        (self.view.drops_capture_at(place, DROPS_VEIL_SPREAD) * (1.0 - left)).extend(left)
+        if frame.streak_colour == STREAK_WHITE {
+            return self.view.drops_capture_texel(frame.capture_last, 0, 0);
+        }
+        let size = Vec2::new(frame.width as f32, frame.height as f32);
+        let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
+        self.table.streak_lookup_mean(self.rain.medium.shape, place)
     }
 
     /// The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of their nearest
-    /// points.
+    /// points, with the medium between them.
     fn drops_over(&self, x: u32, y: u32) -> Vec4 {
-        let frame = self.view.frame;
+        let (frame, medium) = (self.view.frame, &self.rain.medium);
         let tile = ((y / DROPS_TILE) * frame.tiles_across + x / DROPS_TILE) as usize;
-        let scene = self.clean[(y * frame.width + x) as usize][3];
+        let index = (y * frame.width + x) as usize;
+        let scene = self.clean[index][3];
+        let lamps = self.medium.get(index).copied().map_or(Vec4::ZERO, Vec4::from);
+        // Mean distance of the medium's light of lamps, and its optical depth.
+        let [mean, depth] = unpack(lamps.w.to_bits());
+        let lamps = lamps.truncate();
+        let direction = drops_mask_unit(self.view.drops_frame_ray(x as f32 + 0.5, y as f32 + 0.5));
+        let span = medium.medium_span(direction);
+        let end = if scene >= MEDIUM_SKY { MEDIUM_SKY_REACH } else { scene };
+        // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
+        let thinned = depth / medium.medium_depth(end, span, 1.0).max(1.0e-12);
+        let shown_medium = if depth > 0.0 { self.drops_medium(x, y) } else { Vec3::ZERO };
         let (mut radiance, mut transmittance) = (Vec3::ZERO, 1.0);
+        let mut behind = true;
+        // What the medium lets through up to here.
+        let mut left = 1.0f32;
         let tiles = &self.rain.tiles;
         for &index in &tiles[tiles[tile] as usize..tiles[tile + 1] as usize] {
-            if self.rain.list[index as usize].nearest >= scene || transmittance < DROPS_OPAQUE {
+            let drop = &self.rain.list[index as usize];
+            if drop.nearest >= scene || transmittance < DROPS_OPAQUE {
                 break;
             }
             let shown = self.drops_pixel(index, x, y, scene);
-            radiance += shown.truncate() * transmittance;
+            if shown.w <= 0.0 {
+                continue;
+            }
+            let distance = drop.distance.min(end);
+            if behind && distance > mean {
+                radiance += lamps * transmittance;
+                behind = false;
+            }
+            let here = ops::exp(-medium.medium_depth(distance, span, 1.0) * thinned).min(left);
+            radiance += transmittance * (shown_medium * (left - here) + shown.truncate() * here);
             transmittance *= 1.0 - shown.w;
+            left = here;
         }
-        let veiled = self.drops_veiled(x, y, scene);
-        (radiance + veiled.truncate() * transmittance).extend(veiled.w * transmittance)
+        if behind {
+            radiance += lamps * transmittance;
+        }
+        let last = ops::exp(-depth).min(left);
+        radiance += shown_medium * (transmittance * (left - last));
+        radiance.extend(transmittance * last)
     }
 }
 
@@ -354,7 +364,8 @@ impl Rain {
 
     /// The rain over a scene: radiance, and the transmittance of the scene behind it; rows from the top. `clean` is the
     /// scene's picture with its distances, `light` what lamps add to each drop of the list ([`DropLights::light`](super::light::DropLights::light); nothing
-    /// where it is empty).
+    /// where it is empty), `medium` the drops that are not drawn
+    /// ([`MediumLight::layer`](super::medium::MediumLight::layer); none where it is empty).
     #[must_use]
     pub fn layer(
         &self,
@@ -363,9 +374,10 @@ impl Rain {
         capture: &Capture,
         table: &StreakTable,
         light: &[[f32; 4]],
+        medium: &[[f32; 4]],
     ) -> Vec<[f32; 4]> {
         let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &capture.texels };
-        let buffers = Buffers { view, rain: self, table, light, clean };
+        let buffers = Buffers { view, rain: self, table, light, clean, medium };
         let (width, buffers) = (self.frame.width, &buffers);
         (0..self.frame.height)
             .into_par_iter()

@@ -64,10 +64,8 @@ impl DropsView<'_> {
             [frame.capture_right, frame.capture_up, frame.capture_forward].map(Vec3::from);
         let depth = ray.dot(forward).max(1.0e-3);
         let deep = (-direction.z).max(1.0e-3);
-        let shift = Vec2::new(
-            direction.x / deep / right.dot(right).sqrt(),
-            direction.y / deep / up.dot(up).sqrt(),
-        );
+        let shift =
+            Vec2::new(direction.x / deep / right.dot(right).sqrt(), direction.y / deep / up.dot(up).sqrt());
         let place = Vec2::new(ray.dot(right) / right.dot(right), ray.dot(up) / up.dot(up)) / depth + shift;
         Vec2::new(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y).clamp(Vec2::ZERO, Vec2::ONE)
     }

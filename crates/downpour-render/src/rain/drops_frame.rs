@@ -1,6 +1,5 @@
 //! The picture as the drops' kernels know it. Twin of `shaders/wgsl/render/drops_frame.wgsl`.
 
-use downpour_shaders::render::rain::DROPS_VEIL_QUARTERS;
 use glam::Vec3;
 
 use super::capture::CaptureFrame;
@@ -46,10 +45,8 @@ pub struct DropsFrame {
     pub mask_size: u32,
     /// Tiles across the picture.
     pub tiles_across: u32,
-    /// What the optical depth grows by beyond the table, 1/m.
-    pub veil_beyond: f32,
-    /// Optical depths of the drops that are not drawn ([`Veil`](super::Veil)).
-    pub veil: [[f32; 4]; DROPS_VEIL_QUARTERS as usize],
+    /// 0.
+    pub unused: u32,
     /// Samples along the chord of a streak that is averaged by a loop.
     pub streak_samples: u32,
     /// The colour of streaks.
@@ -96,8 +93,7 @@ impl DropsFrame {
             form: capture.form as u32,
             mask_size: masks.size,
             tiles_across,
-            veil_beyond: options.veil.beyond,
-            veil: options.veil.table(),
+            unused: 0,
             streak_samples,
             streak_colour: options.exposure.colour as u32,
             glints: options.light.glints,

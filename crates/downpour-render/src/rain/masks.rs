@@ -147,6 +147,11 @@ impl DropMasks {
         }
     }
 
+    /// Area that a drop covers, seen from `elevation` radians above it, over that of the disc of its diameter.
+    pub(super) fn outline(&self, diameter: f32, elevation: f32) -> f64 {
+        f64::from(self.place(diameter, elevation).area) / std::f64::consts::PI
+    }
+
     /// The shape of a drop of a diameter in metres, for the rays of its streak.
     pub(super) fn streak_shape(&self, diameter: f32) -> StreakPath {
         let last = self.shapes.len() - 1;

@@ -67,18 +67,23 @@ pub struct StreakProfiles {
 }
 
 impl StreakProfiles {
-    /// Gives each streak among `drops` its place, and its drop the way to it. `given` are the drops that they are of.
+    /// Gives each streak among `drops` its place, and its drop the way to it. `given` are the drops that they are of; of the class
+    /// `medium`, if there is one, the mean is wanted in any case.
     pub(super) fn new(
         drops: &mut [(u32, Projected)],
         given: &[FallingDrop],
         masks: &DropMasks,
         exposure: &Exposure,
+        medium: Option<u32>,
     ) -> Self {
         let mut made = Self::default();
         let is_mean = |drop: &DropsDrop| drop.kind != DROPS_STILL && drop.grid == 0;
         let is_sampled = |drop: &DropsDrop| drop.kind == DROPS_TABLE && drop.grid > 0;
-        if drops.iter().any(|(_, projected)| is_mean(&projected.drop)) {
+        if medium.is_some() || drops.iter().any(|(_, projected)| is_mean(&projected.drop)) {
             made.classes = shapes::classes(masks, exposure);
+            if let Some(class) = medium.and_then(|class| made.classes.get_mut(class as usize)) {
+                class.rows = 1;
+            }
             for (_, projected) in drops.iter().filter(|(_, projected)| is_mean(&projected.drop)) {
                 made.classes[projected.drop.shape as usize].rows = 1;
             }

@@ -1,11 +1,12 @@
 //! Lights the profiles of streaks. Twin of `shaders/wgsl/render/streak_light.wgsl`, where method and layout are described.
 
 use downpour_math::packing::{packing_octahedral_decode, packing_unpack_snorm, packing_unpack_unorm};
+use downpour_shaders::render::drop_light::DROP_GLINT_TINY;
 use downpour_shaders::render::rain::{
     DROPS_SHIFT, STREAK_EXITS, STREAK_LAMPS, STREAK_NARROWEST, STREAK_PI, STREAK_SPOT_ALONG,
-    STREAK_SPOT_FIRST, STREAK_SPOT_LATER, STREAK_SPOT_NARROW, STREAK_SPOT_REACH, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD, STREAK_SPOT_WIDTH, STREAK_SPOTS, STREAK_SUMS,
+    STREAK_SPOT_FIRST, STREAK_SPOT_LATER, STREAK_SPOT_NARROW, STREAK_SPOT_REACH, STREAK_SPOT_SECOND,
+    STREAK_SPOT_THIRD, STREAK_SPOT_WIDTH, STREAK_SPOTS, STREAK_SUMS,
 };
-use downpour_shaders::render::drop_light::DROP_GLINT_TINY;
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 

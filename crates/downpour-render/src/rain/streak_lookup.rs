@@ -123,8 +123,7 @@ impl StreakTable {
         let at = streak_place_index(place, STREAK_SUMS);
         let low = (at as u32).min(STREAK_SUMS - 1);
         let part = at - low as f32;
-        self.streak_lookup_sum(passage, low) * (1.0 - part)
-            + self.streak_lookup_sum(passage, low + 1) * part
+        self.streak_lookup_sum(passage, low) * (1.0 - part) + self.streak_lookup_sum(passage, low + 1) * part
     }
 
     /// A streak at a place of the plane: radiance times the share of the exposure in which it is covered, and this share.

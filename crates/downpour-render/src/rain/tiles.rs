@@ -7,10 +7,11 @@ use glam::{DVec3, Vec2};
 use super::capture::CaptureFrame;
 use super::drops_frame::DropsFrame;
 use super::light::{DropLightForm, DropLightOptions, DropLights, drop_light_axes, drop_light_rows};
+use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::profiles::StreakProfiles;
 use super::project::{Projected, project};
 use super::streak::DropsDrop;
-use super::{DropMasks, RainOptions};
+use super::{DropMasks, RainOptions, shapes};
 use crate::RenderError;
 use crate::data::{RenderFrame, SceneData};
 
@@ -19,6 +20,8 @@ use crate::data::{RenderFrame, SceneData};
 pub struct Rain {
     /// What the shader knows of the picture.
     pub frame: DropsFrame,
+    /// Drops that are not drawn one by one.
+    pub medium: MediumFrame,
     /// How the surroundings are captured.
     pub capture: CaptureFrame,
     /// What the streak radiance table has of the drops that move.
@@ -59,7 +62,8 @@ impl Rain {
             .collect();
         // Two drops at one distance go in the order in which they were given.
         placed.sort_by(|a, b| a.1.drop.nearest.total_cmp(&b.1.drop.nearest).then(a.0.cmp(&b.0)));
-        let profiles = StreakProfiles::new(&mut placed, drops, masks, &options.exposure);
+        let medium = options.medium.row().map(shapes::of_row);
+        let profiles = StreakProfiles::new(&mut placed, drops, masks, &options.exposure, medium);
         let across = width.div_ceil(DROPS_TILE);
         let count = (across * height.div_ceil(DROPS_TILE)) as usize;
         let touched = |shown: &Projected| tiles_of(*shown, width, height);
@@ -89,6 +93,10 @@ impl Rain {
         }
         Self {
             frame: DropsFrame::new(picture, &capture, masks, across, options),
+            medium: MediumFrame {
+                lit: lamps_of(options.light.form),
+                ..MediumFrame::new(&options.medium, eye.as_vec3(), [width, height])
+            },
             capture,
             profiles,
             list: placed.iter().map(|p| p.1.drop).collect(),
@@ -129,6 +137,12 @@ impl Rain {
     #[must_use]
     pub fn streak_rows(&self) -> Vec<[f32; 4]> {
         self.profiles.paths.iter().map(|path| self.rows[path.drop as usize]).collect()
+    }
+
+    /// The drops that are not drawn one by one, before a scene; `lights` are those of [`Rain::lights`].
+    #[must_use]
+    pub fn medium_light<'a>(&self, lights: &DropLights<'a>) -> MediumLight<'a> {
+        MediumLight::new(&self.medium, lights, self.light.form)
     }
 
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given.

@@ -6,6 +6,7 @@ use downpour_sim::SimError;
 use downpour_wind::WindError;
 
 use crate::RenderError;
+use crate::glass::PaneError;
 
 /// Why there is no rain.
 #[derive(Debug, thiserror::Error)]
@@ -32,6 +33,9 @@ pub enum ShowerError {
     /// The drops' masks.
     #[error(transparent)]
     Mask(#[from] MaskError),
+    /// The pane before the eye.
+    #[error(transparent)]
+    Pane(#[from] PaneError),
 }
 
 impl ShowerError {
@@ -43,6 +47,7 @@ impl ShowerError {
             Self::Wind(error) => error.exit_code(),
             Self::Render(error) => error.exit_code(),
             Self::Mask(error) => error.exit_code(),
+            Self::Pane(error) => error.exit_code(),
             Self::NotUniform | Self::Drop(_) => 2,
         }
     }

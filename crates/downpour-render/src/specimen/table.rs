@@ -17,8 +17,8 @@ use downpour_drop::DropShape;
 use downpour_drop::oscillation::{Amplitudes, drop_oscillation_phase};
 use downpour_math::rng::seed_words;
 use downpour_math::vector::{add, scale};
-use downpour_shaders::render::rain::{DROPS_STILL, DROPS_TABLE};
 use downpour_scene::sky::{SUN_THRESHOLD, SkyMap};
+use downpour_shaders::render::rain::{DROPS_STILL, DROPS_TABLE};
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_SKY_LEVELS};
 use downpour_sim::field::{DropKind, FallingDrop};
 use glam::{DVec3, Vec2, Vec3};
@@ -91,7 +91,7 @@ pub fn render_specimen_table(
         let lamps = streak.streak_lights()?.light(&rain.streak_rows());
         let table = rain.streak_table(masks, &capture, &lamps);
         let light = streak.lights()?.light(&rain.rows);
-        streak.show(&rain.layer(clean, masks, &capture, &table, &light), &mut image);
+        streak.show(&rain.layer(clean, masks, &capture, &table, &light, &[]), &mut image);
     }
     Ok(image)
 }

@@ -75,6 +75,18 @@ pub enum RainDropLight {
     None,
 }
 
+/// What a drop takes out of the light behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainExtinction {
+    /// What its outline covers: a camera keeps what is diffracted.
+    #[default]
+    Camera,
+    /// Twice that: diffracted light is lost as well.
+    Total,
+}
+
 /// What happens to drops that meet a surface, where they are simulated step by step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainBounce {
@@ -139,6 +151,8 @@ pub struct Rain {
     pub bounce: RainBounce,
     /// What lamps and sun do to drops.
     pub drop_light: RainDropLight,
+    /// What a drop takes out of the light behind it.
+    pub extinction: RainExtinction,
 }
 
 impl Default for Rain {
@@ -156,6 +170,7 @@ impl Default for Rain {
             drag: RainDrag::default(),
             bounce: RainBounce::default(),
             drop_light: RainDropLight::default(),
+            extinction: RainExtinction::default(),
         }
     }
 }
@@ -177,6 +192,7 @@ pub(super) struct RainTable {
     drag: Option<RainDrag>,
     bounce: Option<BounceTable>,
     drop_light: Option<RainDropLight>,
+    extinction: Option<RainExtinction>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -291,6 +307,7 @@ impl Rain {
             drag: table.drag.unwrap_or_default(),
             bounce: table.bounce.map_or(default.bounce, |bounce| bounce.checked()),
             drop_light: table.drop_light.unwrap_or_default(),
+            extinction: table.extinction.unwrap_or_default(),
         })
     }
 }

@@ -208,7 +208,7 @@ impl Clip<'_> {
         let stage = puddles.lay(self.stage(number, time_s)?, time_s)?;
         let stage = &*pane.hang(stage, time_s)?;
         let shower = showers.at(stage, time_s, self.places.stats.is_some())?;
-        let options = self.arguments.options(stage, &self.input.weather, time_s, shower.veil);
+        let options = self.arguments.options(stage, &self.input.weather, time_s, shower.medium);
         let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
         let through = pane.before(stage, &picture, &options)?;
         painter.look(&mut picture, through)?;
@@ -217,6 +217,7 @@ impl Clip<'_> {
             rain: &shower.visible,
             asked_rate_mm_h: rain.rate_mm_h,
             measured_rate_mm_h: shower.measured_rate_mm_h,
+            medium: &shower.medium,
             time_s,
             seed: rain.seed,
             triangles: stage.triangles,

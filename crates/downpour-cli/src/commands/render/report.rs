@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use downpour::render::picture::Picture;
+use downpour::render::rain::RainMedium;
 use downpour::sim::field::{FallingDrop, VisibleDrops};
 use serde_json::{Map, Value, json};
 
@@ -27,6 +28,8 @@ pub(super) struct Told<'a> {
     pub(super) asked_rate_mm_h: f64,
     /// Measured for those alone who are told of it.
     pub(super) measured_rate_mm_h: Option<f64>,
+    /// Drops that are not drawn one by one.
+    pub(super) medium: &'a RainMedium,
     pub(super) time_s: f64,
     pub(super) seed: u64,
     pub(super) triangles: usize,
@@ -50,6 +53,9 @@ pub(super) fn stats(picture: &Picture, told: &Told<'_>) -> Value {
         "drops_on_screen": picture.drops_on_screen,
         "asked_rate_mm_h": number(told.asked_rate_mm_h),
         "measured_rate_mm_h": told.measured_rate_mm_h.map(number),
+        "unresolved_rate_mm_h": number(told.medium.unresolved_rate_mm_h()),
+        "unresolved_fraction": number(told.medium.unresolved_fraction()),
+        "resolved_to_m": number(told.rain.resolved.far),
         "least_pixels": number(told.rain.resolved.least_pixels),
         "time_s": number(told.time_s),
         "seed": told.seed,

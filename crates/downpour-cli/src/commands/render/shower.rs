@@ -1,7 +1,7 @@
 //! The rain of a picture, and of all pictures of a clip, for the command.
 
 use downpour::mask::atlas::StreakAtlas;
-use downpour::render::rain::{DropMasks, Veil};
+use downpour::render::rain::{DropMasks, RainMedium};
 use downpour::render::shower::{self, Shower};
 use downpour::render::stage::Stage;
 use downpour::scene::weather::Weather;
@@ -13,7 +13,7 @@ use crate::failure::Failure;
 pub(super) struct Seen {
     pub(super) visible: VisibleDrops,
     /// The drops that are not among them.
-    pub(super) veil: Veil,
+    pub(super) medium: RainMedium,
     /// Measured for those alone who are told of it.
     pub(super) measured_rate_mm_h: Option<f64>,
 }
@@ -40,7 +40,7 @@ impl Showers {
     pub(super) fn at(&mut self, stage: &Stage, time_s: f64, measure: bool) -> Result<Seen, Failure> {
         let visible = self.shower.at(stage, time_s)?;
         let measured = || self.shower.measured_rate_mm_h(stage, time_s);
-        let veil = self.shower.veil(&visible)?;
-        Ok(Seen { visible, veil, measured_rate_mm_h: measure.then(measured).transpose()? })
+        let medium = self.shower.medium(stage, &visible, &self.masks, time_s)?;
+        Ok(Seen { visible, medium, measured_rate_mm_h: measure.then(measured).transpose()? })
     }
 }

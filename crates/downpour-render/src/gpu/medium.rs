@@ -1,0 +1,110 @@
+//! Unresolved rain on a GPU: what [`MediumLight::layer`] makes on the CPU.
+
+use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
+
+use super::scene::SceneOnGpu;
+use crate::rain::medium::MediumLight;
+
+/// The pipelines of unresolved rain: made once, used for any number of pictures.
+#[derive(Clone, Debug)]
+pub struct MediumPipeline {
+    gpu: Gpu,
+    open: ComputeKernel,
+    light: ComputeKernel,
+    filter: ComputeKernel,
+}
+
+/// The unresolved rain of a picture, ready to be worked out.
+#[derive(Debug)]
+pub struct MediumPass<'a> {
+    pipeline: &'a MediumPipeline,
+    open: (wgpu::BindGroup, u32),
+    light: wgpu::BindGroup,
+    filter: wgpu::BindGroup,
+    groups: [u32; 3],
+    frame: wgpu::Buffer,
+    found: wgpu::Buffer,
+}
+
+impl MediumPipeline {
+    /// Makes the pipelines.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
+        Ok(Self {
+            gpu: gpu.clone(),
+            open: kernel(&MEDIUM_OPEN_KERNEL)?,
+            light: kernel(&MEDIUM_LIGHT_KERNEL)?,
+            filter: kernel(&MEDIUM_FILTER_KERNEL)?,
+        })
+    }
+
+    /// Makes ready to work out the rain before a picture. `scene` is that of `medium`, `clean` its picture with its
+    /// distances, `layer` what the result goes to, a row per pixel.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`] if the picture is larger than the device takes, or what else the GPU says.
+    pub fn prepare<'a>(
+        &'a self,
+        scene: &SceneOnGpu,
+        medium: &MediumLight<'_>,
+        clean: &wgpu::Buffer,
+        layer: &wgpu::Buffer,
+    ) -> Result<MediumPass<'a>, GpuError> {
+        let gpu = &self.gpu;
+        let picture = medium.view.frame;
+        let pixels = u64::from(picture.width) * u64::from(picture.height);
+        let rows = medium.grid_rows() as u64 + 2 * pixels;
+        let found = gpu.empty_buffer("unresolved rain", rows * 16, wgpu::BufferUsages::STORAGE)?;
+        let phase = gpu.storage_buffer("phase function", &medium.phase)?;
+        let frame = gpu.uniform_buffer("medium frame", &medium.medium)?;
+        let picture_frame = gpu.uniform_buffer("frame", picture)?;
+        let [eye, nodes, triangles, corners, table, texels, ..] =
+            scene.buffers(&picture_frame, &found, &found);
+        let numbered = [(0, eye), (1, nodes), (2, triangles), (3, corners), (4, table), (5, texels)];
+        let open = self.open.bind_at(gpu, numbered.into_iter().chain([(8, &found), (9, &frame)]))?;
+        let of_light = [(6, clean), (7, &phase), (8, &found), (9, &frame)];
+        let light = self.light.bind_at(gpu, numbered.into_iter().chain(of_light))?;
+        let of_filter = [(0, eye), (1, &found), (2, clean), (3, layer), (9, &frame)];
+        let filter = self.filter.bind_at(gpu, of_filter)?;
+        let cells = medium.medium.columns * medium.medium.rows;
+        Ok(MediumPass {
+            pipeline: self,
+            open: (open, cells.div_ceil(64)),
+            light,
+            filter,
+            groups: [picture.width.div_ceil(8), picture.height.div_ceil(8), 1],
+            frame,
+            found,
+        })
+    }
+}
+
+impl MediumPass<'_> {
+    /// The dispatches, in this order.
+    #[must_use]
+    pub fn dispatches(&self) -> [Dispatch<'_>; 3] {
+        let (open, cells) = &self.open;
+        [
+            self.pipeline.open.dispatch(open, [*cells, 1, 1]),
+            self.pipeline.light.dispatch(&self.light, self.groups),
+            self.pipeline.filter.dispatch(&self.filter, self.groups),
+        ]
+    }
+
+    /// The frame of the medium on the device.
+    pub(super) fn frame(&self) -> &wgpu::Buffer {
+        &self.frame
+    }
+
+    /// Reads the grid and what was found before each pixel, as [`MediumLight::found`].
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn found(&self) -> Result<Vec<[f32; 4]>, GpuError> {
+        self.pipeline.gpu.read(&self.found)
+    }
+}

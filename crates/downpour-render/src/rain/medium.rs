@@ -1,0 +1,203 @@
+//! Unresolved rain: drops that a picture does not draw one by one, as a medium along a ray. Twin of
+//! `shaders/wgsl/render/medium.wgsl`.
+//!
+//! Drops that are too small on the picture, too far, or outside the region in which drops are simulated take out light and
+//! scatter it as drawn drops do, so that the mean of a picture does not depend on which drops it draws:
+//!
+//! - a drop takes out what its outline covers ([`ExtinctionEfficiency`]), seen from where the ray comes;
+//! - in place of what it takes out it shows the mean radiance of a drop ([`StreakTable`](super::StreakTable));
+//! - lamps and the sun are scattered by the phase function of a drop of water ([`MediumLight`]), with a ray that asks what
+//!   is hidden;
+//! - where something keeps the rain off there is no medium ([`open`]).
+//!
+//! A sky map is taken to be the sky as it is seen through the rain beyond 50 m.
+
+pub(super) mod filter;
+mod frame;
+mod light;
+mod open;
+
+use downpour_drop::DropError;
+use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
+use downpour_math::ops::f64 as ops;
+use downpour_shaders::render::medium::{MEDIUM_NEAR, MEDIUM_QUARTERS, MEDIUM_SKY_REACH};
+use downpour_sim::resolved::{Region, Resolved};
+use glam::{DVec3, Vec3};
+
+use super::DropMasks;
+pub use frame::MediumFrame;
+pub use light::MediumLight;
+pub(super) use light::lamps_of;
+
+/// Entries of the table.
+const ENTRIES: usize = 4 * MEDIUM_QUARTERS as usize;
+
+/// Bins of diameter per factor of two.
+const BINS_PER_OCTAVE: f64 = 16.0;
+
+/// A pane of glass before an eye: on the eye's side of its plane there is no rain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PanePlane {
+    /// Unit normal, away from the eye.
+    pub outward: Vec3,
+    /// Distance of the plane from the eye, m, above 0.
+    pub distance: f32,
+}
+
+impl PanePlane {
+    /// Whether a place, relative to the eye, is on the eye's side.
+    #[must_use]
+    pub fn is_before(&self, offset: Vec3) -> bool {
+        offset.dot(self.outward) < self.distance
+    }
+}
+
+/// What unresolved rain is made of beside its sizes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MediumOptions {
+    /// What a drop takes out, in its outline.
+    pub efficiency: ExtinctionEfficiency,
+    /// Mean velocity of the drops, m/s.
+    pub velocity: Vec3,
+    /// What the scene's buffers are relative to, m.
+    pub origin: DVec3,
+    /// A pane before the eye.
+    pub pane: Option<PanePlane>,
+}
+
+impl Default for MediumOptions {
+    /// A camera's efficiency, drops that fall straight down, the world's origin.
+    fn default() -> Self {
+        Self {
+            efficiency: ExtinctionEfficiency::Camera,
+            velocity: Vec3::new(0.0, -5.0, 0.0),
+            origin: DVec3::ZERO,
+            pane: None,
+        }
+    }
+}
+
+/// Unresolved rain before an eye. The default is none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RainMedium {
+    /// Optical depth of level rays, at 0.25 m, then a factor of 2^(1/3) farther each.
+    depths: [f32; ENTRIES],
+    /// Extinction of all drops for level rays, 1/m.
+    all: f32,
+    /// How much more a drop covers from straight above than from the side.
+    flatness: f32,
+    /// Unit direction from which drops come.
+    rise: Vec3,
+    /// Where drops are simulated, relative to the scene's origin.
+    region: Region,
+    /// Mean row of the masks' diameters, weighted by outline.
+    row: f32,
+    /// Rate of the sizes that are nowhere drawn, mm/h.
+    rate_mm_h: f64,
+    pane: Option<PanePlane>,
+}
+
+impl RainMedium {
+    /// All drops of a rain that a list for a picture does not hold.
+    ///
+    /// # Errors
+    /// [`DropError`] if the distribution cannot be cut into bins.
+    pub fn new(
+        rain: &DropSizeDistribution,
+        resolved: &Resolved,
+        masks: &DropMasks,
+        options: &MediumOptions,
+    ) -> Result<Self, DropError> {
+        if rain.rate_mm_h() <= 0.0 {
+            return Ok(Self::default());
+        }
+        let given = rain.options();
+        let (smallest, largest) = (given.smallest_diameter_m.max(1.0e-6), given.largest_diameter_m);
+        let count = (ops::log2(largest / smallest) * BINS_PER_OCTAVE).ceil().max(1.0) as u32;
+        let edge = |k: u32| {
+            if k == count { largest } else { smallest * ops::pow(2.0, f64::from(k) / BINS_PER_OCTAVE) }
+        };
+        let mut depths = [0.0f64; ENTRIES];
+        let (mut all, mut above, mut rate_mm_h) = (0.0, 0.0, 0.0);
+        let (mut weight, mut row) = (0.0, 0.0);
+        // A last sliver would be too thin a bin.
+        for k in (0..count).filter(|&k| edge(k + 1) - edge(k) > 1.0e-6) {
+            let part = rain.restricted_to(edge(k), edge(k + 1))?;
+            let diameter = (edge(k) * edge(k + 1)).sqrt();
+            let level = part.cross_section() * masks.outline(diameter as f32, 0.0);
+            let extinction = options.efficiency.factor() * level;
+            // Diffraction, where it is counted, is everywhere; outlines only where drops are not drawn.
+            let (near, far) = (resolved.near, resolved.range(diameter));
+            let drawn = |distance: f64| (distance.min(far) - near).max(0.0);
+            all += extinction;
+            above += options.efficiency.factor()
+                * part.cross_section()
+                * masks.outline(diameter as f32, std::f32::consts::FRAC_PI_2);
+            if far <= 0.0 {
+                rate_mm_h += part.integrated_rate_mm_h();
+            }
+            for (entry, depth) in depths.iter_mut().enumerate() {
+                let distance = distance_of(entry);
+                *depth += extinction * distance - level * drawn(distance);
+            }
+            let reach = f64::from(MEDIUM_SKY_REACH);
+            let unresolved = level * (reach - drawn(reach));
+            weight += unresolved;
+            row += unresolved * f64::from(masks.place(diameter as f32, 0.0).row[0]);
+        }
+        let from = -options.velocity;
+        Ok(Self {
+            depths: depths.map(|depth| depth as f32),
+            all: all as f32,
+            flatness: (above / all - 1.0) as f32,
+            rise: from.try_normalize().unwrap_or(Vec3::Y),
+            region: relative_to(resolved.region, options.origin),
+            row: if weight > 0.0 { (row / weight) as f32 } else { 0.0 },
+            rate_mm_h,
+            pane: options.pane,
+        })
+    }
+
+    /// Extinction of all drops, drawn or not, for level rays, 1/m.
+    #[must_use]
+    pub fn extinction(&self) -> f64 {
+        self.all.into()
+    }
+
+    /// Fraction of the extinction of a level ray of 50 m within the simulated region that is not drawn drop by drop, 0 to 1.
+    #[must_use]
+    pub fn unresolved_fraction(&self) -> f64 {
+        let reach = f64::from(MEDIUM_SKY_REACH);
+        let frame = MediumFrame::new(self, Vec3::ZERO, [1, 1]);
+        if self.all > 0.0 {
+            f64::from(frame.medium_within(reach as f32)) / (self.extinction() * reach)
+        } else {
+            0.0
+        }
+    }
+
+    /// Rate of the sizes of which no drop is drawn anywhere, mm/h.
+    #[must_use]
+    pub fn unresolved_rate_mm_h(&self) -> f64 {
+        self.rate_mm_h
+    }
+
+    /// Mean row of the masks' diameters of unresolved drops.
+    pub(super) fn row(&self) -> Option<f32> {
+        (self.all > 0.0).then_some(self.row)
+    }
+}
+
+/// Distance of an entry of the table, m.
+fn distance_of(entry: usize) -> f64 {
+    f64::from(MEDIUM_NEAR) * ops::pow(2.0, entry as f64 / 3.0)
+}
+
+fn relative_to(region: Region, origin: DVec3) -> Region {
+    match region {
+        Region::Box { center, size } => Region::Box { center: center - origin, size },
+        Region::Sphere { center, radius } => Region::Sphere { center: center - origin, radius },
+        Region::Cylinder { base, radius, height } => Region::Cylinder { base: base - origin, radius, height },
+        _ => region,
+    }
+}

@@ -1,0 +1,60 @@
+//! The light of lamps on unresolved drops, smoothed where it is shadowed. Twin of
+//! `shaders/wgsl/render/medium_filter.wgsl`, where the method is described.
+
+use downpour_shaders::render::medium::MEDIUM_LAMP_REACH;
+use downpour_shaders::render::scene::SKYLIGHT_RADIUS;
+use glam::{Vec3, Vec4};
+use half::f16;
+
+use super::light::MediumLight;
+use crate::scene::scene_share;
+
+/// Both halves of a word.
+pub(in crate::rain) fn unpack(word: u32) -> [f32; 2] {
+    [f16::from_bits(word as u16).to_f32(), f16::from_bits((word >> 16) as u16).to_f32()]
+}
+
+/// Two numbers as halves, rounded to the nearest.
+fn pack(pair: [f32; 2]) -> u32 {
+    let [low, high] = pair.map(|x| u32::from(f16::from_f32(x).to_bits()));
+    low | high << 16
+}
+
+/// How far a neighbor has a say: as far as its ray is about as long.
+fn medium_filter_weight(own: f32, other: f32) -> f32 {
+    let (reach, far) = (own.min(MEDIUM_LAMP_REACH), other.min(MEDIUM_LAMP_REACH));
+    (1.0 - (reach - far).abs() / (0.2 * reach.max(far))).max(0.0)
+}
+
+impl MediumLight<'_> {
+    /// The light before a pixel, and two halves: mean distance and optical depth.
+    pub(super) fn medium_filter_pixel(&self, clean: &[[f32; 4]], found: &[[f32; 4]], x: u32, y: u32) -> Vec4 {
+        let frame = self.view.frame;
+        let (width, first) = (frame.width, self.grid_rows());
+        let rows = |index: u32| {
+            let at = first + 2 * index as usize;
+            (Vec4::from(found[at]), Vec4::from(found[at + 1]))
+        };
+        let index = y * width + x;
+        let (own, seen) = rows(index);
+        let packed = f32::from_bits(pack([seen.w.min(6.0e4), own.w.min(6.0e4)]));
+        if scene_share(own.truncate()) <= 0.0 {
+            return Vec3::ZERO.extend(packed);
+        }
+        let (mut whole, mut lit) = (Vec3::ZERO, Vec3::ZERO);
+        let left = x.max(SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
+        let top = y.max(SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
+        for row in top..=(y + SKYLIGHT_RADIUS).min(frame.height - 1) {
+            for column in left..=(x + SKYLIGHT_RADIUS).min(width - 1) {
+                let other = row * width + column;
+                let weight = medium_filter_weight(clean[index as usize][3], clean[other as usize][3]);
+                if weight > 0.0 {
+                    let (found, seen) = rows(other);
+                    whole += found.truncate() * weight;
+                    lit += seen.truncate() * weight;
+                }
+            }
+        }
+        (own.truncate() * lit / whole.max(Vec3::splat(1.0e-30))).extend(packed)
+    }
+}

@@ -1,0 +1,300 @@
+//! Light of lamps and sun that unresolved drops scatter towards the eye. Twin of `shaders/wgsl/render/medium_light.wgsl`,
+//! where the method is described.
+
+use std::f32::consts::PI;
+
+use downpour_math::ops;
+use downpour_math::rng::rng_unit;
+use downpour_shaders::render::drop_light::DROP_LIGHT_ENTRIES;
+use downpour_shaders::render::medium::{
+    MEDIUM_ANGLES, MEDIUM_DARK, MEDIUM_FAR, MEDIUM_LAMP_REACH, MEDIUM_LAMPS, MEDIUM_LATTICE, MEDIUM_NEAR,
+    MEDIUM_PARTS, MEDIUM_SKY, MEDIUM_SKY_REACH, MEDIUM_SLICES, MEDIUM_SPOTS, MEDIUM_TURN,
+};
+use downpour_shaders::render::scene::{SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS};
+use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::MediumFrame;
+use super::frame::{medium_both, medium_node, medium_roots};
+use crate::rain::glint::drop_glint_angle;
+use crate::rain::light::{DropLightForm, DropLightTable, DropLights, drop_light_mean};
+use crate::scene::{SceneView, scene_lattice, scene_share};
+
+const _: () = assert!(MEDIUM_ANGLES == DROP_LIGHT_ENTRIES);
+
+/// Unresolved rain before a picture, and the lamps of its scene.
+#[derive(Clone, Debug)]
+pub struct MediumLight<'a> {
+    pub(crate) view: SceneView<'a>,
+    pub(crate) medium: MediumFrame,
+    /// Integral of the phase function over the scattering angle, from 0 to each multiple of pi / 256.
+    pub(crate) phase: Vec<[f32; 4]>,
+}
+
+/// What has been found of the light before a pixel.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    /// Light if nothing hides it.
+    whole: Vec3,
+    /// Part of the random number that is left.
+    rest: f32,
+    /// Light of the part of the ray that was drawn.
+    drawn: Vec3,
+    /// Sum of distances, weighted by light.
+    weighted: f32,
+    /// First and last distance of the part that was drawn.
+    part: Vec2,
+    /// Lamp that was drawn.
+    lamp: u32,
+}
+
+/// Lamps that light unresolved drops in a form.
+pub(in crate::rain) fn lamps_of(form: DropLightForm) -> u32 {
+    match form {
+        DropLightForm::None => MEDIUM_DARK,
+        DropLightForm::ImSung2022 => MEDIUM_SPOTS,
+        _ => MEDIUM_LAMPS,
+    }
+}
+
+/// Integral of a drop's phase function over the scattering angle: row k up to the angle k pi / 256.
+///
+/// [`DropLightForm::Rousseau2006`] depends on the vertical, too; lamps are taken to be as high as the eye.
+fn phase(form: DropLightForm, table: &DropLightTable) -> Vec<[f32; 4]> {
+    let width = std::f64::consts::PI / f64::from(MEDIUM_ANGLES);
+    let mut sum = [0.0f64; 3];
+    let mut rows = vec![[0.0; 4]];
+    for (k, row) in (0..MEDIUM_ANGLES).zip(table.rows()) {
+        let of_formula = |value: f32| [f64::from(value); 3];
+        let values = match form {
+            DropLightForm::Traced | DropLightForm::Atlas => std::array::from_fn(|c| f64::from(row[c])),
+            DropLightForm::Rousseau2006 => {
+                let angle = (k as f32 + 0.5) * (PI / MEDIUM_ANGLES as f32);
+                let light = Vec3::new(ops::sin(angle), 0.0, -ops::cos(angle));
+                of_formula(drop_light_mean(Vec3::NEG_Z, light) / PI)
+            }
+            DropLightForm::ImSung2022 => of_formula(1.0 / PI),
+            DropLightForm::None => of_formula(0.0),
+        };
+        for (sum, value) in sum.iter_mut().zip(values) {
+            *sum += value * width;
+        }
+        let [r, g, b] = sum.map(|sum| sum as f32);
+        rows.push([r, g, b, 0.0]);
+    }
+    rows
+}
+
+impl<'a> MediumLight<'a> {
+    /// The unresolved rain of a picture, lit by `form` as its drops are.
+    pub(crate) fn new(medium: &MediumFrame, lights: &DropLights<'a>, form: DropLightForm) -> Self {
+        let open = u32::from(lights.view.data.triangles.is_empty());
+        let medium = MediumFrame { open, ..*medium };
+        Self { view: lights.view, medium, phase: phase(form, lights.table) }
+    }
+
+    /// Rows of the grid of open air, before those of the pixels.
+    pub(crate) fn grid_rows(&self) -> usize {
+        (self.medium.columns * self.medium.rows * MEDIUM_SLICES) as usize
+    }
+
+    /// Unresolved rain before each pixel, rows from the top: light of lamps, and the mean distance of that light and the
+    /// optical depth as halves. `clean` is the scene's picture with its distances. The same bits for any number of threads.
+    #[must_use]
+    pub fn layer(&self, clean: &[[f32; 4]]) -> Vec<[f32; 4]> {
+        self.filtered(clean, &self.found(clean))
+    }
+
+    /// The same from what was found ([`MediumLight::found`]).
+    #[must_use]
+    pub fn filtered(&self, clean: &[[f32; 4]], found: &[[f32; 4]]) -> Vec<[f32; 4]> {
+        let (width, height) = (self.view.frame.width, self.view.frame.height);
+        (0..height)
+            .into_par_iter()
+            .flat_map_iter(|y| {
+                (0..width).map(move |x| self.medium_filter_pixel(clean, found, x, y).to_array())
+            })
+            .collect()
+    }
+
+    /// The grid of open air, then for each pixel two rows: light of lamps if nothing hid them, and optical depth; light that
+    /// one ray has seen, and its mean distance.
+    #[must_use]
+    pub fn found(&self, clean: &[[f32; 4]]) -> Vec<[f32; 4]> {
+        let cells = self.medium.columns * self.medium.rows;
+        let columns = self.medium.columns;
+        let mut rows: Vec<[f32; 4]> = (0..cells)
+            .into_par_iter()
+            .flat_map_iter(|cell| self.medium_open_column(cell % columns, cell / columns))
+            .collect();
+        let (width, height) = (self.view.frame.width, self.view.frame.height);
+        let grid = &rows;
+        let pixels: Vec<[f32; 4]> = (0..height)
+            .into_par_iter()
+            .flat_map_iter(|y| (0..width).flat_map(move |x| self.medium_light_pixel(clean, grid, x, y)))
+            .collect();
+        rows.extend(pixels);
+        rows
+    }
+
+    /// The integral of the phase function up to an angle.
+    fn medium_light_phase(&self, angle: f32) -> Vec3 {
+        let position = (angle * (MEDIUM_ANGLES as f32 / PI)).clamp(0.0, MEDIUM_ANGLES as f32);
+        let low = (position as u32).min(MEDIUM_ANGLES - 1);
+        let part = position - low as f32;
+        let at = |k: u32| Vec4::from(self.phase[k as usize]).truncate();
+        at(low) * (1.0 - part) + at(low + 1) * part
+    }
+
+    /// The part of a ray that a lamp lights: within its cone and its range.
+    fn medium_light_span(&self, index: u32, origin: Vec3, direction: Vec3, farthest: f32) -> Vec2 {
+        let row = (self.view.data.lights + index * SCENE_LIGHT_ROWS) as usize;
+        let numbers = |k: usize| Vec4::from(self.view.data.table[row + k].map(f32::from_bits));
+        let spots = self.medium.lit == MEDIUM_SPOTS;
+        let nothing = Vec2::splat(farthest);
+        let mut span = Vec2::new(0.0, farthest);
+        if self.view.data.table[row][3] == SCENE_LIGHT_DIRECTIONAL {
+            return if spots { nothing } else { span };
+        }
+        let (axis, reach, cone) = (numbers(1).truncate(), numbers(2).w, numbers(3));
+        let offset = origin - numbers(0).truncate();
+        let near = offset.dot(direction);
+        if reach > 0.0 {
+            span = medium_both(span, medium_roots(1.0, near, offset.dot(offset) - reach * reach));
+        }
+        let edge = -cone.y / cone.x.max(1.0e-9);
+        if cone.x <= 0.0 || edge <= 0.0 {
+            return if spots && cone.x <= 0.0 { nothing } else { span };
+        }
+        let (rate, depth) = (direction.dot(axis), offset.dot(axis));
+        let a = rate * rate - edge * edge;
+        let b = rate * depth - edge * edge * near;
+        let c = depth * depth - edge * edge * offset.dot(offset);
+        let root = b * b - a * c;
+        if root <= 0.0 {
+            return if c > 0.0 && depth > 0.0 { span } else { nothing };
+        }
+        let sign = if a >= 0.0 { 1.0 } else { -1.0 };
+        let firm = sign * a.abs().max(1.0e-12);
+        let first = (-b - sign * root.sqrt()) / firm;
+        let second = (-b + sign * root.sqrt()) / firm;
+        if a < 0.0 {
+            let middle = depth + rate * 0.5 * (first + second);
+            return if middle > 0.0 { medium_both(span, Vec2::new(first, second)) } else { nothing };
+        }
+        let beyond = if rate > 0.0 { Vec2::new(second, MEDIUM_FAR) } else { Vec2::new(-MEDIUM_FAR, first) };
+        medium_both(span, beyond)
+    }
+
+    /// The light of a lamp, added part by part.
+    fn medium_light_lamp(&self, sum: Found, index: u32, direction: Vec3, reach: Vec2, pixel: f32) -> Found {
+        let medium = &self.medium;
+        let eye = Vec3::from(medium.eye);
+        let row = (self.view.data.lights + index * SCENE_LIGHT_ROWS) as usize;
+        let parallel = self.view.data.table[row][3] == SCENE_LIGHT_DIRECTIONAL;
+        let lit = self.medium_light_span(index, eye, direction, if parallel { reach.x } else { reach.y });
+        if lit.y <= lit.x {
+            return sum;
+        }
+        let region = medium.medium_span(direction);
+        let outline = medium.medium_outline(direction);
+        let offset = Vec4::from(self.view.data.table[row].map(f32::from_bits)).truncate() - eye;
+        let nearest = offset.dot(direction);
+        let aside = offset - direction * nearest;
+        let least = 0.284 * pixel * nearest.max(0.0);
+        let h = (aside.dot(aside) + least * least + 1.0e-8).sqrt();
+        let first = ops::atan2(h, nearest - lit.x);
+        // Distance at which the lamp stands at an angle.
+        let at_angle = |angle: f32| nearest - h * ops::cos(angle) / ops::sin(angle).max(1.0e-6);
+        let mut next = sum;
+        let mut near = lit.x;
+        let mut near_depth = medium.medium_depth(near, region, outline);
+        let mut near_angle = first;
+        let mut near_phase = self.medium_light_phase(first);
+        for part in 0..MEDIUM_PARTS {
+            if near >= lit.y {
+                break;
+            }
+            let position = 3.0 * ops::log2((near * 1.001 / MEDIUM_NEAR).max(1.0));
+            let slice = medium_node(2 * (0.5 * (position + 1.0)) as u32 + 1);
+            let turned = near_angle + MEDIUM_TURN;
+            let turn = if parallel || turned > 3.1 { MEDIUM_FAR } else { at_angle(turned) };
+            let ends = part + 1 == MEDIUM_PARTS;
+            let far = if ends { lit.y } else { slice.min(turn.max(near * 1.001)).min(lit.y) };
+            let far_depth = medium.medium_depth(far, region, outline);
+            let far_angle = ops::atan2(h, nearest - far);
+            let far_phase = self.medium_light_phase(far_angle);
+            let middle = at_angle(0.5 * (near_angle + far_angle));
+            let light = self.view.scene_light(index, eye + direction * middle.clamp(near, far), 0.0);
+            let mut given = light.irradiance * PI;
+            if parallel {
+                let toward = drop_glint_angle(light.direction, direction) * PI;
+                let width = PI / MEDIUM_ANGLES as f32;
+                let low = (toward - 0.5 * width).max(0.0);
+                let high = (toward + 0.5 * width).min(PI);
+                let phase = (self.medium_light_phase(high) - self.medium_light_phase(low)) / (high - low);
+                given *= phase * (ops::exp(-near_depth) - ops::exp(-far_depth));
+            } else {
+                let square = (light.distance * light.distance).max(1.0e-8);
+                let density = (far_depth - near_depth) / (far - near).max(1.0e-6);
+                let passed = ops::exp(-0.5 * (near_depth + far_depth));
+                given *= (far_phase - near_phase) * (square / h * density * passed);
+            }
+            next = medium_light_add(next, given.max(Vec3::ZERO), index, near, far);
+            (near, near_depth, near_angle, near_phase) = (far, far_depth, far_angle, far_phase);
+        }
+        next
+    }
+
+    /// What stands before a pixel of unresolved drops: their light, and their optical depth.
+    fn medium_light_pixel(&self, clean: &[[f32; 4]], grid: &[[f32; 4]], x: u32, y: u32) -> [[f32; 4]; 2] {
+        let (medium, frame) = (&self.medium, self.view.frame);
+        let scene = clean[(y * frame.width + x) as usize][3];
+        let place = Vec2::new(x as f32, y as f32) + 0.5;
+        let direction = self.view.scene_direction(place.x, place.y);
+        let end = if scene >= MEDIUM_SKY { MEDIUM_SKY_REACH } else { scene };
+        let depth = self.medium_open_at(grid, place.x, place.y, end).x;
+        let mut sum = Found::default();
+        let mut seen = Vec3::ZERO;
+        if medium.lit != MEDIUM_DARK && medium.all > 0.0 {
+            let random = scene_lattice(frame.seed, x, y, MEDIUM_LATTICE);
+            sum.rest = rng_unit(random[0]);
+            let reach = Vec2::new(scene.min(MEDIUM_SKY_REACH), scene.min(MEDIUM_LAMP_REACH));
+            for k in 0..frame.light_count {
+                sum = self.medium_light_lamp(sum, k, direction, reach, frame.pixel_angle);
+            }
+            let share = scene_share(sum.drawn);
+            if share > 0.0 {
+                let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random[1]);
+                let from = Vec3::from(medium.eye) + direction * distance;
+                let light = self.view.scene_light(sum.lamp, from, 0.0);
+                seen = self.view.scene_visibility(from, light.direction, light.distance)
+                    * self.medium_open_at(grid, place.x, place.y, distance).y
+                    * (sum.drawn * (scene_share(sum.whole) / share));
+            }
+        }
+        let mean = sum.weighted / scene_share(sum.whole).max(1.0e-20);
+        [sum.whole.extend(depth).to_array(), seen.extend(mean).to_array()]
+    }
+}
+
+/// Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
+fn medium_light_add(sum: Found, light: Vec3, lamp: u32, near: f32, far: f32) -> Found {
+    let share = scene_share(light);
+    if share <= 0.0 {
+        return sum;
+    }
+    let chance = share / (scene_share(sum.whole) + share);
+    let mut next = sum;
+    next.whole += light;
+    next.weighted += 0.5 * (near + far) * share;
+    if sum.rest < chance {
+        next.rest = sum.rest / chance;
+        next.drawn = light;
+        next.part = Vec2::new(near, far);
+        next.lamp = lamp;
+    } else {
+        next.rest = (sum.rest - chance) / (1.0 - chance).max(1.0e-9);
+    }
+    next
+}

@@ -1,0 +1,110 @@
+//! Where the air is open to the rain. Twin of `shaders/wgsl/render/medium_open.wgsl`, where the method is described.
+
+use downpour_math::ops;
+use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::bvh::BVH_FAR;
+use downpour_shaders::render::medium::{MEDIUM_FAR, MEDIUM_NEAR, MEDIUM_RANDOM_DIMENSION, MEDIUM_SLICES};
+use glam::{Vec2, Vec3};
+
+use super::frame::medium_node;
+use super::light::MediumLight;
+
+/// Distance of the end of a slice, m.
+pub(super) fn medium_open_end(slice: u32) -> f32 {
+    medium_node(2 * slice + 1)
+}
+
+/// The slice of a distance.
+pub(super) fn medium_open_slice(distance: f32) -> u32 {
+    let position = 0.5 * (3.0 * ops::log2((distance / MEDIUM_NEAR).max(1.0)) + 1.0);
+    (position as u32).min(MEDIUM_SLICES - 1)
+}
+
+impl MediumLight<'_> {
+    /// The ray of a cell of the grid.
+    fn medium_open_ray(&self, column: u32, row: u32) -> Vec3 {
+        let (medium, frame) = (&self.medium, self.view.frame);
+        let x = (column as f32 + 0.5) / medium.columns as f32 * frame.width as f32;
+        let y = (row as f32 + 0.5) / medium.rows as f32 * frame.height as f32;
+        self.view.scene_direction(x, y)
+    }
+
+    /// The column of a cell.
+    pub(super) fn medium_open_column(&self, column: u32, row: u32) -> [[f32; 4]; MEDIUM_SLICES as usize] {
+        let (medium, frame) = (&self.medium, self.view.frame);
+        let direction = self.medium_open_ray(column, row);
+        let span = medium.medium_span(direction);
+        let outline = medium.medium_outline(direction);
+        let cell = row * medium.columns + column;
+        let [word, ..] = rng_draw([frame.seed, 0], cell, 0, MEDIUM_RANDOM_DIMENSION);
+        let hit = |start: Vec3, along: Vec3| {
+            let met = self.view.data.surface_hit(start, along, frame.nearest, BVH_FAR);
+            met.map(|hit| hit.distance)
+        };
+        let eye = Vec3::from(medium.eye);
+        // What stands before the cell; the other rays ask what is above the air before it.
+        let solid = if medium.open == 0 { hit(eye, direction) } else { None }.unwrap_or(MEDIUM_FAR);
+        let (mut begin, mut depth, mut before) = (0.0, 0.0, 0.0);
+        std::array::from_fn(|slice| {
+            let end = medium_open_end(slice as u32);
+            let mut open = 1.0;
+            if medium.open == 0 {
+                let part = rng_unit(word) + 0.618_034 * slice as f32;
+                let part = part - part.floor();
+                let before_solid = if begin < solid { end.min(solid) } else { end };
+                let above = eye + direction * (begin + (before_solid - begin) * part);
+                open = if hit(above, medium.rise.into()).is_none() { 1.0 } else { 0.0 };
+            }
+            let whole = medium.medium_depth(end, span, outline);
+            depth += (whole - before) * open;
+            before = whole;
+            begin = end;
+            [depth, open, 0.0, 0.0]
+        })
+    }
+
+    /// Optical depth along the ray of a cell up to a part of a slice, and 1 if the slice is open.
+    fn medium_open_cell(&self, grid: &[[f32; 4]], column: u32, row: u32, slice: u32, part: f32) -> Vec2 {
+        let at = ((row * self.medium.columns + column) * MEDIUM_SLICES + slice) as usize;
+        let here = grid[at];
+        let before = if slice > 0 { grid[at - 1][0] } else { 0.0 };
+        Vec2::new(before + (here[0] - before) * part, here[1])
+    }
+
+    /// Optical depth of unresolved drops up to a distance along the ray through a place of the picture (pixels from the top
+    /// left), and whether the air is open to the rain there.
+    pub(super) fn medium_open_at(&self, grid: &[[f32; 4]], x: f32, y: f32, distance: f32) -> Vec2 {
+        let (medium, frame) = (&self.medium, self.view.frame);
+        let direction = self.view.scene_direction(x, y);
+        let span = medium.medium_span(direction);
+        let outline = medium.medium_outline(direction);
+        let whole = medium.medium_depth(distance, span, outline);
+        if medium.open == 1 {
+            return Vec2::new(whole, 1.0);
+        }
+        let slice = medium_open_slice(distance);
+        let mut begin = 0.0;
+        if slice > 0 {
+            begin = medium.medium_depth(medium_open_end(slice - 1), span, outline);
+        }
+        let end = medium.medium_depth(medium_open_end(slice), span, outline);
+        // Beyond the last slice its own air goes on.
+        let fraction = ((whole - begin) / (end - begin).max(1.0e-12)).max(0.0);
+        let last = Vec2::new((medium.columns - 1) as f32, (medium.rows - 1) as f32);
+        let size = Vec2::new(frame.width as f32, frame.height as f32);
+        let place = (Vec2::new(x, y) / size * (last + 1.0) - 0.5).clamp(Vec2::ZERO, last);
+        let low = [place.x as u32, place.y as u32];
+        let high = [(low[0] + 1).min(last.x as u32), (low[1] + 1).min(last.y as u32)];
+        let part = place - place.floor();
+        let mut sum = Vec2::ZERO;
+        for k in 0..4u32 {
+            let (right, below) = (k & 1 == 1, k >= 2);
+            let weight =
+                if right { part.x } else { 1.0 - part.x } * if below { part.y } else { 1.0 - part.y };
+            let column = if right { high[0] } else { low[0] };
+            let row = if below { high[1] } else { low[1] };
+            sum += weight * self.medium_open_cell(grid, column, row, slice, fraction);
+        }
+        sum
+    }
+}

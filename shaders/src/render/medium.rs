@@ -1,0 +1,99 @@
+//! `wgsl/render/medium*.wgsl`: drops that a picture does not draw one by one. Twins: `downpour_render::rain::medium`.
+
+use super::drop_light::DROP_GLINT;
+use super::scene::SCENE;
+use crate::common::RNG;
+use crate::{Kernel, Module};
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_OPEN, &MEDIUM_LIGHT, &MEDIUM_FILTER];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&MEDIUM_OPEN_KERNEL, &MEDIUM_LIGHT_KERNEL, &MEDIUM_FILTER_KERNEL];
+
+shared_constants! {
+    /// Numbers of the unresolved rain.
+    MEDIUM_CONSTANTS at "render/medium constants" {
+        /// Quarters of the table of optical depths.
+        MEDIUM_QUARTERS: u32 = 8;
+        /// Distance of the table's first entry, m.
+        MEDIUM_NEAR: f32 = 0.25;
+        /// Farther than anything, m.
+        MEDIUM_FAR: f32 = 1.0e9;
+        /// Region: drops are simulated everywhere.
+        MEDIUM_EVERYWHERE: u32 = 0;
+        /// Region: a box along the axes.
+        MEDIUM_BOX: u32 = 1;
+        /// Region: a sphere.
+        MEDIUM_SPHERE: u32 = 2;
+        /// Region: an upright cylinder.
+        MEDIUM_CYLINDER: u32 = 3;
+        /// No lamp lights the drops.
+        MEDIUM_DARK: u32 = 0;
+        /// All lamps and the sun do.
+        MEDIUM_LAMPS: u32 = 1;
+        /// Spots alone do.
+        MEDIUM_SPOTS: u32 = 2;
+        /// Slices of distance of the grid of open air: two entries of the table each.
+        MEDIUM_SLICES: u32 = 16;
+        /// Columns of that grid.
+        MEDIUM_COLUMNS: u32 = 48;
+        /// The sky is as it is seen through the rain beyond this distance, m.
+        MEDIUM_SKY_REACH: f32 = 50.0;
+        /// Beyond this distance, m, is the sky.
+        MEDIUM_SKY: f32 = 1.0e29;
+        /// Lamps light drops up to this distance, m.
+        MEDIUM_LAMP_REACH: f32 = 1000.0;
+        /// Intervals of the scattering angle.
+        MEDIUM_ANGLES: u32 = 256;
+        /// Parts of a ray for each lamp, at most: a slice each, cut where the direction to the lamp turns by more than
+        /// MEDIUM_TURN.
+        MEDIUM_PARTS: u32 = 32;
+        /// Angle, radians: 13 parts of half a turn.
+        MEDIUM_TURN: f32 = 0.25;
+        /// Number of the lattice of a pixel's ray to a lamp.
+        MEDIUM_LATTICE: u32 = 4096;
+        /// Dimension of the random numbers of the grid.
+        MEDIUM_RANDOM_DIMENSION: u32 = 4110;
+    }
+}
+
+/// Optical depth along a ray. Twin: `downpour_render::rain::medium`.
+pub static MEDIUM: Module = Module {
+    path: "render/medium.wgsl",
+    wgsl: include_str!("../../wgsl/render/medium.wgsl"),
+    uses: &[&MEDIUM_CONSTANTS],
+};
+
+/// Where the air is open to the rain. Twin: `downpour_render::rain::medium::open`.
+pub static MEDIUM_OPEN: Module = Module {
+    path: "render/medium_open.wgsl",
+    wgsl: include_str!("../../wgsl/render/medium_open.wgsl"),
+    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &RNG, &SCENE],
+};
+
+/// Light of lamps. Twin: `downpour_render::rain::medium::light`.
+pub static MEDIUM_LIGHT: Module = Module {
+    path: "render/medium_light.wgsl",
+    wgsl: include_str!("../../wgsl/render/medium_light.wgsl"),
+    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_OPEN, &DROP_GLINT, &SCENE],
+};
+
+/// Means over neighbors. Twin: `downpour_render::rain::medium::filter`.
+pub static MEDIUM_FILTER: Module = Module {
+    path: "render/medium_filter.wgsl",
+    wgsl: include_str!("../../wgsl/render/medium_filter.wgsl"),
+    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &SCENE],
+};
+
+/// One invocation per cell of the grid.
+pub static MEDIUM_OPEN_KERNEL: Kernel =
+    Kernel { entry: "main_medium_open", module: &MEDIUM_OPEN, workgroup: [64, 1, 1] };
+
+/// One invocation per pixel.
+pub static MEDIUM_LIGHT_KERNEL: Kernel =
+    Kernel { entry: "main_medium_light", module: &MEDIUM_LIGHT, workgroup: [8, 8, 1] };
+
+/// One invocation per pixel.
+pub static MEDIUM_FILTER_KERNEL: Kernel =
+    Kernel { entry: "main_medium_filter", module: &MEDIUM_FILTER, workgroup: [8, 8, 1] };

@@ -1,0 +1,199 @@
+// Light of lamps and sun that unresolved drops scatter towards the eye, before a pixel.
+// Law: single scattering, L = Int sigma(s) exp(-tau(s)) E(s) p(angle(s)) ds, with the drops' phase function p. For a lamp at the
+// distance h from the ray the angle runs evenly along the ray as seen from the lamp, ds / r^2 = d angle / h, so that a part of
+// the ray between two angles needs but the integral of p over them (a table), and is exact however near the lamp is.
+// What of it is hidden is asked by one ray per pixel, drawn by what each part of the ray and each lamp would give; the mean over
+// the pixels round it is taken by medium_filter.wgsl.
+// Light that is weakened on its way from the lamp to the drop is taken to be made good by what is scattered forward on it.
+// Twin: downpour_render::rain::medium::light.
+
+@group(0) @binding(6) var<storage, read> medium_clean: array<vec4f>;
+// Integral of the phase function over the scattering angle, from 0 to each multiple of pi / MEDIUM_ANGLES.
+@group(0) @binding(7) var<storage, read> medium_phase: array<vec4f>;
+
+// The integral of the phase function up to an angle.
+fn medium_light_phase(angle: f32) -> vec3f {
+    let position = clamp(angle * (f32(MEDIUM_ANGLES) / 3.1415927), 0.0, f32(MEDIUM_ANGLES));
+    let low = min(u32(position), MEDIUM_ANGLES - 1u);
+    let part = position - f32(low);
+    return (medium_phase[low] * (1.0 - part) + medium_phase[low + 1u] * part).rgb;
+}
+
+// The part of a ray that a lamp lights: within its cone and its range.
+fn medium_light_span(index: u32, origin: vec3f, direction: vec3f, farthest: f32) -> vec2f {
+    let row = render_frame.lights + index * SCENE_LIGHT_ROWS;
+    var span = vec2f(0.0, farthest);
+    if render_table[row].w == SCENE_LIGHT_DIRECTIONAL {
+        return select(span, vec2f(farthest), medium_frame.lit == MEDIUM_SPOTS);
+    }
+    let axis = bitcast<vec4f>(render_table[row + 1u]).xyz;
+    let reach = bitcast<f32>(render_table[row + 2u].w);
+    let cone = bitcast<vec4f>(render_table[row + 3u]);
+    let offset = origin - bitcast<vec4f>(render_table[row]).xyz;
+    let near = dot(offset, direction);
+    if reach > 0.0 {
+        span = medium_both(span, medium_roots(1.0, near, dot(offset, offset) - reach * reach));
+    }
+    let edge = -cone.y / max(cone.x, 1.0e-9);
+    if cone.x <= 0.0 || edge <= 0.0 {
+        // A lamp that shines everywhere, or over more than half of all directions.
+        return select(span, vec2f(farthest), medium_frame.lit == MEDIUM_SPOTS && cone.x <= 0.0);
+    }
+    // Where the ray is in the cone: (d . axis)^2 = edge^2 d^2, on the side to which the axis points.
+    let rate = dot(direction, axis);
+    let depth = dot(offset, axis);
+    let a = rate * rate - edge * edge;
+    let b = rate * depth - edge * edge * near;
+    let c = depth * depth - edge * edge * dot(offset, offset);
+    let root = b * b - a * c;
+    if root <= 0.0 {
+        return select(vec2f(farthest), span, c > 0.0 && depth > 0.0);
+    }
+    let sign_of_a = select(-1.0, 1.0, a >= 0.0);
+    let firm = select(-1.0, 1.0, a >= 0.0) * max(abs(a), 1.0e-12);
+    let first = (-b - sign_of_a * sqrt(root)) / firm;
+    let second = (-b + sign_of_a * sqrt(root)) / firm;
+    if a < 0.0 {
+        // Between the roots, of which both are on one side of the lamp.
+        let middle = depth + rate * 0.5 * (first + second);
+        return select(vec2f(farthest), medium_both(span, vec2f(first, second)), middle > 0.0);
+    }
+    // Beyond one root, on the side to which the ray goes along the axis.
+    return medium_both(span, select(vec2f(-MEDIUM_FAR, first), vec2f(second, MEDIUM_FAR), rate > 0.0));
+}
+
+// What has been found of the light before a pixel, and the part of it that a ray is to be cast for.
+struct MediumLight {
+    // Light if nothing hides it.
+    whole: vec3f,
+    // Part of the random number that is left.
+    rest: f32,
+    // Light of the part of the ray that was drawn.
+    drawn: vec3f,
+    // Sum of distances, weighted by light.
+    weighted: f32,
+    // First and last distance of the part that was drawn.
+    part: vec2f,
+    // Lamp that was drawn.
+    lamp: u32,
+}
+
+// Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
+fn medium_light_add(sum: MediumLight, light: vec3f, lamp: u32, near: f32, far: f32) -> MediumLight {
+    let share = scene_share(light);
+    if share <= 0.0 {
+        return sum;
+    }
+    let chance = share / (scene_share(sum.whole) + share);
+    var next = sum;
+    next.whole += light;
+    next.weighted += 0.5 * (near + far) * share;
+    if sum.rest < chance {
+        // The part of the interval that is left is as good as a new number.
+        next.rest = sum.rest / chance;
+        next.drawn = light;
+        next.part = vec2f(near, far);
+        next.lamp = lamp;
+    } else {
+        next.rest = (sum.rest - chance) / max(1.0 - chance, 1.0e-9);
+    }
+    return next;
+}
+
+// The light of a lamp, added part by part.
+fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2f, pixel: f32) -> MediumLight {
+    let eye = medium_frame.eye;
+    let row = render_frame.lights + index * SCENE_LIGHT_ROWS;
+    let parallel = render_table[row].w == SCENE_LIGHT_DIRECTIONAL;
+    let lit = medium_light_span(index, eye, direction, select(reach.y, reach.x, parallel));
+    if lit.y <= lit.x {
+        return sum;
+    }
+    let region = medium_span(direction);
+    let outline = medium_outline(direction);
+    let offset = bitcast<vec4f>(render_table[row]).xyz - eye;
+    let nearest = dot(offset, direction);
+    let aside = offset - direction * nearest;
+    // No ray is thinner than a pixel: the mean over its square of 1 / h is that of 0.284 of its width.
+    let least = 0.284 * pixel * max(nearest, 0.0);
+    let h = sqrt(dot(aside, aside) + least * least + 1.0e-8);
+    // The angle at the lamp, between the ray's direction and the place, runs from behind the drops to before them.
+    let first = atan2(h, nearest - lit.x);
+    var next = sum;
+    var near = lit.x;
+    var near_depth = medium_depth(near, region, outline);
+    var near_angle = first;
+    var near_phase = medium_light_phase(first);
+    for (var part = 0u; part < MEDIUM_PARTS && near < lit.y; part += 1u) {
+        // To the end of the slice, or as far as the direction to the lamp turns by some degrees.
+        let slice = medium_node(2u * u32(0.5 * (3.0 * log2(max(near * 1.001 / MEDIUM_NEAR, 1.0)) + 1.0)) + 1u);
+        let turned = near_angle + MEDIUM_TURN;
+        let turn = select(nearest - h * cos(turned) / max(sin(turned), 1.0e-6), MEDIUM_FAR, parallel || turned > 3.1);
+        let far = select(min(min(slice, max(turn, near * 1.001)), lit.y), lit.y, part + 1u == MEDIUM_PARTS);
+        let far_depth = medium_depth(far, region, outline);
+        let far_angle = atan2(h, nearest - far);
+        let far_phase = medium_light_phase(far_angle);
+        let middle = nearest - h * cos(0.5 * (near_angle + far_angle)) / max(sin(0.5 * (near_angle + far_angle)), 1.0e-6);
+        let light = scene_light(index, eye + direction * clamp(middle, near, far), 0.0);
+        var given = light.irradiance * 3.1415927;
+        if parallel {
+            // Half an interval of the table to each side.
+            let toward = drop_glint_angle(light.direction, direction) * 3.1415927;
+            let width = 3.1415927 / f32(MEDIUM_ANGLES);
+            let low = max(toward - 0.5 * width, 0.0);
+            let high = min(toward + 0.5 * width, 3.1415927);
+            let phase = (medium_light_phase(high) - medium_light_phase(low)) / (high - low);
+            given *= phase * (exp(-near_depth) - exp(-far_depth));
+        } else {
+            let square = max(light.distance * light.distance, 1.0e-8);
+            let density = (far_depth - near_depth) / max(far - near, 1.0e-6);
+            given *= (far_phase - near_phase) * (square / h * density * exp(-0.5 * (near_depth + far_depth)));
+        }
+        next = medium_light_add(next, max(given, vec3f(0.0)), index, near, far);
+        near = far;
+        near_depth = far_depth;
+        near_angle = far_angle;
+        near_phase = far_phase;
+    }
+    return next;
+}
+
+// What stands before a pixel of unresolved drops: their light, and their optical depth.
+fn medium_light_pixel(x: u32, y: u32) {
+    let at = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES + 2u * (y * render_frame.width + x);
+    let scene = medium_clean[y * render_frame.width + x].w;
+    let place = vec2f(f32(x), f32(y)) + 0.5;
+    let direction = scene_direction(place.x, place.y);
+    // The sky is as it is seen through the rain beyond.
+    let end = select(scene, MEDIUM_SKY_REACH, scene >= MEDIUM_SKY);
+    let depth = medium_open_at(place.x, place.y, end).x;
+    var sum = MediumLight(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec2f(0.0), 0u);
+    var seen = vec3f(0.0);
+    if medium_frame.lit != MEDIUM_DARK && medium_frame.all > 0.0 {
+        let random = scene_lattice(x, y, MEDIUM_LATTICE);
+        sum.rest = rng_unit(random.x);
+        let reach = vec2f(min(scene, MEDIUM_SKY_REACH), min(scene, MEDIUM_LAMP_REACH));
+        for (var k = 0u; k < render_frame.light_count; k += 1u) {
+            sum = medium_light_lamp(sum, k, direction, reach, render_frame.pixel_angle);
+        }
+        let share = scene_share(sum.drawn);
+        if share > 0.0 {
+            let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random.y);
+            let from_place = medium_frame.eye + direction * distance;
+            let light = scene_light(sum.lamp, from_place, 0.0);
+            seen = scene_visibility(from_place, light.direction, light.distance)
+                * medium_open_at(place.x, place.y, distance).y
+                * (sum.drawn * (scene_share(sum.whole) / share));
+        }
+    }
+    let mean = sum.weighted / max(scene_share(sum.whole), 1.0e-20);
+    medium_out[at] = vec4f(sum.whole, depth);
+    medium_out[at + 1u] = vec4f(seen, mean);
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn main_medium_light(@builtin(global_invocation_id) id: vec3u) {
+    if id.x < render_frame.width && id.y < render_frame.height {
+        medium_light_pixel(id.x, id.y);
+    }
+}

@@ -1,0 +1,119 @@
+// Where the air is open to the rain: a grid over the picture, a column of slices of distance in each cell.
+// Method: one ray per cell and slice, from a place in it against the mean fall; the optical depth of a cell's ray is summed up
+// slice by slice, and a pixel interpolates between the four cells round it.
+// Twin: downpour_render::rain::medium::open.
+
+// First the grid, MEDIUM_SLICES rows for each cell: optical depth up to the slice's end, 1 if the slice is open. Then for each
+// pixel two: light of lamps if nothing hid them, and optical depth; light of lamps that one ray has seen, and the mean distance
+// of what they light.
+@group(0) @binding(8) var<storage, read_write> medium_out: array<vec4f>;
+
+// Distance of the end of a slice, m.
+fn medium_open_end(slice: u32) -> f32 {
+    return medium_node(2u * slice + 1u);
+}
+
+// The slice of a distance.
+fn medium_open_slice(distance: f32) -> u32 {
+    let position = 0.5 * (3.0 * log2(max(distance / MEDIUM_NEAR, 1.0)) + 1.0);
+    return min(u32(position), MEDIUM_SLICES - 1u);
+}
+
+// The ray of a cell of the grid.
+fn medium_open_ray(column: u32, row: u32) -> vec3f {
+    let x = (f32(column) + 0.5) / f32(medium_frame.columns) * f32(render_frame.width);
+    let y = (f32(row) + 0.5) / f32(medium_frame.rows) * f32(render_frame.height);
+    return scene_direction(x, y);
+}
+
+// Fills the column of a cell.
+fn medium_open_column(column: u32, row: u32) {
+    let direction = medium_open_ray(column, row);
+    let span = medium_span(direction);
+    let outline = medium_outline(direction);
+    let cell = row * medium_frame.columns + column;
+    let word = rng_draw(vec2u(render_frame.seed, 0u), cell, 0u, MEDIUM_RANDOM_DIMENSION);
+    var begin = 0.0;
+    var depth = 0.0;
+    var before = 0.0;
+    // The first turn meets the surface before the cell; the others ask what is above the air before it. One text for all of them:
+    // each copy of the walk is compiled again.
+    var solid = MEDIUM_FAR;
+    for (var turn = 0u; turn <= MEDIUM_SLICES; turn += 1u) {
+        let slice = max(turn, 1u) - 1u;
+        let end = medium_open_end(slice);
+        var open = 1.0;
+        if medium_frame.open == 0u {
+            let part = fract(rng_unit(word.x) + 0.618034 * f32(slice));
+            let before_solid = select(end, min(end, solid), begin < solid);
+            let above = medium_frame.eye + direction * (begin + (before_solid - begin) * part);
+            let start = select(above, medium_frame.eye, turn == 0u);
+            let along = select(medium_frame.rise, direction, turn == 0u);
+            let met = surface_hit(start, along, render_frame.nearest, BVH_FAR).distance;
+            open = select(0.0, 1.0, met < 0.0);
+            if turn == 0u && met >= 0.0 {
+                solid = met;
+            }
+        }
+        if turn == 0u {
+            continue;
+        }
+        let whole = medium_depth(end, span, outline);
+        depth += (whole - before) * open;
+        medium_out[cell * MEDIUM_SLICES + slice] = vec4f(depth, open, 0.0, 0.0);
+        before = whole;
+        begin = end;
+    }
+}
+
+// Optical depth along the ray of a cell up to a part of a slice, and 1 if the slice is open.
+fn medium_open_cell(column: u32, row: u32, slice: u32, part: f32) -> vec2f {
+    let at = (row * medium_frame.columns + column) * MEDIUM_SLICES + slice;
+    let here = medium_out[at];
+    var before = 0.0;
+    if slice > 0u {
+        before = medium_out[at - 1u].x;
+    }
+    return vec2f(before + (here.x - before) * part, here.y);
+}
+
+// Optical depth of unresolved drops up to a distance along the ray through a place of the picture (pixels from the top left),
+// and whether the air is open to the rain there.
+fn medium_open_at(x: f32, y: f32, distance: f32) -> vec2f {
+    let direction = scene_direction(x, y);
+    let span = medium_span(direction);
+    let outline = medium_outline(direction);
+    let whole = medium_depth(distance, span, outline);
+    if medium_frame.open == 1u {
+        return vec2f(whole, 1.0);
+    }
+    let slice = medium_open_slice(distance);
+    var begin = 0.0;
+    if slice > 0u {
+        begin = medium_depth(medium_open_end(slice - 1u), span, outline);
+    }
+    let end = medium_depth(medium_open_end(slice), span, outline);
+    // Beyond the last slice its own air goes on.
+    let fraction = max((whole - begin) / max(end - begin, 1.0e-12), 0.0);
+    let last = vec2f(f32(medium_frame.columns - 1u), f32(medium_frame.rows - 1u));
+    let size = vec2f(f32(render_frame.width), f32(render_frame.height));
+    let place = clamp(vec2f(x, y) / size * (last + 1.0) - 0.5, vec2f(0.0), last);
+    let low = vec2u(place);
+    let high = min(low + 1u, vec2u(last));
+    let part = place - vec2f(low);
+    var sum = vec2f(0.0);
+    for (var k = 0u; k < 4u; k += 1u) {
+        let right = (k & 1u) == 1u;
+        let below = k >= 2u;
+        let weight = select(1.0 - part.x, part.x, right) * select(1.0 - part.y, part.y, below);
+        sum += weight * medium_open_cell(select(low.x, high.x, right), select(low.y, high.y, below), slice, fraction);
+    }
+    return sum;
+}
+
+@compute @workgroup_size(64, 1, 1)
+fn main_medium_open(@builtin(global_invocation_id) id: vec3u) {
+    if id.x < medium_frame.columns * medium_frame.rows {
+        medium_open_column(id.x % medium_frame.columns, id.x / medium_frame.columns);
+    }
+}
