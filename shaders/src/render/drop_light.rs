@@ -3,7 +3,6 @@
 
 use super::scene::SCENE;
 use super::specimen::SPECIMEN_TABLES;
-use crate::common::PACKING;
 use crate::mask::{ATLAS, ATLAS_CONSTANTS};
 use crate::{Kernel, Module};
 
@@ -95,7 +94,7 @@ pub static DROP_ATLAS: Module = Module {
 pub static DROP_LIGHT: Module = Module {
     path: "render/drop_light.wgsl",
     wgsl: include_str!("../../wgsl/render/drop_light.wgsl"),
-    uses: &[&DROP_LIGHT_CONSTANTS, &DROP_GLINT, &DROP_LIGHT_TABLE, &PACKING, &ATLAS, &DROP_ATLAS, &SCENE],
+    uses: &[&DROP_LIGHT_CONSTANTS, &DROP_GLINT, &DROP_LIGHT_TABLE, &ATLAS, &DROP_ATLAS, &SCENE],
 };
 
 /// One invocation per drop.

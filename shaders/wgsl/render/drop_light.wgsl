@@ -21,7 +21,7 @@ struct DropLightFrame {
 @group(0) @binding(6) var<storage, read> drop_light_drops: array<vec4f>;
 // For each drop its mean radiance, then its glints: their part of the mean, and their place, packed. Or its streaks: their part
 // of the mean, and 1 + the first layer's share, below 0 if it is mirrored; the three layers, and the second one's share. Or its
-// lamps in the form of Rousseau 2006: the irradiance over pi, and the direction as an octahedral pair, packed, below 0. Or its
+// lamps in the form of Rousseau 2006: the irradiance over pi, and -1 less what the formula gives on the mean; the direction. Or its
 // lamps for the profile of its streak: the irradiance, and the chord from the middle to the edge of the disc (in the form of
 // Rousseau 2006 the irradiance over pi, and -1); the direction, and how bright the drop is by it.
 @group(0) @binding(8) var<storage, read_write> drop_light_out: array<vec4f>;
@@ -100,7 +100,7 @@ fn drop_light_keep(first: u32, glint: vec4f) {
     }
 }
 
-// Keeps a streak of a drop if it is brighter than the least of those that are kept.
+// Keeps two rows of a drop, a streak or a lamp, if it is brighter than the least of those that are kept.
 fn drop_light_keep_streak(first: u32, light: vec4f, layers: vec4f) {
     var weakest = first;
     var least = scene_share(light.rgb);
@@ -198,11 +198,9 @@ fn drop_light_of(index: u32) {
         } else if form == DROP_LIGHT_LAMPS_TRACED || form == DROP_LIGHT_LAMPS_ROUSSEAU {
             sum += drop_light_keep_lamp(slot + 1u, lit, drop_light_reach(k), light.direction, towards);
         } else if form == DROP_LIGHT_ROUSSEAU {
-            sum += lit * drop_light_mean(towards, light.direction);
-            let way = packing_octahedral_encode(light.direction);
-            if drop_light_frame.glints > 0u {
-                drop_light_keep(slot + 1u, vec4f(lit, -drop_glint_pack(way)));
-            }
+            let mean = drop_light_mean(towards, light.direction);
+            sum += lit * mean;
+            drop_light_keep_streak(slot + 1u, vec4f(lit, -1.0 - mean), vec4f(light.direction, 0.0));
         } else if form == DROP_LIGHT_ATLAS {
             let about = drop_light_drops[drop_light_frame.count + index];
             let place = drop_atlas_place(u32(about.w), 2.0 * drop.w, about.xyz, light.direction, -towards);

@@ -378,6 +378,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_light_row",
             "drops_spots",
             "drops_lines",
+            "drops_facing",
             "drops_line",
             "drops_glint_width",
             "drops_turns",
@@ -528,6 +529,11 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
             rain_case(gpu, [eye, forward], RefractionForm::Rousseau2006, Exposure::default(), Part::Drops)
         }),
+        drops("main_drops: light of Rousseau 2006", |gpu| {
+            let light = DropLightOptions { form: DropLightForm::Rousseau2006, glints: 8 };
+            let options = RainOptions { light, ..RainOptions::default() };
+            masks_case(gpu, LEVEL, options, &DropMasks::trace(1.333).expect("masks"), Part::Drops)
+        }),
         KernelCase {
             name: "main_streak_table: all classes",
             kernel: &STREAK_TABLE_KERNEL,
@@ -567,7 +573,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         }),
         profiles("main_streak_light: profiles, Rousseau 2006", |gpu| {
             let exposure = exposure(1.0 / 250.0, StreakSamples::Table);
-            let light = DropLightOptions { form: DropLightForm::Rousseau2006, glints: 4 };
+            let light = DropLightOptions { form: DropLightForm::Rousseau2006, glints: 8 };
             let form = RefractionForm::Rousseau2006;
             let options = RainOptions { form, exposure, light, ..RainOptions::default() };
             let masks = DropMasks::trace(1.333).expect("masks");

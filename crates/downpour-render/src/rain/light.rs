@@ -22,7 +22,6 @@ mod table;
 use std::f32::consts::PI;
 
 use downpour_math::ops;
-use downpour_math::packing::packing_octahedral_encode;
 use downpour_scene::weather::{RainDropLight, StreakLook, Weather};
 use downpour_shaders::render::drop_light::{
     DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG,
@@ -88,7 +87,7 @@ pub struct DropLightOptions {
     /// What lamps do to a drop.
     pub form: DropLightForm,
     /// Rows that are told of each drop besides its mean, 0 to 16: in the traced form its brightest glints; in that of Rousseau 2006
-    /// its brightest lamps; of an atlas its brightest streaks, two rows each. The other forms have none.
+    /// its brightest lamps, of an atlas its brightest streaks, two rows each. The other forms have none.
     pub glints: u32,
 }
 
@@ -104,7 +103,8 @@ impl DropLightOptions {
         if of_atlas && form == DropLightForm::Traced {
             return Self::ATLAS;
         }
-        Self { form, glints: GLINTS }
+        // A lamp of Rousseau 2006 has two rows.
+        Self { form, glints: if form == DropLightForm::Rousseau2006 { 2 * GLINTS } else { GLINTS } }
     }
 }
 
@@ -341,9 +341,10 @@ impl<'a> DropLights<'a> {
                     sum += self.drop_light_keep_lamp(glints, rows, towards);
                 }
                 DROP_LIGHT_ROUSSEAU => {
-                    sum += lit * drop_light_mean(towards, light.direction);
-                    let way = packing_octahedral_encode(light.direction.to_array());
-                    drop_light_keep(glints, lit.extend(-drop_glint_pack(way.into())));
+                    let mean = drop_light_mean(towards, light.direction);
+                    sum += lit * mean;
+                    let way = light.direction.extend(0.0).to_array();
+                    drop_light_keep_streak(glints, lit.extend(-1.0 - mean), way);
                 }
                 DROP_LIGHT_ATLAS => {
                     let (axis, id) = (Vec4::from(about).truncate(), about[3] as u32);

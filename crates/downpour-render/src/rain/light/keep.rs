@@ -26,7 +26,7 @@ pub(super) fn drop_light_keep(glints: &mut [[f32; 4]], glint: Vec4) {
     }
 }
 
-/// Keeps a streak of a drop if it is brighter than the least of those that are kept.
+/// Keeps two rows of a drop, a streak or a lamp, if it is brighter than the least of those that are kept.
 pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], light: Vec4, layers: [f32; 4]) {
     let share = |row: &[f32; 4]| scene_share(Vec4::from(*row).truncate());
     let mut least = scene_share(light.truncate());
