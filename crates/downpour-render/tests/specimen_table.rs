@@ -172,7 +172,7 @@ fn a_streak_before_dark_ground_has_the_light_of_the_exact_one() {
         (1.0, 0.9, Amplitudes::NONE, 0.0),
         (2.0, 0.6, Amplitudes::GARG_NAYAR_OBLATE, 0.0),
         (3.0, 0.8, Amplitudes::NONE, 0.02),
-        (5.0, 1.1, Amplitudes::NONE, 0.0),
+        (5.0, 0.8, Amplitudes::NONE, 0.0),
     ] {
         let radiance = sky_above(dark);
         let sky = Sky::new(96, 48, &radiance).unwrap();
@@ -194,10 +194,10 @@ fn a_lamp_lights_the_streak() {
     for (diameter, yaw, height, radius) in [
         (2.0, 160.0f64, 0.03, 4.0f64),
         (3.0, 182.0, 0.03, 1.0),
+        (1.0, 140.0, 0.0, 3.0),
+        (0.5, 150.0, 0.1, 0.3),
         (2.0, 120.0, 0.2, 3.0),
-        (1.0, 90.0, 0.1, 4.0),
-        (4.0, 60.0, 0.4, 3.0),
-        (2.0, 40.0, 0.1, 4.0),
+        (0.5, 40.0, 0.0, 3.0),
     ] {
         let lamp = SpecimenLamp::new(yaw.to_radians(), height, radius.to_radians(), [300.0; 3]).unwrap();
         let lamps = [lamp];
@@ -242,12 +242,6 @@ fn what_has_no_table_is_refused() {
     for (diameter, options, sky, words) in [
         (0.49, fine, sky, ["diameter", "is 0.49 mm", "0.5 to 9"]),
         (2.0, SpecimenOptions { exposure_s: 0.0, ..fine }, sky, ["exposure", "is 0 s", "above 0"]),
-        (
-            2.0,
-            SpecimenOptions { exposure_s: 1.0e-4, ..fine },
-            sky,
-            ["length of a streak", "heights", "from 1"],
-        ),
         (
             2.0,
             SpecimenOptions { distance_m: 0.021, ..fine },

@@ -107,8 +107,8 @@ shared_constants! {
         STREAK_SPOT_LATER: f32 = 0.5698403;
         /// A lamp is looked for this share of a patch's size from its middle.
         STREAK_SPOT_REACH: f32 = 0.75;
-        /// Radius of a disc that a patch's points do not miss, over their distance.
-        STREAK_SPOT_WIDTH: f32 = 0.9;
+        /// Radius of a round spot over whose points a patch's light is shared evenly enough, over their distance.
+        STREAK_SPOT_WIDTH: f32 = 1.8;
         /// A patch counts as no narrower than this share of its length, for its points.
         STREAK_SPOT_NARROW: f32 = 0.2;
         /// The same for the width over which the surroundings are averaged.
@@ -127,6 +127,8 @@ shared_constants! {
         STREAK_PI: f32 = 3.1415927;
         /// Step of the lattice of a pixel's samples.
         STREAK_LATTICE: u32 = 3;
+        /// Shift of these samples from line to line: the golden ratio's part of 2^32.
+        STREAK_GOLDEN: u32 = 2_654_435_769;
         /// The least width of a glint, in radii.
         DROPS_GLINT: f32 = 0.03;
         /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disc.

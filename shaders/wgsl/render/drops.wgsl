@@ -195,6 +195,12 @@ fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> v
     return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * ((chord.high - chord.low) * 0.5);
 }
 
+// The share of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet the thin
+// image of a lamp in it, or miss it, alike.
+fn drops_shift(line: u32) -> f32 {
+    return f32((line * STREAK_GOLDEN) >> 8u) / 16777216.0;
+}
+
 // The streak of a drop over a pixel: radiance times coverage, and coverage.
 fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     let size = vec2f(f32(drops_frame.width), f32(drops_frame.height));
@@ -209,11 +215,12 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     }
     let right = drops_mask_right(drop.towards);
     let up = cross(right, drop.towards);
+    let shift = vec2f(drops_shift(y), drops_shift(x));
     var sum = vec4f(0.0);
     for (var k = 0u; k < drop.grid; k += 1u) {
         // A lattice whose points differ in every direction.
         let turned = (k * STREAK_LATTICE) % drop.grid;
-        let at = vec2f(f32(x), f32(y)) + (vec2f(f32(k), f32(turned)) + 0.5) / f32(drop.grid);
+        let at = vec2f(f32(x), f32(y)) + (vec2f(f32(k), f32(turned)) + shift) / f32(drop.grid);
         let ray = drops_frame_ray(at.x, at.y);
         let lean = drops_on_plane(drop.towards, ray);
         let place = vec2f(dot(lean, right), dot(lean, up));

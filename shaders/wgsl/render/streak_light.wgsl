@@ -3,7 +3,7 @@
 // Law: the light that a ray brings is that of the directions in which it leaves the drop, weighted by what Fresnel's equations
 // give each. Between the rays that were traced, directions go as a polynomial of degree two across, along and in time, from ray to
 // ray that pass as many interfaces. So the ray's own patch of the drop is known: how wide the surroundings are averaged, and where
-// in the patch a lamp shines, whose disc (or, where the patch's points are farther apart, a disc as wide as that) is sampled.
+// in the patch a lamp shines, whose disc (or, where the patch's points are farther apart, a spot that some of them meet) is sampled.
 // What is lost inside shows the mean of all that is about, without lamps: it goes round the rim, and comes out there.
 // Layout: behind the chords of streak_rays.wgsl, for each row of the profile and each fine column the light of the chord's first
 // part, of the first two, three and of all four, each over the length of the whole chord.
@@ -178,12 +178,13 @@ fn streak_light_spot(
     var spots = vec4f(0.0);
     let middle = streak_light_direction(ray, vec3f(0.0, 0.0, later)) - lamp;
     let moves = sqrt(dot(ray.later.first, ray.later.first)) * span;
-    if sqrt(dot(middle, middle)) > reach + STREAK_SPOT_REACH * (size.x + size.y + moves) {
-        return spots;
-    }
     let least = STREAK_SPOT_NARROW;
     let area = max(size.x, least * size.y) * max(size.y, least * size.x);
-    let wide = max(reach, STREAK_SPOT_WIDTH * sqrt(area / f32(STREAK_SPOTS)));
+    let spot = STREAK_SPOT_WIDTH * sqrt(area / f32(STREAK_SPOTS));
+    let wide = max(reach, spot);
+    if sqrt(dot(middle, middle)) > wide + STREAK_SPOT_REACH * (size.x + size.y + moves) {
+        return spots;
+    }
     let radiance = f32(fine) / (f32(STREAK_SPOTS) * STREAK_PI * wide * wide);
     for (var k = 0u; k < STREAK_SPOTS; k += 1u) {
         let number = f32(k) + 0.5;
@@ -191,8 +192,11 @@ fn streak_light_spot(
         let point = fract(number * steps + shift);
         let place = point - 0.5;
         let apart = streak_light_direction(ray, vec3f(place.xy, later + place.z * span)) - lamp;
-        if dot(apart, apart) < wide * wide {
-            spots[min(u32(point.x * f32(fine)), fine - 1u)] += radiance;
+        let off = dot(apart, apart) / (wide * wide);
+        if off < 1.0 {
+            // A disc, or a spot that fades towards its edge.
+            let faded = select(1.0, 2.0 * (1.0 - off), spot > reach);
+            spots[min(u32(point.x * f32(fine)), fine - 1u)] += radiance * faded;
         }
     }
     return spots;

@@ -379,6 +379,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_spots",
             "drops_lines",
             "drops_facing",
+            "drops_shift",
             "drops_line",
             "drops_glint_width",
             "drops_turns",

@@ -5,7 +5,7 @@ use downpour_math::ops;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
     DROPS_ATLAS_TAPS, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL, DROPS_TABLE,
-    DROPS_TILE, STREAK_FINE, STREAK_LATTICE, STREAK_WHITE,
+    DROPS_TILE, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -34,6 +34,13 @@ pub fn drops_on_plane(towards: Vec3, ray: Vec3) -> Vec3 {
 #[must_use]
 pub fn drops_line(off: f32, width: f32) -> f32 {
     DROPS_LINE / width * ops::exp(-0.5 * off * off / (width * width))
+}
+
+/// The share of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet
+/// the thin image of a lamp in it, or miss it, alike.
+#[must_use]
+pub fn drops_shift(line: u32) -> f32 {
+    (line.wrapping_mul(STREAK_GOLDEN) >> 8) as f32 / 16_777_216.0
 }
 
 /// The phase of the mode (2,0), in turns, where a passing drop is at a share of its way.
@@ -246,12 +253,13 @@ impl Buffers<'_> {
         let towards = Vec3::from(drop.towards);
         let right = drops_mask_right(towards);
         let up = right.cross(towards);
+        let shift = Vec2::new(drops_shift(y), drops_shift(x));
         let mut sum = Vec4::ZERO;
         for k in 0..drop.grid {
             // A lattice whose points differ in every direction.
             let turned = (k * STREAK_LATTICE) % drop.grid;
-            let at =
-                Vec2::new(x as f32, y as f32) + (Vec2::new(k as f32, turned as f32) + 0.5) / drop.grid as f32;
+            let at = Vec2::new(x as f32, y as f32)
+                + (Vec2::new(k as f32, turned as f32) + shift) / drop.grid as f32;
             let ray = self.view.drops_frame_ray(at.x, at.y);
             let lean = drops_on_plane(towards, ray);
             let place = Vec2::new(lean.dot(right), lean.dot(up));

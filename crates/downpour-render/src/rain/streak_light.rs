@@ -132,12 +132,13 @@ fn streak_light_spot(
     let mut spots = [0.0; FINE];
     let middle = streak_light_direction(ray, Vec3::new(0.0, 0.0, later)) - lamp;
     let moves = ray.later.first.dot(ray.later.first).sqrt() * span;
-    if middle.dot(middle).sqrt() > reach + STREAK_SPOT_REACH * (size.x + size.y + moves) {
-        return spots;
-    }
     let area = size.x.max(STREAK_SPOT_NARROW * size.y) * size.y.max(STREAK_SPOT_NARROW * size.x);
     let count = STREAK_SPOTS as f32;
-    let wide = reach.max(STREAK_SPOT_WIDTH * (area / count).sqrt());
+    let spot = STREAK_SPOT_WIDTH * (area / count).sqrt();
+    let wide = reach.max(spot);
+    if middle.dot(middle).sqrt() > wide + STREAK_SPOT_REACH * (size.x + size.y + moves) {
+        return spots;
+    }
     let radiance = fine as f32 / (count * STREAK_PI * wide * wide);
     for k in 0..STREAK_SPOTS {
         let number = k as f32 + 0.5;
@@ -145,8 +146,11 @@ fn streak_light_spot(
         let point = (steps * number + shift).fract();
         let place = point - 0.5;
         let apart = streak_light_direction(ray, Vec3::new(place.x, place.y, later + place.z * span)) - lamp;
-        if apart.dot(apart) < wide * wide {
-            spots[((point.x * fine as f32) as u32).min(fine - 1) as usize] += radiance;
+        let off = apart.dot(apart) / (wide * wide);
+        if off < 1.0 {
+            // A disc, or a spot that fades towards its edge.
+            let faded = if spot > reach { 2.0 * (1.0 - off) } else { 1.0 };
+            spots[((point.x * fine as f32) as u32).min(fine - 1) as usize] += radiance * faded;
         }
     }
     spots

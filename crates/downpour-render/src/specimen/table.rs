@@ -4,9 +4,8 @@
 //! exposure, oscillation and phases before the same map, drawn by [`rain`](crate::rain) with the options that a picture of a
 //! scene has. What is not covered is the map itself, sampled as there.
 //!
-//! A lamp far away is parallel light for the renderer, and kept out of the capture: the light that a sphere scatters, with its
-//! glints ([`light`](crate::rain::light)). It has no size then, so that only small discs are taken
-//! ([`LARGEST_TABLE_LAMP_DEG`]). In the background they are discs.
+//! A lamp far away is parallel light for the renderer, kept out of the capture: the profile of the streak looks for its disc. A
+//! disc has to be small for that ([`LARGEST_TABLE_LAMP_DEG`]).
 //!
 //! Source: P. Rousseau et al., "GPU rainfall", 2008, section 2.2.3, for the oscillation of the outline; the table is
 //! described in `shaders/wgsl/render/streak_lookup.wgsl`.
@@ -18,10 +17,9 @@ use downpour_drop::oscillation::{Amplitudes, drop_oscillation_phase};
 use downpour_math::rng::seed_words;
 use downpour_math::vector::{add, scale};
 use downpour_scene::sky::{SUN_THRESHOLD, SkyMap};
-use downpour_shaders::render::rain::{DROPS_STILL, DROPS_TABLE};
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_SKY_LEVELS};
 use downpour_sim::field::{DropKind, FallingDrop};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::motion::fall_speed;
@@ -78,7 +76,7 @@ pub(crate) struct TableStreak {
 ///
 /// # Errors
 /// What [`SpecimenOptions::check`] and [`check_specimen_table`] say; [`SpecimenError::Render`] for a field of view below
-/// 0.006 degrees; [`SpecimenError::OutOfRange`] for a streak that is shorter than its drop, which has no table.
+/// 0.006 degrees.
 pub fn render_specimen_table(
     shape: &DropShape,
     options: &SpecimenOptions,
@@ -186,7 +184,6 @@ impl TableStreak {
         };
         let mut rain = Rain::new(&frame, eye, &[drop], &masks, &of_rain);
         for drop in &mut rain.list {
-            check_table(drop)?;
             set_phases(drop, options);
         }
         for path in &mut rain.profiles.paths {
@@ -267,20 +264,6 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
         .into_par_iter()
         .flat_map_iter(|row| (0..width).map(move |column| pixel(column, row)))
         .collect()
-}
-
-/// Whether the renderer takes a table for this drop.
-fn check_table(drop: &DropsDrop) -> Result<(), SpecimenError> {
-    // What is not sampled shows the mean that the table has of its drop.
-    if drop.kind == DROPS_TABLE || (drop.kind != DROPS_STILL && drop.grid == 0) {
-        return Ok(());
-    }
-    Err(SpecimenError::OutOfRange {
-        quantity: "length of a streak by the table",
-        found: f64::from(Vec2::from(drop.along).length() / (2.0 * drop.slope * drop.oval[1])),
-        unit: "heights of its drop, as seen",
-        allowed: "from 1 (shorter ones are drawn without a table)".to_owned(),
-    })
 }
 
 /// Gives a drop the phases of the specimen, and the lobe of the mode (3,1) its place towards +X.
