@@ -105,7 +105,10 @@ fn streak_lookup_sum(passage: StreakPassage, sums: u32) -> vec3f {
 fn streak_lookup_until(passage: StreakPassage, place: f32) -> vec3f {
     let at = streak_place_index(place, STREAK_SUMS);
     let low = min(u32(at), STREAK_SUMS - 1u);
-    let part = at - f32(low);
+    // By length: in uniform surroundings light goes as coverage does.
+    let first = streak_place_position(f32(low), STREAK_SUMS);
+    let length = streak_place_position(f32(low + 1u), STREAK_SUMS) - first;
+    let part = clamp((place - first) / length, 0.0, 1.0);
     return streak_lookup_sum(passage, low) * (1.0 - part) + streak_lookup_sum(passage, low + 1u) * part;
 }
 

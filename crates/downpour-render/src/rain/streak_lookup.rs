@@ -4,7 +4,7 @@ use downpour_shaders::render::rain::{STREAK_RAYS, STREAK_SUMS};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::streak::{DropsDrop, streak_depth, streak_nearest, streak_time};
-use super::streak_place::streak_place_index;
+use super::streak_place::{streak_place_index, streak_place_position};
 
 /// Entries of the mean of a class of drops.
 pub(super) const STREAK_MEAN_ENTRIES: u32 = STREAK_RAYS * STREAK_RAYS;
@@ -122,7 +122,10 @@ impl StreakTable {
     fn streak_lookup_until(&self, passage: &StreakPassage, place: f32) -> Vec3 {
         let at = streak_place_index(place, STREAK_SUMS);
         let low = (at as u32).min(STREAK_SUMS - 1);
-        let part = at - low as f32;
+        // By length: in uniform surroundings light goes as coverage does.
+        let first = streak_place_position(low as f32, STREAK_SUMS);
+        let length = streak_place_position((low + 1) as f32, STREAK_SUMS) - first;
+        let part = ((place - first) / length).clamp(0.0, 1.0);
         self.streak_lookup_sum(passage, low) * (1.0 - part) + self.streak_lookup_sum(passage, low + 1) * part
     }
 
