@@ -240,8 +240,8 @@ fn unresolved_drops_scatter_lamps_as_single_scattering_says() -> Outcome {
         let half = ops::tan(0.45);
         let (mut sum, mut of_truth) = (0.0, 0.0);
         for (i, pixel) in layer.iter().enumerate() {
-            let x = (i as u32 % size[0]) as f64 + 0.5;
-            let y = (i as u32 / size[0]) as f64 + 0.5;
+            let x = f64::from(i as u32 % size[0]) + 0.5;
+            let y = f64::from(i as u32 / size[0]) + 0.5;
             let [u, v] = [x / 8.0 - 1.0, 1.0 - y / 6.0];
             let direction = DVec3::new(u * half * 16.0 / 12.0, v * half, -1.0);
             let far = distance * direction.length();

@@ -47,7 +47,7 @@ shared_constants! {
         /// Intervals of the scattering angle.
         MEDIUM_ANGLES: u32 = 256;
         /// Parts of a ray for each lamp, at most: a slice each, cut where the direction to the lamp turns by more than
-        /// MEDIUM_TURN.
+        /// `MEDIUM_TURN`.
         MEDIUM_PARTS: u32 = 32;
         /// Angle, radians: 13 parts of half a turn.
         MEDIUM_TURN: f32 = 0.25;
