@@ -120,11 +120,9 @@ shared_constants! {
         /// See `STREAK_SPOT_FIRST`.
         STREAK_SPOT_THIRD: f32 = 0.5497005;
         /// Half a right angle's worth of columns: pi / 2.
-        STREAK_QUARTER: f32 = std::f32::consts::FRAC_PI_2;
+        STREAK_QUARTER: f32 = 1.5707964;
         /// 2 pi.
-        STREAK_TURN: f32 = std::f32::consts::TAU;
-        /// pi.
-        STREAK_PI: f32 = std::f32::consts::PI;
+        STREAK_TURN: f32 = 6.2831855;
         /// Step of the lattice of a pixel's samples.
         STREAK_LATTICE: u32 = 3;
         /// Shift of these samples from line to line: the golden ratio's part of 2^32.

@@ -185,7 +185,7 @@ fn streak_light_spot(
     if sqrt(dot(middle, middle)) > wide + STREAK_SPOT_REACH * (size.x + size.y + moves) {
         return spots;
     }
-    let radiance = f32(fine) / (f32(STREAK_SPOTS) * STREAK_PI * wide * wide);
+    let radiance = f32(fine) / (f32(STREAK_SPOTS) * 2.0 * STREAK_QUARTER * wide * wide);
     for (var k = 0u; k < STREAK_SPOTS; k += 1u) {
         let number = f32(k) + 0.5;
         let steps = vec3f(1.0 / f32(STREAK_SPOTS), STREAK_SPOT_ALONG, STREAK_SPOT_LATER);

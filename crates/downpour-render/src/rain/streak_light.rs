@@ -3,7 +3,7 @@
 use downpour_math::packing::{packing_octahedral_decode, packing_unpack_snorm, packing_unpack_unorm};
 use downpour_shaders::render::drop_light::DROP_GLINT_TINY;
 use downpour_shaders::render::rain::{
-    DROPS_SHIFT, STREAK_EXITS, STREAK_LAMPS, STREAK_NARROWEST, STREAK_PI, STREAK_SPOT_ALONG,
+    DROPS_SHIFT, STREAK_EXITS, STREAK_LAMPS, STREAK_NARROWEST, STREAK_QUARTER, STREAK_SPOT_ALONG,
     STREAK_SPOT_FIRST, STREAK_SPOT_LATER, STREAK_SPOT_NARROW, STREAK_SPOT_REACH, STREAK_SPOT_SECOND,
     STREAK_SPOT_THIRD, STREAK_SPOT_WIDTH, STREAK_SPOTS, STREAK_SUMS,
 };
@@ -139,7 +139,7 @@ fn streak_light_spot(
     if middle.dot(middle).sqrt() > wide + STREAK_SPOT_REACH * (size.x + size.y + moves) {
         return spots;
     }
-    let radiance = fine as f32 / (count * STREAK_PI * wide * wide);
+    let radiance = fine as f32 / (count * 2.0 * STREAK_QUARTER * wide * wide);
     for k in 0..STREAK_SPOTS {
         let number = k as f32 + 0.5;
         let steps = Vec3::new(1.0 / count, STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
