@@ -125,8 +125,8 @@ shared_constants! {
         STREAK_TURN: f32 = 6.2831855;
         /// Step of the lattice of a pixel's samples.
         STREAK_LATTICE: u32 = 3;
-        /// Shift of these samples from line to line: the golden ratio's part of 2^32.
-        STREAK_GOLDEN: u32 = 2_654_435_769;
+        /// Shift of these samples from line to line: the golden ratio's part of 2^16.
+        STREAK_GOLDEN: u32 = 40503;
         /// The least width of a glint, in radii.
         DROPS_GLINT: f32 = 0.03;
         /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disc.

@@ -198,7 +198,7 @@ fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> v
 // The share of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet the thin
 // image of a lamp in it, or miss it, alike.
 fn drops_shift(line: u32) -> f32 {
-    return f32((line * STREAK_GOLDEN) >> 8u) / 16777216.0;
+    return f32((line * STREAK_GOLDEN) & 0xffffu) / 65536.0;
 }
 
 // The streak of a drop over a pixel: radiance times coverage, and coverage.

@@ -40,7 +40,7 @@ pub fn drops_line(off: f32, width: f32) -> f32 {
 /// the thin image of a lamp in it, or miss it, alike.
 #[must_use]
 pub fn drops_shift(line: u32) -> f32 {
-    (line.wrapping_mul(STREAK_GOLDEN) >> 8) as f32 / 16_777_216.0
+    (line.wrapping_mul(STREAK_GOLDEN) & 0xffff) as f32 / 65_536.0
 }
 
 /// The phase of the mode (2,0), in turns, where a passing drop is at a share of its way.
