@@ -250,6 +250,7 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
         let number = f32((row * path.columns + column) * path.columns + tap);
         let shift = fract(number * vec3f(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD));
         var even = none + streak_light_facing(path, first_lamp, view, i32(nearest), i32(column), i32(tap));
+        var seen = vec3f(0.0);
         var rest = 1.0;
         for (var exit = 0u; exit <= STREAK_EXITS; exit += 1u) {
             let ray = streak_light_patch(path, i32(nearest), i32(column), i32(tap), exit);
@@ -263,7 +264,7 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
             let size = streak_light_size(ray, later);
             let width = max(sqrt(size.x * size.y), STREAK_NARROWEST * max(size.x, size.y));
             let direction = streak_light_direction(ray, vec3f(0.0, 0.0, later));
-            even += drops_capture_about(drop.towards, direction, width) * shown;
+            seen += drops_capture_about(drop.towards, direction, width) * shown;
             for (var k = 0u; k < STREAK_LAMPS; k += 1u) {
                 let lamp = streak_light_lamps[first_lamp + 1u + 2u * k];
                 if lamp.w <= 0.0 {
@@ -276,7 +277,9 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
                 }
             }
         }
-        even += lost * select(max(rest, 0.0), 0.0, drops_frame.form == DROPS_SHIFT);
+        // Between rows shares may sum to a little more than all.
+        let whole = select(max(1.0 - rest, 1.0), 1.0, drops_frame.form == DROPS_SHIFT);
+        even += seen / whole + lost * select(max(rest, 0.0), 0.0, drops_frame.form == DROPS_SHIFT);
         for (var part = 0u; part < fine; part += 1u) {
             sums[part] += even * weight;
         }

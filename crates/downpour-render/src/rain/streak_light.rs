@@ -244,7 +244,8 @@ impl Streak<'_> {
                 (Vec3::new(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD) * number).fract();
             let place = [nearest, column, tap].map(|n| n as i32);
             let mut even = none + self.streak_light_facing(view, place);
-            let mut rest = 1.0;
+            let mut seen = Vec3::ZERO;
+            let mut rest = 1.0f32;
             for exit in 0..=STREAK_EXITS as usize {
                 let ray = self.streak_light_patch(place, exit);
                 if ray.middle.passed == 0 {
@@ -261,7 +262,7 @@ impl Streak<'_> {
                 let size = streak_light_size(&ray, later);
                 let width = (size.x * size.y).sqrt().max(STREAK_NARROWEST * size.x.max(size.y));
                 let direction = streak_light_direction(&ray, Vec3::new(0.0, 0.0, later));
-                even += self.view.drops_capture_about(self.drop.towards.into(), direction, width) * shown;
+                seen += self.view.drops_capture_about(self.drop.towards.into(), direction, width) * shown;
                 for (lamp, towards) in self.lamps().filter(|(lamp, _)| lamp.w > 0.0) {
                     let time = [later, rays_per_row];
                     let spots = streak_light_spot(&ray, time, size, towards, lamp.w, path.fine, shift);
@@ -270,7 +271,9 @@ impl Streak<'_> {
                     }
                 }
             }
-            even += lost * if shifts { 0.0 } else { rest.max(0.0) };
+            // Between rows shares may sum to a little more than all.
+            let whole = if shifts { 1.0 } else { (1.0 - rest).max(1.0) };
+            even += seen / whole + lost * if shifts { 0.0 } else { rest.max(0.0) };
             for sum in &mut sums[..fine] {
                 *sum += even * weight;
             }
