@@ -2,7 +2,7 @@
 
 use crate::bvh::BVH;
 use crate::common::RNG;
-use crate::drop::{optics, shape};
+use crate::drop::{optics, oscillation, shape};
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -13,6 +13,7 @@ pub const MODULES: &[&Module] = &[
     &SILHOUETTE,
     &DROP,
     &MODEL,
+    &WOBBLE,
     &ATLAS_CONSTANTS,
     &ATLAS,
     &ATLAS_DATA,
@@ -50,6 +51,14 @@ shared_constants! {
         MASK_MODEL_SUBSAMPLES: u32 = 8;
         /// Below this, a squared length has no direction.
         MASK_TINY: f32 = 1.0e-20;
+        /// Newton steps to a point of the surface of a drop that oscillates.
+        MASK_WOBBLE_STEPS: u32 = 6;
+        /// Steps to the point of a line that is nearest to it, from a guess.
+        MASK_WOBBLE_NEAREST_STEPS: u32 = 2;
+        /// Interfaces inside that are followed, total reflections included.
+        MASK_WOBBLE_BOUNCES: u32 = 12;
+        /// Exits from inside that are told apart.
+        MASK_WOBBLE_EXITS: u32 = 3;
     }
 }
 
@@ -58,6 +67,13 @@ pub static TRACE: Module = Module {
     path: "mask/trace.wgsl",
     wgsl: include_str!("../wgsl/mask/trace.wgsl"),
     uses: &[&MASK_CONSTANTS, &shape::SHAPE, &optics::OPTICS],
+};
+
+/// A ray through a drop that oscillates. Twin: `downpour_mask::wobble`.
+pub static WOBBLE: Module = Module {
+    path: "mask/wobble.wgsl",
+    wgsl: include_str!("../wgsl/mask/wobble.wgsl"),
+    uses: &[&MASK_CONSTANTS, &TRACE, &shape::SHAPE, &optics::OPTICS, &oscillation::OSCILLATION],
 };
 
 /// The outline of a drop in a pixel. Twin: `downpour_mask::silhouette`.

@@ -19,7 +19,7 @@ use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
-use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakShape};
+use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakPath, StreakRay};
 use downpour_render::specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_render::trace::{TraceGather, TraceSlot};
 use downpour_shaders::render::specimen;
@@ -59,7 +59,8 @@ fn hosts() -> Vec<Host> {
         host!(DropOscillation as "DropOscillation" in &drop::oscillation::OSCILLATION,
             amplitude, damping, phase, frequency),
         host!(DropOscillationTime as "DropOscillationTime" in &drop::oscillation::OSCILLATION, ticks, offset),
-        host!(MaskTexel as "MaskTexel" in &mask::TEXEL, direction, coverage, reflected, transmittance, reflections),
+        host!(MaskTexel as "MaskTexel" in &mask::TEXEL, direction, coverage, reflected, transmittance, internal,
+            internal_transmittance, reflections),
         host!(DropUniform as "MaskTracedDrop" in &mask::TRACE,
             shape, up, index, inverse_wide, inverse_tall, pixel, size),
         host!(ModelUniform as "MaskModelParameters" in &mask::MODEL, front, index, pixel, size, first_row),
@@ -86,9 +87,11 @@ fn hosts() -> Vec<Host> {
             depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
             towards, distance, place, slope, half_extent, row, area, grid, start, along, first, way, oval, recede,
-            swing, turns, share, spread, nearest, kind, shape, unused),
-        host!(StreakShape as "StreakShape" in &render::rain::STREAK_TABLE,
-            velocity, row, half_extent, wanted, unused, ovals),
+            swing, turns, share, spread, nearest, kind, shape, profile),
+        host!(StreakPath as "StreakPath" in &render::rain::STREAK_PATH,
+            shape, volume, volume_last, wide, tall, index, lobe, amplitudes, rows, columns, profile_rows, fine,
+            first_ray, first_entry, drop, unused),
+        host!(StreakRay as "StreakRay" in &render::rain::STREAK_RAY, exits, shares, interfaces, unused),
         host!(DropLightFrame as "DropLightFrame" in &render::drop_light::DROP_LIGHT,
             count, form, glints, first_light),
         host!(GlassPictureDrop as "GlassPictureDrop" in &render::glass::WATER,

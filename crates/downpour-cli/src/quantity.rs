@@ -89,23 +89,23 @@ pub(crate) fn exposure_s(text: &str) -> Result<f64, String> {
     read(text, &(0.0..=LONGEST_EXPOSURE_S), "0 to 1 s")
 }
 
-/// How the streak of a specimen is made.
+/// How a specimen is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum StreakOfSpecimen {
-    /// Exactly, with so many instants for each sample of a pixel.
-    Instants(u32),
-    /// As the renderer of rain does it, by its table.
+pub(crate) enum SpecimenSamples {
+    /// Exactly: samples along an edge of a pixel for a drop at rest, instants for each sample for a streak.
+    Number(u32),
+    /// As the renderer of rain draws a streak, by its table.
     Table,
 }
 
-/// Instants of an exposure, or `table`. Any whole number is read: what is too large is over a limit.
-pub(crate) fn streak_of_specimen(text: &str) -> Result<StreakOfSpecimen, String> {
+/// Samples of a specimen, or `table`. Any whole number is read: what is too large is over a limit.
+pub(crate) fn specimen_samples(text: &str) -> Result<SpecimenSamples, String> {
     let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     match text.parse::<u32>() {
-        _ if text == "table" => Ok(StreakOfSpecimen::Table),
-        Ok(n @ 1..) => Ok(StreakOfSpecimen::Instants(n)),
-        Err(_) if digits => Ok(StreakOfSpecimen::Instants(u32::MAX)),
-        _ => Err("allowed: a whole number from 1 to 4096, or table".to_owned()),
+        _ if text == "table" => Ok(SpecimenSamples::Table),
+        Ok(n @ 1..) => Ok(SpecimenSamples::Number(n)),
+        Err(_) if digits => Ok(SpecimenSamples::Number(u32::MAX)),
+        _ => Err("allowed: a whole number from 1 to 4096 (of a drop at rest: to 16), or table".to_owned()),
     }
 }
 

@@ -25,6 +25,8 @@ struct Texel<R> {
     coverage: R,
     reflected: [R; 3],
     transmittance: R,
+    internal: [R; 3],
+    internal_transmittance: R,
     reflections: R,
 }
 
@@ -40,6 +42,8 @@ fn mask_drop_texel<R: Real>(drop: &TracedDrop, pixel: R, x: R, y: R) -> Texel<R>
             coverage: zero,
             reflected: [zero; 3],
             transmittance: zero,
+            internal: [zero; 3],
+            internal_transmittance: zero,
             reflections: zero,
         };
     }
@@ -50,6 +54,8 @@ fn mask_drop_texel<R: Real>(drop: &TracedDrop, pixel: R, x: R, y: R) -> Texel<R>
         coverage: keep(cut.coverage),
         reflected: through.reflected.map(keep),
         transmittance: keep(through.transmittance),
+        internal: through.internal.map(keep),
+        internal_transmittance: keep(through.internal_transmittance),
         reflections: keep(through.reflections),
     }
 }
@@ -61,6 +67,8 @@ impl Texel<f32> {
             coverage: self.coverage,
             reflected: self.reflected,
             transmittance: self.transmittance,
+            internal: self.internal,
+            internal_transmittance: self.internal_transmittance,
             reflections: self.reflections as u32,
             padding: [0; 3],
         }
@@ -167,12 +175,28 @@ impl Row<'_> {
     fn write<S: Simd>(&mut self, column: usize, count: usize, texel: &Texel<Lanes<S>>) {
         let [dx, dy, dz] = texel.direction;
         let [rx, ry, rz] = texel.reflected;
-        let mut columns = [[0.0f32; MOST_LANES]; 9];
-        let fields = [dx, dy, dz, texel.coverage, rx, ry, rz, texel.transmittance, texel.reflections];
-        for (field, into) in fields.into_iter().zip(&mut columns) {
+        let [ix, iy, iz] = texel.internal;
+        let mut columns = [[0.0f32; MOST_LANES]; 13];
+        let shares = [texel.coverage, texel.transmittance, texel.internal_transmittance, texel.reflections];
+        let fields = [dx, dy, dz, rx, ry, rz, ix, iy, iz].into_iter().chain(shares);
+        for (field, into) in fields.zip(&mut columns) {
             field.store(into);
         }
-        let [dx, dy, dz, coverage, rx, ry, rz, transmittance, reflections] = &columns;
+        let [
+            dx,
+            dy,
+            dz,
+            rx,
+            ry,
+            rz,
+            ix,
+            iy,
+            iz,
+            coverage,
+            transmittance,
+            internal_transmittance,
+            reflections,
+        ] = &columns;
         let last = self.texels.len() - 1;
         for k in 0..count {
             let right = MaskTexel {
@@ -180,12 +204,15 @@ impl Row<'_> {
                 coverage: coverage[k],
                 reflected: [rx[k], ry[k], rz[k]],
                 transmittance: transmittance[k],
+                internal: [ix[k], iy[k], iz[k]],
+                internal_transmittance: internal_transmittance[k],
                 reflections: reflections[k] as u32,
                 padding: [0; 3],
             };
             let mut left = right;
             left.direction[0] = -left.direction[0];
             left.reflected[0] = -left.reflected[0];
+            left.internal[0] = -left.internal[0];
             // The middle column of an odd size is its own mirror: the right one is written last.
             self.texels[last - (column + k)] = left;
             self.texels[column + k] = right;
@@ -229,6 +256,8 @@ pub fn trace_drop_f64(shape: &DropShape, options: &MaskOptions) -> Result<Mask, 
                 coverage: round(texel.coverage),
                 reflected: texel.reflected.map(round),
                 transmittance: round(texel.transmittance),
+                internal: texel.internal.map(round),
+                internal_transmittance: round(texel.internal_transmittance),
                 reflections: round(texel.reflections),
             }
             .store()

@@ -6,7 +6,7 @@
 //! | format | holds | for |
 //! |---|---|---|
 //! | [`exr`] | one mask, all of it, f32 or half | measuring, compositing |
-//! | [`ktx2`] | an array of masks over diameters, two half layers each | textures of an engine |
+//! | [`ktx2`] | an array of masks over diameters, three half layers each | textures of an engine |
 //! | [`png`] | the directions as colours | looking at |
 
 pub mod exr;
@@ -27,7 +27,7 @@ pub(crate) struct Description {
 }
 
 /// Version of the description. Another one is refused.
-const VERSION: &str = "1";
+const VERSION: &str = "2";
 
 impl Description {
     pub(crate) fn write(&self) -> String {
@@ -43,7 +43,7 @@ impl Description {
     }
 
     pub(crate) fn read(place: &'static str, text: &str) -> Result<Self, MaskError> {
-        const ALLOWED: &str = "version=1;diameter_mm=..;half_extent=..;elevation_deg=..;refractive_index=..";
+        const ALLOWED: &str = "version=2;diameter_mm=..;half_extent=..;elevation_deg=..;refractive_index=..";
         let bad = || MaskError::File { place, found: shorten(text), allowed: ALLOWED };
         let value = |key: &str| {
             text.split(';').find_map(|pair| pair.split_once('=').filter(|(k, _)| *k == key)).map(|(_, v)| v)

@@ -4,6 +4,7 @@
 //!   ([`trace`]), with the covered share of each texel ([`silhouette`]); [`trace_drop_scalar`] is the twin of the GPU's
 //!   kernel, [`trace_drop_f64`] the reference above both;
 //! - [`trace_model`]: the same for any closed mesh ([`ClosedMesh`]) through a hierarchy of boxes ([`downpour_bvh`]);
+//! - [`wobble`]: a ray through a drop that oscillates;
 //! - [`atlas`]: streaks of drops that fall and oscillate, by the directions of light and viewer;
 //! - `gpu` (feature `wgpu`): both on a GPU;
 //! - [`mod@file`]: OpenEXR, KTX2, PNG.
@@ -23,6 +24,7 @@ mod model;
 pub mod silhouette;
 pub mod trace;
 mod view;
+pub mod wobble;
 
 pub use closed_mesh::{ClosedMesh, MOST_TRIANGLES};
 pub use drop::{LOST, trace_drop, trace_drop_f64, trace_drop_scalar};

@@ -20,7 +20,12 @@ pub struct MaskTexel {
     pub reflected: [f32; 3],
     /// Share of unpolarised light that comes through both interfaces, in [0, 1].
     pub transmittance: f32,
-    /// Total reflections inside the drop on the way; 5 where the light did not find out.
+    /// Direction in which the scene is seen by light that was reflected inside once without being totally reflected, of
+    /// length 1; 0 where nothing was traced.
+    pub internal: [f32; 3],
+    /// Share of unpolarised light that comes so, in [0, 1].
+    pub internal_transmittance: f32,
+    /// Total reflections inside the drop before `direction`; 9 where the light did not find out.
     pub reflections: u32,
     /// Padding of the WGSL layout.
     pub padding: [u32; 3],

@@ -1,20 +1,19 @@
 //! The mask of a drop given as a mesh. Twin of `shaders/wgsl/mask/model.wgsl`.
 //!
 //! Rays are the same as for a drop of revolution: refraction at the first surface, total reflections inside,
-//! refraction at the last. Normals are interpolated over the triangles. A texel whose corners and centre agree
+//! refraction at the last; and what is reflected inside once without being totally reflected. Normals are interpolated over the triangles. A texel whose corners and centre agree
 //! is covered or not; the others are sampled by 8 by 8 rays and traced at the middle of those that hit, or, at
 //! the nearest of them, if the middle misses.
 //!
 //! Limits: light that leaves the mesh and would enter it again (a hollow in the outline) is not followed.
 
 use downpour_drop::optics::{optics_fresnel_polarised, optics_reflect, optics_refract};
-use downpour_math::real::Real as _;
-use downpour_math::vector::{add_scaled, dot, normalize, scale};
+use downpour_math::vector::{add_scaled, normalize, scale};
 use downpour_shaders::mask::{MASK_MODEL_NEAREST, MASK_MODEL_SUBSAMPLES, MASK_TRACE_REFLECTIONS};
 use rayon::prelude::*;
 
 use crate::closed_mesh::ClosedMesh;
-use crate::trace::mask_trace_plane_turn;
+use crate::trace::{Exit, mask_trace_plane_turn, mask_trace_reflectance};
 use crate::{Mask, MaskError, MaskOptions, MaskTexel};
 use downpour_bvh::{Bvh, Hit};
 
@@ -66,46 +65,79 @@ impl TracedModel {
         normalize(add_scaled(add_scaled(first, b, hit.u), c, hit.v))
     }
 
+    /// Where light that starts at `start`, along `inside`, comes to leave, after total reflections; `None` if it does not. A
+    /// ray that finds no way out has slipped along an edge of the surface: it counts as lost.
+    fn mask_model_exit(&self, start: [f32; 3], inside: [f32; 3]) -> Option<Exit<f32>> {
+        let (mut point, mut inside) = (start, inside);
+        for reflections in 0..=MASK_TRACE_REFLECTIONS {
+            let hit = self.bvh.hit(point, inside, MASK_MODEL_NEAREST)?;
+            let normal = self.mask_model_normal(&hit);
+            point = add_scaled(point, inside, hit.distance);
+            let (outside, cos2) = optics_refract(inside, scale(normal, -1.0), self.index);
+            if cos2 >= 0.0 {
+                return Some(Exit {
+                    point,
+                    normal,
+                    inside,
+                    outside,
+                    reflections: reflections as f32,
+                    lost: 0.0,
+                });
+            }
+            inside = normalize(optics_reflect(inside, normal));
+        }
+        None
+    }
+
     /// The texel at (x, y) for a ray that hits at `hit`, with the coverage left at 0.
     fn mask_model_through(&self, x: f32, y: f32, hit: &Hit) -> MaskTexel {
         let incident = [0.0, 0.0, -1.0];
         let index = self.index;
-        let mut normal = self.mask_model_normal(hit);
-        let [entry_s, entry_p] = optics_fresnel_polarised(normal[2].max(0.0), index);
-        let reflectance = (entry_s + entry_p) * 0.5;
-        let reflected = normalize(optics_reflect(incident, normal));
-        let (refracted, _) = optics_refract(incident, normal, 1.0 / index);
-        let mut inside = normalize(refracted);
-        let mut point = [x, y, self.front - hit.distance];
-        let mut polarised = (entry_p - entry_s) * 0.5;
-        for reflections in 0..=MASK_TRACE_REFLECTIONS {
-            // A ray that finds no way out has slipped along an edge of the surface: it counts as lost.
-            let Some(next) = self.bvh.hit(point, inside, MASK_MODEL_NEAREST) else { break };
-            let exit_normal = self.mask_model_normal(&next);
-            point = add_scaled(point, inside, next.distance);
-            polarised *=
-                if reflections == 0 { mask_trace_plane_turn(inside, normal, exit_normal) } else { 0.0 };
-            normal = exit_normal;
-            let (outside, cos2) = optics_refract(inside, scale(normal, -1.0), index);
-            if cos2 >= 0.0 {
-                let cosine = dot(inside, normal).at_least(0.0);
-                let [exit_s, exit_p] = optics_fresnel_polarised(cosine, 1.0 / index);
-                let exit_mean = 1.0 - (exit_s + exit_p) * 0.5;
-                return MaskTexel {
-                    direction: normalize(outside),
-                    reflected,
-                    transmittance: (1.0 - reflectance) * exit_mean + polarised * (exit_p - exit_s) * 0.5,
-                    reflections,
-                    ..MaskTexel::default()
-                };
-            }
-            inside = normalize(optics_reflect(inside, normal));
+        let entry_normal = self.mask_model_normal(hit);
+        let [entry_s, entry_p] = optics_fresnel_polarised(entry_normal[2].max(0.0), index);
+        let entered = 1.0 - (entry_s + entry_p) * 0.5;
+        let reflected = normalize(optics_reflect(incident, entry_normal));
+        let (refracted, _) = optics_refract(incident, entry_normal, 1.0 / index);
+        let inside = normalize(refracted);
+        let Some(exit) = self.mask_model_exit([x, y, self.front - hit.distance], inside) else {
+            return MaskTexel {
+                direction: inside,
+                reflected,
+                internal: inside,
+                reflections: MASK_TRACE_REFLECTIONS + 1,
+                ..MaskTexel::default()
+            };
+        };
+        let mut polarised = 0.0;
+        if exit.reflections == 0.0 {
+            polarised = (entry_p - entry_s) * 0.5 * mask_trace_plane_turn(inside, entry_normal, exit.normal);
         }
-        MaskTexel {
-            direction: inside,
+        let [exit_s, exit_p] = mask_trace_reflectance(&exit, index);
+        let transmittance = entered * (1.0 - (exit_s + exit_p) * 0.5) + polarised * (exit_p - exit_s) * 0.5;
+        let direction = normalize(exit.outside);
+        let texel = MaskTexel {
+            direction,
             reflected,
-            reflections: MASK_TRACE_REFLECTIONS + 1,
+            transmittance,
+            internal: direction,
+            reflections: exit.reflections as u32,
             ..MaskTexel::default()
+        };
+        let back = normalize(optics_reflect(exit.inside, exit.normal));
+        let Some(second) = self.mask_model_exit(exit.point, back) else { return texel };
+        let kept = entered - transmittance;
+        let mut kept_polarised = (entered * (exit_s - exit_p) + polarised * (exit_s + exit_p)) * 0.5;
+        if second.reflections == 0.0 {
+            kept_polarised *= mask_trace_plane_turn(back, exit.normal, second.normal);
+        } else {
+            kept_polarised = 0.0;
+        }
+        let [second_s, second_p] = mask_trace_reflectance(&second, index);
+        MaskTexel {
+            internal: normalize(second.outside),
+            internal_transmittance: kept * (1.0 - (second_s + second_p) * 0.5)
+                + kept_polarised * (second_p - second_s) * 0.5,
+            ..texel
         }
     }
 

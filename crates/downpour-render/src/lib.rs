@@ -18,6 +18,7 @@ pub mod file;
 pub mod glass;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
+mod halves;
 pub mod light;
 pub mod material;
 pub mod path;

@@ -47,6 +47,15 @@ pub enum LightSource {
     },
 }
 
+impl SceneData {
+    /// Gives light `index` an angular radius, in radians: that of the disc that drops show of it. Without one it is the sun's.
+    pub(crate) fn set_light_radius(&mut self, index: u32, radius: f32) {
+        let row = (self.lights + index * SCENE_LIGHT_ROWS + 1) as usize;
+        // The chord from the middle to the edge.
+        self.table[row][3] = (2.0 * downpour_math::ops::sin(0.5 * radius)).to_bits();
+    }
+}
+
 impl LightSource {
     pub(crate) fn rows(&self) -> [[u32; 4]; ROWS] {
         let over_pi = |c: Vec3| c / PI;

@@ -161,7 +161,10 @@ pub fn render_picture(
     let eye = viewpoint.eye.as_dvec3();
     let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
     let capture = timed(&mut passes, "capture", || rain.capture.trace(scene));
-    let table = timed(&mut passes, "streaks", || rain.streak_table(masks, &capture));
+    let of_streaks = rain.streak_lights(scene, masks)?;
+    let table = timed(&mut passes, "streaks", || {
+        rain.streak_table(masks, &capture, &of_streaks.light(&rain.streak_rows()))
+    });
     let lights = rain.lights(scene, masks)?;
     let light = timed(&mut passes, "lamps", || lights.light(&rain.rows));
     let medium = timed(&mut passes, "unresolved", || rain.medium_light(&lights).layer(&clean));

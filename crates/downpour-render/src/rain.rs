@@ -3,8 +3,9 @@
 //! 1. [`DropMasks`]: masks of drops of all sizes from all elevations, traced once, in milliseconds;
 //! 2. [`Rain`]: the drops of a picture, nearest first, and for each tile of 8 x 8 pixels those that touch it;
 //! 3. [`capture`]: what is round the eye, on an octahedral map (default) or as the papers' wide picture;
-//! 4. [`streak_table`]: what drops that move while the shutter is open show on the mean, made once per frame;
-//! 5. [`light`]: what lamps and sun add, drop by drop; [`glint`]: where on a drop;
+//! 4. [`light`]: what lamps and sun add, drop by drop; [`glint`]: where on a drop;
+//! 5. [`StreakTable`]: what drops that move while the shutter is open show on the mean, made once per frame: a profile of each
+//!    streak that is wider than a pixel ([`StreakProfiles`]), a mean for the others;
 //! 6. [`medium`]: drops that are not drawn one by one, with the light of lamps on them;
 //! 7. [`drops`]: pixel by pixel, what drops and streaks show of it.
 //!
@@ -23,12 +24,17 @@ pub mod glint;
 pub mod light;
 pub mod masks;
 pub mod medium;
+mod profiles;
 mod project;
 mod reduce;
 mod shapes;
 pub mod streak;
-pub mod streak_lookup;
-pub mod streak_table;
+mod streak_light;
+mod streak_lookup;
+mod streak_path;
+pub mod streak_place;
+mod streak_rays;
+mod streak_table;
 mod tiles;
 
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
@@ -39,10 +45,12 @@ pub use exposure::{Exposure, EyeMotion, StreakColour, StreakSamples};
 use light::DropLightOptions;
 pub use masks::DropMasks;
 pub use medium::{MediumOptions, PanePlane, RainMedium};
+pub use profiles::StreakProfiles;
 pub use reduce::{ReduceLevel, reduce_levels, reduce_texel};
 pub use streak::DropsDrop;
 pub use streak_lookup::StreakTable;
-pub use streak_table::StreakShape;
+pub use streak_path::StreakPath;
+pub use streak_rays::StreakRay;
 pub use tiles::Rain;
 
 /// Glints that are kept of a drop where nothing else is said.

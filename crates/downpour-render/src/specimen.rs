@@ -68,6 +68,6 @@ pub use image::Image;
 pub use lamp::SpecimenLamp;
 pub use motion::SpecimenMotion;
 pub use options::{LARGEST_SIZE, LONGEST_EXPOSURE_S, SpecimenOptions};
-pub use render::{render_specimen, render_specimen_f64, render_specimen_scalar};
+pub use render::{render_specimen, render_specimen_f64, render_specimen_scalar, specimen_jitter};
 pub use sky::Sky;
 pub use table::{LARGEST_TABLE_LAMP_DEG, check_specimen_table, render_specimen_table};

@@ -110,7 +110,10 @@ impl Stage {
             });
         }
         let triangles = builder.triangle_count();
-        let data = builder.build(&sky::light(&loaded.sky));
+        let mut data = builder.build(&sky::light(&loaded.sky));
+        if let Some(sun) = loaded.sun {
+            data.set_light_radius(data.light_count - 1, sun.angular_radius);
+        }
         let fov =
             weather.camera.fov.unwrap_or_else(|| seen.as_ref().map_or(weather::FOV_RAD, |seen| seen.fov));
         let (camera, viewpoint) = match &seen {

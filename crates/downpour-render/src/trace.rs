@@ -11,9 +11,9 @@ use downpour_shaders::render::scene::{SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
+use crate::halves::{pack, unpack};
 use crate::path::{PathSlot, ViewPath, path_lattice_words, path_most};
-use crate::rain::capture::{capture_direction, capture_suns};
-use crate::rain::streak_lookup::{pack, unpack};
+use crate::rain::capture::{capture_direction, capture_sky, capture_suns};
 use crate::scene::SceneView;
 
 /// Light of which means are taken over neighbouring pixels, packed. The same layout as `TraceSlot` in WGSL.
@@ -171,7 +171,9 @@ impl SceneView<'_> {
         }
         let share = 1.0 / f32::from(count);
         if !is_picture {
-            let radiance = sum * share + capture_suns(self, x, y);
+            let is_sky = nearest >= SCENE_FAR && self.frame.projection == SCENE_OCTAHEDRAL;
+            let seen = if is_sky { capture_sky(self, x, y) } else { sum * share };
+            let radiance = seen + capture_suns(self, x, y);
             return (radiance.extend(nearest), TraceGather::default());
         }
         let gather = TraceGather { base: base.trace_mean(share, eye), mirror: mirror.trace_mean(share, eye) };

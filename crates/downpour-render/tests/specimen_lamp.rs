@@ -1,7 +1,7 @@
 //! Lamps of the specimen against closed forms: solid angles, reflection on a sphere, the balance of light.
 
 use downpour_drop::DropShape;
-use downpour_drop::optics::optics_fresnel;
+use downpour_drop::optics::{WATER_INDEX, optics_fresnel};
 use downpour_math::ops::f64 as ops;
 use downpour_render::specimen::{
     Image, Sky, SpecimenError, SpecimenLamp, SpecimenOptions, render_specimen, render_specimen_f64,
@@ -57,7 +57,8 @@ fn a_sphere_mirrors_a_lamp_where_and_as_it_should() {
     let place = 40.0 + 32.0 * ops::sin(FRAC_PI_4);
     let pixel = image.pixel(place as u32, 39);
     let wanted = 100.0 * optics_fresnel(ops::cos(FRAC_PI_4), 1.333) as f32;
-    assert!((pixel[0] / wanted - 1.0).abs() < 0.01, "{pixel:?}, wanted {wanted}");
+    // The samples of a pixel are not symmetric about its middle.
+    assert!((pixel[0] / wanted - 1.0).abs() < 0.015, "{pixel:?}, wanted {wanted}");
     assert!((pixel[1] / pixel[0] - 0.5).abs() < 1.0e-6 && pixel[2] == 0.0, "{pixel:?}");
     assert_eq!(image.pixel(80 - place as u32, 39)[0], 0.0, "the other side");
 }
@@ -116,4 +117,80 @@ fn bad_lamps_are_refused() {
         matches!(error, SpecimenError::Size { found: 9, most: 8, .. }) && error.exit_code() == 3,
         "{error}"
     );
+}
+
+/// Mean radiance that a sphere's disc shows of a lamp of radiance 1, by quadrature over the impact parameter: what the plane
+/// laws of a sphere say, order by order, with unpolarised light at each interface. `scattering` is the angle between the way of
+/// the light and the way to the eye.
+fn sphere_shows(scattering: f64, radius: f64) -> f64 {
+    let steps = 200_000;
+    let (mut sum, lamp) = (0.0, ops::cos(radius));
+    for k in 0..steps {
+        let b = (f64::from(k) + 0.5) / f64::from(steps);
+        let (incident, refracted) = (ops::asin(b), ops::asin(b / WATER_INDEX));
+        let mirrored: f64 = optics_fresnel(ops::cos(incident), WATER_INDEX);
+        let mut share = mirrored;
+        for p in 0..12 {
+            if p > 0 {
+                share = (1.0 - mirrored) * (1.0 - mirrored) * ops::pow(mirrored, f64::from(p - 1));
+            }
+            // Van de Hulst, Light scattering by small particles, 12.21: the deflection of order p.
+            let angle = if p == 0 {
+                PI - 2.0 * incident
+            } else {
+                2.0 * (incident - refracted) + f64::from(p - 1) * (PI - 2.0 * refracted)
+            };
+            // The part of the ring of that angle that lies in the lamp's disc.
+            let (s, c) = (ops::sin(angle) * ops::sin(scattering), ops::cos(angle) * ops::cos(scattering));
+            let edge =
+                if s.abs() < 1.0e-12 { -2.0 * f64::from(c >= lamp) + 1.0 } else { (lamp - c) / s.abs() };
+            let within = ops::acos(edge.clamp(-1.0, 1.0)) / PI;
+            sum += 2.0 * b / f64::from(steps) * share * within;
+        }
+    }
+    sum
+}
+
+/// The image of a small lamp in a drop is narrower than a sample of the picture, and a falling drop draws it out along a column:
+/// all lines of samples at one position across would meet it, or miss it, alike. The streak still has the light of the sphere.
+#[test]
+fn a_streak_has_the_light_of_a_lamp_that_is_smaller_than_its_samples() {
+    let shape = DropShape::sphere(2.0e-3).unwrap();
+    let radius = 1.5_f64.to_radians();
+    // A drop is 8 pixels across, 32 samples; its images of the lamp are half a sample wide.
+    let options = SpecimenOptions {
+        distance_m: 20.0,
+        fov: Some(2.0 * ops::atan(0.5 * 40.0 * 0.25e-3 / 20.0)),
+        size: [12, 40],
+        exposure_s: 1.0e-3,
+        instants: 192,
+        ..SpecimenOptions::default()
+    };
+    for scattering_deg in [40.0f64, 60.0, 142.0] {
+        let scattering = scattering_deg.to_radians();
+        let image = picture(&shape, &options, &[lamp(PI - scattering, 0.0, radius, 1.0e4)]);
+        let light: f64 = image.pixels.iter().map(|pixel| f64::from(pixel[0])).sum();
+        let found = light / (PI * 16.0);
+        let wanted = 1.0e4 * sphere_shows(scattering, radius);
+        println!("{scattering_deg}: {:.4}", found / wanted);
+        assert!((found / wanted - 1.0).abs() < 0.1, "{scattering_deg} degrees: {found} for {wanted}");
+    }
+}
+
+/// More samples of a pixel of a drop at rest bring its light closer to the same quadrature.
+#[test]
+fn a_drop_at_rest_has_the_light_of_a_small_lamp() {
+    let shape = DropShape::sphere(2.0e-3).unwrap();
+    let (scattering, radius) = (1.3f64, 2.0_f64.to_radians());
+    let error = |samples: u32| {
+        let options =
+            SpecimenOptions { distance_m: 20.0, size: [100, 100], samples, ..SpecimenOptions::default() };
+        let image = picture(&shape, &options, &[lamp(PI - scattering, 0.0, radius, 1.0e4)]);
+        let light: f64 = image.pixels.iter().map(|pixel| f64::from(pixel[0])).sum();
+        // The drop is 80 pixels high.
+        (light / (PI * 1600.0) / (1.0e4 * sphere_shows(scattering, radius)) - 1.0).abs()
+    };
+    let [four, sixteen] = [error(4), error(16)];
+    println!("{four:.4}, {sixteen:.4}");
+    assert!(sixteen < 0.02 && sixteen < four, "{four}, {sixteen}");
 }

@@ -77,7 +77,7 @@ fn a_short_exposure_is_the_drop_at_rest() {
     let radiance = random_sky();
     let sky = Sky::new(32, 16, &radiance).unwrap();
     for (diameter, pitch, caught, mean_bound) in
-        [(1.0, 0.0, 0, 1.0e-5), (3.0, 0.5, 40, 2.0e-4), (5.0, -0.4, 0, 1.0e-5)]
+        [(1.0, 0.0, 0, 1.0e-5), (3.0, 0.5, 40, 2.0e-4), (5.0, -0.4, 2, 1.0e-5)]
     {
         let fov = Some(1.3 * diameter * 1.0e-2);
         let still =

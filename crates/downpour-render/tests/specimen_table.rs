@@ -155,22 +155,64 @@ fn the_outline_has_the_phases_that_were_asked_for() {
     }
 }
 
+/// Sum of the light of a picture, green.
+fn sum(image: &Image) -> f64 {
+    image.pixels.iter().map(|p| f64::from(p[1])).sum()
+}
+
+/// Seen from above before dark ground a drop shows the sky that it mirrors, outside and inside: all the light there is is its own.
+#[test]
+fn a_streak_before_dark_ground_has_the_light_of_the_exact_one() {
+    let sky_above = |dark: f32| -> Vec<[f32; 3]> {
+        (0..96 * 48)
+            .map(|i| if i / 96 < 24 { [0.7, 1.0, 1.3 - 0.01 * (i % 96) as f32] } else { [dark; 3] })
+            .collect()
+    };
+    for (diameter, pitch, oscillation, dark) in [
+        (1.0, 0.9, Amplitudes::NONE, 0.0),
+        (2.0, 0.6, Amplitudes::GARG_NAYAR_OBLATE, 0.0),
+        (3.0, 0.8, Amplitudes::NONE, 0.02),
+        (5.0, 0.8, Amplitudes::NONE, 0.0),
+    ] {
+        let radiance = sky_above(dark);
+        let sky = Sky::new(96, 48, &radiance).unwrap();
+        let shape = drop(diameter);
+        let options =
+            SpecimenOptions { pitch, instants: 24, samples: 4, ..options(diameter * 0.5e-3, oscillation) };
+        let exact = sum(&render_specimen(&shape, &options, sky).unwrap());
+        let table = sum(&render_specimen_table(&shape, &options, sky).unwrap());
+        println!("{diameter} mm, pitch {pitch}: {:+.4}", table / exact - 1.0);
+        assert!(exact > 1.0 && (table / exact - 1.0).abs() < 0.03, "{diameter} mm: {exact}, {table}");
+    }
+}
+
 /// A lamp sends as much light through the drop as it does exactly, and what is seen of it beside the drop is its disc.
 #[test]
 fn a_lamp_lights_the_streak() {
     const DARK: [[f32; 3]; 2] = [[0.0; 3]; 2];
-    let sum = |image: &Image| image.pixels.iter().map(|p| f64::from(p[1])).sum::<f64>();
-    for (diameter, yaw, radius) in [(2.0, 160.0f64, 4.0f64), (3.0, 182.0, 1.0)] {
-        let lamp = SpecimenLamp::new(yaw.to_radians(), 0.03, radius.to_radians(), [300.0; 3]).unwrap();
+    // From behind the drop to behind the eye. Light from 60 degrees aside, faint as it is, comes through the rim, where the rays of
+    // a profile are far apart.
+    for (diameter, yaw, height, radius, most) in [
+        (2.0, 160.0f64, 0.03, 4.0f64, 0.06),
+        (3.0, 182.0, 0.03, 1.0, 0.06),
+        (1.0, 140.0, 0.0, 3.0, 0.06),
+        (2.0, 120.0, 0.2, 3.0, 0.15),
+        (0.5, 40.0, 0.0, 3.0, 0.06),
+    ] {
+        let lamp = SpecimenLamp::new(yaw.to_radians(), height, radius.to_radians(), [300.0; 3]).unwrap();
         let lamps = [lamp];
         let lit = Sky::new(2, 1, &DARK).and_then(|sky| sky.with_lamps(&lamps)).unwrap();
-        let options =
-            SpecimenOptions { yaw: 0.0, instants: 32, ..options(diameter * 0.5e-3, Amplitudes::NONE) };
+        let options = SpecimenOptions {
+            yaw: 0.0,
+            instants: 48,
+            samples: 4,
+            ..options(diameter * 0.5e-3, Amplitudes::NONE)
+        };
         let shape = drop(diameter);
         let exact = sum(&render_specimen(&shape, &options, lit).unwrap());
         let table = sum(&render_specimen_table(&shape, &options, lit).unwrap());
         println!("{diameter} mm, yaw {yaw}, radius {radius}: {exact} exact, {table} by the table");
-        assert!(exact > 1.0 && (table / exact - 1.0).abs() < 0.15, "{diameter} mm: {exact}, {table}");
+        assert!(exact > 1.0 && (table / exact - 1.0).abs() < most, "{diameter} mm: {exact}, {table}");
     }
 }
 
@@ -200,12 +242,6 @@ fn what_has_no_table_is_refused() {
     for (diameter, options, sky, words) in [
         (0.49, fine, sky, ["diameter", "is 0.49 mm", "0.5 to 9"]),
         (2.0, SpecimenOptions { exposure_s: 0.0, ..fine }, sky, ["exposure", "is 0 s", "above 0"]),
-        (
-            2.0,
-            SpecimenOptions { exposure_s: 1.0e-4, ..fine },
-            sky,
-            ["length of a streak", "heights", "from 1"],
-        ),
         (
             2.0,
             SpecimenOptions { distance_m: 0.021, ..fine },

@@ -177,7 +177,7 @@ fn layer(
     let capture = rain.capture.trace(scene);
     let lights = rain.lights(scene, masks).expect("lamps");
     let medium = rain.medium_light(&lights).layer(&clean);
-    let table: StreakTable = rain.streak_table(masks, &capture);
+    let table: StreakTable = rain.streak_table(masks, &capture, &[]);
     rain.layer(&clean, masks, &capture, &table, &[], &medium)
 }
 

@@ -194,12 +194,12 @@ impl Bench<'_> {
         let (masks, uploaded) = (&self.masks[of_atlas], &self.uploaded[of_atlas]);
         let rain = Rain::new(&self.frame, eye, drops, masks, options);
         let binning = ms(start.elapsed());
-        let lights = rain.lights(&self.stage.data, masks)?;
+        let lights = [rain.lights(&self.stage.data, masks)?, rain.streak_lights(&self.stage.data, masks)?];
         let pass = self.rains.prepare(&self.scenes, &self.scene, uploaded, &self.clean, &rain, &lights)?;
         let capture = time(self.gpu, &pass.capture())?;
-        let streaks: Vec<Dispatch<'_>> = pass.streaks().into_iter().collect();
-        let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
         let lamps = time(self.gpu, &pass.lamps())?;
+        let streaks: Vec<Dispatch<'_>> = pass.streaks();
+        let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
         let drops = time(self.gpu, &[pass.drops()])?;
         Ok(Cost { binning, capture, table, lamps, drops, layer: pass.layer()? })
     }

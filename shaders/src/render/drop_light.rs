@@ -26,6 +26,12 @@ shared_constants! {
         DROP_LIGHT_NONE: u32 = 3;
         /// Form: the streaks of an atlas.
         DROP_LIGHT_ATLAS: u32 = 4;
+        /// Form for the profiles of streaks: lamp by lamp, the others in the mean of a sphere.
+        DROP_LIGHT_LAMPS_TRACED: u32 = 5;
+        /// The same in the form of Rousseau 2006.
+        DROP_LIGHT_LAMPS_ROUSSEAU: u32 = 6;
+        /// Chord from the middle to the edge of the sun's disc: lamps that have no size count as wide.
+        DROP_LIGHT_REACH: f32 = 0.00465;
         /// Entries of a row of the table: equal intervals of the scattering angle.
         DROP_LIGHT_ENTRIES: u32 = 256;
         /// Ways of light that are told apart; row 0 of the table is their sum.

@@ -4,6 +4,8 @@ use super::drop_light::DROP_GLINT;
 use super::medium::MEDIUM;
 use crate::common::PACKING;
 use crate::drop::oscillation::OSCILLATION;
+use crate::drop::shape::SHAPE;
+use crate::mask::WOBBLE;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -15,6 +17,11 @@ pub const MODULES: &[&Module] = &[
     &DROPS_MASK,
     &DROPS_SHADE,
     &STREAK,
+    &STREAK_PLACE,
+    &STREAK_PATH,
+    &STREAK_RAY,
+    &STREAK_RAYS_MODULE,
+    &STREAK_LIGHT,
     &STREAK_LOOKUP,
     &STREAK_TABLE,
     &DROPS_ATLAS,
@@ -22,13 +29,14 @@ pub const MODULES: &[&Module] = &[
 ];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&REDUCE_KERNEL, &STREAK_TABLE_KERNEL, &DROPS_KERNEL];
+pub const KERNELS: &[&Kernel] =
+    &[&REDUCE_KERNEL, &STREAK_TABLE_KERNEL, &STREAK_RAYS_KERNEL, &STREAK_LIGHT_KERNEL, &DROPS_KERNEL];
 
 shared_constants! {
     /// Numbers of the masks in a buffer.
     RAIN_CONSTANTS at "render/rain constants" {
-        /// Words of a texel of a mask: two directions, and two shares.
-        DROPS_TEXEL_WORDS: u32 = 3;
+        /// Words of a texel of a mask: three directions, and four shares.
+        DROPS_TEXEL_WORDS: u32 = 5;
         /// Masks of a diameter, from below (-90 degrees) to above (90 degrees).
         DROPS_ELEVATIONS: u32 = 7;
         /// Edge of a tile of the picture, pixels.
@@ -53,26 +61,72 @@ shared_constants! {
         STREAK_REFRACTED: u32 = 0;
         /// Streaks have one colour, the mean of the surroundings.
         STREAK_WHITE: u32 = 1;
-        /// Rays of the streak radiance table along an edge of the picture.
-        STREAK_RAYS: u32 = 25;
-        /// Places across the motion.
-        STREAK_ACROSS: u32 = 96;
-        /// Places across a drop as far apart as what they show is smoothed: for points and chords alike.
+        /// Rays of the means of the streak radiance table along an edge of the picture.
+        STREAK_RAYS: u32 = 17;
+        /// Points of a mean, a multiple of those of its group; about half of them meet the drop.
+        STREAK_MEAN_POINTS: u32 = 128;
+        /// Invocations that share the points of a mean.
+        STREAK_MEAN_GROUP: u32 = 64;
+        /// Steps of the lattice of points of a mean: powers of 0.8566749, the fourth dimension's golden ratio.
+        STREAK_MEAN_FIRST: f32 = 0.8566749;
+        /// See `STREAK_MEAN_FIRST`.
+        STREAK_MEAN_SECOND: f32 = 0.7338919;
+        /// See `STREAK_MEAN_FIRST`.
+        STREAK_MEAN_THIRD: f32 = 0.6287067;
+        /// See `STREAK_MEAN_FIRST`.
+        STREAK_MEAN_FOURTH: f32 = 0.5385973;
+        /// Radius of the disc of points of a mean, over that of the spheroid that is meant by the mode (2,0).
+        STREAK_MEAN_REACH: f32 = 1.25;
+        /// Width of a point of a mean, in radii of its disc: the square root of pi over the points.
+        STREAK_MEAN_WIDTH: f32 = 0.15666;
+        /// Least squared cosine at the rim of the disc of points.
+        STREAK_MEAN_RIM: f32 = 0.02;
+        /// Chord samples across a drop as far apart as what they show is smoothed, for loops.
         STREAK_FINE: u32 = 36;
         /// Running sums along a chord.
         STREAK_SUMS: u32 = 4;
-        /// Samples along a chord of the table: closer than what they show is smoothed; a multiple of the sums.
-        STREAK_TAPS: u32 = 48;
-        /// Samples along an edge of the square round a drop, for its mean; a multiple of the sums.
-        STREAK_MEAN_GRID: u32 = 12;
-        /// The mean of a class of drops is wanted.
-        STREAK_MEAN: u32 = 1;
-        /// Its chords are wanted, too.
-        STREAK_CHORDS: u32 = 2;
-        /// The brightest entry: halves end at 65 504.
-        STREAK_BRIGHTEST: f32 = 65000.0;
+        /// Points of the outline of a drop.
+        STREAK_OUTLINE: u32 = 64;
+        /// Steps to a point of the outline.
+        STREAK_OUTLINE_STEPS: u32 = 6;
+        /// Least slope of the gauge along a radius, for a step.
+        STREAK_OUTLINE_SLOPE: f32 = 0.2;
+        /// No point of an outline is nearer to the middle, in radii.
+        STREAK_OUTLINE_LEAST: f32 = 0.3;
+        /// No point of an outline is farther from the middle, in radii.
+        STREAK_OUTLINE_MOST: f32 = 2.0;
+        /// Exits of a ray from inside that are looked up, as the tracer tells them apart.
+        STREAK_EXITS: u32 = 3;
+        /// Lamps on a streak that are told apart.
+        STREAK_LAMPS: u32 = 8;
+        /// Points of a ray's patch at which a lamp is looked for.
+        STREAK_SPOTS: u32 = 64;
+        /// Steps of the lattice of these points along a chord, and in time.
+        STREAK_SPOT_ALONG: f32 = 0.7548777;
+        /// See `STREAK_SPOT_ALONG`.
+        STREAK_SPOT_LATER: f32 = 0.5698403;
+        /// A lamp is looked for this share of a patch's size from its middle.
+        STREAK_SPOT_REACH: f32 = 0.75;
+        /// Radius of a round spot over whose points a patch's light is shared evenly enough, over their distance.
+        STREAK_SPOT_WIDTH: f32 = 1.8;
+        /// A patch counts as no narrower than this share of its length, for its points.
+        STREAK_SPOT_NARROW: f32 = 0.2;
+        /// The same for the width over which the surroundings are averaged.
+        STREAK_NARROWEST: f32 = 0.25;
+        /// Steps from patch to patch of the shift of these points: powers of 0.8191725, the third dimension's golden ratio.
+        STREAK_SPOT_FIRST: f32 = 0.8191725;
+        /// See `STREAK_SPOT_FIRST`.
+        STREAK_SPOT_SECOND: f32 = 0.6710436;
+        /// See `STREAK_SPOT_FIRST`.
+        STREAK_SPOT_THIRD: f32 = 0.5497005;
+        /// Half a right angle's worth of columns: pi / 2.
+        STREAK_QUARTER: f32 = 1.5707964;
+        /// 2 pi.
+        STREAK_TURN: f32 = 6.2831855;
         /// Step of the lattice of a pixel's samples.
         STREAK_LATTICE: u32 = 3;
+        /// Shift of these samples from line to line: the golden ratio's part of 2^16.
+        STREAK_GOLDEN: u32 = 40503;
         /// The least width of a glint, in radii.
         DROPS_GLINT: f32 = 0.03;
         /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disc.
@@ -83,8 +137,6 @@ shared_constants! {
         DROPS_ATLAS_HEAD: u32 = 4;
         /// Samples of a streak's length in a pixel, where it has no width.
         DROPS_ATLAS_TAPS: u32 = 4;
-        /// 2 / pi: radians to quarters of a turn.
-        STREAK_PER_QUARTER: f32 = 0.63661975;
     }
 }
 
@@ -103,7 +155,7 @@ pub static DROPS_FRAME: Module = Module {
 pub static DROPS_CAPTURE: Module = Module {
     path: "render/drops_capture.wgsl",
     wgsl: include_str!("../../wgsl/render/drops_capture.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &DROPS_FRAME],
+    uses: &[&RAIN_CONSTANTS, &PACKING, &DROPS_FRAME, &DROP_GLINT],
 };
 
 /// The masks between their texels. Twin: `downpour_render::rain::drops_mask`.
@@ -127,18 +179,72 @@ pub static STREAK: Module = Module {
     uses: &[&RAIN_CONSTANTS, &OSCILLATION],
 };
 
+/// Places across a drop. Twin: `downpour_render::rain::streak_place`.
+pub static STREAK_PLACE: Module = Module {
+    path: "render/streak_place.wgsl",
+    wgsl: include_str!("../../wgsl/render/streak_place.wgsl"),
+    uses: &[&RAIN_CONSTANTS],
+};
+
+/// A ray of a profile. Host type: `downpour_render::rain::StreakRay`.
+pub static STREAK_RAY: Module = Module {
+    path: "render/streak_ray.wgsl",
+    wgsl: include_str!("../../wgsl/render/streak_ray.wgsl"),
+    uses: &[],
+};
+
+/// A streak in time. Twin: `downpour_render::rain::streak_path`.
+pub static STREAK_PATH: Module = Module {
+    path: "render/streak_path.wgsl",
+    wgsl: include_str!("../../wgsl/render/streak_path.wgsl"),
+    uses: &[&RAIN_CONSTANTS, &OSCILLATION, &SHAPE, &WOBBLE, &STREAK, &DROP_GLINT],
+};
+
+/// The rays of the profiles of streaks. Twin: `downpour_render::rain::streak_rays`.
+pub static STREAK_RAYS_MODULE: Module = Module {
+    path: "render/streak_rays.wgsl",
+    wgsl: include_str!("../../wgsl/render/streak_rays.wgsl"),
+    uses: &[
+        &RAIN_CONSTANTS,
+        &PACKING,
+        &WOBBLE,
+        &STREAK,
+        &STREAK_PLACE,
+        &STREAK_PATH,
+        &STREAK_RAY,
+        &DROP_GLINT,
+    ],
+};
+
+/// The light of the profiles of streaks. Twin: `downpour_render::rain::streak_light`.
+pub static STREAK_LIGHT: Module = Module {
+    path: "render/streak_light.wgsl",
+    wgsl: include_str!("../../wgsl/render/streak_light.wgsl"),
+    uses: &[
+        &RAIN_CONSTANTS,
+        &PACKING,
+        &DROPS_FRAME,
+        &DROPS_CAPTURE,
+        &STREAK,
+        &STREAK_PLACE,
+        &STREAK_PATH,
+        &STREAK_RAY,
+        &DROP_GLINT,
+    ],
+};
+
 /// The streak radiance table. Twin: `downpour_render::rain::streak_lookup`.
 pub static STREAK_LOOKUP: Module = Module {
     path: "render/streak_lookup.wgsl",
     wgsl: include_str!("../../wgsl/render/streak_lookup.wgsl"),
-    uses: &[&RAIN_CONSTANTS],
+    uses: &[&RAIN_CONSTANTS, &STREAK, &STREAK_PLACE],
 };
 
-/// How it is made. Twin: `downpour_render::rain::streak_table`.
+/// How its means are made. Twin: `downpour_render::rain::streak_table`.
 pub static STREAK_TABLE: Module = Module {
     path: "render/streak_table.wgsl",
     wgsl: include_str!("../../wgsl/render/streak_table.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &DROPS_FRAME, &DROPS_MASK, &DROPS_SHADE],
+    uses: &[&RAIN_CONSTANTS, &OSCILLATION, &WOBBLE, &DROPS_FRAME, &DROPS_CAPTURE, &STREAK_PATH, &DROP_GLINT],
 };
 
 /// The streaks of an atlas between their texels. Twin: `downpour_render::rain::drops_atlas`.
@@ -170,9 +276,17 @@ pub static DROPS: Module = Module {
 /// One invocation per texel of the level that is made.
 pub static REDUCE_KERNEL: Kernel = Kernel { entry: "main_reduce", module: &REDUCE, workgroup: [8, 8, 1] };
 
-/// One invocation per ray, place across the motion, and shape.
+/// One workgroup per ray and class.
 pub static STREAK_TABLE_KERNEL: Kernel =
     Kernel { entry: "main_streak_table", module: &STREAK_TABLE, workgroup: [64, 1, 1] };
+
+/// One workgroup per streak and traced instant.
+pub static STREAK_RAYS_KERNEL: Kernel =
+    Kernel { entry: "main_streak_rays", module: &STREAK_RAYS_MODULE, workgroup: [64, 1, 1] };
+
+/// One invocation per streak, row of its profile and column.
+pub static STREAK_LIGHT_KERNEL: Kernel =
+    Kernel { entry: "main_streak_light", module: &STREAK_LIGHT, workgroup: [64, 1, 1] };
 
 /// One invocation per pixel.
 pub static DROPS_KERNEL: Kernel = Kernel { entry: "main_drops", module: &DROPS, workgroup: [8, 8, 1] };

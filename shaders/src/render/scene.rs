@@ -80,6 +80,8 @@ shared_constants! {
         TRACE_SAME_NORMAL: f32 = 0.9;
         /// What is traced: the picture.
         SCENE_PICTURE: u32 = 0;
+        /// Samples of the sky along an edge of a texel of the capture that shows nothing else.
+        CAPTURE_SKY: u32 = 4;
         /// Four over pi: the area of the octahedral map's square, for an irradiance over pi.
         CAPTURE_AREA_OVER_PI: f32 = 1.2732395;
         /// A capture on an octahedral map.
@@ -134,7 +136,7 @@ pub static TRACE: Module = Module {
 pub static CAPTURE: Module = Module {
     path: "render/capture.wgsl",
     wgsl: include_str!("../../wgsl/render/capture.wgsl"),
-    uses: &[&SCENE, &PACKING],
+    uses: &[&SCENE, &SKY, &PACKING],
 };
 
 /// One invocation per pixel.

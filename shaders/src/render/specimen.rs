@@ -37,6 +37,8 @@ shared_constants! {
         /// most 175 passes of a loop (5 + 4 to the entry, 33 times 1 + 4 inside, itself): below the 65 535 at which
         /// a driver may stop.
         SPECIMEN_SAMPLES: u32 = 16;
+        /// Step from line to line of the shift of samples: the golden ratio in units of 2^-32.
+        SPECIMEN_LATTICE: u32 = 2654435769;
         /// Lamps before the sky, at most. The shader has a line for each.
         SPECIMEN_LAMPS: u32 = 8;
     }
@@ -58,7 +60,14 @@ shared_tables! {
 pub static SPECIMEN: Module = Module {
     path: "render/specimen.wgsl",
     wgsl: include_str!("../../wgsl/render/specimen.wgsl"),
-    uses: &[&SPECIMEN_CONSTANTS, &SPECIMEN_TABLES, &mask::MASK_CONSTANTS, &mask::TRACE, &optics::OPTICS],
+    uses: &[
+        &SPECIMEN_CONSTANTS,
+        &SPECIMEN_TABLES,
+        &mask::MASK_CONSTANTS,
+        &mask::TRACE,
+        &optics::OPTICS,
+        &RNG,
+    ],
 };
 
 /// One invocation per pixel of a band of rows.
@@ -101,8 +110,8 @@ pub static SPECIMEN_WOBBLE: Module = Module {
         &SPECIMEN,
         &mask::MASK_CONSTANTS,
         &mask::TRACE,
+        &mask::WOBBLE,
         &optics::OPTICS,
-        &oscillation::OSCILLATION,
         &shape::SHAPE,
     ],
 };

@@ -11,7 +11,7 @@ fn mask_drop_texel(traced: MaskTracedDrop, column: u32, row: u32) -> MaskTexel {
     let y = (middle - f32(row) - 0.5) * traced.pixel;
     let cut = mask_silhouette_cut(traced, x, y);
     if cut.traced == 0.0 {
-        return MaskTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0u);
+        return MaskTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0u);
     }
     let through = mask_trace_through(traced, cut.sample.x, cut.sample.y);
     return MaskTexel(
@@ -19,6 +19,8 @@ fn mask_drop_texel(traced: MaskTracedDrop, column: u32, row: u32) -> MaskTexel {
         cut.coverage,
         through.reflected,
         through.transmittance,
+        through.internal,
+        through.internal_transmittance,
         u32(through.reflections),
     );
 }

@@ -28,41 +28,68 @@ fn mask_model_normal(hit: BvhHit) -> vec3f {
     return normalize(a + mask_model_normals[first + 1u].xyz * hit.u + mask_model_normals[first + 2u].xyz * hit.v);
 }
 
+// Where light that starts at `start`, along `inside_start`, comes to leave, after total reflections. A ray that finds no way
+// out has slipped along an edge of the surface: it counts as lost.
+fn mask_model_exit(start: vec3f, inside_start: vec3f) -> MaskTraceExit {
+    var point = start;
+    var inside = inside_start;
+    for (var reflections = 0u; reflections <= MASK_TRACE_REFLECTIONS; reflections += 1u) {
+        let hit = bvh_hit(point, inside, MASK_MODEL_NEAREST, BVH_FAR);
+        if hit.distance < 0.0 {
+            break;
+        }
+        let normal = mask_model_normal(hit);
+        point = point + inside * hit.distance;
+        let outside = optics_refract(inside, -normal, mask_model.index);
+        if outside.w >= 0.0 {
+            return MaskTraceExit(point, f32(reflections), normal, 0.0, inside, outside.xyz);
+        }
+        inside = normalize(optics_reflect(inside, normal));
+    }
+    return MaskTraceExit(point, f32(MASK_TRACE_REFLECTIONS + 1u), inside, 1.0, inside, inside);
+}
+
 // The texel at (x, y) for a ray that hits at `hit`.
 fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
     let incident = vec3f(0.0, 0.0, -1.0);
     let index = mask_model.index;
-    var normal = mask_model_normal(hit);
-    let entry = optics_fresnel_polarised(max(normal.z, 0.0), index);
-    let reflectance = (entry.x + entry.y) * 0.5;
-    let reflected = normalize(optics_reflect(incident, normal));
-    var inside = normalize(optics_refract(incident, normal, 1.0 / index).xyz);
-    var point = vec3f(x, y, mask_model.front - hit.distance);
-    var polarised = (entry.y - entry.x) * 0.5;
-    for (var reflections = 0u; reflections <= MASK_TRACE_REFLECTIONS; reflections += 1u) {
-        let next = bvh_hit(point, inside, MASK_MODEL_NEAREST, BVH_FAR);
-        // A ray that finds no way out has slipped along an edge of the surface: it counts as lost.
-        if next.distance < 0.0 {
-            break;
-        }
-        let exit_normal = mask_model_normal(next);
-        point = point + inside * next.distance;
-        if reflections == 0u {
-            polarised *= mask_trace_plane_turn(inside, normal, exit_normal);
-        } else {
-            polarised = 0.0;
-        }
-        normal = exit_normal;
-        let outside = optics_refract(inside, -normal, index);
-        if outside.w >= 0.0 {
-            let exit = optics_fresnel_polarised(max(dot(inside, normal), 0.0), 1.0 / index);
-            let exit_mean = 1.0 - (exit.x + exit.y) * 0.5;
-            let through = (1.0 - reflectance) * exit_mean + polarised * (exit.y - exit.x) * 0.5;
-            return MaskTexel(normalize(outside.xyz), coverage, reflected, through, reflections);
-        }
-        inside = normalize(optics_reflect(inside, normal));
+    let entry_normal = mask_model_normal(hit);
+    let entry = optics_fresnel_polarised(max(entry_normal.z, 0.0), index);
+    let entered = 1.0 - (entry.x + entry.y) * 0.5;
+    let reflected = normalize(optics_reflect(incident, entry_normal));
+    let inside = normalize(optics_refract(incident, entry_normal, 1.0 / index).xyz);
+    var texel = MaskTexel(inside, coverage, reflected, 0.0, inside, 0.0, MASK_TRACE_REFLECTIONS + 1u);
+    let exit = mask_model_exit(vec3f(x, y, mask_model.front - hit.distance), inside);
+    if exit.lost > 0.0 {
+        return texel;
     }
-    return MaskTexel(inside, coverage, reflected, 0.0, MASK_TRACE_REFLECTIONS + 1u);
+    var polarised = 0.0;
+    if exit.reflections == 0.0 {
+        polarised = (entry.y - entry.x) * 0.5 * mask_trace_plane_turn(inside, entry_normal, exit.normal);
+    }
+    let leaving = mask_trace_reflectance(exit, index);
+    let through = entered * (1.0 - (leaving.x + leaving.y) * 0.5) + polarised * (leaving.y - leaving.x) * 0.5;
+    texel.direction = normalize(exit.outside);
+    texel.transmittance = through;
+    texel.internal = texel.direction;
+    texel.reflections = u32(exit.reflections);
+    let back = normalize(optics_reflect(exit.inside, exit.normal));
+    let second = mask_model_exit(exit.point, back);
+    if second.lost > 0.0 {
+        return texel;
+    }
+    let kept = entered - through;
+    var kept_polarised = (entered * (leaving.x - leaving.y) + polarised * (leaving.x + leaving.y)) * 0.5;
+    if second.reflections == 0.0 {
+        kept_polarised *= mask_trace_plane_turn(back, exit.normal, second.normal);
+    } else {
+        kept_polarised = 0.0;
+    }
+    let last = mask_trace_reflectance(second, index);
+    texel.internal = normalize(second.outside);
+    texel.internal_transmittance =
+        kept * (1.0 - (last.x + last.y) * 0.5) + kept_polarised * (last.y - last.x) * 0.5;
+    return texel;
 }
 
 // The place of sample i of the texel round (x, y).
@@ -78,7 +105,7 @@ fn mask_model_sample(x: f32, y: f32, i: u32) -> vec2f {
 
 // The texel round (x, y).
 fn mask_model_texel(x: f32, y: f32) -> MaskTexel {
-    let nothing = MaskTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0u);
+    let nothing = MaskTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0u);
     let half_width = 0.5 * mask_model.pixel;
     let centre = mask_model_hit(x, y);
     var corners = 0u;

@@ -10,6 +10,10 @@ struct MaskTexel {
     reflected: vec3f,
     // Share of unpolarised light that comes through.
     transmittance: f32,
+    // Direction of the light that is seen after one reflection inside that was not total.
+    internal: vec3f,
+    // Share of unpolarised light that comes so.
+    internal_transmittance: f32,
     // Total reflections inside.
     reflections: u32,
 }

@@ -24,11 +24,26 @@ struct MaskTraceSurface {
     excess: f32,
 }
 
+// Where light inside a drop comes to leave it, after total reflections.
+struct MaskTraceExit {
+    point: vec3f,
+    // Total reflections on the way there.
+    reflections: f32,
+    normal: vec3f,
+    // 1 if it does not find out, else 0.
+    lost: f32,
+    inside: vec3f,
+    outside: vec3f,
+}
+
 struct MaskTraceThrough {
     direction: vec3f,
     transmittance: f32,
     reflected: vec3f,
     reflectance: f32,
+    // Light that was reflected inside once without being totally reflected.
+    internal: vec3f,
+    internal_transmittance: f32,
     reflections: f32,
 }
 
@@ -102,6 +117,33 @@ fn mask_trace_plane_turn(direction: vec3f, from_normal: vec3f, to_normal: vec3f)
     return select(turn, 1.0, both < MASK_TINY);
 }
 
+// Where light that starts at a point of the surface, along `inside_start`, comes to leave, after total reflections.
+fn mask_trace_exit(traced: MaskTracedDrop, start: vec3f, inside_start: vec3f) -> MaskTraceExit {
+    var inside = inside_start;
+    var point = mask_trace_meet(traced, start, inside, 1.0);
+    var normal = mask_trace_normal(traced, point);
+    var outside = optics_refract(inside, -normal, traced.index);
+    var reflections = 0.0;
+    for (var k = 0u; k < MASK_TRACE_REFLECTIONS; k += 1u) {
+        if outside.w >= 0.0 {
+            break;
+        }
+        inside = optics_reflect(inside, normal);
+        point = mask_trace_meet(traced, point, inside, 1.0);
+        normal = mask_trace_normal(traced, point);
+        outside = optics_refract(inside, -normal, traced.index);
+        reflections += 1.0;
+    }
+    let lost = outside.w < 0.0;
+    let one = select(0.0, 1.0, lost);
+    return MaskTraceExit(point, reflections + one, normal, one, inside, select(outside.xyz, inside, lost));
+}
+
+// Shares of the power that are reflected where light comes to leave, across and within the plane of incidence.
+fn mask_trace_reflectance(exit: MaskTraceExit, index: f32) -> vec2f {
+    return optics_fresnel_polarised(max(dot(exit.inside, exit.normal), 0.0), 1.0 / index);
+}
+
 // The viewer's ray through the point (x, y) of the image plane, through the drop.
 fn mask_trace_through(traced: MaskTracedDrop, x: f32, y: f32) -> MaskTraceThrough {
     let incident = vec3f(0.0, 0.0, -1.0);
@@ -110,32 +152,35 @@ fn mask_trace_through(traced: MaskTracedDrop, x: f32, y: f32) -> MaskTraceThroug
     let entry_fresnel = optics_fresnel_polarised(max(entry_normal.z, 0.0), traced.index);
     let reflectance = (entry_fresnel.x + entry_fresnel.y) * 0.5;
     let reflected = optics_reflect(incident, entry_normal);
-    var inside = normalize(optics_refract(incident, entry_normal, 1.0 / traced.index).xyz);
+    let inside = normalize(optics_refract(incident, entry_normal, 1.0 / traced.index).xyz);
 
-    var exit = mask_trace_meet(traced, entry, inside, 1.0);
-    var exit_normal = mask_trace_normal(traced, exit);
-    let turn = mask_trace_plane_turn(inside, entry_normal, exit_normal);
-    var outside = optics_refract(inside, -exit_normal, traced.index);
-    var reflections = 0.0;
-    // Polarisation is followed through the two interfaces; after a total reflection light counts as unpolarised.
-    var polarised = (entry_fresnel.y - entry_fresnel.x) * 0.5 * turn;
-    for (var k = 0u; k < MASK_TRACE_REFLECTIONS; k += 1u) {
-        if outside.w >= 0.0 {
-            break;
-        }
-        inside = optics_reflect(inside, exit_normal);
-        exit = mask_trace_meet(traced, exit, inside, 1.0);
-        exit_normal = mask_trace_normal(traced, exit);
-        outside = optics_refract(inside, -exit_normal, traced.index);
-        reflections += 1.0;
-        polarised = 0.0;
-    }
-    let lost = outside.w < 0.0;
-    reflections += select(0.0, 1.0, lost);
-    let exit_cosine = max(dot(inside, exit_normal), 0.0);
-    let exit_fresnel = optics_fresnel_polarised(exit_cosine, 1.0 / traced.index);
+    // Polarisation is followed from interface to interface; after a total reflection light counts as unpolarised.
+    let exit = mask_trace_exit(traced, entry, inside);
+    let turn = mask_trace_plane_turn(inside, entry_normal, exit.normal);
+    let followed = (entry_fresnel.y - entry_fresnel.x) * 0.5 * turn;
+    let polarised = select(followed, 0.0, exit.reflections > 0.0);
+    let exit_fresnel = mask_trace_reflectance(exit, traced.index);
+    let entered = 1.0 - reflectance;
     let exit_mean = 1.0 - (exit_fresnel.x + exit_fresnel.y) * 0.5;
-    let through = (1.0 - reflectance) * exit_mean + polarised * (exit_fresnel.y - exit_fresnel.x) * 0.5;
-    let direction = normalize(select(outside.xyz, inside, lost));
-    return MaskTraceThrough(direction, select(through, 0.0, lost), normalize(reflected), reflectance, reflections);
+    let through = entered * exit_mean + polarised * (exit_fresnel.y - exit_fresnel.x) * 0.5;
+
+    let back = optics_reflect(exit.inside, exit.normal);
+    let second = mask_trace_exit(traced, exit.point, back);
+    let kept = entered - through;
+    let difference = entered * (exit_fresnel.x - exit_fresnel.y);
+    let kept_polarised = (difference + polarised * (exit_fresnel.x + exit_fresnel.y)) * 0.5;
+    let second_turn = mask_trace_plane_turn(back, exit.normal, second.normal);
+    let second_polarised = select(kept_polarised * second_turn, 0.0, second.reflections > 0.0);
+    let second_fresnel = mask_trace_reflectance(second, traced.index);
+    let second_mean = 1.0 - (second_fresnel.x + second_fresnel.y) * 0.5;
+    let internal = kept * second_mean + second_polarised * (second_fresnel.y - second_fresnel.x) * 0.5;
+    return MaskTraceThrough(
+        normalize(exit.outside),
+        select(through, 0.0, exit.lost > 0.0),
+        normalize(reflected),
+        reflectance,
+        normalize(second.outside),
+        select(internal, 0.0, exit.lost + second.lost > 0.0),
+        exit.reflections,
+    );
 }

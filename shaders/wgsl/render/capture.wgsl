@@ -10,6 +10,17 @@ fn capture_direction(x: f32, y: f32) -> vec3f {
     return packing_octahedral_decode(vec2f(x * scale - 1.0, y * scale - 1.0));
 }
 
+// The mean of the sky over a texel of the map that shows nothing else: a sun of a sky map is narrower than a texel.
+fn capture_sky(x: u32, y: u32) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < CAPTURE_SKY * CAPTURE_SKY; k += 1u) {
+        let dx = (f32(k % CAPTURE_SKY) + 0.5) / f32(CAPTURE_SKY);
+        let dy = (f32(k / CAPTURE_SKY) + 0.5) / f32(CAPTURE_SKY);
+        sum += sky_level(0u, capture_direction(f32(x) + dx, f32(y) + dy));
+    }
+    return sum / f32(CAPTURE_SKY * CAPTURE_SKY);
+}
+
 // The light of parallel sources in a texel.
 fn capture_suns(x: u32, y: u32) -> vec3f {
     let size = f32(render_frame.width);

@@ -20,7 +20,10 @@ struct DropLightFrame {
 // as the eye sees it, and its id.
 @group(0) @binding(6) var<storage, read> drop_light_drops: array<vec4f>;
 // For each drop its mean radiance, then its glints: their part of the mean, and their place, packed. Or its streaks: their part
-// of the mean, and 1 + the first layer's share, below 0 if it is mirrored; the three layers, and the second one's share.
+// of the mean, and 1 + the first layer's share, below 0 if it is mirrored; the three layers, and the second one's share. Or its
+// lamps in the form of Rousseau 2006: the irradiance over pi, and -1 less what the formula gives on the mean; the direction. Or its
+// lamps for the profile of its streak: the irradiance, and the chord from the middle to the edge of the disc (in the form of
+// Rousseau 2006 the irradiance over pi, and -1); the direction, and how bright the drop is by it.
 @group(0) @binding(8) var<storage, read_write> drop_light_out: array<vec4f>;
 @group(0) @binding(9) var<uniform> drop_light_frame: DropLightFrame;
 
@@ -97,7 +100,7 @@ fn drop_light_keep(first: u32, glint: vec4f) {
     }
 }
 
-// Keeps a streak of a drop if it is brighter than the least of those that are kept.
+// Keeps two rows of a drop, a streak or a lamp, if it is brighter than the least of those that are kept.
 fn drop_light_keep_streak(first: u32, light: vec4f, layers: vec4f) {
     var weakest = first;
     var least = scene_share(light.rgb);
@@ -114,6 +117,52 @@ fn drop_light_keep_streak(first: u32, light: vec4f, layers: vec4f) {
         drop_light_out[weakest] = light;
         drop_light_out[weakest + 1u] = layers;
     }
+}
+
+// The chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
+fn drop_light_reach(index: u32) -> f32 {
+    let row = render_frame.lights + index * SCENE_LIGHT_ROWS + 1u;
+    return max(bitcast<f32>(render_table[row].w), DROP_LIGHT_REACH);
+}
+
+// What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
+fn drop_light_whole(lit: vec3f, direction: vec3f, towards: vec3f) -> vec3f {
+    if drop_light_frame.form == DROP_LIGHT_LAMPS_ROUSSEAU {
+        return lit * drop_light_mean(towards, direction);
+    }
+    let angle = drop_glint_angle(direction, towards);
+    return lit * DROP_LIGHT_PI * drop_light_entry(0u, angle).rgb;
+}
+
+// Keeps a lamp of a streak if it is brighter than the least of those that are kept; returns what the drop shows on the mean of
+// the lamp that is not kept.
+fn drop_light_keep_lamp(slot: u32, lit: vec3f, reach: f32, direction: vec3f, towards: vec3f) -> vec3f {
+    let whole = drop_light_whole(lit, direction, towards);
+    let share = scene_share(whole);
+    var least = share;
+    var weakest = slot;
+    var found = false;
+    for (var k = 0u; k + 1u < drop_light_frame.glints; k += 2u) {
+        let kept = drop_light_out[slot + k + 1u].w;
+        if kept < least {
+            least = kept;
+            weakest = slot + k;
+            found = true;
+        }
+    }
+    if !found {
+        return whole;
+    }
+    let old = drop_light_out[weakest];
+    let way = drop_light_out[weakest + 1u].xyz;
+    let is_rousseau = drop_light_frame.form == DROP_LIGHT_LAMPS_ROUSSEAU;
+    let factor = select(DROP_LIGHT_PI, 1.0, is_rousseau);
+    drop_light_out[weakest] = vec4f(lit * factor, select(reach, -1.0, is_rousseau));
+    drop_light_out[weakest + 1u] = vec4f(direction, share);
+    if old.w == 0.0 {
+        return vec3f(0.0);
+    }
+    return drop_light_whole(old.rgb / factor, way, towards);
 }
 
 // The light on a drop: adds this dispatch's lamps to those before.
@@ -146,8 +195,12 @@ fn drop_light_of(index: u32) {
         lit *= scene_visibility(drop.xyz, light.direction, light.distance);
         if form == DROP_LIGHT_IM_SUNG {
             sum += lit;
+        } else if form == DROP_LIGHT_LAMPS_TRACED || form == DROP_LIGHT_LAMPS_ROUSSEAU {
+            sum += drop_light_keep_lamp(slot + 1u, lit, drop_light_reach(k), light.direction, towards);
         } else if form == DROP_LIGHT_ROUSSEAU {
-            sum += lit * drop_light_mean(towards, light.direction);
+            let mean = drop_light_mean(towards, light.direction);
+            sum += lit * mean;
+            drop_light_keep_streak(slot + 1u, vec4f(lit, -1.0 - mean), vec4f(light.direction, 0.0));
         } else if form == DROP_LIGHT_ATLAS {
             let about = drop_light_drops[drop_light_frame.count + index];
             let place = drop_atlas_place(u32(about.w), 2.0 * drop.w, about.xyz, light.direction, -towards);

@@ -40,7 +40,30 @@ fn drops_spots(index: u32, at: vec2f, width: f32) -> vec3f {
     return max(light, vec3f(0.0));
 }
 
-// The same of a drop that passes, for as long as it does: spots have become lines.
+// Light of lamps in the form of Rousseau 2006 at a place of a drop's mask, by the normal there, which halves the angle between the
+// eye and what is mirrored: what it is more than the mean over the drop.
+fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
+    let row = drops_light_row(index);
+    var light = vec3f(0.0);
+    // An atlas has streaks, other forms have glints.
+    if drops_frame.atlas > 0u || drops_frame.glints < 2u || drops_light[row + 1u].w >= 0.0 {
+        return light;
+    }
+    let right = drops_mask_right(drop.towards);
+    let up = cross(right, drop.towards);
+    let turned = drops_mask_unit(drops_mask_at(drop.row, x, y).reflected + vec3f(0.0, 0.0, 1.0));
+    let normal = right * turned.x + up * turned.y - drop.towards * turned.z;
+    for (var k = 1u; k < drops_frame.glints; k += 2u) {
+        let lamp = drops_light[row + k];
+        if lamp.w < 0.0 {
+            let shown = drop_glint_rousseau(normal, -drop.towards, drops_light[row + k + 1u].xyz);
+            light += lamp.rgb * (max(shown, 0.0) + 1.0 + lamp.w);
+        }
+    }
+    return light;
+}
+
+// Light of lamps on a drop that passes, for as long as it does: spots have become lines.
 fn drops_lines(index: u32, chord: StreakChord, width: f32) -> vec3f {
     let row = drops_light_row(index);
     let part = (chord.high - chord.low) * 0.5;
@@ -137,7 +160,8 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
             var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.row), sx, sy);
             if !small {
                 let at = vec2f(sx, sy) * drop.half_extent;
-                shown += vec4f(drops_spots(index, at, drops_glint_width(drop)) * shown.w, 0.0);
+                let light = drops_spots(index, at, drops_glint_width(drop)) + drops_facing(index, drop, sx, sy);
+                shown += vec4f(light * shown.w, 0.0);
             }
             sum += shown;
         }
@@ -155,7 +179,7 @@ fn drops_glint_width(drop: DropsDrop) -> f32 {
 }
 
 // The part of a chord that passes during the exposure, by the mean over its middle points: what a table keeps beforehand.
-fn drops_chord(drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
+fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
     let towards = drops_mask_unit(ray);
     let spacing = 2.0 * drop.oval.x / f32(STREAK_FINE);
     let shade = DropsShade(towards, drop.half_extent, vec3f(0.0), spacing, drop.row);
@@ -164,10 +188,17 @@ fn drops_chord(drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
         let part = (f32(k) + 0.5) / f32(drops_frame.streak_samples);
         let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
         if abs(at.x) < 1.0 && abs(at.y) < 1.0 {
-            sum += drops_shade_ray(shade, at.x, at.y);
+            let shown = drops_shade_ray(shade, at.x, at.y);
+            sum += shown + vec4f(drops_facing(index, drop, at.x, at.y) * shown.w, 0.0);
         }
     }
     return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * ((chord.high - chord.low) * 0.5);
+}
+
+// The share of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet the thin
+// image of a lamp in it, or miss it, alike.
+fn drops_shift(line: u32) -> f32 {
+    return f32((line * STREAK_GOLDEN) & 0xffffu) / 65536.0;
 }
 
 // The streak of a drop over a pixel: radiance times coverage, and coverage.
@@ -184,28 +215,33 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     }
     let right = drops_mask_right(drop.towards);
     let up = cross(right, drop.towards);
+    let shift = vec2f(drops_shift(y), drops_shift(x));
     var sum = vec4f(0.0);
     for (var k = 0u; k < drop.grid; k += 1u) {
         // A lattice whose points differ in every direction.
         let turned = (k * STREAK_LATTICE) % drop.grid;
-        let at = vec2f(f32(x), f32(y)) + (vec2f(f32(k), f32(turned)) + 0.5) / f32(drop.grid);
+        let at = vec2f(f32(x), f32(y)) + (vec2f(f32(k), f32(turned)) + shift) / f32(drop.grid);
         let ray = drops_frame_ray(at.x, at.y);
         let lean = drops_on_plane(drop.towards, ray);
         let place = vec2f(dot(lean, right), dot(lean, up));
+        let by_profile = drop.kind == DROPS_TABLE;
+        if by_profile {
+            sum += streak_lookup_shown(drop, place);
+        }
+        if by_profile && drops_frame.atlas == 0u {
+            continue;
+        }
         let chord = streak_chord(drop, place);
         if chord.high <= chord.low {
             continue;
         }
-        var shown = vec4f(0.0);
-        if drop.kind == DROPS_TABLE {
-            shown = streak_lookup_part(drop.shape, chord.across, at / size, chord.low, chord.high);
-        } else {
-            shown = drops_chord(drop, chord, ray);
+        if !by_profile {
+            sum += drops_chord(index, drop, chord, ray) * chord.share;
         }
         if drops_frame.atlas > 0u {
-            sum += shown * chord.share + vec4f(drops_streaks(index, drop, chord, place), 0.0);
+            sum += vec4f(drops_streaks(index, drop, chord, place), 0.0);
         } else {
-            sum += shown * chord.share + vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
+            sum += vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
         }
     }
     sum /= f32(drop.grid);

@@ -57,3 +57,30 @@ fn drops_capture_at(place: vec2f, footprint: f32) -> vec3f {
     }
     return sum;
 }
+
+// The place in the papers' capture of a ray that is turned by a drop: the refracted ray, in the frame of the drop's view (right, up,
+// towards the viewer), meets the plane of the capture as far from the ray's own place as the tangent of its deviation.
+fn drops_capture_shifted(ray: vec3f, direction: vec3f) -> vec2f {
+    let depth = max(dot(ray, drops_frame.capture_forward), 1.0e-3);
+    let deep = max(-direction.z, 1.0e-3);
+    let shift = vec2f(
+        direction.x / deep / sqrt(dot(drops_frame.capture_right, drops_frame.capture_right)),
+        direction.y / deep / sqrt(dot(drops_frame.capture_up, drops_frame.capture_up)),
+    );
+    let place = vec2f(
+        dot(ray, drops_frame.capture_right) / dot(drops_frame.capture_right, drops_frame.capture_right),
+        dot(ray, drops_frame.capture_up) / dot(drops_frame.capture_up, drops_frame.capture_up),
+    ) / depth + shift;
+    return clamp(vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y), vec2f(0.0), vec2f(1.0));
+}
+
+// What is seen in a direction through a drop that is seen along `towards`, over a width in radians.
+fn drops_capture_about(towards: vec3f, direction: vec3f, width: f32) -> vec3f {
+    if drops_frame.form == DROPS_SHIFT {
+        let right = drop_glint_right(towards);
+        let up = cross(right, towards);
+        let turned = vec3f(dot(direction, right), dot(direction, up), -dot(direction, towards));
+        return drops_capture_at(drops_capture_shifted(towards, turned), width);
+    }
+    return drops_capture_at(packing_octahedral_encode(direction) * 0.5 + 0.5, width);
+}

@@ -9,6 +9,11 @@ struct DropsTexel {
     coverage: f32,
     reflected: vec3f,
     transmittance: f32,
+    // Direction of the light that is reflected inside once.
+    internal: vec3f,
+    internal_transmittance: f32,
+    // Share that is reflected outside.
+    reflectance: f32,
 }
 
 @group(0) @binding(2) var<storage, read> drops_masks: array<u32>;
@@ -31,12 +36,16 @@ fn drops_mask_texel(layer: u32, column: i32, row: i32) -> DropsTexel {
     let x = u32(clamp(column, 0, last));
     let y = u32(clamp(row, 0, last));
     let at = ((layer * drops_frame.mask_size + y) * drops_frame.mask_size + x) * DROPS_TEXEL_WORDS;
-    let shares = unpack2x16unorm(drops_masks[at + 2u]);
+    let shares = unpack2x16unorm(drops_masks[at + 3u]);
+    let more = unpack2x16unorm(drops_masks[at + 4u]);
     return DropsTexel(
         packing_octahedral_decode(unpack2x16snorm(drops_masks[at])),
         shares.x,
         packing_octahedral_decode(unpack2x16snorm(drops_masks[at + 1u])),
         shares.y,
+        packing_octahedral_decode(unpack2x16snorm(drops_masks[at + 2u])),
+        more.x,
+        more.y,
     );
 }
 
@@ -48,16 +57,23 @@ fn drops_mask_add(sum: DropsTexel, texel: DropsTexel, weight: f32) -> DropsTexel
         sum.coverage + covered,
         sum.reflected + texel.reflected * covered,
         sum.transmittance + texel.transmittance * covered,
+        sum.internal + texel.internal * covered,
+        sum.internal_transmittance + texel.internal_transmittance * covered,
+        sum.reflectance + texel.reflectance * covered,
     );
 }
 
 // What a sum of weighted texels says.
 fn drops_mask_mean(sum: DropsTexel) -> DropsTexel {
+    let whole = max(sum.coverage, 1.0e-20);
     return DropsTexel(
         drops_mask_unit(sum.direction),
         sum.coverage,
         drops_mask_unit(sum.reflected),
-        sum.transmittance / max(sum.coverage, 1.0e-20),
+        sum.transmittance / whole,
+        drops_mask_unit(sum.internal),
+        sum.internal_transmittance / whole,
+        sum.reflectance / whole,
     );
 }
 
@@ -82,7 +98,7 @@ fn drops_mask_at(row: vec2f, x: f32, y: f32) -> DropsTexel {
     let low = floor(row);
     let part = row - low;
     let first = u32(low.x) * DROPS_ELEVATIONS + u32(low.y);
-    var sum = DropsTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
+    var sum = DropsTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0.0);
     // Two elevations of two diameters. One text for all: each copy of it is compiled again.
     for (var k = 0u; k < 4u; k += 1u) {
         let of_diameter = select(1.0 - part.x, part.x, k >= 2u);

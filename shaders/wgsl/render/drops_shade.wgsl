@@ -1,6 +1,7 @@
-// What one ray sees through a drop: refracted and reflected light by the mask, looked up in the capture.
-// Law: the light that comes through has the share that the mask's transmittance says, the rest comes from the mirrored
-// direction, so nothing is lost: in uniform surroundings a drop vanishes. The mask's directions are for parallel rays;
+// What one ray sees through a drop: light that is refracted, mirrored, and reflected inside once, by the mask, looked up in the
+// capture.
+// Law: each has the share that the mask says; what is left, light that is reflected inside twice and more, is the mean of all
+// that is about. So nothing is lost: in uniform surroundings a drop vanishes. The mask's directions are for parallel rays;
 // a ray of the camera turns them by what it differs from the ray to the drop's middle (first order in the drop's
 // angle).
 // Limits: the surroundings are those of the eye, not of the drop; a drop does not show other drops.
@@ -20,20 +21,9 @@ struct DropsShade {
     row: vec2f,
 }
 
-// The place in the papers' capture of a ray, shifted by what the mask says: the refracted ray meets the plane of the
-// capture as far from the ray's own place as the tangent of its deviation.
+// The place in the papers' capture of a ray, shifted by what the mask says.
 fn drops_shade_shifted(ray: vec3f, texel: DropsTexel) -> vec2f {
-    let depth = max(dot(ray, drops_frame.capture_forward), 1.0e-3);
-    let deep = max(-texel.direction.z, 1.0e-3);
-    let shift = vec2f(
-        texel.direction.x / deep / sqrt(dot(drops_frame.capture_right, drops_frame.capture_right)),
-        texel.direction.y / deep / sqrt(dot(drops_frame.capture_up, drops_frame.capture_up)),
-    );
-    let place = vec2f(
-        dot(ray, drops_frame.capture_right) / dot(drops_frame.capture_right, drops_frame.capture_right),
-        dot(ray, drops_frame.capture_up) / dot(drops_frame.capture_up, drops_frame.capture_up),
-    ) / depth + shift;
-    return clamp(vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y), vec2f(0.0), vec2f(1.0));
+    return drops_capture_shifted(ray, texel.direction);
 }
 
 // What a drop shows at (x, y), in units of half its mask: radiance times coverage, and coverage.
@@ -47,23 +37,28 @@ fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
     // A sphere's deviation 2 (asin q - asin(q / n)) and its derivative, for the footprint.
     let q = min((x * x + y * y) * drop.half_extent * drop.half_extent, 0.98);
     let bend = 2.0 / sqrt(1.0 - q);
-    let shifts = drops_frame.form == DROPS_SHIFT;
-    var sum = vec3f(0.0);
-    // What comes through, then what is mirrored.
-    for (var k = 0u; k < 2u; k += 1u) {
-        let mirrored = k == 1u;
-        let seen = select(texel.direction, texel.reflected, mirrored);
-        let weight = select(texel.transmittance, 1.0 - texel.transmittance, mirrored);
-        let footprint = drop.spacing * select(bend - DROPS_STRAIGHT, bend, mirrored);
+    if drops_frame.form == DROPS_SHIFT {
+        let place = drops_shade_shifted(drop.towards + drop.lean, texel);
+        return vec4f(drops_capture_at(place, drop.spacing * (bend - DROPS_STRAIGHT)), 1.0) * texel.coverage;
+    }
+    let rest = max(1.0 - texel.transmittance - texel.reflectance - texel.internal_transmittance, 0.0);
+    var sum = drops_capture_texel(drops_frame.capture_last, 0, 0) * rest;
+    // What comes through, what is mirrored, and what is reflected inside.
+    for (var k = 0u; k < 3u; k += 1u) {
+        var seen = texel.direction;
+        var weight = texel.transmittance;
+        var footprint = drop.spacing * (bend - DROPS_STRAIGHT);
+        if k == 1u {
+            seen = texel.reflected;
+            weight = texel.reflectance;
+            footprint = drop.spacing * bend;
+        } else if k == 2u {
+            seen = texel.internal;
+            weight = texel.internal_transmittance;
+            footprint = drop.spacing * max(abs(bend - 2.0 * DROPS_STRAIGHT), 1.0);
+        }
         let direction = right * seen.x + up * seen.y - drop.towards * seen.z + drop.lean;
-        var place = packing_octahedral_encode(direction) * 0.5 + 0.5;
-        if shifts {
-            place = drops_shade_shifted(drop.towards + drop.lean, texel);
-        }
-        sum += drops_capture_at(place, footprint) * select(weight, 1.0, shifts);
-        if shifts {
-            break;
-        }
+        sum += drops_capture_at(packing_octahedral_encode(direction) * 0.5 + 0.5, footprint) * weight;
     }
     return vec4f(sum, 1.0) * texel.coverage;
 }

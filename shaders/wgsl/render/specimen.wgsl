@@ -225,15 +225,23 @@ fn specimen_radiance(view: SpecimenView, x: f32, y: f32) -> vec3f {
     return radiance;
 }
 
+// Position of the samples of a line within their cells, 0 to 1. Each line is shifted against the next by the golden ratio
+// (a lattice of rank 1): what is narrower than a cell, as the image of a small lamp that a falling drop draws out along a
+// column, is not missed, or met, by all lines alike.
+fn specimen_jitter(line: u32) -> f32 {
+    return rng_unit(line * SPECIMEN_LATTICE);
+}
+
 // The pixel in column `column` of row `row`: the mean of its samples.
 fn specimen_pixel(view: SpecimenView, column: u32, row: u32) -> vec3f {
     let samples = view.camera.samples;
     let middle = vec2f(view.size * samples) * 0.5;
     var sum = vec3f(0.0);
     for (var b = 0u; b < samples; b += 1u) {
-        let y = middle.y - (f32(row * samples + b) + 0.5);
+        let line = row * samples + b;
+        let y = middle.y - (f32(line) + 0.5);
         for (var a = 0u; a < samples; a += 1u) {
-            let x = f32(column * samples + a) + 0.5 - middle.x;
+            let x = f32(column * samples + a) - middle.x + specimen_jitter(line);
             sum += specimen_radiance(view, x, y);
         }
     }

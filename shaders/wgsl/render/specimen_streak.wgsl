@@ -105,8 +105,9 @@ fn specimen_streak_trace(view: SpecimenView, streak: SpecimenStreak, column: u32
     let sample = k / streak.instants;
     let instant = k % streak.instants;
     let middle = vec2f(view.size * samples) * 0.5;
-    let x = f32(column * samples + sample % samples) + 0.5 - middle.x;
-    let y = middle.y - (f32(row * samples + sample / samples) + 0.5);
+    let line = row * samples + sample / samples;
+    let x = f32(column * samples + sample % samples) - middle.x + specimen_jitter(line);
+    let y = middle.y - (f32(line) + 0.5);
     let ray = specimen_ray(view.camera, x, y);
     let passage = specimen_streak_passage(streak, ray);
     var sum = vec3f(0.0);

@@ -1,7 +1,4 @@
-// A ray through a drop that oscillates: r = rho(x) f(x, h) scale, with f = 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h.
-// p is a point, x = -p.y / |p| and h = p.x / |p|. Lengths are in units of the volume-equivalent radius; the drop's origin is
-// at 0, its axis is +Y. The gauge squared is G = |p|^2 / r^2. With q = rho' / rho + f_x / f and k = f_h / f,
-// 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2.
+// A ray through a drop that oscillates, with the surface of mask/wobble.wgsl.
 // Such a drop need not be convex. A line is walked in equal parts; in a part at whose ends G turns, its extremum is looked
 // for, so that no bulge or hollow wider than a part is missed. The crossing that is found is closed in on by the steps of
 // mask_trace_step, and by halves where these leave the bracket.
@@ -22,23 +19,7 @@ struct SpecimenWobble {
 
 // G - 1 and half of grad G at a point.
 fn specimen_wobble_surface(drop: SpecimenWobble, point: vec3f) -> MaskTraceSurface {
-    let square = max(dot(point, point), MASK_TINY);
-    let length = sqrt(square);
-    let inverse_length = 1.0 / length;
-    let x = -(point.y * inverse_length);
-    let h = point.x * inverse_length;
-    let radius_slope = drop_shape_radius_slope(drop.shape, x);
-    let lobe = 1.5 * drop.state.y * (1.0 - 5.0 * x * x);
-    let factor = 1.0 + drop.state.x * drop_oscillation_legendre_20(x) + lobe * h;
-    let by_x = 3.0 * drop.state.x * x - 15.0 * drop.state.y * x * h;
-    let inverse_factor = 1.0 / factor;
-    let q = radius_slope.y / radius_slope.x + by_x * inverse_factor;
-    let k = lobe * inverse_factor;
-    let inverse = 1.0 / (radius_slope.x * factor * drop.state.z);
-    let scale_all = inverse * inverse;
-    let along = 1.0 + q * x + k * h;
-    let gradient = point * along + vec3f(-(length * k), length * q, 0.0);
-    return MaskTraceSurface(gradient * scale_all, square * scale_all - 1.0);
+    return mask_wobble_surface(drop.shape, drop.state, point);
 }
 
 // G - 1 and half of dG/ds at the place s of a line.

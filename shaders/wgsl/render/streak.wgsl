@@ -50,9 +50,10 @@ struct DropsDrop {
     nearest: f32,
     // DROPS_STILL, DROPS_TABLE or DROPS_LOOP.
     kind: u32,
-    // Which table.
+    // Which mean of the streak radiance table.
     shape: u32,
-    unused: u32,
+    // First entry of its profile in the table.
+    profile: u32,
 }
 
 // Where a ray passes a moving drop.

@@ -1,65 +1,140 @@
-// The streak radiance table: what a moving drop shows along a chord, averaged beforehand.
-// Law: for a pixel's ray and a place across the motion, the light that a passing drop shows is a mean over a fixed curve of
-// directions, whatever the drop's distance and speed. So it is averaged once per frame for a lattice of rays and places, as
-// a running sum along the chord, of which an interior pixel needs the last and a streak's end the difference of two.
-// Layout: shape, place across the motion (and, last, the mean over the drop), row and column of the ray, running sum; two
-// halves in each word: radiance times coverage, and coverage.
+// The streak radiance table: what moving drops show, averaged beforehand.
+// Law: the light that a passing drop shows a pixel is a mean over a curve of directions: over the chord of its outline that the
+// pixel's ray passes. For a streak that is sampled in its pixels it stands in the streak's own profile (streak_rays.wgsl,
+// streak_light.wgsl), as a running sum along the chord, of which an interior pixel needs the last and a streak's end the
+// difference of two. Of drops that are not sampled one mean for each class of sizes is kept, for a lattice of rays.
+// Layout: the means, by class, row and column of the ray; then the profiles.
 // Twin: downpour_render::rain::streak_lookup.
 
-@group(0) @binding(7) var<storage, read> streak_table: array<vec2u>;
+@group(0) @binding(7) var<storage, read> streak_table: array<vec4f>;
 
-// One entry; running sum 0 is nothing.
-fn streak_lookup_entry(shape: u32, across: u32, column: u32, row: u32, sums: u32) -> vec4f {
-    if sums == 0u {
-        return vec4f(0.0);
-    }
-    let layer = shape * (STREAK_ACROSS + 1u) + across;
-    let entry = streak_table[((layer * STREAK_RAYS + row) * STREAK_RAYS + column) * STREAK_SUMS + sums - 1u];
-    return vec4f(unpack2x16float(entry.x), unpack2x16float(entry.y));
+// Where a ray passes a drop that has a profile.
+struct StreakPassage {
+    // First entry of the profile, and its sizes: rows and columns of chords, rows of the profile and fine columns of each.
+    first: u32,
+    rows: u32,
+    columns: u32,
+    profile_rows: u32,
+    fine: u32,
+    // Time at which the drop is nearest, 0 to 1.
+    time: f32,
+    // Place across the outline in shares of its columns, 0 to 1.
+    across: f32,
+    // The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
+    low: f32,
+    high: f32,
+    // Share of the exposure in which the whole chord would pass.
+    share: f32,
 }
 
-// Between rays. `place` is in [0, 1] from the top left of the picture.
-fn streak_lookup_rays(shape: u32, across: u32, place: vec2f, sums: u32) -> vec4f {
-    let at = clamp(place, vec2f(0.0), vec2f(1.0)) * f32(STREAK_RAYS - 1u);
-    let low = min(vec2u(at), vec2u(STREAK_RAYS - 2u));
-    let part = at - vec2f(low);
-    let upper = streak_lookup_entry(shape, across, low.x, low.y, sums) * (1.0 - part.x)
-        + streak_lookup_entry(shape, across, low.x + 1u, low.y, sums) * part.x;
-    let lower = streak_lookup_entry(shape, across, low.x, low.y + 1u, sums) * (1.0 - part.x)
-        + streak_lookup_entry(shape, across, low.x + 1u, low.y + 1u, sums) * part.x;
-    return upper * (1.0 - part.y) + lower * part.y;
-}
-
-// Between places across the motion, -1 to 1.
-fn streak_lookup_sum(shape: u32, across: f32, place: vec2f, sums: u32) -> vec4f {
-    let at = clamp((across * 0.5 + 0.5) * f32(STREAK_ACROSS) - 0.5, 0.0, f32(STREAK_ACROSS - 1u));
-    let low = min(u32(at), STREAK_ACROSS - 2u);
+// The chords between columns of a row: middle and half of the outline's width, middle and half of the chord.
+fn streak_lookup_chord(first: u32, columns: u32, row: u32, at: f32) -> vec4f {
+    let low = min(u32(at), columns - 2u);
     let part = at - f32(low);
-    return streak_lookup_rays(shape, low, place, sums) * (1.0 - part)
-        + streak_lookup_rays(shape, low + 1u, place, sums) * part;
+    let entry = first + 1u + row * columns + low;
+    return streak_table[entry] * (1.0 - part) + streak_table[entry + 1u] * part;
+}
+
+// Where a place of the plane passes a drop.
+fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
+    let first = drop.profile;
+    let sizes = vec4u(streak_table[first]);
+    let way = streak_nearest(drop, at);
+    let time = streak_time(drop.recede, way);
+    let scale = drop.slope / streak_depth(drop.recede, time);
+    let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
+    let path = drop.along / moves;
+    let offset = (at - drop.start - drop.along * way) / scale;
+    let aside = offset.x * path.y - offset.y * path.x;
+    let ahead = dot(offset, path);
+    let row_at = time * f32(sizes.x - 1u);
+    let row = min(u32(row_at), sizes.x - 2u);
+    let row_part = row_at - f32(row);
+    let width = streak_table[first + 1u + row * sizes.y].xy * (1.0 - row_part)
+        + streak_table[first + 1u + (row + 1u) * sizes.y].xy * row_part;
+    let place = (aside - width.x) / max(width.y, 1.0e-6);
+    let across = streak_place_index(place, 1u);
+    let column_at = clamp(across * f32(sizes.y) - 0.5, 0.0, f32(sizes.y - 1u));
+    let chord = streak_lookup_chord(first, sizes.y, row, column_at) * (1.0 - row_part)
+        + streak_lookup_chord(first, sizes.y, row + 1u, column_at) * row_part;
+    let half = chord.w * sqrt(max(1.0 - place * place, 0.0));
+    let per_half = 1.0 / max(half, 1.0e-6);
+    let length = moves / scale;
+    let faster = way + (1.0 - way) * drop.recede;
+    let rate = drop.share * drop.recede / max(faster * faster, 1.0e-12);
+    let low = ((ahead - chord.z) - length * (1.0 - way)) * per_half;
+    let high = ((ahead - chord.z) + length * way) * per_half;
+    return StreakPassage(
+        first,
+        sizes.x,
+        sizes.y,
+        sizes.z,
+        sizes.w,
+        time,
+        across,
+        max(low, -1.0),
+        select(min(high, 1.0), -2.0, half <= 1.0e-6),
+        2.0 * half / length * rate,
+    );
+}
+
+// A running sum of a row of a profile, between its fine columns; sum 0 is nothing.
+fn streak_lookup_column(passage: StreakPassage, row: u32, sums: u32) -> vec3f {
+    if sums == 0u {
+        return vec3f(0.0);
+    }
+    let columns = passage.columns * passage.fine;
+    let at = clamp(passage.across * f32(columns) - 0.5, 0.0, f32(columns - 1u));
+    let low = min(u32(at), columns - 2u);
+    let part = at - f32(low);
+    let chords = passage.first + 1u + passage.rows * passage.columns;
+    let entry = chords + (row * columns + low) * STREAK_SUMS + sums - 1u;
+    return streak_table[entry].rgb * (1.0 - part) + streak_table[entry + STREAK_SUMS].rgb * part;
+}
+
+// The same between rows.
+fn streak_lookup_sum(passage: StreakPassage, sums: u32) -> vec3f {
+    let at = passage.time * f32(passage.profile_rows - 1u);
+    let low = min(u32(at), passage.profile_rows - 2u);
+    let part = at - f32(low);
+    return streak_lookup_column(passage, low, sums) * (1.0 - part)
+        + streak_lookup_column(passage, low + 1u, sums) * part;
 }
 
 // The running sum up to a place on the chord, -1 to 1.
-fn streak_lookup_until(shape: u32, across: f32, place: vec2f, v: f32) -> vec4f {
-    let at = clamp((v * 0.5 + 0.5) * f32(STREAK_SUMS), 0.0, f32(STREAK_SUMS));
-    let low = u32(at);
-    let part = at - f32(low);
-    var sum = streak_lookup_sum(shape, across, place, low) * (1.0 - part);
-    if part > 0.0 {
-        sum += streak_lookup_sum(shape, across, place, low + 1u) * part;
-    }
-    return sum;
+fn streak_lookup_until(passage: StreakPassage, place: f32) -> vec3f {
+    let at = streak_place_index(place, STREAK_SUMS);
+    let low = min(u32(at), STREAK_SUMS - 1u);
+    // By length: in uniform surroundings light goes as coverage does.
+    let first = streak_place_position(f32(low), STREAK_SUMS);
+    let length = streak_place_position(f32(low + 1u), STREAK_SUMS) - first;
+    let part = clamp((place - first) / length, 0.0, 1.0);
+    return streak_lookup_sum(passage, low) * (1.0 - part) + streak_lookup_sum(passage, low + 1u) * part;
 }
 
-// The part of a chord from `low` to `high`, as a share of what the whole shows.
-fn streak_lookup_part(shape: u32, across: f32, place: vec2f, low: f32, high: f32) -> vec4f {
-    if low <= -1.0 && high >= 1.0 {
-        return streak_lookup_sum(shape, across, place, STREAK_SUMS);
+// A streak at a place of the plane: radiance times the share of the exposure in which it is covered, and this share.
+fn streak_lookup_shown(drop: DropsDrop, at: vec2f) -> vec4f {
+    let passage = streak_lookup_passage(drop, at);
+    if passage.high <= passage.low {
+        return vec4f(0.0);
     }
-    return streak_lookup_until(shape, across, place, high) - streak_lookup_until(shape, across, place, low);
+    var light = vec3f(0.0);
+    if passage.low <= -1.0 && passage.high >= 1.0 {
+        light = streak_lookup_sum(passage, STREAK_SUMS);
+    } else {
+        light = streak_lookup_until(passage, passage.high) - streak_lookup_until(passage, passage.low);
+    }
+    return vec4f(light, (passage.high - passage.low) * 0.5) * passage.share;
 }
 
-// The mean radiance of a whole drop.
+// The mean radiance of a whole drop of a class. `place` is in [0, 1] from the top left of the picture.
 fn streak_lookup_mean(shape: u32, place: vec2f) -> vec3f {
-    return streak_lookup_rays(shape, STREAK_ACROSS, place, 1u).rgb;
+    let at = clamp(place, vec2f(0.0), vec2f(1.0)) * f32(STREAK_RAYS - 1u);
+    let low = min(vec2u(at), vec2u(STREAK_RAYS - 2u));
+    let part = at - vec2f(low);
+    let entry = (shape * STREAK_RAYS + low.y) * STREAK_RAYS + low.x;
+    let upper = streak_table[entry].rgb * (1.0 - part.x) + streak_table[entry + 1u].rgb * part.x;
+    let lower = streak_table[entry + STREAK_RAYS].rgb * (1.0 - part.x)
+        + streak_table[entry + STREAK_RAYS + 1u].rgb * part.x;
+    return upper * (1.0 - part.y) + lower * part.y;
 }

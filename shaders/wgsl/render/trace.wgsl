@@ -148,7 +148,11 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
         trace_gather[y * render_frame.width + x] = TraceGather(trace_mean(base, share), trace_mean(mirror, share));
         return vec4f(sum * share, nearest);
     }
-    return vec4f(sum * share + capture_suns(x, y), nearest);
+    var seen = sum * share;
+    if nearest >= SCENE_FAR && render_frame.projection == SCENE_OCTAHEDRAL {
+        seen = capture_sky(x, y);
+    }
+    return vec4f(seen + capture_suns(x, y), nearest);
 }
 
 @compute @workgroup_size(8, 8, 1)

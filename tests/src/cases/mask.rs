@@ -7,14 +7,15 @@ use downpour_mask::silhouette::{
     mask_silhouette_area, mask_silhouette_cut, mask_silhouette_distance, mask_silhouette_estimate,
 };
 use downpour_mask::trace::{
-    TracedDrop, mask_trace_curvature, mask_trace_meet, mask_trace_normal, mask_trace_plane_turn,
-    mask_trace_spheroid, mask_trace_step, mask_trace_surface, mask_trace_through,
+    Exit, TracedDrop, mask_trace_curvature, mask_trace_exit, mask_trace_meet, mask_trace_normal,
+    mask_trace_plane_turn, mask_trace_reflectance, mask_trace_spheroid, mask_trace_step, mask_trace_surface,
+    mask_trace_through,
 };
 use downpour_mask::{ClosedMesh, Mask, MaskOptions, MaskTexel, View, trace_drop_scalar, trace_model};
 use downpour_math::rng::rng_unit;
 use downpour_shaders::mask;
 
-use crate::Domain::{Made, OneOf, Uniform, Unit3};
+use crate::Domain::{Below, Made, OneOf, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -57,6 +58,12 @@ fn traced(args: &mut Args<'_>) -> (TracedDrop, f32) {
         steps: downpour_shaders::mask::MASK_TRACE_STEPS,
     };
     (drop, pixel)
+}
+
+/// As `MaskTraceExit`.
+fn exit_words(exit: &Exit<f32>) -> Vec<u32> {
+    let at = ((exit.point, exit.reflections), (exit.normal, exit.lost));
+    (at, (exit.inside, exit.outside)).words()
 }
 
 const SURFACE: Tol = Tol::relative(
@@ -133,18 +140,44 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| mask_trace_plane_turn(a.f32s(), a.f32s(), a.f32s()).words(),
         ),
         FunctionCase::new(
+            "mask_trace_exit",
+            &mask::TRACE,
+            &[drop, inside, inside, inside, Unit3],
+            Tol::absolute(2.0e-3, "a refraction; errors grow close to total reflection and with each one")
+                .with_outliers(2.0e-3),
+            |a| {
+                let (drop, _) = traced(a);
+                exit_words(&mask_trace_exit(&drop, a.f32s(), a.f32s()))
+            },
+        ),
+        FunctionCase::new(
+            "mask_trace_reflectance",
+            &mask::TRACE,
+            &[Unit3, Below(9), Unit3, Below(2), Unit3, Unit3, Uniform(1.2, 1.4)],
+            Tol::relative(1.0e-5, 1.0e-5, "Fresnel's equations: square roots and quotients (2.5 ulp)")
+                .with_outliers(1.0e-3),
+            |a| {
+                let (point, _) = (a.f32s(), a.u32());
+                let (normal, _) = (a.f32s(), a.u32());
+                let (inside, outside) = (a.f32s(), a.f32s());
+                let exit = Exit { point, normal, inside, outside, reflections: 0.0, lost: 0.0 };
+                mask_trace_reflectance(&exit, a.f32()).words()
+            },
+        ),
+        FunctionCase::new(
             "mask_trace_through",
             &mask::TRACE,
             &[drop, inside, inside],
             Tol::relative(
                 1.0e-4,
                 1.0e-4,
-                "two refractions; errors grow close to total reflection and with each one",
+                "two refractions and a reflection; errors grow close to total reflection and with each one",
             ),
             |a| {
                 let (drop, _) = traced(a);
                 let t = mask_trace_through(&drop, a.f32(), a.f32());
-                (((t.direction, t.transmittance), (t.reflected, t.reflectance)), t.reflections).words()
+                let outer = ((t.direction, t.transmittance), (t.reflected, t.reflectance));
+                ((outer, (t.internal, t.internal_transmittance)), t.reflections).words()
             },
         ),
         FunctionCase::new(
@@ -204,13 +237,14 @@ pub(super) fn functions() -> Vec<FunctionCase> {
 fn run(cpu: &Mask, gpu: &Mask) -> Run {
     let words = |mask: &Mask| -> Vec<u32> {
         let texel = |t: &MaskTexel| {
-            ((t.direction, t.coverage), ((t.reflected, t.transmittance), t.reflections)).words()
+            let outer = ((t.direction, t.coverage), (t.reflected, t.transmittance));
+            ((outer, (t.internal, t.internal_transmittance)), t.reflections).words()
         };
         mask.texels.iter().flat_map(texel).collect()
     };
     let place =
         |i: u32| vec![(i % cpu.size) as f32, (i / cpu.size) as f32].into_iter().map(f32::to_bits).collect();
-    let mut kinds = vec![WordKind::Float; 8];
+    let mut kinds = vec![WordKind::Float; 12];
     kinds.push(WordKind::Integer);
     Run {
         arguments: (0..cpu.size * cpu.size).map(place).collect(),
@@ -274,6 +308,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "bvh_hit",
             "mask_model_hit",
             "mask_model_normal",
+            "mask_model_exit",
             "mask_model_through",
             "mask_model_sample",
             "mask_model_texel",

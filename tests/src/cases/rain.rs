@@ -8,16 +8,17 @@ use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::{RainPipeline, ScenePipeline};
 use downpour_render::rain::drops_mask::drops_mask_right;
-use downpour_render::rain::light::DropLightOptions;
-use downpour_render::rain::streak_lookup::streak_numbers;
+use downpour_render::rain::light::{DropLightForm, DropLightOptions};
+use downpour_render::rain::streak_place::{streak_place_index, streak_place_position};
 use downpour_render::rain::{
     DropMasks, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions, ReduceLevel,
-    RefractionForm, StreakColour, StreakSamples, reduce_levels, reduce_texel,
+    RefractionForm, StreakColour, StreakProfiles, StreakSamples, reduce_levels, reduce_texel,
 };
 use downpour_render::scene::SceneView;
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
-    DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK_RAYS, STREAK_SUMS, STREAK_TABLE_KERNEL,
+    DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK_LIGHT_KERNEL, STREAK_PLACE, STREAK_RAYS,
+    STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
@@ -26,7 +27,7 @@ use glam::{DVec3, Vec3};
 
 use super::drop_light::atlas;
 use super::scene::scene;
-use crate::Domain::Unit3;
+use crate::Domain::{Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -94,7 +95,9 @@ fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
 #[derive(Clone, Copy)]
 enum Part {
     Capture,
-    Table,
+    Means,
+    Chords,
+    Profiles,
     Open,
     Medium,
     Seen,
@@ -135,6 +138,23 @@ fn atlas_case(gpu: &Gpu, place: [Vec3; 2], shutter_s: f64, pick: StreakPick) -> 
     masks_case(gpu, place, options, &masks, Part::Drops)
 }
 
+/// The entries of the streak radiance table that a part is about.
+fn entries(profiles: &StreakProfiles, part: Part) -> Vec<usize> {
+    let rays = (STREAK_RAYS * STREAK_RAYS) as usize;
+    if matches!(part, Part::Means) {
+        let wanted = |k: &usize| profiles.classes[k / rays].rows > 0;
+        return (0..profiles.classes.len() * rays).filter(wanted).collect();
+    }
+    let mut all = Vec::new();
+    let ends = profiles.paths.iter().skip(1).map(|path| path.first_entry).chain([profiles.entries]);
+    for (path, end) in profiles.paths.iter().zip(ends) {
+        let [first, end] = [path.first_entry, end].map(|k| k as usize);
+        let light = first + 1 + (path.rows * path.columns) as usize;
+        all.extend(if matches!(part, Part::Chords) { first..light } else { light..end });
+    }
+    all
+}
+
 fn masks_case(
     gpu: &Gpu,
     [eye, forward]: [Vec3; 2],
@@ -154,8 +174,11 @@ fn masks_case(
     let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
     let uploaded = scenes.upload(&scene)?;
     let clean_buffer = gpu.storage_buffer("clean", &clean)?;
-    let lights = rain.lights(&scene, masks).expect("lamps");
-    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(masks)?, &clean_buffer, &rain, &lights)?;
+    let both =
+        [rain.lights(&scene, masks).expect("lamps"), rain.streak_lights(&scene, masks).expect("lamps")];
+    let lights = &both[0];
+    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(masks)?, &clean_buffer, &rain, &both)?;
+    let table = || rain.streak_table(masks, &capture, &both[1].light(&rain.streak_rows()));
     gpu.submit(&pass.capture())?;
     match part {
         Part::Capture => {
@@ -163,45 +186,43 @@ fn masks_case(
             let finest = 64 * 64;
             Ok(run(64, &capture.texels[..finest], &pass.surroundings()?[..finest]))
         }
-        Part::Table => {
-            gpu.submit(&pass.streaks().into_iter().collect::<Vec<_>>())?;
-            let table = rain.streak_table(masks, &capture);
-            let numbers = |words: &[[u32; 2]]| words.iter().map(|&pair| streak_numbers(pair)).collect();
-            let (cpu, gpu): (Vec<[f32; 4]>, Vec<[f32; 4]>) =
-                (numbers(&table.words), numbers(&pass.streak_table()?));
-            Ok(run(STREAK_RAYS * STREAK_SUMS, &cpu, &gpu))
+        Part::Means | Part::Chords | Part::Profiles => {
+            gpu.submit(&pass.lamps())?;
+            gpu.submit(&pass.streaks())?;
+            let wanted = entries(&rain.profiles, part);
+            let of_part = |table: &[[f32; 4]]| wanted.iter().map(|&k| table[k]).collect::<Vec<_>>();
+            Ok(run(STREAK_RAYS, &of_part(&table().entries), &of_part(&pass.streak_table()?)))
         }
         Part::Drops => {
             gpu.submit(
                 &pass
-                    .streaks()
+                    .lamps()
                     .into_iter()
-                    .chain(pass.lamps())
+                    .chain(pass.streaks())
                     .chain(pass.medium())
                     .chain([pass.drops()])
                     .collect::<Vec<_>>(),
             )?;
-            let table = rain.streak_table(masks, &capture);
-            let medium = rain.medium_light(&lights).layer(&clean);
-            let layer = rain.layer(&clean, masks, &capture, &table, &lights.light(&rain.rows), &medium);
+            let medium = rain.medium_light(lights).layer(&clean);
+            let layer = rain.layer(&clean, masks, &capture, &table(), &lights.light(&rain.rows), &medium);
             Ok(run(SIZE[0], &layer, &pass.layer()?))
         }
         Part::Open => {
             gpu.submit(&pass.medium())?;
-            let medium = rain.medium_light(&lights);
+            let medium = rain.medium_light(lights);
             let cells = medium.found(&clean).len() - 2 * clean.len();
             Ok(run(16, &medium.found(&clean)[..cells], &pass.medium_found()?[..cells]))
         }
         Part::Medium => {
             gpu.submit(&pass.medium())?;
-            let medium = rain.medium_light(&lights);
+            let medium = rain.medium_light(lights);
             let pixels = medium.found(&clean).len() - 2 * clean.len();
             let whole = |found: &[[f32; 4]]| found[pixels..].iter().step_by(2).copied().collect::<Vec<_>>();
             Ok(run(SIZE[0], &whole(&medium.found(&clean)), &whole(&pass.medium_found()?)))
         }
         Part::Seen => {
             gpu.submit(&pass.medium())?;
-            let medium = rain.medium_light(&lights);
+            let medium = rain.medium_light(lights);
             let pixels = medium.found(&clean).len() - 2 * clean.len();
             // Means over blocks: which part of a ray chance draws may differ, what comes of it may not.
             let blocks = |found: &[[f32; 4]]| {
@@ -224,7 +245,7 @@ fn masks_case(
                 layer.iter().map(|&[r, g, b, _]| [r, g, b, 0.0]).collect()
             };
             // From the same findings.
-            let medium = rain.medium_light(&lights).filtered(&clean, &pass.medium_found()?);
+            let medium = rain.medium_light(lights).filtered(&clean, &pass.medium_found()?);
             Ok(run(SIZE[0], &numbers(&medium), &numbers(&pass.layer()?)))
         }
     }
@@ -284,26 +305,56 @@ const SEEN: Tol = Tol::relative(
 )
 .with_outliers(1.0e-2);
 
-const TABLED: Tol = Tol::relative(
+const TABLED: Tol = Tol::relative(5.0e-3, 4.0e-3, "the capture above; directions in which rays leave a drop")
+    .with_outliers(1.0e-2);
+
+const OUTLINED: Tol = Tol::relative(
+    1.0e-3,
+    1.0e-3,
+    "sines (2^-11) of angles and of phases; steps to an outline, which find it",
+);
+
+const PROFILED: Tol = Tol::relative(
+    1.0e-2,
     5.0e-3,
-    4.0e-3,
-    "the capture above; numbers are kept as halves (1 / 2048), rounded either way",
+    "the outlines and the capture above; a point of a patch at the edge of a lamp's disc may fall on either side",
 )
-.with_outliers(1.0e-2);
+.with_outliers(2.0e-2);
 
 /// Where the eye is, and where it looks.
 const LEVEL: [Vec3; 2] = [Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0)];
 const ABOVE: [Vec3; 2] = [Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1)];
 
+/// A number of cells, from 1 to 24.
+fn cells(random: [u32; 4]) -> Vec<u32> {
+    vec![1 + random[0] % 24]
+}
+
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
-    vec![FunctionCase::new(
-        "drops_mask_right",
-        &DROPS_MASK,
-        &[Unit3],
-        Tol::relative(1.0e-6, 1.0e-7, "a square root and a division (2.5 ulp)"),
-        |a| drops_mask_right(Vec3::from(a.f32s())).to_array().words(),
-    )]
+    vec![
+        FunctionCase::new(
+            "drops_mask_right",
+            &DROPS_MASK,
+            &[Unit3],
+            Tol::relative(1.0e-6, 1.0e-7, "a square root and a division (2.5 ulp)"),
+            |a| drops_mask_right(Vec3::from(a.f32s())).to_array().words(),
+        ),
+        FunctionCase::new(
+            "streak_place_position",
+            &STREAK_PLACE,
+            &[Uniform(0.0, 24.0), Made(cells)],
+            Tol::absolute(6.0e-4, "sine (2^-11) of numbers up to pi / 2"),
+            |a| streak_place_position(a.f32(), a.u32()).words(),
+        ),
+        FunctionCase::new(
+            "streak_place_index",
+            &STREAK_PLACE,
+            &[Uniform(-1.5, 1.5), Made(cells)],
+            Tol::absolute(1.2e-2, "arc sine (4096 ulp) of numbers up to 1, times up to 24 / pi"),
+            |a| streak_place_index(a.f32(), a.u32()).words(),
+        ),
+    ]
 }
 
 /// The cases.
@@ -328,6 +379,8 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_light_row",
             "drops_spots",
             "drops_lines",
+            "drops_facing",
+            "drops_shift",
             "drops_line",
             "drops_glint_width",
             "drops_turns",
@@ -357,11 +410,12 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "streak_within",
             "streak_mean",
             "streak_cover",
-            "streak_lookup_entry",
-            "streak_lookup_rays",
+            "streak_lookup_chord",
+            "streak_lookup_passage",
+            "streak_lookup_column",
             "streak_lookup_sum",
             "streak_lookup_until",
-            "streak_lookup_part",
+            "streak_lookup_shown",
             "streak_lookup_mean",
         ],
         tol: DRAWN,
@@ -399,11 +453,37 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         tol: SCATTERED,
         run,
     };
+    let profiles = |name, run| KernelCase {
+        name,
+        kernel: &STREAK_LIGHT_KERNEL,
+        covers: &[
+            "mask_wobble_light",
+            "mask_wobble_meet",
+            "streak_path_back",
+            "streak_rays_ray",
+            "streak_light_change",
+            "streak_light_column",
+            "streak_light_direction",
+            "streak_light_exit",
+            "streak_light_facing",
+            "streak_light_mixed",
+            "streak_light_patch",
+            "streak_light_size",
+            "streak_light_spot",
+            "streak_light_view",
+            "drop_light_keep_lamp",
+            "drop_light_reach",
+            "drop_light_whole",
+            "drops_capture_shifted",
+        ],
+        tol: PROFILED,
+        run,
+    };
     vec![
         KernelCase {
             name: "main_trace: a capture with a sun and lamps",
             kernel: &TRACE_KERNEL,
-            covers: &["capture_direction", "capture_suns"],
+            covers: &["capture_direction", "capture_sky", "capture_suns"],
             tol: CAPTURED,
             run: |gpu| {
                 let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
@@ -451,22 +531,56 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
             rain_case(gpu, [eye, forward], RefractionForm::Rousseau2006, Exposure::default(), Part::Drops)
         }),
+        drops("main_drops: light of Rousseau 2006", |gpu| {
+            let light = DropLightOptions { form: DropLightForm::Rousseau2006, glints: 8 };
+            let options = RainOptions { light, ..RainOptions::default() };
+            masks_case(gpu, LEVEL, options, &DropMasks::trace(1.333).expect("masks"), Part::Drops)
+        }),
         KernelCase {
-            name: "main_streak_table: all shapes",
+            name: "main_streak_table: all classes",
             kernel: &STREAK_TABLE_KERNEL,
-            covers: &[
-                "streak_table_elevation",
-                "streak_table_oval",
-                "streak_table_direction",
-                "streak_table_write",
-                "streak_table_part",
-            ],
+            covers: &["streak_table_point", "drops_capture_about"],
             tol: TABLED,
             run: |gpu| {
                 let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
-                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Table)
+                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Means)
             },
         },
+        KernelCase {
+            name: "main_streak_rays: outlines and chords",
+            kernel: &STREAK_RAYS_KERNEL,
+            covers: &[
+                "streak_path_axes",
+                "streak_path_body",
+                "streak_path_displacement",
+                "streak_path_instant",
+                "streak_path_line",
+                "streak_path_turned",
+                "streak_rays_chord",
+                "streak_rays_outline",
+                "streak_rays_width",
+                "mask_wobble_nearest",
+                "mask_wobble_spheroid",
+                "mask_wobble_surface",
+            ],
+            tol: OUTLINED,
+            run: |gpu| {
+                let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
+                rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Chords)
+            },
+        },
+        profiles("main_streak_light: profiles", |gpu| {
+            let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
+            rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Profiles)
+        }),
+        profiles("main_streak_light: profiles, Rousseau 2006", |gpu| {
+            let exposure = exposure(1.0 / 250.0, StreakSamples::Table);
+            let light = DropLightOptions { form: DropLightForm::Rousseau2006, glints: 8 };
+            let form = RefractionForm::Rousseau2006;
+            let options = RainOptions { form, exposure, light, ..RainOptions::default() };
+            let masks = DropMasks::trace(1.333).expect("masks");
+            masks_case(gpu, ABOVE, options, &masks, Part::Profiles)
+        }),
         drops("main_drops: streaks by the table", |gpu| {
             let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
             rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Drops)

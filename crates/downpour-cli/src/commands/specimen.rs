@@ -18,7 +18,7 @@ use crate::commands::say_warnings;
 use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
 use crate::output::Place;
-use crate::quantity::StreakOfSpecimen;
+use crate::quantity::SpecimenSamples;
 use crate::{quantity, stream};
 
 /// Draw one drop, exactly, in front of a sky map.
@@ -53,12 +53,12 @@ pub(crate) struct SpecimenArguments {
     #[arg(long, value_name = "S", default_value = "0", value_parser = quantity::exposure_s)]
     #[arg(allow_hyphen_values = true)]
     exposure: f64,
-    /// Instants of the exposure for each of the 16 samples of a pixel, 1 to 4096: exact. `table`: the streak as `render` draws
-    /// it, through masks and by its streak radiance table, to hold beside the exact one; with `--exposure`, for drops of 0.5 to
-    /// 9 mm, under lamps of at most 5 degrees, which light the drop as parallel light.
-    #[arg(long, value_name = "N|table", default_value = "4", value_parser = quantity::streak_of_specimen)]
+    /// Of a drop at rest: samples along an edge of a pixel, 1 to 16. Of a streak: instants of the exposure for each of the 16
+    /// samples of a pixel, 1 to 4096. Both are exact. `table`: the streak as `render` draws it, by its streak radiance table, to
+    /// hold beside the exact one; with `--exposure`, for drops of 0.5 to 9 mm, under lamps of at most 5 degrees.
+    #[arg(long, value_name = "N|table", default_value = "4", value_parser = quantity::specimen_samples)]
     #[arg(allow_hyphen_values = true)]
-    samples: StreakOfSpecimen,
+    samples: SpecimenSamples,
     /// How the drop oscillates: `none`, or the amplitudes of the modes (2,0) and (3,1) over the radius, as 0.2,0.1.
     #[arg(long, value_name = "A20,A31", default_value = "none", value_parser = quantity::oscillation)]
     #[arg(allow_hyphen_values = true)]
@@ -119,13 +119,16 @@ impl SpecimenArguments {
             fov: self.fov.map(f64::to_radians),
             size: self.size,
             exposure_s: self.exposure,
-            instants: match self.samples {
-                StreakOfSpecimen::Instants(instants) => instants,
-                StreakOfSpecimen::Table => SpecimenOptions::default().instants,
-            },
             oscillation: self.oscillation,
             phase: self.phase,
             ..SpecimenOptions::default()
+        };
+        let options = match self.samples {
+            SpecimenSamples::Number(instants) if options.is_streak() => {
+                SpecimenOptions { instants, ..options }
+            }
+            SpecimenSamples::Number(samples) => SpecimenOptions { samples, ..options },
+            SpecimenSamples::Table => options,
         };
         options.check(&shape)?;
         SpecimenLamp::check_count(&self.light)?;
@@ -149,7 +152,7 @@ impl SpecimenArguments {
     }
 
     fn by_table(&self) -> bool {
-        self.samples == StreakOfSpecimen::Table
+        self.samples == SpecimenSamples::Table
     }
 
     /// # Errors

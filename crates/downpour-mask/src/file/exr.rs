@@ -1,7 +1,8 @@
 //! One mask as OpenEXR.
 //!
 //! Channels: `R`, `G`, `B` direction through the drop, `A` coverage; `reflected.R`, `.G`, `.B` direction of the
-//! reflection outside; `transmittance.Y`; `reflections.Y` total reflections inside. Directions are in the frame
+//! reflection outside; `transmittance.Y`; `internal.R`, `.G`, `.B` direction of light that was reflected inside once without
+//! being totally reflected; `internalTransmittance.Y`; `reflections.Y` total reflections inside. Directions are in the frame
 //! of the view (x right, y up, z towards the viewer). The attribute `downpourMask` holds the diameter, the half
 //! extent of the picture in equivalent radii, the view's elevation and the refractive index.
 //!
@@ -33,7 +34,7 @@ const ATTRIBUTE: &str = "downpourMask";
 type Field = (&'static str, fn(&MaskTexel) -> f32, fn(&mut MaskTexel, f32));
 
 /// The channels and the numbers of a texel that they hold.
-const FIELDS: [Field; 9] = [
+const FIELDS: [Field; 13] = [
     ("R", |t| t.direction[0], |t, v| t.direction[0] = v),
     ("G", |t| t.direction[1], |t, v| t.direction[1] = v),
     ("B", |t| t.direction[2], |t, v| t.direction[2] = v),
@@ -42,6 +43,10 @@ const FIELDS: [Field; 9] = [
     ("reflected.G", |t| t.reflected[1], |t, v| t.reflected[1] = v),
     ("reflected.B", |t| t.reflected[2], |t, v| t.reflected[2] = v),
     ("transmittance.Y", |t| t.transmittance, |t, v| t.transmittance = v),
+    ("internal.R", |t| t.internal[0], |t, v| t.internal[0] = v),
+    ("internal.G", |t| t.internal[1], |t, v| t.internal[1] = v),
+    ("internal.B", |t| t.internal[2], |t, v| t.internal[2] = v),
+    ("internalTransmittance.Y", |t| t.internal_transmittance, |t, v| t.internal_transmittance = v),
     ("reflections.Y", |t| t.reflections as f32, |t, v| t.reflections = v as u32),
 ];
 
@@ -161,7 +166,7 @@ fn check_header(bytes: &[u8]) -> core::result::Result<(u32, Description), MaskEr
         return Err(file("data window", format!("{width} x {height}"), "a square"));
     }
     if header.channels.list.len() > 2 * FIELDS.len() {
-        return Err(file("channels", format!("{} channels", header.channels.list.len()), "the 9 of a mask"));
+        return Err(file("channels", format!("{} channels", header.channels.list.len()), "the 13 of a mask"));
     }
     let Some(AttributeValue::Text(text)) = header.own_attributes.other.get(&Text::from(ATTRIBUTE)) else {
         return Err(file("attributes", "no downpourMask".to_owned(), "a mask written by Downpour"));

@@ -1,8 +1,10 @@
 //! Masks over diameters as a KTX2 texture array.
 //!
-//! Format `R16G16B16A16_SFLOAT`, one level, ZLIB supercompression, two layers per mask, rows from the top:
-//! - layer 2 k: direction through the drop (x, y, z), coverage;
-//! - layer 2 k + 1: direction of the reflection outside (x, y, z), transmittance.
+//! Format `R16G16B16A16_SFLOAT`, one level, ZLIB supercompression, three layers per mask, rows from the top:
+//! - layer 3 k: direction through the drop (x, y, z), coverage;
+//! - layer 3 k + 1: direction of the reflection outside (x, y, z), transmittance;
+//! - layer 3 k + 2: direction of light that was reflected inside once without being totally reflected (x, y, z), its
+//!   transmittance.
 //!
 //! The key `DownpourMask` holds diameters, half extents (in equivalent radii), the view's elevation and the
 //! refractive index. The number of total reflections is not kept (OpenEXR has it).
@@ -17,7 +19,9 @@ use crate::file::{Description, shorten};
 use crate::{Mask, MaskError, MaskTexel, SIZES};
 
 /// The most masks of an array: a texture array has 256 layers on every WebGPU device.
-const MOST_MASKS: usize = 128;
+const MOST_MASKS: usize = 256 / LAYERS;
+/// Layers of a mask.
+const LAYERS: usize = 3;
 /// Level of the deflate encoder: 0 to 10.
 const DEFLATE_LEVEL: u8 = 9;
 /// The format of a layer.
@@ -31,7 +35,7 @@ const TEXEL_BYTES: usize = 8;
 /// [`MaskError::File`] if the masks do not belong together, or are none or too many.
 pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
     let Some(first) = masks.first().filter(|_| masks.len() <= MOST_MASKS) else {
-        return Err(file("masks", format!("{} masks", masks.len()), "1 to 128"));
+        return Err(file("masks", format!("{} masks", masks.len()), "1 to 85"));
     };
     let same = |m: &&Mask| {
         (m.size, m.view) == (first.size, first.view)
@@ -44,12 +48,15 @@ pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
             "one size, view and refractive index",
         ));
     }
-    let mut texels = Vec::with_capacity(masks.len() * first.texels.len() * 2 * TEXEL_BYTES);
+    let mut texels = Vec::with_capacity(masks.len() * first.texels.len() * LAYERS * TEXEL_BYTES);
     for mask in masks {
-        for layer in 0..2 {
+        for layer in 0..LAYERS {
             for t in &mask.texels {
-                let ([x, y, z], w) =
-                    if layer == 0 { (t.direction, t.coverage) } else { (t.reflected, t.transmittance) };
+                let ([x, y, z], w) = match layer {
+                    0 => (t.direction, t.coverage),
+                    1 => (t.reflected, t.transmittance),
+                    _ => (t.internal, t.internal_transmittance),
+                };
                 texels.extend([x, y, z, w].iter().flat_map(|&v| f16::from_f32(v).to_le_bytes()));
             }
         }
@@ -64,7 +71,7 @@ pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
         format: FORMAT,
         type_size: 2,
         size: [first.size; 2],
-        layers: 2 * masks.len() as u32,
+        layers: (LAYERS * masks.len()) as u32,
         key: "DownpourMask",
         description: &description.write(),
         texels: &texels,
@@ -168,8 +175,8 @@ pub fn read_ktx2(bytes: &[u8]) -> Result<Vec<Mask>, MaskError> {
     let text = find_key(keys, "DownpourMask")
         .ok_or_else(|| file("keys", "no DownpourMask".to_owned(), "masks written by Downpour"))?;
     let description = Description::read("key DownpourMask", &text)?;
-    if description.diameters.len() * 2 != layers {
-        return Err(file("layers", format!("{layers}"), "two per diameter"));
+    if description.diameters.len() * LAYERS != layers {
+        return Err(file("layers", format!("{layers}"), "three per diameter"));
     }
     let texels = match header.supercompression_scheme {
         Some(_) => miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, expected)
@@ -214,8 +221,8 @@ fn check_header(header: &Header) -> Result<(u32, usize), MaskError> {
         return Err(file("dimensions", found, "a square, one face, one level"));
     }
     let layers = header.layer_count as usize;
-    if layers == 0 || !layers.is_multiple_of(2) || layers > 2 * MOST_MASKS {
-        return Err(file("layerCount", layers.to_string(), "an even number from 2 to 256"));
+    if layers == 0 || !layers.is_multiple_of(LAYERS) || layers > LAYERS * MOST_MASKS {
+        return Err(file("layerCount", layers.to_string(), "a multiple of 3 from 3 to 255"));
     }
     Ok((header.pixel_width, layers))
 }
@@ -255,13 +262,16 @@ fn unpack(texels: &[u8], size: u32, description: &Description) -> Result<Vec<Mas
     {
         let texels: Vec<MaskTexel> = (0..layer)
             .map(|i| {
-                let [x, y, z, coverage] = four(2 * k * layer + i);
-                let [rx, ry, rz, transmittance] = four((2 * k + 1) * layer + i);
+                let [x, y, z, coverage] = four(LAYERS * k * layer + i);
+                let [rx, ry, rz, transmittance] = four((LAYERS * k + 1) * layer + i);
+                let [ix, iy, iz, internal_transmittance] = four((LAYERS * k + 2) * layer + i);
                 MaskTexel {
                     direction: [x, y, z],
                     coverage,
                     reflected: [rx, ry, rz],
                     transmittance,
+                    internal: [ix, iy, iz],
+                    internal_transmittance,
                     ..MaskTexel::default()
                 }
             })
@@ -270,7 +280,8 @@ fn unpack(texels: &[u8], size: u32, description: &Description) -> Result<Vec<Mas
             t.direction
                 .iter()
                 .chain(&t.reflected)
-                .chain([&t.coverage, &t.transmittance])
+                .chain(&t.internal)
+                .chain([&t.coverage, &t.transmittance, &t.internal_transmittance])
                 .all(|v| v.is_finite())
         };
         if let Some(i) = texels.iter().position(|t| !finite(t)) {

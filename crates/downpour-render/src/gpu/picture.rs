@@ -75,18 +75,18 @@ impl PictureRenderer {
         let clean = timed(&mut passes, "scene", || self.scene.draw(&uploaded.0, &frame))?;
         let eye = viewpoint.eye.as_dvec3();
         let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
-        let lights = rain.lights(scene, masks)?;
+        let lights = [rain.lights(scene, masks)?, rain.streak_lights(scene, masks)?];
         let pass = self.rain.prepare(&self.scene, &uploaded.0, &uploaded.1, &clean, &rain, &lights)?;
         timed(&mut passes, "capture", || {
             self.gpu.submit(&pass.capture())?;
             self.gpu.wait()
         })?;
-        timed(&mut passes, "streaks", || {
-            self.gpu.submit(&pass.streaks().into_iter().collect::<Vec<_>>())?;
-            self.gpu.wait()
-        })?;
         timed(&mut passes, "lamps", || {
             self.gpu.submit(&pass.lamps())?;
+            self.gpu.wait()
+        })?;
+        timed(&mut passes, "streaks", || {
+            self.gpu.submit(&pass.streaks())?;
             self.gpu.wait()
         })?;
         timed(&mut passes, "unresolved", || {

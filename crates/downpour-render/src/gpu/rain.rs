@@ -2,15 +2,14 @@
 
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::rain::{
-    DROPS_KERNEL, REDUCE_KERNEL, STREAK_ACROSS, STREAK_RAYS, STREAK_SUMS, STREAK_TABLE_KERNEL,
+    DROPS_KERNEL, REDUCE_KERNEL, STREAK_LIGHT_KERNEL, STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
 };
 
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::medium::{MediumPass, MediumPipeline};
 use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::rain::light::DropLights;
-use crate::rain::streak_lookup::STREAK_SHAPE_BYTES;
-use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, StreakShape, reduce_levels};
+use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, StreakPath, StreakRay, reduce_levels};
 use crate::trace::TraceGather;
 
 /// The pipelines of drops: made once, used for any number of pictures.
@@ -18,7 +17,9 @@ use crate::trace::TraceGather;
 pub struct RainPipeline {
     gpu: Gpu,
     reduce: ComputeKernel,
-    streaks: ComputeKernel,
+    means: ComputeKernel,
+    rays: ComputeKernel,
+    light: ComputeKernel,
     lamps: DropLightPipeline,
     medium: MediumPipeline,
     drops: ComputeKernel,
@@ -39,13 +40,28 @@ pub struct RainPass<'a> {
     size: [u32; 2],
     capture: (wgpu::BindGroup, u32),
     levels: Vec<(wgpu::BindGroup, u32)>,
-    streaks: (wgpu::BindGroup, u32),
-    lamps: DropLightPass<'a>,
+    means: Option<(wgpu::BindGroup, u32)>,
+    profiles: Option<Profiles>,
+    lamps: [DropLightPass<'a>; 2],
     medium: MediumPass<'a>,
     drops: wgpu::BindGroup,
     texels: wgpu::Buffer,
     table: wgpu::Buffer,
     layer: wgpu::Buffer,
+}
+
+/// The profiles of streaks, ready to be traced and lit.
+#[derive(Debug)]
+struct Profiles {
+    rays: (wgpu::BindGroup, [u32; 3]),
+    light: (wgpu::BindGroup, [u32; 3]),
+}
+
+/// Workgroups for so many jobs: no dimension has more than every device allows.
+fn groups(jobs: usize) -> [u32; 3] {
+    const ALONG: u32 = 32_768;
+    let jobs = jobs as u32;
+    [jobs.min(ALONG), jobs.div_ceil(ALONG), 1]
 }
 
 impl RainPipeline {
@@ -58,7 +74,9 @@ impl RainPipeline {
         Ok(Self {
             gpu: gpu.clone(),
             reduce: kernel(&REDUCE_KERNEL)?,
-            streaks: kernel(&STREAK_TABLE_KERNEL)?,
+            means: kernel(&STREAK_TABLE_KERNEL)?,
+            rays: kernel(&STREAK_RAYS_KERNEL)?,
+            light: kernel(&STREAK_LIGHT_KERNEL)?,
             lamps: DropLightPipeline::new(gpu)?,
             medium: MediumPipeline::new(gpu)?,
             drops: kernel(&DROPS_KERNEL)?,
@@ -76,8 +94,8 @@ impl RainPipeline {
         })
     }
 
-    /// Makes ready to draw drops over a scene. `clean` is the scene's picture with its distances; `lights` are
-    /// those of `rain`.
+    /// Makes ready to draw drops over a scene. `clean` is the scene's picture with its distances; `lights` are the lamps of
+    /// `rain` on the drops, and those on the profiles of streaks.
     ///
     /// # Errors
     /// As [`RainPipeline::upload`].
@@ -88,7 +106,7 @@ impl RainPipeline {
         masks: &RainOnGpu,
         clean: &wgpu::Buffer,
         rain: &Rain,
-        lights: &DropLights<'_>,
+        lights: &[DropLights<'_>; 2],
     ) -> Result<RainPass<'a>, GpuError> {
         let gpu = &self.gpu;
         let size = rain.capture.frame.width;
@@ -114,15 +132,34 @@ impl RainPipeline {
         let list: &[_] = if rain.list.is_empty() { &[DropsDrop::default()] } else { &rain.list };
         let list = gpu.storage_buffer("drops", list)?;
         let tiles = gpu.storage_buffer("tiles of drops", &rain.tiles)?;
-        let none = [StreakShape::default()];
-        let shapes: &[_] = if rain.shapes.is_empty() { &none } else { &rain.shapes };
-        let bytes = (shapes.len() * STREAK_SHAPE_BYTES) as u64;
-        let table = gpu.empty_buffer("streak radiance", bytes, storage)?;
-        let shapes = gpu.storage_buffer("shapes of streaks", shapes)?;
-        let streaks = self.streaks.bind(gpu, &[&frame, &texels, &masks.masks, &shapes, &table])?;
-        let streaks = (streaks, rain.shapes.len() as u32);
-        let lamps = self.lamps.prepare(scene, &masks.light, lights, &rain.rows)?;
-        let medium = self.medium.prepare(scene, &rain.medium_light(lights), clean, &layer)?;
+        let made = &rain.profiles;
+        let table = gpu.empty_buffer("streak radiance", u64::from(made.entries.max(1)) * 16, storage)?;
+        let lamps = [
+            self.lamps.prepare(scene, &masks.light, &lights[0], &rain.rows)?,
+            self.lamps.prepare(scene, &masks.light, &lights[1], &rain.streak_rows())?,
+        ];
+        let mut means = None;
+        if !made.classes.is_empty() {
+            let classes = gpu.storage_buffer("classes of drops", &made.classes)?;
+            let bindings = self.means.bind(gpu, &[&frame, &texels, &classes, &table])?;
+            means = Some((bindings, made.classes.len() as u32));
+        }
+        let mut profiles = None;
+        if !made.paths.is_empty() {
+            let paths = gpu.storage_buffer::<StreakPath>("paths of streaks", &made.paths)?;
+            let bytes = u64::from(made.rays) * size_of::<StreakRay>() as u64;
+            let rays = gpu.empty_buffer("rays of streaks", bytes, storage)?;
+            let jobs = gpu.storage_buffer("rows of rays", &made.ray_jobs)?;
+            let traced = self.rays.bind(gpu, &[&list, &paths, &jobs, &table, &rays])?;
+            let jobs = gpu.storage_buffer("columns of profiles", &made.light_jobs)?;
+            let all = [&frame, &texels, &list, &paths, &jobs, &rays, lamps[1].light(), &table];
+            let lit = self.light.bind(gpu, &all)?;
+            profiles = Some(Profiles {
+                rays: (traced, groups(made.ray_jobs.len())),
+                light: (lit, groups(made.light_jobs.len())),
+            });
+        }
+        let medium = self.medium.prepare(scene, &rain.medium_light(&lights[0]), clean, &layer)?;
         let bindings = [
             &frame,
             &texels,
@@ -132,7 +169,7 @@ impl RainPipeline {
             clean,
             &layer,
             &table,
-            lamps.light(),
+            lamps[0].light(),
             medium.frame(),
         ];
         let drops = self.drops.bind(gpu, &bindings)?;
@@ -143,7 +180,8 @@ impl RainPipeline {
             size: picture,
             capture,
             levels,
-            streaks,
+            means,
+            profiles,
             lamps,
             medium,
             drops,
@@ -165,18 +203,25 @@ impl RainPass<'_> {
         std::iter::once(finest).chain(coarser).collect()
     }
 
-    /// The streak radiance table; nothing where no drop moves.
-    #[must_use]
-    pub fn streaks(&self) -> Option<Dispatch<'_>> {
-        let (bindings, shapes) = &self.streaks;
-        let groups = [(STREAK_RAYS * STREAK_RAYS * STREAK_SUMS).div_ceil(64), STREAK_ACROSS + 1, *shapes];
-        (*shapes > 0).then(|| self.pipeline.streaks.dispatch(bindings, groups))
-    }
-
-    /// The light of lamps on the drops, in this order.
+    /// The light of lamps on the drops and on the streaks, in this order.
     #[must_use]
     pub fn lamps(&self) -> Vec<Dispatch<'_>> {
-        self.lamps.dispatches()
+        self.lamps.iter().flat_map(DropLightPass::dispatches).collect()
+    }
+
+    /// The streak radiance table, after the capture and the lamps; nothing where no drop moves.
+    #[must_use]
+    pub fn streaks(&self) -> Vec<Dispatch<'_>> {
+        let pipeline = self.pipeline;
+        let mut all = Vec::new();
+        if let Some((bindings, classes)) = &self.means {
+            all.push(pipeline.means.dispatch(bindings, [STREAK_RAYS * STREAK_RAYS, *classes, 1]));
+        }
+        if let Some(Profiles { rays, light }) = &self.profiles {
+            all.push(pipeline.rays.dispatch(&rays.0, rays.1));
+            all.push(pipeline.light.dispatch(&light.0, light.1));
+        }
+        all
     }
 
     /// The drops that are not drawn one by one, in this order; before [`RainPass::drops`].
@@ -212,7 +257,7 @@ impl RainPass<'_> {
     ///
     /// # Errors
     /// What the GPU says.
-    pub fn streak_table(&self) -> Result<Vec<[u32; 2]>, GpuError> {
+    pub fn streak_table(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         self.pipeline.gpu.read(&self.table)
     }
 

@@ -5,8 +5,8 @@
 
 use downpour_math::packing::{packing_octahedral_decode, packing_octahedral_encode};
 use downpour_shaders::render::scene::{
-    CAPTURE_AREA_OVER_PI, SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS, SCENE_OCTAHEDRAL,
-    SCENE_PERSPECTIVE,
+    CAPTURE_AREA_OVER_PI, CAPTURE_SKY, SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS,
+    SCENE_OCTAHEDRAL, SCENE_PERSPECTIVE,
 };
 use glam::Vec3;
 use rayon::prelude::*;
@@ -94,6 +94,17 @@ impl CaptureFrame {
 pub(crate) fn capture_direction(frame: &RenderFrame, x: f32, y: f32) -> Vec3 {
     let scale = 2.0 / frame.width as f32;
     packing_octahedral_decode([x * scale - 1.0, y * scale - 1.0]).into()
+}
+
+/// The mean of the sky over a texel of the map that shows nothing else: a sun of a sky map is narrower than a texel.
+pub(crate) fn capture_sky(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
+    let mut sum = Vec3::ZERO;
+    for k in 0..CAPTURE_SKY * CAPTURE_SKY {
+        let dx = ((k % CAPTURE_SKY) as f32 + 0.5) / CAPTURE_SKY as f32;
+        let dy = ((k / CAPTURE_SKY) as f32 + 0.5) / CAPTURE_SKY as f32;
+        sum += view.data.sky_level(0, capture_direction(view.frame, x as f32 + dx, y as f32 + dy));
+    }
+    sum / (CAPTURE_SKY * CAPTURE_SKY) as f32
 }
 
 /// The light of parallel sources in a texel.

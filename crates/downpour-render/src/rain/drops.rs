@@ -5,7 +5,7 @@ use downpour_math::ops;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
     DROPS_ATLAS_TAPS, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL, DROPS_TABLE,
-    DROPS_TILE, STREAK_FINE, STREAK_LATTICE, STREAK_WHITE,
+    DROPS_TILE, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -15,13 +15,14 @@ use super::drops_atlas::{DropsAtlas, DropsAtlasStreak, drops_atlas_streak};
 use super::drops_frame::DropsView;
 use super::drops_mask::{drops_mask_right, drops_mask_unit};
 use super::drops_shade::DropsShade;
-use super::glint::{drop_glint_spot, drop_glint_unpack};
+use super::glint::{drop_glint_rousseau, drop_glint_spot, drop_glint_unpack};
 use super::streak::{
     DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_nearest, streak_place,
     streak_time,
 };
-use super::streak_lookup::{StreakTable, unpack};
-use super::{DropMasks, Rain};
+use super::streak_lookup::StreakTable;
+use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
+use crate::halves::unpack;
 
 /// The place of a ray on the plane at distance 1 through a drop's middle.
 #[must_use]
@@ -33,6 +34,13 @@ pub fn drops_on_plane(towards: Vec3, ray: Vec3) -> Vec3 {
 #[must_use]
 pub fn drops_line(off: f32, width: f32) -> f32 {
     DROPS_LINE / width * ops::exp(-0.5 * off * off / (width * width))
+}
+
+/// The share of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet
+/// the thin image of a lamp in it, or miss it, alike.
+#[must_use]
+pub fn drops_shift(line: u32) -> f32 {
+    (line.wrapping_mul(STREAK_GOLDEN) & 0xffff) as f32 / 65_536.0
 }
 
 /// The phase of the mode (2,0), in turns, where a passing drop is at a share of its way.
@@ -72,7 +80,29 @@ impl Buffers<'_> {
         light.max(Vec3::ZERO)
     }
 
-    /// The same of a drop that passes, for as long as it does: spots have become lines.
+    /// Light of lamps in the form of Rousseau 2006 at a place of a drop's mask, by the normal there, which halves the angle
+    /// between the eye and what is mirrored: what it is more than the mean over the drop.
+    fn drops_facing(&self, index: u32, drop: &DropsDrop, x: f32, y: f32) -> Vec3 {
+        let row = self.drops_light_row(index);
+        let mut light = Vec3::ZERO;
+        // An atlas has streaks, other forms have glints.
+        if self.view.frame.atlas > 0 || row.len() < 3 || row[1][3] >= 0.0 {
+            return light;
+        }
+        let towards = Vec3::from(drop.towards);
+        let right = drops_mask_right(towards);
+        let up = right.cross(towards);
+        let turned = drops_mask_unit(self.view.drops_mask_at(drop.row, x, y).reflected + Vec3::Z);
+        let normal = right * turned.x + up * turned.y - towards * turned.z;
+        let (lamps, _) = row[1..].as_chunks::<2>();
+        for [lamp, way] in lamps.iter().filter(|[lamp, _]| lamp[3] < 0.0) {
+            let shown = drop_glint_rousseau(normal, -towards, Vec4::from(*way).truncate());
+            light += Vec4::from(*lamp).truncate() * (shown.max(0.0) + 1.0 + lamp[3]);
+        }
+        light
+    }
+
+    /// Light of lamps on a drop that passes, for as long as it does: spots have become lines.
     fn drops_lines(&self, index: u32, chord: &StreakChord, width: f32) -> Vec3 {
         let row = self.drops_light_row(index);
         let part = (chord.high - chord.low) * 0.5;
@@ -173,7 +203,8 @@ impl Buffers<'_> {
                 if !small {
                     let at = Vec2::new(sx, sy) * drop.half_extent;
                     let spots = self.drops_spots(index, at, self.drops_glint_width(drop));
-                    shown += (spots * shown.w).extend(0.0);
+                    let light = spots + self.drops_facing(index, drop, sx, sy);
+                    shown += (light * shown.w).extend(0.0);
                 }
                 sum += shown;
             }
@@ -186,7 +217,7 @@ impl Buffers<'_> {
     }
 
     /// The part of a chord that passes during the exposure, by the mean over its middle points.
-    fn drops_chord(&self, drop: &DropsDrop, chord: &StreakChord, ray: Vec3) -> Vec4 {
+    fn drops_chord(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, ray: Vec3) -> Vec4 {
         let frame = self.view.frame;
         let shade = DropsShade {
             towards: drops_mask_unit(ray),
@@ -200,7 +231,8 @@ impl Buffers<'_> {
             let part = (k as f32 + 0.5) / frame.streak_samples as f32;
             let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
             if at.x.abs() < 1.0 && at.y.abs() < 1.0 {
-                sum += self.view.drops_shade_ray(&shade, at.x, at.y);
+                let shown = self.view.drops_shade_ray(&shade, at.x, at.y);
+                sum += shown + (self.drops_facing(index, drop, at.x, at.y) * shown.w).extend(0.0);
             }
         }
         (sum.truncate() / sum.w.max(1.0e-20)).extend(1.0) * ((chord.high - chord.low) * 0.5)
@@ -221,30 +253,36 @@ impl Buffers<'_> {
         let towards = Vec3::from(drop.towards);
         let right = drops_mask_right(towards);
         let up = right.cross(towards);
+        let shift = Vec2::new(drops_shift(y), drops_shift(x));
         let mut sum = Vec4::ZERO;
         for k in 0..drop.grid {
             // A lattice whose points differ in every direction.
             let turned = (k * STREAK_LATTICE) % drop.grid;
-            let at =
-                Vec2::new(x as f32, y as f32) + (Vec2::new(k as f32, turned as f32) + 0.5) / drop.grid as f32;
+            let at = Vec2::new(x as f32, y as f32)
+                + (Vec2::new(k as f32, turned as f32) + shift) / drop.grid as f32;
             let ray = self.view.drops_frame_ray(at.x, at.y);
             let lean = drops_on_plane(towards, ray);
             let place = Vec2::new(lean.dot(right), lean.dot(up));
+            let by_profile = drop.kind == DROPS_TABLE;
+            if by_profile {
+                sum += self.table.streak_lookup_shown(drop, place);
+            }
+            if by_profile && self.view.frame.atlas == 0 {
+                continue;
+            }
             let chord = streak_chord(drop, place);
             if chord.high <= chord.low {
                 continue;
             }
-            let shown = if drop.kind == DROPS_TABLE {
-                self.table.streak_lookup_part(drop.shape, chord.across, at / size, chord.low, chord.high)
-            } else {
-                self.drops_chord(drop, &chord, ray)
-            };
+            if !by_profile {
+                sum += self.drops_chord(index, drop, &chord, ray) * chord.share;
+            }
             let lines = if self.view.frame.atlas > 0 {
                 self.drops_streaks(index, drop, &chord, place)
             } else {
                 self.drops_lines(index, &chord, self.drops_glint_width(drop))
             };
-            sum += shown * chord.share + lines.extend(0.0);
+            sum += lines.extend(0.0);
         }
         sum /= drop.grid as f32;
         sum / sum.w.max(1.0)
@@ -342,11 +380,18 @@ impl Buffers<'_> {
 }
 
 impl Rain {
-    /// The streak radiance table of the picture.
+    /// The streak radiance table of the picture. `lamps` is what lamps add to the streaks that have profiles
+    /// ([`Rain::streak_lights`]).
     #[must_use]
-    pub fn streak_table(&self, masks: &DropMasks, capture: &Capture) -> StreakTable {
+    pub fn streak_table(&self, masks: &DropMasks, capture: &Capture, lamps: &[[f32; 4]]) -> StreakTable {
         let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &capture.texels };
-        view.streak_table(&self.shapes)
+        let StreakProfiles { classes, paths, ray_jobs, rays, entries: count, .. } = &self.profiles;
+        let mut entries = view.streak_means(classes);
+        entries.resize(*count as usize, [0.0; 4]);
+        let mut traced = vec![StreakRay::default(); *rays as usize];
+        streak_rays::trace(paths, &self.list, ray_jobs, &mut entries, &mut traced);
+        streak_light::light(view, paths, &self.list, &traced, lamps, &mut entries);
+        StreakTable { entries }
     }
 
     /// The rain over a scene: radiance, and the transmittance of the scene behind it; rows from the top. `clean` is the

@@ -1,10 +1,12 @@
 //! The capture between its texels and its levels. Twin of `shaders/wgsl/render/drops_capture.wgsl`.
 
 use downpour_math::ops;
-use downpour_shaders::render::rain::DROPS_DIRECTION;
+use downpour_math::packing::packing_octahedral_encode;
+use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::drops_frame::DropsView;
+use super::glint::drop_glint_right;
 
 impl DropsView<'_> {
     /// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
@@ -51,5 +53,32 @@ impl DropsView<'_> {
             return near;
         }
         near + self.drops_capture_level(low as u32 + 1, place) * part
+    }
+
+    /// The place in the papers' capture of a ray that is turned by a drop: the refracted ray, in the frame of the drop's view
+    /// (right, up, towards the viewer), meets the plane of the capture as far from the ray's own place as the tangent of its
+    /// deviation.
+    pub(super) fn drops_capture_shifted(&self, ray: Vec3, direction: Vec3) -> Vec2 {
+        let frame = self.frame;
+        let [right, up, forward] =
+            [frame.capture_right, frame.capture_up, frame.capture_forward].map(Vec3::from);
+        let depth = ray.dot(forward).max(1.0e-3);
+        let deep = (-direction.z).max(1.0e-3);
+        let shift =
+            Vec2::new(direction.x / deep / right.dot(right).sqrt(), direction.y / deep / up.dot(up).sqrt());
+        let place = Vec2::new(ray.dot(right) / right.dot(right), ray.dot(up) / up.dot(up)) / depth + shift;
+        Vec2::new(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y).clamp(Vec2::ZERO, Vec2::ONE)
+    }
+
+    /// What is seen in a direction through a drop that is seen along `towards`, over a width in radians.
+    pub(super) fn drops_capture_about(&self, towards: Vec3, direction: Vec3, width: f32) -> Vec3 {
+        if self.frame.form == DROPS_SHIFT {
+            let right = drop_glint_right(towards);
+            let up = right.cross(towards);
+            let turned = Vec3::new(direction.dot(right), direction.dot(up), -direction.dot(towards));
+            return self.drops_capture_at(self.drops_capture_shifted(towards, turned), width);
+        }
+        let place = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
+        self.drops_capture_at(place, width)
     }
 }

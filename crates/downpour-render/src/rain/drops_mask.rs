@@ -13,6 +13,11 @@ pub(super) struct DropsTexel {
     pub(super) coverage: f32,
     pub(super) reflected: Vec3,
     pub(super) transmittance: f32,
+    /// Direction of the light that is reflected inside once.
+    pub(super) internal: Vec3,
+    pub(super) internal_transmittance: f32,
+    /// Share that is reflected outside.
+    pub(super) reflectance: f32,
 }
 
 /// A vector of length 1, or the vector itself if it has none.
@@ -28,16 +33,23 @@ fn drops_mask_add(sum: DropsTexel, texel: DropsTexel, weight: f32) -> DropsTexel
         coverage: sum.coverage + covered,
         reflected: sum.reflected + texel.reflected * covered,
         transmittance: sum.transmittance + texel.transmittance * covered,
+        internal: sum.internal + texel.internal * covered,
+        internal_transmittance: sum.internal_transmittance + texel.internal_transmittance * covered,
+        reflectance: sum.reflectance + texel.reflectance * covered,
     }
 }
 
 /// What a sum of weighted texels says.
 fn drops_mask_mean(sum: DropsTexel) -> DropsTexel {
+    let whole = sum.coverage.max(1.0e-20);
     DropsTexel {
         direction: drops_mask_unit(sum.direction),
         coverage: sum.coverage,
         reflected: drops_mask_unit(sum.reflected),
-        transmittance: sum.transmittance / sum.coverage.max(1.0e-20),
+        transmittance: sum.transmittance / whole,
+        internal: drops_mask_unit(sum.internal),
+        internal_transmittance: sum.internal_transmittance / whole,
+        reflectance: sum.reflectance / whole,
     }
 }
 
@@ -56,12 +68,18 @@ impl DropsView<'_> {
         let (x, y) = (column.clamp(0, last) as u32, row.clamp(0, last) as u32);
         let at =
             (((layer * self.frame.mask_size + y) * self.frame.mask_size + x) * DROPS_TEXEL_WORDS) as usize;
-        let [coverage, transmittance] = packing_unpack_unorm(self.masks[at + 2]);
+        let direction =
+            |word: usize| packing_octahedral_decode(packing_unpack_snorm(self.masks[at + word])).into();
+        let [coverage, transmittance] = packing_unpack_unorm(self.masks[at + 3]);
+        let [internal_transmittance, reflectance] = packing_unpack_unorm(self.masks[at + 4]);
         DropsTexel {
-            direction: packing_octahedral_decode(packing_unpack_snorm(self.masks[at])).into(),
+            direction: direction(0),
             coverage,
-            reflected: packing_octahedral_decode(packing_unpack_snorm(self.masks[at + 1])).into(),
+            reflected: direction(1),
             transmittance,
+            internal: direction(2),
+            internal_transmittance,
+            reflectance,
         }
     }
 

@@ -23,20 +23,9 @@ pub(super) struct DropsShade {
 }
 
 impl DropsView<'_> {
-    /// The place in the papers' capture of a ray, shifted by what the mask says: the refracted ray meets the plane of the
-    /// capture as far from the ray's own place as the tangent of its deviation.
+    /// The place in the papers' capture of a ray, shifted by what the mask says.
     pub(super) fn drops_shade_shifted(&self, ray: Vec3, texel: &DropsTexel) -> Vec2 {
-        let frame = self.frame;
-        let [right, up, forward] =
-            [frame.capture_right, frame.capture_up, frame.capture_forward].map(Vec3::from);
-        let depth = ray.dot(forward).max(1.0e-3);
-        let deep = (-texel.direction.z).max(1.0e-3);
-        let shift = Vec2::new(
-            texel.direction.x / deep / right.dot(right).sqrt(),
-            texel.direction.y / deep / up.dot(up).sqrt(),
-        );
-        let place = Vec2::new(ray.dot(right) / right.dot(right), ray.dot(up) / up.dot(up)) / depth + shift;
-        Vec2::new(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y).clamp(Vec2::ZERO, Vec2::ONE)
+        self.drops_capture_shifted(ray, texel.direction)
     }
 
     /// What a drop shows at (x, y), in units of half its mask: radiance times coverage, and coverage.
@@ -55,15 +44,17 @@ impl DropsView<'_> {
             let sum = self.drops_capture_at(place, drop.spacing * (bend - DROPS_STRAIGHT));
             return sum.extend(1.0) * texel.coverage;
         }
-        let mut sum = Vec3::ZERO;
-        // What comes through, then what is mirrored.
-        for (seen, weight, footprint) in [
-            (texel.direction, texel.transmittance, drop.spacing * (bend - DROPS_STRAIGHT)),
-            (texel.reflected, 1.0 - texel.transmittance, drop.spacing * bend),
+        let rest = (1.0 - texel.transmittance - texel.reflectance - texel.internal_transmittance).max(0.0);
+        let mut sum = self.drops_capture_texel(self.frame.capture_last, 0, 0) * rest;
+        // What comes through, what is mirrored, and what is reflected inside.
+        for (seen, weight, bends) in [
+            (texel.direction, texel.transmittance, bend - DROPS_STRAIGHT),
+            (texel.reflected, texel.reflectance, bend),
+            (texel.internal, texel.internal_transmittance, (bend - 2.0 * DROPS_STRAIGHT).abs().max(1.0)),
         ] {
             let direction = right * seen.x + up * seen.y - drop.towards * seen.z + drop.lean;
             let place = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
-            sum += self.drops_capture_at(place, footprint) * weight;
+            sum += self.drops_capture_at(place, drop.spacing * bends) * weight;
         }
         sum.extend(1.0) * texel.coverage
     }

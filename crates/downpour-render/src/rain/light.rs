@@ -16,6 +16,7 @@
 //! - [`DropLights`]: the lamps of a scene, on drops.
 
 mod atlas;
+mod keep;
 mod table;
 
 use std::f32::consts::PI;
@@ -24,9 +25,10 @@ use downpour_math::ops;
 use downpour_scene::weather::{RainDropLight, StreakLook, Weather};
 use downpour_shaders::render::drop_light::{
     DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG,
-    DROP_LIGHT_LAMPS, DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_PLACES, DROP_LIGHT_RINGS,
-    DROP_LIGHT_ROUSSEAU, DROP_LIGHT_TRACED,
+    DROP_LIGHT_LAMPS, DROP_LIGHT_LAMPS_ROUSSEAU, DROP_LIGHT_LAMPS_TRACED, DROP_LIGHT_NONE, DROP_LIGHT_PATHS,
+    DROP_LIGHT_PLACES, DROP_LIGHT_RINGS, DROP_LIGHT_ROUSSEAU, DROP_LIGHT_TRACED,
 };
+use downpour_shaders::render::rain::STREAK_LAMPS;
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS};
 use downpour_sim::field::FallingDrop;
 use glam::{Vec2, Vec3, Vec4};
@@ -43,6 +45,7 @@ use crate::scene::{SceneView, scene_share};
 
 pub(crate) use atlas::layer_means;
 use atlas::{drop_atlas_place, drop_atlas_shares};
+use keep::{drop_light_keep, drop_light_keep_streak};
 pub use table::DropLightTable;
 
 /// What lamps do to a drop.
@@ -52,8 +55,9 @@ pub enum DropLightForm {
     /// Geometric optics of a sphere of water: Fresnel's equations, orders 0 to 3, bows in their colours.
     #[default]
     Traced = DROP_LIGHT_TRACED,
-    /// Rousseau 2006, section 6: `C_L DistFact (V_PE . V_N) (A_2 + A_3)`, as printed, without exponents. `C_L DistFact` is
-    /// taken as the irradiance over pi at the drop: what a white surface shows.
+    /// Rousseau 2006, section 6: `C_L DistFact (V_PE . V_N) (A_2 + A_3)`, as printed, without exponents, at each pixel by the
+    /// drop's normal there; a drop below a pixel shows the mean over its disc, a streak the mean over what passes. `C_L DistFact`
+    /// is taken as the irradiance over pi at the drop: what a white surface shows.
     Rousseau2006 = DROP_LIGHT_ROUSSEAU,
     /// Im & Sung 2022, equations (7) to (10): drops in a spot's cone have the light's colour, others nothing; point lights
     /// and parallel ones are left out. The cone is as high as the lamp's range. Here its edge is soft, from the inner
@@ -82,8 +86,8 @@ impl From<RainDropLight> for DropLightForm {
 pub struct DropLightOptions {
     /// What lamps do to a drop.
     pub form: DropLightForm,
-    /// Rows that are told of each drop besides its mean, 0 to 16: in the traced form its brightest glints; of an atlas its
-    /// brightest streaks, two rows each. The other forms have none.
+    /// Rows that are told of each drop besides its mean, 0 to 16: in the traced form its brightest glints; in that of Rousseau 2006
+    /// its brightest lamps, of an atlas its brightest streaks, two rows each. The other forms have none.
     pub glints: u32,
 }
 
@@ -99,7 +103,8 @@ impl DropLightOptions {
         if of_atlas && form == DropLightForm::Traced {
             return Self::ATLAS;
         }
-        Self { form, glints: GLINTS }
+        // A lamp of Rousseau 2006 has two rows.
+        Self { form, glints: if form == DropLightForm::Rousseau2006 { 2 * GLINTS } else { GLINTS } }
     }
 }
 
@@ -135,7 +140,9 @@ pub struct DropGlint {
 pub struct DropLights<'a> {
     pub(crate) view: SceneView<'a>,
     pub(crate) table: &'a DropLightTable,
-    pub(crate) options: DropLightOptions,
+    /// [`DropLightForm`], or what keeps lamps for streaks.
+    form: u32,
+    glints: u32,
 }
 
 /// What an atlas has to know of drops: for each the axis, a unit vector against its velocity as the eye sees it (up, where it has
@@ -189,27 +196,50 @@ impl<'a> DropLights<'a> {
                 allowed: "1 (DropMasks::with_atlas)",
             });
         }
-        Ok(Self { view: SceneView { data: scene, frame }, table, options })
+        let DropLightOptions { form, glints } = options;
+        Ok(Self { view: SceneView { data: scene, frame }, table, form: form as u32, glints })
+    }
+
+    /// The lamps of `scene` as the profiles of streaks want them: of each drop the brightest ones, two rows each (its irradiance,
+    /// and the chord from the middle to the edge of its disc; its direction), the others in the mean. In the form of
+    /// [`DropLightForm::Rousseau2006`] the irradiance is that over pi, and the chord is below 0. Other forms have no more than
+    /// their mean; an atlas adds its streaks elsewhere.
+    ///
+    /// # Errors
+    /// As [`DropLights::new`].
+    pub(crate) fn of_streaks(
+        scene: &'a SceneData,
+        frame: &'a RenderFrame,
+        table: &'a DropLightTable,
+        options: DropLightOptions,
+    ) -> Result<Self, RenderError> {
+        let form = match options.form {
+            DropLightForm::Traced => DROP_LIGHT_LAMPS_TRACED,
+            DropLightForm::Rousseau2006 => DROP_LIGHT_LAMPS_ROUSSEAU,
+            DropLightForm::ImSung2022 => DROP_LIGHT_IM_SUNG,
+            DropLightForm::Atlas | DropLightForm::None => DROP_LIGHT_NONE,
+        };
+        Ok(Self { form, glints: 2 * STREAK_LAMPS, ..Self::new(scene, frame, table, options)? })
     }
 
     /// Numbers of a drop in [`DropLights::light`]: its mean, and its glints.
     #[must_use]
     pub fn stride(&self) -> usize {
-        1 + self.options.glints as usize
+        1 + self.glints as usize
     }
 
     /// The dispatches of so many drops: all lamps, a part of them each.
     #[must_use]
     pub fn frames(&self, count: u32) -> Vec<DropLightFrame> {
-        let DropLightOptions { form, glints } = self.options;
-        let frame = |first_light| DropLightFrame { count, form: form as u32, glints, first_light };
-        let lights = if form == DropLightForm::None { 1 } else { self.view.frame.light_count.max(1) };
+        let (form, glints) = (self.form, self.glints);
+        let frame = |first_light| DropLightFrame { count, form, glints, first_light };
+        let lights = if form == DROP_LIGHT_NONE { 1 } else { self.view.frame.light_count.max(1) };
         (0..lights).step_by(DROP_LIGHT_LAMPS as usize).map(frame).collect()
     }
 
     /// How many drops rows are of: those of an atlas have two each.
     pub(crate) fn count(&self, rows: &[[f32; 4]]) -> usize {
-        if self.options.form == DropLightForm::Atlas { rows.len() / 2 } else { rows.len() }
+        if self.form == DROP_LIGHT_ATLAS { rows.len() / 2 } else { rows.len() }
     }
 
     /// The light on drops ([`drop_light_rows`]; for an atlas then a row for each drop with its axis, against its motion, and its
@@ -291,12 +321,12 @@ impl<'a> DropLights<'a> {
         let (place, radius) = (Vec4::from(*drop).truncate(), drop[3]);
         let mut sum = Vec3::ZERO;
         let (towards, right, up) = self.facing(place);
-        let form = self.options.form;
-        let count = if form == DropLightForm::None { 0 } else { self.view.frame.light_count };
+        let form = self.form;
+        let count = if form == DROP_LIGHT_NONE { 0 } else { self.view.frame.light_count };
         for k in 0..count {
             let light = self.view.scene_light(k, place, radius);
             let mut lit = light.irradiance;
-            if form == DropLightForm::ImSung2022 {
+            if form == DROP_LIGHT_IM_SUNG {
                 lit = self.drop_light_cone(k, place, radius);
             }
             if scene_share(lit) <= 0.0 {
@@ -304,9 +334,19 @@ impl<'a> DropLights<'a> {
             }
             lit *= self.view.scene_visibility(place, light.direction, light.distance);
             match form {
-                DropLightForm::ImSung2022 => sum += lit,
-                DropLightForm::Rousseau2006 => sum += lit * drop_light_mean(towards, light.direction),
-                DropLightForm::Atlas => {
+                DROP_LIGHT_IM_SUNG => sum += lit,
+                DROP_LIGHT_LAMPS_TRACED | DROP_LIGHT_LAMPS_ROUSSEAU => {
+                    let reach = self.drop_light_reach(k);
+                    let rows = [lit.extend(reach), light.direction.extend(0.0)];
+                    sum += self.drop_light_keep_lamp(glints, rows, towards);
+                }
+                DROP_LIGHT_ROUSSEAU => {
+                    let mean = drop_light_mean(towards, light.direction);
+                    sum += lit * mean;
+                    let way = light.direction.extend(0.0).to_array();
+                    drop_light_keep_streak(glints, lit.extend(-1.0 - mean), way);
+                }
+                DROP_LIGHT_ATLAS => {
                     let (axis, id) = (Vec4::from(about).truncate(), about[3] as u32);
                     let diameter = 2.0 * radius;
                     let place = drop_atlas_place(self.table, id, diameter, axis, light.direction, -towards);
@@ -317,15 +357,12 @@ impl<'a> DropLights<'a> {
                     let streak = radiance.extend(place.side * (1.0 + first));
                     drop_light_keep_streak(glints, streak, [a, b, c, second]);
                 }
-                DropLightForm::Traced | DropLightForm::None => {
+                _ => {
                     let angle = drop_glint_angle(light.direction, towards);
                     let side = drop_glint_side(light.direction, right, up);
                     let irradiance = lit * PI;
                     sum += irradiance * drop_light_entry(self.table, 0, angle).truncate();
                     for path in 1..=DROP_LIGHT_PATHS {
-                        if glints.is_empty() {
-                            break;
-                        }
                         let entry = drop_light_entry(self.table, path, angle);
                         let radiance = irradiance * entry.truncate();
                         drop_light_keep(glints, radiance.extend(drop_glint_pack(side * entry.w)));
@@ -364,36 +401,4 @@ pub fn drop_light_mean(towards: Vec3, light: Vec3) -> f32 {
         sum += drop_glint_rousseau(normal, -towards, light);
     }
     sum / (DROP_LIGHT_RINGS * DROP_LIGHT_PLACES) as f32
-}
-
-/// Keeps a glint of a drop if it is brighter than the least of those that are kept.
-fn drop_light_keep(glints: &mut [[f32; 4]], glint: Vec4) {
-    let share = |glint: &[f32; 4]| scene_share(Vec4::from(*glint).truncate());
-    let mut least = scene_share(glint.truncate());
-    let mut weakest = None;
-    for kept in glints {
-        if share(kept) < least {
-            least = share(kept);
-            weakest = Some(kept);
-        }
-    }
-    if let Some(weakest) = weakest {
-        *weakest = glint.to_array();
-    }
-}
-
-/// Keeps a streak of a drop if it is brighter than the least of those that are kept.
-fn drop_light_keep_streak(rows: &mut [[f32; 4]], light: Vec4, layers: [f32; 4]) {
-    let share = |row: &[f32; 4]| scene_share(Vec4::from(*row).truncate());
-    let mut least = scene_share(light.truncate());
-    let mut weakest = None;
-    for kept in rows.chunks_exact_mut(2) {
-        if share(&kept[0]) < least {
-            least = share(&kept[0]);
-            weakest = Some(kept);
-        }
-    }
-    if let Some(weakest) = weakest {
-        weakest.copy_from_slice(&[light.to_array(), layers]);
-    }
 }

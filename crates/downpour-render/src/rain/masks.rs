@@ -4,6 +4,8 @@
 //! for diameters half a millimetre apart and elevations 30 degrees apart; the shader goes between them linearly.
 
 use downpour_drop::DropShape;
+use downpour_drop::oscillation::{Amplitudes, Fluids, FrequencyLaw, OscillatingDrop, Oscillation};
+use downpour_drop::shape::DropShapeCoefficients;
 use downpour_mask::atlas::StreakAtlas;
 use downpour_mask::{Mask, MaskError, MaskOptions, MaskTexel, View, trace_drop};
 use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_pack_unorm};
@@ -11,11 +13,15 @@ use downpour_shaders::render::rain::{DROPS_ELEVATIONS, DROPS_TEXEL_WORDS};
 
 use super::drops_atlas;
 use super::light::DropLightTable;
-use super::streak_table::StreakShape;
+use super::streak_path::StreakPath;
 
 /// Diameters, metres, from a sphere to the largest drop that has a shape.
 pub(crate) const DIAMETERS: u32 = 18;
 pub(crate) const DIAMETER_STEP: f64 = 0.5e-3;
+
+/// Metres between the shapes for the rays of streaks, and their number.
+const SHAPE_STEP: f64 = 0.1e-3;
+const SHAPES: u32 = 90;
 
 /// Texels along an edge of a mask.
 const SIZE: u32 = 96;
@@ -26,8 +32,8 @@ const WORDS: usize = DROPS_TEXEL_WORDS as usize;
 /// Masks of drops of all sizes from all elevations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropMasks {
-    /// Three words per texel: the refracted and the reflected direction as octahedral pairs of 16 bits, coverage and
-    /// transmittance as 16 bits each. Rows from the top, elevations within diameters. Behind them the streak atlas, if there
+    /// Five words per texel: the refracted, the reflected and the internally reflected direction as octahedral pairs of 16 bits;
+    /// coverage and transmittance, then the internal transmittance and the reflectance as 16 bits each. Rows from the top, elevations within diameters. Behind them the streak atlas, if there
     /// is one.
     pub words: Vec<u32>,
     /// Texels along an edge of a mask.
@@ -42,6 +48,8 @@ pub struct DropMasks {
     areas: Vec<f32>,
     /// The oval of each outline: half its width, half its height, and how far its middle is up, in equivalent radii.
     ovals: Vec<[f32; 3]>,
+    /// Shapes of drops for the rays of streaks, [`SHAPE_STEP`] apart.
+    shapes: Vec<StreakPath>,
 }
 
 /// Where a drop is among the masks.
@@ -72,6 +80,7 @@ impl DropMasks {
             half_extents: Vec::new(),
             areas: Vec::new(),
             ovals: Vec::new(),
+            shapes: (1..=SHAPES).map(|k| streak_shape(f64::from(k) * SHAPE_STEP, refractive_index)).collect(),
         };
         for k in 1..=DIAMETERS {
             let shape = DropShape::new(f64::from(k) * DIAMETER_STEP).map_err(|_| MaskError::OutOfRange {
@@ -93,7 +102,8 @@ impl DropMasks {
                 let covered: f64 = mask.texels.iter().map(|texel| f64::from(texel.coverage)).sum();
                 masks.areas.push((covered * width * width) as f32);
                 masks.ovals.push(oval(&mask));
-                masks.words.extend(mask.texels.iter().flat_map(pack));
+                let words = |texel| pack(texel, refractive_index as f32);
+                masks.words.extend(mask.texels.iter().flat_map(words));
             }
         }
         Ok(masks)
@@ -142,18 +152,45 @@ impl DropMasks {
         f64::from(self.place(diameter, elevation).area) / std::f64::consts::PI
     }
 
-    /// The class of drops of a row of diameters, at rest.
-    pub(super) fn shape(&self, row: f32) -> StreakShape {
-        let first = row as usize * DROPS_ELEVATIONS as usize;
-        StreakShape {
-            row,
-            half_extent: self.half_extents[row as usize],
-            ovals: std::array::from_fn(|k| {
-                let [wide, tall, up] = self.ovals[first + k];
-                [wide, tall, up, 0.0]
-            }),
-            ..StreakShape::default()
+    /// The shape of a drop of a diameter in metres, for the rays of its streak.
+    pub(super) fn streak_shape(&self, diameter: f32) -> StreakPath {
+        let last = self.shapes.len() - 1;
+        let at = (diameter / SHAPE_STEP as f32 - 1.0).clamp(0.0, last as f32);
+        let low = (at as usize).min(last.saturating_sub(1));
+        let (part, near, far) = (at - low as f32, &self.shapes[low], &self.shapes[(low + 1).min(last)]);
+        let between = |a: f32, b: f32| a + (b - a) * part;
+        let four = |a: [f32; 4], b: [f32; 4]| std::array::from_fn(|k| between(a[k], b[k]));
+        StreakPath {
+            shape: DropShapeCoefficients {
+                c0: four(near.shape.c0, far.shape.c0),
+                c1: four(near.shape.c1, far.shape.c1),
+                c2: four(near.shape.c2, far.shape.c2),
+            },
+            volume: four(near.volume, far.volume),
+            volume_last: between(near.volume_last, far.volume_last),
+            wide: between(near.wide, far.wide),
+            tall: between(near.tall, far.tall),
+            ..*near
         }
+    }
+}
+
+/// A shape with the moments of its volume.
+fn streak_shape(diameter: f64, refractive_index: f64) -> StreakPath {
+    // The diameters of the table have shapes.
+    let Ok(shape) = DropShape::new(diameter) else { return StreakPath::default() };
+    let still = Oscillation::new(diameter, Amplitudes::NONE, &Fluids::AT_20_C, FrequencyLaw::default());
+    let Ok(still) = still else { return StreakPath::default() };
+    let [v1, v2, v3, w0, volume_last] = OscillatingDrop::new(shape, still).volume_polynomial();
+    let radius = shape.equivalent_radius();
+    StreakPath {
+        shape: shape.gpu_coefficients(),
+        volume: [v1, v2, v3, w0].map(|v| v as f32),
+        volume_last: volume_last as f32,
+        wide: (shape.max_half_width() / radius) as f32,
+        tall: (0.5 * (shape.extent_up() + shape.extent_down()) / radius) as f32,
+        index: refractive_index as f32,
+        ..StreakPath::default()
     }
 }
 
@@ -175,12 +212,14 @@ fn oval(mask: &Mask) -> [f32; 3] {
 }
 
 /// A texel as the shader reads it.
-fn pack(texel: &MaskTexel) -> [u32; WORDS] {
+fn pack(texel: &MaskTexel, refractive_index: f32) -> [u32; WORDS] {
     // A covered texel keeps a trace of coverage, or its direction would not count.
     let coverage = if texel.coverage > 0.0 { texel.coverage.max(1.0 / 65535.0) } else { 0.0 };
     [
         packing_pack_snorm(packing_octahedral_encode(texel.direction)),
         packing_pack_snorm(packing_octahedral_encode(texel.reflected)),
+        packing_pack_snorm(packing_octahedral_encode(texel.internal)),
         packing_pack_unorm([coverage, texel.transmittance]),
+        packing_pack_unorm([texel.internal_transmittance, texel.reflectance(refractive_index)]),
     ]
 }

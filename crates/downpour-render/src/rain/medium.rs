@@ -12,7 +12,7 @@
 //!
 //! A sky map is taken to be the sky as it is seen through the rain beyond 50 m.
 
-mod filter;
+pub(super) mod filter;
 mod frame;
 mod light;
 mod open;

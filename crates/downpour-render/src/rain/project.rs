@@ -11,7 +11,6 @@ use glam::{DVec3, Vec2, Vec3};
 
 use super::drops_mask::drops_mask_right;
 use super::exposure::{Exposure, LONGEST_EXPOSURE_S, StreakSamples};
-use super::masks::MaskPlace;
 use super::streak::DropsDrop;
 use super::{DropMasks, shapes};
 use crate::data::RenderFrame;
@@ -148,20 +147,19 @@ pub(super) fn project(
         share: path.part[1] - path.part[0],
         spread,
         nearest: path.nearest - 2.0 * radius,
-        kind: kind(&path, &place, slope, (end - start).length(), exposure),
+        kind: kind(&path, exposure),
         shape: shapes::of_row(place.row[0]),
-        unused: 0,
+        profile: 0,
     };
     Some(Projected { drop: shown, reach, velocity: path.velocity })
 }
 
 /// How a drop's light is found.
-fn kind(path: &Path, place: &MaskPlace, slope: f32, length: f32, exposure: &Exposure) -> u32 {
+fn kind(path: &Path, exposure: &Exposure) -> u32 {
     match exposure.samples {
         _ if !path.moves => DROPS_STILL,
-        // Below a drop's own length the table's sums are too coarse.
-        StreakSamples::Table if length >= 2.0 * slope * place.oval[1] => DROPS_TABLE,
-        _ => DROPS_LOOP,
+        StreakSamples::Table => DROPS_TABLE,
+        StreakSamples::Loop(_) => DROPS_LOOP,
     }
 }
 
@@ -315,7 +313,8 @@ impl Swing {
         Self {
             swing: [a20, a31 * cosine, at[0], at[1]],
             turns: frequency.map(|f| (f * open) as f32),
-            most: a20 + 1.5 * a31,
+            // P31 reaches 2.07.
+            most: a20 + 2.1 * a31,
         }
     }
 }

@@ -53,10 +53,10 @@ pub struct DropsDrop {
     pub nearest: f32,
     /// Still, by the table, or by a loop.
     pub kind: u32,
-    /// Which table.
+    /// Which mean of the streak radiance table.
     pub shape: u32,
-    /// 0.
-    pub unused: u32,
+    /// First entry of its profile in the table.
+    pub profile: u32,
 }
 
 /// Where a ray passes a moving drop.

@@ -1,99 +1,158 @@
 //! The streak radiance table. Twin of `shaders/wgsl/render/streak_lookup.wgsl`, where its layout is described.
 
-use downpour_shaders::render::rain::{STREAK_ACROSS, STREAK_RAYS, STREAK_SUMS};
+use downpour_shaders::render::rain::{STREAK_RAYS, STREAK_SUMS};
 use glam::{Vec2, Vec3, Vec4};
-use half::f16;
 
-/// Bytes of the table of one shape.
-pub const STREAK_SHAPE_BYTES: usize =
-    ((STREAK_ACROSS + 1) * STREAK_RAYS * STREAK_RAYS * STREAK_SUMS * 8) as usize;
+use super::streak::{DropsDrop, streak_depth, streak_nearest, streak_time};
+use super::streak_place::{streak_place_index, streak_place_position};
+
+/// Entries of the mean of a class of drops.
+pub(super) const STREAK_MEAN_ENTRIES: u32 = STREAK_RAYS * STREAK_RAYS;
 
 /// The averages of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StreakTable {
-    /// Two words of two halves per entry: radiance times coverage, and coverage.
-    pub words: Vec<[u32; 2]>,
+    /// Means of classes of drops, then the profiles of streaks.
+    pub entries: Vec<[f32; 4]>,
 }
 
-/// Both halves of a word.
-pub(crate) fn unpack(word: u32) -> [f32; 2] {
-    [f16::from_bits(word as u16).to_f32(), f16::from_bits((word >> 16) as u16).to_f32()]
-}
-
-/// Two numbers as halves, rounded to the nearest.
-pub(crate) fn pack(pair: [f32; 2]) -> u32 {
-    let [low, high] = pair.map(|x| u32::from(f16::from_f32(x).to_bits()));
-    low | high << 16
-}
-
-/// The numbers of an entry.
-#[must_use]
-pub fn streak_numbers(entry: [u32; 2]) -> [f32; 4] {
-    let [low, high] = entry.map(unpack);
-    [low[0], low[1], high[0], high[1]]
+/// Where a ray passes a drop that has a profile.
+#[derive(Clone, Copy, Debug)]
+struct StreakPassage {
+    /// First entry of the profile.
+    first: u32,
+    /// Rows and columns of chords.
+    rows: u32,
+    columns: u32,
+    /// Rows of the profile, and fine columns of each column.
+    profile_rows: u32,
+    fine: u32,
+    /// Time at which the drop is nearest, 0 to 1.
+    time: f32,
+    /// Place across the outline in shares of its columns, 0 to 1.
+    across: f32,
+    /// The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
+    low: f32,
+    high: f32,
+    /// Share of the exposure in which the whole chord would pass.
+    share: f32,
 }
 
 impl StreakTable {
-    /// One entry; running sum 0 is nothing.
-    fn streak_lookup_entry(&self, shape: u32, across: u32, column: u32, row: u32, sums: u32) -> Vec4 {
-        if sums == 0 {
-            return Vec4::ZERO;
-        }
-        let layer = shape * (STREAK_ACROSS + 1) + across;
-        let at = ((layer * STREAK_RAYS + row) * STREAK_RAYS + column) * STREAK_SUMS + sums - 1;
-        Vec4::from(streak_numbers(self.words[at as usize]))
+    fn entry(&self, k: u32) -> Vec4 {
+        Vec4::from(self.entries[k as usize])
     }
 
-    /// Between rays. `place` is in [0, 1] from the top left of the picture.
-    fn streak_lookup_rays(&self, shape: u32, across: u32, place: Vec2, sums: u32) -> Vec4 {
-        let at = place.clamp(Vec2::ZERO, Vec2::ONE) * (STREAK_RAYS - 1) as f32;
-        let low = [at.x, at.y].map(|a| (a as u32).min(STREAK_RAYS - 2));
-        let part = at - Vec2::new(low[0] as f32, low[1] as f32);
-        let entry = |x, y| self.streak_lookup_entry(shape, across, low[0] + x, low[1] + y, sums);
-        let upper = entry(0, 0) * (1.0 - part.x) + entry(1, 0) * part.x;
-        let lower = entry(0, 1) * (1.0 - part.x) + entry(1, 1) * part.x;
-        upper * (1.0 - part.y) + lower * part.y
-    }
-
-    /// Between places across the motion, -1 to 1.
-    fn streak_lookup_sum(&self, shape: u32, across: f32, place: Vec2, sums: u32) -> Vec4 {
-        let at = ((across * 0.5 + 0.5) * STREAK_ACROSS as f32 - 0.5).clamp(0.0, (STREAK_ACROSS - 1) as f32);
-        let low = (at as u32).min(STREAK_ACROSS - 2);
+    /// The chords between columns of a row: middle and half of the outline's width, middle and half of the chord.
+    fn streak_lookup_chord(&self, first: u32, columns: u32, row: u32, at: f32) -> Vec4 {
+        let low = (at as u32).min(columns - 2);
         let part = at - low as f32;
-        self.streak_lookup_rays(shape, low, place, sums) * (1.0 - part)
-            + self.streak_lookup_rays(shape, low + 1, place, sums) * part
+        let entry = first + 1 + row * columns + low;
+        self.entry(entry) * (1.0 - part) + self.entry(entry + 1) * part
+    }
+
+    /// Where a place of the plane passes a drop.
+    fn streak_lookup_passage(&self, drop: &DropsDrop, at: Vec2) -> StreakPassage {
+        let first = drop.profile;
+        let [rows, columns, profile_rows, fine] = self.entry(first).to_array().map(|n| n as u32);
+        let way = streak_nearest(drop, at);
+        let time = streak_time(drop.recede, way);
+        let scale = drop.slope / streak_depth(drop.recede, time);
+        let along = Vec2::from(drop.along);
+        let moves = along.dot(along).sqrt().max(1.0e-20);
+        let path = along / moves;
+        let offset = (at - Vec2::from(drop.start) - along * way) / scale;
+        let aside = offset.x * path.y - offset.y * path.x;
+        let ahead = offset.dot(path);
+        let row_at = time * (rows - 1) as f32;
+        let row = (row_at as u32).min(rows - 2);
+        let row_part = row_at - row as f32;
+        let width_of = |row: u32| self.entry(first + 1 + row * columns);
+        let width = width_of(row) * (1.0 - row_part) + width_of(row + 1) * row_part;
+        let place = (aside - width.x) / width.y.max(1.0e-6);
+        let across = streak_place_index(place, 1);
+        let column_at = (across * columns as f32 - 0.5).clamp(0.0, (columns - 1) as f32);
+        let chord = self.streak_lookup_chord(first, columns, row, column_at) * (1.0 - row_part)
+            + self.streak_lookup_chord(first, columns, row + 1, column_at) * row_part;
+        let half = chord.w * (1.0 - place * place).max(0.0).sqrt();
+        let per_half = 1.0 / half.max(1.0e-6);
+        let length = moves / scale;
+        let faster = way + (1.0 - way) * drop.recede;
+        let rate = drop.share * drop.recede / (faster * faster).max(1.0e-12);
+        let low = ((ahead - chord.z) - length * (1.0 - way)) * per_half;
+        let high = ((ahead - chord.z) + length * way) * per_half;
+        StreakPassage {
+            first,
+            rows,
+            columns,
+            profile_rows,
+            fine,
+            time,
+            across,
+            low: low.max(-1.0),
+            high: if half <= 1.0e-6 { -2.0 } else { high.min(1.0) },
+            share: 2.0 * half / length * rate,
+        }
+    }
+
+    /// A running sum of a row of a profile, between its fine columns; sum 0 is nothing.
+    fn streak_lookup_column(&self, passage: &StreakPassage, row: u32, sums: u32) -> Vec3 {
+        if sums == 0 {
+            return Vec3::ZERO;
+        }
+        let columns = passage.columns * passage.fine;
+        let at = (passage.across * columns as f32 - 0.5).clamp(0.0, (columns - 1) as f32);
+        let low = (at as u32).min(columns - 2);
+        let part = at - low as f32;
+        let chords = passage.first + 1 + passage.rows * passage.columns;
+        let entry = chords + (row * columns + low) * STREAK_SUMS + sums - 1;
+        self.entry(entry).truncate() * (1.0 - part) + self.entry(entry + STREAK_SUMS).truncate() * part
+    }
+
+    /// The same between rows.
+    fn streak_lookup_sum(&self, passage: &StreakPassage, sums: u32) -> Vec3 {
+        let at = passage.time * (passage.profile_rows - 1) as f32;
+        let low = (at as u32).min(passage.profile_rows - 2);
+        let part = at - low as f32;
+        self.streak_lookup_column(passage, low, sums) * (1.0 - part)
+            + self.streak_lookup_column(passage, low + 1, sums) * part
     }
 
     /// The running sum up to a place on the chord, -1 to 1.
-    fn streak_lookup_until(&self, shape: u32, across: f32, place: Vec2, v: f32) -> Vec4 {
-        let at = ((v * 0.5 + 0.5) * STREAK_SUMS as f32).clamp(0.0, STREAK_SUMS as f32);
-        let low = at as u32;
-        let part = at - low as f32;
-        let sum = self.streak_lookup_sum(shape, across, place, low) * (1.0 - part);
-        if part > 0.0 {
-            return sum + self.streak_lookup_sum(shape, across, place, low + 1) * part;
-        }
-        sum
+    fn streak_lookup_until(&self, passage: &StreakPassage, place: f32) -> Vec3 {
+        let at = streak_place_index(place, STREAK_SUMS);
+        let low = (at as u32).min(STREAK_SUMS - 1);
+        // By length: in uniform surroundings light goes as coverage does.
+        let first = streak_place_position(low as f32, STREAK_SUMS);
+        let length = streak_place_position((low + 1) as f32, STREAK_SUMS) - first;
+        let part = ((place - first) / length).clamp(0.0, 1.0);
+        self.streak_lookup_sum(passage, low) * (1.0 - part) + self.streak_lookup_sum(passage, low + 1) * part
     }
 
-    /// The part of a chord from `low` to `high`, as a share of what the whole shows.
-    pub(super) fn streak_lookup_part(
-        &self,
-        shape: u32,
-        across: f32,
-        place: Vec2,
-        low: f32,
-        high: f32,
-    ) -> Vec4 {
-        if low <= -1.0 && high >= 1.0 {
-            return self.streak_lookup_sum(shape, across, place, STREAK_SUMS);
+    /// A streak at a place of the plane: radiance times the share of the exposure in which it is covered, and this share.
+    pub(super) fn streak_lookup_shown(&self, drop: &DropsDrop, at: Vec2) -> Vec4 {
+        let passage = self.streak_lookup_passage(drop, at);
+        let (low, high) = (passage.low, passage.high);
+        if high <= low {
+            return Vec4::ZERO;
         }
-        self.streak_lookup_until(shape, across, place, high)
-            - self.streak_lookup_until(shape, across, place, low)
+        let light = if low <= -1.0 && high >= 1.0 {
+            self.streak_lookup_sum(&passage, STREAK_SUMS)
+        } else {
+            self.streak_lookup_until(&passage, high) - self.streak_lookup_until(&passage, low)
+        };
+        light.extend((high - low) * 0.5) * passage.share
     }
 
-    /// The mean radiance of a whole drop.
+    /// The mean radiance of a whole drop of a class. `place` is in [0, 1] from the top left of the picture.
     pub(super) fn streak_lookup_mean(&self, shape: u32, place: Vec2) -> Vec3 {
-        self.streak_lookup_rays(shape, STREAK_ACROSS, place, 1).truncate()
+        let at = place.clamp(Vec2::ZERO, Vec2::ONE) * (STREAK_RAYS - 1) as f32;
+        let low = [at.x, at.y].map(|a| (a as u32).min(STREAK_RAYS - 2));
+        let part = at - Vec2::new(low[0] as f32, low[1] as f32);
+        let first = (shape * STREAK_RAYS + low[1]) * STREAK_RAYS + low[0];
+        let entry = |k: u32| self.entry(first + k).truncate();
+        let upper = entry(0) * (1.0 - part.x) + entry(1) * part.x;
+        let lower = entry(STREAK_RAYS) * (1.0 - part.x) + entry(STREAK_RAYS + 1) * part.x;
+        upper * (1.0 - part.y) + lower * part.y
     }
 }

@@ -1,148 +1,105 @@
-//! Makes the streak radiance table of a frame. Twin of `shaders/wgsl/render/streak_table.wgsl`.
+//! Makes the means of the streak radiance table. Twin of `shaders/wgsl/render/streak_table.wgsl`, where the method is described.
 
+use downpour_drop::oscillation::drop_oscillation_sine;
+use downpour_mask::wobble::{mask_wobble_light, mask_wobble_nearest, mask_wobble_surface};
 use downpour_math::ops;
 use downpour_shaders::render::rain::{
-    DROPS_ELEVATIONS, STREAK_ACROSS, STREAK_BRIGHTEST, STREAK_CHORDS, STREAK_FINE, STREAK_MEAN,
-    STREAK_MEAN_GRID, STREAK_PER_QUARTER, STREAK_RAYS, STREAK_SUMS, STREAK_TAPS,
+    DROPS_SHIFT, DROPS_STRAIGHT, STREAK_EXITS, STREAK_MEAN_FIRST, STREAK_MEAN_FOURTH, STREAK_MEAN_GROUP,
+    STREAK_MEAN_POINTS, STREAK_MEAN_REACH, STREAK_MEAN_RIM, STREAK_MEAN_SECOND, STREAK_MEAN_THIRD,
+    STREAK_MEAN_WIDTH, STREAK_RAYS, STREAK_TURN,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::drops_frame::DropsView;
-use super::drops_mask::{drops_mask_right, drops_mask_unit};
-use super::drops_shade::DropsShade;
-use super::streak_lookup::{StreakTable, pack};
-
-const SUMS: usize = STREAK_SUMS as usize;
-
-/// Drops of about one size. The same layout as `StreakShape` in WGSL.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct StreakShape {
-    /// Mean velocity relative to the picture, m/s.
-    pub velocity: [f32; 3],
-    /// Row of their diameter in the masks.
-    pub row: f32,
-    /// Half the width of their mask, in equivalent radii.
-    pub half_extent: f32,
-    /// What is wanted of them: nothing, their mean ([`STREAK_MEAN`]), or chords, too ([`STREAK_CHORDS`]).
-    pub wanted: u32,
-    /// 0.
-    pub unused: [u32; 2],
-    /// For each elevation: half the width and half the height of the oval, and how far its middle is up.
-    pub ovals: [[f32; 4]; DROPS_ELEVATIONS as usize],
-}
-
-/// The row of elevations of a ray of length 1.
-#[must_use]
-pub fn streak_table_elevation(row: f32, towards: Vec3) -> f32 {
-    let half = (DROPS_ELEVATIONS - 1) as f32 * 0.5;
-    if row == 0.0 {
-        // A sphere is the same from everywhere.
-        return half;
-    }
-    let elevation = ops::asin((-towards.y).clamp(-1.0, 1.0));
-    ((elevation * STREAK_PER_QUARTER + 1.0) * half).clamp(0.0, 2.0 * half)
-}
-
-/// The oval between elevations.
-fn streak_table_oval(shape: &StreakShape, elevation: f32) -> Vec3 {
-    let low = (elevation as u32).min(DROPS_ELEVATIONS - 2);
-    let part = elevation - low as f32;
-    let [near, far] = [low, low + 1].map(|k| Vec4::from(shape.ovals[k as usize]));
-    (near * (1.0 - part) + far * part).truncate()
-}
-
-/// The direction of the motion on the oval.
-#[must_use]
-pub fn streak_table_direction(right: Vec3, up: Vec3, velocity: Vec3, oval: Vec3) -> Vec2 {
-    let moved = Vec2::new(velocity.dot(right), velocity.dot(up)) / Vec2::new(oval.x, oval.y);
-    let length = moved.dot(moved).sqrt();
-    if length > 1.0e-6 { moved / length.max(1.0e-20) } else { Vec2::NEG_Y }
-}
-
-/// An entry.
-fn streak_table_write(value: Vec4) -> [u32; 2] {
-    let kept = value.min(Vec4::splat(STREAK_BRIGHTEST));
-    [pack([kept.x, kept.y]), pack([kept.z, kept.w])]
-}
+use super::drops_mask::drops_mask_unit;
+use super::glint::drop_glint_right;
+use super::streak_lookup::STREAK_MEAN_ENTRIES;
+use super::streak_path::StreakPath;
 
 impl DropsView<'_> {
-    /// The light of one part of a chord, or of a drop: the sum over its taps.
-    fn streak_table_part(&self, shape: &StreakShape, place: u32, index: u32, part: u32) -> Vec4 {
-        let mean = place == STREAK_ACROSS;
-        let last = (STREAK_RAYS - 1) as f32;
-        let (column, line) = ((index % STREAK_RAYS) as f32 / last, (index / STREAK_RAYS) as f32 / last);
-        let ray = self.drops_frame_ray(column * self.frame.width as f32, line * self.frame.height as f32);
-        let towards = drops_mask_unit(ray);
-        let right = drops_mask_right(towards);
+    /// One of the points of a class's mean: radiance, and 1 if it meets the drop, else 0.
+    fn streak_table_point(&self, class: &StreakPath, towards: Vec3, point: u32) -> Vec4 {
+        let number = point as f32 + 0.5;
+        let phase = |step: f32| (number * step).fract();
+        let azimuth = STREAK_TURN * phase(STREAK_MEAN_FOURTH);
+        let path = StreakPath { lobe: [ops::cos(azimuth), ops::sin(azimuth)], ..*class };
+        let [a20, a31] = path.amplitudes;
+        let displacement = [
+            a20 * drop_oscillation_sine(phase(STREAK_MEAN_SECOND)),
+            a31 * drop_oscillation_sine(phase(STREAK_MEAN_THIRD)),
+        ];
+        let body = path.streak_path_body(path.coefficients(), displacement);
+        // Evenly over a disc that holds the drop.
+        let reach = STREAK_MEAN_REACH / body.inverse_wide.min(body.inverse_tall).sqrt();
+        let away = (number / STREAK_MEAN_POINTS as f32).sqrt();
+        let angle = STREAK_TURN * phase(STREAK_MEAN_FIRST);
+        let right = drop_glint_right(towards);
         let up = right.cross(towards);
-        let elevation = streak_table_elevation(shape.row, towards);
-        let oval = streak_table_oval(shape, elevation);
-        let extent = shape.half_extent;
-        let direction = streak_table_direction(right, up, Vec3::from(shape.velocity), oval);
-        let taps = if mean { STREAK_MEAN_GRID * STREAK_MEAN_GRID } else { STREAK_TAPS } / STREAK_SUMS;
-        let across = (place as f32 + 0.5) * (2.0 / STREAK_ACROSS as f32) - 1.0;
-        let half = (1.0 - across * across).max(0.0).sqrt();
-        let spacing = 2.0 * oval.x / if mean { STREAK_MEAN_GRID } else { STREAK_FINE } as f32;
-        let drop = DropsShade {
-            towards,
-            half_extent: extent,
-            lean: Vec3::ZERO,
-            spacing,
-            row: [shape.row, elevation],
-        };
-        let mut sum = Vec4::ZERO;
-        for tap in part * taps..(part + 1) * taps {
-            let at = if mean {
-                let cell = Vec2::new((tap % STREAK_MEAN_GRID) as f32, (tap / STREAK_MEAN_GRID) as f32);
-                (cell + 0.5) * (2.0 / STREAK_MEAN_GRID as f32) - 1.0
-            } else {
-                let v = (tap as f32 + 0.5) * (2.0 / STREAK_TAPS as f32) - 1.0;
-                Vec2::new(direction.y, -direction.x) * across + direction * (v * half)
-            };
-            let place = (at * Vec2::new(oval.x, oval.y) + Vec2::new(0.0, oval.z)) / extent;
-            if place.x.abs() < 1.0 && place.y.abs() < 1.0 {
-                sum += self.drops_shade_ray(&drop, place.x, place.y);
+        let offset = right * (away * ops::cos(angle)) + up * (away * ops::sin(angle));
+        let origin = path.streak_path_turned(offset * reach);
+        let direction = path.streak_path_turned(towards);
+        let line = [origin.to_array(), direction.to_array()];
+        let guess = mask_wobble_nearest(&body, line[0], line[1], 0.0);
+        let along = mask_wobble_nearest(&body, line[0], line[1], guess);
+        let nearest = (origin + direction * along).to_array();
+        if mask_wobble_surface(&body.coefficients, body.state, nearest).excess >= 0.0 {
+            return Vec4::ZERO;
+        }
+        let light = mask_wobble_light(&body, line[0], line[1]);
+        // A sphere's deviations and their derivatives, for the footprints.
+        let bend = 2.0 / (1.0 - away * away).max(STREAK_MEAN_RIM).sqrt();
+        let width = STREAK_MEAN_WIDTH * reach;
+        let bends = [
+            bend,
+            bend - DROPS_STRAIGHT,
+            (bend - 2.0 * DROPS_STRAIGHT).abs().max(1.0),
+            (bend - 3.0 * DROPS_STRAIGHT).abs().max(1.0),
+        ];
+        let shifts = self.frame.form == DROPS_SHIFT;
+        let (mut sum, mut rest) = (Vec3::ZERO, 1.0);
+        for (k, bend) in bends.into_iter().enumerate().take(1 + STREAK_EXITS as usize) {
+            if light.interfaces[k] > 0.0 {
+                let shown = match (shifts, k) {
+                    (true, 1) => 1.0,
+                    (true, _) => 0.0,
+                    (false, _) => light.shares[k],
+                };
+                let seen = path.streak_path_back(light.exits[k].into());
+                sum += self.drops_capture_about(towards, seen, width * bend) * shown;
+                rest -= light.shares[k];
             }
         }
-        sum
+        let lost = if shifts { 0.0 } else { rest.max(0.0) };
+        sum += self.drops_capture_texel(self.frame.capture_last, 0, 0) * lost;
+        sum.extend(1.0)
     }
 
-    /// The entries of one ray, place across the motion (or the mean), and shape.
-    fn streak_table_entries(&self, shape: &StreakShape, place: u32, index: u32) -> [[u32; 2]; SUMS] {
-        let mut entries = [[0; 2]; SUMS];
+    /// The mean of a class along a ray.
+    fn mean(&self, class: &StreakPath, ray: u32) -> [f32; 4] {
+        // A class without rows is not wanted.
+        if class.rows == 0 {
+            return [0.0; 4];
+        }
+        let last = (STREAK_RAYS - 1) as f32;
+        let place = Vec2::new((ray % STREAK_RAYS) as f32 / last, (ray / STREAK_RAYS) as f32 / last);
+        let (x, y) = (place.x * self.frame.width as f32, place.y * self.frame.height as f32);
+        let towards = drops_mask_unit(self.drops_frame_ray(x, y));
         let mut sum = Vec4::ZERO;
-        for (entry, part) in entries.iter_mut().zip(0..STREAK_SUMS) {
-            sum += self.streak_table_part(shape, place, index, part);
-            let colour = sum.truncate() / sum.w.max(1.0e-20);
-            let share = (part + 1) as f32 / STREAK_SUMS as f32;
-            *entry = streak_table_write(colour.extend(1.0) * share);
+        for part in 0..STREAK_MEAN_GROUP {
+            let mut of_part = Vec4::ZERO;
+            for point in (part..STREAK_MEAN_POINTS).step_by(STREAK_MEAN_GROUP as usize) {
+                of_part += self.streak_table_point(class, towards, point);
+            }
+            sum += of_part;
         }
-        if place == STREAK_ACROSS {
-            entries = [[0; 2]; SUMS];
-            entries[0] = streak_table_write(sum / sum.w.max(1.0e-20));
-        }
-        entries
+        (sum.truncate() / sum.w.max(1.0)).extend(0.0).to_array()
     }
 
-    /// The table of these shapes.
-    pub(super) fn streak_table(&self, shapes: &[StreakShape]) -> StreakTable {
-        let rays = STREAK_RAYS * STREAK_RAYS;
-        let entries = rays * STREAK_SUMS;
-        let layers: Vec<(usize, u32)> = (0..shapes.len())
-            .flat_map(|shape| (0..=STREAK_ACROSS).map(move |place| (shape, place)))
-            .collect();
-        let words = layers
-            .into_par_iter()
-            .flat_map_iter(|(shape, place)| {
-                let shape = &shapes[shape];
-                if shape.wanted < if place < STREAK_ACROSS { STREAK_CHORDS } else { STREAK_MEAN } {
-                    return vec![[0; 2]; entries as usize];
-                }
-                (0..rays).flat_map(|ray| self.streak_table_entries(shape, place, ray)).collect()
-            })
-            .collect();
-        StreakTable { words }
+    /// The means of these classes, in parallel; the same bits for any number of threads.
+    pub(super) fn streak_means(&self, classes: &[StreakPath]) -> Vec<[f32; 4]> {
+        let entries = classes.len() as u32 * STREAK_MEAN_ENTRIES;
+        let entry = |k: u32| self.mean(&classes[(k / STREAK_MEAN_ENTRIES) as usize], k % STREAK_MEAN_ENTRIES);
+        (0..entries).into_par_iter().map(entry).collect()
     }
 }

@@ -8,9 +8,9 @@ use super::capture::CaptureFrame;
 use super::drops_frame::DropsFrame;
 use super::light::{DropLightForm, DropLightOptions, DropLights, drop_light_axes, drop_light_rows};
 use super::medium::{MediumFrame, MediumLight, lamps_of};
+use super::profiles::StreakProfiles;
 use super::project::{Projected, project};
 use super::streak::DropsDrop;
-use super::streak_table::StreakShape;
 use super::{DropMasks, RainOptions, shapes};
 use crate::RenderError;
 use crate::data::{RenderFrame, SceneData};
@@ -24,8 +24,8 @@ pub struct Rain {
     pub medium: MediumFrame,
     /// How the surroundings are captured.
     pub capture: CaptureFrame,
-    /// Classes of the drops that move, for the streak radiance table; none if nothing moves.
-    pub shapes: Vec<StreakShape>,
+    /// What the streak radiance table has of the drops that move.
+    pub profiles: StreakProfiles,
     /// The drops on the picture, nearest first.
     pub list: Vec<DropsDrop>,
     /// Where each tile's list begins (one more than there are tiles), then the lists.
@@ -63,7 +63,7 @@ impl Rain {
         // Two drops at one distance go in the order in which they were given.
         placed.sort_by(|a, b| a.1.drop.nearest.total_cmp(&b.1.drop.nearest).then(a.0.cmp(&b.0)));
         let medium = options.medium.row().map(shapes::of_row);
-        let shapes = shapes::classify(&mut placed, masks, medium);
+        let profiles = StreakProfiles::new(&mut placed, drops, masks, &options.exposure, medium);
         let across = width.div_ceil(DROPS_TILE);
         let count = (across * height.div_ceil(DROPS_TILE)) as usize;
         let touched = |shown: &Projected| tiles_of(*shown, width, height);
@@ -98,7 +98,7 @@ impl Rain {
                 ..MediumFrame::new(&options.medium, eye.as_vec3(), [width, height])
             },
             capture,
-            shapes,
+            profiles,
             list: placed.iter().map(|p| p.1.drop).collect(),
             rows,
             picture: *picture,
@@ -121,10 +121,28 @@ impl Rain {
         DropLights::new(scene, &self.picture, &masks.light, self.light)
     }
 
+    /// The lamps of a scene on the streaks that have profiles, lamp by lamp.
+    ///
+    /// # Errors
+    /// As [`DropLights::new`].
+    pub fn streak_lights<'a>(
+        &'a self,
+        scene: &'a SceneData,
+        masks: &'a DropMasks,
+    ) -> Result<DropLights<'a>, RenderError> {
+        DropLights::of_streaks(scene, &self.picture, &masks.light, self.light)
+    }
+
+    /// The streaks that have profiles, as lamps light them.
+    #[must_use]
+    pub fn streak_rows(&self) -> Vec<[f32; 4]> {
+        self.profiles.paths.iter().map(|path| self.rows[path.drop as usize]).collect()
+    }
+
     /// The drops that are not drawn one by one, before a scene; `lights` are those of [`Rain::lights`].
     #[must_use]
     pub fn medium_light<'a>(&self, lights: &DropLights<'a>) -> MediumLight<'a> {
-        MediumLight::new(&self.medium, lights)
+        MediumLight::new(&self.medium, lights, self.light.form)
     }
 
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given.

@@ -42,10 +42,10 @@ pub struct SpecimenMotion {
 impl SpecimenMotion {
     /// The motion that the options ask for; `None` for a drop that is at rest.
     pub(crate) fn of(shape: &DropShape, options: &SpecimenOptions) -> Result<Option<Self>, SpecimenError> {
-        let still = options.oscillation == Amplitudes::NONE;
-        if still && options.exposure_s == 0.0 {
+        if !options.is_streak() {
             return Ok(None);
         }
+        let still = options.oscillation == Amplitudes::NONE;
         let diameter = 2.0 * shape.equivalent_radius();
         // A drop that does not oscillate may be smaller than those that can.
         let tuned = if still { diameter.max(1.0e-3) } else { diameter };

@@ -36,7 +36,8 @@ pub struct SpecimenOptions {
     pub fov: Option<f64>,
     /// Width and height of the picture in pixels, each 1 to [`LARGEST_SIZE`].
     pub size: [u32; 2],
-    /// Samples along an edge of a pixel, 1 to 16: a pixel is the mean of the square of it, on a fixed grid.
+    /// Samples along an edge of a pixel, 1 to 16: a pixel is the mean of the square of it. Lines of samples are shifted
+    /// against each other.
     pub samples: u32,
     /// Refractive index of water against air for red, green and blue, each 1 to 4. Three different ones take three
     /// times as long (`downpour_drop::optics::rgb_indices` has those of real water).
@@ -142,6 +143,12 @@ impl SpecimenOptions {
     /// Fall in half of the exposure, in metres.
     pub(crate) fn half_path(&self, shape: &DropShape) -> Result<f64, SpecimenError> {
         Ok(0.5 * self.exposure_s * fall_speed(shape)?)
+    }
+
+    /// Returns whether the picture is that of a streak: the drop moves, or its shape is not that at rest.
+    #[must_use]
+    pub fn is_streak(&self) -> bool {
+        self.exposure_s > 0.0 || self.oscillation != Amplitudes::NONE
     }
 
     /// What the drop does during the exposure; `None` for a drop at rest.

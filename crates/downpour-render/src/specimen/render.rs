@@ -7,7 +7,9 @@
 use downpour_drop::DropShape;
 use downpour_mask::trace::TracedDrop;
 use downpour_math::real::{Lanes, Simd, WithLanes, with_widest_lanes};
+use downpour_math::rng::rng_unit;
 use downpour_math::vector::{add, add_scaled, scale};
+use downpour_shaders::render::specimen::SPECIMEN_LATTICE;
 use rayon::prelude::*;
 
 use super::options::SpecimenOptions;
@@ -53,25 +55,34 @@ pub(crate) fn views(shape: &DropShape, options: &SpecimenOptions) -> Result<Vec<
     ])
 }
 
+/// Position of the samples of a line within their cells, 0 to 1: each line is shifted against the next by the golden ratio, a
+/// lattice of rank 1. What is narrower than a cell, as the image of a small lamp that a falling drop draws out along a
+/// column, is not missed, or met, by all lines alike.
+#[inline(always)]
+#[must_use]
+pub fn specimen_jitter(line: u32) -> f32 {
+    rng_unit(line.wrapping_mul(SPECIMEN_LATTICE))
+}
+
 impl View {
     /// Height of the samples of line `line` (counted from the top) above the middle of the picture.
     pub(crate) fn line_height(&self, line: u32) -> f32 {
         (self.size[1] * self.samples) as f32 * 0.5 - (line as f32 + 0.5)
     }
 
-    /// Place of sample `index` of a line, from the middle of the picture.
+    /// Position of sample `index` of line `line`, from the middle of the picture.
     #[inline(always)]
-    pub(crate) fn sample_place(&self, index: u32) -> f32 {
-        index as f32 + 0.5 - (self.size[0] * self.samples) as f32 * 0.5
+    pub(crate) fn sample_place(&self, index: u32, line: u32) -> f32 {
+        index as f32 - (self.size[0] * self.samples) as f32 * 0.5 + specimen_jitter(line)
     }
 
     /// One row of pixels: the means of their samples.
-    fn row(&self, row: u32, pixels: &mut [[f32; 3]], mut trace: impl FnMut(f32, &mut [[f32; 3]])) {
+    fn row(&self, row: u32, pixels: &mut [[f32; 3]], mut trace: impl FnMut(u32, &mut [[f32; 3]])) {
         let samples = self.samples;
         let mut line = vec![[0.0; 3]; (self.size[0] * samples) as usize];
         let mut sums = vec![[0.0f32; 3]; pixels.len()];
         for b in 0..samples {
-            trace(self.line_height(row * samples + b), &mut line);
+            trace(row * samples + b, &mut line);
             for (sum, pixel) in sums.iter_mut().zip(line.chunks(samples as usize)) {
                 *sum = pixel.iter().fold(*sum, |sum, &sample| add(sum, sample));
             }
@@ -140,7 +151,10 @@ pub fn render_specimen(
     let mut image = empty(options);
     for view in views(shape, options)? {
         image.pixels.par_chunks_mut(options.size[0] as usize).enumerate().for_each(|(row, pixels)| {
-            view.row(row as u32, pixels, |y, line| with_widest_lanes(Line { view: &view, sky, y, line }));
+            let trace = |number, line: &mut [[f32; 3]]| {
+                with_widest_lanes(Line { view: &view, sky, number, line });
+            };
+            view.row(row as u32, pixels, trace);
         });
     }
     Ok(image)
@@ -161,9 +175,11 @@ pub fn render_specimen_scalar(
     let mut image = empty(options);
     for view in views(shape, options)? {
         for (row, pixels) in (0..).zip(image.pixels.chunks_mut(options.size[0] as usize)) {
-            view.row(row, pixels, |y, line| {
-                for (x, sample) in (0..).zip(line) {
-                    *sample = specimen_radiance(&view.drop, &view.camera, sky, view.sample_place(x), y);
+            view.row(row, pixels, |number, line| {
+                let y = view.line_height(number);
+                for (k, sample) in (0..).zip(line) {
+                    let x = view.sample_place(k, number);
+                    *sample = specimen_radiance(&view.drop, &view.camera, sky, x, y);
                 }
             });
         }
@@ -175,7 +191,8 @@ pub fn render_specimen_scalar(
 struct Line<'a> {
     view: &'a View,
     sky: Sky<'a>,
-    y: f32,
+    /// Lines above it.
+    number: u32,
     line: &'a mut [[f32; 3]],
 }
 
@@ -213,12 +230,13 @@ impl WithLanes for Line<'_> {
     fn run<S: Simd>(self, simd: S) {
         let lanes = Lanes::<S>::COUNT;
         debug_assert!(lanes <= MOST_LANES, "a machine with vectors of more than {MOST_LANES} numbers");
-        let y = Lanes::splat(simd, self.y);
+        let y = Lanes::splat(simd, self.view.line_height(self.number));
         for (first, sums) in (0..).step_by(lanes).zip(self.line.chunks_mut(lanes)) {
             let mut x = [0.0; MOST_LANES];
             for (k, x) in (0..).zip(&mut x[..lanes]) {
                 // Lanes past the end of the line repeat the last sample.
-                *x = self.view.sample_place((first + k).min(first + sums.len() as u32 - 1));
+                let index = (first + k).min(first + sums.len() as u32 - 1);
+                *x = self.view.sample_place(index, self.number);
             }
             sums.fill([0.0; 3]);
             let mut sums = LaneSums { sky: self.sky, sums };
@@ -258,9 +276,10 @@ pub fn render_specimen_f64(
     for mut view in views(shape, options)? {
         view.drop.steps = REFERENCE_STEPS;
         image.pixels.par_chunks_mut(options.size[0] as usize).enumerate().for_each(|(row, pixels)| {
-            view.row(row as u32, pixels, |y, line| {
-                for (x, sample) in (0..).zip(line) {
-                    let place = [view.sample_place(x), y].map(f64::from);
+            view.row(row as u32, pixels, |number, line| {
+                let y = view.line_height(number);
+                for (k, sample) in (0..).zip(line) {
+                    let place = [view.sample_place(k, number), y].map(f64::from);
                     let mut sum = SumF64 { sky, radiance: [0.0; 3] };
                     specimen_light(&view.drop, &view.camera, place, &mut sum);
                     *sample = sum.radiance.map(|c| c as f32);

@@ -181,8 +181,9 @@ impl Streak<'_> {
         let (view, motion) = (self.view, self.motion);
         let samples = view.samples;
         let (sample, instant) = (k / motion.instants, k % motion.instants);
-        let x = R::single(view.sample_place(column * samples + sample % samples));
-        let y = R::single(view.line_height(row * samples + sample / samples));
+        let line = row * samples + sample / samples;
+        let x = R::single(view.sample_place(column * samples + sample % samples, line));
+        let y = R::single(view.line_height(line));
         let (zero, one) = (x.constant(0.0), x.constant(1.0));
         let ray = specimen_ray(&view.camera, x, y);
         let passage = specimen_streak_passage(motion, &ray);

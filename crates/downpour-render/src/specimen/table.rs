@@ -4,9 +4,8 @@
 //! exposure, oscillation and phases before the same map, drawn by [`rain`](crate::rain) with the options that a picture of a
 //! scene has. What is not covered is the map itself, sampled as there.
 //!
-//! A lamp far away is parallel light for the renderer, and kept out of the capture: the light that a sphere scatters, with its
-//! glints ([`light`](crate::rain::light)). It has no size then, so that only small discs are taken
-//! ([`LARGEST_TABLE_LAMP_DEG`]). In the background they are discs.
+//! A lamp far away is parallel light for the renderer, kept out of the capture: the profile of the streak looks for its disc. A
+//! disc has to be small for that ([`LARGEST_TABLE_LAMP_DEG`]).
 //!
 //! Source: P. Rousseau et al., "GPU rainfall", 2008, section 2.2.3, for the oscillation of the outline; the table is
 //! described in `shaders/wgsl/render/streak_lookup.wgsl`.
@@ -17,10 +16,10 @@ use downpour_drop::DropShape;
 use downpour_drop::oscillation::{Amplitudes, drop_oscillation_phase};
 use downpour_math::rng::seed_words;
 use downpour_math::vector::{add, scale};
-use downpour_shaders::render::rain::{DROPS_STILL, DROPS_TABLE};
+use downpour_scene::sky::{SUN_THRESHOLD, SkyMap};
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_SKY_LEVELS};
 use downpour_sim::field::{DropKind, FallingDrop};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::motion::fall_speed;
@@ -77,7 +76,7 @@ pub(crate) struct TableStreak {
 ///
 /// # Errors
 /// What [`SpecimenOptions::check`] and [`check_specimen_table`] say; [`SpecimenError::Render`] for a field of view below
-/// 0.006 degrees; [`SpecimenError::OutOfRange`] for a streak that is shorter than its drop, which has no table.
+/// 0.006 degrees.
 pub fn render_specimen_table(
     shape: &DropShape,
     options: &SpecimenOptions,
@@ -87,7 +86,8 @@ pub fn render_specimen_table(
     for streak in table_streaks(shape, options, sky)? {
         let TableStreak { scene, masks, rain, clean, .. } = &streak;
         let capture = rain.capture.trace(scene);
-        let table = rain.streak_table(masks, &capture);
+        let lamps = streak.streak_lights()?.light(&rain.streak_rows());
+        let table = rain.streak_table(masks, &capture, &lamps);
         let light = streak.lights()?.light(&rain.rows);
         streak.show(&rain.layer(clean, masks, &capture, &table, &light, &[]), &mut image);
     }
@@ -185,8 +185,11 @@ impl TableStreak {
         };
         let mut rain = Rain::new(&frame, eye, &[drop], &masks, &of_rain);
         for drop in &mut rain.list {
-            check_table(drop)?;
             set_phases(drop, options);
+        }
+        for path in &mut rain.profiles.paths {
+            // Towards +X.
+            path.lobe = [1.0, 0.0];
         }
         Ok(Self { scene, masks, rain, clean: background(view, sky), channels: view.channels })
     }
@@ -194,6 +197,11 @@ impl TableStreak {
     /// The lamps on the drop.
     pub(crate) fn lights(&self) -> Result<DropLights<'_>, SpecimenError> {
         Ok(self.rain.lights(&self.scene, &self.masks)?)
+    }
+
+    /// The lamps on its profile.
+    pub(crate) fn streak_lights(&self) -> Result<DropLights<'_>, SpecimenError> {
+        Ok(self.rain.streak_lights(&self.scene, &self.masks)?)
     }
 
     /// Writes the colours that this streak is for into a picture. `layer` is the rain over the background.
@@ -206,22 +214,36 @@ impl TableStreak {
     }
 }
 
-/// A scene that is nothing but the sky.
+/// A scene that is nothing but the sky. As a weather does it, the sun of the map is taken out of it and made parallel light.
 fn scene(sky: Sky<'_>) -> SceneData {
+    let mut map = SkyMap {
+        width: sky.width(),
+        height: sky.height(),
+        radiance: sky.radiance().to_vec(),
+        warnings: Vec::new(),
+    };
+    let sun = map.extract_sun(SUN_THRESHOLD);
     // No surface asks for the levels of rough reflection, nor for irradiance.
     let light = SkyLight {
-        texels: sky.radiance().iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect(),
-        levels: [[sky.width(), sky.height(), 0, 0]; SCENE_SKY_LEVELS as usize],
+        texels: map.radiance.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect(),
+        levels: [[map.width, map.height, 0, 0]; SCENE_SKY_LEVELS as usize],
         irradiance: [[0.0; 4]; 9],
     };
+    let of_lamps = sky.lamps().iter().map(|lamp| {
+        let irradiance = Vec3::from(lamp.radiance) * (PI * lamp.sine_squared() as f32);
+        (DVec3::from(lamp.direction).as_vec3(), irradiance, lamp.radius() as f32)
+    });
+    let of_sun = sun.map(|sun| (sun.direction.into(), sun.irradiance_rgb.into(), sun.angular_radius));
+    let lights: Vec<(Vec3, Vec3, f32)> = of_lamps.chain(of_sun).collect();
     let mut builder = SceneBuilder::new();
-    for lamp in sky.lamps() {
-        builder.add_light(LightSource::Directional {
-            direction: -DVec3::from(lamp.direction).as_vec3(),
-            irradiance: Vec3::from(lamp.radiance) * (PI * lamp.sine_squared() as f32),
-        });
+    for &(towards, irradiance, _) in &lights {
+        builder.add_light(LightSource::Directional { direction: -towards, irradiance });
     }
-    builder.build(&light)
+    let mut scene = builder.build(&light);
+    for (k, &(_, _, radius)) in (0u32..).zip(&lights) {
+        scene.set_light_radius(k, radius);
+    }
+    scene
 }
 
 /// The map and its lamps, each pixel the mean of its samples, and the distance of the sky.
@@ -230,8 +252,9 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
     let mean = 1.0 / (samples * samples) as f32;
     let pixel = |column: u32, row: u32| {
         let light = (0..samples * samples).fold([0.0; 3], |sum, k| {
-            let x = view.sample_place(column * samples + k % samples);
-            let y = view.line_height(row * samples + k / samples);
+            let line = row * samples + k / samples;
+            let x = view.sample_place(column * samples + k % samples, line);
+            let y = view.line_height(line);
             add(sum, specimen_sky_light(sky, specimen_ray(&view.camera, x, y).direction))
         });
         let [r, g, b] = scale(light, mean);
@@ -242,20 +265,6 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
         .into_par_iter()
         .flat_map_iter(|row| (0..width).map(move |column| pixel(column, row)))
         .collect()
-}
-
-/// Whether the renderer takes a table for this drop.
-fn check_table(drop: &DropsDrop) -> Result<(), SpecimenError> {
-    // What is not sampled shows the mean that the table has of its drop.
-    if drop.kind == DROPS_TABLE || (drop.kind != DROPS_STILL && drop.grid == 0) {
-        return Ok(());
-    }
-    Err(SpecimenError::OutOfRange {
-        quantity: "length of a streak by the table",
-        found: f64::from(Vec2::from(drop.along).length() / (2.0 * drop.slope * drop.oval[1])),
-        unit: "heights of its drop, as seen",
-        allowed: "from 1 (shorter ones are drawn without a table)".to_owned(),
-    })
 }
 
 /// Gives a drop the phases of the specimen, and the lobe of the mode (3,1) its place towards +X.

@@ -1,13 +1,6 @@
 //! A ray through a drop that oscillates: a surface that is not one of revolution, and need not be convex.
 //!
-//! r = rho(x) f(x, h) scale, with f = 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h: the shape at rest times the factor of
-//! `downpour_drop::oscillation`. p is a point, x = -p.y / |p| and h = p.x / |p|; lengths are in units of the
-//! volume-equivalent radius, the drop's origin is at 0, its axis is +Y. The gauge squared is G = |p|^2 / r^2; with
-//! `q = rho' / rho + f_x / f` and `k = f_h / f`,
-//!
-//! > 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2,
-//!
-//! whose direction is the outward normal.
+//! The surface is that of [`downpour_mask::wobble`]. Here every root is found:
 //!
 //! A line is walked in equal parts; in a part at whose ends G turns, its extremum is looked for, so that no bulge or hollow
 //! wider than a part is missed. The crossing that is found is closed in on by the steps of `mask_trace_step`, and by halves
@@ -18,12 +11,11 @@
 //! Generic over [`Real`]; with `f32` the twin of `shaders/wgsl/render/specimen_wobble.wgsl`.
 
 use downpour_drop::optics::{optics_fresnel, optics_reflect, optics_refract};
-use downpour_drop::oscillation::drop_oscillation_legendre_20;
-use downpour_drop::shape::{COEFFICIENTS, drop_shape_radius_slope};
+use downpour_drop::shape::COEFFICIENTS;
 use downpour_mask::trace::{Surface, mask_trace_step};
+use downpour_mask::wobble::mask_wobble_surface;
 use downpour_math::real::Real;
 use downpour_math::vector::{add_scaled, dot, normalize, scale, select};
-use downpour_shaders::mask::MASK_TINY;
 use downpour_shaders::render::specimen::{
     SPECIMEN_WOBBLE_FLAT, SPECIMEN_WOBBLE_PART, SPECIMEN_WOBBLE_PARTS, SPECIMEN_WOBBLE_SLACK,
     SPECIMEN_WOBBLE_STEPS, SPECIMEN_WOBBLE_TURNS,
@@ -50,27 +42,7 @@ pub struct SpecimenWobble<R> {
 #[inline]
 #[must_use]
 pub fn specimen_wobble_surface<R: Real>(drop: &SpecimenWobble<R>, point: [R; 3]) -> Surface<R> {
-    let one = point[0].constant(1.0);
-    let c = |value: f64| one.constant(value);
-    let square = dot(point, point).at_least(c(f64::from(MASK_TINY)));
-    let length = square.sqrt();
-    let inverse_length = one / length;
-    let x = -(point[1] * inverse_length);
-    let h = point[0] * inverse_length;
-    let [s2, s3, size] = drop.state;
-    let [rho, slope] = drop_shape_radius_slope(&drop.coefficients, x);
-    let lobe = c(1.5) * s3 * (one - c(5.0) * x * x);
-    let factor = one + s2 * drop_oscillation_legendre_20(x) + lobe * h;
-    let by_x = c(3.0) * s2 * x - c(15.0) * s3 * x * h;
-    let inverse_factor = one / factor;
-    let q = slope / rho + by_x * inverse_factor;
-    let k = lobe * inverse_factor;
-    let inverse = one / (rho * factor * size);
-    let scale_all = inverse * inverse;
-    let along = one + q * x + k * h;
-    let [px, py, pz] = scale(point, along);
-    let gradient = [px - length * k, py + length * q, pz];
-    Surface { excess: square * scale_all - one, half_gradient: scale(gradient, scale_all) }
+    mask_wobble_surface(&drop.coefficients, drop.state, point)
 }
 
 /// G - 1 and half of dG/ds at the place `s` of a line.

@@ -12,11 +12,13 @@ use downpour_render::specimen::trace::{
     SpecimenCamera, SpecimenLight, SpecimenRay, specimen_bounce, specimen_enter, specimen_hits, specimen_ray,
     upright_drop,
 };
-use downpour_render::specimen::{Image, Sky, SpecimenLamp, SpecimenOptions, render_specimen};
+use downpour_render::specimen::{
+    Image, Sky, SpecimenLamp, SpecimenOptions, render_specimen, specimen_jitter,
+};
 use downpour_shaders::mask::MASK_TRACE_STEPS;
 use downpour_shaders::render::specimen;
 
-use crate::Domain::{Made, OneOf, Uniform, Unit3};
+use crate::Domain::{AnyWord, Made, OneOf, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -190,6 +192,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 let lamp = SpecimenLamp { direction, reach, radiance: a.f32s() };
                 specimen_lamp(&lamp, a.f32s::<3>()).words()
             },
+        ),
+        FunctionCase::new(
+            "specimen_jitter",
+            module,
+            &[AnyWord],
+            Tol::exact("a product of integers, and its upper bits as a number"),
+            |a| specimen_jitter(a.u32()).words(),
         ),
         FunctionCase::new(
             "specimen_sky_place",

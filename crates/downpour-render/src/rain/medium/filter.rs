@@ -6,7 +6,7 @@ use downpour_shaders::render::scene::SKYLIGHT_RADIUS;
 use glam::{Vec3, Vec4};
 
 use super::light::MediumLight;
-use crate::rain::streak_lookup::pack;
+use crate::halves::pack;
 use crate::scene::scene_share;
 
 /// How far a neighbor has a say: as far as its ray is about as long.

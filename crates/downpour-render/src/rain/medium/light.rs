@@ -87,11 +87,11 @@ fn phase(form: DropLightForm, table: &DropLightTable) -> Vec<[f32; 4]> {
 }
 
 impl<'a> MediumLight<'a> {
-    /// The unresolved rain of a picture, lit as its drops are.
-    pub(crate) fn new(medium: &MediumFrame, lights: &DropLights<'a>) -> Self {
+    /// The unresolved rain of a picture, lit by `form` as its drops are.
+    pub(crate) fn new(medium: &MediumFrame, lights: &DropLights<'a>, form: DropLightForm) -> Self {
         let open = u32::from(lights.view.data.triangles.is_empty());
         let medium = MediumFrame { open, ..*medium };
-        Self { view: lights.view, medium, phase: phase(lights.options.form, lights.table) }
+        Self { view: lights.view, medium, phase: phase(form, lights.table) }
     }
 
     /// Rows of the grid of open air, before those of the pixels.

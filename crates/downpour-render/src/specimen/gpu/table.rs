@@ -42,10 +42,9 @@ impl SpecimenTableRenderer {
         for streak in table_streaks(shape, options, sky)? {
             let (scene, masks) = (self.scenes.upload(&streak.scene)?, self.rains.upload(&streak.masks)?);
             let clean = self.gpu.storage_buffer("background of a streak", &streak.clean)?;
-            let lights = streak.lights()?;
+            let lights = [streak.lights()?, streak.streak_lights()?];
             let pass = self.rains.prepare(&self.scenes, &scene, &masks, &clean, &streak.rain, &lights)?;
-            let table = pass.streaks().into_iter().collect();
-            for dispatches in [pass.capture(), table, pass.lamps(), vec![pass.drops()]] {
+            for dispatches in [pass.capture(), pass.lamps(), pass.streaks(), vec![pass.drops()]] {
                 self.gpu.submit(&dispatches)?;
                 // One submission at a time: software drivers queue without end.
                 self.gpu.wait()?;

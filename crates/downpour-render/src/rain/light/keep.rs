@@ -1,0 +1,93 @@
+//! Which glints, streaks or lamps of a drop are kept: the brightest.
+
+use std::f32::consts::PI;
+
+use downpour_shaders::render::drop_light::{DROP_LIGHT_LAMPS_ROUSSEAU, DROP_LIGHT_REACH};
+use downpour_shaders::render::scene::SCENE_LIGHT_ROWS;
+use glam::{Vec3, Vec4};
+
+use super::{DropLights, drop_light_entry, drop_light_mean};
+use crate::rain::glint::drop_glint_angle;
+use crate::scene::scene_share;
+
+/// Keeps a glint of a drop if it is brighter than the least of those that are kept.
+pub(super) fn drop_light_keep(glints: &mut [[f32; 4]], glint: Vec4) {
+    let share = |glint: &[f32; 4]| scene_share(Vec4::from(*glint).truncate());
+    let mut least = scene_share(glint.truncate());
+    let mut weakest = None;
+    for kept in glints {
+        if share(kept) < least {
+            least = share(kept);
+            weakest = Some(kept);
+        }
+    }
+    if let Some(weakest) = weakest {
+        *weakest = glint.to_array();
+    }
+}
+
+/// Keeps two rows of a drop, a streak or a lamp, if it is brighter than the least of those that are kept.
+pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], light: Vec4, layers: [f32; 4]) {
+    let share = |row: &[f32; 4]| scene_share(Vec4::from(*row).truncate());
+    let mut least = scene_share(light.truncate());
+    let mut weakest = None;
+    for kept in rows.chunks_exact_mut(2) {
+        if share(&kept[0]) < least {
+            least = share(&kept[0]);
+            weakest = Some(kept);
+        }
+    }
+    if let Some(weakest) = weakest {
+        weakest.copy_from_slice(&[light.to_array(), layers]);
+    }
+}
+
+impl DropLights<'_> {
+    /// The chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
+    pub(super) fn drop_light_reach(&self, index: u32) -> f32 {
+        let row = (self.view.data.lights + index * SCENE_LIGHT_ROWS + 1) as usize;
+        f32::from_bits(self.view.data.table[row][3]).max(DROP_LIGHT_REACH)
+    }
+
+    /// What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
+    fn drop_light_whole(&self, lit: Vec3, direction: Vec3, towards: Vec3) -> Vec3 {
+        if self.form == DROP_LIGHT_LAMPS_ROUSSEAU {
+            return lit * drop_light_mean(towards, direction);
+        }
+        let angle = drop_glint_angle(direction, towards);
+        lit * PI * drop_light_entry(self.table, 0, angle).truncate()
+    }
+
+    /// Keeps a lamp of a streak if it is brighter than the least of those that are kept; returns what the drop shows on the mean
+    /// of the lamp that is not kept. The fourth number of the second row is how bright it is.
+    pub(super) fn drop_light_keep_lamp(
+        &self,
+        rows: &mut [[f32; 4]],
+        [first, second]: [Vec4; 2],
+        towards: Vec3,
+    ) -> Vec3 {
+        let (lit, direction) = (first.truncate(), second.truncate());
+        let whole = self.drop_light_whole(lit, direction, towards);
+        let mut least = scene_share(whole);
+        let mut weakest = None;
+        for kept in rows.chunks_exact_mut(2) {
+            if kept[1][3] < least {
+                least = kept[1][3];
+                weakest = Some(kept);
+            }
+        }
+        let Some(weakest) = weakest else { return whole };
+        let (old, way) = (Vec4::from(weakest[0]), Vec4::from(weakest[1]).truncate());
+        let is_rousseau = self.form == DROP_LIGHT_LAMPS_ROUSSEAU;
+        let factor = if is_rousseau { 1.0 } else { PI };
+        let reach = if is_rousseau { -1.0 } else { first.w };
+        weakest.copy_from_slice(&[
+            (lit * factor).extend(reach).to_array(),
+            direction.extend(scene_share(whole)).to_array(),
+        ]);
+        if old.w == 0.0 {
+            return Vec3::ZERO;
+        }
+        self.drop_light_whole(old.truncate() / factor, way, towards)
+    }
+}

@@ -1,0 +1,329 @@
+//! Lights the profiles of streaks. Twin of `shaders/wgsl/render/streak_light.wgsl`, where method and layout are described.
+
+use downpour_math::packing::{packing_octahedral_decode, packing_unpack_snorm, packing_unpack_unorm};
+use downpour_shaders::render::drop_light::DROP_GLINT_TINY;
+use downpour_shaders::render::rain::{
+    DROPS_SHIFT, STREAK_EXITS, STREAK_LAMPS, STREAK_NARROWEST, STREAK_QUARTER, STREAK_SPOT_ALONG,
+    STREAK_SPOT_FIRST, STREAK_SPOT_LATER, STREAK_SPOT_NARROW, STREAK_SPOT_REACH, STREAK_SPOT_SECOND,
+    STREAK_SPOT_THIRD, STREAK_SPOT_WIDTH, STREAK_SPOTS, STREAK_SUMS,
+};
+use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::drops_frame::DropsView;
+use super::drops_mask::drops_mask_unit;
+use super::glint::{drop_glint_right, drop_glint_rousseau};
+use super::streak::DropsDrop;
+use super::streak_path::{StreakPath, streak_path_instant};
+use super::streak_place::streak_place_position;
+use super::streak_rays::StreakRay;
+
+/// Columns of the profile of a job.
+pub(super) const UNITS: u32 = 64;
+
+/// The most fine columns of a column.
+const FINE: usize = 4;
+const SUMS: usize = STREAK_SUMS as usize;
+
+/// Rows of light of each path: the mean of what is not told lamp by lamp, and two for each lamp.
+pub(super) const LIGHT_ROWS: usize = 1 + 2 * STREAK_LAMPS as usize;
+
+/// One exit of a ray.
+#[derive(Clone, Copy, Debug, Default)]
+struct StreakExit {
+    direction: Vec3,
+    share: f32,
+    /// Interfaces passed; 0: there is none.
+    passed: u32,
+}
+
+/// How an exit changes along an axis: a first and a second difference per ray, and a first one of its share.
+#[derive(Clone, Copy, Debug, Default)]
+struct StreakChange {
+    first: Vec3,
+    share: f32,
+    second: Vec3,
+}
+
+/// A ray's patch: its exit and how that goes across, along and in time.
+#[derive(Clone, Copy, Debug)]
+struct StreakPatch {
+    middle: StreakExit,
+    across: StreakChange,
+    along: StreakChange,
+    later: StreakChange,
+    across_along: Vec3,
+    across_later: Vec3,
+    along_later: Vec3,
+}
+
+/// The change between an exit's neighbours, as far as their light went the same way.
+fn streak_light_change(before: &StreakExit, here: &StreakExit, after: &StreakExit) -> StreakChange {
+    let has_before = before.passed == here.passed;
+    let has_after = after.passed == here.passed;
+    match (has_before, has_after) {
+        (true, true) => StreakChange {
+            first: (after.direction - before.direction) * 0.5,
+            share: (after.share - before.share) * 0.5,
+            second: after.direction + before.direction - here.direction * 2.0,
+        },
+        (false, true) => StreakChange {
+            first: after.direction - here.direction,
+            share: after.share - here.share,
+            second: Vec3::ZERO,
+        },
+        (true, false) => StreakChange {
+            first: here.direction - before.direction,
+            share: here.share - before.share,
+            second: Vec3::ZERO,
+        },
+        (false, false) => StreakChange::default(),
+    }
+}
+
+/// The mixed second difference, from the two neighbours on a diagonal.
+fn streak_light_mixed(
+    before: &StreakExit,
+    here: &StreakExit,
+    after: &StreakExit,
+    a: &StreakChange,
+    b: &StreakChange,
+) -> Vec3 {
+    if before.passed != here.passed || after.passed != here.passed {
+        return Vec3::ZERO;
+    }
+    (before.direction + after.direction - here.direction * 2.0 - a.second - b.second) * 0.5
+}
+
+/// The direction at a place of a patch: rays across, along and later, from its middle.
+fn streak_light_direction(ray: &StreakPatch, place: Vec3) -> Vec3 {
+    let linear = ray.middle.direction
+        + ray.across.first * place.x
+        + ray.along.first * place.y
+        + ray.later.first * place.z;
+    let squares = ray.across.second * (0.5 * place.x * place.x)
+        + ray.along.second * (0.5 * place.y * place.y)
+        + ray.later.second * (0.5 * place.z * place.z);
+    let mixed = ray.across_along * (place.x * place.y)
+        + ray.across_later * (place.x * place.z)
+        + ray.along_later * (place.y * place.z);
+    drops_mask_unit(linear + squares + mixed)
+}
+
+/// How wide a patch is across and along, at a time.
+fn streak_light_size(ray: &StreakPatch, later: f32) -> Vec2 {
+    let across = ray.across.first + ray.across_later * later;
+    let along = ray.along.first + ray.along_later * later;
+    Vec2::new(across.dot(across).sqrt(), along.dot(along).sqrt())
+}
+
+/// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disc. Its radiance is that
+/// of an irradiance of 1. `reach`: the chord from the middle to the edge of the disc; `span`: rays between two rows of the
+/// profile; `shift` tells the points of a patch from its neighbours'.
+fn streak_light_spot(
+    ray: &StreakPatch,
+    [later, span]: [f32; 2],
+    size: Vec2,
+    lamp: Vec3,
+    reach: f32,
+    fine: u32,
+    shift: Vec3,
+) -> [f32; FINE] {
+    let mut spots = [0.0; FINE];
+    let middle = streak_light_direction(ray, Vec3::new(0.0, 0.0, later)) - lamp;
+    let moves = ray.later.first.dot(ray.later.first).sqrt() * span;
+    let area = size.x.max(STREAK_SPOT_NARROW * size.y) * size.y.max(STREAK_SPOT_NARROW * size.x);
+    let count = STREAK_SPOTS as f32;
+    let spot = STREAK_SPOT_WIDTH * (area / count).sqrt();
+    let wide = reach.max(spot);
+    if middle.dot(middle).sqrt() > wide + STREAK_SPOT_REACH * (size.x + size.y + moves) {
+        return spots;
+    }
+    let radiance = fine as f32 / (count * 2.0 * STREAK_QUARTER * wide * wide);
+    for k in 0..STREAK_SPOTS {
+        let number = k as f32 + 0.5;
+        let steps = Vec3::new(1.0 / count, STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
+        let point = (steps * number + shift).fract();
+        let place = point - 0.5;
+        let apart = streak_light_direction(ray, Vec3::new(place.x, place.y, later + place.z * span)) - lamp;
+        let off = apart.dot(apart) / (wide * wide);
+        if off < 1.0 {
+            // A disc, or a spot that fades towards its edge.
+            let faded = if spot > reach { 2.0 * (1.0 - off) } else { 1.0 };
+            spots[((point.x * fine as f32) as u32).min(fine - 1) as usize] += radiance * faded;
+        }
+    }
+    spots
+}
+
+/// From the eye to a drop's middle at a time, of length 1.
+fn streak_light_view(drop: &DropsDrop, time: f32) -> Vec3 {
+    let towards = Vec3::from(drop.towards);
+    let right = drop_glint_right(towards);
+    let up = right.cross(towards);
+    let middle = streak_path_instant(drop, time).middle;
+    drops_mask_unit(towards + right * middle.x + up * middle.y)
+}
+
+/// What the light of a streak is made of.
+struct Streak<'a> {
+    view: DropsView<'a>,
+    path: &'a StreakPath,
+    drop: &'a DropsDrop,
+    exits: &'a [[StreakExit; 4]],
+    lamps: &'a [[f32; 4]],
+}
+
+impl Streak<'_> {
+    /// An exit of a ray; none outside of the streak's rays.
+    fn streak_light_exit(&self, [row, column, tap]: [i32; 3], number: usize) -> StreakExit {
+        let (rows, columns) = (self.path.rows as i32, self.path.columns as i32);
+        if row < 0 || row >= rows || column < 0 || column >= columns || tap < 0 || tap >= columns {
+            return StreakExit::default();
+        }
+        self.exits[((row * columns + column) * columns + tap) as usize][number]
+    }
+
+    /// The patch of a ray's exit.
+    fn streak_light_patch(&self, [row, column, tap]: [i32; 3], number: usize) -> StreakPatch {
+        let at = |r: i32, c: i32, t: i32| self.streak_light_exit([row + r, column + c, tap + t], number);
+        let here = at(0, 0, 0);
+        let across = streak_light_change(&at(0, -1, 0), &here, &at(0, 1, 0));
+        let along = streak_light_change(&at(0, 0, -1), &here, &at(0, 0, 1));
+        let later = streak_light_change(&at(-1, 0, 0), &here, &at(1, 0, 0));
+        StreakPatch {
+            middle: here,
+            across,
+            along,
+            later,
+            across_along: streak_light_mixed(&at(0, -1, -1), &here, &at(0, 1, 1), &across, &along),
+            across_later: streak_light_mixed(&at(-1, -1, 0), &here, &at(1, 1, 0), &across, &later),
+            along_later: streak_light_mixed(&at(-1, 0, -1), &here, &at(1, 0, 1), &along, &later),
+        }
+    }
+
+    /// The lamps, their irradiances and directions.
+    fn lamps(&self) -> impl Iterator<Item = (Vec4, Vec3)> {
+        let (pairs, _) = self.lamps[1..].as_chunks::<2>();
+        pairs.iter().map(|&[lamp, towards]| (Vec4::from(lamp), Vec4::from(towards).truncate()))
+    }
+
+    /// Light of the lamps in the form of Rousseau 2006 where a ray meets the drop: by the normal there, which halves the angle
+    /// between the eye and what is mirrored.
+    fn streak_light_facing(&self, view: Vec3, at: [i32; 3]) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for (lamp, towards) in self.lamps().filter(|(lamp, _)| lamp.w < 0.0) {
+            let mirrored = self.streak_light_exit(at, 0).direction - view;
+            let normal = mirrored / mirrored.dot(mirrored).max(DROP_GLINT_TINY).sqrt();
+            sum += lamp.truncate() * drop_glint_rousseau(normal, -view, towards).max(0.0);
+        }
+        sum
+    }
+
+    /// The light of one column of a row of the profile, part by part: fine columns of four sums.
+    fn streak_light_column(&self, row: u32, column: u32) -> [[[f32; 4]; SUMS]; FINE] {
+        let (path, frame) = (self.path, self.view.frame);
+        let rays_per_row = (path.rows - 1) as f32 / (path.profile_rows - 1) as f32;
+        let at = row as f32 * rays_per_row;
+        let nearest = ((at + 0.5) as u32).min(path.rows - 1);
+        let later = at - nearest as f32;
+        let none = Vec4::from(self.lamps[0]).truncate();
+        let lost = self.view.drops_capture_texel(frame.capture_last, 0, 0);
+        let view = streak_light_view(self.drop, row as f32 / (path.profile_rows - 1) as f32);
+        let mut made = [[[0.0; 4]; SUMS]; FINE];
+        let mut sums = [Vec3::ZERO; FINE];
+        let fine = path.fine as usize;
+        let per_part = path.columns / STREAK_SUMS;
+        let shifts = frame.form == DROPS_SHIFT;
+        for tap in 0..path.columns {
+            let low = streak_place_position(tap as f32, path.columns);
+            let high = streak_place_position((tap + 1) as f32, path.columns);
+            let weight = 0.5 * (high - low);
+            let number = ((row * path.columns + column) * path.columns + tap) as f32;
+            let shift =
+                (Vec3::new(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD) * number).fract();
+            let place = [nearest, column, tap].map(|n| n as i32);
+            let mut even = none + self.streak_light_facing(view, place);
+            let mut seen = Vec3::ZERO;
+            let mut rest = 1.0f32;
+            for exit in 0..=STREAK_EXITS as usize {
+                let ray = self.streak_light_patch(place, exit);
+                if ray.middle.passed == 0 {
+                    continue;
+                }
+                let share = (ray.middle.share + ray.later.share * later).clamp(0.0, 1.0);
+                rest -= share;
+                // The papers' form has what comes through, undimmed, and nothing else.
+                let shown = match (shifts, exit) {
+                    (true, 1) => 1.0,
+                    (true, _) => 0.0,
+                    (false, _) => share,
+                };
+                let size = streak_light_size(&ray, later);
+                let width = (size.x * size.y).sqrt().max(STREAK_NARROWEST * size.x.max(size.y));
+                let direction = streak_light_direction(&ray, Vec3::new(0.0, 0.0, later));
+                seen += self.view.drops_capture_about(self.drop.towards.into(), direction, width) * shown;
+                for (lamp, towards) in self.lamps().filter(|(lamp, _)| lamp.w > 0.0) {
+                    let time = [later, rays_per_row];
+                    let spots = streak_light_spot(&ray, time, size, towards, lamp.w, path.fine, shift);
+                    for (sum, spot) in sums.iter_mut().zip(spots) {
+                        *sum += lamp.truncate() * (spot * share * weight);
+                    }
+                }
+            }
+            // Between rows shares may sum to a little more than all.
+            let whole = if shifts { 1.0 } else { (1.0 - rest).max(1.0) };
+            even += seen / whole + lost * if shifts { 0.0 } else { rest.max(0.0) };
+            for sum in &mut sums[..fine] {
+                *sum += even * weight;
+            }
+            if (tap + 1).is_multiple_of(per_part) {
+                let sum = ((tap + 1) / per_part - 1) as usize;
+                for (made, light) in made[..fine].iter_mut().zip(sums) {
+                    made[sum] = light.extend(0.0).to_array();
+                }
+            }
+        }
+        made
+    }
+}
+
+/// The exits of a streak's rays.
+fn unpacked(rays: &[StreakRay]) -> Vec<[StreakExit; 4]> {
+    let exit = |ray: &StreakRay, number: usize| {
+        let passed = (ray.interfaces >> (8 * number)) & 0xff;
+        if passed == 0 {
+            return StreakExit::default();
+        }
+        let direction = packing_octahedral_decode(packing_unpack_snorm(ray.exits[number])).into();
+        let share = packing_unpack_unorm(ray.shares[number >> 1])[number & 1];
+        StreakExit { direction, share, passed }
+    };
+    rays.iter().map(|ray| std::array::from_fn(|number| exit(ray, number))).collect()
+}
+
+/// Lights all profiles, in parallel; the same bits for any number of threads. `lamps` are [`LIGHT_ROWS`] for each path.
+pub(super) fn light(
+    view: DropsView<'_>,
+    paths: &[StreakPath],
+    drops: &[DropsDrop],
+    rays: &[StreakRay],
+    lamps: &[[f32; 4]],
+    table: &mut [[f32; 4]],
+) {
+    for (path, lamps) in paths.iter().zip(lamps.chunks_exact(LIGHT_ROWS)) {
+        let count = path.rows * path.columns * path.columns;
+        let exits = unpacked(&rays[path.first_ray as usize..(path.first_ray + count) as usize]);
+        let drop = &drops[path.drop as usize];
+        let streak = Streak { view, path, drop, exits: &exits, lamps };
+        let first = (path.first_entry + 1 + path.rows * path.columns) as usize;
+        let per_column = path.fine as usize * SUMS;
+        let count = (path.profile_rows * path.columns) as usize * per_column;
+        let (columns, fine) = (path.columns, path.fine as usize);
+        table[first..first + count].par_chunks_mut(per_column).enumerate().for_each(|(unit, entries)| {
+            let unit = unit as u32;
+            let made = streak.streak_light_column(unit / columns, unit % columns);
+            entries.copy_from_slice(made[..fine].as_flattened());
+        });
+    }
+}

@@ -1,0 +1,312 @@
+// Lights the profiles of streaks: what a drop shows along each chord, at each instant of the profile, as a running sum of four
+// parts.
+// Law: the light that a ray brings is that of the directions in which it leaves the drop, weighted by what Fresnel's equations
+// give each. Between the rays that were traced, directions go as a polynomial of degree two across, along and in time, from ray to
+// ray that pass as many interfaces. So the ray's own patch of the drop is known: how wide the surroundings are averaged, and where
+// in the patch a lamp shines, whose disc (or, where the patch's points are farther apart, a spot that some of them meet) is sampled.
+// What is lost inside shows the mean of all that is about, without lamps: it goes round the rim, and comes out there.
+// Layout: behind the chords of streak_rays.wgsl, for each row of the profile and each fine column the light of the chord's first
+// part, of the first two, three and of all four, each over the length of the whole chord.
+// Twin: downpour_render::rain::streak_light.
+
+@group(0) @binding(2) var<storage, read> streak_light_drops: array<DropsDrop>;
+@group(0) @binding(3) var<storage, read> streak_light_paths: array<StreakPath>;
+// Which path, and the first of 64 columns of all rows of its profile.
+@group(0) @binding(4) var<storage, read> streak_light_jobs: array<vec2u>;
+@group(0) @binding(5) var<storage, read> streak_light_rays: array<StreakRay>;
+// For each path the mean of what is not told lamp by lamp, then two rows for each lamp: its irradiance and the chord from the
+// middle to the edge of its disc (below 0: its irradiance over pi, in the form of Rousseau 2006); its direction.
+@group(0) @binding(6) var<storage, read> streak_light_lamps: array<vec4f>;
+@group(0) @binding(7) var<storage, read_write> streak_light_table: array<vec4f>;
+
+// One exit of a ray.
+struct StreakExit {
+    direction: vec3f,
+    share: f32,
+    // Interfaces passed; 0: there is none.
+    passed: u32,
+}
+
+// How an exit changes along an axis: a first and a second difference per ray, and a first one of its share.
+struct StreakChange {
+    first: vec3f,
+    share: f32,
+    second: vec3f,
+}
+
+// A ray's patch: its exit and how that goes across, along and in time.
+struct StreakPatch {
+    middle: StreakExit,
+    across: StreakChange,
+    along: StreakChange,
+    later: StreakChange,
+    across_along: vec3f,
+    across_later: vec3f,
+    along_later: vec3f,
+}
+
+// An exit of a ray; none outside of the streak's rays.
+fn streak_light_exit(path: StreakPath, row: i32, column: i32, tap: i32, number: u32) -> StreakExit {
+    let columns = i32(path.columns);
+    if row < 0 || row >= i32(path.rows) || column < 0 || column >= columns || tap < 0 || tap >= columns {
+        return StreakExit(vec3f(0.0), 0.0, 0u);
+    }
+    let at = path.first_ray + u32((row * columns + column) * columns + tap);
+    let passed = (streak_light_rays[at].interfaces >> (8u * number)) & 0xffu;
+    if passed == 0u {
+        return StreakExit(vec3f(0.0), 0.0, 0u);
+    }
+    let shares = unpack2x16unorm(streak_light_rays[at].shares[number >> 1u]);
+    return StreakExit(
+        packing_octahedral_decode(unpack2x16snorm(streak_light_rays[at].exits[number])),
+        select(shares.x, shares.y, (number & 1u) == 1u),
+        passed,
+    );
+}
+
+// The change between an exit's neighbours, as far as their light went the same way.
+fn streak_light_change(before: StreakExit, here: StreakExit, after: StreakExit) -> StreakChange {
+    let has_before = before.passed == here.passed;
+    let has_after = after.passed == here.passed;
+    if has_before && has_after {
+        return StreakChange(
+            (after.direction - before.direction) * 0.5,
+            (after.share - before.share) * 0.5,
+            after.direction + before.direction - here.direction * 2.0,
+        );
+    }
+    if has_after {
+        return StreakChange(after.direction - here.direction, after.share - here.share, vec3f(0.0));
+    }
+    if has_before {
+        return StreakChange(here.direction - before.direction, here.share - before.share, vec3f(0.0));
+    }
+    return StreakChange(vec3f(0.0), 0.0, vec3f(0.0));
+}
+
+// The mixed second difference, from the two neighbours on a diagonal.
+fn streak_light_mixed(
+    before: StreakExit,
+    here: StreakExit,
+    after: StreakExit,
+    a: StreakChange,
+    b: StreakChange,
+) -> vec3f {
+    if before.passed != here.passed || after.passed != here.passed {
+        return vec3f(0.0);
+    }
+    return (before.direction + after.direction - here.direction * 2.0 - a.second - b.second) * 0.5;
+}
+
+// The patch of a ray's exit.
+fn streak_light_patch(path: StreakPath, row: i32, column: i32, tap: i32, number: u32) -> StreakPatch {
+    let here = streak_light_exit(path, row, column, tap, number);
+    let across = streak_light_change(
+        streak_light_exit(path, row, column - 1, tap, number),
+        here,
+        streak_light_exit(path, row, column + 1, tap, number),
+    );
+    let along = streak_light_change(
+        streak_light_exit(path, row, column, tap - 1, number),
+        here,
+        streak_light_exit(path, row, column, tap + 1, number),
+    );
+    let later = streak_light_change(
+        streak_light_exit(path, row - 1, column, tap, number),
+        here,
+        streak_light_exit(path, row + 1, column, tap, number),
+    );
+    let across_along = streak_light_mixed(
+        streak_light_exit(path, row, column - 1, tap - 1, number),
+        here,
+        streak_light_exit(path, row, column + 1, tap + 1, number),
+        across,
+        along,
+    );
+    let across_later = streak_light_mixed(
+        streak_light_exit(path, row - 1, column - 1, tap, number),
+        here,
+        streak_light_exit(path, row + 1, column + 1, tap, number),
+        across,
+        later,
+    );
+    let along_later = streak_light_mixed(
+        streak_light_exit(path, row - 1, column, tap - 1, number),
+        here,
+        streak_light_exit(path, row + 1, column, tap + 1, number),
+        along,
+        later,
+    );
+    return StreakPatch(here, across, along, later, across_along, across_later, along_later);
+}
+
+// The direction at a place of a patch: rays across, along and later, from its middle.
+fn streak_light_direction(ray: StreakPatch, place: vec3f) -> vec3f {
+    let linear = ray.middle.direction
+        + ray.across.first * place.x
+        + ray.along.first * place.y
+        + ray.later.first * place.z;
+    let squares = ray.across.second * (0.5 * place.x * place.x)
+        + ray.along.second * (0.5 * place.y * place.y)
+        + ray.later.second * (0.5 * place.z * place.z);
+    let mixed = ray.across_along * (place.x * place.y)
+        + ray.across_later * (place.x * place.z)
+        + ray.along_later * (place.y * place.z);
+    return normalize(linear + squares + mixed);
+}
+
+// How wide a patch is across and along, at a time.
+fn streak_light_size(ray: StreakPatch, later: f32) -> vec2f {
+    let across = ray.across.first + ray.across_later * later;
+    let along = ray.along.first + ray.along_later * later;
+    return sqrt(vec2f(dot(across, across), dot(along, along)));
+}
+
+// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disc. Its radiance is that of an
+// irradiance of 1. `reach`: the chord from the middle to the edge of the disc; `span`: rays between two rows of the profile;
+// `shift` tells the points of a patch from its neighbours'.
+fn streak_light_spot(
+    ray: StreakPatch,
+    later: f32,
+    span: f32,
+    size: vec2f,
+    lamp: vec3f,
+    reach: f32,
+    fine: u32,
+    shift: vec3f,
+) -> vec4f {
+    var spots = vec4f(0.0);
+    let middle = streak_light_direction(ray, vec3f(0.0, 0.0, later)) - lamp;
+    let moves = sqrt(dot(ray.later.first, ray.later.first)) * span;
+    let least = STREAK_SPOT_NARROW;
+    let area = max(size.x, least * size.y) * max(size.y, least * size.x);
+    let spot = STREAK_SPOT_WIDTH * sqrt(area / f32(STREAK_SPOTS));
+    let wide = max(reach, spot);
+    if sqrt(dot(middle, middle)) > wide + STREAK_SPOT_REACH * (size.x + size.y + moves) {
+        return spots;
+    }
+    let radiance = f32(fine) / (f32(STREAK_SPOTS) * 2.0 * STREAK_QUARTER * wide * wide);
+    for (var k = 0u; k < STREAK_SPOTS; k += 1u) {
+        let number = f32(k) + 0.5;
+        let steps = vec3f(1.0 / f32(STREAK_SPOTS), STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
+        let point = fract(number * steps + shift);
+        let place = point - 0.5;
+        let apart = streak_light_direction(ray, vec3f(place.xy, later + place.z * span)) - lamp;
+        let off = dot(apart, apart) / (wide * wide);
+        if off < 1.0 {
+            // A disc, or a spot that fades towards its edge.
+            let faded = select(1.0, 2.0 * (1.0 - off), spot > reach);
+            spots[min(u32(point.x * f32(fine)), fine - 1u)] += radiance * faded;
+        }
+    }
+    return spots;
+}
+
+// From the eye to a drop's middle at a time, of length 1.
+fn streak_light_view(drop: DropsDrop, time: f32) -> vec3f {
+    let right = drop_glint_right(drop.towards);
+    let up = cross(right, drop.towards);
+    let middle = streak_path_instant(drop, time).middle;
+    return normalize(drop.towards + right * middle.x + up * middle.y);
+}
+
+// Light of the lamps in the form of Rousseau 2006 where a ray meets the drop: by the normal there, which halves the angle between
+// the eye and what is mirrored.
+fn streak_light_facing(path: StreakPath, first_lamp: u32, view: vec3f, row: i32, column: i32, tap: i32) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < STREAK_LAMPS; k += 1u) {
+        let lamp = streak_light_lamps[first_lamp + 1u + 2u * k];
+        if lamp.w >= 0.0 {
+            continue;
+        }
+        let mirrored = streak_light_exit(path, row, column, tap, 0u).direction - view;
+        let normal = mirrored / sqrt(max(dot(mirrored, mirrored), DROP_GLINT_TINY));
+        let towards = streak_light_lamps[first_lamp + 2u + 2u * k].xyz;
+        sum += lamp.rgb * max(drop_glint_rousseau(normal, -view, towards), 0.0);
+    }
+    return sum;
+}
+
+// The light of one column of a row of the profile, written part by part.
+fn streak_light_column(path_index: u32, row: u32, column: u32) {
+    let path = streak_light_paths[path_index];
+    let drop = streak_light_drops[path.drop];
+    let rays_per_row = f32(path.rows - 1u) / f32(path.profile_rows - 1u);
+    let at = f32(row) * rays_per_row;
+    let nearest = min(u32(at + 0.5), path.rows - 1u);
+    let later = at - f32(nearest);
+    let first_lamp = path_index * (1u + 2u * STREAK_LAMPS);
+    let fine = path.fine;
+    let none = streak_light_lamps[first_lamp].rgb;
+    let lost = drops_capture_texel(drops_frame.capture_last, 0, 0);
+    let view = streak_light_view(drop, f32(row) / f32(path.profile_rows - 1u));
+    var sums = array<vec3f, 4>(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
+    let per_part = path.columns / STREAK_SUMS;
+    let first_light = path.first_entry + 1u + path.rows * path.columns;
+    for (var tap = 0u; tap < path.columns; tap += 1u) {
+        let low = streak_place_position(f32(tap), path.columns);
+        let high = streak_place_position(f32(tap + 1u), path.columns);
+        let weight = 0.5 * (high - low);
+        let number = f32((row * path.columns + column) * path.columns + tap);
+        let shift = fract(number * vec3f(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD));
+        var even = none + streak_light_facing(path, first_lamp, view, i32(nearest), i32(column), i32(tap));
+        var seen = vec3f(0.0);
+        var rest = 1.0;
+        for (var exit = 0u; exit <= STREAK_EXITS; exit += 1u) {
+            let ray = streak_light_patch(path, i32(nearest), i32(column), i32(tap), exit);
+            if ray.middle.passed == 0u {
+                continue;
+            }
+            let share = clamp(ray.middle.share + ray.later.share * later, 0.0, 1.0);
+            rest -= share;
+            // The papers' form has what comes through, undimmed, and nothing else.
+            let shown = select(share, select(0.0, 1.0, exit == 1u), drops_frame.form == DROPS_SHIFT);
+            let size = streak_light_size(ray, later);
+            let width = max(sqrt(size.x * size.y), STREAK_NARROWEST * max(size.x, size.y));
+            let direction = streak_light_direction(ray, vec3f(0.0, 0.0, later));
+            seen += drops_capture_about(drop.towards, direction, width) * shown;
+            for (var k = 0u; k < STREAK_LAMPS; k += 1u) {
+                let lamp = streak_light_lamps[first_lamp + 1u + 2u * k];
+                if lamp.w <= 0.0 {
+                    continue;
+                }
+                let towards = streak_light_lamps[first_lamp + 2u + 2u * k].xyz;
+                let spots = streak_light_spot(ray, later, rays_per_row, size, towards, lamp.w, fine, shift);
+                for (var part = 0u; part < fine; part += 1u) {
+                    sums[part] += lamp.rgb * (spots[part] * share * weight);
+                }
+            }
+        }
+        // Between rows shares may sum to a little more than all.
+        let whole = select(max(1.0 - rest, 1.0), 1.0, drops_frame.form == DROPS_SHIFT);
+        even += seen / whole + lost * select(max(rest, 0.0), 0.0, drops_frame.form == DROPS_SHIFT);
+        for (var part = 0u; part < fine; part += 1u) {
+            sums[part] += even * weight;
+        }
+        if (tap + 1u) % per_part == 0u {
+            let sum = (tap + 1u) / per_part - 1u;
+            for (var part = 0u; part < fine; part += 1u) {
+                let place = (row * path.columns + column) * fine + part;
+                streak_light_table[first_light + place * STREAK_SUMS + sum] = vec4f(sums[part], 0.0);
+            }
+        }
+    }
+}
+
+@compute @workgroup_size(64, 1, 1)
+fn main_streak_light(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) index: u32,
+) {
+    let job = group.y * groups.x + group.x;
+    if job >= arrayLength(&streak_light_jobs) {
+        return;
+    }
+    let path = streak_light_jobs[job].x;
+    let unit = streak_light_jobs[job].y + index;
+    let columns = streak_light_paths[path].columns;
+    if unit < columns * streak_light_paths[path].profile_rows {
+        streak_light_column(path, unit / columns, unit % columns);
+    }
+}

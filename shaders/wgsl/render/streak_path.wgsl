@@ -1,0 +1,116 @@
+// A streak in time: where its drop is at an instant of the exposure, what shape it has then, and the rays that pass it.
+// Geometry: offsets are on the plane of streak.wgsl, in equivalent radii from the drop's middle, along the right and up of its
+// view. A ray of the eye through an offset is followed as it is, not as a parallel one.
+// Time: what a pixel sees of a drop that moves along v is not the drop of one instant: a point that is v radii ahead of the
+// middle was passed earlier. Shapes are those of the time at which the point is passed.
+// Twin: downpour_render::rain::streak_path.
+
+// A streak that has a profile.
+struct StreakPath {
+    shape: DropShapeCoefficients,
+    // Volume over that of the shape at rest: 1 + s2 (x + s2 (y + s2 z)) + s3^2 (w + s2 volume_last).
+    volume: vec4f,
+    volume_last: f32,
+    // Half the width and half the height of the shape at rest, in equivalent radii.
+    wide: f32,
+    tall: f32,
+    // Refractive index of water relative to air.
+    index: f32,
+    // Cosine and sine of the azimuth of the lobe of the mode (3,1), from +X towards +Z.
+    lobe: vec2f,
+    // Amplitudes of the modes (2,0) and (3,1), over the radius.
+    amplitudes: vec2f,
+    // Instants whose rays are traced, and columns across the motion; along a chord there are as many rays as columns.
+    rows: u32,
+    columns: u32,
+    // Instants of the profile, and its columns for each of the rays'.
+    profile_rows: u32,
+    fine: u32,
+    // First of its rays, and of its entries in the table.
+    first_ray: u32,
+    first_entry: u32,
+    // Which of the picture's drops.
+    drop: u32,
+    unused: u32,
+}
+
+// A drop at a time of its part of the exposure, 0 to 1.
+struct StreakInstant {
+    // Middle of the drop on the plane.
+    middle: vec2f,
+    // Equivalent radius on the plane.
+    scale: f32,
+    time: f32,
+    // Share of the way on the picture.
+    way: f32,
+    // Time in which it moves by an equivalent radius.
+    pace: f32,
+}
+
+// A ray in the frame of the drop, whose lobe is towards +X: the point on the plane, and the direction.
+struct StreakLine {
+    origin: vec3f,
+    direction: vec3f,
+}
+
+// A drop at a time.
+fn streak_path_instant(drop: DropsDrop, time: f32) -> StreakInstant {
+    let way = time * drop.recede / max(1.0 - time + time * drop.recede, 1.0e-20);
+    let scale = drop.slope / streak_depth(drop.recede, time);
+    let faster = way + (1.0 - way) * drop.recede;
+    let rate = drop.recede / max(faster * faster, 1.0e-12);
+    let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
+    return StreakInstant(drop.start + drop.along * way, scale, time, way, rate * scale / moves);
+}
+
+// The unit vector along the motion on the plane, and the one across it.
+fn streak_path_axes(drop: DropsDrop) -> vec4f {
+    let along = drop.along / max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
+    return vec4f(along, along.y, -along.x);
+}
+
+// s2 and s3 at a time.
+fn streak_path_displacement(path: StreakPath, drop: DropsDrop, time: f32) -> vec2f {
+    return vec2f(
+        path.amplitudes.x * drop_oscillation_sine(drop.swing.z + drop.turns.x * time),
+        path.amplitudes.y * drop_oscillation_sine(drop.swing.w + drop.turns.y * time),
+    );
+}
+
+// The drop with these displacements.
+fn streak_path_body(path: StreakPath, displacement: vec2f) -> MaskWobbleDrop {
+    let s2 = displacement.x;
+    let s3 = displacement.y;
+    let even = s2 * (path.volume.x + s2 * (path.volume.y + s2 * path.volume.z));
+    let odd = s3 * s3 * (path.volume.w + s2 * path.volume_last);
+    let size = drop_oscillation_inverse_cube_root(1.0 + (even + odd));
+    let wide = path.wide * (1.0 - 0.5 * s2) * size;
+    let tall = path.tall * (1.0 + s2) * size;
+    return MaskWobbleDrop(
+        path.shape,
+        vec3f(s2, s3, size),
+        path.index,
+        1.0 / (wide * wide),
+        1.0 / (tall * tall),
+    );
+}
+
+// A vector of the world in the frame of the drop.
+fn streak_path_turned(path: StreakPath, v: vec3f) -> vec3f {
+    return vec3f(v.x * path.lobe.x + v.z * path.lobe.y, v.y, v.z * path.lobe.x - v.x * path.lobe.y);
+}
+
+// The other way round.
+fn streak_path_back(path: StreakPath, v: vec3f) -> vec3f {
+    return vec3f(v.x * path.lobe.x - v.z * path.lobe.y, v.y, v.z * path.lobe.x + v.x * path.lobe.y);
+}
+
+// The ray through an offset.
+fn streak_path_line(path: StreakPath, drop: DropsDrop, instant: StreakInstant, offset: vec2f) -> StreakLine {
+    let right = drop_glint_right(drop.towards);
+    let up = cross(right, drop.towards);
+    let place = instant.middle + offset * instant.scale;
+    let direction = normalize(drop.towards + right * place.x + up * place.y);
+    let origin = right * offset.x + up * offset.y;
+    return StreakLine(streak_path_turned(path, origin), streak_path_turned(path, direction));
+}
