@@ -22,7 +22,6 @@ use downpour::mask::atlas::StreakAtlas;
 use downpour::math::rng::{rng_draw, rng_unit};
 use downpour::render::gpu::{RainOnGpu, RainPipeline, SceneOnGpu, ScenePipeline};
 use downpour::render::rain::light::{DropLightForm, DropLightOptions};
-use downpour::render::rain::streak_lookup::STREAK_SHAPE_BYTES;
 use downpour::render::rain::{DropMasks, Exposure, Rain, RainOptions, StreakColour, StreakSamples};
 use downpour::render::stage::Stage;
 use downpour::scene::Budget;
@@ -90,7 +89,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("scene by rays, one sample, one ray to the sky: {:.3} ms", time(&gpu, &drawn.dispatches())?);
     let clean = drawn.picture().clone();
     let bench = Bench { gpu: &gpu, stage: &stage, frame, masks, scenes, rains, scene, uploaded, clean };
-    println!("table: {:.2} MB a shape", STREAK_SHAPE_BYTES as f64 * 1.0e-6);
     bench.by_count(quick)?;
     bench.by_light(if quick { 1000 } else { 10_000 })?;
     let software = gpu.adapter().is_software();

@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let eye = stage.viewpoint.eye.as_dvec3();
             let rain = Rain::new(&frame, eye, &drops, &masks, &RainOptions::default());
             let binning = ms(start.elapsed());
-            let lights = rain.lights(&stage.data, &masks)?;
+            let lights = [rain.lights(&stage.data, &masks)?, rain.streak_lights(&stage.data, &masks)?];
             let pass = rains.prepare(&scenes, &scene, &uploaded, drawn.picture(), &rain, &lights)?;
             let capture = time(&gpu, &pass.capture())?;
             let shown = time(&gpu, &[pass.drops()])?;
