@@ -112,7 +112,7 @@ fn the_table_has_the_light_of_a_street_under_a_low_sun() {
     let table = render_specimen_table(&shape, &options, sky).unwrap();
     let found = difference(&table, &exact, &bare(&shape, &options, sky));
     println!("{found:?}");
-    assert!((found.mean - 1.0).abs() < 0.05 && found.outside < 1.0e-4, "{found:?}");
+    assert!((found.mean - 1.0).abs() < 0.05 && found.outside < 2.0e-4, "{found:?}");
 }
 
 /// First and last column of each row in which there is light.
