@@ -1,6 +1,7 @@
 //! The subcommands, one file each.
 
 mod adapters;
+mod bare;
 mod check;
 mod drop;
 mod input;

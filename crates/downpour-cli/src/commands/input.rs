@@ -1,4 +1,4 @@
-//! What `render` and `check` read: a weather file, or a bare model in the default weather.
+//! What `render` and `check` read: a weather file, or a bare model in a shower.
 
 use std::cell::RefCell;
 use std::fs;
@@ -12,14 +12,14 @@ use downpour::scene::weather::{Loaded, Roots, Weather, load};
 use downpour::scene::{Budget, SceneError};
 use glam::DVec3;
 
-use super::say_warnings;
+use super::{bare, say_warnings};
 use crate::failure::{Failure, INPUT, shown};
 use crate::quantity;
 
 /// A scene, and what of its weather is asked for otherwise.
 #[derive(Debug, Args)]
 pub(crate) struct InputArguments {
-    /// A weather file (.toml), or a model (.glb, .gltf) that stands in the default weather.
+    /// A weather file (.toml), or a model (.glb, .gltf) that stands in a shower of 50 mm/h with the sun behind it.
     #[arg(value_name = "INPUT")]
     pub(crate) input: PathBuf,
     /// Rain rate, 0 to 500 mm/h [default: the weather's].
@@ -115,11 +115,13 @@ impl InputArguments {
         Ok(Input { weather, loaded, files: files.opened.into_inner() })
     }
 
-    /// A model in the default weather, its first movement playing.
+    /// A model in a shower, its first movement playing.
     fn read_model(&self, budget: &mut Budget) -> Result<Input, Failure> {
-        let weather = Weather { name: shown(&self.input), ..Weather::default() };
+        let mut weather = bare::shower(shown(&self.input));
         let mut loaded = load(&weather, &NoFiles, budget)?;
         loaded.scene = read_scene(&self.input, budget)?;
+        weather.sun = bare::sun(&weather, &loaded)?;
+        loaded.sun = load(&weather, &NoFiles, budget)?.sun;
         loaded.animations = vec![(!loaded.scene.animations.is_empty()).then_some(0)];
         loaded.warnings.extend(loaded.scene.warnings.iter().cloned());
         Ok(Input { weather, loaded, files: Vec::new() })

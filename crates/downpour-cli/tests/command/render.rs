@@ -6,6 +6,8 @@ use std::io::Cursor;
 use downpour::drop::air::Air;
 use downpour::drop::fall_speed::{FallSpeedModel, terminal_speed};
 use downpour::math::ops::f64 as ops;
+use downpour::scene::Budget;
+use downpour::scene::picture::{Picture, Pixels};
 
 use crate::child::{Downpour, Ended};
 use crate::gltf_file::{gltf, tetrahedron};
@@ -230,7 +232,7 @@ fn rate_0_is_a_dry_picture() {
     assert_eq!(dry.run().succeeded().file("rain.exr"), ended.file("rain.exr"));
 }
 
-/// A bare model stands in the default weather: 10 mm/h, an overcast sky, all of it in the picture.
+/// A bare model stands in a shower, all of it in the picture.
 #[test]
 fn a_bare_model_is_framed() {
     let (positions, triangles) = tetrahedron();
@@ -244,7 +246,33 @@ fn a_bare_model_is_framed() {
     let rows = (0..36).filter(|&y| (0..64).any(|x| near(x, y))).count();
     assert!(rows > 20, "it fills {rows} of 36 rows");
     let stats: serde_json::Value = serde_json::from_slice(&ended.file("a.json")).unwrap();
-    assert_eq!((stats["asked_rate_mm_h"].as_f64(), stats["triangles"].as_u64()), (Some(10.0), Some(4)));
+    assert_eq!((stats["asked_rate_mm_h"].as_f64(), stats["triangles"].as_u64()), (Some(50.0), Some(4)));
+}
+
+/// Green of each pixel, 0 to 1.
+fn greens(picture: &Picture) -> Vec<f32> {
+    let Pixels::Rgba8(pixels) = &picture.pixels else { panic!("not 8 bits") };
+    pixels.iter().map(|pixel| f32::from(pixel[1]) / 255.0).collect()
+}
+
+/// The first picture that somebody makes shows rain: streaks that stand out by more than a twentieth of full white.
+#[test]
+fn the_picture_of_a_bare_model_shows_rain() {
+    let (positions, triangles) = tetrahedron();
+    let picture = |rate: &[&str]| {
+        let arguments =
+            ["render", "drop.gltf", "--backend=cpu", "--samples=1", "--size=320x180", "-o", "a.png"];
+        let run = Downpour::new(&[&arguments[..], rate].concat());
+        let ended = run.with_file("drop.gltf", gltf(&positions, &triangles)).run().succeeded();
+        let bytes = ended.file("a.png");
+        let picture = downpour::scene::picture::decode("a.png", &bytes, &mut Budget::default());
+        picture.expect("a picture")
+    };
+    let (wet, dry) = (picture(&[]), picture(&["--rate", "0"]));
+    let (wet, dry) = (greens(&wet), greens(&dry));
+    let brighter = wet.iter().zip(&dry).filter(|(wet, dry)| *wet - *dry > 0.05).count();
+    println!("{brighter} of {} pixels", wet.len());
+    assert!(brighter * 100 > wet.len(), "{brighter} of {} pixels", wet.len());
 }
 
 /// What is far from the world's origin looks as it does near it, and drops are told of where they are.
