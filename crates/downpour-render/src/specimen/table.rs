@@ -110,7 +110,8 @@ pub fn check_specimen_table(
     let diameter = 2.0 * shape.equivalent_radius();
     let [least, most] = [DIAMETER_STEP, f64::from(DIAMETERS) * DIAMETER_STEP];
     if !(least * (1.0 - 1.0e-9)..=most * (1.0 + 1.0e-9)).contains(&diameter) {
-        let allowed = format!("{} to {}, as the masks have it", least * 1.0e3, most * 1.0e3);
+        let allowed =
+            format!("{} to {}, as the masks have it", least * 1.0e3, (most * 1.0e6).round() / 1.0e3);
         return wrong("diameter of a streak by the table", diameter * 1.0e3, "mm", allowed);
     }
     if options.exposure_s <= 0.0 {
