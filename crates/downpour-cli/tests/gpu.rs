@@ -302,7 +302,7 @@ fn a_lost_device_publishes_nothing() {
 }
 
 fn a_device_that_hangs_is_left() {
-    let arguments = ["mask", "--diameter", "2", "--size", "1600", "--backend", "gpu", "-o", "m.exr"];
+    let arguments = ["mask", "--diameter", "2", "--size", "1400", "--backend", "gpu", "-o", "m.exr"];
     let run = Downpour::new(&arguments).env("DOWNPOUR_INJECT", "hang");
     let ended = run.run().failed(4, &["did not finish"]);
     assert!(names_in(ended.folder.path()).is_empty());
