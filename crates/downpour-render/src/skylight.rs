@@ -1,9 +1,10 @@
 //! Light of sky and surfaces on surfaces: means over what the pixels round a pixel have found on the same surface. Twin of
 //! `shaders/wgsl/render/skylight.wgsl`.
 //!
-//! First the mean of a window of 7 x 7 pixels, whose rays are one lattice ([`path`](crate::path)), with the variance of that
-//! mean. Then means of such means, 6, 12 and 24 pixels apart: as far as two of them differ by no more than their noise (H.
-//! Dammertz et al., HPG 2010, for the steps; C. Schied et al., HPG 2017, for the variance).
+//! First the mean of a window of 7 x 7 pixels, whose weights fall to 0 at 4 pixels, with the variance of that mean. Then means
+//! of such means, 4, 8 and 16 pixels apart: as far as two of them differ by no more than their noise (H. Dammertz et al., HPG
+//! 2010, for the steps; C. Schied et al., HPG 2017, for the variance). A hat of twice the width is the sum of three hats, halved
+//! at the sides: what one pixel has found is spread by one hat in the end, 32 pixels to each side, without edges or overlaps.
 //!
 //! A neighbour counts as far as its normal agrees and as it is on the plane through the pixel's place; in the gloss, as far
 //! as it mirrors the same direction, within the lobe.
@@ -17,6 +18,12 @@ use rayon::prelude::*;
 use crate::path::PathSlot;
 use crate::scene::SceneView;
 use crate::trace::{TraceGather, TraceSlot, trace_unpack};
+
+/// Weight of a pixel by its distance along an edge, in pixels.
+#[must_use]
+pub fn skylight_hat(from: u32, to: u32) -> f32 {
+    (SKYLIGHT_RADIUS + 1 - from.abs_diff(to)) as f32
+}
 
 /// A slot of a pixel, unpacked.
 #[derive(Clone, Copy, Debug)]
@@ -128,9 +135,9 @@ impl Pixels<'_> {
         for row in around(y, self.height) {
             for column in around(x, self.width) {
                 let other = index(column, row);
-                let mut counts = 1.0;
+                let mut counts = skylight_hat(x, column) * skylight_hat(y, row);
                 if row != y || column != x {
-                    counts = skylight_same(own, &self.slots[other][slot]);
+                    counts *= skylight_same(own, &self.slots[other][slot]);
                 }
                 if counts > 0.0 {
                     let light = self.slots[other][slot].light;

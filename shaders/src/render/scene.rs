@@ -69,9 +69,9 @@ shared_constants! {
         SKYLIGHT_SLACK: f32 = 0.002;
         /// Half the square of the angle, in alphas, at which a neighbour's gloss no longer counts.
         SKYLIGHT_LOBE: f32 = 2.0;
-        /// Pixels between the means of which the first wider mean is taken: about the width of a window, but not a multiple
-        /// of it, so that what the windows repeat is smoothed too.
-        SKYLIGHT_STEP: u32 = 6;
+        /// Pixels between the means of which the first wider mean is taken: as far as the weights of a window reach, so that
+        /// they add up to the same everywhere.
+        SKYLIGHT_STEP: u32 = 4;
         /// Wider means, each of twice the step.
         SKYLIGHT_PASSES: u32 = 3;
         /// Square of the difference of two means, in the sum of their variances, from which they are not the same.

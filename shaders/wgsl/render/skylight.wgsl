@@ -32,6 +32,11 @@ fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
     return max(1.0 - (1.0 - cosine) / max(SKYLIGHT_LOBE * alpha * alpha, 1.0e-7), 0.0);
 }
 
+// Weight of a pixel by its distance along an edge, in pixels.
+fn skylight_hat(from_pixel: u32, to_pixel: u32) -> f32 {
+    return f32(SKYLIGHT_RADIUS + 1u - (max(from_pixel, to_pixel) - min(from_pixel, to_pixel)));
+}
+
 // A slot of a pixel, unpacked.
 fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
     var packed = skylight_gather[pixel].base;
@@ -86,9 +91,9 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     for (var row = top; row <= min(y + SKYLIGHT_RADIUS, render_frame.height - 1u); row += 1u) {
         for (var column = left; column <= min(x + SKYLIGHT_RADIUS, render_frame.width - 1u); column += 1u) {
             let other = skylight_slot(row * render_frame.width + column, slot);
-            var counts = 1.0;
+            var counts = skylight_hat(x, column) * skylight_hat(y, row);
             if row != y || column != x {
-                counts = skylight_same(own, other);
+                counts *= skylight_same(own, other);
             }
             if counts > 0.0 {
                 let luminance = skylight_luminance(other.light);

@@ -18,7 +18,7 @@ use downpour_render::scatter::{
 use downpour_render::scene::SceneView;
 use downpour_render::sky::sky_coordinates;
 use downpour_render::sky_light::SkyLight;
-use downpour_render::skylight::skylight_lobe;
+use downpour_render::skylight::{skylight_hat, skylight_lobe};
 use downpour_render::texture::texture_wrap;
 use downpour_shaders::render::brdf::BRDF;
 use downpour_shaders::render::path::PATH_LATTICE;
@@ -184,6 +184,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[Uniform(0.9, 1.0), Uniform(0.3, 1.0)],
             Tol::absolute(1.0e-4, "a difference of cosines near 1, over the fourth power of 0.3"),
             |a| skylight_lobe(a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "skylight_hat",
+            &SKYLIGHT,
+            &[Below(4), Below(4)],
+            Tol::exact("small whole numbers"),
+            |a| skylight_hat(a.u32(), a.u32()).words(),
         ),
     ]
 }
