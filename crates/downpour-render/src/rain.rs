@@ -71,7 +71,7 @@ pub enum RefractionForm {
 }
 
 impl RefractionForm {
-    /// Texels along an edge of the usual capture: of the paper's form those of the paper (Rousseau 2006, section 5).
+    /// Texels along an edge of the usual capture: of the paper's form those of the paper (Rousseau 2006, 4.2.2).
     #[must_use]
     pub fn capture_size(self) -> u32 {
         match self {

@@ -131,7 +131,8 @@ fn a_printed_row_gives_the_printed_outline() -> Outcome {
         let radius = 0.5 * diameter * scale();
         let squares = seen.iter().enumerate().map(|(row, width)| {
             let height = (0.5 * SIZE as f64 - (row as f64 + 0.5)) / radius;
-            (width / (2.0 * radius) - outline(printed, height)).powi(2)
+            let off = width / (2.0 * radius) - outline(printed, height);
+            off * off
         });
         Ok((squares.sum::<f64>() / SIZE as f64).sqrt())
     };

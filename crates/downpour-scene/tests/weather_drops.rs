@@ -6,7 +6,7 @@ use downpour_scene::weather::{RainDropShape, RainRefraction, Weather, load};
 use std::collections::BTreeMap;
 
 fn refused(text: &str) -> String {
-    let error = Weather::parse("w.toml", text).unwrap_err();
+    let error = Weather::parse("w.toml", text).expect_err("a weather that is refused");
     assert_eq!(error.exit_code(), 2, "{error}");
     error.to_string()
 }
