@@ -30,7 +30,7 @@ pub use closed_mesh::{ClosedMesh, MOST_TRIANGLES};
 pub use drop::{LOST, trace_drop, trace_drop_f64, trace_drop_scalar};
 pub use error::MaskError;
 pub use mask::{Mask, MaskOptions, MaskTexel, SIZES};
-pub use model::{TracedModel, trace_model};
+pub use model::{TracedModel, trace_model, trace_model_views};
 pub use view::View;
 
 /// The examples of the README, as tests.

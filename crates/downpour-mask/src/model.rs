@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::closed_mesh::ClosedMesh;
 use crate::trace::{Exit, mask_trace_plane_turn, mask_trace_reflectance};
-use crate::{Mask, MaskError, MaskOptions, MaskTexel};
+use crate::{Mask, MaskError, MaskOptions, MaskTexel, View};
 use downpour_bvh::{Bvh, Hit};
 
 /// A mesh turned into the frame of a view, with its hierarchy: what the tracer needs.
@@ -206,8 +206,34 @@ pub fn trace_model(
     options: &MaskOptions,
     diameter: Option<f64>,
 ) -> Result<Mask, MaskError> {
-    let model = TracedModel::new(mesh, options)?;
-    let mut mask = empty(mesh, options, diameter, &model);
+    Ok(traced(&TracedModel::new(mesh, options)?, mesh, options, diameter))
+}
+
+/// Traces the masks of a drop model from several views, all at the scale of the one that shows it largest.
+///
+/// # Errors
+/// As [`trace_model`].
+pub fn trace_model_views(
+    mesh: &ClosedMesh,
+    options: &MaskOptions,
+    views: &[View],
+) -> Result<Vec<Mask>, MaskError> {
+    let seen = views.iter().map(|&view| {
+        let options = MaskOptions { view, ..*options };
+        TracedModel::new(mesh, &options).map(|model| (model, options))
+    });
+    let mut seen: Vec<(TracedModel, MaskOptions)> = seen.collect::<Result<_, _>>()?;
+    let widest = seen.iter().map(|(model, _)| model.half_extent).fold(0.0, f64::max);
+    let traced = seen.iter_mut().map(|(model, options)| {
+        model.half_extent = widest;
+        traced(model, mesh, options, None)
+    });
+    Ok(traced.collect())
+}
+
+/// Traces a turned model.
+fn traced(model: &TracedModel, mesh: &ClosedMesh, options: &MaskOptions, diameter: Option<f64>) -> Mask {
+    let mut mask = empty(mesh, options, diameter, model);
     let size = options.size as usize;
     let pixel = mask.texel_width() as f32;
     mask.texels = vec![MaskTexel::default(); size * size];
@@ -219,7 +245,7 @@ pub fn trace_model(
             *texel = model.mask_model_texel(x, y, pixel);
         }
     });
-    Ok(mask)
+    mask
 }
 
 /// A mask of the model without its texels.

@@ -37,6 +37,7 @@ mod streak_rays;
 mod streak_table;
 mod tiles;
 
+use downpour_scene::weather::RainRefraction;
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 
 pub use capture::{Capture, CaptureFrame};
@@ -69,6 +70,26 @@ pub enum RefractionForm {
     Rousseau2006 = DROPS_SHIFT,
 }
 
+impl RefractionForm {
+    /// Texels along an edge of the usual capture: of the paper's form those of the paper (Rousseau 2006, 4.2.2).
+    #[must_use]
+    pub fn capture_size(self) -> u32 {
+        match self {
+            Self::Direction => 256,
+            Self::Rousseau2006 => 512,
+        }
+    }
+}
+
+impl From<RainRefraction> for RefractionForm {
+    fn from(refraction: RainRefraction) -> Self {
+        match refraction {
+            RainRefraction::Rousseau2006 => Self::Rousseau2006,
+            _ => Self::Direction,
+        }
+    }
+}
+
 /// How drops are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainOptions {
@@ -91,7 +112,7 @@ impl Default for RainOptions {
     fn default() -> Self {
         Self {
             form: RefractionForm::Direction,
-            capture_size: 256,
+            capture_size: RefractionForm::Direction.capture_size(),
             capture_grid: 1,
             medium: RainMedium::default(),
             exposure: Exposure::default(),

@@ -9,7 +9,8 @@ use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_drop::optics::water_index_in_air;
-use downpour_scene::weather::{Rain, RainDrag, RainExtinction, RainVolume, Weather};
+use downpour_mask::{ClosedMesh, MaskError};
+use downpour_scene::weather::{Loaded, Rain, RainDrag, RainExtinction, RainVolume, Weather};
 use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
@@ -203,9 +204,28 @@ pub fn law(rain: &Rain) -> Result<DropSizeDistribution, DropError> {
 /// What drops do to light in the air of a weather.
 ///
 /// # Errors
-/// [`ShowerError::Drop`], [`ShowerError::Render`] if the air is outside what the laws know.
-pub fn masks(weather: &Weather) -> Result<DropMasks, ShowerError> {
+/// [`ShowerError::Drop`], [`ShowerError::Mask`] if the air is outside what the laws know, or the drops' model is no closed
+/// surface.
+pub fn masks(weather: &Weather, loaded: &Loaded) -> Result<DropMasks, ShowerError> {
     let air = &weather.rain.air;
     let air = Air::new(air.temperature_c().max(COLDEST_INDEX_C), air.pressure_pa())?;
-    Ok(DropMasks::trace(water_index_in_air(SODIUM_M, &air)?)?)
+    let index = water_index_in_air(SODIUM_M, &air)?;
+    Ok(match drop_model(weather, loaded)? {
+        Some(model) => DropMasks::trace_model(index, &model)?,
+        None => DropMasks::trace_shapes(index, weather.rain.drop_shape.table())?,
+    })
+}
+
+/// The model that the drops of a weather are drawn as, if it has one.
+///
+/// # Errors
+/// [`ShowerError::Mask`] with the file and the key for a model that is no closed surface.
+pub fn drop_model(weather: &Weather, loaded: &Loaded) -> Result<Option<ClosedMesh>, ShowerError> {
+    let Some(model) = &loaded.drop_model else { return Ok(None) };
+    let mesh = ClosedMesh::new(&model.positions, model.normals.as_deref(), &model.indices);
+    let in_file = |error| MaskError::InFile {
+        path: format!("{}: rain.mask_model: {}", weather.name, model.name),
+        error: Box::new(error),
+    };
+    Ok(Some(mesh.map_err(in_file)?))
 }

@@ -34,6 +34,7 @@ fn stage(glass: &str) -> Result<(Weather, Stage), Box<dyn std::error::Error>> {
         sky,
         sun: None,
         masks: Vec::new(),
+        drop_model: None,
         warnings: Vec::new(),
     };
     let stage = Stage::new(&weather, &loaded, 0.0)?;
@@ -329,6 +330,7 @@ fn a_pane_that_is_not_before_the_eye_is_refused() -> Outcome {
         sky: SkyMap::uniform([1.0; 3]),
         sun: None,
         masks: Vec::new(),
+        drop_model: None,
         warnings: Vec::new(),
     };
     let down = Stage::new(&looks_down, &loaded, 0.0)?;

@@ -237,6 +237,7 @@ fn a_weathers_puddles_lie_on_its_stage() -> Outcome {
         sky: SkyMap::uniform([1.0; 3]),
         sun: None,
         masks: Vec::new(),
+        drop_model: None,
         warnings: Vec::new(),
     };
     let mut stage = downpour_render::stage::Stage::new(&weather, &loaded, 0.0)?;

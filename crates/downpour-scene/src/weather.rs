@@ -38,7 +38,8 @@ pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
 pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleShape};
 pub use rain::{
-    RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainExtinction, RainVolume,
+    RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,
+    RainRefraction, RainVolume,
 };
 pub use sky::{Sky, SkySource, SunSource};
 pub use streaks::{StreakLook, Streaks};
@@ -89,6 +90,8 @@ pub struct Weather {
     pub name: String,
     /// The rain.
     pub rain: Rain,
+    /// The model that all drops are drawn as, in place of their own shapes.
+    pub drop_model: Option<RelativePath>,
     /// The sky.
     pub sky: Sky,
     /// Where the sun comes from.
@@ -118,6 +121,7 @@ impl Default for Weather {
         Self {
             name: String::new(),
             rain: Rain::default(),
+            drop_model: None,
             sky: Sky::default(),
             sun: SunSource::None,
             camera: Camera::default(),

@@ -177,6 +177,7 @@ fn pane(keys: &str) -> GlassPicture {
         sky,
         sun,
         masks: Vec::new(),
+        drop_model: None,
         warnings: Vec::new(),
     };
     let stage = Stage::new(&weather, &loaded, 0.0).expect("a stage");

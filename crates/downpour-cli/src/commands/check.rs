@@ -3,7 +3,7 @@
 use clap::Args;
 use downpour::render::glass::WetPane;
 use downpour::render::puddle::{PuddleMap, WetGround};
-use downpour::render::shower::{Shower, law};
+use downpour::render::shower::{Shower, drop_model, law};
 use downpour::render::stage::{CameraChoice, Stage};
 use downpour::scene::{Budget, scene::Texture};
 
@@ -220,9 +220,17 @@ fn rain(input: &Input) -> Result<Vec<Entry>, Failure> {
     let rain = &input.weather.rain;
     let law = law(rain)?;
     let median = 1.0e3 * law.median_volume_diameter();
+    let drawn_as = match drop_model(&input.weather, &input.loaded)? {
+        Some(model) => {
+            let file = input.weather.drop_model.as_ref().map_or("", |file| file.as_str());
+            format!("{file}, {} triangles", model.triangles.len())
+        }
+        None => input.weather.rain.drop_shape.name().to_owned(),
+    };
     Ok(vec![
         Entry::new("rate_mm_h", "rain rate", Given(rain.rate_mm_h), "mm/h"),
         Entry::new("distribution", "distribution", Word(rain.law.name().to_owned()), ""),
+        Entry::new("drop_shape", "drops are drawn as", Word(drawn_as), ""),
         Entry::new("seed", "seed", Datum::Count(rain.seed), ""),
         Entry::new("number_m3", "drops", Computed(law.number_density(), 4), "per m^3"),
         Entry::new("median_volume_diameter_mm", "median volume diameter", Computed(median, 4), "mm"),

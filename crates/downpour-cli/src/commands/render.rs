@@ -95,9 +95,9 @@ pub(crate) struct RenderArguments {
     sky_rays: u32,
     #[command(flatten)]
     streaks: StreaksArgument,
-    /// How a drop's pixel finds its colour.
-    #[arg(long, value_enum, default_value = "direction")]
-    refraction: Refraction,
+    /// How a drop's pixel finds its colour [default: the weather's].
+    #[arg(long, value_enum)]
+    refraction: Option<Refraction>,
     /// Replace files that exist; begin a clip anew.
     #[arg(long)]
     overwrite: bool,
@@ -113,7 +113,7 @@ pub(crate) struct RenderArguments {
 enum Refraction {
     /// The directions of refracted and reflected light, in all that is round the eye.
     Direction,
-    /// The shift in a picture 165 degrees wide; no reflection.
+    /// The shift in a picture 165 degrees wide, 512 x 512; no reflection.
     #[value(name = "rousseau-2006")]
     Rousseau2006,
 }
@@ -150,7 +150,7 @@ impl RenderArguments {
         input.say_warnings(&stage, |text| self.say(text));
         let begin = Instant::now();
         let rain = &input.weather.rain;
-        let showers = &mut Showers::new(&input.weather, atlas.as_ref())?;
+        let showers = &mut Showers::new(&input.weather, &input.loaded, atlas.as_ref())?;
         let ask = Ask { measure: outputs.wants_stats(), quiet: self.quiet };
         let moving = MovingScenery { weather: &input.weather, loaded: &input.loaded };
         let still = Still(&stage);
@@ -223,13 +223,15 @@ impl RenderArguments {
     fn options(&self, stage: &Stage, weather: &Weather, time_s: f64, medium: RainMedium) -> PictureOptions {
         let usual = RainOptions::default();
         let exposure = Exposure::of_weather(weather, stage.motion, time_s);
+        let form = self.refraction.map_or(weather.rain.refraction.into(), RefractionForm::from);
         PictureOptions {
             size: stage.size,
             grid: self.samples,
             sky_rays: self.sky_rays,
             seed: noise_seed(weather.rain.seed, time_s),
             rain: RainOptions {
-                form: self.refraction.into(),
+                form,
+                capture_size: form.capture_size(),
                 medium,
                 exposure,
                 light: DropLightOptions::of_weather(weather),

@@ -22,6 +22,7 @@ mod little_memory;
 mod mask;
 mod models;
 mod output;
+mod papers;
 mod puddle;
 mod rain;
 mod readme;

@@ -5,9 +5,11 @@
 
 use downpour_drop::DropShape;
 use downpour_drop::oscillation::{Amplitudes, Fluids, FrequencyLaw, OscillatingDrop, Oscillation};
-use downpour_drop::shape::DropShapeCoefficients;
+use downpour_drop::shape::{DropShapeCoefficients, ShapeTable};
 use downpour_mask::atlas::StreakAtlas;
-use downpour_mask::{Mask, MaskError, MaskOptions, MaskTexel, View, trace_drop};
+use downpour_mask::{
+    ClosedMesh, Mask, MaskError, MaskOptions, MaskTexel, View, trace_drop, trace_model_views,
+};
 use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_pack_unorm};
 use downpour_shaders::render::rain::{DROPS_ELEVATIONS, DROPS_TEXEL_WORDS};
 
@@ -42,6 +44,8 @@ pub struct DropMasks {
     pub(crate) atlas: u32,
     /// How a drop scatters the light of lamps.
     pub light: DropLightTable,
+    /// Whether drops of the smallest diameter are the same from everywhere.
+    small_are_round: bool,
     /// Half the width of the masks of a diameter, in equivalent radii.
     half_extents: Vec<f32>,
     /// Area of the outline of each mask, in squared equivalent radii.
@@ -67,7 +71,43 @@ impl DropMasks {
     /// # Errors
     /// [`MaskError::OutOfRange`] for an index that is none.
     pub fn trace(refractive_index: f64) -> Result<Self, MaskError> {
-        let mut masks = Self {
+        Self::trace_shapes(refractive_index, ShapeTable::default())
+    }
+
+    /// The same for the shapes of a table.
+    ///
+    /// # Errors
+    /// As [`DropMasks::trace`].
+    pub fn trace_shapes(refractive_index: f64, table: ShapeTable) -> Result<Self, MaskError> {
+        let mut masks = Self::empty(refractive_index, table)?;
+        let views = views()?;
+        for k in 1..=DIAMETERS {
+            let shape = DropShape::with_table(table, f64::from(k) * DIAMETER_STEP)?;
+            let seen = views.iter().map(|&view| trace_drop(&shape, &options(view, refractive_index)));
+            masks.append(&seen.collect::<Result<Vec<Mask>, _>>()?);
+        }
+        Ok(masks)
+    }
+
+    /// The same with a model in place of the drops' own shapes: scaled to their volume, its +Y up, its +Z towards the eye.
+    /// Rays of streaks and the light of lamps keep those shapes.
+    ///
+    /// # Errors
+    /// As [`DropMasks::trace`].
+    pub fn trace_model(refractive_index: f64, model: &ClosedMesh) -> Result<Self, MaskError> {
+        let mut masks = Self::empty(refractive_index, ShapeTable::default())?;
+        masks.small_are_round = false;
+        let seen = trace_model_views(model, &options(View::SIDE, refractive_index), &views()?)?;
+        for _ in 0..DIAMETERS {
+            masks.append(&seen);
+        }
+        Ok(masks)
+    }
+
+    /// No masks yet.
+    fn empty(refractive_index: f64, table: ShapeTable) -> Result<Self, MaskError> {
+        let shape = |k: u32| streak_shape(f64::from(k) * SHAPE_STEP, table, refractive_index);
+        Ok(Self {
             words: Vec::new(),
             size: SIZE,
             atlas: 0,
@@ -77,36 +117,25 @@ impl DropMasks {
                 unit: "",
                 allowed: "1.2 to 1.4",
             })?,
+            small_are_round: true,
             half_extents: Vec::new(),
             areas: Vec::new(),
             ovals: Vec::new(),
-            shapes: (1..=SHAPES).map(|k| streak_shape(f64::from(k) * SHAPE_STEP, refractive_index)).collect(),
-        };
-        for k in 1..=DIAMETERS {
-            let shape = DropShape::new(f64::from(k) * DIAMETER_STEP).map_err(|_| MaskError::OutOfRange {
-                quantity: "diameter of a mask",
-                found: f64::from(k) * DIAMETER_STEP * 1.0e3,
-                unit: "mm",
-                allowed: "a drop of the table",
-            })?;
-            for step in 0..DROPS_ELEVATIONS {
-                let half = f64::from(DROPS_ELEVATIONS - 1) * 0.5;
-                let elevation = (f64::from(step) / half - 1.0) * std::f64::consts::FRAC_PI_2;
-                let options =
-                    MaskOptions { size: SIZE, view: View::from_elevation(elevation)?, refractive_index };
-                let mask = trace_drop(&shape, &options)?;
-                if step == 0 {
-                    masks.half_extents.push(mask.half_extent as f32);
-                }
-                let width = mask.texel_width();
-                let covered: f64 = mask.texels.iter().map(|texel| f64::from(texel.coverage)).sum();
-                masks.areas.push((covered * width * width) as f32);
-                masks.ovals.push(oval(&mask));
-                let words = |texel| pack(texel, refractive_index as f32);
-                masks.words.extend(mask.texels.iter().flat_map(words));
-            }
+            shapes: (1..=SHAPES).map(shape).collect(),
+        })
+    }
+
+    /// Adds the masks of a diameter, one per elevation, all of one scale.
+    fn append(&mut self, seen: &[Mask]) {
+        self.half_extents.extend(seen.first().map(|mask| mask.half_extent as f32));
+        for mask in seen {
+            let width = mask.texel_width();
+            let covered: f64 = mask.texels.iter().map(|texel| f64::from(texel.coverage)).sum();
+            self.areas.push((covered * width * width) as f32);
+            self.ovals.push(oval(mask));
+            let words = |texel| pack(texel, mask.refractive_index as f32);
+            self.words.extend(mask.texels.iter().flat_map(words));
         }
-        Ok(masks)
     }
 
     /// The same, with the streaks of an atlas for [`DropLightForm::Atlas`](super::light::DropLightForm::Atlas), instead of those of
@@ -129,7 +158,7 @@ impl DropMasks {
         let half = (DROPS_ELEVATIONS - 1) as f32 * 0.5;
         let turned = (elevation / std::f32::consts::FRAC_PI_2 + 1.0) * half;
         // A sphere is the same from everywhere: one mask does.
-        let column = if row == 0.0 { half } else { turned.clamp(0.0, 2.0 * half) };
+        let column = if row == 0.0 && self.small_are_round { half } else { turned.clamp(0.0, 2.0 * half) };
         let between = |values: &dyn Fn(usize) -> f32, at: f32| {
             let low = at.floor();
             let part = at - low;
@@ -175,10 +204,21 @@ impl DropMasks {
     }
 }
 
+/// The elevations of the masks, from below to above.
+fn views() -> Result<Vec<View>, MaskError> {
+    let half = f64::from(DROPS_ELEVATIONS - 1) * 0.5;
+    let elevation = |step: u32| (f64::from(step) / half - 1.0) * std::f64::consts::FRAC_PI_2;
+    (0..DROPS_ELEVATIONS).map(|step| View::from_elevation(elevation(step))).collect()
+}
+
+fn options(view: View, refractive_index: f64) -> MaskOptions {
+    MaskOptions { size: SIZE, view, refractive_index }
+}
+
 /// A shape with the moments of its volume.
-fn streak_shape(diameter: f64, refractive_index: f64) -> StreakPath {
+fn streak_shape(diameter: f64, table: ShapeTable, refractive_index: f64) -> StreakPath {
     // The diameters of the table have shapes.
-    let Ok(shape) = DropShape::new(diameter) else { return StreakPath::default() };
+    let Ok(shape) = DropShape::with_table(table, diameter) else { return StreakPath::default() };
     let still = Oscillation::new(diameter, Amplitudes::NONE, &Fluids::AT_20_C, FrequencyLaw::default());
     let Ok(still) = still else { return StreakPath::default() };
     let [v1, v2, v3, w0, volume_last] = OscillatingDrop::new(shape, still).volume_polynomial();

@@ -37,7 +37,15 @@ fn scene(nodes: Vec<Node>) -> Scene {
 
 fn loaded(scene: Scene) -> Loaded {
     let sky = SkyMap::uniform([1.0; 3]);
-    Loaded { scene, animations: Vec::new(), sky, sun: None, masks: Vec::new(), warnings: Vec::new() }
+    Loaded {
+        scene,
+        animations: Vec::new(),
+        sky,
+        sun: None,
+        masks: Vec::new(),
+        drop_model: None,
+        warnings: Vec::new(),
+    }
 }
 
 fn stage(weather: &Weather, loaded: &Loaded) -> Stage {

@@ -60,6 +60,8 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     }
     let sky = Sky::checked(&tables.sky, &places)?;
     let rain = Rain::checked(&tables.rain, &places)?;
+    let streaks = tables.streaks.checked();
+    let drop_model = tables.rain.drop_model(&streaks, &places)?;
     let default = Weather::default();
     let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &places))?;
     puddle::check_all(&puddles, &places)?;
@@ -67,6 +69,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         name: String::new(),
         glass: tables.glass.map(|glass| glass.checked(&rain, &places)).transpose()?,
         rain,
+        drop_model,
         sun: SunSource::checked(tables.sun.as_ref(), &sky, &places)?,
         sky,
         camera: Camera::checked(&tables.camera, &places)?,
@@ -74,7 +77,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         lights: numbered(&tables.light, |i, table| Lamp::checked(i, table, &places))?,
         wind: wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &places)?,
         wind_box: tables.wind_field.checked(&places)?,
-        streaks: tables.streaks.checked(),
+        streaks,
         puddles,
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })

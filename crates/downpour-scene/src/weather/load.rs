@@ -5,7 +5,7 @@ use super::{Lamp, Model, Puddle, SkySource, SunSource, Weather};
 use crate::Budget;
 use crate::beneath::{Files, Folder, OpenFile};
 use crate::error::SceneError;
-use crate::gltf::read_scene_from_bytes;
+use crate::gltf::{TriangleModel, read_scene_from_bytes, read_triangles_from_bytes};
 use crate::picture::{self, Picture};
 use crate::scene::{Animation, Light, LightKind, Local, Node, Scene};
 use crate::sky::{self, SUN_THRESHOLD, SkyMap, Sun};
@@ -33,6 +33,8 @@ pub struct Loaded {
     pub sun: Option<Sun>,
     /// For each puddle, the picture of its depth if it is painted.
     pub masks: Vec<Option<Picture>>,
+    /// The model that drops are drawn as, if they have one.
+    pub drop_model: Option<TriangleModel>,
     /// What was left out or made good, in all files.
     pub warnings: Vec<Warning>,
 }
@@ -116,9 +118,27 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
         hang(&mut scene, lamp);
     }
     let masks = masks(weather, files, &mut purse)?;
+    let drop_model = drop_model(weather, files, &mut purse)?;
     *budget = purse;
-    let warnings = [std::mem::take(&mut sky.warnings), scene.warnings.clone(), warnings.finish()].concat();
-    Ok(Loaded { scene, animations, sky, sun, masks, warnings })
+    let of_drops = drop_model.iter().flat_map(|model| model.warnings.clone()).collect();
+    let warnings =
+        [std::mem::take(&mut sky.warnings), scene.warnings.clone(), of_drops, warnings.finish()].concat();
+    Ok(Loaded { scene, animations, sky, sun, masks, drop_model, warnings })
+}
+
+/// The triangles that drops are drawn as: all of them, or an error.
+fn drop_model(
+    weather: &Weather,
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<Option<TriangleModel>, SceneError> {
+    let Some(file) = &weather.drop_model else { return Ok(None) };
+    let name = file.as_str();
+    let folder = name.rfind('/').and_then(|end| name.get(..=end)).unwrap_or_default();
+    let bytes = files.open(file).and_then(|opened| sky::whole(opened, budget));
+    let bytes = bytes.map_err(|error| error.in_file(name))?;
+    let model = read_triangles_from_bytes(name, &bytes, &Beside { files, folder }, budget)?.strict()?;
+    Ok(Some(model))
 }
 
 /// The pictures of the depths of painted puddles.

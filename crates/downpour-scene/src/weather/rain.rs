@@ -1,15 +1,19 @@
 //! `[rain]`.
 
 use super::fault::Places;
+use super::file::path;
 use super::quantity::{
     BoxM, DropSize, Exactly, GammaShape, In, MedianMm, OneMm, PlaceM, PressureHpa, RadiusM, RateMmH, Share,
     ShortS, TemperatureC, Whole,
 };
+use super::streaks::Streaks;
 use crate::error::SceneError;
+use crate::uri::RelativePath;
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution, DropSizeLaw};
 use downpour_drop::fall_speed::FallSpeedModel;
+use downpour_drop::shape::ShapeTable;
 use serde::Deserialize;
 
 /// Shape of the gamma law where none is given.
@@ -90,6 +94,52 @@ impl From<FallSpeed> for FallSpeedModel {
             FallSpeed::Lhermitte1988 => Self::Lhermitte1988,
         }
     }
+}
+
+/// Shapes of the drops, as masks and streaks show them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainDropShape {
+    /// The model of Beard & Chuang 1987, by the table of Chuang & Beard 1990.
+    #[default]
+    BeardChuang,
+    /// The four rows of Rousseau 2006, table 1, as printed.
+    #[serde(rename = "rousseau-2006")]
+    Rousseau2006,
+}
+
+impl RainDropShape {
+    /// The name in weather files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BeardChuang => "beard-chuang",
+            Self::Rousseau2006 => "rousseau-2006",
+        }
+    }
+
+    /// The coefficients of the shapes.
+    #[must_use]
+    pub fn table(self) -> ShapeTable {
+        match self {
+            Self::BeardChuang => ShapeTable::ChuangBeard1990,
+            Self::Rousseau2006 => ShapeTable::Rousseau2006,
+        }
+    }
+}
+
+/// Ways in which a drop's pixel finds its color.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainRefraction {
+    /// By the direction of the refracted light, in everything round the eye.
+    #[default]
+    Direction,
+    /// By a shift in a perspective picture of 165 degrees and 512 x 512 texels (Rousseau 2006, 4.2.3).
+    #[serde(rename = "rousseau-2006")]
+    Rousseau2006,
 }
 
 /// How drops follow the wind.
@@ -187,6 +237,10 @@ pub struct Rain {
     pub air: Air,
     /// The law of terminal speed.
     pub fall_speed: FallSpeedModel,
+    /// Shapes of the drops.
+    pub drop_shape: RainDropShape,
+    /// Way in which a drop's pixel finds its color.
+    pub refraction: RainRefraction,
     /// Diameter of all drops, m, 0.2e-3 to 7.5e-3, if they are of one size.
     pub one_diameter: Option<f64>,
     /// Where and how drops are simulated.
@@ -216,6 +270,8 @@ impl Default for Rain {
             seed: 0,
             air: Air::standard(),
             fall_speed: FallSpeedModel::default(),
+            drop_shape: RainDropShape::default(),
+            refraction: RainRefraction::default(),
             one_diameter: None,
             volume: RainVolume::default(),
             box_m: None,
@@ -240,6 +296,9 @@ pub(super) struct RainTable {
     temperature_c: Option<In<TemperatureC>>,
     pressure_hpa: Option<In<PressureHpa>>,
     fall_speed: Option<FallSpeed>,
+    drop_shape: Option<RainDropShape>,
+    pub(super) mask_model: Option<String>,
+    refraction: Option<RainRefraction>,
     drops: Option<DropsTable>,
     volume: Option<RainVolume>,
     box_m: Option<In<BoxM>>,
@@ -392,6 +451,8 @@ impl Rain {
             seed: table.seed.unwrap_or(default.seed),
             air,
             fall_speed: table.fall_speed.map_or(default.fall_speed, FallSpeedModel::from),
+            drop_shape: table.drop_shape.unwrap_or_default(),
+            refraction: table.refraction.unwrap_or_default(),
             one_diameter: table.drops.map(|drops| drops.diameter_mm.0 * 1.0e-3),
             volume,
             box_m: table.box_m.map(|side| side.0),
@@ -450,6 +511,25 @@ impl Rain {
 }
 
 impl RainTable {
+    /// The model that drops are drawn as.
+    pub(super) fn drop_model(
+        &self,
+        streaks: &Streaks,
+        places: &Places<'_>,
+    ) -> Result<Option<RelativePath>, SceneError> {
+        let Some(file) = &self.mask_model else { return Ok(None) };
+        let key = "rain.mask_model";
+        if self.drop_shape.is_some() {
+            return Err(places.bad(key, "a model for drops that have rain.drop_shape", "one or the other"));
+        }
+        // The table of streaks is made by rays through the drops' own shapes.
+        if streaks.samples.is_none() {
+            let found = "a mask for streaks that need none, with streaks.samples = \"table\"";
+            return Err(places.bad(key, found, "with streaks.samples = 1 to 4096"));
+        }
+        path(file, key, places).map(Some)
+    }
+
     fn gamma(&self, rate_mm_h: f64, places: &Places<'_>) -> Result<DropSizeLaw, SceneError> {
         let median_volume_diameter_m = match self.median_diameter_mm {
             Some(median) => median.0 * 1e-3,

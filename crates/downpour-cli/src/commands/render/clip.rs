@@ -141,7 +141,7 @@ impl Clip<'_> {
         if let Some(drops) = &self.places.drops {
             remove_leftovers(drops.folder());
         }
-        let showers = &mut Showers::new(&self.input.weather, self.atlas.as_ref())?;
+        let showers = &mut Showers::new(&self.input.weather, &self.input.loaded, self.atlas.as_ref())?;
         let (weather, loaded) = (&self.input.weather, &self.input.loaded);
         let first_s = time_s(self.arguments.input.time, self.frames.first, self.fps);
         let surfaces = &mut Surfaces {

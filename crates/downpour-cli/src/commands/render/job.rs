@@ -59,6 +59,9 @@ pub(super) fn scene_digest(weather: &Weather, loaded: &Loaded, first: &Stage) ->
     let weather = Weather { name: String::new(), ..weather.clone() };
     // Nothing that is formatted fails, and neither does the digest.
     let _ = write!(text, "{rest:?} {:?} {:?} {weather:?}", first.viewpoint, (first.origin, first.depth));
+    if let Some(model) = &loaded.drop_model {
+        let _ = write!(text, "{:?} {:?} {:?}", model.positions, model.normals, model.indices);
+    }
     if moves(loaded) {
         let scene = &loaded.scene;
         let _ = write!(text, "{:?} {:?} {:?}", loaded.animations, scene.animations, scene.nodes);

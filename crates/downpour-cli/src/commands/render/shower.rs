@@ -4,7 +4,7 @@ use downpour::mask::atlas::StreakAtlas;
 use downpour::render::rain::{DropMasks, RainMedium};
 use downpour::render::shower::{self, Scenery, Shower};
 use downpour::render::stage::Stage;
-use downpour::scene::weather::Weather;
+use downpour::scene::weather::{Loaded, Weather};
 use downpour::sim::field::VisibleDrops;
 
 use super::progress::Progress;
@@ -37,8 +37,12 @@ pub(super) struct Showers {
 }
 
 impl Showers {
-    pub(super) fn new(weather: &Weather, atlas: Option<&StreakAtlas>) -> Result<Self, Failure> {
-        let masks = shower::masks(weather)?;
+    pub(super) fn new(
+        weather: &Weather,
+        loaded: &Loaded,
+        atlas: Option<&StreakAtlas>,
+    ) -> Result<Self, Failure> {
+        let masks = shower::masks(weather, loaded)?;
         let masks = if let Some(atlas) = atlas { masks.with_atlas(atlas) } else { masks };
         Ok(Self { shower: Shower::new(weather)?, masks })
     }

@@ -1,0 +1,73 @@
+//! Figures of papers as weather files, and what drops look like by name.
+
+use std::path::{Path, PathBuf};
+
+use crate::child::Downpour;
+use crate::scene_files::{model, weather};
+
+fn assets(folder: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets").join(folder)
+}
+
+#[test]
+fn the_figures_of_papers_are_weather_files() {
+    let files = std::fs::read_dir(assets("papers")).unwrap().map(|entry| entry.unwrap().path());
+    let files: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
+    let names: Vec<String> =
+        files.iter().map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    for figure in [
+        "rousseau_2006_fig_06",
+        "rousseau_2006_fig_09",
+        "rousseau_2006_fig_11",
+        "rousseau_2006_fig_12",
+        "rousseau_2006_fig_14",
+        "rousseau_2006_fig_15",
+        "rousseau_2006_fig_16",
+        "rousseau_2008_fig_06",
+        "rousseau_2008_fig_07",
+        "im_sung_2022_fig_06",
+        "im_sung_2022_fig_08",
+        "im_sung_2022_fig_09",
+        "im_sung_2022_fig_10",
+        "im_sung_2022_fig_11",
+    ] {
+        assert!(names.iter().any(|name| name.starts_with(figure)), "{figure}: {names:?}");
+    }
+    let street = assets("scenes/street");
+    for file in &files {
+        let arguments = ["check", file.to_str().unwrap(), "--asset-root", street.to_str().unwrap(), "--json"];
+        let json = Downpour::new(&arguments).run().succeeded().json();
+        assert!(json["triangles"].as_u64().unwrap() > 10_000, "{}: {json}", file.display());
+    }
+}
+
+/// A weather of [`weather`] with more keys of its rain.
+fn raining(more: &str) -> String {
+    weather("").replace("seed = 7\n", &format!("seed = 7\n{more}\n"))
+}
+
+fn picture(weather: &str, options: &[&str]) -> Vec<u8> {
+    let render = ["render", "w.toml", "--backend=cpu", "--samples=1", "--sky-rays=1", "-q", "-o", "a.exr"];
+    let run = Downpour::new(&[&render[..], &["--shutter", "0"], options].concat());
+    let ended = run.with_file("w.toml", weather).with_file("floor.gltf", model()).run().succeeded();
+    std::fs::read(ended.folder.path().join("a.exr")).unwrap()
+}
+
+#[test]
+fn refraction_comes_from_the_weather_or_before_it() {
+    let paper = raining("refraction = 'rousseau-2006'");
+    let of_weather = picture(&paper, &[]);
+    assert_eq!(of_weather, picture(&weather(""), &["--refraction", "rousseau-2006"]));
+    assert_eq!(picture(&weather(""), &[]), picture(&paper, &["--refraction", "direction"]));
+    assert_ne!(of_weather, picture(&weather(""), &[]));
+}
+
+/// The model of the scene is a floor, and no drop.
+#[test]
+fn check_and_render_refuse_a_drop_that_is_open() {
+    let bad = raining("mask_model = 'floor.gltf'") + "[streaks]\nsamples = 4\n";
+    for arguments in [&["check", "w.toml"][..], &["render", "w.toml", "--backend=cpu", "-o", "a.png"]] {
+        let run = Downpour::new(arguments).with_file("w.toml", &bad).with_file("floor.gltf", model()).run();
+        run.failed(2, &["w.toml: rain.mask_model: floor.gltf", "closed surface", "allowed: "]);
+    }
+}
