@@ -64,11 +64,7 @@ pub const BROKEN: &[Broken] = &[
     Broken { function: "atlas_rank", right: "vec4f(value) > high", wrong: "vec4f(value) > low" },
     Broken { function: "atlas_draw", right: "id, which, ATLAS", wrong: "id, 0u, ATLAS" },
     Broken { function: "specimen_lamp", right: "apart) < lamp.reach", wrong: "apart) > lamp.reach" },
-    Broken {
-        function: "specimen_wobble_surface",
-        right: "- 15.0 * drop.state.y",
-        wrong: "- 14.0 * drop.state.y",
-    },
+    Broken { function: "specimen_wobble_surface", right: "- 15.0 * state.y", wrong: "- 14.0 * state.y" },
     Broken {
         function: "specimen_wobble_cross",
         right: "found = side * at_b.x > 0.0",

@@ -172,7 +172,8 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 1.0e-4,
                 1.0e-4,
                 "two refractions and a reflection; errors grow close to total reflection and with each one",
-            ),
+            )
+            .with_outliers(1.0e-4),
             |a| {
                 let (drop, _) = traced(a);
                 let t = mask_trace_through(&drop, a.f32(), a.f32());
@@ -281,7 +282,7 @@ fn model_case(gpu: &Gpu, degrees: f64) -> Result<Run, GpuError> {
 }
 
 const DROP: Tol =
-    Tol::absolute(5.0e-5, "two refractions of f32; the derivative of Snell's law grows at the rim");
+    Tol::absolute(1.0e-4, "two refractions of f32; the derivative of Snell's law grows at the rim");
 const TILTED: Tol = Tol::absolute(
     1.0e-3,
     "total reflections multiply the errors before them, and close to the critical angle the count may differ",
