@@ -128,6 +128,11 @@ impl From<Refraction> for RefractionForm {
 }
 
 impl RenderArguments {
+    /// How drops refract: as the command line has it, else the weather.
+    fn refraction(&self, weather: &Weather) -> RefractionForm {
+        self.refraction.map_or(weather.rain.refraction.into(), RefractionForm::from)
+    }
+
     pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         self.input.check()?;
         self.backend.check()?;
@@ -223,7 +228,7 @@ impl RenderArguments {
     fn options(&self, stage: &Stage, weather: &Weather, time_s: f64, medium: RainMedium) -> PictureOptions {
         let usual = RainOptions::default();
         let exposure = Exposure::of_weather(weather, stage.motion, time_s);
-        let form = self.refraction.map_or(weather.rain.refraction.into(), RefractionForm::from);
+        let form = self.refraction(weather);
         PictureOptions {
             size: stage.size,
             grid: self.samples,

@@ -315,7 +315,7 @@ impl Clip<'_> {
             ("first frame", self.frames.first.to_string()),
             ("samples", arguments.samples.to_string()),
             ("sky rays", arguments.sky_rays.to_string()),
-            ("refraction", format!("{:?}", arguments.refraction)),
+            ("refraction", format!("{:?}", arguments.refraction(weather))),
             ("layers", arguments.layers.to_string()),
             ("streak atlas", self.atlas.as_ref().map_or_else(|| "none".to_owned(), atlas_digest)),
             ("scene", self.scene.clone()),
