@@ -230,7 +230,7 @@ impl RainPass<'_> {
         self.medium.dispatches()
     }
 
-    /// Reads what was found of the drops that are not drawn, as [`MediumLight::found`].
+    /// Reads what was found of the drops that are not drawn, as the twin has it.
     ///
     /// # Errors
     /// What the GPU says.

@@ -8,7 +8,7 @@
 //! - in place of what it takes out it shows the mean radiance of a drop ([`StreakTable`](super::StreakTable));
 //! - lamps and the sun are scattered by the phase function of a drop of water ([`MediumLight`]), with a ray that asks what
 //!   is hidden;
-//! - where something keeps the rain off there is no medium ([`open`]).
+//! - where something keeps the rain off there is no medium (module `open`).
 //!
 //! A sky map is taken to be the sky as it is seen through the rain beyond 50 m.
 
