@@ -62,7 +62,7 @@ pub struct GpuMoment<'a> {
     pub spread: [f32; 2],
     /// What stops drops.
     pub map: Option<&'a GpuCollisionMap>,
-    /// The part of the wind that is the same everywhere, as it changes ([`Moment::air`]).
+    /// The part of the wind that is the same everywhere, as it changes (see `Moment`).
     pub air: Option<&'a UniformWindAt<'a>>,
 }
 
