@@ -197,6 +197,19 @@ impl DropSizeDistribution {
         Ok(Self { options, grid, ..self.clone() })
     }
 
+    /// Bounds of classes of diameter in metres, so many per factor of two from the smallest diameter on (0.001 mm where that is
+    /// 0). The last ends at the largest diameter and may be a sliver.
+    #[must_use]
+    pub fn diameter_classes(&self, per_octave: f64) -> Vec<[f64; 2]> {
+        let (smallest, largest) =
+            (self.options.smallest_diameter_m.max(1.0e-6), self.options.largest_diameter_m);
+        let count = (ops::log2(largest / smallest) * per_octave).ceil().max(1.0) as u32;
+        let edge = |k: u32| {
+            if k == count { largest } else { smallest * ops::pow(2.0, f64::from(k) / per_octave) }
+        };
+        (0..count).map(|k| [edge(k), edge(k + 1)]).collect()
+    }
+
     /// The law.
     #[must_use]
     pub fn law(&self) -> DropSizeLaw {

@@ -4,7 +4,6 @@ mod error;
 mod scenery;
 mod stepped;
 
-use downpour_drop::DropError;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
@@ -56,7 +55,7 @@ impl Shower {
     /// [`ShowerError::Sim`], [`ShowerError::Drop`] for a rain that is none.
     pub fn new(weather: &Weather) -> Result<Self, ShowerError> {
         let rain = &weather.rain;
-        let law = law(rain)?;
+        let law = rain.sizes()?;
         // The papers' drag has no closed form.
         let relaxes = rain.drag == RainDrag::Relaxation;
         let form = match (rain.volume, weather.wind.uniform()) {
@@ -191,14 +190,6 @@ fn bounce(rain: &Rain) -> Bounce {
         size: bounce.size as f32,
         longest_s: bounce.longest_s as f32,
     }
-}
-
-/// The sizes of the drops of a rain.
-///
-/// # Errors
-/// [`DropError`] for a rain that is none.
-pub fn law(rain: &Rain) -> Result<DropSizeDistribution, DropError> {
-    rain.sizes()
 }
 
 /// What drops do to light in the air of a weather.

@@ -21,7 +21,6 @@
 
 use downpour_drop::distribution::{DropSizeDistribution, SampleTable, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;
-use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_pcg4d, seed_words};
 use downpour_shaders::sim::step::VOLUME_RADIUS;
 use downpour_wind::{UniformWind, Wind};
@@ -95,23 +94,17 @@ impl RainField {
         let speed = TerminalSpeed::new(options.fall_speed, &options.air);
         let mut classes = Vec::new();
         if rain.rate_mm_h() > 0.0 {
-            let (smallest, largest) = (options.smallest_diameter_m.max(1.0e-6), options.largest_diameter_m);
-            let count = (ops::log2(largest / smallest) * CLASSES_PER_OCTAVE).ceil().max(1.0) as u32;
-            let edge = |k: u32| {
-                let inner = smallest * ops::pow(2.0, f64::from(k) / CLASSES_PER_OCTAVE);
-                if k == count { largest } else { inner }
-            };
-            for k in 0..count {
+            for (k, [lower, upper]) in (0u32..).zip(rain.diameter_classes(CLASSES_PER_OCTAVE)) {
                 // A last sliver would be too thin a class.
-                if edge(k + 1) - edge(k) < 2.0e-6 {
+                if upper - lower < 2.0e-6 {
                     continue;
                 }
-                let part = rain.restricted_to(edge(k), edge(k + 1))?;
-                let mm = edge(k) * 1.0e3;
+                let part = rain.restricted_to(lower, upper)?;
+                let mm = lower * 1.0e3;
                 classes.push(Class {
                     seed: class_seed(seed, k),
-                    largest: edge(k + 1),
-                    speeds: [edge(k), edge(k + 1)].map(|d| speed.at(d).unwrap_or(0.0)),
+                    largest: upper,
+                    speeds: [lower, upper].map(|d| speed.at(d).unwrap_or(0.0)),
                     density: part.number_density(),
                     sizes: part.sample_table(SampledBy::Number),
                     edge: (0.25 * mm).clamp(0.05, 2.0),

@@ -24,7 +24,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use downpour_bvh::{BvhTriangle, Hit};
+use downpour_bvh::Hit;
 use downpour_drop::fall_speed::relaxation;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit};
@@ -92,7 +92,7 @@ impl RainField {
     ) -> Result<Vec<Impact>, SimError> {
         check_box(low, high)?;
         let all = |class: &Class| (class.largest >= least_diameter).then_some(Bounds { low, high });
-        let mut impacts = self.impacts_of(obstacles, span_s, all, |_| true)?;
+        let mut impacts = self.impacts_of(&Surfaces::new(obstacles), span_s, all, |_| true)?;
         impacts.retain(|impact| f64::from(impact.diameter) >= least_diameter);
         Ok(impacts)
     }
@@ -128,13 +128,14 @@ impl RainField {
         // In slices: what has come from far has been on its way for long, and the wind has carried all of it alike.
         let span = longest + view.shutter_s;
         let slices = (span / SLICE_S).ceil().max(1.0);
+        let surfaces = Surfaces::new(obstacles);
         let mut impacts = Vec::new();
         for slice in 0..slices as u32 {
             let ages = [slice, slice + 1].map(|k| f64::from(k) * span / slices - half);
             let travels = Travels::new(self, time_s, ages);
             let origins = |class: &Class| travels.origins(self, class, view, least_pixels, bounce);
             let span = [time_s - ages[1], time_s - ages[0]];
-            impacts.extend(self.impacts_of(obstacles, span, origins, sent_up)?);
+            impacts.extend(self.impacts_of(&surfaces, span, origins, sent_up)?);
         }
         let shown = impacts.iter().filter_map(|impact| {
             let droplet = Droplet::of(self, impact, bounce)?;
@@ -170,11 +171,12 @@ impl RainField {
     /// The impacts of a span of time, of each class in the box that `place` gives, of the drops that are `wanted`.
     fn impacts_of(
         &self,
-        obstacles: &Obstacles<'_>,
+        surfaces: &Surfaces<'_>,
         span_s: [f64; 2],
         place: impl Fn(&Class) -> Option<Bounds>,
         wanted: impl Fn(u64) -> bool + Sync,
     ) -> Result<Vec<Impact>, SimError> {
+        let obstacles = surfaces.obstacles;
         let [begin, end] = span_s;
         check_time(begin)?;
         check_time(end)?;
@@ -208,7 +210,6 @@ impl RainField {
         let Some(paths) = SkyPaths::new(obstacles, &self.wind, begin, slowest, deepest) else {
             return Ok(Vec::new());
         };
-        let surfaces = Surfaces::new(obstacles);
         let mut impacts = Vec::new();
         for (class, bounds, swept) in boxes {
             impacts.extend(self.gathered(class, &swept, end, ways.last(), |drop, speed| {
@@ -355,15 +356,15 @@ impl Ways {
     }
 }
 
-/// Triangles by their number.
+/// What drops meet, its triangles by their number.
 struct Surfaces<'a> {
-    triangles: &'a [BvhTriangle],
+    obstacles: &'a Obstacles<'a>,
     /// Where the triangle of a number stands, unless all stand where their number says.
     by_number: Option<Vec<u32>>,
 }
 
 impl<'a> Surfaces<'a> {
-    fn new(obstacles: &Obstacles<'a>) -> Self {
+    fn new(obstacles: &'a Obstacles<'a>) -> Self {
         let triangles = obstacles.triangles;
         let in_order = (0u32..).zip(triangles).all(|(k, triangle)| triangle.index == k);
         let by_number = (!in_order).then(|| {
@@ -374,7 +375,7 @@ impl<'a> Surfaces<'a> {
             }
             places
         });
-        Self { triangles, by_number }
+        Self { obstacles, by_number }
     }
 
     /// Normal of what was hit on the side that a drop of a velocity came from.
@@ -383,7 +384,7 @@ impl<'a> Surfaces<'a> {
             None => Some(hit.triangle),
             Some(places) => places.get(hit.triangle as usize).copied(),
         };
-        let triangle = place.and_then(|place| self.triangles.get(place as usize));
+        let triangle = place.and_then(|place| self.obstacles.triangles.get(place as usize));
         let facet = triangle.map_or(Vec3::Y, |t| Vec3::from(t.edge_1).cross(t.edge_2.into()));
         let normal = facet.normalize_or(Vec3::Y);
         if normal.dot(velocity) > 0.0 { -normal } else { normal }

@@ -72,19 +72,13 @@ pub(crate) fn bins(rain: &DropSizeDistribution) -> Result<Vec<Bin>, SimError> {
     }
     let options = rain.options();
     let law = TerminalSpeed::new(options.fall_speed, &options.air);
-    let (smallest, largest) = (options.smallest_diameter_m.max(1.0e-6), options.largest_diameter_m);
-    let count = (ops::log2(largest / smallest) * BINS_PER_OCTAVE).ceil().max(1.0) as u32;
-    let edge = |k: u32| {
-        if k == count { largest } else { smallest * ops::pow(2.0, f64::from(k) / BINS_PER_OCTAVE) }
-    };
-    let bin = |k: u32| {
-        let part = rain.restricted_to(edge(k), edge(k + 1))?;
+    let bin = |diameters: [f64; 2]| {
+        let part = rain.restricted_to(diameters[0], diameters[1])?;
         let table = part.sample_table(SampledBy::Number);
         let quantile = |n: usize| {
             let word = (n as u64 * u64::from(u32::MAX) / u64::from(ENTER_SIZES - 1)) as u32;
             table.sample(word) / MOTION_DIAMETER_STEP
         };
-        let diameters = [edge(k), edge(k + 1)];
         Ok(Bin {
             diameters,
             speeds: diameters.map(|d| law.at(d).unwrap_or(0.0)),
@@ -93,7 +87,8 @@ pub(crate) fn bins(rain: &DropSizeDistribution) -> Result<Vec<Bin>, SimError> {
         })
     };
     // A last sliver would be too thin a bin.
-    (0..count).filter(|&k| edge(k + 1) - edge(k) > 1.0e-6).map(bin).collect()
+    let classes = rain.diameter_classes(BINS_PER_OCTAVE).into_iter();
+    classes.filter(|[lower, upper]| upper - lower > 1.0e-6).map(bin).collect()
 }
 
 /// The drops of a volume that keeps its number of drops.

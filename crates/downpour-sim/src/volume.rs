@@ -87,12 +87,6 @@ pub fn volume_images(place: Vec3, centre: Vec3, size: Vec3) -> Vec3 {
     ((place - centre) / size + 0.5).floor()
 }
 
-/// The periodic image of a position in the box around `centre`.
-#[must_use]
-pub fn volume_wrap(place: Vec3, centre: Vec3, size: Vec3) -> Vec3 {
-    place - size * volume_images(place, centre, size)
-}
-
 /// Distance at which a diameter is resolved, m.
 #[must_use]
 pub fn volume_range(frustum: &VolumeFrustum, diameter: f32) -> f32 {
@@ -190,7 +184,7 @@ mod tests {
         for k in 0..1000 {
             let [x, y, z, _] = rng_draw([1, 2], k, 0, 0).map(|w| 400.0 * rng_unit(w) - 200.0);
             let place = Vec3::new(x, y, z);
-            let kept = volume_wrap(place, centre, size);
+            let kept = place - size * volume_images(place, centre, size);
             assert!(((kept - centre).abs() * 2.0).cmple(size + 1.0e-4).all(), "{kept}");
             let boxes = (kept - place) / size;
             assert!((boxes - boxes.round()).abs().max_element() < 1.0e-4, "{boxes}");

@@ -48,11 +48,6 @@ fn volume_images(place: vec3f, centre: vec3f, size: vec3f) -> vec3f {
     return floor((place - centre) / size + 0.5);
 }
 
-// The periodic image of a position in the box around `centre`.
-fn volume_wrap(place: vec3f, centre: vec3f, size: vec3f) -> vec3f {
-    return place - size * volume_images(place, centre, size);
-}
-
 // Distance at which a diameter is resolved, m.
 fn volume_range(frustum: VolumeFrustum, diameter: f32) -> f32 {
     return min(diameter * frustum.range, frustum.farthest);

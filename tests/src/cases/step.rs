@@ -24,7 +24,7 @@ use downpour_sim::step::{
 use downpour_sim::view::View;
 use downpour_sim::volume::{
     VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
-    volume_offset, volume_on_disc, volume_range, volume_spread, volume_wrap,
+    volume_offset, volume_on_disc, volume_range, volume_spread,
 };
 use downpour_wind::{
     Keyed, UniformWind, Wind, WindCore, WindField, WindForm, WindGrid, WindMask, WindPart, WindPrimitive,
@@ -191,27 +191,6 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             &[velocity, velocity, velocity, Unit3, share, share],
             MOTIONS,
             |a| motion_bounce(vec3(a), vec3(a), a.f32(), a.f32()).to_array().words(),
-        ),
-        FunctionCase::new(
-            "volume_wrap",
-            &VOLUME,
-            &[
-                Uniform(-50.0, 50.0),
-                Uniform(-50.0, 50.0),
-                Uniform(-50.0, 50.0),
-                near,
-                near,
-                near,
-                Uniform(4.0, 9.0),
-                Uniform(4.0, 9.0),
-                Uniform(4.0, 9.0),
-            ],
-            Tol::absolute(
-                3.0e-5,
-                "a quotient, its whole part and a product up to 60; on a face it may go either way",
-            )
-            .with_outliers(1.0e-3),
-            |a| volume_wrap(vec3(a), vec3(a), vec3(a)).to_array().words(),
         ),
         FunctionCase::new(
             "volume_images",

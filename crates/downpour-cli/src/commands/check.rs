@@ -3,7 +3,7 @@
 use clap::Args;
 use downpour::render::glass::WetPane;
 use downpour::render::puddle::{PuddleMap, WetGround};
-use downpour::render::shower::{Shower, drop_model, law};
+use downpour::render::shower::{Shower, drop_model};
 use downpour::render::stage::{CameraChoice, Stage};
 use downpour::scene::{Budget, scene::Texture};
 
@@ -218,7 +218,7 @@ fn pane(input: &Input, stage: &Stage, first_s: f64) -> Result<(Vec<Entry>, u64),
 fn rain(input: &Input) -> Result<Vec<Entry>, Failure> {
     use Datum::{Computed, Given, Word};
     let rain = &input.weather.rain;
-    let law = law(rain)?;
+    let law = rain.sizes()?;
     let median = 1.0e3 * law.median_volume_diameter();
     let drawn_as = match drop_model(&input.weather, &input.loaded)? {
         Some(model) => {

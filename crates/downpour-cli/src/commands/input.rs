@@ -132,7 +132,7 @@ impl Input {
     /// Says what was left out or made good, and what is not there at all.
     pub(crate) fn say_warnings(&self, stage: &Stage, say: impl Fn(&str)) {
         say_warnings(&self.weather.name, &self.loaded.warnings, &say);
-        self.say_cores(&say);
+        say_cores(&self.weather, &say);
         if stage.left_out > 0 {
             let what = "not drawn: their transforms have no inverse or lead too far";
             say(&format!("warning: {}: {} meshes {what}", self.weather.name, stage.left_out));
@@ -141,19 +141,16 @@ impl Input {
             say(&format!("warning: {}: no triangles: a picture of the sky alone", self.weather.name));
         }
     }
+}
 
-    /// Says which primitives of the wind are finer than the cells that the rain feels it in.
-    pub(crate) fn say_cores(&self, say: impl Fn(&str)) {
-        let Ok(grid) = self.weather.wind_box.grid(DVec3::ZERO) else { return };
-        let least = f64::from(grid.cell().max_element());
-        for (number, part) in self.weather.wind.parts().iter().enumerate() {
-            if let Some(core) = part.least_core().filter(|&core| core < least) {
-                let cells = format!("below a cell of [wind_field], {least} m: the rain feels it blurred");
-                say(&format!(
-                    "warning: {}: [[wind]] {number}: a core of {core} m is {cells}",
-                    self.weather.name
-                ));
-            }
+/// Says which primitives of the wind are finer than the cells that the rain feels it in.
+pub(crate) fn say_cores(weather: &Weather, say: impl Fn(&str)) {
+    let Ok(grid) = weather.wind_box.grid(DVec3::ZERO) else { return };
+    let least = f64::from(grid.cell().max_element());
+    for (number, part) in weather.wind.parts().iter().enumerate() {
+        if let Some(core) = part.least_core().filter(|&core| core < least) {
+            let cells = format!("below a cell of [wind_field], {least} m: the rain feels it blurred");
+            say(&format!("warning: {}: [[wind]] {number}: a core of {core} m is {cells}", weather.name));
         }
     }
 }

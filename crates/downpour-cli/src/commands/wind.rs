@@ -14,7 +14,7 @@ use downpour::wind::turbulence::wind_turbulence_velocity;
 use downpour::wind::{WindField, WindGrid, WindMatrix};
 use glam::{DVec3, Vec3};
 
-use super::input::{Input, InputArguments};
+use super::input::{Input, InputArguments, say_cores};
 use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
 use crate::listing::{Datum, Entry};
@@ -103,8 +103,10 @@ impl WindArguments {
         check_name(&self.input, "toml", "input", "a weather file (.toml): a model has no wind")?;
         check_name(&self.output, "png", "output", ".png")?;
         let place = Place::new(&self.output, self.overwrite)?;
-        let input = self.input()?;
-        let weather = &input.weather;
+        let weather = &Weather::read(&self.input, &mut Budget::default())?;
+        if !self.quiet {
+            say_cores(weather, stream::message);
+        }
         if weather.wind.is_still() {
             let allowed = "a weather file with [[wind]] or [turbulence]";
             return Err(Failure::new(
@@ -120,7 +122,7 @@ impl WindArguments {
         };
         let (plane, offset) = self.slice;
         let slice = WindSlice::new(plane, offset, low, high, self.size)?;
-        let field = self.field(&input)?;
+        let field = self.field(weather)?;
         let (picture, entries) = self.draw(weather, &grid, &slice, field.as_ref())?;
         let [width, height] = picture.size;
         place.publish(&write_png(width, height, &picture.pixels)?, interrupt)?;
@@ -134,6 +136,17 @@ impl WindArguments {
         Ok(())
     }
 
+    /// The wind that the rain feels, and what it is relative to, if that is asked for and differs from place to place.
+    fn field(&self, weather: &Weather) -> Result<Option<(WindField, Vec3)>, Failure> {
+        if self.form == Form::Primitives || weather.wind.uniform().is_some() {
+            return Ok(None);
+        }
+        let input = self.input()?;
+        let stage = Stage::new(&input.weather, &input.loaded, self.time)?;
+        let field = Shower::new(&input.weather)?.wind_field(&Still(&stage), self.time)?;
+        Ok(field.map(|field| (field, stage.origin.as_vec3())))
+    }
+
     /// The weather with what stands in it.
     fn input(&self) -> Result<Input, Failure> {
         let arguments = InputArguments {
@@ -145,21 +158,7 @@ impl WindArguments {
             seed: None,
             asset_root: self.asset_root.clone(),
         };
-        let input = arguments.read(&mut Budget::default())?;
-        if !self.quiet {
-            input.say_cores(stream::message);
-        }
-        Ok(input)
-    }
-
-    /// The wind that the rain feels, and what it is relative to, if that is asked for and differs from place to place.
-    fn field(&self, input: &Input) -> Result<Option<(WindField, Vec3)>, Failure> {
-        if self.form == Form::Primitives || input.weather.wind.uniform().is_some() {
-            return Ok(None);
-        }
-        let stage = Stage::new(&input.weather, &input.loaded, self.time)?;
-        let field = Shower::new(&input.weather)?.wind_field(&Still(&stage), self.time)?;
-        Ok(field.map(|field| (field, stage.origin.as_vec3())))
+        arguments.read(&mut Budget::default())
     }
 
     fn draw(

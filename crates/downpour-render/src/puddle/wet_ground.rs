@@ -8,7 +8,6 @@ use super::map::{Ground, PuddleMap};
 use super::relief::Relief;
 use super::rows::{PuddleLook, PuddleRows};
 use super::{PuddleError, Ripples};
-use crate::shower::law;
 use crate::stage::Stage;
 
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.
@@ -39,7 +38,7 @@ impl WetGround {
             return Ok(None);
         }
         let rain = &weather.rain;
-        let law = (rain.rate_mm_h > 0.0).then(|| law(rain));
+        let law = (rain.rate_mm_h > 0.0).then(|| rain.sizes());
         let ripples = Ripples::new(law.transpose()?.as_ref(), rain.seed ^ SEED, first_s)?;
         let masks = loaded.masks.iter().map(Option::as_ref).chain(std::iter::repeat(None));
         let puddles =

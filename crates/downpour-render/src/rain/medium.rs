@@ -111,19 +111,16 @@ impl RainMedium {
         if rain.rate_mm_h() <= 0.0 {
             return Ok(Self::default());
         }
-        let given = rain.options();
-        let (smallest, largest) = (given.smallest_diameter_m.max(1.0e-6), given.largest_diameter_m);
-        let count = (ops::log2(largest / smallest) * BINS_PER_OCTAVE).ceil().max(1.0) as u32;
-        let edge = |k: u32| {
-            if k == count { largest } else { smallest * ops::pow(2.0, f64::from(k) / BINS_PER_OCTAVE) }
-        };
         let mut depths = [0.0f64; ENTRIES];
         let (mut all, mut above, mut rate_mm_h) = (0.0, 0.0, 0.0);
         let (mut weight, mut row) = (0.0, 0.0);
-        // A last sliver would be too thin a bin.
-        for k in (0..count).filter(|&k| edge(k + 1) - edge(k) > 1.0e-6) {
-            let part = rain.restricted_to(edge(k), edge(k + 1))?;
-            let diameter = (edge(k) * edge(k + 1)).sqrt();
+        for [lower, upper] in rain.diameter_classes(BINS_PER_OCTAVE) {
+            // A last sliver would be too thin a bin.
+            if upper - lower <= 1.0e-6 {
+                continue;
+            }
+            let part = rain.restricted_to(lower, upper)?;
+            let diameter = (lower * upper).sqrt();
             let level = part.cross_section() * masks.outline(diameter as f32, 0.0);
             let extinction = options.efficiency.factor() * level;
             // Diffraction, where it is counted, is everywhere; outlines only where drops are not drawn.
