@@ -9,6 +9,7 @@ mod failure;
 mod interrupt;
 mod listing;
 mod output;
+mod progress;
 mod quantity;
 mod stream;
 mod threads;

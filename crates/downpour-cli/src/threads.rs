@@ -60,12 +60,45 @@ fn pool(mut ready: Vec<Sender<ThreadBuilder>>) -> Result<(), ThreadPoolBuildErro
         .build_global()
 }
 
+/// The least memory that a process has to be allowed: below it allocations fail that nothing can answer.
+const LEAST: u64 = 256 << 20;
+
+/// The address space that this process is allowed, in bytes, where the system says so and it is limited.
+fn allowed_bytes() -> Option<u64> {
+    // Linux has it here; elsewhere such limits are rare.
+    limit_in(&std::fs::read_to_string("/proc/self/limits").ok()?)
+}
+
+/// The soft limit of the address space in a table of limits.
+fn limit_in(table: &str) -> Option<u64> {
+    let row = table.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    row.split_whitespace().next()?.parse().ok()
+}
+
 /// Starts the threads.
 ///
 /// # Errors
-/// Exit code 3 where there is no memory for a pool.
+/// Exit code 3 where there is no memory for a pool, or where the process is allowed less than any work needs.
 pub(crate) fn start() -> Result<(), Failure> {
+    if let Some(allowed) = allowed_bytes().filter(|&bytes| bytes < LEAST) {
+        let found = format!("{} MiB of address space", allowed >> 20);
+        return Err(Failure::new(LIMIT, format!("{found}; allowed: {} MiB or more", LEAST >> 20)));
+    }
     pool(waiting(wanted())).map_err(|error| {
         Failure::new(LIMIT, format!("no threads: {error}; allowed: memory and processes for one"))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_limit_of_a_table() {
+        let table =
+            |soft: &str| format!("Limit  Soft Limit\nMax address space         {soft}  unlimited  bytes\n");
+        assert_eq!(limit_in(&table("67108864")), Some(64 << 20));
+        assert_eq!(limit_in(&table("unlimited")), None);
+        assert_eq!(limit_in("Max file size  1 1 bytes"), None);
+    }
 }

@@ -12,6 +12,7 @@ use super::render::BYTES_PER_PIXEL;
 use super::streaks::{Streaks, StreaksArgument};
 use crate::failure::Failure;
 use crate::listing::{Datum, Entry};
+use crate::progress::doing;
 use crate::{listing, stream};
 
 /// Eleven words: mass, motion, claims, wetness, what was decided and what comes.
@@ -34,9 +35,10 @@ pub(crate) struct CheckArguments {
 impl CheckArguments {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         self.input.check()?;
-        let input = self.input.read(&mut Budget::default())?;
+        let input = doing("reading", false, || self.input.read(&mut Budget::default()))?;
         let streaks = self.streaks.read(&input.weather)?;
-        let stage = Stage::new(&input.weather, &input.loaded, self.input.time)?;
+        let stage =
+            doing("setting the scene", false, || Stage::new(&input.weather, &input.loaded, self.input.time))?;
         input.say_warnings(&stage, stream::message);
         let mut entries = scene(&input, &stage);
         entries.extend(light(&input));

@@ -11,7 +11,6 @@ mod outputs;
 mod painter;
 mod pane;
 mod places;
-mod progress;
 mod report;
 mod shower;
 #[cfg(feature = "video")]
@@ -32,11 +31,12 @@ use downpour::render::tone::tone_picture;
 use downpour::scene::Budget;
 use downpour::scene::weather::Weather;
 
-use super::input::InputArguments;
+use super::input::{Input, InputArguments};
 use super::streaks::StreaksArgument;
 use crate::backend::BackendArguments;
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
+use crate::progress::doing;
 use crate::{quantity, stream};
 use frames::Frames;
 use ground::Puddles;
@@ -147,33 +147,37 @@ impl RenderArguments {
         let (stats, drops) = (self.stats.as_deref(), self.dump_drops.as_deref());
         let outputs = Outputs::new(&self.output, stats, drops, self.overwrite)?;
         self.check_layers(outputs.format)?;
-        let input = self.input.read(&mut Budget::default())?;
+        let input = doing("reading", self.quiet, || self.input.read(&mut Budget::default()))?;
         outputs.keep(&input.files)?;
         reserve(input.weather.size)?;
         let atlas = self.streaks.read(&input.weather)?.atlas()?;
-        let stage = Stage::new(&input.weather, &input.loaded, self.input.time)?;
+        let stage = self.stage(&input, self.input.time)?;
         input.say_warnings(&stage, |text| self.say(text));
         let begin = Instant::now();
         let rain = &input.weather.rain;
-        let showers = &mut Showers::new(&input.weather, &input.loaded, atlas.as_ref())?;
+        let showers = &mut Showers::new(&input.weather, &input.loaded, atlas.as_ref(), self.quiet)?;
         let ask = Ask { measure: outputs.wants_stats(), quiet: self.quiet };
         let moving = MovingScenery { weather: &input.weather, loaded: &input.loaded };
         let still = Still(&stage);
         let scenery: &dyn Scenery = if moves(&input.loaded) { &moving } else { &still };
         let shower = showers.at(scenery, &stage, self.input.time, &ask)?;
         let mut pane = Pane::new(&input.weather, &stage, self.input.time, self.quiet)?;
-        let mut puddles = Puddles::new(&input.weather, &input.loaded, &stage, self.input.time)?;
-        let stage = puddles.lay(Cow::Owned(stage), self.input.time)?;
+        let (stage, time_s) = (Cow::Owned(stage), self.input.time);
+        let stage = doing("rain on puddles", self.quiet, || {
+            Puddles::new(&input.weather, &input.loaded, &stage, time_s)?.lay(stage, time_s)
+        })?;
         let stage = &*pane.hang(stage, self.input.time)?;
         // The files have become buffers.
         drop(input.loaded);
         let options = self.options(stage, &input.weather, self.input.time, shower.medium);
         let say = |text: &str| self.say(text);
         let (picture, computer) = with_painter(&self.backend, interrupt, say, |painter| {
-            let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
-            let through = pane.before(stage, &picture, &options)?;
-            painter.look(&mut picture, through)?;
-            Ok((picture, painter.computer().clone()))
+            doing("drawing", self.quiet, || {
+                let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
+                let through = pane.before(stage, &picture, &options)?;
+                painter.look(&mut picture, through)?;
+                Ok((picture, painter.computer().clone()))
+            })
         })?;
         let frame_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         let drawn = picture.drawn.len();
@@ -217,6 +221,11 @@ impl RenderArguments {
             return Err(Failure::new(INPUT, format!("{found}; allowed: for .exr only")));
         }
         Ok(())
+    }
+
+    /// The scene of a weather at the first time that is asked for.
+    fn stage(&self, input: &Input, time_s: f64) -> Result<Stage, Failure> {
+        Ok(doing("setting the scene", self.quiet, || Stage::new(&input.weather, &input.loaded, time_s))?)
     }
 
     fn say(&self, text: &str) {

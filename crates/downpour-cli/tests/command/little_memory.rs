@@ -1,23 +1,33 @@
-//! Limits of memory that leave no room for a thread on each core.
+//! Limits of memory that leave no room for a thread on each core, and none for any work.
 
-use crate::child::Downpour;
+use crate::child::{Downpour, Ended};
 
-/// The work is done with the threads that there is room for, and with none of them by the first.
+/// `check` of a small weather with 64 threads, under a limit of the address space: exit code and messages.
+fn checked(mebibytes: u64) -> Ended {
+    let limit = format!("-v {}", mebibytes * 1024);
+    let run = Downpour::limited(&[&limit], &["check", "a.toml"]).env("RAYON_NUM_THREADS", "64");
+    run.with_file("a.toml", "[rain]\nrate_mm_h = 5\n").run()
+}
+
+/// The work is done with the threads that there is room for.
 #[test]
-fn a_weather_is_checked_where_no_thread_can_start() {
-    let mut alone = 0;
-    for mebibytes in [40, 64, 96, 160, 512] {
-        let limit = format!("-v {}", mebibytes * 1024);
-        let run = Downpour::limited(&[&limit], &["check", "a.toml"]).env("RAYON_NUM_THREADS", "64");
-        let ended = run.with_file("a.toml", "[rain]\nrate_mm_h = 5\n").run();
-        assert!(!ended.stderr.contains("internal error"), "{mebibytes} MiB: {}", ended.stderr);
-        // Below some size the loader finds no room for the program itself.
-        if ended.code.is_none() || ended.code == Some(127) {
-            assert!(mebibytes < 160, "{mebibytes} MiB: {}", ended.stderr);
-        } else {
-            alone += usize::from(mebibytes < 160);
-            ended.succeeded();
+fn a_weather_is_checked_where_few_threads_can_start() {
+    for mebibytes in [256, 320, 512] {
+        checked(mebibytes).succeeded();
+    }
+}
+
+/// Below what any work needs the command says so, wherever the system can load the program at all.
+#[test]
+fn too_little_memory_for_any_work_is_refused() {
+    for mebibytes in [40, 64, 96, 160, 255] {
+        let ended = checked(mebibytes);
+        let loaded = !(ended.code.is_none() || ended.code == Some(127));
+        assert!(loaded || mebibytes < 96, "{mebibytes} MiB: {}", ended.stderr);
+        if loaded {
+            assert_eq!(ended.code, Some(3), "{mebibytes} MiB: {}", ended.stderr);
+            let told = format!("{mebibytes} MiB of address space; allowed: 256 MiB or more");
+            assert!(ended.stderr.contains(&told), "{}", ended.stderr);
         }
     }
-    println!("{alone} runs under limits that hold no 64 threads");
 }

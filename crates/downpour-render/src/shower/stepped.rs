@@ -2,7 +2,7 @@
 //!
 //! Time goes by sixtieths of a second that are counted from time 0, whatever pictures are taken and whichever is the first.
 //! A picture shows the last state before its shutter opens, gone on from there; nothing of that is stored. Wind and map are
-//! made anew at every tenth of a second. So neither the frame rate nor other pictures have a say.
+//! looked at every tenth of a second, and made anew where they have changed. So neither the frame rate nor other pictures have a say.
 //!
 //! Rain in view forgets: its drops depend on the last seconds alone, and whoever seeks simulates those. Rain in a box or a
 //! cylinder remembers: it is simulated from time 0 on, up to a minute; a rain that is first looked at later begins then.
@@ -15,7 +15,8 @@ use downpour_sim::collision::{CollisionMap, CollisionOptions};
 use downpour_sim::field::VisibleDrops;
 use downpour_sim::simulation::{Drag, Moment, SimVolume, Simulation, SimulationOptions, least_pixels};
 use downpour_sim::view::View;
-use downpour_wind::{WindField, WindMask};
+use downpour_wind::turbulence::WindTurbulenceMode;
+use downpour_wind::{WindField, WindGrid, WindMask, WindPrimitive};
 use glam::{DVec3, Vec3};
 
 use super::scenery::Scenery;
@@ -78,9 +79,24 @@ struct Surroundings {
     /// What the map was made of.
     made_of: Option<(u64, CollisionOptions)>,
     map: Option<CollisionMap>,
-    field: Option<WindField>,
+    wind: Option<Blown>,
     /// What map and field are relative to.
     origin: DVec3,
+}
+
+/// A wind that differs from place to place, and what its field was made of beside the map.
+#[derive(Clone, Debug)]
+struct Blown {
+    parts: Vec<WindPrimitive>,
+    modes: Vec<WindTurbulenceMode>,
+    grid: WindGrid,
+    field: WindField,
+}
+
+impl Surroundings {
+    fn field(&self) -> Option<&WindField> {
+        self.wind.as_ref().map(|wind| &wind.field)
+    }
 }
 
 impl Stepped {
@@ -160,7 +176,7 @@ impl Stepped {
             let air = self.weather.wind.air().prepared(now_s);
             let surroundings = &running.surroundings;
             let moment = Moment {
-                field: surroundings.field.as_ref(),
+                field: surroundings.field(),
                 map: surroundings.map.as_ref(),
                 air: Some(&air),
                 ..Moment::new(&view, surroundings.origin, air.velocity().as_vec3())
@@ -190,7 +206,7 @@ impl Stepped {
         time_s: f64,
     ) -> Result<Option<WindField>, ShowerError> {
         self.begin(scenery)?;
-        Ok(self.surroundings(scenery, time_s, None)?.field)
+        Ok(self.surroundings(scenery, time_s, None)?.wind.map(|wind| wind.field))
     }
 
     pub(super) fn measured_rate_mm_h(&self) -> f64 {
@@ -246,7 +262,7 @@ impl Stepped {
         let view = self.view(scenery, time_s)?;
         let air = self.weather.wind.air().prepared(time_s);
         let moment = Moment {
-            field: surroundings.field.as_ref(),
+            field: surroundings.field(),
             map: surroundings.map.as_ref(),
             air: Some(&air),
             ..Moment::new(&view, surroundings.origin, air.velocity().as_vec3())
@@ -279,13 +295,18 @@ impl Stepped {
             vec![at(0.0)?, at(0.5)?, at(1.0)?]
         };
         let before =
-            before.unwrap_or(Surroundings { made_of: None, map: None, field: None, origin: stage.origin });
-        let (made_of, map) = match self.map(&stage, scenery.is_still(), &views, wind, before.made_of)? {
+            before.unwrap_or(Surroundings { made_of: None, map: None, wind: None, origin: stage.origin });
+        let made = self.map(&stage, scenery.is_still(), &views, wind, before.made_of)?;
+        // A field knows the map that it was made with.
+        let same_map = matches!(made, Some((_, None))) || (made.is_none() && before.made_of.is_none());
+        let known = before.wind.filter(|_| same_map && before.origin == stage.origin);
+        let (made_of, map) = match made {
             Some((made_of, map)) => (Some(made_of), map.or(before.map)),
             None => (None, None),
         };
-        let field = if uniform { None } else { Some(self.field(&stage, &views[0], time_s, map.as_ref())?) };
-        Ok(Surroundings { made_of, map, field, origin: stage.origin })
+        let wind =
+            if uniform { None } else { Some(self.blown(&stage, &views[0], time_s, map.as_ref(), known)?) };
+        Ok(Surroundings { made_of, map, wind, origin: stage.origin })
     }
 
     /// The map of what stops drops in some views, and what it is made of (of a scene that stands still the options alone say
@@ -310,21 +331,30 @@ impl Stepped {
         Ok(Some((made_of, Some(map))))
     }
 
-    fn field(
+    /// The wind at a time in the cells round the eye; what is `known` where it is the same.
+    fn blown(
         &self,
         stage: &Stage,
         view: &View,
         time_s: f64,
         map: Option<&CollisionMap>,
-    ) -> Result<WindField, ShowerError> {
+        known: Option<Blown>,
+    ) -> Result<Blown, ShowerError> {
+        let wind = &self.weather.wind;
         let grid = self.weather.wind_box.grid(view.eye)?;
+        let (parts, modes) = (wind.at(time_s), wind.modes(time_s, &grid));
+        if let Some(known) = known
+            && (&known.parts, &known.modes, known.grid) == (&parts, &modes, grid)
+        {
+            return Ok(known);
+        }
         let origin = stage.origin.as_vec3();
         let mask = match map {
             Some(map) => WindMask::from_fn(&grid, |at| map.inside(at - origin)),
             None => WindMask::open(&grid),
         };
-        let field = self.weather.wind.field(time_s, &grid, &mask)?;
-        Ok(field.relative_to(stage.origin))
+        let field = WindField::with_turbulence(&grid, &parts, &modes, &mask)?.relative_to(stage.origin);
+        Ok(Blown { parts, modes, grid, field })
     }
 
     /// What of the scene the map has to cover; nothing where nothing stands.

@@ -23,7 +23,6 @@ use super::outputs::Format;
 use super::painter::{PaintError, Painter, with_painter};
 use super::pane::Pane;
 use super::places::Places;
-use super::progress::Progress;
 use super::report::{self, Told};
 use super::shower::{Ask, Showers};
 use super::{RenderArguments, reserve};
@@ -31,6 +30,7 @@ use crate::commands::input::Input;
 use crate::failure::{Failure, INPUT};
 use crate::interrupt::Interrupt;
 use crate::output::remove_leftovers;
+use crate::progress::{Progress, doing};
 
 /// Makes a clip.
 ///
@@ -52,7 +52,8 @@ pub(super) fn run(
         return Err(Failure::new(INPUT, format!("{found}; allowed: frames up to {LATEST_S} s")));
     }
     places.check_free(frames)?;
-    let mut input = arguments.input.read(&mut downpour::scene::Budget::default())?;
+    let mut input =
+        doing("reading", arguments.quiet, || arguments.input.read(&mut downpour::scene::Budget::default()))?;
     places.keep(frames, &input.files)?;
     #[cfg(feature = "video")]
     if places.video.is_some() {
@@ -60,7 +61,7 @@ pub(super) fn run(
     }
     reserve(input.weather.size)?;
     let atlas = arguments.streaks.read(&input.weather)?.atlas()?;
-    let first = Stage::new(&input.weather, &input.loaded, time_s(arguments.input.time, frames.first, fps))?;
+    let first = arguments.stage(&input, time_s(arguments.input.time, frames.first, fps))?;
     input.say_warnings(&first, |text| arguments.say(text));
     let scene = scene_digest(&input.weather, &input.loaded, &first);
     let moving = moves(&input.loaded);
@@ -141,7 +142,8 @@ impl Clip<'_> {
         if let Some(drops) = &self.places.drops {
             remove_leftovers(drops.folder());
         }
-        let showers = &mut Showers::new(&self.input.weather, &self.input.loaded, self.atlas.as_ref())?;
+        let quiet = self.arguments.quiet;
+        let showers = &mut Showers::new(&self.input.weather, &self.input.loaded, self.atlas.as_ref(), quiet)?;
         let (weather, loaded) = (&self.input.weather, &self.input.loaded);
         let first_s = time_s(self.arguments.input.time, self.frames.first, self.fps);
         let surfaces = &mut Surfaces {

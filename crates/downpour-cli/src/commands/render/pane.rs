@@ -9,8 +9,8 @@ use downpour::render::rain::{CaptureFrame, RainOptions, RefractionForm};
 use downpour::render::stage::Stage;
 use downpour::scene::weather::Weather;
 
-use super::progress::Progress;
 use crate::failure::Failure;
+use crate::progress::Progress;
 
 /// A pane with the rain on it, if the weather has one.
 pub(super) struct Pane {

@@ -1,5 +1,7 @@
 //! The rain of a picture, and of all pictures of a clip, for the command.
 
+use std::time::Instant;
+
 use downpour::mask::atlas::StreakAtlas;
 use downpour::render::rain::{DropMasks, RainMedium};
 use downpour::render::shower::{self, Scenery, Shower};
@@ -7,8 +9,8 @@ use downpour::render::stage::Stage;
 use downpour::scene::weather::{Loaded, Weather};
 use downpour::sim::field::VisibleDrops;
 
-use super::progress::Progress;
 use crate::failure::Failure;
+use crate::progress::{PATIENCE, Progress, doing};
 
 /// The rain of a picture.
 pub(super) struct Seen {
@@ -41,8 +43,9 @@ impl Showers {
         weather: &Weather,
         loaded: &Loaded,
         atlas: Option<&StreakAtlas>,
+        quiet: bool,
     ) -> Result<Self, Failure> {
-        let masks = shower::masks(weather, loaded)?;
+        let masks = doing("tracing drops", quiet, || shower::masks(weather, loaded))?;
         let masks = if let Some(atlas) = atlas { masks.with_atlas(atlas) } else { masks };
         Ok(Self { shower: Shower::new(weather)?, masks })
     }
@@ -61,8 +64,9 @@ impl Showers {
         ask: &Ask,
     ) -> Result<Seen, Failure> {
         let mut progress: Option<Progress> = None;
+        let begin = Instant::now();
         let visible = self.shower.at(scenery, stage, time_s, &mut |done, all| {
-            if all >= LONG_STEPS {
+            if all >= LONG_STEPS || begin.elapsed() > PATIENCE {
                 let progress = progress.get_or_insert_with(|| Progress::new("rain: step", all, ask.quiet));
                 progress.set(done);
             }

@@ -8,14 +8,14 @@ use serde_json::Value;
 
 use super::super::job::digest;
 use super::super::journal::Journal;
-#[cfg(feature = "video")]
-use super::super::progress::Progress;
 use super::super::report::{self, ClipTold};
 use super::Clip;
 #[cfg(feature = "video")]
 use crate::failure::FILES;
 use crate::failure::{Failure, shown};
 use crate::output::remove_leftovers;
+#[cfg(feature = "video")]
+use crate::progress::Progress;
 
 impl Clip<'_> {
     /// Whether the video of this very journal has its name already: only the cleaning up was missed.
