@@ -25,7 +25,7 @@ const MASKS: [(&str, f64, f64); 6] = [
 const LIMITS: (u64, u64) = (64 << 10, 8 << 20);
 
 fn folder() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("goldens")
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("goldens/masks")
 }
 
 fn make(diameter: f64, degrees: f64) -> Mask {

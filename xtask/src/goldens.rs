@@ -1,20 +1,29 @@
-//! Golden images: small pictures of what the CPU twins make, kept in `tests/goldens`.
+//! Golden images in `tests/goldens`: small masks of the CPU twins, and small pictures of every kind that the command makes.
 
 use crate::run;
 
+/// The tests that hold them.
+const TESTS: [[&str; 2]; 2] = [["downpour-tests", "golden"], ["downpour-cli", "goldens"]];
+
 /// Compares them.
 pub(crate) fn compare() -> Result<(), String> {
-    run::cargo(&["test", "-p", "downpour-tests", "--locked", "--test", "golden"], &[])
+    TESTS.iter().try_for_each(|test| run::cargo(&arguments(test), &[]))
 }
 
 /// Writes them. The run then fails on purpose: a new picture counts once a person has looked at it.
 pub(crate) fn bless() -> Result<(), String> {
-    let blessed = run::cargo(
-        &["test", "-p", "downpour-tests", "--locked", "--test", "golden"],
-        &[("DOWNPOUR_BLESS", "1")],
-    );
-    match blessed {
-        Ok(()) => Ok(()),
-        Err(_) => Err("golden images were written to tests/goldens; look at them, then compare".to_owned()),
+    let mut written = false;
+    for test in &TESTS {
+        // A GPU is compared with what is kept; nothing of it is written.
+        let blessed = run::cargo(&arguments(test), &[("DOWNPOUR_BLESS", "1"), ("DOWNPOUR_GPU_TESTS", "no")]);
+        written |= blessed.is_err();
     }
+    if written {
+        return Err("golden images were written to tests/goldens; look at them, then compare".to_owned());
+    }
+    Ok(())
+}
+
+fn arguments<'a>([package, test]: &[&'a str; 2]) -> [&'a str; 6] {
+    ["test", "-p", package, "--locked", "--test", test]
 }

@@ -22,7 +22,7 @@ cargo xtask scenes [--check]  write assets/scenes/street; with --check compare i
 cargo xtask scenes skies      capture the street into the sky maps of assets/skies, minutes each; with --check compare them, byte
                               for byte (--command FILE: a `downpour` that is built)
 cargo xtask atlas [OPTIONS]   write assets/streaks; --check compares them; --columbia imports the streak database
-cargo xtask goldens [--bless] compare the golden images of tests/goldens; with --bless write them from the CPU twins
+cargo xtask goldens [--bless] compare the golden masks and pictures of tests/goldens; with --bless write them from the CPU
 cargo xtask shaders [FOLDER]  write the complete WGSL text of every kernel (default target/shaders)
 cargo xtask truth [OPTIONS]   hold `downpour specimen` against Mitsuba 3 (needs python3 and the network)
 cargo xtask figures [NAME]    make a paper's figures again, with our rain beside theirs; without a name list them

@@ -1,0 +1,193 @@
+//! Golden pictures: small frames of every kind, which the command makes on the CPU bit for bit, and on a GPU so that nobody sees a
+//! difference. They hold whatever is moved or written anew.
+//!
+//! `DOWNPOUR_BLESS=1` writes them and then fails: a new picture counts once a person has looked at it. What differs is written to
+//! `target/goldens`. Without an adapter, or with `DOWNPOUR_GPU_TESTS=no`, see `gpu.rs`.
+
+#[allow(dead_code, reason = "the tests of the command use the rest")]
+#[path = "command/child.rs"]
+mod child;
+
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+
+use child::Downpour;
+
+/// A kind of frame.
+struct Golden {
+    name: &'static str,
+    /// The weather file of `tests/goldens/weather`.
+    weather: &'static str,
+    options: &'static [&'static str],
+    /// What the command writes.
+    output: &'static str,
+    /// The frame among it.
+    file: &'static str,
+}
+
+impl Golden {
+    const fn picture(name: &'static str) -> Self {
+        Self { name, weather: name, options: &[], output: "a.png", file: "a.png" }
+    }
+}
+
+/// All of them.
+const GOLDENS: [Golden; 14] = [
+    Golden::picture("day"),
+    Golden {
+        name: "day_layers",
+        options: &["--layers"],
+        output: "a.exr",
+        file: "a.exr",
+        ..Golden::picture("day")
+    },
+    Golden::picture("night"),
+    Golden { name: "night_frozen", options: &["--shutter", "0"], ..Golden::picture("night") },
+    Golden {
+        name: "night_clip_frame_7",
+        options: &["--frames", "6..8", "--fps", "24"],
+        output: "%d.png",
+        file: "7.png",
+        ..Golden::picture("night")
+    },
+    Golden::picture("focus"),
+    Golden::picture("puddles"),
+    Golden::picture("windshield"),
+    Golden::picture("window"),
+    Golden::picture("tornado"),
+    Golden::picture("box"),
+    Golden::picture("rousseau_2006"),
+    Golden::picture("im_sung_2022"),
+    Golden::picture("atlas"),
+];
+
+/// Mean FLIP between a GPU's picture and the CPU's.
+const MOST_FLIP: f32 = 0.02;
+
+/// Most bytes of one picture.
+const LARGEST: u64 = 512 << 10;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let off = std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no");
+    let mut trials = vec![Trial::test("goldens_are_small_and_all_used", small_and_used)];
+    for golden in &GOLDENS {
+        trials.push(Trial::test(format!("cpu::{}", golden.name), || same_on_the_cpu(golden)));
+        if golden.file.ends_with(".png") {
+            let trial = Trial::test(format!("gpu::{}", golden.name), || alike_on_a_gpu(golden));
+            trials.push(trial.with_ignored_flag(off));
+        }
+    }
+    libtest_mimic::run(&arguments, trials).exit_code()
+}
+
+fn root(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
+}
+
+/// The place of a golden picture.
+fn kept(golden: &Golden) -> PathBuf {
+    let end = golden.file.rsplit('.').next().unwrap_or_default();
+    root("tests/goldens/pictures").join(format!("{}.{end}", golden.name))
+}
+
+/// The frame as the command makes it.
+fn made(golden: &Golden, backend: &[&str]) -> Result<Vec<u8>, Failed> {
+    let text = |path: PathBuf| path.to_string_lossy().into_owned();
+    let weather = text(root("tests/goldens/weather").join(format!("{}.toml", golden.weather)));
+    let (street, atlas) = (text(root("assets/scenes/street")), text(root("assets/streaks")));
+    let fixed = ["render", &weather, "--asset-root", &street, "--streaks", &atlas, "-q", "-o", golden.output];
+    let ended = Downpour::new(&[&fixed, golden.options, backend].concat()).run();
+    if ended.code == Some(0) { Ok(ended.file(golden.file)) } else { Err(ended.stderr.into()) }
+}
+
+/// Keeps what differs for who looks into it, and says where.
+fn put_aside(golden: &Golden, side: &str, bytes: &[u8]) -> Result<String, Failed> {
+    let folder = root("target/goldens");
+    fs::create_dir_all(&folder)?;
+    let path =
+        folder.join(format!("{}.{side}.{}", golden.name, golden.file.rsplit('.').next().unwrap_or_default()));
+    fs::write(&path, bytes)?;
+    Ok(path.display().to_string())
+}
+
+fn same_on_the_cpu(golden: &Golden) -> Result<(), Failed> {
+    let bytes = made(golden, &["--backend", "cpu"])?;
+    if std::env::var("DOWNPOUR_BLESS").is_ok_and(|value| value == "1") {
+        fs::create_dir_all(root("tests/goldens/pictures"))?;
+        fs::write(kept(golden), &bytes)?;
+        return Err(format!("{} was written: look at it", golden.name).into());
+    }
+    let wanted = fs::read(kept(golden))?;
+    // The pixels count, not how a library packs them.
+    let same = if golden.file.ends_with(".png") {
+        pixels(&wanted)? == pixels(&bytes)?
+    } else {
+        channels(&wanted)? == channels(&bytes)?
+    };
+    if same { Ok(()) } else { Err(format!("another picture: {}", put_aside(golden, "cpu", &bytes)?).into()) }
+}
+
+/// The control: the picture the wrong way round is seen as another.
+fn alike_on_a_gpu(golden: &Golden) -> Result<(), Failed> {
+    let adapter = std::env::var("DOWNPOUR_ADAPTER").unwrap_or_default();
+    let named: &[&str] = if adapter.is_empty() { &[] } else { &["--adapter", &adapter] };
+    let bytes = made(golden, &[&["--backend", "gpu"], named].concat())?;
+    let (wanted, found) = (pixels(&fs::read(kept(golden))?)?, pixels(&bytes)?);
+    if wanted.dimensions() != found.dimensions() {
+        return Err(format!("{:?} pixels for {:?}", found.dimensions(), wanted.dimensions()).into());
+    }
+    let control = flip(&wanted, &image::imageops::flip_horizontal(&wanted));
+    let mean = flip(&wanted, &found);
+    println!("{}: FLIP {mean:.4}, the wrong way round {control:.4}", golden.name);
+    if control < 2.0 * MOST_FLIP {
+        return Err(format!("the wrong way round FLIP is {control}: nothing could be seen").into());
+    }
+    if mean <= MOST_FLIP {
+        return Ok(());
+    }
+    Err(format!("FLIP {mean}, allowed {MOST_FLIP}: {}", put_aside(golden, "gpu", &bytes)?).into())
+}
+
+fn pixels(png: &[u8]) -> Result<image::RgbImage, Failed> {
+    Ok(image::load_from_memory(png)?.into_rgb8())
+}
+
+/// Mean FLIP of two pictures of one size, at the usual distance of a screen.
+fn flip(a: &image::RgbImage, b: &image::RgbImage) -> f32 {
+    let [a, b] = [a, b].map(|image| nv_flip::FlipImageRgb8::with_data(image.width(), image.height(), image));
+    nv_flip::FlipPool::from_image(&nv_flip::flip(a, b, nv_flip::DEFAULT_PIXELS_PER_DEGREE)).mean()
+}
+
+/// Names and bits of all channels.
+fn channels(bytes: &[u8]) -> Result<Vec<(String, Vec<u32>)>, Failed> {
+    use ::exr::prelude::*;
+    let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = image.all_attributes().from_buffered(Cursor::new(bytes))?;
+    let bits = |c: &AnyChannel<FlatSamples>| c.sample_data.values_as_f32().map(f32::to_bits).collect();
+    Ok(image.layer_data.channel_data.list.iter().map(|c| (c.name.to_string(), bits(c))).collect())
+}
+
+fn small_and_used() -> Result<(), Failed> {
+    let mut wrong = Vec::new();
+    for entry in fs::read_dir(root("tests/goldens/pictures"))? {
+        let path = entry?.path();
+        if !GOLDENS.iter().any(|golden| kept(golden).file_name() == path.file_name()) {
+            wrong.push(format!("{} belongs to no test", path.display()));
+        }
+        if fs::metadata(&path)?.len() > LARGEST {
+            wrong.push(format!("{} is too large", path.display()));
+        }
+    }
+    for entry in fs::read_dir(root("tests/goldens/weather"))? {
+        let path = entry?.path();
+        if !GOLDENS.iter().any(|golden| path.file_stem().is_some_and(|stem| stem == golden.weather)) {
+            wrong.push(format!("{} belongs to no picture", path.display()));
+        }
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n").into()) }
+}
