@@ -42,7 +42,7 @@ use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 
 pub use capture::{Capture, CaptureFrame};
 pub use drops_frame::DropsFrame;
-pub use exposure::{Exposure, EyeMotion, StreakColour, StreakSamples};
+pub use exposure::{Exposure, EyeMotion, StreakColour, StreakSamples, TemporalResponse};
 use light::DropLightOptions;
 pub use masks::DropMasks;
 pub use medium::{MediumOptions, PanePlane, RainMedium};

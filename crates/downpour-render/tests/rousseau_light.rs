@@ -22,6 +22,7 @@ const RADIUS: f32 = 0.25e-3;
 
 /// A drop that falls before a black sky, lit from `from` with an irradiance of pi; red.
 fn drawn(
+    form: DropLightForm,
     from: Vec3,
     speed: f32,
     shutter_s: f64,
@@ -41,7 +42,7 @@ fn drawn(
         present_s: FallingDrop::ALWAYS,
     };
     let exposure = Exposure { shutter_s, samples, ..Exposure::default() };
-    let light = DropLightOptions { form: DropLightForm::Rousseau2006, glints: 8 };
+    let light = DropLightOptions { form, glints: 8 };
     let rain = RainOptions { capture_size: 16, exposure, light, ..RainOptions::default() };
     let half = 0.5 * SIZE[1] as f32 * RADIUS / (ACROSS * AWAY);
     let view = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 2.0 * half };
@@ -52,11 +53,16 @@ fn drawn(
 
 /// Rousseau 2006, section 6, as printed, at a place of a sphere's disc: (V . N) (A2 + A3), seen along -z.
 fn printed(place: Vec2, from: Vec3) -> f32 {
+    printed_terms(place, from).into_iter().sum()
+}
+
+/// Its terms: (V . N) A2, and (V . N) A3.
+fn printed_terms(place: Vec2, from: Vec3) -> [f32; 2] {
     let normal = place.extend((1.0 - place.length_squared()).max(0.0).sqrt());
     let level = |v: Vec3| Vec2::new(v.x, v.z).normalize_or_zero();
     let outside = from.dot(normal).max(0.0);
     let within = (-level(from).dot(level(normal)) * (1.0 + from.dot(normal))).max(0.0);
-    normal.z * (outside + within)
+    [normal.z * outside, normal.z * within]
 }
 
 /// The place of a pixel's middle on the disc, radii.
@@ -70,7 +76,7 @@ const LAMPS: [Vec3; 3] = [Vec3::new(0.8, 0.6, 0.0), Vec3::new(-0.6, 0.0, -0.8), 
 #[test]
 fn each_pixel_of_a_still_drop_is_shaded_by_its_normal() -> Outcome {
     for from in LAMPS {
-        let found = drawn(from, 0.0, 0.0, StreakSamples::Table)?;
+        let found = drawn(DropLightForm::Rousseau2006, from, 0.0, 0.0, StreakSamples::Table)?;
         let (mut worst, mut light, mut wanted_light) = (0.0f32, 0.0, 0.0);
         for (i, found) in (0..).zip(found) {
             let place = place(i % SIZE[0], i / SIZE[0]);
@@ -90,6 +96,32 @@ fn each_pixel_of_a_still_drop_is_shaded_by_its_normal() -> Outcome {
     Ok(())
 }
 
+/// Figure 11 of the paper shows them one by one.
+#[test]
+fn each_term_alone_is_the_papers() -> Outcome {
+    let forms = [DropLightForm::Rousseau2006External, DropLightForm::Rousseau2006Internal];
+    let mut brightest = [0.0f32; 2];
+    for from in LAMPS {
+        for (term, form) in forms.into_iter().enumerate() {
+            let found = drawn(form, from, 0.0, 0.0, StreakSamples::Table)?;
+            let (mut worst, mut most) = (0.0f32, 0.0f32);
+            for (i, found) in (0..).zip(found) {
+                let place = place(i % SIZE[0], i / SIZE[0]);
+                if place.length() < 0.9 {
+                    let wanted = printed_terms(place, from)[term];
+                    worst = worst.max((found - wanted).abs());
+                    most = most.max(wanted);
+                }
+            }
+            println!("{from}, {form:?}: worst {worst} of {most}");
+            assert!(worst < 0.02, "{from}, {form:?}: {worst}");
+            brightest[term] = brightest[term].max(most);
+        }
+    }
+    assert!(brightest.iter().all(|most| *most > 0.3), "{brightest:?}");
+    Ok(())
+}
+
 /// The streak of a drop that falls has along each column the mean over the chord there, by its profile and by a loop.
 #[test]
 fn a_streak_is_shaded_along_its_chords() -> Outcome {
@@ -98,7 +130,7 @@ fn a_streak_is_shaded_along_its_chords() -> Outcome {
     let (speed, shutter_s) = (2.0f32, f64::from(4.0 * RADIUS / 2.0));
     for from in LAMPS {
         for samples in [StreakSamples::Table, StreakSamples::Loop(32)] {
-            let found = drawn(from, speed, shutter_s, samples)?;
+            let found = drawn(DropLightForm::Rousseau2006, from, speed, shutter_s, samples)?;
             let (mut squares, mut all, mut light, mut wanted_light) = (0.0, 0.0, 0.0, 0.0);
             for column in 0..SIZE[0] {
                 let across = place(column, 0).x;

@@ -1,11 +1,14 @@
 //! Drops that move while the shutter is open: how much light they take out, where, and what they show instead.
 
+use std::sync::OnceLock;
+
 use downpour_drop::oscillation::Amplitudes;
 use downpour_render::camera::Viewpoint;
 use downpour_render::data::{SceneBuilder, SceneData};
 use downpour_render::picture::{Picture, PictureOptions, render_picture};
 use downpour_render::rain::{
     DropMasks, Exposure, EyeMotion, RainOptions, RefractionForm, StreakColour, StreakSamples,
+    TemporalResponse,
 };
 use downpour_render::sky_light::SkyLight;
 use downpour_sim::field::{DropKind, FallingDrop};
@@ -14,6 +17,9 @@ use glam::{DVec3, Vec3};
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
 const SIZE: [u32; 2] = [160, 120];
+
+/// Traced once for all tests.
+static MASKS: OnceLock<DropMasks> = OnceLock::new();
 
 fn viewpoint() -> Viewpoint {
     Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.2 }
@@ -48,7 +54,8 @@ fn picture_from(
     let form = RefractionForm::Direction;
     let rain = RainOptions { form, capture_size: 128, exposure, ..RainOptions::default() };
     let options = PictureOptions { size, grid: 1, sky_rays: 0, seed: 0, rain };
-    Ok(render_picture(scene, eye, drops, &DropMasks::trace(1.333)?, &options)?)
+    let masks = MASKS.get_or_init(|| DropMasks::trace(1.333).expect("masks"));
+    Ok(render_picture(scene, eye, drops, masks, &options)?)
 }
 
 fn sky(radiance: impl Fn(f32, f32) -> [f32; 3]) -> SceneData {
@@ -113,6 +120,97 @@ fn a_streak_takes_out_what_its_drop_does() -> Outcome {
     Ok(())
 }
 
+/// Rows of a streak that fades, by the law of a disc of diameter `d` pixels that goes down `way` pixels at one speed while what it
+/// leaves behind fades away in that time: a row that the whole disc passes loses `(pi d^2 / 4) / way` by `2 s`, `s` the part of the
+/// way that lies above it. All rows together lose the disc's area, and their middle is at two thirds of the way.
+#[test]
+fn an_eye_sees_a_streak_fade() -> Outcome {
+    let scene = sky(|_, _| [1.0; 3]);
+    let (diameter, way) = (0.4e-3f32, 60.0);
+    for pixels in [10.0, 6.0, 2.5, 1.2, 0.5] {
+        let distance = f64::from(diameter) * scale(SIZE[1]) / pixels;
+        let area = std::f64::consts::FRAC_PI_4 * pixels * pixels;
+        for samples in [StreakSamples::Table, StreakSamples::Loop(16)] {
+            let speed = (way / scale(SIZE[1]) * distance / 0.075) as f32;
+            let drop = drop_at(DVec3::new(0.0, 0.0, -distance), diameter, [0.0, -speed, 0.0]);
+            let exposure = Exposure {
+                shutter_s: 0.075,
+                response: TemporalResponse::Fading,
+                samples,
+                ..Exposure::default()
+            };
+            let shown = picture(&scene, SIZE, &[drop], exposure)?;
+            let begin = 0.5 * (f64::from(SIZE[1]) - way);
+            let margin = 0.5 * pixels + 1.5;
+            for (row, line) in shown.rain.chunks(SIZE[0] as usize).enumerate() {
+                let found: f64 = line.iter().map(|pixel| f64::from(1.0 - pixel[3])).sum();
+                let below = row as f64 + 0.5 - begin;
+                if below > margin && below < way - margin {
+                    let expected = 2.0 * below / way * area / way;
+                    let full = area / way;
+                    assert!(
+                        (found - expected).abs() < 0.05 * full,
+                        "{pixels} pixels, {samples:?}, row {row}: {found}, not {expected}"
+                    );
+                } else if below < -margin || below > way + margin {
+                    assert!(found < 1.0e-6, "row {row}: {found}");
+                }
+            }
+            let (found, middle) = (covered(&shown), middle(&shown));
+            assert!((found / area - 1.0).abs() < 0.03, "{pixels} pixels, {samples:?}: {found}, not {area}");
+            let expected = begin + way * 2.0 / 3.0;
+            assert!((middle[1] - expected).abs() < 0.3, "{pixels}: {middle:?}, not at {expected}");
+        }
+    }
+    Ok(())
+}
+
+/// What an eye sees of a drop before varied surroundings is the mean of short exposures one after the other, each with the weight
+/// of its age: also where the drop comes nearer, and as long as it takes to pass a ray.
+#[test]
+fn an_eye_sees_moments_by_their_age() -> Outcome {
+    const PARTS: u32 = 24;
+    const PERSISTENCE_S: f64 = 0.075;
+    let scene = varied();
+    for (velocity, samples, tolerance) in [
+        ([0.0, -0.7, 0.0], StreakSamples::Loop(64), 0.03),
+        ([0.2, -0.5, 1.5], StreakSamples::Loop(64), 0.05),
+        ([0.0, -0.7, 0.0], StreakSamples::Table, 0.06),
+    ] {
+        let drop = drop_at(DVec3::new(0.0, 0.0, -0.3), 2.0e-3, velocity);
+        let exposure = Exposure { shutter_s: PERSISTENCE_S, samples, ..Exposure::default() };
+        let eye = Exposure { response: TemporalResponse::Fading, ..exposure };
+        let found = picture(&scene, SIZE, &[drop], eye)?;
+        let mut expected = picture(&scene, SIZE, &[], exposure)?;
+        let mut layer = vec![[0.0f32; 4]; found.rain.len()];
+        for part in 0..PARTS {
+            let middle = (f64::from(part) + 0.5) / f64::from(PARTS);
+            let time = (middle - 0.5) * PERSISTENCE_S;
+            let mut moved = drop;
+            moved.position += DVec3::from(velocity.map(f64::from)) * time;
+            let short = Exposure { shutter_s: PERSISTENCE_S / f64::from(PARTS), ..exposure };
+            let shown = picture(&scene, SIZE, &[moved], short)?;
+            // Ages fall evenly over the persistence; the youngest weighs the most.
+            let weight = (2.0 * middle / f64::from(PARTS)) as f32;
+            for (sum, pixel) in layer.iter_mut().zip(&shown.rain) {
+                let cover = 1.0 - pixel[3];
+                for (sum, value) in sum.iter_mut().zip([pixel[0], pixel[1], pixel[2], cover]) {
+                    *sum += weight * value;
+                }
+            }
+        }
+        expected.rain = layer.iter().map(|&[r, g, b, cover]| [r, g, b, 1.0 - cover]).collect();
+        let apart = error(&found, &expected);
+        let even = error(&picture(&scene, SIZE, &[drop], exposure)?, &expected);
+        println!("{velocity:?}, {samples:?}: {apart}, of a shutter {even}");
+        assert!(apart < tolerance, "{velocity:?}, {samples:?}: {apart}");
+        assert!(even > 0.3, "a shutter is {even} apart");
+        let ratio = covered(&found) / covered(&expected);
+        assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
+    }
+    Ok(())
+}
+
 /// Half a millimetre to 6 mm, near and far, straight and slanted, with their oscillation.
 fn many() -> Vec<FallingDrop> {
     (0..40)
@@ -135,12 +233,17 @@ fn in_uniform_surroundings_streaks_vanish() -> Outcome {
     for samples in [StreakSamples::Table, StreakSamples::Loop(5)] {
         for shutter_s in [1.0 / 2000.0, 1.0 / 60.0] {
             let oscillation = Amplitudes::GARG_NAYAR_OBLATE;
-            let exposure = Exposure { shutter_s, samples, oscillation, ..Exposure::default() };
-            let shown = picture(&scene, SIZE, &many(), exposure)?;
-            assert!(covered(&shown) > 100.0, "{}", covered(&shown));
-            for pixel in shown.radiance() {
-                for (found, expected) in pixel.iter().zip([0.25, 0.5, 2.0]) {
-                    assert!((found / expected - 1.0).abs() < 1.0e-3, "{samples:?}: {pixel:?}");
+            for response in [TemporalResponse::Shutter, TemporalResponse::Fading] {
+                let exposure = Exposure { shutter_s, response, samples, oscillation, ..Exposure::default() };
+                let shown = picture(&scene, SIZE, &many(), exposure)?;
+                assert!(covered(&shown) > 100.0, "{}", covered(&shown));
+                for pixel in shown.radiance() {
+                    for (found, expected) in pixel.iter().zip([0.25, 0.5, 2.0]) {
+                        assert!(
+                            (found / expected - 1.0).abs() < 1.0e-3,
+                            "{response:?}, {samples:?}: {pixel:?}"
+                        );
+                    }
                 }
             }
         }

@@ -5,8 +5,8 @@ mod effort;
 use downpour_drop::distribution::DropSizeLaw;
 use downpour_drop::fall_speed::FallSpeedModel;
 use downpour_scene::weather::{
-    Camera, CameraPose, Lamp, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume, Repeat,
-    Sky, SkySource, SunSource, Weather,
+    Camera, CameraPose, Lamp, Observer, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainVolume,
+    Repeat, Sky, SkySource, SunSource, Weather,
 };
 use downpour_scene::{Budget, SceneError};
 use effort::measured;
@@ -188,6 +188,10 @@ fn an_empty_file_is_the_default() {
     assert_eq!(Rain::default().law, DropSizeLaw::MarshallPalmer1948);
     assert_eq!(Sky::default().source, SkySource::Overcast([0.9, 0.95, 1.0]));
     assert_eq!((Camera::default().pose, Camera::default().shutter), (None, 1.0 / 60.0));
+    assert_eq!(Camera::default().observer, Observer::Camera);
+    let eye = |more: &str| parse(&format!("[camera]\nobserver = 'eye'\n{more}")).unwrap().camera;
+    assert_eq!((eye("").observer, eye("").shutter), (Observer::Eye, 0.075));
+    assert_eq!(eye("persistence_s = 0.09").shutter, 0.09);
     assert_eq!((default.size, default.sun), ([1280, 720], SunSource::None));
     let lights = parse(
         "light = [{ point = { position_m = [0, 0, 0] } }, { directional = { direction = [0, 0, 9] } }]",
@@ -418,6 +422,20 @@ fn t11_keys_are_known_and_stand_once() {
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");
     refused("[camera]\nshutter_s = 1.5", 2, "0 to 1 s");
     refused("[camera]\nshutter_s = -0.01", 2, "0 to 1 s");
+    refused("[camera]\nobserver = \"fly\"", 2, "camera.observer");
+    refused("[camera]\nobserver = \"eye\"\npersistence_s = 0.05", 2, "0.06 to 0.09 s");
+    refused("[camera]\nobserver = \"eye\"\npersistence_s = 0.1", 2, "0.06 to 0.09 s");
+    refused("[camera]\npersistence_s = 0.075", 2, "camera.persistence_s: with a camera");
+    refused(
+        "[camera]\nobserver = \"camera\"\npersistence_s = 0.075",
+        3,
+        "camera.persistence_s: with a camera",
+    );
+    refused(
+        "[camera]\nobserver = \"eye\"\nshutter_s = 0.075",
+        3,
+        "camera.shutter_s: with observer = \"eye\"",
+    );
     refused("[camera]\naperture_mm = nan", 2, "camera.aperture_mm");
     refused("[camera]\nfocus_m = 0", 2, "0.01 to 1e7 m");
     refused("[streaks]\nsamples = 0", 2, "streaks.samples");

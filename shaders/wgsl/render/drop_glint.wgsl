@@ -67,12 +67,15 @@ fn drop_glint_level(direction: vec3f) -> vec2f {
 }
 
 // Rousseau 2006, section 6, at a place with a normal: (V_PE . V_N) (A_2 + A_3), to be multiplied with the lamp's colour and
-// attenuation. The plane in which rays do not go sideways is the level one.
-fn drop_glint_rousseau(normal: vec3f, to_eye: vec3f, light: vec3f) -> f32 {
+// attenuation. The plane in which rays do not go sideways is the level one. `terms` is DROP_LIGHT_EXTERNAL for A_2,
+// DROP_LIGHT_INTERNAL for A_3, or both.
+fn drop_glint_rousseau(normal: vec3f, to_eye: vec3f, light: vec3f, terms: u32) -> f32 {
     let facing = dot(to_eye, normal);
     let lit = dot(light, normal);
     let outside = max(0.0, lit);
     let across = -dot(drop_glint_level(light), drop_glint_level(normal));
     let within = max(0.0, across * (1.0 + lit));
-    return facing * (outside + within);
+    let shown_outside = select(outside, 0.0, (terms & DROP_LIGHT_EXTERNAL) == 0u);
+    let shown_within = select(within, 0.0, (terms & DROP_LIGHT_INTERNAL) == 0u);
+    return facing * (shown_outside + shown_within);
 }

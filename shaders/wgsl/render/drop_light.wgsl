@@ -14,6 +14,8 @@ struct DropLightFrame {
     glints: u32,
     // First lamp of this dispatch, which has DROP_LIGHT_LAMPS of them at most.
     first_light: u32,
+    // Terms of the formula of Rousseau 2006: DROP_LIGHT_EXTERNAL, DROP_LIGHT_INTERNAL, or both.
+    terms: u32,
 }
 
 // Place relative to the scene's origin, and radius, metres. For the atlas then for each drop its axis, against its motion
@@ -68,7 +70,7 @@ fn drop_light_cone(index: u32, place: vec3f, least: f32) -> vec3f {
 }
 
 // The mean over a drop's disc of what Rousseau's formula gives at its pixels.
-fn drop_light_mean(towards: vec3f, light: vec3f) -> f32 {
+fn drop_light_mean(towards: vec3f, light: vec3f, terms: u32) -> f32 {
     let right = drop_glint_right(towards);
     let up = cross(right, towards);
     var sum = 0.0;
@@ -77,7 +79,7 @@ fn drop_light_mean(towards: vec3f, light: vec3f) -> f32 {
         let angle = 2.0 * DROP_LIGHT_PI * (f32(k % DROP_LIGHT_PLACES) + 0.5) / f32(DROP_LIGHT_PLACES);
         let away = sqrt(square);
         let normal = right * (away * cos(angle)) + up * (away * sin(angle)) - towards * sqrt(1.0 - square);
-        sum += drop_glint_rousseau(normal, -towards, light);
+        sum += drop_glint_rousseau(normal, -towards, light, terms);
     }
     return sum / f32(DROP_LIGHT_RINGS * DROP_LIGHT_PLACES);
 }
@@ -128,7 +130,7 @@ fn drop_light_reach(index: u32) -> f32 {
 // What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
 fn drop_light_whole(lit: vec3f, direction: vec3f, towards: vec3f) -> vec3f {
     if drop_light_frame.form == DROP_LIGHT_LAMPS_ROUSSEAU {
-        return lit * drop_light_mean(towards, direction);
+        return lit * drop_light_mean(towards, direction, drop_light_frame.terms);
     }
     let angle = drop_glint_angle(direction, towards);
     return lit * DROP_LIGHT_PI * drop_light_entry(0u, angle).rgb;
@@ -198,7 +200,7 @@ fn drop_light_of(index: u32) {
         } else if form == DROP_LIGHT_LAMPS_TRACED || form == DROP_LIGHT_LAMPS_ROUSSEAU {
             sum += drop_light_keep_lamp(slot + 1u, lit, drop_light_reach(k), light.direction, towards);
         } else if form == DROP_LIGHT_ROUSSEAU {
-            let mean = drop_light_mean(towards, light.direction);
+            let mean = drop_light_mean(towards, light.direction, drop_light_frame.terms);
             sum += lit * mean;
             drop_light_keep_streak(slot + 1u, vec4f(lit, -1.0 - mean), vec4f(light.direction, 0.0));
         } else if form == DROP_LIGHT_ATLAS {

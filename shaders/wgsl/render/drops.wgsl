@@ -56,7 +56,8 @@ fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
     for (var k = 1u; k < drops_frame.glints; k += 2u) {
         let lamp = drops_light[row + k];
         if lamp.w < 0.0 {
-            let shown = drop_glint_rousseau(normal, -drop.towards, drops_light[row + k + 1u].xyz);
+            let way = drops_light[row + k + 1u].xyz;
+            let shown = drop_glint_rousseau(normal, -drop.towards, way, drops_frame.light_terms);
             light += lamp.rgb * (max(shown, 0.0) + 1.0 + lamp.w);
         }
     }
@@ -178,7 +179,8 @@ fn drops_glint_width(drop: DropsDrop) -> f32 {
     return max(0.5 * drops_frame.pixel_angle / drop.slope, DROPS_GLINT);
 }
 
-// The part of a chord that passes during the exposure, by the mean over its middle points: what a table keeps beforehand.
+// The part of a chord that passes during the exposure, by the weighted mean over its middle points: what a table keeps
+// beforehand, without weights.
 fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
     let towards = drops_mask_unit(ray);
     let spacing = 2.0 * drop.oval.x / f32(STREAK_FINE);
@@ -189,7 +191,8 @@ fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> v
         let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
         if abs(at.x) < 1.0 && abs(at.y) < 1.0 {
             let shown = drops_shade_ray(shade, at.x, at.y);
-            sum += shown + vec4f(drops_facing(index, drop, at.x, at.y) * shown.w, 0.0);
+            let light = shown + vec4f(drops_facing(index, drop, at.x, at.y) * shown.w, 0.0);
+            sum += light * streak_weight(chord.weights, part);
         }
     }
     return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * ((chord.high - chord.low) * 0.5);

@@ -25,7 +25,8 @@ struct DropsFrame {
     mask_size: u32,
     // Tiles across the picture.
     tiles_across: u32,
-    unused: u32,
+    // Terms of the formula of Rousseau 2006 for the light of lamps: DROP_LIGHT_EXTERNAL, DROP_LIGHT_INTERNAL, or both.
+    light_terms: u32,
     // Samples along the chord of a streak that is averaged by a loop.
     streak_samples: u32,
     // The colour of streaks: STREAK_REFRACTED, or STREAK_WHITE.

@@ -4,7 +4,8 @@
 // oscillation stretches: left and right each by the mode's radius there, up and down by that of the poles. While a drop
 // passes a ray, which takes some tenths of a millisecond, its shape stands still.
 // Law: a ray that meets the oval's chord of half length h at the speed s is covered for 2 h / s of the exposure, so the
-// light that a drop takes out does not depend on how it is sampled.
+// light that a drop takes out does not depend on how it is sampled. Where light of earlier moments weighs less, the share is
+// multiplied by the weight in the middle of the time in which the ray is covered: exact, since weights are straight lines.
 // Source: Rousseau 2006, section 5; Rousseau 2008, section 2.2.3 (oscillation, left and right with phi + pi).
 // Twin: downpour_render::rain::streak.
 
@@ -54,6 +55,9 @@ struct DropsDrop {
     shape: u32,
     // First entry of its profile in the table.
     profile: u32,
+    // Weight of the light at the beginning and at the end of its way; over the whole exposure the mean weight is 1.
+    weights: vec2f,
+    unused: vec2f,
 }
 
 // Where a ray passes a moving drop.
@@ -67,10 +71,12 @@ struct StreakChord {
     // The part of it that passes during the exposure, in units of `half`; none if `high` is not above `low`.
     low: f32,
     high: f32,
-    // Share of the exposure in which the whole chord would pass.
+    // Share of the exposure in which the whole chord would pass, by weight.
     share: f32,
-    // Share of the exposure in which it moves by an equivalent radius.
+    // Share of the exposure in which it moves by an equivalent radius, by weight.
     pace: f32,
+    // Weights of the light at `low` and at `high`.
+    weights: vec2f,
     // Place of the ray across the path, in equivalent radii.
     aside: f32,
     // Unit direction of the motion.
@@ -80,6 +86,11 @@ struct StreakChord {
 // The time, as a share of the exposure, at which the drop is at a share of its way on the picture.
 fn streak_time(recede: f32, way: f32) -> f32 {
     return way / max(way + (1.0 - way) * recede, 1.0e-20);
+}
+
+// Weight of the light at a time, 0 to 1, by the weights at the beginning and at the end of the way.
+fn streak_weight(weights: vec2f, time: f32) -> f32 {
+    return weights.x + (weights.y - weights.x) * clamp(time, 0.0, 1.0);
 }
 
 // The share of the way that is nearest to a place on the plane.
@@ -121,14 +132,22 @@ fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
     let rate = drop.share * drop.recede / max(faster * faster, 1.0e-12);
     let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
     let path = drop.along / moves;
+    let low = max((along - length * (1.0 - way)) * per_half, -1.0);
+    let high = select(min((along + length * way) * per_half, 1.0), -2.0, half <= 1.0e-6);
+    // What is ahead on the chord has passed earlier.
+    let begin = streak_time(drop.recede, clamp(way + (along - half * high) / length, 0.0, 1.0));
+    let end = streak_time(drop.recede, clamp(way + (along - half * low) / length, 0.0, 1.0));
+    let weights = vec2f(streak_weight(drop.weights, end), streak_weight(drop.weights, begin));
+    let weight = 0.5 * (weights.x + weights.y);
     return StreakChord(
         direction,
         across,
         half,
-        max((along - length * (1.0 - way)) * per_half, -1.0),
-        select(min((along + length * way) * per_half, 1.0), -2.0, half <= 1.0e-6),
-        2.0 * half / length * rate,
-        rate * scale / moves,
+        low,
+        high,
+        2.0 * half / length * rate * weight,
+        rate * scale / moves * weight,
+        weights,
         offset.x * path.y - offset.y * path.x,
         path,
     );
@@ -157,8 +176,8 @@ fn streak_within(begin: f32, way: f32, reach: f32) -> vec2f {
     return vec2f(min(a, b), max(a, b));
 }
 
-// The mean of the box over a path: exact, by pieces in which both edges are straight.
-fn streak_mean(begin: vec2f, way: vec2f, width: f32) -> f32 {
+// The mean of the box over a path, by the weights of its light: exact, by pieces in which both edges are straight.
+fn streak_mean(begin: vec2f, way: vec2f, width: f32, weights: vec2f) -> f32 {
     let outer_x = streak_within(begin.x, way.x, (width + 1.0) * 0.5);
     let outer_y = streak_within(begin.y, way.y, (width + 1.0) * 0.5);
     let low = max(max(outer_x.x, outer_y.x), 0.0);
@@ -182,15 +201,16 @@ fn streak_mean(begin: vec2f, way: vec2f, width: f32) -> f32 {
         let reach = (edges[k + 1u] - edges[k]) * 0.5;
         // Gauss's two points are exact for cubics.
         for (var side = -1.0; side < 2.0; side += 2.0) {
-            let at = begin + way * (middle + side * reach * STREAK_GAUSS);
-            sum += streak_box(width, at.x) * streak_box(width, at.y) * reach;
+            let time = middle + side * reach * STREAK_GAUSS;
+            let at = begin + way * time;
+            sum += streak_box(width, at.x) * streak_box(width, at.y) * reach * streak_weight(weights, time);
         }
     }
     return sum;
 }
 
-// The share of a pixel that a drop which is not sampled covers.
+// The share of a pixel that a drop which is not sampled covers, by weight.
 fn streak_cover(drop: DropsDrop, x: u32, y: u32) -> f32 {
     let begin = drop.first - vec2f(f32(x) + 0.5, f32(y) + 0.5);
-    return min(drop.area * drop.share * streak_mean(begin, drop.way, drop.spread), 1.0);
+    return min(drop.area * drop.share * streak_mean(begin, drop.way, drop.spread, drop.weights), 1.0);
 }

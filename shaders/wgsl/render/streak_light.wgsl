@@ -222,7 +222,7 @@ fn streak_light_facing(path: StreakPath, first_lamp: u32, view: vec3f, row: i32,
         let mirrored = streak_light_exit(path, row, column, tap, 0u).direction - view;
         let normal = mirrored / sqrt(max(dot(mirrored, mirrored), DROP_GLINT_TINY));
         let towards = streak_light_lamps[first_lamp + 2u + 2u * k].xyz;
-        sum += lamp.rgb * max(drop_glint_rousseau(normal, -view, towards), 0.0);
+        sum += lamp.rgb * max(drop_glint_rousseau(normal, -view, towards, drops_frame.light_terms), 0.0);
     }
     return sum;
 }

@@ -23,7 +23,7 @@ struct StreakPassage {
     // The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
     low: f32,
     high: f32,
-    // Share of the exposure in which the whole chord would pass.
+    // Share of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
     share: f32,
 }
 
@@ -62,8 +62,10 @@ fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
     let length = moves / scale;
     let faster = way + (1.0 - way) * drop.recede;
     let rate = drop.share * drop.recede / max(faster * faster, 1.0e-12);
-    let low = ((ahead - chord.z) - length * (1.0 - way)) * per_half;
-    let high = ((ahead - chord.z) + length * way) * per_half;
+    let low = max(((ahead - chord.z) - length * (1.0 - way)) * per_half, -1.0);
+    let high = select(min(((ahead - chord.z) + length * way) * per_half, 1.0), -2.0, half <= 1.0e-6);
+    let middle = clamp(way + ((ahead - chord.z) - 0.5 * half * (low + high)) / length, 0.0, 1.0);
+    let weight = streak_weight(drop.weights, streak_time(drop.recede, middle));
     return StreakPassage(
         first,
         sizes.x,
@@ -72,9 +74,9 @@ fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
         sizes.w,
         time,
         across,
-        max(low, -1.0),
-        select(min(high, 1.0), -2.0, half <= 1.0e-6),
-        2.0 * half / length * rate,
+        low,
+        high,
+        2.0 * half / length * rate * weight,
     );
 }
 

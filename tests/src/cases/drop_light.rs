@@ -90,18 +90,23 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         case("drop_glint_level", &[Unit3], root, |a| drop_glint_level(vec3(a)).to_array().words()),
         case(
             "drop_glint_rousseau",
-            &[Unit3, Unit3, Unit3],
+            &[Unit3, Unit3, Unit3, Made(terms)],
             Tol::absolute(1.0e-5, "sums of products of unit vectors, one of them made level"),
-            |a| drop_glint_rousseau(vec3(a), vec3(a), vec3(a)).words(),
+            |a| drop_glint_rousseau(vec3(a), vec3(a), vec3(a), a.u32()).words(),
         ),
         FunctionCase::new(
             "drop_light_mean",
             &DROP_LIGHT,
-            &[Unit3, Unit3],
+            &[Unit3, Unit3, Made(terms)],
             Tol::absolute(2.0e-3, "sine and cosine (2^-11) of numbers up to 2 pi"),
-            |a| drop_light_mean(vec3(a), vec3(a)).words(),
+            |a| drop_light_mean(vec3(a), vec3(a), a.u32()).words(),
         ),
     ]
+}
+
+/// Terms of the formula of Rousseau 2006: one, the other, or both.
+fn terms(random: [u32; 4]) -> Vec<u32> {
+    vec![1 + random[0] % 3]
 }
 
 /// Drops round what stands in the scene.
@@ -230,6 +235,12 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         }),
         case("main_drop_light: Rousseau 2006", |gpu| {
             light_case(gpu, &scene(), DropLightForm::Rousseau2006, 0)
+        }),
+        case("main_drop_light: Rousseau 2006, external reflection", |gpu| {
+            light_case(gpu, &scene(), DropLightForm::Rousseau2006External, 0)
+        }),
+        case("main_drop_light: Rousseau 2006, internal reflection", |gpu| {
+            light_case(gpu, &scene(), DropLightForm::Rousseau2006Internal, 0)
         }),
         case("main_drop_light: Im & Sung 2022", |gpu| light_case(gpu, &many(), DropLightForm::ImSung2022, 0)),
     ]

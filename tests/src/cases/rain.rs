@@ -12,7 +12,8 @@ use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::streak_place::{streak_place_index, streak_place_position};
 use downpour_render::rain::{
     DropMasks, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions, ReduceLevel,
-    RefractionForm, StreakColour, StreakProfiles, StreakSamples, reduce_levels, reduce_texel,
+    RefractionForm, StreakColour, StreakProfiles, StreakSamples, TemporalResponse, reduce_levels,
+    reduce_texel,
 };
 use downpour_render::scene::SceneView;
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
@@ -401,6 +402,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_over",
             "drops_medium",
             "streak_time",
+            "streak_weight",
             "streak_nearest",
             "streak_depth",
             "streak_stretch",
@@ -536,6 +538,11 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let options = RainOptions { light, ..RainOptions::default() };
             masks_case(gpu, LEVEL, options, &DropMasks::trace(1.333).expect("masks"), Part::Drops)
         }),
+        drops("main_drops: light of Rousseau 2006, internal reflection", |gpu| {
+            let light = DropLightOptions { form: DropLightForm::Rousseau2006Internal, glints: 8 };
+            let options = RainOptions { light, ..RainOptions::default() };
+            masks_case(gpu, LEVEL, options, &DropMasks::trace(1.333).expect("masks"), Part::Drops)
+        }),
         KernelCase {
             name: "main_streak_table: all classes",
             kernel: &STREAK_TABLE_KERNEL,
@@ -584,6 +591,16 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         drops("main_drops: streaks by the table", |gpu| {
             let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
             rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Drops)
+        }),
+        drops("main_drops: streaks that fade, by the table", |gpu| {
+            let response = TemporalResponse::Fading;
+            let exposure = Exposure { response, ..exposure(0.075, StreakSamples::Table) };
+            rain_case(gpu, LEVEL, RefractionForm::Direction, exposure, Part::Drops)
+        }),
+        drops("main_drops: short streaks that fade, by a loop", |gpu| {
+            let response = TemporalResponse::Fading;
+            let exposure = Exposure { response, ..exposure(1.0 / 1000.0, StreakSamples::Loop(5)) };
+            rain_case(gpu, ABOVE, RefractionForm::Direction, exposure, Part::Drops)
         }),
         drops("main_drops: short streaks by a loop", |gpu| {
             let exposure = exposure(1.0 / 1000.0, StreakSamples::Loop(5));

@@ -8,7 +8,7 @@ use clap::Args;
 use downpour::render::stage::{Stage, check_size};
 use downpour::scene::beneath::{Files, NoFiles, OpenFile, RelativePath};
 use downpour::scene::gltf::read_scene;
-use downpour::scene::weather::{Loaded, Roots, Weather, load};
+use downpour::scene::weather::{Loaded, Observer, Roots, Weather, load};
 use downpour::scene::{Budget, SceneError};
 use glam::DVec3;
 
@@ -32,7 +32,8 @@ pub(crate) struct InputArguments {
     /// Width and height in pixels [default: the weather's].
     #[arg(long, value_name = "WxH", value_parser = quantity::picture_size, allow_hyphen_values = true)]
     pub(crate) size: Option<[u32; 2]>,
-    /// How long the shutter is open, 0 to 1 s: drops become streaks; 0 freezes them [default: the weather's].
+    /// Time that the shutter is open, 0 to 1 s: drops become streaks; 0 freezes them; an eye becomes a camera [default: the
+    /// weather's].
     #[arg(long, value_name = "S", value_parser = quantity::exposure_s, allow_hyphen_values = true)]
     pub(crate) shutter: Option<f64>,
     /// Same seed, same drops [default: the weather's].
@@ -95,7 +96,10 @@ impl InputArguments {
         input.files.push(self.input.clone());
         let weather = &mut input.weather;
         weather.rain.rate_mm_h = self.rate.unwrap_or(weather.rain.rate_mm_h);
-        weather.camera.shutter = self.shutter.unwrap_or(weather.camera.shutter);
+        if let Some(shutter) = self.shutter {
+            weather.camera.shutter = shutter;
+            weather.camera.observer = Observer::Camera;
+        }
         weather.rain.seed = self.seed.unwrap_or(weather.rain.seed);
         weather.size = self.size.unwrap_or(weather.size);
         Ok(input)

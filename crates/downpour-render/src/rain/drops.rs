@@ -18,7 +18,7 @@ use super::drops_shade::DropsShade;
 use super::glint::{drop_glint_rousseau, drop_glint_spot, drop_glint_unpack};
 use super::streak::{
     DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_nearest, streak_place,
-    streak_time,
+    streak_time, streak_weight,
 };
 use super::streak_lookup::StreakTable;
 use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
@@ -96,7 +96,12 @@ impl Buffers<'_> {
         let normal = right * turned.x + up * turned.y - towards * turned.z;
         let (lamps, _) = row[1..].as_chunks::<2>();
         for [lamp, way] in lamps.iter().filter(|[lamp, _]| lamp[3] < 0.0) {
-            let shown = drop_glint_rousseau(normal, -towards, Vec4::from(*way).truncate());
+            let shown = drop_glint_rousseau(
+                normal,
+                -towards,
+                Vec4::from(*way).truncate(),
+                self.view.frame.light_terms,
+            );
             light += Vec4::from(*lamp).truncate() * (shown.max(0.0) + 1.0 + lamp[3]);
         }
         light
@@ -216,7 +221,7 @@ impl Buffers<'_> {
         sum / (n * n) as f32
     }
 
-    /// The part of a chord that passes during the exposure, by the mean over its middle points.
+    /// The part of a chord that passes during the exposure, by the weighted mean over its middle points.
     fn drops_chord(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, ray: Vec3) -> Vec4 {
         let frame = self.view.frame;
         let shade = DropsShade {
@@ -232,7 +237,8 @@ impl Buffers<'_> {
             let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
             if at.x.abs() < 1.0 && at.y.abs() < 1.0 {
                 let shown = self.view.drops_shade_ray(&shade, at.x, at.y);
-                sum += shown + (self.drops_facing(index, drop, at.x, at.y) * shown.w).extend(0.0);
+                let light = shown + (self.drops_facing(index, drop, at.x, at.y) * shown.w).extend(0.0);
+                sum += light * streak_weight(chord.weights.to_array(), part);
             }
         }
         (sum.truncate() / sum.w.max(1.0e-20)).extend(1.0) * ((chord.high - chord.low) * 0.5)

@@ -45,8 +45,8 @@ pub struct DropsFrame {
     pub mask_size: u32,
     /// Tiles across the picture.
     pub tiles_across: u32,
-    /// 0.
-    pub unused: u32,
+    /// Terms of the formula of Rousseau 2006 for the light of lamps.
+    pub light_terms: u32,
     /// Samples along the chord of a streak that is averaged by a loop.
     pub streak_samples: u32,
     /// The colour of streaks.
@@ -93,7 +93,7 @@ impl DropsFrame {
             form: capture.form as u32,
             mask_size: masks.size,
             tiles_across,
-            unused: 0,
+            light_terms: options.light.form.terms(),
             streak_samples,
             streak_colour: options.exposure.colour as u32,
             glints: options.light.glints,

@@ -1,7 +1,7 @@
 //! How long the shutter is open, how the eye moves meanwhile, and how what passes it is averaged.
 
 use downpour_drop::oscillation::{Amplitudes, Fluids};
-use downpour_scene::weather::{StreakLook, Weather};
+use downpour_scene::weather::{Observer, StreakLook, Weather};
 use downpour_shaders::render::rain::{STREAK_REFRACTED, STREAK_WHITE};
 use glam::Vec3;
 
@@ -10,9 +10,6 @@ pub const LONGEST_EXPOSURE_S: f64 = 1.0;
 
 /// The most samples along the chord of a streak.
 pub const MOST_STREAK_SAMPLES: u32 = 4096;
-
-/// How long the eye keeps what it has seen: the middle of the 60 to 90 ms of Rousseau 2006, s.
-pub const PERSISTENCE_S: f64 = 0.075;
 
 /// How the light of a streak is averaged over the time in which its drop passes a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -35,6 +32,30 @@ pub enum StreakColour {
     White = STREAK_WHITE,
 }
 
+/// Weight of light by the moment of the exposure in which it comes. The mean weight over the exposure is 1, so that light which
+/// does not change is the same in all of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TemporalResponse {
+    /// A camera's shutter: all of the exposure weighs the same.
+    #[default]
+    Shutter,
+    /// An eye: what it sees takes the time of the exposure to fade away, evenly. Light of age `a` has the weight `2 (1 - a / T)`
+    /// in an exposure of `T`; the age counts from its end. Source: Rousseau 2006, section 5, which has the time and that light
+    /// fades away in it, but no form: a straight line is the simplest that begins with all of the light and has none after `T`.
+    Fading,
+}
+
+impl TemporalResponse {
+    /// The weight at a part of the exposure, 0 at its beginning to 1 at its end: 0 to 2.
+    #[must_use]
+    pub fn weight(self, part: f32) -> f32 {
+        match self {
+            Self::Shutter => 1.0,
+            Self::Fading => 2.0 * part,
+        }
+    }
+}
+
 /// How the eye moves in the middle of the exposure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EyeMotion {
@@ -49,6 +70,8 @@ pub struct EyeMotion {
 pub struct Exposure {
     /// Seconds, 0 (drops stand still) to [`LONGEST_EXPOSURE_S`]; half of it is before the time of the picture.
     pub shutter_s: f64,
+    /// Weight of light over the exposure.
+    pub response: TemporalResponse,
     /// The time of the picture, s: the phases of the drops' oscillation count from 0.
     pub time_s: f64,
     /// How the eye moves.
@@ -77,6 +100,10 @@ impl Exposure {
         let [a20, a31] = streaks.oscillation;
         Self {
             shutter_s: camera.shutter,
+            response: match camera.observer {
+                Observer::Camera => TemporalResponse::Shutter,
+                Observer::Eye => TemporalResponse::Fading,
+            },
             time_s,
             eye,
             samples: streaks.samples.map_or(StreakSamples::Table, StreakSamples::Loop),
@@ -99,6 +126,7 @@ impl Default for Exposure {
     fn default() -> Self {
         Self {
             shutter_s: 0.0,
+            response: TemporalResponse::default(),
             time_s: 0.0,
             eye: EyeMotion::default(),
             samples: StreakSamples::default(),

@@ -5,7 +5,8 @@
 
 use downpour_math::ops;
 use downpour_shaders::render::drop_light::{
-    DROP_GLINT_AXIS, DROP_GLINT_RANGE, DROP_GLINT_STEPS, DROP_GLINT_TINY,
+    DROP_GLINT_AXIS, DROP_GLINT_RANGE, DROP_GLINT_STEPS, DROP_GLINT_TINY, DROP_LIGHT_EXTERNAL,
+    DROP_LIGHT_INTERNAL,
 };
 use downpour_shaders::render::specimen::SPECIMEN_TURN;
 use glam::{Vec2, Vec3};
@@ -82,13 +83,16 @@ pub fn drop_glint_level(direction: Vec3) -> Vec2 {
 }
 
 /// Rousseau 2006, section 6, at a place with a normal: `(V_PE . V_N) (A_2 + A_3)`, to be multiplied with the lamp's colour
-/// and attenuation. The plane in which rays do not go sideways is the level one.
+/// and attenuation. The plane in which rays do not go sideways is the level one. `terms` is `DROP_LIGHT_EXTERNAL` (1) for `A_2`,
+/// `DROP_LIGHT_INTERNAL` (2) for `A_3`, or both (3).
 #[must_use]
-pub fn drop_glint_rousseau(normal: Vec3, to_eye: Vec3, light: Vec3) -> f32 {
+pub fn drop_glint_rousseau(normal: Vec3, to_eye: Vec3, light: Vec3, terms: u32) -> f32 {
     let facing = to_eye.dot(normal);
     let lit = light.dot(normal);
     let outside = lit.max(0.0);
     let across = -drop_glint_level(light).dot(drop_glint_level(normal));
     let within = (across * (1.0 + lit)).max(0.0);
+    let outside = if terms & DROP_LIGHT_EXTERNAL == 0 { 0.0 } else { outside };
+    let within = if terms & DROP_LIGHT_INTERNAL == 0 { 0.0 } else { within };
     facing * (outside + within)
 }

@@ -24,9 +24,10 @@ use std::f32::consts::PI;
 use downpour_math::ops;
 use downpour_scene::weather::{RainDropLight, StreakLook, Weather};
 use downpour_shaders::render::drop_light::{
-    DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG,
-    DROP_LIGHT_LAMPS, DROP_LIGHT_LAMPS_ROUSSEAU, DROP_LIGHT_LAMPS_TRACED, DROP_LIGHT_NONE, DROP_LIGHT_PATHS,
-    DROP_LIGHT_PLACES, DROP_LIGHT_RINGS, DROP_LIGHT_ROUSSEAU, DROP_LIGHT_TRACED,
+    DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_EXTERNAL, DROP_LIGHT_GLINTS,
+    DROP_LIGHT_IM_SUNG, DROP_LIGHT_INTERNAL, DROP_LIGHT_LAMPS, DROP_LIGHT_LAMPS_ROUSSEAU,
+    DROP_LIGHT_LAMPS_TRACED, DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_PLACES, DROP_LIGHT_RINGS,
+    DROP_LIGHT_ROUSSEAU, DROP_LIGHT_TRACED,
 };
 use downpour_shaders::render::rain::STREAK_LAMPS;
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS};
@@ -59,6 +60,10 @@ pub enum DropLightForm {
     /// drop's normal there; a drop below a pixel shows the mean over its disc, a streak the mean over what passes. `C_L DistFact`
     /// is taken as the irradiance over pi at the drop: what a white surface shows.
     Rousseau2006 = DROP_LIGHT_ROUSSEAU,
+    /// Of [`DropLightForm::Rousseau2006`] the term of external reflection alone: `A_1 A_2`.
+    Rousseau2006External = DROP_LIGHT_ROUSSEAU | DROP_LIGHT_EXTERNAL << 8,
+    /// Of [`DropLightForm::Rousseau2006`] the term of internal reflection alone: `A_1 A_3`.
+    Rousseau2006Internal = DROP_LIGHT_ROUSSEAU | DROP_LIGHT_INTERNAL << 8,
     /// Im & Sung 2022, equations (7) to (10): drops in a spot's cone have the light's colour, others nothing; point lights
     /// and parallel ones are left out. The cone is as high as the lamp's range. Here its edge is soft, from the inner
     /// cone to the outer, and the intensity falls with the distance (their light has one intensity everywhere).
@@ -70,10 +75,31 @@ pub enum DropLightForm {
     None = DROP_LIGHT_NONE,
 }
 
+impl DropLightForm {
+    /// The form as the shaders know it.
+    fn number(self) -> u32 {
+        match self {
+            Self::Rousseau2006External | Self::Rousseau2006Internal => DROP_LIGHT_ROUSSEAU,
+            other => other as u32,
+        }
+    }
+
+    /// The terms of the formula of Rousseau 2006 that it has, as bits; of other forms none are asked.
+    pub(crate) fn terms(self) -> u32 {
+        match self {
+            Self::Rousseau2006External => DROP_LIGHT_EXTERNAL,
+            Self::Rousseau2006Internal => DROP_LIGHT_INTERNAL,
+            _ => DROP_LIGHT_EXTERNAL | DROP_LIGHT_INTERNAL,
+        }
+    }
+}
+
 impl From<RainDropLight> for DropLightForm {
     fn from(form: RainDropLight) -> Self {
         match form {
             RainDropLight::Rousseau2006 => Self::Rousseau2006,
+            RainDropLight::Rousseau2006External => Self::Rousseau2006External,
+            RainDropLight::Rousseau2006Internal => Self::Rousseau2006Internal,
             RainDropLight::ImSung2022 => Self::ImSung2022,
             RainDropLight::None => Self::None,
             _ => Self::Traced,
@@ -104,7 +130,7 @@ impl DropLightOptions {
             return Self::ATLAS;
         }
         // A lamp of Rousseau 2006 has two rows.
-        Self { form, glints: if form == DropLightForm::Rousseau2006 { 2 * GLINTS } else { GLINTS } }
+        Self { form, glints: if form.number() == DROP_LIGHT_ROUSSEAU { 2 * GLINTS } else { GLINTS } }
     }
 }
 
@@ -120,6 +146,8 @@ pub struct DropLightFrame {
     pub glints: u32,
     /// First lamp of the dispatch.
     pub first_light: u32,
+    /// Terms of the formula of Rousseau 2006.
+    pub terms: u32,
 }
 
 /// A place on a drop's disc where light of a lamp leaves it.
@@ -142,6 +170,8 @@ pub struct DropLights<'a> {
     pub(crate) table: &'a DropLightTable,
     /// [`DropLightForm`], or what keeps lamps for streaks.
     form: u32,
+    /// Terms of the formula of Rousseau 2006.
+    terms: u32,
     glints: u32,
 }
 
@@ -197,7 +227,8 @@ impl<'a> DropLights<'a> {
             });
         }
         let DropLightOptions { form, glints } = options;
-        Ok(Self { view: SceneView { data: scene, frame }, table, form: form as u32, glints })
+        let view = SceneView { data: scene, frame };
+        Ok(Self { view, table, form: form.number(), terms: form.terms(), glints })
     }
 
     /// The lamps of `scene` as the profiles of streaks want them: of each drop the brightest ones, two rows each (its irradiance,
@@ -215,7 +246,9 @@ impl<'a> DropLights<'a> {
     ) -> Result<Self, RenderError> {
         let form = match options.form {
             DropLightForm::Traced => DROP_LIGHT_LAMPS_TRACED,
-            DropLightForm::Rousseau2006 => DROP_LIGHT_LAMPS_ROUSSEAU,
+            DropLightForm::Rousseau2006
+            | DropLightForm::Rousseau2006External
+            | DropLightForm::Rousseau2006Internal => DROP_LIGHT_LAMPS_ROUSSEAU,
             DropLightForm::ImSung2022 => DROP_LIGHT_IM_SUNG,
             DropLightForm::Atlas | DropLightForm::None => DROP_LIGHT_NONE,
         };
@@ -231,8 +264,8 @@ impl<'a> DropLights<'a> {
     /// The dispatches of so many drops: all lamps, a part of them each.
     #[must_use]
     pub fn frames(&self, count: u32) -> Vec<DropLightFrame> {
-        let (form, glints) = (self.form, self.glints);
-        let frame = |first_light| DropLightFrame { count, form, glints, first_light };
+        let (form, glints, terms) = (self.form, self.glints, self.terms);
+        let frame = |first_light| DropLightFrame { count, form, glints, first_light, terms };
         let lights = if form == DROP_LIGHT_NONE { 1 } else { self.view.frame.light_count.max(1) };
         (0..lights).step_by(DROP_LIGHT_LAMPS as usize).map(frame).collect()
     }
@@ -341,7 +374,7 @@ impl<'a> DropLights<'a> {
                     sum += self.drop_light_keep_lamp(glints, rows, towards);
                 }
                 DROP_LIGHT_ROUSSEAU => {
-                    let mean = drop_light_mean(towards, light.direction);
+                    let mean = drop_light_mean(towards, light.direction, self.terms);
                     sum += lit * mean;
                     let way = light.direction.extend(0.0).to_array();
                     drop_light_keep_streak(glints, lit.extend(-1.0 - mean), way);
@@ -388,7 +421,7 @@ fn drop_light_entry(table: &DropLightTable, row: u32, angle: f32) -> Vec4 {
 
 /// The mean over a drop's disc of what Rousseau's formula gives at its pixels.
 #[must_use]
-pub fn drop_light_mean(towards: Vec3, light: Vec3) -> f32 {
+pub fn drop_light_mean(towards: Vec3, light: Vec3, terms: u32) -> f32 {
     let right = drop_glint_right(towards);
     let up = right.cross(towards);
     let mut sum = 0.0;
@@ -398,7 +431,7 @@ pub fn drop_light_mean(towards: Vec3, light: Vec3) -> f32 {
         let away = square.sqrt();
         let normal = right * (away * ops::cos(angle)) + up * (away * ops::sin(angle))
             - towards * (1.0 - square).sqrt();
-        sum += drop_glint_rousseau(normal, -towards, light);
+        sum += drop_glint_rousseau(normal, -towards, light, terms);
     }
     sum / (DROP_LIGHT_RINGS * DROP_LIGHT_PLACES) as f32
 }

@@ -150,6 +150,8 @@ pub(super) fn project(
         kind: kind(&path, exposure),
         shape: shapes::of_row(place.row[0]),
         profile: 0,
+        weights: if path.moves { path.part.map(|part| exposure.response.weight(part)) } else { [1.0; 2] },
+        unused: [0.0; 2],
     };
     Some(Projected { drop: shown, reach, velocity: path.velocity })
 }

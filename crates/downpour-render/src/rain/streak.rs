@@ -57,6 +57,10 @@ pub struct DropsDrop {
     pub shape: u32,
     /// First entry of its profile in the table.
     pub profile: u32,
+    /// Weight of the light at the beginning and at the end of its way; over the whole exposure the mean weight is 1.
+    pub weights: [f32; 2],
+    /// Fills the layout.
+    pub unused: [f32; 2],
 }
 
 /// Where a ray passes a moving drop.
@@ -72,10 +76,12 @@ pub struct StreakChord {
     pub low: f32,
     /// See `low`.
     pub high: f32,
-    /// Share of the exposure in which the whole chord would pass.
+    /// Share of the exposure in which the whole chord would pass, by weight.
     pub share: f32,
-    /// Share of the exposure in which it moves by an equivalent radius.
+    /// Share of the exposure in which it moves by an equivalent radius, by weight.
     pub pace: f32,
+    /// Weights of the light at `low` and at `high`.
+    pub weights: Vec2,
     /// Place of the ray across the path, in equivalent radii.
     pub aside: f32,
     /// Unit direction of the motion.
@@ -86,6 +92,12 @@ pub struct StreakChord {
 #[must_use]
 pub fn streak_time(recede: f32, way: f32) -> f32 {
     way / (way + (1.0 - way) * recede).max(1.0e-20)
+}
+
+/// Weight of the light at a time, 0 to 1, by the weights at the beginning and at the end of the way.
+#[must_use]
+pub fn streak_weight(weights: [f32; 2], time: f32) -> f32 {
+    weights[0] + (weights[1] - weights[0]) * time.clamp(0.0, 1.0)
 }
 
 /// The share of the way that is nearest to a place on the plane.
@@ -134,14 +146,21 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     let rate = drop.share * drop.recede / (faster * faster).max(1.0e-12);
     let moves = path.dot(path).sqrt().max(1.0e-20);
     let path = path / moves;
+    let low = ((along - length * (1.0 - way)) * per_half).max(-1.0);
+    let high = if half <= 1.0e-6 { -2.0 } else { ((along + length * way) * per_half).min(1.0) };
+    // What is ahead on the chord has passed earlier.
+    let time = |v: f32| streak_time(drop.recede, (way + (along - half * v) / length).clamp(0.0, 1.0));
+    let weights = Vec2::new(streak_weight(drop.weights, time(low)), streak_weight(drop.weights, time(high)));
+    let weight = 0.5 * (weights.x + weights.y);
     StreakChord {
         direction,
         across,
         half,
-        low: ((along - length * (1.0 - way)) * per_half).max(-1.0),
-        high: if half <= 1.0e-6 { -2.0 } else { ((along + length * way) * per_half).min(1.0) },
-        share: 2.0 * half / length * rate,
-        pace: rate * scale / moves,
+        low,
+        high,
+        share: 2.0 * half / length * rate * weight,
+        pace: rate * scale / moves * weight,
+        weights,
         aside: offset.x * path.y - offset.y * path.x,
         path,
     }
@@ -174,9 +193,9 @@ pub fn streak_within(from: f32, way: f32, reach: f32) -> Vec2 {
     Vec2::new(a.min(b), a.max(b))
 }
 
-/// The mean of the box over a path: exact, by pieces in which both edges are straight.
+/// The mean of the box over a path, by the weights of its light: exact, by pieces in which both edges are straight.
 #[must_use]
-pub fn streak_mean(from: Vec2, way: Vec2, width: f32) -> f32 {
+pub fn streak_mean(from: Vec2, way: Vec2, width: f32, weights: [f32; 2]) -> f32 {
     let outer_x = streak_within(from.x, way.x, (width + 1.0) * 0.5);
     let outer_y = streak_within(from.y, way.y, (width + 1.0) * 0.5);
     let low = outer_x.x.max(outer_y.x).max(0.0);
@@ -200,16 +219,18 @@ pub fn streak_mean(from: Vec2, way: Vec2, width: f32) -> f32 {
         let reach = (pair[1] - pair[0]) * 0.5;
         // Gauss's two points are exact for cubics.
         for side in [-1.0, 1.0] {
-            let at = from + way * (middle + side * reach * STREAK_GAUSS);
-            sum += streak_box(width, at.x) * streak_box(width, at.y) * reach;
+            let time = middle + side * reach * STREAK_GAUSS;
+            let at = from + way * time;
+            sum += streak_box(width, at.x) * streak_box(width, at.y) * reach * streak_weight(weights, time);
         }
     }
     sum
 }
 
-/// The share of a pixel that a drop which is not sampled covers.
+/// The share of a pixel that a drop which is not sampled covers, by weight.
 #[must_use]
 pub fn streak_cover(drop: &DropsDrop, x: u32, y: u32) -> f32 {
     let from = Vec2::from(drop.first) - Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-    (drop.area * drop.share * streak_mean(from, Vec2::from(drop.way), drop.spread)).min(1.0)
+    let mean = streak_mean(from, Vec2::from(drop.way), drop.spread, drop.weights);
+    (drop.area * drop.share * mean).min(1.0)
 }

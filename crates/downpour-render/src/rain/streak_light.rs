@@ -215,7 +215,8 @@ impl Streak<'_> {
         for (lamp, towards) in self.lamps().filter(|(lamp, _)| lamp.w < 0.0) {
             let mirrored = self.streak_light_exit(at, 0).direction - view;
             let normal = mirrored / mirrored.dot(mirrored).max(DROP_GLINT_TINY).sqrt();
-            sum += lamp.truncate() * drop_glint_rousseau(normal, -view, towards).max(0.0);
+            sum += lamp.truncate()
+                * drop_glint_rousseau(normal, -view, towards, self.view.frame.light_terms).max(0.0);
         }
         sum
     }

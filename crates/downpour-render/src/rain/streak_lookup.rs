@@ -3,7 +3,7 @@
 use downpour_shaders::render::rain::{STREAK_RAYS, STREAK_SUMS};
 use glam::{Vec2, Vec3, Vec4};
 
-use super::streak::{DropsDrop, streak_depth, streak_nearest, streak_time};
+use super::streak::{DropsDrop, streak_depth, streak_nearest, streak_time, streak_weight};
 use super::streak_place::{streak_place_index, streak_place_position};
 
 /// Entries of the mean of a class of drops.
@@ -34,7 +34,7 @@ struct StreakPassage {
     /// The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
     low: f32,
     high: f32,
-    /// Share of the exposure in which the whole chord would pass.
+    /// Share of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
     share: f32,
 }
 
@@ -79,8 +79,11 @@ impl StreakTable {
         let length = moves / scale;
         let faster = way + (1.0 - way) * drop.recede;
         let rate = drop.share * drop.recede / (faster * faster).max(1.0e-12);
-        let low = ((ahead - chord.z) - length * (1.0 - way)) * per_half;
-        let high = ((ahead - chord.z) + length * way) * per_half;
+        let low = (((ahead - chord.z) - length * (1.0 - way)) * per_half).max(-1.0);
+        let high =
+            if half <= 1.0e-6 { -2.0 } else { (((ahead - chord.z) + length * way) * per_half).min(1.0) };
+        let middle = (way + ((ahead - chord.z) - 0.5 * half * (low + high)) / length).clamp(0.0, 1.0);
+        let weight = streak_weight(drop.weights, streak_time(drop.recede, middle));
         StreakPassage {
             first,
             rows,
@@ -89,9 +92,9 @@ impl StreakTable {
             fine,
             time,
             across,
-            low: low.max(-1.0),
-            high: if half <= 1.0e-6 { -2.0 } else { high.min(1.0) },
-            share: 2.0 * half / length * rate,
+            low,
+            high,
+            share: 2.0 * half / length * rate * weight,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::fault::Places;
 use super::quantity::{
-    ApertureMm, DepthM, Exactly, FocusM, FovDeg, In, PitchDeg, PlaceM, ShutterS, Stops, TurnDeg,
+    ApertureMm, DepthM, Exactly, FocusM, FovDeg, In, PersistenceS, PitchDeg, PlaceM, ShutterS, Stops, TurnDeg,
 };
 use crate::error::SceneError;
 use downpour_math::ops::f64 as ops;
@@ -18,7 +18,22 @@ pub const NEAR_M: f64 = 0.05;
 /// The farthest depth where neither the file nor the model says one, in metres.
 pub const FAR_M: f64 = 2000.0;
 
-/// The eye.
+/// Time in which what an eye has seen fades away where the file does not say it, in seconds: the middle of the 60 to 90 ms of
+/// Rousseau 2006, section 5.
+pub const PERSISTENCE_S: f64 = 0.075;
+
+/// Who sees drops move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Observer {
+    /// A camera: all light that comes while its shutter is open weighs the same.
+    #[default]
+    Camera,
+    /// An eye, which has no shutter: what it has seen fades away evenly, and is gone after the time of its persistence.
+    Eye,
+}
+
+/// The camera, or the eye in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Where it is; `None` takes the model's own camera.
@@ -31,7 +46,10 @@ pub struct Camera {
     pub far: Option<f64>,
     /// The picture is multiplied by two to this power.
     pub exposure_ev: f64,
-    /// How long the shutter is open, in seconds; 0 freezes the drops.
+    /// Who sees the drops move.
+    pub observer: Observer,
+    /// Time in which light is gathered, in seconds: how long the shutter of a camera is open, 0 to 1 (0 freezes the drops), or
+    /// the persistence of an eye, 0.06 to 0.09.
     pub shutter: f64,
     /// Diameter of the lens's pupil, in metres; 0: all is in focus.
     pub aperture: f64,
@@ -57,6 +75,7 @@ impl Default for Camera {
             near: None,
             far: None,
             exposure_ev: 0.0,
+            observer: Observer::Camera,
             shutter: 1.0 / 60.0,
             aperture: 0.0,
             focus: None,
@@ -75,7 +94,9 @@ pub(super) struct CameraTable {
     near_m: Option<In<DepthM>>,
     far_m: Option<In<DepthM>>,
     exposure_ev: Option<In<Stops>>,
+    observer: Option<Observer>,
     shutter_s: Option<In<ShutterS>>,
+    persistence_s: Option<In<PersistenceS>>,
     aperture_mm: Option<In<ApertureMm>>,
     focus_m: Option<In<FocusM>>,
 }
@@ -90,13 +111,15 @@ impl Camera {
             let found = format!("{nearest} m to {farthest} m");
             return Err(places.bad(key, found, "near_m below far_m"));
         }
+        let observer = table.observer.unwrap_or_default();
         Ok(Self {
             pose: table.pose(places)?,
             fov: table.fov_deg.map(|fov| fov.0.to_radians()),
             near,
             far,
             exposure_ev: table.exposure_ev.map_or(default.exposure_ev, |ev| ev.0),
-            shutter: table.shutter_s.map_or(default.shutter, |shutter| shutter.0),
+            observer,
+            shutter: table.shutter(observer, places)?,
             aperture: table.aperture_mm.map_or(default.aperture, |pupil| pupil.0 * 1.0e-3),
             focus: table.focus_m.map(|focus| focus.0),
         })
@@ -104,6 +127,24 @@ impl Camera {
 }
 
 impl CameraTable {
+    /// The time in which light is gathered, s. Refuses the key of the other observer.
+    fn shutter(&self, observer: Observer, places: &Places<'_>) -> Result<f64, SceneError> {
+        match (observer, self.shutter_s, self.persistence_s) {
+            (Observer::Camera, _, Some(_)) => Err(places.bad(
+                "camera.persistence_s",
+                "with a camera, which has a shutter",
+                "shutter_s, or persistence_s with observer = \"eye\"",
+            )),
+            (Observer::Eye, Some(_), _) => Err(places.bad(
+                "camera.shutter_s",
+                "with observer = \"eye\", which has no shutter",
+                "persistence_s, or shutter_s without observer = \"eye\"",
+            )),
+            (Observer::Camera, shutter, None) => Ok(shutter.map_or(Camera::default().shutter, |time| time.0)),
+            (Observer::Eye, None, persistence) => Ok(persistence.map_or(PERSISTENCE_S, |time| time.0)),
+        }
+    }
+
     fn pose(&self, places: &Places<'_>) -> Result<Option<CameraPose>, SceneError> {
         let given = [
             ("look_at_m", self.look_at_m.is_some()),

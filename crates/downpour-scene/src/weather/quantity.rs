@@ -63,6 +63,7 @@ ranges! {
     FovDeg: 1.0, 170.0, "1 to 170 degrees";
     DepthM: 1e-4, 1e7, "1e-4 to 1e7 m";
     ShutterS: 0.0, 1.0, "0 to 1 s";
+    PersistenceS: 0.06, 0.09, "0.06 to 0.09 s";
     ApertureMm: 0.0, 500.0, "0 to 500 mm";
     FocusM: 0.01, 1e7, "0.01 to 1e7 m";
     Amplitude: 0.0, 0.3, "0 to 0.3";

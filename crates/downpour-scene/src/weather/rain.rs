@@ -166,6 +166,12 @@ pub enum RainDropLight {
     /// The formula of Rousseau 2006, section 6.
     #[serde(rename = "rousseau-2006")]
     Rousseau2006,
+    /// Its term of external reflection alone: `A_1 A_2` of the paper.
+    #[serde(rename = "rousseau-2006-external")]
+    Rousseau2006External,
+    /// Its term of internal reflection alone: `A_1 A_3` of the paper.
+    #[serde(rename = "rousseau-2006-internal")]
+    Rousseau2006Internal,
     /// Spots only: the cone of Im & Sung 2022, section III.C.
     #[serde(rename = "im-sung-2022")]
     ImSung2022,

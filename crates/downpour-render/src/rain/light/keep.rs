@@ -52,7 +52,7 @@ impl DropLights<'_> {
     /// What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
     fn drop_light_whole(&self, lit: Vec3, direction: Vec3, towards: Vec3) -> Vec3 {
         if self.form == DROP_LIGHT_LAMPS_ROUSSEAU {
-            return lit * drop_light_mean(towards, direction);
+            return lit * drop_light_mean(towards, direction, self.terms);
         }
         let angle = drop_glint_angle(direction, towards);
         lit * PI * drop_light_entry(self.table, 0, angle).truncate()

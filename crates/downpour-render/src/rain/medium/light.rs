@@ -69,10 +69,12 @@ fn phase(form: DropLightForm, table: &DropLightTable) -> Vec<[f32; 4]> {
         let of_formula = |value: f32| [f64::from(value); 3];
         let values = match form {
             DropLightForm::Traced | DropLightForm::Atlas => std::array::from_fn(|c| f64::from(row[c])),
-            DropLightForm::Rousseau2006 => {
+            DropLightForm::Rousseau2006
+            | DropLightForm::Rousseau2006External
+            | DropLightForm::Rousseau2006Internal => {
                 let angle = (k as f32 + 0.5) * (PI / MEDIUM_ANGLES as f32);
                 let light = Vec3::new(ops::sin(angle), 0.0, -ops::cos(angle));
-                of_formula(drop_light_mean(Vec3::NEG_Z, light) / PI)
+                of_formula(drop_light_mean(Vec3::NEG_Z, light, form.terms()) / PI)
             }
             DropLightForm::ImSung2022 => of_formula(1.0 / PI),
             DropLightForm::None => of_formula(0.0),
