@@ -107,6 +107,7 @@ pub const BROKEN: &[Broken] = &[
     },
     Broken { function: "drop_glint_angle", right: "0.25 - octant", wrong: "0.25 + octant" },
     Broken { function: "drop_glint_rousseau", right: "across * (1.0 + lit)", wrong: "across * (1.0 - lit)" },
+    Broken { function: "streak_weight", right: "(weights.y - weights.x)", wrong: "(weights.y + weights.x)" },
     Broken { function: "drop_light_mean", right: "- towards * sqrt", wrong: "+ towards * sqrt" },
     Broken { function: "glass_picture_water_cap", right: "+ l.y * (2.0 * x * y)", wrong: "+ l.y * (x * y)" },
     Broken { function: "glass_picture_water_leave", right: "side == 2", wrong: "side == 1" },

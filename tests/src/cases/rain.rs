@@ -9,6 +9,7 @@ use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::{RainPipeline, ScenePipeline};
 use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
+use downpour_render::rain::streak::streak_weight;
 use downpour_render::rain::streak_place::{streak_place_index, streak_place_position};
 use downpour_render::rain::{
     DropMasks, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions, ReduceLevel,
@@ -18,7 +19,7 @@ use downpour_render::rain::{
 use downpour_render::scene::SceneView;
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
-    DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK_LIGHT_KERNEL, STREAK_PLACE, STREAK_RAYS,
+    DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK, STREAK_LIGHT_KERNEL, STREAK_PLACE, STREAK_RAYS,
     STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::TRACE_KERNEL;
@@ -331,9 +332,21 @@ fn cells(random: [u32; 4]) -> Vec<u32> {
     vec![1 + random[0] % 24]
 }
 
+/// Weights of the light at the beginning and at the end of a way, 0 to 2.
+fn weights(random: [u32; 4]) -> Vec<u32> {
+    random[..2].iter().map(|&word| (2.0 * rng_unit(word)).to_bits()).collect()
+}
+
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
     vec![
+        FunctionCase::new(
+            "streak_weight",
+            &STREAK,
+            &[Made(weights), Uniform(-0.5, 1.5)],
+            Tol::absolute(1.0e-6, "a sum of products of numbers up to 2"),
+            |a| streak_weight(a.f32s(), a.f32()).words(),
+        ),
         FunctionCase::new(
             "drops_mask_right",
             &DROPS_MASK,
@@ -402,7 +415,6 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_over",
             "drops_medium",
             "streak_time",
-            "streak_weight",
             "streak_nearest",
             "streak_depth",
             "streak_stretch",

@@ -5,6 +5,7 @@ use downpour::render::glass::WetPane;
 use downpour::render::puddle::{PuddleMap, WetGround};
 use downpour::render::shower::{Shower, drop_model};
 use downpour::render::stage::{CameraChoice, Stage};
+use downpour::scene::weather::Observer;
 use downpour::scene::{Budget, scene::Texture};
 
 use super::input::{Input, InputArguments};
@@ -91,6 +92,11 @@ fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
     let forward = stage.viewpoint.forward.as_dvec3().to_array();
     let fov = f64::from(stage.viewpoint.fov_y).to_degrees();
     let [width, height] = stage.size.map(|edge| edge as usize);
+    let lens = &input.weather.camera;
+    let observer = match lens.observer {
+        Observer::Camera => "camera".to_owned(),
+        Observer::Eye => "eye".to_owned(),
+    };
     vec![
         count("triangles", "triangles", stage.triangles),
         count("instances", "meshes at their places", stage.instances),
@@ -110,6 +116,8 @@ fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
         Entry::new("camera_position_m", "its place", Triple(eye, 4), "m"),
         Entry::new("camera_forward", "its view", Triple(forward, 3), ""),
         Entry::new("fov_deg", "its vertical field of view", Computed(fov, 4), "degrees"),
+        Entry::new("observer", "who sees drops move", Word(observer), ""),
+        Entry::new("shutter_s", "time in which light is gathered", Computed(lens.shutter, 4), "s"),
         count("width", "columns", width),
         count("height", "rows", height),
     ]
