@@ -428,12 +428,12 @@ fn t11_keys_are_known_and_stand_once() {
     refused("[camera]\npersistence_s = 0.075", 2, "camera.persistence_s: with a camera");
     refused(
         "[camera]\nobserver = \"camera\"\npersistence_s = 0.075",
-        3,
+        2,
         "camera.persistence_s: with a camera",
     );
     refused(
         "[camera]\nobserver = \"eye\"\nshutter_s = 0.075",
-        3,
+        2,
         "camera.shutter_s: with observer = \"eye\"",
     );
     refused("[camera]\naperture_mm = nan", 2, "camera.aperture_mm");
