@@ -30,9 +30,9 @@ shared_constants! {
         DROP_LIGHT_LAMPS_TRACED: u32 = 5;
         /// The same in the form of Rousseau 2006.
         DROP_LIGHT_LAMPS_ROUSSEAU: u32 = 6;
-        /// Term of the formula of Rousseau 2006, a bit: light that is reflected outside (A_2).
+        /// Term of the formula of Rousseau 2006, a bit: light that is reflected outside (`A_2`).
         DROP_LIGHT_EXTERNAL: u32 = 1;
-        /// Term of the formula of Rousseau 2006, a bit: light that is reflected inside (A_3).
+        /// Term of the formula of Rousseau 2006, a bit: light that is reflected inside (`A_3`).
         DROP_LIGHT_INTERNAL: u32 = 2;
         /// Chord from the middle to the edge of the sun's disc: lamps that have no size count as wide.
         DROP_LIGHT_REACH: f32 = 0.00465;

@@ -5,7 +5,8 @@
 // passes a ray, which takes some tenths of a millisecond, its shape stands still.
 // Law: a ray that meets the oval's chord of half length h at the speed s is covered for 2 h / s of the exposure, so the
 // light that a drop takes out does not depend on how it is sampled. Where light of earlier moments weighs less, the share is
-// multiplied by the weight in the middle of the time in which the ray is covered: exact, since weights are straight lines.
+// multiplied by the weight in the middle of the time in which the ray is covered: exact for a drop that keeps its depth, since weights
+// are straight lines.
 // Source: Rousseau 2006, section 5; Rousseau 2008, section 2.2.3 (oscillation, left and right with phi + pi).
 // Twin: downpour_render::rain::streak.
 
