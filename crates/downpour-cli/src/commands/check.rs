@@ -116,7 +116,7 @@ fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
         Entry::new("camera_position_m", "its place", Triple(eye, 4), "m"),
         Entry::new("camera_forward", "its view", Triple(forward, 3), ""),
         Entry::new("fov_deg", "its vertical field of view", Computed(fov, 4), "degrees"),
-        Entry::new("observer", "who sees drops move", Word(observer), ""),
+        Entry::new("observer", "observer of moving drops", Word(observer), ""),
         Entry::new("shutter_s", "time in which light is gathered", Computed(lens.shutter, 4), "s"),
         count("width", "columns", width),
         count("height", "rows", height),

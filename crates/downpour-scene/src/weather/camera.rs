@@ -22,7 +22,7 @@ pub const FAR_M: f64 = 2000.0;
 /// Rousseau 2006, section 5.
 pub const PERSISTENCE_S: f64 = 0.075;
 
-/// Who sees drops move.
+/// Observer of moving drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Observer {
@@ -46,9 +46,9 @@ pub struct Camera {
     pub far: Option<f64>,
     /// The picture is multiplied by two to this power.
     pub exposure_ev: f64,
-    /// Who sees the drops move.
+    /// Observer of the moving drops.
     pub observer: Observer,
-    /// Time in which light is gathered, in seconds: how long the shutter of a camera is open, 0 to 1 (0 freezes the drops), or
+    /// Time in which light is gathered, in seconds: opening time of a camera's shutter, 0 to 1 (0 freezes the drops), or
     /// the persistence of an eye, 0.06 to 0.09.
     pub shutter: f64,
     /// Diameter of the lens's pupil, in metres; 0: all is in focus.
