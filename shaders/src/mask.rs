@@ -120,6 +120,14 @@ shared_constants! {
         ATLAS_STEPS: u32 = 64;
         /// Dimension of the random numbers.
         ATLAS_DIMENSION: u32 = 5200;
+        /// Columns of a grid of amounts, and its rows.
+        ATLAS_GRID: u32 = 41;
+        /// Grids of a diameter and an oscillation, over elevations of the viewer: equal steps of their sine.
+        ATLAS_RISES: u32 = 25;
+        /// Sine of the highest elevation of a grid; the lowest has the same below 0.
+        ATLAS_RISE_LIMIT: f32 = 0.96;
+        /// The diameter that smaller ones count as, in metres.
+        ATLAS_SMALLEST: f32 = 1.0e-6;
         /// The axis is taken to point to the viewer where the square of its part across is below this.
         ATLAS_TINY: f32 = 1.0e-8;
     }
@@ -132,7 +140,7 @@ pub static ATLAS: Module = Module {
     uses: &[&ATLAS_CONSTANTS, &RNG],
 };
 
-/// The buffers of an atlas as bindings 0 to 2. A kernel with other bindings declares the same three names in a module
+/// The buffers of an atlas as bindings 0 to 3. A kernel with other bindings declares the same four names in a module
 /// of its own, and gives it to a module of the text of [`ATLAS_LOOKUP`].
 pub static ATLAS_DATA: Module = Module {
     path: "mask/atlas_data.wgsl",

@@ -14,8 +14,11 @@ const USAGE: &str = "\
 cargo xtask atlas [--check] [--quick]              write assets/streaks, or compare it; --quick: one set of it
 cargo xtask atlas --columbia FOLDER WIDTH OUTPUT   the Columbia database's streaks of 4, 8, 16 or 32 columns as KTX2";
 
-/// Diameters in millimetres. Between 1 and 4 mm a drop goes from a sphere to a bun; larger ones are rare.
-const DIAMETERS_MM: [f64; 3] = [1.0, 2.0, 4.0];
+/// Diameters in millimeters. Between 1 and 4 mm a drop goes from a sphere to a bun, which moves its bows, most of all from 2 mm on;
+/// larger ones are rare.
+const DIAMETERS_MM: [f64; 4] = [1.0, 2.0, 2.8, 4.0];
+/// Those that are shown.
+const SHOWN_MM: [f64; 2] = [2.0, 4.0];
 /// Elevations of the viewer in degrees: rain is seen across, from some way below or above.
 const ELEVATIONS_DEG: [f64; 3] = [-40.0, 0.0, 40.0];
 /// The most bytes that the folder may hold.
@@ -56,7 +59,7 @@ fn make(quick: bool) -> Result<Vec<Asset>, String> {
             let set = set(diameter, oscillation)?;
             let bytes = write_streaks(&set).map_err(|error| error.to_string())?;
             assets.push((format!("streak_{diameter}mm_{}.ktx2", oscillation + 1), bytes));
-            if (oscillation < 2) && diameter >= 2.0 {
+            if oscillation < 2 && SHOWN_MM.contains(&diameter) {
                 shown.push(set);
             }
         }
@@ -132,7 +135,7 @@ mod tests {
     #[test]
     fn the_committed_atlas_is_loaded() {
         let atlas = StreakAtlas::load(&super::folder()).expect("assets/streaks");
-        assert_eq!(atlas.data().frame.counts, [3, 4, 3, 41]);
+        assert_eq!(atlas.data().frame.counts, [4, 4, 3, 41]);
         assert!(atlas.sets().iter().all(|set| set.layers() <= 256));
     }
 }

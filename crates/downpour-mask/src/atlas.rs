@@ -20,6 +20,43 @@
 //! drop falls, so rows go down in the picture. One turn of that mode is stored, and streaks are tiled with it. The mode
 //! (3,1) is run at twice the frequency of (2,0) for that, 3.3 % faster than Rayleigh's ratio `sqrt(30 / 8)` = 1.936.
 //!
+//! # Amount and pattern
+//!
+//! What a drop sends to its viewer falls by orders within a few degrees of the light's direction, and its bows move with the viewer's
+//! elevation and with the drop's size. So a lookup has two parts:
+//!
+//! - The amount is the radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius that sends as much light to the
+//!   viewer. It is traced for 41 x 41 directions of the light ([`amount_directions`]: 3 to 6 degrees apart) and 25 elevations of the
+//!   viewer ([`amount_elevations`]: 4.6 degrees apart at the horizon), and interpolated linearly over directions, the sine of the
+//!   elevation and the logarithm of the diameter; beyond the ends it stays what it is there.
+//! - The pattern says how many times as bright a point of the streak is as that disc. It is a mixture of twelve layers, each over its own
+//!   mean: of the three directions about the light's, of two elevations and of two diameters. The mean of any mixture is 1, so that the
+//!   light of a streak is its amount. Where elevations have directions of their own (Columbia's), the pattern is that of the nearest
+//!   elevation.
+//!
+//! Both are continuous: a drop that moves or grows does not pop. A set without amounts (Columbia's files have none) has those that are
+//! interpolated between the means of its layers. With [`StreakPick::Random`] a streak is one layer, with the mean of that layer.
+//!
+//! Against rays traced at the very direction of the light, 20 to 175 degrees from behind the drop, the amount (mean over the four
+//! oscillations of the committed atlas) is within 10 % for 79 to 97 of 100 directions at its own diameters, with a root mean square of
+//! 4 to 12 % and 0.76 to 1.8 times at the worst, where light falls from a bow into the dark band beside it; midway between diameters it
+//! is within 10 % for 73 to 91, with 9 to 22 %, and 0.6 to 2.3 times. (`cargo test -p downpour-mask --test atlas_amount -- --nocapture`.)
+//!
+//! # Light of a drop that oscillates
+//!
+//! The amounts are not those of a sphere. At rest they are; but with the amplitudes of Garg & Nayar 2006, 0.1 and 0.2 of the radius, a
+//! drop seen from the side sends to its viewer, relative to a sphere, by the angle of the light from behind the drop and by where the
+//! light stands (drops of 1, 2 and 4 mm, mean of the committed oscillations; the test `oscillation_takes_light_aside` of the same command
+//! prints every 5 degrees):
+//!
+//! | light | 20 | 40 | 60 | 75 | 90 | 110 | 140 | 160 |
+//! |---|---|---|---|---|---|---|---|---|
+//! | aside | 1.0, 1.0, 0.9 | 1.3, 1.2, 1.0 | 1.4, 1.4, 1.1 | 1.7, 1.6, 1.3 | 2.0, 2.1, 1.7 | 1.8, 1.6, 1.0 | 1.6, 1.8, 1.9 | 2.4, 2.5, 2.1 |
+//! | above | 1.0, 1.0, 0.9 | 0.8, 0.8, 0.8 | 0.7, 0.6, 0.3 | 1.0, 1.1, 0.8 | 5.3, 7.7, 1.1 | 4.7, 2.7, 1.5 | 0.3, 0.3, 0.3 | 11, 12, 6 |
+//!
+//! So lamps beside a drop light it more than a table of spheres says, and lamps above it less. From 80 degrees on a sphere has little
+//! (0.002 to 0.04 in 1/sr, in narrow bows; 1.2 is in front), which an oscillating drop spreads.
+//!
 //! # How it is traced
 //!
 //! Backwards: rays of the viewer, refracted and reflected up to [`INTERNAL`] times inside, and each that leaves is
@@ -58,7 +95,7 @@ mod surface;
 mod triangles;
 
 pub use collection::{MOST_SETS, StreakAtlas, StreakParticle, StreakPick};
-pub use directions::{light_directions, streak_frame};
+pub use directions::{amount_directions, amount_elevations, light_directions, streak_frame};
 pub use file::{read_streaks, write_streaks};
 pub use options::{StreakOptions, StreakOscillation};
 pub use path::INTERNAL;

@@ -64,6 +64,7 @@ fn a_file_is_read_again_and_by_the_ktx2_crate() {
     let bytes = write_streaks(&before).unwrap();
     let after = read_streaks(&bytes).unwrap();
     assert_eq!(before.texels, after.texels);
+    assert_eq!((before.amounts.len(), &before.amounts), (25 * 41 * 41, &after.amounts));
     assert!((before.diameter - after.diameter).abs() < 1.0e-15);
     assert_eq!(before.oscillation.amplitudes, after.oscillation.amplitudes);
     assert!((before.oscillation.azimuth - after.oscillation.azimuth).abs() < 1.0e-12);
@@ -76,7 +77,7 @@ fn a_file_is_read_again_and_by_the_ktx2_crate() {
     assert_eq!(reader.header().layer_count, 123);
     assert_eq!(reader.header().format, Some(ktx2::Format::R16_SFLOAT));
     let keys: Vec<_> = reader.key_value_data().map(|(k, _)| k.to_owned()).collect();
-    assert_eq!(keys, ["DownpourStreaks", "KTXorientation", "KTXwriter"]);
+    assert_eq!(keys, ["DownpourStreakAmounts", "DownpourStreaks", "KTXorientation", "KTXwriter"]);
 }
 
 #[test]
@@ -138,6 +139,7 @@ fn another_version_or_digest_is_refused() {
 fn texels_that_are_no_radiances_are_refused() {
     for bad in [f16::NAN, f16::INFINITY, f16::from_f32(-1.0)] {
         let mut set = counted();
+        set.amounts = Vec::new();
         set.texels[777] = bad;
         let error = write_streaks(&set).unwrap_err().to_string();
         assert!(error.contains("texel 777") && error.contains("finite"), "{error}");
@@ -146,6 +148,63 @@ fn texels_that_are_no_radiances_are_refused() {
         let error = read_streaks(&bytes).unwrap_err().to_string();
         assert!(error.contains("texel 777"), "{error}");
     }
+}
+
+/// A file without amounts is read; its amounts are interpolated between those of its layers.
+#[test]
+fn a_set_without_amounts_has_those_of_its_layers() {
+    let mut set = counted();
+    set.amounts = Vec::new();
+    let after = read_streaks(&write_streaks(&set).unwrap()).unwrap();
+    assert!(after.amounts.is_empty());
+    let atlas = StreakAtlas::from_sets(vec![after]).unwrap();
+    // Straight ahead, above and aslant: nodes of the grid, and directions of the list.
+    for (k, d) in light_directions().iter().enumerate() {
+        let [y, z] = atlas_map(d.map(|c| c as f32)).map(|c| (c + 1.0) * 20.0);
+        let place = atlas.place(&drop(2.0e-3, 0), d.map(|c| c as f32), [0.0, 0.0, 1.0]);
+        let layer = 41 + k;
+        let wanted = (32.0 * layer as f32 + 15.5) * 4.0 * 1.4 / std::f32::consts::PI;
+        if (y - y.round()).abs() < 1.0e-4 && (z - z.round()).abs() < 1.0e-4 {
+            // Half floats of the texels are whole numbers up to 2048.
+            assert!((place.amount / wanted - 1.0).abs() < 1.0e-3, "{d:?}: {} for {wanted}", place.amount);
+        }
+        // Between the smallest and the largest of its elevation everywhere.
+        assert!((32.0 * 41.0 * 1.7..32.0 * 82.0 * 1.8).contains(&place.amount), "{}", place.amount);
+    }
+}
+
+#[test]
+fn amounts_that_are_none_are_refused() {
+    let told = |change: fn(&mut StreakSet)| {
+        let mut set = counted();
+        change(&mut set);
+        write_streaks(&set).unwrap_err().to_string()
+    };
+    for bad in [
+        told(|set| set.amounts[777] = f16::NAN),
+        told(|set| set.amounts[777] = f16::INFINITY),
+        told(|set| set.amounts[777] = f16::from_f32(-1.0)),
+    ] {
+        assert!(bad.contains("DownpourStreakAmounts") && bad.contains("node 777"), "{bad}");
+    }
+    let short = told(|set| set.amounts.truncate(41));
+    assert!(short.contains("DownpourStreakAmounts") && short.contains("25 x 41 x 41"), "{short}");
+    // In a file: an amount that is not the digest's, and a key that is gone.
+    let bytes = write_streaks(&counted()).unwrap();
+    let at = bytes.windows(21).position(|w| w == b"DownpourStreakAmounts").unwrap();
+    let mut changed = bytes.clone();
+    changed[at + 22 + 100] ^= 1;
+    let error = read_streaks(&changed).unwrap_err().to_string();
+    assert!(error.contains("digest"), "{error}");
+    let mut gone = bytes;
+    gone[at] = b'd';
+    let error = read_streaks(&gone).unwrap_err().to_string();
+    assert!(error.contains("digest"), "{error}");
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("streak.ktx2"), &gone).unwrap();
+    let error = StreakAtlas::load(folder.path()).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("streak.ktx2") && error.to_string().contains("digest"), "{error}");
 }
 
 /// A file of a set whose texels are not checked: a good file whose level and digest are exchanged.
@@ -300,28 +359,80 @@ fn radiance_is_continuous_over_triangles() {
     }
 }
 
+/// The two diameters, and the two elevations, between which a drop is, and how far: by the logarithm and by the sine.
 #[test]
-fn diameter_elevation_and_chance_pick_the_set() {
+fn diameter_and_elevation_are_between_those_of_the_sets() {
     let atlas = StreakAtlas::clone(&ATLAS).with_seed(11);
     let light = [0.6, 0.0, -0.8];
-    let layer = |diameter, view: [f32; 3], id| atlas.place(&drop(diameter, id), light, view).layers[0] / 41;
     let level = [0.0, 0.0, 1.0];
+    let place = |diameter, view: [f32; 3], id| atlas.place(&drop(diameter, id), light, view);
     // Layers of 41 directions: three elevations in each of two oscillations of each diameter.
-    for (diameter, size) in [(0.5e-3, 0), (1.4e-3, 0), (1.5e-3, 1), (2.8e-3, 1), (2.9e-3, 2), (7.0e-3, 2)] {
-        assert_eq!(layer(diameter, level, 0) / 6, size, "{diameter}");
+    let position = |diameter| {
+        let place = place(diameter, level, 0);
+        (place.layers[0] / 41 / 6) as f32 + place.parts[0]
+    };
+    let root = 2.0f32.sqrt();
+    for (diameter, wanted) in [
+        (0.5e-3, 0.0),
+        (1.0e-3, 0.0),
+        (1.0e-3 * root, 0.5),
+        (2.0e-3, 1.0),
+        (2.0e-3 * root, 1.5),
+        (4.0e-3, 2.0),
+        (7.0e-3, 2.0),
+    ] {
+        assert!((position(diameter) - wanted).abs() < 1.0e-5, "{diameter}: {}", position(diameter));
     }
-    for (sine, elevation) in [(-0.9f32, 0), (-0.36, 0), (-0.33, 1), (0.33, 1), (0.36, 2), (0.99, 2)] {
-        let view = [0.0, sine, (1.0 - sine * sine).sqrt()];
-        assert_eq!(layer(2.0e-3, view, 0) % 3, elevation, "{sine}");
+    let high = downpour_math::ops::sin(0.7);
+    for (sine, wanted) in [
+        (-0.9f32, 0.0),
+        (-high, 0.0),
+        (-0.5 * high, 0.5),
+        (0.0, 1.0),
+        (0.25 * high, 1.25),
+        (high, 2.0),
+        (0.99, 2.0),
+    ] {
+        let place = place(2.0e-3, [0.0, sine, (1.0 - sine * sine).sqrt()], 0);
+        let found = (place.layers[0] / 41 % 3) as f32 + place.parts[1];
+        assert!((found - wanted).abs() < 1.0e-5, "{sine}: {found}");
     }
-    let second = (0..1000).filter(|&id| (layer(2.0e-3, level, id) / 3) % 2 == 1).count();
+    let second = (0..1000).filter(|&id| (place(2.0e-3, level, id).layers[0] / 41 / 3) % 2 == 1).count();
     assert!((430..570).contains(&second), "{second}");
+}
+
+/// Where elevations have directions of their own, patterns are those of the nearest one; amounts are still between.
+#[test]
+fn other_directions_at_each_elevation_have_patterns_of_the_nearest() {
+    let mut set = counted();
+    set.amounts = Vec::new();
+    set.directions[2].reverse();
+    let atlas = StreakAtlas::from_sets(vec![set]).unwrap();
+    let amount = |sine: f32| {
+        let place = atlas.place(&drop(2.0e-3, 0), [0.6, 0.0, -0.8], [0.0, sine, (1.0 - sine * sine).sqrt()]);
+        assert_eq!(place.parts[1].to_bits(), 0.0f32.to_bits());
+        (place.layers[0] / 41, place.amount)
+    };
+    let high = downpour_math::ops::sin(0.7);
+    for (sine, elevation) in
+        [(-0.9, 0), (-0.51 * high, 0), (-0.49 * high, 1), (0.49 * high, 1), (0.51 * high, 2)]
+    {
+        assert_eq!(amount(sine).0, elevation, "{sine}");
+    }
+    let [(_, below), (_, above)] = [0.499 * high, 0.501 * high].map(amount);
+    assert!((below - above).abs() < 0.01 * above, "{below} {above}");
+}
+
+#[test]
+fn chance_picks_any_layer() {
+    let atlas = StreakAtlas::clone(&ATLAS).with_seed(11);
+    let (light, level) = ([0.6, 0.0, -0.8], [0.0, 0.0, 1.0]);
     // At random, every layer is met by some particle, whatever the light.
     let random = atlas.with_pick(StreakPick::Random);
     let mut met = vec![0u32; random.layers()];
     for id in 0..40 * random.layers() as u32 {
-        let AtlasPlace { layers, weights, .. } = random.place(&drop(2.0e-3, id), light, level);
-        assert_eq!(weights, [1.0, 0.0, 0.0]);
+        let AtlasPlace { layers, weights, parts, .. } = random.place(&drop(2.0e-3, id), light, level);
+        assert_eq!((weights, parts), ([1.0, 0.0, 0.0], [0.0, 0.0]));
         met[layers[0] as usize] += 1;
     }
     let chi2: f64 = met.iter().map(|&n| (f64::from(n) - 40.0) * (f64::from(n) - 40.0) / 40.0).sum();
@@ -347,19 +458,26 @@ fn the_frame_of_a_streak_is_right_handed() {
 #[test]
 fn radiance_is_bilinear_and_goes_round() {
     let atlas = StreakAtlas::from_sets(vec![counted()]).unwrap();
-    let place =
-        |layer: u32, side| AtlasPlace { layers: [layer; 3], side, weights: [1.0, 0.0, 0.0], unused: 0.0 };
+    // The amount that makes a pattern of the layer: the mean of its texels, as a disc.
+    let mean = |layer: u32| (32.0 * layer as f32 + 15.5) * 4.0 * 1.4 / std::f32::consts::PI;
+    let place = |layer: u32, side| AtlasPlace {
+        layers: [layer; 3],
+        side,
+        weights: [1.0, 0.0, 0.0],
+        amount: mean(layer),
+        ..AtlasPlace::default()
+    };
     let across = |column: f32| (column + 0.5) / 8.0 * 2.8 - 1.4;
     let at = |column, row: f32| atlas.radiance(&place(2, 1.0), across(column), (row + 0.5) / 4.0);
-    assert!((at(3.0, 1.0) - 75.0).abs() < 1.0e-3);
-    assert!((at(3.5, 1.0) - 75.5).abs() < 1.0e-3);
-    assert!((at(3.0, 1.25) - 77.0).abs() < 1.0e-3);
-    assert!((at(3.0, 3.5) - 0.5 * (91.0 + 67.0)).abs() < 1.0e-3, "the last row is next to the first");
-    assert!((at(3.0, 9.0) - 75.0).abs() < 1.0e-3, "two turns on");
-    assert!((at(7.5, 1.0) - 0.5 * 79.0).abs() < 1.0e-3, "0 outside");
+    assert!((at(3.0, 1.0) - 75.0).abs() < 0.05);
+    assert!((at(3.5, 1.0) - 75.5).abs() < 0.05);
+    assert!((at(3.0, 1.25) - 77.0).abs() < 0.05);
+    assert!((at(3.0, 3.5) - 0.5 * (91.0 + 67.0)).abs() < 0.05, "the last row is next to the first");
+    assert!((at(3.0, 9.0) - 75.0).abs() < 0.05, "two turns on");
+    assert!((at(7.5, 1.0) - 0.5 * 79.0).abs() < 0.05, "0 outside");
     assert_eq!(at(9.0, 1.0), 0.0);
     let mirrored = atlas.radiance(&place(2, -1.0), across(3.0), 1.5 / 4.0);
-    assert!((mirrored - 76.0).abs() < 1.0e-3, "{mirrored}");
+    assert!((mirrored - 76.0).abs() < 0.05, "{mirrored}");
 }
 
 #[test]

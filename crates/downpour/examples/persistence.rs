@@ -143,7 +143,7 @@ impl Bench<'_> {
             ("traced, means", DropLightForm::Traced, 0),
             ("Rousseau 2006", DropLightForm::Rousseau2006, 0),
             ("Im & Sung 2022", DropLightForm::ImSung2022, 0),
-            ("atlas, 4 lamps a drop", DropLightForm::Atlas, 8),
+            ("atlas, 4 lamps a drop", DropLightForm::Atlas, 12),
         ] {
             let Cost { lamps, drops, .. } = of(form, glints)?;
             let more = 100.0 * (lamps + drops - without.drops) / all;

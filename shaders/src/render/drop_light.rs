@@ -54,20 +54,22 @@ shared_constants! {
         DROP_GLINT_RANGE: f32 = 4096.0;
         /// Below this, a vector has no direction.
         DROP_GLINT_TINY: f32 = 1.0e-30;
+        /// Rows of a drop's light that hold a streak of an atlas.
+        DROP_ATLAS_ROWS: u32 = 3;
         /// Row of an atlas: numbers of diameters, oscillations, elevations and directions.
         DROP_ATLAS_COUNTS: u32 = 0;
-        /// Row of an atlas: by angle or at random, and the first row of the layers' means.
+        /// Row of an atlas: by angle or at random, the first row of the amounts, and whether all elevations have the same directions.
         DROP_ATLAS_PICK: u32 = 1;
         /// Row of an atlas: the seed, in four parts of 16 bits.
         DROP_ATLAS_SEED: u32 = 2;
-        /// First of two rows of an atlas: thresholds of diameters.
+        /// First of four rows of an atlas: gaps between diameters.
         DROP_ATLAS_SIZES: u32 = 3;
-        /// First of two rows of an atlas: thresholds of elevations.
-        DROP_ATLAS_RISES: u32 = 5;
+        /// First of four rows of an atlas: gaps between elevations.
+        DROP_ATLAS_RISES: u32 = 7;
         /// First of three rows of an atlas: first triangles of the elevations.
-        DROP_ATLAS_FIRST: u32 = 7;
+        DROP_ATLAS_FIRST: u32 = 11;
         /// First row of an atlas' triangles, three each.
-        DROP_ATLAS_TRIANGLES: u32 = 10;
+        DROP_ATLAS_TRIANGLES: u32 = 14;
         /// Below this squared distance from the axis a direction has no side.
         DROP_GLINT_AXIS: f32 = 1.0e-12;
     }

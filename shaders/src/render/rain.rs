@@ -1,11 +1,11 @@
 //! `wgsl/render/{reduce,drops*,streak*}.wgsl`: drops before a scene. Twins: `downpour_render::rain`.
 
-use super::drop_light::DROP_GLINT;
+use super::drop_light::{DROP_GLINT, DROP_LIGHT_CONSTANTS};
 use super::medium::MEDIUM;
 use crate::common::PACKING;
 use crate::drop::oscillation::OSCILLATION;
 use crate::drop::shape::SHAPE;
-use crate::mask::WOBBLE;
+use crate::mask::{ATLAS, WOBBLE};
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -134,7 +134,7 @@ shared_constants! {
         /// Place of Gauss's two points: 1 / sqrt(3).
         STREAK_GAUSS: f32 = 0.57735026;
         /// Words before the texels of an atlas.
-        DROPS_ATLAS_HEAD: u32 = 4;
+        DROPS_ATLAS_HEAD: u32 = 6;
         /// Samples of a streak's length in a pixel, where it has no width.
         DROPS_ATLAS_TAPS: u32 = 4;
     }
@@ -251,7 +251,7 @@ pub static STREAK_TABLE: Module = Module {
 pub static DROPS_ATLAS: Module = Module {
     path: "render/drops_atlas.wgsl",
     wgsl: include_str!("../../wgsl/render/drops_atlas.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &DROPS_FRAME, &DROPS_MASK],
+    uses: &[&RAIN_CONSTANTS, &DROPS_FRAME, &DROPS_MASK, &ATLAS],
 };
 
 /// Drops through their masks. Twin: `downpour_render::rain::drops`.
@@ -268,6 +268,7 @@ pub static DROPS: Module = Module {
         &STREAK,
         &STREAK_LOOKUP,
         &DROPS_ATLAS,
+        &DROP_LIGHT_CONSTANTS,
         &DROP_GLINT,
         &MEDIUM,
     ],

@@ -12,14 +12,16 @@ struct AtlasFrame {
     // Numbers of diameters, oscillations, elevations and directions.
     counts: vec4u,
     seed: vec2u,
-    unused: vec2u,
-    // Thresholds between neighbouring diameters in metres.
-    diameters: array<vec4f, 2>,
-    // Sines of the angles midway between neighbouring elevations.
-    elevations: array<vec4f, 2>,
+    // 1 if all elevations have the same directions, else 0: then patterns are those of the nearest elevation.
+    is_shared: u32,
+    unused: u32,
+    // Gaps between neighboring diameters, up to eight: the lower end, the logarithm to base 2 of meters; then 1 / the width of
+    // each gap. 0 where there is no gap.
+    diameters: array<vec4f, 4>,
+    // Gaps between neighboring elevations, by their sines, in the same form.
+    elevations: array<vec4f, 4>,
     // First triangle of each elevation, then the number of all.
     first: array<vec4u, 3>,
-    unused_1: vec4u,
 }
 
 struct AtlasTriangle {
@@ -37,13 +39,23 @@ struct AtlasTriangle {
 }
 
 struct AtlasPlace {
-    // Three layers of the atlas.
+    // Three layers of the atlas, of the lower diameter and the lower elevation.
     layers: vec3u,
     // -1 if the streak is to be mirrored, else 1.
     side: f32,
-    // Their weights; together 1.
+    // Weights of the three directions; together 1.
     weights: vec3f,
-    unused: f32,
+    // The radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius with as much light.
+    amount: f32,
+    // Weights of the higher diameter and of the higher elevation.
+    parts: vec2f,
+    unused: vec2f,
+}
+
+// Three directions of an elevation and their weights; together 1.
+struct AtlasMix {
+    directions: vec3u,
+    weights: vec3f,
 }
 
 // A light in the frame of the streak of a drop with this axis.
@@ -64,11 +76,32 @@ fn atlas_map(direction: vec3f) -> vec2f {
     return direction.yz * below;
 }
 
-// How many of eight ascending thresholds a value is above.
-fn atlas_rank(low: vec4f, high: vec4f, value: f32) -> u32 {
-    let above = select(vec4u(0u), vec4u(1u), vec4f(value) > low)
-        + select(vec4u(0u), vec4u(1u), vec4f(value) > high);
-    return above.x + above.y + above.z + above.w;
+// Position of a value among up to nine ascending nodes: 0 at the first, 1 at the second, linear in between, constant beyond the
+// ends. The lower ends of the gaps between nodes, then 1 / their widths, 0 where there is no gap.
+fn atlas_position(low: vec4f, high: vec4f, low_inverse: vec4f, high_inverse: vec4f, value: f32) -> f32 {
+    let parts = clamp((vec4f(value) - low) * low_inverse, vec4f(0.0), vec4f(1.0))
+        + clamp((vec4f(value) - high) * high_inverse, vec4f(0.0), vec4f(1.0));
+    return (parts.x + parts.y) + (parts.z + parts.w);
+}
+
+// Position of a viewer among the grids of amounts, by the sine of the elevation.
+fn atlas_rise(sine: f32) -> f32 {
+    return clamp(0.5 * (sine / ATLAS_RISE_LIMIT) + 0.5, 0.0, 1.0) * f32(ATLAS_RISES - 1u);
+}
+
+// Cell of the grid of amounts that a point of the map is in: column and row of its first node, then the point's distance from that
+// node in cells.
+fn atlas_cell(point: vec2f) -> vec4f {
+    let cells = f32(ATLAS_GRID - 1u);
+    let at = (0.5 * point + vec2f(0.5)) * cells;
+    let node = clamp(floor(at), vec2f(0.0), vec2f(cells - 1.0));
+    return vec4f(node, clamp(at - node, vec2f(0.0), vec2f(1.0)));
+}
+
+// Weight of one of the four neighbors in diameter and elevation. Bit 0: the higher diameter; bit 1: the higher elevation; the weights
+// of these.
+fn atlas_corner(size: f32, rise: f32, corner: u32) -> f32 {
+    return select(1.0 - size, size, (corner & 1u) == 1u) * select(1.0 - rise, rise, (corner & 2u) == 2u);
 }
 
 // Shares of the corners in a point of the map; together 1, below 0 beyond the opposite edge.

@@ -17,8 +17,8 @@ struct AtlasQuery {
     unused: array<u32, 3>,
 }
 
-@group(0) @binding(3) var<storage, read> atlas_query_points: array<AtlasQuery>;
-@group(0) @binding(4) var<storage, read_write> atlas_query_radiances: array<f32>;
+@group(0) @binding(4) var<storage, read> atlas_query_points: array<AtlasQuery>;
+@group(0) @binding(5) var<storage, read_write> atlas_query_radiances: array<f32>;
 
 @compute @workgroup_size(64)
 fn main_atlas_query(@builtin(global_invocation_id) id: vec3u) {

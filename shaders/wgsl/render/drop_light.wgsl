@@ -10,7 +10,7 @@ struct DropLightFrame {
     count: u32,
     // DROP_LIGHT_TRACED, DROP_LIGHT_ATLAS, DROP_LIGHT_ROUSSEAU, DROP_LIGHT_IM_SUNG or DROP_LIGHT_NONE.
     form: u32,
-    // Rows that are kept of each drop besides its mean: glints, one each, or streaks of an atlas, two each.
+    // Rows that are kept of each drop besides its mean: glints, one each, lamps, two each, or streaks of an atlas, three each.
     glints: u32,
     // First lamp of this dispatch, which has DROP_LIGHT_LAMPS of them at most.
     first_light: u32,
@@ -22,7 +22,8 @@ struct DropLightFrame {
 // as the eye sees it, and its id.
 @group(0) @binding(6) var<storage, read> drop_light_drops: array<vec4f>;
 // For each drop its mean radiance, then its glints: their part of the mean, and their place, packed. Or its streaks: their part
-// of the mean, and 1 + the first layer's share, below 0 if it is mirrored; the three layers, and the second one's share. Or its
+// of the mean, and -1 if it is mirrored, else 1; the three layers, and the weight of the first; the weight of the second, those of the
+// higher diameter and of the higher elevation, and 0. Or its
 // lamps in the form of Rousseau 2006: the irradiance over pi, and -1 less what the formula gives on the mean; the direction. Or its
 // lamps for the profile of its streak: the irradiance, and the chord from the middle to the edge of the disc (in the form of
 // Rousseau 2006 the irradiance over pi, and -1); the direction, and how bright the drop is by it.
@@ -84,40 +85,44 @@ fn drop_light_mean(towards: vec3f, light: vec3f, terms: u32) -> f32 {
     return sum / f32(DROP_LIGHT_RINGS * DROP_LIGHT_PLACES);
 }
 
-// Keeps a glint of a drop if it is brighter than the least of those that are kept.
-fn drop_light_keep(first: u32, glint: vec4f) {
-    var weakest = first;
-    var least = scene_share(glint.rgb);
-    var found = false;
-    for (var k = 0u; k < drop_light_frame.glints; k += 1u) {
-        let share = scene_share(drop_light_out[first + k].rgb);
-        if share < least {
-            least = share;
-            weakest = first + k;
-            found = true;
+// First row of the faintest of the lights of a drop, `rows` rows each from `first` on, if it is fainter than `share`; else 0.
+fn drop_light_weakest(first: u32, rows: u32, share: f32) -> u32 {
+    var weakest = 0u;
+    var least = share;
+    for (var k = rows; k <= drop_light_frame.glints; k += rows) {
+        let kept = scene_share(drop_light_out[first + k - rows].rgb);
+        if kept < least {
+            least = kept;
+            weakest = first + k - rows;
         }
     }
-    if found {
+    return weakest;
+}
+
+// Keeps a glint of a drop if it is brighter than the least of those that are kept.
+fn drop_light_keep(first: u32, glint: vec4f) {
+    let weakest = drop_light_weakest(first, 1u, scene_share(glint.rgb));
+    if weakest > 0u {
         drop_light_out[weakest] = glint;
     }
 }
 
-// Keeps two rows of a drop, a streak or a lamp, if it is brighter than the least of those that are kept.
-fn drop_light_keep_streak(first: u32, light: vec4f, layers: vec4f) {
-    var weakest = first;
-    var least = scene_share(light.rgb);
-    var found = false;
-    for (var k = 0u; k + 1u < drop_light_frame.glints; k += 2u) {
-        let share = scene_share(drop_light_out[first + k].rgb);
-        if share < least {
-            least = share;
-            weakest = first + k;
-            found = true;
-        }
-    }
-    if found {
+// Keeps a lamp of a drop in the form of Rousseau 2006, two rows, if it is brighter than the least of those that are kept.
+fn drop_light_keep_facing(first: u32, light: vec4f, direction: vec4f) {
+    let weakest = drop_light_weakest(first, 2u, scene_share(light.rgb));
+    if weakest > 0u {
         drop_light_out[weakest] = light;
-        drop_light_out[weakest + 1u] = layers;
+        drop_light_out[weakest + 1u] = direction;
+    }
+}
+
+// Keeps a streak of an atlas, three rows, if it is brighter than the least of those that are kept.
+fn drop_light_keep_streak(first: u32, radiance: vec3f, place: AtlasPlace) {
+    let weakest = drop_light_weakest(first, DROP_ATLAS_ROWS, scene_share(radiance));
+    if weakest > 0u {
+        drop_light_out[weakest] = vec4f(radiance, place.side);
+        drop_light_out[weakest + 1u] = vec4f(vec3f(place.layers), place.weights.x);
+        drop_light_out[weakest + 2u] = vec4f(place.weights.y, place.parts, 0.0);
     }
 }
 
@@ -202,15 +207,13 @@ fn drop_light_of(index: u32) {
         } else if form == DROP_LIGHT_ROUSSEAU {
             let mean = drop_light_mean(towards, light.direction, drop_light_frame.terms);
             sum += lit * mean;
-            drop_light_keep_streak(slot + 1u, vec4f(lit, -1.0 - mean), vec4f(light.direction, 0.0));
+            drop_light_keep_facing(slot + 1u, vec4f(lit, -1.0 - mean), vec4f(light.direction, 0.0));
         } else if form == DROP_LIGHT_ATLAS {
             let about = drop_light_drops[drop_light_frame.count + index];
             let place = drop_atlas_place(u32(about.w), 2.0 * drop.w, about.xyz, light.direction, -towards);
-            let shares = drop_atlas_shares(place);
-            let radiance = lit * (DROP_LIGHT_PI * shares.w);
+            let radiance = lit * (DROP_LIGHT_PI * place.amount);
             sum += radiance;
-            let layers = vec4f(vec3f(place.layers), shares.y);
-            drop_light_keep_streak(slot + 1u, vec4f(radiance, place.side * (1.0 + shares.x)), layers);
+            drop_light_keep_streak(slot + 1u, radiance, place);
         } else {
             let angle = drop_glint_angle(light.direction, towards);
             let side = drop_glint_side(light.direction, right, up);

@@ -91,10 +91,10 @@ fn drops_streaks(index: u32, drop: DropsDrop, chord: StreakChord, at: vec2f) -> 
     let part = (chord.high - chord.low) * 0.5;
     let turns = drops_turns(drop, streak_nearest(drop, at));
     var light = drops_light[row].rgb * chord.share;
-    for (var k = 1u; k < drops_frame.glints; k += 2u) {
-        let first = drops_light[row + k];
+    for (var k = DROP_ATLAS_ROWS; k <= drops_frame.glints; k += DROP_ATLAS_ROWS) {
+        let first = drops_light[row + k - 2u];
         if first.w != 0.0 {
-            let streak = drops_atlas_streak(first, drops_light[row + k + 1u]);
+            let streak = drops_atlas_streak(first, drops_light[row + k - 1u], drops_light[row + k]);
             let shown = drops_atlas_across(streak, -chord.aside, turns);
             light += first.rgb * (shown * 2.0 * chord.pace - chord.share);
         }
@@ -112,10 +112,10 @@ fn drops_beads(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
     let square = max(dot(drop.way, drop.way), 1.0);
     let at = dot(vec2f(f32(x), f32(y)) + 0.5 - drop.first, drop.way) / square;
     let pixel = 1.0 / sqrt(square);
-    for (var k = 1u; k < drops_frame.glints; k += 2u) {
-        let first = drops_light[row + k];
+    for (var k = DROP_ATLAS_ROWS; k <= drops_frame.glints; k += DROP_ATLAS_ROWS) {
+        let first = drops_light[row + k - 2u];
         if first.w != 0.0 {
-            let streak = drops_atlas_streak(first, drops_light[row + k + 1u]);
+            let streak = drops_atlas_streak(first, drops_light[row + k - 1u], drops_light[row + k]);
             var mean = 0.0;
             for (var n = 0u; n < DROPS_ATLAS_TAPS; n += 1u) {
                 let off = (f32(n) + 0.5) / f32(DROPS_ATLAS_TAPS) - 0.5;

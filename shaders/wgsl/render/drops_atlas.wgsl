@@ -1,21 +1,28 @@
-// The streaks of an atlas between their texels. They stand behind the masks: columns, rows, half of the width in equivalent
-// radii, a word of nothing; then halves, two a word: layers, rows, columns, and at the end of each row its mean.
+// The patterns of an atlas between their texels. They stand behind the masks: columns, rows, half of the width in equivalent
+// radii; layers from an elevation to the next, layers from a diameter to the next, a word of nothing; then halves, two a word: layers,
+// rows, columns, and at the end of each row its mean.
 // Law: over the width and a turn the mean of a layer is that of a disc of even light, so that a texel says how many times
-// as bright it is as the disc would be, in the time in which the drop moves on by its diameter.
+// as bright it is as the disc would be, in the time in which the drop moves on by its diameter. So is that of any mixture.
 // Twin: downpour_render::rain::drops_atlas.
 
-// Three layers, their parts in the light, and -1 if they are to be mirrored, else 1.
+// Three layers of the lower diameter and elevation, -1 if they are to be mirrored, else 1; weights of the three, weights of the higher
+// diameter and of the higher elevation.
 struct DropsAtlasStreak {
     layers: vec3u,
     side: f32,
-    shares: vec3f,
+    weights: vec3f,
+    parts: vec2f,
 }
 
-// A streak out of two rows of a drop's light; its colour is in the first.
-fn drops_atlas_streak(first: vec4f, second: vec4f) -> DropsAtlasStreak {
-    let share = abs(first.w) - 1.0;
-    let side = select(1.0, -1.0, first.w < 0.0);
-    return DropsAtlasStreak(vec3u(second.xyz), side, vec3f(share, second.w, 1.0 - share - second.w));
+// A streak out of three rows of a drop's light; its color is in the first.
+fn drops_atlas_streak(first: vec4f, second: vec4f, third: vec4f) -> DropsAtlasStreak {
+    return DropsAtlasStreak(vec3u(second.xyz), first.w, vec3f(second.w, third.x, 1.0 - second.w - third.x), third.yz);
+}
+
+// Layers from those of the lower diameter and elevation to those of one of the four neighbors.
+fn drops_atlas_step(corner: u32) -> u32 {
+    let head = drops_frame.atlas;
+    return (corner & 1u) * drops_masks[head + 4u] + (corner >> 1u) * drops_masks[head + 3u];
 }
 
 // A half by its number.
@@ -63,16 +70,32 @@ fn drops_atlas_across(streak: DropsAtlasStreak, across: f32, turns: f32) -> f32 
     let extent = bitcast<f32>(drops_masks[drops_frame.atlas + 2u]);
     let column = half + half * clamp(across * streak.side / extent, -2.0, 2.0);
     let row = (turns - floor(turns)) * f32(drops_masks[drops_frame.atlas + 1u]);
-    return streak.shares.x * drops_atlas_layer(streak.layers.x, column, row)
-        + streak.shares.y * drops_atlas_layer(streak.layers.y, column, row)
-        + streak.shares.z * drops_atlas_layer(streak.layers.z, column, row);
+    var shown = 0.0;
+    for (var corner = 0u; corner < 4u; corner += 1u) {
+        let weight = atlas_corner(streak.parts.x, streak.parts.y, corner);
+        if weight > 0.0 {
+            let layers = streak.layers + vec3u(drops_atlas_step(corner));
+            shown += weight * (streak.weights.x * drops_atlas_layer(layers.x, column, row)
+                + streak.weights.y * drops_atlas_layer(layers.y, column, row)
+                + streak.weights.z * drops_atlas_layer(layers.z, column, row));
+        }
+    }
+    return shown;
 }
 
 // The mean over the width, so many turns along.
 fn drops_atlas_along(streak: DropsAtlasStreak, turns: f32) -> f32 {
     let columns = i32(drops_masks[drops_frame.atlas]);
     let row = i32((turns - floor(turns)) * f32(drops_masks[drops_frame.atlas + 1u]));
-    return streak.shares.x * drops_atlas_texel(streak.layers.x, columns, row)
-        + streak.shares.y * drops_atlas_texel(streak.layers.y, columns, row)
-        + streak.shares.z * drops_atlas_texel(streak.layers.z, columns, row);
+    var shown = 0.0;
+    for (var corner = 0u; corner < 4u; corner += 1u) {
+        let weight = atlas_corner(streak.parts.x, streak.parts.y, corner);
+        if weight > 0.0 {
+            let layers = streak.layers + vec3u(drops_atlas_step(corner));
+            shown += weight * (streak.weights.x * drops_atlas_texel(layers.x, columns, row)
+                + streak.weights.y * drops_atlas_texel(layers.y, columns, row)
+                + streak.weights.z * drops_atlas_texel(layers.z, columns, row));
+        }
+    }
+    return shown;
 }

@@ -3,7 +3,8 @@
 use downpour_gpu::{Gpu, GpuError};
 use downpour_mask::atlas::gpu::{AtlasQuery, GpuAtlas};
 use downpour_mask::atlas::lookup::{
-    atlas_clamp, atlas_draw, atlas_light, atlas_map, atlas_rank, atlas_weights,
+    atlas_cell, atlas_clamp, atlas_corner, atlas_draw, atlas_light, atlas_map, atlas_position, atlas_rise,
+    atlas_weights,
 };
 use downpour_mask::atlas::{
     StreakAtlas, StreakOptions, StreakOrigin, StreakOscillation, StreakParticle, StreakPick, StreakSet,
@@ -11,7 +12,7 @@ use downpour_mask::atlas::{
 };
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_shaders::mask::{ATLAS, ATLAS_QUERY_KERNEL};
+use downpour_shaders::mask::{ATLAS, ATLAS_GRID, ATLAS_QUERY_KERNEL, ATLAS_RISES};
 
 use crate::Domain::{AnyWord, Below, Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
@@ -25,7 +26,8 @@ use crate::{FunctionCase, KernelCase, Tol};
 pub(super) fn functions() -> Vec<FunctionCase> {
     let (low, high, middle) = (Uniform(-1.0, -0.6), Uniform(0.6, 1.0), Uniform(-0.4, 0.4));
     let point = Uniform(-1.2, 1.2);
-    let threshold = Uniform(-1.0, 1.0);
+    let (start, inverse) = (Uniform(-1.0, 1.0), Uniform(0.0, 4.0));
+    let gaps = [[start; 8].as_slice(), &[inverse; 8], &[start]].concat();
     vec![
         FunctionCase::new(
             "atlas_light",
@@ -44,9 +46,35 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::relative(1.0e-6, 1.0e-6, "a division (2.5 ulp) and a product"),
             |a| atlas_map(a.f32s()).words(),
         ),
-        FunctionCase::new("atlas_rank", &ATLAS, &[threshold; 9], Tol::exact("comparisons"), |a| {
-            atlas_rank(a.f32s(), a.f32s(), a.f32()).words()
-        }),
+        FunctionCase::new(
+            "atlas_position",
+            &ATLAS,
+            &gaps,
+            Tol::absolute(4.0e-6, "eight products up to 8 that are cut to 0 to 1, and their sum"),
+            |a| atlas_position(a.f32s(), a.f32s(), a.f32s(), a.f32s(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "atlas_rise",
+            &ATLAS,
+            &[Uniform(-1.0, 1.0)],
+            Tol::absolute(1.0e-5, "a division (2.5 ulp) of numbers up to 1, times 24"),
+            |a| atlas_rise(a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "atlas_cell",
+            &ATLAS,
+            &[point, point],
+            Tol::absolute(1.0e-5, "a product and a sum, times 40; at a border the next cell with 0 for 1")
+                .with_outliers(1.0e-4),
+            |a| atlas_cell(a.f32s()).words(),
+        ),
+        FunctionCase::new(
+            "atlas_corner",
+            &ATLAS,
+            &[Uniform(0.0, 1.0), Uniform(0.0, 1.0), Below(4)],
+            Tol::relative(1.0e-6, 1.0e-6, "a product of two differences"),
+            |a| atlas_corner(a.f32(), a.f32(), a.u32()).words(),
+        ),
         FunctionCase::new(
             "atlas_weights",
             &ATLAS,
@@ -75,11 +103,21 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     ]
 }
 
+/// Amounts of a set that go up and down from node to node, 0.5 to 1.5.
+fn amounts(diameter: u32, oscillation: u32) -> Vec<half::f16> {
+    let node = |k: u32| half::f16::from_f32(0.5 + rng_unit(rng_draw([diameter, oscillation], k, 1, 0)[0]));
+    (0..ATLAS_RISES * ATLAS_GRID * ATLAS_GRID).map(node).collect()
+}
+
 /// An atlas of nine diameters, with noise in its texels.
-fn atlas(pick: StreakPick) -> StreakAtlas {
+fn atlas(pick: StreakPick, with_amounts: bool) -> StreakAtlas {
     let options = StreakOptions { columns: 8, rows: 6, ..StreakOptions::default() };
     let elevations = [-0.9, -0.3, 0.1, 0.5, 1.0];
-    let directions = vec![light_directions(); elevations.len()];
+    let mut directions = vec![light_directions(); elevations.len()];
+    if !with_amounts {
+        // As those of the Columbia database, elevations have directions of their own.
+        directions[2].reverse();
+    }
     let set = |diameter: u32, oscillation: u32| {
         let texels = (0..elevations.len() * directions[0].len() * 48).map(|k| {
             let [word, ..] = rng_draw([diameter, oscillation], k as u32, 0, 0);
@@ -94,6 +132,7 @@ fn atlas(pick: StreakPick) -> StreakAtlas {
             elevations: elevations.to_vec(),
             directions: directions.clone(),
             texels: texels.collect(),
+            amounts: if with_amounts { amounts(diameter, oscillation) } else { Vec::new() },
         }
     };
     let sets =
@@ -122,8 +161,8 @@ fn query(k: u32) -> AtlasQuery {
     }
 }
 
-fn query_case(gpu: &Gpu, pick: StreakPick) -> Result<Run, GpuError> {
-    let atlas = atlas(pick);
+fn query_case(gpu: &Gpu, pick: StreakPick, with_amounts: bool) -> Result<Run, GpuError> {
+    let atlas = atlas(pick, with_amounts);
     let queries: Vec<AtlasQuery> = (0..8192).map(query).collect();
     let made = GpuAtlas::new(gpu, &atlas)?.query(gpu, &queries)?;
     let told = queries.iter().map(|q| {
@@ -147,16 +186,23 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, run| KernelCase {
         name,
         kernel: &ATLAS_QUERY_KERNEL,
-        covers: &["atlas_lookup_place", "atlas_lookup_texel", "atlas_lookup_layer", "atlas_lookup_radiance"],
-        tol: Tol::absolute(
-            1.0e-4,
-            "noise of 0 to 1 at places known to 2e-5 of a triangle's and to 1e-6 of a texel's size",
-        )
-        .with_outliers(1.0e-3),
+        covers: &[
+            "atlas_lookup_mix",
+            "atlas_lookup_amount",
+            "atlas_lookup_place",
+            "atlas_lookup_texel",
+            "atlas_lookup_layer",
+            "atlas_lookup_radiance",
+        ],
+        tol: Tol::absolute(4.0e-4, "noise of 0 to 3 at points known to 4e-5 of a cell's size")
+            .with_outliers(1.0e-3),
         run,
     };
     vec![
-        case("main_atlas_query: by angle", |gpu| query_case(gpu, StreakPick::ByAngle)),
-        case("main_atlas_query: at random", |gpu| query_case(gpu, StreakPick::Random)),
+        case("main_atlas_query: by angle", |gpu| query_case(gpu, StreakPick::ByAngle, true)),
+        case("main_atlas_query: by angle, directions that differ", |gpu| {
+            query_case(gpu, StreakPick::ByAngle, false)
+        }),
+        case("main_atlas_query: at random", |gpu| query_case(gpu, StreakPick::Random, true)),
     ]
 }

@@ -401,6 +401,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_streaks",
             "drops_beads",
             "drops_atlas_streak",
+            "drops_atlas_step",
             "drops_atlas_half",
             "drops_atlas_texel",
             "drops_atlas_within",

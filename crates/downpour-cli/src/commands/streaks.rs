@@ -76,7 +76,7 @@ impl Streaks {
                 .to_owned();
         };
         let mut sizes: Vec<String> =
-            atlas.sets().iter().map(|set| format!("{}", (set.diameter * 1.0e6).round() * 1.0e-3)).collect();
+            atlas.sets().iter().map(|set| format!("{}", (set.diameter * 1.0e6).round() / 1.0e3)).collect();
         // They are in order of their diameters.
         sizes.dedup();
         let (files, sizes) = (atlas.sets().len(), sizes.join(", "));
@@ -87,7 +87,7 @@ impl Streaks {
     pub(crate) fn bytes(&self) -> u64 {
         let Self::Atlas(atlas) = self else { return 0 };
         let data = atlas.data();
-        let bytes = size_of_val(data.frame) + size_of_val(data.triangles) + size_of_val(data.texels);
-        bytes as u64
+        let numbers = size_of_val(data.texels) + size_of_val(data.amounts);
+        (size_of_val(data.frame) + size_of_val(data.triangles) + numbers) as u64
     }
 }

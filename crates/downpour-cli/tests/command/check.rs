@@ -112,7 +112,7 @@ fn the_streak_atlas_is_told_of() {
     for look in ["atlas", "atlas-random"] {
         let json = check(look, &["--streaks", folder]);
         let text = of(&json);
-        assert!(text.contains(" streaks of drops of 1, 2, 4 mm in 12 files, "), "{text}");
+        assert!(text.contains(" streaks of drops of 1, 2, 2.8, 4 mm in 16 files, "), "{text}");
         let number = |word: usize| text.split_whitespace().nth(word).unwrap().parse::<f64>().unwrap();
         let bytes = number(text.split_whitespace().count() - 2);
         // Each streak has texels of two bytes.

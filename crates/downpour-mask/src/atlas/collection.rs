@@ -5,12 +5,17 @@ use std::path::Path;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::seed_words;
 use downpour_shaders::mask::{ATLAS_BY_ANGLE, ATLAS_RANDOM};
+use half::f16;
 
 use super::lookup::{
-    AtlasData, AtlasFrame, AtlasPlace, AtlasTriangle, atlas_lookup_place, atlas_lookup_radiance,
+    AtlasData, AtlasFrame, AtlasPlace, AtlasTriangle, atlas_lookup_mix, atlas_lookup_place,
+    atlas_lookup_radiance, atlas_map, atlas_position,
 };
+use super::set::stored;
 use super::triangles::triangulate;
-use super::{StreakOptions, StreakOscillation, StreakSet, read_streaks};
+use super::{
+    StreakOptions, StreakOscillation, StreakSet, amount_directions, amount_elevations, read_streaks,
+};
 use crate::MaskError;
 
 /// The most diameters, and the most elevations, of an atlas.
@@ -21,7 +26,7 @@ const LARGEST_FILE: u64 = 64 << 20;
 /// How a particle gets its streak.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StreakPick {
-    /// By diameter and by the directions of light and viewer; the oscillation by chance.
+    /// By diameter and by the directions of light and viewer, interpolated; the oscillation by chance.
     #[default]
     ByAngle,
     /// Any layer by chance, as Im & Sung 2022 do.
@@ -46,6 +51,7 @@ pub struct StreakAtlas {
     frame: AtlasFrame,
     triangles: Vec<AtlasTriangle>,
     texels: Vec<u32>,
+    amounts: Vec<f32>,
 }
 
 impl StreakAtlas {
@@ -144,10 +150,47 @@ impl StreakAtlas {
         }
         let diameters: Vec<f64> = groups.iter().map(|group| group[0].diameter).collect();
         let (frame, triangles) = lay_out(first, &diameters, oscillations)?;
-        let halves: Vec<u16> = sets.iter().flat_map(|set| &set.texels).map(|v| v.to_bits()).collect();
-        let (pairs, _) = halves.as_chunks::<2>();
-        let texels = pairs.iter().map(|&[low, high]| u32::from(low) | u32::from(high) << 16).collect();
-        Ok(Self { sets, frame, triangles, texels })
+        let means: Vec<f32> = sets.iter().flat_map(layer_amounts).collect();
+        let texels = patterns(&sets, &means);
+        let mut atlas = Self { sets, frame, triangles, texels, amounts: Vec::new() };
+        atlas.amounts = atlas.grids(&means);
+        atlas.amounts.extend(means);
+        Ok(atlas)
+    }
+
+    /// The amounts of all sets on their grids. Those of a set without any are interpolated between the layers': by the triangles,
+    /// and by the sine of the elevation.
+    fn grids(&self, means: &[f32]) -> Vec<f32> {
+        let data = self.data();
+        let points: Vec<[f32; 2]> =
+            amount_directions().iter().map(|d| atlas_map(d.map(|c| c as f32))).collect();
+        let [_, _, elevations, directions] = data.frame.counts;
+        let mut all = Vec::new();
+        for (set, means) in
+            self.sets.iter().zip(means.chunks_exact((elevations * directions).max(1) as usize))
+        {
+            all.extend(set.amounts.iter().map(|v| v.to_f32()));
+            if !set.amounts.is_empty() {
+                continue;
+            }
+            let of_elevation = |elevation: u32, point: [f32; 2]| {
+                let mix = atlas_lookup_mix(&data, elevation, point);
+                let of =
+                    |k: usize| mix.weights[k] * means[(elevation * directions + mix.directions[k]) as usize];
+                of(0) + of(1) + of(2)
+            };
+            for rise in amount_elevations() {
+                let [low, high, low_inverse, high_inverse] = data.frame.elevations;
+                let level = atlas_position(low, high, low_inverse, high_inverse, ops::sin(rise) as f32);
+                let (lower, part) = (level as u32, level - level.floor());
+                let upper = (lower + 1).min(elevations - 1);
+                let mixed = |&point: &[f32; 2]| {
+                    of_elevation(lower, point) * (1.0 - part) + of_elevation(upper, point) * part
+                };
+                all.extend(points.iter().map(mixed));
+            }
+        }
+        all
     }
 
     /// The same, with another way to pick a particle's streak.
@@ -173,10 +216,11 @@ impl StreakAtlas {
         &self.sets
     }
 
-    /// What a lookup reads: the same three arrays as a shader's.
+    /// What a lookup reads: the same four arrays as a shader's.
     #[must_use]
     pub fn data(&self) -> AtlasData<'_> {
-        AtlasData { frame: &self.frame, triangles: &self.triangles, texels: &self.texels }
+        let Self { frame, triangles, texels, amounts, .. } = self;
+        AtlasData { frame, triangles, texels, amounts }
     }
 
     /// Layers of the whole atlas.
@@ -185,7 +229,7 @@ impl StreakAtlas {
         self.sets.iter().map(StreakSet::layers).sum()
     }
 
-    /// The three layers of a drop's streak and their weights. `light` and `view` are unit vectors from the drop to its
+    /// The streak of a drop: its amount, three layers and their weights. `light` and `view` are unit vectors from the drop to its
     /// light and to its viewer.
     #[must_use]
     pub fn place(&self, drop: &StreakParticle, light: [f32; 3], view: [f32; 3]) -> AtlasPlace {
@@ -204,18 +248,51 @@ fn same_diameter(a: &StreakSet, b: &StreakSet) -> bool {
     (a.diameter - b.diameter).abs() <= 1.0e-9 * a.diameter
 }
 
+/// The amount of each layer of a set: a layer of mean m and half width h is a disc of 4 h m / pi.
+fn layer_amounts(set: &StreakSet) -> Vec<f32> {
+    let texels = set.layer_texels().max(1);
+    let scale = 4.0 * set.options.half_extent / std::f64::consts::PI / texels as f64;
+    let sum = |layer: &[f16]| layer.iter().map(|v| v.to_f64()).sum::<f64>();
+    set.texels.chunks_exact(texels).map(|layer| (scale * sum(layer)) as f32).collect()
+}
+
+/// The layers over their amounts, two half floats a word. A layer without light is even: so the mean of any mixture is that of an
+/// even disc.
+fn patterns(sets: &[StreakSet], means: &[f32]) -> Vec<u32> {
+    let layers = sets.iter().flat_map(|set| {
+        let even = std::f64::consts::FRAC_PI_4 / set.options.half_extent;
+        set.texels.chunks_exact(set.layer_texels().max(1)).map(move |layer| (layer, even as f32))
+    });
+    let halves: Vec<u16> = layers
+        .zip(means)
+        .flat_map(|((layer, even), &mean)| {
+            let pattern = move |v: &f16| if mean > 0.0 { stored(v.to_f32() / mean) } else { stored(even) };
+            layer.iter().map(move |v| pattern(v).to_bits())
+        })
+        .collect();
+    let (pairs, _) = halves.as_chunks::<2>();
+    pairs.iter().map(|&[low, high]| u32::from(low) | u32::from(high) << 16).collect()
+}
+
+/// The gaps between ascending nodes, as `atlas_position` takes them.
+fn gaps(nodes: &[f64]) -> [[f32; 4]; 4] {
+    let mut gaps = [[0.0; 4]; 4];
+    for (k, pair) in nodes.windows(2).enumerate().take(MOST_SETS - 1) {
+        gaps[k / 4][k % 4] = pair[0] as f32;
+        // By the ends as they are stored: at the next node the position is a whole number.
+        gaps[2 + k / 4][k % 4] = 1.0 / (pair[1] as f32 - pair[0] as f32);
+    }
+    gaps
+}
+
 /// The frame and the triangles of sets like this one.
 fn lay_out(
     set: &StreakSet,
     diameters: &[f64],
     oscillations: usize,
 ) -> Result<(AtlasFrame, Vec<AtlasTriangle>), MaskError> {
-    let thresholds = |values: Vec<f64>| -> [[f32; 4]; 2] {
-        let at = |k: usize| values.get(k).map_or(f32::MAX, |&v| v as f32);
-        [[at(0), at(1), at(2), at(3)], [at(4), at(5), at(6), at(7)]]
-    };
-    let between = diameters.windows(2).map(|pair| (pair[0] * pair[1]).sqrt()).collect();
-    let midway = set.elevations.windows(2).map(|pair| ops::sin(0.5 * (pair[0] + pair[1]))).collect();
+    let sizes: Vec<f64> = diameters.iter().map(|&d| ops::log2(d)).collect();
+    let rises: Vec<f64> = set.elevations.iter().map(|&e| ops::sin(e)).collect();
     let mut triangles = Vec::new();
     let mut first = [[0; 4]; 3];
     for (k, directions) in set.directions.iter().enumerate() {
@@ -231,11 +308,11 @@ fn lay_out(
         pick: ATLAS_BY_ANGLE,
         counts: [diameters.len(), oscillations, set.elevations.len(), directions].map(|n| n as u32),
         seed: [0; 2],
-        unused: [0; 2],
-        diameters: thresholds(between),
-        elevations: thresholds(midway),
+        is_shared: u32::from(set.directions.windows(2).all(|pair| pair[0] == pair[1])),
+        unused: 0,
+        diameters: gaps(&sizes),
+        elevations: gaps(&rises),
         first,
-        unused_1: [0; 4],
     };
     Ok((frame, triangles))
 }

@@ -182,6 +182,7 @@ pub fn import<F: ColumbiaFiles>(files: &mut F, width: u32, rows: u32) -> Result<
             elevations: elevations.clone(),
             directions: directions.clone(),
             texels,
+            amounts: Vec::new(),
         };
         set.check()?;
         Ok(set)

@@ -17,8 +17,8 @@ fn digest(parts: &[&[u8]]) -> u64 {
     })
 }
 
-/// The text for a set with these bytes of texels.
-pub(crate) fn write(set: &StreakSet, texels: &[u8]) -> String {
+/// The text for a set with these bytes of texels and of amounts.
+pub(crate) fn write(set: &StreakSet, texels: &[u8], amounts: &[u8]) -> String {
     let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
     let origin = match set.origin {
         StreakOrigin::Traced => "traced",
@@ -44,15 +44,16 @@ pub(crate) fn write(set: &StreakSet, texels: &[u8]) -> String {
         options.refractive_index,
         options.rays,
     );
-    let sum = digest(&[text.as_bytes(), texels]);
+    let sum = digest(&[text.as_bytes(), texels, amounts]);
     format!("{text};digest={sum:016x}")
 }
 
-/// The set without its texels, for a texture of this size. The digest is compared with `texels`.
+/// The set without its texels and amounts, for a texture of this size. The digest is that of the text, `texels` and `amounts`.
 pub(crate) fn read(
     text: &str,
     [columns, rows, layers]: [u32; 3],
     texels: &[u8],
+    amounts: &[u8],
 ) -> Result<StreakSet, MaskError> {
     let wrong = |place, found: &str, allowed| MaskError::File { place, found: shorten(found), allowed };
     let Some((rest, sum)) = text.rsplit_once(";digest=") else {
@@ -68,7 +69,7 @@ pub(crate) fn read(
     if version != VERSION {
         return Err(wrong("version of the streaks", version, "\"1\""));
     }
-    let made = format!("{:016x}", digest(&[rest.as_bytes(), texels]));
+    let made = format!("{:016x}", digest(&[rest.as_bytes(), texels, amounts]));
     if sum != made {
         return Err(wrong("digest of the streaks", sum, "the digest of what is in the file"));
     }
@@ -134,5 +135,6 @@ pub(crate) fn read(
         elevations,
         directions,
         texels: Vec::new(),
+        amounts: Vec::new(),
     })
 }

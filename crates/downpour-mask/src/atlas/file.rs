@@ -2,20 +2,25 @@
 //!
 //! Format `R16_SFLOAT`, one level, ZLIB supercompression. Layer `e D + d` of D directions is the streak at elevation e
 //! and direction d; rows from the top, which is the order of time. The key `DownpourStreaks` holds what the streaks are
-//! of, their directions, and a digest of itself and the texels.
+//! of, their directions, and a digest of itself, the texels and the amounts. The key `DownpourStreakAmounts` holds the amounts:
+//! half floats, the low byte first, 25 elevations of 41 rows of 41. A set without amounts has no such key.
 //!
 //! Reading takes what this module writes, and checks every size before it takes memory.
 
 use half::f16;
 use ktx2::{Format, Header, LevelIndex, SupercompressionScheme};
 
+use super::set::AMOUNTS;
 use super::{StreakSet, description};
 use crate::MaskError;
-use crate::file::ktx2::{TextureArray, find_key, part, write_array};
+use crate::file::ktx2::{TextureArray, find_key, find_text, part, write_array};
 use crate::file::shorten;
 
 const FORMAT: Format = Format::R16_SFLOAT;
 const TEXEL_BYTES: usize = 2;
+/// The keys, in the order of their bytes.
+const AMOUNTS_KEY: &str = "DownpourStreakAmounts";
+const STREAKS_KEY: &str = "DownpourStreaks";
 /// The most layers of a texture array on common GPUs; WebGPU promises 256.
 const MOST_LAYERS: u32 = 2048;
 /// The most that the texels of a file may need, in bytes.
@@ -30,15 +35,15 @@ pub fn write_streaks(set: &StreakSet) -> Result<Vec<u8>, MaskError> {
     let (columns, rows, layers) = (set.options.columns, set.options.rows, set.layers() as u32);
     check_size(columns, rows, layers)?;
     let texels: Vec<u8> = set.texels.iter().flat_map(|v| v.to_le_bytes()).collect();
-    write_array(&TextureArray {
-        format: FORMAT,
-        type_size: TEXEL_BYTES as u32,
-        size: [columns, rows],
-        layers,
-        key: "DownpourStreaks",
-        description: &description::write(set, &texels),
-        texels: &texels,
-    })
+    let amounts: Vec<u8> = set.amounts.iter().flat_map(|v| v.to_le_bytes()).collect();
+    let text = description::write(set, &texels, &amounts);
+    let mut keys = vec![(STREAKS_KEY, text.as_bytes())];
+    if !amounts.is_empty() {
+        keys.insert(0, (AMOUNTS_KEY, &amounts));
+    }
+    let size = [columns, rows];
+    let type_size = TEXEL_BYTES as u32;
+    write_array(&TextureArray { format: FORMAT, type_size, size, layers, keys: &keys, texels: &texels })
 }
 
 /// Reads a set that [`write_streaks`] has written.
@@ -62,7 +67,7 @@ pub fn read_streaks(bytes: &[u8]) -> Result<StreakSet, MaskError> {
     let packed = part(bytes, level.byte_offset, level.byte_length).ok_or_else(|| truncated("level 0"))?;
     let keys = part(bytes, header.index.kvd_byte_offset.into(), header.index.kvd_byte_length.into())
         .ok_or_else(|| truncated("keys"))?;
-    let text = find_key(keys, "DownpourStreaks")
+    let text = find_text(keys, STREAKS_KEY)
         .ok_or_else(|| file("keys", "no DownpourStreaks".to_owned(), "streaks written by Downpour"))?;
     let texels = match header.supercompression_scheme {
         Some(_) => miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, expected)
@@ -72,10 +77,16 @@ pub fn read_streaks(bytes: &[u8]) -> Result<StreakSet, MaskError> {
     if texels.len() != expected {
         return Err(file("level 0", format!("{} bytes", texels.len()), "the length of all texels"));
     }
-    let mut set =
-        description::read(&text, [header.pixel_width, header.pixel_height, header.layer_count], &texels)?;
+    let amounts = find_key(keys, AMOUNTS_KEY).unwrap_or_default();
+    let size = [header.pixel_width, header.pixel_height, header.layer_count];
+    let mut set = description::read(&text, size, &texels, amounts)?;
     let (pairs, _) = texels.as_chunks::<TEXEL_BYTES>();
     set.texels = pairs.iter().map(|&pair| f16::from_le_bytes(pair)).collect();
+    let (pairs, left) = amounts.as_chunks::<TEXEL_BYTES>();
+    if !left.is_empty() {
+        return Err(file(AMOUNTS, format!("{} bytes", amounts.len()), "two bytes for each amount"));
+    }
+    set.amounts = pairs.iter().map(|&pair| f16::from_le_bytes(pair)).collect();
     set.check()?;
     Ok(set)
 }

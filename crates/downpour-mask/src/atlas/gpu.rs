@@ -35,8 +35,10 @@ pub struct GpuAtlas {
     pub frame: wgpu::Buffer,
     /// [`AtlasTriangle`](super::lookup::AtlasTriangle)s.
     pub triangles: wgpu::Buffer,
-    /// Texels, two half floats a word.
+    /// Patterns, two half floats a word.
     pub texels: wgpu::Buffer,
+    /// Amounts.
+    pub amounts: wgpu::Buffer,
 }
 
 impl GpuAtlas {
@@ -50,6 +52,7 @@ impl GpuAtlas {
             frame: gpu.uniform_buffer("atlas frame", data.frame)?,
             triangles: gpu.storage_buffer("atlas triangles", data.triangles)?,
             texels: gpu.storage_buffer("atlas texels", data.texels)?,
+            amounts: gpu.storage_buffer("atlas amounts", data.amounts)?,
         })
     }
 
@@ -61,7 +64,8 @@ impl GpuAtlas {
         let kernel = ComputeKernel::new(gpu, &mask::ATLAS_QUERY_KERNEL, &[])?;
         let asked = gpu.storage_buffer("atlas queries", queries)?;
         let told = gpu.storage_buffer("atlas radiances", &vec![f32::NAN; queries.len()])?;
-        let bindings = kernel.bind(gpu, &[&self.frame, &self.triangles, &self.texels, &asked, &told])?;
+        let Self { frame, triangles, texels, amounts } = self;
+        let bindings = kernel.bind(gpu, &[frame, triangles, texels, amounts, &asked, &told])?;
         gpu.submit(&[kernel.dispatch(&bindings, [(queries.len() as u32).div_ceil(64), 1, 1])])?;
         gpu.read(&told)
     }

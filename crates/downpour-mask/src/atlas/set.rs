@@ -1,8 +1,9 @@
 //! The streaks of one drop and one oscillation: what a file holds.
 
+use downpour_shaders::mask::{ATLAS_GRID, ATLAS_RISES};
 use half::f16;
 
-use super::{StreakOptions, StreakOscillation, StreakTracer};
+use super::{StreakOptions, StreakOscillation, StreakTracer, amount_directions, amount_elevations};
 use crate::MaskError;
 
 /// Where the streaks of a set come from.
@@ -31,8 +32,15 @@ pub struct StreakSet {
     pub directions: Vec<Vec<[f64; 3]>>,
     /// `columns * rows` texels for each elevation and direction.
     pub texels: Vec<f16>,
+    /// For each of [`amount_elevations`], the amounts for [`amount_directions`], in 1/sr for an irradiance of 1: 25 grids of 41 rows of
+    /// 41. Or none: then an atlas interpolates them between the means of the layers.
+    pub amounts: Vec<f16>,
 }
 
+/// The amounts in messages.
+pub(crate) const AMOUNTS: &str = "amounts of streaks (key DownpourStreakAmounts)";
+/// Rows of a streak that is traced for its amount: a tenth of the rays is enough for a mean.
+const AMOUNT_ROWS: u32 = 8;
 /// Below this half floats lose digits, and drivers may take them for 0.
 const SMALLEST: f32 = 6.104e-5;
 
@@ -59,6 +67,12 @@ impl StreakSet {
             let streaks = tracer.trace(elevation, directions)?;
             texels.extend(streaks.radiance.iter().flatten().map(|&v| stored(v)));
         }
+        let rows = options.rows.min(AMOUNT_ROWS);
+        let tracer = StreakTracer::new(diameter, oscillation, &StreakOptions { rows, ..*options })?;
+        let (grid, mut amounts) = (amount_directions(), Vec::new());
+        for elevation in amount_elevations() {
+            amounts.extend(tracer.amounts(elevation, &grid)?.iter().map(|&v| stored(v as f32)));
+        }
         let set = Self {
             origin: StreakOrigin::Traced,
             diameter,
@@ -67,6 +81,7 @@ impl StreakSet {
             elevations: elevations.to_vec(),
             directions: vec![directions.to_vec(); elevations.len()],
             texels,
+            amounts,
         };
         set.check()?;
         Ok(set)
@@ -124,7 +139,15 @@ impl StreakSet {
             let found = format!("{} texels", self.texels.len());
             return wrong("streaks", found, "columns times rows for each direction and elevation");
         }
+        let nodes = (ATLAS_RISES * ATLAS_GRID * ATLAS_GRID) as usize;
+        if !(self.amounts.is_empty() || self.amounts.len() == nodes) {
+            return wrong(AMOUNTS, format!("{} of them", self.amounts.len()), "25 x 41 x 41, or none");
+        }
         let usable = |v: &f16| v.is_finite() && *v >= f16::ZERO;
+        if let Some(at) = self.amounts.iter().position(|v| !usable(v)) {
+            let found = format!("{} in node {at}", self.amounts[at]);
+            return wrong(AMOUNTS, found, "finite amounts, 0 or more");
+        }
         if let Some(at) = self.texels.iter().position(|v| !usable(v)) {
             let found = format!("{} in texel {at}", self.texels[at]);
             return wrong("streaks", found, "finite radiances, 0 or more");

@@ -72,8 +72,7 @@ pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
         type_size: 2,
         size: [first.size; 2],
         layers: (LAYERS * masks.len()) as u32,
-        key: "DownpourMask",
-        description: &description.write(),
+        keys: &[("DownpourMask", description.write().as_bytes())],
         texels: &texels,
     })
 }
@@ -86,9 +85,8 @@ pub(crate) struct TextureArray<'a> {
     /// Columns and rows.
     pub(crate) size: [u32; 2],
     pub(crate) layers: u32,
-    /// The name of the project's own key, and what it says.
-    pub(crate) key: &'a str,
-    pub(crate) description: &'a str,
+    /// The project's own keys and their values, in the order of the keys' bytes. A value gets a NUL behind it.
+    pub(crate) keys: &'a [(&'a str, &'a [u8])],
     /// Layer by layer, rows from the top.
     pub(crate) texels: &'a [u8],
 }
@@ -98,11 +96,10 @@ pub(crate) fn write_array(array: &TextureArray<'_>) -> Result<Vec<u8>, MaskError
     let packed = miniz_oxide::deflate::compress_to_vec_zlib(array.texels, DEFLATE_LEVEL);
     let descriptor = data_format(array.format)?;
     // Keys in the order of their bytes, as the format asks.
-    let keys = key_values(&[
-        (array.key, array.description),
-        ("KTXorientation", "rd"),
-        ("KTXwriter", concat!("downpour-mask ", env!("CARGO_PKG_VERSION"))),
-    ]);
+    let version = concat!("downpour-mask ", env!("CARGO_PKG_VERSION"));
+    let keys =
+        [array.keys, &[("KTXorientation", b"rd".as_slice()), ("KTXwriter", version.as_bytes())]].concat();
+    let keys = key_values(&keys);
     let descriptor_at = Header::LENGTH + LevelIndex::LENGTH;
     let keys_at = descriptor_at + descriptor.len();
     let level_at = keys_at + keys.len();
@@ -141,11 +138,11 @@ pub(crate) fn data_format(format: Format) -> Result<Vec<u8>, MaskError> {
     Ok([&(block.len() as u32 + 4).to_le_bytes()[..], &block].concat())
 }
 
-pub(crate) fn key_values(pairs: &[(&str, &str)]) -> Vec<u8> {
+pub(crate) fn key_values(pairs: &[(&str, &[u8])]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for (key, value) in pairs {
         bytes.extend((key.len() as u32 + value.len() as u32 + 2).to_le_bytes());
-        bytes.extend(key.bytes().chain([0]).chain(value.bytes()).chain([0]));
+        bytes.extend(key.bytes().chain([0]).chain(value.iter().copied()).chain([0]));
         bytes.resize(bytes.len().next_multiple_of(4), 0);
     }
     bytes
@@ -172,7 +169,7 @@ pub fn read_ktx2(bytes: &[u8]) -> Result<Vec<Mask>, MaskError> {
     let packed = part(bytes, level.byte_offset, level.byte_length).ok_or_else(|| truncated("level 0"))?;
     let keys = part(bytes, header.index.kvd_byte_offset.into(), header.index.kvd_byte_length.into())
         .ok_or_else(|| truncated("keys"))?;
-    let text = find_key(keys, "DownpourMask")
+    let text = find_text(keys, "DownpourMask")
         .ok_or_else(|| file("keys", "no DownpourMask".to_owned(), "masks written by Downpour"))?;
     let description = Description::read("key DownpourMask", &text)?;
     if description.diameters.len() * LAYERS != layers {
@@ -234,14 +231,19 @@ pub(crate) fn part(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
     bytes.get(start..end)
 }
 
-pub(crate) fn find_key(mut keys: &[u8], wanted: &str) -> Option<String> {
+/// The text of a key; `None` if there is no such key, or no text in it.
+pub(crate) fn find_text(keys: &[u8], wanted: &str) -> Option<String> {
+    String::from_utf8(find_key(keys, wanted)?.to_vec()).ok()
+}
+
+/// The value of a key, without the NUL behind it; `None` if there is no such key, or the keys are cut.
+pub(crate) fn find_key<'a>(mut keys: &'a [u8], wanted: &str) -> Option<&'a [u8]> {
     while let Some((length, rest)) = keys.split_first_chunk::<4>() {
         let length = u32::from_le_bytes(*length) as usize;
         let pair = rest.get(..length)?;
         let split = pair.iter().position(|&b| b == 0)?;
         if &pair[..split] == wanted.as_bytes() {
-            let value = pair[split + 1..].strip_suffix(&[0]).unwrap_or(&pair[split + 1..]);
-            return String::from_utf8(value.to_vec()).ok();
+            return Some(pair[split + 1..].strip_suffix(&[0]).unwrap_or(&pair[split + 1..]));
         }
         keys = rest.get(length.checked_next_multiple_of(4)?..)?;
     }

@@ -2,6 +2,7 @@
 //! method is described.
 
 use downpour_math::ops;
+use downpour_shaders::render::drop_light::DROP_ATLAS_ROWS;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
     DROPS_ATLAS_TAPS, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL, DROPS_TABLE,
@@ -122,10 +123,10 @@ impl Buffers<'_> {
 
     /// The streaks of a drop's row of light: their colours, and where they are in the atlas.
     fn streaks(&self, index: u32) -> impl Iterator<Item = (Vec3, DropsAtlasStreak)> {
-        let (pairs, _) = self.drops_light_row(index)[1..].as_chunks::<2>();
-        pairs.iter().filter(|[first, _]| first[3] != 0.0).map(|&[first, second]| {
-            let (first, second) = (Vec4::from(first), Vec4::from(second));
-            (first.truncate(), drops_atlas_streak(first, second))
+        let (streaks, _) = self.drops_light_row(index)[1..].as_chunks::<{ DROP_ATLAS_ROWS as usize }>();
+        streaks.iter().filter(|[first, ..]| first[3] != 0.0).map(|rows| {
+            let [first, second, third] = rows.map(Vec4::from);
+            (first.truncate(), drops_atlas_streak(first, second, third))
         })
     }
 

@@ -1,31 +1,29 @@
-//! The streaks of an atlas between their texels. Twin of `shaders/wgsl/render/drops_atlas.wgsl`, where their place behind the
+//! The patterns of an atlas between their texels. Twin of `shaders/wgsl/render/drops_atlas.wgsl`, where their place behind the
 //! masks is described.
 
+use std::f32::consts::FRAC_1_PI;
+
 use downpour_mask::atlas::StreakAtlas;
+use downpour_mask::atlas::lookup::atlas_corner;
 use downpour_shaders::render::rain::DROPS_ATLAS_HEAD;
 use glam::Vec4;
 
-use super::light::layer_means;
-
-/// An atlas as the shader reads it. A texel is how many times as bright it is as a disc of even light with the layer's mean.
+/// An atlas as the shader reads it: its patterns, each row with its mean behind it.
 pub(super) fn words(atlas: &StreakAtlas) -> Vec<u32> {
     let data = atlas.data();
     let [columns, rows] = data.frame.size;
+    let [_, oscillations, elevations, directions] = data.frame.counts;
     let mut halves: Vec<half::f16> = Vec::new();
-    let width = columns as usize;
     let numbers = data.texels.iter().flat_map(|word| [*word as u16, (*word >> 16) as u16]);
-    let numbers: Vec<f32> = numbers.map(|bits| half::f16::from_bits(bits).to_f32()).collect();
-    let layers = numbers.chunks_exact((columns * rows).max(1) as usize);
-    for (layer, mean) in layers.zip(layer_means(atlas)) {
-        let scale = if mean > 0.0 { 1.0 / mean } else { 0.0 };
-        let whole = layer.iter().sum::<f32>() / rows as f32;
-        for row in layer.chunks_exact(width.max(1)) {
-            halves.extend(row.iter().map(|&texel| half::f16::from_f32(texel * scale)));
-            let part = if whole > 0.0 { row.iter().sum::<f32>() / whole } else { 0.0 };
-            halves.push(half::f16::from_f32(part));
-        }
+    let numbers: Vec<half::f16> = numbers.map(half::f16::from_bits).collect();
+    // Over a whole layer the mean of a pattern is that of an even disc over the width.
+    let scale = 4.0 * data.frame.half_extent * FRAC_1_PI / columns as f32;
+    for row in numbers.chunks_exact(columns.max(1) as usize) {
+        halves.extend(row);
+        halves.push(half::f16::from_f32(scale * row.iter().map(|texel| texel.to_f32()).sum::<f32>()));
     }
-    let mut words = vec![columns, rows, data.frame.half_extent.to_bits(), 0];
+    let half_extent = data.frame.half_extent.to_bits();
+    let mut words = vec![columns, rows, half_extent, directions, oscillations * elevations * directions];
     words.resize(DROPS_ATLAS_HEAD as usize, 0);
     let word = |pair: &[half::f16]| {
         let bits = |k: usize| pair.get(k).map_or(0, |h| u32::from(h.to_bits()));
@@ -42,25 +40,34 @@ pub(super) struct DropsAtlas<'a> {
     pub(super) first: u32,
 }
 
-/// Three layers, their parts in the light, and -1 if they are to be mirrored, else 1.
+/// Three layers of the lower diameter and elevation, -1 if they are to be mirrored, else 1; weights of the three, weights of the
+/// higher diameter and of the higher elevation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DropsAtlasStreak {
     layers: [u32; 3],
     side: f32,
-    shares: [f32; 3],
+    weights: [f32; 3],
+    parts: [f32; 2],
 }
 
-/// A streak out of two rows of a drop's light; its colour is in the first.
-pub(super) fn drops_atlas_streak(first: Vec4, second: Vec4) -> DropsAtlasStreak {
-    let share = first.w.abs() - 1.0;
-    let side = if first.w < 0.0 { -1.0 } else { 1.0 };
-    let layers = [second.x, second.y, second.z].map(|layer| layer as u32);
-    DropsAtlasStreak { layers, side, shares: [share, second.w, 1.0 - share - second.w] }
+/// A streak out of three rows of a drop's light; its color is in the first.
+pub(super) fn drops_atlas_streak(first: Vec4, second: Vec4, third: Vec4) -> DropsAtlasStreak {
+    DropsAtlasStreak {
+        layers: [second.x, second.y, second.z].map(|layer| layer as u32),
+        side: first.w,
+        weights: [second.w, third.x, 1.0 - second.w - third.x],
+        parts: [third.y, third.z],
+    }
 }
 
 impl DropsAtlas<'_> {
     fn word(&self, k: u32) -> u32 {
         self.masks.get((self.first + k) as usize).copied().unwrap_or(0)
+    }
+
+    /// Layers from those of the lower diameter and elevation to those of one of the four neighbors.
+    fn drops_atlas_step(&self, corner: u32) -> u32 {
+        (corner & 1) * self.word(4) + (corner >> 1) * self.word(3)
     }
 
     /// A half by its number.
@@ -103,17 +110,35 @@ impl DropsAtlas<'_> {
         let extent = f32::from_bits(self.word(2));
         let column = half + half * (across * streak.side / extent).clamp(-2.0, 2.0);
         let row = (turns - turns.floor()) * self.word(1) as f32;
-        streak.shares[0] * self.drops_atlas_layer(streak.layers[0], column, row)
-            + streak.shares[1] * self.drops_atlas_layer(streak.layers[1], column, row)
-            + streak.shares[2] * self.drops_atlas_layer(streak.layers[2], column, row)
+        let mut shown = 0.0;
+        for corner in 0..4 {
+            let weight = atlas_corner(streak.parts[0], streak.parts[1], corner);
+            if weight > 0.0 {
+                let [a, b, c] = streak.layers.map(|layer| layer + self.drops_atlas_step(corner));
+                let mean = streak.weights[0] * self.drops_atlas_layer(a, column, row)
+                    + streak.weights[1] * self.drops_atlas_layer(b, column, row)
+                    + streak.weights[2] * self.drops_atlas_layer(c, column, row);
+                shown += weight * mean;
+            }
+        }
+        shown
     }
 
     /// The mean over the width, so many turns along.
     pub(super) fn drops_atlas_along(&self, streak: &DropsAtlasStreak, turns: f32) -> f32 {
         let columns = self.word(0) as i32;
         let row = ((turns - turns.floor()) * self.word(1) as f32) as i32;
-        streak.shares[0] * self.drops_atlas_texel(streak.layers[0], columns, row)
-            + streak.shares[1] * self.drops_atlas_texel(streak.layers[1], columns, row)
-            + streak.shares[2] * self.drops_atlas_texel(streak.layers[2], columns, row)
+        let mut shown = 0.0;
+        for corner in 0..4 {
+            let weight = atlas_corner(streak.parts[0], streak.parts[1], corner);
+            if weight > 0.0 {
+                let [a, b, c] = streak.layers.map(|layer| layer + self.drops_atlas_step(corner));
+                let mean = streak.weights[0] * self.drops_atlas_texel(a, columns, row)
+                    + streak.weights[1] * self.drops_atlas_texel(b, columns, row)
+                    + streak.weights[2] * self.drops_atlas_texel(c, columns, row);
+                shown += weight * mean;
+            }
+        }
+        shown
     }
 }

@@ -8,7 +8,8 @@
 //! eye ([`SphereScattering`](downpour_drop::optics::SphereScattering)); seen as a disc of pi a^2, its mean radiance is
 //! L = E phase(theta). The drop is a sphere: a flattened one has its bows elsewhere, but nearly the same mean.
 //!
-//! With the form [`DropLightForm::Atlas`] the drop's light is that of a streak atlas ([`downpour_mask::atlas`]): traced with the
+//! With the form [`DropLightForm::Atlas`] the drop's light is that of a streak atlas ([`downpour_mask::atlas`], where its amount is
+//! compared with that of a sphere): traced with the
 //! shape and the oscillation of a falling drop, bright and dark along its path.
 //!
 //! - [`DropLightForm`], [`DropLightOptions`]: what is asked for;
@@ -24,8 +25,8 @@ use std::f32::consts::PI;
 use downpour_math::ops;
 use downpour_scene::weather::{RainDropLight, StreakLook, Weather};
 use downpour_shaders::render::drop_light::{
-    DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_EXTERNAL, DROP_LIGHT_GLINTS,
-    DROP_LIGHT_IM_SUNG, DROP_LIGHT_INTERNAL, DROP_LIGHT_LAMPS, DROP_LIGHT_LAMPS_ROUSSEAU,
+    DROP_ATLAS_ROWS, DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_EXTERNAL,
+    DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG, DROP_LIGHT_INTERNAL, DROP_LIGHT_LAMPS, DROP_LIGHT_LAMPS_ROUSSEAU,
     DROP_LIGHT_LAMPS_TRACED, DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_PLACES, DROP_LIGHT_RINGS,
     DROP_LIGHT_ROUSSEAU, DROP_LIGHT_TRACED,
 };
@@ -44,9 +45,8 @@ use crate::data::{RenderFrame, SceneData};
 use crate::light::check_lights;
 use crate::scene::{SceneView, scene_share};
 
-pub(crate) use atlas::layer_means;
-use atlas::{drop_atlas_place, drop_atlas_shares};
-use keep::{drop_light_keep, drop_light_keep_streak};
+use atlas::drop_atlas_place;
+use keep::{drop_light_keep, drop_light_keep_facing, drop_light_keep_streak};
 pub use table::DropLightTable;
 
 /// What lamps do to a drop.
@@ -68,7 +68,7 @@ pub enum DropLightForm {
     /// and parallel ones are left out. The cone is as high as the lamp's range. Here its edge is soft, from the inner
     /// cone to the outer, and the intensity falls with the distance (their light has one intensity everywhere).
     ImSung2022 = DROP_LIGHT_IM_SUNG,
-    /// The streaks of an atlas, picked by the directions of lamp and viewer or at random: for drops that move. One that
+    /// The streaks of an atlas, by the directions of lamp and viewer, by elevation and diameter, or at random: for drops that move. One that
     /// stands still shows the mean of its streak.
     Atlas = DROP_LIGHT_ATLAS,
     /// Nothing.
@@ -113,13 +113,13 @@ pub struct DropLightOptions {
     /// What lamps do to a drop.
     pub form: DropLightForm,
     /// Rows that are told of each drop besides its mean, 0 to 16: in the traced form its brightest glints; in that of Rousseau 2006
-    /// its brightest lamps, of an atlas its brightest streaks, two rows each. The other forms have none.
+    /// its brightest lamps, two rows each; of an atlas its brightest streaks, three rows each. The other forms have none.
     pub glints: u32,
 }
 
 impl DropLightOptions {
     /// The light of an atlas, four streaks of each drop.
-    pub const ATLAS: Self = Self { form: DropLightForm::Atlas, glints: 8 };
+    pub const ATLAS: Self = Self { form: DropLightForm::Atlas, glints: 4 * DROP_ATLAS_ROWS };
 
     /// What a weather asks for: its `drop_light`, traced light by the streaks of an atlas if its streaks are of one.
     #[must_use]
@@ -279,7 +279,7 @@ impl<'a> DropLights<'a> {
     /// id below 2^24), in parallel; the same bits for any number of threads. For each drop
     /// [`DropLights::stride`] rows: the mean radiance over its disc and 0; then its brightest glints in no order, their part
     /// of the mean and their place ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas:
-    /// its streaks, two rows each as in the shader.
+    /// its streaks, three rows each as in the shader.
     #[must_use]
     pub fn light(&self, drops: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let (drops, about) = drops.split_at(self.count(drops));
@@ -376,19 +376,15 @@ impl<'a> DropLights<'a> {
                 DROP_LIGHT_ROUSSEAU => {
                     let mean = drop_light_mean(towards, light.direction, self.terms);
                     sum += lit * mean;
-                    let way = light.direction.extend(0.0).to_array();
-                    drop_light_keep_streak(glints, lit.extend(-1.0 - mean), way);
+                    drop_light_keep_facing(glints, lit.extend(-1.0 - mean), light.direction.extend(0.0));
                 }
                 DROP_LIGHT_ATLAS => {
                     let (axis, id) = (Vec4::from(about).truncate(), about[3] as u32);
                     let diameter = 2.0 * radius;
                     let place = drop_atlas_place(self.table, id, diameter, axis, light.direction, -towards);
-                    let [first, second, _, whole] = drop_atlas_shares(self.table, &place);
-                    let radiance = lit * (PI * whole);
+                    let radiance = lit * (PI * place.amount);
                     sum += radiance;
-                    let [a, b, c] = place.layers.map(|layer| layer as f32);
-                    let streak = radiance.extend(place.side * (1.0 + first));
-                    drop_light_keep_streak(glints, streak, [a, b, c, second]);
+                    drop_light_keep_streak(glints, radiance, &place);
                 }
                 _ => {
                     let angle = drop_glint_angle(light.direction, towards);

@@ -18,7 +18,9 @@ pub enum StreakLook {
     Refracted,
     /// One colour for all.
     White,
-    /// What their drops refract and reflect, and the light of lamps out of a streak atlas, by the directions of lamp and viewer.
+    /// What their drops refract and reflect, and the light of lamps out of a streak atlas, by the directions of lamp and viewer. Its
+    /// drops oscillate with the amplitudes of Garg & Nayar 2006: 40 to 75 degrees from straight behind the drop, lamps aside give 1 to
+    /// 1.7 times the light of a sphere, lamps above 0.3 to 1.1 times (a test of `downpour-mask`, `oscillation_takes_light_aside`).
     Atlas,
     /// The same, each drop with any of the atlas' streaks.
     AtlasRandom,

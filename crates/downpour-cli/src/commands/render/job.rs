@@ -24,6 +24,7 @@ pub(super) fn atlas_digest(atlas: &StreakAtlas) -> String {
     sum.update(bytemuck::bytes_of(data.frame));
     sum.update(bytemuck::cast_slice::<_, u8>(data.triangles));
     sum.update(bytemuck::cast_slice::<_, u8>(data.texels));
+    sum.update(bytemuck::cast_slice::<_, u8>(data.amounts));
     hexadecimal(sum)
 }
 

@@ -1,24 +1,23 @@
 //! Which streaks of an atlas a drop shows under a lamp. Twin of `shaders/wgsl/render/drop_atlas.wgsl`.
 //!
-//! The choice is that of [`downpour_mask::atlas`], from the same triangles. Here they are rows of four numbers behind the
-//! table of scattering, since the kernel has no buffer to spare: counts; by angle or at random, and the first row of the means;
-//! the seed in parts of 16 bits; thresholds of diameters and of elevations, two rows each; first triangles, three rows; three rows
-//! for each triangle (places of its corners, triangles across with -1 for the rim, its directions); the layers' means, four a row.
-//!
-//! A layer's mean is the radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius that sends as much light to
-//! the viewer as the drop of the streak does: a texel is averaged over the time in which the drop moves on by its diameter, so
-//! that a layer of mean m and half width h is a disc of 4 h m / pi.
-
-use std::f32::consts::FRAC_1_PI;
+//! The choice is that of [`downpour_mask::atlas`], from the same numbers. Here they are rows of four behind the table of
+//! scattering, since the kernel has no buffer to spare: counts; by angle or at random, the first row of the amounts, and whether all
+//! elevations have the same directions; the seed in parts of 16 bits; gaps between diameters and between elevations, four rows each;
+//! first triangles, three rows; three rows for each triangle (places of its corners, triangles across with -1 for the rim, its
+//! directions); the amounts, four a row.
 
 use downpour_mask::atlas::StreakAtlas;
 use downpour_mask::atlas::lookup::{
-    AtlasPlace, atlas_clamp, atlas_draw, atlas_light, atlas_map, atlas_rank, atlas_weights,
+    AtlasPlace, atlas_cell, atlas_clamp, atlas_corner, atlas_draw, atlas_light, atlas_map, atlas_position,
+    atlas_rise, atlas_weights,
 };
-use downpour_shaders::mask::{ATLAS_NONE, ATLAS_RANDOM, ATLAS_STEPS};
+use downpour_math::ops;
+use downpour_shaders::mask::{
+    ATLAS_GRID, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISES, ATLAS_SMALLEST, ATLAS_STEPS,
+};
 use downpour_shaders::render::drop_light::{
     DROP_ATLAS_COUNTS, DROP_ATLAS_FIRST, DROP_ATLAS_PICK, DROP_ATLAS_RISES, DROP_ATLAS_SEED,
-    DROP_ATLAS_SIZES, DROP_ATLAS_TRIANGLES, DROP_GLINT_TINY, DROP_LIGHT_ENTRIES, DROP_LIGHT_PATHS,
+    DROP_ATLAS_SIZES, DROP_ATLAS_TRIANGLES, DROP_LIGHT_ENTRIES, DROP_LIGHT_PATHS,
 };
 use glam::Vec3;
 
@@ -27,28 +26,16 @@ use super::DropLightTable;
 /// Rows before those of an atlas.
 pub(super) const FIRST_ROW: u32 = DROP_LIGHT_ENTRIES * (1 + DROP_LIGHT_PATHS);
 
-/// The mean of each layer, as a disc of the equivalent radius.
-pub(crate) fn layer_means(atlas: &StreakAtlas) -> Vec<f32> {
-    let data = atlas.data();
-    let [columns, rows] = data.frame.size;
-    let texels = (columns * rows) as usize;
-    let halves = |word: &u32| [*word as u16, (*word >> 16) as u16].map(|h| half::f16::from_bits(h).to_f32());
-    let all: Vec<f32> = data.texels.iter().flat_map(halves).collect();
-    let scale = 4.0 * data.frame.half_extent * FRAC_1_PI;
-    let mean = |layer: &[f32]| layer.iter().map(|&t| f64::from(t)).sum::<f64>() / texels as f64;
-    all.chunks_exact(texels.max(1)).map(|layer| scale * mean(layer) as f32).collect()
-}
-
 /// An atlas as rows of the table.
 pub(super) fn rows(atlas: &StreakAtlas) -> Vec<[f32; 4]> {
-    let (frame, triangles) = (atlas.data().frame, atlas.data().triangles);
+    let data = atlas.data();
+    let (frame, triangles) = (data.frame, data.triangles);
     let whole = |numbers: [u32; 4]| numbers.map(|n| n as f32);
-    let means = layer_means(atlas);
-    let first_mean = DROP_ATLAS_TRIANGLES + 3 * triangles.len() as u32;
+    let first_amount = DROP_ATLAS_TRIANGLES + 3 * triangles.len() as u32;
     let [low, high] = frame.seed;
     let mut rows = vec![
         whole(frame.counts),
-        whole([frame.pick, first_mean, 0, 0]),
+        whole([frame.pick, first_amount, frame.is_shared, 0]),
         whole([low & 0xffff, low >> 16, high & 0xffff, high >> 16]),
     ];
     rows.extend(frame.diameters);
@@ -60,7 +47,8 @@ pub(super) fn rows(atlas: &StreakAtlas) -> Vec<[f32; 4]> {
         let ([ax, ay], [bx, by], [cx, cy]) = (triangle.a, triangle.b, triangle.c);
         rows.extend([[ax, ay, bx, by], [cx, cy, next[0], next[1]], [next[2], d0, d1, d2]]);
     }
-    rows.extend(means.chunks(4).map(|four| std::array::from_fn(|k| four.get(k).copied().unwrap_or(0.0))));
+    let four = |four: &[f32]| std::array::from_fn(|k| four.get(k).copied().unwrap_or(0.0));
+    rows.extend(data.amounts.chunks(4).map(four));
     rows
 }
 
@@ -100,13 +88,30 @@ fn drop_atlas_triangle(table: &DropLightTable, k: u32) -> DropAtlasTriangle {
     }
 }
 
-/// The mean of a layer.
-fn drop_atlas_mean(table: &DropLightTable, layer: u32) -> f32 {
+/// An amount by its number.
+fn drop_atlas_number(table: &DropLightTable, k: u32) -> f32 {
     let first = drop_atlas_row(table, DROP_ATLAS_PICK)[1] as u32;
-    drop_atlas_row(table, first + (layer >> 2))[(layer & 3) as usize]
+    drop_atlas_row(table, first + (k >> 2))[(k & 3) as usize]
 }
 
-/// The three layers for a drop's id, diameter in metres and axis, and the unit vectors to its light and viewer.
+/// The amount of one grid in a cell: bilinear.
+fn drop_atlas_amount(table: &DropLightTable, grid: u32, cell: [f32; 4]) -> f32 {
+    let [column, row, x, y] = cell;
+    let number = |k| drop_atlas_number(table, k);
+    let first = (grid * ATLAS_GRID + row as u32) * ATLAS_GRID + column as u32;
+    let next = first + ATLAS_GRID;
+    let below = number(first) * (1.0 - x) + number(first + 1) * x;
+    let above = number(next) * (1.0 - x) + number(next + 1) * x;
+    below * (1.0 - y) + above * y
+}
+
+/// Position of a value among the nodes whose gaps are the four rows from `first` on.
+fn drop_atlas_position(table: &DropLightTable, first: u32, value: f32) -> f32 {
+    let row = |k| drop_atlas_row(table, first + k);
+    atlas_position(row(0), row(1), row(2), row(3), value)
+}
+
+/// The streak of a drop's id, diameter in metres and axis, and the unit vectors to its light and viewer.
 pub(super) fn drop_atlas_place(
     table: &DropLightTable,
     id: u32,
@@ -117,20 +122,44 @@ pub(super) fn drop_atlas_place(
 ) -> AtlasPlace {
     let row = |k| drop_atlas_row(table, k);
     let [sizes, oscillations, elevations, directions] = row(DROP_ATLAS_COUNTS).map(|n| n as u32);
+    let [pick, _, is_shared, _] = row(DROP_ATLAS_PICK).map(|n| n as u32);
     let seed = drop_atlas_seed(table);
     let within = atlas_light(light.to_array(), view.to_array(), axis.to_array());
     let side = if within[0] < 0.0 { -1.0 } else { 1.0 };
-    if row(DROP_ATLAS_PICK)[0] as u32 == ATLAS_RANDOM {
-        let layer = atlas_draw(seed, id, 1, sizes * oscillations * elevations * directions);
-        return AtlasPlace { layers: [layer; 3], side, weights: [1.0, 0.0, 0.0], unused: 0.0 };
+    if pick == ATLAS_RANDOM {
+        let sets = sizes * oscillations;
+        let layer = atlas_draw(seed, id, 1, sets * elevations * directions);
+        let amount = drop_atlas_number(table, sets * ATLAS_RISES * ATLAS_GRID * ATLAS_GRID + layer);
+        return AtlasPlace {
+            layers: [layer; 3],
+            side,
+            weights: [1.0, 0.0, 0.0],
+            amount,
+            ..AtlasPlace::default()
+        };
     }
-    let size = atlas_rank(row(DROP_ATLAS_SIZES), row(DROP_ATLAS_SIZES + 1), diameter);
-    let rise = view.dot(axis);
-    let elevation = atlas_rank(row(DROP_ATLAS_RISES), row(DROP_ATLAS_RISES + 1), rise);
-    let oscillation = atlas_draw(seed, id, 0, oscillations);
-    let base = ((size * oscillations + oscillation) * elevations + elevation) * directions;
-    let first = row(DROP_ATLAS_FIRST + (elevation >> 2))[(elevation & 3) as usize] as u32;
+    let size = drop_atlas_position(table, DROP_ATLAS_SIZES, ops::log2(diameter.max(ATLAS_SMALLEST)));
+    let lower = size.floor();
+    let group = lower as u32 * oscillations + atlas_draw(seed, id, 0, oscillations);
     let point = atlas_map(within);
+    let cell = atlas_cell(point);
+    let sine = view.dot(axis);
+    let rise = atlas_rise(sine);
+    let mut amount = 0.0;
+    for corner in 0..4 {
+        let weight = atlas_corner(size - lower, rise - rise.floor(), corner);
+        if weight > 0.0 {
+            let of_group = group + (corner & 1) * oscillations;
+            let grid = of_group * ATLAS_RISES + rise as u32 + (corner >> 1);
+            amount += weight * drop_atlas_amount(table, grid, cell);
+        }
+    }
+    let level = drop_atlas_position(table, DROP_ATLAS_RISES, sine);
+    let nearest = is_shared == 0;
+    let elevation = if nearest { level + 0.5 } else { level } as u32;
+    let parts = [size - lower, if nearest { 0.0 } else { level - level.floor() }];
+    let base = (group * elevations + elevation) * directions;
+    let first = row(DROP_ATLAS_FIRST + (elevation >> 2))[(elevation & 3) as usize] as u32;
     let mut triangle = drop_atlas_triangle(table, first);
     let mut weights = atlas_weights(triangle.a, triangle.b, triangle.c, point);
     for _ in 0..ATLAS_STEPS {
@@ -152,17 +181,10 @@ pub(super) fn drop_atlas_place(
         layers: triangle.directions.map(|direction| base + direction as u32),
         side,
         weights: atlas_clamp(weights),
-        unused: 0.0,
+        amount,
+        parts,
+        unused: [0.0; 2],
     }
-}
-
-/// The parts of three layers in the mean of their mixture, and this mean.
-pub(super) fn drop_atlas_shares(table: &DropLightTable, place: &AtlasPlace) -> [f32; 4] {
-    let part = |k: usize| place.weights[k] * drop_atlas_mean(table, place.layers[k]);
-    let parts = [part(0), part(1), part(2)];
-    let whole = parts[0] + parts[1] + parts[2];
-    let [a, b, c] = parts.map(|part| part / whole.max(DROP_GLINT_TINY));
-    [a, b, c, whole]
 }
 
 #[cfg(test)]
@@ -197,10 +219,6 @@ mod tests {
                 let wanted = atlas.place(&particle, light.to_array(), view.to_array());
                 let found = drop_atlas_place(&table, k, diameter, Vec3::Y, light, view);
                 assert_eq!(found, wanted, "{k}");
-                let shares = drop_atlas_shares(&table, &found);
-                let means = layer_means(&atlas);
-                let mean: f32 = (0..3).map(|n| wanted.weights[n] * means[wanted.layers[n] as usize]).sum();
-                assert!((shares[3] - mean).abs() <= 1.0e-6 * mean, "{k}: {} for {mean}", shares[3]);
             }
         }
     }

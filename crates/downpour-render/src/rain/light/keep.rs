@@ -2,7 +2,8 @@
 
 use std::f32::consts::PI;
 
-use downpour_shaders::render::drop_light::{DROP_LIGHT_LAMPS_ROUSSEAU, DROP_LIGHT_REACH};
+use downpour_mask::atlas::lookup::AtlasPlace;
+use downpour_shaders::render::drop_light::{DROP_ATLAS_ROWS, DROP_LIGHT_LAMPS_ROUSSEAU, DROP_LIGHT_REACH};
 use downpour_shaders::render::scene::SCENE_LIGHT_ROWS;
 use glam::{Vec3, Vec4};
 
@@ -10,35 +11,44 @@ use super::{DropLights, drop_light_entry, drop_light_mean};
 use crate::rain::glint::drop_glint_angle;
 use crate::scene::scene_share;
 
-/// Keeps a glint of a drop if it is brighter than the least of those that are kept.
-pub(super) fn drop_light_keep(glints: &mut [[f32; 4]], glint: Vec4) {
-    let share = |glint: &[f32; 4]| scene_share(Vec4::from(*glint).truncate());
-    let mut least = scene_share(glint.truncate());
+/// The rows of the faintest of a drop's lights, N rows each, if it is fainter than `share`.
+fn drop_light_weakest<const N: usize>(rows: &mut [[f32; 4]], share: f32) -> Option<&mut [[f32; 4]; N]> {
+    let mut least = share;
     let mut weakest = None;
-    for kept in glints {
-        if share(kept) < least {
-            least = share(kept);
-            weakest = Some(kept);
+    let (lights, _) = rows.as_chunks_mut::<N>();
+    for light in lights {
+        let kept = light.first().map_or(0.0, |row| scene_share(Vec4::from(*row).truncate()));
+        if kept < least {
+            least = kept;
+            weakest = Some(light);
         }
     }
-    if let Some(weakest) = weakest {
-        *weakest = glint.to_array();
+    weakest
+}
+
+/// Keeps a glint of a drop if it is brighter than the least of those that are kept.
+pub(super) fn drop_light_keep(rows: &mut [[f32; 4]], glint: Vec4) {
+    if let Some(weakest) = drop_light_weakest(rows, scene_share(glint.truncate())) {
+        *weakest = [glint.to_array()];
     }
 }
 
-/// Keeps two rows of a drop, a streak or a lamp, if it is brighter than the least of those that are kept.
-pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], light: Vec4, layers: [f32; 4]) {
-    let share = |row: &[f32; 4]| scene_share(Vec4::from(*row).truncate());
-    let mut least = scene_share(light.truncate());
-    let mut weakest = None;
-    for kept in rows.chunks_exact_mut(2) {
-        if share(&kept[0]) < least {
-            least = share(&kept[0]);
-            weakest = Some(kept);
-        }
+/// Keeps a lamp of a drop in the form of Rousseau 2006, two rows, if it is brighter than the least of those that are kept.
+pub(super) fn drop_light_keep_facing(rows: &mut [[f32; 4]], light: Vec4, direction: Vec4) {
+    if let Some(weakest) = drop_light_weakest(rows, scene_share(light.truncate())) {
+        *weakest = [light.to_array(), direction.to_array()];
     }
-    if let Some(weakest) = weakest {
-        weakest.copy_from_slice(&[light.to_array(), layers]);
+}
+
+/// Keeps a streak of an atlas, three rows, if it is brighter than the least of those that are kept.
+pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, place: &AtlasPlace) {
+    if let Some(weakest) = drop_light_weakest::<{ DROP_ATLAS_ROWS as usize }>(rows, scene_share(radiance)) {
+        let [a, b, c] = place.layers.map(|layer| layer as f32);
+        *weakest = [
+            radiance.extend(place.side).to_array(),
+            [a, b, c, place.weights[0]],
+            [place.weights[1], place.parts[0], place.parts[1], 0.0],
+        ];
     }
 }
 
