@@ -40,6 +40,23 @@ impl BackendArguments {
     }
 }
 
+impl BackendArguments {
+    /// What draws frames; says which it is.
+    ///
+    /// # Errors
+    /// Exit code 4 if a GPU was asked for and there is none.
+    #[cfg(not(feature = "gpu"))]
+    pub(crate) fn device(&self, say: impl Fn(&str)) -> Result<downpour::Device, Failure> {
+        compute(self, say, || Ok(downpour::Device::cpu()))
+    }
+}
+
+/// The failure of a renderer.
+#[cfg(not(feature = "gpu"))]
+pub(crate) fn leave_if_hung(error: downpour::RendererError, _: &crate::interrupt::Interrupt) -> Failure {
+    error.into()
+}
+
 /// There is no GPU in this build.
 #[cfg(not(feature = "gpu"))]
 pub(crate) fn no_support() -> Failure {
@@ -67,7 +84,7 @@ pub(crate) fn compute<T>(
 }
 
 #[cfg(feature = "gpu")]
-pub(crate) use gpu::{FromGpu, compute};
+pub(crate) use gpu::{FromGpu, compute, leave_if_hung};
 
 #[cfg(feature = "gpu")]
 mod gpu {
@@ -75,7 +92,6 @@ mod gpu {
 
     use downpour::gpu::{AdapterChoice, Gpu, GpuError, GpuOptions};
     use downpour::mask::gpu::GpuMaskError;
-    use downpour::render::gpu::GpuPictureError;
     use downpour::render::specimen::gpu::GpuSpecimenError;
 
     use super::{Backend, BackendArguments};
@@ -109,12 +125,6 @@ mod gpu {
         }
     }
 
-    impl From<GpuPictureError> for Failure {
-        fn from(error: GpuPictureError) -> Self {
-            Self::new(error.exit_code(), error.to_string())
-        }
-    }
-
     /// An error that may have come from a GPU.
     pub(crate) trait FromGpu: std::fmt::Display {
         /// What the GPU said, if it was the GPU.
@@ -128,12 +138,6 @@ mod gpu {
     }
 
     impl FromGpu for GpuSpecimenError {
-        fn gpu(&self) -> Option<&GpuError> {
-            if let Self::Gpu(error) = self { Some(error) } else { None }
-        }
-    }
-
-    impl FromGpu for GpuPictureError {
         fn gpu(&self) -> Option<&GpuError> {
             if let Self::Gpu(error) = self { Some(error) } else { None }
         }
@@ -180,6 +184,39 @@ mod gpu {
         };
         say(&format!("backend: cpu ({reason})"));
         on_cpu()
+    }
+
+    impl BackendArguments {
+        /// What draws frames; says which it is.
+        ///
+        /// # Errors
+        /// Exit code 2 for a bad [`INJECT`], 4 if there is no such adapter, or no GPU where one was asked for.
+        pub(crate) fn device(&self, say: impl Fn(&str)) -> Result<downpour::Device, Failure> {
+            if self.backend == Backend::Cpu {
+                return Ok(downpour::Device::cpu());
+            }
+            match device(self)? {
+                Ok(gpu) => {
+                    let adapter = gpu.adapter();
+                    say(&format!("backend: gpu, {} ({}, {})", adapter.name, adapter.kind, adapter.backend));
+                    Ok(downpour::Device::gpu(gpu, self.backend == Backend::Auto))
+                }
+                Err(error) if self.backend == Backend::Auto => {
+                    say(&format!("backend: cpu ({error})"));
+                    Ok(downpour::Device::cpu())
+                }
+                Err(error) => Err(error.into()),
+            }
+        }
+    }
+
+    /// The failure of a renderer. A GPU that hangs ends the process here: dropping its device would wait for it.
+    pub(crate) fn leave_if_hung(error: downpour::RendererError, interrupt: &Interrupt) -> Failure {
+        if let downpour::RendererError::Gpu(error @ GpuError::Hung { .. }) = &error {
+            stream::message(&format!("error: {error}"));
+            interrupt.leave(error.exit_code());
+        }
+        error.into()
     }
 
     /// Opens the device that was asked for. `Ok(Err(reason))`: there is none.

@@ -1,7 +1,6 @@
 //! The subcommands, one file each.
 
 mod adapters;
-mod bare;
 mod check;
 mod drop;
 mod input;
@@ -21,6 +20,7 @@ use downpour::scene::Warning;
 
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+pub(crate) use streaks::no_atlas;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {

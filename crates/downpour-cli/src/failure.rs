@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
+use downpour::RendererError;
 use downpour::drop::DropError;
 use downpour::lattice::LatticeError;
 use downpour::lattice::glass::GlassError;
@@ -123,6 +124,17 @@ impl From<ShowerError> for Failure {
 impl From<StageError> for Failure {
     fn from(error: StageError) -> Self {
         Self::new(error.exit_code(), error.to_string())
+    }
+}
+
+impl From<RendererError> for Failure {
+    fn from(error: RendererError) -> Self {
+        let code = error.exit_code();
+        match error {
+            // A library has no option of this name.
+            RendererError::NoAtlas => crate::commands::no_atlas(),
+            error => Self::new(code, error.to_string()),
+        }
     }
 }
 

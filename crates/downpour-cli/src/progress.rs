@@ -1,23 +1,66 @@
 //! How far the work is, for who sits before a terminal.
 
 use std::io::{self, IsTerminal as _, Write as _};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::thread;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// How long work may take before somebody wants to know what it is.
-pub(crate) const PATIENCE: Duration = Duration::from_secs(1);
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Does work whose parts are not counted. Work that takes longer than a second is named on a terminal, with the time that it
 /// has taken.
 pub(crate) fn doing<T>(what: &str, quiet: bool, work: impl FnOnce() -> T) -> T {
-    if !is_shown(quiet) {
-        return work();
+    let doing = Doing::new(what, quiet);
+    let done = work();
+    drop(doing);
+    done
+}
+
+/// Tells of frames how far they are: of what takes longer than a second.
+pub(crate) struct Teller {
+    quiet: bool,
+    begin: Instant,
+    counted: Option<Progress>,
+    uncounted: Option<Doing>,
+}
+
+impl Teller {
+    pub(crate) fn new(quiet: bool) -> Self {
+        Self { quiet, begin: Instant::now(), counted: None, uncounted: None }
     }
-    thread::scope(|scope| {
+
+    pub(crate) fn tell(&mut self, progress: downpour::Progress) {
+        let downpour::Progress { what, parts: [done, all] } = progress;
+        if self.counted.as_ref().is_some_and(|counted| counted.what != what) {
+            self.counted = None;
+        }
+        if all == 0 {
+            self.uncounted = Doing::new(what, self.quiet);
+            return;
+        }
+        self.uncounted = None;
+        if self.counted.is_some() || self.begin.elapsed() > PATIENCE {
+            self.counted.get_or_insert_with(|| Progress::new(what, all, self.quiet)).set(done);
+        }
+    }
+}
+
+/// Work whose parts are not counted, named on a terminal as soon as it takes long. Dropped where the work ends.
+struct Doing {
+    end: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Doing {
+    /// `None` where nobody is told, or where there is no memory for a thread.
+    fn new(what: &str, quiet: bool) -> Option<Self> {
+        if !is_shown(quiet) {
+            return None;
+        }
+        let what = what.to_owned();
         let (end, ended) = channel::<()>();
-        // Without memory for a thread the work goes on in silence.
-        let _ = thread::Builder::new().name("progress".to_owned()).spawn_scoped(scope, move || {
+        let tell = move || {
             let begin = Instant::now();
             let mut shown = false;
             while ended.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
@@ -27,11 +70,20 @@ pub(crate) fn doing<T>(what: &str, quiet: bool, work: impl FnOnce() -> T) -> T {
             if shown {
                 write_over("");
             }
-        });
-        let done = work();
-        drop(end);
-        done
-    })
+        };
+        let thread = thread::Builder::new().name("progress".to_owned()).spawn(tell).ok()?;
+        Some(Self { end: Some(end), thread: Some(thread) })
+    }
+}
+
+impl Drop for Doing {
+    fn drop(&mut self) {
+        drop(self.end.take());
+        if let Some(thread) = self.thread.take() {
+            // It only writes.
+            let _ = thread.join();
+        }
+    }
 }
 
 /// Whether somebody sits before a terminal and wants to be told.

@@ -3,6 +3,8 @@
 //! Host types of `shaders/wgsl/render/data.wgsl`. Triangles are in world space and in the order of the hierarchy's
 //! leaves, so that a hit's triangle is an index into all of it.
 
+use std::sync::Arc;
+
 use downpour_bvh::{Bvh, BvhNode, BvhTriangle};
 use downpour_shaders::render::scene::SCENE_SKY_LEVELS;
 use glam::{Affine3A, Vec2, Vec3, Vec4};
@@ -236,37 +238,37 @@ impl SceneBuilder {
             self.texels.push(u32::MAX);
         }
         SceneData {
-            nodes: bvh.nodes,
-            triangles,
-            corners,
+            nodes: Arc::new(bvh.nodes),
+            triangles: Arc::new(triangles),
+            corners: Arc::new(corners),
             table,
-            texels: self.texels,
+            texels: Arc::new(self.texels),
             slots,
             lights,
             light_count: self.lights.len() as u32,
             puddles: 0,
             puddle_count: 0,
             pane: 0,
-            sky: sky.texels.clone(),
+            sky: Arc::new(sky.texels.clone()),
             sky_levels: sky.levels,
             sky_irradiance: sky.irradiance,
         }
     }
 }
 
-/// A scene as buffers.
+/// A scene as buffers. What does not change after it was built is shared by all copies: a copy costs its table.
 #[derive(Clone, Debug)]
 pub struct SceneData {
     /// Nodes of the hierarchy.
-    pub nodes: Vec<BvhNode>,
+    pub nodes: Arc<Vec<BvhNode>>,
     /// Triangles in the order of the leaves; `index` is the place in this list.
-    pub triangles: Vec<BvhTriangle>,
+    pub triangles: Arc<Vec<BvhTriangle>>,
     /// Three corners per triangle.
-    pub corners: Vec<RenderCorner>,
+    pub corners: Arc<Vec<RenderCorner>>,
     /// Materials, texture slots, lights, puddles and a pane, as rows.
     pub table: Vec<[u32; 4]>,
     /// Texels of all levels of all textures.
-    pub texels: Vec<u32>,
+    pub texels: Arc<Vec<u32>>,
     /// Row where slots begin.
     pub slots: u32,
     /// Row where lights begin.
@@ -280,7 +282,7 @@ pub struct SceneData {
     /// Row where the pane begins that throws shadows; 0: none.
     pub pane: u32,
     /// Texels of all levels of the sky.
-    pub sky: Vec<[f32; 4]>,
+    pub sky: Arc<Vec<[f32; 4]>>,
     /// Width, height and first texel of each level of the sky.
     pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
     /// Irradiance of the sky over pi.

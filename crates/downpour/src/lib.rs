@@ -33,6 +33,12 @@
 //! Units are SI (metres, seconds, kilograms, radians); a name says so where it is something else (`rate_mm_h`,
 //! `temperature_c`). Axes are those of glTF: right-handed, +Y up.
 
+mod renderer;
+
+pub use renderer::{
+    Backend, Computer, Device, Frame, Progress, Renderer, RendererError, RendererOptions, Source,
+};
+
 pub use downpour_bvh as bvh;
 pub use downpour_drop as drop;
 #[cfg(feature = "wgpu")]

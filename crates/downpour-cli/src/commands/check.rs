@@ -8,9 +8,9 @@ use downpour::render::stage::{CameraChoice, Stage};
 use downpour::scene::weather::Observer;
 use downpour::scene::{Budget, scene::Texture};
 
-use super::input::{Input, InputArguments};
+use super::input::{Input, InputArguments, say_missing};
 use super::render::BYTES_PER_PIXEL;
-use super::streaks::{Streaks, StreaksArgument};
+use super::streaks::{Streaks, StreaksArgument, no_atlas};
 use crate::failure::Failure;
 use crate::listing::{Datum, Entry};
 use crate::progress::doing;
@@ -40,7 +40,7 @@ impl CheckArguments {
         let streaks = self.streaks.read(&input.weather)?;
         let stage =
             doing("setting the scene", false, || Stage::new(&input.weather, &input.loaded, self.input.time))?;
-        input.say_warnings(&stage, stream::message);
+        say_missing(&input.weather, &input.loaded, &stage, stream::message);
         let mut entries = scene(&input, &stage);
         entries.extend(light(&input));
         entries.extend(rain(&input)?);
@@ -54,7 +54,7 @@ impl CheckArguments {
         entries.push(Entry::new("memory_mib", "memory, about", Datum::Computed(mebibytes(bytes), 3), "MiB"));
         stream::print(&if self.json { listing::json(&entries) } else { listing::text(&entries) })?;
         match streaks {
-            Streaks::Nowhere => Err(Streaks::nowhere()),
+            Streaks::Nowhere => Err(no_atlas()),
             Streaks::Unwanted | Streaks::Atlas(_) => Ok(()),
         }
     }

@@ -2,50 +2,32 @@
 
 mod clip;
 mod frames;
-mod ground;
 mod job;
 mod journal;
 #[cfg(feature = "video")]
 mod mp4;
 mod outputs;
-mod painter;
-mod pane;
 mod places;
 mod report;
-mod shower;
 #[cfg(feature = "video")]
 mod video;
 
-use std::borrow::Cow;
 use std::path::PathBuf;
-use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use downpour::render::file::{write_exr, write_exr_layers, write_png};
-use downpour::render::picture::{Picture, PictureOptions, noise_seed};
-use downpour::render::rain::light::DropLightOptions;
-use downpour::render::rain::{Exposure, RainMedium, RainOptions, RefractionForm};
-use downpour::render::shower::{MovingScenery, Scenery, Still};
-use downpour::render::stage::Stage;
-use downpour::render::tone::tone_picture;
+use downpour::render::rain::RefractionForm;
 use downpour::scene::Budget;
-use downpour::scene::weather::Weather;
+use downpour::{Frame, Renderer, RendererOptions};
 
-use super::input::{Input, InputArguments};
+use super::input::{Input, InputArguments, say_missing};
 use super::streaks::StreaksArgument;
-use crate::backend::BackendArguments;
+use crate::backend::{BackendArguments, leave_if_hung};
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
-use crate::progress::doing;
+use crate::progress::{Teller, doing};
 use crate::{quantity, stream};
 use frames::Frames;
-use ground::Puddles;
-use job::moves;
 use outputs::{Bytes, Format, Outputs};
-use painter::with_painter;
-use pane::Pane;
-use report::Told;
-use shower::{Ask, Showers};
 
 /// Memory per pixel, in bytes, while a picture is made and written: the scene, what its pixels found of the sky's light
 /// (twice while threads hand in their parts), the rain, the pane with what is behind it, and the file.
@@ -128,11 +110,6 @@ impl From<Refraction> for RefractionForm {
 }
 
 impl RenderArguments {
-    /// How drops refract: as the command line has it, else the weather.
-    fn refraction(&self, weather: &Weather) -> RefractionForm {
-        self.refraction.map_or(weather.rain.refraction.into(), RefractionForm::from)
-    }
-
     pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         self.input.check()?;
         self.backend.check()?;
@@ -149,68 +126,57 @@ impl RenderArguments {
         self.check_layers(outputs.format)?;
         let input = doing("reading", self.quiet, || self.input.read(&mut Budget::default()))?;
         outputs.keep(&input.files)?;
-        reserve(input.weather.size)?;
-        let atlas = self.streaks.read(&input.weather)?.atlas()?;
-        let stage = self.stage(&input, self.input.time)?;
-        input.say_warnings(&stage, |text| self.say(text));
-        let begin = Instant::now();
-        let rain = &input.weather.rain;
-        let showers = &mut Showers::new(&input.weather, &input.loaded, atlas.as_ref(), self.quiet)?;
-        let ask = Ask { measure: outputs.wants_stats(), quiet: self.quiet };
-        let moving = MovingScenery { weather: &input.weather, loaded: &input.loaded };
-        let still = Still(&stage);
-        let scenery: &dyn Scenery = if moves(&input.loaded) { &moving } else { &still };
-        let shower = showers.at(scenery, &stage, self.input.time, &ask)?;
-        let mut pane = Pane::new(&input.weather, &stage, self.input.time, self.quiet)?;
-        let (stage, time_s) = (Cow::Owned(stage), self.input.time);
-        let stage = doing("rain on puddles", self.quiet, || {
-            Puddles::new(&input.weather, &input.loaded, &stage, time_s)?.lay(stage, time_s)
-        })?;
-        let stage = &*pane.hang(stage, self.input.time)?;
-        // The files have become buffers.
-        drop(input.loaded);
-        let options = self.options(stage, &input.weather, self.input.time, shower.medium);
-        let say = |text: &str| self.say(text);
-        let (picture, computer) = with_painter(&self.backend, interrupt, say, |painter| {
-            doing("drawing", self.quiet, || {
-                let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
-                let through = pane.before(stage, &picture, &options)?;
-                painter.look(&mut picture, through)?;
-                Ok((picture, painter.computer().clone()))
-            })
-        })?;
-        let frame_ms = begin.elapsed().as_secs_f64() * 1.0e3;
-        let drawn = picture.drawn.len();
-        let unresolved = (100.0 * shower.medium.unresolved_fraction()).round();
+        let time_s = self.input.time;
+        let mut renderer = self.renderer(input, time_s, outputs.wants_stats())?;
+        let frame = self.frame(&mut renderer, time_s, interrupt)?;
+        let drawn = frame.picture.drawn.len();
+        let unresolved = (100.0 * frame.medium.unresolved_fraction()).round();
+        let rain = &renderer.weather().rain;
         self.say(&format!(
             "rain: {} mm/h, {drawn} drops drawn; {unresolved} % of its cross-section to 50 m is unresolved",
             rain.rate_mm_h
         ));
-        let told = Told {
-            computer: &computer,
-            rain: &shower.visible,
-            asked_rate_mm_h: rain.rate_mm_h,
-            measured_rate_mm_h: shower.measured_rate_mm_h,
-            medium: &shower.medium,
-            time_s: self.input.time,
-            seed: rain.seed,
-            triangles: stage.triangles,
-            frame_ms,
-        };
-        let exposure = stage.exposure(&picture.clean);
         let bytes = Bytes {
-            stats: report::text(&report::stats(&picture, &told)).into(),
-            drops: if outputs.wants_drops() {
-                report::drops(&picture.drawn, &shower.visible.drops).into()
-            } else {
-                Vec::new()
-            },
-            picture: self.encode(outputs.format, picture, exposure)?,
+            stats: report::text(&report::stats(&frame, renderer.computer(), rain)).into(),
+            drops: if outputs.wants_drops() { report::drops(&frame).into() } else { Vec::new() },
+            picture: self.encode(outputs.format, &frame)?,
         };
         outputs.publish(&bytes, interrupt)?;
-        let [width, height] = stage.size;
+        let [width, height] = frame.size();
         self.say(&format!("wrote {}: {width} x {height}", shown(&self.output)));
         Ok(())
+    }
+
+    /// What makes the frames of a weather, from a time on.
+    fn renderer(&self, input: Input, first_s: f64, measure: bool) -> Result<Renderer, Failure> {
+        let Input { weather, loaded, .. } = input;
+        reserve(weather.size)?;
+        let options = RendererOptions {
+            samples: self.samples,
+            sky_rays: self.sky_rays,
+            refraction: self.refraction.map(RefractionForm::from),
+            atlas: self.streaks.read(&weather)?.atlas()?,
+            measure,
+            first_s,
+        };
+        let device = self.backend.device(|text| self.say(text))?;
+        let renderer =
+            doing("setting the scene", self.quiet, || Renderer::new(weather, loaded, options, device))?;
+        say_missing(renderer.weather(), renderer.loaded(), renderer.first_stage(), |text| self.say(text));
+        Ok(renderer)
+    }
+
+    /// A frame. Who waits for long is told how far it is. A GPU that hangs ends the process: dropping its device would wait.
+    fn frame(&self, renderer: &mut Renderer, time_s: f64, interrupt: &Interrupt) -> Result<Frame, Failure> {
+        let before = renderer.computer().reason.clone();
+        let mut teller = Teller::new(self.quiet);
+        let made = renderer.frame_with(time_s, &mut |progress| teller.tell(progress));
+        drop(teller);
+        let frame = made.map_err(|error| leave_if_hung(error, interrupt))?;
+        if let Some(reason) = renderer.computer().reason.as_ref().filter(|_| before.is_none()) {
+            self.say(&format!("backend: cpu ({reason})"));
+        }
+        Ok(frame)
     }
 
     /// # Errors
@@ -223,53 +189,18 @@ impl RenderArguments {
         Ok(())
     }
 
-    /// The scene of a weather at the first time that is asked for.
-    fn stage(&self, input: &Input, time_s: f64) -> Result<Stage, Failure> {
-        Ok(doing("setting the scene", self.quiet, || Stage::new(&input.weather, &input.loaded, time_s))?)
-    }
-
     fn say(&self, text: &str) {
         if !self.quiet {
             stream::message(text);
         }
     }
 
-    fn options(&self, stage: &Stage, weather: &Weather, time_s: f64, medium: RainMedium) -> PictureOptions {
-        let usual = RainOptions::default();
-        let exposure = Exposure::of_weather(weather, stage.motion, time_s);
-        let form = self.refraction(weather);
-        PictureOptions {
-            size: stage.size,
-            grid: self.samples,
-            sky_rays: self.sky_rays,
-            seed: noise_seed(weather.rain.seed, time_s),
-            rain: RainOptions {
-                form,
-                capture_size: form.capture_size(),
-                medium,
-                exposure,
-                light: DropLightOptions::of_weather(weather),
-                ..usual
-            },
-        }
-    }
-
     /// The file of a picture.
-    fn encode(&self, format: Format, picture: Picture, exposure: f32) -> Result<Vec<u8>, Failure> {
-        let [width, height] = picture.size;
-        if self.layers {
-            let glass = picture.through_glass.as_deref();
-            return Ok(write_exr_layers(width, height, &picture.clean, &picture.rain, glass)?);
-        }
-        let radiance = picture.radiance();
+    fn encode(&self, format: Format, frame: &Frame) -> Result<Vec<u8>, Failure> {
         Ok(match format {
-            Format::Exr => write_exr(width, height, &radiance)?,
-            Format::Png => {
-                drop(picture);
-                let pixels: Vec<[f32; 4]> = radiance.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
-                drop(radiance);
-                write_png(width, height, &tone_picture(&pixels, exposure))?
-            }
+            Format::Exr if self.layers => frame.exr_layers()?,
+            Format::Exr => frame.exr()?,
+            Format::Png => frame.png()?,
         })
     }
 }

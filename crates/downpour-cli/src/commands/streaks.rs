@@ -48,22 +48,22 @@ impl StreaksArgument {
     }
 }
 
-impl Streaks {
-    /// What `render` does where it is not said where the atlas is: it ends with exit code 2.
-    pub(crate) fn nowhere() -> Failure {
-        let found = "streaks.colour is \"atlas\" or \"atlas-random\", and no --streaks";
-        let allowed = "with --streaks FOLDER, where the streak atlas is";
-        Failure::new(INPUT, format!("{found}; allowed: {allowed}"))
-    }
+/// What `render` does where it is not said where the atlas is: it ends with exit code 2.
+pub(crate) fn no_atlas() -> Failure {
+    let found = "streaks.colour is \"atlas\" or \"atlas-random\", and no --streaks";
+    let allowed = "with --streaks FOLDER, where the streak atlas is";
+    Failure::new(INPUT, format!("{found}; allowed: {allowed}"))
+}
 
+impl Streaks {
     /// The atlas to render with.
     ///
     /// # Errors
-    /// [`Streaks::nowhere`].
+    /// [`no_atlas`].
     pub(crate) fn atlas(self) -> Result<Option<StreakAtlas>, Failure> {
         match self {
             Self::Unwanted => Ok(None),
-            Self::Nowhere => Err(Self::nowhere()),
+            Self::Nowhere => Err(no_atlas()),
             Self::Atlas(atlas) => Ok(Some(*atlas)),
         }
     }

@@ -1,11 +1,13 @@
 //! A whole picture on a GPU.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use downpour_gpu::{Gpu, GpuError};
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_RAYS;
 use downpour_sim::field::FallingDrop;
 
 use super::rain::RainPipeline;
-use super::scene::ScenePipeline;
+use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::RenderError;
 use crate::camera::Viewpoint;
 use crate::data::{RenderFrame, SceneData};
@@ -41,6 +43,8 @@ pub struct PictureRenderer {
     gpu: Gpu,
     scene: ScenePipeline,
     rain: RainPipeline,
+    /// The scene of the last picture.
+    uploaded: Arc<Mutex<Option<SceneOnGpu>>>,
 }
 
 impl PictureRenderer {
@@ -49,7 +53,12 @@ impl PictureRenderer {
     /// # Errors
     /// What the GPU says.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuPictureError> {
-        Ok(Self { gpu: gpu.clone(), scene: ScenePipeline::new(gpu)?, rain: RainPipeline::new(gpu)? })
+        Ok(Self {
+            gpu: gpu.clone(),
+            scene: ScenePipeline::new(gpu)?,
+            rain: RainPipeline::new(gpu)?,
+            uploaded: Arc::default(),
+        })
     }
 
     /// Makes a picture: what [`render_picture`](crate::picture::render_picture) makes on the CPU.
@@ -70,7 +79,12 @@ impl PictureRenderer {
         }
         let mut passes = Vec::new();
         let uploaded = timed(&mut passes, "upload", || {
-            Ok::<_, GpuError>((self.scene.upload(scene)?, self.rain.upload(masks)?))
+            let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
+            // What the scene shares with that of the last picture is on the device.
+            let uploaded = self.scene.upload_after(scene, last.as_ref())?;
+            *last = Some(uploaded.clone());
+            drop(last);
+            Ok::<_, GpuError>((uploaded, self.rain.upload(masks)?))
         })?;
         let clean = timed(&mut passes, "scene", || self.scene.draw(&uploaded.0, &frame))?;
         let eye = viewpoint.eye.as_dvec3();

@@ -1,6 +1,6 @@
 //! The picture of a scene on a GPU: the same rays, the same buffers.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL};
@@ -24,6 +24,8 @@ pub struct ScenePipeline {
 /// A scene on the device.
 #[derive(Clone, Debug)]
 pub struct SceneOnGpu {
+    /// What was brought there: arrays that another scene shares with it are there already.
+    of: SceneData,
     nodes: wgpu::Buffer,
     triangles: wgpu::Buffer,
     corners: wgpu::Buffer,
@@ -65,13 +67,37 @@ impl ScenePipeline {
     /// # Errors
     /// [`GpuError::OverLimit`] if a buffer is larger than the device allows, or what else the GPU says.
     pub fn upload(&self, scene: &SceneData) -> Result<SceneOnGpu, GpuError> {
+        self.upload_after(scene, None)
+    }
+
+    /// Brings a scene to the device where `before` is already: only what the two do not share.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn upload_after(
+        &self,
+        scene: &SceneData,
+        before: Option<&SceneOnGpu>,
+    ) -> Result<SceneOnGpu, GpuError> {
+        macro_rules! buffer {
+            ($field:ident, $label:literal) => {
+                match before.filter(|before| Arc::ptr_eq(&before.of.$field, &scene.$field)) {
+                    Some(before) => before.$field.clone(),
+                    None => self.gpu.storage_buffer($label, &scene.$field)?,
+                }
+            };
+        }
         Ok(SceneOnGpu {
-            nodes: self.gpu.storage_buffer("scene nodes", &scene.nodes)?,
-            triangles: self.gpu.storage_buffer("scene triangles", &scene.triangles)?,
-            corners: self.gpu.storage_buffer("scene corners", &scene.corners)?,
-            table: self.gpu.storage_buffer("scene table", &scene.table)?,
-            texels: self.gpu.storage_buffer("scene texels", &scene.texels)?,
-            sky: self.gpu.storage_buffer("scene sky", &scene.sky)?,
+            nodes: buffer!(nodes, "scene nodes"),
+            triangles: buffer!(triangles, "scene triangles"),
+            corners: buffer!(corners, "scene corners"),
+            table: match before.filter(|before| before.of.table == scene.table) {
+                Some(before) => before.table.clone(),
+                None => self.gpu.storage_buffer("scene table", &scene.table)?,
+            },
+            texels: buffer!(texels, "scene texels"),
+            sky: buffer!(sky, "scene sky"),
+            of: scene.clone(),
         })
     }
 

@@ -5,28 +5,21 @@
 
 mod finish;
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs;
-use std::time::Instant;
 
-use downpour::render::picture::Picture;
-use downpour::render::shower::{MovingScenery, Scenery, Still};
-use downpour::render::stage::{LATEST_S, Stage};
+use downpour::render::stage::LATEST_S;
+use downpour::scene::weather::Weather;
+use downpour::{Computer, Frame, Renderer, RendererError};
 use serde_json::Value;
 
+use super::RenderArguments;
 use super::frames::Frames;
-use super::ground::Puddles;
-use super::job::{Job, atlas_digest, digest, moves, scene_digest};
+use super::job::{Job, atlas_digest, digest, scene_digest};
 use super::journal::{Journal, Record};
 use super::outputs::Format;
-use super::painter::{PaintError, Painter, with_painter};
-use super::pane::Pane;
 use super::places::Places;
-use super::report::{self, Told};
-use super::shower::{Ask, Showers};
-use super::{RenderArguments, reserve};
-use crate::commands::input::Input;
+use super::report;
 use crate::failure::{Failure, INPUT};
 use crate::interrupt::Interrupt;
 use crate::output::remove_leftovers;
@@ -52,32 +45,23 @@ pub(super) fn run(
         return Err(Failure::new(INPUT, format!("{found}; allowed: frames up to {LATEST_S} s")));
     }
     places.check_free(frames)?;
-    let mut input =
+    let input =
         doing("reading", arguments.quiet, || arguments.input.read(&mut downpour::scene::Budget::default()))?;
     places.keep(frames, &input.files)?;
     #[cfg(feature = "video")]
     if places.video.is_some() {
         super::video::check_size(input.weather.size)?;
     }
-    reserve(input.weather.size)?;
-    let atlas = arguments.streaks.read(&input.weather)?.atlas()?;
-    let first = arguments.stage(&input, time_s(arguments.input.time, frames.first, fps))?;
-    input.say_warnings(&first, |text| arguments.say(text));
-    let scene = scene_digest(&input.weather, &input.loaded, &first);
-    let moving = moves(&input.loaded);
-    if !moving {
-        // The files have become buffers.
-        input.loaded = downpour::scene::weather::Loaded { scene: Default::default(), ..input.loaded };
-    }
-    let clip = Clip { arguments, frames, fps, places, input, atlas, first, scene, moving, interrupt };
-    let rain = &clip.input.weather.rain;
-    arguments.say(&format!("rain: {} mm/h, {} frames", rain.rate_mm_h, frames.count()));
-    let (journal, made) = with_painter(
-        &arguments.backend,
-        interrupt,
-        |text| arguments.say(text),
-        |painter| clip.make(painter),
-    )?;
+    let atlas = arguments.streaks.read(&input.weather)?.atlas()?.as_ref().map(atlas_digest);
+    let first_s = time_s(arguments.input.time, frames.first, fps);
+    let mut renderer = arguments.renderer(input, first_s, places.stats.is_some())?;
+    let scene = scene_digest(renderer.weather(), renderer.loaded(), renderer.first_stage());
+    let weather = renderer.weather().clone();
+    let refraction = format!("{:?}", renderer.refraction());
+    let clip = Clip { arguments, frames, fps, places, weather, atlas, refraction, scene, interrupt };
+    let rate = clip.weather.rain.rate_mm_h;
+    arguments.say(&format!("rain: {rate} mm/h, {} frames", frames.count()));
+    let (journal, made) = clip.make(&mut renderer)?;
     clip.finish(journal, made)
 }
 
@@ -92,43 +76,64 @@ struct Clip<'a> {
     frames: Frames,
     fps: f64,
     places: Places,
-    input: Input,
-    /// The streaks of lamps, if the weather takes them from an atlas.
-    atlas: Option<downpour::mask::atlas::StreakAtlas>,
-    /// The scene at the first frame.
-    first: Stage,
+    weather: Weather,
+    /// The digest of the streak atlas, if the weather takes the light of lamps from one.
+    atlas: Option<String>,
+    /// How drops refract.
+    refraction: String,
     /// The digest of the scene.
     scene: String,
-    /// Whether the scene differs from frame to frame.
-    moving: bool,
     interrupt: &'a Interrupt,
 }
 
-/// What holds water, from frame to frame.
-struct Surfaces {
-    pane: Pane,
-    puddles: Puddles,
+/// Why a clip is not whole.
+#[derive(Debug)]
+enum Stopped {
+    /// Its first frame was too much for the GPU: the CPU goes on.
+    OnGpu,
+    Failed(Failure),
+}
+
+impl From<Failure> for Stopped {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
+    }
+}
+
+impl From<RendererError> for Stopped {
+    fn from(error: RendererError) -> Self {
+        Self::Failed(error.into())
+    }
 }
 
 impl Clip<'_> {
     /// Makes the frames that are not there. Returns how many those were.
-    fn make(&self, painter: &Painter) -> Result<(Journal, u32), PaintError> {
+    fn make(&self, renderer: &mut Renderer) -> Result<(Journal, u32), Failure> {
         self.places.make_folder()?;
-        let anew = self.arguments.overwrite;
-        let job = self.job(painter);
-        let opened = Journal::open(&self.places.journal, &job, anew, self.interrupt);
-        let mut journal = opened.inspect_err(|_| self.places.remove_empty_folder())?;
-        match self.make_missing(painter, &mut journal) {
-            Ok(made) => Ok((journal, made)),
-            Err(error) => {
-                journal.close();
-                self.places.remove_empty_folder();
-                Err(error)
+        loop {
+            let computer = renderer.computer().clone();
+            let mut journal = self.journal(&computer)?;
+            match self.make_missing(renderer, &mut journal) {
+                Ok(made) => return Ok((journal, made)),
+                // Too much for the GPU, which has made nothing: the clip begins again on the CPU.
+                Err(Stopped::OnGpu) => journal.close(),
+                Err(Stopped::Failed(error)) => {
+                    journal.close();
+                    self.places.remove_empty_folder();
+                    return Err(error);
+                }
             }
         }
     }
 
-    fn make_missing(&self, painter: &Painter, journal: &mut Journal) -> Result<u32, PaintError> {
+    /// What is known of the frames that a computer makes.
+    fn journal(&self, computer: &Computer) -> Result<Journal, Failure> {
+        let (place, anew) = (&self.places.journal, self.arguments.overwrite);
+        let opened = Journal::open(place, &self.job(computer), anew, self.interrupt);
+        opened.inspect_err(|_| self.places.remove_empty_folder())
+    }
+
+    fn make_missing(&self, renderer: &mut Renderer, journal: &mut Journal) -> Result<u32, Stopped> {
         if self.is_published(journal) {
             return Ok(0);
         }
@@ -142,29 +147,27 @@ impl Clip<'_> {
         if let Some(drops) = &self.places.drops {
             remove_leftovers(drops.folder());
         }
-        let quiet = self.arguments.quiet;
-        let showers = &mut Showers::new(&self.input.weather, &self.input.loaded, self.atlas.as_ref(), quiet)?;
-        let (weather, loaded) = (&self.input.weather, &self.input.loaded);
-        let first_s = time_s(self.arguments.input.time, self.frames.first, self.fps);
-        let surfaces = &mut Surfaces {
-            pane: Pane::new(weather, &self.first, first_s, self.arguments.quiet)?,
-            puddles: Puddles::new(weather, loaded, &self.first, first_s)?,
-        };
+        renderer.set_exposure(self.exposure(journal));
         let mut progress = Progress::new("frame", missing, self.arguments.quiet);
         for number in self.frames.numbers() {
-            if !kept.contains(&number) {
-                let made = self.make_frame(number, painter, showers, surfaces, journal);
-                made.inspect_err(|_| self.say_how_to_go_on(journal))?;
-                progress.step();
-            } else {
+            if kept.contains(&number) {
                 // What comes later begins where this frame ends.
-                surfaces.puddles.pass(time_s(self.arguments.input.time, number, self.fps))?;
-                if !showers.can_seek() {
-                    self.pass_frame(number, showers)?;
-                }
+                renderer.pass(self.time_s(number))?;
+                continue;
             }
+            let made = self.make_frame(number, renderer, journal);
+            made.inspect_err(|stopped| {
+                if matches!(stopped, Stopped::Failed(_)) {
+                    self.say_how_to_go_on(journal);
+                }
+            })?;
+            progress.step();
         }
         Ok(missing)
+    }
+
+    fn time_s(&self, number: u32) -> f64 {
+        time_s(self.arguments.input.time, number, self.fps)
     }
 
     fn say_how_to_go_on(&self, journal: &Journal) {
@@ -197,83 +200,25 @@ impl Clip<'_> {
         Ok(kept)
     }
 
-    fn make_frame(
-        &self,
-        number: u32,
-        painter: &Painter,
-        showers: &mut Showers,
-        Surfaces { pane, puddles }: &mut Surfaces,
-        journal: &mut Journal,
-    ) -> Result<(), PaintError> {
-        let begin = Instant::now();
-        let rain = &self.input.weather.rain;
-        let time_s = time_s(self.arguments.input.time, number, self.fps);
-        let stage = puddles.lay(self.stage(number, time_s)?, time_s)?;
-        let stage = &*pane.hang(stage, time_s)?;
-        let shower = showers.at(self.scenery().as_ref(), stage, time_s, &self.ask(true))?;
-        let options = self.arguments.options(stage, &self.input.weather, time_s, shower.medium);
-        let mut picture = painter.paint(stage, &shower.visible.drops, &showers.masks, &options)?;
-        let through = pane.before(stage, &picture, &options)?;
-        painter.look(&mut picture, through)?;
-        let told = Told {
-            computer: painter.computer(),
-            rain: &shower.visible,
-            asked_rate_mm_h: rain.rate_mm_h,
-            measured_rate_mm_h: shower.measured_rate_mm_h,
-            medium: &shower.medium,
-            time_s,
-            seed: rain.seed,
-            triangles: stage.triangles,
-            frame_ms: begin.elapsed().as_secs_f64() * 1.0e3,
-        };
-        let stats = report::stats(&picture, &told);
-        let list = self.places.drops.is_some().then(|| report::drops(&picture.drawn, &shower.visible.drops));
-        drop(shower);
-        let exposure = self.exposure(stage, &picture, journal)?;
-        let bytes = self.arguments.encode(self.places.format, picture, exposure)?;
-        self.publish(number, &bytes, list.as_deref(), stats, journal)?;
-        Ok(())
-    }
-
-    /// Lets the rain go on past a frame that is there.
-    fn pass_frame(&self, number: u32, showers: &mut Showers) -> Result<(), Failure> {
-        let time_s = time_s(self.arguments.input.time, number, self.fps);
-        let stage = self.stage(number, time_s)?;
-        showers.at(self.scenery().as_ref(), &stage, time_s, &self.ask(false)).map(|_| ())
-    }
-
-    fn ask(&self, made: bool) -> Ask {
-        Ask { measure: made && self.places.stats.is_some(), quiet: self.arguments.quiet }
-    }
-
-    /// The scene over time, as the rain asks for it between frames.
-    fn scenery(&self) -> Box<dyn Scenery + '_> {
-        if !self.moving {
-            return Box::new(Still(&self.first));
+    fn make_frame(&self, number: u32, renderer: &mut Renderer, journal: &mut Journal) -> Result<(), Stopped> {
+        let backend = renderer.computer().backend;
+        let frame = self.arguments.frame(renderer, self.time_s(number), self.interrupt)?;
+        if renderer.computer().backend != backend {
+            return Err(Stopped::OnGpu);
         }
-        let Input { weather, loaded, .. } = &self.input;
-        Box::new(MovingScenery { weather, loaded })
+        if self.places.format == Format::Png && journal.exposure().is_none() {
+            journal.expose(frame.exposure, self.interrupt)?;
+        }
+        let stats = report::stats(&frame, renderer.computer(), &self.weather.rain);
+        let list = self.places.drops.is_some().then(|| report::drops(&frame));
+        let bytes = self.arguments.encode(self.places.format, &frame)?;
+        drop::<Frame>(frame);
+        Ok(self.publish(number, &bytes, list.as_deref(), stats, journal)?)
     }
 
-    /// The scene at a frame.
-    fn stage(&self, number: u32, time_s: f64) -> Result<Cow<'_, Stage>, Failure> {
-        if !self.moving || number == self.frames.first {
-            return Ok(Cow::Borrowed(&self.first));
-        }
-        Ok(Cow::Owned(Stage::new(&self.input.weather, &self.input.loaded, time_s)?))
-    }
-
-    /// The exposure of the whole clip. Linear radiance is not exposed.
-    fn exposure(&self, stage: &Stage, picture: &Picture, journal: &mut Journal) -> Result<f32, Failure> {
-        if self.places.format == Format::Exr {
-            return Ok(1.0);
-        }
-        if let Some(exposure) = journal.exposure() {
-            return Ok(exposure);
-        }
-        let exposure = stage.exposure(&picture.clean);
-        journal.expose(exposure, self.interrupt)?;
-        Ok(exposure)
+    /// The exposure of the whole clip, where its first frame is there. Linear radiance is not exposed.
+    fn exposure(&self, journal: &Journal) -> Option<f32> {
+        if self.places.format == Format::Exr { Some(1.0) } else { journal.exposure() }
     }
 
     /// Publishes a frame: the journal first, so that whatever has the frame's name is known there; the picture last.
@@ -300,9 +245,8 @@ impl Clip<'_> {
     }
 
     /// What the frames depend on. Not how many they are: a clip can be made longer.
-    fn job(&self, painter: &Painter) -> Job {
-        let (arguments, weather) = (self.arguments, &self.input.weather);
-        let computer = painter.computer();
+    fn job(&self, computer: &Computer) -> Job {
+        let (arguments, weather) = (self.arguments, &self.weather);
         let [width, height] = weather.size;
         Job(vec![
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
@@ -317,9 +261,9 @@ impl Clip<'_> {
             ("first frame", self.frames.first.to_string()),
             ("samples", arguments.samples.to_string()),
             ("sky rays", arguments.sky_rays.to_string()),
-            ("refraction", format!("{:?}", arguments.refraction(weather))),
+            ("refraction", self.refraction.clone()),
             ("layers", arguments.layers.to_string()),
-            ("streak atlas", self.atlas.as_ref().map_or_else(|| "none".to_owned(), atlas_digest)),
+            ("streak atlas", self.atlas.clone().unwrap_or_else(|| "none".to_owned())),
             ("scene", self.scene.clone()),
         ])
     }

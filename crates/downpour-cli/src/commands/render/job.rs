@@ -63,17 +63,12 @@ pub(super) fn scene_digest(weather: &Weather, loaded: &Loaded, first: &Stage) ->
     if let Some(model) = &loaded.drop_model {
         let _ = write!(text, "{:?} {:?} {:?}", model.positions, model.normals, model.indices);
     }
-    if moves(loaded) {
+    if loaded.animations.iter().any(Option::is_some) {
         let scene = &loaded.scene;
         let _ = write!(text, "{:?} {:?} {:?}", loaded.animations, scene.animations, scene.nodes);
         let _ = write!(text, "{:?} {:?} {:?}", scene.skins, scene.meshes, scene.roots);
     }
     hexadecimal(text.0)
-}
-
-/// Whether anything but the rain moves.
-pub(super) fn moves(loaded: &Loaded) -> bool {
-    loaded.animations.iter().any(Option::is_some)
 }
 
 /// Text that is digested as it is written.

@@ -2,65 +2,38 @@
 
 use std::fmt::Write as _;
 
-use downpour::render::picture::Picture;
-use downpour::render::rain::RainMedium;
-use downpour::sim::field::{FallingDrop, VisibleDrops};
+use downpour::scene::weather::Rain;
+use downpour::{Computer, Frame};
 use serde_json::{Map, Value, json};
 
 use super::frames::Frames;
 use crate::listing::number;
 
-/// What computed a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Computer {
-    /// The adapter as its driver names it, or the CPU.
-    pub(super) adapter: String,
-    /// `gpu` or `cpu`.
-    pub(super) backend: &'static str,
-    /// What else its bits depend on: the driver with its version, or the processor's architecture.
-    pub(super) driver: String,
-}
-
-/// What `--stats` tells beside the picture.
-pub(super) struct Told<'a> {
-    pub(super) computer: &'a Computer,
-    pub(super) rain: &'a VisibleDrops,
-    pub(super) asked_rate_mm_h: f64,
-    /// Measured for those alone who are told of it.
-    pub(super) measured_rate_mm_h: Option<f64>,
-    /// Drops that are not drawn one by one.
-    pub(super) medium: &'a RainMedium,
-    pub(super) time_s: f64,
-    pub(super) seed: u64,
-    pub(super) triangles: usize,
-    /// All of the picture, from the drops to the last pass.
-    pub(super) frame_ms: f64,
-}
-
-/// What `--stats` tells of a picture.
-pub(super) fn stats(picture: &Picture, told: &Told<'_>) -> Value {
+/// What `--stats` tells of a picture of a rain.
+pub(super) fn stats(frame: &Frame, computer: &Computer, rain: &Rain) -> Value {
+    let Frame { picture, drops, medium, .. } = frame;
     let mut passes = Map::new();
     for (name, ms) in &picture.passes {
         passes.insert((*name).to_owned(), number(*ms));
     }
     json!({
-        "adapter": told.computer.adapter,
-        "backend": told.computer.backend,
+        "adapter": computer.adapter,
+        "backend": computer.backend,
         "width": picture.size[0],
         "height": picture.size[1],
-        "drops_simulated": told.rain.simulated,
+        "drops_simulated": drops.simulated,
         "drops_drawn": picture.drawn.len(),
         "drops_on_screen": picture.drops_on_screen,
-        "asked_rate_mm_h": number(told.asked_rate_mm_h),
-        "measured_rate_mm_h": told.measured_rate_mm_h.map(number),
-        "unresolved_rate_mm_h": number(told.medium.unresolved_rate_mm_h()),
-        "unresolved_fraction": number(told.medium.unresolved_fraction()),
-        "resolved_to_m": number(told.rain.resolved.far),
-        "least_pixels": number(told.rain.resolved.least_pixels),
-        "time_s": number(told.time_s),
-        "seed": told.seed,
-        "triangles": told.triangles,
-        "frame_ms": number(told.frame_ms),
+        "asked_rate_mm_h": number(rain.rate_mm_h),
+        "measured_rate_mm_h": frame.measured_rate_mm_h.map(number),
+        "unresolved_rate_mm_h": number(medium.unresolved_rate_mm_h()),
+        "unresolved_fraction": number(medium.unresolved_fraction()),
+        "resolved_to_m": number(drops.resolved.far),
+        "least_pixels": number(drops.resolved.least_pixels),
+        "time_s": number(frame.time_s),
+        "seed": rain.seed,
+        "triangles": frame.triangles,
+        "frame_ms": number(frame.frame_ms),
         "passes": Value::Object(passes),
     })
 }
@@ -120,7 +93,8 @@ fn mean<'a>(values: impl Iterator<Item = &'a Value>) -> Value {
 }
 
 /// The text of `--dump-drops`: each drop that was drawn, nearest first, in the world.
-pub(super) fn drops(drawn: &[u32], drops: &[FallingDrop]) -> String {
+pub(super) fn drops(frame: &Frame) -> String {
+    let (drawn, drops) = (&frame.picture.drawn, &frame.drops.drops);
     let mut text = String::from("id,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,diameter_mm,kind\n");
     for drop in drawn.iter().filter_map(|&index| drops.get(index as usize)) {
         let [x, y, z] = drop.position.to_array();

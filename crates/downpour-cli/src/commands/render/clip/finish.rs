@@ -44,7 +44,7 @@ impl Clip<'_> {
             place.publish(text.as_bytes(), self.interrupt)?;
         }
         let output = shown(&self.arguments.output);
-        let ([width, height], count) = (self.first.size, self.frames.count());
+        let ([width, height], count) = (self.weather.size, self.frames.count());
         if let Some(video) = &video
             && let Some(place) = self.places.film(journal.overwrites())?
         {
@@ -67,16 +67,19 @@ impl Clip<'_> {
         }
         let begin = Instant::now();
         let mut progress = Progress::new("encoding", self.frames.count(), self.arguments.quiet);
-        let bytes = super::super::video::encode(self.first.size, self.fps, self.frames.count(), |number| {
-            let path = self.places.pictures.path(self.frames.first + number);
-            let bytes = fs::read(&path).map_err(|error| Failure::file(&path, &error))?;
-            let picture = decode(&shown(&path), &bytes, &mut downpour::scene::Budget::default())?;
-            progress.step();
-            match picture.pixels {
-                Pixels::Rgba8(pixels) if [picture.width, picture.height] == self.first.size => Ok(pixels),
-                _ => Err(Failure::new(FILES, format!("{} is not the frame that was made", shown(&path)))),
-            }
-        })?;
+        let bytes =
+            super::super::video::encode(self.weather.size, self.fps, self.frames.count(), |number| {
+                let path = self.places.pictures.path(self.frames.first + number);
+                let bytes = fs::read(&path).map_err(|error| Failure::file(&path, &error))?;
+                let picture = decode(&shown(&path), &bytes, &mut downpour::scene::Budget::default())?;
+                progress.step();
+                match picture.pixels {
+                    Pixels::Rgba8(pixels) if [picture.width, picture.height] == self.weather.size => {
+                        Ok(pixels)
+                    }
+                    _ => Err(Failure::new(FILES, format!("{} is not the frame that was made", shown(&path)))),
+                }
+            })?;
         Ok((Some(bytes), Some(begin.elapsed().as_secs_f64() * 1.0e3)))
     }
 

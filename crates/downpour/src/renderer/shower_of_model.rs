@@ -4,9 +4,9 @@
 //! here: a heavy shower below dark clouds, with the sun under them behind what stands there, and a short exposure. The light
 //! that drops scatter forwards is then many times that of the clouds behind them.
 
-use downpour::math::ops::f64 as ops;
-use downpour::render::stage::{Stage, StageError};
-use downpour::scene::weather::{Loaded, SkySource, SunSource, Weather};
+use downpour_math::ops::f64 as ops;
+use downpour_render::stage::{Stage, StageError};
+use downpour_scene::weather::{Loaded, SkySource, SunSource, Weather};
 use glam::DVec3;
 
 /// A heavy shower, mm/h.

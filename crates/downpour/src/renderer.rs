@@ -1,0 +1,410 @@
+//! A weather file in, frames out: one pipeline for a picture, a clip, a window and a program of your own.
+
+mod computer;
+mod error;
+mod frame;
+mod shower_of_model;
+mod source;
+
+use std::borrow::Cow;
+use std::path::Path;
+use std::time::Instant;
+
+use downpour_mask::atlas::{StreakAtlas, StreakPick};
+use downpour_render::glass::WetPane;
+use downpour_render::picture::{Picture, PictureOptions, noise_seed};
+use downpour_render::puddle::WetGround;
+use downpour_render::rain::light::{DropLightForm, DropLightOptions};
+use downpour_render::rain::{CaptureFrame, DropMasks, Exposure, RainMedium, RainOptions, RefractionForm};
+use downpour_render::shower::{self, MovingScenery, Scenery, Shower, Still};
+use downpour_render::stage::{LATEST_S, Stage, check_size};
+use downpour_scene::Budget;
+use downpour_scene::scene::Scene;
+use downpour_scene::weather::{Loaded, StreakLook, Weather};
+use downpour_sim::field::VisibleDrops;
+
+pub use computer::{Backend, Computer, Device};
+use computer::{Drawer, Through};
+pub use error::RendererError;
+pub use frame::Frame;
+pub use source::Source;
+
+/// How frames are made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RendererOptions {
+    /// Samples along an edge of a pixel, 1 to 16.
+    pub samples: u32,
+    /// Rays to the sky per sample, 0 to 64; with 0 nothing hides the sky.
+    pub sky_rays: u32,
+    /// How a drop's pixel finds its color; `None` for what the weather says.
+    pub refraction: Option<RefractionForm>,
+    /// The streak atlas, for a weather that takes the light of lamps on streaks from one.
+    pub atlas: Option<StreakAtlas>,
+    /// Whether each frame has its measured rain rate. That takes time.
+    pub measure: bool,
+    /// Time of the first frame, s: puddles and panes have been rained on for a while by then.
+    pub first_s: f64,
+}
+
+impl Default for RendererOptions {
+    /// 2 x 2 samples with a ray to the sky each, from time 0 on.
+    fn default() -> Self {
+        Self { samples: 2, sky_rays: 1, refraction: None, atlas: None, measure: false, first_s: 0.0 }
+    }
+}
+
+/// How far a frame is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// What is being done.
+    pub what: &'static str,
+    /// Parts that are done, and how many there are; 0 where they are not counted.
+    pub parts: [u32; 2],
+}
+
+/// A weather whose frames are made one after the other.
+///
+/// The scene, the masks of the drops and the pipelines are made once. Frames of rising times share what holds water: the drops
+/// of rain that goes step by step, ripples, the pane. A frame of an earlier time begins these anew.
+#[derive(Debug)]
+pub struct Renderer {
+    weather: Weather,
+    loaded: Loaded,
+    options: RendererOptions,
+    /// The scene at the first time.
+    first: Stage,
+    masks: DropMasks,
+    drawer: Drawer,
+    shower: Shower,
+    water: Option<Water>,
+    exposure: Option<f32>,
+    /// Frames that were drawn.
+    drawn: u32,
+}
+
+/// What holds water, from frame to frame.
+#[derive(Debug)]
+struct Water {
+    pane: Option<WetPane>,
+    ground: Option<WetGround>,
+    time_s: f64,
+}
+
+impl Renderer {
+    /// Opens a weather file (.toml), or a bare model (.glb, .gltf) in a shower.
+    ///
+    /// # Errors
+    /// [`RendererError`]: what is wrong with the file or what it names, or with the GPU that was asked for.
+    pub fn open(path: impl AsRef<Path>, backend: Backend) -> Result<Self, RendererError> {
+        let source = Source::read(path.as_ref(), &[], &mut Budget::default())?;
+        Self::new(source.weather, source.loaded, RendererOptions::default(), backend.device()?)
+    }
+
+    /// A weather with its files.
+    ///
+    /// # Errors
+    /// [`RendererError`]: what is wrong with the weather, or what the GPU says.
+    pub fn new(
+        weather: Weather,
+        mut loaded: Loaded,
+        options: RendererOptions,
+        device: Device,
+    ) -> Result<Self, RendererError> {
+        check_size(weather.size)?;
+        let atlas = atlas_of(&weather, options.atlas.as_ref())?;
+        let first = Stage::new(&weather, &loaded, options.first_s)?;
+        let masks = shower::masks(&weather, &loaded)?;
+        let masks = if let Some(atlas) = &atlas { masks.with_atlas(atlas) } else { masks };
+        let shower = Shower::new(&weather)?;
+        if !moves(&loaded) {
+            // The files have become buffers.
+            loaded.scene = Scene::default();
+        }
+        let drawer = Drawer::new(device)?;
+        Ok(Self {
+            weather,
+            loaded,
+            options,
+            first,
+            masks,
+            drawer,
+            shower,
+            water: None,
+            exposure: None,
+            drawn: 0,
+        })
+    }
+
+    /// The weather.
+    #[must_use]
+    pub fn weather(&self) -> &Weather {
+        &self.weather
+    }
+
+    /// What of its files is still needed: of a scene that stands still no mesh.
+    #[must_use]
+    pub fn loaded(&self) -> &Loaded {
+        &self.loaded
+    }
+
+    /// The scene at the first time.
+    #[must_use]
+    pub fn first_stage(&self) -> &Stage {
+        &self.first
+    }
+
+    /// What draws.
+    #[must_use]
+    pub fn computer(&self) -> &Computer {
+        self.drawer.computer()
+    }
+
+    /// Whether anything but the rain moves.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        moves(&self.loaded)
+    }
+
+    /// The factor from radiance to the pixels of a frame: that of the first frame, unless it was set.
+    #[must_use]
+    pub fn exposure(&self) -> Option<f32> {
+        self.exposure
+    }
+
+    /// Sets the factor from radiance to pixels; `None` takes it from the next frame.
+    pub fn set_exposure(&mut self, exposure: Option<f32>) {
+        self.exposure = exposure;
+    }
+
+    /// The frame of a time in seconds.
+    ///
+    /// # Errors
+    /// [`RendererError`]: a time beyond 1e6 s or none, or what the work or the GPU says. Nothing of the renderer is lost by it,
+    /// unless the device is.
+    pub fn frame(&mut self, time_s: f64) -> Result<Frame, RendererError> {
+        self.frame_with(time_s, &mut |_| {})
+    }
+
+    /// The same for who wants to know how far it is.
+    ///
+    /// # Errors
+    /// As [`Renderer::frame`].
+    pub fn frame_with(
+        &mut self,
+        time_s: f64,
+        told: &mut dyn FnMut(Progress),
+    ) -> Result<Frame, RendererError> {
+        let begin = Instant::now();
+        let stage = self.wet(time_s, told)?;
+        let (drops, measured_rate_mm_h) = self.rain(&stage, time_s, self.options.measure, told)?;
+        let medium = self.shower.medium(&stage, &drops, &self.masks, time_s)?;
+        told(Progress { what: "drawing", parts: [0; 2] });
+        let options = self.picture_options(&stage, time_s, medium);
+        let picture = match self.draw(&stage, &drops, &options) {
+            Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
+                self.draw(&stage, &drops, &options)?
+            }
+            drawn => drawn?,
+        };
+        self.drawn += 1;
+        let exposure = *self.exposure.get_or_insert_with(|| stage.exposure(&picture.clean));
+        Ok(Frame {
+            time_s,
+            triangles: stage.triangles,
+            picture,
+            drops,
+            medium,
+            measured_rate_mm_h,
+            exposure,
+            frame_ms: begin.elapsed().as_secs_f64() * 1.0e3,
+        })
+    }
+
+    /// Lets the rain go on past a time in seconds without a frame: what later frames depend on is as if there had been one.
+    ///
+    /// # Errors
+    /// As [`Renderer::frame`].
+    pub fn pass(&mut self, time_s: f64) -> Result<(), RendererError> {
+        check_time(time_s)?;
+        if !self.weather.puddles.is_empty() {
+            self.water_at(time_s)?;
+            if let Some(ground) = self.water.as_mut().and_then(|water| water.ground.as_mut()) {
+                ground.advance(time_s)?;
+            }
+        }
+        if !self.shower.can_seek() {
+            let stage = self.stage(time_s)?;
+            self.rain(&stage, time_s, false, &mut |_| {})?;
+        }
+        Ok(())
+    }
+
+    /// The scene at a time. A copy costs little: what does not change is shared.
+    fn stage(&self, time_s: f64) -> Result<Stage, RendererError> {
+        check_time(time_s)?;
+        if !self.moves() || time_s.to_bits() == self.options.first_s.to_bits() {
+            return Ok(self.first.clone());
+        }
+        Ok(Stage::new(&self.weather, &self.loaded, time_s)?)
+    }
+
+    /// What holds water, not later than a time.
+    fn water_at(&mut self, time_s: f64) -> Result<&mut Water, RendererError> {
+        let known = self.water.take().filter(|water| water.time_s <= time_s);
+        let water = match known {
+            Some(water) => water,
+            None => {
+                let first_s = self.options.first_s.min(time_s);
+                Water {
+                    pane: WetPane::new(&self.weather, &self.first, first_s)?,
+                    ground: WetGround::new(&self.weather, &self.loaded, &self.first, first_s)?,
+                    time_s,
+                }
+            }
+        };
+        let water = self.water.insert(water);
+        water.time_s = time_s;
+        Ok(water)
+    }
+
+    /// The scene at a time with the water on its ground, and with what a pane does to the light that falls through it.
+    fn wet(&mut self, time_s: f64, told: &mut dyn FnMut(Progress)) -> Result<Stage, RendererError> {
+        let mut stage = self.stage(time_s)?;
+        if self.weather.puddles.is_empty() && self.weather.glass.is_none() {
+            return Ok(stage);
+        }
+        told(Progress { what: "rain on puddles and glass", parts: [0; 2] });
+        let water = self.water_at(time_s)?;
+        if let Some(ground) = &mut water.ground {
+            ground.advance(time_s)?;
+            ground.lay(&mut stage);
+        }
+        if let Some(pane) = &mut water.pane {
+            rain_on(pane, time_s, told)?;
+            if pane.is_before_lamps(&stage) {
+                pane.hang(&mut stage)?;
+            }
+        }
+        Ok(stage)
+    }
+
+    /// The drops of a time, and the rate that they were measured to have.
+    fn rain(
+        &mut self,
+        stage: &Stage,
+        time_s: f64,
+        measure: bool,
+        told: &mut dyn FnMut(Progress),
+    ) -> Result<(VisibleDrops, Option<f64>), RendererError> {
+        let (still, moving);
+        let scenery: &dyn Scenery = if moves(&self.loaded) {
+            moving = MovingScenery { weather: &self.weather, loaded: &self.loaded };
+            &moving
+        } else {
+            still = Still(&self.first);
+            &still
+        };
+        let mut passed = |done, all| told(Progress { what: "rain: step", parts: [done, all] });
+        let drops = self.shower.at(scenery, stage, time_s, &mut passed)?;
+        let measured = || self.shower.measured_rate_mm_h(stage, time_s);
+        Ok((drops, measure.then(measured).transpose()?))
+    }
+
+    fn picture_options(&self, stage: &Stage, time_s: f64, medium: RainMedium) -> PictureOptions {
+        let form = self.refraction();
+        PictureOptions {
+            size: stage.size,
+            grid: self.options.samples,
+            sky_rays: self.options.sky_rays,
+            seed: noise_seed(self.weather.rain.seed, time_s),
+            rain: RainOptions {
+                form,
+                capture_size: form.capture_size(),
+                medium,
+                exposure: Exposure::of_weather(&self.weather, stage.motion, time_s),
+                light: DropLightOptions::of_weather(&self.weather),
+                ..RainOptions::default()
+            },
+        }
+    }
+
+    /// How a drop's pixel finds its color.
+    #[must_use]
+    pub fn refraction(&self) -> RefractionForm {
+        self.options.refraction.unwrap_or_else(|| self.weather.rain.refraction.into())
+    }
+
+    /// Draws a frame, and looks at it through the pane.
+    fn draw(
+        &self,
+        stage: &Stage,
+        drops: &VisibleDrops,
+        options: &PictureOptions,
+    ) -> Result<Picture, RendererError> {
+        let mut picture = self.drawer.paint(stage, &drops.drops, &self.masks, options)?;
+        if let Some(pane) = self.water.as_ref().and_then(|water| water.pane.as_ref()) {
+            let through = through(pane, stage, &picture, options)?;
+            self.drawer.look(&mut picture, &through)?;
+        }
+        Ok(picture)
+    }
+}
+
+/// Whether anything but the rain moves.
+fn moves(loaded: &Loaded) -> bool {
+    loaded.animations.iter().any(Option::is_some)
+}
+
+/// # Errors
+/// [`RendererError::Time`] for a time beyond [`LATEST_S`], or none.
+fn check_time(time_s: f64) -> Result<(), RendererError> {
+    if (-LATEST_S..=LATEST_S).contains(&time_s) { Ok(()) } else { Err(RendererError::Time { found: time_s }) }
+}
+
+/// The atlas as a weather takes streaks from it, if it does.
+fn atlas_of<'a>(
+    weather: &Weather,
+    atlas: Option<&'a StreakAtlas>,
+) -> Result<Option<Cow<'a, StreakAtlas>>, RendererError> {
+    if DropLightOptions::of_weather(weather).form != DropLightForm::Atlas {
+        return Ok(None);
+    }
+    let pick = match weather.streaks.look {
+        StreakLook::AtlasRandom => StreakPick::Random,
+        _ => StreakPick::ByAngle,
+    };
+    let atlas = atlas.ok_or(RendererError::NoAtlas)?.clone();
+    Ok(Some(Cow::Owned(atlas.with_pick(pick).with_seed(weather.rain.seed))))
+}
+
+/// Lets rain fall on a pane until a time in seconds.
+fn rain_on(pane: &mut WetPane, time_s: f64, told: &mut dyn FnMut(Progress)) -> Result<(), RendererError> {
+    let begin_s = pane.time_s();
+    let seconds = (time_s - begin_s).floor().max(0.0) as u32;
+    if seconds > 1 {
+        for second in 1..=seconds {
+            pane.advance(begin_s + f64::from(second))?;
+            told(Progress { what: "second of rain on the glass", parts: [second, seconds] });
+        }
+    }
+    Ok(pane.advance(time_s)?)
+}
+
+/// What a picture needs to be seen through a pane.
+fn through(
+    pane: &WetPane,
+    stage: &Stage,
+    picture: &Picture,
+    options: &PictureOptions,
+) -> Result<Through, RendererError> {
+    let frame =
+        stage.viewpoint.frame(&stage.data, options.size, options.grid, options.sky_rays, options.seed)?;
+    let capture = if options.rain.form == RefractionForm::Direction {
+        picture.surroundings.clone()
+    } else {
+        // The papers' capture does not show all that is round the eye.
+        CaptureFrame::new(&frame, &RainOptions::default()).trace(&stage.data).texels
+    };
+    let glass = pane.picture(stage, &frame, capture.len())?;
+    Ok(Through { glass, behind: picture.behind_glass(), capture })
+}

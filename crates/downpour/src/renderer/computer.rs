@@ -1,0 +1,222 @@
+//! What draws frames: a GPU with its pipelines, or the CPU.
+
+use downpour_render::glass::GlassPicture;
+use downpour_render::picture::{Picture, PictureOptions, render_picture};
+use downpour_render::rain::DropMasks;
+use downpour_render::stage::Stage;
+use downpour_sim::field::FallingDrop;
+
+use super::RendererError;
+
+/// What may draw.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backend {
+    /// A GPU, else a software driver of one, else the CPU; the CPU too for what is too much for the GPU.
+    #[default]
+    Auto,
+    /// A GPU or its software driver.
+    Gpu,
+    /// The CPU.
+    Cpu,
+}
+
+impl Backend {
+    /// Opens it.
+    ///
+    /// # Errors
+    /// [`RendererError::Gpu`] if there is no GPU and nothing else may draw; [`RendererError::NoGpuSupport`] without the feature
+    /// `wgpu`.
+    pub fn device(self) -> Result<Device, RendererError> {
+        match self {
+            Self::Cpu => Ok(Device::cpu()),
+            #[cfg(not(feature = "wgpu"))]
+            Self::Auto => Ok(Device::cpu()),
+            #[cfg(not(feature = "wgpu"))]
+            Self::Gpu => Err(RendererError::NoGpuSupport),
+            #[cfg(feature = "wgpu")]
+            Self::Auto | Self::Gpu => {
+                use downpour_gpu::{AdapterChoice, Gpu, GpuError};
+                match Gpu::open(&AdapterChoice::Auto) {
+                    Ok(gpu) => Ok(Device::gpu(gpu, self == Self::Auto)),
+                    Err(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) if self == Self::Auto => {
+                        Ok(Device::cpu())
+                    }
+                    Err(error) => Err(error.into()),
+                }
+            }
+        }
+    }
+}
+
+/// A device that draws.
+#[derive(Clone, Debug)]
+pub struct Device {
+    #[cfg(feature = "wgpu")]
+    gpu: Option<downpour_gpu::Gpu>,
+    /// Whether the CPU draws what is too much for the GPU.
+    falls_back: bool,
+}
+
+impl Device {
+    /// The CPU.
+    #[must_use]
+    pub fn cpu() -> Self {
+        Self {
+            #[cfg(feature = "wgpu")]
+            gpu: None,
+            falls_back: false,
+        }
+    }
+
+    /// A GPU. `falls_back`: the CPU draws all frames if the first is too much for it.
+    #[cfg(feature = "wgpu")]
+    #[must_use]
+    pub fn gpu(gpu: downpour_gpu::Gpu, falls_back: bool) -> Self {
+        Self { gpu: Some(gpu), falls_back }
+    }
+}
+
+/// What frames are drawn by, for who wants to know on what their bits depend.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Computer {
+    /// The adapter as its driver names it, or the CPU.
+    pub adapter: String,
+    /// `gpu` or `cpu`.
+    pub backend: &'static str,
+    /// The driver with its version, or the processor's architecture.
+    pub driver: String,
+    /// Why the CPU draws in place of a GPU.
+    pub reason: Option<String>,
+}
+
+/// A device with its pipelines.
+pub(super) struct Drawer {
+    computer: Computer,
+    falls_back: bool,
+    #[cfg(feature = "wgpu")]
+    on_gpu: Option<OnGpu>,
+}
+
+#[cfg(feature = "wgpu")]
+struct OnGpu {
+    gpu: downpour_gpu::Gpu,
+    renderer: downpour_render::gpu::PictureRenderer,
+    /// Made for the first frame that is seen through a pane.
+    glass: std::cell::OnceCell<downpour_render::gpu::GlassRenderer>,
+}
+
+/// What a frame through a pane is made of.
+pub(super) struct Through {
+    pub(super) glass: GlassPicture,
+    pub(super) behind: Vec<[f32; 4]>,
+    pub(super) capture: Vec<[f32; 4]>,
+}
+
+impl std::fmt::Debug for Drawer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Drawer").field("computer", &self.computer).finish_non_exhaustive()
+    }
+}
+
+impl Drawer {
+    pub(super) fn new(device: Device) -> Result<Self, RendererError> {
+        #[cfg(feature = "wgpu")]
+        if let Some(gpu) = device.gpu {
+            let adapter = gpu.adapter();
+            let computer = Computer {
+                adapter: adapter.name.clone(),
+                backend: "gpu",
+                driver: format!("{} {} {}", adapter.backend, adapter.driver, adapter.driver_info),
+                reason: None,
+            };
+            let renderer = downpour_render::gpu::PictureRenderer::new(&gpu);
+            let mut drawer = Self { computer, falls_back: device.falls_back, on_gpu: None };
+            match renderer {
+                Ok(renderer) => {
+                    drawer.on_gpu = Some(OnGpu { gpu, renderer, glass: std::cell::OnceCell::new() });
+                }
+                Err(error) => {
+                    let error = error.into();
+                    if !drawer.falls_back(&error) {
+                        return Err(error);
+                    }
+                }
+            }
+            return Ok(drawer);
+        }
+        Ok(Self {
+            computer: cpu(None),
+            falls_back: device.falls_back,
+            #[cfg(feature = "wgpu")]
+            on_gpu: None,
+        })
+    }
+
+    pub(super) fn computer(&self) -> &Computer {
+        &self.computer
+    }
+
+    /// Goes on with the CPU if that may be, and if an error says that something was too much for the GPU.
+    pub(super) fn falls_back(&mut self, error: &RendererError) -> bool {
+        let may = self.falls_back && error.is_too_much_for_gpu();
+        if may {
+            self.computer = cpu(Some(error.to_string()));
+            self.falls_back = false;
+            #[cfg(feature = "wgpu")]
+            {
+                self.on_gpu = None;
+            }
+        }
+        may
+    }
+
+    /// Draws a frame.
+    pub(super) fn paint(
+        &self,
+        stage: &Stage,
+        drops: &[FallingDrop],
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<Picture, RendererError> {
+        let drops = stage.place(drops);
+        #[cfg(feature = "wgpu")]
+        if let Some(on_gpu) = &self.on_gpu {
+            return Ok(on_gpu.renderer.render(&stage.data, &stage.viewpoint, &drops, masks, options)?);
+        }
+        Ok(render_picture(&stage.data, &stage.viewpoint, &drops, masks, options)?)
+    }
+
+    /// Looks at a frame through a pane.
+    pub(super) fn look(&self, picture: &mut Picture, through: &Through) -> Result<(), RendererError> {
+        let Through { glass, behind, capture } = through;
+        let begin = std::time::Instant::now();
+        picture.through_glass = Some(self.seen(glass, behind, capture)?);
+        picture.passes.push(("glass", begin.elapsed().as_secs_f64() * 1.0e3));
+        Ok(())
+    }
+
+    fn seen(
+        &self,
+        glass: &GlassPicture,
+        behind: &[[f32; 4]],
+        capture: &[[f32; 4]],
+    ) -> Result<Vec<[f32; 3]>, RendererError> {
+        #[cfg(feature = "wgpu")]
+        if let Some(on_gpu) = &self.on_gpu {
+            let renderer = match on_gpu.glass.get() {
+                Some(renderer) => renderer,
+                None => {
+                    let made = downpour_render::gpu::GlassRenderer::new(&on_gpu.gpu)?;
+                    on_gpu.glass.get_or_init(|| made)
+                }
+            };
+            return Ok(renderer.through(glass, behind, capture)?);
+        }
+        Ok(glass.through(behind, capture))
+    }
+}
+
+/// The CPU, and why it draws in place of a GPU.
+fn cpu(reason: Option<String>) -> Computer {
+    Computer { adapter: "CPU".to_owned(), backend: "cpu", driver: std::env::consts::ARCH.to_owned(), reason }
+}

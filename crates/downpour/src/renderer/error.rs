@@ -1,0 +1,123 @@
+//! Why there is no frame.
+
+use downpour_drop::DropError;
+use downpour_lattice::glass::GlassError;
+use downpour_mask::MaskError;
+use downpour_render::RenderError;
+use downpour_render::glass::PaneError;
+use downpour_render::puddle::PuddleError;
+use downpour_render::shower::ShowerError;
+use downpour_render::stage::StageError;
+use downpour_scene::SceneError;
+
+/// Why there is no frame. Messages are one line: the file or the quantity, what was found, what is allowed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RendererError {
+    /// A file cannot be read, or what is in it cannot be.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The scene cannot be set.
+    #[error(transparent)]
+    Stage(#[from] StageError),
+    /// The rain cannot be.
+    #[error(transparent)]
+    Shower(#[from] ShowerError),
+    /// The pane cannot be.
+    #[error(transparent)]
+    Pane(#[from] PaneError),
+    /// The water on the pane cannot be.
+    #[error(transparent)]
+    Glass(#[from] GlassError),
+    /// The puddles cannot be.
+    #[error(transparent)]
+    Puddle(#[from] PuddleError),
+    /// The masks of the drops cannot be.
+    #[error(transparent)]
+    Mask(#[from] MaskError),
+    /// The picture cannot be.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The drops cannot be.
+    #[error(transparent)]
+    Drop(#[from] DropError),
+    /// A file whose name does not say what is in it.
+    #[error("{path}; allowed: {allowed}")]
+    Name {
+        /// The file, with what it is for.
+        path: String,
+        /// What names there are.
+        allowed: &'static str,
+    },
+    /// A time that frames do not have.
+    #[error("time is {found} s; allowed: -1e6 to 1e6 s")]
+    Time {
+        /// The time, s.
+        found: f64,
+    },
+    /// The weather takes streaks from an atlas, and none was given.
+    #[error(
+        "streaks.colour is \"atlas\" or \"atlas-random\", and there is no streak atlas; allowed: with a streak atlas in the options"
+    )]
+    NoAtlas,
+    /// A GPU was asked for, of a library without the feature `wgpu`.
+    #[error("no GPU support; allowed: the feature `wgpu`, or the CPU")]
+    NoGpuSupport,
+    /// A frame cannot be written.
+    #[error("{path}: {reason}")]
+    Write {
+        /// The file.
+        path: String,
+        /// What the system says.
+        reason: String,
+    },
+    /// The GPU did not do it.
+    #[cfg(feature = "wgpu")]
+    #[error(transparent)]
+    Gpu(#[from] downpour_gpu::GpuError),
+}
+
+#[cfg(feature = "wgpu")]
+impl From<downpour_render::gpu::GpuPictureError> for RendererError {
+    fn from(error: downpour_render::gpu::GpuPictureError) -> Self {
+        use downpour_render::gpu::GpuPictureError;
+        match error {
+            GpuPictureError::Render(error) => error.into(),
+            GpuPictureError::Gpu(error) => error.into(),
+            error => Self::Write { path: "GPU".to_owned(), reason: error.to_string() },
+        }
+    }
+}
+
+impl RendererError {
+    /// The exit code of the command for this error.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Scene(error) => error.exit_code(),
+            Self::Stage(error) => error.exit_code(),
+            Self::Shower(error) => error.exit_code(),
+            Self::Pane(error) => error.exit_code(),
+            Self::Glass(error) => error.exit_code(),
+            Self::Puddle(PuddleError::Lattice(error)) => error.exit_code(),
+            Self::Mask(error) => error.exit_code(),
+            Self::Render(error) => error.exit_code(),
+            Self::Puddle(_) | Self::Drop(_) | Self::Name { .. } | Self::Time { .. } | Self::NoAtlas => 2,
+            Self::NoGpuSupport => 4,
+            Self::Write { .. } => 5,
+            #[cfg(feature = "wgpu")]
+            Self::Gpu(error) => error.exit_code(),
+        }
+    }
+
+    /// Whether a GPU said that something was too large for it.
+    #[must_use]
+    pub fn is_too_much_for_gpu(&self) -> bool {
+        #[cfg(feature = "wgpu")]
+        if let Self::Gpu(error) = self {
+            use downpour_gpu::GpuError;
+            return matches!(error, GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. });
+        }
+        false
+    }
+}

@@ -1,0 +1,104 @@
+//! A frame that was made.
+
+use std::path::Path;
+
+use downpour_render::file::{write_exr, write_exr_layers, write_png};
+use downpour_render::picture::Picture;
+use downpour_render::rain::RainMedium;
+use downpour_render::tone::tone_picture;
+use downpour_sim::field::VisibleDrops;
+
+use super::RendererError;
+
+/// A frame, in layers, with the drops in it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Frame {
+    /// Its time, s.
+    pub time_s: f64,
+    /// Its layers: the scene without rain, the rain, their distances.
+    pub picture: Picture,
+    /// The drops that it could show, in the world.
+    pub drops: VisibleDrops,
+    /// The rain that is not drawn drop by drop.
+    pub medium: RainMedium,
+    /// Rain rate of the drops, mm/h, where it was asked for.
+    pub measured_rate_mm_h: Option<f64>,
+    /// The factor from radiance to [`Frame::pixels`].
+    pub exposure: f32,
+    /// Triangles of the scene, all copies counted.
+    pub triangles: usize,
+    /// How long it took, from the rain to the last pass, ms.
+    pub frame_ms: f64,
+}
+
+impl Frame {
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.picture.size
+    }
+
+    /// Linear radiance in the unit of the sky, rows from the top.
+    #[must_use]
+    pub fn radiance(&self) -> Vec<[f32; 3]> {
+        self.picture.radiance()
+    }
+
+    /// The picture to look at, sRGB, rows from the top.
+    #[must_use]
+    pub fn pixels(&self) -> Vec<[u8; 3]> {
+        let pixels: Vec<[f32; 4]> = self.radiance().iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
+        tone_picture(&pixels, self.exposure)
+    }
+
+    /// The bytes of a PNG of [`Frame::pixels`].
+    ///
+    /// # Errors
+    /// [`RendererError::Render`] if it cannot be packed.
+    pub fn png(&self) -> Result<Vec<u8>, RendererError> {
+        let [width, height] = self.size();
+        Ok(write_png(width, height, &self.pixels())?)
+    }
+
+    /// The bytes of an OpenEXR of [`Frame::radiance`].
+    ///
+    /// # Errors
+    /// As [`Frame::png`].
+    pub fn exr(&self) -> Result<Vec<u8>, RendererError> {
+        let [width, height] = self.size();
+        Ok(write_exr(width, height, &self.radiance())?)
+    }
+
+    /// The bytes of an OpenEXR of all layers: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (metres along
+    /// the ray, 1e30 for the sky).
+    ///
+    /// # Errors
+    /// As [`Frame::png`].
+    pub fn exr_layers(&self) -> Result<Vec<u8>, RendererError> {
+        let ([width, height], picture) = (self.size(), &self.picture);
+        let glass = picture.through_glass.as_deref();
+        Ok(write_exr_layers(width, height, &picture.clean, &picture.rain, glass)?)
+    }
+
+    /// Writes a .png ([`Frame::png`]) or an .exr ([`Frame::exr`]); a file that is there is replaced.
+    ///
+    /// # Errors
+    /// [`RendererError::Name`] for another ending, [`RendererError::Write`] for what the system does not let us write.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), RendererError> {
+        let path = path.as_ref();
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        let bytes = match extension.as_deref() {
+            Some("png") => self.png()?,
+            Some("exr") => self.exr()?,
+            _ => {
+                let path = format!("frame {}", path.display());
+                return Err(RendererError::Name { path, allowed: ".png or .exr" });
+            }
+        };
+        std::fs::write(path, bytes).map_err(|error| RendererError::Write {
+            path: path.display().to_string(),
+            reason: error.to_string(),
+        })
+    }
+}
