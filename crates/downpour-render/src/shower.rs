@@ -21,7 +21,7 @@ use crate::glass::pane_plane;
 use crate::rain::{DropMasks, MediumOptions, RainMedium};
 use crate::stage::Stage;
 pub use error::ShowerError;
-pub use scenery::{MovingScenery, Scenery, Still};
+pub use scenery::{MovingEye, MovingScenery, Scenery, Still};
 use stepped::Stepped;
 
 /// The line of sodium, in metres: the wavelength at which water's index is taken.

@@ -98,7 +98,7 @@ impl Stage {
         }
         let pose = posed(loaded, time_s);
         check_cost(loaded, &pose)?;
-        let seen = Seen::of(weather, loaded, &pose);
+        let seen = Seen::of(weather, loaded, &pose, time_s);
         let anchor = seen.as_ref().map_or_else(|| middle(loaded, &pose), |seen| seen.eye);
         let origin = origin_near(anchor);
         let mut builder = SceneBuilder::new();
@@ -142,6 +142,23 @@ impl Stage {
         })
     }
 
+    /// The same scene, which stands still, seen by the weather's eye of another time in seconds: its buffers are shared.
+    ///
+    /// # Errors
+    /// [`StageError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
+    pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
+        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s), time_s) else {
+            return Ok(self.clone());
+        };
+        let distance_m = (seen.eye - self.origin).abs().max_element();
+        if distance_m > NEAR_ORIGIN_M {
+            return Err(StageError::TooFar { distance_m });
+        }
+        let viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), self.origin);
+        viewpoint.axes()?;
+        Ok(Self { viewpoint, motion: motion(weather, loaded, time_s), ..self.clone() })
+    }
+
     /// The part of space that the picture shows, in the world, for [`RainField`](downpour_sim::field::RainField).
     ///
     /// # Errors
@@ -156,7 +173,7 @@ impl Stage {
     /// # Errors
     /// As [`Stage::new`].
     pub fn view_at(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, StageError> {
-        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s)) else {
+        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s), time_s) else {
             return Ok(Self::new(weather, loaded, time_s)?.view()?);
         };
         let origin = origin_near(seen.eye);
@@ -258,12 +275,18 @@ fn view_of(
 
 /// How the eye moves at a time: from where it is when the shutter opens and closes.
 fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
-    let moves = weather.camera.pose.is_none() && loaded.animations.iter().any(Option::is_some);
+    let moves = match &weather.camera.path {
+        Some(path) => !path.is_still(),
+        None => loaded.animations.iter().any(Option::is_some),
+    };
     if !moves {
         return EyeMotion::default();
     }
     let apart_s = weather.camera.shutter.max(LEAST_APART_S);
-    let at = |half: f64| Seen::of(weather, loaded, &posed(loaded, time_s + half * apart_s));
+    let at = |half: f64| {
+        let time_s = time_s + half * apart_s;
+        Seen::of(weather, loaded, &posed(loaded, time_s), time_s)
+    };
     match (at(-0.5), at(0.5)) {
         (Some(before), Some(after)) => Seen::motion(&before, &after, apart_s),
         _ => EyeMotion::default(),

@@ -31,7 +31,7 @@ use downpour_wind::Wind;
 use std::path::Path;
 
 pub use crate::uri::RelativePath;
-pub use camera::{Camera, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S};
+pub use camera::{Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S};
 pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
 pub use lamps::Lamp;
 pub use load::{Loaded, Roots, load};

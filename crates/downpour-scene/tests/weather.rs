@@ -132,7 +132,7 @@ fn every_key_arrives_in_si() {
     assert_eq!((illuminance_lux, color), (5e4, [1.0, 0.5, 0.0]));
     assert_eq!(angular_radius, 0.5f64.to_radians());
     let camera = weather.camera;
-    let CameraPose { position, forward } = camera.pose.unwrap();
+    let CameraPose { position, forward } = camera.path.clone().unwrap().at(0.0);
     assert_eq!(position, DVec3::new(1e7, 1.7, -5.0));
     assert!(forward.distance(DVec3::new(-(0.75f64.sqrt()), 0.5, 0.0)) < 1e-15, "{forward}");
     assert_eq!((camera.fov, camera.near, camera.far), (Some(60f64.to_radians()), Some(0.1), Some(500.0)));
@@ -348,9 +348,9 @@ fn t7_cameras_that_see_nothing() {
         "camera.yaw_deg: beside look_at_m",
     );
     let far = parse(&camera("position_m = [1e7, 0, 0]\nlook_at_m = [1e7, 0, 1]")).unwrap();
-    assert_eq!(far.camera.pose.unwrap().forward, DVec3::Z);
+    assert_eq!(far.camera.path.clone().unwrap().at(0.0).forward, DVec3::Z);
     let ahead = parse(&camera("position_m = [0, 0, 0]")).unwrap();
-    assert_eq!(ahead.camera.pose.unwrap().forward, DVec3::NEG_Z);
+    assert_eq!(ahead.camera.path.clone().unwrap().at(0.0).forward, DVec3::NEG_Z);
 }
 
 #[test]

@@ -1,4 +1,22 @@
-//! Rain that can be measured: one name for the crates of Downpour.
+//! Rain that can be measured, in front of scenes: a weather file in, frames out.
+//!
+//! ```no_run
+//! use downpour::{Backend, Renderer};
+//!
+//! let mut renderer = Renderer::open("street.toml", Backend::Auto)?;
+//! let frame = renderer.frame(2.5)?; // seconds
+//! frame.save("rain.png")?;
+//! println!("{} drops drawn on {}", frame.picture.drawn.len(), renderer.computer().adapter);
+//! # Ok::<(), downpour::RendererError>(())
+//! ```
+//!
+//! - [`Renderer`] makes the frames of a weather, one after the other: a picture, a clip, with a camera of the file or one that is
+//!   set from code ([`Renderer::set_camera`]). The command `downpour render` is built on it.
+//! - [`Frame`] has the layers of a frame, the drops in it, and its files.
+//! - [`Source`] reads weather files; its [`Weather`](scene::weather::Weather) may be changed, or built from nothing.
+//! - [`Backend`] and [`Device`] say what draws: a GPU, your GPU, or the CPU, with the same drops.
+//!
+//! The examples `render_weather` and `clip` are whole programs. Below the front door are the parts:
 //!
 //! | module | crate | what is in it |
 //! |---|---|---|

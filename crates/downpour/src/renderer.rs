@@ -16,11 +16,11 @@ use downpour_render::picture::{Picture, PictureOptions, noise_seed};
 use downpour_render::puddle::WetGround;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::{CaptureFrame, DropMasks, Exposure, RainMedium, RainOptions, RefractionForm};
-use downpour_render::shower::{self, MovingScenery, Scenery, Shower, Still};
+use downpour_render::shower::{self, MovingEye, MovingScenery, Scenery, Shower, Still};
 use downpour_render::stage::{LATEST_S, Stage, check_size};
 use downpour_scene::Budget;
 use downpour_scene::scene::Scene;
-use downpour_scene::weather::{Loaded, StreakLook, Weather};
+use downpour_scene::weather::{CameraPath, Loaded, StreakLook, Weather};
 use downpour_sim::field::VisibleDrops;
 
 pub use computer::{Backend, Computer, Device};
@@ -159,10 +159,23 @@ impl Renderer {
         self.drawer.computer()
     }
 
-    /// Whether anything but the rain moves.
-    #[must_use]
-    pub fn moves(&self) -> bool {
-        moves(&self.loaded)
+    /// Sets where the eye is and looks, from the next frame on: over the time of all frames, so that streaks and rain that goes
+    /// step by step know how it moves. Rain that goes step by step, and what holds water, begin anew.
+    ///
+    /// # Errors
+    /// [`RendererError::Stage`] for an eye over 1 km from where the first one was.
+    pub fn set_camera(&mut self, path: impl Into<CameraPath>) -> Result<(), RendererError> {
+        let before = self.weather.camera.path.replace(path.into());
+        match self.first.seen_at(&self.weather, &self.loaded, self.options.first_s) {
+            Ok(first) => self.first = first,
+            Err(error) => {
+                self.weather.camera.path = before;
+                return Err(error.into());
+            }
+        }
+        self.shower = Shower::new(&self.weather)?;
+        self.water = None;
+        Ok(())
     }
 
     /// The factor from radiance to the pixels of a frame: that of the first frame, unless it was set.
@@ -242,10 +255,17 @@ impl Renderer {
     /// The scene at a time. A copy costs little: what does not change is shared.
     fn stage(&self, time_s: f64) -> Result<Stage, RendererError> {
         check_time(time_s)?;
-        if !self.moves() || time_s.to_bits() == self.options.first_s.to_bits() {
+        if time_s.to_bits() == self.options.first_s.to_bits() {
             return Ok(self.first.clone());
         }
-        Ok(Stage::new(&self.weather, &self.loaded, time_s)?)
+        match (moves(&self.loaded), eye_moves(&self.weather)) {
+            (false, false) => Ok(self.first.clone()),
+            (false, true) => {
+                let eye = MovingEye { stage: &self.first, weather: &self.weather, loaded: &self.loaded };
+                Ok(eye.stage(time_s)?.into_owned())
+            }
+            (true, _) => Ok(Stage::new(&self.weather, &self.loaded, time_s)?),
+        }
     }
 
     /// What holds water, not later than a time.
@@ -296,13 +316,14 @@ impl Renderer {
         measure: bool,
         told: &mut dyn FnMut(Progress),
     ) -> Result<(VisibleDrops, Option<f64>), RendererError> {
-        let (still, moving);
-        let scenery: &dyn Scenery = if moves(&self.loaded) {
-            moving = MovingScenery { weather: &self.weather, loaded: &self.loaded };
-            &moving
-        } else {
-            still = Still(&self.first);
-            &still
+        let (weather, loaded) = (&self.weather, &self.loaded);
+        let still = Still(&self.first);
+        let eye = MovingEye { stage: &self.first, weather, loaded };
+        let all = MovingScenery { weather, loaded };
+        let scenery: &dyn Scenery = match (moves(loaded), eye_moves(weather)) {
+            (false, false) => &still,
+            (false, true) => &eye,
+            (true, _) => &all,
         };
         let mut passed = |done, all| told(Progress { what: "rain: step", parts: [done, all] });
         let drops = self.shower.at(scenery, stage, time_s, &mut passed)?;
@@ -350,7 +371,12 @@ impl Renderer {
     }
 }
 
-/// Whether anything but the rain moves.
+/// Whether the weather's eye moves.
+fn eye_moves(weather: &Weather) -> bool {
+    weather.camera.path.as_ref().is_some_and(|path| !path.is_still())
+}
+
+/// Whether anything but the rain and the eye moves.
 fn moves(loaded: &Loaded) -> bool {
     loaded.animations.iter().any(Option::is_some)
 }

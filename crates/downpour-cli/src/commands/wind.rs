@@ -114,7 +114,7 @@ impl WindArguments {
                 format!("{}: still air; allowed: {allowed}", shown(&self.input)),
             ));
         }
-        let eye = weather.camera.pose.map_or(DVec3::ZERO, |pose| pose.position);
+        let eye = weather.camera.path.as_ref().map_or(DVec3::ZERO, |path| path.at(self.time).position);
         let grid = weather.wind_box.grid(eye)?;
         let (low, high) = match self.region {
             Some([a, b, c, d, e, f]) => (Vec3::new(a, b, c), Vec3::new(d, e, f)),

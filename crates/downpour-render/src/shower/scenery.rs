@@ -65,3 +65,28 @@ impl Scenery for MovingScenery<'_> {
         Ok(Cow::Owned(Stage::new(self.weather, self.loaded, time_s)?))
     }
 }
+
+/// A scene that stands still, before an eye that moves.
+#[derive(Clone, Copy, Debug)]
+pub struct MovingEye<'a> {
+    /// The scene, seen at any time.
+    pub stage: &'a Stage,
+    /// What it is in.
+    pub weather: &'a Weather,
+    /// Its files.
+    pub loaded: &'a Loaded,
+}
+
+impl Scenery for MovingEye<'_> {
+    fn is_still(&self) -> bool {
+        false
+    }
+
+    fn view(&self, time_s: f64) -> Result<View, StageError> {
+        Stage::view_at(self.weather, self.loaded, time_s)
+    }
+
+    fn stage(&self, time_s: f64) -> Result<Cow<'_, Stage>, StageError> {
+        Ok(Cow::Owned(self.stage.seen_at(self.weather, self.loaded, time_s)?))
+    }
+}

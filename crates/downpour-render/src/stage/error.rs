@@ -21,6 +21,14 @@ pub enum StageError {
         /// What the user may do about it.
         way_out: &'static str,
     },
+    /// A moving eye is too far from where it began: places there have too few digits.
+    #[error(
+        "camera: {distance_m} m from where the scene was set; allowed: a way within 1 km of its beginning"
+    )]
+    TooFar {
+        /// How far it is along an axis.
+        distance_m: f64,
+    },
     /// The machine has not the memory that the scene needs.
     #[error(
         "the scene: {mebibytes} MiB of memory are needed; allowed: what this machine has (fewer copies need less)"
@@ -37,6 +45,7 @@ impl StageError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Render(error) => error.exit_code(),
+            Self::TooFar { .. } => 2,
             _ => 3,
         }
     }

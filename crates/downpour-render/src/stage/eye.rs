@@ -37,8 +37,9 @@ pub(super) struct Seen {
 
 impl Seen {
     /// That of the weather, else the first one of the scene.
-    pub(super) fn of(weather: &Weather, loaded: &Loaded, pose: &Pose) -> Option<Self> {
-        if let Some(camera) = weather.camera.pose {
+    pub(super) fn of(weather: &Weather, loaded: &Loaded, pose: &Pose, time_s: f64) -> Option<Self> {
+        if let Some(path) = &weather.camera.path {
+            let camera = path.at(time_s);
             return Some(Self {
                 choice: CameraChoice::Weather,
                 eye: camera.position,

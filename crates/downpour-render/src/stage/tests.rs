@@ -72,7 +72,7 @@ fn the_weather_comes_before_the_scene_and_the_scene_before_a_frame() {
     let view = found.view().expect("a view");
     assert!((view.near - 0.2).abs() < 1.0e-6 && (view.far - 30.0).abs() < 1.0e-6, "{view:?}");
     let mut own = weather.clone();
-    own.camera.pose = Some(CameraPose { position: DVec3::new(1.0, 2.0, 3.0), forward: DVec3::X });
+    own.camera.path = Some(CameraPose { position: DVec3::new(1.0, 2.0, 3.0), forward: DVec3::X }.into());
     own.camera.fov = Some(1.0);
     let found = stage(&own, &all);
     assert_eq!((found.camera.clone(), found.viewpoint.fov_y), (CameraChoice::Weather, 1.0));
@@ -96,7 +96,7 @@ fn far_away_small_steps_are_kept() {
     all.roots = vec![0];
     let mut weather = Weather::default();
     let position = DVec3::new(far, 0.0, 5.0);
-    weather.camera.pose = Some(CameraPose { position, forward: DVec3::NEG_Z });
+    weather.camera.path = Some(CameraPose { position, forward: DVec3::NEG_Z }.into());
     let found = stage(&weather, &loaded(all));
     assert_eq!(found.origin, position);
     assert_eq!(found.viewpoint.eye, Vec3::ZERO);

@@ -2,10 +2,12 @@
 
 use super::fault::Places;
 use super::quantity::{
-    ApertureMm, DepthM, Exactly, FocusM, FovDeg, In, PersistenceS, PitchDeg, PlaceM, ShutterS, Stops, TurnDeg,
+    ApertureMm, DepthM, FocusM, FovDeg, In, PersistenceS, PitchDeg, PlaceM, ShutterS, Stops, TurnDeg,
 };
+use super::wind::keys::VectorKeys;
 use crate::error::SceneError;
 use downpour_math::ops::f64 as ops;
+use downpour_wind::Keyed;
 use glam::DVec3;
 use serde::Deserialize;
 
@@ -34,10 +36,10 @@ pub enum Observer {
 }
 
 /// The camera, or the eye in its place.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it is; `None` takes the model's own camera.
-    pub pose: Option<CameraPose>,
+    /// Where it is and looks over time; `None` takes the model's own camera.
+    pub path: Option<CameraPath>,
     /// Vertical field of view in radians; `None` takes the model's, else [`FOV_RAD`].
     pub fov: Option<f64>,
     /// The nearest depth that is drawn, in metres; `None` takes the model's, else [`NEAR_M`].
@@ -66,11 +68,83 @@ pub struct CameraPose {
     pub forward: DVec3,
 }
 
+/// Where the eye is and looks over time. It stands before its first key and after its last.
+///
+/// ```
+/// use downpour_scene::weather::CameraPath;
+/// use downpour_wind::Keyed;
+/// use glam::DVec3;
+/// let way = Keyed::new(vec![(0.0, DVec3::new(0.0, 1.6, 8.0)), (4.0, DVec3::new(0.0, 1.6, 2.0))])?;
+/// let path = CameraPath::looking_at(way, DVec3::new(0.0, 1.0, -20.0));
+/// assert_eq!(path.at(2.0).position.z, 5.0);
+/// # Ok::<(), downpour_wind::WindError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraPath {
+    position: Keyed<DVec3>,
+    aim: Aim,
+}
+
+/// What an eye looks at.
+#[derive(Clone, Debug, PartialEq)]
+enum Aim {
+    /// A unit direction, always the same.
+    Along(DVec3),
+    /// A place.
+    At(Keyed<DVec3>),
+}
+
+impl CameraPath {
+    /// An eye that looks at a place, m, wherever it is. Where that is straight above or below it, it looks a little aside.
+    #[must_use]
+    pub fn looking_at(position: impl Into<Keyed<DVec3>>, target: impl Into<Keyed<DVec3>>) -> Self {
+        Self { position: position.into(), aim: Aim::At(target.into()) }
+    }
+
+    /// The eye at a time in seconds.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> CameraPose {
+        let position = self.position.at(time_s);
+        let forward = match &self.aim {
+            Aim::Along(forward) => *forward,
+            Aim::At(target) => forward_to(position, target.at(time_s)),
+        };
+        CameraPose { position, forward }
+    }
+
+    /// Whether it is the same at all times.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        let aims = if let Aim::At(target) = &self.aim { target.keys().len() } else { 1 };
+        self.position.keys().len() == 1 && aims == 1
+    }
+}
+
+impl From<CameraPose> for CameraPath {
+    /// An eye that stands still.
+    fn from(pose: CameraPose) -> Self {
+        Self { position: pose.position.into(), aim: Aim::Along(pose.forward) }
+    }
+}
+
+/// Whether a way is so near to the vertical that left and right are noise.
+fn is_vertical(way: DVec3) -> bool {
+    ops::hypot(way.x, way.z) <= 1e-4 * way.y.abs() || way.length() < 1e-6
+}
+
+/// The direction from an eye to a place, a little aside where it would be vertical.
+#[expect(clippy::arithmetic_side_effects, reason = "of floats")]
+fn forward_to(eye: DVec3, target: DVec3) -> DVec3 {
+    let way = target - eye;
+    let aside = DVec3::NEG_Z * (1.0e-3 * way.y.abs().max(1.0));
+    if is_vertical(way) { (way + aside).normalize() } else { way.normalize() }
+}
+
 impl Default for Camera {
     /// The model's own camera, 1/60 s.
     fn default() -> Self {
         Self {
-            pose: None,
+            path: None,
             fov: None,
             near: None,
             far: None,
@@ -86,8 +160,8 @@ impl Default for Camera {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraTable {
-    position_m: Option<Exactly<In<PlaceM>, 3>>,
-    look_at_m: Option<Exactly<In<PlaceM>, 3>>,
+    position_m: Option<VectorKeys<PlaceM>>,
+    look_at_m: Option<VectorKeys<PlaceM>>,
     yaw_deg: Option<In<TurnDeg>>,
     pitch_deg: Option<In<PitchDeg>>,
     fov_deg: Option<In<FovDeg>>,
@@ -113,7 +187,7 @@ impl Camera {
         }
         let observer = table.observer.unwrap_or_default();
         Ok(Self {
-            pose: table.pose(places)?,
+            path: table.path(places)?,
             fov: table.fov_deg.map(|fov| fov.0.to_radians()),
             near,
             far,
@@ -145,14 +219,14 @@ impl CameraTable {
         }
     }
 
-    fn pose(&self, places: &Places<'_>) -> Result<Option<CameraPose>, SceneError> {
+    fn path(&self, places: &Places<'_>) -> Result<Option<CameraPath>, SceneError> {
         let given = [
             ("look_at_m", self.look_at_m.is_some()),
             ("yaw_deg", self.yaw_deg.is_some()),
             ("pitch_deg", self.pitch_deg.is_some()),
         ];
         let mut turned = given.into_iter().filter_map(|(key, given)| given.then_some(key));
-        let Some(position) = self.position_m else {
+        let Some(position) = &self.position_m else {
             return match turned.next() {
                 None => Ok(None),
                 Some(key) => Err(places.bad(
@@ -162,27 +236,28 @@ impl CameraTable {
                 )),
             };
         };
-        let position = DVec3::from_array(position.numbers());
-        let forward = if let Some(target) = self.look_at_m {
-            if let Some(key) = turned.find(|key| *key != "look_at_m") {
-                let allowed = "look_at_m, or yaw_deg and pitch_deg";
-                return Err(places.bad(&format!("camera.{key}"), "beside look_at_m", allowed));
-            }
-            #[expect(clippy::arithmetic_side_effects, reason = "of floats: both are within 1e7")]
-            let way = DVec3::from_array(target.numbers()) - position;
-            // Nearer than this to the vertical, left and right are noise.
-            let aside = ops::hypot(way.x, way.z);
-            if aside <= 1e-4 * way.y.abs() || way.length() < 1e-6 {
-                let found = "is where the eye is, or straight above or below it";
-                return Err(places.bad("camera.look_at_m", found, "a place aside, or yaw_deg and pitch_deg"));
-            }
-            way.normalize()
-        } else {
+        let position = position.keyed("camera.position_m", places)?;
+        let Some(target) = &self.look_at_m else {
             let yaw = self.yaw_deg.map_or(0.0, |yaw| yaw.0).to_radians();
             let pitch = self.pitch_deg.map_or(0.0, |pitch| pitch.0).to_radians();
             let flat = ops::cos(pitch);
-            DVec3::new(-flat * ops::sin(yaw), ops::sin(pitch), -flat * ops::cos(yaw))
+            let forward = DVec3::new(-flat * ops::sin(yaw), ops::sin(pitch), -flat * ops::cos(yaw));
+            return Ok(Some(CameraPath { position, aim: Aim::Along(forward) }));
         };
-        Ok(Some(CameraPose { position, forward }))
+        if let Some(key) = turned.find(|key| *key != "look_at_m") {
+            let allowed = "look_at_m, or yaw_deg and pitch_deg";
+            return Err(places.bad(&format!("camera.{key}"), "beside look_at_m", allowed));
+        }
+        let target = target.keyed("camera.look_at_m", places)?;
+        let times = position.keys().iter().chain(target.keys().iter()).map(|&(time, _)| time);
+        #[expect(clippy::arithmetic_side_effects, reason = "of floats: both are within 1e7")]
+        let way = |time: f64| target.at(time) - position.at(time);
+        if let Some(time) = times.into_iter().find(|&time| is_vertical(way(time))) {
+            let still = position.keys().len() == 1 && target.keys().len() == 1;
+            let when = if still { String::new() } else { format!(" at {time} s") };
+            let found = format!("is where the eye is, or straight above or below it{when}");
+            return Err(places.bad("camera.look_at_m", found, "a place aside, or yaw_deg and pitch_deg"));
+        }
+        Ok(Some(CameraPath { position, aim: Aim::At(target) }))
     }
 }

@@ -16,7 +16,7 @@ pub(in crate::weather) struct NumberKeys<R>(Moving<f64>, PhantomData<R>);
 
 /// Three numbers, or keys of them.
 #[derive(Debug)]
-pub(super) struct VectorKeys<R>(Moving<DVec3>, PhantomData<R>);
+pub(in crate::weather) struct VectorKeys<R>(Moving<DVec3>, PhantomData<R>);
 
 /// Keys as they stand in the file, each value in its range; only their times are still to be looked at.
 #[derive(Debug)]
@@ -77,7 +77,11 @@ impl<R> NumberKeys<R> {
 
 impl<R> VectorKeys<R> {
     /// The vector over time.
-    pub(super) fn keyed(&self, path: &str, places: &Places<'_>) -> Result<Keyed<DVec3>, SceneError> {
+    pub(in crate::weather) fn keyed(
+        &self,
+        path: &str,
+        places: &Places<'_>,
+    ) -> Result<Keyed<DVec3>, SceneError> {
         self.0.keyed(path, places)
     }
 }

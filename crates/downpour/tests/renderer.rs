@@ -1,0 +1,147 @@
+//! The front door: weather files in, frames out, errors as values.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::PathBuf;
+
+use downpour::scene::Budget;
+use downpour::scene::weather::{CameraPath, CameraPose};
+use downpour::wind::Keyed;
+use downpour::{Backend, Device, Renderer, RendererError, RendererOptions, Source};
+use glam::DVec3;
+
+/// A sky and nothing else.
+const OPEN: &str = "
+[rain]
+rate_mm_h = 60
+[sky]
+zenith_color = [0.4, 0.45, 0.5]
+[camera]
+position_m = [0, 1.6, 0]
+fov_deg = 30
+[output]
+size = [48, 32]
+";
+
+/// A window in the rain.
+const WINDOW: &str = "
+[glass]
+distance_m = 0.4
+size_m = [0.4, 0.3]
+cell_mm = 5
+speed_m_s = 5
+before_s = 2
+";
+
+/// A weather file in a folder of its own.
+fn file(text: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.toml");
+    std::fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+fn opened(text: &str) -> Renderer {
+    let (_folder, path) = file(text);
+    Renderer::open(path, Backend::Cpu).unwrap()
+}
+
+/// Bits of a frame.
+fn bits(renderer: &mut Renderer, time_s: f64) -> Vec<[u32; 3]> {
+    renderer.frame(time_s).unwrap().radiance().iter().map(|pixel| pixel.map(f32::to_bits)).collect()
+}
+
+#[test]
+fn a_weather_file_becomes_a_picture() {
+    let mut renderer = opened(OPEN);
+    let frame = renderer.frame(1.5).unwrap();
+    assert_eq!((frame.size(), frame.time_s), ([48, 32], 1.5));
+    assert!(frame.drops.simulated > 100 && frame.medium.extinction() > 0.0);
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.png", "a.exr"] {
+        frame.save(folder.path().join(name)).unwrap();
+        assert!(std::fs::metadata(folder.path().join(name)).unwrap().len() > 100);
+    }
+    let error = frame.save(folder.path().join("a.gif")).unwrap_err();
+    assert!(error.to_string().contains("allowed: .png or .exr"), "{error}");
+    let error = frame.save(folder.path().join("none/a.png")).unwrap_err();
+    assert!(matches!(error, RendererError::Write { .. }), "{error}");
+}
+
+/// The picture of a time is the same whatever was asked before, with water that holds what it was rained on too.
+#[test]
+fn frames_do_not_depend_on_those_before() {
+    for text in [OPEN.to_owned(), format!("{OPEN}{WINDOW}")] {
+        let mut renderer = opened(&text);
+        let [late, early] = [0.4, 0.1].map(|time| bits(&mut renderer, time));
+        let mut fresh = opened(&text);
+        assert!(bits(&mut fresh, 0.1) == early && bits(&mut fresh, 0.4) == late);
+        assert!(early != late);
+        let mut passing = opened(&text);
+        passing.pass(0.1).unwrap();
+        assert!(bits(&mut passing, 0.4) == late);
+    }
+}
+
+/// All frames have the exposure of the first, unless it is set.
+#[test]
+fn one_exposure_for_all_frames() {
+    let mut renderer = opened(OPEN);
+    assert_eq!(renderer.exposure(), None);
+    let first = renderer.frame(0.0).unwrap().exposure;
+    assert_eq!(renderer.frame(1.0).unwrap().exposure.to_bits(), first.to_bits());
+    renderer.set_exposure(Some(2.0 * first));
+    assert_eq!(renderer.frame(1.0).unwrap().exposure.to_bits(), (2.0 * first).to_bits());
+}
+
+#[test]
+fn what_cannot_be_is_an_error() {
+    let error = Renderer::open("there/is/none.toml", Backend::Cpu).unwrap_err();
+    assert_eq!(error.exit_code(), 5, "{error}");
+    let error = Renderer::open("a.txt", Backend::Cpu).unwrap_err();
+    assert!(matches!(error, RendererError::Name { .. }), "{error}");
+    let (_folder, path) = file(OPEN);
+    let with_size = |size: [u32; 2]| {
+        let mut source = Source::read(&path, &[], &mut Budget::default()).unwrap();
+        source.weather.size = size;
+        Renderer::new(source.weather, source.loaded, RendererOptions::default(), Device::cpu())
+    };
+    for size in [[0, 32], [48, 16_385], [u32::MAX, u32::MAX]] {
+        let error = with_size(size).unwrap_err();
+        assert!(error.to_string().contains("allowed"), "{error}");
+    }
+    let mut renderer = with_size([16, 16]).unwrap();
+    for time in [f64::NAN, f64::INFINITY, -2.0e6, 2.0e6] {
+        assert!(matches!(renderer.frame(time).unwrap_err(), RendererError::Time { .. }));
+        assert!(matches!(renderer.pass(time).unwrap_err(), RendererError::Time { .. }));
+    }
+    // Nothing is lost by an error.
+    assert_eq!(renderer.frame(0.0).unwrap().size(), [16, 16]);
+    let atlas = format!("{OPEN}\n[streaks]\ncolour = \"atlas\"\n");
+    let (_folder, path) = file(&atlas);
+    assert!(matches!(Renderer::open(path, Backend::Cpu).unwrap_err(), RendererError::NoAtlas));
+}
+
+/// A camera that is set from code is where a weather file would have it.
+#[test]
+fn a_camera_moves() {
+    let keys = "position_m = [[0, [0, 1.6, 0]], [2, [4, 1.6, 0]]]\nlook_at_m = [0, 2, -30]";
+    let mut of_file = opened(&OPEN.replace("position_m = [0, 1.6, 0]", keys));
+    let mut of_code = opened(OPEN);
+    let way = [(0.0, DVec3::new(0.0, 1.6, 0.0)), (2.0, DVec3::new(4.0, 1.6, 0.0))];
+    let path = CameraPath::looking_at(Keyed::new(way.to_vec()).unwrap(), DVec3::new(0.0, 2.0, -30.0));
+    of_code.set_camera(path.clone()).unwrap();
+    for time in [0.0, 1.0] {
+        assert!(bits(&mut of_file, time) == bits(&mut of_code, time), "{time}");
+    }
+    assert_eq!(path.at(1.0).position, DVec3::new(2.0, 1.6, 0.0));
+    // The rain passes by the eye, 2 m/s.
+    let standing = CameraPath::from(path.at(1.0));
+    let mut still = opened(OPEN);
+    still.set_camera(standing).unwrap();
+    assert!(bits(&mut still, 1.0) != bits(&mut of_code, 1.0));
+    let far = CameraPose { position: DVec3::new(5000.0, 0.0, 0.0), forward: DVec3::X };
+    let error = of_code.set_camera(far).unwrap_err();
+    assert!(error.to_string().contains("5000 m from where the scene was set"), "{error}");
+    assert!(bits(&mut of_file, 0.5) == bits(&mut of_code, 0.5), "the camera is the one before");
+}
