@@ -20,7 +20,6 @@ use downpour::scene::Warning;
 
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
-pub(crate) use streaks::no_atlas;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {

@@ -132,7 +132,7 @@ impl From<RendererError> for Failure {
         let code = error.exit_code();
         match error {
             // A library has no option of this name.
-            RendererError::NoAtlas => crate::commands::no_atlas(),
+            RendererError::NoAtlas => no_atlas(),
             error => Self::new(code, error.to_string()),
         }
     }
@@ -154,6 +154,13 @@ impl From<WindError> for Failure {
     fn from(error: WindError) -> Self {
         Self::new(error.exit_code(), error.to_string())
     }
+}
+
+/// What `render` does where it is not said where the atlas is: it ends with exit code 2.
+pub(crate) fn no_atlas() -> Failure {
+    let found = "streaks.colour is \"atlas\" or \"atlas-random\", and no --streaks";
+    let allowed = "with --streaks FOLDER, where the streak atlas is";
+    Failure::new(INPUT, format!("{found}; allowed: {allowed}"))
 }
 
 impl From<&clap::Error> for Failure {

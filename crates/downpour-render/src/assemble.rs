@@ -15,7 +15,7 @@ use downpour_shaders::render::scene::{
 };
 use glam::{Affine3A, DVec3};
 
-use crate::data::{MeshPart, SceneBuilder};
+use crate::builder::{MeshPart, SceneBuilder};
 use crate::light::LightSource;
 use crate::material::{MaterialLook, TextureSlot, TextureUse};
 

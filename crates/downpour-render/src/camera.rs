@@ -12,6 +12,18 @@ pub const PIXELS: std::ops::RangeInclusive<u32> = 1..=16384;
 /// Part of the pixels over which the filter takes means that one is.
 const WINDOW_SHARE: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
 
+/// The longest exposure, s.
+pub const LONGEST_EXPOSURE_S: f64 = 1.0;
+
+/// How the eye moves in the middle of the exposure.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EyeMotion {
+    /// Velocity, m/s.
+    pub velocity: Vec3,
+    /// The axis about which it turns, right-handed, of the length of its angular speed, rad/s.
+    pub turning: Vec3,
+}
+
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {

@@ -11,6 +11,7 @@
 
 mod assemble;
 pub mod brdf;
+pub mod builder;
 pub mod camera;
 pub mod data;
 mod error;
@@ -37,6 +38,7 @@ pub mod surface;
 pub mod texture;
 pub mod tone;
 pub mod trace;
+pub mod wet_ground;
 pub mod wind_picture;
 
 pub use error::RenderError;

@@ -37,9 +37,9 @@ use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LAYERS, SCENE_NONE, SCENE
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::brdf::brdf_fresnel;
-use crate::puddle::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
 use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
 use crate::scene::SceneView;
+use crate::scene::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
 use crate::surface::Surface;
 use draw::{path_onward, path_replaced, path_water_ray, path_water_share};
 pub use lattice::{path_lattice_numbers, path_lattice_words};

@@ -12,11 +12,9 @@ mod map;
 pub mod relief;
 mod ripples;
 mod rows;
-pub mod water;
-mod wet_ground;
 
 pub use error::PuddleError;
 pub use map::{Ground, PuddleMap};
+pub(crate) use relief::Relief;
 pub use ripples::{Ripples, slope_levels};
 pub use rows::{PuddleLook, PuddleRows};
-pub use wet_ground::WetGround;

@@ -40,9 +40,10 @@ mod tiles;
 use downpour_scene::weather::RainRefraction;
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
 
+pub use crate::camera::EyeMotion;
 pub use capture::{Capture, CaptureFrame};
 pub use drops_frame::DropsFrame;
-pub use exposure::{Exposure, EyeMotion, StreakColour, StreakSamples, TemporalResponse};
+pub use exposure::{Exposure, StreakColour, StreakSamples, TemporalResponse};
 use light::DropLightOptions;
 pub use masks::DropMasks;
 pub use medium::{MediumOptions, PanePlane, RainMedium};

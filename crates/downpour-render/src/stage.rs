@@ -22,11 +22,10 @@ use downpour_sim::view::View;
 use glam::{DVec3, Vec3};
 
 use crate::RenderError;
-use crate::camera::{PIXELS, Viewpoint};
-use crate::data::{SceneBuilder, SceneData};
+use crate::builder::SceneBuilder;
+use crate::camera::{EyeMotion, LONGEST_EXPOSURE_S, PIXELS, Viewpoint};
+use crate::data::SceneData;
 use crate::light::LightSource;
-use crate::rain::EyeMotion;
-use crate::rain::exposure::LONGEST_EXPOSURE_S;
 use crate::tone::{tone_automatic_exposure, tone_luminance};
 pub use error::StageError;
 pub use eye::CameraChoice;

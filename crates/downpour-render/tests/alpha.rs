@@ -1,7 +1,8 @@
 //! Rain and surfaces with holes: alpha says where a roof is.
 
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
-use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
+use downpour_render::builder::{MeshPart, SceneBuilder};
+use downpour_render::data::SceneData;
 use downpour_render::material::{MaterialLook, TextureUse};
 use downpour_render::puddle::{Ground, PuddleMap};
 use downpour_render::sky_light::SkyLight;

@@ -5,8 +5,9 @@ use std::f32::consts::PI;
 use downpour_drop::optics::{SCATTERING_ORDERS, scattered_share};
 use downpour_math::ops;
 use downpour_render::RenderError;
+use downpour_render::builder::{MeshPart, SceneBuilder};
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::{MeshPart, RenderFrame, SceneBuilder, SceneData};
+use downpour_render::data::{RenderFrame, SceneData};
 use downpour_render::light::LightSource;
 use downpour_render::rain::glint::{
     drop_glint_pack, drop_glint_right, drop_glint_side, drop_glint_spot, drop_glint_unpack,

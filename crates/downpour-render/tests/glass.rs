@@ -1,7 +1,8 @@
 //! Wet glass before a scene: energy, lenses, focus, and the lattice that goes on.
 
+use downpour_render::builder::{MeshPart, SceneBuilder};
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
+use downpour_render::data::SceneData;
 use downpour_render::glass::water::{
     glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal, glass_picture_water_top,
 };

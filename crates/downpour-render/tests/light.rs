@@ -3,8 +3,9 @@
 use downpour_drop::optics::optics_fresnel;
 use downpour_math::ops::f64 as exact;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
+use downpour_render::builder::{MeshPart, SceneBuilder};
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
+use downpour_render::data::SceneData;
 use downpour_render::light::LightSource;
 use downpour_render::material::MaterialLook;
 use downpour_render::picture::noise_seed;

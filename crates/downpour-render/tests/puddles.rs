@@ -2,8 +2,9 @@
 
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::optics::optics_fresnel;
+use downpour_render::builder::{MeshPart, SceneBuilder};
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
+use downpour_render::data::SceneData;
 use downpour_render::material::MaterialLook;
 use downpour_render::puddle::relief::Relief;
 use downpour_render::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, Ripples};
@@ -242,7 +243,8 @@ fn a_weathers_puddles_lie_on_its_stage() -> Outcome {
     };
     let mut stage = downpour_render::stage::Stage::new(&weather, &loaded, 0.0)?;
     // Nothing but air is there: no ground, no water.
-    let ground = downpour_render::puddle::WetGround::new(&weather, &loaded, &stage, 0.0)?.ok_or("puddles")?;
+    let ground =
+        downpour_render::wet_ground::WetGround::new(&weather, &loaded, &stage, 0.0)?.ok_or("puddles")?;
     ground.lay(&mut stage);
     assert_eq!(stage.data.puddle_count, 1);
     assert!(ground.maps().all(|map| map.area_m2() == 0.0));

@@ -1,8 +1,9 @@
 //! Drops before a scene: their size, their light, their place.
 
 use downpour_drop::DropShape;
+use downpour_render::builder::{MeshPart, SceneBuilder};
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
+use downpour_render::data::SceneData;
 use downpour_render::picture::{Picture, PictureOptions, render_picture};
 use downpour_render::rain::{DropMasks, RainOptions, RefractionForm};
 use downpour_render::sky_light::SkyLight;

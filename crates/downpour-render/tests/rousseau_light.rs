@@ -2,8 +2,8 @@
 
 use std::f32::consts::PI;
 
+use downpour_render::builder::SceneBuilder;
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::SceneBuilder;
 use downpour_render::light::LightSource;
 use downpour_render::picture::{PictureOptions, render_picture};
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};

@@ -3,8 +3,9 @@
 use std::sync::OnceLock;
 
 use downpour_drop::oscillation::Amplitudes;
+use downpour_render::builder::SceneBuilder;
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::{SceneBuilder, SceneData};
+use downpour_render::data::SceneData;
 use downpour_render::picture::{Picture, PictureOptions, render_picture};
 use downpour_render::rain::{
     DropMasks, Exposure, EyeMotion, RainOptions, RefractionForm, StreakColour, StreakSamples,

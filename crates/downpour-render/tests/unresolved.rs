@@ -4,8 +4,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_math::ops::f64 as ops;
+use downpour_render::builder::{MeshPart, SceneBuilder};
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
+use downpour_render::data::SceneData;
 use downpour_render::light::LightSource;
 use downpour_render::picture::{PictureOptions, render_picture};
 use downpour_render::rain::light::DropLightOptions;

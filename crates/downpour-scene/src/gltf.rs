@@ -24,6 +24,7 @@ mod json;
 mod model;
 mod normals;
 mod plan;
+mod posed;
 mod scenes;
 mod triangles;
 
@@ -36,6 +37,7 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
+pub use crate::scene::REACH;
 pub use model::TriangleModel;
 
 /// The largest file that is looked at, in bytes: 256 MiB, buffers beside it not counted.
@@ -46,10 +48,6 @@ pub const MAX_ELEMENTS: u64 = 50_000_000;
 
 /// How deep nodes may be nested.
 pub const MAX_DEPTH: u32 = 256;
-
-/// How far from the origin a vertex may be, in metres. Beyond it the steps between `f32` numbers are 64 m, and
-/// squares of distances come near the end of the range of `f32`.
-pub const REACH: f64 = 1e9;
 
 /// Reads the triangles of a `.gltf` or `.glb` file; buffers are looked for beneath its folder only.
 ///

@@ -20,7 +20,6 @@ mod pose;
 mod skin;
 mod skinning;
 mod texture;
-mod triangles;
 
 use crate::warning::Warning;
 
@@ -34,6 +33,10 @@ pub use pose::{Instance, Play, Pose};
 pub use skin::Skin;
 pub use skinning::{SkinnedPrimitive, skin_primitive};
 pub use texture::{Encoding, Filter, Sampler, Texture, Wrap};
+
+/// How far from the origin a vertex may be, in metres. Beyond it the steps between `f32` numbers are 64 m, and
+/// squares of distances come near the end of the range of `f32`.
+pub const REACH: f64 = 1e9;
 
 /// Everything that a scene file holds.
 ///

@@ -187,7 +187,7 @@ fn an_empty_file_is_the_default() {
     assert_eq!(Rain::default().rate_mm_h, 10.0);
     assert_eq!(Rain::default().law, DropSizeLaw::MarshallPalmer1948);
     assert_eq!(Sky::default().source, SkySource::Overcast([0.9, 0.95, 1.0]));
-    assert_eq!((Camera::default().pose, Camera::default().shutter), (None, 1.0 / 60.0));
+    assert_eq!((Camera::default().path, Camera::default().shutter), (None, 1.0 / 60.0));
     assert_eq!(Camera::default().observer, Observer::Camera);
     let eye = |more: &str| parse(&format!("[camera]\nobserver = 'eye'\n{more}")).unwrap().camera;
     assert_eq!((eye("").observer, eye("").shutter), (Observer::Eye, 0.075));

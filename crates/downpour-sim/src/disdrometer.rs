@@ -10,9 +10,9 @@ use rayon::prelude::*;
 
 use crate::collision::CollisionMap;
 use crate::frustum::Frustum;
+use crate::options::{PIECE, SimVolume};
 use crate::plan::Plan;
 use crate::population::volume_of;
-use crate::simulation::{PIECE, SimVolume};
 use crate::step::StepDrop;
 use crate::view::within;
 

@@ -5,45 +5,15 @@
 //! of the ball and in a cone of directions. The first limit that a candidate violates before the step has to be that of its
 //! region: no part of space is filled twice.
 
-use bytemuck::{Pod, Zeroable};
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::enter::{ENTER_DRAW, ENTER_SIZES, ENTER_UNIT};
 use downpour_shaders::sim::step::{STEP_COUNT, STEP_FALLING, STEP_GONE, VOLUME_BALL, VOLUME_PLANES};
 use glam::{Vec3, Vec3Swizzles as _, Vec4, Vec4Swizzles as _};
 
 use crate::motion::motion_diameter;
+pub use crate::region::EnterRegion;
 use crate::step::{StepDrop, StepMade, StepWorld, step_word};
 use crate::volume::volume_limit;
-
-/// A part of space that candidates of a bin of sizes come from. The same layout as `EnterRegion` in WGSL.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct EnterRegion {
-    /// The plane, or `VOLUME_BALL`.
-    pub face: u32,
-    /// The bin.
-    pub bin: u32,
-    /// Number of its first candidate among all.
-    pub first: u32,
-    /// Number of its first candidate among those of its bin.
-    pub first_of_bin: u32,
-    /// Least distance from the plane, or radius, m.
-    pub low: f32,
-    /// Largest distance from the plane, or radius, m.
-    pub high: f32,
-    /// Beginning along the tangent, m.
-    pub begin: f32,
-    /// End along the tangent, m.
-    pub end: f32,
-    /// Growth of half the width per m along the tangent. Of the ball 1 - cos of the cone's half angle.
-    pub slope: f32,
-    /// Half the width at the eye, m.
-    pub width: f32,
-    /// Middle across, m.
-    pub middle: f32,
-    /// Padding of the WGSL layout.
-    pub unused: u32,
-}
 
 /// Diameter in 16 bits between two quantiles.
 #[must_use]

@@ -36,8 +36,8 @@ use crate::drift::Drift;
 use crate::falling::{DropKind, FallingDrop};
 use crate::field::{Class, RainField, check_time};
 use crate::motion::motion_bounce;
+use crate::options::Bounce;
 use crate::shelter::{Obstacles, SkyPaths, met};
-use crate::simulation::Bounce;
 use crate::view::{Bounds, View};
 
 /// Where a path is cut, s.

@@ -13,10 +13,11 @@ use rayon::prelude::*;
 
 use crate::collision::{CollisionHit, CollisionMap};
 use crate::field::{DropKind, FallingDrop, VisibleDrops};
+use crate::motion::speed_of;
 use crate::motion::{motion_bounce, motion_diameter, motion_relax};
+use crate::options::SimVolume;
 use crate::plan::Plan;
 use crate::population::box_centre;
-use crate::simulation::{SimVolume, speed_of};
 use crate::step::{
     StepDrop, bounces, step_column, step_count, step_image, step_kind, step_pack, step_shown, step_word,
 };

@@ -95,6 +95,13 @@ pub fn motion_bounce(velocity: Vec3, normal: Vec3, restitution: f32, grip: f32) 
     past * (1.0 - grip) - normal * (into * restitution)
 }
 
+/// Terminal speed of a diameter by the table, m/s.
+pub(crate) fn speed_of(speeds: &[f32], diameter: f32) -> f32 {
+    let entry = motion_table_entry(diameter) as usize;
+    let at = |k: usize| speeds.get(k).copied().unwrap_or(0.0);
+    motion_table_speed(at(entry), at(entry + 1), diameter)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

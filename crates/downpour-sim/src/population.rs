@@ -14,20 +14,14 @@ use rayon::prelude::*;
 use crate::SimError;
 use crate::error::BYTES_PER_DROP;
 use crate::frustum::Frustum;
+use crate::options::{MAX_DROPS_IN_MEMORY, SimVolume};
 use crate::poisson::poisson_at;
-use crate::simulation::SimVolume;
 use crate::step::{step_column, step_image, step_pack};
 use crate::view::View;
 use crate::volume::{VolumeEye, volume_in_area, volume_in_sphere};
 
 /// Bins of diameter per factor of two.
 const BINS_PER_OCTAVE: f64 = 8.0;
-
-/// The most drops that a word can number.
-pub(crate) const MAX_DROPS: u64 = 1 << 30;
-
-/// The most drops that are ever made: 8.5 GiB of them.
-pub(crate) const MAX_DROPS_IN_MEMORY: u64 = 1 << 28;
 
 /// Dimensions of the random numbers.
 const COUNT: u32 = 8230;

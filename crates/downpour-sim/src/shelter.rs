@@ -21,7 +21,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::drift::Drift;
-use crate::field::FallingDrop;
+use crate::falling::FallingDrop;
 
 /// Where a path is cut, s.
 const CUT_S: f64 = 0.25;

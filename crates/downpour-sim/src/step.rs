@@ -20,11 +20,11 @@ use downpour_wind::WindField;
 use glam::{Vec2, Vec3, Vec3Swizzles as _, Vec4, Vec4Swizzles as _};
 
 use crate::collision::CollisionMap;
-use crate::enter::EnterRegion;
 use crate::motion::{
     motion_average, motion_bounce, motion_diameter, motion_relax, motion_settled, motion_table_entry,
     motion_table_speed,
 };
+use crate::region::EnterRegion;
 use crate::volume::{
     VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
     volume_offset, volume_on_disc,

@@ -5,51 +5,12 @@ use rayon::prelude::*;
 
 use crate::design::WindPrimitive;
 use crate::error::WindError;
+pub use crate::field_grid::{WindFieldGrid, wind_field_centre};
 use crate::grid::WindGrid;
 use crate::mask::WindMask;
 use crate::matrix::WindMatrix;
 use crate::primitive::velocity;
 use crate::turbulence::{WindTurbulenceMode, wind_turbulence_velocity};
-
-/// A grid as the shader takes it. The same layout as `WindFieldGrid` in WGSL.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct WindFieldGrid {
-    /// Lower corner of the box, m.
-    pub low: [f32; 3],
-    /// How many matrices there are.
-    pub primitives: u32,
-    /// Edges of a cell, m.
-    pub cell: [f32; 3],
-    /// How many waves of turbulence there are.
-    pub modes: u32,
-    /// Their inverses, 1/m.
-    pub per_cell: [f32; 3],
-    /// Padding of the WGSL layout.
-    pub padding_2: u32,
-    /// How many cells there are along each edge.
-    pub size: [u32; 3],
-    /// Padding of the WGSL layout.
-    pub padding_3: u32,
-}
-
-impl WindFieldGrid {
-    /// A grid on which `primitives` matrices and `modes` waves of turbulence blow.
-    #[must_use]
-    pub fn new(grid: &WindGrid, primitives: u32, modes: u32) -> Self {
-        let cell = grid.cell();
-        Self {
-            low: grid.low().to_array(),
-            primitives,
-            cell: cell.to_array(),
-            modes,
-            per_cell: cell.recip().to_array(),
-            padding_2: 0,
-            size: grid.size(),
-            padding_3: 0,
-        }
-    }
-}
 
 /// The cells whose centres are round a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,12 +21,6 @@ pub struct WindFieldPlace {
     pub next: UVec3,
     /// How far the place is on the way from the lower to the upper, 0 to 1.
     pub share: Vec3,
-}
-
-/// The centre of a cell, m.
-#[must_use]
-pub fn wind_field_centre(grid: &WindFieldGrid, cell: UVec3) -> Vec3 {
-    Vec3::from(grid.low) + (cell.as_vec3() + 0.5) * Vec3::from(grid.cell)
 }
 
 /// Where a cell stands in memory.

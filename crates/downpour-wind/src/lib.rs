@@ -38,6 +38,7 @@
 pub mod design;
 mod error;
 pub mod field;
+mod field_grid;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod grid;

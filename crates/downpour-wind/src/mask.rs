@@ -3,7 +3,7 @@
 use glam::{UVec3, Vec3};
 
 use crate::error::{WindError, in_range};
-use crate::field::{WindFieldGrid, wind_field_centre};
+use crate::field_grid::{WindFieldGrid, wind_field_centre};
 use crate::grid::WindGrid;
 
 /// The share of each cell of a grid that is open to the wind: 0 inside objects, 1 away from them.

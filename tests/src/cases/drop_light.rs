@@ -3,8 +3,9 @@
 use downpour_gpu::{Gpu, GpuError};
 use downpour_mask::atlas::{StreakAtlas, StreakPick};
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_render::builder::SceneBuilder;
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::{SceneBuilder, SceneData};
+use downpour_render::data::SceneData;
 use downpour_render::gpu::{DropLightPipeline, ScenePipeline};
 use downpour_render::light::LightSource;
 use downpour_render::rain::glint::{

@@ -6,8 +6,9 @@ use downpour_render::brdf::{
     brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
     brdf_visible_density, brdf_visible_normal,
 };
+use downpour_render::builder::{MeshPart, SceneBuilder};
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::{MeshPart, SceneBuilder, SceneData};
+use downpour_render::data::SceneData;
 use downpour_render::gpu::ScenePipeline;
 use downpour_render::light::LightSource;
 use downpour_render::material::{MaterialLook, TextureUse};

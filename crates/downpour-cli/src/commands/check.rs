@@ -2,16 +2,17 @@
 
 use clap::Args;
 use downpour::render::glass::WetPane;
-use downpour::render::puddle::{PuddleMap, WetGround};
+use downpour::render::puddle::PuddleMap;
 use downpour::render::shower::{Shower, drop_model};
 use downpour::render::stage::{CameraChoice, Stage};
+use downpour::render::wet_ground::WetGround;
 use downpour::scene::weather::Observer;
 use downpour::scene::{Budget, scene::Texture};
 
 use super::input::{Input, InputArguments, say_missing};
 use super::render::BYTES_PER_PIXEL;
-use super::streaks::{Streaks, StreaksArgument, no_atlas};
-use crate::failure::Failure;
+use super::streaks::{Streaks, StreaksArgument};
+use crate::failure::{Failure, no_atlas};
 use crate::listing::{Datum, Entry};
 use crate::progress::doing;
 use crate::{listing, stream};

@@ -7,7 +7,7 @@ use downpour::mask::atlas::{StreakAtlas, StreakPick};
 use downpour::render::rain::light::{DropLightForm, DropLightOptions};
 use downpour::scene::weather::{StreakLook, Weather};
 
-use crate::failure::{Failure, INPUT};
+use crate::failure::{Failure, no_atlas};
 
 /// Where the streak atlas is.
 #[derive(Debug, Args)]
@@ -46,13 +46,6 @@ impl StreaksArgument {
         let atlas = StreakAtlas::load(folder)?.with_pick(pick).with_seed(weather.rain.seed);
         Ok(Streaks::Atlas(Box::new(atlas)))
     }
-}
-
-/// What `render` does where it is not said where the atlas is: it ends with exit code 2.
-pub(crate) fn no_atlas() -> Failure {
-    let found = "streaks.colour is \"atlas\" or \"atlas-random\", and no --streaks";
-    let allowed = "with --streaks FOLDER, where the streak atlas is";
-    Failure::new(INPUT, format!("{found}; allowed: {allowed}"))
 }
 
 impl Streaks {

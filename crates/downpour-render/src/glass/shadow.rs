@@ -104,8 +104,9 @@ mod tests {
     use super::super::shade::{PaneShade, PaneShadows};
     use super::super::water::GlassPictureDrop;
     use super::*;
+    use crate::builder::SceneBuilder;
     use crate::camera::Viewpoint;
-    use crate::data::{SceneBuilder, SceneData};
+    use crate::data::SceneData;
     use crate::sky_light::SkyLight;
 
     /// A pane of 0.2 m x 0.1 m at z = 0, drops of 2 mm on it 8 mm apart, light from +z.

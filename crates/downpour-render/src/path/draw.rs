@@ -9,9 +9,9 @@ use downpour_shaders::render::scatter::SCATTER_DISC;
 use glam::{Vec2, Vec3};
 
 use super::plan::{path_albedo, path_most};
-use crate::puddle::water::{puddle_water_mirrored, puddle_water_normal};
 use crate::scatter::{ScatterRay, scatter_hemisphere};
 use crate::scene::SceneView;
+use crate::scene::water::{puddle_water_mirrored, puddle_water_normal};
 use crate::surface::Surface;
 
 /// A ray that water mirrors: drawn from its ripples. Its weight is Fresnel's.

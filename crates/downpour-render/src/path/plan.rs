@@ -7,9 +7,9 @@ use downpour_shaders::render::puddle_water::PUDDLE_WATER_NORMAL;
 use downpour_shaders::render::scene::SCENE_BLENDED;
 use glam::Vec3;
 
-use crate::puddle::water::{puddle_water_albedo, puddle_water_normal, puddle_water_reflectance};
 use crate::scatter::{scatter_chance, scatter_gloss};
 use crate::scene::SceneView;
+use crate::scene::water::{puddle_water_albedo, puddle_water_normal, puddle_water_reflectance};
 use crate::surface::Surface;
 
 /// The rays that look for the light of a surface.

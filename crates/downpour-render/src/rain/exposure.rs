@@ -3,10 +3,8 @@
 use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_scene::weather::{Observer, StreakLook, Weather};
 use downpour_shaders::render::rain::{STREAK_REFRACTED, STREAK_WHITE};
-use glam::Vec3;
 
-/// The longest exposure, s.
-pub const LONGEST_EXPOSURE_S: f64 = 1.0;
+use crate::camera::EyeMotion;
 
 /// The most samples along the chord of a streak.
 pub const MOST_STREAK_SAMPLES: u32 = 4096;
@@ -56,19 +54,10 @@ impl TemporalResponse {
     }
 }
 
-/// How the eye moves in the middle of the exposure.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EyeMotion {
-    /// Velocity, m/s.
-    pub velocity: Vec3,
-    /// The axis about which it turns, right-handed, of the length of its angular speed, rad/s.
-    pub turning: Vec3,
-}
-
 /// The time in which light is gathered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposure {
-    /// Seconds, 0 (drops stand still) to [`LONGEST_EXPOSURE_S`]; half of it is before the time of the picture.
+    /// Seconds, 0 (drops stand still) to [`LONGEST_EXPOSURE_S`](crate::camera::LONGEST_EXPOSURE_S); half of it is before the time of the picture.
     pub shutter_s: f64,
     /// Weight of light over the exposure.
     pub response: TemporalResponse,

@@ -10,9 +10,10 @@ use downpour_sim::field::FallingDrop;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::drops_mask::drops_mask_right;
-use super::exposure::{Exposure, LONGEST_EXPOSURE_S, StreakSamples};
+use super::exposure::{Exposure, StreakSamples};
 use super::streak::DropsDrop;
 use super::{DropMasks, shapes};
+use crate::camera::LONGEST_EXPOSURE_S;
 use crate::data::RenderFrame;
 
 /// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels round them.

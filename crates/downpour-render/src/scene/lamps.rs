@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::SceneView;
 use crate::brdf::brdf_direct;
-use crate::puddle::water::{puddle_water_beneath, puddle_water_entry};
+use crate::scene::water::{puddle_water_beneath, puddle_water_entry};
 use crate::surface::Surface;
 
 /// A lamp as a surface sees it.

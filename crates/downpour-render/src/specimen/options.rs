@@ -1,5 +1,6 @@
 //! How a specimen is seen.
 
+pub use crate::camera::LONGEST_EXPOSURE_S;
 use downpour_drop::DropShape;
 use downpour_drop::optics::WATER_INDEX;
 use downpour_drop::oscillation::Amplitudes;
@@ -12,9 +13,6 @@ use super::motion::{SpecimenMotion, fall_speed};
 
 /// The largest width and height of a picture, in pixels.
 pub const LARGEST_SIZE: u32 = 16_384;
-
-/// The longest exposure, in seconds.
-pub const LONGEST_EXPOSURE_S: f64 = 1.0;
 
 const LARGEST_DISTANCE_M: f64 = 1000.0;
 pub(crate) const LARGEST_FOV_DEG: f64 = 175.0;

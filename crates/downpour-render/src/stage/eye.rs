@@ -4,8 +4,7 @@ use downpour_scene::scene::{Lens, Pose};
 use downpour_scene::weather::{self, Loaded, Weather};
 use glam::{DVec3, Vec3};
 
-use crate::camera::Viewpoint;
-use crate::rain::EyeMotion;
+use crate::camera::{EyeMotion, Viewpoint};
 
 /// What moves faster, in m/s or rad/s, has been cut to another place.
 const FASTEST_M_S: f32 = 100.0;

@@ -4,10 +4,10 @@
 //! precision. A skinned mesh stands where its joints are: the transform of its own node has no effect on it
 //! (section 3.7.3.3).
 
+use super::REACH;
 use super::light::PlacedLight;
 use super::mesh::{Bounds, Mesh};
 use super::{Local, Parts, PlacedCamera, Property, Scene};
-use crate::gltf::REACH;
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Quat, Vec3};
 
 /// Of what a matrix must keep of the volume that the lengths of its columns allow. Below it the columns lie in

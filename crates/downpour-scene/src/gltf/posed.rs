@@ -1,7 +1,7 @@
 //! From a posed scene to the triangles that a simulator takes.
 
-use super::{Pose, Scene, skin_primitive};
-use crate::gltf::TriangleModel;
+use super::TriangleModel;
+use crate::scene::{Pose, Scene, skin_primitive};
 use glam::Vec3;
 
 impl Scene {

@@ -20,7 +20,7 @@ use downpour_shaders::render::puddle_water::{
 };
 use glam::{Vec2, Vec3, Vec4};
 
-use crate::scene::SceneView;
+use super::SceneView;
 
 /// Water over a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -245,8 +245,8 @@ pub fn puddle_water_reflectance(in_air: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::builder::SceneBuilder;
     use crate::camera::Viewpoint;
-    use crate::data::SceneBuilder;
     use crate::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
     use crate::sky_light::SkyLight;
 

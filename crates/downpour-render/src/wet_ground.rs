@@ -4,10 +4,7 @@ use downpour_scene::picture::{Picture, Pixels};
 use downpour_scene::weather::{Loaded, Puddle, PuddleShape, Weather};
 use glam::{DVec3, Vec2, Vec3};
 
-use super::map::{Ground, PuddleMap};
-use super::relief::Relief;
-use super::rows::{PuddleLook, PuddleRows};
-use super::{PuddleError, Ripples};
+use crate::puddle::{Ground, PuddleError, PuddleLook, PuddleMap, PuddleRows, Relief, Ripples};
 use crate::stage::Stage;
 
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.

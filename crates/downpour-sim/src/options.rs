@@ -1,0 +1,200 @@
+//! What is asked of a simulation: where, how many drops, and what happens to them.
+
+use crate::SimError;
+use crate::step::StepCaught;
+
+/// Drops of one piece of work.
+pub(crate) const PIECE: usize = 1 << 14;
+
+/// The most drops that a word can number.
+pub(crate) const MAX_DROPS: u64 = 1 << 30;
+
+/// The most drops that are ever made: 8.5 GiB of them.
+pub(crate) const MAX_DROPS_IN_MEMORY: u64 = 1 << 28;
+
+/// The part of space that is simulated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum SimVolume {
+    /// What the picture shows while the shutter is open, each size up to the distance at which it is resolved (after
+    /// Im & Sung 2022, 3.A and B, with the density of the rain): drops come in from the rain around it, and are gone when
+    /// they leave or something stops them.
+    #[default]
+    View,
+    /// A periodic box that follows eye and view (Rousseau 2006, 7). Edges 1 to 1000 m.
+    Box {
+        /// Edges, m.
+        size_m: [f64; 3],
+    },
+    /// The view of Im & Sung 2022 with their sampling: dense about the middle, and random again after each way out.
+    ImSung,
+    /// A box round the eye; drops begin at its top, wherever the eye is then (in the manner of S. Tariq, "Rain", 2007, as
+    /// Im & Sung compare with it). Edges 1 to 1000 m.
+    Tariq {
+        /// Edges, m.
+        size_m: [f64; 3],
+    },
+    /// An upright cylinder that stands in the world (in the manner of C. Creus and G. Patow, "R4: realistic rain
+    /// rendering in realtime", 2013, as Im & Sung compare with it).
+    Cylinder {
+        /// Middle of the base, m.
+        base_m: [f64; 3],
+        /// 0.5 to 1000 m.
+        radius_m: f64,
+        /// 1 to 1000 m.
+        height_m: f64,
+    },
+}
+
+/// How drops follow the wind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Drag {
+    /// The slip relaxes with v / g across the fall and v / 2g along it.
+    #[default]
+    Relaxation,
+    /// Each step halves the difference to the wind (Rousseau 2008, 5.1.2): depends on the frame rate.
+    Rousseau2008,
+}
+
+/// What happens to drops that meet a surface.
+///
+/// The default lets a tenth of the impacts send up a droplet, of which the papers say little: "a low-motion quasi-spherical
+/// refractive drop". 1 for `share` is Rousseau 2008.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounce {
+    /// Share of impacts after which a drop comes back, 0 to 1.
+    pub share: f32,
+    /// Share of the speed along the normal that comes back, 0 to 1.
+    pub restitution: f32,
+    /// Share of the speed along the surface that is lost, 0 to 1.
+    pub grip: f32,
+    /// Diameter of what comes back, in that of the drop, 0.05 to 1.
+    pub size: f32,
+    /// After this time it is gone, 0.01 to 10 s.
+    pub longest_s: f32,
+}
+
+impl Default for Bounce {
+    fn default() -> Self {
+        Self { share: 0.1, restitution: 0.25, grip: 0.7, size: 0.25, longest_s: 1.0 }
+    }
+}
+
+/// A level rectangle that measures what falls through it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Gauge {
+    /// m.
+    pub height_m: f64,
+    /// Lower x and z, m.
+    pub low_m: [f64; 2],
+    /// Upper x and z, m.
+    pub high_m: [f64; 2],
+}
+
+impl Gauge {
+    /// The rate, mm/h, of a volume in units of [`StepCaught`] that was caught in a time.
+    #[must_use]
+    pub fn rate_mm_h(&self, caught: &StepCaught, time_s: f64) -> f64 {
+        let area = (self.high_m[0] - self.low_m[0]) * (self.high_m[1] - self.low_m[1]);
+        caught.volume as f64 * 1.0e-13 / (area * time_s) * 3.6e6
+    }
+}
+
+/// A simulation's choices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulationOptions {
+    /// Where.
+    pub volume: SimVolume,
+    /// Same seed, same drops.
+    pub seed: u64,
+    /// 1 to 2^28. A view leaves out drops that are small on the picture, other volumes small drops, so that no more are
+    /// expected.
+    pub most_drops: u32,
+    /// Number of the first step: steps of the same number draw the same random numbers.
+    pub first_step: u32,
+    /// The longest time for which the shutter of a picture is open, s, 0 to 10; of a view.
+    pub shutter_s: f64,
+    /// The longest time from a state to the opening of the shutter of a picture of it, s, 0 to 1; of a view.
+    pub wait_s: f64,
+    /// A drop that has been in a view for so long is taken out, 0.1 to 1000 s: few are, in an updraft.
+    pub oldest_s: f64,
+    /// How drops follow the wind.
+    pub drag: Drag,
+    /// What happens to drops that meet a surface.
+    pub bounce: Bounce,
+    /// Impacts that are noted in a step; the others are counted.
+    pub most_events: u32,
+    /// Measures what falls through it.
+    pub gauge: Option<Gauge>,
+}
+
+impl Default for SimulationOptions {
+    /// Two million drops in view; 65 536 impacts a step.
+    fn default() -> Self {
+        Self {
+            volume: SimVolume::View,
+            seed: 0,
+            most_drops: 2_000_000,
+            first_step: 0,
+            shutter_s: 0.0,
+            wait_s: 0.0,
+            oldest_s: 30.0,
+            drag: Drag::Relaxation,
+            bounce: Bounce::default(),
+            most_events: 1 << 16,
+            gauge: None,
+        }
+    }
+}
+
+impl SimulationOptions {
+    /// Time that pictures of one state cover, s.
+    pub(crate) fn horizon_s(&self) -> f64 {
+        self.shutter_s + self.wait_s
+    }
+
+    pub(crate) fn check(&self) -> Result<(), SimError> {
+        let within = |quantity, found: f64, unit, range: std::ops::RangeInclusive<f64>, allowed| {
+            if range.contains(&found) {
+                return Ok(());
+            }
+            Err(SimError::OutOfRange { quantity, found, unit, allowed })
+        };
+        match self.volume {
+            SimVolume::Box { size_m } | SimVolume::Tariq { size_m } => {
+                for edge in size_m {
+                    within("edge of the rain box", edge, "m", 1.0..=1000.0, "1 to 1000")?;
+                }
+            }
+            SimVolume::Cylinder { base_m, radius_m, height_m } => {
+                for place in base_m {
+                    within("place of the rain cylinder", place, "m", -1.0e7..=1.0e7, "-1e7 to 1e7")?;
+                }
+                within("radius of the rain cylinder", radius_m, "m", 0.5..=1000.0, "0.5 to 1000")?;
+                within("height of the rain cylinder", height_m, "m", 1.0..=1000.0, "1 to 1000")?;
+            }
+            SimVolume::View | SimVolume::ImSung => {}
+        }
+        within("most drops", self.most_drops.into(), "", 1.0..=MAX_DROPS as f64, "1 to 2^30")?;
+        if u64::from(self.most_drops) > MAX_DROPS_IN_MEMORY {
+            return Err(SimError::memory(self.most_drops.into()));
+        }
+        within("time of the shutter", self.shutter_s, "s", 0.0..=10.0, "0 to 10")?;
+        within("time from a state to the shutter's opening", self.wait_s, "s", 0.0..=1.0, "0 to 1")?;
+        within("time of a drop in view", self.oldest_s, "s", 0.1..=1000.0, "0.1 to 1000")?;
+        let Bounce { share, restitution, grip, size, longest_s } = self.bounce;
+        within("share of impacts that bounce", share.into(), "", 0.0..=1.0, "0 to 1")?;
+        within("restitution", restitution.into(), "", 0.0..=1.0, "0 to 1")?;
+        within("grip", grip.into(), "", 0.0..=1.0, "0 to 1")?;
+        within("size of a bounced drop", size.into(), "", 0.05 - 1.0e-6..=1.0, "0.05 to 1")?;
+        within("time of a bounced drop", longest_s.into(), "s", 0.01 - 1.0e-6..=10.0, "0.01 to 10")?;
+        if let Some(Gauge { height_m, low_m, high_m }) = self.gauge {
+            for place in [height_m, low_m[0], low_m[1], high_m[0], high_m[1]] {
+                within("place of the gauge", place, "m", -1.0e7..=1.0e7, "-1e7 to 1e7")?;
+            }
+            let edge = (high_m[0] - low_m[0]).min(high_m[1] - low_m[1]);
+            within("edge of the gauge", edge, "m", 1.0e-3..=1.0e4, "0.001 to 1e4")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,51 @@
+//! The cells of a field as the shader takes them.
+
+use glam::{UVec3, Vec3};
+
+use crate::grid::WindGrid;
+
+/// A grid as the shader takes it. The same layout as `WindFieldGrid` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct WindFieldGrid {
+    /// Lower corner of the box, m.
+    pub low: [f32; 3],
+    /// How many matrices there are.
+    pub primitives: u32,
+    /// Edges of a cell, m.
+    pub cell: [f32; 3],
+    /// How many waves of turbulence there are.
+    pub modes: u32,
+    /// Their inverses, 1/m.
+    pub per_cell: [f32; 3],
+    /// Padding of the WGSL layout.
+    pub padding_2: u32,
+    /// How many cells there are along each edge.
+    pub size: [u32; 3],
+    /// Padding of the WGSL layout.
+    pub padding_3: u32,
+}
+
+impl WindFieldGrid {
+    /// A grid on which `primitives` matrices and `modes` waves of turbulence blow.
+    #[must_use]
+    pub fn new(grid: &WindGrid, primitives: u32, modes: u32) -> Self {
+        let cell = grid.cell();
+        Self {
+            low: grid.low().to_array(),
+            primitives,
+            cell: cell.to_array(),
+            modes,
+            per_cell: cell.recip().to_array(),
+            padding_2: 0,
+            size: grid.size(),
+            padding_3: 0,
+        }
+    }
+}
+
+/// The centre of a cell, m.
+#[must_use]
+pub fn wind_field_centre(grid: &WindFieldGrid, cell: UVec3) -> Vec3 {
+    Vec3::from(grid.low) + (cell.as_vec3() + 0.5) * Vec3::from(grid.cell)
+}
