@@ -1,0 +1,203 @@
+//! Dependencies point downwards: crates by their layer, and modules of a crate without circles.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The layer of each crate, as in ARCHITECTURE.md: a crate names those of lower layers alone.
+const LAYERS: [(&str, u32); 14] = [
+    ("downpour-shaders", 0),
+    ("downpour-math", 1),
+    ("downpour-gpu", 2),
+    ("downpour-bvh", 2),
+    ("downpour-drop", 2),
+    ("downpour-lattice", 3),
+    ("downpour-mask", 3),
+    ("downpour-wind", 3),
+    ("downpour-scene", 4),
+    ("downpour-sim", 4),
+    ("downpour-render", 5),
+    ("downpour", 6),
+    ("downpour-cli", 7),
+    ("downpour-tests", 7),
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn folder(name: &str) -> PathBuf {
+    match name {
+        "downpour-shaders" => root().join("shaders"),
+        "downpour-tests" => root().join("tests"),
+        _ => root().join("crates").join(name),
+    }
+}
+
+/// The crates of the workspace that a manifest names outside of its tests.
+fn named(manifest: &str) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    let mut counts = false;
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            counts = line.contains("dependencies") && !line.contains("dev-dependencies");
+        } else if counts && line.starts_with("downpour") {
+            names.insert(line.split(['.', ' ', '=']).next().unwrap_or_default().to_owned());
+        }
+    }
+    names
+}
+
+#[test]
+fn no_crate_names_one_above_it_or_beside_it() {
+    let layers = BTreeMap::from(LAYERS);
+    let crates = fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap().file_name());
+    for name in crates {
+        assert!(layers.contains_key(&*name.to_string_lossy()), "{} has no layer", name.display());
+    }
+    let mut wrong = Vec::new();
+    for (name, layer) in LAYERS {
+        let manifest = fs::read_to_string(folder(name).join("Cargo.toml")).unwrap();
+        for other in named(&manifest) {
+            if layers.get(other.as_str()).is_none_or(|&below| below >= layer) {
+                wrong
+                    .push(format!("{name} (layer {layer}) names {other} ({:?})", layers.get(other.as_str())));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The diagram of ARCHITECTURE.md is this table.
+#[test]
+fn the_architecture_shows_the_layers() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let mut rows: BTreeMap<u32, Vec<&str>> = BTreeMap::new();
+    for (name, layer) in LAYERS {
+        rows.entry(layer).or_default().push(name);
+    }
+    for (layer, names) in rows {
+        let row = format!("{layer}  {}", names.join("  "));
+        assert!(text.contains(&row), "ARCHITECTURE.md has no row \"{row}\"");
+    }
+}
+
+/// The files of a folder and of those in it.
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// What the modules at the root of a crate name of each other, tests and documentation left out.
+fn imports(source: &Path) -> BTreeMap<String, BTreeSet<String>> {
+    let mut all = Vec::new();
+    files(source, &mut all);
+    let top = |path: &Path| -> String {
+        let relative = path.strip_prefix(source).unwrap();
+        let first = relative.components().next().unwrap().as_os_str().to_string_lossy().into_owned();
+        first.trim_end_matches(".rs").to_owned()
+    };
+    let modules: BTreeSet<String> = all.iter().map(|path| top(path)).collect();
+    let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for path in &all {
+        let module = top(path);
+        let is_test = path.components().any(|part| part.as_os_str() == "tests");
+        if module == "lib" || module == "main" || is_test || path.ends_with("tests.rs") {
+            continue;
+        }
+        let text = fs::read_to_string(path).unwrap();
+        let text = text.split("#[cfg(test)]").next().unwrap_or_default();
+        let code: Vec<&str> = text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
+        let of_root = path.parent() == Some(source);
+        for found in names_after(&code.join("\n"), "crate::").into_iter().chain(if of_root {
+            names_after(&code.join("\n"), "super::")
+        } else {
+            Vec::new()
+        }) {
+            if modules.contains(&found) && found != module {
+                imports.entry(module.clone()).or_default().insert(found);
+            }
+        }
+    }
+    imports
+}
+
+/// The first names of paths that begin with a word, those in braces too.
+fn names_after(code: &str, begin: &str) -> Vec<String> {
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    let first = |text: &str| text.trim_start().chars().take_while(|&c| is_name(c)).collect::<String>();
+    let mut names = Vec::new();
+    for (at, _) in code.match_indices(begin) {
+        if code[..at].ends_with(is_name) {
+            continue;
+        }
+        let rest = &code[at + begin.len()..];
+        match rest.strip_prefix('{') {
+            Some(list) => names.extend(list.split('}').next().unwrap_or_default().split(',').map(first)),
+            None => names.push(first(rest)),
+        }
+    }
+    names
+}
+
+/// A way from a module back to itself, if there is one.
+fn circle(imports: &BTreeMap<String, BTreeSet<String>>) -> Option<Vec<String>> {
+    fn walk(
+        imports: &BTreeMap<String, BTreeSet<String>>,
+        way: &mut Vec<String>,
+        done: &mut BTreeSet<String>,
+    ) -> Option<Vec<String>> {
+        let here = way.last()?.clone();
+        for next in imports.get(&here).into_iter().flatten() {
+            if let Some(begin) = way.iter().position(|module| module == next) {
+                return Some(way[begin..].iter().chain([next]).cloned().collect());
+            }
+            if !done.contains(next) {
+                way.push(next.clone());
+                if let Some(found) = walk(imports, way, done) {
+                    return Some(found);
+                }
+                way.pop();
+            }
+        }
+        done.insert(here);
+        None
+    }
+    let mut done = BTreeSet::new();
+    imports.keys().find_map(|module| walk(imports, &mut vec![module.clone()], &mut done))
+}
+
+#[test]
+fn no_modules_of_a_crate_name_each_other_in_a_circle() {
+    let mut wrong = Vec::new();
+    for (name, _) in LAYERS {
+        let found = imports(&folder(name).join("src"));
+        if let Some(way) = circle(&found) {
+            wrong.push(format!("{name}: {}", way.join(" -> ")));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The search can find: a circle of three is one.
+#[test]
+fn a_circle_is_found() {
+    let imports = |pairs: &[(&str, &str)]| {
+        let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (from, to) in pairs {
+            imports.entry((*from).to_owned()).or_default().insert((*to).to_owned());
+        }
+        imports
+    };
+    assert!(circle(&imports(&[("a", "b"), ("b", "c"), ("c", "a"), ("c", "d")])).is_some());
+    assert!(circle(&imports(&[("a", "b"), ("b", "c"), ("a", "c"), ("c", "d")])).is_none());
+    assert_eq!(names_after("use crate::{a::B, c}; x(crate::d::E)", "crate::"), ["a", "c", "d"]);
+}
