@@ -3,13 +3,11 @@
 mod atlas;
 mod checks;
 mod driver;
-mod figures;
 mod goldens;
 mod masks;
 mod run;
 mod scenes;
 mod shaders;
-mod truth;
 
 use std::process::ExitCode;
 
@@ -46,8 +44,7 @@ fn main() -> ExitCode {
         ["goldens", "--bless"] => goldens::bless(),
         ["shaders"] => shaders::write("target/shaders"),
         ["shaders", folder] => shaders::write(folder),
-        ["truth", rest @ ..] => truth::run(rest),
-        ["figures", rest @ ..] => figures::run(rest),
+        ["truth" | "figures", ..] => validate(&words),
         ["bench"] => checks::bench(),
         [] => {
             println!("{USAGE}");
@@ -62,4 +59,9 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// A task of the crate `downpour-validation`.
+fn validate(words: &[&str]) -> Result<(), String> {
+    run::cargo(&[&["run", "--quiet", "--locked", "-p", "downpour-validation", "--"], words].concat(), &[])
 }

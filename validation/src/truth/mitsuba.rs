@@ -125,7 +125,7 @@ impl Mitsuba {
 
     fn named_script(&self, name: &str, llvm: Option<&Path>) -> Command {
         let mut command = run::command(&self.python.display().to_string(), &[]);
-        command.arg(run::root().join("xtask/src/truth").join(name)).env("PYTHONDONTWRITEBYTECODE", "1");
+        command.arg(run::root().join("validation/src/truth").join(name)).env("PYTHONDONTWRITEBYTECODE", "1");
         if let Some(llvm) = llvm {
             command.env("DRJIT_LIBLLVM_PATH", llvm);
         }

@@ -30,35 +30,18 @@ use downpour_drop::DropShape;
 use crate::run;
 use cases::Case;
 use mitsuba::Mitsuba;
-use options::Options;
+pub(crate) use options::Options;
 use report::{Outcome, Report};
 
-/// What a wrong argument is answered with.
-const USAGE: &str = "\
-cargo xtask truth [--quick] [--no-check] [--streaks] [--diameter MM]... [--map FILE]... [--only] [--command FILE]
-                  [--size PIXELS] [--samples N] [--path-samples N] [--subdivisions N]
-  --quick           two diameters and one view instead of four and three
-  --no-check        a case above the aim is no failure
-  --streaks         nothing but streaks, before the maps and under lamps
-  --diameter MM     these diameters (repeatable) instead of 1, 2, 3 and 5 mm (streaks: 2 and 4 mm)
-  --map FILE        this sky map, too (repeatable)
-  --only            no maps but those of --map
-  --command FILE    a `downpour` that is built already
-  --size PIXELS     edge of the pictures (default 256)
-  --samples N       samples per pixel where Mitsuba follows all branches (default 64)
-  --path-samples N  samples per pixel of Mitsuba's path tracer (default 72)
-  --subdivisions N  fineness of the mesh, 20 * 4^N triangles, 3 to 8 (default 7)";
-
 /// Renders every case twice, compares, writes the report, and says what is above the aim.
-pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
-    let options = Options::read(arguments).map_err(|message| format!("{message}\n{USAGE}"))?;
+pub(crate) fn run(options: &Options) -> Result<(), String> {
     let folder = run::root().join("target/truth");
     create(&folder)?;
-    let maps = cases::maps(&options, &folder)?;
-    let program = command(&options)?;
+    let maps = cases::maps(options, &folder)?;
+    let program = command(options)?;
     let mitsuba = Mitsuba::ready(&folder)?;
-    if options.scenes {
-        let (text, misses) = scenes::compare(&options, &program, &folder, &mitsuba)?;
+    if options.scenes() {
+        let (text, misses) = scenes::compare(options, &program, &folder, &mitsuba)?;
         println!("{text}");
         write(&folder.join("scenes.md"), text.as_bytes())?;
         return if misses.is_empty() || !options.check {
@@ -67,18 +50,18 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
             Err(format!("above the aim:\n  {}", misses.join("\n  ")))
         };
     }
-    let mut report = Report::new(&options, &mitsuba);
-    let diameters_mm = if options.streaks { &[][..] } else { &options.diameters_mm[..] };
+    let mut report = Report::new(options, &mitsuba);
+    let diameters_mm = if options.streaks { &[][..] } else { &options.diameters_mm()[..] };
     for &diameter_mm in diameters_mm {
         let shape = DropShape::new(diameter_mm * 1.0e-3).map_err(|error| error.to_string())?;
         let mesh = folder.join("mesh.ply");
         write(&mesh, &mesh::ply(&shape, options.subdivisions)?)?;
-        for case in cases::cases(&shape, diameter_mm, &maps, &options) {
-            let outcome = compare(&case, &program, &folder, &mesh, &mitsuba, &options)?;
+        for case in cases::cases(&shape, diameter_mm, &maps, options) {
+            let outcome = compare(&case, &program, &folder, &mesh, &mitsuba, options)?;
             eprintln!("{}", report.add(&case, outcome));
         }
     }
-    let (of_streaks, above) = streaks::compare(&options, &maps, &program, &folder, &mitsuba)?;
+    let (of_streaks, above) = streaks::compare(options, &maps, &program, &folder, &mitsuba)?;
     let text = if options.streaks { of_streaks } else { format!("{}\n{of_streaks}", report.markdown()) };
     println!("{text}");
     write(&folder.join("report.md"), text.as_bytes())?;

@@ -103,9 +103,9 @@ mod tests {
     #[test]
     fn every_case_has_a_name_of_its_own() {
         let maps = ["a", "b"].map(|name| Map { name: name.to_owned(), file: PathBuf::new() });
-        let options = Options::read(&[]).expect("no arguments");
+        let options = crate::read::<Options>(&[]).expect("no arguments");
         let mut names = Vec::new();
-        for &d in &options.diameters_mm {
+        for &d in &options.diameters_mm() {
             let shape = DropShape::new(d * 1.0e-3).expect("in range");
             names.extend(cases(&shape, d, &maps, &options).iter().map(Case::name));
         }
@@ -119,10 +119,10 @@ mod tests {
     #[test]
     fn two_maps_of_one_name_are_refused() {
         let here = run::root().join("assets/skies/street_low_sun.hdr").display().to_string();
-        let options = Options::read(&["--only", "--map", &here, "--map", &here]).expect("right");
+        let options = crate::read::<Options>(&["--only", "--map", &here, "--map", &here]).expect("right");
         let error = maps(&options, Path::new("unused")).expect_err("twice the same");
         assert!(error.contains("street_low_sun"), "{error}");
-        let options = Options::read(&["--only", "--map", "no such.hdr"]).expect("right");
+        let options = crate::read::<Options>(&["--only", "--map", "no such.hdr"]).expect("right");
         assert!(maps(&options, Path::new("unused")).expect_err("missing").starts_with("no sky map "));
     }
 }

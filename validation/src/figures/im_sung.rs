@@ -23,21 +23,9 @@ use std::path::{Path, PathBuf};
 use image::RgbImage;
 
 use crate::run;
-use options::Options;
+pub(crate) use options::Options;
 use table::Run;
 use weather::{Model, Rain};
-
-/// What a wrong argument is answered with.
-const USAGE: &str = "\
-cargo xtask figures im-sung [--command FILE] [--size WxH] [--fps N] [--backend NAME] [--quick] [--go-on]
-                          [--no-check]
-  --command FILE  a `downpour` that is built already
-  --size WxH      size of the pictures (default 640x360)
-  --fps N         frames per second of the path of 2 s (default 12)
-  --backend NAME  what computes: cpu (default), gpu or auto
-  --quick         without figures 7 and 11
-  --go-on         keep the frames that an earlier run with the same arguments has made
-  --no-check      drops of ours that are off screen are no failure";
 
 /// The file of street and camera.
 const SCENE: &str = "street.gltf";
@@ -64,15 +52,14 @@ const NUMBERS_FRAMES: u32 = 2;
 const ZOOM_DEG: [f64; 3] = [12.0, 18.0, 30.0];
 
 /// Makes the runs, the sheets and the tables; says where our rain is below its aim.
-pub(super) fn run(arguments: &[&str]) -> Result<(), String> {
-    let options = Options::read(arguments).map_err(|message| format!("{message}\n{USAGE}"))?;
-    let maker = Maker::ready(&options)?;
-    let runs = plan(&options)
+pub(crate) fn run(options: &Options) -> Result<(), String> {
+    let maker = Maker::ready(options)?;
+    let runs = plan(options)
         .into_iter()
         .map(|(set, name, rain, frames)| maker.make(set, name, rain, frames))
         .collect::<Result<Vec<Run>, String>>()?;
     maker.sheets()?;
-    let text = report::text(&runs, &options);
+    let text = report::text(&runs, options);
     println!("{text}");
     maker.write("im-sung.md", text.as_bytes())?;
     maker.write("im-sung.csv", table::csv(&runs).as_bytes())?;
@@ -257,14 +244,14 @@ mod tests {
     /// Each number of drops once for each model, no name twice, and the path as long as it is.
     #[test]
     fn the_plan_is_whole() {
-        let options = Options::read(&[]).expect("no arguments");
+        let options = crate::read::<Options>(&[]).expect("no arguments");
         let runs = plan(&options);
         let names: std::collections::BTreeSet<&str> = runs.iter().map(|run| run.1.as_str()).collect();
         assert_eq!(names.len(), runs.len());
         let count = |set| runs.iter().filter(|run| run.0 == set).count();
         assert_eq!((count("path"), count("zoom"), count("number")), (4, 6, 20));
         assert!(runs.iter().filter(|run| run.0 == "path").all(|run| run.3 == 24));
-        let quick = plan(&Options::read(&["--quick"]).expect("quick"));
+        let quick = plan(&crate::read::<Options>(&["--quick"]).expect("quick"));
         assert_eq!(quick, runs.into_iter().filter(|run| run.0 != "number").collect::<Vec<_>>());
     }
 }

@@ -95,7 +95,7 @@ pub(super) fn compare(
     };
     let dusk = Map { name: "lamp".to_owned(), file: folder.join("dusk.hdr") };
     write(&dusk.file, &super::sky::dusk())?;
-    for &diameter_mm in &options.diameters_mm {
+    for &diameter_mm in &options.diameters_mm() {
         for (&exposure, pixels) in exposures.iter().zip(PIXELS) {
             let streak = Streak::new(diameter_mm, exposure, pixels)?;
             let meshes = folder.join("instants");
