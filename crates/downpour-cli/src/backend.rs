@@ -41,7 +41,7 @@ impl BackendArguments {
 }
 
 impl BackendArguments {
-    /// What draws frames; says which it is.
+    /// Device that draws frames; says which it is.
     ///
     /// # Errors
     /// Exit code 4 if a GPU was asked for and there is none.
@@ -51,9 +51,9 @@ impl BackendArguments {
     }
 }
 
-/// The failure of a renderer.
+/// Failure of a renderer.
 #[cfg(not(feature = "gpu"))]
-pub(crate) fn leave_if_hung(error: downpour::RendererError, _: &crate::interrupt::Interrupt) -> Failure {
+pub(crate) fn renderer_failure(error: downpour::RendererError, _: &crate::interrupt::Interrupt) -> Failure {
     error.into()
 }
 
@@ -84,7 +84,7 @@ pub(crate) fn compute<T>(
 }
 
 #[cfg(feature = "gpu")]
-pub(crate) use gpu::{FromGpu, compute, leave_if_hung};
+pub(crate) use gpu::{FromGpu, compute, renderer_failure};
 
 #[cfg(feature = "gpu")]
 mod gpu {
@@ -159,64 +159,70 @@ mod gpu {
     where
         Failure: From<E>,
     {
-        let wanted = arguments.backend;
-        if wanted == Backend::Cpu {
-            return on_cpu();
-        }
-        let reason = match device(arguments)? {
-            Ok(gpu) => {
-                let adapter = gpu.adapter();
-                say(&format!("backend: gpu, {} ({}, {})", adapter.name, adapter.kind, adapter.backend));
-                let error = match finish(on_gpu(&gpu), interrupt) {
-                    Ok(made) => return Ok(made),
-                    Err(error) => error,
-                };
-                // Too much for this device is not too much for the CPU.
-                let too_much =
-                    matches!(error.gpu(), Some(GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. }));
-                if wanted != Backend::Auto || !too_much {
-                    return Err(error.into());
-                }
-                error.to_string()
-            }
-            Err(error) if wanted == Backend::Auto => error.to_string(),
-            Err(error) => return Err(error.into()),
+        let Some(gpu) = opened(arguments, &say)? else { return on_cpu() };
+        let error = match on_gpu(&gpu) {
+            Ok(made) => return Ok(made),
+            Err(error) => error,
         };
-        say(&format!("backend: cpu ({reason})"));
+        if let Some(error) = error.gpu() {
+            leave_if_hung(error, interrupt);
+        }
+        // Too much for this device is not too much for the CPU.
+        let too_much = matches!(error.gpu(), Some(GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. }));
+        if arguments.backend != Backend::Auto || !too_much {
+            return Err(error.into());
+        }
+        say(&format!("backend: cpu ({error})"));
         on_cpu()
     }
 
     impl BackendArguments {
-        /// What draws frames; says which it is.
+        /// Device that draws frames; says which it is.
         ///
         /// # Errors
         /// Exit code 2 for a bad [`INJECT`], 4 if there is no such adapter, or no GPU where one was asked for.
         pub(crate) fn device(&self, say: impl Fn(&str)) -> Result<downpour::Device, Failure> {
-            if self.backend == Backend::Cpu {
-                return Ok(downpour::Device::cpu());
-            }
-            match device(self)? {
-                Ok(gpu) => {
-                    let adapter = gpu.adapter();
-                    say(&format!("backend: gpu, {} ({}, {})", adapter.name, adapter.kind, adapter.backend));
-                    Ok(downpour::Device::gpu(gpu, self.backend == Backend::Auto))
-                }
-                Err(error) if self.backend == Backend::Auto => {
-                    say(&format!("backend: cpu ({error})"));
-                    Ok(downpour::Device::cpu())
-                }
-                Err(error) => Err(error.into()),
-            }
+            let fall_back = self.backend == Backend::Auto;
+            Ok(match opened(self, say)? {
+                Some(gpu) => downpour::Device::gpu(gpu, fall_back),
+                None => downpour::Device::cpu(),
+            })
         }
     }
 
-    /// The failure of a renderer. A GPU that hangs ends the process here: dropping its device would wait for it.
-    pub(crate) fn leave_if_hung(error: downpour::RendererError, interrupt: &Interrupt) -> Failure {
-        if let downpour::RendererError::Gpu(error @ GpuError::Hung { .. }) = &error {
+    /// Failure of a renderer.
+    pub(crate) fn renderer_failure(error: downpour::RendererError, interrupt: &Interrupt) -> Failure {
+        if let Some(error) = error.gpu() {
+            leave_if_hung(error, interrupt);
+        }
+        error.into()
+    }
+
+    /// Ends the process for a GPU that hangs: dropping its device would wait for it.
+    fn leave_if_hung(error: &GpuError, interrupt: &Interrupt) {
+        if let GpuError::Hung { .. } = error {
             stream::message(&format!("error: {error}"));
             interrupt.leave(error.exit_code());
         }
-        error.into()
+    }
+
+    /// Opens the GPU that was asked for, and says what computes. `None`: the CPU.
+    fn opened(arguments: &BackendArguments, say: impl Fn(&str)) -> Result<Option<Gpu>, Failure> {
+        if arguments.backend == Backend::Cpu {
+            return Ok(None);
+        }
+        match device(arguments)? {
+            Ok(gpu) => {
+                let adapter = gpu.adapter();
+                say(&format!("backend: gpu, {} ({}, {})", adapter.name, adapter.kind, adapter.backend));
+                Ok(Some(gpu))
+            }
+            Err(error) if arguments.backend == Backend::Auto => {
+                say(&format!("backend: cpu ({error})"));
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
     }
 
     /// Opens the device that was asked for. `Ok(Err(reason))`: there is none.
@@ -249,14 +255,5 @@ mod gpu {
                 Err(Failure::new(INPUT, message))
             }
         }
-    }
-
-    /// Hands a result of a GPU on. A GPU that hangs ends the process here: dropping its device would wait for it.
-    fn finish<T, E: FromGpu>(result: Result<T, E>, interrupt: &Interrupt) -> Result<T, E> {
-        if let Err(Some(error @ GpuError::Hung { .. })) = result.as_ref().map_err(FromGpu::gpu) {
-            stream::message(&format!("error: {error}"));
-            interrupt.leave(error.exit_code());
-        }
-        result
     }
 }

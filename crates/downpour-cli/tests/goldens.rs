@@ -23,7 +23,7 @@ struct Golden {
     /// The weather file of `tests/goldens/weather`.
     weather: &'static str,
     options: &'static [&'static str],
-    /// What the command writes.
+    /// Output argument of the command.
     output: &'static str,
     /// The frame among it.
     file: &'static str,

@@ -119,7 +119,7 @@ impl SceneBuilder {
         }
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.places.len()

@@ -276,7 +276,7 @@ fn view_of(
 fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
     let moves = match &weather.camera.path {
         Some(path) => !path.is_still(),
-        None => loaded.animations.iter().any(Option::is_some),
+        None => loaded.is_animated(),
     };
     if !moves {
         return EyeMotion::default();

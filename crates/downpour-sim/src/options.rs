@@ -1,4 +1,4 @@
-//! What is asked of a simulation: where, how many drops, and what happens to them.
+//! Options of a simulation: its volume, number of drops, drag and bounces.
 
 use crate::SimError;
 use crate::step::StepCaught;
@@ -46,7 +46,7 @@ pub enum SimVolume {
     },
 }
 
-/// How drops follow the wind.
+/// Response of drops to the wind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Drag {
     /// The slip relaxes with v / g across the fall and v / 2g along it.
@@ -56,7 +56,7 @@ pub enum Drag {
     Rousseau2008,
 }
 
-/// What happens to drops that meet a surface.
+/// Rebound of drops that meet a surface.
 ///
 /// The default lets a tenth of the impacts send up a droplet, of which the papers say little: "a low-motion quasi-spherical
 /// refractive drop". 1 for `share` is Rousseau 2008.
@@ -103,7 +103,7 @@ impl Gauge {
 /// A simulation's choices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationOptions {
-    /// Where.
+    /// Volume.
     pub volume: SimVolume,
     /// Same seed, same drops.
     pub seed: u64,
@@ -118,9 +118,9 @@ pub struct SimulationOptions {
     pub wait_s: f64,
     /// A drop that has been in a view for so long is taken out, 0.1 to 1000 s: few are, in an updraft.
     pub oldest_s: f64,
-    /// How drops follow the wind.
+    /// Response of drops to the wind.
     pub drag: Drag,
-    /// What happens to drops that meet a surface.
+    /// Rebound of drops that meet a surface.
     pub bounce: Bounce,
     /// Impacts that are noted in a step; the others are counted.
     pub most_events: u32,

@@ -10,17 +10,17 @@ use crate::grid::WindGrid;
 pub struct WindFieldGrid {
     /// Lower corner of the box, m.
     pub low: [f32; 3],
-    /// How many matrices there are.
+    /// Number of matrices.
     pub primitives: u32,
     /// Edges of a cell, m.
     pub cell: [f32; 3],
-    /// How many waves of turbulence there are.
+    /// Number of waves of turbulence.
     pub modes: u32,
     /// Their inverses, 1/m.
     pub per_cell: [f32; 3],
     /// Padding of the WGSL layout.
     pub padding_2: u32,
-    /// How many cells there are along each edge.
+    /// Number of cells along each edge.
     pub size: [u32; 3],
     /// Padding of the WGSL layout.
     pub padding_3: u32,

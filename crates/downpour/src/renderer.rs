@@ -6,7 +6,6 @@ mod frame;
 mod shower_of_model;
 mod source;
 
-use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
 
@@ -29,18 +28,18 @@ pub use error::RendererError;
 pub use frame::Frame;
 pub use source::Source;
 
-/// How frames are made.
+/// Options of frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RendererOptions {
     /// Samples along an edge of a pixel, 1 to 16.
     pub samples: u32,
     /// Rays to the sky per sample, 0 to 64; with 0 nothing hides the sky.
     pub sky_rays: u32,
-    /// How a drop's pixel finds its color; `None` for what the weather says.
+    /// Refraction of drops; `None` takes the weather's.
     pub refraction: Option<RefractionForm>,
     /// The streak atlas, for a weather that takes the light of lamps on streaks from one.
     pub atlas: Option<StreakAtlas>,
-    /// Whether each frame has its measured rain rate. That takes time.
+    /// True if each frame has its measured rain rate. That takes time.
     pub measure: bool,
     /// Time of the first frame, s: puddles and panes have been rained on for a while by then.
     pub first_s: f64,
@@ -53,10 +52,10 @@ impl Default for RendererOptions {
     }
 }
 
-/// How far a frame is.
+/// Progress of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// What is being done.
+    /// Name of the work.
     pub what: &'static str,
     /// Parts that are done, and how many there are; 0 where they are not counted.
     pub parts: [u32; 2],
@@ -82,7 +81,7 @@ pub struct Renderer {
     drawn: u32,
 }
 
-/// What holds water, from frame to frame.
+/// Water on ground and pane, from frame to frame.
 #[derive(Debug)]
 struct Water {
     pane: Option<WetPane>,
@@ -107,16 +106,16 @@ impl Renderer {
     pub fn new(
         weather: Weather,
         mut loaded: Loaded,
-        options: RendererOptions,
+        mut options: RendererOptions,
         device: Device,
     ) -> Result<Self, RendererError> {
         check_size(weather.size)?;
-        let atlas = atlas_of(&weather, options.atlas.as_ref())?;
+        options.atlas = atlas_of(&weather, options.atlas)?;
         let first = Stage::new(&weather, &loaded, options.first_s)?;
         let masks = shower::masks(&weather, &loaded)?;
-        let masks = if let Some(atlas) = &atlas { masks.with_atlas(atlas) } else { masks };
+        let masks = if let Some(atlas) = &options.atlas { masks.with_atlas(atlas) } else { masks };
         let shower = Shower::new(&weather)?;
-        if !moves(&loaded) {
+        if !loaded.is_animated() {
             // The files have become buffers.
             loaded.scene = Scene::default();
         }
@@ -141,7 +140,13 @@ impl Renderer {
         &self.weather
     }
 
-    /// What of its files is still needed: of a scene that stands still no mesh.
+    /// Options of its frames. The atlas is there if the weather takes streaks from it.
+    #[must_use]
+    pub fn options(&self) -> &RendererOptions {
+        &self.options
+    }
+
+    /// Its files, as far as they are still needed: of a scene that stands still no mesh.
     #[must_use]
     pub fn loaded(&self) -> &Loaded {
         &self.loaded
@@ -153,7 +158,7 @@ impl Renderer {
         &self.first
     }
 
-    /// What draws.
+    /// Device that draws.
     #[must_use]
     pub fn computer(&self) -> &Computer {
         self.drawer.computer()
@@ -258,17 +263,11 @@ impl Renderer {
         if time_s.to_bits() == self.options.first_s.to_bits() {
             return Ok(self.first.clone());
         }
-        match (moves(&self.loaded), eye_moves(&self.weather)) {
-            (false, false) => Ok(self.first.clone()),
-            (false, true) => {
-                let eye = MovingEye { stage: &self.first, weather: &self.weather, loaded: &self.loaded };
-                Ok(eye.stage(time_s)?.into_owned())
-            }
-            (true, _) => Ok(Stage::new(&self.weather, &self.loaded, time_s)?),
-        }
+        let scenery = scenery(&self.first, &self.weather, &self.loaded);
+        Ok(scenery.stage(time_s)?.into_owned())
     }
 
-    /// What holds water, not later than a time.
+    /// Water on ground and pane, not later than a time.
     fn water_at(&mut self, time_s: f64) -> Result<&mut Water, RendererError> {
         let known = self.water.take().filter(|water| water.time_s <= time_s);
         let water = match known {
@@ -316,17 +315,9 @@ impl Renderer {
         measure: bool,
         told: &mut dyn FnMut(Progress),
     ) -> Result<(VisibleDrops, Option<f64>), RendererError> {
-        let (weather, loaded) = (&self.weather, &self.loaded);
-        let still = Still(&self.first);
-        let eye = MovingEye { stage: &self.first, weather, loaded };
-        let all = MovingScenery { weather, loaded };
-        let scenery: &dyn Scenery = match (moves(loaded), eye_moves(weather)) {
-            (false, false) => &still,
-            (false, true) => &eye,
-            (true, _) => &all,
-        };
+        let scenery = scenery(&self.first, &self.weather, &self.loaded);
         let mut passed = |done, all| told(Progress { what: "rain: step", parts: [done, all] });
-        let drops = self.shower.at(scenery, stage, time_s, &mut passed)?;
+        let drops = self.shower.at(&*scenery, stage, time_s, &mut passed)?;
         let measured = || self.shower.measured_rate_mm_h(stage, time_s);
         Ok((drops, measure.then(measured).transpose()?))
     }
@@ -349,7 +340,7 @@ impl Renderer {
         }
     }
 
-    /// How a drop's pixel finds its color.
+    /// Refraction of drops.
     #[must_use]
     pub fn refraction(&self) -> RefractionForm {
         self.options.refraction.unwrap_or_else(|| self.weather.rain.refraction.into())
@@ -371,14 +362,15 @@ impl Renderer {
     }
 }
 
-/// Whether the weather's eye moves.
-fn eye_moves(weather: &Weather) -> bool {
-    weather.camera.path.as_ref().is_some_and(|path| !path.is_still())
-}
-
-/// Whether anything but the rain and the eye moves.
-fn moves(loaded: &Loaded) -> bool {
-    loaded.animations.iter().any(Option::is_some)
+/// The scene over time: still, before an eye that moves, or moving itself.
+fn scenery<'a>(first: &'a Stage, weather: &'a Weather, loaded: &'a Loaded) -> Box<dyn Scenery + 'a> {
+    if loaded.is_animated() {
+        return Box::new(MovingScenery { weather, loaded });
+    }
+    match &weather.camera.path {
+        Some(path) if !path.is_still() => Box::new(MovingEye { stage: first, weather, loaded }),
+        _ => Box::new(Still(first)),
+    }
 }
 
 /// # Errors
@@ -388,10 +380,7 @@ fn check_time(time_s: f64) -> Result<(), RendererError> {
 }
 
 /// The atlas as a weather takes streaks from it, if it does.
-fn atlas_of<'a>(
-    weather: &Weather,
-    atlas: Option<&'a StreakAtlas>,
-) -> Result<Option<Cow<'a, StreakAtlas>>, RendererError> {
+fn atlas_of(weather: &Weather, atlas: Option<StreakAtlas>) -> Result<Option<StreakAtlas>, RendererError> {
     if DropLightOptions::of_weather(weather).form != DropLightForm::Atlas {
         return Ok(None);
     }
@@ -399,8 +388,8 @@ fn atlas_of<'a>(
         StreakLook::AtlasRandom => StreakPick::Random,
         _ => StreakPick::ByAngle,
     };
-    let atlas = atlas.ok_or(RendererError::NoAtlas)?.clone();
-    Ok(Some(Cow::Owned(atlas.with_pick(pick).with_seed(weather.rain.seed))))
+    let atlas = atlas.ok_or(RendererError::NoAtlas)?;
+    Ok(Some(atlas.with_pick(pick).with_seed(weather.rain.seed)))
 }
 
 /// Lets rain fall on a pane until a time in seconds.

@@ -54,7 +54,7 @@ pub(crate) struct Options {
 }
 
 impl Options {
-    /// Whether scenes are compared.
+    /// True if scenes are compared.
     pub(super) fn scenes(&self) -> bool {
         self.scenes || self.scene.is_some()
     }

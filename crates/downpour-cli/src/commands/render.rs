@@ -21,7 +21,7 @@ use downpour::{Frame, Renderer, RendererOptions};
 
 use super::input::{Input, InputArguments, say_missing};
 use super::streaks::StreaksArgument;
-use crate::backend::{BackendArguments, leave_if_hung};
+use crate::backend::{BackendArguments, renderer_failure};
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
 use crate::progress::{Teller, doing};
@@ -147,7 +147,7 @@ impl RenderArguments {
         Ok(())
     }
 
-    /// What makes the frames of a weather, from a time on.
+    /// Renderer of the frames of a weather, from a time on.
     fn renderer(&self, input: Input, first_s: f64, measure: bool) -> Result<Renderer, Failure> {
         let Input { weather, loaded, .. } = input;
         reserve(weather.size)?;
@@ -162,21 +162,29 @@ impl RenderArguments {
         let device = self.backend.device(|text| self.say(text))?;
         let renderer =
             doing("setting the scene", self.quiet, || Renderer::new(weather, loaded, options, device))?;
+        self.say_fallback(&renderer);
         say_missing(renderer.weather(), renderer.loaded(), renderer.first_stage(), |text| self.say(text));
         Ok(renderer)
     }
 
     /// A frame. Who waits for long is told how far it is. A GPU that hangs ends the process: dropping its device would wait.
     fn frame(&self, renderer: &mut Renderer, time_s: f64, interrupt: &Interrupt) -> Result<Frame, Failure> {
-        let before = renderer.computer().reason.clone();
+        let backend = renderer.computer().backend;
         let mut teller = Teller::new(self.quiet);
         let made = renderer.frame_with(time_s, &mut |progress| teller.tell(progress));
         drop(teller);
-        let frame = made.map_err(|error| leave_if_hung(error, interrupt))?;
-        if let Some(reason) = renderer.computer().reason.as_ref().filter(|_| before.is_none()) {
-            self.say(&format!("backend: cpu ({reason})"));
+        let frame = made.map_err(|error| renderer_failure(error, interrupt))?;
+        if renderer.computer().backend != backend {
+            self.say_fallback(renderer);
         }
         Ok(frame)
+    }
+
+    /// Says why the CPU draws in place of a GPU, if it does.
+    fn say_fallback(&self, renderer: &Renderer) {
+        if let Some(reason) = &renderer.computer().reason {
+            self.say(&format!("backend: cpu ({reason})"));
+        }
     }
 
     /// # Errors

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use downpour::mask::atlas::{StreakAtlas, StreakPick};
+use downpour::mask::atlas::StreakAtlas;
 use downpour::render::rain::light::{DropLightForm, DropLightOptions};
-use downpour::scene::weather::{StreakLook, Weather};
+use downpour::scene::weather::Weather;
 
 use crate::failure::{Failure, no_atlas};
 
@@ -39,12 +39,7 @@ impl StreaksArgument {
             return Ok(Streaks::Unwanted);
         }
         let Some(folder) = &self.streaks else { return Ok(Streaks::Nowhere) };
-        let pick = match weather.streaks.look {
-            StreakLook::AtlasRandom => StreakPick::Random,
-            _ => StreakPick::ByAngle,
-        };
-        let atlas = StreakAtlas::load(folder)?.with_pick(pick).with_seed(weather.rain.seed);
-        Ok(Streaks::Atlas(Box::new(atlas)))
+        Ok(Streaks::Atlas(Box::new(StreakAtlas::load(folder)?)))
     }
 }
 

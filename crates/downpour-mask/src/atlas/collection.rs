@@ -216,7 +216,7 @@ impl StreakAtlas {
         &self.sets
     }
 
-    /// What a lookup reads: the same four arrays as a shader's.
+    /// Arrays that a lookup reads: the same four as a shader's.
     #[must_use]
     pub fn data(&self) -> AtlasData<'_> {
         let Self { frame, triangles, texels, amounts, .. } = self;

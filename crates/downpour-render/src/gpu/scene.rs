@@ -24,7 +24,7 @@ pub struct ScenePipeline {
 /// A scene on the device.
 #[derive(Clone, Debug)]
 pub struct SceneOnGpu {
-    /// What was brought there: arrays that another scene shares with it are there already.
+    /// Scene that was uploaded: arrays that another scene shares with it are on the device already.
     of: SceneData,
     nodes: wgpu::Buffer,
     triangles: wgpu::Buffer,

@@ -46,7 +46,7 @@ impl Scenery for Still<'_> {
 /// A scene that moves.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingScenery<'a> {
-    /// What it is in.
+    /// Its weather.
     pub weather: &'a Weather,
     /// Its files.
     pub loaded: &'a Loaded,
@@ -71,7 +71,7 @@ impl Scenery for MovingScenery<'_> {
 pub struct MovingEye<'a> {
     /// The scene, seen at any time.
     pub stage: &'a Stage,
-    /// What it is in.
+    /// Its weather.
     pub weather: &'a Weather,
     /// Its files.
     pub loaded: &'a Loaded,

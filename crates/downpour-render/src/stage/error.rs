@@ -26,7 +26,7 @@ pub enum StageError {
         "camera: {distance_m} m from where the scene was set; allowed: a way within 1 km of its beginning"
     )]
     TooFar {
-        /// How far it is along an axis.
+        /// Largest distance along an axis.
         distance_m: f64,
     },
     /// The machine has not the memory that the scene needs.

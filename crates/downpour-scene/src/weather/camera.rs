@@ -38,7 +38,7 @@ pub enum Observer {
 /// The camera, or the eye in its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it is and looks over time; `None` takes the model's own camera.
+    /// Position and direction over time; `None` takes the model's own camera.
     pub path: Option<CameraPath>,
     /// Vertical field of view in radians; `None` takes the model's, else [`FOV_RAD`].
     pub fov: Option<f64>,
@@ -85,7 +85,7 @@ pub struct CameraPath {
     aim: Aim,
 }
 
-/// What an eye looks at.
+/// Aim of an eye.
 #[derive(Clone, Debug, PartialEq)]
 enum Aim {
     /// A unit direction, always the same.
@@ -112,7 +112,7 @@ impl CameraPath {
         CameraPose { position, forward }
     }
 
-    /// Whether it is the same at all times.
+    /// True if it is the same at all times.
     #[must_use]
     pub fn is_still(&self) -> bool {
         let aims = if let Aim::At(target) = &self.aim { target.keys().len() } else { 1 };

@@ -39,6 +39,14 @@ pub struct Loaded {
     pub warnings: Vec<Warning>,
 }
 
+impl Loaded {
+    /// True if an animation of a model plays.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        self.animations.iter().any(Option::is_some)
+    }
+}
+
 /// Folders in which the files of a weather are looked for, in this order: its own, then asset roots.
 #[derive(Debug)]
 pub struct Roots(Vec<Folder>);

@@ -8,7 +8,7 @@ use downpour_sim::field::FallingDrop;
 
 use super::RendererError;
 
-/// What may draw.
+/// Choice of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// A GPU, else a software driver of one, else the CPU; the CPU too for what is too much for the GPU.
@@ -53,7 +53,7 @@ impl Backend {
 pub struct Device {
     #[cfg(feature = "wgpu")]
     gpu: Option<downpour_gpu::Gpu>,
-    /// Whether the CPU draws what is too much for the GPU.
+    /// True if the CPU draws what is too much for the GPU.
     falls_back: bool,
 }
 

@@ -46,7 +46,7 @@ pub enum RendererError {
     Name {
         /// The file, with what it is for.
         path: String,
-        /// What names there are.
+        /// Allowed names.
         allowed: &'static str,
     },
     /// A time that frames do not have.
@@ -68,25 +68,17 @@ pub enum RendererError {
     Write {
         /// The file.
         path: String,
-        /// What the system says.
+        /// Message of the system.
         reason: String,
     },
     /// The GPU did not do it.
     #[cfg(feature = "wgpu")]
     #[error(transparent)]
     Gpu(#[from] downpour_gpu::GpuError),
-}
-
-#[cfg(feature = "wgpu")]
-impl From<downpour_render::gpu::GpuPictureError> for RendererError {
-    fn from(error: downpour_render::gpu::GpuPictureError) -> Self {
-        use downpour_render::gpu::GpuPictureError;
-        match error {
-            GpuPictureError::Render(error) => error.into(),
-            GpuPictureError::Gpu(error) => error.into(),
-            error => Self::Write { path: "GPU".to_owned(), reason: error.to_string() },
-        }
-    }
+    /// A frame cannot be drawn by the GPU.
+    #[cfg(feature = "wgpu")]
+    #[error(transparent)]
+    Picture(#[from] downpour_render::gpu::GpuPictureError),
 }
 
 impl RendererError {
@@ -107,17 +99,31 @@ impl RendererError {
             Self::Write { .. } => 5,
             #[cfg(feature = "wgpu")]
             Self::Gpu(error) => error.exit_code(),
+            #[cfg(feature = "wgpu")]
+            Self::Picture(error) => error.exit_code(),
         }
     }
 
-    /// Whether a GPU said that something was too large for it.
+    /// Error of the GPU, if it was the GPU.
+    #[cfg(feature = "wgpu")]
+    #[must_use]
+    pub fn gpu(&self) -> Option<&downpour_gpu::GpuError> {
+        use downpour_render::gpu::GpuPictureError;
+        match self {
+            Self::Gpu(error) | Self::Picture(GpuPictureError::Gpu(error)) => Some(error),
+            _ => None,
+        }
+    }
+
+    /// True if something was too large for the GPU.
     #[must_use]
     pub fn is_too_much_for_gpu(&self) -> bool {
         #[cfg(feature = "wgpu")]
-        if let Self::Gpu(error) = self {
+        {
             use downpour_gpu::GpuError;
-            return matches!(error, GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. });
+            matches!(self.gpu(), Some(GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. }))
         }
+        #[cfg(not(feature = "wgpu"))]
         false
     }
 }

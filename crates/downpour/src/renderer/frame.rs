@@ -28,7 +28,7 @@ pub struct Frame {
     pub exposure: f32,
     /// Triangles of the scene, all copies counted.
     pub triangles: usize,
-    /// How long it took, from the rain to the last pass, ms.
+    /// Time that it took, from the rain to the last pass, ms.
     pub frame_ms: f64,
 }
 

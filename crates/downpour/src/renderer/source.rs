@@ -23,7 +23,7 @@ pub struct Source {
     pub files: Vec<PathBuf>,
 }
 
-/// What a file is by the end of its name.
+/// Kind of a file by the end of its name.
 enum Kind {
     Weather,
     Model,
@@ -45,7 +45,7 @@ impl Source {
         Ok(source)
     }
 
-    /// Whether a file can be read by its name.
+    /// Checks that a file can be read by its name.
     ///
     /// # Errors
     /// [`RendererError::Name`] for another ending, or for folders of files with a model.

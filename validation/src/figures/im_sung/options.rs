@@ -18,7 +18,7 @@ pub(crate) struct Options {
     /// Frames per second of the path of 2 s.
     #[arg(long, value_name = "N", default_value = "12", value_parser = within(6..=120_u32))]
     pub(super) fps: u32,
-    /// What computes: cpu, gpu or auto.
+    /// Backend: cpu, gpu or auto.
     #[arg(long, value_name = "NAME", default_value = "cpu")]
     pub(super) backend: String,
     /// Keep the frames that an earlier run with the same arguments has made.

@@ -52,9 +52,9 @@ pub(super) fn run(
     if places.video.is_some() {
         super::video::check_size(input.weather.size)?;
     }
-    let atlas = arguments.streaks.read(&input.weather)?.atlas()?.as_ref().map(atlas_digest);
     let first_s = time_s(arguments.input.time, frames.first, fps);
     let mut renderer = arguments.renderer(input, first_s, places.stats.is_some())?;
+    let atlas = renderer.options().atlas.as_ref().map(atlas_digest);
     let scene = scene_digest(renderer.weather(), renderer.loaded(), renderer.first_stage());
     let weather = renderer.weather().clone();
     let refraction = format!("{:?}", renderer.refraction());
@@ -79,7 +79,7 @@ struct Clip<'a> {
     weather: Weather,
     /// The digest of the streak atlas, if the weather takes the light of lamps from one.
     atlas: Option<String>,
-    /// How drops refract.
+    /// Name of the refraction of drops.
     refraction: String,
     /// The digest of the scene.
     scene: String,
@@ -126,7 +126,7 @@ impl Clip<'_> {
         }
     }
 
-    /// What is known of the frames that a computer makes.
+    /// Journal of the frames that a computer makes.
     fn journal(&self, computer: &Computer) -> Result<Journal, Failure> {
         let (place, anew) = (&self.places.journal, self.arguments.overwrite);
         let opened = Journal::open(place, &self.job(computer), anew, self.interrupt);

@@ -63,7 +63,7 @@ pub(super) fn scene_digest(weather: &Weather, loaded: &Loaded, first: &Stage) ->
     if let Some(model) = &loaded.drop_model {
         let _ = write!(text, "{:?} {:?} {:?}", model.positions, model.normals, model.indices);
     }
-    if loaded.animations.iter().any(Option::is_some) {
+    if loaded.is_animated() {
         let scene = &loaded.scene;
         let _ = write!(text, "{:?} {:?} {:?}", loaded.animations, scene.animations, scene.nodes);
         let _ = write!(text, "{:?} {:?} {:?}", scene.skins, scene.meshes, scene.roots);
