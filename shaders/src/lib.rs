@@ -23,6 +23,7 @@
 mod shared_constants;
 mod module;
 
+pub mod atlas;
 pub mod bvh;
 pub mod common;
 pub mod drop;
@@ -37,6 +38,7 @@ pub use module::{Kernel, Module, compose};
 /// Every module of the crate, for the tests that enumerate them.
 pub fn modules() -> impl Iterator<Item = &'static Module> {
     [
+        atlas::MODULES,
         bvh::MODULES,
         common::MODULES,
         drop::distribution::MODULES,
@@ -69,6 +71,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
 /// Every kernel of the crate, for the tests that create a pipeline from each.
 pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
     [
+        atlas::KERNELS,
         lattice::glass::KERNELS,
         lattice::puddle::KERNELS,
         mask::KERNELS,

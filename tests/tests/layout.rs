@@ -2,6 +2,8 @@
 
 use std::mem::offset_of;
 
+use downpour_atlas::gpu::AtlasQuery;
+use downpour_atlas::lookup::{AtlasFrame, AtlasPlace, AtlasTriangle};
 use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_drop::fall_speed::FallSpeedAir;
 use downpour_drop::oscillation::{DropOscillation, DropOscillationTime};
@@ -12,23 +14,21 @@ use downpour_lattice::glass::size::{GlassSizeRow, GlassTable};
 use downpour_lattice::puddle::PuddleSeed;
 use downpour_lattice::puddle::lattice::PuddleGrid;
 use downpour_mask::MaskTexel;
-use downpour_mask::atlas::gpu::AtlasQuery;
-use downpour_mask::atlas::lookup::{AtlasFrame, AtlasPlace, AtlasTriangle};
 use downpour_mask::gpu::{DropUniform, ModelUniform};
-use downpour_render::data::{RenderCorner, RenderFrame};
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakPath, StreakRay};
-use downpour_render::specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
-use downpour_render::trace::{TraceGather, TraceSlot};
 use downpour_shaders::render::specimen;
-use downpour_shaders::{Module, bvh, compose, drop, lattice, mask, modules, render, sim, wind};
+use downpour_shaders::{Module, atlas, bvh, compose, drop, lattice, mask, modules, render, sim, wind};
 use downpour_sim::collision::{CollisionFrame, CollisionTexel};
 use downpour_sim::enter::EnterRegion;
 use downpour_sim::step::{StepEvent, StepFrame};
 use downpour_sim::volume::{VolumeEye, VolumeFrustum};
+use downpour_specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_tests::signature::parse;
+use downpour_trace::data::{RenderCorner, RenderFrame};
+use downpour_trace::trace::{TraceGather, TraceSlot};
 use downpour_wind::WindTurbulenceMode;
 use downpour_wind::field::WindFieldGrid;
 
@@ -64,12 +64,12 @@ fn hosts() -> Vec<Host> {
         host!(DropUniform as "MaskTracedDrop" in &mask::TRACE,
             shape, up, index, inverse_wide, inverse_tall, pixel, size),
         host!(ModelUniform as "MaskModelParameters" in &mask::MODEL, front, index, pixel, size, first_row),
-        host!(AtlasFrame as "AtlasFrame" in &mask::ATLAS,
+        host!(AtlasFrame as "AtlasFrame" in &atlas::ATLAS,
             size, half_extent, pick, counts, seed, is_shared, unused, diameters, elevations, first),
-        host!(AtlasTriangle as "AtlasTriangle" in &mask::ATLAS,
+        host!(AtlasTriangle as "AtlasTriangle" in &atlas::ATLAS,
             a, b, c, unused, directions, unused_1, next, unused_2),
-        host!(AtlasPlace as "AtlasPlace" in &mask::ATLAS, layers, side, weights, amount, parts, unused),
-        host!(AtlasQuery as "AtlasQuery" in &mask::ATLAS_QUERY,
+        host!(AtlasPlace as "AtlasPlace" in &atlas::ATLAS, layers, side, weights, amount, parts, unused),
+        host!(AtlasQuery as "AtlasQuery" in &atlas::ATLAS_QUERY,
             light, diameter, view, id, axis, across, turns, unused),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
             eye, width, right, height, up, grid, forward, pixel_angle, slots, lights, light_count, sky_rays,

@@ -6,7 +6,7 @@ mod sheet;
 
 use std::path::{Path, PathBuf};
 
-use downpour_mask::atlas::{StreakOptions, StreakOscillation, StreakSet, light_directions, write_streaks};
+use downpour_atlas::{StreakOptions, StreakOscillation, StreakSet, light_directions, write_streaks};
 
 use crate::run;
 
@@ -120,7 +120,7 @@ pub(crate) fn check(quick: bool) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
-    use downpour_mask::atlas::StreakAtlas;
+    use downpour_atlas::StreakAtlas;
 
     #[test]
     fn what_is_not_understood_is_answered_with_the_usage() {

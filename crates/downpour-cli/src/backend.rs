@@ -92,7 +92,7 @@ mod gpu {
 
     use downpour::gpu::{AdapterChoice, Gpu, GpuError, GpuOptions};
     use downpour::mask::gpu::GpuMaskError;
-    use downpour::render::specimen::gpu::GpuSpecimenError;
+    use downpour::specimen::gpu::GpuSpecimenError;
 
     use super::{Backend, BackendArguments};
     use crate::failure::{Failure, INPUT};

@@ -5,18 +5,19 @@ use std::io;
 use std::path::Path;
 
 use downpour::RendererError;
+use downpour::atlas::AtlasError;
 use downpour::drop::DropError;
 use downpour::lattice::LatticeError;
 use downpour::lattice::glass::GlassError;
 use downpour::mask::MaskError;
 use downpour::render::RenderError;
 use downpour::render::glass::PaneError;
-use downpour::render::puddle::PuddleError;
-use downpour::render::shower::ShowerError;
-use downpour::render::specimen::SpecimenError;
-use downpour::render::stage::StageError;
 use downpour::scene::SceneError;
+use downpour::shower::ShowerError;
 use downpour::sim::SimError;
+use downpour::specimen::SpecimenError;
+use downpour::trace::puddle::PuddleError;
+use downpour::trace::stage::StageError;
 use downpour::wind::WindError;
 
 /// Anything that has no code of its own, as a defect of ours.
@@ -93,6 +94,12 @@ impl From<PuddleError> for Failure {
 
 impl From<LatticeError> for Failure {
     fn from(error: LatticeError) -> Self {
+        Self::new(error.exit_code(), error.to_string())
+    }
+}
+
+impl From<AtlasError> for Failure {
+    fn from(error: AtlasError) -> Self {
         Self::new(error.exit_code(), error.to_string())
     }
 }

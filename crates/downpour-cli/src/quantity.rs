@@ -8,8 +8,8 @@ use downpour::drop::oscillation::Amplitudes;
 use downpour::drop::shape::{LARGEST_DIAMETER, SMALLEST_DIAMETER};
 use downpour::drop::water::TEMPERATURE_RANGE_C;
 use downpour::mask::SIZES;
-use downpour::render::specimen::{LONGEST_EXPOSURE_S, SpecimenLamp};
-use downpour::render::stage::LATEST_S;
+use downpour::specimen::{LONGEST_EXPOSURE_S, SpecimenLamp};
+use downpour::trace::stage::LATEST_S;
 
 /// The coldest water, in Celsius, whose refractive index is known.
 const COLDEST_INDEX_C: f64 = -12.0;

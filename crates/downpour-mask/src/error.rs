@@ -1,7 +1,5 @@
 //! What can be wrong with a mask, a model, or a file.
 
-use std::path::Path;
-
 use downpour_drop::DropError;
 
 /// Why a mask could not be traced, written or read.
@@ -59,14 +57,6 @@ pub enum MaskError {
         /// Why.
         reason: String,
     },
-    /// A file or folder is missing or cannot be read.
-    #[error("{path}: {reason}")]
-    Unreadable {
-        /// The file or folder.
-        path: String,
-        /// What the system says.
-        reason: String,
-    },
     /// Something is wrong in a file with a name.
     #[error("{path}: {error}")]
     InFile {
@@ -78,20 +68,15 @@ pub enum MaskError {
 }
 
 impl MaskError {
-    /// The exit code of the command for this error: 3 over a limit, 5 a file that cannot be
-    /// read, 2 other bad input, 1 a failure to encode.
+    /// The exit code of the command for this error: 3 over a limit, 2 other bad input, 1 a failure
+    /// to encode.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Size { found, most, .. } if found > most => 3,
             Self::Encode { .. } => 1,
-            Self::Unreadable { .. } => 5,
             Self::InFile { error, .. } => error.exit_code(),
             _ => 2,
         }
-    }
-
-    pub(crate) fn in_file(self, path: &Path) -> Self {
-        Self::InFile { path: path.display().to_string(), error: Box::new(self) }
     }
 }

@@ -7,11 +7,13 @@
 //! |---|---|---|
 //! | [`exr`] | one mask, all of it, f32 or half | measuring, compositing |
 //! | [`ktx2`] | an array of masks over diameters, three half layers each | textures of an engine |
+//! | [`texture_array`] | any texture array as KTX2 | other crates of textures |
 //! | [`png`] | the directions as colours | looking at |
 
 pub mod exr;
 pub mod ktx2;
 pub mod png;
+pub mod texture_array;
 
 use crate::{MaskError, View};
 
@@ -75,7 +77,8 @@ impl Description {
 }
 
 /// Text from a file for a message: short, and without control characters.
-pub(crate) fn shorten(text: &str) -> String {
+#[must_use]
+pub fn shorten(text: &str) -> String {
     let clean: String = text.chars().take(60).flat_map(char::escape_default).collect();
     if text.chars().count() > 60 { format!("\"{clean}...\"") } else { format!("\"{clean}\"") }
 }

@@ -5,14 +5,12 @@
 //!   kernel, [`trace_drop_f64`] the reference above both;
 //! - [`trace_model`]: the same for any closed mesh ([`ClosedMesh`]) through a hierarchy of boxes ([`downpour_bvh`]);
 //! - [`wobble`]: a ray through a drop that oscillates;
-//! - [`atlas`]: streaks of drops that fall and oscillate, by the directions of light and viewer;
 //! - `gpu` (feature `wgpu`): both on a GPU;
 //! - [`mod@file`]: OpenEXR, KTX2, PNG.
 //!
 //! Lengths inside a mask are in units of the drop's volume-equivalent radius; directions are in the frame of the
 //! view: x right, y up, z towards the viewer.
 
-pub mod atlas;
 mod closed_mesh;
 mod drop;
 mod error;

@@ -1,16 +1,11 @@
 //! Where the picture is taken from.
 
-use downpour_shaders::render::scene::{SCENE_PICTURE, SKYLIGHT_RADIUS};
-use glam::Vec3;
+use glam::{DVec3, Vec2, Vec3};
 
 use crate::RenderError;
-use crate::data::{RenderFrame, SceneData};
 
 /// Smallest and largest number of pixels along an edge.
 pub const PIXELS: std::ops::RangeInclusive<u32> = 1..=16384;
-
-/// Part of the pixels over which the filter takes means that one is.
-const WINDOW_SHARE: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
 
 /// The longest exposure, s.
 pub const LONGEST_EXPOSURE_S: f64 = 1.0;
@@ -75,58 +70,113 @@ impl Viewpoint {
         Ok([right, right.cross(forward), forward])
     }
 
-    /// The frame of a picture of a scene. `grid` samples along an edge of a pixel, `sky_rays` rays to the sky per
-    /// sample (0: no surroundings hide the sky).
+    /// The camera of a picture of `size` pixels; `seed` is that of its random numbers.
     ///
     /// # Errors
     /// [`RenderError::Size`] outside [`PIXELS`], or as [`Viewpoint::axes`].
-    pub fn frame(
-        &self,
-        scene: &SceneData,
-        size: [u32; 2],
-        grid: u32,
-        sky_rays: u32,
-        seed: u64,
-    ) -> Result<RenderFrame, RenderError> {
+    pub fn camera(&self, size: [u32; 2], seed: u32) -> Result<Camera, RenderError> {
         let [width, height] = size;
-        if !PIXELS.contains(&width) || !PIXELS.contains(&height) {
-            let (least, most) = (*PIXELS.start(), *PIXELS.end());
-            return Err(RenderError::Size { found: size, least, most });
-        }
+        check_size(size)?;
         let [right, up, forward] = self.axes()?;
         let half_height = downpour_math::ops::tan(self.fov_y * 0.5);
         let half_width = half_height * width as f32 / height as f32;
-        let (low, high) = scene.bounds();
-        let extent = (high - low).length().clamp(1.0e-3, 1.0e5);
-        // Rays of a place far from the origin start where f32 still tells it from its surface.
-        let far = self.eye.abs().max_element().max(low.abs().max_element()).max(high.abs().max_element());
-        Ok(RenderFrame {
-            eye: self.eye.into(),
-            width,
-            right: (right * half_width).into(),
-            height,
-            up: (up * half_height).into(),
-            grid: grid.clamp(1, 16),
-            forward: forward.into(),
+        Ok(Camera {
+            eye: self.eye,
+            right: right * half_width,
+            up: up * half_height,
+            forward,
+            size,
             pixel_angle: 2.0 * half_height / height as f32,
-            slots: scene.slots,
-            lights: scene.lights,
-            light_count: scene.light_count,
-            sky_rays,
-            first_row: 0,
-            seed: (seed ^ (seed >> 32)) as u32,
-            nearest: (extent * 1.0e-5).max(far.min(1.0e5) * 1.0e-6).max(1.0e-6),
-            ray_share: WINDOW_SHARE / sky_rays.max(1) as f32,
-            projection: SCENE_PICTURE,
-            suns_out: 0,
-            puddles: scene.puddles,
-            puddle_count: scene.puddle_count,
-            pane: scene.pane,
-            skylight_pass: 0,
-            unused_1: 0,
-            unused_2: 0,
-            sky_levels: scene.sky_levels,
-            sky_irradiance: scene.sky_irradiance,
+            seed,
         })
     }
+}
+
+/// A perspective camera with its picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Position of the eye, metres.
+    pub eye: Vec3,
+    /// Half the picture's width at distance 1, along the camera's right.
+    pub right: Vec3,
+    /// Half the picture's height at distance 1, along the camera's up.
+    pub up: Vec3,
+    /// View direction, of length 1.
+    pub forward: Vec3,
+    /// Columns and rows of the picture.
+    pub size: [u32; 2],
+    /// Width of a pixel at distance 1.
+    pub pixel_angle: f32,
+    /// Seed of the random numbers of this picture.
+    pub seed: u32,
+}
+
+impl Camera {
+    /// Unit direction of the ray through a position of the picture, in pixels from the top left.
+    #[must_use]
+    pub fn direction(&self, x: f32, y: f32) -> Vec3 {
+        let direction = camera_ray([self.right, self.up, self.forward], self.size, x, y);
+        direction / direction.dot(direction).sqrt()
+    }
+
+    /// Position on the picture, in pixels from the top left, of a point relative to the eye.
+    #[must_use]
+    pub fn project(&self, point: Vec3) -> Vec2 {
+        let (right, up) = (self.right, self.up);
+        let depth = point.dot(self.forward);
+        let [width, height] = self.size;
+        Vec2::new(
+            (0.5 + 0.5 * point.dot(right) / (right.dot(right) * depth)) * width as f32,
+            (0.5 - 0.5 * point.dot(up) / (up.dot(up) * depth)) * height as f32,
+        )
+    }
+}
+
+/// Axes of a viewpoint in f64, with half of the picture at distance 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureEdge {
+    /// Unit vector to the right.
+    pub right: DVec3,
+    /// Unit vector upwards in the picture.
+    pub up: DVec3,
+    /// Unit view direction.
+    pub forward: DVec3,
+    /// Half the picture's width at distance 1.
+    pub half_width: f64,
+    /// Half the picture's height at distance 1.
+    pub half_height: f64,
+}
+
+impl PictureEdge {
+    /// Those of a viewpoint, for a picture of columns and rows.
+    ///
+    /// # Errors
+    /// As [`Viewpoint::axes`].
+    pub fn new(viewpoint: &Viewpoint, size: [u32; 2]) -> Result<Self, RenderError> {
+        let [right, up, forward] = viewpoint.axes()?.map(|axis| axis.as_dvec3().normalize());
+        let [width, height] = size.map(f64::from);
+        let half_height = downpour_math::ops::f64::tan(f64::from(viewpoint.fov_y) * 0.5);
+        Ok(Self { right, up, forward, half_width: half_height * width / height, half_height })
+    }
+}
+
+/// Ray through a position of a picture, in pixels from the top left, not normalized: its part along the view direction is 1.
+/// `axes`: half the picture's width along the right and half its height along the up at distance 1, and the view direction.
+#[must_use]
+pub fn camera_ray(axes: [Vec3; 3], size: [u32; 2], x: f32, y: f32) -> Vec3 {
+    let [right, up, forward] = axes;
+    let u = 2.0 * x / size[0] as f32 - 1.0;
+    let v = 1.0 - 2.0 * y / size[1] as f32;
+    forward + right * u + up * v
+}
+
+/// Checks the size of a picture.
+///
+/// # Errors
+/// [`RenderError::Size`] outside [`PIXELS`].
+pub fn check_size(size: [u32; 2]) -> Result<(), RenderError> {
+    if size.iter().all(|edge| PIXELS.contains(edge)) {
+        return Ok(());
+    }
+    Err(RenderError::Size { found: size, least: *PIXELS.start(), most: *PIXELS.end() })
 }

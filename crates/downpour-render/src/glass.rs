@@ -6,8 +6,8 @@
 //!
 //! Lamps and the sun are points that no picture shows; drops show them as bright spots: [`light`].
 //!
-//! Light of lamps and the sun that falls in through the pane has the shadows of its drops: [`PaneShade`], laid into the scene
-//! before it is traced ([`SceneData::hang_pane`](crate::data::SceneData::hang_pane)).
+//! Light of lamps and the sun that falls in through the pane has the shadows of its drops: [`PaneShade`], for whoever
+//! traces the scene.
 //!
 //! The lattice says where the water is; its cells are as large as small drops, so that surfaces are not read from its
 //! heights but made of its drops: [`water`].
@@ -24,7 +24,6 @@ mod pane;
 mod picture;
 mod seen;
 mod shade;
-mod shadow;
 pub mod water;
 
 pub use error::PaneError;

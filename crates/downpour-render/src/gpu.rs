@@ -3,13 +3,11 @@
 mod drop_light;
 mod glass;
 mod medium;
-mod picture;
+mod plate;
 mod rain;
-mod scene;
 
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 pub use glass::GlassRenderer;
 pub use medium::{MediumPass, MediumPipeline};
-pub use picture::{GpuPictureError, PictureRenderer};
+pub use plate::{LightingOnGpu, PlateOnGpu};
 pub use rain::{RainOnGpu, RainPass, RainPipeline};
-pub use scene::{SceneOnGpu, ScenePass, ScenePipeline};

@@ -1,14 +1,18 @@
-//! Lights as rows of the scene's table.
+//! Lamps and the sun: as descriptions, and as the rows that the shaders read.
 
 use std::f32::consts::PI;
 
-use downpour_shaders::render::scene::{SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT, SCENE_LIGHT_ROWS};
-use glam::Vec3;
+use downpour_shaders::render::pane_shadow::PANE_SHADOW_SUN;
+use downpour_shaders::render::scene::{
+    SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_POINT, SCENE_LIGHT_ROWS,
+};
+use glam::{Vec3, Vec4};
 
 use crate::RenderError;
-use crate::data::SceneData;
+use crate::plate::Lighting;
 
-const ROWS: usize = SCENE_LIGHT_ROWS as usize;
+/// Rows of a light.
+pub const ROWS: usize = SCENE_LIGHT_ROWS as usize;
 
 /// A lamp or the sun. Intensities are radiometric, in the scale of the sky map: a white surface that faces an
 /// irradiance of pi shows 1.
@@ -47,17 +51,90 @@ pub enum LightSource {
     },
 }
 
-impl SceneData {
-    /// Gives light `index` an angular radius, in radians: that of the disc that drops show of it. Without one it is the sun's.
-    pub(crate) fn set_light_radius(&mut self, index: u32, radius: f32) {
-        let row = (self.lights + index * SCENE_LIGHT_ROWS + 1) as usize;
-        // The chord from the middle to the edge.
-        self.table[row][3] = (2.0 * downpour_math::ops::sin(0.5 * radius)).to_bits();
+/// A lamp or the sun as the shaders read it: four rows of a table. Twin of `RenderLight` in `shaders/wgsl/render/light.wgsl`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Light {
+    /// Position, metres; nothing for parallel light.
+    pub position: Vec3,
+    /// True for parallel light.
+    pub is_parallel: bool,
+    /// Direction in which the light goes, or the axis of the cone.
+    pub axis: Vec3,
+    /// Chord from the middle to the edge of the disc that a drop shows of it; 0: that of the sun.
+    pub chord: f32,
+    /// Irradiance over pi of a surface that faces it, for a lamp at 1 m.
+    pub color: Vec3,
+    /// No light beyond this, metres; 0 for no end.
+    pub range: f32,
+    /// Scale and offset of the cosine at the edge of the cone: `clamp(cosine * scale + offset, 0, 1)` squared.
+    pub cone: [f32; 2],
+}
+
+/// Light of a lamp at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit direction to the lamp.
+    pub direction: Vec3,
+    /// Distance of the lamp, metres.
+    pub distance: f32,
+    /// Irradiance over pi of a surface that faces it.
+    pub irradiance: Vec3,
+    /// Half the angle that the light takes, radians.
+    pub spread: f32,
+}
+
+impl Light {
+    /// Reads a light from its rows.
+    #[must_use]
+    pub fn light_load(rows: &[[u32; 4]; ROWS]) -> Self {
+        let [position, axis, color, cone] = rows.map(|row| Vec4::from(row.map(f32::from_bits)));
+        Self {
+            position: position.truncate(),
+            is_parallel: rows[0][3] == SCENE_LIGHT_DIRECTIONAL,
+            axis: axis.truncate(),
+            chord: axis.w,
+            color: color.truncate(),
+            range: color.w,
+            cone: [cone.x, cone.y],
+        }
+    }
+
+    /// The light at a point. A lamp that is nearer than `least` is as bright as from there.
+    #[must_use]
+    pub fn light_sample(&self, point: Vec3, least: f32) -> LightSample {
+        if self.is_parallel {
+            return LightSample {
+                direction: -self.axis,
+                distance: SCENE_FAR,
+                irradiance: self.color,
+                spread: PANE_SHADOW_SUN,
+            };
+        }
+        let offset = self.position - point;
+        let square = offset.dot(offset).max((least * least).max(1.0e-8));
+        let distance = offset.dot(offset).max(1.0e-8).sqrt();
+        let direction = offset / distance;
+        // glTF's window: no light beyond the range, if there is one.
+        let part = distance / self.range.max(1.0e-6);
+        let fourth = part * part * part * part;
+        let window = if self.range > 0.0 { (1.0 - fourth).clamp(0.0, 1.0) } else { 1.0 };
+        let [scale, offset_of_edge] = self.cone;
+        let edge = ((-direction).dot(self.axis) * scale + offset_of_edge).clamp(0.0, 1.0);
+        let irradiance = self.color * (window * edge * edge / square);
+        LightSample { direction, distance, irradiance, spread: 0.0 }
     }
 }
 
+/// Sum of a color's parts, by which lights are compared.
+#[must_use]
+pub fn light_weight(color: Vec3) -> f32 {
+    color.x + color.y + color.z
+}
+
 impl LightSource {
-    pub(crate) fn rows(&self) -> [[u32; 4]; ROWS] {
+    /// The rows of the light in a table.
+    #[must_use]
+    pub fn rows(&self) -> [[u32; 4]; ROWS] {
         let over_pi = |c: Vec3| c / PI;
         let row = |v: Vec3, w: f32| [v.x, v.y, v.z, w].map(f32::to_bits);
         let point = |v: Vec3, kind: u32| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), kind];
@@ -93,15 +170,13 @@ impl LightSource {
 /// The brightest light: a tenth of a millimetre from the lamp it is still within an `f32`.
 const BRIGHTEST: f32 = 1.0e30;
 
-/// Whether all lights of a scene are light.
+/// Checks that the colors of all lights are finite and not negative.
 ///
 /// # Errors
-/// [`RenderError::Light`] if a colour is not finite, negative, or above 1e30.
-pub fn check_lights(scene: &SceneData) -> Result<(), RenderError> {
-    for index in 0..scene.light_count {
-        let row = (scene.lights + index * SCENE_LIGHT_ROWS) as usize + 2;
-        let colour = scene.table.get(row).map_or([0; 4], |&row| row);
-        for found in colour.into_iter().take(3).map(|word| f32::from_bits(word) * PI) {
+/// [`RenderError::Light`] if a color is not finite, negative, or above 1e30.
+pub fn check_lights(lighting: &dyn Lighting) -> Result<(), RenderError> {
+    for index in 0..lighting.light_count() {
+        for found in (lighting.light(index).color * PI).to_array() {
             if !(0.0..=BRIGHTEST).contains(&found) {
                 return Err(RenderError::Light { index, found });
             }

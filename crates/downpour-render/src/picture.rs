@@ -1,19 +1,12 @@
-//! A whole picture: the scene, and the rain before it.
-//!
-//! [`render_picture`] makes it on the CPU, [`gpu::PictureRenderer`](crate::gpu::PictureRenderer) on a GPU: the same
-//! passes over the same buffers.
+//! A whole picture in layers: a plate, and the rain before it.
 
 use std::time::Instant;
 
 use downpour_math::rng::rng_draw;
-use downpour_sim::field::FallingDrop;
 
 use crate::RenderError;
-use crate::camera::Viewpoint;
-use crate::data::{RenderFrame, SceneData};
-use crate::rain::light::DropLightForm;
+use crate::plate::Plate;
 use crate::rain::{DropMasks, Rain, RainOptions};
-use crate::scene::SceneView;
 
 /// Dimension of the random numbers of a picture's seed.
 const SEED_DIMENSION: u32 = 4120;
@@ -74,7 +67,8 @@ pub struct Picture {
 
 impl Picture {
     /// Puts the layers together.
-    pub(crate) fn new(
+    #[must_use]
+    pub fn new(
         rain: &Rain,
         clean: Vec<[f32; 4]>,
         layer: Vec<[f32; 4]>,
@@ -111,7 +105,7 @@ impl Picture {
 }
 
 /// Radiance of a scene through the rain before it, pixel by pixel: `clean * transmittance + rain`.
-pub(crate) fn through_rain<'a>(
+pub fn through_rain<'a>(
     clean: &'a [[f32; 4]],
     rain: &'a [[f32; 4]],
 ) -> impl Iterator<Item = [f32; 3]> + use<'a> {
@@ -119,55 +113,31 @@ pub(crate) fn through_rain<'a>(
 }
 
 /// Runs a pass and notes its time.
-pub(crate) fn timed<T>(
-    passes: &mut Vec<(&'static str, f64)>,
-    name: &'static str,
-    work: impl FnOnce() -> T,
-) -> T {
+pub fn timed<T>(passes: &mut Vec<(&'static str, f64)>, name: &'static str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let made = work();
     passes.push((name, start.elapsed().as_secs_f64() * 1.0e3));
     made
 }
 
-/// The frame of a picture.
-pub(crate) fn framed(
-    scene: &SceneData,
-    viewpoint: &Viewpoint,
-    options: &PictureOptions,
-) -> Result<RenderFrame, RenderError> {
-    let frame = viewpoint.frame(scene, options.size, options.grid, options.sky_rays, options.seed)?;
-    // What is worked out drop by drop is not in the capture too.
-    let traced = matches!(options.rain.light.form, DropLightForm::Traced | DropLightForm::Atlas);
-    let suns_out = u32::from(traced);
-    Ok(RenderFrame { suns_out, ..frame })
-}
-
-/// Makes a picture on the CPU: the same bits for any number of threads.
+/// Rain before a plate on the CPU: the same bits for any number of threads. `rain` is made for the plate's camera. Returns the
+/// rain's radiance with the transmittance of the scene behind it.
 ///
 /// # Errors
-/// [`RenderError`] if the options cannot be met.
-pub fn render_picture(
-    scene: &SceneData,
-    viewpoint: &Viewpoint,
-    drops: &[FallingDrop],
+/// [`RenderError`] if a lamp of the plate has no light, or the options cannot be met.
+pub fn rain_layer(
+    plate: &Plate<'_>,
+    rain: &Rain,
     masks: &DropMasks,
-    options: &PictureOptions,
-) -> Result<Picture, RenderError> {
-    let frame = framed(scene, viewpoint, options)?;
-    let mut passes = Vec::new();
-    let view = SceneView { data: scene, frame: &frame };
-    let clean = timed(&mut passes, "scene", || view.picture());
-    let eye = viewpoint.eye.as_dvec3();
-    let rain = timed(&mut passes, "binning", || Rain::new(&frame, eye, drops, masks, &options.rain));
-    let capture = timed(&mut passes, "capture", || rain.capture.trace(scene));
-    let of_streaks = rain.streak_lights(scene, masks)?;
-    let table = timed(&mut passes, "streaks", || {
-        rain.streak_table(masks, &capture, &of_streaks.light(&rain.streak_rows()))
+    passes: &mut Vec<(&'static str, f64)>,
+) -> Result<Vec<[f32; 4]>, RenderError> {
+    let Plate { pixels, environment, lighting, .. } = *plate;
+    let of_streaks = rain.streak_lights(lighting, masks)?;
+    let table = timed(passes, "streaks", || {
+        rain.streak_table(masks, environment, &of_streaks.light(&rain.streak_rows()))
     });
-    let lights = rain.lights(scene, masks)?;
-    let light = timed(&mut passes, "lamps", || lights.light(&rain.rows));
-    let medium = timed(&mut passes, "unresolved", || rain.medium_light(&lights).layer(&clean));
-    let layer = timed(&mut passes, "drops", || rain.layer(&clean, masks, &capture, &table, &light, &medium));
-    Ok(Picture::new(&rain, clean, layer, capture.texels, passes))
+    let lights = rain.lights(lighting, masks)?;
+    let light = timed(passes, "lamps", || lights.light(&rain.rows));
+    let medium = timed(passes, "unresolved", || rain.medium_light(&lights).layer(pixels));
+    Ok(timed(passes, "drops", || rain.layer(pixels, masks, environment, &table, &light, &medium)))
 }

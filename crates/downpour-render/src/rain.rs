@@ -2,7 +2,7 @@
 //!
 //! 1. [`DropMasks`]: masks of drops of all sizes from all elevations, traced once, in milliseconds;
 //! 2. [`Rain`]: the drops of a picture, nearest first, and for each tile of 8 x 8 pixels those that touch it;
-//! 3. [`capture`]: what is round the eye, on an octahedral map (default) or as the papers' wide picture;
+//! 3. [`EnvironmentMap`]: radiance around the eye, on an octahedral map (default) or as the papers' wide picture;
 //! 4. [`light`]: what lamps and sun add, drop by drop; [`glint`]: where on a drop;
 //! 5. [`StreakTable`]: what drops that move while the shutter is open show on the mean, made once per frame: a profile of each
 //!    streak that is wider than a pixel ([`StreakProfiles`]), a mean for the others;
@@ -12,13 +12,13 @@
 //! Source: Rousseau, Jolivet, Ghazanfarpour 2006, sections 4 and 5; Rousseau 2008, section 2.2.3. Where the default
 //! differs it is said at [`RefractionForm`] and [`StreakSamples`].
 
-pub mod capture;
 pub mod drops;
 mod drops_atlas;
 mod drops_capture;
 mod drops_frame;
 pub mod drops_mask;
 mod drops_shade;
+mod environment;
 pub mod exposure;
 pub mod glint;
 pub mod light;
@@ -36,13 +36,14 @@ pub mod streak_place;
 mod streak_rays;
 mod streak_table;
 mod tiles;
+mod weather;
 
-use downpour_scene::weather::RainRefraction;
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
+use downpour_weather::RainRefraction;
 
 pub use crate::camera::EyeMotion;
-pub use capture::{Capture, CaptureFrame};
 pub use drops_frame::DropsFrame;
+pub use environment::{EnvironmentFrame, EnvironmentMap};
 pub use exposure::{Exposure, StreakColour, StreakSamples, TemporalResponse};
 use light::DropLightOptions;
 pub use masks::DropMasks;
@@ -54,6 +55,7 @@ pub use streak_lookup::StreakTable;
 pub use streak_path::StreakPath;
 pub use streak_rays::StreakRay;
 pub use tiles::Rain;
+pub use weather::drop_model;
 
 /// Glints that are kept of a drop where nothing else is said.
 const GLINTS: u32 = 4;

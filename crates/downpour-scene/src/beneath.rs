@@ -7,12 +7,16 @@
 //! two steps is then not seen. Files are opened without waiting (`O_NONBLOCK`) and looked at through the open
 //! handle.
 
-use crate::error::{SceneError, quoted, shown_path, subject};
+use crate::Budget;
+use crate::error::{SceneError, quoted, shown_path, size, subject};
 pub use crate::uri::RelativePath;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
+
+/// Maximum length of a file that is read as a whole, in bytes: 1 GiB.
+pub const MAX_FILE: u64 = 1 << 30;
 
 const REGULAR: &str = "a regular file";
 const INSIDE: &str = "only files beneath the scene folder";
@@ -26,7 +30,25 @@ pub struct OpenFile {
     pub bytes: Box<dyn Read>,
 }
 
-/// Where the files come from that a scene file names.
+impl OpenFile {
+    /// Reads all bytes of the file. Nothing is taken from the budget, which limits the length.
+    ///
+    /// # Errors
+    /// [`SceneError::OverLimit`] for a file of more than [`MAX_FILE`] bytes, or more than the budget has left;
+    /// [`SceneError::Unreadable`] if the system fails to read it.
+    pub fn read_all(self, budget: &Budget) -> Result<Vec<u8>, SceneError> {
+        let most = MAX_FILE.min(budget.bytes);
+        if self.size > most {
+            let allowed = format!("at most {most} bytes ({})", size(most));
+            return Err(SceneError::limit("", format!("a file of {} bytes", self.size), allowed));
+        }
+        let mut bytes = Budget::room(usize::try_from(self.size).unwrap_or(usize::MAX), "")?;
+        self.bytes.take(self.size).read_to_end(&mut bytes).map_err(|error| SceneError::io("", "", &error))?;
+        Ok(bytes)
+    }
+}
+
+/// Source of the files that a scene file names.
 pub trait Files {
     /// Opens a file.
     ///
@@ -136,8 +158,11 @@ impl Files for Folder {
     }
 }
 
-/// Opens a regular file that the user has named, wherever it is. Returns it with its length in bytes.
-pub(crate) fn open_named(path: &Path) -> Result<OpenFile, SceneError> {
+/// Opens a regular file that the user has named, wherever it is.
+///
+/// # Errors
+/// The file is missing or cannot be opened, or is no regular file.
+pub fn open_named(path: &Path) -> Result<OpenFile, SceneError> {
     let look = || -> Result<OpenFile, Refusal> {
         // Before opening: the mere opening of some devices does something.
         let sort = fs::metadata(path).map_err(Refusal::System)?.file_type();

@@ -37,8 +37,11 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// Takes memory.
-    pub(crate) fn take_bytes(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
+    /// Takes memory, in bytes; `place` is where it is needed, for the message.
+    ///
+    /// # Errors
+    /// [`SceneError::OverLimit`] if less is left.
+    pub fn take_bytes(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
         take(&mut self.bytes, wanted).map_err(|left| {
             SceneError::limit(
                 place,
@@ -54,8 +57,11 @@ impl Budget {
         take(&mut self.vertices, wanted).map_err(|left| over(place, wanted, left, "vertices"))
     }
 
-    /// Takes nodes.
-    pub(crate) fn take_nodes(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
+    /// Takes nodes; `place` is where they are needed, for the message.
+    ///
+    /// # Errors
+    /// [`SceneError::OverLimit`] if fewer are left.
+    pub fn take_nodes(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
         take(&mut self.nodes, wanted).map_err(|left| over(place, wanted, left, "nodes"))
     }
 

@@ -41,21 +41,15 @@ pub struct Fault {
 }
 
 impl SceneError {
-    /// Input that cannot be: exit code 2.
-    pub(crate) fn bad(
-        place: impl fmt::Display,
-        found: impl Into<String>,
-        allowed: impl Into<String>,
-    ) -> Self {
+    /// Error of input that cannot be.
+    #[must_use]
+    pub fn bad(place: impl fmt::Display, found: impl Into<String>, allowed: impl Into<String>) -> Self {
         Self::BadInput(Fault::boxed(place, found, allowed))
     }
 
-    /// Input that costs too much: exit code 3.
-    pub(crate) fn limit(
-        place: impl fmt::Display,
-        found: impl Into<String>,
-        allowed: impl Into<String>,
-    ) -> Self {
+    /// Error of input that costs too much.
+    #[must_use]
+    pub fn limit(place: impl fmt::Display, found: impl Into<String>, allowed: impl Into<String>) -> Self {
         Self::OverLimit(Fault::boxed(place, found, allowed))
     }
 
@@ -73,14 +67,14 @@ impl SceneError {
 
     /// The same error with advice at its end.
     #[must_use]
-    pub(crate) fn way_out(mut self, advice: &'static str) -> Self {
+    pub fn way_out(mut self, advice: &'static str) -> Self {
         self.fault_mut().way_out = Some(advice);
         self
     }
 
     /// The same error with the file named; a name that is there already stays.
     #[must_use]
-    pub(crate) fn in_file(mut self, file: &str) -> Self {
+    pub fn in_file(mut self, file: &str) -> Self {
         let fault = self.fault_mut();
         if fault.file.is_empty() {
             file.clone_into(&mut fault.file);
@@ -90,7 +84,7 @@ impl SceneError {
 
     /// The same error with the place named; a place that is there already stays.
     #[must_use]
-    pub(crate) fn at(mut self, place: impl fmt::Display) -> Self {
+    pub fn at(mut self, place: impl fmt::Display) -> Self {
         let fault = self.fault_mut();
         if fault.place.is_empty() {
             fault.place = place.to_string();
@@ -100,7 +94,7 @@ impl SceneError {
 
     /// The same error of a file that another file names at a place: both, and the name, become the place.
     #[must_use]
-    pub(crate) fn inside(mut self, place: impl fmt::Display) -> Self {
+    pub fn inside(mut self, place: impl fmt::Display) -> Self {
         let fault = self.fault_mut();
         let file = std::mem::take(&mut fault.file);
         let mut whole = place.to_string();
@@ -165,7 +159,8 @@ impl fmt::Display for Fault {
 }
 
 /// Foreign text in quotes, at most 80 characters, on one line.
-pub(crate) fn quoted(text: &str) -> String {
+#[must_use]
+pub fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(text, &['\'']))
 }
 
@@ -175,7 +170,8 @@ pub(crate) fn subject(name: &str) -> String {
 }
 
 /// Foreign text without quotes, at most 80 characters, on one line.
-pub(crate) fn escaped(text: &str) -> String {
+#[must_use]
+pub fn escaped(text: &str) -> String {
     shortened(text, &['\'', '"'])
 }
 
@@ -199,7 +195,8 @@ fn shortened(text: &str, harmless: &[char]) -> String {
 }
 
 /// A path for a message: a long one is shown by its end.
-pub(crate) fn shown_path(path: &Path) -> String {
+#[must_use]
+pub fn shown_path(path: &Path) -> String {
     let text = path.to_string_lossy();
     match text.char_indices().rev().nth(SHOWN.saturating_sub(3)) {
         Some((at, _)) if at > 0 => format!("…{}", escaped(text.get(at..).unwrap_or_default())),

@@ -9,9 +9,9 @@
 //! - [`scene`]: what a scene is, and where everything in it is at a time;
 //! - [`picture`]: PNG, JPEG, Radiance HDR and OpenEXR;
 //! - [`sky`]: equirectangular maps of the sky's radiance, and their sun;
-//! - [`weather`]: the weather file, which says what rains where and who looks at it;
 //! - [`beneath`]: opening a relative path that cannot leave its folder;
 //! - [`budget`]: what a caller is willing to spend on somebody else's file;
+//! - [`uri`]: relative paths and data addresses, checked;
 //! - [`error`], [`warning`]: what was wrong, and what was left out.
 //!
 //! ```no_run
@@ -39,7 +39,6 @@
 
 mod base64;
 mod magic;
-mod uri;
 
 pub mod beneath;
 pub mod budget;
@@ -48,8 +47,8 @@ pub mod gltf;
 pub mod picture;
 pub mod scene;
 pub mod sky;
+pub mod uri;
 pub mod warning;
-pub mod weather;
 
 pub use budget::Budget;
 pub use error::{Fault, SceneError};

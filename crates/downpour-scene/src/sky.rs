@@ -25,8 +25,7 @@ use downpour_math::ops::f64 as ops64;
 use std::f32::consts::PI;
 
 use crate::warning::Warning;
-pub use file::{MAX_FILE, from_picture, read_sky};
-pub(crate) use file::{read_sky_from_bytes, whole};
+pub use file::{from_picture, read_sky, read_sky_from_bytes};
 pub use sun::{LARGEST_SUN, SUN_THRESHOLD, Sun};
 
 /// The largest radiance of a pixel, in the unit of the file; the sun's disc is 1.6e9 cd/m^2.

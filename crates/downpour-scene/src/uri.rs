@@ -8,7 +8,7 @@ use crate::error::quoted;
 
 /// A checked address.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) enum Address<'a> {
+pub enum Address<'a> {
     /// `data:mime;base64,text`.
     Data {
         /// The media type, with its parameters; may be empty.
@@ -32,17 +32,22 @@ impl RelativePath {
     }
 }
 
-/// Why an address is refused: what was found, and what is allowed.
+/// Reason why an address is refused.
 #[derive(Debug)]
-pub(crate) struct Refused {
-    pub(crate) found: String,
-    pub(crate) allowed: &'static str,
+pub struct Refused {
+    /// What was found.
+    pub found: String,
+    /// What is allowed.
+    pub allowed: &'static str,
 }
 
 const RELATIVE_OR_DATA: &str = "only relative paths beneath the scene folder, or data:…;base64,…";
 
 /// Checks an address as it stands in the file.
-pub(crate) fn check(uri: &str) -> Result<Address<'_>, Refused> {
+///
+/// # Errors
+/// [`Refused`]: neither a relative path that stays beneath its folder nor data in base64.
+pub fn check(uri: &str) -> Result<Address<'_>, Refused> {
     let refuse = |why: &str, allowed| Err(Refused { found: format!("{} {why}", quoted(uri)), allowed });
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
         return match data(uri.get(5..).unwrap_or_default()) {

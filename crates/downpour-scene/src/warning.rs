@@ -56,7 +56,7 @@ impl fmt::Display for Warning {
 
 /// Warnings as they are gathered: a file with a million faults must not make a million lines.
 #[derive(Debug, Default)]
-pub(crate) struct Warnings {
+pub struct Warnings {
     kept: Vec<Warning>,
     more: u64,
     loss: bool,
@@ -64,7 +64,7 @@ pub(crate) struct Warnings {
 
 impl Warnings {
     /// Adds one. The words are made only when they will be kept.
-    pub(crate) fn add(&mut self, kind: WarningKind, place: impl fmt::Display, what: impl FnOnce() -> String) {
+    pub fn add(&mut self, kind: WarningKind, place: impl fmt::Display, what: impl FnOnce() -> String) {
         // A loss must be seen however many small things came before it.
         if self.kept.len() < KEPT || (kind.is_loss() && !self.loss) {
             self.kept.push(Warning { kind, place: place.to_string(), what: what() });
@@ -75,7 +75,8 @@ impl Warnings {
     }
 
     /// All of them, with a last line for those that were only counted.
-    pub(crate) fn finish(mut self) -> Vec<Warning> {
+    #[must_use]
+    pub fn finish(mut self) -> Vec<Warning> {
         if self.more > 0 {
             let what = format!("and {} more", self.more);
             self.kept.push(Warning { kind: WarningKind::More, place: String::new(), what });

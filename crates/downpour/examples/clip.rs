@@ -1,7 +1,7 @@
 //! A clip with a camera that goes down the street, set from here:
 //! `cargo run -p downpour --features wgpu --example clip -- FOLDER [FRAMES]`.
 
-use downpour::scene::weather::CameraPath;
+use downpour::weather::CameraPath;
 use downpour::wind::Keyed;
 use downpour::{Backend, Renderer, RendererOptions, Source};
 use glam::DVec3;

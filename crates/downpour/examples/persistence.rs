@@ -13,20 +13,23 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
+use downpour::atlas::StreakAtlas;
 use downpour::drop::air::Air;
 use downpour::drop::fall_speed::{FallSpeedModel, TerminalSpeed};
 use downpour::drop::oscillation::Amplitudes;
 use downpour::gpu::{AdapterChoice, Dispatch, Gpu, wgpu};
 use downpour::mask::MaskOptions;
-use downpour::mask::atlas::StreakAtlas;
 use downpour::math::rng::{rng_draw, rng_unit};
-use downpour::render::gpu::{RainOnGpu, RainPipeline, SceneOnGpu, ScenePipeline};
+use downpour::render::gpu::{RainOnGpu, RainPipeline};
 use downpour::render::rain::light::{DropLightForm, DropLightOptions};
 use downpour::render::rain::{DropMasks, Exposure, Rain, RainOptions, StreakColour, StreakSamples};
-use downpour::render::stage::Stage;
 use downpour::scene::Budget;
-use downpour::scene::weather::{Roots, Weather, load};
 use downpour::sim::field::{DropKind, FallingDrop};
+use downpour::trace::data::RenderFrame;
+use downpour::trace::gpu::{SceneOnGpu, ScenePipeline};
+use downpour::trace::scene::SceneView;
+use downpour::trace::stage::Stage;
+use downpour::weather::{Roots, Weather, load};
 
 /// Seconds.
 const SHUTTER: f64 = 1.0 / 60.0;
@@ -42,7 +45,7 @@ const NEAR: [f32; 2] = [0.2, 1.0];
 struct Bench<'a> {
     gpu: &'a Gpu,
     stage: &'a Stage,
-    frame: downpour::render::data::RenderFrame,
+    frame: downpour::trace::data::RenderFrame,
     masks: [DropMasks; 2],
     scenes: ScenePipeline,
     rains: RainPipeline,
@@ -80,7 +83,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let masks = DropMasks::trace(MaskOptions::default().refractive_index)?;
     let (scenes, rains) = (ScenePipeline::new(&gpu)?, RainPipeline::new(&gpu)?);
-    let frame = stage.viewpoint.frame(&stage.data, size, 1, 1, 0)?;
+    let frame = RenderFrame::new(&stage.data, &stage.viewpoint, size, 1, 1, 0)?;
     // Without and with the streaks of an atlas.
     let masks = [masks.clone(), masks.with_atlas(&StreakAtlas::load(Path::new("assets/streaks"))?)];
     let scene = scenes.upload(&stage.data)?;
@@ -190,11 +193,13 @@ impl Bench<'_> {
         let eye = self.stage.viewpoint.eye.as_dvec3();
         let of_atlas = usize::from(options.light.form == DropLightForm::Atlas);
         let (masks, uploaded) = (&self.masks[of_atlas], &self.uploaded[of_atlas]);
-        let rain = Rain::new(&self.frame, eye, drops, masks, options);
+        let rain = Rain::new(&self.frame.camera(), eye, drops, masks, options);
         let binning = ms(start.elapsed());
-        let lights = [rain.lights(&self.stage.data, masks)?, rain.streak_lights(&self.stage.data, masks)?];
-        let pass = self.rains.prepare(&self.scenes, &self.scene, uploaded, &self.clean, &rain, &lights)?;
-        let capture = time(self.gpu, &pass.capture())?;
+        let view = SceneView { data: &self.stage.data, frame: &self.frame };
+        let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
+        let plate = self.scenes.plate(&self.scene, &self.frame, &self.rains, &rain)?;
+        let pass = self.rains.prepare(&plate.of(&self.clean), uploaded, &rain, &lights)?;
+        let capture = time(self.gpu, &plate.dispatches(&pass))?;
         let lamps = time(self.gpu, &pass.lamps())?;
         let streaks: Vec<Dispatch<'_>> = pass.streaks();
         let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };

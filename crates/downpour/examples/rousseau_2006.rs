@@ -6,6 +6,7 @@
 //! are of the device, without the transfer of the picture. The scene is drawn by rays, which the papers' is not, so it
 //! is told apart from what the rain adds: the capture of the surroundings, and the drops.
 
+use downpour::trace::data::RenderFrame;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -13,12 +14,14 @@ use std::time::Instant;
 use downpour::gpu::{AdapterChoice, Dispatch, Gpu};
 use downpour::mask::MaskOptions;
 use downpour::math::rng::{rng_draw, rng_unit};
-use downpour::render::gpu::{RainPipeline, ScenePipeline};
+use downpour::render::gpu::RainPipeline;
 use downpour::render::rain::{DropMasks, Rain, RainOptions};
-use downpour::render::stage::Stage;
 use downpour::scene::Budget;
-use downpour::scene::weather::{Roots, Weather, load};
 use downpour::sim::field::{DropKind, FallingDrop};
+use downpour::trace::gpu::ScenePipeline;
+use downpour::trace::scene::SceneView;
+use downpour::trace::stage::Stage;
+use downpour::weather::{Roots, Weather, load};
 
 /// Metres.
 const FARTHEST: f32 = 10.0;
@@ -40,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (scenes, rains) = (ScenePipeline::new(&gpu)?, RainPipeline::new(&gpu)?);
     println!("pipelines: {:.1} ms", ms(start.elapsed()));
 
-    let frame = stage.viewpoint.frame(&stage.data, [1024, 768], 1, 1, 0)?;
+    let frame = RenderFrame::new(&stage.data, &stage.viewpoint, [1024, 768], 1, 1, 0)?;
     let (scene, uploaded) = (scenes.upload(&stage.data)?, rains.upload(&masks)?);
     let drawn = scenes.prepare(&scene, &frame)?;
     println!(
@@ -54,11 +57,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             let drops: Vec<FallingDrop> = (0..count).map(|k| drop(&stage, k, 2.0 * radius)).collect();
             let start = Instant::now();
             let eye = stage.viewpoint.eye.as_dvec3();
-            let rain = Rain::new(&frame, eye, &drops, &masks, &RainOptions::default());
+            let rain = Rain::new(&frame.camera(), eye, &drops, &masks, &RainOptions::default());
             let binning = ms(start.elapsed());
-            let lights = [rain.lights(&stage.data, &masks)?, rain.streak_lights(&stage.data, &masks)?];
-            let pass = rains.prepare(&scenes, &scene, &uploaded, drawn.picture(), &rain, &lights)?;
-            let capture = time(&gpu, &pass.capture())?;
+            let view = SceneView { data: &stage.data, frame: &frame };
+            let lights = [rain.lights(&view, &masks)?, rain.streak_lights(&view, &masks)?];
+            let plate = scenes.plate(&scene, &frame, &rains, &rain)?;
+            let pass = rains.prepare(&plate.of(drawn.picture()), &uploaded, &rain, &lights)?;
+            let capture = time(&gpu, &plate.dispatches(&pass))?;
             let shown = time(&gpu, &[pass.drops()])?;
             let rate = 1.0e3 / (capture + shown);
             let on_screen = rain.list.len();

@@ -13,21 +13,25 @@
 //! - [`Renderer`] makes the frames of a weather, one after the other: a picture, a clip, with a camera of the file or one that is
 //!   set from code ([`Renderer::set_camera`]). The command `downpour render` is built on it.
 //! - [`Frame`] has the layers of a frame, the drops in it, and its files.
-//! - [`Source`] reads weather files; its [`Weather`](scene::weather::Weather) may be changed, or built from nothing.
+//! - [`Source`] reads weather files; its [`Weather`](weather::Weather) may be changed, or built from nothing.
 //! - [`Backend`] and [`Device`] say what draws: a GPU, your GPU, or the CPU, with the same drops.
 //!
 //! The examples `render_weather` and `clip` are whole programs. Below the front door are the parts:
 //!
 //! | module | crate | what is in it |
 //! |---|---|---|
+//! | [`atlas`] | `downpour-atlas` | streaks of oscillating drops by the directions of light and viewer |
 //! | [`bvh`] | `downpour-bvh` | the nearest hit of a ray among triangles |
 //! | [`mod@drop`] | `downpour-drop` | one drop (shape, fall speed, oscillation, optics) and many (size distributions) |
 //! | [`lattice`] | `downpour-lattice` | water on surfaces: ripples of puddles, drops on glass |
 //! | [`mask`] | `downpour-mask` | what a drop does to light: refraction masks, traced, written and read |
-//! | [`scene`] | `downpour-scene` | glTF scenes, sky maps and weather files, behind a guard and a budget |
+//! | [`scene`] | `downpour-scene` | glTF scenes, pictures and sky maps, behind a guard and a budget |
+//! | [`weather`] | `downpour-weather` | the weather file: keys with units, ranges, keyframes |
 //! | [`sim`] | `downpour-sim` | where the drops of a rain are, counted from mm/h |
 //! | [`wind`] | `downpour-wind` | wind primitives and the field that they make |
-//! | [`render`] | `downpour-render` | one exact drop in front of a sky map; scenes in the rain |
+//! | [`render`] | `downpour-render` | rain on a plate: drops, streaks, their light, panes of glass, tone |
+//! | [`trace`] | `downpour-trace` | scenes by rays, which make plates; puddles |
+//! | [`specimen`] | `downpour-specimen` | one exact drop in front of a sky map |
 //! | `gpu` (feature `wgpu`) | `downpour-gpu` | a checked layer over wgpu, on a device of its own or on yours |
 //! | [`shaders`] | `downpour-shaders` | every WGSL file as composable modules |
 //! | [`math`] | `downpour-math` | reproducible scalar functions and random numbers |
@@ -52,11 +56,13 @@
 //! `temperature_c`). Axes are those of glTF: right-handed, +Y up.
 
 mod renderer;
+pub mod shower;
 
 pub use renderer::{
     Backend, Computer, Device, Frame, Progress, Renderer, RendererError, RendererOptions, Source,
 };
 
+pub use downpour_atlas as atlas;
 pub use downpour_bvh as bvh;
 pub use downpour_drop as drop;
 #[cfg(feature = "wgpu")]
@@ -68,6 +74,9 @@ pub use downpour_render as render;
 pub use downpour_scene as scene;
 pub use downpour_shaders as shaders;
 pub use downpour_sim as sim;
+pub use downpour_specimen as specimen;
+pub use downpour_trace as trace;
+pub use downpour_weather as weather;
 pub use downpour_wind as wind;
 
 /// The text of README.md, whose Rust parts are compiled and run.

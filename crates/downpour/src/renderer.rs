@@ -9,18 +9,23 @@ mod source;
 use std::path::Path;
 use std::time::Instant;
 
-use downpour_mask::atlas::{StreakAtlas, StreakPick};
+use crate::shower::{MovingEye, MovingScenery, Scenery, Shower, Still};
+use downpour_atlas::{StreakAtlas, StreakPick};
+use downpour_render::camera::check_size;
 use downpour_render::glass::WetPane;
 use downpour_render::picture::{Picture, PictureOptions, noise_seed};
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
-use downpour_render::rain::{CaptureFrame, DropMasks, Exposure, RainMedium, RainOptions, RefractionForm};
-use downpour_render::shower::{self, MovingEye, MovingScenery, Scenery, Shower, Still};
-use downpour_render::stage::{LATEST_S, Stage, check_size};
-use downpour_render::wet_ground::WetGround;
+use downpour_render::rain::{DropMasks, EnvironmentFrame, Exposure, RainMedium, RainOptions, RefractionForm};
 use downpour_scene::Budget;
 use downpour_scene::scene::Scene;
-use downpour_scene::weather::{CameraPath, Loaded, StreakLook, Weather};
 use downpour_sim::field::VisibleDrops;
+use downpour_trace::data::RenderFrame;
+use downpour_trace::environment::trace_environment;
+use downpour_trace::pane_shadow::{is_lit_through, set_pane};
+use downpour_trace::scene::SceneView;
+use downpour_trace::stage::{LATEST_S, Stage};
+use downpour_trace::wet_ground::WetGround;
+use downpour_weather::{CameraPath, Loaded, StreakLook, Weather};
 
 pub use computer::{Backend, Computer, Device};
 use computer::{Drawer, Through};
@@ -112,7 +117,7 @@ impl Renderer {
         check_size(weather.size)?;
         options.atlas = atlas_of(&weather, options.atlas)?;
         let first = Stage::new(&weather, &loaded, options.first_s)?;
-        let masks = shower::masks(&weather, &loaded)?;
+        let masks = DropMasks::of_weather(&weather, &loaded)?;
         let masks = if let Some(atlas) = &options.atlas { masks.with_atlas(atlas) } else { masks };
         let shower = Shower::new(&weather)?;
         if !loaded.is_animated() {
@@ -275,7 +280,7 @@ impl Renderer {
             None => {
                 let first_s = self.options.first_s.min(time_s);
                 Water {
-                    pane: WetPane::new(&self.weather, &self.first, first_s)?,
+                    pane: WetPane::new(&self.weather, &self.first.viewpoint, first_s)?,
                     ground: WetGround::new(&self.weather, &self.loaded, &self.first, first_s)?,
                     time_s,
                 }
@@ -300,8 +305,8 @@ impl Renderer {
         }
         if let Some(pane) = &mut water.pane {
             rain_on(pane, time_s, told)?;
-            if pane.is_before_lamps(&stage) {
-                pane.hang(&mut stage)?;
+            if is_lit_through(pane, &stage) {
+                set_pane(pane, &mut stage)?;
             }
         }
         Ok(stage)
@@ -412,14 +417,17 @@ fn through(
     picture: &Picture,
     options: &PictureOptions,
 ) -> Result<Through, RendererError> {
-    let frame =
-        stage.viewpoint.frame(&stage.data, options.size, options.grid, options.sky_rays, options.seed)?;
+    let PictureOptions { size, grid, sky_rays, seed, .. } = *options;
+    let frame = RenderFrame::new(&stage.data, &stage.viewpoint, size, grid, sky_rays, seed)?;
+    let camera = frame.camera();
     let capture = if options.rain.form == RefractionForm::Direction {
         picture.surroundings.clone()
     } else {
         // The papers' capture does not show all that is round the eye.
-        CaptureFrame::new(&frame, &RainOptions::default()).trace(&stage.data).texels
+        let environment = EnvironmentFrame::new(&camera, &RainOptions::default());
+        trace_environment(&stage.data, &frame, &environment).texels
     };
-    let glass = pane.picture(stage, &frame, capture.len())?;
+    let lighting = SceneView { data: &stage.data, frame: &frame };
+    let glass = pane.picture(&stage.viewpoint, &camera, frame.grid, &lighting, capture.len())?;
     Ok(Through { glass, behind: picture.behind_glass(), capture })
 }

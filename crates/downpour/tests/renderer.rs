@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 
 use downpour::scene::Budget;
-use downpour::scene::weather::{CameraPath, CameraPose};
+use downpour::weather::{CameraPath, CameraPose};
 use downpour::wind::Keyed;
 use downpour::{Backend, Device, Renderer, RendererError, RendererOptions, Source};
 use glam::DVec3;

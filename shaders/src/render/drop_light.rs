@@ -3,7 +3,7 @@
 
 use super::scene::SCENE;
 use super::specimen::SPECIMEN_TABLES;
-use crate::mask::{ATLAS, ATLAS_CONSTANTS};
+use crate::atlas::{ATLAS, ATLAS_CONSTANTS};
 use crate::{Kernel, Module};
 
 /// Every module of this file.

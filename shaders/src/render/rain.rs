@@ -2,10 +2,11 @@
 
 use super::drop_light::{DROP_GLINT, DROP_LIGHT_CONSTANTS};
 use super::medium::MEDIUM;
+use crate::atlas::ATLAS;
 use crate::common::PACKING;
 use crate::drop::oscillation::OSCILLATION;
 use crate::drop::shape::SHAPE;
-use crate::mask::{ATLAS, WOBBLE};
+use crate::mask::WOBBLE;
 use crate::{Kernel, Module};
 
 /// Every module of this file.

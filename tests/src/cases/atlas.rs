@@ -1,18 +1,18 @@
-//! The streak atlas of `shaders/wgsl/mask` against `downpour_mask::atlas`.
+//! The streak atlas of `shaders/wgsl/mask` against `downpour_atlas`.
 
-use downpour_gpu::{Gpu, GpuError};
-use downpour_mask::atlas::gpu::{AtlasQuery, GpuAtlas};
-use downpour_mask::atlas::lookup::{
+use downpour_atlas::gpu::{AtlasQuery, GpuAtlas};
+use downpour_atlas::lookup::{
     atlas_cell, atlas_clamp, atlas_corner, atlas_draw, atlas_light, atlas_map, atlas_position, atlas_rise,
     atlas_weights,
 };
-use downpour_mask::atlas::{
+use downpour_atlas::{
     StreakAtlas, StreakOptions, StreakOrigin, StreakOscillation, StreakParticle, StreakPick, StreakSet,
     light_directions,
 };
+use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_shaders::mask::{ATLAS, ATLAS_GRID, ATLAS_QUERY_KERNEL, ATLAS_RISES};
+use downpour_shaders::atlas::{ATLAS, ATLAS_GRID, ATLAS_QUERY_KERNEL, ATLAS_RISES};
 
 use crate::Domain::{AnyWord, Below, Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};

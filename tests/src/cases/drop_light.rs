@@ -1,12 +1,10 @@
 //! `shaders/wgsl/render/{drop_glint,drop_light}.wgsl` against `downpour_render::rain::{glint, light}`.
 
+use downpour_atlas::{StreakAtlas, StreakPick};
 use downpour_gpu::{Gpu, GpuError};
-use downpour_mask::atlas::{StreakAtlas, StreakPick};
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_render::builder::SceneBuilder;
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::SceneData;
-use downpour_render::gpu::{DropLightPipeline, ScenePipeline};
+use downpour_render::gpu::DropLightPipeline;
 use downpour_render::light::LightSource;
 use downpour_render::rain::glint::{
     drop_glint_angle, drop_glint_level, drop_glint_pack, drop_glint_right, drop_glint_rousseau,
@@ -15,8 +13,12 @@ use downpour_render::rain::glint::{
 use downpour_render::rain::light::{
     DropLightForm, DropLightOptions, DropLightTable, DropLights, drop_light_mean,
 };
-use downpour_render::sky_light::SkyLight;
 use downpour_shaders::render::drop_light::{DROP_GLINT, DROP_LIGHT, DROP_LIGHT_KERNEL};
+use downpour_trace::builder::SceneBuilder;
+use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::gpu::ScenePipeline;
+use downpour_trace::scene::SceneView;
+use downpour_trace::sky_light::SkyLight;
 use glam::{Vec2, Vec3};
 
 use super::scene::scene;
@@ -167,11 +169,13 @@ fn rows_case(
     drops: &[[f32; 4]],
 ) -> Result<Run, GpuError> {
     let view = Viewpoint { eye: Vec3::new(0.6, 1.4, 5.0), forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
-    let frame = view.frame(scene, [64, 64], 1, 0, 7).expect("a frame");
-    let lights = DropLights::new(scene, &frame, table, options).expect("lights");
+    let frame = RenderFrame::new(scene, &view, [64, 64], 1, 0, 7).expect("a frame");
+    let lighting = SceneView { data: scene, frame: &frame };
+    let lights = DropLights::new(&lighting, view.eye, table, options).expect("lights");
     let cpu = lights.light(drops);
     let (scenes, pipeline) = (ScenePipeline::new(gpu)?, DropLightPipeline::new(gpu)?);
-    let pass = pipeline.prepare(&scenes.upload(scene)?, &pipeline.upload(table)?, &lights, drops)?;
+    let lighting = scenes.upload(scene)?.lighting(gpu, &frame)?;
+    let pass = pipeline.prepare(&lighting, &pipeline.upload(table)?, &lights, drops)?;
     gpu.submit(&pass.dispatches())?;
     // Places are compared as places, streaks of an atlas as they are.
     let glints = if options.form == DropLightForm::Atlas { 0 } else { options.glints };

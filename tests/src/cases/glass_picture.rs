@@ -10,11 +10,13 @@ use downpour_render::glass::{
     GlassPicture, GlassPictureDrop, GlassPictureLight, WetPane, glass_picture_spline,
 };
 use downpour_render::gpu::GlassRenderer;
-use downpour_render::stage::Stage;
 use downpour_scene::scene::Scene;
 use downpour_scene::sky::{SkyMap, Sun};
-use downpour_scene::weather::{Loaded, Weather};
 use downpour_shaders::render::glass::{GLASS_PICTURE, GLASS_PICTURE_KERNEL, LIGHT, WATER};
+use downpour_trace::data::RenderFrame;
+use downpour_trace::scene::SceneView;
+use downpour_trace::stage::Stage;
+use downpour_weather::{Loaded, Weather};
 use glam::{Vec2, Vec3};
 
 use crate::Domain::{Made, Uniform};
@@ -181,11 +183,13 @@ fn pane(keys: &str) -> GlassPicture {
         warnings: Vec::new(),
     };
     let stage = Stage::new(&weather, &loaded, 0.0).expect("a stage");
-    let mut pane = WetPane::new(&weather, &stage, 0.0).expect("a lattice").expect("a pane");
+    let mut pane = WetPane::new(&weather, &stage.viewpoint, 0.0).expect("a lattice").expect("a pane");
     pane.advance(0.0).expect("time");
-    let frame = stage.viewpoint.frame(&stage.data, SIZE, 1, 0, 0).expect("a frame");
+    let frame = RenderFrame::new(&stage.data, &stage.viewpoint, SIZE, 1, 0, 0).expect("a frame");
     let texels = (4 * CAPTURE * CAPTURE - 1) / 3;
-    pane.picture(&stage, &frame, texels as usize).expect("a picture")
+    let lighting = SceneView { data: &stage.data, frame: &frame };
+    pane.picture(&stage.viewpoint, &frame.camera(), frame.grid, &lighting, texels as usize)
+        .expect("a picture")
 }
 
 /// Smooth light of some colours, at distances of 1 to 30 m.

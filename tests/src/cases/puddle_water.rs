@@ -1,15 +1,15 @@
-//! `shaders/wgsl/render/puddle_water.wgsl` against `downpour_render::scene::water`.
+//! `shaders/wgsl/render/puddle_water.wgsl` against `downpour_trace::scene::water`.
 
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
-use downpour_render::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
-use downpour_render::scene::water::{
+use downpour_shaders::render::puddle_water::PUDDLE_WATER;
+use downpour_shaders::render::scene::TRACE_KERNEL;
+use downpour_trace::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
+use downpour_trace::scene::water::{
     puddle_water_above, puddle_water_albedo, puddle_water_beneath, puddle_water_entry, puddle_water_mirrored,
     puddle_water_normal, puddle_water_reflectance, puddle_water_refracted,
 };
-use downpour_shaders::render::puddle_water::PUDDLE_WATER;
-use downpour_shaders::render::scene::TRACE_KERNEL;
 use glam::{Vec2, Vec3};
 
 use super::scene::{picture, scene};

@@ -1,12 +1,12 @@
 //! `shaders/wgsl/render/{capture,reduce,drops}.wgsl` against `downpour_render::rain`.
 
+use downpour_atlas::StreakPick;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::oscillation::Amplitudes;
 use downpour_gpu::{ComputeKernel, Gpu, GpuError};
-use downpour_mask::atlas::StreakPick;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
-use downpour_render::gpu::{RainPipeline, ScenePipeline};
+use downpour_render::gpu::RainPipeline;
 use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::streak::streak_weight;
@@ -16,7 +16,6 @@ use downpour_render::rain::{
     RefractionForm, StreakColour, StreakProfiles, StreakSamples, TemporalResponse, reduce_levels,
     reduce_texel,
 };
-use downpour_render::scene::SceneView;
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
     DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK, STREAK_LIGHT_KERNEL, STREAK_PLACE, STREAK_RAYS,
@@ -25,6 +24,10 @@ use downpour_shaders::render::rain::{
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
 use downpour_sim::resolved::{Region, Resolved};
+use downpour_trace::data::RenderFrame;
+use downpour_trace::environment::trace_environment;
+use downpour_trace::gpu::ScenePipeline;
+use downpour_trace::scene::SceneView;
 use glam::{DVec3, Vec3};
 
 use super::drop_light::atlas;
@@ -166,27 +169,28 @@ fn masks_case(
 ) -> Result<Run, GpuError> {
     let scene = scene();
     let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
-    let frame = view.frame(&scene, SIZE, 1, 1, 7).expect("a frame");
+    let frame = RenderFrame::new(&scene, &view, SIZE, 1, 1, 7).expect("a frame");
     let medium = medium(masks, eye);
     let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
-    let rain = Rain::new(&frame, DVec3::from(eye), &drops(eye, forward), masks, &options);
+    let rain = Rain::new(&frame.camera(), DVec3::from(eye), &drops(eye, forward), masks, &options);
     assert!(rain.list.len() > 100, "{} drops", rain.list.len());
-    let clean = SceneView { data: &scene, frame: &frame }.picture();
-    let capture = rain.capture.trace(&scene);
+    let view = SceneView { data: &scene, frame: &frame };
+    let clean = view.picture();
+    let capture = trace_environment(&scene, &frame, &rain.environment);
     let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
     let uploaded = scenes.upload(&scene)?;
     let clean_buffer = gpu.storage_buffer("clean", &clean)?;
-    let both =
-        [rain.lights(&scene, masks).expect("lamps"), rain.streak_lights(&scene, masks).expect("lamps")];
+    let both = [rain.lights(&view, masks).expect("lamps"), rain.streak_lights(&view, masks).expect("lamps")];
     let lights = &both[0];
-    let pass = rains.prepare(&scenes, &uploaded, &rains.upload(masks)?, &clean_buffer, &rain, &both)?;
+    let plate = scenes.plate(&uploaded, &frame, &rains, &rain)?;
+    let pass = rains.prepare(&plate.of(&clean_buffer), &rains.upload(masks)?, &rain, &both)?;
     let table = || rain.streak_table(masks, &capture, &both[1].light(&rain.streak_rows()));
-    gpu.submit(&pass.capture())?;
+    gpu.submit(&plate.dispatches(&pass))?;
     match part {
         Part::Capture => {
             // The finest level: the others are the kernel of the reduction.
             let finest = 64 * 64;
-            Ok(run(64, &capture.texels[..finest], &pass.surroundings()?[..finest]))
+            Ok(run(64, &capture.texels[..finest], &pass.environment_texels()?[..finest]))
         }
         Part::Means | Part::Chords | Part::Profiles => {
             gpu.submit(&pass.lamps())?;

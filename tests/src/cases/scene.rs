@@ -2,25 +2,8 @@
 
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::rng_unit;
-use downpour_render::brdf::{
-    brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
-    brdf_visible_density, brdf_visible_normal,
-};
-use downpour_render::builder::{MeshPart, SceneBuilder};
 use downpour_render::camera::Viewpoint;
-use downpour_render::data::SceneData;
-use downpour_render::gpu::ScenePipeline;
 use downpour_render::light::LightSource;
-use downpour_render::material::{MaterialLook, TextureUse};
-use downpour_render::path::path_lattice_numbers;
-use downpour_render::scatter::{
-    scatter_above, scatter_alpha, scatter_chance, scatter_gloss, scatter_hemisphere, scatter_tangent,
-};
-use downpour_render::scene::SceneView;
-use downpour_render::sky::sky_coordinates;
-use downpour_render::sky_light::SkyLight;
-use downpour_render::skylight::{skylight_hat, skylight_lobe};
-use downpour_render::texture::texture_wrap;
 use downpour_shaders::render::brdf::BRDF;
 use downpour_shaders::render::path::PATH_LATTICE;
 use downpour_shaders::render::scatter::SCATTER;
@@ -28,6 +11,23 @@ use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_UNLIT, SKY, SKYLIGHT, SKYLIGHT_KERNEL, TEXTURE,
     TRACE_KERNEL,
 };
+use downpour_trace::brdf::{
+    brdf_direct, brdf_distribution, brdf_environment, brdf_fresnel, brdf_masking, brdf_visibility,
+    brdf_visible_density, brdf_visible_normal,
+};
+use downpour_trace::builder::{MeshPart, SceneBuilder};
+use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::gpu::ScenePipeline;
+use downpour_trace::material::{MaterialLook, TextureUse};
+use downpour_trace::path::path_lattice_numbers;
+use downpour_trace::scatter::{
+    scatter_above, scatter_alpha, scatter_chance, scatter_gloss, scatter_hemisphere, scatter_tangent,
+};
+use downpour_trace::scene::SceneView;
+use downpour_trace::sky::sky_coordinates;
+use downpour_trace::sky_light::SkyLight;
+use downpour_trace::skylight::{skylight_hat, skylight_lobe};
+use downpour_trace::texture::texture_wrap;
 use glam::{Affine3A, Vec3};
 
 use crate::Domain::{AnyWord, Below, Made, Uniform, Unit3};
@@ -303,7 +303,7 @@ fn scene_case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
 /// A picture of a scene, from an eye that looks at its middle.
 pub(super) fn picture(gpu: &Gpu, scene: &SceneData, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
     let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 0.9 };
-    let frame = view.frame(scene, [96, 64], 2, sky_rays, 7).expect("a frame");
+    let frame = RenderFrame::new(scene, &view, [96, 64], 2, sky_rays, 7).expect("a frame");
     let cpu = SceneView { data: scene, frame: &frame }.picture();
     let pipeline = ScenePipeline::new(gpu)?;
     let gpu = pipeline.picture(&pipeline.upload(scene)?, &frame)?;

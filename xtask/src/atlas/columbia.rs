@@ -3,9 +3,9 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use downpour_mask::MaskError;
-use downpour_mask::atlas::columbia::{ColumbiaFiles, GreyPicture, import};
-use downpour_mask::atlas::write_streaks;
+use downpour_atlas::AtlasError;
+use downpour_atlas::columbia::{ColumbiaFiles, GreyPicture, import};
+use downpour_atlas::write_streaks;
 use downpour_scene::Budget;
 use downpour_scene::picture::decode_grey16;
 
@@ -18,8 +18,8 @@ const LARGEST: u64 = 4 << 20;
 #[derive(Debug)]
 struct Told(String);
 
-impl From<MaskError> for Told {
-    fn from(error: MaskError) -> Self {
+impl From<AtlasError> for Told {
+    fn from(error: AtlasError) -> Self {
         Self(error.to_string())
     }
 }
@@ -77,8 +77,8 @@ pub(super) fn run(folder: &Path, width: &str, output: &Path) -> Result<(), Strin
 mod tests {
     use std::path::Path;
 
-    use downpour_mask::atlas::StreakAtlas;
-    use downpour_mask::atlas::columbia::{
+    use downpour_atlas::StreakAtlas;
+    use downpour_atlas::columbia::{
         LIGHT_AZIMUTHS, LIGHT_ELEVATIONS, OSCILLATIONS, VIEWS, brightness_name, picture_name,
     };
     use image::{ImageBuffer, Luma};

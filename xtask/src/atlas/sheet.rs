@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use downpour_mask::atlas::StreakSet;
+use downpour_atlas::StreakSet;
 use image::{GrayImage, ImageFormat, Luma};
 
 /// Turns of a streak.

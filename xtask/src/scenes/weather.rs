@@ -164,7 +164,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
 mod tests {
     use super::*;
     use downpour_scene::Budget;
-    use downpour_scene::weather::Weather;
+    use downpour_weather::Weather;
 
     #[test]
     fn every_file_is_a_weather() {

@@ -2,12 +2,13 @@
 
 use clap::Args;
 use downpour::render::glass::WetPane;
-use downpour::render::puddle::PuddleMap;
-use downpour::render::shower::{Shower, drop_model};
-use downpour::render::stage::{CameraChoice, Stage};
-use downpour::render::wet_ground::WetGround;
-use downpour::scene::weather::Observer;
+use downpour::render::rain::drop_model;
 use downpour::scene::{Budget, scene::Texture};
+use downpour::shower::Shower;
+use downpour::trace::puddle::PuddleMap;
+use downpour::trace::stage::{CameraChoice, Stage};
+use downpour::trace::wet_ground::WetGround;
+use downpour::weather::Observer;
 
 use super::input::{Input, InputArguments, say_missing};
 use super::render::BYTES_PER_PIXEL;
@@ -206,7 +207,7 @@ fn water(input: &Input, stage: &Stage) -> Result<Vec<Entry>, Failure> {
 
 /// The pane before the camera, and how much memory it takes.
 fn pane(input: &Input, stage: &Stage, first_s: f64) -> Result<(Vec<Entry>, u64), Failure> {
-    let Some(wet) = WetPane::new(&input.weather, stage, first_s)? else {
+    let Some(wet) = WetPane::new(&input.weather, &stage.viewpoint, first_s)? else {
         return Ok((vec![Entry::new("pane", "pane before the camera", Datum::Unbounded("none"), "")], 0));
     };
     let options = wet.glass().options();

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use downpour::Source;
-use downpour::render::stage::{Stage, check_size};
+use downpour::render::camera::check_size;
 use downpour::scene::Budget;
-use downpour::scene::weather::{Loaded, Observer, Weather};
+use downpour::trace::stage::Stage;
+use downpour::weather::{Loaded, Observer, Weather};
 use glam::DVec3;
 
 use super::say_warnings;

@@ -6,12 +6,12 @@ use clap::Args;
 use downpour::drop::DropShape;
 use downpour::drop::oscillation::Amplitudes;
 use downpour::render::file::{write_exr, write_png};
-use downpour::render::specimen::{
-    Image, Sky, SpecimenLamp, SpecimenOptions, check_specimen_table, render_specimen, render_specimen_table,
-};
 use downpour::render::tone::{tone_automatic_exposure, tone_picture};
 use downpour::scene::Budget;
 use downpour::scene::sky::read_sky;
+use downpour::specimen::{
+    Image, Sky, SpecimenLamp, SpecimenOptions, check_specimen_table, render_specimen, render_specimen_table,
+};
 
 use crate::backend::{BackendArguments, compute};
 use crate::commands::say_warnings;
@@ -199,7 +199,7 @@ impl SpecimenArguments {
         sky: Sky<'_>,
         interrupt: &Interrupt,
     ) -> Result<Image, Failure> {
-        use downpour::render::specimen::gpu::{SpecimenRenderer, SpecimenTableRenderer};
+        use downpour::specimen::gpu::{SpecimenRenderer, SpecimenTableRenderer};
         let say = |text: &str| self.say(text);
         let gpu = |gpu: &_| {
             if self.by_table() {

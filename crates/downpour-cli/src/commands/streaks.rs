@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use downpour::mask::atlas::StreakAtlas;
+use downpour::atlas::StreakAtlas;
 use downpour::render::rain::light::{DropLightForm, DropLightOptions};
-use downpour::scene::weather::Weather;
+use downpour::weather::Weather;
 
 use crate::failure::{Failure, no_atlas};
 

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use downpour::render::file::write_png;
-use downpour::render::shower::{Shower, Still};
-use downpour::render::stage::Stage;
 use downpour::render::wind_picture::{WindPicture, WindPlane, WindSlice, draw_wind};
 use downpour::scene::Budget;
-use downpour::scene::weather::Weather;
+use downpour::shower::{Shower, Still};
+use downpour::trace::stage::Stage;
+use downpour::weather::Weather;
 use downpour::wind::primitive::velocity;
 use downpour::wind::turbulence::wind_turbulence_velocity;
 use downpour::wind::{WindField, WindGrid, WindMatrix};

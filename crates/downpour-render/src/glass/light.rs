@@ -11,8 +11,7 @@ use downpour_shaders::render::glass::{
 };
 use glam::Vec3;
 
-use crate::data::{RenderFrame, SceneData};
-use crate::scene::SceneView;
+use crate::plate::Lighting;
 
 /// A lamp or the sun before a pane. The same layout as `GlassPictureLight` in WGSL.
 #[repr(C)]
@@ -54,13 +53,11 @@ pub fn glass_picture_light_seen(
 }
 
 /// The lamps and the sun that the eye sees, with one ray for what stands between.
-pub(super) fn sources(data: &SceneData, frame: &RenderFrame) -> Vec<GlassPictureLight> {
-    let view = SceneView { data, frame };
-    let eye = Vec3::from(frame.eye);
+pub(super) fn sources(lighting: &dyn Lighting, eye: Vec3) -> Vec<GlassPictureLight> {
     let source = |k: u32| {
-        let light = view.scene_light(k, eye, 0.0);
+        let light = lighting.light(k).light_sample(eye, 0.0);
         let lit = light.irradiance * PI;
-        let colour = lit * view.scene_visibility(eye, light.direction, light.distance);
+        let colour = lit * lighting.visibility(eye, light.direction, light.distance);
         let distance = light.distance.min(GLASS_PICTURE_FAR);
         let place = light.direction * distance;
         (colour.max_element() > 0.0).then(|| GlassPictureLight {
@@ -70,5 +67,5 @@ pub(super) fn sources(data: &SceneData, frame: &RenderFrame) -> Vec<GlassPicture
             distance,
         })
     };
-    (0..frame.light_count).filter_map(source).collect()
+    (0..lighting.light_count()).filter_map(source).collect()
 }

@@ -5,20 +5,20 @@ use std::f64::consts::PI;
 use downpour_drop::optics::water_index_in_air;
 use downpour_lattice::glass::{Glass, GlassError};
 use downpour_math::ops::f64 as ops;
-use downpour_scene::weather::{Pane, PaneFocus, PaneFresnel, PaneShadow, Rain, Weather};
 use downpour_shaders::render::glass::{
     GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE, GLASS_PICTURE_TATARCHUK,
 };
-use glam::{DVec3, Vec3};
+use downpour_weather::{Pane, PaneFocus, PaneFresnel, PaneShadow, Rain, Weather};
+use glam::DVec3;
 
 use super::drops::binned;
 use super::error::PaneError;
 use super::frame::{GlassPicture, GlassPictureFrame, levels, samples};
 use super::light::{GlassPictureLight, sources};
 use super::shade::{PaneShade, PaneShadows};
-use crate::data::RenderFrame;
+use crate::camera::{Camera, PictureEdge, Viewpoint};
+use crate::plate::Lighting;
 use crate::rain::PanePlane;
-use crate::stage::Stage;
 
 /// Largest width and height of a pane whose size is that of the picture, m.
 const LARGEST_M: f64 = 2.4;
@@ -54,10 +54,10 @@ impl WetPane {
     ///
     /// # Errors
     /// [`PaneError`] if the pane cannot be what is asked for, or the camera does not look through it.
-    pub fn new(weather: &Weather, stage: &Stage, first_s: f64) -> Result<Option<Self>, PaneError> {
+    pub fn new(weather: &Weather, viewpoint: &Viewpoint, first_s: f64) -> Result<Option<Self>, PaneError> {
         let Some(pane) = &weather.glass else { return Ok(None) };
-        let place = Place::new(pane, stage)?;
-        let size = pane.size.unwrap_or_else(|| place.shown(stage));
+        let place = Place::new(pane, viewpoint)?;
+        let size = pane.size.unwrap_or_else(|| place.shown(viewpoint, weather.size));
         let begin_s = first_s - pane.before;
         let mut glass = Glass::new(&pane.options(size, &weather.rain, begin_s))?;
         let (rain, air) = pane.weather(&weather.rain, pane.speed.at(begin_s));
@@ -107,45 +107,35 @@ impl WetPane {
         self.size
     }
 
-    /// Whether anything that the picture may show is lit through the pane: something on the eye's side of it, within the
-    /// box round the eye and the pane, and a lamp or a sun.
-    #[must_use]
-    pub fn is_before_lamps(&self, stage: &Stage) -> bool {
-        let Ok(place) = Place::new(&self.pane, stage) else { return false };
-        if stage.data.light_count == 0 || self.pane.shadows == PaneShadow::None {
-            return false;
-        }
-        let eye = DVec3::from(stage.viewpoint.eye);
-        let corner = place.corner(self.size);
-        let [right, down] = [place.across * self.size[0], place.down * self.size[1]];
-        let corners = [corner, corner + right, corner + down, corner + right + down];
-        let low = corners.iter().fold(DVec3::ZERO, |low, &at| low.min(at));
-        let high = corners.iter().fold(DVec3::ZERO, |high, &at| high.max(at));
-        let (low, high) = ((eye + low).as_vec3(), (eye + high).as_vec3());
-        stage.data.triangles.iter().any(|triangle| {
-            let a = Vec3::from(triangle.corner);
-            let (b, c) = (a + Vec3::from(triangle.edge_1), a + Vec3::from(triangle.edge_2));
-            low.cmple(a.max(b).max(c)).all() && high.cmpge(a.min(b).min(c)).all()
-        })
-    }
-
-    /// Hangs the pane as it is now before the lamps of a stage, so that they throw the shadows of its drops.
+    /// Corner (upper left), right, down and outward of the pane before an eye: positions relative to the same origin as the
+    /// eye, metres, and unit vectors.
     ///
     /// # Errors
-    /// As [`WetPane::new`].
-    pub fn hang(&self, stage: &mut Stage) -> Result<(), PaneError> {
+    /// [`PaneError::EdgeOn`] if the eye looks along the pane, or what is wrong with the eye.
+    pub fn axes(&self, viewpoint: &Viewpoint) -> Result<[DVec3; 4], PaneError> {
+        let place = Place::new(&self.pane, viewpoint)?;
+        let corner = place.corner(self.size) + DVec3::from(viewpoint.eye);
+        Ok([corner, place.across, place.down, place.outward])
+    }
+
+    /// True if the light of lamps that falls in through the pane has the shadows of its drops.
+    #[must_use]
+    pub fn has_shadows(&self) -> bool {
+        self.pane.shadows != PaneShadow::None
+    }
+
+    /// Shadows of the drops that are on the pane now; `None` if it has none.
+    ///
+    /// # Errors
+    /// [`PaneError::Glass`] if the drops are more than bins can hold.
+    pub fn shade(&self) -> Result<Option<PaneShade>, PaneError> {
         let form = match self.pane.shadows {
             PaneShadow::Lens => PaneShadows::Lens,
             PaneShadow::Tatarchuk2006 => PaneShadows::Tatarchuk2006,
-            PaneShadow::None => return Ok(()),
+            PaneShadow::None => return Ok(None),
         };
-        let place = Place::new(&self.pane, stage)?;
-        let corner = place.corner(self.size) + DVec3::from(stage.viewpoint.eye);
         let drops = binned(&self.glass, self.above)?.drops;
-        let shade = PaneShade::new(self.size, &drops, form, self.highlight_radius(), self.water as f32);
-        let axes = [corner, place.across, place.down, place.outward];
-        stage.data.hang_pane(&shade, axes.map(|axis: DVec3| axis.as_vec3()));
-        Ok(())
+        Ok(Some(PaneShade::new(self.size, &drops, form, self.highlight_radius(), self.water as f32)))
     }
 
     /// Radius, m, of the discs of drops from which on they are bright.
@@ -154,42 +144,45 @@ impl WetPane {
         self.glass.options().contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32
     }
 
-    /// The pane as it is now, before a picture. `capture_texels` is how many texels the capture has, all levels.
+    /// The pane as it is now, before a picture of `grid` samples along an edge of a pixel. `environment_texels` is the number
+    /// of texels of the environment map, all levels.
     ///
     /// # Errors
     /// As [`WetPane::new`].
     pub fn picture(
         &self,
-        stage: &Stage,
-        frame: &RenderFrame,
-        capture_texels: usize,
+        viewpoint: &Viewpoint,
+        camera: &Camera,
+        grid: u32,
+        lighting: &dyn Lighting,
+        environment_texels: usize,
     ) -> Result<GlassPicture, PaneError> {
-        let place = Place::new(&self.pane, stage)?;
+        let place = Place::new(&self.pane, viewpoint)?;
         let binned = binned(&self.glass, self.above)?;
         let [width, height] = self.size;
         let corner = place.corner(self.size);
         let options = self.glass.options();
         let vector = |v: DVec3| v.as_vec3().to_array();
-        let (levels, last) = levels([frame.width, frame.height]);
+        let (levels, last) = levels(camera.size);
         // (4 n^2 - 1) / 3 texels in all levels of n x n.
-        let capture_size = ((capture_texels as f64 * 0.75).sqrt().round() as u32).max(1);
+        let capture_size = ((environment_texels as f64 * 0.75).sqrt().round() as u32).max(1);
         let lens = (0.5 * self.pane.aperture) as f32;
-        let lens_places = samples(frame.grid, lens);
+        let lens_places = samples(grid, lens);
         let [columns, rows] = options.size;
         let hidden = (columns * self.above) as usize;
         let wet = self.glass.traversal().split_off(hidden);
-        let lights = sources(&stage.data, frame);
+        let lights = sources(lighting, camera.eye);
         let word = |bytes: &[u8]| {
             bytes.iter().enumerate().fold(0u32, |word, (k, &byte)| word | (u32::from(byte) << (8 * k)))
         };
         Ok(GlassPicture {
             frame: GlassPictureFrame {
-                right: frame.right,
-                width: frame.width,
-                up: frame.up,
-                height: frame.height,
-                forward: frame.forward,
-                pixel_angle: frame.pixel_angle,
+                right: camera.right.into(),
+                width: camera.size[0],
+                up: camera.up.into(),
+                height: camera.size[1],
+                forward: camera.forward.into(),
+                pixel_angle: camera.pixel_angle,
                 across: vector(place.across),
                 columns: binned.columns,
                 down: vector(place.down),
@@ -233,13 +226,13 @@ impl WetPane {
     }
 }
 
-/// The plane of a weather's pane before the eye of a stage, if there is one.
+/// The plane of a weather's pane before an eye, if there is one.
 ///
 /// # Errors
 /// [`PaneError::EdgeOn`] if the eye looks along it, or what is wrong with the eye.
-pub fn pane_plane(weather: &Weather, stage: &Stage) -> Result<Option<PanePlane>, PaneError> {
+pub fn pane_plane(weather: &Weather, viewpoint: &Viewpoint) -> Result<Option<PanePlane>, PaneError> {
     let Some(pane) = &weather.glass else { return Ok(None) };
-    let place = Place::new(pane, stage)?;
+    let place = Place::new(pane, viewpoint)?;
     let distance = place.middle.dot(place.outward) as f32;
     Ok(Some(PanePlane { outward: place.outward.as_vec3(), distance }))
 }
@@ -253,8 +246,8 @@ struct Place {
 }
 
 impl Place {
-    fn new(pane: &Pane, stage: &Stage) -> Result<Self, PaneError> {
-        let [right, _, forward] = stage.viewpoint.axes()?.map(DVec3::from);
+    fn new(pane: &Pane, viewpoint: &Viewpoint) -> Result<Self, PaneError> {
+        let [right, _, forward] = viewpoint.axes()?.map(DVec3::from);
         // A pane stands upright however the camera is turned about its own axis.
         let level = DVec3::Y.cross(right);
         let across = DVec3::new(right.x, 0.0, right.z).try_normalize().unwrap_or(DVec3::X);
@@ -276,9 +269,9 @@ impl Place {
     }
 
     /// Width and height of the pane that the picture shows, m.
-    fn shown(&self, stage: &Stage) -> [f64; 2] {
+    fn shown(&self, viewpoint: &Viewpoint, size: [u32; 2]) -> [f64; 2] {
         let mut half = [0.0f64; 2];
-        let Ok(view) = stage.view() else { return [LARGEST_M; 2] };
+        let Ok(view) = PictureEdge::new(viewpoint, size) else { return [LARGEST_M; 2] };
         for k in 0..4u32 {
             let sign = |bit: u32| if k & bit == 0 { -1.0 } else { 1.0 };
             let ray = view.forward

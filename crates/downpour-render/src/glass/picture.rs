@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::GlassPicture;
 use super::light::glass_picture_light_seen;
 use super::meet::Met;
+use crate::camera::camera_ray;
 
 /// A ray that meets the pane.
 #[derive(Clone, Copy, Debug)]
@@ -141,9 +142,8 @@ impl Look<'_> {
     /// The ray through a place of the picture, in pixels from the top left, of length 1.
     fn glass_picture_ray(&self, x: f32, y: f32) -> Vec3 {
         let frame = &self.glass.frame;
-        let u = 2.0 * x / frame.width as f32 - 1.0;
-        let v = 1.0 - 2.0 * y / frame.height as f32;
-        let ray = Vec3::from(frame.forward) + Vec3::from(frame.right) * u + Vec3::from(frame.up) * v;
+        let axes = [frame.right, frame.up, frame.forward].map(Vec3::from);
+        let ray = camera_ray(axes, [frame.width, frame.height], x, y);
         ray / ray.dot(ray).sqrt()
     }
 

@@ -7,7 +7,6 @@ use downpour_shaders::render::pane_shadow::{
 use glam::{Vec2, Vec3};
 
 use super::water::{GlassPictureDrop, glass_picture_water_cap};
-use crate::data::SceneData;
 
 /// Least edge of a texel, m: small drops are two of them across.
 const TEXEL_M: f64 = 2.5e-4;
@@ -138,44 +137,36 @@ fn halved(level: &[Vec2], [columns, rows]: [usize; 2]) -> (Vec<Vec2>, [usize; 2]
     ((0..size[0] * size[1]).map(mean).collect(), size)
 }
 
-impl SceneData {
-    /// Takes down the pane, if one hangs: its rows are the last of the table.
-    pub(crate) fn take_pane_down(&mut self) {
-        if self.pane > 0 {
-            self.table.truncate(self.pane as usize);
-            self.pane = 0;
-        }
-    }
-
-    /// Hangs a pane before the lamps, in place of the one that hangs there; `place`: its corner, right, down and outward, in
-    /// the scene's coordinates. Puddles are laid before.
-    pub fn hang_pane(&mut self, shade: &PaneShade, place: [Vec3; 4]) {
-        self.take_pane_down();
-        self.pane = self.table.len() as u32;
-        let [corner, across, down, outward] = place;
-        let first = self.pane + PANE_SHADOW_LEVELS + shade.levels.len() as u32;
+impl PaneShade {
+    /// The rows of the pane in a table, of which they begin at row `first_row`. `axes`: corner, right, down and outward of the
+    /// pane, in the coordinates of the table.
+    #[must_use]
+    pub fn rows(&self, first_row: u32, axes: [Vec3; 4]) -> Vec<[u32; 4]> {
+        let [corner, across, down, outward] = axes;
+        let first = first_row + PANE_SHADOW_LEVELS + self.levels.len() as u32;
         // There is at least one level.
-        let [columns, rows, _] = shade.levels.first().copied().unwrap_or_default();
-        let last = (shade.levels.len() as u32).saturating_sub(1);
+        let [columns, rows, _] = self.levels.first().copied().unwrap_or_default();
+        let last = (self.levels.len() as u32).saturating_sub(1);
         let row = |v: Vec3, w: f32| [v.x, v.y, v.z, w].map(f32::to_bits);
-        let form = f32::from_bits(shade.form);
-        self.table.extend([
-            row(corner, shade.per_metre),
-            row(across, shade.size_m[0]),
-            row(down, shade.size_m[1]),
+        let form = f32::from_bits(self.form);
+        let mut table = vec![
+            row(corner, self.per_metre),
+            row(across, self.size_m[0]),
+            row(down, self.size_m[1]),
             row(outward, form),
             [columns, rows, first, last],
-            [shade.mean[0].to_bits(), shade.mean[1].to_bits(), 0, 0],
-        ]);
-        self.table.extend(shade.levels.iter().map(|&[columns, rows, first]| [columns, rows, first, 0]));
+            [self.mean[0].to_bits(), self.mean[1].to_bits(), 0, 0],
+        ];
+        table.extend(self.levels.iter().map(|&[columns, rows, first]| [columns, rows, first, 0]));
         let word = |pairs: &[[u8; 2]]| {
             pairs.iter().rev().fold(0u32, |word, &[a, b]| (word << 16) | u32::from(a) | (u32::from(b) << 8))
         };
-        self.table.extend(shade.texels.chunks(8).map(|eight| {
+        table.extend(self.texels.chunks(8).map(|eight| {
             let mut words = [0; 4];
             words.iter_mut().zip(eight.chunks(2)).for_each(|(into, pairs)| *into = word(pairs));
             words
         }));
+        table
     }
 }
 

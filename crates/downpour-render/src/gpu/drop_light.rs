@@ -3,7 +3,7 @@
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::drop_light::DROP_LIGHT_KERNEL;
 
-use super::scene::SceneOnGpu;
+use super::plate::LightingOnGpu;
 use crate::rain::light::{DropLightTable, DropLights};
 
 /// The pipeline of the light on drops: made once, used for any number of pictures.
@@ -46,14 +46,14 @@ impl DropLightPipeline {
         Ok(DropLightOnGpu { table: self.gpu.storage_buffer("scattering of drops", table.rows())? })
     }
 
-    /// Makes ready to light drops ([`drop_light_rows`](crate::rain::light::drop_light_rows)). `scene` is that of
+    /// Makes ready to light drops ([`drop_light_rows`](crate::rain::light::drop_light_rows)). `lighting` is that of
     /// `lights`.
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] if there are more drops than the device takes, or what else the GPU says.
     pub fn prepare<'a>(
         &'a self,
-        scene: &SceneOnGpu,
+        lighting: &LightingOnGpu,
         table: &DropLightOnGpu,
         lights: &DropLights<'_>,
         drops: &[[f32; 4]],
@@ -63,17 +63,14 @@ impl DropLightPipeline {
         let rows = count * lights.stride();
         let light =
             gpu.empty_buffer("light on drops", rows.max(1) as u64 * 16, wgpu::BufferUsages::STORAGE)?;
-        let frame = gpu.uniform_buffer("frame", lights.view.frame)?;
         // A buffer has at least one element.
         let list: &[_] = if drops.is_empty() { &[[0.0; 4]] } else { drops };
         let list = gpu.storage_buffer("places of drops", list)?;
-        let [frame, nodes, triangles, corners, rows_of_scene, texels, ..] =
-            scene.buffers(&frame, &light, &light);
         let mut parts = Vec::new();
         for part in lights.frames(count as u32) {
             let part = gpu.uniform_buffer("lamps", &part)?;
-            let buffers =
-                [frame, nodes, triangles, corners, rows_of_scene, texels, &list, &table.table, &light, &part];
+            let own = [&list, &table.table, &light, &part];
+            let buffers: Vec<_> = lighting.buffers.iter().chain(own).collect();
             parts.push(self.kernel.bind(gpu, &buffers)?);
         }
         let groups = (count as u32).div_ceil(64).max(1);

@@ -3,7 +3,7 @@
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 
-use super::scene::SceneOnGpu;
+use super::plate::PlateOnGpu;
 use crate::rain::medium::MediumLight;
 
 /// The pipelines of unresolved rain: made once, used for any number of pictures.
@@ -42,33 +42,29 @@ impl MediumPipeline {
         })
     }
 
-    /// Makes ready to work out the rain before a picture. `scene` is that of `medium`, `clean` its picture with its
-    /// distances, `layer` what the result goes to, a row per pixel.
+    /// Makes ready to work out the rain before a picture. `plate` is that of `medium`, `layer` what the result goes to, a row per pixel.
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] if the picture is larger than the device takes, or what else the GPU says.
     pub fn prepare<'a>(
         &'a self,
-        scene: &SceneOnGpu,
+        plate: &PlateOnGpu<'_>,
         medium: &MediumLight<'_>,
-        clean: &wgpu::Buffer,
         layer: &wgpu::Buffer,
     ) -> Result<MediumPass<'a>, GpuError> {
         let gpu = &self.gpu;
-        let picture = medium.view.frame;
-        let pixels = u64::from(picture.width) * u64::from(picture.height);
+        let [width, height] = medium.camera.size;
+        let pixels = u64::from(width) * u64::from(height);
         let rows = medium.grid_rows() as u64 + 2 * pixels;
         let found = gpu.empty_buffer("unresolved rain", rows * 16, wgpu::BufferUsages::STORAGE)?;
         let phase = gpu.storage_buffer("phase function", &medium.phase)?;
         let frame = gpu.uniform_buffer("medium frame", &medium.medium)?;
-        let picture_frame = gpu.uniform_buffer("frame", picture)?;
-        let [eye, nodes, triangles, corners, table, texels, ..] =
-            scene.buffers(&picture_frame, &found, &found);
-        let numbered = [(0, eye), (1, nodes), (2, triangles), (3, corners), (4, table), (5, texels)];
-        let open = self.open.bind_at(gpu, numbered.into_iter().chain([(8, &found), (9, &frame)]))?;
+        let clean = plate.pixels;
+        let numbered = || (0u32..).zip(&plate.lighting.buffers);
+        let open = self.open.bind_at(gpu, numbered().chain([(8, &found), (9, &frame)]))?;
         let of_light = [(6, clean), (7, &phase), (8, &found), (9, &frame)];
-        let light = self.light.bind_at(gpu, numbered.into_iter().chain(of_light))?;
-        let of_filter = [(0, eye), (1, &found), (2, clean), (3, layer), (9, &frame)];
+        let light = self.light.bind_at(gpu, numbered().chain(of_light))?;
+        let of_filter = [(0, &plate.lighting.buffers[0]), (1, &found), (2, clean), (3, layer), (9, &frame)];
         let filter = self.filter.bind_at(gpu, of_filter)?;
         let cells = medium.medium.columns * medium.medium.rows;
         Ok(MediumPass {
@@ -76,7 +72,7 @@ impl MediumPipeline {
             open: (open, cells.div_ceil(64)),
             light,
             filter,
-            groups: [picture.width.div_ceil(8), picture.height.div_ceil(8), 1],
+            groups: [width.div_ceil(8), height.div_ceil(8), 1],
             frame,
             found,
         })

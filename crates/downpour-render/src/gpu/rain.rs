@@ -7,10 +7,9 @@ use downpour_shaders::render::rain::{
 
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::medium::{MediumPass, MediumPipeline};
-use super::scene::{SceneOnGpu, ScenePipeline};
+use super::plate::PlateOnGpu;
 use crate::rain::light::DropLights;
 use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, StreakPath, StreakRay, reduce_levels};
-use crate::trace::TraceGather;
 
 /// The pipelines of drops: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
@@ -36,9 +35,7 @@ pub struct RainOnGpu {
 #[derive(Debug)]
 pub struct RainPass<'a> {
     pipeline: &'a RainPipeline,
-    tracer: &'a ComputeKernel,
     size: [u32; 2],
-    capture: (wgpu::BindGroup, u32),
     levels: Vec<(wgpu::BindGroup, u32)>,
     means: Option<(wgpu::BindGroup, u32)>,
     profiles: Option<Profiles>,
@@ -94,33 +91,35 @@ impl RainPipeline {
         })
     }
 
-    /// Makes ready to draw drops over a scene. `clean` is the scene's picture with its distances; `lights` are the lamps of
-    /// `rain` on the drops, and those on the profiles of streaks.
+    /// A buffer for the environment map of a rain, with room for all levels.
+    ///
+    /// # Errors
+    /// As [`RainPipeline::upload`].
+    pub fn environment(&self, rain: &Rain) -> Result<wgpu::Buffer, GpuError> {
+        let size = rain.environment.size;
+        let levels = reduce_levels(size);
+        let all = levels.last().map_or(size * size, |last| last.target_texel + last.size * last.size);
+        self.gpu.empty_buffer("environment map", u64::from(all) * 16, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// Makes ready to draw drops over a plate. `lights` are the lamps of `rain` on the drops, and those on the profiles of
+    /// streaks.
     ///
     /// # Errors
     /// As [`RainPipeline::upload`].
     pub fn prepare<'a>(
         &'a self,
-        tracer: &'a ScenePipeline,
-        scene: &SceneOnGpu,
+        plate: &PlateOnGpu<'_>,
         masks: &RainOnGpu,
-        clean: &wgpu::Buffer,
         rain: &Rain,
         lights: &[DropLights<'_>; 2],
     ) -> Result<RainPass<'a>, GpuError> {
         let gpu = &self.gpu;
-        let size = rain.capture.frame.width;
-        let levels = reduce_levels(size);
-        let all = levels.last().map_or(size * size, |last| last.target_texel + last.size * last.size);
+        let levels = reduce_levels(rain.environment.size);
         let storage = wgpu::BufferUsages::STORAGE;
-        let texels = gpu.empty_buffer("capture", u64::from(all) * 16, storage)?;
-        let frame = gpu.uniform_buffer("capture frame", &rain.capture.frame)?;
-        // A capture has no filter: nothing is written there.
-        let nothing = gpu.storage_buffer("no light of the sky", &[TraceGather::default()])?;
-        let tracer = tracer.tracer(&rain.capture.frame)?;
-        let capture = tracer.bind(gpu, &scene.buffers(&frame, &texels, &nothing))?;
+        let (clean, texels) = (plate.pixels, plate.environment.clone());
         let level = |level: &ReduceLevel| {
-            let uniform = gpu.uniform_buffer("capture level", level)?;
+            let uniform = gpu.uniform_buffer("level of the environment map", level)?;
             Ok((self.reduce.bind(gpu, &[&uniform, &texels])?, level.size.div_ceil(8)))
         };
         let levels = levels.iter().map(level).collect::<Result<_, GpuError>>()?;
@@ -135,8 +134,8 @@ impl RainPipeline {
         let made = &rain.profiles;
         let table = gpu.empty_buffer("streak radiance", u64::from(made.entries.max(1)) * 16, storage)?;
         let lamps = [
-            self.lamps.prepare(scene, &masks.light, &lights[0], &rain.rows)?,
-            self.lamps.prepare(scene, &masks.light, &lights[1], &rain.streak_rows())?,
+            self.lamps.prepare(plate.lighting, &masks.light, &lights[0], &rain.rows)?,
+            self.lamps.prepare(plate.lighting, &masks.light, &lights[1], &rain.streak_rows())?,
         ];
         let mut means = None;
         if !made.classes.is_empty() {
@@ -159,7 +158,7 @@ impl RainPipeline {
                 light: (lit, groups(made.light_jobs.len())),
             });
         }
-        let medium = self.medium.prepare(scene, &rain.medium_light(&lights[0]), clean, &layer)?;
+        let medium = self.medium.prepare(plate, &rain.medium_light(&lights[0]), &layer)?;
         let bindings = [
             &frame,
             &texels,
@@ -173,12 +172,9 @@ impl RainPipeline {
             medium.frame(),
         ];
         let drops = self.drops.bind(gpu, &bindings)?;
-        let capture = (capture, size.div_ceil(8));
         Ok(RainPass {
             pipeline: self,
-            tracer,
             size: picture,
-            capture,
             levels,
             means,
             profiles,
@@ -193,14 +189,10 @@ impl RainPipeline {
 }
 
 impl RainPass<'_> {
-    /// The capture of the surroundings, with its coarser levels.
+    /// The coarser levels of the environment map, after its finest one.
     #[must_use]
-    pub fn capture(&self) -> Vec<Dispatch<'_>> {
-        let (bindings, groups) = &self.capture;
-        let finest = self.tracer.dispatch(bindings, [*groups, *groups, 1]);
-        let levels = self.levels.iter();
-        let coarser = levels.map(|(bindings, n)| self.pipeline.reduce.dispatch(bindings, [*n, *n, 1]));
-        std::iter::once(finest).chain(coarser).collect()
+    pub fn environment(&self) -> Vec<Dispatch<'_>> {
+        self.levels.iter().map(|(bindings, n)| self.pipeline.reduce.dispatch(bindings, [*n, *n, 1])).collect()
     }
 
     /// The light of lamps on the drops and on the streaks, in this order.
@@ -209,7 +201,7 @@ impl RainPass<'_> {
         self.lamps.iter().flat_map(DropLightPass::dispatches).collect()
     }
 
-    /// The streak radiance table, after the capture and the lamps; nothing where no drop moves.
+    /// The streak radiance table, after the environment map and the lamps; nothing where no drop moves.
     #[must_use]
     pub fn streaks(&self) -> Vec<Dispatch<'_>> {
         let pipeline = self.pipeline;
@@ -261,11 +253,11 @@ impl RainPass<'_> {
         self.pipeline.gpu.read(&self.table)
     }
 
-    /// Reads the capture, all levels.
+    /// Reads the environment map, all levels.
     ///
     /// # Errors
     /// What the GPU says.
-    pub fn surroundings(&self) -> Result<Vec<[f32; 4]>, GpuError> {
+    pub fn environment_texels(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         self.pipeline.gpu.read(&self.texels)
     }
 }

@@ -11,11 +11,11 @@ use downpour_shaders::render::rain::{
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
-use super::capture::Capture;
 use super::drops_atlas::{DropsAtlas, DropsAtlasStreak, drops_atlas_streak};
 use super::drops_frame::DropsView;
 use super::drops_mask::{drops_mask_right, drops_mask_unit};
 use super::drops_shade::DropsShade;
+use super::environment::EnvironmentMap;
 use super::glint::{drop_glint_rousseau, drop_glint_spot, drop_glint_unpack};
 use super::streak::{
     DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_nearest, streak_place,
@@ -390,8 +390,13 @@ impl Rain {
     /// The streak radiance table of the picture. `lamps` is what lamps add to the streaks that have profiles
     /// ([`Rain::streak_lights`]).
     #[must_use]
-    pub fn streak_table(&self, masks: &DropMasks, capture: &Capture, lamps: &[[f32; 4]]) -> StreakTable {
-        let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &capture.texels };
+    pub fn streak_table(
+        &self,
+        masks: &DropMasks,
+        environment: &EnvironmentMap,
+        lamps: &[[f32; 4]],
+    ) -> StreakTable {
+        let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &environment.texels };
         let StreakProfiles { classes, paths, ray_jobs, rays, entries: count, .. } = &self.profiles;
         let mut entries = view.streak_means(classes);
         entries.resize(*count as usize, [0.0; 4]);
@@ -410,12 +415,12 @@ impl Rain {
         &self,
         clean: &[[f32; 4]],
         masks: &DropMasks,
-        capture: &Capture,
+        environment: &EnvironmentMap,
         table: &StreakTable,
         light: &[[f32; 4]],
         medium: &[[f32; 4]],
     ) -> Vec<[f32; 4]> {
-        let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &capture.texels };
+        let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &environment.texels };
         let buffers = Buffers { view, rain: self, table, light, clean, medium };
         let (width, buffers) = (self.frame.width, &buffers);
         (0..self.frame.height)

@@ -3,8 +3,8 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use downpour_mask::atlas::StreakAtlas;
-use downpour_mask::atlas::lookup::atlas_corner;
+use downpour_atlas::StreakAtlas;
+use downpour_atlas::lookup::atlas_corner;
 use downpour_shaders::render::rain::DROPS_ATLAS_HEAD;
 use glam::Vec4;
 

@@ -2,11 +2,11 @@
 
 use glam::Vec3;
 
-use super::capture::CaptureFrame;
+use super::environment::EnvironmentFrame;
 use super::exposure::{MOST_STREAK_SAMPLES, StreakSamples};
 use super::light::DropLightForm;
 use super::{DropMasks, RainOptions};
-use crate::data::RenderFrame;
+use crate::camera::{Camera, camera_ray};
 
 /// Samples of a streak for which the table has no entry: too short, or across the others.
 const STREAK_SPARE: u32 = 16;
@@ -67,8 +67,8 @@ pub(crate) struct DropsView<'a> {
 
 impl DropsFrame {
     pub(crate) fn new(
-        picture: &RenderFrame,
-        capture: &CaptureFrame,
+        camera: &Camera,
+        environment: &EnvironmentFrame,
         masks: &DropMasks,
         tiles_across: u32,
         options: &RainOptions,
@@ -78,19 +78,19 @@ impl DropsFrame {
             StreakSamples::Loop(samples) => samples.clamp(1, MOST_STREAK_SAMPLES),
         };
         Self {
-            right: picture.right,
-            width: picture.width,
-            up: picture.up,
-            height: picture.height,
-            forward: picture.forward,
-            pixel_angle: picture.pixel_angle,
-            capture_right: capture.frame.right,
-            capture_size: capture.frame.width,
-            capture_up: capture.frame.up,
-            capture_last: capture.frame.width.ilog2(),
-            capture_forward: capture.frame.forward,
-            capture_texel: capture.frame.pixel_angle,
-            form: capture.form as u32,
+            right: camera.right.into(),
+            width: camera.size[0],
+            up: camera.up.into(),
+            height: camera.size[1],
+            forward: camera.forward.into(),
+            pixel_angle: camera.pixel_angle,
+            capture_right: environment.right.into(),
+            capture_size: environment.size,
+            capture_up: environment.up.into(),
+            capture_last: environment.size.ilog2(),
+            capture_forward: environment.forward.into(),
+            capture_texel: environment.texel_angle,
+            form: environment.form as u32,
             mask_size: masks.size,
             tiles_across,
             light_terms: options.light.form.terms(),
@@ -106,8 +106,7 @@ impl DropsView<'_> {
     /// The ray through a place of the picture, in pixels from the top left, of any length.
     pub(super) fn drops_frame_ray(&self, x: f32, y: f32) -> Vec3 {
         let frame = self.frame;
-        let u = 2.0 * x / frame.width as f32 - 1.0;
-        let v = 1.0 - 2.0 * y / frame.height as f32;
-        Vec3::from(frame.forward) + Vec3::from(frame.right) * u + Vec3::from(frame.up) * v
+        let axes = [frame.right, frame.up, frame.forward].map(Vec3::from);
+        camera_ray(axes, [frame.width, frame.height], x, y)
     }
 }

@@ -1,8 +1,8 @@
 //! How long the shutter is open, how the eye moves meanwhile, and how what passes it is averaged.
 
 use downpour_drop::oscillation::{Amplitudes, Fluids};
-use downpour_scene::weather::{Observer, StreakLook, Weather};
 use downpour_shaders::render::rain::{STREAK_REFRACTED, STREAK_WHITE};
+use downpour_weather::{Observer, StreakLook, Weather};
 
 use crate::camera::EyeMotion;
 

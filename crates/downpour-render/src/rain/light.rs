@@ -8,7 +8,7 @@
 //! eye ([`SphereScattering`](downpour_drop::optics::SphereScattering)); seen as a disc of pi a^2, its mean radiance is
 //! L = E phase(theta). The drop is a sphere: a flattened one has its bows elsewhere, but nearly the same mean.
 //!
-//! With the form [`DropLightForm::Atlas`] the drop's light is that of a streak atlas ([`downpour_mask::atlas`], where its amount is
+//! With the form [`DropLightForm::Atlas`] the drop's light is that of a streak atlas ([`downpour_atlas`], where its amount is
 //! compared with that of a sphere): traced with the
 //! shape and the oscillation of a falling drop, bright and dark along its path.
 //!
@@ -23,7 +23,6 @@ mod table;
 use std::f32::consts::PI;
 
 use downpour_math::ops;
-use downpour_scene::weather::{RainDropLight, StreakLook, Weather};
 use downpour_shaders::render::drop_light::{
     DROP_ATLAS_ROWS, DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_EXTERNAL,
     DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG, DROP_LIGHT_INTERNAL, DROP_LIGHT_LAMPS, DROP_LIGHT_LAMPS_ROUSSEAU,
@@ -31,8 +30,9 @@ use downpour_shaders::render::drop_light::{
     DROP_LIGHT_ROUSSEAU, DROP_LIGHT_TRACED,
 };
 use downpour_shaders::render::rain::STREAK_LAMPS;
-use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS};
+use downpour_shaders::render::scene::SCENE_FAR;
 use downpour_sim::field::FallingDrop;
+use downpour_weather::{RainDropLight, StreakLook, Weather};
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
@@ -41,9 +41,8 @@ use super::glint::{
     drop_glint_angle, drop_glint_pack, drop_glint_right, drop_glint_rousseau, drop_glint_side,
 };
 use crate::RenderError;
-use crate::data::{RenderFrame, SceneData};
-use crate::light::check_lights;
-use crate::scene::{SceneView, scene_share};
+use crate::light::{check_lights, light_weight};
+use crate::plate::Lighting;
 
 use atlas::drop_atlas_place;
 use keep::{drop_light_keep, drop_light_keep_facing, drop_light_keep_streak};
@@ -163,10 +162,11 @@ pub struct DropGlint {
     pub radiance: Vec3,
 }
 
-/// The lamps of a scene, on drops before an eye.
+/// The lamps of a plate, on drops before an eye.
 #[derive(Clone, Copy, Debug)]
 pub struct DropLights<'a> {
-    pub(crate) view: SceneView<'a>,
+    pub(crate) lighting: &'a dyn Lighting,
+    eye: Vec3,
     pub(crate) table: &'a DropLightTable,
     /// [`DropLightForm`], or what keeps lamps for streaks.
     form: u32,
@@ -198,18 +198,18 @@ pub fn drop_light_rows<'a>(drops: impl IntoIterator<Item = &'a FallingDrop>) -> 
 }
 
 impl<'a> DropLights<'a> {
-    /// The lamps of `scene`, seen from the frame's eye.
+    /// The lamps of a plate, seen from an eye.
     ///
     /// # Errors
     /// [`RenderError::Light`] if a lamp's colour is not finite, or negative; [`RenderError::OutOfRange`] above 16 glints, or for
     /// the form of an atlas if the table has none.
     pub fn new(
-        scene: &'a SceneData,
-        frame: &'a RenderFrame,
+        lighting: &'a dyn Lighting,
+        eye: Vec3,
         table: &'a DropLightTable,
         options: DropLightOptions,
     ) -> Result<Self, RenderError> {
-        check_lights(scene)?;
+        check_lights(lighting)?;
         if options.glints > DROP_LIGHT_GLINTS {
             return Err(RenderError::OutOfRange {
                 quantity: "number of glints of a drop",
@@ -227,11 +227,10 @@ impl<'a> DropLights<'a> {
             });
         }
         let DropLightOptions { form, glints } = options;
-        let view = SceneView { data: scene, frame };
-        Ok(Self { view, table, form: form.number(), terms: form.terms(), glints })
+        Ok(Self { lighting, eye, table, form: form.number(), terms: form.terms(), glints })
     }
 
-    /// The lamps of `scene` as the profiles of streaks want them: of each drop the brightest ones, two rows each (its irradiance,
+    /// The lamps of a plate as the profiles of streaks want them: of each drop the brightest ones, two rows each (its irradiance,
     /// and the chord from the middle to the edge of its disc; its direction), the others in the mean. In the form of
     /// [`DropLightForm::Rousseau2006`] the irradiance is that over pi, and the chord is below 0. Other forms have no more than
     /// their mean; an atlas adds its streaks elsewhere.
@@ -239,8 +238,8 @@ impl<'a> DropLights<'a> {
     /// # Errors
     /// As [`DropLights::new`].
     pub(crate) fn of_streaks(
-        scene: &'a SceneData,
-        frame: &'a RenderFrame,
+        lighting: &'a dyn Lighting,
+        eye: Vec3,
         table: &'a DropLightTable,
         options: DropLightOptions,
     ) -> Result<Self, RenderError> {
@@ -252,7 +251,7 @@ impl<'a> DropLights<'a> {
             DropLightForm::ImSung2022 => DROP_LIGHT_IM_SUNG,
             DropLightForm::Atlas | DropLightForm::None => DROP_LIGHT_NONE,
         };
-        Ok(Self { form, glints: 2 * STREAK_LAMPS, ..Self::new(scene, frame, table, options)? })
+        Ok(Self { form, glints: 2 * STREAK_LAMPS, ..Self::new(lighting, eye, table, options)? })
     }
 
     /// Numbers of a drop in [`DropLights::light`]: its mean, and its glints.
@@ -266,7 +265,7 @@ impl<'a> DropLights<'a> {
     pub fn frames(&self, count: u32) -> Vec<DropLightFrame> {
         let (form, glints, terms) = (self.form, self.glints, self.terms);
         let frame = |first_light| DropLightFrame { count, form, glints, first_light, terms };
-        let lights = if form == DROP_LIGHT_NONE { 1 } else { self.view.frame.light_count.max(1) };
+        let lights = if form == DROP_LIGHT_NONE { 1 } else { self.lighting.light_count().max(1) };
         (0..lights).step_by(DROP_LIGHT_LAMPS as usize).map(frame).collect()
     }
 
@@ -297,16 +296,16 @@ impl<'a> DropLights<'a> {
         let (place, least) = (Vec4::from(drop).truncate(), drop[3]);
         let (towards, right, up) = self.facing(place);
         let mut all = Vec::new();
-        for k in 0..self.view.frame.light_count {
-            let light = self.view.scene_light(k, place, least);
-            let visible = self.view.scene_visibility(place, light.direction, light.distance);
+        for k in 0..self.lighting.light_count() {
+            let light = self.lighting.light(k).light_sample(place, least);
+            let visible = self.lighting.visibility(place, light.direction, light.distance);
             let irradiance = light.irradiance * visible * PI;
             let angle = drop_glint_angle(light.direction, towards);
             let side = drop_glint_side(light.direction, right, up);
             for (path, order) in (1..=DROP_LIGHT_PATHS).zip([0, 1, 2, 2, 3, 3]) {
                 let entry = drop_light_entry(self.table, path, angle);
                 let radiance = irradiance * entry.truncate();
-                if scene_share(radiance) > 0.0 {
+                if light_weight(radiance) > 0.0 {
                     all.push(DropGlint { light: k, order, place: side * entry.w, radiance });
                 }
             }
@@ -316,7 +315,7 @@ impl<'a> DropLights<'a> {
 
     /// Direction of a place from the eye, and right and up of its view.
     fn facing(&self, place: Vec3) -> (Vec3, Vec3, Vec3) {
-        let offset = place - Vec3::from(self.view.frame.eye);
+        let offset = place - self.eye;
         let towards = offset / offset.dot(offset).max(DROP_GLINT_TINY).sqrt();
         let right = drop_glint_right(towards);
         (towards, right, right.cross(towards))
@@ -325,27 +324,26 @@ impl<'a> DropLights<'a> {
     /// Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles.
     /// What is within the inner cone is lit, between the two cones light fades. Nothing of other lamps.
     fn drop_light_cone(&self, index: u32, place: Vec3, least: f32) -> Vec3 {
-        let row = (self.view.data.lights + index * SCENE_LIGHT_ROWS) as usize;
-        let numbers = |k: usize| Vec4::from(self.view.data.table[row + k].map(f32::from_bits));
-        let (position, axis, colour, cone) = (numbers(0), numbers(1).truncate(), numbers(2), numbers(3));
-        if self.view.data.table[row][3] == SCENE_LIGHT_DIRECTIONAL || cone.x <= 0.0 {
+        let light = self.lighting.light(index);
+        let (axis, [scale, edge]) = (light.axis, light.cone);
+        if light.is_parallel || scale <= 0.0 {
             return Vec3::ZERO;
         }
-        let offset = place - position.truncate();
+        let offset = place - light.position;
         let below = offset.dot(axis);
-        let height = if colour.w > 0.0 { colour.w } else { SCENE_FAR };
+        let height = if light.range > 0.0 { light.range } else { SCENE_FAR };
         if below <= 0.0 || below > height {
             return Vec3::ZERO;
         }
-        let outer = (-cone.y / cone.x).clamp(1.0e-3, 1.0);
-        let inner = ((1.0 - cone.y) / cone.x).clamp(outer, 1.0);
+        let outer = (-edge / scale).clamp(1.0e-3, 1.0);
+        let inner = ((1.0 - edge) / scale).clamp(outer, 1.0);
         let circle = below * (1.0 - outer * outer).max(0.0).sqrt() / outer;
         let core = below * (1.0 - inner * inner).max(0.0).sqrt() / inner;
         let aside = offset - axis * below;
         let away = aside.dot(aside).sqrt();
         let share = ((circle - away) / (circle - core).max(1.0e-6 * below)).clamp(0.0, 1.0);
         let square = offset.dot(offset).max((least * least).max(1.0e-8));
-        colour.truncate() * (share / square)
+        light.color * (share / square)
     }
 
     /// The light on a drop: its mean, then its glints.
@@ -355,17 +353,17 @@ impl<'a> DropLights<'a> {
         let mut sum = Vec3::ZERO;
         let (towards, right, up) = self.facing(place);
         let form = self.form;
-        let count = if form == DROP_LIGHT_NONE { 0 } else { self.view.frame.light_count };
+        let count = if form == DROP_LIGHT_NONE { 0 } else { self.lighting.light_count() };
         for k in 0..count {
-            let light = self.view.scene_light(k, place, radius);
+            let light = self.lighting.light(k).light_sample(place, radius);
             let mut lit = light.irradiance;
             if form == DROP_LIGHT_IM_SUNG {
                 lit = self.drop_light_cone(k, place, radius);
             }
-            if scene_share(lit) <= 0.0 {
+            if light_weight(lit) <= 0.0 {
                 continue;
             }
-            lit *= self.view.scene_visibility(place, light.direction, light.distance);
+            lit *= self.lighting.visibility(place, light.direction, light.distance);
             match form {
                 DROP_LIGHT_IM_SUNG => sum += lit,
                 DROP_LIGHT_LAMPS_TRACED | DROP_LIGHT_LAMPS_ROUSSEAU => {

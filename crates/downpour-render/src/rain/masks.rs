@@ -3,10 +3,10 @@
 //! A drop's mask depends on its diameter (its shape) and on how far above or below it the viewer is. Masks are traced
 //! for diameters half a millimetre apart and elevations 30 degrees apart; the shader goes between them linearly.
 
+use downpour_atlas::StreakAtlas;
 use downpour_drop::DropShape;
 use downpour_drop::oscillation::{Amplitudes, Fluids, FrequencyLaw, OscillatingDrop, Oscillation};
 use downpour_drop::shape::{DropShapeCoefficients, ShapeTable};
-use downpour_mask::atlas::StreakAtlas;
 use downpour_mask::{
     ClosedMesh, Mask, MaskError, MaskOptions, MaskTexel, View, trace_drop, trace_model_views,
 };
@@ -17,9 +17,10 @@ use super::drops_atlas;
 use super::light::DropLightTable;
 use super::streak_path::StreakPath;
 
-/// Diameters, metres, from a sphere to the largest drop that has a shape.
-pub(crate) const DIAMETERS: u32 = 18;
-pub(crate) const DIAMETER_STEP: f64 = 0.5e-3;
+/// Number of diameters, from a sphere to the largest drop that has a shape.
+pub const DIAMETERS: u32 = 18;
+/// Step from a diameter to the next, metres.
+pub const DIAMETER_STEP: f64 = 0.5e-3;
 
 /// Metres between the shapes for the rays of streaks, and their number.
 const SHAPE_STEP: f64 = 0.1e-3;

@@ -13,8 +13,8 @@ use super::drops_mask::drops_mask_right;
 use super::exposure::{Exposure, StreakSamples};
 use super::streak::DropsDrop;
 use super::{DropMasks, shapes};
+use crate::camera::Camera;
 use crate::camera::LONGEST_EXPOSURE_S;
-use crate::data::RenderFrame;
 
 /// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels round them.
 const SMALL: f32 = 1.0;
@@ -65,19 +65,9 @@ fn ahead(from: f32, to: f32, least: f32) -> [f32; 2] {
     }
 }
 
-/// A place before the eye on the picture, pixels from the top left.
-fn pixel(picture: &RenderFrame, p: Vec3) -> Vec2 {
-    let (right, up) = (Vec3::from(picture.right), Vec3::from(picture.up));
-    let depth = p.dot(picture.forward.into());
-    Vec2::new(
-        (0.5 + 0.5 * p.dot(right) / (right.dot(right) * depth)) * picture.width as f32,
-        (0.5 - 0.5 * p.dot(up) / (up.dot(up) * depth)) * picture.height as f32,
-    )
-}
-
 /// A drop on the picture; `None` where it is on none.
 pub(super) fn project(
-    picture: &RenderFrame,
+    camera: &Camera,
     eye: DVec3,
     drop: &FallingDrop,
     masks: &DropMasks,
@@ -93,18 +83,18 @@ pub(super) fn project(
         return None;
     }
     let towards = offset / length;
-    let cosine = towards.dot(Vec3::from(picture.forward));
+    let cosine = towards.dot(camera.forward);
     if cosine < 0.05 {
         return None;
     }
     let elevation = ops::asin((-towards.y).clamp(-1.0, 1.0));
     let place = masks.place(drop.diameter, elevation);
-    let path = Path::of(picture, drop, eye, offset, radius, present, exposure)?;
+    let path = Path::of(camera, drop, eye, offset, radius, present, exposure)?;
     let distance = if path.moves { path.depth } else { length };
     let slope = radius / distance;
     // The plane of the picture is farther away, and slanted, away from the middle.
-    let pixels = slope / (picture.pixel_angle * cosine);
-    let blur = blur(exposure, distance) / picture.pixel_angle;
+    let pixels = slope / (camera.pixel_angle * cosine);
+    let blur = blur(exposure, distance) / camera.pixel_angle;
     let width = 2.0 * pixels;
     let blurred = blur >= 1.0 && blur > 0.7 * width;
     let grid = match width {
@@ -125,13 +115,13 @@ pub(super) fn project(
     } else {
         place.half_extent * pixels * larger * (1.0 + swing.most) / cosine * 1.02 + 1.0
     };
-    let [first, last] = path.ends.map(|p| pixel(picture, p));
+    let [first, last] = path.ends.map(|p| camera.project(p));
     let (right, up) = (drops_mask_right(towards), drops_mask_right(towards).cross(towards));
     let [start, end] = path.ends.map(|p| Vec2::new(p.dot(right), p.dot(up)) / p.dot(towards));
     let shown = DropsDrop {
         towards: towards.into(),
         distance,
-        place: pixel(picture, offset).into(),
+        place: camera.project(offset).into(),
         slope,
         half_extent: place.half_extent,
         row: place.row,
@@ -233,7 +223,7 @@ impl Travel {
 impl Path {
     /// The path of a drop whose middle is at `offset`; `None` if too little of it is there to be seen.
     fn of(
-        picture: &RenderFrame,
+        camera: &Camera,
         drop: &FallingDrop,
         eye: DVec3,
         offset: Vec3,
@@ -258,7 +248,7 @@ impl Path {
         }
         let travel = Travel::of(drop, eye, exposure);
         let [open, close] = [-0.5, 0.5].map(|half| travel.at(half * shutter));
-        let forward = Vec3::from(picture.forward);
+        let forward = camera.forward;
         let in_front = ahead(open.dot(forward), close.dot(forward), 2.0 * radius + 0.02);
         let beside = ahead(open.dot(towards), close.dot(towards), 0.2 * distance);
         let part = [in_front[0].max(beside[0]).max(present[0]), in_front[1].min(beside[1]).min(present[1])];

@@ -4,8 +4,8 @@ use downpour_shaders::render::rain::DROPS_TILE;
 use downpour_sim::field::FallingDrop;
 use glam::{DVec3, Vec2};
 
-use super::capture::CaptureFrame;
 use super::drops_frame::DropsFrame;
+use super::environment::EnvironmentFrame;
 use super::light::{DropLightForm, DropLightOptions, DropLights, drop_light_axes, drop_light_rows};
 use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::profiles::StreakProfiles;
@@ -13,7 +13,8 @@ use super::project::{Projected, project};
 use super::streak::DropsDrop;
 use super::{DropMasks, RainOptions, shapes};
 use crate::RenderError;
-use crate::data::{RenderFrame, SceneData};
+use crate::camera::Camera;
+use crate::plate::Lighting;
 
 /// The drops of one picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +23,8 @@ pub struct Rain {
     pub frame: DropsFrame,
     /// Drops that are not drawn one by one.
     pub medium: MediumFrame,
-    /// How the surroundings are captured.
-    pub capture: CaptureFrame,
+    /// Layout of the environment map.
+    pub environment: EnvironmentFrame,
     /// What the streak radiance table has of the drops that move.
     pub profiles: StreakProfiles,
     /// The drops on the picture, nearest first.
@@ -33,8 +34,8 @@ pub struct Rain {
     /// The drops of `list` as lamps light them: place relative to the scene's origin, and radius, m. For an atlas then their
     /// axes and ids.
     pub rows: Vec<[f32; 4]>,
-    /// The picture that they are on.
-    picture: RenderFrame,
+    /// The camera of the picture that they are on.
+    pub camera: Camera,
     /// How lamps light them.
     light: DropLightOptions,
     /// For each drop of `list`, its place among the drops that were given.
@@ -47,17 +48,17 @@ impl Rain {
     /// Puts drops on a picture whose eye is `eye` (in f64, so that drops far from the origin keep their places).
     #[must_use]
     pub fn new(
-        picture: &RenderFrame,
+        camera: &Camera,
         eye: DVec3,
         drops: &[FallingDrop],
         masks: &DropMasks,
         options: &RainOptions,
     ) -> Self {
-        let capture = CaptureFrame::new(picture, options);
-        let [width, height] = [picture.width, picture.height];
+        let environment = EnvironmentFrame::new(camera, options);
+        let [width, height] = camera.size;
         let mut placed: Vec<(u32, Projected)> = (0u32..)
             .zip(drops)
-            .filter_map(|(k, drop)| Some((k, project(picture, eye, drop, masks, &options.exposure)?)))
+            .filter_map(|(k, drop)| Some((k, project(camera, eye, drop, masks, &options.exposure)?)))
             .filter(|(_, shown)| pixels(shown, width, height).is_some())
             .collect();
         // Two drops at one distance go in the order in which they were given.
@@ -92,16 +93,16 @@ impl Rain {
             rows.extend(drop_light_axes(given()));
         }
         Self {
-            frame: DropsFrame::new(picture, &capture, masks, across, options),
+            frame: DropsFrame::new(camera, &environment, masks, across, options),
             medium: MediumFrame {
                 lit: lamps_of(options.light.form),
                 ..MediumFrame::new(&options.medium, eye.as_vec3(), [width, height])
             },
-            capture,
+            environment,
             profiles,
             list: placed.iter().map(|p| p.1.drop).collect(),
             rows,
-            picture: *picture,
+            camera: *camera,
             light: options.light,
             given: placed.iter().map(|p| p.0).collect(),
             boxes: placed.iter().filter_map(|p| pixels(&p.1, width, height)).collect(),
@@ -109,28 +110,28 @@ impl Rain {
         }
     }
 
-    /// The lamps of a scene on these drops.
+    /// The lamps of a plate on these drops.
     ///
     /// # Errors
     /// As [`DropLights::new`].
     pub fn lights<'a>(
         &'a self,
-        scene: &'a SceneData,
+        lighting: &'a dyn Lighting,
         masks: &'a DropMasks,
     ) -> Result<DropLights<'a>, RenderError> {
-        DropLights::new(scene, &self.picture, &masks.light, self.light)
+        DropLights::new(lighting, self.camera.eye, &masks.light, self.light)
     }
 
-    /// The lamps of a scene on the streaks that have profiles, lamp by lamp.
+    /// The lamps of a plate on the streaks that have profiles, lamp by lamp.
     ///
     /// # Errors
     /// As [`DropLights::new`].
     pub fn streak_lights<'a>(
         &'a self,
-        scene: &'a SceneData,
+        lighting: &'a dyn Lighting,
         masks: &'a DropMasks,
     ) -> Result<DropLights<'a>, RenderError> {
-        DropLights::of_streaks(scene, &self.picture, &masks.light, self.light)
+        DropLights::of_streaks(lighting, self.camera.eye, &masks.light, self.light)
     }
 
     /// The streaks that have profiles, as lamps light them.
@@ -139,10 +140,10 @@ impl Rain {
         self.profiles.paths.iter().map(|path| self.rows[path.drop as usize]).collect()
     }
 
-    /// The drops that are not drawn one by one, before a scene; `lights` are those of [`Rain::lights`].
+    /// The drops that are not drawn one by one, before a plate; `lights` are those of [`Rain::lights`].
     #[must_use]
     pub fn medium_light<'a>(&self, lights: &DropLights<'a>) -> MediumLight<'a> {
-        MediumLight::new(&self.medium, lights, self.light.form)
+        MediumLight::new(&self.medium, &self.camera, lights, self.light.form)
     }
 
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given.

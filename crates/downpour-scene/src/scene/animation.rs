@@ -147,7 +147,7 @@ impl Track {
     }
 
     /// What it takes up, in bytes.
-    pub(crate) fn bytes(&self) -> u64 {
+    pub fn bytes(&self) -> u64 {
         (self.times.len().saturating_add(self.values.len()) as u64).saturating_mul(4)
     }
 }

@@ -5,16 +5,12 @@
 
 use super::{BRIGHTEST, SkyMap};
 use crate::Budget;
-use crate::beneath::{OpenFile, open_named};
-use crate::error::{SceneError, shown_path, size};
+use crate::beneath::open_named;
+use crate::error::{SceneError, shown_path};
 use crate::picture::{self, Picture, Pixels};
 use crate::warning::{WarningKind, Warnings};
 use downpour_math::ops;
-use std::io::Read as _;
 use std::path::Path;
-
-/// The largest file that is looked at, in bytes: 1 GiB.
-pub const MAX_FILE: u64 = 1 << 30;
 
 /// Reads a sky map. The budget is lowered by its pixels and by what they take up.
 ///
@@ -33,16 +29,16 @@ pub const MAX_FILE: u64 = 1 << 30;
 pub fn read_sky(path: &Path, budget: &mut Budget) -> Result<SkyMap, SceneError> {
     let name = shown_path(path);
     let file = open_named(path)?;
-    let bytes = whole(file, budget).map_err(|error| error.in_file(&name))?;
+    let bytes = file.read_all(budget).map_err(|error| error.in_file(&name))?;
     read_sky_from_bytes(&name, &bytes, budget)
 }
 
-/// Reads a sky map from the bytes of its file; `name` is what messages call it.
-pub(crate) fn read_sky_from_bytes(
-    name: &str,
-    bytes: &[u8],
-    budget: &mut Budget,
-) -> Result<SkyMap, SceneError> {
+/// Reads a sky map from the bytes of its file; `name` is what messages call it. The budget is lowered as by
+/// [`read_sky`].
+///
+/// # Errors
+/// As [`picture::decode`].
+pub fn read_sky_from_bytes(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<SkyMap, SceneError> {
     let mut purse = *budget;
     let picture = picture::decode(name, bytes, &mut purse)?;
     let pixels = picture.pixels.len() as u64;
@@ -52,18 +48,6 @@ pub(crate) fn read_sky_from_bytes(
     budget.pixels = purse.pixels;
     budget.bytes = budget.bytes.saturating_sub(pixels.saturating_mul(12));
     Ok(map)
-}
-
-/// All bytes of an open file.
-pub(crate) fn whole(file: OpenFile, budget: &Budget) -> Result<Vec<u8>, SceneError> {
-    let most = MAX_FILE.min(budget.bytes);
-    if file.size > most {
-        let allowed = format!("at most {most} bytes ({})", size(most));
-        return Err(SceneError::limit("", format!("a file of {} bytes", file.size), allowed));
-    }
-    let mut bytes = Budget::room(usize::try_from(file.size).unwrap_or(usize::MAX), "")?;
-    file.bytes.take(file.size).read_to_end(&mut bytes).map_err(|error| SceneError::io("", "", &error))?;
-    Ok(bytes)
 }
 
 /// Makes a sky map of a picture. Alpha is left out.

@@ -1,10 +1,11 @@
 //! What draws frames: a GPU with its pipelines, or the CPU.
 
 use downpour_render::glass::GlassPicture;
-use downpour_render::picture::{Picture, PictureOptions, render_picture};
+use downpour_render::picture::{Picture, PictureOptions};
 use downpour_render::rain::DropMasks;
-use downpour_render::stage::Stage;
 use downpour_sim::field::FallingDrop;
+use downpour_trace::picture::render_picture;
+use downpour_trace::stage::Stage;
 
 use super::RendererError;
 
@@ -100,7 +101,7 @@ pub(super) struct Drawer {
 #[cfg(feature = "wgpu")]
 struct OnGpu {
     gpu: downpour_gpu::Gpu,
-    renderer: downpour_render::gpu::PictureRenderer,
+    renderer: downpour_trace::gpu::PictureRenderer,
     /// Made for the first frame that is seen through a pane.
     glass: std::cell::OnceCell<downpour_render::gpu::GlassRenderer>,
 }
@@ -129,7 +130,7 @@ impl Drawer {
                 driver: format!("{} {} {}", adapter.backend, adapter.driver, adapter.driver_info),
                 reason: None,
             };
-            let renderer = downpour_render::gpu::PictureRenderer::new(&gpu);
+            let renderer = downpour_trace::gpu::PictureRenderer::new(&gpu);
             let mut drawer = Self { computer, falls_back: device.falls_back, on_gpu: None };
             match renderer {
                 Ok(renderer) => {

@@ -1,14 +1,14 @@
 //! Why there is no frame.
 
+use crate::shower::ShowerError;
 use downpour_drop::DropError;
 use downpour_lattice::glass::GlassError;
 use downpour_mask::MaskError;
 use downpour_render::RenderError;
 use downpour_render::glass::PaneError;
-use downpour_render::puddle::PuddleError;
-use downpour_render::shower::ShowerError;
-use downpour_render::stage::StageError;
 use downpour_scene::SceneError;
+use downpour_trace::puddle::PuddleError;
+use downpour_trace::stage::StageError;
 
 /// Why there is no frame. Messages are one line: the file or the quantity, what was found, what is allowed.
 #[derive(Debug, thiserror::Error)]
@@ -78,7 +78,7 @@ pub enum RendererError {
     /// A frame cannot be drawn by the GPU.
     #[cfg(feature = "wgpu")]
     #[error(transparent)]
-    Picture(#[from] downpour_render::gpu::GpuPictureError),
+    Picture(#[from] downpour_trace::gpu::GpuPictureError),
 }
 
 impl RendererError {
@@ -108,7 +108,7 @@ impl RendererError {
     #[cfg(feature = "wgpu")]
     #[must_use]
     pub fn gpu(&self) -> Option<&downpour_gpu::GpuError> {
-        use downpour_render::gpu::GpuPictureError;
+        use downpour_trace::gpu::GpuPictureError;
         match self {
             Self::Gpu(error) | Self::Picture(GpuPictureError::Gpu(error)) => Some(error),
             _ => None,

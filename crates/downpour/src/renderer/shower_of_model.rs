@@ -5,8 +5,8 @@
 //! that drops scatter forwards is then many times that of the clouds behind them.
 
 use downpour_math::ops::f64 as ops;
-use downpour_render::stage::{Stage, StageError};
-use downpour_scene::weather::{Loaded, SkySource, SunSource, Weather};
+use downpour_trace::stage::{Stage, StageError};
+use downpour_weather::{Loaded, SkySource, SunSource, Weather};
 use glam::DVec3;
 
 /// A heavy shower, mm/h.

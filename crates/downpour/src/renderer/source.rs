@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use downpour_scene::beneath::{Files, NoFiles, OpenFile, RelativePath};
 use downpour_scene::gltf::read_scene;
-use downpour_scene::weather::{Loaded, Roots, Weather, load};
 use downpour_scene::{Budget, SceneError};
+use downpour_weather::{Loaded, Roots, Weather, load};
 
 use super::{RendererError, shower_of_model};
 

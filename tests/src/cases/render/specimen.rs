@@ -1,22 +1,20 @@
-//! `shaders/wgsl/render/specimen.wgsl` against `downpour_render::specimen`.
+//! `shaders/wgsl/render/specimen.wgsl` against `downpour_specimen`.
 
 use downpour_drop::DropShape;
 use downpour_gpu::{Gpu, GpuError};
 use downpour_mask::trace::TracedDrop;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_math::vector::{add_scaled, cross, dot, normalize, scale};
-use downpour_render::specimen::gpu::{GpuSpecimenError, SpecimenRenderer};
-use downpour_render::specimen::lamp::specimen_lamp;
-use downpour_render::specimen::sky::{specimen_sky_place, specimen_turns};
-use downpour_render::specimen::trace::{
+use downpour_shaders::mask::MASK_TRACE_STEPS;
+use downpour_shaders::render::specimen;
+use downpour_specimen::gpu::{GpuSpecimenError, SpecimenRenderer};
+use downpour_specimen::lamp::specimen_lamp;
+use downpour_specimen::sky::{specimen_sky_place, specimen_turns};
+use downpour_specimen::trace::{
     SpecimenCamera, SpecimenLight, SpecimenRay, specimen_bounce, specimen_enter, specimen_hits, specimen_ray,
     upright_drop,
 };
-use downpour_render::specimen::{
-    Image, Sky, SpecimenLamp, SpecimenOptions, render_specimen, specimen_jitter,
-};
-use downpour_shaders::mask::MASK_TRACE_STEPS;
-use downpour_shaders::render::specimen;
+use downpour_specimen::{Image, Sky, SpecimenLamp, SpecimenOptions, render_specimen, specimen_jitter};
 
 use crate::Domain::{AnyWord, Made, OneOf, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};

@@ -1,20 +1,20 @@
-//! `shaders/wgsl/render/specimen_wobble.wgsl` and `specimen_streak.wgsl` against `downpour_render::specimen`.
+//! `shaders/wgsl/render/specimen_wobble.wgsl` and `specimen_streak.wgsl` against `downpour_specimen`.
 
 use downpour_drop::DropShape;
 use downpour_drop::oscillation::{Amplitudes, DropOscillation};
 use downpour_math::rng::rng_unit;
-use downpour_render::specimen::gpu::StreakUniform;
-use downpour_render::specimen::streak::{
+use downpour_shaders::render::specimen;
+use downpour_specimen::gpu::StreakUniform;
+use downpour_specimen::streak::{
     SpecimenPassage, specimen_streak_offset, specimen_streak_passage, specimen_streak_shift,
     specimen_streak_state,
 };
-use downpour_render::specimen::trace::SpecimenRay;
-use downpour_render::specimen::wobble::{
+use downpour_specimen::trace::SpecimenRay;
+use downpour_specimen::wobble::{
     SpecimenWobble, specimen_wobble_along, specimen_wobble_bounce, specimen_wobble_cross,
     specimen_wobble_enter, specimen_wobble_meet, specimen_wobble_span, specimen_wobble_surface,
 };
-use downpour_render::specimen::{SpecimenMotion, SpecimenOptions};
-use downpour_shaders::render::specimen;
+use downpour_specimen::{SpecimenMotion, SpecimenOptions};
 
 use super::specimen::{lamps, light, light_words, lit_picture, picture, ray, ray_of};
 use crate::Domain::{AnyWord, Below, Fixed, Made, OneOf, Uniform};

@@ -8,8 +8,8 @@ mod finish;
 use std::collections::BTreeSet;
 use std::fs;
 
-use downpour::render::stage::LATEST_S;
-use downpour::scene::weather::Weather;
+use downpour::trace::stage::LATEST_S;
+use downpour::weather::Weather;
 use downpour::{Computer, Frame, Renderer, RendererError};
 use serde_json::Value;
 

@@ -2,10 +2,10 @@
 
 use std::fmt::{self, Write as _};
 
-use downpour::mask::atlas::StreakAtlas;
-use downpour::render::stage::Stage;
+use downpour::atlas::StreakAtlas;
 use downpour::scene::picture::Pixels;
-use downpour::scene::weather::{Loaded, Weather};
+use downpour::trace::stage::Stage;
+use downpour::weather::{Loaded, Weather};
 use sha2::{Digest as _, Sha256};
 
 /// Names and values, in a fixed order. Values are texts, so that no number is rounded on its way through a file.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use downpour::scene::weather::Rain;
+use downpour::weather::Rain;
 use downpour::{Computer, Frame};
 use serde_json::{Map, Value, json};
 

@@ -1,18 +1,18 @@
 //! Which streaks of an atlas a drop shows under a lamp. Twin of `shaders/wgsl/render/drop_atlas.wgsl`.
 //!
-//! The choice is that of [`downpour_mask::atlas`], from the same numbers. Here they are rows of four behind the table of
+//! The choice is that of [`downpour_atlas`], from the same numbers. Here they are rows of four behind the table of
 //! scattering, since the kernel has no buffer to spare: counts; by angle or at random, the first row of the amounts, and whether all
 //! elevations have the same directions; the seed in parts of 16 bits; gaps between diameters and between elevations, four rows each;
 //! first triangles, three rows; three rows for each triangle (places of its corners, triangles across with -1 for the rim, its
 //! directions); the amounts, four a row.
 
-use downpour_mask::atlas::StreakAtlas;
-use downpour_mask::atlas::lookup::{
+use downpour_atlas::StreakAtlas;
+use downpour_atlas::lookup::{
     AtlasPlace, atlas_cell, atlas_clamp, atlas_corner, atlas_draw, atlas_light, atlas_map, atlas_position,
     atlas_rise, atlas_weights,
 };
 use downpour_math::ops;
-use downpour_shaders::mask::{
+use downpour_shaders::atlas::{
     ATLAS_GRID, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISES, ATLAS_SMALLEST, ATLAS_STEPS,
 };
 use downpour_shaders::render::drop_light::{
@@ -190,9 +190,7 @@ pub(super) fn drop_atlas_place(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use downpour_mask::atlas::{
-        StreakOptions, StreakOscillation, StreakParticle, StreakPick, light_directions,
-    };
+    use downpour_atlas::{StreakOptions, StreakOscillation, StreakParticle, StreakPick, light_directions};
     use downpour_math::rng::{rng_draw, rng_unit};
 
     fn small() -> StreakAtlas {

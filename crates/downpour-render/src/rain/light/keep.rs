@@ -2,14 +2,13 @@
 
 use std::f32::consts::PI;
 
-use downpour_mask::atlas::lookup::AtlasPlace;
+use downpour_atlas::lookup::AtlasPlace;
 use downpour_shaders::render::drop_light::{DROP_ATLAS_ROWS, DROP_LIGHT_LAMPS_ROUSSEAU, DROP_LIGHT_REACH};
-use downpour_shaders::render::scene::SCENE_LIGHT_ROWS;
 use glam::{Vec3, Vec4};
 
 use super::{DropLights, drop_light_entry, drop_light_mean};
+use crate::light::light_weight;
 use crate::rain::glint::drop_glint_angle;
-use crate::scene::scene_share;
 
 /// The rows of the faintest of a drop's lights, N rows each, if it is fainter than `share`.
 fn drop_light_weakest<const N: usize>(rows: &mut [[f32; 4]], share: f32) -> Option<&mut [[f32; 4]; N]> {
@@ -17,7 +16,7 @@ fn drop_light_weakest<const N: usize>(rows: &mut [[f32; 4]], share: f32) -> Opti
     let mut weakest = None;
     let (lights, _) = rows.as_chunks_mut::<N>();
     for light in lights {
-        let kept = light.first().map_or(0.0, |row| scene_share(Vec4::from(*row).truncate()));
+        let kept = light.first().map_or(0.0, |row| light_weight(Vec4::from(*row).truncate()));
         if kept < least {
             least = kept;
             weakest = Some(light);
@@ -28,21 +27,21 @@ fn drop_light_weakest<const N: usize>(rows: &mut [[f32; 4]], share: f32) -> Opti
 
 /// Keeps a glint of a drop if it is brighter than the least of those that are kept.
 pub(super) fn drop_light_keep(rows: &mut [[f32; 4]], glint: Vec4) {
-    if let Some(weakest) = drop_light_weakest(rows, scene_share(glint.truncate())) {
+    if let Some(weakest) = drop_light_weakest(rows, light_weight(glint.truncate())) {
         *weakest = [glint.to_array()];
     }
 }
 
 /// Keeps a lamp of a drop in the form of Rousseau 2006, two rows, if it is brighter than the least of those that are kept.
 pub(super) fn drop_light_keep_facing(rows: &mut [[f32; 4]], light: Vec4, direction: Vec4) {
-    if let Some(weakest) = drop_light_weakest(rows, scene_share(light.truncate())) {
+    if let Some(weakest) = drop_light_weakest(rows, light_weight(light.truncate())) {
         *weakest = [light.to_array(), direction.to_array()];
     }
 }
 
 /// Keeps a streak of an atlas, three rows, if it is brighter than the least of those that are kept.
 pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, place: &AtlasPlace) {
-    if let Some(weakest) = drop_light_weakest::<{ DROP_ATLAS_ROWS as usize }>(rows, scene_share(radiance)) {
+    if let Some(weakest) = drop_light_weakest::<{ DROP_ATLAS_ROWS as usize }>(rows, light_weight(radiance)) {
         let [a, b, c] = place.layers.map(|layer| layer as f32);
         *weakest = [
             radiance.extend(place.side).to_array(),
@@ -55,8 +54,7 @@ pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, plac
 impl DropLights<'_> {
     /// The chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
     pub(super) fn drop_light_reach(&self, index: u32) -> f32 {
-        let row = (self.view.data.lights + index * SCENE_LIGHT_ROWS + 1) as usize;
-        f32::from_bits(self.view.data.table[row][3]).max(DROP_LIGHT_REACH)
+        self.lighting.light(index).chord.max(DROP_LIGHT_REACH)
     }
 
     /// What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
@@ -78,7 +76,7 @@ impl DropLights<'_> {
     ) -> Vec3 {
         let (lit, direction) = (first.truncate(), second.truncate());
         let whole = self.drop_light_whole(lit, direction, towards);
-        let mut least = scene_share(whole);
+        let mut least = light_weight(whole);
         let mut weakest = None;
         for kept in rows.chunks_exact_mut(2) {
             if kept[1][3] < least {
@@ -93,7 +91,7 @@ impl DropLights<'_> {
         let reach = if is_rousseau { -1.0 } else { first.w };
         weakest.copy_from_slice(&[
             (lit * factor).extend(reach).to_array(),
-            direction.extend(scene_share(whole)).to_array(),
+            direction.extend(light_weight(whole)).to_array(),
         ]);
         if old.w == 0.0 {
             return Vec3::ZERO;

@@ -1,9 +1,9 @@
 //! The scattering of water for red, green and blue, as the shader reads it.
 
+use downpour_atlas::StreakAtlas;
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
 use downpour_drop::optics::{SCATTERING_PATHS, SUN_DIAMETER, SphereScattering, rgb_indices};
-use downpour_mask::atlas::StreakAtlas;
 use downpour_shaders::render::drop_light::{DROP_LIGHT_ENTRIES, DROP_LIGHT_PATHS};
 
 use super::atlas;

@@ -7,7 +7,7 @@ use glam::{Vec3, Vec4};
 
 use super::light::MediumLight;
 use crate::halves::pack;
-use crate::scene::scene_share;
+use crate::light::light_weight;
 
 /// How far a neighbor has a say: as far as its ray is about as long.
 fn medium_filter_weight(own: f32, other: f32) -> f32 {
@@ -18,8 +18,8 @@ fn medium_filter_weight(own: f32, other: f32) -> f32 {
 impl MediumLight<'_> {
     /// The light before a pixel, and two halves: mean distance and optical depth.
     pub(super) fn medium_filter_pixel(&self, clean: &[[f32; 4]], found: &[[f32; 4]], x: u32, y: u32) -> Vec4 {
-        let frame = self.view.frame;
-        let (width, first) = (frame.width, self.grid_rows());
+        let [width, height] = self.camera.size;
+        let first = self.grid_rows();
         let rows = |index: u32| {
             let at = first + 2 * index as usize;
             (Vec4::from(found[at]), Vec4::from(found[at + 1]))
@@ -27,13 +27,13 @@ impl MediumLight<'_> {
         let index = y * width + x;
         let (own, seen) = rows(index);
         let packed = f32::from_bits(pack([seen.w.min(6.0e4), own.w.min(6.0e4)]));
-        if scene_share(own.truncate()) <= 0.0 {
+        if light_weight(own.truncate()) <= 0.0 {
             return Vec3::ZERO.extend(packed);
         }
         let (mut whole, mut lit) = (Vec3::ZERO, Vec3::ZERO);
         let left = x.max(SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
         let top = y.max(SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-        for row in top..=(y + SKYLIGHT_RADIUS).min(frame.height - 1) {
+        for row in top..=(y + SKYLIGHT_RADIUS).min(height - 1) {
             for column in left..=(x + SKYLIGHT_RADIUS).min(width - 1) {
                 let other = row * width + column;
                 let weight = medium_filter_weight(clean[index as usize][3], clean[other as usize][3]);

@@ -10,23 +10,25 @@ use downpour_shaders::render::medium::{
     MEDIUM_ANGLES, MEDIUM_DARK, MEDIUM_FAR, MEDIUM_LAMP_REACH, MEDIUM_LAMPS, MEDIUM_LATTICE, MEDIUM_NEAR,
     MEDIUM_PARTS, MEDIUM_SKY, MEDIUM_SKY_REACH, MEDIUM_SLICES, MEDIUM_SPOTS, MEDIUM_TURN,
 };
-use downpour_shaders::render::scene::{SCENE_LIGHT_DIRECTIONAL, SCENE_LIGHT_ROWS};
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::MediumFrame;
 use super::frame::{medium_both, medium_node, medium_roots};
-use crate::path::path_lattice_words;
+use crate::camera::Camera;
+use crate::light::light_weight;
+use crate::path_lattice::path_lattice_words;
+use crate::plate::Lighting;
 use crate::rain::glint::drop_glint_angle;
 use crate::rain::light::{DropLightForm, DropLightTable, DropLights, drop_light_mean};
-use crate::scene::{SceneView, scene_share};
 
 const _: () = assert!(MEDIUM_ANGLES == DROP_LIGHT_ENTRIES);
 
 /// Unresolved rain before a picture, and the lamps of its scene.
 #[derive(Clone, Debug)]
 pub struct MediumLight<'a> {
-    pub(crate) view: SceneView<'a>,
+    pub(crate) lighting: &'a dyn Lighting,
+    pub(crate) camera: Camera,
     pub(crate) medium: MediumFrame,
     /// Integral of the phase function over the scattering angle, from 0 to each multiple of pi / 256.
     pub(crate) phase: Vec<[f32; 4]>,
@@ -90,10 +92,15 @@ fn phase(form: DropLightForm, table: &DropLightTable) -> Vec<[f32; 4]> {
 
 impl<'a> MediumLight<'a> {
     /// The unresolved rain of a picture, lit by `form` as its drops are.
-    pub(crate) fn new(medium: &MediumFrame, lights: &DropLights<'a>, form: DropLightForm) -> Self {
-        let open = u32::from(lights.view.data.triangles.is_empty());
+    pub(crate) fn new(
+        medium: &MediumFrame,
+        camera: &Camera,
+        lights: &DropLights<'a>,
+        form: DropLightForm,
+    ) -> Self {
+        let open = u32::from(lights.lighting.is_open());
         let medium = MediumFrame { open, ..*medium };
-        Self { view: lights.view, medium, phase: phase(form, lights.table) }
+        Self { lighting: lights.lighting, camera: *camera, medium, phase: phase(form, lights.table) }
     }
 
     /// Rows of the grid of open air, before those of the pixels.
@@ -111,7 +118,7 @@ impl<'a> MediumLight<'a> {
     /// The same from what was found ([`MediumLight::found`]).
     #[must_use]
     pub fn filtered(&self, clean: &[[f32; 4]], found: &[[f32; 4]]) -> Vec<[f32; 4]> {
-        let (width, height) = (self.view.frame.width, self.view.frame.height);
+        let [width, height] = self.camera.size;
         (0..height)
             .into_par_iter()
             .flat_map_iter(|y| {
@@ -130,7 +137,7 @@ impl<'a> MediumLight<'a> {
             .into_par_iter()
             .flat_map_iter(|cell| self.medium_open_column(cell % columns, cell / columns))
             .collect();
-        let (width, height) = (self.view.frame.width, self.view.frame.height);
+        let [width, height] = self.camera.size;
         let grid = &rows;
         let pixels: Vec<[f32; 4]> = (0..height)
             .into_par_iter()
@@ -151,23 +158,22 @@ impl<'a> MediumLight<'a> {
 
     /// The part of a ray that a lamp lights: within its cone and its range.
     fn medium_light_span(&self, index: u32, origin: Vec3, direction: Vec3, farthest: f32) -> Vec2 {
-        let row = (self.view.data.lights + index * SCENE_LIGHT_ROWS) as usize;
-        let numbers = |k: usize| Vec4::from(self.view.data.table[row + k].map(f32::from_bits));
+        let light = self.lighting.light(index);
         let spots = self.medium.lit == MEDIUM_SPOTS;
         let nothing = Vec2::splat(farthest);
         let mut span = Vec2::new(0.0, farthest);
-        if self.view.data.table[row][3] == SCENE_LIGHT_DIRECTIONAL {
+        if light.is_parallel {
             return if spots { nothing } else { span };
         }
-        let (axis, reach, cone) = (numbers(1).truncate(), numbers(2).w, numbers(3));
-        let offset = origin - numbers(0).truncate();
+        let (axis, reach, [scale, edge]) = (light.axis, light.range, light.cone);
+        let offset = origin - light.position;
         let near = offset.dot(direction);
         if reach > 0.0 {
             span = medium_both(span, medium_roots(1.0, near, offset.dot(offset) - reach * reach));
         }
-        let edge = -cone.y / cone.x.max(1.0e-9);
-        if cone.x <= 0.0 || edge <= 0.0 {
-            return if spots && cone.x <= 0.0 { nothing } else { span };
+        let edge = -edge / scale.max(1.0e-9);
+        if scale <= 0.0 || edge <= 0.0 {
+            return if spots && scale <= 0.0 { nothing } else { span };
         }
         let (rate, depth) = (direction.dot(axis), offset.dot(axis));
         let a = rate * rate - edge * edge;
@@ -193,15 +199,15 @@ impl<'a> MediumLight<'a> {
     fn medium_light_lamp(&self, sum: Found, index: u32, direction: Vec3, reach: Vec2, pixel: f32) -> Found {
         let medium = &self.medium;
         let eye = Vec3::from(medium.eye);
-        let row = (self.view.data.lights + index * SCENE_LIGHT_ROWS) as usize;
-        let parallel = self.view.data.table[row][3] == SCENE_LIGHT_DIRECTIONAL;
+        let lamp = self.lighting.light(index);
+        let parallel = lamp.is_parallel;
         let lit = self.medium_light_span(index, eye, direction, if parallel { reach.x } else { reach.y });
         if lit.y <= lit.x {
             return sum;
         }
         let region = medium.medium_span(direction);
         let outline = medium.medium_outline(direction);
-        let offset = Vec4::from(self.view.data.table[row].map(f32::from_bits)).truncate() - eye;
+        let offset = lamp.position - eye;
         let nearest = offset.dot(direction);
         let aside = offset - direction * nearest;
         let least = 0.284 * pixel * nearest.max(0.0);
@@ -228,7 +234,7 @@ impl<'a> MediumLight<'a> {
             let far_angle = ops::atan2(h, nearest - far);
             let far_phase = self.medium_light_phase(far_angle);
             let middle = at_angle(0.5 * (near_angle + far_angle));
-            let light = self.view.scene_light(index, eye + direction * middle.clamp(near, far), 0.0);
+            let light = lamp.light_sample(eye + direction * middle.clamp(near, far), 0.0);
             let mut given = light.irradiance * PI;
             if parallel {
                 let toward = drop_glint_angle(light.direction, direction) * PI;
@@ -251,43 +257,43 @@ impl<'a> MediumLight<'a> {
 
     /// What stands before a pixel of unresolved drops: their light, and their optical depth.
     fn medium_light_pixel(&self, clean: &[[f32; 4]], grid: &[[f32; 4]], x: u32, y: u32) -> [[f32; 4]; 2] {
-        let (medium, frame) = (&self.medium, self.view.frame);
-        let scene = clean[(y * frame.width + x) as usize][3];
+        let (medium, camera) = (&self.medium, &self.camera);
+        let scene = clean[(y * camera.size[0] + x) as usize][3];
         let place = Vec2::new(x as f32, y as f32) + 0.5;
-        let direction = self.view.scene_direction(place.x, place.y);
+        let direction = camera.direction(place.x, place.y);
         let end = if scene >= MEDIUM_SKY { MEDIUM_SKY_REACH } else { scene };
         let depth = self.medium_open_at(grid, place.x, place.y, end).x;
         let mut sum = Found::default();
         let mut seen = Vec3::ZERO;
         if medium.lit != MEDIUM_DARK && medium.all > 0.0 {
-            let random = path_lattice_words(frame.seed, x, y, MEDIUM_LATTICE);
+            let random = path_lattice_words(camera.seed, x, y, MEDIUM_LATTICE);
             sum.rest = rng_unit(random[0]);
             let reach = Vec2::new(scene.min(MEDIUM_SKY_REACH), scene.min(MEDIUM_LAMP_REACH));
-            for k in 0..frame.light_count {
-                sum = self.medium_light_lamp(sum, k, direction, reach, frame.pixel_angle);
+            for k in 0..self.lighting.light_count() {
+                sum = self.medium_light_lamp(sum, k, direction, reach, camera.pixel_angle);
             }
-            let share = scene_share(sum.drawn);
+            let share = light_weight(sum.drawn);
             if share > 0.0 {
                 let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random[1]);
                 let from = Vec3::from(medium.eye) + direction * distance;
-                let light = self.view.scene_light(sum.lamp, from, 0.0);
-                seen = self.view.scene_visibility(from, light.direction, light.distance)
+                let light = self.lighting.light(sum.lamp).light_sample(from, 0.0);
+                seen = self.lighting.visibility(from, light.direction, light.distance)
                     * self.medium_open_at(grid, place.x, place.y, distance).y
-                    * (sum.drawn * (scene_share(sum.whole) / share));
+                    * (sum.drawn * (light_weight(sum.whole) / share));
             }
         }
-        let mean = sum.weighted / scene_share(sum.whole).max(1.0e-20);
+        let mean = sum.weighted / light_weight(sum.whole).max(1.0e-20);
         [sum.whole.extend(depth).to_array(), seen.extend(mean).to_array()]
     }
 }
 
 /// Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
 fn medium_light_add(sum: Found, light: Vec3, lamp: u32, near: f32, far: f32) -> Found {
-    let share = scene_share(light);
+    let share = light_weight(light);
     if share <= 0.0 {
         return sum;
     }
-    let chance = share / (scene_share(sum.whole) + share);
+    let chance = share / (light_weight(sum.whole) + share);
     let mut next = sum;
     next.whole += light;
     next.weighted += 0.5 * (near + far) * share;

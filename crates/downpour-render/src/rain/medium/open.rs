@@ -2,7 +2,6 @@
 
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::medium::{MEDIUM_FAR, MEDIUM_NEAR, MEDIUM_RANDOM_DIMENSION, MEDIUM_SLICES};
 use glam::{Vec2, Vec3};
 
@@ -23,24 +22,21 @@ pub(super) fn medium_open_slice(distance: f32) -> u32 {
 impl MediumLight<'_> {
     /// The ray of a cell of the grid.
     fn medium_open_ray(&self, column: u32, row: u32) -> Vec3 {
-        let (medium, frame) = (&self.medium, self.view.frame);
-        let x = (column as f32 + 0.5) / medium.columns as f32 * frame.width as f32;
-        let y = (row as f32 + 0.5) / medium.rows as f32 * frame.height as f32;
-        self.view.scene_direction(x, y)
+        let (medium, camera) = (&self.medium, self.camera);
+        let x = (column as f32 + 0.5) / medium.columns as f32 * camera.size[0] as f32;
+        let y = (row as f32 + 0.5) / medium.rows as f32 * camera.size[1] as f32;
+        self.camera.direction(x, y)
     }
 
     /// The column of a cell.
     pub(super) fn medium_open_column(&self, column: u32, row: u32) -> [[f32; 4]; MEDIUM_SLICES as usize] {
-        let (medium, frame) = (&self.medium, self.view.frame);
+        let (medium, camera) = (&self.medium, self.camera);
         let direction = self.medium_open_ray(column, row);
         let span = medium.medium_span(direction);
         let outline = medium.medium_outline(direction);
         let cell = row * medium.columns + column;
-        let [word, ..] = rng_draw([frame.seed, 0], cell, 0, MEDIUM_RANDOM_DIMENSION);
-        let hit = |start: Vec3, along: Vec3| {
-            let met = self.view.data.surface_hit(start, along, frame.nearest, BVH_FAR);
-            met.map(|hit| hit.distance)
-        };
+        let [word, ..] = rng_draw([camera.seed, 0], cell, 0, MEDIUM_RANDOM_DIMENSION);
+        let hit = |start: Vec3, along: Vec3| self.lighting.obstacle(start, along);
         let eye = Vec3::from(medium.eye);
         // What stands before the cell; the other rays ask what is above the air before it.
         let solid = if medium.open == 0 { hit(eye, direction) } else { None }.unwrap_or(MEDIUM_FAR);
@@ -74,8 +70,8 @@ impl MediumLight<'_> {
     /// Optical depth of unresolved drops up to a distance along the ray through a place of the picture (pixels from the top
     /// left), and whether the air is open to the rain there.
     pub(super) fn medium_open_at(&self, grid: &[[f32; 4]], x: f32, y: f32, distance: f32) -> Vec2 {
-        let (medium, frame) = (&self.medium, self.view.frame);
-        let direction = self.view.scene_direction(x, y);
+        let (medium, camera) = (&self.medium, self.camera);
+        let direction = self.camera.direction(x, y);
         let span = medium.medium_span(direction);
         let outline = medium.medium_outline(direction);
         let whole = medium.medium_depth(distance, span, outline);
@@ -91,7 +87,7 @@ impl MediumLight<'_> {
         // Beyond the last slice its own air goes on.
         let fraction = ((whole - begin) / (end - begin).max(1.0e-12)).max(0.0);
         let last = Vec2::new((medium.columns - 1) as f32, (medium.rows - 1) as f32);
-        let size = Vec2::new(frame.width as f32, frame.height as f32);
+        let size = Vec2::new(camera.size[0] as f32, camera.size[1] as f32);
         let place = (Vec2::new(x, y) / size * (last + 1.0) - 0.5).clamp(Vec2::ZERO, last);
         let low = [place.x as u32, place.y as u32];
         let high = [(low[0] + 1).min(last.x as u32), (low[1] + 1).min(last.y as u32)];

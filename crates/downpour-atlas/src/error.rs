@@ -1,0 +1,74 @@
+//! Errors of streak atlases.
+
+use std::path::Path;
+
+use downpour_drop::DropError;
+use downpour_mask::MaskError;
+
+/// Reason why an atlas could not be traced, written or read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AtlasError {
+    /// A number is not finite or outside its range.
+    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
+    OutOfRange {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// The value, in `unit`.
+        found: f64,
+        /// The unit, as arguments write it.
+        unit: &'static str,
+        /// The range, in words.
+        allowed: &'static str,
+    },
+    /// The drop itself is not possible.
+    #[error(transparent)]
+    Drop(#[from] DropError),
+    /// The texture array could not be encoded.
+    #[error(transparent)]
+    Encode(#[from] MaskError),
+    /// An atlas file is not what it should be.
+    #[error("{place}: found {found}; allowed: {allowed}")]
+    File {
+        /// The part of the file.
+        place: &'static str,
+        /// What is there.
+        found: String,
+        /// What could be there.
+        allowed: &'static str,
+    },
+    /// A file or folder is missing or cannot be read.
+    #[error("{path}: {reason}")]
+    Unreadable {
+        /// The file or folder.
+        path: String,
+        /// The system's reason.
+        reason: String,
+    },
+    /// Something is wrong in a file with a name.
+    #[error("{path}: {error}")]
+    InFile {
+        /// The file or folder.
+        path: String,
+        /// The fault in it.
+        error: Box<AtlasError>,
+    },
+}
+
+impl AtlasError {
+    /// The exit code of the command for this error: 5 a file that cannot be read, 1 a failure to encode, 2 other bad
+    /// input.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Encode(error) => error.exit_code(),
+            Self::Unreadable { .. } => 5,
+            Self::InFile { error, .. } => error.exit_code(),
+            _ => 2,
+        }
+    }
+
+    pub(crate) fn in_file(self, path: &Path) -> Self {
+        Self::InFile { path: path.display().to_string(), error: Box::new(self) }
+    }
+}

@@ -1,0 +1,82 @@
+//! What is asked of an atlas.
+
+use downpour_drop::optics::WATER_INDEX;
+use downpour_drop::oscillation::Amplitudes;
+
+use crate::AtlasError;
+
+/// An oscillation of the atlas: amplitudes, and how the two modes stand to each other and to the viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StreakOscillation {
+    /// Of the modes (2,0) and (3,1), over the radius.
+    pub amplitudes: [f64; 2],
+    /// Phase of the mode (3,1) where that of (2,0) is 0, in turns.
+    pub phase: f64,
+    /// Angle of the lobes of the mode (3,1) about the axis, in radians; 0: in the plane of the picture.
+    pub azimuth: f64,
+}
+
+impl StreakOscillation {
+    /// A drop at rest.
+    pub const NONE: Self = Self { amplitudes: [0.0, 0.0], phase: 0.0, azimuth: 0.0 };
+
+    /// The four of the committed atlas: both pairs of Garg & Nayar 2006, each at two phases and azimuths.
+    pub const COMMITTED: [Self; 4] = [
+        Self { amplitudes: [0.1, 0.1], phase: 0.0, azimuth: 0.5 },
+        Self { amplitudes: [0.2, 0.1], phase: 0.15, azimuth: -0.7 },
+        Self { amplitudes: [0.1, 0.1], phase: 0.35, azimuth: 2.3 },
+        Self { amplitudes: [0.2, 0.1], phase: 0.65, azimuth: 1.2 },
+    ];
+
+    pub(crate) fn amplitudes(&self) -> Result<Amplitudes, AtlasError> {
+        Ok(Amplitudes::new(self.amplitudes[0], self.amplitudes[1])?)
+    }
+}
+
+/// How streaks are traced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StreakOptions {
+    /// Texels across: 2 to 256, even.
+    pub columns: u32,
+    /// Texels along one turn of the mode (2,0): 1 to 4096.
+    pub rows: u32,
+    /// Rays along an edge of a texel's width: 1 to 64.
+    pub rays: u32,
+    /// Half of the width of a streak in equivalent radii. The drops of Garg and Nayar stay within 1.4.
+    pub half_extent: f64,
+    /// Where the light ends, in radians from its middle.
+    pub light_radius: f64,
+    /// Refractive index of water relative to air.
+    pub refractive_index: f64,
+}
+
+impl Default for StreakOptions {
+    fn default() -> Self {
+        Self {
+            columns: 24,
+            rows: 64,
+            rays: 5,
+            half_extent: 1.4,
+            light_radius: 8.0_f64.to_radians(),
+            refractive_index: WATER_INDEX,
+        }
+    }
+}
+
+impl StreakOptions {
+    pub(crate) fn check(&self) -> Result<(), AtlasError> {
+        let of = |quantity, found: f64, range: std::ops::RangeInclusive<f64>, unit, allowed| {
+            if range.contains(&found) {
+                return Ok(());
+            }
+            Err(AtlasError::OutOfRange { quantity, found, unit, allowed })
+        };
+        let even = if self.columns.is_multiple_of(2) { f64::from(self.columns) } else { f64::NAN };
+        of("columns of a streak", even, 2.0..=256.0, "texels", "2 to 256, even")?;
+        of("rows of a streak", self.rows.into(), 1.0..=4096.0, "texels", "1 to 4096")?;
+        of("rays of a texel", self.rays.into(), 1.0..=64.0, "along an edge", "1 to 64")?;
+        of("half extent of a streak", self.half_extent, 0.5..=4.0, "radii", "0.5 to 4")?;
+        of("radius of the light", self.light_radius.to_degrees(), 0.5..=60.0, "degrees", "0.5 to 60")?;
+        of("refractive index", self.refractive_index, 1.01..=3.0, "", "1.01 to 3")
+    }
+}

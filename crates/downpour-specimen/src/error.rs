@@ -1,0 +1,66 @@
+//! What can be wrong with a specimen.
+
+use downpour_drop::DropError;
+use downpour_mask::MaskError;
+
+use downpour_render::RenderError;
+
+/// Why a specimen cannot be rendered.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpecimenError {
+    /// A number is not finite or outside its range.
+    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
+    OutOfRange {
+        /// What it is.
+        quantity: &'static str,
+        /// The value, in `unit`.
+        found: f64,
+        /// The unit, as arguments write it.
+        unit: &'static str,
+        /// The range, in words.
+        allowed: String,
+    },
+    /// The picture, or the sky map, would be smaller or larger than allowed.
+    #[error("{quantity} is {found}; allowed: {least} to {most}")]
+    Size {
+        /// What it is.
+        quantity: &'static str,
+        /// The number asked for.
+        found: u64,
+        /// The smallest.
+        least: u64,
+        /// The largest.
+        most: u64,
+    },
+    /// The sky map is not a picture of radiance.
+    #[error("the sky map has {found}; allowed: {allowed}")]
+    Sky {
+        /// What was found, and where.
+        found: String,
+        /// What is needed.
+        allowed: String,
+    },
+    /// The drop itself is not possible.
+    #[error(transparent)]
+    Drop(#[from] DropError),
+    /// Its masks are not possible.
+    #[error(transparent)]
+    Mask(#[from] MaskError),
+    /// The renderer of rain cannot draw it.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+impl SpecimenError {
+    /// The exit code of the command for this error: 3 over a limit, 2 other bad input.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Size { found, most, .. } if found > most => 3,
+            Self::Mask(error) => error.exit_code(),
+            Self::Render(error) => error.exit_code(),
+            _ => 2,
+        }
+    }
+}

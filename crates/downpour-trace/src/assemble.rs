@@ -1,0 +1,204 @@
+//! From a scene of files to the renderer's buffers: what a pose shows, its materials, textures and lamps.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hasher as _};
+use std::sync::Arc;
+
+use downpour_scene::picture::{Picture, Pixels};
+use downpour_scene::scene::{
+    AlphaMode, Encoding, Instance, LightKind, Material, Pose, Scene, TextureRef, Wrap, skin_primitive,
+};
+use downpour_shaders::render::scene::{
+    SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_MASKED, SCENE_MIRROR_U, SCENE_MIRROR_V, SCENE_REPEAT_U,
+    SCENE_REPEAT_V, SCENE_UNLIT,
+};
+use glam::{Affine3A, DVec3};
+
+use crate::builder::{MeshPart, SceneBuilder};
+use crate::material::{MaterialLook, TextureSlot, TextureUse};
+use downpour_render::light::LightSource;
+
+/// Pictures that are in the scene already, each as colour and as data.
+#[derive(Default)]
+struct Stored<'a> {
+    by_place: HashMap<(*const Picture, bool), TextureSlot>,
+    /// A kit of parts has one atlas, which each of its files brings along.
+    by_content: HashMap<(u64, bool), (&'a Arc<Picture>, TextureSlot)>,
+}
+
+impl SceneBuilder {
+    /// Adds all that a pose of a scene shows, relative to `origin`, metres: far from the world's origin single precision
+    /// is coarse, near the eye it need not be.
+    ///
+    /// Lights keep their numbers: 1 is what the sky's radiance of 1 is, so that a lamp of `I` candela lights a surface
+    /// at a distance `r` with `I / r^2` where radiance is in cd/m^2.
+    pub fn add_scene(&mut self, scene: &Scene, pose: &Pose, origin: DVec3) {
+        let mut stored = Stored::default();
+        let materials: Vec<u32> =
+            scene.materials.iter().map(|m| self.add_scene_material(scene, m, &mut stored)).collect();
+        let fallback = self.add_material(MaterialLook::default());
+        for instance in &pose.instances {
+            let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
+            let instance = relative(instance, pose, origin);
+            for primitive in &mesh.primitives {
+                let moved = skin_primitive(primitive, &instance);
+                let positions: &[[f32; 3]] = bytemuck::cast_slice(&moved.positions);
+                let normals: &[[f32; 3]] = bytemuck::cast_slice(&moved.normals);
+                let tangents: &[[f32; 4]] = bytemuck::cast_slice(&moved.tangents);
+                let [first, second] = &primitive.uvs;
+                let part = MeshPart {
+                    positions,
+                    normals: (normals.len() == positions.len()).then_some(normals),
+                    tangents: (tangents.len() == positions.len()).then_some(tangents),
+                    uvs: [Some(bytemuck::cast_slice(first)), Some(bytemuck::cast_slice(second))],
+                    colours: primitive.colors.as_deref().map(bytemuck::cast_slice),
+                    indices: &primitive.indices,
+                    material: materials.get(primitive.material).copied().unwrap_or(fallback),
+                };
+                self.add_mesh(&part, &Affine3A::IDENTITY);
+            }
+        }
+        for placed in &pose.lights {
+            let Some(light) = scene.lights.get(placed.light) else { continue };
+            let strength = light.color * light.intensity;
+            let range = light.range.unwrap_or(0.0);
+            let place = pose.world_f64(placed.node).map_or(placed.position.as_dvec3(), |w| w.translation);
+            let (position, direction) = ((place - origin).as_vec3(), placed.direction);
+            self.add_light(match light.kind {
+                LightKind::Directional => LightSource::Directional { direction, irradiance: strength },
+                LightKind::Point => LightSource::Point { position, intensity: strength, range },
+                LightKind::Spot { inner, outer } => {
+                    LightSource::Spot { position, direction, intensity: strength, range, inner, outer }
+                }
+            });
+        }
+    }
+
+    fn add_scene_material<'a>(
+        &mut self,
+        scene: &'a Scene,
+        material: &Material,
+        stored: &mut Stored<'a>,
+    ) -> u32 {
+        let (mode, alpha_cutoff) = match material.alpha_mode {
+            AlphaMode::Mask { cutoff } => (SCENE_MASKED, cutoff),
+            AlphaMode::Blend => (SCENE_BLENDED, 0.5),
+            _ => (0, 0.5),
+        };
+        let textures = [
+            &material.base_color_texture,
+            &material.metallic_roughness_texture,
+            &material.normal_texture,
+            &material.emissive_texture,
+            &material.occlusion_texture,
+            &material.transmission_texture,
+        ];
+        let maps = textures.map(|t| t.as_ref().and_then(|t| self.add_texture_use(scene, t, stored)));
+        self.add_material(MaterialLook {
+            base_colour: material.base_color.into(),
+            emission: material.emissive.into(),
+            metallic: material.metallic,
+            roughness: material.roughness,
+            normal_scale: material.normal_scale,
+            occlusion_strength: material.occlusion_strength,
+            alpha_cutoff,
+            flags: mode
+                | if material.double_sided { SCENE_DOUBLE_SIDED } else { 0 }
+                | if material.unlit { SCENE_UNLIT } else { 0 },
+            transmission: material.transmission,
+            ior: material.ior,
+            maps,
+        })
+    }
+
+    /// A slot for one use of a texture; its texels are stored once.
+    fn add_texture_use<'a>(
+        &mut self,
+        scene: &'a Scene,
+        used: &TextureRef,
+        stored: &mut Stored<'a>,
+    ) -> Option<u32> {
+        let texture = scene.textures.get(used.texture)?;
+        let colour = texture.encoding == Encoding::Srgb;
+        let picture = &texture.picture;
+        let place = (Arc::as_ptr(picture), colour);
+        let slot = match stored.by_place.get(&place) {
+            Some(slot) => *slot,
+            None => {
+                let content = (digest(picture), colour);
+                let slot = match stored.by_content.get(&content) {
+                    Some((known, slot)) if same(known, picture) => *slot,
+                    _ => {
+                        let slot = self.add_picture(picture, colour);
+                        stored.by_content.insert(content, (picture, slot));
+                        slot
+                    }
+                };
+                stored.by_place.insert(place, slot);
+                slot
+            }
+        };
+        let (columns, offset) = (used.transform.matrix2.to_cols_array(), used.transform.translation);
+        let wrap = |w: Wrap, repeat: u32, mirror: u32| match w {
+            Wrap::Repeat => repeat,
+            Wrap::MirroredRepeat => mirror,
+            Wrap::ClampToEdge => 0,
+        };
+        let kept = slot.flags & downpour_shaders::render::scene::SCENE_ROOTED;
+        let sampler = texture.sampler;
+        let slot = TextureSlot {
+            // Rows, from glam's columns.
+            matrix: [columns[0], columns[2], columns[1], columns[3]],
+            offset: offset.into(),
+            uv_set: used.uv_set as u32,
+            flags: kept
+                | wrap(sampler.wrap_s, SCENE_REPEAT_U, SCENE_MIRROR_U)
+                | wrap(sampler.wrap_t, SCENE_REPEAT_V, SCENE_MIRROR_V),
+            ..slot
+        };
+        Some(self.add_slot(slot))
+    }
+
+    fn add_picture(&mut self, picture: &Picture, colour: bool) -> TextureSlot {
+        let of = if colour { TextureUse::Colour } else { TextureUse::Data };
+        let bytes: Cow<'_, [[u8; 4]]> = match &picture.pixels {
+            Pixels::Rgba8(pixels) => Cow::Borrowed(pixels),
+            Pixels::RgbaF32(pixels) => {
+                pixels.iter().map(|p| p.map(|v| (v.clamp(0.0, 1.0) * 255.0).round() as u8)).collect()
+            }
+        };
+        self.texture(picture.width, picture.height, &bytes, of)
+    }
+}
+
+/// An instance whose place is relative to `origin`.
+fn relative<'a>(instance: &'a Instance, pose: &Pose, origin: DVec3) -> Cow<'a, Instance> {
+    if origin == DVec3::ZERO {
+        return Cow::Borrowed(instance);
+    }
+    let mut moved = instance.clone();
+    if let Some(world) = pose.world_f64(instance.node) {
+        moved.world.translation = (world.translation - origin).as_vec3a();
+    }
+    for joint in &mut moved.joints {
+        joint.translation -= origin.as_vec3a();
+    }
+    Cow::Owned(moved)
+}
+
+/// A number that pictures of the same pixels share.
+fn digest(picture: &Picture) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    hasher.write_u32(picture.width);
+    hasher.write_u32(picture.height);
+    match &picture.pixels {
+        Pixels::Rgba8(pixels) => hasher.write(bytemuck::cast_slice(pixels)),
+        Pixels::RgbaF32(pixels) => hasher.write(bytemuck::cast_slice(pixels)),
+    }
+    hasher.finish()
+}
+
+fn same(a: &Picture, b: &Picture) -> bool {
+    (a.width, a.height) == (b.width, b.height) && a.pixels == b.pixels
+}

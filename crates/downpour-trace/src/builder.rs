@@ -1,0 +1,182 @@
+//! A scene being put together: meshes, materials, textures and lamps become the buffers of [`data`](crate::data).
+
+mod texture;
+
+use std::sync::Arc;
+
+use downpour_bvh::Bvh;
+use glam::{Affine3A, Vec2, Vec3, Vec4};
+
+use crate::data::{RenderCorner, SceneData};
+use crate::material::{MaterialLook, TextureSlot};
+use crate::sky_light::SkyLight;
+use downpour_render::light::LightSource;
+
+/// A triangle mesh on its way into a scene, in its own space.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshPart<'a> {
+    /// Places of the vertices, metres.
+    pub positions: &'a [[f32; 3]],
+    /// Normals; those of the triangles where there are none.
+    pub normals: Option<&'a [[f32; 3]]>,
+    /// Tangents with handedness; only normal maps need them.
+    pub tangents: Option<&'a [[f32; 4]]>,
+    /// First and second set of texture coordinates.
+    pub uvs: [Option<&'a [[f32; 2]]>; 2],
+    /// Vertex colours, linear.
+    pub colours: Option<&'a [[f32; 4]]>,
+    /// Three vertices per triangle. Triangles that name a vertex that is not there are left out.
+    pub indices: &'a [u32],
+    /// Index of the material.
+    pub material: u32,
+}
+
+/// A scene being put together.
+#[derive(Clone, Debug, Default)]
+pub struct SceneBuilder {
+    corners: Vec<[RenderCorner; 3]>,
+    places: Vec<[[f32; 3]; 3]>,
+    materials: Vec<MaterialLook>,
+    slots: Vec<TextureSlot>,
+    texels: Vec<u32>,
+    lights: Vec<LightSource>,
+}
+
+impl SceneBuilder {
+    /// Nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds the texels of a texture with all its levels, and gives the index of the first.
+    pub(crate) fn push_texels(&mut self, texels: &[u32]) -> u32 {
+        let first = self.texels.len() as u32;
+        self.texels.extend_from_slice(texels);
+        first
+    }
+
+    /// Adds a texture as a material uses it, and gives its index.
+    pub fn add_slot(&mut self, slot: TextureSlot) -> u32 {
+        self.slots.push(slot);
+        self.slots.len() as u32 - 1
+    }
+
+    /// Adds a material and gives its index.
+    pub fn add_material(&mut self, material: MaterialLook) -> u32 {
+        self.materials.push(material);
+        self.materials.len() as u32 - 1
+    }
+
+    /// Adds a light.
+    pub fn add_light(&mut self, light: LightSource) {
+        self.lights.push(light);
+    }
+
+    /// Adds a mesh, placed by `transform`. A mirroring transform turns the triangles over.
+    pub fn add_mesh(&mut self, part: &MeshPart<'_>, transform: &Affine3A) {
+        let mirrored = transform.matrix3.determinant() < 0.0;
+        let normal_matrix = transform.matrix3.inverse().transpose();
+        let vertex = |i: u32| -> Option<(Vec3, RenderCorner)> {
+            let i = i as usize;
+            let place = transform.transform_point3(Vec3::from(*part.positions.get(i)?));
+            let normal = part
+                .normals
+                .and_then(|n| n.get(i))
+                .map_or(Vec3::ZERO, |&n| (normal_matrix * Vec3::from(n)).normalize_or_zero());
+            let tangent = part.tangents.and_then(|t| t.get(i)).map_or(Vec4::ZERO, |&t| {
+                let t = Vec4::from(t);
+                let turned = (transform.matrix3 * t.truncate()).normalize_or_zero();
+                turned.extend(if mirrored { -t.w } else { t.w })
+            });
+            let uv = |set: usize| part.uvs[set].and_then(|u| u.get(i)).map_or(Vec2::ZERO, |&u| Vec2::from(u));
+            let corner = RenderCorner {
+                normal: normal.into(),
+                material: part.material,
+                tangent: tangent.into(),
+                uv: [uv(0).x, uv(0).y, uv(1).x, uv(1).y],
+                colour: part.colours.and_then(|c| c.get(i)).copied().unwrap_or([1.0; 4]),
+            };
+            (place.is_finite()).then_some((place, corner))
+        };
+        for triangle in part.indices.chunks_exact(3) {
+            let order = if mirrored { [0, 2, 1] } else { [0, 1, 2] };
+            let [a, b, c] = order.map(|k| vertex(triangle[k]));
+            let (Some(a), Some(b), Some(c)) = (a, b, c) else { continue };
+            let facet = (b.0 - a.0).cross(c.0 - a.0);
+            if facet.length_squared() == 0.0 {
+                continue;
+            }
+            let flat: [f32; 3] = facet.normalize_or_zero().into();
+            let corner = |mut corner: RenderCorner| {
+                if corner.normal == [0.0; 3] {
+                    corner.normal = flat;
+                }
+                corner
+            };
+            self.places.push([a.0.into(), b.0.into(), c.0.into()]);
+            self.corners.push([corner(a.1), corner(b.1), corner(c.1)]);
+        }
+    }
+
+    /// Number of triangles.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Builds the hierarchy and lays everything out.
+    #[must_use]
+    pub fn build(mut self, sky: &SkyLight) -> SceneData {
+        if self.materials.is_empty() {
+            self.materials.push(MaterialLook::default());
+        }
+        if self.places.is_empty() {
+            // A triangle far below and too small to be seen: a hierarchy has at least one.
+            self.places.push([[0.0, -1.0e6, 0.0], [1.0e-3, -1.0e6, 0.0], [0.0, -1.0e6, 1.0e-3]]);
+            self.corners.push([RenderCorner { normal: [0.0, 1.0, 0.0], ..RenderCorner::default() }; 3]);
+        }
+        let bvh = Bvh::new(&self.places);
+        let mut triangles = bvh.triangles;
+        let last_material = self.materials.len() as u32 - 1;
+        let mut corners = Vec::with_capacity(3 * triangles.len());
+        for (leaf, triangle) in (0u32..).zip(&mut triangles) {
+            for mut corner in self.corners[triangle.index as usize] {
+                corner.material = corner.material.min(last_material);
+                corners.push(corner);
+            }
+            triangle.index = leaf;
+        }
+        let mut table: Vec<[u32; 4]> = Vec::new();
+        let slots = (self.materials.len() * crate::material::MATERIAL_ROWS) as u32;
+        for material in &self.materials {
+            table.extend(material.rows(slots));
+        }
+        for slot in &self.slots {
+            table.extend(slot.rows());
+        }
+        let lights = table.len() as u32;
+        for light in &self.lights {
+            table.extend(light.rows());
+        }
+        if self.texels.is_empty() {
+            self.texels.push(u32::MAX);
+        }
+        SceneData {
+            nodes: Arc::new(bvh.nodes),
+            triangles: Arc::new(triangles),
+            corners: Arc::new(corners),
+            table,
+            texels: Arc::new(self.texels),
+            slots,
+            lights,
+            light_count: self.lights.len() as u32,
+            puddles: 0,
+            puddle_count: 0,
+            pane: 0,
+            sky: Arc::new(sky.texels.clone()),
+            sky_levels: sky.levels,
+            sky_irradiance: sky.irradiance,
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! A scene and a frame as the buffers that the shaders read: the CPU reference reads the same arrays.
+//!
+//! Host types of `shaders/wgsl/render/data.wgsl`. Triangles are in world space and in the order of the hierarchy's
+//! leaves, so that a hit's triangle is an index into all of it.
+
+use std::sync::Arc;
+
+use downpour_bvh::{BvhNode, BvhTriangle};
+use downpour_render::RenderError;
+use downpour_render::camera::{Camera, Viewpoint};
+use downpour_render::light::{self, Light};
+use downpour_shaders::render::scene::{SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS, SKYLIGHT_RADIUS};
+use glam::Vec3;
+
+/// Part of the pixels over which the filter takes means that one is.
+const WINDOW_SHARE: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
+
+/// A corner of a triangle. The same layout as `RenderCorner` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct RenderCorner {
+    /// Normal for shading.
+    pub normal: [f32; 3],
+    /// Index of the material.
+    pub material: u32,
+    /// Unit tangent and handedness.
+    pub tangent: [f32; 4],
+    /// Two sets of texture coordinates.
+    pub uv: [f32; 4],
+    /// Vertex colour, linear.
+    pub colour: [f32; 4],
+}
+
+/// What changes from frame to frame. The same layout as `RenderFrame` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct RenderFrame {
+    /// Place of the eye, metres.
+    pub eye: [f32; 3],
+    /// Pixels across.
+    pub width: u32,
+    /// Half the picture's width at distance 1, along the camera's right.
+    pub right: [f32; 3],
+    /// Pixels down.
+    pub height: u32,
+    /// Half the picture's height at distance 1, along the camera's up.
+    pub up: [f32; 3],
+    /// Samples along an edge of a pixel.
+    pub grid: u32,
+    /// The camera's view direction.
+    pub forward: [f32; 3],
+    /// Width of a pixel at distance 1.
+    pub pixel_angle: f32,
+    /// Row of the table where texture slots begin.
+    pub slots: u32,
+    /// Row of the table where lights begin.
+    pub lights: u32,
+    /// Number of lights.
+    pub light_count: u32,
+    /// Rays per sample that look for the light of sky and surfaces.
+    pub sky_rays: u32,
+    /// First row of pixels of a dispatch.
+    pub first_row: u32,
+    /// Seed of these rays.
+    pub seed: u32,
+    /// Nearest distance of the next surface, metres.
+    pub nearest: f32,
+    /// Part of the rays that look for the light of a surface that one of them is.
+    pub ray_share: f32,
+    /// What is traced: the picture, or a capture.
+    pub projection: u32,
+    /// 1: the capture leaves parallel light out, since drops are lit by it on their own ([`downpour_render::rain::light`]).
+    pub suns_out: u32,
+    /// Row of the table where puddles begin.
+    pub puddles: u32,
+    /// Number of puddles.
+    pub puddle_count: u32,
+    /// Row of the table where the pane begins that throws shadows; 0: none.
+    pub pane: u32,
+    /// Pass of the means over neighbouring pixels.
+    pub skylight_pass: u32,
+    /// 0.
+    pub unused_1: u32,
+    /// 0.
+    pub unused_2: u32,
+    /// Width, height and first texel of each level of the sky.
+    pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
+    /// Irradiance of the sky over pi as spherical harmonics of degree 2.
+    pub sky_irradiance: [[f32; 4]; 9],
+}
+
+/// A scene as buffers. What does not change after it was built is shared by all copies: a copy costs its table.
+#[derive(Clone, Debug)]
+pub struct SceneData {
+    /// Nodes of the hierarchy.
+    pub nodes: Arc<Vec<BvhNode>>,
+    /// Triangles in the order of the leaves; `index` is the place in this list.
+    pub triangles: Arc<Vec<BvhTriangle>>,
+    /// Three corners per triangle.
+    pub corners: Arc<Vec<RenderCorner>>,
+    /// Materials, texture slots, lights, puddles and a pane, as rows.
+    pub table: Vec<[u32; 4]>,
+    /// Texels of all levels of all textures.
+    pub texels: Arc<Vec<u32>>,
+    /// Row where slots begin.
+    pub slots: u32,
+    /// Row where lights begin.
+    pub lights: u32,
+    /// Number of lights.
+    pub light_count: u32,
+    /// Row where puddles begin.
+    pub puddles: u32,
+    /// Number of puddles.
+    pub puddle_count: u32,
+    /// Row where the pane begins that throws shadows; 0: none.
+    pub pane: u32,
+    /// Texels of all levels of the sky.
+    pub sky: Arc<Vec<[f32; 4]>>,
+    /// Width, height and first texel of each level of the sky.
+    pub sky_levels: [[u32; 4]; SCENE_SKY_LEVELS as usize],
+    /// Irradiance of the sky over pi.
+    pub sky_irradiance: [[f32; 4]; 9],
+}
+
+impl SceneData {
+    /// The lower and upper corner of everything, metres.
+    #[must_use]
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        self.nodes.first().map_or((Vec3::ZERO, Vec3::ZERO), |root| (root.low.into(), root.high.into()))
+    }
+
+    /// Reads light `index`.
+    #[must_use]
+    pub fn light_load(&self, index: u32) -> Light {
+        let first = (self.lights + index * SCENE_LIGHT_ROWS) as usize;
+        let mut rows = [[0; 4]; light::ROWS];
+        for (row, from) in rows.iter_mut().zip(self.table.get(first..).unwrap_or_default()) {
+            *row = *from;
+        }
+        Light::light_load(&rows)
+    }
+
+    /// Gives light `index` an angular radius, in radians: that of the disc that drops show of it. Without one it is the sun's.
+    pub fn set_light_radius(&mut self, index: u32, radius: f32) {
+        let row = (self.lights + index * SCENE_LIGHT_ROWS + 1) as usize;
+        // The chord from the middle to the edge.
+        self.table[row][3] = (2.0 * downpour_math::ops::sin(0.5 * radius)).to_bits();
+    }
+}
+
+impl RenderFrame {
+    /// The frame of a picture of a scene. `grid` samples along an edge of a pixel, `sky_rays` rays to the sky per
+    /// sample (0: no surroundings hide the sky).
+    ///
+    /// # Errors
+    /// [`RenderError::Size`] outside [`PIXELS`](downpour_render::camera::PIXELS), or as [`Viewpoint::axes`].
+    pub fn new(
+        scene: &SceneData,
+        viewpoint: &Viewpoint,
+        size: [u32; 2],
+        grid: u32,
+        sky_rays: u32,
+        seed: u64,
+    ) -> Result<Self, RenderError> {
+        let camera = viewpoint.camera(size, (seed ^ (seed >> 32)) as u32)?;
+        let (low, high) = scene.bounds();
+        let extent = (high - low).length().clamp(1.0e-3, 1.0e5);
+        // Rays of a place far from the origin start where f32 still tells it from its surface.
+        let far = camera.eye.abs().max_element().max(low.abs().max_element()).max(high.abs().max_element());
+        Ok(Self {
+            eye: camera.eye.into(),
+            width: size[0],
+            right: camera.right.into(),
+            height: size[1],
+            up: camera.up.into(),
+            grid: grid.clamp(1, 16),
+            forward: camera.forward.into(),
+            pixel_angle: camera.pixel_angle,
+            slots: scene.slots,
+            lights: scene.lights,
+            light_count: scene.light_count,
+            sky_rays,
+            first_row: 0,
+            seed: camera.seed,
+            nearest: (extent * 1.0e-5).max(far.min(1.0e5) * 1.0e-6).max(1.0e-6),
+            ray_share: WINDOW_SHARE / sky_rays.max(1) as f32,
+            projection: SCENE_PICTURE,
+            suns_out: 0,
+            puddles: scene.puddles,
+            puddle_count: scene.puddle_count,
+            pane: scene.pane,
+            skylight_pass: 0,
+            unused_1: 0,
+            unused_2: 0,
+            sky_levels: scene.sky_levels,
+            sky_irradiance: scene.sky_irradiance,
+        })
+    }
+
+    /// The camera of the frame.
+    #[must_use]
+    pub fn camera(&self) -> Camera {
+        Camera {
+            eye: self.eye.into(),
+            right: self.right.into(),
+            up: self.up.into(),
+            forward: self.forward.into(),
+            size: [self.width, self.height],
+            pixel_angle: self.pixel_angle,
+            seed: self.seed,
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Scenes on a GPU: the same rays as on the CPU, from the same buffers.
+
+mod picture;
+mod plate;
+mod scene;
+
+pub use picture::{GpuPictureError, PictureRenderer};
+pub use plate::ScenePlate;
+pub use scene::{SceneOnGpu, ScenePass, ScenePipeline};

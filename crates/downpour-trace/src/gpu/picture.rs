@@ -1,0 +1,176 @@
+//! A whole picture on a GPU.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use downpour_gpu::{Gpu, GpuError};
+use downpour_shaders::render::puddle_water::PUDDLE_WATER_RAYS;
+use downpour_sim::field::FallingDrop;
+
+use downpour_render::RenderError;
+use downpour_render::camera::Viewpoint;
+use downpour_render::gpu::RainPipeline;
+use downpour_render::picture::{Picture, PictureOptions, timed};
+use downpour_render::rain::{DropMasks, Rain};
+
+use super::scene::{SceneOnGpu, ScenePipeline};
+use crate::data::{RenderFrame, SceneData};
+use crate::picture::picture_frame;
+use crate::scene::SceneView;
+
+/// Why a picture could not be made on a GPU.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuPictureError {
+    /// The picture itself is not possible.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The GPU did not do it.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+impl GpuPictureError {
+    /// The exit code of the command for this error.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Render(error) => error.exit_code(),
+            Self::Gpu(error) => error.exit_code(),
+        }
+    }
+}
+
+/// The pipelines of a picture: made once, used for any number of pictures.
+#[derive(Clone, Debug)]
+pub struct PictureRenderer {
+    gpu: Gpu,
+    scene: ScenePipeline,
+    rain: RainPipeline,
+    /// The scene of the last picture.
+    uploaded: Arc<Mutex<Option<SceneOnGpu>>>,
+}
+
+impl PictureRenderer {
+    /// Makes the pipelines.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuPictureError> {
+        Ok(Self {
+            gpu: gpu.clone(),
+            scene: ScenePipeline::new(gpu)?,
+            rain: RainPipeline::new(gpu)?,
+            uploaded: Arc::default(),
+        })
+    }
+
+    /// Makes a picture: what [`render_picture`](crate::picture::render_picture) makes on the CPU.
+    ///
+    /// # Errors
+    /// [`GpuPictureError`] if the options cannot be met, or what the GPU says.
+    pub fn render(
+        &self,
+        scene: &SceneData,
+        viewpoint: &Viewpoint,
+        drops: &[FallingDrop],
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<Picture, GpuPictureError> {
+        let frame = picture_frame(scene, viewpoint, options)?;
+        if self.gpu.adapter().is_software() {
+            check_turns(&frame)?;
+        }
+        let mut passes = Vec::new();
+        let uploaded = timed(&mut passes, "upload", || {
+            let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
+            // What the scene shares with that of the last picture is on the device.
+            let uploaded = self.scene.upload_after(scene, last.as_ref())?;
+            *last = Some(uploaded.clone());
+            drop(last);
+            Ok::<_, GpuError>((uploaded, self.rain.upload(masks)?))
+        })?;
+        let clean = timed(&mut passes, "scene", || self.scene.draw(&uploaded.0, &frame))?;
+        let eye = viewpoint.eye.as_dvec3();
+        let camera = frame.camera();
+        let rain = timed(&mut passes, "binning", || Rain::new(&camera, eye, drops, masks, &options.rain));
+        let view = SceneView { data: scene, frame: &frame };
+        let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
+        let plate = self.scene.plate(&uploaded.0, &frame, &self.rain, &rain)?;
+        let pass = self.rain.prepare(&plate.of(&clean), &uploaded.1, &rain, &lights)?;
+        timed(&mut passes, "capture", || {
+            self.gpu.submit(&plate.dispatches(&pass))?;
+            self.gpu.wait()
+        })?;
+        timed(&mut passes, "lamps", || {
+            self.gpu.submit(&pass.lamps())?;
+            self.gpu.wait()
+        })?;
+        timed(&mut passes, "streaks", || {
+            self.gpu.submit(&pass.streaks())?;
+            self.gpu.wait()
+        })?;
+        timed(&mut passes, "unresolved", || {
+            for dispatch in pass.medium() {
+                self.gpu.submit(&[dispatch])?;
+                self.gpu.wait()?;
+            }
+            Ok::<_, GpuError>(())
+        })?;
+        timed(&mut passes, "drops", || {
+            self.gpu.submit(&[pass.drops()])?;
+            self.gpu.wait()
+        })?;
+        let (clean, layer, environment) = timed(&mut passes, "readback", || {
+            Ok::<_, GpuError>((self.gpu.read::<[f32; 4]>(&clean)?, pass.layer()?, pass.environment_texels()?))
+        })?;
+        Ok(Picture::new(&rain, clean, layer, environment, passes))
+    }
+}
+
+/// Turns of loops after which a software driver of Mesa ends a shader, without a word.
+const MOST_TURNS: u64 = 65_535;
+
+/// Turns that a ray takes through the hierarchy, and a texture through its levels: a generous mean.
+const TURNS_PER_RAY: u64 = 200;
+
+/// # Errors
+/// [`GpuError::OverLimit`] if a pixel may take more turns than a software driver allows.
+fn check_turns(frame: &RenderFrame) -> Result<(), GpuError> {
+    let [grid, sky, lights] = [frame.grid, frame.sky_rays, frame.light_count].map(u64::from);
+    // Water adds what it mirrors, lit by a lamp each.
+    let mirrored = if frame.puddle_count > 0 { 2 * sky.max(u64::from(PUDDLE_WATER_RAYS)) } else { 0 };
+    let rays = 1 + lights + 2 * sky + mirrored;
+    let needed = grid * grid * (rays * TURNS_PER_RAY + 2 * lights * (1 + sky));
+    if needed <= MOST_TURNS {
+        return Ok(());
+    }
+    Err(GpuError::OverLimit {
+        what: "the work of a pixel (samples, rays to the sky, lamps), in turns of loops,".to_owned(),
+        found: needed,
+        limit_name: "LP_MAX_TGSI_LOOP_ITERATIONS",
+        allowed: MOST_TURNS,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bytemuck::Zeroable as _;
+
+    /// With 4 x 4 samples of 16 rays to the sky a picture of a software driver was seen to be too dark by half, without
+    /// an error.
+    #[test]
+    fn a_software_driver_is_not_asked_for_more_turns_than_it_takes() {
+        let frame = |grid, sky_rays, light_count| RenderFrame {
+            grid,
+            sky_rays,
+            light_count,
+            ..RenderFrame::zeroed()
+        };
+        assert!(check_turns(&frame(2, 1, 8)).is_ok());
+        assert!(check_turns(&frame(2, 4, 30)).is_ok());
+        for too_much in [frame(4, 16, 0), frame(8, 16, 1), frame(2, 64, 100), frame(1, 1, 1024)] {
+            assert!(matches!(check_turns(&too_much), Err(GpuError::OverLimit { .. })));
+        }
+    }
+}

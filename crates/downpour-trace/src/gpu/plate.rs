@@ -1,0 +1,60 @@
+//! The plate of a scene on the device, for rain.
+
+use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_render::gpu::{LightingOnGpu, PlateOnGpu, RainPass, RainPipeline};
+use downpour_render::rain::Rain;
+
+use super::scene::{SceneOnGpu, ScenePipeline};
+use crate::data::RenderFrame;
+use crate::environment::environment_frame;
+use crate::trace::TraceGather;
+
+/// Environment map, lamps and obstacles of a scene, ready to be asked by rain.
+#[derive(Debug)]
+pub struct ScenePlate<'a> {
+    tracer: &'a ComputeKernel,
+    bindings: wgpu::BindGroup,
+    groups: u32,
+    environment: wgpu::Buffer,
+    lighting: LightingOnGpu,
+}
+
+impl ScenePipeline {
+    /// Makes ready to trace what `rain` asks of a scene besides its picture; `frame` is that of the picture.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn plate(
+        &self,
+        scene: &SceneOnGpu,
+        frame: &RenderFrame,
+        rains: &RainPipeline,
+        rain: &Rain,
+    ) -> Result<ScenePlate<'_>, GpuError> {
+        let gpu: &Gpu = self.gpu();
+        let environment = rains.environment(rain)?;
+        let of_map = environment_frame(frame, &rain.environment);
+        let uniform = gpu.uniform_buffer("frame of the environment map", &of_map)?;
+        // An environment map has no filter: nothing is written there.
+        let nothing = gpu.storage_buffer("no light of the sky", &[TraceGather::default()])?;
+        let tracer = self.tracer(&of_map)?;
+        let bindings = tracer.bind(gpu, &scene.buffers(&uniform, &environment, &nothing))?;
+        let lighting = scene.lighting(gpu, frame)?;
+        Ok(ScenePlate { tracer, bindings, groups: of_map.width.div_ceil(8), environment, lighting })
+    }
+}
+
+impl ScenePlate<'_> {
+    /// The plate with the scene's picture: radiance and distance of each pixel.
+    #[must_use]
+    pub fn of<'a>(&'a self, pixels: &'a wgpu::Buffer) -> PlateOnGpu<'a> {
+        PlateOnGpu { pixels, environment: &self.environment, lighting: &self.lighting }
+    }
+
+    /// Dispatches that trace the environment map, with its coarser levels.
+    #[must_use]
+    pub fn dispatches<'a>(&'a self, pass: &'a RainPass<'_>) -> Vec<Dispatch<'a>> {
+        let finest = self.tracer.dispatch(&self.bindings, [self.groups, self.groups, 1]);
+        std::iter::once(finest).chain(pass.environment()).collect()
+    }
+}

@@ -1,0 +1,220 @@
+//! The picture of a scene on a GPU: the same rays, the same buffers.
+
+use std::sync::{Arc, OnceLock};
+
+use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL};
+
+use downpour_render::gpu::LightingOnGpu;
+
+use crate::data::{RenderFrame, SceneData};
+use crate::trace::TraceGather;
+
+/// Most pixels of a dispatch: a submission must stay far below the time after which a driver resets.
+const PIXELS_PER_DISPATCH: u32 = 1 << 17;
+
+/// The pipeline of the scene: made once, used for any number of scenes.
+#[derive(Clone, Debug)]
+pub struct ScenePipeline {
+    gpu: Gpu,
+    plain: ComputeKernel,
+    /// Made for the first scene that has them: puddles, a pane that throws shadows, both.
+    others: [OnceLock<ComputeKernel>; 3],
+    skylight: ComputeKernel,
+}
+
+/// A scene on the device.
+#[derive(Clone, Debug)]
+pub struct SceneOnGpu {
+    /// Scene that was uploaded: arrays that another scene shares with it are on the device already.
+    of: SceneData,
+    nodes: wgpu::Buffer,
+    triangles: wgpu::Buffer,
+    corners: wgpu::Buffer,
+    table: wgpu::Buffer,
+    texels: wgpu::Buffer,
+    sky: wgpu::Buffer,
+}
+
+impl ScenePipeline {
+    /// Makes the pipeline.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let plain = tracer(gpu, false, false)?;
+        let skylight = ComputeKernel::new(gpu, &SKYLIGHT_KERNEL, &[])?;
+        Ok(Self { gpu: gpu.clone(), plain, others: Default::default(), skylight })
+    }
+
+    /// The kernel that traces a frame: with puddles and a pane's shadows, or without.
+    pub(super) fn tracer(&self, frame: &RenderFrame) -> Result<&ComputeKernel, GpuError> {
+        let (wet, paned) = (frame.puddle_count > 0, frame.pane > 0);
+        let [of_wet, of_paned, of_both] = &self.others;
+        let place = match (wet, paned) {
+            (false, false) => return Ok(&self.plain),
+            (true, false) => of_wet,
+            (false, true) => of_paned,
+            (true, true) => of_both,
+        };
+        if let Some(kernel) = place.get() {
+            return Ok(kernel);
+        }
+        let made = tracer(&self.gpu, wet, paned)?;
+        Ok(place.get_or_init(|| made))
+    }
+
+    /// Brings a scene to the device.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`] if a buffer is larger than the device allows, or what else the GPU says.
+    pub fn upload(&self, scene: &SceneData) -> Result<SceneOnGpu, GpuError> {
+        self.upload_after(scene, None)
+    }
+
+    /// Brings a scene to the device where `before` is already: only what the two do not share.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn upload_after(
+        &self,
+        scene: &SceneData,
+        before: Option<&SceneOnGpu>,
+    ) -> Result<SceneOnGpu, GpuError> {
+        macro_rules! buffer {
+            ($field:ident, $label:literal) => {
+                match before.filter(|before| Arc::ptr_eq(&before.of.$field, &scene.$field)) {
+                    Some(before) => before.$field.clone(),
+                    None => self.gpu.storage_buffer($label, &scene.$field)?,
+                }
+            };
+        }
+        Ok(SceneOnGpu {
+            nodes: buffer!(nodes, "scene nodes"),
+            triangles: buffer!(triangles, "scene triangles"),
+            corners: buffer!(corners, "scene corners"),
+            table: match before.filter(|before| before.of.table == scene.table) {
+                Some(before) => before.table.clone(),
+                None => self.gpu.storage_buffer("scene table", &scene.table)?,
+            },
+            texels: buffer!(texels, "scene texels"),
+            sky: buffer!(sky, "scene sky"),
+            of: scene.clone(),
+        })
+    }
+
+    /// The picture of a frame: radiance and nearest distance, rows from the top. What
+    /// [`SceneView::picture`](crate::scene::SceneView::picture) makes on the CPU.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn picture(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<Vec<[f32; 4]>, GpuError> {
+        self.gpu.read(&self.draw(scene, frame)?)
+    }
+
+    /// Makes ready to draw a frame of a scene.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn prepare(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<ScenePass<'_>, GpuError> {
+        let pixels = u64::from(frame.width) * u64::from(frame.height);
+        let picture = self.gpu.empty_buffer("picture", pixels * 16, wgpu::BufferUsages::STORAGE)?;
+        let bytes = pixels * size_of::<TraceGather>() as u64;
+        let gather = self.gpu.empty_buffer("light of the sky", bytes, wgpu::BufferUsages::STORAGE)?;
+        let rows = (PIXELS_PER_DISPATCH / frame.width.max(1)).max(8).next_multiple_of(8);
+        let tracer = self.tracer(frame)?;
+        let means = || self.gpu.empty_buffer("means of light", pixels * 32, wgpu::BufferUsages::STORAGE);
+        let means = [means()?, means()?];
+        let (mut bands, mut filters) = (Vec::new(), Vec::new());
+        for skylight_pass in 0..=SKYLIGHT_PASSES {
+            let [from, to] = [&means[(skylight_pass as usize + 1) % 2], &means[skylight_pass as usize % 2]];
+            for first_row in (0..frame.height).step_by(rows as usize) {
+                let frame = RenderFrame { first_row, skylight_pass, ..*frame };
+                let uniform = self.gpu.uniform_buffer("frame", &frame)?;
+                let groups = [frame.width.div_ceil(8), rows.min(frame.height - first_row).div_ceil(8), 1];
+                if skylight_pass == 0 {
+                    let bound = tracer.bind(&self.gpu, &scene.buffers(&uniform, &picture, &gather))?;
+                    bands.push((bound, groups));
+                }
+                let bound = self.skylight.bind(&self.gpu, &[&uniform, &gather, from, to, &picture])?;
+                filters.push((bound, groups));
+            }
+        }
+        Ok(ScenePass { pipeline: self, tracer, bands, filters, picture })
+    }
+
+    /// The device.
+    pub(super) fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// The picture, left on the device.
+    pub(super) fn draw(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<wgpu::Buffer, GpuError> {
+        let pass = self.prepare(scene, frame)?;
+        for band in pass.dispatches() {
+            self.gpu.submit(&[band])?;
+            // One submission at a time: software drivers queue without end.
+            self.gpu.wait()?;
+        }
+        Ok(pass.picture)
+    }
+}
+
+/// The kernel that traces scenes: with what they have not, it would be slower for all.
+fn tracer(gpu: &Gpu, wet: bool, paned: bool) -> Result<ComputeKernel, GpuError> {
+    let number = |on: bool| if on { 1.0 } else { 0.0 };
+    ComputeKernel::new(gpu, &TRACE_KERNEL, &[("SCENE_WET", number(wet)), ("SCENE_PANE", number(paned))])
+}
+
+/// A frame of a scene, ready to be drawn.
+#[derive(Debug)]
+pub struct ScenePass<'a> {
+    pipeline: &'a ScenePipeline,
+    tracer: &'a ComputeKernel,
+    bands: Vec<(wgpu::BindGroup, [u32; 3])>,
+    filters: Vec<(wgpu::BindGroup, [u32; 3])>,
+    picture: wgpu::Buffer,
+}
+
+impl ScenePass<'_> {
+    /// The dispatches, a band of rows each: first all that trace, then all that filter.
+    #[must_use]
+    pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
+        let traced = self.bands.iter().map(|band| (self.tracer, band));
+        let filtered = self.filters.iter().map(|band| (&self.pipeline.skylight, band));
+        traced
+            .chain(filtered)
+            .map(|(kernel, (bindings, groups))| kernel.dispatch(bindings, *groups))
+            .collect()
+    }
+
+    /// The picture on the device: radiance and nearest distance, rows from the top.
+    #[must_use]
+    pub fn picture(&self) -> &wgpu::Buffer {
+        &self.picture
+    }
+}
+
+impl SceneOnGpu {
+    /// Lamps and obstacles of the scene, for the rain of a frame.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn lighting(&self, gpu: &Gpu, frame: &RenderFrame) -> Result<LightingOnGpu, GpuError> {
+        let frame = gpu.uniform_buffer("frame of the lighting", frame)?;
+        let of_scene = [&self.nodes, &self.triangles, &self.corners, &self.table, &self.texels];
+        let [nodes, triangles, corners, table, texels] = of_scene.map(Clone::clone);
+        Ok(LightingOnGpu { buffers: [frame, nodes, triangles, corners, table, texels] })
+    }
+
+    /// What the kernel that traces the scene binds, in order.
+    pub(super) fn buffers<'a>(
+        &'a self,
+        frame: &'a wgpu::Buffer,
+        picture: &'a wgpu::Buffer,
+        gather: &'a wgpu::Buffer,
+    ) -> [&'a wgpu::Buffer; 9] {
+        let [nodes, triangles, corners] = [&self.nodes, &self.triangles, &self.corners];
+        [frame, nodes, triangles, corners, &self.table, &self.texels, &self.sky, picture, gather]
+    }
+}

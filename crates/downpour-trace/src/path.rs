@@ -1,0 +1,554 @@
+//! What a ray of the camera sees: surfaces, water, and the light that comes to them from lamps, sky and one another. Twin of
+//! `shaders/wgsl/render/path.wgsl`.
+//!
+//! Both sides trace the same rays through the same hierarchy and filter the same texels, so a machine without a driver
+//! makes the same picture. For a ray:
+//!
+//! - the nearest surface; see-through ones are passed, at most twelve;
+//! - the water of a puddle before it: what it mirrors, and what lies beneath, lit through the water
+//!   ([`puddle`](crate::puddle));
+//! - direct light: each lamp and the sun, with a ray that dims at see-through surfaces ([`scene`](crate::scene));
+//! - light of the sky and of other surfaces: rays that are drawn for the diffuse base and for the gloss
+//!   ([`scatter`](crate::scatter)). Such a ray finds the sky at the level of its own width, or a surface, which has light of
+//!   its own: of one lamp drawn for all, and of the next ray. At most `PATH_BOUNCES` follow each other, and fewer where
+//!   surfaces are dark: each goes on with the probability of its albedo. The light that falls on the last surface is taken to
+//!   be the mean of what the path has met, and a tenth of the open sky's.
+//!
+//! [`skylight`](crate::skylight) takes means of this light over neighbouring pixels, but for that of mirrors.
+//!
+//! Limits: what a diffuse base finds reflects diffusely (no caustics); things that shine light up others only where
+//! there are no lamps, which else stand for them; rays that look for light do not see the water of puddles.
+
+mod draw;
+mod plan;
+
+use downpour_math::ops;
+use downpour_shaders::bvh::BVH_FAR;
+use downpour_shaders::render::path::{
+    PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_PART, PATH_CURVED_SHARE, PATH_GLANCE,
+    PATH_LATER_SHARE, PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE,
+    PATH_SHINES,
+};
+use downpour_shaders::render::puddle_water::{
+    PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED, PUDDLE_WATER_ROWS,
+};
+use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LAYERS, SCENE_NONE, SCENE_UNLIT, SKYLIGHT_SLACK};
+use glam::{Vec2, Vec3, Vec4};
+
+use crate::brdf::brdf_fresnel;
+use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
+use crate::scene::SceneView;
+use crate::scene::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
+use crate::surface::Surface;
+pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words};
+use draw::{path_onward, path_replaced, path_water_ray, path_water_share};
+pub(crate) use plan::path_most;
+use plan::{PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface};
+
+/// What a ray of the camera finds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ViewPath {
+    /// All light but that which is told apart below.
+    pub(crate) radiance: Vec3,
+    /// Distance of the first surface (`SCENE_FAR` for the sky).
+    pub(crate) distance: f32,
+    pub(crate) facet: Vec3,
+    pub(crate) material: u32,
+    pub(crate) place: Vec3,
+    /// Whether it is what the sample before has seen.
+    pub(crate) again: bool,
+    /// Whether what it shows is the same over a pixel: no mirror, nothing behind a pane.
+    pub(crate) plain: bool,
+    /// Light of sky and surfaces on the diffuse base of the first opaque surface, over pi.
+    pub(crate) base: PathSlot,
+    /// Light that the first gloss or mirror shows: of a mirror, on the diffuse base of what stands in it.
+    pub(crate) mirror: PathSlot,
+}
+
+/// Light of which means are taken over neighbouring pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PathSlot {
+    pub(crate) light: Vec3,
+    /// How far from a place's plane another may be; 0: there is no light.
+    pub(crate) slack: f32,
+    /// What it is multiplied with.
+    pub(crate) factor: Vec3,
+    /// Roughness of a gloss; 0 for light on a diffuse base.
+    pub(crate) roughness: f32,
+    /// The surface's normal; of a gloss, the direction that a mirror would show.
+    pub(crate) normal: Vec3,
+    pub(crate) place: Vec3,
+}
+
+impl PathSlot {
+    /// No light.
+    pub(crate) const NONE: Self = Self {
+        light: Vec3::ZERO,
+        slack: 0.0,
+        factor: Vec3::ZERO,
+        roughness: 0.0,
+        normal: Vec3::ZERO,
+        place: Vec3::ZERO,
+    };
+}
+
+impl ViewPath {
+    /// A path that has found nothing.
+    pub(crate) const NOTHING: Self = Self {
+        radiance: Vec3::ZERO,
+        distance: SCENE_FAR,
+        facet: Vec3::ZERO,
+        material: SCENE_NONE,
+        place: Vec3::ZERO,
+        again: false,
+        plain: false,
+        base: PathSlot::NONE,
+        mirror: PathSlot::NONE,
+    };
+
+    /// All that a path has seen.
+    pub(crate) fn path_radiance(&self) -> Vec3 {
+        self.radiance + self.base.factor * self.base.light + self.mirror.factor * self.mirror.light
+    }
+}
+
+/// Light that rays have found for a surface.
+#[derive(Clone, Copy, Debug)]
+struct PathLight {
+    /// On its diffuse base, over pi.
+    base: Vec3,
+    /// In its gloss.
+    mirror: Vec3,
+    /// On the diffuse base of what a mirror shows.
+    shown: Vec3,
+    /// Factor of that light, its distance, and where it is.
+    factor: Vec3,
+    distance: f32,
+    normal: Vec3,
+    place: Vec3,
+}
+
+impl PathLight {
+    const NONE: Self = Self {
+        base: Vec3::ZERO,
+        mirror: Vec3::ZERO,
+        shown: Vec3::ZERO,
+        factor: Vec3::ZERO,
+        distance: -1.0,
+        normal: Vec3::ZERO,
+        place: Vec3::ZERO,
+    };
+
+    /// With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
+    fn path_gathered(self, ray: &ScatterRay, radiance: Vec3, of_shown: bool) -> Self {
+        let of_base = ray.diffuse * radiance;
+        Self {
+            base: if of_shown { self.base } else { self.base + of_base },
+            shown: if of_shown { self.shown + of_base } else { self.shown },
+            mirror: self.mirror + ray.mirror * radiance,
+            ..self
+        }
+    }
+}
+
+/// Water that a ray has come through.
+#[derive(Clone, Copy, Debug)]
+struct PathWater {
+    /// What was found of it.
+    found: PuddleWater,
+    /// Slopes of its surface, and their variance.
+    ripple: Vec3,
+    /// Height of its surface.
+    level: f32,
+    /// Fraction of the light of what lies beneath that it lets through.
+    clear: f32,
+    /// Albedo of the water itself.
+    murk: Vec3,
+}
+
+/// A surface that a ray of the camera has met.
+#[derive(Clone, Copy, Debug)]
+struct PathMeeting {
+    surface: Surface,
+    direct: Vec3,
+    plan: PathPlan,
+    /// Whether means over neighbouring pixels are taken of its light.
+    told: bool,
+    /// How far from its plane the surface of a neighbouring pixel may be.
+    slack: f32,
+}
+
+/// How a ray leaves the surface that it has met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PathLeave {
+    /// It is the first, and looks for the light of the surface that the ray of the camera has met.
+    First,
+    /// Through it.
+    Straight,
+    /// Mirrored by a metal in a mirror.
+    Mirror,
+    /// From what a mirror shows.
+    Shown,
+    /// As chance has it.
+    Onward,
+}
+
+/// Whether a surface is the same where another sample of the pixel has met it.
+fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, place: Vec3, distance: f32) -> bool {
+    last.plain
+        && last.material == material
+        && last.facet.dot(facet) > PATH_SAME_FACET
+        && last.facet.dot(place - last.place).abs() < PATH_SAME_PLANE * distance
+}
+
+impl SceneView<'_> {
+    /// What a ray sees. Where it meets the surface that `last` met, it sees the same.
+    pub(crate) fn path_trace(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        cone: f32,
+        random: [u32; 4],
+        last: &ViewPath,
+    ) -> ViewPath {
+        let (frame, data) = (self.frame, self.data);
+        let mut path = ViewPath::NOTHING;
+        let mut throughput = Vec3::ONE;
+        let (mut start, mut towards, mut near) = (origin, direction, frame.nearest);
+        // Water that the ray has come through, and whether it has met nothing since.
+        let mut water: Option<PathWater> = None;
+        let mut under = false;
+        for layer in 0..SCENE_LAYERS {
+            let Some(hit) = data.surface_hit(start, towards, near, BVH_FAR) else {
+                path.radiance += throughput * data.sky_level(0, towards);
+                return path;
+            };
+            let mut found = data.surface_at(&hit, start, towards, cone);
+            let mut material = data.corners[hit.triangle as usize * 3].material;
+            let mut distance = hit.distance;
+            let mut depth = Vec2::ZERO;
+            let met = match water {
+                None => self.puddle_water_find(found.position, found.facet.y),
+                Some(_) => None,
+            };
+            if let Some(met) = met {
+                // Back along the ray to where it came through the surface.
+                distance = (hit.distance - met.rise / (-towards.y).max(0.01)).max(near);
+                let place = start + towards * distance;
+                let footprint = cone * distance / (-towards.y).max(0.02).sqrt();
+                let ripple = self.puddle_water_ripple(met.puddle, place, footprint, met.depth, met.open);
+                found = path_water_surface(start, towards, distance, ripple);
+                material = PUDDLE_WATER_MATERIAL;
+                water = Some(PathWater { found: met, ripple, level: place.y, clear: 1.0, murk: Vec3::ZERO });
+            } else if layer == 0
+                && path_same_surface(last, material, found.facet, found.position, hit.distance)
+            {
+                return ViewPath { again: true, ..*last };
+            }
+            if let (true, Some(water)) = (under, &water) {
+                let rise = (water.level - found.position.y).max(0.0);
+                depth = Vec2::new(rise + (water.found.depth - water.found.rise).max(0.0), rise);
+                found = path_soaked(&found, water.clear, water.murk);
+            }
+            if layer == 0 {
+                path.distance = distance;
+                path.material = material;
+                path.facet = found.facet;
+                path.place = found.position;
+            }
+            near = hit.distance + frame.nearest;
+            let unlit = found.flags & SCENE_UNLIT != 0;
+            let mut direct = found.diffuse;
+            if !unlit {
+                direct = found.emission + self.scene_direct(&found, -towards, 0, 0.0, 0.0, depth);
+            }
+            let told = path.base.slack == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
+            let free = path.mirror.slack == 0.0;
+            let mut plan = PathPlan::NONE;
+            if let (Some(_), Some(water)) = (met, &water) {
+                let rippled = water.ripple.z > PUDDLE_WATER_RIPPLED;
+                let mirrors = frame.sky_rays.max(if rippled { PUDDLE_WATER_RAYS } else { 1 });
+                let (drawn, replaced) = (rippled && free, !rippled && free);
+                plan =
+                    PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn, kept: drawn, replaced, ..plan };
+            } else if !unlit {
+                plan = self.path_plan(&found, -towards, cone * hit.distance, told, free && !under);
+            }
+            // Neighbouring pixels are on one plane if they are no farther from it than this.
+            let from_eye = found.position - origin;
+            let slack = from_eye.dot(from_eye).sqrt() * (cone * 2.0 + SKYLIGHT_SLACK);
+            let ripple = if met.is_some() { water.map(|water| water.ripple) } else { None };
+            let meeting = PathMeeting { surface: found, direct, plan, told, slack };
+            let light = self.path_light(&meeting, towards, cone, random, ripple, under);
+            if let (Some(_), Some(water)) = (met, &mut water) {
+                throughput *= path.path_show_water(&meeting, &light, water.ripple, towards, throughput);
+                // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
+                let row = frame.puddles + water.found.puddle * PUDDLE_WATER_ROWS;
+                let look = Vec4::from(data.table[row as usize + 4].map(f32::from_bits));
+                towards = puddle_water_refracted(towards, found.normal);
+                let steep = (-towards.y).max(0.1);
+                water.murk = look.truncate();
+                water.clear = ops::exp(-look.w * water.found.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
+                let aside = (water.found.depth - water.found.rise).max(0.0) / steep;
+                start = found.position + Vec3::new(towards.x * aside, 0.0, towards.z * aside)
+                    - towards * (4.0 * frame.nearest);
+                near = frame.nearest;
+                under = true;
+                continue;
+            }
+            self.path_show(&mut path, &meeting, &light, towards, layer, throughput);
+            under = false;
+            throughput *= path_open(&found);
+            if path_most(throughput) < 1.0e-3 {
+                return path;
+            }
+        }
+        path
+    }
+
+    /// Light that rays find for a surface: turns 1 and on of the loop of `path_trace` in WGSL.
+    fn path_light(
+        &self,
+        meeting: &PathMeeting,
+        towards: Vec3,
+        cone: f32,
+        random: [u32; 4],
+        ripple: Option<Vec3>,
+        under: bool,
+    ) -> PathLight {
+        let (frame, data) = (self.frame, self.data);
+        let plan = &meeting.plan;
+        let mut light = PathLight::NONE;
+        for turn in 1..=plan.mirrors + plan.rays {
+            let (mut at, mut view) = (meeting.surface, -towards);
+            let mut ray = ScatterRay::ALL;
+            let (mut from, mut leaves, mut given) = (at.position, PathLeave::First, Vec3::ZERO);
+            let is_mirror = turn <= plan.mirrors;
+            let of_shown = plan.replaced && is_mirror;
+            let (index, count) =
+                if is_mirror { (turn - 1, plan.mirrors) } else { (turn - 1 - plan.mirrors, plan.rays) };
+            for bounce in 0..PATH_BOUNCES {
+                let numbers = path_lattice_numbers(random, turn, bounce, index, count);
+                if leaves != PathLeave::Straight {
+                    let mut next = match (leaves, ripple) {
+                        (PathLeave::First, Some(ripple)) => {
+                            path_water_ray(ripple, at.roughness, view, cone, numbers[0], numbers[1])
+                        }
+                        (PathLeave::First, None) if is_mirror && !plan.drawn => scatter_mirror(&at, view),
+                        (PathLeave::Mirror, _) => scatter_mirror(&at, view),
+                        _ => self.path_draw(&at, view, plan, leaves, is_mirror, numbers),
+                    };
+                    from = at.position + at.facet * frame.nearest;
+                    match leaves {
+                        PathLeave::First => {
+                            if under && is_mirror {
+                                next.along = puddle_water_above(next.along);
+                                next.mirror *= if next.along.y > 0.0 { 1.0 } else { 0.0 };
+                            }
+                            ray = next;
+                            ray.width += cone + plan.spread;
+                        }
+                        PathLeave::Mirror => {
+                            let cosine = at.normal.dot(view).max(0.0);
+                            next.mirror = ray.mirror * brdf_fresnel(at.normal_reflectance, cosine);
+                            next.width += ray.width;
+                            ray = next;
+                        }
+                        PathLeave::Shown => ray = path_replaced(&ray, &next),
+                        _ => ray = path_onward(&ray, &next, &at, numbers[2]),
+                    }
+                    if path_most(ray.diffuse + ray.mirror) <= 0.0 {
+                        break;
+                    }
+                }
+                let Some(hit) = data.surface_hit(from, ray.along, frame.nearest, BVH_FAR) else {
+                    let beyond = data.sky_cone(ray.along, ray.width);
+                    light = light.path_gathered(&ray, beyond, of_shown);
+                    break;
+                };
+                let found = data.surface_at(&hit, from, ray.along, ray.width);
+                let mut found = path_glance(&found, ray.roughness);
+                let lamps = if ray.roughness < PATH_GLANCE { PATH_MIRROR_LAMPS } else { 1 };
+                let standoff = hit.distance * ray.width * 0.5;
+                // Where there are lamps, they stand for what shines; small bright things would be noise.
+                let shines = ray.roughness < PATH_SHINES || frame.light_count == 0;
+                let unlit = found.flags & SCENE_UNLIT != 0;
+                let mut lit = found.diffuse;
+                if !unlit {
+                    lit = if shines { found.emission } else { Vec3::ZERO }
+                        + self.scene_direct(&found, -ray.along, lamps, numbers[3], standoff, Vec2::ZERO);
+                }
+                let cover = path_cover(&found);
+                light = light.path_gathered(&ray, lit * cover, of_shown);
+                if unlit && cover == 1.0 {
+                    break;
+                }
+                let open = path_open(&found);
+                let mut ambient = Vec3::ZERO;
+                leaves = PathLeave::Onward;
+                if path_most(open) > PATH_OPEN {
+                    leaves = PathLeave::Straight;
+                    if !unlit {
+                        // What it reflects of the sky itself: half of the whole.
+                        ambient = data.sky_irradiance(found.normal) * (0.5 * found.occlusion * cover);
+                    }
+                } else if of_shown && light.distance < 0.0 {
+                    leaves = PathLeave::Mirror;
+                    if path_most(path_albedo(&found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                        leaves = PathLeave::Shown;
+                        found = path_glance(&found, 1.0);
+                        light.factor = ray.mirror * (path_albedo(&found) + found.normal_reflectance * 0.5);
+                        light.distance = hit.distance;
+                        light.normal = found.normal;
+                        light.place = found.position;
+                    }
+                } else if bounce + 1 == PATH_BOUNCES {
+                    ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
+                }
+                let own = (path_albedo(&found) + found.normal_reflectance) * ambient;
+                light = light.path_gathered(&ray, own, of_shown);
+                given += lit;
+                if leaves == PathLeave::Straight {
+                    ray.diffuse *= open;
+                    ray.mirror *= open;
+                    from = found.position;
+                }
+                (at, view) = (found, -ray.along);
+            }
+        }
+        light
+    }
+
+    /// A ray drawn for a surface.
+    fn path_draw(
+        &self,
+        at: &Surface,
+        view: Vec3,
+        plan: &PathPlan,
+        leaves: PathLeave,
+        is_mirror: bool,
+        numbers: [f32; 4],
+    ) -> ScatterRay {
+        let [mut a, mut b, number, _] = numbers;
+        let mut gloss = Vec3::ONE;
+        let mut chance = scatter_chance(at.diffuse, at.normal_reflectance);
+        let (mut share, mut weight) = (PATH_LATER_SHARE, 1.0);
+        if leaves == PathLeave::Shown {
+            chance = 0.0;
+        }
+        if leaves == PathLeave::First {
+            gloss = plan.gloss;
+            chance = if is_mirror { 1.0 } else { plan.chance };
+            share = plan.share;
+            if is_mirror && !plan.kept {
+                // Few rays: far out in the lobe they would be noise.
+                (share, a) = (PATH_CURVED_SHARE, a * PATH_CURVED_PART);
+            }
+            if a >= chance {
+                let own = (a - chance) / (1.0 - chance);
+                let (numbers, factor) = self.path_candidate(at, own, b, number, share);
+                (a, b, weight) = (chance + numbers.x * (1.0 - chance), numbers.y, factor);
+                share /= PATH_CANDIDATES as f32;
+            }
+        }
+        let mut ray = scatter_draw(at, view, gloss, chance, a, b, share);
+        ray.diffuse *= weight;
+        ray.mirror *= weight;
+        ray
+    }
+
+    /// Adds what a surface shows to a path.
+    fn path_show(
+        &self,
+        path: &mut ViewPath,
+        meeting: &PathMeeting,
+        light: &PathLight,
+        towards: Vec3,
+        layer: u32,
+        throughput: Vec3,
+    ) {
+        let PathMeeting { surface, direct, mut plan, told, slack } = *meeting;
+        let cover = path_cover(&surface);
+        path.radiance += throughput * direct * cover;
+        if surface.flags & SCENE_UNLIT != 0 {
+            return;
+        }
+        let mirrored = towards - surface.normal * (2.0 * towards.dot(surface.normal));
+        let of_gloss = if plan.chance > 0.0 { plan.rays } else { plan.mirrors };
+        let mut base = light.base / plan.rays.max(1) as f32;
+        let mut mirror = light.mirror / of_gloss.max(1) as f32;
+        if plan.mirrors + plan.rays == 0 {
+            base = self.data.sky_irradiance(surface.normal);
+            mirror = self.data.sky_cone(mirrored, scatter_mirror(&surface, -towards).width);
+        } else if plan.mirrors == 0 && plan.chance == 0.0 {
+            // Too little for rays of its own.
+            plan.body += plan.gloss;
+            plan.gloss = Vec3::ZERO;
+        }
+        let of_base = throughput * plan.body * cover;
+        let of_gloss = throughput * plan.gloss * cover;
+        let slot = PathSlot { slack, place: surface.position, ..PathSlot::NONE };
+        if told {
+            path.base = PathSlot { light: base, factor: of_base, normal: surface.normal, ..slot };
+            let mirrors = plan.mirrors > 0
+                && (surface.roughness < PATH_CURVED || !plan.kept)
+                && path_most(plan.gloss) > PATH_PLAIN_GLOSS;
+            path.plain = !(mirrors || layer > 0);
+        } else {
+            path.radiance += of_base * base;
+        }
+        if plan.kept {
+            let roughness = surface.roughness;
+            path.mirror = PathSlot { light: mirror, factor: of_gloss, roughness, normal: mirrored, ..slot };
+        } else {
+            path.radiance += of_gloss * mirror;
+            path.path_show_mirrored(light, of_gloss, meeting);
+        }
+    }
+}
+
+impl ViewPath {
+    /// Adds the light on what a mirror shows.
+    fn path_show_mirrored(&mut self, light: &PathLight, gloss: Vec3, meeting: &PathMeeting) {
+        if light.distance < 0.0 {
+            return;
+        }
+        self.mirror = PathSlot {
+            light: light.shown,
+            factor: gloss * light.factor,
+            slack: meeting.slack + light.distance * (2.0 * meeting.plan.spread + SKYLIGHT_SLACK),
+            roughness: 0.0,
+            normal: light.normal,
+            place: light.place,
+        };
+    }
+
+    /// Adds what water mirrors, and returns the fraction of the light from beneath that comes out.
+    fn path_show_water(
+        &mut self,
+        meeting: &PathMeeting,
+        light: &PathLight,
+        ripple: Vec3,
+        towards: Vec3,
+        throughput: Vec3,
+    ) -> f32 {
+        let surface = &meeting.surface;
+        let all = meeting.plan.mirrors as f32;
+        let share = path_water_share(ripple, -towards);
+        self.radiance += throughput * meeting.direct;
+        if meeting.plan.kept {
+            self.mirror = PathSlot {
+                light: light.mirror / (all * share).max(1.0e-6),
+                factor: throughput * share,
+                slack: meeting.slack,
+                roughness: surface.roughness,
+                normal: towards - surface.normal * (2.0 * towards.dot(surface.normal)),
+                place: surface.position,
+            };
+        } else {
+            self.radiance += throughput * light.mirror / all;
+            self.path_show_mirrored(light, throughput / all, meeting);
+        }
+        1.0 - share
+    }
+}

@@ -1,0 +1,293 @@
+//! Water as rays meet it. Twin of `shaders/wgsl/render/puddle_water.wgsl`.
+//!
+//! A ray that has met something in a puddle's depth map has come through the surface: on ground lower than the surface, or
+//! on what stands in the water. Where the map has depth without such ground (a painted puddle, a road whose unevenness is
+//! smaller than its model shows), the surface lies on the model and the ground is taken to be beneath it.
+//!
+//! Ripples are one lattice for all water (Tatarchuk & Isidoro 2006, section 4). So that its square is not seen again and
+//! again, pieces of it are mixed over a mesh of triangles with weights whose squares sum to 1: the variance of the slopes
+//! stays (E. Heitz and F. Neyret, High-Performance By-Example Noise, 2018, for a field that is normal already). What a
+//! pixel does not resolve is a variance of the slope (M. Olano and D. Baker, LEAN Mapping, 2010).
+//!
+//! Diffuse ground under water is darker: light is thrown back between ground and surface, and what comes out spreads over a
+//! larger cone (J. Lekner and M. Dorf, Applied Optics 27, 1988).
+
+use downpour_math::ops;
+use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::render::puddle_water::{
+    PUDDLE_WATER_DIMENSION, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_INSIDE,
+    PUDDLE_WATER_LEAST, PUDDLE_WATER_MESH, PUDDLE_WATER_OUTSIDE, PUDDLE_WATER_ROWS, PUDDLE_WATER_SLACK,
+};
+use glam::{Vec2, Vec3, Vec4};
+
+use super::SceneView;
+
+/// Water over a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PuddleWater {
+    /// Number of the puddle.
+    pub(crate) puddle: u32,
+    /// Depth, m.
+    pub(crate) depth: f32,
+    /// How far the surface is over the place, m.
+    pub(crate) rise: f32,
+    /// Share of the rain that arrives.
+    pub(crate) open: f32,
+}
+
+impl SceneView<'_> {
+    fn puddle_water_numbers(&self, row: u32) -> Vec4 {
+        Vec4::from(self.data.table[row as usize].map(f32::from_bits))
+    }
+
+    /// A texel of a map: ground over the map's height (m), rise of the surface over the ground (m), depth (m, below 0 on
+    /// land), share of the rain that arrives.
+    fn puddle_water_texel(&self, row: u32, x: i32, y: i32) -> Vec4 {
+        let [columns, rows, first, _] = self.data.table[row as usize + 2];
+        let column = x.clamp(0, columns as i32 - 1) as u32;
+        let line = y.clamp(0, rows as i32 - 1) as u32;
+        self.puddle_water_numbers(first + line * columns + column)
+    }
+
+    /// The map over a place, bilinear. Beyond the map all is land.
+    fn puddle_water_map(&self, row: u32, place: Vec3) -> Vec4 {
+        let base = self.puddle_water_numbers(row);
+        let axes = self.puddle_water_numbers(row + 1);
+        let [columns, rows, ..] = self.data.table[row as usize + 2];
+        let (dx, dz) = (place.x - base.x, place.z - base.z);
+        let along = dx * axes.x + dz * axes.y;
+        let across = dz * axes.x - dx * axes.y;
+        if along.abs() >= axes.z || across.abs() >= axes.w {
+            return Vec4::new(0.0, 0.0, -1.0, 0.0);
+        }
+        let u = (along / axes.z * 0.5 + 0.5) * columns as f32 - 0.5;
+        let v = (across / axes.w * 0.5 + 0.5) * rows as f32 - 0.5;
+        let (x, y) = (u.floor() as i32, v.floor() as i32);
+        let (fx, fy) = (u - u.floor(), v - v.floor());
+        let texel = |x, y| self.puddle_water_texel(row, x, y);
+        let upper = texel(x, y) * (1.0 - fx) + texel(x + 1, y) * fx;
+        let lower = texel(x, y + 1) * (1.0 - fx) + texel(x + 1, y + 1) * fx;
+        upper * (1.0 - fy) + lower * fy
+    }
+
+    /// The water over a place that a ray has met, on ground whose facet rises by `upward`, or in the water.
+    pub(crate) fn puddle_water_find(&self, place: Vec3, upward: f32) -> Option<PuddleWater> {
+        (0..self.frame.puddle_count).find_map(|puddle| {
+            let row = self.frame.puddles + puddle * PUDDLE_WATER_ROWS;
+            let found = self.puddle_water_map(row, place);
+            if found.z < PUDDLE_WATER_LEAST {
+                return None;
+            }
+            let height = place.y - self.puddle_water_numbers(row).y - found.x;
+            let rise = (found.y - height).clamp(0.0, found.y.max(0.0));
+            let stands = height > 0.0 && rise > 0.0;
+            let lies = height.abs() <= PUDDLE_WATER_SLACK && upward > 0.7;
+            let depth = (found.z - height.max(0.0)).max(0.0);
+            let open = found.w.clamp(0.0, 1.0);
+            (stands || lies).then_some(PuddleWater { puddle, depth, rise, open })
+        })
+    }
+
+    /// A texel of a level of the ripples: slopes along the lattice's axes, and the mean of the square of the slope.
+    fn puddle_water_slope(&self, first: u32, size: u32, x: i32, y: i32) -> Vec4 {
+        let column = x.clamp(0, size as i32 - 1) as u32;
+        let line = y.clamp(0, size as i32 - 1) as u32;
+        self.puddle_water_numbers(first + line * size + column)
+    }
+
+    /// A piece of the ripples round a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
+    /// from the vertex, in the mesh's steps; the level begins at row `first`, with `steps` texels per step.
+    fn puddle_water_piece(&self, vertex: [i32; 2], offset: Vec2, first: u32, size: u32, steps: f32) -> Vec3 {
+        let words = rng_draw([0; 2], vertex[0] as u32, vertex[1] as u32, PUDDLE_WATER_DIMENSION);
+        // Anywhere as long as the piece lies within the lattice: a step to each side of its middle.
+        let room = (size as f32 - 2.0 * steps).max(0.0);
+        let u = steps + rng_unit(words[0]) * room + offset.x * steps - 0.5;
+        let v = steps + rng_unit(words[1]) * room + offset.y * steps - 0.5;
+        let (x, y) = (u.floor() as i32, v.floor() as i32);
+        let (fx, fy) = (u - u.floor(), v - v.floor());
+        let texel = |x, y| self.puddle_water_slope(first, size, x, y);
+        let upper = texel(x, y) * (1.0 - fx) + texel(x + 1, y) * fx;
+        let lower = texel(x, y + 1) * (1.0 - fx) + texel(x + 1, y + 1) * fx;
+        let mixed = upper * (1.0 - fy) + lower * fy;
+        let slope = mixed.truncate().truncate();
+        slope.extend((mixed.z - slope.dot(slope)).max(0.0))
+    }
+
+    /// Slopes along x and z of the water's surface, and the variance of the slope within a footprint (m).
+    pub(crate) fn puddle_water_ripple(
+        &self,
+        puddle: u32,
+        place: Vec3,
+        footprint: f32,
+        depth: f32,
+        open: f32,
+    ) -> Vec3 {
+        let row = self.frame.puddles + puddle * PUDDLE_WATER_ROWS;
+        let look = self.puddle_water_numbers(row + 3);
+        let more = self.puddle_water_numbers(row + 5);
+        let head =
+            self.data.table[(self.frame.puddles + self.frame.puddle_count * PUDDLE_WATER_ROWS) as usize];
+        let cell = f32::from_bits(head[3]);
+        // Scale, cosine and sine of the angle, influence.
+        let rises = (depth / more.x.max(1.0e-6)).clamp(0.0, 1.0);
+        let strength = look.w * open * (rises * rises * (3.0 - 2.0 * rises));
+        if head[0] == 0 || strength <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let finest = footprint / (look.x * cell);
+        let level = ((ops::log2(finest.max(1.0)) + 0.5).floor().max(0.0) as u32).min(head[1] - 1);
+        // Levels of n x n, n / 2 x n / 2, ...: 4/3 n^2 (1 - 4^-level) texels before this one.
+        let size = (head[0] >> level).max(1);
+        let first = head[2] + (head[0] * head[0] - size * size) / 3 * 4;
+        let steps = PUDDLE_WATER_MESH / cell * size as f32 / head[0] as f32;
+
+        let px = (place.x * look.y + place.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
+        let pz = (place.z * look.y - place.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
+        // Skewed, so that triangles become halves of squares.
+        let sx = px - pz * 0.577_350_27;
+        let sz = pz * 1.154_700_5;
+        let corner = [sx.floor() as i32, sz.floor() as i32];
+        let (fx, fz) = (sx - sx.floor(), sz - sz.floor());
+        let third = 1.0 - fx - fz;
+        let (weights, steps_to) = if fx + fz < 1.0 {
+            ([third, fz, fx], [[0, 0], [0, 1], [1, 0]])
+        } else {
+            ([-third, 1.0 - fz, 1.0 - fx], [[1, 1], [1, 0], [0, 1]])
+        };
+        let (mut sum, mut spread, mut square) = (Vec2::ZERO, 0.0, 0.0);
+        for (weight, step) in weights.into_iter().zip(steps_to) {
+            let vertex = [corner[0].wrapping_add(step[0]), corner[1].wrapping_add(step[1])];
+            let middle = Vec2::new(vertex[0] as f32 + 0.5 * vertex[1] as f32, 0.866_025_4 * vertex[1] as f32);
+            let piece = self.puddle_water_piece(vertex, Vec2::new(px, pz) - middle, first, size, steps);
+            sum += piece.truncate() * weight;
+            spread += piece.z * weight * weight;
+            square += weight * weight;
+        }
+        let slope = sum * (strength / square.sqrt());
+        // Back to the world's axes.
+        Vec3::new(
+            slope.x * look.y - slope.y * look.z,
+            slope.y * look.y + slope.x * look.z,
+            spread / square * strength * strength,
+        )
+    }
+}
+
+/// The normal of a surface with these slopes, and with a deviation drawn by two numbers in [0, 1).
+#[must_use]
+pub fn puddle_water_normal(ripple: Vec3, a: f32, b: f32) -> Vec3 {
+    // Normal deviates along both axes, each with half of the variance.
+    let radius = (-ripple.z * ops::ln((1.0 - a).max(1.0e-6))).sqrt();
+    let angle = std::f32::consts::TAU * b;
+    let x = -(ripple.x + radius * ops::cos(angle));
+    let z = -(ripple.y + radius * ops::sin(angle));
+    Vec3::new(x, 1.0, z) / (1.0 + x * x + z * z).sqrt()
+}
+
+/// A mirrored direction above the water.
+#[must_use]
+pub fn puddle_water_mirrored(direction: Vec3, normal: Vec3) -> Vec3 {
+    let along = direction - normal * (2.0 * direction.dot(normal));
+    let raised = Vec3::new(along.x, along.y.abs().max(PUDDLE_WATER_GRAZING), along.z);
+    raised / raised.dot(raised).sqrt()
+}
+
+/// The direction beneath the surface.
+#[must_use]
+pub fn puddle_water_refracted(direction: Vec3, normal: Vec3) -> Vec3 {
+    let eta = 1.0 / PUDDLE_WATER_INDEX;
+    let cosine = (-direction.dot(normal)).max(0.0);
+    let inner = (1.0 - eta * eta * (1.0 - cosine * cosine)).max(0.0).sqrt();
+    let along = direction * eta + normal * (eta * cosine - inner);
+    along / along.dot(along).sqrt()
+}
+
+/// The direction beneath level water of light from above, both towards where it comes from.
+#[must_use]
+pub fn puddle_water_beneath(direction: Vec3) -> Vec3 {
+    let (x, z) = (direction.x / PUDDLE_WATER_INDEX, direction.z / PUDDLE_WATER_INDEX);
+    Vec3::new(x, (1.0 - x * x - z * z).max(0.0).sqrt(), z)
+}
+
+/// Where light that falls on a place under a depth of level water has come through the surface, from the place's own spot
+/// on the surface.
+#[must_use]
+pub fn puddle_water_entry(direction: Vec3, depth: f32) -> Vec3 {
+    let below = puddle_water_beneath(direction);
+    let aside = depth / below.y.max(0.1);
+    Vec3::new(below.x * aside, 0.0, below.z * aside)
+}
+
+/// The direction above level water of light from beneath it; its height is 0 where it does not come out.
+#[must_use]
+pub fn puddle_water_above(direction: Vec3) -> Vec3 {
+    let (x, z) = (direction.x * PUDDLE_WATER_INDEX, direction.z * PUDDLE_WATER_INDEX);
+    Vec3::new(x, (1.0 - x * x - z * z).max(0.0).sqrt(), z)
+}
+
+/// Albedo of what lies under water, as seen through its surface over the share that comes out along the ray: light goes
+/// in diffusely, and is thrown back between ground and surface. White stays white.
+#[must_use]
+pub fn puddle_water_albedo(albedo: Vec3) -> Vec3 {
+    let out = (1.0 - PUDDLE_WATER_OUTSIDE) / (PUDDLE_WATER_INDEX * PUDDLE_WATER_INDEX);
+    albedo * out / (Vec3::ONE - albedo * PUDDLE_WATER_INSIDE)
+}
+
+/// Reflectance at normal incidence of what lies under water, from that in air.
+#[must_use]
+pub fn puddle_water_reflectance(in_air: Vec3) -> Vec3 {
+    let root = in_air.clamp(Vec3::ZERO, Vec3::splat(0.98)).map(f32::sqrt);
+    let index = (Vec3::ONE + root) / (Vec3::ONE - root);
+    let ratio = (index - PUDDLE_WATER_INDEX) / (index + PUDDLE_WATER_INDEX);
+    ratio * ratio
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::builder::SceneBuilder;
+    use crate::data::RenderFrame;
+    use crate::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
+    use crate::sky_light::SkyLight;
+    use downpour_render::camera::Viewpoint;
+
+    /// The square of the slope, what is seen of it and what is not together, is the lattice's at any distance.
+    #[test]
+    fn mixing_pieces_keeps_the_variance_at_any_footprint() {
+        let size = 256u16;
+        let wave = |k: f32, x: u16, y: u16| ops::sin(k * (f32::from(x) + 0.6 * f32::from(y)));
+        let finest: Vec<[f32; 4]> = (0..u32::from(size) * u32::from(size))
+            .map(|i| {
+                let (x, y) = ((i % 256) as u16, (i / 256) as u16);
+                let slopes = [0.1 * wave(1.1, x, y), 0.08 * wave(0.37, y, x) + 0.05 * wave(0.11, x, y)];
+                [slopes[0], slopes[1], slopes[0] * slopes[0] + slopes[1] * slopes[1], 0.0]
+            })
+            .collect();
+        let mean_square = finest.iter().map(|slope| slope[2]).sum::<f32>() / finest.len() as f32;
+        let mut scene = SceneBuilder::new().build(&SkyLight::new(1, 1, &[[1.0; 3]]));
+        let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(100.0), turn: 0.0, reach: 1.0 };
+        let map = PuddleMap { ground, size: [2, 2], cells: vec![[0.0, 0.0, 0.1, 1.0]; 4] };
+        scene.lay_puddles(&PuddleRows {
+            puddles: &[(map, PuddleLook { angle: 0.5, ..PuddleLook::default() })],
+            shape: (u32::from(size), 8, 5.0e-3),
+            slopes: &slope_levels(finest, usize::from(size)),
+            shift: Vec3::ZERO,
+        });
+        let view = Viewpoint { eye: Vec3::Y, forward: Vec3::NEG_Y, up: Vec3::X, fov_y: 1.0 };
+        let frame = RenderFrame::new(&scene, &view, [1, 1], 1, 0, 0).unwrap();
+        let view = SceneView { data: &scene, frame: &frame };
+        for footprint in [0.0, 0.03, 0.3, 5.0] {
+            let (mut shown, mut hidden) = (0.0, 0.0);
+            for k in 0..10_000u16 {
+                let place =
+                    Vec3::new(f32::from(k % 100), 0.0, f32::from(k / 100)) * 0.377 - Vec3::splat(18.0);
+                let ripple = view.puddle_water_ripple(0, place, footprint, 0.1, 1.0);
+                shown += (ripple.x * ripple.x + ripple.y * ripple.y) / 1.0e4;
+                hidden += ripple.z / 1.0e4;
+            }
+            let ratio = (shown + hidden) / mean_square;
+            assert!((ratio - 1.0).abs() < 0.08, "{footprint}: {ratio} ({shown} and {hidden})");
+            assert_eq!(hidden > shown, footprint > 0.01, "{footprint}: {shown} and {hidden}");
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! A weather with its files as a picture needs it: buffers, eye, and the part of space that it sees.
+//!
+//! Radiance, lamps and sun share one unit, that of the sky's radiance: where the weather gives the sky in cd/m^2, a lamp of
+//! `I` candela lights a surface at a distance `r` with `I / r^2` lux and a sun is given in lux.
+//!
+//! Far from the world's origin single precision is coarse (1 m at 10 000 km), so that buffers there are relative to a
+//! whole place near the eye, [`Stage::origin`].
+
+mod error;
+mod eye;
+mod framing;
+mod sky;
+#[cfg(test)]
+mod tests;
+
+use std::borrow::Cow;
+
+use downpour_scene::scene::{Play, Pose};
+use downpour_sim::field::FallingDrop;
+use downpour_sim::view::View;
+use downpour_weather::{self as weather, Loaded, Weather};
+use glam::{DVec3, Vec3};
+
+use crate::builder::SceneBuilder;
+use crate::data::SceneData;
+use downpour_render::RenderError;
+use downpour_render::camera::{EyeMotion, LONGEST_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
+use downpour_render::light::LightSource;
+use downpour_render::tone::{tone_automatic_exposure, tone_luminance};
+pub use error::StageError;
+pub use eye::CameraChoice;
+use eye::Seen;
+
+/// The most triangles of a scene, all copies counted.
+pub const MOST_TRIANGLES: u64 = 1 << 22;
+
+/// The most lamps of a scene: each surface asks each of them.
+pub const MOST_LIGHTS: usize = 1024;
+
+/// Memory per triangle, in bytes, while its hierarchy is built: the corners twice, and the builder's own lists.
+const BYTES_PER_TRIANGLE: u64 = 540;
+
+/// Farther than this from the world's origin, in metres, buffers are relative to a place near the eye.
+const NEAR_ORIGIN_M: f64 = 1000.0;
+
+/// The latest time of a picture, in seconds, and the earliest below 0.
+pub const LATEST_S: f64 = downpour_sim::field::LATEST_S;
+
+/// The eye's motion is taken over this time at least, s.
+const LEAST_APART_S: f64 = 1.0e-3;
+
+/// Pixels darker than this part of the mean have no say in the exposure.
+const UNLIT: f32 = 1.0e-4;
+
+/// A scene with its light and an eye.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    /// The scene's buffers, relative to `origin`.
+    pub data: SceneData,
+    /// The eye, relative to `origin`.
+    pub viewpoint: Viewpoint,
+    /// What the buffers are relative to: 0 unless the eye is more than 1 km from it.
+    pub origin: DVec3,
+    /// How the eye moves.
+    pub motion: EyeMotion,
+    /// How long the shutter is open, in seconds.
+    pub shutter_s: f64,
+    /// Columns and rows of the picture.
+    pub size: [u32; 2],
+    /// The picture is multiplied by two to this power.
+    pub exposure_ev: f32,
+    /// Distances from the eye, in metres, between which drops are drawn.
+    pub depth: [f64; 2],
+    /// Whose eye it is.
+    pub camera: CameraChoice,
+    /// Triangles, all copies counted.
+    pub triangles: usize,
+    /// Meshes at their places.
+    pub instances: usize,
+    /// Lamps, without the sun.
+    pub lamps: usize,
+    /// Meshes that are not drawn because their transform has no inverse, or leads too far.
+    pub left_out: usize,
+}
+
+impl Stage {
+    /// The stage of a weather at a time in seconds: its models in motion, its sky, sun and lamps, its eye.
+    ///
+    /// # Errors
+    /// [`StageError::OverLimit`] above [`MOST_TRIANGLES`] or [`MOST_LIGHTS`], [`StageError::Memory`], or
+    /// [`RenderError`]: a picture outside [`PIXELS`], a time beyond [`LATEST_S`], or a camera that is none.
+    pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
+        check_size(weather.size)?;
+        if !(-LATEST_S..=LATEST_S).contains(&time_s) {
+            let (quantity, unit, allowed) = ("time", "s", "-1e6 to 1e6");
+            return Err(RenderError::OutOfRange { quantity, found: time_s, unit, allowed }.into());
+        }
+        let pose = posed(loaded, time_s);
+        check_cost(loaded, &pose)?;
+        let seen = Seen::of(weather, loaded, &pose, time_s);
+        let anchor = seen.as_ref().map_or_else(|| middle(loaded, &pose), |seen| seen.eye);
+        let origin = origin_near(anchor);
+        let mut builder = SceneBuilder::new();
+        builder.add_scene(&loaded.scene, &pose, origin);
+        if let Some(sun) = loaded.sun {
+            builder.add_light(LightSource::Directional {
+                direction: -Vec3::from(sun.direction),
+                irradiance: sun.irradiance_rgb.into(),
+            });
+        }
+        let triangles = builder.triangle_count();
+        let mut data = builder.build(&sky::light(&loaded.sky));
+        if let Some(sun) = loaded.sun {
+            data.set_light_radius(data.light_count - 1, sun.angular_radius);
+        }
+        let fov =
+            weather.camera.fov.unwrap_or_else(|| seen.as_ref().map_or(weather::FOV_RAD, |seen| seen.fov));
+        let (camera, viewpoint) = match &seen {
+            Some(seen) => (seen.choice.clone(), seen.viewpoint(fov, origin)),
+            None if triangles > 0 => {
+                (CameraChoice::Framing, framing::of_bounds(data.bounds(), weather.size, fov))
+            }
+            None => (CameraChoice::Standing, framing::standing(fov)),
+        };
+        // A camera that is none is told of here and not in the middle of the work.
+        viewpoint.axes()?;
+        Ok(Self {
+            data,
+            viewpoint,
+            origin,
+            motion: motion(weather, loaded, time_s),
+            shutter_s: weather.camera.shutter,
+            size: weather.size,
+            exposure_ev: weather.camera.exposure_ev as f32,
+            depth: depth(weather, seen.as_ref()),
+            camera,
+            triangles,
+            instances: pose.instances.len(),
+            lamps: pose.lights.len(),
+            left_out: pose.left_out,
+        })
+    }
+
+    /// The same scene, which stands still, seen by the weather's eye of another time in seconds: its buffers are shared.
+    ///
+    /// # Errors
+    /// [`StageError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
+    pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
+        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s), time_s) else {
+            return Ok(self.clone());
+        };
+        let distance_m = (seen.eye - self.origin).abs().max_element();
+        if distance_m > NEAR_ORIGIN_M {
+            return Err(StageError::TooFar { distance_m });
+        }
+        let viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), self.origin);
+        viewpoint.axes()?;
+        Ok(Self { viewpoint, motion: motion(weather, loaded, time_s), ..self.clone() })
+    }
+
+    /// The part of space that the picture shows, in the world, for [`RainField`](downpour_sim::field::RainField).
+    ///
+    /// # Errors
+    /// As [`Viewpoint::axes`].
+    pub fn view(&self) -> Result<View, RenderError> {
+        view_of(&self.viewpoint, self.origin, self.size, self.depth, self.shutter_s, &self.motion)
+    }
+
+    /// The part of space that a picture at a time in seconds would show: [`Stage::view`] of [`Stage::new`], without the scene
+    /// where the eye does not depend on it.
+    ///
+    /// # Errors
+    /// As [`Stage::new`].
+    pub fn view_at(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, StageError> {
+        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s), time_s) else {
+            return Ok(Self::new(weather, loaded, time_s)?.view()?);
+        };
+        let origin = origin_near(seen.eye);
+        let viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), origin);
+        let depth = depth(weather, Some(&seen));
+        let motion = motion(weather, loaded, time_s);
+        Ok(view_of(&viewpoint, origin, weather.size, depth, weather.camera.shutter, &motion)?)
+    }
+
+    /// Drops of the world as the picture takes them, relative to `origin`.
+    #[must_use]
+    pub fn place<'a>(&self, drops: &'a [FallingDrop]) -> Cow<'a, [FallingDrop]> {
+        if self.origin == DVec3::ZERO {
+            return Cow::Borrowed(drops);
+        }
+        drops.iter().map(|drop| FallingDrop { position: drop.position - self.origin, ..*drop }).collect()
+    }
+
+    /// The factor from radiance to a picture to look at: automatic exposure of the scene without rain, where there is light
+    /// on it, times two to the power of `exposure_ev`.
+    ///
+    /// Pixels without light are left out: nothing comes from below the horizon of an overcast sky. So is the rain: drops
+    /// before darkness are many, and not what a picture is exposed for.
+    #[must_use]
+    pub fn exposure(&self, clean: &[[f32; 4]]) -> f32 {
+        let luminance = |&[r, g, b, _]: &[f32; 4]| tone_luminance(Vec3::new(r, g, b));
+        let (sum, count) = clean
+            .iter()
+            .map(luminance)
+            .filter(|y| y.is_finite() && *y > 0.0)
+            .fold((0.0f64, 0u32), |(sum, count), y| (sum + f64::from(y), count + 1));
+        let least = (sum / f64::from(count.max(1))) as f32 * UNLIT;
+        let lit: Vec<[f32; 4]> = clean.iter().filter(|pixel| luminance(pixel) > least).copied().collect();
+        tone_automatic_exposure(&lit) * downpour_math::ops::exp2(self.exposure_ev)
+    }
+
+    /// Memory of the buffers, in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let data = &self.data;
+        [
+            size_of_val(&data.nodes[..]),
+            size_of_val(&data.triangles[..]),
+            size_of_val(&data.corners[..]),
+            size_of_val(&data.table[..]),
+            size_of_val(&data.texels[..]),
+            size_of_val(&data.sky[..]),
+        ]
+        .into_iter()
+        .map(|bytes| bytes as u64)
+        .sum()
+    }
+}
+
+/// What buffers are relative to, for an eye at a place.
+fn origin_near(eye: DVec3) -> DVec3 {
+    if eye.abs().max_element() > NEAR_ORIGIN_M { eye.round() } else { DVec3::ZERO }
+}
+
+/// Distances from the eye between which drops are drawn, m.
+fn depth(weather: &Weather, seen: Option<&Seen>) -> [f64; 2] {
+    let near = weather.camera.near.or_else(|| seen?.near).unwrap_or(weather::NEAR_M);
+    let far = weather.camera.far.or_else(|| seen?.far).unwrap_or(weather::FAR_M);
+    [near, far]
+}
+
+/// The part of space that a picture shows.
+fn view_of(
+    viewpoint: &Viewpoint,
+    origin: DVec3,
+    size: [u32; 2],
+    depth: [f64; 2],
+    shutter_s: f64,
+    motion: &EyeMotion,
+) -> Result<View, RenderError> {
+    let PictureEdge { right, up, forward, half_width, half_height } = PictureEdge::new(viewpoint, size)?;
+    let usual = View::default();
+    // The drops that a picture can resolve end before the scene does.
+    let near = depth[0].min(1000.0);
+    let far = usual.far.min(depth[1]).max(near);
+    Ok(View {
+        eye: origin + viewpoint.eye.as_dvec3(),
+        right,
+        up,
+        forward,
+        half_width,
+        half_height,
+        pixel_angle: 2.0 * half_height / f64::from(size[1]),
+        near,
+        far,
+        shutter_s: shutter_s.clamp(0.0, LONGEST_EXPOSURE_S),
+        velocity: motion.velocity.as_dvec3(),
+        turning: motion.turning.as_dvec3(),
+        ..usual
+    })
+}
+
+/// How the eye moves at a time: from where it is when the shutter opens and closes.
+fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
+    let moves = match &weather.camera.path {
+        Some(path) => !path.is_still(),
+        None => loaded.is_animated(),
+    };
+    if !moves {
+        return EyeMotion::default();
+    }
+    let apart_s = weather.camera.shutter.max(LEAST_APART_S);
+    let at = |half: f64| {
+        let time_s = time_s + half * apart_s;
+        Seen::of(weather, loaded, &posed(loaded, time_s), time_s)
+    };
+    match (at(-0.5), at(0.5)) {
+        (Some(before), Some(after)) => Seen::motion(&before, &after, apart_s),
+        _ => EyeMotion::default(),
+    }
+}
+
+/// Where everything is when all movements that play have run for a time.
+fn posed(loaded: &Loaded, time_s: f64) -> Pose {
+    let play = |&animation: &usize| {
+        // Days have too many seconds for single precision; a round of a movement has not.
+        let length = loaded.scene.animations.get(animation).map_or(0.0, |a| f64::from(a.length_s()));
+        let time = if length > 0.0 { time_s.rem_euclid(length) } else { 0.0 };
+        Play { animation, time_s: time as f32 }
+    };
+    let plays: Vec<Play> = loaded.animations.iter().flatten().map(play).collect();
+    loaded.scene.pose_of(&plays)
+}
+
+/// Refuses what would take the machine away.
+fn check_cost(loaded: &Loaded, pose: &Pose) -> Result<(), StageError> {
+    let of = |mesh: usize| -> u64 {
+        let parts = loaded.scene.meshes.get(mesh).map_or(&[][..], |mesh| &mesh.primitives);
+        parts.iter().map(|part| part.indices.len() as u64 / 3).sum()
+    };
+    let triangles: u64 = pose.instances.iter().map(|instance| of(instance.mesh)).sum();
+    if triangles > MOST_TRIANGLES {
+        return Err(StageError::OverLimit {
+            quantity: "triangles of the scene, all copies counted",
+            found: triangles,
+            most: MOST_TRIANGLES,
+            way_out: "fewer copies, or simpler models",
+        });
+    }
+    if pose.lights.len() > MOST_LIGHTS {
+        return Err(StageError::OverLimit {
+            quantity: "lamps of the scene, all copies counted",
+            found: pose.lights.len() as u64,
+            most: MOST_LIGHTS as u64,
+            way_out: "fewer copies of models with lamps",
+        });
+    }
+    let bytes = triangles * BYTES_PER_TRIANGLE + sky::bytes(&loaded.sky);
+    let mut room: Vec<u8> = Vec::new();
+    if usize::try_from(bytes).is_ok_and(|bytes| room.try_reserve_exact(bytes).is_ok()) {
+        return Ok(());
+    }
+    Err(StageError::Memory { mebibytes: bytes >> 20 })
+}
+
+/// The middle of all that there is.
+fn middle(loaded: &Loaded, pose: &Pose) -> DVec3 {
+    let bounds = pose.bounds(&loaded.scene);
+    if bounds.is_empty() { DVec3::ZERO } else { (bounds.min.as_dvec3() + bounds.max.as_dvec3()) * 0.5 }
+}

@@ -1,0 +1,52 @@
+//! What can be wrong with a weather that is to be a picture.
+
+use downpour_render::RenderError;
+
+/// Why there is no stage for a weather.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StageError {
+    /// The picture cannot be made.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The scene is larger than a renderer takes.
+    #[error("{quantity}: {found}; allowed: at most {most} ({way_out})")]
+    OverLimit {
+        /// Of what there is too much.
+        quantity: &'static str,
+        /// How much there is.
+        found: u64,
+        /// The most.
+        most: u64,
+        /// What the user may do about it.
+        way_out: &'static str,
+    },
+    /// A moving eye is too far from where it began: places there have too few digits.
+    #[error(
+        "camera: {distance_m} m from where the scene was set; allowed: a way within 1 km of its beginning"
+    )]
+    TooFar {
+        /// Largest distance along an axis.
+        distance_m: f64,
+    },
+    /// The machine has not the memory that the scene needs.
+    #[error(
+        "the scene: {mebibytes} MiB of memory are needed; allowed: what this machine has (fewer copies need less)"
+    )]
+    Memory {
+        /// How much would be needed.
+        mebibytes: u64,
+    },
+}
+
+impl StageError {
+    /// The exit code of the command for this error: 3 over a limit, 2 other bad input.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Render(error) => error.exit_code(),
+            Self::TooFar { .. } => 2,
+            _ => 3,
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! The light of pictures: of the sky by its map, of what mirrors show, of rooms, of lamps under water, and its noise.
+
+use downpour_drop::optics::optics_fresnel;
+use downpour_math::ops::f64 as exact;
+use downpour_math::rng::{rng_pcg4d, rng_unit};
+use downpour_render::camera::Viewpoint;
+use downpour_render::light::LightSource;
+use downpour_render::picture::noise_seed;
+use downpour_shaders::render::scene::SCENE_UNLIT;
+use downpour_trace::builder::{MeshPart, SceneBuilder};
+use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::material::MaterialLook;
+use downpour_trace::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
+use downpour_trace::scene::SceneView;
+use downpour_trace::sky_light::SkyLight;
+use glam::{Affine3A, DVec3, Vec2, Vec3};
+
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+/// A material of one diffuse albedo and nothing else.
+fn diffuse(albedo: f32) -> MaterialLook {
+    MaterialLook {
+        base_colour: [albedo, albedo, albedo, 1.0],
+        roughness: 1.0,
+        ior: 1.0,
+        ..MaterialLook::default()
+    }
+}
+
+/// A square by its middle and half its edges; its front is towards their cross product.
+fn square(builder: &mut SceneBuilder, material: u32, middle: Vec3, across: Vec3, along: Vec3) {
+    let positions = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+        .map(|(x, y)| (middle + across * x + along * y).to_array());
+    let part = MeshPart {
+        positions: &positions,
+        normals: None,
+        tangents: None,
+        uvs: [None, None],
+        colours: None,
+        indices: &[0, 1, 2, 0, 2, 3],
+        material,
+    };
+    builder.add_mesh(&part, &Affine3A::IDENTITY);
+}
+
+/// A picture from an eye towards a place.
+fn picture(
+    scene: &SceneData,
+    eye: Vec3,
+    at: Vec3,
+    fov_y: f32,
+    size: [u32; 2],
+    seed: u64,
+) -> Result<Vec<[f32; 4]>, Box<dyn std::error::Error>> {
+    let up = if (at - eye).normalize().y.abs() > 0.99 { Vec3::X } else { Vec3::Y };
+    let view = Viewpoint { eye, forward: at - eye, up, fov_y };
+    let frame = RenderFrame::new(scene, &view, size, 1, 1, seed)?;
+    Ok(SceneView { data: scene, frame: &frame }.picture())
+}
+
+fn mean(picture: &[[f32; 4]]) -> f64 {
+    picture.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / picture.len() as f64
+}
+
+/// glTF's unlit materials show their base color, whatever lights them.
+#[test]
+fn an_unlit_wall_of_one_is_one() -> Outcome {
+    for (color, metallic) in [(1.0f32, 0.0f32), (0.25, 0.0), (1.0, 1.0)] {
+        let mut builder = SceneBuilder::new();
+        let look = MaterialLook {
+            flags: SCENE_UNLIT,
+            base_colour: [color, color, color, 1.0],
+            metallic,
+            ..MaterialLook::default()
+        };
+        let wall = builder.add_material(look);
+        square(&mut builder, wall, Vec3::ZERO, Vec3::X * 5.0, Vec3::Y * 5.0);
+        builder.add_light(LightSource::Point { position: Vec3::Z, intensity: Vec3::splat(9.0), range: 0.0 });
+        let scene = builder.build(&SkyLight::uniform([3.0; 3]));
+        for pixel in picture(&scene, Vec3::new(0.4, 0.7, 3.0), Vec3::ZERO, 0.5, [8, 8], 1)? {
+            for found in &pixel[..3] {
+                assert!((found - color).abs() < 1.0e-6, "{color}, {metallic}: {pixel:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A sky with a sun of some degrees at 12 degrees over the horizon along +X.
+fn low_sun(width: u32, height: u32) -> Vec<[f32; 3]> {
+    (0..width * height)
+        .map(|i| {
+            let direction = texel(i, width, height).0;
+            let cosine = direction.dot(DVec3::new(0.978_148, 0.207_912, 0.0));
+            let background = 0.3 + 0.2 * direction.y;
+            [(background + if cosine > 0.9962 { 60.0 } else { 0.0 }) as f32; 3]
+        })
+        .collect()
+}
+
+/// The direction of a texel of an equirectangular map, and its solid angle.
+fn texel(i: u32, width: u32, height: u32) -> (DVec3, f64) {
+    use std::f64::consts::{PI, TAU};
+    let (x, y) = (f64::from(i % width), f64::from(i / width));
+    let around = TAU * ((x + 0.5) / f64::from(width) - 0.5);
+    let polar = |row: f64| PI * row / f64::from(height);
+    let (flat, up) = (exact::sin(polar(y + 0.5)), exact::cos(polar(y + 0.5)));
+    let angle = TAU / f64::from(width) * (exact::cos(polar(y)) - exact::cos(polar(y + 1.0)));
+    (DVec3::new(flat * exact::cos(around), up, flat * exact::sin(around)), angle)
+}
+
+/// Faces of every side have the light that the sky's map sends them, towards a low sun and away from it.
+#[test]
+fn faces_have_the_light_of_the_sky_before_them() -> Outcome {
+    let (width, height) = (128, 64);
+    let map = low_sun(width, height);
+    let light = SkyLight::new(width, height, &map);
+    for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::Z, Vec3::new(0.6, 0.64, -0.48)] {
+        let expected: f64 = (0..width * height)
+            .map(|i| {
+                let (direction, angle) = texel(i, width, height);
+                let cosine = direction.dot(normal.as_dvec3()).max(0.0);
+                f64::from(map[i as usize][1]) * cosine * angle
+            })
+            .sum::<f64>()
+            * 0.5
+            / std::f64::consts::PI;
+        let mut builder = SceneBuilder::new();
+        let face = builder.add_material(diffuse(0.5));
+        let across = normal.any_orthonormal_vector();
+        square(&mut builder, face, Vec3::ZERO, across * 4.0, normal.cross(across) * 4.0);
+        let scene = builder.build(&light);
+        let found = mean(&picture(&scene, normal * 2.0 + across * 0.3, Vec3::ZERO, 0.8, [32, 32], 3)?);
+        assert!((found / expected - 1.0).abs() < 0.05, "{normal}: {found}, {expected}");
+    }
+    Ok(())
+}
+
+/// A smooth metal floor shows the wall behind it and the sky over the wall, each where geometry says.
+#[test]
+fn metal_mirrors_what_stands_there() -> Outcome {
+    let mut builder = SceneBuilder::new();
+    let metal =
+        MaterialLook { base_colour: [1.0; 4], metallic: 1.0, roughness: 0.0, ..MaterialLook::default() };
+    let floor = builder.add_material(metal);
+    let unlit =
+        MaterialLook { flags: SCENE_UNLIT, base_colour: [0.7, 0.7, 0.7, 1.0], ..MaterialLook::default() };
+    let wall = builder.add_material(unlit);
+    square(&mut builder, floor, Vec3::ZERO, Vec3::Z * 5.0, Vec3::X * 5.0);
+    // 1 m high, at z = -2.
+    square(&mut builder, wall, Vec3::new(0.0, 0.5, -2.0), Vec3::X * 50.0, Vec3::Y * 0.5);
+    let scene = builder.build(&SkyLight::uniform([0.2; 3]));
+    let (eye, at, size) = (Vec3::new(0.0, 1.0, 2.0), Vec3::new(0.0, 0.0, -0.5), [24, 24]);
+    let view = Viewpoint { eye, forward: at - eye, up: Vec3::Y, fov_y: 0.7 };
+    let frame = RenderFrame::new(&scene, &view, size, 1, 1, 5)?;
+    let view = SceneView { data: &scene, frame: &frame };
+    let (mut of_wall, mut of_sky) = (0, 0);
+    for (i, pixel) in view.picture().iter().enumerate() {
+        let along = view.scene_direction((i % 24) as f32 + 0.5, (i / 24) as f32 + 0.5);
+        if along.y > -0.02 {
+            continue;
+        }
+        let hit = eye + along * (-eye.y / along.y);
+        let height = along.y / along.z * (hit.z + 2.0);
+        if hit.z < -1.9 || (height - 1.0).abs() < 0.1 {
+            continue;
+        }
+        let expected = if height < 1.0 { 0.7 } else { 0.2 };
+        assert!((pixel[1] / expected - 1.0).abs() < 0.02, "{i}, {height}: {pixel:?}");
+        *(if height < 1.0 { &mut of_wall } else { &mut of_sky }) += 1;
+    }
+    assert!(of_wall > 50 && of_sky > 50, "{of_wall}, {of_sky}");
+    Ok(())
+}
+
+/// In a closed room whose walls shine with 1 and throw back half of what they get, all is 1 / (1 - 0.5).
+#[test]
+fn a_closed_room_has_the_light_of_all_its_reflections() -> Outcome {
+    for albedo in [0.3f32, 0.5, 0.7] {
+        let mut builder = SceneBuilder::new();
+        let wall = builder.add_material(MaterialLook { emission: [1.0; 3], ..diffuse(albedo) });
+        for axis in 0..3 {
+            let along = |k: usize| Vec3::AXES[(axis + k) % 3];
+            for side in [-1.0, 1.0] {
+                square(&mut builder, wall, along(0) * side * 2.0, along(1) * 2.0, along(2) * -side * 2.0);
+            }
+        }
+        let scene = builder.build(&SkyLight::uniform([9.0; 3]));
+        let eye = Vec3::new(1.0, 0.5, 1.2);
+        let found = mean(&picture(&scene, eye, Vec3::new(-1.0, -0.6, -1.0), 1.0, [32, 24], 2)?);
+        let expected = 1.0 / (1.0 - f64::from(albedo));
+        assert!((found / expected - 1.0).abs() < 0.05, "{albedo}: {found}, {expected}");
+    }
+    Ok(())
+}
+
+/// Ground of one look from -2 to 2 m, with painted water of one depth on 3 m of it.
+fn puddle(look: MaterialLook, depth: f32, sky: f32, lamp: LightSource) -> SceneData {
+    let mut builder = SceneBuilder::new();
+    let ground = builder.add_material(look);
+    square(&mut builder, ground, Vec3::ZERO, Vec3::Z * 2.0, Vec3::X * 2.0);
+    builder.add_light(lamp);
+    let mut scene = builder.build(&SkyLight::uniform([sky; 3]));
+    let place = Ground { middle: Vec3::ZERO, size: Vec2::splat(3.0), turn: 0.0, reach: 0.5 };
+    let map = PuddleMap::painted(&scene, &place, [4, 4], &[depth; 16]);
+    let water = PuddleLook { extinction: 0.0, ..PuddleLook::default() };
+    scene.lay_puddles(&PuddleRows {
+        puddles: &[(map, water)],
+        shape: (0, 0, 1.0),
+        slopes: &[],
+        shift: Vec3::ZERO,
+    });
+    scene
+}
+
+/// Where light from a lamp that is mirrored by level ground under level water comes out to an eye: along z, by bisection of
+/// Snell's law.
+fn mirrored_at(eye: [f64; 2], lamp: [f64; 2], depth: f64) -> f64 {
+    let reach = |sine: f64| {
+        let tangent = |s: f64| s / (1.0 - s * s).sqrt();
+        [
+            (eye[1] - depth) * tangent(sine),
+            (lamp[1] - depth) * tangent(sine),
+            2.0 * depth * tangent(sine / 1.333),
+        ]
+    };
+    let (mut low, mut high) = (0.0, 1.0 - 1.0e-9);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if reach(middle).iter().sum::<f64>() < eye[0] - lamp[0] { low = middle } else { high = middle }
+    }
+    eye[0] - reach(low)[0]
+}
+
+/// A lamp over smooth ground under water is seen mirrored once, where the refracted light goes, and nowhere else.
+#[test]
+fn a_lamp_has_one_mirror_image_in_a_puddle() -> Outcome {
+    let metal = MaterialLook {
+        base_colour: [0.9, 0.9, 0.9, 1.0],
+        metallic: 1.0,
+        roughness: 0.12,
+        ..MaterialLook::default()
+    };
+    let (eye, position, depth) = (Vec3::new(0.0, 1.0, 2.0), Vec3::new(0.0, 1.2, -2.0), 0.04);
+    let lamp = LightSource::Point { position, intensity: Vec3::splat(10.0), range: 0.0 };
+    let scene = puddle(metal, depth, 0.0, lamp);
+    let view = Viewpoint { eye, forward: -eye, up: Vec3::Y, fov_y: 1.1 };
+    let frame = RenderFrame::new(&scene, &view, [48, 96], 1, 1, 5)?;
+    let view = SceneView { data: &scene, frame: &frame };
+    let (mut sum, mut weighted, mut far) = (0.0, 0.0, 0.0);
+    for (i, pixel) in view.picture().iter().enumerate() {
+        let along = view.scene_direction((i % 48) as f32 + 0.5, (i / 48) as f32 + 0.5);
+        let place = eye + along * ((depth - eye.y) / along.y);
+        if along.y > -0.1 || place.abs().max_element() > 1.45 {
+            continue;
+        }
+        let (light, z) = (f64::from(pixel[1]), f64::from(place.z));
+        sum += light;
+        weighted += light * z;
+        far += if Vec2::new(place.x, place.z).length() > 0.7 { light } else { 0.0 };
+    }
+    let expected = mirrored_at([2.0, 1.0], [-2.0, 1.2], f64::from(depth));
+    assert!((weighted / sum - expected).abs() < 0.12, "{}, {expected}", weighted / sum);
+    assert!(sum > 0.0 && far < 0.05 * sum, "{far} of {sum} is elsewhere");
+    Ok(())
+}
+
+/// The sun on diffuse ground under water: what Fresnel lets in, spread over all directions, thrown back and forth beneath the
+/// surface, and what Fresnel lets out over n squared.
+#[test]
+fn the_sun_lights_ground_under_water_by_fresnels_equations() -> Outcome {
+    for angle in [20.0f32, 50.0] {
+        let (height, flat) = (f64::from(angle).to_radians(), 0.0f64);
+        let (up, aside) = (exact::sin(height) as f32, exact::cos(height + flat) as f32);
+        let direction = Vec3::new(-aside, -up, 0.0);
+        let sun = LightSource::Directional { direction, irradiance: Vec3::splat(5.0) };
+        let scene = puddle(diffuse(0.3), 0.02, 0.0, sun);
+        let found = mean(&picture(&scene, Vec3::new(0.0, 3.0, 0.02), Vec3::ZERO, 0.01, [4, 4], 1)?);
+        let enters = f64::from(1.0 - optics_fresnel(up, 1.333));
+        let leaves = 1.0 - 0.020_37;
+        let expected = leaves * enters * 0.3 / (1.776_889 * (1.0 - 0.3 * 0.474_591)) * 5.0 * f64::from(up)
+            / std::f64::consts::PI;
+        assert!((found / expected - 1.0).abs() < 0.02, "{angle}: {found}, {expected}");
+    }
+    Ok(())
+}
+
+/// What two rows of numbers have in common, -1 to 1.
+fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let [ab, aa, bb] = pairs.fold([0.0; 3], |[ab, aa, bb], (a, b)| [ab + a * b, aa + a * a, bb + b * b]);
+    ab / (aa * bb).sqrt()
+}
+
+/// The noise of rippled water has no pattern of the filter's size, and each time has a noise of its own.
+#[test]
+fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
+    let sky: Vec<[f32; 3]> = (0..64 * 32)
+        .map(|i| [if rng_unit(rng_pcg4d([i / 4, 1, 2, 3])[0]) < 0.3 { 4.0 } else { 0.2 }; 3])
+        .collect();
+    let mut builder = SceneBuilder::new();
+    let ground = builder.add_material(diffuse(0.05));
+    square(&mut builder, ground, Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0);
+    let mut scene = builder.build(&SkyLight::new(64, 32, &sky));
+    let place = Ground { middle: Vec3::ZERO, size: Vec2::splat(7.0), turn: 0.0, reach: 0.5 };
+    let map = PuddleMap::painted(&scene, &place, [4, 4], &[0.03; 16]);
+    let finest = (0..128 * 128u32).map(|i| {
+        let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| 0.3 * (rng_unit(word) - 0.5));
+        [a, b, a * a + b * b, 0.0]
+    });
+    scene.lay_puddles(&PuddleRows {
+        puddles: &[(map, PuddleLook::default())],
+        shape: (128, 7, 0.002),
+        slopes: &slope_levels(finest.collect(), 128),
+        shift: Vec3::ZERO,
+    });
+    let (width, height) = (72usize, 56usize);
+    let of_time = |k: u32| -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+        let seed = noise_seed(9, f64::from(k) / 24.0);
+        let found = picture(
+            &scene,
+            Vec3::new(0.0, 1.4, 2.6),
+            Vec3::new(0.0, 0.0, 0.4),
+            0.6,
+            [width as u32, height as u32],
+            seed,
+        )?;
+        Ok(found.iter().map(|pixel| f64::from(pixel[1])).collect())
+    };
+    let pictures = (0..10).map(of_time).collect::<Result<Vec<_>, _>>()?;
+    let truth: Vec<f64> =
+        (0..width * height).map(|i| pictures[2..].iter().map(|p| p[i]).sum::<f64>() / 8.0).collect();
+    let noise = |k: usize, x: usize, y: usize| pictures[k][y * width + x] - truth[y * width + x];
+    let places = || (0..height - 8).flat_map(|y| (0..width - 8).map(move |x| (x, y)));
+    // The mean of eight has an eighth of the noise, which both share.
+    let in_time = correlation(places().map(|(x, y)| (noise(0, x, y), noise(1, x, y))));
+    assert!(in_time.abs() < 0.35, "frames share noise: {in_time}");
+    let lag =
+        |dx: usize, dy: usize| correlation(places().map(|(x, y)| (noise(0, x, y), noise(0, x + dx, y + dy))));
+    for (name, lags) in
+        [("across", [lag(6, 0), lag(7, 0), lag(8, 0)]), ("down", [lag(0, 6), lag(0, 7), lag(0, 8)])]
+    {
+        let more = lags[1] - 0.5 * (lags[0] + lags[2]);
+        assert!(more < 0.1, "{name}: {lags:?}");
+    }
+    assert_eq!(noise_seed(9, 0.5), noise_seed(9, 0.5));
+    assert_ne!(noise_seed(9, 0.5), noise_seed(8, 0.5));
+    Ok(())
+}

@@ -1,0 +1,433 @@
+//! Rain that is not drawn drop by drop: what it takes out and what it scatters, held against integrals that are written here.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_math::ops::f64 as ops;
+use downpour_render::camera::Viewpoint;
+use downpour_render::light::LightSource;
+use downpour_render::picture::PictureOptions;
+use downpour_render::rain::light::DropLightOptions;
+use downpour_render::rain::{DropMasks, Exposure, MediumOptions, Rain, RainMedium, RainOptions, StreakTable};
+use downpour_sim::field::RainField;
+use downpour_sim::resolved::{Region, Resolved};
+use downpour_sim::view::View;
+use downpour_trace::builder::{MeshPart, SceneBuilder};
+use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::environment::trace_environment;
+use downpour_trace::picture::render_picture;
+use downpour_trace::scene::SceneView;
+use downpour_trace::sky_light::SkyLight;
+use glam::{Affine3A, DVec3, Vec3};
+
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+/// Simpson's rule.
+fn integral(low: f64, high: f64, steps: u32, f: impl Fn(f64) -> f64) -> f64 {
+    let width = (high - low) / f64::from(2 * steps);
+    (0..=2 * steps)
+        .map(|k| {
+            let weight = if k == 0 || k == 2 * steps { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
+            weight * f(low + width * f64::from(k))
+        })
+        .sum::<f64>()
+        * width
+        / 3.0
+}
+
+/// Terminal speed of E. Brandes et al. 2002, m/s, of a diameter in mm.
+fn brandes(mm: f64) -> f64 {
+    -0.1021 + mm * (4.932 + mm * (-0.9551 + mm * (0.07934 - mm * 0.002362)))
+}
+
+/// Drops per m^3 and mm, by diameter in mm, of Marshall & Palmer's law, scaled until they carry the rate.
+fn marshall_palmer(rate: f64) -> impl Fn(f64) -> f64 {
+    let slope = 4.1 * ops::pow(rate, -0.21);
+    let carried = 6.0e-4 * PI * integral(0.1, 8.0, 400, |d| ops::exp(-slope * d) * brandes(d) * d * d * d);
+    move |d| rate / carried * ops::exp(-slope * d)
+}
+
+/// What drops cover of a level path, per m: ellipsoids of revolution with the axis ratio of M. Thurai et al. 2007.
+fn covered(rate: f64) -> f64 {
+    let count = marshall_palmer(rate);
+    let ratio = |d: f64| {
+        if d < 1.5 {
+            1.17 - 0.516 * d + 0.47 * d * d - 0.132 * d * d * d - 8.5e-3 * d * d * d * d
+        } else {
+            1.065 - 6.25e-2 * d - 3.99e-3 * d * d + 7.66e-4 * d * d * d - 4.095e-5 * d * d * d * d
+        }
+    };
+    // Seen from the side an oblate drop of the volume of a sphere covers the third root of its axis ratio.
+    let outline = |d: f64| if d < 0.7 { 1.0 } else { ops::cbrt(ratio(d)) };
+    integral(0.1, 8.0, 400, |d| count(d) * PI / 4.0 * d * d * 1.0e-6 * outline(d))
+}
+
+/// Cross-section of a sphere of water by scattering angle over that of its disc, 1/sr: orders 0 to 3 of geometric optics, from
+/// rays that are spread evenly over the disc and counted in `BINS` intervals of the angle.
+fn phase() -> Vec<f64> {
+    const BINS: usize = 90;
+    let (rays, index) = (100_000, 1.3330);
+    let mut bins = vec![0.0; BINS];
+    for k in 0..rays {
+        let b = ((f64::from(k) + 0.5) / f64::from(rays)).sqrt();
+        let (i, r) = (ops::asin(b), ops::asin(b / index));
+        let (ci, cr) = (ops::cos(i), ops::cos(r));
+        let amplitudes = [(ci - index * cr) / (ci + index * cr), (index * ci - cr) / (index * ci + cr)];
+        for order in 0..4 {
+            let share: f64 = amplitudes
+                .iter()
+                .map(|a| {
+                    let reflected = a * a;
+                    let within = (1..order).fold((1.0 - reflected) * (1.0 - reflected), |s, _| s * reflected);
+                    0.5 * if order == 0 { reflected } else { within }
+                })
+                .sum();
+            let turn = 2.0 * i - 2.0 * f64::from(order) * r + (f64::from(order) - 1.0) * PI;
+            let angle = ops::acos(ops::cos(turn).clamp(-1.0, 1.0));
+            bins[((angle / PI * BINS as f64) as usize).min(BINS - 1)] += share / f64::from(rays);
+        }
+    }
+    for (k, bin) in bins.iter_mut().enumerate() {
+        let edge = |k: usize| ops::cos(k as f64 * PI / BINS as f64);
+        *bin /= 2.0 * PI * (edge(k) - edge(k + 1));
+    }
+    bins
+}
+
+/// Single scattering of a lamp of intensity 1 along a ray up to a distance, for drops that all take part.
+fn scattered(phase: &[f64], sigma: f64, lamp: DVec3, direction: DVec3, distance: f64) -> f64 {
+    let nearest = lamp.dot(direction);
+    let h = (lamp - direction * nearest).length();
+    // s = nearest + h tan t: ds / r^2 = dt / h.
+    let at = |s: f64| ops::atan((s - nearest) / h);
+    integral(at(0.0), at(distance), 200, |t| {
+        let s = nearest + h * ops::tan(t);
+        let bin = ((t + FRAC_PI_2) / PI * phase.len() as f64) as usize;
+        phase[bin.min(phase.len() - 1)] * sigma * ops::exp(-sigma * s) / h
+    })
+}
+
+fn view(fov_y: f32) -> Viewpoint {
+    Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y }
+}
+
+/// A wall across the view at a distance, black; and lamps.
+fn walled(distance: f32, lights: &[LightSource], sky: [f32; 3]) -> SceneData {
+    screened(distance, 40.0 * distance, lights, sky)
+}
+
+/// The same, so many meters to each side.
+fn screened(distance: f32, edge: f32, lights: &[LightSource], sky: [f32; 3]) -> SceneData {
+    let mut builder = SceneBuilder::new();
+    let corners = [
+        [-edge, -edge, -distance],
+        [edge, -edge, -distance],
+        [edge, edge, -distance],
+        [-edge, edge, -distance],
+    ];
+    add(&mut builder, &corners);
+    for light in lights {
+        builder.add_light(*light);
+    }
+    builder.build(&SkyLight::uniform(sky))
+}
+
+fn add(builder: &mut SceneBuilder, corners: &[[f32; 3]; 4]) {
+    let black =
+        downpour_trace::material::MaterialLook { base_colour: [0.0, 0.0, 0.0, 1.0], ..Default::default() };
+    let material = builder.add_material(black);
+    let part = MeshPart {
+        positions: corners,
+        normals: None,
+        tangents: None,
+        uvs: [None, None],
+        colours: None,
+        indices: &[0, 1, 2, 0, 2, 3],
+        material,
+    };
+    builder.add_mesh(&part, &Affine3A::IDENTITY);
+}
+
+/// Masks of all drops, traced once for all tests.
+fn masks() -> &'static DropMasks {
+    static MASKS: std::sync::OnceLock<DropMasks> = std::sync::OnceLock::new();
+    MASKS.get_or_init(|| DropMasks::trace(1.333).expect("masks"))
+}
+
+/// Everything unresolved.
+fn nothing_drawn() -> Resolved {
+    Resolved {
+        near: 0.05,
+        far: 50.0,
+        pixel_angle: 1.0e-3,
+        least_pixels: 0.4,
+        least_diameter: 1.0,
+        region: Region::Everywhere,
+    }
+}
+
+/// The layer of the medium alone: light of the rain, and transmittance.
+fn layer(
+    scene: &SceneData,
+    seen: &Viewpoint,
+    size: [u32; 2],
+    medium: RainMedium,
+    masks: &DropMasks,
+) -> Vec<[f32; 4]> {
+    let options = RainOptions { medium, capture_size: 64, ..RainOptions::default() };
+    let frame = RenderFrame::new(scene, &seen, size, 1, 0, 3).expect("a frame");
+    let rain = Rain::new(&frame.camera(), seen.eye.as_dvec3(), &[], masks, &options);
+    let view = SceneView { data: scene, frame: &frame };
+    let clean = view.picture();
+    let capture = trace_environment(scene, &frame, &rain.environment);
+    let lights = rain.lights(&view, masks).expect("lamps");
+    let medium = rain.medium_light(&lights).layer(&clean);
+    let table: StreakTable = rain.streak_table(masks, &capture, &[]);
+    rain.layer(&clean, masks, &capture, &table, &[], &medium)
+}
+
+fn law(rate: f64) -> DropSizeDistribution {
+    DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate).expect("a rain")
+}
+
+/// A path through drops of which none is drawn keeps what they do not cover.
+#[test]
+fn unresolved_drops_take_out_what_they_cover() -> Outcome {
+    let masks = masks();
+    for (rate, distance) in [(5.0, 40.0), (25.0, 20.0), (100.0, 20.0), (100.0, 600.0)] {
+        let medium = RainMedium::new(&law(rate), &nothing_drawn(), masks, &MediumOptions::default())?;
+        let scene = walled(distance as f32, &[], [1.0; 3]);
+        let layer = layer(&scene, &view(0.02), [4, 2], medium, masks);
+        let expected = covered(rate) * distance;
+        let found = -ops::ln(f64::from(layer[5][3]));
+        assert!((found / expected - 1.0).abs() < 0.015, "{rate} mm/h, {distance} m: {found}, not {expected}");
+    }
+    Ok(())
+}
+
+/// Drops in a box are drawn; beyond it all of them are unresolved, and within it those that are too small.
+#[test]
+fn what_a_region_leaves_out_is_unresolved() -> Outcome {
+    let masks = masks();
+    let (rate, distance) = (50.0, 30.0);
+    let large = integral(2.0, 8.0, 300, |d| marshall_palmer(rate)(d) * d * d)
+        / integral(0.1, 8.0, 400, |d| marshall_palmer(rate)(d) * d * d);
+    let region = Region::Box { center: DVec3::new(0.0, 0.0, -4.0), size: DVec3::splat(10.0) };
+    // Everything from 2 mm on is drawn in the box, which the ray leaves after 9 m.
+    let resolved =
+        Resolved { near: 1.0e-9, least_pixels: 1.0e-6, least_diameter: 2.0e-3, region, ..nothing_drawn() };
+    let medium = RainMedium::new(&law(rate), &resolved, masks, &MediumOptions::default())?;
+    let scene = walled(distance as f32, &[], [1.0; 3]);
+    let found = -ops::ln(f64::from(layer(&scene, &view(0.02), [4, 2], medium, masks)[5][3]));
+    let expected = covered(rate) * (distance - large * 9.0);
+    assert!((found / expected - 1.0).abs() < 0.02, "{found}, not {expected}");
+    let rate_of_small = integral(0.1, 2.0, 300, |d| marshall_palmer(rate)(d) * brandes(d) * d * d * d)
+        / integral(0.1, 8.0, 400, |d| marshall_palmer(rate)(d) * brandes(d) * d * d * d);
+    let told = medium.unresolved_rate_mm_h() / rate;
+    assert!((told / rate_of_small - 1.0).abs() < 0.03, "{told}, not {rate_of_small}");
+    Ok(())
+}
+
+/// Lamps light unresolved drops as an integral over the ray says, at every angle.
+#[test]
+fn unresolved_drops_scatter_lamps_as_single_scattering_says() -> Outcome {
+    let masks = masks();
+    let (rate, distance) = (25.0, 30.0);
+    let phase = phase();
+    let size = [16u32, 12];
+    for lamp in [DVec3::new(1.0, 2.0, -12.0), DVec3::new(-3.0, 0.5, -4.0), DVec3::new(0.7, 1.0, 2.0)] {
+        let position = lamp.as_vec3();
+        let light = LightSource::Point { position, intensity: Vec3::splat(1000.0), range: 0.0 };
+        let scene = walled(distance as f32, &[light], [0.0; 3]);
+        let medium = RainMedium::new(&law(rate), &nothing_drawn(), masks, &MediumOptions::default())?;
+        let seen = view(0.9);
+        let layer = layer(&scene, &seen, size, medium, masks);
+        let half = ops::tan(0.45);
+        let (mut sum, mut of_truth) = (0.0, 0.0);
+        for (i, pixel) in layer.iter().enumerate() {
+            let x = f64::from(i as u32 % size[0]) + 0.5;
+            let y = f64::from(i as u32 / size[0]) + 0.5;
+            let [u, v] = [x / 8.0 - 1.0, 1.0 - y / 6.0];
+            let direction = DVec3::new(u * half * 16.0 / 12.0, v * half, -1.0);
+            let far = distance * direction.length();
+            let direction = direction.normalize();
+            let expected = 1000.0 * scattered(&phase, covered(rate), lamp, direction, far);
+            let found = f64::from(pixel[0] + pixel[1] + pixel[2]) / 3.0;
+            sum += found;
+            of_truth += expected;
+            // Colors of the bows are apart; next to the lamp a pixel is wide.
+            if lamp.normalize().dot(direction) < 0.995 {
+                assert!((found / expected - 1.0).abs() < 0.12, "{lamp}, {x}, {y}: {found}, not {expected}");
+            }
+        }
+        assert!((sum / of_truth - 1.0).abs() < 0.04, "{lamp}: {sum}, not {of_truth}");
+    }
+    Ok(())
+}
+
+/// A lamp behind a wall lights nothing before it, a cone nothing beside it.
+#[test]
+fn shadows_and_cones_keep_light_from_unresolved_drops() -> Outcome {
+    let masks = masks();
+    let medium = RainMedium::new(&law(100.0), &nothing_drawn(), masks, &MediumOptions::default())?;
+    let dark = LightSource::Point {
+        position: Vec3::new(0.0, 0.0, -21.0),
+        intensity: Vec3::splat(1.0e4),
+        range: 0.0,
+    };
+    let behind = layer(&walled(20.0, &[dark], [0.0; 3]), &view(0.8), [24, 16], medium, masks);
+    assert!(behind.iter().all(|pixel| pixel[..3] == [0.0; 3]));
+    // Down from 10 m, 20 degrees wide: on a level ray lit from 10 - 3.64 to 10 + 3.64 m.
+    let spot = LightSource::Spot {
+        position: Vec3::new(0.0, 10.0, -10.0),
+        direction: Vec3::NEG_Y,
+        intensity: Vec3::splat(1.0e4),
+        range: 0.0,
+        inner: 0.34,
+        outer: 0.35,
+    };
+    let lit = |distance: f32| {
+        layer(&screened(distance, 0.5, &[spot], [0.0; 3]), &view(0.002), [3, 3], medium, masks)[4][1]
+    };
+    assert_eq!(lit(6.2), 0.0);
+    assert!(lit(8.0) > 0.0);
+    assert!((lit(14.0) / lit(30.0) - 1.0).abs() < 1.0e-3);
+    // Half of what is lit, but for the angles of scattering.
+    let phase = phase();
+    let part = |low: f64, high: f64| {
+        let angle = |s: f64| ops::atan((s - 10.0) / 10.0) + FRAC_PI_2;
+        integral(angle(low), angle(high), 500, |a| {
+            phase[(a / PI * 90.0) as usize] * ops::exp(-covered(100.0) * 10.0)
+        })
+    };
+    let expected = part(6.4, 10.0) / part(6.4, 13.6);
+    let found = f64::from(lit(10.0) / lit(20.0));
+    assert!((found / expected - 1.0).abs() < 0.05, "{found}, not {expected}");
+    Ok(())
+}
+
+/// Under a roof there is no rain, drawn or not; in front of it there is.
+#[test]
+fn there_is_no_unresolved_rain_under_a_roof() -> Outcome {
+    let masks = masks();
+    let medium = RainMedium::new(&law(100.0), &nothing_drawn(), masks, &MediumOptions::default())?;
+    let transmitted = |roof_end: f32| {
+        let mut builder = SceneBuilder::new();
+        let (low, high) = (-roof_end, 60.0);
+        add(&mut builder, &[[-90.0, 4.0, low], [90.0, 4.0, low], [90.0, 4.0, high], [-90.0, 4.0, high]]);
+        add(
+            &mut builder,
+            &[[-90.0, -90.0, -40.0], [90.0, -90.0, -40.0], [90.0, 90.0, -40.0], [-90.0, 90.0, -40.0]],
+        );
+        let scene = builder.build(&SkyLight::uniform([1.0; 3]));
+        f64::from(layer(&scene, &view(0.05), [8, 6], medium, masks)[27][3])
+    };
+    assert_eq!(transmitted(39.9), 1.0);
+    for roof in [20.0, 10.0, 3.0] {
+        let found = -ops::ln(transmitted(roof)) / covered(100.0);
+        // A slice of the grid is a quarter of its distance.
+        let expected = 40.0 - f64::from(roof);
+        assert!((found - expected).abs() < 0.3 * f64::from(roof), "{roof}: {found} m, not {expected}");
+    }
+    Ok(())
+}
+
+/// Mean over the middle of pictures of one rain: light of the rain, and what it takes out.
+fn middle(
+    scene: &SceneData,
+    fov_deg: f64,
+    lines: u32,
+    rate: f64,
+    seeds: u64,
+) -> Result<[f64; 2], Box<dyn std::error::Error>> {
+    let masks = masks();
+    let fov = fov_deg.to_radians();
+    let (half, inner) = (ops::tan(0.5 * fov), ops::tan(2f64.to_radians()));
+    let mut sums = [0.0; 2];
+    for seed in 0..seeds {
+        let seen = View {
+            half_width: half,
+            half_height: half,
+            pixel_angle: 2.0 * half / f64::from(lines),
+            shutter_s: 0.05,
+            ..View::default()
+        };
+        let visible = RainField::new(&law(rate), seed)?.visible(&seen, 3.0)?;
+        let medium = RainMedium::new(&law(rate), &visible.resolved, masks, &MediumOptions::default())?;
+        let rain = RainOptions {
+            medium,
+            capture_size: 64,
+            light: DropLightOptions::default(),
+            ..RainOptions::default()
+        };
+        let options = PictureOptions { size: [lines, lines], grid: 1, sky_rays: 0, seed, rain };
+        let picture = render_picture(scene, &view(fov as f32), &visible.drops, masks, &options)?;
+        let (mut sum, mut count) = ([0.0; 2], 0.0);
+        for (i, pixel) in picture.rain.iter().enumerate() {
+            let at = |k: u32| ((f64::from(k) + 0.5) / f64::from(lines) * 2.0 - 1.0) * half;
+            let (x, y) = (at(i as u32 % lines), at(i as u32 / lines));
+            if x.abs() < inner && y.abs() < inner {
+                sum[0] += f64::from(pixel[1]);
+                sum[1] += f64::from(1.0 - pixel[3]);
+                count += 1.0;
+            }
+        }
+        sums[0] += sum[0] / count / seeds as f64;
+        sums[1] += sum[1] / count / seeds as f64;
+    }
+    Ok(sums)
+}
+
+/// The mean light of a lamp's glow, and what the rain takes out, whether three drops in a hundred are drawn or nearly all.
+#[test]
+fn the_same_rain_is_as_bright_from_every_view() -> Outcome {
+    let light = LightSource::Point {
+        position: Vec3::new(0.4, 1.6, -12.0),
+        intensity: Vec3::splat(1000.0),
+        range: 0.0,
+    };
+    let scene = walled(20.0, &[light], [0.0; 3]);
+    let phase = phase();
+    let inner = ops::tan(2f64.to_radians());
+    let truth = integral(-inner, inner, 12, |x| {
+        integral(-inner, inner, 12, |y| {
+            let direction = DVec3::new(x, y, -1.0);
+            let lamp = DVec3::new(0.4, 1.6, -12.0);
+            1000.0 * scattered(&phase, covered(50.0), lamp, direction.normalize(), 20.0 * direction.length())
+        })
+    }) / (4.0 * inner * inner);
+    let taken = 1.0 - ops::exp(-covered(50.0) * 20.0);
+    for (fov, lines, seeds) in [(40.0, 60, 2), (40.0, 240, 2), (20.0, 160, 3), (10.0, 160, 4), (4.5, 160, 6)]
+    {
+        let [light, out] = middle(&scene, fov, lines, 50.0, seeds)?;
+        println!(
+            "{fov} degrees, {lines} lines: light {light:.4} of {truth:.4}, taken {out:.4} of {taken:.4}"
+        );
+        assert!((light / truth - 1.0).abs() < 0.08, "{fov} degrees, {lines} lines: {light}, not {truth}");
+        assert!((out / taken - 1.0).abs() < 0.06, "{fov} degrees, {lines} lines: {out}, not {taken}");
+    }
+    Ok(())
+}
+
+/// Drops and medium together vanish in even light, and before the sky, too.
+#[test]
+fn all_of_the_rain_vanishes_in_even_light() -> Outcome {
+    let masks = masks();
+    let seen = View { half_width: 0.4, half_height: 0.4, pixel_angle: 0.8 / 48.0, ..View::default() };
+    let visible = RainField::new(&law(200.0), 1)?.visible(&seen, 3.0)?;
+    let medium = RainMedium::new(&law(200.0), &visible.resolved, masks, &MediumOptions::default())?;
+    let exposure = Exposure { shutter_s: 1.0 / 100.0, ..Exposure::default() };
+    let rain = RainOptions { medium, exposure, capture_size: 64, ..RainOptions::default() };
+    let options = PictureOptions { size: [48, 48], grid: 1, sky_rays: 0, seed: 1, rain };
+    let scene = SceneBuilder::new().build(&SkyLight::uniform([0.25, 0.5, 2.0]));
+    let fov = 2.0 * ops::atan(0.4);
+    let picture = render_picture(&scene, &view(fov as f32), &visible.drops, masks, &options)?;
+    let taken: f64 = picture.rain.iter().map(|pixel| f64::from(1.0 - pixel[3])).sum::<f64>() / 2304.0;
+    assert!(taken > 0.05, "{taken}");
+    for pixel in picture.radiance() {
+        for (found, expected) in pixel.iter().zip([0.25, 0.5, 2.0]) {
+            assert!((found / expected - 1.0).abs() < 2.0e-3, "{pixel:?}");
+        }
+    }
+    Ok(())
+}

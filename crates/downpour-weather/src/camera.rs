@@ -1,0 +1,263 @@
+//! `[camera]`.
+
+use super::fault::Places;
+use super::quantity::{
+    ApertureMm, DepthM, FocusM, FovDeg, In, PersistenceS, PitchDeg, PlaceM, ShutterS, Stops, TurnDeg,
+};
+use super::wind::keys::VectorKeys;
+use downpour_math::ops::f64 as ops;
+use downpour_scene::error::SceneError;
+use downpour_wind::Keyed;
+use glam::DVec3;
+use serde::Deserialize;
+
+/// The vertical field of view where neither the file nor the model says one, in radians: 50 degrees.
+pub const FOV_RAD: f64 = 50.0 * std::f64::consts::PI / 180.0;
+
+/// The nearest depth where neither the file nor the model says one, in metres.
+pub const NEAR_M: f64 = 0.05;
+
+/// The farthest depth where neither the file nor the model says one, in metres.
+pub const FAR_M: f64 = 2000.0;
+
+/// Time in which what an eye has seen fades away where the file does not say it, in seconds: the middle of the 60 to 90 ms of
+/// Rousseau 2006, section 5.
+pub const PERSISTENCE_S: f64 = 0.075;
+
+/// Observer of moving drops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Observer {
+    /// A camera: all light that comes while its shutter is open weighs the same.
+    #[default]
+    Camera,
+    /// An eye, which has no shutter: what it has seen fades away evenly, and is gone after the time of its persistence.
+    Eye,
+}
+
+/// The camera, or the eye in its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Position and direction over time; `None` takes the model's own camera.
+    pub path: Option<CameraPath>,
+    /// Vertical field of view in radians; `None` takes the model's, else [`FOV_RAD`].
+    pub fov: Option<f64>,
+    /// The nearest depth that is drawn, in metres; `None` takes the model's, else [`NEAR_M`].
+    pub near: Option<f64>,
+    /// The farthest depth that is drawn, in metres; `None` takes the model's, else [`FAR_M`].
+    pub far: Option<f64>,
+    /// The picture is multiplied by two to this power.
+    pub exposure_ev: f64,
+    /// Observer of the moving drops.
+    pub observer: Observer,
+    /// Time in which light is gathered, in seconds: opening time of a camera's shutter, 0 to 1 (0 freezes the drops), or
+    /// the persistence of an eye, 0.06 to 0.09.
+    pub shutter: f64,
+    /// Diameter of the lens's pupil, in metres; 0: all is in focus.
+    pub aperture: f64,
+    /// The distance in focus, in metres; `None` for the far.
+    pub focus: Option<f64>,
+}
+
+/// Where the eye is and looks. Up is +Y; `forward` is never vertical.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraPose {
+    /// The eye, in metres.
+    pub position: DVec3,
+    /// The unit direction into the middle of the picture.
+    pub forward: DVec3,
+}
+
+/// Where the eye is and looks over time. It stands before its first key and after its last.
+///
+/// ```
+/// use downpour_weather::CameraPath;
+/// use downpour_wind::Keyed;
+/// use glam::DVec3;
+/// let way = Keyed::new(vec![(0.0, DVec3::new(0.0, 1.6, 8.0)), (4.0, DVec3::new(0.0, 1.6, 2.0))])?;
+/// let path = CameraPath::looking_at(way, DVec3::new(0.0, 1.0, -20.0));
+/// assert_eq!(path.at(2.0).position.z, 5.0);
+/// # Ok::<(), downpour_wind::WindError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraPath {
+    position: Keyed<DVec3>,
+    aim: Aim,
+}
+
+/// Aim of an eye.
+#[derive(Clone, Debug, PartialEq)]
+enum Aim {
+    /// A unit direction, always the same.
+    Along(DVec3),
+    /// A place.
+    At(Keyed<DVec3>),
+}
+
+impl CameraPath {
+    /// An eye that looks at a place, m, wherever it is. Where that is straight above or below it, it looks a little aside.
+    #[must_use]
+    pub fn looking_at(position: impl Into<Keyed<DVec3>>, target: impl Into<Keyed<DVec3>>) -> Self {
+        Self { position: position.into(), aim: Aim::At(target.into()) }
+    }
+
+    /// The eye at a time in seconds.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> CameraPose {
+        let position = self.position.at(time_s);
+        let forward = match &self.aim {
+            Aim::Along(forward) => *forward,
+            Aim::At(target) => forward_to(position, target.at(time_s)),
+        };
+        CameraPose { position, forward }
+    }
+
+    /// True if it is the same at all times.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        let aims = if let Aim::At(target) = &self.aim { target.keys().len() } else { 1 };
+        self.position.keys().len() == 1 && aims == 1
+    }
+}
+
+impl From<CameraPose> for CameraPath {
+    /// An eye that stands still.
+    fn from(pose: CameraPose) -> Self {
+        Self { position: pose.position.into(), aim: Aim::Along(pose.forward) }
+    }
+}
+
+/// Whether a way is so near to the vertical that left and right are noise.
+fn is_vertical(way: DVec3) -> bool {
+    ops::hypot(way.x, way.z) <= 1e-4 * way.y.abs() || way.length() < 1e-6
+}
+
+/// The direction from an eye to a place, a little aside where it would be vertical.
+#[expect(clippy::arithmetic_side_effects, reason = "of floats")]
+fn forward_to(eye: DVec3, target: DVec3) -> DVec3 {
+    let way = target - eye;
+    let aside = DVec3::NEG_Z * (1.0e-3 * way.y.abs().max(1.0));
+    if is_vertical(way) { (way + aside).normalize() } else { way.normalize() }
+}
+
+impl Default for Camera {
+    /// The model's own camera, 1/60 s.
+    fn default() -> Self {
+        Self {
+            path: None,
+            fov: None,
+            near: None,
+            far: None,
+            exposure_ev: 0.0,
+            observer: Observer::Camera,
+            shutter: 1.0 / 60.0,
+            aperture: 0.0,
+            focus: None,
+        }
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CameraTable {
+    position_m: Option<VectorKeys<PlaceM>>,
+    look_at_m: Option<VectorKeys<PlaceM>>,
+    yaw_deg: Option<In<TurnDeg>>,
+    pitch_deg: Option<In<PitchDeg>>,
+    fov_deg: Option<In<FovDeg>>,
+    near_m: Option<In<DepthM>>,
+    far_m: Option<In<DepthM>>,
+    exposure_ev: Option<In<Stops>>,
+    observer: Option<Observer>,
+    shutter_s: Option<In<ShutterS>>,
+    persistence_s: Option<In<PersistenceS>>,
+    aperture_mm: Option<In<ApertureMm>>,
+    focus_m: Option<In<FocusM>>,
+}
+
+impl Camera {
+    pub(super) fn checked(table: &CameraTable, places: &Places<'_>) -> Result<Self, SceneError> {
+        let default = Self::default();
+        let (near, far) = (table.near_m.map(|near| near.0), table.far_m.map(|far| far.0));
+        let (nearest, farthest) = (near.unwrap_or(NEAR_M), far.unwrap_or(FAR_M));
+        if nearest >= farthest && (near.is_some() || far.is_some()) {
+            let key = if near.is_some() { "camera.near_m" } else { "camera.far_m" };
+            let found = format!("{nearest} m to {farthest} m");
+            return Err(places.bad(key, found, "near_m below far_m"));
+        }
+        let observer = table.observer.unwrap_or_default();
+        Ok(Self {
+            path: table.path(places)?,
+            fov: table.fov_deg.map(|fov| fov.0.to_radians()),
+            near,
+            far,
+            exposure_ev: table.exposure_ev.map_or(default.exposure_ev, |ev| ev.0),
+            observer,
+            shutter: table.shutter(observer, places)?,
+            aperture: table.aperture_mm.map_or(default.aperture, |pupil| pupil.0 * 1.0e-3),
+            focus: table.focus_m.map(|focus| focus.0),
+        })
+    }
+}
+
+impl CameraTable {
+    /// The time in which light is gathered, s. Refuses the key of the other observer.
+    fn shutter(&self, observer: Observer, places: &Places<'_>) -> Result<f64, SceneError> {
+        match (observer, self.shutter_s, self.persistence_s) {
+            (Observer::Camera, _, Some(_)) => Err(places.bad(
+                "camera.persistence_s",
+                "with a camera, which has a shutter",
+                "shutter_s, or persistence_s with observer = \"eye\"",
+            )),
+            (Observer::Eye, Some(_), _) => Err(places.bad(
+                "camera.shutter_s",
+                "with observer = \"eye\", which has no shutter",
+                "persistence_s, or shutter_s without observer = \"eye\"",
+            )),
+            (Observer::Camera, shutter, None) => Ok(shutter.map_or(Camera::default().shutter, |time| time.0)),
+            (Observer::Eye, None, persistence) => Ok(persistence.map_or(PERSISTENCE_S, |time| time.0)),
+        }
+    }
+
+    fn path(&self, places: &Places<'_>) -> Result<Option<CameraPath>, SceneError> {
+        let given = [
+            ("look_at_m", self.look_at_m.is_some()),
+            ("yaw_deg", self.yaw_deg.is_some()),
+            ("pitch_deg", self.pitch_deg.is_some()),
+        ];
+        let mut turned = given.into_iter().filter_map(|(key, given)| given.then_some(key));
+        let Some(position) = &self.position_m else {
+            return match turned.next() {
+                None => Ok(None),
+                Some(key) => Err(places.bad(
+                    &format!("camera.{key}"),
+                    "without position_m",
+                    "position_m is needed with it",
+                )),
+            };
+        };
+        let position = position.keyed("camera.position_m", places)?;
+        let Some(target) = &self.look_at_m else {
+            let yaw = self.yaw_deg.map_or(0.0, |yaw| yaw.0).to_radians();
+            let pitch = self.pitch_deg.map_or(0.0, |pitch| pitch.0).to_radians();
+            let flat = ops::cos(pitch);
+            let forward = DVec3::new(-flat * ops::sin(yaw), ops::sin(pitch), -flat * ops::cos(yaw));
+            return Ok(Some(CameraPath { position, aim: Aim::Along(forward) }));
+        };
+        if let Some(key) = turned.find(|key| *key != "look_at_m") {
+            let allowed = "look_at_m, or yaw_deg and pitch_deg";
+            return Err(places.bad(&format!("camera.{key}"), "beside look_at_m", allowed));
+        }
+        let target = target.keyed("camera.look_at_m", places)?;
+        let times = position.keys().iter().chain(target.keys().iter()).map(|&(time, _)| time);
+        #[expect(clippy::arithmetic_side_effects, reason = "of floats: both are within 1e7")]
+        let way = |time: f64| target.at(time) - position.at(time);
+        if let Some(time) = times.into_iter().find(|&time| is_vertical(way(time))) {
+            let still = position.keys().len() == 1 && target.keys().len() == 1;
+            let when = if still { String::new() } else { format!(" at {time} s") };
+            let found = format!("is where the eye is, or straight above or below it{when}");
+            return Err(places.bad("camera.look_at_m", found, "a place aside, or yaw_deg and pitch_deg"));
+        }
+        Ok(Some(CameraPath { position, aim: Aim::At(target) }))
+    }
+}

@@ -1,0 +1,110 @@
+//! The file as it is written: tables of keys with units, before it becomes a [`Weather`].
+
+use super::fault::Places;
+use super::glass::GlassTable;
+use super::lamps::{Lamp, LampTable};
+use super::models::{Model, ModelTable};
+use super::puddle::{self, Puddle, PuddleTable};
+use super::quantity::{Exactly, Whole};
+use super::rain::{Rain, RainTable};
+use super::sky::{Sky, SkyTable, SunSource, SunTable};
+use super::streaks::StreaksTable;
+use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
+use super::{Camera, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable};
+use downpour_scene::error::{SceneError, quoted};
+use downpour_scene::uri::{Address, RelativePath, check};
+use serde::Deserialize;
+
+/// The longest path of a file, in bytes.
+const LONGEST_PATH: usize = 4096;
+
+/// All of it.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Tables {
+    rain: RainTable,
+    sky: SkyTable,
+    sun: Option<SunTable>,
+    camera: CameraTable,
+    model: Vec<ModelTable>,
+    light: Vec<LampTable>,
+    wind: Vec<WindTable>,
+    gusts: Option<GustsTable>,
+    turbulence: Option<TurbulenceTable>,
+    wind_field: WindFieldTable,
+    streaks: StreaksTable,
+    glass: Option<GlassTable>,
+    puddle: Vec<PuddleTable>,
+    output: OutputTable,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OutputTable {
+    size: Option<Exactly<Whole<1, 16_384>, 2>>,
+}
+
+/// From text to checked values.
+pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
+    let places = Places::find(text)?;
+    let tables: Tables = toml::from_str(text).map_err(|error| places.refused(&error))?;
+    for (key, count, most) in [
+        ("model", tables.model.len(), MAX_MODELS),
+        ("light", tables.light.len(), MAX_LIGHTS),
+        ("puddle", tables.puddle.len(), MAX_PUDDLES),
+        ("wind", tables.wind.len(), downpour_wind::WIND_PARTS),
+    ] {
+        if count > most {
+            return Err(places.limit(key, format!("{count} times [[{key}]]"), format!("at most {most}")));
+        }
+    }
+    let sky = Sky::checked(&tables.sky, &places)?;
+    let rain = Rain::checked(&tables.rain, &places)?;
+    let streaks = tables.streaks.checked();
+    let drop_model = tables.rain.drop_model(&streaks, &places)?;
+    let default = Weather::default();
+    let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &places))?;
+    puddle::check_all(&puddles, &places)?;
+    Ok(Weather {
+        name: String::new(),
+        glass: tables.glass.map(|glass| glass.checked(&rain, &places)).transpose()?,
+        rain,
+        drop_model,
+        sun: SunSource::checked(tables.sun.as_ref(), &sky, &places)?,
+        sky,
+        camera: Camera::checked(&tables.camera, &places)?,
+        models: numbered(&tables.model, |i, table| Model::checked(i, table, &places))?,
+        lights: numbered(&tables.light, |i, table| Lamp::checked(i, table, &places))?,
+        wind: wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &places)?,
+        wind_box: tables.wind_field.checked(&places)?,
+        streaks,
+        puddles,
+        size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
+    })
+}
+
+/// All entries of a list, or the first fault.
+fn numbered<T, U>(
+    tables: &[T],
+    checked: impl Fn(usize, &T) -> Result<U, SceneError>,
+) -> Result<Vec<U>, SceneError> {
+    tables.iter().enumerate().map(|(i, table)| checked(i, table)).collect()
+}
+
+/// A path that a weather file names: relative, and beneath its folder.
+pub(super) fn path(text: &str, key: &str, places: &Places<'_>) -> Result<RelativePath, SceneError> {
+    if text.len() > LONGEST_PATH {
+        let found = format!("a path of {} bytes", text.len());
+        return Err(places.bad(key, found, format!("at most {LONGEST_PATH} bytes")));
+    }
+    // Unlike an address in glTF, a path here is plain text: a percent sign is one.
+    let allowed = "only relative paths beneath the folder of the weather file or an asset root";
+    match check(&text.replace('%', "%25")) {
+        Ok(Address::File(path)) => Ok(path),
+        Ok(Address::Data { .. }) => Err(places.bad(key, "data in place of a file", allowed)),
+        Err(refused) => {
+            let why = refused.found.rsplit_once("\" ").map_or("is refused", |(_, why)| why);
+            Err(places.bad(key, format!("{} {why}", quoted(text)), allowed))
+        }
+    }
+}

@@ -1,0 +1,352 @@
+//! `[glass]` and `[[glass.wiper]]`: a pane before the camera, and the rain on it.
+
+use super::Rain;
+use super::fault::Places;
+use super::quantity::{
+    AboveM, AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, HighlightMm, In,
+    PaneApertureMm, PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, Share, TurnDeg,
+};
+use super::wind::keys::NumberKeys;
+use downpour_lattice::glass::{
+    GlassAir, GlassContact, GlassError, GlassOptions, GlassRain, GlassWiper, GlassWiperKey, GlassWiperMotion,
+    GlassWornBand,
+};
+use downpour_math::ops::f64 as ops;
+use downpour_scene::error::SceneError;
+use downpour_wind::Keyed;
+use serde::Deserialize;
+
+/// The fastest that drops run on a pane of a weather, m/s.
+const SPEED_LIMIT_M_S: f64 = 0.4;
+
+/// Rows of cells that the lattice takes.
+const MAX_ROWS: u32 = 4096;
+
+/// Keys of a wiper that the lattice takes.
+const LARGEST_RAD: f64 = 7.0;
+
+/// What is in focus.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PaneFocus {
+    /// What is behind the pane, each at its distance: the drops are blurred.
+    #[default]
+    Scene,
+    /// The pane: what is behind it is blurred.
+    Glass,
+}
+
+/// How much light the surfaces of pane and water reflect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PaneFresnel {
+    /// Fresnel's equations.
+    #[default]
+    Exact,
+    /// 0.05 + 0.95 (1 - cos)^4 for the water's surface.
+    #[serde(rename = "tatarchuk-2006")]
+    Tatarchuk2006,
+}
+
+/// What the drops do to light that falls through the pane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PaneShadow {
+    /// They are lenses, whose light comes together behind them and is spread beyond.
+    #[default]
+    Lens,
+    /// Their shadows have highlights in the middle, however far they fall.
+    #[serde(rename = "tatarchuk-2006")]
+    Tatarchuk2006,
+    /// Nothing.
+    None,
+}
+
+/// A pane that goes with the camera: a window or a windshield, the eye inside, rain outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pane {
+    /// From the eye to the pane along the middle of the picture, m.
+    pub distance: f64,
+    /// Tilt from the horizontal, rad: pi/2 is a window; a windshield leans towards the eye.
+    pub tilt: f64,
+    /// Width and height along the pane, m; its middle is in the middle of the picture. `None`: what the picture shows.
+    pub size: Option<[f64; 2]>,
+    /// Edge of a cell, m.
+    pub cell: f64,
+    /// Height of the pane above what is seen of it, m: from there water runs down into it.
+    pub above: f64,
+    /// How fast the air with the rain comes at the pane, m/s, over time.
+    pub speed: Keyed<f64>,
+    /// How long it has rained on the pane before the first picture, s.
+    pub before: f64,
+    /// What is in focus.
+    pub focus: PaneFocus,
+    /// Diameter of the lens, m; 0 has everything in focus.
+    pub aperture: f64,
+    /// How bright it is on the eye's side, as a share of what the scene is round the eye.
+    pub room: f64,
+    /// How much is reflected.
+    pub fresnel: PaneFresnel,
+    /// Diameter, m, of the sphere of water from which on a drop shows lamps and the sun as bright spots: the mass above
+    /// which Tatarchuk & Isidoro 2006 draw highlights. 0: all drops, as optics has it; small ones have small spots.
+    pub highlight: f64,
+    /// Shadows of the drops where light of lamps and the sun falls through the pane.
+    pub shadows: PaneShadow,
+    /// How the glass holds water.
+    pub contact: GlassContact,
+    /// Thickness of the film that water leaves where it has run, m.
+    pub film: f64,
+    /// Drying, mm/h.
+    pub drying_mm_h: f64,
+    /// Seed of all that is random on the pane.
+    pub seed: u64,
+    /// Wipers. The times of their keys are those of the weather; a sweep begins when the rain on the pane begins.
+    pub wipers: Vec<GlassWiper>,
+}
+
+impl Pane {
+    /// Cells along a pane of a size in metres.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, reason = "whole, and within the range of u32")]
+    pub fn cells(&self, size: [f64; 2]) -> [u32; 2] {
+        size.map(|edge| (edge / self.cell).round().clamp(1.0, 1.0e9) as u32)
+    }
+
+    /// Rows of cells above what is seen of the pane, a size in meters; fewer where the lattice would have too many.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, reason = "whole, and within the range of u32")]
+    pub fn rows_above(&self, size: [f64; 2]) -> u32 {
+        let [_, rows] = self.cells(size);
+        ((self.above / self.cell).round().clamp(0.0, 4096.0) as u32).min(MAX_ROWS.saturating_sub(rows))
+    }
+
+    /// The lattice for a pane of which a size in metres is seen, in a rain, from a time in seconds on: its uppermost
+    /// [`Pane::rows_above`] rows are above that. The tick is that of the fastest air.
+    #[must_use]
+    pub fn options(&self, size: [f64; 2], rain: &Rain, begin_s: f64) -> GlassOptions {
+        let fastest = self.speed.keys().iter().fold(0.0, |most: f64, &(_, speed)| most.max(speed));
+        let (rain, air) = self.weather(rain, fastest);
+        let [columns, rows] = self.cells(size);
+        let above = self.rows_above(size);
+        GlassOptions {
+            size: [columns, rows.saturating_add(above)],
+            cell_m: self.cell,
+            tilt_rad: self.tilt,
+            contact: self.contact,
+            rain,
+            air,
+            evaporation_mm_h: self.drying_mm_h,
+            temperature_c: rain.air.temperature_c(),
+            wipers: self
+                .wipers
+                .iter()
+                .map(|wiper| shifted(wiper, begin_s, f64::from(above) * self.cell))
+                .collect(),
+            speed_limit_m_s: SPEED_LIMIT_M_S,
+            seed: self.seed,
+            ..GlassOptions::default()
+        }
+    }
+
+    /// Rain and air on the pane while the air comes at a speed: along the pane flows what of it is parallel to it.
+    #[must_use]
+    pub fn weather(&self, rain: &Rain, speed_m_s: f64) -> (GlassRain, GlassAir) {
+        let along = speed_m_s * ops::cos(self.tilt).max(0.0);
+        let drops = rain.options();
+        (
+            GlassRain {
+                rate_mm_h: rain.rate_mm_h,
+                law: rain.law,
+                diameters_m: [drops.smallest_diameter_m, drops.largest_diameter_m],
+                fall_speed: drops.fall_speed,
+                air: rain.air,
+                towards_m_s: speed_m_s,
+            },
+            GlassAir { speed_m_s: along, ..GlassAir::default() },
+        )
+    }
+}
+
+/// The wiper with its keys in the lattice's own time, and its pivot so many meters lower.
+fn shifted(wiper: &GlassWiper, begin_s: f64, lower: f64) -> GlassWiper {
+    let motion = match &wiper.motion {
+        GlassWiperMotion::Keys(keys) => GlassWiperMotion::Keys(
+            keys.iter().map(|key| GlassWiperKey { time_s: key.time_s - begin_s, ..*key }).collect(),
+        ),
+        sweep @ GlassWiperMotion::Sweep { .. } => sweep.clone(),
+    };
+    let [x, y] = wiper.pivot_m;
+    GlassWiper { motion, pivot_m: [x, y + lower], ..wiper.clone() }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GlassTable {
+    distance_m: Option<In<ReachM>>,
+    tilt_deg: Option<In<PaneTiltDeg>>,
+    size_m: Option<Exactly<In<PaneM>, 2>>,
+    cell_mm: Option<In<CellMm>>,
+    above_m: Option<In<AboveM>>,
+    speed_m_s: Option<NumberKeys<PaneMS>>,
+    before_s: Option<In<BeforeS>>,
+    focus: Option<PaneFocus>,
+    aperture_mm: Option<In<PaneApertureMm>>,
+    room: Option<In<Share>>,
+    fresnel: Option<PaneFresnel>,
+    highlight_mm: Option<In<HighlightMm>>,
+    shadows: Option<PaneShadow>,
+    advancing_deg: Option<In<AdvancingDeg>>,
+    receding_deg: Option<In<RecedingDeg>>,
+    film_um: Option<In<FilmUm>>,
+    drying_mm_h: Option<In<DryingMmH>>,
+    seed: Option<u64>,
+    #[serde(default)]
+    wiper: Vec<WiperTable>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WiperTable {
+    pivot_m: Exactly<In<PivotM>, 2>,
+    inner_m: Option<In<BladeM>>,
+    length_m: In<BladeM>,
+    from_deg: Option<In<TurnDeg>>,
+    to_deg: Option<In<TurnDeg>>,
+    period_s: Option<In<PeriodS>>,
+    angle_deg: Option<NumberKeys<TurnDeg>>,
+    #[serde(default)]
+    worn: Vec<WornTable>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WornTable {
+    from_m: In<BladeM>,
+    to_m: In<BladeM>,
+    leaves: Option<In<Share>>,
+}
+
+impl GlassTable {
+    pub(super) fn checked(&self, rain: &Rain, places: &Places<'_>) -> Result<Pane, SceneError> {
+        let number = |given: Option<f64>, default: f64| given.unwrap_or(default);
+        let contact = GlassContact::default();
+        let pane = Pane {
+            distance: number(self.distance_m.map(|m| m.0), 0.5),
+            tilt: number(self.tilt_deg.map(|deg| deg.0), 90.0).to_radians(),
+            size: self.size_m.map(Exactly::numbers),
+            cell: number(self.cell_mm.map(|mm| mm.0), 0.6) * 1.0e-3,
+            above: number(self.above_m.map(|m| m.0), 0.15),
+            speed: match &self.speed_m_s {
+                Some(keys) => keys.keyed("glass.speed_m_s", places)?,
+                None => 3.0.into(),
+            },
+            before: number(self.before_s.map(|s| s.0), 60.0),
+            focus: self.focus.unwrap_or_default(),
+            aperture: number(self.aperture_mm.map(|mm| mm.0), 4.0) * 1.0e-3,
+            room: number(self.room.map(|share| share.0), 0.1),
+            fresnel: self.fresnel.unwrap_or_default(),
+            shadows: self.shadows.unwrap_or_default(),
+            highlight: number(self.highlight_mm.map(|mm| mm.0), 0.0) * 1.0e-3,
+            contact: GlassContact {
+                advancing_rad: self.advancing_deg.map_or(contact.advancing_rad, |deg| deg.0.to_radians()),
+                receding_rad: self.receding_deg.map_or(contact.receding_rad, |deg| deg.0.to_radians()),
+                ..contact
+            },
+            film: number(self.film_um.map(|um| um.0), 8.0) * 1.0e-6,
+            drying_mm_h: number(self.drying_mm_h.map(|rate| rate.0), 0.0),
+            seed: self.seed.unwrap_or(rain.seed),
+            wipers: Vec::new(),
+        };
+        if pane.contact.receding_rad > pane.contact.advancing_rad {
+            let (low, high) =
+                (pane.contact.receding_rad.to_degrees(), pane.contact.advancing_rad.to_degrees());
+            let found = format!("{low:.4} with an advancing angle of {high:.4}");
+            return Err(places.bad("glass.receding_deg", found, "0 to the advancing angle"));
+        }
+        let Some(size) = pane.size else {
+            if self.wiper.is_empty() {
+                return Ok(pane);
+            }
+            let allowed = "with size_m = [width, height], in which wipers have their places";
+            return Err(places.bad("glass.wiper", "without glass.size_m", allowed));
+        };
+        let [columns, rows] = pane.cells(size);
+        if !(8..=4096).contains(&columns) || !(8..=4096).contains(&rows) {
+            let found = format!("{columns} x {rows} cells of {} mm", pane.cell * 1.0e3);
+            let allowed = "8 to 4096 each way: another size_m or cell_mm";
+            return Err(if columns.max(rows) > 4096 {
+                places.limit("glass.size_m", found, allowed)
+            } else {
+                places.bad("glass.size_m", found, allowed)
+            });
+        }
+        let mut wipers = Vec::new();
+        for (i, table) in self.wiper.iter().enumerate() {
+            let wiper = table.wiper(&format!("glass.wiper[{i}]"), places)?;
+            // Alone, so that what is wrong with it is told with its place.
+            let alone = Pane { wipers: vec![wiper.clone()], above: 0.0, ..pane.clone() };
+            let checked = alone.options(size, rain, 0.0).check();
+            checked.map_err(|error| refused(&format!("glass.wiper[{i}]"), size, &error, places))?;
+            wipers.push(wiper);
+        }
+        Ok(Pane { wipers, ..pane })
+    }
+}
+
+impl WiperTable {
+    fn wiper(&self, path: &str, places: &Places<'_>) -> Result<GlassWiper, SceneError> {
+        let length = self.length_m.0;
+        let motion = match (&self.angle_deg, self.from_deg, self.to_deg, self.period_s) {
+            (Some(keys), None, None, None) => {
+                let keys = keys.keyed(&format!("{path}.angle_deg"), places)?;
+                let key =
+                    |&(time_s, angle): &(f64, f64)| GlassWiperKey { time_s, angle_rad: angle.to_radians() };
+                GlassWiperMotion::Keys(keys.keys().iter().map(key).collect())
+            }
+            (None, Some(from), Some(to), Some(period)) => GlassWiperMotion::Sweep {
+                from_rad: from.0.to_radians().clamp(-LARGEST_RAD, LARGEST_RAD),
+                to_rad: to.0.to_radians().clamp(-LARGEST_RAD, LARGEST_RAD),
+                period_s: period.0,
+            },
+            (Some(_), ..) => {
+                let allowed = "either angle_deg, or from_deg, to_deg and period_s";
+                return Err(places.bad(
+                    &format!("{path}.angle_deg"),
+                    "beside from_deg, to_deg or period_s",
+                    allowed,
+                ));
+            }
+            _ => {
+                let allowed = "from_deg, to_deg and period_s, or angle_deg with keys";
+                return Err(places.bad(path, "no movement", allowed));
+            }
+        };
+        let worn = |band: &WornTable| GlassWornBand {
+            from_m: band.from_m.0,
+            to_m: band.to_m.0,
+            leaves: band.leaves.map_or(0.5, |share| share.0),
+        };
+        Ok(GlassWiper {
+            pivot_m: self.pivot_m.numbers(),
+            inner_m: self.inner_m.map_or(0.15 * length, |m| m.0),
+            outer_m: length,
+            motion,
+            worn: self.worn.iter().map(worn).collect(),
+        })
+    }
+}
+
+/// What is wrong with a wiper though each number is in its own range.
+fn refused(path: &str, size: [f64; 2], error: &GlassError, places: &Places<'_>) -> SceneError {
+    let [width, height] = size;
+    match error {
+        GlassError::WiperOutside { x, y, .. } => {
+            let found = format!("({x}, {y}): the blade never touches the pane of {width} x {height} m");
+            places.bad(&format!("{path}.pivot_m"), found, "a place from which the blade reaches the pane")
+        }
+        GlassError::OutOfRange { quantity, found, unit, allowed } => {
+            places.bad(path, format!("{quantity} {found:.4} {unit}"), *allowed)
+        }
+        error => places.bad(path, error.to_string(), "a wiper in its ranges"),
+    }
+}

@@ -1,0 +1,194 @@
+//! The weather file: what rains, what lights, who looks, and which models stand there.
+//!
+#![doc = include_str!("KEYS.md")]
+//!
+//! In a file, keys carry their units (`rate_mm_h`, `fov_deg`); in a [`Weather`] all is SI but for the names that say
+//! otherwise. Radiance 1 is 1 cd/m^2 where lamps are concerned: a lamp of `I` candela at a distance `r` lights a
+//! surface that faces it with `I / r^2` lux.
+//!
+//! A file has at most 4 MiB and is nested at most 32 deep. What it does not know, it refuses: an unknown key,
+//! with the key that was probably meant. Each error names line, column and key.
+
+#![forbid(unsafe_code)]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::arithmetic_side_effects,
+        clippy::cast_possible_truncation,
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        clippy::unwrap_used,
+    )
+)]
+
+mod camera;
+mod fault;
+mod file;
+mod glass;
+mod lamps;
+mod load;
+mod models;
+mod puddle;
+mod quantity;
+mod rain;
+mod sky;
+mod streaks;
+mod wind;
+mod words;
+
+use downpour_scene::Budget;
+use downpour_scene::beneath::open_named;
+use downpour_scene::error::{SceneError, shown_path};
+use downpour_wind::Wind;
+use std::path::Path;
+
+pub use camera::{Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observer, PERSISTENCE_S};
+pub use downpour_scene::uri::RelativePath;
+pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
+pub use lamps::Lamp;
+pub use load::{Loaded, Roots, load};
+pub use models::{Model, Repeat};
+pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleShape};
+pub use rain::{
+    RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,
+    RainRefraction, RainVolume,
+};
+pub use sky::{Sky, SkySource, SunSource};
+pub use streaks::{StreakLook, Streaks};
+pub use wind::WindBox;
+
+/// The longest weather file, in bytes: 4 MiB.
+pub const MAX_FILE: u64 = 4 << 20;
+
+/// How deep tables and arrays may be nested.
+pub const MAX_DEPTH: u32 = 32;
+
+/// The largest number of entries `[[model]]`.
+pub const MAX_MODELS: usize = 4096;
+
+/// The largest number of entries `[[light]]`.
+pub const MAX_LIGHTS: usize = 1024;
+
+/// The largest number of entries `[[puddle]]`.
+pub const MAX_PUDDLES: usize = 16;
+
+/// What a weather file says, checked: all numbers are finite and in the ranges of [the table](self).
+///
+/// The default is what a bare glTF gets: 10 mm/h by Marshall & Palmer's law under an overcast sky, no sun, the
+/// model's own camera, no wind, 1280 x 720 pixels.
+///
+/// ```
+/// use downpour_weather::Weather;
+/// let text = r#"
+///     [rain]
+///     rate_mm_h = 25
+///     [camera]
+///     position_m = [0, 1.7, 5]
+///     look_at_m = [0, 2, 0]
+///     [[light]]
+///     point = { position_m = [2, 3, 0], intensity_cd = 800 }
+/// "#;
+/// let weather = Weather::parse("storm.toml", text)?;
+/// assert_eq!(weather.rain.rate_mm_h, 25.0);
+///
+/// let error = Weather::parse("storm.toml", "[rain]\nrate_mmh = 25").unwrap_err();
+/// assert!(error.to_string().starts_with(
+///     "storm.toml: line 2, column 1: rain.rate_mmh: unknown key \"rate_mmh\", perhaps rate_mm_h"));
+/// # Ok::<(), downpour_scene::SceneError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weather {
+    /// What messages call the file; empty for the default.
+    pub name: String,
+    /// The rain.
+    pub rain: Rain,
+    /// The model that all drops are drawn as, in place of their own shapes.
+    pub drop_model: Option<RelativePath>,
+    /// The sky.
+    pub sky: Sky,
+    /// Where the sun comes from.
+    pub sun: SunSource,
+    /// The eye.
+    pub camera: Camera,
+    /// Models, in the order of the file.
+    pub models: Vec<Model>,
+    /// Lamps, in the order of the file.
+    pub lights: Vec<Lamp>,
+    /// The wind: parts, gusts, turbulence.
+    pub wind: Wind,
+    /// The box of cells in which the wind is worked out, where it differs from place to place.
+    pub wind_box: WindBox,
+    /// How moving drops are drawn.
+    pub streaks: Streaks,
+    /// A pane before the camera.
+    pub glass: Option<Pane>,
+    /// Water that stands on the ground, in the order of the file.
+    pub puddles: Vec<Puddle>,
+    /// Columns and rows of the picture.
+    pub size: [u32; 2],
+}
+
+impl Default for Weather {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            rain: Rain::default(),
+            drop_model: None,
+            sky: Sky::default(),
+            sun: SunSource::None,
+            camera: Camera::default(),
+            models: Vec::new(),
+            lights: Vec::new(),
+            wind: Wind::default(),
+            wind_box: WindBox::default(),
+            streaks: Streaks::default(),
+            glass: None,
+            puddles: Vec::new(),
+            size: [1280, 720],
+        }
+    }
+}
+
+impl Weather {
+    /// Reads a weather file.
+    ///
+    /// The budget must leave room for the text; nothing of it is spent, since a `Weather` is small.
+    ///
+    /// # Errors
+    /// [`SceneError`]: the file cannot be read (exit code 5), is no regular file, no UTF-8 or no valid weather (2),
+    /// or is too long (3).
+    pub fn read(path: &Path, budget: &mut Budget) -> Result<Self, SceneError> {
+        let name = shown_path(path);
+        let read = || {
+            let file = open_named(path)?;
+            if file.size > MAX_FILE {
+                let found = format!("a file of {} bytes", file.size);
+                return Err(SceneError::limit("", found, format!("at most {MAX_FILE} bytes")));
+            }
+            file.read_all(budget)
+        };
+        let bytes = read().map_err(|error| error.in_file(&name))?;
+        let text = str::from_utf8(&bytes).map_err(|error| {
+            let found = format!("byte {} is not UTF-8", error.valid_up_to());
+            SceneError::bad("", found, "text in UTF-8").in_file(&name)
+        })?;
+        Self::parse(&name, text)
+    }
+
+    /// Reads the text of a weather file; `name` is what messages call it. A byte order mark is passed over.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
+        let parsed = file::parse(text.strip_prefix('\u{feff}').unwrap_or(text));
+        let mut weather = parsed.map_err(|error| error.in_file(name))?;
+        name.clone_into(&mut weather.name);
+        Ok(weather)
+    }
+}
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

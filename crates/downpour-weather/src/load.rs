@@ -1,0 +1,417 @@
+//! All that a weather file names, as one scene, one sky and one sun.
+
+use super::puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, PuddleShape};
+use super::{Lamp, Model, Puddle, SkySource, SunSource, Weather};
+use downpour_math::ops::f64 as ops;
+use downpour_scene::Budget;
+use downpour_scene::beneath::{Files, Folder, OpenFile};
+use downpour_scene::error::SceneError;
+use downpour_scene::gltf::{TriangleModel, read_scene_from_bytes, read_triangles_from_bytes};
+use downpour_scene::picture::{self, Picture};
+use downpour_scene::scene::{Animation, Light, LightKind, Local, Node, Scene};
+use downpour_scene::sky::{self, SUN_THRESHOLD, SkyMap, Sun};
+use downpour_scene::uri::{Address, RelativePath, check};
+use downpour_scene::warning::{Warning, WarningKind, Warnings};
+use glam::{Affine3A, DAffine3, DQuat, DVec3};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::Path;
+
+/// Reflectance of the ground below the horizon of an overcast sky: a usual value for open land.
+const GROUND_ALBEDO: f64 = 0.2;
+
+/// A weather with its files.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// All models with their copies, and the lamps of the file.
+    pub scene: Scene,
+    /// For each model, the animation of `scene` that plays.
+    pub animations: Vec<Option<usize>>,
+    /// The sky, turned and scaled; without the sun, if that was taken out of it.
+    pub sky: SkyMap,
+    /// The sun, if there is one.
+    pub sun: Option<Sun>,
+    /// For each puddle, the picture of its depth if it is painted.
+    pub masks: Vec<Option<Picture>>,
+    /// The model that drops are drawn as, if they have one.
+    pub drop_model: Option<TriangleModel>,
+    /// What was left out or made good, in all files.
+    pub warnings: Vec<Warning>,
+}
+
+impl Loaded {
+    /// True if an animation of a model plays.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        self.animations.iter().any(Option::is_some)
+    }
+}
+
+/// Folders in which the files of a weather are looked for, in this order: its own, then asset roots.
+#[derive(Debug)]
+pub struct Roots(Vec<Folder>);
+
+impl Roots {
+    /// Opens the folder of a weather file, and asset roots that the user has named.
+    ///
+    /// # Errors
+    /// One of them is no folder, or cannot be opened.
+    pub fn open(weather: &Path, asset_roots: &[&Path]) -> Result<Self, SceneError> {
+        let own = weather.parent().unwrap_or(Path::new(""));
+        [own].iter().chain(asset_roots).map(|folder| Folder::open(folder)).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl Files for Roots {
+    fn open(&self, path: &RelativePath) -> Result<OpenFile, SceneError> {
+        let mut first = None;
+        for folder in &self.0 {
+            match folder.open(path) {
+                // Not there: perhaps in the next one. Anything else is the answer.
+                Err(error @ SceneError::Unreadable(_)) => {
+                    first.get_or_insert(error);
+                }
+                other => return other,
+            }
+        }
+        Err(first.unwrap_or_else(|| SceneError::bad("", "no folder to look in", "a folder")))
+    }
+}
+
+/// The files beneath the folder of another file.
+struct Beside<'a> {
+    files: &'a dyn Files,
+    folder: &'a str,
+}
+
+impl Files for Beside<'_> {
+    fn open(&self, path: &RelativePath) -> Result<OpenFile, SceneError> {
+        let joined = format!("{}{}", self.folder, path.as_str());
+        match check(&joined.replace('%', "%25")) {
+            Ok(Address::File(path)) => self.files.open(&path),
+            _ => Err(SceneError::bad("", "a path that does not stay in its folder", "a relative path")),
+        }
+    }
+}
+
+/// Reads all files that a weather names, through `files`: see [`Roots`].
+///
+/// The budget is lowered by what they take up; a copy of a model, be it by `repeat` or by another `[[model]]` of the
+/// same file, costs its nodes and movements only.
+///
+/// # Errors
+/// [`SceneError`] with the name of the file: it cannot be read, is not what Downpour can read, or is too large; or a
+/// model has no animation of the name that the weather gives.
+///
+/// ```no_run
+/// use downpour_scene::Budget;
+/// use downpour_weather::{Roots, Weather, load};
+/// let (path, mut budget) = ("street/storm.toml".as_ref(), Budget::default());
+/// let weather = Weather::read(path, &mut budget)?;
+/// let loaded = load(&weather, &Roots::open(path, &[])?, &mut budget)?;
+/// println!("{} nodes, sun: {}", loaded.scene.nodes.len(), loaded.sun.is_some());
+/// # Ok::<(), downpour_scene::SceneError>(())
+/// ```
+pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result<Loaded, SceneError> {
+    let mut purse = *budget;
+    let mut warnings = Warnings::default();
+    let (mut sky, sun) = lights_of_the_sky(weather, files, &mut purse, &mut warnings)?;
+    let mut scene = Scene { name: weather.name.clone(), ..Scene::default() };
+    let mut animations = Vec::new();
+    let mut known = BTreeMap::new();
+    for model in &weather.models {
+        animations.push(add(&mut scene, model, &mut known, files, &mut purse)?);
+    }
+    for lamp in &weather.lights {
+        purse.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
+        hang(&mut scene, lamp);
+    }
+    let masks = masks(weather, files, &mut purse)?;
+    let drop_model = drop_model(weather, files, &mut purse)?;
+    *budget = purse;
+    let of_drops = drop_model.iter().flat_map(|model| model.warnings.clone()).collect();
+    let warnings =
+        [std::mem::take(&mut sky.warnings), scene.warnings.clone(), of_drops, warnings.finish()].concat();
+    Ok(Loaded { scene, animations, sky, sun, masks, drop_model, warnings })
+}
+
+/// The triangles that drops are drawn as: all of them, or an error.
+fn drop_model(
+    weather: &Weather,
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<Option<TriangleModel>, SceneError> {
+    let Some(file) = &weather.drop_model else { return Ok(None) };
+    let name = file.as_str();
+    let folder = name.rfind('/').and_then(|end| name.get(..=end)).unwrap_or_default();
+    let bytes = files.open(file).and_then(|opened| opened.read_all(budget));
+    let bytes = bytes.map_err(|error| error.in_file(name))?;
+    let model = read_triangles_from_bytes(name, &bytes, &Beside { files, folder }, budget)?.strict()?;
+    Ok(Some(model))
+}
+
+/// The pictures of the depths of painted puddles.
+fn masks(
+    weather: &Weather,
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<Vec<Option<Picture>>, SceneError> {
+    let mut cells = 0;
+    let read = |puddle: &Puddle| {
+        let PuddleShape::Painted(file) = &puddle.shape else { return Ok(None) };
+        let name = file.as_str();
+        let mut read = || {
+            let bytes = files.open(file)?.read_all(budget)?;
+            let mask = picture::decode(name, &bytes, budget)?;
+            let found = format!("a mask of {} x {} pixels", mask.width, mask.height);
+            if mask.width.max(mask.height) > MAX_PUDDLE_CELLS || mask.width.min(mask.height) < 2 {
+                let allowed = format!("2 to {MAX_PUDDLE_CELLS} pixels each way");
+                return Err(SceneError::limit("", found, allowed));
+            }
+            cells = u64::saturating_add(cells, u64::from(mask.width).saturating_mul(u64::from(mask.height)));
+            if cells > MAX_ALL_PUDDLE_CELLS {
+                let found = format!("{cells} pixels in all masks so far");
+                return Err(SceneError::limit("", found, format!("at most {MAX_ALL_PUDDLE_CELLS}")));
+            }
+            Ok(mask)
+        };
+        read().map(Some).map_err(|error| error.in_file(name))
+    };
+    weather.puddles.iter().map(read).collect()
+}
+
+/// The sky and the sun, turned and scaled.
+fn lights_of_the_sky(
+    weather: &Weather,
+    files: &dyn Files,
+    budget: &mut Budget,
+    warnings: &mut Warnings,
+) -> Result<(SkyMap, Option<Sun>), SceneError> {
+    let scale = weather.sky.scale;
+    let scaled = |colour: [f64; 3]| colour.map(|value| narrowed(value * scale));
+    let (mut sky, yaw) = match &weather.sky.source {
+        SkySource::Uniform(colour) => (SkyMap::uniform(scaled(*colour)), 0.0),
+        SkySource::Overcast(zenith) => (SkyMap::overcast(scaled(*zenith)).with_ground(GROUND_ALBEDO), 0.0),
+        SkySource::File { file, yaw } => {
+            let name = file.as_str();
+            let read = |budget: &mut Budget| {
+                let bytes = files.open(file)?.read_all(budget)?;
+                sky::read_sky_from_bytes(name, &bytes, budget)
+            };
+            let mut sky = read(budget).map_err(|error| error.in_file(name))?;
+            for pixel in &mut sky.radiance {
+                *pixel = pixel.map(|value| narrowed(f64::from(value) * scale).min(sky::BRIGHTEST));
+            }
+            (sky, *yaw)
+        }
+    };
+    let mut sun = match weather.sun {
+        SunSource::None => None,
+        SunSource::FromSky | SunSource::FromSkyIfAny => sky.extract_sun(SUN_THRESHOLD),
+        SunSource::Directional { towards, illuminance_lux, color, angular_radius } => {
+            let sun = Sun {
+                direction: towards.map(narrowed),
+                irradiance_rgb: color.map(|part| narrowed(part * illuminance_lux)),
+                angular_radius: narrowed(angular_radius),
+            };
+            return Ok((turned(sky, yaw), Some(sun)));
+        }
+    };
+    if let Some(sun) = &mut sun {
+        let [x, y, z] = sun.direction.map(f64::from);
+        let (s, c) = (ops::sin(yaw), ops::cos(yaw));
+        sun.direction = [c * x + s * z, y, c * z - s * x].map(narrowed);
+    } else if weather.sun == SunSource::FromSky {
+        warnings.add(WarningKind::Ignored, "sun", || "the sky map has no compact bright source".into());
+    }
+    Ok((turned(sky, yaw), sun))
+}
+
+fn turned(sky: SkyMap, yaw: f64) -> SkyMap {
+    if yaw == 0.0 { sky } else { sky.rotated(yaw) }
+}
+
+/// Where the first copy of a file stands in the scene.
+struct Source {
+    nodes: Range<usize>,
+    animations: Range<usize>,
+}
+
+/// Adds a model with its copies. Returns the animation that plays.
+fn add<'a>(
+    scene: &mut Scene,
+    model: &'a Model,
+    known: &mut BTreeMap<&'a str, Source>,
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<Option<usize>, SceneError> {
+    let name = model.file.as_str();
+    let mut places = model.transforms().map(|place| single(&place));
+    let first = places.next().unwrap_or(Affine3A::IDENTITY);
+    let part = match known.get(name) {
+        Some(source) => again(scene, source, first, budget).map_err(|error| error.in_file(name))?,
+        None => {
+            let part = append(scene, model, first, files, budget).map_err(|error| error.in_file(name))?;
+            let source = Source { nodes: part.nodes.clone(), animations: part.animations.clone() };
+            known.insert(name, source);
+            part
+        }
+    };
+    let own = scene.animations.get(part.animations.clone()).unwrap_or_default();
+    let chosen = match &model.animation {
+        None => (!own.is_empty()).then_some(0),
+        Some(wanted) => Some(own.iter().position(|one| one.name == *wanted).ok_or_else(|| {
+            let names: Vec<&str> = own.iter().map(|one| one.name.as_str()).collect();
+            let found = format!("no animation {}", downpour_scene::error::quoted(wanted));
+            SceneError::bad("animations", found, downpour_scene::error::quoted(&names.join(", ")))
+                .in_file(name)
+        })?),
+    };
+    let chosen = chosen.map(|index| index.saturating_add(part.animations.start));
+    let each = copy_bytes(scene, &part);
+    for place in places {
+        let mut take = || {
+            budget.take_bytes(each, "nodes")?;
+            budget.take_nodes(part.nodes.len() as u64, "nodes")
+        };
+        take().map_err(|error| error.in_file(name))?;
+        copy(scene, part.nodes.clone(), part.animations.clone(), place);
+    }
+    Ok(chosen)
+}
+
+/// Reads the file of a model and puts it at a place.
+fn append(
+    scene: &mut Scene,
+    model: &Model,
+    place: Affine3A,
+    files: &dyn Files,
+    budget: &mut Budget,
+) -> Result<Source, SceneError> {
+    let name = model.file.as_str();
+    let folder = name.rfind('/').and_then(|end| name.get(..=end)).unwrap_or_default();
+    let bytes = files.open(&model.file)?.read_all(budget)?;
+    let other = read_scene_from_bytes(name, &bytes, &Beside { files, folder }, budget)?;
+    budget.take_nodes(1, "nodes")?;
+    let (nodes, animations) = (scene.nodes.len(), scene.animations.len());
+    scene.append(other, place);
+    Ok(Source { nodes: nodes..scene.nodes.len(), animations: animations..scene.animations.len() })
+}
+
+/// Puts a file that was read before at another place: its nodes, with movements of their own.
+fn again(
+    scene: &mut Scene,
+    source: &Source,
+    place: Affine3A,
+    budget: &mut Budget,
+) -> Result<Source, SceneError> {
+    budget.take_bytes(copy_bytes(scene, source), "nodes")?;
+    budget.take_nodes(source.nodes.len() as u64, "nodes")?;
+    let (nodes, animations) = (scene.nodes.len(), scene.animations.len());
+    // Those of the first copy alone: its repetitions were added to the same movements.
+    let moved: Vec<Animation> = scene
+        .animations
+        .get(source.animations.clone())
+        .unwrap_or_default()
+        .iter()
+        .map(|animation| {
+            let own = animation.channels.iter().filter(|channel| source.nodes.contains(&channel.node));
+            Animation { name: animation.name.clone(), channels: own.cloned().collect() }
+        })
+        .collect();
+    copy(scene, source.nodes.clone(), 0..0, place);
+    let by = nodes.saturating_sub(source.nodes.start);
+    scene.animations.extend(moved.into_iter().map(|mut animation| {
+        for channel in &mut animation.channels {
+            channel.node = channel.node.saturating_add(by);
+        }
+        animation
+    }));
+    Ok(Source { nodes: nodes..scene.nodes.len(), animations: animations..scene.animations.len() })
+}
+
+/// What a copy takes up, in bytes.
+fn copy_bytes(scene: &Scene, source: &Source) -> u64 {
+    let of = |count: usize, size: usize| (count as u64).saturating_mul(size as u64);
+    let nodes = scene.nodes.get(source.nodes.clone()).unwrap_or_default().iter();
+    let nodes = nodes.map(|node| {
+        let skin = node.skin.and_then(|skin| scene.skins.get(skin));
+        let skin = skin.map_or(0, |skin| of(skin.joints.len(), size_of::<(usize, Affine3A)>()));
+        let lists = of(node.name.len(), 1).saturating_add(of(node.weights.len(), 4)).saturating_add(skin);
+        lists
+            .saturating_add(of(node.children.len(), size_of::<usize>()))
+            .saturating_add(of(1, size_of::<Node>()))
+    });
+    let animations = scene.animations.get(source.animations.clone()).unwrap_or_default();
+    let channels = animations.iter().flat_map(|animation| &animation.channels);
+    let channels = channels.filter(|channel| source.nodes.contains(&channel.node));
+    nodes.chain(channels.map(|channel| channel.track.bytes())).fold(0, u64::saturating_add)
+}
+
+/// Copies the nodes of a model, with the skins and movements that belong to them; the meshes are shared. The last
+/// node of the part is the one that all others hang on.
+fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, place: Affine3A) {
+    let by = scene.nodes.len().saturating_sub(part.start);
+    let mut nodes = scene.nodes.get(part.clone()).unwrap_or_default().to_vec();
+    for node in &mut nodes {
+        node.children.iter_mut().for_each(|child| *child = child.saturating_add(by));
+        if let Some(mut skin) = node.skin.and_then(|skin| scene.skins.get(skin)).cloned() {
+            skin.joints.iter_mut().for_each(|joint| *joint = joint.saturating_add(by));
+            node.skin = Some(scene.skins.len());
+            scene.skins.push(skin);
+        }
+    }
+    if let Some(root) = nodes.last_mut() {
+        root.local = Local::Matrix(place);
+    }
+    scene.nodes.extend(nodes);
+    scene.roots.push(scene.nodes.len().saturating_sub(1));
+    for animation in scene.animations.get_mut(animations).unwrap_or_default() {
+        let moved: Vec<_> =
+            animation.channels.iter().filter(|channel| part.contains(&channel.node)).cloned().collect();
+        animation.channels.extend(moved.into_iter().map(|mut channel| {
+            channel.node = channel.node.saturating_add(by);
+            channel
+        }));
+    }
+}
+
+/// Hangs a lamp into the scene.
+fn hang(scene: &mut Scene, lamp: &Lamp) {
+    let (position, direction, color, intensity, range, kind) = match *lamp {
+        Lamp::Point { position, color, intensity_cd, range } => {
+            (position, DVec3::NEG_Z, color, intensity_cd, range, LightKind::Point)
+        }
+        Lamp::Spot { position, direction, color, intensity_cd, inner, outer, range } => {
+            let kind = LightKind::Spot { inner: narrowed(inner), outer: narrowed(outer) };
+            (position, direction, color, intensity_cd, range, kind)
+        }
+        Lamp::Directional { direction, color, illuminance_lux } => {
+            (DVec3::ZERO, direction, color, illuminance_lux, None, LightKind::Directional)
+        }
+    };
+    let light = scene.lights.len();
+    let intensity = narrowed(intensity);
+    let range = range.map(narrowed);
+    scene.lights.push(Light { name: String::new(), color: color.as_vec3(), intensity, range, kind });
+    // Lights shine along -Z of their node.
+    let rotation = DQuat::from_rotation_arc(DVec3::NEG_Z, direction);
+    let local = Local::Matrix(single(&DAffine3::from_rotation_translation(rotation, position)));
+    scene.roots.push(scene.nodes.len());
+    scene.nodes.push(Node { light: Some(light), local, ..Node::default() });
+}
+
+/// In single precision.
+fn single(place: &DAffine3) -> Affine3A {
+    let [x, y, z] = [place.matrix3.x_axis, place.matrix3.y_axis, place.matrix3.z_axis].map(DVec3::as_vec3a);
+    Affine3A { matrix3: glam::Mat3A::from_cols(x, y, z), translation: place.translation.as_vec3a() }
+}
+
+/// The nearest `f32`, within its range.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding is meant, and what is beyond the range is at its end"
+)]
+fn narrowed(value: f64) -> f32 {
+    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
+}

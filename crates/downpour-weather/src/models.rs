@@ -1,0 +1,123 @@
+//! `[[model]]`.
+
+use super::fault::Places;
+use super::file::path;
+use super::quantity::{Exactly, In, PlaceM, ScaleXyz, TurnDeg, Whole};
+use downpour_math::ops::f64 as ops;
+use downpour_scene::error::SceneError;
+use downpour_scene::uri::RelativePath;
+use glam::{DAffine3, DQuat, DVec3};
+use serde::Deserialize;
+
+/// The largest number of copies of one model.
+const MAX_COPIES: u64 = 65_536;
+
+/// A model and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// The glTF file, beneath the folder of the weather file or an asset root.
+    pub file: RelativePath,
+    /// Where its origin comes to, in metres.
+    pub translation: DVec3,
+    /// How it is turned.
+    pub rotation: DQuat,
+    /// By how much its sides are multiplied.
+    pub scale: DVec3,
+    /// Its copies.
+    pub repeat: Repeat,
+    /// The animation that plays; `None` for the first one.
+    pub animation: Option<String>,
+}
+
+/// Copies on a lattice along the scene's axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repeat {
+    /// How many along x, y and z; each at least 1.
+    pub count: [u32; 3],
+    /// From one to the next, in metres.
+    pub step: DVec3,
+}
+
+impl Default for Repeat {
+    /// The model alone.
+    fn default() -> Self {
+        Self { count: [1; 3], step: DVec3::ZERO }
+    }
+}
+
+impl Model {
+    /// The transform of each copy, x running fastest: scale first, then rotation, then translation.
+    ///
+    /// ```
+    /// use downpour_weather::Weather;
+    /// let text = "[[model]]\nfile = 'a.glb'\nscale = 2\nrepeat = { count = [2, 1, 1], step_m = [5, 0, 0] }";
+    /// let weather = Weather::parse("row.toml", text)?;
+    /// let places: Vec<_> = weather.models[0].transforms().collect();
+    /// assert_eq!(places[1].transform_point3([1.0, 0.0, 0.0].into()), [7.0, 0.0, 0.0].into());
+    /// # Ok::<(), downpour_scene::SceneError>(())
+    /// ```
+    pub fn transforms(&self) -> impl Iterator<Item = DAffine3> + use<'_> {
+        let [nx, ny, nz] = self.repeat.count;
+        (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z]))).map(|place| {
+            #[expect(clippy::arithmetic_side_effects, reason = "of floats: at most 1e7 + 65536 * 1e7")]
+            let moved = self.translation + self.repeat.step * DVec3::from_array(place.map(f64::from));
+            DAffine3::from_scale_rotation_translation(self.scale, self.rotation, moved)
+        })
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelTable {
+    file: String,
+    translation_m: Option<Exactly<In<PlaceM>, 3>>,
+    rotation_deg: Option<Exactly<In<TurnDeg>, 3>>,
+    scale: Option<ScaleXyz>,
+    repeat: Option<RepeatTable>,
+    animation: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RepeatTable {
+    count: Exactly<Whole<1, 65_536>, 3>,
+    step_m: Exactly<In<PlaceM>, 3>,
+}
+
+impl Model {
+    pub(super) fn checked(i: usize, table: &ModelTable, places: &Places<'_>) -> Result<Self, SceneError> {
+        let key = |name: &str| format!("model[{i}].{name}");
+        let repeat = table.repeat.map_or_else(Repeat::default, |repeat| Repeat {
+            count: repeat.count.0.map(|Whole(count)| count),
+            step: DVec3::from_array(repeat.step_m.numbers()),
+        });
+        let copies = repeat.count.iter().map(|&count| u64::from(count)).fold(1, u64::saturating_mul);
+        if copies > MAX_COPIES {
+            let found = format!("{copies} copies");
+            return Err(places.limit(&key("repeat.count"), found, format!("at most {MAX_COPIES}")));
+        }
+        let vector =
+            |given: Option<Exactly<In<PlaceM>, 3>>| given.map_or(DVec3::ZERO, |v| v.numbers().into());
+        Ok(Self {
+            file: path(&table.file, &key("file"), places)?,
+            translation: vector(table.translation_m),
+            rotation: rotation(table.rotation_deg.map_or([0.0; 3], Exactly::numbers)),
+            scale: table.scale.map_or(DVec3::ONE, |ScaleXyz(scale)| scale.into()),
+            repeat,
+            animation: table.animation.clone(),
+        })
+    }
+}
+
+/// About z, then x, then y, in degrees.
+fn rotation([x, y, z]: [f64; 3]) -> DQuat {
+    let half = |degrees: f64| {
+        let angle = degrees.to_radians() / 2.0;
+        (ops::sin(angle), ops::cos(angle))
+    };
+    let ((sx, cx), (sy, cy), (sz, cz)) = (half(x), half(y), half(z));
+    let about_x = DQuat::from_xyzw(sx, 0.0, 0.0, cx);
+    let about_y = DQuat::from_xyzw(0.0, sy, 0.0, cy);
+    let about_z = DQuat::from_xyzw(0.0, 0.0, sz, cz);
+    about_y.mul_quat(about_x).mul_quat(about_z).normalize()
+}

@@ -1,0 +1,549 @@
+//! `[rain]`.
+
+use super::fault::Places;
+use super::file::path;
+use super::quantity::{
+    BoxM, DropSize, Exactly, GammaShape, In, MedianMm, OneMm, PlaceM, PressureHpa, RadiusM, RateMmH, Share,
+    ShortS, TemperatureC, Whole,
+};
+use super::streaks::Streaks;
+use downpour_drop::DropError;
+use downpour_drop::air::Air;
+use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution, DropSizeLaw};
+use downpour_drop::fall_speed::FallSpeedModel;
+use downpour_drop::shape::ShapeTable;
+use downpour_scene::error::SceneError;
+use downpour_scene::uri::RelativePath;
+use serde::Deserialize;
+
+/// Shape of the gamma law where none is given.
+const GAMMA_SHAPE: f64 = 3.0;
+
+/// The lightest rain whose drop sizes differ, in mm/h.
+const LIGHTEST: f64 = downpour_drop::distribution::LIGHTEST_SHAPE_MM_H;
+
+/// Drops of one size differ by this share of their diameter, and at least by so many m.
+const ONE_SHARE: f64 = 1.0e-3;
+const ONE_LEAST_M: f64 = 1.0e-6;
+
+/// The heaviest rain, mm/h.
+const HEAVIEST_MM_H: f64 = 500.0;
+
+/// Side of a box of rain where the weather does not say, m.
+pub const RAIN_BOX_M: f64 = 10.0;
+
+/// Drops that are simulated where the file does not say how many, at most.
+const MOST_DROPS: u32 = 2_000_000;
+
+/// The part of space that is simulated, and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainVolume {
+    /// In closed form while the wind is the same everywhere, else in view.
+    #[default]
+    Auto,
+    /// In closed form: the same drops for every camera and every time.
+    ClosedForm,
+    /// Step by step in what the picture shows.
+    View,
+    /// Step by step in a box that follows the eye (Rousseau 2006).
+    Box,
+    /// The rain area of Im & Sung 2022 with their sampling.
+    #[serde(rename = "im-sung-2022")]
+    ImSung2022,
+    /// A box that drops fall into, in the manner of Tariq 2007.
+    #[serde(rename = "tariq-2007")]
+    Tariq2007,
+    /// A cylinder that stands in the world, in the manner of Creus and Patow 2013.
+    #[serde(rename = "creus-patow-2013")]
+    CreusPatow2013,
+}
+
+/// Names of the laws of terminal speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+enum FallSpeed {
+    #[serde(rename = "beard-1976")]
+    Beard1976,
+    #[serde(rename = "gunn-kinzer-1949")]
+    GunnKinzer1949,
+    #[serde(rename = "rousseau-2006")]
+    Rousseau2006,
+    #[serde(rename = "atlas-1973")]
+    Atlas1973,
+    #[serde(rename = "atlas-ulbrich-1977")]
+    AtlasUlbrich1977,
+    #[serde(rename = "brandes-2002")]
+    Brandes2002,
+    #[serde(rename = "van-dijk-2002")]
+    VanDijk2002,
+    #[serde(rename = "lhermitte-1988")]
+    Lhermitte1988,
+}
+
+impl From<FallSpeed> for FallSpeedModel {
+    fn from(law: FallSpeed) -> Self {
+        match law {
+            FallSpeed::Beard1976 => Self::Beard1976,
+            FallSpeed::GunnKinzer1949 => Self::GunnKinzer1949,
+            FallSpeed::Rousseau2006 => Self::Rousseau2006,
+            FallSpeed::Atlas1973 => Self::Atlas1973,
+            FallSpeed::AtlasUlbrich1977 => Self::AtlasUlbrich1977,
+            FallSpeed::Brandes2002 => Self::Brandes2002,
+            FallSpeed::VanDijk2002 => Self::VanDijk2002,
+            FallSpeed::Lhermitte1988 => Self::Lhermitte1988,
+        }
+    }
+}
+
+/// Shapes of the drops, as masks and streaks show them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainDropShape {
+    /// The model of Beard & Chuang 1987, by the table of Chuang & Beard 1990.
+    #[default]
+    BeardChuang,
+    /// The four rows of Rousseau 2006, table 1, as printed.
+    #[serde(rename = "rousseau-2006")]
+    Rousseau2006,
+}
+
+impl RainDropShape {
+    /// The name in weather files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BeardChuang => "beard-chuang",
+            Self::Rousseau2006 => "rousseau-2006",
+        }
+    }
+
+    /// The coefficients of the shapes.
+    #[must_use]
+    pub fn table(self) -> ShapeTable {
+        match self {
+            Self::BeardChuang => ShapeTable::ChuangBeard1990,
+            Self::Rousseau2006 => ShapeTable::Rousseau2006,
+        }
+    }
+}
+
+/// Ways in which a drop's pixel finds its color.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainRefraction {
+    /// By the direction of the refracted light, in everything round the eye.
+    #[default]
+    Direction,
+    /// By a shift in a perspective picture of 165 degrees and 512 x 512 texels (Rousseau 2006, 4.2.3).
+    #[serde(rename = "rousseau-2006")]
+    Rousseau2006,
+}
+
+/// How drops follow the wind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainDrag {
+    /// As physics has it.
+    #[default]
+    Relaxation,
+    /// By averages, once a step.
+    #[serde(rename = "rousseau-2008")]
+    Rousseau2008,
+}
+
+/// What lamps and sun do to drops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainDropLight {
+    /// As geometric optics has it: a sphere's rays of orders 0 to 3, bows included.
+    #[default]
+    Traced,
+    /// The formula of Rousseau 2006, section 6.
+    #[serde(rename = "rousseau-2006")]
+    Rousseau2006,
+    /// Its term of external reflection alone: `A_1 A_2` of the paper.
+    #[serde(rename = "rousseau-2006-external")]
+    Rousseau2006External,
+    /// Its term of internal reflection alone: `A_1 A_3` of the paper.
+    #[serde(rename = "rousseau-2006-internal")]
+    Rousseau2006Internal,
+    /// Spots only: the cone of Im & Sung 2022, section III.C.
+    #[serde(rename = "im-sung-2022")]
+    ImSung2022,
+    /// Nothing: drops show the scene behind and round them only.
+    None,
+}
+
+/// What a drop takes out of the light behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RainExtinction {
+    /// What its outline covers: a camera keeps what is diffracted.
+    #[default]
+    Camera,
+    /// Twice that: diffracted light is lost as well.
+    Total,
+}
+
+/// What happens to drops that meet a surface, where they are simulated step by step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainBounce {
+    /// Share of impacts after which a droplet comes back, 0 to 1.
+    pub share: f64,
+    /// Share of the speed along the normal that comes back, 0 to 1.
+    pub restitution: f64,
+    /// Share of the speed along the surface that is lost, 0 to 1.
+    pub grip: f64,
+    /// Diameter of the droplet in that of the drop, 0.05 to 1.
+    pub size: f64,
+    /// The longest time of a droplet, s, 0.01 to 10.
+    pub longest_s: f64,
+}
+
+impl Default for RainBounce {
+    /// A droplet of a quarter of the drop's diameter after a tenth of the impacts.
+    fn default() -> Self {
+        Self { share: 0.1, restitution: 0.25, grip: 0.7, size: 0.25, longest_s: 1.0 }
+    }
+}
+
+/// An upright cylinder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainCylinder {
+    /// Middle of the base, m; `None`: below the eye of the first picture, by half the height.
+    pub base_m: Option<[f64; 3]>,
+    /// 0.5 to 1000 m.
+    pub radius_m: f64,
+    /// 1 to 1000 m.
+    pub height_m: f64,
+}
+
+impl Default for RainCylinder {
+    fn default() -> Self {
+        Self { base_m: None, radius_m: 12.0, height_m: 12.0 }
+    }
+}
+
+/// What rains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rain {
+    /// Rain rate in mm/h: 0 (dry), or 0.001 to 500.
+    pub rate_mm_h: f64,
+    /// The law of the drop sizes.
+    pub law: DropSizeLaw,
+    /// Same seed, same drops.
+    pub seed: u64,
+    /// Temperature and pressure of the air.
+    pub air: Air,
+    /// The law of terminal speed.
+    pub fall_speed: FallSpeedModel,
+    /// Shapes of the drops.
+    pub drop_shape: RainDropShape,
+    /// Way in which a drop's pixel finds its color.
+    pub refraction: RainRefraction,
+    /// Diameter of all drops, m, 0.2e-3 to 7.5e-3, if they are of one size.
+    pub one_diameter: Option<f64>,
+    /// Where and how drops are simulated.
+    pub volume: RainVolume,
+    /// Side of a box of rain, in metres, 1 to 1000; `None` leaves it to the renderer.
+    pub box_m: Option<f64>,
+    /// The cylinder of rain.
+    pub cylinder: RainCylinder,
+    /// Drops that are simulated step by step, at most.
+    pub most_drops: u32,
+    /// How drops follow the wind.
+    pub drag: RainDrag,
+    /// What happens to drops that meet a surface.
+    pub bounce: RainBounce,
+    /// What lamps and sun do to drops.
+    pub drop_light: RainDropLight,
+    /// What a drop takes out of the light behind it.
+    pub extinction: RainExtinction,
+}
+
+impl Default for Rain {
+    /// 10 mm/h by Marshall & Palmer's law in standard air, seed 0.
+    fn default() -> Self {
+        Self {
+            rate_mm_h: 10.0,
+            law: DropSizeLaw::default(),
+            seed: 0,
+            air: Air::standard(),
+            fall_speed: FallSpeedModel::default(),
+            drop_shape: RainDropShape::default(),
+            refraction: RainRefraction::default(),
+            one_diameter: None,
+            volume: RainVolume::default(),
+            box_m: None,
+            cylinder: RainCylinder::default(),
+            most_drops: MOST_DROPS,
+            drag: RainDrag::default(),
+            bounce: RainBounce::default(),
+            drop_light: RainDropLight::default(),
+            extinction: RainExtinction::default(),
+        }
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RainTable {
+    rate_mm_h: Option<In<RateMmH>>,
+    distribution: Option<Distribution>,
+    gamma_shape: Option<In<GammaShape>>,
+    median_diameter_mm: Option<In<MedianMm>>,
+    seed: Option<u64>,
+    temperature_c: Option<In<TemperatureC>>,
+    pressure_hpa: Option<In<PressureHpa>>,
+    fall_speed: Option<FallSpeed>,
+    drop_shape: Option<RainDropShape>,
+    pub(super) mask_model: Option<String>,
+    refraction: Option<RainRefraction>,
+    drops: Option<DropsTable>,
+    volume: Option<RainVolume>,
+    box_m: Option<In<BoxM>>,
+    cylinder: Option<CylinderTable>,
+    most_drops: Option<Whole<1, { 1 << 30 }>>,
+    drag: Option<RainDrag>,
+    bounce: Option<BounceTable>,
+    drop_light: Option<RainDropLight>,
+    extinction: Option<RainExtinction>,
+}
+
+/// So many drops of one size.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DropsTable {
+    count: Whole<1, { 1 << 30 }>,
+    diameter_mm: In<OneMm>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CylinderTable {
+    base_m: Option<Exactly<In<PlaceM>, 3>>,
+    radius_m: Option<In<RadiusM>>,
+    height_m: Option<In<BoxM>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BounceTable {
+    share: Option<In<Share>>,
+    restitution: Option<In<Share>>,
+    grip: Option<In<Share>>,
+    size: Option<In<DropSize>>,
+    longest_s: Option<In<ShortS>>,
+}
+
+impl BounceTable {
+    fn checked(&self) -> RainBounce {
+        let usual = RainBounce::default();
+        RainBounce {
+            share: self.share.map_or(usual.share, |x| x.0),
+            restitution: self.restitution.map_or(usual.restitution, |x| x.0),
+            grip: self.grip.map_or(usual.grip, |x| x.0),
+            size: self.size.map_or(usual.size, |x| x.0),
+            longest_s: self.longest_s.map_or(usual.longest_s, |x| x.0),
+        }
+    }
+}
+
+impl CylinderTable {
+    fn checked(&self) -> RainCylinder {
+        let usual = RainCylinder::default();
+        RainCylinder {
+            base_m: self.base_m.map(Exactly::numbers),
+            radius_m: self.radius_m.map_or(usual.radius_m, |x| x.0),
+            height_m: self.height_m.map_or(usual.height_m, |x| x.0),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+enum Distribution {
+    MarshallPalmer,
+    Best,
+    Gamma,
+    #[serde(alias = "lognormal")]
+    FeingoldLevin,
+    JossDrizzle,
+    JossWidespread,
+    JossThunderstorm,
+}
+
+impl Rain {
+    /// Which drops there are, and how fast they fall.
+    #[must_use]
+    pub fn options(&self) -> DistributionOptions {
+        let usual = DistributionOptions { fall_speed: self.fall_speed, air: self.air, ..Default::default() };
+        match self.one_diameter {
+            None => usual,
+            Some(diameter) => {
+                let half = (diameter * ONE_SHARE).max(ONE_LEAST_M);
+                DistributionOptions {
+                    smallest_diameter_m: diameter - half,
+                    largest_diameter_m: diameter + half,
+                    ..usual
+                }
+            }
+        }
+    }
+
+    /// The sizes of the drops, and how many there are.
+    ///
+    /// # Errors
+    /// [`DropError`] for a rain that is none.
+    pub fn sizes(&self) -> Result<DropSizeDistribution, DropError> {
+        DropSizeDistribution::with_options(self.law, self.rate_mm_h, &self.options())
+    }
+
+    pub(super) fn checked(table: &RainTable, places: &Places<'_>) -> Result<Self, SceneError> {
+        let default = Self::default();
+        let rate_mm_h = table.rate_mm_h.map_or(default.rate_mm_h, |rate| rate.0);
+        let temperature_c = table.temperature_c.map_or(default.air.temperature_c(), |t| t.0);
+        let pressure_pa = table.pressure_hpa.map_or(default.air.pressure_pa(), |p| p.0 * 100.0);
+        let air = Air::new(temperature_c, pressure_pa);
+        let air =
+            air.map_err(|error| places.bad("rain", error.to_string(), "the air of the laws of fall"))?;
+        let law = match table.distribution {
+            None => default.law,
+            Some(Distribution::MarshallPalmer) => DropSizeLaw::MarshallPalmer1948,
+            Some(Distribution::Best) => DropSizeLaw::Best1950,
+            Some(Distribution::Gamma) => table.gamma(rate_mm_h, places)?,
+            Some(Distribution::FeingoldLevin) => DropSizeLaw::FeingoldLevin1986,
+            Some(Distribution::JossDrizzle) => DropSizeLaw::Joss1968Drizzle,
+            Some(Distribution::JossWidespread) => DropSizeLaw::Joss1968Widespread,
+            Some(Distribution::JossThunderstorm) => DropSizeLaw::Joss1968Thunderstorm,
+        };
+        if table.distribution != Some(Distribution::Gamma) {
+            for (key, given) in [
+                ("rain.gamma_shape", table.gamma_shape.is_some()),
+                ("rain.median_diameter_mm", table.median_diameter_mm.is_some()),
+            ] {
+                if given {
+                    let found = format!("a parameter of the gamma law, with {}", law.name());
+                    return Err(places.bad(key, found, "distribution = \"gamma\""));
+                }
+            }
+        }
+        // Drops that are counted are counted in a box.
+        let usual = if table.drops.is_some() { RainVolume::Box } else { RainVolume::default() };
+        let volume = table.volume.unwrap_or(usual);
+        let boxed = matches!(volume, RainVolume::Box | RainVolume::Tariq2007);
+        for (key, given, of, allowed) in [
+            ("rain.box_m", table.box_m.is_some(), boxed, "volume = \"box\" or \"tariq-2007\""),
+            (
+                "rain.cylinder",
+                table.cylinder.is_some(),
+                volume == RainVolume::CreusPatow2013,
+                "volume = \"creus-patow-2013\"",
+            ),
+        ] {
+            if given && !of {
+                return Err(places.bad(key, "a part of another volume", allowed));
+            }
+        }
+        let rain = Self {
+            rate_mm_h,
+            law,
+            seed: table.seed.unwrap_or(default.seed),
+            air,
+            fall_speed: table.fall_speed.map_or(default.fall_speed, FallSpeedModel::from),
+            drop_shape: table.drop_shape.unwrap_or_default(),
+            refraction: table.refraction.unwrap_or_default(),
+            one_diameter: table.drops.map(|drops| drops.diameter_mm.0 * 1.0e-3),
+            volume,
+            box_m: table.box_m.map(|side| side.0),
+            cylinder: table.cylinder.map_or(default.cylinder, |cylinder| cylinder.checked()),
+            most_drops: table.most_drops.map_or(default.most_drops, |Whole(drops)| drops),
+            drag: table.drag.unwrap_or_default(),
+            bounce: table.bounce.map_or(default.bounce, |bounce| bounce.checked()),
+            drop_light: table.drop_light.unwrap_or_default(),
+            extinction: table.extinction.unwrap_or_default(),
+        };
+        match table.drops {
+            None => Ok(rain),
+            Some(drops) => rain.counted(table, drops.count.0, places),
+        }
+    }
+
+    /// The rain with the rate at which so many drops of its one size are in its volume, on average.
+    fn counted(self, table: &RainTable, count: u32, places: &Places<'_>) -> Result<Self, SceneError> {
+        let allowed = "one or the other";
+        for (key, given) in [
+            ("rain.rate_mm_h", table.rate_mm_h.is_some()),
+            ("rain.distribution", table.distribution.is_some()),
+        ] {
+            if given {
+                return Err(places.bad(key, "a rain that is counted by rain.drops", allowed));
+            }
+        }
+        let side = self.box_m.unwrap_or(RAIN_BOX_M);
+        let volume = match self.volume {
+            RainVolume::Box | RainVolume::Tariq2007 => side * side * side,
+            RainVolume::CreusPatow2013 => {
+                std::f64::consts::PI
+                    * self.cylinder.radius_m
+                    * self.cylinder.radius_m
+                    * self.cylinder.height_m
+            }
+            _ => {
+                let allowed = "volume = \"box\", \"tariq-2007\" or \"creus-patow-2013\"";
+                return Err(places.bad("rain.drops", "drops that are counted in no volume", allowed));
+            }
+        };
+        if count > self.most_drops {
+            let found = format!("{count} drops, more than rain.most_drops = {}", self.most_drops);
+            return Err(places.bad("rain.drops.count", found, "1 to rain.most_drops"));
+        }
+        // The number goes with the rate.
+        let bad = |error: DropError| places.bad("rain.drops", error.to_string(), "drops of the laws of fall");
+        let of_one = Self { rate_mm_h: 1.0, ..self }.sizes().map_err(bad)?;
+        let rate_mm_h = f64::from(count) / (of_one.number_density() * volume);
+        if !(LIGHTEST..=HEAVIEST_MM_H).contains(&rate_mm_h) {
+            let found = format!("{count} drops in {volume:.4} m^3 are {rate_mm_h:.4} mm/h");
+            return Err(places.bad("rain.drops.count", found, "drops of 0.001 to 500 mm/h"));
+        }
+        Ok(Self { rate_mm_h, ..self })
+    }
+}
+
+impl RainTable {
+    /// The model that drops are drawn as.
+    pub(super) fn drop_model(
+        &self,
+        streaks: &Streaks,
+        places: &Places<'_>,
+    ) -> Result<Option<RelativePath>, SceneError> {
+        let Some(file) = &self.mask_model else { return Ok(None) };
+        let key = "rain.mask_model";
+        if self.drop_shape.is_some() {
+            return Err(places.bad(key, "a model for drops that have rain.drop_shape", "one or the other"));
+        }
+        // The table of streaks is made by rays through the drops' own shapes.
+        if streaks.samples.is_none() {
+            let found = "a mask for streaks that need none, with streaks.samples = \"table\"";
+            return Err(places.bad(key, found, "with streaks.samples = 1 to 4096"));
+        }
+        path(file, key, places).map(Some)
+    }
+
+    fn gamma(&self, rate_mm_h: f64, places: &Places<'_>) -> Result<DropSizeLaw, SceneError> {
+        let median_volume_diameter_m = match self.median_diameter_mm {
+            Some(median) => median.0 * 1e-3,
+            None => DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h.max(LIGHTEST))
+                .map_err(|error| places.bad("rain.rate_mm_h", error.to_string(), "a rate of the laws"))?
+                .median_volume_diameter(),
+        };
+        let mu = self.gamma_shape.map_or(GAMMA_SHAPE, |mu| mu.0);
+        Ok(DropSizeLaw::GammaByMedian { mu, median_volume_diameter_m })
+    }
+}

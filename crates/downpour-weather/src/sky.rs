@@ -1,0 +1,165 @@
+//! `[sky]` and `[sun]`.
+
+use super::fault::Places;
+use super::file::path;
+use super::quantity::{Brightness, DiscDeg, ElevationDeg, Exactly, In, Lux, Stops, Tint, TurnDeg};
+use downpour_math::ops::f64 as ops;
+use downpour_scene::error::SceneError;
+use downpour_scene::uri::RelativePath;
+use serde::Deserialize;
+
+/// Illuminance of the sun at noon on a clear day, in lux.
+const SUN_LUX: f64 = 1e5;
+
+/// Diameter of the sun's disc, in degrees.
+const SUN_DEG: f64 = 0.53;
+
+/// The light of the sky.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sky {
+    /// Where it comes from.
+    pub source: SkySource,
+    /// What it is multiplied with: `intensity * 2^exposure_ev`.
+    pub scale: f64,
+}
+
+/// Where the light of the sky comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SkySource {
+    /// An equirectangular map.
+    File {
+        /// The file, beneath the folder of the weather file or an asset root.
+        file: RelativePath,
+        /// By how much the map is turned about +Y, in radians, counter-clockwise seen from above.
+        yaw: f64,
+    },
+    /// The same radiance from everywhere.
+    Uniform([f64; 3]),
+    /// The overcast sky of Moon & Spencer, with this radiance at the zenith.
+    Overcast([f64; 3]),
+}
+
+/// Where the sun comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SunSource {
+    /// There is none, or it stays in the map.
+    None,
+    /// The brightest compact source of the sky map, if there is one.
+    FromSky,
+    /// The same, where the file does not speak of a sun: a map without one is no surprise.
+    FromSkyIfAny,
+    /// A sun of its own.
+    Directional {
+        /// The unit direction towards it.
+        towards: [f64; 3],
+        /// On a surface that faces it, in lux.
+        illuminance_lux: f64,
+        /// Tint, linear, 0 to 1.
+        color: [f64; 3],
+        /// The radius of its disc, in radians.
+        angular_radius: f64,
+    },
+}
+
+impl Default for Sky {
+    /// Overcast, with the radiance (0.9, 0.95, 1.0) at the zenith.
+    fn default() -> Self {
+        Self { source: SkySource::Overcast([0.9, 0.95, 1.0]), scale: 1.0 }
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SkyTable {
+    file: Option<String>,
+    color: Option<Exactly<In<Brightness>, 3>>,
+    zenith_color: Option<Exactly<In<Brightness>, 3>>,
+    yaw_deg: Option<In<TurnDeg>>,
+    exposure_ev: Option<In<Stops>>,
+    intensity: Option<In<Brightness>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SunTable {
+    from_sky: Option<bool>,
+    azimuth_deg: Option<In<TurnDeg>>,
+    elevation_deg: Option<In<ElevationDeg>>,
+    illuminance_lux: Option<In<Lux>>,
+    color: Option<Exactly<In<Tint>, 3>>,
+    diameter_deg: Option<In<DiscDeg>>,
+}
+
+impl Sky {
+    pub(super) fn checked(table: &SkyTable, places: &Places<'_>) -> Result<Self, SceneError> {
+        let default = Self::default();
+        let one = "one of file, color and zenith_color";
+        let source = match (&table.file, &table.color, &table.zenith_color) {
+            (Some(file), None, None) => {
+                let yaw = table.yaw_deg.map_or(0.0, |yaw| yaw.0).to_radians();
+                SkySource::File { file: path(file, "sky.file", places)?, yaw }
+            }
+            (None, Some(color), None) => SkySource::Uniform(color.numbers()),
+            (None, None, Some(zenith)) => SkySource::Overcast(zenith.numbers()),
+            (None, None, None) => default.source,
+            (_, Some(_), Some(_)) => return Err(places.bad("sky.zenith_color", "beside color", one)),
+            (_, Some(_), None) => return Err(places.bad("sky.color", "beside file", one)),
+            (_, None, Some(_)) => return Err(places.bad("sky.zenith_color", "beside file", one)),
+        };
+        if table.yaw_deg.is_some() && !matches!(source, SkySource::File { .. }) {
+            return Err(places.bad("sky.yaw_deg", "a turn of no map", "with file only"));
+        }
+        let stops = table.exposure_ev.map_or(0.0, |ev| ev.0);
+        let scale = table.intensity.map_or(1.0, |intensity| intensity.0) * ops::pow(2.0, stops);
+        Ok(Self { source, scale })
+    }
+}
+
+impl SunSource {
+    pub(super) fn checked(
+        table: Option<&SunTable>,
+        sky: &Sky,
+        places: &Places<'_>,
+    ) -> Result<Self, SceneError> {
+        let mapped = matches!(sky.source, SkySource::File { .. });
+        let Some(table) = table else { return Ok(if mapped { Self::FromSkyIfAny } else { Self::None }) };
+        let own = [
+            ("azimuth_deg", table.azimuth_deg.is_some()),
+            ("elevation_deg", table.elevation_deg.is_some()),
+            ("illuminance_lux", table.illuminance_lux.is_some()),
+            ("color", table.color.is_some()),
+            ("diameter_deg", table.diameter_deg.is_some()),
+        ];
+        let first = own.into_iter().find_map(|(key, given)| given.then_some(key));
+        match (table.from_sky, first) {
+            (Some(true), Some(key)) => {
+                let key = format!("sun.{key}");
+                Err(places.bad(&key, "beside from_sky = true", "either from_sky or a sun of its own"))
+            }
+            (Some(true), None) if !mapped => {
+                Err(places.bad("sun.from_sky", "true without a map", "with sky.file only"))
+            }
+            (Some(true), None) => Ok(Self::FromSky),
+            (Some(false), None) => Ok(Self::None),
+            (None, None) => Err(places.bad("sun", "nothing", "from_sky, or azimuth_deg and elevation_deg")),
+            (Some(false) | None, Some(_)) => table.directional(places),
+        }
+    }
+}
+
+impl SunTable {
+    fn directional(&self, places: &Places<'_>) -> Result<SunSource, SceneError> {
+        let (Some(azimuth), Some(elevation)) = (self.azimuth_deg, self.elevation_deg) else {
+            let missing = if self.azimuth_deg.is_none() { "azimuth_deg" } else { "elevation_deg" };
+            return Err(places.bad("sun", format!("no {missing}"), "both azimuth_deg and elevation_deg"));
+        };
+        let (azimuth, elevation) = (azimuth.0.to_radians(), elevation.0.to_radians());
+        let flat = ops::cos(elevation);
+        Ok(SunSource::Directional {
+            towards: [flat * ops::cos(azimuth), ops::sin(elevation), flat * ops::sin(azimuth)],
+            illuminance_lux: self.illuminance_lux.map_or(SUN_LUX, |lux| lux.0),
+            color: self.color.map_or([1.0; 3], Exactly::numbers),
+            angular_radius: self.diameter_deg.map_or(SUN_DEG, |diameter| diameter.0).to_radians() / 2.0,
+        })
+    }
+}

@@ -1,0 +1,349 @@
+//! `[[wind]]`, `[gusts]`, `[turbulence]` and `[wind_field]`.
+
+pub(super) mod keys;
+
+use super::fault::Places;
+use super::quantity::{
+    CoreM, EddyM, EddyMS, Exactly, GustM, HeightM, In, Intensity, Outflow, Part, PlaceM, Range, TurnDeg,
+    Turning, Whole, WindBoxM, WindMS, WindPlaceM,
+};
+use downpour_math::ops::f64 as ops;
+use downpour_scene::error::SceneError;
+use downpour_wind::grid::WIND_GRID_CELLS;
+use downpour_wind::{
+    Gusts, Keyed, KeyedSingularity, KeyedTornado, Turbulence, Wind, WindCore, WindError, WindForm, WindGrid,
+    WindPart,
+};
+use glam::DVec3;
+use keys::{NumberKeys, VectorKeys, keyed};
+use serde::Deserialize;
+
+/// Core radius where none is given, in metres: three cells of the usual grid.
+const CORE_M: f64 = 5.0;
+
+/// A wind that turns by an angle has a key at each of these, in degrees: between two of them it is 0.1 % slower.
+const TURN_STEP_DEG: f64 = 5.0;
+
+/// The box of cells in which a wind that differs from place to place is worked out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindBox {
+    /// Cells along x, y and z, 1 to 4096 each, 2^23 together.
+    pub size: [u32; 3],
+    /// Edges of the box, 0.01 to 1e6 m.
+    pub edges: DVec3,
+    /// Its middle, in metres; `None` for the eye.
+    pub centre: Option<DVec3>,
+}
+
+impl Default for WindBox {
+    /// The grid of Rousseau 2008: 64 cells along edges of 100 m, round the eye.
+    fn default() -> Self {
+        Self { size: [64; 3], edges: DVec3::splat(100.0), centre: None }
+    }
+}
+
+impl WindBox {
+    /// The grid, for an eye at a place, in metres.
+    ///
+    /// # Errors
+    /// As [`WindGrid::new`]: the box is farther than 1e6 m from the origin.
+    #[expect(clippy::arithmetic_side_effects, reason = "of floats: what is too far is refused by the grid")]
+    pub fn grid(&self, eye: DVec3) -> Result<WindGrid, WindError> {
+        let (middle, half) = (self.centre.unwrap_or(eye), self.edges * 0.5);
+        WindGrid::new((middle - half).as_vec3(), (middle + half).as_vec3(), self.size)
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub(super) enum WindTable {
+    Uniform(UniformTable),
+    Source(SingularityTable<Outflow>),
+    Sink(SingularityTable<Outflow>),
+    Vortex(SingularityTable<Turning>),
+    Tornado(TornadoTable),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct UniformTable {
+    speed_m_s: NumberKeys<WindMS>,
+    towards_deg: Option<NumberKeys<TurnDeg>>,
+    direction: Option<VectorKeys<Part>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, bound = "R: Range")]
+pub(super) struct SingularityTable<R> {
+    strength_m2_s: Option<NumberKeys<R>>,
+    strength_m3_s: Option<NumberKeys<R>>,
+    centre_m: Option<VectorKeys<WindPlaceM>>,
+    axis: Option<VectorKeys<Part>>,
+    core_m: Option<NumberKeys<CoreM>>,
+    core: Option<CoreWord>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TornadoTable {
+    circulation_m2_s: NumberKeys<Turning>,
+    discharge_m3_s: Option<NumberKeys<Outflow>>,
+    base_m: Option<VectorKeys<WindPlaceM>>,
+    height_m: NumberKeys<HeightM>,
+    axis: Option<VectorKeys<Part>>,
+    core_m: Option<NumberKeys<CoreM>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum CoreWord {
+    Rosenhead,
+    Rankine,
+    LambOseen,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GustsTable {
+    intensity: Option<In<Intensity>>,
+    length_m: Option<In<GustM>>,
+    seed: Option<u64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TurbulenceTable {
+    speed_m_s: Option<In<EddyMS>>,
+    length_m: Option<In<EddyM>>,
+    seed: Option<u64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WindFieldTable {
+    size: Option<Exactly<Whole<1, 4096>, 3>>,
+    box_m: Option<Exactly<In<WindBoxM>, 3>>,
+    centre_m: Option<Exactly<In<PlaceM>, 3>>,
+}
+
+impl WindFieldTable {
+    pub(super) fn checked(&self, places: &Places<'_>) -> Result<WindBox, SceneError> {
+        let default = WindBox::default();
+        let size = self.size.map_or(default.size, |Exactly(size)| size.map(|Whole(cells)| cells));
+        let cells: u64 = size.iter().map(|&n| u64::from(n)).product();
+        if cells > WIND_GRID_CELLS {
+            let found = format!("{cells} cells");
+            return Err(places.limit("wind_field.size", found, format!("at most {WIND_GRID_CELLS}")));
+        }
+        Ok(WindBox {
+            size,
+            edges: self.box_m.map_or(default.edges, |edges| edges.numbers().into()),
+            centre: self.centre_m.map(|centre| centre.numbers().into()),
+        })
+    }
+}
+
+/// The whole wind of a file.
+pub(super) fn checked(
+    parts: &[WindTable],
+    gusts: Option<&GustsTable>,
+    turbulence: Option<&TurbulenceTable>,
+    places: &Places<'_>,
+) -> Result<Wind, SceneError> {
+    let gusts = gusts.map(|table| {
+        let default = Gusts::default();
+        Gusts {
+            intensity: table.intensity.map_or(default.intensity, |share| share.0),
+            length: table.length_m.map_or(default.length, |length| length.0),
+            seed: table.seed.unwrap_or(default.seed),
+        }
+    });
+    let turbulence = turbulence.map(|table| {
+        let default = Turbulence::default();
+        Turbulence {
+            speed: table.speed_m_s.map_or(default.speed, |speed| speed.0),
+            length: table.length_m.map_or(default.length, |length| length.0),
+            seed: table.seed.unwrap_or(default.seed),
+        }
+    });
+    if gusts.is_some() && !parts.iter().any(|part| matches!(part, WindTable::Uniform(_))) {
+        let allowed = "with [[wind]] uniform = { ... }, which gusts";
+        return Err(places.bad("gusts", "without a uniform wind", allowed));
+    }
+    let parts = parts.iter().enumerate().map(|(i, table)| table.checked(i, places));
+    let parts = parts.collect::<Result<Vec<_>, _>>()?;
+    // Each part has been looked at; what is left is their number of keys together.
+    Wind::new(parts, gusts, turbulence).map_err(|error| match error {
+        WindError::KeyCount { found, allowed } => {
+            let found = format!("{found} different times of keys in all uniform winds");
+            places.limit("wind", found, format!("at most {allowed}"))
+        }
+        error => places.bad("wind", error.to_string(), "a wind in its ranges"),
+    })
+}
+
+impl WindTable {
+    fn checked(&self, i: usize, places: &Places<'_>) -> Result<WindPart, SceneError> {
+        let (name, part) = match self {
+            Self::Uniform(table) => ("uniform", table.part(&format!("wind[{i}].uniform"), places)?),
+            Self::Source(table) => {
+                ("source", WindPart::Source(table.part(&format!("wind[{i}].source"), places)?))
+            }
+            Self::Sink(table) => ("sink", WindPart::Sink(table.part(&format!("wind[{i}].sink"), places)?)),
+            Self::Vortex(table) => {
+                ("vortex", WindPart::Vortex(table.part(&format!("wind[{i}].vortex"), places)?))
+            }
+            Self::Tornado(table) => ("tornado", table.part(&format!("wind[{i}].tornado"), places)?),
+        };
+        // Alone, so that what is wrong with it is told with its place.
+        match Wind::new(vec![part.clone()], None, None) {
+            Ok(_) => Ok(part),
+            Err(error) => Err(refused(&format!("wind[{i}].{name}"), &error, places)),
+        }
+    }
+}
+
+/// What is wrong with a part over time, though each number is in its own range.
+fn refused(path: &str, error: &WindError, places: &Places<'_>) -> SceneError {
+    match error {
+        WindError::OutOfRange { quantity, found, unit, allowed } => {
+            let key = if *quantity == "height" { format!("{path}.height_m") } else { path.to_owned() };
+            places.bad(&key, format!("{quantity} {found} {unit}"), *allowed)
+        }
+        WindError::ZeroAxis { .. } => {
+            places.bad(&format!("{path}.axis"), "no length", "three numbers, not all 0")
+        }
+        WindError::AxisReverses { time, .. } => {
+            let found = format!("turned about up to the key at {time} s");
+            places.bad(&format!("{path}.axis"), found, "a key between, that says by which way")
+        }
+        WindError::CoreOfPoint { found } => {
+            let found = format!("{found} with strength_m3_s");
+            places.bad(&format!("{path}.core"), found, "rosenhead, or strength_m2_s")
+        }
+        error => places.bad(path, error.to_string(), "a wind in its ranges"),
+    }
+}
+
+impl UniformTable {
+    fn part(&self, path: &str, places: &Places<'_>) -> Result<WindPart, SceneError> {
+        let key = |name: &str| format!("{path}.{name}");
+        let speed = self.speed_m_s.keyed(&key("speed_m_s"), places)?;
+        let direction = match (&self.towards_deg, &self.direction) {
+            (Some(degrees), None) => turning(degrees, &key("towards_deg"), places)?,
+            (None, Some(direction)) => direction.keyed(&key("direction"), places)?,
+            (Some(_), Some(_)) => {
+                return Err(places.bad(&key("direction"), "beside towards_deg", "one of the two"));
+            }
+            (None, None) => {
+                let allowed = "towards_deg or direction is needed";
+                return Err(places.bad(path, "no towards_deg", allowed));
+            }
+        };
+        WindPart::uniform(&speed, &direction)
+            .map_err(|_| places.bad(&key("direction"), "no length", "three numbers, not all 0"))
+    }
+}
+
+/// Level directions, with keys between those of the file wherever the wind turns far.
+fn turning(
+    degrees: &NumberKeys<TurnDeg>,
+    path: &str,
+    places: &Places<'_>,
+) -> Result<Keyed<DVec3>, SceneError> {
+    // The times of the file are looked at first.
+    let angles = degrees.keyed(path, places)?;
+    let towards = |angle: f64| {
+        let radians = angle.to_radians();
+        DVec3::new(ops::cos(radians), 0.0, ops::sin(radians))
+    };
+    let raw = degrees.raw();
+    if raw.len() < 2 {
+        return Ok(angles.map(towards));
+    }
+    let mut keys = Vec::new();
+    for pair in angles.keys().windows(2) {
+        let [(start, from), (end, to)] = *pair else { continue };
+        let steps = ((to - from).abs() / TURN_STEP_DEG).min((end - start) * 1e5).ceil().max(1.0);
+        let mut step = 0.0;
+        while step < steps {
+            let share = step / steps;
+            keys.push((start + (end - start) * share, towards(from + (to - from) * share)));
+            step += 1.0;
+        }
+    }
+    if let Some(&(time, last)) = angles.keys().last() {
+        keys.push((time, towards(last)));
+    }
+    if keys.len() > downpour_wind::WIND_KEYS {
+        let found = format!("{} keys, one for each {TURN_STEP_DEG} degrees of a turn", keys.len());
+        return Err(places.limit(path, found, format!("at most {}", downpour_wind::WIND_KEYS)));
+    }
+    keyed(keys, path, places)
+}
+
+/// What is given, or a default that does not move.
+fn or_still<R>(
+    given: Option<&VectorKeys<R>>,
+    default: DVec3,
+    path: &str,
+    places: &Places<'_>,
+) -> Result<Keyed<DVec3>, SceneError> {
+    given.map_or_else(|| Ok(default.into()), |given| given.keyed(path, places))
+}
+
+impl<R> SingularityTable<R> {
+    fn part(&self, path: &str, places: &Places<'_>) -> Result<KeyedSingularity, SceneError> {
+        let key = |name: &str| format!("{path}.{name}");
+        let (form, strength) = match (&self.strength_m2_s, &self.strength_m3_s) {
+            (Some(line), None) => (WindForm::Line, line.keyed(&key("strength_m2_s"), places)?),
+            (None, Some(point)) => (WindForm::Point, point.keyed(&key("strength_m3_s"), places)?),
+            (Some(_), Some(_)) => {
+                let allowed = "one of the two: strength_m2_s of a line, strength_m3_s of a point";
+                return Err(places.bad(&key("strength_m3_s"), "beside strength_m2_s", allowed));
+            }
+            (None, None) => {
+                let allowed = "strength_m2_s of a line or strength_m3_s of a point is needed";
+                return Err(places.bad(path, "no strength", allowed));
+            }
+        };
+        Ok(KeyedSingularity {
+            form,
+            core: match self.core {
+                None | Some(CoreWord::Rosenhead) => WindCore::Rosenhead,
+                Some(CoreWord::Rankine) => WindCore::Rankine,
+                Some(CoreWord::LambOseen) => WindCore::LambOseen,
+            },
+            strength,
+            centre: or_still(self.centre_m.as_ref(), DVec3::ZERO, &key("centre_m"), places)?,
+            axis: or_still(self.axis.as_ref(), DVec3::Y, &key("axis"), places)?,
+            core_radius: core(self.core_m.as_ref(), &key("core_m"), places)?,
+        })
+    }
+}
+
+fn core(
+    given: Option<&NumberKeys<CoreM>>,
+    path: &str,
+    places: &Places<'_>,
+) -> Result<Keyed<f64>, SceneError> {
+    given.map_or_else(|| Ok(CORE_M.into()), |given| given.keyed(path, places))
+}
+
+impl TornadoTable {
+    fn part(&self, path: &str, places: &Places<'_>) -> Result<WindPart, SceneError> {
+        let key = |name: &str| format!("{path}.{name}");
+        let discharge = match &self.discharge_m3_s {
+            Some(discharge) => discharge.keyed(&key("discharge_m3_s"), places)?,
+            None => 0.0.into(),
+        };
+        Ok(WindPart::Tornado(KeyedTornado {
+            circulation: self.circulation_m2_s.keyed(&key("circulation_m2_s"), places)?,
+            discharge,
+            base: or_still(self.base_m.as_ref(), DVec3::ZERO, &key("base_m"), places)?,
+            axis: or_still(self.axis.as_ref(), DVec3::Y, &key("axis"), places)?,
+            height: self.height_m.keyed(&key("height_m"), places)?,
+            core_radius: core(self.core_m.as_ref(), &key("core_m"), places)?,
+        }))
+    }
+}

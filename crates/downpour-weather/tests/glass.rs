@@ -1,0 +1,128 @@
+//! The pane of a weather file: every key, and what is refused.
+
+use downpour_lattice::glass::{GlassWiperMotion, GlassWornBand};
+use downpour_weather::{PaneFocus, PaneFresnel, PaneShadow, Weather};
+
+const ALL: &str = r#"
+[rain]
+rate_mm_h = 25
+seed = 9
+[glass]
+distance_m = 0.7
+tilt_deg = 30
+size_m = [1.2, 0.6]
+cell_mm = 0.5
+speed_m_s = [[0, 10], [20, 30]]
+before_s = 12
+focus = "glass"
+aperture_mm = 8
+room = 0.2
+fresnel = "tatarchuk-2006"
+highlight_mm = 2.5
+shadows = "tatarchuk-2006"
+advancing_deg = 70
+receding_deg = 30
+film_um = 20
+drying_mm_h = 0.5
+[[glass.wiper]]
+pivot_m = [0.6, 0.62]
+length_m = 0.55
+from_deg = 10
+to_deg = 170
+period_s = 1.4
+worn = [{ from_m = 0.2, to_m = 0.22, leaves = 0.7 }]
+[[glass.wiper]]
+pivot_m = [0.1, 0.62]
+length_m = 0.4
+inner_m = 0.1
+angle_deg = [[-2, 0], [0, 90], [3, 0]]
+"#;
+
+fn says(text: &str, code: u8, message: &str) {
+    let error = Weather::parse("w.toml", text).expect_err(text);
+    assert_eq!((error.exit_code(), error.to_string()), (code, format!("w.toml: {message}")));
+}
+
+#[test]
+fn every_key_arrives() {
+    let pane = Weather::parse("w.toml", ALL).unwrap().glass.unwrap();
+    assert_eq!((pane.distance, pane.size, pane.cell), (0.7, Some([1.2, 0.6]), 0.5e-3));
+    assert_eq!((pane.focus, pane.fresnel, pane.seed), (PaneFocus::Glass, PaneFresnel::Tatarchuk2006, 9));
+    assert_eq!((pane.before, pane.aperture, pane.room, pane.film), (12.0, 8.0e-3, 0.2, 20.0 * 1.0e-6));
+    assert_eq!((pane.highlight, pane.shadows), (2.5e-3, PaneShadow::Tatarchuk2006));
+    assert_eq!((pane.speed.at(10.0), pane.drying_mm_h), (20.0, 0.5));
+    assert!((pane.tilt.to_degrees() - 30.0).abs() < 1.0e-9);
+    assert!((pane.contact.advancing_rad.to_degrees() - 70.0).abs() < 1.0e-9);
+    let [one, two] = &pane.wipers[..] else { panic!("{} wipers", pane.wipers.len()) };
+    assert!(matches!(one.motion, GlassWiperMotion::Sweep { period_s: 1.4, .. }));
+    assert_eq!(one.worn, [GlassWornBand { from_m: 0.2, to_m: 0.22, leaves: 0.7 }]);
+    assert_eq!((one.outer_m, two.inner_m), (0.55, 0.1));
+    // The lattice's time begins 12 s before: at its 12 s the keyed blade stands up.
+    let weather = Weather::parse("w.toml", ALL).unwrap();
+    let options = pane.options([1.2, 0.6], &weather.rain, -12.0);
+    // The water that runs in comes from 0.15 m above what is seen.
+    assert_eq!(options.size, [2400, 1500]);
+    assert!((options.wipers[1].angle(12.0).to_degrees() - 90.0).abs() < 1.0e-9);
+    // The tick is made for the fastest air; along the pane flows its parallel part.
+    assert_eq!(options.rain.towards_m_s, 30.0);
+    assert!((options.air.speed_m_s - 30.0 * 0.75f64.sqrt()).abs() < 1.0e-9);
+    options.check().unwrap();
+}
+
+#[test]
+fn a_pane_of_its_own_size_needs_nothing() {
+    assert!(Weather::parse("w.toml", "").unwrap().glass.is_none());
+    let pane = Weather::parse("w.toml", "[glass]\n").unwrap().glass.unwrap();
+    assert_eq!((pane.size, pane.before, pane.focus), (None, 60.0, PaneFocus::Scene));
+    assert_eq!(pane.tilt.to_degrees(), 90.0);
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_place() {
+    says("[glass]\ntilt_deg = 5\n", 2, "line 2, column 12: glass.tilt_deg: 5; allowed: 10 to 90 degrees");
+    says(
+        "[glass]\nfocus = \"lens\"\n",
+        2,
+        "line 2, column 9: glass.focus: unknown word \"lens\"; allowed: scene, glass",
+    );
+    says(
+        "[glass]\nadvancing_deg = 40\nreceding_deg = 50\n",
+        2,
+        "line 3, column 1: glass.receding_deg: 50.0000 with an advancing angle of 40.0000; allowed: 0 to the advancing \
+         angle",
+    );
+    says(
+        "[glass]\nsize_m = [5, 1]\n",
+        3,
+        "line 2, column 1: glass.size_m: 8333 x 1667 cells of 0.6 mm; allowed: 8 to 4096 each way: another size_m or \
+         cell_mm",
+    );
+    says(
+        "[glass]\n[[glass.wiper]]\npivot_m = [0, 0]\nlength_m = 0.3\nangle_deg = 3\n",
+        2,
+        "line 2, column 9: glass.wiper: without glass.size_m; allowed: with size_m = [width, height], in which wipers \
+         have their places",
+    );
+    let wiper = |keys: &str| format!("[glass]\nsize_m = [1, 0.5]\n[[glass.wiper]]\n{keys}\n");
+    says(
+        &wiper("pivot_m = [0.5, 0.9]\nlength_m = 0.3\nfrom_deg = 0\nto_deg = 90\nperiod_s = 2"),
+        2,
+        "line 4, column 1: glass.wiper[0].pivot_m: (0.5, 0.9): the blade never touches the pane of 1 x 0.5 m; allowed: \
+         a place from which the blade reaches the pane",
+    );
+    says(
+        &wiper("pivot_m = [0.5, 0.5]\nlength_m = 0.3\nfrom_deg = 0"),
+        2,
+        "line 3, column 1: glass.wiper[0]: no movement; allowed: from_deg, to_deg and period_s, or angle_deg with keys",
+    );
+    says(
+        &wiper("pivot_m = [0.5, 0.5]\nlength_m = 0.3\nfrom_deg = -200\nto_deg = 200\nperiod_s = 0.1"),
+        2,
+        "line 3, column 1: glass.wiper[0]: speed of a blade 219.3245 rad/s; allowed: 0 to 20",
+    );
+    says(
+        &wiper("pivot_m = [0.5, 0.5]\nangle_deg = 1"),
+        2,
+        "line 3, column 1: glass.wiper[0]: no length_m; allowed: length_m is needed",
+    );
+}

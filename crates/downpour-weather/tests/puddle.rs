@@ -1,0 +1,99 @@
+//! The puddles of a weather file: every key, and what is refused.
+
+use downpour_scene::Budget;
+use downpour_weather::{PuddleShape, Roots, Weather, load};
+
+const ALL: &str = r"
+[[puddle]]
+position_m = [1, 0.2, -3]
+size_m = [4, 2]
+turn_deg = 30
+reach_m = 0.5
+depth_mm = 40
+fill = 0.7
+least_mm = 2
+relief_mm = 3
+seed = 8
+cell_mm = 20
+ripple_scale = 1.5
+ripple_deg = 90
+ripple_influence = 0.5
+clear_m = 0.1
+color = [0.2, 0.15, 0.1]
+";
+
+fn says(text: &str, code: u8, message: &str) {
+    let error = Weather::parse("w.toml", text).expect_err(text);
+    assert_eq!((error.exit_code(), error.to_string()), (code, format!("w.toml: {message}")));
+}
+
+#[test]
+fn every_key_arrives() {
+    let weather = Weather::parse("w.toml", ALL).unwrap();
+    let [puddle] = &weather.puddles[..] else { panic!("{} puddles", weather.puddles.len()) };
+    assert_eq!((puddle.middle, puddle.size, puddle.reach), ([1.0, 0.2, -3.0], [4.0, 2.0], 0.5));
+    assert!((puddle.turn.to_degrees() - 30.0).abs() < 1.0e-9);
+    assert!((puddle.ripple_turn.to_degrees() - 90.0).abs() < 1.0e-9);
+    assert_eq!((puddle.ripple_scale, puddle.ripple_influence, puddle.clear), (1.5, 0.5, 0.1));
+    assert_eq!((puddle.depth, puddle.color), (0.04, [0.2, 0.15, 0.1]));
+    let found = PuddleShape::Found { fill: 0.7, least: 0.002, relief: 0.003, seed: 8, cells: [200, 100] };
+    assert_eq!(puddle.shape, found);
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let with = |line: &str| format!("[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [4, 2]\n{line}\n");
+    says(&with("fill = 1.5"), 2, "line 4, column 8: puddle[0].fill: 1.5; allowed: 0 to 1");
+    says(
+        &with("mask = \"m.png\"\nrelief_mm = 2"),
+        2,
+        "line 5, column 1: puddle[0].relief_mm: beside mask; allowed: either a mask, or a puddle that is found",
+    );
+    says(
+        &with("cell_mm = 2\nsize_m = [50, 2]").replacen("size_m = [4, 2]\n", "", 1),
+        2,
+        "line 3, column 1: puddle[0].cell_mm: 25000 x 1000 cells; allowed: at most 2048 each way: a larger cell_mm, or \
+         more puddles",
+    );
+    says(
+        &with("mask = \"../m.png\""),
+        2,
+        "line 4, column 1: puddle[0].mask: \"../m.png\" leaves the scene folder; allowed: only relative paths beneath the \
+         folder of the weather file or an asset root",
+    );
+    for line in ["depth_mm = nan", "ripple_scale = 0", "clear_m = 0", "size = 3"] {
+        assert_eq!(Weather::parse("w.toml", &with(line)).expect_err(line).exit_code(), 2, "{line}");
+    }
+    let many = "[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [4, 2]\n".repeat(17);
+    assert_eq!(Weather::parse("w.toml", &many).expect_err("17 puddles").exit_code(), 3);
+    let large = "[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [20, 20]\ncell_mm = 10\n".repeat(2);
+    assert_eq!(Weather::parse("w.toml", &large).expect_err("8 million cells").exit_code(), 3);
+}
+
+#[test]
+fn a_mask_is_read_and_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("w.toml");
+    let text = "[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [4, 2]\nmask = \"mask.png\"\n";
+    std::fs::write(&path, text).unwrap();
+    let read = || {
+        let weather = Weather::read(&path, &mut Budget::default())?;
+        let roots = Roots::open(&path, &[])?;
+        load(&weather, &roots, &mut Budget::default())
+    };
+    let error = read().expect_err("no mask");
+    assert_eq!(error.exit_code(), 5);
+    assert!(error.to_string().starts_with("mask.png: "), "{error}");
+    let save = |width, height| {
+        image::GrayImage::from_fn(width, height, |x, _| image::Luma([(x % 256) as u8]))
+            .save(folder.path().join("mask.png"))
+            .unwrap();
+    };
+    save(8, 4);
+    let loaded = read().expect("a mask");
+    assert_eq!(loaded.masks[0].as_ref().map(|mask| (mask.width, mask.height)), Some((8, 4)));
+    save(2049, 2);
+    assert_eq!(read().expect_err("too wide").exit_code(), 3);
+    std::fs::write(folder.path().join("mask.png"), "no picture").unwrap();
+    assert_eq!(read().expect_err("no picture").exit_code(), 2);
+}

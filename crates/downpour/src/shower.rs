@@ -1,0 +1,184 @@
+//! The rain of a weather before an eye, at one time after the other: in closed form, or step by step.
+
+mod error;
+mod scenery;
+mod stepped;
+
+use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
+use downpour_drop::fall_speed::TerminalSpeed;
+use downpour_sim::field::{RainField, VisibleDrops};
+use downpour_sim::shelter::Obstacles;
+use downpour_sim::simulation::Bounce;
+use downpour_sim::view::View;
+use downpour_weather::{Rain, RainDrag, RainExtinction, RainVolume, Weather};
+use downpour_wind::{UniformWind, WindField};
+use glam::DVec3;
+
+use downpour_render::glass::pane_plane;
+use downpour_render::rain::{DropMasks, MediumOptions, RainMedium};
+use downpour_trace::stage::Stage;
+pub use error::ShowerError;
+pub use scenery::{MovingEye, MovingScenery, Scenery, Still};
+use stepped::Stepped;
+
+/// How the drops are found.
+#[derive(Clone, Debug)]
+enum Form {
+    Closed(Box<RainField>),
+    Stepped(Box<Stepped>),
+}
+
+/// The rain of a weather.
+#[derive(Clone, Debug)]
+pub struct Shower {
+    law: DropSizeDistribution,
+    weather: Weather,
+    bounce: Bounce,
+    form: Form,
+}
+
+impl Shower {
+    /// The rain of a weather.
+    ///
+    /// # Errors
+    /// [`ShowerError::NotUniform`] if closed form is asked for in a wind that differs from place to place,
+    /// [`ShowerError::DragByStep`] for a drag that has none;
+    /// [`ShowerError::Sim`], [`ShowerError::Drop`] for a rain that is none.
+    pub fn new(weather: &Weather) -> Result<Self, ShowerError> {
+        let rain = &weather.rain;
+        let law = rain.sizes()?;
+        // The papers' drag has no closed form.
+        let relaxes = rain.drag == RainDrag::Relaxation;
+        let form = match (rain.volume, weather.wind.uniform()) {
+            (RainVolume::Auto, Some(wind)) if relaxes => closed(&law, rain, wind)?,
+            (RainVolume::ClosedForm, Some(_)) if !relaxes => return Err(ShowerError::DragByStep),
+            (RainVolume::ClosedForm, Some(wind)) => closed(&law, rain, wind)?,
+            (RainVolume::ClosedForm, None) => return Err(ShowerError::NotUniform),
+            _ => Form::Stepped(Box::new(Stepped::new(law.clone(), weather))),
+        };
+        Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), form })
+    }
+
+    /// Whether drops are where they are in closed form, and not step by step.
+    #[must_use]
+    pub fn is_closed_form(&self) -> bool {
+        matches!(self.form, Form::Closed(_))
+    }
+
+    /// Whether a picture of any time can be made by itself, and is the same as among others. If not, pictures of a clip are
+    /// made in order of time, and each of them has to be asked for.
+    #[must_use]
+    pub fn can_seek(&self) -> bool {
+        match &self.form {
+            Form::Closed(_) => true,
+            Form::Stepped(stepped) => stepped.forgets(),
+        }
+    }
+
+    /// The drops that a picture of a scene shows at a time in seconds; `stage` is the scene at that time. Of work that takes
+    /// long `passed` is told how many steps are done, and how many there are to do.
+    ///
+    /// # Errors
+    /// As [`RainField::visible`] and [`Simulation::advance`](downpour_sim::simulation::Simulation::advance);
+    /// [`ShowerError::Wind`] for a wind field that is none; [`ShowerError::Stage`].
+    pub fn at(
+        &mut self,
+        scenery: &dyn Scenery,
+        stage: &Stage,
+        time_s: f64,
+        passed: &mut dyn FnMut(u32, u32),
+    ) -> Result<VisibleDrops, ShowerError> {
+        let mut visible = match &mut self.form {
+            Form::Closed(field) => {
+                let view = View { most_drops: self.weather.rain.most_drops, ..stage.view()? };
+                let obstacles = Obstacles {
+                    nodes: &stage.data.nodes,
+                    triangles: &stage.data.triangles,
+                    holes: Some(&stage.data),
+                    origin: stage.origin,
+                };
+                let mut visible = field.visible_among(&obstacles, &view, time_s)?;
+                let least = visible.resolved.least_pixels;
+                visible.drops.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
+                visible
+            }
+            Form::Stepped(stepped) => stepped.at(scenery, stage, time_s, passed)?,
+        };
+        // A pane keeps the rain outside.
+        if let Some(pane) = pane_plane(&self.weather, &stage.viewpoint)? {
+            let eye = stage.view()?.eye;
+            visible.drops.retain(|drop| !pane.is_before((drop.position - eye).as_vec3()));
+        }
+        Ok(visible)
+    }
+
+    /// The wind that the drops feel at a time in seconds, in its cells and relative to the stage's origin: none blows in
+    /// objects. `None` where it is the same everywhere, which drops in closed form feel in the lee of objects too.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub fn wind_field(
+        &mut self,
+        scenery: &dyn Scenery,
+        time_s: f64,
+    ) -> Result<Option<WindField>, ShowerError> {
+        match &mut self.form {
+            Form::Closed(_) => Ok(None),
+            Form::Stepped(stepped) => stepped.wind_field(scenery, time_s),
+        }
+    }
+
+    /// The drops that were not listed for a picture at a time in seconds: `visible` is what [`Shower::at`] gave.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub fn medium(
+        &self,
+        stage: &Stage,
+        visible: &VisibleDrops,
+        masks: &DropMasks,
+        time_s: f64,
+    ) -> Result<RainMedium, ShowerError> {
+        let speeds = TerminalSpeed::new(self.law.options().fall_speed, &self.law.options().air);
+        let speed = speeds.at(self.law.effective_diameter()).unwrap_or_default();
+        let options = MediumOptions {
+            efficiency: match self.weather.rain.extinction {
+                RainExtinction::Total => ExtinctionEfficiency::Total,
+                _ => ExtinctionEfficiency::Camera,
+            },
+            velocity: (self.weather.wind.air().velocity(time_s) - DVec3::Y * speed).as_vec3(),
+            origin: stage.origin,
+            pane: pane_plane(&self.weather, &stage.viewpoint)?,
+        };
+        Ok(RainMedium::new(&self.law, &visible.resolved, masks, &options)?)
+    }
+
+    /// The rate, mm/h, of the drops about the eye (in closed form) or in the simulated volume, with those that something
+    /// hides.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub fn measured_rate_mm_h(&self, stage: &Stage, time_s: f64) -> Result<f64, ShowerError> {
+        match &self.form {
+            Form::Closed(field) => Ok(field.measured_rate_mm_h(stage.view()?.eye, time_s)?),
+            Form::Stepped(stepped) => Ok(stepped.measured_rate_mm_h()),
+        }
+    }
+}
+
+/// Rain in closed form.
+fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<Form, ShowerError> {
+    Ok(Form::Closed(Box::new(RainField::new(law, rain.seed)?.with_wind(wind))))
+}
+
+/// What happens to drops that meet a surface.
+fn bounce(rain: &Rain) -> Bounce {
+    let bounce = &rain.bounce;
+    Bounce {
+        share: bounce.share as f32,
+        restitution: bounce.restitution as f32,
+        grip: bounce.grip as f32,
+        size: bounce.size as f32,
+        longest_s: bounce.longest_s as f32,
+    }
+}

@@ -1,0 +1,60 @@
+//! What can be wrong with a rain before an eye.
+
+use downpour_drop::DropError;
+use downpour_sim::SimError;
+use downpour_wind::WindError;
+
+use downpour_render::RenderError;
+use downpour_render::glass::PaneError;
+use downpour_trace::stage::StageError;
+
+/// Why there is no rain.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShowerError {
+    /// Closed form in a wind that has none.
+    #[error(
+        "rain.volume is \"closed-form\" in a wind that differs from place to place; allowed: \"auto\", \"view\", \"box\", \
+         or uniform wind and gusts alone"
+    )]
+    NotUniform,
+    /// A drag that has no closed form.
+    #[error(
+        "rain.drag is \"rousseau-2008\", which has no closed form, and rain.volume is \"closed-form\"; allowed: \
+         rain.drag = \"relaxation\", or rain.volume = \"auto\", \"view\" or \"box\""
+    )]
+    DragByStep,
+    /// The drops' motion.
+    #[error(transparent)]
+    Sim(#[from] SimError),
+    /// The wind.
+    #[error(transparent)]
+    Wind(#[from] WindError),
+    /// The physics of drops.
+    #[error(transparent)]
+    Drop(#[from] DropError),
+    /// The eye.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The scene between pictures.
+    #[error(transparent)]
+    Stage(#[from] StageError),
+    /// The pane before the eye.
+    #[error(transparent)]
+    Pane(#[from] PaneError),
+}
+
+impl ShowerError {
+    /// The exit code of the command for this error.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Sim(error) => error.exit_code(),
+            Self::Wind(error) => error.exit_code(),
+            Self::Render(error) => error.exit_code(),
+            Self::Stage(error) => error.exit_code(),
+            Self::Pane(error) => error.exit_code(),
+            Self::NotUniform | Self::DragByStep | Self::Drop(_) => 2,
+        }
+    }
+}
