@@ -111,8 +111,8 @@ fn a_pane_gets_the_rain_that_falls_on_its_slope() {
         let mut glass = Glass::new(&options).expect("a pane");
         glass.step(3.0).expect("a step");
         let diameters = DistributionOptions {
-            smallest_diameter_m: 0.2e-3,
-            largest_diameter_m: 7.5e-3,
+            min_diameter_m: 0.2e-3,
+            max_diameter_m: 7.5e-3,
             ..DistributionOptions::default()
         };
         let drops =

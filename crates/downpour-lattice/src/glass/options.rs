@@ -36,7 +36,7 @@ impl Default for GlassRain {
         Self {
             rate_mm_h: 0.0,
             law: DropSizeLaw::default(),
-            diameters_m: [drops.smallest_diameter_m, drops.largest_diameter_m],
+            diameters_m: [drops.min_diameter_m, drops.max_diameter_m],
             fall_speed: drops.fall_speed,
             air: drops.air,
             towards_m_s: 0.0,

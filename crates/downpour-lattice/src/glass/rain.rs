@@ -48,8 +48,8 @@ impl Landing {
         let [least, most] = options.rain.diameters_m;
         let (smallest, largest) = (least.max(SMALLEST_M), most.min(LARGEST_M));
         let diameters = DistributionOptions {
-            smallest_diameter_m: smallest,
-            largest_diameter_m: largest,
+            min_diameter_m: smallest,
+            max_diameter_m: largest,
             fall_speed: options.rain.fall_speed,
             air: options.rain.air,
         };

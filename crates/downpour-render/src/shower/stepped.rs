@@ -232,7 +232,7 @@ impl Stepped {
         self.least_pixels = Some(least);
         // The longest way through the picture, with some room for the wind.
         let options = self.law.options();
-        let (smallest, largest) = (options.smallest_diameter_m, options.largest_diameter_m);
+        let (smallest, largest) = (options.min_diameter_m, options.max_diameter_m);
         let longest = (0..64)
             .map(|k| smallest + (largest - smallest) * f64::from(k) / 63.0)
             .filter_map(|d| Some(view.range(d, least) / self.speeds.at(d).ok()?.max(0.01)))
