@@ -41,7 +41,7 @@ fn field() -> Result<WindField, Box<dyn Error>> {
         WindPrimitive::Uniform(WindUniform { speed: 4.0, direction: Vec3::X }),
         WindPrimitive::Vortex(WindSingularity {
             strength: 200.0,
-            centre: Vec3::ZERO,
+            center: Vec3::ZERO,
             axis: Vec3::Y,
             core_radius: 5.0,
             form: WindForm::Line,
@@ -77,7 +77,7 @@ fn wind_speed(gpu: &Gpu) -> Result<(), Box<dyn Error>> {
         .map(|k| {
             let at = WindSingularity {
                 strength: 20.0,
-                centre: Vec3::new(f32::from(k % 8), 1.0, f32::from(k / 8)) * 10.0 - 35.0,
+                center: Vec3::new(f32::from(k % 8), 1.0, f32::from(k / 8)) * 10.0 - 35.0,
                 axis: Vec3::Y,
                 core_radius: 4.0,
                 form: WindForm::Line,

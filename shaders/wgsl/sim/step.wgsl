@@ -179,17 +179,17 @@ fn step_speed(diameter: f32) -> f32 {
     return motion_table_speed(lower, bitcast<f32>(step_tables[entry + 1u]), diameter);
 }
 
-// The wind at a place.
+// Wind at a position.
 fn step_wind(at: vec3f) -> vec3f {
     if !STEP_FIELD {
         return step_frame.wind;
     }
-    let place = wind_field_place(step_grid, at);
+    let position = wind_field_locate(step_grid, at);
     var corners: array<vec3f, 8>;
     for (var k = 0u; k < 8u; k += 1u) {
-        corners[k] = step_cells[wind_field_index(step_grid, wind_field_corner(place, k))].xyz;
+        corners[k] = step_cells[wind_field_index(step_grid, wind_field_corner(position, k))].xyz;
     }
-    return wind_field_mix(corners, place.share);
+    return wind_field_mix(corners, position.fraction);
 }
 
 // Velocity of a drop that comes to a place from the rain around: what it keeps of the wind on its way.
