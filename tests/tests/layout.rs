@@ -105,7 +105,7 @@ fn hosts() -> Vec<Host> {
             size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
             steps, halo, half_storage, slope),
         host!(PuddleSeed as "PuddleSeed" in &lattice::puddle::PUDDLE_SEED,
-            place, per_length, amplitude, lift, reach, shape, unused),
+            center, per_length, amplitude, lift, reach, shape, unused),
         host!(BvhNode as "BvhNode" in &bvh::BVH, low, link, high, count),
         host!(BvhTriangle as "BvhTriangle" in &bvh::BVH, corner, index, edge_1, edge_2),
         host!(CameraUniform as "SpecimenCamera" in &specimen::SPECIMEN, right, step, up, distance, back, samples),

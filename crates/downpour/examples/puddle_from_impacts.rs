@@ -1,4 +1,5 @@
-//! A puddle that ripples where the drops of a simulated rain meet it, beside one that is seeded by the law of that rain.
+//! A puddle that ripples where the drops of a simulated rain meet it, beside one that is seeded by the law of that
+//! rain.
 //!
 //! ```sh
 //! cargo run --release -p downpour --example puddle_from_impacts -- 25
@@ -74,10 +75,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// What of an impact the water needs, if it was on the water.
 fn on_water(event: &StepEvent) -> Option<Impact> {
     let [x, y, z] = event.place;
-    let place_m = [x - CORNER[0], z - CORNER[1]];
-    let within = place_m.iter().all(|at| (0.0..EDGE).contains(at)) && (y - HEIGHT).abs() < 0.05;
+    let position_m = [x - CORNER[0], z - CORNER[1]];
+    let within = position_m.iter().all(|at| (0.0..EDGE).contains(at)) && (y - HEIGHT).abs() < 0.05;
     let speed_m_s = Vec3::from(event.velocity).length();
-    within.then_some(Impact { place_m, speed_m_s, diameter_m: event.diameter })
+    within.then_some(Impact { position_m, speed_m_s, diameter_m: event.diameter })
 }
 
 /// A level floor.
