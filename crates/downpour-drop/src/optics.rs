@@ -40,7 +40,7 @@ pub use scattering::{
 ///
 /// ```
 /// use downpour_drop::optics::optics_refract;
-/// // Straight down into water: the ray goes on.
+/// // Straight down into water: the ray continues straight.
 /// let (down, squared) = optics_refract([0.0f32, -1.0, 0.0], [0.0, 1.0, 0.0], 1.0 / 1.333);
 /// assert_eq!(down, [0.0, -1.0, 0.0]);
 /// assert_eq!(squared, 1.0);

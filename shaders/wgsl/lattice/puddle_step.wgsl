@@ -219,7 +219,7 @@ fn puddle_step_direct_straight(quad: PuddleStateQuad, column: i32, row: i32, lin
     return puddle_grid.weights.x * own - puddle_grid.weights.y * ((n + s) + (w + e));
 }
 
-// One time step of degree 1: a quad per invocation, from memory to memory. Neighbours fraction data through the caches.
+// One time step of degree 1: a quad per invocation, from memory to memory. Neighbours share data through the caches.
 @compute @workgroup_size(32, 8)
 fn main_lattice_puddle_step_direct(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= puddle_grid.quads || id.y >= puddle_grid.size.y {
