@@ -1,4 +1,4 @@
-//! `wgsl/bvh`: rays among triangles. The Rust twins are in `downpour-bvh`.
+//! `wgsl/bvh`: intersection of rays with triangles. The Rust twins are in `downpour-bvh`.
 
 use crate::Module;
 
@@ -6,11 +6,11 @@ use crate::Module;
 pub const MODULES: &[&Module] = &[&BVH_CONSTANTS, &BVH];
 
 shared_constants! {
-    /// Constants of the walk through the tree.
+    /// Constants of the traversal.
     BVH_CONSTANTS at "bvh/constants" {
-        /// Nodes that may wait while a tree is walked: its depth, at most.
+        /// Size of the traversal stack: maximum depth of a tree.
         BVH_STACK: u32 = 48;
-        /// Beyond every distance.
+        /// Larger than every distance.
         BVH_FAR: f32 = 3.0e38;
         /// Barycentric slack of a triangle: a ray through a shared edge must not slip between two of them.
         BVH_EDGE_SLACK: f32 = 1.0e-6;

@@ -1,4 +1,4 @@
-//! `wgsl/common`: what every subsystem may use. The Rust twins are in `downpour-math`.
+//! `wgsl/common`: functions that every subsystem may use. The Rust twins are in `downpour-math`.
 
 use crate::Module;
 
@@ -24,13 +24,13 @@ pub static PACKING: Module = Module {
 };
 
 shared_constants! {
-    /// Constants of the random numbers.
+    /// Constants of the random number generator.
     RNG_CONSTANTS at "common/rng constants" {
         /// Multiplier of the 32-bit linear congruential step (Jarzynski & Olano 2020, after PCG).
         RNG_PCG_MULTIPLIER: u32 = 1664525;
         /// Increment of the same step.
         RNG_PCG_INCREMENT: u32 = 1013904223;
-        /// 2^-24: the spacing of the uniform numbers.
+        /// 2^-24: spacing of the uniform numbers.
         RNG_UNIT_STEP: f32 = 5.9604645e-8;
     }
 }
@@ -39,6 +39,6 @@ shared_constants! {
     /// Constants of the packed unit vectors.
     PACKING_CONSTANTS at "common/packing constants" {
         /// Below this sum of absolute components a vector has no direction.
-        PACKING_SMALLEST_NORM: f32 = 1.0e-30;
+        PACKING_MIN_NORM: f32 = 1.0e-30;
     }
 }

@@ -91,7 +91,7 @@ pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
     .copied()
 }
 
-/// The examples of the README, as tests.
+/// Compiles the examples of the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -1,38 +1,38 @@
-//! What a shader file is, and how files become the text of a pipeline.
+//! Shader modules, and their composition into the text of a pipeline.
 
 /// One WGSL file and the modules whose names it uses.
 #[derive(Debug)]
 pub struct Module {
-    /// Where the text stands, below `shaders/wgsl` (or below `shaders/src` for shared constants).
+    /// Path of the text below `shaders/wgsl` (or below `shaders/src` for shared constants).
     pub path: &'static str,
-    /// The text.
+    /// WGSL text.
     pub wgsl: &'static str,
-    /// The modules whose functions, types or constants the text names directly.
+    /// Modules whose functions, types or constants the text names directly.
     pub uses: &'static [&'static Module],
 }
 
 /// A compute entry point.
 #[derive(Debug)]
 pub struct Kernel {
-    /// The name of the entry point: `main_<stem>`.
+    /// Name of the entry point: `main_<stem>`.
     pub entry: &'static str,
-    /// The module that holds it.
+    /// Module that contains the entry point.
     pub module: &'static Module,
-    /// Its workgroup size, as written in the WGSL (a test compares the two).
+    /// Workgroup size, as written in the WGSL (a test compares the two).
     pub workgroup: [u32; 3],
 }
 
 impl Kernel {
-    /// The complete WGSL text of the kernel.
+    /// Complete WGSL text of the kernel.
     #[must_use]
     pub fn source(&self) -> String {
         compose(&[self.module])
     }
 }
 
-/// Concatenates `roots` and everything that they use, each module once and after what it uses.
+/// Concatenates `roots` and all modules that they use, each once and after the modules that it uses.
 ///
-/// Modules are told apart by [`Module::path`]. The order depends on nothing but the modules, so the same
+/// Modules are identified by [`Module::path`]. The order depends on the modules only, so the same
 /// roots give the same text.
 #[must_use]
 pub fn compose(roots: &[&'static Module]) -> String {
@@ -60,7 +60,7 @@ fn visit(module: &'static Module, order: &mut Vec<&'static Module>) {
     for used in module.uses {
         visit(used, order);
     }
-    // A module that is reached again through its own uses was placed by the inner visit.
+    // A module that is reached again through its own uses was added by the inner visit.
     if !order.iter().any(|m| m.path == module.path) {
         order.push(module);
     }

@@ -1,4 +1,4 @@
-//! Constants for both languages, declared once.
+//! Constants shared by Rust and WGSL, declared once.
 
 /// Declares constants for Rust and the [`Module`](crate::Module) that declares them for WGSL.
 ///

@@ -1,4 +1,4 @@
-//! `wgsl/sim`: where drops are. The Rust twins are in `downpour-sim`.
+//! `wgsl/sim`: positions and motion of drops. The Rust twins are in `downpour-sim`.
 
 pub mod collision;
 pub mod enter;

@@ -1,4 +1,4 @@
-//! `wgsl/wind`: wind primitives and the field that they make. The Rust twins are in `downpour-wind`.
+//! `wgsl/wind`: wind primitives and the wind field. The Rust twins are in `downpour-wind`.
 
 use crate::{Kernel, Module};
 
@@ -9,22 +9,22 @@ pub const MODULES: &[&Module] = &[&WIND_CONSTANTS, &PRIMITIVE, &TURBULENCE, &FIE
 pub const KERNELS: &[&Kernel] = &[&FIELD_KERNEL];
 
 shared_constants! {
-    /// Types of the primitives, and factors of their laws. The type of a line form says its core too: as it stands for
+    /// Types of the primitives, and factors of their formulas. The type of a line form includes its core: plain for
     /// Rosenhead's, plus 8 for Rankine's, plus 16 for Lamb and Oseen's.
     WIND_CONSTANTS at "wind/constants" {
-        /// Type: the same wind everywhere.
+        /// Type: uniform wind.
         WIND_PRIMITIVE_UNIFORM: u32 = 0;
         /// Type: out of a line.
         WIND_PRIMITIVE_LINE_SOURCE: u32 = 1;
         /// Type: into a line.
         WIND_PRIMITIVE_LINE_SINK: u32 = 2;
-        /// Type: round a line.
+        /// Type: around a line.
         WIND_PRIMITIVE_LINE_VORTEX: u32 = 3;
         /// Type: out of a point.
         WIND_PRIMITIVE_POINT_SOURCE: u32 = 4;
         /// Type: into a point.
         WIND_PRIMITIVE_POINT_SINK: u32 = 5;
-        /// Type: round an axis, fading in all directions from a point.
+        /// Type: around an axis, fading in all directions from a point.
         WIND_PRIMITIVE_POINT_VORTEX: u32 = 6;
         /// Type: along a line of finite length, from its base to its top.
         WIND_PRIMITIVE_UPDRAFT: u32 = 7;
@@ -32,7 +32,7 @@ shared_constants! {
         WIND_PRIMITIVE_RANKINE: u32 = 8;
         /// Added to the type of a line form with the core of Lamb and Oseen.
         WIND_PRIMITIVE_LAMB_OSEEN: u32 = 16;
-        /// Below this share of the squared core radius 1 - exp(-x) is summed as a series.
+        /// Fraction of the squared core radius below which 1 - exp(-x) is summed as a series.
         WIND_PRIMITIVE_SERIES: f32 = 0.25;
         /// 1 / (2 pi).
         WIND_PRIMITIVE_LINE: f32 = 0.15915494;
@@ -41,7 +41,7 @@ shared_constants! {
     }
 }
 
-/// The velocity that a primitive makes at a place. Twin: `downpour_wind::primitive`.
+/// Velocity of a primitive at a position. Twin: `downpour_wind::primitive`.
 pub static PRIMITIVE: Module = Module {
     path: "wind/primitive.wgsl",
     wgsl: include_str!("../wgsl/wind/primitive.wgsl"),
@@ -52,7 +52,7 @@ pub static PRIMITIVE: Module = Module {
 pub static TURBULENCE: Module =
     Module { path: "wind/turbulence.wgsl", wgsl: include_str!("../wgsl/wind/turbulence.wgsl"), uses: &[] };
 
-/// The wind in the cells of a box. Twin: `downpour_wind::field`.
+/// Wind in the cells of a box. Twin: `downpour_wind::field`.
 pub static FIELD: Module = Module {
     path: "wind/field.wgsl",
     wgsl: include_str!("../wgsl/wind/field.wgsl"),

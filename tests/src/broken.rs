@@ -114,7 +114,11 @@ pub const BROKEN: &[Broken] = &[
     Broken { function: "glass_picture_water_cap", right: "+ l.y * (2.0 * x * y)", wrong: "+ l.y * (x * y)" },
     Broken { function: "glass_picture_water_leave", right: "side == 2", wrong: "side == 1" },
     Broken { function: "glass_picture_spline", right: "0.75 - t * t", wrong: "0.75 + t * t" },
-    Broken { function: "wind_field_mix", right: "(c10 - c00) * share.y", wrong: "(c10 - c00) * share.x" },
+    Broken {
+        function: "wind_field_mix",
+        right: "(c10 - c00) * fraction.y",
+        wrong: "(c10 - c00) * fraction.x",
+    },
 ];
 
 impl Broken {

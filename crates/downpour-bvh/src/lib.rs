@@ -1,8 +1,8 @@
 //! A bounding volume hierarchy over triangles, and the nearest hit of a ray.
 //!
-//! Built by the surface area heuristic over 16 bins per axis (I. Wald, "On fast construction of SAH-based
-//! bounding volume hierarchies", 2007). Nodes are stored depth first; leaves refer to a reordered list of
-//! triangles. The build depends on nothing but the triangles, so the same mesh gives the same tree.
+//! The hierarchy is built by the surface area heuristic with 16 bins per axis (I. Wald, "On fast construction of
+//! SAH-based bounding volume hierarchies", 2007). Nodes are stored depth first; leaves refer to a reordered list
+//! of triangles. The build depends on the triangles only, so the same mesh gives the same tree.
 //!
 //! Twin of the traversal in `shaders/wgsl/bvh/bvh.wgsl`.
 
@@ -10,31 +10,31 @@ use downpour_math::vector::{cross, dot, sub};
 use downpour_shaders::bvh::{BVH_FAR, BVH_STACK};
 use glam::Vec3A;
 
-/// Triangles of a leaf below which it is not split.
+/// Triangle count up to which a node stays a leaf.
 const LEAF: usize = 4;
-/// Depth from which on nodes are cut into halves.
+/// Depth from which nodes are split into halves.
 const HEURISTIC_DEPTH: usize = 24;
-/// Bins per axis.
+/// Number of bins per axis.
 const BINS: usize = 16;
 /// Barycentric slack: a ray through a shared edge must not slip between the two triangles.
 const EDGE_SLACK: f32 = downpour_shaders::bvh::BVH_EDGE_SLACK;
 
-/// A node: an inner node has its first child right behind it and the second at `link`; a leaf has `count`
-/// triangles from `link` on. The same layout as `BvhNode` in WGSL.
+/// A node. An inner node has its first child right after it and the second at `link`; a leaf has `count` triangles
+/// from index `link` on. The same layout as `BvhNode` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct BvhNode {
-    /// Lower corner.
+    /// Lower corner of the bounding box.
     pub low: [f32; 3],
-    /// Second child, or first triangle.
+    /// Index of the second child, or of the first triangle.
     pub link: u32,
-    /// Upper corner.
+    /// Upper corner of the bounding box.
     pub high: [f32; 3],
     /// Number of triangles; 0 for an inner node.
     pub count: u32,
 }
 
-/// Corners of a triangle, ready to be hit. The same layout as `BvhTriangle` in WGSL.
+/// Corner and edges of a triangle, as the intersection test needs them. The same layout as `BvhTriangle` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct BvhTriangle {
@@ -42,30 +42,30 @@ pub struct BvhTriangle {
     pub corner: [f32; 3],
     /// Index of the triangle in the mesh.
     pub index: u32,
-    /// Second corner less the first.
+    /// Second corner minus the first.
     pub edge_1: [f32; 3],
     /// Padding of the WGSL layout.
     pub padding_1: u32,
-    /// Third corner less the first.
+    /// Third corner minus the first.
     pub edge_2: [f32; 3],
     /// Padding of the WGSL layout.
     pub padding_2: u32,
 }
 
-/// Where a ray meets a triangle.
+/// Intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance along the ray, in units of the length of its direction.
     pub distance: f32,
     /// Index of the triangle in the mesh.
     pub triangle: u32,
-    /// Weight of the second corner.
+    /// Barycentric weight of the second corner.
     pub u: f32,
-    /// Weight of the third corner.
+    /// Barycentric weight of the third corner.
     pub v: f32,
 }
 
-/// The hierarchy.
+/// Bounding volume hierarchy over triangles.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     /// Nodes, the root first.
@@ -94,14 +94,14 @@ impl Bounds {
         self.with(other.low).with(other.high)
     }
 
-    /// Half of the surface area; 0 for nothing.
+    /// Half of the surface area; 0 for an empty box.
     fn area(self) -> f32 {
         let [x, y, z] = std::array::from_fn(|k| (self.high[k] - self.low[k]).max(0.0));
         x * y + y * z + z * x
     }
 }
 
-/// A triangle on its way into the tree.
+/// A triangle during the build.
 #[derive(Clone, Copy)]
 struct Item {
     bounds: Bounds,
@@ -110,7 +110,7 @@ struct Item {
 }
 
 impl Bvh {
-    /// Builds the tree over triangles given by their corners.
+    /// Builds the hierarchy over triangles given by their corners.
     #[must_use]
     pub fn new(corners: &[[[f32; 3]; 3]]) -> Self {
         let mut items: Vec<Item> = (0u32..)
@@ -140,14 +140,14 @@ impl Bvh {
         Self { nodes, triangles }
     }
 
-    /// The nearest hit farther than `nearest` along the ray.
+    /// Nearest hit along the ray that is farther than `nearest`.
     #[must_use]
     pub fn hit(&self, origin: [f32; 3], direction: [f32; 3], nearest: f32) -> Option<Hit> {
         bvh_nearest(&self.nodes, &self.triangles, origin, direction, nearest, BVH_FAR)
     }
 }
 
-/// The nearest hit along the ray that is farther than `nearest` and nearer than `farthest`, in the arrays of a [`Bvh`].
+/// Nearest hit along the ray that is farther than `nearest` and nearer than `farthest`, in the arrays of a [`Bvh`].
 #[must_use]
 pub fn bvh_nearest(
     nodes: &[BvhNode],
@@ -169,7 +169,7 @@ pub fn bvh_nearest(
     loop {
         let node = &nodes[at as usize];
         if node.count == 0 {
-            // The nearer child first: what it holds may hide the other.
+            // The nearer child first: its triangles may hide the other.
             let (left, right) = (at + 1, node.link);
             let to_left = bvh_enter(&nodes[left as usize], origin, inverse, limit);
             let to_right = bvh_enter(&nodes[right as usize], origin, inverse, limit);
@@ -195,7 +195,7 @@ pub fn bvh_nearest(
                 }
             }
         }
-        // The next waiting node that is still nearer than what was hit.
+        // The next stacked node that is nearer than the current hit.
         loop {
             if depth == 0 {
                 return best;
@@ -209,33 +209,33 @@ pub fn bvh_nearest(
     }
 }
 
-/// The inverse of a direction, without infinities: a ray along an axis gets a very steep slope instead.
+/// Inverse of a direction, without infinities: a zero component is replaced by a tiny one.
 #[must_use]
 pub fn bvh_inverse(direction: [f32; 3]) -> [f32; 3] {
     direction.map(|d| 1.0 / if d.abs() > 1.0e-20 { d } else { 1.0e-20 })
 }
 
-/// Where the ray enters the box of `node`, if that is before `limit`; `BVH_FAR` otherwise.
+/// Distance at which the ray enters the box of `node`, if it is below `limit`; `BVH_FAR` otherwise.
 #[inline(always)]
 #[must_use]
 pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32) -> f32 {
-    // Machine vectors: most of a picture's time is spent here.
+    // SIMD vectors: this test dominates the time of a picture.
     let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(inverse));
     let a = (Vec3A::from(node.low) - origin) * inverse;
     let b = (Vec3A::from(node.high) - origin) * inverse;
-    // No number here is NaN, so plain comparisons do.
+    // No number here is NaN, so plain comparisons are enough.
     let greater = |a: f32, b: f32| if a > b { a } else { b };
     let less = |a: f32, b: f32| if a < b { a } else { b };
     let (near, far) = (a.min(b), a.max(b));
     let enter = greater(greater(near.x, near.y), greater(near.z, 0.0));
     let leave = less(less(far.x, far.y), less(far.z, limit));
-    // Rounding may put the two past each other by a few units in the last place.
+    // Rounding may swap the two by a few units in the last place.
     if enter <= leave * 1.000_001 + 1.0e-7 { enter } else { BVH_FAR }
 }
 
-/// Distance and the weights of the second and third corner where the ray meets the triangle's plane; distance -1
-/// where that is outside the triangle (T. Moller, B. Trumbore, "Fast, minimum storage ray-triangle intersection",
-/// 1997).
+/// Distance, and barycentric weights of the second and third corner, of the ray's intersection with the plane of
+/// the triangle; distance -1 if that is outside the triangle (T. Moller, B. Trumbore, "Fast, minimum storage
+/// ray-triangle intersection", 1997).
 #[must_use]
 pub fn bvh_triangle(triangle: &BvhTriangle, origin: [f32; 3], direction: [f32; 3]) -> [f32; 3] {
     let p = cross(direction, triangle.edge_2);
@@ -249,16 +249,16 @@ pub fn bvh_triangle(triangle: &BvhTriangle, origin: [f32; 3], direction: [f32; 3
     if inside { [dot(triangle.edge_2, q) * inverse, u, v] } else { [-1.0, 0.0, 0.0] }
 }
 
-/// Adds the subtree over `items`, which start at `first` of the whole list.
+/// Adds the subtree over `items`, which start at index `first` of the whole list.
 fn build(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<BvhNode>) {
     let bounds = items.iter().fold(Bounds::NONE, |b, item| b.union(item.bounds));
     let at = nodes.len();
     nodes.push(BvhNode { low: bounds.low, link: first as u32, high: bounds.high, count: items.len() as u32 });
-    // The traversal keeps one waiting node per level.
+    // The stack of the traversal holds one node per level.
     let deepest = depth + 2 >= BVH_STACK as usize;
     let cut = match () {
         () if items.len() <= LEAF || deepest => None,
-        // Far down, halves end sooner than what the heuristic takes off one by one.
+        // Deep in the tree, halving ends sooner than splits that take off one triangle at a time.
         () if depth >= HEURISTIC_DEPTH => halve(items),
         () => split(items).or_else(|| halve(items)),
     };
@@ -270,7 +270,7 @@ fn build(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<BvhNode
     build(right, first + split, depth + 1, nodes);
 }
 
-/// Reorders `items` and says where to cut them.
+/// Reorders `items` and returns the split index.
 fn split(items: &mut [Item]) -> Option<usize> {
     let middles = items.iter().fold(Bounds::NONE, |b, item| b.with(item.middle));
     let mut best = (f32::INFINITY, 0, 0);
@@ -291,7 +291,7 @@ fn split(items: &mut [Item]) -> Option<usize> {
                 (bounds.area() * n as f32, n)
             };
             let ((left, in_left), (right, in_right)) = (side(&bins[..cut]), side(&bins[cut..]));
-            // A cut with nothing on one side is none, however cheap.
+            // A split with an empty side is not allowed, however cheap.
             if in_left > 0 && in_right > 0 && left + right < best.0 {
                 best = (left + right, axis, cut);
             }
@@ -302,13 +302,13 @@ fn split(items: &mut [Item]) -> Option<usize> {
         return None;
     }
     let extent = middles.high[axis] - middles.low[axis];
-    // A stable order keeps the tree independent of the sort.
+    // A stable order keeps the tree independent of the sort algorithm.
     items.sort_by_key(|item| bin_of(item, axis, middles.low[axis], extent) >= cut);
     let split = items.partition_point(|item| bin_of(item, axis, middles.low[axis], extent) < cut);
     (split > 0 && split < items.len()).then_some(split)
 }
 
-/// Sorts `items` along their longest axis and cuts them into halves; nothing where all are in one place.
+/// Sorts `items` along their longest axis and splits them in half; `None` if all are at one point.
 fn halve(items: &mut [Item]) -> Option<usize> {
     let middles = items.iter().fold(Bounds::NONE, |b, item| b.with(item.middle));
     let extent = |axis: usize| middles.high[axis] - middles.low[axis];
@@ -316,7 +316,7 @@ fn halve(items: &mut [Item]) -> Option<usize> {
     if extent(axis) <= 0.0 {
         return None;
     }
-    // Ties are broken by the index, so that the order does not depend on the sort.
+    // Ties are broken by the index, so that the order does not depend on the sort algorithm.
     items.sort_by(|a, b| a.middle[axis].total_cmp(&b.middle[axis]).then(a.index.cmp(&b.index)));
     Some(items.len() / 2)
 }
@@ -325,7 +325,7 @@ fn bin_of(item: &Item, axis: usize, low: f32, extent: f32) -> usize {
     (((item.middle[axis] - low) / extent * BINS as f32) as usize).min(BINS - 1)
 }
 
-/// The examples of the README, as tests.
+/// Compiles the examples of the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;
@@ -338,16 +338,16 @@ mod tests {
     fn soup(n: u32) -> Vec<[[f32; 3]; 3]> {
         (0..n)
             .map(|i| {
-                let place = rng_draw([1, 2], i, 0, 0).map(rng_unit);
+                let position = rng_draw([1, 2], i, 0, 0).map(rng_unit);
                 std::array::from_fn(|corner| {
                     let offset = rng_draw([3, 4], i, corner as u32, 0).map(rng_unit);
-                    std::array::from_fn(|k| place[k] * 4.0 + 0.5 * offset[k])
+                    std::array::from_fn(|k| position[k] * 4.0 + 0.5 * offset[k])
                 })
             })
             .collect()
     }
 
-    /// The tree finds what a loop over all triangles finds.
+    /// The tree finds the same hit as a loop over all triangles.
     #[test]
     fn nearest_hit_is_that_of_brute_force() {
         let corners = soup(800);
@@ -391,7 +391,7 @@ mod tests {
         assert!(seen.iter().all(|&n| n == 1));
     }
 
-    /// Large triangles among small ones, as a scene has them, do not end in large leaves.
+    /// Large triangles among small ones, as in a scene, do not end in large leaves.
     #[test]
     fn leaves_are_small() {
         let mut corners = soup(3000);

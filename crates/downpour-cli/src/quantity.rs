@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use downpour::drop::air::PRESSURE_RANGE_PA;
 use downpour::drop::distribution::RATE_RANGE_MM_H;
 use downpour::drop::oscillation::Amplitudes;
-use downpour::drop::shape::{LARGEST_DIAMETER, SMALLEST_DIAMETER};
+use downpour::drop::shape::{MAX_DIAMETER, MIN_DIAMETER};
 use downpour::drop::water::TEMPERATURE_RANGE_C;
 use downpour::mask::SIZES;
 use downpour::specimen::{LONGEST_EXPOSURE_S, SpecimenLamp};
@@ -16,7 +16,7 @@ const COLDEST_INDEX_C: f64 = -12.0;
 
 /// Diameter of a drop, in mm.
 pub(crate) fn diameter_mm(text: &str) -> Result<f64, String> {
-    read(text, &(SMALLEST_DIAMETER * 1.0e3..=LARGEST_DIAMETER * 1.0e3), "0.001 to 9 mm")
+    read(text, &(MIN_DIAMETER * 1.0e3..=MAX_DIAMETER * 1.0e3), "0.001 to 9 mm")
 }
 
 /// Temperature of air and water, in Celsius.

@@ -1,17 +1,17 @@
-//! The air that drops fall through: density, viscosity, mean free path.
+//! Air that drops fall through: density, viscosity, mean free path.
 //!
 //! Laws, with the absolute temperature T and the pressure p:
-//! - density: dry ideal gas, `rho = p / (287.04 T)`. Moist air is lighter by 0.378 of the share that vapour has in
-//!   the pressure (1.6 % if saturated at 30 C): neglected;
+//! - density: dry ideal gas, `rho = p / (287.04 T)`. Moist air is lighter by 0.378 times the ratio of vapour pressure
+//!   to pressure (1.6 % if saturated at 30 C): neglected;
 //! - viscosity: H. R. Pruppacher, J. D. Klett, Microphysics of Clouds and Precipitation, after Beard 1976:
 //!   `(1.718 + 0.0049 t) e-5 Pa s` in Celsius, less `1.2e-10 t^2` below 0 C. By name, the straight line
-//!   `(1.721 + 0.00487 t) e-5` that programs for disdrometers use (0.2 % higher at 0 C);
+//!   `(1.721 + 0.00487 t) e-5` that disdrometer software uses (0.2 % higher at 0 C);
 //! - mean free path: K. V. Beard, J. Atmos. Sci. 33, 851 (1976):
 //!   `6.62e-8 m (eta / 1.818e-5) (101325 / p) sqrt(T / 293.15)`.
 //!
 //! Units: Celsius, Pa, kg/m^3, Pa s, metres. Limits: -20 to 40 C, where drops are liquid and the laws of water
-//! hold too; 300 to 1100 hPa, from the top of rain clouds to the lowest lands. A drop is taken to be as warm as the
-//! air; real rain is a few degrees colder, at the wet-bulb temperature.
+//! hold too; 300 to 1100 hPa, from the top of rain clouds to the lowest lands. A drop has the temperature of the air
+//! here; real rain is a few degrees colder, at the wet-bulb temperature.
 
 use std::ops::RangeInclusive;
 
@@ -24,10 +24,10 @@ use crate::water::{self, CELSIUS_ZERO_K};
 /// Standard gravity, m/s^2.
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// The pressures, in Pa, for which the laws are given.
+/// Range of pressures, in Pa, in which the laws hold.
 pub const PRESSURE_RANGE_PA: RangeInclusive<f64> = 30_000.0..=110_000.0;
 
-/// Temperature and pressure of the air, checked.
+/// Temperature and pressure of the air, both in range.
 ///
 /// ```
 /// use downpour_drop::air::Air;
@@ -49,13 +49,13 @@ impl Default for Air {
 }
 
 impl Air {
-    /// 20 C and 1013.25 hPa: the air of Gunn & Kinzer's measurements and of the fits to them.
+    /// Air at 20 C and 1013.25 hPa: that of Gunn & Kinzer's measurements and of the fits to them.
     #[must_use]
     pub const fn standard() -> Self {
         Self { temperature_c: 20.0, pressure_pa: 101_325.0 }
     }
 
-    /// Air of a temperature in Celsius and a pressure in Pa.
+    /// Creates air of a temperature in Celsius and a pressure in Pa.
     ///
     /// # Errors
     /// [`DropError::OutOfRange`] outside -20 to 40 C or 300 to 1100 hPa.
@@ -104,27 +104,27 @@ impl Air {
         6.62e-8 * (self.viscosity() / 1.818e-5) * (101_325.0 / self.pressure_pa) * warmth
     }
 
-    /// (rho0 / rho)^0.4, with rho0 the density of standard air: by how much a drop falls faster than in standard
+    /// (rho0 / rho)^0.4, with rho0 the density of standard air: ratio of the fall speed of a drop to that in standard
     /// air (G. B. Foote, P. S. du Toit, J. Appl. Meteor. 8, 249, 1969). 1 in standard air.
     #[must_use]
     pub fn speed_factor(&self) -> f64 {
         ops::pow(Self::standard().density() / self.density(), 0.4)
     }
 
-    /// Density of the drops' water in kg/m^3, as warm as the air.
+    /// Density of the drops' water in kg/m^3, at the temperature of the air.
     #[must_use]
     pub fn water_density(&self) -> f64 {
         water::density_at(self.temperature_c)
     }
 
-    /// Surface tension of the drops in N/m, as warm as the air.
+    /// Surface tension of the drops in N/m, at the temperature of the air.
     #[must_use]
     pub fn water_surface_tension(&self) -> f64 {
         water::surface_tension_at(self.temperature_c)
     }
 }
 
-/// Viscosity of air in Pa s at a temperature in Celsius, as Beard 1976 and Pruppacher & Klett have it.
+/// Viscosity of air in Pa s at a temperature in Celsius, after Beard 1976 and Pruppacher & Klett.
 #[must_use]
 pub fn viscosity_pruppacher_klett(temperature_c: f64) -> f64 {
     let t = temperature_c;
@@ -132,8 +132,8 @@ pub fn viscosity_pruppacher_klett(temperature_c: f64) -> f64 {
     (1.718 + 0.0049 * t - cold) * 1.0e-5
 }
 
-/// Viscosity of air in Pa s at a temperature in Celsius, as programs for disdrometers have it. It is the expansion
-/// of `1.832e-5 (1 + 0.00266 (T - 296 K))`; the paper behind it was not seen.
+/// Viscosity of air in Pa s at a temperature in Celsius, as disdrometer software computes it: the expansion of
+/// `1.832e-5 (1 + 0.00266 (T - 296 K))`. The original paper was not seen.
 #[must_use]
 pub fn viscosity_linear(temperature_c: f64) -> f64 {
     (1.721 + 0.004_87 * temperature_c) * 1.0e-5

@@ -1,9 +1,9 @@
-//! Height over width of a falling drop, by the published fits.
+//! Axis ratio, height over width, of a falling drop by published fits.
 //!
 //! d is the diameter of the sphere of equal volume: metres in the functions, millimetres in the formulas
 //! here. The ratio is 1 for a sphere and falls with the size. [`DropShape`](crate::shape::DropShape) gives
 //! the ratio of the whole shape; these are fits to models and measurements, for comparison and for users who
-//! want one of them by name.
+//! need a specific one.
 //!
 //! | model | formula | range here |
 //! |---|---|---|
@@ -16,7 +16,7 @@
 //!
 //! The first two were fitted to shapes of 1 to 7 mm; at 0.5 mm they meet the sphere within 0.2 %, above 7 mm
 //! they fall too low. The branches of Andsager and Thurai do not meet at their joints: the steps, up to 0.6
-//! %, are theirs.
+//! %, are in the papers.
 
 use downpour_math::ops;
 
@@ -25,10 +25,10 @@ use crate::shape::check_diameter;
 
 /// Surface tension of water at 20 C, in N/m (IAPWS R1-76).
 const SURFACE_TENSION_20_C: f64 = 0.072736;
-/// Density of water (998.204) less that of air (1.204) at 20 C, in kg/m3.
+/// Density of water (998.204) minus that of air (1.204) at 20 C, in kg/m3.
 const DENSITY_DIFFERENCE_20_C: f64 = 997.0;
 
-/// A published law of the axis ratio.
+/// A published model of the axis ratio.
 ///
 /// ```
 /// use downpour_drop::axis_ratio::AxisRatioModel;
@@ -40,17 +40,17 @@ const DENSITY_DIFFERENCE_20_C: f64 = 997.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum AxisRatioModel {
-    /// The polynomial that stands for the equilibrium shapes of Beard & Chuang.
+    /// Polynomial fit to the equilibrium shapes of Beard & Chuang.
     BeardChuang1987,
-    /// Drops that oscillate as in a laboratory, 1.1 to 4.4 mm; Beard & Chuang elsewhere.
+    /// Drops oscillating in a laboratory, 1.1 to 4.4 mm; Beard & Chuang elsewhere.
     Andsager1999,
-    /// Measured on artificial rain that fell 80 m.
+    /// Measurements of artificial rain that fell 80 m.
     Thurai2007,
-    /// A fit to several measurements. The paper prints 0.005030 for the cubic term; 0.005303 is meant.
+    /// Fit to several measurements. The paper prints 0.005030 for the cubic term; 0.005303 is meant.
     Brandes2002,
-    /// A straight line, from wind tunnel measurements.
+    /// Straight line fitted to wind tunnel measurements.
     PruppacherBeard1970,
-    /// An oblate spheroid whose surface tension balances its weight, for water and air at 20 C.
+    /// Oblate spheroid whose surface tension balances its weight, for water and air at 20 C.
     Green1975,
 }
 
@@ -65,10 +65,10 @@ impl AxisRatioModel {
         Self::Green1975,
     ];
 
-    /// Height over width of a drop whose sphere of equal volume has this diameter (in metres).
+    /// Axis ratio of a drop whose sphere of equal volume has this diameter in metres.
     ///
     /// # Errors
-    /// If the diameter is outside [the model's range](self).
+    /// [`DropError::OutOfRange`] if the diameter is outside [the model's range](self).
     pub fn axis_ratio(self, diameter_m: f64) -> Result<f64, DropError> {
         let (range, allowed) = match self {
             Self::BeardChuang1987 | Self::Andsager1999 => (0.5e-3..=7.0e-3, "0.5 to 7"),
@@ -105,12 +105,12 @@ fn polynomial(d: f64, c: [f64; 5]) -> f64 {
 
 /// Axis ratio by Green 1975: the ratio q for which
 /// `d / 2 = sqrt(sigma / (g drho)) q^(-1/6) sqrt(q^-2 - 2 q^(-1/3) + 1)`,
-/// with the surface tension sigma (N/m), the density of water less that of air drho (kg/m3) and g = 9.80665
+/// with the surface tension sigma (N/m), the density of water minus that of air drho (kg/m3) and g = 9.80665
 /// m/s2. (The power of sigma is as corrected by later authors.)
 ///
 /// # Errors
-/// If the diameter is not in 1 um to 9 mm, the surface tension not in 1e-3 to 1 N/m, or the difference of
-/// densities not in 100 to 20000 kg/m3.
+/// [`DropError::OutOfRange`] if the diameter is not 1 um to 9 mm, the surface tension not 1e-3 to 1 N/m, or the
+/// difference of densities not 100 to 20000 kg/m3.
 pub fn green_1975(diameter_m: f64, surface_tension: f64, density_difference: f64) -> Result<f64, DropError> {
     check_diameter(diameter_m, 1.0e-6..=9.0e-3, "0.001 to 9")?;
     if !(1.0e-3..=1.0).contains(&surface_tension) {
@@ -128,7 +128,7 @@ fn green_root(diameter_m: f64, surface_tension: f64, density_difference: f64) ->
     let gravity = 9.806_65;
     let target = 0.25 * diameter_m * diameter_m * gravity * density_difference / surface_tension;
     // With q = exp(-s), the square of the radius in capillary lengths is exp(s/3) (exp(2 s) - 2 exp(s/3) +
-    // 1), which rises from 0 with s; written so that a small s keeps digits.
+    // 1), which rises from 0 with s. In this form a small s keeps its digits.
     let square = |s: f64| {
         let third = ops::f64::exp_m1(s / 3.0);
         (1.0 + third) * (ops::f64::exp_m1(2.0 * s) - 2.0 * third)
@@ -151,8 +151,7 @@ mod tests {
     use super::*;
     use crate::shape::DropShape;
 
-    /// d in mm, then BC87, Andsager, Thurai, Brandes, Pruppacher-Beard; NaN where it is out of the model's
-    /// range.
+    /// d in mm, then BC87, Andsager, Thurai, Brandes, Pruppacher-Beard; NaN outside the range of a model.
     const TABLE: [[f64; 6]; 16] = [
         [0.5, 0.99896, 0.99896, 1.0, 0.99919, 0.999],
         [1.0, 0.9826, 0.9826, 0.9861, 0.98881, 0.968],
@@ -228,7 +227,7 @@ mod tests {
         assert!(green_1975(2.0e-3, 0.07, f64::NAN).is_err());
     }
 
-    /// The two branches of Andsager stand on the side that the paper gives them, and steps stay below 0.6 %.
+    /// The branches of Andsager join on the side that the paper gives, and steps stay below 0.6 %.
     #[test]
     fn joints() {
         let at = |model: AxisRatioModel, mm: f64| model.axis_ratio(mm * 1.0e-3).expect("in range");

@@ -1,27 +1,27 @@
-//! What can be wrong with the numbers that come from outside.
+//! Errors of physical quantities out of range.
 
 use std::ops::RangeInclusive;
 
-/// A quantity that is outside what the physics is known for.
+/// Error of a physical quantity outside the range of its law.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DropError {
-    /// A number is not finite, or outside the range in which the law holds.
+    /// The number is not finite, or outside the range in which the law holds.
     #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
     OutOfRange {
-        /// What it is: `diameter`, `temperature`, ...
+        /// Name of the quantity: `diameter`, `temperature`, ...
         quantity: &'static str,
-        /// The value, in `unit`.
+        /// Value found, in `unit`.
         found: f64,
-        /// The unit of the value and of the range, as files and arguments write it.
+        /// Unit of the value and of the range, as in files and arguments.
         unit: &'static str,
-        /// The range, in words.
+        /// Allowed range, in words.
         allowed: &'static str,
     },
 }
 
-/// `value` if it is within `range` (NaN is not). An end is met up to rounding, so that `9.0 * 1e-3` is 9 mm; the end
-/// itself is returned then. The message tells the value times `factor`, in `unit`.
+/// Returns `value` if it is within `range` (NaN is not). The ends have a rounding tolerance, so that `9.0 * 1e-3` is
+/// 9 mm; the result is clamped to them. The message shows the value times `factor`, in `unit`.
 pub(crate) fn in_range(
     quantity: &'static str,
     value: f64,

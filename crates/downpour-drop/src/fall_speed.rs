@@ -1,4 +1,4 @@
-//! Terminal fall speed of water drops, and how fast a drop takes it.
+//! Terminal fall speed of water drops, and relaxation towards it.
 //!
 //! Law: K. V. Beard, J. Atmos. Sci. 33, 851 (1976): three regimes, by temperature and pressure, for diameters
 //! up to 7 mm; the speed is held constant beyond. The two tables and the five fits of other authors hold for
@@ -37,15 +37,15 @@ pub use fits::{
     fall_speed_van_dijk_2002,
 };
 pub use motion::{
-    FallNumbers, Relaxation, distance_to_share, fall_numbers, fall_speed_relaxation, relaxation,
-    speed_after_fall, time_to_share,
+    FallNumbers, Relaxation, distance_to_fraction, fall_numbers, fall_speed_relaxation, relaxation,
+    speed_after_fall, time_to_fraction,
 };
 pub use tables::{fall_speed_gunn_kinzer_1949, fall_speed_rousseau_2006};
 
-/// The largest diameter that is taken for a drop, in metres. Larger drops break up.
-pub const LARGEST_DIAMETER_M: f64 = 9.0e-3;
+/// Largest diameter of a drop, in metres. Larger drops break up.
+pub const MAX_DIAMETER_M: f64 = 9.0e-3;
 
-/// A published law of terminal speed. The number of a variant is the one that shaders use.
+/// A published model of terminal speed. The number of a variant is the one that shaders use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum FallSpeedModel {
@@ -64,10 +64,10 @@ pub enum FallSpeedModel {
     /// from 1 mm. Straight lines between its points; as d^2 below 0.2 mm, constant above 8 mm.
     Rousseau2006 = shared::FALL_SPEED_MODEL_ROUSSEAU_2006,
     /// D. Atlas, R. C. Srivastava, R. S. Sekhon, Rev. Geophys. 11, 1 (1973). The fit is negative below 0.109 mm,
-    /// where it is taken as 0.
+    /// where the speed is 0.
     Atlas1973 = shared::FALL_SPEED_MODEL_ATLAS_1973,
     /// D. Atlas, C. W. Ulbrich, J. Appl. Meteor. 16, 1322 (1977): a power law, for integrals in closed form. It
-    /// knows no saturation: 66 % too fast at 8 mm.
+    /// does not saturate: 66 % too fast at 8 mm.
     AtlasUlbrich1977 = shared::FALL_SPEED_MODEL_ATLAS_ULBRICH_1977,
     /// E. A. Brandes, G. Zhang, J. Vivekanandan, J. Appl. Meteor. 41, 674 (2002). 0 below 0.021 mm.
     Brandes2002 = shared::FALL_SPEED_MODEL_BRANDES_2002,
@@ -91,7 +91,7 @@ impl FallSpeedModel {
         Self::Lhermitte1988,
     ];
 
-    /// The name in files and arguments.
+    /// Name in files and arguments.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -106,13 +106,13 @@ impl FallSpeedModel {
         }
     }
 
-    /// The model of a name; `None` if there is none.
+    /// Returns the model of a name; `None` for an unknown name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|model| model.name() == name)
     }
 
-    /// The number by which shaders know the model.
+    /// Number of the model in shaders.
     #[must_use]
     pub const fn number(self) -> u32 {
         self as u32
@@ -135,7 +135,7 @@ pub fn terminal_speed(model: FallSpeedModel, diameter_m: f64, air: &Air) -> Resu
     TerminalSpeed::new(model, air).at(diameter_m)
 }
 
-/// A law of terminal speed in one kind of air: what does not depend on the drop is worked out once.
+/// A model of terminal speed in one kind of air, with all terms that do not depend on the drop precomputed.
 ///
 /// ```
 /// use downpour_drop::air::Air;
@@ -153,13 +153,13 @@ pub struct TerminalSpeed {
 }
 
 impl TerminalSpeed {
-    /// The law `model` in `air`.
+    /// Creates the model `model` in `air`.
     #[must_use]
     pub fn new(model: FallSpeedModel, air: &Air) -> Self {
         Self { model, beard: beard::Beard::new(air), density_factor: air.speed_factor() }
     }
 
-    /// The speed in m/s of a drop of `diameter_m` metres.
+    /// Speed in m/s of a drop of `diameter_m` metres.
     ///
     /// # Errors
     /// [`DropError::OutOfRange`] if the diameter is not above 0 and at most 9 mm.
@@ -167,7 +167,7 @@ impl TerminalSpeed {
         Ok(self.unchecked(drop_diameter(diameter_m)?))
     }
 
-    /// The speed for a diameter that was checked; 0 for the diameter 0.
+    /// Speed for a diameter that was checked before; 0 for the diameter 0.
     pub(crate) fn unchecked(&self, diameter_m: f64) -> f64 {
         let d = diameter_m * 1.0e3;
         let standard = match self.model {
@@ -183,13 +183,13 @@ impl TerminalSpeed {
         standard * self.density_factor
     }
 
-    /// The diameters, in metres and rising, where the law has a step or a kink: no integral should cross one.
+    /// Diameters, in metres and ascending, of the steps and kinks of the law, which no integral should cross.
     pub(crate) fn kinks(&self) -> Vec<f64> {
         let mm: Vec<f64> = match self.model {
             FallSpeedModel::Beard1976 => beard::JOINTS_MM.to_vec(),
             FallSpeedModel::GunnKinzer1949 => tables::gunn_kinzer_diameters(),
             FallSpeedModel::Rousseau2006 => tables::rousseau_diameters(),
-            FallSpeedModel::VanDijk2002 => vec![fits::VAN_DIJK_LARGEST_MM],
+            FallSpeedModel::VanDijk2002 => vec![fits::VAN_DIJK_MAX_MM],
             FallSpeedModel::Atlas1973 => vec![fits::atlas_zero()],
             FallSpeedModel::AtlasUlbrich1977
             | FallSpeedModel::Brandes2002
@@ -199,13 +199,13 @@ impl TerminalSpeed {
     }
 }
 
-/// `diameter_m` if it is that of a drop.
+/// Returns `diameter_m` if it is in the range of drops.
 pub(crate) fn drop_diameter(diameter_m: f64) -> Result<f64, DropError> {
-    let range = f64::MIN_POSITIVE..=LARGEST_DIAMETER_M;
+    let range = f64::MIN_POSITIVE..=MAX_DIAMETER_M;
     in_range("diameter", diameter_m, "mm", &range, 1.0e3, "above 0, at most 9 mm")
 }
 
-/// Terminal speed in m/s by the number of a model; an unknown number is Beard 1976. Diameter in metres, 0 to 9e-3.
+/// Terminal speed in m/s by the number of a model; an unknown number selects Beard 1976. Diameter in metres, 0 to 9e-3.
 #[must_use]
 pub fn fall_speed_terminal(model: u32, diameter_m: f32, air: FallSpeedAir) -> f32 {
     match model {

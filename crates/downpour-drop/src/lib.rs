@@ -1,8 +1,8 @@
-//! The physics of a raindrop and of rain.
+//! Physics of a raindrop and of rain.
 //!
-//! One drop: its [`shape`] and [`axis_ratio`], a [`mesh`] of it, its [`fall_speed`], its [`oscillation`], its
-//! [`optics`]. Many drops: their size [`distribution`], counted from a rain rate. What they are made of and fall
-//! through: [`water`], [`air`].
+//! One drop: its [`shape`] and [`axis_ratio`], its [`mesh`], its [`fall_speed`], its [`oscillation`], its
+//! [`optics`]. Many drops: their size [`distribution`], computed from a rain rate. The media: [`water`] and
+//! [`air`].
 //!
 //! Units are SI: metres, seconds, kilograms, radians, pascals; temperatures in degrees Celsius where the name says
 //! `_c`, rain rates in millimetres per hour where it says `_mm_h`. A diameter is that of the sphere of the same
@@ -35,7 +35,7 @@ pub use error::DropError;
 pub use mesh::DropMesh;
 pub use shape::DropShape;
 
-/// The examples of the README, as tests.
+/// Compiles the examples of the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -1,11 +1,11 @@
 //! A drop as a closed triangle mesh with exact normals.
 //!
 //! Positions are in metres from the drop's origin, in glTF's axes: right-handed, +Y up, the bottom of the
-//! drop towards -Y. Triangles are counter-clockwise seen from outside. Every vertex is used once for all
-//! triangles that meet in it, the poles included, so the mesh is watertight by its indices: each edge has two
-//! triangles that pass it in opposite senses.
+//! drop towards -Y. Triangles are counter-clockwise seen from outside. All triangles that meet at a point share
+//! one vertex, the poles included, so the mesh is watertight by its indices: each edge belongs to two
+//! triangles that traverse it in opposite directions.
 //!
-//! Vertices lie on the surface, normals are those of the surface and not of the triangles, so the volume is
+//! Vertices lie on the surface, and normals are those of the surface, not of the triangles. The volume is
 //! below the drop's by an error of second order in the spacing.
 
 use std::collections::HashMap;
@@ -16,7 +16,7 @@ use downpour_math::ops;
 use crate::DropError;
 use crate::shape::{DropShape, drop_shape_normal, drop_shape_radius};
 
-/// A surface that each ray from the origin leaves once.
+/// A star-shaped surface: each ray from the origin leaves it once.
 pub trait DropSurface {
     /// Distance from the origin to the surface, in metres, along a unit vector (+Y up).
     fn radius_along(&self, direction: [f64; 3]) -> f64;
@@ -35,7 +35,7 @@ impl DropSurface for DropShape {
     }
 }
 
-/// A closed mesh.
+/// A closed triangle mesh.
 ///
 /// ```
 /// use downpour_drop::mesh::DropMesh;
@@ -54,11 +54,11 @@ pub struct DropMesh {
 }
 
 impl DropMesh {
-    /// A mesh of bands of equal angle: `latitudes` bands from pole to pole, each of `longitudes` cells. The
+    /// Creates a mesh of bands of equal angle: `latitudes` bands from pole to pole, each of `longitudes` cells. The
     /// first vertex is the bottom, the last the top.
     ///
     /// # Errors
-    /// If `latitudes` is not in 2 to 2048, or `longitudes` not in 3 to 4096.
+    /// [`DropError::OutOfRange`] if `latitudes` is not 2 to 2048, or `longitudes` not 3 to 4096.
     pub fn latitude_longitude(
         surface: &impl DropSurface,
         latitudes: u32,
@@ -91,11 +91,11 @@ impl DropMesh {
         Ok(mesh)
     }
 
-    /// A mesh of nearly equal triangles: an icosahedron whose triangles are cut into four, `subdivisions`
-    /// times, on the sphere of directions. It has 20 * 4^subdivisions triangles.
+    /// Creates a mesh of nearly equal triangles: an icosahedron on the sphere of directions whose triangles are
+    /// split into four, `subdivisions` times. It has 20 * 4^subdivisions triangles.
     ///
     /// # Errors
-    /// If `subdivisions` is above 8.
+    /// [`DropError::OutOfRange`] if `subdivisions` is above 8.
     pub fn icosphere(surface: &impl DropSurface, subdivisions: u32) -> Result<Self, DropError> {
         check_count("number of subdivisions", subdivisions, 0..=8, "0 to 8")?;
         let golden = 0.5 * (1.0 + 5.0f64.sqrt());
@@ -126,7 +126,7 @@ impl DropMesh {
         self.normals.push(surface.normal_along(direction).map(|n| n as f32));
     }
 
-    /// Places of the vertices, in metres.
+    /// Positions of the vertices, in metres.
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
         &self.positions
@@ -138,7 +138,7 @@ impl DropMesh {
         &self.normals
     }
 
-    /// Vertices of each triangle, counter-clockwise from outside.
+    /// Vertex indices of each triangle, counter-clockwise from outside.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
@@ -164,9 +164,9 @@ fn check_count(
     Err(DropError::OutOfRange { quantity, found: found.into(), unit: "in all", allowed })
 }
 
-/// The triples of neighbours among the twelve corners, counter-clockwise from outside.
+/// Triples of adjacent corners among the twelve, counter-clockwise from outside.
 fn icosahedron_faces(corners: &[[f64; 3]]) -> Vec<[u32; 3]> {
-    // Neighbours see each other under 63.4 degrees, other corners under 116.6 and more.
+    // Adjacent corners are 63.4 degrees apart, others 116.6 and more.
     let near = |a: usize, b: usize| dot(corners[a], corners[b]) > 0.0;
     let mut faces = Vec::new();
     for a in 0..corners.len() {
@@ -183,7 +183,7 @@ fn icosahedron_faces(corners: &[[f64; 3]]) -> Vec<[u32; 3]> {
     faces
 }
 
-/// Cuts each triangle into four at the middles of its edges, which neighbours share.
+/// Splits each triangle into four at the middles of its edges, which neighbours share.
 fn subdivide(directions: &mut Vec<[f64; 3]>, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut middles = HashMap::new();
     let mut middle = |a: u32, b: u32| -> u32 {
@@ -224,7 +224,7 @@ mod tests {
         DropShape::new(5.0e-3).expect("in range")
     }
 
-    /// Each edge is passed twice, once in each sense; vertices - edges + faces = 2; the volume is positive.
+    /// Each edge is traversed twice, once in each direction; vertices - edges + faces = 2; the volume is positive.
     fn check_closed(mesh: &DropMesh) {
         let mut edges = HashMap::new();
         for &[a, b, c] in mesh.triangles() {
@@ -272,7 +272,7 @@ mod tests {
         }
     }
 
-    /// Half the spacing leaves a quarter of the error.
+    /// Halving the spacing leaves a quarter of the error.
     #[test]
     fn the_volume_converges_at_second_order() {
         let exact = drop().volume();

@@ -1,15 +1,15 @@
-//! Optics of a drop: the index of water, and what happens to light at its surface.
+//! Optics of a drop: refractive index of water, refraction and reflection at its surface.
 //!
 //! Laws: reflection and Snell's law in vectors; Fresnel's equations for a dielectric (Born & Wolf, Principles of
 //! Optics, 1.5.2), exact, for both polarisations; by name, the approximations of Schlick 1994 and of Tatarchuk &
 //! Isidoro 2006. Unit vectors; the normal faces against the incident ray; eta = n(from) / n(to);
-//! index = n(to) / n(from); cosines in [0, 1]. Water absorbs too little to matter within a drop: its
-//! absorption index is below 3.4e-8 in visible light, which takes 0.4 % from red light on a way of 6 mm.
+//! index = n(to) / n(from); cosines in [0, 1]. Absorption within a drop is negligible: the
+//! absorption index of water is below 3.4e-8 in visible light, which removes 0.4 % of red light along 6 mm.
 //!
 //! - [`water_index`], [`air_index`], [`water_index_in_air`], [`rgb_indices`]: refractive indices;
 //! - [`critical_angle`], [`brewster_angle`], [`maximal_deviation`], [`field_of_view`], [`deviation`], [`rainbow`],
-//!   [`diffuse_reflectance`]: what follows for a sphere;
-//! - [`SphereScattering`], [`scattered_ray`], [`scattered_share`]: where a sphere sends light, order by order;
+//!   [`diffuse_reflectance`]: results for a sphere;
+//! - [`SphereScattering`], [`scattered_ray`], [`scattered_fraction`]: light scattered by a sphere, order by order;
 //! - functions whose names begin with `optics_` are the twins of `shaders/wgsl/drop/optics.wgsl`. They are generic:
 //!   with `f32` they have the bits of the twin, with `f64` they are the reference, with lanes the fast path.
 
@@ -30,17 +30,17 @@ pub use index::{
 };
 pub use scattering::{
     SCATTERING_ORDERS, SCATTERING_PATHS, SUN_DIAMETER, ScatteredRay, ScatteringPath, SphereScattering,
-    scattered_ray, scattered_share,
+    scattered_fraction, scattered_ray,
 };
 
 /// Direction of the refracted ray, and the square of the cosine of its angle to the normal.
 ///
 /// `incident` and `normal` are unit vectors, the normal faces against the ray; `eta` = n(from) / n(to). A negative
-/// square is total reflection: then the direction has no meaning.
+/// square is total reflection: the direction is then meaningless.
 ///
 /// ```
 /// use downpour_drop::optics::optics_refract;
-/// // Straight down into water: the ray goes on.
+/// // Straight down into water: the ray continues straight.
 /// let (down, squared) = optics_refract([0.0f32, -1.0, 0.0], [0.0, 1.0, 0.0], 1.0 / 1.333);
 /// assert_eq!(down, [0.0, -1.0, 0.0]);
 /// assert_eq!(squared, 1.0);
@@ -74,7 +74,7 @@ pub fn optics_reflect<R: Real>(incident: [R; 3], normal: [R; 3]) -> [R; 3] {
     [incident[0] + along * normal[0], incident[1] + along * normal[1], incident[2] + along * normal[2]]
 }
 
-/// Share of the power that is reflected: across (s) and within (p) the plane of incidence. 1 in total reflection.
+/// Fraction of the power that is reflected: across (s) and within (p) the plane of incidence. 1 in total reflection.
 ///
 /// `cosine` is that of the angle of incidence (negative counts as 0), `index` = n(to) / n(from).
 ///
@@ -90,7 +90,7 @@ pub fn optics_reflect<R: Real>(incident: [R; 3], normal: [R; 3]) -> [R; 3] {
 pub fn optics_fresnel_polarised<R: Real>(cosine: R, index: R) -> [R; 2] {
     let zero = index.constant(0.0);
     let one = index.constant(1.0);
-    let smallest = index.constant(f64::from(shared::OPTICS_SMALLEST));
+    let smallest = index.constant(f64::from(shared::OPTICS_MIN));
     let c = cosine.at_least(zero);
     // index^2 - sin^2, without the loss of digits of 1 - cos^2.
     let squared = (index - one) * (index + one) + c * c;
@@ -102,7 +102,7 @@ pub fn optics_fresnel_polarised<R: Real>(cosine: R, index: R) -> [R; 2] {
     [R::select(total, one, s * s), R::select(total, one, p * p)]
 }
 
-/// Share of unpolarised light that is reflected. Arguments as for [`optics_fresnel_polarised`].
+/// Fraction of unpolarised light that is reflected. Arguments as for [`optics_fresnel_polarised`].
 ///
 /// ```
 /// let r = downpour_drop::optics::optics_fresnel(1.0f64, 1.333);
@@ -115,8 +115,8 @@ pub fn optics_fresnel<R: Real>(cosine: R, index: R) -> R {
     index.constant(0.5) * (s + p)
 }
 
-/// The approximation of C. Schlick, Computer Graphics Forum 13, 233 (1994), from the side of the smaller index: it
-/// knows no total reflection. For water it is 23 % low at 50 degrees and 14 % high at 80.
+/// Approximation of C. Schlick, Computer Graphics Forum 13, 233 (1994), from the side of the smaller index: it
+/// has no total reflection. For water it is 23 % low at 50 degrees and 14 % high at 80.
 ///
 /// ```
 /// let r = downpour_drop::optics::optics_fresnel_schlick(0.5f64, 1.333);
@@ -133,7 +133,7 @@ pub fn optics_fresnel_schlick<R: Real>(cosine: R, index: R) -> R {
     base + (one - base) * (x2 * x2 * x)
 }
 
-/// The form of N. Tatarchuk, J. Isidoro, "Artist-Directable Real-Time Rain Rendering in City Environments" (2006),
+/// Form of N. Tatarchuk, J. Isidoro, "Artist-Directable Real-Time Rain Rendering in City Environments" (2006),
 /// 3.1: 0.95 (1 - cos)^4 + 0.05. 2.5 times the reflectance of water at normal incidence: an artistic choice.
 ///
 /// ```

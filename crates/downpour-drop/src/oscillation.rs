@@ -1,4 +1,4 @@
-//! A drop that oscillates: `r(t, theta, phi) = r0 (1 + s2 P20(x) + s3 P31(x) cos(phi)) / V^(1/3)`,
+//! Oscillation of a drop: `r(t, theta, phi) = r0 (1 + s2 P20(x) + s3 P31(x) cos(phi)) / V^(1/3)`,
 //! `s_n = A_n sin(omega_n t + phase_n)`, `x = cos(theta)`.
 //!
 //! Source: equation 2 of P. Rousseau et al., "GPU rainfall", 2008, after K. Garg, S. K. Nayar,
@@ -9,7 +9,7 @@
 //!   are the same up and down. `phi`: angle about the axis.
 //! - `P20`, `P31`: associated Legendre functions, not normalised. The papers leave the sign of P31 open. Here
 //!   it has the Condon-Shortley sign, `P31 = -3/2 (5 x^2 - 1) sqrt(1 - x^2)`, by which a positive s3 pushes
-//!   the outline (theta = pi / 2) outwards at phi = 0. The other sign is the same drop turned by half a turn.
+//!   the outline (theta = pi / 2) outwards at phi = 0. The other sign is the same drop rotated by half a turn.
 //! - `V`: volume of equation 2 over that of the sphere. The equation alone does not keep the volume: it
 //!   reaches 1.032 for amplitudes (0.1, 0.1) and 1.051 for (0.2, 0.1). Dividing by `V^(1/3)` keeps it, and is
 //!   the default; [`drop_oscillation_state_rousseau_2008`] is the equation as printed.
@@ -19,15 +19,15 @@
 //!
 //! Limits: amplitudes of 0 to 0.3; the modes (2,0) and (3,1) only, which dominate. Both laws are of first
 //! order in the amplitude, so frequencies are those of a sphere. To second order the two modes together move
-//! the centre of mass sideways by `-1.54 s2 s3 r0` (3 % of the radius at most for the presets): this is left
-//! as the equation has it.
+//! the center of mass sideways by `-1.54 s2 s3 r0` (3 % of the radius at most for the presets): the equation is
+//! kept as it is.
 //!
 //! # Time
 //!
-//! `sin(omega t)` in f32 is noise after some seconds, and WGSL promises the sine in [-pi, pi] only. So time
-//! is counted in ticks of 2^-16 s and frequency in units of 2^-16 Hz: their product, in wrapping 32-bit
-//! integers, is the phase in 2^-32 turns, exact at any time. The ticks wrap after 18 hours, and it does not
-//! show: each frequency makes a whole number of turns by then. What is left of a tick, or an offset within an
+//! `sin(omega t)` in f32 is noise after some seconds, and WGSL guarantees the sine in [-pi, pi] only. Time
+//! is therefore counted in ticks of 2^-16 s and frequency in units of 2^-16 Hz: their product, in wrapping 32-bit
+//! integers, is the phase in 2^-32 turns, exact at any time. The ticks wrap after 18 hours without a jump:
+//! each frequency makes a whole number of turns by then. The remainder of a tick, or an offset within an
 //! exposure, is added as f32, and the sine is taken of the fraction of a turn. The counted part is the same
 //! on the CPU and the GPU, bit for bit; frequencies should then be computed once, not on both.
 //!
@@ -42,41 +42,41 @@ use downpour_math::ops;
 use downpour_math::real::Real;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::drop::oscillation::{
-    DROP_OSCILLATION_DIMENSION, DROP_OSCILLATION_LARGEST_FREQUENCY, DROP_OSCILLATION_TICK,
-    DROP_OSCILLATION_TURN, DROP_OSCILLATION_TURN_STEP, DROP_OSCILLATION_UNITS_PER_RADIAN,
+    DROP_OSCILLATION_DIMENSION, DROP_OSCILLATION_MAX_FREQUENCY, DROP_OSCILLATION_TICK, DROP_OSCILLATION_TURN,
+    DROP_OSCILLATION_TURN_STEP, DROP_OSCILLATION_UNITS_PER_RADIAN,
 };
 
 pub use drop::{DropInstant, OscillatingDrop};
 pub use law::{Fluids, FrequencyLaw, lamb_damping_time};
 pub use motion::{Amplitudes, Oscillation};
 
-/// The oscillation of one drop as a shader reads it: the WGSL struct of the same name, 32 bytes. Each pair is
-/// of the modes (2,0) and (3,1).
+/// Oscillation of one drop as a shader reads it: the WGSL struct of the same name, 32 bytes. Each pair holds
+/// the modes (2,0) and (3,1).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct DropOscillation {
     /// A20, A31: displacement over r0.
     pub amplitude: [f32; 2],
-    /// 1 / tau in 1/s; 0: not damped.
+    /// 1 / tau in 1/s; 0 for no damping.
     pub damping: [f32; 2],
     /// Phase at time 0, in turns.
     pub phase: [f32; 2],
-    /// In units of 2^-16 Hz.
+    /// Frequency in units of 2^-16 Hz.
     pub frequency: [u32; 2],
 }
 
-/// A time as a shader reads it: the WGSL struct of the same name, 8 bytes.
+/// Time as a shader reads it: the WGSL struct of the same name, 8 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct DropOscillationTime {
-    /// In units of 2^-16 s; wraps after 65536 s, which leaves every phase as it is.
+    /// Ticks of 2^-16 s; wraps after 65536 s, which leaves every phase unchanged.
     pub ticks: u32,
-    /// In seconds, added to the ticks; small (below some seconds).
+    /// Offset in seconds, added to the ticks; small (below some seconds).
     pub offset: f32,
 }
 
 impl DropOscillationTime {
-    /// The time `seconds` (any finite number; a time that is not finite counts as 0).
+    /// Converts a time in seconds (any finite number; a time that is not finite counts as 0).
     ///
     /// ```
     /// use downpour_drop::oscillation::DropOscillationTime;
@@ -128,15 +128,15 @@ pub fn drop_oscillation_damping_time(n: u32, radius: f32, viscosity: f32) -> f32
     radius * radius / ((m - 1.0) * (2.0 * m + 1.0) * viscosity)
 }
 
-/// rad/s to units of 2^-16 Hz, rounded down.
+/// Converts rad/s to units of 2^-16 Hz, rounded down.
 #[inline]
 #[must_use]
 pub fn drop_oscillation_frequency(angular_frequency: f32) -> u32 {
     let units = angular_frequency * DROP_OSCILLATION_UNITS_PER_RADIAN;
-    units.clamp(0.0, DROP_OSCILLATION_LARGEST_FREQUENCY) as u32
+    units.clamp(0.0, DROP_OSCILLATION_MAX_FREQUENCY) as u32
 }
 
-/// Phases of both modes at time 0, in turns of [0, 1), by the drop's id.
+/// Phases of both modes at time 0, in turns of [0, 1), derived from the drop's id.
 ///
 /// ```
 /// use downpour_drop::oscillation::drop_oscillation_phase;
@@ -151,7 +151,7 @@ pub fn drop_oscillation_phase(seed: [u32; 2], id: u32) -> [f32; 2] {
     [rng_unit(x), rng_unit(y)]
 }
 
-/// Where phi = 0 is, as an angle about the vertical axis in turns of [0, 1), by the drop's id.
+/// Azimuth of phi = 0 about the vertical axis in turns of [0, 1), derived from the drop's id.
 #[inline]
 #[must_use]
 pub fn drop_oscillation_azimuth(seed: [u32; 2], id: u32) -> f32 {
@@ -159,7 +159,7 @@ pub fn drop_oscillation_azimuth(seed: [u32; 2], id: u32) -> f32 {
     rng_unit(z)
 }
 
-/// Phase of one mode at a time, in turns; whole turns may be left in it.
+/// Phase of one mode at a time, in turns; it may include whole turns.
 #[inline]
 #[must_use]
 pub fn drop_oscillation_turns(frequency: u32, phase: f32, time: DropOscillationTime) -> f32 {
@@ -216,7 +216,7 @@ pub fn drop_oscillation_inverse_cube_root<R: Real>(volume: R) -> R {
     y4 * (four - volume * y4 * y4 * y4) * third
 }
 
-/// What the radius needs, once per drop and time: `[s2, s3, V^(-1/3)]`.
+/// Coefficients of the radius, computed once per drop and time: `[s2, s3, V^(-1/3)]`.
 #[inline(always)]
 #[must_use]
 pub fn drop_oscillation_state<R: Real>(displacement: [R; 2]) -> [R; 3] {
@@ -224,7 +224,7 @@ pub fn drop_oscillation_state<R: Real>(displacement: [R; 2]) -> [R; 3] {
     [displacement[0], displacement[1], scale]
 }
 
-/// The same for equation 2 as printed: the volume swings with the oscillation.
+/// The same for equation 2 as printed: the volume varies with the oscillation.
 #[inline(always)]
 #[must_use]
 pub fn drop_oscillation_state_rousseau_2008<R: Real>(displacement: [R; 2]) -> [R; 3] {

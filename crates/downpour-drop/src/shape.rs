@@ -1,4 +1,4 @@
-//! The equilibrium shape of a falling drop: `r(theta) = a (1 + sum over n = 0..10 of c_n cos(n theta))`.
+//! Equilibrium shape of a falling drop: `r(theta) = a (1 + sum over n = 0..10 of c_n cos(n theta))`.
 //!
 //! Source: C. Chuang, K. V. Beard, "A numerical model for the equilibrium shape of electrified raindrops",
 //! J. Atmos. Sci. 47(11), 1990, table 1 (uncharged drops); equation 1 of P. Rousseau et al., "Realistic
@@ -9,13 +9,13 @@
 //! flatter below than above.
 //!
 //! Everything is a function of `x = cos(theta)`: `cos(n theta)` is the Chebyshev polynomial `T_n(x)`, so the
-//! sum is Clenshaw's recurrence, with no trigonometry, and nothing special happens at the poles.
+//! sum is Clenshaw's recurrence, with no trigonometry and no special case at the poles.
 //!
-//! Limits: diameters of 1 um to 9 mm ([`SMALLEST_DIAMETER`], [`LARGEST_DIAMETER`]). Between the rows of the
+//! Limits: diameters of 1 um to 9 mm ([`MIN_DIAMETER`], [`MAX_DIAMETER`]). Between the rows of the
 //! table the coefficients are interpolated; below 1 mm the deformation falls with the Bond number, as d^2.
 //! Raindrops above about 7 mm break up in nature. The sum ends at n = 10: above 6 mm this leaves a ripple of
-//! some thousandths of `a` on the flat bottom, whose pole is then more curved than what surrounds it. A drop
-//! that oscillates is in [`oscillation`](crate::oscillation).
+//! some thousandths of `a` on the flat bottom, whose pole is then more curved than its surroundings. Oscillations
+//! are in [`oscillation`](crate::oscillation).
 //!
 //! Twin of `shaders/wgsl/drop/shape.wgsl`. The functions here are generic: with `f32` (or its lanes) the
 //! coefficients are rounded to what the shader holds, with `f64` they are the reference above it.
@@ -31,17 +31,16 @@ use crate::DropError;
 pub use equilibrium::DropShape;
 pub use table::{Correction, ShapeRow, ShapeTable};
 
-/// The number of coefficients: n = 0 to 10.
+/// Number of coefficients: n = 0 to 10.
 pub const COEFFICIENTS: usize = 11;
 
-/// The smallest diameter that has a shape here, in metres: a cloud droplet of 1 um, a sphere for every
-/// purpose.
-pub const SMALLEST_DIAMETER: f64 = 1.0e-6;
+/// Smallest diameter with a shape, in metres: a cloud droplet of 1 um, a sphere for every purpose.
+pub const MIN_DIAMETER: f64 = 1.0e-6;
 
-/// The largest diameter that has a shape here, in metres: the last row of the table.
-pub const LARGEST_DIAMETER: f64 = 9.0e-3;
+/// Largest diameter with a shape, in metres: the last row of the table.
+pub const MAX_DIAMETER: f64 = 9.0e-3;
 
-/// The coefficients as a shader reads them: the WGSL struct of the same name, 48 bytes.
+/// Coefficients as a shader reads them: the WGSL struct of the same name, 48 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct DropShapeCoefficients {
@@ -67,8 +66,8 @@ impl From<DropShapeCoefficients> for [f64; COEFFICIENTS] {
     }
 }
 
-/// Refuses a diameter (in metres) that is not a number of the range, which `allowed` says in millimetres. The
-/// ends give way by 1e-9 of themselves: 9.0 * 1.0e-3 is above 9.0e-3.
+/// Checks that a diameter (in metres) is within the range, which `allowed` states in millimetres. The ends have a
+/// relative tolerance of 1e-9: 9.0 * 1.0e-3 is above 9.0e-3.
 pub(crate) fn check_diameter(
     diameter_m: f64,
     range: std::ops::RangeInclusive<f64>,
@@ -81,9 +80,9 @@ pub(crate) fn check_diameter(
     Err(DropError::OutOfRange { quantity: "diameter", found: diameter_m * 1.0e3, unit: "mm", allowed })
 }
 
-/// Refuses a diameter that has no shape.
+/// Checks that a diameter has a shape.
 pub(crate) fn check_shape_diameter(diameter_m: f64) -> Result<(), DropError> {
-    check_diameter(diameter_m, SMALLEST_DIAMETER..=LARGEST_DIAMETER, "0.001 to 9")
+    check_diameter(diameter_m, MIN_DIAMETER..=MAX_DIAMETER, "0.001 to 9")
 }
 
 /// `rho = r / a` at `x = cos(theta)`, with theta from the downward axis.
@@ -138,11 +137,11 @@ pub fn drop_shape_radius_slope<R: Real>(c: &[f64; COEFFICIENTS], x: R) -> [R; 2]
     [drop_shape_radius(c, x), drop_shape_slope(c, x)]
 }
 
-/// Outward unit normal where the ray from the origin along the unit vector `direction` leaves the drop, whose
-/// axis points up along the unit vector `up`.
+/// Outward unit normal at the point where the ray from the origin along the unit vector `direction` leaves the
+/// drop, whose axis points up along the unit vector `up`.
 ///
 /// The surface is `|P| - rho(x) = 0` with `x = -P.up / |P|`. Its gradient is `p + (rho' / rho) (up + x p)`,
-/// where `p` is the direction; at the poles it is along the axis, with no limit to take.
+/// where `p` is the direction; at the poles it is along the axis, without a limit.
 #[inline(always)]
 #[must_use]
 pub fn drop_shape_normal<R: Real>(c: &[f64; COEFFICIENTS], direction: [R; 3], up: [R; 3]) -> [R; 3] {

@@ -16,7 +16,7 @@ use downpour_math::ops::f64 as ops;
 use crate::DropError;
 use crate::error::in_range;
 
-/// The temperatures, in Celsius, for which the properties are given.
+/// Range of temperatures, in Celsius, in which the properties are given.
 pub const TEMPERATURE_RANGE_C: RangeInclusive<f64> = -20.0..=40.0;
 
 /// 0 Celsius in kelvin.
@@ -72,14 +72,14 @@ pub fn kinematic_viscosity(temperature_c: f64) -> Result<f64, DropError> {
     Ok(viscosity(temperature_c)? / density(temperature_c)?)
 }
 
-/// The density of [`density`] for a temperature that was checked.
+/// Density as [`density`], for a temperature that was checked before.
 pub(crate) fn density_at(t: f64) -> f64 {
     const C: [f64; 6] =
         [999.839_52, 16.945_176, -7.987_040_1e-3, -4.617_046_1e-5, 1.055_630_2e-7, -2.805_425_3e-10];
     C.iter().rev().fold(0.0, |sum, c| sum * t + c) / (1.0 + 1.687_985_0e-2 * t)
 }
 
-/// The surface tension of [`surface_tension`] for a temperature that was checked.
+/// Surface tension as [`surface_tension`], for a temperature that was checked before.
 pub(crate) fn surface_tension_at(t: f64) -> f64 {
     let tau = 1.0 - (t + CELSIUS_ZERO_K) / 647.096;
     0.2358 * ops::pow(tau, 1.256) * (1.0 - 0.625 * tau)

@@ -4,8 +4,8 @@ use approx::assert_relative_eq;
 use downpour_drop::DropError;
 use downpour_drop::air::{Air, STANDARD_GRAVITY};
 use downpour_drop::fall_speed::{
-    FallSpeedAir, FallSpeedModel, TerminalSpeed, distance_to_share, fall_numbers, fall_speed_relaxation,
-    fall_speed_terminal, relaxation, speed_after_fall, terminal_speed, time_to_share,
+    FallSpeedAir, FallSpeedModel, TerminalSpeed, distance_to_fraction, fall_numbers, fall_speed_relaxation,
+    fall_speed_terminal, relaxation, speed_after_fall, terminal_speed, time_to_fraction,
 };
 
 use FallSpeedModel::{
@@ -83,7 +83,7 @@ const ROUSSEAU: [(f64, f64); 23] = [
     (4.0, 9.23),
 ];
 
-/// No value: the law is not tabulated there.
+/// No value: the law is not tabulated here.
 const NONE: f64 = f64::NAN;
 
 /// All laws in standard air: diameter in mm; Gunn & Kinzer, Beard, Atlas, Atlas & Ulbrich, Brandes, van Dijk, Lhermitte
@@ -203,7 +203,7 @@ fn beard_has_its_anchors_to_three_decimals() {
     }
 }
 
-/// The measurement, where drops are large enough to be seen: 2.1 % at most, 0.55 % rms.
+/// The measurements above 0.5 mm: 2.1 % at most, 0.55 % rms.
 #[test]
 fn beard_meets_gunn_and_kinzer() {
     let errors: Vec<f64> = GUNN_KINZER
@@ -217,7 +217,7 @@ fn beard_meets_gunn_and_kinzer() {
     assert!(rms < 0.006, "{rms}");
 }
 
-/// The largest differences from Gunn & Kinzer between 0.5 and 5.8 mm that the documentation names.
+/// The documented largest differences from Gunn & Kinzer between 0.5 and 5.8 mm.
 #[test]
 fn the_fits_are_as_far_off_as_said() {
     let said = [
@@ -245,12 +245,12 @@ fn tables_are_exact_at_their_points() {
     for (r, v) in ROUSSEAU {
         assert_relative_eq!(standard(Rousseau2006, 2.0 * r), v, max_relative = 1e-14);
     }
-    // Held beyond their ends.
+    // Constant beyond their ends.
     assert_eq!(standard(GunnKinzer1949, 9.0), 9.17);
     assert_eq!(standard(Rousseau2006, 9.0), 9.23);
 }
 
-/// Also across the join of the spherical and the ellipsoidal column.
+/// Includes the joint of the spherical and the ellipsoidal column.
 #[test]
 fn tables_never_fall() {
     for model in [GunnKinzer1949, Rousseau2006] {
@@ -263,7 +263,7 @@ fn tables_never_fall() {
     }
 }
 
-/// The three regimes do not quite meet; what the documentation says of the steps.
+/// The three regimes do not quite meet; the steps are as documented.
 #[test]
 fn beard_s_regimes_nearly_meet() {
     let step = |d_mm: f64, air: &Air| {
@@ -288,7 +288,7 @@ fn beard_s_regimes_nearly_meet() {
     assert!((0.020..0.021).contains(&all), "{all}");
 }
 
-/// Up to 7 mm the law holds, up to 9 mm the speed is held, beyond there is no drop.
+/// Up to 7 mm the law holds, up to 9 mm the speed is constant, beyond there is no drop.
 #[test]
 fn diameters_outside_are_errors() {
     for model in FallSpeedModel::ALL {
@@ -305,7 +305,7 @@ fn diameters_outside_are_errors() {
     assert_eq!(message, "diameter is 10 mm; allowed: above 0, at most 9 mm");
 }
 
-/// In thin air the fits are corrected by the density; Beard's law has it from its own physics, to 3 %.
+/// In thin air the fits are corrected by the density; Beard's law includes it, to 3 %.
 #[test]
 fn the_density_correction_is_beard_s_within_three_percent() {
     let thin = Air::new(10.0, 70_000.0).unwrap();
@@ -319,7 +319,7 @@ fn the_density_correction_is_beard_s_within_three_percent() {
     }
 }
 
-/// A drop of 15 um falls as Stokes says; between 0.1 and 0.7 mm the drag is that of a solid sphere (Schiller & Naumann
+/// A drop of 15 um falls by Stokes' law; between 0.1 and 0.7 mm the drag is that of a solid sphere (Schiller & Naumann
 /// 1935), to 3.5 %.
 #[test]
 fn small_drops_have_the_drag_of_spheres() {
@@ -345,7 +345,7 @@ fn fall_numbers_balance_weight_and_drag() {
         let volume = std::f64::consts::PI / 6.0 * d * d * d;
         let weight = (air.water_density() - air.density()) * STANDARD_GRAVITY * volume;
         assert_relative_eq!(drag, weight, max_relative = 1e-12);
-        // We / Bo is the drag coefficient turned round.
+        // Bo / We is 3/4 of the drag coefficient.
         assert_relative_eq!(n.weber * n.drag_coefficient, 4.0 / 3.0 * n.bond, max_relative = 1e-12);
     }
 }
@@ -363,14 +363,14 @@ fn two_millimetres_relax_in_a_third_of_a_second() {
 fn a_drop_is_at_full_speed_after_some_metres() {
     for (d, distance) in [(2.0, 8.4), (3.0, 13.0)] {
         let v = standard(GunnKinzer1949, d);
-        let z = distance_to_share(v, 0.99).unwrap();
+        let z = distance_to_fraction(v, 0.99).unwrap();
         assert!((z - distance).abs() < 0.05, "{d} mm: {z} m");
         assert_relative_eq!(speed_after_fall(v, z), 0.99 * v, max_relative = 1e-12);
     }
-    for share in [1.0, -0.1, f64::NAN] {
-        assert!(distance_to_share(6.5, share).is_err() && time_to_share(6.5, share).is_err());
+    for fraction in [1.0, -0.1, f64::NAN] {
+        assert!(distance_to_fraction(6.5, fraction).is_err() && time_to_fraction(6.5, fraction).is_err());
     }
-    assert_eq!(distance_to_share(6.5, 0.0), Ok(0.0));
+    assert_eq!(distance_to_fraction(6.5, 0.0), Ok(0.0));
     assert_eq!(speed_after_fall(0.0, 5.0), 0.0);
 }
 
@@ -387,9 +387,9 @@ fn the_closed_forms_solve_the_equation_of_motion() {
         v += dt * acceleration(middle);
         t += dt;
     }
-    assert_relative_eq!(z, distance_to_share(v_t, v / v_t).unwrap(), max_relative = 1e-6);
-    assert_relative_eq!(t, time_to_share(v_t, v / v_t).unwrap(), max_relative = 1e-6);
-    // A small slip decays as the relaxation times say.
+    assert_relative_eq!(z, distance_to_fraction(v_t, v / v_t).unwrap(), max_relative = 1e-6);
+    assert_relative_eq!(t, time_to_fraction(v_t, v / v_t).unwrap(), max_relative = 1e-6);
+    // A small slip decays with the relaxation times.
     let r = relaxation(v_t);
     let slip = 1e-6 * v_t;
     assert_relative_eq!(acceleration(v_t - slip), slip / r.vertical_s, max_relative = 1e-5);
@@ -407,7 +407,7 @@ fn names_and_numbers_tell_the_models_apart() {
     assert_eq!(FallSpeedModel::default(), Beard1976);
 }
 
-/// The f32 twins against f64, relative to the speed or to 1 m/s where that is more.
+/// The f32 twins against f64, relative to the speed or to 1 m/s, whichever is larger.
 #[test]
 fn the_twins_have_single_precision() {
     let mut worst = 0.0f64;
@@ -427,13 +427,13 @@ fn the_twins_have_single_precision() {
                 assert!(error < 3e-6, "{model:?} at {d} m: {found} for {exact}");
                 worst = worst.max(error);
             }
-            // No drop, no speed; a size below 0 is taken as none.
+            // Diameter 0 has speed 0, and so has a negative one.
             assert!(fall_speed_terminal(model.number(), 0.0, single).abs() < 1e-6, "{model:?}");
             assert!(fall_speed_terminal(model.number(), -1.0, single).abs() < 1e-6, "{model:?}");
         }
     }
     println!("worst error of the twins: {worst:e}");
-    // An unknown number is Beard's law.
+    // An unknown number selects Beard's law.
     let single = FallSpeedAir::new(&Air::standard());
     assert_eq!(fall_speed_terminal(99, 2e-3, single), fall_speed_terminal(0, 2e-3, single));
 }

@@ -53,7 +53,7 @@ fn fresnel_has_its_tabulated_values() {
     }
 }
 
-/// What the documentation says of Schlick's form for water.
+/// The documented errors of Schlick's form for water.
 #[test]
 fn schlick_is_as_far_off_as_said() {
     let error = |degrees: f64| {
@@ -75,7 +75,7 @@ fn brewster_s_angle_reflects_no_p() {
     assert!((r - 0.03913).abs() < 1e-5);
 }
 
-/// The same share is reflected whichever way the light goes through the interface.
+/// The same fraction is reflected in both directions through the interface.
 #[test]
 fn fresnel_is_reciprocal() {
     for n in [1.01, 1.333, 1.5, 2.0] {
@@ -107,7 +107,7 @@ fn no_power_is_lost() {
 
 #[test]
 fn fresnel_at_its_ends() {
-    // Grazing: everything. Total reflection: everything. No interface: nothing.
+    // Grazing and total reflection: 1. No interface: 0.
     assert_eq!(optics_fresnel_polarised(0.0f32, 1.333), [1.0, 1.0]);
     assert_eq!(optics_fresnel_polarised(-1.0e-3f32, 1.333), [1.0, 1.0]);
     assert_eq!(optics_fresnel_polarised(0.0f32, 0.75), [1.0, 1.0]);
@@ -126,7 +126,7 @@ fn fresnel_at_its_ends() {
     }
 }
 
-/// 6.64 % of diffuse light is reflected, and of parallel light by a sphere: both means are one.
+/// 6.64 % of diffuse light is reflected, and of parallel light by a sphere: both means are equal.
 #[test]
 fn a_sphere_reflects_what_diffuse_light_does() {
     let diffuse = diffuse_reflectance(1.333).unwrap();
@@ -154,8 +154,8 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Snell: n x i stays the same but for the index; the refracted ray is a unit vector on the far side; back through
-/// the interface it is the ray that came.
+/// Snell: n x i is conserved up to the index; the refracted ray is a unit vector on the far side; reversed through
+/// the interface it is the incident ray.
 #[test]
 fn refraction_obeys_snell_and_can_be_reversed() {
     let mut total = 0;
@@ -188,7 +188,7 @@ fn refraction_obeys_snell_and_can_be_reversed() {
                 assert!((back[k] + incident[k]).abs() < 1e-6, "{incident:?} {normal:?} {eta}: {back:?}");
             }
             let single = optics_refract(incident.map(|x| x as f32), normal.map(|x| x as f32), eta as f32).0;
-            // Where the refracted ray grazes, a square root takes half of the digits.
+            // Near grazing refraction, a square root loses half of the digits.
             let bound = 2e-6 / squared.sqrt().max(1e-3);
             for k in 0..3 {
                 assert!((f64::from(single[k]) - refracted[k]).abs() < bound, "{incident:?} {normal:?} {eta}");
@@ -198,7 +198,7 @@ fn refraction_obeys_snell_and_can_be_reversed() {
     assert!(total > 500, "{total}");
 }
 
-/// A ray through a sphere, by vectors, is turned as the formula says, and is never totally reflected within.
+/// A ray through a sphere, by vectors, is deflected as by the formula, and is never totally reflected inside.
 #[test]
 fn a_sphere_turns_rays_as_the_formula_says() {
     let n = 1.333;
@@ -334,7 +334,7 @@ impl WithLanes for OnLanes<'_> {
     }
 }
 
-/// The reflectance from within water, and a component of the refracted ray.
+/// Reflectance from within water, and a component of the refracted ray.
 #[inline(always)]
 fn fresnel_and_refracted<R: Real>(cosine: R) -> (R, R) {
     let (zero, one) = (cosine.constant(0.0), cosine.constant(1.0));
@@ -343,7 +343,7 @@ fn fresnel_and_refracted<R: Real>(cosine: R) -> (R, R) {
     (optics_fresnel(cosine, cosine.constant(1.0 / 1.333)), x)
 }
 
-/// Many rays at once have the bits of one, in total reflection too.
+/// Lanes have the bits of a single ray, in total reflection too.
 #[test]
 fn lanes_have_the_bits_of_the_scalar() {
     let cosines: Vec<f32> = (0..=1000).map(|i| i as f32 / 1000.0).collect();

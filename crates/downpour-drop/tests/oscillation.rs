@@ -1,4 +1,4 @@
-//! The oscillation against the published frequencies, and the volume that it has to keep.
+//! Oscillation against the published frequencies, and conservation of volume.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -76,7 +76,7 @@ fn frequencies_and_damping() {
             assert!((f64::from(single) / tau - 1.0).abs() < 4.0e-7, "{mm} {n}: {single}");
         }
     }
-    // The air's part at 3 mm, and the period of the database of Garg & Nayar.
+    // The effect of the air at 3 mm, and the period of the database of Garg & Nayar.
     let at = |law: FrequencyLaw, d: f64| law.frequency(2, d, &WATER).unwrap();
     let ratio = at(FrequencyLaw::LambTwoFluid, 3.0e-3) / at(FrequencyLaw::Rayleigh1879, 3.0e-3);
     assert!((ratio - 1.0 + 4.0e-4).abs() < 1.0e-5, "{ratio}");
@@ -119,7 +119,7 @@ fn volume_in_closed_form() {
     }
 }
 
-/// Equation 2 alone swells the drop.
+/// Equation 2 alone increases the volume.
 #[test]
 fn the_printed_equation_loses_the_volume() {
     for (amplitudes, expected) in PRESETS.into_iter().zip([1.0323, 1.0512]) {
@@ -178,9 +178,9 @@ fn the_equilibrium_shape_keeps_its_volume() {
     }
 }
 
-/// To second order the two modes together move the centre of mass towards phi = pi by 54/35 s2 s3 r0.
+/// To second order the two modes together move the center of mass towards phi = pi by 54/35 s2 s3 r0.
 #[test]
-fn the_centre_of_mass_moves_sideways() {
+fn the_center_of_mass_moves_sideways() {
     for displacement in [[0.01, 0.01], [-0.02, 0.01], [0.2, 0.1]] {
         let state = drop_oscillation_state(displacement);
         let sideways = sphere_mean(|x, phi| {
@@ -218,7 +218,7 @@ fn left_and_right() {
     }
 }
 
-/// The normal is across the surface, and the mesh of it is closed.
+/// The normal is perpendicular to the surface, and the mesh is closed.
 #[test]
 fn normals_and_mesh_of_an_oscillating_drop() {
     let shape = DropShape::new(5.0e-3).unwrap();
@@ -264,7 +264,7 @@ fn phases_are_uniform() {
     assert_ne!(drop_oscillation_phase(seed, 5), drop_oscillation_phase(seed_words(12), 5));
 }
 
-/// After seconds, hours and days the phase in f32 is as good as in f64 at the start.
+/// After seconds, hours and days the phase in f32 is as accurate as in f64 at the start.
 #[test]
 fn the_phase_does_not_wear_out() {
     let motion = oscillation(1.0e-3, Amplitudes::GARG_NAYAR_OBLATE).of_drop(seed_words(3), 9);
@@ -275,7 +275,7 @@ fn the_phase_does_not_wear_out() {
             let time = start + f64::from(k) * 1.3e-3;
             let found = drop_oscillation_displacement(gpu, DropOscillationTime::from_seconds(time), 0.0);
             for (mode, found) in found.into_iter().enumerate() {
-                // The frequency that the shader has, 2^-17 Hz from the law's at most.
+                // The frequency in the shader, 2^-17 Hz from the law's at most.
                 let f = f64::from(gpu.frequency[mode]) / 65536.0;
                 assert!((f - motion.frequency()[mode]).abs() < 7.7e-6);
                 let turns = (f * time).rem_euclid(1.0) + f64::from(gpu.phase[mode]);
@@ -350,7 +350,8 @@ fn refused_numbers() {
     assert_eq!(size_of::<DropOscillationTime>(), 8);
 }
 
-/// Water as warm as the air: published values at 5 and 30 C, and frequencies that go with the root of the surface tension.
+/// Water at the temperature of the air: published values at 5 and 30 C, and frequencies that scale with the root of
+/// the surface tension.
 #[test]
 fn the_air_decides_what_the_water_is_like() {
     use downpour_drop::air::Air;

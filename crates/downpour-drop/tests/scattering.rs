@@ -1,4 +1,4 @@
-//! What a sphere scatters against closed forms, an independent quadrature, and the rainbow's table.
+//! Scattering by a sphere against closed forms, an independent quadrature, and the rainbow's table.
 
 use std::f64::consts::PI;
 
@@ -14,7 +14,7 @@ fn middle(k: usize, count: usize) -> f64 {
     PI * (k as f64 + 0.5) / count as f64
 }
 
-/// The mean over an interval's solid angle of a cross-section, and the mean of a place over its light.
+/// Mean of a cross-section over an interval's solid angle, and mean position weighted by its light.
 fn means(k: usize, count: usize, of: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let rule = GaussLegendre::new(8);
     let ends = [k, k + 1].map(|k| PI * k as f64 / count as f64);
@@ -24,43 +24,43 @@ fn means(k: usize, count: usize, of: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     [light / sum(&|_| 1.0), sum(&|angle| of(angle)[0] * of(angle)[1]) / light]
 }
 
-/// Each order's share by way of the impact parameter, with the angles of each meeting worked out on its own.
-fn share_by_meetings(order: u32) -> f64 {
+/// Fraction of each order by the impact parameter, with the angles of each interaction computed separately.
+fn fraction_by_interactions(order: u32) -> f64 {
     let rule = GaussLegendre::new(32);
-    // Towards the rim the reflectance rises steeply: b = 1 - t^4.
+    // The reflectance rises steeply towards the rim: b = 1 - t^4.
     let of = |t: f64| {
         let b = 1.0 - t * t * t * t;
         let outside = (1.0 - b * b).sqrt();
         let inside = (1.0 - b * b / (N * N)).sqrt();
         let entry = optics_fresnel_polarised(outside, N);
         let exit = optics_fresnel_polarised(inside, 1.0 / N);
-        let share = [0, 1].map(|k| match order {
+        let fraction = [0, 1].map(|k| match order {
             0 => entry[k],
             p => (1.0 - entry[k]) * ops::pow(exit[k], f64::from(p - 1)) * (1.0 - exit[k]),
         });
-        0.5 * (share[0] + share[1]) * 2.0 * b * 4.0 * t * t * t
+        0.5 * (fraction[0] + fraction[1]) * 2.0 * b * 4.0 * t * t * t
     };
     rule.integrate_panels(0.0, 1.0, 8, of)
 }
 
 #[test]
-fn orders_have_the_shares_that_fresnel_says() {
+fn orders_have_the_fractions_of_fresnel() {
     let table = SphereScattering::new(N, 256, SUN_DIAMETER).unwrap();
     let mut total = 0.0;
     for order in 0..SCATTERING_ORDERS {
-        let expected = share_by_meetings(order);
-        let quadrature = scattered_share(N, order).unwrap();
-        let found = table.share(order);
+        let expected = fraction_by_interactions(order);
+        let quadrature = scattered_fraction(N, order).unwrap();
+        let found = table.fraction(order);
         assert!((quadrature / expected - 1.0).abs() < 1e-5, "{order}: {quadrature} for {expected}");
         assert!((found / expected - 1.0).abs() < 1e-4, "{order}: {found} for {expected}");
         total += found;
     }
     assert!(total > 0.99 && total < 1.0, "{total}");
-    let all: f64 = (0..40).map(|order| scattered_share(N, order).unwrap()).sum();
+    let all: f64 = (0..40).map(|order| scattered_fraction(N, order).unwrap()).sum();
     assert!((all - 1.0).abs() < 1e-4, "{all}");
     // The outside reflects the mean of Fresnel's reflectance over the disc.
     let outside = diffuse_reflectance(N).unwrap();
-    assert!((scattered_share(N, 0).unwrap() - outside).abs() < 1e-6);
+    assert!((scattered_fraction(N, 0).unwrap() - outside).abs() < 1e-6);
 }
 
 /// b = cos(theta / 2), so that dsigma/dOmega = a^2 R / 4: a mirror would be as bright from everywhere.
@@ -69,11 +69,11 @@ fn the_outside_is_a_mirror_dimmed_by_its_reflectance() {
     let table = SphereScattering::new(N, 256, 0.0).unwrap();
     let outside = &table.paths()[0];
     let law = |angle: f64| [optics_fresnel(ops::sin(0.5 * angle), N) / (4.0 * PI), ops::cos(0.5 * angle)];
-    for (k, (&phase, &place)) in outside.phase.iter().zip(&outside.place).enumerate() {
+    for (k, (&phase, &position)) in outside.phase.iter().zip(&outside.exit_position).enumerate() {
         let [expected, edge] = means(k, 256, law);
         let degrees = middle(k, 256).to_degrees();
         assert!((phase / expected - 1.0).abs() < 1e-3, "{degrees}: {phase} for {expected}");
-        assert!((place - edge).abs() < 1e-4, "{degrees}: {place} for {edge}");
+        assert!((position - edge).abs() < 1e-4, "{degrees}: {position} for {edge}");
     }
 }
 
@@ -90,17 +90,17 @@ fn what_goes_through_has_its_closed_form() {
         let b = N * ops::sin(0.5 * angle) / spread.sqrt();
         let [s, p] = optics_fresnel_polarised((1.0 - b * b).sqrt(), N).map(|r| (1.0 - r) * (1.0 - r));
         let cross = N * N * (N * c - 1.0) * (N - c) / (4.0 * c * spread * spread);
-        // A lens of water shows what is behind it upside down.
+        // A lens of water shows the background upside down.
         [0.5 * (s + p) * cross / PI, -b]
     };
-    for (k, (&phase, &place)) in through.phase.iter().zip(&through.place).enumerate() {
+    for (k, (&phase, &position)) in through.phase.iter().zip(&through.exit_position).enumerate() {
         let angle = middle(k, 256);
         if angle > most + 0.01 {
             assert_eq!(phase, 0.0, "{}", angle.to_degrees());
         } else if angle < 1.4 {
             let [expected, b] = means(k, 256, law);
             assert!((phase / expected - 1.0).abs() < 1e-3, "{}: {phase} for {expected}", angle.to_degrees());
-            assert!((place - b).abs() < 1e-4, "{}: {place} for {b}", angle.to_degrees());
+            assert!((position - b).abs() < 1e-4, "{}: {position} for {b}", angle.to_degrees());
         }
     }
 }
@@ -128,7 +128,7 @@ fn bows_stand_where_the_table_of_rainbows_says() {
             for path in &table.paths()[paths] {
                 let found = peak(&path.phase);
                 assert!((found - (180.0 - radius)).abs() < 0.11, "{index}, {:?}: {found}", path.impacts);
-                // Alexander's band: none of this order on the bow's dark side.
+                // Alexander's band: no light of this order on the bow's dark side.
                 let beyond = ((180.0 - radius + dark) * 10.0) as usize;
                 assert_eq!(path.phase[beyond], 0.0, "{index}, {:?}", path.impacts);
             }
@@ -136,7 +136,7 @@ fn bows_stand_where_the_table_of_rainbows_says() {
     }
 }
 
-/// The bow of a disc is wider, lower, and has the same light.
+/// The bow of a disc is wider and lower, and has the same light.
 #[test]
 fn a_disc_of_light_makes_a_wide_bow() {
     let tables = [0.0, 0.05].map(|diameter| SphereScattering::new(N, 1800, diameter).unwrap());
@@ -147,12 +147,12 @@ fn a_disc_of_light_makes_a_wide_bow() {
     let wider = lit(&tables[1]) - lit(&tables[0]);
     assert!((12..=16).contains(&wider), "{wider}");
     for order in 0..SCATTERING_ORDERS {
-        let [point, disc] = [0, 1].map(|k| tables[k].share(order));
+        let [point, disc] = [0, 1].map(|k| tables[k].fraction(order));
         assert!((point / disc - 1.0).abs() < 1e-9, "{order}: {point}, {disc}");
     }
 }
 
-/// A ray's place on the disc by following it in the plane: positions and directions, no angles.
+/// Exit position of a ray traced in the plane by positions and directions, without angles.
 #[test]
 fn glints_stand_where_a_ray_leaves() {
     let cross = |a: [f64; 3], b: [f64; 3]| a[0] * b[1] - a[1] * b[0];
@@ -164,23 +164,27 @@ fn glints_stand_where_a_ray_leaves() {
                 along = optics_reflect(along, at);
             } else {
                 along = optics_refract(along, at, 1.0 / N).0;
-                for meeting in 1..=order {
+                for interaction in 1..=order {
                     let chord = -2.0 * (at[0] * along[0] + at[1] * along[1]);
                     at = [at[0] + chord * along[0], at[1] + chord * along[1], 0.0];
                     let inward = at.map(|x| -x);
-                    along = if meeting == order {
+                    along = if interaction == order {
                         optics_refract(along, inward, N).0
                     } else {
                         optics_reflect(along, inward)
                     };
                 }
             }
-            // The light stands at (-1, 0): its side of the disc, seen against the way the ray goes.
+            // The light is at (-1, 0): its side of the disc, seen against the direction of the ray.
             let side = [-1.0 + along[0] * along[0], along[0] * along[1], 0.0];
             let length = ops::hypot(side[0], side[1]);
             let expected = (at[0] * side[0] + at[1] * side[1]) / length;
             let ray = scattered_ray(b, N, order).unwrap();
-            assert!((ray.place - expected).abs() < 1e-6, "{order}, {b}: {} for {expected}", ray.place);
+            assert!(
+                (ray.exit_position - expected).abs() < 1e-6,
+                "{order}, {b}: {} for {expected}",
+                ray.exit_position
+            );
             assert!((ops::cos(ray.turn) - along[0]).abs() < 1e-9, "{order}, {b}");
             assert!((ops::sin(ray.angle) - cross([1.0, 0.0, 0.0], along).abs()).abs() < 1e-7, "{order}, {b}");
         }
@@ -199,5 +203,5 @@ fn what_is_no_sphere_of_water_is_refused() {
     refused(SphereScattering::new(N, 256, -1.0).unwrap_err(), "0 to 0.2 radians");
     refused(scattered_ray(1.1, N, 1).unwrap_err(), "impact parameter is 1.1");
     refused(scattered_ray(0.5, f64::INFINITY, 1).unwrap_err(), "refractive index");
-    refused(scattered_share(N, 5000).unwrap_err(), "order of scattering is 5000");
+    refused(scattered_fraction(N, 5000).unwrap_err(), "order of scattering is 5000");
 }

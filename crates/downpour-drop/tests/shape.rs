@@ -1,9 +1,9 @@
-//! The equilibrium shape against the published table, and against itself where it is interpolated.
+//! Equilibrium shape against the published table, and against itself between the rows.
 
 use std::f64::consts::PI;
 
 use downpour_drop::shape::{
-    COEFFICIENTS, DropShape, DropShapeCoefficients, LARGEST_DIAMETER, ShapeTable, drop_shape_normal,
+    COEFFICIENTS, DropShape, DropShapeCoefficients, MAX_DIAMETER, ShapeTable, drop_shape_normal,
     drop_shape_radius, drop_shape_radius_slope, drop_shape_slope,
 };
 use downpour_math::ops::f64::{cbrt, cos, sin};
@@ -12,7 +12,7 @@ use downpour_math::real::{Lanes, Simd, WithLanes, with_widest_lanes};
 
 type Coefficients = [f64; COEFFICIENTS];
 
-/// The sum as it is printed: with cosines.
+/// The printed sum, with cosines.
 fn printed_radius(c: &Coefficients, theta: f64) -> f64 {
     1.0 + (0..).zip(c).map(|(n, c)| c * cos(f64::from(n) * theta)).sum::<f64>()
 }
@@ -25,7 +25,7 @@ fn volume_ratio(c: &Coefficients) -> f64 {
     })
 }
 
-/// The row as printed, with what was found where it is corrected.
+/// The row as printed, with the uncorrected values.
 fn found_row(i: usize) -> (f64, Coefficients) {
     let row = ShapeTable::ChuangBeard1990.rows()[i];
     let mut c = row.coefficients();
@@ -39,7 +39,7 @@ fn found_row(i: usize) -> (f64, Coefficients) {
 }
 
 /// Measured on the printed rows by another program: diameter (mm), volume, centroid below the origin, axis
-/// ratio, largest half width, reach down, reach up; lengths over a.
+/// ratio, largest half width, extent down, extent up; lengths over a.
 const MEASURES: [[f64; 7]; 15] = [
     [1.0, 1.000031, -0.00165, 0.98367, 1.00511, 0.9837, 0.9937],
     [1.5, 1.000006, -0.00335, 0.95923, 1.01279, 0.9595, 0.9835],
@@ -92,7 +92,7 @@ fn corrected_rows_close() {
     let at_8 = ShapeTable::ChuangBeard1990.coefficients(8.0e-3).unwrap();
     assert!((volume_ratio(&at_8) - 1.0004).abs() < 1.0e-4);
     assert!((volume_ratio(&found_row(13).1) - 0.9975).abs() < 1.0e-4);
-    // What Rousseau 2006 prints for 9 mm differs in one digit, and by 0.12 % of the volume.
+    // Rousseau 2006 prints one different digit for 9 mm, 0.12 % of the volume.
     let printed = ShapeTable::Rousseau2006.rows()[3];
     let full = ShapeTable::ChuangBeard1990.rows()[14];
     let wrong = ShapeTable::CORRECTIONS[2];
@@ -133,7 +133,7 @@ fn the_bottom_is_flatter() {
     }
 }
 
-/// The end of the sum at n = 10 shows on the flat bottom of large drops: going outwards, the height rises by
+/// The end of the sum at n = 10 is visible on the flat bottom of large drops: outwards, the height rises by
 /// more, then by less.
 #[test]
 fn large_drops_have_a_ripple_below() {
@@ -166,7 +166,7 @@ fn exact_at_rows_and_bounded_between() {
     assert!(worst < 1.5e-4, "{worst}");
 }
 
-/// Midway between rows the cubic through the four nearest rows says the same.
+/// Midway between rows the cubic through the four nearest rows agrees.
 #[test]
 fn between_rows_as_four_rows_say() {
     let rows = ShapeTable::ChuangBeard1990.rows();
@@ -199,7 +199,7 @@ fn smooth_across_rows() {
             let (below, at, above) = (of(d - h), of(d), of(d + h));
             for n in 0..COEFFICIENTS {
                 let (left, right) = ((at[n] - below[n]) / h, (above[n] - at[n]) / h);
-                // Slopes are up to 50 per metre; curvature (below 2e4 per m^2) times h is what may differ.
+                // Slopes are up to 50 per metre; curvature (below 2e4 per m^2) times h is the allowed difference.
                 assert!((left - right).abs() < 1.0e-3, "{d} {n}: {left} {right}");
             }
         }
@@ -254,7 +254,7 @@ fn refused_numbers() {
     }
     let error = DropShape::new(9.5e-3).unwrap_err();
     assert_eq!(error.to_string(), "diameter is 9.5 mm; allowed: 0.001 to 9");
-    for d in [1.0e-6, LARGEST_DIAMETER, 9.0 * 1.0e-3, f64::from(9.0e-3f32)] {
+    for d in [1.0e-6, MAX_DIAMETER, 9.0 * 1.0e-3, f64::from(9.0e-3f32)] {
         assert!(DropShape::new(d).is_ok(), "{d}");
     }
     let with = |n: usize, c: f64| {
@@ -324,7 +324,7 @@ fn directions(up: [f64; 3]) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// The normal is across the surface: two tangents by central differences.
+/// The normal is perpendicular to the surface: two tangents by central differences.
 #[test]
 fn normals_against_differences() {
     for (mm, up) in [(1.0, [0.0, 1.0, 0.0]), (5.0, unit([0.2, 0.9, -0.4])), (9.0, unit([-1.0, 0.1, 0.3]))] {

@@ -25,7 +25,7 @@ fn water_has_its_tabulated_properties() {
     assert_relative_eq!(water::kinematic_viscosity(20.0).unwrap(), 1.0034e-6, max_relative = 5e-5);
 }
 
-/// The value that IAPWS R1-76(2014) gives to check programs with.
+/// The check value of IAPWS R1-76(2014).
 #[test]
 fn surface_tension_has_the_release_s_value() {
     assert!((water::surface_tension(300.0 - 273.15).unwrap() - 0.071_685_962_5).abs() < 1e-10);
@@ -39,7 +39,7 @@ fn supercooled_water_has_its_density() {
     }
 }
 
-/// Water is heaviest at 3.98 C.
+/// Water is densest at 3.98 C.
 #[test]
 fn water_is_heaviest_near_four_degrees() {
     let heaviest = (0..4000)

@@ -1,47 +1,47 @@
-//! What GPUs there are, and which one to take.
+//! Enumeration and choice of GPU adapters.
 
 use crate::{GpuError, drivers};
 
-/// Which adapter to take.
+/// Criterion for the choice of an adapter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum AdapterChoice {
-    /// A discrete GPU, else an integrated one, else a virtual one, else a software driver.
+    /// The best one: discrete before integrated, virtual and software adapters.
     #[default]
     Auto,
-    /// The first whose name or driver contains this text, in any case.
+    /// The first one whose name or driver contains this text, ignoring case.
     Named(String),
 }
 
-/// An adapter and what it can do.
+/// An adapter and its capabilities.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterDescription {
     /// Name of the device.
     pub name: String,
     /// Name of the driver.
     pub driver: String,
-    /// Version of the driver, in its own words.
+    /// Version of the driver, as the driver reports it.
     pub driver_info: String,
     /// `vulkan`, `metal`, `dx12`, `webgpu` or `noop`.
     pub backend: String,
     /// `discrete`, `integrated`, `virtual`, `software` or `other`.
     pub kind: &'static str,
-    /// Whether passes can be timed by the device itself.
+    /// True if passes can be timed by timestamps of the device.
     pub timestamps: bool,
-    /// Whether 32-bit float textures can be filtered.
+    /// True if 32-bit float textures can be filtered.
     pub float32_filterable: bool,
-    /// Whether shaders may compute with 16-bit floats.
+    /// True if shaders may compute with 16-bit floats.
     pub shader_f16: bool,
-    /// Whether shaders may use subgroup operations.
+    /// True if shaders may use subgroup operations.
     pub subgroups: bool,
-    /// Largest width and height of a texture.
+    /// Maximum width and height of a texture.
     pub max_texture_2d: u32,
-    /// Largest number of layers of a texture array.
+    /// Maximum number of layers of a texture array.
     pub max_texture_layers: u32,
-    /// Largest buffer in bytes.
+    /// Maximum size of a buffer in bytes.
     pub max_buffer_bytes: u64,
-    /// Largest part of a buffer that a shader can see, in bytes.
+    /// Maximum size of a storage buffer binding in bytes.
     pub max_storage_binding_bytes: u64,
-    /// Most invocations of a workgroup.
+    /// Maximum number of invocations per workgroup.
     pub max_invocations_per_workgroup: u32,
 }
 
@@ -72,21 +72,21 @@ impl AdapterDescription {
         }
     }
 
-    /// Whether this is a driver that computes on the CPU.
+    /// True for a driver that computes on the CPU.
     #[must_use]
     pub fn is_software(&self) -> bool {
         self.kind == "software"
     }
 }
 
-/// The backends that Downpour runs on. OpenGL is not among them: its software driver writes wrong 3-D textures
-/// without an error, and it lacks formats that are needed.
+/// Supported backends. OpenGL is excluded: its software driver writes wrong 3-D textures without an error, and it
+/// lacks formats that are needed.
 pub const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN
     .union(wgpu::Backends::METAL)
     .union(wgpu::Backends::DX12)
     .union(wgpu::Backends::BROWSER_WEBGPU);
 
-/// All adapters, the one that [`AdapterChoice::Auto`] takes first.
+/// All adapters, the one that [`AdapterChoice::Auto`] picks first.
 #[must_use]
 pub fn adapters() -> Vec<AdapterDescription> {
     enumerate().iter().map(describe).collect()
@@ -96,7 +96,7 @@ pub(crate) fn describe(adapter: &wgpu::Adapter) -> AdapterDescription {
     AdapterDescription::new(&adapter.get_info(), adapter.features(), &adapter.limits())
 }
 
-/// All adapters in order of preference; equals keep the order of the system.
+/// All adapters in order of preference; equal ones keep the order of the system.
 pub(crate) fn enumerate() -> Vec<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = BACKENDS;
@@ -112,15 +112,15 @@ pub(crate) fn enumerate() -> Vec<wgpu::Adapter> {
     adapters
 }
 
-/// The adapter of `choice`.
+/// Returns the adapter of `choice`.
 ///
 /// # Errors
-/// [`GpuError::NoAdapter`] names the drivers that were tried, [`GpuError::AdapterNotFound`] the adapters that
-/// there are.
+/// [`GpuError::NoAdapter`] lists the drivers that were tried, [`GpuError::AdapterNotFound`] the available
+/// adapters.
 pub(crate) fn choose(choice: &AdapterChoice) -> Result<wgpu::Adapter, GpuError> {
     let mut adapters = enumerate();
     if adapters.is_empty() {
-        return Err(GpuError::NoAdapter { tried: drivers::tried(BACKENDS), way_out: drivers::WAY_OUT });
+        return Err(GpuError::NoAdapter { tried: drivers::tried(BACKENDS), way_out: drivers::REMEDY });
     }
     match choice {
         AdapterChoice::Auto => Ok(adapters.swap_remove(0)),

@@ -1,11 +1,11 @@
-//! Buffers, checked against the device before they are made.
+//! Buffers, checked against the limits of the device before they are created.
 
 use bytemuck::Pod;
 
 use crate::{Gpu, GpuError};
 
 impl Gpu {
-    /// A storage buffer that holds `data`, and can be copied from and to.
+    /// Creates a storage buffer with the contents `data`, and with both copy usages.
     ///
     /// # Errors
     /// [`GpuError::OverLimit`], [`GpuError::OutOfMemory`] or [`GpuError::Lost`].
@@ -16,7 +16,7 @@ impl Gpu {
         Ok(buffer)
     }
 
-    /// A uniform buffer that holds `value`.
+    /// Creates a uniform buffer with the contents `value`.
     ///
     /// # Errors
     /// As [`Gpu::storage_buffer`].
@@ -27,7 +27,7 @@ impl Gpu {
         Ok(buffer)
     }
 
-    /// A buffer of `bytes` bytes (at least 4, rounded up to 4) with `usage` and both copy usages.
+    /// Creates a buffer of `bytes` bytes (at least 4, rounded up to a multiple of 4) with `usage` and both copy usages.
     ///
     /// # Errors
     /// As [`Gpu::storage_buffer`].

@@ -1,4 +1,4 @@
-//! A device, its queue, and what is known of their health.
+//! Device, queue and the state of their health.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,16 +7,16 @@ use std::time::Duration;
 use crate::adapter::{self, AdapterChoice, AdapterDescription};
 use crate::{Dispatch, GpuError};
 
-/// How a device of our own is made.
+/// Options of a device that Downpour creates.
 #[derive(Clone, Debug)]
 pub struct GpuOptions {
-    /// Which adapter to take.
+    /// Adapter to open.
     pub adapter: AdapterChoice,
-    /// Which limits to ask for.
+    /// Limits to request.
     pub limits: LimitSet,
-    /// How long a submission may take before it counts as hung.
+    /// Time after which an unfinished submission counts as hung.
     pub timeout: Duration,
-    /// Destroys the device after this many submissions, as a driver reset would. For tests of what happens then.
+    /// Destroys the device after this many submissions, as a driver reset would. For tests of device loss.
     pub lose_after_submissions: Option<u64>,
 }
 
@@ -31,13 +31,13 @@ impl Default for GpuOptions {
     }
 }
 
-/// Which limits a device of our own gets.
+/// Limits that a new device gets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LimitSet {
-    /// All that the adapter has.
+    /// All limits of the adapter.
     #[default]
     Adapter,
-    /// What every WebGPU implementation has: what a browser gives by default.
+    /// WebGPU's default limits, as a browser gives them.
     WebGpuDefault,
 }
 
@@ -53,8 +53,8 @@ pub struct Gpu {
     timeout: Duration,
 }
 
-/// What the callbacks of a device of our own have reported. On a caller's device it stays empty: there, loss is
-/// seen by the failure of the next readback.
+/// Reports of the callbacks of a device that Downpour created. Empty on a caller's device, where loss is detected
+/// by the failure of the next readback.
 #[derive(Debug, Default)]
 struct Health {
     lost: Mutex<Option<String>>,
@@ -74,7 +74,7 @@ impl Health {
 }
 
 impl Gpu {
-    /// A device of our own on the chosen adapter, with the adapter's limits.
+    /// Opens a device on the chosen adapter, with the adapter's limits.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`], [`GpuError::AdapterNotFound`] or [`GpuError::NoDevice`].
@@ -82,7 +82,7 @@ impl Gpu {
         Self::open_with(&GpuOptions { adapter: choice.clone(), ..GpuOptions::default() })
     }
 
-    /// A device of our own.
+    /// Opens a device with options.
     ///
     /// # Errors
     /// As [`Gpu::open`].
@@ -114,13 +114,13 @@ impl Gpu {
         Ok(Self::assemble(device, queue, health, options.timeout))
     }
 
-    /// The same context with another patience: how long a wait may last before the device counts as hung.
+    /// Sets the time after which a wait counts as hung.
     #[must_use]
     pub fn with_timeout(self, timeout: Duration) -> Self {
         Self { timeout, ..self }
     }
 
-    /// A context on a caller's device and queue. Its lost-device callback and error handler stay the caller's.
+    /// Creates a context on a caller's device and queue. The caller's lost-device callback and error handler stay.
     #[must_use]
     pub fn on_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         Self::assemble(device, queue, Arc::default(), GpuOptions::default().timeout)
@@ -143,16 +143,16 @@ impl Gpu {
         &self.queue
     }
 
-    /// The adapter of the device; features and limits are those of the device.
+    /// Adapter of the device; features and limits are those of the device.
     #[must_use]
     pub fn adapter(&self) -> &AdapterDescription {
         &self.adapter
     }
 
-    /// Makes something on the device, and turns what wgpu reports of it into an error.
+    /// Creates an object on the device, and turns errors that wgpu reports into a [`GpuError`].
     ///
     /// # Errors
-    /// [`GpuError::OutOfMemory`] (with `bytes` as the need) or [`GpuError::Refused`], both naming `what`;
+    /// [`GpuError::OutOfMemory`] (with `bytes` as the required size) or [`GpuError::Refused`], both naming `what`;
     /// [`GpuError::Lost`] if the device is known to be lost.
     pub fn create<T>(
         &self,
@@ -161,7 +161,7 @@ impl Gpu {
         make: impl FnOnce(&wgpu::Device) -> T,
     ) -> Result<T, GpuError> {
         self.check()?;
-        // Scopes are a stack of this thread, innermost popped first. Each is always popped: a scope that is
+        // Error scopes are a stack per thread, popped innermost first. Each is always popped: a scope that is
         // dropped would swallow a caller's errors.
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -180,7 +180,7 @@ impl Gpu {
         Ok(made)
     }
 
-    /// Submits the dispatches in order, as one command buffer. Does not wait.
+    /// Submits the dispatches in order as one command buffer, without waiting.
     ///
     /// # Errors
     /// As [`Gpu::create`]; [`GpuError::OverLimit`] if a dispatch has more workgroups than the device allows.
@@ -202,7 +202,7 @@ impl Gpu {
         Ok(())
     }
 
-    /// Submits recorded commands, and loses the device if that was asked for.
+    /// Submits recorded commands, and destroys the device if the options ask for it.
     pub(crate) fn submit_commands(&self, commands: wgpu::CommandBuffer) {
         self.queue.submit([commands]);
         let done = self.health.submissions.fetch_add(1, Ordering::Relaxed) + 1;
@@ -211,10 +211,10 @@ impl Gpu {
         }
     }
 
-    /// Waits until everything submitted is done.
+    /// Waits until all submitted work is done.
     ///
     /// # Errors
-    /// [`GpuError::Hung`] after the timeout, [`GpuError::Lost`], or what an earlier call ran into.
+    /// [`GpuError::Hung`] after the timeout, [`GpuError::Lost`], or the error of an earlier call.
     pub fn wait(&self) -> Result<(), GpuError> {
         let poll = wgpu::PollType::Wait { submission_index: None, timeout: Some(self.timeout) };
         match self.device.poll(poll) {
@@ -226,7 +226,7 @@ impl Gpu {
         }
     }
 
-    /// What is known of the health of the device, without waiting.
+    /// Checks the known health of the device, without waiting.
     ///
     /// # Errors
     /// [`GpuError::Lost`], or [`GpuError::Refused`] for an error that no scope caught.
@@ -241,7 +241,7 @@ impl Gpu {
     }
 }
 
-/// wgpu's messages are paragraphs; ours are lines.
+/// Joins the lines of one of wgpu's multi-line messages.
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -1,12 +1,12 @@
-//! Which Vulkan drivers a machine has, for the message that says why there is no adapter.
+//! Vulkan drivers found on the machine, for the message of a missing adapter.
 
 use std::path::{Path, PathBuf};
 
-/// What to type when there is none.
-pub(crate) const WAY_OUT: &str = "On Debian or Ubuntu, `apt-get install mesa-vulkan-drivers` brings a software GPU; \
+/// Advice for a machine without a driver.
+pub(crate) const REMEDY: &str = "On Debian or Ubuntu, `apt-get install mesa-vulkan-drivers` brings a software GPU; \
 `--backend cpu` needs none";
 
-/// One line on each place where a driver may be.
+/// One line on each possible location of a driver.
 pub(crate) fn tried(backends: wgpu::Backends) -> String {
     let mut lines = Vec::new();
     if backends.contains(wgpu::Backends::VULKAN)
@@ -32,7 +32,7 @@ pub(crate) fn tried(backends: wgpu::Backends) -> String {
     if lines.is_empty() { "no backend of this system".to_owned() } else { lines.join("; ") }
 }
 
-/// The manifests that a Vulkan loader would read.
+/// Manifests that a Vulkan loader would read.
 fn vulkan_manifests() -> Vec<PathBuf> {
     for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
         if let Some(list) = std::env::var_os(variable).filter(|v| !v.is_empty()) {

@@ -1,85 +1,85 @@
-//! What can go wrong between a program and its GPU.
+//! Errors of GPU work.
 
 use std::time::Duration;
 
-/// Why a GPU did not do what was asked.
+/// Error of a GPU operation.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// There is no adapter at all.
+    /// The machine has no usable adapter.
     #[error("no GPU adapter found; tried: {tried}. {way_out}")]
     NoAdapter {
-        /// Which backends and drivers were looked for, and what was found of each.
+        /// Backends and drivers that were tried, and the result of each.
         tried: String,
-        /// What a person can do about it.
+        /// Advice to the user.
         way_out: &'static str,
     },
-    /// No adapter has the wanted name.
+    /// No adapter matches the requested name.
     #[error("no GPU adapter's name contains \"{wanted}\"; there are: {found}")]
     AdapterNotFound {
-        /// The part of a name that was asked for.
+        /// Requested part of a name.
         wanted: String,
-        /// The names that there are.
+        /// Names of the available adapters.
         found: String,
     },
-    /// The adapter does not give a device.
-    #[error("adapter \"{adapter}\" gives no device: {reason}")]
+    /// The adapter does not open a device.
+    #[error("cannot open a device on adapter \"{adapter}\": {reason}")]
     NoDevice {
-        /// The adapter's name.
+        /// Name of the adapter.
         adapter: String,
-        /// What wgpu says.
+        /// Message of wgpu.
         reason: String,
     },
-    /// The device was lost; nothing that it computed may be used.
+    /// The device was lost; none of its results may be used.
     #[error("the GPU device was lost ({reason}); nothing was published")]
     Lost {
-        /// What the driver says, if anything.
+        /// Message of the driver, if any.
         reason: String,
     },
-    /// The device did not finish in time. Dropping it would block: save what is needed and end the process.
+    /// The device did not finish in time. Dropping it would block: save all results and end the process.
     #[error("the GPU did not finish within {waited:?}; it hangs or the work is too large for it")]
     Hung {
-        /// How long was waited.
+        /// Time waited.
         waited: Duration,
     },
-    /// The device has no memory left.
+    /// The device is out of memory.
     #[error("the GPU has not enough memory for {what} ({need_bytes} bytes)")]
     OutOfMemory {
-        /// What was to be made.
+        /// Object that was requested.
         what: String,
-        /// Its size.
+        /// Its size in bytes.
         need_bytes: u64,
     },
-    /// A size is above what the device allows.
+    /// A size exceeds a limit of the device.
     #[error("{what} is {found}; this device allows {limit_name} = {allowed}")]
     OverLimit {
-        /// What was to be made.
+        /// Object that was requested.
         what: String,
         /// Its size.
         found: u64,
-        /// The wgpu name of the limit.
+        /// wgpu's name of the limit.
         limit_name: &'static str,
-        /// The limit.
+        /// Value of the limit.
         allowed: u64,
     },
-    /// A caller's device lacks something that is needed.
+    /// A caller's device lacks a required feature or limit.
     #[error("this device lacks {missing}")]
     Missing {
-        /// The features or limits, by their wgpu names.
+        /// Missing features or limits, by their wgpu names.
         missing: String,
     },
-    /// wgpu refused a call. This is a defect of Downpour (or of the driver), not of the input.
+    /// wgpu refused a call. This is a defect of Downpour or of the driver, not of the input.
     #[error("the GPU refused {what}: {reason}")]
     Refused {
-        /// What was to be made or done.
+        /// Object or operation that was requested.
         what: String,
-        /// What wgpu says.
+        /// Message of wgpu.
         reason: String,
     },
 }
 
 impl GpuError {
-    /// The exit code of the command for this error: 3 over a limit, 4 everything else of a GPU.
+    /// Exit code of the command for this error: 3 for an exceeded limit, 4 for every other GPU error.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {

@@ -12,7 +12,7 @@ pub struct ComputeKernel {
 }
 
 impl ComputeKernel {
-    /// The pipeline of a kernel of `downpour-shaders`, with values for its `override` constants.
+    /// Creates the pipeline of a kernel of `downpour-shaders`, with values for its `override` constants.
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] if the workgroup is too large for the device; as [`Gpu::create`] otherwise.
@@ -30,10 +30,10 @@ impl ComputeKernel {
         Self::from_source(gpu, kernel.entry, &kernel.source(), overrides)
     }
 
-    /// The pipeline of an entry point of any WGSL text.
+    /// Creates the pipeline of an entry point of any WGSL text.
     ///
     /// # Errors
-    /// [`GpuError::Refused`] with the compiler's words if the text is not valid; as [`Gpu::create`] otherwise.
+    /// [`GpuError::Refused`] with the compiler's message if the text is not valid; as [`Gpu::create`] otherwise.
     pub fn from_source(
         gpu: &Gpu,
         entry: &str,
@@ -60,7 +60,7 @@ impl ComputeKernel {
         Ok(Self { pipeline, label: entry.to_owned() })
     }
 
-    /// The buffers as bindings 0, 1, 2, ... of group 0.
+    /// Binds the buffers to bindings 0, 1, 2, ... of group 0.
     ///
     /// # Errors
     /// [`GpuError::Refused`] if number, usage or size of the buffers are not what the kernel declares.
@@ -68,7 +68,7 @@ impl ComputeKernel {
         self.bind_at(gpu, (0..).zip(buffers.iter().copied()))
     }
 
-    /// Buffers as bindings of group 0, each with its number.
+    /// Binds buffers to bindings of group 0 by number.
     ///
     /// # Errors
     /// As [`ComputeKernel::bind`].
@@ -91,7 +91,7 @@ impl ComputeKernel {
         })
     }
 
-    /// A dispatch of `groups` workgroups.
+    /// Creates a dispatch of `groups` workgroups.
     #[must_use]
     pub fn dispatch<'a>(&'a self, bindings: &'a wgpu::BindGroup, groups: [u32; 3]) -> Dispatch<'a> {
         Dispatch { kernel: self, bindings, groups }

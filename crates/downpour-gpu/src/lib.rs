@@ -1,15 +1,15 @@
 //! A thin, checked layer over wgpu.
 //!
-//! wgpu reports little by itself: after a device is lost, calls return quietly; a validation error without a
-//! handler panics; a buffer above a limit is refused after the fact. Everything here returns a [`GpuError`]
-//! instead, and nothing that was computed on a lost device is ever handed out.
+//! wgpu alone reports little: after a device is lost, calls return quietly; a validation error without a handler
+//! panics; a buffer above a limit is refused after the fact. All functions here return a [`GpuError`] instead, and
+//! results of a lost device are never returned.
 //!
-//! - [`Gpu`]: a context on a device of its own ([`Gpu::open`]) or on a caller's ([`Gpu::on_device`], which
+//! - [`Gpu`]: a context on a new device ([`Gpu::open`]) or on a caller's ([`Gpu::on_device`], which
 //!   never replaces the caller's handlers);
-//! - [`adapters`](adapter::adapters): what GPUs there are, and what each can do;
+//! - [`adapters`](adapter::adapters): the available GPUs and their capabilities;
 //! - [`ComputeKernel`], [`Dispatch`]: pipelines from `downpour-shaders`, checked against the device's limits;
-//! - [`Gpu::read`]: readback, which is where loss, hangs and late errors are seen;
-//! - [`timing`]: time of whole passes, by timestamp where the device has them.
+//! - [`Gpu::read`]: readback, which detects loss, hangs and late errors;
+//! - [`timing`]: time of whole passes, by timestamps where the device has them.
 //!
 //! ```no_run
 //! use downpour_gpu::{AdapterChoice, Gpu};
@@ -35,7 +35,7 @@ pub use error::GpuError;
 pub use kernel::{ComputeKernel, Dispatch};
 pub use wgpu;
 
-/// The examples of the README, as tests.
+/// Compiles the examples of the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

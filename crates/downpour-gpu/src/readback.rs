@@ -1,4 +1,4 @@
-//! From the device to the program: the point where loss, hangs and late errors are seen.
+//! Readback from the device, which detects loss, hangs and late errors.
 
 use std::sync::mpsc;
 use std::time::Duration;
@@ -9,13 +9,13 @@ use crate::context::one_line;
 
 use crate::{Gpu, GpuError};
 
-/// How long a callback may stay with another thread after the device is done.
+/// Time that a callback may stay with another thread after the device is done.
 const CALLBACK: Duration = Duration::from_secs(5);
 
 impl Gpu {
-    /// Waits for everything submitted and reads the whole of `buffer`. Bytes past the last whole `T` are left.
+    /// Waits for all submitted work and reads the whole of `buffer`. Bytes after the last complete `T` are ignored.
     ///
-    /// Nothing is returned from a device that was lost, or that reported an error since it was made.
+    /// Fails on a device that was lost, or that reported an error since it was created.
     ///
     /// # Errors
     /// [`GpuError::Lost`], [`GpuError::Hung`], [`GpuError::OutOfMemory`] or [`GpuError::Refused`].
@@ -42,12 +42,12 @@ impl Gpu {
     pub(crate) fn read_mapped<T: Pod>(&self, staging: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
         let (sender, receiver) = mpsc::channel();
         staging.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only when the wait below has failed.
+            // The receiver is gone only if the wait below has failed.
             let _ = sender.send(result);
         });
         self.wait()?;
-        // Another thread that waits on the same device may have been handed the callback and not yet called it.
-        // On a caller's device this is where loss shows: its lost-device callback is not ours to set.
+        // Another thread that waits on the same device may have received the callback and not yet called it.
+        // On a caller's device loss is detected here: its lost-device callback belongs to the caller.
         if !matches!(receiver.recv_timeout(CALLBACK), Ok(Ok(()))) {
             self.check()?;
             return Err(GpuError::Lost { reason: "a readback failed".to_owned() });

@@ -1,23 +1,23 @@
-//! How long a device works.
+//! Timing of GPU work.
 //!
-//! Timestamps are taken round a whole pass that repeats its dispatches: single dispatches are shorter than the
-//! barriers between them. Software drivers give timestamps that mean nothing; measure those by wall clock.
+//! Timestamps enclose a whole pass that repeats its dispatches: single dispatches are shorter than the barriers
+//! between them. Timestamps of software drivers are meaningless; measure those by wall clock.
 
 use std::time::{Duration, Instant};
 
 use crate::{Dispatch, Gpu, GpuError};
 
-/// The time of one repetition of some dispatches.
+/// Time of one repetition of some dispatches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassTime {
-    /// By the device's own clock, where it has one.
+    /// Time by the device's clock, if it has one.
     pub device: Option<Duration>,
-    /// By the clock of the host, from submission until the device is idle; submission itself included.
+    /// Time by the host's clock from submission until the device is idle, including the submission.
     pub wall: Duration,
 }
 
 impl Gpu {
-    /// Runs the dispatches `repeats` times in one pass and gives the mean time of one repetition.
+    /// Runs the dispatches `repeats` times in one pass and returns the mean time of one repetition.
     ///
     /// # Errors
     /// As [`Gpu::submit`] and [`Gpu::wait`].

@@ -13,7 +13,7 @@ fn cpu(c: &mut Criterion) {
     group.sample_size(10);
     for size in [256, 1024] {
         let mut glass = Glass::new(&options(size)).expect("a pane");
-        // A pane that is wet as after a while.
+        // A pane that is wet, as after some time.
         for _ in 0..10 {
             glass.step(1.0).expect("a second");
         }

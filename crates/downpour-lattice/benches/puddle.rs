@@ -1,5 +1,5 @@
-//! How many cell steps per second: the CPU's sweep, the GPU's tiles with one and with many steps per dispatch, and a
-//! shader as one writes it first, one invocation per cell and one step per dispatch.
+//! Cell steps per second: the CPU's sweep, the GPU's tiles with one and with many steps per dispatch, and a naive
+//! shader with one invocation per cell and one step per dispatch.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use downpour_gpu::{AdapterChoice, ComputeKernel, Gpu, wgpu};
 use downpour_lattice::gpu::puddle::GpuPuddle;
 use downpour_lattice::puddle::{Puddle, PuddleForm, PuddleOptions, PuddleStorage};
 
-/// The membrane as one writes it first: two copies of the heights, neighbours clamped at the border.
+/// Naive membrane: two copies of the heights, neighbours clamped at the border.
 const NAIVE: &str = include_str!("naive.wgsl");
 
 fn options(size: u32, membrane: bool) -> PuddleOptions {
@@ -20,7 +20,7 @@ fn options(size: u32, membrane: bool) -> PuddleOptions {
 }
 
 fn duration(time: PassTime, software: bool, iterations: u64) -> Duration {
-    // The timestamps of software drivers mean nothing.
+    // The timestamps of software drivers are meaningless.
     let one = time.device.filter(|_| !software).unwrap_or(time.wall);
     Duration::from_secs_f64(one.as_secs_f64() * iterations as f64)
 }
@@ -66,7 +66,7 @@ fn tiles(
 
 fn cpu(group: &mut BenchmarkGroup<'_, WallTime>, options: &PuddleOptions, name: &str) {
     let mut puddle = Puddle::new(options).expect("a puddle");
-    let dt = 7.99 * puddle.longest_step_s() as f32;
+    let dt = 7.99 * puddle.max_step_s() as f32;
     let cells = u64::from(options.size[0]) * u64::from(options.size[1]);
     group.throughput(Throughput::Elements(cells * 8));
     group.bench_function(format!("{name} {}, CPU, 8 steps", options.size[0]), |b| {

@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release -p downpour-lattice --example glass -- [FOLDER] [PHOTO.png] [SECONDS]`
 //!
-//! At 1, 10, 30 and 60 s it writes the pane as it refracts the photo (a made-up street by night if none is given), the
-//! heights and the normals, and says where the water went. No renderer, no GPU.
+//! At 1, 10, 30 and 60 s it writes the pane as it refracts the photo (a synthetic street by night by default), the
+//! heights and the normals, and prints the water balance. No renderer, no GPU.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -18,13 +18,13 @@ use image::{Rgb, RgbImage, imageops};
 const SIZE: [u32; 2] = [1024, 683];
 const CELL_M: f64 = 0.6e-3;
 
-/// A window in a wind that blows rain at it with 3 m/s.
+/// A window in a wind that drives rain at it with 3 m/s.
 fn window() -> GlassOptions {
     let rain = GlassRain { rate_mm_h: 25.0, towards_m_s: 3.0, ..GlassRain::default() };
     GlassOptions { size: SIZE, cell_m: CELL_M, rain, seed: 1, ..GlassOptions::default() }
 }
 
-/// A windshield at 15 m/s with one wiper, whose blade is worn in one place.
+/// A windshield at 15 m/s with one wiper, whose blade has one worn band.
 fn windshield() -> GlassOptions {
     let [width, height] = SIZE.map(|n| f64::from(n) * CELL_M);
     let wiper = GlassWiper {
@@ -58,12 +58,12 @@ fn made_up() -> RgbImage {
     for lamp in 0..60 {
         let [x, y, r, c] = rng_draw([7, 0], lamp, 0, 0).map(rng_unit);
         let (x, y, r) = (x * width as f32, (0.2 + 0.6 * y) * height as f32, 3.0 + 9.0 * r);
-        let colour = if c < 0.6 { [255, 205, 130] } else { [235, 70, 50] };
+        let color = if c < 0.6 { [255, 205, 130] } else { [235, 70, 50] };
         for j in (y - r) as u32..(y + r) as u32 {
             for i in (x - r).max(0.0) as u32..((x + r) as u32).min(width) {
                 let (dx, dy) = (i as f32 - x, j as f32 - y);
                 if dx * dx + dy * dy < r * r {
-                    street.put_pixel(i, j.min(height - 1), Rgb(colour));
+                    street.put_pixel(i, j.min(height - 1), Rgb(color));
                 }
             }
         }
@@ -71,7 +71,7 @@ fn made_up() -> RgbImage {
     street
 }
 
-/// What is seen through the pane: sharp and upside down in the drops, out of focus between them.
+/// View through the pane: sharp and upside down in the drops, out of focus between them.
 fn look(glass: &Glass, photo: &RgbImage, blurred: &RgbImage) -> RgbImage {
     let [width, height] = glass.options().size;
     let (normals, heights) = (glass.normals(), glass.heights());
@@ -81,13 +81,13 @@ fn look(glass: &Glass, photo: &RgbImage, blurred: &RgbImage) -> RgbImage {
         if deep < 2.0e-6 {
             return *blurred.get_pixel(x, y);
         }
-        // A ray straight on leaves a surface of slope s by about 0.33 s; what it meets is far behind the pane.
+        // A straight ray leaves a surface of slope s deflected by about 0.33 s; the background is far behind the pane.
         let slope = normal.truncate() / normal.z.max(0.2);
         let reach = 0.7 * height as f32;
         let at = |p: u32, s: f32, n: u32| ((p as f32 - reach * s).clamp(0.0, n as f32 - 1.0)) as u32;
         let Rgb(seen) = *photo.get_pixel(at(x, slope.x, width), at(y, slope.y, height));
         let Rgb(behind) = *blurred.get_pixel(x, y);
-        // Steep rims reflect the dark room.
+        // Steep rims reflect the dark interior.
         let through = 1.0 - 3.6 * (1.0 - normal.z) * (1.0 - normal.z);
         let cover = (deep / 25.0e-6).min(1.0);
         Rgb(std::array::from_fn(|c| {

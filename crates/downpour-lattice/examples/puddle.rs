@@ -1,4 +1,4 @@
-//! A puddle in the rain, without a renderer and without a GPU: heights, normals, and what a sky looks like in it.
+//! A puddle in the rain, without a renderer and without a GPU: heights, normals, and the reflected sky.
 //!
 //! ```sh
 //! cargo run --release -p downpour-lattice --example puddle -- 25 OUTPUT_FOLDER
@@ -36,14 +36,14 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let heights = puddle.heights();
     let rms = (heights.iter().map(|&h| f64::from(h * h)).sum::<f64>() / heights.len() as f64).sqrt();
-    let grey = |h: f32| (127.5 + 40.0 * f64::from(h) / rms.max(1.0e-9)).clamp(0.0, 255.0) as u8;
-    GrayImage::from_fn(size[0], size[1], |x, y| Luma([grey(heights[(y * size[0] + x) as usize])]))
+    let gray = |h: f32| (127.5 + 40.0 * f64::from(h) / rms.max(1.0e-9)).clamp(0.0, 255.0) as u8;
+    GrayImage::from_fn(size[0], size[1], |x, y| Luma([gray(heights[(y * size[0] + x) as usize])]))
         .save(folder.join("puddle_height.png"))?;
 
     let normals = puddle.normals();
     let normal = |x: u32, y: u32| normals[(y * size[0] + x) as usize];
     RgbImage::from_fn(size[0], size[1], |x, y| {
-        // The usual colours of a normal map, ripples four times as steep as they are.
+        // The usual colors of a normal map, with the slopes multiplied by four.
         let [nx, ny, nz] = normal(x, y);
         let length = (16.0 * (nx * nx + nz * nz) + ny * ny).sqrt();
         Rgb([4.0 * nx, -4.0 * nz, ny].map(|c| (127.5 + 127.5 * c / length) as u8))
@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The fifth power, as products.
+/// Fifth power as products.
 trait Fifth {
     fn powi_5(self) -> Self;
 }

@@ -1,14 +1,14 @@
-//! How fast both lattices are, on a GPU and on the CPU, as tables; the last one has the ratios.
+//! Speed of both lattices, on a GPU and on the CPU, as tables; the last one has the ratios.
 //!
 //! ```sh
 //! cargo run --release -p downpour-lattice --features wgpu --example speed
 //! cargo run --release -p downpour-lattice --features wgpu --example speed -- 256 1024 NAME_OF_ADAPTER
 //! ```
 //!
-//! Numbers are the sizes of the puddles, without them 256, 1024 and 4096 cells; a word is part of an adapter's name.
+//! Numbers are the sizes of the puddles, by default 256, 1024 and 4096 cells; a word is part of an adapter's name.
 //!
-//! `naive` is the membrane as one writes it first: one invocation per cell, one step per dispatch. `copy` reads and writes the
-//! memory of a puddle's state. Times are the device's own where it has them, else the host's; each is the shortest of three.
+//! `naive` is the naive membrane: one invocation per cell, one step per dispatch. `copy` reads and writes the memory
+//! of a puddle's state. Times are the device's if it has timestamps, else the host's; each is the shortest of three.
 
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -36,10 +36,10 @@ fn main_copy(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
 }
 ";
 
-/// How long a measurement is, about.
+/// Approximate duration of a measurement.
 const SPELL: Duration = Duration::from_millis(250);
 
-/// Measurements, of which the shortest counts.
+/// Number of measurements, of which the shortest counts.
 const TURNS: u32 = 3;
 
 type Failed = Box<dyn Error>;
@@ -49,7 +49,7 @@ fn options(size: u32, membrane: bool) -> PuddleOptions {
     PuddleOptions { size: [size, size], form, ..PuddleOptions::default() }
 }
 
-/// The shortest mean time of one of many repetitions; `once` is told how many, and gives the mean.
+/// Shortest mean time of one of many repetitions; `once` takes the number of repetitions and returns the mean.
 fn shortest(mut once: impl FnMut(u32) -> Result<Duration, Failed>) -> Result<f64, Failed> {
     let first = once(2)?.max(Duration::from_nanos(100));
     if first > SPELL {
@@ -63,7 +63,7 @@ fn shortest(mut once: impl FnMut(u32) -> Result<Duration, Failed>) -> Result<f64
     Ok(best)
 }
 
-/// The device's own time; the timestamps of software drivers mean nothing.
+/// Time by the device's clock; the timestamps of software drivers are meaningless.
 fn of_device(gpu: &Gpu, time: PassTime) -> Duration {
     time.device.filter(|_| !gpu.adapter().is_software()).unwrap_or(time.wall)
 }
@@ -89,7 +89,7 @@ fn copy(gpu: &Gpu, size: u32, bytes_per_cell: u64) -> Result<f64, Failed> {
     pair(gpu, &kernel, bytes, [across as u32, groups.div_ceil(across) as u32, 1])
 }
 
-/// Seconds of a dispatch of so many steps, and how many they were.
+/// Seconds of a dispatch with at most so many steps, and the number of steps.
 fn tiles(gpu: &Gpu, options: &PuddleOptions, steps: u32) -> Result<(f64, u32), Failed> {
     let mut puddle = GpuPuddle::new(gpu, options)?;
     let steps = steps.min(puddle.steps_per_sweep());
@@ -102,7 +102,7 @@ fn tiles(gpu: &Gpu, options: &PuddleOptions, steps: u32) -> Result<(f64, u32), F
 /// Seconds of a step.
 fn on_cpu(options: &PuddleOptions) -> Result<f64, Failed> {
     let mut puddle = Puddle::new(options)?;
-    let dt = 23.99 * puddle.longest_step_s() as f32;
+    let dt = 23.99 * puddle.max_step_s() as f32;
     let time = shortest(|repeats| {
         let begin = Instant::now();
         for _ in 0..repeats {
@@ -167,7 +167,7 @@ fn panes(gpu: &Gpu) -> Result<(), Failed> {
         let rain = GlassRain { rate_mm_h: 25.0, towards_m_s: 5.0, ..GlassRain::default() };
         let options = GlassOptions { size: [size; 2], rain, ..GlassOptions::default() };
         let mut glass = GpuGlass::new(gpu, &options)?;
-        // Wet as after a while.
+        // Wet, as after some time.
         let tick = glass.tick_s();
         glass.step(10.0)?;
         gpu.wait()?;

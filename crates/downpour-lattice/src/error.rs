@@ -1,44 +1,44 @@
-//! What can be wrong with the numbers and masks that come from outside.
+//! Errors of numbers and masks.
 
 use std::ops::RangeInclusive;
 
-/// Why a lattice was not made, or did not move.
+/// Error of a puddle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LatticeError {
     /// A number is not finite, or outside its range.
     #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
     OutOfRange {
-        /// What it is: `time step`, `depth`, ...
+        /// Name of the quantity: `time step`, `depth`, ...
         quantity: &'static str,
-        /// The value, in `unit`.
+        /// Value found, in `unit`.
         found: f64,
-        /// The unit of the value and of the range.
+        /// Unit of the value and of the range.
         unit: &'static str,
-        /// The range, in words.
+        /// Allowed range, in words.
         allowed: &'static str,
     },
-    /// A mask or a field has another number of cells than the lattice.
+    /// A mask or a field differs from the lattice in the number of cells.
     #[error("{quantity} has {found} cells; allowed: {allowed}, as the lattice")]
     Cells {
-        /// What it is.
+        /// Name of the mask or field.
         quantity: &'static str,
-        /// How many cells it has.
+        /// Number of its cells.
         found: usize,
-        /// How many cells the lattice has.
+        /// Number of cells of the lattice.
         allowed: usize,
     },
 }
 
 impl LatticeError {
-    /// The exit code of the command for this error: 2, bad input.
+    /// Exit code of the command for this error: 2, bad input.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         2
     }
 }
 
-/// `value` if it is within `range` (NaN is not). The message tells the value times `factor`, in `unit`.
+/// Returns `value` if it is within `range` (NaN is not). The message shows the value times `factor`, in `unit`.
 pub(crate) fn in_range(
     quantity: &'static str,
     value: f64,

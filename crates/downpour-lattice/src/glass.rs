@@ -1,13 +1,14 @@
-//! Drops on a pane of glass: they land, sit, swell, merge, run, leave trails, and are wiped.
+//! Drops on a pane of glass: landing, growth, merging, sliding, trails and wipers.
 //!
-//! After Tatarchuk & Isidoro 2006, section 5 (a lattice of masses, velocities and traversals, after Kaneda et al. 1999). A
-//! drop has its mass in one cell and wets the cells of a disc round it: the base of a spherical cap at the mean of the contact
-//! angles. Drops whose discs touch become one, at the place of the larger. A drop begins to slide where the forces along the
-//! pane exceed Furmidge's retention ([`GlassContact`]), which the paper leaves to the artist; it then moves among the three
-//! cells before it (before its velocity, not always below), drawn by affinity and by wet glass, and leaves beads behind.
+//! After Tatarchuk & Isidoro 2006, section 5 (a lattice of masses, velocities and traversals, after Kaneda et al.
+//! 1999). A drop has its mass in one cell and wets the cells of a disc around it: the base of a spherical cap at the
+//! mean of the contact angles. Drops whose discs touch merge, at the position of the larger. A drop begins to slide
+//! where the forces along the pane exceed Furmidge's retention ([`GlassContact`]), which the paper leaves to the
+//! artist. It then moves to one of the three cells ahead of it (ahead along its velocity, not always below), chosen at
+//! random by affinity and wetness, and leaves beads behind.
 //!
-//! Mass is in whole nanolitres and all forces, velocities and choices are integers: what came in is what is stored and what
-//! went out, to the unit, and a GPU has the same bits. Only normals are `f32`.
+//! Mass is in whole nanolitres, and all forces, velocities and choices are integers: the water that came in is exactly
+//! the water that is stored and that went out, and a GPU has the same bits. Only normals are `f32`.
 //!
 //! The pane: x is right, y is down, z out of it; rows begin at the top. SI units; angles in radians.
 
@@ -41,7 +42,7 @@ pub use options::{GlassAir, GlassOptions, GlassRain, GlassTexture, GlassTrail, G
 pub use totals::GlassTotals;
 pub use wiper::{GlassWiper, GlassWiperKey, GlassWiperMotion, GlassWornBand};
 
-/// What the GPU half shares with the CPU half.
+/// Parts that the GPU version shares with the CPU version.
 #[cfg(feature = "wgpu")]
 pub(crate) mod host {
     pub(crate) use super::lattice::{free_cell, poured_units};

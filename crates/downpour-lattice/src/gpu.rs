@@ -1,4 +1,4 @@
-//! The GPU halves.
+//! GPU versions of the lattices.
 
 pub mod glass;
 pub mod puddle;

@@ -11,7 +11,7 @@ pub mod puddle;
 
 pub use error::LatticeError;
 
-/// The examples of the README, as tests.
+/// Compiles the examples of the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -4,17 +4,19 @@
 //!
 //! > dv/dt = -A eta - 2 gamma v - 4 nu L v,   d eta/dt = v
 //!
-//! where L is the negative Laplacian of the lattice and A the operator that stands for omega^2: c^2 L for the paper's membrane,
-//! and a polynomial of L for real water, whose waves of different lengths have different speeds ([`PuddleForm`]).
-//! Time goes by leapfrog, velocities half a step behind heights. A step that is too long for the lattice is cut, so that the
-//! Courant number stays below 0.70, and refused where that would take more than 64 parts: it is never silently unstable.
+//! where L is the negative Laplacian of the lattice and A the operator that approximates omega^2: c^2 L for the paper's
+//! membrane, and a polynomial of L for real water, whose waves of different lengths have different speeds
+//! ([`PuddleForm`]). Time is integrated by leapfrog, with velocities half a step behind heights. A step that is too
+//! long for the lattice is divided, so that the Courant number stays below 0.70, and is an error where that would take
+//! more than 64 sub-steps: it is never silently unstable.
 //!
 //! Units: SI. Heights in m, row by row. Deterministic: the same bits for any number of threads.
 //!
-//! Errors of the phase speed of real water ([`Puddle::speed_error`] has them by wavelength). Water of up to 5 mm: 2.5 % from
-//! 4 cells to any length, below 1 % from 6. Deeper water: the operator has few cells of reach, so waves much longer than
-//! [`longest_wave_m`](PuddleOptions::longest_wave_m) are too slow, at 20 mm of depth by a tenth at 60 cells. Waves below 4 cells
-//! are too slow as well, and no lattice tells their directions. Linear: breaking, jets and the splash itself are not in it.
+//! Errors of the phase speed of real water ([`Puddle::speed_error`] has them by wavelength). Water of up to 5 mm: 2.5
+//! % from 4 cells to any length, below 1 % from 6. Deeper water: the operator has a small support, so waves much
+//! longer than [`longest_wave_m`](PuddleOptions::longest_wave_m) are too slow, at 20 mm of depth by a tenth at 60
+//! cells. Waves below 4 cells are too slow as well, and no lattice resolves their directions. The model is linear:
+//! breaking, jets and splashes are not included.
 
 mod dispersion;
 pub mod lattice;
@@ -28,12 +30,12 @@ mod sweep;
 mod symbol;
 
 pub use dispersion::{PuddleForm, PuddleWater, phase_speed};
-pub use model::{MOST_SUBSTEPS, PuddleBorder, PuddleDamping, PuddleOptions, SIZE_RANGE};
+pub use model::{MAX_SUBSTEPS, PuddleBorder, PuddleDamping, PuddleOptions, SIZE_RANGE};
 pub use normal::{puddle_normal_lean, puddle_normal_slopes};
 pub use rain::PuddleRain;
 pub use seed::{Impact, PuddleSeed, Wake, puddle_seed_height, puddle_seed_shape};
 pub use storage::PuddleStorage;
-pub use symbol::{LARGEST_COURANT, LARGEST_DEGREE};
+pub use symbol::{MAX_COURANT, MAX_DEGREE};
 
 pub(crate) use model::Model;
 #[cfg(feature = "wgpu")]
@@ -51,7 +53,7 @@ use storage::State;
 /// ```
 /// use downpour_lattice::puddle::{Impact, Puddle, PuddleOptions};
 /// let mut puddle = Puddle::new(&PuddleOptions { size: [64, 64], ..PuddleOptions::default() })?;
-/// puddle.seed(&[Impact { place_m: [0.064, 0.064], speed_m_s: 6.5, diameter_m: 2.0e-3 }])?;
+/// puddle.seed(&[Impact { position_m: [0.064, 0.064], speed_m_s: 6.5, diameter_m: 2.0e-3 }])?;
 /// for _ in 0..6 {
 ///     puddle.step(1.0 / 60.0)?;
 /// }
@@ -68,18 +70,19 @@ pub struct Puddle {
 }
 
 impl Puddle {
-    /// Level water over the whole lattice.
+    /// Creates level water over the whole lattice.
     ///
     /// # Errors
-    /// [`LatticeError::OutOfRange`] names the option that is not possible.
+    /// [`LatticeError::OutOfRange`] names the option out of range.
     pub fn new(options: &PuddleOptions) -> Result<Self, LatticeError> {
         Self::assemble(Model::new(options, None)?)
     }
 
-    /// Level water where `land` is false: a cell each, row by row. Land reflects ripples, and keeps the height 0.
+    /// Creates level water where `land` is false: one flag per cell, row by row. Land reflects ripples, and keeps the
+    /// height 0.
     ///
     /// # Errors
-    /// As [`new`](Self::new); [`LatticeError::Cells`] if the mask is of another size.
+    /// As [`new`](Self::new); [`LatticeError::Cells`] if the mask does not match the lattice.
     pub fn with_land(options: &PuddleOptions, land: &[bool]) -> Result<Self, LatticeError> {
         Self::assemble(Model::new(options, Some(land))?)
     }
@@ -90,7 +93,7 @@ impl Puddle {
         Ok(Self { model, other: state.clone(), state, steps: 0, reset: 0 })
     }
 
-    /// The options.
+    /// Options of the puddle.
     #[must_use]
     pub fn options(&self) -> &PuddleOptions {
         &self.model.options
@@ -108,20 +111,20 @@ impl Puddle {
         self.options().size.map(|n| n as f32 * self.options().cell_m)
     }
 
-    /// The longest time, in s, that is one step.
+    /// Longest time, in s, of a single step.
     #[must_use]
-    pub fn longest_step_s(&self) -> f64 {
+    pub fn max_step_s(&self) -> f64 {
         self.model.limit()
     }
 
-    /// The Courant number of a time that is not cut: leapfrog is stable below 0.7071, and 0.70 is the most that is done.
-    /// For a membrane without viscosity it is c dt / cell.
+    /// Courant number of a time as a single step: leapfrog is stable below 0.7071, and 0.70 is the maximum used. For a
+    /// membrane without viscosity it is c dt / cell.
     #[must_use]
     pub fn courant(&self, dt_s: f32) -> f64 {
         self.model.courant(f64::from(dt_s))
     }
 
-    /// Into how many steps a time is cut.
+    /// Number of sub-steps into which a time is divided.
     ///
     /// # Errors
     /// [`LatticeError::OutOfRange`] if the time is not positive and finite, or would take more sub-steps than are allowed.
@@ -129,7 +132,7 @@ impl Puddle {
         self.model.substeps(f64::from(dt_s))
     }
 
-    /// The error of the phase speed of a wavelength (m) that runs along the rows, as a share of it: -0.01 is 1 % too slow.
+    /// Relative error of the phase speed of a wavelength (m) that runs along the rows: -0.01 is 1 % too slow.
     #[must_use]
     pub fn speed_error(&self, wavelength_m: f64) -> f64 {
         let turn = std::f64::consts::TAU * self.model.cell() / wavelength_m;
@@ -138,10 +141,10 @@ impl Puddle {
         symbol.frequency([turn, 0.0], dt) / wanted - 1.0
     }
 
-    /// Lets time pass. Gives into how many steps it was cut.
+    /// Advances the puddle by `dt_s` seconds. Returns the number of sub-steps.
     ///
     /// # Errors
-    /// As [`substeps`](Self::substeps); nothing has moved then.
+    /// As [`substeps`](Self::substeps); the puddle is then unchanged.
     pub fn step(&mut self, dt_s: f32) -> Result<u32, LatticeError> {
         let substeps = self.substeps(dt_s)?;
         let dt = f64::from(dt_s) / f64::from(substeps);
@@ -157,10 +160,10 @@ impl Puddle {
         Ok(substeps)
     }
 
-    /// Drops meet the water: a crater for each.
+    /// Adds the crater of each impact.
     ///
     /// # Errors
-    /// [`LatticeError::OutOfRange`] names what is not possible in an impact; no crater is made then. Impacts beyond the
+    /// [`LatticeError::OutOfRange`] names the quantity of an impact out of range; no crater is then made. Impacts beyond the
     /// lattice and on land are allowed.
     pub fn seed(&mut self, impacts: &[Impact]) -> Result<(), LatticeError> {
         let seeds = craters(&self.model, impacts)?;
@@ -168,10 +171,10 @@ impl Puddle {
         Ok(())
     }
 
-    /// An object moves through the water.
+    /// Displaces water by an object that moves through it.
     ///
     /// # Errors
-    /// [`LatticeError::OutOfRange`] names what is not possible.
+    /// [`LatticeError::OutOfRange`] names the quantity out of range.
     pub fn displace(&mut self, wake: &Wake) -> Result<(), LatticeError> {
         let seeds = footprints(&self.model, wake)?;
         self.add(&seeds);
@@ -210,11 +213,11 @@ impl Puddle {
         out
     }
 
-    /// Heights and velocities from elsewhere, a number per cell each. Cells of water with a number that is not finite are
-    /// set to rest and counted, as those that become so later; the count is given. Land stays at rest.
+    /// Sets heights and velocities, a number per cell each. Cells of water with a number that is not finite are reset
+    /// and counted, as those that become so later; returns the count. Land stays at rest.
     ///
     /// # Errors
-    /// [`LatticeError::Cells`] if there are not as many numbers as cells.
+    /// [`LatticeError::Cells`] if the number of values is not that of the cells.
     pub fn set_state(&mut self, heights: &[f32], velocities: &[f32]) -> Result<u64, LatticeError> {
         let cells = self.model.cells();
         for (quantity, values) in [("the field of heights", heights), ("the field of velocities", velocities)]
@@ -239,14 +242,15 @@ impl Puddle {
         Ok(bad)
     }
 
-    /// Normals of the surface by Sobel's sums: x along the rows, y up, z along the columns.
+    /// Normals of the surface by Sobel sums: x along the rows, y up, z along the columns.
     #[must_use]
     pub fn normals(&self) -> Vec<[f32; 3]> {
         normal::normals(&self.model.links, &self.heights(), (1.0 / (8.0 * self.model.cell())) as f32)
     }
 
-    /// What leapfrog conserves when nothing damps: `Sum (v^2 + eta A eta') / 2` per cell area, m^4/s^2, with the heights before
-    /// and after the last step. A wave of each length has its energy in it, times a factor that depends on the length alone.
+    /// Energy that leapfrog conserves without damping: `Sum (v^2 + eta A eta') / 2` per cell area, m^4/s^2, with the
+    /// heights before and after the last step. It includes the energy of each wave times a factor that depends on the
+    /// wavelength alone.
     #[must_use]
     pub fn energy(&self) -> f64 {
         let (symbol, dt) = self.model.fitted();
@@ -261,13 +265,13 @@ impl Puddle {
         sum * self.model.cell() * self.model.cell()
     }
 
-    /// How many time steps have been made.
+    /// Number of time steps so far.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// How many cells had to be set to rest because they were not finite. Anything above 0 means bad input.
+    /// Number of cells that were reset because they were not finite. A number above 0 indicates bad input.
     #[must_use]
     pub fn reset_cells(&self) -> u64 {
         self.reset

@@ -1,4 +1,4 @@
-//! What is refused, and in which words.
+//! Rejected inputs and their messages.
 
 use downpour_lattice::glass::{
     Glass, GlassError, GlassOptions, GlassTexture, GlassWiper, GlassWiperKey, GlassWiperMotion, GlassWornBand,
@@ -83,7 +83,7 @@ fn textures_have_the_size_of_the_pane_and_values_in_range() {
     assert!(told.contains("friction of cell 0 is 2.5"), "{told}");
     let told = refused(&GlassOptions { obstacles: Some(vec![false; 3]), ..small() });
     assert!(told.contains("mask of obstacles has 3 cells"), "{told}");
-    let noise = GlassTexture::Noise { spot_m: f64::NAN, share: 1.0 };
+    let noise = GlassTexture::Noise { spot_m: f64::NAN, amplitude: 1.0 };
     assert!(refused(&GlassOptions { friction: noise, ..small() }).contains("spots"));
 }
 

@@ -1,4 +1,4 @@
-//! When drops begin to slide: Furmidge's law on the lattice.
+//! Onset of sliding: Furmidge's law on the lattice.
 
 use downpour_lattice::glass::{Glass, GlassAir, GlassContact, GlassOptions, GlassTexture};
 
@@ -23,16 +23,16 @@ fn pane(contact: GlassContact, tilt: f64) -> GlassOptions {
     }
 }
 
-/// Whether a drop of a volume, in mm^3, has left its cell after a second and a half.
+/// True if a drop of a volume, in mm^3, has left its cell after a second and a half.
 fn slides(options: &GlassOptions, mm3: f64) -> bool {
     let mut glass = Glass::new(options).expect("a pane");
     glass.pour(16, 16, mm3 * 1.0e-9).expect("a drop");
     glass.step(1.5).expect("a step");
-    // A bead may have been left there.
+    // It may have left a bead there.
     f64::from(glass.mass()[16 * 32 + 16]) < 0.5e3 * mm3
 }
 
-/// The diameter, in mm, of the sphere with the volume from which drops slide.
+/// Diameter, in mm, of the sphere with the volume from which drops slide.
 fn threshold(options: &GlassOptions) -> f64 {
     let (mut low, mut high) = (0.01, 262.0);
     for _ in 0..13 {
@@ -50,8 +50,8 @@ fn diameter(mm3: f64) -> f64 {
     downpour_math::ops::f64::cbrt(6.0 * mm3 / std::f64::consts::PI)
 }
 
-/// Advancing and receding angle in degrees, k, and the equivalent diameter in mm at which a cap at the mean angle slides down
-/// a vertical pane, by Furmidge's law (computed apart from this code, for water at 20 C).
+/// Advancing and receding angle in degrees, k, and the equivalent diameter in mm at which a cap at the mean angle
+/// slides down a vertical pane, by Furmidge's law (computed independently of this code, for water at 20 C).
 const TABLE: [(f64, f64, f64, f64); 8] = [
     (80.0, 55.0, 1.0, 2.932),
     (80.0, 55.0, 0.774, 2.579),
@@ -93,7 +93,7 @@ fn a_flatter_pane_holds_larger_drops() {
         let contact = GlassContact::default();
         let found = threshold(&pane(contact, tilt));
         let volume = contact.sliding_volume(tilt.to_radians(), DENSITY, SIGMA) * 1.0e9;
-        // V^(2/3) goes as 1 / sin(tilt), the diameter as its root.
+        // V^(2/3) is proportional to 1 / sin(tilt), the diameter to its root.
         let sine = downpour_math::ops::f64::sin(tilt.to_radians());
         let law = diameter(contact.sliding_volume(90f64.to_radians(), DENSITY, SIGMA) * 1.0e9) / sine.sqrt();
         assert!((diameter(volume) / law - 1.0).abs() < 1.0e-6);

@@ -1,4 +1,4 @@
-//! Where the water goes: nothing is lost, the rain has its rate, trails, merging, obstacles, wipers, drying.
+//! Conservation of water; rate of the rain, trails, merging, obstacles, wipers, evaporation.
 
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution, DropSizeLaw};
 use downpour_lattice::glass::{
@@ -24,7 +24,7 @@ fn no_trail() -> GlassTrail {
     GlassTrail { spacing_m: f64::INFINITY, ..GlassTrail::default() }
 }
 
-/// A blade that turns once from the right over the top to the left within a second.
+/// A blade that rotates once from the right over the top to the left within a second.
 fn wiper(worn: Vec<GlassWornBand>) -> GlassWiper {
     let key = |time_s, angle_rad| GlassWiperKey { time_s, angle_rad };
     GlassWiper {
@@ -36,7 +36,7 @@ fn wiper(worn: Vec<GlassWornBand>) -> GlassWiper {
     }
 }
 
-/// Everything at once.
+/// All effects at once.
 fn storm(size: [u32; 2]) -> GlassOptions {
     let cells = size[0] * size[1];
     GlassOptions {
@@ -103,7 +103,7 @@ fn the_same_bits_for_any_number_of_threads_and_any_steps() {
 
 #[test]
 fn a_pane_gets_the_rain_that_falls_on_its_slope() {
-    // Level ground gets the rate; a pane that drives at rain gets the water of the air that it meets as well.
+    // Level ground gets the rate; a pane that moves towards the rain also gets the water of the air that it meets.
     for (tilt, speed) in [(0.0, 0.0), (0.0, 20.0), (60.0, 0.0), (90.0, 8.0), (30.0, 15.0)] {
         let tilt_rad = f64::to_radians(tilt);
         let options =
@@ -111,8 +111,8 @@ fn a_pane_gets_the_rain_that_falls_on_its_slope() {
         let mut glass = Glass::new(&options).expect("a pane");
         glass.step(3.0).expect("a step");
         let diameters = DistributionOptions {
-            smallest_diameter_m: 0.2e-3,
-            largest_diameter_m: 7.5e-3,
+            min_diameter_m: 0.2e-3,
+            max_diameter_m: 7.5e-3,
             ..DistributionOptions::default()
         };
         let drops =
@@ -206,7 +206,7 @@ fn a_wiper_takes_the_water_of_its_sector_and_leaves_the_rest() {
         assert!(glass.is_sound());
         glass
     };
-    // Drops between 8 and 34 mm from the pivot and 20 to 150 degrees: well within what the blade passes.
+    // Drops between 8 and 34 mm from the pivot and 20 to 150 degrees: well within the swept area.
     let sector = |glass: &Glass, from: f64, to: f64| -> u32 {
         let mut sum = 0;
         for (i, &m) in glass.mass().iter().enumerate() {
@@ -254,7 +254,7 @@ fn a_full_cell_spills_and_says_so() {
     }
     glass.step(0.1).expect("a step");
     let totals = glass.totals();
-    assert_eq!((totals.stored, totals.spilled), (u64::from(Glass::LARGEST), 390_000 - 262_144));
+    assert_eq!((totals.stored, totals.spilled), (u64::from(Glass::MAX_MASS), 390_000 - 262_144));
     assert!(totals.saturated > 0 && totals.lost() == 0);
 }
 
@@ -299,8 +299,8 @@ fn weather_changes_on_the_way() {
     assert!(told.contains("drops in a block and tick"), "{told}");
 }
 
-/// The same rate in thinner air is carried by fewer drops, since they fall faster: by Beard 1976 a drop of 2 mm falls at 6.506 m/s
-/// at 20 C and 1013 hPa, at 7.497 m/s at 10 C and 700 hPa, and the others by nearly the same factor.
+/// The same rate in thinner air has fewer drops, since they fall faster: by Beard 1976 a drop of 2 mm falls at 6.506
+/// m/s at 20 C and 1013 hPa, at 7.497 m/s at 10 C and 700 hPa, and the others by nearly the same factor.
 #[test]
 fn rain_in_thinner_air_wets_an_upright_pane_less() {
     let landings = |air: downpour_drop::air::Air| {

@@ -1,11 +1,11 @@
 //! Scalar functions with the same bits on every machine.
 //!
-//! `f32::sin` and its like call the platform's library, which differs between systems and versions; these
-//! call the `libm` crate, whose code is the same everywhere. Square root, rounding and the four operations
-//! are exactly specified by IEEE 754 and need no counterpart here. `clippy.toml` forbids the platform's
-//! functions in the whole workspace.
+//! `f32::sin` and similar methods call the platform's library, which differs between systems and versions.
+//! The functions here call the `libm` crate, whose code is the same everywhere. Square root, rounding and the
+//! four basic operations are exactly specified by IEEE 754 and need no counterpart. `clippy.toml` forbids the
+//! platform's functions in the whole workspace.
 //!
-//! Functions on `f32` stand here, functions on `f64` in [`mod@f64`].
+//! This module has the functions on `f32`; [`mod@f64`] has those on `f64`.
 
 macro_rules! forward {
     ($ty:ty: $( $(#[$doc:meta])* $name:ident($($arg:ident),+) = $libm:ident; )*) => {
@@ -55,8 +55,8 @@ forward! { f32:
     hypot(x, y) = hypotf;
 }
 
-/// Whether `x` is neither infinite nor NaN, by its bits (twin of `ops_is_finite` in WGSL, where a comparison
-/// with itself does not find NaN).
+/// True where `x` is neither infinite nor NaN, tested by its bits. Twin of `ops_is_finite` in WGSL, where
+/// `x != x` does not detect NaN.
 #[inline]
 #[must_use]
 pub fn ops_is_finite(x: f32) -> bool {
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn functions_keep_their_bits() {
-        // Written once from libm 0.2; a change of library that moves a bit has to be seen.
+        // Recorded from libm 0.2: an update of the library that changes a bit fails here.
         let bits = [
             sin(1.0f32).to_bits(),
             exp(1.0f32).to_bits(),

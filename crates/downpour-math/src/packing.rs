@@ -1,17 +1,17 @@
-//! Unit vectors in two numbers of [-1, 1]: the octahedral map. Twin of `shaders/wgsl/common/packing.wgsl`.
+//! Octahedral map: a unit vector as two numbers in [-1, 1]. Twin of `shaders/wgsl/common/packing.wgsl`.
 //!
 //! Source: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010; Z. Cigolle et al., JCGT 3(2), 2014.
 
-use downpour_shaders::common::PACKING_SMALLEST_NORM;
+use downpour_shaders::common::PACKING_MIN_NORM;
 
-/// The sign of `x` as 1 or -1; zero counts as positive.
+/// Sign of `x` as 1 or -1; zero counts as positive.
 #[inline]
 #[must_use]
 pub fn packing_sign(x: f32) -> f32 {
     if x >= 0.0 { 1.0 } else { -1.0 }
 }
 
-/// Direction (any length above 0) to the square [-1, 1]^2.
+/// Maps a direction (any length above 0) to the square [-1, 1]^2.
 ///
 /// ```
 /// use downpour_math::packing::{packing_octahedral_decode, packing_octahedral_encode};
@@ -22,7 +22,7 @@ pub fn packing_sign(x: f32) -> f32 {
 #[must_use]
 pub fn packing_octahedral_encode(direction: [f32; 3]) -> [f32; 2] {
     let norm = direction[0].abs() + direction[1].abs() + direction[2].abs();
-    let inverse = 1.0 / norm.max(PACKING_SMALLEST_NORM);
+    let inverse = 1.0 / norm.max(PACKING_MIN_NORM);
     let x = direction[0] * inverse;
     let y = direction[1] * inverse;
     if direction[2] >= 0.0 {
@@ -31,7 +31,7 @@ pub fn packing_octahedral_encode(direction: [f32; 3]) -> [f32; 2] {
     [(1.0 - y.abs()) * packing_sign(x), (1.0 - x.abs()) * packing_sign(y)]
 }
 
-/// Square to unit vector.
+/// Maps a point of the square [-1, 1]^2 to a unit vector.
 #[inline]
 #[must_use]
 pub fn packing_octahedral_decode(square: [f32; 2]) -> [f32; 3] {
@@ -43,7 +43,7 @@ pub fn packing_octahedral_decode(square: [f32; 2]) -> [f32; 3] {
     [x * inverse, y * inverse, z * inverse]
 }
 
-/// Two numbers of [-1, 1] in 16 bits each, as WGSL's `pack2x16snorm`.
+/// Packs two numbers in [-1, 1] into 16 bits each, as WGSL's `pack2x16snorm`.
 #[inline]
 #[must_use]
 pub fn packing_pack_snorm(pair: [f32; 2]) -> u32 {
@@ -51,14 +51,14 @@ pub fn packing_pack_snorm(pair: [f32; 2]) -> u32 {
     low | high << 16
 }
 
-/// What [`packing_pack_snorm`] has packed, as WGSL's `unpack2x16snorm`.
+/// Unpacks the result of [`packing_pack_snorm`], as WGSL's `unpack2x16snorm`.
 #[inline]
 #[must_use]
 pub fn packing_unpack_snorm(word: u32) -> [f32; 2] {
     [word as u16, (word >> 16) as u16].map(|half| (f32::from(half as i16) / 32767.0).max(-1.0))
 }
 
-/// Two numbers of [0, 1] in 16 bits each, as WGSL's `pack2x16unorm`.
+/// Packs two numbers in [0, 1] into 16 bits each, as WGSL's `pack2x16unorm`.
 #[inline]
 #[must_use]
 pub fn packing_pack_unorm(pair: [f32; 2]) -> u32 {
@@ -66,7 +66,7 @@ pub fn packing_pack_unorm(pair: [f32; 2]) -> u32 {
     low | high << 16
 }
 
-/// What [`packing_pack_unorm`] has packed, as WGSL's `unpack2x16unorm`.
+/// Unpacks the result of [`packing_pack_unorm`], as WGSL's `unpack2x16unorm`.
 #[inline]
 #[must_use]
 pub fn packing_unpack_unorm(word: u32) -> [f32; 2] {

@@ -9,7 +9,7 @@ pub struct GaussLegendre {
 }
 
 impl GaussLegendre {
-    /// The rule with `n` nodes.
+    /// Creates the rule with `n` nodes.
     ///
     /// # Panics
     /// If `n` is 0.
@@ -36,7 +36,7 @@ impl GaussLegendre {
         Self { nodes }
     }
 
-    /// The integral of `f` over [a, b].
+    /// Integral of `f` over [a, b].
     ///
     /// ```
     /// use downpour_math::quadrature::GaussLegendre;
@@ -44,18 +44,18 @@ impl GaussLegendre {
     /// assert!((rule.integrate(0.0, 3.0, |x| x * x) - 9.0).abs() < 1e-12);
     /// ```
     pub fn integrate(&self, a: f64, b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-        let (centre, half) = (0.5 * (a + b), 0.5 * (b - a));
-        self.nodes.iter().map(|&(x, w)| w * f(centre + half * x)).sum::<f64>() * half
+        let (center, half) = (0.5 * (a + b), 0.5 * (b - a));
+        self.nodes.iter().map(|&(x, w)| w * f(center + half * x)).sum::<f64>() * half
     }
 
-    /// The integral of `f` over [a, b], cut into `panels` equal parts.
+    /// Integral of `f` over [a, b], split into `panels` equal parts.
     pub fn integrate_panels(&self, a: f64, b: f64, panels: usize, mut f: impl FnMut(f64) -> f64) -> f64 {
         let h = (b - a) / panels as f64;
         (0..panels).map(|i| self.integrate(a + h * i as f64, a + h * (i + 1) as f64, &mut f)).sum()
     }
 }
 
-/// The Legendre polynomial of degree `n` and its derivative.
+/// Legendre polynomial of degree `n` and its derivative.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut before, mut value) = (1.0, x);
     for k in 2..=n {

@@ -1,22 +1,22 @@
 //! One algorithm for `f32`, `f64` and many `f32` lanes at once.
 //!
-//! A function that is generic over [`Real`] is written once, without branches that depend on values, and is
-//! used three times: with `f32` it is the twin of a WGSL function, with `f64` the reference above it, and with
-//! [`Lanes`] the fast CPU path. All operations are exactly specified by IEEE 754 and none is contracted, so the
-//! lanes have the same bits as the scalar `f32`, for any width of the machine's vectors.
+//! A function that is generic over [`Real`] is written once, without branches that depend on values. With `f32` it
+//! is the twin of a WGSL function, with `f64` its reference, and with [`Lanes`] the fast CPU path. All operations
+//! are exactly specified by IEEE 754 and none is contracted, so each lane has the same bits as the scalar `f32`,
+//! for any vector width.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use pulp::Simd;
 
-/// A real number, or a vector of them on which each operation works lane by lane.
+/// A real number, or a vector of real numbers with lane-wise operations.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// The result of a comparison, lane by lane.
+    /// Result of a comparison, per lane.
     type Mask: Copy;
 
-    /// A constant, of the kind and width of `self`. It is rounded to the precision of the kind.
+    /// Constant of the same type and width as `self`, rounded to the precision of the type.
     #[must_use]
     fn constant(self, value: f64) -> Self;
     /// Square root.
@@ -27,24 +27,24 @@ pub trait Real:
     fn abs(self) -> Self;
     /// `self < other`.
     fn less(self, other: Self) -> Self::Mask;
-    /// Whether both are true.
+    /// True where both are true.
     fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Whether at least one is true.
+    /// True where at least one is true.
     fn either(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Whether any lane is true.
+    /// True if any lane is true.
     fn any(self, mask: Self::Mask) -> bool;
     /// `yes` where the mask is true, `no` elsewhere.
     #[must_use]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
-    /// The larger of the two; `other` where the comparison does not hold.
+    /// The larger of the two; `other` where the comparison is false, as for NaN.
     #[inline(always)]
     #[must_use]
     fn at_least(self, other: Self) -> Self {
         Self::select(other.less(self), self, other)
     }
 
-    /// The smaller of the two; `other` where the comparison does not hold.
+    /// The smaller of the two; `other` where the comparison is false, as for NaN.
     #[inline(always)]
     #[must_use]
     fn at_most(self, other: Self) -> Self {
@@ -95,7 +95,7 @@ macro_rules! scalar {
 scalar!(f32);
 scalar!(f64);
 
-/// A machine vector of `f32`: as many lanes as the instruction set `S` has.
+/// SIMD vector of `f32`, as wide as the instruction set `S` allows.
 #[derive(Clone, Copy)]
 pub struct Lanes<S: Simd> {
     simd: S,
@@ -103,52 +103,52 @@ pub struct Lanes<S: Simd> {
 }
 
 impl<S: Simd> Lanes<S> {
-    /// How many numbers a vector holds.
+    /// Number of lanes.
     pub const COUNT: usize = S::F32_LANES;
 
-    /// The vector whose lanes are all `value`.
+    /// Vector with all lanes equal to `value`.
     #[inline(always)]
     pub fn splat(simd: S, value: f32) -> Self {
         Self { simd, value: simd.splat_f32s(value) }
     }
 
-    /// The first [`COUNT`](Self::COUNT) numbers of `slice`; zero where it ends earlier.
+    /// Loads the first [`COUNT`](Self::COUNT) numbers of `slice`; missing ones are zero.
     #[inline(always)]
     pub fn load(simd: S, slice: &[f32]) -> Self {
-        // Loads of parts of vectors are slow.
+        // Partial loads are slow.
         match S::as_simd_f32s(slice).0.first() {
             Some(&value) => Self { simd, value },
             None => Self { simd, value: simd.partial_load_f32s(slice) },
         }
     }
 
-    /// The whole vectors at the beginning of a slice, for loops without a test for each: [`of`](Self::of) reads one.
+    /// The complete vectors at the start of a slice, for loops without a bounds test per vector; see [`of`](Self::of).
     #[inline(always)]
     #[must_use]
     pub fn vectors(slice: &[f32]) -> &[S::f32s] {
         S::as_simd_f32s(slice).0
     }
 
-    /// As [`vectors`](Self::vectors), to be written by [`put`](Self::put).
+    /// Mutable version of [`vectors`](Self::vectors), written by [`put`](Self::put).
     #[inline(always)]
     #[must_use]
     pub fn vectors_mut(slice: &mut [f32]) -> &mut [S::f32s] {
         S::as_mut_simd_f32s(slice).0
     }
 
-    /// A vector of [`vectors`](Self::vectors).
+    /// Loads one element of [`vectors`](Self::vectors).
     #[inline(always)]
     pub fn of(simd: S, vector: &S::f32s) -> Self {
         Self { simd, value: *vector }
     }
 
-    /// Writes all lanes to a vector of [`vectors_mut`](Self::vectors_mut).
+    /// Writes all lanes to one element of [`vectors_mut`](Self::vectors_mut).
     #[inline(always)]
     pub fn put(self, vector: &mut S::f32s) {
         *vector = self.value;
     }
 
-    /// Writes the lanes to `slice`, as many as it has room for.
+    /// Writes the lanes to `slice`, as many as fit.
     #[inline(always)]
     pub fn store(self, slice: &mut [f32]) {
         match S::as_mut_simd_f32s(slice).0.first_mut() {
@@ -219,14 +219,14 @@ impl<S: Simd> Real for Lanes<S> {
     }
 }
 
-/// The result of comparing [`Lanes`].
+/// Result of a comparison of [`Lanes`].
 #[derive(Clone, Copy)]
 pub struct LaneMask<S: Simd> {
     simd: S,
     mask: S::m32s,
 }
 
-/// Runs `work` with the widest vectors that this machine has.
+/// Runs `work` with the widest vectors that the machine supports.
 ///
 /// ```
 /// use downpour_math::real::{Lanes, Real, WithLanes, with_widest_lanes};
@@ -257,10 +257,10 @@ pub fn with_widest_lanes<W: WithLanes>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(Run(work))
 }
 
-/// Work that is written for any vector width. `run` and all that it calls should be `#[inline(always)]`: only
-/// then are they compiled for the instruction set that was found.
+/// Work that is written for any vector width. `run` and all functions that it calls should be `#[inline(always)]`:
+/// only then are they compiled for the detected instruction set.
 pub trait WithLanes {
-    /// What the work gives back.
+    /// Result of the work.
     type Output;
     /// Does the work with the vectors of `simd`.
     fn run<S: Simd>(self, simd: S) -> Self::Output;

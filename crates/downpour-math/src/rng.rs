@@ -7,7 +7,7 @@
 
 use downpour_shaders::common::{RNG_PCG_INCREMENT, RNG_PCG_MULTIPLIER, RNG_UNIT_STEP};
 
-/// Mixes four words so that each bit of the result depends on each bit of the argument.
+/// Mixes four words: each bit of the result depends on each bit of the argument.
 #[inline]
 #[must_use]
 pub fn rng_pcg4d(words: [u32; 4]) -> [u32; 4] {
@@ -32,25 +32,25 @@ pub fn rng_pcg4d_stir([mut x, mut y, mut z, mut w]: [u32; 4]) -> [u32; 4] {
 pub fn rng_draw(seed: [u32; 2], id: u32, step: u32, dimension: u32) -> [u32; 4] {
     let [x, y, z, w] = rng_pcg4d([id, step, dimension, seed[0]]);
     let second = rng_pcg4d([x.wrapping_add(seed[1]), y, z, w.wrapping_add(dimension)]);
-    // High bits of the high seed word went through one hash only: one more round spreads them.
+    // The high bits of the high seed word have passed through one hash only: one more round spreads them.
     rng_pcg4d_stir(second.map(|v| v ^ (v >> 16)))
 }
 
-/// A word as a number in [0, 1), a multiple of 2^-24.
+/// Maps a word to a number in [0, 1), a multiple of 2^-24.
 #[inline]
 #[must_use]
 pub fn rng_unit(word: u32) -> f32 {
     (word >> 8) as f32 * RNG_UNIT_STEP
 }
 
-/// A word as a number in (0, 1], a multiple of 2^-24: safe under a logarithm.
+/// Maps a word to a number in (0, 1], a multiple of 2^-24: safe under a logarithm.
 #[inline]
 #[must_use]
 pub fn rng_unit_positive(word: u32) -> f32 {
     ((word >> 8) + 1) as f32 * RNG_UNIT_STEP
 }
 
-/// A 64-bit seed as the low and high words that [`rng_draw`] takes.
+/// Splits a 64-bit seed into the low and high words that [`rng_draw`] takes.
 ///
 /// ```
 /// use downpour_math::rng::{rng_draw, rng_unit, seed_words};

@@ -1,16 +1,16 @@
-//! Three-vectors of any [`Real`]: what algorithms for `f32`, `f64` and lanes share. (Code that only ever works
-//! on `f32` uses glam.)
+//! Operations on three-vectors of any [`Real`], shared by algorithms for `f32`, `f64` and lanes. Code that only
+//! uses `f32` uses glam.
 
 use crate::real::Real;
 
-/// The dot product, summed from x to z.
+/// Dot product, summed from x to z.
 #[inline(always)]
 #[must_use]
 pub fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The cross product.
+/// Cross product.
 #[inline(always)]
 #[must_use]
 pub fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {

@@ -1,4 +1,4 @@
-//! How long a map of what stops drops takes on the CPU, and a drop's question to it.
+//! Time of the CPU to make a collision map, and to query it for a drop.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use downpour_bvh::Bvh;

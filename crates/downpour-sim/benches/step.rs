@@ -1,10 +1,10 @@
-//! The step on the CPU: bare, with wind and with a map; a view against a box.
+//! Step on the CPU: bare, with wind and with a map; a view compared with a box.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use downpour_bvh::Bvh;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
-use downpour_sim::simulation::{Moment, SimVolume, Simulation, SimulationOptions};
+use downpour_sim::simulation::{SimVolume, Simulation, SimulationOptions, StepInput};
 use downpour_sim::view::View;
 use downpour_wind::{WindField, WindGrid, WindMask, WindPrimitive, WindUniform};
 use glam::{DVec3, Vec3};
@@ -37,17 +37,17 @@ fn step(criterion: &mut Criterion) {
         ("box in wind with map", boxed, true, true),
         ("view in wind with map", SimVolume::View, true, true),
     ] {
-        let moment = Moment {
+        let input = StepInput {
             field: windy.then_some(&field),
             map: walls.then_some(&map),
-            ..Moment::new(&view, DVec3::ZERO, Vec3::X)
+            ..StepInput::new(&view, DVec3::ZERO, Vec3::X)
         };
         let options = SimulationOptions { volume, most_drops: 200_000, ..SimulationOptions::default() };
-        let mut simulation = Simulation::new(&rain(), &options, &moment).expect("a simulation");
+        let mut simulation = Simulation::new(&rain(), &options, &input).expect("a simulation");
         let count = simulation.drops().len() as u64;
         group.throughput(Throughput::Elements(count));
         group.bench_function(BenchmarkId::new(name, count), |bencher| {
-            bencher.iter(|| simulation.advance(1.0 / 60.0, &moment).expect("a step"));
+            bencher.iter(|| simulation.advance(1.0 / 60.0, &input).expect("a step"));
         });
     }
     group.finish();

@@ -1,24 +1,24 @@
-//! What stops drops: a map of the surfaces that the rain meets.
+//! Collision map of the surfaces that the rain hits.
 //!
-//! Rousseau 2008, 4, looks down on the scene and keeps the height and the normal of the highest surface. This map looks along
-//! the mean fall direction, which wind slants, and keeps four surfaces of each column, so that the road under a bridge stops
-//! the drops that the wind carries there. It is made by rays through the hierarchy of triangles that pictures are made with:
-//! moving objects come with it, and the order of surfaces does not depend on a rasteriser.
+//! Rousseau 2008, 4, looks down on the scene and keeps the height and the normal of the highest surface. This map
+//! looks along the mean fall direction, which wind slants, and keeps four surfaces per column, so that the road under
+//! a bridge stops the drops that the wind carries there. It is made by rays through the same hierarchy of triangles as
+//! the pictures: moving objects are included, and the order of surfaces does not depend on a rasteriser.
 //!
-//! - A surface within a texel is its tangent plane at the centre of the texel, so a slope has no steps. It leaves the depth at
-//!   the centre by 4 texel edges at most.
-//! - Below a surface that faces the rain is solid ground if the next surface faces away, or if there is none. Between other
-//!   surfaces, rays sideways say whether the space is enclosed, as in a house that stands in the ground; if it is not, the upper
-//!   surface is a sheet (a thin roof, a leaf) with air below. Which way a surface faces is said by the order of its corners:
-//!   counter-clockwise seen from outside. Surfaces inside something solid are left out.
-//! - If a column has more than four surfaces, the fourth is the deepest top of something solid: however many leaves a tree has,
-//!   the ground is there.
-//! - Edges are known to half a texel. Surfaces that the fall direction only grazes (walls) are not in the map; a drop that
-//!   enters something solid sideways, far below its top, has met one.
+//! - A surface within a texel is its tangent plane at the center of the texel, so a slope has no steps. It deviates
+//!   from the depth at the center by at most 4 texel edges.
+//! - Below a surface that faces the rain is solid ground if the next surface faces away, or if there is none. Between
+//!   other surfaces, horizontal rays decide if the space is enclosed, as in a house that stands in the ground; if it
+//!   is not, the upper surface is a sheet (a thin roof, a leaf) with air below. The facing of a surface follows from
+//!   the order of its corners: counter-clockwise seen from outside. Surfaces inside a solid are left out.
+//! - If a column has more than four surfaces, the fourth is the deepest top of a solid: however many leaves a tree
+//!   has, the ground is in the map.
+//! - Edges are accurate to half a texel. Surfaces that the fall direction only grazes (walls) are not in the map; a
+//!   drop that enters a solid sideways, far below its top, has hit a wall.
 //!
-//! Outside the map's rectangle everything is open. A drop that is put on a surface may be up to 1 mm below it
-//! ([`COLLISION_CLEARANCE`](downpour_shaders::sim::collision::COLLISION_CLEARANCE)); a drop that is to leave a thin sheet
-//! downwards has to start farther below.
+//! Everything outside the map's rectangle is open. A drop that is placed on a surface may be up to 1 mm below it
+//! ([`COLLISION_CLEARANCE`](downpour_shaders::sim::collision::COLLISION_CLEARANCE)); a drop that has to leave a thin
+//! sheet downwards must start farther below.
 //!
 //! Twin of `shaders/wgsl/sim/collision.wgsl` and `shaders/wgsl/sim/collision_map.wgsl`.
 
@@ -50,7 +50,7 @@ pub use surface::{
 use crate::SimError;
 use crate::shelter::Holes;
 
-/// The map on the CPU.
+/// Collision map on the CPU.
 ///
 /// ```
 /// use downpour_bvh::Bvh;
@@ -62,7 +62,7 @@ use crate::shelter::Holes;
 /// let floor = Bvh::new(&[[a, c, b], [a, d, c]]);
 /// let map = CollisionMap::new(&CollisionOptions::default(), &floor)?;
 /// let hit = map.find(Vec3::new(0.3, -1.9, 0.2), Vec3::new(0.3, -2.1, 0.2)).expect("the floor is there");
-/// assert!((hit.share - 0.5).abs() < 1.0e-4 && hit.normal.y > 0.999);
+/// assert!((hit.fraction - 0.5).abs() < 1.0e-4 && hit.normal.y > 0.999);
 /// assert!(map.open(Vec3::ZERO) && map.inside(Vec3::new(1.0, -2.5, 1.0)));
 /// # Ok::<(), downpour_sim::SimError>(())
 /// ```
@@ -73,7 +73,8 @@ pub struct CollisionMap {
 }
 
 impl CollisionMap {
-    /// The map of a scene. The same bits for any number of threads. Without triangles, everything is open.
+    /// Creates the map of a scene. The bits do not depend on the number of threads. Without triangles, everything is
+    /// open.
     ///
     /// # Errors
     /// As [`CollisionFrame::new`].
@@ -81,7 +82,7 @@ impl CollisionMap {
         Self::from_arrays(options, &scene.nodes, &scene.triangles, None)
     }
 
-    /// As [`CollisionMap::new`], from the arrays of a [`Bvh`], whose triangles may have holes.
+    /// Creates the map as [`CollisionMap::new`], from the arrays of a [`Bvh`], whose triangles may have holes.
     ///
     /// # Errors
     /// As [`CollisionFrame::new`].
@@ -100,34 +101,35 @@ impl CollisionMap {
         Ok(Self { frame, texels })
     }
 
-    /// Whether nothing is between a place and the sky that the rain comes from.
+    /// True if nothing is between a position and the sky that the rain comes from.
     #[must_use]
     pub fn open(&self, at: Vec3) -> bool {
         collision_open(&self.frame, &self.texels, at)
     }
 
-    /// Whether a place is inside something solid.
+    /// True if a position is inside a solid.
     #[must_use]
     pub fn inside(&self, at: Vec3) -> bool {
         collision_inside(&self.frame, &self.texels, at)
     }
 
-    /// What a drop first meets on its straight way from `start` to `end`; `None` if nothing stops it.
+    /// First hit of a drop on its straight path from `start` to `end`; `None` if nothing stops it.
     ///
-    /// A way is followed through 32 texels; what is beyond is not looked at ([`collision_find`] says how far it was).
+    /// A path is followed through 32 texels; the rest is ignored ([`collision_find`] returns the fraction that was
+    /// followed).
     #[must_use]
     pub fn find(&self, start: Vec3, end: Vec3) -> Option<CollisionHit> {
         let hit = collision_find(&self.frame, &self.texels, start, end);
         (hit.kind != downpour_shaders::sim::collision::COLLISION_OPEN).then_some(hit)
     }
 
-    /// Where the map is, as the shader takes it.
+    /// Position of the map, in the layout of the shader.
     #[must_use]
     pub fn frame(&self) -> &CollisionFrame {
         &self.frame
     }
 
-    /// The texels, row by row.
+    /// Texels, row by row.
     #[must_use]
     pub fn texels(&self) -> &[CollisionTexel] {
         &self.texels

@@ -1,4 +1,4 @@
-//! The rate of the drops that are in a volume.
+//! Rain rate of the drops in a volume.
 
 use std::f64::consts::FRAC_PI_6;
 
@@ -16,14 +16,14 @@ use crate::population::volume_of;
 use crate::step::StepDrop;
 use crate::view::within;
 
-/// Points at which a volume is asked whether it is open.
+/// Number of points at which a volume is tested for openness.
 const POINTS: u32 = 2048;
 
 /// Dimension of the random numbers.
 const POINT: u32 = 8260;
 
-/// The rate, mm/h, of the drops that fall in the volume, by the part of it that is open to the sky. Of a frustum: in the
-/// picture, as far as each size is resolved.
+/// Rate, mm/h, of the drops that fall in the volume, relative to its part that is open to the sky. For a frustum: in
+/// the picture, up to the distance at which each size is resolved.
 pub(crate) fn rate_mm_h(plan: &Plan, drops: &[StepDrop], map: Option<&CollisionMap>) -> f64 {
     let view = plan.view();
     let (open, sides) = (Openness::new(plan, map), view.sides());
@@ -33,7 +33,7 @@ pub(crate) fn rate_mm_h(plan: &Plan, drops: &[StepDrop], map: Option<&CollisionM
         }
         let diameter = f64::from(drop.diameter());
         let volume = if plan.is_open() {
-            let ahead = Vec3::from(drop.place).as_dvec3()
+            let ahead = Vec3::from(drop.position).as_dvec3()
                 + Vec3::from(drop.velocity).as_dvec3() * plan.frustum().half_horizon;
             let offset = plan.origin() + ahead - view.eye;
             let range = view.range(diameter, plan.least_pixels);
@@ -46,16 +46,16 @@ pub(crate) fn rate_mm_h(plan: &Plan, drops: &[StepDrop], map: Option<&CollisionM
         };
         -f64::from(drop.velocity[1]) * diameter * diameter * diameter / volume.max(1.0e-12)
     };
-    // In pieces, so that the sum does not depend on the threads.
+    // In chunks of fixed size, so that the sum does not depend on the threads.
     let pieces: Vec<f64> = drops.par_chunks(PIECE).map(|piece| piece.iter().map(flux).sum()).collect();
     FRAC_PI_6 * pieces.iter().sum::<f64>() * 3.6e6
 }
 
-/// How much of a volume is open to the sky, by the distance from the eye in that of the farthest drops.
+/// Openness of a volume to the sky, by the distance from the eye relative to that of the farthest drops.
 struct Openness {
     /// Distances of points in order.
     distances: Vec<f64>,
-    /// Space that the points up to each stand for, and what of it is open.
+    /// Cumulative space of the points, and its open part.
     sums: Vec<[f64; 2]>,
 }
 
@@ -84,7 +84,7 @@ impl Openness {
         Self { sums: sums.collect(), distances: points.iter().map(|point| point[0]).collect() }
     }
 
-    /// The share of a volume that is open.
+    /// Fraction of a volume that is open, up to a distance.
     fn up_to(&self, distance: f64) -> f64 {
         let count = self.distances.partition_point(|&of_point| of_point <= distance);
         match count.checked_sub(1).and_then(|last| self.sums.get(last)) {
@@ -94,8 +94,8 @@ impl Openness {
     }
 }
 
-/// A point of a volume as an offset from the eye, its distance in that of the farthest drops, and the space that it stands
-/// for; `random` is in the unit cube.
+/// Point of a volume as an offset from the eye, its distance relative to that of the farthest drops, and the space
+/// that it represents; `random` is in the unit cube.
 fn point(plan: &Plan, random: DVec3) -> Option<(DVec3, f64, f64)> {
     let view = plan.view();
     match plan.options.volume {
@@ -111,7 +111,7 @@ fn point(plan: &Plan, random: DVec3) -> Option<(DVec3, f64, f64)> {
             inside.then_some((base + DVec3::new(disc.x, random.y * height_m, disc.z), 1.0, 1.0))
         }
         SimVolume::View | SimVolume::ImSung => {
-            // As many points for each size: even over the logarithm of the distance.
+            // As many points for each size: uniform in the logarithm of the distance.
             let distance = ops::exp(-5.5 * random.z);
             let [wide, high] = [view.half_width, view.half_height].map(|half| half.min(4.0));
             let (x, y) = ((2.0 * random.x - 1.0) * wide, (2.0 * random.y - 1.0) * high);

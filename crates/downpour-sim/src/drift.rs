@@ -1,17 +1,17 @@
-//! Where a wind that is the same everywhere has carried drops, by their terminal speed.
+//! Displacement of drops by a uniform wind, by their terminal speed.
 
 use downpour_drop::fall_speed::relaxation;
 use downpour_wind::UniformWind;
 use glam::DVec3;
 
-/// The fastest drop, m/s.
-const FASTEST: f64 = 12.0;
+/// Maximum terminal speed of a drop, m/s.
+const MAX_SPEED_M_S: f64 = 12.0;
 
-/// Intervals of the table.
+/// Number of intervals of the table.
 const INTERVALS: usize = 48;
 
-/// What the wind has done to drops by a time. Between the speeds of the table it is linear, so that a drop's velocity is the
-/// rate of change of its place.
+/// Motion of drops by the wind up to a time. It is linear between the speeds of the table, so that a drop's velocity
+/// is the rate of change of its position.
 #[derive(Clone, Debug)]
 pub(crate) struct Drift {
     /// Displacement since time 0, m, and velocity, m/s.
@@ -22,7 +22,7 @@ impl Drift {
     pub(crate) fn new(wind: &UniformWind, time_s: f64) -> Self {
         let at = wind.prepared(time_s);
         let entry = |k: usize| {
-            let relaxation = relaxation(FASTEST * k as f64 / INTERVALS as f64);
+            let relaxation = relaxation(MAX_SPEED_M_S * k as f64 / INTERVALS as f64);
             let across = at.followed(relaxation.horizontal_s);
             let along = at.followed(relaxation.vertical_s);
             let joined = |a: DVec3, b: DVec3| DVec3::new(a.x, b.y, a.z);
@@ -31,20 +31,20 @@ impl Drift {
         Self { table: (0..=INTERVALS).map(entry).collect() }
     }
 
-    /// Displacement since time 0, m, and velocity that comes from the wind, m/s, of a drop with a terminal speed, m/s.
+    /// Displacement since time 0, m, and velocity due to the wind, m/s, of a drop with a terminal speed, m/s.
     pub(crate) fn of(&self, speed: f64) -> [DVec3; 2] {
-        let position = (speed * (INTERVALS as f64 / FASTEST)).clamp(0.0, INTERVALS as f64);
+        let position = (speed * (INTERVALS as f64 / MAX_SPEED_M_S)).clamp(0.0, INTERVALS as f64);
         let lower = (position as usize).min(INTERVALS - 1);
-        let share = position - lower as f64;
+        let fraction = position - lower as f64;
         match self.table.get(lower..lower + 2) {
-            Some(&[a, b]) => [a[0].lerp(b[0], share), a[1].lerp(b[1], share)],
+            Some(&[a, b]) => [a[0].lerp(b[0], fraction), a[1].lerp(b[1], fraction)],
             _ => [DVec3::ZERO; 2],
         }
     }
 
-    /// The least and the largest displacement of drops between two speeds, m.
+    /// Minimum and maximum displacement of drops between two speeds, m.
     pub(crate) fn span(&self, slowest: f64, fastest: f64) -> [DVec3; 2] {
-        let per_speed = INTERVALS as f64 / FASTEST;
+        let per_speed = INTERVALS as f64 / MAX_SPEED_M_S;
         let between = self
             .table
             .iter()

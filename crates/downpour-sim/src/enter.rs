@@ -1,9 +1,9 @@
-//! Drops that come into a frustum: candidates in thin regions about its planes and its ball, as many as the rain has there,
+//! Drops that enter a frustum: candidates in thin regions at its planes and its ball, with the density of the rain,
 //! each moved by a step as any drop and kept if it arrives. Twin of `shaders/wgsl/sim/enter.wgsl`.
 //!
-//! A region's candidates are uniform between two distances from its plane and in a trapezoid along it, or between two radii
-//! of the ball and in a cone of directions. The first limit that a candidate violates before the step has to be that of its
-//! region: no part of space is filled twice.
+//! A region's candidates are uniform between two distances from its plane and in a trapezoid along it, or between two
+//! radii of the ball and in a cone of directions. The first limit that a candidate violates before the step has to be
+//! that of its region: no part of space is filled twice.
 
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::enter::{ENTER_DRAW, ENTER_SIZES, ENTER_UNIT};
@@ -15,20 +15,20 @@ pub use crate::region::EnterRegion;
 use crate::step::{StepDrop, StepMade, StepWorld, step_word};
 use crate::volume::volume_limit;
 
-/// Diameter in 16 bits between two quantiles.
+/// Interpolates a diameter in 16 bits between two quantiles.
 #[must_use]
-pub fn enter_code(lower: f32, upper: f32, share: f32) -> u32 {
-    (lower + (upper - lower) * share + 0.5) as u32
+pub fn enter_code(lower: f32, upper: f32, fraction: f32) -> u32 {
+    (lower + (upper - lower) * fraction + 0.5) as u32
 }
 
-/// A number in [0, 1) of the low bits of three words, which [`rng_unit`] leaves out.
+/// Number in [0, 1) from the low bits of three words, which [`rng_unit`] does not use.
 #[must_use]
 pub fn enter_chance([x, y, z, _]: [u32; 4]) -> f32 {
     (x & 255 | (y & 255) << 8 | (z & 255) << 16) as f32 * ENTER_UNIT
 }
 
-/// Offset from the eye of a candidate, and 1; 0 for one that is none. `normal` and `tangent` are those of the plane, of the
-/// ball those of the back.
+/// Offset from the eye of a candidate, and 1; 0 for a rejected candidate. `normal` and `tangent` are those of the
+/// plane, for the ball those of the back.
 #[must_use]
 pub fn enter_offset(region: &EnterRegion, normal: Vec3, tangent: Vec3, random: Vec3, chance: f32) -> Vec4 {
     let across = normal.cross(tangent);
@@ -46,25 +46,25 @@ pub fn enter_offset(region: &EnterRegion, normal: Vec3, tangent: Vec3, random: V
     let near = region.width + region.slope * region.begin;
     let far = region.width + region.slope * region.end;
     let root = (near * near + random.y * (far * far - near * near)).max(0.0).sqrt();
-    let share = random.y * (near + far) / (near + root).max(1.0e-12);
-    let along = region.begin + (region.end - region.begin) * share;
+    let fraction = random.y * (near + far) / (near + root).max(1.0e-12);
+    let along = region.begin + (region.end - region.begin) * fraction;
     let aside = region.middle + (region.width + region.slope * along) * (2.0 * random.z - 1.0);
     (normal * distance + tangent * along + across * aside).extend(1.0)
 }
 
 impl StepWorld<'_> {
-    /// The drop that a candidate of a region becomes, if it comes in.
+    /// Returns the drop that a candidate of a region becomes, if it enters.
     #[must_use]
     pub fn enter_drop(&self, region: &EnterRegion, number: u32) -> Option<StepMade> {
         let frame = self.frame;
         let dimension = ENTER_DRAW + region.bin * (VOLUME_BALL + 1) + region.face;
         let words = rng_draw(frame.seed, number, frame.step, dimension);
         let [x, y, z, w] = words.map(rng_unit);
-        let position = w * (ENTER_SIZES - 1) as f32;
+        let quantile = w * (ENTER_SIZES - 1) as f32;
         let sizes = self.sizes.get(region.bin as usize)?;
         let size = |entry: usize| sizes.get(entry).copied().unwrap_or(0.0);
-        let entry = position as usize;
-        let bits = enter_code(size(entry), size(entry + 1), position - position.floor());
+        let entry = quantile as usize;
+        let bits = enter_code(size(entry), size(entry + 1), quantile - quantile.floor());
         let plane = region.face.min(VOLUME_PLANES - 1) as usize;
         let normal = Vec4::from(frame.frustum_before.planes[plane]).xyz();
         let tangent = Vec4::from(frame.tangents[plane]).xyz();
@@ -77,16 +77,16 @@ impl StepWorld<'_> {
         if volume_limit(&frame.frustum_before, offset.xyz(), diameter, speed) != region.face {
             return None;
         }
-        // Where it will be in the middle of the horizon, and where it is.
+        // Position at the middle of the horizon, and now.
         let ahead = Vec3::from(frame.frustum_before.eye) + offset.xyz();
         let velocity = self.step_coming(ahead, speed);
-        let place = ahead - velocity * frame.frustum_before.half_horizon;
-        if self.map.is_some_and(|map| !map.open(place)) {
+        let position = ahead - velocity * frame.frustum_before.half_horizon;
+        if self.map.is_some_and(|map| !map.open(position)) {
             return None;
         }
         let count = region.first_of_bin.wrapping_add(number) & STEP_COUNT;
         let made = self.step_view(&StepDrop {
-            place: place.to_array(),
+            position: position.to_array(),
             word: step_word(bits, STEP_FALLING, count),
             velocity: velocity.to_array(),
             last: frame.step,

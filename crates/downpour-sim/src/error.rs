@@ -1,35 +1,35 @@
-//! What can be wrong with what is asked of a rain.
+//! Errors of simulations.
 
 use downpour_drop::DropError;
 
-/// Memory of a drop, with what its making needs.
+/// Memory of a drop, including that of its creation.
 pub(crate) const BYTES_PER_DROP: u64 = 34;
 
-/// Why there is no answer.
+/// Error of a simulation or of a query.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
     /// A number is not finite or outside its range.
     #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
     OutOfRange {
-        /// What it is.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// The value, in `unit`.
+        /// Value found, in `unit`.
         found: f64,
-        /// The unit, as files and arguments write it.
+        /// Unit, as in files and arguments.
         unit: &'static str,
-        /// The range, in words.
+        /// Allowed range, in words.
         allowed: &'static str,
     },
     /// The drops do not fit into memory.
     #[error("{drops} drops need {gib:.1} GiB; allowed: up to 268435456 drops, and what this machine has")]
     Memory {
-        /// How many.
+        /// Number of drops.
         drops: u64,
-        /// What they need.
+        /// Memory that they need, GiB.
         gib: f64,
     },
-    /// The physics of drops does not know it.
+    /// A quantity of the physics of drops is out of range.
     #[error(transparent)]
     Drop(#[from] DropError),
 }
@@ -39,7 +39,7 @@ impl SimError {
         Self::Memory { drops, gib: (drops * BYTES_PER_DROP) as f64 / f64::from(1 << 30) }
     }
 
-    /// The exit code of the command for this error: 3 for memory, 2 for bad input.
+    /// Exit code of the command for this error: 3 for memory, 2 for bad input.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         if matches!(self, Self::Memory { .. }) { 3 } else { 2 }

@@ -1,22 +1,22 @@
-//! Drops as a picture takes them.
+//! Drops in the form that a picture needs.
 
 use glam::DVec3;
 
 use crate::resolved::Resolved;
 
-/// Where a drop comes from.
+/// Origin of a drop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DropKind {
-    /// The sky.
+    /// Falls from the sky.
     #[default]
     Falling,
-    /// A surface that another drop met.
+    /// Rebounds from a surface that another drop hit.
     Bounced,
 }
 
 impl DropKind {
-    /// As lists of drops name it.
+    /// Name in lists of drops.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -26,7 +26,7 @@ impl DropKind {
     }
 }
 
-/// A drop at an instant.
+/// A drop at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingDrop {
     /// Position of its center, m, at [`FallingDrop::seen_s`].
@@ -35,21 +35,21 @@ pub struct FallingDrop {
     pub velocity: [f32; 3],
     /// Volume-equivalent diameter, metres.
     pub diameter: f32,
-    /// The same drop at another time or in another picture has the same number.
+    /// Id of the drop: the same at other times and in other pictures.
     pub id: u64,
-    /// Where it comes from.
+    /// Origin of the drop.
     pub kind: DropKind,
-    /// Part of the exposure in which it is there, s from the picture's time: [`FallingDrop::ALWAYS`] unless it lands or
-    /// begins while the shutter is open.
+    /// Part of the exposure in which the drop exists, s from the picture's time: [`FallingDrop::ALWAYS`] unless it
+    /// lands or starts while the shutter is open.
     pub present_s: [f32; 2],
 }
 
 impl FallingDrop {
-    /// A drop that is there all the time.
+    /// Value of `present_s` for a drop that exists all the time.
     pub const ALWAYS: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
 
-    /// Time from the picture's, s, at which it is at its position: 0 if it is there at the picture's time, else when it lands
-    /// or begins.
+    /// Time relative to the picture's, s, at which the drop is at its position: 0 if it exists at the picture's time,
+    /// else the time at which it lands or starts.
     #[must_use]
     pub fn seen_s(&self) -> f32 {
         let [begin, end] = self.present_s;
@@ -60,11 +60,11 @@ impl FallingDrop {
 /// The drops that a camera can resolve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisibleDrops {
-    /// The drops, in an order that depends on nothing but the question.
+    /// Drops, in an order that depends on the query only.
     pub drops: Vec<FallingDrop>,
-    /// How many drops were looked at to find them.
+    /// Number of drops that were examined to find them.
     pub simulated: u64,
-    /// Limits of the list; all other drops of the rain are unresolved. `least_pixels` is raised where there would have been
-    /// too many.
+    /// Limits of the list; all other drops of the rain are unresolved. `least_pixels` is raised if there would be too
+    /// many.
     pub resolved: Resolved,
 }

@@ -1,21 +1,21 @@
-//! Rain in still air, or in a wind that is the same everywhere, in closed form.
+//! Rain in still air or in a uniform wind, in closed form.
 //!
-//! The field has no borders, no state and no step: where its drops are at a time is a function of (seed, time), so any
+//! The field has no borders, no state and no step: the positions of its drops are a function of (seed, time), so any
 //! number of cameras, in any order, at any frame rate, sees the same drops.
 //!
-//! Method: diameters are cut into classes. A class has square columns on a lattice of the world's x and z. A column
-//! holds chains, as many as a Poisson law of the class's number density says; a chain is one diameter, hence one
+//! Method: diameters are divided into classes. A class has square columns on a grid of the world's x and z. A column
+//! holds chains, as many as a Poisson number of the class's number density; a chain has one diameter, hence one
 //! terminal speed v, and one phase. Its drops follow each other at the class's period H: they are at
-//! `y = phase H - v t + k H` for all whole k, and each k has a place in the column of its own. So
+//! `y = phase H - v t + k H` for all integers k, and each k has its own position in the column. Therefore
 //!
 //! - number density and sizes are those of the distribution, everywhere and always;
-//! - a drop falls straight at its own speed, and neighbours overtake each other as their sizes say;
-//! - of a column only the part in view is looked at, whatever the time.
+//! - a drop falls straight at its terminal speed, and drops overtake smaller neighbours;
+//! - only the part of a column in view is computed, at any time.
 //!
-//! Wind carries all drops of a chain alike: its displacement, which follows the wind as the drop's size lets it, is added to
-//! their places ([`downpour_wind::UniformWind`]). What stands in the way of drops is found along their paths
-//! ([`RainField::visible_among`]), and where they meet it ([`RainField::impacts`]). The wind blows through what stands there:
-//! it throws no shadow in the wind.
+//! Wind carries all drops of a chain alike: its displacement, which follows the wind according to the drop's size, is
+//! added to their positions ([`downpour_wind::UniformWind`]). Obstacles are found along the drops' paths
+//! ([`RainField::visible_among`]), and so are the impacts on them ([`RainField::impacts`]). Obstacles do not affect the
+//! wind: it blows through them.
 //!
 //! Limit: drops of one chain share their size, H apart; H is about 8 m per millimetre of diameter, up to 64 m.
 
@@ -35,23 +35,23 @@ use crate::resolved::Resolved;
 use crate::shelter::{Obstacles, keep_open};
 use crate::view::{Bounds, View, within};
 
-/// Classes of diameter per factor of two.
+/// Number of diameter classes per factor of two.
 const CLASSES_PER_OCTAVE: f64 = 4.0;
 
-/// The latest time, and the earliest below zero, seconds: a little more than 11 days.
-pub const LATEST_S: f64 = 1.0e6;
+/// Maximum absolute time, seconds: a little more than 11 days.
+pub const MAX_TIME_S: f64 = 1.0e6;
 
 /// Dimensions of the random numbers.
 const CHAIN_COUNT: u32 = 8200;
 const CHAIN: u32 = 8201;
 const PLACE: u32 = 8202;
 
-/// Drops of about one size.
+/// Drops of similar size.
 #[derive(Clone, Debug)]
 pub(crate) struct Class {
     seed: [u32; 2],
     pub(crate) largest: f64,
-    /// Terminal speeds of the smallest and the largest, m/s.
+    /// Terminal speeds of the smallest and the largest drop, m/s.
     pub(crate) speeds: [f64; 2],
     /// Drops per cubic metre.
     density: f64,
@@ -62,7 +62,7 @@ pub(crate) struct Class {
     period: f64,
 }
 
-/// A rain without end.
+/// An unbounded rain.
 #[derive(Clone, Debug)]
 pub struct RainField {
     pub(crate) classes: Vec<Class>,
@@ -70,32 +70,32 @@ pub struct RainField {
     pub(crate) wind: UniformWind,
 }
 
-/// Where a chain is and what it carries.
+/// Position and contents of a chain.
 #[derive(Clone, Copy, Debug)]
 struct Chain {
     column: [u32; 2],
     index: u32,
     diameter: f32,
     speed: f64,
-    /// Height of the drop k = 0 now, metres.
+    /// Current height of the drop k = 0, metres.
     height: f64,
-    /// How far the wind has carried it, metres, and the velocity that it has from it.
+    /// Displacement by the wind, metres, and velocity due to it.
     carried: DVec3,
     wind: DVec3,
 }
 
 impl RainField {
-    /// The rain of a distribution; the seed chooses which of all possible ones.
+    /// Creates the rain of a distribution; the seed selects one realisation.
     ///
     /// # Errors
-    /// [`SimError::Drop`] if the distribution cannot be cut into classes.
+    /// [`SimError::Drop`] if the distribution cannot be divided into classes.
     pub fn new(rain: &DropSizeDistribution, seed: u64) -> Result<Self, SimError> {
         let options = rain.options();
         let speed = TerminalSpeed::new(options.fall_speed, &options.air);
         let mut classes = Vec::new();
         if rain.rate_mm_h() > 0.0 {
             for (k, [lower, upper]) in (0u32..).zip(rain.diameter_classes(CLASSES_PER_OCTAVE)) {
-                // A last sliver would be too thin a class.
+                // A narrow last class would have too few drops.
                 if upper - lower < 2.0e-6 {
                     continue;
                 }
@@ -115,19 +115,19 @@ impl RainField {
         Ok(Self { classes, speed, wind: Wind::default().air().clone() })
     }
 
-    /// The same rain in a wind: at time 0 its drops are where they would be in still air.
+    /// Sets the wind of the rain: at time 0 its drops are where they would be in still air.
     #[must_use]
     pub fn with_wind(self, wind: UniformWind) -> Self {
         Self { wind, ..self }
     }
 
-    /// Drops per cubic metre.
+    /// Number of drops per cubic metre.
     #[must_use]
     pub fn number_density(&self) -> f64 {
         self.classes.iter().map(|class| class.density).sum()
     }
 
-    /// The drops in a picture at a time in seconds, but for those that something has stopped on their way.
+    /// Drops in a picture at a time in seconds, without those that an obstacle has stopped.
     ///
     /// # Errors
     /// As [`RainField::visible`].
@@ -142,10 +142,10 @@ impl RainField {
         Ok(visible)
     }
 
-    /// The drops in a picture at a time in seconds.
+    /// Drops in a picture at a time in seconds.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for a view that is none, or a time beyond [`LATEST_S`].
+    /// [`SimError::OutOfRange`] for an invalid view, or a time beyond [`MAX_TIME_S`].
     pub fn visible(&self, view: &View, time_s: f64) -> Result<VisibleDrops, SimError> {
         view.check()?;
         check_time(time_s)?;
@@ -165,17 +165,17 @@ impl RainField {
         Ok(VisibleDrops { drops, simulated, resolved: Resolved::of(view, least_pixels) })
     }
 
-    /// All drops in a box at a time in seconds, in an order that depends on nothing but the question.
+    /// All drops in a box at a time in seconds, in an order that depends on the query only.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for a box that is none, is farther than 10 000 km or holds more than ten million drops, or a
-    /// time beyond [`LATEST_S`].
+    /// [`SimError::OutOfRange`] for a box that is invalid, farther than 10 000 km or holds more than ten million drops, or a
+    /// time beyond [`MAX_TIME_S`].
     pub fn in_box(&self, low: DVec3, high: DVec3, time_s: f64) -> Result<Vec<FallingDrop>, SimError> {
         check_time(time_s)?;
-        let place = low.abs().max(high.abs()).max_element();
-        if !(low.is_finite() && high.is_finite() && place <= 1.0e7 && low.cmple(high).all()) {
+        let extent = low.abs().max(high.abs()).max_element();
+        if !(low.is_finite() && high.is_finite() && extent <= 1.0e7 && low.cmple(high).all()) {
             let (quantity, unit, allowed) = ("a side of the box", "m", "-1e7 to 1e7, low below high");
-            return Err(SimError::OutOfRange { quantity, found: place, unit, allowed });
+            return Err(SimError::OutOfRange { quantity, found: extent, unit, allowed });
         }
         let found = self.number_density() * (high - low).element_product();
         if found.is_nan() || found > 1.0e7 {
@@ -200,14 +200,14 @@ impl RainField {
         Ok(drops)
     }
 
-    /// A disdrometer that sees volumes: the rate, in mm/h, of the drops round a place. Of each class it takes columns
-    /// until it has seen about 2000 drops of it or 1024 columns.
+    /// Rate, in mm/h, of the drops around a position, as a volume disdrometer measures it. Of each class it uses
+    /// columns until it has seen about 2000 drops of it or 1024 columns.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for a place or a time that is none.
-    pub fn measured_rate_mm_h(&self, place: DVec3, time_s: f64) -> Result<f64, SimError> {
+    /// [`SimError::OutOfRange`] for an invalid position or time.
+    pub fn measured_rate_mm_h(&self, position: DVec3, time_s: f64) -> Result<f64, SimError> {
         check_time(time_s)?;
-        View { eye: place, ..View::default() }.check()?;
+        View { eye: position, ..View::default() }.check()?;
         let drift = Drift::new(&self.wind, time_s);
         let still = Drift::new(&Wind::default().air().clone(), 0.0);
         let flux = |class: &Class| {
@@ -215,10 +215,10 @@ impl RainField {
             let side = (2000.0 / per_column.max(1.0e-6)).sqrt().ceil().clamp(1.0, 32.0);
             let half = DVec3::new(side * class.edge, class.period, side * class.edge) * 0.5;
             // Whole columns and one whole period.
-            let corner = (place / class.edge).floor() * class.edge;
-            let middle = DVec3::new(corner.x, place.y, corner.z);
+            let corner = (position / class.edge).floor() * class.edge;
+            let middle = DVec3::new(corner.x, position.y, corner.z);
             let bounds = Bounds { low: middle - half, high: middle + half };
-            // Whole columns, wherever the wind has carried them.
+            // Whole columns, independent of their displacement by the wind.
             let [xs, zs] = class.columns(&bounds, &still);
             let columns = (xs.end() - xs.start() + 1) * (zs.end() - zs.start() + 1);
             let mut sum = 0.0;
@@ -237,7 +237,7 @@ impl RainField {
         Ok(parts.iter().sum::<f64>() * 3.6e6)
     }
 
-    /// The least diameter in pixels that leaves no more drops than the view wants.
+    /// Minimum diameter in pixels for which the view holds no more drops than it allows.
     fn affordable(&self, view: &View) -> f64 {
         let expected = |least: f64| -> f64 {
             self.classes.iter().map(|c| c.density * view.volume(view.range(c.largest, least))).sum()
@@ -245,7 +245,7 @@ impl RainField {
         let most = f64::from(view.most_drops.max(1));
         let mut least = view.least_pixels;
         while expected(least) > most {
-            // 3 % at a time: a power law of at most the third order is at the limit in a few dozen steps.
+            // 3 % at a time: a power law of at most the third order reaches the limit in a few dozen steps.
             least = (least * 1.03).max(1.0e-3);
         }
         least
@@ -299,7 +299,8 @@ impl RainField {
         (rows.into_iter().flat_map(|row| row.0).collect(), tried)
     }
 
-    /// What `make` makes of the drops of a class that are within bounds at a time; it is given their terminal speeds too.
+    /// Collects the results of `make` for the drops of a class within bounds at a time; `make` also gets their
+    /// terminal speeds.
     pub(crate) fn gathered<T: Send>(
         &self,
         class: &Class,
@@ -326,7 +327,7 @@ impl RainField {
         rows.into_iter().flatten().collect()
     }
 
-    /// Hands on the drops of a column whose height is within the bounds.
+    /// Passes on the drops of a column whose height is within the bounds.
     fn drops_of_column(
         &self,
         class: &Class,
@@ -357,7 +358,7 @@ impl RainField {
 }
 
 impl Class {
-    /// How far, m, a drop moves relative to the eye in half the time that the shutter is open, at most.
+    /// Maximum distance, m, that a drop moves relative to the eye in half the exposure.
     fn half_way(&self, view: &View, drift: &Drift) -> f64 {
         let [slow, fast] = self.speeds;
         let way = |speed: f64| view.half_way(drift.of(speed)[1] - DVec3::Y * speed);
@@ -365,7 +366,7 @@ impl Class {
         1.05 * way(slow).max(way(slow.midpoint(fast))).max(way(fast))
     }
 
-    /// Columns along x and along z whose drops the wind may have carried into a box.
+    /// Ranges of columns along x and z whose drops the wind may have carried into a box.
     fn columns(&self, bounds: &Bounds, drift: &Drift) -> [std::ops::RangeInclusive<i64>; 2] {
         let [least, most] = drift.span(self.speeds[0], self.speeds[1]);
         let cell = |x: f64| (x / self.edge).floor() as i64;
@@ -401,7 +402,7 @@ fn class_seed(seed: u64, class: u32) -> [u32; 2] {
 }
 
 pub(crate) fn check_time(time_s: f64) -> Result<(), SimError> {
-    if time_s.abs() <= LATEST_S {
+    if time_s.abs() <= MAX_TIME_S {
         return Ok(());
     }
     let (quantity, unit, allowed) = ("time", "s", "-1e6 to 1e6");

@@ -1,4 +1,4 @@
-//! The drops that a frustum holds at first, or when the eye is elsewhere altogether: the rain that is there.
+//! Initial drops of a frustum, and those after a jump of the eye: the rain at its position.
 
 use downpour_math::rng::rng_draw;
 use downpour_shaders::sim::enter::ENTER_DRAW;
@@ -17,11 +17,11 @@ use crate::volume::volume_limit;
 /// First dimension of the random numbers of counts.
 const COUNT: u32 = 28_672;
 
-/// Candidates of one piece of work.
+/// Number of candidates of one work item.
 const PIECE: usize = 1 << 12;
 
-/// All drops of the frustum of a frame, where they will be in the middle of the horizon: [`StepWorld::step_begin`] makes
-/// drops of a state of them.
+/// All drops of the frustum of a frame, at their positions in the middle of the horizon: [`StepWorld::step_begin`]
+/// turns them into drops of a state.
 ///
 /// # Errors
 /// [`SimError::Memory`].
@@ -53,7 +53,7 @@ pub(crate) fn fill(plan: &Plan, world: &StepWorld<'_>) -> Result<Vec<StepDrop>, 
     Ok(drops)
 }
 
-/// A drop, if this candidate is one.
+/// Returns a drop, if this candidate is accepted.
 fn candidate(
     plan: &Plan,
     world: &StepWorld<'_>,
@@ -62,12 +62,12 @@ fn candidate(
     [number, k]: [u32; 2],
 ) -> Option<StepDrop> {
     let frame = world.frame;
-    // The regions of what comes in leave this number of each bin free: the frustum is filled or entered in a step.
+    // The entry regions leave this number of each bin free: a step either fills or enters the frustum.
     let dimension = ENTER_DRAW + number * (VOLUME_BALL + 1);
     let words = rng_draw(frame.seed, k, frame.step, dimension);
-    let [x, y, z, share] = words.map(|word| (f64::from(word) + 0.5) / 4_294_967_296.0);
+    let [x, y, z, fraction] = words.map(|word| (f64::from(word) + 0.5) / 4_294_967_296.0);
     let offset = plan.frustum().offset(*low + (*high - *low) * DVec3::new(x, y, z)).as_vec3();
-    let bits = u32::from(bin.code(share));
+    let bits = u32::from(bin.code(fraction));
     let diameter = motion_diameter(bits);
     let speed = world.step_speed(diameter);
     if volume_limit(&frame.frustum, offset, diameter, speed) != VOLUME_INSIDE {
@@ -75,10 +75,10 @@ fn candidate(
     }
     let ahead = Vec3::from(frame.frustum.eye) + offset;
     Some(StepDrop {
-        place: ahead.to_array(),
+        position: ahead.to_array(),
         word: step_word(bits, STEP_FALLING, k & STEP_COUNT),
         velocity: [0.0; 3],
-        // More than a count holds are told apart by an earlier step.
+        // Drops beyond the maximum count are distinguished by an earlier step.
         last: frame.step.wrapping_sub(k >> (32 - STEP_COUNT_SHIFT)),
     })
 }

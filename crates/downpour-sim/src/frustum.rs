@@ -1,4 +1,4 @@
-//! The frustum of a picture with its margins, in double precision: what the shader's [`VolumeFrustum`] is made from.
+//! Frustum of a picture with its margins, in double precision: source of the shader's [`VolumeFrustum`].
 
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::sim::step::{VOLUME_PLANES, VOLUME_RADIUS};
@@ -7,16 +7,16 @@ use glam::{DMat3, DVec3, Vec3};
 use crate::view::View;
 use crate::volume::{VolumeFrustum, solid_angle};
 
-/// Planes of a frustum.
+/// Number of planes of a frustum.
 pub(crate) const PLANES: usize = VOLUME_PLANES as usize;
 
-/// The frustum of a picture with its margins.
+/// Frustum of a picture with its margins.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frustum {
     pub(crate) eye: DVec3,
     /// Right, up, forward.
     axes: [DVec3; 3],
-    /// Half the picture at distance 1, wider by what the camera turns within the horizon.
+    /// Half the picture at distance 1, widened by the rotation of the camera within the horizon.
     pub(crate) half: [f64; 2],
     /// Outward normals of right, left, top, bottom and back.
     pub(crate) normals: [DVec3; PLANES],
@@ -24,7 +24,7 @@ pub(crate) struct Frustum {
     air: DVec3,
     pub(crate) half_horizon: f64,
     half_wait: f64,
-    /// m/s, 1/s of distance, and m/s at most.
+    /// Spread of the wind: m/s, 1/s of distance, and maximum m/s.
     spread: [f64; 3],
     /// Distance at which a drop is resolved, per diameter.
     per_diameter: f64,
@@ -32,8 +32,8 @@ pub(crate) struct Frustum {
 }
 
 impl Frustum {
-    /// The frustum of a view in a wind, m/s at the eye, that leaves it by `spread` (m/s, 1/s of distance, and m/s at most). `times`: the
-    /// horizon and the longest wait, s.
+    /// Creates the frustum of a view in a wind, m/s at the eye, that deviates from it by `spread` (m/s, 1/s of
+    /// distance, and maximum m/s). `times`: horizon and longest wait, s.
     pub(crate) fn new(
         view: &View,
         least_pixels: f64,
@@ -61,12 +61,12 @@ impl Frustum {
         }
     }
 
-    /// Right, up and forward.
+    /// Unit vectors to the right, up and forward.
     pub(crate) fn axes(&self) -> [DVec3; 3] {
         self.axes
     }
 
-    /// In each plane the direction nearest to the view; in that of the back, to the right.
+    /// Direction in each plane that is nearest to the view; for the back, to the right.
     pub(crate) fn tangents(&self) -> [DVec3; PLANES] {
         let [right, _, forward] = self.axes;
         let mut tangents = self.normals.map(|n| (forward - n * n.dot(forward)).normalize_or(right));
@@ -79,12 +79,12 @@ impl Frustum {
         (diameter * self.per_diameter).min(self.far)
     }
 
-    /// Bound on the difference of the wind from that at the eye, and of what drops keep of it, m/s.
+    /// Bound on the difference of the wind, and of the velocity of drops due to it, from the wind at the eye, m/s.
     pub(crate) fn spread(&self, range: f64) -> f64 {
         (self.spread[0] + self.spread[1] * range).min(self.spread[2])
     }
 
-    /// Margin of a plane, m, for drops between two diameters and speeds: the least and the largest.
+    /// Minimum and maximum margin of a plane, m, for drops between two diameters and speeds.
     pub(crate) fn margins(&self, plane: usize, diameters: [f64; 2], speeds: [f64; 2]) -> [f64; 2] {
         let normal = self.normals[plane];
         let along = speeds.map(|speed| normal.dot(self.air) - speed * normal.y);
@@ -108,7 +108,7 @@ impl Frustum {
         solid_angle(view.half_width, view.half_height) * range * range * range / 3.0
     }
 
-    /// Volume with its margins, m^3, to some percent.
+    /// Approximate volume with its margins, m^3, to some percent.
     pub(crate) fn about_volume(&self, diameter: f64, speed: f64) -> f64 {
         let [wide, high] = self.half;
         let radius = self.reach(diameter, speed);
@@ -119,7 +119,7 @@ impl Frustum {
         inner + areas.into_iter().enumerate().map(|(k, area)| area * margin(k)).sum::<f64>()
     }
 
-    /// A box along right, up and forward, relative to the eye, that holds all drops up to a diameter and a speed.
+    /// Box along right, up and forward, relative to the eye, that holds all drops up to a diameter and a speed.
     pub(crate) fn bounds(&self, diameter: f64, speed: f64) -> [DVec3; 2] {
         let radius = self.reach(diameter, speed);
         // Slower drops may have a wider margin against the wind.
@@ -130,13 +130,13 @@ impl Frustum {
         [low, DVec3::new(side(wide, margin[0]), side(high, margin[2]), radius)]
     }
 
-    /// An offset from the eye in the world, of one along right, up and forward.
+    /// Converts an offset along right, up and forward to world space.
     pub(crate) fn offset(&self, local: DVec3) -> DVec3 {
         let [right, up, forward] = self.axes;
         DMat3::from_cols(right, up, forward) * local
     }
 
-    /// The frustum as the shader takes it, relative to `origin`.
+    /// Frustum in the layout of the shader, relative to `origin`.
     pub(crate) fn relative_to(&self, origin: DVec3) -> VolumeFrustum {
         let plane = |normal: DVec3| normal.as_vec3().extend(normal.dot(self.air) as f32).to_array();
         let eye: Vec3 = (self.eye - origin).as_vec3();
@@ -148,7 +148,7 @@ impl Frustum {
             half_wait: self.half_wait as f32,
             spread: self.spread[0] as f32,
             spread_slope: self.spread[1] as f32,
-            spread_most: self.spread[2] as f32,
+            spread_max: self.spread[2] as f32,
             range: self.per_diameter as f32,
             farthest: self.far as f32,
             unused: 0,

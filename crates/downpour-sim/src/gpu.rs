@@ -1,4 +1,4 @@
-//! The GPU halves, behind the feature `wgpu`.
+//! GPU versions, behind the feature `wgpu`.
 
 pub mod collision;
 mod error;
@@ -6,4 +6,4 @@ mod simulation;
 
 pub use collision::GpuCollisionMap;
 pub use error::GpuSimError;
-pub use simulation::{GpuMoment, GpuSimulation};
+pub use simulation::{GpuSimulation, GpuStepInput};

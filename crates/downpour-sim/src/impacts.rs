@@ -1,11 +1,11 @@
-//! Impacts of the rain in closed form, and the droplets that come back from them.
+//! Impacts of the rain in closed form, and the droplets that rebound from them.
 //!
-//! A drop that something stands in the way of has met it: its path is known, and so is where and when it met the first thing
-//! on its way from the sky. So impacts are found for any part of space and any span of time, in any order, and they are
-//! those of the drops that pictures show.
+//! The path of a drop is known, and so are the position and the time of its first hit on the way from the sky. Impacts
+//! can therefore be found for any part of space and any span of time, in any order, and they are those of the drops
+//! that pictures show.
 //!
-//! With a steady wind a path is one straight line and the impact exact; else it is cut at whole sixteenths of a second, so
-//! that an impact is some millimetres from where the wind would have had it. What moves is taken where it is now.
+//! In a steady wind a path is one straight line and the impact exact; else it is divided at whole sixteenths of a
+//! second, so that an impact is some millimetres off. Moving objects are taken at their current position.
 //!
 //! ```
 //! use downpour_bvh::Bvh;
@@ -40,28 +40,28 @@ use crate::options::Bounce;
 use crate::shelter::{Obstacles, SkyPaths, met};
 use crate::view::{Bounds, View};
 
-/// Where a path is cut, s.
+/// Interval at which a path is divided, s.
 const CUT_S: f64 = 1.0 / 16.0;
 
-/// Where the path of a droplet is cut, s.
+/// Interval at which the path of a droplet is divided, s.
 const FINE_S: f64 = 1.0 / 60.0;
 
-/// Impacts of droplets are looked for in spans of about this time, s.
+/// Approximate span of time in which impacts of droplets are searched at once, s.
 const SLICE_S: f64 = 0.125;
 
-/// The longest span of time that is looked at, s.
-const LONGEST_S: f64 = 60.0;
+/// Maximum span of time of a query, s.
+const MAX_SPAN_S: f64 = 60.0;
 
-/// Dimension of the random numbers: whether an impact sends up a droplet.
+/// Dimension of the random numbers of rebounds.
 const CHANCE: u32 = 8203;
 
-/// What tells the droplet of a drop from the drop.
+/// Difference between the id of a drop and that of its droplet.
 const DROPLET: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// A drop that meets a surface.
+/// Impact of a drop on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// Where, m.
+    /// Position, m.
     pub position: DVec3,
     /// Unit normal of the surface on the side that the drop came from.
     pub normal: Vec3,
@@ -69,19 +69,19 @@ pub struct Impact {
     pub velocity: Vec3,
     /// Volume-equivalent diameter of the drop, m.
     pub diameter: f32,
-    /// Number of the drop.
+    /// Id of the drop.
     pub id: u64,
-    /// When, s.
+    /// Time, s.
     pub time_s: f64,
 }
 
 impl RainField {
-    /// The impacts in a box within a span of time, s: after its beginning and up to its end; of drops from a diameter in m on.
-    /// Their order depends on nothing but the question.
+    /// Impacts in a box within a span of time, s, without its beginning and including its end, of drops from a
+    /// diameter in m on. Their order depends on the query only.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for a box that is none, a time beyond [`LATEST_S`](crate::field::LATEST_S), or a span that is
-    /// none or longer than a minute.
+    /// [`SimError::OutOfRange`] for an invalid box, a time beyond [`MAX_TIME_S`](crate::field::MAX_TIME_S), or an invalid span
+    /// or one longer than a minute.
     pub fn impacts(
         &self,
         obstacles: &Obstacles<'_>,
@@ -97,14 +97,13 @@ impl RainField {
         Ok(impacts)
     }
 
-    /// The droplets that impacts have sent up and that a picture shows at a time in seconds.
+    /// Droplets that rebound from impacts, as a picture shows them at a time in seconds.
     ///
-    /// Which impacts do is a matter of chance, the same for any picture. A droplet starts at the impact with the part of the
-    /// velocity that comes back, follows the wind as its size lets it, and is gone when it meets a surface or after its
-    /// longest time.
+    /// The rebound of an impact is random, the same for any picture. A droplet starts at the impact with the remaining
+    /// velocity, follows the wind according to its size, and is gone when it hits a surface or after its maximum time.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for a view that is none, or a time beyond [`LATEST_S`](crate::field::LATEST_S).
+    /// [`SimError::OutOfRange`] for an invalid view, or a time beyond [`MAX_TIME_S`](crate::field::MAX_TIME_S).
     pub fn bounced(
         &self,
         obstacles: &Obstacles<'_>,
@@ -115,17 +114,17 @@ impl RainField {
     ) -> Result<Vec<FallingDrop>, SimError> {
         view.check()?;
         check_time(time_s)?;
-        if bounce.share <= 0.0 {
+        if bounce.fraction <= 0.0 {
             return Ok(Vec::new());
         }
         let half = 0.5 * view.shutter_s;
-        let longest = f64::from(bounce.longest_s).min(LONGEST_S - view.shutter_s);
+        let longest = f64::from(bounce.longest_s).min(MAX_SPAN_S - view.shutter_s);
         let sent_up = |id: u64| {
             let [chance, ..] = rng_draw([id as u32, (id >> 32) as u32], 0, 0, CHANCE).map(rng_unit);
-            chance < bounce.share
+            chance < bounce.fraction
         };
         let sides = view.sides();
-        // In slices: what has come from far has been on its way for long, and the wind has carried all of it alike.
+        // In slices of time: within one, the wind has displaced all droplets similarly.
         let span = longest + view.shutter_s;
         let slices = (span / SLICE_S).ceil().max(1.0);
         let surfaces = Surfaces::new(obstacles);
@@ -140,7 +139,7 @@ impl RainField {
         let shown = impacts.iter().filter_map(|impact| {
             let droplet = Droplet::of(self, impact, bounce)?;
             let age = time_s - impact.time_s;
-            // One that begins later in the exposure is drawn as if it had always been on its way.
+            // A droplet that starts later in the exposure is listed as if it had always moved.
             let (position, velocity) = if age > 0.0 {
                 droplet.at(age)
             } else {
@@ -168,19 +167,19 @@ impl RainField {
         Ok(shown.collect())
     }
 
-    /// The impacts of a span of time, of each class in the box that `place` gives, of the drops that are `wanted`.
+    /// Impacts of a span of time, of each class in the box that `bounds_of` returns, of the drops that are `wanted`.
     fn impacts_of(
         &self,
         surfaces: &Surfaces<'_>,
         span_s: [f64; 2],
-        place: impl Fn(&Class) -> Option<Bounds>,
+        bounds_of: impl Fn(&Class) -> Option<Bounds>,
         wanted: impl Fn(u64) -> bool + Sync,
     ) -> Result<Vec<Impact>, SimError> {
         let obstacles = surfaces.obstacles;
         let [begin, end] = span_s;
         check_time(begin)?;
         check_time(end)?;
-        if !(begin <= end && end - begin <= LONGEST_S) {
+        if !(begin <= end && end - begin <= MAX_SPAN_S) {
             let (quantity, unit, allowed) = ("span of time", "s", "0 to 60");
             return Err(SimError::OutOfRange { quantity, found: end - begin, unit, allowed });
         }
@@ -190,8 +189,8 @@ impl RainField {
         let corners = [root.low, root.high].map(|corner| Vec3::from(corner).as_dvec3() + obstacles.origin);
         let ways = Ways::new(self, begin, end);
         let within = |class: &Class| {
-            let wide = place(class)?;
-            // Nothing is met where nothing stands.
+            let wide = bounds_of(class)?;
+            // There are no impacts without obstacles.
             let low = wide.low.max(corners[0] - 1.0e-3);
             let high = wide.high.min(corners[1] + 1.0e-3);
             low.cmple(high).all().then_some(Bounds { low, high })
@@ -231,11 +230,11 @@ impl RainField {
     }
 }
 
-/// How far droplets have come that have been on their way for some time.
+/// Displacement of droplets of some age.
 struct Travels {
-    /// Ages, s, the least not below 0.
+    /// Ages, s, the smaller not below 0.
     ages: [f64; 2],
-    /// What the wind has done to drops by the picture's time, and by the beginning of the oldest and the youngest.
+    /// Drift of drops up to the picture's time, and up to the start of the oldest and the youngest.
     drifts: [Drift; 3],
 }
 
@@ -246,7 +245,7 @@ impl Travels {
         Self { ages, drifts: [at(0.0), at(ages[1]), at(ages[0])] }
     }
 
-    /// Where droplets that a picture shows come from, of the drops of a class.
+    /// Bounds of the origins of droplets that a picture shows, of the drops of a class.
     fn origins(
         &self,
         field: &RainField,
@@ -262,13 +261,13 @@ impl Travels {
         }
         let speeds = [class.speeds[0] * 0.2 * size, field.speed.at(class.largest * size).unwrap_or(0.0)];
         let [now, oldest, youngest] = &self.drifts;
-        // What the wind makes of a drop that has always followed it.
+        // Displacement by the wind of a drop that has always followed it.
         let carried = speeds
             .iter()
             .flat_map(|&speed| [oldest, youngest].map(|then| now.of(speed)[0] - then.of(speed)[0]));
         let (low, high) = carried
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), way| (low.min(way), high.max(way)));
-        // What comes back of the drop's velocity, and the slip that a drop of another size begins with.
+        // The rebounding part of the drop's velocity, and the initial slip of a drop of another size.
         let wind = oldest.of(class.speeds[1])[1].length().max(now.of(class.speeds[1])[1].length());
         let leaves = f64::from(bounce.restitution.max(1.0 - bounce.grip)) * (class.speeds[1] + wind) + wind;
         let slowed = relaxation(speeds[1]).horizontal_s;
@@ -281,11 +280,11 @@ impl Travels {
     }
 }
 
-/// The ways of drops in a span of time.
+/// Paths of drops in a span of time.
 struct Ways {
     begin: f64,
     end: f64,
-    /// Times, from the beginning to the end, and what the wind has done to drops by then.
+    /// Times from the beginning to the end, and the drift of drops up to them.
     cuts: Vec<(f64, Drift)>,
 }
 
@@ -301,36 +300,36 @@ impl Ways {
         Self { begin, end, cuts }
     }
 
-    /// What the wind has done to drops by the end.
+    /// Drift of drops up to the end.
     fn last(&self) -> &Drift {
-        // There are two cuts at least.
+        // There are at least two cuts.
         &self.cuts[self.cuts.len() - 1].1
     }
 
-    /// What a drop of a speed has moved from a cut to the end.
+    /// Displacement of a drop of a speed from a cut to the end.
     fn moved(&self, cut: usize, speed: f64) -> DVec3 {
         let (time, drift) = &self.cuts[cut];
         self.last().of(speed)[0] - drift.of(speed)[0] - DVec3::Y * (speed * (self.end - time))
     }
 
-    /// The box in which drops would be at the end that were in a box within the time.
+    /// Bounds at the end of all drops that were in a box within the time.
     fn swept(&self, bounds: &Bounds, speeds: [f64; 2]) -> Bounds {
         let [slow, fast] = speeds;
         let all = (0..self.cuts.len())
             .flat_map(|cut| [slow, slow.midpoint(fast), fast].map(|s| self.moved(cut, s)));
         let (low, high) = all
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), way| (low.min(way), high.max(way)));
-        // Between the cuts, and between the speeds, ways are bent a little.
+        // Between the cuts, and between the speeds, paths are slightly curved.
         Bounds { low: bounds.low + low - 0.05, high: bounds.high + high + 0.05 }
     }
 
-    /// Where a drop was at the beginning.
+    /// Position of a drop at the beginning.
     fn at_begin(&self, drop: &FallingDrop, speed: f64) -> DVec3 {
         drop.position - self.moved(0, speed)
     }
 
-    /// The first that a drop meets: the hit, whose distance is a time, s, from a position relative to the obstacles' origin
-    /// with a velocity; and when it does.
+    /// First hit of a drop: the hit, whose distance is a time, s, from a position relative to the obstacles' origin
+    /// with a velocity; and its time.
     fn first_met(
         &self,
         obstacles: &Obstacles<'_>,
@@ -356,10 +355,10 @@ impl Ways {
     }
 }
 
-/// What drops meet, its triangles by their number.
+/// Surfaces of obstacles, with their triangles by number.
 struct Surfaces<'a> {
     obstacles: &'a Obstacles<'a>,
-    /// Where the triangle of a number stands, unless all stand where their number says.
+    /// Index of the triangle of each number, unless they are sorted by number.
     by_number: Option<Vec<u32>>,
 }
 
@@ -369,38 +368,38 @@ impl<'a> Surfaces<'a> {
         let in_order = (0u32..).zip(triangles).all(|(k, triangle)| triangle.index == k);
         let by_number = (!in_order).then(|| {
             let most = triangles.iter().map(|triangle| triangle.index as usize).max().unwrap_or(0);
-            let mut places = vec![0; most + 1];
+            let mut indices = vec![0; most + 1];
             for (k, triangle) in (0u32..).zip(triangles) {
-                places[triangle.index as usize] = k;
+                indices[triangle.index as usize] = k;
             }
-            places
+            indices
         });
         Self { obstacles, by_number }
     }
 
-    /// Normal of what was hit on the side that a drop of a velocity came from.
+    /// Normal of a hit surface on the side that a drop of a velocity came from.
     fn normal(&self, hit: &Hit, velocity: Vec3) -> Vec3 {
-        let place = match &self.by_number {
+        let index = match &self.by_number {
             None => Some(hit.triangle),
-            Some(places) => places.get(hit.triangle as usize).copied(),
+            Some(indices) => indices.get(hit.triangle as usize).copied(),
         };
-        let triangle = place.and_then(|place| self.obstacles.triangles.get(place as usize));
+        let triangle = index.and_then(|index| self.obstacles.triangles.get(index as usize));
         let facet = triangle.map_or(Vec3::Y, |t| Vec3::from(t.edge_1).cross(t.edge_2.into()));
         let normal = facet.normalize_or(Vec3::Y);
         if normal.dot(velocity) > 0.0 { -normal } else { normal }
     }
 }
 
-/// A droplet on its way.
+/// A droplet after its rebound.
 struct Droplet<'a> {
     field: &'a RainField,
     start: DVec3,
-    /// Velocity at first, m/s.
+    /// Initial velocity, m/s.
     leaves: DVec3,
     diameter: f64,
     speed: f64,
     begin_s: f64,
-    /// What it would do if it had always followed the wind, at the beginning: place of the air and velocity.
+    /// State at the start of a droplet that has always followed the wind: displacement of the air and velocity.
     follows: [DVec3; 2],
 }
 
@@ -417,7 +416,7 @@ impl<'a> Droplet<'a> {
         Some(droplet)
     }
 
-    /// What a drop of its size that has always followed the wind has done an age after the impact.
+    /// Motion, up to an age after the impact, of a drop of its size that has always followed the wind.
     fn followed(&self, age_s: f64) -> [DVec3; 2] {
         let at = self.field.wind.prepared(self.begin_s + age_s);
         let relaxation = relaxation(self.speed);
@@ -431,7 +430,7 @@ impl<'a> Droplet<'a> {
         ]
     }
 
-    /// Position and velocity at an age: what is left of the first slip fades, across the fall half as fast as along it.
+    /// Position and velocity at an age: the initial slip decays, along the fall twice as fast as across it.
     fn at(&self, age_s: f64) -> (DVec3, DVec3) {
         let relaxation = relaxation(self.speed);
         let times = DVec3::new(relaxation.horizontal_s, relaxation.vertical_s, relaxation.horizontal_s)
@@ -442,7 +441,7 @@ impl<'a> Droplet<'a> {
         (self.start + carried - self.follows[0] + slip * times * (1.0 - left), velocity + slip * left)
     }
 
-    /// The age at which it meets something, up to an age.
+    /// Age at which it hits something, up to an age.
     fn stopped(&self, obstacles: &Obstacles<'_>, age_s: f64) -> Option<f64> {
         let steps = (age_s / FINE_S).ceil().max(0.0) as u32;
         let mut from = self.start - obstacles.origin;

@@ -1,12 +1,13 @@
-//! Where drops come from that are in a frustum after a step and were not before: thin regions about its planes and its ball.
+//! Origins of drops that enter a frustum in a step: thin regions at its planes and its ball.
 //!
-//! The rain outside the frustum has the density of the undisturbed rain, and moves with the wind that blows there. Each step
-//! fills the regions with fresh candidates, as many as Poisson's law says, moves them as any drop, and keeps those that
-//! arrive ([`crate::enter`]). So the density within stays that of the rain whatever camera, shutter and picture do, a wind
-//! without divergence keeps it uniform, and what a vortex flings out is gone. A drop depends on nothing but the step and the
-//! number with which it came, so that the drops of a time are the same whenever the simulation began.
+//! The rain outside the frustum has the density of the undisturbed rain, and moves with the local wind. Each step
+//! fills the regions with new candidates, a Poisson number of them, moves them as any drop, and keeps those that arrive
+//! ([`crate::enter`]). The density inside therefore stays that of the rain for any motion of camera, shutter and
+//! picture; a wind without divergence keeps it uniform, and drops that a vortex throws out are gone. A drop depends
+//! only on the step and the number with which it entered, so the drops of a time do not depend on the start of the
+//! simulation.
 //!
-//! A candidate is outside a plane of the frustum by a distance that it can make in the step. The first limit that it
+//! A candidate is outside a plane of the frustum by a distance that it can move in the step. The first limit that it
 //! violates is that of its region, so that no part of space is filled twice.
 
 use downpour_math::rng::seed_words;
@@ -21,14 +22,14 @@ use crate::population::Bin;
 /// First dimension of the random numbers of candidates' counts.
 const COUNT: u32 = 24_576;
 
-/// Where the bounds are exceeded by rounding, m.
+/// Tolerance of the bounds for rounding, m.
 const SLACK_M: f64 = 1.0e-4;
 
-/// Planes beside a plane, by their positive and negative side along normal x tangent, and the half width or height of the
+/// Neighbours of a plane on its positive and negative side along normal x tangent, and the half width or height of the
 /// picture along it.
 const NEIGHBORS: [[usize; 2]; PLANES] = [[2, 3], [3, 2], [1, 0], [0, 1], [2, 3]];
 
-/// The regions of a step of `time` seconds from one frustum to the next, for each bin of sizes. `wind` is that at the eye.
+/// Regions of a step of `time` seconds from one frustum to the next, for each bin of sizes. `wind` is that at the eye.
 pub(crate) fn regions(
     before: &Frustum,
     now: &Frustum,
@@ -53,14 +54,14 @@ pub(crate) fn regions(
             }
         }
     }
-    // Marks the end of the last.
+    // Marks the end of the list.
     if first > 0 {
         list.push(EnterRegion { first, ..EnterRegion::default() });
     }
     list
 }
 
-/// The regions of a bin, each with the volume in which candidates are drawn, m^3.
+/// Regions of a bin, each with the volume in which candidates are drawn, m^3.
 fn of(
     before: &Frustum,
     now: &Frustum,
@@ -70,7 +71,7 @@ fn of(
 ) -> impl Iterator<Item = (EnterRegion, f64)> {
     let [largest, fastest] = [bin.diameters[1], bin.speeds[1]];
     let eye_moved = now.eye - before.eye;
-    // What a drop moves relative to the eye, slowest and fastest, and how far it may be from that.
+    // Motion of the slowest and the fastest drop relative to the eye, and its uncertainty.
     let moved = bin.speeds.map(|speed| (wind - DVec3::Y * speed) * time - eye_moved);
     let apart = now.spread(now.range(largest)) * time;
     let farthest = moved[0].length().max(moved[1].length()) + apart + SLACK_M;
@@ -96,14 +97,14 @@ fn of(
         let (rise, sink) = (tangent.dot(forward), -normal.dot(forward));
         let half = if k < 2 || k == PLANES - 1 { high_half } else { wide };
         let stretch = (1.0 + half * half).sqrt();
-        // Limits by the planes beside: half * depth + their distance.
+        // Limits by the neighbouring planes: half * depth + their distance.
         let depth_less = if sink > 0.0 { sink * low[k] } else { sink * high[k] };
         let [up, down] = NEIGHBORS[k].map(|beside| high[beside] * stretch - half * depth_less);
         let (mut slope, mut width, mut middle) = (half * rise, 0.5 * (up + down), 0.5 * (up - down));
         let reach = (radius * radius - low[k].max(0.0) * low[k].max(0.0)).max(0.0).sqrt();
         let [mut begin, mut end] = [-reach, reach];
         if k == PLANES - 1 {
-            // The back: as wide as right and left let it be.
+            // The back: as wide as right and left allow.
             let stretch = (1.0 + wide * wide).sqrt();
             let [right, left] = [0, 1].map(|beside| high[beside] * stretch - wide * depth_less);
             [begin, end] = [begin.max(-left), end.min(right)];
@@ -140,7 +141,7 @@ fn of(
         if radius <= least || least <= 0.0 {
             return None;
         }
-        // The least depth on the ball between the planes.
+        // The minimum depth on the ball between the planes.
         let across = high[0].max(high[1]).max(0.0) * (1.0 + wide * wide).sqrt();
         let along = high[2].max(high[3]).max(0.0) * (1.0 + high_half * high_half).sqrt();
         let a = 1.0 + wide * wide + high_half * high_half;
@@ -157,7 +158,7 @@ fn of(
             slope: lean as f32,
             ..EnterRegion::default()
         };
-        // A square about the disc of directions, and the largest radius for all.
+        // A square around the disc of directions, and the largest radius for all.
         Some((region, 8.0 * lean * radius * radius * (radius - least)))
     };
     (0..PLANES).filter_map(plane).chain(std::iter::once_with(ball).flatten())

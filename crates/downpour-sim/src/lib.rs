@@ -1,13 +1,13 @@
-//! Where the drops of a rain are.
+//! Positions of the drops of a rain.
 //!
-//! - [`field`]: rain in closed form, in still air or in a wind that is the same everywhere: any place, any time, the same
-//!   drops from the same seed, but for those that something has stopped ([`shelter`]);
-//! - [`impacts`]: where and when its drops meet what stands there, and the droplets that come back;
-//! - [`simulation`]: rain step by step in a volume that follows the camera: any wind, bounces, impacts; on a GPU as well
-//!   (`gpu`, feature `wgpu`);
-//! - [`collision`]: what stops its drops: a map of the surfaces that the rain meets;
-//! - [`motion`], [`volume`], [`step`], [`enter`]: what a step is made of;
-//! - [`view`]: what a camera can resolve; [`resolved`]: which drops a list for a picture holds.
+//! - [`field`]: rain in closed form, in still air or in a uniform wind: at any position and time the same drops from
+//!   the same seed, without those that obstacles have stopped ([`shelter`]);
+//! - [`impacts`]: positions and times of its impacts, and the droplets that rebound;
+//! - [`simulation`]: rain step by step in a volume that follows the camera: any wind, bounces, impacts; on a GPU as
+//!   well (`gpu`, feature `wgpu`);
+//! - [`collision`]: collision map of the surfaces that its drops hit;
+//! - [`motion`], [`volume`], [`step`], [`enter`]: parts of a step;
+//! - [`view`]: drops that a camera can resolve; [`resolved`]: limits of the list of drops for a picture.
 //!
 //! Units are SI; rates are in mm/h where the name says so. Axes are those of glTF: right-handed, +Y up.
 
@@ -40,7 +40,7 @@ pub mod volume;
 
 pub use error::SimError;
 
-/// The examples of the README, as tests.
+/// Compiles the examples of the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

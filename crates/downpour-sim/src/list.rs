@@ -1,7 +1,8 @@
-//! The drops of a state that a picture shows: where they are at the picture's time, and when while its shutter is open.
+//! Drops of a state that a picture shows: their positions at the picture's time, and the part of the exposure in which
+//! they exist.
 //!
-//! A drop goes on from the state at its velocity. One that something stops while the shutter is open is listed with the time
-//! at which it is, and so is the droplet that comes back. Nothing is stored: the next step says the same again.
+//! A drop moves from the state at its velocity. One that is stopped while the shutter is open is listed with the time
+//! at which it exists, and so is the droplet that rebounds. Nothing is stored: the next step computes the same.
 
 use downpour_math::rng::seed_words;
 use downpour_shaders::sim::collision::COLLISION_SURFACE;
@@ -17,24 +18,24 @@ use crate::motion::speed_of;
 use crate::motion::{motion_bounce, motion_diameter, motion_relax};
 use crate::options::SimVolume;
 use crate::plan::Plan;
-use crate::population::box_centre;
+use crate::population::box_center;
 use crate::step::{
     StepDrop, bounces, step_column, step_count, step_image, step_kind, step_pack, step_shown, step_word,
 };
 use crate::view::View;
 
-/// A question for the drops of a picture.
+/// Query for the drops of a picture.
 pub(crate) struct Listing<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) speeds: &'a [f32],
     pub(crate) view: &'a View,
-    /// From the state to the picture's time, s.
+    /// Time from the state to the picture, s.
     pub(crate) after_s: f64,
-    /// What stops drops.
+    /// Collision map.
     pub(crate) map: Option<&'a CollisionMap>,
 }
 
-/// The drops that a picture can show.
+/// Drops that a picture can show.
 pub(crate) fn listed(listing: &Listing<'_>, drops: &[StepDrop]) -> VisibleDrops {
     let sides = listing.view.sides();
     let shown = |(number, drop): (usize, &StepDrop)| listing.shown(number as u32, drop, &sides);
@@ -46,7 +47,7 @@ pub(crate) fn listed(listing: &Listing<'_>, drops: &[StepDrop]) -> VisibleDrops 
 }
 
 impl Listing<'_> {
-    /// A drop and the droplet that comes back of it, where they are in the picture.
+    /// A drop and its rebounding droplet, at their positions in the picture.
     fn shown(
         &self,
         number: u32,
@@ -60,7 +61,7 @@ impl Listing<'_> {
         let (view, after) = (self.view, self.after_s);
         let half = 0.5 * view.shutter_s;
         let velocity = Vec3::from(drop.velocity);
-        let (word, place) = self.there(number, drop, velocity);
+        let (word, here) = self.there(number, drop, velocity);
         if step_kind(word) == STEP_HIDDEN {
             return [None, None].into_iter().flatten();
         }
@@ -71,14 +72,14 @@ impl Listing<'_> {
             let radius = f64::from(VOLUME_RADIUS * diameter);
             view.shows(sides, position, velocity.as_dvec3(), radius, range, part).then_some(position)
         };
-        if seen(place, velocity, diameter, [-half, half]).is_none() {
+        if seen(here, velocity, diameter, [-half, half]).is_none() {
             return [None, None].into_iter().flatten();
         }
         let hit = self.map.and_then(|map| {
-            let [from, to] = [-after, half].map(|time| place + velocity * time as f32);
+            let [from, to] = [-after, half].map(|time| here + velocity * time as f32);
             map.find(from, to)
         });
-        let until = hit.map_or(f64::INFINITY, |hit| f64::from(hit.share) * (after + half) - after);
+        let until = hit.map_or(f64::INFINITY, |hit| f64::from(hit.fraction) * (after + half) - after);
         let kind_of = |kind: u32| if kind == STEP_BOUNCED { DropKind::Bounced } else { DropKind::Falling };
         let listed = |at: Vec3, velocity: Vec3, word: u32, present: [f64; 2]| {
             let diameter = step_shown(word, self.plan.options.bounce.size);
@@ -95,28 +96,28 @@ impl Listing<'_> {
             drop.position += (velocity * drop.seen_s()).as_dvec3();
             Some(drop)
         };
-        let itself = listed(place, velocity, word, [f64::NEG_INFINITY, until]);
+        let itself = listed(here, velocity, word, [f64::NEG_INFINITY, until]);
         let back = hit.and_then(|hit| {
-            let (at, velocity, word) = self.back(&hit, number, drop.last, word, place, velocity, until)?;
+            let (at, velocity, word) = self.back(&hit, number, drop.last, word, here, velocity, until)?;
             listed(at, velocity, word, [until, f64::INFINITY])
         });
         [itself, back].into_iter().flatten()
     }
 
-    /// The word and the position of a drop at the picture's time; in a box it may have come in anew.
+    /// Word and position of a drop at the picture's time; in a box it may have re-entered.
     fn there(&self, number: u32, drop: &StepDrop, velocity: Vec3) -> (u32, Vec3) {
-        let place = Vec3::from(drop.place) + velocity * self.after_s as f32;
-        let SimVolume::Box { size_m } = self.plan.options.volume else { return (drop.word, place) };
+        let here = Vec3::from(drop.position) + velocity * self.after_s as f32;
+        let SimVolume::Box { size_m } = self.plan.options.volume else { return (drop.word, here) };
         let size = DVec3::from(size_m);
-        let centre = box_centre(self.view, size) - self.plan.origin();
-        let images = |at: DVec3| ((at - centre) / size + 0.5).floor();
-        let away = images(place.as_dvec3());
+        let center = box_center(self.view, size) - self.plan.origin();
+        let images = |at: DVec3| ((at - center) / size + 0.5).floor();
+        let away = images(here.as_dvec3());
         if away == DVec3::ZERO {
-            return (drop.word, place);
+            return (drop.word, here);
         }
         let count = step_count(drop.word);
         let mut image = step_image(count, step_pack(away.as_vec3()));
-        let mut at = place.as_dvec3() - size * away;
+        let mut at = here.as_dvec3() - size * away;
         if away.y != 0.0 {
             let seed = seed_words(self.plan.options.seed);
             let column = |image: u32| step_column(seed, number, image, size.as_vec3()).as_dvec2();
@@ -132,8 +133,8 @@ impl Listing<'_> {
         (step_word(drop.word & STEP_DIAMETER, kind, image), at)
     }
 
-    /// The droplet that comes back from a surface: its position at the picture's time if it had always been on its way, its
-    /// velocity and its word.
+    /// Droplet that rebounds from a surface: its position at the picture's time if it had always moved, its velocity
+    /// and its word.
     #[expect(clippy::too_many_arguments, reason = "what is known of a drop and of its impact")]
     fn back(
         &self,
@@ -141,7 +142,7 @@ impl Listing<'_> {
         number: u32,
         last: u32,
         word: u32,
-        place: Vec3,
+        start: Vec3,
         velocity: Vec3,
         until: f64,
     ) -> Option<(Vec3, Vec3, u32)> {
@@ -149,12 +150,12 @@ impl Listing<'_> {
         let (bits, count) = (word & STEP_DIAMETER, step_count(word));
         let key = if self.plan.is_open() { [bits | count << STEP_KIND, last] } else { [number, count] };
         let falls = step_kind(word) == STEP_FALLING && hit.kind == COLLISION_SURFACE;
-        if !(falls && bounces(seed_words(options.seed), key, options.bounce.share)) {
+        if !(falls && bounces(seed_words(options.seed), key, options.bounce.fraction)) {
             return None;
         }
-        let at = place + velocity * until as f32 + hit.normal * STEP_CLEAR;
+        let at = start + velocity * until as f32 + hit.normal * STEP_CLEAR;
         let leaves = motion_bounce(velocity, hit.normal, options.bounce.restitution, options.bounce.grip);
-        // Half of what is left of the exposure slows it down.
+        // Half of the remaining exposure slows it down.
         let left = (0.5 * (0.5 * self.view.shutter_s - until)).max(0.0) as f32;
         let speed = speed_of(self.speeds, motion_diameter(bits) * options.bounce.size);
         let air = velocity + Vec3::Y * speed_of(self.speeds, motion_diameter(bits));
@@ -164,7 +165,7 @@ impl Listing<'_> {
         Some((at - slowed * until as f32, slowed, step_word(bits, STEP_BOUNCED, count)))
     }
 
-    /// Number of a drop: no other has it, and it keeps it as long as it is on its way.
+    /// Id of a drop: unique, and constant while the drop exists.
     fn id(&self, number: u32, word: u32, last: u32) -> u64 {
         let bounced = u32::from(step_kind(word) == STEP_BOUNCED);
         let [high, low] = if self.plan.is_open() {

@@ -1,8 +1,8 @@
-//! How a drop moves in the wind during a step, and how it bounces. Twin of `shaders/wgsl/sim/motion.wgsl`.
+//! Motion of a drop in the wind during a step, and its bounce. Twin of `shaders/wgsl/sim/motion.wgsl`.
 //!
-//! The slip between drop and air relaxes: across the fall with v / g, along it with v / 2g, v the terminal speed
-//! ([`downpour_drop::fall_speed::relaxation`]). With constant wind a step of any length is exact. Rousseau 2008 instead
-//! averages the velocity with the wind, once a step, so that its drops depend on the frame rate.
+//! The slip between drop and air relaxes: across the fall with v / g, along it with v / 2g, where v is the terminal
+//! speed ([`downpour_drop::fall_speed::relaxation`]). In a constant wind a step of any length is exact. Rousseau 2008
+//! instead averages the velocity with the wind, once per step, so that its drops depend on the frame rate.
 
 use downpour_drop::fall_speed::{TerminalSpeed, fall_speed_relaxation};
 use downpour_math::ops;
@@ -11,12 +11,12 @@ use downpour_shaders::sim::step::{
 };
 use glam::Vec3;
 
-/// What a step does.
+/// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionStep {
     /// Velocity after the step, m/s.
     pub velocity: Vec3,
-    /// What the drop moves, m.
+    /// Displacement of the drop, m.
     pub displacement: Vec3,
 }
 
@@ -26,13 +26,13 @@ pub fn motion_diameter(bits: u32) -> f32 {
     bits as f32 * MOTION_DIAMETER_STEP
 }
 
-/// A diameter in 16 bits, to the nearest.
+/// Diameter in 16 bits, to nearest.
 #[must_use]
 pub fn motion_diameter_bits(diameter: f32) -> u32 {
     (diameter / MOTION_DIAMETER_STEP + 0.5).clamp(0.0, 65_535.0) as u32
 }
 
-/// Where a diameter is in the table of terminal speeds: between this entry and the next.
+/// Index of a diameter in the table of terminal speeds: between this entry and the next.
 #[must_use]
 pub fn motion_table_entry(diameter: f32) -> u32 {
     let position = (diameter * MOTION_TABLE_PER_METRE).clamp(0.0, MOTION_TABLE_LAST as f32);
@@ -43,11 +43,11 @@ pub fn motion_table_entry(diameter: f32) -> u32 {
 #[must_use]
 pub fn motion_table_speed(lower: f32, upper: f32, diameter: f32) -> f32 {
     let position = (diameter * MOTION_TABLE_PER_METRE).clamp(0.0, MOTION_TABLE_LAST as f32);
-    let share = position - motion_table_entry(diameter) as f32;
-    lower + (upper - lower) * share
+    let fraction = position - motion_table_entry(diameter) as f32;
+    lower + (upper - lower) * fraction
 }
 
-/// The table of terminal speeds, m/s. Beyond the law's range it keeps the last speed.
+/// Table of terminal speeds, m/s. Beyond the law's range it keeps the last speed.
 #[must_use]
 pub fn motion_table(law: &TerminalSpeed) -> Vec<f32> {
     let mut speeds = Vec::with_capacity(MOTION_TABLE_LAST as usize + 1);
@@ -60,7 +60,7 @@ pub fn motion_table(law: &TerminalSpeed) -> Vec<f32> {
     speeds
 }
 
-/// Velocity of a drop that has come to rest in the air about it.
+/// Velocity of a drop that is at rest in the surrounding air.
 #[must_use]
 pub fn motion_settled(wind: Vec3, speed: f32) -> Vec3 {
     Vec3::new(wind.x, wind.y - speed, wind.z)
@@ -79,15 +79,15 @@ pub fn motion_relax(velocity: Vec3, wind: Vec3, speed: f32, time: f32) -> Motion
     MotionStep { velocity: settled + slip * stay, displacement: settled * time + slip * reach }
 }
 
-/// A step as Rousseau 2008, 5.1.2: the mean of the velocity and what the air and gravity would make of it.
+/// A step as Rousseau 2008, 5.1.2: the mean of the velocity and its equilibrium with air and gravity.
 #[must_use]
 pub fn motion_average(velocity: Vec3, wind: Vec3, speed: f32, time: f32) -> MotionStep {
     let mean = 0.5 * (velocity + motion_settled(wind, speed));
     MotionStep { velocity: mean, displacement: mean * time }
 }
 
-/// The velocity after a bounce off a surface with unit normal `normal`: of the part along the normal the share
-/// `restitution` comes back, of the rest the share `grip` is lost.
+/// Velocity after a bounce off a surface with unit normal `normal`: the fraction `restitution` of the normal component
+/// is reflected, the fraction `grip` of the tangential component is lost.
 #[must_use]
 pub fn motion_bounce(velocity: Vec3, normal: Vec3, restitution: f32, grip: f32) -> Vec3 {
     let into = velocity.dot(normal);
@@ -127,7 +127,7 @@ mod tests {
         }
     }
 
-    /// Constant wind: many short steps are one long step, and both the exponential law.
+    /// Constant wind: many short steps are one long step, and both agree with the exponential law.
     #[test]
     fn steps_of_any_length_agree() {
         let (wind, speed) = (Vec3::new(7.0, 0.5, -3.0), 6.5);

@@ -3,22 +3,22 @@
 use crate::SimError;
 use crate::step::StepCaught;
 
-/// Drops of one piece of work.
+/// Number of drops of one work item.
 pub(crate) const PIECE: usize = 1 << 14;
 
-/// The most drops that a word can number.
+/// Maximum number of drops that a word can number.
 pub(crate) const MAX_DROPS: u64 = 1 << 30;
 
-/// The most drops that are ever made: 8.5 GiB of them.
+/// Maximum number of drops in memory: 8.5 GiB of them.
 pub(crate) const MAX_DROPS_IN_MEMORY: u64 = 1 << 28;
 
 /// The part of space that is simulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum SimVolume {
-    /// What the picture shows while the shutter is open, each size up to the distance at which it is resolved (after
-    /// Im & Sung 2022, 3.A and B, with the density of the rain): drops come in from the rain around it, and are gone when
-    /// they leave or something stops them.
+    /// The view of the picture while the shutter is open, each size up to the distance at which it is resolved (after
+    /// Im & Sung 2022, 3.A and B, with the density of the rain): drops enter from the surrounding rain, and are gone
+    /// when they leave or hit something.
     #[default]
     View,
     /// A periodic box that follows eye and view (Rousseau 2006, 7). Edges 1 to 1000 m.
@@ -26,22 +26,22 @@ pub enum SimVolume {
         /// Edges, m.
         size_m: [f64; 3],
     },
-    /// The view of Im & Sung 2022 with their sampling: dense about the middle, and random again after each way out.
+    /// The view of Im & Sung 2022 with their sampling: dense near the middle, and random again after each exit.
     ImSung,
-    /// A box round the eye; drops begin at its top, wherever the eye is then (in the manner of S. Tariq, "Rain", 2007, as
-    /// Im & Sung compare with it). Edges 1 to 1000 m.
+    /// A box around the eye; drops start at its top, wherever the eye is then (after S. Tariq, "Rain", 2007, as Im &
+    /// Sung compare with it). Edges 1 to 1000 m.
     Tariq {
         /// Edges, m.
         size_m: [f64; 3],
     },
-    /// An upright cylinder that stands in the world (in the manner of C. Creus and G. Patow, "R4: realistic rain
-    /// rendering in realtime", 2013, as Im & Sung compare with it).
+    /// An upright cylinder, fixed in the world (after C. Creus and G. Patow, "R4: realistic rain rendering in
+    /// realtime", 2013, as Im & Sung compare with it).
     Cylinder {
-        /// Middle of the base, m.
+        /// Center of the base, m.
         base_m: [f64; 3],
-        /// 0.5 to 1000 m.
+        /// Radius, 0.5 to 1000 m.
         radius_m: f64,
-        /// 1 to 1000 m.
+        /// Height, 1 to 1000 m.
         height_m: f64,
     },
 }
@@ -56,34 +56,34 @@ pub enum Drag {
     Rousseau2008,
 }
 
-/// Rebound of drops that meet a surface.
+/// Rebound of drops that hit a surface.
 ///
-/// The default lets a tenth of the impacts send up a droplet, of which the papers say little: "a low-motion quasi-spherical
-/// refractive drop". 1 for `share` is Rousseau 2008.
+/// By default a tenth of the impacts produce a droplet, of which the papers say little: "a low-motion quasi-spherical
+/// refractive drop". 1 for `fraction` is Rousseau 2008.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounce {
-    /// Share of impacts after which a drop comes back, 0 to 1.
-    pub share: f32,
-    /// Share of the speed along the normal that comes back, 0 to 1.
+    /// Fraction of impacts that rebound, 0 to 1.
+    pub fraction: f32,
+    /// Fraction of the normal speed that is reflected, 0 to 1.
     pub restitution: f32,
-    /// Share of the speed along the surface that is lost, 0 to 1.
+    /// Fraction of the tangential speed that is lost, 0 to 1.
     pub grip: f32,
-    /// Diameter of what comes back, in that of the drop, 0.05 to 1.
+    /// Diameter of the droplet relative to that of the drop, 0.05 to 1.
     pub size: f32,
-    /// After this time it is gone, 0.01 to 10 s.
+    /// Maximum time of the droplet, 0.01 to 10 s.
     pub longest_s: f32,
 }
 
 impl Default for Bounce {
     fn default() -> Self {
-        Self { share: 0.1, restitution: 0.25, grip: 0.7, size: 0.25, longest_s: 1.0 }
+        Self { fraction: 0.1, restitution: 0.25, grip: 0.7, size: 0.25, longest_s: 1.0 }
     }
 }
 
-/// A level rectangle that measures what falls through it.
+/// A horizontal rectangle that measures the rain through it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gauge {
-    /// m.
+    /// Height, m.
     pub height_m: f64,
     /// Lower x and z, m.
     pub low_m: [f64; 2],
@@ -92,7 +92,7 @@ pub struct Gauge {
 }
 
 impl Gauge {
-    /// The rate, mm/h, of a volume in units of [`StepCaught`] that was caught in a time.
+    /// Rate, mm/h, of a volume in units of [`StepCaught`] that was caught in a time.
     #[must_use]
     pub fn rate_mm_h(&self, caught: &StepCaught, time_s: f64) -> f64 {
         let area = (self.high_m[0] - self.low_m[0]) * (self.high_m[1] - self.low_m[1]);
@@ -100,36 +100,36 @@ impl Gauge {
     }
 }
 
-/// A simulation's choices.
+/// Options of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationOptions {
-    /// Volume.
+    /// Simulated volume.
     pub volume: SimVolume,
-    /// Same seed, same drops.
+    /// Random seed; the same seed gives the same drops.
     pub seed: u64,
-    /// 1 to 2^28. A view leaves out drops that are small on the picture, other volumes small drops, so that no more are
-    /// expected.
+    /// Maximum expected number of drops, 1 to 2^28. A view leaves out drops that are small on the picture, other
+    /// volumes small drops.
     pub most_drops: u32,
     /// Number of the first step: steps of the same number draw the same random numbers.
     pub first_step: u32,
-    /// The longest time for which the shutter of a picture is open, s, 0 to 10; of a view.
+    /// Maximum exposure of a picture, s, 0 to 10; for a view.
     pub shutter_s: f64,
-    /// The longest time from a state to the opening of the shutter of a picture of it, s, 0 to 1; of a view.
+    /// Maximum time from a state to the opening of the shutter of a picture of it, s, 0 to 1; for a view.
     pub wait_s: f64,
-    /// A drop that has been in a view for so long is taken out, 0.1 to 1000 s: few are, in an updraft.
+    /// Age at which a drop is removed from a view, 0.1 to 1000 s: only a few in an updraft reach it.
     pub oldest_s: f64,
     /// Response of drops to the wind.
     pub drag: Drag,
-    /// Rebound of drops that meet a surface.
+    /// Rebound of drops that hit a surface.
     pub bounce: Bounce,
-    /// Impacts that are noted in a step; the others are counted.
-    pub most_events: u32,
-    /// Measures what falls through it.
+    /// Maximum number of impacts recorded per step; the others are only counted.
+    pub max_events: u32,
+    /// Rain gauge.
     pub gauge: Option<Gauge>,
 }
 
 impl Default for SimulationOptions {
-    /// Two million drops in view; 65 536 impacts a step.
+    /// Two million drops in view; 65 536 impacts per step.
     fn default() -> Self {
         Self {
             volume: SimVolume::View,
@@ -141,7 +141,7 @@ impl Default for SimulationOptions {
             oldest_s: 30.0,
             drag: Drag::Relaxation,
             bounce: Bounce::default(),
-            most_events: 1 << 16,
+            max_events: 1 << 16,
             gauge: None,
         }
     }
@@ -167,8 +167,8 @@ impl SimulationOptions {
                 }
             }
             SimVolume::Cylinder { base_m, radius_m, height_m } => {
-                for place in base_m {
-                    within("place of the rain cylinder", place, "m", -1.0e7..=1.0e7, "-1e7 to 1e7")?;
+                for position in base_m {
+                    within("position of the rain cylinder", position, "m", -1.0e7..=1.0e7, "-1e7 to 1e7")?;
                 }
                 within("radius of the rain cylinder", radius_m, "m", 0.5..=1000.0, "0.5 to 1000")?;
                 within("height of the rain cylinder", height_m, "m", 1.0..=1000.0, "1 to 1000")?;
@@ -182,15 +182,15 @@ impl SimulationOptions {
         within("time of the shutter", self.shutter_s, "s", 0.0..=10.0, "0 to 10")?;
         within("time from a state to the shutter's opening", self.wait_s, "s", 0.0..=1.0, "0 to 1")?;
         within("time of a drop in view", self.oldest_s, "s", 0.1..=1000.0, "0.1 to 1000")?;
-        let Bounce { share, restitution, grip, size, longest_s } = self.bounce;
-        within("share of impacts that bounce", share.into(), "", 0.0..=1.0, "0 to 1")?;
+        let Bounce { fraction, restitution, grip, size, longest_s } = self.bounce;
+        within("fraction of impacts that bounce", fraction.into(), "", 0.0..=1.0, "0 to 1")?;
         within("restitution", restitution.into(), "", 0.0..=1.0, "0 to 1")?;
         within("grip", grip.into(), "", 0.0..=1.0, "0 to 1")?;
         within("size of a bounced drop", size.into(), "", 0.05 - 1.0e-6..=1.0, "0.05 to 1")?;
         within("time of a bounced drop", longest_s.into(), "s", 0.01 - 1.0e-6..=10.0, "0.01 to 10")?;
         if let Some(Gauge { height_m, low_m, high_m }) = self.gauge {
-            for place in [height_m, low_m[0], low_m[1], high_m[0], high_m[1]] {
-                within("place of the gauge", place, "m", -1.0e7..=1.0e7, "-1e7 to 1e7")?;
+            for position in [height_m, low_m[0], low_m[1], high_m[0], high_m[1]] {
+                within("position of the gauge", position, "m", -1.0e7..=1.0e7, "-1e7 to 1e7")?;
             }
             let edge = (high_m[0] - low_m[0]).min(high_m[1] - low_m[1]);
             within("edge of the gauge", edge, "m", 1.0e-3..=1.0e4, "0.001 to 1e4")?;

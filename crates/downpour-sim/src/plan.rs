@@ -1,4 +1,4 @@
-//! What all drops share in each step, made from what the camera does: the one source of frames for the CPU and the GPU.
+//! Frames of the steps, from the motion of the camera: the common source for the CPU and the GPU.
 
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::relaxation;
@@ -16,41 +16,41 @@ use crate::enter::EnterRegion;
 use crate::frustum::{Frustum, PLANES};
 use crate::inflow::regions;
 use crate::options::{Drag, SimVolume, SimulationOptions};
-use crate::population::{Bin, affordable_pixels, bins, box_centre, reserve};
+use crate::population::{Bin, affordable_pixels, bins, box_center, reserve};
 use crate::resolved::{Region, Resolved};
 use crate::step::{StepFrame, step_pack};
 use crate::view::View;
 use crate::volume::VolumeEye;
 
-/// The longest step, s: longer times are cut.
-const LONGEST_STEP_S: f64 = 1.0 / 30.0;
+/// Maximum step, s: longer times are divided.
+const MAX_STEP_S: f64 = 1.0 / 30.0;
 
-/// The times that can be asked for at once, s.
+/// Range of times of one call, s.
 const TIMES_S: std::ops::RangeInclusive<f64> = 1.0e-5..=1.0;
 
-/// How far the velocity that drops keep of a wind leaves it, m/s, though the wind is the same everywhere.
+/// Maximum lag of the drops' velocity in a uniform wind, m/s.
 const LAG_M_S: f64 = 0.05;
 
-/// What drops keep of a wind that differs from place to place is that of so far before, m.
+/// Distance that the velocity of drops lags behind in a wind that varies in space, m.
 const BEFORE_M: f64 = 2.0;
 
-/// In a wind that does not change.
+/// Lags in a constant wind.
 pub(crate) const STILL_LAGS: Lags = [[0.0; 4]; STEP_LAGS as usize];
 
-/// By how much drops lag behind a wind that changes, m/s, for speeds of 0, 1, 2, ... m/s.
+/// Lag of drops behind a changing wind, m/s, for speeds of 0, 1, 2, ... m/s.
 pub(crate) type Lags = [[f32; 4]; STEP_LAGS as usize];
 
-/// What the air does about the eye.
+/// Air around the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AirAtEye {
-    /// Where there is no field, and at the eye, m/s.
+    /// Wind without a field, and at the eye, m/s.
     pub(crate) wind: Vec3,
-    /// How far it leaves that: per m of distance, 1/s, and at most, m/s.
+    /// Bounds on the deviation from it: per m of distance, 1/s, and in total, m/s.
     pub(crate) spread: [f32; 2],
     pub(crate) lags: Lags,
 }
 
-/// By how much drops lag behind the uniform part of a wind.
+/// Lag of drops behind the uniform part of a wind.
 pub(crate) fn lags(air: Option<&UniformWindAt<'_>>) -> Lags {
     let Some(air) = air else { return STILL_LAGS };
     std::array::from_fn(|speed| {
@@ -62,15 +62,15 @@ pub(crate) fn lags(air: Option<&UniformWindAt<'_>>) -> Lags {
     })
 }
 
-/// A step: its frame, and the regions that drops come from.
+/// A step: its frame, and the regions from which drops enter.
 #[derive(Clone, Debug)]
 pub(crate) struct Turn {
     pub(crate) frame: StepFrame,
-    /// With one that marks their end; empty where nothing comes in.
+    /// Regions, with one that marks their end; empty if nothing enters.
     pub(crate) regions: Vec<EnterRegion>,
 }
 
-/// Makes the frames of a simulation.
+/// Source of the frames of a simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub(crate) options: SimulationOptions,
@@ -81,12 +81,12 @@ pub(crate) struct Plan {
     frustum: Frustum,
     origin: DVec3,
     step: u32,
-    /// How long the last step was, s.
+    /// Duration of the last step, s.
     time_s: f64,
 }
 
 impl Plan {
-    /// The plan of a rain; drops are not made by it.
+    /// Creates the plan of a rain, without its drops.
     pub(crate) fn new(
         rain: &DropSizeDistribution,
         options: &SimulationOptions,
@@ -114,11 +114,11 @@ impl Plan {
             frustum,
             origin,
             step,
-            time_s: LONGEST_STEP_S,
+            time_s: MAX_STEP_S,
         })
     }
 
-    /// The view of now.
+    /// Current view.
     pub(crate) fn view(&self) -> &View {
         &self.view
     }
@@ -131,13 +131,13 @@ impl Plan {
         self.origin
     }
 
-    /// The farthest distance at which a drop of a view is resolved, m.
+    /// Maximum distance at which a drop of a view is resolved, m.
     pub(crate) fn farthest(&self, view: &View) -> f64 {
         let largest = self.bins.last().map_or(0.0, |bin| bin.diameters[1]);
         view.range(largest, self.least_pixels)
     }
 
-    /// Whether drops come and go, and are no fixed number.
+    /// True if drops enter and leave, so that their number varies.
     pub(crate) fn is_open(&self) -> bool {
         self.options.volume == SimVolume::View
     }
@@ -147,14 +147,14 @@ impl Plan {
         self.bins.iter().map(|bin| bin.sizes).collect()
     }
 
-    /// Drops that a frustum holds, about.
+    /// Expected number of drops of a frustum.
     #[cfg(feature = "wgpu")]
     pub(crate) fn expected(&self) -> f64 {
         let of = |bin: &Bin| bin.density * self.frustum.about_volume(bin.diameters[1], bin.speeds[1]);
         self.bins.iter().map(of).sum()
     }
 
-    /// Number of the step in which something happens so long after the state, s.
+    /// Number of the step at a time after the state, s.
     pub(crate) fn step_after(&self, time_s: f64) -> u32 {
         self.step.wrapping_add(1).wrapping_add((time_s / self.time_s).max(0.0) as u32)
     }
@@ -165,7 +165,7 @@ impl Plan {
             SimVolume::View => Region::Everywhere,
             SimVolume::Box { size_m } => {
                 let size = DVec3::from(size_m);
-                Region::Box { center: box_centre(view, size), size }
+                Region::Box { center: box_center(view, size), size }
             }
             SimVolume::ImSung => {
                 let radius = 0.5 * self.view.far;
@@ -179,7 +179,7 @@ impl Plan {
         Resolved { least_diameter: self.least_diameter, region, ..Resolved::of(view, self.least_pixels) }
     }
 
-    /// The steps of a time in which the camera comes to `view`: one, or as many as the time is too long for.
+    /// Steps of a time in which the camera moves to `view`: one, or several if the time is too long.
     pub(crate) fn turns(
         &mut self,
         time_s: f64,
@@ -192,7 +192,7 @@ impl Plan {
             return Err(SimError::OutOfRange { quantity, found: time_s, unit, allowed });
         }
         check(view, origin)?;
-        let steps = (time_s / LONGEST_STEP_S).ceil().max(1.0);
+        let steps = (time_s / MAX_STEP_S).ceil().max(1.0);
         (0..steps as u32).map(|_| self.turn(time_s / steps, view, origin, air)).collect()
     }
 
@@ -243,12 +243,12 @@ impl Plan {
         Ok(Turn { frame, regions: list })
     }
 
-    /// The frame of a step in which no time passes.
+    /// Frame of a step of duration 0.
     pub(crate) fn standing(&self, air: AirAtEye) -> StepFrame {
         let Self { options, view, frustum, origin, .. } = self;
-        let (volume, size, centre) = match options.volume {
+        let (volume, size, center) = match options.volume {
             SimVolume::Box { size_m } => {
-                (STEP_VOLUME_BOX, DVec3::from(size_m), box_centre(view, DVec3::from(size_m)))
+                (STEP_VOLUME_BOX, DVec3::from(size_m), box_center(view, DVec3::from(size_m)))
             }
             SimVolume::View => (STEP_VOLUME_VIEW, DVec3::ONE, view.eye),
             SimVolume::ImSung => (STEP_VOLUME_AREA, DVec3::ONE, view.eye),
@@ -266,7 +266,7 @@ impl Plan {
             count: 0,
             size: size.as_vec3().to_array(),
             first: 0,
-            centre: (centre - origin).as_vec3().to_array(),
+            center: (center - origin).as_vec3().to_array(),
             volume,
             wind: air.wind.to_array(),
             time: 0.0,
@@ -275,8 +275,8 @@ impl Plan {
             elsewhere: 0,
             farthest: view.far as f32,
             average: (options.drag == Drag::Rousseau2008).into(),
-            events: options.most_events,
-            bounce: options.bounce.share,
+            events: options.max_events,
+            bounce: options.bounce.fraction,
             restitution: options.bounce.restitution,
             grip: options.bounce.grip,
             bounced_size: options.bounce.size,
@@ -313,7 +313,7 @@ fn frustum(view: &View, least_pixels: f64, air: AirAtEye, times: [f64; 2]) -> Fr
     Frustum::new(view, least_pixels, air.wind.as_dvec3(), spread, times)
 }
 
-/// Whether a view and an origin are such that single precision can hold what is about the eye.
+/// Checks that single precision can represent the surroundings of the eye of a view, for an origin.
 fn check(view: &View, origin: DVec3) -> Result<(), SimError> {
     view.check()?;
     let found = (view.eye - origin).abs().max_element();

@@ -1,20 +1,20 @@
-//! How many drops a cell holds: Poisson numbers from the counter-based generator.
+//! Poisson numbers from the counter-based generator.
 
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::rng_draw;
 
-/// The largest mean that is drawn at once: `exp(-mean)` keeps its digits.
-const PORTION: f64 = 16.0;
+/// Maximum mean of a single draw: `exp(-mean)` keeps its digits.
+const MAX_MEAN: f64 = 16.0;
 
-/// A Poisson number of the given mean for a key. A larger mean gives no smaller number for the same key: drops are
-/// added as the rain grows heavier, none is moved.
+/// Draws a Poisson number of the given mean for a key. A larger mean gives no smaller number for the same key: heavier
+/// rain adds drops and moves none.
 ///
-/// Means above [`PORTION`] are the sum of independent portions.
+/// Means above [`MAX_MEAN`] are the sum of independent portions.
 pub(crate) fn poisson(mean: f64, seed: [u32; 2], dimension: u32) -> u32 {
     poisson_at(mean, seed, 0, dimension)
 }
 
-/// The same for a step of time.
+/// Draws a Poisson number for a step of time.
 pub(crate) fn poisson_at(mean: f64, seed: [u32; 2], step: u32, dimension: u32) -> u32 {
     let mut rest = mean;
     let mut count = 0;
@@ -22,8 +22,8 @@ pub(crate) fn poisson_at(mean: f64, seed: [u32; 2], step: u32, dimension: u32) -
     while rest > 0.0 {
         let [high, low, ..] = rng_draw(seed, portion, step, dimension);
         let unit = (f64::from(high) * 4_294_967_296.0 + f64::from(low) + 0.5) / 18_446_744_073_709_551_616.0;
-        count += quantile(rest.min(PORTION), unit);
-        rest -= PORTION;
+        count += quantile(rest.min(MAX_MEAN), unit);
+        rest -= MAX_MEAN;
         portion += 1;
     }
     count
@@ -34,7 +34,7 @@ fn quantile(mean: f64, unit: f64) -> u32 {
     let mut probability = ops::exp(-mean);
     let mut cumulative = probability;
     let mut count = 0;
-    // 16 + 12 standard deviations and more: beyond, f64 has no probability left.
+    // More than 16 + 12 standard deviations: beyond, f64 has no probability left.
     while cumulative < unit && count < 128 {
         count += 1;
         probability *= mean / f64::from(count);

@@ -1,6 +1,6 @@
-//! Which drops a volume holds at first: as many as the rain has there, their sizes, and where they are.
+//! Initial drops of a volume: number, sizes and positions.
 //!
-//! Numbers are drawn from Poisson's law, sizes and positions independently of each other, as drops of a rain are.
+//! Numbers are Poisson distributed, sizes and positions independent of each other, as for drops of a rain.
 
 use downpour_drop::distribution::{DropSizeDistribution, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;
@@ -20,7 +20,7 @@ use crate::step::{step_column, step_image, step_pack};
 use crate::view::View;
 use crate::volume::{VolumeEye, volume_in_area, volume_in_sphere};
 
-/// Bins of diameter per factor of two.
+/// Number of diameter bins per factor of two.
 const BINS_PER_OCTAVE: f64 = 8.0;
 
 /// Dimensions of the random numbers.
@@ -28,17 +28,17 @@ const COUNT: u32 = 8230;
 const SIZE: u32 = 8231;
 const PLACE: u32 = 8250;
 
-/// Tries for a random choice before the last is taken.
+/// Number of tries of a rejection sampling before the last is used.
 const TRIES: u32 = 64;
 
-/// Drops of about one size.
+/// Drops of similar size.
 #[derive(Clone, Debug)]
 pub(crate) struct Bin {
     /// Diameters, m.
     pub(crate) diameters: [f64; 2],
-    /// Terminal speeds of the smallest and the largest, m/s.
+    /// Terminal speeds of the smallest and the largest drop, m/s.
     pub(crate) speeds: [f64; 2],
-    /// Per m^3.
+    /// Number per m^3.
     pub(crate) density: f64,
     /// Quantiles of the diameter, evenly spaced, in steps of the 16 bits.
     pub(crate) sizes: [f32; ENTER_SIZES as usize],
@@ -56,10 +56,10 @@ impl Bin {
     }
 }
 
-/// Bins of the diameters of a rain, the smallest first.
+/// Bins of the diameters of a rain, in ascending order.
 ///
 /// # Errors
-/// [`SimError::Drop`] if the distribution cannot be cut.
+/// [`SimError::Drop`] if the distribution cannot be divided.
 pub(crate) fn bins(rain: &DropSizeDistribution) -> Result<Vec<Bin>, SimError> {
     if rain.rate_mm_h() <= 0.0 {
         return Ok(Vec::new());
@@ -80,21 +80,21 @@ pub(crate) fn bins(rain: &DropSizeDistribution) -> Result<Vec<Bin>, SimError> {
             sizes: std::array::from_fn(quantile),
         })
     };
-    // A last sliver would be too thin a bin.
+    // A narrow last bin would have too few drops.
     let classes = rain.diameter_classes(BINS_PER_OCTAVE).into_iter();
     classes.filter(|[lower, upper]| upper - lower > 1.0e-6).map(bin).collect()
 }
 
-/// The drops of a volume that keeps its number of drops.
+/// Drops of a volume with a constant number of drops.
 #[derive(Debug)]
 pub(crate) struct Population {
-    /// Diameters in 16 bits, in order of the bins.
+    /// Diameters in 16 bits, in the order of the bins.
     pub(crate) sizes: Vec<u16>,
-    /// The least diameter, m: drops below it are left out.
+    /// Minimum diameter, m: smaller drops are left out.
     pub(crate) least_diameter: f64,
 }
 
-/// The volume of a box, a sphere of which the rain area of Im & Sung is a part, or a cylinder, m^3.
+/// Volume of a box, of the sphere that contains the rain area of Im & Sung, or of a cylinder, m^3.
 pub(crate) fn volume_of(volume: &SimVolume, view: &View) -> f64 {
     match *volume {
         SimVolume::Box { size_m } | SimVolume::Tariq { size_m } => size_m.iter().product(),
@@ -105,22 +105,22 @@ pub(crate) fn volume_of(volume: &SimVolume, view: &View) -> f64 {
     }
 }
 
-/// The least diameter on the picture, pixels, at which a view holds about `most` drops, and no less than it asks for.
+/// Minimum diameter on the picture, pixels, at which a view holds about `most` drops, and at least that of the view.
 pub(crate) fn affordable_pixels(bins: &[Bin], view: &View, times: [f64; 2], most: u32) -> f64 {
     let mut least_pixels = view.least_pixels;
     let expected = |least_pixels: f64| -> f64 {
-        // In still air, so that the wind of a moment has no say.
+        // In still air, so that the current wind has no effect.
         let frustum = Frustum::new(view, least_pixels, view.velocity, [0.0; 3], times);
         bins.iter().map(|bin| bin.density * frustum.about_volume(bin.diameters[1], bin.speeds[1])).sum()
     };
     while expected(least_pixels) > f64::from(most) {
-        // 3 % at a time: a law of the third power is at the limit in a few dozen steps.
+        // 3 % at a time: a law of the third power reaches the limit in a few dozen steps.
         least_pixels = (least_pixels * 1.03).max(1.0e-3);
     }
     least_pixels
 }
 
-/// Whether there is room for so many drops.
+/// Checks that the memory holds so many drops.
 ///
 /// # Errors
 /// [`SimError::Memory`].
@@ -128,13 +128,13 @@ pub(crate) fn reserve(drops: u64) -> Result<(), SimError> {
     if drops > MAX_DROPS_IN_MEMORY {
         return Err(SimError::memory(drops));
     }
-    // All that the drops will take is asked for before any of it is worked out.
+    // All memory of the drops is requested before any drop is computed.
     let mut room: Vec<[u8; BYTES_PER_DROP as usize]> = Vec::new();
     room.try_reserve_exact(drops as usize).map_err(|_| SimError::memory(drops))
 }
 
 impl Population {
-    /// The drops of a rain in a volume, about `most` at most: small drops are left out.
+    /// Drops of a rain in a volume, about `most` at most: small drops are left out.
     ///
     /// # Errors
     /// [`SimError::Memory`].
@@ -147,46 +147,52 @@ impl Population {
     ) -> Result<Self, SimError> {
         let seed = seed_words(seed);
         let space = volume_of(volume, view);
-        // The largest first, and of one bin a part.
+        // The largest first, and a part of one bin.
         let mut room = f64::from(most);
         let shares: Vec<f64> = bins
             .iter()
             .rev()
             .map(|bin| {
                 let expected = bin.density * space;
-                let share = (room / expected.max(1.0e-300)).min(1.0);
-                room -= share * expected;
-                share
+                let fraction = (room / expected.max(1.0e-300)).min(1.0);
+                room -= fraction * expected;
+                fraction
             })
             .collect();
         let kept: Vec<(&Bin, f64)> = bins.iter().zip(shares.into_iter().rev()).collect();
         let counts: Vec<u32> = (0..)
             .zip(&kept)
-            .map(|(k, (bin, share))| poisson_at(bin.density * space * share, seed, k, COUNT))
+            .map(|(k, (bin, fraction))| poisson_at(bin.density * space * fraction, seed, k, COUNT))
             .collect();
         let all = counts.iter().map(|&n| u64::from(n)).sum::<u64>();
         reserve(all)?;
         let mut sizes: Vec<u16> = Vec::new();
         sizes.try_reserve_exact(all as usize).map_err(|_| SimError::memory(all))?;
         let mut number = 0;
-        for (&(bin, share), &count) in kept.iter().zip(&counts) {
+        for (&(bin, fraction), &count) in kept.iter().zip(&counts) {
             sizes.par_extend((0..count).into_par_iter().map(|k| {
                 let [word, ..] = rng_draw(seed, number + k, 0, SIZE);
-                bin.code(1.0 - share * (f64::from(word) + 0.5) / 4_294_967_296.0)
+                bin.code(1.0 - fraction * (f64::from(word) + 0.5) / 4_294_967_296.0)
             }));
             number += count;
         }
-        let least = kept.iter().find(|(_, share)| *share > 0.0);
-        let least_diameter = least.map_or(0.0, |&(bin, share)| {
-            let code = f64::from(bin.code(1.0 - share)) * f64::from(MOTION_DIAMETER_STEP);
-            if share < 1.0 { code } else { bin.diameters[0] }
+        let least = kept.iter().find(|(_, fraction)| *fraction > 0.0);
+        let least_diameter = least.map_or(0.0, |&(bin, fraction)| {
+            let code = f64::from(bin.code(1.0 - fraction)) * f64::from(MOTION_DIAMETER_STEP);
+            if fraction < 1.0 { code } else { bin.diameters[0] }
         });
         Ok(Self { sizes, least_diameter })
     }
 }
 
-/// Position, relative to `origin`, at which a drop of a volume that keeps its number of drops begins, and its count.
-pub(crate) fn place(drop: u32, volume: &SimVolume, view: &View, origin: DVec3, seed: u64) -> (Vec3, u32) {
+/// Initial position relative to `origin` of a drop of a volume with a constant number of drops, and its count.
+pub(crate) fn initial_position(
+    drop: u32,
+    volume: &SimVolume,
+    view: &View,
+    origin: DVec3,
+    seed: u64,
+) -> (Vec3, u32) {
     let seed = seed_words(seed);
     let draw = |attempt: u32| {
         let [a, b, c, d] = rng_draw(seed, drop, attempt, PLACE);
@@ -196,9 +202,9 @@ pub(crate) fn place(drop: u32, volume: &SimVolume, view: &View, origin: DVec3, s
     let eye = view.eye - origin;
     let position = match *volume {
         SimVolume::Box { size_m } => {
-            // The same rain for every camera: its boxes stand in the world.
+            // The same rain for every camera: its boxes are fixed in the world.
             let size = DVec3::from(size_m);
-            let images = |at: DVec3| ((at - box_centre(view, size)) / size + 0.5).floor();
+            let images = |at: DVec3| ((at - box_center(view, size)) / size + 0.5).floor();
             let start = draw(0).0 * size;
             let away = images(start);
             let image = step_image(0, step_pack(away.as_vec3()));
@@ -229,7 +235,7 @@ pub(crate) fn place(drop: u32, volume: &SimVolume, view: &View, origin: DVec3, s
     (position, 0)
 }
 
-/// The middle of a box that follows the eye: a third of its size ahead.
-pub(crate) fn box_centre(view: &View, size: DVec3) -> DVec3 {
+/// Center of a box that follows the eye: a third of its size ahead.
+pub(crate) fn box_center(view: &View, size: DVec3) -> DVec3 {
     view.eye + view.forward * size / 3.0
 }

@@ -1,38 +1,38 @@
-//! Which drops of a rain a list for a picture holds. All others are unresolved: a picture counts them by their
-//! extinction and by the light that they scatter.
+//! Limits of the list of drops for a picture. All other drops are unresolved: a picture includes them by their
+//! extinction and in-scattering.
 
 use glam::DVec3;
 
 use crate::view::View;
 
-/// The part of space outside which no drop is listed.
+/// Region of space outside which no drop is listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Region {
-    /// All of it.
+    /// All space.
     #[default]
     Everywhere,
     /// A box along the world's axes.
     Box {
-        /// Its center, m.
+        /// Center, m.
         center: DVec3,
-        /// Its edges, m.
+        /// Edges, m.
         size: DVec3,
     },
     /// A sphere.
     Sphere {
-        /// Its center, m.
+        /// Center, m.
         center: DVec3,
-        /// m.
+        /// Radius, m.
         radius: f64,
     },
     /// An upright cylinder.
     Cylinder {
-        /// Middle of its base, m.
+        /// Center of the base, m.
         base: DVec3,
-        /// m.
+        /// Radius, m.
         radius: f64,
-        /// m.
+        /// Height, m.
         height: f64,
     },
 }
@@ -41,22 +41,22 @@ pub enum Region {
 /// [`Resolved::near`] and [`Resolved::range`] of its diameter from the eye, and in [`Resolved::region`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolved {
-    /// Least distance from the eye, m.
+    /// Minimum distance from the eye, m.
     pub near: f64,
-    /// Largest distance from the eye, m.
+    /// Maximum distance from the eye, m.
     pub far: f64,
     /// Width of a pixel at distance 1.
     pub pixel_angle: f64,
-    /// Least diameter on the picture, pixels.
+    /// Minimum diameter on the picture, pixels.
     pub least_pixels: f64,
-    /// Least diameter, m.
+    /// Minimum diameter, m.
     pub least_diameter: f64,
-    /// Where drops are listed.
+    /// Region in which drops are listed.
     pub region: Region,
 }
 
 impl Resolved {
-    /// Limits of a list that a view asks for, with a least diameter on the picture of its own.
+    /// Limits of the list of a view, with another minimum diameter on the picture.
     pub(crate) fn of(view: &View, least_pixels: f64) -> Self {
         Self {
             near: view.near,
@@ -68,7 +68,7 @@ impl Resolved {
         }
     }
 
-    /// Largest distance from the eye, m, at which a drop of a diameter in m is listed; 0 if none of that size is.
+    /// Maximum distance from the eye, m, at which a drop of a diameter in m is listed; 0 if none of that size is.
     #[must_use]
     pub fn range(&self, diameter: f64) -> f64 {
         if diameter < self.least_diameter {
@@ -80,8 +80,8 @@ impl Resolved {
 }
 
 impl Region {
-    /// The part of a ray within the region: first and last distance, m, of a ray of unit direction; `None` if the ray
-    /// misses it. All of these regions are convex.
+    /// Part of a ray within the region: first and last distance, m, for a unit direction; `None` if the ray misses it.
+    /// All these regions are convex.
     #[must_use]
     pub fn along(&self, origin: DVec3, direction: DVec3) -> Option<[f64; 2]> {
         let part = match *self {
@@ -118,14 +118,14 @@ impl Region {
     }
 }
 
-/// A part of a ray that is none.
+/// An empty part of a ray.
 const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 fn meet(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].max(b[0]), a[1].min(b[1])]
 }
 
-/// Distances at which a coordinate that grows by `rate` is between two values.
+/// Distances at which a coordinate with slope `rate` is between two values.
 fn slab(low: f64, high: f64, rate: f64) -> [f64; 2] {
     if rate.abs() < 1.0e-12 {
         return if low <= 0.0 && high >= 0.0 { [f64::NEG_INFINITY, f64::INFINITY] } else { EMPTY };

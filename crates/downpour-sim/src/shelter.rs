@@ -1,18 +1,16 @@
-//! Which drops of the rain in closed form have come as far as they are: those with nothing in their way when the shutter
-//! opens. What they meet while it is open ends their streaks.
+//! Drops of the rain in closed form that obstacles have not stopped when the shutter opens. Hits during the exposure
+//! end their streaks.
 //!
-//! The path of a drop is known, so that it is looked at backwards, from where the drop is to above all that stands there.
-//! With a steady wind it is one straight line and the answer is exact. Else it is cut at whole quarters of a second, the
-//! same for every time that is asked about, so that drops do not come and go. While the shutter is open it is straight, as
-//! it is drawn.
+//! The path of a drop is known, so it is followed backwards from the drop to above all obstacles. In a steady wind it is
+//! one straight line and the answer is exact. Else it is divided at whole quarters of a second, the same for every
+//! query, so that drops do not appear or vanish. During the exposure it is straight, as it is drawn.
 //!
-//! The wind that blows on drops is the same everywhere: it blows through what stands there, which throws no shadow in it but
-//! the one in the rain.
+//! The wind is uniform: it blows through obstacles, which shelter from rain and not from wind.
 //!
-//! What moves is taken where it is now: behind a car, its shadow in the rain is straight.
+//! Moving objects are taken at their current position: behind a car, its rain shadow is straight.
 //!
-//! Surfaces may have holes, as the cards that leaves are painted on ([`Holes`]): rain falls through them. What is there at
-//! all stops drops, however well it is seen through: a pane of glass is a roof.
+//! Surfaces may have holes, as the cards with painted leaves ([`Holes`]): rain falls through them. All other surfaces
+//! stop drops, even transparent ones: a pane of glass is a roof.
 
 use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_nearest};
 use downpour_drop::fall_speed::TerminalSpeed;
@@ -23,54 +21,54 @@ use rayon::prelude::*;
 use crate::drift::Drift;
 use crate::falling::FallingDrop;
 
-/// Where a path is cut, s.
+/// Interval at which a path is divided, s.
 const CUT_S: f64 = 0.25;
 
-/// A path is followed so far back, s; slower drops come from above all the same.
-const LONGEST_S: f64 = 120.0;
+/// Maximum time for which a path is followed back, s; slower drops count as coming from the sky.
+const MAX_BACK_S: f64 = 120.0;
 
-/// A drop on a surface is not behind it, m.
+/// Distance from a surface below which a drop counts as on it, m.
 const CLEAR_M: f32 = 1.0e-4;
 
-/// Holes in a way to the sky, at most: a way through more ends in the open.
-const MOST_HOLES: u32 = 64;
+/// Maximum number of holes on a path to the sky: a path through more counts as open.
+const MAX_HOLES: u32 = 64;
 
-/// Where triangles are not there, though they are in the list: alpha of a texture, say.
+/// Holes in triangles of the list, as by the alpha of a texture.
 pub trait Holes: std::fmt::Debug + Sync {
-    /// Whether there is nothing at a hit.
+    /// True if there is a hole at a hit.
     fn is_hole(&self, hit: &Hit) -> bool;
 }
 
-/// What stands in the rain: the arrays of a `downpour_bvh::Bvh`, relative to `origin`.
+/// Obstacles in the rain: the arrays of a `downpour_bvh::Bvh`, relative to `origin`.
 #[derive(Clone, Copy, Debug)]
 pub struct Obstacles<'a> {
-    /// Nodes; none: nothing stands there.
+    /// Nodes; empty without obstacles.
     pub nodes: &'a [BvhNode],
     /// Triangles.
     pub triangles: &'a [BvhTriangle],
-    /// Where they have holes; none: nowhere.
+    /// Holes of the triangles; `None` without holes.
     pub holes: Option<&'a dyn Holes>,
-    /// m.
+    /// Origin, m.
     pub origin: DVec3,
 }
 
-/// The ways of drops from the sky to a time.
+/// Paths of drops from the sky up to a time.
 pub(crate) struct SkyPaths<'a> {
     obstacles: &'a Obstacles<'a>,
-    /// Corners of all that stands there.
+    /// Lower corner of the bounds of all obstacles.
     low: Vec3,
     high: Vec3,
-    /// What the wind has done to drops by that time.
+    /// Drift of drops up to that time.
     open: Drift,
     open_s: f64,
-    /// The same at the last whole quarter of a second, and before; empty with a steady wind.
+    /// Drift up to the last whole quarter of a second, and before; empty in a steady wind.
     cuts: Vec<Drift>,
     last_cut_s: f64,
 }
 
 impl<'a> SkyPaths<'a> {
-    /// The ways to a time of drops that are no slower than a speed, m/s, and no lower than a height, m, relative to the
-    /// obstacles' origin. `None` where nothing stands.
+    /// Paths up to a time of drops that are no slower than a speed, m/s, and no lower than a height, m, relative to the
+    /// obstacles' origin. `None` without obstacles.
     pub(crate) fn new(
         obstacles: &'a Obstacles<'a>,
         wind: &UniformWind,
@@ -81,21 +79,21 @@ impl<'a> SkyPaths<'a> {
         let root = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty())?;
         let (low, high) = (Vec3::from(root.low), Vec3::from(root.high));
         let last_cut_s = (open_s / CUT_S).floor() * CUT_S;
-        // Slow drops are near the eye and seldom; they decide how far back the wind must be known.
-        let longest = ((f64::from(high.y) - deepest).max(0.0) / slowest.max(0.05)).min(LONGEST_S);
+        // Slow drops are near the eye and rare; they determine how far back the wind is needed.
+        let longest = ((f64::from(high.y) - deepest).max(0.0) / slowest.max(0.05)).min(MAX_BACK_S);
         let cuts = if wind.is_steady() { 0 } else { (longest / CUT_S).ceil() as usize + 1 };
         let cut = |k: usize| Drift::new(wind, last_cut_s - k as f64 * CUT_S);
         let cuts = (0..cuts).into_par_iter().map(cut).collect();
         Some(Self { obstacles, low, high, open: Drift::new(wind, open_s), open_s, cuts, last_cut_s })
     }
 
-    /// What the wind has done to drops by the time.
+    /// Drift of drops up to the time.
     pub(crate) fn drift(&self) -> &Drift {
         &self.open
     }
 
-    /// Whether nothing is between the sky and `from`, which is about `at`, where a drop of a terminal speed is at the time;
-    /// its velocity is for a steady wind. Positions are relative to the obstacles' origin.
+    /// True if nothing is between the sky and `from`, which is near `at`, the position of a drop of a terminal speed
+    /// at the time; its velocity is for a steady wind. Positions are relative to the obstacles' origin.
     pub(crate) fn is_open(&self, mut from: Vec3, at: DVec3, speed: f64, velocity: Vec3) -> bool {
         if self.cuts.is_empty() {
             return clear(self.obstacles, from, (-velocity).normalize_or(Vec3::Y), f32::MAX);
@@ -117,7 +115,7 @@ impl<'a> SkyPaths<'a> {
         true
     }
 
-    /// Whether a drop beside all that stands there could have come from it: nothing is carried by more than 60 m/s.
+    /// True if a drop beside all obstacles could have come from them: nothing is carried by more than 60 m/s.
     fn could_meet(&self, from: Vec3, speed: f64) -> bool {
         let (low, high) = (self.low, self.high);
         let reach = (high.y - from.y).max(0.0) * (60.0 / speed.max(0.1)) as f32;
@@ -125,8 +123,8 @@ impl<'a> SkyPaths<'a> {
     }
 }
 
-/// Drops of the sky that nothing has stopped when the shutter opens, half of its time before the picture's: the others are
-/// left out, in place, and those that are stopped while it is open are told when.
+/// Keeps the drops that nothing has stopped when the shutter opens, half of the exposure before the picture's time. The
+/// others are removed in place, and those that are stopped during the exposure get their times.
 pub(crate) fn keep_open(
     drops: &mut Vec<FallingDrop>,
     obstacles: &Obstacles<'_>,
@@ -144,7 +142,7 @@ pub(crate) fn keep_open(
     let until = |drop: &FallingDrop| {
         let (speed, velocity) = (speed(law, drop), Vec3::from(drop.velocity));
         let here = drop.position - obstacles.origin;
-        // As it is drawn, and as it has come.
+        // As it is drawn, and as it has moved.
         let from = here.as_vec3() - velocity * half as f32;
         let back = picture.of(speed)[0] - paths.drift().of(speed)[0] - DVec3::Y * (speed * half);
         if !paths.is_open(from, here - back, speed, velocity) {
@@ -167,22 +165,22 @@ fn speed(law: &TerminalSpeed, drop: &FallingDrop) -> f64 {
     law.at(f64::from(drop.diameter)).unwrap_or(0.0)
 }
 
-/// What is first met at a velocity within a time; the hit's distance is a time, s.
+/// First hit at a velocity within a time; the hit's distance is a time, s.
 pub(crate) fn met(obstacles: &Obstacles<'_>, from: Vec3, velocity: Vec3, time_s: f32) -> Option<Hit> {
     first_solid(obstacles, from, velocity, 0.0, time_s)
 }
 
-/// Whether nothing is met within a distance.
+/// True if nothing is hit within a distance.
 fn clear(obstacles: &Obstacles<'_>, from: Vec3, direction: Vec3, distance: f32) -> bool {
     let far = distance.min(downpour_shaders::bvh::BVH_FAR);
     first_solid(obstacles, from, direction, CLEAR_M, far).is_none()
 }
 
-/// The nearest hit that is no hole, at a distance from `near` to `far` times the length of `way`.
+/// Nearest hit that is not a hole, at a distance from `near` to `far` times the length of `way`.
 fn first_solid(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, mut near: f32, far: f32) -> Option<Hit> {
     let (origin, direction) = (from.to_array(), way.to_array());
     let step = CLEAR_M / way.length().max(CLEAR_M);
-    for _ in 0..MOST_HOLES {
+    for _ in 0..MAX_HOLES {
         let hit = bvh_nearest(obstacles.nodes, obstacles.triangles, origin, direction, near, far)?;
         if !obstacles.holes.is_some_and(|holes| holes.is_hole(&hit)) {
             return Some(hit);

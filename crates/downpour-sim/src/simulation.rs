@@ -1,12 +1,12 @@
-//! Rain in a volume that follows the camera, step by step: any wind, and whatever stands in its way.
+//! Rain in a volume that follows the camera, step by step: any wind, and any obstacles.
 //!
-//! What is the same again:
+//! Reproducibility:
 //! - the same options, rain and steps give the same bits, for any number of threads;
-//! - a view ([`SimVolume::View`]) forgets: its drops depend on the steps of the last [`SimulationOptions::oldest_s`] alone,
-//!   so that a simulation that begins so much earlier, at any step of the same numbering, has the same drops with the same
-//!   ids. They belong to their camera and to the size of its picture;
-//! - a box ([`SimVolume::Box`]) begins with the same drops for every camera and size of the picture, and as long as nothing
-//!   is in their way they stay the same for all cameras that step alike from the same beginning;
+//! - a view ([`SimVolume::View`]) forgets: its drops depend on the steps of the last [`SimulationOptions::oldest_s`]
+//!   only. A simulation that starts that much earlier, at any step of the same numbering, has the same drops with the
+//!   same ids. They belong to their camera and to the size of its picture;
+//! - a box ([`SimVolume::Box`]) starts with the same drops for every camera and size of the picture. As long as they
+//!   hit nothing they stay the same for all cameras with the same steps from the same start;
 //! - rain that is the same for any number of cameras, at any time, is that of [`crate::field`].
 
 use downpour_drop::distribution::DropSizeDistribution;
@@ -27,15 +27,15 @@ use crate::motion::{motion_diameter, motion_settled, motion_table, speed_of};
 use crate::options::PIECE;
 pub use crate::options::{Bounce, Drag, Gauge, SimVolume, SimulationOptions};
 use crate::plan::{AirAtEye, Plan, Turn, lags};
-use crate::population::{Population, affordable_pixels, bins, place};
+use crate::population::{Population, affordable_pixels, bins, initial_position};
 use crate::step::{StepCaught, StepDrop, StepEvent, StepFrame, StepMade, StepWorld, step_word};
 use crate::view::View;
 
-/// Regions of one piece of work.
+/// Number of regions of one work item.
 const REGIONS: usize = 1 << 6;
 
-/// The least diameter on the picture, pixels, of the drops of a view that holds about as many drops as its options allow; no
-/// less than the view asks for.
+/// Minimum diameter on the picture, pixels, of the drops of a view that holds about as many drops as its options
+/// allow; at least that of the view.
 ///
 /// # Errors
 /// [`SimError::OutOfRange`] for options or a camera outside their ranges, [`SimError::Drop`].
@@ -50,47 +50,47 @@ pub fn least_pixels(
     Ok(affordable_pixels(&bins(rain)?, view, times, options.most_drops))
 }
 
-/// What there is at the end of a step. Wind and map are relative to `origin`.
+/// Input of a step: the state at its end. Wind and map are relative to `origin`.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<'a> {
-    /// The camera; for a view the one in the middle of the time that pictures of this state cover.
+pub struct StepInput<'a> {
+    /// Camera; for a view the one in the middle of the time that pictures of this state cover.
     pub view: &'a View,
-    /// What single precision is relative to, m. It may move from step to step.
+    /// Origin of single-precision positions, m. It may move from step to step.
     pub origin: DVec3,
-    /// The wind where there is no field, m/s.
+    /// Wind without a field, m/s.
     pub wind: Vec3,
-    /// The wind.
+    /// Wind field.
     pub field: Option<&'a WindField>,
-    /// What stops drops.
+    /// Collision map.
     pub map: Option<&'a CollisionMap>,
-    /// The part of the wind that is the same everywhere, as it changes: what comes into a view lags behind it as the drops
-    /// that are there. `None`: it does not change.
+    /// Uniform part of the wind, as it changes: drops that enter a view lag behind it as those inside do. `None`: it is
+    /// constant.
     pub air: Option<&'a UniformWindAt<'a>>,
 }
 
-impl<'a> Moment<'a> {
-    /// A camera in a wind that is the same everywhere and does not change; nothing stops drops.
+impl<'a> StepInput<'a> {
+    /// Creates the input of a camera in a constant uniform wind without a collision map.
     #[must_use]
     pub fn new(view: &'a View, origin: DVec3, wind: Vec3) -> Self {
         Self { view, origin, wind, field: None, map: None, air: None }
     }
 }
 
-/// What happened in a time.
+/// Events of a step or of several.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Happened {
-    /// Impacts, in the order of steps and then of drops' numbers; places are relative to the origin.
+pub struct StepEvents {
+    /// Impacts, in the order of steps and then of drops' numbers; positions are relative to the origin.
     pub events: Vec<StepEvent>,
-    /// Impacts that were counted and not noted.
+    /// Number of impacts that were counted but not recorded.
     pub overflow: u64,
-    /// What went through the gauge.
+    /// Rain through the gauge.
     pub caught: StepCaught,
-    /// Drops that came into a view on a GPU and found no slot: they are missing.
+    /// Number of drops that entered a view on a GPU and found no slot: they are missing.
     pub lost: u64,
 }
 
-impl Moment<'_> {
-    /// What the air does about the eye.
+impl StepInput<'_> {
+    /// Air around the eye.
     fn air(&self, reach: f64) -> AirAtEye {
         let lags = lags(self.air);
         let Some(field) = self.field else { return AirAtEye { wind: self.wind, spread: [0.0; 2], lags } };
@@ -109,155 +109,156 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// The rain of a distribution.
+    /// Creates the rain of a distribution.
     ///
     /// # Errors
     /// [`SimError::OutOfRange`] for options or a camera outside their ranges, [`SimError::Memory`], [`SimError::Drop`].
     pub fn new(
         rain: &DropSizeDistribution,
         options: &SimulationOptions,
-        moment: &Moment<'_>,
+        input: &StepInput<'_>,
     ) -> Result<Self, SimError> {
-        let air = moment.air(moment.view.far);
-        let mut plan = Plan::new(rain, options, moment.view, moment.origin, air)?;
+        let air = input.air(input.view.far);
+        let mut plan = Plan::new(rain, options, input.view, input.origin, air)?;
         let law = TerminalSpeed::new(rain.options().fall_speed, &rain.options().air);
         let speeds = motion_table(&law);
         let sizes = plan.sizes();
         let drops = if plan.is_open() {
             let frame = plan.standing(air);
-            filled(&plan, &world(&frame, &speeds, &sizes, &[], moment))?
+            filled(&plan, &world(&frame, &speeds, &sizes, &[], input))?
         } else {
             let (view, seed) = (plan.view(), options.seed);
             let population = Population::new(&plan.bins, &options.volume, view, options.most_drops, seed)?;
             plan.least_diameter = population.least_diameter;
-            begin(&plan, &population, &speeds, moment)?
+            begin(&plan, &population, &speeds, input)?
         };
         Ok(Self { plan, speeds, sizes, drops })
     }
 
-    /// Lets time pass, up to 1 s; the camera comes to the moment's. Times above 1/30 s are cut into equal steps.
+    /// Advances by a time of up to 1 s; the camera moves to that of the input. Times above 1/30 s are divided into
+    /// equal steps.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for a time that is none or a camera that is none; nothing has moved then.
+    /// [`SimError::OutOfRange`] for an invalid time or camera; nothing has moved then.
     /// [`SimError::Memory`].
-    pub fn advance(&mut self, time_s: f64, moment: &Moment<'_>) -> Result<Happened, SimError> {
-        let air = moment.air(self.plan.farthest(moment.view));
-        let turns = self.plan.turns(time_s, moment.view, moment.origin, air)?;
-        let mut happened = Happened::default();
+    pub fn advance(&mut self, time_s: f64, input: &StepInput<'_>) -> Result<StepEvents, SimError> {
+        let air = input.air(self.plan.farthest(input.view));
+        let turns = self.plan.turns(time_s, input.view, input.origin, air)?;
+        let mut outcome = StepEvents::default();
         for turn in &turns {
             if self.plan.is_open() {
-                self.step_open(turn, moment, &mut happened)?;
+                self.step_open(turn, input, &mut outcome)?;
             } else {
-                self.step_slots(turn, moment, &mut happened);
+                self.step_slots(turn, input, &mut outcome);
             }
         }
-        Ok(happened)
+        Ok(outcome)
     }
 
-    /// A step of a view.
+    /// Makes a step of a view.
     fn step_open(
         &mut self,
         turn: &Turn,
-        moment: &Moment<'_>,
-        happened: &mut Happened,
+        input: &StepInput<'_>,
+        outcome: &mut StepEvents,
     ) -> Result<(), SimError> {
         let frame = &turn.frame;
-        let world = world(frame, &self.speeds, &self.sizes, &turn.regions, moment);
+        let world = world(frame, &self.speeds, &self.sizes, &turn.regions, input);
         if frame.elsewhere == 1 {
             self.drops = filled(&self.plan, &world)?;
             return Ok(());
         }
-        let told = self.drops.par_chunks_mut(PIECE).map(|drops| {
-            let mut told = Told::default();
+        let records = self.drops.par_chunks_mut(PIECE).map(|drops| {
+            let mut record = EventRecord::default();
             for drop in drops {
-                *drop = told.note(world.step_view(&shifted(drop, frame)));
+                *drop = record.add(world.step_view(&shifted(drop, frame)));
             }
-            told
+            record
         });
-        let told: Vec<Told> = told.collect();
+        let records: Vec<EventRecord> = records.collect();
         self.drops.retain(|drop| drop.kind() != STEP_GONE);
         let come = turn.regions.par_windows(2).with_min_len(REGIONS).map(|pair| {
-            let (mut told, mut come) = (Told::default(), Vec::new());
+            let (mut record, mut come) = (EventRecord::default(), Vec::new());
             if let [region, next] = pair {
                 for number in 0..next.first - region.first {
-                    come.extend(world.enter_drop(region, number).map(|made| told.note(made)));
+                    come.extend(world.enter_drop(region, number).map(|made| record.add(made)));
                 }
             }
             come.retain(|drop: &StepDrop| drop.kind() != STEP_GONE);
-            (told, come)
+            (record, come)
         });
-        let come: Vec<(Told, Vec<StepDrop>)> = come.collect();
+        let come: Vec<(EventRecord, Vec<StepDrop>)> = come.collect();
         let count = come.iter().map(|(_, drops)| drops.len()).sum();
         self.drops.try_reserve(count).map_err(|_| SimError::memory((self.drops.len() + count) as u64))?;
         let mut room = frame.events as usize;
-        for told in told {
-            told.tell(&mut room, happened);
+        for record in records {
+            record.append_to(&mut room, outcome);
         }
-        for (told, drops) in come {
+        for (record, drops) in come {
             self.drops.extend_from_slice(&drops);
-            told.tell(&mut room, happened);
+            record.append_to(&mut room, outcome);
         }
         Ok(())
     }
 
-    /// A step of a volume that keeps its number of drops.
-    fn step_slots(&mut self, turn: &Turn, moment: &Moment<'_>, happened: &mut Happened) {
+    /// Makes a step of a volume with a constant number of drops.
+    fn step_slots(&mut self, turn: &Turn, input: &StepInput<'_>, outcome: &mut StepEvents) {
         let frame = &turn.frame;
-        let world = world(frame, &self.speeds, &self.sizes, &[], moment);
+        let world = world(frame, &self.speeds, &self.sizes, &[], input);
         let pieces = self.drops.par_chunks_mut(PIECE).enumerate().map(|(piece, drops)| {
-            let mut told = Told::default();
+            let mut record = EventRecord::default();
             for (drop, number) in drops.iter_mut().zip((piece * PIECE) as u32..) {
-                *drop = told.note(world.step_slot(number, &shifted(drop, frame)));
+                *drop = record.add(world.step_slot(number, &shifted(drop, frame)));
             }
-            told
+            record
         });
-        let pieces: Vec<Told> = pieces.collect();
+        let pieces: Vec<EventRecord> = pieces.collect();
         let mut room = frame.events as usize;
-        for told in pieces {
-            told.tell(&mut room, happened);
+        for record in pieces {
+            record.append_to(&mut room, outcome);
         }
     }
 
-    /// The state: of a view in the order in which drops came, else in the order of their numbers.
+    /// State: for a view in the order in which drops entered, else in the order of their numbers.
     #[must_use]
     pub fn drops(&self) -> &[StepDrop] {
         &self.drops
     }
 
-    /// The least diameter, m: smaller drops are unresolved.
+    /// Minimum diameter, m: smaller drops are unresolved.
     #[must_use]
     pub fn least_diameter(&self) -> f64 {
         self.plan.least_diameter
     }
 
-    /// The farthest distance from the eye of a view at which a drop is resolved, m.
+    /// Maximum distance from the eye of a view at which a drop is resolved, m.
     #[must_use]
     pub fn farthest_m(&self, view: &View) -> f64 {
         self.plan.farthest(view)
     }
 
-    /// The drops that a picture of now can show. While the shutter is open they go on at their velocity.
+    /// Drops that a picture of the current time can show. During the exposure they move at their velocity.
     #[must_use]
     pub fn visible(&self, view: &View) -> VisibleDrops {
         self.visible_after(0.0, view, None)
     }
 
-    /// The drops that a picture can show some time after the state, s: no less than half the time of its shutter, if drops
-    /// that land meanwhile are to be among them. Nothing is stored.
+    /// Drops that a picture can show some time after the state, s: at least half of its exposure, to include drops
+    /// that land meanwhile. Nothing is stored.
     #[must_use]
     pub fn visible_after(&self, after_s: f64, view: &View, map: Option<&CollisionMap>) -> VisibleDrops {
         listed(&Listing { plan: &self.plan, speeds: &self.speeds, view, after_s, map }, &self.drops)
     }
 
-    /// The rate, mm/h, of the drops that fall in the volume, by the part of it that is open to the sky; of a view, in the
-    /// picture as far as each size is resolved.
+    /// Rate, mm/h, of the drops that fall in the volume, relative to its part that is open to the sky; for a view, in
+    /// the picture up to the distance at which each size is resolved.
     #[must_use]
     pub fn measured_rate_mm_h(&self, map: Option<&CollisionMap>) -> f64 {
         crate::disdrometer::rate_mm_h(&self.plan, &self.drops, map)
     }
 }
 
-/// The drops of a frustum that is filled anew.
+/// Drops of a refilled frustum.
 fn filled(plan: &Plan, world: &StepWorld<'_>) -> Result<Vec<StepDrop>, SimError> {
     let mut drops = fill(plan, world)?;
     drops.par_iter_mut().for_each(|drop| *drop = world.step_begin(drop));
@@ -265,33 +266,33 @@ fn filled(plan: &Plan, world: &StepWorld<'_>) -> Result<Vec<StepDrop>, SimError>
     Ok(drops)
 }
 
-/// What a step reads.
+/// Inputs of a step.
 fn world<'a>(
     frame: &'a StepFrame,
     speeds: &'a [f32],
     sizes: &'a [[f32; ENTER_SIZES as usize]],
     regions: &'a [EnterRegion],
-    moment: &Moment<'a>,
+    input: &StepInput<'a>,
 ) -> StepWorld<'a> {
-    StepWorld { frame, speeds, sizes, regions, field: moment.field, map: moment.map }
+    StepWorld { frame, speeds, sizes, regions, field: input.field, map: input.map }
 }
 
 /// A drop relative to the origin after the step.
 fn shifted(drop: &StepDrop, frame: &StepFrame) -> StepDrop {
-    let place = Vec3::from(drop.place) - Vec3::from(frame.shift);
-    StepDrop { place: place.to_array(), ..*drop }
+    let position = Vec3::from(drop.position) - Vec3::from(frame.shift);
+    StepDrop { position: position.to_array(), ..*drop }
 }
 
-/// What has happened to some of the drops.
+/// Events of some of the drops.
 #[derive(Default)]
-struct Told {
+struct EventRecord {
     events: Vec<StepEvent>,
     caught: StepCaught,
 }
 
-impl Told {
-    /// Notes what happened to a drop.
-    fn note(&mut self, made: StepMade) -> StepDrop {
+impl EventRecord {
+    /// Records the events of a drop.
+    fn add(&mut self, made: StepMade) -> StepDrop {
         self.events.extend(made.event);
         if let Some(volume) = made.caught {
             self.caught.drops += 1;
@@ -300,36 +301,37 @@ impl Told {
         made.drop
     }
 
-    /// Adds it to what is told; `room` is how many events may still be noted.
-    fn tell(self, room: &mut usize, happened: &mut Happened) {
-        let noted = self.events.len().min(*room);
-        *room -= noted;
-        happened.overflow += (self.events.len() - noted) as u64;
-        happened.events.extend_from_slice(&self.events[..noted]);
-        happened.caught.drops += self.caught.drops;
-        happened.caught.volume += self.caught.volume;
+    /// Appends to the events; `room` is the number of events that may still be recorded.
+    fn append_to(self, room: &mut usize, outcome: &mut StepEvents) {
+        let recorded = self.events.len().min(*room);
+        *room -= recorded;
+        outcome.overflow += (self.events.len() - recorded) as u64;
+        outcome.events.extend_from_slice(&self.events[..recorded]);
+        outcome.caught.drops += self.caught.drops;
+        outcome.caught.volume += self.caught.volume;
     }
 }
 
-/// The drops at first of a volume that keeps its number of drops, at rest in the air about them.
+/// Initial drops of a volume with a constant number of drops, at rest in the surrounding air.
 fn begin(
     plan: &Plan,
     population: &Population,
     speeds: &[f32],
-    moment: &Moment<'_>,
+    input: &StepInput<'_>,
 ) -> Result<Vec<StepDrop>, SimError> {
     let count = population.sizes.len();
     let mut drops = Vec::new();
     drops.try_reserve_exact(count).map_err(|_| SimError::memory(count as u64))?;
     let options = &plan.options;
     drops.par_extend(population.sizes.par_iter().enumerate().map(|(number, &size)| {
-        let (at, count) = place(number as u32, &options.volume, plan.view(), plan.origin(), options.seed);
+        let (at, count) =
+            initial_position(number as u32, &options.volume, plan.view(), plan.origin(), options.seed);
         let speed = speed_of(speeds, motion_diameter(size.into()));
-        let wind = moment.field.map_or(moment.wind, |field| field.sample(at));
-        let open = moment.map.is_none_or(|map| map.open(at));
+        let wind = input.field.map_or(input.wind, |field| field.sample(at));
+        let open = input.map.is_none_or(|map| map.open(at));
         let kind = if open { STEP_FALLING } else { STEP_HIDDEN };
         StepDrop {
-            place: at.to_array(),
+            position: at.to_array(),
             word: step_word(size.into(), kind, count),
             velocity: motion_settled(wind, speed).to_array(),
             last: 0,

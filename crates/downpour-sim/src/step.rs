@@ -1,8 +1,9 @@
 //! One step of every drop: Algorithm 1 of Rousseau 2008. Twin of `shaders/wgsl/sim/step.wgsl`.
 //!
-//! In a frustum a drop that meets a surface bounces or is gone, and so is one that leaves; others come in
-//! ([`crate::enter`]). The other volumes keep their number of drops: one that meets a surface bounces or goes on unseen, at
-//! its speed, until it leaves the volume and comes in elsewhere, where it is open rain again if nothing stands above it.
+//! In a frustum a drop that hits a surface bounces or is gone, and so is one that leaves; others enter
+//! ([`crate::enter`]). The other volumes keep their number of drops: one that hits a surface bounces or continues
+//! hidden, at its speed, until it leaves the volume and re-enters elsewhere, where it is visible again if nothing is
+//! above it.
 
 use bytemuck::{Pod, Zeroable};
 use downpour_drop::fall_speed::fall_speed_relaxation;
@@ -30,81 +31,81 @@ use crate::volume::{
     volume_offset, volume_on_disc,
 };
 
-/// What all drops share in a step. The same layout as `StepFrame` in WGSL.
+/// Parameters common to all drops of a step, in the layout of `StepFrame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct StepFrame {
     /// The eye after the step.
     pub now: VolumeEye,
-    /// What the origin has moved, m; in a box, up to whole boxes.
+    /// Displacement of the origin, m; in a box, modulo whole boxes.
     pub shift: [f32; 3],
-    /// Drops of this dispatch, or slots.
+    /// Number of drops of this dispatch, or of slots.
     pub count: u32,
     /// Edges of a box; radius, height and unused of a cylinder. m.
     pub size: [f32; 3],
     /// Number of the first drop.
     pub first: u32,
-    /// Middle of a box or cylinder, m.
-    pub centre: [f32; 3],
+    /// Center of a box or cylinder, m.
+    pub center: [f32; 3],
     /// One of `STEP_VOLUME_*`.
     pub volume: u32,
-    /// Wind where there is no field, m/s.
+    /// Wind without a field, m/s.
     pub wind: [f32; 3],
     /// Duration, s.
     pub time: f32,
-    /// Low and high word.
+    /// Seed: low and high word.
     pub seed: [u32; 2],
     /// Number of the step.
     pub step: u32,
-    /// 1: the eye is elsewhere altogether; no drop has come from where it was.
+    /// 1 after a jump of the eye: no drop of the old position is in view.
     pub elsewhere: u32,
-    /// The rain area of Im & Sung ends so far from the eye, m.
+    /// Radius of the rain area of Im & Sung around the eye, m.
     pub farthest: f32,
-    /// 1: drag as Rousseau 2008.
+    /// 1 for the drag of Rousseau 2008.
     pub average: u32,
-    /// Events that the buffer holds.
+    /// Capacity of the event buffer.
     pub events: u32,
-    /// Share of impacts that bounce.
+    /// Fraction of impacts that bounce.
     pub bounce: f32,
-    /// Share of the speed along the normal that comes back.
+    /// Fraction of the normal speed that is reflected.
     pub restitution: f32,
-    /// Share of the rest that is lost.
+    /// Fraction of the tangential speed that is lost.
     pub grip: f32,
-    /// Diameter of a bounced drop in that of the falling one.
+    /// Diameter of a bounced drop relative to that of the falling one.
     pub bounced_size: f32,
-    /// The longest time of a bounced drop, s.
+    /// Maximum time of a bounced drop, s.
     pub bounced_time: f32,
     /// Height of the gauge, m.
     pub gauge_height: f32,
-    /// 1: there is a gauge.
+    /// 1 if there is a gauge.
     pub gauge: u32,
-    /// Boxes by which the origin has moved and `shift` does not say, as [`step_pack`] has them.
+    /// Displacement of the origin in whole boxes, not included in `shift`, packed by [`step_pack`].
     pub boxes: u32,
     /// Padding of the WGSL layout.
     pub unused_1: u32,
-    /// The gauge's rectangle: lower x and z, upper x and z, m.
+    /// Rectangle of the gauge: lower x and z, upper x and z, m.
     pub gauge_area: [f32; 4],
     /// The frustum after the step.
     pub frustum: VolumeFrustum,
-    /// The frustum before the step, relative to the origin of now.
+    /// Frustum before the step, relative to the current origin.
     pub frustum_before: VolumeFrustum,
-    /// A direction in each plane of the frustum before the step.
+    /// Direction in each plane of the frustum before the step.
     pub tangents: [[f32; 4]; VOLUME_PLANES as usize],
-    /// By how much drops lag behind the uniform part of the wind, m/s, by their terminal speed.
+    /// Lag of drops behind the uniform part of the wind, m/s, by their terminal speed.
     pub lags: [[f32; 4]; STEP_LAGS as usize],
-    /// Steps after which a drop of a frustum is gone.
+    /// Number of steps after which a drop of a frustum is removed.
     pub oldest: u32,
-    /// Candidates that may come in.
+    /// Number of candidates that may enter.
     pub candidates: u32,
-    /// Their regions.
+    /// Number of their regions.
     pub regions: u32,
-    /// First word of the regions in the tables.
+    /// Index of the first word of the regions in the tables.
     pub regions_first: u32,
-    /// First word of the bins' sizes in the tables.
+    /// Index of the first word of the bins' sizes in the tables.
     pub sizes_first: u32,
-    /// Pieces that the drops are in.
+    /// Number of pieces of the drops.
     pub pieces: u32,
-    /// Number of this piece.
+    /// Index of this piece.
     pub piece: u32,
     /// Padding of the WGSL layout.
     pub unused_2: u32,
@@ -114,14 +115,14 @@ pub struct StepFrame {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct StepDrop {
-    /// m, relative to the origin.
-    pub place: [f32; 3],
+    /// Position, m, relative to the origin.
+    pub position: [f32; 3],
     /// Diameter in 16 bits, kind, and count.
     pub word: u32,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: [f32; 3],
-    /// In a frustum the number of the step in which it came. In other volumes the bits of the seconds that a bounced drop has
-    /// been on its way, or an unseen one is behind.
+    /// In a frustum the number of the step in which it entered. In other volumes the bits of a time in seconds: since
+    /// the bounce of a bounced drop, or the delay of a hidden one.
     pub last: u32,
 }
 
@@ -139,63 +140,64 @@ impl StepDrop {
     }
 }
 
-/// A drop on its way through a step.
+/// A moving drop within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StepFlight {
-    pub(crate) place: Vec3,
+    pub(crate) position: Vec3,
     pub(crate) kind: u32,
     pub(crate) velocity: Vec3,
     pub(crate) seconds: f32,
 }
 
-/// What is noted of an impact. The same layout as `StepEvent` in WGSL.
+/// Record of an impact, in the layout of `StepEvent` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct StepEvent {
-    /// m, relative to the origin.
-    pub place: [f32; 3],
-    /// m.
+    /// Position, m, relative to the origin.
+    pub position: [f32; 3],
+    /// Diameter, m.
     pub diameter: f32,
-    /// m/s, before the impact.
+    /// Velocity before the impact, m/s.
     pub velocity: [f32; 3],
-    /// Number of the drop (in a frustum its diameter and count), and in the highest two bits how it met what.
+    /// Number of the drop (in a frustum its diameter and count), and in the highest two bits the kind of drop and
+    /// surface.
     pub drop: u32,
 }
 
-/// What went through the gauge.
+/// Rain through the gauge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepCaught {
-    /// Drops.
+    /// Number of drops.
     pub drops: u64,
     /// Their volume in units of 1e-13 m^3.
     pub volume: u64,
 }
 
-/// What a step reads beside its drops.
+/// Inputs of a step beside its drops.
 #[derive(Clone, Copy, Debug)]
 pub struct StepWorld<'a> {
-    /// What all drops share.
+    /// Parameters common to all drops.
     pub frame: &'a StepFrame,
     /// Terminal speeds ([`crate::motion::motion_table`]).
     pub speeds: &'a [f32],
     /// Quantiles of the diameters of each bin, in steps of the 16 bits.
     pub sizes: &'a [[f32; ENTER_SIZES as usize]],
-    /// Regions of what comes into a frustum, and one that marks their end.
+    /// Regions of drops that enter a frustum, and one that marks their end.
     pub regions: &'a [EnterRegion],
-    /// The wind; `None`: that of the frame, everywhere.
+    /// Wind field; `None`: the wind of the frame everywhere.
     pub field: Option<&'a WindField>,
-    /// What stops drops; `None`: nothing does.
+    /// Collision map; `None`: no obstacles.
     pub map: Option<&'a CollisionMap>,
 }
 
-/// What became of a drop.
+/// Result of a step for a drop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepMade {
     /// The drop after the step.
     pub drop: StepDrop,
-    /// Its impact.
+    /// Its impact, if any.
     pub event: Option<StepEvent>,
-    /// The volume that went through the gauge, in its units.
+    /// Volume through the gauge, in its units, if any.
     pub caught: Option<u32>,
 }
 
@@ -205,34 +207,34 @@ pub fn step_kind(word: u32) -> u32 {
     (word >> STEP_KIND) & 3
 }
 
-/// Count of a drop: in a frustum its number among those that came with it, or the step in which it bounced; in a box the image
-/// of the box that it is in; else how often it has come in.
+/// Count of a drop: in a frustum its number among those that entered with it, or the step in which it bounced; in a
+/// box the image of the box that it is in; else the number of its re-entries.
 #[must_use]
 pub fn step_count(word: u32) -> u32 {
     word >> STEP_COUNT_SHIFT
 }
 
-/// A drop's word.
+/// Word of a drop.
 #[must_use]
 pub fn step_word(diameter: u32, kind: u32, count: u32) -> u32 {
     diameter | kind << STEP_KIND | count << STEP_COUNT_SHIFT
 }
 
-/// The diameter that a drop shows: a bounced one is smaller.
+/// Visible diameter of a drop: a bounced one is smaller.
 #[must_use]
 pub fn step_shown(word: u32, bounced_size: f32) -> f32 {
     let diameter = motion_diameter(word & STEP_DIAMETER);
     if step_kind(word) == STEP_BOUNCED { diameter * bounced_size } else { diameter }
 }
 
-/// Images of a box, in the bits of a count.
+/// Packs images of a box into the bits of a count.
 #[must_use]
 pub fn step_pack(images: Vec3) -> u32 {
     let [x, y, z] = images.to_array().map(|image| image as i32 as u32);
     y & STEP_IMAGE_Y | (x & 7) << STEP_IMAGE_X | (z & 7) << STEP_IMAGE_Z
 }
 
-/// The image of a box that is some images away.
+/// Image of a box at an offset of some images.
 #[must_use]
 pub fn step_image(count: u32, away: u32) -> u32 {
     let x = ((count >> STEP_IMAGE_X) + (away >> STEP_IMAGE_X)) & 7;
@@ -240,14 +242,14 @@ pub fn step_image(count: u32, away: u32) -> u32 {
     count.wrapping_add(away) & STEP_IMAGE_Y | x << STEP_IMAGE_X | z << STEP_IMAGE_Z
 }
 
-/// Where the column of a drop of a box stands in the image of the box with a number, m along x and z.
+/// Position of the column of a drop in an image of the box, m along x and z.
 #[must_use]
 pub fn step_column(seed: [u32; 2], drop: u32, count: u32, size: Vec3) -> Vec2 {
     let [x, z, ..] = rng_draw(seed, drop, count & STEP_IMAGE_Y, STEP_COLUMN).map(rng_unit);
     Vec2::new(x, z) * size.xz()
 }
 
-/// The volume of a drop in units of the gauge.
+/// Volume of a drop in units of the gauge.
 #[must_use]
 pub fn step_measure(diameter: f32) -> u32 {
     (STEP_GAUGE_PER_CUBE * diameter * diameter * diameter + 0.5) as u32
@@ -261,12 +263,12 @@ impl StepWorld<'_> {
         motion_table_speed(at(entry), at(entry + 1), diameter)
     }
 
-    /// The wind at a place.
+    /// Wind at a position.
     pub(crate) fn step_wind(&self, at: Vec3) -> Vec3 {
         self.field.map_or(Vec3::from(self.frame.wind), |field| field.sample(at))
     }
 
-    /// Velocity of a drop that comes to a place from the rain around: what it keeps of the wind on its way.
+    /// Velocity of a drop that arrives at a position from the surrounding rain: its relaxation to the wind on its path.
     pub(crate) fn step_coming(&self, at: Vec3, speed: f32) -> Vec3 {
         let wind = self.step_wind(at);
         let mut kept = wind;
@@ -274,7 +276,7 @@ impl StepWorld<'_> {
             let way = motion_settled(wind, speed) * fall_speed_relaxation(speed)[1];
             let first = self.step_wind(at - way * STEP_AGO_1);
             kept = first * STEP_WEIGHT_1 + self.step_wind(at - way * STEP_AGO_2) * STEP_WEIGHT_2;
-            // Along the fall it is forgotten twice as fast.
+            // Along the fall it relaxes twice as fast.
             kept.y = 0.5 * (wind.y + first.y);
         }
         let entry = (speed as u32).min(STEP_LAGS - 2) as usize;
@@ -283,19 +285,19 @@ impl StepWorld<'_> {
         motion_settled(kept + lag, speed)
     }
 
-    /// Whether a fall from `high` to `low` goes through the gauge.
+    /// True if a fall from `high` to `low` passes through the gauge.
     fn step_through(&self, high: Vec3, low: Vec3) -> bool {
         let frame = self.frame;
         if frame.gauge == 0 || high.y < frame.gauge_height || low.y >= frame.gauge_height {
             return false;
         }
-        let share = (high.y - frame.gauge_height) / (high.y - low.y);
-        let at = high + (low - high) * share;
+        let fraction = (high.y - frame.gauge_height) / (high.y - low.y);
+        let at = high + (low - high) * fraction;
         let [left, front, right, back] = frame.gauge_area;
         at.x >= left && at.z >= front && at.x < right && at.z < back
     }
 
-    /// A place of the rain area of Im & Sung.
+    /// Random position in the rain area of Im & Sung.
     fn step_area(&self, drop: u32) -> Vec3 {
         let frame = self.frame;
         let tries = (0..STEP_TRIES).map(|k| {
@@ -308,7 +310,7 @@ impl StepWorld<'_> {
             .unwrap_or(Vec3::new(0.0, 0.0, 0.5 * frame.farthest))
     }
 
-    /// What becomes of a drop within the time of a step, and what happens to it. `key` says who it is.
+    /// Moves a drop for the duration of a step; returns its new state and its events. `key` identifies the drop.
     pub(crate) fn step_fly(
         &self,
         key: [u32; 2],
@@ -317,12 +319,12 @@ impl StepWorld<'_> {
         flight: &StepFlight,
     ) -> (StepFlight, Option<StepEvent>, Option<u32>) {
         let frame = self.frame;
-        let StepFlight { place: from_place, mut kind, mut velocity, mut seconds } = *flight;
+        let StepFlight { position: from_position, mut kind, mut velocity, mut seconds } = *flight;
         let diameter = step_shown(word, frame.bounced_size);
         let speed = self.step_speed(diameter);
 
-        // Next velocity and place.
-        let wind = self.step_wind(from_place + velocity * (0.5 * frame.time));
+        // Next velocity and position.
+        let wind = self.step_wind(from_position + velocity * (0.5 * frame.time));
         let moved = if frame.average == 1 {
             motion_average(velocity, wind, speed, frame.time)
         } else {
@@ -331,24 +333,24 @@ impl StepWorld<'_> {
         velocity = moved.velocity;
         let mut displacement = moved.displacement;
         if kind == STEP_HIDDEN && seconds > 0.0 {
-            // It catches up with the rain that it would have been.
+            // It catches up with the rain that it replaces.
             let late = seconds.min(frame.time);
             displacement += motion_settled(wind, speed) * late;
             seconds -= late;
         }
-        let mut place = from_place + displacement;
+        let mut position = from_position + displacement;
 
-        // What stands in its way.
+        // Obstacles on its path.
         let mut event = None;
         if let Some(map) = self.map
             && kind != STEP_HIDDEN
             && frame.elsewhere == 0
-            && let Some(hit) = map.find(from_place, place)
+            && let Some(hit) = map.find(from_position, position)
         {
-            let at = from_place + displacement * hit.share;
+            let at = from_position + displacement * hit.fraction;
             let how = hit.kind - 1 + if kind == STEP_BOUNCED { 2 } else { 0 };
             event = Some(StepEvent {
-                place: at.to_array(),
+                position: at.to_array(),
                 diameter,
                 velocity: velocity.to_array(),
                 drop: number | how << STEP_EVENT_KIND,
@@ -356,29 +358,29 @@ impl StepWorld<'_> {
             if kind == STEP_FALLING && hit.kind == COLLISION_SURFACE && self.step_bounces(key) {
                 kind = STEP_BOUNCED;
                 velocity = motion_bounce(velocity, hit.normal, frame.restitution, frame.grip);
-                place = at + hit.normal * STEP_CLEAR;
+                position = at + hit.normal * STEP_CLEAR;
                 seconds = 0.0;
             } else {
                 kind = STEP_HIDDEN;
             }
         }
-        let caught = kind == STEP_FALLING && self.step_through(from_place, place);
-        (StepFlight { place, kind, velocity, seconds }, event, caught.then(|| step_measure(diameter)))
+        let caught = kind == STEP_FALLING && self.step_through(from_position, position);
+        (StepFlight { position, kind, velocity, seconds }, event, caught.then(|| step_measure(diameter)))
     }
 
-    /// Whether the drop of a key comes back from a surface.
+    /// True if the drop of a key bounces from a surface.
     fn step_bounces(&self, key: [u32; 2]) -> bool {
         bounces(self.frame.seed, key, self.frame.bounce)
     }
 
-    /// Whether a drop is in the frustum after the step: where it will be in the middle of the horizon.
-    fn step_inside(&self, place: Vec3, velocity: Vec3, diameter: f32) -> bool {
+    /// True if a drop is in the frustum after the step, by its position in the middle of the horizon.
+    fn step_inside(&self, position: Vec3, velocity: Vec3, diameter: f32) -> bool {
         let frustum = &self.frame.frustum;
-        let offset = place + velocity * frustum.half_horizon - Vec3::from(frustum.eye);
+        let offset = position + velocity * frustum.half_horizon - Vec3::from(frustum.eye);
         volume_limit(frustum, offset, diameter, self.step_speed(diameter)) == VOLUME_INSIDE
     }
 
-    /// A step of a drop of a frustum, whose position is relative to the origin after the step.
+    /// Makes a step of a drop of a frustum, whose position is relative to the origin after the step.
     #[must_use]
     pub fn step_view(&self, drop: &StepDrop) -> StepMade {
         let frame = self.frame;
@@ -386,7 +388,7 @@ impl StepWorld<'_> {
         let mut count = step_count(drop.word);
         let number = bits | count << STEP_KIND;
         let start =
-            StepFlight { place: drop.place.into(), kind, velocity: drop.velocity.into(), seconds: 0.0 };
+            StepFlight { position: drop.position.into(), kind, velocity: drop.velocity.into(), seconds: 0.0 };
         let (flight, event, caught) = self.step_fly([number, drop.last], number, drop.word, &start);
         let mut then = flight.kind;
         if then == STEP_BOUNCED {
@@ -399,12 +401,12 @@ impl StepWorld<'_> {
         let old = frame.step.wrapping_sub(drop.last) > frame.oldest;
         if then == STEP_HIDDEN
             || old
-            || !self.step_inside(flight.place, flight.velocity, motion_diameter(bits))
+            || !self.step_inside(flight.position, flight.velocity, motion_diameter(bits))
         {
             then = STEP_GONE;
         }
         let drop = StepDrop {
-            place: flight.place.to_array(),
+            position: flight.position.to_array(),
             word: step_word(bits, then, count),
             velocity: flight.velocity.to_array(),
             last: drop.last,
@@ -412,30 +414,30 @@ impl StepWorld<'_> {
         StepMade { drop, event, caught }
     }
 
-    /// A drop of a frustum that is filled anew, of which the position is known where it will be in the middle of the horizon.
+    /// Initial state of a drop of a refilled frustum, from its position in the middle of the horizon.
     pub(crate) fn step_begin(&self, drop: &StepDrop) -> StepDrop {
         let bits = drop.word & STEP_DIAMETER;
-        let velocity = self.step_coming(drop.place.into(), self.step_speed(motion_diameter(bits)));
-        let place = Vec3::from(drop.place) - velocity * self.frame.frustum.half_horizon;
-        let open = self.map.is_none_or(|map| map.open(place));
+        let velocity = self.step_coming(drop.position.into(), self.step_speed(motion_diameter(bits)));
+        let position = Vec3::from(drop.position) - velocity * self.frame.frustum.half_horizon;
+        let open = self.map.is_none_or(|map| map.open(position));
         StepDrop {
-            place: place.to_array(),
+            position: position.to_array(),
             word: step_word(bits, if open { STEP_FALLING } else { STEP_GONE }, step_count(drop.word)),
             velocity: velocity.to_array(),
             last: drop.last,
         }
     }
 
-    /// Where a drop is that came to `place`, and its count, which changes where it has come in anew.
-    pub(crate) fn step_relocate(&self, drop: u32, count: u32, place: Vec3) -> (Vec3, u32) {
+    /// Wraps the position of a drop into the volume; returns it and its count, which changes on re-entry.
+    pub(crate) fn step_relocate(&self, drop: u32, count: u32, position: Vec3) -> (Vec3, u32) {
         let frame = self.frame;
-        let (eye, eye_place) = (&frame.now, Vec3::from(frame.now.place));
-        let (centre, size) = (Vec3::from(frame.centre), Vec3::from(frame.size));
+        let (eye, eye_position) = (&frame.now, Vec3::from(frame.now.position));
+        let (center, size) = (Vec3::from(frame.center), Vec3::from(frame.size));
         let next = count.wrapping_add(1) & STEP_COUNT;
         match frame.volume {
             STEP_VOLUME_BOX => {
-                let images = volume_images(place, centre, size);
-                let kept = place - size * images;
+                let images = volume_images(position, center, size);
+                let kept = position - size * images;
                 let image = step_image(step_image(count, step_pack(images)), frame.boxes);
                 if (image ^ count) & STEP_IMAGE_Y == 0 {
                     return (kept, image);
@@ -444,40 +446,40 @@ impl StepWorld<'_> {
                 let column =
                     step_column(frame.seed, drop, image, size) - step_column(frame.seed, drop, count, size);
                 let moved = kept + Vec3::new(column.x, 0.0, column.y);
-                let across = volume_images(moved, centre, size) * Vec3::new(1.0, 0.0, 1.0);
+                let across = volume_images(moved, center, size) * Vec3::new(1.0, 0.0, 1.0);
                 (moved - size * across, step_image(image, step_pack(across)))
             }
             STEP_VOLUME_AREA => {
-                if volume_in_area(eye, volume_local(eye, place - eye_place), frame.farthest) {
-                    return (place, count);
+                if volume_in_area(eye, volume_local(eye, position - eye_position), frame.farthest) {
+                    return (position, count);
                 }
-                (eye_place + volume_offset(eye, self.step_area(drop)), next)
+                (eye_position + volume_offset(eye, self.step_area(drop)), next)
             }
             _ => {
                 let [x, y, ..] = rng_draw(frame.seed, drop, frame.step, STEP_TOP).map(rng_unit);
                 let random = Vec2::new(x, y);
-                let offset = place - centre;
+                let offset = position - center;
                 let half = 0.5 * size.y;
                 if frame.volume == STEP_VOLUME_TARIQ {
                     if offset.y >= -half {
-                        return (place, count);
+                        return (position, count);
                     }
                     let across = (random - 0.5) * size.xz();
-                    return (centre + Vec3::new(across.x, offset.y + size.y, across.y), next);
+                    return (center + Vec3::new(across.x, offset.y + size.y, across.y), next);
                 }
                 let radius = size.x;
                 if offset.y >= -half && offset.xz().dot(offset.xz()) <= radius * radius {
-                    return (place, count);
+                    return (position, count);
                 }
                 let disc = radius * volume_on_disc(random);
                 let height = offset.y + if offset.y < -half { size.y } else { 0.0 };
-                (centre + Vec3::new(disc.x, height, disc.y), next)
+                (center + Vec3::new(disc.x, height, disc.y), next)
             }
         }
     }
 
-    /// A step of the drop with a number, of a volume that keeps its number of drops. Its position is relative to the origin
-    /// after the step.
+    /// Makes a step of a drop, by its number, of a volume with a constant number of drops. Its position is relative to
+    /// the origin after the step.
     #[must_use]
     pub fn step_slot(&self, number: u32, drop: &StepDrop) -> StepMade {
         let frame = self.frame;
@@ -488,27 +490,27 @@ impl StepWorld<'_> {
             seconds += frame.time;
         }
         let start = StepFlight {
-            place: drop.place.into(),
+            position: drop.position.into(),
             kind: drop.kind(),
             velocity: drop.velocity.into(),
             seconds,
         };
         let (flight, event, caught) = self.step_fly([number, count], number, drop.word, &start);
-        let StepFlight { place, mut kind, mut velocity, mut seconds } = flight;
+        let StepFlight { position, mut kind, mut velocity, mut seconds } = flight;
         if kind == STEP_BOUNCED && seconds > frame.bounced_time {
             kind = STEP_HIDDEN;
         }
 
-        // What has left the volume.
-        let (kept, count) = self.step_relocate(number, count, place);
-        if kept != place || frame.elsewhere == 1 {
+        // It may have left the volume.
+        let (kept, count) = self.step_relocate(number, count, position);
+        if kept != position || frame.elsewhere == 1 {
             seconds = 0.0;
             let open = self.map.is_none_or(|map| map.open(kept));
             kind = if open { STEP_FALLING } else { STEP_HIDDEN };
             velocity = motion_settled(self.step_wind(kept), self.step_speed(motion_diameter(bits)));
         }
         let drop = StepDrop {
-            place: kept.to_array(),
+            position: kept.to_array(),
             word: step_word(bits, kind, count),
             velocity: velocity.to_array(),
             last: seconds.to_bits(),
@@ -517,8 +519,8 @@ impl StepWorld<'_> {
     }
 }
 
-/// Whether the drop of a key comes back from a surface, of which a share does.
-pub(crate) fn bounces(seed: [u32; 2], key: [u32; 2], share: f32) -> bool {
+/// True if the drop of a key bounces from a surface, for a fraction of bouncing impacts.
+pub(crate) fn bounces(seed: [u32; 2], key: [u32; 2], fraction: f32) -> bool {
     let [chance, ..] = rng_draw(seed, key[0], key[1], STEP_CHANCE).map(rng_unit);
-    chance < share
+    chance < fraction
 }

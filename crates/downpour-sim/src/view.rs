@@ -1,4 +1,4 @@
-//! What a camera can resolve of a rain.
+//! Camera view, and the drops that it can resolve.
 
 use downpour_math::ops::f64 as ops;
 use glam::DVec3;
@@ -8,14 +8,14 @@ use crate::SimError;
 /// Half the vertical field of view of [`View::default`]: 25 degrees, as a tangent.
 const HALF_HEIGHT: f64 = 0.466_307_658_154_998_6;
 
-/// The part of space that a perspective picture shows, and how fine its pixels are.
+/// Part of space that a perspective picture shows, and the size of its pixels.
 ///
-/// A drop is listed if its path while the shutter is open touches the pyramid of the picture, if it is between `near` and
-/// `far` in the middle of that time, and if its diameter is then at least `least_pixels` pixels on the picture. All others
-/// are unresolved.
+/// A drop is listed if its path during the exposure touches the pyramid of the picture, if it is between `near` and
+/// `far` in the middle of that time, and if its diameter is then at least `least_pixels` pixels on the picture. All
+/// others are unresolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// The eye, metres.
+    /// Position of the eye, metres.
     pub eye: DVec3,
     /// Unit vectors along the columns, the rows from below, and the view.
     pub right: DVec3,
@@ -29,24 +29,24 @@ pub struct View {
     pub half_height: f64,
     /// Width of a pixel at distance 1.
     pub pixel_angle: f64,
-    /// Nearest distance from the eye, metres.
+    /// Minimum distance from the eye, metres.
     pub near: f64,
-    /// Farthest distance from the eye, metres.
+    /// Maximum distance from the eye, metres.
     pub far: f64,
-    /// The least diameter on the picture, pixels.
+    /// Minimum diameter on the picture, pixels.
     pub least_pixels: f64,
-    /// Time in seconds in which the shutter is open; the picture's time is in the middle of it.
+    /// Exposure in seconds; the picture's time is in the middle of it.
     pub shutter_s: f64,
     /// Velocity of the eye, m/s.
     pub velocity: DVec3,
-    /// Axis about which the camera turns, right-handed, of the length of its angular speed, rad/s.
+    /// Axis of the camera's rotation, right-handed, with the length of its angular speed, rad/s.
     pub turning: DVec3,
-    /// The least diameter is raised until no more drops than this are to be expected.
+    /// Maximum expected number of drops; the minimum diameter is raised to meet it.
     pub most_drops: u32,
 }
 
 impl Default for View {
-    /// From the origin along -Z, 50 degrees high, 1280 x 720 pixels; drops from 0.4 of a pixel, 5 cm to 50 m away,
+    /// From the origin along -Z, 50 degrees high, 1280 x 720 pixels; drops from 0.4 pixels, at 5 cm to 50 m,
     /// two million at most.
     fn default() -> Self {
         Self {
@@ -68,7 +68,7 @@ impl Default for View {
     }
 }
 
-/// The corners of a box along the axes.
+/// Corners of an axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bounds {
     pub(crate) low: DVec3,
@@ -77,7 +77,7 @@ pub(crate) struct Bounds {
 
 impl View {
     /// # Errors
-    /// [`SimError::OutOfRange`] if a number is not finite or makes no picture.
+    /// [`SimError::OutOfRange`] if a number is not finite or the view is degenerate.
     pub(crate) fn check(&self) -> Result<(), SimError> {
         let error =
             |quantity, found, unit, allowed| Err(SimError::OutOfRange { quantity, found, unit, allowed });
@@ -87,9 +87,9 @@ impl View {
                 return error("length of an axis of the camera", length, "", "1");
             }
         }
-        let place = self.eye.abs().max_element();
-        if !(self.eye.is_finite() && place <= 1.0e7) {
-            return error("place of the eye", place, "m", "-1e7 to 1e7");
+        let position = self.eye.abs().max_element();
+        if !(self.eye.is_finite() && position <= 1.0e7) {
+            return error("position of the eye", position, "m", "-1e7 to 1e7");
         }
         for half in [self.half_width, self.half_height] {
             if !(half > 0.0 && half <= 1.0e6) {
@@ -122,19 +122,19 @@ impl View {
         Ok(())
     }
 
-    /// How far, in metres, a drop of a diameter in metres is resolved if it has to have so many pixels.
+    /// Distance, in metres, up to which a drop of a diameter in metres has so many pixels.
     #[must_use]
     pub fn range(&self, diameter: f64, least_pixels: f64) -> f64 {
         let range = diameter / (self.pixel_angle * least_pixels).max(1.0e-12);
         range.min(self.far)
     }
 
-    /// The volume of the picture up to a distance, at most.
+    /// Upper bound of the volume of the picture up to a distance.
     pub(crate) fn volume(&self, range: f64) -> f64 {
         4.0 * self.half_width * self.half_height * range * range * range / 3.0
     }
 
-    /// A box round the picture up to a distance, with a margin. Wide pictures are cut to the sphere of that distance.
+    /// Box around the picture up to a distance, with a margin. Wide pictures are cut to the sphere of that distance.
     pub(crate) fn bounds(&self, range: f64, margin: f64) -> Bounds {
         let (mut low, mut high) = (self.eye, self.eye);
         let half = self.swept_half();
@@ -147,18 +147,18 @@ impl View {
         Bounds { low: low.max(self.eye - reach) - margin, high: high.min(self.eye + reach) + margin }
     }
 
-    /// Half the picture's width and height at distance 1, wider by what the camera turns while the shutter is open.
+    /// Half the picture's width and height at distance 1, widened by the rotation of the camera during the exposure.
     fn swept_half(&self) -> [f64; 2] {
         let turned = 0.5 * self.shutter_s * self.turning.length();
         [self.half_width, self.half_height].map(|half| half + turned * (1.0 + half * half))
     }
 
-    /// How far, m, a drop of a velocity moves relative to the eye in half the time that the shutter is open.
+    /// Distance, m, that a drop of a velocity moves relative to the eye in half the exposure.
     pub(crate) fn half_way(&self, velocity: DVec3) -> f64 {
         0.5 * self.shutter_s * (velocity - self.velocity).length()
     }
 
-    /// Outward normals of the pyramid's sides: right, left, top and bottom; and of the plane through the eye that is behind.
+    /// Outward normals of the pyramid's sides: right, left, top and bottom; and of the plane behind the eye.
     pub(crate) fn sides(&self) -> [DVec3; 5] {
         let side = |along: DVec3, half: f64| (along - self.forward * half) / (1.0 + half * half).sqrt();
         [
@@ -170,14 +170,14 @@ impl View {
         ]
     }
 
-    /// Sides of the pyramid that holds all that the camera sees while the shutter is open.
+    /// Sides of the pyramid that holds all that the camera sees during the exposure.
     pub(crate) fn swept_sides(&self) -> [DVec3; 5] {
         let [half_width, half_height] = self.swept_half();
         Self { half_width, half_height, ..*self }.sides()
     }
 
-    /// Whether the path of a sphere touches the picture during a part of the exposure, and it is between the nearest distance
-    /// and `range` at the picture's time. `part`: times relative to the picture's, s.
+    /// True if the path of a sphere touches the picture during a part of the exposure, and it is between the minimum
+    /// distance and `range` at the picture's time. `part`: times relative to the picture's, s.
     pub(crate) fn shows(
         &self,
         sides: &[DVec3; 5],
@@ -202,7 +202,7 @@ impl View {
     }
 }
 
-/// `v` turned about an axis by the axis's length, in radians.
+/// Rotates `v` about an axis by the axis's length, in radians.
 fn turned(v: DVec3, axis: DVec3) -> DVec3 {
     let angle = axis.length();
     if angle < 1.0e-12 {
@@ -213,7 +213,7 @@ fn turned(v: DVec3, axis: DVec3) -> DVec3 {
     v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine))
 }
 
-/// Whether a sphere at `offset` from the eye is within a margin of planes through the eye.
+/// True if a sphere at `offset` from the eye is within a margin of planes through the eye.
 pub(crate) fn within(sides: &[DVec3; 5], offset: DVec3, margin: f64) -> bool {
     sides.iter().all(|side| side.dot(offset) <= margin)
 }

@@ -1,8 +1,9 @@
-//! The part of space that drops are simulated in. Twin of `shaders/wgsl/sim/volume.wgsl`.
+//! Part of space in which drops are simulated. Twin of `shaders/wgsl/sim/volume.wgsl`.
 //!
-//! In a box (Rousseau 2006, 7; 2008, 2.1) the rain is periodic: a drop goes to the opposite face. In a view it is the
-//! frustum of the picture up to the distance at which a size is resolved (after Im & Sung 2022, 3.A and B), wider by the way
-//! of a drop during the horizon, the time that pictures of one state cover: five planes and a ball.
+//! In a box (Rousseau 2006, 7; 2008, 2.1) the rain is periodic: a drop moves to the opposite face. In a view the
+//! volume is the frustum of the picture up to the distance at which a size is resolved (after Im & Sung 2022, 3.A and
+//! B), widened by the path of a drop during the horizon, the time that pictures of one state cover: five planes and a
+//! ball.
 
 use bytemuck::{Pod, Zeroable};
 use downpour_math::ops;
@@ -12,34 +13,34 @@ use glam::{DVec3, Vec2, Vec3, Vec4, Vec4Swizzles as _};
 
 use crate::view::View;
 
-/// The eye, and the part of space that it sees. The same layout as `VolumeEye` in WGSL.
+/// Eye and its view, in the layout of `VolumeEye` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct VolumeEye {
-    /// m, relative to the origin of its time.
-    pub place: [f32; 3],
+    /// Position, m, relative to the origin of its time.
+    pub position: [f32; 3],
     /// Half the width of the picture at distance 1.
     pub half_width: f32,
-    /// Unit vector.
+    /// Unit vector to the right.
     pub right: [f32; 3],
     /// Half the height of the picture at distance 1.
     pub half_height: f32,
-    /// Unit vector.
+    /// Unit vector up.
     pub up: [f32; 3],
     /// Padding of the WGSL layout.
     pub unused_1: u32,
-    /// Unit vector.
+    /// Unit vector forward.
     pub forward: [f32; 3],
     /// Padding of the WGSL layout.
     pub unused_2: u32,
 }
 
 impl VolumeEye {
-    /// The eye of a view, in a place relative to `origin`.
+    /// Eye of a view, relative to `origin`.
     #[must_use]
     pub fn new(view: &View, origin: DVec3) -> Self {
         Self {
-            place: (view.eye - origin).as_vec3().to_array(),
+            position: (view.eye - origin).as_vec3().to_array(),
             half_width: view.half_width as f32,
             right: view.right.as_vec3().to_array(),
             half_height: view.half_height as f32,
@@ -51,15 +52,15 @@ impl VolumeEye {
     }
 }
 
-/// The frustum of a picture, with margins, about which drops are where they will be in the middle of the horizon. The same
-/// layout as `VolumeFrustum` in WGSL.
+/// Frustum of a picture with margins, for drops at their positions in the middle of the horizon. The layout of
+/// `VolumeFrustum` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct VolumeFrustum {
-    /// Outward unit normals of right, left, top, bottom and back; the speed along them, relative to the eye, of the air at
-    /// the eye, m/s. All planes go through the eye.
+    /// Outward unit normals of right, left, top, bottom and back; fourth component: speed along them of the air at the
+    /// eye relative to the eye, m/s. All planes pass through the eye.
     pub planes: [[f32; 4]; VOLUME_PLANES as usize],
-    /// m.
+    /// Position of the eye, m.
     pub eye: [f32; 3],
     /// Speed of the air at the eye relative to the eye, m/s.
     pub air: f32,
@@ -67,24 +68,24 @@ pub struct VolumeFrustum {
     pub half_horizon: f32,
     /// Half the longest time from a state to the opening of the shutter, s.
     pub half_wait: f32,
-    /// How far the wind, and what drops keep of it, leaves that at the eye, m/s.
+    /// Bound on the deviation of the wind, and of the drops' velocity due to it, from the wind at the eye, m/s.
     pub spread: f32,
-    /// The same per m of distance, 1/s.
+    /// Increase of that bound per m of distance, 1/s.
     pub spread_slope: f32,
-    /// The same at most, m/s.
-    pub spread_most: f32,
+    /// Maximum of that bound, m/s.
+    pub spread_max: f32,
     /// Distance at which a drop is resolved, per diameter.
     pub range: f32,
-    /// At most, m.
+    /// Maximum of that distance, m.
     pub farthest: f32,
     /// Padding of the WGSL layout.
     pub unused: u32,
 }
 
-/// Number of edges of a box around `centre` by which a position is away from its periodic image in the box.
+/// Number of edges of a box around `center` between a position and its periodic image in the box.
 #[must_use]
-pub fn volume_images(place: Vec3, centre: Vec3, size: Vec3) -> Vec3 {
-    ((place - centre) / size + 0.5).floor()
+pub fn volume_images(position: Vec3, center: Vec3, size: Vec3) -> Vec3 {
+    ((position - center) / size + 0.5).floor()
 }
 
 /// Distance at which a diameter is resolved, m.
@@ -93,13 +94,13 @@ pub fn volume_range(frustum: &VolumeFrustum, diameter: f32) -> f32 {
     (diameter * frustum.range).min(frustum.farthest)
 }
 
-/// Bound on the difference of the wind from that at the eye within a distance, and of what drops keep of it, m/s.
+/// Bound on the deviation of the wind, and of the drops' velocity due to it, within a distance of the eye, m/s.
 #[must_use]
 pub fn volume_spread(frustum: &VolumeFrustum, range: f32) -> f32 {
-    (frustum.spread + frustum.spread_slope * range).min(frustum.spread_most)
+    (frustum.spread + frustum.spread_slope * range).min(frustum.spread_max)
 }
 
-/// Index of the first limit of the frustum beyond which a drop is that is at `offset` from the eye: a plane, `VOLUME_BALL`,
+/// Index of the first limit of the frustum that a drop at `offset` from the eye violates: a plane, `VOLUME_BALL`,
 /// or `VOLUME_INSIDE`. `speed` is its terminal speed.
 #[must_use]
 pub fn volume_limit(frustum: &VolumeFrustum, offset: Vec3, diameter: f32, speed: f32) -> u32 {
@@ -117,7 +118,7 @@ pub fn volume_limit(frustum: &VolumeFrustum, offset: Vec3, diameter: f32, speed:
     if offset.dot(offset) > reach * reach { VOLUME_BALL } else { VOLUME_INSIDE }
 }
 
-/// What the eye sees of an offset from it: to the right, up, and ahead.
+/// Converts an offset from the eye to camera space: right, up, and forward.
 #[must_use]
 pub fn volume_local(eye: &VolumeEye, offset: Vec3) -> Vec3 {
     Vec3::new(
@@ -127,13 +128,13 @@ pub fn volume_local(eye: &VolumeEye, offset: Vec3) -> Vec3 {
     )
 }
 
-/// The offset from the eye of what it sees.
+/// Converts camera space to an offset from the eye.
 #[must_use]
 pub fn volume_offset(eye: &VolumeEye, local: Vec3) -> Vec3 {
     Vec3::from(eye.right) * local.x + Vec3::from(eye.up) * local.y + Vec3::from(eye.forward) * local.z
 }
 
-/// Whether a place is in the rain area of Im & Sung: in the pyramid and in the sphere between eye and `range`.
+/// True if a position is in the rain area of Im & Sung: in the pyramid and in the sphere between eye and `range`.
 #[must_use]
 pub fn volume_in_area(eye: &VolumeEye, local: Vec3, range: f32) -> bool {
     let radius = 0.5 * range;
@@ -143,7 +144,7 @@ pub fn volume_in_area(eye: &VolumeEye, local: Vec3, range: f32) -> bool {
         && from_middle.dot(from_middle) <= radius * radius
 }
 
-/// A place in the sphere by Im & Sung, (3) and (4): three random numbers of [0, 1). Dense about the middle.
+/// Position in the sphere by Im & Sung, (3) and (4): three random numbers in [0, 1). Dense near the middle.
 #[must_use]
 pub fn volume_in_sphere(random: Vec3, range: f32) -> Vec3 {
     let radius = 0.5 * range;
@@ -158,14 +159,14 @@ pub fn volume_in_sphere(random: Vec3, range: f32) -> Vec3 {
     )
 }
 
-/// A place on a disc of radius 1, from two random numbers of [0, 1).
+/// Position on a disc of radius 1, from two random numbers in [0, 1).
 #[must_use]
 pub fn volume_on_disc(random: Vec2) -> Vec2 {
     let angle = VOLUME_TURN * (random.x - 0.5);
     random.y.sqrt() * Vec2::new(ops::cos(angle), ops::sin(angle))
 }
 
-/// The solid angle of a picture, sr.
+/// Solid angle of a picture, sr.
 #[must_use]
 pub fn solid_angle(half_width: f64, half_height: f64) -> f64 {
     let (a, b) = (half_width, half_height);
@@ -180,18 +181,18 @@ mod tests {
 
     #[test]
     fn a_box_of_one_image() {
-        let (centre, size) = (Vec3::new(100.0, -3.0, 7.0), Vec3::new(4.0, 5.0, 6.0));
+        let (center, size) = (Vec3::new(100.0, -3.0, 7.0), Vec3::new(4.0, 5.0, 6.0));
         for k in 0..1000 {
             let [x, y, z, _] = rng_draw([1, 2], k, 0, 0).map(|w| 400.0 * rng_unit(w) - 200.0);
-            let place = Vec3::new(x, y, z);
-            let kept = place - size * volume_images(place, centre, size);
-            assert!(((kept - centre).abs() * 2.0).cmple(size + 1.0e-4).all(), "{kept}");
-            let boxes = (kept - place) / size;
+            let position = Vec3::new(x, y, z);
+            let kept = position - size * volume_images(position, center, size);
+            assert!(((kept - center).abs() * 2.0).cmple(size + 1.0e-4).all(), "{kept}");
+            let boxes = (kept - position) / size;
             assert!((boxes - boxes.round()).abs().max_element() < 1.0e-4, "{boxes}");
         }
     }
 
-    /// All of it seen from within is 4 pi / 6 through a face of a cube.
+    /// A cube face seen from the center has 4 pi / 6.
     #[test]
     fn the_face_of_a_cube() {
         assert_relative_eq!(solid_angle(1.0, 1.0), 4.0 * std::f64::consts::PI / 6.0, max_relative = 1.0e-12);

@@ -1,4 +1,4 @@
-//! What stops drops, against scenes whose answer is known and against exact rays.
+//! Collision map against scenes with known answers and against exact rays.
 
 #[path = "collision/scenes.rs"]
 mod scenes;
@@ -16,7 +16,7 @@ use scenes::{Triangle, boxes, cuboid, floor, quad, sphere, turned, units};
 
 const DOWN: Vec3 = Vec3::NEG_Y;
 
-/// A map of `n` x `n` texels over `size` metres round the origin.
+/// A map of `n` x `n` texels over `size` metres around the origin.
 fn map(scene: &[Triangle], fall: Vec3, size: f32, n: u32) -> CollisionMap {
     let options = CollisionOptions { fall, size: [size; 2], texels: [n; 2], ..CollisionOptions::default() };
     CollisionMap::new(&options, &Bvh::new(scene)).expect("a map")
@@ -31,10 +31,10 @@ fn angle(a: Vec3, b: Vec3) -> f32 {
     2.0 * ops::asin(0.5 * (a - b).length().min(2.0))
 }
 
-fn expect(hit: Option<CollisionHit>, kind: u32, share: f32, normal: Vec3) {
+fn expect(hit: Option<CollisionHit>, kind: u32, fraction: f32, normal: Vec3) {
     let hit = hit.expect("nothing was hit");
     assert_eq!(hit.kind, kind, "{hit:?}");
-    assert!((hit.share - share).abs() < 1.0e-3 && angle(hit.normal, normal) < 1.0e-3, "{hit:?}");
+    assert!((hit.fraction - fraction).abs() < 1.0e-3 && angle(hit.normal, normal) < 1.0e-3, "{hit:?}");
 }
 
 /// A fall of so many degrees from down towards +X.
@@ -54,17 +54,17 @@ fn under_a_roof_it_is_dry_and_the_floor_stops_what_the_wind_brings() {
         expect(map.find(at(x, 3.2, 0.5), at(x, 2.8, 0.5)), COLLISION_SURFACE, 0.5, Vec3::Y);
     }
     assert!(map.open(at(2.2, 0.1, 0.5)) && map.inside(at(2.2, -0.1, 0.5)));
-    // In from the side, below the roof, to the floor.
+    // From the side, below the roof, to the floor.
     assert_eq!(map.find(at(2.3, 1.5, 0.0), at(1.2, 1.0, 0.3)), None);
     expect(map.find(at(1.2, 0.3, 0.3), at(0.6, -0.1, 0.3)), COLLISION_SURFACE, 0.75, Vec3::Y);
-    // What is blown upwards meets the roof from below.
+    // A drop that is blown upwards hits the roof from below.
     expect(map.find(at(0.5, 2.9, 0.0), at(0.6, 3.1, 0.0)), COLLISION_SURFACE, 0.5, Vec3::NEG_Y);
-    // What has bounced leaves, even if it is 1 mm below what it bounced off.
+    // A bounced drop leaves, even if it is 1 mm below the surface.
     for y in [0.0, 3.0] {
         for below in [0.0, 0.5e-3, -1.0e-3] {
             assert_eq!(map.find(at(0.5, y - below, 0.0), at(0.55, y + 0.05, 0.02)), None, "{y} - {below}");
             let again = map.find(at(0.5, y - below, 0.0), at(0.55, y - 0.05, 0.02));
-            assert!(again.is_some_and(|hit| hit.share < 0.03), "{y} - {below}: {again:?}");
+            assert!(again.is_some_and(|hit| hit.fraction < 0.03), "{y} - {below}: {again:?}");
         }
     }
 }
@@ -73,20 +73,20 @@ fn under_a_roof_it_is_dry_and_the_floor_stops_what_the_wind_brings() {
 fn outside_the_map_and_without_a_scene_everything_is_open() {
     let hilly = map(&floor([-10.0, -10.0], [10.0, 10.0], 0.0), DOWN, 4.0, 40);
     let empty = map(&[], slanted(20.0), 4.0, 40);
-    for place in [at(2.1, -5.0, 0.0), at(0.0, -5.0, -2.1), at(1.0e9, -1.0, 0.0), at(f32::NAN, -1.0, 0.0)] {
-        assert!(hilly.open(place) && !hilly.inside(place), "{place}");
-        assert_eq!(hilly.find(place, place + at(0.01, -1.0, 0.0)), None, "{place}");
+    for position in [at(2.1, -5.0, 0.0), at(0.0, -5.0, -2.1), at(1.0e9, -1.0, 0.0), at(f32::NAN, -1.0, 0.0)] {
+        assert!(hilly.open(position) && !hilly.inside(position), "{position}");
+        assert_eq!(hilly.find(position, position + at(0.01, -1.0, 0.0)), None, "{position}");
     }
     assert!(empty.open(at(0.0, -100.0, 0.0)) && empty.find(Vec3::ZERO, at(0.0, -100.0, 0.0)).is_none());
     assert!(empty.texels().iter().all(|t| t.depths[0] >= COLLISION_NONE));
-    // A way that crosses the whole map is looked at for 32 texels and no farther: it says so.
+    // A path that crosses the whole map is followed for 32 texels and no farther; the result says so.
     let hit = downpour_sim::collision::collision_find(
         hilly.frame(),
         hilly.texels(),
         at(-1.95, 0.5, 0.0),
         at(6.05, 0.5, 0.0),
     );
-    assert!(hit.kind == 0 && (hit.share - 31.5 / 80.0).abs() < 0.02, "{hit:?}");
+    assert!(hit.kind == 0 && (hit.fraction - 31.5 / 80.0).abs() < 0.02, "{hit:?}");
 }
 
 /// The tangent plane of each texel is the plane itself.
@@ -105,7 +105,7 @@ fn a_tilted_plane_is_met_where_it_is() {
                 let [a, b, c, d] = units(i, 0);
                 let target = corner(4.0 * a - 2.0, 4.0 * b - 2.0);
                 let way = fall * 0.2 + at(0.3 * c - 0.15, 0.0, 0.3 * d - 0.15);
-                // Up to 3 texels aside: some ways would go away from a steep plane.
+                // Up to 3 texels aside: some paths would lead away from a steep plane.
                 if way.dot(normal) > -0.02 {
                     continue;
                 }
@@ -114,7 +114,7 @@ fn a_tilted_plane_is_met_where_it_is() {
                     .unwrap_or_else(|| panic!("{target} {way} {fall} {normal}"));
                 assert_eq!(hit.kind, COLLISION_SURFACE, "{hit:?}");
                 assert!(angle(hit.normal, normal) < 2.0e-4, "{hit:?} {normal}");
-                let met = target + way * (hit.share - 0.6);
+                let met = target + way * (hit.fraction - 0.6);
                 worst = worst.max((met - target).dot(normal).abs());
             }
             // 0.1 % of a texel of 0.1 m; measured 0.03 %.
@@ -125,8 +125,8 @@ fn a_tilted_plane_is_met_where_it_is() {
 
 #[test]
 fn a_sphere_has_its_normals_and_is_solid() {
-    let centre = at(0.3, 5.0, -0.2);
-    let ball = map(&sphere(centre, 2.0, 96), DOWN, 5.0, 200);
+    let center = at(0.3, 5.0, -0.2);
+    let ball = map(&sphere(center, 2.0, 96), DOWN, 5.0, 200);
     for i in 0..3000 {
         let [a, b, ..] = units(i, 1);
         let (x, z) = (3.0 * a - 1.5, 3.0 * b - 1.5);
@@ -134,14 +134,14 @@ fn a_sphere_has_its_normals_and_is_solid() {
         if r2 > 1.7 * 1.7 {
             continue;
         }
-        let top = centre + at(x, (4.0 - r2).sqrt(), z);
+        let top = center + at(x, (4.0 - r2).sqrt(), z);
         let hit = ball.find(top + at(0.0, 0.3, 0.0), top - at(0.0, 0.1, 0.0)).expect("the ball is there");
-        let normal = (top - centre) / 2.0;
+        let normal = (top - center) / 2.0;
         // Facets of 2 degrees, texels of 2.5 cm.
         assert!(angle(hit.normal, normal) < 0.05, "{hit:?} {normal}");
-        assert!((hit.share - 0.75).abs() < 0.05, "{hit:?} at {x} {z}");
-        let below = centre - (top - centre);
-        assert!(ball.inside(centre + at(x, 0.0, z)) && !ball.inside(at(top.x, below.y - 0.2, top.z)));
+        assert!((hit.fraction - 0.75).abs() < 0.05, "{hit:?} at {x} {z}");
+        let below = center - (top - center);
+        assert!(ball.inside(center + at(x, 0.0, z)) && !ball.inside(at(top.x, below.y - 0.2, top.z)));
     }
     assert!(ball.open(at(2.4, 0.0, -0.2)) && !ball.open(at(0.3, 0.0, -0.2)));
 }
@@ -158,7 +158,7 @@ fn a_box_stops_from_above_by_its_top_and_from_the_side_as_a_wall() {
     expect(map.find(at(0.0, 2.0, -1.2), at(0.0, 2.1, -0.8)), COLLISION_WALL, 0.5, Vec3::NEG_Z);
     // Blown up against the underside.
     expect(map.find(at(0.0, 0.9, 0.0), at(0.0, 1.1, 0.0)), COLLISION_SURFACE, 0.5, Vec3::NEG_Y);
-    // Across the edge of the top, a little below it: it has met the top.
+    // Across the edge of the top, a little below it: it has hit the top.
     let edge = map.find(at(1.04, 3.0, 0.0), at(0.96, 2.98, 0.0)).expect("the edge is there");
     assert_eq!(edge.kind, COLLISION_SURFACE, "{edge:?}");
     assert_eq!(map.find(at(1.3, 3.5, 0.0), at(1.2, 0.5, 0.0)), None);
@@ -179,7 +179,7 @@ fn a_bridge_and_the_road_under_it_both_stop_rain() {
     assert_eq!(map.find(at(0.0, 5.3, 2.1), at(0.0, 5.25, 1.9)).map(|hit| hit.kind), Some(COLLISION_WALL));
 }
 
-/// A house without a bottom that stands in the ground is solid down to the ground; an awning is not, whatever stands below.
+/// A house without a bottom that stands in the ground is solid down to the ground; an awning is not, whatever is below.
 #[test]
 fn a_house_in_the_ground_is_solid_and_an_awning_is_not() {
     let mut scene = floor([-10.0, -10.0], [10.0, 10.0], 0.0);
@@ -254,7 +254,7 @@ fn under_many_leaves_is_the_ground() {
     }
 }
 
-/// What is seen along a slanted fall is what is seen from above of the scene turned upright.
+/// The map of a slanted fall is that of a vertical one on the rotated scene.
 #[test]
 fn a_slanted_fall_is_a_straight_one_on_a_turned_scene() {
     let scene = boxes(12);
@@ -273,7 +273,7 @@ fn a_slanted_fall_is_a_straight_one_on_a_turned_scene() {
         let same = match (x, y) {
             (Some(x), Some(y)) => {
                 x.kind == y.kind
-                    && (x.share - y.share).abs() < 1.0e-2
+                    && (x.fraction - y.fraction).abs() < 1.0e-2
                     && angle(turn * x.normal, y.normal) < 1.0e-2
             }
             (x, y) => x == y,
@@ -281,12 +281,12 @@ fn a_slanted_fall_is_a_straight_one_on_a_turned_scene() {
         different += u32::from(!same || slanted.open(start) != straight.open(turn * start));
     }
     assert!(hits > n / 20, "{hits}");
-    // Rays that pass an edge within rounding may see it on either side; measured none.
+    // Rays that pass an edge within rounding may be on either side; measured none.
     assert!(different * 1000 <= n, "{different} of {n}");
 }
 
-/// How often drops that fall until they are stopped are stopped by the map more than a texel before, or behind, the plane of the
-/// triangle that an exact ray meets first.
+/// Fractions of falling drops that the map stops more than a texel before, or behind, the plane of the triangle that
+/// an exact ray hits first.
 fn strays(scene: &[Triangle], map: &CollisionMap, way: Vec3, size: f32, n: u32) -> [f64; 2] {
     let bvh = Bvh::new(scene);
     let texel = map.frame().edge[0];
@@ -306,7 +306,7 @@ fn strays(scene: &[Triangle], map: &CollisionMap, way: Vec3, size: f32, n: u32) 
         let mut met = None;
         while met.is_none() && at < exact + 2.0 {
             let found = map.find(start + way * at, start + way * (at + step));
-            met = found.map(|hit| at + step * hit.share);
+            met = found.map(|hit| at + step * hit.fraction);
             at += step;
         }
         let behind = (met.unwrap_or(at) - exact) * way.dot(normal).abs();
@@ -316,11 +316,11 @@ fn strays(scene: &[Triangle], map: &CollisionMap, way: Vec3, size: f32, n: u32) 
     [early, late].map(|count| f64::from(count) / f64::from(stopped))
 }
 
-/// Drops over 60 boxes, tilted and not, that stand in each other: along the fall of the map, and beside it.
+/// Drops over 60 boxes, tilted and not, that intersect each other: along the fall of the map, and at an angle to it.
 #[test]
 fn drops_stop_where_exact_rays_do() {
     let scene = boxes(60);
-    // Measured at most 0.34 % too early and 0.54 % too late, at edges, which are known to half a texel.
+    // Measured at most 0.34 % too early and 0.54 % too late, at edges, which are accurate to half a texel.
     for (fall, way) in [(0.0, 0.0), (30.0, 30.0), (0.0, 10.0), (30.0, 20.0), (0.0, 30.0)] {
         let map = map(&scene, slanted(fall), 26.0, 520);
         let [early, late] = strays(&scene, &map, slanted(way), 14.0, 20_000);
@@ -328,7 +328,7 @@ fn drops_stop_where_exact_rays_do() {
     }
 }
 
-/// Single steps of drops, from anywhere that is not inside something: whether they are stopped, and where.
+/// Single steps of drops from positions outside solids: stopped or not, and at which position.
 #[test]
 fn random_ways_are_stopped_as_exact_rays_are() {
     let scene = boxes(60);
@@ -348,7 +348,7 @@ fn random_ways_are_stopped_as_exact_rays_are() {
         hits += u32::from(exact.is_some());
         different += u32::from(match (exact, found) {
             // A texel, 5 cm.
-            (Some(exact), Some(found)) => (exact.distance - found.share).abs() * way.length() > 0.05,
+            (Some(exact), Some(found)) => (exact.distance - found.fraction).abs() * way.length() > 0.05,
             (exact, found) => exact.is_some() != found.is_some(),
         });
     }
@@ -370,8 +370,8 @@ fn a_roof_of_the_street_does_not_leak() {
         model.indices.iter().filter(near).map(|t| t.map(|i| corner(i).to_array())).collect();
     assert!(scene.len() > 5000, "{} triangles of a house", scene.len());
     scene.extend(floor([-30.0, -30.0], [30.0, 30.0], 0.0));
-    // Edges are known to half a texel, 2.5 cm: gutters, ledges and the awning have some 60 m of them in 100 m^2. Beside the fall of
-    // the map there are also more than four surfaces above each other, open at a side.
+    // Edges are accurate to half a texel, 2.5 cm: gutters, ledges and the awning have some 60 m of them in 100 m^2. At
+    // an angle to the fall of the map there are also more than four surfaces above each other, open at a side.
     // Measured late: 0.35 %, 0.18 %, 0.45 %; early: 0.06 %, 0.03 %, 0.63 %.
     for (fall, way, most_early, most_late) in
         [(0.0, 0.0, 0.002, 0.005), (30.0, 30.0, 0.002, 0.004), (0.0, 30.0, 0.009, 0.007)]
@@ -395,7 +395,7 @@ fn the_same_bits_for_any_number_of_threads() {
     assert!(one.texels().iter().any(|t| t.depths[2] < COLLISION_NONE));
 }
 
-/// With drops relative to an anchor, a scene 10 km away is met as exactly as one here.
+/// With drops relative to an anchor, a scene 10 km away is hit as exactly as one at the origin.
 #[test]
 fn far_from_the_origin_the_digits_are_kept() {
     let anchor = at(10_240.0, 0.0, -8_192.0);
@@ -412,7 +412,7 @@ fn far_from_the_origin_the_digits_are_kept() {
         let (x, y) = (near.find(start, end), far.find(start, end));
         hits += u32::from(x.is_some());
         let same = match (x, y) {
-            (Some(x), Some(y)) => x.kind == y.kind && (x.share - y.share).abs() < 0.01,
+            (Some(x), Some(y)) => x.kind == y.kind && (x.fraction - y.fraction).abs() < 0.01,
             (x, y) => x.is_none() && y.is_none(),
         };
         different += u32::from(!same);
@@ -429,8 +429,11 @@ fn a_covering_map_covers() {
     let map = CollisionMap::new(&options, &Bvh::new(&boxes(3))).unwrap();
     for corner in 0..8 {
         let pick = |k: usize| if corner >> k & 1 == 1 { high[k] } else { low[k] };
-        let place = downpour_sim::collision::collision_place(map.frame(), at(pick(0), pick(1), pick(2)));
-        assert!(place.x > -0.01 && place.x < 64.01 && place.y > -0.01 && place.y < 32.01, "{place}");
+        let position = downpour_sim::collision::collision_place(map.frame(), at(pick(0), pick(1), pick(2)));
+        assert!(
+            position.x > -0.01 && position.x < 64.01 && position.y > -0.01 && position.y < 32.01,
+            "{position}"
+        );
     }
     let [width, height] = options.size;
     let exact = 8.0 * ops::cos(35.0f32.to_radians()) + 9.0 * ops::sin(35.0f32.to_radians());
@@ -449,7 +452,7 @@ fn what_cannot_be_says_what_and_what_could() {
         (CollisionOptions { texels: [5, 4097], ..good }, "4097 texels", "1 to 4096"),
         (CollisionOptions { size: [f32::NAN, 1.0], ..good }, "NaN m", "above 0"),
         (CollisionOptions { size: [1.0, 0.0], ..good }, "0 m", "above 0"),
-        (CollisionOptions { centre: at(0.0, f32::INFINITY, 0.0), ..good }, "inf m", "1e7"),
+        (CollisionOptions { center: at(0.0, f32::INFINITY, 0.0), ..good }, "inf m", "1e7"),
         (CollisionOptions { anchor: at(2.0e7, 0.0, 0.0), ..good }, "20000000 m", "1e7"),
     ];
     for (options, found, allowed) in cases {
@@ -461,7 +464,7 @@ fn what_cannot_be_says_what_and_what_could() {
     assert!(CollisionOptions::covering(Vec3::ONE, Vec3::ZERO, DOWN, [4, 4]).is_err());
 }
 
-/// 16 and 15 bits: the slope of a steep plane is known to 2e-4 rad, and flat is exactly flat.
+/// 16 and 15 bits: the slope of a steep plane is accurate to 2e-4 rad, and flat is exactly flat.
 #[test]
 fn normals_keep_their_digits() {
     for i in 0..4000 {

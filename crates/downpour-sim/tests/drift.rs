@@ -1,4 +1,4 @@
-//! The rain in closed form in a wind, and behind what stands in it.
+//! Rain in closed form in a wind, and behind obstacles.
 
 use downpour_bvh::{Bvh, Hit};
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
@@ -32,7 +32,7 @@ fn by_id(mut drops: Vec<FallingDrop>) -> Vec<FallingDrop> {
     drops
 }
 
-/// The velocity of each drop is what its place changes by.
+/// The velocity of each drop is the rate of change of its position.
 #[test]
 fn drops_move_at_their_velocity() {
     let rain = rain(20.0).with_wind(gusty());
@@ -53,7 +53,7 @@ fn drops_move_at_their_velocity() {
     }
 }
 
-/// Wind carries the rain and changes nothing else: as many drops, as much water, wherever it has been carried to.
+/// Wind displaces the rain and changes nothing else: as many drops, as much water, at any displacement.
 #[test]
 fn wind_keeps_the_rain() {
     let rain = rain(20.0).with_wind(steady(DVec3::new(8.0, 0.0, -3.0)));
@@ -127,7 +127,7 @@ fn below(wind: UniformWind, time: f64, holes: Option<&dyn Holes>) -> [Vec<Fallin
     [all, open]
 }
 
-/// With a steady wind the shadow of the roof is slanted by each drop's own fall, and exact.
+/// In a steady wind the rain shadow of the roof is slanted by each drop's fall, and exact.
 #[test]
 fn a_roof_keeps_off_the_rain() {
     for wind in [DVec3::ZERO, DVec3::new(3.0, 0.0, 0.0)] {
@@ -150,7 +150,7 @@ fn a_roof_keeps_off_the_rain() {
     }
 }
 
-/// A roof whose first triangle (x - z > 4 of its square) is not there.
+/// A roof without its first triangle (x - z > 4 of its square).
 #[derive(Debug)]
 struct Half;
 
@@ -168,7 +168,7 @@ fn rain_falls_through_holes() {
     let (mut through, mut kept_off) = (0, 0);
     for drop in &all {
         let [x, y, z] = drop.position.to_array();
-        // The diagonal from (-2, -6) to (2, -2) parts the triangles.
+        // The diagonal from (-2, -6) to (2, -2) separates the triangles.
         if y >= 3.0 || x.abs() >= 2.0 || (z + 4.0).abs() >= 2.0 || (x - (z + 4.0)).abs() < 1.0e-4 {
             continue;
         }
@@ -180,7 +180,7 @@ fn rain_falls_through_holes() {
     assert!(through > 100 && kept_off > 100, "{through}, {kept_off}");
 }
 
-/// In gusts a drop that was stopped stays away, and one that was not stays there: nothing comes or goes in mid-air.
+/// In gusts a stopped drop stays away, and any other stays: nothing appears or vanishes in mid-air.
 #[test]
 fn drops_do_not_come_and_go() {
     let ids = |time: f64| -> std::collections::BTreeMap<u64, FallingDrop> {
@@ -200,7 +200,7 @@ fn drops_do_not_come_and_go() {
         for drop in &all {
             if seen_before.contains(&drop.id) {
                 passed += 1;
-                // In view in both, there now and not before.
+                // In view in both, existing now and not before.
                 born += u32::from(now.contains_key(&drop.id) && !before.contains_key(&drop.id));
             }
         }

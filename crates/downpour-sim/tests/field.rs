@@ -1,4 +1,4 @@
-//! The closed-form rain: its numbers, its speeds, and that it is the same for everyone.
+//! Rain in closed form: its numbers, its speeds, and that it is the same for all cameras.
 
 use std::collections::HashMap;
 
@@ -95,7 +95,7 @@ fn sorted(mut drops: Vec<FallingDrop>) -> Vec<FallingDrop> {
     drops
 }
 
-/// What a camera sees is what is in the box round it and passes the test of the picture, written here by angles.
+/// A camera sees the drops of the surrounding box that pass the test of the picture, written here by angles.
 #[test]
 fn a_camera_sees_the_drops_of_the_box() -> Outcome {
     let field = RainField::new(&rain(100.0)?, 8)?;
@@ -133,11 +133,11 @@ fn the_same_seed_is_the_same_rain() -> Outcome {
     let view = View::default();
     let first = RainField::new(&rain(25.0)?, 42)?.visible(&view, 3.0)?;
     let again = RainField::new(&rain(25.0)?, 42)?;
-    // Another question in between changes nothing.
+    // Another query in between changes nothing.
     again.visible(&View { eye: DVec3::new(5.0, 1.0, 0.0), ..view }, 9.0)?;
     assert_eq!(again.visible(&view, 3.0)?, first);
     assert_ne!(RainField::new(&rain(25.0)?, 43)?.visible(&view, 3.0)?, first);
-    // High words of the seed count.
+    // The high word of the seed matters.
     assert_ne!(RainField::new(&rain(25.0)?, 42 | 1 << 40)?.visible(&view, 3.0)?, first);
     Ok(())
 }

@@ -1,22 +1,22 @@
-//! Rain in a view has the density of the rain, in each part of the picture and for each size, whatever camera and shutter do.
-//! Expectations are integrals of the size distribution.
+//! Rain in a view has the density of the rain, in each part of the picture and for each size, for any motion of camera
+//! and shutter. Expectations are integrals of the size distribution.
 
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_math::ops::f64 as ops;
-use downpour_sim::simulation::{Moment, Simulation, SimulationOptions};
+use downpour_sim::simulation::{Simulation, SimulationOptions, StepInput};
 use downpour_sim::step::StepDrop;
 use downpour_sim::view::View;
 use downpour_wind::{Gusts, Keyed, UniformWind, Wind, WindPart};
 use glam::{DVec3, Vec3};
 
-/// Parts of the picture along each of its sides, and along the distance.
+/// Number of parts of the picture along each of its sides, and along the distance.
 const PARTS: usize = 5;
 
 fn rain() -> DropSizeDistribution {
     DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 25.0).expect("in range")
 }
 
-/// A camera at a place that looks along an azimuth and an elevation, radians.
+/// A camera at a position that looks along an azimuth and an elevation, radians.
 fn looking(eye: DVec3, azimuth: f64, elevation: f64) -> View {
     let (level, up) = (ops::cos(elevation), ops::sin(elevation));
     let forward = DVec3::new(level * ops::sin(azimuth), up, -level * ops::cos(azimuth));
@@ -29,7 +29,7 @@ fn solid_angle(wide: f64, high: f64) -> f64 {
     4.0 * ops::asin(wide * high / ((1.0 + wide * wide) * (1.0 + high * high)).sqrt())
 }
 
-/// The number of drops between two diameters that a picture holds, each size as far as it is resolved.
+/// Number of drops between two diameters in a picture, each size up to the distance at which it is resolved.
 fn expected(rain: &DropSizeDistribution, view: &View, from: f64, to: f64) -> f64 {
     let solid = solid_angle(view.half_width, view.half_height);
     let steps = 4000;
@@ -41,9 +41,9 @@ fn expected(rain: &DropSizeDistribution, view: &View, from: f64, to: f64) -> f64
     (0..steps).map(of).sum::<f64>() * (to - from) / f64::from(steps)
 }
 
-/// The part of the picture that a drop is in, of equal space for its size; `None` outside.
+/// Part of the picture that a drop is in, of equal volume for its size; `None` outside.
 fn part(drop: &StepDrop, view: &View, ahead_s: f64) -> Option<usize> {
-    let at = Vec3::from(drop.place).as_dvec3() + Vec3::from(drop.velocity).as_dvec3() * ahead_s;
+    let at = Vec3::from(drop.position).as_dvec3() + Vec3::from(drop.velocity).as_dvec3() * ahead_s;
     let offset = at - view.eye;
     let range = (f64::from(drop.diameter()) / (view.pixel_angle * view.least_pixels)).min(view.far);
     let (x, y, z) = (offset.dot(view.right), offset.dot(view.up), offset.dot(view.forward));
@@ -51,24 +51,24 @@ fn part(drop: &StepDrop, view: &View, ahead_s: f64) -> Option<usize> {
     if z <= 0.0 || x.abs() > z * wide || y.abs() > z * high || offset.length() > range {
         return None;
     }
-    // Equal parts of the solid angle: slices of the azimuth's share, then of the height within the slice.
+    // Equal parts of the solid angle: slices of the azimuth's fraction, then of the height within the slice.
     let signed = |x: f64| 2.0 * ops::asin(x * high / ((1.0 + x * x) * (1.0 + high * high)).sqrt());
     let share_x = 0.5 + 0.5 * signed(x / z) / signed(wide);
     let sine = ops::sin(ops::atan2(y, (x * x + z * z).sqrt()));
     let share_y = 0.5 + 0.5 * sine / (high / (1.0 + high * high + (x / z) * (x / z)).sqrt());
     let share_z = ops::pow(offset.length() / range, 3.0);
-    let cell = |share: f64| ((share * PARTS as f64) as usize).min(PARTS - 1);
+    let cell = |fraction: f64| ((fraction * PARTS as f64) as usize).min(PARTS - 1);
     Some((cell(share_x) * PARTS + cell(share_y)) * PARTS + cell(share_z))
 }
 
-/// Chi-square against an expectation, less its mean, in its standard deviations. The counts are Poisson's.
+/// Chi-square against an expectation, minus its mean, in its standard deviations. The counts are Poisson distributed.
 fn excess(counts: &[f64], expected: &[f64]) -> f64 {
     let chi: f64 = counts.iter().zip(expected).map(|(n, mean)| (n - mean) * (n - mean) / mean).sum();
     let freedom = counts.len() as f64;
     (chi - freedom) / (2.0 * freedom).sqrt()
 }
 
-/// Holds a state against the rain: in parts of the picture, and by sizes.
+/// Compares a state with the rain: in parts of the picture, and by sizes.
 fn check(simulation: &Simulation, view: &View, ahead_s: f64, when: &str) {
     let rain = rain();
     let mut parts = vec![0.0; PARTS * PARTS * PARTS];
@@ -102,13 +102,15 @@ fn run(name: &str, options: &SimulationOptions, wind: &UniformWind, path: impl F
     let first = path(0);
     let air = |step: u32| wind.prepared(f64::from(step) / 60.0);
     let start = air(0);
-    let now = Moment { air: Some(&start), ..Moment::new(&first, DVec3::ZERO, start.velocity().as_vec3()) };
+    let now =
+        StepInput { air: Some(&start), ..StepInput::new(&first, DVec3::ZERO, start.velocity().as_vec3()) };
     let mut simulation = Simulation::new(&rain(), options, &now).expect("in range");
     check(&simulation, &first, ahead_s, &format!("{name}, at first"));
     for step in 1..=45 {
         let view = path(step);
         let air = air(step);
-        let then = Moment { air: Some(&air), ..Moment::new(&view, DVec3::ZERO, air.velocity().as_vec3()) };
+        let then =
+            StepInput { air: Some(&air), ..StepInput::new(&view, DVec3::ZERO, air.velocity().as_vec3()) };
         simulation.advance(1.0 / 60.0, &then).expect("in range");
         if step % 15 == 0 {
             check(&simulation, &view, ahead_s, &format!("{name}, step {step}"));
@@ -174,7 +176,7 @@ fn density_is_the_rains_when_the_picture_zooms() {
     run("wide", &options, &steady(), |_| wide);
 }
 
-/// With a margin for the shutter, about the middle of the time that pictures cover.
+/// With a margin for the shutter, around the middle of the time that pictures cover.
 #[test]
 fn density_is_the_rains_with_a_shutter() {
     for shutter_s in [1.0 / 60.0, 0.075] {

@@ -1,4 +1,4 @@
-//! Impacts in closed form: as many as fall, where something stands, and the droplets that come back.
+//! Impacts in closed form: their number, their positions, and the droplets that rebound.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,7 +42,7 @@ fn quad([a, b, c, d]: [[f32; 3]; 4]) -> [[[f32; 3]; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// Ground at 0, a house with a slanted roof of 4 x 4 m above one corner, which keeps the rain off what is below.
+/// Ground at 0, a house with a slanted roof of 4 x 4 m above one corner, which shelters what is below.
 fn yard() -> Bvh {
     let ground = quad([[-20.0, 0.0, -20.0], [-20.0, 0.0, 20.0], [20.0, 0.0, 20.0], [20.0, 0.0, -20.0]]);
     let roof = quad([[-4.0, 3.0, -4.0], [-4.0, 3.0, 0.0], [0.0, 4.0, 0.0], [0.0, 4.0, -4.0]]);
@@ -57,7 +57,7 @@ fn speed(diameter: f64) -> f64 {
     terminal_speed(FallSpeedModel::Beard1976, diameter, &Air::standard()).expect("in range")
 }
 
-/// Drops between two diameters that fall through a level square metre in a second.
+/// Number of drops between two diameters that fall through a horizontal square metre per second.
 fn flux(from: f64, to: f64) -> f64 {
     let steps = 4000;
     let of = |k: u32| {
@@ -71,7 +71,7 @@ fn flux(from: f64, to: f64) -> f64 {
 fn as_many_drops_hit_the_ground_as_fall() {
     let bvh = yard();
     let edges = [0.5e-3, 0.8e-3, 1.3e-3, 2.0e-3, 8.0e-3];
-    // Beside the house, on the side that the wind comes from.
+    // Beside the house, on the windward side.
     let (low, high) = (DVec3::new(-14.0, -0.1, 4.0), DVec3::new(-10.0, 0.1, 9.0));
     let span = [3.0, 3.3];
     for wind in [still(), uniform(7.0, DVec3::new(1.0, 0.0, -2.0), None), gusty()] {
@@ -122,7 +122,7 @@ fn nothing_lands_below_a_roof() {
             assert!(beside, "{impact:?} came through the roof at {through}");
             near += u32::from(above_roof);
         }
-        // What falls on a roof is what falls through its outline, less what the slope is turned away by the wind.
+        // The rain on a roof is that through its outline, reduced by the slope away from the wind.
         let expected: f64 = (0..400)
             .map(|k| {
                 let d = 0.6e-3 + 7.4e-3 * (f64::from(k) + 0.5) / 400.0;
@@ -163,7 +163,7 @@ fn spans_of_time_can_be_cut() {
     }
 }
 
-/// A drop that a picture shows above the ground lands where and when its impact says.
+/// A drop that a picture shows above the ground lands at the position and time of its impact.
 #[test]
 fn impacts_are_those_of_the_drops_that_are_seen() {
     let bvh = yard();
@@ -187,7 +187,7 @@ fn impacts_are_those_of_the_drops_that_are_seen() {
     assert!(landed > 60, "{landed}");
 }
 
-/// Droplets about an eye near the ground, of all impacts.
+/// Droplets around an eye near the ground, of all impacts.
 fn droplets(wind: &UniformWind, time_s: f64, bounce: &Bounce) -> Vec<FallingDrop> {
     let bvh = yard();
     let eye = DVec3::new(9.0, 0.25, 9.0);
@@ -195,18 +195,18 @@ fn droplets(wind: &UniformWind, time_s: f64, bounce: &Bounce) -> Vec<FallingDrop
     rain(wind.clone()).bounced(&obstacles(&bvh), &view, 0.2, time_s, bounce).expect("in range")
 }
 
-/// Each droplet starts at its impact with what is left of the velocity, and then obeys dv/dt = -slip / tau.
+/// Each droplet starts at its impact with the remaining velocity, and then obeys dv/dt = -slip / tau.
 #[test]
 fn droplets_fly_as_the_law_says() {
     let wind = uniform(3.0, DVec3::X, None);
-    let bounce = Bounce { share: 1.0, ..Bounce::default() };
+    let bounce = Bounce { fraction: 1.0, ..Bounce::default() };
     let bvh = yard();
     let time = 5.0;
     let shown = droplets(&wind, time, &bounce);
     assert!(shown.len() > 60, "{}", shown.len());
     let (low, high) = (DVec3::new(5.0, -0.1, 7.0), DVec3::new(11.0, 0.1, 10.0));
     let impacts = rain(wind).impacts(&obstacles(&bvh), low, high, [4.0, 5.0], 0.0).expect("in range");
-    // A droplet begins at its impact: found by what it was when it began.
+    // A droplet starts at its impact: found by its initial state.
     let mut by_begin: BTreeMap<i64, Vec<&Impact>> = BTreeMap::new();
     for impact in &impacts {
         by_begin.entry((impact.time_s * 1.0e4).round() as i64).or_default().push(impact);
@@ -248,13 +248,13 @@ fn droplets_fly_as_the_law_says() {
         checked += 1;
     }
     println!("{checked} droplets, up to {highest:.3} m");
-    // (0.25 x 9 m/s)^2 / 2 g, less drag.
+    // (0.25 x 9 m/s)^2 / 2 g, minus drag.
     assert!((0.02..0.26).contains(&highest), "{highest}");
 }
 
 #[test]
 fn a_droplet_is_one_drop_from_picture_to_picture_and_not_its_parent() {
-    let bounce = Bounce { share: 0.3, ..Bounce::default() };
+    let bounce = Bounce { fraction: 0.3, ..Bounce::default() };
     let wind = gusty();
     let at = |time: f64| -> BTreeMap<u64, FallingDrop> {
         droplets(&wind, time, &bounce).into_iter().map(|drop| (drop.id, drop)).collect()
@@ -271,10 +271,10 @@ fn a_droplet_is_one_drop_from_picture_to_picture_and_not_its_parent() {
         }
     }
     assert!(both * 2 > now.len() && both > 15, "{both} of {}", now.len());
-    let share = droplets(&wind, 8.0, &Bounce { share: 1.0, ..bounce }).len() as f64;
-    let found = now.len() as f64 / share;
-    assert!((found - 0.3).abs() < 4.0 * (0.21 / share).sqrt(), "{found} of the impacts");
-    assert!(droplets(&wind, 8.0, &Bounce { share: 0.0, ..bounce }).is_empty());
+    let every = droplets(&wind, 8.0, &Bounce { fraction: 1.0, ..bounce }).len() as f64;
+    let found = now.len() as f64 / every;
+    assert!((found - 0.3).abs() < 4.0 * (0.21 / every).sqrt(), "{found} of the impacts");
+    assert!(droplets(&wind, 8.0, &Bounce { fraction: 0.0, ..bounce }).is_empty());
 }
 
 #[test]

@@ -1,7 +1,7 @@
-//! Clips do not loop: what comes in does so at new places.
+//! Clips do not loop: drops enter at new positions.
 
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
-use downpour_sim::simulation::{Moment, SimVolume, Simulation, SimulationOptions};
+use downpour_sim::simulation::{SimVolume, Simulation, SimulationOptions, StepInput};
 use downpour_sim::view::View;
 use downpour_wind::{Turbulence, Wind, WindField, WindGrid, WindMask};
 use glam::{DVec3, Vec3};
@@ -22,7 +22,7 @@ fn turbulent() -> WindField {
     wind.expect("in range").field(0.0, &grid, &WindMask::open(&grid)).expect("in range")
 }
 
-/// What drops take of a picture of 48 x 27 parts.
+/// Coverage by drops of a picture of 48 x 27 parts.
 fn coverage(simulation: &Simulation, view: &View) -> Vec<f64> {
     let mut picture = vec![0.0; 48 * 27];
     for drop in simulation.visible(view).drops {
@@ -51,7 +51,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn frames_of_rain_in_turbulence_are_not_alike() {
     let (view, field) = (view(), turbulent());
-    let now = Moment { field: Some(&field), ..Moment::new(&view, DVec3::ZERO, Vec3::ZERO) };
+    let now = StepInput { field: Some(&field), ..StepInput::new(&view, DVec3::ZERO, Vec3::ZERO) };
     let mut simulation =
         Simulation::new(&rain(100.0), &SimulationOptions::default(), &now).expect("in range");
     let mut frames = Vec::new();
@@ -69,7 +69,7 @@ fn frames_of_rain_in_turbulence_are_not_alike() {
     }
 }
 
-/// A drop of a box that comes in again does so in another column; boxes of all cameras agree.
+/// A drop of a box re-enters in another column; boxes of all cameras agree.
 #[test]
 fn no_drop_of_a_box_keeps_its_column() {
     let size = 6.0;
@@ -86,19 +86,19 @@ fn no_drop_of_a_box_keeps_its_column() {
     let mut columns: BTreeMap<usize, Vec<Vec3>> = BTreeMap::new();
     let mut states = Vec::new();
     for (k, view) in views.iter().enumerate() {
-        let now = Moment::new(view, DVec3::ZERO, Vec3::new(1.0, 0.0, 0.5));
+        let now = StepInput::new(view, DVec3::ZERO, Vec3::new(1.0, 0.0, 0.5));
         let mut simulation = Simulation::new(&rain(20.0), &options, &now).expect("in range");
         for step in 0..240 {
             simulation.advance(1.0 / 60.0, &now).expect("in range");
             if k == 0 && step % 60 == 59 {
                 for (number, drop) in simulation.drops().iter().enumerate() {
-                    columns.entry(number).or_default().push(Vec3::from(drop.place));
+                    columns.entry(number).or_default().push(Vec3::from(drop.position));
                 }
             }
         }
         states.push(simulation);
     }
-    // Between the last two looks a drop falls through a box, and the wind carries it by 1 m and 0.5 m a second.
+    // Between the last two samples a drop falls through a box, and the wind carries it by 1 m and 0.5 m a second.
     let (mut same, mut fallen) = (0, 0);
     for places in columns.values() {
         let (first, last) = (places[0], places[3]);
@@ -110,16 +110,16 @@ fn no_drop_of_a_box_keeps_its_column() {
     }
     // By chance one in a hundred.
     assert!(f64::from(same) < 0.03 * f64::from(fallen), "{same} of {fallen} keep their column");
-    // What two boxes share, both hold.
+    // Drops in the common part of two boxes are in both.
     let within = |at: Vec3, view: &View| {
-        let centre = view.eye + view.forward * size / 3.0;
-        ((at.as_dvec3() - centre).abs().max_element()) < 0.5 * size - 0.05
+        let center = view.eye + view.forward * size / 3.0;
+        ((at.as_dvec3() - center).abs().max_element()) < 0.5 * size - 0.05
     };
     for k in 1..3 {
-        let held: Vec<Vec3> = states[k].drops().iter().map(|drop| Vec3::from(drop.place)).collect();
+        let held: Vec<Vec3> = states[k].drops().iter().map(|drop| Vec3::from(drop.position)).collect();
         let mut shared = 0;
         for (drop, other) in states[0].drops().iter().zip(&held) {
-            let at = Vec3::from(drop.place);
+            let at = Vec3::from(drop.position);
             if within(at, &views[0]) && within(at, &views[k]) {
                 assert!((at - *other).length() < 2.0e-3, "{at}, {other}");
                 shared += 1;
@@ -130,13 +130,13 @@ fn no_drop_of_a_box_keeps_its_column() {
     }
 }
 
-/// A drop keeps its number from picture to picture, and none has that of another.
+/// A drop keeps its id from picture to picture, and no two drops share one.
 #[test]
 fn a_drop_keeps_its_number() {
     let (view, field) = (view(), turbulent());
     for volume in [SimVolume::View, SimVolume::Box { size_m: [4.0; 3] }] {
         let options = SimulationOptions { volume, most_drops: 50_000, ..SimulationOptions::default() };
-        let now = Moment { field: Some(&field), ..Moment::new(&view, DVec3::ZERO, Vec3::ZERO) };
+        let now = StepInput { field: Some(&field), ..StepInput::new(&view, DVec3::ZERO, Vec3::ZERO) };
         let mut simulation = Simulation::new(&rain(50.0), &options, &now).expect("in range");
         let mut before: BTreeMap<u64, DVec3> = BTreeMap::new();
         let (mut kept, mut all): (_, BTreeMap<u64, (i32, DVec3)>) = (0, BTreeMap::new());
@@ -148,14 +148,15 @@ fn a_drop_keeps_its_number() {
             assert_eq!(numbered.len(), count, "no two drops have one number");
             for drop in &seen {
                 if let Some(&earlier) = before.get(&drop.id) {
-                    // It has moved by its own velocity, and has not come in anew.
+                    // It has moved by its velocity, and has not re-entered.
                     let moved = drop.position - earlier - Vec3::from(drop.velocity).as_dvec3() / 60.0;
                     assert!(moved.length() < 0.02, "{moved}");
                     kept += 1;
-                } else if let Some((last, place)) = all.get(&drop.id) {
+                } else if let Some((last, position)) = all.get(&drop.id) {
                     // A gust has turned it back into the view.
                     let steps = f64::from(step - last);
-                    let moved = drop.position - *place - Vec3::from(drop.velocity).as_dvec3() * steps / 60.0;
+                    let moved =
+                        drop.position - *position - Vec3::from(drop.velocity).as_dvec3() * steps / 60.0;
                     assert!(moved.length() < 0.02 * steps * steps, "{moved} in {steps} steps");
                 }
                 all.insert(drop.id, (step, drop.position));

@@ -1,10 +1,10 @@
-//! Rain in volumes that follow a camera: counted, uniform, and the same however fast the steps are.
+//! Rain in volumes that follow a camera: counted, uniform, and independent of the step length.
 
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::fall_speed::{FallSpeedModel, terminal_speed};
 use downpour_math::ops::f64 as ops;
-use downpour_sim::simulation::{Drag, Gauge, Moment, SimVolume, Simulation, SimulationOptions};
+use downpour_sim::simulation::{Drag, Gauge, SimVolume, Simulation, SimulationOptions, StepInput};
 use downpour_sim::view::View;
 use downpour_wind::{
     WindCore, WindField, WindForm, WindGrid, WindMask, WindPrimitive, WindSingularity, WindUniform,
@@ -15,11 +15,11 @@ fn rain(rate_mm_h: f64) -> DropSizeDistribution {
     DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h).expect("in range")
 }
 
-fn moment<'a>(view: &'a View, wind: Vec3) -> Moment<'a> {
-    Moment::new(view, DVec3::ZERO, wind)
+fn input<'a>(view: &'a View, wind: Vec3) -> StepInput<'a> {
+    StepInput::new(view, DVec3::ZERO, wind)
 }
 
-/// A camera at a place that looks along an azimuth and an elevation, radians.
+/// A camera at a position that looks along an azimuth and an elevation, radians.
 fn looking(eye: DVec3, azimuth: f64, elevation: f64) -> View {
     let (level, up) = (ops::cos(elevation), ops::sin(elevation));
     let forward = DVec3::new(level * ops::sin(azimuth), up, -level * ops::cos(azimuth));
@@ -44,20 +44,21 @@ fn excess(counts: &[u32]) -> f64 {
     (chi - freedom) / (2.0 * freedom).sqrt()
 }
 
-/// What the test above would say of the paper's sampling.
+/// The same test rejects the paper's sampling.
 #[test]
 fn the_sampling_of_im_and_sung_is_not_uniform() {
     let view = looking(DVec3::new(0.0, 2.0, 0.0), 0.0, 0.0);
     let options =
         SimulationOptions { volume: SimVolume::ImSung, most_drops: 30_000, ..SimulationOptions::default() };
-    let simulation = Simulation::new(&rain(25.0), &options, &moment(&view, Vec3::ZERO)).expect("in range");
+    let simulation = Simulation::new(&rain(25.0), &options, &input(&view, Vec3::ZERO)).expect("in range");
     let middle = view.eye + view.forward * 4.0;
     let near = simulation
         .drops()
         .iter()
-        .filter(|drop| (Vec3::from(drop.place).as_dvec3() - middle).length() < 0.5)
+        .filter(|drop| (Vec3::from(drop.position).as_dvec3() - middle).length() < 0.5)
         .count();
-    // A radius uniform in (-r, r): an eighth of it holds an eighth of the drops of the sphere, and more of those in view.
+    // A radius uniform in (-r, r): an eighth of it holds an eighth of the drops of the sphere, and more of those in
+    // view.
     assert!(near as f64 > 0.125 * simulation.drops().len() as f64, "{near}");
 }
 
@@ -70,21 +71,21 @@ fn a_box_stays_uniform_however_the_camera_moves() {
         ..SimulationOptions::default()
     };
     let wind = Vec3::new(-6.0, 0.0, 3.0);
-    let mut simulation = Simulation::new(&rain(25.0), &options, &moment(&walk(0), wind)).expect("in range");
+    let mut simulation = Simulation::new(&rain(25.0), &options, &input(&walk(0), wind)).expect("in range");
     let all = simulation.drops().len();
     for step in 1..=90 {
         let view = walk(step);
-        simulation.advance(1.0 / 60.0, &moment(&view, wind)).expect("in range");
+        simulation.advance(1.0 / 60.0, &input(&view, wind)).expect("in range");
         if step % 15 == 0 {
-            let centre = view.eye + view.forward * size / 3.0;
+            let center = view.eye + view.forward * size / 3.0;
             let mut counts = vec![0; 216];
             for drop in simulation.drops() {
-                let share = (Vec3::from(drop.place).as_dvec3() - centre) / size + 0.5;
+                let fraction = (Vec3::from(drop.position).as_dvec3() - center) / size + 0.5;
                 assert!(
-                    (share.cmpge(DVec3::splat(-1.0e-4)) & share.cmple(DVec3::splat(1.0001))).all(),
-                    "{share}"
+                    (fraction.cmpge(DVec3::splat(-1.0e-4)) & fraction.cmple(DVec3::splat(1.0001))).all(),
+                    "{fraction}"
                 );
-                let [x, y, z] = (share * 6.0).floor().clamp(DVec3::ZERO, DVec3::splat(5.0)).to_array();
+                let [x, y, z] = (fraction * 6.0).floor().clamp(DVec3::ZERO, DVec3::splat(5.0)).to_array();
                 counts[x as usize * 36 + y as usize * 6 + z as usize] += 1;
             }
             let found = excess(&counts);
@@ -94,7 +95,7 @@ fn a_box_stays_uniform_however_the_camera_moves() {
     assert_eq!(simulation.drops().len(), all);
 }
 
-/// Standard deviation of the rate of the drops of a volume, as a share of it: that of a sum over Poisson's numbers.
+/// Relative standard deviation of the rate of the drops of a volume: that of a sum over Poisson numbers.
 fn scatter(rain: &DropSizeDistribution, volume: f64) -> f64 {
     let speed = |d: f64| terminal_speed(FallSpeedModel::Beard1976, d, &Air::standard()).expect("in range");
     let sum = |power: i32| -> f64 {
@@ -107,12 +108,12 @@ fn scatter(rain: &DropSizeDistribution, volume: f64) -> f64 {
     (sum(2) / volume).sqrt() / sum(1)
 }
 
-/// The rate that falls through a plane is that of the drops in the volume, wind on, and that the asked one as far as chance
-/// lets it.
+/// The rate through a plane is that of the drops in the volume, with wind too, and equals the requested one within the
+/// statistical error.
 #[test]
 fn the_gauge_reads_what_was_asked_for() {
     let view = View { eye: DVec3::new(0.0, 10.0, 0.0), ..View::default() };
-    // The middle of the box is a third of it before the eye.
+    // The center of the box is a third of it ahead of the eye.
     let size_m = if cfg!(debug_assertions) { [4.0, 4.0, 4.0] } else { [8.0, 6.0, 8.0] };
     let middle = view.eye + view.forward * size_m[2] / 3.0;
     let half = 0.49 * size_m[0];
@@ -128,7 +129,7 @@ fn the_gauge_reads_what_was_asked_for() {
             gauge: Some(gauge),
             ..SimulationOptions::default()
         };
-        let now = moment(&view, Vec3::new(5.0, 0.0, -3.0));
+        let now = input(&view, Vec3::new(5.0, 0.0, -3.0));
         let mut simulation = Simulation::new(&rain(rate), &options, &now).expect("in range");
         let state = simulation.measured_rate_mm_h(None);
         let chance = scatter(&rain(rate), size_m.iter().product());
@@ -136,9 +137,9 @@ fn the_gauge_reads_what_was_asked_for() {
         let mut caught = downpour_sim::step::StepCaught::default();
         let steps = 300;
         for _ in 0..steps {
-            let happened = simulation.advance(10.0 / f64::from(steps), &now).expect("in range");
-            caught.drops += happened.caught.drops;
-            caught.volume += happened.caught.volume;
+            let outcome = simulation.advance(10.0 / f64::from(steps), &now).expect("in range");
+            caught.drops += outcome.caught.drops;
+            caught.volume += outcome.caught.volume;
         }
         let found = gauge.rate_mm_h(&caught, 10.0);
         assert!(
@@ -156,7 +157,7 @@ fn vortex() -> WindField {
         WindPrimitive::Vortex(WindSingularity {
             form: WindForm::Line,
             strength: 120.0,
-            centre: Vec3::new(0.0, 0.0, -4.0),
+            center: Vec3::new(0.0, 0.0, -4.0),
             axis: Vec3::Y,
             core_radius: 3.0,
             core: WindCore::Rosenhead,
@@ -165,7 +166,7 @@ fn vortex() -> WindField {
     WindField::new(&grid, &wind, &WindMask::open(&grid)).expect("in range")
 }
 
-/// In a vortex drops come to the same places at 30, 60 and 240 steps a second; with the papers' average they do not.
+/// In a vortex drops reach the same positions at 30, 60 and 240 steps a second; with the papers' average they do not.
 #[test]
 fn the_frame_rate_does_not_matter() {
     let field = vortex();
@@ -177,14 +178,14 @@ fn the_frame_rate_does_not_matter() {
             drag,
             ..SimulationOptions::default()
         };
-        let now = Moment { field: Some(&field), ..moment(&view, Vec3::ZERO) };
+        let now = StepInput { field: Some(&field), ..input(&view, Vec3::ZERO) };
         let mut simulation = Simulation::new(&rain(10.0), &options, &now).expect("in range");
         for _ in 0..per_second / 2 {
             simulation.advance(1.0 / f64::from(per_second), &now).expect("in range");
         }
-        simulation.drops().iter().map(|drop| Vec3::from(drop.place)).collect::<Vec<_>>()
+        simulation.drops().iter().map(|drop| Vec3::from(drop.position)).collect::<Vec<_>>()
     };
-    // Drops that have gone through a face did so some time later in one run than in the other.
+    // Drops that have passed a face did so some time later in one run than in the other.
     let median = |a: &[Vec3], b: &[Vec3]| {
         let mut apart: Vec<f32> = a.iter().zip(b).map(|(a, b)| (*a - *b).length()).collect();
         apart.sort_by(f32::total_cmp);
@@ -201,7 +202,7 @@ fn the_frame_rate_does_not_matter() {
     assert!(average > 3.0 * half, "the papers' average: {average} m, relaxation: {half} m");
 }
 
-/// 10 km from the origin the drops of a view are where they are near it, the origin moving along.
+/// 10 km from the origin the drops of a view are the same as near it, with a moving origin.
 #[test]
 fn far_from_the_origin() {
     let run = |far: DVec3| {
@@ -211,15 +212,15 @@ fn far_from_the_origin() {
         };
         let origin = |step: u32| if far == DVec3::ZERO { far } else { at(step).eye.round() };
         let first = at(0);
-        let start = Moment { origin: origin(0), ..moment(&first, Vec3::X) };
+        let start = StepInput { origin: origin(0), ..input(&first, Vec3::X) };
         let mut simulation = Simulation::new(&rain(25.0), &options, &start).expect("in range");
         for step in 1..=60 {
             let view = at(step);
-            let now = Moment { origin: origin(step), ..moment(&view, Vec3::X) };
+            let now = StepInput { origin: origin(step), ..input(&view, Vec3::X) };
             simulation.advance(1.0 / 60.0, &now).expect("in range");
         }
         let offset = origin(60) - far;
-        simulation.drops().iter().map(|d| Vec3::from(d.place).as_dvec3() + offset).collect::<Vec<_>>()
+        simulation.drops().iter().map(|d| Vec3::from(d.position).as_dvec3() + offset).collect::<Vec<_>>()
     };
     let (near, far) = (run(DVec3::ZERO), run(DVec3::new(10_000.0, 0.0, -10_000.0)));
     let same = near.iter().zip(&far).filter(|(a, b)| a.distance(**b) < 1.0e-3).count();
@@ -229,21 +230,21 @@ fn far_from_the_origin() {
 /// Nearly all drops of a view are in the picture; few of a box are.
 #[test]
 fn drops_of_a_view_are_on_the_screen() {
-    let share = |volume: SimVolume| {
+    let fraction = |volume: SimVolume| {
         let options = SimulationOptions { volume, most_drops: 40_000, ..SimulationOptions::default() };
         let mut simulation =
-            Simulation::new(&rain(25.0), &options, &moment(&walk(0), Vec3::X)).expect("in range");
+            Simulation::new(&rain(25.0), &options, &input(&walk(0), Vec3::X)).expect("in range");
         let mut shares = Vec::new();
         for step in 1..20 {
             let view = walk(step);
-            simulation.advance(1.0 / 60.0, &moment(&view, Vec3::X)).expect("in range");
+            simulation.advance(1.0 / 60.0, &input(&view, Vec3::X)).expect("in range");
             let seen = simulation.visible(&View { near: 1.0e-3, least_pixels: 0.0, ..view });
             shares.push(seen.drops.len() as f64 / simulation.drops().len() as f64);
         }
         shares.iter().sum::<f64>() / shares.len() as f64
     };
-    assert!(share(SimVolume::View) > 0.95);
-    assert!(share(SimVolume::Box { size_m: [16.0; 3] }) < 0.3);
+    assert!(fraction(SimVolume::View) > 0.95);
+    assert!(fraction(SimVolume::Box { size_m: [16.0; 3] }) < 0.3);
 }
 
 #[test]
@@ -254,12 +255,12 @@ fn the_same_bits_for_any_number_of_threads() {
             let options = SimulationOptions { most_drops: 50_000, ..SimulationOptions::default() };
             let field = vortex();
             let now = walk(0);
-            let start = Moment { field: Some(&field), ..moment(&now, Vec3::ZERO) };
+            let start = StepInput { field: Some(&field), ..input(&now, Vec3::ZERO) };
             let mut simulation = Simulation::new(&rain(25.0), &options, &start).expect("in range");
             for step in 1..10 {
                 let view = walk(step);
                 simulation
-                    .advance(1.0 / 60.0, &Moment { field: Some(&field), ..moment(&view, Vec3::ZERO) })
+                    .advance(1.0 / 60.0, &StepInput { field: Some(&field), ..input(&view, Vec3::ZERO) })
                     .expect("in range");
             }
             (simulation.drops().to_vec(), simulation.measured_rate_mm_h(None))
@@ -271,7 +272,7 @@ fn the_same_bits_for_any_number_of_threads() {
 #[test]
 fn what_is_out_of_range_is_refused() {
     let view = View::default();
-    let now = moment(&view, Vec3::ZERO);
+    let now = input(&view, Vec3::ZERO);
     let made = |options: SimulationOptions| Simulation::new(&rain(10.0), &options, &now).map(|_| ());
     let of = |volume: SimVolume| SimulationOptions { volume, ..SimulationOptions::default() };
     for volume in [
@@ -296,26 +297,26 @@ fn what_is_out_of_range_is_refused() {
         assert_eq!(error.to_string(), format!("time of a step is {time} s; allowed: 1e-5 to 1"));
     }
     let lost = View { eye: DVec3::splat(f64::NAN), ..view };
-    assert!(simulation.advance(0.01, &moment(&lost, Vec3::ZERO)).is_err());
+    assert!(simulation.advance(0.01, &input(&lost, Vec3::ZERO)).is_err());
     assert_eq!(simulation.drops(), before);
 }
 
-/// No rain is no drops, not a division by nothing.
+/// Without rain there are no drops and no division by zero.
 #[test]
 fn dry() {
     let view = View::default();
-    let now = moment(&view, Vec3::ZERO);
+    let now = input(&view, Vec3::ZERO);
     let mut simulation = Simulation::new(&rain(0.0), &SimulationOptions::default(), &now).expect("in range");
     simulation.advance(0.1, &now).expect("in range");
     assert_eq!((simulation.drops().len(), simulation.measured_rate_mm_h(None)), (0, 0.0));
 }
 
-/// More drops than are ever made: the need, before anything is worked out.
+/// Too many drops: the required memory, before anything is computed.
 #[test]
 fn too_many_drops_say_what_they_need() {
     let view = View::default();
     let options = SimulationOptions { most_drops: 1_000_000_000, ..SimulationOptions::default() };
-    let error = Simulation::new(&rain(100.0), &options, &moment(&view, Vec3::ZERO)).unwrap_err();
+    let error = Simulation::new(&rain(100.0), &options, &input(&view, Vec3::ZERO)).unwrap_err();
     assert_eq!(error.exit_code(), 3);
     assert!(
         error.to_string().starts_with("1000000000 drops need 31.7 GiB; allowed: up to 268435456"),

@@ -1,8 +1,8 @@
-//! Sizes of simulated drops are drawn independently: counts in bins scatter as Poisson's numbers do, neither more nor less.
+//! Sizes of simulated drops are drawn independently: counts in bins are Poisson distributed.
 
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_math::ops::f64 as ops;
-use downpour_sim::simulation::{Moment, SimVolume, Simulation, SimulationOptions};
+use downpour_sim::simulation::{SimVolume, Simulation, SimulationOptions, StepInput};
 use downpour_sim::view::View;
 use glam::{DVec3, Vec3};
 
@@ -19,7 +19,7 @@ fn chi_square(simulation: &Simulation, inside: impl Fn(DVec3, f64) -> bool, expe
     let mut counts = [0.0; BINS];
     for drop in simulation.drops() {
         let d = f64::from(drop.diameter());
-        if inside(Vec3::from(drop.place).as_dvec3(), d) {
+        if inside(Vec3::from(drop.position).as_dvec3(), d) {
             let above = (0..=BINS).take_while(|&k| edge(k) <= d).count();
             if (1..=BINS).contains(&above) {
                 counts[above - 1] += 1.0;
@@ -29,7 +29,7 @@ fn chi_square(simulation: &Simulation, inside: impl Fn(DVec3, f64) -> bool, expe
     counts.iter().zip(expected).map(|(n, mean)| (n - mean) * (n - mean) / mean).sum()
 }
 
-/// The integral of a density over each bin.
+/// Integral of a density over each bin.
 fn expected(of: impl Fn(f64) -> f64) -> Vec<f64> {
     let bin = |k: usize| {
         let (from, to) = (edge(k), edge(k + 1));
@@ -39,7 +39,7 @@ fn expected(of: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..BINS).map(bin).collect()
 }
 
-/// Holds many values of chi-square against their law: mean and variance, and the largest.
+/// Compares many values of chi-square with their distribution: mean and variance, and the largest.
 fn check(name: &str, values: &[f64], expected: &[f64]) {
     let (n, freedom) = (values.len() as f64, BINS as f64);
     let mean = values.iter().sum::<f64>() / n;
@@ -57,7 +57,7 @@ fn check(name: &str, values: &[f64], expected: &[f64]) {
 fn sizes_scatter_as_chance_has_it() {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 10.0).expect("in range");
     let view = View { far: 5.0, ..View::default() };
-    let now = Moment::new(&view, DVec3::ZERO, Vec3::ZERO);
+    let now = StepInput::new(&view, DVec3::ZERO, Vec3::ZERO);
     let run = |volume: SimVolume, inside: &dyn Fn(DVec3, f64) -> bool, expected: &[f64]| -> Vec<f64> {
         let of_seed = |seed: u64| {
             let options = SimulationOptions { volume, seed, ..SimulationOptions::default() };

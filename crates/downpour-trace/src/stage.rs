@@ -44,7 +44,7 @@ const BYTES_PER_TRIANGLE: u64 = 540;
 const NEAR_ORIGIN_M: f64 = 1000.0;
 
 /// The latest time of a picture, in seconds, and the earliest below 0.
-pub const LATEST_S: f64 = downpour_sim::field::LATEST_S;
+pub const LATEST_S: f64 = downpour_sim::field::MAX_TIME_S;
 
 /// The eye's motion is taken over this time at least, s.
 const LEAST_APART_S: f64 = 1.0e-3;

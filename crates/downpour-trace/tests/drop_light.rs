@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use downpour_drop::optics::{SCATTERING_ORDERS, scattered_share};
+use downpour_drop::optics::{SCATTERING_ORDERS, scattered_fraction};
 use downpour_math::ops;
 use downpour_render::RenderError;
 use downpour_render::camera::Viewpoint;
@@ -102,7 +102,8 @@ fn no_light_is_lost_or_made() -> Outcome {
         sum += Vec3::new(light[0], light[1], light[2]) * ring / irradiance;
     }
     for (found, index) in sum.to_array().into_iter().zip(indices) {
-        let expected = (0..SCATTERING_ORDERS).map(|p| scattered_share(index, p)).sum::<Result<f64, _>>()?;
+        let expected =
+            (0..SCATTERING_ORDERS).map(|p| scattered_fraction(index, p)).sum::<Result<f64, _>>()?;
         assert!((f64::from(found) / expected - 1.0).abs() < 2.0e-3, "{found} for {expected}");
     }
     Ok(())

@@ -157,7 +157,7 @@ impl Pane {
             GlassRain {
                 rate_mm_h: rain.rate_mm_h,
                 law: rain.law,
-                diameters_m: [drops.smallest_diameter_m, drops.largest_diameter_m],
+                diameters_m: [drops.min_diameter_m, drops.max_diameter_m],
                 fall_speed: drops.fall_speed,
                 air: rain.air,
                 towards_m_s: speed_m_s,

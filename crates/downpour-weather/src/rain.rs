@@ -20,7 +20,7 @@ use serde::Deserialize;
 const GAMMA_SHAPE: f64 = 3.0;
 
 /// The lightest rain whose drop sizes differ, in mm/h.
-const LIGHTEST: f64 = downpour_drop::distribution::LIGHTEST_SHAPE_MM_H;
+const LIGHTEST: f64 = downpour_drop::distribution::MIN_SHAPE_RATE_MM_H;
 
 /// Drops of one size differ by this share of their diameter, and at least by so many m.
 const ONE_SHARE: f64 = 1.0e-3;
@@ -389,8 +389,8 @@ impl Rain {
             Some(diameter) => {
                 let half = (diameter * ONE_SHARE).max(ONE_LEAST_M);
                 DistributionOptions {
-                    smallest_diameter_m: diameter - half,
-                    largest_diameter_m: diameter + half,
+                    min_diameter_m: diameter - half,
+                    max_diameter_m: diameter + half,
                     ..usual
                 }
             }

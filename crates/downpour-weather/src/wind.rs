@@ -315,7 +315,7 @@ impl<R> SingularityTable<R> {
                 Some(CoreWord::LambOseen) => WindCore::LambOseen,
             },
             strength,
-            centre: or_still(self.centre_m.as_ref(), DVec3::ZERO, &key("centre_m"), places)?,
+            center: or_still(self.centre_m.as_ref(), DVec3::ZERO, &key("centre_m"), places)?,
             axis: or_still(self.axis.as_ref(), DVec3::Y, &key("axis"), places)?,
             core_radius: core(self.core_m.as_ref(), &key("core_m"), places)?,
         })

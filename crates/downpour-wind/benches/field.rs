@@ -1,4 +1,4 @@
-//! How long a CPU takes for the field of 64 x 64 x 64 cells with 64 primitives, and for drops in a gusty wind.
+//! Time of a CPU for the field of 64 x 64 x 64 cells with 64 primitives, and for drops in a gusty wind.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use downpour_wind::{
@@ -11,7 +11,7 @@ fn grid() -> WindGrid {
     WindGrid::new(Vec3::splat(-50.0), Vec3::splat(50.0), [64; 3]).expect("a grid")
 }
 
-/// Vortices all over the box.
+/// Vortices distributed over the box.
 fn primitives() -> Vec<WindPrimitive> {
     (0..64u8)
         .map(|k| {
@@ -19,7 +19,7 @@ fn primitives() -> Vec<WindPrimitive> {
             WindPrimitive::Vortex(WindSingularity {
                 form: WindForm::Line,
                 strength: 50.0,
-                centre: Vec3::from(at),
+                center: Vec3::from(at),
                 axis: Vec3::new(0.1, 1.0, 0.2),
                 core_radius: 4.0,
                 core: WindCore::Rosenhead,

@@ -1,5 +1,5 @@
-//! How long a GPU takes for the field of 64 x 64 x 64 cells with 64 primitives: by the device's clock (wall clock on software
-//! drivers, whose timestamps mean nothing).
+//! Time of a GPU for the field of 64 x 64 x 64 cells with 64 primitives: by the device's clock (wall clock on software
+//! drivers, whose timestamps are meaningless).
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ fn field(c: &mut Criterion) {
     let vortex = WindPrimitive::Vortex(WindSingularity {
         form: WindForm::Line,
         strength: 50.0,
-        centre: Vec3::ZERO,
+        center: Vec3::ZERO,
         axis: Vec3::new(0.1, 1.0, 0.2),
         core_radius: 4.0,
         core: WindCore::Rosenhead,

@@ -1,37 +1,39 @@
-//! What a wind is made of, as a person designs it.
+//! Wind primitives as a user designs them.
 
 use glam::Vec3;
 
 use crate::error::{WindError, in_range};
 
-/// How far a source, sink or vortex reaches.
+/// Spatial form of a source, sink or vortex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindForm {
-    /// The same at every height along the axis, falling as 1 / r (the printed formulas of Rousseau 2008).
+    /// The same at every height along the axis, with a speed proportional to 1 / r (the printed formulas of Rousseau
+    /// 2008).
     #[default]
     Line,
-    /// About one point, falling as 1 / r^2 (the text of Rousseau 2008: "in all directions from this point").
+    /// Around one point, with a speed proportional to 1 / r^2 (the text of Rousseau 2008: "in all directions from this
+    /// point").
     Point,
 }
 
-/// How a line form is kept finite at its axis. Point forms have Rosenhead's core. The laws stand in
-/// [`primitive`](crate::primitive).
+/// Core of a line form, which keeps the speed finite at its axis. Point forms have Rosenhead's core. The formulas are
+/// in [`primitive`](crate::primitive).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindCore {
-    /// r / (r^2 + e^2): smooth, fastest at the core radius with half of what Rankine's has.
+    /// r / (r^2 + e^2): smooth, fastest at the core radius with half of the peak of Rankine's.
     #[default]
     Rosenhead,
-    /// Turns as a solid within the core radius; beyond it nothing is changed.
+    /// Solid-body rotation within the core radius; unchanged beyond it.
     Rankine,
-    /// A normal distribution of rotation or outflow: what viscosity makes of a line.
+    /// Normal distribution of vorticity or divergence, as viscosity spreads a line.
     LambOseen,
 }
 
 impl WindCore {
-    /// Every core.
+    /// All cores.
     pub const ALL: [Self; 3] = [Self::Rosenhead, Self::Rankine, Self::LambOseen];
 
-    /// Its name in files and arguments.
+    /// Name in files and arguments.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -41,19 +43,19 @@ impl WindCore {
         }
     }
 
-    /// The core of a name.
+    /// Returns the core of a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|core| core.name() == name)
     }
 }
 
-/// The same wind everywhere.
+/// Uniform wind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindUniform {
-    /// 0 to 200 m/s.
+    /// Speed, 0 to 200 m/s.
     pub speed: f32,
-    /// Where it blows to; any length.
+    /// Direction towards which the wind blows; any length.
     pub direction: Vec3,
 }
 
@@ -62,37 +64,38 @@ pub struct WindUniform {
 pub struct WindSingularity {
     /// Line or point.
     pub form: WindForm,
-    /// m^2/s for a line (flow per length, or circulation), m^3/s for a point (flow, or circulation times length). 0 to 1e6
-    /// for sources and sinks; a vortex may be negative, and turns right-handed about its axis if it is positive.
+    /// Strength: m^2/s for a line (flow per length, or circulation), m^3/s for a point (flow, or circulation times
+    /// length). 0 to 1e6 for sources and sinks; a vortex may be negative, and is right-handed about its axis if it is
+    /// positive.
     pub strength: f32,
-    /// Where it is: a point of the axis, or the point. Metres, up to 1e6.
-    pub centre: Vec3,
-    /// The axis; any length. A point source or sink has the same wind for every axis.
+    /// A point of the axis, or the point of a point form. Metres, up to 1e6.
+    pub center: Vec3,
+    /// Axis; any length. A point source or sink has the same wind for every axis.
     pub axis: Vec3,
-    /// 0.01 to 1e4 m. Two cells of a grid at least, if the grid is to show it.
+    /// Core radius, 0.01 to 1e4 m. At least two cells of a grid that has to resolve it.
     pub core_radius: f32,
-    /// What the core is like; points have Rosenhead's.
+    /// Core of a line form; points have Rosenhead's.
     pub core: WindCore,
 }
 
-/// A sink at the base, a source at the top, a vortex about the axis (Rousseau 2008, 3.1), and the updraft that carries the
-/// air from the base to the top.
+/// A sink at the base, a source at the top, a vortex about the axis (Rousseau 2008, 3.1), and the updraft that carries
+/// the air from the base to the top.
 ///
-/// With line forms sink and source would cancel; with point forms alone the air would flow down from the source to the
+/// As line forms, sink and source would cancel; as point forms alone, the air would flow down from the source to the
 /// sink.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindTornado {
     /// Circulation of the vortex, m^2/s, up to 1e6; right-handed about the axis if it is positive.
     pub circulation: f32,
-    /// Air that goes in at the base and out at the top, 0 to 1e6 m^3/s.
+    /// Discharge in at the base and out at the top, 0 to 1e6 m^3/s.
     pub discharge: f32,
-    /// Middle of the base. Metres, up to 1e6.
+    /// Center of the base. Metres, up to 1e6.
     pub base: Vec3,
-    /// From base to top; any length.
+    /// Axis from base to top; any length.
     pub axis: Vec3,
-    /// From base to top, 2 core radii to 1e5 m.
+    /// Height from base to top, 2 core radii to 1e5 m.
     pub height: f32,
-    /// 0.01 to 1e4 m.
+    /// Core radius, 0.01 to 1e4 m.
     pub core_radius: f32,
 }
 
@@ -106,17 +109,17 @@ pub enum WindPrimitive {
     Source(WindSingularity),
     /// Wind into a line or a point.
     Sink(WindSingularity),
-    /// Wind round an axis.
+    /// Wind around an axis.
     Vortex(WindSingularity),
-    /// All of it.
+    /// Sink, source, vortex and updraft of a tornado.
     Tornado(WindTornado),
 }
 
 impl WindPrimitive {
-    /// Nothing if every number is in its range.
+    /// Checks that every number is in its range.
     ///
     /// # Errors
-    /// [`WindError::OutOfRange`] or [`WindError::ZeroAxis`] for the first that is not; [`WindError::CoreOfPoint`].
+    /// [`WindError::OutOfRange`] or [`WindError::ZeroAxis`] for the first number that is not; [`WindError::CoreOfPoint`].
     pub fn check(&self) -> Result<(), WindError> {
         match self {
             Self::Uniform(wind) => {
@@ -137,7 +140,7 @@ impl WindSingularity {
             WindForm::Point => "m^3/s",
         };
         in_range("strength", self.strength, unit_of_strength, &(smallest..=1.0e6), allowed)?;
-        place("centre", self.centre)?;
+        check_position("center", self.center)?;
         core(self.core_radius)?;
         if self.form == WindForm::Point && self.core != WindCore::Rosenhead {
             return Err(WindError::CoreOfPoint { found: self.core.name() });
@@ -150,9 +153,9 @@ impl WindTornado {
     fn check(&self) -> Result<(), WindError> {
         in_range("circulation", self.circulation, "m^2/s", &(-1.0e6..=1.0e6), "-1e6 to 1e6")?;
         in_range("discharge", self.discharge, "m^3/s", &(0.0..=1.0e6), "0 to 1e6")?;
-        place("base", self.base)?;
+        check_position("base", self.base)?;
         core(self.core_radius)?;
-        // Rounded numbers of a matrix must not fall out of the range that they were in.
+        // Rounded numbers of a matrix must stay in the range that they had.
         let smallest = 2.0 * self.core_radius * (1.0 - 1.0e-6);
         in_range("height", self.height, "m", &(smallest..=1.0e5), "2 core radii to 1e5")?;
         unit("axis", self.axis).map(|_| ())
@@ -163,13 +166,13 @@ fn core(radius: f32) -> Result<(), WindError> {
     in_range("core radius", radius, "m", &(0.01..=1.0e4), "0.01 to 1e4")
 }
 
-fn place(quantity: &'static str, at: Vec3) -> Result<(), WindError> {
+fn check_position(quantity: &'static str, at: Vec3) -> Result<(), WindError> {
     at.to_array()
         .into_iter()
         .try_for_each(|c| in_range(quantity, c, "m", &(-1.0e6..=1.0e6), "-1e6 to 1e6 in each direction"))
 }
 
-/// The vector with length 1. One that has it to rounding keeps its bits.
+/// Returns the vector with length 1. A unit vector, up to rounding, keeps its bits.
 pub(crate) fn unit(quantity: &'static str, vector: Vec3) -> Result<Vec3, WindError> {
     for c in vector.to_array() {
         in_range(quantity, c, "(a component)", &(-1.0e6..=1.0e6), "-1e6 to 1e6")?;

@@ -1,27 +1,27 @@
-//! What can be wrong with a wind that comes from outside.
+//! Errors of wind parameters.
 
 use std::ops::RangeInclusive;
 
-/// Why there is no wind.
+/// Error of a wind parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WindError {
     /// A number is not finite or outside its range.
     #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
     OutOfRange {
-        /// What it is.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// The value, in `unit`.
+        /// Value found, in `unit`.
         found: f64,
-        /// The unit.
+        /// Unit of the value.
         unit: &'static str,
-        /// The range, in words.
+        /// Allowed range, in words.
         allowed: &'static str,
     },
-    /// An axis has no direction.
+    /// An axis has length 0.
     #[error("{quantity} is {found:?}; allowed: a vector at least 1e-3 long")]
     ZeroAxis {
-        /// Which axis.
+        /// Name of the axis.
         quantity: &'static str,
         /// Its components.
         found: [f32; 3],
@@ -29,65 +29,65 @@ pub enum WindError {
     /// A value has no keys, or too many.
     #[error("{found} keys; allowed: 1 to {allowed}")]
     KeyCount {
-        /// How many it has.
+        /// Number of keys found.
         found: usize,
-        /// How many it may have.
+        /// Maximum number of keys.
         allowed: usize,
     },
-    /// Times of keys do not rise.
+    /// Times of keys do not increase.
     #[error(
         "key {index} is at {found} s, after one at {before} s; allowed: times that rise by a microsecond at least"
     )]
     KeyTime {
-        /// Which key, from 0.
+        /// Index of the key, from 0.
         index: usize,
         /// Its time, s.
         found: f64,
-        /// The time of the key before it, s.
+        /// Time of the previous key, s.
         before: f64,
     },
-    /// An axis turns about, from one key to the next.
+    /// An axis reverses from one key to the next.
     #[error(
-        "{quantity} turns about up to the key at {time} s; allowed: a key between, that says by which way"
+        "{quantity} reverses before the key at {time} s; allowed: a key between that defines the rotation"
     )]
     AxisReverses {
-        /// Which axis.
+        /// Name of the axis.
         quantity: &'static str,
-        /// The time of the second key, s.
+        /// Time of the second key, s.
         time: f64,
     },
     /// A wind has too many parts.
     #[error("the wind has {found} parts; allowed: up to {allowed}")]
     TooManyParts {
-        /// How many it has.
+        /// Number of parts found.
         found: usize,
-        /// How many it may have.
+        /// Maximum number of parts.
         allowed: usize,
     },
-    /// A point has a core that is of lines.
+    /// A point form has a core that is defined for lines only.
     #[error("the core of a point is {found}; allowed: rosenhead, or a line")]
     CoreOfPoint {
-        /// The core's name.
+        /// Name of the core.
         found: &'static str,
     },
-    /// The first number of a matrix is no type of a primitive.
+    /// The first number of a matrix is not a type of primitive.
     #[error("the type of matrix {index} is {found}; allowed: 0 to 7, 9 to 11, 17 to 19")]
     UnknownType {
-        /// Which matrix, from 0.
+        /// Index of the matrix, from 0.
         index: usize,
-        /// The number.
+        /// Number found.
         found: f32,
     },
     /// An updraft is not followed by the other parts of its tornado.
     #[error(
-        "matrix {index} is an updraft alone; allowed: an updraft followed by point sink, point source and line vortex \
+        "matrix {index} is an updraft without its tornado; allowed: an updraft followed by point sink, point source and line vortex \
          of the same tornado"
     )]
     LoneUpdraft {
-        /// Which matrix, from 0.
+        /// Index of the matrix, from 0.
         index: usize,
     },
-    /// A mask has another number of cells than the grid.
+    /// A mask and its grid differ in the number of cells.
     #[error("the mask has {found} cells; allowed: {allowed}, as the grid")]
     MaskSize {
         /// Cells of the mask.
@@ -98,15 +98,15 @@ pub enum WindError {
     /// A grid has more cells than a buffer holds.
     #[error("the grid has {found} cells; allowed: up to {allowed}")]
     TooManyCells {
-        /// How many it has.
+        /// Number of cells found.
         found: u64,
-        /// How many it may have.
+        /// Maximum number of cells.
         allowed: u64,
     },
 }
 
 impl WindError {
-    /// The exit code of the command for this error: 3 for a limit, 2 for bad input.
+    /// Exit code of the command for this error: 3 for a limit, 2 for bad input.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -117,7 +117,7 @@ impl WindError {
     }
 }
 
-/// As [`in_range`].
+/// [`in_range`] for f64.
 pub(crate) fn in_range_f64(
     quantity: &'static str,
     found: f64,
@@ -132,7 +132,7 @@ pub(crate) fn in_range_f64(
     }
 }
 
-/// Nothing if `value` is within `range` (NaN is not).
+/// Checks that `value` is within `range` (NaN is not).
 pub(crate) fn in_range(
     quantity: &'static str,
     value: f32,

@@ -1,72 +1,72 @@
-//! The wind in the cells of a box (Rousseau 2008, 3.2 and 5.1.2). Twin of `shaders/wgsl/wind/field.wgsl`.
+//! Wind in the cells of a box (Rousseau 2008, 3.2 and 5.1.2). Twin of `shaders/wgsl/wind/field.wgsl`.
 
 use glam::{DVec3, UVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::design::WindPrimitive;
 use crate::error::WindError;
-pub use crate::field_grid::{WindFieldGrid, wind_field_centre};
+pub use crate::field_grid::{WindFieldGrid, wind_field_center};
 use crate::grid::WindGrid;
 use crate::mask::WindMask;
 use crate::matrix::WindMatrix;
 use crate::primitive::velocity;
 use crate::turbulence::{WindTurbulenceMode, wind_turbulence_velocity};
 
-/// The cells whose centres are round a place.
+/// The eight cells whose centers surround a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WindFieldPlace {
-    /// The lower of them along each axis.
+pub struct WindFieldPosition {
+    /// Lower cell along each axis.
     pub cell: UVec3,
-    /// The upper.
+    /// Upper cell along each axis.
     pub next: UVec3,
-    /// How far the place is on the way from the lower to the upper, 0 to 1.
-    pub share: Vec3,
+    /// Fraction of the distance from the lower to the upper cell, 0 to 1.
+    pub fraction: Vec3,
 }
 
-/// Where a cell stands in memory.
+/// Index of a cell in memory.
 #[must_use]
 pub fn wind_field_index(grid: &WindFieldGrid, cell: UVec3) -> u32 {
     let [x, y, _] = grid.size;
     (cell.z * y + cell.y) * x + cell.x
 }
 
-/// The cells round a place. A place outside the outermost centres is moved to the nearest point between them, one that is
-/// not a number to the lowest.
+/// Finds the cells around a position. A position outside the outermost centers is clamped to them, NaN to the
+/// lowest.
 #[must_use]
-pub fn wind_field_place(grid: &WindFieldGrid, at: Vec3) -> WindFieldPlace {
+pub fn wind_field_locate(grid: &WindFieldGrid, at: Vec3) -> WindFieldPosition {
     let last = UVec3::from(grid.size) - 1;
     let x = (at - Vec3::from(grid.low)) * Vec3::from(grid.per_cell) - 0.5;
     let x = Vec3::from_array(std::array::from_fn(|k| x[k].max(0.0).min(last[k] as f32)));
     let lower = x.floor();
     let cell = lower.as_uvec3().min(last);
-    WindFieldPlace { cell, next: (cell + 1).min(last), share: x - lower }
+    WindFieldPosition { cell, next: (cell + 1).min(last), fraction: x - lower }
 }
 
-/// One of the eight cells: bits 0, 1 and 2 of `corner` choose along x, y and z.
+/// One of the eight cells: bits 0, 1 and 2 of `corner` select along x, y and z.
 #[must_use]
-pub fn wind_field_corner(place: &WindFieldPlace, corner: u32) -> UVec3 {
+pub fn wind_field_corner(position: &WindFieldPosition, corner: u32) -> UVec3 {
     let choose = |bit: u32, cell: u32, next: u32| if corner & bit != 0 { next } else { cell };
     UVec3::new(
-        choose(1, place.cell.x, place.next.x),
-        choose(2, place.cell.y, place.next.y),
-        choose(4, place.cell.z, place.next.z),
+        choose(1, position.cell.x, position.next.x),
+        choose(2, position.cell.y, position.next.y),
+        choose(4, position.cell.z, position.next.z),
     )
 }
 
-/// What is between the values of the eight cells, in the order of their corners.
+/// Trilinear interpolation of the values of the eight cells, in the order of their corners.
 #[must_use]
-pub fn wind_field_mix(corners: &[Vec3; 8], share: Vec3) -> Vec3 {
+pub fn wind_field_mix(corners: &[Vec3; 8], fraction: Vec3) -> Vec3 {
     let [c0, c1, c2, c3, c4, c5, c6, c7] = *corners;
-    let c00 = c0 + (c1 - c0) * share.x;
-    let c10 = c2 + (c3 - c2) * share.x;
-    let c01 = c4 + (c5 - c4) * share.x;
-    let c11 = c6 + (c7 - c6) * share.x;
-    let c0 = c00 + (c10 - c00) * share.y;
-    let c1 = c01 + (c11 - c01) * share.y;
-    c0 + (c1 - c0) * share.z
+    let c00 = c0 + (c1 - c0) * fraction.x;
+    let c10 = c2 + (c3 - c2) * fraction.x;
+    let c01 = c4 + (c5 - c4) * fraction.x;
+    let c11 = c6 + (c7 - c6) * fraction.x;
+    let c0 = c00 + (c10 - c00) * fraction.y;
+    let c1 = c01 + (c11 - c01) * fraction.y;
+    c0 + (c1 - c0) * fraction.z
 }
 
-/// The wind in a cell, m/s, and its openness.
+/// Wind in a cell, m/s, and its openness.
 #[must_use]
 pub fn wind_field_cell(
     grid: &WindFieldGrid,
@@ -78,7 +78,7 @@ pub fn wind_field_cell(
     if openness <= 0.0 {
         return [0.0; 4];
     }
-    let at = wind_field_centre(grid, cell);
+    let at = wind_field_center(grid, cell);
     let offset = at - Vec3::from(grid.low);
     let sum =
         modes.iter().fold(velocity(matrices, at), |sum, mode| sum + wind_turbulence_velocity(mode, offset));
@@ -86,7 +86,7 @@ pub fn wind_field_cell(
     [x, y, z, openness]
 }
 
-/// The wind over a box, computed once and looked up between the cells' centres.
+/// Wind over a box, computed once at the centers of the cells and interpolated between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindField {
     grid: WindGrid,
@@ -97,15 +97,16 @@ pub struct WindField {
 }
 
 impl WindField {
-    /// The sum of any number of primitives, 0 inside the objects of a mask. The same bits for any number of threads.
+    /// Creates the sum of any number of primitives, 0 inside the objects of a mask. The bits do not depend on the
+    /// number of threads.
     ///
     /// # Errors
-    /// As [`WindMatrix::encode`]; [`WindError::MaskSize`] if the mask is of another grid.
+    /// As [`WindMatrix::encode`]; [`WindError::MaskSize`] if the mask does not match the grid.
     pub fn new(grid: &WindGrid, primitives: &[WindPrimitive], mask: &WindMask) -> Result<Self, WindError> {
         Self::with_turbulence(grid, primitives, &[], mask)
     }
 
-    /// The same with waves of turbulence, which are those that [`Wind::modes`](crate::Wind::modes) gives for this grid.
+    /// The same with modes of turbulence, as [`Wind::modes`](crate::Wind::modes) computes them for this grid.
     ///
     /// # Errors
     /// As [`WindField::new`].
@@ -129,36 +130,36 @@ impl WindField {
         Ok(Self { grid: *grid, uniform, matrices, modes: modes.to_vec(), cells })
     }
 
-    /// The same wind for places relative to `origin`, m: far from the world's origin single precision is coarse, near the eye
-    /// it need not be. Its grid and its primitives stay those of the world.
+    /// The same wind for positions relative to `origin`, m. Single precision is coarse far from the world's origin, and
+    /// this keeps it fine near the eye. The grid and the primitives stay in world coordinates.
     #[must_use]
     pub fn relative_to(mut self, origin: DVec3) -> Self {
         self.uniform.low = (self.grid.low().as_dvec3() - origin).as_vec3().to_array();
         self
     }
 
-    /// The wind at a place, m/s, trilinear between the centres of the cells. Beyond the outermost centres it is that of the
-    /// nearest point between them.
+    /// Wind at a position, m/s, trilinear between the centers of the cells. Beyond the outermost centers it is that of
+    /// the nearest point between them.
     #[must_use]
     pub fn sample(&self, at: Vec3) -> Vec3 {
-        let place = wind_field_place(&self.uniform, at);
+        let position = wind_field_locate(&self.uniform, at);
         let corners = std::array::from_fn(|k| {
-            let index = wind_field_index(&self.uniform, wind_field_corner(&place, k as u32));
-            // A cell of the place is within the grid.
+            let index = wind_field_index(&self.uniform, wind_field_corner(&position, k as u32));
+            // The cell is within the grid.
             self.cells.get(index as usize).map_or(Vec3::ZERO, |&[x, y, z, _]| Vec3::new(x, y, z))
         });
-        wind_field_mix(&corners, place.share)
+        wind_field_mix(&corners, position.fraction)
     }
 
-    /// Bounds on the difference of the wind within `reach` metres of a place from that at the place: per metre of the distance
-    /// from it, 1/s, and at most, m/s.
+    /// Bounds on the difference between the wind within `reach` metres of a position and the wind at the position: per
+    /// metre of distance, 1/s, and in total, m/s.
     #[must_use]
     pub fn spread(&self, at: Vec3, reach: f32) -> [f32; 2] {
-        let [low, high] = [-reach, reach].map(|way| wind_field_place(&self.uniform, at + Vec3::splat(way)));
+        let [low, high] = [-reach, reach].map(|way| wind_field_locate(&self.uniform, at + Vec3::splat(way)));
         let (first, last) = (low.cell, high.next);
         let there = self.sample(at);
         let steps = [(UVec3::X, 0), (UVec3::Y, 1), (UVec3::Z, 2)];
-        // Differences along each axis per m, and from the place.
+        // Differences along each axis per m, and from the position.
         let of_layer = |z: u32| {
             let mut found = Vec4::ZERO;
             for y in first.y..=last.y {
@@ -191,19 +192,19 @@ impl WindField {
         &self.grid
     }
 
-    /// The grid as the shader takes it.
+    /// Grid in the layout of the shader.
     #[must_use]
     pub fn uniform(&self) -> &WindFieldGrid {
         &self.uniform
     }
 
-    /// The matrices of the primitives.
+    /// Matrices of the primitives.
     #[must_use]
     pub fn matrices(&self) -> &[WindMatrix] {
         &self.matrices
     }
 
-    /// The waves of turbulence.
+    /// Modes of turbulence.
     #[must_use]
     pub fn modes(&self) -> &[WindTurbulenceMode] {
         &self.modes

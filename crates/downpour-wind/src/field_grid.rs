@@ -1,10 +1,10 @@
-//! The cells of a field as the shader takes them.
+//! Grid of a field in the layout of the shader.
 
 use glam::{UVec3, Vec3};
 
 use crate::grid::WindGrid;
 
-/// A grid as the shader takes it. The same layout as `WindFieldGrid` in WGSL.
+/// Grid in the layout of the shader, as `WindFieldGrid` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct WindFieldGrid {
@@ -14,9 +14,9 @@ pub struct WindFieldGrid {
     pub primitives: u32,
     /// Edges of a cell, m.
     pub cell: [f32; 3],
-    /// Number of waves of turbulence.
+    /// Number of turbulence modes.
     pub modes: u32,
-    /// Their inverses, 1/m.
+    /// Inverse edges of a cell, 1/m.
     pub per_cell: [f32; 3],
     /// Padding of the WGSL layout.
     pub padding_2: u32,
@@ -27,7 +27,7 @@ pub struct WindFieldGrid {
 }
 
 impl WindFieldGrid {
-    /// A grid on which `primitives` matrices and `modes` waves of turbulence blow.
+    /// Creates a grid with `primitives` matrices and `modes` modes of turbulence.
     #[must_use]
     pub fn new(grid: &WindGrid, primitives: u32, modes: u32) -> Self {
         let cell = grid.cell();
@@ -44,8 +44,8 @@ impl WindFieldGrid {
     }
 }
 
-/// The centre of a cell, m.
+/// Center of a cell, m.
 #[must_use]
-pub fn wind_field_centre(grid: &WindFieldGrid, cell: UVec3) -> Vec3 {
+pub fn wind_field_center(grid: &WindFieldGrid, cell: UVec3) -> Vec3 {
     Vec3::from(grid.low) + (cell.as_vec3() + 0.5) * Vec3::from(grid.cell)
 }

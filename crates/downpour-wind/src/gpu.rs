@@ -1,4 +1,4 @@
-//! The field on a GPU: the cells in a buffer that other kernels read.
+//! Wind field on a GPU: the cells in a buffer that other kernels read.
 
 use downpour_gpu::{ComputeKernel, Gpu, GpuError, wgpu};
 use downpour_shaders::wind::FIELD_KERNEL;
@@ -11,30 +11,30 @@ use crate::mask::WindMask;
 use crate::matrix::WindMatrix;
 use crate::turbulence::WindTurbulenceMode;
 
-/// Why there is no field on a GPU.
+/// Error of a wind field on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuWindError {
-    /// The wind itself is not possible.
+    /// The wind is not valid.
     #[error(transparent)]
     Wind(#[from] WindError),
-    /// More matrices or waves than there is room for.
+    /// There are more matrices or modes than the capacity.
     #[error("{found} {what}; allowed: up to {allowed}, the capacity of the field")]
     Capacity {
-        /// Matrices, or waves of turbulence.
+        /// Matrices, or modes of turbulence.
         what: &'static str,
-        /// How many there are.
+        /// Number found.
         found: usize,
-        /// How many there may be.
+        /// Capacity.
         allowed: usize,
     },
-    /// The GPU did not do it.
+    /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
 
 impl GpuWindError {
-    /// The exit code of the command for this error.
+    /// Exit code of the command for this error.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -45,7 +45,7 @@ impl GpuWindError {
     }
 }
 
-/// The wind over a grid, filled by the kernel `main_wind_field`: what [`WindField`](crate::WindField) is on the CPU.
+/// Wind over a grid, filled by the kernel `main_wind_field`: [`WindField`](crate::WindField) on a GPU.
 #[derive(Debug)]
 pub struct GpuWindField {
     gpu: Gpu,
@@ -62,14 +62,14 @@ pub struct GpuWindField {
 }
 
 impl GpuWindField {
-    /// A field without wind. There will be room for so many matrices (four for a tornado, one for each other primitive) and
-    /// waves of turbulence.
+    /// Creates a field without wind, with a capacity of matrices (four for a tornado, one for each other primitive) and
+    /// turbulence modes.
     ///
     /// # Errors
-    /// What the GPU says; [`GpuError::OverLimit`] if a buffer is larger than it allows.
+    /// Errors of the GPU; [`GpuError::OverLimit`] if a buffer is larger than the device allows.
     pub fn new(gpu: &Gpu, grid: &WindGrid, matrices: usize, modes: usize) -> Result<Self, GpuWindError> {
         let kernel = ComputeKernel::new(gpu, &FIELD_KERNEL, &[])?;
-        // A buffer of the shader has one element at least.
+        // A buffer of the shader has at least one element.
         let (matrices, modes) = (matrices.max(1), modes.max(1));
         let storage = |label: &str, count: usize, size: usize| {
             let bytes = (count as u64).saturating_mul(size as u64);
@@ -96,20 +96,20 @@ impl GpuWindField {
         })
     }
 
-    /// Sets where objects are; [`update`](Self::update) takes them into account from then on.
+    /// Sets the objects; [`update`](Self::update) uses them from then on.
     ///
     /// # Errors
-    /// [`WindError::MaskSize`] if the mask is of another grid.
+    /// [`WindError::MaskSize`] if the mask does not match the grid.
     pub fn set_mask(&self, mask: &WindMask) -> Result<(), GpuWindError> {
         mask.check(&self.grid)?;
         self.gpu.queue().write_buffer(&self.openness, 0, bytemuck::cast_slice(mask.openness()));
         Ok(())
     }
 
-    /// Fills the cells: submits the kernel and does not wait.
+    /// Fills the cells: submits the kernel without waiting.
     ///
     /// # Errors
-    /// As [`WindMatrix::encode`]; [`GpuWindError::Capacity`]; what the GPU says.
+    /// As [`WindMatrix::encode`]; [`GpuWindError::Capacity`]; errors of the GPU.
     pub fn update(
         &self,
         primitives: &[WindPrimitive],
@@ -119,7 +119,7 @@ impl GpuWindField {
         Ok(self.gpu.submit(&[self.kernel.dispatch(&self.bindings, self.groups())])?)
     }
 
-    /// The time that the device takes to fill the cells, without transfers.
+    /// Time of the device to fill the cells, without transfers.
     ///
     /// # Errors
     /// As [`GpuWindField::update`].
@@ -139,7 +139,7 @@ impl GpuWindField {
         &self.cells
     }
 
-    /// The uniform `WindFieldGrid` with which a kernel looks the cells up.
+    /// Uniform `WindFieldGrid` with which a kernel looks up the cells.
     #[must_use]
     pub fn uniform(&self) -> &wgpu::Buffer {
         &self.uniform

@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use crate::error::{WindError, in_range};
 
-/// Most cells of a grid: 16 bytes each are the 128 MiB that WebGPU binds as one buffer.
+/// Maximum number of cells of a grid: at 16 bytes each, the 128 MiB that WebGPU binds as one buffer.
 pub const WIND_GRID_CELLS: u64 = 1 << 23;
 
-/// A box of cells, `x` the fastest in memory. The paper's is 64 x 64 x 64.
+/// A box of cells, `x` the fastest in memory. The paper uses 64 x 64 x 64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindGrid {
     low: Vec3,
@@ -16,7 +16,7 @@ pub struct WindGrid {
 }
 
 impl WindGrid {
-    /// A box from `low` to `high`, metres, of `size` cells along each axis.
+    /// Creates a box from `low` to `high`, metres, with `size` cells along each axis.
     ///
     /// # Errors
     /// [`WindError::OutOfRange`] if a corner is beyond 1e6 m, an edge is not 0.01 to 1e6 m, or the cells along it are not 1
@@ -67,19 +67,19 @@ impl WindGrid {
         (self.high - self.low) / Vec3::from(self.size.map(|n| n as f32))
     }
 
-    /// How many cells there are.
+    /// Number of cells.
     #[must_use]
     pub fn cells(&self) -> usize {
         self.size.iter().map(|&n| n as usize).product()
     }
 
-    /// The smallest core radius that the grid shows, m: two of its longest cells.
+    /// Smallest core radius that the grid resolves, m: two of its longest cells.
     #[must_use]
-    pub fn smallest_core(&self) -> f32 {
+    pub fn min_core_radius(&self) -> f32 {
         2.0 * self.cell().max_element()
     }
 
-    /// The numbers of the cell that stands at `index` in memory.
+    /// Coordinates of the cell at `index` in memory.
     #[must_use]
     pub fn coordinates(&self, index: usize) -> [u32; 3] {
         let [x, y, _] = self.size.map(|n| n as usize);

@@ -1,4 +1,4 @@
-//! Gusts: the mean wind swells and swerves, everywhere at once.
+//! Gusts: fluctuations of the mean wind in speed and direction, the same everywhere.
 //!
 //! The fluctuation along the mean wind has Kaimal's spectrum (Kaimal et al. 1972, in the form of IEC 61400-1, annex B):
 //!
@@ -6,69 +6,69 @@
 //! f S(f) / sigma^2 = 4 x / (1 + 6 x)^(5/3),   x = f L / U
 //! ```
 //!
-//! with sigma = intensity times the mean speed U, and the length scale L. Across it, level, it has the same form with 0.8
-//! sigma and L / 3, as there. It goes as f^(-5/3) where x is large, and its integral is 1 - (1 + 6 x)^(-2/3), so each of
-//! [`WIND_GUST_MODES`] bands of frequency has exactly its share; in each there is one sinusoid, at a random frequency with
-//! a random phase. What is below and above all bands, 0.7 % together, is in the first and the last.
+//! with sigma = intensity times the mean speed U, and the length scale L. The level component across the wind has the
+//! same form with 0.8 sigma and L / 3, as in the standard. The spectrum is proportional to f^(-5/3) for large x, and
+//! its integral is 1 - (1 + 6 x)^(-2/3), so each of [`WIND_GUST_MODES`] bands of frequency has exactly its fraction of
+//! the variance; in each there is one sinusoid, at a random frequency with a random phase. The variance below and
+//! above all bands, 0.7 % together, is in the first and the last.
 //!
-//! The sum is a function of (seed, time): any time in closed form, nothing to step. Amplitudes follow the mean wind of each
-//! moment, so a wind that falls calm has no gusts; the frequencies are those of its mean speed from the first key to the
-//! last.
+//! The sum is a function of (seed, time): any time in closed form, without steps. Amplitudes scale with the mean wind
+//! of the time, so a calm has no gusts; the frequencies are those of its mean speed from the first key to the last.
 
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, seed_words};
 
 use crate::error::{WindError, in_range_f64};
 
-/// How many sinusoids there are in each direction.
+/// Number of sinusoids in each direction.
 pub const WIND_GUST_MODES: usize = 32;
 
-/// The lowest and the highest x = f L / U of a band.
+/// Lowest and highest x = f L / U of the bands.
 const BANDS: (f64, f64) = (1.0e-3, 1.0e3);
 
-/// sigma across the wind, as a share of that along it (IEC 61400-1).
+/// sigma across the wind relative to sigma along it (IEC 61400-1).
 pub const WIND_GUST_ACROSS: f64 = 0.8;
 
-/// The length scale across the wind, as a share of that along it (IEC 61400-1: 2.7 / 8.1).
+/// Length scale across the wind relative to that along it (IEC 61400-1: 2.7 / 8.1).
 const LENGTH_ACROSS: f64 = 1.0 / 3.0;
 
-/// Which numbers are drawn from the seed: not those of the turbulence.
+/// Random stream, different from that of the turbulence.
 const STREAM: u32 = 0x6775_7374;
 
-/// How much the uniform wind fluctuates.
+/// Parameters of gusts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gusts {
-    /// Turbulence intensity: standard deviation along the wind as a share of the mean speed, 0 to 1.
+    /// Turbulence intensity: standard deviation along the wind over the mean speed, 0 to 1.
     pub intensity: f64,
     /// Length scale L of the spectrum, 1 to 1e4 m.
     pub length: f64,
-    /// Same seed, same gusts.
+    /// Random seed; the same seed gives the same gusts.
     pub seed: u64,
 }
 
 impl Default for Gusts {
-    /// 20 % and 100 m: an open land some metres above the ground.
+    /// 20 % and 100 m: open terrain, some metres above the ground.
     fn default() -> Self {
         Self { intensity: 0.2, length: 100.0, seed: 0 }
     }
 }
 
-/// A sinusoid of the gusts, as a share of the mean wind: the real part of `along e^(i omega t)`, likewise across.
+/// A sinusoid of the gusts, relative to the mean wind: the real part of `along e^(i omega t)`, likewise across.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct GustMode {
-    /// rad/s.
+    /// Angular frequency, rad/s.
     pub(crate) omega: f64,
     /// Real and imaginary part of the amplitude along, then across.
     pub(crate) amplitude: [f64; 4],
 }
 
 impl Gusts {
-    /// Nothing if every number is in its range.
+    /// Checks that every number is in its range.
     ///
     /// # Errors
     /// [`WindError::OutOfRange`].
     pub fn check(&self) -> Result<(), WindError> {
-        in_range_f64("intensity of the gusts", self.intensity, "(a share)", 0.0..=1.0, "0 to 1")?;
+        in_range_f64("intensity of the gusts", self.intensity, "(a fraction)", 0.0..=1.0, "0 to 1")?;
         in_range_f64("length of the gusts", self.length, "m", 1.0..=1.0e4, "1 to 1e4")
     }
 
@@ -85,7 +85,7 @@ impl Gusts {
         kaimal(frequency, mean_speed, sigma, LENGTH_ACROSS * self.length)
     }
 
-    /// The sinusoids in a wind of this mean speed, m/s; none in still air.
+    /// Sinusoids in a wind of this mean speed, m/s; none in still air.
     pub(crate) fn modes(&self, mean_speed: f64) -> Vec<GustMode> {
         if self.intensity <= 0.0 || mean_speed <= 0.0 {
             return Vec::new();
@@ -94,7 +94,7 @@ impl Gusts {
         let step = (high - low) / WIND_GUST_MODES as f64;
         (0..WIND_GUST_MODES)
             .map(|band| {
-                let [place, along, across, _] =
+                let [position, along, across, _] =
                     rng_draw(seed_words(self.seed), band as u32, 0, STREAM).map(unit);
                 let edge = |n: usize| match n {
                     0 => 0.0,
@@ -103,12 +103,12 @@ impl Gusts {
                 };
                 let (from, to) = (edge(band), edge(band + 1));
                 let amplitude = |sigma: f64, length: f64, turns: f64| {
-                    let share = below(to * length) - below(from * length);
-                    let amplitude = sigma * (2.0 * share).sqrt();
+                    let fraction = below(to * length) - below(from * length);
+                    let amplitude = sigma * (2.0 * fraction).sqrt();
                     let angle = std::f64::consts::TAU * turns;
                     [amplitude * ops::cos(angle), amplitude * ops::sin(angle)]
                 };
-                let x = ops::exp(low + step * (band as f64 + place));
+                let x = ops::exp(low + step * (band as f64 + position));
                 let [a, b] = amplitude(self.intensity, 1.0, along);
                 let [c, d] = amplitude(WIND_GUST_ACROSS * self.intensity, LENGTH_ACROSS, across);
                 let omega = std::f64::consts::TAU * x * mean_speed / self.length;
@@ -118,7 +118,7 @@ impl Gusts {
     }
 }
 
-/// A word as a number in [0, 1), a multiple of 2^-32.
+/// Maps a word to a number in [0, 1), a multiple of 2^-32.
 pub(crate) fn unit(word: u32) -> f64 {
     f64::from(word) / 4_294_967_296.0
 }
@@ -129,7 +129,7 @@ fn kaimal(frequency: f64, mean_speed: f64, sigma: f64, length: f64) -> f64 {
     4.0 * sigma * sigma * per_hertz / ops::pow(1.0 + 6.0 * frequency * per_hertz, 5.0 / 3.0)
 }
 
-/// The share of Kaimal's variance below x.
+/// Fraction of Kaimal's variance below x.
 fn below(x: f64) -> f64 {
     1.0 - ops::pow(1.0 + 6.0 * x, -2.0 / 3.0)
 }

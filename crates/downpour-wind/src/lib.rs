@@ -1,24 +1,24 @@
-//! Wind over time as a sum of primitives, gusts and turbulence, and the field that they make over a box of cells.
+//! Wind over time as a sum of primitives, gusts and turbulence, and the wind field over a box of cells.
 //!
 //! After P. Rousseau, V. Jolivet, D. Ghazanfarpour, "GPU rainfall", 2008, section 3 and 5.1.2, who follow J. Wejchert,
 //! D. Haumann 1991.
 //!
 //! - [`design`]: the five primitives with their ranges: uniform, source, sink, vortex, tornado;
-//! - [`matrix`]: the paper's 3x3 matrix of a primitive, and back;
-//! - [`primitive`]: the velocity that one makes, with a core that keeps it finite;
+//! - [`matrix`]: the paper's 3x3 matrix of a primitive, encoded and decoded;
+//! - [`primitive`]: the velocity of a primitive, with a core that keeps it finite;
 //! - [`grid`], [`mask`], [`field`]: the sum in the cells of a box, 0 inside objects, trilinear between the cells;
 //! - [`timeline`], [`part`]: parameters with keys over time;
 //! - [`gusts`], [`turbulence`]: fluctuations in time and in space, with the spectra of Kaimal and von Karman;
-//! - [`wind`]: all of it together; [`uniform`]: a wind that is the same everywhere, and what drops in it do;
+//! - [`wind`]: the complete wind; [`uniform`]: uniform wind, and the response of drops to it;
 //! - `gpu` (feature `wgpu`): the field in a buffer of a GPU.
 //!
-//! Units are SI: metres, m/s. A strength is in m^2/s for line forms (flow per length, circulation) and in m^3/s for point
-//! forms (flow, circulation times length). Axes are those of glTF: right-handed, +Y up.
+//! Units are SI: metres, m/s. A strength is in m^2/s for line forms (flow per length, circulation) and in m^3/s for
+//! point forms (flow, circulation times length). Axes are those of glTF: right-handed, +Y up.
 //!
-//! Uniform wind, vortices and tornadoes have no divergence. Sources and sinks have theirs round their line or point; of it a
-//! share of at most e^2 / r^2 (line) or 1.5 e^2 / r^2 (point) is farther away than r, where e is the core radius. The same
-//! holds for the rotation of a line vortex. Flows without divergence and rotation solve the steady Navier-Stokes
-//! equations, and so do their sums: the wind does, but for the cores, point vortices and updrafts.
+//! Uniform wind, vortices and tornadoes have no divergence. Sources and sinks have theirs around their line or point; a
+//! fraction of at most e^2 / r^2 (line) or 1.5 e^2 / r^2 (point) of it is farther away than r, where e is the core
+//! radius. The same holds for the rotation of a line vortex. Flows without divergence and rotation solve the steady
+//! Navier-Stokes equations, and so do their sums; only the cores, point vortices and updrafts do not.
 //!
 //! Functions whose names start with `wind_` are twins of WGSL functions.
 //!
@@ -65,7 +65,7 @@ pub use turbulence::{Turbulence, WindTurbulenceMode};
 pub use uniform::{Followed, UniformWind, UniformWindAt};
 pub use wind::{WIND_PARTS, Wind};
 
-/// The examples of the README, as tests.
+/// Compiles the examples of the README as doctests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

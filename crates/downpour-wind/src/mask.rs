@@ -1,44 +1,45 @@
-//! Where objects are: no wind blows inside them (Rousseau 2008, 5.1.2).
+//! Mask of objects, inside which no wind blows (Rousseau 2008, 5.1.2).
 
 use glam::{UVec3, Vec3};
 
 use crate::error::{WindError, in_range};
-use crate::field_grid::{WindFieldGrid, wind_field_centre};
+use crate::field_grid::{WindFieldGrid, wind_field_center};
 use crate::grid::WindGrid;
 
-/// The share of each cell of a grid that is open to the wind: 0 inside objects, 1 away from them.
+/// Openness of each cell of a grid to the wind: 0 inside objects, 1 away from them.
 ///
-/// A cell counts as inside if its centre is, so what is thinner than a cell may be missed. Between the centres of a closed
-/// cell and an open one the wind rises linearly, as in the paper; [`WindMask::with_cut_off`] makes the rise wider.
+/// A cell counts as inside if its center is, so objects thinner than a cell may be missed. Between the centers of a
+/// closed cell and an open one the wind rises linearly, as in the paper; [`WindMask::with_cut_off`] makes the ramp
+/// wider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindMask {
     pub(crate) openness: Vec<f32>,
 }
 
 impl WindMask {
-    /// No objects.
+    /// Creates a mask without objects.
     #[must_use]
     pub fn open(grid: &WindGrid) -> Self {
         Self { openness: vec![1.0; grid.cells()] }
     }
 
-    /// Asks at the centre of each cell, m, whether it is inside an object; in the order of memory.
+    /// Creates a mask by testing the center of each cell, m, with `inside`; in the order of memory.
     #[must_use]
     pub fn from_fn(grid: &WindGrid, mut inside: impl FnMut(Vec3) -> bool) -> Self {
         let uniform = WindFieldGrid::new(grid, 0, 0);
         let openness = (0..grid.cells())
             .map(|i| {
-                let at = wind_field_centre(&uniform, UVec3::from(grid.coordinates(i)));
+                let at = wind_field_center(&uniform, UVec3::from(grid.coordinates(i)));
                 if inside(at) { 0.0 } else { 1.0 }
             })
             .collect();
         Self { openness }
     }
 
-    /// Takes, in the order of memory, whether each cell is inside an object.
+    /// Creates a mask from flags, true for a cell inside an object, in the order of memory.
     ///
     /// # Errors
-    /// [`WindError::MaskSize`] if there are not as many as cells.
+    /// [`WindError::MaskSize`] if the number of flags is not that of the cells.
     pub fn from_occupancy(grid: &WindGrid, inside: &[bool]) -> Result<Self, WindError> {
         if inside.len() != grid.cells() {
             return Err(WindError::MaskSize { found: inside.len(), allowed: grid.cells() });
@@ -46,12 +47,12 @@ impl WindMask {
         Ok(Self { openness: inside.iter().map(|&inside| if inside { 0.0 } else { 1.0 }).collect() })
     }
 
-    /// The same objects with a wider cut-off: the openness of a cell rises linearly with its distance from the nearest closed
-    /// cell (centre to centre), to 1 at `width`, m. A width of a cell or less leaves the mask as it is.
+    /// The same objects with a wider cut-off: the openness of a cell rises linearly with its distance from the nearest
+    /// closed cell (center to center), to 1 at `width`, m. A width of a cell or less leaves the mask unchanged.
     ///
     /// # Errors
     /// [`WindError::OutOfRange`] if the width is not 0 to 16 of the shortest edges of a cell; [`WindError::MaskSize`] if the
-    /// mask is of another grid.
+    /// mask does not match the grid.
     pub fn with_cut_off(&self, grid: &WindGrid, width: f32) -> Result<Self, WindError> {
         self.check(grid)?;
         let cell = grid.cell();
@@ -76,7 +77,7 @@ impl WindMask {
         Ok(Self { openness })
     }
 
-    /// The share of each cell that is open, in the order of memory.
+    /// Openness of each cell, in the order of memory.
     #[must_use]
     pub fn openness(&self) -> &[f32] {
         &self.openness
@@ -91,8 +92,8 @@ impl WindMask {
     }
 }
 
-/// One axis of the squared Euclidean distance: the least of the neighbours' values and their squared distance, within `width`.
-/// After all axes it is exact for distances up to `width`.
+/// One axis of the squared Euclidean distance: the minimum over neighbours of their value plus squared distance, within
+/// `width`. After all axes it is exact for distances up to `width`.
 fn nearest_along(values: &[f32], n: usize, stride: usize, edge: f32, width: f32) -> Vec<f32> {
     let reach = (width / edge).ceil() as usize;
     let line = n * stride;

@@ -1,14 +1,15 @@
-//! The 3x3 matrix in which Rousseau 2008, 3.1 hands a primitive to a shader, and back.
+//! Encoding of a primitive as the 3x3 matrix of Rousseau 2008, 3.1, and decoding.
 //!
 //! ```text
 //! type       strength   core radius
-//! centre.x   centre.y   centre.z
+//! center.x   center.y   center.z
 //! up.x       up.y       up.z
 //! ```
 //!
-//! The paper has 0 where the core radius stands, and prints no numbers of types: they are the constants
-//! `WIND_PRIMITIVE_*` of `downpour-shaders`; a core that is not Rosenhead's is said by the type of its line. A sink's strength is negative, as in the paper's formula. A tornado is four
-//! matrices: updraft (its up leads from base to top), point sink, point source, line vortex.
+//! The paper has 0 in the entry of the core radius, and prints no numbers of types: they are the constants
+//! `WIND_PRIMITIVE_*` of `downpour-shaders`. The type of a line includes its core, unless it is Rosenhead's. A sink's
+//! strength is negative, as in the paper's formula. A tornado is four matrices: updraft (its up leads from base to
+//! top), point sink, point source, line vortex.
 
 use downpour_shaders::wind::{
     WIND_PRIMITIVE_LAMB_OSEEN, WIND_PRIMITIVE_LINE_SINK, WIND_PRIMITIVE_LINE_SOURCE,
@@ -20,20 +21,20 @@ use glam::Vec3;
 use crate::design::{WindCore, WindForm, WindPrimitive, WindSingularity, WindTornado, WindUniform, unit};
 use crate::error::WindError;
 
-/// A part of a wind as the shader takes it. Matrices that [`WindMatrix::encode`] makes are in range; others are checked by
+/// A primitive in the layout of the shader. Matrices from [`WindMatrix::encode`] are in range; others are checked by
 /// [`WindMatrix::decode`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WindMatrix {
-    /// The rows of the paper's matrix.
+    /// Rows of the paper's matrix.
     pub rows: [[f32; 3]; 3],
 }
 
 impl WindMatrix {
-    fn new(kind: u32, strength: f32, core: f32, centre: Vec3, up: Vec3) -> Self {
-        Self { rows: [[kind as f32, strength, core], centre.to_array(), up.to_array()] }
+    fn new(kind: u32, strength: f32, core: f32, center: Vec3, up: Vec3) -> Self {
+        Self { rows: [[kind as f32, strength, core], center.to_array(), up.to_array()] }
     }
 
-    /// The matrices of primitives, in their order: four for a tornado, one for the others.
+    /// Encodes primitives as matrices, in their order: four for a tornado, one for the others.
     ///
     /// # Errors
     /// As [`WindPrimitive::check`].
@@ -70,7 +71,7 @@ impl WindMatrix {
             WindForm::Line => line + number(at.core),
             WindForm::Point => point,
         };
-        Ok(Self::new(kind, sign * at.strength, at.core_radius, at.centre, unit("axis", at.axis)?))
+        Ok(Self::new(kind, sign * at.strength, at.core_radius, at.center, unit("axis", at.axis)?))
     }
 
     fn tornado(tornado: &WindTornado) -> Result<[Self; 4], WindError> {
@@ -85,7 +86,8 @@ impl WindMatrix {
         ])
     }
 
-    /// The primitives of matrices, in their order. Axes come back with length 1, the height of a tornado to rounding.
+    /// Decodes matrices to primitives, in their order. Axes have length 1, the height of a tornado is exact to
+    /// rounding.
     ///
     /// # Errors
     /// [`WindError::UnknownType`], [`WindError::LoneUpdraft`], or as [`WindPrimitive::check`].
@@ -95,17 +97,17 @@ impl WindMatrix {
         while let [first, after @ ..] = rest {
             let index = matrices.len() - rest.len();
             rest = after;
-            let [[number, strength, core_radius], centre, up] = first.rows;
+            let [[number, strength, core_radius], center, up] = first.rows;
             let (kind, core) =
                 type_and_core(number).ok_or(WindError::UnknownType { index, found: number })?;
-            let (centre, axis) = (Vec3::from(centre), Vec3::from(up));
+            let (center, axis) = (Vec3::from(center), Vec3::from(up));
             let form = match kind {
                 WIND_PRIMITIVE_POINT_SOURCE | WIND_PRIMITIVE_POINT_SINK | WIND_PRIMITIVE_POINT_VORTEX => {
                     WindForm::Point
                 }
                 _ => WindForm::Line,
             };
-            let at = WindSingularity { form, strength, centre, axis, core_radius, core };
+            let at = WindSingularity { form, strength, center, axis, core_radius, core };
             let primitive = match kind {
                 WIND_PRIMITIVE_UNIFORM => {
                     WindPrimitive::Uniform(WindUniform { speed: strength, direction: axis })
@@ -127,7 +129,7 @@ impl WindMatrix {
         Ok(primitives)
     }
 
-    /// The tornado of an updraft and of the parts that follow it, and what follows those.
+    /// Decodes the tornado of an updraft and of the parts that follow it; returns the remaining matrices too.
     fn decode_tornado<'a>(
         updraft: &Self,
         rest: &'a [Self],
@@ -159,15 +161,15 @@ impl WindMatrix {
         if same { Ok((tornado, after)) } else { Err(lone) }
     }
 
-    /// The bytes' layout of a `mat3x3f` in a storage buffer: the rows, each padded to four numbers. A buffer needs one
-    /// matrix at least; the default matrix is a wind of no speed.
+    /// Matrix in the layout of a `mat3x3f` in a storage buffer: the rows, each padded to four numbers. A buffer needs
+    /// at least one matrix; the default matrix is a uniform wind of speed 0.
     #[must_use]
     pub fn padded(&self) -> [[f32; 4]; 3] {
         self.rows.map(|[x, y, z]| [x, y, z, 0.0])
     }
 }
 
-/// What a core adds to the type of a line.
+/// Offset that a core adds to the type of a line.
 fn number(core: WindCore) -> u32 {
     match core {
         WindCore::Rosenhead => 0,
@@ -176,7 +178,7 @@ fn number(core: WindCore) -> u32 {
     }
 }
 
-/// The type of a matrix without its core, and the core.
+/// Splits the type of a matrix into the type without its core, and the core.
 fn type_and_core(number: f32) -> Option<(u32, WindCore)> {
     let whole = number as u32;
     if whole as f32 != number {
@@ -194,7 +196,7 @@ fn type_and_core(number: f32) -> Option<(u32, WindCore)> {
     line.then_some((kind, core))
 }
 
-/// The same primitive with an axis of length 1.
+/// Returns the primitive with an axis of length 1.
 fn with_unit_axis(primitive: WindPrimitive) -> Result<WindPrimitive, WindError> {
     let along = |at: WindSingularity| -> Result<WindSingularity, WindError> {
         Ok(WindSingularity { axis: unit("axis", at.axis)?, ..at })

@@ -1,4 +1,4 @@
-//! Primitives whose parameters move.
+//! Primitives with parameters over time.
 
 use glam::{DVec3, Vec3};
 
@@ -6,23 +6,23 @@ use crate::design::{WindCore, WindForm, WindPrimitive, WindSingularity, WindTorn
 use crate::error::WindError;
 use crate::timeline::{Keyed, sort_times};
 
-/// The fastest uniform wind, m/s.
-const FASTEST: f64 = 200.0;
+/// Maximum speed of the uniform wind, m/s.
+const MAX_SPEED_M_S: f64 = 200.0;
 
 /// A source, sink or vortex over time; units and ranges as in [`WindSingularity`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyedSingularity {
     /// Line or point.
     pub form: WindForm,
-    /// What the core is like.
+    /// Core of a line form.
     pub core: WindCore,
-    /// m^2/s (line) or m^3/s (point).
+    /// Strength, m^2/s (line) or m^3/s (point).
     pub strength: Keyed<f64>,
-    /// A point of the axis, or the point, m.
-    pub centre: Keyed<DVec3>,
-    /// The axis; its keys have any length, and it turns from one to the next the shorter way.
+    /// A point of the axis, or the point of a point form, m.
+    pub center: Keyed<DVec3>,
+    /// Axis; its keys have any length, and it rotates between keys by the shorter way.
     pub axis: Keyed<DVec3>,
-    /// Metres.
+    /// Core radius, m.
     pub core_radius: Keyed<f64>,
 }
 
@@ -31,53 +31,54 @@ pub struct KeyedSingularity {
 pub struct KeyedTornado {
     /// Circulation, m^2/s.
     pub circulation: Keyed<f64>,
-    /// Air that goes in at the base and out at the top, m^3/s.
+    /// Discharge in at the base and out at the top, m^3/s.
     pub discharge: Keyed<f64>,
-    /// Middle of the base, m.
+    /// Center of the base, m.
     pub base: Keyed<DVec3>,
-    /// From base to top; its keys have any length.
+    /// Axis from base to top; its keys have any length.
     pub axis: Keyed<DVec3>,
-    /// From base to top, m.
+    /// Height from base to top, m.
     pub height: Keyed<f64>,
-    /// Metres.
+    /// Core radius, m.
     pub core_radius: Keyed<f64>,
 }
 
 /// A primitive over time.
 ///
-/// What is keyed is linear between its keys: numbers, places, and the velocity of a uniform wind. Directions of axes are
-/// straight lines between unit vectors, made unit again: the axis turns in the plane of the two keys. A uniform wind is a
-/// velocity and not a speed with a direction, so between two keys its tip moves on a straight line: a wind that turns about
-/// passes through calm, and one that is to keep its speed while it turns needs a key each few degrees.
+/// Numbers, positions and the velocity of a uniform wind are linear between their keys. Axes are interpolated along
+/// straight lines between unit vectors and normalised again: the axis rotates in the plane of the two keys. A uniform
+/// wind is keyed as a velocity, not as a speed with a direction, so between two keys its tip moves on a straight line:
+/// a wind that reverses passes through calm, and one that keeps its speed while it rotates needs a key every few
+/// degrees.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WindPart {
-    /// The same wind everywhere: its velocity, up to 200 m/s.
+    /// Uniform wind: its velocity, up to 200 m/s.
     Uniform(Keyed<DVec3>),
     /// Wind out of a line or a point.
     Source(KeyedSingularity),
     /// Wind into a line or a point.
     Sink(KeyedSingularity),
-    /// Wind round an axis.
+    /// Wind around an axis.
     Vortex(KeyedSingularity),
-    /// All of it.
+    /// Sink, source, vortex and updraft of a tornado.
     Tornado(KeyedTornado),
 }
 
 impl From<WindPrimitive> for WindPart {
-    /// A primitive that does not change.
+    /// Converts a primitive to a constant part.
     fn from(primitive: WindPrimitive) -> Self {
         let single = |at: WindSingularity| KeyedSingularity {
             form: at.form,
             core: at.core,
             strength: f64::from(at.strength).into(),
-            centre: at.centre.as_dvec3().into(),
+            center: at.center.as_dvec3().into(),
             axis: at.axis.as_dvec3().into(),
             core_radius: f64::from(at.core_radius).into(),
         };
         match primitive {
             WindPrimitive::Uniform(wind) => {
-                // A direction that is none is found by the check, as no number.
+                // An undefined direction becomes NaN, which the check finds.
                 let direction = wind.direction.as_dvec3().try_normalize().unwrap_or(DVec3::NAN);
                 Self::Uniform((direction * f64::from(wind.speed)).into())
             }
@@ -97,10 +98,10 @@ impl From<WindPrimitive> for WindPart {
 }
 
 impl WindPart {
-    /// A uniform wind of a speed, m/s, towards a direction. The velocity has the keys of both.
+    /// Creates a uniform wind of a speed, m/s, towards a direction. The velocity has the keys of both.
     ///
     /// # Errors
-    /// [`WindError::ZeroAxis`] for a direction that is none; a speed is checked by [`Wind::new`](crate::Wind::new).
+    /// [`WindError::ZeroAxis`] for an undefined direction; a speed is checked by [`Wind::new`](crate::Wind::new).
     pub fn uniform(speed: &Keyed<f64>, direction: &Keyed<DVec3>) -> Result<Self, WindError> {
         for &(_, vector) in direction.keys() {
             if !(1.0e-3..=1.0e9).contains(&vector.length()) {
@@ -108,7 +109,7 @@ impl WindPart {
                 return Err(WindError::ZeroAxis { quantity: "direction of the wind", found });
             }
         }
-        // A direction that turns about may be none for a moment.
+        // A direction that reverses may be undefined at one time.
         let velocity = speed.with(direction, |speed, towards| towards.normalize_or_zero() * speed);
         Ok(Self::Uniform(velocity))
     }
@@ -125,9 +126,9 @@ impl WindPart {
         }
     }
 
-    /// The least radius of its core at any time, m; none of a uniform wind.
+    /// Minimum core radius at any time, m; `None` for a uniform wind.
     #[must_use]
-    pub fn least_core(&self) -> Option<f64> {
+    pub fn min_core_radius(&self) -> Option<f64> {
         let radius = match self {
             Self::Uniform(_) => return None,
             Self::Source(part) | Self::Sink(part) | Self::Vortex(part) => &part.core_radius,
@@ -136,17 +137,18 @@ impl WindPart {
         radius.keys().iter().map(|&(_, radius)| radius).reduce(f64::min)
     }
 
-    /// The same part with axes of length 1, if it is in range at all times.
+    /// Returns the part with axes of length 1, if it is in range at all times.
     ///
-    /// All ranges are convex and all is linear between keys, so what is in range at each key is so at all times.
+    /// All ranges are convex and all values are linear between keys, so a part that is in range at each key is always
+    /// in range.
     pub(crate) fn checked(mut self) -> Result<Self, WindError> {
         let mut times = vec![0.0];
         match &mut self {
             Self::Uniform(velocity) => {
                 for &(_, v) in velocity.keys() {
                     let found = v.length();
-                    // The length of a rounded vector.
-                    if !(0.0..=FASTEST * (1.0 + 1.0e-9)).contains(&found) {
+                    // Length of a rounded vector.
+                    if !(0.0..=MAX_SPEED_M_S * (1.0 + 1.0e-9)).contains(&found) {
                         let (quantity, unit, allowed) = ("wind speed", "m/s", "0 to 200");
                         return Err(WindError::OutOfRange { quantity, found, unit, allowed });
                     }
@@ -156,7 +158,7 @@ impl WindPart {
             Self::Source(part) | Self::Sink(part) | Self::Vortex(part) => {
                 part.axis = part.axis.directions("axis")?;
                 part.strength.times(&mut times);
-                part.centre.times(&mut times);
+                part.center.times(&mut times);
                 part.core_radius.times(&mut times);
             }
             Self::Tornado(part) => {
@@ -178,7 +180,7 @@ impl KeyedSingularity {
         WindSingularity {
             form: self.form,
             strength: self.strength.at(time_s) as f32,
-            centre: self.centre.at(time_s).as_vec3(),
+            center: self.center.at(time_s).as_vec3(),
             axis: axis(self.axis.at(time_s)),
             core_radius: self.core_radius.at(time_s) as f32,
             core: self.core,
@@ -199,12 +201,12 @@ impl KeyedTornado {
     }
 }
 
-/// With length 1; a wind that is still has some direction too.
+/// Returns the vector with length 1; still air gets an arbitrary direction.
 fn axis(vector: DVec3) -> Vec3 {
     vector.try_normalize().unwrap_or(DVec3::X).as_vec3()
 }
 
-/// A velocity as a primitive, 200 m/s at most.
+/// Converts a velocity to a primitive, 200 m/s at most.
 pub(crate) fn uniform(velocity: DVec3) -> WindUniform {
-    WindUniform { speed: velocity.length().min(FASTEST) as f32, direction: axis(velocity) }
+    WindUniform { speed: velocity.length().min(MAX_SPEED_M_S) as f32, direction: axis(velocity) }
 }

@@ -1,16 +1,16 @@
-//! Values over time: keys, straight lines between them.
+//! Values over time: keys with linear interpolation.
 
 use glam::DVec3;
 
 use crate::error::WindError;
 
-/// Most keys of one parameter.
+/// Maximum number of keys of one parameter.
 pub const WIND_KEYS: usize = 4096;
 
-/// The earliest and the latest time of a key, s.
+/// Range of times of keys, s.
 pub const WIND_KEY_TIMES: std::ops::RangeInclusive<f64> = -1.0e6..=1.0e6;
 
-/// Times of keys are rounded to this, s, and have to differ by it.
+/// Resolution of the times of keys, to which they are rounded; they must differ by a tick.
 const TICKS_PER_SECOND: f64 = 1.0e6;
 
 mod sealed {
@@ -19,19 +19,19 @@ mod sealed {
     impl Sealed for glam::DVec3 {}
 }
 
-/// What can be keyed: a number, or a vector.
+/// A type that can be keyed: a number, or a vector.
 pub trait Blend: Copy + PartialEq + sealed::Sealed {
-    /// What lies at `share`, 0 to 1, of the way from here to `other`.
+    /// Linear interpolation from `self` to `other` by `fraction`, 0 to 1.
     #[must_use]
-    fn blend(self, other: Self, share: f64) -> Self;
+    fn blend(self, other: Self, fraction: f64) -> Self;
 
-    /// The first component that is not finite.
+    /// First component that is not finite.
     fn not_finite(self) -> Option<f64>;
 }
 
 impl Blend for f64 {
-    fn blend(self, other: Self, share: f64) -> Self {
-        self + (other - self) * share
+    fn blend(self, other: Self, fraction: f64) -> Self {
+        self + (other - self) * fraction
     }
 
     fn not_finite(self) -> Option<f64> {
@@ -40,8 +40,8 @@ impl Blend for f64 {
 }
 
 impl Blend for DVec3 {
-    fn blend(self, other: Self, share: f64) -> Self {
-        self + (other - self) * share
+    fn blend(self, other: Self, fraction: f64) -> Self {
+        self + (other - self) * fraction
     }
 
     fn not_finite(self) -> Option<f64> {
@@ -49,7 +49,7 @@ impl Blend for DVec3 {
     }
 }
 
-/// A value over time: linear between its keys, that of the first key before it, that of the last one after it.
+/// A value over time: linear between its keys, constant before the first and after the last.
 ///
 /// ```
 /// use downpour_wind::Keyed;
@@ -61,24 +61,24 @@ impl Blend for DVec3 {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keyed<T> {
-    /// Never empty; times rise.
+    /// Never empty; times increase.
     keys: Vec<(f64, T)>,
 }
 
 impl<T: Blend> From<T> for Keyed<T> {
-    /// The same at all times.
+    /// Creates a constant value.
     fn from(value: T) -> Self {
         Self { keys: vec![(0.0, value)] }
     }
 }
 
 impl<T: Blend> Keyed<T> {
-    /// A value that goes through keys of time, s, and value. Times are rounded to a microsecond.
+    /// Creates a value from keys of time, s, and value. Times are rounded to a microsecond.
     ///
     /// # Errors
-    /// [`WindError::KeyCount`] for no keys or more than [`WIND_KEYS`]; [`WindError::KeyTime`] for times that do not rise by
-    /// a microsecond at least; [`WindError::OutOfRange`] for times outside [`WIND_KEY_TIMES`] and values that are not
-    /// finite.
+    /// [`WindError::KeyCount`] for no keys or more than [`WIND_KEYS`]; [`WindError::KeyTime`] for times that do not increase
+    /// by at least a microsecond; [`WindError::OutOfRange`] for times outside [`WIND_KEY_TIMES`] and values that are
+    /// not finite.
     pub fn new(mut keys: Vec<(f64, T)>) -> Result<Self, WindError> {
         if !(1..=WIND_KEYS).contains(&keys.len()) {
             return Err(WindError::KeyCount { found: keys.len(), allowed: WIND_KEYS });
@@ -103,7 +103,7 @@ impl<T: Blend> Keyed<T> {
         Ok(Self { keys })
     }
 
-    /// The value at a time, s.
+    /// Value at a time, s.
     #[must_use]
     pub fn at(&self, time_s: f64) -> T {
         let next = self.keys.partition_point(|&(time, _)| time <= time_s);
@@ -114,19 +114,19 @@ impl<T: Blend> Keyed<T> {
         }
     }
 
-    /// The keys: time in s, and value.
+    /// Keys: time in s, and value.
     #[must_use]
     pub fn keys(&self) -> &[(f64, T)] {
         &self.keys
     }
 
-    /// Another value at each key.
+    /// Maps the value of each key.
     #[must_use]
     pub fn map<U: Blend>(&self, change: impl Fn(T) -> U) -> Keyed<U> {
         Keyed { keys: self.keys.iter().map(|&(time, value)| (time, change(value))).collect() }
     }
 
-    /// What two values together make, at the keys of either; linear between those.
+    /// Combines two values at the keys of either; linear between those.
     #[must_use]
     pub fn with<U: Blend, V: Blend>(&self, other: &Keyed<U>, make: impl Fn(T, U) -> V) -> Keyed<V> {
         let mut times = Vec::new();
@@ -148,18 +148,18 @@ impl<T: Blend> Keyed<T> {
     }
 }
 
-/// In their order, each once.
+/// Sorts the times and removes duplicates.
 pub(crate) fn sort_times(times: &mut Vec<f64>) {
     times.sort_by(f64::total_cmp);
     times.dedup();
 }
 
 impl Keyed<DVec3> {
-    /// The same directions with length 1 at their keys.
+    /// Normalises the directions at the keys.
     ///
     /// # Errors
-    /// [`WindError::ZeroAxis`] for a key without direction, [`WindError::AxisReverses`] if the way from one key to the next
-    /// leads through (or within 0.01 of) no direction at all: then nothing says to which side to turn.
+    /// [`WindError::ZeroAxis`] for a key without direction, [`WindError::AxisReverses`] if the line from one key to the next
+    /// leads through (or within 0.01 of) the zero vector: then the sense of rotation is undefined.
     pub fn directions(&self, quantity: &'static str) -> Result<Self, WindError> {
         let mut keys = Vec::with_capacity(self.keys.len());
         for &(time, vector) in &self.keys {

@@ -1,8 +1,8 @@
-//! Turbulence: eddies that the mean wind carries along. Twin of `shaders/wgsl/wind/turbulence.wgsl`.
+//! Turbulence: eddies carried by the mean wind. Twin of `shaders/wgsl/wind/turbulence.wgsl`.
 //!
 //! A sum of [`WIND_TURBULENCE_MODES`] plane waves with random phases (Kraichnan 1970), each with its velocity at right
-//! angles to its wave vector, so that the sum has no divergence anywhere. Their energies are those of von Karman's spectrum
-//! (von Karman 1948; constants as in Bailly, Juve 1999):
+//! angles to its wave vector, so that the sum has no divergence anywhere. Their energies are those of von Karman's
+//! spectrum (von Karman 1948; constants as in Bailly, Juve 1999):
 //!
 //! ```text
 //! E(k) = A sigma^2 / k_e (k / k_e)^4 / (1 + (k / k_e)^2)^(17/6)
@@ -11,11 +11,11 @@
 //! ```
 //!
 //! with sigma the standard deviation of each component and L the longitudinal integral length: the integral of E is 3/2
-//! sigma^2, and above `k_e` it goes as k^(-5/3). The waves stand at random places of equal steps of log k, from 0.1 to 1000
-//! `k_e`, in directions spread evenly over the sphere. The field is frozen (Taylor 1938): at time t it is that of time 0,
-//! moved by the way of the mean wind. Where no mean wind blows it stands.
+//! sigma^2, and above `k_e` it is proportional to k^(-5/3). The wave numbers are random within equal steps of log k,
+//! from 0.1 to 1000 `k_e`, in directions spread evenly over the sphere. The field is frozen (Taylor 1938): at time t
+//! it is that of time 0, translated by the displacement of the mean wind. Without mean wind it is static.
 //!
-//! A grid shows waves of two cells at least: [`Turbulence::modes`] leaves out the shorter ones, and their energy with them.
+//! A grid resolves waves of two cells or more: [`Turbulence::modes`] leaves out the shorter ones and their energy.
 
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, seed_words};
@@ -26,29 +26,29 @@ use crate::error::{WindError, in_range_f64};
 use crate::grid::WindGrid;
 use crate::gusts::unit;
 
-/// How many waves there are.
+/// Number of waves.
 pub const WIND_TURBULENCE_MODES: usize = 48;
 
-/// The lowest and the highest `k / k_e`.
+/// Lowest and highest `k / k_e`.
 const BANDS: (f64, f64) = (0.1, 1.0e3);
 
 /// `k_e L`.
 const PEAK: f64 = 0.746_834_200_222_186_6;
 
-/// Which numbers are drawn from the seed: not those of the gusts.
+/// Random stream, different from that of the gusts.
 const STREAM: u32 = 0x7475_7262;
 
 /// Irrational steps that fill a cube evenly: the inverse powers of the root of x^4 = x + 1.
 const STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_9];
 
-/// How turbulent the air is.
+/// Parameters of turbulence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turbulence {
     /// Standard deviation of each component of the velocity, 0 to 50 m/s.
     pub speed: f64,
     /// Longitudinal integral length, 0.1 to 1e4 m.
     pub length: f64,
-    /// Same seed, same eddies.
+    /// Random seed; the same seed gives the same eddies.
     pub seed: u64,
 }
 
@@ -59,33 +59,33 @@ impl Default for Turbulence {
     }
 }
 
-/// A wave as the shader takes it. The same layout as `WindTurbulenceMode` in WGSL.
+/// A wave in the layout of the shader, as `WindTurbulenceMode` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct WindTurbulenceMode {
-    /// Waves per metre along each axis.
+    /// Wave vector, waves per metre along each axis.
     pub wave: [f32; 3],
-    /// Turns, 0 to 1, at the lower corner of the box.
+    /// Phase in turns, 0 to 1, at the lower corner of the box.
     pub phase: f32,
-    /// Velocity of the crest, m/s.
+    /// Velocity at the crest, m/s.
     pub amplitude: [f32; 3],
     /// Padding of the WGSL layout.
     pub padding: u32,
 }
 
-/// A wave before it is cut to a grid.
+/// A wave, independent of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurbulenceWave {
-    /// Waves per metre along each axis.
+    /// Wave vector, waves per metre along each axis.
     pub wave: DVec3,
-    /// Turns at the origin at time 0, 0 to 1.
+    /// Phase in turns at the origin at time 0, 0 to 1.
     pub phase: f64,
-    /// Velocity of the crest, m/s, at right angles to the wave.
+    /// Velocity at the crest, m/s, perpendicular to the wave vector.
     pub amplitude: DVec3,
 }
 
 impl Turbulence {
-    /// Nothing if every number is in its range.
+    /// Checks that every number is in its range.
     ///
     /// # Errors
     /// [`WindError::OutOfRange`].
@@ -94,7 +94,7 @@ impl Turbulence {
         in_range_f64("length of the turbulence", self.length, "m", 0.1..=1.0e4, "0.1 to 1e4")
     }
 
-    /// E(k), m^3/s^2, of a wave number in rad/m.
+    /// E(k), m^3/s^2, at a wave number in rad/m.
     #[must_use]
     pub fn spectrum(&self, wave_number: f64) -> f64 {
         let peak = PEAK / self.length;
@@ -117,8 +117,8 @@ impl Turbulence {
             .into_iter()
             .enumerate()
             .map(|(band, energy)| {
-                let [place, phase, _, _] = rng_draw(seed, band as u32, 0, STREAM).map(unit);
-                let number = ops::exp(low + step * (band as f64 + place)) * PEAK / self.length;
+                let [position, phase, _, _] = rng_draw(seed, band as u32, 0, STREAM).map(unit);
+                let number = ops::exp(low + step * (band as f64 + position)) * PEAK / self.length;
                 let spread = |start: f64, k: usize| {
                     let x = start + band as f64 * STEPS.get(k).copied().unwrap_or(0.0);
                     x - x.floor()
@@ -128,7 +128,7 @@ impl Turbulence {
                 let flat = (1.0 - up * up).max(0.0).sqrt();
                 let direction = DVec3::new(flat * ops::cos(turn), up, flat * ops::sin(turn));
                 let (a, b) = direction.any_orthonormal_pair();
-                // Half of a squared crest is the wave's variance; all together have 3 sigma^2.
+                // Half of the squared amplitude is the wave's variance; all together have 3 sigma^2.
                 let crest = self.speed * (6.0 * energy / all).sqrt();
                 let amplitude = (a * ops::cos(side) + b * ops::sin(side)) * crest;
                 TurbulenceWave { wave: direction * (number / TAU), phase, amplitude }
@@ -136,7 +136,7 @@ impl Turbulence {
             .collect()
     }
 
-    /// The waves that a grid shows, two of its longest cells or longer, after the mean wind has carried them so far, m.
+    /// Waves that a grid resolves, of two of its longest cells or more, displaced by the mean wind by `carried`, m.
     #[must_use]
     pub fn modes(&self, grid: &WindGrid, carried: DVec3) -> Vec<WindTurbulenceMode> {
         let shortest = 2.0 * f64::from(grid.cell().max_element());
@@ -145,7 +145,7 @@ impl Turbulence {
             .into_iter()
             .filter(|wave| wave.wave.length() * shortest <= 1.0)
             .map(|wave| {
-                // In double precision here, so that neither a distant box nor a long time costs digits.
+                // In double precision here, so that neither a distant box nor a long time loses digits.
                 let turns = wave.phase + wave.wave.dot(corner);
                 WindTurbulenceMode {
                     wave: wave.wave.as_vec3().to_array(),
@@ -164,7 +164,7 @@ fn shape(s: f64) -> f64 {
     squared * squared / ops::pow(1.0 + squared, 17.0 / 6.0)
 }
 
-/// The integral of the shape between two values of ln s, by Simpson's rule on 8 steps: to 1e-6 of it.
+/// Integral of the shape between two values of ln s, by Simpson's rule on 8 steps: relative error 1e-6.
 fn energy(from: f64, to: f64) -> f64 {
     let step = (to - from) / 8.0;
     let sum: f64 = (0..=8)
@@ -180,13 +180,13 @@ fn energy(from: f64, to: f64) -> f64 {
     sum * step / 3.0
 }
 
-/// The cosine of an angle in turns.
+/// Cosine of an angle in turns.
 #[must_use]
 pub fn wind_turbulence_wave(turns: f32) -> f32 {
     // Half of the angle, -pi / 2 to pi / 2.
     let half = (turns - (turns + 0.5).floor()) * std::f32::consts::PI;
     let x = half * half;
-    // The sine by its series: the next term is 6e-8 at most.
+    // Series of the sine: the next term is 6e-8 at most.
     let sine = half
         * (1.0
             - x * (0.16666667
@@ -194,7 +194,7 @@ pub fn wind_turbulence_wave(turns: f32) -> f32 {
     1.0 - 2.0 * sine * sine
 }
 
-/// The velocity of a wave, m/s; `offset` is from the lower corner of the box, m.
+/// Velocity of a wave, m/s; `offset` is from the lower corner of the box, m.
 #[must_use]
 pub fn wind_turbulence_velocity(mode: &WindTurbulenceMode, offset: Vec3) -> Vec3 {
     Vec3::from(mode.amplitude) * wind_turbulence_wave(Vec3::from(mode.wave).dot(offset) + mode.phase)

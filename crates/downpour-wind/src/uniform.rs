@@ -1,4 +1,4 @@
-//! A wind that is the same everywhere, and what drops in it do, in closed form.
+//! Uniform wind, and the response of drops to it, in closed form.
 //!
 //! A drop whose slip relaxes with a time constant tau follows the wind w as y' = (w - y) / tau. The mean wind is U(t),
 //! linear between keys with slope m; gusts multiply it by sinusoids, so all of it is a sum of terms
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! which is the state that began as y = w before the first key (with sinusoids: their steady state). Since
-//! y = w - tau y', the way of the drop is that of the air, less tau times the change of y.
+//! y = w - tau y', the displacement of the drop is that of the air, minus tau times the change of y.
 
 use downpour_math::ops::f64 as ops;
 use glam::DVec3;
@@ -18,50 +18,49 @@ use glam::DVec3;
 use crate::gusts::{GustMode, Gusts};
 use crate::timeline::Keyed;
 
-/// Beyond this many relaxation times what was before is forgotten: exp(-45) is 3e-20.
+/// Number of relaxation times after which the past is negligible: exp(-45) is 3e-20.
 const MEMORY: f64 = 45.0;
 
-/// The longest relaxation time, s.
-const LONGEST: f64 = 1.0e6;
+/// Maximum relaxation time, s.
+const MAX_RELAXATION_S: f64 = 1.0e6;
 
-/// The latest time, s, before and after 0.
-const LATEST: f64 = 1.0e9;
+/// Maximum absolute time, s.
+const MAX_TIME_S: f64 = 1.0e9;
 
-/// What a drop that follows the wind does.
+/// Motion of a drop that follows the wind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Followed {
-    /// Its velocity that comes from the wind, m/s.
+    /// Velocity due to the wind, m/s.
     pub velocity: DVec3,
-    /// The integral of that velocity from time 0, m.
+    /// Integral of that velocity from time 0, m.
     pub displacement: DVec3,
 }
 
-/// A wind that is the same everywhere: the sum of the uniform parts of a [`Wind`](crate::Wind) and its gusts. Any time in
-/// closed form.
+/// Uniform wind: the sum of the uniform parts of a [`Wind`](crate::Wind) and its gusts, at any time in closed form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UniformWind {
     /// Times, s, and mean velocities, m/s; never empty.
     keys: Vec<(f64, DVec3)>,
     /// Slopes of the mean before each key and after the last, m/s^2: 0 at both ends.
     slopes: Vec<DVec3>,
-    /// The way of the air from the first key to each, m.
+    /// Displacement of the air from the first key to each, m.
     travel: Vec<DVec3>,
     modes: Vec<GustMode>,
-    /// The sinusoids at each key.
+    /// Sinusoids at each key.
     phasors: Vec<Vec<[f64; 4]>>,
 }
 
-/// What is known of a wind at one time.
+/// State of a wind at one time.
 #[derive(Clone, Debug)]
-struct Moment {
+struct WindInstant {
     time: f64,
-    /// How many keys there are up to this time.
+    /// Number of keys up to this time.
     segment: usize,
     mean: DVec3,
     phasors: Vec<[f64; 4]>,
 }
 
-/// A factor along the mean wind, and one across it.
+/// Factors along and across the mean wind.
 #[derive(Clone, Copy)]
 struct Gain {
     along: f64,
@@ -74,7 +73,7 @@ impl Gain {
     }
 }
 
-/// A level vector as long as the level part of another, at right angles to it.
+/// Horizontal vector perpendicular to the horizontal part of `v`, with the same length.
 fn beside(v: DVec3) -> DVec3 {
     DVec3::new(v.z, 0.0, -v.x)
 }
@@ -102,27 +101,27 @@ impl UniformWind {
         wind
     }
 
-    /// The velocity of the air at a time, m/s. Times are up to 1e9 s before and after 0; beyond, the wind of that time.
+    /// Velocity of the air at a time, m/s. Times are clamped to 1e9 s before and after 0.
     #[must_use]
     pub fn velocity(&self, time_s: f64) -> DVec3 {
-        let moment = self.moment(limited(time_s));
-        self.gain(&moment.phasors).apply(moment.mean)
+        let instant = self.instant(limited(time_s));
+        self.gain(&instant.phasors).apply(instant.mean)
     }
 
-    /// Whether it is the same at all times.
+    /// True if the wind is constant.
     #[must_use]
     pub fn is_steady(&self) -> bool {
         self.modes.is_empty() && self.slopes.iter().all(|&slope| slope == DVec3::ZERO)
     }
 
-    /// The mean velocity, without gusts, m/s.
+    /// Mean velocity without gusts, m/s.
     #[must_use]
     pub fn mean(&self, time_s: f64) -> DVec3 {
         let time = limited(time_s);
         self.mean_at(time, self.segment(time))
     }
 
-    /// The integral of the mean velocity from time 0, m: how far the mean wind has carried what floats in it.
+    /// Integral of the mean velocity from time 0, m: displacement of the air by the mean wind.
     #[must_use]
     pub fn mean_displacement(&self, time_s: f64) -> DVec3 {
         // The trapezoidal rule is exact between keys.
@@ -143,23 +142,24 @@ impl UniformWind {
         from_first(limited(time_s)) - from_first(0.0)
     }
 
-    /// What a drop with a relaxation time, s, does at a time: see [`UniformWind::prepared`] for many drops.
+    /// Motion of a drop with a relaxation time, s, at a time; use [`UniformWind::prepared`] for many drops.
     #[must_use]
     pub fn followed(&self, time_s: f64, relaxation_s: f64) -> Followed {
         self.prepared(time_s).followed(relaxation_s)
     }
 
-    /// All that does not depend on the drop, for one time: a call for a drop is then some hundred operations.
+    /// Precomputes the terms of one time that do not depend on the drop. A call per drop then takes some hundred
+    /// operations.
     #[must_use]
     pub fn prepared(&self, time_s: f64) -> UniformWindAt<'_> {
-        let here = self.moment(limited(time_s));
-        let start = self.moment(0.0);
+        let here = self.instant(limited(time_s));
+        let start = self.instant(0.0);
         let travel = self.travelled(&here) - self.travelled(&start);
         let air = self.gain(&here.phasors).apply(here.mean);
         UniformWindAt { wind: self, here, start, travel, air }
     }
 
-    /// The slope of the mean in a segment.
+    /// Slope of the mean in a segment.
     fn slope(&self, segment: usize) -> DVec3 {
         self.slopes.get(segment).copied().unwrap_or(DVec3::ZERO)
     }
@@ -168,7 +168,7 @@ impl UniformWind {
         self.keys.partition_point(|&(key, _)| key <= time)
     }
 
-    /// The key that a segment begins with; the first one for what is before it.
+    /// Key at the start of a segment; the first key for the segment before it.
     fn key_before(&self, segment: usize) -> (f64, DVec3) {
         self.keys.get(segment.saturating_sub(1)).copied().unwrap_or_default()
     }
@@ -188,25 +188,25 @@ impl UniformWind {
         self.modes.iter().map(turned).collect()
     }
 
-    fn moment(&self, time: f64) -> Moment {
+    fn instant(&self, time: f64) -> WindInstant {
         let segment = self.segment(time);
-        Moment { time, segment, mean: self.mean_at(time, segment), phasors: self.phasors_at(time) }
+        WindInstant { time, segment, mean: self.mean_at(time, segment), phasors: self.phasors_at(time) }
     }
 
-    /// What the gusts make of the mean wind.
+    /// Factors of the gusts on the mean wind.
     fn gain(&self, phasors: &[[f64; 4]]) -> Gain {
         let start = Gain { along: 1.0, across: 0.0 };
         phasors.iter().fold(start, |g, p| Gain { along: g.along + p[0], across: g.across + p[2] })
     }
 
-    /// What a drop keeps of it: each term times q.
+    /// Factors on a drop's velocity: each term times q.
     fn lagged(&self, phasors: &[[f64; 4]], tau: f64) -> Gain {
         let mut gain = Gain { along: 1.0, across: 0.0 };
         for (mode, &[a, b, x, y]) in self.modes.iter().zip(phasors) {
             let z = mode.omega * tau;
-            let share = 1.0 / (1.0 + z * z);
-            gain.along += share * (a + z * b);
-            gain.across += share * (x + z * y);
+            let fraction = 1.0 / (1.0 + z * z);
+            gain.along += fraction * (a + z * b);
+            gain.across += fraction * (x + z * y);
         }
         gain
     }
@@ -216,16 +216,16 @@ impl UniformWind {
         let mut gain = Gain { along: 1.0, across: 0.0 };
         for (mode, &[a, b, x, y]) in self.modes.iter().zip(phasors) {
             let z = mode.omega * tau;
-            let share = 1.0 / (1.0 + z * z);
-            let (re, im) = (share * share * (1.0 - z * z), share * share * 2.0 * z);
+            let fraction = 1.0 / (1.0 + z * z);
+            let (re, im) = (fraction * fraction * (1.0 - z * z), fraction * fraction * 2.0 * z);
             gain.along += re * a + im * b;
             gain.across += re * x + im * y;
         }
         gain
     }
 
-    /// The velocity of a drop.
-    fn response(&self, at: &Moment, tau: f64) -> DVec3 {
+    /// Velocity of a drop.
+    fn response(&self, at: &WindInstant, tau: f64) -> DVec3 {
         let mut y = self.lagged(&at.phasors, tau).apply(at.mean);
         let slope = self.slope(at.segment);
         if slope != DVec3::ZERO {
@@ -246,15 +246,15 @@ impl UniformWind {
         y
     }
 
-    /// The way of the air from the first key to a moment, m.
-    fn travelled(&self, at: &Moment) -> DVec3 {
+    /// Displacement of the air from the first key to a time, m.
+    fn travelled(&self, at: &WindInstant) -> DVec3 {
         let (start, from) = self.key_before(at.segment);
         let before = self.travel.get(at.segment.saturating_sub(1)).copied().unwrap_or(DVec3::ZERO);
         before + self.integral(start, at.time, from.midpoint(at.mean), self.slope(at.segment))
     }
 
-    /// The integral of the air's velocity within a segment, m; `middle` is the mean wind half way. About the middle, so
-    /// that slow sinusoids do not lose their digits.
+    /// Integral of the air's velocity within a segment, m; `middle` is the mean wind half way. It is expanded about the
+    /// middle, so that slow sinusoids do not lose digits.
     fn integral(&self, start: f64, end: f64, middle: DVec3, slope: DVec3) -> DVec3 {
         let half = 0.5 * (end - start);
         let phasors = self.phasors_at(start.midpoint(end));
@@ -285,7 +285,7 @@ fn moments(x: f64) -> (f64, f64) {
     (s / x, (s - x * c) / (x * x))
 }
 
-/// The mean of the speed from the first key to the last, by the trapezoidal rule.
+/// Mean of the speed from the first key to the last, by the trapezoidal rule.
 fn mean_speed(keys: &[(f64, DVec3)]) -> f64 {
     let (mut way, mut time) = (0.0, 0.0);
     for pair in keys.windows(2) {
@@ -298,36 +298,36 @@ fn mean_speed(keys: &[(f64, DVec3)]) -> f64 {
 }
 
 fn limited(time: f64) -> f64 {
-    if time.is_nan() { 0.0 } else { time.clamp(-LATEST, LATEST) }
+    if time.is_nan() { 0.0 } else { time.clamp(-MAX_TIME_S, MAX_TIME_S) }
 }
 
-/// A wind at one time, ready for any number of drops.
+/// A wind at one time, prepared for any number of drops.
 #[derive(Clone, Debug)]
 pub struct UniformWindAt<'a> {
     wind: &'a UniformWind,
-    here: Moment,
-    start: Moment,
+    here: WindInstant,
+    start: WindInstant,
     travel: DVec3,
     air: DVec3,
 }
 
 impl UniformWindAt<'_> {
-    /// The velocity of the air, m/s.
+    /// Velocity of the air, m/s.
     #[must_use]
     pub fn velocity(&self) -> DVec3 {
         self.air
     }
 
-    /// What a drop with a relaxation time does: 0 (or less, or no number) follows the air at once; longest 1e6 s.
+    /// Motion of a drop with a relaxation time, at most 1e6 s. A time of 0 or less, or NaN, follows the air at once.
     ///
-    /// Across its fall a drop relaxes with v / g, along it with v / 2g, v being its terminal speed: take x and z of the one
-    /// and y of the other.
+    /// Across its fall a drop relaxes with v / g, along it with v / 2g, where v is its terminal speed: use x and z of
+    /// the former and y of the latter.
     #[must_use]
     pub fn followed(&self, relaxation_s: f64) -> Followed {
         if relaxation_s.is_nan() || relaxation_s <= 0.0 {
             return Followed { velocity: self.air, displacement: self.travel };
         }
-        let tau = relaxation_s.min(LONGEST);
+        let tau = relaxation_s.min(MAX_RELAXATION_S);
         let velocity = self.wind.response(&self.here, tau);
         let change = velocity - self.wind.response(&self.start, tau);
         Followed { velocity, displacement: self.travel - change * tau }

@@ -1,4 +1,4 @@
-//! A whole wind over time: primitives, gusts, turbulence.
+//! Wind over time: primitives, gusts, turbulence.
 
 use glam::DVec3;
 
@@ -13,10 +13,10 @@ use crate::timeline::{Keyed, WIND_KEYS, sort_times};
 use crate::turbulence::{Turbulence, WindTurbulenceMode};
 use crate::uniform::UniformWind;
 
-/// Most parts of a wind.
+/// Maximum number of parts of a wind.
 pub const WIND_PARTS: usize = 1024;
 
-/// A wind over time. All of it is in range at all times.
+/// Wind over time, in range at all times.
 ///
 /// ```
 /// use downpour_wind::{Gusts, Keyed, Wind, WindPart};
@@ -26,7 +26,7 @@ pub const WIND_PARTS: usize = 1024;
 /// let speed = Keyed::new(vec![(0.0, 3.0), (10.0, 12.0)])?;
 /// let part = WindPart::uniform(&speed, &DVec3::X.into())?;
 /// let wind = Wind::new(vec![part], Some(Gusts::default()), None)?;
-/// let air = wind.uniform().expect("no primitive that differs from place to place");
+/// let air = wind.uniform().expect("no primitive that differs from position to position");
 /// let drop = air.followed(7.5, 0.66);
 /// assert!((drop.velocity - air.velocity(7.5)).length() > 0.1, "a drop of 2 mm lags behind");
 /// # Ok::<(), downpour_wind::WindError>(())
@@ -36,7 +36,7 @@ pub struct Wind {
     parts: Vec<WindPart>,
     gusts: Option<Gusts>,
     turbulence: Option<Turbulence>,
-    /// The uniform parts and the gusts.
+    /// Uniform parts and gusts.
     air: UniformWind,
 }
 
@@ -53,12 +53,12 @@ impl Default for Wind {
 }
 
 impl Wind {
-    /// The sum of parts; gusts of its uniform wind; turbulence that its uniform wind carries.
+    /// Creates the sum of parts, with gusts of its uniform wind and turbulence that its uniform wind carries.
     ///
     /// # Errors
     /// [`WindError::TooManyParts`]; [`WindError::KeyCount`] if the uniform parts have more than
-    /// [`WIND_KEYS`] different times of keys together; else the first parameter that is out of its range
-    /// at some key, or an axis that turns about.
+    /// [`WIND_KEYS`] different times of keys together; else the error of the first parameter that is out of its range
+    /// at some key, or of an axis that reverses.
     pub fn new(
         parts: Vec<WindPart>,
         gusts: Option<Gusts>,
@@ -74,7 +74,7 @@ impl Wind {
         Ok(Self { parts, gusts, turbulence, air })
     }
 
-    /// The primitives at a time, s, all in range. Gusts come last, as a uniform wind of 200 m/s at most.
+    /// Primitives at a time, s, all in range. Gusts come last, as a uniform wind of 200 m/s at most.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Vec<WindPrimitive> {
         let mut primitives: Vec<WindPrimitive> = self.parts.iter().map(|part| part.at(time_s)).collect();
@@ -85,60 +85,60 @@ impl Wind {
         primitives
     }
 
-    /// The waves of turbulence that a grid shows at a time, s: see [`Turbulence::modes`].
+    /// Modes of turbulence that a grid resolves at a time, s: see [`Turbulence::modes`].
     #[must_use]
     pub fn modes(&self, time_s: f64, grid: &WindGrid) -> Vec<WindTurbulenceMode> {
         let carried = self.air.mean_displacement(time_s);
         self.turbulence.map_or_else(Vec::new, |turbulence| turbulence.modes(grid, carried))
     }
 
-    /// The field over a grid at a time, s.
+    /// Field over a grid at a time, s.
     ///
     /// # Errors
-    /// [`WindError::MaskSize`] if the mask is of another grid.
+    /// [`WindError::MaskSize`] if the mask does not match the grid.
     pub fn field(&self, time_s: f64, grid: &WindGrid, mask: &WindMask) -> Result<WindField, WindError> {
         WindField::with_turbulence(grid, &self.at(time_s), &self.modes(time_s, grid), mask)
     }
 
-    /// The wind as one that is the same everywhere, if it is: uniform parts and gusts alone, or still air.
+    /// The wind as a uniform wind, if it has uniform parts and gusts only, or is still air.
     #[must_use]
     pub fn uniform(&self) -> Option<UniformWind> {
         let even = self.parts.iter().all(|part| matches!(part, WindPart::Uniform(_)));
         (even && self.turbulence.is_none()).then(|| self.air.clone())
     }
 
-    /// The uniform parts and the gusts, without whatever else there is.
+    /// Uniform parts and gusts, without the other parts.
     #[must_use]
     pub fn air(&self) -> &UniformWind {
         &self.air
     }
 
-    /// Whether nothing ever blows: no parts and no turbulence.
+    /// True if there are no parts and no turbulence.
     #[must_use]
     pub fn is_still(&self) -> bool {
         self.parts.is_empty() && self.turbulence.is_none()
     }
 
-    /// The parts; their axes have length 1 at each key.
+    /// Parts; their axes have length 1 at each key.
     #[must_use]
     pub fn parts(&self) -> &[WindPart] {
         &self.parts
     }
 
-    /// The gusts of the uniform wind.
+    /// Gusts of the uniform wind.
     #[must_use]
     pub fn gusts(&self) -> Option<&Gusts> {
         self.gusts.as_ref()
     }
 
-    /// The eddies.
+    /// Turbulence.
     #[must_use]
     pub fn turbulence(&self) -> Option<&Turbulence> {
         self.turbulence.as_ref()
     }
 }
 
-/// The sum of the uniform parts.
+/// Sum of the uniform parts.
 fn mean(parts: &[WindPart]) -> Result<Keyed<DVec3>, WindError> {
     let uniform: Vec<&Keyed<DVec3>> = parts
         .iter()
@@ -151,7 +151,7 @@ fn mean(parts: &[WindPart]) -> Result<Keyed<DVec3>, WindError> {
     if times.is_empty() {
         return Ok(Keyed::from(sum(0.0)));
     }
-    // Each count is checked before anything is summed up.
+    // The count is checked before the parts are summed.
     if times.len() > WIND_KEYS {
         return Err(WindError::KeyCount { found: times.len(), allowed: WIND_KEYS });
     }

@@ -1,4 +1,4 @@
-//! The field over a box: exact at the centres of cells, of second order between them, nothing inside objects.
+//! Field over a box: exact at the centers of cells, of second order between them, 0 inside objects.
 
 mod common;
 
@@ -16,8 +16,8 @@ fn grid(n: u32) -> WindGrid {
     WindGrid::new(LOW, HIGH, [n; 3]).expect("a grid")
 }
 
-/// A place in the box, at least a coarse cell away from its sides.
-fn place(k: u32) -> Vec3 {
+/// A position in the box, at least a coarse cell away from its sides.
+fn position(k: u32) -> Vec3 {
     let [x, y, z, _] = rng_draw([3, 1], k, 0, 0).map(rng_unit);
     LOW + (HIGH - LOW) * (Vec3::new(x, y, z) * 0.9 + 0.05)
 }
@@ -27,13 +27,13 @@ fn worst(primitives: &[WindPrimitive], n: u32) -> f64 {
     let field = WindField::new(&grid, primitives, &WindMask::open(&grid)).expect("a field");
     let exact = wind(primitives);
     (0..20_000)
-        .map(place)
+        .map(position)
         .map(|at| (field.sample(at).as_dvec3() - exact(at.as_dvec3())).length())
         .fold(0.0, f64::max)
 }
 
-/// Half the cell, a quarter of the error; and no more than 3/8 h^2 times the largest second derivative, which of a Rosenhead
-/// vortex is less than 1.5 of its strength / (2 pi e^3).
+/// Half the cell, a quarter of the error, and at most 3/8 h^2 times the largest second derivative, which for a
+/// Rosenhead vortex is below 1.5 times its strength / (2 pi e^3).
 #[test]
 fn the_field_is_that_of_its_primitives_to_second_order() {
     let core_radius = 3.0;
@@ -58,7 +58,7 @@ fn the_field_is_that_of_its_primitives_to_second_order() {
 }
 
 #[test]
-fn uniform_wind_and_the_centres_of_cells_are_exact() {
+fn uniform_wind_and_the_centers_of_cells_are_exact() {
     let size = [5, 7, 3];
     let grid = WindGrid::new(LOW, HIGH, size).expect("a grid");
     let primitives = [WindPrimitive::Tornado(tornado())];
@@ -76,7 +76,7 @@ fn uniform_wind_and_the_centres_of_cells_are_exact() {
     let uniform = [WindPrimitive::Uniform(WindUniform { speed: 3.0, direction: Vec3::Z })];
     let field = WindField::new(&grid, &uniform, &WindMask::open(&grid)).expect("a field");
     for k in 0..100 {
-        assert_eq!(field.sample(place(k) * 1.7), Vec3::new(0.0, 0.0, 3.0));
+        assert_eq!(field.sample(position(k) * 1.7), Vec3::new(0.0, 0.0, 3.0));
     }
 }
 
@@ -87,14 +87,14 @@ fn beyond_the_box_the_wind_is_that_of_its_side() {
     let field = WindField::new(&grid, &primitives, &WindMask::open(&grid)).expect("a field");
     let inside = |at: Vec3| at.clamp(LOW + 1.0, HIGH - 1.0);
     for k in 0..200 {
-        let at = place(k) * 3.0;
+        let at = position(k) * 3.0;
         assert_eq!(field.sample(at), field.sample(inside(at)), "{at}");
     }
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3.0e38] {
         assert!(field.sample(Vec3::new(1.0, bad, 1.0)).is_finite(), "{bad}");
         assert!(field.sample(Vec3::splat(bad)).is_finite(), "{bad}");
     }
-    // A box of one cell is the same everywhere.
+    // A box of one cell is uniform.
     let one = WindGrid::new(LOW, HIGH, [1; 3]).expect("a grid");
     let field = WindField::new(&one, &primitives, &WindMask::open(&one)).expect("a field");
     assert_eq!(field.sample(LOW), field.sample(HIGH));
@@ -111,15 +111,15 @@ fn walled(cut_off: f32) -> WindField {
     WindField::new(&grid, &wind, &mask).expect("a field")
 }
 
-/// As in the paper: nothing in closed cells, all of it in open ones, a line between their centres (of 1 m apart).
+/// As in the paper: 0 in closed cells, the full wind in open ones, linear between their centers (1 m apart).
 #[test]
 fn no_wind_blows_inside_an_object() {
     let field = walled(0.0);
     for k in 0..2000 {
-        let at = place(k);
-        let share = (WALL + 0.5 - at.x).clamp(0.0, 1.0);
+        let at = position(k);
+        let fraction = (WALL + 0.5 - at.x).clamp(0.0, 1.0);
         let found = field.sample(at);
-        assert!((found - Vec3::Y * (8.0 * share)).length() < 1.0e-4, "{at}: {found}");
+        assert!((found - Vec3::Y * (8.0 * fraction)).length() < 1.0e-4, "{at}: {found}");
         if at.x > WALL + 0.5 {
             assert_eq!(found, Vec3::ZERO, "{at}");
         }
@@ -130,17 +130,17 @@ fn no_wind_blows_inside_an_object() {
 fn a_wider_cut_off_reaches_farther() {
     let field = walled(4.0);
     for k in 0..2000 {
-        let at = place(k);
-        // Distance from the first closed centre; the ramp's end lies at a centre, so it is a line.
-        let share = ((WALL + 0.5 - at.x) / 4.0).clamp(0.0, 1.0);
+        let at = position(k);
+        // Distance from the first closed center; the ramp ends at a center, so it is linear.
+        let fraction = ((WALL + 0.5 - at.x) / 4.0).clamp(0.0, 1.0);
         let found = field.sample(at);
-        assert!((found - Vec3::Y * (8.0 * share)).length() < 1.0e-4, "{at}: {found}");
+        assert!((found - Vec3::Y * (8.0 * fraction)).length() < 1.0e-4, "{at}: {found}");
     }
-    // A cell or less is the paper's cut-off.
+    // A width of a cell or less is the paper's cut-off.
     assert_eq!(walled(1.0), walled(0.0));
 }
 
-/// The distance is Euclid's, in all directions and for cells that are no cubes.
+/// The distance is Euclidean, in all directions and for cells that are not cubes.
 #[test]
 fn the_cut_off_is_round() {
     let grid = WindGrid::new(Vec3::ZERO, Vec3::new(24.0, 36.0, 12.0), [24, 24, 24]).expect("a grid");
@@ -166,7 +166,7 @@ fn masks_fit_their_grid() {
     for bad in [f32::NAN, -1.0, f32::INFINITY, 65.0] {
         assert!(mask.with_cut_off(&small, bad).is_err(), "{bad}");
     }
-    // The same objects told in either way.
+    // The same objects, given by both constructors.
     let asked = WindMask::from_fn(&small, |at| at.y > 2.0 && at.x < 0.0);
     let inside: Vec<bool> = asked.openness().iter().map(|&open| open <= 0.0).collect();
     assert_eq!(inside.iter().filter(|&&inside| inside).count(), 16);

@@ -1,4 +1,4 @@
-//! What a drop does in a uniform wind, in closed form, against the differential equation solved in small steps.
+//! Motion of a drop in a uniform wind, in closed form, against numerical integration in small steps.
 
 use downpour_wind::{Followed, Gusts, Keyed, UniformWind, Wind, WindPart, WindPrimitive, WindUniform};
 use glam::{DVec3, Vec3};
@@ -36,8 +36,8 @@ fn winds() -> Vec<(&'static str, UniformWind)> {
     ]
 }
 
-/// y' = (w - y) / tau and its integral, from `start` to `end`, by the classical Runge-Kutta rule; y begins as what the
-/// closed form says.
+/// y' = (w - y) / tau and its integral, from `start` to `end`, by the classical Runge-Kutta rule; y starts at the
+/// closed form.
 fn stepped(air: &UniformWind, tau: f64, start: f64, end: f64, steps: u32) -> (DVec3, DVec3) {
     let h = (end - start) / f64::from(steps);
     let (mut y, mut way) = (air.followed(start, tau).velocity, DVec3::ZERO);
@@ -56,7 +56,7 @@ fn stepped(air: &UniformWind, tau: f64, start: f64, end: f64, steps: u32) -> (DV
     (y, way)
 }
 
-/// Velocity and way, over windows that hold keys and at which the start is long forgotten at the end (20 tau and more).
+/// Velocity and displacement, over windows that contain keys and at least 20 tau, so that the start is forgotten.
 #[test]
 fn drops_do_what_their_equation_says() {
     for (name, air) in winds() {
@@ -68,7 +68,7 @@ fn drops_do_what_their_equation_says() {
                 let (velocity, way) = stepped(&air, tau, start, end, steps as u32);
                 let (first, last) = (air.followed(start, tau), air.followed(end, tau));
                 let what = format!("{name}, tau {tau}, {start} to {end}");
-                // Steps that hold a key, and the fastest sinusoids, cost accuracy: both of the order of the step.
+                // Steps that contain a key, and the fastest sinusoids, cost accuracy: both of the order of the step.
                 let scale = if name.contains("gusts") { 2.0e-2 } else { 2.0e-3 };
                 let off = velocity.distance(last.velocity);
                 assert!(off < scale, "{what}: velocity {velocity}, not {}: {off}", last.velocity);
@@ -101,7 +101,7 @@ fn the_state_is_the_one_that_began_long_ago() {
     }
 }
 
-/// d/dt of the displacement is the velocity, and both begin where they should.
+/// d/dt of the displacement is the velocity, and both start at the right values.
 #[test]
 fn the_way_is_the_integral_of_the_velocity() {
     for (name, air) in winds() {
@@ -113,7 +113,8 @@ fn the_way_is_the_integral_of_the_velocity() {
                 let behind = air.followed(time - h, tau).displacement;
                 let slope = (ahead - behind) / (2.0 * h);
                 let velocity = air.followed(time, tau).velocity;
-                // Ways of 1e6 m have 1e-10 m of digits, divided by 1e-5 s; the fastest sinusoid has 1150 rad/s.
+                // Displacements of 1e6 m have 1e-10 m of digits, divided by 1e-5 s; the fastest sinusoid has 1150
+                // rad/s.
                 assert!(
                     slope.distance(velocity) < 2.0e-4,
                     "{name}, tau {tau}, {time}: {slope}, not {velocity}"
@@ -141,8 +142,8 @@ fn without_inertia_a_drop_is_air() {
     }
 }
 
-/// The amplitude and the lag of a first-order filter: 1 / sqrt(1 + (omega tau)^2) of a single sinusoid. Gusts are many, so
-/// the variance of what the drop keeps is that of the spectrum times 1 / (1 + (omega tau)^2).
+/// Amplitude and lag of a first-order filter: 1 / sqrt(1 + (omega tau)^2) for a single sinusoid. Of many gusts, the
+/// variance of the response is that of the spectrum times 1 / (1 + (omega tau)^2).
 #[test]
 fn slow_drops_keep_the_slow_gusts() {
     use downpour_math::ops::f64::{exp, ln};
@@ -162,7 +163,7 @@ fn slow_drops_keep_the_slow_gusts() {
                 GUSTS.spectrum_along(f, 10.0) / (1.0 + z * z) * f * step
             })
             .sum();
-        // One sinusoid stands for a band of half an octave.
+        // One sinusoid represents a band of half an octave.
         assert!((variance / wanted - 1.0).abs() < 0.1, "tau {tau}: {variance}, not {wanted}");
     }
 }
@@ -184,7 +185,7 @@ fn a_ramp_has_its_textbook_answer() {
     }
 }
 
-/// Steady, keyed and in calm: the way of the mean wind, which carries the turbulence.
+/// Steady, keyed and calm: displacement of the mean wind, which carries the turbulence.
 #[test]
 fn the_mean_wind_carries() {
     let air = even(vec![keyed(), steady()], Some(GUSTS));
@@ -197,13 +198,13 @@ fn the_mean_wind_carries() {
     assert_eq!(even(vec![], None).followed(5.0, 1.0), Followed::default());
 }
 
-/// Turbulence and vortices differ from place to place.
+/// Turbulence and vortices vary in space.
 #[test]
 fn other_winds_are_not_uniform() {
     let vortex = downpour_wind::WindSingularity {
         form: downpour_wind::WindForm::Line,
         strength: 1.0,
-        centre: Vec3::ZERO,
+        center: Vec3::ZERO,
         axis: Vec3::Y,
         core_radius: 1.0,
         core: downpour_wind::WindCore::Rosenhead,

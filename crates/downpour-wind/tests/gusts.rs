@@ -1,4 +1,4 @@
-//! Gusts have the variance, the spectrum and the mean that they say, at any time.
+//! Gusts have the stated variance, spectrum and mean, at any time.
 
 use downpour_math::ops::f64 as ops;
 use downpour_wind::{Gusts, Keyed, UniformWind, Wind, WindPart};
@@ -14,7 +14,7 @@ fn air(gusts: Gusts) -> UniformWind {
     Wind::new(vec![part], Some(gusts), None).expect("a wind").uniform().expect("even")
 }
 
-/// Over 8192 random times within so long that all sinusoids have turned many times: the slowest has a period of about 7500 s.
+/// Moments over 8192 random times within a span of many periods: the slowest sinusoid has a period of about 7500 s.
 fn moments(seed: u64, take: fn(DVec3) -> f64) -> (f64, f64) {
     let air = air(Gusts { seed, ..GUSTS });
     let n = 8192;
@@ -43,8 +43,8 @@ fn mean_and_variance_are_those_that_were_asked() {
     }
 }
 
-/// The power in a third of an octave, measured by correlation with sinusoids over a long time, is the integral of the stated
-/// spectrum, in the mean over many seeds.
+/// The power in a third of an octave, measured by correlation with sinusoids over a long time, is the integral of the
+/// stated spectrum, in the mean over many seeds.
 #[test]
 fn the_spectrum_is_kaimals() {
     // The autocovariance: sum of a^2 / 2 cos(omega s) against the cosine transform of S(f).
@@ -85,7 +85,7 @@ fn transform(spectrum: impl Fn(f64) -> f64, lag: f64) -> f64 {
     (0..steps)
         .map(|k| {
             let f = ops::exp(low + step * (f64::from(k) + 0.5));
-            // Faster than the steps resolve it, the cosine averages out.
+            // For lags that the steps do not resolve, the cosine averages out.
             let turns = f * lag;
             let wave = if turns > 300.0 { 0.0 } else { ops::cos(TAU * turns) };
             spectrum(f) * wave * f * step
@@ -125,7 +125,7 @@ fn gusts_are_a_function_of_seed_and_time() {
     }
 }
 
-/// Gusts swell with the wind of the moment, and a calm has none.
+/// Gusts scale with the current wind, and a calm has none.
 #[test]
 fn a_calm_does_not_gust() {
     let speed = Keyed::new(vec![(0.0, 0.0), (100.0, 20.0)]).expect("good keys");
@@ -136,7 +136,7 @@ fn a_calm_does_not_gust() {
     assert!((air.velocity(50.0) - air.mean(50.0)).length() > 0.01);
     let still = Wind::new(vec![], Some(GUSTS), None).expect("a wind");
     assert_eq!(still.uniform().expect("even").velocity(3.0), DVec3::ZERO);
-    // The field has them too, as one more uniform wind.
+    // The field includes them, as one more uniform wind.
     let sum: DVec3 = wind
         .at(50.0)
         .iter()

@@ -1,8 +1,8 @@
-//! The 3x3 matrix of the paper and back; what is out of range is an error that says so.
+//! The 3x3 matrix of the paper, encoded and decoded; values out of range are errors.
 
 mod common;
 
-use common::{CENTRE, CORE, STRENGTH, singularity, tornado};
+use common::{CENTER, CORE, STRENGTH, singularity, tornado};
 use downpour_wind::{
     WindCore, WindError, WindForm, WindGrid, WindMatrix, WindPrimitive, WindSingularity, WindTornado,
     WindUniform,
@@ -26,16 +26,16 @@ fn all() -> Vec<WindPrimitive> {
     ]
 }
 
-/// The rows of the paper: type, strength; centre; up. A sink has a negative strength there.
+/// Rows of the paper: type, strength; center; up. A sink has a negative strength.
 #[test]
 fn the_matrix_is_that_of_the_paper() {
     let matrices = WindMatrix::encode(&[WindPrimitive::Sink(singularity(WindForm::Line))]).expect("in range");
-    let [first, centre, up] = matrices[0].rows;
+    let [first, center, up] = matrices[0].rows;
     assert_eq!(first, [2.0, -STRENGTH, CORE]);
-    assert_eq!(centre, CENTRE.to_array());
+    assert_eq!(center, CENTER.to_array());
     let wanted = Vec3::new(1.0, 2.0, -0.5) / 5.25_f32.sqrt();
     assert!((Vec3::from(up) - wanted).length() < 1.0e-6, "{up:?}");
-    assert_eq!(matrices[0].padded()[1], [CENTRE.x, CENTRE.y, CENTRE.z, 0.0]);
+    assert_eq!(matrices[0].padded()[1], [CENTER.x, CENTER.y, CENTER.z, 0.0]);
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn a_slanted_tornado_comes_back_to_rounding() {
     let [WindPrimitive::Tornado(found)] = back[..] else { panic!("{back:?}") };
     assert!((found.height - tornado().height).abs() < 1.0e-5);
     assert!((found.axis - tornado().axis.normalize()).length() < 1.0e-6);
-    assert_eq!((found.circulation, found.discharge, found.base), (60.0, 500.0, CENTRE));
+    assert_eq!((found.circulation, found.discharge, found.base), (60.0, 500.0, CENTER));
     // The smallest height is still in range after rounding.
     for k in 0..50 {
         let core_radius = 0.37 + 0.11 * k as f32;
@@ -75,14 +75,14 @@ fn foreign_matrices_are_checked() {
         let error = WindMatrix::decode(&matrices).expect_err("no such type");
         assert!(matches!(error, WindError::UnknownType { index: 2, .. }), "{error}");
     }
-    // A source that takes in, a sink that lets out.
+    // A source with negative strength, a sink with positive.
     for index in [1, 2] {
         let mut matrices = good.clone();
         matrices[index].rows[0][1] *= -1.0;
         let error = WindMatrix::decode(&matrices).expect_err("the wrong sign");
         assert!(matches!(error, WindError::OutOfRange { quantity: "strength", .. }), "{error}");
     }
-    // A tornado that lost a part, or whose parts are of two.
+    // A tornado without a part, or with parts of two tornadoes.
     let updraft = 4;
     assert_eq!(WindMatrix::decode(&good[..=updraft]), Err(WindError::LoneUpdraft { index: updraft }));
     for (part, row) in [(5, 0), (5, 1), (6, 1), (7, 1), (6, 2)] {
@@ -91,7 +91,7 @@ fn foreign_matrices_are_checked() {
         let found = WindMatrix::decode(&matrices);
         assert_eq!(found, Err(WindError::LoneUpdraft { index: updraft }), "part {part}, row {row}");
     }
-    // Any number in any place is an answer or an error, never a panic, and what is accepted can be encoded.
+    // Any number in any entry gives a result or an error, never a panic, and an accepted matrix can be encoded.
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -0.0, 0.0, 1.0e-40, 3.0] {
         for at in 0..good.len() * 9 {
             let mut matrices = good.clone();
@@ -119,7 +119,7 @@ fn numbers_out_of_range_are_named() {
         let source = WindPrimitive::Source;
         assert_eq!(found(source(WindSingularity { strength: bad, ..at })).0, "strength");
         assert_eq!(found(source(WindSingularity { core_radius: bad, ..at })).0, "core radius");
-        assert_eq!(found(source(WindSingularity { centre: Vec3::new(0.0, bad, 0.0), ..at })).0, "centre");
+        assert_eq!(found(source(WindSingularity { center: Vec3::new(0.0, bad, 0.0), ..at })).0, "center");
         assert_eq!(found(source(WindSingularity { axis: Vec3::new(0.0, 1.0, bad), ..at })).0, "axis");
         let wind = WindPrimitive::Uniform;
         assert_eq!(found(wind(WindUniform { speed: bad, ..uniform })).0, "wind speed");

@@ -1,4 +1,4 @@
-//! Keys: linear between them, constant outside; what is out of range at any time is an error when the wind is made.
+//! Keys: linear between them, constant outside; values out of range at any time are errors of the constructor.
 
 mod common;
 
@@ -18,7 +18,7 @@ fn whirl() -> KeyedSingularity {
         form: WindForm::Line,
         core: WindCore::Rankine,
         strength: keyed(&[(0.0, -10.0), (4.0, 30.0)]),
-        centre: Keyed::new(vec![(0.0, DVec3::ZERO), (10.0, DVec3::new(20.0, 0.0, -10.0))])
+        center: Keyed::new(vec![(0.0, DVec3::ZERO), (10.0, DVec3::new(20.0, 0.0, -10.0))])
             .expect("good keys"),
         axis: Keyed::new(vec![(1.0, DVec3::Y * 5.0), (3.0, DVec3::X * 0.1)]).expect("good keys"),
         core_radius: keyed(&[(-2.0, 1.0), (2.0, 3.0)]),
@@ -74,7 +74,7 @@ fn keys_that_are_none_are_refused() {
     assert!(Keyed::new(vec![(0.0, DVec3::new(0.0, f64::NAN, 0.0))]).is_err());
 }
 
-/// Every parameter of a part moves as its keys say.
+/// Every parameter of a part follows its keys.
 #[test]
 fn parts_move() {
     let wind = Wind::new(vec![WindPart::Vortex(whirl())], None, None).expect("a wind");
@@ -84,11 +84,11 @@ fn parts_move() {
     };
     let first = at(-9.0);
     assert_eq!(
-        (first.strength, first.centre, first.axis, first.core_radius),
+        (first.strength, first.center, first.axis, first.core_radius),
         (-10.0, Vec3::ZERO, Vec3::Y, 1.0)
     );
     let mid = at(2.0);
-    assert_eq!((mid.strength, mid.centre, mid.core_radius), (10.0, Vec3::new(4.0, 0.0, -2.0), 3.0));
+    assert_eq!((mid.strength, mid.center, mid.core_radius), (10.0, Vec3::new(4.0, 0.0, -2.0), 3.0));
     assert!((mid.axis - Vec3::new(1.0, 1.0, 0.0).normalize()).length() < 1.0e-6, "{}", mid.axis);
     assert_eq!((mid.core, mid.form), (WindCore::Rankine, WindForm::Line));
     assert_eq!(at(99.0).axis, Vec3::X);
@@ -107,7 +107,7 @@ fn parts_move() {
     assert_eq!((found.height, found.core_radius, found.axis), (15.0, 1.5, Vec3::Y));
 }
 
-/// What does not move is the primitive that it was made of.
+/// A part without keys is the primitive that it was made from.
 #[test]
 fn a_primitive_without_keys_stays() {
     for primitive in [
@@ -121,7 +121,7 @@ fn a_primitive_without_keys_stays() {
             match (found, primitive) {
                 (WindPrimitive::Uniform(a), WindPrimitive::Uniform(b)) => assert_eq!(a, b),
                 (WindPrimitive::Sink(a), WindPrimitive::Sink(b)) => {
-                    assert_eq!((a.strength, a.centre, a.core_radius), (b.strength, b.centre, b.core_radius));
+                    assert_eq!((a.strength, a.center, a.core_radius), (b.strength, b.center, b.core_radius));
                     assert!((a.axis - b.axis.normalize()).length() < 1.0e-6);
                 }
                 (WindPrimitive::Tornado(a), WindPrimitive::Tornado(b)) => {
@@ -134,7 +134,7 @@ fn a_primitive_without_keys_stays() {
     assert!(Wind::default().is_still() && Wind::default().at(3.0).is_empty());
 }
 
-/// The tip of the velocity moves on a straight line: a wind that turns about passes through calm.
+/// The tip of the velocity moves on a straight line: a wind that reverses passes through calm.
 #[test]
 fn a_uniform_wind_is_a_velocity() {
     let turn = |to: DVec3| {
@@ -180,7 +180,7 @@ fn what_is_out_of_range_at_any_time_is_refused() {
     assert_eq!(fixed(|p| p.core_radius = keyed(&[(0.0, 5.0), (1.0, 0.0), (2.0, 5.0)])), "core radius");
     assert_eq!(fixed(|p| p.axis = DVec3::ZERO.into()), "axis");
     assert_eq!(fixed(|p| p.axis = DVec3::NAN.into()), "axis");
-    assert_eq!(fixed(|p| p.centre = DVec3::splat(2.0e6).into()), "centre");
+    assert_eq!(fixed(|p| p.center = DVec3::splat(2.0e6).into()), "center");
     let mut turned = whirl();
     turned.axis = Keyed::new(vec![(0.0, DVec3::Y), (5.0, DVec3::new(1.0e-3, -2.0, 0.0))]).expect("keys");
     assert_eq!(refused(WindPart::Vortex(turned)), WindError::AxisReverses { quantity: "axis", time: 5.0 });
@@ -214,7 +214,7 @@ fn what_is_out_of_range_at_any_time_is_refused() {
     assert_eq!(error.exit_code(), 3);
 }
 
-/// Many parts with keys at different times would cost too much together.
+/// Many parts with keys at different times would be too expensive together.
 #[test]
 fn the_keys_of_all_uniform_parts_are_counted() {
     let part = |shift: f64| {

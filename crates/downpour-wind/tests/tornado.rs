@@ -1,4 +1,4 @@
-//! A tornado takes air in at its base, lifts it, turns it, and lets it out at its top; none is lost.
+//! A tornado takes air in at its base, lifts and rotates it, and lets it out at its top, without loss.
 
 mod common;
 
@@ -29,23 +29,23 @@ fn air_goes_in_at_the_base_up_the_core_and_out_at_the_top() {
             close(at.dot(around), GAMMA / (TAU * 4.0), GAMMA / (TAU * 4.0), 0.15, "swirl");
         }
     }
-    for share in [0.1, 0.3, 0.5, 0.7, 0.9] {
-        let speed = field(base + up * (share * height));
-        assert!(speed.dot(up) > 20.0, "updraft {} at {share}", speed.dot(up));
+    for fraction in [0.1, 0.3, 0.5, 0.7, 0.9] {
+        let speed = field(base + up * (fraction * height));
+        assert!(speed.dot(up) > 20.0, "updraft {} at {fraction}", speed.dot(up));
         close((speed - up * speed.dot(up)).length(), 0.0, 20.0, 1.0e-4, "no side wind on the axis");
     }
     close(circulation(&field, base + up * 5.0, tornado.axis, 40.0), GAMMA, GAMMA, 2.0e-3, "circulation");
 }
 
-/// The paper's three parts with its printed formulas: sink and source cancel, which is why ours are points.
+/// The paper's three parts with its printed formulas: sink and source cancel, hence the point forms here.
 #[test]
 fn line_forms_cancel_and_ours_do_not() {
     let tornado = tornado();
     let at = tornado.base.as_dvec3() + frame(tornado.axis)[0] * 4.0;
-    let line = |centre| WindSingularity {
+    let line = |center| WindSingularity {
         form: WindForm::Line,
         strength: tornado.discharge,
-        centre,
+        center,
         axis: tornado.axis,
         core_radius: tornado.core_radius,
         core: WindCore::Rosenhead,
@@ -64,7 +64,7 @@ fn no_air_is_lost_anywhere() {
     let [u, _, up] = frame(tornado.axis);
     let base = tornado.base.as_dvec3();
     let height = f64::from(tornado.height);
-    for (centre, radius) in [
+    for (center, radius) in [
         (base, 1.0),
         (base, 6.0),
         (base + up * height, 3.0),
@@ -72,11 +72,11 @@ fn no_air_is_lost_anywhere() {
         (base + up * 3.0 + u * 2.0, 5.0),
         (base + up * 6.0, 30.0),
     ] {
-        close(flux_sphere(&field, centre, radius), 0.0, Q, 1.0e-3, &format!("{radius} m round {centre}"));
+        close(flux_sphere(&field, center, radius), 0.0, Q, 1.0e-3, &format!("{radius} m around {center}"));
     }
 }
 
-/// Through a wide disc between base and top: what rises in the core, less what the ends draw down outside it.
+/// Through a wide disc between base and top: the flow up the core, minus the flow that the ends draw down outside it.
 #[test]
 fn the_core_carries_the_discharge() {
     let tornado = WindTornado { height: 200.0, ..tornado() };
@@ -90,12 +90,13 @@ fn the_core_carries_the_discharge() {
             TAU * r * field(middle + u * r).dot(up) * radius / f64::from(rings)
         })
         .sum();
-    // A share R^2 / (R^2 + e^2) is within R; each end draws down its share of the solid angle, half of it at 45 degrees.
+    // A fraction R^2 / (R^2 + e^2) is within R; each end draws down its fraction of the solid angle, half of it at 45
+    // degrees.
     let e = f64::from(tornado.core_radius);
     let within = radius * radius / (radius * radius + e * e);
     let ends = 1.0 - 100.0 / (100.0_f64 * 100.0 + radius * radius).sqrt();
     close(flow, Q * (within - ends), Q, 1.0e-3, "flow through the disc");
-    // The speed on the axis of a long updraft.
+    // Speed on the axis of a long updraft.
     let fastest = Q / (PI * e * e);
     close(field(middle).dot(up), fastest, fastest, 1.0e-3, "speed on the axis");
 }
@@ -133,7 +134,7 @@ fn the_updraft_is_an_integral_along_its_line() {
         let sum: f64 = (0..=steps).map(|k| weight(k) * density(k)).sum();
         let wanted = sum * h / f64::from(steps) / 3.0;
         let found = wind_primitive_updraft(Q as f32, (r * r) as f32, z as f32, height, core);
-        // On the axis of a long one: what the rounding of its two ends is measured by.
+        // On the axis of a long one: scale of the rounding errors of its two ends.
         let scale = Q / (PI * e * e);
         close(found.into(), wanted, scale, 1.0e-6, &format!("{r} m from the line, {z} m up"));
     }

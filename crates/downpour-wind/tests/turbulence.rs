@@ -14,13 +14,13 @@ fn turbulence(seed: u64) -> Turbulence {
     Turbulence { speed: SIGMA, length: LENGTH, seed }
 }
 
-/// The velocity of all waves in double precision.
+/// Velocity of all waves in double precision.
 fn velocity(eddies: &Turbulence) -> impl Fn(DVec3) -> DVec3 + use<> {
     let waves = eddies.waves();
     move |at| waves.iter().map(|w| w.amplitude * ops::cos(TAU * (w.wave.dot(at) + w.phase))).sum()
 }
 
-fn place(seed: u64, k: u32) -> DVec3 {
+fn position(seed: u64, k: u32) -> DVec3 {
     let [x, y, z, _] = rng_draw([seed as u32, 9], k, 0, 0).map(|w| f64::from(rng_unit(w)));
     DVec3::new(x, y, z) * 4000.0
 }
@@ -33,10 +33,10 @@ fn there_is_no_divergence() {
             let along = wave.wave.normalize().dot(wave.amplitude);
             assert!(along.abs() < 1.0e-12 * wave.amplitude.length().max(1.0e-6), "{along}");
         }
-        // The same numerically, against the rates of strain that there are.
+        // The same numerically, against the actual rates of strain.
         let (field, h) = (velocity(&eddies), 1.0e-4);
         for k in 0..50 {
-            let at = place(seed, k);
+            let at = position(seed, k);
             let slope = |axis: DVec3| (field(at + axis * h) - field(at - axis * h)) / (2.0 * h);
             let (x, y, z) = (slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z));
             let rate = x.length() + y.length() + z.length();
@@ -45,7 +45,7 @@ fn there_is_no_divergence() {
     }
 }
 
-/// Each component has sigma^2, none prefers a direction, and two do not go together.
+/// Each component has sigma^2, none is preferred, and two are uncorrelated.
 #[test]
 fn every_component_has_its_variance() {
     let (seeds, places) = (300, 24);
@@ -53,7 +53,7 @@ fn every_component_has_its_variance() {
     for seed in 0..seeds {
         let field = velocity(&turbulence(seed));
         for k in 0..places {
-            let v = field(place(seed, k));
+            let v = field(position(seed, k));
             sums += v * v;
             shear += v * DVec3::new(v.y, v.z, v.x);
             mean += v;
@@ -66,7 +66,7 @@ fn every_component_has_its_variance() {
     }
     assert!((shear / n).abs().max_element() < 0.07 * SIGMA * SIGMA, "{}", shear / n);
     assert!((mean / n).length() < 0.05 * SIGMA, "{}", mean / n);
-    // Of a single field too: one seed is never far off.
+    // Of a single field too: no seed is far off.
     for seed in 0..40 {
         let crests: DVec3 = turbulence(seed).waves().iter().map(|w| w.amplitude * w.amplitude * 0.5).sum();
         assert!((crests.element_sum() / (3.0 * SIGMA * SIGMA) - 1.0).abs() < 1.0e-12);
@@ -113,13 +113,13 @@ fn the_waves_have_the_energy_of_the_spectrum() {
             .filter(|w| (from..to).contains(&(TAU * w.wave.length())))
             .map(|w| w.amplitude.length_squared() / 4.0)
             .sum();
-        // What is above all bands, 1.5 %, is shared by all.
+        // The energy above all bands, 1.5 %, is distributed over all.
         assert!((found / wanted - 1.0).abs() < 0.02, "band {band}: {found}, not {wanted}");
     }
 }
 
-/// Measured in the field: the longitudinal structure function grows as r^(2/3) in the inertial range, which is the slope
-/// -5/3 of the spectrum, and with Kolmogorov's factor.
+/// Measured in the field: the longitudinal structure function grows as r^(2/3) in the inertial range, which is the
+/// slope -5/3 of the spectrum, and with Kolmogorov's factor.
 #[test]
 fn differences_grow_as_in_the_inertial_range() {
     let distances = [0.3, 0.6, 1.2];
@@ -128,7 +128,7 @@ fn differences_grow_as_in_the_inertial_range() {
     for seed in 0..seeds {
         let field = velocity(&turbulence(seed));
         for k in 0..places {
-            let at = place(seed, k);
+            let at = position(seed, k);
             let axis = [DVec3::X, DVec3::Y, DVec3::Z][k as usize % 3];
             let here = field(at).dot(axis);
             for (sum, r) in found.iter_mut().zip(distances) {
@@ -137,7 +137,7 @@ fn differences_grow_as_in_the_inertial_range() {
             }
         }
     }
-    // D(r) = 4 int E(k) (1/3 - j(k r)) dk, j = (sin x - x cos x) / x^3, over the waves that there are.
+    // D(r) = 4 int E(k) (1/3 - j(k r)) dk, j = (sin x - x cos x) / x^3, over the range of the waves.
     let (low, high, steps) = (ops::ln(1.0e-4), ops::ln(746.8 / LENGTH), 20_000);
     let step = (high - low) / f64::from(steps);
     let eddies = turbulence(0);
@@ -157,7 +157,7 @@ fn differences_grow_as_in_the_inertial_range() {
         assert!((found / wanted - 1.0).abs() < 0.1, "{r} m: {found}, not {wanted}");
     }
     let slope = ops::ln(found[2] / found[0]) / ops::ln(4.0);
-    // The end of the waves makes it steeper by 0.03 at 0.3 m, the largest eddies flatter at 1.2 m.
+    // The cut-off of the waves makes it steeper by 0.03 at 0.3 m, the largest eddies flatter at 1.2 m.
     assert!((slope - 2.0 / 3.0).abs() < 0.06, "{slope}");
 }
 
@@ -208,7 +208,7 @@ fn the_mean_wind_carries_the_eddies() {
     }
 }
 
-/// The cells hold primitives and eddies together; gusts do not carry.
+/// The cells contain primitives and eddies; gusts do not carry the eddies.
 #[test]
 fn the_field_holds_the_eddies() {
     let grid = WindGrid::new(Vec3::ZERO, Vec3::splat(16.0), [16; 3]).expect("a grid");

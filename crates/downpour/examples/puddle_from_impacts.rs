@@ -1,4 +1,5 @@
-//! A puddle that ripples where the drops of a simulated rain meet it, beside one that is seeded by the law of that rain.
+//! A puddle that ripples where the drops of a simulated rain meet it, beside one that is seeded by the law of that
+//! rain.
 //!
 //! ```sh
 //! cargo run --release -p downpour --example puddle_from_impacts -- 25
@@ -11,7 +12,7 @@ use downpour::bvh::Bvh;
 use downpour::drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour::lattice::puddle::{Impact, Puddle, PuddleBorder, PuddleOptions, PuddleRain};
 use downpour::sim::collision::{CollisionMap, CollisionOptions};
-use downpour::sim::simulation::{Moment, SimVolume, Simulation, SimulationOptions};
+use downpour::sim::simulation::{SimVolume, Simulation, SimulationOptions, StepInput};
 use downpour::sim::step::StepEvent;
 use downpour::sim::view::View;
 use glam::{DVec3, Vec3};
@@ -37,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let map = CollisionMap::new(&map_options, &Bvh::new(&floor))?;
     // Every drop counts, however small it is on a picture.
     let view = View { least_pixels: 1.0e-3, ..View::default() };
-    let moment = Moment { map: Some(&map), ..Moment::new(&view, DVec3::ZERO, Vec3::ZERO) };
+    let moment = StepInput { map: Some(&map), ..StepInput::new(&view, DVec3::ZERO, Vec3::ZERO) };
     let volume = SimVolume::Box { size_m: [3.0; 3] };
     let options = SimulationOptions { volume, seed: 4, ..SimulationOptions::default() };
     let mut simulation = Simulation::new(&rain, &options, &moment)?;
@@ -73,11 +74,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// What of an impact the water needs, if it was on the water.
 fn on_water(event: &StepEvent) -> Option<Impact> {
-    let [x, y, z] = event.place;
-    let place_m = [x - CORNER[0], z - CORNER[1]];
-    let within = place_m.iter().all(|at| (0.0..EDGE).contains(at)) && (y - HEIGHT).abs() < 0.05;
+    let [x, y, z] = event.position;
+    let position_m = [x - CORNER[0], z - CORNER[1]];
+    let within = position_m.iter().all(|at| (0.0..EDGE).contains(at)) && (y - HEIGHT).abs() < 0.05;
     let speed_m_s = Vec3::from(event.velocity).length();
-    within.then_some(Impact { place_m, speed_m_s, diameter_m: event.diameter })
+    within.then_some(Impact { position_m, speed_m_s, diameter_m: event.diameter })
 }
 
 /// A level floor.

@@ -12,8 +12,8 @@ use std::error::Error;
 use downpour::drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour::gpu::{AdapterChoice, ComputeKernel, Gpu, GpuOptions, LimitSet};
 use downpour::sim::collision::{CollisionMap, CollisionOptions};
-use downpour::sim::gpu::{GpuCollisionMap, GpuMoment, GpuSimulation};
-use downpour::sim::simulation::{Moment, SimVolume, SimulationOptions};
+use downpour::sim::gpu::{GpuCollisionMap, GpuSimulation, GpuStepInput};
+use downpour::sim::simulation::{SimVolume, SimulationOptions, StepInput};
 use downpour::sim::view::View;
 use downpour::wind::gpu::GpuWindField;
 use downpour::wind::{
@@ -41,7 +41,7 @@ fn field() -> Result<WindField, Box<dyn Error>> {
         WindPrimitive::Uniform(WindUniform { speed: 4.0, direction: Vec3::X }),
         WindPrimitive::Vortex(WindSingularity {
             strength: 200.0,
-            centre: Vec3::ZERO,
+            center: Vec3::ZERO,
             axis: Vec3::Y,
             core_radius: 5.0,
             form: WindForm::Line,
@@ -77,7 +77,7 @@ fn wind_speed(gpu: &Gpu) -> Result<(), Box<dyn Error>> {
         .map(|k| {
             let at = WindSingularity {
                 strength: 20.0,
-                centre: Vec3::new(f32::from(k % 8), 1.0, f32::from(k / 8)) * 10.0 - 35.0,
+                center: Vec3::new(f32::from(k % 8), 1.0, f32::from(k / 8)) * 10.0 - 35.0,
                 axis: Vec3::Y,
                 core_radius: 4.0,
                 form: WindForm::Line,
@@ -113,12 +113,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     // As fine as it takes for as many drops as are asked for.
     let view = View { eye: DVec3::new(0.0, 2.0, 0.0), least_pixels: 1.0e-3, ..View::default() };
     let eye = view.eye.as_vec3();
-    let start =
-        Moment { field: Some(&field), map: Some(&map), ..Moment::new(&view, DVec3::ZERO, field.sample(eye)) };
-    let bare = GpuMoment::new(&view, DVec3::ZERO, field.sample(eye));
+    let start = StepInput {
+        field: Some(&field),
+        map: Some(&map),
+        ..StepInput::new(&view, DVec3::ZERO, field.sample(eye))
+    };
+    let bare = GpuStepInput::new(&view, DVec3::ZERO, field.sample(eye));
     let spread = field.spread(eye, view.far as f32);
-    let windy = GpuMoment { field: Some((field.uniform(), &cells)), spread, ..bare };
-    let full = GpuMoment { map: Some(&on_gpu), ..windy };
+    let windy = GpuStepInput { field: Some((field.uniform(), &cells)), spread, ..bare };
+    let full = GpuStepInput { map: Some(&on_gpu), ..windy };
     let boxed = SimVolume::Box { size_m: [60.0; 3] };
     let software = gpu.adapter().is_software();
     println!(

@@ -175,7 +175,7 @@ fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<
 fn bounce(rain: &Rain) -> Bounce {
     let bounce = &rain.bounce;
     Bounce {
-        share: bounce.share as f32,
+        fraction: bounce.share as f32,
         restitution: bounce.restitution as f32,
         grip: bounce.grip as f32,
         size: bounce.size as f32,

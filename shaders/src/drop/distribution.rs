@@ -5,7 +5,7 @@ use crate::Module;
 /// Every module of this file.
 pub const MODULES: &[&Module] = &[&DISTRIBUTION_CONSTANTS, &DISTRIBUTION];
 
-/// Drawing diameters from a table of quantiles or from the exponential law. Twin: `downpour_drop::distribution`.
+/// Sampling of diameters from a table of quantiles or from the exponential law. Twin: `downpour_drop::distribution`.
 pub static DISTRIBUTION: Module = Module {
     path: "drop/distribution.wgsl",
     wgsl: include_str!("../../wgsl/drop/distribution.wgsl"),
@@ -13,9 +13,9 @@ pub static DISTRIBUTION: Module = Module {
 };
 
 shared_constants! {
-    /// The layout of the table of quantiles.
+    /// Layout of the table of quantiles.
     DISTRIBUTION_CONSTANTS at "drop/distribution constants" {
-        /// Each octave of the probability of a tail is cut into 2 to this power cells.
+        /// Each octave of the probability of a tail is split into 2 to this power cells.
         DISTRIBUTION_CELL_BITS: u32 = 6;
         /// Nodes of one tail: 128 + 24 * 64 cells and the last edge.
         DISTRIBUTION_SIDE_NODES: u32 = 1665;
@@ -23,7 +23,7 @@ shared_constants! {
         DISTRIBUTION_WORD_STEP: f32 = 2.3283064e-10;
         /// 2^-23: the spacing of probabilities that are not rare.
         DISTRIBUTION_COARSE_STEP: f32 = 1.1920929e-7;
-        /// 2^22: words below it are rare and are told apart one by one.
+        /// 2^22: words below it are rare and have separate nodes.
         DISTRIBUTION_RARE_WORDS: u32 = 4194304;
     }
 }

@@ -5,7 +5,7 @@ use crate::Module;
 /// Every module of this file.
 pub const MODULES: &[&Module] = &[&FALL_SPEED_CONSTANTS, &FALL_SPEED_TABLES, &FALL_SPEED];
 
-/// Terminal speed of a drop by every model, and how fast a drop takes it. Twin: `downpour_drop::fall_speed`.
+/// Terminal speed of a drop by every model, and relaxation towards it. Twin: `downpour_drop::fall_speed`.
 pub static FALL_SPEED: Module = Module {
     path: "drop/fall_speed.wgsl",
     wgsl: include_str!("../../wgsl/drop/fall_speed.wgsl"),
@@ -35,15 +35,15 @@ shared_constants! {
         /// Number of the model Lhermitte 1988.
         FALL_SPEED_MODEL_LHERMITTE_1988: u32 = 7;
 
-        /// Beard 1976: below this diameter, mm, the flow is Stokes' with slip.
+        /// Beard 1976: diameter, mm, below which the flow is Stokes' with slip.
         FALL_SPEED_BEARD_STOKES_MM: f32 = 0.019;
-        /// Beard 1976: from this diameter, mm, a drop is no longer a sphere.
+        /// Beard 1976: diameter, mm, from which a drop is no longer a sphere.
         FALL_SPEED_BEARD_SPHERE_MM: f32 = 1.07;
-        /// Beard 1976: the largest diameter of the law, mm; the speed is held constant beyond.
-        FALL_SPEED_BEARD_LARGEST_MM: f32 = 7.0;
+        /// Beard 1976: largest diameter of the law, mm; the speed is constant beyond.
+        FALL_SPEED_BEARD_MAX_MM: f32 = 7.0;
 
-        /// van Dijk 2002: the diameter, mm, beyond which the speed is held constant, as the cubic diverges.
-        FALL_SPEED_VAN_DIJK_LARGEST_MM: f32 = 6.0;
+        /// van Dijk 2002: diameter, mm, beyond which the speed is constant, as the cubic diverges.
+        FALL_SPEED_VAN_DIJK_MAX_MM: f32 = 6.0;
     }
 }
 

@@ -13,13 +13,13 @@ pub static OPTICS: Module = Module {
 };
 
 shared_constants! {
-    /// Numbers of the optics of an interface.
+    /// Constants of the optics of an interface.
     OPTICS_CONSTANTS at "drop/optics constants" {
-        /// Keeps a division away from 0/0 where an interface without contrast is seen at grazing incidence.
-        OPTICS_SMALLEST: f32 = 1.0e-30;
-        /// Tatarchuk & Isidoro 2006: the share that their reflectance has at normal incidence.
+        /// Keeps a division from 0/0 at grazing incidence on an interface without contrast.
+        OPTICS_MIN: f32 = 1.0e-30;
+        /// Tatarchuk & Isidoro 2006: reflectance at normal incidence.
         OPTICS_TATARCHUK_BASE: f32 = 0.05;
-        /// Tatarchuk & Isidoro 2006: what is added towards grazing incidence.
+        /// Tatarchuk & Isidoro 2006: increase of the reflectance towards grazing incidence.
         OPTICS_TATARCHUK_RISE: f32 = 0.95;
     }
 }

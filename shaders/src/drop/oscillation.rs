@@ -6,7 +6,7 @@ use crate::common::RNG;
 /// Every module of this file.
 pub const MODULES: &[&Module] = &[&OSCILLATION_CONSTANTS, &OSCILLATION];
 
-/// Drops that oscillate.
+/// Oscillation of drops.
 pub static OSCILLATION: Module = Module {
     path: "drop/oscillation.wgsl",
     wgsl: include_str!("../../wgsl/drop/oscillation.wgsl"),
@@ -20,9 +20,9 @@ shared_constants! {
         DROP_OSCILLATION_TICK: f32 = 1.5258789e-5;
         /// 2^16 / (2 pi): units of frequency in one radian per second.
         DROP_OSCILLATION_UNITS_PER_RADIAN: f32 = 10430.378;
-        /// The largest number that an f32 can hold and a u32 too.
-        DROP_OSCILLATION_LARGEST_FREQUENCY: f32 = 4294967040.0;
-        /// 2^-24: a turn is cut into 2^24 parts, as many as an f32 in [0, 1) tells apart.
+        /// Largest number that both an f32 and a u32 can hold.
+        DROP_OSCILLATION_MAX_FREQUENCY: f32 = 4294967040.0;
+        /// 2^-24: a turn has 2^24 parts, the resolution of an f32 in [0, 1).
         DROP_OSCILLATION_TURN_STEP: f32 = 5.9604645e-8;
         /// One turn in radians.
         DROP_OSCILLATION_TURN: f32 = 6.2831855;
@@ -63,6 +63,6 @@ mod tests {
         assert_eq!(DROP_OSCILLATION_TURN, std::f32::consts::TAU);
         let per_radian = 65536.0 / std::f64::consts::TAU;
         assert_eq!(DROP_OSCILLATION_UNITS_PER_RADIAN, per_radian as f32);
-        assert_eq!(DROP_OSCILLATION_LARGEST_FREQUENCY as u32, u32::MAX - 255);
+        assert_eq!(DROP_OSCILLATION_MAX_FREQUENCY as u32, u32::MAX - 255);
     }
 }

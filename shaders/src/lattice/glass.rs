@@ -34,31 +34,31 @@ pub const KERNELS: &[&Kernel] = &[
 ];
 
 shared_constants! {
-    /// Units and marks of the lattice of drops.
+    /// Units and flags of the lattice of drops.
     GLASS_CONSTANTS at "lattice/glass constants" {
-        /// The largest mass of a cell, in units of a nanolitre: a drop of 7.9 mm.
-        GLASS_LARGEST: u32 = 262144;
-        /// Classes of mass, with one above the last that is only interpolated to.
+        /// Maximum mass of a cell, in units of a nanolitre: a drop of 7.9 mm.
+        GLASS_MAX_MASS: u32 = 262144;
+        /// Number of classes of mass, including one above the last for interpolation.
         GLASS_CLASSES: u32 = 130;
         /// Masses of landing drops, in groups of four.
         GLASS_LANDING_QUADS: u32 = 1024;
         /// A velocity of one cell in one tick; unit vectors have this length too.
         GLASS_CELL: i32 = 16384;
-        /// The way to a cell across the corner.
+        /// Distance to a diagonal cell.
         GLASS_DIAGONAL: i32 = 23170;
-        /// How far before itself a blade pushes water, in half cells.
+        /// Distance ahead of a blade to which it pushes water, in half cells.
         GLASS_BLADE_AHEAD: i32 = 4;
-        /// Mark of a surface: water cannot go there.
+        /// Flag of a surface: water cannot move there.
         GLASS_OBSTACLE: u32 = 65536;
-        /// How much another drop draws one: as glass of this wetness.
+        /// Attraction by another drop: as glass of this wetness.
         GLASS_WATER_PULL: u32 = 510;
-        /// Bits of a word that are the place of a cell.
+        /// Mask of the bits of a word that hold the index of a cell.
         GLASS_INDEX: u32 = 16777215;
-        /// Mark of a target: a larger drop takes this one.
+        /// Flag of a target: a larger drop takes this one.
         GLASS_TAKEN: u32 = 1073741824;
         /// Target beyond the edge of the pane.
         GLASS_OUT: u32 = 4294967295;
-        /// Speed at which a running drop is drawn out by 1/256 of its radius.
+        /// Speed at which a running drop is stretched by 1/256 of its radius.
         GLASS_HEIGHT_STRETCH: u32 = 32;
         /// Word of the totals: the tick of the call.
         GLASS_TOTAL_TICK: u32 = 0;
@@ -70,9 +70,9 @@ shared_constants! {
         GLASS_TOTAL_EVAPORATED: u32 = 6;
         /// Mass that blades have pushed off the pane.
         GLASS_TOTAL_WIPED: u32 = 8;
-        /// Mass above the largest of a cell.
+        /// Mass above the maximum of a cell.
         GLASS_TOTAL_SPILLED: u32 = 10;
-        /// How often a cell had more than the largest mass.
+        /// Number of times that a cell exceeded the maximum mass.
         GLASS_TOTAL_SATURATED: u32 = 12;
     }
 }
@@ -91,56 +91,56 @@ pub static MOTION: Module = Module {
     uses: &[&SIZE],
 };
 
-/// The blades of wipers. Twin: `downpour_lattice::glass::blade`.
+/// Blades of wipers. Twin: `downpour_lattice::glass::blade`.
 pub static BLADE: Module = Module {
     path: "lattice/glass_blade.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_blade.wgsl"),
     uses: &[&GLASS_CONSTANTS],
 };
 
-/// What holds for a call. Twin: `downpour_lattice::glass::frame`.
+/// Parameters of a call. Twin: `downpour_lattice::glass::frame`.
 pub static FRAME: Module = Module {
     path: "lattice/glass_frame.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_frame.wgsl"),
     uses: &[],
 };
 
-/// What the host has computed of drops.
+/// Properties of drops computed by the host.
 pub static TABLE: Module = Module {
     path: "lattice/glass_table.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_table.wgsl"),
     uses: &[&SIZE],
 };
 
-/// Who wets which cell. Twin: `downpour_lattice::glass::claim`.
+/// Claim of cells by drops. Twin: `downpour_lattice::glass::claim`.
 pub static CLAIM: Module = Module {
     path: "lattice/glass_claim.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_claim.wgsl"),
     uses: &[&FRAME, &TABLE],
 };
 
-/// Where drops go. Twin: `downpour_lattice::glass::decide`.
+/// Decision of drops. Twin: `downpour_lattice::glass::decide`.
 pub static DECIDE: Module = Module {
     path: "lattice/glass_decide.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_decide.wgsl"),
     uses: &[&FRAME, &TABLE, &MOTION, &RNG],
 };
 
-/// Water goes there. Twin: `downpour_lattice::glass::transfer`.
+/// Transfer of water. Twin: `downpour_lattice::glass::transfer`.
 pub static TRANSFER: Module = Module {
     path: "lattice/glass_transfer.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_transfer.wgsl"),
     uses: &[&FRAME, &TABLE, &BLADE, &RNG],
 };
 
-/// What has come becomes drops. Twin: `downpour_lattice::glass::settle`.
+/// Settling of water. Twin: `downpour_lattice::glass::settle`.
 pub static SETTLE: Module = Module {
     path: "lattice/glass_settle.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_settle.wgsl"),
     uses: &[&FRAME, &MOTION],
 };
 
-/// The number of the tick.
+/// Number of the tick.
 pub static NEXT: Module = Module {
     path: "lattice/glass_next.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_next.wgsl"),
@@ -154,7 +154,7 @@ pub static HEIGHT: Module = Module {
     uses: &[&FRAME, &TABLE, &MOTION],
 };
 
-/// Smoother heights. Twin: `downpour_lattice::glass::smooth`.
+/// Smoothing of heights. Twin: `downpour_lattice::glass::smooth`.
 pub static SMOOTH: Module = Module {
     path: "lattice/glass_smooth.wgsl",
     wgsl: include_str!("../../wgsl/lattice/glass_smooth.wgsl"),

@@ -30,8 +30,8 @@ shared_constants! {
         /// The neighbour towards higher x and y.
         PUDDLE_LINK_SOUTH_EAST: u32 = 128;
         /// Smaller numbers, in m or m/s, become 0: denormal numbers are slow on some machines.
-        PUDDLE_SMALLEST: f32 = 1.0e-20;
-        /// What numbers are multiplied by when they are kept in 16 bits: a power of two.
+        PUDDLE_MIN: f32 = 1.0e-20;
+        /// Scale of numbers in 16 bits: a power of two.
         PUDDLE_HALF_SCALE: f32 = 1024.0;
         /// Cells along an edge of a workgroup's tile.
         PUDDLE_STEP_TILE: u32 = 64;
@@ -50,7 +50,7 @@ shared_constants! {
     }
 }
 
-/// One cell and its neighbours. Twin: `downpour_lattice::puddle::lattice`.
+/// A cell and its neighbours. Twin: `downpour_lattice::puddle::lattice`.
 pub static PUDDLE: Module = Module {
     path: "lattice/puddle.wgsl",
     wgsl: include_str!("../../wgsl/lattice/puddle.wgsl"),
@@ -71,14 +71,14 @@ pub static PUDDLE_STEP: Module = Module {
     uses: &[&PUDDLE_STATE],
 };
 
-/// What impacts and moving objects do to the surface. Twin: `downpour_lattice::puddle::seed`.
+/// Craters of impacts and footprints of moving objects. Twin: `downpour_lattice::puddle::seed`.
 pub static PUDDLE_SEED: Module = Module {
     path: "lattice/puddle_seed.wgsl",
     wgsl: include_str!("../../wgsl/lattice/puddle_seed.wgsl"),
     uses: &[&PUDDLE_STATE],
 };
 
-/// Normals by Sobel's sums. Twin: `downpour_lattice::puddle::normal`.
+/// Normals by Sobel sums. Twin: `downpour_lattice::puddle::normal`.
 pub static PUDDLE_NORMAL: Module = Module {
     path: "lattice/puddle_normal.wgsl",
     wgsl: include_str!("../../wgsl/lattice/puddle_normal.wgsl"),

@@ -1,4 +1,4 @@
-//! What stops drops: a map of the surfaces along the fall direction.
+//! Collision map of the surfaces along the fall direction.
 
 use crate::bvh::BVH;
 use crate::common::PACKING;
@@ -11,39 +11,40 @@ pub const MODULES: &[&Module] = &[&COLLISION_CONSTANTS, &COLLISION, &COLLISION_M
 pub const KERNELS: &[&Kernel] = &[&COLLISION_MAP_KERNEL];
 
 shared_constants! {
-    /// What a map of surfaces keeps, and how a drop is compared with it.
+    /// Constants of the collision map and of its queries.
     COLLISION_CONSTANTS at "sim/collision/constants" {
-        /// Surfaces of a texel.
+        /// Number of surfaces of a texel.
         COLLISION_LAYERS: u32 = 4;
-        /// Depth of a surface that is not there, m.
+        /// Depth that marks an absent surface, m.
         COLLISION_NONE: f32 = 1.0e30;
-        /// Bit of a packed surface: what is below it, up to the next surface, is solid.
+        /// Bit of a packed surface: the space below it, up to the next surface, is solid.
         COLLISION_SOLID: u32 = 65536;
-        /// A surface leaves the depth at the centre of its texel by so many texel edges, at most.
+        /// Maximum deviation of a surface from the depth at the center of its texel, in texel edges.
         COLLISION_STEEP: f32 = 4.0;
-        /// Inside something solid, a drop that came over a texel's border has hit the top surface if it is no deeper than
-        /// so many texel edges and what the slope adds over one; deeper, it has hit a wall.
+        /// Depth in texel edges, plus the increase by the slope over one, up to which a drop inside a solid that
+        /// crossed a texel's border has hit the top surface; deeper, it has hit a wall.
         COLLISION_SHALLOW: f32 = 0.25;
-        /// A drop that starts less than this below a surface starts on it, m.
+        /// Distance below a surface, m, within which a drop starts on it.
         COLLISION_CLEARANCE: f32 = 0.001;
-        /// Texels that a segment is followed through.
+        /// Maximum number of texels that a segment is followed through.
         COLLISION_COLUMNS: u32 = 32;
-        /// In place of the number of surfaces above in the texel before: there was none.
+        /// Value for the number of surfaces above in the previous texel if there was none.
         COLLISION_START: u32 = 8;
-        /// Largest coordinate in texels that is told apart.
+        /// Maximum coordinate in texels.
         COLLISION_EDGE: f32 = 1.0e7;
-        /// Nothing was hit.
+        /// No hit.
         COLLISION_OPEN: u32 = 0;
-        /// A surface was hit.
+        /// Hit of a surface.
         COLLISION_SURFACE: u32 = 1;
-        /// The side of something solid was hit.
+        /// Hit of the side of a solid.
         COLLISION_WALL: u32 = 2;
-        /// Nearest hits of a ray that are kept while a texel is made.
+        /// Number of nearest hits of a ray that are kept while a texel is made.
         COLLISION_MAP_HITS: u32 = 16;
-        /// Surfaces of a ray sideways within which it has to leave something: one, and two for what stands in between.
+        /// Number of surfaces within which a horizontal ray has to leave a solid: one, and two for obstacles in
+        /// between.
         COLLISION_MAP_LEAVES: u32 = 3;
-        /// Where between two surfaces the rays start that ask whether the space is enclosed. Not the middle, where meshes have
-        /// edges.
+        /// Fraction of the space between two surfaces at which the rays start that test for enclosure. Not the middle,
+        /// where meshes have edges.
         COLLISION_MAP_BETWEEN: f32 = 0.4637;
         /// A surface faces the rain.
         COLLISION_MAP_FRONT: u32 = 1;
@@ -52,7 +53,7 @@ shared_constants! {
     }
 }
 
-/// Where a moving drop meets the surfaces of a map. The map is bound at 8 (uniform) and 9 (texels).
+/// Collision of a moving drop with the surfaces of a map. The map is bound at 8 (uniform) and 9 (texels).
 /// Twin: `downpour_sim::collision`.
 pub static COLLISION: Module = Module {
     path: "sim/collision.wgsl",
@@ -60,7 +61,7 @@ pub static COLLISION: Module = Module {
     uses: &[&COLLISION_CONSTANTS, &PACKING],
 };
 
-/// Makes a map from a hierarchy of triangles, by rays. Twin: `downpour_sim::collision`.
+/// Construction of a map from a hierarchy of triangles, by rays. Twin: `downpour_sim::collision`.
 pub static COLLISION_MAP: Module = Module {
     path: "sim/collision_map.wgsl",
     wgsl: include_str!("../../wgsl/sim/collision_map.wgsl"),

@@ -1,4 +1,4 @@
-//! Drops that come into a frustum.
+//! Drops that enter a frustum.
 
 use super::step::STEP;
 use crate::{Kernel, Module};
@@ -10,26 +10,26 @@ pub const MODULES: &[&Module] = &[&ENTER_CONSTANTS, &ENTER];
 pub const KERNELS: &[&Kernel] = &[&ENTER_KERNEL];
 
 shared_constants! {
-    /// Constants of what comes in.
+    /// Constants of entering drops.
     ENTER_CONSTANTS at "sim/enter_constants" {
-        /// Quantiles of the diameters of a bin.
+        /// Number of quantiles of the diameters of a bin.
         ENTER_SIZES: u32 = 9;
-        /// Words of a region in the tables.
+        /// Number of words of a region in the tables.
         ENTER_REGION_WORDS: u32 = 12;
-        /// Steps of a binary search: 2^16 regions.
+        /// Number of steps of a binary search: 2^16 regions.
         ENTER_SEARCH: u32 = 16;
-        /// Slots that are tried for a drop.
+        /// Number of slots that are tried for a drop.
         ENTER_TRIES: u32 = 64;
         /// First dimension of the random numbers of candidates: one of each bin and face.
         ENTER_DRAW: u32 = 16384;
-        /// First dimension of the random numbers of slots, a try each.
+        /// First dimension of the random numbers of slots, one per try.
         ENTER_SLOT: u32 = 12288;
         /// 2^-24.
         ENTER_UNIT: f32 = 5.9604645e-8;
     }
 }
 
-/// What comes in. Twin: `downpour_sim::enter`.
+/// Entry of drops into a frustum. Twin: `downpour_sim::enter`.
 pub static ENTER: Module = Module {
     path: "sim/enter.wgsl",
     wgsl: include_str!("../../wgsl/sim/enter.wgsl"),

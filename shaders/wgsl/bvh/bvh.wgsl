@@ -3,10 +3,10 @@
 
 struct BvhNode {
     low: vec3f,
-    // Second child of an inner node (the first stands right behind it), or first triangle of a leaf.
+    // Index of the second child of an inner node (the first is right after it), or of the first triangle of a leaf.
     link: u32,
     high: vec3f,
-    // Triangles of a leaf; 0 for an inner node.
+    // Number of triangles of a leaf; 0 for an inner node.
     count: u32,
 }
 
@@ -19,7 +19,7 @@ struct BvhTriangle {
 }
 
 struct BvhHit {
-    // Negative: nothing was hit.
+    // Negative for a miss.
     distance: f32,
     triangle: u32,
     u: f32,
@@ -29,7 +29,7 @@ struct BvhHit {
 @group(0) @binding(1) var<storage, read> bvh_nodes: array<BvhNode>;
 @group(0) @binding(2) var<storage, read> bvh_triangles: array<BvhTriangle>;
 
-// Where the ray enters the box of a node, if that is before `limit`; BVH_FAR otherwise.
+// Distance at which the ray enters the box of a node, if it is below `limit`; BVH_FAR otherwise.
 fn bvh_enter(node: BvhNode, origin: vec3f, inverse: vec3f, limit: f32) -> f32 {
     let a = (node.low - origin) * inverse;
     let b = (node.high - origin) * inverse;
@@ -37,12 +37,12 @@ fn bvh_enter(node: BvhNode, origin: vec3f, inverse: vec3f, limit: f32) -> f32 {
     let far = max(a, b);
     let enter = max(max(near.x, near.y), max(near.z, 0.0));
     let leave = min(min(far.x, far.y), min(far.z, limit));
-    // Rounding may put the two past each other by a few units in the last place.
+    // Rounding may swap the two by a few units in the last place.
     return select(BVH_FAR, enter, enter <= leave * 1.000001 + 1.0e-7);
 }
 
-// Distance and the weights of the second and third corner where the ray meets the triangle's plane; distance -1
-// where that is outside the triangle.
+// Distance, and barycentric weights of the second and third corner, of the ray's intersection with the plane of
+// the triangle; distance -1 if that is outside the triangle.
 fn bvh_triangle(triangle: BvhTriangle, origin: vec3f, direction: vec3f) -> vec3f {
     let p = cross(direction, triangle.edge_2);
     let determinant = dot(triangle.edge_1, p);
@@ -61,13 +61,13 @@ fn bvh_triangle(triangle: BvhTriangle, origin: vec3f, direction: vec3f) -> vec3f
     return vec3f(-1.0, 0.0, 0.0);
 }
 
-// The inverse of a direction, without infinities: a ray along an axis gets a very steep slope instead.
+// Inverse of a direction, without infinities: a zero component is replaced by a tiny one.
 fn bvh_inverse(direction: vec3f) -> vec3f {
     let steep = select(vec3f(1.0e-20), direction, abs(direction) > vec3f(1.0e-20));
     return vec3f(1.0) / steep;
 }
 
-// The nearest hit along the ray that is farther than `nearest` and nearer than `farthest`.
+// Nearest hit along the ray that is farther than `nearest` and nearer than `farthest`.
 fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhHit {
     let inverse = bvh_inverse(direction);
     var best = BvhHit(-1.0, 0u, 0.0, 0.0);
@@ -82,7 +82,7 @@ fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhH
     loop {
         let node = bvh_nodes[at];
         if node.count == 0u {
-            // The nearer child first: what it holds may hide the other.
+            // The nearer child first: its triangles may hide the other.
             let to_left = bvh_enter(bvh_nodes[at + 1u], origin, inverse, limit);
             let to_right = bvh_enter(bvh_nodes[node.link], origin, inverse, limit);
             let swap = to_right < to_left;
@@ -105,7 +105,7 @@ fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhH
                 }
             }
         }
-        // The next waiting node that is still nearer than what was hit.
+        // The next stacked node that is nearer than the current hit.
         var found = false;
         while depth > 0u && !found {
             depth -= 1u;

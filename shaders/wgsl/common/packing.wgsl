@@ -1,16 +1,16 @@
-// Unit vectors in two numbers of [-1, 1]: the octahedral map.
+// Octahedral map: a unit vector as two numbers in [-1, 1].
 // Source: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010; Z. Cigolle et al., JCGT 3(2), 2014.
 // Twin: downpour_math::packing.
 
-// The sign of x as 1 or -1; zero counts as positive.
+// Sign of x as 1 or -1; zero counts as positive.
 fn packing_sign(x: f32) -> f32 {
     return select(-1.0, 1.0, x >= 0.0);
 }
 
-// Direction (any length above 0) -> square.
+// Maps a direction (any length above 0) to the square [-1, 1]^2.
 fn packing_octahedral_encode(direction: vec3f) -> vec2f {
     let norm = abs(direction.x) + abs(direction.y) + abs(direction.z);
-    let inverse = 1.0 / max(norm, PACKING_SMALLEST_NORM);
+    let inverse = 1.0 / max(norm, PACKING_MIN_NORM);
     let x = direction.x * inverse;
     let y = direction.y * inverse;
     if direction.z >= 0.0 {
@@ -19,7 +19,7 @@ fn packing_octahedral_encode(direction: vec3f) -> vec2f {
     return vec2f((1.0 - abs(y)) * packing_sign(x), (1.0 - abs(x)) * packing_sign(y));
 }
 
-// Square -> unit vector.
+// Maps a point of the square to a unit vector.
 fn packing_octahedral_decode(square: vec2f) -> vec3f {
     let z = 1.0 - abs(square.x) - abs(square.y);
     let fold = max(-z, 0.0);

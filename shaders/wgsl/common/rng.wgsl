@@ -13,7 +13,7 @@ fn rng_pcg4d_stir(words: vec4u) -> vec4u {
     return v;
 }
 
-// Mixes four words so that each bit of the result depends on each bit of the argument.
+// Mixes four words: each bit of the result depends on each bit of the argument.
 fn rng_pcg4d(words: vec4u) -> vec4u {
     let v = rng_pcg4d_stir(words * RNG_PCG_MULTIPLIER + RNG_PCG_INCREMENT);
     return rng_pcg4d_stir(v ^ (v >> vec4u(16u)));
@@ -23,16 +23,16 @@ fn rng_pcg4d(words: vec4u) -> vec4u {
 fn rng_draw(seed: vec2u, id: u32, step: u32, dimension: u32) -> vec4u {
     let first = rng_pcg4d(vec4u(id, step, dimension, seed.x));
     let second = rng_pcg4d(first + vec4u(seed.y, 0u, 0u, dimension));
-    // High bits of the high seed word went through one hash only: one more round spreads them.
+    // The high bits of the high seed word have passed through one hash only: one more round spreads them.
     return rng_pcg4d_stir(second ^ (second >> vec4u(16u)));
 }
 
-// A word as a number in [0, 1), a multiple of 2^-24.
+// Maps a word to a number in [0, 1), a multiple of 2^-24.
 fn rng_unit(word: u32) -> f32 {
     return f32(word >> 8u) * RNG_UNIT_STEP;
 }
 
-// A word as a number in (0, 1], a multiple of 2^-24: safe under a logarithm.
+// Maps a word to a number in (0, 1], a multiple of 2^-24: safe under a logarithm.
 fn rng_unit_positive(word: u32) -> f32 {
     return f32((word >> 8u) + 1u) * RNG_UNIT_STEP;
 }

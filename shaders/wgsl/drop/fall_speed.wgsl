@@ -1,19 +1,19 @@
-// Terminal fall speed of water drops, and how fast a drop takes it.
+// Terminal fall speed of water drops, and relaxation towards it.
 //
 // Law: K. V. Beard, J. Atmos. Sci. 33, 851 (1976): three regimes, by temperature and pressure, for diameters
 // up to 7 mm; the speed is held constant beyond. The two tables and the five fits of other authors hold for
 // 20 C and 1013.25 hPa; in other air they are multiplied by (rho0/rho)^0.4 (Foote & du Toit 1969).
 // Relaxation towards the terminal speed v with quadratic drag: v/(2g) vertically, v/g across.
 // Units: diameters in metres, speeds in m/s, times in seconds. Diameters above 9 mm are not drops.
-// Twin: downpour_drop::fall_speed, which also makes FallSpeedAir, in f64, from temperature and pressure.
+// Twin: downpour_drop::fall_speed, which also computes FallSpeedAir, in f64, from temperature and pressure.
 
-// What the models need of the air and of the water. Eight numbers, 32 bytes.
+// Properties of air and water that the models need. Eight numbers, 32 bytes.
 struct FallSpeedAir {
     stokes: f32,         // speed of a drop of 1 mm in Stokes flow, m/s
     slip_mm: f32,        // 2.51 mean free paths, mm
     davies_log: f32,     // ln of the Davies number of a drop of 1 mm
     davies_speed: f32,   // speed at Re = 1 of a drop of 1 mm, m/s
-    bond_log: f32,       // ln(Bo N_P^(1/6)) of a drop of 1 mm, less 5
+    bond_log: f32,       // ln(Bo N_P^(1/6)) of a drop of 1 mm, minus 5
     bond_speed: f32,     // speed at Re = N_P^(1/6) of a drop of 1 mm, m/s
     density_factor: f32, // (rho0/rho)^0.4
     unused: f32,
@@ -21,7 +21,7 @@ struct FallSpeedAir {
 
 // Beard 1976.
 fn fall_speed_beard_1976(diameter_m: f32, air: FallSpeedAir) -> f32 {
-    let d = clamp(diameter_m * 1000.0, 0.0, FALL_SPEED_BEARD_LARGEST_MM);
+    let d = clamp(diameter_m * 1000.0, 0.0, FALL_SPEED_BEARD_MAX_MM);
     if d < FALL_SPEED_BEARD_STOKES_MM {
         return air.stokes * d * (d + air.slip_mm);
     }
@@ -46,7 +46,7 @@ fn fall_speed_beard_sphere(diameter_mm: f32, air: FallSpeedAir) -> f32 {
 }
 
 // Beard 1976, third regime, 1.07 to 7 mm: flattened drops, by Bond and physical property number. Diameter in mm.
-// The polynomial is about 5, the middle of its range: about 0 its terms of either sign would cost a digit.
+// The polynomial is expanded about 5, the middle of its range: about 0 its terms of either sign would cost a digit.
 fn fall_speed_beard_flattened(diameter_mm: f32, air: FallSpeedAir) -> f32 {
     let x = air.bond_log + 2.0 * log(diameter_mm);
     var y = FALL_SPEED_BEARD_FLATTENED[5];
@@ -65,7 +65,7 @@ fn fall_speed_gunn_kinzer_1949(diameter_m: f32, air: FallSpeedAir) -> f32 {
         let share = d / FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[0];
         return FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[0] * share * share * 0.01 * air.density_factor;
     }
-    // At most 33 turns.
+    // At most 33 iterations.
     var i = 1u;
     while i < 34u && d > FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[i] {
         i += 1u;
@@ -84,7 +84,7 @@ fn fall_speed_rousseau_2006(diameter_m: f32, air: FallSpeedAir) -> f32 {
         let share = d / FALL_SPEED_ROUSSEAU_DIAMETERS_UM[0];
         return FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[0] * share * share * 0.01 * air.density_factor;
     }
-    // At most 21 turns.
+    // At most 21 iterations.
     var i = 1u;
     while i < 22u && d > FALL_SPEED_ROUSSEAU_DIAMETERS_UM[i] {
         i += 1u;
@@ -95,7 +95,7 @@ fn fall_speed_rousseau_2006(diameter_m: f32, air: FallSpeedAir) -> f32 {
     return (v0 + (FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[i] - v0) * share) * 0.01 * air.density_factor;
 }
 
-// Atlas, Srivastava & Sekhon 1973; the fit is negative below 0.109 mm, where it is taken as 0.
+// Atlas, Srivastava & Sekhon 1973; 0 where the fit is negative, below 0.109 mm.
 fn fall_speed_atlas_1973(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = max(diameter_m * 1000.0, 0.0);
     return max(9.65 - 10.3 * exp(-0.6 * d), 0.0) * air.density_factor;
@@ -120,7 +120,7 @@ fn fall_speed_brandes_2002(diameter_m: f32, air: FallSpeedAir) -> f32 {
 
 // van Dijk, Bruijnzeel & Rosewell 2002; 0 where the fit is negative, below 0.051 mm; constant above 6 mm.
 fn fall_speed_van_dijk_2002(diameter_m: f32, air: FallSpeedAir) -> f32 {
-    let d = clamp(diameter_m * 1000.0, 0.0, FALL_SPEED_VAN_DIJK_LARGEST_MM);
+    let d = clamp(diameter_m * 1000.0, 0.0, FALL_SPEED_VAN_DIJK_MAX_MM);
     var v = FALL_SPEED_VAN_DIJK[3];
     v = v * d + FALL_SPEED_VAN_DIJK[2];
     v = v * d + FALL_SPEED_VAN_DIJK[1];
@@ -134,7 +134,7 @@ fn fall_speed_lhermitte_1988(diameter_m: f32, air: FallSpeedAir) -> f32 {
     return 9.25 * (1.0 - exp(-((0.068 * d + 0.488) * d))) * air.density_factor;
 }
 
-// Terminal speed by the number of a model; an unknown number is Beard 1976.
+// Terminal speed by the number of a model; an unknown number selects Beard 1976.
 fn fall_speed_terminal(model: u32, diameter_m: f32, air: FallSpeedAir) -> f32 {
     switch model {
         case FALL_SPEED_MODEL_GUNN_KINZER_1949: { return fall_speed_gunn_kinzer_1949(diameter_m, air); }

@@ -1,4 +1,4 @@
-// A drop that oscillates: r(t, theta, phi) = r0 (1 + s2 P20(x) + s3 P31(x) cos(phi)) / V^(1/3),
+// Oscillation of a drop: r(t, theta, phi) = r0 (1 + s2 P20(x) + s3 P31(x) cos(phi)) / V^(1/3),
 // s_n = A_n sin(omega_n t + phase_n), x = cos(theta).
 //
 // Source: equation 2 of P. Rousseau et al., "GPU rainfall", 2008, after K. Garg, S. K. Nayar,
@@ -15,30 +15,30 @@
 // Limits: amplitudes of 0 to 0.3; the modes (2,0) and (3,1) only, which dominate. Both laws are of first
 // order in the amplitude, so frequencies are those of a sphere.
 //
-// Time: sin(omega t) in f32 is noise after some seconds, and WGSL promises the sine in [-pi, pi] only. So
-// time is counted in ticks of 2^-16 s and frequency in units of 2^-16 Hz: their product, in wrapping 32-bit
-// integers, is the phase in 2^-32 turns, exact at any time. The ticks wrap after 18 hours, and it does not
-// show: each frequency makes a whole number of turns by then. What is left of a tick, or an offset within an
+// Time: sin(omega t) in f32 is noise after some seconds, and WGSL guarantees the sine in [-pi, pi] only. Time
+// is therefore counted in ticks of 2^-16 s and frequency in units of 2^-16 Hz: their product, in wrapping 32-bit
+// integers, is the phase in 2^-32 turns, exact at any time. The ticks wrap after 18 hours without a jump:
+// each frequency makes a whole number of turns by then. The remainder of a tick, or an offset within an
 // exposure, is added as f32, and the sine is taken of the fraction of a turn.
 //
 // Twin: downpour_drop::oscillation.
 
-// One drop. Each pair is of the modes (2,0) and (3,1).
+// Oscillation of one drop. Each pair holds the modes (2,0) and (3,1).
 struct DropOscillation {
     // A20, A31: displacement over r0.
     amplitude: vec2f,
-    // 1 / tau in 1/s; 0: not damped.
+    // 1 / tau in 1/s; 0 for no damping.
     damping: vec2f,
     // Phase at time 0, in turns.
     phase: vec2f,
-    // In units of 2^-16 Hz.
+    // Frequency in units of 2^-16 Hz.
     frequency: vec2u,
 }
 
 struct DropOscillationTime {
-    // In units of 2^-16 s.
+    // Ticks of 2^-16 s.
     ticks: u32,
-    // In seconds, added to the ticks; small (below some seconds).
+    // Offset in seconds, added to the ticks; small (below some seconds).
     offset: f32,
 }
 
@@ -65,25 +65,25 @@ fn drop_oscillation_damping_time(n: u32, radius: f32, viscosity: f32) -> f32 {
     return radius * radius / ((m - 1.0) * (2.0 * m + 1.0) * viscosity);
 }
 
-// rad/s -> units of 2^-16 Hz, rounded down.
+// Converts rad/s to units of 2^-16 Hz, rounded down.
 fn drop_oscillation_frequency(angular_frequency: f32) -> u32 {
     let units = angular_frequency * DROP_OSCILLATION_UNITS_PER_RADIAN;
-    return u32(min(max(units, 0.0), DROP_OSCILLATION_LARGEST_FREQUENCY));
+    return u32(min(max(units, 0.0), DROP_OSCILLATION_MAX_FREQUENCY));
 }
 
-// Phases of both modes at time 0, in turns of [0, 1), by the drop's id.
+// Phases of both modes at time 0, in turns of [0, 1), derived from the drop's id.
 fn drop_oscillation_phase(seed: vec2u, id: u32) -> vec2f {
     let draw = rng_draw(seed, id, 0u, DROP_OSCILLATION_DIMENSION);
     return vec2f(rng_unit(draw.x), rng_unit(draw.y));
 }
 
-// Where phi = 0 is, as an angle about the vertical axis in turns of [0, 1), by the drop's id.
+// Azimuth of phi = 0 about the vertical axis in turns of [0, 1), derived from the drop's id.
 fn drop_oscillation_azimuth(seed: vec2u, id: u32) -> f32 {
     let draw = rng_draw(seed, id, 0u, DROP_OSCILLATION_DIMENSION);
     return rng_unit(draw.z);
 }
 
-// Phase of one mode at a time, in turns; whole turns may be left in it.
+// Phase of one mode at a time, in turns; it may include whole turns.
 fn drop_oscillation_turns(frequency: u32, phase: f32, time: DropOscillationTime) -> f32 {
     let counted = f32((frequency * time.ticks) >> 8u) * DROP_OSCILLATION_TURN_STEP;
     return counted + phase + f32(frequency) * DROP_OSCILLATION_TICK * time.offset;
@@ -121,13 +121,13 @@ fn drop_oscillation_inverse_cube_root(volume: f32) -> f32 {
     return y4 * (4.0 - volume * y4 * y4 * y4) * (1.0 / 3.0);
 }
 
-// What the radius needs, once per drop and time: (s2, s3, V^(-1/3)).
+// Coefficients of the radius, computed once per drop and time: (s2, s3, V^(-1/3)).
 fn drop_oscillation_state(displacement: vec2f) -> vec3f {
     let scale = drop_oscillation_inverse_cube_root(drop_oscillation_volume(displacement));
     return vec3f(displacement.x, displacement.y, scale);
 }
 
-// The same for eq. 2 as printed: the volume swings with the oscillation.
+// The same for eq. 2 as printed: the volume varies with the oscillation.
 fn drop_oscillation_state_rousseau_2008(displacement: vec2f) -> vec3f {
     return vec3f(displacement.x, displacement.y, 1.0);
 }

@@ -1,12 +1,12 @@
-// The equilibrium shape of a falling drop: r(theta) = a (1 + sum over n = 0..10 of c_n cos(n theta)).
+// Equilibrium shape of a falling drop: r(theta) = a (1 + sum over n = 0..10 of c_n cos(n theta)).
 // Source: C. Chuang, K. V. Beard, J. Atmos. Sci. 47(11), 1990, table 1; eq. 1 of Rousseau et al. 2006.
 // a: radius of the sphere of equal volume, the unit of length here. theta: angle from the downward axis.
 // Everything is a function of x = cos(theta): cos(n theta) is the Chebyshev polynomial T_n(x), so the sum is
-// Clenshaw's recurrence: no trigonometry, and nothing special at the poles.
+// Clenshaw's recurrence: no trigonometry, and no special case at the poles.
 // Limits: x in [-1, 1]; the coefficients come from the host, normalised to the volume of the sphere.
 // Twin: downpour_drop::shape.
 
-// c_0 to c_10, and a last number that is 0.
+// c_0 to c_10, and a padding 0.
 struct DropShapeCoefficients {
     c0: vec4f,
     c1: vec4f,
@@ -50,8 +50,8 @@ fn drop_shape_radius_slope(c: DropShapeCoefficients, x: f32) -> vec2f {
     return vec2f(drop_shape_radius(c, x), drop_shape_slope(c, x));
 }
 
-// Outward unit normal where the ray from the origin along the unit vector `direction` leaves the drop, whose
-// axis points up along the unit vector `up`.
+// Outward unit normal at the point where the ray from the origin along the unit vector `direction` leaves the
+// drop, whose axis points up along the unit vector `up`.
 // The surface is |P| - rho(x) = 0 with x = -dot(P, up) / |P|. Its gradient is p + (rho' / rho) (up + x p).
 fn drop_shape_normal(c: DropShapeCoefficients, direction: vec3f, up: vec3f) -> vec3f {
     let x = -(direction.x * up.x + direction.y * up.y + direction.z * up.z);

@@ -1,4 +1,4 @@
-// Each drop claims the cells that it wets; the largest has them.
+// Claim: each drop claims the cells that it wets; the largest wins.
 // Twin: downpour_lattice::glass::claim.
 
 @group(0) @binding(0) var<uniform> glass_claim_frame: GlassFrame;
@@ -6,11 +6,11 @@
 @group(0) @binding(2) var<storage, read> glass_claim_mass: array<u32>;
 @group(0) @binding(3) var<storage, read> glass_claim_motion: array<vec2u>;
 @group(0) @binding(4) var<storage, read_write> glass_claim_keys: array<atomic<u32>>;
-// When water last moved over a cell.
+// Time when water last moved over a cell.
 @group(0) @binding(5) var<storage, read_write> glass_claim_wet: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read> glass_claim_totals: array<u32>;
 
-// A drop claims its disc; one that moves wets it.
+// Claims the disc of a drop; a moving drop also wets it.
 fn glass_claim_drop(cell: vec2i) {
     let index = glass_frame_index(glass_claim_frame, cell);
     let mass = glass_claim_mass[index];

@@ -1,4 +1,4 @@
-// Each drop decides where it goes: into a larger one that it touches, on by a cell, or nowhere.
+// Decision of each drop: merge into a larger one that it touches, move by a cell, or rest.
 // Twin: downpour_lattice::glass::decide.
 
 @group(0) @binding(0) var<uniform> glass_decide_frame: GlassFrame;
@@ -12,7 +12,7 @@
 @group(0) @binding(8) var<storage, read_write> glass_decide_next: array<vec2u>;
 @group(0) @binding(9) var<storage, read> glass_decide_totals: array<u32>;
 
-// The largest drop that wets a cell; 0 if none does.
+// Key of the largest drop that wets a cell; 0 if none does.
 fn glass_decide_key(cell: vec2i) -> u32 {
     if !glass_frame_holds(glass_decide_frame, cell) {
         return 0u;
@@ -20,7 +20,7 @@ fn glass_decide_key(cell: vec2i) -> u32 {
     return glass_decide_keys[glass_frame_index(glass_decide_frame, cell)];
 }
 
-// The largest drop that the rim of a drop touches.
+// Key of the largest drop that the rim of a drop touches.
 fn glass_decide_touch(cell: vec2i, radius: u32) -> u32 {
     var key = glass_decide_key(cell);
     for (var octant = 0u; octant < 8u; octant += 1u) {
@@ -30,7 +30,7 @@ fn glass_decide_touch(cell: vec2i, radius: u32) -> u32 {
     return key;
 }
 
-// How wet a cell is, of 255.
+// Wetness of a cell, 0 to 255.
 fn glass_decide_wetness(cell: vec2i) -> u32 {
     if !glass_frame_holds(glass_decide_frame, cell) {
         return 0u;
@@ -40,7 +40,7 @@ fn glass_decide_wetness(cell: vec2i) -> u32 {
     return glass_motion_wetness(clock, glass_decide_wet[glass_frame_index(frame, cell)], frame.wet_life);
 }
 
-// Whether water can go to a cell: off the pane it can.
+// True if water can move to a cell; cells off the pane count.
 fn glass_decide_open(cell: vec2i) -> bool {
     if !glass_frame_holds(glass_decide_frame, cell) {
         return true;
@@ -48,7 +48,7 @@ fn glass_decide_open(cell: vec2i) -> bool {
     return (glass_decide_surface[glass_frame_index(glass_decide_frame, cell)] & GLASS_OBSTACLE) == 0u;
 }
 
-// The weight of the cell along an octant: 0 if it is blocked. What draws the drop is looked up where its front would be.
+// Weight of the cell along an octant: 0 if it is blocked. Affinity and wetness are read at the front of the drop there.
 fn glass_decide_weight(cell: vec2i, own: u32, v: vec2i, octant: u32, reach: i32) -> u32 {
     let step = glass_motion_offset(octant);
     if !glass_decide_open(cell + step) {
@@ -65,7 +65,7 @@ fn glass_decide_weight(cell: vec2i, own: u32, v: vec2i, octant: u32, reach: i32)
     return max(glass_motion_weight(v, octant, affinity, wetness, pull), 1u);
 }
 
-// The octant in which a drop moves on; 8 if all that is before it is blocked.
+// Octant in which a drop moves; 8 if all cells ahead are blocked.
 fn glass_decide_octant(cell: vec2i, own: u32, v: vec2i, reach: i32, word: u32) -> u32 {
     let ahead = glass_motion_octant(v);
     let chosen = glass_motion_choose(
@@ -79,7 +79,7 @@ fn glass_decide_octant(cell: vec2i, own: u32, v: vec2i, reach: i32, word: u32) -
     if chosen < 3u {
         return (ahead + select(select(1u, 7u, chosen == 1u), 0u, chosen == 0u)) & 7u;
     }
-    // Along an obstacle, to one side or the other.
+    // Along an obstacle, to either side.
     let side = select(2u, 6u, (word & 1u) == 1u);
     if glass_decide_open(cell + glass_motion_offset(ahead + side)) {
         return (ahead + side) & 7u;
@@ -90,7 +90,7 @@ fn glass_decide_octant(cell: vec2i, own: u32, v: vec2i, reach: i32, word: u32) -
     return 8u;
 }
 
-// The friction of a drop: that of its size, of the glass below it and of how wet it is before it.
+// Friction of a drop: that of its size, of the glass below it and of the wetness ahead of it.
 fn glass_decide_hold(cell: vec2i, hold: u32, drive: vec2i, reach: i32, moves: bool) -> u32 {
     let surface = glass_decide_surface[glass_frame_index(glass_decide_frame, cell)];
     let rough = (hold * ((surface >> 8u) & 255u)) >> 7u;
@@ -99,7 +99,7 @@ fn glass_decide_hold(cell: vec2i, hold: u32, drive: vec2i, reach: i32, moves: bo
     return select(eased, (eased * glass_decide_frame.kinetic) >> 8u, moves);
 }
 
-// Where the drop of a cell goes, and how it then moves.
+// Target of the drop of a cell, and its motion.
 fn glass_decide_drop(cell: vec2i) {
     let frame = glass_decide_frame;
     let index = glass_frame_index(frame, cell);
@@ -112,8 +112,8 @@ fn glass_decide_drop(cell: vec2i) {
         glass_decide_sizes.rows[class_of], glass_decide_sizes.rows[class_of + 1u], glass_size_share(mass));
     let own = glass_size_key(mass, index);
     let touched = glass_decide_touch(cell, row.radius);
-    // A drop that could become too large for a cell stays apart.
-    if touched > own && glass_size_floor((touched >> 24u) + 1u) + mass <= GLASS_LARGEST {
+    // A drop that could exceed the maximum mass of a cell stays separate.
+    if touched > own && glass_size_floor((touched >> 24u) + 1u) + mass <= GLASS_MAX_MASS {
         glass_decide_target[index] = (touched & GLASS_INDEX) | GLASS_TAKEN;
         glass_decide_next[index] = vec2u(0u);
         return;

@@ -1,8 +1,8 @@
-// What holds for all ticks of a call, and places on the pane.
+// Parameters of a call, and indices of cells.
 // Twin: downpour_lattice::glass::frame.
 
 struct GlassFrame {
-    // Cells along x and y.
+    // Number of cells along x and y.
     size: vec2u,
     seed: vec2u,
     // Number of the first tick.
@@ -10,47 +10,47 @@ struct GlassFrame {
     // Time of the first tick and length of a tick, in 1/4096 s.
     first_clock: u32,
     clock_step: u32,
-    // How many parts of blades there are in a tick.
+    // Number of blade parts per tick.
     blades: u32,
-    // What gravity adds to a velocity in one tick.
+    // Change of velocity by gravity in one tick.
     gravity: vec2i,
-    // Direction of the air along the pane: a unit vector of 16384.
+    // Direction of the air along the pane: a unit vector of length 16384.
     air: vec2i,
-    // Friction of a moving drop, of 256 of that of a resting one.
+    // Friction of a moving drop relative to that of a resting one, in units of 1/256.
     kinetic: u32,
-    // A drop that moves by a cell leaves a bead if a word is below this.
+    // A drop that moves by a cell leaves a bead if a random word is below this.
     trail_chance: u32,
     // Mean mass of a bead.
     trail_mass: u32,
-    // How long glass stays wet, in 1/64 s.
+    // Time that glass stays wet, in 1/64 s.
     wet_life: u32,
-    // Share of the friction that wet glass takes away, of 256.
+    // Fraction by which wetness reduces friction, in units of 1/256.
     wet_ease: u32,
-    // How strongly affinity and wetness draw a drop, in sixteenths.
+    // Attraction by affinity and by wetness, in sixteenths.
     affinity_pull: u32,
     wet_pull: u32,
     unused: u32,
-    // Probability that at least 1, 2, 3, ... 8 drops land in a block in one tick, of 2^32.
+    // Probability that at least 1, 2, 3, ... 8 drops land in a block in one tick, in units of 2^-32.
     rain_few: vec4u,
     rain_many: vec4u,
 }
 
-// Where a cell stands in memory.
+// Index of a cell in memory.
 fn glass_frame_index(frame: GlassFrame, cell: vec2i) -> u32 {
     return u32(cell.y) * frame.size.x + u32(cell.x);
 }
 
-// The cell that stands at a place of memory.
+// Cell at an index in memory.
 fn glass_frame_cell(frame: GlassFrame, index: u32) -> vec2i {
     return vec2i(i32(index % frame.size.x), i32(index / frame.size.x));
 }
 
-// Whether a cell is on the pane.
+// True if a cell is on the pane.
 fn glass_frame_holds(frame: GlassFrame, cell: vec2i) -> bool {
     return all(cell >= vec2i(0)) && all(cell < vec2i(frame.size));
 }
 
-// How many drops land in a block of cells, from a random word.
+// Number of drops that land in a block of cells, from a random word.
 fn glass_frame_landing(frame: GlassFrame, word: u32) -> u32 {
     let few = select(vec4u(0u), vec4u(1u), vec4u(word) < frame.rain_few);
     let many = select(vec4u(0u), vec4u(1u), vec4u(word) < frame.rain_many);

@@ -1,5 +1,5 @@
-// Heights of the water: each drop is a cap of a sphere over its disc, drawn out behind it if it runs; where several stand, the
-// highest counts.
+// Heights of the water: each drop is a cap of a sphere over its disc, stretched behind its center if it moves; the
+// highest of overlapping caps counts.
 // Twin: downpour_lattice::glass::height.
 
 @group(0) @binding(0) var<uniform> glass_height_frame: GlassFrame;
@@ -10,15 +10,15 @@
 // In cells / 256.
 @group(0) @binding(5) var<storage, read_write> glass_height_cells: array<atomic<u32>>;
 
-// How much longer a drop is behind its middle than before it, of 256.
+// Stretch of a drop behind its center relative to the front, in units of 1/256.
 fn glass_height_stretch(speed: u32) -> u32 {
     return 256u + min(speed, u32(GLASS_CELL)) / GLASS_HEIGHT_STRETCH;
 }
 
-// The squared distance of a cell from the middle of a drop, as if the drop were round, in (cells / 256)^2.
+// Squared distance of a cell from the center of a drop, with the stretch undone, in (cells / 256)^2.
 fn glass_height_squared(away: vec2i, v: vec2i) -> u32 {
     let speed = i32(glass_motion_length(v));
-    // So slow a drop is round; its direction is not known to the digits that follow.
+    // A drop this slow is round; its direction is not resolved.
     if speed < 4 {
         return u32(away.x * away.x + away.y * away.y) << 16u;
     }
@@ -29,7 +29,7 @@ fn glass_height_squared(away: vec2i, v: vec2i) -> u32 {
     return u32(far * far) + u32(across * across);
 }
 
-// The height of a cap at a squared distance, all in cells / 256.
+// Height of a cap at a squared distance, all in cells / 256.
 fn glass_height_cap(radius: u32, sphere: u32, squared: u32) -> u32 {
     if squared >= radius * radius {
         return 0u;
@@ -48,7 +48,7 @@ fn glass_height_drop(cell: vec2i) {
     let row = glass_size_row(
         glass_height_sizes.rows[class_of], glass_height_sizes.rows[class_of + 1u], glass_size_share(mass));
     let v = glass_motion_unpack(glass_height_motion[index].x);
-    // The rim may lie 15 % beyond the disc.
+    // The rim may be 15 % beyond the disc.
     let reach = i32(row.radius * glass_height_stretch(glass_motion_length(v)) / 56000u) + 1;
     for (var y = -reach; y <= reach; y += 1) {
         for (var x = -reach; x <= reach; x += 1) {
@@ -57,7 +57,7 @@ fn glass_height_drop(cell: vec2i) {
                 continue;
             }
             let at = glass_frame_index(glass_height_frame, to);
-            // The rim follows the glass: in towards what repels, out towards what draws.
+            // The rim follows the affinity of the glass: inwards where it repels, outwards where it attracts.
             let rim = 320u - (glass_height_surface[at] & 255u) / 2u;
             let squared = (glass_height_squared(vec2i(x, y), v) >> 8u) * rim;
             let height = glass_height_cap(row.radius, row.sphere, squared);

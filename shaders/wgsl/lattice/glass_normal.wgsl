@@ -1,18 +1,18 @@
-// Normals of the water's surface by Sobel's filter (Tatarchuk & Isidoro 2006, section 5).
+// Normals of the water surface by a Sobel filter (Tatarchuk & Isidoro 2006, section 5).
 // Twin: downpour_lattice::glass::normal.
 
 @group(0) @binding(0) var<uniform> glass_normal_frame: GlassFrame;
 @group(0) @binding(1) var<storage, read> glass_normal_heights: array<u32>;
-// x and y of the unit normal; z is what makes it 1.
+// x and y of the unit normal; z completes the length 1.
 @group(0) @binding(2) var<storage, read_write> glass_normal_cells: array<vec2f>;
 
-// The height at a cell, at the nearest one of the pane if it is outside.
+// Height at a cell; cells outside the pane are clamped to its edge.
 fn glass_normal_at(cell: vec2i) -> i32 {
     let inside = clamp(cell, vec2i(0), vec2i(glass_normal_frame.size) - 1);
     return i32(glass_normal_heights[glass_frame_index(glass_normal_frame, inside)]);
 }
 
-// Sobel's sums along x and y: 2048 is a slope of 1.
+// Sobel sums along x and y: 2048 is a slope of 1.
 fn glass_normal_sobel(cell: vec2i) -> vec2i {
     var sum = vec2i(0);
     for (var k = -1; k <= 1; k += 1) {

@@ -1,4 +1,4 @@
-// What has come to a cell becomes its drop, and the scratch of the tick is cleared.
+// Settling: the water that moved to a cell becomes its drop, and the scratch of the tick is cleared.
 // Twin: downpour_lattice::glass::settle.
 
 @group(0) @binding(0) var<uniform> glass_settle_frame: GlassFrame;
@@ -10,12 +10,12 @@
 @group(0) @binding(6) var<storage, read> glass_settle_decided: array<vec2u>;
 @group(0) @binding(7) var<storage, read_write> glass_settle_totals: array<atomic<u32>>;
 
-// Takes what is above the largest mass off the pane.
+// Removes the mass above the maximum from the pane.
 fn glass_settle_spill(mass: u32) -> u32 {
-    if mass <= GLASS_LARGEST {
+    if mass <= GLASS_MAX_MASS {
         return mass;
     }
-    let spilled = mass - GLASS_LARGEST;
+    let spilled = mass - GLASS_MAX_MASS;
     let before = atomicAdd(&glass_settle_totals[GLASS_TOTAL_SPILLED], spilled);
     if before + spilled < before {
         atomicAdd(&glass_settle_totals[GLASS_TOTAL_SPILLED + 1u], 1u);
@@ -23,10 +23,10 @@ fn glass_settle_spill(mass: u32) -> u32 {
     if atomicAdd(&glass_settle_totals[GLASS_TOTAL_SATURATED], 1u) == 0xffffffffu {
         atomicAdd(&glass_settle_totals[GLASS_TOTAL_SATURATED + 1u], 1u);
     }
-    return GLASS_LARGEST;
+    return GLASS_MAX_MASS;
 }
 
-// How the drop of a cell moves: as the largest of those that came on their own.
+// Motion of the drop of a cell: that of the largest drop that moved to it by itself.
 fn glass_settle_motion_of(mass: u32, winner: u32) -> vec2u {
     if mass == 0u || winner == 0u {
         return vec2u(0u);

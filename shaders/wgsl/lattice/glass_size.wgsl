@@ -1,28 +1,28 @@
-// Sizes of drops on a pane: classes of mass, and what a drop of a class does.
+// Sizes of drops on a pane: classes of mass, and the properties of drops by class.
 //
-// A class is an eighth of a doubling of the mass. What belongs to a class (radius, forces) is computed by the host; between
-// two classes it is linear in the mass. All numbers are integers, so that a CPU has the same bits.
+// A class is an eighth of a doubling of the mass. The properties of a class (radius, forces) are computed by the host;
+// between two classes they are linear in the mass. All numbers are integers, so that a CPU has the same bits.
 // Twin: downpour_lattice::glass::size.
 
-// What a drop of some mass does.
+// Properties of a drop of a mass.
 struct GlassSizeRow {
     // Radius of the wetted disc, in cells / 256.
     radius: u32,
-    // What the contact line holds back (Furmidge) in one tick, in units of velocity.
+    // Retention by the contact line (Furmidge) in one tick, in units of velocity.
     hold: u32,
-    // Share of its velocity that a drop keeps in one tick, of 16384.
+    // Fraction of its velocity that a drop keeps in one tick, in units of 1/16384.
     slow: u32,
-    // What the air pushes in one tick, in units of velocity.
+    // Push of the air in one tick, in units of velocity.
     air: u32,
-    // Radius of the sphere whose cap the drop is, in cells / 256.
+    // Radius of the sphere of the cap, in cells / 256.
     sphere: u32,
-    // What dries in one tick, in units of mass / 65536.
+    // Evaporation in one tick, in units of mass / 65536.
     loss: u32,
     unused_1: u32,
     unused_2: u32,
 }
 
-// The class of a mass: the mass itself below 16, then eight classes to a doubling.
+// Class of a mass: the mass itself below 16, then eight classes per doubling.
 fn glass_size_class(mass: u32) -> u32 {
     if mass < 16u {
         return mass;
@@ -31,7 +31,7 @@ fn glass_size_class(mass: u32) -> u32 {
     return (top - 2u) * 8u + ((mass >> (top - 3u)) & 7u);
 }
 
-// The smallest mass of a class.
+// Smallest mass of a class.
 fn glass_size_floor(class_of: u32) -> u32 {
     if class_of < 16u {
         return class_of;
@@ -39,7 +39,7 @@ fn glass_size_floor(class_of: u32) -> u32 {
     return (8u + (class_of & 7u)) << (class_of / 8u - 1u);
 }
 
-// How far a mass is on the way from its class to the next, of 256.
+// Fraction of a mass between its class and the next, in units of 1/256.
 fn glass_size_share(mass: u32) -> u32 {
     if mass < 16u {
         return 0u;
@@ -48,25 +48,25 @@ fn glass_size_share(mass: u32) -> u32 {
     return ((mass & ((1u << shift) - 1u)) << 8u) >> shift;
 }
 
-// The rank of a drop among others: its class, then its cell. Never 0.
+// Rank of a drop among others: its class, then its cell. Never 0.
 fn glass_size_key(mass: u32, index: u32) -> u32 {
     return (glass_size_class(mass) << 24u) | index;
 }
 
-// What is between two numbers below 2^22.
-fn glass_size_mix(low: u32, high: u32, share: u32) -> u32 {
-    return u32(i32(low) + (((i32(high) - i32(low)) * i32(share)) >> 8u));
+// Interpolates between two numbers below 2^22.
+fn glass_size_mix(low: u32, high: u32, fraction: u32) -> u32 {
+    return u32(i32(low) + (((i32(high) - i32(low)) * i32(fraction)) >> 8u));
 }
 
-// What is between two classes.
-fn glass_size_row(low: GlassSizeRow, high: GlassSizeRow, share: u32) -> GlassSizeRow {
+// Interpolates between two classes.
+fn glass_size_row(low: GlassSizeRow, high: GlassSizeRow, fraction: u32) -> GlassSizeRow {
     return GlassSizeRow(
-        glass_size_mix(low.radius, high.radius, share),
-        glass_size_mix(low.hold, high.hold, share),
-        glass_size_mix(low.slow, high.slow, share),
-        glass_size_mix(low.air, high.air, share),
-        glass_size_mix(low.sphere, high.sphere, share),
-        glass_size_mix(low.loss, high.loss, share),
+        glass_size_mix(low.radius, high.radius, fraction),
+        glass_size_mix(low.hold, high.hold, fraction),
+        glass_size_mix(low.slow, high.slow, fraction),
+        glass_size_mix(low.air, high.air, fraction),
+        glass_size_mix(low.sphere, high.sphere, fraction),
+        glass_size_mix(low.loss, high.loss, fraction),
         0u,
         0u,
     );

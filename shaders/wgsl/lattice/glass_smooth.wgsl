@@ -1,17 +1,17 @@
-// Smooths heights, so that drops that touch are one surface.
+// Smoothing of heights, so that touching drops form one surface.
 // Twin: downpour_lattice::glass::smooth.
 
 @group(0) @binding(0) var<uniform> glass_smooth_frame: GlassFrame;
 @group(0) @binding(1) var<storage, read> glass_smooth_from: array<u32>;
 @group(0) @binding(2) var<storage, read_write> glass_smooth_to: array<u32>;
 
-// The height at a cell, at the nearest one of the pane if it is outside.
+// Height at a cell; cells outside the pane are clamped to its edge.
 fn glass_smooth_at(cell: vec2i) -> u32 {
     let inside = clamp(cell, vec2i(0), vec2i(glass_smooth_frame.size) - 1);
     return glass_smooth_from[glass_frame_index(glass_smooth_frame, inside)];
 }
 
-// The binomial mean of three by three cells.
+// Binomial mean of three by three cells.
 fn glass_smooth_mean(cell: vec2i) -> u32 {
     var sum = 8u;
     for (var y = -1; y <= 1; y += 1) {

@@ -1,5 +1,5 @@
-// Water goes where the drops have decided: with them, left behind as beads, dried, before a blade, or off the pane. And
-// rain lands. All sums are of integers, so that their order is of no account.
+// Transfer of water as the drops have decided: with the drop, into beads, by evaporation, ahead of a blade, or off the
+// pane. Rain lands as well. All sums are of integers, so their order does not matter.
 // Twin: downpour_lattice::glass::transfer.
 
 @group(0) @binding(0) var<uniform> glass_transfer_frame: GlassFrame;
@@ -20,12 +20,12 @@ fn glass_transfer_count(total: u32, mass: u32) {
     }
 }
 
-// Puts water into a cell.
+// Adds water to a cell.
 fn glass_transfer_put(cell: vec2i, mass: u32) {
     atomicAdd(&glass_transfer_next[glass_frame_index(glass_transfer_frame, cell)], mass);
 }
 
-// Whether a cell can hold water.
+// True if a cell can hold water.
 fn glass_transfer_open(cell: vec2i) -> bool {
     if !glass_frame_holds(glass_transfer_frame, cell) {
         return false;
@@ -33,7 +33,7 @@ fn glass_transfer_open(cell: vec2i) -> bool {
     return (glass_transfer_surface[glass_frame_index(glass_transfer_frame, cell)] & GLASS_OBSTACLE) == 0u;
 }
 
-// The drops that land in the block of cells that begins at a cell.
+// Lands the drops of the block of cells with this corner.
 fn glass_transfer_land(corner: vec2i, tick: u32) {
     let frame = glass_transfer_frame;
     let block = glass_frame_index(frame, corner);
@@ -50,22 +50,22 @@ fn glass_transfer_land(corner: vec2i, tick: u32) {
     }
 }
 
-// What dries of a drop in one tick.
+// Mass that evaporates from a drop in one tick.
 fn glass_transfer_dry(mass: u32, loss: u32, word: u32) -> u32 {
     return min(mass, (loss >> 16u) + select(0u, 1u, (word & 0xffffu) < (loss & 0xffffu)));
 }
 
-// What a drop leaves behind it in a bead.
+// Mass that a drop leaves behind in a bead.
 fn glass_transfer_bead(mass: u32, words: vec4u) -> u32 {
     if words.y >= glass_transfer_frame.trail_chance {
         return 0u;
     }
-    // From half to one and a half of the mean.
+    // From half to one and a half times the mean.
     let mean = glass_transfer_frame.trail_mass;
     return min(mean / 2u + ((mean * (words.z >> 20u)) >> 12u), mass / 4u);
 }
 
-// The part of a blade that passes over a cell; their number if none does.
+// Index of the blade part that passes over a cell; the number of parts if none does.
 fn glass_transfer_blade(cell: vec2i) -> u32 {
     let count = glass_transfer_frame.blades;
     let first = atomicLoad(&glass_transfer_totals[GLASS_TOTAL_TICK]) * count;
@@ -77,7 +77,7 @@ fn glass_transfer_blade(cell: vec2i) -> u32 {
     return GLASS_OUT;
 }
 
-// Brings water to a cell, or to where a blade pushes it. Whether it stays on its way.
+// Moves water to a cell, or to where a blade pushes it. Returns true if no blade diverts it.
 fn glass_transfer_bring(cell: vec2i, mass: u32) -> bool {
     let which = glass_transfer_blade(cell);
     if which == GLASS_OUT {
@@ -100,7 +100,7 @@ fn glass_transfer_bring(cell: vec2i, mass: u32) -> bool {
     return false;
 }
 
-// Where the drop of a cell goes, by way of the larger one that takes it.
+// Target of the drop of a cell, followed through the larger drop that takes it.
 fn glass_transfer_goal(index: u32) -> u32 {
     let goal = glass_transfer_target[index];
     if goal == GLASS_OUT || (goal & GLASS_TAKEN) == 0u {
@@ -110,7 +110,7 @@ fn glass_transfer_goal(index: u32) -> u32 {
     return select(after & GLASS_INDEX, GLASS_OUT, after == GLASS_OUT);
 }
 
-// The bead goes where the drop and the bead do not touch.
+// Leaves a bead where the drop and the bead do not touch.
 fn glass_transfer_trail(cell: vec2i, step: vec2i, drop_radius: u32, bead: u32) -> bool {
     let bead_radius = glass_transfer_sizes.rows[glass_size_class(bead) + 1u].radius;
     let behind = cell - step * i32((drop_radius + bead_radius + 512u) >> 8u);

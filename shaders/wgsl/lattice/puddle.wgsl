@@ -1,13 +1,13 @@
-// One step of a cell of a puddle: the weighted sum over its neighbours, Clenshaw's recurrence of the polynomial that stands
-// for omega^2, and what a velocity loses.
+// One step of a cell of a puddle: the weighted sum over its neighbours, Clenshaw's recurrence of the polynomial that
+// approximates omega^2, and the damping of a velocity.
 //
-// Four cells of a row are a quad. A link is a bit: the neighbour is there, and it is water; where a link is cut, the
-// neighbour counts as level with the cell itself, or with its image in a straight wall.
+// Four cells of a row are a quad. A link is a bit: the neighbour exists and is water. Where a link is missing, the
+// neighbour is replaced by the cell itself, or by its image in a straight wall.
 // Twin: downpour_lattice::puddle::lattice.
 
 struct PuddleGrid {
     size: vec2u,
-    // Quads in a row of memory.
+    // Number of quads in a row of memory.
     quads: u32,
     // Degree of the polynomial, and its coefficients over the first of them.
     degree: u32,
@@ -15,45 +15,45 @@ struct PuddleGrid {
     // Weights of the cell, of its straight and of its diagonal neighbours.
     weights: vec3f,
     dt: f32,
-    // What a weighted sum is multiplied by to be 2 x of the polynomial, and to be a change of velocity.
+    // Factors from a weighted sum to 2 x of the polynomial, and to a change of velocity.
     twice: f32,
     kick: f32,
-    // Share of the velocity that is added to the last sum's argument.
+    // Viscosity: fraction of the velocity that is added to the argument of the last sum.
     viscosity: f32,
-    // What is left of a velocity after a time step, far from the border.
+    // Fraction of a velocity that remains after a time step, far from the border.
     keep: f32,
-    // Width of the border that absorbs, in cells; drag at its edge times the time step.
+    // Width of the absorbing border, in cells; drag at its edge times the time step.
     sponge_cells: f32,
     sponge_drag: f32,
-    // Time steps of a sweep, and how many cells a tile reads beyond those that it writes.
+    // Number of time steps per sweep, and width of the halo that a tile reads around the cells that it writes.
     steps: u32,
     halo: u32,
-    // 1: the state is kept in 16 bits per number.
+    // 1 if the state is stored in 16 bits per number.
     half_storage: u32,
     // Inverse of eight cells, 1/m.
     slope: f32,
 }
 
-// The neighbours' values, or the cells' own where the link is cut. A byte of `links` per cell.
+// Values of the neighbours, or of the cells themselves where the link is missing. A byte of `links` per cell.
 fn puddle_linked(own: vec4f, other: vec4f, links: u32, link: u32) -> vec4f {
     let bits = vec4u(link, link << 8u, link << 16u, link << 24u);
     return select(own, other, (vec4u(links) & bits) != vec4u(0u));
 }
 
-// For a diagonal neighbour: the links of the straight ones on either side of it, and its own.
+// For a diagonal neighbour: the links of the two adjacent straight ones, and its own.
 const PUDDLE_LINKS_NORTH_WEST = vec3u(PUDDLE_LINK_NORTH, PUDDLE_LINK_WEST, PUDDLE_LINK_NORTH_WEST);
 const PUDDLE_LINKS_NORTH_EAST = vec3u(PUDDLE_LINK_NORTH, PUDDLE_LINK_EAST, PUDDLE_LINK_NORTH_EAST);
 const PUDDLE_LINKS_SOUTH_WEST = vec3u(PUDDLE_LINK_SOUTH, PUDDLE_LINK_WEST, PUDDLE_LINK_SOUTH_WEST);
 const PUDDLE_LINKS_SOUTH_EAST = vec3u(PUDDLE_LINK_SOUTH, PUDDLE_LINK_EAST, PUDDLE_LINK_SOUTH_EAST);
 
-// The diagonal neighbours' values. Where the link is cut, it is the mirror image in the wall that the straight neighbours
-// `a` and `b` tell: `b` if only that is water, `a` if only that is, the cell's own value else.
+// Values of the diagonal neighbours. Where the link is missing, it is the mirror image in the wall that the straight
+// neighbours `a` and `b` define: `b` if only that is water, `a` if only that is, else the cell itself.
 fn puddle_corner(own: vec4f, a: vec4f, b: vec4f, diagonal: vec4f, links: u32, bits: vec3u) -> vec4f {
     let level = puddle_linked(b, puddle_linked(a, own, links, bits.y), links, bits.x);
     return puddle_linked(level, diagonal, links, bits.z);
 }
 
-// The weighted sum over the neighbours. Rows are the quads west of, at and east of a place.
+// Weighted sum over the neighbours. Rows are the quads west of, at and east of the quad.
 fn puddle_laplacian(north: mat3x4f, here: mat3x4f, south: mat3x4f, links: u32, weights: vec3f) -> vec4f {
     let own = here[1];
     let n = puddle_linked(own, north[1], links, PUDDLE_LINK_NORTH);
@@ -69,28 +69,28 @@ fn puddle_laplacian(north: mat3x4f, here: mat3x4f, south: mat3x4f, links: u32, w
     return weights.x * own - (weights.y * straight + weights.z * diagonal);
 }
 
-// The next sum of Clenshaw's recurrence.
+// Next sum of Clenshaw's recurrence.
 fn puddle_recur(wave: vec4f, sum: vec4f, now: vec4f, before: vec4f) -> vec4f {
     return (wave + sum) - (now + before);
 }
 
-// The distance of a cell's middle from the nearest border along an axis, in cells.
+// Distance of a cell's center from the nearest border along an axis, in cells.
 fn puddle_border(cell: u32, size: u32) -> f32 {
     return f32(min(cell, max(max(size, 1u) - 1u, cell) - cell)) + 0.5;
 }
 
-// What is left of a velocity at a distance, in cells, from the border.
+// Fraction of a velocity that remains at a distance, in cells, from the border.
 fn puddle_keep(distance: f32, keep: f32, sponge_cells: f32, sponge_drag: f32) -> f32 {
     let into = max(sponge_cells - distance, 0.0) / max(sponge_cells, 1.0);
     return keep / (1.0 + sponge_drag * (into * into));
 }
 
-// A number without what would slow or poison the lattice: 0 below 1e-20, 0 where it is not finite.
+// Sets a number to 0 if it is below 1e-20, which would be slow, or not finite.
 fn puddle_settle(value: f32) -> f32 {
-    return select(0.0, value, ops_is_finite(value) && abs(value) >= PUDDLE_SMALLEST);
+    return select(0.0, value, ops_is_finite(value) && abs(value) >= PUDDLE_MIN);
 }
 
-// Whether all of a quad are finite.
+// True for each finite number of a quad.
 fn puddle_is_finite(quad: vec4f) -> vec4<bool> {
     return (bitcast<vec4u>(quad) & vec4u(0x7f800000u)) != vec4u(0x7f800000u);
 }

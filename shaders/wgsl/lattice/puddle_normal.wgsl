@@ -1,12 +1,13 @@
-// Normals of the water by Sobel's sums. What is not linked counts as for the ripples: as level, or mirrored in the wall.
+// Normals of the water by Sobel sums. Missing neighbours are replaced as for the ripples: by the cell itself, or by its
+// image in the wall.
 //
-// x runs along the rows, z along the columns, y is up. Two components are kept in 16 bits each; y is what is left of 1.
-// Twin: downpour_lattice::puddle::normal.
+// x runs along the rows, z along the columns, y is up. Two components are stored in 16 bits each; y completes the
+// length 1. Twin: downpour_lattice::puddle::normal.
 
 // A normal per cell, packed.
 @group(0) @binding(3) var<storage, read_write> puddle_normal_words: array<vec4u>;
 
-// The heights of a quad; 0 beyond the lattice, where no link leads.
+// Heights of a quad; 0 beyond the lattice, to which there are no links.
 fn puddle_normal_quad(x: u32, y: u32) -> vec4f {
     if x < puddle_grid.quads && y < puddle_grid.size.y {
         return puddle_state_load(y * puddle_grid.quads + x).height;
@@ -14,7 +15,7 @@ fn puddle_normal_quad(x: u32, y: u32) -> vec4f {
     return vec4f(0.0);
 }
 
-// A row: the quads west of, at and east of a place.
+// A row: the quads west of, at and east of a position.
 fn puddle_normal_row(x: u32, y: u32) -> mat3x4f {
     let quad = puddle_normal_quad(x, y);
     let west = puddle_normal_quad(x - 1u, y).w;
@@ -38,7 +39,7 @@ fn puddle_normal_slopes(north: mat3x4f, here: mat3x4f, south: mat3x4f, links: u3
     return mat2x4f(x * scale, z * scale);
 }
 
-// The x and z components of the normal of a surface with these slopes.
+// x and z components of the normal of a surface with these slopes.
 fn puddle_normal_lean(slope: vec2f) -> vec2f {
     return -slope / sqrt(1.0 + slope.x * slope.x + slope.y * slope.y);
 }

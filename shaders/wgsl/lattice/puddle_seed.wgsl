@@ -1,40 +1,40 @@
-// What impacts and moving objects do to the surface: craters and bumps are added to the heights of the water.
+// Craters of impacts and footprints of moving objects, added to the heights of the water.
 //
 // A crater is a damped sine of the distance, -a (2 / sqrt 3) exp(-q) sin(sqrt(3) q + pi / 3) with q the distance over a
 // length: smooth in the middle, and its rim holds exactly the water of its hollow. A bump is (1 - q^2)^2.
 // Twin: downpour_lattice::puddle::seed.
 
 struct PuddleSeed {
-    // Cells, from the corner of the first.
-    place: vec2f,
+    // Center, in cells from the corner of the first.
+    center: vec2f,
     // Inverse of the length, 1/cells.
     per_length: f32,
-    // m, upwards.
+    // Amplitude, m, upwards.
     amplitude: f32,
-    // Share of exp(-q) that makes up for what the cells, the border and the land take from the volume.
+    // Fraction of exp(-q) that compensates the volume lost to the cells, the border and the land.
     lift: f32,
-    // Cells beyond which there is nothing.
+    // Radius in cells beyond which the seed is 0.
     reach: f32,
     shape: u32,
     unused: u32,
 }
 
 @group(0) @binding(3) var<storage, read> puddle_seed_list: array<PuddleSeed>;
-// For each square of 64 x 64 cells the first of its entries, and one more.
+// Index of the first entry of each square of 64 x 64 cells, and the end.
 @group(0) @binding(4) var<storage, read> puddle_seed_first: array<u32>;
 @group(0) @binding(5) var<storage, read> puddle_seed_entries: array<u32>;
 @group(0) @binding(6) var<storage, read_write> puddle_seed_next: array<vec4u>;
 
-// A seed of amplitude 1 without lift, at a distance in lengths.
+// Height of a seed of amplitude 1 without lift, at a distance in lengths.
 fn puddle_seed_shape(shape: u32, q: f32) -> f32 {
     let crater = PUDDLE_SEED_HEIGHT * exp(-q) * sin(PUDDLE_SEED_TURN * (q + PUDDLE_SEED_SHIFT));
     let hill = max(1.0 - q * q, 0.0);
     return select(crater, hill * hill, shape == PUDDLE_SEED_BUMP);
 }
 
-// What a seed adds to the height of a cell.
+// Height that a seed adds to a cell.
 fn puddle_seed_height(seed: PuddleSeed, cell: vec2f) -> f32 {
-    let away = cell + 0.5 - seed.place;
+    let away = cell + 0.5 - seed.center;
     let distance = sqrt(away.x * away.x + away.y * away.y);
     let q = distance * seed.per_length;
     let height = seed.amplitude * (puddle_seed_shape(seed.shape, q) + seed.lift * exp(-q));

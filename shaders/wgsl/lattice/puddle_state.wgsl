@@ -1,10 +1,10 @@
-// Heights and velocities in memory: eight words per quad, or four when they are kept in 16 bits.
+// Heights and velocities in memory: eight words per quad, or four if they are stored in 16 bits.
 // Twin: downpour_lattice::puddle::lattice.
 
 struct PuddleStateQuad {
-    // m
+    // Height, m.
     height: vec4f,
-    // m/s
+    // Velocity, m/s.
     velocity: vec4f,
 }
 
@@ -13,8 +13,8 @@ struct PuddleStateQuad {
 @group(0) @binding(1) var<storage, read> puddle_links: array<u32>;
 @group(0) @binding(2) var<storage, read> puddle_state: array<vec4u>;
 
-// A finite number as a half, to the nearest, ties to even. By integers: the built-in functions are not everywhere, and
-// may round either way.
+// Converts a finite number to a half, to nearest, ties to even. By integers: the built-in functions are not available
+// everywhere, and may round either way.
 fn puddle_state_half(value: f32) -> u32 {
     let limited = min(max(value, -65504.0), 65504.0);
     let bits = bitcast<u32>(limited);
@@ -25,7 +25,7 @@ fn puddle_state_half(value: f32) -> u32 {
     return ((bits >> 16u) & 0x8000u) | select(normal, small, magnitude < 0x38800000u);
 }
 
-// The number of a finite half.
+// Converts a finite half to a float.
 fn puddle_state_float(half: u32) -> f32 {
     let magnitude = half & 0x7fffu;
     let normal = bitcast<f32>((magnitude << 13u) + 0x38000000u);
@@ -34,17 +34,17 @@ fn puddle_state_float(half: u32) -> f32 {
     return select(value, -value, (half & 0x8000u) != 0u);
 }
 
-// Height and velocity in 16 bits each.
+// Packs height and velocity into 16 bits each.
 fn puddle_state_pack(height: f32, velocity: f32) -> u32 {
     return puddle_state_half(height * PUDDLE_HALF_SCALE) | (puddle_state_half(velocity * PUDDLE_HALF_SCALE) << 16u);
 }
 
-// Height and velocity of `puddle_state_pack`.
+// Unpacks height and velocity of `puddle_state_pack`.
 fn puddle_state_unpack(word: u32) -> vec2f {
     return vec2f(puddle_state_float(word & 0xffffu), puddle_state_float(word >> 16u)) * (1.0 / PUDDLE_HALF_SCALE);
 }
 
-// The state of a quad.
+// Loads the state of a quad.
 fn puddle_state_load(quad: u32) -> PuddleStateQuad {
     if puddle_grid.half_storage != 0u {
         let words = puddle_state[quad];
@@ -57,7 +57,7 @@ fn puddle_state_load(quad: u32) -> PuddleStateQuad {
     return PuddleStateQuad(bitcast<vec4f>(puddle_state[2u * quad]), bitcast<vec4f>(puddle_state[2u * quad + 1u]));
 }
 
-// The four words of a quad in 16 bits.
+// Packs a quad into four words of 16-bit numbers.
 fn puddle_state_words(h: vec4f, v: vec4f) -> vec4u {
     return vec4u(
         puddle_state_pack(h.x, v.x),

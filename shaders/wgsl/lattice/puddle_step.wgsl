@@ -1,5 +1,5 @@
-// Several time steps of a tile of 64 x 64 cells in one workgroup. The tile is read with a halo as wide as its passes
-// reach, and the inner part of it is written: the same operations per cell as one step at a time.
+// Several time steps of a tile of 64 x 64 cells in one workgroup. The tile is read with a halo as wide as the support
+// of its passes, and its inner part is written: the same operations per cell as one step at a time.
 //
 // An invocation has a block of 4 x 4 cells: four quads above each other, as the columns of a matrix. Twelve passes over
 // the neighbours at most.
@@ -7,7 +7,7 @@
 
 // The state after the sweep.
 @group(0) @binding(3) var<storage, read_write> puddle_step_next: array<vec4u>;
-// How many cells had to be reset because they were not finite.
+// Number of cells that were reset because they were not finite.
 @group(0) @binding(4) var<storage, read_write> puddle_step_reset: array<atomic<u32>>;
 
 var<workgroup> puddle_step_tile: array<vec4f, 1024>;
@@ -17,7 +17,7 @@ fn puddle_step_at(column: i32, row: i32) -> vec4f {
     return puddle_step_tile[u32(clamp(row, 0, 63) * 16 + clamp(column, 0, 15))];
 }
 
-// A row round a block: the quads west of, at and east of it.
+// A row around a block: the quads west of, at and east of it.
 fn puddle_step_row(column: i32, row: i32) -> mat3x4f {
     return puddle_step_shift(
         puddle_step_at(column - 1, row).w,
@@ -26,12 +26,12 @@ fn puddle_step_row(column: i32, row: i32) -> mat3x4f {
     );
 }
 
-// A quad moved one cell to the east, as it is, and moved one cell to the west.
+// A quad shifted one cell to the east, unshifted, and shifted one cell to the west.
 fn puddle_step_shift(before: f32, quad: vec4f, after: f32) -> mat3x4f {
     return mat3x4f(vec4f(before, quad.xyz), quad, vec4f(quad.yzw, after));
 }
 
-// The weighted sums of a block, whose argument is in the tile.
+// Weighted sums of a block, whose argument is in the tile.
 fn puddle_step_sums(block: mat4x4f, column: i32, row: i32, links: vec4u, weights: vec3f) -> mat4x4f {
     let a = puddle_step_row(column, row - 1);
     let b = puddle_step_shift(
@@ -51,7 +51,7 @@ fn puddle_step_sums(block: mat4x4f, column: i32, row: i32, links: vec4u, weights
     );
 }
 
-// Writes a block into the tile, when all have read what was there.
+// Writes a block into the tile, after all have read the old contents.
 fn puddle_step_share(block: mat4x4f, column: i32, row: i32) {
     workgroupBarrier();
     let at = u32(row * 16 + column);
@@ -62,17 +62,17 @@ fn puddle_step_share(block: mat4x4f, column: i32, row: i32) {
     workgroupBarrier();
 }
 
-// A coefficient of the polynomial.
+// Coefficient of the polynomial.
 fn puddle_step_coefficient(grid: PuddleGrid, j: u32) -> f32 {
     return grid.coefficients[j >> 2u][j & 3u];
 }
 
-// A quad without what would slow or poison the lattice.
+// Sets numbers of a quad to 0 if they are below 1e-20 or not finite.
 fn puddle_step_settle(quad: vec4f) -> vec4f {
     return vec4f(puddle_settle(quad.x), puddle_settle(quad.y), puddle_settle(quad.z), puddle_settle(quad.w));
 }
 
-// What is left of the velocities of a quad.
+// Fractions of the velocities of a quad that remain.
 fn puddle_step_keep(grid: PuddleGrid, x: u32, y: u32) -> vec4f {
     let along = vec4f(
         puddle_border(x, grid.size.x),
@@ -129,13 +129,13 @@ fn main_puddle_step(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
             let last = j == 1u;
             let wave = puddle_step_coefficient(puddle_grid, j - 1u);
             let twice = select(2.0 * puddle_grid.twice, puddle_grid.twice, last);
-            let share = select(2.0, 1.0, last);
+            let fraction = select(2.0, 1.0, last);
             let sums = puddle_step_sums(now, column, row, links, weights);
             var next = mat4x4f(
-                puddle_recur(heights[0] * wave, sums[0] * twice, now[0] * share, before[0]),
-                puddle_recur(heights[1] * wave, sums[1] * twice, now[1] * share, before[1]),
-                puddle_recur(heights[2] * wave, sums[2] * twice, now[2] * share, before[2]),
-                puddle_recur(heights[3] * wave, sums[3] * twice, now[3] * share, before[3]),
+                puddle_recur(heights[0] * wave, sums[0] * twice, now[0] * fraction, before[0]),
+                puddle_recur(heights[1] * wave, sums[1] * twice, now[1] * fraction, before[1]),
+                puddle_recur(heights[2] * wave, sums[2] * twice, now[2] * fraction, before[2]),
+                puddle_recur(heights[3] * wave, sums[3] * twice, now[3] * fraction, before[3]),
             );
             if last {
                 next = next + velocities * puddle_grid.viscosity;
@@ -179,8 +179,7 @@ fn main_puddle_step(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
     }
 }
 
-// What the sum over the neighbours is of, when the degree is 1; beyond the lattice, that of the nearest quad, to which no
-// link leads.
+// Argument of the weighted sum for degree 1; beyond the lattice, that of the nearest quad, to which there are no links.
 fn puddle_step_direct(column: i32, row: i32) -> vec4f {
     let x = u32(clamp(column, 0, i32(puddle_grid.quads) - 1));
     let y = u32(clamp(row, 0, i32(puddle_grid.size.y) - 1));
@@ -188,7 +187,7 @@ fn puddle_step_direct(column: i32, row: i32) -> vec4f {
     return quad.height + quad.velocity * puddle_grid.viscosity;
 }
 
-// A row round a quad, as puddle_step_row.
+// A row around a quad, as puddle_step_row.
 fn puddle_step_direct_row(column: i32, row: i32) -> mat3x4f {
     return puddle_step_shift(
         puddle_step_direct(column - 1, row).w,
@@ -197,8 +196,8 @@ fn puddle_step_direct_row(column: i32, row: i32) -> mat3x4f {
     );
 }
 
-// The number of a quad that is nearest to its eastern neighbour, or to its western one, as puddle_step_direct; of numbers that
-// are kept whole.
+// Number of a quad that is nearest to its eastern neighbour, or to its western one, as puddle_step_direct; for 32-bit
+// storage.
 fn puddle_step_direct_side(column: i32, row: i32, east: bool) -> f32 {
     let x = u32(clamp(column, 0, i32(puddle_grid.quads) - 1));
     let at = 2u * (u32(row) * puddle_grid.quads + x);
@@ -208,7 +207,7 @@ fn puddle_step_direct_side(column: i32, row: i32, east: bool) -> f32 {
     return bitcast<f32>(puddle_state[at].x) + bitcast<f32>(puddle_state[at + 1u].x) * puddle_grid.viscosity;
 }
 
-// The weighted sums of a quad where diagonal neighbours have no weight: a third of the reads.
+// Weighted sums of a quad with zero weight of the diagonal neighbours: a third of the reads.
 fn puddle_step_direct_straight(quad: PuddleStateQuad, column: i32, row: i32, links: u32) -> vec4f {
     let own = quad.height + quad.velocity * puddle_grid.viscosity;
     let here = puddle_step_shift(
@@ -220,7 +219,7 @@ fn puddle_step_direct_straight(quad: PuddleStateQuad, column: i32, row: i32, lin
     return puddle_grid.weights.x * own - puddle_grid.weights.y * ((n + s) + (w + e));
 }
 
-// One time step of degree 1: a quad per invocation, out of memory and back. Neighbours share what the caches hold.
+// One time step of degree 1: a quad per invocation, from memory to memory. Neighbours share data through the caches.
 @compute @workgroup_size(32, 8)
 fn main_lattice_puddle_step_direct(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= puddle_grid.quads || id.y >= puddle_grid.size.y {

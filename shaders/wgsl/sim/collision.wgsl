@@ -1,23 +1,23 @@
-// Where a moving drop meets the surfaces of a map that looks along the fall direction.
+// Collision of a moving drop with the surfaces of a map that looks along the fall direction.
 //
-// Rousseau 2008, 4 and 5.1.2: a drop below the top of its column has bounced if it is slightly below, and is absorbed by a
-// wall if it is far below. Here a column has several surfaces, so that what is under a bridge stops drops as well, and a
-// surface within a texel is its tangent plane.
-// A place in the map is texels across, texels along, and depth in metres. Normals "of the map" have the components across,
-// along and against the fall.
+// Rousseau 2008, 4 and 5.1.2: a drop below the top of its column has bounced if it is slightly below, and is absorbed
+// by a wall if it is far below. Here a column has several surfaces, so that the ground under a bridge stops drops as
+// well, and a surface within a texel is its tangent plane.
+// Map coordinates are texels across, texels along, and depth in metres. Normals "of the map" have the components
+// across, along and against the fall.
 // Twin: downpour_sim::collision.
 
 struct CollisionMap {
     // Corner of the first texel, m. The map's plane, depth 0, is above everything.
     low: vec3f,
-    // Triangles of the scene.
+    // Number of triangles of the scene.
     triangles: u32,
     // Unit vectors along the rows, along the columns, and of the fall.
     across: vec3f,
-    // How far a surface leaves the depth at its texel's centre, at most, m.
+    // Maximum deviation of a surface from the depth at its texel's center, m.
     steep: f32,
     along: vec3f,
-    // Surfaces closer than this are one, m.
+    // Distance below which surfaces are merged, m.
     merge: f32,
     fall: vec3f,
     // Edges of a texel, m, and their inverses.
@@ -25,43 +25,44 @@ struct CollisionMap {
     per_edge: vec2f,
     // Origin of the drops' coordinates in those of the triangles, m.
     anchor: vec3f,
-    // Texels.
+    // Number of texels.
     size: vec2u,
 }
 
 struct CollisionTexel {
-    // Depths at the centre, ascending; COLLISION_NONE: no surface.
+    // Depths at the center, ascending; COLLISION_NONE for no surface.
     depths: vec4f,
-    // Packed normals, and what is below.
+    // Packed normals, and the state of the space below.
     surfaces: vec4u,
 }
 
-// A part of a drop's path within a texel: its ends in texels from the centre and metres of depth, and how many surfaces were
-// above the drop when it left the texel before.
+// Segment of a drop's path within a texel: its ends in texels from the center and metres of depth, and the number of
+// surfaces above the drop when it left the previous texel.
 struct CollisionPiece {
     start: vec3f,
     end: vec3f,
     before: u32,
 }
 
-// What stops a drop within a texel.
+// Hit of a drop within a texel.
 struct CollisionMeeting {
     kind: u32,
-    // Share of the piece.
-    share: f32,
+    // Fraction of the segment.
+    fraction: f32,
     layer: u32,
-    // 1 if the surface was met from below.
+    // 1 if the surface was hit from below.
     beneath: u32,
-    // Surfaces above the end of the piece.
+    // Number of surfaces above the end of the segment.
     count: u32,
 }
 
-// What stops a drop.
+// Hit of a drop.
 struct CollisionHit {
     // COLLISION_OPEN, COLLISION_SURFACE or COLLISION_WALL.
     kind: u32,
-    // Share of the way, 0 to 1. Of COLLISION_OPEN: how far the way was looked at, 1 but for ways across very many texels.
-    share: f32,
+    // Fraction of the path, 0 to 1. For COLLISION_OPEN: the fraction that was followed, 1 except for paths across many
+    // texels.
+    fraction: f32,
     // Unit vector towards the side that the drop came from.
     normal: vec3f,
 }
@@ -69,7 +70,7 @@ struct CollisionHit {
 @group(0) @binding(8) var<uniform> collision_map: CollisionMap;
 @group(0) @binding(9) var<storage, read> collision_texels: array<CollisionTexel>;
 
-// A place in the map.
+// Converts a position to map coordinates.
 fn collision_place(map: CollisionMap, at: vec3f) -> vec3f {
     let offset = at - map.low;
     return vec3f(
@@ -79,64 +80,64 @@ fn collision_place(map: CollisionMap, at: vec3f) -> vec3f {
     );
 }
 
-// A normal of the map that faces the rain, and whether what is below is solid.
+// Packs a normal of the map that faces the rain, and a flag of solid below.
 fn collision_pack(normal: vec3f, solid: bool) -> u32 {
     let word = pack2x16snorm(packing_octahedral_encode(vec3f(normal.xy, max(normal.z, 0.0))));
     return (word & ~COLLISION_SOLID) | select(0u, COLLISION_SOLID, solid);
 }
 
-// Whether what is below a surface, up to the next, is solid.
+// True if the space below a surface, up to the next, is solid.
 fn collision_solid(surface: u32) -> bool {
     return (surface & COLLISION_SOLID) != 0u;
 }
 
-// The normal of a surface times some length.
+// Normal of a surface, not normalised.
 fn collision_square(surface: u32) -> vec3f {
     let square = unpack2x16snorm(surface & ~COLLISION_SOLID);
     return vec3f(square, max(1.0 - abs(square.x) - abs(square.y), 0.0));
 }
 
-// The normal of a surface, of the map and of length 1.
+// Unit normal of a surface, of the map.
 fn collision_normal(surface: u32) -> vec3f {
     let square = collision_square(surface);
     return square * (1.0 / sqrt(dot(square, square)));
 }
 
-// How much deeper a surface becomes per metre across and along.
+// Slope of a surface: increase of depth per metre across and along.
 fn collision_slope(surface: u32) -> vec2f {
     let square = collision_square(surface);
     return square.xy * (1.0 / max(square.z, 1.0e-4));
 }
 
-// The depths of a texel's surfaces beside its centre, ascending. `offset` is in texels.
+// Depths of a texel's surfaces at an offset from its center, ascending. `offset` is in texels.
 fn collision_depths(map: CollisionMap, texel: CollisionTexel, offset: vec2f) -> vec4f {
     let metres = offset * map.edge;
     var depths = vec4f(COLLISION_NONE);
     var above = -COLLISION_NONE;
     for (var k = 0u; k < COLLISION_LAYERS; k += 1u) {
         let deeper = dot(collision_slope(texel.surfaces[k]), metres);
-        // Planes that cross within the texel touch from there on.
+        // Planes that cross within the texel coincide from there on.
         above = max(above, texel.depths[k] + min(max(deeper, -map.steep), map.steep));
         depths[k] = above;
     }
     return depths;
 }
 
-// How many surfaces are above a depth.
+// Number of surfaces above a depth.
 fn collision_count(depths: vec4f, depth: f32) -> u32 {
     let above = select(vec4u(0u), vec4u(1u), depths < vec4f(depth));
     return above.x + above.y + above.z + above.w;
 }
 
-// How far below a surface the next texel's part of it may be.
+// Maximum depth below a surface at which it may continue in the next texel.
 fn collision_shallow(map: CollisionMap, surface: u32) -> f32 {
     let slope = collision_slope(surface);
     return min(max(map.edge.x, map.edge.y) * (COLLISION_SHALLOW + sqrt(dot(slope, slope))), map.steep);
 }
 
-// What stops a drop within a texel.
+// Finds the hit of a drop within a texel.
 fn collision_column(map: CollisionMap, texel: CollisionTexel, piece: CollisionPiece) -> CollisionMeeting {
-    // Most drops are far above everything.
+    // Most drops are far above all surfaces.
     if max(piece.start.z, piece.end.z) + map.steep < texel.depths.x {
         return CollisionMeeting(COLLISION_OPEN, 1.0, 0u, 0u, 0u);
     }
@@ -155,7 +156,7 @@ fn collision_column(map: CollisionMap, texel: CollisionTexel, piece: CollisionPi
         if solid && !leaves {
             return CollisionMeeting(select(COLLISION_WALL, COLLISION_SURFACE, shallow), 0.0, layer, 0u, count);
         }
-        // Planes of neighbouring texels do not meet exactly at the border.
+        // Planes of neighbouring texels do not join exactly at the border.
         if !solid && count > piece.before && shallow {
             return CollisionMeeting(COLLISION_SURFACE, 0.0, layer, 0u, count);
         }
@@ -163,27 +164,27 @@ fn collision_column(map: CollisionMap, texel: CollisionTexel, piece: CollisionPi
     if count_end > count {
         let before = piece.start.z - start[count];
         let after = piece.end.z - end[count];
-        let share = min(max(-before / max(after - before, 1.0e-12), 0.0), 1.0);
-        return CollisionMeeting(COLLISION_SURFACE, share, count, 0u, count_end);
+        let fraction = min(max(-before / max(after - before, 1.0e-12), 0.0), 1.0);
+        return CollisionMeeting(COLLISION_SURFACE, fraction, count, 0u, count_end);
     }
     if count_end < count {
         let layer = count - 1u;
         if !collision_solid(texel.surfaces[layer]) {
             let before = piece.start.z - start[layer];
             let after = piece.end.z - end[layer];
-            let share = min(max(before / max(before - after, 1.0e-12), 0.0), 1.0);
-            return CollisionMeeting(COLLISION_SURFACE, share, layer, 1u, count_end);
+            let fraction = min(max(before / max(before - after, 1.0e-12), 0.0), 1.0);
+            return CollisionMeeting(COLLISION_SURFACE, fraction, layer, 1u, count_end);
         }
     }
     return CollisionMeeting(COLLISION_OPEN, 1.0, 0u, 0u, count_end);
 }
 
-// A normal of the map as a direction of the world.
+// Converts a normal of the map to world space.
 fn collision_turn(map: CollisionMap, normal: vec3f) -> vec3f {
     return map.across * normal.x + map.along * normal.y - map.fall * normal.z;
 }
 
-// The normal of a wall that stops a drop: against its way across the map. `way` is in texels and metres of depth.
+// Normal of a wall that stops a drop: against its path across the map. `way` is in texels and metres of depth.
 fn collision_wall(map: CollisionMap, way: vec3f) -> vec3f {
     let sideways = map.across * (way.x * map.edge.x) + map.along * (way.y * map.edge.y);
     let squared = dot(sideways, sideways);
@@ -193,7 +194,7 @@ fn collision_wall(map: CollisionMap, way: vec3f) -> vec3f {
     return sideways * (-1.0 / sqrt(squared));
 }
 
-// A texel; one without surfaces outside the map.
+// Texel of a cell; one without surfaces outside the map.
 fn collision_texel(cell: vec2i) -> CollisionTexel {
     if any(cell < vec2i(0)) || any(cell >= vec2i(collision_map.size)) {
         return CollisionTexel(vec4f(COLLISION_NONE), vec4u(0u));
@@ -201,26 +202,26 @@ fn collision_texel(cell: vec2i) -> CollisionTexel {
     return collision_texels[u32(cell.y) * collision_map.size.x + u32(cell.x)];
 }
 
-// How many surfaces are above a place, and the lowest of them (0: none).
+// Number of surfaces above a position, and the lowest of them (0: none).
 fn collision_cover(at: vec3f) -> vec2u {
-    let place = collision_place(collision_map, at);
-    let corner = floor(min(max(place.xy, vec2f(-COLLISION_EDGE)), vec2f(COLLISION_EDGE)));
+    let position = collision_place(collision_map, at);
+    let corner = floor(min(max(position.xy, vec2f(-COLLISION_EDGE)), vec2f(COLLISION_EDGE)));
     let texel = collision_texel(vec2i(corner));
-    let count = collision_count(collision_depths(collision_map, texel, place.xy - corner - 0.5), place.z);
+    let count = collision_count(collision_depths(collision_map, texel, position.xy - corner - 0.5), position.z);
     return vec2u(count, select(0u, texel.surfaces[max(count, 1u) - 1u], count > 0u));
 }
 
-// Whether nothing is between a place and the sky that the rain comes from.
+// True if nothing is between a position and the sky that the rain comes from.
 fn collision_open(at: vec3f) -> bool {
     return collision_cover(at).x == 0u;
 }
 
-// Whether a place is inside something solid.
+// True if a position is inside a solid.
 fn collision_inside(at: vec3f) -> bool {
     return collision_solid(collision_cover(at).y);
 }
 
-// What a drop first meets on its straight way from `start` to `end`.
+// Finds the first hit of a drop on its straight path from `start` to `end`.
 fn collision_find(start: vec3f, end: vec3f) -> CollisionHit {
     let origin = collision_place(collision_map, start);
     let way = collision_place(collision_map, end) - origin;
@@ -228,25 +229,25 @@ fn collision_find(start: vec3f, end: vec3f) -> CollisionHit {
     let moves = way.xy != vec2f(0.0);
     let inverse = vec2f(1.0) / select(vec2f(1.0), way.xy, moves);
     var cell = vec2i(floor(min(max(origin.xy, vec2f(-COLLISION_EDGE)), vec2f(COLLISION_EDGE))));
-    var share = 0.0;
+    var fraction = 0.0;
     var before = COLLISION_START;
     for (var turn = 0u; turn < COLLISION_COLUMNS; turn += 1u) {
         let border = vec2f(cell + select(vec2i(0), vec2i(1), forward));
         let leave = select(vec2f(COLLISION_NONE), (border - origin.xy) * inverse, moves);
-        let until = min(max(min(leave.x, leave.y), share), 1.0);
-        let centre = vec3f(vec2f(cell) + 0.5, 0.0);
-        let piece = CollisionPiece(origin + way * share - centre, origin + way * until - centre, before);
+        let until = min(max(min(leave.x, leave.y), fraction), 1.0);
+        let center = vec3f(vec2f(cell) + 0.5, 0.0);
+        let piece = CollisionPiece(origin + way * fraction - center, origin + way * until - center, before);
         let texel = collision_texel(cell);
         let met = collision_column(collision_map, texel, piece);
         if met.kind == COLLISION_WALL {
-            return CollisionHit(met.kind, share, collision_wall(collision_map, way));
+            return CollisionHit(met.kind, fraction, collision_wall(collision_map, way));
         }
         if met.kind == COLLISION_SURFACE {
             let normal = collision_turn(collision_map, collision_normal(texel.surfaces[met.layer]));
             let side = select(1.0, -1.0, met.beneath == 1u);
-            return CollisionHit(met.kind, share + (until - share) * met.share, normal * side);
+            return CollisionHit(met.kind, fraction + (until - fraction) * met.fraction, normal * side);
         }
-        share = until;
+        fraction = until;
         if until >= 1.0 {
             break;
         }
@@ -257,5 +258,5 @@ fn collision_find(start: vec3f, end: vec3f) -> CollisionHit {
         let step = select(vec2i(-1), vec2i(1), forward);
         cell += select(vec2i(0, step.y), vec2i(step.x, 0), leave.x <= leave.y);
     }
-    return CollisionHit(COLLISION_OPEN, share, vec3f(0.0));
+    return CollisionHit(COLLISION_OPEN, fraction, vec3f(0.0));
 }

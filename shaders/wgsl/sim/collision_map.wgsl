@@ -1,18 +1,18 @@
-// Makes the map of the surfaces that stop drops: a ray along the fall direction per texel.
+// Construction of the collision map by one ray along the fall direction per texel.
 //
-// Space below a surface that faces the rain and above one that faces away is solid, and so is what is below the last surface if
-// that faces the rain. Between other surfaces, rays sideways say whether the space is enclosed: a house that stands in the
-// ground without a bottom is, the space between a leaf and the ground is not.
+// Space below a surface that faces the rain and above one that faces away is solid, and so is the space below the last
+// surface if that faces the rain. Between other surfaces, horizontal rays decide if the space is enclosed: a house that
+// stands in the ground without a bottom is, the space between a leaf and the ground is not.
 // Twin: downpour_sim::collision.
 
-// What a ray meets.
+// Hits of a ray.
 struct CollisionMapHits {
-    // The nearest, ascending.
+    // Depths of the nearest hits, ascending.
     depths: array<f32, COLLISION_MAP_HITS>,
-    // Their places in the list of triangles.
+    // Their indices in the list of triangles.
     slots: array<u32, COLLISION_MAP_HITS>,
     count: u32,
-    // The deepest one that faces the ray, -1 for none, and its place in the list.
+    // Depth of the deepest one that faces the ray, -1 for none, and its index in the list.
     deepest: f32,
     deepest_slot: u32,
 }
@@ -20,20 +20,20 @@ struct CollisionMapHits {
 @group(0) @binding(0) var<uniform> collision_map_frame: CollisionMap;
 @group(0) @binding(3) var<storage, read_write> collision_map_texels: array<CollisionTexel>;
 
-// Whether a triangle faces a ray.
+// True if a triangle faces a ray.
 fn collision_map_faces(triangle: BvhTriangle, direction: vec3f) -> bool {
     return dot(cross(triangle.edge_1, triangle.edge_2), direction) < 0.0;
 }
 
-// The normal of a triangle in the frame of the map, turned to the rain.
+// Normal of a triangle in the frame of the map, facing the rain.
 fn collision_map_normal(map: CollisionMap, triangle: BvhTriangle) -> vec3f {
     let normal = cross(triangle.edge_1, triangle.edge_2);
     let turned = vec3f(dot(normal, map.across), dot(normal, map.along), -dot(normal, map.fall));
     return turned * select(1.0, -1.0, turned.z < 0.0);
 }
 
-// Whether the space between two surfaces is open (0), solid (1), or has to be asked about (2). The surfaces are the faces
-// that they show to the rain, COLLISION_MAP_FRONT or COLLISION_MAP_BACK or both where several are in one place; 0 is none.
+// State of the space between two surfaces: open (0), solid (1), or unknown (2). The arguments are the faces that the
+// surfaces show to the rain, COLLISION_MAP_FRONT or COLLISION_MAP_BACK, or both for several at one depth; 0 is none.
 fn collision_map_between(above: u32, below: u32) -> u32 {
     if below == 0u {
         return select(0u, 1u, above == COLLISION_MAP_FRONT);
@@ -41,7 +41,7 @@ fn collision_map_between(above: u32, below: u32) -> u32 {
     return select(2u, 1u, above == COLLISION_MAP_FRONT && below == COLLISION_MAP_BACK);
 }
 
-// The first surfaces on a ray, `keep` at most. Only if that is all that there is room for, the deepest one is looked for as well.
+// Finds the first `keep` surfaces on a ray. Only if there are that many, the deepest one is searched for as well.
 fn collision_map_walk(origin: vec3f, direction: vec3f, keep: u32) -> CollisionMapHits {
     let inverse = bvh_inverse(direction);
     var hits: CollisionMapHits;
@@ -58,7 +58,7 @@ fn collision_map_walk(origin: vec3f, direction: vec3f, keep: u32) -> CollisionMa
             continue;
         }
         if node.count == 0u {
-            // The nearer child is taken first: what it holds may make the other needless.
+            // The nearer child first: its triangles may make the other unnecessary.
             let to_left = bvh_enter(bvh_nodes[at + 1u], origin, inverse, limit);
             let to_right = bvh_enter(bvh_nodes[node.link], origin, inverse, limit);
             let swap = to_right < to_left;
@@ -82,7 +82,7 @@ fn collision_map_walk(origin: vec3f, direction: vec3f, keep: u32) -> CollisionMa
                 hits.deepest = distance;
                 hits.deepest_slot = slot;
             }
-            // Insertion from the far end, which falls off when there is no room.
+            // Insertion sort from the far end, which drops out if the list is full.
             var k = hits.count;
             if k == keep {
                 k -= 1u;
@@ -107,7 +107,7 @@ fn collision_map_walk(origin: vec3f, direction: vec3f, keep: u32) -> CollisionMa
     return hits;
 }
 
-// Whether a place is within something closed: two of three rays sideways soon leave more than they enter.
+// True if a position is enclosed: two of three horizontal rays soon leave more surfaces than they enter.
 fn collision_map_enclosed(map: CollisionMap, at: vec3f) -> bool {
     var votes = 0u;
     for (var turn = 0u; turn < 3u; turn += 1u) {
@@ -129,8 +129,8 @@ fn collision_map_enclosed(map: CollisionMap, at: vec3f) -> bool {
     return votes >= 2u;
 }
 
-// A texel with one more surface, deeper than those that it has. `stored` is how many were added before; when there is no room,
-// the last place is for the deepest top of something solid, which is the ground.
+// Adds a surface to a texel, deeper than the existing ones. `stored` is the number of surfaces added before; if the
+// texel is full, its last slot holds the deepest top of a solid, which is the ground.
 fn collision_map_add(
     texel: CollisionTexel,
     stored: u32,
@@ -147,30 +147,30 @@ fn collision_map_add(
     } else if below && !above {
         added.depths[last] = depth;
         added.surfaces[last] = surface | COLLISION_SOLID;
-        // What was between is forgotten.
+        // The state of the space in between is lost.
         added.surfaces[last - 1u] &= ~COLLISION_SOLID;
     }
     return added;
 }
 
-// The surfaces of a texel.
+// Computes the surfaces of a texel.
 fn collision_map_texel(map: CollisionMap, cell: vec2u) -> CollisionTexel {
     var texel = CollisionTexel(vec4f(COLLISION_NONE), vec4u(0u));
     if map.triangles == 0u {
         return texel;
     }
-    let place = (vec2f(cell) + 0.5) * map.edge;
-    let origin = map.low + map.anchor + map.across * place.x + map.along * place.y;
+    let position = (vec2f(cell) + 0.5) * map.edge;
+    let origin = map.low + map.anchor + map.across * position.x + map.along * position.y;
     let hits = collision_map_walk(origin, map.fall, COLLISION_MAP_HITS);
     var stored = 0u;
     var next = 0u;
-    // The surface whose other side is still to be found.
+    // The surface whose other side is not yet known.
     var depth = -COLLISION_NONE;
     var surface = 0u;
     var faces = 0u;
     var above = false;
     loop {
-        // The next surface: all hits that are in one place.
+        // The next surface: all hits at one depth.
         let first = next;
         var next_depth = hits.deepest;
         var slot = hits.deepest_slot;
@@ -195,7 +195,7 @@ fn collision_map_texel(map: CollisionMap, cell: vec2u) -> CollisionTexel {
                 let middle = depth + (next_depth - depth) * COLLISION_MAP_BETWEEN;
                 below = collision_map_enclosed(map, origin + map.fall * middle);
             }
-            // What is inside something solid stops nothing.
+            // Surfaces inside a solid stop nothing.
             if !(above && below) {
                 texel = collision_map_add(texel, stored, depth, surface, above, below);
                 stored += 1u;

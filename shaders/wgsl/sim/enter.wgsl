@@ -1,14 +1,14 @@
-// Drops that come into a frustum: candidates in thin regions about its planes and its ball, as many as the rain has there,
-// each moved by a step as any drop and kept if it arrives.
+// Drops that enter a frustum: candidates in thin regions at its planes and its ball, with the density of the rain, each
+// moved by a step as any drop and kept if it arrives.
 //
-// A region's candidates are uniform between two distances from its plane and in a trapezoid along it, or between two radii
-// of the ball and in a cone of directions. The first limit that a candidate violates before the step has to be that of its
-// region: no part of space is filled twice.
+// A region's candidates are uniform between two distances from its plane and in a trapezoid along it, or between two
+// radii of the ball and in a cone of directions. The first limit that a candidate violates before the step has to be
+// that of its region: no part of space is filled twice.
 // Twin: downpour_sim::enter.
 
-// A part of space that candidates of a bin of sizes come from.
+// Region of space of the candidates of a bin of sizes.
 struct EnterRegion {
-    // The plane, or VOLUME_BALL.
+    // Plane, or VOLUME_BALL.
     face: u32,
     bin: u32,
     // Number of its first candidate, among all and among those of its bin.
@@ -20,18 +20,19 @@ struct EnterRegion {
     // Ends along the tangent, m.
     begin: f32,
     end: f32,
-    // Half the width: at the eye, m, and per m along the tangent. Of the ball the slope is 1 - cos of the cone's half angle.
+    // Half the width: at the eye, m, and per m along the tangent. For the ball the slope is 1 - cos of the cone's half
+    // angle.
     slope: f32,
     width: f32,
-    // Middle across, m.
+    // Center across, m.
     middle: f32,
     unused: u32,
 }
 
-// For each slot the number of the step in which it was last taken.
+// Step in which each slot was last taken.
 @group(0) @binding(10) var<storage, read_write> enter_claims: array<atomic<u32>>;
 
-// A region in the tables.
+// Region in the tables.
 fn enter_region(index: u32) -> EnterRegion {
     let first = step_frame.regions_first + index * ENTER_REGION_WORDS;
     return EnterRegion(
@@ -43,7 +44,7 @@ fn enter_region(index: u32) -> EnterRegion {
     );
 }
 
-// The region of a candidate: the last whose first candidate is not behind it.
+// Region of a candidate: the last whose first candidate is not behind it.
 fn enter_find(candidate: u32) -> u32 {
     var low = 0u;
     var high = step_frame.regions;
@@ -58,18 +59,18 @@ fn enter_find(candidate: u32) -> u32 {
     return low;
 }
 
-// Diameter in 16 bits between two quantiles.
-fn enter_code(lower: f32, upper: f32, share: f32) -> u32 {
-    return u32(lower + (upper - lower) * share + 0.5);
+// Interpolates a diameter in 16 bits between two quantiles.
+fn enter_code(lower: f32, upper: f32, fraction: f32) -> u32 {
+    return u32(lower + (upper - lower) * fraction + 0.5);
 }
 
-// A number in [0, 1) of the low bits of three words, which `rng_unit` leaves out.
+// Number in [0, 1) from the low bits of three words, which `rng_unit` does not use.
 fn enter_chance(words: vec4u) -> f32 {
     return f32((words.x & 255u) | (words.y & 255u) << 8u | (words.z & 255u) << 16u) * ENTER_UNIT;
 }
 
-// Offset from the eye of a candidate, and 1; 0 for one that is none. `normal` and `tangent` are those of the plane, of the
-// ball those of the back.
+// Offset from the eye of a candidate, and 1; 0 for a rejected candidate. `normal` and `tangent` are those of the
+// plane, for the ball those of the back.
 fn enter_offset(region: EnterRegion, normal: vec3f, tangent: vec3f, random: vec3f, chance: f32) -> vec4f {
     let across = cross(normal, tangent);
     let distance = region.low + (region.high - region.low) * random.x;
@@ -86,22 +87,22 @@ fn enter_offset(region: EnterRegion, normal: vec3f, tangent: vec3f, random: vec3
     let near = region.width + region.slope * region.begin;
     let far = region.width + region.slope * region.end;
     let root = sqrt(max(near * near + random.y * (far * far - near * near), 0.0));
-    let share = random.y * (near + far) / max(near + root, 1.0e-12);
-    let along = region.begin + (region.end - region.begin) * share;
+    let fraction = random.y * (near + far) / max(near + root, 1.0e-12);
+    let along = region.begin + (region.end - region.begin) * fraction;
     let aside = region.middle + (region.width + region.slope * along) * (2.0 * random.z - 1.0);
     return vec4f(normal * distance + tangent * along + across * aside, 1.0);
 }
 
-// A candidate after the step; its kind is STEP_GONE if it has not come in.
+// Candidate after the step; its kind is STEP_GONE if it has not entered.
 fn enter_drop(candidate: u32) -> StepDrop {
     let region = enter_region(enter_find(candidate));
     let number = candidate - region.first;
     let dimension = ENTER_DRAW + region.bin * (VOLUME_BALL + 1u) + region.face;
     let words = rng_draw(step_frame.seed, number, step_frame.step, dimension);
-    let position = rng_unit(words.w) * f32(ENTER_SIZES - 1u);
-    let entry = step_frame.sizes_first + region.bin * ENTER_SIZES + u32(position);
+    let quantile = rng_unit(words.w) * f32(ENTER_SIZES - 1u);
+    let entry = step_frame.sizes_first + region.bin * ENTER_SIZES + u32(quantile);
     let lower = bitcast<f32>(step_tables[entry]);
-    let bits = enter_code(lower, bitcast<f32>(step_tables[entry + 1u]), position - floor(position));
+    let bits = enter_code(lower, bitcast<f32>(step_tables[entry + 1u]), quantile - floor(quantile));
     let word = step_word(bits, STEP_FALLING, (region.first_of_bin + number) & STEP_COUNT);
     let gone = StepDrop(vec3f(0.0), step_word(bits, STEP_GONE, 0u), vec3f(0.0), step_frame.step);
     let plane = min(region.face, VOLUME_PLANES - 1u);
@@ -116,16 +117,16 @@ fn enter_drop(candidate: u32) -> StepDrop {
     if volume_limit(step_frame.frustum_before, offset.xyz, diameter, speed) != region.face {
         return gone;
     }
-    // Where it will be in the middle of the horizon, and where it is.
+    // Position at the middle of the horizon, and now.
     let ahead = step_frame.frustum_before.eye + offset.xyz;
     let velocity = step_coming(ahead, speed);
-    let place = ahead - velocity * step_frame.frustum_before.half_horizon;
+    let position = ahead - velocity * step_frame.frustum_before.half_horizon;
     if STEP_COLLIDES {
-        if !collision_open(place) {
+        if !collision_open(position) {
             return gone;
         }
     }
-    return step_view(StepDrop(place, word, velocity, step_frame.step));
+    return step_view(StepDrop(position, word, velocity, step_frame.step));
 }
 
 @compute @workgroup_size(256)
@@ -142,15 +143,15 @@ fn main_enter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups)
     for (var k = 0u; k < ENTER_TRIES; k += 1u) {
         let slot = rng_draw(step_frame.seed, candidate, step_frame.step, ENTER_SLOT + k).x % step_frame.count;
         let taken = atomicLoad(&enter_claims[slot]);
-        if taken == step_frame.step || step_kind(step_places[slot].w) != STEP_GONE {
+        if taken == step_frame.step || step_kind(step_positions[slot].w) != STEP_GONE {
             continue;
         }
         if atomicCompareExchangeWeak(&enter_claims[slot], taken, step_frame.step).exchanged {
-            step_places[slot] = vec4u(bitcast<vec3u>(drop.place), drop.word);
+            step_positions[slot] = vec4u(bitcast<vec3u>(drop.position), drop.word);
             step_motions[slot] = vec4u(bitcast<vec3u>(drop.velocity), drop.last);
             return;
         }
     }
-    // There is no room: it is counted.
+    // No free slot: it is counted.
     atomicAdd(&step_counts[4], 1u);
 }

@@ -1,13 +1,13 @@
-// How a drop moves in the wind during a step, and how it bounces.
+// Motion of a drop in the wind during a step, and its bounce.
 //
-// The slip between drop and air relaxes: across the fall with v / g, along it with v / 2g, v the terminal speed. With
-// constant wind a step of any length is exact. Rousseau 2008 instead averages the velocity with the wind, once a step.
-// Twin: downpour_sim::motion.
+// The slip between drop and air relaxes: across the fall with v / g, along it with v / 2g, where v is the terminal
+// speed. In a constant wind a step of any length is exact. Rousseau 2008 instead averages the velocity with the wind,
+// once per step. Twin: downpour_sim::motion.
 
 struct MotionStep {
     // Velocity after the step, m/s.
     velocity: vec3f,
-    // What the drop moves, m.
+    // Displacement of the drop, m.
     displacement: vec3f,
 }
 
@@ -16,7 +16,7 @@ fn motion_diameter(bits: u32) -> f32 {
     return f32(bits) * MOTION_DIAMETER_STEP;
 }
 
-// Where a diameter is in the table of terminal speeds: between this entry and the next, and how far.
+// Index of a diameter in the table of terminal speeds: between this entry and the next.
 fn motion_table_entry(diameter: f32) -> u32 {
     let position = clamp(diameter * MOTION_TABLE_PER_METRE, 0.0, f32(MOTION_TABLE_LAST));
     return min(u32(position), MOTION_TABLE_LAST - 1u);
@@ -25,11 +25,11 @@ fn motion_table_entry(diameter: f32) -> u32 {
 // Terminal speed between two entries of the table, m/s.
 fn motion_table_speed(lower: f32, upper: f32, diameter: f32) -> f32 {
     let position = clamp(diameter * MOTION_TABLE_PER_METRE, 0.0, f32(MOTION_TABLE_LAST));
-    let share = position - f32(motion_table_entry(diameter));
-    return lower + (upper - lower) * share;
+    let fraction = position - f32(motion_table_entry(diameter));
+    return lower + (upper - lower) * fraction;
 }
 
-// Velocity of a drop that has come to rest in the air about it.
+// Velocity of a drop that is at rest in the surrounding air.
 fn motion_settled(wind: vec3f, speed: f32) -> vec3f {
     return vec3f(wind.x, wind.y - speed, wind.z);
 }
@@ -46,14 +46,14 @@ fn motion_relax(velocity: vec3f, wind: vec3f, speed: f32, time: f32) -> MotionSt
     return MotionStep(settled + slip * stay, settled * time + slip * reach);
 }
 
-// A step as Rousseau 2008, 5.1.2: the mean of the velocity and what the air and gravity would make of it.
+// A step as Rousseau 2008, 5.1.2: the mean of the velocity and its equilibrium with air and gravity.
 fn motion_average(velocity: vec3f, wind: vec3f, speed: f32, time: f32) -> MotionStep {
     let mean = 0.5 * (velocity + motion_settled(wind, speed));
     return MotionStep(mean, mean * time);
 }
 
-// The velocity after a bounce off a surface with normal `normal`: of the part along the normal the share `restitution`
-// comes back, of the rest the share `grip` is lost.
+// Velocity after a bounce off a surface with normal `normal`: the fraction `restitution` of the normal component is
+// reflected, the fraction `grip` of the tangential component is lost.
 fn motion_bounce(velocity: vec3f, normal: vec3f, restitution: f32, grip: f32) -> vec3f {
     let into = dot(velocity, normal);
     let past = velocity - normal * into;

@@ -1,17 +1,17 @@
-// The part of space that drops are simulated in.
+// Part of space in which drops are simulated.
 //
-// In a box (Rousseau 2006, 7; 2008, 2.1) the rain is periodic: a drop goes to the opposite face. In a view it is the
-// frustum of the picture up to the distance at which a size is resolved (after Im & Sung 2022, 3.A and B), wider by the way
-// of a drop during the horizon, the time that pictures of one state cover: five planes and a ball.
+// In a box (Rousseau 2006, 7; 2008, 2.1) the rain is periodic: a drop moves to the opposite face. In a view the volume
+// is the frustum of the picture up to the distance at which a size is resolved (after Im & Sung 2022, 3.A and B),
+// widened by the path of a drop during the horizon, the time that pictures of one state cover: five planes and a ball.
 // Twin: downpour_sim::volume.
 
-// The eye, and the part of space that it sees.
+// Eye and its view.
 struct VolumeEye {
-    // m.
-    place: vec3f,
+    // Position, m, relative to the origin of its time.
+    position: vec3f,
     // Half the width and height of the picture at distance 1.
     half_width: f32,
-    // Unit vectors.
+    // Unit vectors to the right, up and forward.
     right: vec3f,
     half_height: f32,
     up: vec3f,
@@ -20,12 +20,12 @@ struct VolumeEye {
     unused_2: u32,
 }
 
-// The frustum of a picture, with margins, about which drops are where they will be in the middle of the horizon.
+// Frustum of a picture with margins, for drops at their positions in the middle of the horizon.
 struct VolumeFrustum {
-    // Outward unit normals of right, left, top, bottom and back; the speed along them, relative to the eye, of the air at
-    // the eye, m/s. All planes go through the eye.
+    // Outward unit normals of right, left, top, bottom and back; fourth component: speed along them of the air at the
+    // eye relative to the eye, m/s. All planes pass through the eye.
     planes: array<vec4f, VOLUME_PLANES>,
-    // m.
+    // Position of the eye, m.
     eye: vec3f,
     // Speed of the air at the eye relative to the eye, m/s.
     air: f32,
@@ -33,19 +33,20 @@ struct VolumeFrustum {
     half_horizon: f32,
     // Half the longest time from a state to the opening of the shutter, s.
     half_wait: f32,
-    // How far the wind, and what drops keep of it, leaves that at the eye: m/s; m/s per m of distance; at most, m/s.
+    // Bound on the deviation of the wind, and of the drops' velocity due to it, from the wind at the eye: m/s;
+    // increase per m of distance, 1/s; maximum, m/s.
     spread: f32,
     spread_slope: f32,
-    spread_most: f32,
-    // Distance at which a drop is resolved, per diameter; and at most, m.
+    spread_max: f32,
+    // Distance at which a drop is resolved, per diameter; and its maximum, m.
     range: f32,
     farthest: f32,
     unused: u32,
 }
 
-// How many edges of a box around `centre` a position is away from its periodic image in the box.
-fn volume_images(place: vec3f, centre: vec3f, size: vec3f) -> vec3f {
-    return floor((place - centre) / size + 0.5);
+// Number of edges of a box around `center` between a position and its periodic image in the box.
+fn volume_images(position: vec3f, center: vec3f, size: vec3f) -> vec3f {
+    return floor((position - center) / size + 0.5);
 }
 
 // Distance at which a diameter is resolved, m.
@@ -53,12 +54,12 @@ fn volume_range(frustum: VolumeFrustum, diameter: f32) -> f32 {
     return min(diameter * frustum.range, frustum.farthest);
 }
 
-// Bound on the difference of the wind from that at the eye within a distance, and of what drops keep of it, m/s.
+// Bound on the deviation of the wind, and of the drops' velocity due to it, within a distance of the eye, m/s.
 fn volume_spread(frustum: VolumeFrustum, range: f32) -> f32 {
-    return min(frustum.spread + frustum.spread_slope * range, frustum.spread_most);
+    return min(frustum.spread + frustum.spread_slope * range, frustum.spread_max);
 }
 
-// Index of the first limit of the frustum beyond which a drop is that is at `offset` from the eye: a plane, VOLUME_BALL, or
+// Index of the first limit of the frustum that a drop at `offset` from the eye violates: a plane, VOLUME_BALL, or
 // VOLUME_INSIDE. `speed` is its terminal speed.
 fn volume_limit(frustum: VolumeFrustum, offset: vec3f, diameter: f32, speed: f32) -> u32 {
     let range = volume_range(frustum, diameter);
@@ -75,17 +76,17 @@ fn volume_limit(frustum: VolumeFrustum, offset: vec3f, diameter: f32, speed: f32
     return select(VOLUME_INSIDE, VOLUME_BALL, dot(offset, offset) > reach * reach);
 }
 
-// What the eye sees of an offset from it: to the right, up, and ahead.
+// Converts an offset from the eye to camera space: right, up, and forward.
 fn volume_local(eye: VolumeEye, offset: vec3f) -> vec3f {
     return vec3f(dot(offset, eye.right), dot(offset, eye.up), dot(offset, eye.forward));
 }
 
-// The offset from the eye of what it sees.
+// Converts camera space to an offset from the eye.
 fn volume_offset(eye: VolumeEye, local: vec3f) -> vec3f {
     return eye.right * local.x + eye.up * local.y + eye.forward * local.z;
 }
 
-// Whether a place is in the rain area of Im & Sung: in the pyramid and in the sphere between eye and `range`.
+// True if a position is in the rain area of Im & Sung: in the pyramid and in the sphere between eye and `range`.
 fn volume_in_area(eye: VolumeEye, local: vec3f, range: f32) -> bool {
     let radius = 0.5 * range;
     let from_middle = local - vec3f(0.0, 0.0, radius);
@@ -93,7 +94,7 @@ fn volume_in_area(eye: VolumeEye, local: vec3f, range: f32) -> bool {
         && dot(from_middle, from_middle) <= radius * radius;
 }
 
-// A place in the sphere by Im & Sung, (3) and (4): three random numbers of [0, 1). Dense about the middle.
+// Position in the sphere by Im & Sung, (3) and (4): three random numbers in [0, 1). Dense near the middle.
 fn volume_in_sphere(random: vec3f, range: f32) -> vec3f {
     let radius = 0.5 * range;
     let along = 2.0 * random.y - 1.0;
@@ -103,7 +104,7 @@ fn volume_in_sphere(random: vec3f, range: f32) -> vec3f {
     return vec3f(distance * across * cos(angle), distance * across * sin(angle), radius + distance * along);
 }
 
-// A place on a disc of radius 1, from two random numbers of [0, 1).
+// Position on a disc of radius 1, from two random numbers in [0, 1).
 fn volume_on_disc(random: vec2f) -> vec2f {
     let angle = VOLUME_TURN * (random.x - 0.5);
     return sqrt(random.y) * vec2f(cos(angle), sin(angle));

@@ -1,82 +1,82 @@
-// The wind in the cells of a box: the sum of the primitives and of the waves of turbulence at their centres, less inside
-// objects; and how it is looked up between them.
+// Wind in the cells of a box: the sum of the primitives and of the waves of turbulence at their centers, reduced inside
+// objects; and its interpolation between them.
 //
-// Rousseau 2008, 3.2 and 5.1.2. A cell is x, y, z, with x the fastest in memory. Between the centres of cells the wind is
-// trilinear; beyond the outermost centres it is that of the nearest point between them.
+// Rousseau 2008, 3.2 and 5.1.2. Cells are ordered x, y, z, with x the fastest in memory. Between the centers of cells
+// the wind is trilinear; beyond the outermost centers it is that of the nearest point between them.
 // Twin: downpour_wind::field.
 
 struct WindFieldGrid {
     // Lower corner of the box, m.
     low: vec3f,
-    // How many primitives there are.
+    // Number of primitives.
     primitives: u32,
     // Edges of a cell, m.
     cell: vec3f,
-    // How many waves of turbulence there are.
+    // Number of turbulence modes.
     modes: u32,
     // Inverses of the edges, 1/m.
     per_cell: vec3f,
-    // How many cells there are along each edge.
+    // Number of cells along each edge.
     size: vec3u,
 }
 
-// The cells whose centres are round a place: from `cell` to `next`, and how far the place is on the way.
-struct WindFieldPlace {
+// The eight cells whose centers surround a position, from `cell` to `next`, and the fraction between them.
+struct WindFieldPosition {
     cell: vec3u,
     next: vec3u,
-    share: vec3f,
+    fraction: vec3f,
 }
 
 @group(0) @binding(0) var<uniform> wind_field_grid: WindFieldGrid;
 @group(0) @binding(1) var<storage, read> wind_field_primitives: array<mat3x3f>;
-// Share of each cell that is open to the wind: 0 inside an object, 1 away from all.
+// Openness of each cell to the wind: 0 inside an object, 1 away from all.
 @group(0) @binding(2) var<storage, read> wind_field_openness: array<f32>;
 // Velocity, m/s, and openness.
 @group(0) @binding(3) var<storage, read_write> wind_field_cells: array<vec4f>;
 @group(0) @binding(4) var<storage, read> wind_field_modes: array<WindTurbulenceMode>;
 
-// The centre of a cell.
-fn wind_field_centre(grid: WindFieldGrid, cell: vec3u) -> vec3f {
+// Center of a cell.
+fn wind_field_center(grid: WindFieldGrid, cell: vec3u) -> vec3f {
     return grid.low + (vec3f(cell) + 0.5) * grid.cell;
 }
 
-// Where a cell stands in memory.
+// Index of a cell in memory.
 fn wind_field_index(grid: WindFieldGrid, cell: vec3u) -> u32 {
     return (cell.z * grid.size.y + cell.y) * grid.size.x + cell.x;
 }
 
-// The cells round a place.
-fn wind_field_place(grid: WindFieldGrid, at: vec3f) -> WindFieldPlace {
+// Finds the cells around a position.
+fn wind_field_locate(grid: WindFieldGrid, at: vec3f) -> WindFieldPosition {
     let last = grid.size - 1u;
     let x = min(max((at - grid.low) * grid.per_cell - 0.5, vec3f(0.0)), vec3f(last));
     let lower = floor(x);
     let cell = min(vec3u(lower), last);
-    return WindFieldPlace(cell, min(cell + 1u, last), x - lower);
+    return WindFieldPosition(cell, min(cell + 1u, last), x - lower);
 }
 
-// One of the eight cells: bits 0, 1 and 2 of `corner` choose along x, y and z.
-fn wind_field_corner(place: WindFieldPlace, corner: u32) -> vec3u {
-    return select(place.cell, place.next, (vec3u(corner) & vec3u(1u, 2u, 4u)) != vec3u(0u));
+// One of the eight cells: bits 0, 1 and 2 of `corner` select along x, y and z.
+fn wind_field_corner(position: WindFieldPosition, corner: u32) -> vec3u {
+    return select(position.cell, position.next, (vec3u(corner) & vec3u(1u, 2u, 4u)) != vec3u(0u));
 }
 
-// What is between the values of the eight cells, in the order of their corners.
-fn wind_field_mix(corners: array<vec3f, 8>, share: vec3f) -> vec3f {
-    let c00 = corners[0] + (corners[1] - corners[0]) * share.x;
-    let c10 = corners[2] + (corners[3] - corners[2]) * share.x;
-    let c01 = corners[4] + (corners[5] - corners[4]) * share.x;
-    let c11 = corners[6] + (corners[7] - corners[6]) * share.x;
-    let c0 = c00 + (c10 - c00) * share.y;
-    let c1 = c01 + (c11 - c01) * share.y;
-    return c0 + (c1 - c0) * share.z;
+// Trilinear interpolation of the values of the eight cells, in the order of their corners.
+fn wind_field_mix(corners: array<vec3f, 8>, fraction: vec3f) -> vec3f {
+    let c00 = corners[0] + (corners[1] - corners[0]) * fraction.x;
+    let c10 = corners[2] + (corners[3] - corners[2]) * fraction.x;
+    let c01 = corners[4] + (corners[5] - corners[4]) * fraction.x;
+    let c11 = corners[6] + (corners[7] - corners[6]) * fraction.x;
+    let c0 = c00 + (c10 - c00) * fraction.y;
+    let c1 = c01 + (c11 - c01) * fraction.y;
+    return c0 + (c1 - c0) * fraction.z;
 }
 
-// The wind in a cell, and its openness.
+// Wind in a cell, and its openness.
 fn wind_field_cell(cell: vec3u) -> vec4f {
     let openness = wind_field_openness[wind_field_index(wind_field_grid, cell)];
     if openness <= 0.0 {
         return vec4f(0.0);
     }
-    let at = wind_field_centre(wind_field_grid, cell);
+    let at = wind_field_center(wind_field_grid, cell);
     var sum = vec3f(0.0);
     for (var k = 0u; k < wind_field_grid.primitives; k += 1u) {
         sum += wind_primitive_velocity(wind_field_primitives[k], at);

@@ -44,7 +44,7 @@ fn map_words(random: [u32; 4]) -> Vec<u32> {
     let texels = [1 + random[0] % 64, 1 + random[1] % 64];
     let options = CollisionOptions {
         fall: slanted(1.3 * a, 6.0 * b),
-        centre: Vec3::new(c, d, -c) * 4.0,
+        center: Vec3::new(c, d, -c) * 4.0,
         size: [texels[0] as f32 * (0.05 + 0.45 * e), texels[1] as f32 * (0.05 + 0.45 * f)],
         texels,
         anchor: Vec3::new(d, e, f),
@@ -223,7 +223,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 let (map, texel) = (map(a), texel(a));
                 let (start, end) = (vec3(a), vec3(a));
                 let met = collision_column(&map, &texel, &CollisionPiece { start, end, before: a.u32() });
-                ((met.kind, met.share), [met.layer, met.beneath, met.count]).words()
+                ((met.kind, met.fraction), [met.layer, met.beneath, met.count]).words()
             },
         ),
         FunctionCase::new(
@@ -377,7 +377,7 @@ fn main_parity(@builtin(global_invocation_id) id: vec3u) {
     let sky = select(0u, 1u, collision_open(start));
     let solid = select(0u, 1u, collision_inside(start));
     let normal = bitcast<vec3u>(hit.normal);
-    parity_out[id.x] = array(sky, solid, hit.kind, bitcast<u32>(hit.share), normal.x, normal.y, normal.z, collision_cover(start).x);
+    parity_out[id.x] = array(sky, solid, hit.kind, bitcast<u32>(hit.fraction), normal.x, normal.y, normal.z, collision_cover(start).x);
 }
 ";
     let kernel = ComputeKernel::from_source(gpu, "main_parity", &text, &[])?;
@@ -399,7 +399,7 @@ fn main_parity(@builtin(global_invocation_id) id: vec3u) {
         [
             [map.open(start), map.inside(start)].words(),
             hit.kind.words(),
-            hit.share.words(),
+            hit.fraction.words(),
             hit.normal.to_array().words(),
             above.words(),
         ]

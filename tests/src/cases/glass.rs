@@ -56,7 +56,7 @@ fn cell(random: [u32; 4]) -> Vec<u32> {
 
 /// A mass of any size.
 fn mass(random: [u32; 4]) -> Vec<u32> {
-    vec![1 + ((random[0] % shaders::GLASS_LARGEST) >> (random[1] % 18))]
+    vec![1 + ((random[0] % shaders::GLASS_MAX_MASS) >> (random[1] % 18))]
 }
 
 fn ivec2(args: &mut Args<'_>) -> IVec2 {

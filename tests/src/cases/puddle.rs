@@ -46,10 +46,10 @@ fn seed_words(random: [u32; 4]) -> Vec<u32> {
 }
 
 fn seed(args: &mut Args<'_>) -> PuddleSeed {
-    let place = args.f32s();
+    let center = args.f32s();
     let [per_length, amplitude, lift, reach] = args.f32s();
     let [shape, unused] = args.u32s();
-    PuddleSeed { place, per_length, amplitude, lift, reach, shape, unused }
+    PuddleSeed { center, per_length, amplitude, lift, reach, shape, unused }
 }
 
 fn quad(args: &mut Args<'_>) -> PuddleQuad {
@@ -287,7 +287,7 @@ fn seeds(gpu: &Gpu) -> Result<Run, GpuError> {
         .map(|i| {
             let [x, y, z, _] = rng_draw([1, 1], i, 0, 0).map(rng_unit);
             Impact {
-                place_m: [0.32 * x - 0.01, 0.28 * y - 0.01],
+                position_m: [0.32 * x - 0.01, 0.28 * y - 0.01],
                 speed_m_s: 2.0 + 6.0 * z,
                 diameter_m: 0.5e-3 + 3.0e-3 * z,
             }

@@ -10,13 +10,13 @@ use downpour_shaders::sim::enter::{ENTER, ENTER_KERNEL};
 use downpour_shaders::sim::step::{MOTION, STEP, STEP_KERNEL, VOLUME, VOLUME_BALL};
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
 use downpour_sim::enter::{EnterRegion, enter_chance, enter_code, enter_offset};
-use downpour_sim::gpu::{GpuCollisionMap, GpuMoment, GpuSimError, GpuSimulation};
+use downpour_sim::gpu::{GpuCollisionMap, GpuSimError, GpuSimulation, GpuStepInput};
 use downpour_sim::motion::{
     motion_average, motion_bounce, motion_diameter, motion_relax, motion_settled, motion_table_entry,
     motion_table_speed,
 };
 use downpour_sim::simulation::{
-    Bounce, Drag, Gauge, Happened, Moment, SimVolume, Simulation, SimulationOptions,
+    Bounce, Drag, Gauge, SimVolume, Simulation, SimulationOptions, StepEvents, StepInput,
 };
 use downpour_sim::step::{
     StepDrop, step_column, step_count, step_image, step_kind, step_measure, step_pack, step_shown, step_word,
@@ -61,14 +61,14 @@ fn eye_words(random: [u32; 4]) -> Vec<u32> {
 }
 
 fn eye(args: &mut Args<'_>) -> VolumeEye {
-    let place = args.f32s();
+    let position = args.f32s();
     let half_width = args.f32();
     let right = args.f32s();
     let half_height = args.f32();
     let up = args.f32s();
     let unused_1 = args.u32();
     let forward = args.f32s();
-    VolumeEye { place, half_width, right, half_height, up, unused_1, forward, unused_2: args.u32() }
+    VolumeEye { position, half_width, right, half_height, up, unused_1, forward, unused_2: args.u32() }
 }
 
 /// The words of a `VolumeFrustum` that looks somewhere, its eye at the origin.
@@ -102,7 +102,7 @@ fn frustum(args: &mut Args<'_>) -> VolumeFrustum {
         half_wait: args.f32(),
         spread: args.f32(),
         spread_slope: args.f32(),
-        spread_most: args.f32(),
+        spread_max: args.f32(),
         range: args.f32(),
         farthest: args.f32(),
         unused: args.u32(),
@@ -325,7 +325,7 @@ fn vortex() -> WindField {
         WindPrimitive::Vortex(WindSingularity {
             form: WindForm::Line,
             strength: 90.0,
-            centre: Vec3::new(0.0, 0.0, -3.0),
+            center: Vec3::new(0.0, 0.0, -3.0),
             axis: Vec3::Y,
             core_radius: 3.0,
             core: WindCore::Rosenhead,
@@ -377,7 +377,7 @@ const TURNING: Scenario =
 /// What a step leaves behind on both sides.
 struct Both {
     drops: [Vec<StepDrop>; 2],
-    happened: [Happened; 2],
+    happened: [StepEvents; 2],
 }
 
 /// Steps on the CPU, until drops have bounced and are hidden, then one step on both.
@@ -391,7 +391,7 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
         shutter_s: 1.0 / 48.0,
         wait_s: 1.0 / 60.0,
         drag: scenario.drag,
-        bounce: Bounce { share: 0.5, ..Bounce::default() },
+        bounce: Bounce { fraction: 0.5, ..Bounce::default() },
         gauge: Some(Gauge {
             height_m: 2.0,
             low_m: [middle.x - 2.0, middle.z - 4.0],
@@ -405,19 +405,19 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
     let first = view(0);
     let air = gusts();
     let air = air.prepared(3.0);
-    let start = Moment {
+    let start = StepInput {
         field: field.as_ref(),
         map: map.as_ref(),
         air: Some(&air),
-        ..Moment::new(&first, DVec3::ZERO, wind)
+        ..StepInput::new(&first, DVec3::ZERO, wind)
     };
     let mut cpu = Simulation::new(&rain, &options, &start).expect("a simulation");
     for step in 1..=20 {
-        cpu.advance(1.0 / 60.0, &Moment { view: &view(step), ..start }).expect("a step");
+        cpu.advance(1.0 / 60.0, &StepInput { view: &view(step), ..start }).expect("a step");
     }
     let mut twin = GpuSimulation::from_cpu(gpu, &cpu)?;
     let last = if scenario.jumps { View { eye: view(21).eye + 9.0, ..view(21) } } else { view(21) };
-    let happened = cpu.advance(1.0 / 60.0, &Moment { view: &last, ..start }).expect("a step");
+    let happened = cpu.advance(1.0 / 60.0, &StepInput { view: &last, ..start }).expect("a step");
     let on_gpu = match &map {
         Some(map) => Some(GpuCollisionMap::from_cpu(gpu, map)?),
         None => None,
@@ -427,17 +427,17 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
         None => None,
     };
     let eye = last.eye.as_vec3();
-    let moment = GpuMoment {
+    let moment = GpuStepInput {
         // Of a field: at the eye.
         wind: field.as_ref().map_or(wind, |field| field.sample(eye)),
         field: cells.as_ref().map(|(field, cells)| (field.uniform(), cells)),
         spread: field.as_ref().map_or([0.0; 2], |field| field.spread(eye, cpu.farthest_m(&last) as f32)),
         map: on_gpu.as_ref(),
         air: Some(&air),
-        ..GpuMoment::new(&last, DVec3::ZERO, wind)
+        ..GpuStepInput::new(&last, DVec3::ZERO, wind)
     };
     twin.advance(1.0 / 60.0, &moment).map_err(of_gpu)?;
-    let happened_there = twin.happened().map_err(of_gpu)?;
+    let happened_there = twin.events().map_err(of_gpu)?;
     assert_eq!(happened_there.lost, 0);
     Ok(Both {
         drops: [cpu.drops().to_vec(), twin.drops().map_err(of_gpu)?],
@@ -456,7 +456,7 @@ fn words(drops: &[StepDrop]) -> Vec<u32> {
     drops
         .iter()
         .flat_map(|d| {
-            let [x, y, z] = d.place.map(f32::to_bits);
+            let [x, y, z] = d.position.map(f32::to_bits);
             let [u, v, w] = d.velocity.map(f32::to_bits);
             [x, y, z, d.word, u, v, w, d.last]
         })
@@ -477,7 +477,7 @@ fn side_by_side([mut cpu, mut gpu]: [Vec<StepDrop>; 2]) -> [Vec<StepDrop>; 2] {
             (None, Some(_)) => Ordering::Greater,
             (None, None) => return [left, right],
         };
-        let nothing = StepDrop { place: [0.0; 3], word: 0, velocity: [0.0; 3], last: 0 };
+        let nothing = StepDrop { position: [0.0; 3], word: 0, velocity: [0.0; 3], last: 0 };
         left.push(if order.is_le() { cpu.next().unwrap_or(nothing) } else { nothing });
         right.push(if order.is_ge() { gpu.next().unwrap_or(nothing) } else { nothing });
     }
@@ -512,7 +512,7 @@ fn happened_case(gpu: &Gpu, scenario: Scenario) -> Result<Run, GpuError> {
             happened.caught.volume as u32,
         ];
         for event in &happened.events {
-            words.extend(event.place.map(|x| (x * 1.0e3).round() as i32 as u32));
+            words.extend(event.position.map(|x| (x * 1.0e3).round() as i32 as u32));
             words.push(event.drop);
         }
         words

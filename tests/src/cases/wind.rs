@@ -4,8 +4,8 @@ use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::wind::{FIELD, FIELD_KERNEL, PRIMITIVE, TURBULENCE};
 use downpour_wind::field::{
-    WindFieldGrid, WindFieldPlace, wind_field_centre, wind_field_corner, wind_field_index, wind_field_mix,
-    wind_field_place,
+    WindFieldGrid, WindFieldPosition, wind_field_center, wind_field_corner, wind_field_index,
+    wind_field_locate, wind_field_mix,
 };
 use downpour_wind::gpu::{GpuWindError, GpuWindField};
 use downpour_wind::primitive::{
@@ -187,11 +187,11 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| wind_turbulence_velocity(&mode(a), vec3(a)).to_array().words(),
         ),
         FunctionCase::new(
-            "wind_field_centre",
+            "wind_field_center",
             &FIELD,
             &[Made(grid_words), cell[0], cell[1], cell[2]],
             Tol::relative(1.0e-6, 2.0e-5, "a product of up to 6400 m, then a sum; a GPU may fuse them"),
-            |a| wind_field_centre(&grid(a), UVec3::from(a.u32s())).to_array().words(),
+            |a| wind_field_center(&grid(a), UVec3::from(a.u32s())).to_array().words(),
         ),
         FunctionCase::new(
             "wind_field_index",
@@ -201,17 +201,17 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| wind_field_index(&grid(a), UVec3::from(a.u32s())).words(),
         ),
         FunctionCase::new(
-            "wind_field_place",
+            "wind_field_locate",
             &FIELD,
             &[Made(grid_words), Uniform(-60.0, 60.0), Uniform(-60.0, 60.0), Uniform(-60.0, 60.0)],
             Tol::absolute(
                 3.0e-5,
-                "a place of up to 64 cells, 4e-6 each operation; close to a centre it may be in the next cell",
+                "a position of up to 64 cells, 4e-6 each operation; close to a center it may be in the next cell",
             )
             .with_outliers(2.0e-4),
             |a| {
-                let place = wind_field_place(&grid(a), vec3(a));
-                ((place.cell.to_array(), place.next.to_array()), place.share.to_array()).words()
+                let position = wind_field_locate(&grid(a), vec3(a));
+                ((position.cell.to_array(), position.next.to_array()), position.fraction.to_array()).words()
             },
         ),
         FunctionCase::new(
@@ -221,8 +221,8 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::exact("a choice between integers"),
             |a| {
                 let (cell, next) = (UVec3::from(a.u32s()), UVec3::from(a.u32s()));
-                let place = WindFieldPlace { cell, next, share: vec3(a) };
-                wind_field_corner(&place, a.u32()).to_array().words()
+                let position = WindFieldPosition { cell, next, fraction: vec3(a) };
+                wind_field_corner(&position, a.u32()).to_array().words()
             },
         ),
         FunctionCase::new(
@@ -255,20 +255,20 @@ fn primitives() -> Vec<WindPrimitive> {
         let at = WindSingularity {
             form,
             strength: 50.0,
-            centre: Vec3::new(x, 1.0, -2.0),
+            center: Vec3::new(x, 1.0, -2.0),
             axis: Vec3::new(-0.3, 1.0, 0.5),
             core_radius: 2.0,
             core: WindCore::Rosenhead,
         };
         all.push(WindPrimitive::Source(at));
-        all.push(WindPrimitive::Sink(WindSingularity { centre: Vec3::new(-x, 3.0, 4.0), ..at }));
-        all.push(WindPrimitive::Vortex(WindSingularity { centre: Vec3::new(x, -2.0, 6.0), ..at }));
+        all.push(WindPrimitive::Sink(WindSingularity { center: Vec3::new(-x, 3.0, 4.0), ..at }));
+        all.push(WindPrimitive::Vortex(WindSingularity { center: Vec3::new(x, -2.0, 6.0), ..at }));
     }
     for (core, z) in [(WindCore::Rankine, -6.0), (WindCore::LambOseen, 6.0)] {
         all.push(WindPrimitive::Vortex(WindSingularity {
             form: WindForm::Line,
             strength: -30.0,
-            centre: Vec3::new(0.0, 0.0, z),
+            center: Vec3::new(0.0, 0.0, z),
             axis: Vec3::new(1.0, 0.2, 0.1),
             core_radius: 3.0,
             core,

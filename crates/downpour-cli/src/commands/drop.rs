@@ -3,7 +3,7 @@
 use clap::Args;
 use downpour::drop::DropShape;
 use downpour::drop::air::Air;
-use downpour::drop::fall_speed::{FallSpeedModel, distance_to_share, fall_numbers, relaxation};
+use downpour::drop::fall_speed::{FallSpeedModel, distance_to_fraction, fall_numbers, relaxation};
 use downpour::drop::optics::{field_of_view, water_index_in_air};
 use downpour::drop::oscillation::{Fluids, FrequencyLaw, lamb_damping_time};
 
@@ -65,7 +65,7 @@ impl DropArguments {
             entry(
                 "fall_to_99_percent_m",
                 "fall to 99 % of the speed",
-                Computed(distance_to_share(fall.speed_m_s, 0.99)?, 3),
+                Computed(distance_to_fraction(fall.speed_m_s, 0.99)?, 3),
                 "m",
             ),
             entry("reynolds", "Reynolds number", Computed(fall.reynolds, 4), ""),

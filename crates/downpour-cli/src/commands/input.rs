@@ -95,7 +95,7 @@ pub(crate) fn say_cores(weather: &Weather, say: impl Fn(&str)) {
     let Ok(grid) = weather.wind_box.grid(DVec3::ZERO) else { return };
     let least = f64::from(grid.cell().max_element());
     for (number, part) in weather.wind.parts().iter().enumerate() {
-        if let Some(core) = part.least_core().filter(|&core| core < least) {
+        if let Some(core) = part.min_core_radius().filter(|&core| core < least) {
             let cells = format!("below a cell of [wind_field], {least} m: the rain feels it blurred");
             say(&format!("warning: {}: [[wind]] {number}: a core of {core} m is {cells}", weather.name));
         }

@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use downpour::drop::air::Air;
 use downpour::drop::distribution::{
-    DistributionOptions, DropSizeDistribution, DropSizeLaw, LIGHTEST_SHAPE_MM_H,
+    DistributionOptions, DropSizeDistribution, DropSizeLaw, MIN_SHAPE_RATE_MM_H,
 };
 
 use super::FallSpeedArgument;
@@ -112,7 +112,7 @@ impl RainArguments {
 
     /// The median volume diameter, in metres, of Marshall & Palmer's drops at this rate.
     fn usual_median(&self) -> Result<f64, Failure> {
-        let rate = self.rate.max(LIGHTEST_SHAPE_MM_H);
+        let rate = self.rate.max(MIN_SHAPE_RATE_MM_H);
         Ok(DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate)?.median_volume_diameter())
     }
 

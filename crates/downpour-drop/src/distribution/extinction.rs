@@ -1,10 +1,10 @@
 //! Extinction of light by rain, and visibility.
 //!
-//! Laws: a drop much larger than the wavelength takes twice its cross-section out of a beam (Q = 2: half is refracted
-//! and reflected, half is diffracted). With Marshall & Palmer's drops this is in closed form
-//! `pi N0 / Lambda^3 = 0.365 R^0.63` per km. An eye or a camera takes in most of the diffracted light, which goes on
-//! within a fraction of a degree: what it sees corresponds to Q of 1.1 to 1.5. Published laws are given by name. H.
-//! Koschmieder 1924: a black object is seen until its contrast is 2 %, so at `-ln 0.02 = 3.912` over the extinction.
+//! Laws: a drop much larger than the wavelength removes twice its cross-section from a beam (Q = 2: half is refracted
+//! and reflected, half is diffracted). For Marshall & Palmer's drops the closed form is
+//! `pi N0 / Lambda^3 = 0.365 R^0.63` per km. An eye or a camera receives most of the diffracted light, which
+//! continues within a fraction of a degree: its effective Q is 1.1 to 1.5. Published laws are available by name. H.
+//! Koschmieder 1924: a black object is visible until its contrast is 2 %, so at `-ln 0.02 = 3.912` over the extinction.
 //! Units: 1/m, metres, mm/h.
 
 use downpour_math::ops::f64 as ops;
@@ -13,19 +13,19 @@ use super::RATE_RANGE_MM_H;
 use crate::DropError;
 use crate::error::in_range;
 
-/// Light that a drop much larger than the wavelength takes out of a beam, over the light that falls on its cross-section.
+/// Extinction efficiency Q of a drop much larger than the wavelength.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ExtinctionEfficiency {
-    /// 1: light that is refracted and reflected. A camera keeps the diffracted light, which goes on within a few
+    /// 1: refracted and reflected light only. A camera receives the diffracted light, which continues within a few
     /// hundredths of a degree (1.22 wavelengths over the diameter: 0.04 degrees for 1 mm), below a pixel.
     #[default]
     Camera,
-    /// 2: diffracted light as well, as an instrument with a narrow beam and a far receiver loses it.
+    /// 2: diffracted light as well, as an instrument with a narrow beam and a distant receiver loses it.
     Total,
 }
 
 impl ExtinctionEfficiency {
-    /// The factor, often called Q.
+    /// Efficiency Q: extinction cross-section over geometric cross-section.
     #[must_use]
     pub fn factor(self) -> f64 {
         match self {
@@ -35,10 +35,10 @@ impl ExtinctionEfficiency {
     }
 }
 
-/// -ln 0.02: visibility times extinction.
+/// -ln 0.02: product of visibility and extinction.
 pub const KOSCHMIEDER: f64 = 3.912;
 
-/// Visibility in metres where light is weakened by `extinction` per metre; infinite for 0.
+/// Visibility in metres for an extinction in 1/m; infinite for 0.
 #[must_use]
 pub fn visibility(extinction: f64) -> f64 {
     if extinction > 0.0 { KOSCHMIEDER / extinction } else { f64::INFINITY }
@@ -48,7 +48,7 @@ pub fn visibility(extinction: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ExtinctionLaw {
-    /// Marshall & Palmer's drops, all of them, as published, at Q = 2: pi N0 / Lambda^3 = 0.365 R^0.63 per km.
+    /// Marshall & Palmer's full distribution as published, at Q = 2: pi N0 / Lambda^3 = 0.365 R^0.63 per km.
     MarshallPalmerGeometric,
     /// Y. Weber et al., "A multiscale model for rain rendering in real-time" (2015): 0.312 R^0.67 per km.
     Weber2015,
@@ -74,7 +74,7 @@ impl ExtinctionLaw {
     /// [`DropError::OutOfRange`] if the rate is not 0 to 500 mm/h.
     pub fn extinction(self, rate_mm_h: f64) -> Result<f64, DropError> {
         let r = in_range("rain rate", rate_mm_h, "mm/h", &RATE_RANGE_MM_H, 1.0, "0 to 500 mm/h")?;
-        // Decibels are tenths of powers of ten.
+        // A decibel is a tenth of a power of ten.
         let db = std::f64::consts::LN_10 / 10.0;
         let per_km = match self {
             Self::MarshallPalmerGeometric => {

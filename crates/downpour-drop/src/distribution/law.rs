@@ -1,12 +1,12 @@
-//! The published laws.
+//! Published drop size distributions.
 //!
-//! In their own units: N in 1/(m^3 mm), D in mm, R in mm/h.
+//! In the field's units: N in 1/(m^3 mm), D in mm, R in mm/h.
 //! - Marshall & Palmer 1948: `N = 8000 exp(-4.1 R^-0.21 D)`.
-//! - Best 1950: the share of liquid water in drops below D is `1 - exp(-(D/a)^2.25)`, `a = 1.30 R^0.232`, of
+//! - Best 1950: the fraction of liquid water in drops below D is `1 - exp(-(D/a)^2.25)`, `a = 1.30 R^0.232`, of
 //!   `67 R^0.846` mm^3 of water per m^3; so `N ~ D^-1.75` for small drops.
 //! - Gamma, Ulbrich 1983: `N = N0 D^mu exp(-Lambda D)`, with `Lambda D0 = 3.67 + mu`. Its rate, with the speeds
 //!   3.78 D^0.67 of Atlas & Ulbrich 1977 and all diameters, is `6 pi 1e-4 3.78 N0 Gamma(4.67 + mu) / Lambda^(4.67 + mu)`:
-//!   from it comes the parameter that is not given.
+//!   which gives the missing parameter.
 //! - Feingold & Levin 1986: lognormal, `N_T = 172 R^0.22`, `D_g = 0.72 R^0.23`, `s = 1.43 - 3.0e-4 R`.
 //! - Joss et al. 1968: `N = N0 exp(-Lambda D)` for drizzle, widespread rain and thunderstorms.
 
@@ -24,7 +24,7 @@ pub enum DropSizeLaw {
     /// J. S. Marshall, W. M. Palmer, J. Meteor. 5, 165 (1948): exponential.
     #[default]
     MarshallPalmer1948,
-    /// A. C. Best, Q. J. R. Meteor. Soc. 76, 16 (1950): the share of liquid water in drops below a size.
+    /// A. C. Best, Q. J. R. Meteor. Soc. 76, 16 (1950): fraction of liquid water in drops below a size.
     Best1950,
     /// Gamma (C. W. Ulbrich, J. Climate Appl. Meteor. 22, 1764, 1983), by its median volume diameter.
     GammaByMedian {
@@ -41,7 +41,7 @@ pub enum DropSizeLaw {
         intercept_m3_mm: f64,
     },
     /// G. Feingold, Z. Levin, J. Climate Appl. Meteor. 25, 1346 (1986): lognormal. UNVERIFIED: the constants were not
-    /// seen in print; they give back the rate to 9 %.
+    /// seen in print; they reproduce the rate to 9 %.
     FeingoldLevin1986,
     /// Joss et al. 1968, drizzle. UNVERIFIED: the constants were not seen in print.
     Joss1968Drizzle,
@@ -52,7 +52,7 @@ pub enum DropSizeLaw {
 }
 
 impl DropSizeLaw {
-    /// The name in files and arguments. Both forms of the gamma law are `gamma`.
+    /// Name in files and arguments. Both forms of the gamma law are `gamma`.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -66,7 +66,7 @@ impl DropSizeLaw {
         }
     }
 
-    /// The law at a rate above 0.
+    /// Size distribution of the law at a rate above 0.
     pub(super) fn spectrum(&self, rate_mm_h: f64) -> Result<Spectrum, DropError> {
         let r = rate_mm_h;
         let joss = |n0: f64, slope: f64| Spectrum::Gamma { n0, mu: 0.0, slope: slope * ops::pow(r, -0.21) };
@@ -120,7 +120,7 @@ impl DropSizeLaw {
     }
 }
 
-/// The rate of a gamma law with N0 = 1 and Lambda = 1.
+/// Rate of a gamma law with N0 = 1 and Lambda = 1.
 fn gamma_rate(mu: f64) -> f64 {
     6.0e-4 * PI * 3.78 * ops::gamma(4.67 + mu)
 }
@@ -129,7 +129,7 @@ fn checked_mu(mu: f64) -> Result<f64, DropError> {
     in_range("gamma shape mu", mu, "", &(-3.0..=8.0), 1.0, "-3 to 8")
 }
 
-/// A law at one rate, in the field's units.
+/// Parameters of a law at one rate, in the field's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Spectrum {
     /// `n0 D^mu exp(-slope D)`.
@@ -163,7 +163,7 @@ impl Spectrum {
         per_m3_mm * 1.0e3
     }
 
-    /// Whether the number of drops is finite without a smallest diameter.
+    /// True if the number of drops is finite without a smallest diameter.
     pub(super) fn has_finite_number(&self) -> bool {
         match *self {
             Self::Gamma { mu, .. } => mu > -1.0,
@@ -172,7 +172,7 @@ impl Spectrum {
         }
     }
 
-    /// The slope in 1/m, if the law is exponential.
+    /// Slope in 1/m, if the law is exponential.
     pub(super) fn exponential_slope(&self) -> Option<f64> {
         match *self {
             Self::Gamma { mu: 0.0, slope, .. } => Some(slope * 1.0e3),

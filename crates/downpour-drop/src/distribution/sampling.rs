@@ -1,10 +1,10 @@
-//! Drawing diameters.
+//! Sampling of diameters.
 //!
-//! A random word of 32 bits becomes a diameter; a larger word is a larger drop. The table of quantiles has cells that
-//! halve with the probability that is left on either side of the median, down to single words, so that the rare
+//! A random word of 32 bits becomes a diameter; a larger word gives a larger drop. The table of quantiles has cells
+//! that halve with the remaining probability on either side of the median, down to single words, so that the rare
 //! large drops are drawn as exactly as the many small ones: drops of a probability of 1e-9 carry water, and a
-//! second of heavy rain over a square kilometre has 1e10 drops. Finding the cell needs no transcendental function: it
-//! is the same bits on every device.
+//! second of heavy rain over a square kilometre has 1e10 drops. Finding the cell needs no transcendental function: the
+//! result has the same bits on every device.
 
 use downpour_math::ops;
 use downpour_shaders::drop::distribution::{
@@ -14,18 +14,18 @@ use downpour_shaders::drop::distribution::{
 
 use super::grid::Grid;
 
-/// Which drops are drawn.
+/// Population from which drops are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SampledBy {
-    /// Those in a volume: as N(D).
+    /// Drops in a volume: proportional to N(D).
     Number,
-    /// Those that cross a horizontal plane: as N(D) v(D). Large drops, which fall faster, cross more often.
+    /// Drops that cross a horizontal plane: proportional to N(D) v(D). Large drops fall faster and cross more often.
     Flux,
 }
 
 /// Quantiles of a distribution, from which diameters are drawn.
 ///
-/// The nodes are what a GPU needs: see [`distribution_table_position`].
+/// A GPU needs the nodes only: see [`distribution_table_position`].
 ///
 /// ```
 /// use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw, SampledBy};
@@ -43,30 +43,30 @@ pub struct SampleTable {
 }
 
 impl SampleTable {
-    /// How many nodes a table has.
+    /// Number of nodes of a table.
     pub const NODES: usize = 2 * DISTRIBUTION_SIDE_NODES as usize;
 
     pub(super) fn new(by: SampledBy, grid: &Grid, density: impl Fn(f64) -> f64) -> Self {
         let cumulative = grid.cumulate(density);
-        let share = |node: u32| (f64::from(words_before(node)) + 0.5) / 4_294_967_296.0;
-        let below = (0..DISTRIBUTION_SIDE_NODES).map(|i| cumulative.at_share_below(share(i)) as f32);
-        let above = (0..DISTRIBUTION_SIDE_NODES).map(|i| cumulative.at_share_above(share(i)) as f32);
+        let fraction = |node: u32| (f64::from(words_before(node)) + 0.5) / 4_294_967_296.0;
+        let below = (0..DISTRIBUTION_SIDE_NODES).map(|i| cumulative.at_fraction_below(fraction(i)) as f32);
+        let above = (0..DISTRIBUTION_SIDE_NODES).map(|i| cumulative.at_fraction_above(fraction(i)) as f32);
         Self { by, nodes: below.chain(above).collect() }
     }
 
-    /// Which drops are drawn.
+    /// Population of the table.
     #[must_use]
     pub fn by(&self) -> SampledBy {
         self.by
     }
 
-    /// The diameters at the nodes, in metres: from the smallest up to the median, then from the largest down to it.
+    /// Diameters at the nodes, in metres: from the smallest up to the median, then from the largest down to it.
     #[must_use]
     pub fn nodes(&self) -> &[f32] {
         &self.nodes
     }
 
-    /// The diameter of a word, in metres.
+    /// Diameter of a word, in metres.
     #[must_use]
     pub fn sample(&self, word: u32) -> f32 {
         let place = distribution_table_position(word);
@@ -75,7 +75,7 @@ impl SampleTable {
     }
 }
 
-/// How many words of a side come before a node.
+/// Number of words of a side before a node.
 fn words_before(node: u32) -> u32 {
     let cells = 1 << DISTRIBUTION_CELL_BITS;
     if node < 2 * cells {
@@ -84,16 +84,16 @@ fn words_before(node: u32) -> u32 {
     ((node % cells) + cells) << (node / cells - 1)
 }
 
-/// A place in the table: the diameter is between nodes `index` and `index + 1`, this share of the way.
+/// Position in the table, between the nodes `index` and `index + 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DistributionPosition {
-    /// The node below.
+    /// Index of the node below.
     pub index: u32,
-    /// The share of the way to the next, in [0, 1).
+    /// Fraction of the distance to the next node, in [0, 1).
     pub fraction: f32,
 }
 
-/// The place of a word in the table. Nodes 0 to `DISTRIBUTION_SIDE_NODES` - 1 go from the smallest drop up to the
+/// Position of a word in the table. Nodes 0 to `DISTRIBUTION_SIDE_NODES` - 1 go from the smallest drop up to the
 /// median; the others from the largest down to the median.
 #[inline]
 #[must_use]
@@ -111,14 +111,14 @@ pub fn distribution_table_position(word: u32) -> DistributionPosition {
     DistributionPosition { index, fraction: rest as f32 * scale }
 }
 
-/// The diameter between two nodes.
+/// Interpolates a diameter between two nodes.
 #[inline]
 #[must_use]
 pub fn distribution_lerp(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
 }
 
-/// A word as a probability in (0, 1), with all 32 bits where it is small. Exact.
+/// Maps a word to a probability in (0, 1), with all 32 bits where it is small. Exact.
 #[inline]
 #[must_use]
 pub fn distribution_probability(word: u32) -> f32 {
@@ -127,7 +127,8 @@ pub fn distribution_probability(word: u32) -> f32 {
     if word < DISTRIBUTION_RARE_WORDS { rare } else { coarse }
 }
 
-/// A diameter of the exponential law N ~ exp(-slope D) between two diameters. Metres and 1/m; the slope is positive.
+/// Draws a diameter of the exponential law N ~ exp(-slope D) between two diameters in metres. The slope in 1/m is
+/// positive.
 ///
 /// ```
 /// use downpour_drop::distribution::distribution_sample_exponential;
@@ -138,7 +139,7 @@ pub fn distribution_probability(word: u32) -> f32 {
 #[inline]
 #[must_use]
 pub fn distribution_sample_exponential(word: u32, slope: f32, smallest: f32, largest: f32) -> f32 {
-    // Share of the untruncated tail beyond the largest drop.
+    // Fraction of the untruncated tail beyond the largest drop.
     let cut = ops::exp(-(slope * (largest - smallest)));
     let tail = cut + distribution_probability(!word) * (1.0 - cut);
     // Not clamp(): its panic at smallest > largest would be reachable.
@@ -149,7 +150,7 @@ pub fn distribution_sample_exponential(word: u32, slope: f32, smallest: f32, lar
 mod tests {
     use super::*;
 
-    /// Every node has the words before it that the position of a word counts.
+    /// The words before each node agree with the positions of words.
     #[test]
     fn nodes_and_positions_agree() {
         for node in 0..DISTRIBUTION_SIDE_NODES - 1 {
@@ -159,7 +160,7 @@ mod tests {
             let last = distribution_table_position(words_before(node + 1) - 1);
             assert_eq!(last.index, node);
             assert!(last.fraction < 1.0);
-            // The other side is its mirror.
+            // The other side is mirrored.
             let mirror = distribution_table_position(!first);
             assert_eq!((mirror.index, mirror.fraction), (node + DISTRIBUTION_SIDE_NODES, 0.0));
         }
@@ -174,7 +175,7 @@ mod tests {
         for word in (0..u32::MAX - 100_003).step_by(100_003) {
             let p = distribution_probability(word);
             assert!(p >= before, "{word}");
-            // At most half of a coarse step away from the word's own probability.
+            // The difference to the word's own probability is at most half of a coarse step.
             let exact = (f64::from(word) + 0.5) / 4_294_967_296.0;
             assert!((f64::from(p) - exact).abs() <= 0.5 / 8_388_608.0, "{word}: {p} for {exact}");
             before = p;

@@ -7,13 +7,13 @@
 //! 3. d <= 7 mm, flattened drops: `Bo = 4 drho g d^2 / (3 sigma)`, `N_P = sigma^3 rho^2 / (eta^4 drho g)`,
 //!    `Re = N_P^(1/6) exp(polynomial of ln(Bo N_P^(1/6)))`;
 //!
-//! and `v = eta Re / (rho d)`. All that does not depend on d is worked out once, for a drop of 1 mm.
+//! and `v = eta Re / (rho d)`. All terms that do not depend on d are computed once, for a drop of 1 mm.
 
 use bytemuck::{Pod, Zeroable};
 use downpour_math::ops;
 use downpour_shaders::drop::fall_speed::{
-    FALL_SPEED_BEARD_FLATTENED, FALL_SPEED_BEARD_LARGEST_MM, FALL_SPEED_BEARD_SPHERE,
-    FALL_SPEED_BEARD_SPHERE_MM, FALL_SPEED_BEARD_STOKES_MM,
+    FALL_SPEED_BEARD_FLATTENED, FALL_SPEED_BEARD_MAX_MM, FALL_SPEED_BEARD_SPHERE, FALL_SPEED_BEARD_SPHERE_MM,
+    FALL_SPEED_BEARD_STOKES_MM,
 };
 
 use crate::air::{Air, STANDARD_GRAVITY};
@@ -22,13 +22,13 @@ const SPHERE: [f64; 7] =
     [-3.186_57, 0.992_696, -1.531_93e-3, -9.870_59e-4, -5.788_78e-4, 8.551_76e-5, -3.278_15e-6];
 const FLATTENED: [f64; 6] = [-5.000_15, 5.237_78, -2.049_14, 0.475_294, -0.054_281_9, 2.384_49e-3];
 
-/// What `ln(Bo N_P^(1/6))` is counted from in f32.
-const CENTRE: f64 = 5.0;
+/// Expansion point of the polynomial in `ln(Bo N_P^(1/6))` in f32.
+const CENTER: f64 = 5.0;
 
-/// Where the regimes meet, and the end of the law, in mm.
+/// Joints of the regimes, and the upper end of the law, in mm.
 pub(super) const JOINTS_MM: [f64; 3] = [0.019, 1.07, 7.0];
 
-/// The constants of the law in one kind of air, for a drop of 1 mm.
+/// Constants of the law in one kind of air, for a drop of 1 mm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beard {
     stokes: f64,
@@ -60,7 +60,7 @@ impl Beard {
         }
     }
 
-    /// Speed in m/s of a drop of `diameter_mm`, from 0.
+    /// Speed in m/s of a drop of `diameter_mm`, which may be 0.
     pub(super) fn speed(&self, diameter_mm: f64) -> f64 {
         let [stokes_end, sphere_end, largest] = JOINTS_MM;
         let d = diameter_mm.min(largest);
@@ -80,7 +80,7 @@ fn polynomial(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// What the models need of the air and of the water, for shaders and their twins. Eight numbers, 32 bytes.
+/// Properties of air and water that the models need, for shaders and their twins. Eight numbers, 32 bytes.
 ///
 /// ```
 /// use downpour_drop::air::Air;
@@ -99,18 +99,18 @@ pub struct FallSpeedAir {
     pub davies_log: f32,
     /// Speed at Re = 1 of a drop of 1 mm, m/s.
     pub davies_speed: f32,
-    /// ln(Bo `N_P`^(1/6)) of a drop of 1 mm, less 5.
+    /// ln(Bo `N_P`^(1/6)) of a drop of 1 mm, minus 5.
     pub bond_log: f32,
     /// Speed at Re = `N_P`^(1/6) of a drop of 1 mm, m/s.
     pub bond_speed: f32,
     /// (rho0/rho)^0.4, for the tables and the fits.
     pub density_factor: f32,
-    /// 0: fills the last place.
+    /// Padding, 0.
     pub unused: f32,
 }
 
 impl FallSpeedAir {
-    /// The numbers of `air`, worked out in f64.
+    /// Computes the constants of `air` in f64.
     #[must_use]
     pub fn new(air: &Air) -> Self {
         let beard = Beard::new(air);
@@ -119,7 +119,7 @@ impl FallSpeedAir {
             slip_mm: beard.slip_mm as f32,
             davies_log: beard.davies_log as f32,
             davies_speed: beard.davies_speed as f32,
-            bond_log: (beard.bond_log - CENTRE) as f32,
+            bond_log: (beard.bond_log - CENTER) as f32,
             bond_speed: beard.bond_speed as f32,
             density_factor: air.speed_factor() as f32,
             unused: 0.0,
@@ -130,7 +130,7 @@ impl FallSpeedAir {
 /// Terminal speed in m/s by Beard 1976. Diameter in metres, 0 to 9e-3.
 #[must_use]
 pub fn fall_speed_beard_1976(diameter_m: f32, air: FallSpeedAir) -> f32 {
-    let d = (diameter_m * 1000.0).clamp(0.0, FALL_SPEED_BEARD_LARGEST_MM);
+    let d = (diameter_m * 1000.0).clamp(0.0, FALL_SPEED_BEARD_MAX_MM);
     if d < FALL_SPEED_BEARD_STOKES_MM {
         return air.stokes * d * (d + air.slip_mm);
     }
@@ -156,7 +156,7 @@ pub fn fall_speed_beard_sphere(diameter_mm: f32, air: FallSpeedAir) -> f32 {
 }
 
 /// Beard 1976, third regime, 1.07 to 7 mm: flattened drops, by Bond and physical property number. Diameter in mm. The
-/// polynomial is about 5, the middle of its range: about 0 its terms of either sign would cost a digit.
+/// polynomial is expanded about 5, the middle of its range: about 0 its terms of either sign would cost a digit.
 #[must_use]
 pub fn fall_speed_beard_flattened(diameter_mm: f32, air: FallSpeedAir) -> f32 {
     let x = air.bond_log + 2.0 * ops::ln(diameter_mm);
@@ -176,15 +176,15 @@ mod tests {
     #[test]
     fn both_precisions_have_the_same_coefficients() {
         assert_eq!(SPHERE.map(|c| c as f32), FALL_SPEED_BEARD_SPHERE);
-        // The published polynomial about 5: synthetic division by x - 5, again and again.
+        // The published polynomial about 5: repeated synthetic division by x - 5.
         let mut shifted = FLATTENED;
         for first in 0..shifted.len() {
             for i in (first..shifted.len() - 1).rev() {
-                shifted[i] += CENTRE * shifted[i + 1];
+                shifted[i] += CENTER * shifted[i + 1];
             }
         }
         assert_eq!(shifted.map(|c| c as f32), FALL_SPEED_BEARD_FLATTENED);
-        let joints = [FALL_SPEED_BEARD_STOKES_MM, FALL_SPEED_BEARD_SPHERE_MM, FALL_SPEED_BEARD_LARGEST_MM];
+        let joints = [FALL_SPEED_BEARD_STOKES_MM, FALL_SPEED_BEARD_SPHERE_MM, FALL_SPEED_BEARD_MAX_MM];
         assert_eq!(JOINTS_MM.map(|d| d as f32), joints);
     }
 }

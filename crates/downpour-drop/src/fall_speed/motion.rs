@@ -1,4 +1,4 @@
-//! How fast a drop takes its terminal speed, and the numbers that tell its flow.
+//! Relaxation of a drop to its terminal speed, and the dimensionless numbers of its flow.
 //!
 //! Law: quadratic drag, `dv/dt = g - g |u| u / v_t^2` with u the slip between drop and air. About the steady
 //! fall this relaxes with `v_t / (2g)` along the fall and `v_t / g` across it; from rest, after a fall of z,
@@ -16,11 +16,11 @@ use crate::air::{Air, STANDARD_GRAVITY};
 pub struct Relaxation {
     /// Along the fall: v / (2g).
     pub vertical_s: f64,
-    /// Across it, as towards a wind: v / g.
+    /// Across the fall, as towards a wind: v / g.
     pub horizontal_s: f64,
 }
 
-/// The relaxation times of a drop whose terminal speed is `speed_m_s`.
+/// Relaxation times of a drop whose terminal speed is `speed_m_s`.
 ///
 /// ```
 /// let r = downpour_drop::fall_speed::relaxation(6.49);
@@ -32,38 +32,40 @@ pub fn relaxation(speed_m_s: f64) -> Relaxation {
     Relaxation { vertical_s: 0.5 * horizontal_s, horizontal_s }
 }
 
-/// The relaxation times of the slip, in seconds: along the fall, and across it.
+/// Relaxation times of the slip, in seconds: along the fall, and across it.
 #[must_use]
 pub fn fall_speed_relaxation(speed: f32) -> [f32; 2] {
     let across = speed / FALL_SPEED_GRAVITY;
     [0.5 * across, across]
 }
 
-/// How many metres a drop of terminal speed `terminal_m_s` falls from rest until it has `share` of that speed.
+/// Distance in metres that a drop of terminal speed `terminal_m_s` falls from rest until it has a `fraction` of that
+/// speed.
 ///
 /// ```
-/// let z = downpour_drop::fall_speed::distance_to_share(6.49, 0.99)?;
+/// let z = downpour_drop::fall_speed::distance_to_fraction(6.49, 0.99)?;
 /// assert!((z - 8.4).abs() < 0.05);
 /// # Ok::<(), downpour_drop::DropError>(())
 /// ```
 ///
 /// # Errors
-/// [`DropError::OutOfRange`] if the share is not at least 0 and below 1.
-pub fn distance_to_share(terminal_m_s: f64, share: f64) -> Result<f64, DropError> {
-    let share = checked_share(share)?;
-    Ok(-terminal_m_s * terminal_m_s / (2.0 * STANDARD_GRAVITY) * ops::ln_1p(-share * share))
+/// [`DropError::OutOfRange`] if the fraction is not at least 0 and below 1.
+pub fn distance_to_fraction(terminal_m_s: f64, fraction: f64) -> Result<f64, DropError> {
+    let fraction = checked_fraction(fraction)?;
+    Ok(-terminal_m_s * terminal_m_s / (2.0 * STANDARD_GRAVITY) * ops::ln_1p(-fraction * fraction))
 }
 
-/// How many seconds a drop of terminal speed `terminal_m_s` falls from rest until it has `share` of that speed.
+/// Time in seconds that a drop of terminal speed `terminal_m_s` falls from rest until it has a `fraction` of that
+/// speed.
 ///
 /// # Errors
-/// [`DropError::OutOfRange`] if the share is not at least 0 and below 1.
-pub fn time_to_share(terminal_m_s: f64, share: f64) -> Result<f64, DropError> {
-    let share = checked_share(share)?;
-    Ok(0.5 * terminal_m_s / STANDARD_GRAVITY * (ops::ln_1p(share) - ops::ln_1p(-share)))
+/// [`DropError::OutOfRange`] if the fraction is not at least 0 and below 1.
+pub fn time_to_fraction(terminal_m_s: f64, fraction: f64) -> Result<f64, DropError> {
+    let fraction = checked_fraction(fraction)?;
+    Ok(0.5 * terminal_m_s / STANDARD_GRAVITY * (ops::ln_1p(fraction) - ops::ln_1p(-fraction)))
 }
 
-/// The speed in m/s of a drop of terminal speed `terminal_m_s` that fell `distance_m` metres from rest.
+/// Speed in m/s of a drop of terminal speed `terminal_m_s` that fell `distance_m` metres from rest.
 #[must_use]
 pub fn speed_after_fall(terminal_m_s: f64, distance_m: f64) -> f64 {
     if terminal_m_s <= 0.0 {
@@ -73,30 +75,30 @@ pub fn speed_after_fall(terminal_m_s: f64, distance_m: f64) -> f64 {
     terminal_m_s * (-ops::exp_m1(exponent)).sqrt()
 }
 
-fn checked_share(share: f64) -> Result<f64, DropError> {
-    if (0.0..1.0).contains(&share) {
-        return Ok(share);
+fn checked_fraction(fraction: f64) -> Result<f64, DropError> {
+    if (0.0..1.0).contains(&fraction) {
+        return Ok(fraction);
     }
-    let quantity = "share of the terminal speed";
-    Err(DropError::OutOfRange { quantity, found: share, unit: "", allowed: "at least 0, below 1" })
+    let quantity = "fraction of the terminal speed";
+    Err(DropError::OutOfRange { quantity, found: fraction, unit: "", allowed: "at least 0, below 1" })
 }
 
-/// The numbers of the flow round a drop at its terminal speed v, with d the diameter.
+/// Dimensionless numbers of the flow around a drop at its terminal speed v, with d the diameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallNumbers {
     /// Terminal speed v in m/s.
     pub speed_m_s: f64,
-    /// Inertia to viscosity of the air: rho v d / eta.
+    /// Reynolds number, inertia to viscosity of the air: rho v d / eta.
     pub reynolds: f64,
-    /// Inertia of the air to surface tension: rho v^2 d / sigma. (A splash has the density of water instead.)
+    /// Weber number, inertia of the air to surface tension: rho v^2 d / sigma. (A splash uses the density of water.)
     pub weber: f64,
-    /// Weight to surface tension: `(rho_w - rho) g d^2 / sigma`. (Beard's Bo is 4/3 of it.)
+    /// Bond number, weight to surface tension: `(rho_w - rho) g d^2 / sigma`. (Beard's Bo is 4/3 of it.)
     pub bond: f64,
     /// Drag coefficient on the cross-section of the sphere of equal volume: `4 (rho_w - rho) g d / (3 rho v^2)`.
     pub drag_coefficient: f64,
 }
 
-/// The numbers of the flow round a drop of `diameter_m` metres that falls in `air`.
+/// Numbers of the flow around a drop of `diameter_m` metres that falls in `air`.
 ///
 /// ```
 /// use downpour_drop::air::Air;

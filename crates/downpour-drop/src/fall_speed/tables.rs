@@ -1,4 +1,4 @@
-//! The tables of Gunn & Kinzer 1949 and of Rousseau 2006: straight lines between their points.
+//! Tables of Gunn & Kinzer 1949 and of Rousseau 2006, linearly interpolated.
 //!
 //! Both are declared in whole micrometres and cm/s, which f32 and f64 hold exactly.
 
@@ -19,12 +19,12 @@ pub(super) fn rousseau(d: f64) -> f64 {
     between(d, &FALL_SPEED_ROUSSEAU_DIAMETERS_UM, &FALL_SPEED_ROUSSEAU_SPEEDS_CM_S)
 }
 
-/// The diameters of Gunn & Kinzer's table in mm.
+/// Diameters of Gunn & Kinzer's table in mm.
 pub(super) fn gunn_kinzer_diameters() -> Vec<f64> {
     FALL_SPEED_GUNN_KINZER_DIAMETERS_UM.iter().map(|&d| f64::from(d) / 1.0e3).collect()
 }
 
-/// The diameters of Rousseau's table in mm.
+/// Diameters of Rousseau's table in mm.
 pub(super) fn rousseau_diameters() -> Vec<f64> {
     FALL_SPEED_ROUSSEAU_DIAMETERS_UM.iter().map(|&d| f64::from(d) / 1.0e3).collect()
 }
@@ -37,9 +37,9 @@ fn between<const N: usize>(d: f64, diameters: &[f32; N], speeds: &[f32; N]) -> f
     }
     let above = (1..N).find(|&i| d <= point(i).0).unwrap_or(N - 1);
     let ((d0, v0), (d1, v1)) = (point(above - 1), point(above));
-    let share = ((d - d0) / (d1 - d0)).min(1.0);
-    // In this form both ends give the table's own number.
-    v0 * (1.0 - share) + v1 * share
+    let fraction = ((d - d0) / (d1 - d0)).min(1.0);
+    // In this form both ends give exactly the number of the table.
+    v0 * (1.0 - fraction) + v1 * fraction
 }
 
 /// Gunn & Kinzer 1949, table 2, in m/s. Diameter in metres, 0 to 9e-3. As d^2 below 0.078 mm, constant above 5.8 mm.
@@ -47,8 +47,8 @@ fn between<const N: usize>(d: f64, diameters: &[f32; N], speeds: &[f32; N]) -> f
 pub fn fall_speed_gunn_kinzer_1949(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1.0e6).clamp(0.0, FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[34]);
     if d < FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[0] {
-        let share = d / FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[0];
-        return FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[0] * share * share * 0.01 * air.density_factor;
+        let fraction = d / FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[0];
+        return FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[0] * fraction * fraction * 0.01 * air.density_factor;
     }
     let mut i = 1;
     while i < 34 && d > FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[i] {
@@ -56,8 +56,8 @@ pub fn fall_speed_gunn_kinzer_1949(diameter_m: f32, air: FallSpeedAir) -> f32 {
     }
     let d0 = FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[i - 1];
     let v0 = FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[i - 1];
-    let share = (d - d0) / (FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[i] - d0);
-    (v0 + (FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[i] - v0) * share) * 0.01 * air.density_factor
+    let fraction = (d - d0) / (FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[i] - d0);
+    (v0 + (FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[i] - v0) * fraction) * 0.01 * air.density_factor
 }
 
 /// Rousseau 2006, table 2, in m/s. Diameter in metres, 0 to 9e-3. As d^2 below 0.2 mm, constant above 8 mm.
@@ -65,8 +65,8 @@ pub fn fall_speed_gunn_kinzer_1949(diameter_m: f32, air: FallSpeedAir) -> f32 {
 pub fn fall_speed_rousseau_2006(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1.0e6).clamp(0.0, FALL_SPEED_ROUSSEAU_DIAMETERS_UM[22]);
     if d < FALL_SPEED_ROUSSEAU_DIAMETERS_UM[0] {
-        let share = d / FALL_SPEED_ROUSSEAU_DIAMETERS_UM[0];
-        return FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[0] * share * share * 0.01 * air.density_factor;
+        let fraction = d / FALL_SPEED_ROUSSEAU_DIAMETERS_UM[0];
+        return FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[0] * fraction * fraction * 0.01 * air.density_factor;
     }
     let mut i = 1;
     while i < 22 && d > FALL_SPEED_ROUSSEAU_DIAMETERS_UM[i] {
@@ -74,6 +74,6 @@ pub fn fall_speed_rousseau_2006(diameter_m: f32, air: FallSpeedAir) -> f32 {
     }
     let d0 = FALL_SPEED_ROUSSEAU_DIAMETERS_UM[i - 1];
     let v0 = FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[i - 1];
-    let share = (d - d0) / (FALL_SPEED_ROUSSEAU_DIAMETERS_UM[i] - d0);
-    (v0 + (FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[i] - v0) * share) * 0.01 * air.density_factor
+    let fraction = (d - d0) / (FALL_SPEED_ROUSSEAU_DIAMETERS_UM[i] - d0);
+    (v0 + (FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[i] - v0) * fraction) * 0.01 * air.density_factor
 }

@@ -1,9 +1,9 @@
 //! Angles of rays through a sphere, and its mean reflectance.
 //!
-//! Law: a ray that meets a sphere at the angle i (impact parameter b = sin i in radii) goes on within at r, with
-//! sin i = n sin r. Without internal reflection it leaves turned by 2 (i - r), at most 180 - 2 asin(1/n) degrees at
+//! Law: a ray that meets a sphere at the angle i (impact parameter b = sin i in radii) continues inside at r, with
+//! sin i = n sin r. Without internal reflection it leaves deflected by 2 (i - r), at most 180 - 2 asin(1/n) degrees at
 //! grazing incidence, so a drop shows a field of twice that: 165.57 degrees for n = 1.333. (The 150 degrees of
-//! Rousseau 2006, 4.3.1, come from rounding asin(1/1.33) = 48.75 to 48.) With k internal reflections it is turned
+//! Rousseau 2006, 4.3.1, come from rounding asin(1/1.33) = 48.75 to 48.) With k internal reflections it is deflected
 //! by k pi + 2 i - 2 (k + 1) r, which is stationary, a rainbow, at cos i = sqrt((n^2 - 1) / (k (k + 2))).
 //! Angles in radians; n is the index of water against air.
 
@@ -16,7 +16,7 @@ use super::optics_fresnel;
 use crate::DropError;
 use crate::error::in_range;
 
-/// The angle within water, to the normal, from which light is totally reflected: asin(1/n).
+/// Critical angle of total reflection within water, to the normal: asin(1/n).
 ///
 /// # Errors
 /// [`DropError::OutOfRange`] if the index is not 1 to 4.
@@ -24,7 +24,7 @@ pub fn critical_angle(index: f64) -> Result<f64, DropError> {
     Ok(ops::asin(1.0 / checked_index(index)?))
 }
 
-/// The angle of incidence in air at which no light is reflected within the plane of incidence: atan(n).
+/// Brewster angle, the angle of incidence in air without reflection within the plane of incidence: atan(n).
 ///
 /// # Errors
 /// [`DropError::OutOfRange`] if the index is not 1 to 4.
@@ -32,7 +32,7 @@ pub fn brewster_angle(index: f64) -> Result<f64, DropError> {
     Ok(ops::atan(checked_index(index)?))
 }
 
-/// The largest angle by which a sphere turns a ray without reflection: pi - 2 asin(1/n).
+/// Largest deviation of a ray by a sphere without reflection: pi - 2 asin(1/n).
 ///
 /// # Errors
 /// [`DropError::OutOfRange`] if the index is not 1 to 4.
@@ -40,7 +40,7 @@ pub fn maximal_deviation(index: f64) -> Result<f64, DropError> {
     Ok(PI - 2.0 * critical_angle(index)?)
 }
 
-/// The full angle of the scene that is seen through a spherical drop: twice the maximal deviation.
+/// Full angle of the scene that is seen through a spherical drop: twice the maximal deviation.
 ///
 /// ```
 /// let field = downpour_drop::optics::field_of_view(1.333)?;
@@ -54,7 +54,7 @@ pub fn field_of_view(index: f64) -> Result<f64, DropError> {
     Ok(2.0 * maximal_deviation(index)?)
 }
 
-/// The angle by which a sphere turns a ray that passes it without reflection, at `impact` radii from its axis.
+/// Deviation of a ray that passes a sphere without reflection, at `impact` radii from its axis.
 ///
 /// # Errors
 /// [`DropError::OutOfRange`] if the index is not 1 to 4, or the impact parameter not 0 to 1.
@@ -64,18 +64,18 @@ pub fn deviation(impact: f64, index: f64) -> Result<f64, DropError> {
     Ok(2.0 * (ops::asin(b) - ops::asin(b / index)))
 }
 
-/// A rainbow: where the rays with k internal reflections gather.
+/// A rainbow: the stationary deviation of rays with k internal reflections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rainbow {
     /// Angle of incidence of these rays.
     pub incidence: f64,
-    /// The whole angle by which they are turned; more than half a turn from the second order.
+    /// Total deviation; more than half a turn from the second order.
     pub deviation: f64,
-    /// Radius of the bow round the point opposite the sun.
+    /// Radius of the bow around the antisolar point.
     pub radius: f64,
 }
 
-/// The rainbow of rays with `reflections` internal reflections: 1 for the primary, 2 for the secondary.
+/// Computes the rainbow of `reflections` internal reflections: 1 for the primary, 2 for the secondary.
 ///
 /// ```
 /// let bow = downpour_drop::optics::rainbow(4.0 / 3.0, 1)?;
@@ -84,8 +84,8 @@ pub struct Rainbow {
 /// ```
 ///
 /// # Errors
-/// [`DropError::OutOfRange`] if there are no reflections, or the index is not from 1 to the number of reflections
-/// plus 1 (at most 4): there is no bow then.
+/// [`DropError::OutOfRange`] if `reflections` is 0, or the index is not from 1 to `reflections` + 1 (at most 4):
+/// then there is no bow.
 pub fn rainbow(index: f64, reflections: u32) -> Result<Rainbow, DropError> {
     let k = f64::from(reflections);
     in_range("reflections of a rainbow", k, "", &(1.0..=f64::from(u32::MAX)), 1.0, "1 or more")?;
@@ -104,8 +104,8 @@ pub fn rainbow(index: f64, reflections: u32) -> Result<Rainbow, DropError> {
     Ok(Rainbow { incidence, deviation, radius: (PI - turned).abs() })
 }
 
-/// The share of diffuse light that water reflects, which is also the share of parallel light that a sphere reflects at
-/// its first surface: the mean of Fresnel's reflectance over the disc. 0.0664 for n = 1.333.
+/// Fraction of diffuse light that water reflects, which is also the fraction of parallel light that a sphere reflects
+/// at its first surface: the mean of Fresnel's reflectance over the disc. 0.0664 for n = 1.333.
 ///
 /// # Errors
 /// [`DropError::OutOfRange`] if the index is not 1 to 4.

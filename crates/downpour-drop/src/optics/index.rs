@@ -3,7 +3,7 @@
 //! Laws: water, IAPWS R9-97, "Release on the Refractive Index of Ordinary Water Substance" (1997), against vacuum,
 //! 0.2 to 1.1 um and from -12 C; air, P. E. Ciddor, Applied Optics 35, 1566 (1996), dry with 450 ppm CO2 at 15 C and
 //! 1013.25 hPa, the refractivity scaled with the density. Moisture would lower the index of air by 2e-6 at most.
-//! The table of Hale & Querry 1973 is rounded and low in the blue: it is not used.
+//! The table of Hale & Querry 1973 is rounded, and too low in the blue: it is not used.
 
 use std::ops::RangeInclusive;
 
@@ -12,10 +12,10 @@ use crate::air::Air;
 use crate::error::in_range;
 use crate::water::{self, CELSIUS_ZERO_K};
 
-/// The index of water in air that programs use: sodium light (589.3 nm) at 20 C, rounded from 1.33298.
+/// Commonly used index of water in air: sodium light (589.3 nm) at 20 C, rounded from 1.33298.
 pub const WATER_INDEX: f64 = 1.333;
 
-/// The wavelengths, in metres, at which red, green and blue light is refracted: 611, 549 and 464 nm, the dominant
+/// Wavelengths, in metres, at which red, green and blue light is refracted: 611, 549 and 464 nm, the dominant
 /// wavelengths of the primaries of ITU-R BT.709 (sRGB) against D65, for the CIE 1931 observer.
 pub const RGB_WAVELENGTHS_M: [f64; 3] = [611.0e-9, 549.0e-9, 464.0e-9];
 
@@ -94,7 +94,7 @@ pub fn air_index(wavelength_m: f64, air: &Air) -> Result<f64, DropError> {
     Ok(1.0 + refractivity * density)
 }
 
-/// Index of water against the air round it, both of one temperature, at a wavelength in metres.
+/// Index of water against the surrounding air, both at one temperature, at a wavelength in metres.
 ///
 /// ```
 /// use downpour_drop::{air::Air, optics::water_index_in_air};
@@ -109,7 +109,7 @@ pub fn water_index_in_air(wavelength_m: f64, air: &Air) -> Result<f64, DropError
     Ok(water_index(wavelength_m, air.temperature_c())? / air_index(wavelength_m, air)?)
 }
 
-/// Indices of water against the air round it for red, green and blue ([`RGB_WAVELENGTHS_M`]).
+/// Indices of water against the surrounding air for red, green and blue ([`RGB_WAVELENGTHS_M`]).
 ///
 /// ```
 /// use downpour_drop::{air::Air, optics::rgb_indices};

@@ -1,19 +1,20 @@
-//! Light that a sphere of water scatters: geometric optics, order by order.
+//! Scattering of light by a sphere of water: geometric optics, order by order.
 //!
 //! Law: parallel light meets a sphere; a ray with the impact parameter b (in radii) meets its surface at i = asin b and
-//! goes on within at r = asin(b / n). Order p is what leaves after p - 1 internal reflections (0: reflected at the
-//! outside). It carries R, or (1 - R)^2 R^(p - 1), per polarisation, since each meeting is at the angle of the first;
-//! the plane of incidence is the same for all, so that polarisations do not mix. It is turned by
-//! 2 i - 2 p r + (p - 1) pi. The part 2 b db of the light on the disc goes into the ring 2 pi sin(theta) dtheta: what
-//! a direction gets is the differential cross-section over the disc, (dsigma/dOmega) / (pi a^2), in 1/sr. Its integral
-//! over the sphere is the order's share; all orders together have 1.
+//! continues inside at r = asin(b / n). Order p leaves after p - 1 internal reflections (0: reflected at the
+//! outside). It carries R, or (1 - R)^2 R^(p - 1), per polarisation, since each interaction is at the angle of the
+//! first; the plane of incidence is the same for all, so that polarisations do not mix. The deviation is
+//! 2 i - 2 p r + (p - 1) pi. The part 2 b db of the light on the disc goes into the ring 2 pi sin(theta) dtheta. The
+//! light in a direction is the differential cross-section over the disc, (dsigma/dOmega) / (pi a^2), in 1/sr. Its
+//! integral over the sphere is the order's fraction of the light; all orders together have 1.
 //!
-//! Orders 0 to 3 hold 99.5 % of the light. Not in it: diffraction (a drop of 1 mm: within 0.04 degrees of the light's own
-//! direction), interference (supernumerary bows), flattening. At a rainbow the cross-section of geometric optics is
-//! infinite; here it is the mean over an interval of the angle and over the light's disc, and no light is lost.
+//! Orders 0 to 3 hold 99.5 % of the light. Not included: diffraction (a drop of 1 mm: within 0.04 degrees of the
+//! light's direction), interference (supernumerary bows), flattening. At a rainbow the cross-section of geometric
+//! optics is infinite; here it is the mean over an interval of the angle and over the light's disc, and no light is
+//! lost.
 //!
 //! - [`scattered_ray`]: one ray;
-//! - [`scattered_share`]: the share of an order;
+//! - [`scattered_fraction`]: fraction of the light in an order;
 //! - [`SphereScattering`]: cross-sections and impact parameters by scattering angle.
 
 mod bins;
@@ -30,32 +31,32 @@ use crate::error::in_range;
 
 pub use table::{SCATTERING_PATHS, ScatteringPath, SphereScattering};
 
-/// Orders that are tabulated: 0 to 3.
+/// Number of tabulated orders: 0 to 3.
 pub const SCATTERING_ORDERS: u32 = 4;
 
-/// Diameter of the sun's disc as seen from the earth, radians: 0.53 degrees.
+/// Angular diameter of the sun seen from the earth, radians: 0.53 degrees.
 pub const SUN_DIAMETER: f64 = 0.009_250;
 
-/// A ray that a sphere has scattered.
+/// A ray scattered by a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScatteredRay {
-    /// Share of the ray's light that leaves with this order, 0 to 1.
-    pub share: f64,
-    /// The angle by which it is turned, radians: towards the sphere's axis is positive, and whole turns count.
+    /// Fraction of the ray's light that leaves with this order, 0 to 1.
+    pub fraction: f64,
+    /// Signed deviation, radians: positive towards the sphere's axis; whole turns count.
     pub turn: f64,
-    /// The angle between the directions before and after, 0 to pi.
+    /// Scattering angle between the directions before and after, 0 to pi.
     pub angle: f64,
-    /// Where it leaves, as the viewer sees it, in radii from the middle of the disc: positive on the side of the light.
-    pub place: f64,
+    /// Exit position as the viewer sees it, in radii from the middle of the disc: positive on the side of the light.
+    pub exit_position: f64,
 }
 
-/// What becomes of a ray at `impact` radii from a sphere's axis, in an order from 0 on.
+/// Traces a ray at `impact` radii from a sphere's axis, in an order from 0.
 ///
 /// ```
 /// use downpour_drop::optics::{WATER_INDEX, scattered_ray};
 /// // Straight through the middle, less two reflections of 2 %.
 /// let ray = scattered_ray(0.0, WATER_INDEX, 1)?;
-/// assert!((ray.share - 0.9597).abs() < 1e-4 && ray.angle == 0.0);
+/// assert!((ray.fraction - 0.9597).abs() < 1e-4 && ray.angle == 0.0);
 /// # Ok::<(), downpour_drop::DropError>(())
 /// ```
 ///
@@ -68,42 +69,42 @@ pub fn scattered_ray(impact: f64, index: f64, order: u32) -> Result<ScatteredRay
     Ok(ray(ops::asin(b), n, order))
 }
 
-/// The share of the light on a sphere that leaves it with an order from 0 on.
+/// Fraction of the light on a sphere that leaves it with an order from 0.
 ///
 /// ```
-/// use downpour_drop::optics::{WATER_INDEX, scattered_share};
-/// let through = scattered_share(WATER_INDEX, 1)?;
+/// use downpour_drop::optics::{WATER_INDEX, scattered_fraction};
+/// let through = scattered_fraction(WATER_INDEX, 1)?;
 /// assert!((through - 0.8837).abs() < 1e-4);
 /// # Ok::<(), downpour_drop::DropError>(())
 /// ```
 ///
 /// # Errors
 /// [`DropError::OutOfRange`] if the index is not 1 to 4, or the order above 1000.
-pub fn scattered_share(index: f64, order: u32) -> Result<f64, DropError> {
+pub fn scattered_fraction(index: f64, order: u32) -> Result<f64, DropError> {
     scattered_ray(0.0, index, order)?;
-    // Over the angle of incidence the reflectance has no steep place: 2 b db = sin(2 i) di.
-    let share = |i: f64| ops::sin(2.0 * i) * ray(i, index, order).share;
-    Ok(GaussLegendre::new(64).integrate(0.0, 0.5 * PI, share))
+    // As a function of the angle of incidence the reflectance is nowhere steep: 2 b db = sin(2 i) di.
+    let fraction = |i: f64| ops::sin(2.0 * i) * ray(i, index, order).fraction;
+    Ok(GaussLegendre::new(64).integrate(0.0, 0.5 * PI, fraction))
 }
 
-/// A ray with the angle of incidence `i`.
+/// Traces a ray with the angle of incidence `i`.
 fn ray(i: f64, index: f64, order: u32) -> ScatteredRay {
     let b = ops::sin(i);
     let r = ops::asin((b / index).min(1.0));
     let reflected = optics_fresnel_polarised(ops::cos(i), index);
-    let share = 0.5 * reflected.map(|share| carried(share, order)).iter().sum::<f64>();
+    let fraction = 0.5 * reflected.map(|fraction| carried(fraction, order)).iter().sum::<f64>();
     let p = f64::from(order);
     let turn = 2.0 * i - 2.0 * p * r + (p - 1.0) * PI;
-    // A turn from the axis ends on the light's side of the disc, one across it on the other.
-    let place = if ops::sin(turn) > 0.0 { -b } else { b };
-    ScatteredRay { share, turn, angle: ops::acos(ops::cos(turn).clamp(-1.0, 1.0)), place }
+    // A deviation from the axis ends on the light's side of the disc, one across it on the other.
+    let exit_position = if ops::sin(turn) > 0.0 { -b } else { b };
+    ScatteredRay { fraction, turn, angle: ops::acos(ops::cos(turn).clamp(-1.0, 1.0)), exit_position }
 }
 
-/// The share that leaves with an order, where each meeting reflects `reflected`.
+/// Fraction that leaves with an order, where each interaction reflects `reflected`.
 fn carried(reflected: f64, order: u32) -> f64 {
     if order == 0 {
         return reflected;
     }
-    let within = (1..order).fold(1.0, |share, _| share * reflected);
+    let within = (1..order).fold(1.0, |fraction, _| fraction * reflected);
     (1.0 - reflected) * (1.0 - reflected) * within
 }

@@ -1,7 +1,7 @@
-//! A drop of any shape that oscillates.
+//! Oscillation of a drop of any shape.
 //!
 //! The radius of the shape is multiplied by the factor of equation 2 and divided by the cube root of the
-//! volume that comes out. With `rho = r / a` of the shape, that volume is the mean over the sphere of `rho^3
+//! resulting volume. With `rho = r / a` of the shape, that volume is the mean over the sphere of `rho^3
 //! (1 + a + b cos(phi))^3`, a polynomial in s2 and s3 whose five coefficients are moments of the shape.
 
 use downpour_math::ops;
@@ -70,7 +70,7 @@ impl Moments {
         1.0 + s2 * (3.0 * m1 + s2 * (3.0 * m2 + s2 * m3)) + 1.5 * s3 * s3 * (n0 + s2 * n1)
     }
 
-    /// The coefficients of the same.
+    /// Coefficients of the volume polynomial.
     fn polynomial(&self) -> [f64; 5] {
         let [m1, m2, m3] = self.p20;
         let [n0, n1] = self.p31;
@@ -79,46 +79,46 @@ impl Moments {
 }
 
 impl OscillatingDrop {
-    /// A shape that oscillates. The diameters of the two should be the same.
+    /// Creates an oscillating shape. The diameters of the two should be the same.
     #[must_use]
     pub fn new(shape: DropShape, oscillation: Oscillation) -> Self {
         Self { shape, oscillation, moments: Moments::of(&shape) }
     }
 
-    /// A sphere that oscillates, as equation 2 has it (but for the volume, which is kept).
+    /// Creates an oscillating sphere, as in equation 2 (but with constant volume).
     ///
     /// # Errors
-    /// If the diameter is not in 1 um to 9 mm.
+    /// [`DropError::OutOfRange`] if the diameter is not 1 um to 9 mm.
     pub fn about_sphere(diameter_m: f64, oscillation: Oscillation) -> Result<Self, DropError> {
         Ok(Self::new(DropShape::sphere(diameter_m)?, oscillation))
     }
 
-    /// The shape about which it oscillates.
+    /// Shape at rest.
     #[must_use]
     pub fn shape(&self) -> &DropShape {
         &self.shape
     }
 
-    /// Its oscillation.
+    /// Oscillation of the shape.
     #[must_use]
     pub fn oscillation(&self) -> &Oscillation {
         &self.oscillation
     }
 
     /// `[a, b, c, d, e]`, with which the volume over that of the shape at rest is
-    /// `1 + s2 (a + s2 (b + s2 c)) + s3^2 (d + s2 e)` before it is kept.
+    /// `1 + s2 (a + s2 (b + s2 c)) + s3^2 (d + s2 e)` before the correction.
     #[must_use]
     pub fn volume_polynomial(&self) -> [f64; 5] {
         self.moments.polynomial()
     }
 
-    /// What the radius is multiplied with to keep the volume, for displacements (s2, s3).
+    /// Factor on the radius that keeps the volume, for displacements (s2, s3).
     #[must_use]
     pub fn scale(&self, displacement: [f64; 2]) -> f64 {
         1.0 / ops::f64::cbrt(self.moments.volume(displacement))
     }
 
-    /// The drop at a time in s; `age` is the time in s since the disturbance, for one that is damped.
+    /// The drop at a time in s; `age` is the time in s since the disturbance, used by a damped oscillation.
     #[must_use]
     pub fn at(&self, time: f64, age: f64) -> DropInstant {
         let displacement = self.oscillation.displacement(time, age);
@@ -142,7 +142,7 @@ pub struct DropInstant {
 }
 
 impl DropInstant {
-    /// `[s2, s3, scale]`: the displacements, and what the radius is multiplied with to keep the volume.
+    /// `[s2, s3, scale]`: displacements, and the factor on the radius that keeps the volume.
     #[must_use]
     pub fn state(&self) -> [f64; 3] {
         self.state
@@ -163,9 +163,9 @@ impl DropInstant {
         [self.radius(half, phi), self.radius(half, phi + std::f64::consts::PI)]
     }
 
-    /// The factor of equation 2 without the scale, and its derivatives by x and by the horizontal part h =
-    /// sin(theta) cos(phi) of the direction: 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h. No root, so that the poles
-    /// are smooth.
+    /// Factor of equation 2 without the scale, and its derivatives by x and by the horizontal part h =
+    /// sin(theta) cos(phi) of the direction: 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h. No square root is
+    /// involved, so the poles are smooth.
     fn factor(&self, x: f64, h: f64) -> [f64; 3] {
         let [s2, s3, _] = self.state;
         let lobe = 1.5 * s3 * (1.0 - 5.0 * x * x);
@@ -184,7 +184,7 @@ impl DropSurface for DropInstant {
         let x = -direction[1];
         let [rho, slope] = drop_shape_radius_slope(&self.shape.coefficients(), x);
         let [f, by_x, by_h] = self.factor(x, direction[0]);
-        // With r = rho(x) f(x, h), the gradient of |P| - r is p less the part of grad(ln r) across p, and
+        // With r = rho(x) f(x, h), the gradient of |P| - r is p minus the part of grad(ln r) across p, and
         // across p the gradient of x is -(up + x p), that of h is (+X) - h p.
         let (q, k) = (slope / rho + by_x / f, by_h / f);
         let along = 1.0 + x * q + direction[0] * k;

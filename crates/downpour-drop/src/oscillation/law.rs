@@ -1,4 +1,4 @@
-//! How fast a drop oscillates and how fast that dies away.
+//! Frequency and damping of drop oscillations.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +7,7 @@ use crate::air::Air;
 use crate::shape::check_diameter;
 use crate::water::kinematic_viscosity;
 
-/// What the water and the air of a drop are like. SI units.
+/// Properties of the water and the air of a drop. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fluids {
     /// Surface tension, N/m.
@@ -29,14 +29,14 @@ impl Fluids {
         kinematic_viscosity: 1.0034e-6,
     };
 
-    /// Water as warm as the air that it falls through.
+    /// Water at the temperature of the air that it falls through.
     #[must_use]
     pub fn in_air(air: &Air) -> Self {
         Self {
             surface_tension: air.water_surface_tension(),
             water_density: air.water_density(),
             air_density: air.density(),
-            // Air is never outside the range of water's laws.
+            // Air is never outside the range of the laws of water.
             kinematic_viscosity: kinematic_viscosity(air.temperature_c())
                 .unwrap_or(Self::AT_20_C.kinematic_viscosity),
         }
@@ -56,13 +56,13 @@ impl Fluids {
     }
 }
 
-/// The frequency of a small oscillation of degree n.
+/// Law of the frequency of a small oscillation of degree n.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FrequencyLaw {
     /// Lord Rayleigh 1879, a drop in empty space: `omega^2 = n (n - 1) (n + 2) sigma / (rho r0^3)`.
     #[default]
     Rayleigh1879,
-    /// Lamb, with the air that moves along:
+    /// Lamb, including the inertia of the air:
     /// `omega^2 = (n - 1) n (n + 1) (n + 2) sigma / (((n + 1) rho + n rho_air) r0^3)`; 0.04 % lower.
     LambTwoFluid,
 }
@@ -79,8 +79,8 @@ impl FrequencyLaw {
     /// ```
     ///
     /// # Errors
-    /// If n is not in 2 to 100, the diameter not in 1 um to 9 mm, or a property of the fluids far from any
-    /// liquid's.
+    /// [`DropError::OutOfRange`] if n is not 2 to 100, the diameter not 1 um to 9 mm, or a property of the fluids far
+    /// from any liquid's.
     pub fn angular_frequency(self, n: u32, diameter_m: f64, fluids: &Fluids) -> Result<f64, DropError> {
         check_mode(n)?;
         check_diameter(diameter_m, 1.0e-6..=9.0e-3, "0.001 to 9")?;
@@ -94,7 +94,7 @@ impl FrequencyLaw {
         Ok((stiffness / (density * r0 * r0 * r0)).sqrt())
     }
 
-    /// The same in Hz.
+    /// Frequency in Hz.
     ///
     /// # Errors
     /// As [`FrequencyLaw::angular_frequency`].
@@ -103,7 +103,7 @@ impl FrequencyLaw {
     }
 }
 
-/// Lamb: `tau_n = r0^2 / ((n - 1) (2 n + 1) nu)`, the time in s in which viscosity brings the amplitude of a
+/// Lamb: `tau_n = r0^2 / ((n - 1) (2 n + 1) nu)`, the time in s in which viscosity reduces the amplitude of a
 /// mode of degree n to 1/e.
 ///
 /// # Errors
@@ -116,7 +116,7 @@ pub fn lamb_damping_time(n: u32, diameter_m: f64, fluids: &Fluids) -> Result<f64
     Ok(r0 * r0 / ((n - 1.0) * (2.0 * n + 1.0) * fluids.kinematic_viscosity))
 }
 
-/// The modes of degree 0 and 1 change the volume and move the drop: they do not oscillate.
+/// Checks the degree of a mode: degrees 0 and 1 change the volume and move the drop, and do not oscillate.
 fn check_mode(n: u32) -> Result<(), DropError> {
     if (2..=100).contains(&n) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! The oscillation of one drop in time.
+//! Oscillation of one drop in time.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use super::{DropOscillation, Fluids, FrequencyLaw, drop_oscillation_phase, lamb_
 use crate::DropError;
 use crate::shape::check_diameter;
 
-/// How far the modes (2,0) and (3,1) displace the surface, over r0.
+/// Amplitudes of the modes (2,0) and (3,1): displacement of the surface over r0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Amplitudes {
     a20: f64,
@@ -23,10 +23,11 @@ impl Amplitudes {
     /// Their second pair, with a stronger oblate-prolate mode: (0.2, 0.1).
     pub const GARG_NAYAR_OBLATE: Self = Self { a20: 0.2, a31: 0.1 };
 
-    /// Any pair.
+    /// Creates a pair of amplitudes.
     ///
     /// # Errors
-    /// If one is not in 0 to 0.3. (P31 reaches 2.07: an amplitude of 0.3 moves the surface by 62 % of r0.)
+    /// [`DropError::OutOfRange`] if one is not 0 to 0.3. (P31 reaches 2.07: an amplitude of 0.3 moves the surface by
+    /// 62 % of r0.)
     pub fn new(a20: f64, a31: f64) -> Result<Self, DropError> {
         for (quantity, found) in [("amplitude of mode (2,0)", a20), ("amplitude of mode (3,1)", a31)] {
             if !(0.0..=0.3).contains(&found) {
@@ -44,9 +45,9 @@ impl Amplitudes {
     }
 }
 
-/// The oscillation of one drop. Pairs are of the modes (2,0) and (3,1).
+/// Oscillation of one drop. Pairs hold the modes (2,0) and (3,1).
 ///
-/// It goes on undamped, as that of a falling drop does, which the air keeps shaking; [`Oscillation::damped`]
+/// It is undamped by default, as that of a falling drop, which the air keeps exciting; [`Oscillation::damped`]
 /// is for a drop that was disturbed once.
 ///
 /// ```
@@ -73,11 +74,11 @@ pub struct Oscillation {
 }
 
 impl Oscillation {
-    /// The oscillation of a drop of this diameter, with phases of 0.
+    /// Creates the oscillation of a drop of this diameter, with phases of 0.
     ///
     /// # Errors
-    /// If the diameter is not in 0.05 to 9 mm (a smaller drop is still within 0.2 ms, and its frequencies do
-    /// not fit the integers of the shader), or a property of the fluids is far from any liquid's.
+    /// [`DropError::OutOfRange`] if the diameter is not 0.05 to 9 mm (a smaller drop is at rest within 0.2 ms, and its
+    /// frequencies exceed the integers of the shader), or a property of the fluids is far from any liquid's.
     pub fn new(
         diameter_m: f64,
         amplitudes: Amplitudes,
@@ -95,26 +96,26 @@ impl Oscillation {
         Ok(Self { amplitudes, frequency, damping_time, phase: [0.0; 2], is_damped: false })
     }
 
-    /// The same with the phases of a drop's id.
+    /// The same oscillation with phases derived from a drop's id.
     #[must_use]
     pub fn of_drop(self, seed: [u32; 2], id: u32) -> Self {
         Self { phase: drop_oscillation_phase(seed, id).map(f64::from), ..self }
     }
 
-    /// The same with these phases, in turns. A phase that is not finite counts as 0.
+    /// The same oscillation with these phases, in turns. A phase that is not finite counts as 0.
     #[must_use]
     pub fn with_phases(self, turns: [f64; 2]) -> Self {
         let phase = turns.map(|p| if p.is_finite() { p.rem_euclid(1.0) } else { 0.0 });
         Self { phase, ..self }
     }
 
-    /// The same, dying away by viscosity.
+    /// The same oscillation, damped by viscosity.
     #[must_use]
     pub fn damped(self) -> Self {
         Self { is_damped: true, ..self }
     }
 
-    /// The amplitudes at age 0.
+    /// Amplitudes at age 0.
     #[must_use]
     pub fn amplitudes(&self) -> Amplitudes {
         self.amplitudes
@@ -126,7 +127,7 @@ impl Oscillation {
         self.frequency
     }
 
-    /// Lamb's times in s, whether it is damped or not.
+    /// Lamb's damping times in s, also of an undamped oscillation.
     #[must_use]
     pub fn damping_time(&self) -> [f64; 2] {
         self.damping_time
@@ -138,8 +139,8 @@ impl Oscillation {
         self.phase
     }
 
-    /// (s2, s3) at a time in s; `age` is the time in s since the disturbance from which damping counts, and
-    /// is of no effect without it.
+    /// (s2, s3) at a time in s; `age` is the time in s since the disturbance from which damping counts, and has no
+    /// effect on an undamped oscillation.
     #[must_use]
     pub fn displacement(&self, time: f64, age: f64) -> [f64; 2] {
         let amplitudes = self.amplitudes.pair();
@@ -151,7 +152,7 @@ impl Oscillation {
         })
     }
 
-    /// The same oscillation for a shader. Frequencies are rounded to 2^-16 Hz.
+    /// Converts the oscillation for a shader. Frequencies are rounded to 2^-16 Hz.
     #[must_use]
     pub fn gpu(&self) -> DropOscillation {
         DropOscillation {

@@ -1,4 +1,4 @@
-//! One drop at rest in its own shape, and what can be measured on it.
+//! Equilibrium shape of one drop, and its measures.
 
 use std::f64::consts::PI;
 
@@ -11,12 +11,12 @@ use super::{
 };
 use crate::DropError;
 
-/// Nodes that integrate a polynomial of degree 47 exactly: the fourth power of the radius has degree 40.
+/// Number of nodes that integrates a polynomial of degree 47 exactly: the fourth power of the radius has degree 40.
 const NODES: usize = 24;
 
-/// The shape of a drop: radius as a function of the angle from the downward axis.
+/// Shape of a drop: radius as a function of the angle from the downward axis.
 ///
-/// Lengths are in metres, heights are positive upwards, and the origin is that of the table: the centre of
+/// Lengths are in metres, heights are positive upwards, and the origin is that of the table: the center of
 /// mass within 1.4 % of the radius ([`DropShape::centroid_height`]). The volume is that of the sphere of the
 /// diameter: the coefficients are scaled to it, by less than 0.02 % at the rows of the table.
 ///
@@ -34,39 +34,39 @@ pub struct DropShape {
 }
 
 impl DropShape {
-    /// The equilibrium shape of Chuang & Beard 1990.
+    /// Creates the equilibrium shape of Chuang & Beard 1990.
     ///
     /// # Errors
-    /// If the diameter (of the sphere of equal volume) is not in 1 um to 9 mm.
+    /// [`DropError::OutOfRange`] if the diameter (of the sphere of equal volume) is not 1 um to 9 mm.
     pub fn new(diameter_m: f64) -> Result<Self, DropError> {
         Self::with_table(ShapeTable::ChuangBeard1990, diameter_m)
     }
 
-    /// The shape of a table, scaled to the volume of the sphere.
+    /// Creates the shape of a table, scaled to the volume of the sphere.
     ///
     /// # Errors
-    /// If the diameter is not in 1 um to 9 mm.
+    /// [`DropError::OutOfRange`] if the diameter is not 1 um to 9 mm.
     pub fn with_table(table: ShapeTable, diameter_m: f64) -> Result<Self, DropError> {
         // The tables need no validation: their smallest radius is above half of the sphere's.
         Ok(Self::scaled(diameter_m, table.coefficients(diameter_m)?))
     }
 
-    /// A sphere.
+    /// Creates a sphere.
     ///
     /// # Errors
-    /// If the diameter is not in 1 um to 9 mm.
+    /// [`DropError::OutOfRange`] if the diameter is not 1 um to 9 mm.
     pub fn sphere(diameter_m: f64) -> Result<Self, DropError> {
         check_shape_diameter(diameter_m)?;
         Ok(Self { diameter: diameter_m, coefficients: [0.0; COEFFICIENTS] })
     }
 
-    /// A shape of one's own: `c_0` to `c_10` of `1 + sum c_n cos(n theta)`, scaled to the volume of the
+    /// Creates a shape from coefficients: `c_0` to `c_10` of `1 + sum c_n cos(n theta)`, scaled to the volume of the
     /// sphere.
     ///
     /// # Errors
-    /// If the diameter is not in 1 um to 9 mm, a coefficient is not in -10 to 10, or the radius is not
-    /// positive in every direction. (It is sampled at 2049 angles, and between two of them it cannot fall by
-    /// more than half their distance times `sum n |c_n|`: what is nearer to zero than that is refused as
+    /// [`DropError::OutOfRange`] if the diameter is not 1 um to 9 mm, a coefficient is not -10 to 10, or the radius is
+    /// not positive in every direction. (It is sampled at 2049 angles, and between two of them it cannot fall by
+    /// more than half their distance times `sum n |c_n|`: a radius nearer to zero than that is rejected as
     /// well.)
     pub fn from_coefficients(diameter_m: f64, c: [f64; COEFFICIENTS]) -> Result<Self, DropError> {
         check_shape_diameter(diameter_m)?;
@@ -87,7 +87,7 @@ impl DropShape {
         Ok(Self::scaled(diameter_m, c))
     }
 
-    /// The shape, scaled to the volume of the sphere.
+    /// Scales the shape to the volume of the sphere.
     fn scaled(diameter: f64, c: [f64; COEFFICIENTS]) -> Self {
         let scale = 1.0 / ops::f64::cbrt(volume_ratio(&c));
         let mut coefficients = c.map(|c| c * scale);
@@ -114,7 +114,7 @@ impl DropShape {
         self.coefficients
     }
 
-    /// The same for a shader.
+    /// Coefficients for a shader.
     #[must_use]
     pub fn gpu_coefficients(&self) -> DropShapeCoefficients {
         self.coefficients.into()
@@ -126,14 +126,14 @@ impl DropShape {
         self.equivalent_radius() * drop_shape_radius(&self.coefficients, ops::f64::cos(theta))
     }
 
-    /// The point of the meridian at `theta`: distance from the axis and height above the origin, in metres.
+    /// Point of the meridian at `theta`: distance from the axis and height above the origin, in metres.
     #[must_use]
     pub fn profile(&self, theta: f64) -> [f64; 2] {
         let r = self.radius(theta);
         [r * ops::f64::sin(theta), -r * ops::f64::cos(theta)]
     }
 
-    /// The outward unit normal at `theta`, in the plane of the meridian: away from the axis, and up.
+    /// Outward unit normal at `theta`, in the plane of the meridian: away from the axis, and up.
     #[must_use]
     pub fn normal(&self, theta: f64) -> [f64; 2] {
         let direction = [ops::f64::sin(theta), -ops::f64::cos(theta), 0.0];
@@ -141,25 +141,25 @@ impl DropShape {
         [away, up]
     }
 
-    /// The largest distance of the surface from the axis, in metres.
+    /// Largest distance of the surface from the axis, in metres.
     #[must_use]
     pub fn max_half_width(&self) -> f64 {
         largest(|theta| self.profile(theta)[0])
     }
 
-    /// How far the drop reaches below the origin, in metres.
+    /// Distance from the origin to the lowest point of the drop, in metres.
     #[must_use]
     pub fn extent_down(&self) -> f64 {
         largest(|theta| -self.profile(theta)[1])
     }
 
-    /// How far the drop reaches above the origin, in metres.
+    /// Distance from the origin to the highest point of the drop, in metres.
     #[must_use]
     pub fn extent_up(&self) -> f64 {
         largest(|theta| self.profile(theta)[1])
     }
 
-    /// Height over width.
+    /// Axis ratio: height over width.
     #[must_use]
     pub fn axis_ratio(&self) -> f64 {
         (self.extent_down() + self.extent_up()) / (2.0 * self.max_half_width())
@@ -172,7 +172,7 @@ impl DropShape {
         4.0 / 3.0 * PI * a * a * a * volume_ratio(&self.coefficients)
     }
 
-    /// Surface in square metres.
+    /// Surface area in square metres.
     #[must_use]
     pub fn surface_area(&self) -> f64 {
         let a = self.equivalent_radius();
@@ -184,7 +184,7 @@ impl DropShape {
         2.0 * PI * a * a * GaussLegendre::new(64).integrate(-1.0, 1.0, integrand)
     }
 
-    /// Height of the centre of mass above the origin, in metres.
+    /// Height of the center of mass above the origin, in metres.
     #[must_use]
     pub fn centroid_height(&self) -> f64 {
         let moment = GaussLegendre::new(NODES).integrate(-1.0, 1.0, |x| {
@@ -203,7 +203,7 @@ fn volume_ratio(c: &[f64; COEFFICIENTS]) -> f64 {
     })
 }
 
-/// The largest value of a smooth function of theta in [0, pi].
+/// Largest value of a smooth function of theta in [0, pi].
 fn largest(f: impl Fn(f64) -> f64) -> f64 {
     let steps = 256;
     let step = PI / f64::from(steps);

@@ -1,9 +1,9 @@
-//! The printed coefficients, what is corrected in them, and what stands between their rows.
+//! Printed coefficients, their corrections, and interpolation between their rows.
 
 use super::{COEFFICIENTS, check_shape_diameter};
 use crate::DropError;
 
-/// One row of a table: the coefficients of one drop.
+/// One row of a table: coefficients of one drop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeRow {
     /// Diameter of the sphere of equal volume, in metres.
@@ -21,22 +21,22 @@ impl ShapeRow {
     }
 }
 
-/// An entry that differs from what was printed or copied, and why.
+/// Correction of an entry that differs from a printed or copied one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
     /// Diameter of the row, in metres.
     pub diameter_m: f64,
-    /// Which coefficient.
+    /// Index of the coefficient.
     pub n: usize,
-    /// What is found in print or in codes, in units of 1e-4.
+    /// Value in print or in published code, in units of 1e-4.
     pub found: i16,
-    /// What is used by [`ShapeTable::ChuangBeard1990`], in units of 1e-4.
+    /// Value that [`ShapeTable::ChuangBeard1990`] uses, in units of 1e-4.
     pub used: i16,
-    /// Where the found value stands, and what speaks against it.
+    /// Source of the found value, and the reason against it.
     pub reason: &'static str,
 }
 
-/// Which coefficients.
+/// Table of shape coefficients.
 ///
 /// ```
 /// use downpour_drop::shape::ShapeTable;
@@ -51,7 +51,7 @@ pub enum ShapeTable {
     ChuangBeard1990,
     /// The four rows of Rousseau et al. 2006, table 1, as printed there (their radii of 0.5, 1, 3 and 4.5 mm
     /// are diameters of 1, 2, 6 and 9 mm): the paper's form, kept with its misprint in the last row. Between
-    /// 2 and 6 mm the interpolated shape is only a likeness of the full table's.
+    /// 2 and 6 mm the interpolated shape only resembles that of the full table.
     Rousseau2006,
 }
 
@@ -85,7 +85,7 @@ static ROUSSEAU_2006: [ShapeRow; 4] = [
 ];
 
 impl ShapeTable {
-    /// The entries of [`ShapeTable::ChuangBeard1990`] that are not what some source has.
+    /// Entries of [`ShapeTable::ChuangBeard1990`] that differ from those of some source.
     pub const CORRECTIONS: [Correction; 3] = [
         Correction {
             diameter_m: 5.5e-3,
@@ -113,7 +113,7 @@ impl ShapeTable {
         },
     ];
 
-    /// The rows, by rising diameter.
+    /// Rows, by ascending diameter.
     #[must_use]
     pub fn rows(self) -> &'static [ShapeRow] {
         match self {
@@ -122,14 +122,14 @@ impl ShapeTable {
         }
     }
 
-    /// The coefficients of a drop, not normalised: exactly the row's at a row, a cubic between rows.
+    /// Coefficients of a drop, not normalised: exactly the row's at a row, a cubic between rows.
     ///
     /// Each coefficient is C1 in the diameter: a cubic Hermite curve whose slope at a row is that of the
     /// parabola through the row and its neighbours. Below 1 mm all coefficients are proportional to d^2, as
     /// the Bond number `rho g d^2 / sigma` is, and the curve starts with that slope at 1 mm.
     ///
     /// # Errors
-    /// If the diameter is not in 1 um to 9 mm.
+    /// [`DropError::OutOfRange`] if the diameter is not 1 um to 9 mm.
     pub fn coefficients(self, diameter_m: f64) -> Result<[f64; COEFFICIENTS], DropError> {
         check_shape_diameter(diameter_m)?;
         Ok(interpolate(self.rows(), diameter_m))
@@ -142,7 +142,7 @@ fn interpolate(rows: &[ShapeRow], diameter_m: f64) -> [f64; COEFFICIENTS] {
         let u = diameter_m / first.diameter_m;
         return first.coefficients().map(|c| c * (u * u));
     }
-    // The last row also closes its interval from above.
+    // The last row also ends its interval.
     let i = rows.partition_point(|row| row.diameter_m <= diameter_m).min(rows.len() - 1) - 1;
     let (before, after) = (&rows[i], &rows[i + 1]);
     let h = after.diameter_m - before.diameter_m;
@@ -161,7 +161,7 @@ fn slopes(rows: &[ShapeRow], i: usize) -> [f64; COEFFICIENTS] {
         std::array::from_fn(|n| (c1[n] - c0[n]) / (rows[i + 1].diameter_m - rows[i].diameter_m))
     };
     if i == 0 {
-        // The slope of c d^2.
+        // Slope of c d^2.
         return rows[0].coefficients().map(|c| 2.0 * c / rows[0].diameter_m);
     }
     // The parabola through three rows; at the last row, the parabola of the last three.
@@ -180,8 +180,8 @@ fn slopes(rows: &[ShapeRow], i: usize) -> [f64; COEFFICIENTS] {
 mod tests {
     use super::*;
 
-    /// A row that is left out is found again from the others: within 5 units of 1e-4, but for `c_1` at 8 mm,
-    /// where leaving it out opens a gap of 2 mm at a turn of the curve.
+    /// A row that is left out is recovered from the others: within 5 units of 1e-4, except for `c_1` at 8 mm,
+    /// where leaving it out opens a gap of 2 mm at an inflection of the curve.
     #[test]
     fn rows_left_out_are_predicted() {
         let mut worst = (0.0, 0, 0.0);
@@ -202,7 +202,7 @@ mod tests {
         assert!(worst.0 < 5.0e-4, "(error, n, d) = {worst:?}");
     }
 
-    /// The corrected entries fit their columns, the found ones do not.
+    /// The corrected entries fit their columns, the printed ones do not.
     #[test]
     fn corrections_are_smoother() {
         for correction in &ShapeTable::CORRECTIONS[..2] {

@@ -1,4 +1,4 @@
-//! Dry weather, the lightest rain, and numbers that are refused.
+//! Dry weather, the lightest rain, and rejected numbers.
 
 use approx::assert_relative_eq;
 use downpour_drop::DropError;
@@ -41,13 +41,13 @@ fn dry_weather_is_dry() {
     }
 }
 
-/// Even a rate that is almost nothing is carried, and by fewer drops of the same kind.
+/// A rate close to zero is carried too, by fewer drops of the same distribution.
 #[test]
 fn the_lightest_rain_is_carried() {
     for law in LAWS {
         for rate in [5e-324, f64::MIN_POSITIVE, 1e-30, 1e-6, 0.05] {
             let rain = DropSizeDistribution::new(law, rate).unwrap();
-            // The least f64 rounds away.
+            // The smallest f64 is rounded away.
             assert_relative_eq!(rain.integrated_rate_mm_h(), rate, max_relative = 1e-9, epsilon = 1e-300);
             let tenth = DropSizeDistribution::new(law, 0.1).unwrap();
             if rate > 1e-300 {
@@ -82,15 +82,15 @@ fn numbers_outside_are_errors() {
         (1e-9, 8e-3),
     ] {
         let options = DistributionOptions {
-            smallest_diameter_m: smallest,
-            largest_diameter_m: largest,
+            min_diameter_m: smallest,
+            max_diameter_m: largest,
             ..DistributionOptions::default()
         };
         assert!(DropSizeDistribution::with_options(MarshallPalmer1948, 1.0, &options).is_err());
         let rain = DropSizeDistribution::new(MarshallPalmer1948, 1.0).unwrap();
         assert!(rain.restricted_to(smallest, largest).is_err());
     }
-    // From 0 only where the drops can be counted.
+    // A range from 0 is allowed only for laws with a finite number of drops.
     let from_nothing = with_speeds(0.0, FallSpeedModel::default());
     assert!(DropSizeDistribution::with_options(FeingoldLevin1986, 1.0, &from_nothing).is_ok());
     assert!(DropSizeDistribution::with_options(Best1950, 1.0, &from_nothing).is_err());
@@ -109,7 +109,7 @@ fn numbers_outside_are_errors() {
     }
 }
 
-/// The corners of the gamma law's parameters all carry their rate.
+/// Extreme parameters of the gamma law carry their rate.
 #[test]
 fn every_gamma_law_that_is_accepted_carries_its_rate() {
     for mu in [-3.0, -1.0, 0.0, 8.0] {
@@ -122,7 +122,7 @@ fn every_gamma_law_that_is_accepted_carries_its_rate() {
             }
             for intercept_m3_mm in [1e-2, 1e3, 1e10] {
                 let law = DropSizeLaw::GammaByIntercept { mu, intercept_m3_mm };
-                // Drops too small to be rain are refused.
+                // Drops too small to be rain are rejected.
                 let Ok(rain) = DropSizeDistribution::new(law, rate) else {
                     assert!(intercept_m3_mm > 1e3 || mu < 0.0, "{law:?} at {rate} mm/h");
                     continue;

@@ -1,10 +1,10 @@
-//! Published laws of extinction and sight.
+//! Published laws of extinction and visibility.
 
 use approx::assert_relative_eq;
 use downpour_drop::distribution::{ExtinctionLaw, KOSCHMIEDER, visibility};
 use downpour_math::ops::f64 as ops;
 
-/// R, and per km: Marshall & Palmer, Weber, Carbonneau, Atlas; km of sight by the first two.
+/// R, and per km: Marshall & Palmer, Weber, Carbonneau, Atlas; visibility in km by the first two.
 #[rustfmt::skip]
 const EXTINCTION: [[f64; 7]; 9] = [
     [0.25, 0.1523, 0.1232, 0.0979, 0.1044, 25.693, 31.741],

@@ -1,4 +1,4 @@
-//! What the laws carry, against published integrals, closed forms and an independent rule.
+//! Integrals of the laws, against published values, closed forms and an independent rule.
 
 use approx::assert_relative_eq;
 use downpour_drop::air::Air;
@@ -13,7 +13,7 @@ use DropSizeLaw::{
 
 use crate::{LAWS, simpson, with_speeds};
 
-/// The point of it all: the drops carry the rate that was asked.
+/// The main property: the drops carry the requested rate.
 #[test]
 fn every_law_carries_the_rate_that_was_asked() {
     let mut worst = 0.0f64;
@@ -102,7 +102,7 @@ fn published_laws_have_their_tabulated_integrals() {
         let rain =
             DropSizeDistribution::published(law, rate, &with_speeds(1e-3, FallSpeedModel::GunnKinzer1949))
                 .unwrap();
-        // Best's drops without end are counted from 0.05 mm.
+        // Best's unbounded number of drops is counted from 0.05 mm.
         let counted = if law == Best1950 { rain.restricted_to(0.05e-3, 8e-3).unwrap() } else { rain.clone() };
         let grams = rain.liquid_water() * 1e3 * 1000.0 / Air::standard().water_density();
         for (found, expected, digit) in [
@@ -117,11 +117,11 @@ fn published_laws_have_their_tabulated_integrals() {
     }
 }
 
-/// Marshall & Palmer at 10 mm/h, all drops, as published: the closed forms.
+/// Marshall & Palmer at 10 mm/h, full distribution as published: the closed forms.
 #[test]
 fn marshall_and_palmer_at_ten() {
     let options =
-        DistributionOptions { largest_diameter_m: 9e-3, ..with_speeds(0.0, FallSpeedModel::GunnKinzer1949) };
+        DistributionOptions { max_diameter_m: 9e-3, ..with_speeds(0.0, FallSpeedModel::GunnKinzer1949) };
     let rain = DropSizeDistribution::published(MarshallPalmer1948, 10.0, &options).unwrap();
     let slope = rain.exponential_slope().unwrap() * 1e-3;
     assert!((slope - 2.528).abs() < 5e-4, "{slope}");
@@ -155,7 +155,7 @@ fn gamma_has_its_median_volume_diameter() {
         let options = with_speeds(0.0, FallSpeedModel::AtlasUlbrich1977);
         let rain = DropSizeDistribution::published(law, 10.0, &options).unwrap();
         assert_relative_eq!(rain.median_volume_diameter(), 1.0e-3, max_relative = 7e-4);
-        // With the speeds that its closed form has, the law carries its rate.
+        // With the speeds of its closed form, the law carries its rate.
         assert_relative_eq!(rain.integrated_rate_mm_h(), 10.0, max_relative = 1e-4);
         let n0 = rain.concentration(1e-3) * 1e-3 * ops::exp(3.67 + mu);
         let other = DropSizeLaw::GammaByIntercept { mu, intercept_m3_mm: n0 };
@@ -171,12 +171,12 @@ fn gamma_has_its_median_volume_diameter() {
     assert!((slope - 2.528).abs() < 0.15, "{slope}");
 }
 
-/// What the documentation says that the default diameters cut off.
+/// The documented losses of the default diameters.
 #[test]
 fn cuts_are_as_small_as_said() {
     let all = |law: DropSizeLaw, rate: f64, smallest_mm: f64| {
         let options = DistributionOptions {
-            largest_diameter_m: 9e-3,
+            max_diameter_m: 9e-3,
             ..with_speeds(smallest_mm, FallSpeedModel::default())
         };
         DropSizeDistribution::published(law, rate, &options).unwrap()
@@ -189,8 +189,8 @@ fn cuts_are_as_small_as_said() {
     assert!(1.0 - small.integrated_rate() / rain.integrated_rate() < 5.5e-6);
     let light = all(Best1950, 0.1, 1e-3);
     assert!(1.0 - kept(&light).integrated_rate() / light.integrated_rate() < 6.5e-4);
-    // Above 8 mm: against the law without end, with the speed held.
-    for (law, rate, share) in [
+    // Above 8 mm: against the unbounded law, with the speed held.
+    for (law, rate, fraction) in [
         (MarshallPalmer1948, 100.0, 0.0021),
         (Best1950, 100.0, 0.0055),
         (MarshallPalmer1948, 500.0, 0.0268),
@@ -203,7 +203,7 @@ fn cuts_are_as_small_as_said() {
         });
         let total = rain.integrated_rate() + beyond;
         let cut = 1.0 - rain.restricted_to(0.1e-3, 8e-3).unwrap().integrated_rate() / total;
-        assert!((cut - share).abs() < 5e-4, "{law:?} {rate}: {cut}");
+        assert!((cut - fraction).abs() < 5e-4, "{law:?} {rate}: {cut}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Drop size distributions: what they carry, where they end, and what is drawn from them.
+//! Drop size distributions: integrals, bounds and samples.
 
 mod bounds;
 mod extinction;
@@ -21,14 +21,10 @@ const LAWS: [DropSizeLaw; 9] = [
 ];
 
 fn with_speeds(smallest_mm: f64, fall_speed: FallSpeedModel) -> DistributionOptions {
-    DistributionOptions {
-        smallest_diameter_m: smallest_mm * 1e-3,
-        fall_speed,
-        ..DistributionOptions::default()
-    }
+    DistributionOptions { min_diameter_m: smallest_mm * 1e-3, fall_speed, ..DistributionOptions::default() }
 }
 
-/// Simpson's rule over n intervals, which shares nothing with the library's own integrals.
+/// Simpson's rule over n intervals, independent of the library's integrals.
 fn simpson(n: u32, a: f64, b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     let h = (b - a) / f64::from(n);
     let inner: f64 = (1..n).map(|i| f64::from(2 + 2 * (i % 2)) * f(a + h * f64::from(i))).sum();

@@ -1,4 +1,4 @@
-//! What is drawn has the distribution that it is drawn from: chi-square for every sampler.
+//! Samples follow their distribution: chi-square for every sampler.
 
 use approx::assert_relative_eq;
 use downpour_drop::air::Air;
@@ -11,10 +11,10 @@ use downpour_math::rng::rng_draw;
 
 use crate::{LAWS, simpson};
 
-const SMALLEST: f64 = 0.1e-3;
-const LARGEST: f64 = 8e-3;
+const MIN: f64 = 0.1e-3;
+const MAX: f64 = 8e-3;
 
-/// Chi-square tests of this file; 1 % is the chance that any of them fails without reason.
+/// Number of chi-square tests of this file; the chance of a false alarm of any of them is 1 %.
 const TESTS: f64 = 20.0;
 
 /// Probability that chance alone gives `chi2` or more (Wilson & Hilferty 1931).
@@ -24,33 +24,33 @@ fn chance(chi2: f64, degrees: f64) -> f64 {
     0.5 * (1.0 - ops::erf(z / std::f64::consts::SQRT_2))
 }
 
-/// The density from which drops are drawn, worked out by hand from the law's concentration and the speed.
+/// Density from which drops are drawn, computed from the law's concentration and the speed.
 fn density(rain: &DropSizeDistribution, by: SampledBy) -> impl Fn(f64) -> f64 {
     let speed = TerminalSpeed::new(FallSpeedModel::Beard1976, &Air::standard());
     move |d: f64| {
-        // The ends of a Simpson interval may lie a rounding outside.
-        let d = d.clamp(SMALLEST, LARGEST);
+        // The ends of a Simpson interval may be outside by a rounding error.
+        let d = d.clamp(MIN, MAX);
         rain.concentration(d) * if by == SampledBy::Flux { speed.at(d).expect("a drop") } else { 1.0 }
     }
 }
 
-/// The chance that drops of `density` give what `draw` gives, over at least 100 bins with 5 expected or more.
+/// Probability that drops of `density` give the samples of `draw`, over at least 100 bins with 5 expected or more.
 fn chi_square(seed: u32, n: u32, density: impl Fn(f64) -> f64, draw: impl Fn(u32) -> f32) -> f64 {
-    // 600 bins, even in the logarithm, so that both the many and the rare have theirs.
+    // 600 bins, even in the logarithm, so that frequent and rare sizes have bins.
     let bins = 600usize;
-    let growth = ops::ln(LARGEST / SMALLEST) / bins as f64;
-    let edge = |i: usize| SMALLEST * ops::exp(growth * i as f64);
+    let growth = ops::ln(MAX / MIN) / bins as f64;
+    let edge = |i: usize| MIN * ops::exp(growth * i as f64);
     let mass: Vec<f64> = (0..bins).map(|i| simpson(8, edge(i), edge(i + 1), &density)).collect();
     let total: f64 = mass.iter().sum();
     let mut found = vec![0u32; bins];
     for i in 0..n / 4 {
         for word in rng_draw([seed, 0x0d57], i, 0, 0) {
             let d = f64::from(draw(word));
-            assert!((SMALLEST * (1.0 - 1e-6)..=LARGEST * (1.0 + 1e-6)).contains(&d), "{d}");
-            found[((ops::ln(d / SMALLEST) / growth) as usize).min(bins - 1)] += 1;
+            assert!((MIN * (1.0 - 1e-6)..=MAX * (1.0 + 1e-6)).contains(&d), "{d}");
+            found[((ops::ln(d / MIN) / growth) as usize).min(bins - 1)] += 1;
         }
     }
-    // Neighbours are joined until 5 are expected.
+    // Neighbouring bins are merged until 5 are expected.
     let (mut chi2, mut joined, mut expected, mut seen) = (0.0, 0, 0.0, 0);
     let mut rest = f64::from(n);
     for (m, count) in mass.iter().zip(&found) {
@@ -67,7 +67,7 @@ fn chi_square(seed: u32, n: u32, density: impl Fn(f64) -> f64, draw: impl Fn(u32
     chance(chi2, f64::from(joined))
 }
 
-/// The significance of one test by Sidak, so that all of them together have 1 %.
+/// Significance of one test by Sidak, so that all of them together have 1 %.
 fn significance() -> f64 {
     1.0 - ops::pow(0.99, 1.0 / TESTS)
 }
@@ -93,13 +93,13 @@ fn the_exponential_form_draws_its_law() {
     for (seed, rate) in [(101, 1.0), (102, 100.0)] {
         let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate).unwrap();
         let slope = rain.exponential_slope().unwrap() as f32;
-        let draw = |word| distribution_sample_exponential(word, slope, SMALLEST as f32, LARGEST as f32);
+        let draw = |word| distribution_sample_exponential(word, slope, MIN as f32, MAX as f32);
         let p = chi_square(seed, 1_000_000, density(&rain, SampledBy::Number), draw);
         assert!(p > significance(), "{rate} mm/h: {p}");
     }
 }
 
-/// The test sees the difference between drops in a volume and drops through a plane, and a slope 5 % off.
+/// The test detects the difference between drops in a volume and drops through a plane, and a slope 5 % off.
 #[test]
 fn the_chi_square_finds_what_is_wrong() {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 20.0).unwrap();
@@ -109,7 +109,8 @@ fn the_chi_square_finds_what_is_wrong() {
     assert!(chi_square(201, 200_000, density(&other, SampledBy::Number), |word| table.sample(word)) < 1e-6);
 }
 
-/// Down to single words on both sides: the share of drops beyond the diameter of a word is the share of words beyond.
+/// Down to single words on both sides: the fraction of drops beyond the diameter of a word is the fraction of words
+/// beyond.
 #[test]
 fn the_rarest_drops_are_drawn_as_rarely_as_they_are() {
     for (law, by) in LAWS.into_iter().zip([SampledBy::Number, SampledBy::Flux].into_iter().cycle()) {
@@ -123,12 +124,12 @@ fn the_rarest_drops_are_drawn_as_rarely_as_they_are() {
             let step = 1.07e-3;
             if a < step && step < b { part(a, step) + part(step, b) } else { part(a, b) }
         };
-        let total = between(SMALLEST, LARGEST);
+        let total = between(MIN, MAX);
         for words in [0u32, 1, 5, 100, 3000, 1_000_000, 77_777_777, 1_999_999_999] {
             let expected = (f64::from(words) + 0.5) / 4_294_967_296.0 * total;
             let (small, large) = (f64::from(table.sample(words)), f64::from(table.sample(!words)));
-            for (found, d) in [(between(SMALLEST, small), small), (between(large, LARGEST), large)] {
-                // f32 has the diameter to 6e-8 of itself.
+            for (found, d) in [(between(MIN, small), small), (between(large, MAX), large)] {
+                // f32 has a relative error of 6e-8 in the diameter.
                 let rounding = 2e-7 * d * density(d);
                 assert_relative_eq!(found, expected, max_relative = 2e-4, epsilon = rounding);
             }
@@ -154,19 +155,19 @@ fn a_larger_word_is_a_larger_drop() {
     assert!(before > 5e-3 && before_exponential > 7e-3, "{before} {before_exponential}");
 }
 
-/// The table of an exponential law and its closed form are one.
+/// The table of an exponential law agrees with its closed form.
 #[test]
 fn the_table_and_the_closed_form_agree() {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 10.0).unwrap();
     let (table, slope) = (rain.sample_table(SampledBy::Number), rain.exponential_slope().unwrap() as f32);
     for i in 0..100_000u32 {
         let word = i.wrapping_mul(0x9e37_79b9);
-        let exact = distribution_sample_exponential(word, slope, SMALLEST as f32, LARGEST as f32);
+        let exact = distribution_sample_exponential(word, slope, MIN as f32, MAX as f32);
         assert_relative_eq!(table.sample(word), exact, max_relative = 6e-5);
     }
 }
 
-/// Drops that are drawn from those that cross a plane carry the rate, if each stands for its share of the impacts.
+/// Drops drawn from those that cross a plane carry the rate, if each represents its fraction of the impacts.
 #[test]
 fn what_falls_through_a_plane_carries_the_rate() {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 10.0).unwrap();
@@ -183,7 +184,7 @@ fn what_falls_through_a_plane_carries_the_rate() {
     assert_relative_eq!(rate, 10.0, max_relative = 0.02);
 }
 
-/// A part of a rain is drawn as that part of the whole.
+/// A restricted range is drawn as that range of the whole.
 #[test]
 fn a_part_is_drawn_within_its_bounds() {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 10.0).unwrap();

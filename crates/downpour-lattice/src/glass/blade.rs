@@ -1,51 +1,51 @@
-//! The blade of a wiper, or a part of its length, during one tick. Twin of `shaders/wgsl/lattice/glass_blade.wgsl`.
+//! Blade of a wiper, or a part of its length, during one tick. Twin of `shaders/wgsl/lattice/glass_blade.wgsl`.
 
 use downpour_shaders::lattice::glass::{GLASS_BLADE_AHEAD, GLASS_CELL};
 use glam::IVec2;
 
-/// A part of a blade during one tick. The same layout as `GlassBlade` in WGSL.
+/// A part of a blade during one tick, in the layout of `GlassBlade` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassBlade {
-    /// Where the blade points before the tick: a unit vector of 16384.
+    /// Direction of the blade before the tick: a unit vector of length 16384.
     pub before: [i32; 2],
-    /// Where it points after.
+    /// Direction of the blade after the tick.
     pub after: [i32; 2],
-    /// The pivot, in half cells from the corner of the pane.
+    /// Pivot, in half cells from the corner of the pane.
     pub pivot: [i32; 2],
-    /// From where to where along the blade, in half cells.
+    /// Start and end along the blade, in half cells.
     pub reach: [i32; 2],
-    /// 1 if it turns from +x towards +y, -1 if the other way, 0 if it rests.
+    /// Sense of rotation: 1 from +x towards +y, -1 the other way, 0 at rest.
     pub turn: i32,
-    /// Share of the water that stays behind, of 256.
+    /// Fraction of the water that stays behind, in units of 1/256.
     pub leaves: u32,
-    /// 0.
+    /// Padding, 0.
     pub unused_1: u32,
-    /// 0.
+    /// Padding, 0.
     pub unused_2: u32,
 }
 
-/// Positive if `b` lies from `a` towards +y of +x. |a| is 16384, |b| below 2^15.
+/// Cross product of two vectors: positive if `b` is on the +y side of `a` along +x. |a| is 16384, |b| below 2^15.
 #[inline]
 #[must_use]
 pub fn glass_blade_side(a: IVec2, b: IVec2) -> i32 {
     a.x * b.y - a.y * b.x
 }
 
-/// Whether the blade passes over a cell in this tick.
+/// True if the blade passes over a cell in this tick.
 #[inline]
 #[must_use]
 pub fn glass_blade_sweeps(blade: &GlassBlade, cell: IVec2) -> bool {
     let (before, after) = (IVec2::from(blade.before), IVec2::from(blade.after));
     let at = cell * 2 + 1 - IVec2::from(blade.pivot);
     let along = (after.x * at.x + after.y * at.y) >> 14;
-    // Once in each pass: what is `after` in one tick is `before` in the next.
+    // Once per pass: `after` of one tick is `before` of the next.
     let side_before = blade.turn * glass_blade_side(before, at);
     let side_after = blade.turn * glass_blade_side(after, at);
     blade.turn != 0 && side_before >= 0 && side_after < 0 && along >= blade.reach[0] && along < blade.reach[1]
 }
 
-/// The cell before the blade to which it pushes the water of a cell.
+/// Cell ahead of the blade to which it pushes the water of a cell.
 #[inline]
 #[must_use]
 pub fn glass_blade_push(blade: &GlassBlade, cell: IVec2) -> IVec2 {

@@ -1,4 +1,4 @@
-//! The state of the cells, and the order of work in a tick.
+//! State of the cells, and the order of work in a tick.
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
@@ -13,41 +13,41 @@ use super::size::GlassTable;
 use super::totals::Counters;
 use super::transfer::{glass_transfer_drop, glass_transfer_land};
 
-/// Drops that a thread takes at once, at least.
+/// Minimum number of drops per task of a thread.
 const CHUNK: usize = 256;
 
-/// After how many ticks the drops are put in the order of memory. It changes no result.
+/// Number of ticks after which the drops are sorted by their index in memory. It changes no result.
 const SORTED: u32 = 32;
 
-/// Velocity and progress of a drop: a packed velocity, and how far it is to the next cell (an i32).
+/// Velocity and progress of a drop: a packed velocity, and the progress towards the next cell (an i32).
 pub(super) type Motion = [u32; 2];
 
-/// All that is kept per cell. What threads write is atomic; sums and maxima do not depend on their order.
+/// State per cell. Fields that threads write are atomic; sums and maxima do not depend on their order.
 #[derive(Debug)]
 pub(super) struct Cells {
     /// Affinity, friction and obstacles.
     pub(super) surface: Vec<u32>,
     /// Mass, nl.
     pub(super) mass: Vec<u32>,
-    /// How the drop of the cell moves.
+    /// Motion of the drop of the cell.
     pub(super) motion: Vec<Motion>,
-    /// The largest drop that wets the cell.
+    /// Key of the largest drop that wets the cell.
     pub(super) keys: Vec<AtomicU32>,
-    /// When water last moved over the cell.
+    /// Time when water last moved over the cell.
     pub(super) wet: Vec<AtomicU32>,
-    /// Where the drop of the cell goes.
+    /// Target cell of the drop of the cell.
     pub(super) target: Vec<AtomicU32>,
-    /// How it then moves: the words of a [`Motion`], low and high.
+    /// Motion after the tick: the words of a [`Motion`], low and high.
     pub(super) decided: Vec<AtomicU64>,
     /// Mass after the tick.
     pub(super) next: Vec<AtomicU32>,
-    /// The largest drop that comes on its own.
+    /// Key of the largest drop that moves to the cell by itself, not pushed by a blade.
     pub(super) arrival: Vec<AtomicU32>,
-    /// The cells with drops, in any order: most cells are empty, and are not looked at.
+    /// Indices of the cells with drops, in any order: most cells are empty and are skipped.
     pub(super) drops: Vec<u32>,
 }
 
-/// What all cells look up in a tick.
+/// Data that all cells read in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tick<'a> {
     pub(super) frame: &'a GlassFrame,
@@ -55,7 +55,7 @@ pub(super) struct Tick<'a> {
     pub(super) blades: &'a [GlassBlade],
     /// Number of the tick.
     pub(super) step: u32,
-    /// Its time.
+    /// Time of the tick.
     pub(super) clock: u32,
 }
 
@@ -63,7 +63,7 @@ fn zeros(cells: usize) -> Vec<AtomicU32> {
     (0..cells).map(|_| AtomicU32::new(0)).collect()
 }
 
-/// The value of a word that no other thread changes in a way that matters now.
+/// Loads a word whose concurrent changes do not matter.
 #[inline]
 pub(super) fn load(words: &[AtomicU32], index: u32) -> u32 {
     words[index as usize].load(Ordering::Relaxed)
@@ -94,7 +94,7 @@ impl Cells {
         }
     }
 
-    /// One tick: claim, decide, transfer, settle.
+    /// Runs one tick: claim, decide, transfer, settle.
     pub(super) fn tick(&mut self, tick: &Tick<'_>, counters: &Counters) {
         let cells = &*self;
         let each = || cells.drops.par_iter().with_min_len(CHUNK);
@@ -114,7 +114,7 @@ impl Cells {
             .reduce(Vec::new, joined);
         come.extend(self.land(tick, counters));
         if tick.step.is_multiple_of(SORTED) {
-            // Neighbours in the pane are then neighbours in time, and in the caches.
+            // Neighbouring cells are then processed together, which helps the caches.
             come.sort_unstable();
         }
         self.settle(come, counters);

@@ -1,4 +1,4 @@
-//! Each drop claims the cells that it wets; the largest has them. Twin of `shaders/wgsl/lattice/glass_claim.wgsl`.
+//! Claim: each drop claims the cells that it wets; the largest wins. Twin of `shaders/wgsl/lattice/glass_claim.wgsl`.
 
 use std::sync::atomic::Ordering;
 
@@ -8,7 +8,7 @@ use super::cells::{Cells, Tick};
 use super::frame::{glass_frame_holds, glass_frame_index};
 use super::size::glass_size_key;
 
-/// A drop claims its disc; one that moves wets it.
+/// Claims the disc of a drop; a moving drop also wets it.
 pub(super) fn glass_claim_drop(cells: &Cells, tick: &Tick<'_>, cell: IVec2) {
     let index = glass_frame_index(tick.frame, cell);
     let mass = cells.mass[index as usize];
@@ -21,7 +21,7 @@ pub(super) fn glass_claim_drop(cells: &Cells, tick: &Tick<'_>, cell: IVec2) {
     let reach = (row.radius >> 8) as i32;
     let most = row.radius * row.radius;
     for y in -reach..=reach {
-        // The cells of a row that WGSL finds one by one.
+        // The cells of a row that WGSL tests one by one.
         let mut half = reach;
         while ((half * half + y * y) as u32) << 16 > most {
             half -= 1;
@@ -34,7 +34,7 @@ pub(super) fn glass_claim_drop(cells: &Cells, tick: &Tick<'_>, cell: IVec2) {
         }
         let row = glass_frame_index(tick.frame, low) as usize..=glass_frame_index(tick.frame, high) as usize;
         for at in &cells.keys[row.clone()] {
-            // Most cells have one claim: a look spares the lock.
+            // Most cells have one claim: a test avoids the atomic maximum.
             if at.load(Ordering::Relaxed) < key {
                 at.fetch_max(key, Ordering::Relaxed);
             }

@@ -1,8 +1,8 @@
-//! What holds a drop on glass: the contact line.
+//! Retention of a drop on glass by the contact line.
 //!
-//! Retention (Furmidge 1962): `F = k w sigma (cos receding - cos advancing)`, w the width of the contact. A drop is the cap
-//! of a sphere at the mean of the two angles. k is 1 in the classic form, 24 / pi^3 = 0.774 for the contact angle that
-//! varies as a cubic round the line (`ElSherbini` & Jacobi 2006). SI units, angles in radians.
+//! Retention (Furmidge 1962): `F = k w sigma (cos receding - cos advancing)`, w the width of the contact. A drop is
+//! the cap of a sphere at the mean of the two angles. k is 1 in the classic form, 24 / pi^3 = 0.774 for the contact
+//! angle that varies as a cubic around the line (`ElSherbini` & Jacobi 2006). SI units, angles in radians.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use downpour_math::ops::f64 as ops;
 
 use super::error::{GlassError, in_range};
 
-/// Contact angles of water on a surface, and how they hold.
+/// Contact angles of water on a surface, and their retention.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlassContact {
     /// Advancing contact angle, rad: 5 to 120 degrees.
@@ -19,10 +19,11 @@ pub struct GlassContact {
     pub receding_rad: f64,
     /// Factor k of the retention, 0.5 to 1.
     pub retention: f64,
-    /// Friction of a moving drop as a share of that of a resting one, 0 to 1.
+    /// Friction of a moving drop relative to that of a resting one, 0 to 1.
     pub kinetic: f64,
-    /// Viscous drag of the contact line: `F = 6 mu U w l / theta`, l this number (the logarithm of the drop's size over the
-    /// slip length, with all that the wedge leaves out), 1 to 1000. 20 gives 5 to 20 cm/s for 10 to 50 ul.
+    /// Viscous drag of the contact line: `F = 6 mu U w l / theta`, where l is this number (the logarithm of the drop's
+    /// size over the slip length, including all that the wedge model neglects), 1 to 1000. 20 gives 5 to 20 cm/s for
+    /// 10 to 50 ul.
     pub line_drag: f64,
 }
 
@@ -40,7 +41,7 @@ impl Default for GlassContact {
 }
 
 impl GlassContact {
-    /// Whether all numbers are in their ranges.
+    /// Checks that all numbers are in their ranges.
     ///
     /// # Errors
     /// [`GlassError::OutOfRange`].
@@ -64,24 +65,24 @@ impl GlassContact {
             "0 to the advancing angle",
         )?;
         in_range("retention factor", self.retention, 0.5..=1.0, 1.0, "", "0.5 to 1")?;
-        in_range("kinetic share of the friction", self.kinetic, 0.0..=1.0, 1.0, "", "0 to 1")?;
+        in_range("kinetic fraction of the friction", self.kinetic, 0.0..=1.0, 1.0, "", "0 to 1")?;
         in_range("line drag", self.line_drag, 1.0..=1000.0, 1.0, "", "1 to 1000")?;
         Ok(())
     }
 
-    /// The angle of the cap, rad.
+    /// Contact angle of the cap, rad.
     #[must_use]
     pub fn mean_rad(&self) -> f64 {
         0.5 * (self.advancing_rad + self.receding_rad)
     }
 
-    /// The radius of the wetted disc of a drop, m, from its volume in m^3.
+    /// Radius of the wetted disc of a drop, m, from its volume in m^3.
     #[must_use]
     pub fn radius(&self, volume: f64) -> f64 {
         ops::cbrt(volume / (PI * self.cap()))
     }
 
-    /// The volume of a cap over pi r^3, `(2 - 3 cos + cos^3) / (3 sin^3)`.
+    /// Volume of a cap over pi r^3, `(2 - 3 cos + cos^3) / (3 sin^3)`.
     fn cap(&self) -> f64 {
         let theta = self.mean_rad();
         let (sin, cos) = (ops::sin(theta), ops::cos(theta));
@@ -89,14 +90,14 @@ impl GlassContact {
         (1.0 - cos) * (1.0 - cos) * (2.0 + cos) / (3.0 * sin * sin * sin)
     }
 
-    /// The radius of the sphere whose cap is drawn over a disc of radius `radius`, m: of at most 85 degrees, since a height
-    /// has one value.
+    /// Radius of the sphere whose cap is rendered over a disc of radius `radius`, m. The angle is limited to 85
+    /// degrees, since a height field has one value per cell.
     #[must_use]
     pub fn sphere(&self, radius: f64) -> f64 {
         radius / ops::sin(self.mean_rad().min(85f64.to_radians()))
     }
 
-    /// The area that a cap over a disc of radius `radius` turns to the wind along the pane, m^2.
+    /// Frontal area of a cap over a disc of radius `radius` to the wind along the pane, m^2.
     #[must_use]
     pub fn frontal_area(&self, radius: f64) -> f64 {
         let theta = self.mean_rad();
@@ -104,7 +105,7 @@ impl GlassContact {
         radius * radius / (sin * sin) * (theta - sin * cos)
     }
 
-    /// What holds a drop of radius `radius`, N, with the surface tension `sigma` in N/m.
+    /// Retention force on a drop of radius `radius`, N, with the surface tension `sigma` in N/m.
     #[must_use]
     pub fn hold(&self, radius: f64, sigma: f64) -> f64 {
         self.retention
@@ -114,20 +115,20 @@ impl GlassContact {
             * (ops::cos(self.receding_rad) - ops::cos(self.advancing_rad)).max(0.0)
     }
 
-    /// The viscous drag over the speed, N s/m, with the viscosity `mu` in Pa s.
+    /// Viscous drag over the speed, N s/m, with the viscosity `mu` in Pa s.
     #[must_use]
     pub fn drag(&self, radius: f64, mu: f64) -> f64 {
         6.0 * mu * 2.0 * radius * self.line_drag / self.mean_rad()
     }
 
-    /// The volume, m^3, from which drops slide on a dry pane tilted by `tilt_rad` from the horizontal, without wind:
+    /// Volume, m^3, from which drops slide on a dry pane tilted by `tilt_rad` from the horizontal, without wind:
     /// `rho g sin(tilt) V = F(V)`. Infinite on a level pane.
     #[must_use]
     pub fn sliding_volume(&self, tilt_rad: f64, density: f64, sigma: f64) -> f64 {
         let weight = density * downpour_drop::air::STANDARD_GRAVITY * ops::sin(tilt_rad).max(0.0);
         // F = f V^(1/3), so V^(2/3) = f / weight.
         let per_radius = self.hold(1.0, sigma) * self.radius(1.0);
-        let share = per_radius / weight;
-        share * share.sqrt()
+        let fraction = per_radius / weight;
+        fraction * fraction.sqrt()
     }
 }

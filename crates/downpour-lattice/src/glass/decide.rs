@@ -1,9 +1,9 @@
-//! Each drop decides where it goes: into a larger one that it touches, on by a cell, or nowhere.
+//! Decision of each drop: merge into a larger one that it touches, move by a cell, or rest.
 //! Twin of `shaders/wgsl/lattice/glass_decide.wgsl`.
 
 use downpour_math::rng::rng_draw;
 use downpour_shaders::lattice::glass::{
-    GLASS_CELL, GLASS_DIAGONAL, GLASS_INDEX, GLASS_LARGEST, GLASS_OBSTACLE, GLASS_OUT, GLASS_TAKEN,
+    GLASS_CELL, GLASS_DIAGONAL, GLASS_INDEX, GLASS_MAX_MASS, GLASS_OBSTACLE, GLASS_OUT, GLASS_TAKEN,
     GLASS_WATER_PULL,
 };
 use glam::{IVec2, UVec2, UVec3};
@@ -17,7 +17,7 @@ use super::motion::{
 };
 use super::size::{glass_size_floor, glass_size_key};
 
-/// The largest drop that wets a cell; 0 if none does.
+/// Key of the largest drop that wets a cell; 0 if none does.
 fn glass_decide_key(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> u32 {
     if !glass_frame_holds(tick.frame, cell) {
         return 0;
@@ -25,7 +25,7 @@ fn glass_decide_key(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> u32 {
     load(&cells.keys, glass_frame_index(tick.frame, cell))
 }
 
-/// The largest drop that the rim of a drop touches.
+/// Key of the largest drop that the rim of a drop touches.
 fn glass_decide_touch(cells: &Cells, tick: &Tick<'_>, cell: IVec2, radius: u32) -> u32 {
     let mut key = glass_decide_key(cells, tick, cell);
     for octant in 0..8 {
@@ -35,7 +35,7 @@ fn glass_decide_touch(cells: &Cells, tick: &Tick<'_>, cell: IVec2, radius: u32) 
     key
 }
 
-/// How wet a cell is, of 255.
+/// Wetness of a cell, 0 to 255.
 fn glass_decide_wetness(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> u32 {
     if !glass_frame_holds(tick.frame, cell) {
         return 0;
@@ -44,13 +44,14 @@ fn glass_decide_wetness(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> u32 {
     glass_motion_wetness(tick.clock, stamp, tick.frame.wet_life)
 }
 
-/// Whether water can go to a cell: off the pane it can.
+/// True if water can move to a cell; cells off the pane count.
 fn glass_decide_open(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> bool {
     !glass_frame_holds(tick.frame, cell)
         || cells.surface[glass_frame_index(tick.frame, cell) as usize] & GLASS_OBSTACLE == 0
 }
 
-/// The weight of the cell along an octant: 0 if it is blocked. What draws the drop is looked up where its front would be.
+/// Weight of the cell along an octant: 0 if it is blocked. Affinity and wetness are read at the front of the drop
+/// there.
 fn glass_decide_weight(
     cells: &Cells,
     tick: &Tick<'_>,
@@ -76,7 +77,7 @@ fn glass_decide_weight(
     glass_motion_weight(v, octant, affinity, wetness, pull).max(1)
 }
 
-/// The octant in which a drop moves on; 8 if all that is before it is blocked.
+/// Octant in which a drop moves; 8 if all cells ahead are blocked.
 fn glass_decide_octant(
     cells: &Cells,
     tick: &Tick<'_>,
@@ -95,7 +96,7 @@ fn glass_decide_octant(
         2 => return (ahead + 1) & 7,
         _ => {}
     }
-    // Along an obstacle, to one side or the other.
+    // Along an obstacle, to either side.
     let side = if word & 1 == 1 { 6 } else { 2 };
     if glass_decide_open(cells, tick, cell + glass_motion_offset(ahead + side)) {
         return (ahead + side) & 7;
@@ -106,7 +107,7 @@ fn glass_decide_octant(
     8
 }
 
-/// The friction of a drop: that of its size, of the glass below it and of how wet it is before it.
+/// Friction of a drop: that of its size, of the glass below it and of the wetness ahead of it.
 fn glass_decide_hold(
     cells: &Cells,
     tick: &Tick<'_>,
@@ -124,7 +125,7 @@ fn glass_decide_hold(
     if moves { (eased * tick.frame.kinetic) >> 8 } else { eased }
 }
 
-/// Where the drop of a cell goes, and how it then moves.
+/// Target of the drop of a cell, and its motion.
 pub(super) fn glass_decide_drop(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> (u32, Motion) {
     let frame = tick.frame;
     let index = glass_frame_index(frame, cell);
@@ -132,8 +133,8 @@ pub(super) fn glass_decide_drop(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> 
     let row = tick.table.row(mass);
     let own = glass_size_key(mass, index);
     let touched = glass_decide_touch(cells, tick, cell, row.radius);
-    // A drop that could become too large for a cell stays apart.
-    if touched > own && glass_size_floor((touched >> 24) + 1) + mass <= GLASS_LARGEST {
+    // A drop that could exceed the maximum mass of a cell stays separate.
+    if touched > own && glass_size_floor((touched >> 24) + 1) + mass <= GLASS_MAX_MASS {
         return ((touched & GLASS_INDEX) | GLASS_TAKEN, [0; 2]);
     }
     let reach = (row.radius >> 8) as i32 + 1;

@@ -1,54 +1,56 @@
-//! What can be wrong with a pane that comes from outside.
+//! Errors of panes.
 
-/// Why there is no pane, or no step.
+/// Error of a pane of glass.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GlassError {
     /// A number is not finite or outside its range.
     #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
     OutOfRange {
-        /// What it is.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// The value, in `unit`.
+        /// Value found, in `unit`.
         found: f64,
-        /// The unit.
+        /// Unit of the value.
         unit: &'static str,
-        /// The range, in words.
+        /// Allowed range, in words.
         allowed: &'static str,
     },
-    /// A texture has another number of cells than the pane.
+    /// A texture differs from the pane in the number of cells.
     #[error("{quantity} has {found} cells; allowed: {allowed}, as the pane")]
     CellCount {
-        /// Which texture.
+        /// Name of the texture.
         quantity: &'static str,
-        /// Cells of the texture.
+        /// Number of cells of the texture.
         found: usize,
-        /// Cells of the pane.
+        /// Number of cells of the pane.
         allowed: usize,
     },
     /// A value of a texture is not finite or outside its range.
     #[error("{quantity} of cell {index} is {found}; allowed: {allowed}")]
     CellValue {
-        /// Which texture.
+        /// Name of the texture.
         quantity: &'static str,
-        /// Which cell, row by row from 0.
+        /// Index of the cell, row by row from 0.
         index: usize,
-        /// The value.
+        /// Value found.
         found: f64,
-        /// The range, in words.
+        /// Allowed range, in words.
         allowed: &'static str,
     },
     /// A wiper never touches the pane.
-    #[error("wiper {index} turns about ({x}, {y}) m and never touches the pane; allowed: a blade that does")]
+    #[error(
+        "wiper {index} with its pivot at ({x}, {y}) m never touches the pane; allowed: a blade that touches it"
+    )]
     WiperOutside {
-        /// Which wiper, from 0.
+        /// Index of the wiper, from 0.
         index: usize,
-        /// Its pivot, m from the left edge.
+        /// Pivot, m from the left edge.
         x: f64,
-        /// Its pivot, m from the top edge.
+        /// Pivot, m from the top edge.
         y: f64,
     },
-    /// Water was poured where none can be.
+    /// Water was poured into a cell that cannot hold it.
     #[error("cell ({x}, {y}) is off the pane or an obstacle; allowed: a free cell")]
     NoSuchCell {
         /// Column.
@@ -56,20 +58,20 @@ pub enum GlassError {
         /// Row.
         y: u32,
     },
-    /// The rain cannot be what is asked for.
+    /// The rain is not valid.
     #[error(transparent)]
     Rain(#[from] downpour_drop::DropError),
 }
 
 impl GlassError {
-    /// The exit code of the command for this error: 2, bad input.
+    /// Exit code of the command for this error: 2, bad input.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         2
     }
 }
 
-/// `value` if it is within the range (NaN is not); `scale` turns it into `unit` for the message.
+/// Checks that `value` is within the range (NaN is not); `scale` converts it to `unit` for the message.
 pub(super) fn in_range(
     quantity: &'static str,
     value: f64,

@@ -1,6 +1,7 @@
-//! Heights of the water, smoothed, and normals of its surface. Twin of `shaders/wgsl/lattice/glass_height.wgsl`.
+//! Heights of the water, and normals of its surface. Twin of `shaders/wgsl/lattice/glass_height.wgsl`.
 //!
-//! Each drop is a cap of a sphere over its disc, drawn out behind it if it runs; where several stand, the highest counts.
+//! Each drop is a cap of a sphere over its disc, stretched behind its center if it moves; the highest of overlapping
+//! caps counts.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -13,19 +14,19 @@ use super::frame::{GlassFrame, glass_frame_cell, glass_frame_holds, glass_frame_
 use super::motion::{glass_motion_length, glass_motion_root, glass_motion_unpack};
 use super::size::GlassTable;
 
-/// How much longer a drop is behind its middle than before it, of 256.
+/// Stretch of a drop behind its center relative to the front, in units of 1/256.
 #[inline]
 #[must_use]
 pub fn glass_height_stretch(speed: u32) -> u32 {
     256 + speed.min(GLASS_CELL as u32) / GLASS_HEIGHT_STRETCH
 }
 
-/// The squared distance of a cell from the middle of a drop, as if the drop were round, in (cells / 256)^2.
+/// Squared distance of a cell from the center of a drop, with the stretch undone, in (cells / 256)^2.
 #[inline]
 #[must_use]
 pub fn glass_height_squared(away: IVec2, v: IVec2) -> u32 {
     let speed = glass_motion_length(v) as i32;
-    // So slow a drop is round; its direction is not known to the digits that follow.
+    // A drop this slow is round; its direction is not resolved.
     if speed < 4 {
         return ((away.x * away.x + away.y * away.y) as u32) << 16;
     }
@@ -36,7 +37,7 @@ pub fn glass_height_squared(away: IVec2, v: IVec2) -> u32 {
     (far * far) as u32 + (across * across) as u32
 }
 
-/// The height of a cap at a squared distance, all in cells / 256.
+/// Height of a cap at a squared distance, all in cells / 256.
 #[inline]
 #[must_use]
 pub fn glass_height_cap(radius: u32, sphere: u32, squared: u32) -> u32 {
@@ -57,7 +58,7 @@ fn glass_height_drop(
     let index = glass_frame_index(frame, cell) as usize;
     let row = table.row(cells.mass[index]);
     let v = glass_motion_unpack(cells.motion[index][0]);
-    // The rim may lie 15 % beyond the disc.
+    // The rim may be 15 % beyond the disc.
     let reach = (row.radius * glass_height_stretch(glass_motion_length(v)) / 56000) as i32 + 1;
     for y in -reach..=reach {
         for x in -reach..=reach {
@@ -66,7 +67,7 @@ fn glass_height_drop(
                 continue;
             }
             let at = glass_frame_index(frame, to) as usize;
-            // The rim follows the glass: in towards what repels, out towards what draws.
+            // The rim follows the affinity of the glass: inwards where it repels, outwards where it attracts.
             let rim = 320 - (cells.surface[at] & 255) / 2;
             let squared = (glass_height_squared(IVec2::new(x, y), v) >> 8) * rim;
             let height = glass_height_cap(row.radius, row.sphere, squared);
@@ -77,7 +78,7 @@ fn glass_height_drop(
     }
 }
 
-/// Heights of all cells, in cells / 256, before they are smoothed.
+/// Heights of all cells, in cells / 256, before smoothing.
 pub(super) fn caps(cells: &Cells, frame: &GlassFrame, table: &GlassTable) -> Vec<u32> {
     let heights: Vec<AtomicU32> = cells.mass.iter().map(|_| AtomicU32::new(0)).collect();
     cells.drops.par_iter().for_each(|&index| {

@@ -1,6 +1,6 @@
 //! The pane on the CPU.
 
-use downpour_shaders::lattice::glass::{GLASS_LARGEST, GLASS_OBSTACLE};
+use downpour_shaders::lattice::glass::{GLASS_MAX_MASS, GLASS_OBSTACLE};
 use glam::Vec3;
 
 use super::cells::{Cells, Tick, load};
@@ -11,10 +11,10 @@ use super::plan::Plan;
 use super::totals::{Counters, GlassTotals};
 use super::{height, normal, smooth, surface};
 
-/// A unit of mass as volume, m^3: a nanolitre.
+/// Volume of a unit of mass, m^3: a nanolitre.
 pub(super) const UNIT_M3: f64 = 1.0e-12;
 
-/// A pane with drops on it.
+/// A pane of glass with drops.
 ///
 /// ```
 /// use downpour_lattice::glass::{Glass, GlassOptions, GlassRain};
@@ -37,30 +37,31 @@ pub struct Glass {
 }
 
 impl Glass {
-    /// A unit of mass as volume, m^3: a nanolitre.
+    /// Volume of a unit of mass, m^3: a nanolitre.
     pub const UNIT_M3: f64 = UNIT_M3;
 
-    /// The largest mass of a cell, in units: a drop of 7.9 mm.
-    pub const LARGEST: u32 = GLASS_LARGEST;
+    /// Maximum mass of a cell, in units: a drop of 7.9 mm.
+    pub const MAX_MASS: u32 = GLASS_MAX_MASS;
 
-    /// A dry pane.
+    /// Creates a dry pane.
     ///
     /// # Errors
-    /// [`GlassError`] that names what is out of its range.
+    /// [`GlassError`] that names the quantity out of range.
     pub fn new(options: &GlassOptions) -> Result<Self, GlassError> {
         let plan = Plan::new(options)?;
         let cells = Cells::new(surface::surface(options)?);
         Ok(Self { plan, cells, counters: Counters::default(), poured: 0 })
     }
 
-    /// Lets `dt_s` seconds pass: above 0 to 60. Time goes in whole ticks; what is left of one counts for the next step. The
-    /// same bits for any number of threads, as on a GPU, and for any division of the time into steps.
+    /// Advances the pane by `dt_s` seconds: above 0 to 60. Time passes in whole ticks; the remainder counts for the
+    /// next step. The bits do not depend on the number of threads or the division of the time into steps, and are
+    /// those of a GPU.
     ///
     /// # Errors
-    /// [`GlassError::OutOfRange`] if the step is not in its range, or the pane older than 12 days.
+    /// [`GlassError::OutOfRange`] if the step is not in its range, or the pane is older than 12 days.
     pub fn step(&mut self, dt_s: f64) -> Result<(), GlassError> {
         let ticks = self.plan.ticks(dt_s)?;
-        // Within the pool once, not once for each part of each tick.
+        // The pool is entered once, not once for each part of each tick.
         let (cells, counters, table) = (&mut self.cells, &self.counters, &self.plan.table);
         rayon::scope(|_| {
             for k in 0..ticks.count {
@@ -79,20 +80,20 @@ impl Glass {
         Ok(())
     }
 
-    /// Other rain and other air from now on: weather that changes, a car that speeds up.
+    /// Sets rain and air from now on: changing weather, an accelerating car.
     ///
     /// # Errors
     /// [`GlassError::OutOfRange`] for numbers out of their ranges, and for rain that is too dense for the tick, which the
-    /// options of [`Glass::new`] set; the pane then stays as it is.
+    /// options of [`Glass::new`] determine; the pane is then unchanged.
     pub fn set_weather(&mut self, rain: &GlassRain, air: &GlassAir) -> Result<(), GlassError> {
         self.plan.set_weather(rain, air)
     }
 
-    /// Puts water into a cell, m^3; it is rounded to whole units. What was there stays.
+    /// Adds water to a cell, m^3, rounded to whole units.
     ///
     /// # Errors
     /// [`GlassError::NoSuchCell`] off the pane and on an obstacle; [`GlassError::OutOfRange`] if the cell would hold more
-    /// than [`Glass::LARGEST`], or the volume is below 0 or NaN.
+    /// than [`Glass::MAX_MASS`], or the volume is below 0 or NaN.
     pub fn pour(&mut self, x: u32, y: u32, volume_m3: f64) -> Result<(), GlassError> {
         let index = free_cell(self.plan.options(), &self.cells.surface, x, y)?;
         let Some(mass) = self.cells.mass.get_mut(index) else { return Err(GlassError::NoSuchCell { x, y }) };
@@ -105,19 +106,19 @@ impl Glass {
         Ok(())
     }
 
-    /// The options.
+    /// Options of the pane.
     #[must_use]
     pub fn options(&self) -> &GlassOptions {
         self.plan.options()
     }
 
-    /// The length of a tick, s.
+    /// Length of a tick, s.
     #[must_use]
     pub fn tick_s(&self) -> f64 {
         self.plan.tick_s()
     }
 
-    /// How many ticks have passed.
+    /// Number of ticks that have passed.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.plan.done()
@@ -137,13 +138,13 @@ impl Glass {
         self.cells.motion.iter().map(of).collect()
     }
 
-    /// Velocity and progress of the drop in each cell as the kernels keep them.
+    /// Velocity and progress of the drop in each cell in the format of the kernels.
     #[must_use]
     pub fn motion(&self) -> &[[u32; 2]] {
         &self.cells.motion
     }
 
-    /// How wet the glass of each cell is where water has passed, 0 to 255.
+    /// Wetness of each cell where water has passed, 0 to 255.
     #[must_use]
     pub fn traversal(&self) -> Vec<u8> {
         let frame = self.plan.frame();
@@ -152,7 +153,7 @@ impl Glass {
         (0..self.cells.wet.len() as u32).map(of).collect()
     }
 
-    /// Where the water is, to the unit.
+    /// Water balance, to the unit.
     #[must_use]
     pub fn totals(&self) -> GlassTotals {
         let stored = self.cells.mass.iter().map(|&m| u64::from(m)).sum();
@@ -174,19 +175,20 @@ impl Glass {
         self.height_units().into_iter().map(|h| h as f32 * unit).collect()
     }
 
-    /// Unit normals of the water's surface: x right, y down the pane, z out of it.
+    /// Unit normals of the water surface: x right, y down the pane, z out of it.
     #[must_use]
     pub fn normals(&self) -> Vec<Vec3> {
         let normals = normal::normals(self.plan.frame(), &self.height_units());
         normals.into_iter().map(|n| n.extend((1.0 - n.length_squared()).max(0.0).sqrt())).collect()
     }
 
-    /// Walks over the whole state: no mass above the largest, none on obstacles, nothing lost, nothing left in the scratch.
+    /// Checks the whole state: no mass above the maximum, none on obstacles, nothing lost, nothing left in the scratch.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         let cells = &self.cells;
-        let held =
-            |(&mass, &word): (&u32, &u32)| mass <= GLASS_LARGEST && (mass == 0 || word & GLASS_OBSTACLE == 0);
+        let held = |(&mass, &word): (&u32, &u32)| {
+            mass <= GLASS_MAX_MASS && (mass == 0 || word & GLASS_OBSTACLE == 0)
+        };
         let scratch = cells.next.iter().chain(&cells.arrival).chain(&cells.keys);
         cells.mass.iter().zip(&cells.surface).all(held)
             && scratch.into_iter().all(|w| w.load(std::sync::atomic::Ordering::Relaxed) == 0)
@@ -194,7 +196,7 @@ impl Glass {
     }
 }
 
-/// The index of a cell that can hold water.
+/// Index of a cell that can hold water.
 pub(crate) fn free_cell(
     options: &GlassOptions,
     surface: &[u32],
@@ -209,9 +211,9 @@ pub(crate) fn free_cell(
     }
 }
 
-/// A volume in units, if it fits into a cell that holds `mass`.
+/// Converts a volume to units, if it fits into a cell that holds `mass`.
 pub(crate) fn poured_units(volume_m3: f64, mass: u32) -> Result<u32, GlassError> {
-    let most = f64::from(GLASS_LARGEST - mass.min(GLASS_LARGEST));
+    let most = f64::from(GLASS_MAX_MASS - mass.min(GLASS_MAX_MASS));
     let units = (volume_m3 / UNIT_M3).round();
     in_range(
         "poured volume",

@@ -1,7 +1,7 @@
-//! How a drop moves: forces, friction, and the choice among the cells before it (Tatarchuk & Isidoro 2006, section 5).
-//! Twin of `shaders/wgsl/lattice/glass_motion.wgsl`.
+//! Motion of a drop: forces, friction, and the choice among the cells ahead of it (Tatarchuk & Isidoro 2006, section
+//! 5). Twin of `shaders/wgsl/lattice/glass_motion.wgsl`.
 //!
-//! Velocities are integers: 16384 is one cell in one tick. Directions are octants: 0 along +x, then by eighths of a turn
+//! Velocities are integers: 16384 is one cell per tick. Directions are octants: 0 along +x, then by eighths of a turn
 //! towards +y, which is down the pane.
 
 use downpour_shaders::lattice::glass::GLASS_CELL;
@@ -9,11 +9,11 @@ use glam::{IVec2, UVec2, UVec3};
 
 use super::size::{glass_size_class, glass_size_floor};
 
-/// The whole part of the square root of a number below 2^31.
+/// Integer part of the square root of a number below 2^31.
 #[inline]
 #[must_use]
 pub fn glass_motion_root(n: u32) -> u32 {
-    // The root of f32 may be off by one; the integers put it right.
+    // The root of f32 may be off by one; the integers correct it.
     let mut root = (n as f32).sqrt() as u32;
     while root * root > n {
         root -= 1;
@@ -24,28 +24,28 @@ pub fn glass_motion_root(n: u32) -> u32 {
     root
 }
 
-/// The length of a vector whose components are below 2^15.
+/// Length of a vector whose components are below 2^15.
 #[inline]
 #[must_use]
 pub fn glass_motion_length(v: IVec2) -> u32 {
     glass_motion_root((v.x * v.x + v.y * v.y) as u32)
 }
 
-/// A velocity as one word.
+/// Packs a velocity into a word.
 #[inline]
 #[must_use]
 pub fn glass_motion_pack(v: IVec2) -> u32 {
     (v.x as u32 & 0xffff) | ((v.y as u32) << 16)
 }
 
-/// A velocity from its word.
+/// Unpacks a velocity from a word.
 #[inline]
 #[must_use]
 pub fn glass_motion_unpack(word: u32) -> IVec2 {
     IVec2::new((word << 16) as i32 >> 16, word as i32 >> 16)
 }
 
-/// The octant of a vector below 2^15.
+/// Octant of a vector below 2^15.
 #[inline]
 #[must_use]
 pub fn glass_motion_octant(v: IVec2) -> u32 {
@@ -65,7 +65,7 @@ pub fn glass_motion_octant(v: IVec2) -> u32 {
     if v.y >= 0 { 2 } else { 6 }
 }
 
-/// The step to the next cell along an octant.
+/// Offset of the next cell along an octant.
 #[inline]
 #[must_use]
 pub fn glass_motion_offset(octant: u32) -> IVec2 {
@@ -75,15 +75,15 @@ pub fn glass_motion_offset(octant: u32) -> IVec2 {
     IVec2::new(x, y)
 }
 
-/// A component of the unit vector along an octant, of 256.
+/// Component of the unit vector along an octant, in units of 1/256.
 #[inline]
 #[must_use]
 pub fn glass_motion_unit(octant: u32) -> i32 {
     if octant & 1 == 1 { 181 } else { 256 }
 }
 
-/// The velocity after a tick: driven, held back by a friction that never reverses it, slowed by the water's own viscosity,
-/// and at most one cell in a tick.
+/// Velocity after a tick: driven, slowed by friction that never reverses it and by the viscosity of the water, and
+/// limited to one cell per tick.
 #[inline]
 #[must_use]
 pub fn glass_motion_slide(v: IVec2, drive: IVec2, hold: u32, slow: u32) -> IVec2 {
@@ -101,8 +101,8 @@ pub fn glass_motion_slide(v: IVec2, drive: IVec2, hold: u32, slow: u32) -> IVec2
     slowed
 }
 
-/// The weight of a cell in the roulette: the velocity's share along it to the fourth power, times the pull of the glass, times
-/// that of the wet. At most 2^14.
+/// Weight of a cell in the random choice: the fourth power of the velocity's fraction along it, times the attraction of
+/// affinity, times that of wetness. At most 2^14.
 #[inline]
 #[must_use]
 pub fn glass_motion_weight(v: IVec2, octant: u32, affinity: u32, wetness: u32, pull: UVec2) -> u32 {
@@ -115,7 +115,7 @@ pub fn glass_motion_weight(v: IVec2, octant: u32, affinity: u32, wetness: u32, p
     (((squared * squared) >> 8) * grip * wet) >> 15
 }
 
-/// Which of three a word falls on, by their weights (at most 2^14 each); 3 if all weights are 0.
+/// Chooses one of three by a random word and their weights (at most 2^14 each); 3 if all weights are 0.
 #[inline]
 #[must_use]
 pub fn glass_motion_choose(weights: UVec3, word: u32) -> u32 {
@@ -133,7 +133,7 @@ pub fn glass_motion_choose(weights: UVec3, word: u32) -> u32 {
     }
 }
 
-/// A velocity turned by a quarter towards an octant.
+/// Turns a velocity by a quarter of the difference towards an octant.
 #[inline]
 #[must_use]
 pub fn glass_motion_turn(v: IVec2, octant: u32) -> IVec2 {
@@ -142,18 +142,18 @@ pub fn glass_motion_turn(v: IVec2, octant: u32) -> IVec2 {
     (v * 3 + along) / 4
 }
 
-/// The velocity of a drop that has taken up others which rested.
+/// Velocity of a drop after merging with drops at rest.
 #[inline]
 #[must_use]
 pub fn glass_motion_merged(v: IVec2, class_before: u32, mass: u32) -> IVec2 {
     if glass_size_class(mass) <= class_before {
         return v;
     }
-    let share = (glass_size_floor(class_before) << 10) / glass_size_floor(glass_size_class(mass));
-    v * share as i32 / 1024
+    let fraction = (glass_size_floor(class_before) << 10) / glass_size_floor(glass_size_class(mass));
+    v * fraction as i32 / 1024
 }
 
-/// How wet the glass is where water moved at `stamp` (0: never), of 255.
+/// Wetness of the glass where water moved at `stamp` (0: never), 0 to 255.
 #[inline]
 #[must_use]
 pub fn glass_motion_wetness(clock: u32, stamp: u32, life: u32) -> u32 {

@@ -1,4 +1,4 @@
-//! Normals of the water's surface by Sobel's filter (Tatarchuk & Isidoro 2006, section 5).
+//! Normals of the water surface by a Sobel filter (Tatarchuk & Isidoro 2006, section 5).
 //! Twin of `shaders/wgsl/lattice/glass_normal.wgsl`.
 
 use glam::{IVec2, UVec2, Vec2};
@@ -6,13 +6,13 @@ use rayon::prelude::*;
 
 use super::frame::{GlassFrame, glass_frame_cell, glass_frame_index};
 
-/// The height at a cell, at the nearest one of the pane if it is outside.
+/// Height at a cell; cells outside the pane are clamped to its edge.
 fn glass_normal_at(frame: &GlassFrame, heights: &[u32], cell: IVec2) -> i32 {
     let inside = cell.clamp(IVec2::ZERO, UVec2::from(frame.size).as_ivec2() - 1);
     heights[glass_frame_index(frame, inside) as usize] as i32
 }
 
-/// Sobel's sums along x and y: 2048 is a slope of 1.
+/// Sobel sums along x and y: 2048 is a slope of 1.
 fn glass_normal_sobel(frame: &GlassFrame, heights: &[u32], cell: IVec2) -> IVec2 {
     let at = |x, y| glass_normal_at(frame, heights, cell + IVec2::new(x, y));
     let mut sum = IVec2::ZERO;

@@ -1,4 +1,4 @@
-//! What a pane is asked to be.
+//! Options of a pane.
 
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeLaw};
@@ -8,7 +8,7 @@ use super::contact::GlassContact;
 use super::error::{GlassError, in_range};
 use super::wiper::GlassWiper;
 
-/// Cells along an edge.
+/// Range of the number of cells along an edge.
 const EDGE: std::ops::RangeInclusive<u32> = 8..=4096;
 
 /// Rain on the pane.
@@ -16,16 +16,16 @@ const EDGE: std::ops::RangeInclusive<u32> = 8..=4096;
 pub struct GlassRain {
     /// Rate on level ground, mm/h: 0 to 500.
     pub rate_mm_h: f64,
-    /// The drop sizes.
+    /// Drop size distribution.
     pub law: DropSizeLaw,
-    /// Its smallest and its largest diameter, m. Of them those from 0.2 to 7.5 mm land.
+    /// Smallest and largest diameter of the distribution, m. Drops from 0.2 to 7.5 mm land.
     pub diameters_m: [f64; 2],
-    /// The law of terminal speed.
+    /// Model of terminal speed.
     pub fall_speed: FallSpeedModel,
-    /// The air that the rain falls through: its temperature and pressure decide how fast.
+    /// Air that the rain falls through: temperature and pressure determine the fall speed.
     pub air: Air,
-    /// How fast the air with the rain in it comes at the pane horizontally, m/s: the car's speed, or the wind on a window. 0
-    /// to 100. Without it no rain reaches a vertical pane.
+    /// Horizontal speed of the air with the rain towards the pane, m/s: the car's speed, or the wind on a window. 0 to
+    /// 100. At 0 no rain reaches a vertical pane.
     pub towards_m_s: f64,
 }
 
@@ -36,7 +36,7 @@ impl Default for GlassRain {
         Self {
             rate_mm_h: 0.0,
             law: DropSizeLaw::default(),
-            diameters_m: [drops.smallest_diameter_m, drops.largest_diameter_m],
+            diameters_m: [drops.min_diameter_m, drops.max_diameter_m],
             fall_speed: drops.fall_speed,
             air: drops.air,
             towards_m_s: 0.0,
@@ -51,7 +51,8 @@ pub struct GlassAir {
     pub speed_m_s: f64,
     /// Direction along the pane, radians from +x towards the top: pi/2 is up, as over a windshield.
     pub direction_rad: f64,
-    /// Drag coefficient of a drop with the speed far from the pane, which holds the boundary layer's share: 0 to 2.
+    /// Drag coefficient of a drop for the speed far from the pane; it includes the effect of the boundary layer: 0 to
+    /// 2.
     pub drag: f64,
 }
 
@@ -62,7 +63,7 @@ impl Default for GlassAir {
     }
 }
 
-/// What a running drop leaves behind.
+/// Beads that a running drop leaves behind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlassTrail {
     /// Mean distance between beads, m: 1e-4 to 1; infinite for none.
@@ -77,14 +78,14 @@ impl Default for GlassTrail {
     }
 }
 
-/// How glass over which water has moved differs from dry glass.
+/// Difference between wet and dry glass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlassWetting {
-    /// How long it stays wet, s: 0.1 to 3600.
+    /// Time that glass stays wet, s: 0.1 to 3600.
     pub life_s: f64,
-    /// Share of the friction that fresh wetness takes away, 0 to 1.
+    /// Fraction by which fresh wetness reduces the friction, 0 to 1.
     pub ease: f64,
-    /// How strongly it draws drops, 0 to 4: with 1, wet glass is twice as likely as dry.
+    /// Attraction of drops by wetness, 0 to 4: with 1, wet glass is twice as likely as dry.
     pub pull: f64,
 }
 
@@ -94,28 +95,28 @@ impl Default for GlassWetting {
     }
 }
 
-/// A number per cell of the pane.
+/// Texture with a number per cell of the pane.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GlassTexture {
     /// The same everywhere.
     Even,
-    /// Smooth noise from the seed, as of a pane that is not quite clean.
+    /// Smooth noise from the seed, as on a pane that is not quite clean.
     Noise {
         /// Width of the largest spots, m: 1e-4 to 1.
         spot_m: f64,
-        /// How much of the range it takes, 0 to 1.
-        share: f64,
+        /// Amplitude as a fraction of the range, 0 to 1.
+        amplitude: f64,
     },
     /// Given row by row from the top.
     Given(Vec<f32>),
 }
 
-/// A pane and what happens on it.
+/// Options of a pane of glass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GlassOptions {
-    /// Cells along x (right) and y (down): 8 to 4096 each.
+    /// Number of cells along x (right) and y (down): 8 to 4096 each.
     pub size: [u32; 2],
-    /// Edge of a cell, m: 0.25e-3 to 5e-3. A drop is to be wider than a cell: 0.6e-3 is good.
+    /// Edge of a cell, m: 0.25e-3 to 5e-3. Drops should be wider than a cell: 0.6e-3 is good.
     pub cell_m: f64,
     /// Tilt from the horizontal, rad: 0 to pi/2, a window.
     pub tilt_rad: f64,
@@ -131,21 +132,21 @@ pub struct GlassOptions {
     pub trail: GlassTrail,
     /// Wet glass.
     pub wetting: GlassWetting,
-    /// How the glass draws water: 0 repels, 1 draws.
+    /// Affinity of the glass for water: 0 repels, 1 attracts.
     pub affinity: GlassTexture,
-    /// How strongly affinity turns drops, 0 to 4.
+    /// Attraction of drops by affinity, 0 to 4.
     pub affinity_pull: f64,
-    /// Friction of the glass as a multiple of Furmidge's: 0 to 1.99. Noise is about 1, by its share.
+    /// Friction of the glass as a multiple of Furmidge's: 0 to 1.99. Noise is centered at 1, with its amplitude.
     pub friction: GlassTexture,
-    /// Cells where no water can be, row by row from the top.
+    /// Cells that cannot hold water, row by row from the top.
     pub obstacles: Option<Vec<bool>>,
-    /// Drying as depth of water over the wetted area, mm/h: 0 to 100.
+    /// Evaporation as depth of water over the wetted area, mm/h: 0 to 100.
     pub evaporation_mm_h: f64,
     /// Wipers.
     pub wipers: Vec<GlassWiper>,
-    /// The fastest that drops run, m/s: 0.01 to 5. It sets the length of a tick: a drop moves by at most a cell.
+    /// Maximum speed of drops, m/s: 0.01 to 5. It determines the length of a tick: a drop moves by at most a cell.
     pub speed_limit_m_s: f64,
-    /// Seed of all that is random.
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 
@@ -162,9 +163,9 @@ impl Default for GlassOptions {
             air: GlassAir::default(),
             trail: GlassTrail::default(),
             wetting: GlassWetting::default(),
-            affinity: GlassTexture::Noise { spot_m: 8.0e-3, share: 1.0 },
+            affinity: GlassTexture::Noise { spot_m: 8.0e-3, amplitude: 1.0 },
             affinity_pull: 1.0,
-            friction: GlassTexture::Noise { spot_m: 12.0e-3, share: 0.35 },
+            friction: GlassTexture::Noise { spot_m: 12.0e-3, amplitude: 0.35 },
             obstacles: None,
             evaporation_mm_h: 0.0,
             wipers: Vec::new(),
@@ -175,16 +176,16 @@ impl Default for GlassOptions {
 }
 
 impl GlassOptions {
-    /// How many cells there are.
+    /// Number of cells.
     #[must_use]
     pub fn cells(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
     }
 
-    /// Whether all numbers are in their ranges.
+    /// Checks that all numbers are in their ranges.
     ///
     /// # Errors
-    /// [`GlassError`] that names the first that is not.
+    /// [`GlassError`] that names the first number out of range.
     pub fn check(&self) -> Result<(), GlassError> {
         for (quantity, edge) in ["columns of the pane", "rows of the pane"].into_iter().zip(self.size) {
             if !EDGE.contains(&edge) {

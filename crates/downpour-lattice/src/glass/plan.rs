@@ -1,4 +1,4 @@
-//! What both halves, CPU and GPU, are told: the options as integers.
+//! Options as integers, for both the CPU and the GPU version.
 
 use std::f64::consts::PI;
 
@@ -13,14 +13,14 @@ use super::error::{GlassError, in_range};
 use super::frame::GlassFrame;
 use super::lattice::UNIT_M3;
 use super::options::{GlassAir, GlassOptions, GlassRain};
-use super::rain::{BLOCK, Landing, MOST_PER_BLOCK};
+use super::rain::{BLOCK, Landing, MAX_PER_BLOCK};
 use super::size::{GlassSizeRow, GlassTable, glass_size_floor};
 
-/// Ticks of a second, for the clock.
+/// Clock ticks per second.
 const CLOCK_HZ: f64 = 4096.0;
 
-/// The longest step, s.
-const LONGEST_S: f64 = 60.0;
+/// Maximum step, s.
+const MAX_STEP_S: f64 = 60.0;
 
 /// A pane as integers.
 #[derive(Clone, Debug)]
@@ -33,14 +33,14 @@ pub(crate) struct Plan {
     backlog_s: f64,
 }
 
-/// The ticks of a step.
+/// Ticks of a step.
 #[derive(Clone, Debug)]
 pub(crate) struct Ticks {
-    /// What holds for all of them.
+    /// Parameters common to all of them.
     pub(crate) frame: GlassFrame,
-    /// How many there are.
+    /// Number of ticks.
     pub(crate) count: u32,
-    /// The parts of blades of each tick.
+    /// Blade parts of each tick.
     pub(crate) blades: Vec<GlassBlade>,
 }
 
@@ -60,7 +60,7 @@ impl Plan {
         })
     }
 
-    /// Other rain and other air from now on. The tick stays.
+    /// Sets rain and air from now on. The length of a tick stays.
     pub(crate) fn set_weather(&mut self, rain: &GlassRain, air: &GlassAir) -> Result<(), GlassError> {
         let options = GlassOptions { rain: *rain, air: *air, ..self.options.clone() };
         options.check()?;
@@ -69,7 +69,7 @@ impl Plan {
         in_range(
             "rain on the pane",
             landing.number * edge * edge * self.tick_s,
-            0.0..=1.001 * MOST_PER_BLOCK,
+            0.0..=1.001 * MAX_PER_BLOCK,
             1.0,
             "drops in a block and tick",
             "0 to 0.5: make the pane with its heaviest rain, which sets the tick",
@@ -98,11 +98,11 @@ impl Plan {
         self.done
     }
 
-    /// The whole ticks of a step of `dt_s`; what is left counts for the next step.
+    /// Whole ticks of a step of `dt_s`; the remainder counts for the next step.
     pub(crate) fn ticks(&mut self, dt_s: f64) -> Result<Ticks, GlassError> {
-        in_range("step", dt_s, f64::MIN_POSITIVE..=LONGEST_S, 1.0, "s", "above 0 to 60")?;
+        in_range("step", dt_s, f64::MIN_POSITIVE..=MAX_STEP_S, 1.0, "s", "above 0 to 60")?;
         let whole = (self.backlog_s + dt_s) / self.tick_s;
-        // Steps that are whole multiples of a tick are not to lose one to rounding.
+        // Steps that are whole multiples of a tick must not lose one to rounding.
         let count = (whole + 1.0e-6).floor();
         let clock = (self.done as f64 + count) * f64::from(self.frame.clock_step);
         in_range(
@@ -130,14 +130,14 @@ impl Plan {
     }
 }
 
-/// The longest tick in which no drop moves further than a cell, gravity adds less than half of that, no block gets more
+/// Longest tick in which no drop moves further than a cell, gravity adds less than half of that, no block gets more
 /// drops than are counted and no blade passes more than eight cells.
 fn tick(options: &GlassOptions, landing: &Landing) -> f64 {
     let cell = options.cell_m;
     let fall = (0.48 * cell / STANDARD_GRAVITY).sqrt();
     let edge = BLOCK * cell;
-    let rain = MOST_PER_BLOCK / (landing.number * edge * edge);
-    let wiper = |w: &super::wiper::GlassWiper| 8.0 * cell / (w.fastest() * w.outer_m);
+    let rain = MAX_PER_BLOCK / (landing.number * edge * edge);
+    let wiper = |w: &super::wiper::GlassWiper| 8.0 * cell / (w.max_speed() * w.outer_m);
     let limits = [cell / options.speed_limit_m_s, fall, rain];
     limits.into_iter().chain(options.wipers.iter().map(wiper)).fold(f64::INFINITY, f64::min)
 }
@@ -189,7 +189,7 @@ fn table(options: &GlassOptions, landing: &Landing, tick_s: f64) -> Result<Box<G
         let cells = |m: f64, most: f64| (256.0 * m / options.cell_m).round().min(most) as u32;
         let push = |force: f64, most: f64| (force / mass * tick_s / velocity).round().min(most) as u32;
         GlassSizeRow {
-            // 32 cells: further no drop looks.
+            // 32 cells: the maximum search distance of a drop.
             radius: cells(radius, 8192.0),
             hold: push(contact.hold(radius, sigma), 1_048_575.0),
             slow: (f64::from(GLASS_CELL) / (1.0 + contact.drag(radius, mu) / mass * tick_s)).round() as u32,

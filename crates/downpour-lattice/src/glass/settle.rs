@@ -1,24 +1,24 @@
-//! What has come to a cell becomes its drop. Twin of `shaders/wgsl/lattice/glass_settle.wgsl`.
+//! Settling: the water that moved to a cell becomes its drop. Twin of `shaders/wgsl/lattice/glass_settle.wgsl`.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use downpour_shaders::lattice::glass::{GLASS_INDEX, GLASS_LARGEST};
+use downpour_shaders::lattice::glass::{GLASS_INDEX, GLASS_MAX_MASS};
 
 use super::cells::Motion;
 use super::motion::{glass_motion_merged, glass_motion_pack, glass_motion_unpack};
 use super::totals::Counters;
 
-/// Takes what is above the largest mass off the pane.
+/// Removes the mass above the maximum from the pane.
 fn glass_settle_spill(mass: u32, counters: &Counters) -> u32 {
-    if mass <= GLASS_LARGEST {
+    if mass <= GLASS_MAX_MASS {
         return mass;
     }
-    counters.spilled.fetch_add((mass - GLASS_LARGEST).into(), Ordering::Relaxed);
+    counters.spilled.fetch_add((mass - GLASS_MAX_MASS).into(), Ordering::Relaxed);
     counters.saturated.fetch_add(1, Ordering::Relaxed);
-    GLASS_LARGEST
+    GLASS_MAX_MASS
 }
 
-/// How the drop of a cell moves: as the largest of those that came on their own.
+/// Motion of the drop of a cell: that of the largest drop that moved to it by itself.
 fn glass_settle_motion_of(mass: u32, winner: u32, decided: &[AtomicU64]) -> Motion {
     if mass == 0 || winner == 0 {
         return [0; 2];
@@ -28,7 +28,7 @@ fn glass_settle_motion_of(mass: u32, winner: u32, decided: &[AtomicU64]) -> Moti
     [glass_motion_pack(v), (motion >> 32) as u32]
 }
 
-/// The mass of a cell and how it moves, from what came and the largest drop among it.
+/// Mass and motion of a cell, from the water that moved to it and the largest drop among it.
 pub(super) fn settle_cell(
     come: u32,
     winner: u32,

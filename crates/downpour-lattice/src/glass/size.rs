@@ -1,41 +1,41 @@
-//! Classes of mass, and what a drop of a class does. Twin of `shaders/wgsl/lattice/glass_size.wgsl`.
+//! Classes of mass, and the properties of drops by class. Twin of `shaders/wgsl/lattice/glass_size.wgsl`.
 
 use downpour_shaders::lattice::glass::GLASS_LANDING_QUADS;
 
-/// What a drop of some mass does. The same layout as `GlassSizeRow` in WGSL.
+/// Properties of a drop of a mass, in the layout of `GlassSizeRow` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassSizeRow {
     /// Radius of the wetted disc, in cells / 256.
     pub radius: u32,
-    /// What the contact line holds back in one tick, in units of velocity.
+    /// Retention by the contact line in one tick, in units of velocity.
     pub hold: u32,
-    /// Share of its velocity that a drop keeps in one tick, of 16384.
+    /// Fraction of its velocity that a drop keeps in one tick, in units of 1/16384.
     pub slow: u32,
-    /// What the air pushes in one tick, in units of velocity.
+    /// Push of the air in one tick, in units of velocity.
     pub air: u32,
-    /// Radius of the sphere whose cap the drop is, in cells / 256.
+    /// Radius of the sphere of the cap, in cells / 256.
     pub sphere: u32,
-    /// What dries in one tick, in units of mass / 65536.
+    /// Evaporation in one tick, in units of mass / 65536.
     pub loss: u32,
-    /// 0.
+    /// Padding, 0.
     pub unused_1: u32,
-    /// 0.
+    /// Padding, 0.
     pub unused_2: u32,
 }
 
-/// What the host has computed of drops. The same layout as `GlassTable` in WGSL.
+/// Properties of drops computed by the host, in the layout of `GlassTable` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassTable {
-    /// By class of mass: 10 times 13 rows, which is one array of 130 in memory.
+    /// Rows by class of mass: 10 times 13 rows, which is one array of 130 in memory.
     pub rows: [[GlassSizeRow; 13]; 10],
-    /// Masses of landing drops at 4096 equal shares of their number.
+    /// Masses of landing drops at 4096 equal steps of their cumulative number.
     pub landing: [[u32; 4]; GLASS_LANDING_QUADS as usize],
 }
 
 impl GlassTable {
-    /// What a drop of a mass up to the largest does.
+    /// Properties of a drop of a mass up to the maximum.
     #[inline]
     #[must_use]
     pub fn row(&self, mass: u32) -> GlassSizeRow {
@@ -47,7 +47,7 @@ impl GlassTable {
     }
 }
 
-/// The class of a mass: the mass itself below 16, then eight classes to a doubling.
+/// Class of a mass: the mass itself below 16, then eight classes per doubling.
 #[inline]
 #[must_use]
 pub fn glass_size_class(mass: u32) -> u32 {
@@ -58,7 +58,7 @@ pub fn glass_size_class(mass: u32) -> u32 {
     (top - 2) * 8 + ((mass >> (top - 3)) & 7)
 }
 
-/// The smallest mass of a class.
+/// Smallest mass of a class.
 #[inline]
 #[must_use]
 pub fn glass_size_floor(class: u32) -> u32 {
@@ -68,7 +68,7 @@ pub fn glass_size_floor(class: u32) -> u32 {
     (8 + (class & 7)) << (class / 8 - 1)
 }
 
-/// How far a mass is on the way from its class to the next, of 256.
+/// Fraction of a mass between its class and the next, in units of 1/256.
 #[inline]
 #[must_use]
 pub fn glass_size_share(mass: u32) -> u32 {
@@ -79,31 +79,31 @@ pub fn glass_size_share(mass: u32) -> u32 {
     ((mass & ((1 << shift) - 1)) << 8) >> shift
 }
 
-/// The rank of a drop among others: its class, then its cell. Never 0.
+/// Rank of a drop among others: its class, then its cell. Never 0.
 #[inline]
 #[must_use]
 pub fn glass_size_key(mass: u32, index: u32) -> u32 {
     (glass_size_class(mass) << 24) | index
 }
 
-/// What is between two numbers below 2^22.
+/// Interpolates between two numbers below 2^22.
 #[inline]
 #[must_use]
-pub fn glass_size_mix(low: u32, high: u32, share: u32) -> u32 {
-    (low as i32 + (((high as i32 - low as i32) * share as i32) >> 8)) as u32
+pub fn glass_size_mix(low: u32, high: u32, fraction: u32) -> u32 {
+    (low as i32 + (((high as i32 - low as i32) * fraction as i32) >> 8)) as u32
 }
 
-/// What is between two classes.
+/// Interpolates between two classes.
 #[inline]
 #[must_use]
-pub fn glass_size_row(low: GlassSizeRow, high: GlassSizeRow, share: u32) -> GlassSizeRow {
+pub fn glass_size_row(low: GlassSizeRow, high: GlassSizeRow, fraction: u32) -> GlassSizeRow {
     GlassSizeRow {
-        radius: glass_size_mix(low.radius, high.radius, share),
-        hold: glass_size_mix(low.hold, high.hold, share),
-        slow: glass_size_mix(low.slow, high.slow, share),
-        air: glass_size_mix(low.air, high.air, share),
-        sphere: glass_size_mix(low.sphere, high.sphere, share),
-        loss: glass_size_mix(low.loss, high.loss, share),
+        radius: glass_size_mix(low.radius, high.radius, fraction),
+        hold: glass_size_mix(low.hold, high.hold, fraction),
+        slow: glass_size_mix(low.slow, high.slow, fraction),
+        air: glass_size_mix(low.air, high.air, fraction),
+        sphere: glass_size_mix(low.sphere, high.sphere, fraction),
+        loss: glass_size_mix(low.loss, high.loss, fraction),
         unused_1: 0,
         unused_2: 0,
     }
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn classes_are_in_order_and_begin_at_their_floor() {
-        for mass in 1..=downpour_shaders::lattice::glass::GLASS_LARGEST {
+        for mass in 1..=downpour_shaders::lattice::glass::GLASS_MAX_MASS {
             let class = glass_size_class(mass);
             assert!(glass_size_floor(class) <= mass && mass < glass_size_floor(class + 1), "{mass}");
             assert!(class + 1 < GLASS_CLASSES, "{mass}");

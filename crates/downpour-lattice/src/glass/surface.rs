@@ -1,4 +1,4 @@
-//! The glass itself: affinity, friction and obstacles of each cell, packed into a word.
+//! Surface of the glass: affinity, friction and obstacles of each cell, packed into a word.
 
 use downpour_math::rng::{rng_draw, rng_unit, seed_words};
 use downpour_shaders::lattice::glass::GLASS_OBSTACLE;
@@ -21,13 +21,13 @@ fn noise(seed: [u32; 2], texture: u32, x: f64, y: f64) -> f64 {
         let (s, t) = (ease(u - i), ease(v - j));
         let low = corner(octave, i, j) * (1.0 - s) + corner(octave, i + 1.0, j) * s;
         let high = corner(octave, i, j + 1.0) * (1.0 - s) + corner(octave, i + 1.0, j + 1.0) * s;
-        // Sums of values cluster about 0; the factor brings them back to most of the range.
+        // Sums of values cluster around 0; the factor restores most of the range.
         sum += 1.6 * weight * (low * (1.0 - t) + high * t);
     }
     sum.clamp(-1.0, 1.0)
 }
 
-/// A byte per cell: `middle` + `spread` * noise, or `unit` * what is given.
+/// A byte per cell: `middle` + `spread` * noise, or `unit` * given value.
 struct Bytes {
     quantity: &'static str,
     number: u32,
@@ -43,16 +43,16 @@ impl Bytes {
         let (quantity, seed) = (self.quantity, seed_words(options.seed));
         match texture {
             GlassTexture::Even => Ok(vec![self.middle as u8; options.cells()]),
-            GlassTexture::Noise { spot_m, share } => {
+            GlassTexture::Noise { spot_m, amplitude } => {
                 in_range("width of spots", *spot_m, 1.0e-4..=1.0, 1.0e3, "mm", "0.1 to 1000")?;
-                in_range("share of noise", *share, 0.0..=1.0, 1.0, "", "0 to 1")?;
+                in_range("amplitude of noise", *amplitude, 0.0..=1.0, 1.0, "", "0 to 1")?;
                 let scale = options.cell_m / spot_m;
                 let [width, height] = options.size;
                 let cells = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
                 Ok(cells
                     .map(|(x, y)| {
                         let n = noise(seed, self.number, f64::from(x) * scale, f64::from(y) * scale);
-                        (self.middle + self.spread * share * n).round().clamp(0.0, 255.0) as u8
+                        (self.middle + self.spread * amplitude * n).round().clamp(0.0, 255.0) as u8
                     })
                     .collect())
             }
@@ -78,7 +78,7 @@ impl Bytes {
     }
 }
 
-/// The words of all cells.
+/// Packed surface words of all cells.
 pub(crate) fn surface(options: &GlassOptions) -> Result<Vec<u32>, GlassError> {
     let affinity = Bytes {
         quantity: "affinity",

@@ -1,8 +1,8 @@
-//! Where the water is: what came, what stays, what went, to the unit.
+//! Water balance, to the unit.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Water since the pane was made, in units of [`Glass::UNIT_M3`](super::Glass::UNIT_M3), a nanolitre.
+/// Water balance since the pane was created, in units of [`Glass::UNIT_M3`](super::Glass::UNIT_M3), a nanolitre.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GlassTotals {
     /// Rain that has landed.
@@ -13,37 +13,37 @@ pub struct GlassTotals {
     pub stored: u64,
     /// Water that has left over the edge.
     pub over_edge: u64,
-    /// Water that has dried.
+    /// Water that has evaporated.
     pub evaporated: u64,
     /// Water that blades have pushed off the pane or onto an obstacle.
     pub wiped: u64,
-    /// Water that a cell could not hold: what is above the largest mass is taken off the pane.
+    /// Water above the maximum mass of a cell, which is removed from the pane.
     pub spilled: u64,
-    /// How often a cell had to spill.
+    /// Number of times that a cell exceeded the maximum mass.
     pub saturated: u64,
 }
 
 impl GlassTotals {
-    /// What came in.
+    /// Water that came in.
     #[must_use]
     pub fn came(&self) -> u64 {
         self.landed + self.poured
     }
 
-    /// What went out.
+    /// Water that went out.
     #[must_use]
     pub fn went(&self) -> u64 {
         self.over_edge + self.evaporated + self.wiped + self.spilled
     }
 
-    /// What came in less what is stored and what went out: 0 at any time.
+    /// Water that came in minus the water that is stored or went out: always 0.
     #[must_use]
     pub fn lost(&self) -> i128 {
         i128::from(self.came()) - i128::from(self.stored) - i128::from(self.went())
     }
 }
 
-/// The totals while threads count.
+/// Counters shared by the threads.
 #[derive(Debug, Default)]
 pub(super) struct Counters {
     pub(super) landed: AtomicU64,

@@ -1,5 +1,5 @@
-//! Water goes where the drops have decided: with them, left behind as beads, dried, before a blade, or off the pane. And rain
-//! lands. All sums are of integers, so that their order is of no account.
+//! Transfer of water as the drops have decided: with the drop, into beads, by evaporation, ahead of a blade, or off
+//! the pane. Rain lands as well. All sums are of integers, so their order does not matter.
 //! Twin of `shaders/wgsl/lattice/glass_transfer.wgsl`.
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -19,7 +19,7 @@ fn glass_transfer_count(total: &AtomicU64, mass: u32) {
     total.fetch_add(mass.into(), Ordering::Relaxed);
 }
 
-/// Puts water into a cell. The first to do so notes it in `come`.
+/// Adds water to a cell. The first addition records the cell in `come`.
 fn glass_transfer_put(cells: &Cells, tick: &Tick<'_>, cell: IVec2, mass: u32, come: &mut Vec<u32>) {
     let index = glass_frame_index(tick.frame, cell);
     if mass != 0 && cells.next[index as usize].fetch_add(mass, Ordering::Relaxed) == 0 {
@@ -27,13 +27,13 @@ fn glass_transfer_put(cells: &Cells, tick: &Tick<'_>, cell: IVec2, mass: u32, co
     }
 }
 
-/// Whether a cell can hold water.
+/// True if a cell can hold water.
 fn glass_transfer_open(cells: &Cells, tick: &Tick<'_>, cell: IVec2) -> bool {
     glass_frame_holds(tick.frame, cell)
         && cells.surface[glass_frame_index(tick.frame, cell) as usize] & GLASS_OBSTACLE == 0
 }
 
-/// The drops that land in the block of cells that begins at a cell.
+/// Lands the drops of the block of cells with this corner.
 pub(super) fn glass_transfer_land(
     cells: &Cells,
     tick: &Tick<'_>,
@@ -56,28 +56,28 @@ pub(super) fn glass_transfer_land(
     }
 }
 
-/// What dries of a drop in one tick.
+/// Mass that evaporates from a drop in one tick.
 fn glass_transfer_dry(mass: u32, loss: u32, word: u32) -> u32 {
     mass.min((loss >> 16) + u32::from(word & 0xffff < loss & 0xffff))
 }
 
-/// What a drop leaves behind it in a bead.
+/// Mass that a drop leaves behind in a bead.
 fn glass_transfer_bead(tick: &Tick<'_>, mass: u32, words: [u32; 4]) -> u32 {
     if words[1] >= tick.frame.trail_chance {
         return 0;
     }
-    // From half to one and a half of the mean.
+    // From half to one and a half times the mean.
     let mean = tick.frame.trail_mass;
     (mean / 2 + ((mean * (words[2] >> 20)) >> 12)).min(mass / 4)
 }
 
-/// The part of a blade that passes over a cell; none if none does.
+/// Index of the blade part that passes over a cell; `GLASS_OUT` if none does.
 fn glass_transfer_blade(tick: &Tick<'_>, cell: IVec2) -> u32 {
     let found = tick.blades.iter().position(|blade| glass_blade_sweeps(blade, cell));
     found.map_or(GLASS_OUT, |k| k as u32)
 }
 
-/// Brings water to a cell, or to where a blade pushes it. Whether it stays on its way.
+/// Moves water to a cell, or to where a blade pushes it. Returns true if no blade diverts it.
 fn glass_transfer_bring(
     cells: &Cells,
     tick: &Tick<'_>,
@@ -107,7 +107,7 @@ fn glass_transfer_bring(
     false
 }
 
-/// Where the drop of a cell goes, by way of the larger one that takes it.
+/// Target of the drop of a cell, followed through the larger drop that takes it.
 fn glass_transfer_goal(cells: &Cells, index: u32) -> u32 {
     let goal = load(&cells.target, index);
     if goal == GLASS_OUT || goal & GLASS_TAKEN == 0 {
@@ -117,7 +117,7 @@ fn glass_transfer_goal(cells: &Cells, index: u32) -> u32 {
     if after == GLASS_OUT { GLASS_OUT } else { after & GLASS_INDEX }
 }
 
-/// The bead goes where the drop and the bead do not touch.
+/// Leaves a bead where the drop and the bead do not touch.
 fn glass_transfer_trail(
     cells: &Cells,
     tick: &Tick<'_>,

@@ -1,4 +1,4 @@
-//! Wipers: blades that turn about a pivot and push the water before them.
+//! Wipers: blades that rotate about a pivot and push the water ahead of them.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use super::blade::{GlassBlade, glass_blade_side};
 use super::error::{GlassError, in_range};
 use super::options::GlassOptions;
 
-/// The angle of a blade at a time.
+/// Angle of a blade at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlassWiperKey {
     /// Time, s.
@@ -17,10 +17,10 @@ pub struct GlassWiperKey {
     pub angle_rad: f64,
 }
 
-/// How a blade turns. Angles are radians from +x (right) towards the top of the pane, -7 to 7.
+/// Motion of a blade. Angles are radians from +x (right) towards the top of the pane, -7 to 7.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GlassWiperMotion {
-    /// There and back in a period, as a crank drives it: `(1 - cos(2 pi t / period)) / 2` of the way.
+    /// Back and forth in a period, as driven by a crank: `(1 - cos(2 pi t / period)) / 2` of the range.
     Sweep {
         /// Angle at the start.
         from_rad: f64,
@@ -29,37 +29,37 @@ pub enum GlassWiperMotion {
         /// Period, s.
         period_s: f64,
     },
-    /// Angles at times that rise, linear between them, held before the first and after the last.
+    /// Angles at increasing times, linear between them, constant before the first and after the last.
     Keys(Vec<GlassWiperKey>),
 }
 
 /// A part of a blade that leaves water.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlassWornBand {
-    /// Where it begins, m from the pivot.
+    /// Start, m from the pivot.
     pub from_m: f64,
-    /// Where it ends, m from the pivot.
+    /// End, m from the pivot.
     pub to_m: f64,
-    /// Share of the water that stays behind, 0 to 1.
+    /// Fraction of the water that stays behind, 0 to 1.
     pub leaves: f64,
 }
 
-/// A wiper. Its blade turns by at most 20 rad/s.
+/// A wiper. Its blade rotates by at most 20 rad/s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GlassWiper {
-    /// The pivot, m right of and below the upper left corner of the pane; at most as far outside as the pane is wide.
+    /// Pivot, m right of and below the upper left corner of the pane; at most as far outside as the pane is wide.
     pub pivot_m: [f64; 2],
-    /// Where the blade begins, m from the pivot.
+    /// Start of the blade, m from the pivot.
     pub inner_m: f64,
-    /// Where it ends, m from the pivot.
+    /// End of the blade, m from the pivot.
     pub outer_m: f64,
-    /// How it turns.
+    /// Motion of the blade.
     pub motion: GlassWiperMotion,
-    /// Worn parts, in order from the pivot, apart from each other.
+    /// Worn bands, in order from the pivot, without overlap.
     pub worn: Vec<GlassWornBand>,
 }
 
-const FASTEST: f64 = 20.0;
+const MAX_SPEED_RAD_S: f64 = 20.0;
 
 impl GlassWiper {
     pub(super) fn check(&self, index: usize, options: &GlassOptions) -> Result<(), GlassError> {
@@ -90,7 +90,7 @@ impl GlassWiper {
                 "on the blade, in order",
             )?;
             in_range("end of a worn band", band.to_m, band.from_m..=self.outer_m, 1.0, "m", "on the blade")?;
-            in_range("share that a worn band leaves", band.leaves, 0.0..=1.0, 1.0, "", "0 to 1")?;
+            in_range("fraction that a worn band leaves", band.leaves, 0.0..=1.0, 1.0, "", "0 to 1")?;
             from = band.to_m;
         }
         self.check_motion()
@@ -122,12 +122,12 @@ impl GlassWiper {
                 }
             }
         }
-        in_range("speed of a blade", self.fastest(), 0.0..=FASTEST, 1.0, "rad/s", "0 to 20")?;
+        in_range("speed of a blade", self.max_speed(), 0.0..=MAX_SPEED_RAD_S, 1.0, "rad/s", "0 to 20")?;
         Ok(())
     }
 
-    /// The highest speed of the blade, rad/s.
-    pub(super) fn fastest(&self) -> f64 {
+    /// Maximum speed of the blade, rad/s.
+    pub(super) fn max_speed(&self) -> f64 {
         match &self.motion {
             GlassWiperMotion::Sweep { from_rad, to_rad, period_s } => {
                 (to_rad - from_rad).abs() * PI / period_s
@@ -142,7 +142,7 @@ impl GlassWiper {
         }
     }
 
-    /// The angle of the blade at a time, rad.
+    /// Angle of the blade at a time, rad.
     #[must_use]
     pub fn angle(&self, time_s: f64) -> f64 {
         match &self.motion {
@@ -153,8 +153,8 @@ impl GlassWiper {
                 let after = keys.partition_point(|key| key.time_s <= time_s);
                 match (after.checked_sub(1).and_then(|k| keys.get(k)), keys.get(after)) {
                     (Some(a), Some(b)) => {
-                        let share = (time_s - a.time_s) / (b.time_s - a.time_s);
-                        a.angle_rad + (b.angle_rad - a.angle_rad) * share
+                        let fraction = (time_s - a.time_s) / (b.time_s - a.time_s);
+                        a.angle_rad + (b.angle_rad - a.angle_rad) * fraction
                     }
                     (Some(key), None) | (None, Some(key)) => key.angle_rad,
                     (None, None) => 0.0,
@@ -163,12 +163,12 @@ impl GlassWiper {
         }
     }
 
-    /// How many parts the blade has.
+    /// Number of parts of the blade.
     pub(super) fn parts(&self) -> usize {
         2 * self.worn.len() + 1
     }
 
-    /// The parts of the blade during a tick, as many as [`GlassWiper::parts`].
+    /// Appends the parts of the blade during a tick, as many as [`GlassWiper::parts`].
     pub(super) fn blades(&self, from_s: f64, to_s: f64, cell_m: f64, blades: &mut Vec<GlassBlade>) {
         let half = |m: f64| (2.0 * m / cell_m).round() as i32;
         let points = |time: f64| {

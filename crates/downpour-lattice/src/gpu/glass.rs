@@ -1,4 +1,4 @@
-//! The pane on a GPU: the same bits as [`Glass`](crate::glass::Glass) has on the CPU.
+//! Pane on a GPU, with the same bits as [`Glass`](crate::glass::Glass) on the CPU.
 
 use downpour_gpu::{ComputeKernel, Gpu, GpuError, wgpu};
 use downpour_shaders::lattice::glass as shaders;
@@ -12,23 +12,23 @@ use crate::glass::{GlassAir, GlassError, GlassOptions, GlassRain, GlassTotals};
 /// Ticks per submission: a submission must stay far below the time after which a driver resets.
 const TICKS: u32 = 64;
 
-/// Words of the totals.
+/// Number of words of the totals.
 const TOTALS: usize = 16;
 
-/// Why a pane could not be simulated on a GPU.
+/// Error of a pane on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuGlassError {
-    /// The pane itself is not possible.
+    /// The pane is not valid.
     #[error(transparent)]
     Glass(#[from] GlassError),
-    /// The GPU did not do it.
+    /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
 
 impl GpuGlassError {
-    /// The exit code of the command for this error.
+    /// Exit code of the command for this error.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -76,7 +76,7 @@ struct Bindings {
     next: wgpu::BindGroup,
 }
 
-/// A pane with drops on it, on a GPU.
+/// A pane of glass with drops, on a GPU.
 #[derive(Debug)]
 pub struct GpuGlass {
     gpu: Gpu,
@@ -89,11 +89,11 @@ pub struct GpuGlass {
 }
 
 impl GpuGlass {
-    /// A dry pane.
+    /// Creates a dry pane.
     ///
     /// # Errors
-    /// [`GpuGlassError::Glass`] if the options cannot be met, else what the GPU says: a pane of 4096 x 4096 cells takes
-    /// buffers of 128 MiB.
+    /// [`GpuGlassError::Glass`] if the options are not valid, else errors of the GPU: a pane of 4096 x 4096 cells needs buffers
+    /// of 128 MiB.
     pub fn new(gpu: &Gpu, options: &GlassOptions) -> Result<Self, GpuGlassError> {
         let plan = Plan::new(options)?;
         let surface = surface(options)?;
@@ -113,10 +113,11 @@ impl GpuGlass {
         Ok(Self { gpu: gpu.clone(), plan, kernels, buffers, bindings, surface, poured: 0 })
     }
 
-    /// Lets `dt_s` seconds pass, as [`Glass::step`](crate::glass::Glass::step); the work is submitted, not waited for.
+    /// Advances the pane by `dt_s` seconds, as [`Glass::step`](crate::glass::Glass::step); submits the work without
+    /// waiting.
     ///
     /// # Errors
-    /// [`GpuGlassError::Glass`] if the step is not in its range, else what the GPU says.
+    /// [`GpuGlassError::Glass`] if the step is not in its range, else errors of the GPU.
     pub fn step(&mut self, dt_s: f64) -> Result<(), GpuGlassError> {
         let ticks = self.plan.ticks(dt_s)?;
         let mut first = 0;
@@ -155,7 +156,7 @@ impl GpuGlass {
         self.gpu.submit(&many)
     }
 
-    /// Other rain and other air from now on, as [`Glass::set_weather`](crate::glass::Glass::set_weather).
+    /// Sets rain and air from now on, as [`Glass::set_weather`](crate::glass::Glass::set_weather).
     ///
     /// # Errors
     /// [`GpuGlassError::Glass`] as there.
@@ -165,10 +166,10 @@ impl GpuGlass {
         Ok(())
     }
 
-    /// Puts water into a cell, as [`Glass::pour`](crate::glass::Glass::pour). It waits for the device.
+    /// Adds water to a cell, as [`Glass::pour`](crate::glass::Glass::pour). It waits for the device.
     ///
     /// # Errors
-    /// As there, and what the GPU says.
+    /// As there, and errors of the GPU.
     pub fn pour(&mut self, x: u32, y: u32, volume_m3: f64) -> Result<(), GpuGlassError> {
         let index = free_cell(self.plan.options(), &self.surface, x, y)?;
         let before = self.mass()?.get(index).copied().unwrap_or_default();
@@ -179,19 +180,19 @@ impl GpuGlass {
         Ok(())
     }
 
-    /// The options.
+    /// Options of the pane.
     #[must_use]
     pub fn options(&self) -> &GlassOptions {
         self.plan.options()
     }
 
-    /// The length of a tick, s.
+    /// Length of a tick, s.
     #[must_use]
     pub fn tick_s(&self) -> f64 {
         self.plan.tick_s()
     }
 
-    /// How many ticks have been submitted.
+    /// Number of ticks that have been submitted.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.plan.done()
@@ -200,23 +201,23 @@ impl GpuGlass {
     /// Mass of each cell in units of [`Glass::UNIT_M3`](crate::glass::Glass::UNIT_M3), row by row from the top.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn mass(&self) -> Result<Vec<u32>, GpuError> {
         self.gpu.read(&self.buffers.mass)
     }
 
-    /// Velocity and progress of the drop in each cell as the kernels keep them.
+    /// Velocity and progress of the drop in each cell in the format of the kernels.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn motion(&self) -> Result<Vec<[u32; 2]>, GpuError> {
         self.gpu.read(&self.buffers.motion)
     }
 
-    /// Where the water is, to the unit.
+    /// Water balance, to the unit.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn totals(&self) -> Result<GlassTotals, GpuError> {
         let words = self.gpu.read::<u32>(&self.buffers.totals)?;
         let word = |k: u32| words.get(k as usize).copied().map_or(0, u64::from);
@@ -233,16 +234,16 @@ impl GpuGlass {
         })
     }
 
-    /// The buffer of heights, in cells / 256, as [`Glass::height_units`](crate::glass::Glass::height_units).
+    /// Buffer of heights, in cells / 256, as [`Glass::height_units`](crate::glass::Glass::height_units).
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn height_buffer(&self) -> Result<wgpu::Buffer, GpuError> {
         let gpu = &self.gpu;
         let bytes = 4 * self.surface.len() as u64;
         let caps = gpu.empty_buffer("glass caps", bytes, wgpu::BufferUsages::STORAGE)?;
         let heights = gpu.empty_buffer("glass heights", bytes, wgpu::BufferUsages::STORAGE)?;
-        // The frame of the device is that of the last submission; only its size counts here.
+        // The frame on the device is that of the last submission; only its size matters here.
         let b = &self.buffers;
         let cap =
             self.kernels.height.bind(gpu, &[&b.frame, &b.table, &b.mass, &b.motion, &b.surface, &caps])?;
@@ -257,17 +258,17 @@ impl GpuGlass {
     /// Height of the water in each cell, m.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn heights(&self) -> Result<Vec<f32>, GpuError> {
         let unit = (self.options().cell_m / 256.0) as f32;
         let heights = self.gpu.read::<u32>(&self.height_buffer()?)?;
         Ok(heights.into_iter().map(|h| h as f32 * unit).collect())
     }
 
-    /// The buffer of normals: x and y of each, two f32.
+    /// Buffer of normals: x and y of each, two f32.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn normal_buffer(&self) -> Result<wgpu::Buffer, GpuError> {
         let heights = self.height_buffer()?;
         let bytes = 8 * self.surface.len() as u64;
@@ -277,10 +278,10 @@ impl GpuGlass {
         Ok(normals)
     }
 
-    /// Unit normals of the water's surface: x right, y down the pane, z out of it.
+    /// Unit normals of the water surface: x right, y down the pane, z out of it.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn normals(&self) -> Result<Vec<Vec3>, GpuError> {
         let normals = self.gpu.read::<Vec2>(&self.normal_buffer()?)?;
         Ok(normals.into_iter().map(|n| n.extend((1.0 - n.length_squared()).max(0.0).sqrt())).collect())
@@ -294,7 +295,7 @@ impl GpuGlass {
 
 impl Buffers {
     fn new(gpu: &Gpu, plan: &Plan, surface: &[u32]) -> Result<Self, GpuError> {
-        // WebGPU's buffers begin as zeros.
+        // New buffers of WebGPU are zero.
         let words =
             |label, words: usize| gpu.empty_buffer(label, 4 * words as u64, wgpu::BufferUsages::STORAGE);
         let cells = surface.len();

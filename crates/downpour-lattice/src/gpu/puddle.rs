@@ -1,5 +1,5 @@
-//! A puddle on a GPU: the same numbers as [`Puddle`](crate::puddle::Puddle), several time steps per dispatch, in tiles; of the
-//! membrane one, without.
+//! Puddle on a GPU: the same numbers as [`Puddle`](crate::puddle::Puddle), with several time steps per dispatch, in
+//! tiles; for the membrane one step per dispatch, without tiles.
 
 use downpour_gpu::{ComputeKernel, Gpu, GpuError, timing::PassTime, wgpu};
 use downpour_math::ops::ops_is_finite;
@@ -15,23 +15,23 @@ use crate::puddle::{
     whole_normal,
 };
 
-/// Seeds of one dispatch: a driver may end an invocation that loops too long.
+/// Maximum number of seeds per dispatch: a driver may end an invocation that loops too long.
 const SEEDS: usize = 4096;
 
-/// Why a puddle on a GPU did not do what it was asked.
+/// Error of a puddle on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuPuddleError {
-    /// What was asked is not possible.
+    /// The puddle is not valid.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
-    /// The GPU did not do it.
+    /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
 
 impl GpuPuddleError {
-    /// The exit code of the command for this error.
+    /// Exit code of the command for this error.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -47,12 +47,12 @@ pub struct GpuPuddle {
     gpu: Gpu,
     model: Model,
     step: ComputeKernel,
-    /// A step at a time: faster than tiles where the degree is 1.
+    /// Kernel of a single step: faster than tiles for degree 1.
     direct: Option<ComputeKernel>,
     seed: ComputeKernel,
     normal: ComputeKernel,
     links: wgpu::Buffer,
-    /// The two copies of the state, and which is the newer.
+    /// Two copies of the state.
     states: [wgpu::Buffer; 2],
     newer: usize,
     reset: wgpu::Buffer,
@@ -61,15 +61,15 @@ pub struct GpuPuddle {
 }
 
 impl GpuPuddle {
-    /// Level water over the whole lattice.
+    /// Creates level water over the whole lattice.
     ///
     /// # Errors
-    /// [`GpuPuddleError::Lattice`] names the option that is not possible; else what the GPU says.
+    /// [`GpuPuddleError::Lattice`] names the option out of range; else errors of the GPU.
     pub fn new(gpu: &Gpu, options: &PuddleOptions) -> Result<Self, GpuPuddleError> {
         Self::assemble(gpu, Model::new(options, None)?)
     }
 
-    /// Level water where `land` is false.
+    /// Creates level water where `land` is false.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -81,7 +81,7 @@ impl GpuPuddle {
         let cells = (model.links.stride() * model.links.size[1]) as u64;
         let bytes = cells * if model.options.storage == PuddleStorage::Half { 4 } else { 8 };
         let state = || gpu.empty_buffer("puddle state", bytes, wgpu::BufferUsages::STORAGE);
-        // Numbers in 16 bits are rounded once per sweep, so that the steps of a sweep are part of the result.
+        // 16-bit numbers are rounded once per sweep, so the steps per sweep affect the result.
         let plain = model.degree == 1 && model.options.storage == PuddleStorage::Full;
         let direct = plain.then(|| ComputeKernel::new(gpu, &DIRECT_KERNEL, &[]));
         Ok(Self {
@@ -101,22 +101,22 @@ impl GpuPuddle {
         })
     }
 
-    /// The options.
+    /// Options of the puddle.
     #[must_use]
     pub fn options(&self) -> &PuddleOptions {
         &self.model.options
     }
 
-    /// How many time steps a dispatch makes, at most: what the options and the degree of the operator allow.
+    /// Maximum number of time steps per dispatch, from the options and the degree of the operator.
     #[must_use]
     pub fn steps_per_sweep(&self) -> u32 {
         self.model.steps_per_sweep()
     }
 
-    /// Lets time pass. Gives into how many steps it was cut. Does not wait.
+    /// Advances the puddle by `dt_s` seconds. Returns the number of sub-steps. Does not wait.
     ///
     /// # Errors
-    /// [`GpuPuddleError::Lattice`] if the time is not possible; else what the GPU says.
+    /// [`GpuPuddleError::Lattice`] if the time is not valid; else errors of the GPU.
     pub fn step(&mut self, dt_s: f32) -> Result<u32, GpuPuddleError> {
         let substeps = self.model.substeps(f64::from(dt_s))?;
         let dt = f64::from(dt_s) / f64::from(substeps);
@@ -133,7 +133,7 @@ impl GpuPuddle {
             let buffers = [uniform, &self.links, &self.states[from], &self.states[1 - from], &self.reset];
             kernel.bind(&self.gpu, &buffers)
         };
-        // One for each direction between the copies, and one for what is left over.
+        // One for each direction between the copies, and one for the remainder.
         let last_from = (self.newer + whole as usize) % 2;
         let bindings = [bind(&full_uniform, 0)?, bind(&full_uniform, 1)?, bind(&rest_uniform, last_from)?];
         let mut from = self.newer;
@@ -150,7 +150,7 @@ impl GpuPuddle {
         Ok(substeps)
     }
 
-    /// Workgroups of a sweep: what a tile writes is what its halo leaves.
+    /// Number of workgroups of a sweep: a tile writes its cells without the halo.
     fn groups(&self, steps: u32, direct: bool) -> [u32; 3] {
         if direct {
             let [_, ny] = self.model.options.size;
@@ -162,8 +162,8 @@ impl GpuPuddle {
         [nx.div_ceil(inner), ny.div_ceil(inner), 1]
     }
 
-    /// The time that the device takes for `repeats` sweeps of `steps` time steps each (at most what the options allow),
-    /// as the mean of one. Time passes for the puddle.
+    /// Time of the device for `repeats` sweeps of `steps` time steps each (at most what the options allow), as the
+    /// mean of one. The puddle advances.
     ///
     /// # Errors
     /// As [`step`](Self::step).
@@ -187,19 +187,19 @@ impl GpuPuddle {
         Ok(PassTime { device: time.device.map(|t| t / 2), wall: time.wall / 2 })
     }
 
-    /// Drops meet the water: a crater for each.
+    /// Adds the crater of each impact.
     ///
     /// # Errors
-    /// As [`Puddle::seed`](crate::puddle::Puddle::seed); else what the GPU says.
+    /// As [`Puddle::seed`](crate::puddle::Puddle::seed); else errors of the GPU.
     pub fn seed(&mut self, impacts: &[Impact]) -> Result<(), GpuPuddleError> {
         let seeds = craters(&self.model, impacts)?;
         self.add(&seeds)
     }
 
-    /// An object moves through the water.
+    /// Displaces water by an object that moves through it.
     ///
     /// # Errors
-    /// As [`Puddle::displace`](crate::puddle::Puddle::displace); else what the GPU says.
+    /// As [`Puddle::displace`](crate::puddle::Puddle::displace); else errors of the GPU.
     pub fn displace(&mut self, wake: &Wake) -> Result<(), GpuPuddleError> {
         let seeds = footprints(&self.model, wake)?;
         self.add(&seeds)
@@ -225,7 +225,7 @@ impl GpuPuddle {
         Ok(())
     }
 
-    /// The lattice for kernels that do not step, and their workgroups.
+    /// Grid of the whole lattice for kernels that do not step, and their workgroups.
     fn whole(&mut self) -> Result<(wgpu::Buffer, [u32; 3]), GpuPuddleError> {
         let dt = match self.model.fitted() {
             (_, dt) if dt > 0.0 => dt,
@@ -239,7 +239,7 @@ impl GpuPuddle {
     /// Heights over the level, m, and velocities, m/s, row by row. Waits.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn state(&self) -> Result<[Vec<f32>; 2], GpuPuddleError> {
         let buffer = &self.states[self.newer];
         let quads: Vec<[[f32; 4]; 2]> = match self.model.options.storage {
@@ -260,16 +260,16 @@ impl GpuPuddle {
     /// Heights over the level, m, row by row. Waits.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn heights(&self) -> Result<Vec<f32>, GpuPuddleError> {
         let [heights, _] = self.state()?;
         Ok(heights)
     }
 
-    /// Heights and velocities from elsewhere, as [`Puddle::set_state`](crate::puddle::Puddle::set_state).
+    /// Sets heights and velocities, as [`Puddle::set_state`](crate::puddle::Puddle::set_state).
     ///
     /// # Errors
-    /// As there; else what the GPU says.
+    /// As there; else errors of the GPU.
     pub fn set_state(&mut self, heights: &[f32], velocities: &[f32]) -> Result<u64, GpuPuddleError> {
         let cells = self.model.cells();
         for (quantity, values) in [("the field of heights", heights), ("the field of velocities", velocities)]
@@ -308,10 +308,10 @@ impl GpuPuddle {
         Ok(bad)
     }
 
-    /// Normals of the surface, as [`Puddle::normals`](crate::puddle::Puddle::normals), known to 3e-5. Waits.
+    /// Normals of the surface, as [`Puddle::normals`](crate::puddle::Puddle::normals), accurate to 3e-5. Waits.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn normals(&mut self) -> Result<Vec<[f32; 3]>, GpuPuddleError> {
         let (uniform, groups) = self.whole()?;
         let stride = self.model.links.stride();
@@ -326,23 +326,23 @@ impl GpuPuddle {
         Ok(rows.flat_map(|row| row.iter().take(nx).map(|&w| whole_normal(packing_unpack_snorm(w)))).collect())
     }
 
-    /// How many cells had to be set to rest because they were not finite. Waits.
+    /// Number of cells that were reset because they were not finite. Waits.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn reset_cells(&self) -> Result<u64, GpuPuddleError> {
         let count: Vec<u32> = self.gpu.read(&self.reset)?;
         Ok(self.reset_before + count.first().copied().map_or(0, u64::from))
     }
 
-    /// How many time steps have been made.
+    /// Number of time steps so far.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// The buffer of the newest state, for one's own shaders: a quad of heights and one of velocities for each four cells of a
-    /// row, as f32, or four words of two 16-bit numbers in units of 1/1024. The other copy is the newest after each call.
+    /// Buffer of the newest state, for other shaders: a quad of heights and one of velocities for each four cells of a
+    /// row, as f32, or four words of two 16-bit numbers in units of 1/1024. Each call makes the other copy the newest.
     #[must_use]
     pub fn state_buffer(&self) -> &wgpu::Buffer {
         &self.states[self.newer]

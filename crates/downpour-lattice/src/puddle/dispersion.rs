@@ -1,28 +1,29 @@
-//! How fast ripples of a wavelength run.
+//! Dispersion relation of ripples.
 //!
-//! Law, for waves that are low beside their length on water of depth h:
+//! Law, for waves of low amplitude relative to their length on water of depth h:
 //!
 //! > omega^2 = (g k + sigma k^3 / rho) tanh(k h)
 //!
-//! with the angular frequency omega, the wave number k = 2 pi / wavelength, gravity g, surface tension sigma and density
-//! rho (H. Lamb, "Hydrodynamics", 6th edition, sections 228 and 267). On deep water the phase speed omega / k is least,
-//! 0.231 m/s, at 17 mm: longer waves are driven by gravity, shorter ones by surface tension, and both are faster.
+//! with the angular frequency omega, the wave number k = 2 pi / wavelength, gravity g, surface tension sigma and
+//! density rho (H. Lamb, "Hydrodynamics", 6th edition, sections 228 and 267). On deep water the phase speed omega / k
+//! has its minimum, 0.231 m/s, at 17 mm: longer waves are driven by gravity, shorter ones by surface tension, and both
+//! are faster.
 //!
-//! A membrane (Tatarchuk & Isidoro 2006, section 4) has one speed for all: omega = c k. It leaves gravity out and
+//! A membrane (Tatarchuk & Isidoro 2006, section 4) has one speed for all: omega = c k. It neglects gravity and
 //! does not spread a ring into a train of ripples; it is kept as the paper's form.
 
 use std::f64::consts::TAU;
 
 use downpour_math::ops::f64 as ops;
 
-/// The water of a puddle and what pulls on it.
+/// Water of a puddle, and gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PuddleWater {
     /// Density, kg/m^3.
     pub density: f64,
     /// Surface tension, N/m.
     pub surface_tension: f64,
-    /// Kinematic viscosity, m^2/s: a ripple of wave number k loses amplitude at the rate 2 nu k^2.
+    /// Kinematic viscosity, m^2/s: the amplitude of a ripple of wave number k decays at the rate 2 nu k^2.
     pub viscosity: f64,
     /// Gravity, m/s^2.
     pub gravity: f64,
@@ -35,19 +36,19 @@ impl Default for PuddleWater {
     }
 }
 
-/// Which law the ripples follow.
+/// Dispersion law of the ripples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PuddleForm {
-    /// Gravity and surface tension over a flat ground: the law of real water.
+    /// Gravity and surface tension over a flat ground, as for real water.
     GravityCapillary,
     /// The membrane of Tatarchuk & Isidoro 2006: one speed for every wavelength.
     Membrane {
-        /// The speed, m/s: 0.001 to 100.
+        /// Speed, m/s: 0.001 to 100.
         speed_m_s: f32,
     },
 }
 
-/// A form with the numbers that it needs, in f64.
+/// A form with its parameters in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Dispersion {
     pub(crate) form: PuddleForm,

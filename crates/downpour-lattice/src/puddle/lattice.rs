@@ -1,8 +1,8 @@
-//! The cells, which of them are linked, and one step of a cell. Twin of `shaders/wgsl/lattice/puddle.wgsl`.
+//! Cells, their links, and one step of a cell. Twin of `shaders/wgsl/lattice/puddle.wgsl`.
 //!
-//! Four cells of a row are a quad, the unit of memory and of the shaders' arithmetic. A link is a bit: the neighbour is
-//! there, and it is water. Where a link is cut, the neighbour counts as level with the cell itself, or with its image in
-//! a straight wall: that reflects ripples without loss, and the operator keeps being symmetric. Square of four cells by square,
+//! Four cells of a row are a quad, the unit of memory and of the shaders' arithmetic. A link is a bit: the neighbour
+//! exists and is water. Where a link is missing, the neighbour is replaced by the cell itself, or by its image in a
+//! straight wall: that reflects ripples without loss, and the operator stays symmetric. For every square of four cells
 //! its quadratic form is at most that of open water, so no coast has a larger eigenvalue, and the time step that is
 //! stable on open water is stable everywhere.
 
@@ -10,61 +10,61 @@ use downpour_math::ops::ops_is_finite;
 use downpour_math::real::Real;
 use downpour_shaders::lattice::puddle::{
     PUDDLE_HALF_SCALE, PUDDLE_LINK_EAST, PUDDLE_LINK_NORTH, PUDDLE_LINK_NORTH_EAST, PUDDLE_LINK_NORTH_WEST,
-    PUDDLE_LINK_SOUTH, PUDDLE_LINK_SOUTH_EAST, PUDDLE_LINK_SOUTH_WEST, PUDDLE_LINK_WEST, PUDDLE_SMALLEST,
+    PUDDLE_LINK_SOUTH, PUDDLE_LINK_SOUTH_EAST, PUDDLE_LINK_SOUTH_WEST, PUDDLE_LINK_WEST, PUDDLE_MIN,
 };
 
 /// Four cells of a row.
 pub type PuddleQuad = [f32; 4];
 
-/// A lattice and one time step of it, as the shader takes it. The same layout as `PuddleGrid` in WGSL.
+/// A lattice and one time step of it, in the layout of `PuddleGrid` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct PuddleGrid {
-    /// How many cells there are along each edge.
+    /// Number of cells along each edge.
     pub size: [u32; 2],
-    /// Quads in a row of memory.
+    /// Number of quads in a row of memory.
     pub quads: u32,
     /// Degree of the polynomial.
     pub degree: u32,
-    /// Its coefficients over the first of them.
+    /// Coefficients of the polynomial over the first of them.
     pub coefficients: [[f32; 4]; 4],
     /// Weights of the cell, of its straight and of its diagonal neighbours.
     pub weights: [f32; 3],
-    /// The time step, s.
+    /// Time step, s.
     pub dt: f32,
-    /// What a weighted sum is multiplied by to be 2 x of the polynomial.
+    /// Factor from a weighted sum to 2 x of the polynomial.
     pub twice: f32,
-    /// What the last weighted sum is multiplied by to be a change of velocity.
+    /// Factor from the last weighted sum to a change of velocity.
     pub kick: f32,
-    /// The share of the velocity that is added to the last sum's argument: viscosity.
+    /// Viscosity: fraction of the velocity that is added to the argument of the last sum.
     pub viscosity: f32,
-    /// What is left of a velocity after a time step, far from the border.
+    /// Fraction of a velocity that remains after a time step, far from the border.
     pub keep: f32,
-    /// Width of the border that absorbs, in cells; 0: the border reflects.
+    /// Width of the absorbing border, in cells; 0: the border reflects.
     pub sponge_cells: f32,
     /// Drag at the edge times the time step.
     pub sponge_drag: f32,
-    /// How many time steps a sweep makes.
+    /// Number of time steps per sweep.
     pub steps: u32,
-    /// How many cells a tile reads beyond those that it writes.
+    /// Width of the halo that a tile reads around the cells that it writes.
     pub halo: u32,
-    /// 1: the state is kept in 16 bits per number.
+    /// 1 if the state is stored in 16 bits per number.
     pub half_storage: u32,
-    /// Inverse of eight cells, 1/m: what Sobel's sums are multiplied by.
+    /// Inverse of eight cells, 1/m: factor of the Sobel sums.
     pub slope: f32,
     /// Padding of the WGSL layout.
     pub padding: [u32; 2],
 }
 
-/// The neighbour's value, or the cell's own where the link is cut.
+/// Value of the neighbour, or of the cell itself where the link is missing.
 #[inline(always)]
 #[must_use]
 pub fn puddle_linked(own: f32, other: f32, links: u32, link: u32) -> f32 {
     if links & link != 0 { other } else { own }
 }
 
-/// A diagonal neighbour's value. Where its link is cut, it is the mirror image in the wall that the straight neighbours
-/// `a` and `b` on either side of it tell: `b` if only that is water, `a` if only that is, the cell's own value else.
+/// Value of a diagonal neighbour. Where its link is missing, it is the mirror image in the wall that the two adjacent
+/// straight neighbours `a` and `b` define: `b` if only that is water, `a` if only that is, else the cell itself.
 #[inline(always)]
 #[must_use]
 pub fn puddle_corner(own: f32, straight: [f32; 2], diagonal: f32, links: u32, bits: [u32; 3]) -> f32 {
@@ -73,7 +73,7 @@ pub fn puddle_corner(own: f32, straight: [f32; 2], diagonal: f32, links: u32, bi
     puddle_linked(level, diagonal, links, bits[2])
 }
 
-/// The three by three cells of which the middle one has these links, without what is land.
+/// Three by three cells whose middle one has these links, with land replaced.
 #[inline(always)]
 pub(crate) fn linked(north: [f32; 3], here: [f32; 3], south: [f32; 3], links: u32) -> [[f32; 3]; 3] {
     let own = here[1];
@@ -97,7 +97,7 @@ pub(crate) fn linked(north: [f32; 3], here: [f32; 3], south: [f32; 3], links: u3
     ]
 }
 
-/// The weighted sum over the neighbours of one cell. `north`, `here` and `south` are three values each, west to east.
+/// Weighted sum over the neighbours of one cell. `north`, `here` and `south` are three values each, west to east.
 #[inline(always)]
 pub(crate) fn laplacian<R: Real>(north: [R; 3], here: [R; 3], south: [R; 3], weights: [R; 3]) -> R {
     let straight = (north[1] + south[1]) + (here[0] + here[2]);
@@ -105,7 +105,7 @@ pub(crate) fn laplacian<R: Real>(north: [R; 3], here: [R; 3], south: [R; 3], wei
     weights[0] * here[1] - (weights[1] * straight + weights[2] * diagonal)
 }
 
-/// The same with the links of the cell.
+/// Weighted sum with the links of the cell.
 #[inline(always)]
 pub(crate) fn laplacian_linked(
     north: [f32; 3],
@@ -118,7 +118,7 @@ pub(crate) fn laplacian_linked(
     laplacian(north, here, south, weights)
 }
 
-/// The weighted sum over the neighbours, for a quad. Rows are the quads west of, at and east of a place; `links` has a
+/// Weighted sum over the neighbours, for a quad. Rows are the quads west of, at and east of the quad; `links` has a
 /// byte per cell, the first in the lowest bits.
 #[must_use]
 pub fn puddle_laplacian(
@@ -134,15 +134,15 @@ pub fn puddle_laplacian(
     })
 }
 
-/// The next sum of Clenshaw's recurrence.
+/// Next sum of Clenshaw's recurrence.
 #[inline(always)]
 #[must_use]
 pub fn puddle_recur<R: Real>(wave: R, sum: R, now: R, before: R) -> R {
     (wave + sum) - (now + before)
 }
 
-/// What is left of a velocity at a distance, in cells, from the border: the drag grows as the square of the way into
-/// the border.
+/// Fraction of a velocity that remains at a distance, in cells, from the border: the drag grows as the square of the
+/// depth into the border.
 #[inline(always)]
 #[must_use]
 pub fn puddle_keep(distance: f32, keep: f32, sponge_cells: f32, sponge_drag: f32) -> f32 {
@@ -150,21 +150,21 @@ pub fn puddle_keep(distance: f32, keep: f32, sponge_cells: f32, sponge_drag: f32
     keep / (1.0 + sponge_drag * (into * into))
 }
 
-/// The distance of a cell's middle from the nearest border along an axis of `size` cells, in cells.
+/// Distance of a cell's center from the nearest border along an axis of `size` cells, in cells.
 #[inline(always)]
 #[must_use]
 pub fn puddle_border(cell: u32, size: u32) -> f32 {
     cell.min((size.max(1) - 1).saturating_sub(cell)) as f32 + 0.5
 }
 
-/// A number without what would slow or poison the lattice: 0 below 1e-20, 0 where it is not finite.
+/// Sets a number to 0 if it is below 1e-20, which would be slow, or not finite.
 #[inline(always)]
 #[must_use]
 pub fn puddle_settle(value: f32) -> f32 {
-    if ops_is_finite(value) && value.abs() >= PUDDLE_SMALLEST { value } else { 0.0 }
+    if ops_is_finite(value) && value.abs() >= PUDDLE_MIN { value } else { 0.0 }
 }
 
-/// A finite number as a half, to the nearest, ties to even; limited to what a half holds.
+/// Converts a finite number to a half, to nearest, ties to even; clamped to the range of a half.
 #[inline(always)]
 #[must_use]
 pub fn puddle_state_half(value: f32) -> u32 {
@@ -177,7 +177,7 @@ pub fn puddle_state_half(value: f32) -> u32 {
     ((bits >> 16) & 0x8000) | if magnitude < 0x3880_0000 { small } else { normal }
 }
 
-/// The number of a finite half.
+/// Converts a finite half to a float.
 #[inline(always)]
 #[must_use]
 pub fn puddle_state_float(half: u32) -> f32 {
@@ -188,21 +188,21 @@ pub fn puddle_state_float(half: u32) -> f32 {
     if half & 0x8000 != 0 { -value } else { value }
 }
 
-/// Height and velocity in 16 bits each.
+/// Packs height and velocity into 16 bits each.
 #[inline(always)]
 #[must_use]
 pub fn puddle_state_pack(height: f32, velocity: f32) -> u32 {
     puddle_state_half(height * PUDDLE_HALF_SCALE) | puddle_state_half(velocity * PUDDLE_HALF_SCALE) << 16
 }
 
-/// Height and velocity of [`puddle_state_pack`].
+/// Unpacks height and velocity of [`puddle_state_pack`].
 #[inline(always)]
 #[must_use]
 pub fn puddle_state_unpack(word: u32) -> [f32; 2] {
     [word & 0xffff, word >> 16].map(|half| puddle_state_float(half) * (1.0 / PUDDLE_HALF_SCALE))
 }
 
-/// Which cells are water and which neighbours they have.
+/// Cells of water and the links to their neighbours.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Links {
     pub(crate) size: [usize; 2],
@@ -213,7 +213,7 @@ pub(crate) struct Links {
 }
 
 impl Links {
-    /// The links of the cells for which `is_land` is false.
+    /// Creates the links of the cells for which `is_land` is false.
     pub(crate) fn new(size: [usize; 2], is_land: impl Fn(usize, usize) -> bool) -> Self {
         let [nx, ny] = size;
         let stride = nx.next_multiple_of(4);
@@ -254,13 +254,13 @@ impl Links {
         self.size[0].next_multiple_of(4)
     }
 
-    /// Whether a cell is water with at least one neighbour.
+    /// True if a cell is water with at least one neighbour.
     pub(crate) fn is_water(&self, x: usize, y: usize) -> bool {
         self.bytes.get(y * self.stride() + x).is_some_and(|&byte| byte != 0)
     }
 }
 
-/// Runs of fully linked cells of at least 16, and what lies between them.
+/// Runs of at least 16 fully linked cells, and the runs between them.
 fn runs_of(row: &[u8]) -> Vec<(usize, bool)> {
     let mut runs: Vec<(usize, bool)> = Vec::new();
     let mut start = 0;

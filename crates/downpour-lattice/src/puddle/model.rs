@@ -1,4 +1,4 @@
-//! What a puddle is: its options, checked, and what every time step of it needs.
+//! Options of a puddle, checked, and parameters of its time steps.
 
 use std::f64::consts::TAU;
 
@@ -7,81 +7,83 @@ use downpour_math::ops::f64 as ops;
 use super::dispersion::{Dispersion, PuddleForm, PuddleWater};
 use super::lattice::{Links, PuddleGrid};
 use super::storage::PuddleStorage;
-use super::symbol::{LARGEST_COURANT, LARGEST_DEGREE, Stencil, Symbol, degree_for};
+use super::symbol::{MAX_COURANT, MAX_DEGREE, Stencil, Symbol, degree_for};
 use crate::error::{LatticeError, in_range};
 
-/// Cells along an edge: the fewest and the most.
+/// Range of the number of cells along an edge.
 pub const SIZE_RANGE: std::ops::RangeInclusive<u32> = 64..=4096;
 
-/// The most time steps that one call of `step` is cut into.
-pub const MOST_SUBSTEPS: u32 = 64;
+/// Maximum number of sub-steps of one call of `step`.
+pub const MAX_SUBSTEPS: u32 = 64;
 
-/// How far a tile may reach beyond what it writes, in cells.
-const LARGEST_HALO: u32 = 24;
+/// Maximum width of the halo of a tile, in cells.
+const MAX_HALO: u32 = 24;
 
-/// Width of a border that absorbs, in cells, and the share of the lattice that it takes at most.
+/// Width of the absorbing border, in cells, and its maximum fraction of the lattice.
 const SPONGE_CELLS: f64 = 32.0;
 const SPONGE_SHARE: f64 = 0.25;
 
-/// What ripples meet at the border of the lattice.
+/// Border of the lattice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum PuddleBorder {
-    /// A wall.
+    /// Reflecting wall.
     #[default]
     Reflecting,
-    /// More water: the outermost 32 cells (or a quarter of the lattice) absorb what comes.
+    /// Open water: the outermost 32 cells (or a quarter of the lattice) absorb ripples.
     Open,
 }
 
-/// What takes energy from ripples.
+/// Damping of ripples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PuddleDamping {
-    /// Nothing.
+    /// No damping.
     None,
-    /// What takes it in clean water: viscosity, amplitude rate 2 nu k^2 (Lamb, section 348), and friction on the ground,
-    /// k sqrt(nu omega / 2) / sinh(2 k h), taken for all at the rate of a 30 mm ripple.
+    /// Damping of clean water: viscosity, amplitude rate 2 nu k^2 (Lamb, section 348), and friction on the ground,
+    /// k sqrt(nu omega / 2) / sinh(2 k h), at the rate of a 30 mm ripple for all.
     #[default]
     Water,
-    /// Rates of one's own.
+    /// Custom rates.
     Rates {
-        /// Rate at which every ripple loses amplitude, 1/s: 0 to 1000.
+        /// Rate at which the amplitude of every ripple decays, 1/s: 0 to 1000.
         drag_per_s: f32,
-        /// Kinematic viscosity, m^2/s: 0 to 1e-2. A thin film on the water, oil or soap, works like ten times that of water.
+        /// Kinematic viscosity, m^2/s: 0 to 1e-2. A thin film on the water, oil or soap, acts like ten times that of
+        /// water.
         viscosity_m2_s: f32,
     },
 }
 
-/// What a puddle is like.
+/// Options of a puddle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PuddleOptions {
-    /// How many cells there are along x and y: 64 to 4096.
+    /// Number of cells along x and y: 64 to 4096.
     pub size: [u32; 2],
     /// Edge of a cell, m: 1e-4 to 1.
     pub cell_m: f32,
     /// Depth of the water, m: 1e-4 to 1000.
     pub depth_m: f32,
-    /// The law of the ripples.
+    /// Dispersion law of the ripples.
     pub form: PuddleForm,
-    /// The water.
+    /// Water, and gravity.
     pub water: PuddleWater,
-    /// What takes energy from ripples.
+    /// Damping of ripples.
     pub damping: PuddleDamping,
-    /// What ripples meet at the border.
+    /// Border of the lattice.
     pub border: PuddleBorder,
-    /// How the state is kept.
+    /// Storage of the state.
     pub storage: PuddleStorage,
-    /// The longest wavelength that has to be right, m; none: 40 cells. Shorter gives a lower degree or smaller errors.
+    /// Longest wavelength that has to be accurate, m; `None`: 40 cells. A shorter one gives a lower degree or smaller
+    /// errors.
     pub longest_wave_m: Option<f32>,
-    /// Degree of the operator, 1 to 12: so many passes over the neighbours per time step. None: the lowest that keeps
-    /// phase speeds right to 2.5 %, or 12. The membrane has 1.
+    /// Degree of the operator, 1 to 12: number of passes over the neighbours per time step. `None`: the lowest with
+    /// errors of the phase speed below 2.5 %, or 12. The membrane has 1.
     pub degree: Option<u32>,
-    /// The most time steps that one call of `step` is cut into: 1 to 64.
-    pub most_substeps: u32,
-    /// How many time steps are made per visit of the memory: 1 to 8, and as many as the degree allows. It changes the
-    /// speed, and how often numbers are rounded in [`PuddleStorage::Half`]; nothing else.
+    /// Maximum number of sub-steps of one call of `step`: 1 to 64.
+    pub max_substeps: u32,
+    /// Number of time steps per pass over the memory: 1 to 8, limited by the degree. It changes the speed only, and the
+    /// rounding in [`PuddleStorage::Half`].
     pub steps_per_sweep: u32,
-    /// Share of a drop's kinetic energy that becomes ripples: 0 to 1. Most of it goes into the splash and into heat.
-    pub wave_energy_share: f32,
+    /// Fraction of a drop's kinetic energy that becomes ripples: 0 to 1. Most of it goes into the splash and into heat.
+    pub wave_energy_fraction: f32,
 }
 
 impl Default for PuddleOptions {
@@ -98,9 +100,9 @@ impl Default for PuddleOptions {
             storage: PuddleStorage::Full,
             longest_wave_m: None,
             degree: None,
-            most_substeps: MOST_SUBSTEPS,
+            max_substeps: MAX_SUBSTEPS,
             steps_per_sweep: 8,
-            wave_energy_share: 0.02,
+            wave_energy_fraction: 0.02,
         }
     }
 }
@@ -140,18 +142,18 @@ impl PuddleOptions {
             in_range("longest wavelength", cells, "cells", &(8.0..=4096.0), 1.0, "8 to 4096 cells")?;
         }
         if let Some(degree) = self.degree {
-            let range = 1.0..=f64::from(LARGEST_DEGREE);
+            let range = 1.0..=f64::from(MAX_DEGREE);
             in_range("degree of the operator", f64::from(degree), "", &range, 1.0, "1 to 12")?;
         }
-        let range = 1.0..=f64::from(MOST_SUBSTEPS);
-        in_range("number of sub-steps", f64::from(self.most_substeps), "", &range, 1.0, "1 to 64")?;
+        let range = 1.0..=f64::from(MAX_SUBSTEPS);
+        in_range("number of sub-steps", f64::from(self.max_substeps), "", &range, 1.0, "1 to 64")?;
         in_range("steps per sweep", f64::from(self.steps_per_sweep), "", &(1.0..=8.0), 1.0, "1 to 8")?;
-        check("share of a drop's energy", self.wave_energy_share, "", 0.0..=1.0, 1.0, "0 to 1")?;
+        check("fraction of a drop's energy", self.wave_energy_fraction, "", 0.0..=1.0, 1.0, "0 to 1")?;
         Ok(())
     }
 }
 
-/// What the CPU's and the GPU's puddle have in common.
+/// Parts that the CPU and the GPU version share.
 #[derive(Clone, Debug)]
 pub(crate) struct Model {
     pub(crate) options: PuddleOptions,
@@ -159,12 +161,12 @@ pub(crate) struct Model {
     pub(crate) links: Links,
     pub(crate) degree: u32,
     longest: f64,
-    /// Amplitude rate of all, 1/s, and viscosity, m^2/s.
+    /// Amplitude rate of all ripples, 1/s, and viscosity, m^2/s.
     drag: f64,
     viscosity: f64,
-    /// The longest time step, s.
+    /// Maximum time step, s.
     limit: f64,
-    /// The last time step that was fitted, and its operator.
+    /// Last fitted time step, and its operator.
     fitted: (f64, Symbol),
 }
 
@@ -194,11 +196,11 @@ impl Model {
             }
         };
         let symbol = Symbol::fit(&law, cell, degree, longest, 0.0);
-        // The Courant number grows with the time step: halve the interval until it is known to f32.
+        // The Courant number grows with the time step: bisect the interval to the precision of f32.
         let (mut low, mut high) = (0.0, 1.0e3);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            let fits = symbol.courant(middle, viscosity, cell) <= LARGEST_COURANT;
+            let fits = symbol.courant(middle, viscosity, cell) <= MAX_COURANT;
             (low, high) = if fits { (middle, high) } else { (low, middle) };
         }
         let links = Links::new(size, |x, y| land.is_some_and(|land| land[y * size[0] + x]));
@@ -223,24 +225,24 @@ impl Model {
         self.links.size[0] * self.links.size[1]
     }
 
-    /// The longest time step that is not cut, s.
+    /// Longest time of a single step, s.
     pub(crate) fn limit(&self) -> f64 {
         self.limit
     }
 
-    /// The Courant number that a time step would have if it were not cut.
+    /// Courant number of a time as a single step.
     pub(crate) fn courant(&self, dt: f64) -> f64 {
         let symbol = Symbol::fit(&self.law, self.cell(), self.degree, self.longest, 0.0);
         symbol.courant(dt, self.viscosity, self.cell())
     }
 
-    /// Into how many steps a time is cut.
+    /// Number of sub-steps into which a time is divided.
     pub(crate) fn substeps(&self, dt: f64) -> Result<u32, LatticeError> {
         in_range("time step", dt, "s", &(1.0e-9..=1.0e3), 1.0, "1e-9 s and more, finite")?;
         let wanted = (dt / self.limit).ceil().max(1.0);
-        if wanted > f64::from(self.options.most_substeps) {
-            // The same time in as many steps as are allowed.
-            let courant = self.courant(dt / f64::from(self.options.most_substeps));
+        if wanted > f64::from(self.options.max_substeps) {
+            // The same time in the maximum number of sub-steps.
+            let courant = self.courant(dt / f64::from(self.options.max_substeps));
             return Err(LatticeError::OutOfRange {
                 quantity: "Courant number of the shortest sub-step",
                 found: courant,
@@ -251,12 +253,12 @@ impl Model {
         Ok(wanted as u32)
     }
 
-    /// How many steps a sweep makes.
+    /// Number of time steps per sweep.
     pub(crate) fn steps_per_sweep(&self) -> u32 {
-        self.options.steps_per_sweep.min(LARGEST_HALO / self.degree / 2).max(1)
+        self.options.steps_per_sweep.min(MAX_HALO / self.degree / 2).max(1)
     }
 
-    /// The lattice for `steps` time steps of `dt`.
+    /// Grid for `steps` time steps of `dt`.
     pub(crate) fn grid(&mut self, dt: f64, steps: u32) -> PuddleGrid {
         if self.fitted.0 != dt {
             self.fitted = (dt, Symbol::fit(&self.law, self.cell(), self.degree, self.longest, dt));
@@ -292,12 +294,12 @@ impl Model {
         }
     }
 
-    /// The operator of the last time step, and that step.
+    /// Operator of the last time step, and that step.
     pub(crate) fn fitted(&self) -> (&Symbol, f64) {
         (&self.fitted.1, self.fitted.0)
     }
 
-    /// Width in cells and drag at the edge in 1/s of the border.
+    /// Width of the border in cells, and drag at its edge in 1/s.
     fn sponge(&self) -> (f64, f64) {
         if self.options.border == PuddleBorder::Reflecting {
             return (0.0, 0.0);
@@ -311,7 +313,7 @@ impl Model {
     }
 }
 
-/// Rate at which friction on the ground takes the amplitude of a 30 mm ripple, 1/s.
+/// Rate at which friction on the ground damps the amplitude of a 30 mm ripple, 1/s.
 fn ground_friction(law: &Dispersion) -> f64 {
     let k = TAU / 0.03;
     let omega = law.squared_frequency(k).sqrt();

@@ -1,7 +1,7 @@
-//! Normals of the water by Sobel's sums. Twin of `shaders/wgsl/lattice/puddle_normal.wgsl`.
+//! Normals of the water by Sobel sums. Twin of `shaders/wgsl/lattice/puddle_normal.wgsl`.
 //!
-//! x runs along the rows of the lattice, z along its columns, y is up. What is not linked counts as
-//! for the ripples: as level, or mirrored in the wall.
+//! x runs along the rows of the lattice, z along its columns, y is up. Missing neighbours are replaced as for the
+//! ripples: by the cell itself, or by its image in the wall.
 
 use rayon::prelude::*;
 
@@ -16,7 +16,7 @@ fn slope(north: [f32; 3], here: [f32; 3], south: [f32; 3], links: u32, scale: f3
     [x * scale, z * scale]
 }
 
-/// Slopes along x and z of a quad. Rows are the quads west of, at and east of a place.
+/// Slopes along x and z of a quad. Rows are the quads west of, at and east of the quad.
 #[must_use]
 pub fn puddle_normal_slopes(
     north: [PuddleQuad; 3],
@@ -32,7 +32,7 @@ pub fn puddle_normal_slopes(
     [0, 1].map(|axis| slopes.map(|s| s[axis]))
 }
 
-/// The x and z components of the normal of a surface with these slopes.
+/// x and z components of the normal of a surface with these slopes.
 #[inline(always)]
 #[must_use]
 pub fn puddle_normal_lean(slope: [f32; 2]) -> [f32; 2] {
@@ -40,13 +40,13 @@ pub fn puddle_normal_lean(slope: [f32; 2]) -> [f32; 2] {
     slope.map(|s| -s / length)
 }
 
-/// The whole normal: its y component is what is left of 1.
+/// Full normal: the y component completes the length 1.
 #[inline(always)]
 pub(crate) fn whole([x, z]: [f32; 2]) -> [f32; 3] {
     [x, (1.0 - x * x - z * z).max(0.0).sqrt(), z]
 }
 
-/// The normals of all cells, from heights row by row.
+/// Normals of all cells, from heights row by row.
 pub(crate) fn normals(links: &Links, heights: &[f32], scale: f32) -> Vec<[f32; 3]> {
     let [nx, ny] = links.size;
     let at = |x: isize, y: isize| {

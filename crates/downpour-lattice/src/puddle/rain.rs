@@ -1,8 +1,8 @@
 //! Impacts of rain on a surface, drawn from the rate and the sizes of the drops.
 //!
-//! Drops cross a horizontal plane as N(D) v(D) (`downpour_drop::distribution`); on an area A in a time dt their number is
-//! Poisson's with the mean A dt Int N v dD, and each is anywhere. Numbers are hashes of (seed, step): any step can be drawn
-//! alone, in any order.
+//! Drops cross a horizontal plane as N(D) v(D) (`downpour_drop::distribution`); on an area A in a time dt their number
+//! is Poisson distributed with the mean A dt Int N v dD, and their positions are uniform. Numbers are hashes of (seed,
+//! step): any step can be drawn alone, in any order.
 
 use downpour_drop::distribution::{DropSizeDistribution, SampleTable, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;
@@ -12,13 +12,13 @@ use downpour_math::rng::{rng_draw, rng_unit, seed_words};
 use super::seed::Impact;
 use crate::error::{LatticeError, in_range};
 
-/// The mean of a Poisson number that is drawn at once: its probability of 0 is far from the smallest number.
-const LARGEST_MEAN: f64 = 8.0;
+/// Maximum mean of a single Poisson draw, whose probability of 0 is far above the smallest number.
+const MAX_MEAN: f64 = 8.0;
 
-/// The most impacts that one call gives.
-const MOST_IMPACTS: f64 = 1.0e6;
+/// Maximum number of impacts of one call.
+const MAX_IMPACTS: f64 = 1.0e6;
 
-/// The drops of a rain as they arrive.
+/// Impacts of a rain.
 #[derive(Clone, Debug)]
 pub struct PuddleRain {
     seed: [u32; 2],
@@ -29,7 +29,7 @@ pub struct PuddleRain {
 }
 
 impl PuddleRain {
-    /// The impacts of a rain.
+    /// Creates the impacts of a rain.
     ///
     /// ```
     /// use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
@@ -37,7 +37,7 @@ impl PuddleRain {
     /// let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 25.0)?;
     /// let rain = PuddleRain::new(&rain, 7);
     /// let impacts = rain.impacts([0.5, 0.5], 0, 1.0 / 60.0)?;
-    /// assert!(impacts.iter().all(|impact| impact.place_m[0] < 0.5));
+    /// assert!(impacts.iter().all(|impact| impact.position_m[0] < 0.5));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
@@ -56,7 +56,7 @@ impl PuddleRain {
         self.rate
     }
 
-    /// The impacts of step `step`, `dt_s` long, on an area of `extent_m`. The same step has the same impacts.
+    /// Impacts of step `step`, `dt_s` long, on an area of `extent_m`. The same step has the same impacts.
     ///
     /// # Errors
     /// [`LatticeError::OutOfRange`] if the extent or the time is not finite or below 0, or more than a million impacts
@@ -68,12 +68,12 @@ impl PuddleRain {
         }
         let dt = in_range("time step", f64::from(dt_s), "s", &(0.0..=1.0e3), 1.0, "0 to 1000 s")?;
         let mean = self.rate * width * height * dt;
-        in_range("expected number of impacts", mean, "", &(0.0..=MOST_IMPACTS), 1.0, "up to 1e6 in a step")?;
-        // The high word of the step goes into the seed.
+        in_range("expected number of impacts", mean, "", &(0.0..=MAX_IMPACTS), 1.0, "up to 1e6 in a step")?;
+        // The high word of the step is added to the seed.
         let [low, high] = [step as u32, (step >> 32) as u32];
         let [a, b, ..] = rng_draw(self.seed, high, 0, 0);
         let seed = [a, b];
-        let parts = (mean / LARGEST_MEAN).ceil().max(1.0) as u32;
+        let parts = (mean / MAX_MEAN).ceil().max(1.0) as u32;
         let each = mean / f64::from(parts);
         let count: u32 = (0..parts).map(|part| poisson(each, rng_draw(seed, part, low, 1))).sum();
         Ok((0..count).filter_map(|id| self.impact(extent_m, rng_draw(seed, id, low, 2))).collect())
@@ -82,12 +82,12 @@ impl PuddleRain {
     fn impact(&self, extent_m: [f32; 2], words: [u32; 4]) -> Option<Impact> {
         let diameter_m = self.sizes.sample(words[2]);
         let speed = self.speed.at(f64::from(diameter_m)).ok()?;
-        let place_m = [rng_unit(words[0]) * extent_m[0], rng_unit(words[1]) * extent_m[1]];
-        Some(Impact { place_m, speed_m_s: speed as f32, diameter_m })
+        let position_m = [rng_unit(words[0]) * extent_m[0], rng_unit(words[1]) * extent_m[1]];
+        Some(Impact { position_m, speed_m_s: speed as f32, diameter_m })
     }
 }
 
-/// A number of Poisson's distribution, by inversion.
+/// Draws a Poisson number by inversion.
 fn poisson(mean: f64, words: [u32; 4]) -> u32 {
     // 53 bits in [0, 1).
     let bits = u64::from(words[0]) << 21 | u64::from(words[1]) >> 11;

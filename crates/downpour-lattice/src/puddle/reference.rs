@@ -1,4 +1,4 @@
-//! The operator in f64, cell by cell: for energies, and for tests of the fast path.
+//! Operator in f64, cell by cell: for energies, and for tests of the fast path.
 
 use downpour_shaders::lattice::puddle::{
     PUDDLE_LINK_EAST, PUDDLE_LINK_NORTH, PUDDLE_LINK_NORTH_EAST, PUDDLE_LINK_NORTH_WEST, PUDDLE_LINK_SOUTH,
@@ -8,8 +8,8 @@ use downpour_shaders::lattice::puddle::{
 use super::lattice::Links;
 use super::symbol::Symbol;
 
-/// x of the polynomial, applied to a field: the weighted differences to linked neighbours, over the largest sum.
-fn share(links: &Links, symbol: &Symbol, field: &[f64]) -> Vec<f64> {
+/// x of the polynomial, applied to a field: weighted differences to linked neighbours over the largest sum.
+fn normalized_laplacian(links: &Links, symbol: &Symbol, field: &[f64]) -> Vec<f64> {
     const STRAIGHT: [(u32, isize, isize); 4] = [
         (PUDDLE_LINK_WEST, -1, 0),
         (PUDDLE_LINK_EAST, 1, 0),
@@ -36,7 +36,7 @@ fn share(links: &Links, symbol: &Symbol, field: &[f64]) -> Vec<f64> {
                 sum += straight * (field[i] - field[i.wrapping_add_signed(step(bit))]);
             }
             for (bit, a, b) in DIAGONAL {
-                // With both or neither of the straight ones: the diagonal itself, or nothing.
+                // With both or neither of the straight neighbours: the diagonal itself, or nothing.
                 let whole = bits & a != 0 && bits & b != 0;
                 let away = if bits & bit != 0 {
                     let (_, _, dy) = STRAIGHT.into_iter().find(|s| s.0 == a).unwrap_or((0, 0, 0));
@@ -58,7 +58,7 @@ fn share(links: &Links, symbol: &Symbol, field: &[f64]) -> Vec<f64> {
 pub(crate) fn apply(links: &Links, symbol: &Symbol, field: &[f64]) -> Vec<f64> {
     // Sum of c_j T_j(2 X - 1) by the recurrence of T, then X.
     let turned = |field: &[f64]| -> Vec<f64> {
-        share(links, symbol, field).iter().zip(field).map(|(s, f)| 2.0 * s - f).collect()
+        normalized_laplacian(links, symbol, field).iter().zip(field).map(|(s, f)| 2.0 * s - f).collect()
     };
     let mut sum = vec![0.0; field.len()];
     let (mut before, mut now) = (turned(field), field.to_vec());
@@ -69,10 +69,10 @@ pub(crate) fn apply(links: &Links, symbol: &Symbol, field: &[f64]) -> Vec<f64> {
         let next = turned(&now).iter().zip(&before).map(|(t, b)| 2.0 * t - b).collect();
         before = std::mem::replace(&mut now, next);
     }
-    share(links, symbol, &sum)
+    normalized_laplacian(links, symbol, &sum)
 }
 
-/// The sum of `(v^2 + eta A eta') / 2`, where eta' is a time step before eta.
+/// Sum of `(v^2 + eta A eta') / 2`, where eta' is a time step before eta.
 pub(crate) fn energy(links: &Links, symbol: &Symbol, dt: f64, heights: &[f32], velocities: &[f32]) -> f64 {
     let after: Vec<f64> = heights.iter().copied().map(f64::from).collect();
     let force = apply(links, symbol, &after);

@@ -1,16 +1,17 @@
-//! What impacts and moving objects do to the surface. Twin of `shaders/wgsl/lattice/puddle_seed.wgsl`.
+//! Craters of impacts and footprints of moving objects. Twin of `shaders/wgsl/lattice/puddle_seed.wgsl`.
 //!
 //! Tatarchuk & Isidoro 2006 seed a damped sine by the drop's mass. Here its shape is
 //!
 //! > -a (2 / sqrt 3) exp(-q) sin(sqrt(3) q + pi / 3),   q = distance / length:
 //!
-//! the damped sine that is smooth in the middle and whose rim holds exactly the water of its hollow, so that a drop makes
-//! rings and does not lift the puddle. (The drop's own water is not added: a puddle in the rain overflows or drains.)
+//! the damped sine that is smooth in the middle and whose rim holds exactly the water of its hollow, so that a drop
+//! makes rings without lifting the puddle. (The drop's own water is not added: a puddle in the rain overflows or
+//! drains.)
 //!
 //! Length: the hollow, 1.209 lengths wide, is the crater whose potential energy, pi/4 rho g R^4 + pi sigma R^2 for a
 //! half sphere, is a quarter of the drop's kinetic energy. Amplitude: the energy of the damped sine,
-//! pi a^2 (3/16 rho g length^2 + 3/4 sigma), is [`wave_energy_share`](super::PuddleOptions::wave_energy_share) of the
-//! drop's. The two shares are chosen, not measured. Slopes and hollows stay within what the linear law can carry: a is at
+//! pi a^2 (3/16 rho g length^2 + 3/4 sigma), is [`wave_energy_fraction`](super::PuddleOptions::wave_energy_fraction)
+//! of the drop's. The two fractions are chosen, not measured. Slopes and depths stay within the linear law: a is at
 //! most half a length and half the depth, and a length is at least 1.25 cells.
 
 use std::f64::consts::PI;
@@ -24,61 +25,61 @@ use super::lattice::Links;
 use super::model::Model;
 use crate::error::{LatticeError, in_range};
 
-/// Share of a drop's kinetic energy that opens the crater.
-const CRATER_SHARE: f64 = 0.25;
+/// Fraction of a drop's kinetic energy that opens the crater.
+const CRATER_FRACTION: f64 = 0.25;
 /// Radius of the hollow of a damped sine, in lengths.
 const HOLLOW: f64 = 1.209_2;
 /// Radius beyond which a damped sine is cut, in lengths.
 const REACH: f64 = 6.0;
-/// The shortest length, in cells.
-const SHORTEST: f64 = 1.25;
+/// Minimum length, in cells.
+const MIN_LENGTH_CELLS: f64 = 1.25;
 
-/// A drop that meets the water.
+/// A drop that hits the water.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// Where, m from the corner of the first cell, along x and y.
-    pub place_m: [f32; 2],
-    /// How fast, m/s: 0 to 30.
+    /// Position, m from the corner of the first cell, along x and y.
+    pub position_m: [f32; 2],
+    /// Speed, m/s: 0 to 30.
     pub speed_m_s: f32,
-    /// How large, m: up to 9e-3.
+    /// Diameter, m: up to 9e-3.
     pub diameter_m: f32,
 }
 
-/// A round object that moves through the surface from one place to another: it presses the water down where it is, and
-/// what it leaves comes up again. Drawn step by step it leaves a wake.
+/// A round object that moves through the surface: it presses the water down at its new position and releases it at the
+/// old one. A sequence of steps makes a wake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wake {
-    /// Where it was, m.
+    /// Previous position, m.
     pub from_m: [f32; 2],
-    /// Where it is now, m.
+    /// New position, m.
     pub to_m: [f32; 2],
-    /// Radius of its footprint, m: 2 cells and more.
+    /// Radius of its footprint, m: at least 2 cells.
     pub radius_m: f32,
-    /// How deep it presses the water down, m: up to the depth.
+    /// Draught, the depth to which it presses the water down, m: up to the depth.
     pub draught_m: f32,
 }
 
-/// A crater or a bump as the shader takes it. The same layout as `PuddleSeed` in WGSL.
+/// A crater or a bump, in the layout of `PuddleSeed` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct PuddleSeed {
-    /// Cells, from the corner of the first.
-    pub place: [f32; 2],
+    /// Center, in cells from the corner of the first.
+    pub center: [f32; 2],
     /// Inverse of the length, 1/cells.
     pub per_length: f32,
-    /// m, upwards.
+    /// Amplitude, m, upwards.
     pub amplitude: f32,
-    /// Share of exp(-q) that makes up for what the cells, the border and the land take from the volume.
+    /// Fraction of exp(-q) that compensates the volume lost to the cells, the border and the land.
     pub lift: f32,
-    /// Cells beyond which there is nothing.
+    /// Radius in cells beyond which the seed is 0.
     pub reach: f32,
-    /// `PUDDLE_SEED_CRATER` or `PUDDLE_SEED_BUMP`.
+    /// Shape: `PUDDLE_SEED_CRATER` or `PUDDLE_SEED_BUMP`.
     pub shape: u32,
     /// Padding.
     pub unused: u32,
 }
 
-/// A seed of amplitude 1 without lift, at a distance in lengths.
+/// Height of a seed of amplitude 1 without lift, at a distance in lengths.
 #[must_use]
 pub fn puddle_seed_shape(shape: u32, q: f32) -> f32 {
     if shape == PUDDLE_SEED_BUMP {
@@ -88,10 +89,10 @@ pub fn puddle_seed_shape(shape: u32, q: f32) -> f32 {
     PUDDLE_SEED_HEIGHT * ops::exp(-q) * ops::sin(PUDDLE_SEED_TURN * (q + PUDDLE_SEED_SHIFT))
 }
 
-/// What a seed adds to the height of a cell.
+/// Height that a seed adds to a cell.
 #[must_use]
 pub fn puddle_seed_height(seed: &PuddleSeed, cell: [f32; 2]) -> f32 {
-    let [x, y] = [0, 1].map(|axis| cell[axis] + 0.5 - seed.place[axis]);
+    let [x, y] = [0, 1].map(|axis| cell[axis] + 0.5 - seed.center[axis]);
     let distance = (x * x + y * y).sqrt();
     let q = distance * seed.per_length;
     if distance < seed.reach {
@@ -102,12 +103,12 @@ pub fn puddle_seed_height(seed: &PuddleSeed, cell: [f32; 2]) -> f32 {
 }
 
 impl PuddleSeed {
-    /// The cells that a seed may touch: columns and rows.
+    /// Columns and rows of the cells that a seed may touch.
     fn cells(&self, size: [usize; 2]) -> [std::ops::Range<usize>; 2] {
         [0, 1].map(|axis| {
             // A cast from f32 saturates, and NaN becomes 0.
-            let low = (self.place[axis] - self.reach).floor().max(0.0) as usize;
-            let high = (self.place[axis] + self.reach).ceil().max(0.0) as usize;
+            let low = (self.center[axis] - self.reach).floor().max(0.0) as usize;
+            let high = (self.center[axis] + self.reach).ceil().max(0.0) as usize;
             low.min(size[axis])..high.min(size[axis])
         })
     }
@@ -124,7 +125,7 @@ impl PuddleSeed {
         }
     }
 
-    /// The sums over the cells of water of the shape and of exp(-q).
+    /// Sums of the shape and of exp(-q) over the cells of water.
     fn sums(&self, links: &Links) -> [f64; 2] {
         let unit = Self { amplitude: 1.0, lift: 0.0, ..*self };
         let lift = Self { lift: 1.0, ..unit };
@@ -139,20 +140,20 @@ impl PuddleSeed {
     }
 }
 
-/// The craters of some impacts.
+/// Craters of impacts.
 pub(crate) fn craters(model: &Model, impacts: &[Impact]) -> Result<Vec<PuddleSeed>, LatticeError> {
     impacts.iter().map(|impact| crater(model, impact)).collect()
 }
 
-fn place(model: &Model, place_m: [f32; 2]) -> Result<[f32; 2], LatticeError> {
-    for v in place_m {
-        in_range("place", f64::from(v), "m", &(-1.0e6..=1.0e6), 1.0, "-1e6 to 1e6 m")?;
+fn to_cells(model: &Model, position_m: [f32; 2]) -> Result<[f32; 2], LatticeError> {
+    for v in position_m {
+        in_range("position", f64::from(v), "m", &(-1.0e6..=1.0e6), 1.0, "-1e6 to 1e6 m")?;
     }
-    Ok(place_m.map(|v| (f64::from(v) / model.cell()) as f32))
+    Ok(position_m.map(|v| (f64::from(v) / model.cell()) as f32))
 }
 
 fn crater(model: &Model, impact: &Impact) -> Result<PuddleSeed, LatticeError> {
-    let place = place(model, impact.place_m)?;
+    let center = to_cells(model, impact.position_m)?;
     let d = f64::from(impact.diameter_m);
     let d = in_range("diameter of a drop", d, "mm", &(1.0e-6..=9.001e-3), 1.0e3, "0.001 to 9 mm")?;
     let speed = f64::from(impact.speed_m_s);
@@ -160,16 +161,16 @@ fn crater(model: &Model, impact: &Impact) -> Result<PuddleSeed, LatticeError> {
     let water = &model.law.water;
     let weight = water.density * water.gravity;
     let energy = PI / 12.0 * water.density * d * d * d * speed * speed;
-    // weight R^4 / 4 + sigma R^2 = share of the energy / pi
+    // weight R^4 / 4 + sigma R^2 = fraction of the energy / pi
     let sigma = water.surface_tension;
-    let square = 2.0 / weight * ((sigma * sigma + weight * CRATER_SHARE * energy / PI).sqrt() - sigma);
-    let length = (square.max(0.0).sqrt() / HOLLOW).max(SHORTEST * model.cell());
+    let square = 2.0 / weight * ((sigma * sigma + weight * CRATER_FRACTION * energy / PI).sqrt() - sigma);
+    let length = (square.max(0.0).sqrt() / HOLLOW).max(MIN_LENGTH_CELLS * model.cell());
     let stiffness = PI * (3.0 / 16.0 * weight * length * length + 0.75 * sigma);
-    let share = f64::from(model.options.wave_energy_share);
-    let amplitude = (share * energy / stiffness).sqrt().min(0.5 * length).min(0.5 * model.law.depth);
+    let fraction = f64::from(model.options.wave_energy_fraction);
+    let amplitude = (fraction * energy / stiffness).sqrt().min(0.5 * length).min(0.5 * model.law.depth);
     let length = length / model.cell();
     let mut seed = PuddleSeed {
-        place,
+        center,
         per_length: (1.0 / length) as f32,
         amplitude: -amplitude as f32,
         lift: 0.0,
@@ -184,15 +185,15 @@ fn crater(model: &Model, impact: &Impact) -> Result<PuddleSeed, LatticeError> {
     Ok(seed)
 }
 
-/// The bump that an object leaves, and the hollow that it makes; the hollow takes as much as the bump gives.
+/// Bump at the old position of an object, and hollow at the new one, of the same volume.
 pub(crate) fn footprints(model: &Model, wake: &Wake) -> Result<Vec<PuddleSeed>, LatticeError> {
-    let (from, to) = (place(model, wake.from_m)?, place(model, wake.to_m)?);
+    let (from, to) = (to_cells(model, wake.from_m)?, to_cells(model, wake.to_m)?);
     let radius = f64::from(wake.radius_m) / model.cell();
     let radius = in_range("radius of a footprint", radius, "cells", &(2.0..=4096.0), 1.0, "2 to 4096 cells")?;
     let draught = f64::from(wake.draught_m);
     in_range("draught", draught, "mm", &(0.0..=model.law.depth), 1.0e3, "0 to the depth of the water")?;
-    let bump = |place, amplitude: f64| PuddleSeed {
-        place,
+    let bump = |center, amplitude: f64| PuddleSeed {
+        center,
         per_length: (1.0 / radius) as f32,
         amplitude: amplitude as f32,
         lift: 0.0,
@@ -203,19 +204,19 @@ pub(crate) fn footprints(model: &Model, wake: &Wake) -> Result<Vec<PuddleSeed>, 
     let (left, made) = (bump(from, draught), bump(to, -draught));
     let (up, down) = (left.sums(&model.links)[0], made.sums(&model.links)[0]);
     if !(up > 0.0 && down > 0.0) {
-        // It comes from beyond the water or goes there: what it displaces is not on the lattice.
+        // The object enters or leaves the water: its displaced volume is not on the lattice, and no seed is made.
         return Ok(Vec::new());
     }
     Ok(vec![left, bump(to, -draught * up / down)])
 }
 
-/// Seeds by squares of cells, as the shader wants them.
+/// Seeds sorted by squares of cells, in the layout of the shader.
 #[cfg(feature = "wgpu")]
 #[derive(Clone, Debug)]
 pub(crate) struct SeedSquares {
-    /// The first entry of each square, and one more.
+    /// Index of the first entry of each square, and the end.
     pub(crate) first: Vec<u32>,
-    /// Numbers of seeds, in their order in each square.
+    /// Indices of seeds, in their order in each square.
     pub(crate) entries: Vec<u32>,
 }
 

@@ -5,14 +5,14 @@ use half::f16;
 use half::slice::HalfFloatSliceExt;
 use rayon::prelude::*;
 
-/// How a lattice keeps its numbers between sweeps.
+/// Storage of the state between sweeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum PuddleStorage {
     /// 32 bits each.
     #[default]
     Full,
-    /// 16 bits each, as the 32-bit texel of Tatarchuk & Isidoro 2006: half the memory. Heights and velocities are rounded to
-    /// 1 part in 2048 (to 6e-11 m below 6e-8 m) after each sweep.
+    /// 16 bits each, as the 32-bit texel of Tatarchuk & Isidoro 2006: half the memory. Heights and velocities are
+    /// rounded to 1 part in 2048 (to 6e-11 m below 6e-8 m) after each sweep.
     Half,
 }
 
@@ -67,7 +67,7 @@ impl Field {
         }
     }
 
-    /// Parts of so many cells, in parallel.
+    /// Splits the field into bands of so many cells, in parallel.
     pub(crate) fn bands(&mut self, cells: usize) -> impl IndexedParallelIterator<Item = Plane<'_>> {
         let (full, half): (&mut [f32], &mut [f16]) = match self {
             Self::Full(values) => (values, &mut []),
@@ -83,7 +83,7 @@ impl Field {
     }
 }
 
-/// Parts of a slice, or as many times nothing.
+/// Parts of a slice, or the same number of empty parts.
 struct Parts;
 
 impl Parts {
@@ -100,7 +100,7 @@ impl Plane<'_> {
         match self {
             Self::Full(out) => out[at..at + values.len()].copy_from_slice(values),
             Self::Half(out) => {
-                // In pieces, because the library converts slices by the machine's own instructions.
+                // In chunks, because the library converts slices by SIMD instructions.
                 let out = &mut out[at..at + values.len()];
                 for (out, values) in out.chunks_mut(64).zip(values.chunks(64)) {
                     let mut scaled = [0.0; 64];

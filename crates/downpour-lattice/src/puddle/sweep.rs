@@ -1,8 +1,8 @@
-//! Time steps on the CPU: bands of rows in parallel, several steps per visit of the memory.
+//! Time steps on the CPU: bands of rows in parallel, several steps per pass over the memory.
 //!
-//! A tile is loaded with a halo of as many cells as its steps and passes reach, is advanced in caches, and its inner
-//! part is written to the other copy of the state. Each cell is computed by the same operations whatever tile it is in,
-//! so the result has the same bits for any number of threads, rows per band and steps per sweep.
+//! A tile is loaded with a halo as wide as the support of its steps and passes, is advanced in caches, and its inner
+//! part is written to the other copy of the state. Each cell is computed by the same operations in any tile, so the
+//! result has the same bits for any number of threads, rows per band and steps per sweep.
 
 mod row;
 mod tile;
@@ -18,14 +18,14 @@ use super::storage::State;
 use row::{argument_row, first_row, kick_row, recur_row};
 use tile::Tile;
 
-/// Rows of a band.
+/// Number of rows of a band.
 const BAND: usize = 64;
-/// Columns of a tile: five buffers of it stay in a second-level cache.
+/// Number of columns of a tile: five buffers of it fit into a second-level cache.
 const TILE: usize = 512;
-/// Columns of a membrane's tile: some rows of it stay in a first-level cache.
+/// Number of columns of a membrane's tile: some rows of it fit into a first-level cache.
 const MEMBRANE_TILE: usize = 256;
 
-/// Makes `grid.steps` time steps, from one copy of the state to the other; gives how many cells had to be reset.
+/// Makes `grid.steps` time steps, from one copy of the state to the other; returns the number of reset cells.
 pub(crate) fn sweep(grid: &PuddleGrid, links: &Links, from: &State, to: &mut State) -> u64 {
     let [nx, ny] = links.size;
     let along = |n: usize| -> Vec<f32> {
@@ -39,7 +39,7 @@ pub(crate) fn sweep(grid: &PuddleGrid, links: &Links, from: &State, to: &mut Sta
     let keep = [along(nx), along(ny)];
     let reset = AtomicU64::new(0);
     let stride = links.stride();
-    // Narrower bands when there are few rows, so that every thread has some.
+    // Narrower bands for few rows, so that every thread has work.
     let band = BAND.min((ny / (2 * rayon::current_num_threads())).max(16));
     let width = if grid.degree == 1 { MEMBRANE_TILE } else { TILE };
     let bands = to.heights.bands(band * stride).zip(to.velocities.bands(band * stride)).enumerate();
@@ -48,7 +48,7 @@ pub(crate) fn sweep(grid: &PuddleGrid, links: &Links, from: &State, to: &mut Sta
         let rows = first..(first + band).min(ny);
         for start in (0..nx).step_by(width) {
             let columns = start..(start + width).min(nx);
-            tile.place(grid, links, [columns.clone(), rows.clone()]);
+            tile.set_range(grid, links, [columns.clone(), rows.clone()]);
             tile.load(from, stride);
             let count = with_widest_lanes(Advance { tile, grid, links, keep: &keep });
             if count > 0 {
@@ -106,8 +106,8 @@ fn advance<S: Simd, const DIAGONAL: bool>(
     reset
 }
 
-/// The same for degree 1. Each step goes over the tile two rows behind the one before it, so that what is worked on stays
-/// in the nearest cache: one row behind, it would still be read when it is overwritten.
+/// Advances a tile of degree 1. Each step goes over the tile two rows behind the previous one, so that the data stays
+/// in the first-level cache: one row behind, a row would be overwritten while it is still read.
 #[inline(always)]
 fn advance_membrane<S: Simd, const DIAGONAL: bool>(
     simd: S,
@@ -137,11 +137,11 @@ fn advance_membrane<S: Simd, const DIAGONAL: bool>(
     reset
 }
 
-/// What of a tile a step of a membrane needs and what it gives: columns and rows.
+/// Input and output of one step of a membrane on a tile: columns and rows.
 struct Stage {
     argued: [Range<usize>; 2],
     kicked: [Range<usize>; 2],
-    /// The first row whose argument is not yet there.
+    /// First row whose argument is not yet computed.
     next: usize,
 }
 
@@ -152,7 +152,7 @@ impl Stage {
     }
 }
 
-/// Leaves in `now` the argument of the last weighted sum of a degree above 1. Gives how many cells of the halo are still good.
+/// Computes in `now` the argument of the last weighted sum for a degree above 1. Returns the width of the valid halo.
 #[inline(always)]
 fn argument<S: Simd, const DIAGONAL: bool>(
     simd: S,
@@ -223,8 +223,8 @@ mod tests {
     fn coasts_keep_the_operator_symmetric_and_small() {
         let options = PuddleOptions { size: [64, 64], degree: Some(4), ..PuddleOptions::default() };
         let random = |i: usize, dimension| rng_unit(rng_draw([3, 4], i as u32, 0, dimension)[0]);
-        for share in [0.1, 0.4, 0.7] {
-            let land: Vec<bool> = (0..64 * 64).map(|i| random(i, 0) < share).collect();
+        for fraction in [0.1, 0.4, 0.7] {
+            let land: Vec<bool> = (0..64 * 64).map(|i| random(i, 0) < fraction).collect();
             let model = Model::new(&options, Some(&land)).expect("a puddle");
             let symbol = model.fitted().0;
             let field = |dimension| -> Vec<f64> {
@@ -249,7 +249,7 @@ mod tests {
                 vector = next.iter().map(|v| v / length).collect();
             }
             let largest = (0..=1000).map(|i| symbol.at(f64::from(i) / 1000.0)).fold(0.0, f64::max);
-            assert!(value <= largest * (1.0 + 1.0e-9) && scale > 0.0, "{share}: {value} of {largest}");
+            assert!(value <= largest * (1.0 + 1.0e-9) && scale > 0.0, "{fraction}: {value} of {largest}");
         }
     }
 

@@ -1,20 +1,20 @@
-//! The operator that a lattice applies in place of omega^2: a polynomial of the lattice's own Laplacian.
+//! Operator of a lattice that approximates omega^2: a polynomial of the lattice's Laplacian.
 //!
-//! On a lattice, the (negative) Laplacian L of a plane wave is a number lambda between 0 and its largest value. The law wants
-//! omega^2 instead, which is no polynomial of lambda: tanh and odd powers of k are not local. Over the wavelengths that a
-//! lattice resolves it is close to one, though, and the fewer the octaves and the thinner the water, the lower the
+//! On a lattice, the (negative) Laplacian L of a plane wave is a number lambda between 0 and a maximum. The dispersion
+//! law needs omega^2 instead, which is not a polynomial of lambda: tanh and odd powers of k are not local. Over the
+//! wavelengths that a lattice resolves it is close to one, though. Fewer octaves and shallower water need a lower
 //! degree:
 //!
 //! > omega^2 ~ p(lambda) = x (c_0 + c_1 T_1(2 x - 1) + ... ),   x = lambda / largest lambda
 //!
-//! with Chebyshev's `T_j`; c is found by weighted least squares of p / omega^2 - 1 over wavelengths and directions. What
-//! speaks for a polynomial of L, and not for a convolution that is fitted as freely: L couples neighbours with positive
-//! weights, and keeps being symmetric and positive when links to land are cut. So p(L), with p > 0, conserves volume and
-//! energy, leaves level water level, lets nothing through a wall, and is stable below one known time step, round any
-//! obstacle. It costs one pass over the neighbours per degree.
+//! with Chebyshev's `T_j`; c is found by weighted least squares of p / omega^2 - 1 over wavelengths and directions. The
+//! advantage of a polynomial of L over a freely fitted convolution: L couples neighbours with positive weights, and
+//! stays symmetric and positive without the links to land. So p(L), with p > 0, conserves volume and energy, keeps
+//! level water level, lets nothing through a wall, and is stable below one known time step, around any obstacle. It
+//! costs one pass over the neighbours per degree.
 //!
-//! Leapfrog turns omega^2 into 4 sin^2(omega dt / 2) / dt^2. The fit is made for that, so that the error of the time step is
-//! in the coefficients and not in the waves.
+//! Leapfrog turns omega^2 into 4 sin^2(omega dt / 2) / dt^2. The fit includes this, so that the coefficients
+//! compensate the error of the time step.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
@@ -22,28 +22,29 @@ use downpour_math::ops::f64 as ops;
 
 use super::dispersion::{Dispersion, PuddleForm};
 
-/// The largest degree: that many passes over the neighbours per step.
-pub const LARGEST_DEGREE: u32 = 12;
+/// Maximum degree, the number of passes over the neighbours per step.
+pub const MAX_DEGREE: u32 = 12;
 
-/// The Courant number that no step exceeds; leapfrog is stable below 1 / sqrt(2).
-pub const LARGEST_COURANT: f64 = 0.70;
+/// Maximum Courant number of a step; leapfrog is stable below 1 / sqrt(2).
+pub const MAX_COURANT: f64 = 0.70;
 
-/// Cells per wavelength from which on the law is fitted.
-pub(crate) const SHORTEST_CELLS: f64 = 4.0;
+/// Minimum number of cells per wavelength for which the law is fitted.
+pub(crate) const MIN_WAVE_CELLS: f64 = 4.0;
 
-/// Which neighbours the Laplacian takes, and how.
+/// Stencil of the Laplacian.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stencil {
-    /// Weight of the cell, of its four straight and of its four diagonal neighbours.
+    /// Weights of the cell, of its four straight and of its four diagonal neighbours.
     pub(crate) weights: [f32; 3],
-    /// What the weights have to be divided by for a cell of 1 m.
+    /// Divisor of the weights for a cell of 1 m.
     pub(crate) unit: f64,
     /// Largest value of the weighted sum for a wave of amplitude 1.
     pub(crate) largest: f64,
 }
 
 impl Stencil {
-    /// Four neighbours, as the paper's membrane; nine cells, the same in all directions to fourth order, for real water.
+    /// Stencil of a form: four neighbours, as the paper's membrane; nine cells, isotropic to fourth order, for real
+    /// water.
     pub(crate) fn of(form: PuddleForm) -> Self {
         match form {
             PuddleForm::Membrane { .. } => Self { weights: [4.0, 1.0, 0.0], unit: 1.0, largest: 8.0 },
@@ -51,11 +52,11 @@ impl Stencil {
         }
     }
 
-    /// lambda of a plane wave whose phase turns by these angles per cell, as a share of the largest.
-    pub(crate) fn share(&self, turn: [f64; 2]) -> f64 {
+    /// lambda of a plane wave with these phase differences per cell, as a fraction of the maximum.
+    pub(crate) fn fraction(&self, turn: [f64; 2]) -> f64 {
         let [x, y] = turn.map(ops::cos);
-        let [centre, straight, diagonal] = self.weights.map(f64::from);
-        (centre - 2.0 * straight * (x + y) - 4.0 * diagonal * x * y) / self.largest
+        let [center, straight, diagonal] = self.weights.map(f64::from);
+        (center - 2.0 * straight * (x + y) - 4.0 * diagonal * x * y) / self.largest
     }
 }
 
@@ -68,7 +69,8 @@ pub(crate) struct Symbol {
 }
 
 impl Symbol {
-    /// The polynomial of a degree for a time step (0: for continuous time), and wavelengths from 4 cells to `longest`.
+    /// Fits the polynomial of a degree for a time step (0: for continuous time), and wavelengths from 4 cells to
+    /// `longest`.
     pub(crate) fn fit(law: &Dispersion, cell: f64, degree: u32, longest: f64, dt: f64) -> Self {
         let stencil = Stencil::of(law.form);
         if let PuddleForm::Membrane { speed_m_s } = law.form {
@@ -76,7 +78,7 @@ impl Symbol {
             let largest = speed * speed / (cell * cell) * stencil.largest / stencil.unit;
             return Self { stencil, coefficients: vec![largest] };
         }
-        // Short waves weigh little, but more and more until the polynomial is positive for all of them.
+        // Short waves have a low weight, which rises until the polynomial is positive for all of them.
         let mut weight = 0.01;
         loop {
             let fitted = Self::least_squares(law, cell, degree, longest, dt, weight);
@@ -93,8 +95,8 @@ impl Symbol {
         let stencil = Stencil::of(law.form);
         let n = degree as usize;
         let mut system = vec![vec![0.0; n + 1]; n];
-        let mut add = |share: f64, wanted: f64, weight: f64| {
-            let basis = basis(share, n);
+        let mut add = |fraction: f64, wanted: f64, weight: f64| {
+            let basis = basis(fraction, n);
             for i in 0..n {
                 for j in 0..n {
                     system[i][j] += weight * basis[i] * basis[j] / (wanted * wanted);
@@ -102,64 +104,64 @@ impl Symbol {
                 system[i][n] += weight * basis[i] / wanted;
             }
         };
-        let shortest_turn = TAU / SHORTEST_CELLS;
+        let shortest_turn = TAU / MIN_WAVE_CELLS;
         let longest_turn = TAU * cell / longest;
         for wave in 0..WAVES {
-            let place = (f64::from(wave) + 0.5) / f64::from(WAVES);
-            let turn = longest_turn * ops::pow(shortest_turn / longest_turn, place);
+            let position = (f64::from(wave) + 0.5) / f64::from(WAVES);
+            let turn = longest_turn * ops::pow(shortest_turn / longest_turn, position);
             let wanted = in_steps(law.squared_frequency(turn / cell), dt);
             for direction in [0.0, PI / 8.0, PI / 4.0] {
                 let turns = [turn * ops::cos(direction), turn * ops::sin(direction)];
-                add(stencil.share(turns), wanted, 1.0 / f64::from(3 * WAVES));
+                add(stencil.fraction(turns), wanted, 1.0 / f64::from(3 * WAVES));
             }
         }
-        let first = stencil.share([shortest_turn, 0.0]);
+        let first = stencil.fraction([shortest_turn, 0.0]);
         for wave in 0..SHORT {
-            let share = first + (1.0 - first) * (f64::from(wave) + 1.0) / f64::from(SHORT);
+            let fraction = first + (1.0 - first) * (f64::from(wave) + 1.0) / f64::from(SHORT);
             add(
-                share,
-                in_steps(law.squared_frequency(short_wave(share, first, cell)), dt),
+                fraction,
+                in_steps(law.squared_frequency(short_wave(fraction, first, cell)), dt),
                 short / f64::from(SHORT),
             );
         }
         Self { stencil, coefficients: solve(system) }
     }
 
-    /// Whether no wave has less than a twentieth of its omega^2 where it is fitted, or of that of 4 cells beyond.
+    /// True if every fitted wave has at least a twentieth of its omega^2, and every shorter one of that of 4 cells.
     fn is_positive(&self, law: &Dispersion, cell: f64) -> bool {
-        let first = self.stencil.share([TAU / SHORTEST_CELLS, 0.0]);
+        let first = self.stencil.fraction([TAU / MIN_WAVE_CELLS, 0.0]);
         (1..=400u32).all(|i| {
-            let share = f64::from(i) / 400.0;
-            let wanted = law.squared_frequency(short_wave(share, first, cell));
-            self.at(share).is_finite() && self.at(share) > 0.05 * wanted
+            let fraction = f64::from(i) / 400.0;
+            let wanted = law.squared_frequency(short_wave(fraction, first, cell));
+            self.at(fraction).is_finite() && self.at(fraction) > 0.05 * wanted
         })
     }
 
-    /// p, in 1/s^2, for lambda as a share of the largest.
-    pub(crate) fn at(&self, share: f64) -> f64 {
-        basis(share, self.coefficients.len()).iter().zip(&self.coefficients).map(|(b, c)| b * c).sum()
+    /// p, in 1/s^2, for lambda as a fraction of the maximum.
+    pub(crate) fn at(&self, fraction: f64) -> f64 {
+        basis(fraction, self.coefficients.len()).iter().zip(&self.coefficients).map(|(b, c)| b * c).sum()
     }
 
-    /// omega, in 1/s, that a lattice with time step `dt` gives a plane wave whose phase turns by these angles per cell.
+    /// omega, in 1/s, of a plane wave with these phase differences per cell, on a lattice with time step `dt`.
     pub(crate) fn frequency(&self, turn: [f64; 2], dt: f64) -> f64 {
-        let squared = self.at(self.stencil.share(turn)).max(0.0);
+        let squared = self.at(self.stencil.fraction(turn)).max(0.0);
         if dt > 0.0 { 2.0 / dt * ops::asin((0.5 * dt * squared.sqrt()).min(1.0)) } else { squared.sqrt() }
     }
 
-    /// The Courant number of a time step: 1 / sqrt(2) is where leapfrog becomes unstable. For a membrane without
+    /// Courant number of a time step: leapfrog becomes unstable at 1 / sqrt(2). For a membrane without
     /// viscosity it is c dt / cell.
     pub(crate) fn courant(&self, dt: f64, viscosity: f64, cell: f64) -> f64 {
         let damping = 4.0 * viscosity / (cell * cell) * self.stencil.largest / self.stencil.unit;
         let worst = (0..=400u32)
             .map(|i| f64::from(i) / 400.0)
-            .map(|share| dt * dt * self.at(share) + 2.0 * dt * damping * share)
+            .map(|fraction| dt * dt * self.at(fraction) + 2.0 * dt * damping * fraction)
             .fold(0.0, f64::max);
         0.5 * FRAC_1_SQRT_2 * worst.sqrt()
     }
 
-    /// The largest error of the phase speed, as a share of it, over the wavelengths that were fitted.
+    /// Largest relative error of the phase speed over the fitted wavelengths.
     pub(crate) fn worst_error(&self, law: &Dispersion, cell: f64, longest: f64) -> f64 {
-        let (a, b) = (TAU / SHORTEST_CELLS, TAU * cell / longest);
+        let (a, b) = (TAU / MIN_WAVE_CELLS, TAU * cell / longest);
         let mut worst: f64 = 0.0;
         for wave in 0..=64 {
             let turn = b * ops::pow(a / b, f64::from(wave) / 64.0);
@@ -173,21 +175,21 @@ impl Symbol {
     }
 }
 
-/// omega^2 as a leapfrog of time step `dt` needs it to give omega. Beyond the shortest period it is that of the shortest.
+/// omega^2 that a leapfrog of time step `dt` needs to give omega, constant beyond the shortest period.
 fn in_steps(squared: f64, dt: f64) -> f64 {
     if dt <= 0.0 {
         return squared;
     }
-    // Waves of periods close to two time steps are damped numerically at best: the law ends at 0.7 of the way.
+    // Waves of periods close to two time steps are damped numerically at best: the law ends at 0.7 of that.
     let half_turn = (0.5 * dt * squared.sqrt()).min(0.35 * PI);
     let s = 2.0 / dt * ops::sin(half_turn);
     s * s
 }
 
-/// The wave number in 1/m that a share of the largest lambda stands for where a lattice no longer tells directions
-/// apart: as sqrt(lambda), and continuous at 4 cells along an axis.
-fn short_wave(share: f64, first: f64, cell: f64) -> f64 {
-    TAU / SHORTEST_CELLS / cell * (share / first).sqrt()
+/// Wave number in 1/m for a fraction of the maximum lambda, where a lattice no longer resolves directions: as
+/// sqrt(lambda), and continuous at 4 cells along an axis.
+fn short_wave(fraction: f64, first: f64, cell: f64) -> f64 {
+    TAU / MIN_WAVE_CELLS / cell * (fraction / first).sqrt()
 }
 
 /// `x T_j(2 x - 1)` for j below n.
@@ -203,7 +205,7 @@ fn basis(x: f64, n: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Gauss elimination with pivots; the last column is the right side.
+/// Gaussian elimination with pivots; the last column is the right side.
 fn solve(mut system: Vec<Vec<f64>>) -> Vec<f64> {
     let n = system.len();
     for i in 0..n {
@@ -225,7 +227,7 @@ fn solve(mut system: Vec<Vec<f64>>) -> Vec<f64> {
     out
 }
 
-/// The lowest degree whose phase speeds are right to 2.5 % over the wavelengths of the fit, else the largest.
+/// Lowest degree with errors of the phase speed below 2.5 % over the wavelengths of the fit, else the maximum degree.
 pub(crate) fn degree_for(law: &Dispersion, cell: f64, longest: f64) -> u32 {
     if matches!(law.form, PuddleForm::Membrane { .. }) {
         return 1;
@@ -236,7 +238,7 @@ pub(crate) fn degree_for(law: &Dispersion, cell: f64, longest: f64) -> u32 {
             let symbol = Symbol::fit(law, cell, degree, longest, 0.0);
             symbol.worst_error(law, cell, longest) < 0.025
         })
-        .unwrap_or(LARGEST_DEGREE)
+        .unwrap_or(MAX_DEGREE)
 }
 
 #[cfg(test)]
@@ -268,7 +270,7 @@ mod tests {
         let (law, cell) = (law(5.0e-3), 2.0e-3);
         for dt in [1.0e-3, 3.0e-3, 5.0e-3] {
             let symbol = Symbol::fit(&law, cell, 4, 0.08, dt);
-            assert!(symbol.courant(dt, 0.0, cell) <= LARGEST_COURANT);
+            assert!(symbol.courant(dt, 0.0, cell) <= MAX_COURANT);
             for cells in [5.0, 8.0, 20.0, 40.0] {
                 let turn = TAU / cells;
                 let wanted = law.squared_frequency(turn / cell).sqrt();

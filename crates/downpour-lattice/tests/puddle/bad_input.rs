@@ -1,4 +1,4 @@
-//! What is not possible is an error that names the quantity; nothing panics, nothing becomes unstable in silence.
+//! Bad input is an error that names the quantity; nothing panics, nothing becomes unstable silently.
 
 use downpour_lattice::LatticeError;
 use downpour_lattice::puddle::{Impact, Puddle, PuddleDamping, PuddleForm, PuddleOptions, PuddleWater, Wake};
@@ -43,10 +43,10 @@ fn options_have_ranges() {
     refused(&PuddleOptions { degree: Some(0), ..good.clone() }, "degree");
     refused(&PuddleOptions { degree: Some(13), ..good.clone() }, "degree");
     refused(&PuddleOptions { longest_wave_m: Some(f32::NAN), ..good.clone() }, "longest wavelength");
-    refused(&PuddleOptions { most_substeps: 0, ..good.clone() }, "sub-steps");
-    refused(&PuddleOptions { most_substeps: 65, ..good.clone() }, "sub-steps");
+    refused(&PuddleOptions { max_substeps: 0, ..good.clone() }, "sub-steps");
+    refused(&PuddleOptions { max_substeps: 65, ..good.clone() }, "sub-steps");
     refused(&PuddleOptions { steps_per_sweep: 0, ..good.clone() }, "steps per sweep");
-    refused(&PuddleOptions { wave_energy_share: 1.5, ..good }, "energy");
+    refused(&PuddleOptions { wave_energy_fraction: 1.5, ..good }, "energy");
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn corners_of_the_ranges_work() {
         let mut puddle =
             Puddle::new(&PuddleOptions { cell_m, depth_m, ..undamped([64, 64]) }).expect("a puddle");
         set(&mut puddle, |x, y| hill(x, y, [30.0, 30.0], 4.0));
-        let dt = puddle.longest_step_s() as f32;
+        let dt = puddle.max_step_s() as f32;
         puddle.step(0.99 * dt).expect("a step");
         let first = puddle.energy();
         for _ in 0..100 {
@@ -80,14 +80,14 @@ fn time_steps_have_a_range() {
     let error = puddle.step(10.0).expect_err("10 s");
     assert!(error.to_string().contains("Courant number"), "{error}");
     assert!(puddle.heights() == before && puddle.steps() == 0, "a refused step moved the water");
-    let most = 63.9 * puddle.longest_step_s() as f32;
+    let most = 63.9 * puddle.max_step_s() as f32;
     assert_eq!(puddle.step(most).expect("64 parts"), 64);
 }
 
-/// 0.70 is done, 0.72 is not: cut where that is allowed, refused where it is not.
+/// 0.70 is allowed, 0.72 is not: divided into sub-steps where that is allowed, an error where it is not.
 #[test]
 fn the_courant_number_is_enforced() {
-    let whole = PuddleOptions { most_substeps: 1, ..membrane([64, 64]) };
+    let whole = PuddleOptions { max_substeps: 1, ..membrane([64, 64]) };
     let mut puddle = Puddle::new(&whole).expect("a puddle");
     let at = |courant: f32| courant * 0.01 / 0.3;
     assert!((puddle.courant(at(0.72)) - 0.72).abs() < 1.0e-6);
@@ -122,7 +122,7 @@ fn all_land_and_one_cell_of_water_are_still() {
         let land: Vec<bool> = (0..64 * 64).map(|i| Some(i) != water).collect();
         let mut puddle = Puddle::with_land(&PuddleOptions::default_of([64, 64]), &land).expect("a puddle");
         puddle
-            .seed(&[Impact { place_m: [0.05, 0.05], speed_m_s: 6.0, diameter_m: 2.0e-3 }])
+            .seed(&[Impact { position_m: [0.05, 0.05], speed_m_s: 6.0, diameter_m: 2.0e-3 }])
             .expect("a drop on land");
         puddle.step(0.1).expect("a step");
         assert!(puddle.heights().iter().all(|&h| h == 0.0));
@@ -141,7 +141,7 @@ fn what_is_not_finite_is_set_to_rest_and_counted() {
     puddle.step(0.05).expect("a step");
     assert!(puddle.heights().iter().all(|h| h.is_finite()));
     assert_eq!(puddle.reset_cells(), 2);
-    // A height that overflows within the step: it and what it reaches is reset, and the rest lives on.
+    // A height that overflows within the step: it and its surroundings are reset, and the rest continues.
     heights = vec![1.0e-4; 64 * 64];
     heights[64 * 30 + 30] = f32::MAX;
     assert_eq!(puddle.set_state(&heights, &[0.0; 64 * 64]).expect("heights"), 0);
@@ -154,10 +154,10 @@ fn what_is_not_finite_is_set_to_rest_and_counted() {
 #[test]
 fn impacts_and_objects_have_ranges() {
     let mut puddle = Puddle::new(&PuddleOptions::default()).expect("a puddle");
-    let good = Impact { place_m: [0.1, 0.1], speed_m_s: 6.5, diameter_m: 2.0e-3 };
+    let good = Impact { position_m: [0.1, 0.1], speed_m_s: 6.5, diameter_m: 2.0e-3 };
     let bad = [
-        Impact { place_m: [f32::NAN, 0.1], ..good },
-        Impact { place_m: [0.1, f32::INFINITY], ..good },
+        Impact { position_m: [f32::NAN, 0.1], ..good },
+        Impact { position_m: [0.1, f32::INFINITY], ..good },
         Impact { speed_m_s: -1.0, ..good },
         Impact { speed_m_s: f32::NAN, ..good },
         Impact { speed_m_s: 1.0e9, ..good },
@@ -172,8 +172,8 @@ fn impacts_and_objects_have_ranges() {
             "{impact:?}: the good drop of a refused list fell"
         );
     }
-    // Beyond the lattice is no error: rain falls beside a puddle too.
-    puddle.seed(&[Impact { place_m: [-50.0, 1.0e5], ..good }]).expect("a drop elsewhere");
+    // Positions beyond the lattice are no error: rain falls beside a puddle too.
+    puddle.seed(&[Impact { position_m: [-50.0, 1.0e5], ..good }]).expect("a drop elsewhere");
     assert!(puddle.heights().iter().all(|&h| h == 0.0));
     let wake = Wake { from_m: [0.1, 0.1], to_m: [0.11, 0.1], radius_m: 0.02, draught_m: 2.0e-3 };
     for bad in [
@@ -187,7 +187,7 @@ fn impacts_and_objects_have_ranges() {
     }
 }
 
-/// A short way to the defaults.
+/// Short form of the defaults.
 trait DefaultOf {
     fn default_of(size: [u32; 2]) -> PuddleOptions;
 }

@@ -4,7 +4,7 @@ use downpour_lattice::puddle::{Puddle, PuddleBorder, PuddleDamping, PuddleOption
 
 use crate::{hill, membrane, set, undamped};
 
-/// An island and a spit in the way.
+/// An island and a spit as obstacles.
 fn land(size: [u32; 2]) -> Vec<bool> {
     let [nx, ny] = size.map(|n| n as usize);
     let is_land = |x: usize, y: usize| {
@@ -14,11 +14,11 @@ fn land(size: [u32; 2]) -> Vec<bool> {
     (0..nx * ny).map(|i| is_land(i % nx, i / nx)).collect()
 }
 
-/// Largest deviation of the energy from the first, as a share of it, over some steps.
+/// Largest relative deviation of the energy from the first, over some steps.
 fn energy_drift(options: &PuddleOptions, steps: u32, probes: u32) -> f64 {
     let mut puddle = Puddle::with_land(options, &land(options.size)).expect("a puddle");
     set(&mut puddle, |x, y| hill(x, y, [20.0, 20.0], 4.0));
-    let dt = 0.999 * puddle.longest_step_s() as f32;
+    let dt = 0.999 * puddle.max_step_s() as f32;
     puddle.step(dt).expect("a step");
     let first = puddle.energy();
     let mut worst: f64 = 0.0;
@@ -59,7 +59,7 @@ fn level_water_stays_level_among_islands() {
         set(&mut puddle, |_, _| 0.7e-3);
         let before = puddle.heights();
         for _ in 0..50 {
-            puddle.step(8.0 * puddle.longest_step_s() as f32).expect("a step");
+            puddle.step(8.0 * puddle.max_step_s() as f32).expect("a step");
         }
         assert!(puddle.heights() == before, "level water moved");
         assert!(puddle.velocities().iter().all(|&v| v == 0.0));
@@ -150,7 +150,7 @@ fn a_damped_field_ends_in_zeros() {
     assert!(puddle.velocities().iter().all(|&v| v == 0.0), "it still moves");
 }
 
-/// The same bits for any number of threads and of steps per sweep.
+/// The bits do not depend on the number of threads and of steps per sweep.
 #[test]
 fn bits_do_not_depend_on_how_the_work_is_cut() {
     let run = |threads: usize, steps_per_sweep: u32, form_size: [u32; 2]| {
@@ -169,7 +169,7 @@ fn bits_do_not_depend_on_how_the_work_is_cut() {
             puddle.heights().iter().map(|h| h.to_bits()).collect::<Vec<_>>()
         })
     };
-    // Wider than a tile, and no multiple of anything.
+    // Wider than a tile, and not a multiple of anything.
     let size = [601, 131];
     let one = run(1, 1, size);
     assert!(one.iter().any(|&bits| bits != 0));

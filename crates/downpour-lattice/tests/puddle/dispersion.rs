@@ -1,4 +1,4 @@
-//! Waves run as fast as the law says.
+//! Phase speeds of waves agree with the law.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,7 +7,7 @@ use downpour_math::ops::f64 as ops;
 
 use crate::{hill, membrane, set, undamped};
 
-/// The phase speed of a standing wave with `half_waves` along the rows of a closed basin.
+/// Phase speed of a standing wave with `half_waves` along the rows of a closed basin.
 fn measured(options: &PuddleOptions, half_waves: u32, dt: f32) -> (f64, f64) {
     let mut puddle = Puddle::new(options).expect("a puddle");
     let nx = f64::from(options.size[0]);
@@ -122,7 +122,7 @@ fn rings_are_round() {
     assert!((row / slant - 1.0).abs() < 0.01, "{row} and {slant} cells");
 }
 
-/// The form of the paper does not know depth; real water is slower where it is thinner.
+/// The form of the paper does not depend on the depth; shallower real water is slower.
 #[test]
 fn depth_counts_for_real_water_only() {
     let speed = |options: &PuddleOptions| measured(options, 8, 1.0e-3).1;

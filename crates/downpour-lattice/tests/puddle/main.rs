@@ -1,4 +1,4 @@
-//! Puddles against the laws of waves, of conservation and of rain.
+//! Puddles against dispersion, conservation and rain.
 
 mod bad_input;
 mod conservation;
@@ -19,7 +19,7 @@ fn membrane(size: [u32; 2]) -> PuddleOptions {
     PuddleOptions { form, cell_m: 0.01, ..undamped(size) }
 }
 
-/// Heights given by a function of the cell, at rest.
+/// Sets heights by a function of the cell, at rest.
 fn set(puddle: &mut Puddle, height: impl Fn(usize, usize) -> f64) {
     let [nx, ny] = puddle.options().size.map(|n| n as usize);
     let heights: Vec<f32> = (0..nx * ny).map(|i| height(i % nx, i / nx) as f32).collect();
@@ -27,7 +27,7 @@ fn set(puddle: &mut Puddle, height: impl Fn(usize, usize) -> f64) {
 }
 
 /// A smooth hill of 1 mm.
-fn hill(x: usize, y: usize, centre: [f64; 2], cells: f64) -> f64 {
-    let (dx, dy) = (x as f64 + 0.5 - centre[0], y as f64 + 0.5 - centre[1]);
+fn hill(x: usize, y: usize, center: [f64; 2], cells: f64) -> f64 {
+    let (dx, dy) = (x as f64 + 0.5 - center[0], y as f64 + 0.5 - center[1]);
     1.0e-3 * downpour_math::ops::f64::exp(-(dx * dx + dy * dy) / (cells * cells))
 }

@@ -1,4 +1,4 @@
-//! The impacts that are drawn are those of the rain: their number, their water, their places.
+//! Drawn impacts have the statistics of the rain: number, water, positions.
 
 use std::f64::consts::PI;
 
@@ -26,7 +26,9 @@ fn number_and_water_are_those_of_the_rate() {
                 let volume = PI / 6.0 * d * d * d;
                 water += volume;
                 water_square += volume * volume;
-                assert!((0.0..0.5).contains(&impact.place_m[0]) && (0.0..0.4).contains(&impact.place_m[1]));
+                assert!(
+                    (0.0..0.5).contains(&impact.position_m[0]) && (0.0..0.4).contains(&impact.position_m[1])
+                );
                 assert!(impact.speed_m_s > 0.0 && impact.speed_m_s < 10.0);
             }
         }
@@ -57,13 +59,13 @@ fn sizes_are_those_of_the_flux() {
     let impacts = drawn.impacts([20.0, 20.0], 5, 0.2).expect("impacts");
     // Halves by number, at the median of N v.
     let large = law.restricted_to(1.0e-3, 8.0e-3).expect("large drops").impact_rate() / law.impact_rate();
-    let share = impacts.iter().filter(|i| i.diameter_m > 1.0e-3).count() as f64 / impacts.len() as f64;
+    let fraction = impacts.iter().filter(|i| i.diameter_m > 1.0e-3).count() as f64 / impacts.len() as f64;
     let sigma = (large * (1.0 - large) / impacts.len() as f64).sqrt();
     assert!(impacts.len() > 10_000);
-    assert!((share - large).abs() < 4.0 * sigma, "{share}, law {large}");
+    assert!((fraction - large).abs() < 4.0 * sigma, "{fraction}, law {large}");
 }
 
-/// Each place and each step is as likely: chi-square over 16 x 16 fields.
+/// Positions and steps are uniform: chi-square over 16 x 16 fields.
 #[test]
 fn places_are_even_and_steps_differ() {
     let drawn = PuddleRain::new(&rain(25.0), 1);
@@ -71,7 +73,7 @@ fn places_are_even_and_steps_differ() {
     let mut n = 0.0;
     for step in 0..20 {
         for impact in drawn.impacts([4.0, 4.0], step, 0.5).expect("impacts") {
-            let [x, y] = impact.place_m.map(|v| ((v * 4.0) as usize).min(15));
+            let [x, y] = impact.position_m.map(|v| ((v * 4.0) as usize).min(15));
             bins[y * 16 + x] += 1.0;
             n += 1.0;
         }

@@ -1,10 +1,10 @@
-//! Craters hold the energy that they should and no water; wakes follow the law of waves.
+//! Craters have their energy and no volume; wakes follow the dispersion law.
 
 use std::f64::consts::PI;
 
 use downpour_lattice::puddle::{Impact, Puddle, PuddleBorder, PuddleOptions, Wake};
 
-const DROP: Impact = Impact { place_m: [0.2563, 0.2571], speed_m_s: 6.5, diameter_m: 2.0e-3 };
+const DROP: Impact = Impact { position_m: [0.2563, 0.2571], speed_m_s: 6.5, diameter_m: 2.0e-3 };
 
 fn deep() -> PuddleOptions {
     PuddleOptions { depth_m: 0.05, cell_m: 1.0e-3, size: [512, 512], degree: Some(4), ..Default::default() }
@@ -35,8 +35,8 @@ fn a_crater_has_its_share_of_the_drops_energy() {
         puddle.seed(&[Impact { diameter_m, speed_m_s, ..DROP }]).expect("a drop");
         let d = f64::from(diameter_m);
         let kinetic = PI / 12.0 * 998.2 * d * d * d * f64::from(speed_m_s * speed_m_s);
-        let share = potential(&puddle) / kinetic;
-        assert!((share / 0.02 - 1.0).abs() < 0.06, "{diameter_m} m: {share} of the energy");
+        let fraction = potential(&puddle) / kinetic;
+        assert!((fraction / 0.02 - 1.0).abs() < 0.06, "{diameter_m} m: {fraction} of the energy");
     }
 }
 
@@ -45,12 +45,12 @@ fn a_crater_takes_no_water() {
     let options = PuddleOptions { size: [128, 128], ..Default::default() };
     let land: Vec<bool> = (0..128 * 128).map(|i| i % 128 > 90).collect();
     // In the open, at the border, in a corner, beside land.
-    for place_m in [[0.1, 0.12], [0.001, 0.1], [0.0, 0.0], [0.178, 0.1]] {
+    for position_m in [[0.1, 0.12], [0.001, 0.1], [0.0, 0.0], [0.178, 0.1]] {
         let mut puddle = Puddle::with_land(&options, &land).expect("a puddle");
-        puddle.seed(&[Impact { place_m, ..DROP }]).expect("a drop");
+        puddle.seed(&[Impact { position_m, ..DROP }]).expect("a drop");
         let moved: f64 = puddle.heights().iter().map(|&h| f64::from(h.abs())).sum::<f64>() * 4.0e-6;
         assert!(moved > 1.0e-9);
-        assert!(puddle.volume().abs() < 1.0e-5 * moved, "{place_m:?}: {} of {moved} m^3", puddle.volume());
+        assert!(puddle.volume().abs() < 1.0e-5 * moved, "{position_m:?}: {} of {moved} m^3", puddle.volume());
     }
 }
 
@@ -69,19 +69,19 @@ fn larger_and_faster_drops_make_higher_waves() {
     assert!(speeds.windows(2).all(|w| w[0] < w[1]), "{speeds:?}");
 }
 
-/// The order of drops changes nothing but rounding, and the same drops give the same bits.
+/// The order of drops changes rounding only, and the same drops give the same bits.
 #[test]
 fn the_same_drops_give_the_same_bits() {
     let run = || {
         let mut puddle = Puddle::new(&PuddleOptions::default()).expect("a puddle");
-        puddle.seed(&[DROP, Impact { place_m: [0.25, 0.25], ..DROP }]).expect("drops");
+        puddle.seed(&[DROP, Impact { position_m: [0.25, 0.25], ..DROP }]).expect("drops");
         puddle.step(0.05).expect("a step");
         puddle.heights()
     };
     assert!(run() == run());
 }
 
-/// An object makes waves that go with it only if it is faster than the slowest wave: 0.22 m/s on 5 mm of water.
+/// An object makes waves that move with it only if it is faster than the slowest wave: 0.22 m/s on 5 mm of water.
 #[test]
 fn a_wake_needs_a_speed() {
     let radiated = |speed: f32| {
@@ -91,7 +91,7 @@ fn a_wake_needs_a_speed() {
         let dt = 5.0e-3f32;
         let (mut x, mut ahead) = (0.1f32, 0.0);
         while x < 0.6 {
-            // Slowly into the water, so that the start makes no wave of its own.
+            // Slowly into the water, so that the start makes no wave.
             let draught_m = 1.0e-3 * ((x - 0.1) / 0.2).min(1.0);
             let next = x + speed * dt;
             let wake = |from: f32, to: f32, draught_m| Wake {
@@ -110,7 +110,7 @@ fn a_wake_needs_a_speed() {
                 ahead = behind.map(|&h| f64::from(h * h)).sum::<f64>().sqrt();
             }
         }
-        // A hundredth of what the object displaces.
+        // A hundredth of the object's displacement.
         assert!(puddle.volume().abs() < 2.0e-8, "{} m^3", puddle.volume());
         ahead
     };

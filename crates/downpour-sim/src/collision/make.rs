@@ -1,6 +1,7 @@
-//! Makes the texels of a map: a ray along the fall direction each.
+//! Construction of the texels of a map by one ray along the fall direction each.
 //!
-//! Surfaces may have holes ([`Holes`]). The kernel of the same name knows none: a map of surfaces with holes is made here.
+//! Surfaces may have holes ([`Holes`]). The kernel of the same name does not support them: maps with holes are made
+//! here.
 
 use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_enter, bvh_inverse, bvh_triangle};
 use downpour_shaders::bvh::{BVH_FAR, BVH_STACK};
@@ -14,38 +15,38 @@ use super::surface::collision_pack;
 use super::{CollisionFrame, CollisionTexel};
 use crate::shelter::Holes;
 
-/// Hits that are kept.
+/// Maximum number of hits kept.
 const HITS: usize = COLLISION_MAP_HITS as usize;
-/// Surfaces of a texel.
+/// Number of surfaces of a texel.
 const LAYERS: usize = COLLISION_LAYERS as usize;
 
-/// What a ray meets.
+/// Hits of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CollisionMapHits {
-    /// The nearest, ascending.
+    /// Depths of the nearest hits, ascending.
     pub depths: [f32; HITS],
-    /// Their places in the list of triangles.
+    /// Their indices in the list of triangles.
     pub slots: [u32; HITS],
-    /// How many.
+    /// Number of hits.
     pub count: usize,
-    /// The deepest one that faces the ray, -1 for none.
+    /// Depth of the deepest one that faces the ray, -1 for none.
     pub deepest: f32,
-    /// Its place in the list of triangles.
+    /// Its index in the list of triangles.
     pub deepest_slot: u32,
 }
 
-/// The normal of a triangle's front, with the length of twice its area.
+/// Normal of a triangle's front, with the length of twice its area.
 fn front(triangle: &BvhTriangle) -> Vec3 {
     Vec3::from(triangle.edge_1).cross(triangle.edge_2.into())
 }
 
-/// Whether a triangle faces a ray.
+/// True if a triangle faces a ray.
 #[must_use]
 pub fn collision_map_faces(triangle: &BvhTriangle, direction: Vec3) -> bool {
     front(triangle).dot(direction) < 0.0
 }
 
-/// The normal of a triangle in the frame of the map, turned to the rain.
+/// Normal of a triangle in the frame of the map, facing the rain.
 #[must_use]
 pub fn collision_map_normal(map: &CollisionFrame, triangle: &BvhTriangle) -> Vec3 {
     let normal = front(triangle);
@@ -54,8 +55,9 @@ pub fn collision_map_normal(map: &CollisionFrame, triangle: &BvhTriangle) -> Vec
     turned * if turned.z < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// Whether the space between two surfaces is open (0), solid (1), or has to be asked about (2). The surfaces are the faces that
-/// they show to the rain, `COLLISION_MAP_FRONT` or `COLLISION_MAP_BACK` or both where several are in one place; 0 is none.
+/// State of the space between two surfaces: open (0), solid (1), or unknown (2). The arguments are the faces that the
+/// surfaces show to the rain, `COLLISION_MAP_FRONT` or `COLLISION_MAP_BACK`, or both for several at one depth; 0 is
+/// none.
 #[must_use]
 pub fn collision_map_between(above: u32, below: u32) -> u32 {
     if below == 0 {
@@ -64,8 +66,7 @@ pub fn collision_map_between(above: u32, below: u32) -> u32 {
     if above == COLLISION_MAP_FRONT && below == COLLISION_MAP_BACK { 1 } else { 2 }
 }
 
-/// The first surfaces on a ray, `keep` at most. Only if that is all that there is room for, the deepest one is looked for as
-/// well.
+/// Finds the first `keep` surfaces on a ray. Only if there are that many, the deepest one is searched for as well.
 #[must_use]
 pub fn collision_map_walk(
     nodes: &[BvhNode],
@@ -91,7 +92,7 @@ pub fn collision_map_walk(
             continue;
         }
         if node.count == 0 {
-            // The nearer child is taken first: what it holds may make the other needless.
+            // The nearer child first: its triangles may make the other unnecessary.
             let to_left = bvh_enter(&nodes[at as usize + 1], from, inverse, limit);
             let to_right = bvh_enter(&nodes[node.link as usize], from, inverse, limit);
             let swap = to_right < to_left;
@@ -118,7 +119,7 @@ pub fn collision_map_walk(
                 hits.deepest = distance;
                 hits.deepest_slot = slot;
             }
-            // Insertion from the far end, which falls off when there is no room.
+            // Insertion sort from the far end, which drops out if the list is full.
             let mut k = hits.count;
             if k == keep {
                 k -= 1;
@@ -143,7 +144,7 @@ pub fn collision_map_walk(
     hits
 }
 
-/// Whether a place is within something closed: two of three rays sideways soon leave more than they enter.
+/// True if a position is enclosed: two of three horizontal rays soon leave more surfaces than they enter.
 #[must_use]
 pub fn collision_map_enclosed(
     map: &CollisionFrame,
@@ -171,8 +172,8 @@ pub fn collision_map_enclosed(
     votes >= 2
 }
 
-/// A texel with one more surface, deeper than those that it has. `stored` is how many were added before; when there is no room,
-/// the last place is for the deepest top of something solid, which is the ground.
+/// Adds a surface to a texel, deeper than the existing ones. `stored` is the number of surfaces added before; if the
+/// texel is full, its last slot holds the deepest top of a solid, which is the ground.
 #[must_use]
 pub fn collision_map_add(
     texel: &CollisionTexel,
@@ -190,13 +191,13 @@ pub fn collision_map_add(
     } else if below && !above {
         added.depths[last] = depth;
         added.surfaces[last] = surface | COLLISION_SOLID;
-        // What was between is forgotten.
+        // The state of the space in between is lost.
         added.surfaces[last - 1] &= !COLLISION_SOLID;
     }
     added
 }
 
-/// The surfaces of a texel.
+/// Computes the surfaces of a texel.
 #[must_use]
 pub fn collision_map_texel(
     map: &CollisionFrame,
@@ -210,18 +211,18 @@ pub fn collision_map_texel(
         return texel;
     }
     let fall = Vec3::from(map.fall);
-    let place = (cell.as_vec2() + 0.5) * Vec2::from(map.edge);
+    let position = (cell.as_vec2() + 0.5) * Vec2::from(map.edge);
     let origin = Vec3::from(map.low)
         + Vec3::from(map.anchor)
-        + Vec3::from(map.across) * place.x
-        + Vec3::from(map.along) * place.y;
+        + Vec3::from(map.across) * position.x
+        + Vec3::from(map.along) * position.y;
     let hits = collision_map_walk(nodes, triangles, holes, origin, fall, COLLISION_MAP_HITS);
     let mut stored = 0;
     let mut next = 0;
-    // The surface whose other side is still to be found.
+    // The surface whose other side is not yet known.
     let (mut depth, mut surface, mut faces, mut above) = (-COLLISION_NONE, 0, 0, false);
     loop {
-        // The next surface: all hits that are in one place.
+        // The next surface: all hits at one depth.
         let first = next;
         let (mut next_depth, mut slot, mut next_faces) = (hits.deepest, hits.deepest_slot, 0);
         if first < hits.count {
@@ -245,7 +246,7 @@ pub fn collision_map_texel(
             } else {
                 between == 1
             };
-            // What is inside something solid stops nothing.
+            // Surfaces inside a solid stop nothing.
             if !(above && below) {
                 texel = collision_map_add(&texel, stored, depth, surface, above, below);
                 stored += 1;

@@ -1,12 +1,12 @@
-//! The map of what stops drops, on a GPU.
+//! Collision map on a GPU.
 
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::sim::collision::COLLISION_MAP_KERNEL;
 
 use crate::collision::{CollisionFrame, CollisionMap, CollisionTexel};
 
-/// A map that stays on the device: its buffers are made once for a size, and filled for each frame from the hierarchy of
-/// triangles that is there already.
+/// A collision map that stays on the device. Its buffers are created once for a size, and filled for each frame from an
+/// existing hierarchy of triangles.
 ///
 /// [`GpuCollisionMap::frame`] and [`GpuCollisionMap::texels`] are bindings 8 and 9 of kernels that use
 /// `downpour_shaders::sim::collision::COLLISION`.
@@ -19,10 +19,10 @@ pub struct GpuCollisionMap {
 }
 
 impl GpuCollisionMap {
-    /// The pipeline, and room for a map of so many texels across and along.
+    /// Creates the pipeline, and the buffers of a map with so many texels across and along.
     ///
     /// # Errors
-    /// [`GpuError::OverLimit`] if the texels, 32 bytes each, do not fit into a binding; what the GPU says.
+    /// [`GpuError::OverLimit`] if the texels, 32 bytes each, do not fit into a binding; errors of the GPU.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
         let bytes = u64::from(size[0]) * u64::from(size[1]) * size_of::<CollisionTexel>() as u64;
         Ok(Self {
@@ -37,22 +37,22 @@ impl GpuCollisionMap {
         })
     }
 
-    /// A map that was made on the CPU.
+    /// Uploads a map that was made on the CPU.
     ///
     /// # Errors
     /// As [`GpuCollisionMap::new`].
     pub fn from_cpu(gpu: &Gpu, map: &CollisionMap) -> Result<Self, GpuError> {
         let made = Self::new(gpu, map.frame().size)?;
-        made.place(gpu, map.frame())?;
+        made.set_frame(gpu, map.frame())?;
         gpu.queue().write_buffer(&made.texels, 0, bytemuck::cast_slice(map.texels()));
         Ok(made)
     }
 
-    /// Makes the map of a frame. `nodes` and `triangles` hold those of a `downpour_bvh::Bvh`, of the scene that `frame` was made
-    /// for. Does not wait.
+    /// Makes the map of a frame. `nodes` and `triangles` hold those of a `downpour_bvh::Bvh`, of the scene that
+    /// `frame` was made for. Does not wait.
     ///
     /// # Errors
-    /// As [`GpuCollisionMap::place`] and [`GpuCollisionMap::bind`].
+    /// As [`GpuCollisionMap::set_frame`] and [`GpuCollisionMap::bind`].
     pub fn update(
         &self,
         gpu: &Gpu,
@@ -60,16 +60,16 @@ impl GpuCollisionMap {
         nodes: &wgpu::Buffer,
         triangles: &wgpu::Buffer,
     ) -> Result<(), GpuError> {
-        self.place(gpu, frame)?;
+        self.set_frame(gpu, frame)?;
         let bindings = self.bind(gpu, nodes, triangles)?;
         gpu.submit(&[self.dispatch(&bindings)])
     }
 
-    /// Writes where the map is, before the next submission.
+    /// Writes the position of the map, before the next submission.
     ///
     /// # Errors
-    /// [`GpuError::Refused`] if the map was made for another number of texels.
-    pub fn place(&self, gpu: &Gpu, frame: &CollisionFrame) -> Result<(), GpuError> {
+    /// [`GpuError::Refused`] if the map has another number of texels.
+    pub fn set_frame(&self, gpu: &Gpu, frame: &CollisionFrame) -> Result<(), GpuError> {
         if frame.size != self.size {
             let ([found_x, found_y], [x, y]) = (frame.size, self.size);
             return Err(GpuError::Refused {
@@ -81,10 +81,10 @@ impl GpuCollisionMap {
         Ok(())
     }
 
-    /// The bindings of the kernel. They hold as long as the buffers of the hierarchy are the same.
+    /// Bindings of the kernel. They are valid as long as the buffers of the hierarchy are the same.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn bind(
         &self,
         gpu: &Gpu,
@@ -94,29 +94,29 @@ impl GpuCollisionMap {
         self.kernel.bind(gpu, &[&self.frame, nodes, triangles, &self.texels])
     }
 
-    /// Makes the map, as a part of a longer list of work.
+    /// Dispatch that makes the map, as a part of a longer list of work.
     #[must_use]
     pub fn dispatch<'a>(&'a self, bindings: &'a wgpu::BindGroup) -> Dispatch<'a> {
         let [x, y] = self.size.map(|n| n.div_ceil(8));
         self.kernel.dispatch(bindings, [x, y, 1])
     }
 
-    /// The uniform: binding 8.
+    /// Uniform buffer: binding 8.
     #[must_use]
     pub fn frame(&self) -> &wgpu::Buffer {
         &self.frame
     }
 
-    /// The texels: binding 9.
+    /// Texel buffer: binding 9.
     #[must_use]
     pub fn texels(&self) -> &wgpu::Buffer {
         &self.texels
     }
 
-    /// Waits, and reads the texels.
+    /// Waits, and reads the texels back.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Errors of the GPU.
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<CollisionTexel>, GpuError> {
         gpu.read(&self.texels)
     }

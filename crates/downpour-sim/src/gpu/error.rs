@@ -1,23 +1,23 @@
-//! What can go wrong on a GPU.
+//! Errors of simulations on a GPU.
 
 use downpour_gpu::GpuError;
 
 use crate::SimError;
 
-/// Why there is no rain on the GPU.
+/// Error of a simulation on a GPU.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuSimError {
-    /// What was asked for.
+    /// The simulation is not valid.
     #[error(transparent)]
     Sim(#[from] SimError),
-    /// The device.
+    /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
 
 impl GpuSimError {
-    /// The exit code of the command for this error.
+    /// Exit code of the command for this error.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {

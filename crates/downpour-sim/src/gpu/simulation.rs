@@ -1,7 +1,7 @@
-//! A rain on a GPU: the same steps as [`Simulation`](crate::simulation::Simulation), on drops that stay on the device.
+//! Rain on a GPU: the same steps as [`Simulation`](crate::simulation::Simulation), on drops that stay on the device.
 //!
-//! The drops of a view are in slots, more than there are drops: those that are gone leave theirs free for those that come
-//! in. Which slot a drop has depends on the device; which drops there are does not.
+//! The drops of a view are in slots, of which there are more than drops: drops that are gone leave their slots to
+//! those that enter. The slot of a drop depends on the device; the set of drops does not.
 
 use bytemuck::Zeroable as _;
 use downpour_drop::distribution::DropSizeDistribution;
@@ -20,54 +20,54 @@ use crate::field::VisibleDrops;
 use crate::fill::fill;
 use crate::list::{Listing, listed};
 use crate::plan::{AirAtEye, Plan, Turn, lags};
-use crate::simulation::{Happened, Moment, Simulation, SimulationOptions};
+use crate::simulation::{Simulation, SimulationOptions, StepEvents, StepInput};
 use crate::step::{StepCaught, StepDrop, StepEvent, StepFrame, StepWorld};
 use crate::view::View;
 
-/// Drops of a piece: two buffers of 64 MiB, which every device binds.
+/// Maximum number of drops of a piece: two buffers of 64 MiB, which every device can bind.
 const PIECE: usize = 1 << 22;
 
-/// Drops of a workgroup.
+/// Number of drops of a workgroup.
 const GROUP: u32 = 256;
 
-/// Workgroups along the first axis.
+/// Number of workgroups along the first axis.
 const GROUPS: u32 = 1 << 12;
 
-/// Impacts that the buffer holds at most: 64 MiB.
+/// Maximum number of impacts in the buffer: 64 MiB.
 const MAX_EVENTS: u32 = 1 << 21;
 
-/// Slots per drop of a view that is expected, and some more.
+/// Number of slots per expected drop of a view.
 const SLOTS_PER_DROP: f64 = 1.5;
 const SPARE_SLOTS: f64 = 1024.0;
 
-/// Slots are made anew where fewer are left per drop that is expected.
-const LEAST_SLOTS_PER_DROP: f64 = 1.2;
+/// Number of slots per expected drop below which the slots are reallocated.
+const MIN_SLOTS_PER_DROP: f64 = 1.2;
 
-/// Regions that the tables hold: six of each bin of sizes, and one that marks their end.
+/// Maximum number of regions per bin of sizes.
 const REGIONS_PER_BIN: usize = 6;
 
-/// What there is at the end of a step. Wind and map are relative to `origin`.
+/// State at the end of a step. Wind and map are relative to `origin`.
 #[derive(Clone, Copy, Debug)]
-pub struct GpuMoment<'a> {
-    /// The camera; for a view the one in the middle of the time that pictures of this state cover.
+pub struct GpuStepInput<'a> {
+    /// Camera; for a view the one in the middle of the time that pictures of this state cover.
     pub view: &'a View,
-    /// What single precision is relative to, m.
+    /// Origin of single-precision positions, m.
     pub origin: DVec3,
-    /// The wind where there is no field, m/s; with a field, that at the eye.
+    /// Wind without a field, m/s; with a field, the wind at the eye.
     pub wind: Vec3,
-    /// The wind: its grid, and the cells in its order.
+    /// Wind field: its grid, and the cells in its order.
     pub field: Option<(&'a WindFieldGrid, &'a wgpu::Buffer)>,
-    /// Bounds on the difference of the field from the wind at the eye: per m of distance, 1/s, and at most, m/s
-    /// ([`WindField::spread`](downpour_wind::WindField::spread)). Views alone need it.
+    /// Bounds on the difference of the field from the wind at the eye: per m of distance, 1/s, and in total, m/s
+    /// ([`WindField::spread`](downpour_wind::WindField::spread)). Needed for views only.
     pub spread: [f32; 2],
-    /// What stops drops.
+    /// Collision map.
     pub map: Option<&'a GpuCollisionMap>,
-    /// The part of the wind that is the same everywhere, as it changes (see `Moment`).
+    /// Uniform part of the wind, as it changes (see `StepInput`).
     pub air: Option<&'a UniformWindAt<'a>>,
 }
 
-impl<'a> GpuMoment<'a> {
-    /// A camera in a wind that is the same everywhere and does not change; nothing stops drops.
+impl<'a> GpuStepInput<'a> {
+    /// Creates the input of a camera in a constant uniform wind without a collision map.
     #[must_use]
     pub fn new(view: &'a View, origin: DVec3, wind: Vec3) -> Self {
         Self { view, origin, wind, field: None, spread: [0.0; 2], map: None, air: None }
@@ -78,19 +78,19 @@ impl<'a> GpuMoment<'a> {
     }
 }
 
-/// Some of the drops.
+/// A part of the drops.
 struct Piece {
     first: u32,
-    /// Drops, or slots.
+    /// Number of drops, or of slots.
     count: u32,
     frame: wgpu::Buffer,
-    places: wgpu::Buffer,
+    positions: wgpu::Buffer,
     motions: wgpu::Buffer,
-    /// The step in which each slot was last taken.
+    /// Step in which each slot was last taken.
     claims: wgpu::Buffer,
 }
 
-/// Kernels for what there is: a step, and what comes in.
+/// Kernels of a configuration: the step, and the entry of drops.
 #[derive(Clone)]
 struct Kernels {
     step: ComputeKernel,
@@ -103,44 +103,45 @@ pub struct GpuSimulation {
     plan: Plan,
     pieces: Vec<Piece>,
     speeds: Vec<f32>,
-    /// Terminal speeds, sizes of the bins, regions of what comes in.
+    /// Terminal speeds, sizes of the bins, regions of entering drops.
     tables: wgpu::Buffer,
     events: wgpu::Buffer,
     counts: wgpu::Buffer,
-    /// Stands for what is not there.
+    /// Placeholder of unused bindings.
     nothing: wgpu::Buffer,
     nowhere: wgpu::Buffer,
-    /// By whether there is a wind field, and a map.
+    /// Kernels by the presence of a wind field and of a map.
     kernels: [Option<Kernels>; 4],
 }
 
 impl GpuSimulation {
-    /// The rain of a distribution. The moment's wind field and map are those of the CPU: they say how drops begin.
+    /// Creates the rain of a distribution. The wind field and map of the input are those of the CPU: they determine
+    /// the initial drops.
     ///
     /// # Errors
-    /// As [`Simulation::new`]; [`GpuError`] for what the device does not hold.
+    /// As [`Simulation::new`]; [`GpuError`] if the device's memory or limits are too small.
     pub fn new(
         gpu: &Gpu,
         rain: &DropSizeDistribution,
         options: &SimulationOptions,
-        moment: &Moment<'_>,
+        input: &StepInput<'_>,
     ) -> Result<Self, GpuSimError> {
-        Ok(Self::from_cpu(gpu, &Simulation::new(rain, options, moment)?)?)
+        Ok(Self::from_cpu(gpu, &Simulation::new(rain, options, input)?)?)
     }
 
-    /// A rain that goes on where one on the CPU is.
+    /// Continues a simulation of the CPU.
     ///
     /// # Errors
-    /// [`GpuError`] for what the device does not hold.
+    /// [`GpuError`] if the device's memory or limits are too small.
     pub fn from_cpu(gpu: &Gpu, simulation: &Simulation) -> Result<Self, GpuError> {
         let Simulation { mut plan, speeds, drops, .. } = simulation.clone();
-        let most_events = plan.options.most_events.min(MAX_EVENTS);
-        plan.options.most_events = most_events;
+        let max_events = plan.options.max_events.min(MAX_EVENTS);
+        plan.options.max_events = max_events;
         let mut tables: Vec<u32> = speeds.iter().map(|speed| speed.to_bits()).collect();
         tables.extend(plan.sizes().as_flattened().iter().map(|size| size.to_bits()));
         let regions = plan.bins.len() * REGIONS_PER_BIN + 1;
         tables.resize(tables.len() + regions * size_of::<EnterRegion>() / size_of::<u32>(), 0);
-        let event_bytes = u64::from(most_events.max(1)) * size_of::<StepEvent>() as u64;
+        let event_bytes = u64::from(max_events.max(1)) * size_of::<StepEvent>() as u64;
         Ok(Self {
             pieces: pieces(gpu, &plan, &drops)?,
             tables: gpu.storage_buffer("tables of the rain", &tables)?,
@@ -155,38 +156,38 @@ impl GpuSimulation {
         })
     }
 
-    /// Lets time pass, up to 1 s; the camera comes to the moment's. Returns when the work is submitted.
+    /// Advances by a time of up to 1 s; the camera moves to that of the input. Returns after submission.
     ///
     /// # Errors
     /// As [`Simulation::advance`], and [`GpuError`].
-    pub fn advance(&mut self, time_s: f64, moment: &GpuMoment<'_>) -> Result<(), GpuSimError> {
-        let turns = self.plan.turns(time_s, moment.view, moment.origin, moment.air_at_eye())?;
+    pub fn advance(&mut self, time_s: f64, input: &GpuStepInput<'_>) -> Result<(), GpuSimError> {
+        let turns = self.plan.turns(time_s, input.view, input.origin, input.air_at_eye())?;
         for turn in &turns {
             self.make_room(turn)?;
-            let (kernels, bound) = self.bound(moment)?;
+            let (kernels, bound) = self.bound(input)?;
             let dispatches = self.dispatches(turn, &kernels, &bound);
             self.gpu.submit(&dispatches)?;
         }
         Ok(())
     }
 
-    /// Repeats one step, up to 1/30 s, and gives the mean time of one.
+    /// Repeats one step, up to 1/30 s, and returns its mean time.
     ///
     /// # Errors
     /// As [`GpuSimulation::advance`].
     pub fn time(
         &mut self,
         time_s: f64,
-        moment: &GpuMoment<'_>,
+        input: &GpuStepInput<'_>,
         repeats: u32,
     ) -> Result<PassTime, GpuSimError> {
-        let turns = self.plan.turns(time_s, moment.view, moment.origin, moment.air_at_eye())?;
-        let (kernels, bound) = self.bound(moment)?;
+        let turns = self.plan.turns(time_s, input.view, input.origin, input.air_at_eye())?;
+        let (kernels, bound) = self.bound(input)?;
         let dispatches = turns.first().map(|turn| self.dispatches(turn, &kernels, &bound));
         Ok(self.gpu.time(&dispatches.unwrap_or_default(), repeats)?)
     }
 
-    /// Drops of a view anew where the eye is elsewhere altogether, and slots for them where it has come to see more.
+    /// Refills the drops of a view after a jump of the eye, and adds slots if the view has grown.
     fn make_room(&mut self, turn: &Turn) -> Result<(), GpuSimError> {
         if !self.plan.is_open() {
             return Ok(());
@@ -203,26 +204,26 @@ impl GpuSimulation {
             };
             let drops = fill(&self.plan, &world)?;
             self.pieces = pieces(&self.gpu, &self.plan, &drops)?;
-        } else if self.count() as f64 - SPARE_SLOTS < LEAST_SLOTS_PER_DROP * self.plan.expected() {
+        } else if self.count() as f64 - SPARE_SLOTS < MIN_SLOTS_PER_DROP * self.plan.expected() {
             let drops = self.drops()?;
             self.pieces = pieces(&self.gpu, &self.plan, &drops)?;
         }
         Ok(())
     }
 
-    /// The kernels for what there is, and the bindings of each piece.
+    /// Kernels of a configuration, and the bindings of each piece.
     #[expect(clippy::type_complexity, reason = "the bindings of the two kernels")]
     fn bound(
         &mut self,
-        moment: &GpuMoment<'_>,
+        input: &GpuStepInput<'_>,
     ) -> Result<(Kernels, Vec<(wgpu::BindGroup, Option<wgpu::BindGroup>)>), GpuError> {
-        let variant = usize::from(moment.field.is_some()) + 2 * usize::from(moment.map.is_some());
+        let variant = usize::from(input.field.is_some()) + 2 * usize::from(input.map.is_some());
         let kernels = match &self.kernels[variant] {
             Some(kernels) => kernels.clone(),
             None => {
                 let on = |there: bool| f64::from(u8::from(there));
                 let constants =
-                    [("STEP_FIELD", on(moment.field.is_some())), ("STEP_COLLIDES", on(moment.map.is_some()))];
+                    [("STEP_FIELD", on(input.field.is_some())), ("STEP_COLLIDES", on(input.map.is_some()))];
                 let step = ComputeKernel::new(&self.gpu, &STEP_KERNEL, &constants)?;
                 let enter = self
                     .plan
@@ -232,17 +233,17 @@ impl GpuSimulation {
                 self.kernels[variant].insert(Kernels { step, enter }).clone()
             }
         };
-        let grid = match moment.field {
+        let grid = match input.field {
             Some((grid, _)) => &self.gpu.uniform_buffer("wind grid", grid)?,
             None => &self.nowhere,
         };
-        let cells = moment.field.map_or(&self.nothing, |(_, cells)| cells);
+        let cells = input.field.map_or(&self.nothing, |(_, cells)| cells);
         let (frame, texels) =
-            moment.map.map_or((&self.nowhere, &self.nothing), |map| (map.frame(), map.texels()));
+            input.map.map_or((&self.nowhere, &self.nothing), |map| (map.frame(), map.texels()));
         let bind = |piece: &Piece| {
-            let Piece { frame: of_piece, places, motions, claims, .. } = piece;
+            let Piece { frame: of_piece, positions, motions, claims, .. } = piece;
             let counts = [&self.events, &self.counts];
-            let state = [of_piece, places, motions, &self.tables, cells];
+            let state = [of_piece, positions, motions, &self.tables, cells];
             let shared = [&state[..], &counts[..], &[grid, frame, texels]].concat();
             let step = kernels.step.bind(&self.gpu, &shared)?;
             let all = [&shared[..], &[claims]].concat();
@@ -253,7 +254,7 @@ impl GpuSimulation {
         Ok((kernels, bound))
     }
 
-    /// The work of a step; its frame is written before the next submission.
+    /// Dispatches of a step; its frame is written before the next submission.
     fn dispatches<'a>(
         &self,
         turn: &Turn,
@@ -284,24 +285,26 @@ impl GpuSimulation {
         work
     }
 
-    /// What has happened since the last call. Impacts are in the order of the drops' numbers; of more than the buffer holds,
-    /// which are noted varies.
+    /// Events since the last call. Impacts are sorted by the drops' numbers; if there are more than the buffer holds,
+    /// the recorded ones vary.
     ///
     /// # Errors
     /// [`GpuError`].
-    pub fn happened(&self) -> Result<Happened, GpuSimError> {
+    pub fn events(&self) -> Result<StepEvents, GpuSimError> {
         let counts = self.gpu.read::<u32>(&self.counts)?;
-        let &[events, drops, low, high, lost] = &counts[..] else { return Ok(Happened::default()) };
-        let noted = events.min(self.plan.options.most_events);
-        let mut list = if noted > 0 { self.gpu.read::<StepEvent>(&self.events)? } else { Vec::new() };
-        list.truncate(noted as usize);
-        list.sort_by_key(|event| (event.drop & 0x3fff_ffff, event.drop >> 30, event.place.map(f32::to_bits)));
+        let &[events, drops, low, high, lost] = &counts[..] else { return Ok(StepEvents::default()) };
+        let recorded = events.min(self.plan.options.max_events);
+        let mut list = if recorded > 0 { self.gpu.read::<StepEvent>(&self.events)? } else { Vec::new() };
+        list.truncate(recorded as usize);
+        list.sort_by_key(|event| {
+            (event.drop & 0x3fff_ffff, event.drop >> 30, event.position.map(f32::to_bits))
+        });
         self.gpu.queue().write_buffer(&self.counts, 0, bytemuck::bytes_of(&[0u32; COUNTS]));
         let caught = StepCaught { drops: drops.into(), volume: u64::from(high) << 32 | u64::from(low) };
-        Ok(Happened { events: list, overflow: (events - noted).into(), caught, lost: lost.into() })
+        Ok(StepEvents { events: list, overflow: (events - recorded).into(), caught, lost: lost.into() })
     }
 
-    /// The state: of a view in the order of the steps in which drops came, and of their words; else in the order of their
+    /// State: for a view sorted by the steps in which drops entered, and by their words; else by their
     /// numbers.
     ///
     /// # Errors
@@ -309,9 +312,9 @@ impl GpuSimulation {
     pub fn drops(&self) -> Result<Vec<StepDrop>, GpuSimError> {
         let mut drops = Vec::new();
         for piece in &self.pieces {
-            let places = self.gpu.read::<[u32; 4]>(&piece.places)?;
+            let positions = self.gpu.read::<[u32; 4]>(&piece.positions)?;
             let motions = self.gpu.read::<[u32; 4]>(&piece.motions)?;
-            drops.extend(places.iter().zip(&motions).map(|(place, motion)| whole(place, motion)));
+            drops.extend(positions.iter().zip(&motions).map(|(position, motion)| whole(position, motion)));
         }
         if self.plan.is_open() {
             drops.retain(|drop: &StepDrop| drop.kind() != STEP_GONE);
@@ -320,19 +323,19 @@ impl GpuSimulation {
         Ok(drops)
     }
 
-    /// How many drops are simulated; of a view, how many slots there are.
+    /// Number of simulated drops; for a view, number of slots.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.pieces.iter().map(|piece| u64::from(piece.count)).sum()
     }
 
-    /// The least diameter, m: smaller drops are unresolved.
+    /// Minimum diameter, m: smaller drops are unresolved.
     #[must_use]
     pub fn least_diameter(&self) -> f64 {
         self.plan.least_diameter
     }
 
-    /// The drops that a picture of now can show, as [`Simulation::visible`].
+    /// Drops that a picture of the current time can show, as [`Simulation::visible`].
     ///
     /// # Errors
     /// [`GpuError`].
@@ -340,7 +343,7 @@ impl GpuSimulation {
         self.visible_after(0.0, view, None)
     }
 
-    /// The drops that a picture can show some time after the state, s, as [`Simulation::visible_after`].
+    /// Drops that a picture can show some time after the state, s, as [`Simulation::visible_after`].
     ///
     /// # Errors
     /// [`GpuError`].
@@ -354,7 +357,7 @@ impl GpuSimulation {
         Ok(listed(&listing, &self.drops()?))
     }
 
-    /// The rate, mm/h, of the drops that fall in the volume, as [`Simulation::measured_rate_mm_h`].
+    /// Rate, mm/h, of the drops that fall in the volume, as [`Simulation::measured_rate_mm_h`].
     ///
     /// # Errors
     /// [`GpuError`].
@@ -362,17 +365,19 @@ impl GpuSimulation {
         Ok(crate::disdrometer::rate_mm_h(&self.plan, &self.drops()?, map))
     }
 
-    /// The drops' places and motions on the device, piece by piece, with the numbers of drops or slots: what a renderer
-    /// reads. Layout: `step_places` and `step_motions` of `sim/step.wgsl`; slots whose kind is `STEP_GONE` hold no drop.
+    /// Positions and motions of the drops on the device, piece by piece, with the numbers of drops or slots, for a
+    /// renderer. Layout: `step_positions` and `step_motions` of `sim/step.wgsl`; slots whose kind is `STEP_GONE` hold
+    /// no drop.
     pub fn buffers(&self) -> impl Iterator<Item = (&wgpu::Buffer, &wgpu::Buffer, u32)> {
-        self.pieces.iter().map(|piece| (&piece.places, &piece.motions, piece.count))
+        self.pieces.iter().map(|piece| (&piece.positions, &piece.motions, piece.count))
     }
 }
 
-/// Counts of a step: events; drops through the gauge; their volume, low and high word; drops that found no slot.
+/// Number of counters of a step: events; drops through the gauge; their volume, low and high word; drops without a
+/// slot.
 const COUNTS: usize = 5;
 
-/// Drops in pieces on the device; those of a view have free slots among them.
+/// Creates the pieces of drops on the device; those of a view have free slots.
 fn pieces(gpu: &Gpu, plan: &Plan, drops: &[StepDrop]) -> Result<Vec<Piece>, GpuError> {
     let slots = if plan.is_open() {
         let wanted = (drops.len() as f64).max(plan.expected()) * SLOTS_PER_DROP + SPARE_SLOTS;
@@ -386,39 +391,41 @@ fn pieces(gpu: &Gpu, plan: &Plan, drops: &[StepDrop]) -> Result<Vec<Piece>, GpuE
     (0..count)
         .filter(|_| slots > 0)
         .map(|number| {
-            // As many of the drops in each.
+            // Equally many drops in each.
             let first = number * per_piece;
             let size = per_piece.min(slots - first);
-            let share = if plan.is_open() { drops.len().div_ceil(count) } else { per_piece };
-            let begin = (number * share).min(drops.len());
-            let held = &drops[begin..(begin + share).min(drops.len())];
+            let length = if plan.is_open() { drops.len().div_ceil(count) } else { per_piece };
+            let begin = (number * length).min(drops.len());
+            let held = &drops[begin..(begin + length).min(drops.len())];
             let all = held.iter().chain(std::iter::repeat_n(&free, size.saturating_sub(held.len())));
-            let (mut places, mut motions) = (Vec::with_capacity(size), Vec::with_capacity(size));
+            let (mut positions, mut motions) = (Vec::with_capacity(size), Vec::with_capacity(size));
             for drop in all {
-                let [place, motion] = halves(drop);
-                places.push(place);
+                let [position, motion] = halves(drop);
+                positions.push(position);
                 motions.push(motion);
             }
             let bytes = size_of::<StepFrame>() as u64;
             Ok(Piece {
                 first: first as u32,
-                count: places.len() as u32,
+                count: positions.len() as u32,
                 frame: gpu.empty_buffer("step frame", bytes, wgpu::BufferUsages::UNIFORM)?,
-                claims: gpu
-                    .storage_buffer("claims", &vec![0u32; if plan.is_open() { places.len() } else { 1 }])?,
-                places: gpu.storage_buffer("drops' places", &places)?,
+                claims: gpu.storage_buffer(
+                    "claims",
+                    &vec![0u32; if plan.is_open() { positions.len() } else { 1 }],
+                )?,
+                positions: gpu.storage_buffer("drops' positions", &positions)?,
                 motions: gpu.storage_buffer("drops' motions", &motions)?,
             })
         })
         .collect()
 }
 
-/// A drop as the two arrays of the shader hold it.
+/// Splits a drop into the two arrays of the shader.
 fn halves(drop: &StepDrop) -> [[u32; 4]; 2] {
-    let ([x, y, z], [u, v, w]) = (drop.place.map(f32::to_bits), drop.velocity.map(f32::to_bits));
+    let ([x, y, z], [u, v, w]) = (drop.position.map(f32::to_bits), drop.velocity.map(f32::to_bits));
     [[x, y, z, drop.word], [u, v, w, drop.last]]
 }
 
 fn whole(&[x, y, z, word]: &[u32; 4], &[u, v, w, last]: &[u32; 4]) -> StepDrop {
-    StepDrop { place: [x, y, z].map(f32::from_bits), word, velocity: [u, v, w].map(f32::from_bits), last }
+    StepDrop { position: [x, y, z].map(f32::from_bits), word, velocity: [u, v, w].map(f32::from_bits), last }
 }

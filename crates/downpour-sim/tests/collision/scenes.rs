@@ -1,4 +1,4 @@
-//! Scenes that tests are made of.
+//! Scenes of the tests.
 
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit};
@@ -31,13 +31,13 @@ pub(crate) fn cuboid(low: Vec3, high: Vec3) -> Vec<Triangle> {
 }
 
 /// A closed sphere of `n` rings, faces outwards.
-pub(crate) fn sphere(centre: Vec3, radius: f32, n: u32) -> Vec<Triangle> {
+pub(crate) fn sphere(center: Vec3, radius: f32, n: u32) -> Vec<Triangle> {
     let at = |i: u32, j: u32| {
         let theta = std::f64::consts::PI * f64::from(i) / f64::from(n);
         let phi = std::f64::consts::PI * f64::from(j % (2 * n)) / f64::from(n);
         let (s, c) = (ops::sin(theta), ops::cos(theta));
         let unit = [s * ops::sin(phi), c, s * ops::cos(phi)].map(|x| x as f32);
-        centre + radius * Vec3::from(unit)
+        center + radius * Vec3::from(unit)
     };
     (0..n)
         .flat_map(|i| (0..2 * n).map(move |j| [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]))
@@ -57,11 +57,11 @@ pub(crate) fn boxes(n: u32) -> Vec<Triangle> {
         let [e, f, g, h] = rng_draw([11, 12], i, 1, 0).map(rng_unit);
         let half = Vec3::new(0.2 + 0.8 * a, 0.2 + 0.8 * b, 0.2 + 0.8 * c);
         let turn = Quat::from_rotation_y(6.0 * d);
-        let place = Vec3::new(16.0 * e - 8.0, 3.0 * f, 16.0 * g - 8.0);
-        // Some are tilted, most stand.
+        let position = Vec3::new(16.0 * e - 8.0, 3.0 * f, 16.0 * g - 8.0);
+        // Some are tilted, most are upright.
         let turn = if h < 0.3 { Quat::from_rotation_x(h) * turn } else { turn };
         let solid = turned(&cuboid(-half, half), turn);
-        all.extend(solid.iter().map(|t| t.map(|p| (Vec3::from(p) + place).to_array())));
+        all.extend(solid.iter().map(|t| t.map(|p| (Vec3::from(p) + position).to_array())));
     }
     all
 }

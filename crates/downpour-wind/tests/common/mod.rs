@@ -1,4 +1,4 @@
-//! What the tests integrate with.
+//! Integrals and primitives shared by the tests.
 #![allow(dead_code, reason = "each test takes what it needs")]
 
 use std::f64::consts::{PI, TAU};
@@ -10,14 +10,14 @@ use glam::{DVec3, Vec3};
 
 pub(crate) const STRENGTH: f32 = 40.0;
 pub(crate) const CORE: f32 = 0.5;
-pub(crate) const CENTRE: Vec3 = Vec3::new(1.0, -2.0, 3.0);
+pub(crate) const CENTER: Vec3 = Vec3::new(1.0, -2.0, 3.0);
 
-/// A singularity with a slanted axis, so that no component is idle.
+/// A singularity with an oblique axis, so that all components are tested.
 pub(crate) fn singularity(form: WindForm) -> WindSingularity {
     WindSingularity {
         form,
         strength: STRENGTH,
-        centre: CENTRE,
+        center: CENTER,
         axis: Vec3::new(1.0, 2.0, -0.5),
         core_radius: CORE,
         core: WindCore::Rosenhead,
@@ -28,20 +28,20 @@ pub(crate) fn tornado() -> WindTornado {
     WindTornado {
         circulation: 60.0,
         discharge: 500.0,
-        base: CENTRE,
+        base: CENTER,
         axis: Vec3::new(0.2, 2.0, -0.3),
         height: 12.0,
         core_radius: 1.5,
     }
 }
 
-/// The wind of primitives without a grid.
+/// Wind of primitives without a grid.
 pub(crate) fn wind(primitives: &[WindPrimitive]) -> impl Fn(DVec3) -> DVec3 + use<> {
     let matrices = WindMatrix::encode(primitives).expect("primitives in range");
     move |at: DVec3| velocity(&matrices, at.as_vec3()).as_dvec3()
 }
 
-/// Three unit vectors at right angles, the third along `axis`, right-handed.
+/// Three perpendicular unit vectors, the third along `axis`, right-handed.
 pub(crate) fn frame(axis: Vec3) -> [DVec3; 3] {
     let axis = axis.as_dvec3().normalize();
     let side = axis.any_orthonormal_vector();
@@ -49,7 +49,7 @@ pub(crate) fn frame(axis: Vec3) -> [DVec3; 3] {
 }
 
 /// Flow out of a sphere, m^3/s.
-pub(crate) fn flux_sphere(field: &impl Fn(DVec3) -> DVec3, centre: DVec3, radius: f64) -> f64 {
+pub(crate) fn flux_sphere(field: &impl Fn(DVec3) -> DVec3, center: DVec3, radius: f64) -> f64 {
     let (rows, columns) = (160, 160);
     let area = 4.0 * PI * radius * radius / f64::from(rows * columns);
     let mut sum = 0.0;
@@ -59,38 +59,38 @@ pub(crate) fn flux_sphere(field: &impl Fn(DVec3) -> DVec3, centre: DVec3, radius
         for k in 0..columns {
             let phi = TAU * (f64::from(k) + 0.5) / f64::from(columns);
             let normal = DVec3::new(r * cos(phi), r * sin(phi), z);
-            sum += field(centre + normal * radius).dot(normal);
+            sum += field(center + normal * radius).dot(normal);
         }
     }
     sum * area
 }
 
 /// Flow out of a cylinder without its ends, per length, m^2/s.
-pub(crate) fn flux_cylinder(field: &impl Fn(DVec3) -> DVec3, centre: DVec3, axis: Vec3, radius: f64) -> f64 {
-    ring(centre, axis, radius).map(|(at, outward, _)| field(at).dot(outward)).sum::<f64>()
+pub(crate) fn flux_cylinder(field: &impl Fn(DVec3) -> DVec3, center: DVec3, axis: Vec3, radius: f64) -> f64 {
+    ring(center, axis, radius).map(|(at, outward, _)| field(at).dot(outward)).sum::<f64>()
         * (TAU * radius / RING)
 }
 
-/// Circulation round a ring, m^2/s.
-pub(crate) fn circulation(field: &impl Fn(DVec3) -> DVec3, centre: DVec3, axis: Vec3, radius: f64) -> f64 {
-    ring(centre, axis, radius).map(|(at, _, around)| field(at).dot(around)).sum::<f64>()
+/// Circulation along a ring, m^2/s.
+pub(crate) fn circulation(field: &impl Fn(DVec3) -> DVec3, center: DVec3, axis: Vec3, radius: f64) -> f64 {
+    ring(center, axis, radius).map(|(at, _, around)| field(at).dot(around)).sum::<f64>()
         * (TAU * radius / RING)
 }
 
 const RING: f64 = 512.0;
 
-/// Place, outward and forward direction of points round a ring.
-fn ring(centre: DVec3, axis: Vec3, radius: f64) -> impl Iterator<Item = (DVec3, DVec3, DVec3)> {
+/// Position, outward and forward direction of points on a ring.
+fn ring(center: DVec3, axis: Vec3, radius: f64) -> impl Iterator<Item = (DVec3, DVec3, DVec3)> {
     let [u, v, _] = frame(axis);
     (0..RING as u32).map(move |k| {
         let phi = TAU * f64::from(k) / RING;
         let outward = u * cos(phi) + v * sin(phi);
         let around = v * cos(phi) - u * sin(phi);
-        (centre + outward * radius, outward, around)
+        (center + outward * radius, outward, around)
     })
 }
 
-/// `found` is `wanted` to `share` of `scale`.
-pub(crate) fn close(found: f64, wanted: f64, scale: f64, share: f64, what: &str) {
-    assert!((found - wanted).abs() <= share * scale.abs(), "{what}: {found}, not {wanted}");
+/// Asserts that `found` is `wanted` to the fraction `tolerance` of `scale`.
+pub(crate) fn close(found: f64, wanted: f64, scale: f64, tolerance: f64, what: &str) {
+    assert!((found - wanted).abs() <= tolerance * scale.abs(), "{what}: {found}, not {wanted}");
 }

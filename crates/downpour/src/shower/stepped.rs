@@ -12,7 +12,7 @@ use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::TerminalSpeed;
 use downpour_sim::collision::{CollisionMap, CollisionOptions};
 use downpour_sim::field::VisibleDrops;
-use downpour_sim::simulation::{Drag, Moment, SimVolume, Simulation, SimulationOptions, least_pixels};
+use downpour_sim::simulation::{Drag, SimVolume, Simulation, SimulationOptions, StepInput, least_pixels};
 use downpour_sim::view::View;
 use downpour_weather::{RAIN_BOX_M, RainDrag, RainVolume, Weather};
 use downpour_wind::turbulence::WindTurbulenceMode;
@@ -124,7 +124,7 @@ impl Stepped {
             },
             bounce: bounce(rain),
             // Nothing takes them up yet.
-            most_events: 0,
+            max_events: 0,
             ..SimulationOptions::default()
         };
         let speeds = TerminalSpeed::new(law.options().fall_speed, &law.options().air);
@@ -175,11 +175,11 @@ impl Stepped {
             let view = self.view(scenery, now_s)?;
             let air = self.weather.wind.air().prepared(now_s);
             let surroundings = &running.surroundings;
-            let moment = Moment {
+            let moment = StepInput {
                 field: surroundings.field(),
                 map: surroundings.map.as_ref(),
                 air: Some(&air),
-                ..Moment::new(&view, surroundings.origin, air.velocity().as_vec3())
+                ..StepInput::new(&view, surroundings.origin, air.velocity().as_vec3())
             };
             running.simulation.advance(1.0 / STEPS_PER_S, &moment)?;
             passed(done, all);
@@ -232,7 +232,7 @@ impl Stepped {
         self.least_pixels = Some(least);
         // The longest way through the picture, with some room for the wind.
         let options = self.law.options();
-        let (smallest, largest) = (options.smallest_diameter_m, options.largest_diameter_m);
+        let (smallest, largest) = (options.min_diameter_m, options.max_diameter_m);
         let longest = (0..64)
             .map(|k| smallest + (largest - smallest) * f64::from(k) / 63.0)
             .filter_map(|d| Some(view.range(d, least) / self.speeds.at(d).ok()?.max(0.01)))
@@ -261,11 +261,11 @@ impl Stepped {
         let surroundings = self.surroundings(scenery, time_s, None)?;
         let view = self.view(scenery, time_s)?;
         let air = self.weather.wind.air().prepared(time_s);
-        let moment = Moment {
+        let moment = StepInput {
             field: surroundings.field(),
             map: surroundings.map.as_ref(),
             air: Some(&air),
-            ..Moment::new(&view, surroundings.origin, air.velocity().as_vec3())
+            ..StepInput::new(&view, surroundings.origin, air.velocity().as_vec3())
         };
         let options = SimulationOptions {
             first_step: (STEP_ZERO + step).clamp(1, i64::from(u32::MAX)) as u32,

@@ -103,8 +103,8 @@ impl Pane {
             Self::Cpu(glass) => Ok(glass.is_sound()),
             #[cfg(feature = "gpu")]
             Self::Gpu(_, glass) => {
-                use downpour::shaders::lattice::glass::GLASS_LARGEST;
-                let held = glass.mass()?.into_iter().all(|mass| mass <= GLASS_LARGEST);
+                use downpour::shaders::lattice::glass::GLASS_MAX_MASS;
+                let held = glass.mass()?.into_iter().all(|mass| mass <= GLASS_MAX_MASS);
                 Ok(held && glass.totals()?.lost() == 0)
             }
         }

@@ -116,8 +116,8 @@ impl PuddleArguments {
         interrupt: &Interrupt,
     ) -> Result<Seen, RunError> {
         if matches!(self.check, Some(Check::Energy | Check::Mass)) {
-            let place_m = water.extent_m().map(|edge| 0.4 * edge);
-            water.seed(&[Impact { place_m, speed_m_s: 8.0, diameter_m: 3.0e-3 }])?;
+            let position_m = water.extent_m().map(|edge| 0.4 * edge);
+            water.seed(&[Impact { position_m, speed_m_s: 8.0, diameter_m: 3.0e-3 }])?;
         }
         let dt = self.step as f32;
         let mut seen = Seen { drops: 0, drift: 0.0, moved: moved_volume(water.look()?) };

@@ -1,19 +1,19 @@
-//! Light sorted by its scattering angle: sums that lose nothing.
+//! Light binned by its scattering angle; the sums conserve it.
 
 use std::f64::consts::PI;
 
 use downpour_math::ops::f64 as ops;
 
-/// Equal intervals of [0, pi], each with the light in it and that light's moment of the place on the disc.
+/// Equal intervals of [0, pi], each with its light and that light's first moment of the position on the disc.
 #[derive(Clone, Debug)]
 pub(super) struct Bins {
     width: f64,
     bins: Vec<[f64; 2]>,
 }
 
-/// Rings, and places along half a ring, that stand for a disc of light.
+/// Rings, and points along half a ring, that sample a disc of light.
 const RINGS: u32 = 6;
-const PLACES: u32 = 8;
+const POINTS: u32 = 8;
 
 impl Bins {
     pub(super) fn new(count: usize) -> Self {
@@ -21,29 +21,29 @@ impl Bins {
     }
 
     /// Adds light that is spread evenly over the angles between two.
-    pub(super) fn add_between(&mut self, ends: [f64; 2], light: f64, place: f64) {
+    pub(super) fn add_between(&mut self, ends: [f64; 2], light: f64, position: f64) {
         let (low, high) = (ends[0].min(ends[1]).max(0.0), ends[0].max(ends[1]).min(PI));
         let (first, last) = (self.index(low), self.index(high));
         for k in first..=last {
             let start = low.max(k as f64 * self.width);
             let end = high.min((k + 1) as f64 * self.width);
             let part = if first == last { 1.0 } else { (end - start).max(0.0) / (high - low) };
-            self.add(k, part * light, place);
+            self.add(k, part * light, position);
         }
     }
 
     /// Adds light at one angle to the two intervals whose middles are nearest.
-    fn add_at(&mut self, angle: f64, light: f64, place: f64) {
-        let position = (angle / self.width - 0.5).clamp(0.0, (self.bins.len() - 1) as f64);
-        let (low, part) = (position.floor(), position - position.floor());
-        self.add(low as usize, light * (1.0 - part), place);
-        self.add((low as usize + 1).min(self.bins.len() - 1), light * part, place);
+    fn add_at(&mut self, angle: f64, light: f64, position: f64) {
+        let at = (angle / self.width - 0.5).clamp(0.0, (self.bins.len() - 1) as f64);
+        let (low, part) = (at.floor(), at - at.floor());
+        self.add(low as usize, light * (1.0 - part), position);
+        self.add((low as usize + 1).min(self.bins.len() - 1), light * part, position);
     }
 
-    fn add(&mut self, k: usize, light: f64, place: f64) {
+    fn add(&mut self, k: usize, light: f64, position: f64) {
         if let Some(bin) = self.bins.get_mut(k) {
             bin[0] += light;
-            bin[1] += light * place;
+            bin[1] += light * position;
         }
     }
 
@@ -51,17 +51,17 @@ impl Bins {
         ((angle / self.width) as usize).min(self.bins.len() - 1)
     }
 
-    /// The same light if its source is a disc of this diameter in radians instead of a point.
+    /// The same light from a source of this angular diameter in radians instead of a point.
     pub(super) fn of_disc(&self, diameter: f64) -> Self {
         if diameter <= 0.0 {
             return self.clone();
         }
-        let share = 1.0 / f64::from(RINGS * PLACES);
-        let offsets: Vec<[f64; 2]> = (0..RINGS * PLACES)
+        let fraction = 1.0 / f64::from(RINGS * POINTS);
+        let offsets: Vec<[f64; 2]> = (0..RINGS * POINTS)
             .map(|k| {
                 // Rings of equal area.
-                let ring = 0.5 * diameter * ((f64::from(k / PLACES) + 0.5) / f64::from(RINGS)).sqrt();
-                let round = PI * (f64::from(k % PLACES) + 0.5) / f64::from(PLACES);
+                let ring = 0.5 * diameter * ((f64::from(k / POINTS) + 0.5) / f64::from(RINGS)).sqrt();
+                let round = PI * (f64::from(k % POINTS) + 0.5) / f64::from(POINTS);
                 [ring, ops::cos(round)]
             })
             .map(|[ring, along]| [ops::cos(ring), ops::sin(ring) * along])
@@ -72,7 +72,7 @@ impl Bins {
             let (sine, cosine) = (ops::sin(angle), ops::cos(angle));
             for [deep, aside] in &offsets {
                 let turned = ops::acos((cosine * deep + sine * aside).clamp(-1.0, 1.0));
-                spread.add_at(turned, light * share, moment / light);
+                spread.add_at(turned, light * fraction, moment / light);
             }
         }
         spread

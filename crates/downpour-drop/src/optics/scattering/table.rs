@@ -10,30 +10,30 @@ use crate::DropError;
 use crate::error::in_range;
 use crate::optics::rainbow;
 
-/// Ways of light that are told apart: orders 0 and 1, and orders 2 and 3 each within its rainbow's ray and beyond it.
+/// Number of separate light paths: orders 0 and 1, and orders 2 and 3 each inside and outside the rainbow ray.
 pub const SCATTERING_PATHS: usize = 6;
 
-/// Intervals of the sweep for each of the table: the mean over one is then exact to four digits.
+/// Intervals of the sweep per interval of the table: the mean over one is then exact to four digits.
 const FINE: usize = 16;
 
-/// Steps of the sweep over the angle of incidence, for each way.
+/// Steps of the sweep over the angle of incidence, for each path.
 const STEPS: u32 = 8192;
 
-/// One way of light through a sphere. Orders 2 and 3 have two that lead to the same angle near their rainbow.
+/// One light path through a sphere. Orders 2 and 3 have two that lead to the same angle near their rainbow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringPath {
-    /// Its order: 0 to 3.
+    /// Order: 0 to 3.
     pub order: u32,
-    /// Impact parameters between which it is, radii.
+    /// Range of impact parameters, radii.
     pub impacts: [f64; 2],
     /// Means of (dsigma/dOmega) / (pi a^2) over equal intervals of the scattering angle, 1/sr.
     pub phase: Vec<f64>,
-    /// Mean place on the disc in these intervals, as [`ScatteredRay::place`](super::ScatteredRay); where there is no light,
-    /// that of the nearest interval with some.
-    pub place: Vec<f64>,
+    /// Mean exit position in these intervals, as [`ScatteredRay::exit_position`](super::ScatteredRay); in intervals
+    /// without light, that of the nearest interval with light.
+    pub exit_position: Vec<f64>,
 }
 
-/// What a sphere scatters, for equal intervals of the scattering angle from 0 (onward) to pi (back).
+/// Scattering by a sphere, for equal intervals of the scattering angle from 0 (forward) to pi (backward).
 ///
 /// ```
 /// use downpour_drop::optics::{SUN_DIAMETER, SphereScattering, WATER_INDEX};
@@ -48,13 +48,13 @@ pub struct SphereScattering {
 }
 
 impl SphereScattering {
-    /// Sweeps the ways of light. `intervals` of the angle, 16 to 4096; the light comes from a disc of `diameter` radians
+    /// Sweeps the light paths. `intervals` of the angle, 16 to 4096; the light comes from a disc of `diameter` radians
     /// (0 for a point, up to 0.2), seen from the sphere.
     ///
     /// # Errors
     /// [`DropError::OutOfRange`] if a number is outside its range; the index is 1.2 to 1.4.
     pub fn new(index: f64, intervals: usize, diameter: f64) -> Result<Self, DropError> {
-        // Above the root of 2 light of order 2 comes back along the axis: a glory, which this table would not hold.
+        // Above the root of 2 light of order 2 returns along the axis: a glory, which this table cannot hold.
         let n = in_range("refractive index", index, "", &(1.2..=1.4), 1.0, "1.2 to 1.4")?;
         let quantity = "intervals of the scattering angle";
         in_range(quantity, intervals as f64, "", &(16.0..=4096.0), 1.0, "16 to 4096")?;
@@ -75,13 +75,13 @@ impl SphereScattering {
         Ok(Self { paths })
     }
 
-    /// The ways: order 0, order 1, order 2 within and beyond the rainbow's ray, order 3 likewise.
+    /// Light paths: order 0, order 1, order 2 inside and outside the rainbow ray, order 3 likewise.
     #[must_use]
     pub fn paths(&self) -> &[ScatteringPath; SCATTERING_PATHS] {
         &self.paths
     }
 
-    /// Intervals of the angle.
+    /// Number of intervals of the angle.
     #[must_use]
     pub fn intervals(&self) -> usize {
         self.paths[0].phase.len()
@@ -94,9 +94,9 @@ impl SphereScattering {
         self.paths.iter().map(|path| between(&path.phase, angle)).sum()
     }
 
-    /// The share of the light that the table holds for an order.
+    /// Fraction of the light that the table holds for an order.
     #[must_use]
-    pub fn share(&self, order: u32) -> f64 {
+    pub fn fraction(&self, order: u32) -> f64 {
         let count = self.intervals();
         let of = |path: &ScatteringPath| -> f64 {
             path.phase.iter().enumerate().map(|(k, phase)| phase * ring(k, count)).sum()
@@ -114,12 +114,12 @@ impl ScatteringPath {
             let k = f64::from(k);
             let (start, middle, end) = (at(k), at(k + 0.5), at(k + 1.0));
             // Part of the disc's area between the two impact parameters.
-            let area = end.place * end.place - start.place * start.place;
-            bins.add_between([start.angle, end.angle], middle.share * area, middle.place);
+            let area = end.exit_position * end.exit_position - start.exit_position * start.exit_position;
+            bins.add_between([start.angle, end.angle], middle.fraction * area, middle.exit_position);
         }
         let merged = bins.of_disc(disc).merged(FINE);
         let phase = merged.iter().enumerate().map(|(k, bin)| bin[0] / ring(k, intervals)).collect();
-        Self { order, impacts: incidences.map(ops::sin), phase, place: places(&merged) }
+        Self { order, impacts: incidences.map(ops::sin), phase, exit_position: positions(&merged) }
     }
 }
 
@@ -129,20 +129,21 @@ fn ring(k: usize, count: usize) -> f64 {
     TAU * (at(k) - at(k + 1))
 }
 
-/// Means of the place; empty intervals take that of the nearest one that is not, the lower of two.
-fn places(merged: &[[f64; 2]]) -> Vec<f64> {
+/// Mean positions; an empty interval takes that of the nearest interval with light, the lower of two.
+fn positions(merged: &[[f64; 2]]) -> Vec<f64> {
     let full: Vec<(usize, f64)> = merged
         .iter()
         .enumerate()
         .filter(|(_, bin)| bin[0] > 0.0)
         .map(|(k, bin)| (k, bin[1] / bin[0]))
         .collect();
-    let nearest =
-        |k: usize| full.iter().min_by_key(|(of, _)| of.abs_diff(k)).map_or(0.0, |&(_, place)| place);
+    let nearest = |k: usize| {
+        full.iter().min_by_key(|(of, _)| of.abs_diff(k)).map_or(0.0, |&(_, exit_position)| exit_position)
+    };
     (0..merged.len()).map(nearest).collect()
 }
 
-/// A table of intervals at an angle.
+/// Interpolates a table of intervals at an angle.
 fn between(values: &[f64], angle: f64) -> f64 {
     let last = values.len().saturating_sub(1);
     let position = (angle / PI * values.len() as f64 - 0.5).clamp(0.0, last as f64);

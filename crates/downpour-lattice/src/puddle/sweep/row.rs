@@ -1,23 +1,23 @@
-//! One row of a pass over a tile, in vectors where all its cells are linked and cell by cell along coasts. Both ways do
-//! the same operations in the same order.
+//! One row of a pass over a tile: by vectors where all its cells are linked, and cell by cell along coasts. Both do the
+//! same operations in the same order.
 
 use std::ops::Range;
 
 use downpour_math::ops::ops_is_finite;
 use downpour_math::real::{Lanes, Real, Simd};
-use downpour_shaders::lattice::puddle::PUDDLE_SMALLEST;
+use downpour_shaders::lattice::puddle::PUDDLE_MIN;
 
 use super::tile::Tile;
 use crate::puddle::lattice::{Links, PuddleGrid, laplacian, laplacian_linked, puddle_recur, puddle_settle};
 
-/// Three by three vectors: a place, and its neighbours.
-type Round<S> = [[Lanes<S>; 3]; 3];
+/// Three by three vectors: a vector and its neighbours.
+type Neighborhood<S> = [[Lanes<S>; 3]; 3];
 
-/// Three rows of the argument, from one cell before a run to one behind it.
+/// Three rows of the argument, from one cell before a run to one after it.
 #[derive(Clone, Copy)]
 struct Rows<'a>([&'a [f32]; 3]);
 
-/// The whole vectors of a run, and of the runs that lie one cell beside it.
+/// Whole vectors of a run, and of the runs shifted by one cell to either side.
 #[derive(Clone, Copy)]
 struct Whole<'a, S: Simd>([[&'a [S::f32s]; 3]; 3]);
 
@@ -33,22 +33,22 @@ impl<'a> Rows<'a> {
         Whole([beside::<S>(north, count), beside::<S>(here, count), beside::<S>(south, count)])
     }
 
-    /// The values round a part of the run that is shorter than a vector.
+    /// Values around a part of the run that is shorter than a vector.
     #[inline(always)]
-    fn part<S: Simd, const DIAGONAL: bool>(self, simd: S, part: &Range<usize>) -> Round<S> {
+    fn part<S: Simd, const DIAGONAL: bool>(self, simd: S, part: &Range<usize>) -> Neighborhood<S> {
         let zero = Lanes::splat(simd, 0.0);
-        let mut round = [[zero; 3]; 3];
-        for (row, (lanes, cells)) in round.iter_mut().zip(self.0).enumerate() {
+        let mut around = [[zero; 3]; 3];
+        for (row, (lanes, cells)) in around.iter_mut().zip(self.0).enumerate() {
             for (shift, lane) in lanes.iter_mut().enumerate() {
                 if DIAGONAL || row == 1 || shift == 1 {
                     *lane = Lanes::load(simd, &cells[part.start + shift..part.end + shift]);
                 }
             }
         }
-        round
+        around
     }
 
-    /// The weighted sum of cell `i` with its links, and its value.
+    /// Weighted sum of cell `i` with its links, and its value.
     #[inline(always)]
     fn sum(self, i: usize, links: u8, weights: [f32; 3]) -> [f32; 2] {
         let [north, here, south] = self.0.map(|row| [row[i], row[i + 1], row[i + 2]]);
@@ -56,8 +56,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// How many whole vectors a run has, and its last cells: as many as a vector has, or all. They are computed before the
-/// others, from what the row was, and written after them: loads of parts of vectors are slow.
+/// Number of whole vectors of a run, and the range of its last cells: as many as a vector has, or all. They are
+/// computed before the others, from the old row, and written after them: partial loads are slow.
 #[inline(always)]
 fn ends<S: Simd>(n: usize) -> (usize, Range<usize>) {
     (n / Lanes::<S>::COUNT, n.saturating_sub(Lanes::<S>::COUNT)..n)
@@ -73,9 +73,9 @@ fn beside<S: Simd>(row: &[f32], count: usize) -> [&[S::f32s]; 3] {
 }
 
 impl<S: Simd> Whole<'_, S> {
-    /// The values round vector `k`. The weight of the diagonal is 0 for a membrane.
+    /// Values around vector `k`. The weight of the diagonal is 0 for a membrane.
     #[inline(always)]
-    fn at<const DIAGONAL: bool>(self, simd: S, k: usize) -> Round<S> {
+    fn at<const DIAGONAL: bool>(self, simd: S, k: usize) -> Neighborhood<S> {
         let [[nw, n, ne], [w, own, e], [sw, s, se]] = self.0;
         let zero = Lanes::splat(simd, 0.0);
         let straight = [&n[k], &w[k], &own[k], &e[k], &s[k]];
@@ -88,25 +88,25 @@ impl<S: Simd> Whole<'_, S> {
     }
 }
 
-/// Numbers that are the same in all lanes.
+/// Constants in all lanes.
 #[derive(Clone, Copy)]
 struct Recur<S: Simd> {
     weights: [Lanes<S>; 3],
     coefficient: Lanes<S>,
     twice: Lanes<S>,
-    share: Lanes<S>,
+    fraction: Lanes<S>,
     viscosity: Lanes<S>,
 }
 
 impl<S: Simd> Recur<S> {
     #[inline(always)]
-    fn value(self, [north, here, south]: Round<S>, height: Lanes<S>, older: Lanes<S>) -> Lanes<S> {
+    fn value(self, [north, here, south]: Neighborhood<S>, height: Lanes<S>, older: Lanes<S>) -> Lanes<S> {
         let sum = laplacian(north, here, south, self.weights);
-        puddle_recur(self.coefficient * height, self.twice * sum, self.share * here[1], older)
+        puddle_recur(self.coefficient * height, self.twice * sum, self.fraction * here[1], older)
     }
 }
 
-/// The argument of the only weighted sum of a membrane, for a row.
+/// Argument of the only weighted sum of a membrane, for a row.
 #[inline(always)]
 pub(super) fn argument_row<S: Simd>(
     simd: S,
@@ -130,7 +130,7 @@ pub(super) fn argument_row<S: Simd>(
     }
 }
 
-/// The first sum of Clenshaw's recurrence, for a row.
+/// First sum of Clenshaw's recurrence, for a row.
 #[inline(always)]
 pub(super) fn first_row<S: Simd>(simd: S, tile: &mut Tile, top: f32, columns: &Range<usize>, y: usize) {
     let n = columns.len();
@@ -161,14 +161,14 @@ pub(super) fn recur_row<S: Simd, const DIAGONAL: bool>(
     coefficient: f32,
     last: bool,
 ) {
-    // The last sum is multiplied by y = 2 x - 1 alone, those before by 2 y.
-    let (twice, share) = if last { (grid.twice, 1.0) } else { (2.0 * grid.twice, 2.0) };
+    // The last sum is multiplied by y = 2 x - 1 alone, the previous ones by 2 y.
+    let (twice, fraction) = if last { (grid.twice, 1.0) } else { (2.0 * grid.twice, 2.0) };
     let [a, b, c] = grid.weights;
     let same = Recur {
         weights: [Lanes::splat(simd, a), Lanes::splat(simd, b), Lanes::splat(simd, c)],
         coefficient: Lanes::splat(simd, coefficient),
         twice: Lanes::splat(simd, twice),
-        share: Lanes::splat(simd, share),
+        fraction: Lanes::splat(simd, fraction),
         viscosity: Lanes::splat(simd, grid.viscosity),
     };
     let (stride, row) = (tile.stride(), tile.row(y));
@@ -185,17 +185,17 @@ pub(super) fn recur_row<S: Simd, const DIAGONAL: bool>(
         let v = &tile.velocities[at..at + n];
         if open {
             let (count, end) = ends::<S>(n);
-            let round = rows.part::<S, DIAGONAL>(simd, &end);
+            let around = rows.part::<S, DIAGONAL>(simd, &end);
             let older = Lanes::load(simd, &before[end.clone()]);
-            let value = same.value(round, Lanes::load(simd, &h[end.clone()]), older);
+            let value = same.value(around, Lanes::load(simd, &h[end.clone()]), older);
             let more = same.viscosity * Lanes::load(simd, &v[end.clone()]);
             let at_end = if last { value + more } else { value };
             let whole = rows.whole::<S>(count);
             let (heights, velocities) = (&Lanes::<S>::vectors(h)[..count], &Lanes::<S>::vectors(v)[..count]);
             let out = &mut Lanes::<S>::vectors_mut(before)[..count];
             for k in 0..count {
-                let round = whole.at::<DIAGONAL>(simd, k);
-                let value = same.value(round, Lanes::of(simd, &heights[k]), Lanes::of(simd, &out[k]));
+                let around = whole.at::<DIAGONAL>(simd, k);
+                let value = same.value(around, Lanes::of(simd, &heights[k]), Lanes::of(simd, &out[k]));
                 if last {
                     (value + same.viscosity * Lanes::of(simd, &velocities[k])).put(&mut out[k]);
                 } else {
@@ -207,7 +207,7 @@ pub(super) fn recur_row<S: Simd, const DIAGONAL: bool>(
             let bytes = &links.bytes[y * links.stride() + start..][..n];
             for i in 0..n {
                 let [sum, now] = rows.sum(i, bytes[i], grid.weights);
-                let value = puddle_recur(coefficient * h[i], twice * sum, share * now, before[i]);
+                let value = puddle_recur(coefficient * h[i], twice * sum, fraction * now, before[i]);
                 before[i] = if last { value + grid.viscosity * v[i] } else { value };
             }
         }
@@ -226,7 +226,7 @@ impl<S: Simd> Bad<S> {
         zero.any(zero.less(self.0))
     }
 
-    /// How many there are among the cells from `first` on that are in a range.
+    /// Number of bad cells among the cells from `first` that are in a range.
     #[inline(always)]
     fn count(self, first: usize, counted: &Range<usize>) -> u64 {
         let mut lanes = [0.0; 64];
@@ -239,7 +239,7 @@ impl<S: Simd> Bad<S> {
     }
 }
 
-/// Numbers that are the same in all lanes of a kick.
+/// Constants of a kick in all lanes.
 #[derive(Clone, Copy)]
 struct Kick<S: Simd> {
     weights: [Lanes<S>; 3],
@@ -253,11 +253,11 @@ struct Kick<S: Simd> {
 }
 
 impl<S: Simd> Kick<S> {
-    /// Height and velocity, and where one of the two was not finite.
+    /// Height and velocity, with a mask where one of the two was not finite.
     #[inline(always)]
     fn values(
         self,
-        [north, here, south]: Round<S>,
+        [north, here, south]: Neighborhood<S>,
         height: Lanes<S>,
         velocity: Lanes<S>,
         keep: Lanes<S>,
@@ -265,7 +265,7 @@ impl<S: Simd> Kick<S> {
         let sum = laplacian(north, here, south, self.weights);
         let velocity = (velocity - self.kick * sum) * keep.at_most(self.keep);
         let height = height + self.dt * velocity;
-        // Not finite is what is not below infinity: NaN is not.
+        // A number that is not below infinity is not finite; this includes NaN.
         let finite = self.zero.both(height.abs().less(self.infinite), velocity.abs().less(self.infinite));
         let bad = Bad(Lanes::select(finite, self.zero, self.one));
         ([self.settle(height), self.settle(velocity)], bad)
@@ -280,7 +280,7 @@ impl<S: Simd> Kick<S> {
     }
 }
 
-/// One row of new velocities and heights. Gives how many cells of some columns had to be reset.
+/// Computes one row of new velocities and heights. Returns the number of reset cells in some columns.
 #[expect(clippy::too_many_arguments, reason = "a row of a pass has that many inputs")]
 #[inline(always)]
 pub(super) fn kick_row<S: Simd, const DIAGONAL: bool>(
@@ -303,7 +303,7 @@ pub(super) fn kick_row<S: Simd, const DIAGONAL: bool>(
         zero: Lanes::splat(simd, 0.0),
         one: Lanes::splat(simd, 1.0),
         infinite: Lanes::splat(simd, f32::INFINITY),
-        below: Lanes::splat(simd, PUDDLE_SMALLEST.next_down()),
+        below: Lanes::splat(simd, PUDDLE_MIN.next_down()),
     };
     let (mut start, mut reset) = (columns.start, 0);
     for &(end, open) in &links.runs[y] {
@@ -318,19 +318,19 @@ pub(super) fn kick_row<S: Simd, const DIAGONAL: bool>(
         let keep_x = &keep[0][start..end];
         if open {
             let (count, end) = ends::<S>(n);
-            let round = rows.part::<S, DIAGONAL>(simd, &end);
+            let around = rows.part::<S, DIAGONAL>(simd, &end);
             let (height, velocity) = (Lanes::load(simd, &h[end.clone()]), Lanes::load(simd, &v[end.clone()]));
             let (at_end, bad_at_end) =
-                same.values(round, height, velocity, Lanes::load(simd, &keep_x[end.clone()]));
+                same.values(around, height, velocity, Lanes::load(simd, &keep_x[end.clone()]));
             let whole = rows.whole::<S>(count);
             let keeps = &Lanes::<S>::vectors(keep_x)[..count];
             let heights = &mut Lanes::<S>::vectors_mut(h)[..count];
             let velocities = &mut Lanes::<S>::vectors_mut(v)[..count];
             for k in 0..count {
-                let round = whole.at::<DIAGONAL>(simd, k);
+                let around = whole.at::<DIAGONAL>(simd, k);
                 let (height, velocity) = (Lanes::of(simd, &heights[k]), Lanes::of(simd, &velocities[k]));
                 let ([height, velocity], bad) =
-                    same.values(round, height, velocity, Lanes::of(simd, &keeps[k]));
+                    same.values(around, height, velocity, Lanes::of(simd, &keeps[k]));
                 height.put(&mut heights[k]);
                 velocity.put(&mut velocities[k]);
                 if bad.any() {
@@ -341,7 +341,7 @@ pub(super) fn kick_row<S: Simd, const DIAGONAL: bool>(
             height.store(&mut h[end.clone()]);
             velocity.store(&mut v[end.clone()]);
             if bad_at_end.any() {
-                // Those that are in a whole vector have been counted.
+                // Cells of a whole vector have been counted.
                 let left = start + (count * Lanes::<S>::COUNT).min(n);
                 reset += bad_at_end.count(start + end.start, &(counted.start.max(left)..counted.end));
             }

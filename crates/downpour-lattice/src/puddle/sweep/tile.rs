@@ -1,4 +1,4 @@
-//! A tile: a band's cells and the halo that their new values depend on, copied into buffers that stay in caches.
+//! Tile: cells of a band and the halo that their new values depend on, copied into buffers that fit into caches.
 
 use std::ops::Range;
 
@@ -8,11 +8,11 @@ use crate::puddle::storage::{Plane, State};
 /// A part of the lattice with its halo, in buffers that are one cell wider on each side.
 #[derive(Debug, Default)]
 pub(super) struct Tile {
-    /// Cells that are written, as columns and rows.
+    /// Columns and rows of the cells that are written.
     pub(super) inner: [Range<usize>; 2],
-    /// Cells that are read.
+    /// Columns and rows of the cells that are read.
     pub(super) outer: [Range<usize>; 2],
-    /// Cells of the lattice.
+    /// Number of cells of the lattice.
     size: [usize; 2],
     pub(super) halo: usize,
     pub(super) heights: Vec<f32>,
@@ -22,13 +22,13 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    pub(super) fn place(&mut self, grid: &PuddleGrid, links: &Links, inner: [Range<usize>; 2]) {
+    pub(super) fn set_range(&mut self, grid: &PuddleGrid, links: &Links, inner: [Range<usize>; 2]) {
         self.halo = (grid.degree * grid.steps) as usize;
         self.size = links.size;
         self.inner = inner;
         self.outer = self.reach(self.halo);
         let cells = self.stride() * (self.outer[1].len() + 2);
-        // What was there before is overwritten, or taken for no cell: no link leads to it.
+        // Old contents are overwritten, or belong to cells without links.
         for buffer in [&mut self.heights, &mut self.velocities, &mut self.now, &mut self.before] {
             if buffer.len() < cells {
                 buffer.resize(cells, 0.0);
@@ -54,7 +54,7 @@ impl Tile {
         self.outer[0].len() + 2
     }
 
-    /// Where the first outer cell of a row stands in the buffers.
+    /// Index of the first outer cell of a row in the buffers.
     pub(super) fn row(&self, y: usize) -> usize {
         (y - self.outer[1].start + 1) * self.stride() + 1
     }

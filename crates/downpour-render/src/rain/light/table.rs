@@ -40,7 +40,7 @@ impl DropLightTable {
                     entry[colour] = phase;
                     whole[k][colour] += phase;
                     if colour == 1 {
-                        entry[3] = path.place[k] as f32;
+                        entry[3] = path.exit_position[k] as f32;
                     }
                 }
             }
