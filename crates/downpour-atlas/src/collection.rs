@@ -58,8 +58,7 @@ impl StreakAtlas {
     /// Reads every `.ktx2` of a folder.
     ///
     /// # Errors
-    /// With the file's name: [`AtlasError::Unreadable`] if the folder or a file is missing or cannot be read (exit code
-    /// 5), [`AtlasError::InFile`] for what [`read_streaks`] says; else as [`StreakAtlas::from_sets`].
+    /// With the file's name: [`AtlasError::Unreadable`] if the folder or a file is missing or cannot be read, [`AtlasError::InFile`] for what [`read_streaks`] says; else as [`StreakAtlas::from_sets`].
     pub fn load(folder: &Path) -> Result<Self, AtlasError> {
         let unreadable =
             |path: &Path, reason: String| AtlasError::Unreadable { path: path.display().to_string(), reason };

@@ -104,7 +104,7 @@ fn lights() -> impl Iterator<Item = (i32, &'static [i32])> {
 /// Reads the database into one set for each oscillation; `rows` texels along each streak.
 ///
 /// # Errors
-/// [`AtlasError::Unreadable`] (exit code 5) that names the first missing files and counts the others;
+/// [`AtlasError::Unreadable`] that names the first missing files and counts the others;
 /// [`AtlasError::InFile`] if a picture or a list of brightnesses is not as described; what `files` says.
 pub fn import<F: ColumbiaFiles>(files: &mut F, width: u32, rows: u32) -> Result<Vec<StreakSet>, F::Error> {
     if !WIDTHS.contains(&width) {

@@ -56,18 +56,6 @@ pub enum AtlasError {
 }
 
 impl AtlasError {
-    /// The exit code of the command for this error: 5 a file that cannot be read, 1 a failure to encode, 2 other bad
-    /// input.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Encode(error) => error.exit_code(),
-            Self::Unreadable { .. } => 5,
-            Self::InFile { error, .. } => error.exit_code(),
-            _ => 2,
-        }
-    }
-
     pub(crate) fn in_file(self, path: &Path) -> Self {
         Self::InFile { path: path.display().to_string(), error: Box::new(self) }
     }

@@ -62,7 +62,7 @@ pub(crate) fn renderer_failure(error: downpour::RendererError, _: &crate::interr
 pub(crate) fn no_support() -> Failure {
     let message =
         "this build of downpour has no GPU support; build it with the feature `gpu`, or use --backend cpu";
-    Failure::new(crate::failure::GPU, message)
+    Failure::new(crate::exit_code::GPU, message)
 }
 
 /// Computes on the CPU: this build knows no other.
@@ -95,6 +95,7 @@ mod gpu {
     use downpour::specimen::gpu::GpuSpecimenError;
 
     use super::{Backend, BackendArguments};
+    use crate::exit_code::ExitCode as _;
     use crate::failure::{Failure, INPUT};
     use crate::interrupt::Interrupt;
     use crate::stream;
@@ -106,24 +107,6 @@ mod gpu {
     /// How long a software driver may be at one submission: it has the speed of a CPU, and its compiler alone may take half a
     /// minute. It does not hang as a device does, and signals end it.
     const SOFTWARE_TIMEOUT: Duration = Duration::from_secs(600);
-
-    impl From<GpuError> for Failure {
-        fn from(error: GpuError) -> Self {
-            Self::new(error.exit_code(), error.to_string())
-        }
-    }
-
-    impl From<GpuMaskError> for Failure {
-        fn from(error: GpuMaskError) -> Self {
-            Self::new(error.exit_code(), error.to_string())
-        }
-    }
-
-    impl From<GpuSpecimenError> for Failure {
-        fn from(error: GpuSpecimenError) -> Self {
-            Self::new(error.exit_code(), error.to_string())
-        }
-    }
 
     /// An error that may have come from a GPU.
     pub(crate) trait FromGpu: std::fmt::Display {

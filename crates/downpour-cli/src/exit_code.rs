@@ -30,10 +30,19 @@ pub(crate) const FILES: u8 = 5;
 #[cfg(unix)]
 pub(crate) const CANCELLED: u8 = 6;
 
+/// Message of `render` where no option names the streak atlas that the weather asks for.
+pub(crate) const NO_ATLAS: &str = "streaks.colour is \"atlas\" or \"atlas-random\", and no --streaks; allowed: with --streaks \
+                                   FOLDER, where the streak atlas is";
+
 /// An error with the code that the command ends with.
-pub(crate) trait ExitCode {
+pub(crate) trait ExitCode: ToString {
     /// The exit code: [`INPUT`], [`LIMIT`], [`GPU`], [`FILES`] or [`OTHER`].
     fn exit_code(&self) -> u8;
+
+    /// The message, in the words of the command.
+    fn message(&self) -> String {
+        self.to_string()
+    }
 }
 
 impl ExitCode for DropError {
@@ -77,7 +86,9 @@ impl ExitCode for AtlasError {
 impl ExitCode for WindError {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::TooManyCells { .. } | Self::TooManyParts { .. } | Self::KeyCount { found: 1.., .. } => LIMIT,
+            Self::TooManyCells { .. } | Self::TooManyParts { .. } | Self::KeyCount { found: 1.., .. } => {
+                LIMIT
+            }
             _ => INPUT,
         }
     }
@@ -178,12 +189,21 @@ impl ExitCode for RendererError {
             _ => INPUT,
         }
     }
+
+    fn message(&self) -> String {
+        match self {
+            // A library has no option of this name.
+            Self::NoAtlas => NO_ATLAS.to_owned(),
+            error => error.to_string(),
+        }
+    }
 }
 
 #[cfg(feature = "gpu")]
 mod gpu {
     use downpour::gpu::GpuError;
-    use downpour::lattice::gpu::{GpuGlassError, GpuPuddleError};
+    use downpour::lattice::gpu::glass::GpuGlassError;
+    use downpour::lattice::gpu::puddle::GpuPuddleError;
     use downpour::mask::gpu::GpuMaskError;
     use downpour::specimen::gpu::GpuSpecimenError;
     use downpour::trace::gpu::GpuPictureError;

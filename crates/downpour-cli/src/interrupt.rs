@@ -58,7 +58,7 @@ mod unix {
     use signal_hook::iterator::Signals;
 
     use super::Interrupt;
-    use crate::failure::CANCELLED;
+    use crate::exit_code::CANCELLED;
     use crate::stream;
 
     pub(super) fn listen(interrupt: Interrupt) -> io::Result<()> {

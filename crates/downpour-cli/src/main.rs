@@ -5,6 +5,7 @@
 
 mod backend;
 mod commands;
+mod exit_code;
 mod failure;
 mod interrupt;
 mod listing;

@@ -77,14 +77,3 @@ pub enum GpuError {
         reason: String,
     },
 }
-
-impl GpuError {
-    /// Exit code of the command for this error: 3 for an exceeded limit, 4 for every other GPU error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::OverLimit { .. } => 3,
-            _ => 4,
-        }
-    }
-}

@@ -30,14 +30,6 @@ pub enum LatticeError {
     },
 }
 
-impl LatticeError {
-    /// Exit code of the command for this error: 2, bad input.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        2
-    }
-}
-
 /// Returns `value` if it is within `range` (NaN is not). The message shows the value times `factor`, in `unit`.
 pub(crate) fn in_range(
     quantity: &'static str,

@@ -66,17 +66,3 @@ pub enum MaskError {
         error: Box<MaskError>,
     },
 }
-
-impl MaskError {
-    /// The exit code of the command for this error: 3 over a limit, 2 other bad input, 1 a failure
-    /// to encode.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Size { found, most, .. } if found > most => 3,
-            Self::Encode { .. } => 1,
-            Self::InFile { error, .. } => error.exit_code(),
-            _ => 2,
-        }
-    }
-}

@@ -20,17 +20,6 @@ pub enum GpuMaskError {
     Gpu(#[from] GpuError),
 }
 
-impl GpuMaskError {
-    /// The exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Mask(error) => error.exit_code(),
-            Self::Gpu(error) => error.exit_code(),
-        }
-    }
-}
-
 /// The uniform of the drop's kernel. The same layout as `MaskTracedDrop` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]

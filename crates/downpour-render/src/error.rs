@@ -43,15 +43,3 @@ pub enum RenderError {
         reason: String,
     },
 }
-
-impl RenderError {
-    /// The exit code of the command for this error: 3 over a limit, 2 other bad input.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Size { found, most, .. } if found.iter().any(|n| n > most) => 3,
-            Self::Encode { .. } => 1,
-            _ => 2,
-        }
-    }
-}

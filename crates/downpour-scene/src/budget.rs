@@ -108,7 +108,7 @@ mod tests {
         let mut budget = Budget { bytes: 100, ..Budget::default() };
         budget.take_bytes(60, "a").unwrap();
         let error = budget.take_bytes(41, "b").unwrap_err();
-        assert_eq!(error.exit_code(), 3);
+        assert!(matches!(error, SceneError::OverLimit(_)));
         assert_eq!(error.fault().found, "41 bytes needed");
         assert_eq!(error.fault().allowed, "40 bytes left in the budget");
         budget.take_bytes(40, "c").unwrap();

@@ -108,22 +108,6 @@ impl SceneError {
         self
     }
 
-    /// The process exit code that a command ends with: 2 bad input, 3 over a limit, 5 file not readable.
-    ///
-    /// ```
-    /// use downpour_scene::{Budget, gltf::read_triangles};
-    /// let error = read_triangles("no such.glb".as_ref(), &mut Budget::default()).unwrap_err();
-    /// assert_eq!(error.exit_code(), 5);
-    /// ```
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::BadInput(_) => 2,
-            Self::OverLimit(_) => 3,
-            Self::Unreadable(_) => 5,
-        }
-    }
-
     /// The parts of the message.
     #[must_use]
     pub fn fault(&self) -> &Fault {

@@ -3,11 +3,13 @@
 //! Alone in its binary, so that the peak of the process's memory is that of these files.
 
 mod effort;
+mod exit_code;
 
 use downpour_scene::beneath::NoFiles;
 use downpour_scene::gltf::{read_scene_from_bytes, read_triangles_from_bytes};
 use downpour_scene::{Budget, SceneError};
 use effort::measured;
+use exit_code::ExitCode as _;
 use std::fs;
 use std::time::Duration;
 

@@ -2,6 +2,7 @@
 //! promises of a model. `DOWNPOUR_MUTATIONS` sets how many are tried.
 
 mod document;
+mod exit_code;
 #[allow(dead_code, reason = "where its data stands is for other tests")]
 #[path = "scene/figure.rs"]
 mod figure;
@@ -10,6 +11,7 @@ use document::{check, check_message, check_scene, floats, glb, modes, spoiled, t
 use downpour_math::rng::{rng_draw, seed_words};
 use downpour_scene::gltf::{read_scene_from_bytes, read_triangles_from_bytes};
 use downpour_scene::{Budget, SceneError};
+use exit_code::ExitCode as _;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,11 +1,13 @@
 //! Files that are no files, links that lead away, and paths that cannot be.
 
 mod document;
+mod exit_code;
 
 use document::{check_message, data_uri, floats, spoiled, triangle, triangle_of};
 use downpour_scene::beneath::{Files, NoFiles, OpenFile, RelativePath};
 use downpour_scene::gltf::{MAX_FILE, read_triangles, read_triangles_from_bytes};
 use downpour_scene::{Budget, SceneError};
+use exit_code::ExitCode as _;
 use serde_json::json;
 use std::cell::Cell;
 use std::collections::BTreeMap;

@@ -1,11 +1,13 @@
 //! PNG, JPEG and Radiance HDR: what is read, and rows P1 to P7 of the reliability plan.
 
 mod effort;
+mod exit_code;
 mod picture_files;
 
 use downpour_scene::picture::{Picture, Pixels, decode};
 use downpour_scene::{Budget, SceneError, WarningKind};
 use effort::measured;
+use exit_code::ExitCode as _;
 use image::{DynamicImage, ImageFormat};
 use picture_files::{hdr, png, png_chunk, zlib};
 use std::io::Cursor;

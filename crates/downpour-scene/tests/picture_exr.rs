@@ -1,11 +1,13 @@
 //! OpenEXR: what is read, and rows E1 to E16 of the reliability plan.
 
 mod effort;
+mod exit_code;
 mod picture_files;
 
 use downpour_scene::picture::{Picture, Pixels, decode};
 use downpour_scene::{Budget, SceneError, WarningKind};
 use effort::measured;
+use exit_code::ExitCode as _;
 use exr::prelude::*;
 use picture_files::{ExrFile, exr_attribute, zlib};
 use std::io::Cursor;

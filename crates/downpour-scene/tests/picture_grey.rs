@@ -1,7 +1,9 @@
 //! Grey pictures of 16 bits.
 
+mod exit_code;
 use downpour_scene::Budget;
 use downpour_scene::picture::decode_grey16;
+use exit_code::ExitCode as _;
 use image::{DynamicImage, ImageBuffer, ImageFormat, Luma, Rgb};
 use std::io::Cursor;
 

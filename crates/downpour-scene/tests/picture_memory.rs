@@ -3,11 +3,13 @@
 //! Alone in its binary, so that the peak of the process's memory is that of these files.
 
 mod effort;
+mod exit_code;
 mod picture_files;
 
 use downpour_scene::picture::decode;
 use downpour_scene::{Budget, SceneError};
 use effort::measured;
+use exit_code::ExitCode as _;
 use picture_files::{ExrFile, hdr, png, png_chunk, zlib};
 use std::fs;
 use std::time::Duration;

@@ -1,5 +1,6 @@
 //! Sky maps: directions, means, the sun.
 
+mod exit_code;
 mod picture_files;
 
 use downpour_scene::picture::{Picture, Pixels};
@@ -7,6 +8,7 @@ use downpour_scene::sky::{
     BRIGHTEST, SUN_THRESHOLD, SkyMap, direction_to_uv, from_picture, read_sky, uv_to_direction,
 };
 use downpour_scene::{Budget, WarningKind};
+use exit_code::ExitCode as _;
 use picture_files::hdr;
 
 fn map(width: u32, height: u32, colour: impl Fn(u32, u32) -> [f32; 3]) -> SkyMap {

@@ -38,10 +38,4 @@ impl SimError {
     pub(crate) fn memory(drops: u64) -> Self {
         Self::Memory { drops, gib: (drops * BYTES_PER_DROP) as f64 / f64::from(1 << 30) }
     }
-
-    /// Exit code of the command for this error: 3 for memory, 2 for bad input.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        if matches!(self, Self::Memory { .. }) { 3 } else { 2 }
-    }
 }

@@ -51,16 +51,3 @@ pub enum SpecimenError {
     #[error(transparent)]
     Render(#[from] RenderError),
 }
-
-impl SpecimenError {
-    /// The exit code of the command for this error: 3 over a limit, 2 other bad input.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Size { found, most, .. } if found > most => 3,
-            Self::Mask(error) => error.exit_code(),
-            Self::Render(error) => error.exit_code(),
-            _ => 2,
-        }
-    }
-}

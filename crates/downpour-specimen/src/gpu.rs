@@ -31,17 +31,6 @@ pub enum GpuSpecimenError {
     Gpu(#[from] GpuError),
 }
 
-impl GpuSpecimenError {
-    /// The exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Specimen(error) => error.exit_code(),
-            Self::Gpu(error) => error.exit_code(),
-        }
-    }
-}
-
 /// The camera in a uniform. The same layout as `SpecimenCamera` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]

@@ -229,16 +229,16 @@ fn what_cannot_be_is_refused() {
     let shape = drop(2.0);
     let fine = streak(0.01, 0.0);
     assert_eq!(fine.check(&shape), Ok(()));
-    for (bad, word, code) in [
-        (SpecimenOptions { exposure_s: -0.01, ..fine }, "exposure is -0.01 s", 2),
-        (SpecimenOptions { exposure_s: f64::NAN, ..fine }, "exposure is NaN", 2),
-        (SpecimenOptions { exposure_s: 1.5, ..fine }, "0 to 1", 2),
-        (SpecimenOptions { instants: 0, ..fine }, "instants of an exposure is 0", 2),
-        (SpecimenOptions { instants: 4097, ..fine }, "1 to 4096", 3),
-        (SpecimenOptions { phase: [f64::NAN, 0.0], ..fine }, "phase", 2),
-        (SpecimenOptions { pitch: 1.57, exposure_s: 0.5, ..fine }, "from the path of the drop", 2),
+    for (bad, word) in [
+        (SpecimenOptions { exposure_s: -0.01, ..fine }, "exposure is -0.01 s"),
+        (SpecimenOptions { exposure_s: f64::NAN, ..fine }, "exposure is NaN"),
+        (SpecimenOptions { exposure_s: 1.5, ..fine }, "0 to 1"),
+        (SpecimenOptions { instants: 0, ..fine }, "instants of an exposure is 0"),
+        (SpecimenOptions { instants: 4097, ..fine }, "1 to 4096"),
+        (SpecimenOptions { phase: [f64::NAN, 0.0], ..fine }, "phase"),
+        (SpecimenOptions { pitch: 1.57, exposure_s: 0.5, ..fine }, "from the path of the drop"),
     ] {
         let error = bad.check(&shape).unwrap_err();
-        assert!(error.to_string().contains(word) && error.exit_code() == code, "{error}");
+        assert!(error.to_string().contains(word), "{error}");
     }
 }

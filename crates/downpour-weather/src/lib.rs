@@ -156,8 +156,8 @@ impl Weather {
     /// The budget must leave room for the text; nothing of it is spent, since a `Weather` is small.
     ///
     /// # Errors
-    /// [`SceneError`]: the file cannot be read (exit code 5), is no regular file, no UTF-8 or no valid weather (2),
-    /// or is too long (3).
+    /// [`SceneError::Unreadable`]: the file cannot be read; [`SceneError::BadInput`]: it is no regular file, no UTF-8 or no valid
+    /// weather; [`SceneError::OverLimit`]: it is too long.
     pub fn read(path: &Path, budget: &mut Budget) -> Result<Self, SceneError> {
         let name = shown_path(path);
         let read = || {

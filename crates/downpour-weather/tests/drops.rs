@@ -1,8 +1,11 @@
 //! What drops look like, as weather files say it.
 
+#[path = "../../downpour-scene/tests/exit_code/mod.rs"]
+mod exit_code;
 use downpour_drop::shape::ShapeTable;
 use downpour_scene::Budget;
 use downpour_weather::{RainDropShape, RainRefraction, Weather, load};
+use exit_code::ExitCode as _;
 use std::collections::BTreeMap;
 
 fn refused(text: &str) -> String {

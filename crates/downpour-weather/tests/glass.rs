@@ -1,7 +1,10 @@
 //! The pane of a weather file: every key, and what is refused.
 
+#[path = "../../downpour-scene/tests/exit_code/mod.rs"]
+mod exit_code;
 use downpour_lattice::glass::{GlassWiperMotion, GlassWornBand};
 use downpour_weather::{PaneFocus, PaneFresnel, PaneShadow, Weather};
+use exit_code::ExitCode as _;
 
 const ALL: &str = r#"
 [rain]

@@ -1,11 +1,14 @@
 //! A weather with all its files: one scene, one sky, one sun.
 
+#[path = "../../downpour-scene/tests/exit_code/mod.rs"]
+mod exit_code;
 #[path = "../../downpour-scene/tests/picture_files/mod.rs"]
 mod picture_files;
 
 use downpour_scene::scene::{LightKind, Play};
 use downpour_scene::{Budget, SceneError};
 use downpour_weather::{Roots, Weather, load};
+use exit_code::ExitCode as _;
 use glam::Vec3;
 use picture_files::hdr;
 use std::collections::BTreeMap;

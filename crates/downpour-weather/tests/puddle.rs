@@ -1,7 +1,10 @@
 //! The puddles of a weather file: every key, and what is refused.
 
+#[path = "../../downpour-scene/tests/exit_code/mod.rs"]
+mod exit_code;
 use downpour_scene::Budget;
 use downpour_weather::{PuddleShape, Roots, Weather, load};
+use exit_code::ExitCode as _;
 
 const ALL: &str = r"
 [[puddle]]

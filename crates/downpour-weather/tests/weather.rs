@@ -2,6 +2,8 @@
 
 #[path = "../../downpour-scene/tests/effort/mod.rs"]
 mod effort;
+#[path = "../../downpour-scene/tests/exit_code/mod.rs"]
+mod exit_code;
 
 use downpour_drop::distribution::DropSizeLaw;
 use downpour_drop::fall_speed::FallSpeedModel;
@@ -11,6 +13,7 @@ use downpour_weather::{
     Repeat, Sky, SkySource, SunSource, Weather,
 };
 use effort::measured;
+use exit_code::ExitCode as _;
 use glam::{DQuat, DVec3};
 use std::fmt::Write as _;
 use std::time::Duration;

@@ -1,8 +1,11 @@
 //! The wind of a weather file: every key, keys over time, and what is refused.
 
+#[path = "../../downpour-scene/tests/exit_code/mod.rs"]
+mod exit_code;
 use downpour_scene::SceneError;
 use downpour_weather::{Weather, WindBox};
 use downpour_wind::{Gusts, Turbulence, Wind, WindCore, WindForm, WindPrimitive, WindUniform};
+use exit_code::ExitCode as _;
 use glam::{DVec3, Vec3};
 
 fn parse(text: &str) -> Result<Weather, SceneError> {

@@ -105,18 +105,6 @@ pub enum WindError {
     },
 }
 
-impl WindError {
-    /// Exit code of the command for this error: 3 for a limit, 2 for bad input.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::TooManyCells { .. } | Self::TooManyParts { .. } => 3,
-            Self::KeyCount { found: 1.., .. } => 3,
-            _ => 2,
-        }
-    }
-}
-
 /// [`in_range`] for f64.
 pub(crate) fn in_range_f64(
     quantity: &'static str,

@@ -33,18 +33,6 @@ pub enum GpuWindError {
     Gpu(#[from] GpuError),
 }
 
-impl GpuWindError {
-    /// Exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Wind(error) => error.exit_code(),
-            Self::Capacity { .. } => 3,
-            Self::Gpu(error) => error.exit_code(),
-        }
-    }
-}
-
 /// Wind over a grid, filled by the kernel `main_wind_field`: [`WindField`](crate::WindField) on a GPU.
 #[derive(Debug)]
 pub struct GpuWindField {

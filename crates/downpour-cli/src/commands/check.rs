@@ -1,6 +1,7 @@
 //! `downpour check`: what `render` would do, without doing it.
 
 use clap::Args;
+use downpour::RendererError;
 use downpour::render::glass::WetPane;
 use downpour::render::rain::drop_model;
 use downpour::scene::{Budget, scene::Texture};
@@ -13,7 +14,7 @@ use downpour::weather::Observer;
 use super::input::{Input, InputArguments, say_missing};
 use super::render::BYTES_PER_PIXEL;
 use super::streaks::{Streaks, StreaksArgument};
-use crate::failure::{Failure, no_atlas};
+use crate::failure::Failure;
 use crate::listing::{Datum, Entry};
 use crate::progress::doing;
 use crate::{listing, stream};
@@ -56,7 +57,7 @@ impl CheckArguments {
         entries.push(Entry::new("memory_mib", "memory, about", Datum::Computed(mebibytes(bytes), 3), "MiB"));
         stream::print(&if self.json { listing::json(&entries) } else { listing::text(&entries) })?;
         match streaks {
-            Streaks::Nowhere => Err(no_atlas()),
+            Streaks::Nowhere => Err(RendererError::NoAtlas.into()),
             Streaks::Unwanted | Streaks::Atlas(_) => Ok(()),
         }
     }

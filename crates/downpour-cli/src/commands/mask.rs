@@ -12,6 +12,7 @@ use downpour::scene::{Budget, gltf::read_triangles};
 
 use crate::backend::{BackendArguments, compute};
 use crate::commands::say_warnings;
+use crate::exit_code::ExitCode as _;
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
 use crate::output::Place;

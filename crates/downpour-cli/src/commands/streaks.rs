@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use downpour::RendererError;
 use downpour::atlas::StreakAtlas;
 use downpour::render::rain::light::{DropLightForm, DropLightOptions};
 use downpour::weather::Weather;
 
-use crate::failure::{Failure, no_atlas};
+use crate::failure::Failure;
 
 /// Where the streak atlas is.
 #[derive(Debug, Args)]
@@ -47,11 +48,11 @@ impl Streaks {
     /// The atlas to render with.
     ///
     /// # Errors
-    /// [`no_atlas`].
+    /// [`RendererError::NoAtlas`].
     pub(crate) fn atlas(self) -> Result<Option<StreakAtlas>, Failure> {
         match self {
             Self::Unwanted => Ok(None),
-            Self::Nowhere => Err(no_atlas()),
+            Self::Nowhere => Err(RendererError::NoAtlas.into()),
             Self::Atlas(atlas) => Ok(Some(*atlas)),
         }
     }

@@ -63,14 +63,6 @@ pub enum GlassError {
     Rain(#[from] downpour_drop::DropError),
 }
 
-impl GlassError {
-    /// Exit code of the command for this error: 2, bad input.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        2
-    }
-}
-
 /// Checks that `value` is within the range (NaN is not); `scale` converts it to `unit` for the message.
 pub(super) fn in_range(
     quantity: &'static str,

@@ -27,17 +27,6 @@ pub enum GpuGlassError {
     Gpu(#[from] GpuError),
 }
 
-impl GpuGlassError {
-    /// Exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Glass(error) => error.exit_code(),
-            Self::Gpu(error) => error.exit_code(),
-        }
-    }
-}
-
 #[derive(Debug)]
 struct Kernels {
     claim: ComputeKernel,

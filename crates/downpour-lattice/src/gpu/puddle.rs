@@ -30,17 +30,6 @@ pub enum GpuPuddleError {
     Gpu(#[from] GpuError),
 }
 
-impl GpuPuddleError {
-    /// Exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Lattice(error) => error.exit_code(),
-            Self::Gpu(error) => error.exit_code(),
-        }
-    }
-}
-
 /// A puddle on a GPU.
 #[derive(Debug)]
 pub struct GpuPuddle {

@@ -26,15 +26,3 @@ pub enum PaneError {
         pitch_deg: f64,
     },
 }
-
-impl PaneError {
-    /// The exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Glass(error) => error.exit_code(),
-            Self::Render(error) => error.exit_code(),
-            Self::EdgeOn { .. } => 2,
-        }
-    }
-}

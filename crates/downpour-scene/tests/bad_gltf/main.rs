@@ -5,10 +5,13 @@ mod accessors;
 mod buffers;
 #[path = "../document/mod.rs"]
 mod document;
+#[path = "../exit_code/mod.rs"]
+mod exit_code;
 mod tree;
 
 use document::{check, check_message, data_uri, floats, spoiled, triangle, triangle_of};
 use downpour_scene::{Budget, WarningKind, gltf::read_triangles};
+use exit_code::ExitCode as _;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;

@@ -2,6 +2,7 @@
 
 use crate::document::broken::{self, Broken};
 use crate::document::{spoiled, with};
+use crate::exit_code::ExitCode as _;
 use crate::figure::{TIMES, TURNS, WEIGHTS, bytes, figure, figure_of};
 use crate::{png_uri, read};
 use downpour_scene::beneath::NoFiles;

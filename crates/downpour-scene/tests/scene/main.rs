@@ -4,6 +4,8 @@
 mod bad;
 #[path = "../document/mod.rs"]
 mod document;
+#[path = "../exit_code/mod.rs"]
+mod exit_code;
 mod figure;
 mod materials;
 mod moving;

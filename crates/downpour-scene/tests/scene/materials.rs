@@ -1,6 +1,7 @@
 //! Materials, textures, samplers, images, lights.
 
 use crate::document::{floats, spoiled, triangle_of, with};
+use crate::exit_code::ExitCode as _;
 use crate::{good, png, png_uri, warned};
 use downpour_scene::gltf::{read_scene, read_scene_from_bytes};
 use downpour_scene::picture::Pixels;

@@ -1,6 +1,7 @@
 //! Vertex data: normals, tangents, colours, texture coordinates; and how instances are mirrored.
 
 use crate::document::{data_uri, floats, spoiled, triangle, triangle_of, with};
+use crate::exit_code::ExitCode as _;
 use crate::{good, read, warned};
 use downpour_scene::gltf::read_scene_from_bytes;
 use downpour_scene::scene::{Primitive, Scene, skin_primitive};

@@ -4,6 +4,8 @@
 
 #[path = "../document/mod.rs"]
 mod document;
+#[path = "../exit_code/mod.rs"]
+mod exit_code;
 mod samples;
 mod skies;
 mod validator;

@@ -4,6 +4,7 @@
 //! what is read; and what it calls valid is read.
 
 use crate::document::{check, check_message, check_scene, data_uri};
+use crate::exit_code::ExitCode as _;
 use crate::folder;
 use downpour_scene::gltf::{read_scene, read_triangles};
 use downpour_scene::{Budget, WarningKind};

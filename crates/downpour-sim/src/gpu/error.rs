@@ -15,14 +15,3 @@ pub enum GpuSimError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
-
-impl GpuSimError {
-    /// Exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Sim(error) => error.exit_code(),
-            Self::Gpu(error) => error.exit_code(),
-        }
-    }
-}

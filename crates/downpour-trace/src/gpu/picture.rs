@@ -29,17 +29,6 @@ pub enum GpuPictureError {
     Gpu(#[from] GpuError),
 }
 
-impl GpuPictureError {
-    /// The exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Render(error) => error.exit_code(),
-            Self::Gpu(error) => error.exit_code(),
-        }
-    }
-}
-
 /// The pipelines of a picture: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
 pub struct PictureRenderer {

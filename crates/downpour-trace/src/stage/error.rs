@@ -38,15 +38,3 @@ pub enum StageError {
         mebibytes: u64,
     },
 }
-
-impl StageError {
-    /// The exit code of the command for this error: 3 over a limit, 2 other bad input.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Render(error) => error.exit_code(),
-            Self::TooFar { .. } => 2,
-            _ => 3,
-        }
-    }
-}

@@ -82,28 +82,6 @@ pub enum RendererError {
 }
 
 impl RendererError {
-    /// The exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Scene(error) => error.exit_code(),
-            Self::Stage(error) => error.exit_code(),
-            Self::Shower(error) => error.exit_code(),
-            Self::Pane(error) => error.exit_code(),
-            Self::Glass(error) => error.exit_code(),
-            Self::Puddle(PuddleError::Lattice(error)) => error.exit_code(),
-            Self::Mask(error) => error.exit_code(),
-            Self::Render(error) => error.exit_code(),
-            Self::Puddle(_) | Self::Drop(_) | Self::Name { .. } | Self::Time { .. } | Self::NoAtlas => 2,
-            Self::NoGpuSupport => 4,
-            Self::Write { .. } => 5,
-            #[cfg(feature = "wgpu")]
-            Self::Gpu(error) => error.exit_code(),
-            #[cfg(feature = "wgpu")]
-            Self::Picture(error) => error.exit_code(),
-        }
-    }
-
     /// Error of the GPU, if it was the GPU.
     #[cfg(feature = "wgpu")]
     #[must_use]

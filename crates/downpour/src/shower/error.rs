@@ -43,18 +43,3 @@ pub enum ShowerError {
     #[error(transparent)]
     Pane(#[from] PaneError),
 }
-
-impl ShowerError {
-    /// The exit code of the command for this error.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Sim(error) => error.exit_code(),
-            Self::Wind(error) => error.exit_code(),
-            Self::Render(error) => error.exit_code(),
-            Self::Stage(error) => error.exit_code(),
-            Self::Pane(error) => error.exit_code(),
-            Self::NotUniform | Self::DragByStep | Self::Drop(_) => 2,
-        }
-    }
-}

@@ -118,7 +118,7 @@ mod gpu {
                 GpuGlassError::Glass(error) => error.into(),
                 GpuGlassError::Gpu(error) => Self::Gpu(error),
                 // Other kinds of errors may come.
-                error => Self::Failed(crate::failure::Failure::new(error.exit_code(), error.to_string())),
+                error => Self::Failed(error.into()),
             }
         }
     }
@@ -128,7 +128,7 @@ mod gpu {
             match error {
                 GpuPuddleError::Lattice(error) => error.into(),
                 GpuPuddleError::Gpu(error) => Self::Gpu(error),
-                error => Self::Failed(crate::failure::Failure::new(error.exit_code(), error.to_string())),
+                error => Self::Failed(error.into()),
             }
         }
     }
