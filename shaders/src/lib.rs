@@ -58,6 +58,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::rain::MODULES,
         render::scene::MODULES,
         render::specimen::MODULES,
+        render::table::MODULES,
         sim::collision::MODULES,
         sim::enter::MODULES,
         sim::step::MODULES,

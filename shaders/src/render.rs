@@ -11,3 +11,4 @@ pub mod rain;
 pub mod scatter;
 pub mod scene;
 pub mod specimen;
+pub mod table;

@@ -31,5 +31,5 @@ pub use frame::{GlassPicture, GlassPictureFrame};
 pub use light::GlassPictureLight;
 pub use meet::glass_picture_spline;
 pub use pane::{WetPane, pane_plane};
-pub use shade::{PaneShade, PaneShadows};
+pub use shade::{PaneShade, PaneShadows, RenderPane};
 pub use water::GlassPictureDrop;

@@ -38,8 +38,8 @@ use downpour_render::rain::{
     DropMasks, DropsDrop, EnvironmentMap, Exposure, Rain, RainOptions, StreakSamples,
 };
 use downpour_trace::builder::SceneBuilder;
+use downpour_trace::capture::trace_environment;
 use downpour_trace::data::{RenderFrame, SceneData};
-use downpour_trace::environment::trace_environment;
 use downpour_trace::picture::picture_frame;
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
+use downpour_render::glass::PaneShade;
 use downpour_render::light::{self, Light};
 use downpour_shaders::render::scene::{SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS, SKYLIGHT_RADIUS};
 use glam::Vec3;
@@ -114,6 +115,8 @@ pub struct SceneData {
     pub puddle_count: u32,
     /// Row where the pane begins that throws shadows; 0: none.
     pub pane: u32,
+    /// The pane with its corner, right, down and outward, which is laid anew where other rows move.
+    pub(crate) shade: Option<(Arc<PaneShade>, [Vec3; 4])>,
     /// Texels of all levels of the sky.
     pub sky: Arc<Vec<[f32; 4]>>,
     /// Width, height and first texel of each level of the sky.

@@ -3,7 +3,7 @@
 //! - [`builder`], [`data`]: a scene as the buffers that the shaders read; [`sky_light`] prepares the sky;
 //! - [`scene`], [`path`], [`scatter`], [`surface`], [`texture`], [`sky`], [`brdf`], `gpu`: what a ray of the camera sees, and the
 //!   light that comes there; [`skylight`] filters it;
-//! - [`environment`]: radiance from every direction around the eye, for the drops;
+//! - [`capture`]: radiance from every direction around the eye, for the drops;
 //! - [`puddle`], [`wet_ground`]: water that stands on the ground; [`pane_shadow`]: the light through a wet pane;
 //! - [`stage`]: the scene and the eye of a weather at a time;
 //! - [`picture`]: the plate of a scene, and the rain of [`downpour_render`] before it.
@@ -11,8 +11,8 @@
 mod assemble;
 pub mod brdf;
 pub mod builder;
+pub mod capture;
 pub mod data;
-pub mod environment;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod material;

@@ -1,6 +1,9 @@
-//! Materials and textures as rows of the scene's table.
+//! Materials and textures as rows of the scene's table. Twin of `shaders/wgsl/render/material.wgsl`.
 
 use downpour_shaders::render::scene::{SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_SLOT_ROWS};
+use glam::{Vec3, Vec4};
+
+use crate::data::SceneData;
 
 pub(crate) const MATERIAL_ROWS: usize = SCENE_MATERIAL_ROWS as usize;
 const SLOT_ROWS: usize = SCENE_SLOT_ROWS as usize;
@@ -95,6 +98,89 @@ impl TextureSlot {
             [self.offset[0].to_bits(), self.offset[1].to_bits(), self.uv_set, self.flags],
             [self.width, self.height, self.first, self.levels],
         ]
+    }
+}
+
+/// A material as the shaders read it: rows of a table. Twin of the WGSL struct of the same name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderMaterial {
+    /// Base color, linear, and alpha.
+    pub base: Vec4,
+    /// Emitted radiance.
+    pub emission: Vec3,
+    /// 0 dielectric, 1 metal.
+    pub metallic: f32,
+    /// 0 mirror, 1 rough.
+    pub roughness: f32,
+    /// Strength of the normal map.
+    pub normal_scale: f32,
+    /// Strength of the occlusion map.
+    pub occlusion_strength: f32,
+    /// Below this alpha a masked material has a hole.
+    pub cutoff: f32,
+    /// `SCENE_MASKED`, `SCENE_BLENDED`, `SCENE_DOUBLE_SIDED`, `SCENE_UNLIT`.
+    pub flags: u32,
+    /// Fraction of light that passes a thin dielectric.
+    pub transmission: f32,
+    /// Refractive index.
+    pub ior: f32,
+    /// Rows of the slots of base color, metallic-roughness, normal and emission; `SCENE_NONE` for none.
+    pub maps: [u32; 4],
+    /// Rows of the slots of occlusion and transmission.
+    pub more: [u32; 2],
+}
+
+/// A texture slot as the shaders read it. Twin of the WGSL struct of the same name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderSlot {
+    /// Rows of the 2 x 2 part of the coordinates' transform.
+    pub matrix: [f32; 4],
+    /// Offset of the coordinates.
+    pub offset: [f32; 2],
+    /// Set of coordinates, 0 or 1.
+    pub uv_set: u32,
+    /// `SCENE_ROOTED`, `SCENE_REPEAT_U` and its like.
+    pub flags: u32,
+    /// Width, height, first texel, and levels.
+    pub image: [u32; 4],
+}
+
+impl SceneData {
+    /// Reads a material.
+    pub(crate) fn material_load(&self, index: u32) -> RenderMaterial {
+        let first = (index * SCENE_MATERIAL_ROWS) as usize;
+        let rows = &self.table[first..first + MATERIAL_ROWS];
+        let numbers = |k: usize| Vec4::from(rows[k].map(f32::from_bits));
+        let (glow, look) = (numbers(1), numbers(2));
+        let [flags, transmission, ior, _] = rows[3];
+        RenderMaterial {
+            base: numbers(0),
+            emission: glow.truncate(),
+            metallic: glow.w,
+            roughness: look.x,
+            normal_scale: look.y,
+            occlusion_strength: look.z,
+            cutoff: look.w,
+            flags,
+            transmission: f32::from_bits(transmission),
+            ior: f32::from_bits(ior),
+            maps: rows[4],
+            more: [rows[5][0], rows[5][1]],
+        }
+    }
+
+    /// Reads a texture slot.
+    pub(crate) fn material_slot(&self, row: u32) -> RenderSlot {
+        let first = row as usize;
+        let rows = &self.table[first..first + SLOT_ROWS];
+        let [x, y, uv_set, flags] = rows[1];
+        RenderSlot {
+            matrix: rows[0].map(f32::from_bits),
+            offset: [x, y].map(f32::from_bits),
+            uv_set,
+            flags,
+            image: rows[2],
+        }
     }
 }
 

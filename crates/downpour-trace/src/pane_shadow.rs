@@ -9,33 +9,56 @@
 //! Limits: all drops have the mean focal length; light of the sky has no shadows of drops; the reflections of the drops'
 //! surfaces are those of dry glass.
 
+use std::sync::Arc;
+
 use downpour_drop::optics::optics_fresnel;
 use downpour_math::ops;
-use downpour_render::glass::{PaneError, PaneShade, WetPane};
+use downpour_render::glass::{PaneError, PaneShade, RenderPane, WetPane};
 use downpour_shaders::render::glass::GLASS_PICTURE_INDEX;
 use downpour_shaders::render::pane_shadow::{PANE_SHADOW_LEVELS, PANE_SHADOW_PEAK, PANE_SHADOW_TATARCHUK};
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3};
 
 use crate::data::SceneData;
 use crate::scene::SceneView;
 use crate::stage::Stage;
 
 impl SceneData {
-    /// Removes the pane, if there is one: its rows are the last of the table.
-    pub(crate) fn clear_pane(&mut self) {
+    /// Removes the pane, if there is one, and returns it: its rows are the last of the table.
+    pub(crate) fn take_pane(&mut self) -> Option<(Arc<PaneShade>, [Vec3; 4])> {
         if self.pane > 0 {
             self.table.truncate(self.pane as usize);
             self.pane = 0;
         }
+        self.shade.take()
     }
 
     /// Sets the pane before the lamps, in place of the one that is there; `axes`: its corner, right, down and outward, in the
-    /// scene's coordinates. Puddles are set before.
-    pub fn set_pane(&mut self, shade: &PaneShade, axes: [Vec3; 4]) {
-        self.clear_pane();
+    /// scene's coordinates.
+    pub fn set_pane(&mut self, shade: &Arc<PaneShade>, axes: [Vec3; 4]) {
+        self.take_pane();
         self.pane = self.table.len() as u32;
         let rows = shade.rows(self.pane, axes);
         self.table.extend(rows);
+        self.shade = Some((Arc::clone(shade), axes));
+    }
+
+    /// Reads the pane.
+    fn pane_load(&self) -> RenderPane {
+        let first = self.pane as usize;
+        let mut rows = [[0; 4]; PANE_SHADOW_LEVELS as usize];
+        rows.copy_from_slice(&self.table[first..first + PANE_SHADOW_LEVELS as usize]);
+        RenderPane::pane_load(&rows)
+    }
+
+    /// Reads columns, rows and first texel of a level.
+    fn pane_level(&self, level: u32) -> [u32; 3] {
+        let [columns, rows, first, _] = self.table[(self.pane + PANE_SHADOW_LEVELS + level) as usize];
+        [columns, rows, first]
+    }
+
+    /// Reads eight texels.
+    fn pane_texels(&self, row: u32) -> [u32; 4] {
+        self.table[row as usize]
     }
 }
 
@@ -67,32 +90,25 @@ pub fn is_lit_through(pane: &WetPane, stage: &Stage) -> bool {
 pub fn set_pane(pane: &WetPane, stage: &mut Stage) -> Result<(), PaneError> {
     let Some(shade) = pane.shade()? else { return Ok(()) };
     let axes = pane.axes(&stage.viewpoint)?;
-    stage.data.set_pane(&shade, axes.map(DVec3::as_vec3));
+    stage.data.set_pane(&Arc::new(shade), axes.map(DVec3::as_vec3));
     Ok(())
 }
 
 impl SceneView<'_> {
-    fn pane_row(&self, row: u32) -> Vec4 {
-        Vec4::from(self.data.table[(self.frame.pane + row) as usize].map(f32::from_bits))
-    }
-
     /// A texel of a level: cover, and gathered cover.
     fn pane_shadow_texel(&self, level: u32, column: i32, line: i32) -> Vec2 {
-        let table = &self.data.table;
-        let row = self.frame.pane;
-        let [width, height, first, _] = table[(row + PANE_SHADOW_LEVELS + level) as usize];
+        let [width, height, first] = self.data.pane_level(level);
         let x = column.clamp(0, width as i32 - 1) as u32;
         let y = line.clamp(0, height as i32 - 1) as u32;
         let index = first + y * width + x;
-        let from = table[(row + 4) as usize][2];
-        let word = table[(from + index / 8) as usize][((index / 2) % 4) as usize];
+        let word = self.data.pane_texels(self.data.pane_load().first + index / 8)[((index / 2) % 4) as usize];
         let pair = word >> (16 * (index % 2));
         Vec2::new((pair & 255) as f32, ((pair >> 8) & 255) as f32 * PANE_SHADOW_PEAK) / 255.0
     }
 
     /// A level at a place of [0, 1], bilinear.
     fn pane_shadow_level(&self, level: u32, place: Vec2) -> Vec2 {
-        let [width, height, ..] = self.data.table[(self.frame.pane + PANE_SHADOW_LEVELS + level) as usize];
+        let [width, height, _] = self.data.pane_level(level);
         let at = place * Vec2::new(width as f32, height as f32) - 0.5;
         let low = at.floor();
         let part = at - low;
@@ -106,9 +122,9 @@ impl SceneView<'_> {
 
     /// Cover and gathered cover round a place of [0, 1], over a width in metres.
     fn pane_shadow_at(&self, place: Vec2, width: f32) -> Vec2 {
-        let texels = width * self.pane_row(0).w;
-        let last = self.data.table[(self.frame.pane + 4) as usize][3] as f32;
-        let level = ops::log2(texels.max(1.0)).clamp(0.0, last);
+        let pane = self.data.pane_load();
+        let texels = width * pane.texels_per_metre;
+        let level = ops::log2(texels.max(1.0)).clamp(0.0, pane.last as f32);
         let low = level.floor();
         let part = level - low;
         let mut found = self.pane_shadow_level(low as u32, place) * (1.0 - part);
@@ -124,15 +140,15 @@ impl SceneView<'_> {
         if self.frame.pane == 0 {
             return 1.0;
         }
-        let [corner, across, down, outward] = [0, 1, 2, 3].map(|row| self.pane_row(row));
-        let towards = direction.dot(outward.truncate());
-        let above = (corner.truncate() - place).dot(outward.truncate());
+        let pane = self.data.pane_load();
+        let towards = direction.dot(pane.outward);
+        let above = (pane.corner - place).dot(pane.outward);
         let away = above / if towards == 0.0 { 1.0 } else { towards };
         if towards.abs() < 1.0e-4 || away <= 0.0 || away >= distance {
             return 1.0;
         }
-        let on = place + direction * away - corner.truncate();
-        let at = Vec2::new(on.dot(across.truncate()) / across.w, on.dot(down.truncate()) / down.w);
+        let on = place + direction * away - pane.corner;
+        let at = Vec2::new(on.dot(pane.across) / pane.width, on.dot(pane.down) / pane.height);
         if at.x < 0.0 || at.y < 0.0 || at.x > 1.0 || at.y > 1.0 {
             return 1.0;
         }
@@ -141,14 +157,14 @@ impl SceneView<'_> {
         let clear = (1.0 - mirrored) / (1.0 + mirrored);
         let soft = 2.0 * away * spread;
         let cover = self.pane_shadow_at(at, soft);
-        if outward.w.to_bits() == PANE_SHADOW_TATARCHUK {
+        if pane.form == PANE_SHADOW_TATARCHUK {
             return clear * (1.0 - cover.x + cover.y);
         }
-        let drops = self.pane_row(5);
+        let [radius, focus] = pane.drops;
         // How wide the light of a drop is, in its own radii: a point at the focus.
-        let wide = (1.0 - away / drops.y).abs();
+        let wide = (1.0 - away / focus).abs();
         let gathered = (1.0 - wide).max(0.0);
-        let spot = self.pane_shadow_at(at, soft + 2.0 * drops.x * (wide - 1.0).max(0.0));
+        let spot = self.pane_shadow_at(at, soft + 2.0 * radius * (wide - 1.0).max(0.0));
         clear * (1.0 - cover.x + spot.x * (1.0 - gathered) + cover.y * gathered)
     }
 }
@@ -178,7 +194,7 @@ mod tests {
             .collect();
         let shade = PaneShade::new([0.2, 0.1], &drops, form, 0.0, 1.333);
         let mut data = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
-        data.set_pane(&shade, [Vec3::new(-0.1, 0.05, 0.0), Vec3::X, Vec3::NEG_Y, Vec3::Z]);
+        data.set_pane(&Arc::new(shade), [Vec3::new(-0.1, 0.05, 0.0), Vec3::X, Vec3::NEG_Y, Vec3::Z]);
         (data, 2.2e-3 / 0.333)
     }
 

@@ -30,10 +30,10 @@ use downpour_shaders::render::path::{
     PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
-    PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED, PUDDLE_WATER_ROWS,
+    PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
 };
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LAYERS, SCENE_NONE, SCENE_UNLIT, SKYLIGHT_SLACK};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 
 use crate::brdf::brdf_fresnel;
 use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
@@ -283,12 +283,12 @@ impl SceneView<'_> {
             if let (Some(_), Some(water)) = (met, &mut water) {
                 throughput *= path.path_show_water(&meeting, &light, water.ripple, towards, throughput);
                 // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
-                let row = frame.puddles + water.found.puddle * PUDDLE_WATER_ROWS;
-                let look = Vec4::from(data.table[row as usize + 4].map(f32::from_bits));
+                let puddle = data.puddle_load(water.found.puddle);
                 towards = puddle_water_refracted(towards, found.normal);
                 let steep = (-towards.y).max(0.1);
-                water.murk = look.truncate();
-                water.clear = ops::exp(-look.w * water.found.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
+                water.murk = puddle.murk;
+                water.clear =
+                    ops::exp(-puddle.extinction * water.found.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
                 let aside = (water.found.depth - water.found.rise).max(0.0) / steep;
                 start = found.position + Vec3::new(towards.x * aside, 0.0, towards.z * aside)
                     - towards * (4.0 * frame.nearest);

@@ -11,8 +11,8 @@ use downpour_render::rain::light::DropLightForm;
 use downpour_render::rain::{DropMasks, Rain};
 use downpour_sim::field::FallingDrop;
 
+use crate::capture::trace_environment;
 use crate::data::{RenderFrame, SceneData};
-use crate::environment::trace_environment;
 use crate::scene::SceneView;
 
 /// The frame of a picture.

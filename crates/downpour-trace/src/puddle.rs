@@ -3,7 +3,7 @@
 //! 1. [`PuddleMap`]: where water stands and how deep, painted or found from the scene by filling its hollows ([`fill`]), on
 //!    ground whose unevenness may be finer than its model ([`relief`]);
 //! 2. [`WetGround`](crate::wet_ground::WetGround): the maps of a weather, and the ripples of the rain on them, from picture to picture;
-//! 3. [`SceneData::lay_puddles`](crate::data::SceneData::lay_puddles): both as rows of the scene's table;
+//! 3. [`SceneData::set_puddles`](crate::data::SceneData::set_puddles): both as rows of the scene's table;
 //! 4. [`water`](crate::scene::water): what a ray finds of them, on CPU and GPU.
 
 mod error;
@@ -17,4 +17,5 @@ pub use error::PuddleError;
 pub use map::{Ground, PuddleMap};
 pub(crate) use relief::Relief;
 pub use ripples::{Ripples, slope_levels};
+pub(crate) use rows::RenderPuddle;
 pub use rows::{PuddleLook, PuddleRows};

@@ -4,7 +4,7 @@
 use downpour_bvh::{Hit, bvh_nearest};
 use downpour_math::ops;
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_UNLIT, SURFACE_OPEN,
+    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_OPEN,
 };
 use downpour_sim::shelter::Holes;
 use glam::{Vec3, Vec4};
@@ -67,22 +67,19 @@ impl SceneData {
 
     /// Alpha at a hit.
     pub(crate) fn surface_alpha(&self, hit: &Hit) -> f32 {
-        let material = (self.corners_of(hit)[0].material * SCENE_MATERIAL_ROWS) as usize;
-        let slot = self.table[material + 4][0];
-        f32::from_bits(self.table[material][3])
-            * self.surface_texture(slot, self.surface_uv(hit), -20.0).w
+        let material = self.material_load(self.corners_of(hit)[0].material);
+        material.base.w
+            * self.surface_texture(material.maps[0], self.surface_uv(hit), -20.0).w
             * self.surface_colour(hit).w
     }
 
     /// Whether there is a hole at a hit.
     fn surface_is_open(&self, hit: &Hit) -> bool {
-        let material = (self.corners_of(hit)[0].material * SCENE_MATERIAL_ROWS) as usize;
-        let flags = self.table[material + 3][0];
-        if flags & (SCENE_MASKED | SCENE_BLENDED) == 0 {
+        let material = self.material_load(self.corners_of(hit)[0].material);
+        if material.flags & (SCENE_MASKED | SCENE_BLENDED) == 0 {
             return false;
         }
-        let cutoff = f32::from_bits(self.table[material + 2][3]);
-        let least = if flags & SCENE_MASKED != 0 { cutoff } else { SURFACE_OPEN };
+        let least = if material.flags & SCENE_MASKED != 0 { material.cutoff } else { SURFACE_OPEN };
         self.surface_alpha(hit) < least
     }
 
@@ -150,36 +147,31 @@ impl SceneData {
     /// Everything that shading needs at a hit. `cone` is the width of the ray at distance 1.
     #[must_use]
     pub fn surface_at(&self, hit: &Hit, origin: Vec3, direction: Vec3, cone: f32) -> Surface {
-        let material = self.corners_of(hit)[0].material;
+        let material = self.material_load(self.corners_of(hit)[0].material);
         let geometric = self.surface_edges(hit);
         let facing = if geometric.dot(direction) > 0.0 { -1.0 } else { 1.0 };
         let facet = geometric * (facing / geometric.dot(geometric).sqrt().max(1.0e-20));
 
         let uv = self.surface_uv(hit);
         let spread = self.surface_spread(hit, geometric, direction, cone * hit.distance);
-        let row = (material * SCENE_MATERIAL_ROWS) as usize;
-        let numbers = |k: usize| Vec4::from(self.table[row + k].map(f32::from_bits));
-        let (base_row, glow, look) = (numbers(0), numbers(1), numbers(2));
-        let flags = self.table[row + 3][0];
-        let transmission_factor = f32::from_bits(self.table[row + 3][1]);
-        let ior = f32::from_bits(self.table[row + 3][2]);
-        let (maps, more) = (self.table[row + 4], self.table[row + 5]);
+        let (flags, maps, more) = (material.flags, material.maps, material.more);
 
-        let base = base_row * self.surface_texture(maps[0], uv, spread) * self.surface_colour(hit);
+        let base = material.base * self.surface_texture(maps[0], uv, spread) * self.surface_colour(hit);
         let rough = self.surface_texture(maps[1], uv, spread);
-        let metallic = (glow.w * rough.z).clamp(0.0, 1.0);
-        let roughness = (look.x * rough.y).clamp(0.0, 1.0);
-        let emission = glow.truncate() * self.surface_texture(maps[3], uv, spread).truncate();
-        let occlusion = 1.0 + look.z * (self.surface_texture(more[0], uv, spread).x - 1.0);
-        let transmission = transmission_factor * self.surface_texture(more[1], uv, spread).x;
+        let metallic = (material.metallic * rough.z).clamp(0.0, 1.0);
+        let roughness = (material.roughness * rough.y).clamp(0.0, 1.0);
+        let emission = material.emission * self.surface_texture(maps[3], uv, spread).truncate();
+        let occlusion =
+            1.0 + material.occlusion_strength * (self.surface_texture(more[0], uv, spread).x - 1.0);
+        let transmission = material.transmission * self.surface_texture(more[1], uv, spread).x;
 
         let mut normal = self.mix(hit, |c| Vec3::from(c.normal).extend(0.0)).truncate() * facing;
         if maps[2] != SCENE_NONE {
             let tangent = self.mix(hit, |c| c.tangent.into());
             let map = self.surface_texture(maps[2], uv, spread).truncate() * 2.0 - Vec3::ONE;
             let side = (normal * facing).cross(tangent.truncate()) * tangent.w;
-            normal =
-                tangent.truncate() * (map.x * look.y) + side * (map.y * look.y) + normal * map.z.max(0.05);
+            let scale = material.normal_scale;
+            normal = tangent.truncate() * (map.x * scale) + side * (map.y * scale) + normal * map.z.max(0.05);
         }
         normal /= normal.dot(normal).sqrt().max(1.0e-20);
         // A shading normal that faces away from the viewer is bent back to the horizon.
@@ -190,7 +182,7 @@ impl SceneData {
         }
         // Unlit, the base colour is all that is seen.
         let unlit = flags & SCENE_UNLIT != 0;
-        let dielectric = (ior - 1.0) / (ior + 1.0);
+        let dielectric = (material.ior - 1.0) / (material.ior + 1.0);
         let f0 = if unlit { 0.0 } else { dielectric * dielectric };
         let metallic = if unlit { 0.0 } else { metallic };
         let colour = base.truncate();

@@ -8,6 +8,7 @@ use downpour_shaders::render::scene::{
 use glam::{Vec2, Vec4};
 
 use crate::data::SceneData;
+use crate::material::RenderSlot;
 
 /// A coordinate brought into the texture: the index of a texel along an edge of `n`.
 #[must_use]
@@ -51,14 +52,11 @@ impl SceneData {
     /// in units of texture coordinates.
     #[must_use]
     pub fn texture_sample(&self, slot: u32, uv: Vec4, spread: f32) -> Vec4 {
-        let slot = slot as usize;
-        let matrix = self.table[slot].map(f32::from_bits);
-        let place = self.table[slot + 1];
-        let image = self.table[slot + 2];
-        let chosen = if place[2] == 1 { Vec2::new(uv.z, uv.w) } else { Vec2::new(uv.x, uv.y) };
+        let RenderSlot { matrix, offset, uv_set, flags, image } = self.material_slot(slot);
+        let chosen = if uv_set == 1 { Vec2::new(uv.z, uv.w) } else { Vec2::new(uv.x, uv.y) };
         let moved = Vec2::new(
-            matrix[0] * chosen.x + matrix[1] * chosen.y + f32::from_bits(place[0]),
-            matrix[2] * chosen.x + matrix[3] * chosen.y + f32::from_bits(place[1]),
+            matrix[0] * chosen.x + matrix[1] * chosen.y + offset[0],
+            matrix[2] * chosen.x + matrix[3] * chosen.y + offset[1],
         );
         // Far outside, a coordinate has no fraction left.
         let inside = moved.clamp(Vec2::splat(-4096.0), Vec2::splat(4096.0));
@@ -72,12 +70,12 @@ impl SceneData {
             height = (height / 2).max(1);
         }
         let fraction = if level + 1 >= image[3] { 0.0 } else { lod - level as f32 };
-        let near = self.texture_level(first, width, height, inside, place[3]) * (1.0 - fraction);
+        let near = self.texture_level(first, width, height, inside, flags) * (1.0 - fraction);
         if fraction == 0.0 {
             return near;
         }
         let next = first + (width * height) as u32;
-        let far = self.texture_level(next, (width / 2).max(1), (height / 2).max(1), inside, place[3]);
+        let far = self.texture_level(next, (width / 2).max(1), (height / 2).max(1), inside, flags);
         near + far * fraction
     }
 }

@@ -11,7 +11,7 @@ use downpour_shaders::render::scene::{SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-use crate::environment::{capture_direction, capture_sky, capture_suns};
+use crate::capture::{capture_direction, capture_sky, capture_suns};
 use crate::path::{PathSlot, ViewPath, path_lattice_words, path_most};
 use crate::scene::SceneView;
 use downpour_render::halves::{pack, unpack};

@@ -53,7 +53,7 @@ impl WetGround {
 
     /// Lays the water, as it is now, on the ground of a stage.
     pub fn lay(&self, stage: &mut Stage) {
-        stage.data.lay_puddles(&PuddleRows {
+        stage.data.set_puddles(&PuddleRows {
             puddles: &self.puddles,
             shape: self.ripples.shape(),
             slopes: &self.ripples.slopes(),

@@ -13,8 +13,8 @@ use downpour_render::rain::glint::{
 use downpour_render::rain::light::{DropLightForm, DropLightOptions, DropLightTable, DropLights};
 use downpour_render::rain::{EnvironmentFrame, RainOptions};
 use downpour_trace::builder::{MeshPart, SceneBuilder};
+use downpour_trace::capture::trace_environment;
 use downpour_trace::data::{RenderFrame, SceneData};
-use downpour_trace::environment::trace_environment;
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
 use glam::{Affine3A, Vec2, Vec3};

@@ -204,7 +204,7 @@ fn puddle(look: MaterialLook, depth: f32, sky: f32, lamp: LightSource) -> SceneD
     let place = Ground { middle: Vec3::ZERO, size: Vec2::splat(3.0), turn: 0.0, reach: 0.5 };
     let map = PuddleMap::painted(&scene, &place, [4, 4], &[depth; 16]);
     let water = PuddleLook { extinction: 0.0, ..PuddleLook::default() };
-    scene.lay_puddles(&PuddleRows {
+    scene.set_puddles(&PuddleRows {
         puddles: &[(map, water)],
         shape: (0, 0, 1.0),
         slopes: &[],
@@ -307,7 +307,7 @@ fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
         let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| 0.3 * (rng_unit(word) - 0.5));
         [a, b, a * a + b * b, 0.0]
     });
-    scene.lay_puddles(&PuddleRows {
+    scene.set_puddles(&PuddleRows {
         puddles: &[(map, PuddleLook::default())],
         shape: (128, 7, 0.002),
         slopes: &slope_levels(finest.collect(), 128),

@@ -66,7 +66,7 @@ const SQUARE: Ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(3.0), turn
 /// Painted water of one depth on a stage, still.
 fn flood(scene: &mut SceneData, depth: f32, look: PuddleLook) {
     let map = PuddleMap::painted(scene, &SQUARE, [4, 4], &[depth; 16]);
-    scene.lay_puddles(&PuddleRows {
+    scene.set_puddles(&PuddleRows {
         puddles: &[(map, look)],
         shape: (0, 0, 1.0),
         slopes: &[],
@@ -160,7 +160,7 @@ fn rays_end_on_the_surface_of_the_water_in_a_hollow() -> Outcome {
     let mut scene = ground(0.5, 60, dish).build(&SkyLight::new(1, 1, &[[1.0; 3]]));
     let map =
         PuddleMap::found(&scene, &SQUARE, [120, 120], &Relief { rms_m: 0.0, seed: 0 }, [0.8, 1.0, 0.001]);
-    scene.lay_puddles(&PuddleRows {
+    scene.set_puddles(&PuddleRows {
         puddles: &[(map, PuddleLook::default())],
         shape: (0, 0, 1.0),
         slopes: &[],
@@ -199,7 +199,7 @@ fn water_is_laid_anew() {
     let once = (scene.table.len(), scene.puddles, scene.puddle_count);
     flood(&mut scene, 0.02, PuddleLook::default());
     assert_eq!((scene.table.len(), scene.puddles, scene.puddle_count), once);
-    scene.lay_puddles(&PuddleRows { puddles: &[], shape: (0, 0, 1.0), slopes: &[], shift: Vec3::ZERO });
+    scene.set_puddles(&PuddleRows { puddles: &[], shape: (0, 0, 1.0), slopes: &[], shift: Vec3::ZERO });
     assert_eq!((scene.table.len(), scene.puddle_count), (dry, 0));
 }
 

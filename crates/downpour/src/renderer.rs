@@ -19,8 +19,8 @@ use downpour_render::rain::{DropMasks, EnvironmentFrame, Exposure, RainMedium, R
 use downpour_scene::Budget;
 use downpour_scene::scene::Scene;
 use downpour_sim::field::VisibleDrops;
+use downpour_trace::capture::trace_environment;
 use downpour_trace::data::RenderFrame;
-use downpour_trace::environment::trace_environment;
 use downpour_trace::pane_shadow::{is_lit_through, set_pane};
 use downpour_trace::scene::SceneView;
 use downpour_trace::stage::{LATEST_S, Stage};

@@ -1,4 +1,4 @@
-//! `wgsl/render/brdf.wgsl`. Twin: `downpour_render::brdf`.
+//! `wgsl/render/brdf.wgsl`. Twin: `downpour_trace::brdf`.
 
 use crate::Module;
 
@@ -15,7 +15,7 @@ shared_constants! {
     }
 }
 
-/// Reflection at a surface. Twin: `downpour_render::brdf`.
+/// Reflection at a surface. Twin: `downpour_trace::brdf`.
 pub static BRDF: Module = Module {
     path: "render/brdf.wgsl",
     wgsl: include_str!("../../wgsl/render/brdf.wgsl"),

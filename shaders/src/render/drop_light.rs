@@ -3,6 +3,7 @@
 
 use super::scene::SCENE;
 use super::specimen::SPECIMEN_TABLES;
+use super::table::LIGHT;
 use crate::atlas::{ATLAS, ATLAS_CONSTANTS};
 use crate::{Kernel, Module};
 
@@ -100,7 +101,7 @@ pub static DROP_ATLAS: Module = Module {
 pub static DROP_LIGHT: Module = Module {
     path: "render/drop_light.wgsl",
     wgsl: include_str!("../../wgsl/render/drop_light.wgsl"),
-    uses: &[&DROP_LIGHT_CONSTANTS, &DROP_GLINT, &DROP_LIGHT_TABLE, &ATLAS, &DROP_ATLAS, &SCENE],
+    uses: &[&DROP_LIGHT_CONSTANTS, &DROP_GLINT, &DROP_LIGHT_TABLE, &ATLAS, &DROP_ATLAS, &LIGHT, &SCENE],
 };
 
 /// One invocation per drop.

@@ -3,6 +3,7 @@
 use super::drop_light::DROP_GLINT;
 use super::path::PATH_LATTICE;
 use super::scene::SCENE;
+use super::table::LIGHT;
 use crate::common::RNG;
 use crate::{Kernel, Module};
 
@@ -77,14 +78,14 @@ pub static MEDIUM_OPEN: Module = Module {
 pub static MEDIUM_LIGHT: Module = Module {
     path: "render/medium_light.wgsl",
     wgsl: include_str!("../../wgsl/render/medium_light.wgsl"),
-    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_OPEN, &DROP_GLINT, &PATH_LATTICE, &SCENE],
+    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &MEDIUM_OPEN, &DROP_GLINT, &PATH_LATTICE, &LIGHT, &SCENE],
 };
 
 /// Means over neighbors. Twin: `downpour_render::rain::medium::filter`.
 pub static MEDIUM_FILTER: Module = Module {
     path: "render/medium_filter.wgsl",
     wgsl: include_str!("../../wgsl/render/medium_filter.wgsl"),
-    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &SCENE],
+    uses: &[&MEDIUM_CONSTANTS, &MEDIUM, &LIGHT, &SCENE],
 };
 
 /// One invocation per cell of the grid.

@@ -1,7 +1,8 @@
-//! `wgsl/render/pane_shadow.wgsl`: light of lamps that falls through a wet pane. Twin: `downpour_render::glass::shadow`.
+//! `wgsl/render/pane_shadow.wgsl`: light of lamps that falls through a wet pane. Twin: `downpour_trace::pane_shadow`.
 
 use super::glass::GLASS_PICTURE_CONSTANTS;
 use super::scene::DATA;
+use super::table::PANE;
 use crate::Module;
 use crate::drop::optics::OPTICS;
 
@@ -24,9 +25,9 @@ shared_constants! {
     }
 }
 
-/// Light of lamps that falls through a wet pane. Twin: `downpour_render::glass::shadow`.
+/// Light of lamps that falls through a wet pane. Twin: `downpour_trace::pane_shadow`.
 pub static PANE_SHADOW: Module = Module {
     path: "render/pane_shadow.wgsl",
     wgsl: include_str!("../../wgsl/render/pane_shadow.wgsl"),
-    uses: &[&PANE_SHADOW_CONSTANTS, &GLASS_PICTURE_CONSTANTS, &DATA, &OPTICS],
+    uses: &[&PANE_SHADOW_CONSTANTS, &GLASS_PICTURE_CONSTANTS, &DATA, &PANE, &OPTICS],
 };

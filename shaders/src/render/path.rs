@@ -1,8 +1,9 @@
-//! `wgsl/render/path.wgsl`: what a ray of the camera sees. Twin: `downpour_render::path`.
+//! `wgsl/render/path.wgsl`: what a ray of the camera sees. Twin: `downpour_trace::path`.
 
 use super::puddle_water::PUDDLE_WATER;
 use super::scatter::SCATTER;
 use super::scene::{DATA, SCENE, SKY, SURFACE};
+use super::table::PUDDLE;
 use crate::Module;
 use crate::common::RNG;
 use crate::drop::optics::OPTICS;
@@ -78,16 +79,26 @@ shared_constants! {
     }
 }
 
-/// Random numbers of a pixel's rays. Twin: `downpour_render::path::lattice`.
+/// Random numbers of a pixel's rays. Twin: `downpour_trace::path::lattice`.
 pub static PATH_LATTICE: Module = Module {
     path: "render/path_lattice.wgsl",
     wgsl: include_str!("../../wgsl/render/path_lattice.wgsl"),
     uses: &[&PATH_CONSTANTS, &DATA, &RNG],
 };
 
-/// What a ray of the camera sees. Twin: `downpour_render::path`.
+/// What a ray of the camera sees. Twin: `downpour_trace::path`.
 pub static PATH: Module = Module {
     path: "render/path.wgsl",
     wgsl: include_str!("../../wgsl/render/path.wgsl"),
-    uses: &[&PATH_CONSTANTS, &PATH_LATTICE, &SCENE, &SCATTER, &SKY, &SURFACE, &PUDDLE_WATER, &OPTICS],
+    uses: &[
+        &PATH_CONSTANTS,
+        &PATH_LATTICE,
+        &SCENE,
+        &SCATTER,
+        &SKY,
+        &SURFACE,
+        &PUDDLE,
+        &PUDDLE_WATER,
+        &OPTICS,
+    ],
 };

@@ -1,6 +1,7 @@
-//! `wgsl/render/puddle_water.wgsl`: puddles as rays meet them. Twin: `downpour_render::puddle::water`.
+//! `wgsl/render/puddle_water.wgsl`: puddles as rays meet them. Twin: `downpour_trace::scene::water`.
 
 use super::scene::DATA;
+use super::table::PUDDLE;
 use crate::Module;
 use crate::common::RNG;
 
@@ -48,9 +49,9 @@ shared_constants! {
     }
 }
 
-/// Puddles as rays meet them. Twin: `downpour_render::puddle::water`.
+/// Puddles as rays meet them. Twin: `downpour_trace::scene::water`.
 pub static PUDDLE_WATER: Module = Module {
     path: "render/puddle_water.wgsl",
     wgsl: include_str!("../../wgsl/render/puddle_water.wgsl"),
-    uses: &[&PUDDLE_WATER_CONSTANTS, &DATA, &RNG],
+    uses: &[&PUDDLE_WATER_CONSTANTS, &DATA, &PUDDLE, &RNG],
 };

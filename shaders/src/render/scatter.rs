@@ -1,4 +1,4 @@
-//! `wgsl/render/scatter.wgsl`: rays that look for the light of a surface. Twin: `downpour_render::scatter`.
+//! `wgsl/render/scatter.wgsl`: rays that look for the light of a surface. Twin: `downpour_trace::scatter`.
 
 use super::brdf::BRDF;
 use super::scene::SURFACE;
@@ -22,7 +22,7 @@ shared_constants! {
     }
 }
 
-/// Rays that look for the light of a surface. Twin: `downpour_render::scatter`.
+/// Rays that look for the light of a surface. Twin: `downpour_trace::scatter`.
 pub static SCATTER: Module = Module {
     path: "render/scatter.wgsl",
     wgsl: include_str!("../../wgsl/render/scatter.wgsl"),

@@ -1,11 +1,12 @@
 //! `wgsl/render/{data,texture,sky,surface,scene,capture,trace,skylight}.wgsl`: a scene of triangles under a sky, traced by rays. Twins:
-//! `downpour_render::{texture, sky, surface, scene, rain::capture, trace, skylight}`. The rays of the camera are in
+//! `downpour_trace::{texture, sky, surface, scene, capture, trace, skylight}`. The rays of the camera are in
 //! [`path`](super::path).
 
 use super::brdf::BRDF;
 use super::pane_shadow::PANE_SHADOW;
 use super::path::PATH;
 use super::puddle_water::PUDDLE_WATER;
+use super::table::{LIGHT, MATERIAL};
 use crate::bvh::BVH;
 use crate::common::PACKING;
 use crate::drop::optics::OPTICS;
@@ -100,49 +101,49 @@ pub static DATA: Module = Module {
     uses: &[&SCENE_CONSTANTS],
 };
 
-/// Textures in a buffer. Twin: `downpour_render::texture`.
+/// Textures in a buffer. Twin: `downpour_trace::texture`.
 pub static TEXTURE: Module = Module {
     path: "render/texture.wgsl",
     wgsl: include_str!("../../wgsl/render/texture.wgsl"),
-    uses: &[&DATA],
+    uses: &[&DATA, &MATERIAL],
 };
 
-/// The light of the sky. Twin: `downpour_render::sky`.
+/// The light of the sky. Twin: `downpour_trace::sky`.
 pub static SKY: Module =
     Module { path: "render/sky.wgsl", wgsl: include_str!("../../wgsl/render/sky.wgsl"), uses: &[&DATA] };
 
-/// What a ray finds. Twin: `downpour_render::surface`.
+/// What a ray finds. Twin: `downpour_trace::surface`.
 pub static SURFACE: Module = Module {
     path: "render/surface.wgsl",
     wgsl: include_str!("../../wgsl/render/surface.wgsl"),
-    uses: &[&DATA, &TEXTURE, &BVH],
+    uses: &[&DATA, &MATERIAL, &TEXTURE, &BVH],
 };
 
-/// The light of lamps in a scene. Twin: `downpour_render::scene`.
+/// The light of lamps in a scene. Twin: `downpour_trace::scene`.
 pub static SCENE: Module = Module {
     path: "render/scene.wgsl",
     wgsl: include_str!("../../wgsl/render/scene.wgsl"),
-    uses: &[&DATA, &SURFACE, &BRDF, &OPTICS, &PANE_SHADOW, &PUDDLE_WATER],
+    uses: &[&DATA, &LIGHT, &MATERIAL, &SURFACE, &BRDF, &OPTICS, &PANE_SHADOW, &PUDDLE_WATER],
 };
 
-/// Pixels of the picture and of the capture. Twin: `downpour_render::trace`.
+/// Pixels of the picture and of the capture. Twin: `downpour_trace::trace`.
 pub static TRACE: Module = Module {
     path: "render/trace.wgsl",
     wgsl: include_str!("../../wgsl/render/trace.wgsl"),
     uses: &[&SCENE, &PATH, &CAPTURE, &PACKING],
 };
 
-/// The surroundings of the eye. Twin: `downpour_render::rain::capture`.
+/// The surroundings of the eye. Twin: `downpour_trace::capture`.
 pub static CAPTURE: Module = Module {
     path: "render/capture.wgsl",
     wgsl: include_str!("../../wgsl/render/capture.wgsl"),
-    uses: &[&SCENE, &SKY, &PACKING],
+    uses: &[&SCENE, &LIGHT, &SKY, &PACKING],
 };
 
 /// One invocation per pixel.
 pub static TRACE_KERNEL: Kernel = Kernel { entry: "main_trace", module: &TRACE, workgroup: [8, 8, 1] };
 
-/// The sky's light over neighbouring pixels. Twin: `downpour_render::skylight`.
+/// The sky's light over neighbouring pixels. Twin: `downpour_trace::skylight`.
 pub static SKYLIGHT: Module = Module {
     path: "render/skylight.wgsl",
     wgsl: include_str!("../../wgsl/render/skylight.wgsl"),

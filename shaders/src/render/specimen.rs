@@ -1,4 +1,4 @@
-//! `wgsl/render/specimen.wgsl` and its streak. Twin: `downpour_render::specimen`.
+//! `wgsl/render/specimen.wgsl` and its streak. Twin: `downpour_specimen`.
 
 use crate::common::RNG;
 use crate::drop::{optics, oscillation, shape};
@@ -56,7 +56,7 @@ shared_tables! {
     }
 }
 
-/// One drop in front of a sky. Twin: `downpour_render::specimen`.
+/// One drop in front of a sky. Twin: `downpour_specimen`.
 pub static SPECIMEN: Module = Module {
     path: "render/specimen.wgsl",
     wgsl: include_str!("../../wgsl/render/specimen.wgsl"),
@@ -101,7 +101,7 @@ shared_constants! {
     }
 }
 
-/// A ray through a drop that oscillates. Twin: `downpour_render::specimen::wobble`.
+/// A ray through a drop that oscillates. Twin: `downpour_specimen::wobble`.
 pub static SPECIMEN_WOBBLE: Module = Module {
     path: "render/specimen_wobble.wgsl",
     wgsl: include_str!("../../wgsl/render/specimen_wobble.wgsl"),
@@ -116,7 +116,7 @@ pub static SPECIMEN_WOBBLE: Module = Module {
     ],
 };
 
-/// The mean of a drop over an exposure. Twin: `downpour_render::specimen::streak`.
+/// The mean of a drop over an exposure. Twin: `downpour_specimen::streak`.
 pub static SPECIMEN_STREAK: Module = Module {
     path: "render/specimen_streak.wgsl",
     wgsl: include_str!("../../wgsl/render/specimen_streak.wgsl"),

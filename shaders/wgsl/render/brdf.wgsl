@@ -4,7 +4,7 @@
 // B. Karis, "Physically based shading on mobile", 2014.
 // Reflected rays are drawn by the normals that the viewer sees (E. Heitz, JCGT 7(4), 2018).
 // Symbols: alpha = roughness^2; all cosines in [0, 1].
-// Twin: downpour_render::brdf.
+// Twin: downpour_trace::brdf.
 
 // Normal distribution times pi: D(h) pi, at a cosine to the normal.
 fn brdf_distribution(alpha: f32, cosine_half: f32) -> f32 {

@@ -2,7 +2,7 @@
 // Law: a texel holds the mean radiance of its directions. The sun is no part of the sky (its light is parallel); its
 // disc goes into the texel that holds its direction, as irradiance over solid angle.
 // The map's halves: +z in the middle of the square, -z in its corners.
-// Twin: downpour_render::rain::capture.
+// Twin: downpour_trace::capture.
 
 // The direction of a place of the map, in texels from the top left.
 fn capture_direction(x: f32, y: f32) -> vec3f {
@@ -29,11 +29,11 @@ fn capture_suns(x: u32, y: u32) -> vec3f {
     }
     var sum = vec3f(0.0);
     for (var k = 0u; k < render_frame.light_count; k += 1u) {
-        let row = render_frame.lights + k * SCENE_LIGHT_ROWS;
-        if render_table[row].w != SCENE_LIGHT_DIRECTIONAL {
+        let lamp = light_load(k);
+        if lamp.kind != SCENE_LIGHT_DIRECTIONAL {
             continue;
         }
-        let light = scene_light(k, render_frame.eye, 0.0);
+        let light = light_sample(lamp, render_frame.eye, 0.0);
         let square = packing_octahedral_encode(light.direction);
         let place = clamp((square * 0.5 + 0.5) * size, vec2f(0.0), vec2f(size - 1.0));
         if u32(place.x) != x || u32(place.y) != y {

@@ -1,5 +1,5 @@
 // The buffers of a scene and of a frame. Bindings 1 and 2 are the triangles' hierarchy (mask/bvh.wgsl).
-// Host types: downpour_render::data.
+// Host types: downpour_trace::data.
 
 struct RenderFrame {
     eye: vec3f,

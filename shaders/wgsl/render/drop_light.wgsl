@@ -45,17 +45,14 @@ fn drop_light_entry(row: u32, angle: f32) -> vec4f {
 // Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles. What is
 // within the inner cone is lit, between the two cones light fades. Nothing of other lamps.
 fn drop_light_cone(index: u32, place: vec3f, least: f32) -> vec3f {
-    let row = render_frame.lights + index * SCENE_LIGHT_ROWS;
-    let position = bitcast<vec4f>(render_table[row]);
-    let axis = bitcast<vec4f>(render_table[row + 1u]);
-    let colour = bitcast<vec4f>(render_table[row + 2u]);
-    let cone = bitcast<vec4f>(render_table[row + 3u]);
-    if render_table[row].w == SCENE_LIGHT_DIRECTIONAL || cone.x <= 0.0 {
+    let light = light_load(index);
+    let cone = light.cone;
+    if light.kind == SCENE_LIGHT_DIRECTIONAL || cone.x <= 0.0 {
         return vec3f(0.0);
     }
-    let offset = place - position.xyz;
-    let below = dot(offset, axis.xyz);
-    let height = select(SCENE_FAR, colour.w, colour.w > 0.0);
+    let offset = place - light.position;
+    let below = dot(offset, light.axis);
+    let height = select(SCENE_FAR, light.range, light.range > 0.0);
     if below <= 0.0 || below > height {
         return vec3f(0.0);
     }
@@ -63,11 +60,11 @@ fn drop_light_cone(index: u32, place: vec3f, least: f32) -> vec3f {
     let inner = clamp((1.0 - cone.y) / cone.x, outer, 1.0);
     let circle = below * sqrt(max(1.0 - outer * outer, 0.0)) / outer;
     let core = below * sqrt(max(1.0 - inner * inner, 0.0)) / inner;
-    let aside = offset - axis.xyz * below;
+    let aside = offset - light.axis * below;
     let away = sqrt(dot(aside, aside));
     let share = clamp((circle - away) / max(circle - core, 1.0e-6 * below), 0.0, 1.0);
     let square = max(dot(offset, offset), max(least * least, 1.0e-8));
-    return colour.rgb * (share / square);
+    return light.color * (share / square);
 }
 
 // The mean over a drop's disc of what Rousseau's formula gives at its pixels.
@@ -90,7 +87,7 @@ fn drop_light_weakest(first: u32, rows: u32, share: f32) -> u32 {
     var weakest = 0u;
     var least = share;
     for (var k = rows; k <= drop_light_frame.glints; k += rows) {
-        let kept = scene_share(drop_light_out[first + k - rows].rgb);
+        let kept = light_weight(drop_light_out[first + k - rows].rgb);
         if kept < least {
             least = kept;
             weakest = first + k - rows;
@@ -101,7 +98,7 @@ fn drop_light_weakest(first: u32, rows: u32, share: f32) -> u32 {
 
 // Keeps a glint of a drop if it is brighter than the least of those that are kept.
 fn drop_light_keep(first: u32, glint: vec4f) {
-    let weakest = drop_light_weakest(first, 1u, scene_share(glint.rgb));
+    let weakest = drop_light_weakest(first, 1u, light_weight(glint.rgb));
     if weakest > 0u {
         drop_light_out[weakest] = glint;
     }
@@ -109,7 +106,7 @@ fn drop_light_keep(first: u32, glint: vec4f) {
 
 // Keeps a lamp of a drop in the form of Rousseau 2006, two rows, if it is brighter than the least of those that are kept.
 fn drop_light_keep_facing(first: u32, light: vec4f, direction: vec4f) {
-    let weakest = drop_light_weakest(first, 2u, scene_share(light.rgb));
+    let weakest = drop_light_weakest(first, 2u, light_weight(light.rgb));
     if weakest > 0u {
         drop_light_out[weakest] = light;
         drop_light_out[weakest + 1u] = direction;
@@ -118,7 +115,7 @@ fn drop_light_keep_facing(first: u32, light: vec4f, direction: vec4f) {
 
 // Keeps a streak of an atlas, three rows, if it is brighter than the least of those that are kept.
 fn drop_light_keep_streak(first: u32, radiance: vec3f, place: AtlasPlace) {
-    let weakest = drop_light_weakest(first, DROP_ATLAS_ROWS, scene_share(radiance));
+    let weakest = drop_light_weakest(first, DROP_ATLAS_ROWS, light_weight(radiance));
     if weakest > 0u {
         drop_light_out[weakest] = vec4f(radiance, place.side);
         drop_light_out[weakest + 1u] = vec4f(vec3f(place.layers), place.weights.x);
@@ -128,8 +125,7 @@ fn drop_light_keep_streak(first: u32, radiance: vec3f, place: AtlasPlace) {
 
 // The chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
 fn drop_light_reach(index: u32) -> f32 {
-    let row = render_frame.lights + index * SCENE_LIGHT_ROWS + 1u;
-    return max(bitcast<f32>(render_table[row].w), DROP_LIGHT_REACH);
+    return max(light_load(index).chord, DROP_LIGHT_REACH);
 }
 
 // What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
@@ -145,7 +141,7 @@ fn drop_light_whole(lit: vec3f, direction: vec3f, towards: vec3f) -> vec3f {
 // the lamp that is not kept.
 fn drop_light_keep_lamp(slot: u32, lit: vec3f, reach: f32, direction: vec3f, towards: vec3f) -> vec3f {
     let whole = drop_light_whole(lit, direction, towards);
-    let share = scene_share(whole);
+    let share = light_weight(whole);
     var least = share;
     var weakest = slot;
     var found = false;
@@ -191,12 +187,12 @@ fn drop_light_of(index: u32) {
     let form = drop_light_frame.form;
     let end = min(drop_light_frame.first_light + DROP_LIGHT_LAMPS, render_frame.light_count);
     for (var k = drop_light_frame.first_light; k < end && form != DROP_LIGHT_NONE; k += 1u) {
-        let light = scene_light(k, drop.xyz, drop.w);
+        let light = light_sample(light_load(k), drop.xyz, drop.w);
         var lit = light.irradiance;
         if form == DROP_LIGHT_IM_SUNG {
             lit = drop_light_cone(k, drop.xyz, drop.w);
         }
-        if scene_share(lit) <= 0.0 {
+        if light_weight(lit) <= 0.0 {
             continue;
         }
         lit *= scene_visibility(drop.xyz, light.direction, light.distance);

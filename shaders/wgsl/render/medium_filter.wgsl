@@ -22,7 +22,7 @@ fn medium_filter_pixel(x: u32, y: u32) -> vec4f {
     let own = medium_filter_found[first + 2u * index];
     let mean = medium_filter_found[first + 2u * index + 1u].w;
     let packed = bitcast<f32>(pack2x16float(vec2f(min(mean, 6.0e4), min(own.w, 6.0e4))));
-    if scene_share(own.rgb) <= 0.0 {
+    if light_weight(own.rgb) <= 0.0 {
         return vec4f(vec3f(0.0), packed);
     }
     var whole = vec3f(0.0);

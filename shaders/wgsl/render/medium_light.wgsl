@@ -21,15 +21,15 @@ fn medium_light_phase(angle: f32) -> vec3f {
 
 // The part of a ray that a lamp lights: within its cone and its range.
 fn medium_light_span(index: u32, origin: vec3f, direction: vec3f, farthest: f32) -> vec2f {
-    let row = render_frame.lights + index * SCENE_LIGHT_ROWS;
+    let light = light_load(index);
     var span = vec2f(0.0, farthest);
-    if render_table[row].w == SCENE_LIGHT_DIRECTIONAL {
+    if light.kind == SCENE_LIGHT_DIRECTIONAL {
         return select(span, vec2f(farthest), medium_frame.lit == MEDIUM_SPOTS);
     }
-    let axis = bitcast<vec4f>(render_table[row + 1u]).xyz;
-    let reach = bitcast<f32>(render_table[row + 2u].w);
-    let cone = bitcast<vec4f>(render_table[row + 3u]);
-    let offset = origin - bitcast<vec4f>(render_table[row]).xyz;
+    let axis = light.axis;
+    let reach = light.range;
+    let cone = light.cone;
+    let offset = origin - light.position;
     let near = dot(offset, direction);
     if reach > 0.0 {
         span = medium_both(span, medium_roots(1.0, near, dot(offset, offset) - reach * reach));
@@ -80,11 +80,11 @@ struct MediumLight {
 
 // Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
 fn medium_light_add(sum: MediumLight, light: vec3f, lamp: u32, near: f32, far: f32) -> MediumLight {
-    let share = scene_share(light);
+    let share = light_weight(light);
     if share <= 0.0 {
         return sum;
     }
-    let chance = share / (scene_share(sum.whole) + share);
+    let chance = share / (light_weight(sum.whole) + share);
     var next = sum;
     next.whole += light;
     next.weighted += 0.5 * (near + far) * share;
@@ -103,15 +103,15 @@ fn medium_light_add(sum: MediumLight, light: vec3f, lamp: u32, near: f32, far: f
 // The light of a lamp, added part by part.
 fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2f, pixel: f32) -> MediumLight {
     let eye = medium_frame.eye;
-    let row = render_frame.lights + index * SCENE_LIGHT_ROWS;
-    let parallel = render_table[row].w == SCENE_LIGHT_DIRECTIONAL;
+    let lamp = light_load(index);
+    let parallel = lamp.kind == SCENE_LIGHT_DIRECTIONAL;
     let lit = medium_light_span(index, eye, direction, select(reach.y, reach.x, parallel));
     if lit.y <= lit.x {
         return sum;
     }
     let region = medium_span(direction);
     let outline = medium_outline(direction);
-    let offset = bitcast<vec4f>(render_table[row]).xyz - eye;
+    let offset = lamp.position - eye;
     let nearest = dot(offset, direction);
     let aside = offset - direction * nearest;
     // No ray is thinner than a pixel: the mean over its square of 1 / h is that of 0.284 of its width.
@@ -134,7 +134,7 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
         let far_angle = atan2(h, nearest - far);
         let far_phase = medium_light_phase(far_angle);
         let middle = nearest - h * cos(0.5 * (near_angle + far_angle)) / max(sin(0.5 * (near_angle + far_angle)), 1.0e-6);
-        let light = scene_light(index, eye + direction * clamp(middle, near, far), 0.0);
+        let light = light_sample(lamp, eye + direction * clamp(middle, near, far), 0.0);
         var given = light.irradiance * 3.1415927;
         if parallel {
             // Half an interval of the table to each side.
@@ -176,17 +176,17 @@ fn medium_light_pixel(x: u32, y: u32) {
         for (var k = 0u; k < render_frame.light_count; k += 1u) {
             sum = medium_light_lamp(sum, k, direction, reach, render_frame.pixel_angle);
         }
-        let share = scene_share(sum.drawn);
+        let share = light_weight(sum.drawn);
         if share > 0.0 {
             let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random.y);
             let from_place = medium_frame.eye + direction * distance;
-            let light = scene_light(sum.lamp, from_place, 0.0);
+            let light = light_sample(light_load(sum.lamp), from_place, 0.0);
             seen = scene_visibility(from_place, light.direction, light.distance)
                 * medium_open_at(place.x, place.y, distance).y
-                * (sum.drawn * (scene_share(sum.whole) / share));
+                * (sum.drawn * (light_weight(sum.whole) / share));
         }
     }
-    let mean = sum.weighted / max(scene_share(sum.whole), 1.0e-20);
+    let mean = sum.weighted / max(light_weight(sum.whole), 1.0e-20);
     medium_out[at] = vec4f(sum.whole, depth);
     medium_out[at + 1u] = vec4f(seen, mean);
 }

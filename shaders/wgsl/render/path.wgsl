@@ -1,5 +1,5 @@
 // What a ray of the camera sees: surfaces, water, and the light that comes to them from lamps, sky and one another.
-// Twin: downpour_render::path, where the method is described.
+// Twin: downpour_trace::path, where the method is described.
 
 // Light of which means are taken over neighbouring pixels.
 struct PathSlot {
@@ -323,7 +323,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
     var near = render_frame.nearest;
     // Water that the ray has come through, and whether it has met nothing since.
     var water = PuddleWater(PUDDLE_WATER_NONE, 0.0, 0.0, 0.0);
-    var wet_row = 0u;
+    var murk = vec3f(0.0);
     var clear = 1.0;
     var level = 0.0;
     var under = false;
@@ -425,7 +425,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     if SCENE_WET && under {
                         let rise = max(level - found.position.y, 0.0);
                         depth = vec2f(rise + max(water.depth - water.rise, 0.0), rise);
-                        found = path_soaked(found, clear, bitcast<vec3f>(render_table[wet_row + 4u].xyz));
+                        found = path_soaked(found, clear, murk);
                     }
                     if layer == 0u {
                         path.distance = distance;
@@ -524,11 +524,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
             }
             throughput *= 1.0 - share;
             // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
-            wet_row = render_frame.puddles + water.puddle * PUDDLE_WATER_ROWS;
-            let extinction = bitcast<f32>(render_table[wet_row + 4u].w);
+            let puddle = puddle_load(water.puddle);
+            murk = puddle.murk;
             towards = puddle_water_refracted(towards, surface.normal);
             let steep = max(-towards.y, 0.1);
-            clear = exp(-extinction * water.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
+            clear = exp(-puddle.extinction * water.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
             let aside = max(water.depth - water.rise, 0.0) / steep;
             start = surface.position + vec3f(towards.x * aside, 0.0, towards.z * aside)
                 - towards * (4.0 * render_frame.nearest);

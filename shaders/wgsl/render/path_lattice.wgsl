@@ -1,5 +1,5 @@
 // Random numbers of a pixel's rays, of which the mean over a window of pixels has no pattern.
-// Twin: downpour_render::path::lattice.
+// Twin: downpour_trace::path::lattice.
 
 // Words for the rays of sample k of a pixel. The first three are those of a lattice of rank 1, of which the pixels of any
 // window of the filter's size have each point once; the last is the pixel's own.

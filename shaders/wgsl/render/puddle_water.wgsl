@@ -1,7 +1,5 @@
 // Puddles as rays meet them: depth maps over the ground, ripples of one lattice, what water does to the ground beneath it.
-// Rows of a puddle in the table: middle, height and kind of the map; axes and half edges; columns, rows and first texel of
-// the map; ripples; colour and extinction of the water. After the puddles, one row of the ripples, and their texels.
-// Twin: downpour_render::puddle::water, where the method is described.
+// Twin: downpour_trace::scene::water, where the method is described.
 
 // Water over a place.
 struct PuddleWater {
@@ -17,45 +15,43 @@ struct PuddleWater {
 
 // A texel of a map: ground over the map's height (m), rise of the surface over the ground (m), depth (m, below 0 on
 // land), share of the rain that arrives.
-fn puddle_water_texel(row: u32, x: i32, y: i32) -> vec4f {
-    let size = render_table[row + 2u];
-    let column = clamp(x, 0, i32(size.x) - 1);
-    let line = clamp(y, 0, i32(size.y) - 1);
-    return bitcast<vec4f>(render_table[size.z + u32(line) * size.x + u32(column)]);
+fn puddle_water_texel(map: vec3u, x: i32, y: i32) -> vec4f {
+    let column = clamp(x, 0, i32(map.x) - 1);
+    let line = clamp(y, 0, i32(map.y) - 1);
+    return puddle_texel(map.z + u32(line) * map.x + u32(column));
 }
 
 // The map over a place, bilinear. Beyond the map all is land.
-fn puddle_water_map(row: u32, place: vec3f) -> vec4f {
-    let base = bitcast<vec4f>(render_table[row]);
-    let axes = bitcast<vec4f>(render_table[row + 1u]);
-    let size = render_table[row + 2u];
-    let dx = place.x - base.x;
-    let dz = place.z - base.z;
+fn puddle_water_map(puddle: RenderPuddle, place: vec3f) -> vec4f {
+    let axes = puddle.axes;
+    let map = puddle.map;
+    let dx = place.x - puddle.middle.x;
+    let dz = place.z - puddle.middle.z;
     let along = dx * axes.x + dz * axes.y;
     let across = dz * axes.x - dx * axes.y;
     if abs(along) >= axes.z || abs(across) >= axes.w {
         return vec4f(0.0, 0.0, -1.0, 0.0);
     }
-    let u = (along / axes.z * 0.5 + 0.5) * f32(size.x) - 0.5;
-    let v = (across / axes.w * 0.5 + 0.5) * f32(size.y) - 0.5;
+    let u = (along / axes.z * 0.5 + 0.5) * f32(map.x) - 0.5;
+    let v = (across / axes.w * 0.5 + 0.5) * f32(map.y) - 0.5;
     let x = i32(floor(u));
     let y = i32(floor(v));
     let fx = u - floor(u);
     let fy = v - floor(v);
-    let upper = puddle_water_texel(row, x, y) * (1.0 - fx) + puddle_water_texel(row, x + 1, y) * fx;
-    let lower = puddle_water_texel(row, x, y + 1) * (1.0 - fx) + puddle_water_texel(row, x + 1, y + 1) * fx;
+    let upper = puddle_water_texel(map, x, y) * (1.0 - fx) + puddle_water_texel(map, x + 1, y) * fx;
+    let lower = puddle_water_texel(map, x, y + 1) * (1.0 - fx) + puddle_water_texel(map, x + 1, y + 1) * fx;
     return upper * (1.0 - fy) + lower * fy;
 }
 
 // The water over a place that a ray has met, on ground whose facet rises by `upward`, or in the water.
 fn puddle_water_find(place: vec3f, upward: f32) -> PuddleWater {
     for (var k = 0u; k < render_frame.puddle_count; k += 1u) {
-        let row = render_frame.puddles + k * PUDDLE_WATER_ROWS;
-        let found = puddle_water_map(row, place);
+        let puddle = puddle_load(k);
+        let found = puddle_water_map(puddle, place);
         if found.z < PUDDLE_WATER_LEAST {
             continue;
         }
-        let height = place.y - bitcast<f32>(render_table[row].y) - found.x;
+        let height = place.y - puddle.middle.y - found.x;
         let rise = clamp(found.y - height, 0.0, max(found.y, 0.0));
         let stands = height > 0.0 && rise > 0.0;
         let lies = abs(height) <= PUDDLE_WATER_SLACK && upward > 0.7;
@@ -70,7 +66,7 @@ fn puddle_water_find(place: vec3f, upward: f32) -> PuddleWater {
 fn puddle_water_slope(first: u32, size: u32, x: i32, y: i32) -> vec4f {
     let column = u32(clamp(x, 0, i32(size) - 1));
     let line = u32(clamp(y, 0, i32(size) - 1));
-    return bitcast<vec4f>(render_table[first + line * size + column]);
+    return puddle_texel(first + line * size + column);
 }
 
 // A piece of the ripples round a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
@@ -96,22 +92,22 @@ fn puddle_water_piece(vertex: vec2i, offset: vec2f, first: u32, size: u32, steps
 // all water: pieces of it, from a place of its own for each vertex of a mesh of triangles, are mixed so that the variance
 // stays.
 fn puddle_water_ripple(puddle: u32, place: vec3f, footprint: f32, depth: f32, open: f32) -> vec3f {
-    let row = render_frame.puddles + puddle * PUDDLE_WATER_ROWS;
-    let look = bitcast<vec4f>(render_table[row + 3u]);
-    let more = bitcast<vec4f>(render_table[row + 5u]);
-    let head = render_table[render_frame.puddles + render_frame.puddle_count * PUDDLE_WATER_ROWS];
-    let cell = bitcast<f32>(head.w);
+    let water = puddle_load(puddle);
+    let look = water.ripples;
+    let more = water.own;
+    let head = puddle_ripples();
+    let cell = head.cell;
     // look: scale, cosine and sine of the angle, influence.
     let strength = look.w * open * smoothstep(0.0, max(more.x, 1.0e-6), depth);
-    if head.x == 0u || strength <= 0.0 {
+    if head.size == 0u || strength <= 0.0 {
         return vec3f(0.0);
     }
     let finest = footprint / (look.x * cell);
-    let level = min(u32(max(floor(log2(max(finest, 1.0)) + 0.5), 0.0)), head.y - 1u);
+    let level = min(u32(max(floor(log2(max(finest, 1.0)) + 0.5), 0.0)), head.levels - 1u);
     // Levels of n x n, n / 2 x n / 2, ...: 4/3 n^2 (1 - 4^-level) texels before this one.
-    let size = max(head.x >> level, 1u);
-    let first = head.z + (head.x * head.x - size * size) / 3u * 4u;
-    let steps = PUDDLE_WATER_MESH / cell * f32(size) / f32(head.x);
+    let size = max(head.size >> level, 1u);
+    let first = head.first + (head.size * head.size - size * size) / 3u * 4u;
+    let steps = PUDDLE_WATER_MESH / cell * f32(size) / f32(head.size);
 
     let px = (place.x * look.y + place.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
     let pz = (place.z * look.y - place.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;

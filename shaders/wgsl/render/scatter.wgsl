@@ -1,5 +1,5 @@
 // Where the light that a surface shows comes from: rays drawn for its diffuse base and for its gloss.
-// Twin: downpour_render::scatter, where the method is described.
+// Twin: downpour_trace::scatter, where the method is described.
 
 // A ray that looks for light.
 struct ScatterRay {

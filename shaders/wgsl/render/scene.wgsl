@@ -1,20 +1,10 @@
 // A scene of triangles under a sky, and the light of its lamps at a place.
-// Twin: downpour_render::scene.
+// Twin: downpour_trace::scene.
 
 // Whether there are puddles: what they need slows down the rest.
 override SCENE_WET: bool = true;
 // Whether a pane throws shadows: likewise.
 override SCENE_PANE: bool = true;
-
-struct SceneLight {
-    // From the surface to the light, of length 1.
-    direction: vec3f,
-    distance: f32,
-    // Irradiance over pi on a surface that faces it.
-    irradiance: vec3f,
-    // Half the angle that the light takes.
-    spread: f32,
-}
 
 // Light of a lamp that arrives at a surface, in air or under water.
 struct SceneArrival {
@@ -34,29 +24,6 @@ struct SceneArrival {
     irradiance: vec3f,
 }
 
-// The light of row `index` at a place. A lamp that is nearer than `least` is as bright as from there.
-fn scene_light(index: u32, place: vec3f, least: f32) -> SceneLight {
-    let row = render_frame.lights + index * SCENE_LIGHT_ROWS;
-    let position = bitcast<vec4f>(render_table[row]);
-    let axis = bitcast<vec4f>(render_table[row + 1u]);
-    let colour = bitcast<vec4f>(render_table[row + 2u]);
-    let cone = bitcast<vec4f>(render_table[row + 3u]);
-    if render_table[row].w == SCENE_LIGHT_DIRECTIONAL {
-        return SceneLight(-axis.xyz, SCENE_FAR, colour.rgb, PANE_SHADOW_SUN);
-    }
-    let offset = position.xyz - place;
-    let square = max(dot(offset, offset), max(least * least, 1.0e-8));
-    let distance = sqrt(max(dot(offset, offset), 1.0e-8));
-    let direction = offset / distance;
-    // glTF's window: no light beyond the range, if there is one.
-    let part = distance / max(colour.w, 1.0e-6);
-    let fourth = part * part * part * part;
-    let ranged = clamp(1.0 - fourth, 0.0, 1.0);
-    let window = select(1.0, ranged, colour.w > 0.0);
-    let edge = clamp(dot(-direction, axis.xyz) * cone.x + cone.y, 0.0, 1.0);
-    return SceneLight(direction, distance, colour.rgb * (window * edge * edge / square), 0.0);
-}
-
 // Share of light that reaches a place from a distance along a direction: surfaces that let light through dim it.
 fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
     var from_distance = render_frame.nearest;
@@ -66,14 +33,11 @@ fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
         if hit.distance < 0.0 {
             return visible;
         }
-        let row = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
-        let flags = render_table[row + 3u].x;
-        let through = bitcast<f32>(render_table[row + 3u].y);
-        let base = bitcast<vec4f>(render_table[row]);
-        if (flags & SCENE_BLENDED) != 0u {
+        let material = material_load(render_corners[hit.triangle * 3u].material);
+        if (material.flags & SCENE_BLENDED) != 0u {
             visible *= 1.0 - clamp(surface_alpha(hit), 0.0, 1.0);
-        } else if through > 0.0 {
-            visible *= base.rgb * through;
+        } else if material.transmission > 0.0 {
+            visible *= material.base.rgb * material.transmission;
         } else {
             return vec3f(0.0);
         }
@@ -89,7 +53,7 @@ fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
 // goes in.
 fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> SceneArrival {
     var place = surface.position;
-    var light = SceneLight();
+    var light = LightSample();
     var arrival = SceneArrival();
     var height = 0.0;
     var passes = 1u;
@@ -100,7 +64,7 @@ fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> S
                 place = surface.position + vec3f(0.0, under.y, 0.0) + puddle_water_entry(light.direction, under.x);
             }
         }
-        light = scene_light(index, place, 0.0);
+        light = light_sample(light_load(index), place, 0.0);
         if k == 0u {
             let start = place + surface.facet * render_frame.nearest;
             arrival = SceneArrival(
@@ -158,7 +122,7 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
         let index = k % count;
         let arrival = scene_arrival(index, surface, standoff, under);
         let lit = scene_lamp(surface, view, arrival);
-        let share = scene_share(lit);
+        let share = light_weight(lit);
         if k < count {
             total += share;
             continue;
@@ -188,11 +152,6 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
         sum += lit * visible * (share_of_pane * weight);
     }
     return sum;
-}
-
-// What a colour weighs when lamps are compared.
-fn scene_share(colour: vec3f) -> f32 {
-    return colour.r + colour.g + colour.b;
 }
 
 // The direction of the ray through a place of the picture, in pixels from the top left.

@@ -1,6 +1,6 @@
 // The light of the sky: an equirectangular map, the same at coarser levels, and its irradiance.
 // +Y is up; u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top.
-// Twin: downpour_render::sky.
+// Twin: downpour_trace::sky.
 
 // Texture coordinates of a direction of length 1.
 fn sky_coordinates(direction: vec3f) -> vec2f {

@@ -1,7 +1,7 @@
 // Light of sky and surfaces on surfaces: means over what the pixels round a pixel have found on the same surface, times what
 // the surface makes of it. The kernel makes one pass: means over windows, then wider means of them; the last adds them to the
 // picture.
-// Twin: downpour_render::skylight, where the method is described.
+// Twin: downpour_trace::skylight, where the method is described.
 
 @group(0) @binding(1) var<storage, read> skylight_gather: array<TraceGather>;
 // Means of each pixel's two slots: colour, and the variance of its luminance.

@@ -7,7 +7,7 @@
 // Sky map: equirectangular, u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top, bilinear between the
 // middles of texels, round in u. To its light come lamps far away: discs of even radiance on the sphere of the sky.
 // Limits: light that has left the drop does not meet it again (it is convex up to 5.9 mm); 256 internal reflections.
-// Twin: downpour_render::specimen.
+// Twin: downpour_specimen.
 
 struct SpecimenCamera {
     // Unit vectors: right, up, and from the drop to the camera.

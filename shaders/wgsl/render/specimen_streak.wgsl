@@ -4,7 +4,7 @@
 // closed form; the rest of the exposure shows the sky, with its exact weight. The interval is cut into equal parts, one
 // instant in each, all at the same place of their part, which is drawn for each sample of the picture.
 // u is in units of the volume-equivalent radius. Everything else is as in render/specimen.wgsl.
-// Twin: downpour_render::specimen::streak.
+// Twin: downpour_specimen::streak.
 
 struct SpecimenStreak {
     oscillation: DropOscillation,

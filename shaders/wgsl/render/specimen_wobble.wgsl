@@ -3,7 +3,7 @@
 // for, so that no bulge or hollow wider than a part is missed. The crossing that is found is closed in on by the steps of
 // mask_trace_step, and by halves where these leave the bracket.
 // Limits: light that has left the drop does not meet it again.
-// Twin: downpour_render::specimen::wobble.
+// Twin: downpour_specimen::wobble.
 
 // A drop at one instant.
 struct SpecimenWobble {

@@ -1,5 +1,5 @@
 // What a ray finds: the nearest triangle that is not a hole, and its material there.
-// Twin: downpour_render::surface.
+// Twin: downpour_trace::surface.
 
 struct SurfaceHit {
     // Negative: nothing.
@@ -37,21 +37,18 @@ fn surface_texture(row: u32, uv: vec4f, spread: f32) -> vec4f {
 
 // Alpha at a hit.
 fn surface_alpha(hit: SurfaceHit) -> f32 {
-    let material = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
-    let slot = render_table[material + 4u].x;
-    return bitcast<f32>(render_table[material].w)
-        * surface_texture(slot, surface_uv(hit), -20.0).a * surface_colour(hit).a;
+    let material = material_load(render_corners[hit.triangle * 3u].material);
+    return material.base.a
+        * surface_texture(material.maps.x, surface_uv(hit), -20.0).a * surface_colour(hit).a;
 }
 
 // Whether there is a hole at a hit.
 fn surface_is_open(hit: SurfaceHit) -> bool {
-    let material = render_corners[hit.triangle * 3u].material * SCENE_MATERIAL_ROWS;
-    let flags = render_table[material + 3u].x;
-    if (flags & (SCENE_MASKED | SCENE_BLENDED)) == 0u {
+    let material = material_load(render_corners[hit.triangle * 3u].material);
+    if (material.flags & (SCENE_MASKED | SCENE_BLENDED)) == 0u {
         return false;
     }
-    let cutoff = bitcast<f32>(render_table[material + 2u].w);
-    let least = select(SURFACE_OPEN, cutoff, (flags & SCENE_MASKED) != 0u);
+    let least = select(SURFACE_OPEN, material.cutoff, (material.flags & SCENE_MASKED) != 0u);
     return surface_alpha(hit) < least;
 }
 
@@ -133,15 +130,10 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
 
     let uv = surface_uv(hit);
     let spread = surface_spread(hit, geometric, direction, cone * hit.distance);
-    let row = corner.material * SCENE_MATERIAL_ROWS;
-    let base_row = bitcast<vec4f>(render_table[row]);
-    let glow = bitcast<vec4f>(render_table[row + 1u]);
-    let look = bitcast<vec4f>(render_table[row + 2u]);
-    let flags = render_table[row + 3u].x;
-    let transmission_factor = bitcast<f32>(render_table[row + 3u].y);
-    let ior = bitcast<f32>(render_table[row + 3u].z);
-    let maps = render_table[row + 4u];
-    let more = render_table[row + 5u];
+    let material = material_load(corner.material);
+    let flags = material.flags;
+    let maps = material.maps;
+    let more = material.more;
 
     // One text for all textures: each copy of it is compiled again.
     var rows = array<u32, 6>(maps.x, maps.y, maps.z, maps.w, more.x, more.y);
@@ -149,22 +141,22 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
     for (var k = 0u; k < 6u; k += 1u) {
         texels[k] = surface_texture(rows[k], uv, spread);
     }
-    let base = base_row * texels[0] * surface_colour(hit);
+    let base = material.base * texels[0] * surface_colour(hit);
     let rough = texels[1];
     // Unlit, the base colour is all that is seen.
     let unlit = (flags & SCENE_UNLIT) != 0u;
-    let metallic = select(clamp(glow.w * rough.b, 0.0, 1.0), 0.0, unlit);
-    let roughness = clamp(look.x * rough.g, 0.0, 1.0);
-    let emission = glow.rgb * texels[3].rgb;
-    let occlusion = 1.0 + look.z * (texels[4].r - 1.0);
-    let transmission = transmission_factor * texels[5].r;
+    let metallic = select(clamp(material.metallic * rough.b, 0.0, 1.0), 0.0, unlit);
+    let roughness = clamp(material.roughness * rough.g, 0.0, 1.0);
+    let emission = material.emission * texels[3].rgb;
+    let occlusion = 1.0 + material.occlusion_strength * (texels[4].r - 1.0);
+    let transmission = material.transmission * texels[5].r;
 
     var normal = (corner.normal * w + second.normal * hit.u + third.normal * hit.v) * facing;
     if maps.z != SCENE_NONE {
         let tangent = corner.tangent * w + second.tangent * hit.u + third.tangent * hit.v;
         let map = texels[2].xyz * 2.0 - vec3f(1.0);
         let side = cross(normal * facing, tangent.xyz) * tangent.w;
-        normal = tangent.xyz * (map.x * look.y) + side * (map.y * look.y) + normal * max(map.z, 0.05);
+        normal = tangent.xyz * (map.x * material.normal_scale) + side * (map.y * material.normal_scale) + normal * max(map.z, 0.05);
     }
     normal = normal / max(sqrt(dot(normal, normal)), 1.0e-20);
     // A shading normal that faces away from the viewer is bent back to the horizon.
@@ -173,7 +165,7 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
         normal = normal - direction * (away + 0.01);
         normal = normal / max(sqrt(dot(normal, normal)), 1.0e-20);
     }
-    let dielectric = (ior - 1.0) / (ior + 1.0);
+    let dielectric = (material.ior - 1.0) / (material.ior + 1.0);
     let f0 = select(dielectric * dielectric, 0.0, unlit);
     return Surface(
         origin + direction * hit.distance,

@@ -1,7 +1,7 @@
 // Textures in a buffer, filtered in the shader, so that the CPU filters them in the same way.
 // A slot is three rows of the table: the 2 x 2 part of the coordinates' transform; its offset, the set of coordinates
 // and flags; width, height, first texel and number of levels. Levels follow each other, each half as large.
-// Twin: downpour_render::texture.
+// Twin: downpour_trace::texture.
 
 // A coordinate brought into the texture: the index of a texel along an edge of n.
 fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> i32 {
@@ -46,13 +46,13 @@ fn texture_level(first: u32, width: i32, height: i32, uv: vec2f, flags: u32) -> 
 // A slot at the corner's two sets of coordinates. `spread` is the logarithm to base 2 of the width of the pixel in
 // units of texture coordinates.
 fn texture_sample(slot: u32, uv: vec4f, spread: f32) -> vec4f {
-    let matrix = bitcast<vec4f>(render_table[slot]);
-    let place = render_table[slot + 1u];
-    let image = render_table[slot + 2u];
-    let chosen = select(uv.xy, uv.zw, place.z == 1u);
+    let found = material_slot(slot);
+    let matrix = found.matrix;
+    let image = found.image;
+    let chosen = select(uv.xy, uv.zw, found.uv_set == 1u);
     let moved = vec2f(
-        matrix.x * chosen.x + matrix.y * chosen.y + bitcast<f32>(place.x),
-        matrix.z * chosen.x + matrix.w * chosen.y + bitcast<f32>(place.y),
+        matrix.x * chosen.x + matrix.y * chosen.y + found.offset.x,
+        matrix.z * chosen.x + matrix.w * chosen.y + found.offset.y,
     );
     // Far outside, a coordinate has no fraction left.
     let inside = clamp(moved, vec2f(-4096.0), vec2f(4096.0));
@@ -72,7 +72,7 @@ fn texture_sample(slot: u32, uv: vec4f, spread: f32) -> vec4f {
     var sum = vec4f(0.0);
     // Two levels, or one.
     for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
-        sum += texture_level(first, width, height, inside, place.w) * share;
+        sum += texture_level(first, width, height, inside, found.flags) * share;
         first += u32(width * height);
         width = max(width / 2, 1);
         height = max(height / 2, 1);

@@ -3,7 +3,7 @@
 // Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others are
 // taken to do so too. Light of sky and surfaces on the first surface leaves the picture's kernel as what one pixel has found
 // of it; skylight.wgsl takes means over neighbours.
-// Twin: downpour_render::trace.
+// Twin: downpour_trace::trace.
 
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> trace_gather: array<TraceGather>;

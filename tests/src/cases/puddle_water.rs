@@ -101,7 +101,7 @@ fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
         let slopes = [0.2 * ops::sin(0.5 * x + 0.2 * y) + 0.1 * a, 0.2 * ops::cos(0.6 * y) + 0.1 * b];
         [slopes[0], slopes[1], slopes[0] * slopes[0] + slopes[1] * slopes[1], 0.0]
     });
-    scene.lay_puddles(&PuddleRows {
+    scene.set_puddles(&PuddleRows {
         puddles: &maps(),
         shape: (128, 7, 0.01),
         slopes: &slope_levels(finest.collect(), 128),
@@ -123,6 +123,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         name,
         kernel: &TRACE_KERNEL,
         covers: &[
+            "puddle_load",
+            "puddle_ripples",
+            "puddle_texel",
             "puddle_water_texel",
             "puddle_water_map",
             "puddle_water_find",

@@ -24,8 +24,8 @@ use downpour_shaders::render::rain::{
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
 use downpour_sim::resolved::{Region, Resolved};
+use downpour_trace::capture::trace_environment;
 use downpour_trace::data::RenderFrame;
-use downpour_trace::environment::trace_environment;
 use downpour_trace::gpu::ScenePipeline;
 use downpour_trace::scene::SceneView;
 use glam::{DVec3, Vec3};

@@ -170,6 +170,55 @@ impl PaneShade {
     }
 }
 
+/// A pane before the lamps as the shaders read it. Twin of the struct of the same name in `shaders/wgsl/render/pane.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderPane {
+    /// Upper left corner, metres.
+    pub corner: Vec3,
+    /// Texels in a metre.
+    pub texels_per_metre: f32,
+    /// Unit vector to the right.
+    pub across: Vec3,
+    /// Width, m.
+    pub width: f32,
+    /// Unit vector downwards.
+    pub down: Vec3,
+    /// Height, m.
+    pub height: f32,
+    /// Unit normal away from the eye.
+    pub outward: Vec3,
+    /// `PANE_SHADOW_LENS` or `PANE_SHADOW_TATARCHUK`.
+    pub form: u32,
+    /// First row of the texels.
+    pub first: u32,
+    /// Coarsest level.
+    pub last: u32,
+    /// Mean radius and focal length of the drops, m.
+    pub drops: [f32; 2],
+}
+
+impl RenderPane {
+    /// Reads the pane from its rows: [`PaneShade::rows`].
+    #[must_use]
+    pub fn pane_load(rows: &[[u32; 4]; PANE_SHADOW_LEVELS as usize]) -> Self {
+        let vector = |k: usize| Vec3::from_array([rows[k][0], rows[k][1], rows[k][2]].map(f32::from_bits));
+        let last = |k: usize| f32::from_bits(rows[k][3]);
+        Self {
+            corner: vector(0),
+            texels_per_metre: last(0),
+            across: vector(1),
+            width: last(1),
+            down: vector(2),
+            height: last(2),
+            outward: vector(3),
+            form: rows[3][3],
+            first: rows[4][2],
+            last: rows[4][3],
+            drops: [rows[5][0], rows[5][1]].map(f32::from_bits),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::f32::consts::PI;

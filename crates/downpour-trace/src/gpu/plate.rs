@@ -5,8 +5,8 @@ use downpour_render::gpu::{LightingOnGpu, PlateOnGpu, RainPass, RainPipeline};
 use downpour_render::rain::Rain;
 
 use super::scene::{SceneOnGpu, ScenePipeline};
+use crate::capture::environment_frame;
 use crate::data::RenderFrame;
-use crate::environment::environment_frame;
 use crate::trace::TraceGather;
 
 /// Environment map, lamps and obstacles of a scene, ready to be asked by rain.

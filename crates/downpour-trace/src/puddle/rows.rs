@@ -1,7 +1,7 @@
-//! Puddles as rows of the scene's table.
+//! Puddles as rows of the scene's table. Twin of `shaders/wgsl/render/puddle.wgsl`.
 
-use downpour_shaders::render::puddle_water::PUDDLE_WATER_MOST;
-use glam::{Vec2, Vec3};
+use downpour_shaders::render::puddle_water::{PUDDLE_WATER_MOST, PUDDLE_WATER_ROWS};
+use glam::{Vec2, Vec3, Vec4};
 
 use super::map::{PuddleMap, turned};
 use crate::data::SceneData;
@@ -50,22 +50,90 @@ pub struct PuddleRows<'a> {
     pub shift: Vec3,
 }
 
+/// Water on the ground as the shaders read it. Twin of the WGSL struct of the same name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RenderPuddle {
+    /// Middle of the map.
+    pub(crate) middle: Vec3,
+    /// Cosine and sine of the map's turn, and half its edges, m.
+    pub(crate) axes: Vec4,
+    /// Columns, rows and first row of the texels of the map.
+    pub(crate) map: [u32; 3],
+    /// Ripples: scale, cosine and sine of the angle, influence.
+    pub(crate) ripples: Vec4,
+    /// Albedo of deep water.
+    pub(crate) murk: Vec3,
+    /// Fraction of light that is lost per metre of water, 1/m.
+    pub(crate) extinction: f32,
+    /// Depth of full ripples, and the puddle's own part of the lattice.
+    pub(crate) own: Vec3,
+}
+
+/// The lattice of the ripples of all puddles as the shaders read it. Twin of the WGSL struct of the same name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RenderRipples {
+    /// Columns of the finest level; 0: level water.
+    pub(crate) size: u32,
+    /// Number of levels.
+    pub(crate) levels: u32,
+    /// First row of the texels.
+    pub(crate) first: u32,
+    /// Edge of a cell, m.
+    pub(crate) cell: f32,
+}
+
 impl SceneData {
-    /// Lays puddles on the ground, in place of those that lie there. A pane is hung after that
-    /// ([`SceneData::hang_pane`]): it is taken down.
-    pub fn lay_puddles(&mut self, rows: &PuddleRows<'_>) {
-        self.clear_pane();
+    /// Reads a puddle.
+    pub(crate) fn puddle_load(&self, index: u32) -> RenderPuddle {
+        let first = (self.puddles + index * PUDDLE_WATER_ROWS) as usize;
+        let rows = &self.table[first..first + PUDDLE_WATER_ROWS as usize];
+        let numbers = |k: usize| Vec4::from(rows[k].map(f32::from_bits));
+        let [columns, lines, texels, _] = rows[2];
+        RenderPuddle {
+            middle: numbers(0).truncate(),
+            axes: numbers(1),
+            map: [columns, lines, texels],
+            ripples: numbers(3),
+            murk: numbers(4).truncate(),
+            extinction: numbers(4).w,
+            own: numbers(5).truncate(),
+        }
+    }
+
+    /// Reads the lattice of the ripples.
+    pub(crate) fn puddle_ripples(&self) -> RenderRipples {
+        let [size, levels, first, cell] =
+            self.table[(self.puddles + self.puddle_count * PUDDLE_WATER_ROWS) as usize];
+        RenderRipples { size, levels, first, cell: f32::from_bits(cell) }
+    }
+
+    /// Reads a texel of a map or of the ripples.
+    pub(crate) fn puddle_texel(&self, row: u32) -> Vec4 {
+        Vec4::from(self.table[row as usize].map(f32::from_bits))
+    }
+
+    /// Sets the puddles on the ground, in place of those that are there.
+    pub fn set_puddles(&mut self, rows: &PuddleRows<'_>) {
+        // A pane comes after the puddles in the table, wherever they end.
+        let pane = self.take_pane();
         if self.puddle_count > 0 {
             self.table.truncate(self.puddles as usize);
         }
         let puddles = &rows.puddles[..rows.puddles.len().min(PUDDLE_WATER_MOST as usize)];
         self.puddles = self.table.len() as u32;
         self.puddle_count = puddles.len() as u32;
-        if puddles.is_empty() {
-            return;
+        if !puddles.is_empty() {
+            self.add_puddles(puddles, rows);
         }
+        if let Some((shade, axes)) = pane {
+            self.set_pane(&shade, axes);
+        }
+    }
+
+    /// Adds the rows of puddles at the end of the table.
+    fn add_puddles(&mut self, puddles: &[(PuddleMap, PuddleLook)], rows: &PuddleRows<'_>) {
         let words = |numbers: [f32; 4]| numbers.map(f32::to_bits);
-        let head = puddles.len() * downpour_shaders::render::puddle_water::PUDDLE_WATER_ROWS as usize + 1;
+        let head = puddles.len() * PUDDLE_WATER_ROWS as usize + 1;
         let mut first = self.puddles + head as u32;
         for (k, (map, look)) in (0u16..).zip(puddles) {
             let middle = map.ground.middle + rows.shift;

@@ -1,14 +1,12 @@
 //! The light of lamps and sun on a surface, with rays that find what hides it.
 
 use downpour_drop::optics::optics_fresnel;
-use downpour_render::light::{Light, LightSample, light_weight};
+use downpour_render::light::{Light, light_weight};
 use downpour_render::plate::Lighting;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OUTSIDE};
-use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS, SCENE_MATERIAL_ROWS,
-};
-use glam::{Vec2, Vec3, Vec4};
+use downpour_shaders::render::scene::{SCENE_BLENDED, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS};
+use glam::{Vec2, Vec3};
 
 use super::SceneView;
 use crate::brdf::brdf_direct;
@@ -35,11 +33,6 @@ struct SceneArrival {
 }
 
 impl SceneView<'_> {
-    /// Light `index` at a point. A lamp that is nearer than `least` is as bright as from there.
-    pub(crate) fn scene_light(&self, index: u32, point: Vec3, least: f32) -> LightSample {
-        self.data.light_load(index).light_sample(point, least)
-    }
-
     /// Share of light that reaches a place from a distance along a direction: surfaces that let light through dim it.
     pub(crate) fn scene_visibility(&self, place: Vec3, direction: Vec3, distance: f32) -> Vec3 {
         let nearest = self.frame.nearest;
@@ -48,15 +41,11 @@ impl SceneView<'_> {
         for _ in 0..SCENE_LAYERS {
             let hit = self.data.surface_hit(place, direction, from_distance, distance - nearest);
             let Some(hit) = hit else { return visible };
-            let material = self.data.corners[hit.triangle as usize * 3].material;
-            let row = (material * SCENE_MATERIAL_ROWS) as usize;
-            let [flags, through, ..] = self.data.table[row + 3];
-            let through = f32::from_bits(through);
-            let base = Vec4::from(self.data.table[row].map(f32::from_bits));
-            if flags & SCENE_BLENDED != 0 {
+            let material = self.data.material_load(self.data.corners[hit.triangle as usize * 3].material);
+            if material.flags & SCENE_BLENDED != 0 {
                 visible *= 1.0 - self.data.surface_alpha(&hit).clamp(0.0, 1.0);
-            } else if through > 0.0 {
-                visible *= base.truncate() * through;
+            } else if material.transmission > 0.0 {
+                visible *= material.base.truncate() * material.transmission;
             } else {
                 return Vec3::ZERO;
             }
@@ -74,7 +63,7 @@ impl SceneView<'_> {
     fn scene_arrival(&self, index: u32, surface: &Surface, standoff: f32, under: Vec2) -> SceneArrival {
         let nearest = self.frame.nearest;
         let mut place = surface.position;
-        let mut light = self.scene_light(index, place, 0.0);
+        let mut light = self.data.light_load(index).light_sample(place, 0.0);
         let mut arrival = SceneArrival {
             start: place + surface.facet * nearest,
             distance: light.distance,
@@ -92,7 +81,7 @@ impl SceneView<'_> {
             if under.x > 0.0 {
                 place = surface.position + Vec3::Y * under.y + puddle_water_entry(light.direction, under.x);
             }
-            light = self.scene_light(index, place, 0.0);
+            light = self.data.light_load(index).light_sample(place, 0.0);
         }
         arrival.direction = light.direction;
         arrival.irradiance = light.irradiance;

@@ -16,11 +16,12 @@ use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DIMENSION, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_INSIDE,
-    PUDDLE_WATER_LEAST, PUDDLE_WATER_MESH, PUDDLE_WATER_OUTSIDE, PUDDLE_WATER_ROWS, PUDDLE_WATER_SLACK,
+    PUDDLE_WATER_LEAST, PUDDLE_WATER_MESH, PUDDLE_WATER_OUTSIDE, PUDDLE_WATER_SLACK,
 };
 use glam::{Vec2, Vec3, Vec4};
 
 use super::SceneView;
+use crate::puddle::RenderPuddle;
 
 /// Water over a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,25 +37,20 @@ pub(crate) struct PuddleWater {
 }
 
 impl SceneView<'_> {
-    fn puddle_water_numbers(&self, row: u32) -> Vec4 {
-        Vec4::from(self.data.table[row as usize].map(f32::from_bits))
-    }
-
     /// A texel of a map: ground over the map's height (m), rise of the surface over the ground (m), depth (m, below 0 on
     /// land), share of the rain that arrives.
-    fn puddle_water_texel(&self, row: u32, x: i32, y: i32) -> Vec4 {
-        let [columns, rows, first, _] = self.data.table[row as usize + 2];
+    fn puddle_water_texel(&self, map: [u32; 3], x: i32, y: i32) -> Vec4 {
+        let [columns, rows, first] = map;
         let column = x.clamp(0, columns as i32 - 1) as u32;
         let line = y.clamp(0, rows as i32 - 1) as u32;
-        self.puddle_water_numbers(first + line * columns + column)
+        self.data.puddle_texel(first + line * columns + column)
     }
 
     /// The map over a place, bilinear. Beyond the map all is land.
-    fn puddle_water_map(&self, row: u32, place: Vec3) -> Vec4 {
-        let base = self.puddle_water_numbers(row);
-        let axes = self.puddle_water_numbers(row + 1);
-        let [columns, rows, ..] = self.data.table[row as usize + 2];
-        let (dx, dz) = (place.x - base.x, place.z - base.z);
+    fn puddle_water_map(&self, puddle: &RenderPuddle, place: Vec3) -> Vec4 {
+        let (axes, map) = (puddle.axes, puddle.map);
+        let [columns, rows, _] = map;
+        let (dx, dz) = (place.x - puddle.middle.x, place.z - puddle.middle.z);
         let along = dx * axes.x + dz * axes.y;
         let across = dz * axes.x - dx * axes.y;
         if along.abs() >= axes.z || across.abs() >= axes.w {
@@ -64,7 +60,7 @@ impl SceneView<'_> {
         let v = (across / axes.w * 0.5 + 0.5) * rows as f32 - 0.5;
         let (x, y) = (u.floor() as i32, v.floor() as i32);
         let (fx, fy) = (u - u.floor(), v - v.floor());
-        let texel = |x, y| self.puddle_water_texel(row, x, y);
+        let texel = |x, y| self.puddle_water_texel(map, x, y);
         let upper = texel(x, y) * (1.0 - fx) + texel(x + 1, y) * fx;
         let lower = texel(x, y + 1) * (1.0 - fx) + texel(x + 1, y + 1) * fx;
         upper * (1.0 - fy) + lower * fy
@@ -73,12 +69,12 @@ impl SceneView<'_> {
     /// The water over a place that a ray has met, on ground whose facet rises by `upward`, or in the water.
     pub(crate) fn puddle_water_find(&self, place: Vec3, upward: f32) -> Option<PuddleWater> {
         (0..self.frame.puddle_count).find_map(|puddle| {
-            let row = self.frame.puddles + puddle * PUDDLE_WATER_ROWS;
-            let found = self.puddle_water_map(row, place);
+            let water = self.data.puddle_load(puddle);
+            let found = self.puddle_water_map(&water, place);
             if found.z < PUDDLE_WATER_LEAST {
                 return None;
             }
-            let height = place.y - self.puddle_water_numbers(row).y - found.x;
+            let height = place.y - water.middle.y - found.x;
             let rise = (found.y - height).clamp(0.0, found.y.max(0.0));
             let stands = height > 0.0 && rise > 0.0;
             let lies = height.abs() <= PUDDLE_WATER_SLACK && upward > 0.7;
@@ -92,7 +88,7 @@ impl SceneView<'_> {
     fn puddle_water_slope(&self, first: u32, size: u32, x: i32, y: i32) -> Vec4 {
         let column = x.clamp(0, size as i32 - 1) as u32;
         let line = y.clamp(0, size as i32 - 1) as u32;
-        self.puddle_water_numbers(first + line * size + column)
+        self.data.puddle_texel(first + line * size + column)
     }
 
     /// A piece of the ripples round a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
@@ -122,24 +118,22 @@ impl SceneView<'_> {
         depth: f32,
         open: f32,
     ) -> Vec3 {
-        let row = self.frame.puddles + puddle * PUDDLE_WATER_ROWS;
-        let look = self.puddle_water_numbers(row + 3);
-        let more = self.puddle_water_numbers(row + 5);
-        let head =
-            self.data.table[(self.frame.puddles + self.frame.puddle_count * PUDDLE_WATER_ROWS) as usize];
-        let cell = f32::from_bits(head[3]);
+        let water = self.data.puddle_load(puddle);
+        let (look, more) = (water.ripples, water.own);
+        let head = self.data.puddle_ripples();
+        let cell = head.cell;
         // Scale, cosine and sine of the angle, influence.
         let rises = (depth / more.x.max(1.0e-6)).clamp(0.0, 1.0);
         let strength = look.w * open * (rises * rises * (3.0 - 2.0 * rises));
-        if head[0] == 0 || strength <= 0.0 {
+        if head.size == 0 || strength <= 0.0 {
             return Vec3::ZERO;
         }
         let finest = footprint / (look.x * cell);
-        let level = ((ops::log2(finest.max(1.0)) + 0.5).floor().max(0.0) as u32).min(head[1] - 1);
+        let level = ((ops::log2(finest.max(1.0)) + 0.5).floor().max(0.0) as u32).min(head.levels - 1);
         // Levels of n x n, n / 2 x n / 2, ...: 4/3 n^2 (1 - 4^-level) texels before this one.
-        let size = (head[0] >> level).max(1);
-        let first = head[2] + (head[0] * head[0] - size * size) / 3 * 4;
-        let steps = PUDDLE_WATER_MESH / cell * size as f32 / head[0] as f32;
+        let size = (head.size >> level).max(1);
+        let first = head.first + (head.size * head.size - size * size) / 3 * 4;
+        let steps = PUDDLE_WATER_MESH / cell * size as f32 / head.size as f32;
 
         let px = (place.x * look.y + place.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
         let pz = (place.z * look.y - place.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
@@ -267,7 +261,7 @@ mod tests {
         let mut scene = SceneBuilder::new().build(&SkyLight::new(1, 1, &[[1.0; 3]]));
         let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(100.0), turn: 0.0, reach: 1.0 };
         let map = PuddleMap { ground, size: [2, 2], cells: vec![[0.0, 0.0, 0.1, 1.0]; 4] };
-        scene.lay_puddles(&PuddleRows {
+        scene.set_puddles(&PuddleRows {
             puddles: &[(map, PuddleLook { angle: 0.5, ..PuddleLook::default() })],
             shape: (u32::from(size), 8, 5.0e-3),
             slopes: &slope_levels(finest, usize::from(size)),

@@ -1,0 +1,60 @@
+// Materials and textures. Rows of a material in the table: base color; emission and metalness; roughness, strength of normals and of
+// occlusion, cutoff; flags, transmission and index of refraction; texture slots. Rows of a slot: 2 x 2 transform; offset, set of
+// coordinates and flags; width, height, first texel and levels.
+// Twin: downpour_trace::material.
+
+// How a surface looks, with rows of texture slots.
+struct RenderMaterial {
+    // Base color, linear, and alpha.
+    base: vec4f,
+    emission: vec3f,
+    metallic: f32,
+    roughness: f32,
+    normal_scale: f32,
+    occlusion_strength: f32,
+    // Below this alpha a masked material has a hole.
+    cutoff: f32,
+    // SCENE_MASKED, SCENE_BLENDED, SCENE_DOUBLE_SIDED, SCENE_UNLIT.
+    flags: u32,
+    // Fraction of light that passes a thin dielectric.
+    transmission: f32,
+    ior: f32,
+    // Slots of base color, metallic-roughness, normal and emission, then of occlusion and transmission; SCENE_NONE for none.
+    maps: vec4u,
+    more: vec2u,
+}
+
+// A texture as a material uses it.
+struct RenderSlot {
+    // Rows of the 2 x 2 part of the coordinates' transform.
+    matrix: vec4f,
+    offset: vec2f,
+    // Set of coordinates, 0 or 1.
+    uv_set: u32,
+    // SCENE_ROOTED, SCENE_REPEAT_U and its like.
+    flags: u32,
+    // Width, height, first texel, and levels.
+    image: vec4u,
+}
+
+// Reads a material.
+fn material_load(index: u32) -> RenderMaterial {
+    let row = index * SCENE_MATERIAL_ROWS;
+    let base = bitcast<vec4f>(render_table[row]);
+    let glow = bitcast<vec4f>(render_table[row + 1u]);
+    let look = bitcast<vec4f>(render_table[row + 2u]);
+    let through = render_table[row + 3u];
+    let optics = bitcast<vec2f>(through.yz);
+    return RenderMaterial(
+        base, glow.rgb, glow.w, look.x, look.y, look.z, look.w, through.x, optics.x, optics.y,
+        render_table[row + 4u], render_table[row + 5u].xy,
+    );
+}
+
+// Reads a texture slot.
+fn material_slot(row: u32) -> RenderSlot {
+    let place = render_table[row + 1u];
+    return RenderSlot(
+        bitcast<vec4f>(render_table[row]), bitcast<vec2f>(place.xy), place.z, place.w, render_table[row + 2u],
+    );
+}
