@@ -50,6 +50,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         lattice::puddle::MODULES,
         mask::MODULES,
         render::brdf::MODULES,
+        render::camera::MODULES,
         render::drop_light::MODULES,
         render::glass::MODULES,
         render::medium::MODULES,

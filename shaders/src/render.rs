@@ -1,6 +1,7 @@
 //! `wgsl/render`: pictures. The Rust twins are in `downpour-render`.
 
 pub mod brdf;
+pub mod camera;
 pub mod drop_light;
 pub mod glass;
 pub mod medium;

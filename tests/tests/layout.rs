@@ -15,6 +15,7 @@ use downpour_lattice::puddle::PuddleSeed;
 use downpour_lattice::puddle::lattice::PuddleGrid;
 use downpour_mask::MaskTexel;
 use downpour_mask::gpu::{DropUniform, ModelUniform};
+use downpour_render::camera::Camera;
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
@@ -71,16 +72,17 @@ fn hosts() -> Vec<Host> {
         host!(AtlasPlace as "AtlasPlace" in &atlas::ATLAS, layers, side, weights, amount, parts, unused),
         host!(AtlasQuery as "AtlasQuery" in &atlas::ATLAS_QUERY,
             light, diameter, view, id, axis, across, turns, unused),
+        host!(Camera as "RenderCamera" in &render::camera::CAMERA,
+            eye, width, right, height, up, seed, forward, pixel_angle),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
-            eye, width, right, height, up, grid, forward, pixel_angle, slots, lights, light_count, sky_rays,
-            first_row, seed, nearest, ray_share, projection, suns_out, puddles, puddle_count, pane,
+            camera, grid, slots, lights, light_count, sky_rays, first_row, nearest, ray_share, projection, suns_out, puddles, puddle_count, pane,
             skylight_pass, unused_1, unused_2, sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
         host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, place, normal, light, look, factor),
         host!(TraceGather as "TraceGather" in &render::scene::TRACE, base, mirror),
         host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
-            right, width, up, height, forward, pixel_angle, capture_right, capture_size, capture_up, capture_last,
+            camera, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, tiles_across, light_terms, streak_samples,
             streak_colour, glints, atlas),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
@@ -97,7 +99,7 @@ fn hosts() -> Vec<Host> {
         host!(GlassPictureDrop as "GlassPictureDrop" in &render::glass::WATER,
             centre, radius, sphere, along, behind, lean, droop, unused, lobes),
         host!(GlassPictureFrame as "GlassPictureFrame" in &render::glass::GLASS_PICTURE,
-            right, width, up, height, forward, pixel_angle, across, columns, down, rows, outward, bins, corner, cells,
+            camera, across, columns, down, rows, outward, bins, corner, cells,
             size, wet_size, lens, focus, fresnel, room, samples, last, capture_size, capture_last, capture_texel, film,
             water, first_row, lights, lit_from, unused, levels),
         host!(GlassPictureLight as "GlassPictureLight" in &render::glass::LIGHT, place, radius, colour, distance),

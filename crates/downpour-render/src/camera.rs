@@ -85,38 +85,57 @@ impl Viewpoint {
             right: right * half_width,
             up: up * half_height,
             forward,
-            size,
+            width,
+            height,
             pixel_angle: 2.0 * half_height / height as f32,
             seed,
         })
     }
 }
 
-/// A perspective camera with its picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A perspective camera with its picture. Twin of `RenderCamera` in `shaders/wgsl/render/camera.wgsl`, and of the same layout.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Camera {
     /// Position of the eye, metres.
     pub eye: Vec3,
+    /// Columns of the picture.
+    pub width: u32,
     /// Half the picture's width at distance 1, along the camera's right.
     pub right: Vec3,
+    /// Rows of the picture.
+    pub height: u32,
     /// Half the picture's height at distance 1, along the camera's up.
     pub up: Vec3,
-    /// View direction, of length 1.
-    pub forward: Vec3,
-    /// Columns and rows of the picture.
-    pub size: [u32; 2],
-    /// Width of a pixel at distance 1.
-    pub pixel_angle: f32,
     /// Seed of the random numbers of this picture.
     pub seed: u32,
+    /// View direction, of length 1.
+    pub forward: Vec3,
+    /// Width of a pixel at distance 1.
+    pub pixel_angle: f32,
 }
 
 impl Camera {
-    /// Unit direction of the ray through a position of the picture, in pixels from the top left.
+    /// Columns and rows of the picture.
     #[must_use]
-    pub fn direction(&self, x: f32, y: f32) -> Vec3 {
-        let direction = camera_ray([self.right, self.up, self.forward], self.size, x, y);
-        direction / direction.dot(direction).sqrt()
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// Ray through a position of the picture, in pixels from the top left, not normalized: its part along the view direction
+    /// is 1.
+    #[must_use]
+    pub fn camera_ray(&self, x: f32, y: f32) -> Vec3 {
+        let u = 2.0 * x / self.width as f32 - 1.0;
+        let v = 1.0 - 2.0 * y / self.height as f32;
+        self.forward + self.right * u + self.up * v
+    }
+
+    /// Unit direction of [`Camera::camera_ray`].
+    #[must_use]
+    pub fn camera_direction(&self, x: f32, y: f32) -> Vec3 {
+        let ray = self.camera_ray(x, y);
+        ray / ray.dot(ray).sqrt()
     }
 
     /// Position on the picture, in pixels from the top left, of a point relative to the eye.
@@ -124,10 +143,9 @@ impl Camera {
     pub fn project(&self, point: Vec3) -> Vec2 {
         let (right, up) = (self.right, self.up);
         let depth = point.dot(self.forward);
-        let [width, height] = self.size;
         Vec2::new(
-            (0.5 + 0.5 * point.dot(right) / (right.dot(right) * depth)) * width as f32,
-            (0.5 - 0.5 * point.dot(up) / (up.dot(up) * depth)) * height as f32,
+            (0.5 + 0.5 * point.dot(right) / (right.dot(right) * depth)) * self.width as f32,
+            (0.5 - 0.5 * point.dot(up) / (up.dot(up) * depth)) * self.height as f32,
         )
     }
 }
@@ -158,16 +176,6 @@ impl PictureEdge {
         let half_height = downpour_math::ops::f64::tan(f64::from(viewpoint.fov_y) * 0.5);
         Ok(Self { right, up, forward, half_width: half_height * width / height, half_height })
     }
-}
-
-/// Ray through a position of a picture, in pixels from the top left, not normalized: its part along the view direction is 1.
-/// `axes`: half the picture's width along the right and half its height along the up at distance 1, and the view direction.
-#[must_use]
-pub fn camera_ray(axes: [Vec3; 3], size: [u32; 2], x: f32, y: f32) -> Vec3 {
-    let [right, up, forward] = axes;
-    let u = 2.0 * x / size[0] as f32 - 1.0;
-    let v = 1.0 - 2.0 * y / size[1] as f32;
-    forward + right * u + up * v
 }
 
 /// Checks the size of a picture.

@@ -18,12 +18,20 @@
 mod drops;
 mod error;
 mod frame;
+#[cfg(not(feature = "parity"))]
+mod light;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod light;
 mod meet;
 mod pane;
 mod picture;
 mod seen;
 mod shade;
+#[cfg(not(feature = "parity"))]
+mod water;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod water;
 
 pub use error::PaneError;

@@ -7,14 +7,21 @@
 //! - [`tone`] and [`mod@file`]: from radiance to a file;
 //! - [`wind_picture`]: a wind as colors and streaks.
 
+#![cfg_attr(
+    not(feature = "parity"),
+    allow(unreachable_pub, dead_code, reason = "pub for comparisons with the shaders")
+)]
+
 pub mod camera;
 mod error;
 pub mod file;
 pub mod glass;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
+#[doc(hidden)]
 pub mod halves;
 pub mod light;
+#[doc(hidden)]
 pub mod path_lattice;
 pub mod picture;
 pub mod plate;
@@ -22,7 +29,14 @@ pub mod rain;
 pub mod tone;
 pub mod wind_picture;
 
+pub use camera::{Camera, EyeMotion, Viewpoint};
 pub use error::RenderError;
+pub use light::{Light, LightSample, LightSource};
+pub use picture::{Picture, PictureOptions, rain_layer};
+pub use plate::{Lighting, Plate};
+pub use rain::{
+    DropMasks, EnvironmentFrame, EnvironmentMap, Exposure, Rain, RainMedium, RainOptions, RefractionForm,
+};
 
 /// The examples of the README, as tests.
 #[cfg(doctest)]

@@ -76,7 +76,7 @@ impl Picture {
         passes: Vec<(&'static str, f64)>,
     ) -> Self {
         Self {
-            size: [rain.frame.width, rain.frame.height],
+            size: rain.frame.camera.size(),
             drops_on_screen: rain.list.len(),
             drawn: rain.drawn(&clean),
             clean,

@@ -12,26 +12,44 @@
 //! Source: Rousseau, Jolivet, Ghazanfarpour 2006, sections 4 and 5; Rousseau 2008, section 2.2.3. Where the default
 //! differs it is said at [`RefractionForm`] and [`StreakSamples`].
 
+#[cfg(not(feature = "parity"))]
+mod drops;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod drops;
 mod drops_atlas;
 mod drops_capture;
 mod drops_frame;
+#[doc(hidden)]
 pub mod drops_mask;
 mod drops_shade;
 mod environment;
 pub mod exposure;
+#[cfg(not(feature = "parity"))]
+mod glint;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod glint;
 pub mod light;
+#[doc(hidden)]
 pub mod masks;
 pub mod medium;
 mod profiles;
 mod project;
 mod reduce;
 mod shapes;
+#[cfg(not(feature = "parity"))]
+mod streak;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod streak;
 mod streak_light;
 mod streak_lookup;
 mod streak_path;
+#[cfg(not(feature = "parity"))]
+mod streak_place;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod streak_place;
 mod streak_rays;
 mod streak_table;

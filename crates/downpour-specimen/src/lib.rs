@@ -47,19 +47,44 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(
+    not(feature = "parity"),
+    allow(unreachable_pub, dead_code, reason = "pub for comparisons with the shaders")
+)]
+
 mod camera;
 mod error;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 mod image;
+#[cfg(not(feature = "parity"))]
+mod lamp;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod lamp;
 mod motion;
 mod options;
 mod render;
+#[cfg(not(feature = "parity"))]
+mod sky;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod sky;
+#[cfg(not(feature = "parity"))]
+mod streak;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod streak;
 mod table;
+#[cfg(not(feature = "parity"))]
+mod trace;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod trace;
+#[cfg(not(feature = "parity"))]
+mod wobble;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod wobble;
 
 pub use camera::default_fov;

@@ -192,7 +192,7 @@ impl TableStreak {
             kind: DropKind::Falling,
             present_s: FallingDrop::ALWAYS,
         };
-        let mut rain = Rain::new(&frame.camera(), eye, &[drop], &masks, &of_rain);
+        let mut rain = Rain::new(&frame.camera, eye, &[drop], &masks, &of_rain);
         for drop in &mut rain.list {
             set_phases(drop, options);
         }

@@ -1,6 +1,7 @@
 //! The environment of the eye, traced by rays. Twin of `shaders/wgsl/render/capture.wgsl`.
 
 use downpour_math::packing::{packing_octahedral_decode, packing_octahedral_encode};
+use downpour_render::camera::Camera;
 use downpour_render::rain::{EnvironmentFrame, EnvironmentMap, RefractionForm};
 use downpour_shaders::render::scene::{
     CAPTURE_AREA_OVER_PI, CAPTURE_SKY, SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PERSPECTIVE,
@@ -27,12 +28,15 @@ pub fn environment_frame(picture: &RenderFrame, environment: &EnvironmentFrame) 
     };
     let sky_rays = (picture.sky_rays * SKY_RAYS).min(MAX_SKY_RAYS);
     RenderFrame {
-        width: environment.size,
-        height: environment.size,
-        right: environment.right.into(),
-        up: environment.up.into(),
-        forward: environment.forward.into(),
-        pixel_angle: environment.texel_angle,
+        camera: Camera {
+            width: environment.size,
+            height: environment.size,
+            right: environment.right,
+            up: environment.up,
+            forward: environment.forward,
+            pixel_angle: environment.texel_angle,
+            ..picture.camera
+        },
         grid: environment.grid,
         // No filter takes means over neighbours here, but the drops' lookups do.
         sky_rays,
@@ -52,7 +56,7 @@ pub fn trace_environment(
 ) -> EnvironmentMap {
     let frame = environment_frame(picture, environment);
     let view = &SceneView { data, frame: &frame };
-    let size = frame.width;
+    let size = frame.camera.width;
     let texels = (0..size)
         .into_par_iter()
         .flat_map_iter(|y| (0..size).map(move |x| view.trace_pixel(x, y).0.to_array()))
@@ -62,7 +66,7 @@ pub fn trace_environment(
 
 /// The direction of a place of the map, in texels from the top left.
 pub(crate) fn capture_direction(frame: &RenderFrame, x: f32, y: f32) -> Vec3 {
-    let scale = 2.0 / frame.width as f32;
+    let scale = 2.0 / frame.camera.width as f32;
     packing_octahedral_decode([x * scale - 1.0, y * scale - 1.0]).into()
 }
 
@@ -80,11 +84,11 @@ pub(crate) fn capture_sky(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
 /// The light of parallel sources in a texel.
 pub(crate) fn capture_suns(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
     let frame = view.frame;
-    let size = frame.width as f32;
+    let size = frame.camera.width as f32;
     if frame.projection != SCENE_OCTAHEDRAL || frame.suns_out > 0 {
         return Vec3::ZERO;
     }
-    let eye = Vec3::from(frame.eye);
+    let eye = frame.camera.eye;
     let mut sum = Vec3::ZERO;
     for k in 0..frame.light_count {
         let light = view.data.light_load(k);

@@ -36,22 +36,10 @@ pub struct RenderCorner {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct RenderFrame {
-    /// Place of the eye, metres.
-    pub eye: [f32; 3],
-    /// Pixels across.
-    pub width: u32,
-    /// Half the picture's width at distance 1, along the camera's right.
-    pub right: [f32; 3],
-    /// Pixels down.
-    pub height: u32,
-    /// Half the picture's height at distance 1, along the camera's up.
-    pub up: [f32; 3],
+    /// The camera.
+    pub camera: Camera,
     /// Samples along an edge of a pixel.
     pub grid: u32,
-    /// The camera's view direction.
-    pub forward: [f32; 3],
-    /// Width of a pixel at distance 1.
-    pub pixel_angle: f32,
     /// Row of the table where texture slots begin.
     pub slots: u32,
     /// Row of the table where lights begin.
@@ -62,8 +50,6 @@ pub struct RenderFrame {
     pub sky_rays: u32,
     /// First row of pixels of a dispatch.
     pub first_row: u32,
-    /// Seed of these rays.
-    pub seed: u32,
     /// Nearest distance of the next surface, metres.
     pub nearest: f32,
     /// Part of the rays that look for the light of a surface that one of them is.
@@ -171,20 +157,13 @@ impl RenderFrame {
         // Rays of a place far from the origin start where f32 still tells it from its surface.
         let far = camera.eye.abs().max_element().max(low.abs().max_element()).max(high.abs().max_element());
         Ok(Self {
-            eye: camera.eye.into(),
-            width: size[0],
-            right: camera.right.into(),
-            height: size[1],
-            up: camera.up.into(),
+            camera,
             grid: grid.clamp(1, 16),
-            forward: camera.forward.into(),
-            pixel_angle: camera.pixel_angle,
             slots: scene.slots,
             lights: scene.lights,
             light_count: scene.light_count,
             sky_rays,
             first_row: 0,
-            seed: camera.seed,
             nearest: (extent * 1.0e-5).max(far.min(1.0e5) * 1.0e-6).max(1.0e-6),
             ray_share: WINDOW_SHARE / sky_rays.max(1) as f32,
             projection: SCENE_PICTURE,
@@ -198,19 +177,5 @@ impl RenderFrame {
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,
         })
-    }
-
-    /// The camera of the frame.
-    #[must_use]
-    pub fn camera(&self) -> Camera {
-        Camera {
-            eye: self.eye.into(),
-            right: self.right.into(),
-            up: self.up.into(),
-            forward: self.forward.into(),
-            size: [self.width, self.height],
-            pixel_angle: self.pixel_angle,
-            seed: self.seed,
-        }
     }
 }

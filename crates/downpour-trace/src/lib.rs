@@ -8,7 +8,16 @@
 //! - [`stage`]: the scene and the eye of a weather at a time;
 //! - [`picture`]: the plate of a scene, and the rain of [`downpour_render`] before it.
 
+#![cfg_attr(
+    not(feature = "parity"),
+    allow(unreachable_pub, dead_code, reason = "pub for comparisons with the shaders")
+)]
+
 mod assemble;
+#[cfg(not(feature = "parity"))]
+mod brdf;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod brdf;
 pub mod builder;
 pub mod capture;
@@ -17,19 +26,58 @@ pub mod data;
 pub mod gpu;
 pub mod material;
 pub mod pane_shadow;
+#[cfg(not(feature = "parity"))]
+mod path;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod path;
 pub mod picture;
 pub mod puddle;
+#[cfg(not(feature = "parity"))]
+mod scatter;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod scatter;
 pub mod scene;
+#[cfg(not(feature = "parity"))]
+mod sky;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod sky;
 pub mod sky_light;
+#[cfg(not(feature = "parity"))]
+mod skylight;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod skylight;
 pub mod stage;
+#[cfg(not(feature = "parity"))]
+mod surface;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod surface;
+#[cfg(not(feature = "parity"))]
+mod texture;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod texture;
+#[cfg(not(feature = "parity"))]
+mod trace;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod trace;
 pub mod wet_ground;
+
+pub use builder::{MeshPart, SceneBuilder};
+pub use capture::trace_environment;
+pub use data::{RenderFrame, SceneData};
+pub use material::{MaterialLook, TextureSlot, TextureUse};
+pub use picture::{picture_frame, render_picture};
+pub use puddle::{PuddleError, PuddleLook, PuddleMap};
+pub use scene::SceneView;
+pub use sky_light::SkyLight;
+pub use stage::{Stage, StageError};
+pub use wet_ground::WetGround;
 
 /// The examples of the README, as tests.
 #[cfg(doctest)]

@@ -43,7 +43,7 @@ pub fn render_picture(
     options: &PictureOptions,
 ) -> Result<Picture, RenderError> {
     let frame = picture_frame(scene, viewpoint, options)?;
-    let camera = frame.camera();
+    let camera = frame.camera;
     let mut passes = Vec::new();
     let view = SceneView { data: scene, frame: &frame };
     let clean = timed(&mut passes, "scene", || view.picture());

@@ -4,9 +4,11 @@
 //! the rays of the camera, [`scatter`](crate::scatter) draws those that look for the light of sky and surfaces.
 
 mod lamps;
+#[cfg(not(feature = "parity"))]
+mod water;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
 pub mod water;
-
-use glam::Vec3;
 
 use crate::data::{RenderFrame, SceneData};
 
@@ -17,12 +19,4 @@ pub struct SceneView<'a> {
     pub data: &'a SceneData,
     /// The frame.
     pub frame: &'a RenderFrame,
-}
-
-impl SceneView<'_> {
-    /// The direction of the ray through a place of the picture, in pixels from the top left.
-    #[must_use]
-    pub fn scene_direction(&self, x: f32, y: f32) -> Vec3 {
-        self.frame.camera().direction(x, y)
-    }
 }

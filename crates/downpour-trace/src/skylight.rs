@@ -84,12 +84,12 @@ struct Pixels<'a> {
 impl SceneView<'_> {
     /// What the light of sky and surfaces adds to each pixel.
     pub(crate) fn skylight(&self, gather: &[TraceGather]) -> Vec<[f32; 3]> {
-        let eye = Vec3::from(self.frame.eye);
+        let eye = self.frame.camera.eye;
         let slots: Vec<[SkylightSlot; 2]> = gather
             .par_iter()
             .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
             .collect();
-        let (width, height) = (self.frame.width, self.frame.height);
+        let (width, height) = (self.frame.camera.width, self.frame.camera.height);
         let pixels = &Pixels { width, height, slots: &slots };
         let all = |of: &(dyn Fn(u32, u32, usize) -> Vec4 + Sync)| -> Vec<[Vec4; 2]> {
             (0..height)

@@ -132,7 +132,7 @@ impl SceneView<'_> {
         if self.frame.projection == SCENE_OCTAHEDRAL {
             return capture_direction(self.frame, x, y);
         }
-        self.scene_direction(x, y)
+        self.frame.camera.camera_direction(x, y)
     }
 
     /// A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and
@@ -143,7 +143,7 @@ impl SceneView<'_> {
         let (mut sum, mut nearest) = (Vec3::ZERO, SCENE_FAR);
         let (mut base, mut mirror) = (TraceSum::NONE, TraceSum::NONE);
         let n = self.frame.grid;
-        let eye = Vec3::from(self.frame.eye);
+        let eye = self.frame.camera.eye;
         let mut last = ViewPath::NOTHING;
         let mut count = 0u16;
         for k in 0..n * n {
@@ -156,8 +156,8 @@ impl SceneView<'_> {
             let dx = ((place % n) as f32 + 0.5) / n as f32;
             let dy = ((place / n) as f32 + 0.5) / n as f32;
             let direction = self.trace_direction(x as f32 + dx, y as f32 + dy);
-            let random = path_lattice_words(self.frame.seed, x, y, place);
-            let path = self.path_trace(eye, direction, self.frame.pixel_angle, random, &last);
+            let random = path_lattice_words(self.frame.camera.seed, x, y, place);
+            let path = self.path_trace(eye, direction, self.frame.camera.pixel_angle, random, &last);
             sum += if is_picture { path.radiance } else { path.path_radiance() };
             base = base.trace_add(&path.base);
             mirror = mirror.trace_add(&path.mirror);
@@ -183,8 +183,8 @@ impl SceneView<'_> {
     /// The whole picture, rows from the top, in parallel; the same bits for any number of threads.
     #[must_use]
     pub fn picture(&self) -> Vec<[f32; 4]> {
-        let width = self.frame.width;
-        let (mut picture, gather): (Vec<[f32; 4]>, Vec<TraceGather>) = (0..self.frame.height)
+        let width = self.frame.camera.width;
+        let (mut picture, gather): (Vec<[f32; 4]>, Vec<TraceGather>) = (0..self.frame.camera.height)
             .into_par_iter()
             .flat_map_iter(|y| {
                 (0..width).map(move |x| {

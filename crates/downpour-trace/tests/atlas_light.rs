@@ -89,7 +89,7 @@ fn mean(masks: &DropMasks, scene: &SceneData, id: f32, light: DropLightOptions) 
     if light.form == DropLightForm::Atlas {
         rows.push([0.0, 1.0, 0.0, id]);
     }
-    Ok(DropLights::new(&SceneView { data: scene, frame: &frame }, frame.eye.into(), &masks.light, light)?
+    Ok(DropLights::new(&SceneView { data: scene, frame: &frame }, frame.camera.eye, &masks.light, light)?
         .light(&rows)[0][0])
 }
 

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use downpour_drop::optics::{SCATTERING_ORDERS, scattered_fraction};
 use downpour_math::ops;
 use downpour_render::RenderError;
-use downpour_render::camera::Viewpoint;
+use downpour_render::camera::{Camera, Viewpoint};
 use downpour_render::light::LightSource;
 use downpour_render::rain::glint::{
     drop_glint_pack, drop_glint_right, drop_glint_side, drop_glint_spot, drop_glint_unpack,
@@ -60,7 +60,7 @@ fn mean(
     let scene = scene(lights, None);
     let frame = frame(&scene, eye)?;
     let view = SceneView { data: &scene, frame: &frame };
-    let lights = DropLights::new(&view, frame.eye.into(), table, DropLightOptions { form, glints: 0 })?;
+    let lights = DropLights::new(&view, frame.camera.eye, table, DropLightOptions { form, glints: 0 })?;
     let light = lights.light(&[[0.0, 0.0, 0.0, RADIUS]]);
     assert_eq!((light.len(), light[0][3]), (1, 0.0));
     Ok(Vec3::new(light[0][0], light[0][1], light[0][2]))
@@ -89,10 +89,11 @@ fn no_light_is_lost_or_made() -> Outcome {
     let mut sum = Vec3::ZERO;
     for k in 0..steps {
         let angle = PI * (f32::from(k) + 0.5) / f32::from(steps);
-        let frame = RenderFrame { eye: (turned(direction, angle.to_degrees()) * 3.0).into(), ..start };
+        let eye = turned(direction, angle.to_degrees()) * 3.0;
+        let frame = RenderFrame { camera: Camera { eye, ..start.camera }, ..start };
         let light = DropLights::new(
             &SceneView { data: &scene, frame: &frame },
-            frame.eye.into(),
+            frame.camera.eye,
             &table,
             DropLightOptions::default(),
         )?
@@ -161,7 +162,7 @@ fn glints_stand_where_they_belong_and_sum_to_the_mean() -> Outcome {
         let frame = frame(&scene, eye)?;
         let options = DropLightOptions { glints: 8, ..DropLightOptions::default() };
         let view = SceneView { data: &scene, frame: &frame };
-        let lights = DropLights::new(&view, frame.eye.into(), &table, options)?;
+        let lights = DropLights::new(&view, frame.camera.eye, &table, options)?;
         let drop = [0.0, 0.0, 0.0, RADIUS];
         let all = lights.glints(drop);
         let rows = lights.light(&[drop]);
@@ -218,7 +219,7 @@ fn what_stands_between_hides_a_lamp() -> Outcome {
             let options = DropLightOptions { form, glints: 0 };
             let found = DropLights::new(
                 &SceneView { data: &scene, frame: &frame },
-                frame.eye.into(),
+                frame.camera.eye,
                 &table,
                 options,
             )?
@@ -327,7 +328,7 @@ fn light_that_is_none_is_refused() -> Outcome {
         let frame = frame(&scene, Vec3::Z)?;
         let error = DropLights::new(
             &SceneView { data: &scene, frame: &frame },
-            frame.eye.into(),
+            frame.camera.eye,
             &table,
             DropLightOptions::default(),
         )
@@ -340,7 +341,7 @@ fn light_that_is_none_is_refused() -> Outcome {
     let frame = frame(&scene, Vec3::Z)?;
     let options = DropLightOptions { glints: 17, ..DropLightOptions::default() };
     let error =
-        DropLights::new(&SceneView { data: &scene, frame: &frame }, frame.eye.into(), &table, options)
+        DropLights::new(&SceneView { data: &scene, frame: &frame }, frame.camera.eye, &table, options)
             .unwrap_err();
     assert_eq!(error.to_string(), "number of glints of a drop is 17 ; allowed: 0 to 16");
     Ok(())
@@ -355,7 +356,7 @@ fn the_capture_can_do_without_the_sun() -> Outcome {
     let with = frame(&scene, Vec3::Z)?;
     let brightest = |frame: &RenderFrame| {
         let options = RainOptions { capture_size: 16, ..RainOptions::default() };
-        let environment = EnvironmentFrame::new(&frame.camera(), &options);
+        let environment = EnvironmentFrame::new(&frame.camera, &options);
         let capture = trace_environment(&scene, frame, &environment);
         capture.texels.iter().fold(0.0f32, |most, texel| most.max(texel[0]))
     };

@@ -50,13 +50,13 @@ fn picture(glass: &str) -> Result<GlassPicture, Box<dyn std::error::Error>> {
     pane.advance(0.0)?;
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, SIZE, 1, 0, 0)?;
     let lighting = SceneView { data: &stage.data, frame: &frame };
-    Ok(pane.picture(&stage.viewpoint, &frame.camera(), frame.grid, &lighting, CAPTURE)?)
+    Ok(pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, CAPTURE)?)
 }
 
 /// A picture far away, and a capture, of a radiance by the height of a direction: -1 to 1.
 fn round(glass: &GlassPicture, radiance: impl Fn(f32) -> f32) -> [Vec<[f32; 4]>; 2] {
     let row = |y: u32| {
-        let up = glass.frame.up[1] * (1.0 - 2.0 * (y as f32 + 0.5) / SIZE[1] as f32);
+        let up = glass.frame.camera.up.y * (1.0 - 2.0 * (y as f32 + 0.5) / SIZE[1] as f32);
         let value = radiance(up);
         vec![[value, value, value, 1.0e30]; SIZE[0] as usize]
     };
@@ -267,10 +267,10 @@ fn a_drop_shows_a_lamp_as_bright_as_it_is() -> Outcome {
     let mut glass = picture("room = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
     let [behind, capture] = round(&glass, |_| 0.0);
     let frame = &glass.frame;
-    let ahead = glam::Vec3::from(frame.forward);
+    let ahead = frame.camera.forward;
     let pane = ahead.dot(glam::Vec3::from(frame.corner)) / ahead.dot(ahead).sqrt();
     let radius = 0.4 * frame.size[1];
-    let pixel = frame.pixel_angle;
+    let pixel = frame.camera.pixel_angle;
     with_drop(&mut glass, radius);
     let dark = glass.through(&behind, &capture);
     assert!(dark.iter().all(|p| p[0] == 0.0), "a lamp where there is none");

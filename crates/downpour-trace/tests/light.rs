@@ -156,7 +156,7 @@ fn metal_mirrors_what_stands_there() -> Outcome {
     let view = SceneView { data: &scene, frame: &frame };
     let (mut of_wall, mut of_sky) = (0, 0);
     for (i, pixel) in view.picture().iter().enumerate() {
-        let along = view.scene_direction((i % 24) as f32 + 0.5, (i / 24) as f32 + 0.5);
+        let along = view.frame.camera.camera_direction((i % 24) as f32 + 0.5, (i / 24) as f32 + 0.5);
         if along.y > -0.02 {
             continue;
         }
@@ -249,7 +249,7 @@ fn a_lamp_has_one_mirror_image_in_a_puddle() -> Outcome {
     let view = SceneView { data: &scene, frame: &frame };
     let (mut sum, mut weighted, mut far) = (0.0, 0.0, 0.0);
     for (i, pixel) in view.picture().iter().enumerate() {
-        let along = view.scene_direction((i % 48) as f32 + 0.5, (i / 48) as f32 + 0.5);
+        let along = view.frame.camera.camera_direction((i % 48) as f32 + 0.5, (i / 48) as f32 + 0.5);
         let place = eye + along * ((depth - eye.y) / along.y);
         if along.y > -0.1 || place.abs().max_element() > 1.45 {
             continue;

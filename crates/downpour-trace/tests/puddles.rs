@@ -171,7 +171,7 @@ fn rays_end_on_the_surface_of_the_water_in_a_hollow() -> Outcome {
     let frame = RenderFrame::new(&scene, &view, [16, 16], 1, 0, 1)?;
     let view = SceneView { data: &scene, frame: &frame };
     for (i, pixel) in view.picture().iter().enumerate() {
-        let direction = view.scene_direction((i % 16) as f32 + 0.5, (i / 16) as f32 + 0.5);
+        let direction = view.frame.camera.camera_direction((i % 16) as f32 + 0.5, (i / 16) as f32 + 0.5);
         let height = eye.y + direction.y * pixel[3];
         assert!((height + 0.02).abs() < 1.0e-3, "{i}: {height}");
     }

@@ -176,7 +176,7 @@ fn layer(
 ) -> Vec<[f32; 4]> {
     let options = RainOptions { medium, capture_size: 64, ..RainOptions::default() };
     let frame = RenderFrame::new(scene, seen, size, 1, 0, 3).expect("a frame");
-    let rain = Rain::new(&frame.camera(), seen.eye.as_dvec3(), &[], masks, &options);
+    let rain = Rain::new(&frame.camera, seen.eye.as_dvec3(), &[], masks, &options);
     let view = SceneView { data: scene, frame: &frame };
     let clean = view.picture();
     let capture = trace_environment(scene, &frame, &rain.environment);

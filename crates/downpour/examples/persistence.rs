@@ -193,7 +193,7 @@ impl Bench<'_> {
         let eye = self.stage.viewpoint.eye.as_dvec3();
         let of_atlas = usize::from(options.light.form == DropLightForm::Atlas);
         let (masks, uploaded) = (&self.masks[of_atlas], &self.uploaded[of_atlas]);
-        let rain = Rain::new(&self.frame.camera(), eye, drops, masks, options);
+        let rain = Rain::new(&self.frame.camera, eye, drops, masks, options);
         let binning = ms(start.elapsed());
         let view = SceneView { data: &self.stage.data, frame: &self.frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];

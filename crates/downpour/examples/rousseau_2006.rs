@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let drops: Vec<FallingDrop> = (0..count).map(|k| drop(&stage, k, 2.0 * radius)).collect();
             let start = Instant::now();
             let eye = stage.viewpoint.eye.as_dvec3();
-            let rain = Rain::new(&frame.camera(), eye, &drops, &masks, &RainOptions::default());
+            let rain = Rain::new(&frame.camera, eye, &drops, &masks, &RainOptions::default());
             let binning = ms(start.elapsed());
             let view = SceneView { data: &stage.data, frame: &frame };
             let lights = [rain.lights(&view, &masks)?, rain.streak_lights(&view, &masks)?];

@@ -419,7 +419,7 @@ fn through(
 ) -> Result<Through, RendererError> {
     let PictureOptions { size, grid, sky_rays, seed, .. } = *options;
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, size, grid, sky_rays, seed)?;
-    let camera = frame.camera();
+    let camera = frame.camera;
     let capture = if options.rain.form == RefractionForm::Direction {
         picture.surroundings.clone()
     } else {

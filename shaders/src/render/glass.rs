@@ -1,5 +1,6 @@
 //! `wgsl/render/glass_picture*.wgsl`: pictures through wet glass. Twins: `downpour_render::glass`.
 
+use super::camera::CAMERA;
 use crate::common::PACKING;
 use crate::drop::optics::OPTICS;
 use crate::{Kernel, Module};
@@ -58,7 +59,7 @@ pub static LIGHT: Module = Module {
 pub static GLASS_PICTURE: Module = Module {
     path: "render/glass_picture.wgsl",
     wgsl: include_str!("../../wgsl/render/glass_picture.wgsl"),
-    uses: &[&WATER, &LIGHT, &OPTICS, &PACKING],
+    uses: &[&CAMERA, &WATER, &LIGHT, &OPTICS, &PACKING],
 };
 
 /// One invocation per pixel.

@@ -1,5 +1,6 @@
 //! `wgsl/render/{reduce,drops*,streak*}.wgsl`: drops before a scene. Twins: `downpour_render::rain`.
 
+use super::camera::CAMERA;
 use super::drop_light::{DROP_GLINT, DROP_LIGHT_CONSTANTS};
 use super::medium::MEDIUM;
 use crate::atlas::ATLAS;
@@ -149,7 +150,7 @@ pub static REDUCE: Module =
 pub static DROPS_FRAME: Module = Module {
     path: "render/drops_frame.wgsl",
     wgsl: include_str!("../../wgsl/render/drops_frame.wgsl"),
-    uses: &[&RAIN_CONSTANTS],
+    uses: &[&RAIN_CONSTANTS, &CAMERA],
 };
 
 /// The capture between its texels. Twin: `downpour_render::rain::drops_capture`.

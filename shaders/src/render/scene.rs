@@ -3,6 +3,7 @@
 //! [`path`](super::path).
 
 use super::brdf::BRDF;
+use super::camera::CAMERA;
 use super::pane_shadow::PANE_SHADOW;
 use super::path::PATH;
 use super::puddle_water::PUDDLE_WATER;
@@ -98,7 +99,7 @@ shared_constants! {
 pub static DATA: Module = Module {
     path: "render/data.wgsl",
     wgsl: include_str!("../../wgsl/render/data.wgsl"),
-    uses: &[&SCENE_CONSTANTS],
+    uses: &[&SCENE_CONSTANTS, &CAMERA],
 };
 
 /// Textures in a buffer. Twin: `downpour_trace::texture`.

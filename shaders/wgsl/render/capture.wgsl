@@ -6,7 +6,7 @@
 
 // The direction of a place of the map, in texels from the top left.
 fn capture_direction(x: f32, y: f32) -> vec3f {
-    let scale = 2.0 / f32(render_frame.width);
+    let scale = 2.0 / f32(render_frame.camera.width);
     return packing_octahedral_decode(vec2f(x * scale - 1.0, y * scale - 1.0));
 }
 
@@ -23,7 +23,7 @@ fn capture_sky(x: u32, y: u32) -> vec3f {
 
 // The light of parallel sources in a texel.
 fn capture_suns(x: u32, y: u32) -> vec3f {
-    let size = f32(render_frame.width);
+    let size = f32(render_frame.camera.width);
     if render_frame.projection != SCENE_OCTAHEDRAL || render_frame.suns_out > 0u {
         return vec3f(0.0);
     }
@@ -33,7 +33,7 @@ fn capture_suns(x: u32, y: u32) -> vec3f {
         if lamp.kind != SCENE_LIGHT_DIRECTIONAL {
             continue;
         }
-        let light = light_sample(lamp, render_frame.eye, 0.0);
+        let light = light_sample(lamp, render_frame.camera.eye, 0.0);
         let square = packing_octahedral_encode(light.direction);
         let place = clamp((square * 0.5 + 0.5) * size, vec2f(0.0), vec2f(size - 1.0));
         if u32(place.x) != x || u32(place.y) != y {
@@ -42,7 +42,7 @@ fn capture_suns(x: u32, y: u32) -> vec3f {
         // A square of the plane |x| + |y| + |z| = 1, seen from its middle.
         let norm = abs(light.direction.x) + abs(light.direction.y) + abs(light.direction.z);
         let texel_over_pi = CAPTURE_AREA_OVER_PI / (size * size) * norm * norm * norm;
-        let visible = scene_visibility(render_frame.eye, light.direction, SCENE_FAR);
+        let visible = scene_visibility(render_frame.camera.eye, light.direction, SCENE_FAR);
         sum += light.irradiance * visible / texel_over_pi;
     }
     return sum;

@@ -2,18 +2,9 @@
 // Host types: downpour_trace::data.
 
 struct RenderFrame {
-    eye: vec3f,
-    // Pixels of the picture.
-    width: u32,
-    // Half the picture's width and height at distance 1, along the camera's axes.
-    right: vec3f,
-    height: u32,
-    up: vec3f,
+    camera: RenderCamera,
     // Samples along an edge of a pixel.
     grid: u32,
-    forward: vec3f,
-    // Width of a pixel at distance 1.
-    pixel_angle: f32,
     // Rows of the table where slots and lights begin.
     slots: u32,
     lights: u32,
@@ -22,7 +13,6 @@ struct RenderFrame {
     sky_rays: u32,
     // First row of pixels of this dispatch.
     first_row: u32,
-    seed: u32,
     // Nearest distance of the next surface, metres.
     nearest: f32,
     // Part of the rays that look for the light of a surface that one of them is.

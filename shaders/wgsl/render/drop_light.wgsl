@@ -180,7 +180,7 @@ fn drop_light_of(index: u32) {
             drop_light_out[slot + k] = vec4f(0.0);
         }
     }
-    let offset = drop.xyz - render_frame.eye;
+    let offset = drop.xyz - render_frame.camera.eye;
     let towards = offset / sqrt(max(dot(offset, offset), DROP_GLINT_TINY));
     let right = drop_glint_right(towards);
     let up = cross(right, towards);

@@ -144,7 +144,7 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
     let n = select(drop.grid, DROPS_SMALL_GRID, small);
     let extent = drop.half_extent * drop.slope;
     let of_mask = 2.0 * drop.half_extent / f32(n);
-    let spacing = select(drops_frame.pixel_angle / (drop.slope * f32(n)), of_mask, small);
+    let spacing = select(drops_frame.camera.pixel_angle / (drop.slope * f32(n)), of_mask, small);
     var sum = vec4f(0.0);
     for (var k = 0u; k < n * n; k += 1u) {
         let dx = (f32(k % n) + 0.5) / f32(n);
@@ -153,7 +153,7 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         var sy = 2.0 * dy - 1.0;
         var lean = vec3f(0.0);
         if !small {
-            lean = drops_on_plane(drop.towards, drops_frame_ray(f32(x) + dx, f32(y) + dy));
+            lean = drops_on_plane(drop.towards, camera_ray(drops_frame.camera, f32(x) + dx, f32(y) + dy));
             sx = dot(lean, right) / extent;
             sy = dot(lean, up) / extent;
         }
@@ -176,7 +176,7 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
 
 // The width of a glint, in radii: no line is thinner than half a pixel.
 fn drops_glint_width(drop: DropsDrop) -> f32 {
-    return max(0.5 * drops_frame.pixel_angle / drop.slope, DROPS_GLINT);
+    return max(0.5 * drops_frame.camera.pixel_angle / drop.slope, DROPS_GLINT);
 }
 
 // The part of a chord that passes during the exposure, by the weighted mean over its middle points: what a table keeps
@@ -206,7 +206,7 @@ fn drops_shift(line: u32) -> f32 {
 
 // The streak of a drop over a pixel: radiance times coverage, and coverage.
 fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
-    let size = vec2f(f32(drops_frame.width), f32(drops_frame.height));
+    let size = vec2f(f32(drops_frame.camera.width), f32(drops_frame.camera.height));
     if drop.grid == 0u {
         let cover = streak_cover(drop, x, y);
         if cover <= 0.0 {
@@ -224,7 +224,7 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         // A lattice whose points differ in every direction.
         let turned = (k * STREAK_LATTICE) % drop.grid;
         let at = vec2f(f32(x), f32(y)) + (vec2f(f32(k), f32(turned)) + shift) / f32(drop.grid);
-        let ray = drops_frame_ray(at.x, at.y);
+        let ray = camera_ray(drops_frame.camera, at.x, at.y);
         let lean = drops_on_plane(drop.towards, ray);
         let place = vec2f(dot(lean, right), dot(lean, up));
         let by_profile = drop.kind == DROPS_TABLE;
@@ -255,7 +255,7 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
 fn drops_depth(drop: DropsDrop, x: u32, y: u32) -> f32 {
     let right = drops_mask_right(drop.towards);
     let up = cross(right, drop.towards);
-    let lean = drops_on_plane(drop.towards, drops_frame_ray(f32(x) + 0.5, f32(y) + 0.5));
+    let lean = drops_on_plane(drop.towards, camera_ray(drops_frame.camera, f32(x) + 0.5, f32(y) + 0.5));
     let way = streak_nearest(drop, vec2f(dot(lean, right), dot(lean, up)));
     return drop.distance * streak_depth(drop.recede, streak_time(drop.recede, way));
 }
@@ -285,7 +285,7 @@ fn drops_medium(x: u32, y: u32) -> vec3f {
     if drops_frame.streak_colour == STREAK_WHITE {
         return drops_capture_texel(drops_frame.capture_last, 0, 0);
     }
-    let size = vec2f(f32(drops_frame.width), f32(drops_frame.height));
+    let size = vec2f(f32(drops_frame.camera.width), f32(drops_frame.camera.height));
     return streak_lookup_mean(medium_frame.shape, vec2f(f32(x) + 0.5, f32(y) + 0.5) / size);
 }
 
@@ -293,12 +293,12 @@ fn drops_medium(x: u32, y: u32) -> vec3f {
 // points, with the medium between them.
 fn drops_over(x: u32, y: u32) -> vec4f {
     let tile = (y / DROPS_TILE) * drops_frame.tiles_across + x / DROPS_TILE;
-    let index = y * drops_frame.width + x;
+    let index = y * drops_frame.camera.width + x;
     let scene = drops_clean[index].w;
     let lamps = drops_layer[index];
     // Mean distance of the medium's light of lamps, and its optical depth.
     let pair = unpack2x16float(bitcast<u32>(lamps.w));
-    let direction = drops_mask_unit(drops_frame_ray(f32(x) + 0.5, f32(y) + 0.5));
+    let direction = drops_mask_unit(camera_ray(drops_frame.camera, f32(x) + 0.5, f32(y) + 0.5));
     let span = medium_span(direction);
     let end = select(scene, MEDIUM_SKY_REACH, scene >= MEDIUM_SKY);
     // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
@@ -341,8 +341,8 @@ fn drops_over(x: u32, y: u32) -> vec4f {
 
 @compute @workgroup_size(8, 8, 1)
 fn main_drops(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= drops_frame.width || id.y >= drops_frame.height {
+    if id.x >= drops_frame.camera.width || id.y >= drops_frame.camera.height {
         return;
     }
-    drops_layer[id.y * drops_frame.width + id.x] = drops_over(id.x, id.y);
+    drops_layer[id.y * drops_frame.camera.width + id.x] = drops_over(id.x, id.y);
 }

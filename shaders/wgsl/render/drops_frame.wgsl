@@ -2,13 +2,7 @@
 // Twin: downpour_render::rain::drops_frame.
 
 struct DropsFrame {
-    // The camera's axes: half the picture at distance 1.
-    right: vec3f,
-    width: u32,
-    up: vec3f,
-    height: u32,
-    forward: vec3f,
-    pixel_angle: f32,
+    camera: RenderCamera,
     // Axes of the capture in the papers' form: the whole of it at distance 1.
     capture_right: vec3f,
     // Texels along an edge of the capture.
@@ -38,10 +32,3 @@ struct DropsFrame {
 }
 
 @group(0) @binding(0) var<uniform> drops_frame: DropsFrame;
-
-// The ray through a place of the picture, in pixels from the top left, of any length.
-fn drops_frame_ray(x: f32, y: f32) -> vec3f {
-    let u = 2.0 * x / f32(drops_frame.width) - 1.0;
-    let v = 1.0 - 2.0 * y / f32(drops_frame.height);
-    return drops_frame.forward + drops_frame.right * u + drops_frame.up * v;
-}

@@ -10,13 +10,7 @@
 // Twin: downpour_render::glass::picture.
 
 struct GlassPictureFrame {
-    // The camera's axes: half the picture at distance 1.
-    right: vec3f,
-    width: u32,
-    up: vec3f,
-    height: u32,
-    forward: vec3f,
-    pixel_angle: f32,
+    camera: RenderCamera,
     // The pane's axes in the world, of length 1: right, down, out of it.
     across: vec3f,
     // Bins along x and y.
@@ -225,18 +219,18 @@ fn glass_picture_round(direction: vec3f, footprint: f32) -> vec3f {
 
 // Where a direction is on the picture: -1 to 1 right and up, and its depth.
 fn glass_picture_project(direction: vec3f) -> vec3f {
-    let depth = dot(direction, glass_picture_frame.forward);
+    let depth = dot(direction, glass_picture_frame.camera.forward);
     let near = max(depth, 1.0e-6);
     return vec3f(
-        dot(direction, glass_picture_frame.right) / dot(glass_picture_frame.right, glass_picture_frame.right) / near,
-        dot(direction, glass_picture_frame.up) / dot(glass_picture_frame.up, glass_picture_frame.up) / near,
+        dot(direction, glass_picture_frame.camera.right) / dot(glass_picture_frame.camera.right, glass_picture_frame.camera.right) / near,
+        dot(direction, glass_picture_frame.camera.up) / dot(glass_picture_frame.camera.up, glass_picture_frame.camera.up) / near,
         depth,
     );
 }
 
 // What a ray shows that begins at an offset from the eye. Its footprint is an angle.
 fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint: f32) -> vec3f {
-    let size = vec2f(f32(glass_picture_frame.width), f32(glass_picture_frame.height));
+    let size = vec2f(f32(glass_picture_frame.camera.width), f32(glass_picture_frame.camera.height));
     let guess = glass_picture_project(direction);
     var distance = 0.0;
     if guess.z > 0.0 && abs(guess.x) < 1.0 && abs(guess.y) < 1.0 {
@@ -248,7 +242,7 @@ fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint
     }
     let to = direction + from_eye / clamp(distance, 0.1, GLASS_PICTURE_FAR);
     let place = glass_picture_project(to);
-    let texels = max(footprint / glass_picture_frame.pixel_angle, 1.0);
+    let texels = max(footprint / glass_picture_frame.camera.pixel_angle, 1.0);
     // Towards the picture's edge the capture takes over, within the footprint.
     let at = vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) + shift / size;
     let inside = min(min(at.x, 1.0 - at.x) * size.x, min(at.y, 1.0 - at.y) * size.y);
@@ -338,19 +332,11 @@ fn glass_picture_through(place: vec2f, d: vec3f, from_eye: vec3f, shift: vec2f, 
     return sum;
 }
 
-// The ray through a place of the picture, in pixels from the top left, of length 1.
-fn glass_picture_ray(x: f32, y: f32) -> vec3f {
-    let u = 2.0 * x / f32(glass_picture_frame.width) - 1.0;
-    let v = 1.0 - 2.0 * y / f32(glass_picture_frame.height);
-    let ray = glass_picture_frame.forward + glass_picture_frame.right * u + glass_picture_frame.up * v;
-    return ray / sqrt(dot(ray, ray));
-}
-
 // A sample of a pixel: a place of the lens (xy, in its radius) and of the pixel (zw).
 fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f) -> vec3f {
-    let ray = glass_picture_ray(x + at.z, y + at.w);
-    let right = glass_picture_frame.right / sqrt(dot(glass_picture_frame.right, glass_picture_frame.right));
-    let up = glass_picture_frame.up / sqrt(dot(glass_picture_frame.up, glass_picture_frame.up));
+    let ray = camera_direction(glass_picture_frame.camera, x + at.z, y + at.w);
+    let right = glass_picture_frame.camera.right / sqrt(dot(glass_picture_frame.camera.right, glass_picture_frame.camera.right));
+    let up = glass_picture_frame.camera.up / sqrt(dot(glass_picture_frame.camera.up, glass_picture_frame.camera.up));
     let from_eye = (right * at.x + up * at.y) * glass_picture_frame.lens;
     // What is behind is looked up for the pixel's middle: it is sampled already.
     let shift = vec2f(0.5 - at.z, 0.5 - at.w);
@@ -359,7 +345,7 @@ fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f) -> vec3f {
     let far = min(distance, GLASS_PICTURE_FAR);
     let pane = plane / max(towards, 1.0e-6);
     if towards < 1.0e-3 || pane > far {
-        return glass_picture_seen(vec3f(0.0), ray, shift, glass_picture_frame.pixel_angle);
+        return glass_picture_seen(vec3f(0.0), ray, shift, glass_picture_frame.camera.pixel_angle);
     }
     let depth = select(far, pane, glass_picture_frame.focus == GLASS_PICTURE_GLASS);
     let aim = ray * depth - from_eye;
@@ -375,7 +361,7 @@ fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f) -> vec3f {
     let place = vec2f(dot(on, glass_picture_frame.across), dot(on, glass_picture_frame.down));
     let among = sqrt(1.0 / f32(glass_picture_frame.samples));
     let apart = glass_picture_frame.lens * GLASS_PICTURE_APART * among;
-    let pixel = glass_picture_frame.pixel_angle;
+    let pixel = glass_picture_frame.camera.pixel_angle;
     if place.x < 0.0 || place.y < 0.0 || place.x > glass_picture_frame.size.x || place.y > glass_picture_frame.size.y {
         return glass_picture_seen(from_eye, direction, shift, pixel + apart * abs(1.0 / depth - 1.0 / far));
     }
@@ -397,8 +383,8 @@ fn glass_picture_pixel(x: u32, y: u32) -> vec3f {
 @compute @workgroup_size(8, 8, 1)
 fn main_glass_picture(@builtin(global_invocation_id) id: vec3u) {
     let y = id.y + glass_picture_frame.first_row;
-    if id.x >= glass_picture_frame.width || y >= glass_picture_frame.height {
+    if id.x >= glass_picture_frame.camera.width || y >= glass_picture_frame.camera.height {
         return;
     }
-    glass_picture_made[y * glass_picture_frame.width + id.x] = vec4f(glass_picture_pixel(id.x, y), 1.0);
+    glass_picture_made[y * glass_picture_frame.camera.width + id.x] = vec4f(glass_picture_pixel(id.x, y), 1.0);
 }

@@ -16,7 +16,7 @@ fn medium_filter_weight(own: f32, other: f32) -> f32 {
 
 // The light before a pixel, and two halves.
 fn medium_filter_pixel(x: u32, y: u32) -> vec4f {
-    let width = render_frame.width;
+    let width = render_frame.camera.width;
     let first = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES;
     let index = y * width + x;
     let own = medium_filter_found[first + 2u * index];
@@ -29,7 +29,7 @@ fn medium_filter_pixel(x: u32, y: u32) -> vec4f {
     var seen = vec3f(0.0);
     let left = max(x, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
     let top = max(y, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-    for (var row = top; row <= min(y + SKYLIGHT_RADIUS, render_frame.height - 1u); row += 1u) {
+    for (var row = top; row <= min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u); row += 1u) {
         for (var column = left; column <= min(x + SKYLIGHT_RADIUS, width - 1u); column += 1u) {
             let other = row * width + column;
             let weight = medium_filter_weight(medium_filter_clean[index].w, medium_filter_clean[other].w);
@@ -44,7 +44,7 @@ fn medium_filter_pixel(x: u32, y: u32) -> vec4f {
 
 @compute @workgroup_size(8, 8, 1)
 fn main_medium_filter(@builtin(global_invocation_id) id: vec3u) {
-    if id.x < render_frame.width && id.y < render_frame.height {
-        medium_filter_layer[id.y * render_frame.width + id.x] = medium_filter_pixel(id.x, id.y);
+    if id.x < render_frame.camera.width && id.y < render_frame.camera.height {
+        medium_filter_layer[id.y * render_frame.camera.width + id.x] = medium_filter_pixel(id.x, id.y);
     }
 }

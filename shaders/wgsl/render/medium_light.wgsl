@@ -160,10 +160,10 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
 
 // What stands before a pixel of unresolved drops: their light, and their optical depth.
 fn medium_light_pixel(x: u32, y: u32) {
-    let at = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES + 2u * (y * render_frame.width + x);
-    let scene = medium_clean[y * render_frame.width + x].w;
+    let at = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES + 2u * (y * render_frame.camera.width + x);
+    let scene = medium_clean[y * render_frame.camera.width + x].w;
     let place = vec2f(f32(x), f32(y)) + 0.5;
-    let direction = scene_direction(place.x, place.y);
+    let direction = camera_direction(render_frame.camera, place.x, place.y);
     // The sky is as it is seen through the rain beyond.
     let end = select(scene, MEDIUM_SKY_REACH, scene >= MEDIUM_SKY);
     let depth = medium_open_at(place.x, place.y, end).x;
@@ -174,7 +174,7 @@ fn medium_light_pixel(x: u32, y: u32) {
         sum.rest = rng_unit(random.x);
         let reach = vec2f(min(scene, MEDIUM_SKY_REACH), min(scene, MEDIUM_LAMP_REACH));
         for (var k = 0u; k < render_frame.light_count; k += 1u) {
-            sum = medium_light_lamp(sum, k, direction, reach, render_frame.pixel_angle);
+            sum = medium_light_lamp(sum, k, direction, reach, render_frame.camera.pixel_angle);
         }
         let share = light_weight(sum.drawn);
         if share > 0.0 {
@@ -193,7 +193,7 @@ fn medium_light_pixel(x: u32, y: u32) {
 
 @compute @workgroup_size(8, 8, 1)
 fn main_medium_light(@builtin(global_invocation_id) id: vec3u) {
-    if id.x < render_frame.width && id.y < render_frame.height {
+    if id.x < render_frame.camera.width && id.y < render_frame.camera.height {
         medium_light_pixel(id.x, id.y);
     }
 }

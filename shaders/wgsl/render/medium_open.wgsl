@@ -21,9 +21,9 @@ fn medium_open_slice(distance: f32) -> u32 {
 
 // The ray of a cell of the grid.
 fn medium_open_ray(column: u32, row: u32) -> vec3f {
-    let x = (f32(column) + 0.5) / f32(medium_frame.columns) * f32(render_frame.width);
-    let y = (f32(row) + 0.5) / f32(medium_frame.rows) * f32(render_frame.height);
-    return scene_direction(x, y);
+    let x = (f32(column) + 0.5) / f32(medium_frame.columns) * f32(render_frame.camera.width);
+    let y = (f32(row) + 0.5) / f32(medium_frame.rows) * f32(render_frame.camera.height);
+    return camera_direction(render_frame.camera, x, y);
 }
 
 // Fills the column of a cell.
@@ -32,7 +32,7 @@ fn medium_open_column(column: u32, row: u32) {
     let span = medium_span(direction);
     let outline = medium_outline(direction);
     let cell = row * medium_frame.columns + column;
-    let word = rng_draw(vec2u(render_frame.seed, 0u), cell, 0u, MEDIUM_RANDOM_DIMENSION);
+    let word = rng_draw(vec2u(render_frame.camera.seed, 0u), cell, 0u, MEDIUM_RANDOM_DIMENSION);
     var begin = 0.0;
     var depth = 0.0;
     var before = 0.0;
@@ -80,7 +80,7 @@ fn medium_open_cell(column: u32, row: u32, slice: u32, part: f32) -> vec2f {
 // Optical depth of unresolved drops up to a distance along the ray through a place of the picture (pixels from the top left),
 // and whether the air is open to the rain there.
 fn medium_open_at(x: f32, y: f32, distance: f32) -> vec2f {
-    let direction = scene_direction(x, y);
+    let direction = camera_direction(render_frame.camera, x, y);
     let span = medium_span(direction);
     let outline = medium_outline(direction);
     let whole = medium_depth(distance, span, outline);
@@ -96,7 +96,7 @@ fn medium_open_at(x: f32, y: f32, distance: f32) -> vec2f {
     // Beyond the last slice its own air goes on.
     let fraction = max((whole - begin) / max(end - begin, 1.0e-12), 0.0);
     let last = vec2f(f32(medium_frame.columns - 1u), f32(medium_frame.rows - 1u));
-    let size = vec2f(f32(render_frame.width), f32(render_frame.height));
+    let size = vec2f(f32(render_frame.camera.width), f32(render_frame.camera.height));
     let place = clamp(vec2f(x, y) / size * (last + 1.0) - 0.5, vec2f(0.0), last);
     let low = vec2u(place);
     let high = min(low + 1u, vec2u(last));

@@ -4,7 +4,7 @@
 // Words for the rays of sample k of a pixel. The first three are those of a lattice of rank 1, of which the pixels of any
 // window of the filter's size have each point once; the last is the pixel's own.
 fn path_lattice_words(x: u32, y: u32, k: u32) -> vec4u {
-    let seed = rng_draw(vec2u(render_frame.seed, 0u), k, 0u, PATH_DIMENSION);
+    let seed = rng_draw(vec2u(render_frame.camera.seed, 0u), k, 0u, PATH_DIMENSION);
     let edge = 2u * SKYLIGHT_RADIUS + 1u;
     let points = edge * edge;
     // Scattered, so that a part of the window has points from everywhere.

@@ -153,11 +153,3 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
     }
     return sum;
 }
-
-// The direction of the ray through a place of the picture, in pixels from the top left.
-fn scene_direction(x: f32, y: f32) -> vec3f {
-    let u = 2.0 * x / f32(render_frame.width) - 1.0;
-    let v = 1.0 - 2.0 * y / f32(render_frame.height);
-    let direction = render_frame.forward + render_frame.right * u + render_frame.up * v;
-    return direction / sqrt(dot(direction, direction));
-}

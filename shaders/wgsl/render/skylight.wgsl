@@ -47,7 +47,7 @@ fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
     var normal = found.normal;
     if found.roughness > 0.0 {
         // Between what is seen and what is mirrored.
-        let seen = found.place - render_frame.eye;
+        let seen = found.place - render_frame.camera.eye;
         let sum = found.normal - seen / max(sqrt(dot(seen, seen)), 1.0e-20);
         normal = sum / max(sqrt(dot(sum, sum)), 1.0e-20);
     }
@@ -78,7 +78,7 @@ fn skylight_alike(own: vec4f, other: vec4f) -> f32 {
 
 // The mean of the window round a pixel, and the variance of its luminance.
 fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
-    let own = skylight_slot(y * render_frame.width + x, slot);
+    let own = skylight_slot(y * render_frame.camera.width + x, slot);
     if own.slack <= 0.0 {
         return vec4f(0.0);
     }
@@ -88,9 +88,9 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     var weights = 0.0;
     let left = max(x, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
     let top = max(y, SKYLIGHT_RADIUS) - SKYLIGHT_RADIUS;
-    for (var row = top; row <= min(y + SKYLIGHT_RADIUS, render_frame.height - 1u); row += 1u) {
-        for (var column = left; column <= min(x + SKYLIGHT_RADIUS, render_frame.width - 1u); column += 1u) {
-            let other = skylight_slot(row * render_frame.width + column, slot);
+    for (var row = top; row <= min(y + SKYLIGHT_RADIUS, render_frame.camera.height - 1u); row += 1u) {
+        for (var column = left; column <= min(x + SKYLIGHT_RADIUS, render_frame.camera.width - 1u); column += 1u) {
+            let other = skylight_slot(row * render_frame.camera.width + column, slot);
             var counts = skylight_hat(x, column) * skylight_hat(y, row);
             if row != y || column != x {
                 counts *= skylight_same(own, other);
@@ -114,7 +114,7 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
 
 // The mean of means `step` pixels apart that show the same.
 fn skylight_wide(x: u32, y: u32, slot: u32, step: u32) -> vec4f {
-    let here = y * render_frame.width + x;
+    let here = y * render_frame.camera.width + x;
     let own = skylight_slot(here, slot);
     let mean = skylight_before[2u * here + slot];
     if own.slack <= 0.0 {
@@ -126,11 +126,11 @@ fn skylight_wide(x: u32, y: u32, slot: u32, step: u32) -> vec4f {
     for (var k = 0u; k < 9u; k += 1u) {
         let column = x + k % 3u * step;
         let row = y + k / 3u * step;
-        if k == 4u || column < step || row < step || column - step >= render_frame.width
-            || row - step >= render_frame.height {
+        if k == 4u || column < step || row < step || column - step >= render_frame.camera.width
+            || row - step >= render_frame.camera.height {
             continue;
         }
-        let other = (row - step) * render_frame.width + column - step;
+        let other = (row - step) * render_frame.camera.width + column - step;
         let its = skylight_before[2u * other + slot];
         let kernel = select(2.0, 1.0, k % 2u == 0u);
         let counts = kernel * skylight_same(own, skylight_slot(other, slot)) * skylight_alike(mean, its);
@@ -144,10 +144,10 @@ fn skylight_wide(x: u32, y: u32, slot: u32, step: u32) -> vec4f {
 @compute @workgroup_size(8, 8, 1)
 fn main_skylight(@builtin(global_invocation_id) id: vec3u) {
     let y = id.y + render_frame.first_row;
-    if id.x >= render_frame.width || y >= render_frame.height {
+    if id.x >= render_frame.camera.width || y >= render_frame.camera.height {
         return;
     }
-    let index = y * render_frame.width + id.x;
+    let index = y * render_frame.camera.width + id.x;
     let step = render_frame.skylight_pass;
     for (var slot = 0u; slot < 2u; slot += 1u) {
         var mean = vec4f(0.0);

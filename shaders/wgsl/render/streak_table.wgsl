@@ -67,7 +67,7 @@ fn main_streak_table(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
     let column = f32(ray % STREAK_RAYS) / last;
     let line = f32(ray / STREAK_RAYS) / last;
     let towards =
-        normalize(drops_frame_ray(column * f32(drops_frame.width), line * f32(drops_frame.height)));
+        normalize(camera_ray(drops_frame.camera, column * f32(drops_frame.camera.width), line * f32(drops_frame.camera.height)));
     var sum = vec4f(0.0);
     // A class without rows is not wanted.
     let points = select(0u, STREAK_MEAN_POINTS, streak_classes[kind].rows > 0u);

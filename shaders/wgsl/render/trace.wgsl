@@ -45,7 +45,7 @@ fn trace_pack(slot: PathSlot) -> TraceSlot {
     let parts = slot.light.xy * (1.0 / max(sum, 1.0e-30));
     let rough = select(max(u32(clamp(slot.roughness, 0.0, 1.0) * 255.0 + 0.5), 1u), 0u, slot.roughness <= 0.0);
     let look = u32(clamp(parts.x, 0.0, 1.0) * 4095.0 + 0.5) | u32(clamp(parts.y, 0.0, 1.0) * 4095.0 + 0.5) << 12u | rough << 24u;
-    let from_eye = slot.place - render_frame.eye;
+    let from_eye = slot.place - render_frame.camera.eye;
     let slack = clamp(slot.slack / max(sqrt(dot(from_eye, from_eye)), 1.0e-20), 1.0e-4, 6.0e4);
     let factor = min(slot.factor, vec3f(6.0e4));
     return TraceSlot(
@@ -61,7 +61,7 @@ fn trace_unpack(slot: TraceSlot) -> PathSlot {
     let light = vec3f(red, green, max(slot.light - red - green, 0.0));
     let low = unpack2x16float(slot.factor.x);
     let high = unpack2x16float(slot.factor.y);
-    let from_eye = slot.place - render_frame.eye;
+    let from_eye = slot.place - render_frame.camera.eye;
     return PathSlot(
         light, high.y * sqrt(dot(from_eye, from_eye)), vec3f(low, high.x), f32(slot.look >> 24u) / 255.0,
         packing_octahedral_decode(unpack2x16snorm(slot.normal)), slot.place,
@@ -106,7 +106,7 @@ fn trace_direction(x: f32, y: f32) -> vec3f {
     if render_frame.projection == SCENE_OCTAHEDRAL {
         return capture_direction(x, y);
     }
-    return scene_direction(x, y);
+    return camera_direction(render_frame.camera, x, y);
 }
 
 // A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and surfaces on the
@@ -127,7 +127,7 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
         let dy = (f32(place / n) + 0.5) / f32(n);
         let direction = trace_direction(f32(x) + dx, f32(y) + dy);
         let random = path_lattice_words(x, y, place);
-        let path = path_trace(render_frame.eye, direction, render_frame.pixel_angle, random, last);
+        let path = path_trace(render_frame.camera.eye, direction, render_frame.camera.pixel_angle, random, last);
         if is_picture {
             sum += path.radiance;
         } else {
@@ -145,7 +145,7 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
     }
     let share = 1.0 / f32(count);
     if is_picture {
-        trace_gather[y * render_frame.width + x] = TraceGather(trace_mean(base, share), trace_mean(mirror, share));
+        trace_gather[y * render_frame.camera.width + x] = TraceGather(trace_mean(base, share), trace_mean(mirror, share));
         return vec4f(sum * share, nearest);
     }
     var seen = sum * share;
@@ -158,8 +158,8 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
 @compute @workgroup_size(8, 8, 1)
 fn main_trace(@builtin(global_invocation_id) id: vec3u) {
     let y = id.y + render_frame.first_row;
-    if id.x >= render_frame.width || y >= render_frame.height {
+    if id.x >= render_frame.camera.width || y >= render_frame.camera.height {
         return;
     }
-    trace_picture[y * render_frame.width + id.x] = trace_pixel(id.x, y);
+    trace_picture[y * render_frame.camera.width + id.x] = trace_pixel(id.x, y);
 }

@@ -188,8 +188,7 @@ fn pane(keys: &str) -> GlassPicture {
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, SIZE, 1, 0, 0).expect("a frame");
     let texels = (4 * CAPTURE * CAPTURE - 1) / 3;
     let lighting = SceneView { data: &stage.data, frame: &frame };
-    pane.picture(&stage.viewpoint, &frame.camera(), frame.grid, &lighting, texels as usize)
-        .expect("a picture")
+    pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, texels as usize).expect("a picture")
 }
 
 /// Smooth light of some colours, at distances of 1 to 30 m.
@@ -244,7 +243,6 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "glass_picture_inside",
             "glass_picture_outer",
             "glass_picture_through",
-            "glass_picture_ray",
             "glass_picture_sample",
             "glass_picture_pixel",
         ],

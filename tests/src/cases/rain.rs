@@ -172,7 +172,7 @@ fn masks_case(
     let frame = RenderFrame::new(&scene, &view, SIZE, 1, 1, 7).expect("a frame");
     let medium = medium(masks, eye);
     let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
-    let rain = Rain::new(&frame.camera(), DVec3::from(eye), &drops(eye, forward), masks, &options);
+    let rain = Rain::new(&frame.camera, DVec3::from(eye), &drops(eye, forward), masks, &options);
     assert!(rain.list.len() > 100, "{} drops", rain.list.len());
     let view = SceneView { data: &scene, frame: &frame };
     let clean = view.picture();
@@ -390,7 +390,6 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             "drops_capture_texel",
             "drops_capture_level",
             "drops_capture_at",
-            "drops_frame_ray",
             "drops_shade_shifted",
             "drops_shade_ray",
             "drops_on_plane",

@@ -6,6 +6,7 @@ use downpour_shaders::render::glass::GLASS_PICTURE_LEVELS;
 use super::light::GlassPictureLight;
 use super::picture::Look;
 use super::water::GlassPictureDrop;
+use crate::camera::Camera;
 
 /// Samples of a pixel, at most.
 const MOST_SAMPLES: u32 = 1024;
@@ -20,18 +21,8 @@ const PLASTIC: [f32; 2] = [0.754_877_7, 0.569_840_3];
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassPictureFrame {
-    /// Half the picture's width at distance 1, along the camera's right.
-    pub right: [f32; 3],
-    /// Pixels across.
-    pub width: u32,
-    /// Half the picture's height at distance 1, along the camera's up.
-    pub up: [f32; 3],
-    /// Pixels down.
-    pub height: u32,
-    /// The camera's view direction.
-    pub forward: [f32; 3],
-    /// Width of a pixel at distance 1.
-    pub pixel_angle: f32,
+    /// The camera.
+    pub camera: Camera,
     /// The pane's right in the world.
     pub across: [f32; 3],
     /// Bins along x.

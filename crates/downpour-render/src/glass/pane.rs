@@ -163,7 +163,7 @@ impl WetPane {
         let corner = place.corner(self.size);
         let options = self.glass.options();
         let vector = |v: DVec3| v.as_vec3().to_array();
-        let (levels, last) = levels(camera.size);
+        let (levels, last) = levels(camera.size());
         // (4 n^2 - 1) / 3 texels in all levels of n x n.
         let capture_size = ((environment_texels as f64 * 0.75).sqrt().round() as u32).max(1);
         let lens = (0.5 * self.pane.aperture) as f32;
@@ -177,12 +177,7 @@ impl WetPane {
         };
         Ok(GlassPicture {
             frame: GlassPictureFrame {
-                right: camera.right.into(),
-                width: camera.size[0],
-                up: camera.up.into(),
-                height: camera.size[1],
-                forward: camera.forward.into(),
-                pixel_angle: camera.pixel_angle,
+                camera: *camera,
                 across: vector(place.across),
                 columns: binned.columns,
                 down: vector(place.down),

@@ -12,7 +12,6 @@ use rayon::prelude::*;
 use super::GlassPicture;
 use super::light::glass_picture_light_seen;
 use super::meet::Met;
-use crate::camera::camera_ray;
 
 /// A ray that meets the pane.
 #[derive(Clone, Copy, Debug)]
@@ -50,8 +49,8 @@ impl Look<'_> {
     /// The whole picture, rows from the top.
     pub(super) fn picture(&self) -> Vec<[f32; 3]> {
         let frame = &self.glass.frame;
-        let pixel = |y| (0..frame.width).map(move |x| self.glass_picture_pixel(x, y).to_array());
-        (0..frame.height).into_par_iter().flat_map_iter(pixel).collect()
+        let pixel = |y| (0..frame.camera.width).map(move |x| self.glass_picture_pixel(x, y).to_array());
+        (0..frame.camera.height).into_par_iter().flat_map_iter(pixel).collect()
     }
 
     /// What a drop shows of the lamps and the sun: they are points, and in no picture of what is behind the pane.
@@ -139,20 +138,12 @@ impl Look<'_> {
         sum
     }
 
-    /// The ray through a place of the picture, in pixels from the top left, of length 1.
-    fn glass_picture_ray(&self, x: f32, y: f32) -> Vec3 {
-        let frame = &self.glass.frame;
-        let axes = [frame.right, frame.up, frame.forward].map(Vec3::from);
-        let ray = camera_ray(axes, [frame.width, frame.height], x, y);
-        ray / ray.dot(ray).sqrt()
-    }
-
     /// A sample of a pixel: a place of the lens (in its radius) and of the pixel.
     fn glass_picture_sample(&self, x: f32, y: f32, distance: f32, sample: [f32; 4]) -> Vec3 {
         let frame = &self.glass.frame;
         let [lens_x, lens_y, dx, dy] = sample;
-        let ray = self.glass_picture_ray(x + dx, y + dy);
-        let (right, up) = (Vec3::from(frame.right), Vec3::from(frame.up));
+        let ray = frame.camera.camera_direction(x + dx, y + dy);
+        let (right, up) = (frame.camera.right, frame.camera.up);
         let (right, up) = (right / right.dot(right).sqrt(), up / up.dot(up).sqrt());
         let from_eye = (right * lens_x + up * lens_y) * frame.lens;
         // What is behind is looked up for the pixel's middle: it is sampled already.
@@ -163,7 +154,7 @@ impl Look<'_> {
         let far = distance.min(GLASS_PICTURE_FAR);
         let pane = plane / towards.max(1.0e-6);
         if towards < 1.0e-3 || pane > far {
-            return self.glass_picture_seen(Vec3::ZERO, ray, shift, frame.pixel_angle);
+            return self.glass_picture_seen(Vec3::ZERO, ray, shift, frame.camera.pixel_angle);
         }
         let depth = if frame.focus == GLASS_PICTURE_GLASS { pane } else { far };
         let aim = ray * depth - from_eye;
@@ -176,7 +167,7 @@ impl Look<'_> {
         let place = Vec2::new(on.dot(across), on.dot(down));
         let among = (1.0 / frame.samples as f32).sqrt();
         let apart = frame.lens * GLASS_PICTURE_APART * among;
-        let pixel = frame.pixel_angle;
+        let pixel = frame.camera.pixel_angle;
         let [width, height] = frame.size;
         if place.x < 0.0 || place.y < 0.0 || place.x > width || place.y > height {
             let angle = pixel + apart * (1.0 / depth - 1.0 / far).abs();

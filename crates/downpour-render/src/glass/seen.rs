@@ -89,7 +89,8 @@ impl Look<'_> {
     /// Where a direction is on the picture: -1 to 1 right and up, and its depth.
     fn glass_picture_project(&self, direction: Vec3) -> Vec3 {
         let frame = &self.glass.frame;
-        let [right, up, forward] = [frame.right, frame.up, frame.forward].map(Vec3::from);
+        let [right, up, forward] =
+            [frame.camera.right, frame.camera.up, frame.camera.forward].map(Vec3::from);
         let depth = direction.dot(forward);
         let near = depth.max(1.0e-6);
         Vec3::new(
@@ -108,7 +109,7 @@ impl Look<'_> {
         footprint: f32,
     ) -> Vec3 {
         let frame = &self.glass.frame;
-        let size = Vec2::new(frame.width as f32, frame.height as f32);
+        let size = Vec2::new(frame.camera.width as f32, frame.camera.height as f32);
         let guess = self.glass_picture_project(direction);
         let distance = if guess.z > 0.0 && guess.x.abs() < 1.0 && guess.y.abs() < 1.0 {
             let pixel = Vec2::new(0.5 + 0.5 * guess.x, 0.5 - 0.5 * guess.y) * size;
@@ -120,7 +121,7 @@ impl Look<'_> {
         };
         let to = direction + from_eye / distance.clamp(0.1, GLASS_PICTURE_FAR);
         let place = self.glass_picture_project(to);
-        let texels = (footprint / frame.pixel_angle).max(1.0);
+        let texels = (footprint / frame.camera.pixel_angle).max(1.0);
         // Towards the picture's edge the capture takes over, within the footprint.
         let at = Vec2::new(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) + shift / size;
         let inside = (at.x.min(1.0 - at.x) * size.x).min(at.y.min(1.0 - at.y) * size.y);

@@ -43,16 +43,17 @@ impl GlassRenderer {
         let lights = gpu.storage_buffer("lamps before glass", &glass.lights)?;
         let behind = gpu.storage_buffer("picture behind glass", &glass.levelled(behind))?;
         let capture = gpu.storage_buffer("capture round the eye", capture)?;
-        let pixels = u64::from(frame.width) * u64::from(frame.height);
+        let pixels = u64::from(frame.camera.width) * u64::from(frame.camera.height);
         let made = gpu.empty_buffer("picture through glass", pixels * 16, wgpu::BufferUsages::STORAGE)?;
-        let row = frame.width.max(1).saturating_mul(frame.samples.max(1));
+        let row = frame.camera.width.max(1).saturating_mul(frame.samples.max(1));
         let rows = (SAMPLES_PER_DISPATCH / row).max(8).next_multiple_of(8);
-        for first_row in (0..frame.height).step_by(rows as usize) {
+        for first_row in (0..frame.camera.height).step_by(rows as usize) {
             let band = GlassPictureFrame { first_row, ..*frame };
             let uniform = gpu.uniform_buffer("glass picture frame", &band)?;
             let buffers = [&uniform, &drops, &bins, &wet, &lens, &behind, &capture, &made, &lights];
             let bindings = self.kernel.bind(gpu, &buffers)?;
-            let groups = [frame.width.div_ceil(8), rows.min(frame.height - first_row).div_ceil(8), 1];
+            let groups =
+                [frame.camera.width.div_ceil(8), rows.min(frame.camera.height - first_row).div_ceil(8), 1];
             gpu.submit(&[self.kernel.dispatch(&bindings, groups)])?;
             // One submission at a time: software drivers queue without end.
             gpu.wait()?;

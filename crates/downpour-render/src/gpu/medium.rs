@@ -53,7 +53,7 @@ impl MediumPipeline {
         layer: &wgpu::Buffer,
     ) -> Result<MediumPass<'a>, GpuError> {
         let gpu = &self.gpu;
-        let [width, height] = medium.camera.size;
+        let [width, height] = medium.camera.size();
         let pixels = u64::from(width) * u64::from(height);
         let rows = medium.grid_rows() as u64 + 2 * pixels;
         let found = gpu.empty_buffer("unresolved rain", rows * 16, wgpu::BufferUsages::STORAGE)?;

@@ -1,5 +1,7 @@
 //! Drops before a scene on a GPU.
 
+use std::sync::Arc;
+
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::rain::{
     DROPS_KERNEL, REDUCE_KERNEL, STREAK_LIGHT_KERNEL, STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
@@ -8,7 +10,7 @@ use downpour_shaders::render::rain::{
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::medium::{MediumPass, MediumPipeline};
 use super::plate::PlateOnGpu;
-use crate::rain::light::DropLights;
+use crate::rain::light::{DropLightTable, DropLights};
 use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, StreakPath, StreakRay, reduce_levels};
 
 /// The pipelines of drops: made once, used for any number of pictures.
@@ -27,6 +29,8 @@ pub struct RainPipeline {
 /// Masks on the device.
 #[derive(Clone, Debug)]
 pub struct RainOnGpu {
+    /// Masks that were uploaded.
+    of: (Arc<Vec<u32>>, DropLightTable),
     masks: wgpu::Buffer,
     light: DropLightOnGpu,
 }
@@ -86,9 +90,19 @@ impl RainPipeline {
     /// [`GpuError::OverLimit`] if they are larger than the device allows, or what else the GPU says.
     pub fn upload(&self, masks: &DropMasks) -> Result<RainOnGpu, GpuError> {
         Ok(RainOnGpu {
+            of: (Arc::clone(&masks.words), masks.light.clone()),
             masks: self.gpu.storage_buffer("masks of drops", &masks.words)?,
             light: self.lamps.upload(&masks.light)?,
         })
+    }
+
+    /// Brings the masks to the device, if they are not those that `before` has there.
+    ///
+    /// # Errors
+    /// As [`RainPipeline::upload`].
+    pub fn upload_after(&self, masks: &DropMasks, before: Option<&RainOnGpu>) -> Result<RainOnGpu, GpuError> {
+        let is_same = |on: &&RainOnGpu| Arc::ptr_eq(&on.of.0, &masks.words) && on.of.1.is_same(&masks.light);
+        before.filter(is_same).map_or_else(|| self.upload(masks), |on| Ok(on.clone()))
     }
 
     /// A buffer for the environment map of a rain, with room for all levels.
@@ -123,7 +137,7 @@ impl RainPipeline {
             Ok((self.reduce.bind(gpu, &[&uniform, &texels])?, level.size.div_ceil(8)))
         };
         let levels = levels.iter().map(level).collect::<Result<_, GpuError>>()?;
-        let picture = [rain.frame.width, rain.frame.height];
+        let picture = rain.frame.camera.size();
         let pixels = u64::from(picture[0]) * u64::from(picture[1]);
         let layer = gpu.empty_buffer("rain", pixels * 16, storage)?;
         let frame = gpu.uniform_buffer("drops frame", &rain.frame)?;

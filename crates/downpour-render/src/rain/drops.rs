@@ -172,7 +172,7 @@ impl Buffers<'_> {
 
     /// The width of a glint, in radii: no line is thinner than half a pixel.
     fn drops_glint_width(&self, drop: &DropsDrop) -> f32 {
-        (0.5 * self.view.frame.pixel_angle / drop.slope).max(DROPS_GLINT)
+        (0.5 * self.view.frame.camera.pixel_angle / drop.slope).max(DROPS_GLINT)
     }
 
     /// A still drop over a pixel: radiance times coverage, and coverage. Below a pixel it is its mean radiance.
@@ -190,7 +190,7 @@ impl Buffers<'_> {
         let spacing = if small {
             2.0 * drop.half_extent / n as f32
         } else {
-            self.view.frame.pixel_angle / (drop.slope * n as f32)
+            self.view.frame.camera.pixel_angle / (drop.slope * n as f32)
         };
         let mut sum = Vec4::ZERO;
         for k in 0..n * n {
@@ -198,7 +198,8 @@ impl Buffers<'_> {
             let dy = ((k / n) as f32 + 0.5) / n as f32;
             let (mut sx, mut sy, mut lean) = (2.0 * dx - 1.0, 2.0 * dy - 1.0, Vec3::ZERO);
             if !small {
-                lean = drops_on_plane(towards, self.view.drops_frame_ray(x as f32 + dx, y as f32 + dy));
+                lean =
+                    drops_on_plane(towards, self.view.frame.camera.camera_ray(x as f32 + dx, y as f32 + dy));
                 sx = lean.dot(right) / extent;
                 sy = lean.dot(up) / extent;
             }
@@ -247,7 +248,7 @@ impl Buffers<'_> {
 
     /// The streak of a drop over a pixel: radiance times coverage, and coverage.
     fn drops_streak(&self, index: u32, drop: &DropsDrop, x: u32, y: u32) -> Vec4 {
-        let size = Vec2::new(self.view.frame.width as f32, self.view.frame.height as f32);
+        let size = Vec2::new(self.view.frame.camera.width as f32, self.view.frame.camera.height as f32);
         if drop.grid == 0 {
             let cover = streak_cover(drop, x, y);
             if cover <= 0.0 {
@@ -267,7 +268,7 @@ impl Buffers<'_> {
             let turned = (k * STREAK_LATTICE) % drop.grid;
             let at = Vec2::new(x as f32, y as f32)
                 + (Vec2::new(k as f32, turned as f32) + shift) / drop.grid as f32;
-            let ray = self.view.drops_frame_ray(at.x, at.y);
+            let ray = self.view.frame.camera.camera_ray(at.x, at.y);
             let lean = drops_on_plane(towards, ray);
             let place = Vec2::new(lean.dot(right), lean.dot(up));
             let by_profile = drop.kind == DROPS_TABLE;
@@ -300,7 +301,7 @@ impl Buffers<'_> {
         let towards = Vec3::from(drop.towards);
         let right = drops_mask_right(towards);
         let up = right.cross(towards);
-        let lean = drops_on_plane(towards, self.view.drops_frame_ray(x as f32 + 0.5, y as f32 + 0.5));
+        let lean = drops_on_plane(towards, self.view.frame.camera.camera_ray(x as f32 + 0.5, y as f32 + 0.5));
         let way = streak_nearest(drop, Vec2::new(lean.dot(right), lean.dot(up)));
         drop.distance * streak_depth(drop.recede, streak_time(drop.recede, way))
     }
@@ -331,7 +332,7 @@ impl Buffers<'_> {
         if frame.streak_colour == STREAK_WHITE {
             return self.view.drops_capture_texel(frame.capture_last, 0, 0);
         }
-        let size = Vec2::new(frame.width as f32, frame.height as f32);
+        let size = Vec2::new(frame.camera.width as f32, frame.camera.height as f32);
         let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
         self.table.streak_lookup_mean(self.rain.medium.shape, place)
     }
@@ -341,13 +342,13 @@ impl Buffers<'_> {
     fn drops_over(&self, x: u32, y: u32) -> Vec4 {
         let (frame, medium) = (self.view.frame, &self.rain.medium);
         let tile = ((y / DROPS_TILE) * frame.tiles_across + x / DROPS_TILE) as usize;
-        let index = (y * frame.width + x) as usize;
+        let index = (y * frame.camera.width + x) as usize;
         let scene = self.clean[index][3];
         let lamps = self.medium.get(index).copied().map_or(Vec4::ZERO, Vec4::from);
         // Mean distance of the medium's light of lamps, and its optical depth.
         let [mean, depth] = unpack(lamps.w.to_bits());
         let lamps = lamps.truncate();
-        let direction = drops_mask_unit(self.view.drops_frame_ray(x as f32 + 0.5, y as f32 + 0.5));
+        let direction = drops_mask_unit(self.view.frame.camera.camera_ray(x as f32 + 0.5, y as f32 + 0.5));
         let span = medium.medium_span(direction);
         let end = if scene >= MEDIUM_SKY { MEDIUM_SKY_REACH } else { scene };
         // Air that rain does not reach thins the medium; evenly, as far as drops between it go.
@@ -422,8 +423,8 @@ impl Rain {
     ) -> Vec<[f32; 4]> {
         let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &environment.texels };
         let buffers = Buffers { view, rain: self, table, light, clean, medium };
-        let (width, buffers) = (self.frame.width, &buffers);
-        (0..self.frame.height)
+        let (width, buffers) = (self.frame.camera.width, &buffers);
+        (0..self.frame.camera.height)
             .into_par_iter()
             .flat_map_iter(|y| (0..width).map(move |x| buffers.drops_over(x, y).to_array()))
             .collect()

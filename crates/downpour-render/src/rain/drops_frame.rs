@@ -1,12 +1,10 @@
 //! The picture as the drops' kernels know it. Twin of `shaders/wgsl/render/drops_frame.wgsl`.
 
-use glam::Vec3;
-
 use super::environment::EnvironmentFrame;
 use super::exposure::{MOST_STREAK_SAMPLES, StreakSamples};
 use super::light::DropLightForm;
 use super::{DropMasks, RainOptions};
-use crate::camera::{Camera, camera_ray};
+use crate::camera::Camera;
 
 /// Samples of a streak for which the table has no entry: too short, or across the others.
 const STREAK_SPARE: u32 = 16;
@@ -15,18 +13,8 @@ const STREAK_SPARE: u32 = 16;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropsFrame {
-    /// The camera's axes: half the picture at distance 1.
-    pub right: [f32; 3],
-    /// Pixels across.
-    pub width: u32,
-    /// See `right`.
-    pub up: [f32; 3],
-    /// Pixels down.
-    pub height: u32,
-    /// The view direction.
-    pub forward: [f32; 3],
-    /// Width of a pixel at distance 1.
-    pub pixel_angle: f32,
+    /// The camera.
+    pub camera: Camera,
     /// Axes of the capture in the papers' form: the whole of it at distance 1.
     pub capture_right: [f32; 3],
     /// Texels along an edge of the capture.
@@ -78,12 +66,7 @@ impl DropsFrame {
             StreakSamples::Loop(samples) => samples.clamp(1, MOST_STREAK_SAMPLES),
         };
         Self {
-            right: camera.right.into(),
-            width: camera.size[0],
-            up: camera.up.into(),
-            height: camera.size[1],
-            forward: camera.forward.into(),
-            pixel_angle: camera.pixel_angle,
+            camera: *camera,
             capture_right: environment.right.into(),
             capture_size: environment.size,
             capture_up: environment.up.into(),
@@ -99,14 +82,5 @@ impl DropsFrame {
             glints: options.light.glints,
             atlas: if options.light.form == DropLightForm::Atlas { masks.atlas } else { 0 },
         }
-    }
-}
-
-impl DropsView<'_> {
-    /// The ray through a place of the picture, in pixels from the top left, of any length.
-    pub(super) fn drops_frame_ray(&self, x: f32, y: f32) -> Vec3 {
-        let frame = self.frame;
-        let axes = [frame.right, frame.up, frame.forward].map(Vec3::from);
-        camera_ray(axes, [frame.width, frame.height], x, y)
     }
 }

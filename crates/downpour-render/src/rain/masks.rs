@@ -3,6 +3,8 @@
 //! A drop's mask depends on its diameter (its shape) and on how far above or below it the viewer is. Masks are traced
 //! for diameters half a millimetre apart and elevations 30 degrees apart; the shader goes between them linearly.
 
+use std::sync::Arc;
+
 use downpour_atlas::StreakAtlas;
 use downpour_drop::DropShape;
 use downpour_drop::oscillation::{Amplitudes, Fluids, FrequencyLaw, OscillatingDrop, Oscillation};
@@ -38,7 +40,7 @@ pub struct DropMasks {
     /// Five words per texel: the refracted, the reflected and the internally reflected direction as octahedral pairs of 16 bits;
     /// coverage and transmittance, then the internal transmittance and the reflectance as 16 bits each. Rows from the top, elevations within diameters. Behind them the streak atlas, if there
     /// is one.
-    pub words: Vec<u32>,
+    pub words: Arc<Vec<u32>>,
     /// Texels along an edge of a mask.
     pub size: u32,
     /// First word of the streak atlas behind the masks; 0: there is none.
@@ -109,7 +111,7 @@ impl DropMasks {
     fn empty(refractive_index: f64, table: ShapeTable) -> Result<Self, MaskError> {
         let shape = |k: u32| streak_shape(f64::from(k) * SHAPE_STEP, table, refractive_index);
         Ok(Self {
-            words: Vec::new(),
+            words: Arc::default(),
             size: SIZE,
             atlas: 0,
             light: DropLightTable::water().map_err(|_| MaskError::OutOfRange {
@@ -135,7 +137,7 @@ impl DropMasks {
             self.areas.push((covered * width * width) as f32);
             self.ovals.push(oval(mask));
             let words = |texel| pack(texel, mask.refractive_index as f32);
-            self.words.extend(mask.texels.iter().flat_map(words));
+            Arc::make_mut(&mut self.words).extend(mask.texels.iter().flat_map(words));
         }
     }
 
@@ -144,10 +146,10 @@ impl DropMasks {
     #[must_use]
     pub fn with_atlas(mut self, atlas: &StreakAtlas) -> Self {
         if self.atlas > 0 {
-            self.words.truncate(self.atlas as usize);
+            Arc::make_mut(&mut self.words).truncate(self.atlas as usize);
         }
         self.atlas = self.words.len() as u32;
-        self.words.extend(drops_atlas::words(atlas));
+        Arc::make_mut(&mut self.words).extend(drops_atlas::words(atlas));
         self.light = self.light.with_atlas(atlas);
         self
     }

@@ -83,8 +83,8 @@ impl DropsView<'_> {
         }
         let last = (STREAK_RAYS - 1) as f32;
         let place = Vec2::new((ray % STREAK_RAYS) as f32 / last, (ray / STREAK_RAYS) as f32 / last);
-        let (x, y) = (place.x * self.frame.width as f32, place.y * self.frame.height as f32);
-        let towards = drops_mask_unit(self.drops_frame_ray(x, y));
+        let (x, y) = (place.x * self.frame.camera.width as f32, place.y * self.frame.camera.height as f32);
+        let towards = drops_mask_unit(self.frame.camera.camera_ray(x, y));
         let mut sum = Vec4::ZERO;
         for part in 0..STREAK_MEAN_GROUP {
             let mut of_part = Vec4::ZERO;

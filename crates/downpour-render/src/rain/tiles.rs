@@ -55,7 +55,7 @@ impl Rain {
         options: &RainOptions,
     ) -> Self {
         let environment = EnvironmentFrame::new(camera, options);
-        let [width, height] = camera.size;
+        let [width, height] = camera.size();
         let mut placed: Vec<(u32, Projected)> = (0u32..)
             .zip(drops)
             .filter_map(|(k, drop)| Some((k, project(camera, eye, drop, masks, &options.exposure)?)))
@@ -149,7 +149,7 @@ impl Rain {
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given.
     #[must_use]
     pub fn drawn(&self, clean: &[[f32; 4]]) -> Vec<u32> {
-        let width = self.frame.width as usize;
+        let width = self.frame.camera.width as usize;
         let seen = |drop: &DropsDrop, [left, right, top, bottom]: [u32; 4]| {
             (top as usize..=bottom as usize).any(|row| {
                 let row = &clean[row * width..(row + 1) * width];

@@ -8,7 +8,7 @@ use downpour_sim::field::FallingDrop;
 
 use downpour_render::RenderError;
 use downpour_render::camera::Viewpoint;
-use downpour_render::gpu::RainPipeline;
+use downpour_render::gpu::{RainOnGpu, RainPipeline};
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::{DropMasks, Rain};
 
@@ -35,8 +35,8 @@ pub struct PictureRenderer {
     gpu: Gpu,
     scene: ScenePipeline,
     rain: RainPipeline,
-    /// The scene of the last picture.
-    uploaded: Arc<Mutex<Option<SceneOnGpu>>>,
+    /// The scene and the masks of the last picture.
+    uploaded: Arc<Mutex<Option<(SceneOnGpu, RainOnGpu)>>>,
 }
 
 impl PictureRenderer {
@@ -72,15 +72,16 @@ impl PictureRenderer {
         let mut passes = Vec::new();
         let uploaded = timed(&mut passes, "upload", || {
             let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
-            // What the scene shares with that of the last picture is on the device.
-            let uploaded = self.scene.upload_after(scene, last.as_ref())?;
-            *last = Some(uploaded.clone());
+            // What the scene shares with that of the last picture is on the device, and so are its masks.
+            let scene = self.scene.upload_after(scene, last.as_ref().map(|(scene, _)| scene))?;
+            let masks = self.rain.upload_after(masks, last.as_ref().map(|(_, masks)| masks))?;
+            *last = Some((scene.clone(), masks.clone()));
             drop(last);
-            Ok::<_, GpuError>((uploaded, self.rain.upload(masks)?))
+            Ok::<_, GpuError>((scene, masks))
         })?;
         let clean = timed(&mut passes, "scene", || self.scene.draw(&uploaded.0, &frame))?;
         let eye = viewpoint.eye.as_dvec3();
-        let camera = frame.camera();
+        let camera = frame.camera;
         let rain = timed(&mut passes, "binning", || Rain::new(&camera, eye, drops, masks, &options.rain));
         let view = SceneView { data: scene, frame: &frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];

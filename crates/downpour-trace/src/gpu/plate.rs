@@ -40,7 +40,7 @@ impl ScenePipeline {
         let tracer = self.tracer(&of_map)?;
         let bindings = tracer.bind(gpu, &scene.buffers(&uniform, &environment, &nothing))?;
         let lighting = scene.lighting(gpu, frame)?;
-        Ok(ScenePlate { tracer, bindings, groups: of_map.width.div_ceil(8), environment, lighting })
+        Ok(ScenePlate { tracer, bindings, groups: of_map.camera.width.div_ceil(8), environment, lighting })
     }
 }
 

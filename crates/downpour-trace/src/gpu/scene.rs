@@ -117,21 +117,25 @@ impl ScenePipeline {
     /// # Errors
     /// As [`ScenePipeline::upload`].
     pub fn prepare(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<ScenePass<'_>, GpuError> {
-        let pixels = u64::from(frame.width) * u64::from(frame.height);
+        let pixels = u64::from(frame.camera.width) * u64::from(frame.camera.height);
         let picture = self.gpu.empty_buffer("picture", pixels * 16, wgpu::BufferUsages::STORAGE)?;
         let bytes = pixels * size_of::<TraceGather>() as u64;
         let gather = self.gpu.empty_buffer("light of the sky", bytes, wgpu::BufferUsages::STORAGE)?;
-        let rows = (PIXELS_PER_DISPATCH / frame.width.max(1)).max(8).next_multiple_of(8);
+        let rows = (PIXELS_PER_DISPATCH / frame.camera.width.max(1)).max(8).next_multiple_of(8);
         let tracer = self.tracer(frame)?;
         let means = || self.gpu.empty_buffer("means of light", pixels * 32, wgpu::BufferUsages::STORAGE);
         let means = [means()?, means()?];
         let (mut bands, mut filters) = (Vec::new(), Vec::new());
         for skylight_pass in 0..=SKYLIGHT_PASSES {
             let [from, to] = [&means[(skylight_pass as usize + 1) % 2], &means[skylight_pass as usize % 2]];
-            for first_row in (0..frame.height).step_by(rows as usize) {
+            for first_row in (0..frame.camera.height).step_by(rows as usize) {
                 let frame = RenderFrame { first_row, skylight_pass, ..*frame };
                 let uniform = self.gpu.uniform_buffer("frame", &frame)?;
-                let groups = [frame.width.div_ceil(8), rows.min(frame.height - first_row).div_ceil(8), 1];
+                let groups = [
+                    frame.camera.width.div_ceil(8),
+                    rows.min(frame.camera.height - first_row).div_ceil(8),
+                    1,
+                ];
                 if skylight_pass == 0 {
                     let bound = tracer.bind(&self.gpu, &scene.buffers(&uniform, &picture, &gather))?;
                     bands.push((bound, groups));

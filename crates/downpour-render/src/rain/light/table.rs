@@ -1,5 +1,7 @@
 //! The scattering of water for red, green and blue, as the shader reads it.
 
+use std::sync::Arc;
+
 use downpour_atlas::StreakAtlas;
 use downpour_drop::DropError;
 use downpour_drop::air::Air;
@@ -17,7 +19,7 @@ const _: () = assert!(SCATTERING_PATHS == DROP_LIGHT_PATHS as usize);
 /// to be known of a streak atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropLightTable {
-    rows: Vec<[f32; 4]>,
+    rows: Arc<Vec<[f32; 4]>>,
 }
 
 impl DropLightTable {
@@ -45,7 +47,7 @@ impl DropLightTable {
                 }
             }
         }
-        Ok(Self { rows })
+        Ok(Self { rows: Arc::new(rows) })
     }
 
     /// The table of water in standard air under lamps as wide as the sun. Three sweeps of 50 000 rays.
@@ -59,8 +61,9 @@ impl DropLightTable {
     /// The same, with the streaks of an atlas instead of those of another.
     #[must_use]
     pub fn with_atlas(mut self, atlas: &StreakAtlas) -> Self {
-        self.rows.truncate(atlas::FIRST_ROW as usize);
-        self.rows.extend(atlas::rows(atlas));
+        let rows = Arc::make_mut(&mut self.rows);
+        rows.truncate(atlas::FIRST_ROW as usize);
+        rows.extend(atlas::rows(atlas));
         self
     }
 
@@ -74,5 +77,11 @@ impl DropLightTable {
     #[must_use]
     pub fn rows(&self) -> &[[f32; 4]] {
         &self.rows
+    }
+
+    /// True if two tables share their rows.
+    #[cfg(feature = "wgpu")]
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.rows, &other.rows)
     }
 }

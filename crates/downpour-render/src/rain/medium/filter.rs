@@ -18,7 +18,7 @@ fn medium_filter_weight(own: f32, other: f32) -> f32 {
 impl MediumLight<'_> {
     /// The light before a pixel, and two halves: mean distance and optical depth.
     pub(super) fn medium_filter_pixel(&self, clean: &[[f32; 4]], found: &[[f32; 4]], x: u32, y: u32) -> Vec4 {
-        let [width, height] = self.camera.size;
+        let [width, height] = self.camera.size();
         let first = self.grid_rows();
         let rows = |index: u32| {
             let at = first + 2 * index as usize;

@@ -118,7 +118,7 @@ impl<'a> MediumLight<'a> {
     /// The same from what was found ([`MediumLight::found`]).
     #[must_use]
     pub fn filtered(&self, clean: &[[f32; 4]], found: &[[f32; 4]]) -> Vec<[f32; 4]> {
-        let [width, height] = self.camera.size;
+        let [width, height] = self.camera.size();
         (0..height)
             .into_par_iter()
             .flat_map_iter(|y| {
@@ -137,7 +137,7 @@ impl<'a> MediumLight<'a> {
             .into_par_iter()
             .flat_map_iter(|cell| self.medium_open_column(cell % columns, cell / columns))
             .collect();
-        let [width, height] = self.camera.size;
+        let [width, height] = self.camera.size();
         let grid = &rows;
         let pixels: Vec<[f32; 4]> = (0..height)
             .into_par_iter()
@@ -258,9 +258,9 @@ impl<'a> MediumLight<'a> {
     /// What stands before a pixel of unresolved drops: their light, and their optical depth.
     fn medium_light_pixel(&self, clean: &[[f32; 4]], grid: &[[f32; 4]], x: u32, y: u32) -> [[f32; 4]; 2] {
         let (medium, camera) = (&self.medium, &self.camera);
-        let scene = clean[(y * camera.size[0] + x) as usize][3];
+        let scene = clean[(y * camera.width + x) as usize][3];
         let place = Vec2::new(x as f32, y as f32) + 0.5;
-        let direction = camera.direction(place.x, place.y);
+        let direction = camera.camera_direction(place.x, place.y);
         let end = if scene >= MEDIUM_SKY { MEDIUM_SKY_REACH } else { scene };
         let depth = self.medium_open_at(grid, place.x, place.y, end).x;
         let mut sum = Found::default();

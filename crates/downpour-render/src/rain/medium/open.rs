@@ -23,9 +23,9 @@ impl MediumLight<'_> {
     /// The ray of a cell of the grid.
     fn medium_open_ray(&self, column: u32, row: u32) -> Vec3 {
         let (medium, camera) = (&self.medium, self.camera);
-        let x = (column as f32 + 0.5) / medium.columns as f32 * camera.size[0] as f32;
-        let y = (row as f32 + 0.5) / medium.rows as f32 * camera.size[1] as f32;
-        self.camera.direction(x, y)
+        let x = (column as f32 + 0.5) / medium.columns as f32 * camera.width as f32;
+        let y = (row as f32 + 0.5) / medium.rows as f32 * camera.height as f32;
+        self.camera.camera_direction(x, y)
     }
 
     /// The column of a cell.
@@ -71,7 +71,7 @@ impl MediumLight<'_> {
     /// left), and whether the air is open to the rain there.
     pub(super) fn medium_open_at(&self, grid: &[[f32; 4]], x: f32, y: f32, distance: f32) -> Vec2 {
         let (medium, camera) = (&self.medium, self.camera);
-        let direction = self.camera.direction(x, y);
+        let direction = self.camera.camera_direction(x, y);
         let span = medium.medium_span(direction);
         let outline = medium.medium_outline(direction);
         let whole = medium.medium_depth(distance, span, outline);
@@ -87,7 +87,7 @@ impl MediumLight<'_> {
         // Beyond the last slice its own air goes on.
         let fraction = ((whole - begin) / (end - begin).max(1.0e-12)).max(0.0);
         let last = Vec2::new((medium.columns - 1) as f32, (medium.rows - 1) as f32);
-        let size = Vec2::new(camera.size[0] as f32, camera.size[1] as f32);
+        let size = Vec2::new(camera.width as f32, camera.height as f32);
         let place = (Vec2::new(x, y) / size * (last + 1.0) - 0.5).clamp(Vec2::ZERO, last);
         let low = [place.x as u32, place.y as u32];
         let high = [(low[0] + 1).min(last.x as u32), (low[1] + 1).min(last.y as u32)];
