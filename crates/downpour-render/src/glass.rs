@@ -19,7 +19,7 @@ mod drops;
 mod error;
 mod frame;
 #[cfg(not(feature = "parity"))]
-mod light;
+pub(crate) mod light;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod light;
@@ -29,7 +29,7 @@ mod picture;
 mod seen;
 mod shade;
 #[cfg(not(feature = "parity"))]
-mod water;
+pub(crate) mod water;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod water;

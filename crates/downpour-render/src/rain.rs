@@ -13,7 +13,7 @@
 //! differs it is said at [`RefractionForm`] and [`StreakSamples`].
 
 #[cfg(not(feature = "parity"))]
-mod drops;
+pub(crate) mod drops;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod drops;
@@ -26,7 +26,7 @@ mod drops_shade;
 mod environment;
 pub mod exposure;
 #[cfg(not(feature = "parity"))]
-mod glint;
+pub(crate) mod glint;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod glint;
@@ -39,7 +39,7 @@ mod project;
 mod reduce;
 mod shapes;
 #[cfg(not(feature = "parity"))]
-mod streak;
+pub(crate) mod streak;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod streak;
@@ -47,7 +47,7 @@ mod streak_light;
 mod streak_lookup;
 mod streak_path;
 #[cfg(not(feature = "parity"))]
-mod streak_place;
+pub(crate) mod streak_place;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod streak_place;

@@ -5,7 +5,7 @@
 
 mod lamps;
 #[cfg(not(feature = "parity"))]
-mod water;
+pub(crate) mod water;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod water;
