@@ -9,8 +9,9 @@ use std::sync::Arc;
 use downpour_gpu::{Gpu, GpuError};
 use downpour_tests::broken::{BROKEN, Broken};
 use downpour_tests::function::Run;
+use downpour_tests::relay::Relay;
 use downpour_tests::report::{self, Report};
-use downpour_tests::{Tol, adapter, cases, control};
+use downpour_tests::{KernelCase, Tol, adapter, cases, control};
 use libtest_mimic::{Arguments, Failed, Trial};
 
 fn main() -> ExitCode {
@@ -21,6 +22,12 @@ fn main() -> ExitCode {
         eprintln!("{}", adapter::missing(error));
         return ExitCode::FAILURE;
     }
+    // Cases share what they compile, and are seen to dispatch the kernel that they are about.
+    let relay = gpu.as_ref().and_then(|gpu| gpu.as_ref().ok()).map(Relay::before);
+    let (relay, gpu) = match relay {
+        Some((relay, gpu)) => (relay, Some(Ok(gpu))),
+        None => (Relay::default(), gpu),
+    };
     let gpu = Arc::new(gpu);
     let report = Arc::new(Report::default());
 
@@ -38,10 +45,12 @@ fn main() -> ExitCode {
         );
     }
     for case in cases::kernels() {
-        let (gpu, report) = (Arc::clone(&gpu), Arc::clone(&report));
+        let (gpu, report, relay) = (Arc::clone(&gpu), Arc::clone(&report), relay.clone());
         trials.push(
             Trial::test(format!("kernel::{}", case.name), move || {
-                judge(case.name, open(&gpu)?, &case.tol, &report, case.run)
+                drop(relay.take_dispatched());
+                judge(case.name, open(&gpu)?, &case.tol, &report, case.run)?;
+                must_dispatch(&case, &relay)
             })
             .with_ignored_flag(off),
         );
@@ -79,6 +88,15 @@ fn must_fail(broken: &Broken, gpu: &Gpu) -> Result<(), Failed> {
         Some(_) => Ok(()),
         None => Err(format!("{} passed with \"{}\"", broken.function, broken.wrong).into()),
     }
+}
+
+/// The kernel that a case is about has to have run, with the constants that the case names.
+fn must_dispatch(case: &KernelCase, relay: &Relay) -> Result<(), Failed> {
+    let dispatched = relay.take_dispatched();
+    if case.is_among(&dispatched) {
+        return Ok(());
+    }
+    Err(format!("{} with {:?} was not dispatched, but {dispatched:?}", case.entry(), case.overrides).into())
 }
 
 fn judge(

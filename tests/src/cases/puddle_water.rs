@@ -122,18 +122,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, run| KernelCase {
         name,
         kernel: &TRACE_KERNEL,
-        covers: &[
-            "puddle_water_texel",
-            "puddle_water_map",
-            "puddle_water_find",
-            "puddle_water_slope",
-            "puddle_water_piece",
-            "puddle_water_ripple",
-            "path_water_surface",
-            "path_water_ray",
-            "path_water_share",
-            "path_soaked",
-        ],
+        with: &[],
+        overrides: &[("SCENE_PANE", 0.0), ("SCENE_WET", 1.0)],
+        text: None,
         tol: WATER,
         run,
     };
