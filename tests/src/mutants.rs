@@ -4,7 +4,9 @@
 //! mutant's function until one sees it, [`pool`] keeps workers as processes with deadlines, [`known`] lists those that no
 //! case can see, each with its reason.
 
+pub mod bundle;
 pub mod changes;
+pub mod known;
 pub mod pool;
 pub mod population;
 pub mod tokens;

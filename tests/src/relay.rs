@@ -24,7 +24,10 @@ const NOT_HANDED_ON: &str = "a relay hands on compute only";
 /// A kernel that was dispatched: its entry point, and the constants that it was given (bits of f64).
 pub type Dispatched = (String, Vec<(String, u64)>);
 
-/// Text that stands in the place of a function's.
+/// The name of the number that chooses among several wrong texts, as the text of a [`Swap`] reads it.
+pub const CHOSEN: &str = "relay_chosen";
+
+/// Text that stands in the place of a function's. It may read [`CHOSEN`], which [`Relay::choose`] sets.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Swap {
     /// The function's name.
@@ -33,6 +36,14 @@ pub struct Swap {
     pub right: String,
     /// What is compiled instead.
     pub wrong: String,
+}
+
+/// The number that wrong texts read, on the device.
+#[derive(Debug)]
+struct Chosen {
+    buffer: wgpu::Buffer,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
 }
 
 /// The part of a relay that its owner and its device share.
@@ -44,14 +55,20 @@ pub struct Relay {
 #[derive(Debug, Default)]
 struct State {
     swap: Option<Swap>,
-    /// Whether a pipeline was made in which the swapped text can run.
-    swapped: bool,
-    pipelines: HashMap<Key, wgpu::ComputePipeline>,
+    chosen: Option<Chosen>,
+    pipelines: HashMap<Key, Made>,
     /// Those with the swapped text: kept until the next swap.
-    wrong: HashMap<Key, wgpu::ComputePipeline>,
+    wrong: HashMap<Key, Made>,
     reached: HashMap<(String, String), Arc<BTreeSet<String>>>,
     /// By thread: cases run beside each other.
     dispatched: HashMap<ThreadId, BTreeSet<Dispatched>>,
+}
+
+/// A pipeline, and the bindings of its second group if it reads [`CHOSEN`].
+#[derive(Clone, Debug)]
+struct Made {
+    pipeline: wgpu::ComputePipeline,
+    choice: Option<wgpu::BindGroup>,
 }
 
 /// Text, entry point and constants of a pipeline.
@@ -67,6 +84,14 @@ impl Relay {
     #[must_use]
     pub fn before(gpu: &Gpu) -> (Self, Gpu) {
         let relay = Self::default();
+        let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+            label: Some(CHOSEN),
+            size: 16,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let (device, queue) = (gpu.device().clone(), gpu.queue().clone());
+        relay.lock().chosen = Some(Chosen { buffer, device, queue });
         let device = device::RelayDevice { relay: relay.clone(), inner: gpu.device().clone() };
         let queue = device::RelayQueue { inner: gpu.queue().clone() };
         let relayed = Gpu::on_device(wgpu::Device::from_custom(device), wgpu::Queue::from_custom(queue));
@@ -77,14 +102,25 @@ impl Relay {
     pub fn swap(&self, swap: Option<Swap>) {
         let mut state = self.lock();
         state.swap = swap;
-        state.swapped = false;
         state.wrong.clear();
     }
 
-    /// Whether a pipeline was made since the last [`Relay::swap`] in which the other text can run.
-    #[must_use]
-    pub fn swapped(&self) -> bool {
-        self.lock().swapped
+    /// Sets the number that a wrong text reads.
+    pub fn choose(&self, number: u32) {
+        if let Some(chosen) = &self.lock().chosen {
+            chosen.queue.write_buffer(&chosen.buffer, 0, &number.to_le_bytes());
+        }
+    }
+
+    /// The bindings that a pipeline needs to read the number, if it does.
+    fn choice(&self, pipeline: &wgpu::ComputePipeline, source: &str) -> Option<wgpu::BindGroup> {
+        let state = self.lock();
+        let chosen = state.chosen.as_ref().filter(|_| source.contains(CHOSEN))?;
+        Some(chosen.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(CHOSEN),
+            layout: &pipeline.get_bind_group_layout(1),
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: chosen.buffer.as_entire_binding() }],
+        }))
     }
 
     /// The kernels that this thread has dispatched since its last call.
@@ -103,17 +139,19 @@ impl Relay {
     }
 
     /// The pipeline of a text: one that was made before, or a new one.
-    fn pipeline(&self, inner: &wgpu::Device, mut key: Key) -> wgpu::ComputePipeline {
+    fn pipeline(&self, inner: &wgpu::Device, mut key: Key) -> Made {
         let mut state = self.lock();
         let swap = state.swap.clone().filter(|swap| key.source.contains(&swap.right));
         let swap = swap.filter(|swap| state.reaches(&key, &swap.function));
         if let Some(swap) = &swap {
             key.source = key.source.replace(&swap.right, &swap.wrong);
-            state.swapped = true;
+            if swap.wrong.contains(CHOSEN) {
+                key.source += &format!("\n@group(1) @binding(0) var<uniform> {CHOSEN}: u32;\n");
+            }
         }
         let made = if swap.is_some() { &state.wrong } else { &state.pipelines };
-        if let Some(pipeline) = made.get(&key) {
-            return pipeline.clone();
+        if let Some(made) = made.get(&key) {
+            return made.clone();
         }
         drop(state);
         let module = inner.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -133,10 +171,12 @@ impl Relay {
             },
             cache: None,
         });
+        let choice = self.choice(&pipeline, &key.source);
+        let made = Made { pipeline, choice };
         let mut state = self.lock();
-        let made = if swap.is_some() { &mut state.wrong } else { &mut state.pipelines };
-        made.insert(key, pipeline.clone());
-        pipeline
+        let kept = if swap.is_some() { &mut state.wrong } else { &mut state.pipelines };
+        kept.insert(key, made.clone());
+        made
     }
 }
 

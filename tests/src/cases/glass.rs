@@ -324,7 +324,7 @@ fn cells(gpu: &Gpu, options: &GlassOptions) -> Result<(Arc<Glass>, GpuGlass), Gp
     let cpu = kept(&format!("{options:?}"), || {
         let mut cpu = Glass::new(options).expect("a pane");
         poured.iter().for_each(|&(x, y)| cpu.pour(x, y, 25.0e-9).expect("a free cell"));
-        steps.iter().for_each(|&dt| drop(cpu.step(dt).expect("a step")));
+        steps.iter().for_each(|&dt| cpu.step(dt).expect("a step"));
         cpu
     });
     let mut twin = GpuGlass::new(gpu, options).map_err(told)?;

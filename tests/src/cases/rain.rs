@@ -6,6 +6,7 @@ use downpour_gpu::{ComputeKernel, Gpu, GpuError};
 use downpour_mask::atlas::StreakPick;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
+use downpour_render::data::SceneData;
 use downpour_render::gpu::{RainPipeline, ScenePipeline};
 use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
@@ -16,7 +17,6 @@ use downpour_render::rain::{
     RefractionForm, StreakColour, StreakProfiles, StreakSamples, TemporalResponse, reduce_levels,
     reduce_texel,
 };
-use downpour_render::data::SceneData;
 use downpour_render::scene::SceneView;
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
@@ -193,8 +193,7 @@ fn masks_case(
     let key = format!("{eye} {forward} {options:?}");
     let prepared = kept(&key, || Prepared::new([eye, forward], options, masks));
     let Prepared { scene, rain, capture, clean } = &*prepared;
-    let both =
-        [rain.lights(scene, masks).expect("lamps"), rain.streak_lights(scene, masks).expect("lamps")];
+    let both = [rain.lights(scene, masks).expect("lamps"), rain.streak_lights(scene, masks).expect("lamps")];
     let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
     let uploaded = scenes.upload(scene)?;
     let clean_buffer = gpu.storage_buffer("clean", clean)?;

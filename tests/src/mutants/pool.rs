@@ -32,10 +32,9 @@ impl Worker {
         let threads = (cores / jobs).max(1).to_string();
         let mut child = Command::new(program)
             .arg("--worker")
-            // As many threads in all as there are cores, of twins and of software drivers; no cache of shaders that come once.
+            // As many threads in all as there are cores, of twins and of software drivers.
             .env("RAYON_NUM_THREADS", &threads)
             .env("LP_NUM_THREADS", &threads)
-            .env("MESA_SHADER_CACHE_DISABLE", "true")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()?;
@@ -53,31 +52,46 @@ impl Worker {
         Ok(Self { child, input, lines })
     }
 
-    /// Asks about a mutant. `Err`: the worker is gone, and what that says.
-    fn ask(&mut self, mutant: usize) -> Result<String, String> {
-        let gone = |mutated: bool| {
-            if mutated { "seen by a crash".to_owned() } else { "failed: a worker ended".to_owned() }
-        };
-        if writeln!(self.input, "{mutant}").and_then(|()| self.input.flush()).is_err() {
-            return Err(gone(false));
+    /// Asks about mutants of one function and gives each answer to `tell`. `Err`: the worker is gone; the mutant that it was
+    /// busy with, if any, and what its end says.
+    fn ask(
+        &mut self,
+        mutants: &[usize],
+        tell: &mut dyn FnMut(usize, &str),
+    ) -> Result<(), (Option<usize>, &'static str)> {
+        let line: Vec<String> = mutants.iter().map(ToString::to_string).collect();
+        if writeln!(self.input, "{}", line.join(" ")).and_then(|()| self.input.flush()).is_err() {
+            return Err((None, "failed: a worker ended"));
         }
         // Until it says more: time to open its device.
-        let (mut patience, mut mutated) = (Duration::from_secs(600), false);
-        loop {
+        let (mut patience, mut busy) = (Duration::from_secs(600), None);
+        let mut left = mutants.len();
+        while left > 0 {
             match self.lines.recv_timeout(patience) {
                 Ok(line) => match line.strip_prefix("allow ") {
                     Some(rest) => {
-                        let (seconds, how) = rest.split_once(' ').unwrap_or((rest, "without"));
-                        patience = Duration::from_secs_f64(seconds.parse().unwrap_or(600.0));
-                        mutated = how == "with";
+                        let mut words = rest.split(' ');
+                        let seconds = words.next().and_then(|word| word.parse().ok());
+                        patience = Duration::from_secs_f64(seconds.unwrap_or(600.0));
+                        busy = words.next().and_then(|word| word.parse().ok());
                     }
-                    None => return Ok(line),
+                    None => {
+                        let (number, word) = line.split_once(' ').unwrap_or((&line, ""));
+                        if let Ok(number) = number.parse() {
+                            tell(number, word);
+                            left -= 1;
+                        }
+                    }
                 },
-                Err(RecvTimeoutError::Timeout) if mutated => return Err("seen by a hang".to_owned()),
-                Err(RecvTimeoutError::Timeout) => return Err("failed: a case hangs".to_owned()),
-                Err(RecvTimeoutError::Disconnected) => return Err(gone(mutated)),
+                Err(RecvTimeoutError::Timeout) if busy.is_some() => return Err((busy, "seen by a hang")),
+                Err(RecvTimeoutError::Timeout) => return Err((None, "failed: a case hangs")),
+                Err(RecvTimeoutError::Disconnected) if busy.is_some() => {
+                    return Err((busy, "seen by a crash"));
+                }
+                Err(RecvTimeoutError::Disconnected) => return Err((None, "failed: a worker ended")),
             }
         }
+        Ok(())
     }
 
     fn end(mut self) {
@@ -87,7 +101,7 @@ impl Worker {
     }
 }
 
-/// Tries batches of mutants with `jobs` workers of `program`. `tell` gets each verdict.
+/// Tries batches of mutants, each of one function, with `jobs` workers of `program`. `tell` gets each verdict.
 ///
 /// # Errors
 /// If a worker cannot be started.
@@ -102,23 +116,32 @@ pub fn run(
     let one = || -> std::io::Result<()> {
         let mut worker: Option<Worker> = None;
         while let Some(batch) = next() {
-            for mutant in batch {
+            let mut left = batch;
+            while !left.is_empty() {
                 let mut asked = match worker.take() {
                     Some(worker) => worker,
                     None => Worker::start(program, jobs)?,
                 };
-                let start = Instant::now();
-                let word = match asked.ask(mutant) {
-                    Ok(word) => {
-                        worker = Some(asked);
-                        word
-                    }
-                    Err(word) => {
+                let mut start = Instant::now();
+                let mut answered = Vec::new();
+                let ended = asked.ask(&left, &mut |mutant, word| {
+                    answered.push(mutant);
+                    tell(Verdict { mutant, word: word.to_owned(), took: start.elapsed() });
+                    start = Instant::now();
+                });
+                left.retain(|mutant| !answered.contains(mutant));
+                match ended {
+                    Ok(()) => worker = Some(asked),
+                    Err((busy, word)) => {
                         asked.end();
-                        word
+                        // Without a mutant to blame, the whole batch is given up.
+                        let blamed = busy.map_or_else(|| left.clone(), |mutant| vec![mutant]);
+                        left.retain(|mutant| !blamed.contains(mutant));
+                        for mutant in blamed {
+                            tell(Verdict { mutant, word: word.to_owned(), took: start.elapsed() });
+                        }
                     }
-                };
-                tell(Verdict { mutant, word, took: start.elapsed() });
+                }
             }
         }
         if let Some(worker) = worker {

@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 use downpour_gpu::{Gpu, GpuError};
 use downpour_shaders::compose;
 
+use super::bundle::bundle;
 use super::population::{Mutant, population};
-use crate::compare::compare;
 use crate::function::{Run, Twin};
 use crate::relay::Relay;
 use crate::signature::{WordKind, parse};
@@ -24,7 +24,14 @@ const FEW_CALLS: u32 = 1024;
 const WITHOUT: Duration = Duration::from_secs(600);
 
 /// How long a mutant may take above twenty times what the right shader takes.
-const WITH: Duration = Duration::from_secs(15);
+const WITH: Duration = Duration::from_secs(40);
+
+/// A case to try: a function's, with so many calls, or a kernel's.
+#[derive(Clone, Copy)]
+enum Step {
+    Function(usize, u32),
+    Kernel(usize),
+}
 
 /// What became of a mutant.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -67,8 +74,9 @@ struct KernelBench {
     took: Option<Option<Duration>>,
 }
 
-/// How many kernel-level cases a mutant is shown to. The first of each kernel come first.
-const MOST_KERNEL_CASES: usize = 16;
+/// How many kernel-level cases a mutant is shown to, where its function has a case of its own and where it has none. The
+/// first of each kernel come first.
+const MOST_KERNEL_CASES: [usize; 2] = [2, 8];
 
 /// How many function-level cases a mutant is shown to, its own first.
 const MOST_FUNCTION_CASES: usize = 12;
@@ -94,32 +102,122 @@ impl Bench {
         Self { relay, gpu, functions, kernels }
     }
 
-    /// Runs the cases that reach the mutant's function, until one sees it. `allow` is told how long each step may take.
-    pub fn judge(&mut self, mutant: &Mutant, allow: &mut dyn FnMut(Duration, bool)) -> Outcome {
-        if mutant.refused().is_some() {
-            return Outcome::Refused;
+    /// Shows mutants of one function to the cases that reach it, each until one sees it. `allow` is told how long each step
+    /// may take and of which mutant it is (by its place), `tell` what became of each.
+    pub fn judge(
+        &mut self,
+        mutants: &[&Mutant],
+        allow: &mut dyn FnMut(Duration, Option<usize>),
+        tell: &mut dyn FnMut(usize, Outcome),
+    ) {
+        let (valid, refused): (Vec<usize>, Vec<usize>) =
+            (0..mutants.len()).partition(|&k| mutants[k].refused().is_none());
+        refused.into_iter().for_each(|k| tell(k, Outcome::Refused));
+        let Some(&first) = valid.first() else { return };
+        let chosen: Vec<&Mutant> = valid.iter().map(|&k| mutants[k]).collect();
+        let Some(swap) = bundle(&chosen).or_else(|| (chosen.len() == 1).then(|| chosen[0].swap.clone()))
+        else {
+            // Entry points: one by one.
+            for k in valid {
+                self.judge(&[mutants[k]], &mut |time, of| allow(time, of.map(|_| k)), &mut |_, what| {
+                    tell(k, what)
+                });
+            }
+            return;
+        };
+        let name = mutants[first].swap.function.clone();
+        let mut left: Vec<(u32, usize)> = (1..).zip(valid).collect();
+        for step in self.steps(&name) {
+            if left.is_empty() {
+                break;
+            }
+            if !self.is_ready(step, &mut |time| allow(time, None)) {
+                continue;
+            }
+            self.relay.swap(Some(swap.clone()));
+            left.retain(|&(number, k)| {
+                self.relay.choose(number);
+                let seen = self.sees(step, &mut |time| allow(time, Some(k)));
+                if seen {
+                    tell(k, Outcome::Seen(self.name(step).to_owned()));
+                }
+                !seen
+            });
+            self.relay.swap(None);
         }
-        let name = &mutant.swap.function;
-        let mut order: Vec<usize> =
-            (0..self.functions.len()).filter(|&at| self.functions[at].reaches.contains(name)).collect();
-        order.sort_by_key(|&at| self.functions[at].case.function != name);
-        for &at in order.iter().take(MOST_FUNCTION_CASES) {
-            if self.function_sees(at, FEW_CALLS, mutant, allow) {
-                return Outcome::Seen(self.functions[at].case.function.to_owned());
+        left.into_iter().for_each(|(_, k)| tell(k, Outcome::Survived));
+    }
+
+    /// The cases that reach a function, in the order in which they are tried.
+    fn steps(&self, name: &str) -> Vec<Step> {
+        let reaching = (0..self.functions.len()).filter(|&at| self.functions[at].reaches.contains(name));
+        let mut functions: Vec<usize> = reaching.collect();
+        functions.sort_by_key(|&at| self.functions[at].case.function != name);
+        let own = functions.iter().copied().filter(|&at| self.functions[at].case.function == name);
+        let few = functions.iter().take(MOST_FUNCTION_CASES).map(|&at| Step::Function(at, FEW_CALLS));
+        let all = own.map(|at| Step::Function(at, self.functions[at].case.calls));
+        few.chain(all).chain(self.kernels_for(name).into_iter().map(Step::Kernel)).collect()
+    }
+
+    fn name(&self, step: Step) -> &'static str {
+        match step {
+            Step::Function(at, _) => self.functions[at].case.function,
+            Step::Kernel(at) => self.kernels[at].case.name,
+        }
+    }
+
+    /// Runs a case as it is, at its first use; whether it passes.
+    fn is_ready(&mut self, step: Step, allow: &mut dyn FnMut(Duration)) -> bool {
+        match step {
+            Step::Function(at, calls) => {
+                let bench = &mut self.functions[at];
+                let case = FunctionCase { calls: bench.case.calls.min(calls), ..bench.case.clone() };
+                let ready = bench.ready.entry(case.calls).or_insert_with(|| {
+                    allow(WITHOUT);
+                    let twin = case.twin();
+                    let (text, kinds) = case.shader(&compose(&[case.module]), twin.arguments[0].len());
+                    let start = Instant::now();
+                    let run = quietly(|| case.run_shader(&self.gpu, &text, kinds.clone(), twin.clone()));
+                    // With few calls a share of outliers may be over its limit by chance.
+                    let passes = run.is_some_and(|run| run.compare(&case.tol).failure.is_none());
+                    passes.then(|| Ready { text, kinds, twin, took: start.elapsed() })
+                });
+                ready.is_some()
+            }
+            Step::Kernel(at) => {
+                let bench = &mut self.kernels[at];
+                let took = bench.took.get_or_insert_with(|| {
+                    allow(WITHOUT);
+                    let start = Instant::now();
+                    let run = quietly(|| (bench.case.run)(&self.gpu));
+                    let passes = run.is_some_and(|run| run.compare(&bench.case.tol).failure.is_none());
+                    passes.then(|| start.elapsed())
+                });
+                took.is_some()
             }
         }
-        for at in self.kernels_for(name) {
-            if self.kernel_sees(at, mutant, allow) {
-                return Outcome::Seen(self.kernels[at].case.name.to_owned());
+    }
+
+    /// Whether a case fails with what the relay has been told.
+    fn sees(&self, step: Step, allow: &mut dyn FnMut(Duration)) -> bool {
+        let (run, tol) = match step {
+            Step::Function(at, calls) => {
+                let bench = &self.functions[at];
+                let case = FunctionCase { calls: bench.case.calls.min(calls), ..bench.case.clone() };
+                let Some(Some(Ready { text, kinds, twin, took })) = bench.ready.get(&case.calls) else {
+                    return false;
+                };
+                allow(*took * 20 + WITH);
+                (quietly(|| case.run_shader(&self.gpu, text, kinds.clone(), twin.clone())), case.tol)
             }
-        }
-        for &at in &order {
-            let calls = self.functions[at].case.calls;
-            if self.functions[at].case.function == name && self.function_sees(at, calls, mutant, allow) {
-                return Outcome::Seen(self.functions[at].case.function.to_owned());
+            Step::Kernel(at) => {
+                let bench = &self.kernels[at];
+                allow(bench.took.flatten().unwrap_or_default() * 20 + WITH);
+                (quietly(|| (bench.case.run)(&self.gpu)), bench.case.tol)
             }
-        }
-        Outcome::Survived
+        };
+        // A twin that asserts, an error of the device: what a test would show as well.
+        run.is_none_or(|run| run.compare(&tol).failure.is_some())
     }
 
     /// The kernel-level cases that reach a function, in the order in which they are tried.
@@ -134,85 +232,44 @@ impl Bench {
             }
         }
         order.sort_unstable();
-        order.into_iter().take(MOST_KERNEL_CASES).map(|(_, at)| at).collect()
-    }
-
-    fn function_sees(
-        &mut self,
-        at: usize,
-        calls: u32,
-        mutant: &Mutant,
-        allow: &mut dyn FnMut(Duration, bool),
-    ) -> bool {
-        let bench = &mut self.functions[at];
-        let mut case = bench.case.clone();
-        case.calls = case.calls.min(calls);
-        let ready = bench.ready.entry(case.calls).or_insert_with(|| {
-            allow(WITHOUT, false);
-            let twin = case.twin();
-            let (text, kinds) = case.shader(&compose(&[case.module]), twin.arguments[0].len());
-            let start = Instant::now();
-            let run = case.run_shader(&self.gpu, &text, kinds.clone(), twin.clone());
-            let passes = run.is_ok_and(|run| run.compare(&case.tol).failure.is_none());
-            passes.then(|| Ready { text, kinds, twin, took: start.elapsed() })
-        });
-        // With few calls a share of outliers may be over its limit by chance.
-        let Some(Ready { text, kinds, twin, took }) = ready else { return false };
-        allow(*took * 20 + WITH, true);
-        let run = || case.run_shader(&self.gpu, text, kinds.clone(), twin.clone());
-        sees(&self.relay, mutant, run, &case.tol)
-    }
-
-    fn kernel_sees(&mut self, at: usize, mutant: &Mutant, allow: &mut dyn FnMut(Duration, bool)) -> bool {
-        let bench = &mut self.kernels[at];
-        let took = *bench.took.get_or_insert_with(|| {
-            allow(WITHOUT, false);
-            let start = Instant::now();
-            let run = (bench.case.run)(&self.gpu);
-            run.is_ok_and(|run| run.compare(&bench.case.tol).failure.is_none()).then(|| start.elapsed())
-        });
-        let Some(took) = took else { return false };
-        allow(took * 20 + WITH, true);
-        sees(&self.relay, mutant, || (bench.case.run)(&self.gpu), &bench.case.tol)
+        let [own, none] = MOST_KERNEL_CASES;
+        let has_own = self.functions.iter().any(|bench| bench.case.function == name);
+        order.into_iter().take(if has_own { own } else { none }).map(|(_, at)| at).collect()
     }
 }
 
-/// Whether a run with the mutant in the place of its function fails.
-fn sees(
-    relay: &Relay,
-    mutant: &Mutant,
-    run: impl FnOnce() -> Result<Run, GpuError>,
-    tol: &crate::Tol,
-) -> bool {
-    relay.swap(Some(mutant.swap.clone()));
-    let run = catch_unwind(AssertUnwindSafe(run));
-    relay.swap(None);
-    match run {
-        Ok(Ok(run)) => compare(&run.cpu, &run.gpu, &run.kinds, tol).failure.is_some(),
-        // A twin that asserts, an error of the device: what a test would show as well.
-        _ => true,
-    }
+/// What a run gives; `None` if it ends in an error or a panic.
+fn quietly(run: impl FnOnce() -> Result<Run, GpuError>) -> Option<Run> {
+    catch_unwind(AssertUnwindSafe(run)).ok().and_then(Result::ok)
 }
 
-/// Tries mutants until the input ends. Lines of the output: `allow SECONDS with|without`, then `seen CASE`, `refused` or
-/// `survived`.
+/// Tries mutants until the input ends. A line of it has the numbers of mutants of one function. Lines of the output:
+/// `allow SECONDS`, with a mutant's number if the step is its own; then, for each, `NUMBER seen CASE`, `NUMBER refused` or
+/// `NUMBER survived`.
 pub fn work(gpu: &Gpu) {
     crate::kept::keep();
+    // Twins of many small loops wait for their helpers at each: this thread is one of them.
+    // It fails only where somebody has made the pool before, which serves as well.
+    let _ = rayon::ThreadPoolBuilder::new().use_current_thread().build_global();
     std::panic::set_hook(Box::new(|_| {}));
     let all = population();
     let mut bench = Bench::new(gpu);
-    let mut allow = |time: Duration, mutated: bool| {
-        say(&format!("allow {} {}", time.as_secs_f64(), if mutated { "with" } else { "without" }));
-    };
-    for line in std::io::stdin().lock().lines() {
-        let Ok(Some(mutant)) = line.map(|line| line.parse().ok().and_then(|at: usize| all.get(at))) else {
-            break;
-        };
-        match bench.judge(mutant, &mut allow) {
-            Outcome::Seen(case) => say(&format!("seen {case}")),
-            Outcome::Refused => say("refused"),
-            Outcome::Survived => say("survived"),
-        }
+    for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+        let numbers: Vec<usize> =
+            line.split(' ').filter_map(|n| n.parse().ok()).filter(|&n| n < all.len()).collect();
+        let mutants: Vec<&Mutant> = numbers.iter().map(|&n| &all[n]).collect();
+        bench.judge(
+            &mutants,
+            &mut |time, of| {
+                let of = of.map(|k| format!(" {}", numbers[k])).unwrap_or_default();
+                say(&format!("allow {}{of}", time.as_secs_f64()));
+            },
+            &mut |k, outcome| match outcome {
+                Outcome::Seen(case) => say(&format!("{} seen {case}", numbers[k])),
+                Outcome::Refused => say(&format!("{} refused", numbers[k])),
+                Outcome::Survived => say(&format!("{} survived", numbers[k])),
+            },
+        );
     }
 }
 

@@ -99,8 +99,8 @@ impl DeviceInterface for RelayDevice {
             constants.map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect();
         constants.sort();
         let key = Key { source: module.0.clone(), entry: entry.clone(), constants: constants.clone() };
-        let inner = self.relay.pipeline(&self.inner, key);
-        DispatchComputePipeline::custom(RelayPipeline { inner, name: (entry, constants) })
+        let made = self.relay.pipeline(&self.inner, key);
+        DispatchComputePipeline::custom(RelayPipeline { made, name: (entry, constants) })
     }
 
     unsafe fn create_pipeline_cache(&self, _: &wgpu::PipelineCacheDescriptor<'_>) -> DispatchPipelineCache {

@@ -10,7 +10,7 @@ use wgpu::custom::{
     QuerySetInterface, ShaderCompilationInfoFuture, ShaderModuleInterface,
 };
 
-use super::Dispatched;
+use super::{Dispatched, Made};
 
 #[derive(Debug)]
 pub(super) struct RelayBuffer(pub(super) wgpu::Buffer);
@@ -85,12 +85,12 @@ impl ShaderModuleInterface for RelayModule {
 
 #[derive(Debug)]
 pub(super) struct RelayPipeline {
-    pub(super) inner: wgpu::ComputePipeline,
+    pub(super) made: Made,
     pub(super) name: Dispatched,
 }
 
 impl ComputePipelineInterface for RelayPipeline {
     fn get_bind_group_layout(&self, index: u32) -> DispatchBindGroupLayout {
-        DispatchBindGroupLayout::custom(RelayLayout(self.inner.get_bind_group_layout(index)))
+        DispatchBindGroupLayout::custom(RelayLayout(self.made.pipeline.get_bind_group_layout(index)))
     }
 }

@@ -169,7 +169,10 @@ impl ComputePassInterface for RelayPass {
     fn set_pipeline(&mut self, pipeline: &DispatchComputePipeline) {
         let pipeline = pipeline.as_custom::<RelayPipeline>().expect("a pipeline of this relay");
         self.name = Some(pipeline.name.clone());
-        self.inner.set_pipeline(&pipeline.inner);
+        self.inner.set_pipeline(&pipeline.made.pipeline);
+        if let Some(choice) = &pipeline.made.choice {
+            self.inner.set_bind_group(1, choice, &[]);
+        }
     }
 
     fn set_bind_group(&mut self, index: u32, group: Option<&DispatchBindGroup>, offsets: &[u32]) {
