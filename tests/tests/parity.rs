@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use downpour_gpu::{Gpu, GpuError};
-use downpour_tests::broken::{BROKEN, Broken};
+use downpour_tests::broken::{BROKEN, BROKEN_KERNELS, Broken};
 use downpour_tests::function::Run;
 use downpour_tests::relay::Relay;
 use downpour_tests::report::{self, Report};
@@ -62,6 +62,13 @@ fn main() -> ExitCode {
         trials.push(Trial::test(name, move || must_fail(broken, open(&gpu)?)).with_ignored_flag(off));
     }
 
+    for (name, broken) in BROKEN_KERNELS {
+        let gpu = Arc::clone(&gpu);
+        let label = format!("control::{} with {}", broken.function, broken.wrong);
+        trials
+            .push(Trial::test(label, move || must_fail_in(name, broken, open(&gpu)?)).with_ignored_flag(off));
+    }
+
     let conclusion = libtest_mimic::run(&arguments, trials);
     if let Some(Ok(gpu)) = gpu.as_ref() {
         match report.write(&gpu.adapter().name) {
@@ -87,6 +94,21 @@ fn must_fail(broken: &Broken, gpu: &Gpu) -> Result<(), Failed> {
     match case.run_source(gpu, &wrong)?.compare(&case.tol).failure {
         Some(_) => Ok(()),
         None => Err(format!("{} passed with \"{}\"", broken.function, broken.wrong).into()),
+    }
+}
+
+/// A broken function has to be seen by the kernel-level case of this name.
+fn must_fail_in(name: &str, broken: &Broken, gpu: &Gpu) -> Result<(), Failed> {
+    let case = cases::kernels().into_iter().find(|case| case.name == name).ok_or("there is no such case")?;
+    if !case.kernel.source().contains(broken.right) {
+        return Err(format!("\"{}\" is not in {}", broken.right, case.kernel.entry).into());
+    }
+    // A relay of its own: other cases run beside this one.
+    let (relay, gpu) = Relay::before(gpu);
+    relay.swap(Some(broken.swap()));
+    match (case.run)(&gpu)?.compare(&case.tol).failure {
+        Some(_) => Ok(()),
+        None => Err(format!("{name} passed with \"{}\"", broken.wrong).into()),
     }
 }
 

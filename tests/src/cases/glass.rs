@@ -311,6 +311,17 @@ fn window() -> GlassOptions {
     }
 }
 
+/// A strip so narrow that what draws a drop aside is often off the pane.
+fn strip() -> GlassOptions {
+    GlassOptions {
+        size: [12, 500],
+        tilt_rad: 1.5,
+        rain: GlassRain { rate_mm_h: 500.0, towards_m_s: 20.0, ..GlassRain::default() },
+        seed: 11,
+        ..GlassOptions::default()
+    }
+}
+
 fn told(error: GpuGlassError) -> GpuError {
     match error {
         GpuGlassError::Gpu(error) => error,
@@ -320,7 +331,9 @@ fn told(error: GpuGlassError) -> GpuError {
 
 /// Mass, motion and heights of each cell after some seconds with a few large drops poured at the start.
 fn cells(gpu: &Gpu, options: &GlassOptions) -> Result<(Arc<Glass>, GpuGlass), GpuError> {
-    let (poured, steps) = ([(10, 5), (30, 8), (40, 20)], [0.3, 0.01, 0.69, 1.0]);
+    let [width, height] = options.size;
+    let poured = [(10, 5), (30, 8), (40, 20)].map(|(x, y): (u32, u32)| (x % width, y % height));
+    let steps = [0.3, 0.01, 0.69, 1.0];
     let cpu = kept(&format!("{options:?}"), || {
         let mut cpu = Glass::new(options).expect("a pane");
         poured.iter().for_each(|&(x, y)| cpu.pour(x, y, 25.0e-9).expect("a free cell"));
@@ -410,6 +423,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             let rain = GlassRain { rate_mm_h: 500.0, towards_m_s: 0.0, ..GlassRain::default() };
             let pane = GlassOptions { tilt_rad: 0.0, cell_m: 5.0e-3, rain, ..window() };
             lattice_case(gpu, &pane)
+        }),
+        case("main_glass_decide: a strip, whose drops run along its sides", &shaders::DECIDE_KERNEL, |gpu| {
+            lattice_case(gpu, &strip())
         }),
         case("main_glass_next: another window", &shaders::NEXT_KERNEL, |gpu| {
             lattice_case(gpu, &GlassOptions { seed: 6, ..window() })
