@@ -252,9 +252,9 @@ impl Body<'_> {
 
 /// Other numbers in the place of this one.
 fn numbers(text: &str) -> Vec<(ChangeKind, String)> {
-    if text.starts_with("0x") {
-        let digits = text[2..].trim_end_matches(['u', 'i']);
-        let suffix = &text[2 + digits.len()..];
+    if let Some(hex) = text.strip_prefix("0x") {
+        let digits = hex.trim_end_matches(['u', 'i']);
+        let suffix = &hex[digits.len()..];
         let value = u64::from_str_radix(digits, 16).unwrap_or(0);
         return vec![(ChangeKind::Integer, format!("{:#x}{suffix}", value ^ 1))];
     }

@@ -120,7 +120,7 @@ impl Bench {
             // Entry points: one by one.
             for k in valid {
                 self.judge(&[mutants[k]], &mut |time, of| allow(time, of.map(|_| k)), &mut |_, what| {
-                    tell(k, what)
+                    tell(k, what);
                 });
             }
             return;
