@@ -6,6 +6,7 @@
 use downpour_shaders::compose;
 
 use crate::FunctionCase;
+use crate::relay::Swap;
 
 /// One wrong shader.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +19,23 @@ pub struct Broken {
     pub wrong: &'static str,
 }
 
-/// All of them.
+/// Changes that only the run of a whole kernel shows: each with the case that has to see it.
+pub const BROKEN_KERNELS: &[(&str, Broken)] = &[
+    (
+        "main_glass_decide: a strip, whose drops run along its sides",
+        Broken {
+            function: "glass_decide_weight",
+            right: "var affinity = 128u;",
+            wrong: "var affinity = 127u;",
+        },
+    ),
+    (
+        "main_trace: water on a bank",
+        Broken { function: "puddle_water_find", right: "upward > 0.7;", wrong: "upward > 0.72;" },
+    ),
+];
+
+/// All that a function-level case has to see.
 pub const BROKEN: &[Broken] = &[
     Broken {
         function: "rng_pcg4d",
@@ -122,6 +139,13 @@ pub const BROKEN: &[Broken] = &[
 ];
 
 impl Broken {
+    /// The change as a relay makes it.
+    #[must_use]
+    pub fn swap(&self) -> Swap {
+        let [function, right, wrong] = [self.function, self.right, self.wrong].map(str::to_owned);
+        Swap { function, right, wrong }
+    }
+
     /// The case, and the wrong text of its shader.
     ///
     /// # Panics

@@ -42,6 +42,15 @@ pub struct Run {
     pub kinds: Vec<WordKind>,
 }
 
+/// The arguments of all calls, and the twin's words.
+#[derive(Clone, Debug)]
+pub struct Twin {
+    /// The arguments of each call.
+    pub arguments: Vec<Vec<u32>>,
+    /// What the twin gives, one result after the other.
+    pub words: Cpu,
+}
+
 impl FunctionCase {
     /// A case with the default number of calls.
     #[must_use]
@@ -87,31 +96,58 @@ fn main_parity(@builtin(global_invocation_id) parity_id: vec3u) {{
         (text, signature.result)
     }
 
+    /// The arguments of all calls, and what the twin makes of them.
+    ///
+    /// # Panics
+    /// If the twin reads less than all words.
+    #[must_use]
+    pub fn twin(&self) -> Twin {
+        let arguments = Domain::arguments(&self.domains, self.calls);
+        let mut words = Vec::new();
+        for call in &arguments {
+            let mut args = Args::new(call);
+            words.extend((self.cpu)(&mut args));
+            assert!(args.is_empty(), "{}: the twin did not read all words", self.function);
+        }
+        Twin { arguments, words: Cpu(words) }
+    }
+
     /// Runs both sides. `source` is the text to test: [`compose`] of the module, or a broken one as a control.
     ///
     /// # Errors
     /// What the GPU says.
     ///
     /// # Panics
-    /// As [`FunctionCase::shader`]; or if the twin reads less than all words.
+    /// As [`FunctionCase::shader`] and [`FunctionCase::twin`].
     pub fn run_source(&self, gpu: &Gpu, source: &str) -> Result<Run, GpuError> {
-        let arguments = Domain::arguments(&self.domains, self.calls);
-        let (text, kinds) = self.shader(source, arguments[0].len());
-        let mut cpu = Vec::with_capacity(arguments.len() * kinds.len());
-        for words in &arguments {
-            let mut args = Args::new(words);
-            let result = (self.cpu)(&mut args);
-            assert!(args.is_empty(), "{}: the twin did not read all words", self.function);
-            assert_eq!(result.len(), kinds.len(), "{}: words of the result", self.function);
-            cpu.extend(result);
-        }
-        let kernel = ComputeKernel::from_source(gpu, "main_parity", &text, &[])?;
+        let twin = self.twin();
+        let (text, kinds) = self.shader(source, twin.arguments[0].len());
+        self.run_shader(gpu, &text, kinds, twin)
+    }
+
+    /// Runs the GPU's side beside what the twin made. `text` and `kinds` are those of [`FunctionCase::shader`].
+    ///
+    /// # Errors
+    /// What the GPU says.
+    ///
+    /// # Panics
+    /// If the twin gave another number of words.
+    pub fn run_shader(
+        &self,
+        gpu: &Gpu,
+        text: &str,
+        kinds: Vec<WordKind>,
+        twin: Twin,
+    ) -> Result<Run, GpuError> {
+        let Twin { arguments, words: cpu } = twin;
+        assert_eq!(cpu.0.len(), arguments.len() * kinds.len(), "{}: words of the result", self.function);
+        let kernel = ComputeKernel::from_source(gpu, "main_parity", text, &[])?;
         let input = gpu.storage_buffer("parity in", &arguments.concat())?;
-        let output = gpu.storage_buffer("parity out", &vec![POISON; cpu.len()])?;
+        let output = gpu.storage_buffer("parity out", &vec![POISON; cpu.0.len()])?;
         let bindings = kernel.bind(gpu, &[&input, &output])?;
         gpu.submit(&[kernel.dispatch(&bindings, [self.calls.div_ceil(64), 1, 1])])?;
         let words = gpu.read::<u32>(&output)?;
-        Ok(Run { arguments, cpu: Cpu(cpu), gpu: compare::Gpu(words), kinds })
+        Ok(Run { arguments, cpu, gpu: compare::Gpu(words), kinds })
     }
 
     /// Runs both sides of the shader as it is.

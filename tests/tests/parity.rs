@@ -7,10 +7,11 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use downpour_gpu::{Gpu, GpuError};
-use downpour_tests::broken::{BROKEN, Broken};
+use downpour_tests::broken::{BROKEN, BROKEN_KERNELS, Broken};
 use downpour_tests::function::Run;
+use downpour_tests::relay::Relay;
 use downpour_tests::report::{self, Report};
-use downpour_tests::{Tol, adapter, cases, control};
+use downpour_tests::{KernelCase, Tol, adapter, cases, control};
 use libtest_mimic::{Arguments, Failed, Trial};
 
 fn main() -> ExitCode {
@@ -21,6 +22,12 @@ fn main() -> ExitCode {
         eprintln!("{}", adapter::missing(error));
         return ExitCode::FAILURE;
     }
+    // Cases share what they compile, and are seen to dispatch the kernel that they are about.
+    let relay = gpu.as_ref().and_then(|gpu| gpu.as_ref().ok()).map(Relay::before);
+    let (relay, gpu) = match relay {
+        Some((relay, gpu)) => (relay, Some(Ok(gpu))),
+        None => (Relay::default(), gpu),
+    };
     let gpu = Arc::new(gpu);
     let report = Arc::new(Report::default());
 
@@ -38,10 +45,12 @@ fn main() -> ExitCode {
         );
     }
     for case in cases::kernels() {
-        let (gpu, report) = (Arc::clone(&gpu), Arc::clone(&report));
+        let (gpu, report, relay) = (Arc::clone(&gpu), Arc::clone(&report), relay.clone());
         trials.push(
             Trial::test(format!("kernel::{}", case.name), move || {
-                judge(case.name, open(&gpu)?, &case.tol, &report, case.run)
+                drop(relay.take_dispatched());
+                judge(case.name, open(&gpu)?, &case.tol, &report, case.run)?;
+                must_dispatch(&case, &relay)
             })
             .with_ignored_flag(off),
         );
@@ -51,6 +60,13 @@ fn main() -> ExitCode {
         let gpu = Arc::clone(&gpu);
         let name = format!("control::{} with {}", broken.function, broken.wrong);
         trials.push(Trial::test(name, move || must_fail(broken, open(&gpu)?)).with_ignored_flag(off));
+    }
+
+    for (name, broken) in BROKEN_KERNELS {
+        let gpu = Arc::clone(&gpu);
+        let label = format!("control::{} with {}", broken.function, broken.wrong);
+        trials
+            .push(Trial::test(label, move || must_fail_in(name, broken, open(&gpu)?)).with_ignored_flag(off));
     }
 
     let conclusion = libtest_mimic::run(&arguments, trials);
@@ -79,6 +95,30 @@ fn must_fail(broken: &Broken, gpu: &Gpu) -> Result<(), Failed> {
         Some(_) => Ok(()),
         None => Err(format!("{} passed with \"{}\"", broken.function, broken.wrong).into()),
     }
+}
+
+/// A broken function has to be seen by the kernel-level case of this name.
+fn must_fail_in(name: &str, broken: &Broken, gpu: &Gpu) -> Result<(), Failed> {
+    let case = cases::kernels().into_iter().find(|case| case.name == name).ok_or("there is no such case")?;
+    if !case.kernel.source().contains(broken.right) {
+        return Err(format!("\"{}\" is not in {}", broken.right, case.kernel.entry).into());
+    }
+    // A relay of its own: other cases run beside this one.
+    let (relay, gpu) = Relay::before(gpu);
+    relay.swap(Some(broken.swap()));
+    match (case.run)(&gpu)?.compare(&case.tol).failure {
+        Some(_) => Ok(()),
+        None => Err(format!("{name} passed with \"{}\"", broken.wrong).into()),
+    }
+}
+
+/// The kernel that a case is about has to have run, with the constants that the case names.
+fn must_dispatch(case: &KernelCase, relay: &Relay) -> Result<(), Failed> {
+    let dispatched = relay.take_dispatched();
+    if case.is_among(&dispatched) {
+        return Ok(());
+    }
+    Err(format!("{} with {:?} was not dispatched, but {dispatched:?}", case.entry(), case.overrides).into())
 }
 
 fn judge(

@@ -1,6 +1,6 @@
 //! Tests, lints and benchmarks of the whole workspace.
 
-use crate::{atlas, driver, masks, run, scenes};
+use crate::{atlas, driver, masks, mutants, run, scenes};
 
 /// The library crates, and the features each has to build with, alone.
 const ALONE: &[(&str, &[&str])] = &[
@@ -22,11 +22,9 @@ const ALONE: &[(&str, &[&str])] = &[
 /// Every test of the workspace, with documentation tests; `all`: and the sweeps that take minutes.
 pub(crate) fn test(all: bool) -> Result<(), String> {
     driver::ensure()?;
-    let runtime = run::root().join("target/runtime");
-    std::fs::create_dir_all(&runtime).map_err(|error| format!("{}: {error}", runtime.display()))?;
-    // Mesa complains of a missing run-time folder; it needs none of the session's.
-    let runtime = runtime.display().to_string();
+    let runtime = run::runtime()?;
     run::cargo(&["test", "--workspace", "--all-features", "--locked"], &[("XDG_RUNTIME_DIR", &runtime)])?;
+    mutants::try_sample()?;
     masks::check()?;
     scenes::check()?;
     atlas::check(true)?;

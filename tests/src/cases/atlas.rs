@@ -186,14 +186,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, run| KernelCase {
         name,
         kernel: &ATLAS_QUERY_KERNEL,
-        covers: &[
-            "atlas_lookup_mix",
-            "atlas_lookup_amount",
-            "atlas_lookup_place",
-            "atlas_lookup_texel",
-            "atlas_lookup_layer",
-            "atlas_lookup_radiance",
-        ],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol: Tol::absolute(4.0e-4, "noise of 0 to 3 at points known to 4e-5 of a cell's size")
             .with_outliers(1.0e-3),
         run,

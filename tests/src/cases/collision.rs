@@ -351,6 +351,25 @@ fn map_case(gpu: &Gpu, angle: f32) -> Result<Run, GpuError> {
     })
 }
 
+/// The module, asked as the step of drops asks it.
+fn find_text() -> String {
+    compose(&[&COLLISION]).replace("@binding(8)", "@binding(0)").replace("@binding(9)", "@binding(1)")
+        + "
+@group(0) @binding(2) var<storage, read> parity_ways: array<array<vec4f, 2>>;
+@group(0) @binding(3) var<storage, read_write> parity_out: array<array<u32, 8>>;
+
+@compute @workgroup_size(64)
+fn main_parity(@builtin(global_invocation_id) id: vec3u) {
+    let start = parity_ways[id.x][0].xyz;
+    let hit = collision_find(start, parity_ways[id.x][1].xyz);
+    let sky = select(0u, 1u, collision_open(start));
+    let solid = select(0u, 1u, collision_inside(start));
+    let normal = bitcast<vec3u>(hit.normal);
+    parity_out[id.x] = array(sky, solid, hit.kind, bitcast<u32>(hit.share), normal.x, normal.y, normal.z, collision_cover(start).x);
+}
+"
+}
+
 /// Ways of drops through a map, asked of the module as the step of drops asks it.
 fn find_case(gpu: &Gpu, angle: f32) -> Result<Run, GpuError> {
     let map = CollisionMap::new(&options(angle), &scene()).expect("a map");
@@ -365,22 +384,7 @@ fn find_case(gpu: &Gpu, angle: f32) -> Result<Run, GpuError> {
             [start.extend(0.0).to_array(), end.extend(0.0).to_array()]
         })
         .collect();
-    let text = compose(&[&COLLISION]).replace("@binding(8)", "@binding(0)").replace("@binding(9)", "@binding(1)")
-        + "
-@group(0) @binding(2) var<storage, read> parity_ways: array<array<vec4f, 2>>;
-@group(0) @binding(3) var<storage, read_write> parity_out: array<array<u32, 8>>;
-
-@compute @workgroup_size(64)
-fn main_parity(@builtin(global_invocation_id) id: vec3u) {
-    let start = parity_ways[id.x][0].xyz;
-    let hit = collision_find(start, parity_ways[id.x][1].xyz);
-    let sky = select(0u, 1u, collision_open(start));
-    let solid = select(0u, 1u, collision_inside(start));
-    let normal = bitcast<vec3u>(hit.normal);
-    parity_out[id.x] = array(sky, solid, hit.kind, bitcast<u32>(hit.fraction), normal.x, normal.y, normal.z, collision_cover(start).x);
-}
-";
-    let kernel = ComputeKernel::from_source(gpu, "main_parity", &text, &[])?;
+    let kernel = ComputeKernel::from_source(gpu, "main_parity", &find_text(), &[])?;
     let out = gpu.storage_buffer("parity out", &vec![POISON; 8 * ways.len()])?;
     let bindings = kernel.bind(
         gpu,
@@ -419,7 +423,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
         name,
         kernel: &COLLISION_MAP_KERNEL,
-        covers: &["collision_map_walk", "collision_map_enclosed", "collision_map_texel"],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol: Tol::relative(
             1.0e-5,
             1.5e-4,
@@ -433,13 +439,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
         name,
         kernel: &COLLISION_MAP_KERNEL,
-        covers: &[
-            "collision_texel",
-            "collision_cover",
-            "collision_open",
-            "collision_inside",
-            "collision_find",
-        ],
+        with: &[],
+        overrides: &[],
+        text: Some(find_text),
         tol: Tol::absolute(
             1.0e-3,
             "places known to 1e-5 m of ways of 0.1 m and more; a drop at a border or on a surface may be on either side",

@@ -22,6 +22,7 @@ use glam::{Vec2, Vec3};
 use crate::Domain::{Made, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
+use crate::kept::kept;
 use crate::signature::WordKind;
 use crate::words::{Args, IntoWords as _};
 use crate::{FunctionCase, KernelCase, Tol};
@@ -198,7 +199,7 @@ fn light(k: u32, width: u32) -> [f32; 4] {
 }
 
 fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
-    let glass = pane(keys);
+    let glass = kept(keys, || pane(keys));
     assert!(glass.drops.len() > 30, "{} drops", glass.drops.len());
     assert_eq!(glass.frame.lights, 1);
     let behind: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|k| light(k, SIZE[0])).collect();
@@ -209,13 +210,13 @@ fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
         size /= 2;
     }
     let words = |pixels: Vec<[f32; 3]>| pixels.into_iter().flatten().map(f32::to_bits).collect();
-    let cpu = glass.through(&behind, &capture);
+    let cpu = kept(&format!("{keys} through"), || glass.through(&behind, &capture));
     let made = GlassRenderer::new(gpu)?.through(&glass, &behind, &capture)?;
     Ok(Run {
         arguments: (0..SIZE[0] * SIZE[1])
             .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())
             .collect(),
-        cpu: Cpu(words(cpu)),
+        cpu: Cpu(words(cpu.to_vec())),
         gpu: FromGpu(words(made)),
         kinds: vec![WordKind::Float; 3],
     })
@@ -227,25 +228,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
         name,
         kernel: &GLASS_PICTURE_KERNEL,
-        covers: &[
-            "glass_picture_wetness",
-            "glass_picture_film",
-            "glass_picture_meet",
-            "glass_picture_texel",
-            "glass_picture_round_texel",
-            "glass_picture_level",
-            "glass_picture_at",
-            "glass_picture_round",
-            "glass_picture_project",
-            "glass_picture_seen",
-            "glass_picture_lights",
-            "glass_picture_world",
-            "glass_picture_inside",
-            "glass_picture_outer",
-            "glass_picture_through",
-            "glass_picture_sample",
-            "glass_picture_pixel",
-        ],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol: Tol::relative(
             2.0e-3,
             2.0e-3,

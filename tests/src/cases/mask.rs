@@ -298,22 +298,18 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let drop = |name, tol, run| KernelCase {
         name,
         kernel: &mask::DROP_KERNEL,
-        covers: &["mask_drop_texel"],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol,
         run,
     };
     let model = |name, run| KernelCase {
         name,
         kernel: &mask::MODEL_KERNEL,
-        covers: &[
-            "bvh_hit",
-            "mask_model_hit",
-            "mask_model_normal",
-            "mask_model_exit",
-            "mask_model_through",
-            "mask_model_sample",
-            "mask_model_texel",
-        ],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol: MODEL,
         run,
     };

@@ -41,7 +41,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
         name,
         kernel: &TRACE_KERNEL,
-        covers: &["pane_load", "pane_level", "pane_texels", "pane_shadow_texel", "pane_shadow_level", "pane_shadow_at", "pane_shadow_share"],
+        with: &[],
+        overrides: &[("SCENE_PANE", 1.0), ("SCENE_WET", 0.0)],
+        text: None,
         tol: Tol::relative(
             4.0e-3,
             4.0e-3,

@@ -319,15 +319,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let step = |name, tol, run| KernelCase {
         name,
         kernel: &STEP_KERNEL,
-        covers: &[
-            "puddle_state_load",
-            "puddle_step_at",
-            "puddle_step_row",
-            "puddle_step_sums",
-            "puddle_step_share",
-            "puddle_step_coefficient",
-            "puddle_step_keep",
-        ],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol,
         run,
     };
@@ -355,7 +349,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
             name: "main_lattice_puddle_step_direct: the membrane among islands, with an open border",
             kernel: &DIRECT_KERNEL,
-            covers: &["puddle_step_direct", "puddle_step_direct_side", "puddle_step_direct_straight"],
+            with: &[],
+            overrides: &[],
+            text: None,
             tol: STEPS,
             run: |gpu| {
                 let (form, border) = (PuddleForm::Membrane { speed_m_s: 0.3 }, PuddleBorder::Open);
@@ -372,7 +368,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
             name: "main_lattice_puddle_step_direct: water of degree 1, whose diagonal neighbours have a weight",
             kernel: &DIRECT_KERNEL,
-            covers: &["puddle_step_direct_row"],
+            with: &[],
+            overrides: &[],
+            text: None,
             tol: STEPS,
             run: |gpu| {
                 let options = PuddleOptions { size: [97, 131], degree: Some(1), ..PuddleOptions::default() };
@@ -404,7 +402,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
             name: "main_puddle_step: sixteen bits are packed as on the CPU",
             kernel: &STEP_KERNEL,
-            covers: &["puddle_state_words"],
+            with: &[],
+            overrides: &[],
+            text: None,
             tol: Tol::absolute(2.0e-6, "as the step in sixteen bits; the velocity's half in its place"),
             run: |gpu| {
                 let storage = PuddleStorage::Half;
@@ -415,14 +415,18 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
             name: "main_puddle_seed: drops and an object among islands",
             kernel: &SEED_KERNEL,
-            covers: &[],
+            with: &[],
+            overrides: &[],
+            text: None,
             tol: Tol::absolute(5.0e-8, "forty craters of up to 2.5 mm, each known to 2e-5 of it"),
             run: seeds,
         },
         KernelCase {
             name: "main_puddle_normal: rough water among islands",
             kernel: &NORMAL_KERNEL,
-            covers: &["puddle_normal_quad", "puddle_normal_row"],
+            with: &[],
+            overrides: &[],
+            text: None,
             tol: Tol::absolute(6.0e-5, "components in 16 bits, 1.6e-5 each; the third is what is left of 1"),
             run: normals,
         },

@@ -3,14 +3,19 @@
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::ops;
 use downpour_math::rng::{rng_pcg4d, rng_unit};
+use downpour_render::light::LightSource;
 use downpour_shaders::render::puddle_water::PUDDLE_WATER;
 use downpour_shaders::render::scene::TRACE_KERNEL;
+use downpour_trace::builder::{MeshPart, SceneBuilder};
+use downpour_trace::data::SceneData;
+use downpour_trace::material::MaterialLook;
 use downpour_trace::puddle::{Ground, PuddleLook, PuddleMap, PuddleRows, slope_levels};
 use downpour_trace::scene::water::{
     puddle_water_above, puddle_water_albedo, puddle_water_beneath, puddle_water_entry, puddle_water_mirrored,
     puddle_water_normal, puddle_water_reflectance, puddle_water_refracted,
 };
-use glam::{Vec2, Vec3};
+use downpour_trace::sky_light::SkyLight;
+use glam::{Affine3A, Vec2, Vec3};
 
 use super::scene::{picture, scene};
 use crate::Domain::{Uniform, Unit3};
@@ -93,8 +98,54 @@ fn maps() -> [(PuddleMap, PuddleLook); 2] {
     [(sunk, PuddleLook::default()), (flat, look)]
 }
 
+/// A bank so steep that water barely lies on it, with a thin film along the whole of it.
+fn bank() -> (SceneData, PuddleMap) {
+    // The facet's normal rises by 0.706: 0.7 is where water no longer lies.
+    let (upward, half) = (0.706f32, 0.5f32);
+    let steep = (1.0 - upward * upward).sqrt() / upward;
+    let corner = |x: f32, z: f32| [x * half, x * half * steep, z * half];
+    let positions = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+    let mut builder = SceneBuilder::new();
+    let material = builder.add_material(MaterialLook { roughness: 0.7, ..MaterialLook::default() });
+    let part = MeshPart {
+        positions: &positions,
+        normals: None,
+        tangents: None,
+        uvs: [None, None],
+        colours: None,
+        indices: &[0, 1, 2, 0, 2, 3],
+        material,
+    };
+    builder.add_mesh(&part, &Affine3A::IDENTITY);
+    builder.add_light(LightSource::Directional {
+        direction: Vec3::new(0.4, -0.8, -0.45).normalize(),
+        irradiance: Vec3::new(3.0, 2.8, 2.5),
+    });
+    let size = [32, 4];
+    let along = |i: usize| (((i % size[0]) as f32 + 0.5) / size[0] as f32 * 2.0 - 1.0) * half;
+    let cells = (0..size[0] * size[1]).map(|i| [steep * along(i), 0.0, 0.02, 1.0]).collect();
+    let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(2.0 * half), turn: 0.0, reach: 2.0 };
+    let sky = SkyLight::new(2, 1, &[[0.4, 0.6, 1.2], [0.7, 0.6, 0.2]]);
+    (builder.build(&sky), PuddleMap { ground, size, cells })
+}
+
 fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
-    let mut scene = scene();
+    water(gpu, scene(), &maps(), eye, sky_rays)
+}
+
+fn case_bank(gpu: &Gpu) -> Result<Run, GpuError> {
+    let (scene, map) = bank();
+    water(gpu, scene, &[(map, PuddleLook::default())], Vec3::new(-0.9, 0.9, 0.5), 0)
+}
+
+/// A picture of a scene with puddles.
+fn water(
+    gpu: &Gpu,
+    mut scene: SceneData,
+    puddles: &[(PuddleMap, PuddleLook)],
+    eye: Vec3,
+    sky_rays: u32,
+) -> Result<Run, GpuError> {
     let finest = (0..128 * 128u32).map(|i| {
         let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| rng_unit(word) - 0.5);
         let [x, y] = [(i % 128) as f32, (i / 128) as f32];
@@ -102,7 +153,7 @@ fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32) -> Result<Run, GpuError> {
         [slopes[0], slopes[1], slopes[0] * slopes[0] + slopes[1] * slopes[1], 0.0]
     });
     scene.set_puddles(&PuddleRows {
-        puddles: &maps(),
+        puddles,
         shape: (128, 7, 0.01),
         slopes: &slope_levels(finest.collect(), 128),
         shift: Vec3::ZERO,
@@ -122,25 +173,17 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, run| KernelCase {
         name,
         kernel: &TRACE_KERNEL,
-        covers: &[
-            "puddle_load",
-            "puddle_ripples",
-            "puddle_texel",
-            "puddle_water_texel",
-            "puddle_water_map",
-            "puddle_water_find",
-            "puddle_water_slope",
-            "puddle_water_piece",
-            "puddle_water_ripple",
-            "path_water_surface",
-            "path_water_ray",
-            "path_water_share",
-            "path_soaked",
-        ],
+        with: &[],
+        overrides: &[("SCENE_PANE", 0.0), ("SCENE_WET", 1.0)],
+        text: None,
         tol: WATER,
         run,
     };
-    vec![case("main_trace: puddles from near", case_near), case("main_trace: puddles from afar", case_far)]
+    vec![
+        case("main_trace: puddles from near", case_near),
+        case("main_trace: puddles from afar", case_far),
+        case("main_trace: water on a bank", case_bank),
+    ]
 }
 
 fn case_near(gpu: &Gpu) -> Result<Run, GpuError> {

@@ -12,9 +12,9 @@ use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::streak::streak_weight;
 use downpour_render::rain::streak_place::{streak_place_index, streak_place_position};
 use downpour_render::rain::{
-    DropMasks, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions, ReduceLevel,
-    RefractionForm, StreakColour, StreakProfiles, StreakSamples, TemporalResponse, reduce_levels,
-    reduce_texel,
+    DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
+    ReduceLevel, RefractionForm, StreakColour, StreakProfiles, StreakSamples, TemporalResponse,
+    reduce_levels, reduce_texel,
 };
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
@@ -25,7 +25,7 @@ use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
 use downpour_sim::resolved::{Region, Resolved};
 use downpour_trace::capture::trace_environment;
-use downpour_trace::data::RenderFrame;
+use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::gpu::ScenePipeline;
 use downpour_trace::scene::SceneView;
 use glam::{DVec3, Vec3};
@@ -35,6 +35,7 @@ use super::scene::scene;
 use crate::Domain::{Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu, POISON};
 use crate::function::Run;
+use crate::kept::kept;
 use crate::signature::WordKind;
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
@@ -160,6 +161,30 @@ fn entries(profiles: &StreakProfiles, part: Part) -> Vec<usize> {
     all
 }
 
+/// All that the CPU works out before it is known what is compared.
+struct Prepared {
+    scene: SceneData,
+    frame: RenderFrame,
+    rain: Rain,
+    capture: EnvironmentMap,
+    clean: Vec<[f32; 4]>,
+}
+
+impl Prepared {
+    fn new([eye, forward]: [Vec3; 2], options: RainOptions, masks: &DropMasks) -> Self {
+        let scene = scene();
+        let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
+        let frame = RenderFrame::new(&scene, &view, SIZE, 1, 1, 7).expect("a frame");
+        let medium = medium(masks, eye);
+        let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
+        let rain = Rain::new(&frame.camera, DVec3::from(eye), &drops(eye, forward), masks, &options);
+        assert!(rain.list.len() > 100, "{} drops", rain.list.len());
+        let clean = SceneView { data: &scene, frame: &frame }.picture();
+        let capture = trace_environment(&scene, &frame, &rain.environment);
+        Self { scene, frame, rain, capture, clean }
+    }
+}
+
 fn masks_case(
     gpu: &Gpu,
     [eye, forward]: [Vec3; 2],
@@ -167,24 +192,24 @@ fn masks_case(
     masks: &DropMasks,
     part: Part,
 ) -> Result<Run, GpuError> {
-    let scene = scene();
-    let view = Viewpoint { eye, forward, up: Vec3::Y, fov_y: 0.9 };
-    let frame = RenderFrame::new(&scene, &view, SIZE, 1, 1, 7).expect("a frame");
-    let medium = medium(masks, eye);
-    let options = RainOptions { capture_size: 64, capture_grid: 2, medium, ..options };
-    let rain = Rain::new(&frame.camera, DVec3::from(eye), &drops(eye, forward), masks, &options);
-    assert!(rain.list.len() > 100, "{} drops", rain.list.len());
-    let view = SceneView { data: &scene, frame: &frame };
-    let clean = view.picture();
-    let capture = trace_environment(&scene, &frame, &rain.environment);
-    let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
-    let uploaded = scenes.upload(&scene)?;
-    let clean_buffer = gpu.storage_buffer("clean", &clean)?;
+    // Masks with an atlas have exposures of their own.
+    let key = format!("{eye} {forward} {options:?}");
+    let prepared = kept(&key, || Prepared::new([eye, forward], options, masks));
+    let Prepared { scene, frame, rain, capture, clean } = &*prepared;
+    let view = SceneView { data: scene, frame };
     let both = [rain.lights(&view, masks).expect("lamps"), rain.streak_lights(&view, masks).expect("lamps")];
+    let (scenes, rains) = (ScenePipeline::new(gpu)?, RainPipeline::new(gpu)?);
+    let uploaded = scenes.upload(scene)?;
+    let clean_buffer = gpu.storage_buffer("clean", clean)?;
     let lights = &both[0];
-    let plate = scenes.plate(&uploaded, &frame, &rains, &rain)?;
-    let pass = rains.prepare(&plate.of(&clean_buffer), &rains.upload(masks)?, &rain, &both)?;
-    let table = || rain.streak_table(masks, &capture, &both[1].light(&rain.streak_rows()));
+    let plate = scenes.plate(&uploaded, frame, &rains, rain)?;
+    let pass = rains.prepare(&plate.of(&clean_buffer), &rains.upload(masks)?, rain, &both)?;
+    let table = || {
+        kept(&format!("{key} table"), || {
+            rain.streak_table(masks, capture, &both[1].light(&rain.streak_rows()))
+        })
+    };
+    let found = || kept(&format!("{key} found"), || rain.medium_light(lights).found(clean));
     gpu.submit(&plate.dispatches(&pass))?;
     match part {
         Part::Capture => {
@@ -209,27 +234,26 @@ fn masks_case(
                     .chain([pass.drops()])
                     .collect::<Vec<_>>(),
             )?;
-            let medium = rain.medium_light(lights).layer(&clean);
-            let layer = rain.layer(&clean, masks, &capture, &table(), &lights.light(&rain.rows), &medium);
+            let layer = kept(&format!("{key} layer"), || {
+                let medium = rain.medium_light(lights).layer(clean);
+                rain.layer(clean, masks, capture, &table(), &lights.light(&rain.rows), &medium)
+            });
             Ok(run(SIZE[0], &layer, &pass.layer()?))
         }
         Part::Open => {
             gpu.submit(&pass.medium())?;
-            let medium = rain.medium_light(lights);
-            let cells = medium.found(&clean).len() - 2 * clean.len();
-            Ok(run(16, &medium.found(&clean)[..cells], &pass.medium_found()?[..cells]))
+            let cells = found().len() - 2 * clean.len();
+            Ok(run(16, &found()[..cells], &pass.medium_found()?[..cells]))
         }
         Part::Medium => {
             gpu.submit(&pass.medium())?;
-            let medium = rain.medium_light(lights);
-            let pixels = medium.found(&clean).len() - 2 * clean.len();
+            let pixels = found().len() - 2 * clean.len();
             let whole = |found: &[[f32; 4]]| found[pixels..].iter().step_by(2).copied().collect::<Vec<_>>();
-            Ok(run(SIZE[0], &whole(&medium.found(&clean)), &whole(&pass.medium_found()?)))
+            Ok(run(SIZE[0], &whole(&found()), &whole(&pass.medium_found()?)))
         }
         Part::Seen => {
             gpu.submit(&pass.medium())?;
-            let medium = rain.medium_light(lights);
-            let pixels = medium.found(&clean).len() - 2 * clean.len();
+            let pixels = found().len() - 2 * clean.len();
             // Means over blocks: which part of a ray chance draws may differ, what comes of it may not.
             let blocks = |found: &[[f32; 4]]| {
                 let [across, down] = SIZE.map(|edge| edge as usize / 16);
@@ -242,7 +266,7 @@ fn masks_case(
                 }
                 sums
             };
-            Ok(run(SIZE[0] / 16, &blocks(&medium.found(&clean)), &blocks(&pass.medium_found()?)))
+            Ok(run(SIZE[0] / 16, &blocks(&found()), &blocks(&pass.medium_found()?)))
         }
         Part::Filter => {
             gpu.submit(&pass.medium())?;
@@ -251,7 +275,7 @@ fn masks_case(
                 layer.iter().map(|&[r, g, b, _]| [r, g, b, 0.0]).collect()
             };
             // From the same findings.
-            let medium = rain.medium_light(lights).filtered(&clean, &pass.medium_found()?);
+            let medium = rain.medium_light(lights).filtered(clean, &pass.medium_found()?);
             Ok(run(SIZE[0], &numbers(&medium), &numbers(&pass.layer()?)))
         }
     }
@@ -380,120 +404,27 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let drops = |name, run| KernelCase {
         name,
         kernel: &DROPS_KERNEL,
-        covers: &[
-            "drops_mask_unit",
-            "drops_mask_texel",
-            "drops_mask_add",
-            "drops_mask_layer",
-            "drops_mask_at",
-            "drops_mask_mean",
-            "drops_capture_texel",
-            "drops_capture_level",
-            "drops_capture_at",
-            "drops_shade_shifted",
-            "drops_shade_ray",
-            "drops_on_plane",
-            "drops_light_row",
-            "drops_spots",
-            "drops_lines",
-            "drops_facing",
-            "drops_shift",
-            "drops_line",
-            "drops_glint_width",
-            "drops_turns",
-            "drops_streaks",
-            "drops_beads",
-            "drops_atlas_streak",
-            "drops_atlas_step",
-            "drops_atlas_half",
-            "drops_atlas_texel",
-            "drops_atlas_within",
-            "drops_atlas_layer",
-            "drops_atlas_across",
-            "drops_atlas_along",
-            "drops_still",
-            "drops_chord",
-            "drops_streak",
-            "drops_depth",
-            "drops_pixel",
-            "drops_over",
-            "drops_medium",
-            "streak_time",
-            "streak_nearest",
-            "streak_depth",
-            "streak_stretch",
-            "streak_chord",
-            "streak_place",
-            "streak_box",
-            "streak_within",
-            "streak_mean",
-            "streak_cover",
-            "streak_lookup_chord",
-            "streak_lookup_passage",
-            "streak_lookup_column",
-            "streak_lookup_sum",
-            "streak_lookup_until",
-            "streak_lookup_shown",
-            "streak_lookup_mean",
-        ],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol: DRAWN,
         run,
     };
     let medium = |name, kernel, run| KernelCase {
         name,
         kernel,
-        covers: &[
-            "medium_outline",
-            "medium_node",
-            "medium_within",
-            "medium_slab",
-            "medium_roots",
-            "medium_both",
-            "medium_region",
-            "medium_begin",
-            "medium_span",
-            "medium_path",
-            "medium_depth",
-            "medium_open_end",
-            "medium_open_slice",
-            "medium_open_ray",
-            "medium_open_column",
-            "medium_open_cell",
-            "medium_open_at",
-            "medium_light_phase",
-            "medium_light_span",
-            "medium_light_add",
-            "medium_light_lamp",
-            "medium_light_pixel",
-            "medium_filter_weight",
-            "medium_filter_pixel",
-        ],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol: SCATTERED,
         run,
     };
     let profiles = |name, run| KernelCase {
         name,
         kernel: &STREAK_LIGHT_KERNEL,
-        covers: &[
-            "mask_wobble_light",
-            "mask_wobble_meet",
-            "streak_path_back",
-            "streak_rays_ray",
-            "streak_light_change",
-            "streak_light_column",
-            "streak_light_direction",
-            "streak_light_exit",
-            "streak_light_facing",
-            "streak_light_mixed",
-            "streak_light_patch",
-            "streak_light_size",
-            "streak_light_spot",
-            "streak_light_view",
-            "drop_light_keep_lamp",
-            "drop_light_reach",
-            "drop_light_whole",
-            "drops_capture_shifted",
-        ],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol: PROFILED,
         run,
     };
@@ -501,7 +432,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
             name: "main_trace: a capture with a sun and lamps",
             kernel: &TRACE_KERNEL,
-            covers: &["capture_direction", "capture_sky", "capture_suns"],
+            with: &[],
+            overrides: &[("SCENE_PANE", 0.0), ("SCENE_WET", 0.0)],
+            text: None,
             tol: CAPTURED,
             run: |gpu| {
                 let (eye, forward) = (Vec3::new(0.6, 1.4, 3.0), Vec3::new(-0.2, -0.4, -1.0));
@@ -512,7 +445,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
             name: "main_reduce: all levels of 64 x 64",
             kernel: &REDUCE_KERNEL,
-            covers: &["reduce_texel"],
+            with: &[],
+            overrides: &[],
+            text: None,
             tol: Tol::relative(1.0e-6, 0.0, "the mean of four: three sums, each rounded once"),
             run: reduce_case,
         },
@@ -562,7 +497,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
             name: "main_streak_table: all classes",
             kernel: &STREAK_TABLE_KERNEL,
-            covers: &["streak_table_point", "drops_capture_about"],
+            with: &[],
+            overrides: &[],
+            text: None,
             tol: TABLED,
             run: |gpu| {
                 let exposure = exposure(1.0 / 60.0, StreakSamples::Table);
@@ -572,20 +509,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         KernelCase {
             name: "main_streak_rays: outlines and chords",
             kernel: &STREAK_RAYS_KERNEL,
-            covers: &[
-                "streak_path_axes",
-                "streak_path_body",
-                "streak_path_displacement",
-                "streak_path_instant",
-                "streak_path_line",
-                "streak_path_turned",
-                "streak_rays_chord",
-                "streak_rays_outline",
-                "streak_rays_width",
-                "mask_wobble_nearest",
-                "mask_wobble_spheroid",
-                "mask_wobble_surface",
-            ],
+            with: &[],
+            overrides: &[],
+            text: None,
             tol: OUTLINED,
             run: |gpu| {
                 let exposure = exposure(1.0 / 60.0, StreakSamples::Table);

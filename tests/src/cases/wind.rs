@@ -314,7 +314,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let field = |name, run| KernelCase {
         name,
         kernel: &FIELD_KERNEL,
-        covers: &["wind_field_cell"],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol: Tol::relative(
             1.0e-5,
             2.0e-5,

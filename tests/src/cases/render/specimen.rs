@@ -285,14 +285,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, tol, run| KernelCase {
         name,
         kernel: &specimen::SPECIMEN_KERNEL,
-        covers: &[
-            "specimen_sky",
-            "specimen_sky_texel",
-            "specimen_radiance",
-            "specimen_pixel",
-            "specimen_sky_lamps",
-            "specimen_sky_light",
-        ],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol,
         run,
     };

@@ -300,7 +300,9 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, run| KernelCase {
         name,
         kernel: &specimen::SPECIMEN_STREAK_KERNEL,
-        covers: &["specimen_streak_radiance", "specimen_streak_trace"],
+        with: &[],
+        overrides: &[],
+        text: None,
         tol,
         run,
     };

@@ -1,0 +1,37 @@
+//! What the CPU works out for a case, kept for the next run of it: twins do not change from mutant to mutant.
+
+use std::any::Any;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+type Values = HashMap<String, Arc<dyn Any + Send + Sync>>;
+
+static VALUES: Mutex<Option<Values>> = Mutex::new(None);
+
+/// Keeps values from now on. Without this call nothing is kept: a test runs each case once.
+pub fn keep() {
+    VALUES.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_default();
+}
+
+/// The value of a key, which names all that the value depends on: kept, or made now.
+///
+/// # Panics
+/// If two types of values have the same key.
+pub fn kept<T: Send + Sync + 'static>(key: &str, make: impl FnOnce() -> T) -> Arc<T> {
+    let found = {
+        let values = VALUES.lock().unwrap_or_else(PoisonError::into_inner);
+        values.as_ref().map(|values| values.get(key).cloned())
+    };
+    match found {
+        None => Arc::new(make()),
+        Some(Some(value)) => value.downcast().expect("one type for each key"),
+        Some(None) => {
+            let made = Arc::new(make());
+            let value: Arc<dyn Any + Send + Sync> = made.clone();
+            if let Some(values) = VALUES.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
+                values.insert(key.to_owned(), value);
+            }
+            made
+        }
+    }
+}

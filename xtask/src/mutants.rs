@@ -1,0 +1,35 @@
+//! Mutants of the shaders: the program `mutants` of `downpour-tests`.
+
+use crate::{driver, run};
+
+/// The sample that every run of the tests tries, of functions with a case of their own: seconds.
+const SAMPLE: [&str; 7] = ["--own", "--sample", "40", "--seed", "1", "--strict", "--report"];
+
+/// Tries those that the arguments ask for.
+pub(crate) fn try_all(arguments: &[&str]) -> Result<(), String> {
+    driver::ensure()?;
+    program(arguments)
+}
+
+/// Tries the sample; fails if one survives that is not listed.
+pub(crate) fn try_sample() -> Result<(), String> {
+    if std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|v| v == "no") {
+        return Ok(());
+    }
+    let report = run::root().join("target/mutants-sample.tsv");
+    // Of the shaders as they are now.
+    match std::fs::remove_file(&report) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            return Err(format!("{}: {error}", report.display()));
+        }
+        _ => {}
+    }
+    program(&[&SAMPLE[..], &[&report.display().to_string()]].concat())
+}
+
+fn program(arguments: &[&str]) -> Result<(), String> {
+    let runtime = run::runtime()?;
+    let cargo =
+        ["run", "--quiet", "--locked", "-p", "downpour-tests", "--all-features", "--bin", "mutants", "--"];
+    run::cargo(&[&cargo[..], arguments].concat(), &[("XDG_RUNTIME_DIR", &runtime)])
+}
