@@ -365,7 +365,7 @@ fn main_parity(@builtin(global_invocation_id) id: vec3u) {
     let sky = select(0u, 1u, collision_open(start));
     let solid = select(0u, 1u, collision_inside(start));
     let normal = bitcast<vec3u>(hit.normal);
-    parity_out[id.x] = array(sky, solid, hit.kind, bitcast<u32>(hit.share), normal.x, normal.y, normal.z, collision_cover(start).x);
+    parity_out[id.x] = array(sky, solid, hit.kind, bitcast<u32>(hit.fraction), normal.x, normal.y, normal.z, collision_cover(start).x);
 }
 "
 }
