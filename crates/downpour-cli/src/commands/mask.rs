@@ -7,7 +7,7 @@ use downpour::drop::DropShape;
 use downpour::drop::air::Air;
 use downpour::drop::optics::water_index_in_air;
 use downpour::mask::file::{exr, ktx2, png};
-use downpour::mask::{ClosedMesh, MOST_TRIANGLES, Mask, MaskOptions, SIZES, View, trace_drop, trace_model};
+use downpour::mask::{ClosedMesh, MAX_TRIANGLES, Mask, MaskOptions, SIZES, View, trace_drop, trace_model};
 use downpour::scene::{Budget, gltf::read_triangles};
 
 use crate::backend::{BackendArguments, compute};
@@ -180,7 +180,7 @@ impl MaskArguments {
             let shapes: Result<_, _> = self.diameter.iter().map(|mm| DropShape::new(mm * 1.0e-3)).collect();
             return Ok(Subject::Drops(shapes?));
         };
-        let most = MOST_TRIANGLES;
+        let most = MAX_TRIANGLES;
         let mut budget = Budget { bytes: MODEL_BUDGET_BYTES, vertices: 3 * most as u64, ..Budget::default() };
         let model = read_triangles(path, &mut budget)?.strict()?;
         if model.indices.len() > most {

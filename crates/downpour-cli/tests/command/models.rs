@@ -57,9 +57,9 @@ fn a_mesh_that_is_no_closed_drop_is_refused_with_the_reason() {
     let inside_out: Vec<[u32; 3]> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
     refused(&gltf(&positions, &inside_out), &["inside out"]);
     let one_turned = [triangles[0], triangles[1], triangles[2], [1, 3, 2]];
-    refused(&gltf(&positions, &one_turned), &["the same way in 2 triangles"]);
+    refused(&gltf(&positions, &one_turned), &["the same direction in 2 triangles"]);
     let twice = [&triangles[..], &triangles[..]].concat();
-    refused(&gltf(&positions, &twice), &["the same way in 2 triangles"]);
+    refused(&gltf(&positions, &twice), &["the same direction in 2 triangles"]);
     let flat: Vec<[f32; 3]> = positions.iter().map(|p| [p[0], p[1], 0.0]).collect();
     refused(&gltf(&flat, &triangles), &["degenerate"]);
     refused(&gltf(&[[1.0; 3]; 4], &triangles), &["degenerate"]);
