@@ -4,10 +4,10 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use downpour_atlas::AtlasError;
-use downpour_atlas::columbia::{ColumbiaFiles, GreyPicture, import};
+use downpour_atlas::columbia::{ColumbiaFiles, GrayPicture, import};
 use downpour_atlas::write_streaks;
 use downpour_scene::Budget;
-use downpour_scene::picture::decode_grey16;
+use downpour_scene::picture::decode_gray16;
 
 /// Texels along a streak.
 const ROWS: u32 = 64;
@@ -51,10 +51,10 @@ impl ColumbiaFiles for Database {
         String::from_utf8(bytes).map(Some).map_err(|error| Told(format!("{name}: {error}")))
     }
 
-    fn picture(&mut self, name: &str) -> Result<Option<GreyPicture>, Told> {
+    fn picture(&mut self, name: &str) -> Result<Option<GrayPicture>, Told> {
         let Some(bytes) = self.bytes(name)? else { return Ok(None) };
-        let grey = decode_grey16(name, &bytes, &mut Budget::default()).map_err(|e| Told(e.to_string()))?;
-        Ok(Some(GreyPicture { width: grey.width, height: grey.height, values: grey.values }))
+        let grey = decode_gray16(name, &bytes, &mut Budget::default()).map_err(|e| Told(e.to_string()))?;
+        Ok(Some(GrayPicture { width: grey.width, height: grey.height, values: grey.values }))
     }
 }
 
