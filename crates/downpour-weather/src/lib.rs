@@ -38,7 +38,7 @@ mod wind;
 mod words;
 
 use downpour_scene::Budget;
-use downpour_scene::beneath::open_named;
+use downpour_scene::sandbox::open_named;
 use downpour_scene::error::{SceneError, shown_path};
 use downpour_wind::Wind;
 use std::path::Path;

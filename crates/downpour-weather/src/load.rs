@@ -4,7 +4,7 @@ use super::puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, PuddleShape};
 use super::{Lamp, Model, Puddle, SkySource, SunSource, Weather};
 use downpour_math::ops::f64 as ops;
 use downpour_scene::Budget;
-use downpour_scene::beneath::{Files, Folder, OpenFile};
+use downpour_scene::sandbox::{Files, Folder, OpenFile};
 use downpour_scene::error::SceneError;
 use downpour_scene::gltf::{TriangleModel, read_scene_from_bytes, read_triangles_from_bytes};
 use downpour_scene::picture::{self, Picture};
@@ -200,7 +200,7 @@ fn lights_of_the_sky(
             };
             let mut sky = read(budget).map_err(|error| error.in_file(name))?;
             for pixel in &mut sky.radiance {
-                *pixel = pixel.map(|value| narrowed(f64::from(value) * scale).min(sky::BRIGHTEST));
+                *pixel = pixel.map(|value| narrowed(f64::from(value) * scale).min(sky::MAX_RADIANCE));
             }
             (sky, *yaw)
         }

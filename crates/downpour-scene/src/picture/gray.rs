@@ -1,13 +1,13 @@
-//! PNG with one channel, all 16 bits of it: data, not a picture to look at.
+//! PNG with one channel, all 16 bits of it: data, not a picture for viewing.
 
 use super::{Kind, guarded, raster};
 use crate::Budget;
 use crate::error::SceneError;
 use image::{ColorType, DynamicImage, ImageFormat};
 
-/// A grey picture: rows from the top, left to right.
+/// A grayscale picture: rows from the top, left to right.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Grey16 {
+pub struct Gray16 {
     /// Pixels in a row; at least 1.
     pub width: u32,
     /// Rows; at least 1.
@@ -16,11 +16,11 @@ pub struct Grey16 {
     pub values: Vec<u16>,
 }
 
-/// Reads a grey PNG of 8 or 16 bits from the bytes of its file. Name and budget are as for [`super::decode`].
+/// Reads a grayscale PNG of 8 or 16 bits from the bytes of its file. Name and budget are as for [`super::decode`].
 ///
 /// # Errors
-/// [`SceneError`]: the bytes are no PNG, are cut or damaged, have colour or alpha, or ask for more than the budget.
-pub fn decode_grey16(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<Grey16, SceneError> {
+/// [`SceneError`]: the bytes are not a PNG, are truncated or damaged, have color or alpha, or exceed the budget.
+pub fn decode_gray16(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<Gray16, SceneError> {
     let read = || {
         const GREY: &str = "a PNG image with one channel";
         let kind = Kind::of(bytes)?;
@@ -31,18 +31,18 @@ pub fn decode_grey16(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<Gr
         let image = guarded(|| raster::open(bytes, ImageFormat::Png, budget, cost))?;
         let (width, height) = (image.width(), image.height());
         let values = match image {
-            DynamicImage::ImageLuma16(grey) => grey.into_raw(),
-            DynamicImage::ImageLuma8(grey) => {
-                grey.into_raw().into_iter().map(|v| u16::from_ne_bytes([v, v])).collect()
+            DynamicImage::ImageLuma16(gray) => gray.into_raw(),
+            DynamicImage::ImageLuma8(gray) => {
+                gray.into_raw().into_iter().map(|v| u16::from_ne_bytes([v, v])).collect()
             }
             other => return Err(SceneError::bad("header", format!("{:?} pixels", other.color()), GREY)),
         };
-        Ok(Grey16 { width, height, values })
+        Ok(Gray16 { width, height, values })
     };
-    let grey = read().map_err(|error: SceneError| error.in_file(name))?;
-    budget.pixels = budget.pixels.saturating_sub(grey.values.len() as u64);
-    budget.bytes = budget.bytes.saturating_sub((grey.values.len() as u64).saturating_mul(2));
-    Ok(grey)
+    let gray = read().map_err(|error: SceneError| error.in_file(name))?;
+    budget.pixels = budget.pixels.saturating_sub(gray.values.len() as u64);
+    budget.bytes = budget.bytes.saturating_sub((gray.values.len() as u64).saturating_mul(2));
+    Ok(gray)
 }
 
 /// Decoded pixels in the file's channels, then in one of 16 bits.
