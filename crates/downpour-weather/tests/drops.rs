@@ -1,4 +1,4 @@
-//! What drops look like, as weather files say it.
+//! Appearance of drops in weather files.
 
 use downpour_drop::shape::ShapeTable;
 use downpour_scene::Budget;
