@@ -1,4 +1,4 @@
-//! Models that are no drops: code 2 or 3, one line, no panic, no hang, nothing written.
+//! Models that are not drops: code 2 or 3, one line, no panic, no hang, nothing written.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use crate::broken::bad_inputs;
 use crate::child::{Downpour, Ended};
 use crate::gltf_file::{empty, gltf, tetrahedron};
 
-/// 4 GiB of memory, where a shell can limit it.
+/// 4 GiB of memory, if a shell can limit it.
 fn mask_of(model: &Path) -> Ended {
     let arguments: [&std::ffi::OsStr; 7] = [
         "mask".as_ref(),
@@ -40,7 +40,7 @@ fn every_bad_input_is_refused_in_one_line() {
     }
 }
 
-/// A drop model in a folder of its own, and the words of its refusal.
+/// A drop model in a separate folder, and the text of its error.
 #[track_caller]
 fn refused(text: &str, words: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
