@@ -51,7 +51,7 @@ fn sweep() -> Result<(), String> {
     run::cargo(&[&lattice[..], &["--", "--ignored"]].concat(), &[])
 }
 
-/// Formatting, lints, each crate on its own, documentation.
+/// Formatting, lints, each crate separately, documentation.
 pub(crate) fn lint() -> Result<(), String> {
     run::cargo(&["fmt", "--all", "--check"], &[])?;
     let deny = ["--", "-D", "warnings"];

@@ -1,4 +1,4 @@
-//! Child processes and places of the workspace.
+//! Child processes and paths of the workspace.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -16,7 +16,7 @@ pub(crate) fn command(program: &str, arguments: &[&str]) -> Command {
     command
 }
 
-/// Runs cargo and says which call failed.
+/// Runs cargo and names the call that failed.
 pub(crate) fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), String> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     println!("$ cargo {}", arguments.join(" "));
