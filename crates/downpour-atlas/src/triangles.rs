@@ -11,7 +11,7 @@ use crate::lookup::{AtlasTriangle, atlas_map};
 use downpour_shaders::atlas::ATLAS_NONE;
 
 struct Corner {
-    place: Point2<f64>,
+    position: Point2<f64>,
     direction: u32,
 }
 
@@ -19,7 +19,7 @@ impl HasPosition for Corner {
     type Scalar = f64;
 
     fn position(&self) -> Point2<f64> {
-        self.place
+        self.position
     }
 }
 
@@ -35,11 +35,11 @@ pub(crate) fn triangulate(directions: &[[f64; 3]]) -> Result<Vec<AtlasTriangle>,
         allowed: "three or more directions that differ and do not lie on one circle",
     };
     let mut mesh = DelaunayTriangulation::<Corner>::new();
-    let mut places = Vec::new();
+    let mut positions = Vec::new();
     for (direction, d) in (0..).zip(directions) {
         let [u, v] = atlas_map(d.map(|c| c as f32));
-        places.push([u, v]);
-        mesh.insert(Corner { place: Point2::new(u.into(), v.into()), direction })
+        positions.push([u, v]);
+        mesh.insert(Corner { position: Point2::new(u.into(), v.into()), direction })
             .map_err(|error| wrong(format!("{d:?}: {error}")))?;
     }
     if mesh.num_vertices() != directions.len() {
@@ -68,9 +68,9 @@ pub(crate) fn triangulate(directions: &[[f64; 3]]) -> Result<Vec<AtlasTriangle>,
         .iter()
         .enumerate()
         .map(|(k, &[a, b, c])| AtlasTriangle {
-            a: places[a as usize],
-            b: places[b as usize],
-            c: places[c as usize],
+            a: positions[a as usize],
+            b: positions[b as usize],
+            c: positions[c as usize],
             unused: [0.0; 2],
             directions: [a, b, c],
             unused_1: 0,

@@ -246,7 +246,7 @@ fn add<'a>(
     budget: &mut Budget,
 ) -> Result<Option<usize>, SceneError> {
     let name = model.file.as_str();
-    let mut positions = model.transforms().map(|place| single(&place));
+    let mut positions = model.transforms().map(|transform| single(&transform));
     let first = positions.next().unwrap_or(Affine3A::IDENTITY);
     let part = match known.get(name) {
         Some(source) => again(scene, source, first, budget).map_err(|error| error.in_file(name))?,
@@ -269,13 +269,13 @@ fn add<'a>(
     };
     let chosen = chosen.map(|index| index.saturating_add(part.animations.start));
     let each = copy_bytes(scene, &part);
-    for place in positions {
+    for transform in positions {
         let mut take = || {
             budget.take_bytes(each, "nodes")?;
             budget.take_nodes(part.nodes.len() as u64, "nodes")
         };
         take().map_err(|error| error.in_file(name))?;
-        copy(scene, part.nodes.clone(), part.animations.clone(), place);
+        copy(scene, part.nodes.clone(), part.animations.clone(), transform);
     }
     Ok(chosen)
 }
@@ -284,7 +284,7 @@ fn add<'a>(
 fn append(
     scene: &mut Scene,
     model: &Model,
-    place: Affine3A,
+    transform: Affine3A,
     files: &dyn Files,
     budget: &mut Budget,
 ) -> Result<Source, SceneError> {
@@ -294,7 +294,7 @@ fn append(
     let other = read_scene_from_bytes(name, &bytes, &Beside { files, folder }, budget)?;
     budget.take_nodes(1, "nodes")?;
     let (nodes, animations) = (scene.nodes.len(), scene.animations.len());
-    scene.append(other, place);
+    scene.append(other, transform);
     Ok(Source { nodes: nodes..scene.nodes.len(), animations: animations..scene.animations.len() })
 }
 
@@ -302,7 +302,7 @@ fn append(
 fn again(
     scene: &mut Scene,
     source: &Source,
-    place: Affine3A,
+    transform: Affine3A,
     budget: &mut Budget,
 ) -> Result<Source, SceneError> {
     budget.take_bytes(copy_bytes(scene, source), "nodes")?;
@@ -319,7 +319,7 @@ fn again(
             Animation { name: animation.name.clone(), channels: own.cloned().collect() }
         })
         .collect();
-    copy(scene, source.nodes.clone(), 0..0, place);
+    copy(scene, source.nodes.clone(), 0..0, transform);
     let by = nodes.saturating_sub(source.nodes.start);
     scene.animations.extend(moved.into_iter().map(|mut animation| {
         for channel in &mut animation.channels {
@@ -350,7 +350,7 @@ fn copy_bytes(scene: &Scene, source: &Source) -> u64 {
 
 /// Copies the nodes of a model, with their skins and animations; the meshes are shared. The last
 /// node of the part is the parent of all others.
-fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, place: Affine3A) {
+fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, transform: Affine3A) {
     let by = scene.nodes.len().saturating_sub(part.start);
     let mut nodes = scene.nodes.get(part.clone()).unwrap_or_default().to_vec();
     for node in &mut nodes {
@@ -362,7 +362,7 @@ fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, place: 
         }
     }
     if let Some(root) = nodes.last_mut() {
-        root.local = Local::Matrix(place);
+        root.local = Local::Matrix(transform);
     }
     scene.nodes.extend(nodes);
     scene.roots.push(scene.nodes.len().saturating_sub(1));
@@ -402,9 +402,10 @@ fn hang(scene: &mut Scene, lamp: &Lamp) {
 }
 
 /// Transform in single precision.
-fn single(place: &DAffine3) -> Affine3A {
-    let [x, y, z] = [place.matrix3.x_axis, place.matrix3.y_axis, place.matrix3.z_axis].map(DVec3::as_vec3a);
-    Affine3A { matrix3: glam::Mat3A::from_cols(x, y, z), translation: place.translation.as_vec3a() }
+fn single(transform: &DAffine3) -> Affine3A {
+    let [x, y, z] =
+        [transform.matrix3.x_axis, transform.matrix3.y_axis, transform.matrix3.z_axis].map(DVec3::as_vec3a);
+    Affine3A { matrix3: glam::Mat3A::from_cols(x, y, z), translation: transform.translation.as_vec3a() }
 }
 
 /// Nearest `f32`, within its range.

@@ -58,9 +58,9 @@ impl Model {
     /// ```
     pub fn transforms(&self) -> impl Iterator<Item = DAffine3> + use<'_> {
         let [nx, ny, nz] = self.repeat.count;
-        (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z]))).map(|place| {
+        (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z]))).map(|index| {
             #[expect(clippy::arithmetic_side_effects, reason = "of floats: at most 1e7 + 65536 * 1e7")]
-            let moved = self.translation + self.repeat.step * DVec3::from_array(place.map(f64::from));
+            let moved = self.translation + self.repeat.step * DVec3::from_array(index.map(f64::from));
             DAffine3::from_scale_rotation_translation(self.scale, self.rotation, moved)
         })
     }

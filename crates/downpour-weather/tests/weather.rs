@@ -141,13 +141,13 @@ fn every_key_arrives_in_si() {
     let [street, lamp] = weather.models.as_slice() else { panic!("{:?}", weather.models) };
     assert_eq!((street.file.as_str(), street.animation.as_deref()), ("models/street.glb", Some("Swing")));
     assert_eq!(street.repeat, Repeat { count: [2, 1, 3], step: DVec3::new(4.0, 0.0, 5.0) });
-    let places: Vec<DVec3> =
+    let copies: Vec<DVec3> =
         street.transforms().map(|t| t.transform_point3(DVec3::new(1.0, 1.0, 0.0))).collect();
     // (1, 1, 0) scaled to (1, 2, 0), turned to (0, 2, -1), moved to (1, 4, 2); then along x first.
-    assert_eq!(places.len(), 6);
-    assert!(places[0].distance(DVec3::new(1.0, 4.0, 2.0)) < 1e-15, "{places:?}");
-    assert!(places[1].distance(DVec3::new(5.0, 4.0, 2.0)) < 1e-15, "{places:?}");
-    assert!(places[2].distance(DVec3::new(1.0, 4.0, 7.0)) < 1e-15, "{places:?}");
+    assert_eq!(copies.len(), 6);
+    assert!(copies[0].distance(DVec3::new(1.0, 4.0, 2.0)) < 1e-15, "{copies:?}");
+    assert!(copies[1].distance(DVec3::new(5.0, 4.0, 2.0)) < 1e-15, "{copies:?}");
+    assert!(copies[2].distance(DVec3::new(1.0, 4.0, 7.0)) < 1e-15, "{copies:?}");
     assert_eq!(
         (lamp.scale, lamp.rotation, lamp.repeat),
         (DVec3::splat(2.0), DQuat::IDENTITY, Repeat::default())

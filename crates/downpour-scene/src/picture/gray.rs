@@ -22,10 +22,10 @@ pub struct Gray16 {
 /// [`SceneError`]: the bytes are not a PNG, are truncated or damaged, have color or alpha, or exceed the budget.
 pub fn decode_gray16(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<Gray16, SceneError> {
     let read = || {
-        const GREY: &str = "a PNG image with one channel";
+        const GRAY: &str = "a PNG image with one channel";
         let kind = Kind::of(bytes)?;
         if kind != Kind::Png {
-            return Err(SceneError::bad("", kind.name(), GREY));
+            return Err(SceneError::bad("", kind.name(), GRAY));
         }
         kind.check_name(name)?;
         let image = guarded(|| raster::open(bytes, ImageFormat::Png, budget, cost))?;
@@ -35,7 +35,7 @@ pub fn decode_gray16(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<Gr
             DynamicImage::ImageLuma8(gray) => {
                 gray.into_raw().into_iter().map(|v| u16::from_ne_bytes([v, v])).collect()
             }
-            other => return Err(SceneError::bad("header", format!("{:?} pixels", other.color()), GREY)),
+            other => return Err(SceneError::bad("header", format!("{:?} pixels", other.color()), GRAY)),
         };
         Ok(Gray16 { width, height, values })
     };
