@@ -1,4 +1,4 @@
-//! Downpour held against other renderers, and against the figures of papers.
+//! Comparison of Downpour with other renderers, and with the figures of papers.
 
 mod figures;
 mod quantity;

@@ -1,4 +1,4 @@
-//! `cargo xtask truth`: the drop of `downpour specimen` held against Mitsuba 3, which knows nothing of us but the mesh,
+//! `cargo xtask truth`: the drop of `downpour specimen` compared with Mitsuba 3, which shares with us only the mesh,
 //! the sky map and the camera.
 //!
 //! Aim: inside the silhouette, a mean FLIP of at most 0.03 and a mean luminance within 2 %. FLIP is LDR-FLIP
@@ -8,11 +8,11 @@
 //! The mesh is fine enough: at 5 mm, mean FLIP is 0.019, 0.0071, 0.0034, 0.0027 and 0.0027 with 4 to 8 subdivisions of the
 //! icosahedron. Each case has its negative control: our picture mirrored has to be above the aim.
 //!
-//! Streaks (`streaks`) are held against the mean of Mitsuba's pictures of their instants, before the same maps and under lamps:
+//! Streaks (`streaks`) are compared with the mean of Mitsuba's pictures of their instants, before the same maps and under lamps:
 //! back-lit at 20 degrees from the axis, and from beside.
 //!
 //! Mitsuba and FLIP come from `PyPI` into `target/truth/venv` (pinned in `truth/requirements.txt`), so that the task needs
-//! the network once, and is no part of the tests. Everything that it writes is under `target/truth`.
+//! the network once, and is not one of the tests. All its output is under `target/truth`.
 
 mod cases;
 mod mesh;
@@ -33,7 +33,7 @@ use mitsuba::Mitsuba;
 pub(crate) use options::Options;
 use report::{Outcome, Report};
 
-/// Renders every case twice, compares, writes the report, and says what is above the aim.
+/// Renders every case twice, compares, writes the report, and lists the cases above the aim.
 pub(crate) fn run(options: &Options) -> Result<(), String> {
     let folder = run::root().join("target/truth");
     create(&folder)?;
@@ -96,7 +96,7 @@ fn compare(
     Outcome::read(&values).map_err(|message| format!("{name}: {message}"))
 }
 
-/// Draws the case with the command that is held against Mitsuba.
+/// Draws the case with the command under test.
 fn specimen(case: &Case<'_>, program: &Path, output: &Path, size: u32) -> Result<(), String> {
     let status = run::command(&program.display().to_string(), &["specimen", "--backend", "cpu", "--quiet"])
         .args(["--overwrite", "--diameter", &case.diameter_mm.to_string()])
@@ -115,7 +115,7 @@ fn specimen(case: &Case<'_>, program: &Path, output: &Path, size: u32) -> Result
     }
 }
 
-/// The command that is held against Mitsuba: the one given, or the one of this tree, built.
+/// Command under test: the one given, or the one of this tree, built.
 fn command(options: &Options) -> Result<PathBuf, String> {
     if let Some(given) = &options.command {
         return std::path::absolute(given).map_err(|error| format!("{}: {error}", given.display()));

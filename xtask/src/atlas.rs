@@ -1,5 +1,5 @@
-//! assets/streaks: what `cargo xtask atlas` writes and `--check` compares, byte for byte; the Columbia database in the
-//! same form.
+//! assets/streaks: written by `cargo xtask atlas` and compared by `--check`, byte for byte; the Columbia database in the
+//! same format.
 
 mod columbia;
 mod sheet;
@@ -14,19 +14,19 @@ const USAGE: &str = "\
 cargo xtask atlas [--check] [--quick]              write assets/streaks, or compare it; --quick: one set of it
 cargo xtask atlas --columbia FOLDER WIDTH OUTPUT   the Columbia database's streaks of 4, 8, 16 or 32 columns as KTX2";
 
-/// Diameters in millimeters. Between 1 and 4 mm a drop goes from a sphere to a bun, which moves its bows, most of all from 2 mm on;
+/// Diameters in millimeters. Between 1 and 4 mm a drop changes from a sphere to a bun, which moves its bows, most of all from 2 mm on;
 /// larger ones are rare.
 const DIAMETERS_MM: [f64; 4] = [1.0, 2.0, 2.8, 4.0];
 /// Those that are shown.
 const SHOWN_MM: [f64; 2] = [2.0, 4.0];
-/// Elevations of the viewer in degrees: rain is seen across, from some way below or above.
+/// Elevations of the viewer in degrees: rain is seen horizontally, from below or from above.
 const ELEVATIONS_DEG: [f64; 3] = [-40.0, 0.0, 40.0];
 /// The most bytes that the folder may hold.
 const BUDGET: usize = 4 << 20;
 
 type Asset = (String, Vec<u8>);
 
-/// Does what the arguments say.
+/// Runs the task with its arguments.
 pub(crate) fn run(arguments: &[&str]) -> Result<(), String> {
     match arguments {
         [] => write(false),
@@ -91,7 +91,7 @@ fn write(quick: bool) -> Result<(), String> {
     make(quick)?.iter().try_for_each(|(name, bytes)| publish(&folder, name, bytes))
 }
 
-/// Compares the folder with what the code makes.
+/// Compares the folder with generated files.
 pub(crate) fn check(quick: bool) -> Result<(), String> {
     let mut wrong = Vec::new();
     for (name, bytes) in make(quick)? {
@@ -108,11 +108,11 @@ pub(crate) fn check(quick: bool) -> Result<(), String> {
     }
     let which = if quick { "one of assets/streaks is" } else { "assets/streaks are" };
     if wrong.is_empty() {
-        println!("{which} what the code makes, byte for byte");
+        println!("{which} equal to the generated files, byte for byte");
         Ok(())
     } else {
         Err(format!(
-            "assets/streaks are not what the code makes (cargo xtask atlas):\n  {}",
+            "assets/streaks differ from the generated files (cargo xtask atlas):\n  {}",
             wrong.join("\n  ")
         ))
     }

@@ -22,7 +22,7 @@ const ALONE: &[(&str, &[&str])] = &[
 /// Every test of the workspace, with documentation tests; `all`: and the sweeps that take minutes.
 pub(crate) fn test(all: bool) -> Result<(), String> {
     driver::ensure()?;
-    let runtime = run::runtime()?;
+    let runtime = crate::driver::runtime()?;
     run::cargo(&["test", "--workspace", "--all-features", "--locked"], &[("XDG_RUNTIME_DIR", &runtime)])?;
     mutants::try_sample()?;
     masks::check()?;
@@ -49,7 +49,7 @@ fn sweep() -> Result<(), String> {
     run::cargo(&[&lattice[..], &["--", "--ignored"]].concat(), &[])
 }
 
-/// Formatting, lints, each crate on its own, documentation.
+/// Formatting, lints, each crate separately, documentation.
 pub(crate) fn lint() -> Result<(), String> {
     run::cargo(&["fmt", "--all", "--check"], &[])?;
     let deny = ["--", "-D", "warnings"];

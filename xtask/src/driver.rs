@@ -1,4 +1,4 @@
-//! A Vulkan driver for the tests: found, or installed where that can be done without asking.
+//! Vulkan driver for the tests: found, or installed if that is possible without a prompt.
 
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -8,11 +8,11 @@ use crate::run::command;
 
 /// Debian's packages with a loader and a software driver.
 const PACKAGES: [&str; 2] = ["libvulkan1", "mesa-vulkan-drivers"];
-/// What a person types where we may not.
+/// Command for the user if we may not install.
 const BY_HAND: &str = "sudo apt-get update && sudo apt-get install -y libvulkan1 mesa-vulkan-drivers";
 
-/// Makes sure that there is a Vulkan driver. Without one and with apt at hand as root, installs Debian's software
-/// driver; otherwise says the one command that does. Systems with a GPU interface of their own need none.
+/// Ensures that there is a Vulkan driver. Without one and with apt available as root, installs Debian's software
+/// driver; otherwise prints the command that does. Systems with a different GPU interface need none.
 pub(crate) fn ensure() -> Result<(), String> {
     if !cfg!(target_os = "linux") || std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|v| v == "no") || found() {
         return Ok(());
@@ -29,7 +29,7 @@ pub(crate) fn ensure() -> Result<(), String> {
     if found() { Ok(()) } else { Err("the driver was installed but is not found".to_owned()) }
 }
 
-/// Whether a loader and a driver manifest are there.
+/// True if a loader and a driver manifest exist.
 fn found() -> bool {
     let libraries = ["/usr/lib", "/usr/lib64", "/lib", "/usr/local/lib"];
     let loader = libraries.iter().any(|folder| has_loader(Path::new(folder)));
@@ -64,11 +64,11 @@ fn is_root() -> bool {
     uid.is_ok_and(|out| String::from_utf8_lossy(&out.stdout).trim() == "0")
 }
 
-/// How long another run of the package manager is waited for.
+/// Maximum time to wait for another run of the package manager.
 const PATIENCE: Duration = Duration::from_secs(600);
 const PAUSE: Duration = Duration::from_secs(3);
 
-/// Runs apt-get; while another one holds its lock, waits.
+/// Runs apt-get; waits while another process holds its lock.
 fn apt(arguments: &[&str]) -> Result<(), String> {
     // The option covers the lock of the installed packages; the one of the lists is waited for here.
     let timeout = format!("DPkg::Lock::Timeout={}", PATIENCE.as_secs());
@@ -93,7 +93,7 @@ fn apt(arguments: &[&str]) -> Result<(), String> {
     }
 }
 
-/// The result of the first attempt that no lock stands against, or of the last one after so many pauses.
+/// Result of the first attempt without a lock, or of the last one after all pauses.
 fn patiently(
     pauses: u64,
     mut attempt: impl FnMut() -> Result<Result<(), String>, String>,
@@ -113,7 +113,7 @@ fn patiently(
     attempt()
 }
 
-/// Whether apt-get ended as another process holds a lock.
+/// True if apt-get ended because another process holds a lock.
 fn is_locked(said: &str) -> bool {
     [
         "Could not get lock",
@@ -125,6 +125,13 @@ fn is_locked(said: &str) -> bool {
     .any(|words| said.contains(words))
 }
 
+/// A run-time folder, without which Mesa complains; it needs none of the user's.
+pub(crate) fn runtime() -> Result<String, String> {
+    let folder = crate::run::root().join("target/runtime");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    Ok(folder.display().to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -132,7 +139,7 @@ mod tests {
     const LOCKED: &str = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (apt-get)\n\
         E: Unable to lock directory /var/lib/apt/lists/\n";
 
-    /// Ends as in the list, one after the other: attempts, pauses, and how it ended.
+    /// Ends as in the list, one after the other: attempts, pauses, and the result.
     fn run(ends: &[Result<(), &str>], pauses: u64) -> (usize, usize, Result<(), String>) {
         let (mut attempts, mut waited) = (0, 0);
         let ended = patiently(

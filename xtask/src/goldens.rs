@@ -10,11 +10,11 @@ pub(crate) fn compare() -> Result<(), String> {
     TESTS.iter().try_for_each(|test| run::cargo(&arguments(test), &[]))
 }
 
-/// Writes them. The run then fails on purpose: a new picture counts once a person has looked at it.
+/// Writes them. The run then fails on purpose: a new picture counts once a person has reviewed it.
 pub(crate) fn bless() -> Result<(), String> {
     let mut written = false;
     for test in &TESTS {
-        // A GPU is compared with what is kept; nothing of it is written.
+        // A GPU is compared with the committed files; its pictures are not written.
         let blessed = run::cargo(&arguments(test), &[("DOWNPOUR_BLESS", "1"), ("DOWNPOUR_GPU_TESTS", "no")]);
         written |= blessed.is_err();
     }

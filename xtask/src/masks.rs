@@ -1,4 +1,4 @@
-//! assets/masks: what `cargo xtask masks` writes and `--check` compares, byte for byte.
+//! assets/masks: written by `cargo xtask masks` and compared by `--check`, byte for byte.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use crate::run;
 
 /// Diameters of the texture array in millimetres: the range of natural rain, denser where shape changes fast.
 const ARRAY_MM: [f64; 10] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0];
-/// Texels along an edge of the array's masks. A drop with a mask of its own is a hundred pixels wide at most.
+/// Texels along an edge of the array's masks. A drop drawn with its mask is a hundred pixels wide at most.
 const ARRAY_SIZE: u32 = 128;
 /// Diameters of the single masks: undistorted radii 0.5, 1, 3 and 4.5 mm, of which Rousseau 2006 prints the shapes.
 const SINGLE_MM: [f64; 4] = [1.0, 2.0, 6.0, 9.0];
@@ -63,7 +63,7 @@ pub(crate) fn write() -> Result<(), String> {
     Ok(())
 }
 
-/// Compares the folder with what the code makes.
+/// Compares the folder with generated files.
 pub(crate) fn check() -> Result<(), String> {
     let mut wrong = Vec::new();
     for (name, bytes) in make()? {
@@ -79,11 +79,11 @@ pub(crate) fn check() -> Result<(), String> {
         }
     }
     if wrong.is_empty() {
-        println!("assets/masks are what the code makes, byte for byte");
+        println!("assets/masks are equal to the generated files, byte for byte");
         Ok(())
     } else {
         Err(format!(
-            "assets/masks are not what the code makes (cargo xtask masks):\n  {}",
+            "assets/masks differ from the generated files (cargo xtask masks):\n  {}",
             wrong.join("\n  ")
         ))
     }

@@ -28,7 +28,7 @@ pub(crate) fn try_sample() -> Result<(), String> {
 }
 
 fn program(arguments: &[&str]) -> Result<(), String> {
-    let runtime = run::runtime()?;
+    let runtime = crate::driver::runtime()?;
     let cargo =
         ["run", "--quiet", "--locked", "-p", "downpour-tests", "--all-features", "--bin", "mutants", "--"];
     run::cargo(&[&cargo[..], arguments].concat(), &[("XDG_RUNTIME_DIR", &runtime)])

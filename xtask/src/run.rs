@@ -1,4 +1,4 @@
-//! Child processes and places of the workspace.
+//! Child processes and paths of the workspace.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -9,13 +9,6 @@ pub(crate) fn root() -> PathBuf {
     here.parent().map_or_else(|| PathBuf::from("."), PathBuf::from)
 }
 
-/// A run-time folder, without which Mesa complains; it needs none of the user's.
-pub(crate) fn runtime() -> Result<String, String> {
-    let folder = root().join("target/runtime");
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    Ok(folder.display().to_string())
-}
-
 /// A command that runs in the root of the workspace.
 pub(crate) fn command(program: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
@@ -23,7 +16,7 @@ pub(crate) fn command(program: &str, arguments: &[&str]) -> Command {
     command
 }
 
-/// Runs cargo and says which call failed.
+/// Runs cargo and names the call that failed.
 pub(crate) fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), String> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     println!("$ cargo {}", arguments.join(" "));

@@ -96,7 +96,7 @@ fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     std::fs::rename(&part, path)
 }
 
-/// Compares the folder with what the code makes.
+/// Compares the folder with generated files.
 pub(crate) fn check() -> Result<(), String> {
     let (folder, assets) = (folder(), make()?);
     let mut wrong = Vec::new();
@@ -112,17 +112,17 @@ pub(crate) fn check() -> Result<(), String> {
     wrong
         .extend(strangers(&folder, &assets)?.iter().map(|name| format!("{name}: the code does not make it")));
     if wrong.is_empty() {
-        println!("assets/scenes/street is what the code makes, byte for byte");
+        println!("assets/scenes/street is equal to the generated files, byte for byte");
         Ok(())
     } else {
         Err(format!(
-            "assets/scenes/street is not what the code makes (cargo xtask scenes):\n  {}",
+            "assets/scenes/street differs from the generated files (cargo xtask scenes):\n  {}",
             wrong.join("\n  ")
         ))
     }
 }
 
-/// Files beneath the folder that are no assets.
+/// Files inside the folder that are not assets.
 fn strangers(folder: &Path, assets: &[Asset]) -> Result<Vec<String>, String> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];

@@ -18,12 +18,12 @@ use crate::{
     StreakOptions, StreakOscillation, StreakSet, amount_directions, amount_elevations, read_streaks,
 };
 
-/// The most diameters, and the most elevations, of an atlas.
-pub const MOST_SETS: usize = 9;
-/// The largest file that is read, in bytes.
-const LARGEST_FILE: u64 = 64 << 20;
+/// Maximum number of diameters, and of elevations, of an atlas.
+pub const MAX_SETS: usize = 9;
+/// Maximum size of a file that is read, in bytes.
+const MAX_FILE_BYTES: u64 = 64 << 20;
 
-/// How a particle gets its streak.
+/// Choice of a particle's streak among the oscillations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StreakPick {
     /// By diameter and by the directions of light and viewer, interpolated; the oscillation by chance.
@@ -33,7 +33,7 @@ pub enum StreakPick {
     Random,
 }
 
-/// What the atlas has to know of a drop.
+/// State of a drop for the choice of its streak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreakParticle {
     /// Equivalent diameter in metres.
@@ -80,7 +80,7 @@ impl StreakAtlas {
         for path in names {
             let told = |error: std::io::Error| unreadable(&path, error.to_string());
             let about = std::fs::metadata(&path).map_err(told)?;
-            if !about.is_file() || about.len() > LARGEST_FILE {
+            if !about.is_file() || about.len() > MAX_FILE_BYTES {
                 let found = format!("{} bytes", about.len());
                 return Err(AtlasError::File { place: "file", found, allowed: "a file of at most 64 MiB" }
                     .in_file(&path));
@@ -111,7 +111,7 @@ impl StreakAtlas {
         Self::from_sets(sets)
     }
 
-    /// Puts sets together. Sets of one diameter keep their order.
+    /// Combines sets to an atlas. Sets of one diameter keep their order.
     ///
     /// # Errors
     /// [`AtlasError::File`] if there are none, if they differ in size, extent, elevations or directions, or if a
@@ -144,7 +144,7 @@ impl StreakAtlas {
             let found = format!("{} at {} mm", short.len(), short[0].diameter * 1.0e3);
             return Err(wrong("oscillations", found, "as many as at every other diameter"));
         }
-        if groups.len() > MOST_SETS {
+        if groups.len() > MAX_SETS {
             return Err(wrong("diameters", groups.len().to_string(), "1 to 9"));
         }
         let diameters: Vec<f64> = groups.iter().map(|group| group[0].diameter).collect();
@@ -192,7 +192,7 @@ impl StreakAtlas {
         all
     }
 
-    /// The same, with another way to pick a particle's streak.
+    /// Returns the atlas with another way to choose a particle's streak.
     #[must_use]
     pub fn with_pick(mut self, pick: StreakPick) -> Self {
         self.frame.pick = match pick {
@@ -202,7 +202,7 @@ impl StreakAtlas {
         self
     }
 
-    /// The same, with another seed for what chance decides.
+    /// Returns the atlas with another seed for random choices.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.frame.seed = seed_words(seed);
@@ -222,7 +222,7 @@ impl StreakAtlas {
         AtlasData { frame, triangles, texels, amounts }
     }
 
-    /// Layers of the whole atlas.
+    /// Number of layers of the atlas.
     #[must_use]
     pub fn layers(&self) -> usize {
         self.sets.iter().map(StreakSet::layers).sum()
@@ -235,7 +235,7 @@ impl StreakAtlas {
         atlas_lookup_place(&self.data(), drop.id, drop.diameter, drop.axis, light, view)
     }
 
-    /// The radiance of a place, in 1/sr for an irradiance of 1, while the drop moves on by its diameter: `across`
+    /// Radiance at a position in the atlas, in 1/sr for an irradiance of 1, during a fall by one diameter: `across`
     /// equivalent radii to the right of the middle, `turns` of the mode (2,0) along.
     #[must_use]
     pub fn radiance(&self, place: &AtlasPlace, across: f32, turns: f32) -> f32 {
@@ -255,8 +255,8 @@ fn layer_amounts(set: &StreakSet) -> Vec<f32> {
     set.texels.chunks_exact(texels).map(|layer| (scale * sum(layer)) as f32).collect()
 }
 
-/// The layers over their amounts, two half floats a word. A layer without light is even: so the mean of any mixture is that of an
-/// even disc.
+/// Layers divided by their amounts, two half floats per word. A layer without light is uniform: so the mean of any mixture is
+/// that of a uniform disc.
 fn patterns(sets: &[StreakSet], means: &[f32]) -> Vec<u32> {
     let layers = sets.iter().flat_map(|set| {
         let even = std::f64::consts::FRAC_PI_4 / set.options.half_extent;
@@ -276,15 +276,15 @@ fn patterns(sets: &[StreakSet], means: &[f32]) -> Vec<u32> {
 /// The gaps between ascending nodes, as `atlas_position` takes them.
 fn gaps(nodes: &[f64]) -> [[f32; 4]; 4] {
     let mut gaps = [[0.0; 4]; 4];
-    for (k, pair) in nodes.windows(2).enumerate().take(MOST_SETS - 1) {
+    for (k, pair) in nodes.windows(2).enumerate().take(MAX_SETS - 1) {
         gaps[k / 4][k % 4] = pair[0] as f32;
-        // By the ends as they are stored: at the next node the position is a whole number.
+        // From the stored ends: at the next node the position is an integer.
         gaps[2 + k / 4][k % 4] = 1.0 / (pair[1] as f32 - pair[0] as f32);
     }
     gaps
 }
 
-/// The frame and the triangles of sets like this one.
+/// Frame and triangles of sets like this one.
 fn lay_out(
     set: &StreakSet,
     diameters: &[f64],

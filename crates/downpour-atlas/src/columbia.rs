@@ -5,14 +5,14 @@
 //! light from -90 to 90 degrees of elevation and 10 to 170 degrees of azimuth, all in steps of 20; ten oscillations. Its
 //! folders are
 //!
-//! > point_light_database/size{N}/dcam{EE}/cv{E}_v{V}_h{H}_osc{K}.png   (16 bits, grey, N columns)
+//! > point_light_database/size{N}/dcam{EE}/cv{E}_v{V}_h{H}_osc{K}.png   (16 bits, gray, N columns)
 //! > point_light_database/txt/dcam{EE}_point_max.txt                    (a brightness for each picture)
 //!
 //! with N of 4, 8, 16 or 32. For light from straight above or below there is one azimuth. A picture is scaled to its
-//! own maximum; the text file has lines `cvE`, `vV`, and `hH` with a number for each oscillation. Ambient light
-//! (`env_light_database`) is not taken: refraction masks do that.
+//! maximum; the text file has lines `cvE`, `vV`, and `hH` with a number for each oscillation. Ambient light
+//! (`env_light_database`) is not imported: refraction masks replace it.
 //!
-//! What the files do not tell is decided here: pictures show a passage from top to bottom; a column is 133 mm (8 m/s
+//! Conventions that the files do not define: pictures show a passage from top to bottom; a column is 133 mm (8 m/s
 //! for 1/60 s) over 525 rows of 16 columns, so that half a picture is 1.27 radii; the side of the azimuths on which
 //! streaks are brighter has the light behind the drop; brightness has no unit. Amplitudes are written as 0.
 //!
@@ -46,9 +46,9 @@ const NAMED: usize = 5;
 /// The highest picture that is taken.
 const TALLEST: u32 = 4096;
 
-/// A grey picture of 16 bits, rows from the top.
+/// A grayscale picture of 16 bits, rows from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct GreyPicture {
+pub struct GrayPicture {
     /// Columns.
     pub width: u32,
     /// Rows.
@@ -57,22 +57,22 @@ pub struct GreyPicture {
     pub values: Vec<u16>,
 }
 
-/// Where the files of the database come from. Names are relative to its folder, with `/`.
+/// Source of the files of the database. Names are relative to its folder, with `/`.
 pub trait ColumbiaFiles {
-    /// What can go wrong with a file.
+    /// Error of reading a file.
     type Error: From<AtlasError>;
 
-    /// A text file; `None` if there is none of this name.
+    /// Reads a text file; `None` if it does not exist.
     ///
     /// # Errors
     /// If it is there and cannot be read.
     fn text(&mut self, name: &str) -> Result<Option<String>, Self::Error>;
 
-    /// A picture; `None` if there is none of this name.
+    /// Reads a picture; `None` if it does not exist.
     ///
     /// # Errors
     /// If it is there and cannot be read.
-    fn picture(&mut self, name: &str) -> Result<Option<GreyPicture>, Self::Error>;
+    fn picture(&mut self, name: &str) -> Result<Option<GrayPicture>, Self::Error>;
 }
 
 /// Name of the picture of a viewer, a light and an oscillation.
@@ -89,7 +89,7 @@ pub fn brightness_name(view: i32) -> String {
     format!("point_light_database/txt/dcam{view:02}_point_max.txt")
 }
 
-/// A light of the database: elevation, and the azimuths under which it may stand.
+/// Lights of the database: elevation and the azimuths at it.
 fn lights() -> impl Iterator<Item = (i32, &'static [i32])> {
     LIGHT_ELEVATIONS.iter().flat_map(|&v| {
         let single: Vec<&[i32]> = if v.abs() == 90 {
@@ -244,9 +244,9 @@ fn wrong(name: &str, place: &'static str, found: String, allowed: &'static str) 
     AtlasError::File { place, found, allowed }.in_file(name.as_ref())
 }
 
-/// The picture with `rows` rows, each the mean of what it covers; 1 is the brightest value.
-fn resampled(name: &str, picture: &GreyPicture, width: u32, rows: u32) -> Result<Vec<f64>, AtlasError> {
-    let GreyPicture { width: found, height, values } = picture;
+/// Picture resampled to `rows` rows, each the mean of the rows it covers; 1 is the brightest value.
+fn resampled(name: &str, picture: &GrayPicture, width: u32, rows: u32) -> Result<Vec<f64>, AtlasError> {
+    let GrayPicture { width: found, height, values } = picture;
     let whole = values.len() == *found as usize * *height as usize;
     if *found != width || !(1..=TALLEST).contains(height) || !whole {
         let found = format!("{found} x {height} pixels");

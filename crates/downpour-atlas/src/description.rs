@@ -1,4 +1,4 @@
-//! What a file of streaks says about them: `key=value` pairs, separated by semicolons.
+//! Description in a streak file: `key=value` pairs, separated by semicolons.
 
 use crate::AtlasError;
 use crate::{StreakOptions, StreakOrigin, StreakOscillation, StreakSet};
@@ -10,7 +10,7 @@ const PLACE: &str = "key DownpourStreaks";
 const PAIRS: &str = "version, origin, diameter_mm, amplitudes, phase, azimuth_deg, elevation_deg, half_extent, \
                      light_radius_deg, refractive_index, rays, directions, digest";
 
-/// FNV-1a, 64 bits: finds accidents, not intent.
+/// FNV-1a hash, 64 bits: detects accidents, not intent.
 fn digest(parts: &[&[u8]]) -> u64 {
     parts.iter().flat_map(|part| part.iter()).fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
@@ -24,7 +24,7 @@ pub(crate) fn write(set: &StreakSet, texels: &[u8], amounts: &[u8]) -> String {
         StreakOrigin::Traced => "traced",
         StreakOrigin::Columbia => "columbia",
     };
-    // A list that all elevations share stands there once. Six decimals keep a direction to a millionth.
+    // A list that is the same at all elevations is written once. Six decimals keep a direction to a millionth.
     let shared = set.directions.windows(2).all(|pair| pair[0] == pair[1]);
     let written = if shared { &set.directions[..set.directions.len().min(1)] } else { &set.directions[..] };
     let directions =
@@ -71,7 +71,7 @@ pub(crate) fn read(
     }
     let made = format!("{:016x}", digest(&[rest.as_bytes(), texels, amounts]));
     if sum != made {
-        return Err(wrong("digest of the streaks", sum, "the digest of what is in the file"));
+        return Err(wrong("digest of the streaks", sum, "the digest of the file's contents"));
     }
     let numbers = |key: &str| -> Result<Vec<f64>, AtlasError> {
         value(key)?

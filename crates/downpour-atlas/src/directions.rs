@@ -1,7 +1,7 @@
 //! Directions of light, and the frame of a streak.
 //!
-//! The committed directions stand on rings about the line of sight, so that a ring is one scattering angle: 0 is light
-//! from behind the drop, 180 degrees light from the viewer. What a sphere scatters depends on that angle alone.
+//! The committed directions lie on rings around the line of sight, so that a ring is one scattering angle: 0 is light
+//! from behind the drop, 180 degrees light from the viewer. Scattering by a sphere depends on that angle alone.
 
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::atlas::{ATLAS_GRID, ATLAS_RISE_LIMIT, ATLAS_RISES};
@@ -31,7 +31,7 @@ pub fn light_directions() -> Vec<[f64; 3]> {
     all
 }
 
-/// The directions towards the light for which the amount of a streak is stored, in the frame of the streak, x >= 0: `ATLAS_GRID`
+/// Directions towards the light for which the amount of a streak is stored, in the frame of the streak, x >= 0: `ATLAS_GRID`
 /// columns times as many rows, rows along z, columns along y.
 ///
 /// Node (i, k) is the direction whose point (y, z) / (1 + x) is (i, k) in cells of the square from -1 to 1. The disc holds all

@@ -1,11 +1,11 @@
 //! A set of streaks as a KTX2 texture array.
 //!
 //! Format `R16_SFLOAT`, one level, ZLIB supercompression. Layer `e D + d` of D directions is the streak at elevation e
-//! and direction d; rows from the top, which is the order of time. The key `DownpourStreaks` holds what the streaks are
-//! of, their directions, and a digest of itself, the texels and the amounts. The key `DownpourStreakAmounts` holds the amounts:
-//! half floats, the low byte first, 25 elevations of 41 rows of 41. A set without amounts has no such key.
+//! and direction d; rows from the top, which is the order of time. The key `DownpourStreaks` holds the parameters of the
+//! streaks, their directions, and a digest of itself, the texels and the amounts. The key `DownpourStreakAmounts` holds the
+//! amounts: half floats, little-endian, 25 elevations of 41 rows of 41. A set without amounts has no such key.
 //!
-//! Reading takes what this module writes, and checks every size before it takes memory.
+//! The reader accepts files of this module's writer, and checks every size before it allocates memory.
 
 use half::f16;
 use ktx2::{Format, Header, LevelIndex, SupercompressionScheme};
@@ -21,10 +21,10 @@ const TEXEL_BYTES: usize = 2;
 /// The keys, in the order of their bytes.
 const AMOUNTS_KEY: &str = "DownpourStreakAmounts";
 const STREAKS_KEY: &str = "DownpourStreaks";
-/// The most layers of a texture array on common GPUs; WebGPU promises 256.
-const MOST_LAYERS: u32 = 2048;
-/// The most that the texels of a file may need, in bytes.
-const MOST_BYTES: u64 = 64 << 20;
+/// Maximum number of layers of a texture array on common GPUs; WebGPU guarantees 256.
+const MAX_LAYERS: u32 = 2048;
+/// Maximum memory for the texels of a file, in bytes.
+const MAX_BYTES: u64 = 64 << 20;
 
 /// A set as the bytes of a KTX2 file. The same set gives the same bytes on every machine.
 ///
@@ -49,8 +49,8 @@ pub fn write_streaks(set: &StreakSet) -> Result<Vec<u8>, AtlasError> {
 /// Reads a set that [`write_streaks`] has written.
 ///
 /// # Errors
-/// [`AtlasError::File`] with the part of the file and what was found: it is cut, no file of streaks, of another version,
-/// too large, or holds numbers that are none.
+/// [`AtlasError::File`] with the part of the file and what was found: it is truncated, not a streak file, of another version,
+/// too large, or holds values that are not numbers.
 pub fn read_streaks(bytes: &[u8]) -> Result<StreakSet, AtlasError> {
     let truncated = |place| file(place, format!("a file of {} bytes", bytes.len()), "a complete KTX2 file");
     let header: &[u8; Header::LENGTH] = bytes.first_chunk().ok_or_else(|| truncated("header"))?;
@@ -99,7 +99,7 @@ fn file(place: &'static str, found: String, allowed: &'static str) -> AtlasError
 fn check_size(columns: u32, rows: u32, layers: u32) -> Result<usize, AtlasError> {
     let bytes = u64::from(columns) * u64::from(rows) * u64::from(layers) * TEXEL_BYTES as u64;
     // Each factor is checked first: the product of three of them fits 64 bits.
-    let fits = columns <= 256 && rows <= 4096 && (1..=MOST_LAYERS).contains(&layers) && bytes <= MOST_BYTES;
+    let fits = columns <= 256 && rows <= 4096 && (1..=MAX_LAYERS).contains(&layers) && bytes <= MAX_BYTES;
     match usize::try_from(bytes) {
         Ok(bytes) if fits && bytes > 0 => Ok(bytes),
         _ => {

@@ -35,7 +35,7 @@ pub struct GpuAtlas {
     pub frame: wgpu::Buffer,
     /// [`AtlasTriangle`](crate::lookup::AtlasTriangle)s.
     pub triangles: wgpu::Buffer,
-    /// Patterns, two half floats a word.
+    /// Patterns, two half floats per word.
     pub texels: wgpu::Buffer,
     /// Amounts.
     pub amounts: wgpu::Buffer,
@@ -45,7 +45,7 @@ impl GpuAtlas {
     /// Hands an atlas over.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// [`GpuError`] of the device.
     pub fn new(gpu: &Gpu, atlas: &StreakAtlas) -> Result<Self, GpuError> {
         let data = atlas.data();
         Ok(Self {
@@ -56,10 +56,10 @@ impl GpuAtlas {
         })
     }
 
-    /// The radiances of points of streaks: what [`StreakAtlas::place`] and [`StreakAtlas::radiance`] give.
+    /// Radiances of points of streaks, as [`StreakAtlas::place`] and [`StreakAtlas::radiance`] return them.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// [`GpuError`] of the device.
     pub fn query(&self, gpu: &Gpu, queries: &[AtlasQuery]) -> Result<Vec<f32>, GpuError> {
         let kernel = ComputeKernel::new(gpu, &atlas::ATLAS_QUERY_KERNEL, &[])?;
         let asked = gpu.storage_buffer("atlas queries", queries)?;

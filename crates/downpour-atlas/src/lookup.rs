@@ -1,11 +1,11 @@
 //! Looking up a streak: twins of `shaders/wgsl/atlas/atlas.wgsl` and `lookup.wgsl`.
 //!
-//! A light is turned into the frame of the streak and mapped to the plane of the triangles (see `triangles`). From the
-//! elevation's first triangle the walk goes over the edge that the point is farthest beyond, until it is in a triangle
+//! A light is rotated into the frame of the streak and mapped to the plane of the triangles (see `triangles`). From the
+//! elevation's first triangle the walk crosses the edge that the point is farthest beyond, until it is in a triangle
 //! or at the rim; at the rim, weights below 0 count as 0.
 //!
 //! The three directions are those of the pattern; the amount is interpolated in dense grids over the same plane, which have
-//! elevations of their own. Both are linear between neighboring elevations, by their sine, and between neighboring diameters, by their
+//! separate elevations. Both are linear between neighboring elevations, by their sine, and between neighboring diameters, by their
 //! logarithm.
 
 use bytemuck::{Pod, Zeroable};
@@ -17,7 +17,7 @@ use downpour_shaders::atlas::{
     ATLAS_STEPS, ATLAS_TINY,
 };
 
-/// What a shader has to know of an atlas: the WGSL struct of the same name, 224 bytes.
+/// Parameters of an atlas for shaders: the WGSL struct of the same name, 224 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct AtlasFrame {
@@ -36,7 +36,7 @@ pub struct AtlasFrame {
     /// Not used.
     pub unused: u32,
     /// Gaps between neighboring diameters, up to eight: the lower end, the logarithm to base 2 of meters; then 1 / the width of
-    /// each gap. 0 where there is no gap.
+    /// each gap. 0 for unused gaps.
     pub diameters: [[f32; 4]; 4],
     /// Gaps between neighboring elevations, by their sines, in the same form.
     pub elevations: [[f32; 4]; 4],
@@ -44,11 +44,11 @@ pub struct AtlasFrame {
     pub first: [[u32; 4]; 3],
 }
 
-/// Three directions and what is next to them: the WGSL struct of the same name, 64 bytes.
+/// A triangle of three directions and its neighbors: the WGSL struct of the same name, 64 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct AtlasTriangle {
-    /// Places of the corners in the map, counter-clockwise.
+    /// Positions of the corners in the map, counter-clockwise.
     pub a: [f32; 2],
     /// The second.
     pub b: [f32; 2],
@@ -66,7 +66,7 @@ pub struct AtlasTriangle {
     pub unused_2: u32,
 }
 
-/// Where a streak is in the atlas: the WGSL struct of the same name, 48 bytes.
+/// Position of a streak in the atlas: the WGSL struct of the same name, 48 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct AtlasPlace {
@@ -100,15 +100,15 @@ pub struct AtlasData<'a> {
     pub frame: &'a AtlasFrame,
     /// Triangles of all elevations.
     pub triangles: &'a [AtlasTriangle],
-    /// Patterns, two half floats each, the first in the low bits: layers, rows, columns. A texel is how many times as bright it
-    /// is as a disc of even light with the streak's amount.
+    /// Patterns, two half floats each, the first in the low bits: layers, rows, columns. A texel is the ratio of its brightness to
+    /// that of a uniform disc with the streak's amount.
     pub texels: &'a [u32],
     /// Amounts: diameters, oscillations, elevations of the grids, rows, columns; then that of each layer.
     pub amounts: &'a [f32],
 }
 
-/// `light` in the frame of the streak of a drop with this axis. All are unit vectors; if the viewer looks along the
-/// axis, any of the possible frames is taken.
+/// Direction `light` in the frame of the streak of a drop with this axis. All are unit vectors; if the viewer looks along
+/// the axis, any of the possible frames is used.
 #[must_use]
 pub fn atlas_light(light: [f32; 3], view: [f32; 3], axis: [f32; 3]) -> [f32; 3] {
     let along = dot(axis, view);
@@ -123,7 +123,7 @@ pub fn atlas_light(light: [f32; 3], view: [f32; 3], axis: [f32; 3]) -> [f32; 3] 
     [dot(light, x), dot(light, y), dot(light, view)]
 }
 
-/// The place of a direction in the map: (y, z) / (1 + |x|).
+/// Position of a direction in the map: (y, z) / (1 + |x|).
 #[must_use]
 pub fn atlas_map(direction: [f32; 3]) -> [f32; 2] {
     let below = 1.0 / (1.0 + direction[0].abs());
@@ -131,7 +131,7 @@ pub fn atlas_map(direction: [f32; 3]) -> [f32; 2] {
 }
 
 /// Position of a value among up to nine ascending nodes: 0 at the first, 1 at the second, linear in between, constant beyond the
-/// ends. `low` and `high` are the lower ends of the gaps between nodes, the others 1 / their widths, 0 where there is no gap.
+/// ends. `low` and `high` are the lower ends of the gaps between nodes, the others 1 / their widths, 0 for unused gaps.
 #[must_use]
 pub fn atlas_position(
     low: [f32; 4],
@@ -170,7 +170,7 @@ pub fn atlas_corner(size: f32, rise: f32, corner: u32) -> f32 {
     (if corner & 1 == 1 { size } else { 1.0 - size }) * (if corner & 2 == 2 { rise } else { 1.0 - rise })
 }
 
-/// Shares of the corners a, b, c in a point of the map; together 1, below 0 beyond the opposite edge.
+/// Barycentric weights of the corners a, b, c at a point of the map; their sum is 1, a weight is below 0 beyond the opposite edge.
 #[must_use]
 pub fn atlas_weights(a: [f32; 2], b: [f32; 2], c: [f32; 2], point: [f32; 2]) -> [f32; 3] {
     let (bx, by) = (b[0] - a[0], b[1] - a[1]);
@@ -190,7 +190,7 @@ pub fn atlas_clamp(weights: [f32; 3]) -> [f32; 3] {
     [a * whole, b * whole, c * whole]
 }
 
-/// One of `count` by chance, by the id of a particle. `which` counts the choices.
+/// Random index below `count`, by the id of a particle. `which` numbers the choices.
 #[must_use]
 pub fn atlas_draw(seed: [u32; 2], id: u32, which: u32, count: u32) -> u32 {
     let [word, ..] = rng_draw(seed, id, which, ATLAS_DIMENSION);
@@ -293,7 +293,7 @@ pub fn atlas_lookup_place(
     }
 }
 
-/// A texel. Columns outside are 0, rows go round.
+/// A texel. Columns outside are 0, rows wrap.
 #[must_use]
 pub fn atlas_lookup_texel(data: &AtlasData<'_>, layer: u32, column: i32, row: i32) -> f32 {
     let [columns, rows] = data.frame.size;
@@ -320,7 +320,7 @@ pub fn atlas_lookup_layer(data: &AtlasData<'_>, layer: u32, across: f32, down: f
     above * (1.0 - y) + below * y
 }
 
-/// The radiance of a place at `across` equivalent radii to the right of the middle, `turns` of the mode (2,0) along.
+/// Radiance at a position in the atlas, `across` equivalent radii to the right of the middle, `turns` of the mode (2,0) along.
 #[must_use]
 pub fn atlas_lookup_radiance(data: &AtlasData<'_>, place: &AtlasPlace, across: f32, turns: f32) -> f32 {
     let frame = data.frame;

@@ -1,16 +1,16 @@
-//! What is asked of an atlas.
+//! Options of an atlas.
 
 use downpour_drop::optics::WATER_INDEX;
 use downpour_drop::oscillation::Amplitudes;
 
 use crate::AtlasError;
 
-/// An oscillation of the atlas: amplitudes, and how the two modes stand to each other and to the viewer.
+/// An oscillation of the atlas: amplitudes and phases of the two modes and azimuth to the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreakOscillation {
     /// Of the modes (2,0) and (3,1), over the radius.
     pub amplitudes: [f64; 2],
-    /// Phase of the mode (3,1) where that of (2,0) is 0, in turns.
+    /// Phase of the mode (3,1) at phase 0 of (2,0), in turns.
     pub phase: f64,
     /// Angle of the lobes of the mode (3,1) about the axis, in radians; 0: in the plane of the picture.
     pub azimuth: f64,
@@ -33,7 +33,7 @@ impl StreakOscillation {
     }
 }
 
-/// How streaks are traced.
+/// Options of the tracer of streaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreakOptions {
     /// Texels across: 2 to 256, even.
@@ -44,7 +44,7 @@ pub struct StreakOptions {
     pub rays: u32,
     /// Half of the width of a streak in equivalent radii. The drops of Garg and Nayar stay within 1.4.
     pub half_extent: f64,
-    /// Where the light ends, in radians from its middle.
+    /// Angular radius of the light, in radians.
     pub light_radius: f64,
     /// Refractive index of water relative to air.
     pub refractive_index: f64,

@@ -1,4 +1,4 @@
-//! Where a viewer's ray goes: the outside reflection, and each ray that leaves the drop.
+//! Path of a viewer's ray: the outside reflection, and each ray that leaves the drop.
 
 use downpour_drop::optics::{optics_fresnel_polarised, optics_reflect, optics_refract};
 use downpour_math::vector::{dot, normalize, scale};
@@ -7,12 +7,12 @@ use crate::surface::Surface;
 
 /// The most reflections inside that are followed. For a sphere they leave 0.1 % of the light.
 pub const INTERNAL: u32 = 4;
-/// Below this share of the light a path is left.
+/// Fraction of the light below which a path is dropped.
 const FAINT: f64 = 1.0e-5;
 
 /// Follows the viewer's ray along `direction` whose point nearest to the drop's origin is `origin`. `light` is called
-/// with each direction in which the ray leaves and the share of unpolarised radiance that comes from there; s and p are
-/// followed apart, as if all planes of incidence were one. Whether the ray meets the drop.
+/// with each direction of exit and the fraction of unpolarized radiance from there; s and p are followed separately, as
+/// if all planes of incidence were one. Returns true if the ray meets the drop.
 pub(crate) fn follow(
     surface: &Surface<'_>,
     index: f64,

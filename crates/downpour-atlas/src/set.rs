@@ -1,4 +1,4 @@
-//! The streaks of one drop and one oscillation: what a file holds.
+//! Streaks of one drop and one oscillation: contents of a file.
 
 use downpour_shaders::atlas::{ATLAS_GRID, ATLAS_RISES};
 use half::f16;
@@ -6,7 +6,7 @@ use half::f16;
 use crate::AtlasError;
 use crate::{StreakOptions, StreakOscillation, StreakTracer, amount_directions, amount_elevations};
 
-/// Where the streaks of a set come from.
+/// Origin of the streaks of a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreakOrigin {
     /// Traced here.
@@ -18,13 +18,13 @@ pub enum StreakOrigin {
 /// The streaks of one drop and one oscillation, over elevations of the viewer and directions of the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StreakSet {
-    /// Where they come from.
+    /// Origin of the streaks.
     pub origin: StreakOrigin,
     /// Equivalent diameter in metres.
     pub diameter: f64,
     /// The oscillation.
     pub oscillation: StreakOscillation,
-    /// How they were traced.
+    /// Options of the tracer.
     pub options: StreakOptions,
     /// Elevations of the viewer above the drop's horizontal plane in radians, ascending.
     pub elevations: Vec<f64>,
@@ -41,12 +41,12 @@ pub struct StreakSet {
 pub(crate) const AMOUNTS: &str = "amounts of streaks (key DownpourStreakAmounts)";
 /// Rows of a streak that is traced for its amount: a tenth of the rays is enough for a mean.
 const AMOUNT_ROWS: u32 = 8;
-/// Below this half floats lose digits, and drivers may take them for 0.
-const SMALLEST: f32 = 6.104e-5;
+/// Smallest normal half float: below it half floats lose digits, and drivers may flush them to 0.
+const MIN_NORMAL_F16: f32 = 6.104e-5;
 
 /// A radiance as it is stored.
 pub(crate) fn stored(radiance: f32) -> f16 {
-    if radiance < SMALLEST { f16::ZERO } else { f16::from_f32(radiance.min(f16::MAX.to_f32())) }
+    if radiance < MIN_NORMAL_F16 { f16::ZERO } else { f16::from_f32(radiance.min(f16::MAX.to_f32())) }
 }
 
 impl StreakSet {
@@ -107,10 +107,10 @@ impl StreakSet {
         if direction < directions { self.texels.get(first..first + self.layer_texels()) } else { None }
     }
 
-    /// Whether the parts belong together.
+    /// Checks that the parts are consistent.
     ///
     /// # Errors
-    /// What is wrong: options, elevations, directions or texels.
+    /// [`AtlasError`] for options, elevations, directions or texels that are wrong.
     pub fn check(&self) -> Result<(), AtlasError> {
         let wrong = |place, found: String, allowed| Err(AtlasError::File { place, found, allowed });
         self.options.check()?;
@@ -118,7 +118,7 @@ impl StreakSet {
         downpour_drop::DropShape::new(self.diameter)?;
         let ascending = self.elevations.windows(2).all(|pair| pair[0] < pair[1]);
         let within = self.elevations.iter().all(|e| (-1.5..=1.5).contains(e));
-        if !(ascending && within && (1..=crate::MOST_SETS).contains(&self.elevations.len())) {
+        if !(ascending && within && (1..=crate::MAX_SETS).contains(&self.elevations.len())) {
             let found = format!("{:?} radians", self.elevations);
             return wrong("elevations of streaks", found, "1 to 9, ascending, within 85 degrees");
         }

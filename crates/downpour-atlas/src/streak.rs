@@ -1,8 +1,8 @@
 //! The streaks of one drop from one elevation, for any number of lights.
 //!
 //! Law: with G(x, Y) the radiance of the picture at a fixed point Y along the streak, integrated over the passage of
-//! the drop, a texel is G over the time in which the drop moves on by two equivalent radii. A point y of the drop is at
-//! Y when the centre is y beyond it, so the row of its centre's phase has to look at the shape of the phase
+//! the drop, a texel is G over the time of a fall by two equivalent radii. A point y of the drop is at
+//! Y when the center is y beyond it, so the row of its center's phase takes the shape at the phase
 //! y a / (v cos(elevation) T) later. a: equivalent radius, v: fall speed, T: period of the mode (2,0).
 //!
 //! The amount of a streak is its light without its pattern: the radiance of a disc of the equivalent radius that sends as much
@@ -24,7 +24,7 @@ use crate::streak_frame;
 use crate::surface::Surface;
 use crate::{StreakOptions, StreakOscillation};
 
-/// Instants of a turn at which the shape is known.
+/// Number of instants per turn at which the shape is known.
 const INSTANTS: u32 = 2048;
 /// The R2 sequence: times of a texel's rays, spread over its row.
 const TIME_STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
@@ -34,7 +34,7 @@ const TIME_STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
 pub struct Streaks {
     /// For each light, `rows * columns` texels, rows in time, columns from left to right.
     pub radiance: Vec<Vec<f32>>,
-    /// Share of the time of two equivalent radii in which the drop covers the texel.
+    /// Fraction of the time of two equivalent radii in which the drop covers the texel.
     pub coverage: Vec<f32>,
 }
 
@@ -199,7 +199,7 @@ impl StreakTracer {
         (sums, amounts)
     }
 
-    /// The frame of the streak among the drop's own axes, whose +X is where the lobes of the mode (3,1) are.
+    /// Frame of the streak in the drop's axes; +X is the direction of the lobes of the mode (3,1).
     fn frame(&self, elevation: f64) -> [[f64; 3]; 3] {
         let (sine, cosine) = (ops::sin(self.oscillation.azimuth), ops::cos(self.oscillation.azimuth));
         streak_frame(elevation).map(|[x, y, z]| [x * cosine - z * sine, y, x * sine + z * cosine])

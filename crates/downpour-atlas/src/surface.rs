@@ -1,4 +1,4 @@
-//! Where a line meets a drop that oscillates.
+//! Intersection of a line with an oscillating drop.
 //!
 //! The surface is |p| = R(p / |p|), with R of `downpour_drop::oscillation`. As in [`downpour_mask::trace`], the gauge squared
 //! G = |p|^2 / R^2 is close to a parabola along a line, and its root is found by Newton steps on that parabola. G is
@@ -13,13 +13,13 @@ use downpour_mask::trace::mask_trace_step;
 
 /// The most Newton steps.
 const STEPS: u32 = 16;
-/// How close G has to be to 1.
+/// Tolerance of G - 1.
 const CLOSE: f64 = 1.0e-9;
-/// A ray must not meet the point that it left: the nearest next one, in radii.
+/// Distance from its start at which a ray is next tested, in radii: it must not meet its starting point.
 const NEAREST: f64 = 1.0e-6;
-/// Steps of the search, and its length in radii: no drop is longer.
+/// Number of steps of the search, and its length in radii: longer than any drop.
 const SEARCH: u32 = 64;
-const LONGEST: f64 = 3.2;
+const MAX_DISTANCE: f64 = 3.2;
 
 /// A drop at one instant, in units of its equivalent radius.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +77,7 @@ impl Surface<'_> {
         None
     }
 
-    /// Where a ray from outside comes in; `origin` is the point of the ray nearest to the drop's origin.
+    /// Entry of a ray from outside; `origin` is the point of the ray nearest to the drop's origin.
     pub(crate) fn enter(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<Meeting> {
         let start = mask_trace_step(dot(origin, origin) - 1.0, dot(origin, direction), 1.0, -1.0);
         self.settle(origin, direction, start, -1.0)
@@ -85,7 +85,7 @@ impl Surface<'_> {
             .filter(|meeting| dot(meeting.normal, direction) < 0.0)
     }
 
-    /// Where a ray that left the surface at `origin` inwards meets it again.
+    /// Next intersection of a ray that enters the drop at `origin`.
     pub(crate) fn leave(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<Meeting> {
         let start = mask_trace_step(dot(origin, origin) - 1.0, dot(origin, direction), 1.0, 1.0);
         let found = self.settle(origin, direction, start, 1.0);
@@ -99,7 +99,7 @@ impl Surface<'_> {
     }
 
     fn search(&self, origin: [f64; 3], direction: [f64; 3]) -> Option<Meeting> {
-        let at = |k: u32| LONGEST * f64::from(k) / f64::from(SEARCH);
+        let at = |k: u32| MAX_DISTANCE * f64::from(k) / f64::from(SEARCH);
         let outside = |distance: f64| self.excess(add_scaled(origin, direction, distance)) > 0.0;
         // From the first inside point on, the first outside one.
         let first = (1..SEARCH).find(|&k| !outside(at(k)))?;

@@ -1,7 +1,7 @@
 //! Light directions as triangles.
 //!
 //! The half sphere x >= 0 is seen from the point (-1, 0, 0) on the plane x = 0: the point (x, y, z) is at
-//! (y, z) / (1 + x). This stereographic map takes circles to circles, so the Delaunay triangulation of the plane is that
+//! (y, z) / (1 + x). This stereographic map sends circles to circles, so the Delaunay triangulation of the plane is that
 //! of the sphere. The plane x = 0 becomes the unit circle, which the triangles fill but for slivers at its rim.
 
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation as _};
@@ -11,7 +11,7 @@ use crate::lookup::{AtlasTriangle, atlas_map};
 use downpour_shaders::atlas::ATLAS_NONE;
 
 struct Corner {
-    place: Point2<f64>,
+    position: Point2<f64>,
     direction: u32,
 }
 
@@ -19,27 +19,27 @@ impl HasPosition for Corner {
     type Scalar = f64;
 
     fn position(&self) -> Point2<f64> {
-        self.place
+        self.position
     }
 }
 
-/// The triangles among the directions. Which is which depends on nothing but the directions.
+/// Triangles among the directions. Their order depends on the directions alone.
 ///
 /// # Errors
-/// [`AtlasError::File`] if two directions are the same, or all stand on one circle.
+/// [`AtlasError::File`] if two directions are the same, or all lie on one circle.
 pub(crate) fn triangulate(directions: &[[f64; 3]]) -> Result<Vec<AtlasTriangle>, AtlasError> {
     const PLACE: &str = "directions of streaks";
     let wrong = |found: String| AtlasError::File {
         place: PLACE,
         found,
-        allowed: "three or more directions that differ and do not stand on one circle",
+        allowed: "three or more directions that differ and do not lie on one circle",
     };
     let mut mesh = DelaunayTriangulation::<Corner>::new();
-    let mut places = Vec::new();
+    let mut positions = Vec::new();
     for (direction, d) in (0..).zip(directions) {
         let [u, v] = atlas_map(d.map(|c| c as f32));
-        places.push([u, v]);
-        mesh.insert(Corner { place: Point2::new(u.into(), v.into()), direction })
+        positions.push([u, v]);
+        mesh.insert(Corner { position: Point2::new(u.into(), v.into()), direction })
             .map_err(|error| wrong(format!("{d:?}: {error}")))?;
     }
     if mesh.num_vertices() != directions.len() {
@@ -49,7 +49,7 @@ pub(crate) fn triangulate(directions: &[[f64; 3]]) -> Result<Vec<AtlasTriangle>,
         .inner_faces()
         .map(|face| {
             let mut found = face.vertices().map(|vertex| vertex.data().direction);
-            // Begin with the smallest, keep the turn.
+            // Start with the smallest index, keep the winding.
             let first = (0..3).min_by_key(|&k| found[k]).unwrap_or(0);
             found.rotate_left(first);
             found
@@ -68,9 +68,9 @@ pub(crate) fn triangulate(directions: &[[f64; 3]]) -> Result<Vec<AtlasTriangle>,
         .iter()
         .enumerate()
         .map(|(k, &[a, b, c])| AtlasTriangle {
-            a: places[a as usize],
-            b: places[b as usize],
-            c: places[c as usize],
+            a: positions[a as usize],
+            b: positions[b as usize],
+            c: positions[c as usize],
             unused: [0.0; 2],
             directions: [a, b, c],
             unused_1: 0,

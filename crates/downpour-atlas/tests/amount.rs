@@ -1,5 +1,5 @@
-//! Amounts of light that lookups in the project's atlas give: against rays traced at the very direction of the light, and in small
-//! steps where a drop moves or grows. And how the light of a drop that oscillates differs from that of a sphere.
+//! Amounts of light of lookups in the project's atlas: against rays traced at the exact direction of the light, and in small
+//! steps as a drop moves or grows; and the difference between the light of an oscillating drop and that of a sphere.
 //!
 //! `cargo test -p downpour-atlas --test amount -- --nocapture` prints the figures.
 
@@ -36,13 +36,13 @@ fn lights() -> Vec<(f64, [f64; 3])> {
     [0.0, 1.0, 0.6].into_iter().flat_map(of_rise).collect()
 }
 
-/// The drop's axis as a viewer sees it who is so many degrees above the drop.
+/// Axis of the drop in the frame of a viewer `degrees` above the drop.
 fn axis(degrees: f64) -> [f32; 3] {
     let angle = degrees.to_radians();
     [0.0, ops::cos(angle) as f32, ops::sin(angle) as f32]
 }
 
-/// Which oscillation a place is of.
+/// Index of the oscillation of an atlas position.
 fn oscillation(place: &AtlasPlace) -> usize {
     let [_, oscillations, elevations, directions] = ATLAS.data().frame.counts;
     (place.layers[0] / (elevations * directions) % oscillations) as usize
@@ -57,14 +57,14 @@ static IDS: LazyLock<Vec<u32>> = LazyLock::new(|| {
     (0..OSCILLATIONS).map(|k| (0..).find(|&id| of(id) == k).unwrap()).collect()
 });
 
-/// A streak of a drop of one of the oscillations, seen from so many degrees above.
+/// Streak of a drop of one of the oscillations, seen from `degrees` above.
 fn place(millimeters: f64, oscillation: usize, degrees: f64, light: [f64; 3]) -> AtlasPlace {
     let drop =
         StreakParticle { diameter: (millimeters * 1.0e-3) as f32, axis: axis(degrees), id: IDS[oscillation] };
     ATLAS.place(&drop, light.map(|c| c as f32), VIEW)
 }
 
-/// The mean over three layers of what they hold: the amount that is interpolated between 41 directions.
+/// Mean over three layers of their amounts: the amount that is interpolated between 41 directions.
 fn of_triangle(place: &AtlasPlace) -> f64 {
     let amounts = ATLAS.data().amounts;
     let means = &amounts[amounts.len() - ATLAS.layers()..];
@@ -125,7 +125,7 @@ fn compared(millimeters: f64, degrees: f64) -> [Ratios; 3] {
 
 /// At diameters of the atlas, and at elevations between those of its grids. The mean over the oscillations is within 10 % for nine
 /// directions of ten; where light falls from a bow into the dark band beside it, linear interpolation is up to 1.8 times too bright.
-/// The mean of three layers, as patterns have it, is far from this: a negative control.
+/// The mean of three layers, as in patterns, is far from this: a negative control.
 #[test]
 fn looked_up_amounts_are_those_of_rays() {
     for millimeters in [1.0, 4.0] {
@@ -170,7 +170,7 @@ fn amounts_are_means_of_streaks() {
     assert!(tracer.amounts(1.5, &lights).unwrap_err().to_string().contains("-80 to 80"));
 }
 
-/// Whatever is mixed, the pattern of a streak adds and takes nothing: the mean of what is looked up is the amount.
+/// For any mixture, the pattern of a streak conserves light: the mean of the looked-up values is the amount.
 #[test]
 fn a_pattern_leaves_the_amount_as_it_is() {
     let frame = ATLAS.data().frame;
@@ -195,7 +195,7 @@ fn a_pattern_leaves_the_amount_as_it_is() {
     }
 }
 
-/// The largest change of an amount, and of a texel over the amount, from one of these places to the next, each over the larger of the two.
+/// Largest change of an amount, and of a texel over the amount, from one of these positions to the next, each over the larger of the two.
 fn largest_step(places: impl Iterator<Item = AtlasPlace>) -> [f32; 2] {
     let mut before: Option<[f32; 2]> = None;
     let mut largest = [0.0f32; 2];
@@ -210,8 +210,8 @@ fn largest_step(places: impl Iterator<Item = AtlasPlace>) -> [f32; 2] {
     largest
 }
 
-/// A drop that rises past the viewer, or grows, changes its light by small steps: no pop where another elevation or diameter of the
-/// atlas begins.
+/// A drop that rises past the viewer, or grows, changes its light by small steps: no pop at the next elevation or diameter of the
+/// atlas.
 #[test]
 fn light_changes_by_small_steps() {
     for k in 0..OSCILLATIONS {
@@ -231,7 +231,7 @@ fn light_changes_by_small_steps() {
 }
 
 /// A drop at rest has the light of a sphere, by the table of its orders; one that oscillates sends more of it to its sides, less
-/// above, and none of the sphere's bows is where it was. Figures of this test are in the documentation of `atlas`.
+/// above, and no bow of the sphere stays in position. Figures of this test are in the documentation of `atlas`.
 #[test]
 fn oscillation_takes_light_aside() {
     const ENTRIES: usize = 4096;

@@ -1,4 +1,4 @@
-//! Atlases: files that are read again or refused, triangles, and which streak a particle gets.
+//! Atlases: round trip and rejection of files, triangles, and choice of a particle's streak.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -39,7 +39,7 @@ static ATLAS: LazyLock<StreakAtlas> = LazyLock::new(|| {
     .unwrap()
 });
 
-/// A small set whose texels say which layer, row and column they are of.
+/// A small set whose texels encode their layer, row and column.
 fn counted() -> StreakSet {
     let directions = light_directions();
     let texels = (0..3 * directions.len() * 32).map(|k| f16::from_f32(k as f32)).collect();
@@ -71,7 +71,7 @@ fn a_file_is_read_again_and_by_the_ktx2_crate() {
     for (a, b) in before.directions.iter().flatten().zip(after.directions.iter().flatten()) {
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1.0e-6), "{a:?} {b:?}");
     }
-    // What has been read is written as the same bytes.
+    // A set that was read is written as the same bytes.
     assert_eq!(write_streaks(&after).unwrap(), bytes);
     let reader = ktx2::Reader::new(&bytes[..]).unwrap();
     assert_eq!(reader.header().layer_count, 123);
@@ -89,7 +89,7 @@ fn lists_of_directions_may_differ_between_elevations() {
     assert_eq!(after.directions[1], after.directions[0]);
 }
 
-/// Cut anywhere, a file is an error that says what is missing; flipped bits and bytes are one or are harmless.
+/// A truncated file is an error that names the missing part; flipped bits and bytes are errors or harmless.
 #[test]
 fn damaged_files_are_refused() {
     let bytes = write_streaks(&counted()).unwrap();
@@ -112,7 +112,7 @@ fn damaged_files_are_refused() {
     }
 }
 
-/// The key's text is a part of the file as it stands; the same length keeps all offsets.
+/// Replaces text of the key in the file; the same length keeps all offsets.
 fn with_text(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     assert_eq!(from.len(), to.len());
     let at = bytes.windows(from.len()).position(|w| w == from.as_bytes()).unwrap();
@@ -165,7 +165,7 @@ fn a_set_without_amounts_has_those_of_its_layers() {
         let layer = 41 + k;
         let wanted = (32.0 * layer as f32 + 15.5) * 4.0 * 1.4 / std::f32::consts::PI;
         if (y - y.round()).abs() < 1.0e-4 && (z - z.round()).abs() < 1.0e-4 {
-            // Half floats of the texels are whole numbers up to 2048.
+            // Half floats of the texels are integers up to 2048.
             assert!((place.amount / wanted - 1.0).abs() < 1.0e-3, "{d:?}: {} for {wanted}", place.amount);
         }
         // Between the smallest and the largest of its elevation everywhere.
@@ -266,7 +266,7 @@ fn sets_that_do_not_belong_together_are_refused() {
     assert!(told(vec![twice]).contains("twice"));
 }
 
-/// The triangles fill the disc but for slivers, none is crossed by a corner's circle (Delaunay), neighbours agree.
+/// The triangles fill the disc but for slivers, none is crossed by a corner's circle (Delaunay), neighbors agree.
 #[test]
 fn triangles_are_those_of_delaunay() {
     let atlas = &*ATLAS;
@@ -301,7 +301,7 @@ fn triangles_are_those_of_delaunay() {
     assert!((0.95..1.0).contains(&(area / std::f64::consts::PI)), "{area}");
 }
 
-/// Where a light stands exactly on a direction, that layer alone is taken; in between, weights are shares of 1.
+/// A light exactly at a direction uses that layer alone; in between, weights are fractions of 1.
 #[test]
 fn places_are_barycentric() {
     let atlas = &*ATLAS;
@@ -320,7 +320,7 @@ fn places_are_barycentric() {
         assert!((place.weights.iter().sum::<f32>() - 1.0).abs() < 1.0e-6);
         assert_eq!(place.side, if light[0] < 0.0 { -1.0 } else { 1.0 });
         mirrored += u32::from(place.side < 0.0);
-        // The mean of the corners is the place of the light, but for the slivers at the rim.
+        // The mean of the corners is the position of the light, but for the slivers at the rim.
         let corners =
             place.layers.map(|layer| atlas_map(light_directions()[layer as usize % 41].map(|c| c as f32)));
         let at = atlas_map(light);
@@ -357,7 +357,7 @@ fn radiance_is_continuous_over_triangles() {
     }
 }
 
-/// The two diameters, and the two elevations, between which a drop is, and how far: by the logarithm and by the sine.
+/// Two diameters, and two elevations, around a drop, and the position between them: by the logarithm and by the sine.
 #[test]
 fn diameter_and_elevation_are_between_those_of_the_sets() {
     let atlas = StreakAtlas::clone(&ATLAS).with_seed(11);
@@ -399,7 +399,7 @@ fn diameter_and_elevation_are_between_those_of_the_sets() {
     assert!((430..570).contains(&second), "{second}");
 }
 
-/// Where elevations have directions of their own, patterns are those of the nearest one; amounts are still between.
+/// If elevations have different directions, patterns are those of the nearest one; amounts are still between.
 #[test]
 fn other_directions_at_each_elevation_have_patterns_of_the_nearest() {
     let mut set = counted();
@@ -425,7 +425,7 @@ fn other_directions_at_each_elevation_have_patterns_of_the_nearest() {
 fn chance_picks_any_layer() {
     let atlas = StreakAtlas::clone(&ATLAS).with_seed(11);
     let (light, level) = ([0.6, 0.0, -0.8], [0.0, 0.0, 1.0]);
-    // At random, every layer is met by some particle, whatever the light.
+    // At random, every layer is used by some particle, for any light.
     let random = atlas.with_pick(StreakPick::Random);
     let mut met = vec![0u32; random.layers()];
     for id in 0..40 * random.layers() as u32 {
@@ -445,14 +445,14 @@ fn the_frame_of_a_streak_is_right_handed() {
     assert!(near(atlas_light([1.0, 0.0, 0.0], view, [0.0, 1.0, 0.0]), [1.0, 0.0, 0.0]));
     assert!(near(atlas_light([0.0, 1.0, 0.0], view, [0.0, 1.0, 0.0]), [0.0, 1.0, 0.0]));
     assert!(near(atlas_light(view, view, [0.0, 0.8, 0.6]), [0.0, 0.0, 1.0]));
-    // A drop that falls to the left: its axis is to the right, and what is above the viewer is on its left.
+    // A drop that falls to the left: its axis is to the right, and a light above the viewer is on its left.
     assert!(near(atlas_light([0.0, 1.0, 0.0], view, [1.0, 0.0, 0.0]), [-1.0, 0.0, 0.0]));
     // Along the axis any frame does, but it is one.
     let [x, y, z] = atlas_light([0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0]);
     assert!((x * x + y * y + z * z - 1.0).abs() < 1.0e-5);
 }
 
-/// Texels are where they should be: middle of texel (column, row) of a layer.
+/// Texels are at the expected positions: middle of texel (column, row) of a layer.
 #[test]
 fn radiance_is_bilinear_and_goes_round() {
     let atlas = StreakAtlas::from_sets(vec![counted()]).unwrap();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use downpour_atlas::AtlasError;
 use downpour_atlas::columbia::{
-    ColumbiaFiles, GreyPicture, LIGHT_AZIMUTHS, LIGHT_ELEVATIONS, OSCILLATIONS, VIEWS, brightness_name,
+    ColumbiaFiles, GrayPicture, LIGHT_AZIMUTHS, LIGHT_ELEVATIONS, OSCILLATIONS, VIEWS, brightness_name,
     import, picture_name,
 };
 use downpour_atlas::{StreakAtlas, StreakOrigin, read_streaks, write_streaks};
@@ -12,7 +12,7 @@ use downpour_atlas::{StreakAtlas, StreakOrigin, read_streaks, write_streaks};
 #[derive(Default)]
 struct Database {
     texts: BTreeMap<String, String>,
-    pictures: BTreeMap<String, GreyPicture>,
+    pictures: BTreeMap<String, GrayPicture>,
 }
 
 impl ColumbiaFiles for Database {
@@ -22,7 +22,7 @@ impl ColumbiaFiles for Database {
         Ok(self.texts.get(name).cloned())
     }
 
-    fn picture(&mut self, name: &str) -> Result<Option<GreyPicture>, AtlasError> {
+    fn picture(&mut self, name: &str) -> Result<Option<GrayPicture>, AtlasError> {
         Ok(self.pictures.get(name).cloned())
     }
 }
@@ -45,7 +45,7 @@ fn database() -> Database {
                     text += &format!(" {}", f64::from(200 - h) / 1000.0 + k as f64 * 1.0e-3);
                     let values =
                         (0..height * 4).map(|i| if i / 4 < height / 2 { 65535 } else { 0 }).collect();
-                    let picture = GreyPicture { width: 4, height, values };
+                    let picture = GrayPicture { width: 4, height, values };
                     made.pictures.insert(picture_name(4, view, v, h, k), picture);
                 }
                 text += " \n";
@@ -124,7 +124,7 @@ fn what_is_not_as_described_is_named() {
     assert!(error.to_string().contains(&name) && error.to_string().contains("h30 NaN"), "{error}");
     let mut wide = database();
     let name = picture_name(4, 0, -90, 170, 0);
-    wide.pictures.insert(name.clone(), GreyPicture { width: 5, height: 1, values: vec![0; 5] });
+    wide.pictures.insert(name.clone(), GrayPicture { width: 5, height: 1, values: vec![0; 5] });
     let error = import(&mut wide, 4, 16).unwrap_err().to_string();
     assert!(error.contains(&name) && error.contains("5 x 1"), "{error}");
 }

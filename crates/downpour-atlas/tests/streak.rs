@@ -1,4 +1,4 @@
-//! What streaks look like: energy, lines, symmetry, and what oscillation does to them.
+//! Properties of streaks: energy, lines, symmetry, and effects of oscillation.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -43,8 +43,8 @@ fn power(texels: &[f32], options: &StreakOptions) -> f64 {
     2.0 * width * texels.iter().map(|&v| f64::from(v)).sum::<f64>() / f64::from(options.rows)
 }
 
-/// Over all lights, a drop that absorbs nothing sends on what falls on its disc. Paths of more than four reflections
-/// inside are left out: 0.1 %.
+/// Over all lights, a drop without absorption scatters the light that falls on its disc. Paths of more than four reflections
+/// inside are missing: 0.1 %.
 #[test]
 fn all_lights_together_give_the_disc() {
     let options = StreakOptions { light_radius: 12.0_f64.to_radians(), rays: 6, ..options() };
@@ -57,7 +57,7 @@ fn all_lights_together_give_the_disc() {
     assert!((disc / PI - 1.0).abs() < 5.0e-3, "{disc} of pi");
 }
 
-/// The same holds for a drop of any shape: its outline's area is what it scatters.
+/// The same holds for a drop of any shape: the light on its outline's area is scattered.
 #[test]
 fn an_oscillating_drop_keeps_the_light_too() {
     let options = StreakOptions { light_radius: 12.0_f64.to_radians(), rays: 5, rows: 3, ..options() };
@@ -65,11 +65,11 @@ fn an_oscillating_drop_keeps_the_light_too() {
     let streaks = trace(4.0e-3, StreakOscillation::COMMITTED[1], &options, &lights);
     let sum: f64 = streaks.radiance.iter().map(|s| power(s, &options)).sum();
     let share = sum * 4.0 * PI / lights.len() as f64 / power(&streaks.coverage, &options);
-    // Light that goes round in the bulges for more than four reflections is lost.
+    // Light that circles in the bulges for more than four reflections is lost.
     assert!((0.95..1.01).contains(&share), "{share}");
 }
 
-/// What a sphere scatters to the side of the first rainbow is external reflection and twice refracted light: a law of
+/// Scattering by a sphere to the side of the first rainbow is external reflection and twice refracted light: a law of
 /// the impact parameter, summed over the light's width.
 #[test]
 fn the_power_of_one_direction_is_that_of_the_sphere() {
@@ -103,7 +103,8 @@ fn the_power_of_one_direction_is_that_of_the_sphere() {
     assert!((found / law - 1.0).abs() < 0.04, "{found} {law}");
 }
 
-/// The brightest line of light from behind is where the sphere turns light by that angle, on the other side.
+/// The brightest line of light from behind is at the impact parameter at which the sphere deflects light by that angle, on the
+/// other side.
 #[test]
 fn the_brightest_line_is_where_the_sphere_has_it() {
     let options = StreakOptions { columns: 64, rays: 4, ..options() };
@@ -177,7 +178,7 @@ impl Hypot for f64 {
 fn ends(streaks: &Streaks, options: &StreakOptions) -> Vec<[f64; 2]> {
     let width = 2.0 * options.half_extent / f64::from(options.columns);
     let end = |row: &mut dyn Iterator<Item = &f32>| -> f64 {
-        // The share of columns without the drop, the first one with it in part.
+        // Fraction of columns without the drop, the first one with it in part.
         let mut columns = 0.0;
         for &v in row {
             if v > 0.0 {
@@ -207,7 +208,7 @@ fn oscillation_moves_the_outline_with_the_modes_frequency() {
     assert!(strength[2..].iter().all(|&s| s < 0.2 * strength[1]), "{strength:?}");
     let narrowest = (0..32).min_by(|&a, &b| width[a].total_cmp(&width[b])).unwrap();
     assert!((5..12).contains(&narrowest), "narrow at a quarter of a turn, not at row {narrowest}");
-    // Mode (3,1): it sways twice a turn, by 3/2 s3 at the height of its centre.
+    // Mode (3,1): it sways twice a turn, by 3/2 s3 at the height of its center.
     let odd = StreakOscillation { amplitudes: [0.0, 0.1], phase: 0.0, azimuth: 0.0 };
     let ends_odd = ends(&trace(1.0e-3, odd, &options, &lights), &options);
     let sway: Vec<f64> = ends_odd.iter().map(|[l, r]| 0.5 * (r - l)).collect();

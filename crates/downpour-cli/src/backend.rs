@@ -1,10 +1,10 @@
-//! What computes: a GPU, a software driver of a GPU, or the CPU.
+//! Compute backend: a GPU, a software driver of a GPU, or the CPU.
 
 use clap::{Args, ValueEnum};
 
 use crate::failure::Failure;
 
-/// What may compute.
+/// Allowed compute backends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Backend {
     /// A GPU, else a software driver, else the CPU.
@@ -15,10 +15,10 @@ pub(crate) enum Backend {
     Cpu,
 }
 
-/// Where to compute.
+/// Arguments of the backend.
 #[derive(Debug, Args)]
 pub(crate) struct BackendArguments {
-    /// What computes.
+    /// Compute backend.
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) backend: Backend,
     /// Part of the name of the GPU to take, as `downpour adapters` lists them.
@@ -27,7 +27,7 @@ pub(crate) struct BackendArguments {
 }
 
 impl BackendArguments {
-    /// Whether the arguments make sense together.
+    /// Checks that the arguments are consistent.
     ///
     /// # Errors
     /// Exit code 2 for an adapter of the CPU.
@@ -41,10 +41,10 @@ impl BackendArguments {
 }
 
 impl BackendArguments {
-    /// Device that draws frames; says which it is.
+    /// Opens the device that draws frames, and prints its name.
     ///
     /// # Errors
-    /// Exit code 4 if a GPU was asked for and there is none.
+    /// Exit code 4 if a GPU was requested and there is none.
     #[cfg(not(feature = "gpu"))]
     pub(crate) fn device(&self, say: impl Fn(&str)) -> Result<downpour::Device, Failure> {
         compute(self, say, || Ok(downpour::Device::cpu()))
@@ -65,10 +65,10 @@ pub(crate) fn no_support() -> Failure {
     Failure::new(crate::exit_code::GPU, message)
 }
 
-/// Computes on the CPU: this build knows no other.
+/// Computes on the CPU: the only backend of this build.
 ///
 /// # Errors
-/// Exit code 4 if a GPU was asked for, or what the work says.
+/// Exit code 4 if a GPU was requested, or the error of the work.
 #[cfg(not(feature = "gpu"))]
 pub(crate) fn compute<T>(
     arguments: &BackendArguments,
@@ -100,17 +100,16 @@ mod gpu {
     use crate::interrupt::Interrupt;
     use crate::stream;
 
-    /// For tests of what happens when a GPU fails: `lost@K` destroys the device after K submissions, `hang` waits for
-    /// nothing.
+    /// Variable for tests of failing GPUs: `lost@K` destroys the device after K submissions, `hang` waits forever.
     const INJECT: &str = "DOWNPOUR_INJECT";
 
-    /// How long a software driver may be at one submission: it has the speed of a CPU, and its compiler alone may take half a
+    /// Timeout of one submission to a software driver: it has the speed of a CPU, and its compiler alone may need half a
     /// minute. It does not hang as a device does, and signals end it.
     const SOFTWARE_TIMEOUT: Duration = Duration::from_secs(600);
 
-    /// An error that may have come from a GPU.
+    /// An error that may come from a GPU.
     pub(crate) trait FromGpu: std::fmt::Display {
-        /// What the GPU said, if it was the GPU.
+        /// Error of the GPU, if it comes from there.
         fn gpu(&self) -> Option<&GpuError>;
     }
 
@@ -126,11 +125,11 @@ mod gpu {
         }
     }
 
-    /// Computes on what was asked for, and says which that is. `auto` goes to the CPU where there is no device, or where
-    /// the work is too much for it.
+    /// Computes on the requested backend, and prints its name. `auto` uses the CPU if there is no device, or if
+    /// the work is too large for it.
     ///
     /// # Errors
-    /// Exit code 2 for a bad [`INJECT`], 4 if there is no such adapter or the device failed, or what the work says. A
+    /// Exit code 2 for a bad [`INJECT`], 4 if there is no such adapter or the device failed, or the error of the work. A
     /// lost device never falls back.
     pub(crate) fn compute<T, E: FromGpu>(
         arguments: &BackendArguments,
@@ -160,10 +159,10 @@ mod gpu {
     }
 
     impl BackendArguments {
-        /// Device that draws frames; says which it is.
+        /// Opens the device that draws frames, and prints its name.
         ///
         /// # Errors
-        /// Exit code 2 for a bad [`INJECT`], 4 if there is no such adapter, or no GPU where one was asked for.
+        /// Exit code 2 for a bad [`INJECT`], 4 if there is no such adapter, or no GPU if one was requested.
         pub(crate) fn device(&self, say: impl Fn(&str)) -> Result<downpour::Device, Failure> {
             let fall_back = self.backend == Backend::Auto;
             Ok(match opened(self, say)? {
@@ -189,7 +188,7 @@ mod gpu {
         }
     }
 
-    /// Opens the GPU that was asked for, and says what computes. `None`: the CPU.
+    /// Opens the requested GPU, and prints the backend. `None`: the CPU.
     fn opened(arguments: &BackendArguments, say: impl Fn(&str)) -> Result<Option<Gpu>, Failure> {
         if arguments.backend == Backend::Cpu {
             return Ok(None);
@@ -208,7 +207,7 @@ mod gpu {
         }
     }
 
-    /// Opens the device that was asked for. `Ok(Err(reason))`: there is none.
+    /// Opens the requested device. `Ok(Err(reason))`: there is none.
     fn device(arguments: &BackendArguments) -> Result<Result<Gpu, GpuError>, Failure> {
         let adapter = match &arguments.adapter {
             Some(name) => AdapterChoice::Named(name.clone()),

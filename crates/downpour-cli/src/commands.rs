@@ -51,14 +51,14 @@ impl Command {
 }
 
 /// Warnings of a file that are shown.
-const MOST_WARNINGS: usize = 5;
+const MAX_WARNINGS: usize = 5;
 
-/// Says the first warnings of a file, and how many more there are.
+/// Prints the first warnings of a file, and the number of the others.
 fn say_warnings(name: &str, warnings: &[Warning], say: impl Fn(&str)) {
-    for warning in warnings.iter().take(MOST_WARNINGS) {
+    for warning in warnings.iter().take(MAX_WARNINGS) {
         say(&format!("warning: {name}: {warning}"));
     }
-    if let Some(more @ 1..) = warnings.len().checked_sub(MOST_WARNINGS) {
+    if let Some(more @ 1..) = warnings.len().checked_sub(MAX_WARNINGS) {
         say(&format!("warning: {name}: and {more} more"));
     }
 }

@@ -1,7 +1,7 @@
-//! What happens on SIGINT and SIGTERM: the unfinished file is removed and the process ends with code 6, at once.
+//! Handler of SIGINT and SIGTERM: removes the unfinished file and ends the process with code 6, at once.
 //!
-//! A thread waits for the signals, so that nothing has to be polled while a mask is traced or a GPU is waited for.
-//! Where there are no such signals, a process that is ended leaves its temporary file; the next one removes it
+//! A thread waits for the signals, so that no work needs to poll. On systems without such signals, a process
+//! that is killed leaves its temporary file; the next one removes it
 //! ([`crate::output`]).
 
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ impl Interrupt {
     /// Listens for signals from here on.
     ///
     /// # Errors
-    /// If the system does not let us.
+    /// If the system rejects the handler.
     pub(crate) fn install() -> Result<Self, Failure> {
         let interrupt = Self::default();
         #[cfg(unix)]
@@ -34,13 +34,13 @@ impl Interrupt {
         self.unfinished.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Ends the process, with nothing dropped and no unfinished file left. What a GPU that hangs needs: dropping its
+    /// Ends the process without destructors and without an unfinished file. For a GPU that hangs: dropping its
     /// device would wait for it.
     pub(crate) fn leave(&self, code: u8) -> ! {
         if let Some(path) = self.unfinished().take() {
             let _ = std::fs::remove_file(path);
         }
-        // Not `exit`: it runs the drivers' own endings while their threads still work.
+        // Not `exit`: it runs exit handlers of the drivers while their threads still work.
         #[cfg(unix)]
         signal_hook::low_level::exit(code.into());
         #[cfg(not(unix))]

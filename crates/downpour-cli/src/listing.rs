@@ -6,7 +6,7 @@ use serde_json::{Map, Number, Value};
 
 use crate::stream::one_line;
 
-/// Significant digits of numbers in JSON: more than physics knows, fewer than rounding disturbs.
+/// Significant digits of numbers in JSON: more than the physics justifies, fewer than rounding affects.
 const JSON_DIGITS: usize = 10;
 
 /// A value of a list.
@@ -14,22 +14,22 @@ const JSON_DIGITS: usize = 10;
 pub(crate) enum Datum {
     /// A number as it was given.
     Given(f64),
-    /// A number that was worked out, and how many of its digits a person wants to see.
+    /// A computed number, and the number of digits in text.
     Computed(f64, usize),
     /// A number that has no bound: `null` in JSON.
     Unbounded(&'static str),
     /// A word.
     Word(String),
-    /// How many there are.
+    /// A count.
     Count(u64),
-    /// Three numbers that were worked out, as a place or a colour.
+    /// Three computed numbers, as a position or a color.
     Triple([f64; 3], usize),
     /// Names.
     Words(Vec<String>),
 }
 
 impl Datum {
-    /// A number that was worked out, or what is said instead where it is infinite.
+    /// A computed number, or a word if it is infinite.
     pub(crate) fn bounded(value: f64, digits: usize, otherwise: &'static str) -> Self {
         if value.is_finite() { Self::Computed(value, digits) } else { Self::Unbounded(otherwise) }
     }
@@ -68,10 +68,10 @@ impl Datum {
 pub(crate) struct Entry {
     /// Key in JSON; it carries the unit.
     pub(crate) key: &'static str,
-    /// What people read.
+    /// Label in text.
     pub(crate) label: &'static str,
     pub(crate) datum: Datum,
-    /// Unit for people; empty for a number without.
+    /// Unit in text; empty for a number without.
     pub(crate) unit: &'static str,
 }
 
@@ -166,13 +166,13 @@ mod tests {
     fn counts_places_and_names_are_what_they_are() {
         let entries = [
             Entry::new("seed", "seed", Datum::Count(u64::MAX), ""),
-            Entry::new("place_m", "place", Datum::Triple([0.0, -1.5, 0.125], 2), "m"),
+            Entry::new("position_m", "position", Datum::Triple([0.0, -1.5, 0.125], 2), "m"),
             Entry::new("names", "names", Datum::words(&["a", "b\u{1b}"]), ""),
             Entry::new("others", "others", Datum::words(&[]), ""),
         ];
         let value: Value = serde_json::from_str(&json(&entries)).unwrap();
         assert_eq!(value["seed"].as_u64(), Some(u64::MAX));
-        assert_eq!(value["place_m"], serde_json::json!([0.0, -1.5, 0.125]));
+        assert_eq!(value["position_m"], serde_json::json!([0.0, -1.5, 0.125]));
         assert_eq!(
             (value["names"].to_string(), value["others"].to_string()),
             (r#"["a","b\u001b"]"#.into(), "[]".into())

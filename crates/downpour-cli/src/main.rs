@@ -58,7 +58,7 @@ fn run() -> Result<(), Failure> {
     match Arguments::try_parse() {
         Ok(arguments) => arguments.command.run(&interrupt),
         Err(error) if error.use_stderr() => Err(Failure::from(&error)),
-        // Help and version were asked for.
+        // Help and version were requested.
         Err(error) => stream::print(&error.to_string()),
     }
 }

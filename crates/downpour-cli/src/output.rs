@@ -1,11 +1,11 @@
-//! Files that are whole or not there.
+//! Atomic output files: complete or absent.
 //!
-//! What is written goes into a temporary file in the folder of its place, onto the disk, and then to its name in one
-//! step. A name that exists is only given to new content if that was asked for, and only if it is a plain file: a
+//! The contents are written to a temporary file in the same folder, synced to the disk, and renamed in one
+//! step. An existing name gets new contents only if requested, and only if it is a plain file: a
 //! symbolic link is neither followed nor replaced.
 //!
-//! The temporary file is locked while its process lives. One that is not locked was left by a process that was killed;
-//! whoever publishes next in that folder removes it.
+//! The temporary file is locked while its process lives. One without lock is from a process that was killed;
+//! the next one that publishes in the folder removes it.
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
@@ -16,20 +16,20 @@ use tempfile::{Builder, NamedTempFile};
 use crate::failure::{FILES, Failure, shown};
 use crate::interrupt::Interrupt;
 
-/// How names of temporary files begin and end.
+/// Prefix of the names of temporary files.
 const PREFIX: &str = ".downpour-";
 const SUFFIX: &str = ".part";
 
-/// A place that a file can be published at.
+/// An output file that can be published.
 #[derive(Debug)]
-pub(crate) struct Place {
+pub(crate) struct OutputFile {
     path: PathBuf,
     folder: PathBuf,
     overwrite: bool,
 }
 
-impl Place {
-    /// Looks at the place before any work is done.
+impl OutputFile {
+    /// Checks the path before any work is done.
     ///
     /// # Errors
     /// Exit code 5: there is no such folder, or the name is taken.
@@ -40,12 +40,12 @@ impl Place {
             Ok(_) => return Err(Failure::new(FILES, format!("{} is not a folder", shown(&folder)))),
             Err(error) => return Err(Failure::new(FILES, format!("folder {}: {error}", shown(&folder)))),
         }
-        let place = Self { path: path.to_owned(), folder, overwrite };
-        place.check_name()?;
-        Ok(place)
+        let file = Self { path: path.to_owned(), folder, overwrite };
+        file.check_name()?;
+        Ok(file)
     }
 
-    /// Whether the name is free, or holds what may be overwritten.
+    /// Checks that the name is free, or that the file may be overwritten.
     fn check_name(&self) -> Result<(), Failure> {
         let refused = |found: &str, way_out: &str| {
             Err(Failure::new(FILES, format!("{} {found}; allowed: {way_out}", shown(&self.path))))
@@ -63,13 +63,13 @@ impl Place {
     /// Publishes the bytes: all of them under the name, or nothing.
     ///
     /// # Errors
-    /// Exit code 5, with what the system says.
+    /// Exit code 5, with the error of the system.
     pub(crate) fn publish(&self, bytes: &[u8], interrupt: &Interrupt) -> Result<(), Failure> {
         remove_leftovers(&self.folder);
         self.publish_among_many(bytes, interrupt)
     }
 
-    /// Publishes the bytes in a folder of so many files that it is not looked through for each: who does this calls
+    /// Publishes the bytes in a folder of many files without searching it for leftovers: the caller runs
     /// [`remove_leftovers`] once.
     ///
     /// # Errors
@@ -103,7 +103,7 @@ impl Place {
         *unfinished = None;
         drop(unfinished);
         renamed?;
-        // The name is on the disk once its folder is. Not every file system can do that, and the file is whole anyway.
+        // The name is on the disk once its folder is. Not every file system supports that, and the file is complete anyway.
         let _ = File::open(&self.folder).and_then(|folder| folder.sync_all());
         Ok(())
     }
@@ -164,8 +164,8 @@ mod tests {
         fs::create_dir(at(".downpour-folder.part")).unwrap();
         let alive = File::open(at(".downpour-alive.part")).unwrap();
         alive.lock().unwrap();
-        let place = Place::new(&at("mask.exr"), false).unwrap();
-        place.publish(b"whole", &Interrupt::default()).unwrap();
+        let file = OutputFile::new(&at("mask.exr"), false).unwrap();
+        file.publish(b"whole", &Interrupt::default()).unwrap();
         assert_eq!(
             names(folder.path()),
             [".downpour-alive.part", ".downpour-folder.part", ".downpour-notes.txt", "mask.exr", "x.part"]
@@ -173,18 +173,18 @@ mod tests {
         assert_eq!(fs::read(at("mask.exr")).unwrap(), b"whole");
     }
 
-    /// A name that is taken between the first look and the end of the work.
+    /// A name that is taken between the first check and the end of the work.
     #[test]
     fn a_name_taken_meanwhile_is_not_overwritten() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mask.exr");
-        let place = Place::new(&path, false).unwrap();
+        let file = OutputFile::new(&path, false).unwrap();
         fs::write(&path, "of someone else").unwrap();
-        let failure = place.publish(b"ours", &Interrupt::default()).unwrap_err();
+        let failure = file.publish(b"ours", &Interrupt::default()).unwrap_err();
         assert_eq!(failure.code, FILES);
         assert_eq!(fs::read(&path).unwrap(), b"of someone else");
         assert_eq!(names(folder.path()), ["mask.exr"]);
-        Place::new(&path, true).unwrap().publish(b"ours", &Interrupt::default()).unwrap();
+        OutputFile::new(&path, true).unwrap().publish(b"ours", &Interrupt::default()).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"ours");
     }
 }

@@ -1,11 +1,11 @@
-//! How far the work is, for who sits before a terminal.
+//! Progress on a terminal.
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// How long work may take before somebody wants to know what it is.
+/// Duration of work after which progress is shown.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Does work whose parts are not counted. Work that takes longer than a second is named on a terminal, with the time that it
@@ -17,15 +17,15 @@ pub(crate) fn doing<T>(what: &str, quiet: bool, work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Tells of frames how far they are: of what takes longer than a second.
-pub(crate) struct Teller {
+/// Progress of frames that need more than a second.
+pub(crate) struct FrameProgress {
     quiet: bool,
     begin: Instant,
     counted: Option<Progress>,
     uncounted: Option<Doing>,
 }
 
-impl Teller {
+impl FrameProgress {
     pub(crate) fn new(quiet: bool) -> Self {
         Self { quiet, begin: Instant::now(), counted: None, uncounted: None }
     }
@@ -46,14 +46,14 @@ impl Teller {
     }
 }
 
-/// Work whose parts are not counted, named on a terminal as soon as it takes long. Dropped where the work ends.
+/// Work without countable parts, named on a terminal once it takes long. Dropped at the end of the work.
 struct Doing {
     end: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Doing {
-    /// `None` where nobody is told, or where there is no memory for a thread.
+    /// `None` without a terminal, or if there is no memory for a thread.
     fn new(what: &str, quiet: bool) -> Option<Self> {
         if !is_shown(quiet) {
             return None;
@@ -86,18 +86,18 @@ impl Drop for Doing {
     }
 }
 
-/// Whether somebody sits before a terminal and wants to be told.
+/// True if standard error is a terminal and progress is enabled.
 fn is_shown(quiet: bool) -> bool {
     !quiet && io::stderr().is_terminal()
 }
 
-/// Writes a line in place of the last. The cursor goes back to the beginning, so that a message takes the line's place.
+/// Overwrites the last line. The cursor returns to its start, so that a message replaces it.
 fn write_over(text: &str) {
     let _ = write!(io::stderr().lock(), "\r\x1b[K{text}\r");
 }
 
-/// A line on standard error that is written over and over: frames done, time for each, time left. Nothing where
-/// standard error is no terminal.
+/// A line on standard error that is overwritten: frames done, time for each, time left. Not shown if
+/// standard error is not a terminal.
 pub(crate) struct Progress {
     what: &'static str,
     total: u32,
@@ -119,7 +119,7 @@ impl Progress {
         self.show();
     }
 
-    /// So many are done.
+    /// Sets the number of finished parts.
     pub(crate) fn set(&mut self, done: u32) {
         self.done = done;
         self.show();

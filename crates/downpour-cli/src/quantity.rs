@@ -11,8 +11,8 @@ use downpour::mask::SIZES;
 use downpour::specimen::{LONGEST_EXPOSURE_S, SpecimenLamp};
 use downpour::trace::stage::LATEST_S;
 
-/// The coldest water, in Celsius, whose refractive index is known.
-const COLDEST_INDEX_C: f64 = -12.0;
+/// Minimum temperature of water, in Celsius, with a known refractive index.
+const MIN_INDEX_C: f64 = -12.0;
 
 /// Diameter of a drop, in mm.
 pub(crate) fn diameter_mm(text: &str) -> Result<f64, String> {
@@ -24,9 +24,9 @@ pub(crate) fn temperature_c(text: &str) -> Result<f64, String> {
     read(text, &TEMPERATURE_RANGE_C, "-20 to 40 C")
 }
 
-/// Temperature, in Celsius, of water whose refractive index is asked.
+/// Temperature, in Celsius, of water for its refractive index.
 pub(crate) fn temperature_of_index_c(text: &str) -> Result<f64, String> {
-    read(text, &(COLDEST_INDEX_C..=*TEMPERATURE_RANGE_C.end()), "-12 to 40 C")
+    read(text, &(MIN_INDEX_C..=*TEMPERATURE_RANGE_C.end()), "-12 to 40 C")
 }
 
 /// Pressure, in hPa.
@@ -39,7 +39,7 @@ pub(crate) fn pressure_hpa(text: &str) -> Result<f64, String> {
 pub(crate) fn rate_mm_h(text: &str) -> Result<f64, String> {
     let rate = read(text, &RATE_RANGE_MM_H, "0 to 500 mm/h")?;
     if rate > 0.0 && rate < f64::from(f32::MIN_POSITIVE) {
-        return Err("too small to be told from 0; allowed: 0 to 500 mm/h".to_owned());
+        return Err("too small to differ from 0; allowed: 0 to 500 mm/h".to_owned());
     }
     Ok(rate)
 }
@@ -64,7 +64,7 @@ pub(crate) fn distance_m(text: &str) -> Result<f64, String> {
     read(text, &(1.0e-4..=1.0e4), "0.0001 to 10000 m")
 }
 
-/// Width and height of a picture, as `WxH`. Any whole numbers are read: what is too large is over a limit.
+/// Width and height of a picture, as `WxH`. Any integers are parsed: larger ones are over a limit.
 pub(crate) fn picture_size(text: &str) -> Result<[u32; 2], String> {
     let allowed = "WxH, for example 960x540, each from 1 to 16384";
     let edge = |part: &str| -> Result<u32, String> {
@@ -89,7 +89,7 @@ pub(crate) fn exposure_s(text: &str) -> Result<f64, String> {
     read(text, &(0.0..=LONGEST_EXPOSURE_S), "0 to 1 s")
 }
 
-/// How a specimen is sampled.
+/// Sampling of a specimen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SpecimenSamples {
     /// Exactly: samples along an edge of a pixel for a drop at rest, instants for each sample for a streak.
@@ -98,7 +98,7 @@ pub(crate) enum SpecimenSamples {
     Table,
 }
 
-/// Samples of a specimen, or `table`. Any whole number is read: what is too large is over a limit.
+/// Samples of a specimen, or `table`. Any integer is parsed: larger ones are over a limit.
 pub(crate) fn specimen_samples(text: &str) -> Result<SpecimenSamples, String> {
     let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     match text.parse::<u32>() {
@@ -118,15 +118,15 @@ pub(crate) fn oscillation(text: &str) -> Result<Amplitudes, String> {
     Amplitudes::new(a20, a31).map_err(|error| error.to_string())
 }
 
-/// A lamp far away: yaw, pitch and angular radius in degrees, and radiance, grey or as red, green, blue.
+/// A lamp far away: yaw, pitch and angular radius in degrees, and radiance, gray or as red, green, blue.
 pub(crate) fn lamp(text: &str) -> Result<SpecimenLamp, String> {
     const ALLOWED: &str = "YAW,PITCH,RADIUS,L or YAW,PITCH,RADIUS,R,G,B, as 160,5,2,500";
     let number = |part: &str, low: f64, high: f64, what: &str| {
         read(part.trim(), &(low..=high), what).map_err(|error| format!("\"{part}\" in {ALLOWED}: {error}"))
     };
     let parts: Vec<&str> = text.split(',').collect();
-    let (yaw, pitch, radius, colours) = match parts[..] {
-        [yaw, pitch, radius, grey] => (yaw, pitch, radius, [grey; 3]),
+    let (yaw, pitch, radius, colors) = match parts[..] {
+        [yaw, pitch, radius, gray] => (yaw, pitch, radius, [gray; 3]),
         [yaw, pitch, radius, red, green, blue] => (yaw, pitch, radius, [red, green, blue]),
         _ => return Err(format!("allowed: {ALLOWED}")),
     };
@@ -134,8 +134,8 @@ pub(crate) fn lamp(text: &str) -> Result<SpecimenLamp, String> {
     let pitch = number(pitch, -90.0, 90.0, "PITCH -90 to 90 degrees")?;
     let radius = number(radius, 0.01, 90.0, "RADIUS 0.01 to 90 degrees")?;
     let mut radiance = [0.0; 3];
-    for (colour, part) in radiance.iter_mut().zip(colours) {
-        *colour = number(part, 0.0, 1.0e9, "radiance 0 to 1e9")? as f32;
+    for (color, part) in radiance.iter_mut().zip(colors) {
+        *color = number(part, 0.0, 1.0e9, "radiance 0 to 1e9")? as f32;
     }
     SpecimenLamp::new(yaw.to_radians(), pitch.to_radians(), radius.to_radians(), radiance)
         .map_err(|error| error.to_string())
@@ -176,7 +176,7 @@ pub(crate) fn step_s(text: &str) -> Result<f64, String> {
     read(text, &(1.0e-6..=1.0), "0.000001 to 1 s")
 }
 
-/// How many steps of a lattice.
+/// Number of steps of a lattice.
 pub(crate) fn steps(text: &str) -> Result<u64, String> {
     let number = text.parse().ok().filter(|steps| (1..=1_000_000_000).contains(steps));
     number.ok_or_else(|| "allowed: a whole number from 1 to 1000000000".to_owned())
@@ -230,7 +230,7 @@ pub(crate) fn intercept(text: &str) -> Result<f64, String> {
     read(text, &(1.0e-2..=1.0e10), "0.01 to 1e10 m^-3 mm^-(1 + mu)")
 }
 
-/// Edge of a mask in pixels. Any whole number is read: one that is too large is over a limit, not a bad argument.
+/// Edge of a mask in pixels. Any integer is parsed: one that is too large is over a limit, not a bad argument.
 pub(crate) fn size(text: &str) -> Result<u64, String> {
     let least = u64::from(*SIZES.start());
     let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
@@ -247,7 +247,7 @@ fn read(text: &str, range: &RangeInclusive<f64>, allowed: &str) -> Result<f64, S
     if !number.is_finite() {
         return Err(format!("not finite; allowed: {allowed}"));
     }
-    // The ends come from numbers in other units, so they are met up to rounding; the libraries do the same.
+    // The bounds come from numbers in other units, so they are met up to rounding; the libraries do the same.
     const ROUNDING: f64 = 1.0e-12;
     let (start, end) = (*range.start(), *range.end());
     if number < start - ROUNDING * start.abs() || number > end + ROUNDING * end.abs() {

@@ -6,8 +6,8 @@ use std::io::{self, Write as _};
 
 use crate::failure::{FILES, Failure};
 
-/// The longest message that is not shortened, in characters. Arguments come from scripts too.
-const LONGEST: usize = 2000;
+/// Maximum length of a message, in characters. Arguments come from scripts too.
+const MAX_CHARS: usize = 2000;
 
 /// Writes a result to standard output.
 ///
@@ -20,8 +20,8 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
         .map_err(|error| Failure::new(FILES, format!("standard output: {error}")))
 }
 
-/// Writes one line to standard error, with the name of the command before it. If it cannot be written there is no one
-/// to tell.
+/// Writes one line to standard error, prefixed with the name of the command. If it cannot be written, the error is
+/// ignored.
 pub(crate) fn message(text: &str) {
     let line = format!("downpour: {}\n", one_line(text));
     let _ = io::stderr().lock().write_all(line.as_bytes());
@@ -42,11 +42,11 @@ pub(crate) fn one_line(text: &str) -> String {
     line
 }
 
-/// A very long text by its ends: what is wrong stands at the beginning, what is allowed at the end.
+/// Shortens a very long text to its ends: the error is at the beginning, the allowed values at the end.
 fn shortened(text: &str) -> Cow<'_, str> {
-    const END: usize = LONGEST / 2;
+    const END: usize = MAX_CHARS / 2;
     let count = text.chars().count();
-    if count <= LONGEST {
+    if count <= MAX_CHARS {
         return Cow::Borrowed(text);
     }
     let head = text.chars().take(END);
@@ -62,7 +62,7 @@ mod tests {
     fn a_message_is_one_harmless_line() {
         assert_eq!(one_line("a\nb\u{1b}[2J\u{202e}ß \"c\""), "a\\nb\\u{1b}[2J\\u{202e}ß \"c\"");
         let long = one_line(&format!("begin{}end", "x".repeat(100_000)));
-        assert_eq!(long.len(), LONGEST + 3);
+        assert_eq!(long.len(), MAX_CHARS + 3);
         assert!(long.starts_with("beginxx") && long.ends_with("xxend"));
     }
 }

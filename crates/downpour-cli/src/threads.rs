@@ -1,7 +1,7 @@
 //! The threads that all work is dealt out to.
 //!
-//! Rayon starts them where they are first needed, and panics where the system has no memory for them. Here they are
-//! started one by one before anything else: with fewer than asked for the work takes longer, and with none this thread does it.
+//! Rayon starts them on first use, and panics if the system has no memory for them. Here they are
+//! started one by one before anything else: with fewer than requested the work takes longer, and with none this thread does it.
 
 use std::num::NonZeroUsize;
 use std::sync::mpsc::{Sender, channel};
@@ -11,7 +11,7 @@ use rayon::{ThreadBuilder, ThreadPoolBuildError, ThreadPoolBuilder};
 
 use crate::failure::{Failure, LIMIT};
 
-/// How many threads there shall be: Rayon's variable, or one for each core.
+/// Requested number of threads: Rayon's variable, or one per core.
 fn wanted() -> usize {
     let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse::<NonZeroUsize>().ok());
     asked.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
@@ -20,12 +20,12 @@ fn wanted() -> usize {
 /// Bytes that are left for the work: a stack is only taken while there are more.
 const RESERVE: usize = 64 << 20;
 
-/// Whether the system would still give the reserve.
+/// True if the system can still allocate the reserve.
 fn has_room() -> bool {
     Vec::<u8>::new().try_reserve_exact(RESERVE).is_ok()
 }
 
-/// Threads that wait for their part, as many as the system gives without want of memory.
+/// Threads that wait for their part, as many as the system can start without exhausting memory.
 fn waiting(count: usize) -> Vec<Sender<ThreadBuilder>> {
     let mut ready = Vec::new();
     for number in 0..count {
@@ -60,12 +60,12 @@ fn pool(mut ready: Vec<Sender<ThreadBuilder>>) -> Result<(), ThreadPoolBuildErro
         .build_global()
 }
 
-/// The least memory that a process has to be allowed: below it allocations fail that nothing can answer.
-const LEAST: u64 = 256 << 20;
+/// Minimum memory that a process must be allowed: below it allocations fail without an error path.
+const MIN_MEMORY: u64 = 256 << 20;
 
-/// The address space that this process is allowed, in bytes, where the system says so and it is limited.
+/// Address space that this process may use, in bytes, if the system reports a limit.
 fn allowed_bytes() -> Option<u64> {
-    // Linux has it here; elsewhere such limits are rare.
+    // The path of Linux; elsewhere such limits are rare.
     limit_in(&std::fs::read_to_string("/proc/self/limits").ok()?)
 }
 
@@ -78,11 +78,11 @@ fn limit_in(table: &str) -> Option<u64> {
 /// Starts the threads.
 ///
 /// # Errors
-/// Exit code 3 where there is no memory for a pool, or where the process is allowed less than any work needs.
+/// Exit code 3 if there is no memory for a pool, or if the process may use less than any work needs.
 pub(crate) fn start() -> Result<(), Failure> {
-    if let Some(allowed) = allowed_bytes().filter(|&bytes| bytes < LEAST) {
+    if let Some(allowed) = allowed_bytes().filter(|&bytes| bytes < MIN_MEMORY) {
         let found = format!("{} MiB of address space", allowed >> 20);
-        return Err(Failure::new(LIMIT, format!("{found}; allowed: {} MiB or more", LEAST >> 20)));
+        return Err(Failure::new(LIMIT, format!("{found}; allowed: {} MiB or more", MIN_MEMORY >> 20)));
     }
     pool(waiting(wanted())).map_err(|error| {
         Failure::new(LIMIT, format!("no threads: {error}; allowed: memory and processes for one"))

@@ -1,7 +1,7 @@
-//! Golden pictures: small frames of every kind, which the command makes on the CPU bit for bit, and on a GPU so that nobody sees a
-//! difference. They hold whatever is moved or written anew.
+//! Golden pictures: small frames of every kind, rendered by the command on the CPU bit for bit, and on a GPU without a visible
+//! difference. They guard against regressions of refactoring.
 //!
-//! `DOWNPOUR_BLESS=1` writes them and then fails: a new picture counts once a person has looked at it. What differs is written to
+//! `DOWNPOUR_BLESS=1` writes them and then fails: a new picture counts once a person has reviewed it. Differing pictures are written to
 //! `target/goldens`. Without an adapter, or with `DOWNPOUR_GPU_TESTS=no`, see `gpu.rs`.
 
 #[allow(dead_code, reason = "the tests of the command use the rest")]
@@ -66,10 +66,10 @@ const GOLDENS: [Golden; 14] = [
 ];
 
 /// Mean FLIP between a GPU's picture and the CPU's.
-const MOST_FLIP: f32 = 0.02;
+const MAX_FLIP: f32 = 0.02;
 
 /// Most bytes of one picture.
-const LARGEST: u64 = 512 << 10;
+const MAX_BYTES: u64 = 512 << 10;
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
@@ -89,7 +89,7 @@ fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }
 
-/// The place of a golden picture.
+/// Path of a golden picture.
 fn kept(golden: &Golden) -> PathBuf {
     let end = golden.file.rsplit('.').next().unwrap_or_default();
     root("tests/goldens/pictures").join(format!("{}.{end}", golden.name))
@@ -105,7 +105,7 @@ fn made(golden: &Golden, backend: &[&str]) -> Result<Vec<u8>, Failed> {
     if ended.code == Some(0) { Ok(ended.file(golden.file)) } else { Err(ended.stderr.into()) }
 }
 
-/// Keeps what differs for who looks into it, and says where.
+/// Writes a differing picture for review, and prints its path.
 fn put_aside(golden: &Golden, side: &str, bytes: &[u8]) -> Result<String, Failed> {
     let folder = root("target/goldens");
     fs::create_dir_all(&folder)?;
@@ -123,7 +123,7 @@ fn same_on_the_cpu(golden: &Golden) -> Result<(), Failed> {
         return Err(format!("{} was written: look at it", golden.name).into());
     }
     let wanted = fs::read(kept(golden))?;
-    // The pixels count, not how a library packs them.
+    // The pixels matter, not their compression.
     let same = if golden.file.ends_with(".png") {
         pixels(&wanted)? == pixels(&bytes)?
     } else {
@@ -132,7 +132,7 @@ fn same_on_the_cpu(golden: &Golden) -> Result<(), Failed> {
     if same { Ok(()) } else { Err(format!("another picture: {}", put_aside(golden, "cpu", &bytes)?).into()) }
 }
 
-/// The control: the picture the wrong way round is seen as another.
+/// Control: the mirrored picture is detected as different.
 fn alike_on_a_gpu(golden: &Golden) -> Result<(), Failed> {
     let adapter = std::env::var("DOWNPOUR_ADAPTER").unwrap_or_default();
     let named: &[&str] = if adapter.is_empty() { &[] } else { &["--adapter", &adapter] };
@@ -144,13 +144,13 @@ fn alike_on_a_gpu(golden: &Golden) -> Result<(), Failed> {
     let control = flip(&wanted, &image::imageops::flip_horizontal(&wanted));
     let mean = flip(&wanted, &found);
     println!("{}: FLIP {mean:.4}, the wrong way round {control:.4}", golden.name);
-    if control < 2.0 * MOST_FLIP {
+    if control < 2.0 * MAX_FLIP {
         return Err(format!("the wrong way round FLIP is {control}: nothing could be seen").into());
     }
-    if mean <= MOST_FLIP {
+    if mean <= MAX_FLIP {
         return Ok(());
     }
-    Err(format!("FLIP {mean}, allowed {MOST_FLIP}: {}", put_aside(golden, "gpu", &bytes)?).into())
+    Err(format!("FLIP {mean}, allowed {MAX_FLIP}: {}", put_aside(golden, "gpu", &bytes)?).into())
 }
 
 fn pixels(png: &[u8]) -> Result<image::RgbImage, Failed> {
@@ -179,7 +179,7 @@ fn small_and_used() -> Result<(), Failed> {
         if !GOLDENS.iter().any(|golden| kept(golden).file_name() == path.file_name()) {
             wrong.push(format!("{} belongs to no test", path.display()));
         }
-        if fs::metadata(&path)?.len() > LARGEST {
+        if fs::metadata(&path)?.len() > MAX_BYTES {
             wrong.push(format!("{} is too large", path.display()));
         }
     }

@@ -1,7 +1,7 @@
 //! Pictures and masks on the machine's GPU or software driver, through the command.
 //!
-//! No adapter is a failure, told in one line; `DOWNPOUR_GPU_TESTS=no` shows the tests as ignored. `DOWNPOUR_ADAPTER` is part of the name
-//! of the adapter to take.
+//! A missing adapter is a failure, reported in one line; `DOWNPOUR_GPU_TESTS=no` shows the tests as ignored. `DOWNPOUR_ADAPTER` is part of
+//! the name of the adapter to use.
 
 #[allow(dead_code, reason = "the tests without a GPU use the rest")]
 #[path = "command/child.rs"]
@@ -99,7 +99,7 @@ fn adapters_are_listed() {
     }
 }
 
-/// How many texels differ by more than `tolerance`, of those whose light takes the same way.
+/// Number of texels that differ by more than `tolerance`, among those whose light has the same path.
 fn differing(a: &Mask, b: &Mask, tolerance: f32) -> usize {
     assert_eq!((a.size, a.texels.len()), (b.size, b.texels.len()));
     let differs = |k: usize| {
@@ -205,7 +205,7 @@ fn a_picture_is_that_of_the_cpu() {
     }
 }
 
-/// Whatever the pass during which the device goes.
+/// The device may be lost during any pass.
 fn a_picture_of_a_lost_device_is_not_published() {
     let adapter = adapter();
     for point in 1..=3 {
@@ -231,7 +231,7 @@ fn a_clip_of_a_lost_device_goes_on() {
     let lost = lost.failed(4, &["lost"]);
     let made = names_in(folder.path()).iter().filter(|name| name.ends_with(".png")).count();
     assert!((1..5).contains(&made), "{made} frames: {}", lost.stderr);
-    assert!(lost.stderr.contains("goes on with the same command"), "{}", lost.stderr);
+    assert!(lost.stderr.contains("resume the clip with the same command"), "{}", lost.stderr);
     run("0..5", "a%d.png", &["--backend", "cpu"]).run().failed(2, &["backend gpu, and now it is cpu"]);
     let rest = run("0..5", "a%d.png", &on_gpu).run().succeeded();
     assert_eq!(rest.stderr.matches("backend: gpu").count(), 1, "one device for all frames");
@@ -282,7 +282,7 @@ fn a_lost_device_publishes_nothing() {
         for point in ["lost@1", "lost@2"] {
             let arguments = ["mask", "--diameter", "2", "--size", "64", "--backend", backend, "-o", "m.exr"];
             Downpour::new(&arguments).env("DOWNPOUR_INJECT", point).run().failed(4, &["lost"]).left(&[]);
-            // What was there stays.
+            // Existing files stay.
             let run = Downpour::new(&[&arguments[..], &["--overwrite"]].concat()).with_file("m.exr", "old");
             assert_eq!(
                 run.env("DOWNPOUR_INJECT", point).run().failed(4, &["lost"]).left(&["m.exr"]).file("m.exr"),

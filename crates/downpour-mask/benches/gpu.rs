@@ -1,4 +1,4 @@
-//! How long a GPU takes for an exact mask: the kernel alone by the device's clock (wall clock on software
+//! Time of an exact mask on a GPU: the kernel alone by the device's clock (wall clock on software
 //! drivers, whose timestamps mean nothing), and the whole call with its readback, beside the CPU's fast path.
 
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! How long an exact mask takes: the fast path beside the plain loop, in one run.
+//! Time of an exact mask: the fast path beside the plain loop, in one run.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use downpour_drop::DropShape;

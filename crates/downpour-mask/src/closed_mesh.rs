@@ -1,9 +1,9 @@
-//! A drop given as a mesh: a closed surface of triangles that face outward.
+//! Closed mesh of a drop: triangles that face outward.
 //!
-//! Vertices at the same place count as one, however a file splits them for texture coordinates. What is asked:
-//! each edge has exactly two triangles, which run along it in opposite directions; the volume is positive (so
-//! the triangles face outward); numbers are finite. Triangles that collapse to a line or a point when equal
-//! vertices are merged (poles of a sphere) are left out.
+//! Vertices at the same position count as one, however a file splits them for texture coordinates. Requirements:
+//! each edge has exactly two triangles, which run along it in opposite directions; the volume is positive (the
+//! triangles face outward); numbers are finite. Triangles that collapse to a line or a point when equal vertices
+//! are merged (poles of a sphere) are dropped.
 
 use std::collections::HashMap;
 
@@ -11,16 +11,16 @@ use downpour_math::vector::{add, cross, dot, normalize, scale, sub};
 
 use crate::MaskError;
 
-/// The most triangles that a drop model may have.
-pub const MOST_TRIANGLES: usize = 4_000_000;
+/// Maximum number of triangles of a drop model.
+pub const MAX_TRIANGLES: usize = 4_000_000;
 
-/// What a model has to be, in the words of the messages.
+/// Requirements of a model, for messages.
 const ALLOWED: &str = "a closed surface of outward-facing triangles, each edge shared by exactly two";
 
-/// A closed mesh, centred on the centroid of its volume and scaled to the volume-equivalent radius 1.
+/// A closed mesh, centered on the centroid of its volume and scaled to the volume-equivalent radius 1.
 #[derive(Clone, Debug)]
 pub struct ClosedMesh {
-    /// Places of the vertices, in equivalent radii from the centroid.
+    /// Positions of the vertices, in equivalent radii from the centroid.
     pub positions: Vec<[f32; 3]>,
     /// Normals for shading, of length 1, one per vertex.
     pub normals: Vec<[f32; 3]>,
@@ -31,7 +31,7 @@ pub struct ClosedMesh {
 }
 
 impl ClosedMesh {
-    /// Checks and normalises a mesh. Without normals, those of the triangles round a vertex are averaged by angle.
+    /// Checks and normalizes a mesh. Missing normals are averaged over the triangles at a vertex, weighted by angle.
     ///
     /// ```
     /// use downpour_mask::ClosedMesh;
@@ -42,30 +42,30 @@ impl ClosedMesh {
     /// ```
     ///
     /// # Errors
-    /// [`MaskError::Mesh`] says what is wrong, and where.
+    /// [`MaskError::Mesh`] with the defect and its position.
     pub fn new(
         positions: &[[f32; 3]],
         normals: Option<&[[f32; 3]]>,
         triangles: &[[u32; 3]],
     ) -> Result<Self, MaskError> {
         check_numbers(positions, normals, triangles)?;
-        let places = merge(positions);
+        let merged = merge(positions);
         let kept: Vec<[u32; 3]> = triangles
             .iter()
             .copied()
             .filter(|t| {
-                let [a, b, c] = t.map(|i| places[i as usize]);
+                let [a, b, c] = t.map(|i| merged[i as usize]);
                 a != b && b != c && c != a
             })
             .collect();
-        check_closed(&places, &kept, positions)?;
+        check_closed(&merged, &kept, positions)?;
         let (volume, centroid) = volume_and_centroid(positions, &kept)?;
         let radius = downpour_math::ops::f64::cbrt(volume * 3.0 / (4.0 * std::f64::consts::PI));
         let normals = match normals {
             Some(given) if given.iter().all(|n| dot(*n, *n) > 1.0e-12) => {
                 given.iter().map(|n| normalize(*n)).collect()
             }
-            _ => averaged_normals(positions, &places, &kept),
+            _ => averaged_normals(positions, &merged, &kept),
         };
         let positions = positions
             .iter()
@@ -87,8 +87,8 @@ fn check_numbers(
     if triangles.is_empty() || positions.is_empty() {
         return bad(format!("it has {} vertices and {} triangles", positions.len(), triangles.len()));
     }
-    if triangles.len() > MOST_TRIANGLES {
-        return bad(format!("it has {} triangles, more than {MOST_TRIANGLES}", triangles.len()));
+    if triangles.len() > MAX_TRIANGLES {
+        return bad(format!("it has {} triangles, more than {MAX_TRIANGLES}", triangles.len()));
     }
     if let Some(i) = positions.iter().position(|p| p.iter().any(|c| !c.is_finite())) {
         return bad(format!("vertex {i} is at {:?}", positions[i]));
@@ -107,23 +107,23 @@ fn check_numbers(
     }
 }
 
-/// For each vertex the first one at the same place.
+/// First vertex at the same position, for each vertex.
 fn merge(positions: &[[f32; 3]]) -> Vec<u32> {
     let mut first = HashMap::with_capacity(positions.len());
     (0u32..)
         .zip(positions)
-        // -0 and 0 are one place.
+        // -0 and 0 are the same position.
         .map(|(i, p)| *first.entry(p.map(|c| (c + 0.0).to_bits())).or_insert(i))
         .collect()
 }
 
-fn check_closed(places: &[u32], triangles: &[[u32; 3]], positions: &[[f32; 3]]) -> Result<(), MaskError> {
+fn check_closed(merged: &[u32], triangles: &[[u32; 3]], positions: &[[f32; 3]]) -> Result<(), MaskError> {
     if triangles.is_empty() {
         return bad("all triangles are degenerate: they collapse to lines or points".to_owned());
     }
     let mut edges: HashMap<(u32, u32), u32> = HashMap::with_capacity(triangles.len() * 3);
     for t in triangles {
-        let [a, b, c] = t.map(|i| places[i as usize]);
+        let [a, b, c] = t.map(|i| merged[i as usize]);
         for edge in [(a, b), (b, c), (c, a)] {
             *edges.entry(edge).or_default() += 1;
         }
@@ -132,24 +132,24 @@ fn check_closed(places: &[u32], triangles: &[[u32; 3]], positions: &[[f32; 3]]) 
     let mut open = 0;
     let mut first_open = None;
     for t in triangles {
-        let [a, b, c] = t.map(|i| places[i as usize]);
+        let [a, b, c] = t.map(|i| merged[i as usize]);
         for (from, to) in [(a, b), (b, c), (c, a)] {
-            let place = || format!("{:?} to {:?}", positions[from as usize], positions[to as usize]);
+            let edge = || format!("{:?} to {:?}", positions[from as usize], positions[to as usize]);
             if edges[&(from, to)] > 1 {
                 return bad(format!(
-                    "the edge {} runs the same way in {} triangles (one faces the wrong way, or more than two meet)",
-                    place(),
+                    "the edge {} has the same direction in {} triangles (one has the wrong winding, or more than two meet)",
+                    edge(),
                     edges[&(from, to)]
                 ));
             }
             if !edges.contains_key(&(to, from)) {
                 open += 1;
-                first_open.get_or_insert_with(place);
+                first_open.get_or_insert_with(edge);
             }
         }
     }
     match first_open {
-        Some(place) => bad(format!("it is open: {open} edges have one triangle only, the first {place}")),
+        Some(edge) => bad(format!("it is open: {open} edges have one triangle only, the first {edge}")),
         None => Ok(()),
     }
 }
@@ -168,7 +168,7 @@ fn volume_and_centroid(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Result
         let normal = cross(sub(b, a), sub(c, a));
         area += 0.5 * dot(normal, normal).sqrt();
     }
-    // A sphere has the largest volume of its area; a millionth of it is a sheet.
+    // A sphere has the largest volume for its area; below a millionth of it the mesh is a sheet.
     let sphere = area * area.sqrt() / (6.0 * std::f64::consts::PI.sqrt());
     if !volume.is_finite() || volume.abs() <= 1.0e-6 * sphere {
         return bad(format!("it is degenerate: its volume is {volume:e} for an area of {area:e}"));
@@ -179,8 +179,8 @@ fn volume_and_centroid(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Result
     Ok((volume, add(origin, scale(moment, 1.0 / volume))))
 }
 
-/// Normals of the triangles round each place, weighted by their angle there.
-fn averaged_normals(positions: &[[f32; 3]], places: &[u32], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
+/// Normals at each position: mean over its triangles, weighted by their angle there.
+fn averaged_normals(positions: &[[f32; 3]], merged: &[u32], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
     let mut sums = vec![[0.0f64; 3]; positions.len()];
     for t in triangles {
         let corners = t.map(|i| positions[i as usize].map(f64::from));
@@ -193,16 +193,16 @@ fn averaged_normals(positions: &[[f32; 3]], places: &[u32], triangles: &[[u32; 3
             let (a, b) = (sub(corners[(k + 1) % 3], corners[k]), sub(corners[(k + 2) % 3], corners[k]));
             let turned = cross(a, b);
             let angle = downpour_math::ops::f64::atan2(dot(turned, turned).sqrt(), dot(a, b));
-            let place = places[t[k] as usize] as usize;
-            sums[place] = add(sums[place], scale(normal, angle / length));
+            let vertex = merged[t[k] as usize] as usize;
+            sums[vertex] = add(sums[vertex], scale(normal, angle / length));
         }
     }
-    places
+    merged
         .iter()
-        .map(|&place| {
-            let n = sums[place as usize];
+        .map(|&vertex| {
+            let n = sums[vertex as usize];
             let length = dot(n, n).sqrt();
-            // A place that no kept triangle uses has no normal, and is never asked for one.
+            // A position that no kept triangle uses has no normal, which is never read.
             if length > 0.0 { n.map(|c| (c / length) as f32) } else { [0.0, 1.0, 0.0] }
         })
         .collect()

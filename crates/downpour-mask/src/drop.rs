@@ -1,8 +1,8 @@
-//! The mask of a drop of revolution. Twin of `shaders/wgsl/mask/drop.wgsl`.
+//! Mask of a drop of revolution. Twin of `shaders/wgsl/mask/drop.wgsl`.
 //!
-//! [`trace_drop`] is the fast path: machine vectors, rows in parallel, and, because a drop of revolution looks
-//! the same from left and right, half of the texels. [`trace_drop_scalar`] is the plain loop over all texels, the
-//! twin of the GPU's kernel; the two give the same bits. [`trace_drop_f64`] is the reference above both.
+//! [`trace_drop`] is the fast path: SIMD, rows in parallel, and half of the texels, because a drop of revolution is
+//! mirror-symmetric. [`trace_drop_scalar`] is the plain loop over all texels, the twin of the GPU kernel; the two
+//! give the same bits. [`trace_drop_f64`] is the reference for both.
 
 use downpour_drop::shape::DropShape;
 use downpour_math::real::{Lanes, Real, Simd, WithLanes, with_widest_lanes};
@@ -13,13 +13,13 @@ use crate::silhouette::mask_silhouette_cut;
 use crate::trace::{TracedDrop, mask_trace_through};
 use crate::{Mask, MaskError, MaskOptions, MaskTexel};
 
-/// More lanes than any vector has.
-const MOST_LANES: usize = 64;
+/// Upper bound of the number of SIMD lanes.
+const MAX_LANES: usize = 64;
 
 /// Newton steps of the reference.
 const REFERENCE_STEPS: u32 = 16;
 
-/// A texel as the tracer gives it, before it is stored.
+/// Texel as the tracer returns it, before it is stored.
 struct Texel<R> {
     direction: [R; 3],
     coverage: R,
@@ -30,7 +30,7 @@ struct Texel<R> {
     reflections: R,
 }
 
-/// The texel round (x, y), of width `pixel`.
+/// Texel of width `pixel` centered at (x, y).
 #[inline(always)]
 fn mask_drop_texel<R: Real>(drop: &TracedDrop, pixel: R, x: R, y: R) -> Texel<R> {
     let zero = x.constant(0.0);
@@ -75,7 +75,7 @@ impl Texel<f32> {
     }
 }
 
-/// What the tracer needs of a shape seen from somewhere, and the mask without its texels.
+/// Prepares a shape in a view for the tracer; returns it with the mask without its texels.
 pub(crate) fn prepare(shape: &DropShape, options: &MaskOptions) -> Result<(TracedDrop, Mask), MaskError> {
     options.check()?;
     let radius = shape.equivalent_radius();
@@ -101,7 +101,7 @@ pub(crate) fn prepare(shape: &DropShape, options: &MaskOptions) -> Result<(Trace
     Ok((drop, mask))
 }
 
-/// Traces the mask of a drop: the fast path.
+/// Traces the mask of a drop (fast path).
 ///
 /// ```
 /// use downpour_drop::DropShape;
@@ -114,26 +114,26 @@ pub(crate) fn prepare(shape: &DropShape, options: &MaskOptions) -> Result<(Trace
 /// ```
 ///
 /// # Errors
-/// [`MaskError::Size`] or [`MaskError::OutOfRange`] if the options cannot be met.
+/// [`MaskError::Size`] or [`MaskError::OutOfRange`] if an option is out of range.
 pub fn trace_drop(shape: &DropShape, options: &MaskOptions) -> Result<Mask, MaskError> {
     let (drop, mut mask) = prepare(shape, options)?;
     let size = options.size as usize;
     mask.texels = vec![MaskTexel::default(); size * size];
     let pixel = mask.texel_width() as f32;
     mask.texels.par_chunks_mut(size).enumerate().for_each(|(row, texels)| {
-        let y = centre(size, size - 1 - row, pixel);
+        let y = center(size, size - 1 - row, pixel);
         with_widest_lanes(Row { drop: &drop, pixel, y, texels });
     });
     Ok(mask)
 }
 
-/// The middle of texel `index` of `size`, from the left or from below.
+/// Center of texel `index` of `size`, from the left or from below.
 #[inline(always)]
-fn centre(size: usize, index: usize, pixel: f32) -> f32 {
+fn center(size: usize, index: usize, pixel: f32) -> f32 {
     (index as f32 + 0.5 - size as f32 * 0.5) * pixel
 }
 
-/// One row of a mask, traced with machine vectors: the right half, mirrored to the left.
+/// One row of a mask, traced with SIMD: the right half, mirrored to the left.
 struct Row<'a> {
     drop: &'a TracedDrop,
     pixel: f32,
@@ -148,14 +148,14 @@ impl WithLanes for Row<'_> {
     fn run<S: Simd>(mut self, simd: S) {
         let size = self.texels.len();
         let lanes = Lanes::<S>::COUNT;
-        debug_assert!(lanes <= MOST_LANES, "a machine with vectors of more than {MOST_LANES} numbers");
+        debug_assert!(lanes <= MAX_LANES, "a machine with vectors of more than {MAX_LANES} numbers");
         let mut column = size / 2;
         while column < size {
             let count = lanes.min(size - column);
-            let mut x = [0.0; MOST_LANES];
+            let mut x = [0.0; MAX_LANES];
             for (k, x) in x[..lanes].iter_mut().enumerate() {
                 // Lanes past the edge repeat the last texel.
-                *x = centre(size, column + k.min(count - 1), self.pixel);
+                *x = center(size, column + k.min(count - 1), self.pixel);
             }
             let texel = mask_drop_texel(
                 self.drop,
@@ -176,9 +176,10 @@ impl Row<'_> {
         let [dx, dy, dz] = texel.direction;
         let [rx, ry, rz] = texel.reflected;
         let [ix, iy, iz] = texel.internal;
-        let mut columns = [[0.0f32; MOST_LANES]; 13];
-        let shares = [texel.coverage, texel.transmittance, texel.internal_transmittance, texel.reflections];
-        let fields = [dx, dy, dz, rx, ry, rz, ix, iy, iz].into_iter().chain(shares);
+        let mut columns = [[0.0f32; MAX_LANES]; 13];
+        let fractions =
+            [texel.coverage, texel.transmittance, texel.internal_transmittance, texel.reflections];
+        let fields = [dx, dy, dz, rx, ry, rz, ix, iy, iz].into_iter().chain(fractions);
         for (field, into) in fields.zip(&mut columns) {
             field.store(into);
         }
@@ -213,14 +214,14 @@ impl Row<'_> {
             left.direction[0] = -left.direction[0];
             left.reflected[0] = -left.reflected[0];
             left.internal[0] = -left.internal[0];
-            // The middle column of an odd size is its own mirror: the right one is written last.
+            // The center column of an odd size is its own mirror image: the right one is written last.
             self.texels[last - (column + k)] = left;
             self.texels[column + k] = right;
         }
     }
 }
 
-/// Traces the mask of a drop with a plain loop over all texels, one at a time: the twin of the GPU's kernel.
+/// Traces the mask of a drop with a plain loop over all texels, one at a time: the twin of the GPU kernel.
 ///
 /// # Errors
 /// As [`trace_drop`].
@@ -230,14 +231,14 @@ pub fn trace_drop_scalar(shape: &DropShape, options: &MaskOptions) -> Result<Mas
     let pixel = mask.texel_width() as f32;
     mask.texels = (0..size * size)
         .map(|i| {
-            let (x, y) = (centre(size, i % size, pixel), centre(size, size - 1 - i / size, pixel));
+            let (x, y) = (center(size, i % size, pixel), center(size, size - 1 - i / size, pixel));
             mask_drop_texel(&drop, pixel, x, y).store()
         })
         .collect();
     Ok(mask)
 }
 
-/// Traces the mask of a drop in f64, rounded to f32 at the end: the reference of the other two.
+/// Traces the mask of a drop in f64, rounded to f32 at the end: the reference for the other two.
 ///
 /// # Errors
 /// As [`trace_drop`].
@@ -248,7 +249,7 @@ pub fn trace_drop_f64(shape: &DropShape, options: &MaskOptions) -> Result<Mask, 
     mask.texels = (0..options.size)
         .flat_map(|row| (0..options.size).map(move |column| (column, row)))
         .map(|(column, row)| {
-            let [x, y] = mask.texel_centre(column, row);
+            let [x, y] = mask.texel_center(column, row);
             let texel = mask_drop_texel(&drop, pixel, x, y);
             let round = |v: f64| v as f32;
             Texel {
@@ -266,5 +267,5 @@ pub fn trace_drop_f64(shape: &DropShape, options: &MaskOptions) -> Result<Mask, 
     Ok(mask)
 }
 
-/// How [`MaskTexel::reflections`] says that the light did not find out of the drop.
+/// Value of [`MaskTexel::reflections`] for light that does not leave the drop.
 pub const LOST: u32 = MASK_TRACE_REFLECTIONS + 1;

@@ -1,14 +1,14 @@
 //! Masks as files: OpenEXR, KTX2, PNG.
 //!
-//! Everything works on bytes; opening, publishing and renaming files is the caller's. The same masks give the
-//! same bytes on every machine. What is read is checked before memory is taken for it.
+//! All functions work on bytes; opening, publishing and renaming files is up to the caller. The same masks give the
+//! same bytes on every machine. Input is validated before memory is allocated for it.
 //!
 //! | format | holds | for |
 //! |---|---|---|
 //! | [`exr`] | one mask, all of it, f32 or half | measuring, compositing |
 //! | [`ktx2`] | an array of masks over diameters, three half layers each | textures of an engine |
 //! | [`texture_array`] | any texture array as KTX2 | other crates of textures |
-//! | [`png`] | the directions as colours | looking at |
+//! | [`png`] | the directions as colors | preview |
 
 pub mod exr;
 pub mod ktx2;
@@ -17,7 +17,7 @@ pub mod texture_array;
 
 use crate::{MaskError, View};
 
-/// What a mask file says about its masks besides the texels: `key=value` pairs, separated by semicolons.
+/// Description of the masks in a file besides the texels: `key=value` pairs, separated by semicolons.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Description {
     /// Volume-equivalent diameters in metres.
@@ -28,7 +28,7 @@ pub(crate) struct Description {
     pub(crate) refractive_index: f64,
 }
 
-/// Version of the description. Another one is refused.
+/// Version of the description. Other versions are rejected.
 const VERSION: &str = "2";
 
 impl Description {
@@ -76,7 +76,7 @@ impl Description {
     }
 }
 
-/// Text from a file for a message: short, and without control characters.
+/// Shortens text from a file for a message and removes control characters.
 #[must_use]
 pub fn shorten(text: &str) -> String {
     let clean: String = text.chars().take(60).flat_map(char::escape_default).collect();

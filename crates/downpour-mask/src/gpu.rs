@@ -1,4 +1,4 @@
-//! The tracer on a GPU. Texels come from the same formulas as on the CPU; the parity tests hold the two equal.
+//! Mask tracer on a GPU. Texels come from the same formulas as on the CPU; parity tests compare the two.
 
 use downpour_drop::shape::{DropShape, DropShapeCoefficients};
 use downpour_gpu::{ComputeKernel, Gpu, GpuError, wgpu};
@@ -8,25 +8,25 @@ use crate::closed_mesh::ClosedMesh;
 use crate::model::TracedModel;
 use crate::{Mask, MaskError, MaskOptions, MaskTexel};
 
-/// Why a mask could not be traced on a GPU.
+/// Error of tracing a mask on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuMaskError {
-    /// The mask itself is not possible.
+    /// The mask options are not valid.
     #[error(transparent)]
     Mask(#[from] MaskError),
-    /// The GPU did not do it.
+    /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
 
-/// The uniform of the drop's kernel. The same layout as `MaskTracedDrop` in WGSL.
+/// Uniform of the drop kernel. The same layout as `MaskTracedDrop` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropUniform {
     /// Shape coefficients.
     pub shape: DropShapeCoefficients,
-    /// The drop's axis in the frame of the view.
+    /// Axis of the drop in the frame of the view.
     pub up: [f32; 3],
     /// Refractive index.
     pub index: f32,
@@ -40,11 +40,11 @@ pub struct DropUniform {
     pub size: u32,
 }
 
-/// The uniform of the model's kernel. The same layout as `MaskModelParameters` in WGSL.
+/// Uniform of the model kernel. The same layout as `MaskModelParameters` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct ModelUniform {
-    /// Where rays start.
+    /// Start of the rays along z, in front of the model.
     pub front: f32,
     /// Refractive index.
     pub index: f32,
@@ -56,7 +56,7 @@ pub struct ModelUniform {
     pub first_row: u32,
 }
 
-/// The pipelines of the tracer: made once, used for any number of masks.
+/// Pipelines of the tracer: created once, used for any number of masks.
 #[derive(Clone, Debug)]
 pub struct GpuTracer {
     gpu: Gpu,
@@ -64,14 +64,14 @@ pub struct GpuTracer {
     model: ComputeKernel,
 }
 
-/// Rows of a model's mask per dispatch: a submission must stay far below the time after which a driver resets.
+/// Rows of a model's mask per dispatch: short enough that the driver's watchdog does not reset the device.
 const MODEL_ROWS: u32 = 128;
 
 impl GpuTracer {
-    /// Makes the pipelines.
+    /// Creates the pipelines.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// [`GpuError`] of the device.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
             gpu: gpu.clone(),
@@ -80,10 +80,10 @@ impl GpuTracer {
         })
     }
 
-    /// Traces the mask of a drop: what [`trace_drop`](crate::trace_drop) does on the CPU.
+    /// Traces the mask of a drop, as [`trace_drop`](crate::trace_drop) does on the CPU.
     ///
     /// # Errors
-    /// [`GpuMaskError::Mask`] if the options cannot be met, else what the GPU says.
+    /// [`GpuMaskError::Mask`] if an option is out of range, else the error of the device.
     pub fn trace_drop(&self, shape: &DropShape, options: &MaskOptions) -> Result<Mask, GpuMaskError> {
         let (mut mask, texels, bindings) = self.bind_drop(shape, options)?;
         let groups = options.size.div_ceil(8);
@@ -92,7 +92,7 @@ impl GpuTracer {
         Ok(mask)
     }
 
-    /// The time that the device takes for the mask of a drop, without transfers.
+    /// Measures the time of the device for the mask of a drop, without transfers.
     ///
     /// # Errors
     /// As [`GpuTracer::trace_drop`].
@@ -107,7 +107,7 @@ impl GpuTracer {
         Ok(self.gpu.time(&[self.drop.dispatch(&bindings, [groups, groups, 1])], repeats)?)
     }
 
-    /// Traces the mask of a drop model: what [`trace_model`](crate::trace_model) does on the CPU.
+    /// Traces the mask of a drop model, as [`trace_model`](crate::trace_model) does on the CPU.
     ///
     /// # Errors
     /// As [`GpuTracer::trace_drop`].
@@ -142,7 +142,7 @@ impl GpuTracer {
         Ok(mask)
     }
 
-    /// The empty mask of a drop, the buffer of its texels, and the kernel's bindings.
+    /// Empty mask of a drop, buffer of its texels, and bindings of the kernel.
     fn bind_drop(
         &self,
         shape: &DropShape,

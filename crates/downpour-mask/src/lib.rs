@@ -1,8 +1,8 @@
-//! Refraction masks: what a raindrop does to the light behind it, texel by texel.
+//! Refraction masks: refraction and reflection of light by a raindrop, per texel.
 //!
-//! - [`trace_drop`]: the mask of a drop of revolution from any elevation, exact through both interfaces
-//!   ([`trace`]), with the covered share of each texel ([`silhouette`]); [`trace_drop_scalar`] is the twin of the GPU's
-//!   kernel, [`trace_drop_f64`] the reference above both;
+//! - [`trace_drop`]: mask of a drop of revolution from any elevation, exact through both interfaces
+//!   ([`trace`]), with the coverage of each texel ([`silhouette`]); [`trace_drop_scalar`] is the twin of the GPU
+//!   kernel, [`trace_drop_f64`] the reference for both;
 //! - [`trace_model`]: the same for any closed mesh ([`ClosedMesh`]) through a hierarchy of boxes ([`downpour_bvh`]);
 //! - [`wobble`]: a ray through a drop that oscillates;
 //! - `gpu` (feature `wgpu`): both on a GPU;
@@ -24,7 +24,7 @@ pub mod trace;
 mod view;
 pub mod wobble;
 
-pub use closed_mesh::{ClosedMesh, MOST_TRIANGLES};
+pub use closed_mesh::{ClosedMesh, MAX_TRIANGLES};
 pub use drop::{LOST, trace_drop, trace_drop_f64, trace_drop_scalar};
 pub use error::MaskError;
 pub use mask::{Mask, MaskOptions, MaskTexel, SIZES};

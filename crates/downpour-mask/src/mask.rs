@@ -1,39 +1,39 @@
-//! What a mask is.
+//! Refraction mask and its options.
 
 use crate::{MaskError, View};
 
 /// Smallest and largest number of pixels along an edge of a mask.
 pub const SIZES: std::ops::RangeInclusive<u32> = 4..=4096;
 
-/// One texel: what the drop does to the viewer's ray through it. The same layout as `MaskTexel` in WGSL.
+/// One texel: the viewer's ray through it after the drop. The same layout as `MaskTexel` in WGSL.
 ///
 /// Directions are in the frame of the view: x right, y up, z towards the viewer. Light that comes straight from
 /// behind the drop has the direction (0, 0, -1).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct MaskTexel {
-    /// Direction in which the scene is seen through the drop, of length 1; 0 where nothing was traced.
+    /// Direction of the scene point seen through the drop, of length 1; 0 in texels that were not traced.
     pub direction: [f32; 3],
-    /// Covered share of the texel, in [0, 1].
+    /// Covered fraction of the texel, in [0, 1].
     pub coverage: f32,
-    /// Direction in which the scene is seen by reflection on the outside, of length 1; 0 where nothing was traced.
+    /// Direction of the scene point seen by reflection on the outside, of length 1; 0 in texels that were not traced.
     pub reflected: [f32; 3],
-    /// Share of unpolarised light that comes through both interfaces, in [0, 1].
+    /// Fraction of unpolarized light transmitted by both interfaces, in [0, 1].
     pub transmittance: f32,
-    /// Direction in which the scene is seen by light that was reflected inside once without being totally reflected, of
-    /// length 1; 0 where nothing was traced.
+    /// Direction of the scene point seen by light that was reflected inside once without being totally reflected, of
+    /// length 1; 0 in texels that were not traced.
     pub internal: [f32; 3],
-    /// Share of unpolarised light that comes so, in [0, 1].
+    /// Fraction of unpolarized light on that path, in [0, 1].
     pub internal_transmittance: f32,
-    /// Total reflections inside the drop before `direction`; 9 where the light did not find out.
+    /// Number of total reflections inside the drop before `direction`; 9 if the light does not leave.
     pub reflections: u32,
     /// Padding of the WGSL layout.
     pub padding: [u32; 3],
 }
 
 impl MaskTexel {
-    /// Share of unpolarised light that is reflected on the outside: exact Fresnel at the angle between
-    /// `reflected` and the viewer. 0 where nothing was traced.
+    /// Fraction of unpolarized light reflected on the outside: exact Fresnel at the angle between `reflected` and the
+    /// viewer. 0 in texels that were not traced.
     #[must_use]
     pub fn reflectance(&self, refractive_index: f32) -> f32 {
         if self.reflected == [0.0; 3] {
@@ -46,18 +46,18 @@ impl MaskTexel {
     }
 }
 
-/// A square picture of what a drop does to light, seen from one direction.
+/// A square image of the refraction by a drop, seen from one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mask {
     /// Pixels along an edge.
     pub size: u32,
     /// Volume-equivalent diameter in metres.
     pub diameter: f64,
-    /// From where the drop is seen.
+    /// Direction from which the drop is seen.
     pub view: View,
     /// Refractive index of water relative to air.
     pub refractive_index: f64,
-    /// Half the width of the picture in units of the volume-equivalent radius: the drop's widest half width and a
+    /// Half the width of the image in units of the volume-equivalent radius: the drop's largest half width and a
     /// border of one texel.
     pub half_extent: f64,
     /// Rows from the top, each from the left.
@@ -71,7 +71,7 @@ impl Mask {
         2.0 * self.half_extent / f64::from(self.size)
     }
 
-    /// The texel in column `column` of row `row`.
+    /// Texel in column `column` of row `row`.
     ///
     /// # Panics
     /// If either is not below [`Mask::size`].
@@ -81,21 +81,21 @@ impl Mask {
         &self.texels[row as usize * self.size as usize + column as usize]
     }
 
-    /// The middle of a texel in units of the volume-equivalent radius.
+    /// Center of a texel in units of the volume-equivalent radius.
     #[must_use]
-    pub fn texel_centre(&self, column: u32, row: u32) -> [f64; 2] {
+    pub fn texel_center(&self, column: u32, row: u32) -> [f64; 2] {
         let middle = f64::from(self.size) * 0.5;
         let width = self.texel_width();
         [(f64::from(column) + 0.5 - middle) * width, (middle - f64::from(row) - 0.5) * width]
     }
 }
 
-/// How a mask is made.
+/// Options of a mask.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaskOptions {
     /// Pixels along an edge: 4 to 4096.
     pub size: u32,
-    /// From where the drop is seen.
+    /// Direction from which the drop is seen.
     pub view: View,
     /// Refractive index of water relative to air: above 1, to 4.
     pub refractive_index: f64,
@@ -109,7 +109,7 @@ impl Default for MaskOptions {
 }
 
 impl MaskOptions {
-    /// Whether the options can be met.
+    /// Checks the options.
     ///
     /// # Errors
     /// [`MaskError::Size`] or [`MaskError::OutOfRange`].

@@ -1,9 +1,9 @@
 //! The mask of a drop given as a mesh. Twin of `shaders/wgsl/mask/model.wgsl`.
 //!
 //! Rays are the same as for a drop of revolution: refraction at the first surface, total reflections inside,
-//! refraction at the last; and what is reflected inside once without being totally reflected. Normals are interpolated over the triangles. A texel whose corners and centre agree
-//! is covered or not; the others are sampled by 8 by 8 rays and traced at the middle of those that hit, or, at
-//! the nearest of them, if the middle misses.
+//! refraction at the last; and light reflected inside once without being totally reflected. Normals are interpolated
+//! over the triangles. A texel whose corners and center agree is covered or not; the others are sampled by 8 by 8
+//! rays and traced at the middle of those that hit, or, if the middle misses, at the nearest of them.
 //!
 //! Limits: light that leaves the mesh and would enter it again (a hollow in the outline) is not followed.
 
@@ -17,13 +17,13 @@ use crate::trace::{Exit, mask_trace_plane_turn, mask_trace_reflectance};
 use crate::{Mask, MaskError, MaskOptions, MaskTexel, View};
 use downpour_bvh::{Bvh, Hit};
 
-/// A mesh turned into the frame of a view, with its hierarchy: what the tracer needs.
+/// A mesh rotated into the frame of a view, with its BVH.
 #[derive(Clone, Debug)]
 pub struct TracedModel {
     pub(crate) bvh: Bvh,
     /// Normals of the three corners of each triangle.
     pub(crate) normals: Vec<[[f32; 3]; 3]>,
-    /// Where rays start: in front of everything.
+    /// Start of the rays along z, in front of the model.
     pub(crate) front: f32,
     pub(crate) half_extent: f64,
     pub(crate) index: f32,
@@ -33,7 +33,7 @@ impl TracedModel {
     /// Turns a mesh into the frame of the view of `options`.
     ///
     /// # Errors
-    /// [`MaskError::Size`] or [`MaskError::OutOfRange`] if the options cannot be met.
+    /// [`MaskError::Size`] or [`MaskError::OutOfRange`] if an option is out of range.
     pub fn new(mesh: &ClosedMesh, options: &MaskOptions) -> Result<Self, MaskError> {
         options.check()?;
         let [_, cos, sin] = options.view.up().map(|c| c as f32);
@@ -53,7 +53,7 @@ impl TracedModel {
         })
     }
 
-    /// Whether the viewer's ray through (x, y) hits the mesh, and where.
+    /// Hit of the viewer's ray through (x, y) with the mesh, if any.
     fn mask_model_hit(&self, x: f32, y: f32) -> Option<Hit> {
         self.bvh.hit([x, y, self.front], [0.0, 0.0, -1.0], MASK_MODEL_NEAREST)
     }
@@ -65,8 +65,8 @@ impl TracedModel {
         normalize(add_scaled(add_scaled(first, b, hit.u), c, hit.v))
     }
 
-    /// Where light that starts at `start`, along `inside`, comes to leave, after total reflections; `None` if it does not. A
-    /// ray that finds no way out has slipped along an edge of the surface: it counts as lost.
+    /// Exit of light that starts at `start`, along `inside`, after total reflections; `None` if it does not leave. A ray
+    /// without an exit has slipped along an edge of the surface: it counts as lost.
     fn mask_model_exit(&self, start: [f32; 3], inside: [f32; 3]) -> Option<Exit<f32>> {
         let (mut point, mut inside) = (start, inside);
         for reflections in 0..=MASK_TRACE_REFLECTIONS {
@@ -141,29 +141,29 @@ impl TracedModel {
         }
     }
 
-    /// The texel of width `pixel` round (x, y).
+    /// Texel of width `pixel` centered at (x, y).
     fn mask_model_texel(&self, x: f32, y: f32, pixel: f32) -> MaskTexel {
         let half = 0.5 * pixel;
-        let centre = self.mask_model_hit(x, y);
+        let center = self.mask_model_hit(x, y);
         let corners = [[-half, -half], [half, -half], [-half, half], [half, half]]
             .map(|[dx, dy]| self.mask_model_hit(x + dx, y + dy).is_some());
-        if centre.is_none() && corners == [false; 4] {
+        if center.is_none() && corners == [false; 4] {
             return MaskTexel::default();
         }
-        if let Some(hit) = centre.filter(|_| corners == [true; 4]) {
+        if let Some(hit) = center.filter(|_| corners == [true; 4]) {
             return MaskTexel { coverage: 1.0, ..self.mask_model_through(x, y, &hit) };
         }
         // The outline cuts the texel.
         let n = MASK_MODEL_SUBSAMPLES;
         let step = pixel / n as f32;
-        let place = |i: u32| {
+        let sample = |i: u32| {
             let (column, row) = (i % n, i / n);
             [x - half + (column as f32 + 0.5) * step, y - half + (row as f32 + 0.5) * step]
         };
         let mut count = 0u32;
         let mut sum = [0.0f32; 2];
         for i in 0..n * n {
-            let [px, py] = place(i);
+            let [px, py] = sample(i);
             if self.mask_model_hit(px, py).is_some() {
                 count += 1;
                 sum = [sum[0] + px, sum[1] + py];
@@ -180,7 +180,7 @@ impl TracedModel {
         // The covered part is not convex: take the sample nearest to its middle.
         let mut best = (f32::INFINITY, [0.0; 2], None);
         for i in 0..n * n {
-            let [px, py] = place(i);
+            let [px, py] = sample(i);
             let square = (px - middle[0]) * (px - middle[0]) + (py - middle[1]) * (py - middle[1]);
             if square < best.0
                 && let Some(hit) = self.mask_model_hit(px, py)
@@ -195,12 +195,12 @@ impl TracedModel {
     }
 }
 
-/// Traces the mask of a drop model, rows in parallel. The model's own +Y is the drop's axis.
+/// Traces the mask of a drop model, rows in parallel. The model's +Y is the drop's axis.
 ///
-/// `diameter` is what the mask says of itself, in metres; `None` takes the model's own units for metres.
+/// `diameter` is written to the mask, in metres; `None` takes the model's units for metres.
 ///
 /// # Errors
-/// [`MaskError::Size`] or [`MaskError::OutOfRange`] if the options cannot be met.
+/// [`MaskError::Size`] or [`MaskError::OutOfRange`] if an option is out of range.
 pub fn trace_model(
     mesh: &ClosedMesh,
     options: &MaskOptions,

@@ -1,4 +1,4 @@
-//! The outline of a drop in a pixel: how much of the pixel it covers, and where in it a ray should be traced.
+//! Silhouette of a drop in a pixel: coverage and sample point.
 //!
 //! On the viewer's ray through a pixel the gauge g has a minimum; the drop is hit where that is below 1. At the
 //! minimum the gradient of g lies in the image plane, so (g - 1) / |grad g| is the distance to the outline, and
@@ -6,10 +6,10 @@
 //! of the outline within a pixel is neglected: it adds 1 / (12 R^2) to the area of a disc of R
 //! pixels.
 //!
-//! A pixel that is cut is traced at the middle of its covered part, not at its centre: the ray then belongs to
-//! the drop, and the direction at the edge is that of what is seen there. Pixels just outside get the direction
-//! at the outline, so that a texture filter has something to mix. No ray is traced nearer to the outline than a
-//! tenth of a pixel: there the direction changes faster than f32 can follow.
+//! A pixel on the outline is traced at the middle of its covered part, not at its center: the ray then hits the
+//! drop, and the direction is that of the covered part. Pixels just outside get the direction at the outline, so
+//! that texture filters have a value to interpolate. No ray is traced nearer to the outline than a tenth of a pixel:
+//! there the direction changes faster than f32 resolves.
 //!
 //! Lengths are in units of the equivalent radius, as in [`trace`](crate::trace). Twin of
 //! `shaders/wgsl/mask/silhouette.wgsl`.
@@ -22,14 +22,14 @@ use downpour_shaders::mask::{
 
 use crate::trace::{TracedDrop, mask_trace_curvature, mask_trace_spheroid, mask_trace_surface};
 
-/// What the outline makes of a pixel.
+/// Coverage and sample point of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelCut<R> {
-    /// Covered share of the pixel, in [0, 1].
+    /// Covered fraction of the pixel, in [0, 1].
     pub coverage: R,
-    /// Where to trace: the pixel's centre, or the middle of its covered part.
+    /// Sample point: the pixel's center, or the middle of its covered part.
     pub sample: [R; 2],
-    /// 1 where there is something to trace: the drop is in the pixel or within the bleed.
+    /// 1 if the pixel is traced: the drop is in the pixel or within the bleed.
     pub traced: R,
 }
 
@@ -65,8 +65,8 @@ pub fn mask_silhouette_distance<R: Real>(drop: &TracedDrop, x: R, y: R) -> [R; 3
     [distance, gx / across, gy / across]
 }
 
-/// The share of a unit square on the inner side of a line at distance `distance` from the square's centre (positive
-/// if the centre is outside), with the line's unit normal (nx, ny).
+/// Fraction of a unit square on the inner side of a line at distance `distance` from the square's center (positive
+/// if the center is outside), with the line's unit normal (nx, ny).
 #[inline(always)]
 #[must_use]
 pub fn mask_silhouette_area<R: Real>(distance: R, nx: R, ny: R) -> R {
@@ -82,7 +82,7 @@ pub fn mask_silhouette_area<R: Real>(distance: R, nx: R, ny: R) -> R {
     R::select(zero.less(distance), smaller, one - smaller)
 }
 
-/// Coverage and sample point of the pixel of width `pixel` round (x, y).
+/// Coverage and sample point of the pixel of width `pixel` centered at (x, y).
 #[inline(always)]
 #[must_use]
 pub fn mask_silhouette_cut<R: Real>(drop: &TracedDrop, pixel: R, x: R, y: R) -> PixelCut<R> {

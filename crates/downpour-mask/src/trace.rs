@@ -6,7 +6,7 @@
 //! is |p| = rho(x) (`downpour_drop::shape`).
 //!
 //! The gauge of a point is g(p) = |p| / rho(x): below 1 inside, 1 on the surface. Along a line, G = g^2 is close to
-//! a parabola (for an ellipsoid it is one), so the surface is met by Newton steps on the parabola with the value
+//! a parabola (for an ellipsoid it is one), so the surface is found by Newton steps on the parabola with the value
 //! and slope of G and the curvature of the reference spheroid. Unlike a step on the tangent, that converges at
 //! grazing incidence too. With
 //!
@@ -17,9 +17,9 @@
 //! Light is traced backwards, from the viewer; transmittance is the same in both directions. Twin of
 //! `shaders/wgsl/mask/trace.wgsl`.
 //!
-//! Light that is reflected inside without being totally reflected is followed to where it leaves next: seen from above, a
-//! drop before dark ground has a fourth of its light so. What is reflected a second time is not (it is the remainder of
-//! 1 - transmittance - reflectance - internal transmittance: 0.7 % of all light through a sphere).
+//! Light reflected inside without being totally reflected is followed to its next exit: seen from above, a drop before
+//! dark ground has a fourth of its light from this path. Light reflected a second time is not followed (it is the
+//! remainder 1 - transmittance - reflectance - internal transmittance: 0.7 % of all light through a sphere).
 //!
 //! Limits: orthographic rays (a drop is much smaller than its distance); geometrical optics.
 
@@ -46,7 +46,7 @@ pub struct TracedDrop {
     pub steps: u32,
 }
 
-/// A point of the surface and what the tracer knows there.
+/// A point of the surface: gauge and gradient.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface<R> {
     /// G - 1: the gauge squared, less 1.
@@ -55,7 +55,7 @@ pub struct Surface<R> {
     pub half_gradient: [R; 3],
 }
 
-/// Where light inside a drop comes to leave it.
+/// Exit of light from the inside of a drop.
 #[derive(Clone, Copy, Debug)]
 pub struct Exit<R> {
     /// Point of the surface.
@@ -64,31 +64,31 @@ pub struct Exit<R> {
     pub normal: [R; 3],
     /// Direction of the light inside, of length 1.
     pub inside: [R; 3],
-    /// Direction of the light that leaves; that inside where none does.
+    /// Direction of the light outside; the direction inside if no light leaves.
     pub outside: [R; 3],
-    /// Total reflections on the way there; one more than `MASK_TRACE_REFLECTIONS` if it does not find out.
+    /// Number of total reflections before the exit; `MASK_TRACE_REFLECTIONS` + 1 if the light does not leave.
     pub reflections: R,
-    /// 1 if it does not find out, else 0.
+    /// 1 if the light does not leave, else 0.
     pub lost: R,
 }
 
-/// Where a ray goes after the drop.
+/// Paths of a ray after the drop.
 #[derive(Clone, Copy, Debug)]
 pub struct Through<R> {
     /// Direction of the light that is seen through the drop (from the drop to the scene), of length 1.
     pub direction: [R; 3],
-    /// Share of unpolarised light that both interfaces let through; 0 if the light is lost inside.
+    /// Fraction of unpolarized light transmitted by both interfaces; 0 if the light is lost inside.
     pub transmittance: R,
     /// Direction of the light that is seen by reflection on the outside, of length 1.
     pub reflected: [R; 3],
-    /// Share of unpolarised light that is reflected on the outside.
+    /// Fraction of unpolarized light reflected on the outside.
     pub reflectance: R,
     /// Direction of the light that is seen after one reflection inside that was not total, of length 1.
     pub internal: [R; 3],
-    /// Share of unpolarised light that leaves so; 0 if the light is lost inside.
+    /// Fraction of unpolarized light on that path; 0 if the light is lost inside.
     pub internal_transmittance: R,
-    /// How often the ray was totally reflected before `direction` (0 for a sphere, always); one more than
-    /// `MASK_TRACE_REFLECTIONS` if it did not find out.
+    /// Number of total reflections before `direction` (0 for a sphere, always); `MASK_TRACE_REFLECTIONS` + 1 if the light
+    /// does not leave.
     pub reflections: R,
 }
 
@@ -132,8 +132,8 @@ pub fn mask_trace_spheroid<R: Real>(drop: &TracedDrop, a: [R; 3], b: [R; 3]) -> 
     (dot(a, b) - along) * wide + along * tall
 }
 
-/// The step along a line on which G - 1 = `excess`, dG/dt = 2 `slope`, d2G/dt2 = 2 `curvature`, to the root
-/// before (`side` = -1) or behind (`side` = 1) the minimum; to the minimum where there is no root.
+/// Step along a line on which G - 1 = `excess`, dG/dt = 2 `slope`, d2G/dt2 = 2 `curvature`, to the root
+/// before (`side` = -1) or behind (`side` = 1) the minimum; to the minimum if there is no root.
 #[inline(always)]
 #[must_use]
 pub fn mask_trace_step<R: Real>(excess: R, slope: R, curvature: R, side: R) -> R {
@@ -149,8 +149,8 @@ pub fn mask_trace_step<R: Real>(excess: R, slope: R, curvature: R, side: R) -> R
     R::select(discriminant.less(zero), -slope / curvature, to_root)
 }
 
-/// The point where the line from `origin` along `direction` meets the surface before (`side` = -1) or behind
-/// (`side` = 1) its nearest approach; the nearest approach where it misses.
+/// Point where the line from `origin` along `direction` meets the surface before (`side` = -1) or behind
+/// (`side` = 1) its nearest approach; the nearest approach if it misses.
 #[inline(always)]
 #[must_use]
 pub fn mask_trace_meet<R: Real>(drop: &TracedDrop, origin: [R; 3], direction: [R; 3], side: R) -> [R; 3] {
@@ -174,7 +174,7 @@ pub fn mask_trace_normal<R: Real>(drop: &TracedDrop, point: [R; 3]) -> [R; 3] {
 }
 
 /// cos 2 psi, with psi the angle between the planes of incidence of two interfaces: `from` and `to` are the
-/// normals of the two, `direction` the ray between them. 1 where a plane is not defined.
+/// normals of the two, `direction` the ray between them. 1 if a plane is not defined.
 #[inline(always)]
 #[must_use]
 pub fn mask_trace_plane_turn<R: Real>(direction: [R; 3], from: [R; 3], to: [R; 3]) -> R {
@@ -187,7 +187,7 @@ pub fn mask_trace_plane_turn<R: Real>(direction: [R; 3], from: [R; 3], to: [R; 3
     R::select(both.less(tiny), one, turn)
 }
 
-/// Where light that starts at a point of the surface, along `inside`, comes to leave, after total reflections.
+/// Exit of light that starts at a point of the surface, along `inside`, after total reflections.
 #[inline(always)]
 #[must_use]
 pub fn mask_trace_exit<R: Real>(drop: &TracedDrop, start: [R; 3], inside: [R; 3]) -> Exit<R> {
@@ -226,7 +226,7 @@ pub fn mask_trace_exit<R: Real>(drop: &TracedDrop, start: [R; 3], inside: [R; 3]
     }
 }
 
-/// Shares of the power that are reflected where light comes to leave, across and within the plane of incidence.
+/// Reflected fractions of the power at an exit, across and within the plane of incidence.
 #[inline(always)]
 #[must_use]
 pub fn mask_trace_reflectance<R: Real>(exit: &Exit<R>, index: R) -> [R; 2] {
@@ -253,9 +253,9 @@ pub fn mask_trace_through<R: Real>(drop: &TracedDrop, x: R, y: R) -> Through<R> 
     let (mut inside, _) = optics_refract(incident, entry_normal, one / index);
     inside = normalize(inside);
 
-    // Polarisation is followed from interface to interface: `polarised` is half the difference of what is polarised across
-    // and within the plane of incidence. A total reflection turns it in ways that depend on phase; from there on light counts
-    // as unpolarised.
+    // Polarization is followed from interface to interface: `polarised` is half the difference between the power polarized
+    // across and that within the plane of incidence. A total reflection changes it by a phase-dependent amount; from there on
+    // light counts as unpolarized.
     let exit = mask_trace_exit(drop, entry, inside);
     let turn = mask_trace_plane_turn(inside, entry_normal, exit.normal);
     let polarised = R::select(zero.less(exit.reflections), zero, (entry_p - entry_s) * half * turn);

@@ -1,4 +1,4 @@
-//! From where a drop is seen.
+//! Direction from which a drop is seen.
 
 use downpour_math::ops;
 
@@ -14,7 +14,7 @@ impl View {
     /// The viewer level with the drop.
     pub const SIDE: Self = Self { elevation: 0.0 };
 
-    /// The viewer `elevation` radians above the drop's horizon: pi/2 looks straight down on it, -pi/2 straight up.
+    /// View from `elevation` radians above the drop's horizon: pi/2 looks straight down on it, -pi/2 straight up.
     ///
     /// # Errors
     /// [`MaskError::OutOfRange`] outside [-pi/2, pi/2] or if not finite.

@@ -1,4 +1,4 @@
-//! A ray through a drop that oscillates, for pictures of many: to where its light leaves, three times over.
+//! A ray through an oscillating drop, for images of many drops: its first three exits.
 //!
 //! The surface is r = rho(x) f(x, h) scale with f = 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h: the shape at rest times the factor of
 //! `downpour_drop::oscillation`. p is a point, x = -p.y / |p| and h = p.x / |p|; lengths are in units of the
@@ -7,13 +7,13 @@
 //!
 //! > 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2,
 //!
-//! whose direction is the outward normal. The surface is met by the steps of [`mask_trace_step`] from the spheroid that the mode
+//! whose direction is the outward normal. The surface is found by the steps of [`mask_trace_step`] from the spheroid that the mode
 //! (2,0) makes of the drop, as in [`trace`](crate::trace).
 //!
-//! Light is split at each interface into what leaves and what stays, unpolarised each time, as a path tracer that works in RGB has
-//! it. What is left after the third exit leaves with it.
+//! Light is split at each interface into transmitted and reflected light, unpolarized each time, as in an RGB path tracer. The
+//! remainder after the third exit leaves with it.
 //!
-//! Limits: a drop is taken to be met once on the way in and once on the way out (with amplitudes of 0.2 and 0.1 it hardly has a
+//! Limits: a ray meets a drop once on entry and once on exit (with amplitudes of 0.2 and 0.1 it hardly has a
 //! hollow); geometrical optics; light that has not left after `MASK_WOBBLE_BOUNCES` interfaces is not followed.
 //!
 //! Generic over [`Real`]; with `f32` the twin of `shaders/wgsl/mask/wobble.wgsl`.
@@ -34,7 +34,7 @@ use crate::trace::{Surface, mask_trace_step};
 pub struct WobbleDrop<R> {
     /// Shape coefficients, from `c_0` to `c_10`.
     pub coefficients: [f64; COEFFICIENTS],
-    /// s2, s3, and what keeps the volume.
+    /// s2, s3, and the factor that conserves the volume.
     pub state: [R; 3],
     /// Refractive index of water relative to air.
     pub index: f64,
@@ -44,14 +44,14 @@ pub struct WobbleDrop<R> {
     pub inverse_tall: R,
 }
 
-/// The light of one ray where it leaves: reflected outside, and at the first three exits from inside.
+/// Exits of the light of one ray: reflected outside, and the first three exits from inside.
 #[derive(Clone, Copy, Debug)]
 pub struct WobbleLight<R> {
-    /// Directions, of length 1; 0 where there is none.
+    /// Directions, of length 1; 0 for a missing exit.
     pub exits: [[R; 3]; 4],
-    /// Shares of the light; what they leave of 1 is lost.
+    /// Fractions of the light; 1 minus their sum is lost.
     pub shares: [R; 4],
-    /// Interfaces passed up to there (from 1), by which the ways of neighbouring rays are compared; 0 where there is none.
+    /// Number of interfaces up to the exit (from 1), by which the paths of neighboring rays are compared; 0 for a missing exit.
     pub interfaces: [R; 4],
 }
 
@@ -93,8 +93,8 @@ pub fn mask_wobble_spheroid<R: Real>(drop: &WobbleDrop<R>, a: [R; 3], b: [R; 3])
     (a[0] * b[0] + a[2] * b[2]) * drop.inverse_wide + a[1] * b[1] * drop.inverse_tall
 }
 
-/// The point where the line from `origin` along `direction` meets the surface before (`side` = -1) or behind (`side` = 1) its
-/// nearest approach; the nearest approach where it misses.
+/// Point where the line from `origin` along `direction` meets the surface before (`side` = -1) or behind (`side` = 1) its
+/// nearest approach; the nearest approach if it misses.
 #[inline(always)]
 #[must_use]
 pub fn mask_wobble_meet<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], direction: [R; 3], side: R) -> [R; 3] {
@@ -110,7 +110,7 @@ pub fn mask_wobble_meet<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], direction
     point
 }
 
-/// How far along a line its nearest approach is, from a guess.
+/// Position of the nearest approach along a line, from an initial guess.
 #[inline(always)]
 #[must_use]
 pub fn mask_wobble_nearest<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], direction: [R; 3], guess: R) -> R {
@@ -124,7 +124,7 @@ pub fn mask_wobble_nearest<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], direct
     along
 }
 
-/// Where the light of a ray leaves the drop. The ray should meet it; one that misses is treated as grazing.
+/// Exits of the light of a ray. The ray should meet the drop; one that misses is treated as grazing.
 #[inline(always)]
 #[must_use]
 pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], direction: [R; 3]) -> WobbleLight<R> {
@@ -158,7 +158,7 @@ pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], directio
         let leaves = one.both(goes_on, kept.less(one));
         let next = R::select(leaves, found + one, found);
         for exit in 1..=MASK_WOBBLE_EXITS as usize {
-            // Equal numbers: neither is less.
+            // Equal numbers: neither is less than the other.
             let number = one.constant(exit as f64);
             let is_this = one.both(leaves, number.less(next + one.constant(0.5)));
             let is_this = one.both(is_this, next.less(number + one.constant(0.5)));

@@ -75,7 +75,7 @@ fn the_edge_of_a_sphere_turns_by_the_limit() {
     assert!((2.0 * limit - 165.57).abs() < 0.01, "the table's field of view is 165.57 degrees");
 }
 
-/// Exact Fresnel through a sphere: both interfaces are met at the same angle and in the same plane, so that
+/// Exact Fresnel through a sphere: both interfaces have the same angle and plane of incidence, so that
 /// T = ((1 - Rs)^2 + (1 - Rp)^2) / 2.
 #[test]
 fn a_sphere_lets_through_what_fresnel_says() {
@@ -103,7 +103,7 @@ fn a_sphere_lets_through_what_fresnel_says() {
 }
 
 /// Light that is reflected inside a sphere once turns by 2 (i - r) + 180 degrees - 2 r (van de Hulst 1957, 12.21), and its
-/// share is that of each polarisation: (1 - R)^2 R.
+/// fraction is that of each polarization: (1 - R)^2 R.
 #[test]
 fn a_sphere_sends_back_what_it_reflects_inside() {
     let drop = traced(&sphere(), -20.0, 4);
@@ -117,28 +117,29 @@ fn a_sphere_sends_back_what_it_reflects_inside() {
         let error = largest_difference(through.internal, exact);
         assert!(error < 1.0e-9, "b = {b}: {:?} for {exact:?}", through.internal);
         let (ci, cr) = (ops::cos(i), ops::cos(r));
-        let share = |amplitude: f64| {
+        let fraction = |amplitude: f64| {
             let reflected = amplitude * amplitude;
             0.5 * (1.0 - reflected) * (1.0 - reflected) * reflected
         };
         let exact =
-            share((ci - INDEX * cr) / (ci + INDEX * cr)) + share((INDEX * ci - cr) / (INDEX * ci + cr));
+            fraction((ci - INDEX * cr) / (ci + INDEX * cr)) + fraction((INDEX * ci - cr) / (INDEX * ci + cr));
         let found = through.internal_transmittance;
         assert!((found - exact).abs() < 1.0e-9, "b = {b}: {found} for {exact}");
     }
 }
 
-/// What a mask does not tell of is the light that is reflected inside twice and more: 0.6 to 1.2 % of all that a drop up to
-/// 6 mm shows, from wherever it is seen, and nowhere less than nothing.
+/// A mask lacks only the light that is reflected inside twice and more: 0.6 to 1.2 % of all light of a drop up to
+/// 6 mm, from any direction, and in no texel below 0.
 #[test]
 fn a_mask_has_almost_all_light() {
     for (d, degrees) in [(0.5e-3, 0.0), (2.0e-3, 0.0), (2.0e-3, 40.0), (4.0e-3, -25.0), (6.0e-3, 70.0)] {
         let mask = trace_drop(&DropShape::new(d).unwrap(), &options(128, degrees)).unwrap();
         let (mut rest, mut all) = (0.0, 0.0);
         for texel in mask.texels.iter().filter(|texel| texel.coverage > 0.0) {
-            let told = texel.transmittance + texel.internal_transmittance + texel.reflectance(INDEX as f32);
-            assert!(told < 1.0 + 1.0e-5, "{told}");
-            rest += f64::from(texel.coverage * (1.0 - told));
+            let accounted =
+                texel.transmittance + texel.internal_transmittance + texel.reflectance(INDEX as f32);
+            assert!(accounted < 1.0 + 1.0e-5, "{accounted}");
+            rest += f64::from(texel.coverage * (1.0 - accounted));
             all += f64::from(texel.coverage);
         }
         println!("{d}, {degrees} degrees: {:.4}", rest / all);
@@ -154,7 +155,7 @@ fn the_area_of_a_sphere_is_that_of_a_disc() {
             * mask.texel_width()
             * mask.texel_width();
         let error = (area / std::f64::consts::PI - 1.0).abs();
-        // A tangent in place of an arc adds 1 / (12 R^2) to the area of a disc of R pixels.
+        // A tangent instead of an arc adds 1 / (12 R^2) to the area of a disc of R pixels.
         let radius = 1.0 / mask.texel_width();
         let allowed = 1.0 / (12.0 * radius * radius);
         assert!(error < 1.1 * allowed + 1.0e-6, "size {size}: {error:e} of {allowed:e}");
@@ -297,16 +298,16 @@ fn f32_is_as_good_as_f64() {
                 outside += u32::from(error > 1.0e-5 || dimmed > 1.0e-4);
             }
         }
-        let share = f64::from(outside) / f64::from(direct);
+        let fraction = f64::from(outside) / f64::from(direct);
         println!(
-            "d = {d} m at {degrees} degrees: worst {worst:e}, share above 1e-5 {share:e}, {differ} differ"
+            "d = {d} m at {degrees} degrees: worst {worst:e}, fraction above 1e-5 {fraction:e}, {differ} differ"
         );
         assert!(direct > 20_000, "d = {d} at {degrees} degrees: {direct} texels of direct light");
         // Light that leaves a 9 mm drop below its hollow does so close to total reflection.
         let allowed = if d < 9.0e-3 { 1.0e-3 } else { 2.0e-3 };
         assert!(
-            share < allowed,
-            "d = {d} at {degrees} degrees: {share} of the texels are off by more than 1e-5"
+            fraction < allowed,
+            "d = {d} at {degrees} degrees: {fraction} of the texels are off by more than 1e-5"
         );
         if degrees == 0.0 && d < 7.0e-3 {
             assert!(worst < 1.0e-5, "d = {d} from the side: {worst:e}");

@@ -1,4 +1,4 @@
-//! Masks as files: what is written is read again; what is damaged is refused.
+//! Masks as files: round trip, and rejection of damaged files.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,4 +1,4 @@
-//! Masks of meshes against the exact masks, and meshes that are no drops.
+//! Masks of meshes against the exact masks, and meshes that are not drops.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -19,14 +19,14 @@ fn options(degrees: f64) -> MaskOptions {
     }
 }
 
-/// Root mean square difference of directions and mean difference of coverage, at the same places. The two masks
-/// have slightly different extents and centres, so directions are compared at the nearest texel well inside.
+/// Root mean square difference of directions and mean difference of coverage, at the same positions. The two masks
+/// have slightly different extents and centers, so directions are compared at the nearest texel well inside.
 fn difference(exact: &Mask, model: &Mask, shift: f64) -> (f64, f64) {
     let (mut sum, mut n) = (0.0, 0);
     for row in 0..model.size {
         for column in 0..model.size {
             let t = model.texel(column, row);
-            let [x, y] = model.texel_centre(column, row);
+            let [x, y] = model.texel_center(column, row);
             let width = exact.texel_width();
             let middle = f64::from(exact.size) * 0.5;
             let (u, v) = (x / width + middle - 0.5, middle - 0.5 - (y + shift) / width);
@@ -56,13 +56,13 @@ fn difference(exact: &Mask, model: &Mask, shift: f64) -> (f64, f64) {
     ((sum / f64::from(n)).sqrt(), (area(model) / area(exact) - 1.0).abs())
 }
 
-/// A finer mesh is closer to the drop of revolution that it stands for, at second order in the size of its facets.
+/// A finer mesh is closer to its drop of revolution, at second order in the size of its facets.
 #[test]
 fn meshes_converge_to_the_drop() {
     for (d, degrees) in [(1.0e-3, 0.0), (4.0e-3, 0.0), (4.0e-3, 50.0)] {
         let shape = DropShape::new(d).unwrap();
         let exact = trace_drop(&shape, &options(degrees)).unwrap();
-        // The mesh is centred on its centroid, the mask of the drop on the origin of its shape.
+        // The mesh is centered on its centroid, the mask of the drop on the origin of its shape.
         let shift = shape.centroid_height() / shape.equivalent_radius() * exact.view.up()[1];
         let errors: Vec<(f64, f64)> = [16, 32, 64]
             .iter()
@@ -112,7 +112,7 @@ fn what_is_no_drop_is_refused_with_its_reason() {
     assert!(refusal(&positions, &inside_out).contains("inside out"));
     let mut flipped = triangles.clone();
     flipped[0].swap(1, 2);
-    assert!(refusal(&positions, &flipped).contains("faces the wrong way"));
+    assert!(refusal(&positions, &flipped).contains("wrong winding"));
     let mut doubled = triangles.clone();
     doubled.push(triangles[0]);
     assert!(refusal(&positions, &doubled).contains("more than two meet"));

@@ -15,7 +15,7 @@ fn six_bits(byte: u8) -> Option<u32> {
     Some(u32::from(value))
 }
 
-/// The text without its padding: at most two signs, and only where they complete a group of four.
+/// Text without its padding: at most two signs, and only to complete a group of four.
 fn digits(text: &str) -> &[u8] {
     let bytes = text.as_bytes();
     if !bytes.len().is_multiple_of(4) {
@@ -25,7 +25,7 @@ fn digits(text: &str) -> &[u8] {
     once.strip_suffix(b"=").unwrap_or(once)
 }
 
-/// How many bytes the text stands for, before anything is allocated; `None` when it cannot be base64.
+/// Number of decoded bytes of the text, before anything is allocated; `None` if it is not base64.
 pub(crate) fn decoded_len(text: &str) -> Option<usize> {
     let digits = digits(text);
     let rest = match digits.len() % 4 {
@@ -41,15 +41,15 @@ pub(crate) fn decoded_len(text: &str) -> Option<usize> {
     }
 }
 
-/// Adds the first `wanted` bytes of the text, or all of them if it is shorter, to `out`.
+/// Appends the first `wanted` bytes of the text, or all of them if it is shorter, to `out`.
 ///
 /// A character outside the alphabet ends the reading: [`decoded_len`] has refused such a text before.
 pub(crate) fn decode(text: &str, wanted: usize, out: &mut Vec<u8>) {
     let end = out.len().saturating_add(wanted);
     for group in digits(text).chunks(4) {
         let mut word = 0u32;
-        for place in 0..4 {
-            let Some(bits) = group.get(place).map_or(Some(0), |&byte| six_bits(byte)) else { return };
+        for index in 0..4 {
+            let Some(bits) = group.get(index).map_or(Some(0), |&byte| six_bits(byte)) else { return };
             word = (word << 6) | bits;
         }
         let [_, bytes @ ..] = word.to_be_bytes();

@@ -1,15 +1,15 @@
-//! What a caller is willing to spend on somebody else's file.
+//! Budget of memory, time and nodes for a file from outside.
 //!
 //! A few bytes can ask for a great deal: an accessor without data, a mesh drawn ten thousand times. One
-//! [`Budget`] goes through every reader of a scene; each takes what it needs before it allocates, and what it
-//! leaves is there for the next.
+//! [`Budget`] goes through every reader of a scene; each deducts its needs before it allocates, and the
+//! remainder is available to the next.
 
 use crate::error::{SceneError, size};
 use std::fmt;
 
 const RAISE: &str = "raise the budget, or split or simplify the model";
 
-/// What is left to spend. A reader lowers it by what the data that it returns takes up.
+/// Remaining budget. A reader lowers it by the size of the data that it returns.
 ///
 /// ```
 /// use downpour_scene::Budget;
@@ -37,14 +37,14 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// Takes memory, in bytes; `place` is where it is needed, for the message.
+    /// Deducts memory, in bytes; `item` names its use in the message.
     ///
     /// # Errors
     /// [`SceneError::OverLimit`] if less is left.
-    pub fn take_bytes(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
+    pub fn take_bytes(&mut self, wanted: u64, item: impl fmt::Display) -> Result<(), SceneError> {
         take(&mut self.bytes, wanted).map_err(|left| {
             SceneError::limit(
-                place,
+                item,
                 format!("{} needed", size(wanted)),
                 format!("{} left in the budget", size(left)),
             )
@@ -53,49 +53,45 @@ impl Budget {
     }
 
     /// Takes vertices.
-    pub(crate) fn take_vertices(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
-        take(&mut self.vertices, wanted).map_err(|left| over(place, wanted, left, "vertices"))
+    pub(crate) fn take_vertices(&mut self, wanted: u64, item: impl fmt::Display) -> Result<(), SceneError> {
+        take(&mut self.vertices, wanted).map_err(|left| over(item, wanted, left, "vertices"))
     }
 
-    /// Takes nodes; `place` is where they are needed, for the message.
+    /// Deducts nodes; `item` names their use in the message.
     ///
     /// # Errors
     /// [`SceneError::OverLimit`] if fewer are left.
-    pub fn take_nodes(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
-        take(&mut self.nodes, wanted).map_err(|left| over(place, wanted, left, "nodes"))
+    pub fn take_nodes(&mut self, wanted: u64, item: impl fmt::Display) -> Result<(), SceneError> {
+        take(&mut self.nodes, wanted).map_err(|left| over(item, wanted, left, "nodes"))
     }
 
     /// Takes textures.
-    pub(crate) fn take_textures(&mut self, wanted: u64, place: impl fmt::Display) -> Result<(), SceneError> {
-        take(&mut self.textures, wanted).map_err(|left| over(place, wanted, left, "textures"))
+    pub(crate) fn take_textures(&mut self, wanted: u64, item: impl fmt::Display) -> Result<(), SceneError> {
+        take(&mut self.textures, wanted).map_err(|left| over(item, wanted, left, "textures"))
     }
 
-    /// An empty vector with room for `count` elements, or the limit error of a machine that is out of memory.
-    pub(crate) fn room<T>(count: usize, place: impl fmt::Display) -> Result<Vec<T>, SceneError> {
+    /// Returns an empty vector with capacity for `count` elements, or the limit error of a machine that is out of memory.
+    pub(crate) fn vec_with_capacity<T>(count: usize, item: impl fmt::Display) -> Result<Vec<T>, SceneError> {
         let mut room = Vec::new();
         match room.try_reserve_exact(count) {
             Ok(()) => Ok(room),
             Err(_) => {
                 let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
-                Err(SceneError::limit(
-                    place,
-                    format!("{} needed", size(bytes)),
-                    "what the machine's memory holds",
-                )
-                .way_out(RAISE))
+                Err(SceneError::limit(item, format!("{} needed", size(bytes)), "the memory of the machine")
+                    .way_out(RAISE))
             }
         }
     }
 }
 
-/// Lowers what is left, or returns it.
+/// Deducts from the remainder, or returns it if it is too small.
 fn take(left: &mut u64, wanted: u64) -> Result<(), u64> {
     *left = left.checked_sub(wanted).ok_or(*left)?;
     Ok(())
 }
 
-fn over(place: impl fmt::Display, wanted: u64, left: u64, what: &str) -> SceneError {
-    SceneError::limit(place, format!("{wanted} {what}"), format!("{left} {what} left in the budget"))
+fn over(item: impl fmt::Display, wanted: u64, left: u64, what: &str) -> SceneError {
+    SceneError::limit(item, format!("{wanted} {what}"), format!("{left} {what} left in the budget"))
         .way_out(RAISE)
 }
 
@@ -113,6 +109,6 @@ mod tests {
         assert_eq!(error.fault().allowed, "40 bytes left in the budget");
         budget.take_bytes(40, "c").unwrap();
         assert_eq!(budget.bytes, 0);
-        assert!(Budget::room::<[u8; 1 << 20]>(usize::MAX, "d").is_err());
+        assert!(Budget::vec_with_capacity::<[u8; 1 << 20]>(usize::MAX, "d").is_err());
     }
 }

@@ -4,9 +4,9 @@
 //! right-handed, +Y up, metres; front faces are counter-clockwise.
 //!
 //! The order is check, then parse (the module `guard`): the JSON is read as plain values, the whole document is checked
-//! on them, and only then are the typed objects made and the buffers opened. Read are accessors of any component
-//! type (normalised and quantised integers too), sparse substitution, triangle lists, strips and fans, and node
-//! transforms in double precision. Points and lines are left out, with a warning.
+//! on them, and only then are the typed objects created and the buffers opened. Supported are accessors of any component
+//! type (normalized and quantized integers too), sparse substitution, triangle lists, strips and fans, and node
+//! transforms in double precision. Points and lines are skipped, with a warning.
 //!
 //! [`read_scene`] reads all of it: materials with their textures, skins, morph targets, animations, lights and
 //! cameras. [`read_triangles`] reads only the triangles at rest, unposed and without morph targets, and opens no
@@ -28,8 +28,8 @@ mod posed;
 mod scenes;
 mod triangles;
 
-use crate::beneath::{Files, Folder, open_named};
 use crate::error::{SceneError, shown_path, size};
+use crate::sandbox::{Files, Folder, open_named};
 use crate::scene::Scene;
 use crate::warning::{WarningKind, Warnings};
 use crate::{Budget, magic};
@@ -46,13 +46,13 @@ pub const MAX_FILE: u64 = 256 << 20;
 /// The largest number of elements of one accessor.
 pub const MAX_ELEMENTS: u64 = 50_000_000;
 
-/// How deep nodes may be nested.
+/// Maximum nesting depth of nodes.
 pub const MAX_DEPTH: u32 = 256;
 
-/// Reads the triangles of a `.gltf` or `.glb` file; buffers are looked for beneath its folder only.
+/// Reads the triangles of a `.gltf` or `.glb` file; buffers are opened in its folder only.
 ///
-/// The budget is lowered by what the model takes up. A file that holds no triangles is no error: the model is
-/// empty and a warning of the kind [`WarningKind::Empty`] says so.
+/// The budget is lowered by the size of the model. A file without triangles is not an error: the model is
+/// empty and has a warning of the kind [`WarningKind::Empty`].
 ///
 /// # Errors
 /// [`SceneError`]: the file cannot be read, is not a glTF 2.0 file that Downpour can read, or is too large.
@@ -70,13 +70,13 @@ pub fn read_triangles(path: &Path, budget: &mut Budget) -> Result<TriangleModel,
 
 /// Reads the triangles of a glTF file in memory; `files` opens the buffers that it names.
 ///
-/// `name` is what messages call the file.
+/// `name` is the name of the file in messages.
 ///
 /// # Errors
 /// As [`read_triangles`].
 ///
 /// ```
-/// use downpour_scene::{Budget, WarningKind, beneath::NoFiles, gltf::read_triangles_from_bytes};
+/// use downpour_scene::{Budget, WarningKind, sandbox::NoFiles, gltf::read_triangles_from_bytes};
 /// let json = br#"{"asset": {"version": "2.0"}}"#;
 /// let model = read_triangles_from_bytes("empty.gltf", json, &NoFiles, &mut Budget::default())?;
 /// assert!(model.is_empty() && model.warnings[0].kind == WarningKind::Empty);
@@ -88,30 +88,30 @@ pub fn read_triangles_from_bytes(
     files: &dyn Files,
     budget: &mut Budget,
 ) -> Result<TriangleModel, SceneError> {
-    let read = |purse: &mut Budget| {
+    let read = |remaining: &mut Budget| {
         let mut warnings = Warnings::default();
-        let (mut checked, binary) = open(bytes, purse, &mut warnings)?;
+        let (mut checked, binary) = open(bytes, remaining, &mut warnings)?;
         let root = document::typed(&mut checked)?;
-        let buffers = buffers::load(&root, binary, files, purse)?;
+        let buffers = buffers::load(&root, binary, files, remaining)?;
         let source = (bytes.len() as u64).saturating_add(buffers.from_files);
-        triangles::gather(&root, &buffers, source, purse, warnings)
+        triangles::gather(&root, &buffers, source, remaining, warnings)
     };
-    // What is needed only while reading is handed back: the caller pays for the model alone.
-    let mut purse = *budget;
-    let mut model = read(&mut purse).map_err(|error| error.in_file(name))?;
+    // Temporary memory of the reader is returned: the caller pays for the model alone.
+    let mut remaining = *budget;
+    let mut model = read(&mut remaining).map_err(|error| error.in_file(name))?;
     budget.bytes = budget.bytes.saturating_sub(model.bytes());
     budget.vertices = budget.vertices.saturating_sub(model.positions.len() as u64);
-    budget.nodes = purse.nodes;
+    budget.nodes = remaining.nodes;
     name.clone_into(&mut model.name);
     Ok(model)
 }
 
-/// Reads a whole scene from a `.gltf` or `.glb` file; buffers and images are looked for beneath its folder only.
+/// Reads a whole scene from a `.gltf` or `.glb` file; buffers and images are opened in its folder only.
 ///
-/// The budget is lowered by what the scene takes up. A file without triangles is no error.
+/// The budget is lowered by the size of the scene. A file without triangles is not an error.
 ///
 /// # Errors
-/// [`SceneError`]: the file, or one that it names, cannot be read, is not what Downpour can read, or is too large.
+/// [`SceneError`]: the file, or one that it names, cannot be read, is not supported, or is too large.
 ///
 /// ```no_run
 /// use downpour_scene::{Budget, gltf::read_scene};
@@ -126,13 +126,13 @@ pub fn read_scene(path: &Path, budget: &mut Budget) -> Result<Scene, SceneError>
 
 /// Reads a whole scene from a glTF file in memory; `files` opens the buffers and images that it names.
 ///
-/// `name` is what messages call the file.
+/// `name` is the name of the file in messages.
 ///
 /// # Errors
 /// As [`read_scene`].
 ///
 /// ```
-/// use downpour_scene::{Budget, beneath::NoFiles, gltf::read_scene_from_bytes, scene::LightKind};
+/// use downpour_scene::{Budget, sandbox::NoFiles, gltf::read_scene_from_bytes, scene::LightKind};
 /// let json = br#"{
 ///     "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"],
 ///     "scenes": [{"nodes": [0]}],
@@ -149,20 +149,20 @@ pub fn read_scene_from_bytes(
     files: &dyn Files,
     budget: &mut Budget,
 ) -> Result<Scene, SceneError> {
-    let read = |purse: &mut Budget| {
+    let read = |remaining: &mut Budget| {
         let mut warnings = Warnings::default();
-        let (checked, binary) = open(bytes, purse, &mut warnings)?;
-        scenes::read(checked, binary, bytes.len() as u64, files, purse, warnings)
+        let (checked, binary) = open(bytes, remaining, &mut warnings)?;
+        scenes::read(checked, binary, bytes.len() as u64, files, remaining, warnings)
     };
-    // What is needed only while reading is handed back: the caller pays for the scene alone.
-    let mut purse = *budget;
-    let mut scene = read(&mut purse).map_err(|error| error.in_file(name))?;
+    // Temporary memory of the reader is returned: the caller pays for the scene alone.
+    let mut remaining = *budget;
+    let mut scene = read(&mut remaining).map_err(|error| error.in_file(name))?;
     let mut pictures: Vec<_> = scene.textures.iter().map(|texture| &texture.picture).collect();
     pictures.sort_by_key(|picture| Arc::as_ptr(picture));
     pictures.dedup_by(|a, b| Arc::ptr_eq(a, b));
     let pictures =
         pictures.iter().map(|picture| picture.pixels.bytes()).fold(scene.bytes(), u64::saturating_add);
-    *budget = Budget { bytes: budget.bytes.saturating_sub(pictures), ..purse };
+    *budget = Budget { bytes: budget.bytes.saturating_sub(pictures), ..remaining };
     name.clone_into(&mut scene.name);
     Ok(scene)
 }
@@ -185,17 +185,17 @@ fn with_file<T>(
 /// Checks a document. Returns it with the binary chunk of a GLB.
 fn open<'a>(
     bytes: &'a [u8],
-    purse: &mut Budget,
+    remaining: &mut Budget,
     warnings: &mut Warnings,
 ) -> Result<(guard::Checked, Option<&'a [u8]>), SceneError> {
     let length = bytes.len() as u64;
     if length > MAX_FILE {
         return Err(too_long(length, MAX_FILE));
     }
-    purse.take_bytes(length, "")?;
+    remaining.take_bytes(length, "")?;
     let container = container::open(bytes, warnings)?;
-    let value = json::parse(container.json, purse, warnings)?;
-    Ok((guard::check(value, container.binary, purse, warnings)?, container.binary))
+    let value = json::parse(container.json, remaining, warnings)?;
+    Ok((guard::check(value, container.binary, remaining, warnings)?, container.binary))
 }
 
 /// The bytes of a file that the user has named.
@@ -205,7 +205,7 @@ fn whole_file(path: &Path, left: u64) -> Result<Vec<u8>, SceneError> {
     if file.size > most {
         return Err(too_long(file.size, most));
     }
-    let mut bytes = Budget::room(usize::try_from(file.size).unwrap_or(usize::MAX), "")?;
+    let mut bytes = Budget::vec_with_capacity(usize::try_from(file.size).unwrap_or(usize::MAX), "")?;
     file.bytes.take(file.size).read_to_end(&mut bytes).map_err(|error| SceneError::io("", "", &error))?;
     if bytes.is_empty() {
         return Err(SceneError::bad("", magic::found(&bytes), container::GLTF));

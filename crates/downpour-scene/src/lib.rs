@@ -1,18 +1,18 @@
 //! The one crate that turns bytes from outside into checked data.
 //!
 //! A file from outside is hostile until it has been checked: it may name other files, claim sizes that it does
-//! not have, point in circles, or hold numbers that are none. What leaves this crate is finite, in range and
-//! within the caller's [`Budget`]; what does not is a [`SceneError`] of one line that says where, what was found
-//! and what would be accepted.
+//! not have, point in circles, or hold values that are not numbers. Results of this crate are finite, in range and
+//! within the caller's [`Budget`]; otherwise the result is a [`SceneError`] of one line with the position, the value
+//! found and the values allowed.
 //!
 //! - [`gltf`]: scenes of glTF 2.0 files (`.gltf`, `.glb`), and their triangles alone in world space;
-//! - [`scene`]: what a scene is, and where everything in it is at a time;
+//! - [`scene`]: scenes as plain data, and their poses at a time;
 //! - [`picture`]: PNG, JPEG, Radiance HDR and OpenEXR;
 //! - [`sky`]: equirectangular maps of the sky's radiance, and their sun;
-//! - [`beneath`]: opening a relative path that cannot leave its folder;
-//! - [`budget`]: what a caller is willing to spend on somebody else's file;
+//! - [`sandbox`]: opening a relative path that cannot leave its folder;
+//! - [`budget`]: limits of memory, time and nodes for a file from outside;
 //! - [`uri`]: relative paths and data addresses, checked;
-//! - [`error`], [`warning`]: what was wrong, and what was left out.
+//! - [`error`], [`warning`]: errors, and warnings about dropped parts.
 //!
 //! ```no_run
 //! use downpour_scene::{Budget, gltf::read_triangles};
@@ -40,11 +40,11 @@
 mod base64;
 mod magic;
 
-pub mod beneath;
 pub mod budget;
 pub mod error;
 pub mod gltf;
 pub mod picture;
+pub mod sandbox;
 pub mod scene;
 pub mod sky;
 pub mod uri;

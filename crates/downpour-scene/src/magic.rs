@@ -1,8 +1,8 @@
-//! What a file is by its first bytes, for the message that says why it is not what was hoped for.
+//! Kind of a file by its first bytes, for messages about files of an unexpected kind.
 
 use crate::error::quoted;
 
-/// First bytes and the name of what begins with them.
+/// First bytes and the name of the format.
 const KNOWN: [(&[u8], &str); 20] = [
     (b"\x76\x2f\x31\x01", "an OpenEXR image"),
     (b"\xabKTX 20\xbb\r\n\x1a\n", "a KTX2 texture"),
@@ -26,7 +26,7 @@ const KNOWN: [(&[u8], &str); 20] = [
     (b"\x28\xb5\x2f\xfd", "a Zstandard archive"),
 ];
 
-/// What the bytes begin like, in words.
+/// Name of the format with these first bytes, in words.
 pub(crate) fn found(bytes: &[u8]) -> String {
     if bytes.is_empty() {
         return "an empty file".into();

@@ -3,9 +3,9 @@
 //! Sources: W3C, "Portable Network Graphics (PNG) Specification", third edition; ITU-T T.81 (JPEG); Ward,
 //! "Real Pixels", Graphics Gems II (1991), for Radiance HDR; Academy Software Foundation, "OpenEXR File Layout".
 //!
-//! What a file is, its first bytes say, never its name; a name that says something else is an error, since one
-//! of the two is a mistake. Pixels stand in rows from the top, left to right. [`Pixels::Rgba8`] are the numbers
-//! of the file: whether they are sRGB colour or plain data, only the user of the picture knows.
+//! The kind of a file follows from its first bytes, never from its name; a name of another kind is an error, since one
+//! of the two is a mistake. Pixels are in rows from the top, left to right. [`Pixels::Rgba8`] are the numbers
+//! of the file: sRGB color or plain data by the use of the picture.
 //! [`Pixels::RgbaF32`] are linear: Radiance values are divided by the file's `EXPOSURE`, so both are radiances.
 //!
 //! Limits: a side of 65 535 pixels, and a [`Budget`]. A small file may not become large either: decoding
@@ -13,7 +13,7 @@
 
 mod exr;
 mod exr_header;
-mod grey;
+mod gray;
 mod radiance;
 mod raster;
 
@@ -23,24 +23,24 @@ use crate::magic;
 use crate::warning::Warning;
 use std::path::Path;
 
-pub use grey::{Grey16, decode_grey16};
+pub use gray::{Gray16, decode_gray16};
 
 /// The longest side of a picture, in pixels.
 pub const MAX_SIDE: u32 = 65_535;
 
-/// What any file may need while it is decoded, in bytes.
+/// Memory that any file may need for decoding, in bytes.
 const BASE_COST: u64 = 704 << 20;
 
-/// What each byte of a file may need beside that.
+/// Additional memory for decoding per byte of a file.
 const COST_PER_BYTE: u64 = 256;
 
-/// What can be read, for messages.
+/// Supported formats, for messages.
 const READABLE: &str = "a PNG, JPEG, Radiance HDR or OpenEXR image";
 
 /// A picture: rows from the top, left to right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// What messages call the file.
+    /// Name of the file in messages.
     pub name: String,
     /// Pixels in a row; at least 1.
     pub width: u32,
@@ -48,21 +48,21 @@ pub struct Picture {
     pub height: u32,
     /// `width * height` pixels.
     pub pixels: Pixels,
-    /// What was left out or made good.
+    /// Parts that were dropped or repaired.
     pub warnings: Vec<Warning>,
 }
 
 /// Red, green, blue and alpha (not multiplied in) of each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
-    /// Whole numbers as the file has them; 16 bits are rounded to 8.
+    /// Integers of the file; 16 bits are rounded to 8.
     Rgba8(Vec<[u8; 4]>),
     /// Linear, scene-referred and finite; may be negative.
     RgbaF32(Vec<[f32; 4]>),
 }
 
 impl Pixels {
-    /// How many there are.
+    /// Number of pixels.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -71,13 +71,13 @@ impl Pixels {
         }
     }
 
-    /// Whether there are none.
+    /// True if there are no pixels.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// What they take up, in bytes.
+    /// Size in memory, in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let each = match self {
@@ -89,10 +89,10 @@ impl Pixels {
 }
 
 impl Picture {
-    /// All or nothing: the same picture, unless pixels were replaced.
+    /// Strict form: the same picture, unless pixels were replaced.
     ///
     /// # Errors
-    /// [`SceneError::BadInput`] with the words of the first warning that tells of a loss.
+    /// [`SceneError::BadInput`] with the text of the first warning of a loss.
     pub fn strict(self) -> Result<Self, SceneError> {
         match self.warnings.iter().find(|warning| warning.kind.is_loss()) {
             None => Ok(self),
@@ -106,12 +106,12 @@ impl Picture {
 
 /// Reads a picture from the bytes of its file.
 ///
-/// `name` is what messages call the file; if it ends like a picture's (`.png`), the bytes must be of that kind.
-/// The budget is lowered by the pixels and by what they take up.
+/// `name` is the name of the file in messages; if it ends like a picture's (`.png`), the bytes must be of that kind.
+/// The budget is lowered by the pixels and by their size.
 ///
 /// # Errors
-/// [`SceneError`]: the bytes are no picture that Downpour can read, are cut or damaged, are of another kind than
-/// the name says, or ask for more than the budget.
+/// [`SceneError`]: the bytes are not a supported picture, are truncated or damaged, are of another kind than
+/// the name, or exceed the budget.
 ///
 /// ```
 /// use downpour_scene::{Budget, picture::{Pixels, decode}};
@@ -234,9 +234,9 @@ fn check_cost(
         let allowed = format!("{} pixels left in the budget", budget.pixels);
         return Err(SceneError::limit(place, shown(), allowed).way_out("scale the picture down"));
     }
-    let mut purse = *budget;
-    purse.take_bytes(file.len() as u64, place)?;
-    purse.take_bytes(cost, place).map_err(|error| error.way_out("scale the picture down"))?;
+    let mut remaining = *budget;
+    remaining.take_bytes(file.len() as u64, place)?;
+    remaining.take_bytes(cost, place).map_err(|error| error.way_out("scale the picture down"))?;
     let most = BASE_COST.saturating_add(COST_PER_BYTE.saturating_mul(file.len() as u64));
     if cost > most {
         let found = format!("{} in a file of {} bytes: {} to decode", shown(), file.len(), size(cost));
@@ -250,8 +250,8 @@ std::thread_local! {
     static IS_GUARDED: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
 }
 
-/// Whether this thread is within a decoder of another crate whose panics become errors. A program's panic hook can ask it, and
-/// stay silent: the error says what there is to say.
+/// True while this thread is within a decoder of another crate whose panics become errors. A program's panic hook can call
+/// it and print nothing: the error has the message.
 #[must_use]
 pub fn is_guarded() -> bool {
     IS_GUARDED.get()
@@ -267,7 +267,7 @@ fn guarded<T>(decoder: impl FnOnce() -> Result<T, SceneError>) -> Result<T, Scen
     })
 }
 
-/// Refuses what a decoder has refused, in its words.
+/// Error of a decoder, with its message.
 fn damaged(error: &impl std::fmt::Display) -> SceneError {
     let found = format!("cannot be decoded: {}", crate::error::escaped(&error.to_string()));
     SceneError::bad("pixels", found, "a whole and undamaged picture")
@@ -281,7 +281,7 @@ mod tests {
     fn a_panic_of_a_decoder_is_an_error_and_a_hook_can_tell() {
         let error = guarded::<()>(|| {
             assert!(is_guarded());
-            // The report of this panic is the test's own hook's.
+            // This panic is reported by the test's panic hook.
             panic!("a decoder stumbles")
         })
         .expect_err("a panic");

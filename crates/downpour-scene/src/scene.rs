@@ -1,12 +1,11 @@
-//! A scene as plain data: what a renderer draws and what a simulator collides with, without files or a GPU.
+//! A scene as plain data, for renderers and simulators, without files or a GPU.
 //!
 //! The model is that of glTF 2.0 (Khronos Group, version 2.0.1, ISO/IEC 12113:2022): meshes of triangles, metallic
 //! and rough materials, a forest of nodes, skins, animations, lights and cameras. Axes are right-handed, +Y up,
-//! in metres; front faces are counter-clockwise; colours of factors are linear with the primaries of BT.709.
+//! in metres; front faces are counter-clockwise; colors of factors are linear with the primaries of BT.709.
 //!
-//! A [`Scene`] stands still; [`Scene::pose`] says where everything is at a time. Objects name each other by index.
-//! Scenes that a reader of this crate returns hold no index that leads nowhere; one that leads nowhere in a scene
-//! made by hand is passed over.
+//! A [`Scene`] has no time; [`Scene::pose`] returns the transforms at a time. Objects name each other by index.
+//! Scenes from a reader of this crate have valid indices only; an invalid one in a scene made by hand is ignored.
 
 mod animation;
 mod append;
@@ -34,14 +33,14 @@ pub use skin::Skin;
 pub use skinning::{SkinnedPrimitive, skin_primitive};
 pub use texture::{Encoding, Filter, Sampler, Texture, Wrap};
 
-/// How far from the origin a vertex may be, in metres. Beyond it the steps between `f32` numbers are 64 m, and
+/// Maximum distance of a vertex from the origin, in metres. Beyond it the steps between `f32` numbers are 64 m, and
 /// squares of distances come near the end of the range of `f32`.
 pub const REACH: f64 = 1e9;
 
 /// Everything that a scene file holds.
 ///
 /// ```
-/// use downpour_scene::{Budget, beneath::NoFiles, gltf::read_scene_from_bytes};
+/// use downpour_scene::{Budget, sandbox::NoFiles, gltf::read_scene_from_bytes};
 /// let json = br#"{
 ///     "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
 ///     "nodes": [{"camera": 0, "translation": [0, 1.7, 5]}],
@@ -55,17 +54,17 @@ pub const REACH: f64 = 1e9;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// What messages call the file.
+    /// Name of the file in messages.
     pub name: String,
     /// Shapes; one may be drawn at many nodes.
     pub meshes: Vec<Mesh>,
-    /// What surfaces are made of.
+    /// Materials of the surfaces.
     pub materials: Vec<Material>,
-    /// Pictures with the way to sample them.
+    /// Pictures with their samplers.
     pub textures: Vec<Texture>,
-    /// The forest of places.
+    /// Forest of nodes.
     pub nodes: Vec<Node>,
-    /// The nodes that the scene begins at. What does not hang on them is not drawn.
+    /// Root nodes of the scene. Nodes that are not below them are not drawn.
     pub roots: Vec<usize>,
     /// Sets of joints that bend meshes.
     pub skins: Vec<Skin>,
@@ -75,7 +74,7 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Eyes.
     pub cameras: Vec<Camera>,
-    /// What was left out or made good.
+    /// Parts that were dropped or repaired.
     pub warnings: Vec<Warning>,
 }
 
@@ -87,7 +86,7 @@ impl Scene {
         corners.fold(0usize, usize::saturating_add) / 3
     }
 
-    /// What geometry, animations and nodes take up in memory, in bytes; pictures are not counted.
+    /// Size of geometry, animations and nodes in memory, in bytes; pictures are not counted.
     pub(crate) fn bytes(&self) -> u64 {
         let meshes = self.meshes.iter().flat_map(|mesh| &mesh.primitives).map(Primitive::bytes);
         let tracks = self.animations.iter().flat_map(|animation| &animation.channels);

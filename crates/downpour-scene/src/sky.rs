@@ -1,4 +1,4 @@
-//! Skies: the light that comes from each direction, as an equirectangular map of radiance.
+//! Sky: radiance by direction, as an equirectangular map.
 //!
 //! Convention, the same as the Khronos sample viewer's: right-handed axes, +Y up; a unit direction (x, y, z) that
 //! points away from the viewer is found at
@@ -12,8 +12,8 @@
 //! polar angles pi j/h to pi (j+1)/h, and each of its w pixels the solid angle
 //! `2 pi/w (cos(pi j/h) - cos(pi (j+1)/h))`: exact, so the weights of all pixels add up to 4 pi.
 //!
-//! Radiance is linear, three colours, in the unit of the file; a weather file scales it. It is finite and between
-//! 0 and [`BRIGHTEST`]. Between the centres of pixels it is interpolated bilinearly; beyond a pole lies the row
+//! Radiance is linear, three colors, in the unit of the file; a weather file scales it. It is finite and between
+//! 0 and [`MAX_RADIANCE`]. Between the centers of pixels it is interpolated bilinearly; beyond a pole is the row
 //! next to it, half a turn on.
 
 mod file;
@@ -26,17 +26,17 @@ use std::f32::consts::PI;
 
 use crate::warning::Warning;
 pub use file::{from_picture, read_sky, read_sky_from_bytes};
-pub use sun::{LARGEST_SUN, SUN_THRESHOLD, Sun};
+pub use sun::{MAX_SUN_RADIUS, SUN_THRESHOLD, Sun};
 
 /// The largest radiance of a pixel, in the unit of the file; the sun's disc is 1.6e9 cd/m^2.
-pub const BRIGHTEST: f32 = 1e12;
+pub const MAX_RADIANCE: f32 = 1e12;
 
 /// The light of the sky from each direction: rows from the top, see [the module](self) for the directions.
 ///
 /// ```
 /// use downpour_scene::sky::SkyMap;
 /// let overcast = SkyMap::overcast([3.0, 3.0, 3.0]);
-/// // Three times as bright overhead as at the horizon; nothing from below.
+/// // Three times as bright overhead as at the horizon; black below.
 /// assert!((overcast.radiance([0.0, 1.0, 0.0])[0] - 3.0).abs() < 0.02);
 /// assert!((overcast.radiance([1.0, 0.03, 0.0])[1] - 1.0).abs() < 0.1);
 /// assert_eq!(overcast.radiance([0.0, -1.0, 0.0]), [0.0; 3]);
@@ -49,12 +49,12 @@ pub struct SkyMap {
     pub height: u32,
     /// `width * height` radiances, linear.
     pub radiance: Vec<[f32; 3]>,
-    /// What was left out or made good when the map was read.
+    /// Parts that were dropped or repaired on reading.
     pub warnings: Vec<Warning>,
 }
 
-/// The place of a direction in the map, both parts from 0 to 1. The length of the direction does not matter; one of
-/// no length is found in the middle.
+/// Position of a direction in the map, both parts from 0 to 1. The length of the direction does not matter; the zero
+/// vector is at the middle.
 ///
 /// ```
 /// use downpour_scene::sky::direction_to_uv;
@@ -70,7 +70,7 @@ pub fn direction_to_uv(direction: [f32; 3]) -> [f32; 2] {
     [0.5 + ops::atan2(z, x) / (2.0 * PI), 0.5 - ops::asin(up) / PI]
 }
 
-/// The unit direction of a place in the map.
+/// Unit direction of a position in the map.
 ///
 /// ```
 /// use downpour_scene::sky::{direction_to_uv, uv_to_direction};
@@ -126,7 +126,7 @@ impl SkyMap {
         2.0 * PI / f64::from(self.width) * band
     }
 
-    /// The mean radiance over the whole sphere, each pixel weighted by its solid angle.
+    /// Mean radiance over the whole sphere, each pixel weighted by its solid angle.
     #[must_use]
     pub fn mean_radiance(&self) -> [f64; 3] {
         let total = self.rows().fold([0.0; 3], |total, (row, pixels)| {
@@ -139,13 +139,13 @@ impl SkyMap {
         scaled(total, 1.0 / (4.0 * std::f64::consts::PI))
     }
 
-    /// The same sky, turned about the vertical: a light along +X comes to -Z with a quarter turn (`yaw` = pi/2,
-    /// counter-clockwise seen from above). Between whole pixels, rows are interpolated; the mean stays the same.
+    /// The sky rotated about the vertical: a light along +X moves to -Z with a quarter turn (`yaw` = pi/2,
+    /// counter-clockwise seen from above). Rows are interpolated for fractions of a pixel; the mean stays the same.
     #[must_use]
     pub fn rotated(&self, yaw: f64) -> Self {
         let width = f64::from(self.width);
         let shift = (yaw / (2.0 * std::f64::consts::PI)).rem_euclid(1.0) * width;
-        // A turn that is a whole number of pixels but for its last digits must not blur.
+        // A turn by an integer number of pixels but for its last digits must not blur.
         let near = shift.round();
         let shift = if (shift - near).abs() < 1e-6 { near } else { shift };
         #[expect(clippy::cast_possible_truncation, reason = "from 0 to the width")]
@@ -171,7 +171,7 @@ impl SkyMap {
     }
 }
 
-/// Luminance of a linear colour with the primaries of ITU-R BT.709.
+/// Luminance of a linear color with the primaries of ITU-R BT.709.
 fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
@@ -180,6 +180,6 @@ fn add([ar, ag, ab]: [f64; 3], [br, bg, bb]: [f64; 3]) -> [f64; 3] {
     [ar + br, ag + bg, ab + bb]
 }
 
-fn scaled(colour: [f64; 3], by: f64) -> [f64; 3] {
-    colour.map(|value| value * by)
+fn scaled(color: [f64; 3], by: f64) -> [f64; 3] {
+    color.map(|value| value * by)
 }

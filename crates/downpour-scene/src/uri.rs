@@ -1,8 +1,8 @@
-//! An address inside a scene file: data in place, or a relative path beneath the scene's folder.
+//! Addresses inside a scene file: inline data, or a relative path inside the scene's folder.
 //!
-//! Everything else is refused: schemes (`http:`, `file:`, drive letters), absolute paths, `..`, backslashes,
-//! zero bytes, and what does not decode to UTF-8. The test is made on the percent-decoded text, since that is
-//! what the system would see.
+//! All others are rejected: schemes (`http:`, `file:`, drive letters), absolute paths, `..`, backslashes,
+//! zero bytes, and text that does not decode to UTF-8. The test uses the percent-decoded text, since that is
+//! the path that the system opens.
 
 use crate::error::quoted;
 
@@ -16,7 +16,7 @@ pub enum Address<'a> {
         /// Base64, not looked at yet.
         text: &'a str,
     },
-    /// A file beneath the folder.
+    /// A file inside the folder.
     File(RelativePath),
 }
 
@@ -32,21 +32,21 @@ impl RelativePath {
     }
 }
 
-/// Reason why an address is refused.
+/// Reason why an address is rejected.
 #[derive(Debug)]
 pub struct Refused {
-    /// What was found.
+    /// Value found.
     pub found: String,
-    /// What is allowed.
+    /// Values allowed.
     pub allowed: &'static str,
 }
 
-const RELATIVE_OR_DATA: &str = "only relative paths beneath the scene folder, or data:…;base64,…";
+const RELATIVE_OR_DATA: &str = "only relative paths inside the scene folder, or data:…;base64,…";
 
 /// Checks an address as it stands in the file.
 ///
 /// # Errors
-/// [`Refused`]: neither a relative path that stays beneath its folder nor data in base64.
+/// [`Refused`]: neither a relative path that stays inside its folder nor data in base64.
 pub fn check(uri: &str) -> Result<Address<'_>, Refused> {
     let refuse = |why: &str, allowed| Err(Refused { found: format!("{} {why}", quoted(uri)), allowed });
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {

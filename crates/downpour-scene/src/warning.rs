@@ -1,28 +1,28 @@
-//! What a reader left out or made good, so that nothing is lost silently.
+//! Warnings: parts that a reader dropped or repaired.
 
 use std::fmt;
 
-/// How many warnings are kept with their words; the others are only counted.
+/// Maximum number of warnings with their text; the others are only counted.
 const KEPT: usize = 64;
 
-/// One thing that a reader left out or made good.
+/// A part that a reader dropped or repaired.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// Of what sort it is.
+    /// Kind of the warning.
     pub kind: WarningKind,
-    /// The place inside the file, as `meshes[0].primitives[2]`.
+    /// Path inside the file, as `meshes[0].primitives[2]`.
     pub place: String,
-    /// What was found and what was done about it, on one line.
+    /// Defect and its treatment, on one line.
     pub what: String,
 }
 
-/// The sort of a [`Warning`].
+/// Kind of a [`Warning`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum WarningKind {
-    /// Geometry was dropped because its numbers are of no use: not finite, or a transform without an inverse.
+    /// Geometry was dropped because its numbers are unusable: not finite, or a transform without an inverse.
     Dropped,
-    /// Something that is there in the file is not read: points, lines, a skin, an optional extension.
+    /// A part of the file is not read: points, lines, a skin, an optional extension.
     Ignored,
     /// The file is not quite glTF 2.0, but its meaning is clear.
     Irregular,
@@ -33,7 +33,7 @@ pub enum WarningKind {
 }
 
 impl WarningKind {
-    /// Whether a caller that wants all or nothing should refuse the file.
+    /// True if a caller that wants the complete file should reject it.
     ///
     /// ```
     /// use downpour_scene::WarningKind;

@@ -5,8 +5,8 @@
 mod effort;
 mod exit_code;
 
-use downpour_scene::beneath::NoFiles;
 use downpour_scene::gltf::{read_scene_from_bytes, read_triangles_from_bytes};
+use downpour_scene::sandbox::NoFiles;
 use downpour_scene::{Budget, SceneError};
 use effort::measured;
 use exit_code::ExitCode as _;
@@ -14,8 +14,8 @@ use std::fs;
 use std::time::Duration;
 
 const SIZE: usize = (1 << 20) - 64;
-const MOST_TIME: Duration = Duration::from_secs(5);
-const MOST_MEMORY_KIB: u64 = 1 << 20;
+const MAX_TIME: Duration = Duration::from_secs(5);
+const MAX_MEMORY_KIB: u64 = 1 << 20;
 
 /// A document of nearly 1 MiB: a part repeated as often as fits.
 fn filled(head: &str, part: &str, tail: &str) -> String {
@@ -50,7 +50,7 @@ fn scene(name: &str, document: &str) {
         }
     });
     println!("{took:?} {:?} KiB at most, {name} as a scene: {said}", peak_kib());
-    assert!(took < MOST_TIME, "{name}: {took:?}");
+    assert!(took < MAX_TIME, "{name}: {took:?}");
 }
 
 #[test]
@@ -107,10 +107,10 @@ fn small_files_stay_small() {
             .map_or_else(|error| error.to_string(), |model| format!("{} triangles", model.indices.len()));
         println!("{took:?} {:?} KiB at most, {name}: {said}", peak_kib());
         assert_eq!(found, code, "{name}: {said}");
-        assert!(took < MOST_TIME, "{name}: {took:?}");
+        assert!(took < MAX_TIME, "{name}: {took:?}");
         scene(name, &document);
     }
-    // What only whole scenes hold: joints, weights and keys, each named often.
+    // Data of whole scenes only: joints, weights and keys, each used often.
     let joints = vec!["0"; 100_000].join(",");
     let skinned = format!("\"skins\":[{{\"joints\":[{joints}]}}],");
     scene(
@@ -130,6 +130,6 @@ fn small_files_stay_small() {
         &filled(&format!("{}{track}", keyed.replace("90000", "9")), channel, "]}]"),
     );
     if let Some(peak) = peak_kib() {
-        assert!(peak < MOST_MEMORY_KIB, "{peak} KiB");
+        assert!(peak < MAX_MEMORY_KIB, "{peak} KiB");
     }
 }

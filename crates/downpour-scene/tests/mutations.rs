@@ -1,5 +1,5 @@
-//! Valid files with random bytes changed: whatever comes of it, nothing panics, and what is read keeps the
-//! promises of a model. `DOWNPOUR_MUTATIONS` sets how many are tried.
+//! Valid files with random bytes changed: nothing panics, and a file that is read keeps the invariants of a model.
+//! `DOWNPOUR_MUTATIONS` sets the number of trials.
 
 mod document;
 mod exit_code;
@@ -19,7 +19,7 @@ use std::panic::catch_unwind;
 
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// What careless readers stumble over.
+/// Tokens that break careless readers.
 const TOKENS: [&str; 24] = [
     "0",
     "-1",
@@ -141,7 +141,7 @@ fn files(buffers: &Files, mut dice: impl FnMut() -> u32) -> Files {
     files
 }
 
-/// Changes up to four places.
+/// Changes up to four bytes or tokens.
 fn mutate(bytes: &mut Vec<u8>, mut dice: impl FnMut() -> u32) {
     for _ in 0..=dice() % 4 {
         if bytes.is_empty() {
@@ -152,7 +152,7 @@ fn mutate(bytes: &mut Vec<u8>, mut dice: impl FnMut() -> u32) {
         match dice() % 8 {
             0 => bytes[at] ^= 1 << (dice() % 8),
             1 => bytes[at] = dice() as u8,
-            // A digit for a digit keeps the JSON whole and the numbers wrong.
+            // A digit for a digit keeps the JSON valid and the numbers wrong.
             2 | 3 => {
                 let digits: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i].is_ascii_digit()).collect();
                 if let Some(&digit) = digits.get(dice() as usize % digits.len().max(1)) {
@@ -168,7 +168,7 @@ fn mutate(bytes: &mut Vec<u8>, mut dice: impl FnMut() -> u32) {
                 let token = TOKENS[dice() as usize % TOKENS.len()];
                 bytes.splice(at..end, token.bytes());
             }
-            // A token for a whole number.
+            // A token for an integer.
             _ => {
                 let is_number = |b: u8| b.is_ascii_digit() || b == b'.' || b == b'-';
                 let start = (at..bytes.len()).find(|&i| is_number(bytes[i])).unwrap_or(at);
@@ -185,7 +185,7 @@ fn read(bytes: &[u8], files: &Files) -> Result<(), SceneError> {
     if let Ok(model) = &model {
         check(model);
     }
-    // Images that are missing here do not count: the triangles may still be read.
+    // Missing images do not matter here: the triangles may still be read.
     match read_scene_from_bytes("mutant", bytes, files, &mut Budget::default()) {
         Ok(scene) => check_scene(&scene),
         Err(error) => check_message(&error.to_string()),

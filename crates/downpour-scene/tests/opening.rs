@@ -4,8 +4,8 @@ mod document;
 mod exit_code;
 
 use document::{check_message, data_uri, floats, spoiled, triangle, triangle_of};
-use downpour_scene::beneath::{Files, NoFiles, OpenFile, RelativePath};
 use downpour_scene::gltf::{MAX_FILE, read_triangles, read_triangles_from_bytes};
+use downpour_scene::sandbox::{Files, NoFiles, OpenFile, RelativePath};
 use downpour_scene::{Budget, SceneError};
 use exit_code::ExitCode as _;
 use serde_json::json;
@@ -15,7 +15,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How long a file is waited for on a busy machine before it is said that it hangs.
+/// Time limit for a file on a busy machine, after which it counts as hanging.
 const PATIENCE: Duration = Duration::from_secs(600);
 
 fn read(path: &Path) -> Result<usize, SceneError> {
@@ -23,7 +23,7 @@ fn read(path: &Path) -> Result<usize, SceneError> {
     let owned = path.to_owned();
     std::thread::spawn(move || {
         let result = read_triangles(&owned, &mut Budget::default()).map(|model| model.indices.len());
-        // The test has ended if nobody listens.
+        // The test has ended if nobody receives.
         let _ = send.send(result);
     });
     receive.recv_timeout(PATIENCE).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
@@ -64,7 +64,7 @@ fn a_buffer_beside_the_scene_is_read() {
     refused(&path, 2, "buffers[0].uri: \"sub/my mesh.bin\" is a folder, not a regular file");
 }
 
-/// G7 and G9, and what a link can lead to.
+/// G7 and G9, and links out of the folder.
 #[test]
 #[cfg(unix)]
 fn fifos_devices_and_links() {
@@ -91,7 +91,7 @@ fn fifos_devices_and_links() {
     symlink("real.bin", inside.join("near.bin")).expect("a link");
     assert_eq!(read(&scene(inside, "near.bin")).expect("a link that stays inside"), 1);
     refused(Path::new("/dev/zero"), 2, "/dev/zero: is a device, not a regular file");
-    // The user's own path may be a link to anywhere.
+    // The user's path may be a link to any file.
     let link = outside.path().join("link.gltf");
     fs::write(inside.join("whole.gltf"), triangle().to_string()).expect("a file");
     symlink(inside.join("whole.gltf"), &link).expect("a link");
@@ -129,7 +129,7 @@ fn a_scene_in_memory() {
     assert!(message.starts_with("web.gltf: buffers[0].uri: \"a/b.bin\" is another file"), "{message}");
 }
 
-/// Files that count how often they are opened.
+/// Files with a count of their openings.
 struct Counted(BTreeMap<String, Vec<u8>>, Cell<u32>);
 
 impl Files for Counted {
@@ -152,13 +152,13 @@ fn a_file_is_read_once() {
     let model =
         read_triangles_from_bytes("x", text.as_bytes(), &files, &mut Budget::default()).expect("valid");
     assert_eq!((model.positions.len(), files.1.get()), (3, 1));
-    // The guard speaks before any file is opened.
+    // The guard rejects before any file is opened.
     let spoiled = document::with(document, &[("/accessors/0/count", json!(4))]).to_string();
     read_triangles_from_bytes("x", spoiled.as_bytes(), &files, &mut Budget::default()).expect_err("too long");
     assert_eq!(files.1.get(), 1);
 }
 
-/// Over a budget is exit 3, and a refused file costs nothing.
+/// Over a budget is exit 3, and a rejected file costs nothing.
 #[test]
 fn budgets_are_kept() {
     let document = triangle().to_string();

@@ -1,4 +1,4 @@
-//! PNG, JPEG and Radiance HDR: what is read, and rows P1 to P7 of the reliability plan.
+//! PNG, JPEG and Radiance HDR: supported contents, and rows P1 to P7 of the reliability plan.
 
 mod effort;
 mod exit_code;
@@ -24,7 +24,7 @@ fn read(name: &str, bytes: &[u8]) -> Result<Picture, SceneError> {
     decode(name, bytes, &mut Budget::default())
 }
 
-/// Refused within a second of CPU time, with this code and these words.
+/// Rejected within a second of CPU time, with this code and this text.
 #[track_caller]
 fn refused(name: &str, bytes: &[u8], code: u8, words: &str) {
     let (result, took) = measured(|| read(name, bytes).map(|p| (p.width, p.height)));
@@ -60,7 +60,7 @@ fn png_of_all_kinds_is_four_times_8_bits() {
 }
 
 #[test]
-fn jpeg_keeps_a_plain_colour() {
+fn jpeg_keeps_a_plain_color() {
     let image = DynamicImage::ImageRgb8(image::RgbImage::from_pixel(32, 16, image::Rgb([40, 120, 200])));
     let bytes = encoded(&image, ImageFormat::Jpeg);
     let picture = read("a.JPG", &bytes).unwrap();
@@ -92,7 +92,7 @@ fn radiance_is_divided_by_its_exposures() {
         refused("a.hdr", &hdr(&format!("EXPOSURE={value}\n"), 1, 1, pixel), 2, "above 0");
     }
     refused("a.hdr", &hdr("EXPOSURE=1e300\nEXPOSURE=1e300\n", 1, 1, pixel), 2, "EXPOSURE");
-    // The brightest pixel, divided by next to nothing, is not finite: black, counted, an error when strict.
+    // The brightest pixel, divided by a tiny exposure, is not finite: black, counted, an error when strict.
     let bright = read("a.hdr", &hdr("EXPOSURE=1e-30\n", 1, 1, b"\xff\xff\xff\xff")).unwrap();
     assert_eq!(bright.pixels, Pixels::RgbaF32(vec![[0.0, 0.0, 0.0, 1.0]]));
     assert!(bright.warnings[0].what.starts_with("1 pixels that are not finite"));
@@ -102,7 +102,7 @@ fn radiance_is_divided_by_its_exposures() {
     refused("a.hdr", &hdr("", 2, 2, pixel), 2, "cannot be decoded");
 }
 
-/// P1: 400 million pixels in a small file. A budget is a budget, and a small file stays small whatever it is.
+/// P1: 400 million pixels in a small file. The budget limits it, and a small file stays small for any size.
 #[test]
 fn p1_png_of_20000_squared() {
     refused("p1.png", &png(20_000, 20_000, 8, 6, &zlib(&[0; 1000])), 3, "20000 x 20000 pixels");
@@ -150,7 +150,7 @@ fn p3_png_that_is_damaged() {
     }
 }
 
-/// P4, P5: text and colour profiles that inflate to much are not inflated, or not kept.
+/// P4, P5: text and color profiles that inflate to much are not inflated, or not kept.
 #[test]
 fn p4_p5_side_chunks_are_left_alone() {
     let bomb = zlib(&vec![0; 64 << 20]);
@@ -194,7 +194,7 @@ fn p7_what_is_no_picture_is_named() {
     refused("a.jpg", &png, 2, "a PNG image with the ending \".jpg\"; allowed: .png");
     refused("a.EXR", &png, 2, "a PNG image with the ending \".EXR\"");
     refused("a.tga", &png, 2, "rename or convert");
-    // An ending that promises no picture says nothing about it.
+    // An extension of no picture format does not restrict the kind.
     for name in ["a.png", "a", "a.bin", "folder.jpg/a.Png"] {
         assert!(read(name, &png).is_ok(), "{name}");
     }

@@ -111,20 +111,20 @@ fn all_safe_schemes_are_read() {
 }
 
 #[test]
-fn grey_is_read_and_chroma_is_not() {
+fn gray_is_read_and_chroma_is_not() {
     let only = |names: &[&'static str]| {
         let names = names.to_vec();
         with(|file| file.channels = names.into_iter().map(|name| (name, 1, 1)).collect())
     };
-    let grey = with(|file| {
+    let gray = with(|file| {
         file.channels = vec![("Y", 2, 1)];
         file.data = [0, 0, 0, 1];
         file.display = file.data;
         let row = |y: u32, value: f32| [y.to_le_bytes(), 4u32.to_le_bytes(), value.to_le_bytes()].concat();
         file.body = [row(0, 0.25), vec![0; 8], row(1, 7.0)].concat();
     });
-    let grey = read(&grey).unwrap();
-    assert_eq!(grey.pixels, Pixels::RgbaF32(vec![[0.25, 0.25, 0.25, 1.0], [7.0, 7.0, 7.0, 1.0]]));
+    let gray = read(&gray).unwrap();
+    assert_eq!(gray.pixels, Pixels::RgbaF32(vec![[0.25, 0.25, 0.25, 1.0], [7.0, 7.0, 7.0, 1.0]]));
     refused(&only(&["BY", "RY", "Y"]), 2, "BY, RY, Y");
     refused(&only(&["Z"]), 2, "the channels \"Z\"; allowed: R, G and B, or Y");
     refused(&only(&[]), 2, "channels");
@@ -233,7 +233,7 @@ fn e13_attributes_of_any_length() {
         refused(&file, 2, &format!("\"comment\" of {length} bytes"));
     }
     let twice = with(|file| file.more = exr_attribute("compression", "compression", &[0]));
-    refused(&twice, 2, "compression: stands twice");
+    refused(&twice, 2, "compression: occurs twice");
     refused(&with(|file| file.more = exr_attribute("tiles", "string", b"x")), 2, "the type \"string\"");
     refused(
         &with(|file| file.more = exr_attribute("chunkCount", "int", &9i32.to_le_bytes())),

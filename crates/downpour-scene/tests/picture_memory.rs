@@ -14,8 +14,8 @@ use picture_files::{ExrFile, hdr, png, png_chunk, zlib};
 use std::fs;
 use std::time::Duration;
 
-const MOST_TIME: Duration = Duration::from_secs(5);
-const MOST_MEMORY_KIB: u64 = 1 << 20;
+const MAX_TIME: Duration = Duration::from_secs(5);
+const MAX_MEMORY_KIB: u64 = 1 << 20;
 
 /// The peak of this process's memory in KiB, where the system tells it.
 fn peak_kib() -> Option<u64> {
@@ -26,7 +26,7 @@ fn peak_kib() -> Option<u64> {
 
 #[test]
 fn small_pictures_stay_small() {
-    // A flat 8-bit colour picture of 8192 x 8192 is at the edge of what a small file may be.
+    // A flat 8-bit color picture of 8192 x 8192 is at the edge of what a small file may be.
     let flat = zlib(&vec![0; 8192 * (8192 * 3 + 1)]);
     let mut padded = png(8192, 8192, 8, 2, &flat);
     let end = padded.split_off(padded.len() - 12);
@@ -69,9 +69,9 @@ fn small_pictures_stay_small() {
         let said = result.map_or_else(|error| error.to_string(), |p| format!("{} x {}", p.width, p.height));
         println!("{took:?} {:?} KiB at most, {name}: {said}", peak_kib());
         assert!(codes.contains(&found), "{name}: {found} {said}");
-        assert!(took < MOST_TIME, "{name}: {took:?}");
+        assert!(took < MAX_TIME, "{name}: {took:?}");
     }
     if let Some(peak) = peak_kib() {
-        assert!(peak < MOST_MEMORY_KIB, "{peak} KiB");
+        assert!(peak < MAX_MEMORY_KIB, "{peak} KiB");
     }
 }

@@ -1,4 +1,4 @@
-//! What is read is what the file says: triangle modes, transforms, windings, formats of numbers.
+//! Reading agrees with the file: triangle modes, transforms, windings, number formats.
 
 mod document;
 
@@ -48,7 +48,7 @@ fn volume(model: &TriangleModel) -> f64 {
     model.indices.iter().map(|&t| dot(corner(model, t[0]), face(model, t)) / 6.0).sum()
 }
 
-/// A cube of edge 2 round the origin, counter-clockwise from outside, placed by nodes.
+/// A cube of edge 2 around the origin, counter-clockwise from outside, transformed by nodes.
 fn cube(nodes: &Value) -> Value {
     let positions: Vec<f32> = (0..8)
         .flat_map(|i| [i & 1, i >> 1 & 1, i >> 2 & 1])
@@ -101,7 +101,7 @@ fn volumes_follow_the_determinant() {
     }
 }
 
-/// The world matrix is parent x own, own = translation x rotation x scale.
+/// The world matrix is parent x local, local = translation x rotation x scale.
 #[test]
 fn transforms_are_in_order() {
     let half = 0.5f64.sqrt();
@@ -138,7 +138,7 @@ fn mesh_primitive_modes() {
         let normal = face(&model, triangle);
         assert!(normal[2] > 0.0, "{triangle:?} looks away");
         let x = triangle.iter().map(|&index| corner(&model, index)[0]).sum::<f64>() / 3.0;
-        // They stand at x = -3, 0 and 3.
+        // They are at x = -3, 0 and 3.
         areas[((x + 4.5) / 3.0) as usize] += normal[2] / 2.0;
         count += 1;
     }
@@ -148,7 +148,7 @@ fn mesh_primitive_modes() {
     }
 }
 
-/// After mirroring, faces still look the way of their normals.
+/// After mirroring, faces still agree with their normals.
 #[test]
 fn mirrored_faces_look_the_way_of_their_normals() {
     let mirrors = [[1, 1, 1], [-1, 1, 1], [1, -2, 1], [1, 1, -1], [-1, -1, 1], [-1, -3, -1]];
@@ -169,7 +169,7 @@ fn mirrored_faces_look_the_way_of_their_normals() {
     assert_eq!((with, against), (model.indices.len(), 0));
 }
 
-/// Two things of the street: whole, of the right size, with normals.
+/// Two models of the street: complete, of the right size, with normals.
 #[test]
 fn things_of_the_street() {
     for (name, triangles, height) in [("bench", 228, 0.86), ("bollard", 252, 0.95)] {
@@ -182,7 +182,7 @@ fn things_of_the_street() {
     }
 }
 
-/// Quantised positions give the cube of their floats: integers scaled by the node, and normalised integers.
+/// Quantised positions give the cube of their floats: integers scaled by the node, and normalized integers.
 #[test]
 fn quantized_positions() {
     let plain = read(&cube(&json!([{"mesh": 0}]))).expect("valid");
@@ -227,7 +227,7 @@ fn quantized_positions() {
     }
 }
 
-/// Sparse values replace those of the base, or of zeros where there is no base.
+/// Sparse values replace those of the base, or zeros without a base.
 #[test]
 fn sparse_values_replace() {
     let mut bytes = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
@@ -295,7 +295,7 @@ fn widths_of_indices() {
     assert_eq!(read(&document).expect("valid").indices, [[0, 1, 2]]);
 }
 
-/// Whole numbers may be written as floats, and `extras` may be anything.
+/// Integers may be written as floats, and `extras` may be any value.
 #[test]
 fn ways_of_writing() {
     let text = triangle()
@@ -312,7 +312,7 @@ fn ways_of_writing() {
     }
 }
 
-/// Primitives that share their vertices get them once; primitives without normals get them made.
+/// Primitives that share their vertices get them once; missing normals are computed.
 #[test]
 fn shared_vertices_and_missing_normals() {
     let again = json!({"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2});

@@ -5,15 +5,15 @@ mod picture_files;
 
 use downpour_scene::picture::{Picture, Pixels};
 use downpour_scene::sky::{
-    BRIGHTEST, SUN_THRESHOLD, SkyMap, direction_to_uv, from_picture, read_sky, uv_to_direction,
+    MAX_RADIANCE, SUN_THRESHOLD, SkyMap, direction_to_uv, from_picture, read_sky, uv_to_direction,
 };
 use downpour_scene::{Budget, WarningKind};
 use exit_code::ExitCode as _;
 use picture_files::hdr;
 
-fn map(width: u32, height: u32, colour: impl Fn(u32, u32) -> [f32; 3]) -> SkyMap {
+fn map(width: u32, height: u32, color: impl Fn(u32, u32) -> [f32; 3]) -> SkyMap {
     let radiance =
-        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| colour(x, y)).collect();
+        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| color(x, y)).collect();
     SkyMap { width, height, radiance, warnings: Vec::new() }
 }
 
@@ -50,7 +50,7 @@ fn the_six_axes_are_where_the_convention_says() {
 }
 
 #[test]
-fn pixels_are_met_at_their_centres_and_mixed_between() {
+fn pixels_are_met_at_their_centers_and_mixed_between() {
     let sky = map(8, 4, |x, y| [x as f32, y as f32, 1.0]);
     for y in 0..4 {
         for x in 0..8 {
@@ -60,7 +60,7 @@ fn pixels_are_met_at_their_centres_and_mixed_between() {
             assert!(near(r, x as f32) && near(g, y as f32) && near(b, 1.0), "{x} {y}: {r} {g} {b}");
         }
     }
-    // Half way between the last and the first column, and over the pole to the other side.
+    // Midway between the last and the first column, and over the pole to the other side.
     let seam = sky.radiance(uv_to_direction([0.0, 0.625]));
     assert!((seam[0] - 3.5).abs() < 1e-5, "{seam:?}");
     let poles = map(8, 4, |x, y| [if y == 0 { x as f32 } else { 0.0 }, 0.0, 0.0]);
@@ -113,11 +113,11 @@ fn a_turn_moves_light_and_keeps_it() {
     for yaw in [0.0, 0.3, 1.0, -2.0, 7.0] {
         close(sky.rotated(yaw).mean_radiance(), sky.mean_radiance(), 1e-6);
     }
-    // Exact for whole pixels, and a whole turn changes nothing.
+    // Exact for whole pixels, and a full turn changes nothing.
     let tau = std::f64::consts::TAU;
     assert_eq!(sky.rotated(tau).radiance, sky.radiance);
     assert_eq!(sky.rotated(tau / 64.0).rotated(-tau / 64.0).radiance, sky.radiance);
-    // A light along +X comes to -Z with a quarter turn.
+    // A light along +X moves to -Z with a quarter turn.
     let lamp = |direction| map(64, 32, |_, _| [0.0; 3]).radiance.len() as f32 * sky_green(&sky, direction);
     assert!(lamp([1.0, -0.05, 0.05]) > 0.0);
     let quarter = sky.rotated(tau / 4.0);
@@ -176,7 +176,7 @@ fn no_sun_in_an_even_an_empty_or_a_half_bright_sky() {
         SkyMap::overcast([1.0; 3]),
         map(64, 32, |_, y| if y < 2 { [1e5; 3] } else { [0.0; 3] }),
         SkyMap { width: 0, height: 0, radiance: Vec::new(), warnings: Vec::new() },
-        map(4, 2, |_, _| [BRIGHTEST; 3]),
+        map(4, 2, |_, _| [MAX_RADIANCE; 3]),
         // A lamp far away: bright, small, and with little light.
         map(512, 256, |x, y| if (x, y) == (100, 130) { [40.0; 3] } else { [1.0; 3] }),
     ] {
@@ -202,13 +202,13 @@ fn eight_bits_are_decoded_and_said() {
     assert!(sky.warnings[0].what.contains("sRGB") && !sky.warnings[0].kind.is_loss());
 }
 
-/// E15: what cannot be light is none, and is counted.
+/// E15: values that cannot be light become none, and are counted.
 #[test]
 fn light_below_zero_or_without_end_is_counted() {
     let pixels = Pixels::RgbaF32(vec![[-1e30, 1.0, 2.0, 1.0], [1e30, 0.0, 0.0, 1.0], [-0.1, -0.1, 3.0, 0.0]]);
     let picture = Picture { name: "a.exr".into(), width: 3, height: 1, pixels, warnings: Vec::new() };
     let sky = from_picture(picture).unwrap();
-    assert_eq!(sky.radiance, [[0.0, 1.0, 2.0], [BRIGHTEST, 0.0, 0.0], [0.0, 0.0, 3.0]]);
+    assert_eq!(sky.radiance, [[0.0, 1.0, 2.0], [MAX_RADIANCE, 0.0, 0.0], [0.0, 0.0, 3.0]]);
     let words: Vec<String> = sky.warnings.iter().map(ToString::to_string).collect();
     assert!(words[0].contains("3 x 1 pixels"), "{words:?}");
     assert_eq!(words[1], "pixels: 2 pixels below 0, taken as 0");

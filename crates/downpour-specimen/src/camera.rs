@@ -1,4 +1,4 @@
-//! Where the camera stands, and how large the drop is in the picture.
+//! Position of the camera, and size of the drop in the picture.
 //!
 //! The outline of the drop is highest and lowest in the plane of the drop's axis and the camera: the drop is the same
 //! on both sides of it. There the profile is a closed curve P(theta), and the image of a point is
@@ -8,10 +8,10 @@ use downpour_drop::DropShape;
 use downpour_math::ops::f64 as ops;
 
 use super::SpecimenError;
-use super::options::{LARGEST_FOV_DEG, SpecimenOptions};
+use super::options::{MAX_FOV_DEG, SpecimenOptions};
 use super::trace::SpecimenCamera;
 
-/// Share of the height that the drop fills by default.
+/// Fraction of the height that the drop fills by default.
 const FILLED: f64 = 0.8;
 
 /// Points of the profile among which the extreme one is looked for, and the steps that make it exact.
@@ -44,7 +44,7 @@ pub fn default_fov(shape: &DropShape, distance_m: f64, pitch: f64) -> Result<f64
 }
 
 /// The same for a drop that falls from `half_path` metres above the origin to as far below it: the farther end of its path
-/// is 80 % of the way to the edge of the picture.
+/// is at 80 % of the distance to the edge of the picture.
 pub(crate) fn path_fov(
     shape: &DropShape,
     distance_m: f64,
@@ -52,7 +52,7 @@ pub(crate) fn path_fov(
     half_path: f64,
 ) -> Result<f64, SpecimenError> {
     SpecimenOptions { distance_m, pitch, ..SpecimenOptions::default() }.check(shape)?;
-    let widest = LARGEST_FOV_DEG.to_radians();
+    let widest = MAX_FOV_DEG.to_radians();
     let toward = half_path * ops::sin(pitch).abs() + bounding_radius(shape);
     if toward >= distance_m {
         // An end of the path is beside or behind the camera.
@@ -95,7 +95,7 @@ impl SpecimenOptions {
     /// The camera in units of the drop's equivalent radius.
     ///
     /// # Errors
-    /// What [`SpecimenOptions::check`] says.
+    /// As [`SpecimenOptions::check`].
     pub fn camera(&self, shape: &DropShape) -> Result<SpecimenCamera, SpecimenError> {
         self.check(shape)?;
         let (sin_yaw, cos_yaw) = (ops::sin(self.yaw), ops::cos(self.yaw));

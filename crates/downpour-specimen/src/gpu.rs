@@ -1,4 +1,4 @@
-//! The specimen on a GPU. Pixels come from the same formulas as on the CPU; the parity tests hold the two equal.
+//! Specimen on a GPU. Pixels come from the same formulas as on the CPU; parity tests compare the two.
 
 use downpour_drop::DropShape;
 use downpour_drop::oscillation::DropOscillation;
@@ -19,7 +19,7 @@ mod table;
 
 pub use table::SpecimenTableRenderer;
 
-/// Why a specimen could not be rendered on a GPU.
+/// Error of rendering a specimen on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuSpecimenError {
@@ -65,13 +65,13 @@ pub struct SpecimenUniform {
     pub first_row: u32,
     /// Rows of the band.
     pub rows: u32,
-    /// Bit c: the colour c is written.
+    /// Bit c: the color c is written.
     pub channels: u32,
-    /// Nothing.
+    /// Padding of the WGSL layout.
     pub padding: u32,
 }
 
-/// A lamp. The same layout as `SpecimenLamp` in WGSL; one of zeros is none.
+/// A lamp. The same layout as `SpecimenLamp` in WGSL; all zeros mean no lamp.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LampUniform {
@@ -81,7 +81,7 @@ pub struct LampUniform {
     pub reach: f32,
     /// Linear radiance.
     pub radiance: [f32; 3],
-    /// Nothing.
+    /// Padding of the WGSL layout.
     pub padding: u32,
 }
 
@@ -96,7 +96,7 @@ impl From<&SpecimenLamp> for LampUniform {
     }
 }
 
-/// What the drop does in the exposure. The same layout as `SpecimenStreak` in WGSL.
+/// Motion of the drop in the exposure. The same layout as `SpecimenStreak` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct StreakUniform {
@@ -159,12 +159,12 @@ impl SpecimenRenderer {
     /// Makes the pipeline.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// [`GpuError`] of the device.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { gpu: gpu.clone(), kernel: ComputeKernel::new(gpu, &SPECIMEN_KERNEL, &[])? })
     }
 
-    /// Renders a drop in front of a sky: what [`render_specimen`](super::render_specimen) does on the CPU.
+    /// Renders a drop in front of a sky, as [`render_specimen`](super::render_specimen) does on the CPU.
     ///
     /// ```no_run
     /// use downpour_drop::DropShape;
@@ -178,7 +178,7 @@ impl SpecimenRenderer {
     /// ```
     ///
     /// # Errors
-    /// [`GpuSpecimenError::Specimen`] if the options cannot be met, else what the GPU says: a sky map needs 12 bytes
+    /// [`GpuSpecimenError::Specimen`] if an option is out of range, else the error of the device: a sky map needs 12 bytes
     /// per texel in one buffer.
     pub fn render(
         &self,
@@ -188,7 +188,7 @@ impl SpecimenRenderer {
     ) -> Result<Image, GpuSpecimenError> {
         let views = views(shape, options)?;
         let streak = match options.motion(shape)? {
-            // Made where it is needed: a picture of a drop at rest does not wait for its compiler.
+            // Created on demand: a picture of a drop at rest does not wait for its compiler.
             Some(motion) => Some((motion, ComputeKernel::new(&self.gpu, &SPECIMEN_STREAK_KERNEL, &[])?)),
             None => None,
         };

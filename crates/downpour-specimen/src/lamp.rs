@@ -1,7 +1,7 @@
 //! A lamp that is far away: a disc of even radiance on the sphere of the sky.
 //!
-//! A point would never be met by a ray that comes out of a smooth drop. A disc of angular radius r is met, and lights a
-//! surface that faces it with the irradiance pi sin^2(r) times its radiance: 3.8e-3 of it at 2 degrees. In the picture a
+//! No ray that leaves a smooth drop would hit a point. A disc of angular radius r is hit, and its irradiance on a
+//! surface that faces it is pi sin^2(r) times its radiance: 3.8e-3 of it at 2 degrees. In the picture a
 //! drop shows an image of the disc for each order of light.
 //!
 //! A direction is within the disc if its chord to the middle is shorter than 2 sin(r / 2), which keeps its digits for
@@ -17,7 +17,7 @@ use super::SpecimenError;
 /// Smallest and largest angular radius, in radians: 0.01 and 90 degrees.
 const RADII: [f64; 2] = [0.01 * std::f64::consts::PI / 180.0, std::f64::consts::FRAC_PI_2];
 /// Largest radiance.
-const LARGEST_RADIANCE: f32 = 1.0e9;
+const MAX_RADIANCE: f32 = 1.0e9;
 
 /// A lamp far away. Its light adds to that of the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,9 +58,9 @@ impl SpecimenLamp {
         if !(least..=most).contains(&radius) {
             return wrong("angular radius of a lamp", radius.to_degrees(), "degrees", "0.01 to 90");
         }
-        for colour in radiance {
-            if !(0.0..=LARGEST_RADIANCE).contains(&colour) {
-                return wrong("radiance of a lamp", colour.into(), "(units of the sky map)", "0 to 1e9");
+        for color in radiance {
+            if !(0.0..=MAX_RADIANCE).contains(&color) {
+                return wrong("radiance of a lamp", color.into(), "(units of the sky map)", "0 to 1e9");
             }
         }
         let chord = 2.0 * ops::sin(0.5 * radius);
@@ -75,12 +75,12 @@ impl SpecimenLamp {
         2.0 * ops::asin((0.5 * self.reach.sqrt()).min(1.0))
     }
 
-    /// The squared sine of the angular radius: over pi times the radiance it is the irradiance of what faces the lamp.
+    /// Squared sine of the angular radius: times pi and the radiance it is the irradiance of a surface that faces the lamp.
     pub(crate) fn sine_squared(&self) -> f64 {
         self.reach * (1.0 - 0.25 * self.reach)
     }
 
-    /// Says whether there is room for so many lamps.
+    /// Checks the number of lamps.
     ///
     /// # Errors
     /// [`SpecimenError::Size`] for more than 8.

@@ -1,10 +1,10 @@
 //! One exact drop, large, in front of a sky map.
 //!
-//! Law: geometrical optics with all orders of light. A ray of the camera is reflected and refracted where it meets
-//! the drop, and again wherever it meets the surface from inside ([`trace`]); each branch that leaves carries the
-//! share that Fresnel's equations for a dielectric (Born & Wolf, Principles of Optics, 1.5.2) give it, and the
-//! radiance of the sky where it goes ([`sky`]). Each interface acts on unpolarised light, as in a renderer that
-//! works in RGB. The drop's shape is that of `downpour_drop::shape`.
+//! Law: geometrical optics with all orders of light. A ray of the camera is reflected and refracted at the surface of
+//! the drop, and again at each interface from inside ([`trace`]); each branch that leaves carries the
+//! fraction of Fresnel's equations for a dielectric (Born & Wolf, Principles of Optics, 1.5.2), and the
+//! radiance of the sky in its direction ([`sky`]). Each interface acts on unpolarized light, as in an RGB
+//! renderer. The drop's shape is that of `downpour_drop::shape`.
 //!
 //! Frame: the world's, right-handed, +Y up; the drop's origin at 0, its axis vertical, the bottom down. The camera
 //! is at distance (sin yaw cos pitch, sin pitch, cos yaw cos pitch), looks at the origin, +Y up. Arguments are in
@@ -12,25 +12,25 @@
 //! the units of the map, unexposed.
 //!
 //! Sky maps are equirectangular: u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top, bilinear
-//! between the middles of texels, round in u. Lamps far away ([`SpecimenLamp`], [`Sky::with_lamps`]) add to them.
+//! between the centers of texels, wrapping in u. Lamps at infinity ([`SpecimenLamp`], [`Sky::with_lamps`]) are added.
 //!
 //! - [`render_specimen`]: the picture on the CPU, the same bits for any number of threads;
-//! - [`render_specimen_f64`]: the reference above it;
+//! - [`render_specimen_f64`]: its reference;
 //! - [`gpu::SpecimenRenderer`] (feature `wgpu`): the same on a GPU;
 //! - [`render_specimen_table`]: a streak as the renderer of rain draws it, by its table;
 //! - [`SpecimenOptions`], [`default_fov`]: the camera;
 //! - functions whose names begin with `specimen_` are the twins of `shaders/wgsl/render/specimen.wgsl` and of its two
-//!   neighbours.
+//!   neighbors.
 //!
 //! With an exposure, or an oscillation, the picture is that of a streak: the mean over the exposure of the drop that falls at
 //! its terminal speed, at the origin at mid-exposure, and oscillates ([`streak`], [`wobble`], [`SpecimenMotion`]). Without
 //! either it is that of the drop at rest, bit for bit.
 //!
 //! Limits: no diffraction (drops above some hundredths of a millimetre), no absorption (below 0.4 % in 6 mm). Light
-//! that is still inside after 256 internal reflections, or of which less than 10^-4 is left, leaves with the last
-//! light that left, so that all shares sum to 1. Exact up to 5.9 mm, where drops are convex. The bottom of larger
-//! ones has a ripple (`downpour_drop::shape`): light that has left it and would meet it again goes on, and rays that
-//! graze it may be missed, which takes 0.1 % from the height of the outline at 7 mm and up to 1.5 % at 9 mm. In a streak no
+//! that is still inside after 256 internal reflections, or of which less than 10^-4 is left, leaves at the last
+//! exit, so that all fractions sum to 1. Exact up to 5.9 mm, where drops are convex. The bottom of larger
+//! ones has a ripple (`downpour_drop::shape`): light that leaves it and would meet it again continues, and rays that
+//! graze it may be missed, which reduces the height of the outline by 0.1 % at 7 mm and up to 1.5 % at 9 mm. In a streak no
 //! ray is missed, and 128 internal reflections are followed.
 //!
 //! ```
@@ -92,10 +92,10 @@ pub use error::SpecimenError;
 pub use image::Image;
 pub use lamp::SpecimenLamp;
 pub use motion::SpecimenMotion;
-pub use options::{LARGEST_SIZE, LONGEST_EXPOSURE_S, SpecimenOptions};
+pub use options::{LONGEST_EXPOSURE_S, MAX_SIZE, SpecimenOptions};
 pub use render::{render_specimen, render_specimen_f64, render_specimen_scalar, specimen_jitter};
 pub use sky::Sky;
-pub use table::{LARGEST_TABLE_LAMP_DEG, check_specimen_table, render_specimen_table};
+pub use table::{MAX_TABLE_LAMP_DEG, check_specimen_table, render_specimen_table};
 
 /// The examples of the README, as tests.
 #[cfg(doctest)]

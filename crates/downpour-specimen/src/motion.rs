@@ -1,4 +1,4 @@
-//! What a drop does during an exposure, as the tracer needs it.
+//! Motion of a drop during an exposure, for the tracer.
 
 use downpour_drop::DropShape;
 use downpour_drop::air::Air;
@@ -17,12 +17,12 @@ use super::options::SpecimenOptions;
 const DIRECTIONS: u32 = 360;
 const DISPLACEMENTS: i32 = 4;
 
-/// What the spheroid that holds the drop is larger than the points that were looked at.
+/// Ratio of the bounding spheroid to the sampled points.
 const MARGIN: f64 = 1.002;
 
 /// A drop that falls at its terminal speed (Beard 1976, at 20 C and 1013.25 hPa) and oscillates, at the origin at time 0. The
-/// radius at rest is multiplied by the factor of `downpour_drop::oscillation`, and the volume is kept; phi = 0, where the
-/// lobe of the mode (3,1) is, is towards +X.
+/// radius at rest is multiplied by the factor of `downpour_drop::oscillation`, and the volume is conserved; phi = 0, the
+/// direction of the lobe of the mode (3,1), is towards +X.
 #[derive(Clone, Copy, Debug)]
 pub struct SpecimenMotion {
     /// The drop and its oscillation.
@@ -40,7 +40,7 @@ pub struct SpecimenMotion {
 }
 
 impl SpecimenMotion {
-    /// The motion that the options ask for; `None` for a drop that is at rest.
+    /// Motion for the options; `None` for a drop at rest.
     pub(crate) fn of(shape: &DropShape, options: &SpecimenOptions) -> Result<Option<Self>, SpecimenError> {
         if !options.is_streak() {
             return Ok(None);
@@ -75,7 +75,7 @@ pub(crate) fn fall_speed(shape: &DropShape) -> Result<f64, SpecimenError> {
     Ok(terminal_speed(FallSpeedModel::Beard1976, 2.0 * shape.equivalent_radius(), &Air::standard())?)
 }
 
-/// Half axes, across and along, of a spheroid that holds the drop whatever its phases are.
+/// Half axes, across and along, of a spheroid that encloses the drop at all phases.
 fn spheroid(drop: &OscillatingDrop) -> [f64; 2] {
     let coefficients = drop.shape().coefficients();
     let amplitudes = drop.oscillation().amplitudes().pair();

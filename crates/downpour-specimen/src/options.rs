@@ -1,4 +1,4 @@
-//! How a specimen is seen.
+//! Options of a specimen's picture.
 
 use downpour_drop::DropShape;
 use downpour_drop::optics::WATER_INDEX;
@@ -11,12 +11,12 @@ use super::SpecimenError;
 use super::camera::{bounding_radius, default_fov, path_fov};
 use super::motion::{SpecimenMotion, fall_speed};
 
-/// The largest width and height of a picture, in pixels.
-pub const LARGEST_SIZE: u32 = 16_384;
+/// Maximum width and height of a picture, in pixels.
+pub const MAX_SIZE: u32 = 16_384;
 
-const LARGEST_DISTANCE_M: f64 = 1000.0;
-pub(crate) const LARGEST_FOV_DEG: f64 = 175.0;
-const LARGEST_INDEX: f64 = 4.0;
+const MAX_DISTANCE_M: f64 = 1000.0;
+pub(crate) const MAX_FOV_DEG: f64 = 175.0;
+const MAX_INDEX: f64 = 4.0;
 
 /// The camera, the picture and the water. By default the drop fills 80 % of the height from 0.1 m, seen level from
 /// +Z, in 960 x 540 pixels of 4 x 4 samples.
@@ -32,7 +32,7 @@ pub struct SpecimenOptions {
     pub pitch: f64,
     /// Vertical field of view in radians, above 0 and up to 175 degrees; `None` for [`default_fov`].
     pub fov: Option<f64>,
-    /// Width and height of the picture in pixels, each 1 to [`LARGEST_SIZE`].
+    /// Width and height of the picture in pixels, each 1 to [`MAX_SIZE`].
     pub size: [u32; 2],
     /// Samples along an edge of a pixel, 1 to 16: a pixel is the mean of the square of it. Lines of samples are shifted
     /// against each other.
@@ -40,12 +40,12 @@ pub struct SpecimenOptions {
     /// Refractive index of water against air for red, green and blue, each 1 to 4. Three different ones take three
     /// times as long (`downpour_drop::optics::rgb_indices` has those of real water).
     pub refractive_index: [f64; 3],
-    /// How long the picture is exposed, in seconds, 0 to [`LONGEST_EXPOSURE_S`]: the drop falls at its terminal speed and
+    /// Exposure in seconds, 0 to [`LONGEST_EXPOSURE_S`]: the drop falls at its terminal speed and
     /// is at the origin at mid-exposure.
     pub exposure_s: f64,
     /// Instants for each sample of a pixel, 1 to 4096, spread over the time in which the drop may cover it.
     pub instants: u32,
-    /// How far the drop oscillates about its shape at rest.
+    /// Amplitudes of the oscillation about the shape at rest.
     pub oscillation: Amplitudes,
     /// Phases of the modes (2,0) and (3,1) at mid-exposure, in turns: any finite numbers.
     pub phase: [f64; 2],
@@ -70,7 +70,7 @@ impl Default for SpecimenOptions {
 }
 
 impl SpecimenOptions {
-    /// Says whether a drop can be seen so.
+    /// Checks the options for a drop.
     ///
     /// # Errors
     /// [`SpecimenError::OutOfRange`] or [`SpecimenError::Size`], naming the option.
@@ -85,23 +85,23 @@ impl SpecimenOptions {
         };
         let degrees = 1.0_f64.to_degrees();
         let nearest = bounding_radius(shape);
-        if !(self.distance_m > nearest && self.distance_m <= LARGEST_DISTANCE_M) {
+        if !(self.distance_m > nearest && self.distance_m <= MAX_DISTANCE_M) {
             return Err(SpecimenError::OutOfRange {
                 quantity: "camera distance",
                 found: self.distance_m,
                 unit: "m",
-                allowed: format!("above {nearest:.6} (outside the drop), up to {LARGEST_DISTANCE_M}"),
+                allowed: format!("above {nearest:.6} (outside the drop), up to {MAX_DISTANCE_M}"),
             });
         }
         within("camera yaw", self.yaw, f64::MIN, f64::MAX, "degrees", degrees, "a finite number")?;
         let quarter = std::f64::consts::FRAC_PI_2 * (1.0 + 1.0e-9);
         within("camera pitch", self.pitch, -quarter, quarter, "degrees", degrees, "-90 to 90")?;
         if let Some(fov) = self.fov {
-            let most = LARGEST_FOV_DEG.to_radians() * (1.0 + 1.0e-9);
+            let most = MAX_FOV_DEG.to_radians() * (1.0 + 1.0e-9);
             within("field of view", fov, f64::MIN_POSITIVE, most, "degrees", degrees, "above 0, up to 175")?;
         }
         for index in self.refractive_index {
-            within("refractive index", index, 1.0, LARGEST_INDEX, "(no unit)", 1.0, "1 to 4")?;
+            within("refractive index", index, 1.0, MAX_INDEX, "(no unit)", 1.0, "1 to 4")?;
         }
         let size = |quantity, found: u32, most: u32| {
             if (1..=most).contains(&found) {
@@ -109,8 +109,8 @@ impl SpecimenOptions {
             }
             Err(SpecimenError::Size { quantity, found: found.into(), least: 1, most: most.into() })
         };
-        size("picture width", self.size[0], LARGEST_SIZE)?;
-        size("picture height", self.size[1], LARGEST_SIZE)?;
+        size("picture width", self.size[0], MAX_SIZE)?;
+        size("picture height", self.size[1], MAX_SIZE)?;
         size("samples along an edge of a pixel", self.samples, SPECIMEN_SAMPLES)?;
         size("instants of an exposure", self.instants, SPECIMEN_STREAK_INSTANTS)?;
         within("exposure", self.exposure_s, 0.0, LONGEST_EXPOSURE_S, "s", 1.0, "0 to 1")?;
@@ -120,7 +120,7 @@ impl SpecimenOptions {
         self.check_path(shape)
     }
 
-    /// The drop must not meet the camera on its way.
+    /// Checks that the path of the drop does not meet the camera.
     fn check_path(&self, shape: &DropShape) -> Result<(), SpecimenError> {
         let Some(motion) = SpecimenMotion::of(shape, self)? else { return Ok(()) };
         let (sin, cos) = (ops::sin(self.pitch), ops::cos(self.pitch));
@@ -143,16 +143,16 @@ impl SpecimenOptions {
         Ok(0.5 * self.exposure_s * fall_speed(shape)?)
     }
 
-    /// Returns whether the picture is that of a streak: the drop moves, or its shape is not that at rest.
+    /// True if the picture is that of a streak: the drop moves, or its shape is not that at rest.
     #[must_use]
     pub fn is_streak(&self) -> bool {
         self.exposure_s > 0.0 || self.oscillation != Amplitudes::NONE
     }
 
-    /// What the drop does during the exposure; `None` for a drop at rest.
+    /// Motion of the drop during the exposure; `None` for a drop at rest.
     ///
     /// # Errors
-    /// What [`SpecimenOptions::check`] says.
+    /// As [`SpecimenOptions::check`].
     pub fn motion(&self, shape: &DropShape) -> Result<Option<SpecimenMotion>, SpecimenError> {
         self.check(shape)?;
         SpecimenMotion::of(shape, self)

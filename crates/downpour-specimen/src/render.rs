@@ -19,12 +19,12 @@ use super::trace::{Receiver, SpecimenCamera, specimen_light, specimen_radiance, 
 use super::{Image, SpecimenError};
 
 /// More lanes than any vector has.
-const MOST_LANES: usize = 64;
+const MAX_LANES: usize = 64;
 
 /// Newton steps of the reference.
 const REFERENCE_STEPS: u32 = 16;
 
-/// What is traced: the drop for one refractive index, seen by a camera, and the colours that it is for.
+/// View to trace: the drop for one refractive index, seen by a camera, and the colors that it is for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) drop: TracedDrop,
@@ -34,7 +34,7 @@ pub(crate) struct View {
     pub(crate) channels: [bool; 3],
 }
 
-/// The views that make up a picture: one for all colours, or one for each if their indices differ.
+/// Views of a picture: one for all colors, or one for each if their indices differ.
 pub(crate) fn views(shape: &DropShape, options: &SpecimenOptions) -> Result<Vec<View>, SpecimenError> {
     let camera = options.camera(shape)?;
     let view = |index, channels| View {
@@ -56,8 +56,8 @@ pub(crate) fn views(shape: &DropShape, options: &SpecimenOptions) -> Result<Vec<
 }
 
 /// Position of the samples of a line within their cells, 0 to 1: each line is shifted against the next by the golden ratio, a
-/// lattice of rank 1. What is narrower than a cell, as the image of a small lamp that a falling drop draws out along a
-/// column, is not missed, or met, by all lines alike.
+/// rank-1 lattice. Features narrower than a cell, as the image of a small lamp drawn out along a
+/// column by a falling drop, are not missed, or hit, by all lines alike.
 #[inline(always)]
 #[must_use]
 pub fn specimen_jitter(line: u32) -> f32 {
@@ -72,7 +72,7 @@ impl View {
 
     /// Position of sample `index` of line `line`, from the middle of the picture.
     #[inline(always)]
-    pub(crate) fn sample_place(&self, index: u32, line: u32) -> f32 {
+    pub(crate) fn sample_position(&self, index: u32, line: u32) -> f32 {
         index as f32 - (self.size[0] * self.samples) as f32 * 0.5 + specimen_jitter(line)
     }
 
@@ -97,7 +97,7 @@ impl View {
     }
 }
 
-/// The picture of a streak, each pixel in the precision `R`; `None` for a drop at rest.
+/// Picture of a streak, each pixel in the precision `R`; `None` for a drop at rest.
 fn streak<R: Precision>(
     shape: &DropShape,
     options: &SpecimenOptions,
@@ -139,7 +139,7 @@ pub(super) fn empty(options: &SpecimenOptions) -> Image {
 /// ```
 ///
 /// # Errors
-/// What [`SpecimenOptions::check`] says.
+/// As [`SpecimenOptions::check`].
 pub fn render_specimen(
     shape: &DropShape,
     options: &SpecimenOptions,
@@ -178,7 +178,7 @@ pub fn render_specimen_scalar(
             view.row(row, pixels, |number, line| {
                 let y = view.line_height(number);
                 for (k, sample) in (0..).zip(line) {
-                    let x = view.sample_place(k, number);
+                    let x = view.sample_position(k, number);
                     *sample = specimen_radiance(&view.drop, &view.camera, sky, x, y);
                 }
             });
@@ -196,7 +196,7 @@ struct Line<'a> {
     line: &'a mut [[f32; 3]],
 }
 
-/// Sums the sky's radiance for as many rays as there are lanes.
+/// Sums the sky's radiance over one ray per lane.
 struct LaneSums<'a> {
     sky: Sky<'a>,
     sums: &'a mut [[f32; 3]],
@@ -207,7 +207,7 @@ impl<S: Simd> Receiver<Lanes<S>> for LaneSums<'_> {
     fn receive(&mut self, direction: [Lanes<S>; 3], share: Lanes<S>) {
         let [u, v] = specimen_sky_place(direction);
         let [x, y, z] = direction;
-        let mut stored = [[0.0f32; MOST_LANES]; 6];
+        let mut stored = [[0.0f32; MAX_LANES]; 6];
         let kept = if self.sky.lamps().is_empty() { 3 } else { 6 };
         for (lanes, into) in [u, v, share, x, y, z].into_iter().zip(&mut stored[..kept]) {
             lanes.store(into);
@@ -229,19 +229,19 @@ impl WithLanes for Line<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let lanes = Lanes::<S>::COUNT;
-        debug_assert!(lanes <= MOST_LANES, "a machine with vectors of more than {MOST_LANES} numbers");
+        debug_assert!(lanes <= MAX_LANES, "a machine with vectors of more than {MAX_LANES} numbers");
         let y = Lanes::splat(simd, self.view.line_height(self.number));
         for (first, sums) in (0..).step_by(lanes).zip(self.line.chunks_mut(lanes)) {
-            let mut x = [0.0; MOST_LANES];
+            let mut x = [0.0; MAX_LANES];
             for (k, x) in (0..).zip(&mut x[..lanes]) {
                 // Lanes past the end of the line repeat the last sample.
                 let index = (first + k).min(first + sums.len() as u32 - 1);
-                *x = self.view.sample_place(index, self.number);
+                *x = self.view.sample_position(index, self.number);
             }
             sums.fill([0.0; 3]);
             let mut sums = LaneSums { sky: self.sky, sums };
-            let place = [Lanes::load(simd, &x[..lanes]), y];
-            specimen_light(&self.view.drop, &self.view.camera, place, &mut sums);
+            let position = [Lanes::load(simd, &x[..lanes]), y];
+            specimen_light(&self.view.drop, &self.view.camera, position, &mut sums);
         }
     }
 }
@@ -279,9 +279,9 @@ pub fn render_specimen_f64(
             view.row(row as u32, pixels, |number, line| {
                 let y = view.line_height(number);
                 for (k, sample) in (0..).zip(line) {
-                    let place = [view.sample_place(k, number), y].map(f64::from);
+                    let position = [view.sample_position(k, number), y].map(f64::from);
                     let mut sum = SumF64 { sky, radiance: [0.0; 3] };
-                    specimen_light(&view.drop, &view.camera, place, &mut sum);
+                    specimen_light(&view.drop, &view.camera, position, &mut sum);
                     *sample = sum.radiance.map(|c| c as f32);
                 }
             });

@@ -1,13 +1,13 @@
 //! A sky map: radiance by direction.
 //!
-//! Equirectangular, +Y up: u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top. The middle of texel
-//! (i, j) is at u = (i + 0.5) / width, v = (j + 0.5) / height; between them the map is bilinear, round in u and
+//! Equirectangular, +Y up: u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top. The center of texel
+//! (i, j) is at u = (i + 0.5) / width, v = (j + 0.5) / height; between them the map is bilinear, wrapping in u and
 //! constant beyond the first and the last row.
 //!
 //! Both angles come from one polynomial in units of turns ([`specimen_turns`]), within 4e-8 turns in f32: the
 //! inverse functions of WGSL may be wrong by 4096 units in the last place.
 //!
-//! To the map's light come the lamps of [`super::lamp`].
+//! The lamps of [`super::lamp`] are added to the map's light.
 //!
 //! Twin of `shaders/wgsl/render/specimen.wgsl`.
 
@@ -20,9 +20,9 @@ use super::SpecimenError;
 use super::lamp::{SpecimenLamp, specimen_lamp};
 
 /// The largest width and height of a sky map: more would not fit an f32's 24 bits between its texels.
-const LARGEST_SIZE: u32 = 32_768;
+const MAX_SIZE: u32 = 32_768;
 
-/// A sky map that somebody else holds: linear radiance, row by row from the top.
+/// A borrowed sky map: linear radiance, row by row from the top.
 #[derive(Clone, Copy, Debug)]
 pub struct Sky<'a> {
     width: u32,
@@ -39,8 +39,8 @@ impl<'a> Sky<'a> {
     /// are not width x height texels, or one is not finite.
     pub fn new(width: u32, height: u32, radiance: &'a [[f32; 3]]) -> Result<Self, SpecimenError> {
         for (quantity, found) in [("sky map width", width), ("sky map height", height)] {
-            if !(1..=LARGEST_SIZE).contains(&found) {
-                let (found, most) = (found.into(), LARGEST_SIZE.into());
+            if !(1..=MAX_SIZE).contains(&found) {
+                let (found, most) = (found.into(), MAX_SIZE.into());
                 return Err(SpecimenError::Size { quantity, found, least: 1, most });
             }
         }
@@ -61,7 +61,7 @@ impl<'a> Sky<'a> {
         Ok(Self { width, height, radiance, lamps: &[] })
     }
 
-    /// The same map with lamps before it, up to 8. Where lamps overlap, their light adds.
+    /// The same map with lamps in front of it, up to 8. The light of overlapping lamps adds.
     ///
     /// # Errors
     /// [`SpecimenError::Size`] for more lamps.
@@ -114,7 +114,7 @@ pub fn specimen_turns<R: Real>(y: R, x: R) -> R {
     R::select(y.less(zero), -half, half)
 }
 
-/// Where a direction (of any length) is on the sky map: u from the left, v from the top, both in [0, 1].
+/// Position of a direction (of any length) on the sky map: u from the left, v from the top, both in [0, 1].
 #[inline(always)]
 #[must_use]
 pub fn specimen_sky_place<R: Real>(direction: [R; 3]) -> [R; 2] {
@@ -133,7 +133,7 @@ pub fn specimen_sky_texel(sky: Sky<'_>, column: u32, row: u32) -> [f32; 3] {
     sky.radiance[row as usize * sky.width as usize + column as usize]
 }
 
-/// The radiance of the sky at a place of its map.
+/// Radiance of the sky at a position of its map.
 #[inline(always)]
 #[must_use]
 pub fn specimen_sky(sky: Sky<'_>, [u, v]: [f32; 2]) -> [f32; 3] {

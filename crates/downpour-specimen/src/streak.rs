@@ -1,9 +1,9 @@
 //! The streak of one exact drop: the mean over an exposure of a drop that falls and oscillates.
 //!
 //! A drop that falls is a ray that rises: in the drop's frame, at u radii of fall after the middle of the exposure, the
-//! ray of the camera is shifted by u along +Y. It meets the spheroid that holds the drop for one interval of u, which is known
-//! in closed form ([`specimen_streak_passage`]); the rest of the exposure shows the sky, with its exact weight. The interval
-//! is cut into equal parts, one instant in each, all at the same place of their part, which is drawn for each sample of the
+//! ray of the camera is shifted by u along +Y. It meets the bounding spheroid of the drop for one interval of u, which is known
+//! in closed form ([`specimen_streak_passage`]); during the remaining exposure it shows the sky, with its exact weight. The interval
+//! is divided into equal parts, one instant in each, all at the same position in their part, which is random for each sample of the
 //! picture: the mean over many samples is that over all times, and the weights sum to 1 for any number of instants.
 //!
 //! Lengths are in units of the volume-equivalent radius. Twin of `shaders/wgsl/render/specimen_streak.wgsl`; in f64 the
@@ -29,7 +29,7 @@ use super::wobble::{SpecimenWobble, specimen_wobble_bounce, specimen_wobble_ente
 /// When a ray meets the drop.
 #[derive(Clone, Copy, Debug)]
 pub struct SpecimenPassage<R> {
-    /// The foot of the shifted ray where the drop's axis and the ray are nearest to each other.
+    /// Foot of the shifted ray at the nearest approach of the drop's axis and the ray.
     pub foot: [R; 3],
     /// u there.
     pub middle: R,
@@ -37,7 +37,7 @@ pub struct SpecimenPassage<R> {
     pub first: R,
     /// Its end.
     pub last: R,
-    /// Its share of the exposure.
+    /// Fraction of the exposure that it covers.
     pub cover: R,
 }
 
@@ -85,7 +85,7 @@ pub fn specimen_streak_shift<R: Real>(
     }
 }
 
-/// s2, s3, and what keeps the volume, `seconds` after the middle of the exposure. `volume` is the polynomial of
+/// s2, s3, and the factor that conserves the volume, `seconds` after the middle of the exposure. `volume` is the polynomial of
 /// `OscillatingDrop::volume_polynomial`.
 #[inline]
 #[must_use]
@@ -98,7 +98,7 @@ pub fn specimen_streak_state(oscillation: DropOscillation, volume: [f64; 5], sec
     [s2, s3, drop_oscillation_inverse_cube_root(1.0 + (even + odd))]
 }
 
-/// Where in their parts the instants of a sample are, in [0, 1).
+/// Position of the instants of a sample within their parts, in [0, 1).
 #[inline]
 #[must_use]
 pub fn specimen_streak_offset(pixel: u32, sample: u32) -> f32 {
@@ -166,7 +166,7 @@ fn specimen_streak_radiance<R: Precision>(
     radiance
 }
 
-/// A streak that is being made: what the uniforms of the shader hold.
+/// Parameters of a streak: the uniforms of the shader.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Streak<'a> {
     pub(crate) view: &'a View,
@@ -176,13 +176,13 @@ pub(crate) struct Streak<'a> {
 }
 
 impl Streak<'_> {
-    /// What trace `k` adds to a sum over the samples of a pixel. The first instant of a sample brings the uncovered time.
+    /// Contribution of trace `k` to a sum over the samples of a pixel. The first instant of a sample adds the uncovered time.
     fn specimen_streak_trace<R: Precision>(&self, column: u32, row: u32, k: u32) -> [R; 3] {
         let (view, motion) = (self.view, self.motion);
         let samples = view.samples;
         let (sample, instant) = (k / motion.instants, k % motion.instants);
         let line = row * samples + sample / samples;
-        let x = R::single(view.sample_place(column * samples + sample % samples, line));
+        let x = R::single(view.sample_position(column * samples + sample % samples, line));
         let y = R::single(view.line_height(line));
         let (zero, one) = (x.constant(0.0), x.constant(1.0));
         let ray = specimen_ray(&view.camera, x, y);
@@ -211,7 +211,7 @@ impl Streak<'_> {
         sum
     }
 
-    /// One pixel: as many traces at a time as an invocation of the shader has.
+    /// One pixel: as many traces at a time as in an invocation of the shader.
     pub(crate) fn pixel<R: Precision>(&self, column: u32, row: u32) -> [f32; 3] {
         let zero = R::single(0.0);
         let samples = self.view.samples;

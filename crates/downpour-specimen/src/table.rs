@@ -1,11 +1,11 @@
 //! The streak of a specimen as the renderer of rain draws it: through masks, by its streak radiance table.
 //!
-//! Beside [`render_specimen`](super::render_specimen), which traces every ray, it shows what the table is worth: the same drop, camera,
-//! exposure, oscillation and phases before the same map, drawn by [`rain`](downpour_render::rain) with the options that a picture of a
-//! scene has. What is not covered is the map itself, sampled as there.
+//! Compared with [`render_specimen`](super::render_specimen), which traces every ray, it shows the error of the table: the same drop,
+//! camera, exposure, oscillation and phases before the same map, drawn by [`rain`](downpour_render::rain) with the options of a picture
+//! of a scene. Uncovered pixels show the map itself, sampled as there.
 //!
-//! A lamp far away is parallel light for the renderer, kept out of the capture: the profile of the streak looks for its disc. A
-//! disc has to be small for that ([`LARGEST_TABLE_LAMP_DEG`]).
+//! A lamp at infinity is parallel light for the renderer, excluded from the environment capture: the profile of the streak looks up its
+//! disc. A disc has to be small for that ([`MAX_TABLE_LAMP_DEG`]).
 //!
 //! Source: P. Rousseau et al., "GPU rainfall", 2008, section 2.2.3, for the oscillation of the outline; the table is
 //! described in `shaders/wgsl/render/streak_lookup.wgsl`.
@@ -44,19 +44,19 @@ use downpour_trace::picture::picture_frame;
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
 
-/// The largest angular radius, in degrees, of a lamp that may count as parallel light.
-pub const LARGEST_TABLE_LAMP_DEG: f64 = 5.0;
+/// Maximum angular radius, in degrees, of a lamp that may count as parallel light.
+pub const MAX_TABLE_LAMP_DEG: f64 = 5.0;
 
-/// Metres from the eye, above a diameter: drops that are nearer in the middle of the exposure stand still in a picture of rain.
-const NEAREST_M: f64 = 0.02;
+/// Minimum distance from the eye, metres, above a diameter: nearer drops at mid-exposure do not move in a picture of rain.
+const MIN_DISTANCE_M: f64 = 0.02;
 
-/// Seed and id of the drop: its own phases and azimuth come in the place of those that follow from them.
+/// Seed and id of the drop: the phases and the azimuth that follow from them are replaced.
 const SEED: u64 = 0;
 const ID: u32 = 0;
 
 /// A streak that is ready to be drawn, for one refractive index.
 pub(crate) struct TableStreak {
-    /// Nothing but a sky, and lamps as parallel light.
+    /// A scene of a sky and lamps as parallel light.
     pub(crate) scene: SceneData,
     /// The frame of the picture.
     pub(crate) frame: RenderFrame,
@@ -69,7 +69,7 @@ pub(crate) struct TableStreak {
 
 /// Renders the streak of a drop in front of a sky as the renderer of rain does.
 ///
-/// [`SpecimenOptions::instants`] is not asked.
+/// [`SpecimenOptions::instants`] is not used.
 ///
 /// ```
 /// use downpour_drop::DropShape;
@@ -83,7 +83,7 @@ pub(crate) struct TableStreak {
 /// ```
 ///
 /// # Errors
-/// What [`SpecimenOptions::check`] and [`check_specimen_table`] say; [`SpecimenError::Render`] for a field of view below
+/// As [`SpecimenOptions::check`] and [`check_specimen_table`]; [`SpecimenError::Render`] for a field of view below
 /// 0.006 degrees.
 pub fn render_specimen_table(
     shape: &DropShape,
@@ -102,8 +102,8 @@ pub fn render_specimen_table(
     Ok(image)
 }
 
-/// Says whether the renderer of rain has a table for such a drop: a diameter of the masks (0.5 to 9 mm), an exposure above 0, a
-/// camera that is not so near that rain is not drawn there, lamps of at most [`LARGEST_TABLE_LAMP_DEG`].
+/// Checks that the renderer of rain has a table for such a drop: a diameter of the masks (0.5 to 9 mm), an exposure above 0, a
+/// camera at a distance at which rain is drawn, lamps of at most [`MAX_TABLE_LAMP_DEG`].
 ///
 /// # Errors
 /// [`SpecimenError::OutOfRange`], naming the quantity.
@@ -125,16 +125,16 @@ pub fn check_specimen_table(
     if options.exposure_s <= 0.0 {
         return wrong("exposure of a streak by the table", options.exposure_s, "s", "above 0".to_owned());
     }
-    let nearest = diameter + NEAREST_M;
+    let nearest = diameter + MIN_DISTANCE_M;
     if options.distance_m < nearest {
         let allowed = format!("from {nearest:.6} (nearer drops are not drawn as streaks)");
         return wrong("camera distance of a streak by the table", options.distance_m, "m", allowed);
     }
-    let largest = LARGEST_TABLE_LAMP_DEG.to_radians() * (1.0 + 1.0e-9);
+    let largest = MAX_TABLE_LAMP_DEG.to_radians() * (1.0 + 1.0e-9);
     match lamps.iter().map(SpecimenLamp::radius).find(|&radius| radius > largest) {
         Some(radius) => {
             let allowed =
-                format!("0.01 to {LARGEST_TABLE_LAMP_DEG}, since the renderer takes it for parallel light");
+                format!("0.01 to {MAX_TABLE_LAMP_DEG}, since the renderer takes it for parallel light");
             wrong(
                 "angular radius of a lamp on a streak by the table",
                 radius.to_degrees(),
@@ -146,7 +146,7 @@ pub fn check_specimen_table(
     }
 }
 
-/// The streaks that make up a picture: one for all colours, or one for each if their indices differ.
+/// Streaks of a picture: one for all colors, or one for each if their indices differ.
 pub(crate) fn table_streaks(
     shape: &DropShape,
     options: &SpecimenOptions,
@@ -216,7 +216,7 @@ impl TableStreak {
         Ok(self.rain.streak_lights(view, &self.masks)?)
     }
 
-    /// The sky and the lamps as rain asks for them.
+    /// Sky and lamps in the form for rain.
     pub(crate) fn view(&self) -> SceneView<'_> {
         SceneView { data: &self.scene, frame: &self.frame }
     }
@@ -226,7 +226,7 @@ impl TableStreak {
         trace_environment(&self.scene, &self.frame, &self.rain.environment)
     }
 
-    /// Writes the colours that this streak is for into a picture. `layer` is the rain over the background.
+    /// Writes the colors of this streak into a picture. `layer` is the rain over the background.
     pub(crate) fn show(&self, layer: &[[f32; 4]], image: &mut Image) {
         for (pixel, seen) in image.pixels.iter_mut().zip(through_rain(&self.clean, layer)) {
             for c in (0..3).filter(|&c| self.channels[c]) {
@@ -236,7 +236,7 @@ impl TableStreak {
     }
 }
 
-/// A scene that is nothing but the sky. As a weather does it, the sun of the map is taken out of it and made parallel light.
+/// A scene of a sky only. As for a weather, the sun of the map is extracted and becomes parallel light.
 fn scene(sky: Sky<'_>) -> SceneData {
     let mut map = SkyMap {
         width: sky.width(),
@@ -245,7 +245,7 @@ fn scene(sky: Sky<'_>) -> SceneData {
         warnings: Vec::new(),
     };
     let sun = map.extract_sun(SUN_THRESHOLD);
-    // No surface asks for the levels of rough reflection, nor for irradiance.
+    // No surface uses the levels of rough reflection, nor the irradiance.
     let light = SkyLight {
         texels: map.radiance.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect(),
         levels: [[map.width, map.height, 0, 0]; SCENE_SKY_LEVELS as usize],
@@ -275,7 +275,7 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
     let pixel = |column: u32, row: u32| {
         let light = (0..samples * samples).fold([0.0; 3], |sum, k| {
             let line = row * samples + k / samples;
-            let x = view.sample_place(column * samples + k % samples, line);
+            let x = view.sample_position(column * samples + k % samples, line);
             let y = view.line_height(line);
             add(sum, specimen_sky_light(sky, specimen_ray(&view.camera, x, y).direction))
         });
@@ -289,7 +289,7 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
         .collect()
 }
 
-/// Gives a drop the phases of the specimen, and the lobe of the mode (3,1) its place towards +X.
+/// Sets the phases of the specimen, and the lobe of the mode (3,1) towards +X.
 fn set_phases(drop: &mut DropsDrop, options: &SpecimenOptions) {
     if options.oscillation == Amplitudes::NONE {
         return;

@@ -5,9 +5,9 @@
 //! the camera's axis and D the camera's distance, the foot is D / (1 + q^2) (q^2 back + q), which loses no digits
 //! however far the camera is.
 //!
-//! At each interface, light splits into one part that leaves and one that stays inside. The shares telescope: what
-//! leaves is the difference of what was inside and what stays, so that all shares sum to 1 but for rounding. A total
-//! reflection lets nothing out.
+//! At each interface, light splits into one part that leaves and one that stays inside. The fractions telescope: the light
+//! that leaves is the difference of the light before and the light that stays, so that all fractions sum to 1 but for rounding. A
+//! total reflection transmits nothing.
 //!
 //! Generic over [`Real`]; with `f32` the twin of `shaders/wgsl/render/specimen.wgsl`.
 
@@ -62,22 +62,22 @@ pub struct SpecimenCamera {
 pub struct SpecimenRay<R> {
     /// The point nearest to the drop's origin.
     pub foot: [R; 3],
-    /// How far the camera is behind it.
+    /// Distance of the camera behind it.
     pub reach: R,
     /// Direction, of length 1.
     pub direction: [R; 3],
 }
 
-/// Light on its way: what left at the last interface, and what is still inside.
+/// Light on its path: the light that left at the last interface, and the light that is still inside.
 #[derive(Clone, Copy, Debug)]
 pub struct SpecimenLight<R> {
     /// Point of the last interface.
     pub point: [R; 3],
-    /// Share of the light that left there.
+    /// Fraction of the light that left there.
     pub share: R,
     /// Direction of the light that left.
     pub exit: [R; 3],
-    /// Share of the light that is still inside.
+    /// Fraction of the light that is still inside.
     pub rest: R,
     /// Its direction, of length 1.
     pub inside: [R; 3],
@@ -85,7 +85,7 @@ pub struct SpecimenLight<R> {
 
 /// Takes the light that leaves, in order.
 pub trait Receiver<R> {
-    /// Light of share `share` (0 where there is none) that leaves along `direction`.
+    /// Receives light of the fraction `share` (0 if no light leaves) that leaves along `direction`.
     fn receive(&mut self, direction: [R; 3], share: R);
 }
 
@@ -106,7 +106,7 @@ pub fn specimen_ray<R: Real>(camera: &SpecimenCamera, x: R, y: R) -> SpecimenRay
     SpecimenRay { foot, reach: distance * root, direction: scale(sub(across, back), root) }
 }
 
-/// Whether the ray meets the drop: the gauge at the nearest point is below 1, and that point is before the camera.
+/// True if the ray meets the drop: the gauge at the nearest point is below 1, and that point is before the camera.
 #[inline(always)]
 #[must_use]
 pub fn specimen_hits<R: Real>(drop: &TracedDrop, ray: &SpecimenRay<R>) -> R::Mask {
@@ -132,7 +132,7 @@ pub fn specimen_hits<R: Real>(drop: &TracedDrop, ray: &SpecimenRay<R>) -> R::Mas
     one.both(decided, (-ray.reach).less(R::select(inside, first, along)))
 }
 
-/// The first interface: what is reflected outside leaves, the rest enters.
+/// First interface: light reflected outside leaves, the remainder enters.
 #[inline(always)]
 #[must_use]
 pub fn specimen_enter<R: Real>(drop: &TracedDrop, ray: &SpecimenRay<R>) -> SpecimenLight<R> {
@@ -151,8 +151,8 @@ pub fn specimen_enter<R: Real>(drop: &TracedDrop, ray: &SpecimenRay<R>) -> Speci
     }
 }
 
-/// The next interface from inside. If less than `least` would stay inside, all leaves: along the last direction in
-/// which light left, if nothing passes here.
+/// Next interface from inside. If less than `least` would stay inside, all leaves: in the direction of the last
+/// exit, if nothing is transmitted here.
 #[inline(always)]
 #[must_use]
 pub fn specimen_bounce<R: Real>(drop: &TracedDrop, light: &SpecimenLight<R>, least: R) -> SpecimenLight<R> {

@@ -1,10 +1,10 @@
 //! A ray through a drop that oscillates: a surface that is not one of revolution, and need not be convex.
 //!
-//! The surface is that of [`downpour_mask::wobble`]. Here every root is found:
+//! The surface is that of [`downpour_mask::wobble`]. All roots are found:
 //!
-//! A line is walked in equal parts; in a part at whose ends G turns, its extremum is looked for, so that no bulge or hollow
-//! wider than a part is missed. The crossing that is found is closed in on by the steps of `mask_trace_step`, and by halves
-//! where these leave the bracket.
+//! A line is sampled in equal parts; in a part at whose ends the slope of G changes sign, its extremum is located, so that no bulge or
+//! hollow wider than a part is missed. The crossing is refined by the steps of `mask_trace_step`, and by bisection
+//! if these leave the bracket.
 //!
 //! Limits: light that has left the drop does not meet it again.
 //!
@@ -28,7 +28,7 @@ use super::trace::{SpecimenLight, SpecimenRay};
 pub struct SpecimenWobble<R> {
     /// Shape coefficients, from `c_0` to `c_10`.
     pub coefficients: [f64; COEFFICIENTS],
-    /// s2, s3, and what keeps the volume.
+    /// s2, s3, and the factor that conserves the volume.
     pub state: [R; 3],
     /// Refractive index of water relative to air.
     pub index: f64,
@@ -45,7 +45,7 @@ pub fn specimen_wobble_surface<R: Real>(drop: &SpecimenWobble<R>, point: [R; 3])
     mask_wobble_surface(&drop.coefficients, drop.state, point)
 }
 
-/// G - 1 and half of dG/ds at the place `s` of a line.
+/// G - 1 and half of dG/ds at the parameter `s` of a line.
 #[inline]
 #[must_use]
 pub fn specimen_wobble_along<R: Real>(
@@ -58,7 +58,7 @@ pub fn specimen_wobble_along<R: Real>(
     [surface.excess, dot(surface.half_gradient, direction)]
 }
 
-/// Where a line enters and leaves the spheroid that holds the drop; the second is below the first if it does not.
+/// Parameters at which a line enters and leaves the bounding spheroid; the second is below the first if it misses.
 #[inline]
 #[must_use]
 pub fn specimen_wobble_span<R: Real<Mask = bool>>(
@@ -80,7 +80,7 @@ pub fn specimen_wobble_span<R: Real<Mask = bool>>(
     [(-slope - root) / curvature, (root - slope) / curvature]
 }
 
-/// The first place between `start` and `end` at which a line goes into the drop (`side` = -1) or out of it (`side` = 1);
+/// First parameter between `start` and `end` at which a line enters the drop (`side` = -1) or leaves it (`side` = 1);
 /// `None` if there is none. At `start` it is on the other side, or on the surface.
 #[inline]
 #[must_use]
@@ -132,7 +132,7 @@ pub fn specimen_wobble_cross<R: Real<Mask = bool>>(
     let flat = side.constant(f64::from(SPECIMEN_WOBBLE_FLAT));
     let slack = side.constant(f64::from(SPECIMEN_WOBBLE_SLACK));
     let curvature = ((at_b[1] - at_a[1]) / (b - a)).at_least(flat);
-    // From the end that is outside, where a step to the root on the right side is never ambiguous.
+    // From the outer end, where a step to the root on the correct side is never ambiguous.
     let (mut s, mut at_s) = if zero.less(side) { (b, at_b) } else { (a, at_a) };
     for _ in 0..SPECIMEN_WOBBLE_STEPS {
         let next = s + mask_trace_step(at_s[0], at_s[1], curvature, side);
@@ -149,7 +149,7 @@ pub fn specimen_wobble_cross<R: Real<Mask = bool>>(
     Some(last.at_least(a).at_most(b))
 }
 
-/// Where a ray of the camera meets the drop; `None` if it misses.
+/// Parameter at which a ray of the camera meets the drop; `None` if it misses.
 #[inline]
 #[must_use]
 pub fn specimen_wobble_meet<R: Real<Mask = bool>>(
@@ -164,7 +164,7 @@ pub fn specimen_wobble_meet<R: Real<Mask = bool>>(
     specimen_wobble_cross(drop, ray.foot, ray.direction, start, far, -far.constant(1.0))
 }
 
-/// The first interface, at the place `s` of the ray: what is reflected outside leaves, the rest enters.
+/// First interface, at the parameter `s` of the ray: light reflected outside leaves, the remainder enters.
 #[inline]
 #[must_use]
 pub fn specimen_wobble_enter<R: Real>(
@@ -187,8 +187,8 @@ pub fn specimen_wobble_enter<R: Real>(
     }
 }
 
-/// The next interface from inside. If less than `least` would stay inside, all leaves: along the last direction in
-/// which light left, if nothing passes here.
+/// Next interface from inside. If less than `least` would stay inside, all leaves: in the direction of the last
+/// exit, if nothing is transmitted here.
 #[inline]
 #[must_use]
 pub fn specimen_wobble_bounce<R: Real<Mask = bool>>(

@@ -20,7 +20,7 @@ fn picture(shape: &DropShape, options: &SpecimenOptions, lamps: &[SpecimenLamp])
     render_specimen(shape, options, sky).expect("a picture")
 }
 
-/// Seen beside the drop, a lamp covers 2 pi (1 - cos r) of the directions.
+/// Beside the drop, a lamp covers 2 pi (1 - cos r) of the directions.
 #[test]
 fn a_lamp_has_its_solid_angle() {
     let shape = DropShape::sphere(1.0e-4).unwrap();
@@ -46,24 +46,24 @@ fn a_lamp_has_its_solid_angle() {
     }
 }
 
-/// A lamp at 90 degrees to the axis is mirrored by a sphere where its surface is turned by 45 degrees, with the radiance that
-/// Fresnel's law leaves it, and shows itself in its colour.
+/// A lamp at 90 degrees to the axis is mirrored by a sphere at a slope of 45 degrees, with the radiance of
+/// Fresnel's law, and is visible directly with its color.
 #[test]
 fn a_sphere_mirrors_a_lamp_where_and_as_it_should() {
     let shape = DropShape::sphere(2.0e-3).unwrap();
     let options = SpecimenOptions { distance_m: 10.0, size: [80, 80], ..SpecimenOptions::default() };
     let image = picture(&shape, &options, &[lamp(FRAC_PI_2, 0.0, 0.15, 100.0)]);
     // The drop fills 80 % of 80 pixels.
-    let place = 40.0 + 32.0 * ops::sin(FRAC_PI_4);
-    let pixel = image.pixel(place as u32, 39);
+    let position = 40.0 + 32.0 * ops::sin(FRAC_PI_4);
+    let pixel = image.pixel(position as u32, 39);
     let wanted = 100.0 * optics_fresnel(ops::cos(FRAC_PI_4), 1.333) as f32;
     // The samples of a pixel are not symmetric about its middle.
     assert!((pixel[0] / wanted - 1.0).abs() < 0.015, "{pixel:?}, wanted {wanted}");
     assert!((pixel[1] / pixel[0] - 0.5).abs() < 1.0e-6 && pixel[2] == 0.0, "{pixel:?}");
-    assert_eq!(image.pixel(80 - place as u32, 39)[0], 0.0, "the other side");
+    assert_eq!(image.pixel(80 - position as u32, 39)[0], 0.0, "the other side");
 }
 
-/// Two lamps that are half of the sky each make an even sky, in which a drop is not seen.
+/// Two lamps of half the sky each make a uniform sky, in which a drop is invisible.
 #[test]
 fn a_sky_of_two_lamps_hides_drop_and_streak() {
     let shape = DropShape::new(3.0e-3).unwrap();
@@ -116,9 +116,9 @@ fn bad_lamps_are_refused() {
     assert!(matches!(error, SpecimenError::Size { found: 9, most: 8, .. }), "{error}");
 }
 
-/// Mean radiance that a sphere's disc shows of a lamp of radiance 1, by quadrature over the impact parameter: what the plane
-/// laws of a sphere say, order by order, with unpolarised light at each interface. `scattering` is the angle between the way of
-/// the light and the way to the eye.
+/// Mean radiance over a sphere's disc of the light of a lamp of radiance 1, by quadrature over the impact parameter: the plane
+/// laws of a sphere, order by order, with unpolarized light at each interface. `scattering` is the angle between the direction of
+/// the light and the direction to the eye.
 fn sphere_shows(scattering: f64, radius: f64) -> f64 {
     let steps = 200_000;
     let (mut sum, lamp) = (0.0, ops::cos(radius));
@@ -137,7 +137,7 @@ fn sphere_shows(scattering: f64, radius: f64) -> f64 {
             } else {
                 2.0 * (incident - refracted) + f64::from(p - 1) * (PI - 2.0 * refracted)
             };
-            // The part of the ring of that angle that lies in the lamp's disc.
+            // Fraction of the ring of that angle in the lamp's disc.
             let (s, c) = (ops::sin(angle) * ops::sin(scattering), ops::cos(angle) * ops::cos(scattering));
             let edge =
                 if s.abs() < 1.0e-12 { -2.0 * f64::from(c >= lamp) + 1.0 } else { (lamp - c) / s.abs() };
@@ -174,7 +174,7 @@ fn a_streak_has_the_light_of_a_lamp_that_is_smaller_than_its_samples() {
     }
 }
 
-/// More samples of a pixel of a drop at rest bring its light closer to the same quadrature.
+/// More samples per pixel of a drop at rest approach the same quadrature.
 #[test]
 fn a_drop_at_rest_has_the_light_of_a_small_lamp() {
     let shape = DropShape::sphere(2.0e-3).unwrap();

@@ -1,4 +1,4 @@
-//! The specimen's light against closed forms: the sphere, the balance of shares, the outline.
+//! Light of the specimen against closed forms: the sphere, the balance of fractions, the outline.
 
 use downpour_drop::DropShape;
 use downpour_drop::optics::optics_fresnel;
@@ -29,7 +29,7 @@ fn camera(shape: &DropShape, pitch: f64) -> SpecimenCamera {
     options(pitch).camera(shape).expect("a camera")
 }
 
-/// The outermost sample between the middle and `far` (a place that misses) that still meets the drop.
+/// Outermost sample between the middle and `far` (which misses) that still meets the drop.
 fn edge(shape: &DropShape, camera: &SpecimenCamera, far: [f64; 2]) -> f64 {
     let drop = upright_drop(shape, INDEX);
     let (mut low, mut high) = (0.0, 1.0);
@@ -48,8 +48,8 @@ fn a_sphere_sends_light_where_the_formula_says() {
     let camera = camera(&shape, 0.4);
     let mut seen = 0;
     for i in 0..200 {
-        let place = [f64::from(i % 20) - 9.3, f64::from(i / 20) * 2.0 - 9.1];
-        let ray = specimen_ray(&camera, place[0], place[1]);
+        let position = [f64::from(i % 20) - 9.3, f64::from(i / 20) * 2.0 - 9.1];
+        let ray = specimen_ray(&camera, position[0], position[1]);
         let offset = dot(ray.foot, ray.foot).sqrt();
         if !(0.01..0.999).contains(&offset) {
             continue;
@@ -59,10 +59,10 @@ fn a_sphere_sends_light_where_the_formula_says() {
         let (incidence, refraction) = (ops::asin(offset), ops::asin(offset / INDEX));
         let reflectance = optics_fresnel(ops::cos(incidence), INDEX);
         let mut all = All(Vec::new());
-        specimen_light(&drop, &camera, place, &mut all);
+        specimen_light(&drop, &camera, position, &mut all);
         let pi = std::f64::consts::PI;
         let turns = (0..all.0.len()).map(|k| match k {
-            // The light that never entered is turned the other way.
+            // Light that never entered turns in the other direction.
             0 => -(pi - 2.0 * incidence),
             _ => 2.0 * (incidence - refraction) + (k as f64 - 1.0) * (pi - 2.0 * refraction),
         });
@@ -74,7 +74,7 @@ fn a_sphere_sends_light_where_the_formula_says() {
                 0 => reflectance,
                 _ => (1.0 - reflectance) * (1.0 - reflectance) * ops::pow(reflectance, k as f64 - 1.0),
             };
-            // The last light takes along what is not followed.
+            // The last exit includes the light that is not followed.
             let slack = if k + 1 == all.0.len() { f64::from(SPECIMEN_LEAST) } else { 1.0e-12 };
             assert!((share - expected).abs() <= slack, "order {k} at {offset}: {share} {expected}");
         }
@@ -82,17 +82,17 @@ fn a_sphere_sends_light_where_the_formula_says() {
     assert!(seen > 100, "{seen}");
 }
 
-/// The shares of all light on all rays: their worst distance from 1 in f64 and f32, and the mean and the largest share
-/// that leaves only because the last reflection is reached.
+/// Sum of the fractions of all light on all rays: worst distance from 1 in f64 and f32, and the mean and the maximum fraction
+/// that leaves only because of the limit of reflections.
 fn balance(diameter_mm: f64, pitch: f64) -> [f64; 4] {
     let shape = DropShape::new(diameter_mm * 1.0e-3).expect("a diameter");
     let drop = upright_drop(&shape, INDEX);
     let camera = camera(&shape, pitch);
     let (mut apart, mut single, mut forced, mut most, mut rays) = (0.0f64, 0.0f64, 0.0, 0.0f64, 0.0);
     for i in 0..64 * 48 {
-        let place = [f64::from(i % 64) - 31.5, f64::from(i / 64) - 23.5];
+        let position = [f64::from(i % 64) - 31.5, f64::from(i / 64) - 23.5];
         let mut all = All(Vec::new());
-        specimen_light(&drop, &camera, place, &mut all);
+        specimen_light(&drop, &camera, position, &mut all);
         apart = apart.max((all.0.iter().map(|l| l.1).sum::<f64>() - 1.0).abs());
         if all.0.len() > SPECIMEN_REFLECTIONS as usize + 1 {
             let last = all.0[all.0.len() - 1].1;
@@ -101,7 +101,7 @@ fn balance(diameter_mm: f64, pitch: f64) -> [f64; 4] {
         }
         rays += f64::from(u8::from(all.0.len() > 1));
         let mut all = All(Vec::new());
-        specimen_light(&drop, &camera, place.map(|c| c as f32), &mut all);
+        specimen_light(&drop, &camera, position.map(|c| c as f32), &mut all);
         single = single.max(f64::from((all.0.iter().map(|l| l.1).sum::<f32>() - 1.0).abs()));
     }
     [apart, single, forced / rays, most]
@@ -139,8 +139,8 @@ fn the_outline_of_a_sphere_is_where_it_should_be() {
         // In f32, from just inside to just outside.
         let drop = upright_drop(&shape, INDEX);
         for (scale, hit) in [(0.9999, true), (1.0001, false)] {
-            let place = [(expected * 0.6 * scale) as f32, (expected * 0.8 * scale) as f32];
-            assert_eq!(specimen_hits(&drop, &specimen_ray(&camera, place[0], place[1])), hit);
+            let position = [(expected * 0.6 * scale) as f32, (expected * 0.8 * scale) as f32];
+            assert_eq!(specimen_hits(&drop, &specimen_ray(&camera, position[0], position[1])), hit);
         }
     }
 }
@@ -161,7 +161,7 @@ fn a_drop_fills_four_fifths_of_the_height() {
     assert!((fov * 0.08 / height - 1.0).abs() < 1.0e-3, "{fov}, {height}");
 }
 
-/// What is behind the camera is not seen, even if the line of sight extended backwards meets the drop.
+/// Objects behind the camera are invisible, even if the line of sight extended backwards meets the drop.
 #[test]
 fn nothing_behind_the_camera_is_seen() {
     let shape = DropShape::new(6.0e-3).unwrap();

@@ -5,7 +5,7 @@ use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_specimen::sky::{specimen_sky, specimen_sky_place, specimen_turns};
 use downpour_specimen::{
-    Image, LARGEST_SIZE, Sky, SpecimenError, SpecimenOptions, render_specimen, render_specimen_f64,
+    Image, MAX_SIZE, Sky, SpecimenError, SpecimenOptions, render_specimen, render_specimen_f64,
     render_specimen_scalar,
 };
 
@@ -80,7 +80,7 @@ fn the_picture_in_the_drop_is_mirrored() {
     assert!(mean(&image, 44..48, 16..20) > mean(&image, 0..4, 16..20), "the background is not");
 }
 
-/// A light overhead is seen above the drop's middle, where the outside reflects it.
+/// A light overhead is visible above the drop's middle, reflected by the outside.
 #[test]
 fn the_outside_reflects() {
     let mut radiance = vec![[0.0; 3]; 64 * 32];
@@ -125,7 +125,7 @@ fn f32_agrees_with_f64() {
         let apart = |(a, b): (&[f32; 3], &[f32; 3])| f64::from((a[0] - b[0]).abs());
         let mut all: Vec<f64> = single.pixels.iter().zip(&double.pixels).map(apart).collect();
         all.sort_by(f64::total_cmp);
-        // Close to the critical angle a ray may take another way: one pixel in two hundred may.
+        // Close to the critical angle a ray may take another path: one pixel in two hundred may.
         let worst = all[all.len() - 1 - all.len() / 200];
         let average = all.iter().sum::<f64>() / all.len() as f64;
         println!("{diameter} mm: worst {worst:.1e}, mean {average:.1e}");
@@ -134,7 +134,7 @@ fn f32_agrees_with_f64() {
 }
 
 #[test]
-fn each_colour_has_its_index() {
+fn each_color_has_its_index() {
     let radiance = random_sky();
     let sky = Sky::new(32, 16, &radiance).unwrap();
     let indices = [1.33, 1.335, 1.34];
@@ -142,7 +142,7 @@ fn each_colour_has_its_index() {
     let all = render_specimen(&drop(2.0), &with(indices), sky).unwrap();
     for (c, &index) in indices.iter().enumerate() {
         let one = render_specimen(&drop(2.0), &with([index; 3]), sky).unwrap();
-        assert!(all.pixels.iter().zip(&one.pixels).all(|(a, b)| a[c] == b[c]), "colour {c}");
+        assert!(all.pixels.iter().zip(&one.pixels).all(|(a, b)| a[c] == b[c]), "color {c}");
     }
 }
 
@@ -171,7 +171,7 @@ fn turns_are_those_of_atan2() {
 #[test]
 fn a_sky_map_lies_as_agreed() {
     let near = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).abs() < 1.0e-6 && (a[1] - b[1]).abs() < 1.0e-6;
-    for (direction, place) in [
+    for (direction, position) in [
         ([1.0, 0.0, 0.0], [0.5, 0.5]),
         ([0.0, 0.0, 1.0], [0.75, 0.5]),
         ([0.0, 0.0, -1.0], [0.25, 0.5]),
@@ -179,7 +179,7 @@ fn a_sky_map_lies_as_agreed() {
         ([0.0, -0.1, 0.0], [0.5, 1.0]),
         ([1.0, 1.0, 0.0], [0.5, 0.25]),
     ] {
-        assert!(near(specimen_sky_place(direction), place), "{direction:?}");
+        assert!(near(specimen_sky_place(direction), position), "{direction:?}");
     }
     let texels: Vec<[f32; 3]> = (0..8u8).map(|i| [f32::from(i), 0.0, 1.0]).collect();
     let sky = Sky::new(4, 2, &texels).unwrap();
@@ -199,7 +199,7 @@ fn what_cannot_be_is_refused() {
     assert_eq!(fine.check(&shape), Ok(()));
     assert_eq!(text(SpecimenOptions { size: [0, 4], ..fine }), "picture width is 0; allowed: 1 to 16384");
     assert_eq!(text(SpecimenOptions { size: [4, 0], ..fine }), "picture height is 0; allowed: 1 to 16384");
-    let over = SpecimenOptions { size: [LARGEST_SIZE + 1, 4], ..fine }.check(&shape).unwrap_err();
+    let over = SpecimenOptions { size: [MAX_SIZE + 1, 4], ..fine }.check(&shape).unwrap_err();
     assert!(matches!(over, SpecimenError::Size { found: 16_385, .. }));
     assert_eq!(over.to_string(), "picture width is 16385; allowed: 1 to 16384");
     assert!(text(SpecimenOptions { samples: 17, ..fine }).contains("allowed: 1 to 16"));
@@ -227,7 +227,7 @@ fn what_cannot_be_is_refused() {
     assert!(Sky::new(2, 1, &texels).unwrap_err().to_string().contains("column 1 of row 0"));
 }
 
-/// Views at the ends of what is allowed: nothing but finite light.
+/// Views at the limits of the options have finite light only.
 #[test]
 fn extreme_views_are_finite() {
     let radiance = random_sky();

@@ -68,10 +68,10 @@ fn a_uniform_sky_hides_the_streak() {
     assert!(worst < 1.0e-5, "{worst:e}");
 }
 
-/// A drop that hardly moves, and one that hardly oscillates, look like the one at rest, which another tracer draws.
+/// A drop that hardly moves, and one that hardly oscillates, equal the one at rest, which another tracer draws.
 ///
-/// From above, light is caught in the drop of 3 mm by total reflection and leaves where rounding has it: the picture of the
-/// drop at rest itself is 4e-2 and in the mean 9e-5 away from its reference in f64. All but these few pixels have to agree.
+/// From above, light is trapped in the drop of 3 mm by total reflection and its exit depends on rounding: the picture of the
+/// drop at rest itself is 4e-2 and in the mean 9e-5 from its reference in f64. All but these few pixels have to agree.
 #[test]
 fn a_short_exposure_is_the_drop_at_rest() {
     let radiance = random_sky();
@@ -99,8 +99,8 @@ fn a_short_exposure_is_the_drop_at_rest() {
     }
 }
 
-/// One instant per sample, at a place of the exposure that is drawn for each, has the light of many: the weights of the
-/// instants and of the uncovered rest of the exposure sum to 1 for any number of instants.
+/// One instant per sample, at a random position in the exposure for each, has the light of many: the weights of the
+/// instants and of the uncovered time sum to 1 for any number of instants.
 #[test]
 fn no_more_and_no_less_light_than_the_instants() {
     let radiance = random_sky();
@@ -185,7 +185,7 @@ fn the_surface_is_that_of_the_drop() {
     }
 }
 
-/// No hollow or bulge is missed: the tracer finds the first crossing that a walk in a thousand steps finds, in drops far from
+/// No hollow or bulge is missed: the tracer finds the first crossing of a search in a thousand steps, in drops far from
 /// convex as well.
 #[test]
 fn the_first_crossing_is_found() {
@@ -215,7 +215,7 @@ fn the_first_crossing_is_found() {
                 wrong += usize::from(out.is_none_or(|t| (t - length).abs() > 2.0e-3));
             }
             (None, None) => {}
-            // A chord of less than a step of the walk.
+            // A chord shorter than a step of the search.
             (None, Some(_)) => {}
             (Some(_), None) => wrong += 1,
         }

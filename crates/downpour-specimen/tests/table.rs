@@ -37,21 +37,21 @@ fn options(exposure_s: f64, oscillation: Amplitudes) -> SpecimenOptions {
     }
 }
 
-/// The sky alone: behind a drop that cannot be seen.
+/// The sky alone: behind an invisible drop.
 fn bare(shape: &DropShape, options: &SpecimenOptions, sky: Sky<'_>) -> Image {
     let fov = Some(options.fov(shape).expect("a field of view"));
     let options = SpecimenOptions { exposure_s: 0.0, fov, oscillation: Amplitudes::NONE, ..*options };
     render_specimen(&DropShape::new(1.0e-6).expect("a speck"), &options, sky).expect("a picture")
 }
 
-/// How a picture of a streak differs from the exact one, where there is a streak.
+/// Difference between a picture of a streak and the exact one, inside the streak.
 #[derive(Debug)]
 struct Difference {
     /// Mean radiance over that of the exact one.
     mean: f64,
-    /// Root mean square of the difference over that of what the exact streak changes of the bare sky.
+    /// Root mean square of the difference over that between the exact streak and the bare sky.
     rms: f64,
-    /// The largest difference where there is no streak.
+    /// Maximum difference outside the streak.
     outside: f64,
 }
 
@@ -131,13 +131,13 @@ fn the_outline_has_the_phases_that_were_asked_for() {
     let sky = Sky::new(96, 48, &radiance).unwrap();
     let shape = drop(2.0);
     let phase = [0.25, 0.25];
-    // The table's outline is an oval: what the mode (3,1) does above and below the middle is not in it.
+    // The table's outline is an oval: it lacks the effect of the mode (3,1) above and below the middle.
     for (yaw, [a20, a31], most) in [(0.0, [0.3, 0.0], 1.0), (0.0, [0.0, 0.2], 1.5), (2.8, [0.0, 0.2], 1.5)] {
         let oscillation = Amplitudes::new(a20, a31).unwrap();
         let options =
             SpecimenOptions { fov: Some(0.1), phase, yaw, instants: 8, ..options(1.0e-3, oscillation) };
         let exact = edges(&render_specimen(&shape, &options, sky).unwrap());
-        // Mean distance of the edges, pixels, where both have a streak.
+        // Mean distance of the edges, pixels, in columns with both streaks.
         let with = |phase: [f64; 2]| {
             let options = SpecimenOptions { phase, ..options };
             let found = edges(&render_specimen_table(&shape, &options, sky).unwrap());
@@ -160,7 +160,7 @@ fn sum(image: &Image) -> f64 {
     image.pixels.iter().map(|p| f64::from(p[1])).sum()
 }
 
-/// Seen from above before dark ground a drop shows the sky that it mirrors, outside and inside: all the light there is is its own.
+/// Seen from above before dark ground a drop shows the sky mirrored outside and inside: it has no other light.
 #[test]
 fn a_streak_before_dark_ground_has_the_light_of_the_exact_one() {
     let sky_above = |dark: f32| -> Vec<[f32; 3]> {
@@ -186,11 +186,11 @@ fn a_streak_before_dark_ground_has_the_light_of_the_exact_one() {
     }
 }
 
-/// A lamp sends as much light through the drop as it does exactly, and what is seen of it beside the drop is its disc.
+/// The light of a lamp through the drop equals the exact one, and beside the drop its disc is visible.
 #[test]
 fn a_lamp_lights_the_streak() {
     const DARK: [[f32; 3]; 2] = [[0.0; 3]; 2];
-    // From behind the drop to behind the eye. Light from 60 degrees aside, faint as it is, comes through the rim, where the rays of
+    // From behind the drop to behind the eye. Light from 60 degrees to the side, faint, passes through the rim, where the rays of
     // a profile are far apart.
     for (diameter, yaw, height, radius, most) in [
         (2.0, 160.0f64, 0.03, 4.0f64, 0.06),
@@ -216,9 +216,9 @@ fn a_lamp_lights_the_streak() {
     }
 }
 
-/// Three indices give three colours, each that of its own index.
+/// Three indices give three colors, each that of its index.
 #[test]
-fn colours_are_those_of_their_indices() {
+fn colors_are_those_of_their_indices() {
     let radiance = chequered();
     let sky = Sky::new(96, 48, &radiance).unwrap();
     let with = |refractive_index| {

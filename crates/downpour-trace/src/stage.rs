@@ -32,7 +32,7 @@ pub use eye::CameraChoice;
 use eye::Seen;
 
 /// The most triangles of a scene, all copies counted.
-pub const MOST_TRIANGLES: u64 = 1 << 22;
+pub const MAX_TRIANGLES: u64 = 1 << 22;
 
 /// The most lamps of a scene: each surface asks each of them.
 pub const MOST_LIGHTS: usize = 1024;
@@ -87,7 +87,7 @@ impl Stage {
     /// The stage of a weather at a time in seconds: its models in motion, its sky, sun and lamps, its eye.
     ///
     /// # Errors
-    /// [`StageError::OverLimit`] above [`MOST_TRIANGLES`] or [`MOST_LIGHTS`], [`StageError::Memory`], or
+    /// [`StageError::OverLimit`] above [`MAX_TRIANGLES`] or [`MOST_LIGHTS`], [`StageError::Memory`], or
     /// [`RenderError`]: a picture outside [`PIXELS`], a time beyond [`LATEST_S`], or a camera that is none.
     pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
         check_size(weather.size)?;
@@ -309,11 +309,11 @@ fn check_cost(loaded: &Loaded, pose: &Pose) -> Result<(), StageError> {
         parts.iter().map(|part| part.indices.len() as u64 / 3).sum()
     };
     let triangles: u64 = pose.instances.iter().map(|instance| of(instance.mesh)).sum();
-    if triangles > MOST_TRIANGLES {
+    if triangles > MAX_TRIANGLES {
         return Err(StageError::OverLimit {
             quantity: "triangles of the scene, all copies counted",
             found: triangles,
-            most: MOST_TRIANGLES,
+            most: MAX_TRIANGLES,
             way_out: "fewer copies, or simpler models",
         });
     }

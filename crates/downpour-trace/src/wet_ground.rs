@@ -76,7 +76,7 @@ fn map(puddle: &Puddle, mask: Option<&Picture>, stage: &Stage) -> PuddleMap {
         reach: puddle.reach as f32,
     };
     match (&puddle.shape, mask) {
-        (&PuddleShape::Found { fill, least, relief, seed, cells }, _) => {
+        (&PuddleShape::Found { fill, min_depth: least, relief, seed, cells }, _) => {
             let relief = Relief { rms_m: relief as f32, seed };
             let numbers = [fill, puddle.depth, least].map(|number| number as f32);
             PuddleMap::found(&stage.data, &ground, cells.map(|n| n as usize), &relief, numbers)
@@ -104,7 +104,7 @@ fn look(puddle: &Puddle) -> PuddleLook {
         angle: puddle.ripple_turn as f32,
         influence: puddle.ripple_influence as f32,
         murk: Vec3::from(puddle.color.map(|part| part as f32)),
-        extinction: (1.0 / puddle.clear) as f32,
+        extinction: (1.0 / puddle.attenuation_length) as f32,
         ..PuddleLook::default()
     }
 }

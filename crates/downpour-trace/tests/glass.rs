@@ -102,10 +102,10 @@ fn drop(centre: [f32; 2], radius: f32) -> GlassPictureDrop {
 #[test]
 fn in_even_light_a_wet_pane_vanishes() -> Outcome {
     for keys in [
-        "room = 1\nbefore_s = 4\naperture_mm = 6\nfocus = 'glass'",
-        "room = 1\nbefore_s = 4\naperture_mm = 6",
-        "room = 1\nbefore_s = 3\naperture_mm = 0\ntilt_deg = 30\nspeed_m_s = 15\nadvancing_deg = 110\nreceding_deg = 60",
-        "room = 1\nbefore_s = 3\nfresnel = 'tatarchuk-2006'",
+        "interior_ambient = 1\nbefore_s = 4\naperture_mm = 6\nfocus = 'glass'",
+        "interior_ambient = 1\nbefore_s = 4\naperture_mm = 6",
+        "interior_ambient = 1\nbefore_s = 3\naperture_mm = 0\ntilt_deg = 30\nspeed_m_s = 15\nadvancing_deg = 110\nreceding_deg = 60",
+        "interior_ambient = 1\nbefore_s = 3\nfresnel = 'tatarchuk-2006'",
     ] {
         let glass = picture(keys)?;
         assert!(glass.drops.len() > 50, "{keys}: {} drops", glass.drops.len());
@@ -120,7 +120,7 @@ fn in_even_light_a_wet_pane_vanishes() -> Outcome {
 /// Dry glass lets (1 - R) / (1 + R) through, and moves nothing.
 #[test]
 fn a_dry_pane_dims_and_moves_nothing() -> Outcome {
-    let glass = picture("room = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
+    let glass = picture("interior_ambient = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
     let [mut behind, capture] = round(&glass, |_| 1.0);
     for (k, pixel) in behind.iter_mut().enumerate() {
         *pixel = [(k * 7919 % 101) as f32, 1.0, 0.0, 20.0];
@@ -137,7 +137,7 @@ fn a_dry_pane_dims_and_moves_nothing() -> Outcome {
 /// The sky stands below the ground in a drop; round it, it stands above.
 #[test]
 fn a_drop_shows_the_far_scene_upside_down() -> Outcome {
-    let mut glass = picture("room = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
+    let mut glass = picture("interior_ambient = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
     // 24 pixels across.
     let radius = 0.19 * 0.5 * glass.frame.size[1];
     with_drop(&mut glass, radius);
@@ -221,8 +221,9 @@ fn slopes_are_those_of_the_height() {
 /// A lens moves light about and takes none: the mean of a picture that goes on beyond its edge stays.
 #[test]
 fn blur_keeps_the_light() -> Outcome {
-    let sharp = picture("room = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
-    let blurred = picture("room = 0\nbefore_s = 0\naperture_mm = 20\nfocus = 'glass'\nspeed_m_s = 0")?;
+    let sharp = picture("interior_ambient = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
+    let blurred =
+        picture("interior_ambient = 0\nbefore_s = 0\naperture_mm = 20\nfocus = 'glass'\nspeed_m_s = 0")?;
     let light = |glass: &GlassPicture| -> (f64, f32) {
         let [mut behind, capture] = round(glass, |_| 0.0);
         // A lamp of 4 x 4 pixels in the middle of darkness.
@@ -264,7 +265,7 @@ fn shown(spread: f64, pane: f64, radius: f64) -> f64 {
 /// A drop is a lens: all the light of a lamp that it shows is the irradiance that its image takes, whatever the resolution.
 #[test]
 fn a_drop_shows_a_lamp_as_bright_as_it_is() -> Outcome {
-    let mut glass = picture("room = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
+    let mut glass = picture("interior_ambient = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
     let [behind, capture] = round(&glass, |_| 0.0);
     let frame = &glass.frame;
     let ahead = frame.camera.forward;

@@ -1,8 +1,8 @@
 //! `[camera]`.
 
-use super::fault::Places;
+use super::fault::Positions;
 use super::quantity::{
-    ApertureMm, DepthM, FocusM, FovDeg, In, PersistenceS, PitchDeg, PlaceM, ShutterS, Stops, TurnDeg,
+    ApertureMm, DepthM, FocusM, FovDeg, In, PersistenceS, PitchDeg, PositionM, ShutterS, Stops, TurnDeg,
 };
 use super::wind::keys::VectorKeys;
 use downpour_math::ops::f64 as ops;
@@ -11,16 +11,16 @@ use downpour_wind::Keyed;
 use glam::DVec3;
 use serde::Deserialize;
 
-/// The vertical field of view where neither the file nor the model says one, in radians: 50 degrees.
+/// Default vertical field of view if neither the file nor the model has one, in radians: 50 degrees.
 pub const FOV_RAD: f64 = 50.0 * std::f64::consts::PI / 180.0;
 
-/// The nearest depth where neither the file nor the model says one, in metres.
+/// Default near depth if neither the file nor the model has one, in metres.
 pub const NEAR_M: f64 = 0.05;
 
-/// The farthest depth where neither the file nor the model says one, in metres.
+/// Default far depth if neither the file nor the model has one, in metres.
 pub const FAR_M: f64 = 2000.0;
 
-/// Time in which what an eye has seen fades away where the file does not say it, in seconds: the middle of the 60 to 90 ms of
+/// Default persistence of an eye, in seconds, in which an image fades away: the middle of the 60 to 90 ms of
 /// Rousseau 2006, section 5.
 pub const PERSISTENCE_S: f64 = 0.075;
 
@@ -28,54 +28,54 @@ pub const PERSISTENCE_S: f64 = 0.075;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Observer {
-    /// A camera: all light that comes while its shutter is open weighs the same.
+    /// A camera: all light while its shutter is open has the same weight.
     #[default]
     Camera,
-    /// An eye, which has no shutter: what it has seen fades away evenly, and is gone after the time of its persistence.
+    /// An eye, which has no shutter: an image fades away linearly and is gone after the persistence.
     Eye,
 }
 
-/// The camera, or the eye in its place.
+/// A camera, or an eye instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// Position and direction over time; `None` takes the model's own camera.
+    /// Position and direction over time; `None` takes the model's camera.
     pub path: Option<CameraPath>,
     /// Vertical field of view in radians; `None` takes the model's, else [`FOV_RAD`].
     pub fov: Option<f64>,
-    /// The nearest depth that is drawn, in metres; `None` takes the model's, else [`NEAR_M`].
+    /// Near depth, in metres; `None` takes the model's, else [`NEAR_M`].
     pub near: Option<f64>,
-    /// The farthest depth that is drawn, in metres; `None` takes the model's, else [`FAR_M`].
+    /// Far depth, in metres; `None` takes the model's, else [`FAR_M`].
     pub far: Option<f64>,
     /// The picture is multiplied by two to this power.
     pub exposure_ev: f64,
     /// Observer of the moving drops.
     pub observer: Observer,
-    /// Time in which light is gathered, in seconds: opening time of a camera's shutter, 0 to 1 (0 freezes the drops), or
+    /// Time in which light is collected, in seconds: opening time of a camera's shutter, 0 to 1 (0 freezes the drops), or
     /// the persistence of an eye, 0.06 to 0.09.
     pub shutter: f64,
     /// Diameter of the lens's pupil, in metres; 0: all is in focus.
     pub aperture: f64,
-    /// The distance in focus, in metres; `None` for the far.
+    /// Distance in focus, in metres; `None` for infinity.
     pub focus: Option<f64>,
 }
 
-/// Where the eye is and looks. Up is +Y; `forward` is never vertical.
+/// Position and direction of the eye. Up is +Y; `forward` is never vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraPose {
-    /// The eye, in metres.
+    /// Position of the eye, in metres.
     pub position: DVec3,
-    /// The unit direction into the middle of the picture.
+    /// Unit direction into the center of the picture.
     pub forward: DVec3,
 }
 
-/// Where the eye is and looks over time. It stands before its first key and after its last.
+/// Position and direction of the eye over time. It is constant before its first key and after its last.
 ///
 /// ```
 /// use downpour_weather::CameraPath;
 /// use downpour_wind::Keyed;
 /// use glam::DVec3;
-/// let way = Keyed::new(vec![(0.0, DVec3::new(0.0, 1.6, 8.0)), (4.0, DVec3::new(0.0, 1.6, 2.0))])?;
-/// let path = CameraPath::looking_at(way, DVec3::new(0.0, 1.0, -20.0));
+/// let positions = Keyed::new(vec![(0.0, DVec3::new(0.0, 1.6, 8.0)), (4.0, DVec3::new(0.0, 1.6, 2.0))])?;
+/// let path = CameraPath::looking_at(positions, DVec3::new(0.0, 1.0, -20.0));
 /// assert_eq!(path.at(2.0).position.z, 5.0);
 /// # Ok::<(), downpour_wind::WindError>(())
 /// ```
@@ -88,20 +88,20 @@ pub struct CameraPath {
 /// Aim of an eye.
 #[derive(Clone, Debug, PartialEq)]
 enum Aim {
-    /// A unit direction, always the same.
+    /// A constant unit direction.
     Along(DVec3),
-    /// A place.
+    /// A target.
     At(Keyed<DVec3>),
 }
 
 impl CameraPath {
-    /// An eye that looks at a place, m, wherever it is. Where that is straight above or below it, it looks a little aside.
+    /// Creates the path of an eye that looks at a target, m. If that is straight above or below it, it looks slightly past it.
     #[must_use]
     pub fn looking_at(position: impl Into<Keyed<DVec3>>, target: impl Into<Keyed<DVec3>>) -> Self {
         Self { position: position.into(), aim: Aim::At(target.into()) }
     }
 
-    /// The eye at a time in seconds.
+    /// Pose of the eye at a time in seconds.
     #[must_use]
     pub fn at(&self, time_s: f64) -> CameraPose {
         let position = self.position.at(time_s);
@@ -112,7 +112,7 @@ impl CameraPath {
         CameraPose { position, forward }
     }
 
-    /// True if it is the same at all times.
+    /// True if the pose is constant.
     #[must_use]
     pub fn is_still(&self) -> bool {
         let aims = if let Aim::At(target) = &self.aim { target.keys().len() } else { 1 };
@@ -121,18 +121,18 @@ impl CameraPath {
 }
 
 impl From<CameraPose> for CameraPath {
-    /// An eye that stands still.
+    /// Path of an eye at rest.
     fn from(pose: CameraPose) -> Self {
         Self { position: pose.position.into(), aim: Aim::Along(pose.forward) }
     }
 }
 
-/// Whether a way is so near to the vertical that left and right are noise.
+/// True if a direction is so near to the vertical that left and right are undefined.
 fn is_vertical(way: DVec3) -> bool {
     ops::hypot(way.x, way.z) <= 1e-4 * way.y.abs() || way.length() < 1e-6
 }
 
-/// The direction from an eye to a place, a little aside where it would be vertical.
+/// Direction from an eye to a target, tilted slightly if it would be vertical.
 #[expect(clippy::arithmetic_side_effects, reason = "of floats")]
 fn forward_to(eye: DVec3, target: DVec3) -> DVec3 {
     let way = target - eye;
@@ -141,7 +141,7 @@ fn forward_to(eye: DVec3, target: DVec3) -> DVec3 {
 }
 
 impl Default for Camera {
-    /// The model's own camera, 1/60 s.
+    /// The model's camera, 1/60 s.
     fn default() -> Self {
         Self {
             path: None,
@@ -160,8 +160,8 @@ impl Default for Camera {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraTable {
-    position_m: Option<VectorKeys<PlaceM>>,
-    look_at_m: Option<VectorKeys<PlaceM>>,
+    position_m: Option<VectorKeys<PositionM>>,
+    look_at_m: Option<VectorKeys<PositionM>>,
     yaw_deg: Option<In<TurnDeg>>,
     pitch_deg: Option<In<PitchDeg>>,
     fov_deg: Option<In<FovDeg>>,
@@ -176,24 +176,24 @@ pub(super) struct CameraTable {
 }
 
 impl Camera {
-    pub(super) fn checked(table: &CameraTable, places: &Places<'_>) -> Result<Self, SceneError> {
+    pub(super) fn checked(table: &CameraTable, positions: &Positions<'_>) -> Result<Self, SceneError> {
         let default = Self::default();
         let (near, far) = (table.near_m.map(|near| near.0), table.far_m.map(|far| far.0));
         let (nearest, farthest) = (near.unwrap_or(NEAR_M), far.unwrap_or(FAR_M));
         if nearest >= farthest && (near.is_some() || far.is_some()) {
             let key = if near.is_some() { "camera.near_m" } else { "camera.far_m" };
             let found = format!("{nearest} m to {farthest} m");
-            return Err(places.bad(key, found, "near_m below far_m"));
+            return Err(positions.bad(key, found, "near_m below far_m"));
         }
         let observer = table.observer.unwrap_or_default();
         Ok(Self {
-            path: table.path(places)?,
+            path: table.path(positions)?,
             fov: table.fov_deg.map(|fov| fov.0.to_radians()),
             near,
             far,
             exposure_ev: table.exposure_ev.map_or(default.exposure_ev, |ev| ev.0),
             observer,
-            shutter: table.shutter(observer, places)?,
+            shutter: table.shutter(observer, positions)?,
             aperture: table.aperture_mm.map_or(default.aperture, |pupil| pupil.0 * 1.0e-3),
             focus: table.focus_m.map(|focus| focus.0),
         })
@@ -201,15 +201,15 @@ impl Camera {
 }
 
 impl CameraTable {
-    /// The time in which light is gathered, s. Refuses the key of the other observer.
-    fn shutter(&self, observer: Observer, places: &Places<'_>) -> Result<f64, SceneError> {
+    /// Exposure time, s. Rejects the key of the other observer.
+    fn shutter(&self, observer: Observer, positions: &Positions<'_>) -> Result<f64, SceneError> {
         match (observer, self.shutter_s, self.persistence_s) {
-            (Observer::Camera, _, Some(_)) => Err(places.bad(
+            (Observer::Camera, _, Some(_)) => Err(positions.bad(
                 "camera.persistence_s",
                 "with a camera, which has a shutter",
                 "shutter_s, or persistence_s with observer = \"eye\"",
             )),
-            (Observer::Eye, Some(_), _) => Err(places.bad(
+            (Observer::Eye, Some(_), _) => Err(positions.bad(
                 "camera.shutter_s",
                 "with observer = \"eye\", which has no shutter",
                 "persistence_s, or shutter_s without observer = \"eye\"",
@@ -219,7 +219,7 @@ impl CameraTable {
         }
     }
 
-    fn path(&self, places: &Places<'_>) -> Result<Option<CameraPath>, SceneError> {
+    fn path(&self, positions: &Positions<'_>) -> Result<Option<CameraPath>, SceneError> {
         let given = [
             ("look_at_m", self.look_at_m.is_some()),
             ("yaw_deg", self.yaw_deg.is_some()),
@@ -229,14 +229,14 @@ impl CameraTable {
         let Some(position) = &self.position_m else {
             return match turned.next() {
                 None => Ok(None),
-                Some(key) => Err(places.bad(
+                Some(key) => Err(positions.bad(
                     &format!("camera.{key}"),
                     "without position_m",
                     "position_m is needed with it",
                 )),
             };
         };
-        let position = position.keyed("camera.position_m", places)?;
+        let position = position.keyed("camera.position_m", positions)?;
         let Some(target) = &self.look_at_m else {
             let yaw = self.yaw_deg.map_or(0.0, |yaw| yaw.0).to_radians();
             let pitch = self.pitch_deg.map_or(0.0, |pitch| pitch.0).to_radians();
@@ -246,9 +246,9 @@ impl CameraTable {
         };
         if let Some(key) = turned.find(|key| *key != "look_at_m") {
             let allowed = "look_at_m, or yaw_deg and pitch_deg";
-            return Err(places.bad(&format!("camera.{key}"), "beside look_at_m", allowed));
+            return Err(positions.bad(&format!("camera.{key}"), "beside look_at_m", allowed));
         }
-        let target = target.keyed("camera.look_at_m", places)?;
+        let target = target.keyed("camera.look_at_m", positions)?;
         let times = position.keys().iter().chain(target.keys().iter()).map(|&(time, _)| time);
         #[expect(clippy::arithmetic_side_effects, reason = "of floats: both are within 1e7")]
         let way = |time: f64| target.at(time) - position.at(time);
@@ -256,7 +256,11 @@ impl CameraTable {
             let still = position.keys().len() == 1 && target.keys().len() == 1;
             let when = if still { String::new() } else { format!(" at {time} s") };
             let found = format!("is where the eye is, or straight above or below it{when}");
-            return Err(places.bad("camera.look_at_m", found, "a place aside, or yaw_deg and pitch_deg"));
+            return Err(positions.bad(
+                "camera.look_at_m",
+                found,
+                "a target beside the vertical, or yaw_deg and pitch_deg",
+            ));
         }
         Ok(Some(CameraPath { position, aim: Aim::At(target) }))
     }

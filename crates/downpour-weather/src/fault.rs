@@ -10,74 +10,74 @@ use toml::de::{DeTable, DeValue};
 
 const VALID: &str = "TOML 1.1 with the keys of a weather file";
 
-/// A text with the places of its keys.
-pub(super) struct Places<'a> {
+/// A text with the positions of its keys.
+pub(super) struct Positions<'a> {
     text: &'a str,
     root: DeTable<'a>,
 }
 
-/// A step on the way from the root to a value.
+/// A step on the path from the root to a value.
 #[derive(Clone, Copy)]
 enum Step<'a> {
     Key(&'a str),
     Index(usize),
 }
 
-/// What is done at each key and each value: with the way there, and where it stands in the text.
+/// Callback for each key and each value: with its path and its range in the text.
 type Visit<'v> = dyn FnMut(&[Step<'_>], Range<usize>) -> Result<(), SceneError> + 'v;
 
-impl<'a> Places<'a> {
-    /// Finds the places of all keys; refuses what is too long, too deep or no TOML.
+impl<'a> Positions<'a> {
+    /// Finds the positions of all keys; rejects text that is too long, too deep or not TOML.
     pub(super) fn find(text: &'a str) -> Result<Self, SceneError> {
         if text.len() as u64 > MAX_FILE {
             let found = format!("a text of {} bytes", text.len());
             return Err(SceneError::limit("", found, format!("at most {MAX_FILE} bytes")));
         }
         let root = DeTable::parse(text).map_err(|error| {
-            let place = error.span().map_or_else(String::new, |span| position(text, span.start));
+            let position = error.span().map_or_else(String::new, |span| position(text, span.start));
             let what = error.message().lines().collect::<Vec<_>>().join(", ");
-            SceneError::bad(place, escaped(&what), VALID)
+            SceneError::bad(position, escaped(&what), VALID)
         })?;
-        let places = Self { text, root: root.into_inner() };
-        // The parser stops at a depth of its own, so this walk ends.
-        places.walk(&mut |way, span| {
-            if way.len() > MAX_DEPTH as usize {
-                let found = format!("nested {} deep", way.len());
-                let place = places.place(&path(way), span.start);
-                return Err(SceneError::bad(place, found, format!("at most {MAX_DEPTH} deep")));
+        let positions = Self { text, root: root.into_inner() };
+        // The parser has a depth limit, so this walk ends.
+        positions.walk(&mut |path, span| {
+            if path.len() > MAX_DEPTH as usize {
+                let found = format!("nested {} deep", path.len());
+                let position = positions.locate(&path_text(path), span.start);
+                return Err(SceneError::bad(position, found, format!("at most {MAX_DEPTH} deep")));
             }
             Ok(())
         })?;
-        Ok(places)
+        Ok(positions)
     }
 
-    /// What serde found wrong.
+    /// Error of serde, with its position.
     pub(super) fn refused(&self, error: &toml::de::Error) -> SceneError {
-        let place = error.span().map_or_else(String::new, |span| {
+        let position = error.span().map_or_else(String::new, |span| {
             let mut best: Option<(usize, String)> = None;
-            let walked = self.walk(&mut |way, spot| {
+            let walked = self.walk(&mut |path, spot| {
                 let within = spot.contains(&span.start) || spot.start == span.start;
                 if within && best.as_ref().is_none_or(|(length, _)| spot.len() <= *length) {
-                    best = Some((spot.len(), path(way)));
+                    best = Some((spot.len(), path_text(path)));
                 }
                 Ok(())
             });
             debug_assert!(walked.is_ok(), "the walk refuses nothing");
             match best {
-                Some((_, path)) => self.place(&path, span.start),
+                Some((_, path)) => self.locate(&path, span.start),
                 None => position(self.text, span.start),
             }
         });
-        let (found, allowed) = in_our_words(error.message());
-        SceneError::bad(place, found, allowed)
+        let (found, allowed) = found_and_allowed(error.message());
+        SceneError::bad(position, found, allowed)
     }
 
-    /// What is wrong with a key that serde took, or with several together; `path` is the key's.
+    /// Error of a key that serde accepted, or of several together; `path` is the path of the key.
     pub(super) fn bad(&self, path: &str, found: impl Into<String>, allowed: impl Into<String>) -> SceneError {
         SceneError::bad(self.of(path), found, allowed)
     }
 
-    /// What is too much.
+    /// Error of a value that exceeds a limit.
     pub(super) fn limit(
         &self,
         path: &str,
@@ -87,21 +87,21 @@ impl<'a> Places<'a> {
         SceneError::limit(self.of(path), found, allowed)
     }
 
-    /// The place of a key, for a message.
+    /// Position of a key, for a message.
     fn of(&self, wanted: &str) -> String {
         let mut start = None;
-        // Serde took the file, so all its keys are known, and short.
-        let walked = self.walk(&mut |way, span| {
-            if start.is_none() && path(way) == wanted {
+        // Serde accepted the file, so all its keys are known, and short.
+        let walked = self.walk(&mut |path, span| {
+            if start.is_none() && path_text(path) == wanted {
                 start = Some(span.start);
             }
             Ok(())
         });
         debug_assert!(walked.is_ok(), "the walk refuses nothing");
-        start.map_or_else(|| wanted.to_owned(), |start| self.place(wanted, start))
+        start.map_or_else(|| wanted.to_owned(), |start| self.locate(wanted, start))
     }
 
-    fn place(&self, path: &str, start: usize) -> String {
+    fn locate(&self, path: &str, start: usize) -> String {
         format!("{}: {}", position(self.text, start), escaped(path))
     }
 
@@ -112,32 +112,32 @@ impl<'a> Places<'a> {
 }
 
 fn table<'t>(
-    way: &mut Vec<Step<'t>>,
+    path: &mut Vec<Step<'t>>,
     entries: &'t DeTable<'_>,
     visit: &mut Visit<'_>,
 ) -> Result<(), SceneError> {
     for (key, inner) in entries {
-        way.push(Step::Key(key.get_ref()));
-        visit(way, key.span())?;
-        value(way, inner, visit)?;
-        way.pop();
+        path.push(Step::Key(key.get_ref()));
+        visit(path, key.span())?;
+        value(path, inner, visit)?;
+        path.pop();
     }
     Ok(())
 }
 
 fn value<'t>(
-    way: &mut Vec<Step<'t>>,
+    path: &mut Vec<Step<'t>>,
     at: &'t Spanned<DeValue<'_>>,
     visit: &mut Visit<'_>,
 ) -> Result<(), SceneError> {
-    visit(way, at.span())?;
+    visit(path, at.span())?;
     match at.get_ref() {
-        DeValue::Table(entries) => table(way, entries, visit),
+        DeValue::Table(entries) => table(path, entries, visit),
         DeValue::Array(elements) => {
             for (i, element) in elements.iter().enumerate() {
-                way.push(Step::Index(i));
-                value(way, element, visit)?;
-                way.pop();
+                path.push(Step::Index(i));
+                value(path, element, visit)?;
+                path.pop();
             }
             Ok(())
         }
@@ -145,21 +145,21 @@ fn value<'t>(
     }
 }
 
-/// The name of a place, as `light[0].point.color`.
-fn path(way: &[Step<'_>]) -> String {
-    let mut path = String::new();
-    for step in way {
+/// Path of a value, as `light[0].point.color`.
+fn path_text(path: &[Step<'_>]) -> String {
+    let mut text = String::new();
+    for step in path {
         match step {
             Step::Key(key) => {
-                if !path.is_empty() {
-                    path.push('.');
+                if !text.is_empty() {
+                    text.push('.');
                 }
-                path.push_str(key);
+                text.push_str(key);
             }
-            Step::Index(i) => path.push_str(&format!("[{i}]")),
+            Step::Index(i) => text.push_str(&format!("[{i}]")),
         }
     }
-    path
+    text
 }
 
 /// Line and column, both from 1.
@@ -170,8 +170,8 @@ fn position(text: &str, at: usize) -> String {
     format!("line {line}, column {column}")
 }
 
-/// What was found and what is allowed, from the words of serde.
-fn in_our_words(message: &str) -> (String, String) {
+/// Value found and values allowed, from the message of serde.
+fn found_and_allowed(message: &str) -> (String, String) {
     if let Some((found, allowed)) = message.split_once(ALLOWED) {
         return (escaped(found), allowed.to_owned());
     }

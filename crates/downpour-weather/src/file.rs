@@ -1,6 +1,6 @@
-//! The file as it is written: tables of keys with units, before it becomes a [`Weather`].
+//! Raw file: tables of keys with units, before they become a [`Weather`].
 
-use super::fault::Places;
+use super::fault::Positions;
 use super::glass::GlassTable;
 use super::lamps::{Lamp, LampTable};
 use super::models::{Model, ModelTable};
@@ -15,10 +15,10 @@ use downpour_scene::error::{SceneError, quoted};
 use downpour_scene::uri::{Address, RelativePath, check};
 use serde::Deserialize;
 
-/// The longest path of a file, in bytes.
-const LONGEST_PATH: usize = 4096;
+/// Maximum length of a file path, in bytes.
+const MAX_PATH: usize = 4096;
 
-/// All of it.
+/// All tables of the file.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Tables {
@@ -44,10 +44,10 @@ struct OutputTable {
     size: Option<Exactly<Whole<1, 16_384>, 2>>,
 }
 
-/// From text to checked values.
+/// Parses text to checked values.
 pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
-    let places = Places::find(text)?;
-    let tables: Tables = toml::from_str(text).map_err(|error| places.refused(&error))?;
+    let positions = Positions::find(text)?;
+    let tables: Tables = toml::from_str(text).map_err(|error| positions.refused(&error))?;
     for (key, count, most) in [
         ("model", tables.model.len(), MAX_MODELS),
         ("light", tables.light.len(), MAX_LIGHTS),
@@ -55,35 +55,35 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
         ("wind", tables.wind.len(), downpour_wind::WIND_PARTS),
     ] {
         if count > most {
-            return Err(places.limit(key, format!("{count} times [[{key}]]"), format!("at most {most}")));
+            return Err(positions.limit(key, format!("{count} times [[{key}]]"), format!("at most {most}")));
         }
     }
-    let sky = Sky::checked(&tables.sky, &places)?;
-    let rain = Rain::checked(&tables.rain, &places)?;
+    let sky = Sky::checked(&tables.sky, &positions)?;
+    let rain = Rain::checked(&tables.rain, &positions)?;
     let streaks = tables.streaks.checked();
-    let drop_model = tables.rain.drop_model(&streaks, &places)?;
+    let drop_model = tables.rain.drop_model(&streaks, &positions)?;
     let default = Weather::default();
-    let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &places))?;
-    puddle::check_all(&puddles, &places)?;
+    let puddles = numbered(&tables.puddle, |i, table| Puddle::checked(i, table, &positions))?;
+    puddle::check_all(&puddles, &positions)?;
     Ok(Weather {
         name: String::new(),
-        glass: tables.glass.map(|glass| glass.checked(&rain, &places)).transpose()?,
+        glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
         rain,
         drop_model,
-        sun: SunSource::checked(tables.sun.as_ref(), &sky, &places)?,
+        sun: SunSource::checked(tables.sun.as_ref(), &sky, &positions)?,
         sky,
-        camera: Camera::checked(&tables.camera, &places)?,
-        models: numbered(&tables.model, |i, table| Model::checked(i, table, &places))?,
-        lights: numbered(&tables.light, |i, table| Lamp::checked(i, table, &places))?,
-        wind: wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &places)?,
-        wind_box: tables.wind_field.checked(&places)?,
+        camera: Camera::checked(&tables.camera, &positions)?,
+        models: numbered(&tables.model, |i, table| Model::checked(i, table, &positions))?,
+        lights: numbered(&tables.light, |i, table| Lamp::checked(i, table, &positions))?,
+        wind: wind::checked(&tables.wind, tables.gusts.as_ref(), tables.turbulence.as_ref(), &positions)?,
+        wind_box: tables.wind_field.checked(&positions)?,
         streaks,
         puddles,
         size: tables.output.size.map_or(default.size, |Exactly(size)| size.map(|Whole(side)| side)),
     })
 }
 
-/// All entries of a list, or the first fault.
+/// All entries of a list, or the first error.
 fn numbered<T, U>(
     tables: &[T],
     checked: impl Fn(usize, &T) -> Result<U, SceneError>,
@@ -91,20 +91,20 @@ fn numbered<T, U>(
     tables.iter().enumerate().map(|(i, table)| checked(i, table)).collect()
 }
 
-/// A path that a weather file names: relative, and beneath its folder.
-pub(super) fn path(text: &str, key: &str, places: &Places<'_>) -> Result<RelativePath, SceneError> {
-    if text.len() > LONGEST_PATH {
+/// A path in a weather file: relative, and inside its folder.
+pub(super) fn path(text: &str, key: &str, positions: &Positions<'_>) -> Result<RelativePath, SceneError> {
+    if text.len() > MAX_PATH {
         let found = format!("a path of {} bytes", text.len());
-        return Err(places.bad(key, found, format!("at most {LONGEST_PATH} bytes")));
+        return Err(positions.bad(key, found, format!("at most {MAX_PATH} bytes")));
     }
-    // Unlike an address in glTF, a path here is plain text: a percent sign is one.
-    let allowed = "only relative paths beneath the folder of the weather file or an asset root";
+    // Unlike an address in glTF, a path here is plain text: a percent sign is literal.
+    let allowed = "only relative paths inside the folder of the weather file or an asset root";
     match check(&text.replace('%', "%25")) {
         Ok(Address::File(path)) => Ok(path),
-        Ok(Address::Data { .. }) => Err(places.bad(key, "data in place of a file", allowed)),
+        Ok(Address::Data { .. }) => Err(positions.bad(key, "data instead of a file", allowed)),
         Err(refused) => {
             let why = refused.found.rsplit_once("\" ").map_or("is refused", |(_, why)| why);
-            Err(places.bad(key, format!("{} {why}", quoted(text)), allowed))
+            Err(positions.bad(key, format!("{} {why}", quoted(text)), allowed))
         }
     }
 }

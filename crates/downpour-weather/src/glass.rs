@@ -1,10 +1,10 @@
 //! `[glass]` and `[[glass.wiper]]`: a pane before the camera, and the rain on it.
 
 use super::Rain;
-use super::fault::Places;
+use super::fault::Positions;
 use super::quantity::{
-    AboveM, AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, HighlightMm, In,
-    PaneApertureMm, PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, Share, TurnDeg,
+    AboveM, AdvancingDeg, BeforeS, BladeM, CellMm, DryingMmH, Exactly, FilmUm, Fraction, HighlightMm, In,
+    PaneApertureMm, PaneM, PaneMS, PaneTiltDeg, PeriodS, PivotM, ReachM, RecedingDeg, TurnDeg,
 };
 use super::wind::keys::NumberKeys;
 use downpour_lattice::glass::{
@@ -16,27 +16,27 @@ use downpour_scene::error::SceneError;
 use downpour_wind::Keyed;
 use serde::Deserialize;
 
-/// The fastest that drops run on a pane of a weather, m/s.
+/// Maximum speed of drops on a pane of a weather, m/s.
 const SPEED_LIMIT_M_S: f64 = 0.4;
 
-/// Rows of cells that the lattice takes.
+/// Maximum number of rows of cells of the lattice.
 const MAX_ROWS: u32 = 4096;
 
-/// Keys of a wiper that the lattice takes.
-const LARGEST_RAD: f64 = 7.0;
+/// Maximum angle of a wiper's keys in the lattice.
+const MAX_RAD: f64 = 7.0;
 
-/// What is in focus.
+/// Object in focus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PaneFocus {
-    /// What is behind the pane, each at its distance: the drops are blurred.
+    /// The scene behind the pane, each point at its distance: the drops are blurred.
     #[default]
     Scene,
-    /// The pane: what is behind it is blurred.
+    /// The pane: the scene behind it is blurred.
     Glass,
 }
 
-/// How much light the surfaces of pane and water reflect.
+/// Reflectance of the surfaces of pane and water.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PaneFresnel {
@@ -48,71 +48,71 @@ pub enum PaneFresnel {
     Tatarchuk2006,
 }
 
-/// What the drops do to light that falls through the pane.
+/// Effect of the drops on light that falls through the pane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PaneShadow {
-    /// They are lenses, whose light comes together behind them and is spread beyond.
+    /// Drops are lenses, whose light converges behind them and spreads beyond.
     #[default]
     Lens,
-    /// Their shadows have highlights in the middle, however far they fall.
+    /// Their shadows have highlights in the middle, at any distance.
     #[serde(rename = "tatarchuk-2006")]
     Tatarchuk2006,
-    /// Nothing.
+    /// No effect.
     None,
 }
 
-/// A pane that goes with the camera: a window or a windshield, the eye inside, rain outside.
+/// A pane fixed to the camera: a window or a windshield, the eye inside, rain outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pane {
-    /// From the eye to the pane along the middle of the picture, m.
+    /// Distance from the eye to the pane along the center of the picture, m.
     pub distance: f64,
     /// Tilt from the horizontal, rad: pi/2 is a window; a windshield leans towards the eye.
     pub tilt: f64,
-    /// Width and height along the pane, m; its middle is in the middle of the picture. `None`: what the picture shows.
+    /// Width and height along the pane, m; it is centered in the picture. `None`: the visible size.
     pub size: Option<[f64; 2]>,
     /// Edge of a cell, m.
     pub cell: f64,
-    /// Height of the pane above what is seen of it, m: from there water runs down into it.
+    /// Height of the pane above the picture, m: water runs down from there.
     pub above: f64,
-    /// How fast the air with the rain comes at the pane, m/s, over time.
+    /// Speed of the air with the rain towards the pane, m/s, over time.
     pub speed: Keyed<f64>,
-    /// How long it has rained on the pane before the first picture, s.
+    /// Time of rain on the pane before the first picture, s.
     pub before: f64,
-    /// What is in focus.
+    /// Object in focus.
     pub focus: PaneFocus,
-    /// Diameter of the lens, m; 0 has everything in focus.
+    /// Diameter of the lens, m; 0: all is in focus.
     pub aperture: f64,
-    /// How bright it is on the eye's side, as a share of what the scene is round the eye.
-    pub room: f64,
-    /// How much is reflected.
+    /// Brightness on the eye's side (interior ambient), as a fraction of the scene's brightness around the eye.
+    pub interior_ambient: f64,
+    /// Model of reflectance.
     pub fresnel: PaneFresnel,
     /// Diameter, m, of the sphere of water from which on a drop shows lamps and the sun as bright spots: the mass above
-    /// which Tatarchuk & Isidoro 2006 draw highlights. 0: all drops, as optics has it; small ones have small spots.
+    /// which Tatarchuk & Isidoro 2006 draw highlights. 0: all drops, as in optics; small ones have small spots.
     pub highlight: f64,
-    /// Shadows of the drops where light of lamps and the sun falls through the pane.
+    /// Shadows of the drops in light of lamps and the sun through the pane.
     pub shadows: PaneShadow,
-    /// How the glass holds water.
+    /// Contact angles of water on the glass.
     pub contact: GlassContact,
-    /// Thickness of the film that water leaves where it has run, m.
+    /// Thickness of the water film behind running drops, m.
     pub film: f64,
     /// Drying, mm/h.
     pub drying_mm_h: f64,
-    /// Seed of all that is random on the pane.
+    /// Seed of all random values on the pane.
     pub seed: u64,
-    /// Wipers. The times of their keys are those of the weather; a sweep begins when the rain on the pane begins.
+    /// Wipers. The times of their keys are those of the weather; a sweep starts with the rain on the pane.
     pub wipers: Vec<GlassWiper>,
 }
 
 impl Pane {
-    /// Cells along a pane of a size in metres.
+    /// Number of cells along a pane of a size in metres.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "whole, and within the range of u32")]
     pub fn cells(&self, size: [f64; 2]) -> [u32; 2] {
         size.map(|edge| (edge / self.cell).round().clamp(1.0, 1.0e9) as u32)
     }
 
-    /// Rows of cells above what is seen of the pane, a size in meters; fewer where the lattice would have too many.
+    /// Number of rows of cells above the visible pane, a size in meters; fewer if the lattice would have too many.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "whole, and within the range of u32")]
     pub fn rows_above(&self, size: [f64; 2]) -> u32 {
@@ -120,8 +120,8 @@ impl Pane {
         ((self.above / self.cell).round().clamp(0.0, 4096.0) as u32).min(MAX_ROWS.saturating_sub(rows))
     }
 
-    /// The lattice for a pane of which a size in metres is seen, in a rain, from a time in seconds on: its uppermost
-    /// [`Pane::rows_above`] rows are above that. The tick is that of the fastest air.
+    /// Options of the lattice for a pane of a visible size in metres, in a rain, from a time in seconds on: its uppermost
+    /// [`Pane::rows_above`] rows are above the visible part. The tick is that of the fastest air.
     #[must_use]
     pub fn options(&self, size: [f64; 2], rain: &Rain, begin_s: f64) -> GlassOptions {
         let fastest = self.speed.keys().iter().fold(0.0, |most: f64, &(_, speed)| most.max(speed));
@@ -148,7 +148,7 @@ impl Pane {
         }
     }
 
-    /// Rain and air on the pane while the air comes at a speed: along the pane flows what of it is parallel to it.
+    /// Rain and air on the pane for an air speed: along the pane flows the component parallel to it.
     #[must_use]
     pub fn weather(&self, rain: &Rain, speed_m_s: f64) -> (GlassRain, GlassAir) {
         let along = speed_m_s * ops::cos(self.tilt).max(0.0);
@@ -167,7 +167,7 @@ impl Pane {
     }
 }
 
-/// The wiper with its keys in the lattice's own time, and its pivot so many meters lower.
+/// The wiper with its keys in the lattice's time, and its pivot lowered by `lower` meters.
 fn shifted(wiper: &GlassWiper, begin_s: f64, lower: f64) -> GlassWiper {
     let motion = match &wiper.motion {
         GlassWiperMotion::Keys(keys) => GlassWiperMotion::Keys(
@@ -191,7 +191,7 @@ pub(super) struct GlassTable {
     before_s: Option<In<BeforeS>>,
     focus: Option<PaneFocus>,
     aperture_mm: Option<In<PaneApertureMm>>,
-    room: Option<In<Share>>,
+    interior_ambient: Option<In<Fraction>>,
     fresnel: Option<PaneFresnel>,
     highlight_mm: Option<In<HighlightMm>>,
     shadows: Option<PaneShadow>,
@@ -223,11 +223,11 @@ struct WiperTable {
 struct WornTable {
     from_m: In<BladeM>,
     to_m: In<BladeM>,
-    leaves: Option<In<Share>>,
+    leaves: Option<In<Fraction>>,
 }
 
 impl GlassTable {
-    pub(super) fn checked(&self, rain: &Rain, places: &Places<'_>) -> Result<Pane, SceneError> {
+    pub(super) fn checked(&self, rain: &Rain, positions: &Positions<'_>) -> Result<Pane, SceneError> {
         let number = |given: Option<f64>, default: f64| given.unwrap_or(default);
         let contact = GlassContact::default();
         let pane = Pane {
@@ -237,13 +237,13 @@ impl GlassTable {
             cell: number(self.cell_mm.map(|mm| mm.0), 0.6) * 1.0e-3,
             above: number(self.above_m.map(|m| m.0), 0.15),
             speed: match &self.speed_m_s {
-                Some(keys) => keys.keyed("glass.speed_m_s", places)?,
+                Some(keys) => keys.keyed("glass.speed_m_s", positions)?,
                 None => 3.0.into(),
             },
             before: number(self.before_s.map(|s| s.0), 60.0),
             focus: self.focus.unwrap_or_default(),
             aperture: number(self.aperture_mm.map(|mm| mm.0), 4.0) * 1.0e-3,
-            room: number(self.room.map(|share| share.0), 0.1),
+            interior_ambient: number(self.interior_ambient.map(|fraction| fraction.0), 0.1),
             fresnel: self.fresnel.unwrap_or_default(),
             shadows: self.shadows.unwrap_or_default(),
             highlight: number(self.highlight_mm.map(|mm| mm.0), 0.0) * 1.0e-3,
@@ -261,32 +261,32 @@ impl GlassTable {
             let (low, high) =
                 (pane.contact.receding_rad.to_degrees(), pane.contact.advancing_rad.to_degrees());
             let found = format!("{low:.4} with an advancing angle of {high:.4}");
-            return Err(places.bad("glass.receding_deg", found, "0 to the advancing angle"));
+            return Err(positions.bad("glass.receding_deg", found, "0 to the advancing angle"));
         }
         let Some(size) = pane.size else {
             if self.wiper.is_empty() {
                 return Ok(pane);
             }
-            let allowed = "with size_m = [width, height], in which wipers have their places";
-            return Err(places.bad("glass.wiper", "without glass.size_m", allowed));
+            let allowed = "with size_m = [width, height], in which wipers are positioned";
+            return Err(positions.bad("glass.wiper", "without glass.size_m", allowed));
         };
         let [columns, rows] = pane.cells(size);
         if !(8..=4096).contains(&columns) || !(8..=4096).contains(&rows) {
             let found = format!("{columns} x {rows} cells of {} mm", pane.cell * 1.0e3);
-            let allowed = "8 to 4096 each way: another size_m or cell_mm";
+            let allowed = "8 to 4096 along each edge: another size_m or cell_mm";
             return Err(if columns.max(rows) > 4096 {
-                places.limit("glass.size_m", found, allowed)
+                positions.limit("glass.size_m", found, allowed)
             } else {
-                places.bad("glass.size_m", found, allowed)
+                positions.bad("glass.size_m", found, allowed)
             });
         }
         let mut wipers = Vec::new();
         for (i, table) in self.wiper.iter().enumerate() {
-            let wiper = table.wiper(&format!("glass.wiper[{i}]"), places)?;
-            // Alone, so that what is wrong with it is told with its place.
+            let wiper = table.wiper(&format!("glass.wiper[{i}]"), positions)?;
+            // Alone, so that an error names its key.
             let alone = Pane { wipers: vec![wiper.clone()], above: 0.0, ..pane.clone() };
             let checked = alone.options(size, rain, 0.0).check();
-            checked.map_err(|error| refused(&format!("glass.wiper[{i}]"), size, &error, places))?;
+            checked.map_err(|error| refused(&format!("glass.wiper[{i}]"), size, &error, positions))?;
             wipers.push(wiper);
         }
         Ok(Pane { wipers, ..pane })
@@ -294,23 +294,23 @@ impl GlassTable {
 }
 
 impl WiperTable {
-    fn wiper(&self, path: &str, places: &Places<'_>) -> Result<GlassWiper, SceneError> {
+    fn wiper(&self, path: &str, positions: &Positions<'_>) -> Result<GlassWiper, SceneError> {
         let length = self.length_m.0;
         let motion = match (&self.angle_deg, self.from_deg, self.to_deg, self.period_s) {
             (Some(keys), None, None, None) => {
-                let keys = keys.keyed(&format!("{path}.angle_deg"), places)?;
+                let keys = keys.keyed(&format!("{path}.angle_deg"), positions)?;
                 let key =
                     |&(time_s, angle): &(f64, f64)| GlassWiperKey { time_s, angle_rad: angle.to_radians() };
                 GlassWiperMotion::Keys(keys.keys().iter().map(key).collect())
             }
             (None, Some(from), Some(to), Some(period)) => GlassWiperMotion::Sweep {
-                from_rad: from.0.to_radians().clamp(-LARGEST_RAD, LARGEST_RAD),
-                to_rad: to.0.to_radians().clamp(-LARGEST_RAD, LARGEST_RAD),
+                from_rad: from.0.to_radians().clamp(-MAX_RAD, MAX_RAD),
+                to_rad: to.0.to_radians().clamp(-MAX_RAD, MAX_RAD),
                 period_s: period.0,
             },
             (Some(_), ..) => {
                 let allowed = "either angle_deg, or from_deg, to_deg and period_s";
-                return Err(places.bad(
+                return Err(positions.bad(
                     &format!("{path}.angle_deg"),
                     "beside from_deg, to_deg or period_s",
                     allowed,
@@ -318,13 +318,13 @@ impl WiperTable {
             }
             _ => {
                 let allowed = "from_deg, to_deg and period_s, or angle_deg with keys";
-                return Err(places.bad(path, "no movement", allowed));
+                return Err(positions.bad(path, "no movement", allowed));
             }
         };
         let worn = |band: &WornTable| GlassWornBand {
             from_m: band.from_m.0,
             to_m: band.to_m.0,
-            leaves: band.leaves.map_or(0.5, |share| share.0),
+            leaves: band.leaves.map_or(0.5, |fraction| fraction.0),
         };
         Ok(GlassWiper {
             pivot_m: self.pivot_m.numbers(),
@@ -336,17 +336,21 @@ impl WiperTable {
     }
 }
 
-/// What is wrong with a wiper though each number is in its own range.
-fn refused(path: &str, size: [f64; 2], error: &GlassError, places: &Places<'_>) -> SceneError {
+/// Error of a wiper although each number is in its range.
+fn refused(path: &str, size: [f64; 2], error: &GlassError, positions: &Positions<'_>) -> SceneError {
     let [width, height] = size;
     match error {
         GlassError::WiperOutside { x, y, .. } => {
             let found = format!("({x}, {y}): the blade never touches the pane of {width} x {height} m");
-            places.bad(&format!("{path}.pivot_m"), found, "a place from which the blade reaches the pane")
+            positions.bad(
+                &format!("{path}.pivot_m"),
+                found,
+                "a position from which the blade reaches the pane",
+            )
         }
         GlassError::OutOfRange { quantity, found, unit, allowed } => {
-            places.bad(path, format!("{quantity} {found:.4} {unit}"), *allowed)
+            positions.bad(path, format!("{quantity} {found:.4} {unit}"), *allowed)
         }
-        error => places.bad(path, error.to_string(), "a wiper in its ranges"),
+        error => positions.bad(path, error.to_string(), "a wiper in its ranges"),
     }
 }

@@ -1,39 +1,39 @@
 //! `[[light]]`.
 
-use super::fault::Places;
-use super::quantity::{Candela, ConeDeg, Exactly, In, Lux, Part, PlaceM, RangeM, Tint};
+use super::fault::Positions;
+use super::quantity::{Candela, ConeDeg, Exactly, In, Lux, Part, PositionM, RangeM, Tint};
 use downpour_scene::error::SceneError;
 use glam::DVec3;
 use serde::Deserialize;
 
-/// Luminous intensity of a lamp where none is given, in candela.
+/// Default luminous intensity of a lamp, in candela.
 const LAMP_CD: f64 = 100.0;
 
-/// Illuminance of parallel light where none is given, in lux.
+/// Default illuminance of parallel light, in lux.
 const PARALLEL_LUX: f64 = 1000.0;
 
-/// Half angles of a cone where none are given, in degrees.
+/// Default half angles of a cone, in degrees.
 const CONE_DEG: (f64, f64) = (20.0, 30.0);
 
-/// A lamp, as `KHR_lights_punctual` has them.
+/// A lamp, as in `KHR_lights_punctual`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lamp {
-    /// Shines to all sides.
+    /// Shines in all directions.
     Point {
-        /// Where it is, in metres.
+        /// Position, in metres.
         position: DVec3,
         /// Tint, linear, 0 to 1.
         color: DVec3,
         /// Luminous intensity in candela.
         intensity_cd: f64,
-        /// Where its light has faded to nothing, in metres; `None` for no end.
+        /// Distance at which its light has faded to zero, in metres; `None` for an unlimited range.
         range: Option<f64>,
     },
     /// Shines in a cone.
     Spot {
-        /// Where it is, in metres.
+        /// Position, in metres.
         position: DVec3,
-        /// The unit direction in which it shines.
+        /// Unit direction of the light.
         direction: DVec3,
         /// Tint, linear, 0 to 1.
         color: DVec3,
@@ -43,12 +43,12 @@ pub enum Lamp {
         inner: f64,
         /// Half the angle outside of which there is no light, in radians.
         outer: f64,
-        /// Where its light has faded to nothing, in metres; `None` for no end.
+        /// Distance at which its light has faded to zero, in metres; `None` for an unlimited range.
         range: Option<f64>,
     },
     /// Parallel light from far away.
     Directional {
-        /// The unit direction in which it shines.
+        /// Unit direction of the light.
         direction: DVec3,
         /// Tint, linear, 0 to 1.
         color: DVec3,
@@ -65,13 +65,13 @@ pub(super) enum LampTable {
     Directional(DirectionalTable),
 }
 
-type Colour = Option<Exactly<In<Tint>, 3>>;
+type Color = Option<Exactly<In<Tint>, 3>>;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PointTable {
-    position_m: Exactly<In<PlaceM>, 3>,
-    color: Colour,
+    position_m: Exactly<In<PositionM>, 3>,
+    color: Color,
     intensity_cd: Option<In<Candela>>,
     range_m: Option<In<RangeM>>,
 }
@@ -79,9 +79,9 @@ pub(super) struct PointTable {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SpotTable {
-    position_m: Exactly<In<PlaceM>, 3>,
+    position_m: Exactly<In<PositionM>, 3>,
     direction: Exactly<In<Part>, 3>,
-    color: Colour,
+    color: Color,
     intensity_cd: Option<In<Candela>>,
     inner_deg: Option<In<ConeDeg>>,
     outer_deg: Option<In<ConeDeg>>,
@@ -92,17 +92,21 @@ pub(super) struct SpotTable {
 #[serde(deny_unknown_fields)]
 pub(super) struct DirectionalTable {
     direction: Exactly<In<Part>, 3>,
-    color: Colour,
+    color: Color,
     illuminance_lux: Option<In<Lux>>,
 }
 
 impl Lamp {
-    pub(super) fn checked(i: usize, table: &LampTable, places: &Places<'_>) -> Result<Self, SceneError> {
-        let color = |given: Colour| given.map_or(DVec3::ONE, |color| color.numbers().into());
+    pub(super) fn checked(
+        i: usize,
+        table: &LampTable,
+        positions: &Positions<'_>,
+    ) -> Result<Self, SceneError> {
+        let color = |given: Color| given.map_or(DVec3::ONE, |color| color.numbers().into());
         let candela = |given: Option<In<Candela>>| given.map_or(LAMP_CD, |candela| candela.0);
         let unit = |direction: Exactly<In<Part>, 3>, key: &str| {
             DVec3::from_array(direction.numbers()).try_normalize().ok_or_else(|| {
-                places.bad(&format!("light[{i}].{key}.direction"), "no length", "three numbers, not all 0")
+                positions.bad(&format!("light[{i}].{key}.direction"), "no length", "three numbers, not all 0")
             })
         };
         match table {
@@ -114,14 +118,14 @@ impl Lamp {
             }),
             LampTable::Spot(table) => {
                 let outer = table.outer_deg.map_or(CONE_DEG.1, |outer| outer.0);
-                // Where only the outer cone is given and it is narrow, the inner one is within it.
+                // If only the outer cone is given and it is narrow, the inner one is within it.
                 let inner =
                     table.inner_deg.map_or(CONE_DEG.0.min(outer * CONE_DEG.0 / CONE_DEG.1), |inner| inner.0);
                 if inner >= outer {
                     let name = if table.inner_deg.is_some() { "inner_deg" } else { "outer_deg" };
                     let key = format!("light[{i}].spot.{name}");
                     let found = format!("{inner} degrees within {outer}");
-                    return Err(places.bad(&key, found, "inner_deg below outer_deg"));
+                    return Err(positions.bad(&key, found, "inner_deg below outer_deg"));
                 }
                 Ok(Self::Spot {
                     position: table.position_m.numbers().into(),

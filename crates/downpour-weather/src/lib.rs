@@ -1,4 +1,4 @@
-//! The weather file: what rains, what lights, who looks, and which models stand there.
+//! The weather file: rain, lights, camera and models of a scene.
 //!
 #![doc = include_str!("KEYS.md")]
 //!
@@ -6,8 +6,8 @@
 //! otherwise. Radiance 1 is 1 cd/m^2 where lamps are concerned: a lamp of `I` candela at a distance `r` lights a
 //! surface that faces it with `I / r^2` lux.
 //!
-//! A file has at most 4 MiB and is nested at most 32 deep. What it does not know, it refuses: an unknown key,
-//! with the key that was probably meant. Each error names line, column and key.
+//! A file has at most 4 MiB and is nested at most 32 deep. An unknown key is an error, with the most similar known key.
+//! Each error names line, column and key.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(
@@ -38,8 +38,8 @@ mod wind;
 mod words;
 
 use downpour_scene::Budget;
-use downpour_scene::beneath::open_named;
 use downpour_scene::error::{SceneError, shown_path};
+use downpour_scene::sandbox::open_named;
 use downpour_wind::Wind;
 use std::path::Path;
 
@@ -58,25 +58,25 @@ pub use sky::{Sky, SkySource, SunSource};
 pub use streaks::{StreakLook, Streaks};
 pub use wind::WindBox;
 
-/// The longest weather file, in bytes: 4 MiB.
+/// Maximum size of a weather file, in bytes: 4 MiB.
 pub const MAX_FILE: u64 = 4 << 20;
 
-/// How deep tables and arrays may be nested.
+/// Maximum nesting depth of tables and arrays.
 pub const MAX_DEPTH: u32 = 32;
 
-/// The largest number of entries `[[model]]`.
+/// Maximum number of entries `[[model]]`.
 pub const MAX_MODELS: usize = 4096;
 
-/// The largest number of entries `[[light]]`.
+/// Maximum number of entries `[[light]]`.
 pub const MAX_LIGHTS: usize = 1024;
 
-/// The largest number of entries `[[puddle]]`.
+/// Maximum number of entries `[[puddle]]`.
 pub const MAX_PUDDLES: usize = 16;
 
-/// What a weather file says, checked: all numbers are finite and in the ranges of [the table](self).
+/// Contents of a weather file, checked: all numbers are finite and in the ranges of [the table](self).
 ///
-/// The default is what a bare glTF gets: 10 mm/h by Marshall & Palmer's law under an overcast sky, no sun, the
-/// model's own camera, no wind, 1280 x 720 pixels.
+/// The default is the weather of a bare glTF: 10 mm/h by Marshall & Palmer's law under an overcast sky, no sun, the
+/// model's camera, no wind, 1280 x 720 pixels.
 ///
 /// ```
 /// use downpour_weather::Weather;
@@ -99,33 +99,33 @@ pub const MAX_PUDDLES: usize = 16;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weather {
-    /// What messages call the file; empty for the default.
+    /// Name of the file in messages; empty for the default.
     pub name: String,
-    /// The rain.
+    /// Rain.
     pub rain: Rain,
-    /// The model that all drops are drawn as, in place of their own shapes.
+    /// Model that all drops are drawn as, instead of their shapes.
     pub drop_model: Option<RelativePath>,
-    /// The sky.
+    /// Sky.
     pub sky: Sky,
-    /// Where the sun comes from.
+    /// Source of the sun.
     pub sun: SunSource,
-    /// The eye.
+    /// Camera or eye.
     pub camera: Camera,
     /// Models, in the order of the file.
     pub models: Vec<Model>,
     /// Lamps, in the order of the file.
     pub lights: Vec<Lamp>,
-    /// The wind: parts, gusts, turbulence.
+    /// Wind: parts, gusts, turbulence.
     pub wind: Wind,
-    /// The box of cells in which the wind is worked out, where it differs from place to place.
+    /// Box of cells in which a non-uniform wind is computed.
     pub wind_box: WindBox,
-    /// How moving drops are drawn.
+    /// Options for moving drops.
     pub streaks: Streaks,
-    /// A pane before the camera.
+    /// Pane in front of the camera.
     pub glass: Option<Pane>,
-    /// Water that stands on the ground, in the order of the file.
+    /// Water on the ground, in the order of the file.
     pub puddles: Vec<Puddle>,
-    /// Columns and rows of the picture.
+    /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
 }
 
@@ -153,7 +153,7 @@ impl Default for Weather {
 impl Weather {
     /// Reads a weather file.
     ///
-    /// The budget must leave room for the text; nothing of it is spent, since a `Weather` is small.
+    /// The budget must allow the size of the text; nothing is deducted, since a `Weather` is small.
     ///
     /// # Errors
     /// [`SceneError::Unreadable`]: the file cannot be read; [`SceneError::BadInput`]: it is no regular file, no UTF-8 or no valid
@@ -176,7 +176,7 @@ impl Weather {
         Self::parse(&name, text)
     }
 
-    /// Reads the text of a weather file; `name` is what messages call it. A byte order mark is passed over.
+    /// Reads the text of a weather file; `name` is its name in messages. A byte order mark is ignored.
     ///
     /// # Errors
     /// As [`read`](Self::read).

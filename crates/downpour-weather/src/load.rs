@@ -1,13 +1,13 @@
-//! All that a weather file names, as one scene, one sky and one sun.
+//! All files of a weather, as one scene, one sky and one sun.
 
 use super::puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, PuddleShape};
 use super::{Lamp, Model, Puddle, SkySource, SunSource, Weather};
 use downpour_math::ops::f64 as ops;
 use downpour_scene::Budget;
-use downpour_scene::beneath::{Files, Folder, OpenFile};
 use downpour_scene::error::SceneError;
 use downpour_scene::gltf::{TriangleModel, read_scene_from_bytes, read_triangles_from_bytes};
 use downpour_scene::picture::{self, Picture};
+use downpour_scene::sandbox::{Files, Folder, OpenFile};
 use downpour_scene::scene::{Animation, Light, LightKind, Local, Node, Scene};
 use downpour_scene::sky::{self, SUN_THRESHOLD, SkyMap, Sun};
 use downpour_scene::uri::{Address, RelativePath, check};
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
-/// Reflectance of the ground below the horizon of an overcast sky: a usual value for open land.
+/// Reflectance of the ground below the horizon of an overcast sky: typical of open land.
 const GROUND_ALBEDO: f64 = 0.2;
 
 /// A weather with its files.
@@ -25,17 +25,17 @@ const GROUND_ALBEDO: f64 = 0.2;
 pub struct Loaded {
     /// All models with their copies, and the lamps of the file.
     pub scene: Scene,
-    /// For each model, the animation of `scene` that plays.
+    /// Animation of `scene` that plays, for each model.
     pub animations: Vec<Option<usize>>,
-    /// The sky, turned and scaled; without the sun, if that was taken out of it.
+    /// Sky, rotated and scaled; without the sun, if that was extracted.
     pub sky: SkyMap,
     /// The sun, if there is one.
     pub sun: Option<Sun>,
-    /// For each puddle, the picture of its depth if it is painted.
+    /// Picture of the depth of each puddle that is painted.
     pub masks: Vec<Option<Picture>>,
-    /// The model that drops are drawn as, if they have one.
+    /// Model that drops are drawn as, if any.
     pub drop_model: Option<TriangleModel>,
-    /// What was left out or made good, in all files.
+    /// Parts that were dropped or repaired, in all files.
     pub warnings: Vec<Warning>,
 }
 
@@ -47,7 +47,7 @@ impl Loaded {
     }
 }
 
-/// Folders in which the files of a weather are looked for, in this order: its own, then asset roots.
+/// Folders in which the files of a weather are searched, in this order: its folder, then asset roots.
 #[derive(Debug)]
 pub struct Roots(Vec<Folder>);
 
@@ -55,7 +55,7 @@ impl Roots {
     /// Opens the folder of a weather file, and asset roots that the user has named.
     ///
     /// # Errors
-    /// One of them is no folder, or cannot be opened.
+    /// One of them is not a folder, or cannot be opened.
     pub fn open(weather: &Path, asset_roots: &[&Path]) -> Result<Self, SceneError> {
         let own = weather.parent().unwrap_or(Path::new(""));
         [own].iter().chain(asset_roots).map(|folder| Folder::open(folder)).collect::<Result<_, _>>().map(Self)
@@ -67,7 +67,7 @@ impl Files for Roots {
         let mut first = None;
         for folder in &self.0 {
             match folder.open(path) {
-                // Not there: perhaps in the next one. Anything else is the answer.
+                // Not found: try the next folder. Any other result is final.
                 Err(error @ SceneError::Unreadable(_)) => {
                     first.get_or_insert(error);
                 }
@@ -78,7 +78,7 @@ impl Files for Roots {
     }
 }
 
-/// The files beneath the folder of another file.
+/// Files inside the folder of another file.
 struct Beside<'a> {
     files: &'a dyn Files,
     folder: &'a str,
@@ -94,14 +94,14 @@ impl Files for Beside<'_> {
     }
 }
 
-/// Reads all files that a weather names, through `files`: see [`Roots`].
+/// Reads all files of a weather, through `files`: see [`Roots`].
 ///
-/// The budget is lowered by what they take up; a copy of a model, be it by `repeat` or by another `[[model]]` of the
-/// same file, costs its nodes and movements only.
+/// The budget is lowered by their size; a copy of a model, by `repeat` or by another `[[model]]` of the
+/// same file, costs its nodes and animations only.
 ///
 /// # Errors
-/// [`SceneError`] with the name of the file: it cannot be read, is not what Downpour can read, or is too large; or a
-/// model has no animation of the name that the weather gives.
+/// [`SceneError`] with the name of the file: it cannot be read, is not supported, or is too large; or a
+/// model has no animation of the name in the weather.
 ///
 /// ```no_run
 /// use downpour_scene::Budget;
@@ -113,29 +113,29 @@ impl Files for Beside<'_> {
 /// # Ok::<(), downpour_scene::SceneError>(())
 /// ```
 pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result<Loaded, SceneError> {
-    let mut purse = *budget;
+    let mut remaining = *budget;
     let mut warnings = Warnings::default();
-    let (mut sky, sun) = lights_of_the_sky(weather, files, &mut purse, &mut warnings)?;
+    let (mut sky, sun) = lights_of_the_sky(weather, files, &mut remaining, &mut warnings)?;
     let mut scene = Scene { name: weather.name.clone(), ..Scene::default() };
     let mut animations = Vec::new();
     let mut known = BTreeMap::new();
     for model in &weather.models {
-        animations.push(add(&mut scene, model, &mut known, files, &mut purse)?);
+        animations.push(add(&mut scene, model, &mut known, files, &mut remaining)?);
     }
     for lamp in &weather.lights {
-        purse.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
+        remaining.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
         hang(&mut scene, lamp);
     }
-    let masks = masks(weather, files, &mut purse)?;
-    let drop_model = drop_model(weather, files, &mut purse)?;
-    *budget = purse;
+    let masks = masks(weather, files, &mut remaining)?;
+    let drop_model = drop_model(weather, files, &mut remaining)?;
+    *budget = remaining;
     let of_drops = drop_model.iter().flat_map(|model| model.warnings.clone()).collect();
     let warnings =
         [std::mem::take(&mut sky.warnings), scene.warnings.clone(), of_drops, warnings.finish()].concat();
     Ok(Loaded { scene, animations, sky, sun, masks, drop_model, warnings })
 }
 
-/// The triangles that drops are drawn as: all of them, or an error.
+/// Triangles that drops are drawn as: all of them, or an error.
 fn drop_model(
     weather: &Weather,
     files: &dyn Files,
@@ -150,7 +150,7 @@ fn drop_model(
     Ok(Some(model))
 }
 
-/// The pictures of the depths of painted puddles.
+/// Pictures of the depths of painted puddles.
 fn masks(
     weather: &Weather,
     files: &dyn Files,
@@ -165,7 +165,7 @@ fn masks(
             let mask = picture::decode(name, &bytes, budget)?;
             let found = format!("a mask of {} x {} pixels", mask.width, mask.height);
             if mask.width.max(mask.height) > MAX_PUDDLE_CELLS || mask.width.min(mask.height) < 2 {
-                let allowed = format!("2 to {MAX_PUDDLE_CELLS} pixels each way");
+                let allowed = format!("2 to {MAX_PUDDLE_CELLS} pixels along each edge");
                 return Err(SceneError::limit("", found, allowed));
             }
             cells = u64::saturating_add(cells, u64::from(mask.width).saturating_mul(u64::from(mask.height)));
@@ -180,7 +180,7 @@ fn masks(
     weather.puddles.iter().map(read).collect()
 }
 
-/// The sky and the sun, turned and scaled.
+/// Sky and sun, rotated and scaled.
 fn lights_of_the_sky(
     weather: &Weather,
     files: &dyn Files,
@@ -188,9 +188,9 @@ fn lights_of_the_sky(
     warnings: &mut Warnings,
 ) -> Result<(SkyMap, Option<Sun>), SceneError> {
     let scale = weather.sky.scale;
-    let scaled = |colour: [f64; 3]| colour.map(|value| narrowed(value * scale));
+    let scaled = |color: [f64; 3]| color.map(|value| narrowed(value * scale));
     let (mut sky, yaw) = match &weather.sky.source {
-        SkySource::Uniform(colour) => (SkyMap::uniform(scaled(*colour)), 0.0),
+        SkySource::Uniform(color) => (SkyMap::uniform(scaled(*color)), 0.0),
         SkySource::Overcast(zenith) => (SkyMap::overcast(scaled(*zenith)).with_ground(GROUND_ALBEDO), 0.0),
         SkySource::File { file, yaw } => {
             let name = file.as_str();
@@ -200,7 +200,7 @@ fn lights_of_the_sky(
             };
             let mut sky = read(budget).map_err(|error| error.in_file(name))?;
             for pixel in &mut sky.radiance {
-                *pixel = pixel.map(|value| narrowed(f64::from(value) * scale).min(sky::BRIGHTEST));
+                *pixel = pixel.map(|value| narrowed(f64::from(value) * scale).min(sky::MAX_RADIANCE));
             }
             (sky, *yaw)
         }
@@ -231,7 +231,7 @@ fn turned(sky: SkyMap, yaw: f64) -> SkyMap {
     if yaw == 0.0 { sky } else { sky.rotated(yaw) }
 }
 
-/// Where the first copy of a file stands in the scene.
+/// Index ranges in the scene of the first copy of a file.
 struct Source {
     nodes: Range<usize>,
     animations: Range<usize>,
@@ -246,8 +246,8 @@ fn add<'a>(
     budget: &mut Budget,
 ) -> Result<Option<usize>, SceneError> {
     let name = model.file.as_str();
-    let mut places = model.transforms().map(|place| single(&place));
-    let first = places.next().unwrap_or(Affine3A::IDENTITY);
+    let mut positions = model.transforms().map(|transform| single(&transform));
+    let first = positions.next().unwrap_or(Affine3A::IDENTITY);
     let part = match known.get(name) {
         Some(source) => again(scene, source, first, budget).map_err(|error| error.in_file(name))?,
         None => {
@@ -269,22 +269,22 @@ fn add<'a>(
     };
     let chosen = chosen.map(|index| index.saturating_add(part.animations.start));
     let each = copy_bytes(scene, &part);
-    for place in places {
+    for transform in positions {
         let mut take = || {
             budget.take_bytes(each, "nodes")?;
             budget.take_nodes(part.nodes.len() as u64, "nodes")
         };
         take().map_err(|error| error.in_file(name))?;
-        copy(scene, part.nodes.clone(), part.animations.clone(), place);
+        copy(scene, part.nodes.clone(), part.animations.clone(), transform);
     }
     Ok(chosen)
 }
 
-/// Reads the file of a model and puts it at a place.
+/// Reads the file of a model and adds it with a transform.
 fn append(
     scene: &mut Scene,
     model: &Model,
-    place: Affine3A,
+    transform: Affine3A,
     files: &dyn Files,
     budget: &mut Budget,
 ) -> Result<Source, SceneError> {
@@ -294,21 +294,21 @@ fn append(
     let other = read_scene_from_bytes(name, &bytes, &Beside { files, folder }, budget)?;
     budget.take_nodes(1, "nodes")?;
     let (nodes, animations) = (scene.nodes.len(), scene.animations.len());
-    scene.append(other, place);
+    scene.append(other, transform);
     Ok(Source { nodes: nodes..scene.nodes.len(), animations: animations..scene.animations.len() })
 }
 
-/// Puts a file that was read before at another place: its nodes, with movements of their own.
+/// Adds a file that was read before with another transform: its nodes, with separate animations.
 fn again(
     scene: &mut Scene,
     source: &Source,
-    place: Affine3A,
+    transform: Affine3A,
     budget: &mut Budget,
 ) -> Result<Source, SceneError> {
     budget.take_bytes(copy_bytes(scene, source), "nodes")?;
     budget.take_nodes(source.nodes.len() as u64, "nodes")?;
     let (nodes, animations) = (scene.nodes.len(), scene.animations.len());
-    // Those of the first copy alone: its repetitions were added to the same movements.
+    // Those of the first copy alone: its repetitions were added to the same animations.
     let moved: Vec<Animation> = scene
         .animations
         .get(source.animations.clone())
@@ -319,7 +319,7 @@ fn again(
             Animation { name: animation.name.clone(), channels: own.cloned().collect() }
         })
         .collect();
-    copy(scene, source.nodes.clone(), 0..0, place);
+    copy(scene, source.nodes.clone(), 0..0, transform);
     let by = nodes.saturating_sub(source.nodes.start);
     scene.animations.extend(moved.into_iter().map(|mut animation| {
         for channel in &mut animation.channels {
@@ -330,7 +330,7 @@ fn again(
     Ok(Source { nodes: nodes..scene.nodes.len(), animations: animations..scene.animations.len() })
 }
 
-/// What a copy takes up, in bytes.
+/// Size of a copy, in bytes.
 fn copy_bytes(scene: &Scene, source: &Source) -> u64 {
     let of = |count: usize, size: usize| (count as u64).saturating_mul(size as u64);
     let nodes = scene.nodes.get(source.nodes.clone()).unwrap_or_default().iter();
@@ -348,9 +348,9 @@ fn copy_bytes(scene: &Scene, source: &Source) -> u64 {
     nodes.chain(channels.map(|channel| channel.track.bytes())).fold(0, u64::saturating_add)
 }
 
-/// Copies the nodes of a model, with the skins and movements that belong to them; the meshes are shared. The last
-/// node of the part is the one that all others hang on.
-fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, place: Affine3A) {
+/// Copies the nodes of a model, with their skins and animations; the meshes are shared. The last
+/// node of the part is the parent of all others.
+fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, transform: Affine3A) {
     let by = scene.nodes.len().saturating_sub(part.start);
     let mut nodes = scene.nodes.get(part.clone()).unwrap_or_default().to_vec();
     for node in &mut nodes {
@@ -362,7 +362,7 @@ fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, place: 
         }
     }
     if let Some(root) = nodes.last_mut() {
-        root.local = Local::Matrix(place);
+        root.local = Local::Matrix(transform);
     }
     scene.nodes.extend(nodes);
     scene.roots.push(scene.nodes.len().saturating_sub(1));
@@ -376,7 +376,7 @@ fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, place: 
     }
 }
 
-/// Hangs a lamp into the scene.
+/// Adds a lamp to the scene.
 fn hang(scene: &mut Scene, lamp: &Lamp) {
     let (position, direction, color, intensity, range, kind) = match *lamp {
         Lamp::Point { position, color, intensity_cd, range } => {
@@ -401,13 +401,14 @@ fn hang(scene: &mut Scene, lamp: &Lamp) {
     scene.nodes.push(Node { light: Some(light), local, ..Node::default() });
 }
 
-/// In single precision.
-fn single(place: &DAffine3) -> Affine3A {
-    let [x, y, z] = [place.matrix3.x_axis, place.matrix3.y_axis, place.matrix3.z_axis].map(DVec3::as_vec3a);
-    Affine3A { matrix3: glam::Mat3A::from_cols(x, y, z), translation: place.translation.as_vec3a() }
+/// Transform in single precision.
+fn single(transform: &DAffine3) -> Affine3A {
+    let [x, y, z] =
+        [transform.matrix3.x_axis, transform.matrix3.y_axis, transform.matrix3.z_axis].map(DVec3::as_vec3a);
+    Affine3A { matrix3: glam::Mat3A::from_cols(x, y, z), translation: transform.translation.as_vec3a() }
 }
 
-/// The nearest `f32`, within its range.
+/// Nearest `f32`, within its range.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "rounding is meant, and what is beyond the range is at its end"

@@ -1,40 +1,40 @@
 //! `[[model]]`.
 
-use super::fault::Places;
+use super::fault::Positions;
 use super::file::path;
-use super::quantity::{Exactly, In, PlaceM, ScaleXyz, TurnDeg, Whole};
+use super::quantity::{Exactly, In, PositionM, ScaleXyz, TurnDeg, Whole};
 use downpour_math::ops::f64 as ops;
 use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
 use glam::{DAffine3, DQuat, DVec3};
 use serde::Deserialize;
 
-/// The largest number of copies of one model.
+/// Maximum number of copies of one model.
 const MAX_COPIES: u64 = 65_536;
 
-/// A model and where it stands.
+/// A model with its transform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
-    /// The glTF file, beneath the folder of the weather file or an asset root.
+    /// The glTF file, inside the folder of the weather file or an asset root.
     pub file: RelativePath,
-    /// Where its origin comes to, in metres.
+    /// Position of its origin, in metres.
     pub translation: DVec3,
-    /// How it is turned.
+    /// Rotation.
     pub rotation: DQuat,
-    /// By how much its sides are multiplied.
+    /// Scale.
     pub scale: DVec3,
-    /// Its copies.
+    /// Copies of the model.
     pub repeat: Repeat,
-    /// The animation that plays; `None` for the first one.
+    /// Animation that plays; `None` for the first one.
     pub animation: Option<String>,
 }
 
 /// Copies on a lattice along the scene's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repeat {
-    /// How many along x, y and z; each at least 1.
+    /// Number of copies along x, y and z; each at least 1.
     pub count: [u32; 3],
-    /// From one to the next, in metres.
+    /// Distance between copies, in metres.
     pub step: DVec3,
 }
 
@@ -46,21 +46,21 @@ impl Default for Repeat {
 }
 
 impl Model {
-    /// The transform of each copy, x running fastest: scale first, then rotation, then translation.
+    /// Transform of each copy, x running fastest: scale first, then rotation, then translation.
     ///
     /// ```
     /// use downpour_weather::Weather;
     /// let text = "[[model]]\nfile = 'a.glb'\nscale = 2\nrepeat = { count = [2, 1, 1], step_m = [5, 0, 0] }";
     /// let weather = Weather::parse("row.toml", text)?;
-    /// let places: Vec<_> = weather.models[0].transforms().collect();
-    /// assert_eq!(places[1].transform_point3([1.0, 0.0, 0.0].into()), [7.0, 0.0, 0.0].into());
+    /// let copies: Vec<_> = weather.models[0].transforms().collect();
+    /// assert_eq!(copies[1].transform_point3([1.0, 0.0, 0.0].into()), [7.0, 0.0, 0.0].into());
     /// # Ok::<(), downpour_scene::SceneError>(())
     /// ```
     pub fn transforms(&self) -> impl Iterator<Item = DAffine3> + use<'_> {
         let [nx, ny, nz] = self.repeat.count;
-        (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z]))).map(|place| {
+        (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z]))).map(|index| {
             #[expect(clippy::arithmetic_side_effects, reason = "of floats: at most 1e7 + 65536 * 1e7")]
-            let moved = self.translation + self.repeat.step * DVec3::from_array(place.map(f64::from));
+            let moved = self.translation + self.repeat.step * DVec3::from_array(index.map(f64::from));
             DAffine3::from_scale_rotation_translation(self.scale, self.rotation, moved)
         })
     }
@@ -70,7 +70,7 @@ impl Model {
 #[serde(deny_unknown_fields)]
 pub(super) struct ModelTable {
     file: String,
-    translation_m: Option<Exactly<In<PlaceM>, 3>>,
+    translation_m: Option<Exactly<In<PositionM>, 3>>,
     rotation_deg: Option<Exactly<In<TurnDeg>, 3>>,
     scale: Option<ScaleXyz>,
     repeat: Option<RepeatTable>,
@@ -81,11 +81,15 @@ pub(super) struct ModelTable {
 #[serde(deny_unknown_fields)]
 struct RepeatTable {
     count: Exactly<Whole<1, 65_536>, 3>,
-    step_m: Exactly<In<PlaceM>, 3>,
+    step_m: Exactly<In<PositionM>, 3>,
 }
 
 impl Model {
-    pub(super) fn checked(i: usize, table: &ModelTable, places: &Places<'_>) -> Result<Self, SceneError> {
+    pub(super) fn checked(
+        i: usize,
+        table: &ModelTable,
+        positions: &Positions<'_>,
+    ) -> Result<Self, SceneError> {
         let key = |name: &str| format!("model[{i}].{name}");
         let repeat = table.repeat.map_or_else(Repeat::default, |repeat| Repeat {
             count: repeat.count.0.map(|Whole(count)| count),
@@ -94,12 +98,12 @@ impl Model {
         let copies = repeat.count.iter().map(|&count| u64::from(count)).fold(1, u64::saturating_mul);
         if copies > MAX_COPIES {
             let found = format!("{copies} copies");
-            return Err(places.limit(&key("repeat.count"), found, format!("at most {MAX_COPIES}")));
+            return Err(positions.limit(&key("repeat.count"), found, format!("at most {MAX_COPIES}")));
         }
         let vector =
-            |given: Option<Exactly<In<PlaceM>, 3>>| given.map_or(DVec3::ZERO, |v| v.numbers().into());
+            |given: Option<Exactly<In<PositionM>, 3>>| given.map_or(DVec3::ZERO, |v| v.numbers().into());
         Ok(Self {
-            file: path(&table.file, &key("file"), places)?,
+            file: path(&table.file, &key("file"), positions)?,
             translation: vector(table.translation_m),
             rotation: rotation(table.rotation_deg.map_or([0.0; 3], Exactly::numbers)),
             scale: table.scale.map_or(DVec3::ONE, |ScaleXyz(scale)| scale.into()),
@@ -109,7 +113,7 @@ impl Model {
     }
 }
 
-/// About z, then x, then y, in degrees.
+/// Rotation about z, then x, then y, in degrees.
 fn rotation([x, y, z]: [f64; 3]) -> DQuat {
     let half = |degrees: f64| {
         let angle = degrees.to_radians() / 2.0;

@@ -1,90 +1,90 @@
-//! `[[puddle]]`: water that stands on the scene.
+//! `[[puddle]]`: water on the ground of the scene.
 
-use super::fault::Places;
+use super::fault::Positions;
 use super::file::path;
 use super::quantity::{
-    ClearM, Exactly, FieldCellMm, In, Influence, PlaceM, PuddleDepthMm, PuddleM, PuddleReachM, ReliefMm,
-    RippleScale, Share, Tint, TurnDeg,
+    AttenuationM, Exactly, FieldCellMm, Fraction, In, Influence, PositionM, PuddleDepthMm, PuddleM,
+    PuddleReachM, ReliefMm, RippleScale, Tint, TurnDeg,
 };
 use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
 use serde::Deserialize;
 
-/// The most cells along an edge of a puddle's map.
+/// Maximum number of cells along an edge of a puddle's map.
 pub const MAX_PUDDLE_CELLS: u32 = 2048;
 
-/// The most cells of all puddles' maps.
+/// Maximum number of cells of all puddles' maps.
 pub const MAX_ALL_PUDDLE_CELLS: u64 = 1 << 22;
 
-/// Edge of a cell where none is given, m.
+/// Default edge of a cell, m.
 const CELL_M: f64 = 0.025;
 
-/// Where the water is.
+/// Shape of the water.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PuddleShape {
     /// In the hollows of the ground.
     Found {
-        /// How far hollows are filled: 0 nothing, 1 until they spill.
+        /// Filled fraction of the hollows: 0 empty, 1 until they spill.
         fill: f64,
-        /// Hollows less deep than this stay dry, m.
-        least: f64,
-        /// Unevenness of the ground beside that of its model: root mean square of the height, m.
+        /// Minimum depth of hollows that hold water, m.
+        min_depth: f64,
+        /// Unevenness of the ground in addition to its model: root mean square of the height, m.
         relief: f64,
         /// Seed of that unevenness.
         seed: u64,
-        /// Cells along the edges.
+        /// Number of cells along the edges.
         cells: [u32; 2],
     },
-    /// As deep as a picture is bright: red, linear, 1 is the whole depth. Its middle is the puddle's, its columns run
+    /// Depth from a picture: red, linear, 1 is the full depth. Its center is the puddle's, its columns run
     /// along the first edge.
     Painted(RelativePath),
 }
 
-/// Water that stands within a rectangle of the ground.
+/// Water within a rectangle of the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Puddle {
-    /// Middle of the rectangle, m.
+    /// Center of the rectangle, m.
     pub middle: [f64; 3],
     /// Its edges, m, along X and Z before it is turned.
     pub size: [f64; 2],
     /// Turn about the vertical axis, rad, from +X towards +Z.
     pub turn: f64,
-    /// How far over and under the middle the ground is looked for, m.
+    /// Distance above and below the center in which the ground is searched, m.
     pub reach: f64,
-    /// Where the water is.
+    /// Shape of the water.
     pub shape: PuddleShape,
-    /// The greatest depth, m.
+    /// Maximum depth, m.
     pub depth: f64,
-    /// Size of the ripples, as a multiple of what they are.
+    /// Size of the ripples, as a multiple of the true one.
     pub ripple_scale: f64,
     /// Turn of the ripples, rad.
     pub ripple_turn: f64,
-    /// Slopes of the ripples, as a multiple of what they are.
+    /// Slopes of the ripples, as a multiple of the true ones.
     pub ripple_influence: f64,
-    /// How far one sees through the water, m: 1/e of the light is left.
-    pub clear: f64,
-    /// Albedo of water so deep that the ground is not seen.
+    /// Attenuation length of the water, m: 1/e of the light is transmitted.
+    pub attenuation_length: f64,
+    /// Albedo of water so deep that the ground is invisible.
     pub color: [f64; 3],
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PuddleTable {
-    position_m: Exactly<In<PlaceM>, 3>,
+    position_m: Exactly<In<PositionM>, 3>,
     size_m: Exactly<In<PuddleM>, 2>,
     turn_deg: Option<In<TurnDeg>>,
     reach_m: Option<In<PuddleReachM>>,
     mask: Option<String>,
     depth_mm: Option<In<PuddleDepthMm>>,
-    fill: Option<In<Share>>,
-    least_mm: Option<In<PuddleDepthMm>>,
+    fill: Option<In<Fraction>>,
+    min_depth_mm: Option<In<PuddleDepthMm>>,
     relief_mm: Option<In<ReliefMm>>,
     seed: Option<u64>,
     cell_mm: Option<In<FieldCellMm>>,
     ripple_scale: Option<In<RippleScale>>,
     ripple_deg: Option<In<TurnDeg>>,
     ripple_influence: Option<In<Influence>>,
-    clear_m: Option<In<ClearM>>,
+    attenuation_length_m: Option<In<AttenuationM>>,
     color: Option<Exactly<In<Tint>, 3>>,
 }
 
@@ -92,7 +92,7 @@ impl Puddle {
     pub(super) fn checked(
         index: usize,
         table: &PuddleTable,
-        places: &Places<'_>,
+        positions: &Positions<'_>,
     ) -> Result<Self, SceneError> {
         let at = |name: &str| format!("puddle[{index}].{name}");
         let size = table.size_m.numbers();
@@ -100,29 +100,29 @@ impl Puddle {
         let shape = if let Some(mask) = &table.mask {
             for (name, given) in [
                 ("fill", table.fill.is_some()),
-                ("least_mm", table.least_mm.is_some()),
+                ("min_depth_mm", table.min_depth_mm.is_some()),
                 ("relief_mm", table.relief_mm.is_some()),
                 ("seed", table.seed.is_some()),
                 ("cell_mm", table.cell_mm.is_some()),
             ] {
                 if given {
                     let allowed = "either a mask, or a puddle that is found";
-                    return Err(places.bad(&at(name), "beside mask", allowed));
+                    return Err(positions.bad(&at(name), "beside mask", allowed));
                 }
             }
-            PuddleShape::Painted(path(mask, &at("mask"), places)?)
+            PuddleShape::Painted(path(mask, &at("mask"), positions)?)
         } else {
             let cell = table.cell_mm.map_or(CELL_M, |mm| mm.0 * 1.0e-3);
             let cells = size.map(|edge| cells(edge, cell));
             if cells.iter().any(|&n| n > MAX_PUDDLE_CELLS) {
                 let [width, depth] = cells;
                 let allowed =
-                    format!("at most {MAX_PUDDLE_CELLS} each way: a larger cell_mm, or more puddles");
-                return Err(places.bad(&at("cell_mm"), format!("{width} x {depth} cells"), allowed));
+                    format!("at most {MAX_PUDDLE_CELLS} along each edge: a larger cell_mm, or more puddles");
+                return Err(positions.bad(&at("cell_mm"), format!("{width} x {depth} cells"), allowed));
             }
             PuddleShape::Found {
-                fill: table.fill.map_or(1.0, |share| share.0),
-                least: metres(table.least_mm.map(|mm| mm.0), 1.5),
+                fill: table.fill.map_or(1.0, |fraction| fraction.0),
+                min_depth: metres(table.min_depth_mm.map(|mm| mm.0), 1.5),
                 relief: metres(table.relief_mm.map(|mm| mm.0), 2.2),
                 seed: table.seed.unwrap_or(0),
                 cells,
@@ -139,20 +139,20 @@ impl Puddle {
             ripple_scale: table.ripple_scale.map_or(1.0, |scale| scale.0),
             ripple_turn: table.ripple_deg.map_or(0.0, |deg| deg.0.to_radians()),
             ripple_influence: table.ripple_influence.map_or(1.0, |influence| influence.0),
-            clear: table.clear_m.map_or(0.25, |m| m.0),
+            attenuation_length: table.attenuation_length_m.map_or(0.25, |m| m.0),
             color: table.color.map_or([0.12, 0.105, 0.08], Exactly::numbers),
         })
     }
 }
 
-/// Cells along an edge.
+/// Number of cells along an edge.
 #[expect(clippy::cast_possible_truncation, reason = "whole, and within the range of u32")]
 fn cells(edge: f64, cell: f64) -> u32 {
     (edge / cell).round().clamp(2.0, 1.0e9) as u32
 }
 
-/// Whether the maps of all puddles are too many cells.
-pub(super) fn check_all(puddles: &[Puddle], places: &Places<'_>) -> Result<(), SceneError> {
+/// Checks that the maps of all puddles together are not too large.
+pub(super) fn check_all(puddles: &[Puddle], positions: &Positions<'_>) -> Result<(), SceneError> {
     let of = |puddle: &Puddle| match puddle.shape {
         PuddleShape::Found { cells: [width, depth], .. } => u64::from(width).saturating_mul(u64::from(depth)),
         PuddleShape::Painted(_) => 0,
@@ -160,7 +160,7 @@ pub(super) fn check_all(puddles: &[Puddle], places: &Places<'_>) -> Result<(), S
     let all: u64 = puddles.iter().map(of).sum();
     if all > MAX_ALL_PUDDLE_CELLS {
         let allowed = format!("at most {MAX_ALL_PUDDLE_CELLS}: larger cell_mm");
-        return Err(places.limit("puddle", format!("{all} cells in all maps"), allowed));
+        return Err(positions.limit("puddle", format!("{all} cells in all maps"), allowed));
     }
     Ok(())
 }

@@ -1,19 +1,19 @@
-//! Numbers that are checked as they are read: finite, and within their range.
+//! Numbers that are checked as they are read: finite and in range.
 
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// What separates what was found from what is allowed, in errors that go through serde.
+/// Separator between the value found and the values allowed, in errors that pass through serde.
 pub(super) const ALLOWED: &str = "; allowed: ";
 
 /// A range of numbers.
 pub(super) trait Range {
     const LOW: f64;
     const HIGH: f64;
-    /// Whether 0 is allowed though it is below `LOW`.
+    /// True if 0 is allowed although it is below `LOW`.
     const OR_ZERO: bool = false;
-    /// The range for a person.
+    /// Range as text, for messages.
     const WORDS: &'static str;
 }
 
@@ -46,8 +46,8 @@ ranges! {
     FieldCellMm: 2.0, 1000.0, "2 to 1000 mm";
     RippleScale: 0.1, 10.0, "0.1 to 10";
     Influence: 0.0, 10.0, "0 to 10";
-    ClearM: 0.001, 1000.0, "0.001 to 1000 m";
-    Share: 0.0, 1.0, "0 to 1";
+    AttenuationM: 0.001, 1000.0, "0.001 to 1000 m";
+    Fraction: 0.0, 1.0, "0 to 1";
     DropSize: 0.05, 1.0, "0.05 to 1";
     ShortS: 0.01, 10.0, "0.01 to 10 s";
     Brightness: 0.0, 1e9, "0 to 1e9";
@@ -59,7 +59,7 @@ ranges! {
     Lux: 0.0, 1e9, "0 to 1e9 lux";
     Candela: 0.0, 1e9, "0 to 1e9 cd";
     DiscDeg: 0.0, 20.0, "0 to 20 degrees";
-    PlaceM: -1e7, 1e7, "-1e7 to 1e7 m";
+    PositionM: -1e7, 1e7, "-1e7 to 1e7 m";
     FovDeg: 1.0, 170.0, "1 to 170 degrees";
     DepthM: 1e-4, 1e7, "1e-4 to 1e7 m";
     ShutterS: 0.0, 1.0, "0 to 1 s";
@@ -75,7 +75,7 @@ ranges! {
     WindMS: 0.0, 200.0, "0 to 200 m/s";
     Outflow: 0.0, 1e6, "0 to 1e6";
     Turning: -1e6, 1e6, "-1e6 to 1e6";
-    WindPlaceM: -1e6, 1e6, "-1e6 to 1e6 m";
+    WindPositionM: -1e6, 1e6, "-1e6 to 1e6 m";
     CoreM: 0.01, 1e4, "0.01 to 1e4 m";
     HeightM: 0.02, 1e5, "0.02 to 1e5 m";
     Intensity: 0.0, 1.0, "0 to 1";
@@ -116,14 +116,14 @@ impl<R> Copy for In<R> {}
 impl<R: Range> In<R> {
     pub(super) fn checked<E: Error>(value: f64) -> Result<Self, E> {
         if (R::LOW..=R::HIGH).contains(&value) || (R::OR_ZERO && value == 0.0) {
-            // No sign on a zero.
+            // Zero has no sign.
             return Ok(Self(value + 0.0, PhantomData));
         }
         Err(E::custom(format_args!("{}{ALLOWED}{}", shown(value), R::WORDS)))
     }
 }
 
-/// A number as a person wrote it, more or less.
+/// Number formatted close to the text of the file.
 fn shown(value: f64) -> String {
     if value.fract() == 0.0 && value.abs() < 1e15 { format!("{value:.0}") } else { format!("{value:?}") }
 }
@@ -236,7 +236,7 @@ impl<'de> Visitor<'de> for OneOrThree {
     }
 }
 
-/// A whole number from `LOW` to `HIGH`.
+/// An integer from `LOW` to `HIGH`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Whole<const LOW: u32, const HIGH: u32>(pub(super) u32);
 

@@ -1,10 +1,10 @@
 //! `[rain]`.
 
-use super::fault::Places;
+use super::fault::Positions;
 use super::file::path;
 use super::quantity::{
-    BoxM, DropSize, Exactly, GammaShape, In, MedianMm, OneMm, PlaceM, PressureHpa, RadiusM, RateMmH, Share,
-    ShortS, TemperatureC, Whole,
+    BoxM, DropSize, Exactly, Fraction, GammaShape, In, MedianMm, OneMm, PositionM, PressureHpa, RadiusM,
+    RateMmH, ShortS, TemperatureC, Whole,
 };
 use super::streaks::Streaks;
 use downpour_drop::DropError;
@@ -16,46 +16,46 @@ use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
 use serde::Deserialize;
 
-/// Shape of the gamma law where none is given.
+/// Default shape of the gamma law.
 const GAMMA_SHAPE: f64 = 3.0;
 
-/// The lightest rain whose drop sizes differ, in mm/h.
-const LIGHTEST: f64 = downpour_drop::distribution::MIN_SHAPE_RATE_MM_H;
+/// Rain rate below which drop sizes no longer vary, in mm/h.
+const MIN_SHAPE_MM_H: f64 = downpour_drop::distribution::MIN_SHAPE_RATE_MM_H;
 
-/// Drops of one size differ by this share of their diameter, and at least by so many m.
-const ONE_SHARE: f64 = 1.0e-3;
-const ONE_LEAST_M: f64 = 1.0e-6;
+/// Range of diameters of drops of one size, relative to the diameter and at least in m.
+const ONE_FRACTION: f64 = 1.0e-3;
+const ONE_MIN_M: f64 = 1.0e-6;
 
-/// The heaviest rain, mm/h.
-const HEAVIEST_MM_H: f64 = 500.0;
+/// Maximum rain rate, mm/h.
+const MAX_MM_H: f64 = 500.0;
 
-/// Side of a box of rain where the weather does not say, m.
+/// Default side of a box of rain, m.
 pub const RAIN_BOX_M: f64 = 10.0;
 
-/// Drops that are simulated where the file does not say how many, at most.
-const MOST_DROPS: u32 = 2_000_000;
+/// Default maximum number of simulated drops.
+const MAX_DROPS: u32 = 2_000_000;
 
-/// The part of space that is simulated, and how.
+/// Volume in which drops are simulated, and method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainVolume {
-    /// In closed form while the wind is the same everywhere, else in view.
+    /// In closed form if the wind is uniform, else in view.
     #[default]
     Auto,
     /// In closed form: the same drops for every camera and every time.
     ClosedForm,
-    /// Step by step in what the picture shows.
+    /// Step by step in the view volume.
     View,
     /// Step by step in a box that follows the eye (Rousseau 2006).
     Box,
     /// The rain area of Im & Sung 2022 with their sampling.
     #[serde(rename = "im-sung-2022")]
     ImSung2022,
-    /// A box that drops fall into, in the manner of Tariq 2007.
+    /// A box with drops falling into it, after Tariq 2007.
     #[serde(rename = "tariq-2007")]
     Tariq2007,
-    /// A cylinder that stands in the world, in the manner of Creus and Patow 2013.
+    /// A cylinder fixed in the world, after Creus and Patow 2013.
     #[serde(rename = "creus-patow-2013")]
     CreusPatow2013,
 }
@@ -96,7 +96,7 @@ impl From<FallSpeed> for FallSpeedModel {
     }
 }
 
-/// Shapes of the drops, as masks and streaks show them.
+/// Shapes of the drops in masks and streaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -110,7 +110,7 @@ pub enum RainDropShape {
 }
 
 impl RainDropShape {
-    /// The name in weather files.
+    /// Name in weather files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -119,7 +119,7 @@ impl RainDropShape {
         }
     }
 
-    /// The coefficients of the shapes.
+    /// Coefficients of the shapes.
     #[must_use]
     pub fn table(self) -> ShapeTable {
         match self {
@@ -129,12 +129,12 @@ impl RainDropShape {
     }
 }
 
-/// Ways in which a drop's pixel finds its color.
+/// Lookup of the color of a drop's pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainRefraction {
-    /// By the direction of the refracted light, in everything round the eye.
+    /// By the direction of the refracted light, in an environment map around the eye.
     #[default]
     Direction,
     /// By a shift in a perspective picture of 165 degrees and 512 x 512 texels (Rousseau 2006, 4.2.3).
@@ -142,25 +142,25 @@ pub enum RainRefraction {
     Rousseau2006,
 }
 
-/// How drops follow the wind.
+/// Model of the drops' motion in the wind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainDrag {
-    /// As physics has it.
+    /// Relaxation by drag.
     #[default]
     Relaxation,
-    /// By averages, once a step.
+    /// Averages, once a step.
     #[serde(rename = "rousseau-2008")]
     Rousseau2008,
 }
 
-/// What lamps and sun do to drops.
+/// Light of lamps and sun on drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainDropLight {
-    /// As geometric optics has it: a sphere's rays of orders 0 to 3, bows included.
+    /// Geometric optics: a sphere's rays of orders 0 to 3, bows included.
     #[default]
     Traced,
     /// The formula of Rousseau 2006, section 6.
@@ -175,52 +175,52 @@ pub enum RainDropLight {
     /// Spots only: the cone of Im & Sung 2022, section III.C.
     #[serde(rename = "im-sung-2022")]
     ImSung2022,
-    /// Nothing: drops show the scene behind and round them only.
+    /// None: drops show the scene behind and around them only.
     None,
 }
 
-/// What a drop takes out of the light behind it.
+/// Extinction by a drop of the light behind it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RainExtinction {
-    /// What its outline covers: a camera keeps what is diffracted.
+    /// The area of its outline: a camera keeps diffracted light.
     #[default]
     Camera,
-    /// Twice that: diffracted light is lost as well.
+    /// Twice that area: diffracted light is lost as well.
     Total,
 }
 
-/// What happens to drops that meet a surface, where they are simulated step by step.
+/// Bounce of drops off surfaces, in step-by-step simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainBounce {
-    /// Share of impacts after which a droplet comes back, 0 to 1.
-    pub share: f64,
-    /// Share of the speed along the normal that comes back, 0 to 1.
+    /// Fraction of impacts that eject a droplet, 0 to 1.
+    pub fraction: f64,
+    /// Fraction of the normal speed after the bounce, 0 to 1.
     pub restitution: f64,
-    /// Share of the speed along the surface that is lost, 0 to 1.
+    /// Fraction of the tangential speed that is lost, 0 to 1.
     pub grip: f64,
-    /// Diameter of the droplet in that of the drop, 0.05 to 1.
+    /// Ratio of the diameters of droplet and drop, 0.05 to 1.
     pub size: f64,
-    /// The longest time of a droplet, s, 0.01 to 10.
-    pub longest_s: f64,
+    /// Maximum time of flight of a droplet, s, 0.01 to 10.
+    pub max_time_s: f64,
 }
 
 impl Default for RainBounce {
     /// A droplet of a quarter of the drop's diameter after a tenth of the impacts.
     fn default() -> Self {
-        Self { share: 0.1, restitution: 0.25, grip: 0.7, size: 0.25, longest_s: 1.0 }
+        Self { fraction: 0.1, restitution: 0.25, grip: 0.7, size: 0.25, max_time_s: 1.0 }
     }
 }
 
 /// An upright cylinder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainCylinder {
-    /// Middle of the base, m; `None`: below the eye of the first picture, by half the height.
+    /// Center of the base, m; `None`: below the eye of the first picture, by half the height.
     pub base_m: Option<[f64; 3]>,
-    /// 0.5 to 1000 m.
+    /// Radius, 0.5 to 1000 m.
     pub radius_m: f64,
-    /// 1 to 1000 m.
+    /// Height, 1 to 1000 m.
     pub height_m: f64,
 }
 
@@ -230,40 +230,40 @@ impl Default for RainCylinder {
     }
 }
 
-/// What rains.
+/// Rain of a weather.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rain {
     /// Rain rate in mm/h: 0 (dry), or 0.001 to 500.
     pub rate_mm_h: f64,
-    /// The law of the drop sizes.
+    /// Law of the drop sizes.
     pub law: DropSizeLaw,
     /// Same seed, same drops.
     pub seed: u64,
     /// Temperature and pressure of the air.
     pub air: Air,
-    /// The law of terminal speed.
+    /// Law of terminal speed.
     pub fall_speed: FallSpeedModel,
     /// Shapes of the drops.
     pub drop_shape: RainDropShape,
-    /// Way in which a drop's pixel finds its color.
+    /// Lookup of the color of a drop's pixel.
     pub refraction: RainRefraction,
     /// Diameter of all drops, m, 0.2e-3 to 7.5e-3, if they are of one size.
     pub one_diameter: Option<f64>,
-    /// Where and how drops are simulated.
+    /// Volume in which drops are simulated, and method.
     pub volume: RainVolume,
     /// Side of a box of rain, in metres, 1 to 1000; `None` leaves it to the renderer.
     pub box_m: Option<f64>,
-    /// The cylinder of rain.
+    /// Cylinder of rain.
     pub cylinder: RainCylinder,
-    /// Drops that are simulated step by step, at most.
-    pub most_drops: u32,
-    /// How drops follow the wind.
+    /// Maximum number of simulated drops.
+    pub max_drops: u32,
+    /// Model of the drops' motion in the wind.
     pub drag: RainDrag,
-    /// What happens to drops that meet a surface.
+    /// Bounce of drops off surfaces.
     pub bounce: RainBounce,
-    /// What lamps and sun do to drops.
+    /// Light of lamps and sun on drops.
     pub drop_light: RainDropLight,
-    /// What a drop takes out of the light behind it.
+    /// Extinction by a drop of the light behind it.
     pub extinction: RainExtinction,
 }
 
@@ -282,7 +282,7 @@ impl Default for Rain {
             volume: RainVolume::default(),
             box_m: None,
             cylinder: RainCylinder::default(),
-            most_drops: MOST_DROPS,
+            max_drops: MAX_DROPS,
             drag: RainDrag::default(),
             bounce: RainBounce::default(),
             drop_light: RainDropLight::default(),
@@ -309,14 +309,14 @@ pub(super) struct RainTable {
     volume: Option<RainVolume>,
     box_m: Option<In<BoxM>>,
     cylinder: Option<CylinderTable>,
-    most_drops: Option<Whole<1, { 1 << 30 }>>,
+    max_drops: Option<Whole<1, { 1 << 30 }>>,
     drag: Option<RainDrag>,
     bounce: Option<BounceTable>,
     drop_light: Option<RainDropLight>,
     extinction: Option<RainExtinction>,
 }
 
-/// So many drops of one size.
+/// A number of drops of one size.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct DropsTable {
@@ -327,7 +327,7 @@ struct DropsTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CylinderTable {
-    base_m: Option<Exactly<In<PlaceM>, 3>>,
+    base_m: Option<Exactly<In<PositionM>, 3>>,
     radius_m: Option<In<RadiusM>>,
     height_m: Option<In<BoxM>>,
 }
@@ -335,22 +335,22 @@ struct CylinderTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BounceTable {
-    share: Option<In<Share>>,
-    restitution: Option<In<Share>>,
-    grip: Option<In<Share>>,
+    fraction: Option<In<Fraction>>,
+    restitution: Option<In<Fraction>>,
+    grip: Option<In<Fraction>>,
     size: Option<In<DropSize>>,
-    longest_s: Option<In<ShortS>>,
+    max_time_s: Option<In<ShortS>>,
 }
 
 impl BounceTable {
     fn checked(&self) -> RainBounce {
         let usual = RainBounce::default();
         RainBounce {
-            share: self.share.map_or(usual.share, |x| x.0),
+            fraction: self.fraction.map_or(usual.fraction, |x| x.0),
             restitution: self.restitution.map_or(usual.restitution, |x| x.0),
             grip: self.grip.map_or(usual.grip, |x| x.0),
             size: self.size.map_or(usual.size, |x| x.0),
-            longest_s: self.longest_s.map_or(usual.longest_s, |x| x.0),
+            max_time_s: self.max_time_s.map_or(usual.max_time_s, |x| x.0),
         }
     }
 }
@@ -380,14 +380,14 @@ enum Distribution {
 }
 
 impl Rain {
-    /// Which drops there are, and how fast they fall.
+    /// Diameters and fall speeds of the drops.
     #[must_use]
     pub fn options(&self) -> DistributionOptions {
         let usual = DistributionOptions { fall_speed: self.fall_speed, air: self.air, ..Default::default() };
         match self.one_diameter {
             None => usual,
             Some(diameter) => {
-                let half = (diameter * ONE_SHARE).max(ONE_LEAST_M);
+                let half = (diameter * ONE_FRACTION).max(ONE_MIN_M);
                 DistributionOptions {
                     min_diameter_m: diameter - half,
                     max_diameter_m: diameter + half,
@@ -397,27 +397,27 @@ impl Rain {
         }
     }
 
-    /// The sizes of the drops, and how many there are.
+    /// Drop size distribution.
     ///
     /// # Errors
-    /// [`DropError`] for a rain that is none.
+    /// [`DropError`] for an invalid rain.
     pub fn sizes(&self) -> Result<DropSizeDistribution, DropError> {
         DropSizeDistribution::with_options(self.law, self.rate_mm_h, &self.options())
     }
 
-    pub(super) fn checked(table: &RainTable, places: &Places<'_>) -> Result<Self, SceneError> {
+    pub(super) fn checked(table: &RainTable, positions: &Positions<'_>) -> Result<Self, SceneError> {
         let default = Self::default();
         let rate_mm_h = table.rate_mm_h.map_or(default.rate_mm_h, |rate| rate.0);
         let temperature_c = table.temperature_c.map_or(default.air.temperature_c(), |t| t.0);
         let pressure_pa = table.pressure_hpa.map_or(default.air.pressure_pa(), |p| p.0 * 100.0);
         let air = Air::new(temperature_c, pressure_pa);
         let air =
-            air.map_err(|error| places.bad("rain", error.to_string(), "the air of the laws of fall"))?;
+            air.map_err(|error| positions.bad("rain", error.to_string(), "the air of the laws of fall"))?;
         let law = match table.distribution {
             None => default.law,
             Some(Distribution::MarshallPalmer) => DropSizeLaw::MarshallPalmer1948,
             Some(Distribution::Best) => DropSizeLaw::Best1950,
-            Some(Distribution::Gamma) => table.gamma(rate_mm_h, places)?,
+            Some(Distribution::Gamma) => table.gamma(rate_mm_h, positions)?,
             Some(Distribution::FeingoldLevin) => DropSizeLaw::FeingoldLevin1986,
             Some(Distribution::JossDrizzle) => DropSizeLaw::Joss1968Drizzle,
             Some(Distribution::JossWidespread) => DropSizeLaw::Joss1968Widespread,
@@ -430,11 +430,11 @@ impl Rain {
             ] {
                 if given {
                     let found = format!("a parameter of the gamma law, with {}", law.name());
-                    return Err(places.bad(key, found, "distribution = \"gamma\""));
+                    return Err(positions.bad(key, found, "distribution = \"gamma\""));
                 }
             }
         }
-        // Drops that are counted are counted in a box.
+        // Drops with a count are in a box.
         let usual = if table.drops.is_some() { RainVolume::Box } else { RainVolume::default() };
         let volume = table.volume.unwrap_or(usual);
         let boxed = matches!(volume, RainVolume::Box | RainVolume::Tariq2007);
@@ -448,7 +448,7 @@ impl Rain {
             ),
         ] {
             if given && !of {
-                return Err(places.bad(key, "a part of another volume", allowed));
+                return Err(positions.bad(key, "a part of another volume", allowed));
             }
         }
         let rain = Self {
@@ -463,7 +463,7 @@ impl Rain {
             volume,
             box_m: table.box_m.map(|side| side.0),
             cylinder: table.cylinder.map_or(default.cylinder, |cylinder| cylinder.checked()),
-            most_drops: table.most_drops.map_or(default.most_drops, |Whole(drops)| drops),
+            max_drops: table.max_drops.map_or(default.max_drops, |Whole(drops)| drops),
             drag: table.drag.unwrap_or_default(),
             bounce: table.bounce.map_or(default.bounce, |bounce| bounce.checked()),
             drop_light: table.drop_light.unwrap_or_default(),
@@ -471,19 +471,19 @@ impl Rain {
         };
         match table.drops {
             None => Ok(rain),
-            Some(drops) => rain.counted(table, drops.count.0, places),
+            Some(drops) => rain.counted(table, drops.count.0, positions),
         }
     }
 
-    /// The rain with the rate at which so many drops of its one size are in its volume, on average.
-    fn counted(self, table: &RainTable, count: u32, places: &Places<'_>) -> Result<Self, SceneError> {
+    /// The rain with the rate at which, on average, `count` drops of its one size are in its volume.
+    fn counted(self, table: &RainTable, count: u32, positions: &Positions<'_>) -> Result<Self, SceneError> {
         let allowed = "one or the other";
         for (key, given) in [
             ("rain.rate_mm_h", table.rate_mm_h.is_some()),
             ("rain.distribution", table.distribution.is_some()),
         ] {
             if given {
-                return Err(places.bad(key, "a rain that is counted by rain.drops", allowed));
+                return Err(positions.bad(key, "a rain that is counted by rain.drops", allowed));
             }
         }
         let side = self.box_m.unwrap_or(RAIN_BOX_M);
@@ -497,50 +497,55 @@ impl Rain {
             }
             _ => {
                 let allowed = "volume = \"box\", \"tariq-2007\" or \"creus-patow-2013\"";
-                return Err(places.bad("rain.drops", "drops that are counted in no volume", allowed));
+                return Err(positions.bad("rain.drops", "drops that are counted in no volume", allowed));
             }
         };
-        if count > self.most_drops {
-            let found = format!("{count} drops, more than rain.most_drops = {}", self.most_drops);
-            return Err(places.bad("rain.drops.count", found, "1 to rain.most_drops"));
+        if count > self.max_drops {
+            let found = format!("{count} drops, more than rain.max_drops = {}", self.max_drops);
+            return Err(positions.bad("rain.drops.count", found, "1 to rain.max_drops"));
         }
-        // The number goes with the rate.
-        let bad = |error: DropError| places.bad("rain.drops", error.to_string(), "drops of the laws of fall");
+        // The number is proportional to the rate.
+        let bad =
+            |error: DropError| positions.bad("rain.drops", error.to_string(), "drops of the laws of fall");
         let of_one = Self { rate_mm_h: 1.0, ..self }.sizes().map_err(bad)?;
         let rate_mm_h = f64::from(count) / (of_one.number_density() * volume);
-        if !(LIGHTEST..=HEAVIEST_MM_H).contains(&rate_mm_h) {
+        if !(MIN_SHAPE_MM_H..=MAX_MM_H).contains(&rate_mm_h) {
             let found = format!("{count} drops in {volume:.4} m^3 are {rate_mm_h:.4} mm/h");
-            return Err(places.bad("rain.drops.count", found, "drops of 0.001 to 500 mm/h"));
+            return Err(positions.bad("rain.drops.count", found, "drops of 0.001 to 500 mm/h"));
         }
         Ok(Self { rate_mm_h, ..self })
     }
 }
 
 impl RainTable {
-    /// The model that drops are drawn as.
+    /// Model that drops are drawn as.
     pub(super) fn drop_model(
         &self,
         streaks: &Streaks,
-        places: &Places<'_>,
+        positions: &Positions<'_>,
     ) -> Result<Option<RelativePath>, SceneError> {
         let Some(file) = &self.mask_model else { return Ok(None) };
         let key = "rain.mask_model";
         if self.drop_shape.is_some() {
-            return Err(places.bad(key, "a model for drops that have rain.drop_shape", "one or the other"));
+            return Err(positions.bad(
+                key,
+                "a model for drops that have rain.drop_shape",
+                "one or the other",
+            ));
         }
-        // The table of streaks is made by rays through the drops' own shapes.
+        // The table of streaks is traced through the drops' shapes.
         if streaks.samples.is_none() {
             let found = "a mask for streaks that need none, with streaks.samples = \"table\"";
-            return Err(places.bad(key, found, "with streaks.samples = 1 to 4096"));
+            return Err(positions.bad(key, found, "with streaks.samples = 1 to 4096"));
         }
-        path(file, key, places).map(Some)
+        path(file, key, positions).map(Some)
     }
 
-    fn gamma(&self, rate_mm_h: f64, places: &Places<'_>) -> Result<DropSizeLaw, SceneError> {
+    fn gamma(&self, rate_mm_h: f64, positions: &Positions<'_>) -> Result<DropSizeLaw, SceneError> {
         let median_volume_diameter_m = match self.median_diameter_mm {
             Some(median) => median.0 * 1e-3,
-            None => DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h.max(LIGHTEST))
-                .map_err(|error| places.bad("rain.rate_mm_h", error.to_string(), "a rate of the laws"))?
+            None => DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate_mm_h.max(MIN_SHAPE_MM_H))
+                .map_err(|error| positions.bad("rain.rate_mm_h", error.to_string(), "a rate of the laws"))?
                 .median_volume_diameter(),
         };
         let mu = self.gamma_shape.map_or(GAMMA_SHAPE, |mu| mu.0);

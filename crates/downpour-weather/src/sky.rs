@@ -1,6 +1,6 @@
 //! `[sky]` and `[sun]`.
 
-use super::fault::Places;
+use super::fault::Positions;
 use super::file::path;
 use super::quantity::{Brightness, DiscDeg, ElevationDeg, Exactly, In, Lux, Stops, Tint, TurnDeg};
 use downpour_math::ops::f64 as ops;
@@ -14,49 +14,49 @@ const SUN_LUX: f64 = 1e5;
 /// Diameter of the sun's disc, in degrees.
 const SUN_DEG: f64 = 0.53;
 
-/// The light of the sky.
+/// Light of the sky.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sky {
-    /// Where it comes from.
+    /// Source of the light.
     pub source: SkySource,
-    /// What it is multiplied with: `intensity * 2^exposure_ev`.
+    /// Factor of the radiance: `intensity * 2^exposure_ev`.
     pub scale: f64,
 }
 
-/// Where the light of the sky comes from.
+/// Source of the light of the sky.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SkySource {
     /// An equirectangular map.
     File {
-        /// The file, beneath the folder of the weather file or an asset root.
+        /// Path, inside the folder of the weather file or an asset root.
         file: RelativePath,
-        /// By how much the map is turned about +Y, in radians, counter-clockwise seen from above.
+        /// Rotation of the map about +Y, in radians, counter-clockwise seen from above.
         yaw: f64,
     },
-    /// The same radiance from everywhere.
+    /// Uniform radiance.
     Uniform([f64; 3]),
     /// The overcast sky of Moon & Spencer, with this radiance at the zenith.
     Overcast([f64; 3]),
 }
 
-/// Where the sun comes from.
+/// Source of the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SunSource {
-    /// There is none, or it stays in the map.
+    /// No sun, or it stays in the map.
     None,
     /// The brightest compact source of the sky map, if there is one.
     FromSky,
-    /// The same, where the file does not speak of a sun: a map without one is no surprise.
+    /// The same, for a file without `[sun]`: a map without a sun is not warned of.
     FromSkyIfAny,
-    /// A sun of its own.
+    /// A sun apart from the sky map.
     Directional {
-        /// The unit direction towards it.
+        /// Unit direction towards the sun.
         towards: [f64; 3],
-        /// On a surface that faces it, in lux.
+        /// Illuminance of a surface that faces it, in lux.
         illuminance_lux: f64,
         /// Tint, linear, 0 to 1.
         color: [f64; 3],
-        /// The radius of its disc, in radians.
+        /// Angular radius of its disc, in radians.
         angular_radius: f64,
     },
 }
@@ -91,23 +91,23 @@ pub(super) struct SunTable {
 }
 
 impl Sky {
-    pub(super) fn checked(table: &SkyTable, places: &Places<'_>) -> Result<Self, SceneError> {
+    pub(super) fn checked(table: &SkyTable, positions: &Positions<'_>) -> Result<Self, SceneError> {
         let default = Self::default();
         let one = "one of file, color and zenith_color";
         let source = match (&table.file, &table.color, &table.zenith_color) {
             (Some(file), None, None) => {
                 let yaw = table.yaw_deg.map_or(0.0, |yaw| yaw.0).to_radians();
-                SkySource::File { file: path(file, "sky.file", places)?, yaw }
+                SkySource::File { file: path(file, "sky.file", positions)?, yaw }
             }
             (None, Some(color), None) => SkySource::Uniform(color.numbers()),
             (None, None, Some(zenith)) => SkySource::Overcast(zenith.numbers()),
             (None, None, None) => default.source,
-            (_, Some(_), Some(_)) => return Err(places.bad("sky.zenith_color", "beside color", one)),
-            (_, Some(_), None) => return Err(places.bad("sky.color", "beside file", one)),
-            (_, None, Some(_)) => return Err(places.bad("sky.zenith_color", "beside file", one)),
+            (_, Some(_), Some(_)) => return Err(positions.bad("sky.zenith_color", "beside color", one)),
+            (_, Some(_), None) => return Err(positions.bad("sky.color", "beside file", one)),
+            (_, None, Some(_)) => return Err(positions.bad("sky.zenith_color", "beside file", one)),
         };
         if table.yaw_deg.is_some() && !matches!(source, SkySource::File { .. }) {
-            return Err(places.bad("sky.yaw_deg", "a turn of no map", "with file only"));
+            return Err(positions.bad("sky.yaw_deg", "a turn of no map", "with file only"));
         }
         let stops = table.exposure_ev.map_or(0.0, |ev| ev.0);
         let scale = table.intensity.map_or(1.0, |intensity| intensity.0) * ops::pow(2.0, stops);
@@ -119,7 +119,7 @@ impl SunSource {
     pub(super) fn checked(
         table: Option<&SunTable>,
         sky: &Sky,
-        places: &Places<'_>,
+        positions: &Positions<'_>,
     ) -> Result<Self, SceneError> {
         let mapped = matches!(sky.source, SkySource::File { .. });
         let Some(table) = table else { return Ok(if mapped { Self::FromSkyIfAny } else { Self::None }) };
@@ -134,24 +134,30 @@ impl SunSource {
         match (table.from_sky, first) {
             (Some(true), Some(key)) => {
                 let key = format!("sun.{key}");
-                Err(places.bad(&key, "beside from_sky = true", "either from_sky or a sun of its own"))
+                Err(positions.bad(
+                    &key,
+                    "beside from_sky = true",
+                    "either from_sky or a direction of the sun",
+                ))
             }
             (Some(true), None) if !mapped => {
-                Err(places.bad("sun.from_sky", "true without a map", "with sky.file only"))
+                Err(positions.bad("sun.from_sky", "true without a map", "with sky.file only"))
             }
             (Some(true), None) => Ok(Self::FromSky),
             (Some(false), None) => Ok(Self::None),
-            (None, None) => Err(places.bad("sun", "nothing", "from_sky, or azimuth_deg and elevation_deg")),
-            (Some(false) | None, Some(_)) => table.directional(places),
+            (None, None) => {
+                Err(positions.bad("sun", "nothing", "from_sky, or azimuth_deg and elevation_deg"))
+            }
+            (Some(false) | None, Some(_)) => table.directional(positions),
         }
     }
 }
 
 impl SunTable {
-    fn directional(&self, places: &Places<'_>) -> Result<SunSource, SceneError> {
+    fn directional(&self, positions: &Positions<'_>) -> Result<SunSource, SceneError> {
         let (Some(azimuth), Some(elevation)) = (self.azimuth_deg, self.elevation_deg) else {
             let missing = if self.azimuth_deg.is_none() { "azimuth_deg" } else { "elevation_deg" };
-            return Err(places.bad("sun", format!("no {missing}"), "both azimuth_deg and elevation_deg"));
+            return Err(positions.bad("sun", format!("no {missing}"), "both azimuth_deg and elevation_deg"));
         };
         let (azimuth, elevation) = (azimuth.0.to_radians(), elevation.0.to_radians());
         let flat = ops::cos(elevation);

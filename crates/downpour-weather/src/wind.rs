@@ -2,10 +2,10 @@
 
 pub(super) mod keys;
 
-use super::fault::Places;
+use super::fault::Positions;
 use super::quantity::{
-    CoreM, EddyM, EddyMS, Exactly, GustM, HeightM, In, Intensity, Outflow, Part, PlaceM, Range, TurnDeg,
-    Turning, Whole, WindBoxM, WindMS, WindPlaceM,
+    CoreM, EddyM, EddyMS, Exactly, GustM, HeightM, In, Intensity, Outflow, Part, PositionM, Range, TurnDeg,
+    Turning, Whole, WindBoxM, WindMS, WindPositionM,
 };
 use downpour_math::ops::f64 as ops;
 use downpour_scene::error::SceneError;
@@ -18,38 +18,38 @@ use glam::DVec3;
 use keys::{NumberKeys, VectorKeys, keyed};
 use serde::Deserialize;
 
-/// Core radius where none is given, in metres: three cells of the usual grid.
+/// Default core radius, in metres: three cells of the default grid.
 const CORE_M: f64 = 5.0;
 
-/// A wind that turns by an angle has a key at each of these, in degrees: between two of them it is 0.1 % slower.
+/// Spacing of the keys of a turning wind, in degrees: between two of them it is 0.1 % slower.
 const TURN_STEP_DEG: f64 = 5.0;
 
-/// The box of cells in which a wind that differs from place to place is worked out.
+/// Box of cells in which a non-uniform wind is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindBox {
-    /// Cells along x, y and z, 1 to 4096 each, 2^23 together.
+    /// Number of cells along x, y and z, 1 to 4096 each, 2^23 together.
     pub size: [u32; 3],
     /// Edges of the box, 0.01 to 1e6 m.
     pub edges: DVec3,
-    /// Its middle, in metres; `None` for the eye.
-    pub centre: Option<DVec3>,
+    /// Center, in metres; `None` for the eye.
+    pub center: Option<DVec3>,
 }
 
 impl Default for WindBox {
-    /// The grid of Rousseau 2008: 64 cells along edges of 100 m, round the eye.
+    /// The grid of Rousseau 2008: 64 cells along edges of 100 m, around the eye.
     fn default() -> Self {
-        Self { size: [64; 3], edges: DVec3::splat(100.0), centre: None }
+        Self { size: [64; 3], edges: DVec3::splat(100.0), center: None }
     }
 }
 
 impl WindBox {
-    /// The grid, for an eye at a place, in metres.
+    /// Grid for an eye at a position, in metres.
     ///
     /// # Errors
     /// As [`WindGrid::new`]: the box is farther than 1e6 m from the origin.
     #[expect(clippy::arithmetic_side_effects, reason = "of floats: what is too far is refused by the grid")]
     pub fn grid(&self, eye: DVec3) -> Result<WindGrid, WindError> {
-        let (middle, half) = (self.centre.unwrap_or(eye), self.edges * 0.5);
+        let (middle, half) = (self.center.unwrap_or(eye), self.edges * 0.5);
         WindGrid::new((middle - half).as_vec3(), (middle + half).as_vec3(), self.size)
     }
 }
@@ -77,7 +77,7 @@ pub(super) struct UniformTable {
 pub(super) struct SingularityTable<R> {
     strength_m2_s: Option<NumberKeys<R>>,
     strength_m3_s: Option<NumberKeys<R>>,
-    centre_m: Option<VectorKeys<WindPlaceM>>,
+    center_m: Option<VectorKeys<WindPositionM>>,
     axis: Option<VectorKeys<Part>>,
     core_m: Option<NumberKeys<CoreM>>,
     core: Option<CoreWord>,
@@ -88,7 +88,7 @@ pub(super) struct SingularityTable<R> {
 pub(super) struct TornadoTable {
     circulation_m2_s: NumberKeys<Turning>,
     discharge_m3_s: Option<NumberKeys<Outflow>>,
-    base_m: Option<VectorKeys<WindPlaceM>>,
+    base_m: Option<VectorKeys<WindPositionM>>,
     height_m: NumberKeys<HeightM>,
     axis: Option<VectorKeys<Part>>,
     core_m: Option<NumberKeys<CoreM>>,
@@ -123,22 +123,22 @@ pub(super) struct TurbulenceTable {
 pub(super) struct WindFieldTable {
     size: Option<Exactly<Whole<1, 4096>, 3>>,
     box_m: Option<Exactly<In<WindBoxM>, 3>>,
-    centre_m: Option<Exactly<In<PlaceM>, 3>>,
+    center_m: Option<Exactly<In<PositionM>, 3>>,
 }
 
 impl WindFieldTable {
-    pub(super) fn checked(&self, places: &Places<'_>) -> Result<WindBox, SceneError> {
+    pub(super) fn checked(&self, positions: &Positions<'_>) -> Result<WindBox, SceneError> {
         let default = WindBox::default();
         let size = self.size.map_or(default.size, |Exactly(size)| size.map(|Whole(cells)| cells));
         let cells: u64 = size.iter().map(|&n| u64::from(n)).product();
         if cells > WIND_GRID_CELLS {
             let found = format!("{cells} cells");
-            return Err(places.limit("wind_field.size", found, format!("at most {WIND_GRID_CELLS}")));
+            return Err(positions.limit("wind_field.size", found, format!("at most {WIND_GRID_CELLS}")));
         }
         Ok(WindBox {
             size,
             edges: self.box_m.map_or(default.edges, |edges| edges.numbers().into()),
-            centre: self.centre_m.map(|centre| centre.numbers().into()),
+            center: self.center_m.map(|center| center.numbers().into()),
         })
     }
 }
@@ -148,12 +148,12 @@ pub(super) fn checked(
     parts: &[WindTable],
     gusts: Option<&GustsTable>,
     turbulence: Option<&TurbulenceTable>,
-    places: &Places<'_>,
+    positions: &Positions<'_>,
 ) -> Result<Wind, SceneError> {
     let gusts = gusts.map(|table| {
         let default = Gusts::default();
         Gusts {
-            intensity: table.intensity.map_or(default.intensity, |share| share.0),
+            intensity: table.intensity.map_or(default.intensity, |fraction| fraction.0),
             length: table.length_m.map_or(default.length, |length| length.0),
             seed: table.seed.unwrap_or(default.seed),
         }
@@ -168,91 +168,95 @@ pub(super) fn checked(
     });
     if gusts.is_some() && !parts.iter().any(|part| matches!(part, WindTable::Uniform(_))) {
         let allowed = "with [[wind]] uniform = { ... }, which gusts";
-        return Err(places.bad("gusts", "without a uniform wind", allowed));
+        return Err(positions.bad("gusts", "without a uniform wind", allowed));
     }
-    let parts = parts.iter().enumerate().map(|(i, table)| table.checked(i, places));
+    let parts = parts.iter().enumerate().map(|(i, table)| table.checked(i, positions));
     let parts = parts.collect::<Result<Vec<_>, _>>()?;
-    // Each part has been looked at; what is left is their number of keys together.
+    // Each part has been checked; only the total number of keys remains.
     Wind::new(parts, gusts, turbulence).map_err(|error| match error {
         WindError::KeyCount { found, allowed } => {
             let found = format!("{found} different times of keys in all uniform winds");
-            places.limit("wind", found, format!("at most {allowed}"))
+            positions.limit("wind", found, format!("at most {allowed}"))
         }
-        error => places.bad("wind", error.to_string(), "a wind in its ranges"),
+        error => positions.bad("wind", error.to_string(), "a wind in its ranges"),
     })
 }
 
 impl WindTable {
-    fn checked(&self, i: usize, places: &Places<'_>) -> Result<WindPart, SceneError> {
+    fn checked(&self, i: usize, positions: &Positions<'_>) -> Result<WindPart, SceneError> {
         let (name, part) = match self {
-            Self::Uniform(table) => ("uniform", table.part(&format!("wind[{i}].uniform"), places)?),
+            Self::Uniform(table) => ("uniform", table.part(&format!("wind[{i}].uniform"), positions)?),
             Self::Source(table) => {
-                ("source", WindPart::Source(table.part(&format!("wind[{i}].source"), places)?))
+                ("source", WindPart::Source(table.part(&format!("wind[{i}].source"), positions)?))
             }
-            Self::Sink(table) => ("sink", WindPart::Sink(table.part(&format!("wind[{i}].sink"), places)?)),
+            Self::Sink(table) => ("sink", WindPart::Sink(table.part(&format!("wind[{i}].sink"), positions)?)),
             Self::Vortex(table) => {
-                ("vortex", WindPart::Vortex(table.part(&format!("wind[{i}].vortex"), places)?))
+                ("vortex", WindPart::Vortex(table.part(&format!("wind[{i}].vortex"), positions)?))
             }
-            Self::Tornado(table) => ("tornado", table.part(&format!("wind[{i}].tornado"), places)?),
+            Self::Tornado(table) => ("tornado", table.part(&format!("wind[{i}].tornado"), positions)?),
         };
-        // Alone, so that what is wrong with it is told with its place.
+        // Alone, so that an error names its key.
         match Wind::new(vec![part.clone()], None, None) {
             Ok(_) => Ok(part),
-            Err(error) => Err(refused(&format!("wind[{i}].{name}"), &error, places)),
+            Err(error) => Err(refused(&format!("wind[{i}].{name}"), &error, positions)),
         }
     }
 }
 
-/// What is wrong with a part over time, though each number is in its own range.
-fn refused(path: &str, error: &WindError, places: &Places<'_>) -> SceneError {
+/// Error of a part over time, although each number is in its range.
+fn refused(path: &str, error: &WindError, positions: &Positions<'_>) -> SceneError {
     match error {
         WindError::OutOfRange { quantity, found, unit, allowed } => {
             let key = if *quantity == "height" { format!("{path}.height_m") } else { path.to_owned() };
-            places.bad(&key, format!("{quantity} {found} {unit}"), *allowed)
+            positions.bad(&key, format!("{quantity} {found} {unit}"), *allowed)
         }
         WindError::ZeroAxis { .. } => {
-            places.bad(&format!("{path}.axis"), "no length", "three numbers, not all 0")
+            positions.bad(&format!("{path}.axis"), "no length", "three numbers, not all 0")
         }
         WindError::AxisReverses { time, .. } => {
             let found = format!("turned about up to the key at {time} s");
-            places.bad(&format!("{path}.axis"), found, "a key between, that says by which way")
+            positions.bad(
+                &format!("{path}.axis"),
+                found,
+                "a key between that defines the direction of the turn",
+            )
         }
         WindError::CoreOfPoint { found } => {
             let found = format!("{found} with strength_m3_s");
-            places.bad(&format!("{path}.core"), found, "rosenhead, or strength_m2_s")
+            positions.bad(&format!("{path}.core"), found, "rosenhead, or strength_m2_s")
         }
-        error => places.bad(path, error.to_string(), "a wind in its ranges"),
+        error => positions.bad(path, error.to_string(), "a wind in its ranges"),
     }
 }
 
 impl UniformTable {
-    fn part(&self, path: &str, places: &Places<'_>) -> Result<WindPart, SceneError> {
+    fn part(&self, path: &str, positions: &Positions<'_>) -> Result<WindPart, SceneError> {
         let key = |name: &str| format!("{path}.{name}");
-        let speed = self.speed_m_s.keyed(&key("speed_m_s"), places)?;
+        let speed = self.speed_m_s.keyed(&key("speed_m_s"), positions)?;
         let direction = match (&self.towards_deg, &self.direction) {
-            (Some(degrees), None) => turning(degrees, &key("towards_deg"), places)?,
-            (None, Some(direction)) => direction.keyed(&key("direction"), places)?,
+            (Some(degrees), None) => turning(degrees, &key("towards_deg"), positions)?,
+            (None, Some(direction)) => direction.keyed(&key("direction"), positions)?,
             (Some(_), Some(_)) => {
-                return Err(places.bad(&key("direction"), "beside towards_deg", "one of the two"));
+                return Err(positions.bad(&key("direction"), "beside towards_deg", "one of the two"));
             }
             (None, None) => {
                 let allowed = "towards_deg or direction is needed";
-                return Err(places.bad(path, "no towards_deg", allowed));
+                return Err(positions.bad(path, "no towards_deg", allowed));
             }
         };
         WindPart::uniform(&speed, &direction)
-            .map_err(|_| places.bad(&key("direction"), "no length", "three numbers, not all 0"))
+            .map_err(|_| positions.bad(&key("direction"), "no length", "three numbers, not all 0"))
     }
 }
 
-/// Level directions, with keys between those of the file wherever the wind turns far.
+/// Level directions, with additional keys if the wind turns far.
 fn turning(
     degrees: &NumberKeys<TurnDeg>,
     path: &str,
-    places: &Places<'_>,
+    positions: &Positions<'_>,
 ) -> Result<Keyed<DVec3>, SceneError> {
-    // The times of the file are looked at first.
-    let angles = degrees.keyed(path, places)?;
+    // The times of the file are checked first.
+    let angles = degrees.keyed(path, positions)?;
     let towards = |angle: f64| {
         let radians = angle.to_radians();
         DVec3::new(ops::cos(radians), 0.0, ops::sin(radians))
@@ -277,34 +281,34 @@ fn turning(
     }
     if keys.len() > downpour_wind::WIND_KEYS {
         let found = format!("{} keys, one for each {TURN_STEP_DEG} degrees of a turn", keys.len());
-        return Err(places.limit(path, found, format!("at most {}", downpour_wind::WIND_KEYS)));
+        return Err(positions.limit(path, found, format!("at most {}", downpour_wind::WIND_KEYS)));
     }
-    keyed(keys, path, places)
+    keyed(keys, path, positions)
 }
 
-/// What is given, or a default that does not move.
+/// Keys of the file, or a constant default.
 fn or_still<R>(
     given: Option<&VectorKeys<R>>,
     default: DVec3,
     path: &str,
-    places: &Places<'_>,
+    positions: &Positions<'_>,
 ) -> Result<Keyed<DVec3>, SceneError> {
-    given.map_or_else(|| Ok(default.into()), |given| given.keyed(path, places))
+    given.map_or_else(|| Ok(default.into()), |given| given.keyed(path, positions))
 }
 
 impl<R> SingularityTable<R> {
-    fn part(&self, path: &str, places: &Places<'_>) -> Result<KeyedSingularity, SceneError> {
+    fn part(&self, path: &str, positions: &Positions<'_>) -> Result<KeyedSingularity, SceneError> {
         let key = |name: &str| format!("{path}.{name}");
         let (form, strength) = match (&self.strength_m2_s, &self.strength_m3_s) {
-            (Some(line), None) => (WindForm::Line, line.keyed(&key("strength_m2_s"), places)?),
-            (None, Some(point)) => (WindForm::Point, point.keyed(&key("strength_m3_s"), places)?),
+            (Some(line), None) => (WindForm::Line, line.keyed(&key("strength_m2_s"), positions)?),
+            (None, Some(point)) => (WindForm::Point, point.keyed(&key("strength_m3_s"), positions)?),
             (Some(_), Some(_)) => {
                 let allowed = "one of the two: strength_m2_s of a line, strength_m3_s of a point";
-                return Err(places.bad(&key("strength_m3_s"), "beside strength_m2_s", allowed));
+                return Err(positions.bad(&key("strength_m3_s"), "beside strength_m2_s", allowed));
             }
             (None, None) => {
                 let allowed = "strength_m2_s of a line or strength_m3_s of a point is needed";
-                return Err(places.bad(path, "no strength", allowed));
+                return Err(positions.bad(path, "no strength", allowed));
             }
         };
         Ok(KeyedSingularity {
@@ -315,9 +319,9 @@ impl<R> SingularityTable<R> {
                 Some(CoreWord::LambOseen) => WindCore::LambOseen,
             },
             strength,
-            center: or_still(self.centre_m.as_ref(), DVec3::ZERO, &key("centre_m"), places)?,
-            axis: or_still(self.axis.as_ref(), DVec3::Y, &key("axis"), places)?,
-            core_radius: core(self.core_m.as_ref(), &key("core_m"), places)?,
+            center: or_still(self.center_m.as_ref(), DVec3::ZERO, &key("center_m"), positions)?,
+            axis: or_still(self.axis.as_ref(), DVec3::Y, &key("axis"), positions)?,
+            core_radius: core(self.core_m.as_ref(), &key("core_m"), positions)?,
         })
     }
 }
@@ -325,25 +329,25 @@ impl<R> SingularityTable<R> {
 fn core(
     given: Option<&NumberKeys<CoreM>>,
     path: &str,
-    places: &Places<'_>,
+    positions: &Positions<'_>,
 ) -> Result<Keyed<f64>, SceneError> {
-    given.map_or_else(|| Ok(CORE_M.into()), |given| given.keyed(path, places))
+    given.map_or_else(|| Ok(CORE_M.into()), |given| given.keyed(path, positions))
 }
 
 impl TornadoTable {
-    fn part(&self, path: &str, places: &Places<'_>) -> Result<WindPart, SceneError> {
+    fn part(&self, path: &str, positions: &Positions<'_>) -> Result<WindPart, SceneError> {
         let key = |name: &str| format!("{path}.{name}");
         let discharge = match &self.discharge_m3_s {
-            Some(discharge) => discharge.keyed(&key("discharge_m3_s"), places)?,
+            Some(discharge) => discharge.keyed(&key("discharge_m3_s"), positions)?,
             None => 0.0.into(),
         };
         Ok(WindPart::Tornado(KeyedTornado {
-            circulation: self.circulation_m2_s.keyed(&key("circulation_m2_s"), places)?,
+            circulation: self.circulation_m2_s.keyed(&key("circulation_m2_s"), positions)?,
             discharge,
-            base: or_still(self.base_m.as_ref(), DVec3::ZERO, &key("base_m"), places)?,
-            axis: or_still(self.axis.as_ref(), DVec3::Y, &key("axis"), places)?,
-            height: self.height_m.keyed(&key("height_m"), places)?,
-            core_radius: core(self.core_m.as_ref(), &key("core_m"), places)?,
+            base: or_still(self.base_m.as_ref(), DVec3::ZERO, &key("base_m"), positions)?,
+            axis: or_still(self.axis.as_ref(), DVec3::Y, &key("axis"), positions)?,
+            height: self.height_m.keyed(&key("height_m"), positions)?,
+            core_radius: core(self.core_m.as_ref(), &key("core_m"), positions)?,
         }))
     }
 }

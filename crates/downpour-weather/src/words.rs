@@ -1,6 +1,6 @@
-//! Which of the known words was probably meant.
+//! Suggestions for misspelled words.
 
-/// The known word nearest to a wrong one: the same quantity in another unit, or a few slips of the finger away.
+/// Known word nearest to a wrong one: the same quantity in another unit, or a few typing errors away.
 pub(super) fn nearest<'a>(wrong: &str, known: &[&'a str]) -> Option<&'a str> {
     // Longer words cannot be near any key, and the table below grows with the square.
     if wrong.len() > 64 {
@@ -18,7 +18,7 @@ pub(super) fn nearest<'a>(wrong: &str, known: &[&'a str]) -> Option<&'a str> {
     (distance <= wrong.chars().count().max(4) / 3).then_some(word)
 }
 
-/// The number of letters to insert, leave out, change, or swap with the next (optimal string alignment).
+/// Number of letters to insert, delete, change, or swap with the next (optimal string alignment).
 fn distance(a: &str, b: &str) -> usize {
     let letters = |word: &str| word.to_ascii_lowercase().chars().collect::<Vec<char>>();
     let (a, b) = (letters(a), letters(b));

@@ -1,4 +1,4 @@
-//! What drops look like, as weather files say it.
+//! Appearance of drops in weather files.
 
 #[path = "../../downpour-scene/tests/exit_code/mod.rs"]
 mod exit_code;

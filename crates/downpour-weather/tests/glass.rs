@@ -1,4 +1,4 @@
-//! The pane of a weather file: every key, and what is refused.
+//! The pane of a weather file: every key, and rejected values.
 
 #[path = "../../downpour-scene/tests/exit_code/mod.rs"]
 mod exit_code;
@@ -19,7 +19,7 @@ speed_m_s = [[0, 10], [20, 30]]
 before_s = 12
 focus = "glass"
 aperture_mm = 8
-room = 0.2
+interior_ambient = 0.2
 fresnel = "tatarchuk-2006"
 highlight_mm = 2.5
 shadows = "tatarchuk-2006"
@@ -51,7 +51,10 @@ fn every_key_arrives() {
     let pane = Weather::parse("w.toml", ALL).unwrap().glass.unwrap();
     assert_eq!((pane.distance, pane.size, pane.cell), (0.7, Some([1.2, 0.6]), 0.5e-3));
     assert_eq!((pane.focus, pane.fresnel, pane.seed), (PaneFocus::Glass, PaneFresnel::Tatarchuk2006, 9));
-    assert_eq!((pane.before, pane.aperture, pane.room, pane.film), (12.0, 8.0e-3, 0.2, 20.0 * 1.0e-6));
+    assert_eq!(
+        (pane.before, pane.aperture, pane.interior_ambient, pane.film),
+        (12.0, 8.0e-3, 0.2, 20.0 * 1.0e-6)
+    );
     assert_eq!((pane.highlight, pane.shadows), (2.5e-3, PaneShadow::Tatarchuk2006));
     assert_eq!((pane.speed.at(10.0), pane.drying_mm_h), (20.0, 0.5));
     assert!((pane.tilt.to_degrees() - 30.0).abs() < 1.0e-9);
@@ -60,10 +63,10 @@ fn every_key_arrives() {
     assert!(matches!(one.motion, GlassWiperMotion::Sweep { period_s: 1.4, .. }));
     assert_eq!(one.worn, [GlassWornBand { from_m: 0.2, to_m: 0.22, leaves: 0.7 }]);
     assert_eq!((one.outer_m, two.inner_m), (0.55, 0.1));
-    // The lattice's time begins 12 s before: at its 12 s the keyed blade stands up.
+    // The lattice's time starts 12 s earlier: at its 12 s the keyed blade is vertical.
     let weather = Weather::parse("w.toml", ALL).unwrap();
     let options = pane.options([1.2, 0.6], &weather.rain, -12.0);
-    // The water that runs in comes from 0.15 m above what is seen.
+    // Water runs in from 0.15 m above the visible part.
     assert_eq!(options.size, [2400, 1500]);
     assert!((options.wipers[1].angle(12.0).to_degrees() - 90.0).abs() < 1.0e-9);
     // The tick is made for the fastest air; along the pane flows its parallel part.
@@ -97,21 +100,21 @@ fn what_cannot_be_is_refused_with_its_place() {
     says(
         "[glass]\nsize_m = [5, 1]\n",
         3,
-        "line 2, column 1: glass.size_m: 8333 x 1667 cells of 0.6 mm; allowed: 8 to 4096 each way: another size_m or \
+        "line 2, column 1: glass.size_m: 8333 x 1667 cells of 0.6 mm; allowed: 8 to 4096 along each edge: another size_m or \
          cell_mm",
     );
     says(
         "[glass]\n[[glass.wiper]]\npivot_m = [0, 0]\nlength_m = 0.3\nangle_deg = 3\n",
         2,
         "line 2, column 9: glass.wiper: without glass.size_m; allowed: with size_m = [width, height], in which wipers \
-         have their places",
+         are positioned",
     );
     let wiper = |keys: &str| format!("[glass]\nsize_m = [1, 0.5]\n[[glass.wiper]]\n{keys}\n");
     says(
         &wiper("pivot_m = [0.5, 0.9]\nlength_m = 0.3\nfrom_deg = 0\nto_deg = 90\nperiod_s = 2"),
         2,
         "line 4, column 1: glass.wiper[0].pivot_m: (0.5, 0.9): the blade never touches the pane of 1 x 0.5 m; allowed: \
-         a place from which the blade reaches the pane",
+         a position from which the blade reaches the pane",
     );
     says(
         &wiper("pivot_m = [0.5, 0.5]\nlength_m = 0.3\nfrom_deg = 0"),

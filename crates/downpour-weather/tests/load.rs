@@ -14,7 +14,7 @@ use picture_files::hdr;
 use std::collections::BTreeMap;
 use std::fs;
 
-/// A triangle that swings: one mesh, two nodes, an animation; its buffer lies beside it.
+/// An animated triangle: one mesh, two nodes, an animation; its buffer is a file beside it.
 fn swing() -> (Vec<u8>, Vec<u8>) {
     let json = r#"{
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [1]}],
@@ -99,7 +99,7 @@ fn models_are_copied_with_their_movements() {
     );
 }
 
-/// Two entries of the same file move on their own.
+/// Two entries of the same file move independently.
 #[test]
 fn entries_of_the_same_file_share_its_meshes_and_not_its_movements() {
     let entry = |animation: &str, x: u32, count: u32| {
@@ -151,11 +151,11 @@ fn the_sun_is_taken_out_turned_and_scaled() {
     let omega = 4.0 * std::f32::consts::TAU / 64.0 * std::f32::consts::PI / 32.0 * half;
     assert!((sun.irradiance_rgb[0] / (2.0 * 8192.0 * omega) - 1.0).abs() < 0.01, "{sun:?}");
     assert!(loaded.sky.radiance.iter().all(|pixel| *pixel == [1.0; 3]));
-    // Left in the map, it is where it was, but for the turn.
+    // Left in the map, it is unchanged but for the rotation.
     let left = read(&text("[sun]\nfrom_sky = false"));
     assert_eq!(left.sun, None);
     assert!(left.sky.radiance([0.0, half, -half])[0] > 10_000.0);
-    // A sun of its own is not scaled.
+    // A sun with a direction is not scaled.
     let own = read("[sun]\nazimuth_deg = 90\nelevation_deg = 0\nilluminance_lux = 10\ncolor = [1, 0.5, 0]");
     let sun = own.sun.unwrap();
     assert!(Vec3::from_array(sun.direction).distance(Vec3::Z) < 1e-6);

@@ -1,4 +1,4 @@
-//! The puddles of a weather file: every key, and what is refused.
+//! The puddles of a weather file: every key, and rejected values.
 
 #[path = "../../downpour-scene/tests/exit_code/mod.rs"]
 mod exit_code;
@@ -14,14 +14,14 @@ turn_deg = 30
 reach_m = 0.5
 depth_mm = 40
 fill = 0.7
-least_mm = 2
+min_depth_mm = 2
 relief_mm = 3
 seed = 8
 cell_mm = 20
 ripple_scale = 1.5
 ripple_deg = 90
 ripple_influence = 0.5
-clear_m = 0.1
+attenuation_length_m = 0.1
 color = [0.2, 0.15, 0.1]
 ";
 
@@ -37,9 +37,9 @@ fn every_key_arrives() {
     assert_eq!((puddle.middle, puddle.size, puddle.reach), ([1.0, 0.2, -3.0], [4.0, 2.0], 0.5));
     assert!((puddle.turn.to_degrees() - 30.0).abs() < 1.0e-9);
     assert!((puddle.ripple_turn.to_degrees() - 90.0).abs() < 1.0e-9);
-    assert_eq!((puddle.ripple_scale, puddle.ripple_influence, puddle.clear), (1.5, 0.5, 0.1));
+    assert_eq!((puddle.ripple_scale, puddle.ripple_influence, puddle.attenuation_length), (1.5, 0.5, 0.1));
     assert_eq!((puddle.depth, puddle.color), (0.04, [0.2, 0.15, 0.1]));
-    let found = PuddleShape::Found { fill: 0.7, least: 0.002, relief: 0.003, seed: 8, cells: [200, 100] };
+    let found = PuddleShape::Found { fill: 0.7, min_depth: 0.002, relief: 0.003, seed: 8, cells: [200, 100] };
     assert_eq!(puddle.shape, found);
 }
 
@@ -55,16 +55,16 @@ fn what_cannot_be_is_refused() {
     says(
         &with("cell_mm = 2\nsize_m = [50, 2]").replacen("size_m = [4, 2]\n", "", 1),
         2,
-        "line 3, column 1: puddle[0].cell_mm: 25000 x 1000 cells; allowed: at most 2048 each way: a larger cell_mm, or \
+        "line 3, column 1: puddle[0].cell_mm: 25000 x 1000 cells; allowed: at most 2048 along each edge: a larger cell_mm, or \
          more puddles",
     );
     says(
         &with("mask = \"../m.png\""),
         2,
-        "line 4, column 1: puddle[0].mask: \"../m.png\" leaves the scene folder; allowed: only relative paths beneath the \
+        "line 4, column 1: puddle[0].mask: \"../m.png\" leaves the scene folder; allowed: only relative paths inside the \
          folder of the weather file or an asset root",
     );
-    for line in ["depth_mm = nan", "ripple_scale = 0", "clear_m = 0", "size = 3"] {
+    for line in ["depth_mm = nan", "ripple_scale = 0", "attenuation_length_m = 0", "size = 3"] {
         assert_eq!(Weather::parse("w.toml", &with(line)).expect_err(line).exit_code(), 2, "{line}");
     }
     let many = "[[puddle]]\nposition_m = [0, 0, 0]\nsize_m = [4, 2]\n".repeat(17);

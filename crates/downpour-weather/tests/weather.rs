@@ -22,7 +22,7 @@ fn parse(text: &str) -> Result<Weather, SceneError> {
     Weather::parse("w.toml", text)
 }
 
-/// Refused with exit code 2 and this whole message, but for the name of the file.
+/// Rejected with exit code 2 and this whole message, but for the name of the file.
 #[track_caller]
 fn says(text: &str, message: &str) {
     let error = parse(text).expect_err(text);
@@ -30,7 +30,7 @@ fn says(text: &str, message: &str) {
     assert_eq!(error.to_string(), format!("w.toml: {message}"), "{text}");
 }
 
-/// Refused with this code and these words.
+/// Rejected with this code and this text.
 #[track_caller]
 fn refused(text: &str, code: u8, words: &str) {
     let (result, took) = measured(|| parse(text));
@@ -53,9 +53,9 @@ temperature_c = -5
 pressure_hpa = 900
 volume = "box"
 box_m = 80
-most_drops = 1073741824
+max_drops = 1073741824
 drag = "rousseau-2008"
-bounce = { share = 1, restitution = 0.5, grip = 0, size = 0.05, longest_s = 2 }
+bounce = { fraction = 1, restitution = 0.5, grip = 0, size = 0.05, max_time_s = 2 }
 drop_light = "im-sung-2022"
 
 [sky]
@@ -119,8 +119,8 @@ fn every_key_arrives_in_si() {
     assert_eq!(weather.name, "w.toml");
     let rain = weather.rain;
     assert_eq!((rain.rate_mm_h, rain.seed, rain.box_m), (25.5, u64::MAX, Some(80.0)));
-    assert_eq!((rain.volume, rain.most_drops, rain.drag), (RainVolume::Box, 1 << 30, RainDrag::Rousseau2008));
-    let bounce = RainBounce { share: 1.0, restitution: 0.5, grip: 0.0, size: 0.05, longest_s: 2.0 };
+    assert_eq!((rain.volume, rain.max_drops, rain.drag), (RainVolume::Box, 1 << 30, RainDrag::Rousseau2008));
+    let bounce = RainBounce { fraction: 1.0, restitution: 0.5, grip: 0.0, size: 0.05, max_time_s: 2.0 };
     assert_eq!(rain.bounce, bounce);
     assert_eq!(rain.drop_light, RainDropLight::ImSung2022);
     assert_eq!((rain.air.temperature_c(), rain.air.pressure_pa()), (-5.0, 90_000.0));
@@ -144,13 +144,13 @@ fn every_key_arrives_in_si() {
     let [street, lamp] = weather.models.as_slice() else { panic!("{:?}", weather.models) };
     assert_eq!((street.file.as_str(), street.animation.as_deref()), ("models/street.glb", Some("Swing")));
     assert_eq!(street.repeat, Repeat { count: [2, 1, 3], step: DVec3::new(4.0, 0.0, 5.0) });
-    let places: Vec<DVec3> =
+    let copies: Vec<DVec3> =
         street.transforms().map(|t| t.transform_point3(DVec3::new(1.0, 1.0, 0.0))).collect();
     // (1, 1, 0) scaled to (1, 2, 0), turned to (0, 2, -1), moved to (1, 4, 2); then along x first.
-    assert_eq!(places.len(), 6);
-    assert!(places[0].distance(DVec3::new(1.0, 4.0, 2.0)) < 1e-15, "{places:?}");
-    assert!(places[1].distance(DVec3::new(5.0, 4.0, 2.0)) < 1e-15, "{places:?}");
-    assert!(places[2].distance(DVec3::new(1.0, 4.0, 7.0)) < 1e-15, "{places:?}");
+    assert_eq!(copies.len(), 6);
+    assert!(copies[0].distance(DVec3::new(1.0, 4.0, 2.0)) < 1e-15, "{copies:?}");
+    assert!(copies[1].distance(DVec3::new(5.0, 4.0, 2.0)) < 1e-15, "{copies:?}");
+    assert!(copies[2].distance(DVec3::new(1.0, 4.0, 7.0)) < 1e-15, "{copies:?}");
     assert_eq!(
         (lamp.scale, lamp.rotation, lamp.repeat),
         (DVec3::splat(2.0), DQuat::IDENTITY, Repeat::default())
@@ -180,7 +180,7 @@ fn every_key_arrives_in_si() {
     assert_eq!(weather.size, [1, 16_384]);
 }
 
-/// What the table of keys says of defaults, and that the table has every key that the reader knows.
+/// Defaults of the table of keys; the table has every key of the reader.
 #[test]
 fn an_empty_file_is_the_default() {
     let default = Weather { name: "w.toml".into(), ..Weather::default() };
@@ -247,7 +247,7 @@ fn all_laws_of_drop_sizes_have_their_name() {
     );
 }
 
-/// Drops that are counted have the rate of their water: count, volume, sphere and speed of fall.
+/// Drops with a count have the rate of their water: count, volume, sphere and fall speed.
 #[test]
 fn counted_drops_of_one_size_have_a_rate() {
     let rain = |text: &str| parse(&format!("[rain]\n{text}")).map(|weather| weather.rain);
@@ -272,7 +272,7 @@ fn counted_drops_of_one_size_have_a_rate() {
     refused(&format!("{drops}\nrate_mm_h = 3"), &["rain.rate_mm_h", "rain.drops"]);
     refused(&format!("{drops}\ndistribution = \"best\""), &["rain.distribution", "rain.drops"]);
     refused(&format!("{drops}\nvolume = \"view\""), &["rain.drops", "tariq-2007"]);
-    refused(&format!("{drops}\nmost_drops = 10000"), &["rain.drops.count", "20000", "10000"]);
+    refused(&format!("{drops}\nmax_drops = 10000"), &["rain.drops.count", "20000", "10000"]);
     refused("drops = { count = 2, diameter_mm = 8 }", &["diameter_mm", "0.2 to 7.5 mm"]);
     refused("drops = { count = 2000000, diameter_mm = 7 }\nbox_m = 5", &["mm/h", "0.001 to 500"]);
     refused("drops = { count = 1, diameter_mm = 0.2 }\nbox_m = 1000", &["mm/h", "0.001 to 500"]);
@@ -404,10 +404,10 @@ fn volumes_of_rain() {
     refused("[rain]\nvolume = \"view\"\ncylinder = {}", 2, "allowed: volume = \"creus-patow-2013\"");
     refused("[rain]\nvolume = \"sphere\"", 2, "closed-form");
     refused("[rain]\ndrop_light = \"glitter\"", 2, "im-sung-2022");
-    refused("[rain]\nmost_drops = 0", 2, "allowed: 1 to 1073741824");
-    refused("[rain]\nmost_drops = 10000000000", 2, "allowed: 1 to 1073741824");
-    refused("[rain]\nbounce = { share = 1.5 }", 2, "allowed: 0 to 1");
-    refused("[rain]\nbounce = { longest_s = nan }", 2, "allowed: 0.01 to 10 s");
+    refused("[rain]\nmax_drops = 0", 2, "allowed: 1 to 1073741824");
+    refused("[rain]\nmax_drops = 10000000000", 2, "allowed: 1 to 1073741824");
+    refused("[rain]\nbounce = { fraction = 1.5 }", 2, "allowed: 0 to 1");
+    refused("[rain]\nbounce = { max_time_s = nan }", 2, "allowed: 0.01 to 10 s");
 }
 
 #[test]
@@ -416,7 +416,7 @@ fn t11_keys_are_known_and_stand_once() {
         "[rain]\n  rate = 5",
         "line 2, column 3: rain.rate: unknown key \"rate\", perhaps rate_mm_h; allowed: rate_mm_h, distribution, \
          gamma_shape, median_diameter_mm, seed, temperature_c, pressure_hpa, fall_speed, drop_shape, \
-         mask_model, refraction, drops, volume, box_m, cylinder, most_drops, drag, bounce, drop_light, extinction",
+         mask_model, refraction, drops, volume, box_m, cylinder, max_drops, drag, bounce, drop_light, extinction",
     );
     says(
         "[rian]\nrate_mm_h = 5",
@@ -446,8 +446,8 @@ fn t11_keys_are_known_and_stand_once() {
     refused("[streaks]\nsamples = 1000000", 2, "1 to 4096");
     refused("[streaks]\nsamples = \"tabel\"", 2, "\"table\", or 1 to 4096");
     refused("[streaks]\noscillation = [0.1, 0.5]", 2, "0 to 0.3");
-    refused("[streaks]\ncolour = \"blue\"", 2, "streaks.colour");
-    refused("[streaks]\ncolour = \"atlas_random\"", 2, "atlas-random");
+    refused("[streaks]\ncolor = \"blue\"", 2, "streaks.color");
+    refused("[streaks]\ncolor = \"atlas_random\"", 2, "atlas-random");
     refused("[camera]\nshutter_ms = 1", 2, "perhaps shutter_s;");
     refused("[rain]\ntemperature_k = 280", 2, "perhaps temperature_c;");
     refused("[rain]\nxyzzy = 280", 2, "unknown key \"xyzzy\"; allowed: rate_mm_h");
@@ -573,7 +573,7 @@ fn t13_paths_stay_beneath() {
         ("a\\b.hdr", "is absolute or holds a backslash"),
         ("file:///a.hdr", "has a scheme"),
         ("https://example.com/a.hdr", "has a scheme"),
-        ("data:;base64,AAAA", "data in place of a file"),
+        ("data:;base64,AAAA", "data instead of a file"),
         ("{frame:99999d}", "has a scheme"),
         ("", "names no file"),
         ("a/", "names no file"),
@@ -583,12 +583,12 @@ fn t13_paths_stay_beneath() {
     }
     says(
         &file("../a.hdr"),
-        "line 2, column 1: sky.file: \"../a.hdr\" leaves the scene folder; allowed: only relative paths beneath the \
+        "line 2, column 1: sky.file: \"../a.hdr\" leaves the scene folder; allowed: only relative paths inside the \
          folder of the weather file or an asset root",
     );
     refused(&file(&"a".repeat(70_000)), 2, "a path of 70000 bytes");
     refused("[sky]\nfile = \"a\\u0000.hdr\"", 2, "holds a zero byte");
-    // A percent sign is one: nothing is decoded.
+    // A percent sign is literal: nothing is decoded.
     let SkySource::File { file, .. } = parse(&file("%2e%2e/a.hdr")).unwrap().sky.source else { panic!() };
     assert_eq!(file.as_str(), "%2e%2e/a.hdr");
 }

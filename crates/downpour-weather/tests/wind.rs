@@ -1,4 +1,4 @@
-//! The wind of a weather file: every key, keys over time, and what is refused.
+//! The wind of a weather file: every key, keys over time, and rejected values.
 
 #[path = "../../downpour-scene/tests/exit_code/mod.rs"]
 mod exit_code;
@@ -12,7 +12,7 @@ fn parse(text: &str) -> Result<Weather, SceneError> {
     Weather::parse("w.toml", text)
 }
 
-/// Refused with exit code 2 and this whole message, but for the name of the file.
+/// Rejected with exit code 2 and this whole message, but for the name of the file.
 #[track_caller]
 fn says(text: &str, message: &str) {
     let error = parse(text).expect_err(text);
@@ -20,7 +20,7 @@ fn says(text: &str, message: &str) {
     assert_eq!(error.to_string(), format!("w.toml: {message}"), "{text}");
 }
 
-/// Refused with this code and these words.
+/// Rejected with this code and this text.
 #[track_caller]
 fn refused(text: &str, code: u8, words: &str) {
     let error = parse(text).expect_err(words);
@@ -35,13 +35,13 @@ uniform = { speed_m_s = [[0, 3], [10, 12]], towards_deg = 90 }
 [[wind]]
 uniform = { speed_m_s = 2, direction = [0, 3, 0] }
 [[wind]]
-source = { strength_m3_s = 20, centre_m = [1, 2, 3], core_m = 2.5 }
+source = { strength_m3_s = 20, center_m = [1, 2, 3], core_m = 2.5 }
 [[wind]]
 sink = { strength_m2_s = 7, axis = [2, 0, 0], core = "lamb-oseen" }
 [[wind]]
 [wind.vortex]
 strength_m2_s = [[-1, 40], [1, -40]]
-centre_m = [[0, [-20, 0, 0]], [30.5, [20, 0, 10]]]
+center_m = [[0, [-20, 0, 0]], [30.5, [20, 0, 10]]]
 core_m = [[0, 1], [10, 2]]
 core = "rankine"
 [[wind]]
@@ -57,7 +57,7 @@ seed = 3
 [wind_field]
 size = [32, 16, 48]
 box_m = [64, 40, 96]
-centre_m = [0, 20, 0]
+center_m = [0, 20, 0]
 "#;
 
 #[test]
@@ -119,7 +119,7 @@ fn defaults_are_those_of_the_table() {
     assert_eq!((tornado.discharge, tornado.core_radius, tornado.axis), (0.0, 5.0, Vec3::Y));
 }
 
-/// A wind that turns by an angle keeps its speed; whole turns are turns.
+/// A wind that turns by an angle keeps its speed; full turns are turns.
 #[test]
 fn winds_turn_by_the_angle() {
     let weather =
@@ -169,8 +169,8 @@ fn numbers_out_of_range_are_named() {
         "line 2, column 40: wind[0].vortex.core_m: 0; allowed: 0.01 to 1e4 m",
     );
     says(
-        "[[wind]]\nvortex = { strength_m2_s = 1, centre_m = [[0, [0, nan, 0]]] }",
-        "line 2, column 51: wind[0].vortex.centre_m[0][1][1]: NaN; allowed: -1e6 to 1e6 m",
+        "[[wind]]\nvortex = { strength_m2_s = 1, center_m = [[0, [0, nan, 0]]] }",
+        "line 2, column 51: wind[0].vortex.center_m[0][1][1]: NaN; allowed: -1e6 to 1e6 m",
     );
     let vortex = |keys: &str| format!("[[wind]]\nvortex = {{ strength_m2_s = 1, {keys} }}");
     refused(&vortex("core_m = nan"), 2, "wind[0].vortex.core_m: NaN");
@@ -253,19 +253,19 @@ fn keys_over_time_are_checked() {
         })
         .collect();
     refused(&parts, 3, "wind: 6000 different times of keys in all uniform winds; allowed: at most 4096");
-    let centre = |keys: &str| format!("[[wind]]\nvortex = {{ strength_m2_s = 1, centre_m = {keys} }}");
-    let name = "wind[0].vortex.centre_m";
-    refused(&centre("[1, 2]"), 2, &format!("{name}: 2 numbers; allowed: 3 numbers, or keys"));
-    refused(&centre("[1, 2, 3, 4]"), 2, &format!("{name}: 4 numbers"));
-    refused(&centre("[1, 2, [0, [1, 2, 3]]]"), 2, &format!("{name}: numbers among keys"));
+    let center = |keys: &str| format!("[[wind]]\nvortex = {{ strength_m2_s = 1, center_m = {keys} }}");
+    let name = "wind[0].vortex.center_m";
+    refused(&center("[1, 2]"), 2, &format!("{name}: 2 numbers; allowed: 3 numbers, or keys"));
+    refused(&center("[1, 2, 3, 4]"), 2, &format!("{name}: 4 numbers"));
+    refused(&center("[1, 2, [0, [1, 2, 3]]]"), 2, &format!("{name}: numbers among keys"));
     refused(
-        &centre("[[0, 5]]"),
+        &center("[[0, 5]]"),
         2,
         &format!("{name}[0][1]: invalid type: integer `5`; allowed: an array of 3 numbers"),
     );
-    refused(&centre("[[0, [1, 2]]]"), 2, &format!("{name}[0][1]: 2 numbers"));
-    refused(&centre("7"), 2, &format!("{name}: invalid type: integer `7`; allowed: three numbers"));
-    assert!(parse(&centre("[[0, [1, 2, 3]]]")).is_ok() && parse(&centre("[1, 2.5, 3]")).is_ok());
+    refused(&center("[[0, [1, 2]]]"), 2, &format!("{name}[0][1]: 2 numbers"));
+    refused(&center("7"), 2, &format!("{name}: invalid type: integer `7`; allowed: three numbers"));
+    assert!(parse(&center("[[0, [1, 2, 3]]]")).is_ok() && parse(&center("[1, 2.5, 3]")).is_ok());
 }
 
 #[test]

@@ -90,7 +90,7 @@ impl Shower {
     ) -> Result<VisibleDrops, ShowerError> {
         let mut visible = match &mut self.form {
             Form::Closed(field) => {
-                let view = View { most_drops: self.weather.rain.most_drops, ..stage.view()? };
+                let view = View { most_drops: self.weather.rain.max_drops, ..stage.view()? };
                 let obstacles = Obstacles {
                     nodes: &stage.data.nodes,
                     triangles: &stage.data.triangles,
@@ -175,10 +175,10 @@ fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<
 fn bounce(rain: &Rain) -> Bounce {
     let bounce = &rain.bounce;
     Bounce {
-        fraction: bounce.share as f32,
+        fraction: bounce.fraction as f32,
         restitution: bounce.restitution as f32,
         grip: bounce.grip as f32,
         size: bounce.size as f32,
-        longest_s: bounce.longest_s as f32,
+        longest_s: bounce.max_time_s as f32,
     }
 }

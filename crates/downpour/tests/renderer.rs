@@ -118,7 +118,7 @@ fn what_cannot_be_is_an_error() {
     }
     // Nothing is lost by an error.
     assert_eq!(renderer.frame(0.0).unwrap().size(), [16, 16]);
-    let atlas = format!("{OPEN}\n[streaks]\ncolour = \"atlas\"\n");
+    let atlas = format!("{OPEN}\n[streaks]\ncolor = \"atlas\"\n");
     let (_folder, path) = file(&atlas);
     assert!(matches!(Renderer::open(path, Backend::Cpu).unwrap_err(), RendererError::NoAtlas));
 }

@@ -1,6 +1,6 @@
 //! `cargo xtask figures im-sung`: section IV of Im & Sung 2022 ("Efficient Rain Simulation based on Constrained View
-//! Frustum") made again. Their model, the two that they compare with, and ours rain on one street, each with the same
-//! number of drops, while the camera stands, moves 9 m ahead within a second, turns about in half a second, and stands.
+//! Frustum") reproduced. Their model, the two that they compare with, and ours rain on one street, each with the same
+//! number of drops, while the camera rests, moves 9 m ahead within a second, turns about in half a second, and rests.
 //!
 //! Everything is under `target/figures/im-sung`: `im-sung.md` with the numbers, CSV beside it, and the sheets. Each sheet
 //! has the pictures above and, below, the same drops as bright streaks, as the papers draw them.
@@ -30,7 +30,7 @@ use weather::{Model, Rain};
 /// The file of street and camera.
 const SCENE: &str = "street.gltf";
 
-/// Samples along an edge of a pixel: the drops are what is looked at.
+/// Samples along an edge of a pixel: only the drops matter.
 const SAMPLES: &str = "1";
 
 /// Drops of figures 6, 8, 9 and 10.
@@ -42,7 +42,7 @@ const NUMBERS: [u32; 5] = [1_000, 5_000, 10_000, 20_000, 40_000];
 /// Rain of the path, mm/h: above [`MOST`] drops in each of the volumes, in ours from 480 x 270 pixels on.
 const RATE_MM_H: f64 = 300.0;
 
-/// Rain of the comparison of numbers, mm/h: as many as the largest of [`NUMBERS`], in ours from 640 x 360 pixels on.
+/// Rain rate of the comparison of numbers, mm/h: as many drops as the largest of [`NUMBERS`], in ours from 640 x 360 pixels on.
 const NUMBERS_RATE_MM_H: f64 = 500.0;
 
 /// Frames of each run of the comparison of numbers.
@@ -51,7 +51,7 @@ const NUMBERS_FRAMES: u32 = 2;
 /// Fields of view of the zoom, degrees.
 const ZOOM_DEG: [f64; 3] = [12.0, 18.0, 30.0];
 
-/// Makes the runs, the sheets and the tables; says where our rain is below its aim.
+/// Makes the runs, the sheets and the tables; reports runs of our rain below its aim.
 pub(crate) fn run(options: &Options) -> Result<(), String> {
     let maker = Maker::ready(options)?;
     let runs = plan(options)
@@ -77,26 +77,26 @@ fn plan(options: &Options) -> Vec<(&'static str, String, Rain, u32)> {
     let mut runs = Vec::new();
     let mut add = |set, name: String, rain: Rain, frames| runs.push((set, name, rain, frames));
     for model in Model::ALL {
-        let rain = Rain { model, rate_mm_h: RATE_MM_H, most_drops: MOST, fov_deg: None };
+        let rain = Rain { model, rate_mm_h: RATE_MM_H, max_drops: MOST, fov_deg: None };
         add("path", format!("path-{}", model.key()), rain, walk::frames(options.fps));
     }
     for fov in ZOOM_DEG {
         for model in [Model::ImSung, Model::View] {
-            let rain = Rain { model, rate_mm_h: RATE_MM_H, most_drops: MOST, fov_deg: Some(fov) };
+            let rain = Rain { model, rate_mm_h: RATE_MM_H, max_drops: MOST, fov_deg: Some(fov) };
             add("zoom", format!("zoom-{}-{fov}", model.key()), rain, 1);
         }
     }
     let numbers: &[u32] = if options.quick { &[] } else { &NUMBERS };
     for model in Model::ALL {
-        for &most_drops in numbers {
-            let rain = Rain { model, rate_mm_h: NUMBERS_RATE_MM_H, most_drops, fov_deg: None };
-            add("number", format!("number-{}-{most_drops}", model.key()), rain, NUMBERS_FRAMES);
+        for &max_drops in numbers {
+            let rain = Rain { model, rate_mm_h: NUMBERS_RATE_MM_H, max_drops, fov_deg: None };
+            add("number", format!("number-{}-{max_drops}", model.key()), rain, NUMBERS_FRAMES);
         }
     }
     runs
 }
 
-/// What makes the runs.
+/// Runner of the clips.
 struct Maker<'a> {
     options: &'a Options,
     program: PathBuf,
@@ -134,7 +134,7 @@ impl<'a> Maker<'a> {
         if !self.options.go_on {
             call.arg("--overwrite");
         } else if stats.exists() {
-            // Told anew, of old frames and new ones.
+            // Written again, from old frames and new ones.
             std::fs::remove_file(&stats).map_err(|error| in_file(&stats, error))?;
         }
         let status = call.status();

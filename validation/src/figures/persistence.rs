@@ -4,7 +4,7 @@ use clap::Args;
 
 use crate::run::cargo;
 
-/// Tables 1 and 2 of Rousseau 2008: what streaks cost, and how far they are from the truth.
+/// Tables 1 and 2 of Rousseau 2008: cost and error of streaks.
 #[derive(Args, Debug)]
 pub(crate) struct Options {
     /// Fewer rows.

@@ -1,4 +1,4 @@
-//! What is compared: diameters, views and sky maps.
+//! Test cases: diameters, views and sky maps.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use super::{Options, run, sky, write};
 /// The picture is this much higher and wider than the drop.
 const FRAME: f64 = 1.2;
 
-/// Where a camera stands.
+/// Position of a camera.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     pub(super) name: &'static str,
@@ -18,7 +18,7 @@ pub(super) struct View {
     pub(super) pitch_deg: f64,
 }
 
-/// Level, from above, and from below and so near that the drop is not seen as from afar.
+/// Level, from above, and from below at a distance so short that the view differs from that from afar.
 const VIEWS: [View; 3] = [
     View { name: "level", distance_m: 0.1, yaw_deg: 0.0, pitch_deg: 0.0 },
     View { name: "above", distance_m: 0.1, yaw_deg: 130.0, pitch_deg: 35.0 },
@@ -48,17 +48,17 @@ impl Case<'_> {
     }
 }
 
-/// The maps of the set, and those asked for. The one that is made is written under `folder`.
+/// The maps of the set, and the requested ones. The generated one is written under `folder`.
 pub(super) fn maps(options: &Options, folder: &Path) -> Result<Vec<Map>, String> {
     let mut maps = Vec::new();
     if !options.only {
         maps.push(named(run::root().join("assets/skies/street_low_sun.hdr"))?);
-        let made = folder.join("chequers.hdr");
-        write(&made, &sky::chequers())?;
+        let made = folder.join("checkerboard.hdr");
+        write(&made, &sky::checkerboard())?;
         maps.push(named(made)?);
     }
     for file in &options.maps {
-        // Children run in the root of the workspace, the argument is from where the task was called.
+        // Children run in the root of the workspace; the argument is relative to the caller's folder.
         let file = std::path::absolute(file).map_err(|error| format!("{}: {error}", file.display()))?;
         let map = named(file)?;
         if maps.iter().any(|other: &Map| other.name == map.name) {

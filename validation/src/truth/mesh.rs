@@ -4,7 +4,7 @@ use downpour_drop::DropShape;
 use downpour_drop::mesh::DropMesh;
 
 /// Units of the file per metre. Mitsuba moves the foot of a ray by an epsilon of 9e-5 times its coordinates, but
-/// at least times 1, so drops of a millimetre have to be large in its units. The sky is far away: nothing else changes.
+/// at least times 1, so drops of a millimetre have to be large in its units. The sky is at infinity: nothing else changes.
 pub(super) const UNITS_PER_METRE: f64 = 1.0e5;
 
 /// A binary PLY with normals: 20 * 4^`subdivisions` triangles.

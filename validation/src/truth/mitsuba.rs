@@ -18,7 +18,7 @@ const OLDEST_LLVM: u32 = 16;
 /// The vectorised variant, and the one that needs no LLVM.
 const FAST: &str = "llvm_ad_rgb";
 const SLOW: &str = "scalar_rgb";
-/// How many times as many samples the path tracer takes where it is alone.
+/// Ratio of the samples of the path tracer if it is the only integrator.
 const ALONE: u32 = 8;
 
 /// A Mitsuba that is ready to render.
@@ -28,7 +28,7 @@ pub(super) struct Mitsuba {
     llvm: Option<PathBuf>,
 }
 
-/// What is rendered and compared, and where to.
+/// Inputs and outputs of a comparison.
 #[derive(Debug)]
 pub(super) struct Job<'a> {
     pub(super) case: &'a Case<'a>,
@@ -40,7 +40,7 @@ pub(super) struct Job<'a> {
 }
 
 impl Mitsuba {
-    /// Installs what is missing.
+    /// Installs missing packages.
     pub(super) fn ready(folder: &Path) -> Result<Self, String> {
         let mut ready = Self { python: environment(&folder.join("venv"))?, llvm: None };
         ready.llvm = ready.working_llvm();
@@ -61,12 +61,12 @@ impl Mitsuba {
         if self.llvm.is_some() { FAST } else { SLOW }
     }
 
-    /// Samples per pixel where all branches are followed; only the vectorised variant can.
+    /// Samples per pixel of the integrator that follows all branches; only the vectorized variant has it.
     pub(super) fn branch_samples(&self, options: &Options) -> Option<u32> {
         self.llvm.is_some().then_some(options.samples)
     }
 
-    /// Samples per pixel of the path tracer. Where it is the only one, its noise must stay below the aim.
+    /// Samples per pixel of the path tracer. If it is the only one, its noise must stay below the aim.
     pub(super) fn path_samples(&self, options: &Options) -> u32 {
         if self.llvm.is_some() { options.path_samples } else { ALONE * options.path_samples }
     }
@@ -132,7 +132,7 @@ impl Mitsuba {
         command
     }
 
-    /// The first library with which a kernel compiles; an old one ends the process, so each is tried in one of its own.
+    /// First library with which a kernel compiles; an old one ends the process, so each is tried in a separate process.
     fn working_llvm(&self) -> Option<PathBuf> {
         let works = |file: &PathBuf| {
             let output = self.script(Some(file)).args(["probe", FAST]).output();
@@ -216,7 +216,7 @@ fn llvm_version(name: &str) -> Option<u32> {
     digits.split('.').next()?.parse().ok()
 }
 
-/// Whether Debian's package could be installed, where that can be done without asking.
+/// Installs Debian's package if that is possible without a prompt; true on success.
 fn install_llvm() -> bool {
     let root = run::command("id", &["-u"]).output();
     let root = root.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == "0");
@@ -232,7 +232,7 @@ fn install_llvm() -> bool {
     apt(&install) || (apt(&["update", "-qq"]) && apt(&install))
 }
 
-/// What a child wrote to standard output; if it failed, what it wrote to standard error.
+/// Standard output of a child; if it failed, an error with its standard error.
 fn told(what: &str, output: std::io::Result<Output>) -> Result<String, String> {
     let output = output.map_err(|error| format!("{what} did not start: {error}"))?;
     let out = String::from_utf8_lossy(&output.stdout).into_owned();

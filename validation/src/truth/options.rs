@@ -18,7 +18,7 @@ pub(crate) struct Options {
     /// No maps but those of --map.
     #[arg(long, requires = "maps")]
     pub(super) only: bool,
-    /// Nothing but streaks, before the maps and under lamps.
+    /// Streaks only, before the maps and under lamps.
     #[arg(long)]
     pub(super) streaks: bool,
     /// Whole scenes instead of drops.
@@ -42,7 +42,7 @@ pub(crate) struct Options {
     /// Edge of the pictures.
     #[arg(long, value_name = "PIXELS", default_value = "256", value_parser = within(32..=2048_u32))]
     pub(super) size: u32,
-    /// Samples per pixel where Mitsuba follows all branches.
+    /// Samples per pixel of the integrator that follows all branches.
     #[arg(long, value_name = "N", default_value = "64", value_parser = within(1..=4096_u32))]
     pub(super) samples: u32,
     /// Samples per pixel of Mitsuba's path tracer.

@@ -1,4 +1,4 @@
-//! The numbers of all cases, in a table, and what is above the aim.
+//! Results of all cases, in a table, and the cases above the aim.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,18 @@ use super::mitsuba::Mitsuba;
 use super::options::Options;
 
 /// Mean FLIP within the silhouette.
-const MOST_FLIP: f64 = 0.03;
+const MAX_FLIP: f64 = 0.03;
 /// Relative error of the mean luminance within the silhouette.
-const MOST_LUMINANCE: f64 = 0.02;
+const MAX_LUMINANCE: f64 = 0.02;
 /// Mean relative difference outside: there, both see the map itself. A map that is turned or mirrored is far above.
-const MOST_SKY: f64 = 0.03;
-/// How far Mitsuba's two integrators may be apart: this, and so many standard errors of the noisy one.
-const MOST_PATH: f64 = 0.002;
+const MAX_SKY: f64 = 0.03;
+/// Tolerance between Mitsuba's two integrators: this, plus a number of standard errors of the noisy one.
+const MAX_PATH: f64 = 0.002;
 const STANDARD_ERRORS: f64 = 5.0;
 /// Checks of a case.
 const CHECKS: usize = 5;
 
-/// What the comparison of one case gave.
+/// Result of the comparison of one case.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outcome {
     flip: f64,
@@ -49,20 +49,20 @@ impl Outcome {
         })
     }
 
-    /// What is above the aim, in words. A NaN is.
+    /// Values above the aim, as text. A NaN is one.
     fn misses(&self) -> Vec<String> {
-        let apart = MOST_PATH + STANDARD_ERRORS * self.path_error;
+        let apart = MAX_PATH + STANDARD_ERRORS * self.path_error;
         let mut words = Vec::new();
         let mut check = |what: &str, found: f64, most: f64| {
             if found.is_nan() || found.abs() > most {
                 words.push(format!("{what} {found:.4}, allowed {most:.4}"));
             }
         };
-        check("mean FLIP", self.flip, MOST_FLIP);
-        check("luminance", self.luminance, MOST_LUMINANCE);
-        check("sky beside the drop", self.sky, MOST_SKY);
+        check("mean FLIP", self.flip, MAX_FLIP);
+        check("luminance", self.luminance, MAX_LUMINANCE);
+        check("sky beside the drop", self.sky, MAX_SKY);
         check("Mitsuba's integrators differ by", self.path, apart);
-        if self.mirrored.is_nan() || self.mirrored <= MOST_FLIP {
+        if self.mirrored.is_nan() || self.mirrored <= MAX_FLIP {
             words.push(format!("mirrored, mean FLIP is only {:.4}: this case cannot fail", self.mirrored));
         }
         words
@@ -88,17 +88,17 @@ impl Report {
         let head = format!(
             "`downpour specimen --backend cpu` against Mitsuba 3 (`{}`): {size} x {size} pixels, a mesh of {triangles} \
              triangles, {samples}; `path` is Mitsuba's own path tracer with {} \
-             samples. Within the silhouette: mean FLIP (aim {MOST_FLIP}) and relative error of the mean luminance (aim \
+             samples. Within the silhouette: mean FLIP (aim {MAX_FLIP}) and relative error of the mean luminance (aim \
              {} %). Outside: mean relative difference of the sky.",
             mitsuba.variant(),
             mitsuba.path_samples(options),
-            100.0 * MOST_LUMINANCE,
+            100.0 * MAX_LUMINANCE,
             size = options.size,
         );
         Self { head, rows: Vec::new(), misses: Vec::new(), worst: [0.0; 2] }
     }
 
-    /// Takes a case, and says it in a line.
+    /// Adds a case, and prints it in a line.
     pub(super) fn add(&mut self, case: &Case<'_>, outcome: Outcome) -> String {
         let (name, percent) = (case.name(), |value: f64| 100.0 * value);
         self.rows.push(format!(
@@ -124,7 +124,7 @@ impl Report {
         format!("{name}: FLIP {:.4}, luminance {:+.3} %, {verdict}", outcome.flip, percent(outcome.luminance))
     }
 
-    /// What is above the aim, a line each.
+    /// Values above the aim, a line each.
     pub(super) fn misses(&self) -> &[String] {
         &self.misses
     }

@@ -1,9 +1,9 @@
-//! Whole scenes: the light of a picture of `downpour render`, without rain, held against Mitsuba's path tracer.
+//! Whole scenes: the light of a picture of `downpour render`, without rain, compared with Mitsuba's path tracer.
 //!
-//! Aim: on surfaces, a mean luminance within 5 % and a mean FLIP of at most 0.10. The scenes are made here: a street of boxes, a shed
+//! Aim: on surfaces, a mean luminance within 5 % and a mean FLIP of at most 0.10. The scenes are generated: a street of boxes, a shed
 //! that is open on one side, an arcade, metal and glossy spheres on the ground, a courtyard; under a low sun, an overcast sky, and lamps
-//! at night. Mitsuba reads the same glTF file with a reader of its own and has glTF's own reflection (`truth/gltf_bsdf.py`), so that
-//! what differs is the light.
+//! at night. Mitsuba reads the same glTF file with a separate reader and has glTF's reflection model (`truth/gltf_bsdf.py`), so that
+//! only the light differs.
 
 mod models;
 mod skies;
@@ -37,7 +37,7 @@ struct Scene {
     fov_deg: f64,
 }
 
-/// Compares all scenes; returns the table, and what is above the aim.
+/// Compares all scenes; returns the table, and the values above the aim.
 pub(super) fn compare(
     options: &Options,
     program: &Path,
@@ -65,7 +65,7 @@ pub(super) fn compare(
     Ok((text, misses))
 }
 
-/// The row of the table, and what is above the aim.
+/// Row of the table, and the values above the aim.
 fn judge(name: &str, values: &BTreeMap<String, f64>) -> Result<(String, Vec<String>), String> {
     let value = |key: &str| {
         values.get(key).copied().ok_or_else(|| format!("{name}: the comparison did not say \"{key}\""))
@@ -154,8 +154,8 @@ impl Scene {
         let lamps: Vec<String> = self
             .lamps
             .iter()
-            .map(|(place, colour)| {
-                place.iter().chain(colour).map(f64::to_string).collect::<Vec<_>>().join(",")
+            .map(|(position, color)| {
+                position.iter().chain(color).map(f64::to_string).collect::<Vec<_>>().join(",")
             })
             .collect();
         let files = [
@@ -171,15 +171,17 @@ impl Scene {
         values.extend([("width", width), ("height", height)]);
         values.push(("path-samples", options.path_samples.into()));
         values.push(("keep", if options.keep { 1.0 } else { 0.0 }));
-        for (names, place) in [(["eye-x", "eye-y", "eye-z"], self.eye), (["at-x", "at-y", "at-z"], self.at)] {
-            values.extend(names.into_iter().zip(place));
+        for (names, position) in
+            [(["eye-x", "eye-y", "eye-z"], self.eye), (["at-x", "at-y", "at-z"], self.at)]
+        {
+            values.extend(names.into_iter().zip(position));
         }
         mitsuba.values(&self.name, "scene.py", &files, &values)
     }
 
     /// The weather file: no rain, this sky, these lamps, this eye.
     fn weather(&self, folder: &Path) -> Result<String, String> {
-        let beneath = |file: &Path| {
+        let relative = |file: &Path| {
             file.strip_prefix(folder)
                 .unwrap_or(file)
                 .to_str()
@@ -189,19 +191,19 @@ impl Scene {
         let mut text = format!(
             "model = [{{ file = {:?} }}]\n[rain]\nrate_mm_h = 0\n[sky]\nfile = {:?}\nintensity = {}\n[camera]\nposition_m = {:?}\n\
              look_at_m = {:?}\nfov_deg = {:?}\n[output]\nsize = {SIZE:?}\n",
-            beneath(&self.model)?,
-            beneath(&self.sky)?,
+            relative(&self.model)?,
+            relative(&self.sky)?,
             self.scale,
             self.eye,
             self.at,
             self.fov_deg,
         );
-        for (place, colour) in &self.lamps {
-            let most = colour.iter().copied().fold(0.0, f64::max);
-            let tint = colour.map(|c| c / most);
+        for (position, color) in &self.lamps {
+            let most = color.iter().copied().fold(0.0, f64::max);
+            let tint = color.map(|c| c / most);
             let _ = writeln!(
                 text,
-                "[[light]]\npoint = {{ position_m = {place:?}, color = {tint:?}, intensity_cd = {most:?} }}"
+                "[[light]]\npoint = {{ position_m = {position:?}, color = {tint:?}, intensity_cd = {most:?} }}"
             );
         }
         Ok(text)

@@ -1,13 +1,13 @@
-//! Streaks: the mean of a drop that falls and oscillates, held against the mean of Mitsuba's pictures of its instants.
+//! Streaks: the mean of a drop that falls and oscillates, compared with the mean of Mitsuba's pictures of its instants.
 //!
-//! Each instant is a mesh of `downpour_drop`, at a time drawn in its part of the exposure: 32 parts for each
+//! Each instant is a mesh of `downpour_drop`, at a random time in its part of the exposure: 32 parts for each
 //! diameter of fall, 64 at least. A streak of 1/60 s covers a pixel for 2 % of the time, and any wrong one would pass as
-//! a picture; so the streak is compared alone as well, divided by the share of the time in which it covers a pixel. Its negative
-//! control is the sky in its place.
+//! a picture; so the streak is compared alone as well, divided by the fraction of the time in which it covers a pixel. Its negative
+//! control is the sky instead of it.
 //!
-//! Lamps are discs of some degrees, far away, before a dusk that is even: a point would be met by no ray of either. What they
-//! show on a drop are glints of a thousandth of its area, and both sides need more samples for the same noise. They are not
-//! seen directly.
+//! Lamps are discs of some degrees, at infinity, before a uniform dusk: no ray of either renderer would hit a point. Their images
+//! on a drop are glints of a thousandth of its area, and both sides need more samples for the same noise. They are not
+//! visible directly.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -29,7 +29,7 @@ const DISTANCE_M: f64 = 0.4;
 const PHASE: [f64; 2] = [0.1, 0.3];
 /// Instants of the reference per diameter of fall, and at least.
 const PER_DIAMETER: f64 = 32.0;
-const LEAST_INSTANTS: u32 = 64;
+const MIN_INSTANTS: u32 = 64;
 /// Instants of ours for each sample.
 const OURS: u32 = 16;
 /// Pixels of a diameter, in short and in long streaks.
@@ -37,10 +37,10 @@ const PIXELS: [f64; 2] = [24.0, 8.0];
 const SUBDIVISIONS: u32 = 4;
 const PATH_SAMPLES: u32 = 32;
 
-const MOST_FLIP: f64 = 0.03;
-const MOST_LUMINANCE: f64 = 0.02;
+const MAX_FLIP: f64 = 0.03;
+const MAX_LUMINANCE: f64 = 0.02;
 
-/// A lamp, as `downpour specimen --light` has it: degrees.
+/// A lamp, as in `downpour specimen --light`: degrees.
 #[derive(Clone, Copy, Debug)]
 struct Lamp {
     name: &'static str,
@@ -50,15 +50,15 @@ struct Lamp {
     radiance: [f64; 3],
 }
 
-/// What a streak is drawn before.
+/// Background of a streak.
 #[derive(Clone, Copy, Debug)]
 struct Before<'a> {
     map: &'a Map,
     lamp: Option<&'a Lamp>,
 }
 
-/// 20 degrees from the axis behind the drop, and beside it, where a drop is fainter. Each lights a white surface as brightly as the
-/// sky of dusk would if it were 2 and 55 times as bright.
+/// 20 degrees from the axis behind the drop, and beside it, where a drop is fainter. The irradiance of each is that of the
+/// sky of dusk if it were 2 and 55 times as bright.
 const LAMPS: [Lamp; 2] = [
     Lamp {
         name: "behind",
@@ -75,11 +75,11 @@ const LAMPS: [Lamp; 2] = [
         radiance: [1500.0, 1400.0, 1200.0],
     },
 ];
-/// Instants of ours, and Mitsuba's samples, where there is a lamp.
+/// Our instants, and Mitsuba's samples, with a lamp.
 const OURS_LIT: u32 = 512;
 const PATH_SAMPLES_LIT: u32 = 512;
 
-/// Compares all streaks; returns the table, and what is above the aim.
+/// Compares all streaks; returns the table, and the values above the aim.
 pub(super) fn compare(
     options: &Options,
     maps: &[Map],
@@ -116,7 +116,7 @@ pub(super) fn compare(
     let text = format!(
         "# Streaks and Mitsuba\n\n`downpour specimen --exposure S --oscillation 0.2,0.1 --samples {OURS}` against the mean of instants by \
          Mitsuba's path tracer (`scalar_rgb`, {PATH_SAMPLES} samples per pixel each; with a lamp {OURS_LIT} and {PATH_SAMPLES_LIT}). `alone`: the streak divided by the share of the \
-         exposure in which it covers a pixel; `absent`: the sky in its place.\n\n\
+         exposure in which it covers a pixel; `absent`: the sky instead of it.\n\n\
          | streak | instants | cover | mean FLIP | luminance | FLIP alone | luminance alone | FLIP absent | sky outside |\n\
          |---|---|---|---|---|---|---|---|---|\n{}\n",
         rows.join("\n")
@@ -124,7 +124,7 @@ pub(super) fn compare(
     Ok((text, misses))
 }
 
-/// The row of the table, and what is above the aim.
+/// Row of the table, and the values above the aim.
 fn judge(name: &str, values: &BTreeMap<String, f64>) -> Result<(String, Vec<String>), String> {
     let value = |key: &str| {
         values.get(key).copied().ok_or_else(|| format!("{name}: the comparison did not say \"{key}\""))
@@ -142,7 +142,7 @@ fn judge(name: &str, values: &BTreeMap<String, f64>) -> Result<(String, Vec<Stri
     );
     let mut misses = Vec::new();
     for (key, most) in
-        [("flip", MOST_FLIP), ("luminance", MOST_LUMINANCE), ("alone", MOST_LUMINANCE), ("sky", MOST_FLIP)]
+        [("flip", MAX_FLIP), ("luminance", MAX_LUMINANCE), ("alone", MAX_LUMINANCE), ("sky", MAX_FLIP)]
     {
         let found = value(key)?;
         if found.is_nan() || found.abs() > most {
@@ -186,22 +186,22 @@ impl Streak {
             exposure_s,
             drop: OscillatingDrop::new(shape, oscillation),
             speed,
-            instants: ((fall / diameter * PER_DIAMETER).ceil() as u32).max(LEAST_INSTANTS),
+            instants: ((fall / diameter * PER_DIAMETER).ceil() as u32).max(MIN_INSTANTS),
             fov_deg: (2.0 * downpour_math::ops::f64::atan(0.5 * high / DISTANCE_M)).to_degrees(),
             reach_m: diameter,
             size: [(2.0 * pixels) as u32, height as u32],
         })
     }
 
-    /// A mesh for each instant, where the drop is then.
+    /// A mesh for each instant, at the drop's position then.
     fn write_meshes(&self, folder: &Path) -> Result<(), String> {
         if folder.exists() {
             std::fs::remove_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
         }
         create(folder)?;
         for i in 0..self.instants {
-            let place = f64::from(rng_unit(rng_draw([1, 2], i, 0, 0)[0]));
-            let seconds = self.exposure_s * ((f64::from(i) + place) / f64::from(self.instants) - 0.5);
+            let offset = f64::from(rng_unit(rng_draw([1, 2], i, 0, 0)[0]));
+            let seconds = self.exposure_s * ((f64::from(i) + offset) / f64::from(self.instants) - 0.5);
             let mesh = DropMesh::icosphere(&self.drop.at(seconds, 0.0), SUBDIVISIONS)
                 .map_err(|error| error.to_string())?;
             write(&folder.join(format!("{i:05}.ply")), &moved_ply(&mesh, -self.speed * seconds))?;

@@ -4,21 +4,21 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use downpour_atlas::AtlasError;
-use downpour_atlas::columbia::{ColumbiaFiles, GreyPicture, import};
+use downpour_atlas::columbia::{ColumbiaFiles, GrayPicture, import};
 use downpour_atlas::write_streaks;
 use downpour_scene::Budget;
-use downpour_scene::picture::decode_grey16;
+use downpour_scene::picture::decode_gray16;
 
 /// Texels along a streak.
 const ROWS: u32 = 64;
 /// The largest file that is read, in bytes: the database's have 70 kB.
-const LARGEST: u64 = 4 << 20;
+const MAX_FILE_BYTES: u64 = 4 << 20;
 
-/// What can be wrong, in words.
+/// Error as text.
 #[derive(Debug)]
-struct Told(String);
+struct TextError(String);
 
-impl From<AtlasError> for Told {
+impl From<AtlasError> for TextError {
     fn from(error: AtlasError) -> Self {
         Self(error.to_string())
     }
@@ -29,32 +29,33 @@ struct Database {
 }
 
 impl Database {
-    fn bytes(&self, name: &str) -> Result<Option<Vec<u8>>, Told> {
+    fn bytes(&self, name: &str) -> Result<Option<Vec<u8>>, TextError> {
         let path = self.folder.join(name);
-        let told = |error: std::io::Error| Told(format!("{}: {error}", path.display()));
+        let told = |error: std::io::Error| TextError(format!("{}: {error}", path.display()));
         let about = match std::fs::metadata(&path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             about => about.map_err(told)?,
         };
-        if !about.is_file() || about.len() > LARGEST {
-            return Err(Told(format!("{}: no file of at most 4 MiB", path.display())));
+        if !about.is_file() || about.len() > MAX_FILE_BYTES {
+            return Err(TextError(format!("{}: no file of at most 4 MiB", path.display())));
         }
         std::fs::read(&path).map(Some).map_err(told)
     }
 }
 
 impl ColumbiaFiles for Database {
-    type Error = Told;
+    type Error = TextError;
 
-    fn text(&mut self, name: &str) -> Result<Option<String>, Told> {
+    fn text(&mut self, name: &str) -> Result<Option<String>, TextError> {
         let Some(bytes) = self.bytes(name)? else { return Ok(None) };
-        String::from_utf8(bytes).map(Some).map_err(|error| Told(format!("{name}: {error}")))
+        String::from_utf8(bytes).map(Some).map_err(|error| TextError(format!("{name}: {error}")))
     }
 
-    fn picture(&mut self, name: &str) -> Result<Option<GreyPicture>, Told> {
+    fn picture(&mut self, name: &str) -> Result<Option<GrayPicture>, TextError> {
         let Some(bytes) = self.bytes(name)? else { return Ok(None) };
-        let grey = decode_grey16(name, &bytes, &mut Budget::default()).map_err(|e| Told(e.to_string()))?;
-        Ok(Some(GreyPicture { width: grey.width, height: grey.height, values: grey.values }))
+        let gray =
+            decode_gray16(name, &bytes, &mut Budget::default()).map_err(|e| TextError(e.to_string()))?;
+        Ok(Some(GrayPicture { width: gray.width, height: gray.height, values: gray.values }))
     }
 }
 
@@ -64,7 +65,8 @@ pub(super) fn run(folder: &Path, width: &str, output: &Path) -> Result<(), Strin
     if !folder.is_dir() {
         return Err(format!("{}: no folder", folder.display()));
     }
-    let sets = import(&mut Database { folder: folder.to_owned() }, columns, ROWS).map_err(|Told(t)| t)?;
+    let sets =
+        import(&mut Database { folder: folder.to_owned() }, columns, ROWS).map_err(|TextError(t)| t)?;
     std::fs::create_dir_all(output).map_err(|error| format!("{}: {error}", output.display()))?;
     for (k, set) in sets.iter().enumerate() {
         let bytes = write_streaks(set).map_err(|error| error.to_string())?;
@@ -117,7 +119,7 @@ mod tests {
         super::run(from.path(), "4", to.path()).expect("an atlas");
         let atlas = StreakAtlas::load(to.path()).expect("an atlas");
         assert_eq!(atlas.data().frame.counts, [1, 10, 5, 74]);
-        // Sixteen bits come through: 1000 of 65535 would be 4 of 255.
+        // Sixteen bits are preserved: 1000 of 65535 would be 4 of 255.
         let layer = atlas.sets()[0].layer(0, 0).expect("a layer");
         assert!((layer[1].to_f32() - 0.25).abs() < 1.0e-4);
         assert!((layer[0].to_f32() - 0.25 * 1000.0 / 65535.0).abs() < 1.0e-6, "{}", layer[0]);

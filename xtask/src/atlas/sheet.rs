@@ -1,4 +1,4 @@
-//! Streaks to look at: a row for each set, seen from the side, a column for each light.
+//! Contact sheet of streaks: a row for each set, seen from the side, a column for each light.
 
 use std::io::Cursor;
 

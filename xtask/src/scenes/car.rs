@@ -87,7 +87,7 @@ fn low(z: f32) -> f32 {
 
 /// Points of a cross-section from the lower edge to the middle of the roof.
 const POINTS: usize = 14;
-/// From this point on the window of the side begins, and here it ends.
+/// First and last point of the side window.
 const GLASS_FROM: usize = 7;
 const GLASS_TO: usize = 9;
 
@@ -117,7 +117,7 @@ fn section(z: f32, k: usize) -> Vec3 {
     Vec3::new(point[0], point[1], z)
 }
 
-/// Where doors end: dark gaps.
+/// Positions of door edges: dark gaps.
 const GAPS_M: [f32; 3] = [0.93, -0.16, -1.02];
 /// Pillars between the windows: middle and half-width.
 const PILLARS_M: [[f32; 2]; 2] = [[-0.16, 0.05], [-1.12, 0.06]];
@@ -140,7 +140,7 @@ fn stations() -> Vec<f32> {
     all
 }
 
-/// What a cell of the body is made of.
+/// Material of a cell of the body.
 fn skin(z: f32, k: usize) -> Material {
     let is_windscreen = (0.25..0.97).contains(&z);
     let is_hatch = (-1.93..-1.45).contains(&z);
@@ -256,7 +256,7 @@ fn fittings(mesh: &mut Mesh) {
         for z in AXLES_M {
             wheel(mesh, x * 0.765, z);
         }
-        // The lamps reach round the corners onto nose and tail.
+        // The lamps extend around the corners onto nose and tail.
         let mut cluster = |material: Material, y: [f32; 2], x: [f32; 2], z: f32| {
             let (a, b) = (x[0] * side, x[1] * side);
             let (low, high) = (Vec3::new(a.min(b), y[0], z - 0.012), Vec3::new(a.max(b), y[1], z + 0.012));
@@ -281,7 +281,7 @@ fn fittings(mesh: &mut Mesh) {
     mesh.block(plain(Material::Trim), [-0.62, 0.30, -2.095], [1.24, 0.12, 0.05]);
 }
 
-/// The car with its headlights on the way it looks, in several paints.
+/// The car with its headlights along its heading, in several paints.
 pub(super) fn car() -> Model {
     let mut mesh = Mesh::default();
     body(&mut mesh);

@@ -1,4 +1,4 @@
-//! What stands in the street: lamps, trees, benches, bollards, bins, signs; and the window of a room.
+//! Street furniture: lamps, trees, benches, bollards, bins, signs; and the window of a room.
 
 use downpour_math::ops;
 use glam::{Vec2, Vec3};
@@ -11,7 +11,7 @@ use super::noise::{hash, mix};
 /// Paint of cast iron.
 const IRON: [f32; 3] = [0.028, 0.032, 0.030];
 
-/// A street lamp, 5 m high, whose head hangs 0.95 m before its post, along +x.
+/// A street lamp, 5 m high, with its head 0.95 m in front of its post, along +x.
 pub(super) fn lamp() -> Model {
     let mut mesh = Mesh::default();
     let iron = tinted(Material::Iron, IRON);
@@ -130,7 +130,7 @@ pub(super) fn tree() -> Model {
     Model::single("tree", mesh)
 }
 
-/// A card with a spray of leaves, leaning as chance has it; its normals point out of the crown, for soft shading.
+/// A card with a spray of leaves, tilted at random; its normals point out of the crown, for soft shading.
 fn spray(mesh: &mut Mesh, center: Vec3, size: f32, id: i32) {
     let r = |n: i32| hash(id, n, 411);
     let around = r(0) * std::f32::consts::TAU;
@@ -144,7 +144,7 @@ fn spray(mesh: &mut Mesh, center: Vec3, size: f32, id: i32) {
     let shade = mix(0.62, 1.0, r(2)) * mix(0.75, 1.0, ((center.y - 2.2) / 3.0).clamp(0.0, 1.0));
     let part = mesh.part(Material::Leaf);
     let first = part.vertices.len() as u32;
-    // Six corners round the spray: less air than a square has.
+    // Six corners around the spray: less empty area than a square.
     for k in 0..6 {
         let angle = k as f32 / 3.0 * std::f32::consts::PI;
         let (x, y) = (0.5 * ops::cos(angle), 0.5 * ops::sin(angle));
@@ -251,7 +251,7 @@ pub(super) fn bin_and_sign() -> Model {
     Model::single("bin_and_sign", mesh)
 }
 
-/// A window's opening seen from inside: jambs, head, sill and the wall round it; the pane would be at z = 0, the room at z > 0.
+/// A window's opening seen from inside: jambs, head, sill and the surrounding wall; the pane would be at z = 0, the room at z > 0.
 pub(super) fn window_frame() -> Model {
     let mut mesh = Mesh::default();
     let paint = tinted(Material::Joinery, [0.60, 0.59, 0.55]);

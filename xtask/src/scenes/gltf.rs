@@ -1,4 +1,4 @@
-//! Models as glTF 2.0: one binary file each, and a document for each look (day, night, paints) that shares it.
+//! Models as glTF 2.0: one binary file each, and a document for each variant (day, night, paints) that shares it.
 //!
 //! Positions and texture coordinates are floats, normals and tints integers (`KHR_mesh_quantization`).
 
@@ -15,14 +15,14 @@ pub(super) struct File {
     pub(super) bytes: Vec<u8>,
 }
 
-/// A look of a model.
+/// A variant of a model.
 struct Look {
     file: String,
     is_night: bool,
     paint: Option<[f64; 3]>,
 }
 
-/// The binary file and where each part lies in it.
+/// The binary file and the offset of each part in it.
 struct Buffer {
     bytes: Vec<u8>,
     views: Vec<Value>,
@@ -31,7 +31,7 @@ struct Buffer {
     materials: Vec<Material>,
 }
 
-/// Makes all files of a model: `NAME.bin`, `NAME.gltf`, `NAME_night.gltf` where something shines, and one for each paint.
+/// Makes all files of a model: `NAME.bin`, `NAME.gltf`, `NAME_night.gltf` if it has lamps, and one for each paint.
 pub(super) fn files(model: &Model) -> Vec<File> {
     let buffer = lay_out(model);
     let shines = !model.lamps.is_empty();
@@ -142,9 +142,9 @@ impl Buffer {
     }
 }
 
-/// How the vertices of a part are stored: position, normal, tint, and texture coordinates where its material has a texture.
+/// Vertex layout of a part: position, normal, tint, and texture coordinates if its material has a texture.
 struct Layout {
-    /// Whether normals take 16 bits a component: 8 hold those of flat parts exactly.
+    /// True if normals use 16 bits per component: 8 hold those of flat parts exactly.
     short_normals: bool,
     has_uv: bool,
 }

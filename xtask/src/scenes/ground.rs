@@ -14,12 +14,12 @@ use super::noise::{hash, mix, smooth, world};
 pub(super) const HALF_ROAD_M: f32 = 3.4;
 /// Distance of the houses from the middle.
 pub(super) const HALF_STREET_M: f32 = 6.0;
-/// Where the street begins, behind the eye.
+/// Start of the street, behind the eye.
 pub(super) const START_M: f32 = 25.0;
 /// The near kerb of the cross street, and its far one.
 pub(super) const CROSS_NEAR_M: f32 = -46.4;
 pub(super) const CROSS_FAR_M: f32 = -53.0;
-/// How far the cross street goes to both sides.
+/// Length of the cross street to both sides.
 pub(super) const CROSS_REACH_M: f32 = 27.0;
 /// The zebra crossing: its middle and half its depth.
 pub(super) const ZEBRA_M: [f32; 2] = [-13.8, 1.6];
@@ -63,7 +63,7 @@ pub(super) fn pavement_height(x: f32) -> f32 {
     KERB_HEIGHT_M + 0.02 * (x.abs() - HALF_ROAD_M - 0.15).max(0.0)
 }
 
-/// Unevenness along a gutter, metres: water stands where it is low.
+/// Unevenness along a gutter, metres: water stands in the low parts.
 fn gutter_wave(s: f32, side: u32) -> f32 {
     (world(s, side as f32 * 31.0, 4.6, 2, 201 + side) - 0.5) * 0.038
 }
@@ -71,7 +71,7 @@ fn gutter_wave(s: f32, side: u32) -> f32 {
 /// Height of the carriageway.
 pub(super) fn road_height(x: f32, z: f32) -> f32 {
     let t = x / HALF_ROAD_M;
-    // The crown runs out where the cross street begins.
+    // The crown ends at the start of the cross street.
     let open = smooth(CROSS_NEAR_M, -38.0, z);
     let edge = CROWN_M * (1.0 - (HALF_ASPHALT_M / HALF_ROAD_M) * (HALF_ASPHALT_M / HALF_ROAD_M));
     let crown = edge + (CROWN_M * (1.0 - t * t) - edge).max(0.0) * open;
@@ -104,7 +104,7 @@ fn road_tint(x: f32, z: f32) -> f32 {
     (patchy * tyres * oil * dust * repair * 0.86).min(1.0)
 }
 
-/// Whether paint lies at a point: dashes along the middle and the bars of the crossing.
+/// True if a point is painted: dashes along the middle and the bars of the crossing.
 fn is_painted(x: f32, z: f32) -> bool {
     let zebra = (z - ZEBRA_M[0]).abs();
     if zebra < ZEBRA_M[1] {
@@ -131,7 +131,7 @@ pub(super) fn ground() -> Mesh {
     }
     far_sidewalk(&mut mesh);
     covers(&mut mesh);
-    // Under everything, so that nothing is seen through a gap.
+    // Below everything, so that gaps are not visible.
     let base = -0.25;
     let corner = |x: f32, z: f32| Vec3::new(x, base, z);
     mesh.quad(
@@ -201,7 +201,7 @@ fn cross_street(mesh: &mut Mesh) {
     );
 }
 
-/// A station of a kerb line: where it is, the way to the houses, the length so far, and how high the kerb stands of 1.
+/// A station of a kerb line: position, direction to the houses, length so far, and height of the kerb relative to 1.
 struct Station {
     at: Vec2,
     out: Vec2,
@@ -209,8 +209,8 @@ struct Station {
     kerb: f32,
 }
 
-/// Profile of gutter, kerb and pavement: distance from the kerb's face, height as a share of the kerb's, height beside that,
-/// and the material up to the next point.
+/// Profile of gutter, kerb and pavement: distance from the kerb's face, height as a fraction of the kerb's, additional
+/// height, and the material up to the next point.
 const PROFILE: [(f32, f32, f32, Material); 15] = [
     (-GUTTER_M, 0.0, 0.0143, Material::Setts),
     (-0.17, 0.0, 0.004, Material::Setts),
@@ -274,7 +274,7 @@ fn sweep(mesh: &mut Mesh, stations: &[Station], mirror: f32, side: u32) {
     );
 }
 
-/// Gutter, kerb and pavement of one side, round the corner into the cross street.
+/// Gutter, kerb and pavement of one side, around the corner into the cross street.
 fn sidewalk(mesh: &mut Mesh, mirror: f32) {
     let side = u32::from(mirror > 0.0);
     let mut stations = Vec::new();

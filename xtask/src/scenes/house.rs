@@ -1,4 +1,4 @@
-//! Houses: a front with openings, a roof, what hangs on it.
+//! Houses: a front with openings, a roof, and attached parts.
 //!
 //! A house stands on x from 0 to its width, its front in the plane z = 0 looking along +z. Storeys are 3 m high, windows 1.1 x 1.6 m,
 //! doors 1 x 2.1 m under a fanlight.
@@ -51,7 +51,7 @@ impl StoneColor {
     }
 }
 
-/// What a house looks like.
+/// Parameters of a house.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct House {
     pub(super) width_m: f32,
@@ -74,14 +74,14 @@ pub(super) struct House {
     pub(super) seed: u32,
 }
 
-/// A window of a house: what it is made of, and its lower left corner on the front.
+/// A window of a house: its design, and its lower left corner on the front.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlacedWindow {
     pub(super) design: WindowDesign,
     pub(super) corner: Vec3,
 }
 
-/// A house made: its own mesh, its windows, its lamps.
+/// A finished house: mesh, windows, lamps.
 pub(super) struct Built {
     pub(super) mesh: Mesh,
     pub(super) windows: Vec<PlacedWindow>,

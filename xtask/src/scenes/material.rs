@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::textures::{ASPHALT_M, BRICK_M, COVER_M, KERB_M, PLASTER_M, ROOF_M, SETTS_M, SLABS_M};
 
-/// Everything that surfaces are made of.
+/// All materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Material {
     Asphalt,
@@ -49,7 +49,7 @@ pub(super) enum Material {
 const WINDOW_CD_M2: f64 = 26.0;
 /// A shop's luminous ceiling panels.
 const SHOP_CD_M2: f64 = 900.0;
-/// The bowl of a street lamp, to the side: most of its light goes down, as the lamp beneath it.
+/// The bowl of a street lamp, to the side: most of its light goes down, as the lamp below it.
 const LAMP_CD_M2: f64 = 3_000.0;
 /// The glass of a dipped headlight beside its beam.
 const HEADLIGHT_CD_M2: f64 = 3_000.0;
@@ -65,7 +65,7 @@ struct Maps {
     emission: Option<&'static str>,
 }
 
-/// How a material looks.
+/// Appearance of a material.
 struct Look {
     color: [f64; 3],
     roughness: f64,
@@ -190,13 +190,13 @@ impl Material {
         }
     }
 
-    /// Whether it needs texture coordinates.
+    /// True if it needs texture coordinates.
     pub(super) fn has_texture(self) -> bool {
         let maps = self.look(true).maps;
         maps.color.is_some() || maps.normal.is_some()
     }
 
-    /// The material as glTF has it; `texture` gives the index of a file.
+    /// The material in glTF; `texture` returns the index of a file.
     pub(super) fn gltf(self, is_night: bool, mut texture: impl FnMut(&'static str) -> usize) -> Value {
         let look = self.look(is_night);
         let mut index = |name| json!({"index": texture(name)});

@@ -1,4 +1,4 @@
-//! Triangles with normals, texture coordinates and tints, put together of quads, boxes, grids, turned and drawn-out shapes.
+//! Triangles with normals, texture coordinates and tints, built from quads, boxes, grids, lathed and extruded shapes.
 
 use std::collections::BTreeMap;
 
@@ -69,7 +69,7 @@ impl Mesh {
         self.parts.values().map(|part| part.indices.len() / 3).sum()
     }
 
-    /// A flat quad, corners counter-clockwise, with coordinates of its own.
+    /// A flat quad, corners counter-clockwise, with given coordinates.
     pub(super) fn quad_uv(&mut self, paint: Paint, corners: [Vec3; 4], uvs: [Vec2; 4]) {
         let normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalize_or_zero();
         let part = self.part(paint.material);
@@ -129,8 +129,8 @@ impl Mesh {
         self.cuboid(paint, low, low + Vec3::from(size), 0);
     }
 
-    /// A smooth surface over a lattice of points: `at(column, row)` gives position, texture coordinates and tint;
-    /// `paint(column, row)` the material of a cell, or `None` for a hole. Its front is where columns x rows points.
+    /// A smooth surface over a grid of points: `at(column, row)` returns position, texture coordinates and tint;
+    /// `paint(column, row)` the material of a cell, or `None` for a hole. Its front is in the direction columns x rows.
     pub(super) fn grid(
         &mut self,
         size: [usize; 2],
@@ -140,9 +140,9 @@ impl Mesh {
         let [columns, rows] = size;
         let points: Vec<(Vec3, Vec2, Vec3)> =
             (0..=rows).flat_map(|j| (0..=columns).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
-        let place = |i: usize, j: usize| j * (columns + 1) + i;
+        let index = |i: usize, j: usize| j * (columns + 1) + i;
         let normal = |i: usize, j: usize| {
-            let p = |i: usize, j: usize| points[place(i, j)].0;
+            let p = |i: usize, j: usize| points[index(i, j)].0;
             let along = p((i + 1).min(columns), j) - p(i.saturating_sub(1), j);
             let across = p(i, (j + 1).min(rows)) - p(i, j.saturating_sub(1));
             along.cross(across).normalize_or_zero()
@@ -152,8 +152,8 @@ impl Mesh {
             for i in 0..columns {
                 let Some(material) = paint(i, j) else { continue };
                 let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| {
-                    *known.entry((material, place(i, j))).or_insert_with(|| {
-                        let (position, uv, tint) = points[place(i, j)];
+                    *known.entry((material, index(i, j))).or_insert_with(|| {
+                        let (position, uv, tint) = points[index(i, j)];
                         let part = self.part(material);
                         part.vertices.push(Vertex { position, normal: normal(i, j), uv, tint });
                         part.vertices.len() as u32 - 1

@@ -1,4 +1,4 @@
-//! A model: meshes, where copies of them stand, and lamps.
+//! A model: meshes, transforms of their copies, and lamps.
 
 use super::mesh::Mesh;
 
@@ -22,7 +22,7 @@ pub(super) struct Placement {
 pub(super) struct Lamp {
     pub(super) name: &'static str,
     pub(super) position: [f32; 3],
-    /// Where it shines, not necessarily of unit length; `None` for all directions.
+    /// Direction of its light, not necessarily of unit length; `None` for all directions.
     pub(super) direction: Option<[f32; 3]>,
     /// Half angles of the full and the whole cone, degrees.
     pub(super) cone_deg: [f32; 2],
@@ -30,11 +30,11 @@ pub(super) struct Lamp {
     pub(super) color: [f32; 3],
     /// Luminous intensity on the axis.
     pub(super) intensity_cd: f32,
-    /// Where its light has faded to nothing.
+    /// Distance at which its light has faded to zero.
     pub(super) range_m: f32,
 }
 
-/// A model on its way into files.
+/// A model to be written to files.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Model {
     pub(super) name: &'static str,
@@ -45,7 +45,7 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// A model of one mesh that stands at the origin.
+    /// A model of one mesh at the origin.
     pub(super) fn single(name: &'static str, mesh: Mesh) -> Self {
         let copies = vec![Placement { position: [0.0; 3], turn_deg: 0.0 }];
         Self { name, pieces: vec![Piece { name: name.to_owned(), mesh, copies }], ..Self::default() }

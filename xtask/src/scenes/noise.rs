@@ -25,7 +25,7 @@ pub(super) fn mix3(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
     std::array::from_fn(|k| mix(a[k], b[k], t))
 }
 
-/// Value noise in [0, 1) at a point in lattice units; repeats after `period` cells each way.
+/// Value noise in [0, 1) at a point in grid units; repeats after `period` cells along each axis.
 pub(super) fn value(x: f32, y: f32, period: [i32; 2], seed: u32) -> f32 {
     let (cx, cy) = (x.floor(), y.floor());
     let (fx, fy) = (x - cx, y - cy);

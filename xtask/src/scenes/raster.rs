@@ -1,4 +1,4 @@
-//! Pictures for textures: made of a function of the tile, encoded as JPEG or PNG.
+//! Pictures for textures: computed from a function of the tile, encoded as JPEG or PNG.
 
 use downpour_math::ops;
 use image::codecs::jpeg::JpegEncoder;
@@ -53,7 +53,7 @@ impl Raster {
 
     /// Normal map of a surface whose heights are the first component, in metres; `width_m` is the edge of the tile.
     ///
-    /// Slopes are central differences; the tile repeats. Green points up (to smaller v), as glTF has it.
+    /// Slopes are central differences; the tile repeats. Green points up (to smaller v), as in glTF.
     pub(super) fn normals(&self, width_m: f32) -> Self {
         let (w, h) = (self.width as i32, self.height as i32);
         let at = |x: i32, y: i32| self.texels[(y.rem_euclid(h) * w + x.rem_euclid(w)) as usize][0];

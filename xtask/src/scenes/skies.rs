@@ -1,8 +1,8 @@
 //! `cargo xtask scenes skies`: the maps of `assets/skies`, captures of the street from its middle.
 //!
-//! A capture is six square pictures of the dry street by `downpour render --backend cpu`, resampled into an equirectangular map. Where a ray
-//! meets nothing and the sky is clear, the map has the sun's disc as well. The CPU's pictures are the same bytes on every machine, and
-//! so are the maps; as they are the renderer's, they change with it, and are made again then.
+//! A capture is six square pictures of the dry street by `downpour render --backend cpu`, resampled into an equirectangular map. For rays
+//! that miss the scene under a clear sky, the map has the sun's disc as well. The CPU's pictures are the same bytes on every machine, and
+//! so are the maps; they depend on the renderer, and are generated again when it changes.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ const SUN_COLOR: [f64; 3] = [1.27, 0.955, 0.66];
 struct Capture {
     name: &'static str,
     is_night: bool,
-    /// In place of the sky of the street's weather.
+    /// Replaces the sky of the street's weather.
     sky: Option<ClearSky>,
     eye: [f64; 3],
 }
@@ -66,7 +66,7 @@ pub(crate) fn run(options: &[&str]) -> Result<(), String> {
         let path = folder.join(format!("{}.hdr", capture.name));
         if is_check {
             match std::fs::read(&path) {
-                Ok(kept) if kept == bytes => println!("{} is what the code makes", path.display()),
+                Ok(kept) if kept == bytes => println!("{} is equal to the generated file", path.display()),
                 Ok(_) => wrong.push(format!("{} differs", path.display())),
                 Err(error) => wrong.push(format!("{}: {error}", path.display())),
             }
@@ -129,7 +129,7 @@ impl Capture {
         })
     }
 
-    /// The dry street seen from the eye.
+    /// The dry street from the camera.
     fn weather(&self, yaw: f64, pitch: f64) -> String {
         let [x, y, z] = self.eye;
         let camera =
@@ -206,7 +206,7 @@ impl Face {
     }
 }
 
-/// What is seen in a direction, and whether it is the sky.
+/// Radiance in a direction, and true if it is the sky.
 fn look(faces: &[Face], direction: [f64; 3]) -> ([f64; 3], bool) {
     // Seams between pictures are a fraction of a pixel wide: the nearest picture then.
     let seen = faces.iter().find_map(|face| face.at(direction));
@@ -252,8 +252,8 @@ fn equirectangular(size: [usize; 2], radiance: impl Fn([f64; 3]) -> [f64; 3]) ->
             let mut sum = [0.0; 3];
             for ray in 0..RAYS * RAYS {
                 let (i, j) = (ray % RAYS, ray / RAYS);
-                let place = |k: usize, n: usize| k as f64 + (n as f64 + 0.5) / RAYS as f64;
-                let found = radiance(direction(place(column, i), place(row, j)));
+                let coordinate = |k: usize, n: usize| k as f64 + (n as f64 + 0.5) / RAYS as f64;
+                let found = radiance(direction(coordinate(column, i), coordinate(row, j)));
                 sum = std::array::from_fn(|k| sum[k] + found[k] / (RAYS * RAYS) as f64);
             }
             pixels.push(image::Rgb(sum.map(|c| c as f32)));

@@ -126,7 +126,7 @@ impl ClearSky {
 mod tests {
     use super::*;
 
-    /// By other directions, with a density of the cosine, and the red, green and blue that a map gets.
+    /// By other directions, with a density of the cosine, and with the red, green and blue of a map.
     #[test]
     fn clear_skies_give_the_light_of_the_daylight_tables() {
         // Klx by the sky on level ground with a sun of 15, 30 and 60 degrees.

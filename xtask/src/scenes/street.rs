@@ -1,4 +1,4 @@
-//! The plan of the street: which house stands where.
+//! Plan of the street: positions of the houses.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ const CLAY: [f32; 3] = [0.30, 0.135, 0.085];
 const BROWN: [f32; 3] = [0.185, 0.115, 0.085];
 const SLATE: [f32; 3] = [0.105, 0.112, 0.125];
 
-/// A house of a row, before its place: most houses differ by little.
+/// Default house of a row: most houses differ little from it.
 const PLAIN: House = House {
     width_m: 7.0,
     storeys: 3,
@@ -207,19 +207,19 @@ fn far() -> Vec<House> {
     ]
 }
 
-/// Where a row of houses begins, x and z, and how it is turned, degrees: its fronts look along +z turned by the angle.
+/// Start of a row of houses, x and z, and its rotation, degrees: its fronts look along +z rotated by the angle.
 struct Start([f32; 2], f32);
 
 impl Start {
-    /// Where a point of a house stands, whose left end is `along` the row.
-    fn place(&self, p: Vec3, along: f32) -> [f32; 3] {
+    /// Position of a point of a house whose left end is `along` the row.
+    fn position(&self, p: Vec3, along: f32) -> [f32; 3] {
         let (c, s) = turn(self.1);
         let x = p.x + along;
         [self.0[0] + c * x + s * p.z, p.y, self.0[1] - s * x + c * p.z]
     }
 }
 
-/// A row of houses, and where copies of it stand.
+/// A row of houses, and the positions of its copies.
 struct Row {
     houses: Vec<House>,
     starts: Vec<Start>,
@@ -265,11 +265,12 @@ pub(super) fn street() -> Model {
             mesh.add(&built.mesh, [along, 0.0, 0.0], 0.0);
             for start in &row.starts {
                 for window in &built.windows {
-                    let copy = Placement { position: start.place(window.corner, along), turn_deg: start.1 };
+                    let copy =
+                        Placement { position: start.position(window.corner, along), turn_deg: start.1 };
                     frames.entry(window.design).or_default().push(copy);
                 }
                 let placed =
-                    |lamp: &Lamp| Lamp { position: start.place(lamp.position.into(), along), ..*lamp };
+                    |lamp: &Lamp| Lamp { position: start.position(lamp.position.into(), along), ..*lamp };
                 lamps.extend(built.lamps.iter().map(placed));
             }
             along += house.width_m;
@@ -277,7 +278,7 @@ pub(super) fn street() -> Model {
         let copies = row
             .starts
             .iter()
-            .map(|start| Placement { position: start.place(Vec3::ZERO, 0.0), turn_deg: start.1 });
+            .map(|start| Placement { position: start.position(Vec3::ZERO, 0.0), turn_deg: start.1 });
         pieces.push(Piece { name: format!("row {}", number + 1), mesh, copies: copies.collect() });
     }
     for (design, copies) in frames {

@@ -12,7 +12,7 @@ pub(super) use facade::{BRICK_M, PLASTER_M, ROOF_M};
 pub(super) use ground::{ASPHALT_M, COVER_M, KERB_M, SETTS_M, SLABS_M};
 pub(super) use panes::VIEWS as PANE_VIEWS;
 
-/// A picture on its way into a file.
+/// A picture to be written to a file.
 pub(super) struct TextureFile {
     /// Name in the folder of textures.
     pub(super) name: &'static str,

@@ -1,4 +1,4 @@
-//! `downpour adapters`: what GPUs there are and what each can do.
+//! `downpour adapters`: GPUs and their capabilities.
 
 use clap::Args;
 
@@ -38,7 +38,7 @@ impl AdaptersArguments {
             crate::stream::print(&texts.join("\n"))?;
         }
         if found.is_empty() {
-            // The error of opening one says which drivers were tried.
+            // The error of opening one names the drivers that were tried.
             Gpu::open(&AdapterChoice::Auto)?;
         }
         Ok(())

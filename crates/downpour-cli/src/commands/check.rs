@@ -1,4 +1,4 @@
-//! `downpour check`: what `render` would do, without doing it.
+//! `downpour check`: dry run of `render`.
 
 use clap::Args;
 use downpour::RendererError;
@@ -19,12 +19,12 @@ use crate::listing::{Datum, Entry};
 use crate::progress::doing;
 use crate::{listing, stream};
 
-/// Eleven words: mass, motion, claims, wetness, what was decided and what comes.
+/// Eleven words: mass, motion, claims, wetness, decisions and inflow.
 const PANE_BYTES_PER_CELL: u64 = 44;
 
-/// Check a scene or weather file, and tell what render would do with it.
+/// Check a scene or weather file, and list what render would do with it.
 ///
-/// The exit code is that of render: of a weather that asks for the streak atlas, without --streaks, 2, after the list.
+/// The exit code is that of render: 2, after the list, for a weather that needs the streak atlas without --streaks.
 #[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
     #[command(flatten)]
@@ -102,7 +102,7 @@ fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
     };
     vec![
         count("triangles", "triangles", stage.triangles),
-        count("instances", "meshes at their places", stage.instances),
+        count("instances", "instances of meshes", stage.instances),
         count("materials", "materials", scene.materials.len()),
         count("textures", "textures", scene.textures.len()),
         Entry::new(
@@ -116,7 +116,7 @@ fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
         Entry::new("animations_playing", "those that play", Datum::words(&playing), ""),
         count("cameras", "cameras of the scene", scene.cameras.len()),
         Entry::new("camera", "camera that is taken", Word(camera), ""),
-        Entry::new("camera_position_m", "its place", Triple(eye, 4), "m"),
+        Entry::new("camera_position_m", "its position", Triple(eye, 4), "m"),
         Entry::new("camera_forward", "its view", Triple(forward, 3), ""),
         Entry::new("fov_deg", "its vertical field of view", Computed(fov, 4), "degrees"),
         Entry::new("observer", "observer of moving drops", Word(observer), ""),
@@ -126,7 +126,7 @@ fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
     ]
 }
 
-/// Each picture once, however many textures share it.
+/// Bytes of all pictures, each once, even if several textures use it.
 fn texture_bytes(textures: &[Texture]) -> u64 {
     let mut seen = std::collections::HashSet::new();
     let pictures = textures.iter().map(|texture| &texture.picture);
@@ -163,7 +163,7 @@ fn light(input: &Input) -> Vec<Entry> {
     ]
 }
 
-/// How the rain is worked out, and in what wind.
+/// Simulation of the rain, and its wind.
 fn motion(input: &Input) -> Result<Vec<Entry>, Failure> {
     let wind = &input.weather.wind;
     let form = if Shower::new(&input.weather)?.is_closed_form() { "in closed form" } else { "step by step" };
@@ -181,7 +181,7 @@ fn motion(input: &Input) -> Result<Vec<Entry>, Failure> {
     ])
 }
 
-/// The water that stands on the ground.
+/// Water on the ground.
 fn water(input: &Input, stage: &Stage) -> Result<Vec<Entry>, Failure> {
     let ground = WetGround::new(&input.weather, &input.loaded, stage, 0.0)?;
     let sum = |of: fn(&PuddleMap) -> f32| {
@@ -206,10 +206,13 @@ fn water(input: &Input, stage: &Stage) -> Result<Vec<Entry>, Failure> {
     ])
 }
 
-/// The pane before the camera, and how much memory it takes.
+/// Pane in front of the camera, and its memory.
 fn pane(input: &Input, stage: &Stage, first_s: f64) -> Result<(Vec<Entry>, u64), Failure> {
     let Some(wet) = WetPane::new(&input.weather, &stage.viewpoint, first_s)? else {
-        return Ok((vec![Entry::new("pane", "pane before the camera", Datum::Unbounded("none"), "")], 0));
+        return Ok((
+            vec![Entry::new("pane", "pane in front of the camera", Datum::Unbounded("none"), "")],
+            0,
+        ));
     };
     let options = wet.glass().options();
     let [columns, rows] = options.size;

@@ -12,10 +12,10 @@ use crate::failure::Failure;
 use crate::listing::{Datum, Entry};
 use crate::{listing, quantity, stream};
 
-/// The wavelength, in metres, of the index that is told: sodium light.
+/// Wavelength, in metres, of the refractive index that is printed: sodium light.
 const SODIUM_M: f64 = 589.3e-9;
 
-/// Tell the physical properties of one drop.
+/// Print the physical properties of one drop.
 #[derive(Debug, Args)]
 pub(crate) struct DropArguments {
     /// Diameter of the sphere of equal volume, 0.001 to 9 mm.

@@ -1,4 +1,4 @@
-//! What `render` and `check` read: a weather file, or a bare model in a shower.
+//! Input of `render` and `check`: a weather file, or a bare model in a shower.
 
 use std::path::{Path, PathBuf};
 
@@ -14,10 +14,10 @@ use super::say_warnings;
 use crate::failure::Failure;
 use crate::quantity;
 
-/// A scene, and what of its weather is asked for otherwise.
+/// A scene, and arguments that override its weather.
 #[derive(Debug, Args)]
 pub(crate) struct InputArguments {
-    /// A weather file (.toml), or a model (.glb, .gltf) that stands in a shower of 50 mm/h with the sun behind it.
+    /// A weather file (.toml), or a model (.glb, .gltf), shown in a shower of 50 mm/h with the sun behind it.
     #[arg(value_name = "INPUT")]
     pub(crate) input: PathBuf,
     /// Rain rate, 0 to 500 mm/h [default: the weather's].
@@ -37,7 +37,7 @@ pub(crate) struct InputArguments {
     /// Same seed, same drops [default: the weather's].
     #[arg(long, value_name = "N", value_parser = quantity::seed, allow_hyphen_values = true)]
     pub(crate) seed: Option<u64>,
-    /// Another folder in which the files of a weather may lie; may be given several times.
+    /// Additional folder in which the files of a weather are searched; may be repeated.
     #[arg(long, value_name = "FOLDER")]
     pub(crate) asset_root: Vec<PathBuf>,
 }
@@ -46,10 +46,10 @@ pub(crate) struct InputArguments {
 pub(crate) type Input = Source;
 
 impl InputArguments {
-    /// What can be told from the arguments alone.
+    /// Checks the arguments that need no file.
     ///
     /// # Errors
-    /// Exit code 2 for a name that is none, 3 for a size over the limit.
+    /// Exit code 2 for an invalid name, 3 for a size over the limit.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         Source::check(&self.input, &self.roots())?;
         Ok(self.size.map_or(Ok(()), check_size)?)
@@ -62,7 +62,7 @@ impl InputArguments {
     /// Reads everything.
     ///
     /// # Errors
-    /// What the readers say, with their exit codes.
+    /// Errors of the readers, with their exit codes.
     pub(crate) fn read(&self, budget: &mut Budget) -> Result<Input, Failure> {
         let mut input = Source::read(&self.input, &self.roots(), budget)?;
         let weather = &mut input.weather;
@@ -77,7 +77,7 @@ impl InputArguments {
     }
 }
 
-/// Says what was left out of a scene or made good, and what is not there at all.
+/// Prints the parts of a scene that were dropped, repaired or missing.
 pub(crate) fn say_missing(weather: &Weather, loaded: &Loaded, stage: &Stage, say: impl Fn(&str)) {
     say_warnings(&weather.name, &loaded.warnings, &say);
     say_cores(weather, &say);
@@ -90,7 +90,7 @@ pub(crate) fn say_missing(weather: &Weather, loaded: &Loaded, stage: &Stage, say
     }
 }
 
-/// Says which primitives of the wind are finer than the cells that the rain feels it in.
+/// Prints the primitives of the wind that are finer than the cells of the rain's wind.
 pub(crate) fn say_cores(weather: &Weather, say: impl Fn(&str)) {
     let Ok(grid) = weather.wind_box.grid(DVec3::ZERO) else { return };
     let least = f64::from(grid.cell().max_element());

@@ -1,4 +1,4 @@
-//! `downpour lattice`: one lattice of water alone, what it conserves, and pictures of it.
+//! `downpour lattice`: one lattice of water alone, its invariants, and pictures of it.
 
 mod device;
 mod glass;
@@ -15,7 +15,7 @@ use crate::interrupt::Interrupt;
 use crate::listing::Entry;
 use crate::{listing, stream};
 
-/// Run one lattice of water alone, tell what it conserves, and draw it.
+/// Run one lattice of water alone, print its invariants, and draw it.
 #[derive(Debug, Args)]
 pub(crate) struct LatticeArguments {
     #[command(subcommand)]
@@ -37,7 +37,7 @@ impl LatticeArguments {
     }
 }
 
-/// What both lattices are told.
+/// Arguments of both lattices.
 #[derive(Debug, Args)]
 struct Common {
     /// Rain rate in mm/h, 0 to 500.
@@ -61,14 +61,14 @@ struct Common {
     /// Write the invariants as JSON.
     #[arg(long)]
     json: bool,
-    /// What computes. A lattice alone is small: the CPU is at its end before a software driver of a GPU has begun, and has the
-    /// same bits on every machine. A GPU is for large ones.
+    /// Compute backend. A lattice alone is small: the CPU is done before a software driver of a GPU has started, and gives
+    /// the same bits on every machine. A GPU is for large ones.
     #[arg(long, value_enum, default_value = "cpu")]
     backend: Backend,
     /// Part of the name of the GPU to take, as `downpour adapters` lists them.
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
-    /// Say nothing but errors.
+    /// Print errors only.
     #[arg(short, long)]
     quiet: bool,
 }
@@ -89,7 +89,7 @@ impl Common {
     }
 }
 
-/// Prints the list, then fails if what was to be checked does not hold.
+/// Prints the list, then fails if a checked invariant does not hold.
 ///
 /// # Errors
 /// Exit code 1 for a law that is broken: a defect of the lattice.

@@ -7,7 +7,7 @@ use downpour::drop::DropShape;
 use downpour::drop::air::Air;
 use downpour::drop::optics::water_index_in_air;
 use downpour::mask::file::{exr, ktx2, png};
-use downpour::mask::{ClosedMesh, MOST_TRIANGLES, Mask, MaskOptions, SIZES, View, trace_drop, trace_model};
+use downpour::mask::{ClosedMesh, MAX_TRIANGLES, Mask, MaskOptions, SIZES, View, trace_drop, trace_model};
 use downpour::scene::{Budget, gltf::read_triangles};
 
 use crate::backend::{BackendArguments, compute};
@@ -15,20 +15,20 @@ use crate::commands::say_warnings;
 use crate::exit_code::ExitCode as _;
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
-use crate::output::Place;
+use crate::output::OutputFile;
 use crate::{quantity, stream};
 
 /// The most masks of a KTX2 array.
-const MOST_MASKS: usize = 128;
+const MAX_MASKS: usize = 128;
 
 /// The most texels of all masks of a file: 128 masks of 512 x 512, or 2 of 4096 x 4096.
-const MOST_TEXELS: u64 = 1 << 25;
+const MAX_TEXELS: u64 = 1 << 25;
 
-/// Memory per texel, in bytes, while masks are traced and written: a quarter more than .exr, the largest of the
-/// formats, was seen to take at its peak.
+/// Memory per texel, in bytes, while masks are traced and written: a quarter more than the measured peak of .exr, the
+/// largest of the formats.
 const BYTES_PER_TEXEL: u64 = 130;
 
-/// What a drop model may cost.
+/// Memory budget of a drop model.
 const MODEL_BUDGET_BYTES: u64 = 1 << 30;
 
 /// Trace the refraction mask of a drop, or of a drop model, and write it to a file.
@@ -39,14 +39,14 @@ pub(crate) struct MaskArguments {
     #[arg(long, value_name = "MM", group = "drop", value_delimiter = ',', allow_hyphen_values = true)]
     #[arg(value_parser = quantity::diameter_mm)]
     diameter: Vec<f64>,
-    /// A drop model: a closed mesh in a .glb or .gltf file, in metres, its own +Y up.
+    /// A drop model: a closed mesh in a .glb or .gltf file, in metres, its +Y up.
     #[arg(long, value_name = "DROP.glb", group = "drop")]
     model: Option<PathBuf>,
     /// Edge of the mask in pixels, 4 to 4096.
     #[arg(long, value_name = "PIXELS", default_value = "512", value_parser = quantity::size)]
     #[arg(allow_hyphen_values = true)]
     size: u64,
-    /// From how far above the drop's horizon it is seen, -90 to 90 degrees.
+    /// Elevation of the view above the drop's horizon, -90 to 90 degrees.
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = quantity::elevation_deg)]
     #[arg(allow_hyphen_values = true)]
     elevation: f64,
@@ -61,7 +61,7 @@ pub(crate) struct MaskArguments {
     #[arg(long, value_name = "C", value_parser = quantity::temperature_of_index_c)]
     #[arg(allow_hyphen_values = true, requires = "wavelength")]
     temperature: Option<f64>,
-    /// The file: .exr (everything, 32 bits), .ktx2 (texture array, 16 bits) or .png (to look at).
+    /// Output file: .exr (all data, 32 bits), .ktx2 (texture array, 16 bits) or .png (preview).
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Write .exr with 16 bits.
@@ -72,12 +72,12 @@ pub(crate) struct MaskArguments {
     overwrite: bool,
     #[command(flatten)]
     backend: BackendArguments,
-    /// Say nothing but errors.
+    /// Print errors only.
     #[arg(short, long)]
     quiet: bool,
 }
 
-/// What the end of the file's name says.
+/// Format by the extension of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     Exr,
@@ -97,7 +97,7 @@ impl Format {
     }
 }
 
-/// What light goes through.
+/// Refracting shape.
 enum Subject {
     Drops(Vec<DropShape>),
     Model(ClosedMesh),
@@ -109,13 +109,13 @@ impl MaskArguments {
         self.check(format)?;
         self.backend.check()?;
         let options = self.options()?;
-        let place = Place::new(&self.output, self.overwrite)?;
+        let file = OutputFile::new(&self.output, self.overwrite)?;
         let subject = self.subject()?;
         reserve(self.texels())?;
         let masks = self.trace(&subject, &options, interrupt)?;
         let bytes = encode(format, self.half, &masks)?;
         drop(masks);
-        place.publish(&bytes, interrupt)?;
+        file.publish(&bytes, interrupt)?;
         let (count, size) = (self.diameter.len().max(1), self.size);
         let masks = if count == 1 { "a mask".to_owned() } else { format!("{count} masks") };
         self.say(&format!("wrote {}: {masks} of {size} x {size}", shown(&self.output)));
@@ -132,7 +132,7 @@ impl MaskArguments {
         self.size.saturating_mul(self.size).saturating_mul(self.diameter.len().max(1) as u64)
     }
 
-    /// What can be told from the arguments alone.
+    /// Checks the arguments that need no file.
     fn check(&self, format: Format) -> Result<(), Failure> {
         let refuse = |code, message: String| Err(Failure::new(code, message));
         let most = *SIZES.end();
@@ -147,12 +147,12 @@ impl MaskArguments {
                 format!("{count} diameters for {}; allowed: {allowed}", shown(&self.output)),
             );
         }
-        if count > MOST_MASKS {
-            return refuse(INPUT, format!("{count} diameters; allowed: 1 to {MOST_MASKS}"));
+        if count > MAX_MASKS {
+            return refuse(INPUT, format!("{count} diameters; allowed: 1 to {MAX_MASKS}"));
         }
-        if self.texels() > MOST_TEXELS {
+        if self.texels() > MAX_TEXELS {
             let found = format!("{count} masks of {0} x {0} texels", self.size);
-            let most = MOST_TEXELS / (self.size * self.size);
+            let most = MAX_TEXELS / (self.size * self.size);
             return refuse(LIMIT, format!("{found}; allowed: {most} masks of this size"));
         }
         if self.half && format != Format::Exr {
@@ -181,7 +181,7 @@ impl MaskArguments {
             let shapes: Result<_, _> = self.diameter.iter().map(|mm| DropShape::new(mm * 1.0e-3)).collect();
             return Ok(Subject::Drops(shapes?));
         };
-        let most = MOST_TRIANGLES;
+        let most = MAX_TRIANGLES;
         let mut budget = Budget { bytes: MODEL_BUDGET_BYTES, vertices: 3 * most as u64, ..Budget::default() };
         let model = read_triangles(path, &mut budget)?.strict()?;
         if model.indices.len() > most {
@@ -244,7 +244,7 @@ fn encode(format: Format, half: bool, masks: &[Mask]) -> Result<Vec<u8>, Failure
     })
 }
 
-/// Whether the memory that the masks will take can be had. An allocation that fails later on would end the process.
+/// Checks that the memory for the masks is available. An allocation that fails later on would abort the process.
 fn reserve(texels: u64) -> Result<(), Failure> {
     let bytes = texels.saturating_mul(BYTES_PER_TEXEL);
     let mut room: Vec<u8> = Vec::new();
@@ -253,5 +253,8 @@ fn reserve(texels: u64) -> Result<(), Failure> {
         return Ok(());
     }
     let found = format!("{} MiB of memory are needed", bytes >> 20);
-    Err(Failure::new(LIMIT, format!("{found}; allowed: what this machine has (a smaller --size needs less)")))
+    Err(Failure::new(
+        LIMIT,
+        format!("{found}; allowed: the memory of this machine (a smaller --size needs less)"),
+    ))
 }

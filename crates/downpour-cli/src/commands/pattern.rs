@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use crate::failure::{Failure, INPUT, shown};
 
 /// The most digits that a number may be filled up to.
-const MOST_DIGITS: usize = 9;
+const MAX_DIGITS: usize = 9;
 
 /// The longest name that file systems take, in bytes.
-const LONGEST: usize = 255;
+const MAX_NAME: usize = 255;
 
-/// A name with a place for a number, as C's `printf` has it: `%d`, or `%04d` for at least four digits. `%%` is a percent
-/// sign. The number stands in the name of the file; the folder is taken as it is.
+/// A file name with a placeholder for a number, as in C's `printf`: `%d`, or `%04d` for at least four digits. `%%` is a
+/// percent sign. Only the name of the file has the placeholder; the folder is literal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Pattern {
     whole: PathBuf,
@@ -24,7 +24,7 @@ impl Pattern {
     /// Reads a pattern.
     ///
     /// # Errors
-    /// Exit code 2 for a name that has no place for a number, several, or one that is none.
+    /// Exit code 2 for a name without a placeholder, with several, or with an invalid one.
     pub(super) fn parse(path: &Path) -> Result<Self, Failure> {
         let refused = || {
             let allowed = "a name with one %d or %04d, for example frames/%04d.png (%% is a percent sign)";
@@ -50,15 +50,15 @@ impl Pattern {
             // Without the 0 before it, C fills up with blanks.
             let filled = width.strip_prefix('0').and_then(|width| width.parse().ok());
             let found = if width.is_empty() { Some(1) } else { filled };
-            let found = found.filter(|found| (1..=MOST_DIGITS).contains(found));
+            let found = found.filter(|found| (1..=MAX_DIGITS).contains(found));
             let (Some('d'), Some(found), None) = (rest.next(), found, digits) else { return Err(refused()) };
             digits = Some(found);
         }
         let digits = digits.ok_or_else(refused)?;
-        // A number may have seven digits where fewer are asked for.
-        if parts.0.len() + parts.1.len() + digits.max(7) > LONGEST {
+        // A number may have seven digits even if fewer are requested.
+        if parts.0.len() + parts.1.len() + digits.max(7) > MAX_NAME {
             let found = format!("output {} for numbered files", shown(path));
-            return Err(Failure::new(INPUT, format!("{found}; allowed: a name of at most {LONGEST} bytes")));
+            return Err(Failure::new(INPUT, format!("{found}; allowed: a name of at most {MAX_NAME} bytes")));
         }
         Ok(Self { whole: path.to_owned(), before: parts.0, digits, after: parts.1 })
     }

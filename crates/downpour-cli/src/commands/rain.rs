@@ -1,4 +1,4 @@
-//! `downpour rain`: what a rain of a given rate holds.
+//! `downpour rain`: properties of a rain of a given rate.
 
 use clap::{Args, ValueEnum};
 use downpour::drop::air::Air;
@@ -11,7 +11,7 @@ use crate::failure::{Failure, INPUT};
 use crate::listing::{Datum, Entry};
 use crate::{listing, quantity, stream};
 
-/// Shape of the gamma law where none is given.
+/// Default shape of the gamma law.
 const GAMMA_SHAPE: f64 = 3.0;
 
 /// A published drop size distribution, by the name of its law.
@@ -34,7 +34,7 @@ enum Distribution {
     JossThunderstorm,
 }
 
-/// Tell what a rain holds: drops, water, extinction, visibility.
+/// Print the properties of a rain: drops, water, extinction, visibility.
 #[derive(Debug, Args)]
 pub(crate) struct RainArguments {
     /// Rain rate, 0 to 500 mm/h.

@@ -7,7 +7,7 @@ mod journal;
 #[cfg(feature = "video")]
 mod mp4;
 mod outputs;
-mod places;
+mod paths;
 mod report;
 #[cfg(feature = "video")]
 mod video;
@@ -24,27 +24,27 @@ use super::streaks::StreaksArgument;
 use crate::backend::{BackendArguments, renderer_failure};
 use crate::failure::{Failure, INPUT, LIMIT, shown};
 use crate::interrupt::Interrupt;
-use crate::progress::{Teller, doing};
+use crate::progress::{FrameProgress, doing};
 use crate::{quantity, stream};
 use frames::Frames;
 use outputs::{Bytes, Format, Outputs};
 
-/// Memory per pixel, in bytes, while a picture is made and written: the scene, what its pixels found of the sky's light
-/// (twice while threads hand in their parts), the rain, the pane with what is behind it, and the file.
+/// Memory per pixel, in bytes, while a picture is made and written: the scene, the sky's light at its pixels
+/// (twice while threads merge their parts), the rain, the pane with the scene behind it, and the file.
 pub(super) const BYTES_PER_PIXEL: u64 = 300;
 
 /// Make a picture of a scene in the rain, or a clip.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A clip: --frames 0..240 --fps 24 with -o frames/%04d.png, frames/%04d.exr or clip.mp4. Frames \
-that are there are not made again: the same command goes on where it was stopped, and a later end makes the clip longer. \
-What was done stands in .NAME.downpour-job beside the frames; for an .mp4 the frames are in .NAME.frames until it is there. \
+    after_help = "A clip: --frames 0..240 --fps 24 with -o frames/%04d.png, frames/%04d.exr or clip.mp4. Existing \
+frames are not rendered again: the same command resumes where it was stopped, and a later end makes the clip longer. \
+The journal is .NAME.downpour-job beside the frames; for an .mp4 the frames are in .NAME.frames until it is complete. \
 The exposure of a clip is that of its first frame."
 )]
 pub(crate) struct RenderArguments {
     #[command(flatten)]
     input: InputArguments,
-    /// The picture: .png (to look at) or .exr (linear radiance, unexposed). With --frames: a numbered name such as
+    /// Output picture: .png (for viewing) or .exr (linear radiance, unexposed). With --frames: a numbered name such as
     /// frames/%04d.png, or .mp4 (AV1, sRGB; even width and height).
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -60,10 +60,10 @@ pub(crate) struct RenderArguments {
     /// the ray, 1e30 for the sky).
     #[arg(long)]
     layers: bool,
-    /// Write what was done: counts of drops, rates, times. Of a clip: the means, and each frame's.
+    /// Write statistics: counts of drops, rates, times. Of a clip: the means, and each frame's.
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
-    /// Write a row for each drop that is drawn: place and velocity in the world, diameter. Of a clip: a numbered name
+    /// Write a row for each drop that is drawn: position and velocity in the world, diameter. Of a clip: a numbered name
     /// such as drops/%04d.csv.
     #[arg(long, value_name = "FILE.csv")]
     dump_drops: Option<PathBuf>,
@@ -71,29 +71,29 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", default_value = "2", value_parser = quantity::samples)]
     #[arg(allow_hyphen_values = true)]
     samples: u32,
-    /// Rays to the sky per sample, 0 to 64; with 0 nothing hides the sky.
+    /// Rays to the sky per sample, 0 to 64; at 0 nothing occludes the sky.
     #[arg(long, value_name = "N", default_value = "1", value_parser = quantity::sky_rays)]
     #[arg(allow_hyphen_values = true)]
     sky_rays: u32,
     #[command(flatten)]
     streaks: StreaksArgument,
-    /// How a drop's pixel finds its colour [default: the weather's].
+    /// Lookup of the color of a drop's pixel [default: the weather's].
     #[arg(long, value_enum)]
     refraction: Option<Refraction>,
-    /// Replace files that exist; begin a clip anew.
+    /// Replace existing files; start a clip from its first frame.
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]
     backend: BackendArguments,
-    /// Say nothing but errors.
+    /// Print errors only.
     #[arg(short, long)]
     quiet: bool,
 }
 
-/// How a drop's pixel finds its colour.
+/// Lookup of the color of a drop's pixel.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Refraction {
-    /// The directions of refracted and reflected light, in all that is round the eye.
+    /// By the directions of refracted and reflected light, in an environment map around the eye.
     Direction,
     /// The shift in a picture 165 degrees wide, 512 x 512; no reflection.
     #[value(name = "rousseau-2006")]
@@ -167,12 +167,12 @@ impl RenderArguments {
         Ok(renderer)
     }
 
-    /// A frame. Who waits for long is told how far it is. A GPU that hangs ends the process: dropping its device would wait.
+    /// Renders a frame, with progress for long ones. A GPU that hangs ends the process: dropping its device would wait.
     fn frame(&self, renderer: &mut Renderer, time_s: f64, interrupt: &Interrupt) -> Result<Frame, Failure> {
         let backend = renderer.computer().backend;
-        let mut teller = Teller::new(self.quiet);
-        let made = renderer.frame_with(time_s, &mut |progress| teller.tell(progress));
-        drop(teller);
+        let mut frame_progress = FrameProgress::new(self.quiet);
+        let made = renderer.frame_with(time_s, &mut |progress| frame_progress.tell(progress));
+        drop(frame_progress);
         let frame = made.map_err(|error| renderer_failure(error, interrupt))?;
         if renderer.computer().backend != backend {
             self.say_fallback(renderer);
@@ -180,7 +180,7 @@ impl RenderArguments {
         Ok(frame)
     }
 
-    /// Says why the CPU draws in place of a GPU, if it does.
+    /// Prints the reason why the CPU draws instead of a GPU, if it does.
     fn say_fallback(&self, renderer: &Renderer) {
         if let Some(reason) = &renderer.computer().reason {
             self.say(&format!("backend: cpu ({reason})"));
@@ -188,7 +188,7 @@ impl RenderArguments {
     }
 
     /// # Errors
-    /// Exit code 2 for layers in a file that has none.
+    /// Exit code 2 for layers in a format without layers.
     fn check_layers(&self, format: Format) -> Result<(), Failure> {
         if self.layers && format != Format::Exr {
             let found = format!("--layers for {}", shown(&self.output));
@@ -213,7 +213,7 @@ impl RenderArguments {
     }
 }
 
-/// Whether the memory that a picture will take can be had. An allocation that fails later on would end the process.
+/// Checks that the memory for a picture is available. An allocation that fails later on would abort the process.
 fn reserve([width, height]: [u32; 2]) -> Result<(), Failure> {
     let bytes = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(BYTES_PER_PIXEL);
     let mut room: Vec<u8> = Vec::new();
@@ -221,5 +221,8 @@ fn reserve([width, height]: [u32; 2]) -> Result<(), Failure> {
         return Ok(());
     }
     let found = format!("{width} x {height} pixels: {} MiB of memory are needed", bytes >> 20);
-    Err(Failure::new(LIMIT, format!("{found}; allowed: what this machine has (a smaller --size needs less)")))
+    Err(Failure::new(
+        LIMIT,
+        format!("{found}; allowed: the memory of this machine (a smaller --size needs less)"),
+    ))
 }

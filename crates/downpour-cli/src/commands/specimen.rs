@@ -17,7 +17,7 @@ use crate::backend::{BackendArguments, compute};
 use crate::commands::say_warnings;
 use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
-use crate::output::Place;
+use crate::output::OutputFile;
 use crate::quantity::SpecimenSamples;
 use crate::{quantity, stream};
 
@@ -38,11 +38,11 @@ pub(crate) struct SpecimenArguments {
     #[arg(long, value_name = "M", default_value = "0.1", value_parser = quantity::distance_m)]
     #[arg(allow_hyphen_values = true)]
     distance: f64,
-    /// Where the camera stands round the drop, degrees.
+    /// Azimuth of the camera around the drop, degrees.
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = quantity::yaw_deg)]
     #[arg(allow_hyphen_values = true)]
     yaw: f64,
-    /// How far the camera stands above the drop, -90 to 90 degrees.
+    /// Elevation of the camera above the drop, -90 to 90 degrees.
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = quantity::elevation_deg)]
     #[arg(allow_hyphen_values = true)]
     pitch: f64,
@@ -54,12 +54,12 @@ pub(crate) struct SpecimenArguments {
     #[arg(allow_hyphen_values = true)]
     exposure: f64,
     /// Of a drop at rest: samples along an edge of a pixel, 1 to 16. Of a streak: instants of the exposure for each of the 16
-    /// samples of a pixel, 1 to 4096. Both are exact. `table`: the streak as `render` draws it, by its streak radiance table, to
-    /// hold beside the exact one; with `--exposure`, for drops of 0.5 to 9 mm, under lamps of at most 5 degrees.
+    /// samples of a pixel, 1 to 4096. Both are exact. `table`: the streak as `render` draws it, by its streak radiance table, for
+    /// comparison with the exact one; with `--exposure`, for drops of 0.5 to 9 mm, under lamps of at most 5 degrees.
     #[arg(long, value_name = "N|table", default_value = "4", value_parser = quantity::specimen_samples)]
     #[arg(allow_hyphen_values = true)]
     samples: SpecimenSamples,
-    /// How the drop oscillates: `none`, or the amplitudes of the modes (2,0) and (3,1) over the radius, as 0.2,0.1.
+    /// Oscillation of the drop: `none`, or the amplitudes of the modes (2,0) and (3,1) over the radius, as 0.2,0.1.
     #[arg(long, value_name = "A20,A31", default_value = "none", value_parser = quantity::oscillation)]
     #[arg(allow_hyphen_values = true)]
     oscillation: Amplitudes,
@@ -67,9 +67,9 @@ pub(crate) struct SpecimenArguments {
     #[arg(long, value_name = "T20,T31", default_value = "0,0", value_parser = quantity::phase)]
     #[arg(allow_hyphen_values = true)]
     phase: [f64; 2],
-    /// A lamp far away: where it stands as `--yaw` and `--pitch` say of the camera, angular radius in degrees (0.01 to 90), and
-    /// radiance in the units of the map, one number or red, green, blue. Yaw 180 is behind the drop as yaw 0 sees it. Repeatable, up
-    /// to 8.
+    /// A lamp far away: its direction as `--yaw` and `--pitch` of the camera, angular radius in degrees (0.01 to 90), and
+    /// radiance in the units of the map, one number or red, green, blue. Yaw 180 is behind the drop as seen from yaw 0. May be
+    /// repeated, up to 8 lamps.
     #[arg(long, value_name = "YAW,PITCH,RADIUS,L|R,G,B", value_parser = quantity::lamp)]
     #[arg(allow_hyphen_values = true)]
     light: Vec<SpecimenLamp>,
@@ -84,12 +84,12 @@ pub(crate) struct SpecimenArguments {
     overwrite: bool,
     #[command(flatten)]
     backend: BackendArguments,
-    /// Say nothing but errors.
+    /// Print errors only.
     #[arg(short, long)]
     quiet: bool,
 }
 
-/// What the end of the file's name says.
+/// Format by the extension of the file.
 #[derive(Clone, Copy)]
 enum Format {
     Exr,
@@ -133,7 +133,7 @@ impl SpecimenArguments {
         options.check(&shape)?;
         SpecimenLamp::check_count(&self.light)?;
         self.check_table(&shape, &options)?;
-        let place = Place::new(&self.output, self.overwrite)?;
+        let file = OutputFile::new(&self.output, self.overwrite)?;
         let map = read_sky(&self.environment, &mut Budget::default())?;
         say_warnings(&shown(&self.environment), &map.warnings, |text| self.say(text));
         let sky = Sky::new(map.width, map.height, &map.radiance)?.with_lamps(&self.light)?;
@@ -146,7 +146,7 @@ impl SpecimenArguments {
                 write_png(image.width, image.height, &tone_picture(&pixels, exposure))?
             }
         };
-        place.publish(&bytes, interrupt)?;
+        file.publish(&bytes, interrupt)?;
         self.say(&format!("wrote {}: {} x {}", shown(&self.output), image.width, image.height));
         Ok(())
     }
@@ -156,7 +156,7 @@ impl SpecimenArguments {
     }
 
     /// # Errors
-    /// Exit code 2 for what has no table.
+    /// Exit code 2 for drops and options without a table.
     fn check_table(&self, shape: &DropShape, options: &SpecimenOptions) -> Result<(), Failure> {
         if !self.by_table() {
             return Ok(());

@@ -10,23 +10,23 @@ use downpour::weather::Weather;
 
 use crate::failure::Failure;
 
-/// Where the streak atlas is.
+/// Path of the streak atlas.
 #[derive(Debug, Args)]
 pub(crate) struct StreaksArgument {
-    /// Folder of the streak atlas, for a weather whose [streaks] colour is atlas or atlas-random: the project's is
+    /// Folder of the streak atlas, for a weather whose [streaks] color is atlas or atlas-random: the project's is
     /// assets/streaks.
     #[arg(long, value_name = "FOLDER")]
     streaks: Option<PathBuf>,
 }
 
-/// What a weather wants of a streak atlas, and what there is.
+/// Streak atlas of a run.
 #[derive(Debug)]
 pub(crate) enum Streaks {
-    /// No drop asks for it.
+    /// The weather does not use it.
     Unwanted,
-    /// It is asked for, and not said where it is.
+    /// The weather needs it, but no path is given.
     Nowhere,
-    /// What its folder has.
+    /// The loaded atlas.
     Atlas(Box<StreakAtlas>),
 }
 
@@ -34,7 +34,7 @@ impl StreaksArgument {
     /// Reads the atlas, if the weather wants it.
     ///
     /// # Errors
-    /// What reading says.
+    /// Errors of reading.
     pub(crate) fn read(&self, weather: &Weather) -> Result<Streaks, Failure> {
         if DropLightOptions::of_weather(weather).form != DropLightForm::Atlas {
             return Ok(Streaks::Unwanted);

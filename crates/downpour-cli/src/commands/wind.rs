@@ -1,4 +1,4 @@
-//! `downpour wind`: a picture of the wind in a slice, and what was measured in it.
+//! `downpour wind`: a picture of the wind in a slice, and statistics of it.
 
 use std::path::{Path, PathBuf};
 
@@ -18,13 +18,13 @@ use super::input::{Input, InputArguments, say_cores};
 use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
 use crate::listing::{Datum, Entry};
-use crate::output::Place;
+use crate::output::OutputFile;
 use crate::{listing, quantity, stream};
 
-/// Draw the wind of a weather file in a slice: speed as colour, direction as streaks and arrows.
+/// Draw the wind of a weather file in a slice: speed as color, direction as streaks and arrows.
 ///
-/// What is drawn is what the rain feels: a wind that differs from place to place in the cells of `[wind_field]`, and none in
-/// objects; one that is the same everywhere without the lee of objects.
+/// The picture shows the wind that the rain feels: a non-uniform wind in the cells of `[wind_field]`, and none in
+/// objects; a uniform one without the lee of objects.
 #[derive(Debug, Args)]
 pub(crate) struct WindArguments {
     /// A weather file (.toml) with a wind.
@@ -34,10 +34,10 @@ pub(crate) struct WindArguments {
     #[arg(long, value_name = "S", default_value = "0", value_parser = quantity::time_s)]
     #[arg(allow_hyphen_values = true)]
     time: f64,
-    /// Which slice: xy=Z, xz=Y (from above) or yz=X, in metres.
+    /// Slice: xy=Z, xz=Y (from above) or yz=X, in metres.
     #[arg(long, value_name = "PLANE=M", value_parser = slice, allow_hyphen_values = true)]
     slice: (WindPlane, f32),
-    /// What the picture shows at least: the lower corner and the upper, metres [default: the weather's box of cells].
+    /// Minimum region of the picture: the lower corner and the upper, metres [default: the weather's box of cells].
     #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", value_parser = corners, allow_hyphen_values = true)]
     region: Option<[f32; 6]>,
     /// Width and height in pixels, 64 to 4096.
@@ -46,7 +46,7 @@ pub(crate) struct WindArguments {
     /// The wind that is drawn.
     #[arg(long, value_enum, default_value_t = Form::Cells)]
     form: Form,
-    /// Another folder in which the files of a weather may lie; may be given several times.
+    /// Additional folder in which the files of a weather are searched; may be repeated.
     #[arg(long, value_name = "FOLDER")]
     asset_root: Vec<PathBuf>,
     /// The picture, .png.
@@ -55,24 +55,24 @@ pub(crate) struct WindArguments {
     /// Replace the file if it exists.
     #[arg(long)]
     overwrite: bool,
-    /// Write what was measured as JSON.
+    /// Write the statistics as JSON.
     #[arg(long)]
     json: bool,
-    /// Say nothing but errors.
+    /// Print errors only.
     #[arg(short, long)]
     quiet: bool,
 }
 
-/// Which wind.
+/// Form of the wind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
-    /// As the rain feels it, in cells and round objects.
+    /// As the rain feels it, in cells and around objects.
     Cells,
     /// The sum of the primitives and of the turbulence, without cells and objects.
     Primitives,
 }
 
-/// A plane and where it is.
+/// A plane and its coordinate.
 fn slice(text: &str) -> Result<(WindPlane, f32), String> {
     let allowed = "xy=Z, xz=Y or yz=X with a number of metres, -1e6 to 1e6";
     let wrong = || format!("allowed: {allowed}");
@@ -102,7 +102,7 @@ impl WindArguments {
     pub(crate) fn run(&self, interrupt: &Interrupt) -> Result<(), Failure> {
         check_name(&self.input, "toml", "input", "a weather file (.toml): a model has no wind")?;
         check_name(&self.output, "png", "output", ".png")?;
-        let place = Place::new(&self.output, self.overwrite)?;
+        let file = OutputFile::new(&self.output, self.overwrite)?;
         let weather = &Weather::read(&self.input, &mut Budget::default())?;
         if !self.quiet {
             say_cores(weather, stream::message);
@@ -125,7 +125,7 @@ impl WindArguments {
         let field = self.field(weather)?;
         let (picture, entries) = self.draw(weather, &grid, &slice, field.as_ref())?;
         let [width, height] = picture.size;
-        place.publish(&write_png(width, height, &picture.pixels)?, interrupt)?;
+        file.publish(&write_png(width, height, &picture.pixels)?, interrupt)?;
         if self.json {
             stream::print(&listing::json(&entries))?;
         }
@@ -136,7 +136,7 @@ impl WindArguments {
         Ok(())
     }
 
-    /// The wind that the rain feels, and what it is relative to, if that is asked for and differs from place to place.
+    /// Wind that the rain feels, and its reference velocity, if that is requested and the wind is non-uniform.
     fn field(&self, weather: &Weather) -> Result<Option<(WindField, Vec3)>, Failure> {
         if self.form == Form::Primitives || weather.wind.uniform().is_some() {
             return Ok(None);
@@ -147,7 +147,7 @@ impl WindArguments {
         Ok(field.map(|field| (field, stage.origin.as_vec3())))
     }
 
-    /// The weather with what stands in it.
+    /// The weather with its scene.
     fn input(&self) -> Result<Input, Failure> {
         let arguments = InputArguments {
             input: self.input.clone(),
@@ -193,7 +193,7 @@ impl WindArguments {
     }
 }
 
-/// Whether a name ends as it should.
+/// Checks the extension of a name.
 fn check_name(path: &Path, end: &str, what: &str, allowed: &str) -> Result<(), Failure> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     if extension.as_deref() == Some(end) {

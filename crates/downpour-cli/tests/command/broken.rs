@@ -1,5 +1,5 @@
-//! Files with something wrong in them: those that the tests of `downpour-scene` make, and, where they are, those that others have
-//! made, in the folder that `DOWNPOUR_DATA` names or in `shared/data` beside the repository.
+//! Broken files: those of the tests of `downpour-scene`, and, if present, those of other sources, in the folder in
+//! `DOWNPOUR_DATA` or in `shared/data` beside the repository.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `downpour check`: what it tells is what `render` would do.
+//! `downpour check`: its output agrees with `render`.
 
 use crate::child::Downpour;
 use crate::gltf_file::{gltf, tetrahedron};
@@ -26,9 +26,9 @@ fn a_weather_is_told_of() {
     }
     assert_eq!(json["camera"], "of the weather file");
     assert_eq!(json["distribution"], "marshall-palmer");
-    let place: Vec<f64> =
+    let position: Vec<f64> =
         json["camera_position_m"].as_array().unwrap().iter().filter_map(serde_json::Value::as_f64).collect();
-    assert!((place[1] - 1.2).abs() < 1.0e-6 && place[2] == 6.0, "{json}");
+    assert!((position[1] - 1.2).abs() < 1.0e-6 && position[2] == 6.0, "{json}");
     // Moon & Spencer: half of the sphere has a mean of 2/3 of the zenith's 3, the other a fifth of 7/9 of it.
     let mean = json["sky_mean_radiance"][1].as_f64().unwrap();
     assert!((mean - (1.0 + 0.5 * 0.2 * 3.0 * 7.0 / 9.0)).abs() < 1.0e-3, "{mean}");
@@ -41,7 +41,7 @@ fn a_weather_is_told_of() {
     assert!(number("memory_mib") > 0.1 && number("memory_mib") < 50.0, "{json}");
 }
 
-/// Arguments count as for `render`.
+/// Arguments are checked as for `render`.
 #[test]
 fn arguments_come_before_the_file() {
     let arguments = ["check", "--json", "--rate", "0", "--size", "100x50", "--seed", "18446744073709551615"];
@@ -70,7 +70,7 @@ fn people_read_a_list() {
     assert_eq!(line("those that play "), ["none"]);
 }
 
-/// The camera of the model is taken where the weather has none, with its angle of view.
+/// The camera of the model is used if the weather has none, with its field of view.
 #[test]
 fn the_camera_of_a_model_is_taken() {
     let (positions, triangles) = tetrahedron();
@@ -94,13 +94,13 @@ fn the_camera_of_a_model_is_taken() {
     assert!(!text.contains('\u{1b}') && text.contains("front\\u{1b}"), "{text:?}");
 }
 
-/// The atlas is told of where it is asked for: what its folder has, and the memory that it takes.
+/// The atlas is listed if the weather uses it: its files, and their memory.
 #[test]
 fn the_streak_atlas_is_told_of() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/streaks");
     let check = |look: &str, more: &[&str]| {
         storm(&[&["check", "--json"], more].concat())
-            .with_file("storm.toml", weather(&format!("[streaks]\ncolour = '{look}'\n")))
+            .with_file("storm.toml", weather(&format!("[streaks]\ncolor = '{look}'\n")))
             .run()
             .succeeded()
             .json()

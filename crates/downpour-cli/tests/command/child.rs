@@ -1,4 +1,4 @@
-//! One run of the command, and what it left.
+//! One run of the command, and its results.
 
 use std::fs::{self, File};
 use std::io;
@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// How long a run is waited for on a busy machine before it is said that it hangs.
+/// Time limit for a run on a busy machine, after which it counts as hanging.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(600);
 
-/// A run of the command in a folder of its own.
+/// A run of the command in a separate folder.
 pub(crate) struct Downpour {
     folder: TempDir,
     output: TempDir,
@@ -41,7 +41,7 @@ impl Downpour {
     fn of(mut command: Command) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let output = tempfile::tempdir().expect("a folder");
-        // Mesa wants a folder of its own, and complains where there is none.
+        // Mesa needs a separate folder, and complains without one.
         command.current_dir(&folder).stdin(Stdio::null()).env("XDG_RUNTIME_DIR", output.path());
         command.env_remove("DOWNPOUR_INJECT");
         Self { folder, output, command }
@@ -125,7 +125,7 @@ impl Running {
 }
 
 impl Ended {
-    /// It did what was asked.
+    /// It succeeded.
     #[track_caller]
     pub(crate) fn succeeded(self) -> Self {
         assert_eq!(self.code, Some(0), "{}", self.stderr);

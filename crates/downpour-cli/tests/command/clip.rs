@@ -1,4 +1,4 @@
-//! `downpour render --frames` on the CPU: a clip is its pictures, and goes on where it stopped.
+//! `downpour render --frames` on the CPU: a clip is its pictures, and resumes where it stopped.
 
 use std::fs;
 use std::path::Path;
@@ -22,13 +22,13 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
     fs::read(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// All that is in a folder but journals, which tell of times.
+/// All files of a folder but journals, which contain times.
 pub(crate) fn content(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let names = names_in(folder).into_iter().filter(|name| !name.ends_with(".downpour-job"));
     names.map(|name| (name.clone(), read(folder, &name))).collect()
 }
 
-/// Frame k is the picture at --time + k / fps, with its drops and what is told of it.
+/// Frame k is the picture at --time + k / fps, with its drops and statistics.
 #[test]
 fn a_clip_is_its_pictures() {
     let folder = tempfile::tempdir().unwrap();
@@ -62,7 +62,7 @@ fn a_clip_is_its_pictures() {
         }
         drawn += frame["drops_drawn"].as_u64().unwrap();
     }
-    // What the clip tells is the mean of its frames.
+    // Statistics of the clip are the mean of its frames.
     let number = |key: &str| clip[key].as_f64().unwrap();
     assert!((number("drops_drawn") * 3.0 - drawn as f64).abs() < 1.0e-6 && drawn > 0);
     let measured: f64 = frames.iter().map(|frame| frame["measured_rate_mm_h"].as_f64().unwrap()).sum();
@@ -81,7 +81,7 @@ fn a_clip_says_nothing_that_is_not_asked_for() {
 /// The scene of the storm, whose floor falls 50 m in the first second.
 fn falling_floor() -> String {
     let mut document: Value = serde_json::from_str(&model()).unwrap();
-    // Times 0 and 1; places 0, 0, 0 and 0, -50, 0.
+    // Times 0 and 1; positions 0, 0, 0 and 0, -50, 0.
     let bytes = "data:application/octet-stream;base64,AAAAAAAAgD8AAAAAAAAAAAAAAAAAAAAAAABIwgAAAAA=";
     let push = |list: &mut Value, value: Value| list.as_array_mut().unwrap().push(value);
     push(&mut document["buffers"], serde_json::json!({ "byteLength": 32, "uri": bytes }));
@@ -102,7 +102,7 @@ fn falling_floor() -> String {
     document.to_string()
 }
 
-/// What moves is where it is at the time of each frame; all frames have the exposure of the first, whenever they are made.
+/// Moving objects are at their positions at the time of each frame; all frames have the exposure of the first, in any order.
 #[test]
 fn a_moving_scene_keeps_its_exposure() {
     let moving =
@@ -118,7 +118,7 @@ fn a_moving_scene_keeps_its_exposure() {
     };
     assert!(single("a.exr") == read(folder.path(), "2.exr"));
     assert!(read(folder.path(), "0.exr") != read(folder.path(), "2.exr"));
-    // A picture of its own would be exposed for the sky that the floor has left.
+    // A single picture would be exposed for the sky that the floor has uncovered.
     assert!(single("a.png") != read(folder.path(), "2.png"));
     fs::remove_file(folder.path().join("2.png")).unwrap();
     let ended = moving(folder.path(), &["--frames", "0..3", "-o", "@%d.png"]).run().succeeded();
@@ -126,11 +126,11 @@ fn a_moving_scene_keeps_its_exposure() {
     assert!(content(folder.path()) == whole, "other files");
 }
 
-/// What is whole stays, what was changed or is gone is made again, and a later end makes the clip longer.
+/// Complete frames stay, changed or missing ones are made again, and a later end makes the clip longer.
 #[test]
 fn a_clip_goes_on_where_it_stopped() {
     let folder = tempfile::tempdir().unwrap();
-    let place = |name: &str| folder.path().join(name);
+    let path = |name: &str| folder.path().join(name);
     let run = |frames: &str, more: &[&str]| -> Ended {
         clip(folder.path(), &[&["--frames", frames, "-o", "@%03d.png"], more].concat()).run().succeeded()
     };
@@ -141,24 +141,24 @@ fn a_clip_goes_on_where_it_stopped() {
     let ended = run("0..5", &lists);
     assert!(ended.stderr.contains("5 frames of 32 x 18, 0 made now"), "{}", ended.stderr);
     assert!(content(folder.path()) == whole, "other files");
-    // One byte of one, the whole of another, a list.
+    // One byte of one, all bytes of another, a list.
     let mut bytes = read(folder.path(), "001.png");
     *bytes.last_mut().unwrap() ^= 1;
-    fs::write(place("001.png"), bytes).unwrap();
-    fs::remove_file(place("003.png")).unwrap();
-    fs::write(place("004.csv"), "").unwrap();
+    fs::write(path("001.png"), bytes).unwrap();
+    fs::remove_file(path("003.png")).unwrap();
+    fs::write(path("004.csv"), "").unwrap();
     let ended = run("0..5", &lists);
     assert!(ended.stderr.contains("5 frames of 32 x 18, 3 made now"), "{}", ended.stderr);
     assert!(content(folder.path()) == whole, "other files");
-    // What is told of frames that were made without being measured has to be measured.
+    // Statistics of frames that were made without being measured have to be measured.
     let ended = run("0..2", &["--stats", "@a.json"]);
     assert!(ended.stderr.contains("2 frames of 32 x 18, 2 made now"), "{}", ended.stderr);
-    fs::remove_file(place("a.json")).unwrap();
+    fs::remove_file(path("a.json")).unwrap();
     let ended = run("0..3", &["--stats", "@a.json"]);
     assert!(ended.stderr.contains("3 frames of 32 x 18, 1 made now"), "{}", ended.stderr);
     let stats: Value = serde_json::from_slice(&read(folder.path(), "a.json")).unwrap();
     assert!(stats["frames"].as_array().unwrap().iter().all(|frame| frame["measured_rate_mm_h"].is_number()));
-    fs::remove_file(place("a.json")).unwrap();
+    fs::remove_file(path("a.json")).unwrap();
     // Longer, and the same as in one go.
     let ended = run("0..7", &lists);
     assert!(ended.stderr.contains("7 frames of 32 x 18, 2 made now"), "{}", ended.stderr);
@@ -168,7 +168,7 @@ fn a_clip_goes_on_where_it_stopped() {
     assert!(content(folder.path()) == content(other.path()), "other files");
 }
 
-/// A journal that was damaged costs frames, not the clip; what it does not know is not ours.
+/// A damaged journal costs frames, not the clip; files that it does not list are not replaced.
 #[test]
 fn a_damaged_journal_costs_what_it_knew() {
     let folder = tempfile::tempdir().unwrap();
@@ -179,7 +179,7 @@ fn a_damaged_journal_costs_what_it_knew() {
     let text = fs::read_to_string(&journal).unwrap();
     // Header, exposure, three frames.
     assert_eq!(text.lines().count(), 5);
-    // The digest of frame 2 is not what was written.
+    // The digest of frame 2 does not match its file.
     let edited = text.replacen("\"frame\":2,\"picture\":\"", "\"frame\":2,\"picture\":\"0", 1);
     fs::write(&journal, &edited).unwrap();
     run().failed(5, &["2.png exists", "--overwrite"]);
@@ -196,7 +196,7 @@ fn a_damaged_journal_costs_what_it_knew() {
     assert!(content(folder.path()) == whole, "other files");
 }
 
-/// A clip is not continued with other options or another scene; what to do is said.
+/// A clip is not continued with other options or another scene; the message names the remedies.
 #[test]
 fn another_clip_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -209,7 +209,8 @@ fn another_clip_is_refused() {
         (&["--time", "0.5"], &["time 0, and now it is 0.5"]),
         (&["--refraction", "rousseau-2006"], &["refraction Direction"]),
     ] {
-        let words = [words, &["allowed: the same as before to go on, another name, or --overwrite"]].concat();
+        let words =
+            [words, &["allowed: the same as before to resume, another name, or --overwrite"]].concat();
         run(more).run().failed(2, &words);
     }
     let later = clip(folder.path(), &["--frames", "1..2", "-o", "@%d.png"]).run();
@@ -222,7 +223,7 @@ fn another_clip_is_refused() {
     assert!(content(folder.path()) != whole, "the same files");
     run(&["--overwrite"]).run().succeeded();
     assert!(content(folder.path()) == whole, "other files");
-    // A clip that was begun over files goes on without being told again.
+    // A clip that was started over files resumes without --overwrite.
     fs::remove_file(folder.path().join("1.png")).unwrap();
     run(&[]).run().succeeded();
     assert!(content(folder.path()) == whole, "other files");

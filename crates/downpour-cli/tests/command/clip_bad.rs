@@ -1,4 +1,4 @@
-//! What `render --frames` refuses. Code, one line, nothing written.
+//! Invalid input of `render --frames`. Code, one line, nothing written.
 
 use std::fs;
 
@@ -98,7 +98,7 @@ fn files_that_are_not_of_the_clip_are_kept() {
         names.sort_unstable();
         ended.left(&names);
     }
-    // A frame of the clip that is no frame of the range is nobody's business.
+    // A frame of the clip outside the range is ignored.
     let run = storm(&["render", "--size", "8x8", "-q", "--frames", "0..1", "--fps", "8", "-o", "%d.png"]);
     let ended = run.with_file("1.png", "precious").run().succeeded();
     assert_eq!(ended.file("1.png"), b"precious");
@@ -143,12 +143,12 @@ fn a_folder_that_takes_no_files_is_an_error_of_files() {
     let folder = tempfile::tempdir().unwrap();
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
     let root = fs::write(folder.path().join("probe"), "").is_ok();
-    let place = if root { std::path::Path::new("/sys/kernel") } else { folder.path() };
-    clip(place, &["--frames", "0..2", "-o", "@%d.png"]).run().failed(5, &["%d.png", "denied"]);
+    let parent = if root { std::path::Path::new("/sys/kernel") } else { folder.path() };
+    clip(parent, &["--frames", "0..2", "-o", "@%d.png"]).run().failed(5, &["%d.png", "denied"]);
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
 }
 
-/// As a full disk: what was published stays, nothing is left of what was not, and the clip goes on when there is room.
+/// As on a full disk: published files stay, unpublished ones leave nothing, and the clip resumes once there is space.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_write_that_fails_leaves_what_was_whole() {

@@ -1,4 +1,4 @@
-//! A clip that is stopped, orderly or not, goes on: its frames are those of a clip that was not stopped.
+//! A clip that is stopped, orderly or not, resumes: its frames are those of a clip that was not stopped.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ fn start(folder: &Path, arguments: &[&str]) -> Running {
     clip(folder, arguments).start()
 }
 
-/// Waits until there are so many files of this kind.
+/// Waits until there are `count` files of this kind.
 fn wait_for(folder: &Path, end: &str, count: usize) {
     let begin = Instant::now();
     while names_in(folder).iter().filter(|name| name.ends_with(end)).count() < count {
@@ -23,7 +23,7 @@ fn wait_for(folder: &Path, end: &str, count: usize) {
     }
 }
 
-/// Killed again and again, at moments that move through the making of a frame, what has a frame's name is the frame.
+/// Killed repeatedly, at moments that move through the making of a frame, a file with a frame's name is the frame.
 #[test]
 fn a_kill_never_leaves_half_a_frame_and_the_clip_goes_on() {
     let reference = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! `downpour render --frames -o clip.mp4`: a file that players take, made whole or not at all.
+//! `downpour render --frames -o clip.mp4`: a file that players accept, complete or absent.
 
 use std::fs;
 use std::io::Write as _;
@@ -56,7 +56,7 @@ fn a_video_is_a_file_of_av1() {
     let times = at(table, &["stts"]);
     assert_eq!((number(times, 4), number(times, 8), number(times, 12) * 8), (1, 7, timescale));
     assert_eq!((number(at(table, &["stss"]), 4), number(at(table, &["stss"]), 8)), (1, 1));
-    // The samples fill the data, from the place that the table tells.
+    // The samples fill the data, from the offset in the table.
     let sizes = at(table, &["stsz"]);
     assert_eq!((number(sizes, 4), number(sizes, 8)), (0, 7));
     let sizes: Vec<usize> = (0..7).map(|k| number(sizes, 12 + 4 * k)).collect();
@@ -64,18 +64,18 @@ fn a_video_is_a_file_of_av1() {
     assert_eq!(sizes.iter().sum::<usize>(), data.len());
     let begin = number(at(table, &["stco"]), 8);
     assert_eq!(begin, file.len() - data.len());
-    // The first picture begins with a sequence header, and none with a temporal delimiter.
-    let mut place = begin;
+    // The first picture starts with a sequence header, and none with a temporal delimiter.
+    let mut offset = begin;
     for (k, size) in sizes.iter().enumerate() {
-        let kind = file[place] >> 3 & 15;
+        let kind = file[offset] >> 3 & 15;
         assert!(kind != 2 && (kind == 1) == (k == 0), "sample {k} begins with an OBU of kind {kind}");
-        place += size;
+        offset += size;
     }
     let entry = at(table, &["stsd"])[8..].to_vec();
     assert_eq!(&entry[4..8], b"av01");
     assert_eq!(entry[32..36], [0, 32, 0, 18]);
     let inner = &entry[8 + 78..];
-    // Version 1, profile 0, 4:2:0, colour samples level with luma samples and between rows.
+    // Version 1, profile 0, 4:2:0, color samples level with luma samples and between rows.
     assert_eq!((at(inner, &["av1C"])[0], at(inner, &["av1C"])[2] & 0b0111_1111), (0x81, 0b0000_1101));
     // BT.709, sRGB, BT.709, limited.
     assert_eq!(at(inner, &["colr"]), [&b"nclx"[..], &[0, 1, 0, 13, 0, 1, 0]].concat());

@@ -1,4 +1,4 @@
-//! `downpour lattice`: invariants, pictures, and what is refused.
+//! `downpour lattice`: invariants, pictures, and invalid input.
 
 use crate::child::Downpour;
 
@@ -48,7 +48,7 @@ fn ripples_keep_what_they_should() {
     );
 }
 
-/// Damping leaves next to nothing of the ripples, and rounding leaves what it left of the volume.
+/// Damping leaves almost no ripples, and rounding a small drift of the volume.
 #[test]
 fn the_volume_is_compared_with_what_was_moved_at_first() {
     let arguments =

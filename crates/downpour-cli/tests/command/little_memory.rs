@@ -1,4 +1,4 @@
-//! Limits of memory that leave no room for a thread on each core, and none for any work.
+//! Limits of memory that do not allow a thread per core, or any work.
 
 use crate::child::{Downpour, Ended};
 
@@ -9,7 +9,7 @@ fn checked(mebibytes: u64) -> Ended {
     run.with_file("a.toml", "[rain]\nrate_mm_h = 5\n").run()
 }
 
-/// The work is done with the threads that there is room for.
+/// The work is done with the threads that fit.
 #[test]
 fn a_weather_is_checked_where_few_threads_can_start() {
     for mebibytes in [256, 320, 512] {
@@ -17,7 +17,7 @@ fn a_weather_is_checked_where_few_threads_can_start() {
     }
 }
 
-/// Below what any work needs the command says so, wherever the system can load the program at all.
+/// Below the minimum of any work the command reports it, if the system can load the program at all.
 #[test]
 fn too_little_memory_for_any_work_is_refused() {
     for mebibytes in [40, 64, 96, 160, 255] {

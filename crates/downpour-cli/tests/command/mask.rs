@@ -176,7 +176,7 @@ fn numbers_out_of_range_are_refused_and_nothing_is_written() {
         .with_one_line();
 }
 
-/// What is injected is a failure of a GPU.
+/// An injected failure is one of a GPU.
 #[test]
 fn the_cpu_does_not_lose_a_device() {
     let arguments = ["mask", "--diameter", "2", "--size", "16", "--backend", "cpu", "-o", "m.exr"];

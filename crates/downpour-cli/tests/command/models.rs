@@ -1,4 +1,4 @@
-//! Models that are no drops: code 2 or 3, one line, no panic, no hang, nothing written.
+//! Models that are not drops: code 2 or 3, one line, no panic, no hang, nothing written.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use crate::broken::bad_inputs;
 use crate::child::{Downpour, Ended};
 use crate::gltf_file::{empty, gltf, tetrahedron};
 
-/// 4 GiB of memory, where a shell can limit it.
+/// 4 GiB of memory, if a shell can limit it.
 fn mask_of(model: &Path) -> Ended {
     let arguments: [&std::ffi::OsStr; 7] = [
         "mask".as_ref(),
@@ -40,7 +40,7 @@ fn every_bad_input_is_refused_in_one_line() {
     }
 }
 
-/// A drop model in a folder of its own, and the words of its refusal.
+/// A drop model in a separate folder, and the text of its error.
 #[track_caller]
 fn refused(text: &str, words: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
@@ -57,9 +57,9 @@ fn a_mesh_that_is_no_closed_drop_is_refused_with_the_reason() {
     let inside_out: Vec<[u32; 3]> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
     refused(&gltf(&positions, &inside_out), &["inside out"]);
     let one_turned = [triangles[0], triangles[1], triangles[2], [1, 3, 2]];
-    refused(&gltf(&positions, &one_turned), &["the same way in 2 triangles"]);
+    refused(&gltf(&positions, &one_turned), &["the same direction in 2 triangles"]);
     let twice = [&triangles[..], &triangles[..]].concat();
-    refused(&gltf(&positions, &twice), &["the same way in 2 triangles"]);
+    refused(&gltf(&positions, &twice), &["the same direction in 2 triangles"]);
     let flat: Vec<[f32; 3]> = positions.iter().map(|p| [p[0], p[1], 0.0]).collect();
     refused(&gltf(&flat, &triangles), &["degenerate"]);
     refused(&gltf(&[[1.0; 3]; 4], &triangles), &["degenerate"]);

@@ -46,7 +46,7 @@ pub(crate) fn a_pane_is_that_of_the_cpu(on: &[&str]) {
     }
 }
 
-/// The same list and pictures to rounding; whole numbers are the same. The control is another seed.
+/// The same list and pictures to rounding; integers are the same. The control is another seed.
 pub(crate) fn a_puddle_is_that_of_the_cpu(on: &[&str]) {
     let fixed = ["puddle", "--size", "96x64", "--steps", "150", "--json", "-o", "h.exr"];
     for more in [&["--rate", "100"][..], &["--check", "energy"], &["--check", "mass"], &["--check", "rest"]] {

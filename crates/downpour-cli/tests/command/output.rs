@@ -1,4 +1,4 @@
-//! Output files are whole or not there, and never in the place of something that was not theirs.
+//! Output files are complete or absent, and never replace files of others.
 
 use std::fs;
 use std::path::Path;
@@ -58,8 +58,8 @@ fn a_folder_that_takes_no_files_is_an_error_of_files() {
     let folder = tempfile::tempdir().unwrap();
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
     let root = fs::write(folder.path().join("probe"), "").is_ok();
-    let place = if root { Path::new("/sys/kernel") } else { folder.path() };
-    let output = place.join("downpour-test.exr");
+    let parent = if root { Path::new("/sys/kernel") } else { folder.path() };
+    let output = parent.join("downpour-test.exr");
     to(output.to_str().unwrap(), &[]).run().failed(5, &["downpour-test.exr", "denied"]).with_one_line();
     assert!(!output.exists());
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
@@ -88,7 +88,7 @@ fn a_file_has_the_rights_of_the_umask() {
     assert_eq!(mode & 0o777, 0o640);
 }
 
-/// As a full disk: nothing under the final name, and no temporary file.
+/// As on a full disk: nothing under the final name, and no temporary file.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_write_that_fails_leaves_nothing() {

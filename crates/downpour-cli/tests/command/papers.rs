@@ -1,4 +1,4 @@
-//! Figures of papers as weather files, and what drops look like by name.
+//! Figures of papers as weather files, and drop appearances by name.
 
 use std::path::{Path, PathBuf};
 
@@ -56,7 +56,7 @@ fn the_figures_of_papers_are_weather_files() {
     assert!(streets.len() <= 3, "{} streets: a load of each takes a second", streets.len());
 }
 
-/// A weather with a floor in place of its models, and the text of these; nothing where it has none.
+/// A weather with a floor instead of its models, and the text of these; empty if it has none.
 fn before_a_floor(text: &str) -> (String, &str) {
     let Some(begin) = text.find("model = [") else {
         assert!(!text.contains("model"), "models in another form: {text}");
@@ -105,7 +105,7 @@ fn an_eye_is_no_shutter() {
     assert_eq!(seen("observer = 'eye'\npersistence_s = 0.06", &["--shutter", "0.075"]), camera);
 }
 
-/// The model of the scene is a floor, and no drop.
+/// The model of the scene is a floor, not a drop.
 #[test]
 fn check_and_render_refuse_a_drop_that_is_open() {
     let bad = raining("mask_model = 'floor.gltf'") + "[streaks]\nsamples = 4\n";

@@ -6,7 +6,7 @@ use crate::child::Downpour;
 use crate::clip::content;
 use crate::scene_files::{model, weather};
 
-/// The storm on uneven ground, with what is painted on it.
+/// The storm on uneven ground, with a painted puddle.
 fn flooded(arguments: &[&str]) -> Downpour {
     let puddles = "[[puddle]]\nposition_m = [0, 0, 2]\nsize_m = [4, 3]\nrelief_mm = 5\ncell_mm = 40\n\
                    [[puddle]]\nposition_m = [0, 0, -2]\nsize_m = [2, 1]\nmask = 'mask.png'\n";
@@ -29,7 +29,7 @@ fn check_tells_of_the_water() {
     assert!(number("puddle_volume_l") > 24.0 && number("puddle_deepest_mm") >= 12.0, "{told}");
 }
 
-/// Water changes the picture, ripples go on from frame to frame, and a clip that is taken up again is the same.
+/// Water changes the picture, ripples continue from frame to frame, and a resumed clip is the same.
 #[test]
 fn a_clip_of_puddles_goes_on_where_it_stopped() {
     let run = |folder: &Path, frames: &str| {

@@ -1,4 +1,4 @@
-//! `downpour rain`: it carries the rate that was asked.
+//! `downpour rain`: it carries the requested rate.
 
 use crate::child::downpour;
 
@@ -95,7 +95,7 @@ fn the_gamma_law_takes_its_parameters() {
         let json = downpour(&[&["rain", "--json", "--rate", "10", "--distribution", "gamma"], more].concat());
         json.succeeded().json()["median_volume_diameter_mm"].as_f64().unwrap()
     };
-    // What is cut off below 0.1 and above 8 mm shifts the median by less than 2 %.
+    // Truncation below 0.1 and above 8 mm shifts the median by less than 2 %.
     assert!((gamma(&["--median-diameter", "1.2"]) / 1.2 - 1.0).abs() < 0.02);
     assert!(gamma(&["--gamma-shape", "0", "--intercept", "8000"]) > 1.3);
     let exponential = gamma(&["--gamma-shape=0"]);

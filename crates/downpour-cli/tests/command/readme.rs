@@ -1,4 +1,4 @@
-//! The README shows what the command writes. Blocks marked `console` begin with a command line; what follows is its
+//! The README shows the output of the command. Blocks marked `console` begin with a command line, followed by its
 //! output, to standard output if there is any, else to standard error.
 
 use crate::child::Downpour;

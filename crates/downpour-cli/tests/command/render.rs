@@ -85,7 +85,7 @@ fn a_picture_is_written_and_told_of() {
     assert_eq!(names, ["B", "G", "R"]);
 }
 
-/// The picture is what its layers say; the rain takes light and gives light; the floor is where it is.
+/// The picture is the sum of its layers; the rain absorbs and emits light; the floor is at its depth.
 #[test]
 fn layers_add_up_to_the_picture() {
     let ended = storm(&["render", "--layers", "-o", "rain.exr"]).run().succeeded();
@@ -116,7 +116,7 @@ fn layers_add_up_to_the_picture() {
         }
     }
     assert!(through.iter().all(|t| (0.0..=1.0).contains(t)));
-    // Rain that is not drawn drop by drop stands before every pixel, a drop before some.
+    // Unresolved rain is in front of every pixel, a drop in front of some.
     let mut sorted = through.clone();
     sorted.sort_by(f32::total_cmp);
     let most = sorted[sorted.len() / 10 * 9];
@@ -126,7 +126,7 @@ fn layers_add_up_to_the_picture() {
     let other_sky = storm(&["render", "--layers", "--rate", "0", "-o", "rain.exr"]).run().succeeded();
     let dry = channels(&other_sky.file("rain.exr"));
     assert_eq!(dry["clean.G"], layers["clean.G"], "the scene behind does not depend on the rain");
-    // Left of the tetrahedron, in the last row, the ray meets the floor.
+    // Left of the tetrahedron, in the last row, the ray hits the floor.
     let depth = &layers["depth.Z"];
     let [width, height] = SIZE.map(|edge| edge as usize);
     let half_height = ops::tan(6.0f64.to_radians());
@@ -140,7 +140,7 @@ fn layers_add_up_to_the_picture() {
     assert_eq!(depth[0], 1.0e30, "the sky is far");
 }
 
-/// As `--stats` and `--dump-drops` promise. The rate that the drops carry is the one that was asked for.
+/// As documented for `--stats` and `--dump-drops`. The rate that the drops carry is the requested one.
 #[test]
 fn statistics_and_drops_agree() {
     let files = ["--stats", "stats.json", "--dump-drops", "drops.csv", "--time", "2.5"];
@@ -232,7 +232,7 @@ fn rate_0_is_a_dry_picture() {
     assert_eq!(dry.run().succeeded().file("rain.exr"), ended.file("rain.exr"));
 }
 
-/// A bare model stands in a shower, all of it in the picture.
+/// A bare model is shown in a shower, all of it in the picture.
 #[test]
 fn a_bare_model_is_framed() {
     let (positions, triangles) = tetrahedron();
@@ -255,7 +255,7 @@ fn greens(picture: &Picture) -> Vec<f32> {
     pixels.iter().map(|pixel| f32::from(pixel[1]) / 255.0).collect()
 }
 
-/// The first picture that somebody makes shows rain: streaks that stand out by more than a twentieth of full white.
+/// The first picture of a new user shows rain: streaks with a contrast of more than a twentieth of full white.
 #[test]
 fn the_picture_of_a_bare_model_shows_rain() {
     let (positions, triangles) = tetrahedron();
@@ -275,7 +275,7 @@ fn the_picture_of_a_bare_model_shows_rain() {
     assert!(brighter * 100 > wet.len(), "{brighter} of {} pixels", wet.len());
 }
 
-/// What is far from the world's origin looks as it does near it, and drops are told of where they are.
+/// A scene far from the world's origin looks as near it, and drops are listed at their positions.
 #[test]
 fn ten_thousand_kilometres_away_nothing_is_lost() {
     let far = weather("").replace("look_at_m = [0, 0.6, 0]", "look_at_m = [8388608, 0.6, 0]");

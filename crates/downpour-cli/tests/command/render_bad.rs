@@ -1,5 +1,5 @@
-//! What `render` and `check` refuse: arguments, keys of a weather file, files that are none. Code, one line, nothing
-//! written, and no more than 4 GiB taken.
+//! Invalid input of `render` and `check`: arguments, keys of a weather file, files of other kinds. Code, one line, nothing
+//! written, and at most 4 GiB used.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use crate::child::{Downpour, Ended, downpour};
 use crate::gltf_file::{empty, gltf, tetrahedron};
 use crate::scene_files::{model, storm, weather};
 
-/// The scene under a limit of memory, where a shell can set one.
+/// The scene under a limit of memory, if a shell can set one.
 fn limited(arguments: &[&str]) -> Downpour {
     #[cfg(unix)]
     let run = Downpour::limited(&["-v 4194304"], arguments);
@@ -73,7 +73,7 @@ fn a_picture_of_one_pixel_is_one() {
     render(&["-q", "-o", "a.exr", "--size", "1x1"]).succeeded().left(&["a.exr", "floor.gltf", "storm.toml"]);
 }
 
-/// 268 million pixels need more memory than the process may have: told before anything is traced.
+/// 268 million pixels need more memory than the process may use: reported before anything is traced.
 #[cfg(unix)]
 #[test]
 fn a_picture_beyond_the_memory_is_over_a_limit() {
@@ -84,7 +84,7 @@ fn a_picture_beyond_the_memory_is_over_a_limit() {
         .left(&["floor.gltf", "storm.toml"]);
 }
 
-/// Both commands say the same of an input.
+/// Both commands report the same for an input.
 #[track_caller]
 fn both(input: &str, files: &[(&str, &[u8])], code: i32, words: &[&str]) {
     for arguments in [
@@ -135,7 +135,7 @@ fn unusual_inputs_that_are_good() {
         let ended = run.with_file("a.toml", text).run().succeeded();
         assert!(ended.stderr.contains("no triangles: a picture of the sky alone"), "{}", ended.stderr);
     }
-    // Without meshes, and without a camera: the sky, with a word about it.
+    // Without meshes, and without a camera: the sky, with a warning.
     let run = limited(&["render", "a.gltf", "--backend=cpu", "--samples=1", "--size=8x8", "-o", "a.png"]);
     let ended = run.with_file("a.gltf", empty()).run().succeeded();
     assert!(ended.stderr.contains("warning: a.gltf: no triangles"), "{}", ended.stderr);
@@ -144,7 +144,7 @@ fn unusual_inputs_that_are_good() {
     assert_eq!(run.run().succeeded().without_a_word().json()["camera"], "in front of all that there is");
 }
 
-/// A key is refused with its line and what would be accepted.
+/// The error of a key has its line and the allowed values.
 #[test]
 fn bad_keys_are_refused() {
     let rain = |line: &str| weather("").replace("rate_mm_h = 400", line);
@@ -181,7 +181,7 @@ fn bad_keys_are_refused() {
     }
 }
 
-/// Many copies of a model: as many as a renderer takes, then a limit, with no time and no memory lost.
+/// Many copies of a model: as many as a renderer accepts, then a limit, without loss of time and memory.
 #[test]
 fn copies_are_limited() {
     let of = |count: &str, model: &str| {
@@ -224,9 +224,9 @@ fn nothing_outside_the_folder_is_read() {
     let outside = tempfile::tempdir().unwrap();
     fs::write(outside.path().join("floor.gltf"), model()).unwrap();
     let run = storm(&["check"]);
-    let place = run.folder().join("floor.gltf");
-    fs::remove_file(&place).unwrap();
-    std::os::unix::fs::symlink(outside.path().join("floor.gltf"), &place).unwrap();
+    let link = run.folder().join("floor.gltf");
+    fs::remove_file(&link).unwrap();
+    std::os::unix::fs::symlink(outside.path().join("floor.gltf"), &link).unwrap();
     run.run().failed(2, &["floor.gltf", "leaves the scene folder"]).with_one_line();
     // Named as an asset root, the folder may be read.
     let run = storm(&["check", "--json", "--asset-root", outside.path().to_str().unwrap()]);
@@ -239,7 +239,7 @@ fn nothing_outside_the_folder_is_read() {
         .failed(2, &["--asset-root", ".toml"]);
 }
 
-/// A weather whose streaks are of an atlas, and what `--streaks` may be.
+/// A weather with streaks of an atlas, and values of `--streaks`.
 #[test]
 fn a_streak_atlas_that_is_none_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -261,19 +261,19 @@ fn a_streak_atlas_that_is_none_is_refused() {
         let run = |more: &[&str]| {
             let fixed = ["render", "storm.toml", "--backend", "cpu", "--samples", "1", "-o", "a.png"];
             Downpour::new(&[&fixed, more].concat())
-                .with_file("storm.toml", weather(&format!("[streaks]\ncolour = '{word}'\n")))
+                .with_file("storm.toml", weather(&format!("[streaks]\ncolor = '{word}'\n")))
                 .with_file("floor.gltf", model())
                 .run()
         };
         let check = |more: &[&str]| {
             Downpour::new(&[&["check", "storm.toml", "--json"], more].concat())
-                .with_file("storm.toml", weather(&format!("[streaks]\ncolour = '{word}'\n")))
+                .with_file("storm.toml", weather(&format!("[streaks]\ncolor = '{word}'\n")))
                 .with_file("floor.gltf", model())
                 .run()
         };
         let files = ["floor.gltf", "storm.toml"];
         let told = run(&[]).failed(2, &["streaks.colour", "--streaks FOLDER"]).with_one_line().left(&files);
-        // The check tells the rest, and ends as the picture does.
+        // The check lists the rest, and ends as the picture does.
         let checked = check(&[]).failed(2, &["streaks.colour", "--streaks FOLDER"]).left(&files);
         assert_eq!(checked.stderr, told.stderr);
         assert!(checked.json()["streak_atlas"].as_str().unwrap().contains("no --streaks: render ends"));

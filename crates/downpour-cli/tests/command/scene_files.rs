@@ -21,7 +21,7 @@ pub(crate) fn model() -> String {
     gltf(&positions, &[[0, 2, 1], [0, 3, 2], [4, 5, 7], [5, 6, 7], [6, 4, 7]])
 }
 
-/// A weather of heavy rain before [`model`]; `more` comes last.
+/// A weather of heavy rain for [`model`]; `more` is appended.
 pub(crate) fn weather(more: &str) -> String {
     format!(
         "[rain]\nrate_mm_h = 400\nseed = 7\n\
@@ -33,7 +33,7 @@ pub(crate) fn weather(more: &str) -> String {
     )
 }
 
-/// The command on `storm.toml`, in a folder with the scene. What is rendered is rendered on the CPU, coarsely.
+/// The command on `storm.toml`, in a folder with the scene. It renders on the CPU, coarsely.
 pub(crate) fn storm(arguments: &[&str]) -> Downpour {
     let render: &[&str] = &["--backend", "cpu", "--samples", "1", "--sky-rays", "1"];
     let rest: &[&str] = if arguments.first() == Some(&"render") { render } else { &[] };

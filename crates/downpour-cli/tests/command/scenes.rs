@@ -1,4 +1,4 @@
-//! Broken files through `check` and `render`: a code of the contract, one line that says why, nothing written; the same code
+//! Broken files through `check` and `render`: a code of the contract, one line with the reason, nothing written; the same code
 //! from both.
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::broken::bad_inputs;
 use crate::child::{Downpour, Ended};
 
-/// 4 GiB of memory, where a shell can limit it.
+/// 4 GiB of memory, if a shell can limit it.
 fn limited(arguments: &[&str]) -> Downpour {
     #[cfg(unix)]
     return Downpour::limited(&["-v 4194304"], arguments);
@@ -20,7 +20,7 @@ fn render(input: &str) -> Downpour {
     limited(&[&["render", input], &small[..]].concat())
 }
 
-/// What came of a run: its code, checked.
+/// Exit code of a run, checked.
 #[track_caller]
 fn code(name: &str, ended: Ended, written: &[&str]) -> i32 {
     let code = ended.code.unwrap_or_else(|| panic!("{name}: a signal: {}", ended.stderr));
@@ -41,7 +41,7 @@ fn models_are_read_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let found: Vec<PathBuf> = bad_inputs(folder.path()).into_iter().filter(is_model).collect();
     assert!(found.len() > 100, "{} files", found.len());
-    // As many at once as the machine can do.
+    // As many at once as the machine has threads.
     let next = std::sync::atomic::AtomicUsize::new(0);
     let counts = std::sync::Mutex::new([0usize; 2]);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);

@@ -9,7 +9,7 @@ use downpour::mask::file::exr;
 use crate::child::{Downpour, Ended, Running, names_in};
 use crate::scene_files::storm;
 
-/// Sends a signal after some milliseconds: the work ends before it is done and says so.
+/// Sends a signal after some milliseconds: the work ends early with a message.
 fn interrupted(running: Running, signal: &str, wait: u64) -> Ended {
     sleep(Duration::from_millis(wait));
     running.signal(signal);
@@ -39,7 +39,7 @@ fn an_interrupt_ends_a_picture_at_once_and_leaves_nothing() {
 }
 
 /// The file under the final name is the old one or the new one, whenever the process is killed; the next run removes
-/// what was left.
+/// leftovers.
 #[test]
 fn a_kill_never_leaves_half_a_file_under_the_final_name() {
     let folder = tempfile::tempdir().unwrap();
@@ -66,13 +66,13 @@ fn a_kill_never_leaves_half_a_file_under_the_final_name() {
     let mut killed = 0;
     for part in 0..16u32 {
         let running = mask("256").start();
-        // Most of the time goes into the work; the last part is the writing.
+        // Most of the time is spent on the work; the last part is the writing.
         sleep(whole.mul_f64(0.6 + 0.5 * f64::from(part) / 16.0));
         running.signal("KILL");
         if running.end().code.is_none() {
             killed += 1;
         } else {
-            // It was over: the machine is less busy than when the whole was timed.
+            // It was finished: the machine is less busy than when the run was timed.
             whole = whole.mul_f64(0.8);
         }
         assert!(matches!(size_of(&path), 16 | 256));

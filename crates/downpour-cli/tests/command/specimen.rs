@@ -1,4 +1,4 @@
-//! `downpour specimen` on the CPU: pictures, and what is refused.
+//! `downpour specimen` on the CPU: pictures, and invalid input.
 
 use downpour::render::file::write_exr;
 use downpour::scene::Budget;
@@ -26,7 +26,7 @@ fn pixels(ended: &Ended) -> (u32, u32, Vec<[f32; 4]>) {
     }
 }
 
-/// The drop shows the sky upside down; beside it the map is seen as it is.
+/// The drop shows the sky upside down; beside it the map is visible as it is.
 #[test]
 fn the_sky_is_upside_down_in_the_drop() {
     let ended = specimen(&["--diameter", "2", "--size", "90x60", "-o", "d.exr"]).succeeded();
@@ -47,7 +47,7 @@ fn a_picture_of_one_pixel_is_one() {
     assert!(png.file("d.png").starts_with(b"\x89PNG"));
 }
 
-/// Without an exposure and an oscillation, or with those that are nothing, the picture is that of the drop at rest.
+/// With an exposure and an oscillation of 0, the picture is that of the drop at rest.
 #[test]
 fn a_streak_of_no_exposure_is_the_drop_at_rest() {
     let picture = |more: &[&str]| {

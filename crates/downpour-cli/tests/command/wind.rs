@@ -1,4 +1,4 @@
-//! `downpour wind`: pictures of winds, and what is measured in them.
+//! `downpour wind`: pictures of winds, and their statistics.
 
 use crate::child::Downpour;
 
@@ -40,7 +40,7 @@ fn time_and_place_matter() {
         ended.json()["speed_mean_m_s"].as_f64().unwrap()
     };
     assert!((speed("0") - 2.0).abs() < 1.0e-5 && (speed("5") - 7.0).abs() < 1.0e-5);
-    // A source has divergence where it is, and none far away.
+    // A source has divergence at its center, and none far away.
     let source = "[[wind]]\nsource = { strength_m3_s = 100, core_m = 2 }\n";
     let divergence = |offset: &str| {
         let arguments = ["--slice", offset, "--json", "--box", "-5,-5,-5,5,5,5", "--form", "primitives"];
@@ -58,7 +58,7 @@ fn time_and_place_matter() {
     );
 }
 
-/// The rain feels the wind in cells: what is finer than they are is blurred, and said to be.
+/// The rain feels the wind in cells: finer details are blurred, with a warning.
 #[test]
 fn what_is_drawn_is_what_the_rain_feels() {
     let narrow = "[[wind]]\nvortex = { strength_m2_s = 60, core_m = 0.5, core = 'lamb-oseen' }\n";

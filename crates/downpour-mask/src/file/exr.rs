@@ -6,9 +6,9 @@
 //! of the view (x right, y up, z towards the viewer). The attribute `downpourMask` holds the diameter, the half
 //! extent of the picture in equivalent radii, the view's elevation and the refractive index.
 //!
-//! Reading takes what this module writes. The header is checked first: compression schemes whose decoders are
-//! not safe on hostile files (DWAA, DWAB, B44, B44A, HTJ2K) are refused, as are sizes above the limit, before
-//! any memory is taken for pixels.
+//! The reader accepts files of this module's writer. The header is checked first: compression schemes whose decoders are
+//! not safe on hostile files (DWAA, DWAB, B44, B44A, HTJ2K) are rejected, as are sizes above the limit, before
+//! any memory is allocated for pixels.
 
 use std::io::Cursor;
 
@@ -33,7 +33,7 @@ const ATTRIBUTE: &str = "downpourMask";
 
 type Field = (&'static str, fn(&MaskTexel) -> f32, fn(&mut MaskTexel, f32));
 
-/// The channels and the numbers of a texel that they hold.
+/// Channels and the numbers of a texel that they hold.
 const FIELDS: [Field; 13] = [
     ("R", |t| t.direction[0], |t, v| t.direction[0] = v),
     ("G", |t| t.direction[1], |t, v| t.direction[1] = v),
@@ -50,7 +50,7 @@ const FIELDS: [Field; 13] = [
     ("reflections.Y", |t| t.reflections as f32, |t, v| t.reflections = v as u32),
 ];
 
-/// The mask as the bytes of an OpenEXR file, ZIP compressed.
+/// Encodes the mask as an OpenEXR file, ZIP compressed.
 ///
 /// # Errors
 /// [`MaskError::Encode`] if the encoder fails.
@@ -70,7 +70,7 @@ pub fn write_exr(mask: &Mask, precision: Precision) -> core::result::Result<Vec<
         refractive_index: mask.refractive_index,
     };
     let mut attributes = LayerAttributes::default();
-    // One attribute only: the encoder keeps these in a map whose order changes from run to run.
+    // One attribute only: the encoder stores them in a map whose order changes from run to run.
     attributes
         .other
         .insert(Text::from(ATTRIBUTE), AttributeValue::Text(Text::from(description.write().as_str())));

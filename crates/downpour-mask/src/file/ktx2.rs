@@ -7,9 +7,9 @@
 //!   transmittance.
 //!
 //! The key `DownpourMask` holds diameters, half extents (in equivalent radii), the view's elevation and the
-//! refractive index. The number of total reflections is not kept (OpenEXR has it).
+//! refractive index. The number of total reflections is not stored (OpenEXR has it).
 //!
-//! Reading takes what this module writes, and checks every size before it takes memory.
+//! The reader accepts files of this module's writer, and checks every size before it allocates memory.
 
 use half::f16;
 use ktx2::{Format, Header, LevelIndex, SupercompressionScheme};
@@ -18,21 +18,21 @@ use crate::file::texture_array::{TextureArray, find_text, part, write_array};
 use crate::file::{Description, shorten};
 use crate::{Mask, MaskError, MaskTexel, SIZES};
 
-/// The most masks of an array: a texture array has 256 layers on every WebGPU device.
-const MOST_MASKS: usize = 256 / LAYERS;
-/// Layers of a mask.
+/// Maximum number of masks of an array: a texture array has 256 layers on every WebGPU device.
+const MAX_MASKS: usize = 256 / LAYERS;
+/// Layers per mask.
 const LAYERS: usize = 3;
-/// The format of a layer.
+/// Texel format of a layer.
 const FORMAT: Format = Format::R16G16B16A16_SFLOAT;
 /// Bytes of a texel of a layer.
 const TEXEL_BYTES: usize = 8;
 
-/// Masks of one size, view and refractive index as the bytes of a KTX2 file.
+/// Encodes masks of one size, view and refractive index as a KTX2 file.
 ///
 /// # Errors
-/// [`MaskError::File`] if the masks do not belong together, or are none or too many.
+/// [`MaskError::File`] if the masks differ in these, or if there are none or too many.
 pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
-    let Some(first) = masks.first().filter(|_| masks.len() <= MOST_MASKS) else {
+    let Some(first) = masks.first().filter(|_| masks.len() <= MAX_MASKS) else {
         return Err(file("masks", format!("{} masks", masks.len()), "1 to 85"));
     };
     let same = |m: &&Mask| {
@@ -80,7 +80,7 @@ pub fn write_ktx2(masks: &[Mask]) -> Result<Vec<u8>, MaskError> {
 /// # Errors
 /// [`MaskError::File`] or [`MaskError::Size`], with what was found.
 pub fn read_ktx2(bytes: &[u8]) -> Result<Vec<Mask>, MaskError> {
-    let truncated = |place| file(place, format!("a file of {} bytes", bytes.len()), "a complete KTX2 file");
+    let truncated = |part| file(part, format!("a file of {} bytes", bytes.len()), "a complete KTX2 file");
     let header: &[u8; Header::LENGTH] = bytes.first_chunk().ok_or_else(|| truncated("header"))?;
     let header = Header::from_bytes(header)
         .map_err(|error| file("header", shorten(&error.to_string()), "a KTX2 texture array of masks"))?;
@@ -145,7 +145,7 @@ fn check_header(header: &Header) -> Result<(u32, usize), MaskError> {
         return Err(file("dimensions", found, "a square, one face, one level"));
     }
     let layers = header.layer_count as usize;
-    if layers == 0 || !layers.is_multiple_of(LAYERS) || layers > LAYERS * MOST_MASKS {
+    if layers == 0 || !layers.is_multiple_of(LAYERS) || layers > LAYERS * MAX_MASKS {
         return Err(file("layerCount", layers.to_string(), "a multiple of 3 from 3 to 255"));
     }
     Ok((header.pixel_width, layers))

@@ -1,4 +1,4 @@
-//! A mask to look at: directions as colours.
+//! Preview of a mask: directions as colors.
 
 use std::io::Cursor;
 
@@ -6,8 +6,8 @@ use image::{ImageFormat, RgbaImage};
 
 use crate::{Mask, MaskError};
 
-/// The mask as the bytes of an 8-bit PNG: red = (1 + x) / 2, green = (1 + y) / 2, blue = (1 - z) / 2 of the direction
-/// through the drop, alpha = coverage. Light that comes straight through is (128, 128, 255).
+/// Encodes the mask as an 8-bit PNG: red = (1 + x) / 2, green = (1 + y) / 2, blue = (1 - z) / 2 of the direction
+/// through the drop, alpha = coverage. Light that passes straight through is (128, 128, 255).
 ///
 /// # Errors
 /// [`MaskError::Encode`] if the encoder fails.

@@ -1,4 +1,4 @@
-//! Texture arrays of one level as KTX2 files, with keys of the project's own.
+//! Texture arrays of one level as KTX2 files, with project-specific keys.
 
 use ktx2::dfd::{Basic, Block};
 use ktx2::{Format, Header, Index, LevelIndex, SupercompressionScheme};
@@ -11,28 +11,28 @@ const DEFLATE_LEVEL: u8 = 9;
 /// A texture array of one level.
 #[derive(Clone, Copy, Debug)]
 pub struct TextureArray<'a> {
-    /// The format of its texels.
+    /// Texel format.
     pub format: Format,
-    /// Bytes of a number of a texel.
+    /// Bytes per component of a texel.
     pub type_size: u32,
     /// Columns and rows.
     pub size: [u32; 2],
     /// Number of layers.
     pub layers: u32,
-    /// The project's own keys and their values, in the order of the keys' bytes. A value gets a NUL behind it.
+    /// Project-specific keys and their values, in the order of the keys' bytes. A NUL is appended to each value.
     pub keys: &'a [(&'a str, &'a [u8])],
-    /// Layer by layer, rows from the top.
+    /// Texels by layer, rows from the top.
     pub texels: &'a [u8],
 }
 
-/// A texture array as the bytes of a KTX2 file, its texels deflated.
+/// Encodes a texture array as a KTX2 file, its texels deflated.
 ///
 /// # Errors
 /// [`MaskError::Encode`] for a format that has no descriptor.
 pub fn write_array(array: &TextureArray<'_>) -> Result<Vec<u8>, MaskError> {
     let packed = miniz_oxide::deflate::compress_to_vec_zlib(array.texels, DEFLATE_LEVEL);
     let descriptor = data_format(array.format)?;
-    // Keys in the order of their bytes, as the format asks.
+    // Keys in the order of their bytes, as the format requires.
     let version = concat!("downpour-mask ", env!("CARGO_PKG_VERSION"));
     let keys =
         [array.keys, &[("KTXorientation", b"rd".as_slice()), ("KTXwriter", version.as_bytes())]].concat();
@@ -85,7 +85,7 @@ fn key_values(pairs: &[(&str, &[u8])]) -> Vec<u8> {
     bytes
 }
 
-/// A part of the file; `None` if it is not inside.
+/// Bytes of a part of the file; `None` if it is not inside.
 #[must_use]
 pub fn part(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
     let start = usize::try_from(offset).ok()?;
@@ -93,13 +93,13 @@ pub fn part(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
     bytes.get(start..end)
 }
 
-/// The text of a key; `None` if there is no such key, or no text in it.
+/// Text of a key; `None` if there is no such key, or its value is no text.
 #[must_use]
 pub fn find_text(keys: &[u8], wanted: &str) -> Option<String> {
     String::from_utf8(find_key(keys, wanted)?.to_vec()).ok()
 }
 
-/// The value of a key, without the NUL behind it; `None` if there is no such key, or the keys are cut.
+/// Value of a key, without the NUL behind it; `None` if there is no such key, or the keys are truncated.
 #[must_use]
 pub fn find_key<'a>(mut keys: &'a [u8], wanted: &str) -> Option<&'a [u8]> {
     while let Some((length, rest)) = keys.split_first_chunk::<4>() {

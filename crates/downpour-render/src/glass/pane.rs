@@ -197,7 +197,7 @@ impl WetPane {
                     PaneFresnel::Exact => GLASS_PICTURE_EXACT,
                     PaneFresnel::Tatarchuk2006 => GLASS_PICTURE_TATARCHUK,
                 },
-                room: self.pane.room as f32,
+                room: self.pane.interior_ambient as f32,
                 samples: lens_places.len() as u32,
                 last,
                 capture_size,

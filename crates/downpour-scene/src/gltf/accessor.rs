@@ -1,6 +1,6 @@
-//! Elements of an accessor, one after the other, with sparse substitution on the way.
+//! Elements of an accessor in order, with sparse substitution.
 //!
-//! Source: glTF 2.0, sections 3.6.2.2 (formats), 3.6.2.3 (sparse) and 3.11 (normalised integers).
+//! Source: glTF 2.0, sections 3.6.2.2 (formats), 3.6.2.3 (sparse) and 3.11 (normalized integers).
 
 use super::buffers::Buffers;
 use super::guard::Size;
@@ -25,7 +25,7 @@ pub(super) struct Elements<'a> {
     sparse: Option<Sparse<'a>>,
 }
 
-/// Substituted elements that are still to come.
+/// Remaining substituted elements.
 struct Sparse<'a> {
     indices: std::slice::ChunksExact<'a, u8>,
     component: ComponentType,
@@ -45,7 +45,7 @@ impl<'a> Elements<'a> {
         Self::try_open(root, buffers, index).ok_or_else(|| misplaced(number))?
     }
 
-    /// `None` where the guard would have found something wrong.
+    /// Opens the accessor; `None` on a defect that the guard should have found.
     fn try_open(
         root: &'a Root,
         buffers: &'a Buffers<'_>,
@@ -97,23 +97,23 @@ impl<'a> Elements<'a> {
         Some(Ok(elements))
     }
 
-    /// How many elements there are.
+    /// Number of elements.
     pub(super) fn count(&self) -> usize {
         self.count
     }
 
-    /// Moves on to the next substitution; their places must rise and lie within the accessor.
+    /// Moves on to the next substitution; their indices must increase and lie within the accessor.
     fn substitute(&mut self) -> Result<(), SceneError> {
         let Some(sparse) = &mut self.sparse else { return Ok(()) };
         let before = sparse.ahead.take();
-        let (Some(place), Some(value)) = (sparse.indices.next(), sparse.values.next()) else { return Ok(()) };
-        let at = unsigned(sparse.component, place).ok_or_else(|| misplaced(self.number))?;
+        let (Some(path), Some(value)) = (sparse.indices.next(), sparse.values.next()) else { return Ok(()) };
+        let at = unsigned(sparse.component, path).ok_or_else(|| misplaced(self.number))?;
         let least = before.map_or(0, |(before, _)| before.saturating_add(1));
         if !(least..self.count).contains(&at) {
             return Err(SceneError::bad(
                 format_args!("accessors[{}].sparse.indices", self.number),
                 format!("{at}, out of range or not above the one before"),
-                format!("rising places from {least} to {}", self.count.saturating_sub(1)),
+                format!("increasing indices from {least} to {}", self.count.saturating_sub(1)),
             ));
         }
         sparse.ahead = Some((at, value));
@@ -128,7 +128,7 @@ impl<'a> Elements<'a> {
         }
         self.next = at.saturating_add(1);
         if let Some((_, value)) =
-            self.sparse.as_ref().and_then(|sparse| sparse.ahead).filter(|&(place, _)| place == at)
+            self.sparse.as_ref().and_then(|sparse| sparse.ahead).filter(|&(path, _)| path == at)
         {
             self.substitute()?;
             return Ok(Some(value));
@@ -154,7 +154,7 @@ impl<'a> Elements<'a> {
         }
     }
 
-    /// The next element as `N` numbers; those that it does not have are `rest`. Not for matrices of small integers.
+    /// The next element as `N` numbers; missing ones are `rest`. Not for matrices of small integers.
     pub(super) fn numbers<const N: usize>(&mut self, rest: f64) -> Result<Option<[f64; N]>, SceneError> {
         let Some(bytes) = self.advance()? else { return Ok(None) };
         let mut all = [rest; N];
@@ -181,7 +181,7 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// What the guard lets through never comes here; should it, it is an error and no panic.
+/// Error for defects that the guard should have found: an error instead of a panic.
 fn misplaced(number: usize) -> SceneError {
     SceneError::bad(format_args!("accessors[{number}]"), "data outside its buffer", "data inside")
 }
@@ -212,7 +212,7 @@ fn number(component: ComponentType, normalized: bool, bytes: &[u8]) -> Option<f6
 mod tests {
     use super::*;
 
-    /// glTF 2.0, section 3.11: both ends of each normalised integer.
+    /// glTF 2.0, section 3.11: both ends of each normalized integer.
     #[test]
     fn normalized_integers() {
         let cases: [(ComponentType, &[u8], f64); 8] = [

@@ -12,7 +12,7 @@ pub(super) fn triangles(
     mut indices: Option<Elements<'_>>,
     mode: Mode,
     vertices: usize,
-    place: impl fmt::Display,
+    path: impl fmt::Display,
     mut emit: impl FnMut([u32; 3]),
 ) -> Result<(), SceneError> {
     let corners = indices.as_ref().map_or(vertices, Elements::count);
@@ -24,8 +24,8 @@ pub(super) fn triangles(
         };
         let Some(corner) = u32::try_from(index).ok().filter(|_| index < vertices) else {
             let allowed = format!("0 to {}, as POSITION has {vertices}", vertices.saturating_sub(1));
-            let place = format_args!("{place}.indices");
-            return Err(SceneError::bad(place, format!("index {index} at element {nth}"), allowed));
+            let path = format_args!("{path}.indices");
+            return Err(SceneError::bad(path, format!("index {index} at element {nth}"), allowed));
         };
         if nth == 0 {
             first = corner;

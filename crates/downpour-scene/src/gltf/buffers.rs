@@ -2,8 +2,8 @@
 
 use crate::Budget;
 use crate::base64;
-use crate::beneath::{Files, RelativePath};
 use crate::error::{SceneError, size};
+use crate::sandbox::{Files, RelativePath};
 use crate::uri::{self, Address};
 use gltf::json::{Buffer, Root, buffer};
 use std::borrow::Cow;
@@ -12,16 +12,16 @@ use std::io::Read;
 
 /// The bytes of a document's buffers.
 pub(super) struct Buffers<'a> {
-    /// What was read, once for each file however many buffers name it.
+    /// Bytes that were read, once for each file even if several buffers name it.
     sources: Vec<Cow<'a, [u8]>>,
     /// For each buffer its source and its length.
     buffers: Vec<(usize, usize)>,
-    /// How many bytes came from other files.
+    /// Number of bytes from other files.
     pub(super) from_files: u64,
 }
 
 impl Buffers<'_> {
-    /// The bytes of a view. The guard has seen that it lies inside its buffer.
+    /// Bytes of a view. The guard has checked that it lies inside its buffer.
     pub(super) fn view(&self, view: &buffer::View) -> Option<&[u8]> {
         let &(source, length) = self.buffers.get(view.buffer.value())?;
         let bytes = self.sources.get(source)?.get(..length)?;
@@ -53,7 +53,7 @@ pub(super) fn load<'a>(
             None => Cow::Borrowed(binary.unwrap_or_default()),
             Some(Address::Data { text, .. }) => {
                 budget.take_bytes(length as u64, &place)?;
-                let mut bytes = Budget::room(length, &place)?;
+                let mut bytes = Budget::vec_with_capacity(length, &place)?;
                 base64::decode(text, length, &mut bytes);
                 Cow::Owned(bytes)
             }
@@ -79,7 +79,7 @@ pub(super) fn load<'a>(
 fn bytes_of(buffer: &Buffer, place: &str) -> Result<usize, SceneError> {
     let length = buffer.byte_length.0;
     usize::try_from(length)
-        .map_err(|_| SceneError::limit(place, size(length), "what this machine can address"))
+        .map_err(|_| SceneError::limit(place, size(length), "the address space of this machine"))
 }
 
 /// For each file the longest buffer that names it, with its length in bytes.
@@ -108,7 +108,7 @@ fn read(
         return Err(SceneError::bad("", found, format!("byteLength up to {}", file.size)));
     }
     budget.take_bytes(wanted, "")?;
-    let mut bytes = Budget::room(usize::try_from(wanted).unwrap_or(usize::MAX), "")?;
+    let mut bytes = Budget::vec_with_capacity(usize::try_from(wanted).unwrap_or(usize::MAX), "")?;
     file.bytes
         .take(wanted)
         .read_to_end(&mut bytes)

@@ -1,4 +1,4 @@
-//! The GLB container (glTF 2.0, section 4.4) and plain JSON: where the two parts of a file begin and end.
+//! GLB container (glTF 2.0, section 4.4) and plain JSON: ranges of the two parts of a file.
 
 use super::irregular;
 use crate::error::{SceneError, size};
@@ -8,7 +8,7 @@ use crate::warning::{WarningKind, Warnings};
 pub(super) const GLTF: &str = "a glTF 2.0 file: JSON text (.gltf) or a GLB (.glb)";
 const EXPORT_AGAIN: &str = "the file may be cut: copy or export it again";
 const HEADER: usize = 12;
-const SMALLEST: usize = 20;
+const MIN_FILE_BYTES: usize = 20;
 const CHUNK_HEADER: usize = 8;
 const JSON: u32 = 0x4E4F_534A;
 const BIN: u32 = 0x004E_4942;
@@ -16,11 +16,11 @@ const BIN: u32 = 0x004E_4942;
 /// The parts of a file.
 pub(super) struct Container<'a> {
     pub(super) json: &'a [u8],
-    /// The binary chunk of a GLB; `None` if there is none.
+    /// Binary chunk of a GLB; `None` if it has none.
     pub(super) binary: Option<&'a [u8]>,
 }
 
-/// Finds the parts of a file.
+/// Splits a file into its parts.
 pub(super) fn open<'a>(bytes: &'a [u8], warnings: &mut Warnings) -> Result<Container<'a>, SceneError> {
     if bytes.starts_with(b"glTF") {
         return glb(bytes, warnings);
@@ -33,12 +33,12 @@ pub(super) fn open<'a>(bytes: &'a [u8], warnings: &mut Warnings) -> Result<Conta
 }
 
 fn glb<'a>(bytes: &'a [u8], warnings: &mut Warnings) -> Result<Container<'a>, SceneError> {
-    let cut = |place: &str, found: String| Err(SceneError::bad(place, found, GLTF).way_out(EXPORT_AGAIN));
-    let (Some(version), Some(length), true) = (word(bytes, 4), word(bytes, 8), bytes.len() >= SMALLEST)
+    let cut = |path: &str, found: String| Err(SceneError::bad(path, found, GLTF).way_out(EXPORT_AGAIN));
+    let (Some(version), Some(length), true) = (word(bytes, 4), word(bytes, 8), bytes.len() >= MIN_FILE_BYTES)
     else {
         return cut(
             "GLB header",
-            format!("a file of {} bytes, cut within the first {SMALLEST}", bytes.len()),
+            format!("a file of {} bytes, cut within the first {MIN_FILE_BYTES}", bytes.len()),
         );
     };
     if version != 2 {
@@ -46,9 +46,9 @@ fn glb<'a>(bytes: &'a [u8], warnings: &mut Warnings) -> Result<Container<'a>, Sc
             .way_out("convert the file to glTF 2.0"));
     }
     let declared = length as usize;
-    let Some(mut rest) = bytes.get(HEADER..declared).filter(|_| declared >= SMALLEST) else {
+    let Some(mut rest) = bytes.get(HEADER..declared).filter(|_| declared >= MIN_FILE_BYTES) else {
         let found = format!("length {length} in a file of {} bytes", bytes.len());
-        let allowed = format!("{SMALLEST} to {}", bytes.len());
+        let allowed = format!("{MIN_FILE_BYTES} to {}", bytes.len());
         return Err(SceneError::bad("GLB header", found, allowed).way_out(EXPORT_AGAIN));
     };
     if declared < bytes.len() {
@@ -59,34 +59,34 @@ fn glb<'a>(bytes: &'a [u8], warnings: &mut Warnings) -> Result<Container<'a>, Sc
     let mut binary = None;
     let mut number = 0usize;
     while !rest.is_empty() {
-        let place = format!("GLB chunk {number}");
+        let path = format!("GLB chunk {number}");
         let (Some(length), Some(kind)) = (word(rest, 0), word(rest, 4)) else {
-            return cut(&place, format!("{} bytes, cut within its header", rest.len()));
+            return cut(&path, format!("{} bytes, cut within its header", rest.len()));
         };
         let body = rest.get(CHUNK_HEADER..).unwrap_or_default();
         let Some((data, after)) = body.split_at_checked(length as usize) else {
-            return cut(&place, format!("{length} bytes, but only {} follow", body.len()));
+            return cut(&path, format!("{length} bytes, but only {} follow", body.len()));
         };
         if !length.is_multiple_of(4) {
-            irregular(warnings, &place, || format!("length {length} is no multiple of 4"));
+            irregular(warnings, &path, || format!("length {length} is no multiple of 4"));
         }
         match (number, kind) {
-            (0, JSON) if data.is_empty() => return cut(&place, "an empty JSON chunk".into()),
+            (0, JSON) if data.is_empty() => return cut(&path, "an empty JSON chunk".into()),
             (0, JSON) => json = Some(data),
             (0, _) => {
                 let found = format!("type {kind:#010x}");
-                return Err(SceneError::bad(&place, found, format!("JSON ({JSON:#010x}) first")));
+                return Err(SceneError::bad(&path, found, format!("JSON ({JSON:#010x}) first")));
             }
             (1, BIN) => binary = Some(data),
             (_, JSON | BIN) => {
                 return Err(SceneError::bad(
-                    &place,
+                    &path,
                     "a second JSON or a misplaced BIN chunk",
                     "one JSON chunk, then at most one BIN chunk",
                 ));
             }
             _ => warnings
-                .add(WarningKind::Ignored, &place, || format!("type {kind:#010x} is not known: skipped")),
+                .add(WarningKind::Ignored, &path, || format!("type {kind:#010x} is not known: skipped")),
         }
         rest = after;
         number = number.saturating_add(1);
@@ -97,7 +97,7 @@ fn glb<'a>(bytes: &'a [u8], warnings: &mut Warnings) -> Result<Container<'a>, Sc
     }
 }
 
-/// A little-endian word.
+/// Reads a little-endian 32-bit word.
 fn word(bytes: &[u8], at: usize) -> Option<u32> {
     let (word, _) = bytes.get(at..)?.split_first_chunk::<4>()?;
     Some(u32::from_le_bytes(*word))

@@ -1,7 +1,7 @@
 //! From checked values to the typed objects of the `gltf` crate.
 //!
-//! Only what geometry needs is made; the rest stays behind as values. Each object is made by itself, so that one
-//! that does not fit is named.
+//! Only objects that geometry needs are converted; the others stay plain values. Each object is converted separately, so
+//! that an error names it.
 
 use super::guard::{Checked, Trail};
 use crate::error::{SceneError, escaped};

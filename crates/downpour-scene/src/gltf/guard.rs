@@ -1,19 +1,19 @@
-//! The check before the parse: the whole document, on plain JSON values.
+//! Check before the parse: the whole document, on plain JSON values.
 //!
-//! The parser that makes typed objects trusts what it reads: it cuts 64-bit indices to 32 bits, indexes without
-//! looking and multiplies counts by strides. So nothing reaches it before each number, index, range and link of
-//! the document has been looked at here, in this order: numbers and shape, version and extensions, buffers,
-//! views, accessors, links between objects, attributes, images and cameras, and the tree of nodes. What is wrong
-//! is an error; what is odd but clear becomes a warning ([`oddities`]).
+//! The parser that creates typed objects trusts its input: it cuts 64-bit indices to 32 bits, indexes without
+//! bounds checks and multiplies counts by strides. So each number, index, range and link of the document is checked
+//! first, in this order: numbers and shape, version and extensions, buffers, views, accessors, links between objects,
+//! attributes, images and cameras, and the tree of nodes. A violation is an error; an irregularity with a clear
+//! meaning is a warning ([`lints`]).
 
 mod accessors;
 mod attributes;
 mod data;
 mod extensions;
 mod links;
+mod lints;
 mod nodes;
 mod numbers;
-mod oddities;
 mod shape;
 mod spot;
 
@@ -27,12 +27,12 @@ use serde_json::Value;
 pub(super) use accessors::Size;
 pub(super) use spot::{Spot, Trail};
 
-/// A document in which each index, range and link holds. Nothing else makes one.
+/// A document in which each index, range and link is valid. Only the guard creates one.
 pub(super) struct Checked {
     pub(super) value: Value,
 }
 
-/// What the checks have found so far and later ones build on.
+/// Results of the checks so far, for later ones.
 struct Facts<'a> {
     document: Spot<'a>,
     buffers: Vec<u64>,
@@ -41,7 +41,7 @@ struct Facts<'a> {
 }
 
 impl Facts<'_> {
-    /// How many objects the document has in a list at its top; 0 if it has no such list.
+    /// Number of objects in a list at the top of the document; 0 without the list.
     fn count(&self, list: &str) -> usize {
         self.document.value.get(list).and_then(Value::as_array).map_or(0, Vec::len)
     }
@@ -70,6 +70,6 @@ pub(super) fn check(
     data::images(&document, warnings)?;
     shape::cameras(&document)?;
     nodes::check(&document)?;
-    oddities::look(&facts, warnings)?;
+    lints::look(&facts, warnings)?;
     Ok(Checked { value })
 }

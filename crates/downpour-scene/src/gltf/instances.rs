@@ -1,7 +1,7 @@
-//! Where each mesh stands: the walk over the nodes of the scene, in double precision.
+//! Transform of each mesh: the walk over the nodes of the scene, in double precision.
 //!
-//! A node's matrix is its own, or translation x rotation x scale; the world matrix is the parent's times its
-//! own (glTF 2.0, section 3.5.3). The guard has seen that the nodes are a forest of bounded depth.
+//! The local matrix of a node is its `matrix`, or translation x rotation x scale; the world matrix is the parent's times
+//! the local one (glTF 2.0, section 3.5.3). The guard has checked that the nodes are a forest of bounded depth.
 
 use crate::Budget;
 use crate::error::SceneError;
@@ -10,14 +10,14 @@ use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::json::{Index, Node, Root};
 use std::fmt;
 
-/// Of what a matrix must keep of the volume that the lengths of its columns allow. Below it the columns lie in
+/// Minimum ratio of the volume of a matrix to the product of the lengths of its columns. Below it the columns lie in
 /// one plane but for rounding.
 const FLAT: f64 = 1e-10;
 
-/// Bytes of a node while the walk lasts: its matrix as a parent, and as an instance.
+/// Bytes of a node during the walk: its matrix as a parent, and as an instance.
 const PER_NODE: u64 = 320;
 
-/// One mesh at one place.
+/// One mesh with its transform.
 pub(super) struct Instance {
     /// The node, unless the file has none.
     node: Option<usize>,
@@ -34,11 +34,11 @@ impl fmt::Display for Instance {
     }
 }
 
-/// How points, directions and windings go into the world.
+/// Transform of points, directions and windings into the world.
 pub(super) struct Placement {
     world: DMat4,
     normal: DMat3,
-    /// Whether the matrix mirrors, which turns triangles over.
+    /// True if the matrix mirrors, which reverses triangles.
     pub(super) mirrored: bool,
 }
 
@@ -62,7 +62,7 @@ impl Placement {
         self.world.transform_point3(DVec3::new(x, y, z))
     }
 
-    /// A unit normal in the world; zero if there is none.
+    /// Unit normal in the world; zero if undefined.
     pub(super) fn normal(&self, [x, y, z]: [f64; 3]) -> DVec3 {
         self.normal.mul_vec3(DVec3::new(x, y, z).normalize_or_zero()).normalize_or_zero()
     }
@@ -77,13 +77,13 @@ pub(super) fn find(
     let most = root.nodes.len().max(root.meshes.len()) as u64;
     budget.take_bytes(most.saturating_mul(PER_NODE), "nodes")?;
     if root.nodes.is_empty() {
-        let mut all = Budget::room(root.meshes.len(), "meshes")?;
+        let mut all = Budget::vec_with_capacity(root.meshes.len(), "meshes")?;
         all.extend((0..root.meshes.len()).map(|mesh| Instance { node: None, mesh, world: DMat4::IDENTITY }));
         return Ok(all);
     }
-    let mut all = Budget::room(root.nodes.len(), "nodes")?;
-    // Matrices of the nodes whose children are still to be met; the last is the next.
-    let mut open = Budget::room(root.nodes.len(), "nodes")?;
+    let mut all = Budget::vec_with_capacity(root.nodes.len(), "nodes")?;
+    // Matrices of the nodes whose children are not visited yet; the last is the next.
+    let mut open = Budget::vec_with_capacity(root.nodes.len(), "nodes")?;
     open.extend(roots(root).into_iter().rev().map(|index| (index, DMat4::IDENTITY)));
     while let Some((index, parent)) = open.pop() {
         let Some(node) = root.nodes.get(index) else { continue };
@@ -91,7 +91,7 @@ pub(super) fn find(
         if let Some(mesh) = node.mesh {
             if node.skin.is_some() {
                 warnings.add(WarningKind::Ignored, format_args!("nodes[{index}].skin"), || {
-                    "skins are not read: the mesh is unposed and stands where its node is".into()
+                    "skins are not read: the mesh is unposed and has the transform of its node".into()
                 });
             }
             all.push(Instance { node: Some(index), mesh: mesh.value(), world });
@@ -101,7 +101,7 @@ pub(super) fn find(
     Ok(all)
 }
 
-/// The nodes that the walk begins at.
+/// Root nodes of the walk.
 pub(super) fn roots(root: &Root) -> Vec<usize> {
     let scene = root.scene.and_then(|scene| root.get(scene)).or(root.scenes.first());
     if let Some(scene) = scene {
@@ -120,11 +120,11 @@ fn indices(list: Option<&[Index<Node>]>) -> impl DoubleEndedIterator<Item = usiz
     list.unwrap_or_default().iter().map(Index::value)
 }
 
-/// The node's own matrix.
+/// Local matrix of the node.
 fn local(node: &Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         let columns = DMat4::from_cols_array(&matrix.map(f64::from));
-        // The last row is 0 0 0 1 by the specification: what else stands there has been warned of.
+        // The last row is 0 0 0 1 by the specification: other values have been warned of.
         return DMat4::from_cols(
             columns.x_axis.truncate().extend(0.0),
             columns.y_axis.truncate().extend(0.0),
@@ -139,7 +139,7 @@ fn local(node: &Node) -> DMat4 {
     let quaternion = node.rotation.map_or(DQuat::IDENTITY, |turn| DQuat::from_array(turn.0.map(f64::from)));
     let length = quaternion.length();
     if length == 0.0 {
-        // No rotation at all: a matrix without inverse, which is warned of where a mesh hangs on it.
+        // No rotation at all: a matrix without inverse, which is warned of if a mesh uses it.
         return DMat4::from_scale(DVec3::ZERO);
     }
     let [x, y, z, w] = quaternion.to_array().map(|part| part / length);

@@ -1,8 +1,8 @@
-//! JSON text to plain values, with its cost known before.
+//! JSON text to plain values, with a known bound of the cost.
 //!
-//! A parsed value takes many times its text: `{"":0},` of 7 bytes takes some 350. The parser cannot be told
-//! to stop, so the most that it can allocate is taken from the budget first, by counting the characters that
-//! make it allocate. Nesting ends at 128 (the parser's own limit).
+//! A parsed value needs many times the memory of its text: `{"":0},` of 7 bytes needs about 350. The parser has no
+//! limit of memory, so the maximum that it can allocate is deducted from the budget first, by counting the characters
+//! that make it allocate. Nesting ends at 128 (the parser's limit).
 
 use super::irregular;
 use crate::Budget;
@@ -10,8 +10,8 @@ use crate::error::{SceneError, escaped};
 use crate::warning::Warnings;
 use serde_json::Value;
 
-/// Upper bounds in bytes: of an object with its table and the typed object that will be made from it, of an
-/// array with its first room, and of one more element in a vector that has doubled its room.
+/// Upper bounds in bytes: of an object with its table and the typed object that is created from it, of an
+/// array with its first capacity, and of one more element in a vector that has doubled its capacity.
 const PER_OBJECT: u64 = 1024;
 const PER_ARRAY: u64 = 512;
 const PER_ELEMENT: u64 = 256;

@@ -16,7 +16,7 @@ use crate::warning::Warning;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleModel {
-    /// What messages call the file.
+    /// Name of the file in messages.
     pub name: String,
     /// Vertices, in metres.
     pub positions: Vec<[f32; 3]>,
@@ -24,18 +24,18 @@ pub struct TriangleModel {
     pub normals: Option<Vec<[f32; 3]>>,
     /// Three indices into `positions` for each triangle.
     pub indices: Vec<[u32; 3]>,
-    /// What was left out or made good.
+    /// Parts that were dropped or repaired.
     pub warnings: Vec<Warning>,
 }
 
 impl TriangleModel {
-    /// Whether there is no triangle.
+    /// True if there are no triangles.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.indices.is_empty()
     }
 
-    /// The smallest and the largest coordinates of all positions, in metres; `None` when there are none.
+    /// Smallest and largest coordinates of all positions, in metres; `None` without positions.
     #[must_use]
     pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
         let merge = |(low, high): ([f32; 3], [f32; 3]), (l, h): ([f32; 3], [f32; 3])| {
@@ -48,10 +48,10 @@ impl TriangleModel {
         self.positions.iter().map(|&position| (position, position)).reduce(merge)
     }
 
-    /// All or nothing: the same model, unless geometry was dropped or there is none.
+    /// Strict form: the same model, unless geometry was dropped or there is none.
     ///
     /// # Errors
-    /// [`SceneError::BadInput`] with the words of the first warning that tells of a loss.
+    /// [`SceneError::BadInput`] with the text of the first warning of a loss.
     pub fn strict(self) -> Result<Self, SceneError> {
         match self.warnings.iter().find(|warning| warning.kind.is_loss()) {
             None => Ok(self),
@@ -66,7 +66,7 @@ impl TriangleModel {
         }
     }
 
-    /// What the geometry takes up, in bytes.
+    /// Size of the geometry in memory, in bytes.
     pub(super) fn bytes(&self) -> u64 {
         let vectors = self.positions.len().saturating_add(self.normals.as_ref().map_or(0, Vec::len));
         (vectors.saturating_add(self.indices.len()) as u64).saturating_mul(12)

@@ -1,8 +1,8 @@
-//! Normals for vertices that came without: the sum of the faces round them, weighted by area.
+//! Normals for vertices without: the sum of the faces at a vertex, weighted by area.
 
 use glam::Vec3;
 
-/// Replaces zero normals and returns how many there were. All others stay as they are.
+/// Replaces zero normals and returns their number. All others are unchanged.
 pub(super) fn fill(positions: &[[f32; 3]], indices: &[[u32; 3]], normals: &mut [[f32; 3]]) -> usize {
     let bare: Vec<bool> = normals.iter().map(|normal| *normal == [0.0; 3]).collect();
     let count = bare.iter().filter(|bare| **bare).count();

@@ -1,10 +1,10 @@
-//! What will be read and how much it is, before any of it is read.
+//! Plan of reading: selection and size of the data, before any of it is read.
 //!
 //! A small file can ask for a great deal: primitives that share one accessor, accessors without data, a mesh on
-//! ten thousand nodes. The sums are made first, in 64 bits, and held against the budget and against the size
-//! of what was read: a file may grow, but not without bound.
+//! ten thousand nodes. The sums are computed first, in 64 bits, and compared with the budget and with the size
+//! of the file: memory may grow, but with a bound.
 
-use super::growth::Purse;
+use super::growth::GrowthBudget;
 use super::instances::Instance;
 use crate::Budget;
 use crate::error::SceneError;
@@ -15,7 +15,7 @@ use gltf::json::{Accessor, Index, Root};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Bytes of a vertex (position, normal) and of a triangle, and what a primitive of an instance costs in time.
+/// Bytes of a vertex (position, normal) and of a triangle, and cost in time of a primitive of an instance.
 const PER_VERTEX: u64 = 24;
 const PER_TRIANGLE: u64 = 12;
 const PER_PART: u64 = 128;
@@ -34,7 +34,7 @@ pub(super) struct Part {
     pub(super) mode: Mode,
 }
 
-/// What is read of one mesh.
+/// Data to read of one mesh.
 #[derive(Default)]
 pub(super) struct MeshPlan {
     pub(super) pools: Vec<Pool>,
@@ -43,7 +43,7 @@ pub(super) struct MeshPlan {
     triangles: u64,
 }
 
-/// What is read of a document.
+/// Data to read of a document.
 pub(super) struct Plan {
     /// One for each mesh; empty for meshes that the scene does not use.
     pub(super) meshes: Vec<MeshPlan>,
@@ -77,9 +77,9 @@ pub(super) fn make(
     let cost = [(vertices, PER_VERTEX), (triangles, PER_TRIANGLE), (parts, PER_PART)]
         .into_iter()
         .fold(0u64, |sum, (count, each)| sum.saturating_add(count.saturating_mul(each)));
-    let place = "meshes";
-    budget.take_vertices(vertices, place)?;
-    Purse::new(budget, source).take(cost, place)?;
+    let path = "meshes";
+    budget.take_vertices(vertices, path)?;
+    GrowthBudget::new(budget, source).take(cost, path)?;
     let fits = |count: u64| u32::try_from(count).ok().and_then(|count| usize::try_from(count).ok());
     match (fits(vertices), fits(triangles)) {
         (Some(vertices), Some(triangles)) => {
@@ -87,7 +87,7 @@ pub(super) fn make(
             Ok(Plan { meshes, vertices, triangles, has_normals })
         }
         _ => Err(SceneError::limit(
-            place,
+            path,
             format!("{vertices} vertices, {triangles} triangles"),
             "2^32 of each",
         )),
@@ -99,11 +99,11 @@ fn mesh(root: &Root, index: usize, warnings: &mut Warnings) -> MeshPlan {
     let Some(mesh) = root.meshes.get(index) else { return plan };
     let mut pools: BTreeMap<(usize, Option<usize>), usize> = BTreeMap::new();
     for (primitive, json) in mesh.primitives.iter().enumerate() {
-        let place = format_args!("meshes[{index}].primitives[{primitive}]");
-        let Some(Shape { positions, mode, triangles }) = shape(root, json, place, warnings) else { continue };
+        let path = format_args!("meshes[{index}].primitives[{primitive}]");
+        let Some(Shape { positions, mode, triangles }) = shape(root, json, path, warnings) else { continue };
         let normals = json.attributes.get(&Checked::Valid(Semantic::Normals)).copied();
         if json.targets.is_some() && mesh.weights.iter().flatten().any(|&weight| weight != 0.0) {
-            warnings.add(WarningKind::Ignored, place, || {
+            warnings.add(WarningKind::Ignored, path, || {
                 "morph targets are not read: the base shape is taken".into()
             });
         }
@@ -119,40 +119,40 @@ fn mesh(root: &Root, index: usize, warnings: &mut Warnings) -> MeshPlan {
     plan
 }
 
-/// What of a primitive can be read.
+/// Readable data of a primitive.
 pub(super) struct Shape {
     pub(super) positions: Index<Accessor>,
     pub(super) mode: Mode,
     pub(super) triangles: u64,
 }
 
-/// How many elements an accessor has.
+/// Number of elements of an accessor.
 pub(super) fn count(root: &Root, accessor: Index<Accessor>) -> u64 {
     root.get(accessor).map_or(0, |accessor| accessor.count.0)
 }
 
-/// Looks at a primitive; `None`, with a warning, when there is nothing to read.
+/// Examines a primitive; `None`, with a warning, if it has nothing to read.
 pub(super) fn shape(
     root: &Root,
     json: &Primitive,
-    place: fmt::Arguments<'_>,
+    path: fmt::Arguments<'_>,
     warnings: &mut Warnings,
 ) -> Option<Shape> {
     let mode = match json.mode {
         Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
         Checked::Valid(_) | Checked::Invalid => {
-            warnings.add(WarningKind::Ignored, place, || "points or lines: skipped".into());
+            warnings.add(WarningKind::Ignored, path, || "points or lines: skipped".into());
             return None;
         }
     };
     let Some(&positions) = json.attributes.get(&Checked::Valid(Semantic::Positions)) else {
-        warnings.add(WarningKind::Ignored, place, || "no POSITION: skipped".into());
+        warnings.add(WarningKind::Ignored, path, || "no POSITION: skipped".into());
         return None;
     };
-    // Without data all numbers are 0; so do files look whose data is in an extension that is not read.
+    // Without data all numbers are 0; files whose data is in an unsupported extension look the same.
     if root.get(positions).is_none_or(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none())
     {
-        warnings.add(WarningKind::Dropped, place, || "dropped: POSITION has no data".into());
+        warnings.add(WarningKind::Dropped, path, || "dropped: POSITION has no data".into());
         return None;
     }
     let corners = count(root, json.indices.unwrap_or(positions));
@@ -161,8 +161,8 @@ pub(super) fn shape(
         _ => corners.saturating_sub(2),
     };
     if triangles == 0 || (mode == Mode::Triangles && !corners.is_multiple_of(3)) {
-        warnings.add(WarningKind::Irregular, place, || {
-            format!("{corners} corners do not make up whole triangles: what is left over is ignored")
+        warnings.add(WarningKind::Irregular, path, || {
+            format!("{corners} corners are not a multiple of 3: the last are ignored")
         });
     }
     Some(Shape { positions, mode, triangles })

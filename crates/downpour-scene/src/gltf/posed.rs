@@ -5,8 +5,8 @@ use crate::scene::{Pose, Scene, skin_primitive};
 use glam::Vec3;
 
 impl Scene {
-    /// All triangles of a pose in the world, as one model; front faces are counter-clockwise, also where an
-    /// instance is mirrored.
+    /// All triangles of a pose in the world, as one model; front faces are counter-clockwise, also in mirrored
+    /// instances.
     ///
     /// ```no_run
     /// use downpour_scene::{Budget, gltf::read_scene};

@@ -1,4 +1,4 @@
-//! Whole scenes: everything that a document holds, each object once.
+//! Whole scenes: all supported objects of a document, each once.
 
 mod animations;
 mod cameras;
@@ -15,19 +15,19 @@ mod textures;
 mod vertices;
 mod weights;
 
-use super::growth::Purse;
+use super::growth::GrowthBudget;
 use super::guard::{Checked, Spot};
 use super::{buffers, document};
 use crate::Budget;
-use crate::beneath::Files;
 use crate::error::SceneError;
+use crate::sandbox::Files;
 use crate::scene::Scene;
 use crate::warning::{WarningKind, Warnings};
 use primitives::Reading;
 use std::collections::BTreeSet;
 use textures::{Images, Textures};
 
-/// Reads a checked document. `source` is how long the file is, in bytes.
+/// Reads a checked document. `source` is the length of the file, in bytes.
 pub(super) fn read(
     mut checked: Checked,
     binary: Option<&[u8]>,
@@ -52,14 +52,14 @@ pub(super) fn read(
     };
     let buffers = buffers::load(&root, binary, files, budget)?;
     let reading = Reading { root: &root, buffers: &buffers };
-    let mut purse = Purse::new(budget, source.saturating_add(buffers.from_files));
-    (scene.nodes, scene.roots) = nodes::read(&root, &lights_at, &mut purse)?;
-    scene.skins = nodes::skins(&rest, &root, &buffers, &mut purse, warnings)?;
+    let mut remaining = GrowthBudget::new(budget, source.saturating_add(buffers.from_files));
+    (scene.nodes, scene.roots) = nodes::read(&root, &lights_at, &mut remaining)?;
+    scene.skins = nodes::skins(&rest, &root, &buffers, &mut remaining, warnings)?;
     let drawn = scene.drawn();
     let materials = &mut scene.materials;
-    scene.meshes = meshes::read(&reading, &scene.nodes, &drawn, materials, &mut purse, warnings)?;
-    meshes::check_joints(&scene.nodes, &drawn, &scene.meshes, &scene.skins, &mut purse)?;
-    scene.animations = animations::read(&rest, &reading, &scene.nodes, &mut purse, warnings)?;
+    scene.meshes = meshes::read(&reading, &scene.nodes, &drawn, materials, &mut remaining, warnings)?;
+    meshes::check_joints(&scene.nodes, &drawn, &scene.meshes, &scene.skins, &mut remaining)?;
+    scene.animations = animations::read(&rest, &reading, &scene.nodes, &mut remaining, warnings)?;
     let images = Images { document: rest, root: &root, buffers: &buffers, files };
     scene.textures = textures.load(&images, budget, warnings)?;
     at_rest(&scene, &drawn, warnings);
@@ -67,11 +67,11 @@ pub(super) fn read(
     Ok(scene)
 }
 
-/// Warns of meshes that are not to be seen when nothing moves.
+/// Warns of meshes that are invisible at rest.
 fn at_rest(scene: &Scene, drawn: &[usize], warnings: &mut Warnings) {
     let pose = scene.pose(None, 0.0);
     let shown: BTreeSet<usize> = pose.instances.iter().map(|instance| instance.node).collect();
-    // What moves may have a scale of 0 for a while.
+    // An animated scale may be 0 for a while.
     let kind = if scene.animations.is_empty() { WarningKind::Dropped } else { WarningKind::Irregular };
     for &node in drawn.iter().filter(|node| !shown.contains(node)) {
         if scene.nodes.get(node).is_some_and(|node| node.mesh.is_some()) {

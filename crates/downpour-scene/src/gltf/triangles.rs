@@ -1,7 +1,7 @@
 //! The reading itself: vertices into world space, primitives into triangles.
 //!
-//! Front faces are counter-clockwise in each file; a mirroring transform turns them over, so there the last two
-//! corners change places.
+//! Front faces are counter-clockwise in each file; a mirroring transform reverses them, so the last two corners are
+//! swapped then.
 
 use super::accessor::Elements;
 use super::buffers::Buffers;
@@ -14,8 +14,8 @@ use crate::warning::{WarningKind, Warnings};
 use glam::DVec3;
 use gltf::json::Root;
 
-/// Why the vertices of a primitive are not taken.
-enum Useless {
+/// Reason why the vertices of a primitive are skipped.
+enum SkipReason {
     NotFinite(usize),
     OutOfReach,
 }
@@ -26,17 +26,17 @@ struct Placed {
     count: usize,
 }
 
-/// What has been gathered so far.
+/// Triangles collected so far.
 struct Gathering<'a> {
     root: &'a Root,
     buffers: &'a Buffers<'a>,
     positions: Vec<[f32; 3]>,
-    /// As many as positions, or none at all. A zero vector stands for a normal that is to be made.
+    /// Normals, as many as positions, or none at all. A zero vector marks a normal to compute.
     normals: Option<Vec<[f32; 3]>>,
     indices: Vec<[u32; 3]>,
 }
 
-/// Reads all triangles of the scene. `source` is how many bytes have been read from files.
+/// Reads all triangles of the scene. `source` is the number of bytes that were read from files.
 pub(super) fn gather(
     root: &Root,
     buffers: &Buffers<'_>,
@@ -49,9 +49,13 @@ pub(super) fn gather(
     let mut model = Gathering {
         root,
         buffers,
-        positions: Budget::room(plan.vertices, "meshes")?,
-        normals: if plan.has_normals { Some(Budget::room(plan.vertices, "meshes")?) } else { None },
-        indices: Budget::room(plan.triangles, "meshes")?,
+        positions: Budget::vec_with_capacity(plan.vertices, "meshes")?,
+        normals: if plan.has_normals {
+            Some(Budget::vec_with_capacity(plan.vertices, "meshes")?)
+        } else {
+            None
+        },
+        indices: Budget::vec_with_capacity(plan.triangles, "meshes")?,
     };
     for instance in &instances {
         let Some(mesh) = plan.meshes.get(instance.mesh).filter(|mesh| !mesh.parts.is_empty()) else {
@@ -85,7 +89,7 @@ impl Gathering<'_> {
         &mut self,
         pool: &Pool,
         placement: &Placement,
-    ) -> Result<Result<Placed, Useless>, SceneError> {
+    ) -> Result<Result<Placed, SkipReason>, SceneError> {
         let start = self.positions.len();
         let mut positions = Elements::open(self.root, self.buffers, pool.positions)?;
         let mut bad = 0usize;
@@ -113,8 +117,8 @@ impl Gathering<'_> {
         }
         let useless = match bad {
             0 if reach <= REACH => None,
-            0 => Some(Useless::OutOfReach),
-            bad => Some(Useless::NotFinite(bad)),
+            0 => Some(SkipReason::OutOfReach),
+            bad => Some(SkipReason::NotFinite(bad)),
         };
         let Some(useless) = useless else { return Ok(Ok(Placed { start, count: positions.count() })) };
         self.positions.truncate(start);
@@ -136,10 +140,10 @@ impl Gathering<'_> {
             Some(accessor) => Some(Elements::open(self.root, self.buffers, accessor)?),
             None => None,
         };
-        let place = format_args!("meshes[{}].primitives[{}]", instance.mesh, part.primitive);
-        // The plan has seen that all vertices of the model have a 32-bit index.
+        let path = format_args!("meshes[{}].primitives[{}]", instance.mesh, part.primitive);
+        // The plan has checked that all vertices of the model have a 32-bit index.
         let start = u32::try_from(vertices.start).unwrap_or(u32::MAX);
-        assembly::triangles(elements, part.mode, vertices.count, place, |corners| {
+        assembly::triangles(elements, part.mode, vertices.count, path, |corners| {
             let [a, b, c] = corners.map(|corner| start.saturating_add(corner));
             self.indices.push(if mirrored { [a, c, b] } else { [a, b, c] });
         })
@@ -169,14 +173,14 @@ impl Gathering<'_> {
     }
 }
 
-impl Useless {
+impl SkipReason {
     fn warn(&self, instance: &Instance, part: &Part, warnings: &mut Warnings) {
-        let place = format_args!("meshes[{}].primitives[{}]", instance.mesh, part.primitive);
+        let path = format_args!("meshes[{}].primitives[{}]", instance.mesh, part.primitive);
         match self {
-            Self::NotFinite(count) => warnings.add(WarningKind::Dropped, place, || {
+            Self::NotFinite(count) => warnings.add(WarningKind::Dropped, path, || {
                 format!("dropped: {count} positions or normals are not finite")
             }),
-            Self::OutOfReach => warnings.add(WarningKind::Dropped, place, || {
+            Self::OutOfReach => warnings.add(WarningKind::Dropped, path, || {
                 format!("dropped at {instance}: a vertex is farther than {REACH:e} m from the origin")
             }),
         }

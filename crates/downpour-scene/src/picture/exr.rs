@@ -1,9 +1,9 @@
 //! OpenEXR pixels, through the `exr` crate, after our own check of the header.
 //!
-//! Read are `R`, `G`, `B` and, if there, `A`; or `Y` alone as grey. Only the largest resolution level. A pixel
-//! with a NaN or an infinity becomes black and is counted.
+//! Supported are `R`, `G`, `B` and optionally `A`; or `Y` alone as gray. Only the largest resolution level is read. A
+//! pixel with a NaN or an infinity becomes black and is counted.
 
-use super::exr_header::{self, Colour, Header};
+use super::exr_header::{self, Color, Header};
 use super::{Picture, Pixels, check_cost, damaged, guarded};
 use crate::Budget;
 use crate::error::SceneError;
@@ -18,7 +18,7 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// A transparent canvas; empty if the sizes do not agree or there is no room.
+    /// A transparent canvas; empty if the sizes do not agree or memory is exhausted.
     fn new(asked: Vec2<usize>, header: &Header) -> Self {
         let (width, height) = (header.width as usize, header.height as usize);
         let mut pixels = Vec::new();
@@ -33,8 +33,8 @@ impl Canvas {
 
     fn set(&mut self, at: Vec2<usize>, pixel: [f32; 4]) {
         let index = at.1.saturating_mul(self.width).saturating_add(at.0);
-        if let Some(place) = self.pixels.get_mut(index) {
-            *place = pixel;
+        if let Some(slot) = self.pixels.get_mut(index) {
+            *slot = pixel;
         }
     }
 }
@@ -51,7 +51,7 @@ pub(super) fn decode(bytes: &[u8], budget: &Budget) -> Result<Picture, SceneErro
     header.check_blocks(bytes)?;
     let mut pixels = guarded(|| pixels(bytes, &header))?;
     if pixels.len() as u64 != area {
-        return Err(SceneError::limit("pixels", "no room for them", "what the machine's memory holds"));
+        return Err(SceneError::limit("pixels", "out of memory", "the memory of the machine"));
     }
     report_unusable(clean(&mut pixels), &mut warnings);
     let pixels = Pixels::RgbaF32(pixels);
@@ -59,13 +59,13 @@ pub(super) fn decode(bytes: &[u8], budget: &Budget) -> Result<Picture, SceneErro
     Ok(Picture { name: String::new(), width, height, pixels, warnings: warnings.finish() })
 }
 
-/// The pixels as they stand in the file.
+/// Pixels in the order of the file.
 fn pixels(bytes: &[u8], header: &Header) -> Result<Vec<[f32; 4]>, SceneError> {
     let source = Cursor::new(bytes);
     let read = ::exr::prelude::read().no_deep_data().largest_resolution_level().specific_channels();
     // Decoding stays on this thread: a panic on another would end the process.
-    let canvas = match header.colour {
-        Colour::Rgb => read
+    let canvas = match header.color {
+        Color::Rgb => read
             .required::<f32>("R")
             .required::<f32>("G")
             .required::<f32>("B")
@@ -79,7 +79,7 @@ fn pixels(bytes: &[u8], header: &Header) -> Result<Vec<[f32; 4]>, SceneError> {
             .non_parallel()
             .from_buffered(source)
             .map(|image| image.layer_data.channel_data.pixels),
-        Colour::Grey => read
+        Color::Gray => read
             .required::<f32>("Y")
             .optional::<f32>("A", 1.0)
             .collect_pixels(
@@ -95,7 +95,7 @@ fn pixels(bytes: &[u8], header: &Header) -> Result<Vec<[f32; 4]>, SceneError> {
     canvas.map(|canvas| canvas.pixels).map_err(|error| damaged(&error))
 }
 
-/// Makes pixels black that hold a NaN or an infinity, and counts them.
+/// Replaces pixels with a NaN or an infinity by black, and counts them.
 fn clean(pixels: &mut [[f32; 4]]) -> u64 {
     let mut count = 0u64;
     for pixel in pixels {
@@ -108,7 +108,7 @@ fn clean(pixels: &mut [[f32; 4]]) -> u64 {
     count
 }
 
-/// Says how many pixels were replaced, if any.
+/// Warns of the number of replaced pixels, if any.
 pub(super) fn report_unusable(count: u64, warnings: &mut Warnings) {
     if count > 0 {
         let what = format!("{count} pixels that are not finite, taken as 0");

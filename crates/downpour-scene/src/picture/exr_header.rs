@@ -1,7 +1,7 @@
 //! The header of an OpenEXR file, checked before a decoder sees it.
 //!
 //! Source: Academy Software Foundation, "OpenEXR File Layout". A header is a list of attributes: name, type,
-//! length, value, all little-endian. Decoders allocate by what stands there, so everything that they rely on is
+//! length, value, all little-endian. Decoders allocate by these values, so all that they rely on is
 //! checked first: sizes, channels, tiles, the compression scheme, the table of blocks.
 //!
 //! Refused are schemes whose decoders are not safe on hostile files or are missing (B44, B44A, DWAA, DWAB,
@@ -31,29 +31,29 @@ const REACH: i32 = (1 << 30) - 1;
 const CONVERT: &str = "save the file again with ZIP compression, as one flat part";
 const NAME: &str = "names of 1 to 255 bytes of text";
 
-/// What the pixels mean.
+/// Meaning of the pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Colour {
+pub(super) enum Color {
     /// `R`, `G`, `B`, perhaps `A`.
     Rgb,
     /// `Y`, perhaps `A`.
-    Grey,
+    Gray,
 }
 
-/// What a decoder will meet.
+/// Header for the decoder.
 #[derive(Debug)]
 pub(super) struct Header {
     /// Columns of the data window.
     pub(super) width: u32,
     /// Rows of the data window.
     pub(super) height: u32,
-    /// What the pixels mean.
-    pub(super) colour: Colour,
+    /// Meaning of the pixels.
+    pub(super) color: Color,
     /// All blocks of all levels.
     pub(super) blocks: u64,
     /// The bytes of one unpacked block.
     pub(super) block_bytes: u64,
-    /// Where the table of blocks begins.
+    /// Offset of the table of blocks.
     table: usize,
 }
 
@@ -74,7 +74,7 @@ impl Header {
     }
 }
 
-/// The attributes that count.
+/// Attributes that are used.
 #[derive(Debug, Default)]
 struct Found {
     data: Option<Window>,
@@ -116,11 +116,11 @@ pub(super) fn check(file: &[u8], warnings: &mut Warnings) -> Result<Header, Scen
             format!("is not the display window: the picture is the {width} x {height} pixels from ({x}, {y})")
         });
     }
-    // Sides are looked at here, since the count of blocks needs them; the memory later, when that is known.
+    // Sizes are checked here, since the number of blocks needs them; the memory later, when that is known.
     check_cost("dataWindow", (width, height), 0, &[], &Budget { pixels: u64::MAX, ..Budget::default() })?;
     let lines = block_lines(found.compression.ok_or_else(|| missing("compression"))?)?;
     let channels = found.channels.ok_or_else(|| missing("channels"))?;
-    let colour = colour(&channels)?;
+    let color = color(&channels)?;
     let pixel_bytes = channels.iter().map(|channel| channel.bytes).fold(0, u64::saturating_add);
     let (blocks, block_area) = if tiled {
         let tiles = found.tiles.ok_or_else(|| missing("tiles"))?;
@@ -135,10 +135,10 @@ pub(super) fn check(file: &[u8], warnings: &mut Warnings) -> Result<Header, Scen
         return Err(SceneError::bad("chunkCount", count.to_string(), format!("{blocks}, as the size says")));
     }
     let block_bytes = block_area.saturating_mul(pixel_bytes);
-    Ok(Header { width, height, colour, blocks, block_bytes, table: bytes.position() })
+    Ok(Header { width, height, color, blocks, block_bytes, table: bytes.position() })
 }
 
-/// Whether the file has tiles; what else the version says must be plain.
+/// True if the file has tiles; all other flags of the version must be 0.
 fn version(word: u32) -> Result<bool, SceneError> {
     const TILED: u32 = 0x200;
     const LONG_NAMES: u32 = 0x400;
@@ -185,7 +185,7 @@ fn attributes(bytes: &mut Bytes<'_>, warnings: &mut Warnings) -> Result<Found, S
     Err(SceneError::bad("header", "more attributes", format!("at most {MAX_ATTRIBUTES}")))
 }
 
-/// Keeps what counts of one attribute.
+/// Stores the value of one attribute, if it is used.
 fn attribute(
     found: &mut Found,
     name: &str,
@@ -230,10 +230,10 @@ fn attribute(
     Ok(())
 }
 
-/// Keeps a value that may stand once.
-fn put<T>(place: &mut Option<T>, name: &str, value: T) -> Result<(), SceneError> {
-    if place.replace(value).is_some() {
-        return Err(SceneError::bad(name, "stands twice", "each attribute once"));
+/// Stores a value that may occur once.
+fn put<T>(slot: &mut Option<T>, name: &str, value: T) -> Result<(), SceneError> {
+    if slot.replace(value).is_some() {
+        return Err(SceneError::bad(name, "occurs twice", "each attribute once"));
     }
     Ok(())
 }
@@ -300,34 +300,34 @@ fn channels(value: &mut Bytes<'_>) -> Result<Vec<Channel>, SceneError> {
         if name.len() > 255 {
             return Err(SceneError::bad("channels", quoted(&name), NAME));
         }
-        let place = || format!("channels[{}]", list.len());
+        let path = || format!("channels[{}]", list.len());
         if list.last().is_some_and(|last| last.name.as_str() >= &*name) {
             let found = format!("{} out of order", quoted(&name));
-            return Err(SceneError::bad(place(), found, "names in rising order, each once"));
+            return Err(SceneError::bad(path(), found, "names in rising order, each once"));
         }
         let bytes = match value.u32()? {
             0 | 2 => 4,
             1 => 2,
-            kind => return Err(SceneError::bad(place(), format!("pixel type {kind}"), "0, 1 or 2")),
+            kind => return Err(SceneError::bad(path(), format!("pixel type {kind}"), "0, 1 or 2")),
         };
         value.take(4)?;
         let (x, y) = (value.i32()?, value.i32()?);
         if (x, y) != (1, 1) {
             let found = format!("{} subsampled by {x} x {y}", quoted(&name));
-            return Err(SceneError::bad(place(), found, "1 x 1").way_out(CONVERT));
+            return Err(SceneError::bad(path(), found, "1 x 1").way_out(CONVERT));
         }
         list.push(Channel { name: name.into_owned(), bytes });
     }
 }
 
-/// What the channels mean.
-fn colour(channels: &[Channel]) -> Result<Colour, SceneError> {
+/// Meaning of the channels.
+fn color(channels: &[Channel]) -> Result<Color, SceneError> {
     let has = |name: &str| channels.iter().any(|channel| channel.name == name);
     if ["R", "G", "B"].into_iter().all(has) {
-        return Ok(Colour::Rgb);
+        return Ok(Color::Rgb);
     }
     if has("Y") && !has("RY") && !has("BY") {
-        return Ok(Colour::Grey);
+        return Ok(Color::Gray);
     }
     let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
     let found = format!("the channels {}", quoted(&names.join(", ")));

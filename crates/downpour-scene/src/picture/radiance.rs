@@ -1,4 +1,4 @@
-//! Radiance HDR: RGBE pixels, divided by the exposures that the header tells of.
+//! Radiance HDR: RGBE pixels, divided by the exposures in the header.
 //!
 //! Source: Ward, "Radiance File Formats": every `EXPOSURE` line multiplies; the radiance is the pixel divided by
 //! the product.
@@ -16,7 +16,7 @@ const HEADER: usize = 64 << 10;
 /// The other first line that programs write.
 const OTHER: &[u8] = b"#?RGBE";
 
-/// The first line that the decoder knows.
+/// First line that the decoder accepts.
 const SIGNATURE: &[u8] = b"#?RADIANCE";
 
 /// Decodes to radiance.
@@ -35,7 +35,7 @@ pub(super) fn decode(bytes: &[u8], budget: &Budget) -> Result<Picture, SceneErro
         return Err(damaged(&"no floating-point pixels"));
     };
     let (width, height) = image.dimensions();
-    let mut pixels = Budget::room(image.len() / 3, "pixels")?;
+    let mut pixels = Budget::vec_with_capacity(image.len() / 3, "pixels")?;
     let mut unusable = 0u64;
     for &image::Rgb([r, g, b]) in image.pixels() {
         let [r, g, b] = [r, g, b].map(|value| divided(value, exposure));
@@ -48,7 +48,7 @@ pub(super) fn decode(bytes: &[u8], budget: &Budget) -> Result<Picture, SceneErro
     Ok(Picture { name: String::new(), width, height, pixels, warnings: warnings.finish() })
 }
 
-/// The nearest `f32`; infinite if there is none.
+/// The nearest `f32`; infinite if the value is out of range.
 #[expect(clippy::cast_possible_truncation, reason = "rounding is meant, and what overflows is counted")]
 fn divided(value: f32, exposure: f64) -> f32 {
     (f64::from(value) / exposure) as f32

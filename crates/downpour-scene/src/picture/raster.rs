@@ -24,9 +24,9 @@ pub(super) fn decode(bytes: &[u8], format: ImageFormat, budget: &Budget) -> Resu
     Ok(Picture { name: String::new(), width, height, pixels, warnings: Vec::new() })
 }
 
-/// The decoded image, in the file's own channels. The size is checked before anything large is allocated.
+/// Decodes an image in the file's channels. The size is checked before anything large is allocated.
 ///
-/// `cost` tells what decoding needs at most, from the size in pixels, the kind of the decoded pixels and the format.
+/// `cost` is an upper bound of the memory for decoding, from the size in pixels, the kind of the decoded pixels and the format.
 pub(super) fn open(
     bytes: &[u8],
     format: ImageFormat,
@@ -59,23 +59,23 @@ fn working_cost(pixels: u64, color: ColorType, format: ImageFormat) -> u64 {
 }
 
 /// A limit stays a limit, all else is damage.
-fn refused(place: &str, error: &ImageError) -> SceneError {
+fn refused(path: &str, error: &ImageError) -> SceneError {
     match error {
         ImageError::Limits(limit) => {
             let found = format!("asks for too much: {}", crate::error::escaped(&limit.to_string()));
             let allowed = format!("sides of at most {MAX_SIDE} pixels, within the budget");
-            SceneError::limit(place, found, allowed).way_out("scale the picture down")
+            SceneError::limit(path, found, allowed).way_out("scale the picture down")
         }
-        error => damaged(error).at(place),
+        error => damaged(error).at(path),
     }
 }
 
-/// Whether the mark of the end follows the last scan: the decoder fills what is missing with grey and is silent.
+/// True if the end marker follows the last scan: the decoder fills missing data with gray, without an error.
 fn jpeg_ends(bytes: &[u8]) -> bool {
     let last = |mark: [u8; 2]| bytes.windows(2).rposition(|pair| pair == mark);
     match (last([0xff, 0xda]), last([0xff, 0xd9])) {
         (Some(scan), Some(end)) => scan < end,
-        // No scan at all: the decoder says so.
+        // No scan at all: the decoder reports it.
         (None, _) => true,
         (Some(_), None) => false,
     }

@@ -5,9 +5,9 @@ use super::interpolation::{cubic, linear, spherical, unit};
 /// Movements that belong together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Animation {
-    /// What the file calls it; may be empty.
+    /// Name in the file; may be empty.
     pub name: String,
-    /// What moves how.
+    /// Channels: targets and their tracks.
     pub channels: Vec<Channel>,
 }
 
@@ -16,13 +16,13 @@ pub struct Animation {
 pub struct Channel {
     /// The node.
     pub node: usize,
-    /// What of it.
+    /// Animated property of the node.
     pub property: Property,
     /// Its values over time.
     pub track: Track,
 }
 
-/// What of a node moves.
+/// Animated property of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Property {
     /// Three numbers, in metres.
@@ -35,7 +35,7 @@ pub enum Property {
     Weights,
 }
 
-/// How values between keys are made.
+/// Interpolation of values between keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Interpolation {
     /// The value of the last key.
@@ -52,13 +52,13 @@ pub enum Interpolation {
 pub struct Track {
     /// The times of the keys in seconds, from 0 on, rising.
     pub times: Vec<f32>,
-    /// The values of all keys, one after the other: `width` numbers for each, three times as many with tangents.
+    /// Values of all keys in order: `width` numbers for each, three times as many with tangents.
     pub values: Vec<f32>,
-    /// How many numbers a value has.
+    /// Number of components of a value.
     pub width: usize,
-    /// How values between keys are made.
+    /// Interpolation of values between keys.
     pub interpolation: Interpolation,
-    /// Whether values are rotations.
+    /// True if values are rotations.
     pub turns: bool,
 }
 
@@ -69,7 +69,7 @@ impl Animation {
         self.channels.iter().filter_map(|channel| channel.track.times.last()).fold(0.0, |all, &t| all.max(t))
     }
 
-    /// A time within the animation: what is left of `time_s` after whole rounds.
+    /// Time within the animation: the remainder of `time_s` after whole loops.
     ///
     /// ```
     /// use downpour_scene::scene::{Animation, Channel, Property, Track};
@@ -86,8 +86,8 @@ impl Animation {
 }
 
 impl Track {
-    /// The value at a time in seconds, put into `value`; that of the first or last key outside of them. Nothing
-    /// is put there if the track is empty or has too few values.
+    /// Samples the value at a time in seconds into `value`; that of the first or last key outside of them. `value` is
+    /// unchanged if the track is empty or has too few values.
     pub fn sample(&self, time_s: f32, value: &mut Vec<f64>) {
         value.clear();
         let after = self.times.partition_point(|&key| key <= time_s);
@@ -146,7 +146,7 @@ impl Track {
         unit(self.part(key, 1).first_chunk::<4>()?.map(f64::from))
     }
 
-    /// What it takes up, in bytes.
+    /// Size in memory, in bytes.
     pub fn bytes(&self) -> u64 {
         (self.times.len().saturating_add(self.values.len()) as u64).saturating_mul(4)
     }

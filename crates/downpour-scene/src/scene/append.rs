@@ -4,7 +4,7 @@ use super::{Local, Node, Scene};
 use glam::Affine3A;
 
 impl Scene {
-    /// Puts another scene into this one, at a place, and returns the node that it hangs on.
+    /// Adds another scene to this one, with a transform, and returns the node above it.
     ///
     /// Indices of the other scene are moved up: its animation `i` becomes `self.animations.len() + i` of before.
     ///
@@ -54,15 +54,15 @@ impl Scene {
         self.cameras.extend(other.cameras);
         self.warnings.extend(other.warnings);
         let children = other.roots.into_iter().map(|root| root.saturating_add(nodes)).collect();
-        let place = self.nodes.len();
+        let node = self.nodes.len();
         self.nodes.push(Node {
             name: other.name,
             children,
             local: Local::Matrix(transform),
             ..Node::default()
         });
-        self.roots.push(place);
-        place
+        self.roots.push(node);
+        node
     }
 }
 

@@ -1,17 +1,17 @@
-//! Eyes: glTF 2.0, section 3.10. A camera looks along -Z of its node with +Y up; scale has no effect on it.
+//! Cameras: glTF 2.0, section 3.10. A camera looks along -Z of its node with +Y up; scale has no effect on it.
 
 use glam::Vec3;
 
-/// A camera without a place.
+/// A camera without a transform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// What the file calls it; may be empty.
+    /// Name in the file; may be empty.
     pub name: String,
-    /// How it sees.
+    /// Projection.
     pub lens: Lens,
 }
 
-/// How a camera sees.
+/// Projection of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lens {
     /// Rays from one point.
@@ -41,14 +41,14 @@ pub enum Lens {
 /// A camera in the world. The three directions are unit vectors at right angles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedCamera {
-    /// The node that it hangs on.
+    /// Node of the camera.
     pub node: usize,
-    /// Which camera.
+    /// Index of the camera.
     pub camera: usize,
-    /// Where it is, in metres.
+    /// Position, in metres.
     pub eye: Vec3,
-    /// Where it looks.
+    /// Viewing direction.
     pub forward: Vec3,
-    /// What is up in its picture.
+    /// Up direction of its picture.
     pub up: Vec3,
 }

@@ -3,7 +3,7 @@
 //! With `t` from 0 to 1 between two keys and `d` the time between them in seconds:
 //! - linear: `(1 - t) a + t b`;
 //! - spherical (rotations): `(sin((1 - t) w) a + s sin(t w) b) / sin w` with `cos w = |a . b|` and `s` the sign of
-//!   `a . b`, so that the turn takes the shorter way;
+//!   `a . b`, so that the rotation is the shorter one;
 //! - cubic spline: `(2t^3 - 3t^2 + 1) a + d (t^3 - 2t^2 + t) m + (3t^2 - 2t^3) b + d (t^3 - t^2) n`, where `m` is
 //!   the tangent out of `a` and `n` that into `b`, in units per second.
 
@@ -68,7 +68,7 @@ mod tests {
             for t in [0.0, 0.1, 0.5, 0.75, 1.0] {
                 let turned = spherical(about_z(0.3), about_z(0.3 + angle), t);
                 assert!(near(turned, about_z(0.3 + t * angle)), "{angle} {t}: {turned:?}");
-                // The same end with the other sign is the same rotation, and the shorter way is the same.
+                // The same end with the other sign is the same rotation, and the shorter path is the same.
                 let opposite = about_z(0.3 + angle).map(|part| -part);
                 assert!(near(spherical(about_z(0.3), opposite, t), turned));
             }

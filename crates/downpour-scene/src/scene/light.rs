@@ -6,27 +6,27 @@
 
 use glam::Vec3;
 
-/// A light without a place.
+/// A light without a transform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// What the file calls it; may be empty.
+    /// Name in the file; may be empty.
     pub name: String,
-    /// Linear colour, in [0, 1].
+    /// Linear color, in [0, 1].
     pub color: Vec3,
     /// Candela of a point or spot light, lux of a directional one; 0 or more.
     pub intensity: f32,
-    /// The distance at which the light has faded to nothing, in metres; `None` for no end.
+    /// Distance at which the light has faded to zero, in metres; `None` for an unlimited range.
     pub range: Option<f32>,
-    /// Its sort.
+    /// Kind of the light.
     pub kind: LightKind,
 }
 
-/// The sort of a [`Light`].
+/// Kind of a [`Light`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
     /// Parallel light from infinitely far away.
     Directional,
-    /// A lamp that shines to all sides.
+    /// A lamp that shines in all directions.
     Point,
     /// A lamp with a cone.
     Spot {
@@ -40,11 +40,11 @@ pub enum LightKind {
 /// A light in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedLight {
-    /// The node that it hangs on.
+    /// Node of the light.
     pub node: usize,
-    /// Which light.
+    /// Index of the light.
     pub light: usize,
-    /// Where it is, in metres; without meaning for a directional light.
+    /// Position, in metres; without meaning for a directional light.
     pub position: Vec3,
     /// The unit direction in which it shines; without meaning for a point light.
     pub direction: Vec3,

@@ -1,12 +1,12 @@
-//! What surfaces are made of: the metallic and rough model of glTF 2.0 (section 3.9 and appendix B), with the
+//! Materials: the metallic and rough model of glTF 2.0 (section 3.9 and appendix B), with the
 //! extensions `KHR_materials_emissive_strength`, `_ior`, `_transmission` and `_unlit`.
 
 use glam::{Affine2, Vec2, Vec3, Vec4};
 
-/// The material of a primitive. Colours of factors are linear.
+/// Material of a primitive. Colors of factors are linear.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// What the file calls it; may be empty.
+    /// Name in the file; may be empty.
     pub name: String,
     /// Reflectance (dielectric: diffuse; metal: at normal incidence) with coverage in `w`; each in [0, 1].
     pub base_color: Vec4,
@@ -30,11 +30,11 @@ pub struct Material {
     pub emissive: Vec3,
     /// Multiplies `emissive`; sRGB.
     pub emissive_texture: Option<TextureRef>,
-    /// What the alpha of the base colour means.
+    /// Meaning of the alpha of the base color.
     pub alpha_mode: AlphaMode,
-    /// Whether the back is seen too, with its normal turned round.
+    /// True if the back is visible too, with its normal reversed.
     pub double_sided: bool,
-    /// Whether the base colour is shown as it is, without light.
+    /// True if the base color is shown as it is, without light.
     pub unlit: bool,
     /// The part of light that passes through the surface instead of being scattered by it, in [0, 1].
     pub transmission: f32,
@@ -44,15 +44,15 @@ pub struct Material {
     pub ior: f32,
 }
 
-/// What the alpha of the base colour means.
+/// Meaning of the alpha of the base color.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum AlphaMode {
-    /// Nothing.
+    /// Alpha has no effect.
     #[default]
     Opaque,
-    /// The surface is there where alpha is at least the cutoff.
+    /// The surface exists where alpha is at least the cutoff.
     Mask {
-        /// The least alpha that is seen.
+        /// Minimum alpha of the surface.
         cutoff: f32,
     },
     /// Coverage: the background shows through.
@@ -64,14 +64,14 @@ pub enum AlphaMode {
 pub struct TextureRef {
     /// The texture.
     pub texture: usize,
-    /// The set of texture coordinates, 0 or 1. Where the primitive has no such set, all are (0, 0).
+    /// Set of texture coordinates, 0 or 1. If the primitive has no such set, all are (0, 0).
     pub uv_set: usize,
     /// `KHR_texture_transform`: from the coordinates of the vertices to those of the texture.
     pub transform: Affine2,
 }
 
 impl TextureRef {
-    /// Where the texture is sampled for coordinates of a vertex.
+    /// Sampling position in the texture for coordinates of a vertex.
     ///
     /// ```
     /// use downpour_scene::scene::TextureRef;
@@ -86,7 +86,7 @@ impl TextureRef {
 }
 
 impl Default for Material {
-    /// White, metallic and rough, as the specification says of a primitive without material.
+    /// White, metallic and rough: the default of the specification for a primitive without material.
     fn default() -> Self {
         Self {
             name: String::new(),

@@ -1,15 +1,15 @@
-//! Shapes: triangles with what is needed to shade, bend and texture them.
+//! Meshes: triangles with the data for shading, skinning and texturing.
 
 use glam::{Vec2, Vec3, Vec4};
 
 /// A shape of one or more primitives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// What the file calls it; may be empty.
+    /// Name in the file; may be empty.
     pub name: String,
     /// Its parts, one for each material. Empty for a mesh that no node of the scene draws.
     pub primitives: Vec<Primitive>,
-    /// Weights of the morph targets where neither node nor animation gives others.
+    /// Default weights of the morph targets, used if neither node nor animation has others.
     pub weights: Vec<f32>,
 }
 
@@ -20,18 +20,18 @@ pub struct Mesh {
 pub struct Primitive {
     /// Vertices, in metres.
     pub positions: Vec<Vec3>,
-    /// Unit normals: those of the file, or those of the faces where it has none.
+    /// Unit normals: those of the file, or else those of the faces.
     pub normals: Vec<Vec3>,
-    /// Unit tangents with the sign of the bitangent in `w`: those of the file, or those of `MikkTSpace` where the
+    /// Unit tangents with the sign of the bitangent in `w`: those of the file, or those of `MikkTSpace` if the
     /// material has a normal map. Empty otherwise.
     pub tangents: Vec<Vec4>,
-    /// Texture coordinates of sets 0 and 1, origin at the upper left; empty where the file has none.
+    /// Texture coordinates of sets 0 and 1, origin at the upper left; empty if the file has none.
     pub uvs: [Vec<Vec2>; 2],
-    /// Linear colours that multiply the base colour, in [0, 1].
+    /// Linear colors that multiply the base color, in [0, 1].
     pub colors: Option<Vec<Vec4>>,
-    /// Which joints of the skin move a vertex.
+    /// Joints of the skin that move a vertex.
     pub joints: Vec<[u16; 4]>,
-    /// How much each joint does; the sum is 1.
+    /// Weight of each joint; the sum is 1.
     pub weights: Vec<[f32; 4]>,
     /// Shapes that this one can turn into.
     pub morphs: Vec<MorphTarget>,
@@ -39,11 +39,11 @@ pub struct Primitive {
     pub indices: Vec<u32>,
     /// The material.
     pub material: usize,
-    /// The box round all vertices.
+    /// Bounding box of all vertices.
     pub bounds: Bounds,
 }
 
-/// What is added to a primitive, times a weight.
+/// Differences added to a primitive, times a weight.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MorphTarget {
     /// Added to positions, in metres; empty for none.
@@ -71,7 +71,7 @@ impl Default for Bounds {
 }
 
 impl Bounds {
-    /// The box round points.
+    /// Bounding box of points.
     ///
     /// ```
     /// use downpour_scene::scene::Bounds;
@@ -85,7 +85,7 @@ impl Bounds {
         points.iter().fold(Self::default(), grow)
     }
 
-    /// Whether there is nothing in it.
+    /// True if the box is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
@@ -107,7 +107,7 @@ impl Bounds {
         ]
     }
 
-    /// The box round both.
+    /// Bounding box of both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
@@ -115,13 +115,13 @@ impl Bounds {
 }
 
 impl Primitive {
-    /// Whether a skin can bend it.
+    /// True if it has joints for a skin.
     #[must_use]
     pub fn is_skinned(&self) -> bool {
         !self.joints.is_empty() && self.joints.len() == self.weights.len()
     }
 
-    /// What it takes up, in bytes.
+    /// Size in memory, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let of = |count: usize, size: u64| (count as u64).saturating_mul(size);
         let [first, second] = &self.uvs;

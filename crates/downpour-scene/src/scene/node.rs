@@ -1,21 +1,21 @@
-//! Places: nodes with their transforms (glTF 2.0, section 3.5).
+//! Nodes with their transforms (glTF 2.0, section 3.5).
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 
-/// A place in the forest, and what is there.
+/// A node of the forest, and the objects at it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Node {
-    /// What the file calls it; may be empty.
+    /// Name in the file; may be empty.
     pub name: String,
     /// Nodes that move with it.
     pub children: Vec<usize>,
-    /// Its place relative to its parent.
+    /// Transform relative to its parent.
     pub local: Local,
     /// The mesh that is drawn here.
     pub mesh: Option<usize>,
     /// The skin that bends the mesh.
     pub skin: Option<usize>,
-    /// The camera that stands here.
+    /// Camera at this node.
     pub camera: Option<usize>,
     /// The light that shines from here.
     pub light: Option<usize>,
@@ -23,7 +23,7 @@ pub struct Node {
     pub weights: Vec<f32>,
 }
 
-/// A place relative to the parent.
+/// A transform relative to the parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Local {
     /// Any affine map. Animations leave it as it is.
@@ -39,7 +39,7 @@ pub struct Parts {
     pub translation: Vec3,
     /// A unit quaternion; zero for a file's rotation of length 0, which has no inverse.
     pub rotation: Quat,
-    /// Along the node's own axes.
+    /// Scale along the node's axes.
     pub scale: Vec3,
 }
 

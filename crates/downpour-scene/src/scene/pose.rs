@@ -1,7 +1,7 @@
-//! Where everything is at a time.
+//! Pose of a scene: transforms of all objects at a time.
 //!
-//! The world matrix of a node is that of its parent times its own (glTF 2.0, section 3.5.3), computed in double
-//! precision. A skinned mesh stands where its joints are: the transform of its own node has no effect on it
+//! The world matrix of a node is that of its parent times its local one (glTF 2.0, section 3.5.3), computed in double
+//! precision. A skinned mesh is transformed by its joints: the transform of its node has no effect on it
 //! (section 3.7.3.3).
 
 use super::REACH;
@@ -10,38 +10,38 @@ use super::mesh::{Bounds, Mesh};
 use super::{Local, Parts, PlacedCamera, Property, Scene};
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Quat, Vec3};
 
-/// Of what a matrix must keep of the volume that the lengths of its columns allow. Below it the columns lie in
+/// Minimum ratio of the volume of a matrix to the product of the lengths of its columns. Below it the columns lie in
 /// one plane but for rounding.
 const FLAT: f64 = 1e-10;
 
 /// An animation and the time in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Play {
-    /// Which animation.
+    /// Index of the animation.
     pub animation: usize,
-    /// The time in seconds; beyond the animation's length it begins again.
+    /// Time in seconds; beyond the animation's length it repeats.
     pub time_s: f32,
 }
 
 /// The state of a scene at a time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// Every mesh that is drawn, in the order of the walk from the roots down.
+    /// All meshes that are drawn, in the order of the walk from the roots down.
     pub instances: Vec<Instance>,
     /// Every light.
     pub lights: Vec<PlacedLight>,
     /// Every camera.
     pub cameras: Vec<PlacedCamera>,
-    /// How many meshes are not drawn because their transform has no inverse, as one with a scale of 0, or leads
+    /// Number of meshes that are not drawn because their transform has no inverse, as one with a scale of 0, or leads
     /// farther than [`REACH`] from the origin.
     pub left_out: usize,
     world: Vec<DAffine3>,
 }
 
-/// A mesh at a place.
+/// A mesh with its transform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
-    /// The node that it hangs on.
+    /// Node of the mesh.
     pub node: usize,
     /// The mesh.
     pub mesh: usize,
@@ -49,8 +49,8 @@ pub struct Instance {
     pub world: Affine3A,
     /// For normals: the inverse transpose of `world`. Normalise after it.
     pub normal: Mat3,
-    /// Whether the transform mirrors, so that triangles turn clockwise: swap two corners, or the sides that are
-    /// culled. The sign of the bitangents turns round too.
+    /// True if the transform mirrors, so that triangles are clockwise: swap two corners, or the sides that are
+    /// culled. The sign of the bitangents is reversed too.
     pub mirrored: bool,
     /// For primitives with joints: from the mesh to the world, for each joint of the skin; `world` and `normal`
     /// are not for them. Empty without a skin.
@@ -72,7 +72,7 @@ impl Pose {
         self.world.get(node).copied()
     }
 
-    /// A box round all instances, in metres. Skinned and morphed ones lie in it, but may not fill it.
+    /// Bounding box of all instances, in metres. Skinned and morphed ones lie in it, but may not fill it.
     #[must_use]
     pub fn bounds(&self, scene: &Scene) -> Bounds {
         let each = self.instances.iter().filter_map(|instance| {
@@ -84,8 +84,8 @@ impl Pose {
 }
 
 impl Scene {
-    /// Where everything is at a time in seconds of one animation, or at rest without one. Beyond the length of
-    /// the animation it begins again.
+    /// Pose at a time in seconds of one animation, or at rest without one. Beyond the length of
+    /// the animation it repeats.
     ///
     /// ```
     /// use downpour_scene::scene::{Mesh, Node, Scene};
@@ -103,8 +103,8 @@ impl Scene {
         }
     }
 
-    /// Where everything is when several animations run at once, each at its own time; where two move the same
-    /// thing, the later in the list does.
+    /// Pose of several animations that run at once, each at its time; if two move the same
+    /// property, the later in the list wins.
     #[must_use]
     pub fn pose_of(&self, plays: &[Play]) -> Pose {
         let mut locals: Vec<Local> = self.nodes.iter().map(|node| node.local).collect();
@@ -127,18 +127,18 @@ impl Scene {
         let (world, drawn) = self.walk(&locals);
         let mut pose = Pose { world, ..Pose::default() };
         for node in drawn {
-            self.place(node, weights.get_mut(node).and_then(Option::take), &mut pose);
+            self.add_node(node, weights.get_mut(node).and_then(Option::take), &mut pose);
         }
         pose
     }
 
-    /// The nodes that hang on the roots, in the order of the walk.
+    /// Nodes below the roots, in the order of the walk.
     pub(crate) fn drawn(&self) -> Vec<usize> {
         let locals: Vec<Local> = self.nodes.iter().map(|node| node.local).collect();
         self.walk(&locals).1
     }
 
-    /// The world matrices of all nodes, and those that hang on the roots in the order of the walk.
+    /// World matrices of all nodes, and the nodes below the roots in the order of the walk.
     fn walk(&self, locals: &[Local]) -> (Vec<DAffine3>, Vec<usize>) {
         let mut world: Vec<Option<DAffine3>> = vec![None; self.nodes.len()];
         let mut drawn = Vec::new();
@@ -150,7 +150,7 @@ impl Scene {
                 *is_child = true;
             }
         }
-        // After the scene, what does not belong to it: joints may stand there.
+        // After the scene, nodes outside it: joints may be among them.
         let elsewhere = is_child.iter().enumerate().filter(|(_, is_child)| !**is_child).map(|(node, _)| node);
         let mut rest = elsewhere.fuse();
         let mut in_scene = true;
@@ -163,7 +163,7 @@ impl Scene {
                 }
                 continue;
             };
-            // Each node is met once, whatever the links of a scene made by hand say.
+            // Each node is visited once, even with invalid links in a scene made by hand.
             let (Some(slot @ None), Some(local)) = (world.get_mut(node), locals.get(node)) else { continue };
             let matrix = product(&parent, &local.matrix());
             *slot = Some(matrix);
@@ -176,8 +176,8 @@ impl Scene {
         (world.into_iter().map(|matrix| matrix.unwrap_or(DAffine3::IDENTITY)).collect(), drawn)
     }
 
-    /// Puts what is at a node into the pose.
-    fn place(&self, index: usize, weights: Option<Vec<f32>>, pose: &mut Pose) {
+    /// Adds the objects of a node to the pose.
+    fn add_node(&self, index: usize, weights: Option<Vec<f32>>, pose: &mut Pose) {
         let (Some(node), Some(&world)) = (self.nodes.get(index), pose.world.get(index)) else { return };
         let direction = |axis: DVec3| {
             let turned = world.matrix3.mul_vec3(axis);
@@ -222,7 +222,7 @@ impl Scene {
     }
 }
 
-/// Puts an animated value into its place.
+/// Stores an animated value.
 fn move_parts(parts: &mut Parts, property: Property, value: &[f64]) {
     match (property, value) {
         (Property::Translation, &[x, y, z]) => parts.translation = Vec3::new(single(x), single(y), single(z)),
@@ -234,7 +234,7 @@ fn move_parts(parts: &mut Parts, property: Property, value: &[f64]) {
     }
 }
 
-/// An instance; `None` when its transform has no inverse. With a skin only the joints count.
+/// An instance; `None` if its transform has no inverse. With a skin only the joints matter.
 fn instance(
     node: usize,
     mesh: usize,
@@ -247,7 +247,7 @@ fn instance(
     let (world, normal, mirrored) = match (normal, joints.first()) {
         (Some(normal), None) => (narrow(world), normal, mirrored),
         (None, None) => return None,
-        // The first joint that keeps a volume says on which side the others are.
+        // The first joint with a volume determines the handedness of the others.
         (_, Some(first)) => {
             let solid = joints.iter().find(|joint| normal_map(&joint.matrix3).is_some()).unwrap_or(first);
             let normal = normal.unwrap_or(Mat3::IDENTITY);
@@ -268,14 +268,14 @@ fn instance(
     })
 }
 
-/// The inverse transpose; `None` where columns lie in a plane, or numbers have no end.
+/// Inverse transpose; `None` if columns lie in a plane, or numbers are not finite.
 fn normal_map(linear: &DMat3) -> Option<Mat3> {
     let volume = linear.determinant();
     let lengths = linear.x_axis.length() * linear.y_axis.length() * linear.z_axis.length();
     // NaN and infinity fail the comparisons.
     let solid = volume.abs() > FLAT * lengths && volume.abs() < f64::MAX;
     let normal = linear.inverse().transpose();
-    // Only the direction counts: scaled, so that it fits single precision whatever the scale of the node is.
+    // Only the direction matters: scaled to fit single precision for any scale of the node.
     let largest = normal.x_axis.abs().max(normal.y_axis.abs()).max(normal.z_axis.abs()).max_element();
     let scaled = if (1e-18..1e18).contains(&largest) { normal } else { scaled(&normal, largest) };
     (solid && normal.is_finite()).then(|| scaled.as_mat3()).filter(Mat3::is_finite)
@@ -285,7 +285,7 @@ fn scaled(matrix: &DMat3, largest: f64) -> DMat3 {
     DMat3::from_cols_array(&matrix.to_cols_array().map(|part| part / largest))
 }
 
-/// A box round an instance in the world.
+/// Bounding box of an instance in the world.
 fn extent(mesh: &Mesh, instance: &Instance) -> Bounds {
     let (mut rigid, mut bent) = (Bounds::default(), Bounds::default());
     for part in mesh.primitives.iter().filter(|part| !part.bounds.is_empty()) {

@@ -19,8 +19,8 @@ pub struct SkinnedPrimitive {
     pub tangents: Vec<Vec4>,
 }
 
-/// Brings the vertices of a primitive into the world. The order of corners is not changed: where the instance is
-/// mirrored, triangles turn clockwise.
+/// Transforms the vertices of a primitive into the world. The order of corners is not changed: if the instance is
+/// mirrored, triangles are clockwise.
 ///
 /// ```
 /// use downpour_scene::scene::{Mesh, Node, Primitive, Scene, skin_primitive};
@@ -95,8 +95,8 @@ fn blended(primitive: &Primitive, instance: &Instance, vertex: usize) -> Affine3
     sum
 }
 
-/// The cofactors with the sign of the determinant: the inverse transpose but for a positive factor, also where
-/// there is no inverse.
+/// Cofactors with the sign of the determinant: the inverse transpose but for a positive factor, also for a matrix
+/// without inverse.
 fn cofactors(m: &Mat3A) -> Mat3A {
     let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
     // Columns of about length 1, so that products neither overflow nor vanish.

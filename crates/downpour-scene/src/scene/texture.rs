@@ -1,19 +1,19 @@
-//! A picture together with the way to sample it (glTF 2.0, sections 3.8.3 and 3.8.4).
+//! Textures: a picture and its sampler (glTF 2.0, sections 3.8.3 and 3.8.4).
 
 use crate::picture::Picture;
 use std::fmt;
 use std::sync::Arc;
 
-/// A picture, how its numbers are meant, and how it is sampled.
+/// A picture with its encoding and its sampler.
 #[derive(Clone)]
 pub struct Texture {
-    /// What messages call it.
+    /// Name in messages.
     pub name: String,
     /// The pixels, shared by all textures of the same image.
     pub picture: Arc<Picture>,
-    /// What the numbers of the pixels mean; decided by the use that materials make of them.
+    /// Encoding of the pixels; determined by the use in materials.
     pub encoding: Encoding,
-    /// How it is sampled.
+    /// Sampler.
     pub sampler: Sampler,
 }
 
@@ -28,32 +28,32 @@ impl fmt::Debug for Texture {
     }
 }
 
-/// What the numbers of pixels mean.
+/// Encoding of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Encoding {
-    /// Colours with the transfer function of sRGB; alpha is linear.
+    /// Colors with the transfer function of sRGB; alpha is linear.
     Srgb,
-    /// Numbers as they are: normals, roughness and the like.
+    /// Plain numbers: normals, roughness and similar data.
     Linear,
 }
 
-/// How a texture is sampled.
+/// Sampler of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Sampler {
-    /// What lies beyond the left and right border.
+    /// Wrap mode beyond the left and right border.
     pub wrap_s: Wrap,
-    /// What lies beyond the upper and lower border.
+    /// Wrap mode beyond the upper and lower border.
     pub wrap_t: Wrap,
-    /// Between pixels, where the texture is enlarged.
+    /// Filter for magnification.
     pub mag: Filter,
-    /// Between pixels, where the texture is made smaller.
+    /// Filter for minification.
     pub min: Filter,
-    /// Between levels of a pyramid; `None` where only the full size is used.
+    /// Filter between mip levels; `None` if only the full size is used.
     pub mip: Option<Filter>,
 }
 
 impl Sampler {
-    /// Repeating, linear, with a pyramid: what is taken where a file does not say.
+    /// Repeating, linear, with mip levels: the default if a file has no sampler.
     pub const USUAL: Self = Self {
         wrap_s: Wrap::Repeat,
         wrap_t: Wrap::Repeat,
@@ -63,7 +63,7 @@ impl Sampler {
     };
 }
 
-/// What lies beyond the border of a texture.
+/// Wrap mode of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Wrap {
     /// The texture again.
@@ -75,7 +75,7 @@ pub enum Wrap {
     ClampToEdge,
 }
 
-/// What is taken between pixels.
+/// Filter between pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Filter {
     /// The nearest.

@@ -1,8 +1,8 @@
 //! Skies by a formula.
 //!
 //! Overcast: P. Moon, D. E. Spencer, "Illumination from a non-uniform sky", Illuminating Engineering 37 (1942),
-//! taken over by the CIE: at an elevation e the radiance is `Z (1 + 2 sin e) / 3`, with Z that of the zenith. It
-//! lights the ground with `7 pi Z / 9`. Nothing comes from below the horizon.
+//! adopted by the CIE: at an elevation e the radiance is `Z (1 + 2 sin e) / 3`, with Z that of the zenith. Its
+//! irradiance of the ground is `7 pi Z / 9`. Below the horizon it is black.
 
 use super::SkyMap;
 use downpour_math::ops::f64 as ops;
@@ -21,7 +21,7 @@ impl SkyMap {
     #[must_use]
     pub fn uniform(rgb: [f32; 3]) -> Self {
         let radiance =
-            rgb.map(|value| if value.is_finite() { value.clamp(0.0, super::BRIGHTEST) } else { 0.0 });
+            rgb.map(|value| if value.is_finite() { value.clamp(0.0, super::MAX_RADIANCE) } else { 0.0 });
         Self { width: 1, height: 1, radiance: vec![radiance], warnings: Vec::new() }
     }
 
@@ -44,7 +44,7 @@ impl SkyMap {
 }
 
 impl SkyMap {
-    /// The same sky above a ground that reflects the share `albedo` of what falls on it, alike to all sides: below the
+    /// The same sky above a ground with the albedo `albedo`, diffuse: below the
     /// horizon every pixel has `albedo E / pi`, with E the irradiance of a level surface.
     ///
     /// ```
@@ -90,7 +90,7 @@ impl SkyMap {
 }
 
 /// The nearest `f32`.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is meant; the value is below BRIGHTEST")]
+#[expect(clippy::cast_possible_truncation, reason = "rounding is meant; the value is below MAX_RADIANCE")]
 pub(super) fn narrowed(value: f64) -> f32 {
     value as f32
 }

@@ -1,9 +1,9 @@
 //! The sun of a sky map: its brightest compact source, taken out so that it can cast a shadow.
 //!
-//! Method: the pixels brighter than a multiple of the map's mean luminance that hang together with the brightest
-//! one are the source. What lies round them is the sky behind it; what they have above that is the source's
-//! irradiance on a surface that faces it, `E = sum (L - L_sky) dOmega`. Source and rest together have the light of
-//! the map before, in each colour.
+//! Method: the pixels brighter than a multiple of the map's mean luminance that are connected to the brightest
+//! one are the source. The pixels around them are the sky behind it; the excess over these is the source's
+//! irradiance on a surface that faces it, `E = sum (L - L_sky) dOmega`. Source and remaining map together have the light of
+//! the original map, in each color.
 //!
 //! The angular radius is that of a uniform disc with the same first two moments of radiance,
 //! `Omega = (sum L dOmega)^2 / sum L^2 dOmega`, `cos r = 1 - Omega / 2 pi`. Photographs blur the sun's disc (0.27
@@ -15,21 +15,21 @@ use downpour_math::ops::f64 as ops;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
-/// A threshold for [`SkyMap::extract_sun`] that finds the sun of a clear day and leaves bright clouds alone.
+/// Threshold for [`SkyMap::extract_sun`] that finds the sun of a clear day and ignores bright clouds.
 pub const SUN_THRESHOLD: f64 = 20.0;
 
-/// The largest angular radius of a compact source, in radians: 10 degrees.
-pub const LARGEST_SUN: f64 = PI / 18.0;
+/// Maximum angular radius of a compact source, in radians: 10 degrees.
+pub const MAX_SUN_RADIUS: f64 = PI / 18.0;
 
-/// The least part of a map's light that makes a source a sun, and no distant lamp.
-const LEAST_SHARE: f64 = 0.01;
+/// Minimum fraction of a map's light in a source that counts as a sun, not as a distant lamp.
+const MIN_FRACTION: f64 = 0.01;
 
 /// A compact source far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     /// The unit direction towards it.
     pub direction: [f32; 3],
-    /// What a surface that faces it receives, in the map's unit of radiance times steradian.
+    /// Irradiance of a surface that faces it, in the map's unit of radiance times steradian.
     pub irradiance_rgb: [f32; 3],
     /// The radius of the disc that it appears as, in radians.
     pub angular_radius: f32,
@@ -45,11 +45,11 @@ struct Moments {
 }
 
 impl SkyMap {
-    /// Takes the brightest compact source out of the map and returns it; `None`, and the map as it was, if nothing
-    /// is `threshold` times as bright as the mean, if what is so covers more than a disc of [`LARGEST_SUN`], or if it
-    /// holds less than 1 % of the light.
+    /// Removes the brightest compact source from the map and returns it; `None`, and the map unchanged, if nothing
+    /// is `threshold` times as bright as the mean, if such pixels cover more than a disc of [`MAX_SUN_RADIUS`], or if they
+    /// hold less than 1 % of the light.
     ///
-    /// [`SUN_THRESHOLD`] is a good threshold. The pixels of the source are filled with the mean of those round it.
+    /// [`SUN_THRESHOLD`] is a good threshold. The pixels of the source are filled with the mean of their neighbors.
     ///
     /// ```
     /// use downpour_scene::sky::{SUN_THRESHOLD, SkyMap};
@@ -67,7 +67,7 @@ impl SkyMap {
         let behind = self.around(&source);
         let moments = self.moments(&source, behind);
         let direction = unit(moments.direction)?;
-        if luminance(moments.irradiance) < LEAST_SHARE * 4.0 * PI * mean {
+        if luminance(moments.irradiance) < MIN_FRACTION * 4.0 * PI * mean {
             return None;
         }
         let spread = moments.flux * moments.flux / moments.flux_squared;
@@ -85,7 +85,7 @@ impl SkyMap {
         Some(sun)
     }
 
-    /// The pixels above a level that hang together with the brightest pixel; `None` if there are none or too many.
+    /// Pixels above a level that are connected to the brightest pixel; `None` if there are none or too many.
     fn source(&self, level: f64) -> Option<BTreeSet<(u32, u32)>> {
         let mut brightest: Option<(f64, (u32, u32))> = None;
         for (row, pixels) in self.rows() {
@@ -97,14 +97,14 @@ impl SkyMap {
             }
         }
         let (_, seed) = brightest?;
-        let most = 2.0 * PI * (1.0 - ops::cos(LARGEST_SUN));
+        let most = 2.0 * PI * (1.0 - ops::cos(MAX_SUN_RADIUS));
         let (mut found, mut front, mut area) = (BTreeSet::from([seed]), vec![seed], 0.0);
-        while let Some(place) = front.pop() {
-            area += self.solid_angle(place.1);
+        while let Some(at) = front.pop() {
+            area += self.solid_angle(at.1);
             if area > most {
                 return None;
             }
-            for next in self.neighbours(place) {
+            for next in self.neighbors(at) {
                 let bright = self.pixel(next).is_some_and(|pixel| luminance(pixel.map(f64::from)) > level);
                 if bright && found.insert(next) {
                     front.push(next);
@@ -114,17 +114,17 @@ impl SkyMap {
         Some(found)
     }
 
-    /// The mean of the pixels that touch a source, by their solid angles; black if there are none.
+    /// Mean of the pixels that touch a source, by their solid angles; black if there are none.
     fn around(&self, source: &BTreeSet<(u32, u32)>) -> [f64; 3] {
         let mut ring: BTreeMap<(u32, u32), ()> = BTreeMap::new();
-        for &place in source {
-            ring.extend(self.neighbours(place).filter(|next| !source.contains(next)).map(|next| (next, ())));
+        for &at in source {
+            ring.extend(self.neighbors(at).filter(|next| !source.contains(next)).map(|next| (next, ())));
         }
         let (mut sum, mut area) = ([0.0; 3], 0.0);
-        for place in ring.keys() {
-            let weight = self.solid_angle(place.1);
+        for at in ring.keys() {
+            let weight = self.solid_angle(at.1);
             area += weight;
-            sum = add(sum, scaled(self.pixel(*place).unwrap_or_default().map(f64::from), weight));
+            sum = add(sum, scaled(self.pixel(*at).unwrap_or_default().map(f64::from), weight));
         }
         if area > 0.0 { scaled(sum, 1.0 / area) } else { [0.0; 3] }
     }
@@ -134,12 +134,12 @@ impl SkyMap {
         for &(column, row) in source {
             let weight = self.solid_angle(row);
             let [r, g, b] = self.pixel((column, row)).unwrap_or_default().map(f64::from);
-            // What is filled in is narrowed first, so that nothing is lost between the two parts.
+            // The fill is rounded to f32 first, so that no light is lost between the two parts.
             let [br, bg, bb] = behind.map(|value| f64::from(narrowed(value)));
             let above = [(r - br).max(0.0), (g - bg).max(0.0), (b - bb).max(0.0)];
             let bright = luminance(above);
-            let centre = |at: u32, side: u32| narrowed((f64::from(at) + 0.5) / f64::from(side));
-            let towards = uv_to_direction([centre(column, self.width), centre(row, self.height)]);
+            let center = |at: u32, side: u32| narrowed((f64::from(at) + 0.5) / f64::from(side));
+            let towards = uv_to_direction([center(column, self.width), center(row, self.height)]);
             moments.irradiance = add(moments.irradiance, scaled(above, weight));
             moments.flux += bright * weight;
             moments.flux_squared += bright * bright * weight;
@@ -148,8 +148,8 @@ impl SkyMap {
         moments
     }
 
-    /// The eight pixels round one: columns wrap, rows end at the poles.
-    fn neighbours(&self, (column, row): (u32, u32)) -> impl Iterator<Item = (u32, u32)> + use<> {
+    /// The eight neighbors of a pixel: columns wrap, rows end at the poles.
+    fn neighbors(&self, (column, row): (u32, u32)) -> impl Iterator<Item = (u32, u32)> + use<> {
         let (width, height) = (self.width, self.height);
         let left = column.checked_sub(1).unwrap_or(width.saturating_sub(1));
         let right = column.saturating_add(1).checked_rem(width).unwrap_or(0);
@@ -157,7 +157,7 @@ impl SkyMap {
         rows.into_iter()
             .flatten()
             .flat_map(move |r| [(left, r), (column, r), (right, r)])
-            .filter(move |&place| place != (column, row))
+            .filter(move |&at| at != (column, row))
     }
 
     fn pixel(&self, (column, row): (u32, u32)) -> Option<[f32; 3]> {

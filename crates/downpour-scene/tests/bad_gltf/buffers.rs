@@ -11,7 +11,7 @@ pub(crate) fn addresses() -> Vec<Row> {
             "../../../../../../etc/passwd",
             "buffers[0].uri: \"../../../../../../etc/passwd\" leaves the scene folder",
         ),
-        uri("G2", "file:///etc/passwd", "only relative paths beneath the scene folder, or data:"),
+        uri("G2", "file:///etc/passwd", "only relative paths inside the scene folder, or data:"),
         uri("G3", "/etc/passwd", "buffers[0].uri: \"/etc/passwd\" is absolute"),
         uri("G4", "%2e%2e/%2e%2e/etc/passwd", "leaves the scene folder"),
         uri("G5", "%ff%fe.bin", "is not UTF-8 after decoding"),

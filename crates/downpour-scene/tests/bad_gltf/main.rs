@@ -1,4 +1,4 @@
-//! Each bad input has its exit code and its words: rows G and B of the reliability plan. All are made here, from one valid
+//! Each bad input has its exit code and its message: rows G and B of the reliability plan. All are derived from one valid
 //! triangle.
 
 mod accessors;
@@ -21,7 +21,7 @@ use std::path::Path;
 struct Row {
     id: &'static str,
     bytes: Vec<u8>,
-    /// 0: it is read, and the words are in a warning.
+    /// 0: the file is read, and the text is in a warning.
     code: u8,
     words: &'static str,
 }
@@ -94,7 +94,7 @@ fn each_bad_input_has_its_code_and_its_words() {
     assert!(wrong.is_empty(), "{} rows:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// The table is whole: each row of the plan. G7 and G9 are in `opening.rs`.
+/// The table is complete: each row of the plan. G7 and G9 are in `opening.rs`.
 #[test]
 fn nothing_is_left_out() {
     let rows = rows();
@@ -105,7 +105,7 @@ fn nothing_is_left_out() {
     assert!(missing.is_empty(), "{missing:?}");
 }
 
-/// A caller that wants all or nothing is told what was lost.
+/// Strict reading names the part that was lost.
 #[test]
 fn strict_refuses_what_was_dropped() {
     let scale = [("/nodes/0/scale", json!([0, 0, 0]))];

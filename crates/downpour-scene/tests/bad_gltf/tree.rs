@@ -1,4 +1,4 @@
-//! Nodes, and the rest of a document: G24 to G34.
+//! Nodes, and the remaining parts of a document: G24 to G34.
 
 use crate::document::{triangle, with};
 use crate::{Row, doc, made, text};
@@ -9,7 +9,7 @@ pub(crate) fn nodes() -> Vec<Row> {
         |nodes: Vec<Value>| with(triangle(), &[("/nodes", Value::Array(nodes))]).to_string().into_bytes();
     let chain =
         |n: u32| (1..=n).map(|i| json!({"children": [i]})).chain([json!({"mesh": 0})]).collect::<Vec<_>>();
-    // Each node is twice a child of the one before: 2^28 ways down, if the walk allowed it.
+    // Each node is twice a child of the one before: 2^28 paths down, if the walk allowed it.
     let twice = (1..=28).map(|i| json!({"children": [i, i]})).chain([json!({"mesh": 0})]).collect();
     let joined = vec![json!({"children": [2]}), json!({"children": [2]}), json!({"mesh": 0})];
     let ring = [1, 2, 3, 1, 0].map(|child| json!({"children": [child]})).to_vec();

@@ -9,7 +9,7 @@ pub(crate) struct Broken {
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Values that no place of a document is made for.
+/// Values that are invalid at any path of a document.
 fn values() -> [(&'static str, Value); 8] {
     [
         ("null", Value::Null),
@@ -55,7 +55,7 @@ pub(crate) fn replaced() -> Vec<Broken> {
     all
 }
 
-/// Addresses, ranges, formats, trees, containers and other kinds of files, each wrong in a way of its own.
+/// Addresses, ranges, formats, trees, containers and other kinds of files, each wrong in a different way.
 pub(crate) fn chosen() -> Vec<Broken> {
     let document = |name: &str, changes: &[(&str, Value)]| Broken {
         name: format!("{name}.gltf"),
@@ -158,7 +158,7 @@ pub(crate) fn chosen() -> Vec<Broken> {
     all
 }
 
-/// Binary containers, whole and not.
+/// Binary containers, complete and not.
 fn containers() -> Vec<Broken> {
     let bytes =
         floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0]);

@@ -1,4 +1,4 @@
-//! Valid documents and broken ones made from them, and what is promised of all that is read.
+//! Valid documents and broken ones made from them, and the invariants of everything that is read.
 
 #![allow(dead_code, unused_imports, reason = "each test binary uses its part of this module")]
 
@@ -6,8 +6,8 @@ pub(crate) mod broken;
 pub(crate) mod modes;
 pub(crate) mod triangle;
 
-use downpour_scene::beneath::NoFiles;
 use downpour_scene::gltf::{TriangleModel, read_triangles_from_bytes};
+use downpour_scene::sandbox::NoFiles;
 use downpour_scene::scene::{Scene, skin_primitive};
 use downpour_scene::{Budget, SceneError};
 use serde_json::Value;
@@ -24,7 +24,7 @@ pub(crate) fn read_bytes(bytes: &[u8]) -> Result<TriangleModel, SceneError> {
     read_triangles_from_bytes("test", bytes, &NoFiles, &mut Budget::default())
 }
 
-/// What is promised of every model.
+/// Checks the invariants of a model.
 pub(crate) fn check(model: &TriangleModel) {
     let finite = |vectors: &[[f32; 3]]| vectors.iter().flatten().all(|part| part.is_finite());
     assert!(finite(&model.positions));
@@ -39,13 +39,13 @@ pub(crate) fn check(model: &TriangleModel) {
     assert!(model.indices.iter().flatten().all(|&index| (index as usize) < model.positions.len()));
 }
 
-/// What is promised of every message: one line, no control characters, not endless.
+/// Checks the invariants of a message: one line, no control characters, of limited length.
 pub(crate) fn check_message(message: &str) {
     assert!(!message.chars().any(char::is_control), "{message:?}");
     assert!(message.chars().count() < 600, "{message}");
 }
 
-/// What is promised of every scene: no number without end, no index that leads nowhere, in any pose.
+/// Checks the invariants of a scene: finite numbers and valid indices, in any pose.
 pub(crate) fn check_scene(scene: &Scene) {
     for part in scene.meshes.iter().flat_map(|mesh| &mesh.primitives) {
         let count = part.positions.len();

@@ -1,4 +1,4 @@
-//! One hexagon of radius 1 in each of the seven primitive modes, side by side: its buffer is a file of its own.
+//! One hexagon of radius 1 in each of the seven primitive modes, side by side, with its buffer in a separate file.
 
 use super::triangle::floats;
 use serde_json::{Value, json};
@@ -31,7 +31,7 @@ fn lists() -> [&'static [u16]; 7] {
     ]
 }
 
-/// The document: the shape of mode k stands at x = 3 (k - 5).
+/// The document: the shape of mode k is at x = 3 (k - 5).
 pub(crate) fn document() -> Value {
     let mut offset = 84;
     let mut views = vec![json!({"buffer": 0, "byteLength": 84})];

@@ -1,4 +1,4 @@
-//! A small valid document for tests to spoil, without a word of the crate: tests of the command read it too.
+//! A small valid document for tests to spoil, independent of the crate: tests of the command use it too.
 
 use serde_json::{Value, json};
 
@@ -51,7 +51,7 @@ pub(crate) fn triangle_of(bytes: &[u8]) -> Value {
     })
 }
 
-/// The document with values put at JSON pointers; a last step that is missing is added.
+/// The document with values set at JSON pointers; a missing last step is added.
 pub(crate) fn with(mut document: Value, changes: &[(&str, Value)]) -> Value {
     for (pointer, value) in changes {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer begins with /");
@@ -67,7 +67,7 @@ pub(crate) fn with(mut document: Value, changes: &[(&str, Value)]) -> Value {
     document
 }
 
-/// The triangle with values put at JSON pointers.
+/// The triangle with values set at JSON pointers.
 pub(crate) fn spoiled(changes: &[(&str, Value)]) -> Value {
     with(triangle(), changes)
 }

@@ -1,8 +1,8 @@
-//! CPU time of a piece of work: on a busy machine it is what it is on an idle one.
+//! CPU time of a piece of work: the same on a busy machine as on an idle one.
 
 use std::time::Duration;
 
-/// CPU time that this thread has taken so far. Where the system does not tell, always 0.
+/// CPU time of this thread so far. Always 0 if the system does not report it.
 #[cfg(unix)]
 fn taken() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
@@ -14,7 +14,7 @@ fn taken() -> Duration {
     Duration::ZERO
 }
 
-/// What a piece of work gives, and the CPU time that it takes of this thread.
+/// Result of a piece of work, and the CPU time that it used on this thread.
 pub(crate) fn measured<T>(work: impl FnOnce() -> T) -> (T, Duration) {
     let before = taken();
     let made = work();

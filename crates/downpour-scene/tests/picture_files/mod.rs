@@ -20,9 +20,9 @@ pub(crate) fn png_chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
     [length.as_slice(), &body, &(!crc).to_be_bytes()].concat()
 }
 
-/// A PNG file with this header and these compressed rows, whether they fit or not.
-pub(crate) fn png(width: u32, height: u32, depth: u8, colour: u8, data: &[u8]) -> Vec<u8> {
-    let head = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[depth, colour, 0, 0, 0]].concat();
+/// A PNG file with this header and these compressed rows, consistent or not.
+pub(crate) fn png(width: u32, height: u32, depth: u8, color: u8, data: &[u8]) -> Vec<u8> {
+    let head = [&width.to_be_bytes()[..], &height.to_be_bytes(), &[depth, color, 0, 0, 0]].concat();
     let magic = b"\x89PNG\r\n\x1a\n".to_vec();
     [magic, png_chunk(b"IHDR", &head), png_chunk(b"IDAT", data), png_chunk(b"IEND", b"")].concat()
 }
@@ -39,7 +39,7 @@ pub(crate) fn exr_attribute(name: &str, kind: &str, value: &[u8]) -> Vec<u8> {
     [name.as_bytes(), b"\0", kind.as_bytes(), b"\0", &length, value].concat()
 }
 
-/// What an OpenEXR file is made of; [`ExrFile::default`] is a good one of 2 x 2 half pixels.
+/// Parts of an OpenEXR file; [`ExrFile::default`] is a valid one of 2 x 2 half pixels.
 #[derive(Clone)]
 pub(crate) struct ExrFile {
     pub(crate) version: u32,

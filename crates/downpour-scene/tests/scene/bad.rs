@@ -1,15 +1,15 @@
-//! Bad inputs that only the reading of whole scenes meets: each has its exit code and its words.
+//! Bad inputs that only the reader of whole scenes rejects: each has its exit code and its message.
 
 use crate::document::broken::{self, Broken};
 use crate::document::{spoiled, with};
 use crate::exit_code::ExitCode as _;
 use crate::figure::{TIMES, TURNS, WEIGHTS, bytes, figure, figure_of};
 use crate::{png_uri, read};
-use downpour_scene::beneath::NoFiles;
+use downpour_scene::sandbox::NoFiles;
 use downpour_scene::{Budget, gltf::read_scene_from_bytes};
 use serde_json::{Value, json};
 
-/// A figure with a change, the exit code, and words of the message.
+/// A figure with a change, the exit code, and text of the message.
 type Row = (&'static str, Value, u8, &'static str);
 
 fn rows() -> Vec<Row> {
@@ -49,9 +49,9 @@ fn rows() -> Vec<Row> {
         ("/animations/0/channels/0/target/node", json!(5), 2, "channels[0].target.node: 5; allowed: 0 to 4"),
         (
             "/animations/0/channels/0/target/path",
-            json!("colour"),
+            json!("color"),
             2,
-            "target.path: \"colour\"; allowed: \"translation\"",
+            "target.path: \"color\"; allowed: \"translation\"",
         ),
         ("/animations/0/channels/0/target/node", json!(3), 0, ""),
         (
@@ -279,7 +279,7 @@ fn each_bad_number_has_its_words() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A joint without weight may be any: it moves nothing.
+/// A joint without weight may have any index: it moves nothing.
 #[test]
 fn joints_without_weight_are_not_looked_at() {
     let mut bytes = bytes();
@@ -288,7 +288,7 @@ fn joints_without_weight_are_not_looked_at() {
     assert_eq!(scene.meshes[0].primitives[0].joints[2], [1, 0, 0, 0]);
 }
 
-/// G30 and G31 reach whole scenes too, with an image in use.
+/// G30 and G31 apply to whole scenes too, with an image in use.
 #[test]
 fn images_without_bytes_are_refused() {
     let used = |image: Value| {
@@ -317,7 +317,7 @@ fn images_without_bytes_are_refused() {
         .unwrap_or_else(|why| panic!("{why}"));
 }
 
-/// Every broken file: never a panic, and a message of one line; what is read keeps the promises of a scene.
+/// Every broken file: never a panic, and a message of one line; a file that is read keeps the invariants of a scene.
 #[test]
 fn no_bad_file_gets_through_unseen() {
     let (mut read, mut refused) = (0, 0);

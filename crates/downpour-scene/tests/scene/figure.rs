@@ -3,7 +3,7 @@
 use crate::document::{data_uri, floats};
 use serde_json::{Value, json};
 
-/// Where the data of each kind begins, in bytes.
+/// Offset of the data of each kind, in bytes.
 pub(crate) const TIMES: usize = 256;
 pub(crate) const TURNS: usize = 268;
 pub(crate) const WEIGHTS: usize = 60;
@@ -11,9 +11,9 @@ pub(crate) const WEIGHTS: usize = 60;
 /// Its data: triangle, joints, weights, inverse bind matrices, morph, times, rotations, shifts, morph weights.
 pub(crate) fn bytes() -> Vec<u8> {
     let half = 0.5f32.sqrt();
-    // 0: positions of a triangle; vertex 2 hangs on joint 1.
+    // 0: positions of a triangle; vertex 2 follows joint 1.
     let mut bytes = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0, 0.0]);
-    // 36: joints as bytes, and 12 more to keep places easy.
+    // 36: joints as bytes, and 12 more to keep offsets simple.
     bytes.extend([0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0]);
     bytes.extend([0; 12]);
     // 60: weights.
@@ -24,7 +24,7 @@ pub(crate) fn bytes() -> Vec<u8> {
             1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, height, 0.0, 1.0,
         ]));
     }
-    // 236: nothing; 256: times.
+    // 236: padding; 256: times.
     bytes.extend([0; 20]);
     bytes.extend(floats(&[0.0, 1.0, 3.0]));
     // 268: rotations about Z: none, a quarter, none.

@@ -1,5 +1,5 @@
-//! Whole scenes: what is read is what the file says, what moves moves as the formulae say, and what is wrong has
-//! its exit code and its words.
+//! Whole scenes: contents agree with the file, motion agrees with the formulas, and bad input has
+//! its exit code and its message.
 
 mod bad;
 #[path = "../document/mod.rs"]
@@ -12,8 +12,8 @@ mod moving;
 mod shapes;
 
 use document::{check_message, data_uri};
-use downpour_scene::beneath::NoFiles;
 use downpour_scene::gltf::read_scene_from_bytes;
+use downpour_scene::sandbox::NoFiles;
 use downpour_scene::scene::Scene;
 use downpour_scene::{Budget, SceneError};
 use serde_json::Value;

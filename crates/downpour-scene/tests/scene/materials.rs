@@ -6,7 +6,7 @@ use crate::{good, png, png_uri, warned};
 use downpour_scene::gltf::{read_scene, read_scene_from_bytes};
 use downpour_scene::picture::Pixels;
 use downpour_scene::scene::{AlphaMode, Encoding, Filter, LightKind, Material, Sampler, Wrap};
-use downpour_scene::{Budget, beneath::NoFiles};
+use downpour_scene::{Budget, sandbox::NoFiles};
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -54,7 +54,7 @@ fn every_factor_is_read() {
     assert!(plain.textures.is_empty());
 }
 
-/// One image, two encodings: colour for one use, data for another; each sampler as the file says.
+/// One image, two encodings: color for one use, data for another; each sampler as in the file.
 #[test]
 fn encodings_follow_the_use() {
     let scene = good(&textured(&json!({
@@ -115,7 +115,7 @@ fn what_is_out_of_range_is_held_and_told() {
     warned(&good(&bare), "textures[0]: left out: no source");
 }
 
-/// Images in a file beside the scene, in the binary part, and in place; and what each says when it is missing.
+/// Images in a file beside the scene, in the binary chunk, and inline; and the message of each if it is missing.
 #[test]
 fn images_come_from_three_places() {
     let material = json!({"emissiveTexture": {"index": 0}});
@@ -207,6 +207,6 @@ fn lights_have_their_sorts() {
     assert!(near(inner, outer) && inner < outer && near(outer, std::f32::consts::FRAC_PI_4));
     warned(&scene, "lights[1].color: more than 1");
     warned(&scene, "innerConeAngle 0.9 is not below outerConeAngle");
-    // Nothing hangs on a node, so nothing shines.
+    // No node has the light, so none shines.
     assert!(scene.pose(None, 0.0).lights.is_empty());
 }

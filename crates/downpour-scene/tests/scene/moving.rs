@@ -37,7 +37,7 @@ fn the_figure_is_read() {
     assert_eq!(scene.materials.len(), 1);
 }
 
-/// At rest a skinned mesh stands at its joints, not at its node.
+/// At rest a skinned mesh is at its joints, not at its node.
 #[test]
 fn a_skin_stands_where_its_joints_are() {
     let scene = good(&figure());
@@ -52,19 +52,19 @@ fn a_skin_stands_where_its_joints_are() {
 #[test]
 fn movements_meet_their_keys() {
     let scene = good(&figure());
-    // Key 1: the hip has moved 2 m, the knee has turned a quarter, so that what was above it is to its left; the
+    // Key 1: the hip has moved 2 m, the knee has turned a quarter, so that points above it are to its left; the
     // morph target moves vertex 1 by 4 m.
     let at_key = vertices(&scene, 1.0);
     close(at_key[0], Vec3::new(2.0, 0.0, 0.0));
     close(at_key[1], Vec3::new(3.0, 0.0, 4.0));
     close(at_key[2], Vec3::new(1.0, 1.0, 0.0));
-    // Half way: an eighth of a turn (slerp); a spline with flat ends is 3 t^2 - 2 t^3, 1/2 in the middle.
+    // At 1/2: an eighth of a turn (slerp); a spline with flat ends is 3 t^2 - 2 t^3, 1/2 in the middle.
     let half = 0.5f32.sqrt();
     let middle = vertices(&scene, 0.5);
     close(middle[0], Vec3::new(1.0, 0.0, 0.0));
     close(middle[1], Vec3::new(2.0, 0.0, 0.0));
     close(middle[2], Vec3::new(1.0 - half, 1.0 + half, 0.0));
-    // A quarter of the way: 3/16 - 2/64 = 5/32 of the shift, a sixteenth of a turn.
+    // At 1/4: 3/16 - 2/64 = 5/32 of the shift, a sixteenth of a turn.
     let quarter = vertices(&scene, 0.25);
     let angle = std::f32::consts::FRAC_PI_8;
     close(quarter[0], Vec3::new(2.0 * 5.0 / 32.0, 0.0, 0.0));
@@ -86,14 +86,14 @@ fn lights_and_cameras_are_in_the_world() {
     // Half a turn about Y; the scale of 2 has no effect.
     close(pose.cameras[0].forward, Vec3::Z);
     close(pose.cameras[0].up, Vec3::Y);
-    // Half a second: the knee has turned by an eighth, and the lamp hangs 1 m above it.
+    // Half a second: the knee has turned by an eighth, and the lamp is 1 m above it.
     let pose = scene.pose(Some(0), 0.5);
     let half = 0.5f32.sqrt();
     close(pose.lights[0].position, Vec3::new(1.0 - half, 1.0 + half, 0.0));
     assert_eq!(pose.world(9), None);
 }
 
-/// A number without end in a track reaches nothing that is drawn.
+/// An infinite number in a track does not reach the drawn meshes.
 #[test]
 fn what_leads_too_far_is_left_out() {
     let mut scene = good(&figure());
@@ -101,7 +101,7 @@ fn what_leads_too_far_is_left_out() {
     let pose = scene.pose(Some(0), 0.5);
     assert_eq!((pose.instances.len(), pose.left_out), (0, 1));
     assert!(pose.lights.iter().all(|light| light.position.is_finite()));
-    // Links that lead nowhere and circles are passed over.
+    // Invalid links and cycles are ignored.
     scene.nodes[2].children = vec![0, 2, 77];
     scene.nodes[4].mesh = Some(8);
     scene.roots.push(99);
@@ -114,7 +114,7 @@ fn what_leads_too_far_is_left_out() {
     );
 }
 
-/// A scene in another one moves as a whole, by its own animation, with its own materials.
+/// A scene in another one moves as a whole, by its animation, with its materials.
 #[test]
 fn scenes_are_put_together() {
     let figure = good(&figure());
@@ -141,9 +141,9 @@ fn scenes_are_put_together() {
     assert!(matches!(street.nodes[6].local, Local::Matrix(_)));
 }
 
-/// Rotations as normalised integers, and weights for two targets.
+/// Rotations as normalized integers, and weights for two targets.
 #[test]
-fn quantised_rotations_are_unit_quaternions() {
+fn quantized_rotations_are_unit_quaternions() {
     let mut bytes = crate::figure::bytes();
     let turns: [i16; 12] = [0, 0, 0, 32767, 0, 0, 23170, 23170, 0, 0, 0, 32767];
     bytes[268..292].copy_from_slice(&turns.iter().flat_map(|part| part.to_le_bytes()).collect::<Vec<_>>());

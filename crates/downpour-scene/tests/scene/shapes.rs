@@ -1,11 +1,11 @@
-//! Vertex data: normals, tangents, colours, texture coordinates; and how instances are mirrored.
+//! Vertex data: normals, tangents, colors, texture coordinates; and mirrored instances.
 
 use crate::document::{data_uri, floats, spoiled, triangle, triangle_of, with};
 use crate::exit_code::ExitCode as _;
 use crate::{good, read, warned};
 use downpour_scene::gltf::read_scene_from_bytes;
 use downpour_scene::scene::{Primitive, Scene, skin_primitive};
-use downpour_scene::{Budget, beneath::NoFiles};
+use downpour_scene::{Budget, sandbox::NoFiles};
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
@@ -13,7 +13,7 @@ fn part(scene: &Scene) -> &Primitive {
     &scene.meshes[0].primitives[0]
 }
 
-/// A square of two triangles with texture coordinates, colours and one shared edge.
+/// A square of two triangles with texture coordinates, colors and one shared edge.
 fn square(extra: &[(&str, Value)]) -> Value {
     let mut bytes = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0]);
     bytes.extend(floats(&[0.0, 0.0, 2.0].repeat(4)));
@@ -61,15 +61,15 @@ fn normals_are_given_or_flat() {
 }
 
 #[test]
-fn colours_and_coordinates_follow_their_vertices() {
+fn colors_and_coordinates_follow_their_vertices() {
     let attributes = json!({"POSITION": 0, "TEXCOORD_1": 2, "COLOR_0": 3});
     let scene = good(&square(&[(ATTRIBUTES, attributes)]));
-    let colors = part(&scene).colors.as_ref().expect("colours");
+    let colors = part(&scene).colors.as_ref().expect("colors");
     assert_eq!((colors[1], colors[5]), (Vec4::new(0.0, 1.0, 0.0, 1.0), Vec4::ONE));
     assert_eq!((part(&scene).uvs[0].len(), part(&scene).uvs[1][5]), (0, Vec2::new(1.0, 0.0)));
 }
 
-/// Tangents are made only for normal maps, and only where there are texture coordinates.
+/// Tangents are computed only for normal maps, and only with texture coordinates.
 #[test]
 fn tangents_are_made_for_normal_maps() {
     let attributes = json!({"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2});
@@ -94,7 +94,7 @@ fn tangents_are_made_for_normal_maps() {
     warned(&bare, "meshes[0].primitives[0]: no TEXCOORD_0, which its material uses");
 }
 
-/// A mirrored instance says so, its normals stay on their side, and the triangles of the model turn round.
+/// A mirrored instance is flagged, its normals stay on their side, and the triangles of the model are reversed.
 #[test]
 fn mirrors_turn_triangles_over() {
     let scene = good(&spoiled(&[("/nodes/0/scale", json!([-2, 1, 1]))]));
@@ -139,7 +139,7 @@ fn useless_shapes_are_dropped_with_a_warning() {
     assert_eq!(turned.pose(None, 0.0).left_out, 1);
 }
 
-/// Every instance counts against the budget, but each mesh is kept once.
+/// Every instance counts against the budget, but each mesh is stored once.
 #[test]
 fn the_budget_is_kept() {
     let nodes: Vec<Value> = (0..100).map(|i| json!({"mesh": 0, "translation": [i, 0, 0]})).collect();

@@ -1,6 +1,6 @@
-//! Files that others have made: samples, the test files of the Khronos validator, files that break careless loaders, photographs of
-//! skies. They are no part of the repository: they are read in the folder that `DOWNPOUR_DATA` names, else in `shared/data` beside
-//! it. Where a folder is not there, its tests are shown as ignored.
+//! Files from other sources: samples, the test files of the Khronos validator, files that break careless loaders, photographs of
+//! skies. They are not part of the repository: they are read from the folder in `DOWNPOUR_DATA`, else from `shared/data` beside
+//! it. If a folder is missing, its tests are shown as ignored.
 
 #[path = "../document/mod.rs"]
 mod document;

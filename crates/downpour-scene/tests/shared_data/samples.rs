@@ -1,4 +1,4 @@
-//! Sample models: what is read is what they are known to hold.
+//! Sample models: their contents as known.
 
 use crate::document::check_scene;
 use crate::folder;
@@ -11,7 +11,7 @@ fn model(name: &str) -> Scene {
     let path = folder("gltf").join(name);
     let scene = read_scene(&path, &mut Budget::default()).unwrap_or_else(|error| panic!("{error}"));
     check_scene(&scene);
-    // The reader of triangles agrees on where everything is, unless skins bend it.
+    // The reader of triangles agrees on all positions, unless skins bend them.
     if scene.skins.is_empty() {
         let mine = scene.triangles(&scene.pose(None, 0.0));
         let other = read_triangles(&path, &mut Budget::default()).expect("read before");
@@ -87,7 +87,7 @@ pub(crate) fn the_toy_car_has_glass_and_eyes() {
         scene.cameras[0].lens,
         Lens::Perspective { yfov: 0.9, aspect: None, near: 0.001, far: Some(2.0) }
     );
-    // The eye looks at the car, which stands about the origin.
+    // The camera looks at the car, which is at the origin.
     assert!(pose.cameras[0].forward.dot(-pose.cameras[0].eye.normalize()) > 0.8);
 }
 
@@ -111,7 +111,7 @@ pub(crate) fn lamps_stand_where_the_file_says() {
             LightKind::Spot { inner: 0.333_794_23, outer: std::f32::consts::FRAC_PI_8 }
         );
         assert_eq!(scene.lights[3].kind, LightKind::Directional);
-        // The spots hang unturned: a quarter about -X turns -Z to -Y.
+        // The spots are not rotated: a quarter about -X turns -Z to -Y.
         assert!(pose.lights[1].direction.distance(Vec3::NEG_Y) < 1e-6, "{:?}", pose.lights[1]);
         assert!(pose.lights[2].position.distance(Vec3::new(0.0, 6.156_267_6, 0.0)) < 1e-6);
         assert!(pose.cameras[0].eye.distance(Vec3::new(7.358_891_5, 4.958_309, 6.925_791)) < 1e-6);
@@ -144,7 +144,7 @@ pub(crate) fn strengths_and_cutoffs() {
     }
 }
 
-/// Nine cubes, each moving in its way: at each key the key's value, between them the formula's.
+/// Nine cubes, each animated differently: at each key the key's value, between them the formula's.
 pub(crate) fn cubes_move_in_nine_ways() {
     let scene = model("InterpolationTest/InterpolationTest.glb");
     let mut kinds = Vec::new();
@@ -182,7 +182,7 @@ pub(crate) fn cubes_move_in_nine_ways() {
                 assert!(value.iter().zip(middle).all(|(v, m)| (v - m).abs() < 1e-6), "{}", animation.name);
             }
             (Interpolation::Linear, true) => {
-                // The middle of an arc is the normalised sum of its ends.
+                // The middle of an arc is the normalized sum of its ends.
                 let sum: Vec<f64> = a.iter().zip(&b).map(|(a, b)| f64::from(a + b)).collect();
                 let length = sum.iter().map(|part| part * part).sum::<f64>().sqrt();
                 let dot: f64 = value.iter().zip(&sum).map(|(v, s)| v * s / length).sum();
@@ -190,7 +190,7 @@ pub(crate) fn cubes_move_in_nine_ways() {
             }
             (Interpolation::CubicSpline, _) => assert!(value.iter().all(|part| part.is_finite())),
         }
-        // Only its own node moves.
+        // Only one node moves.
         let (rest, moved) = (scene.pose(None, 0.0), scene.pose(Some(index), time));
         let turned = (0..scene.nodes.len()).filter(|&node| rest.world(node) != moved.world(node));
         assert!(turned.clone().all(|node| node == channel.node), "{}", animation.name);
@@ -241,7 +241,7 @@ pub(crate) fn recursive_skeletons_stay_finite() {
     }
 }
 
-/// Mirrored instances are known, and their triangles face the same way as those of the other reader.
+/// Mirrored instances are detected, and their triangles have the winding of those of the other reader.
 pub(crate) fn negative_scales_are_known() {
     let scene = model("NegativeScaleTest/NegativeScaleTest.glb");
     let pose = scene.pose(None, 0.0);

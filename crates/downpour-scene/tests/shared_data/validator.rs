@@ -1,7 +1,7 @@
 //! The test files of the Khronos glTF validator, as they are and with the data that most of them lack.
 //!
-//! Nothing panics; what the validator calls an error is an error or a warning here too, as far as it concerns
-//! what is read; and what it calls valid is read.
+//! Nothing panics; an error of the validator is an error or a warning here too, if it concerns data that
+//! is read; and a file that it calls valid is read.
 
 use crate::document::{check, check_message, check_scene, data_uri};
 use crate::exit_code::ExitCode as _;
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Errors of the validator that do not concern triangles, and why.
+/// Errors of the validator that do not concern triangles, with reasons.
 const OTHER_CONCERNS: [(&str, &str); 12] = [
     ("ACCESSOR_INVALID_FLOAT", "an accessor that no mesh uses is not read"),
     ("ACCESSOR_MIN_MISMATCH", "bounds are made from the data, never taken from the file"),
@@ -28,14 +28,14 @@ const OTHER_CONCERNS: [(&str, &str); 12] = [
     ("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", "materials are not read"),
 ];
 
-/// Files without errors that are not read, and why.
+/// Files without errors that are not read, with reasons.
 const NOT_READ: [(&str, &str); 3] = [
     ("accessor/unknown_type.gltf", "an accessor of unknown size cannot be checked"),
     ("buffer/non_relative_uri.gltf", "nothing is fetched from elsewhere"),
     ("buffer/data_uri.glb", "data that is not base64"),
 ];
 
-/// What came of a file: an exit code, or 0 and whether there is a warning that tells of more than emptiness.
+/// Outcome of a file: an exit code, or 0 and whether there is a warning of more than emptiness.
 fn outcome(path: &Path) -> (u8, bool, String) {
     match read_triangles(path, &mut Budget::default()) {
         Ok(model) => {
@@ -51,7 +51,7 @@ fn outcome(path: &Path) -> (u8, bool, String) {
     }
 }
 
-/// Gives each buffer that has none data of the length that it says, all 0. `None` if all have some.
+/// Adds zeros of the declared length to each buffer without data. `None` if all have data.
 fn filled(path: &Path) -> Option<Value> {
     let mut document: Value = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
     let mut changed = false;
@@ -65,7 +65,7 @@ fn filled(path: &Path) -> Option<Value> {
     changed.then_some(document)
 }
 
-/// A file with what the validator says of it.
+/// A file with the validator's verdict.
 struct Judged {
     name: String,
     path: PathBuf,
@@ -137,7 +137,7 @@ pub(crate) fn files() {
     assert!(count > 150 && fillings > 10, "{count} files, {fillings} filled");
 }
 
-/// Whole scenes: nothing panics, and of the files without errors all are read whose data and images are there.
+/// Whole scenes: nothing panics, and of the files without errors all are read whose data and images exist.
 pub(crate) fn files_as_scenes() {
     let (mut read, mut wrong) = (0, Vec::new());
     for Judged { name, path, errors, .. } in judged() {

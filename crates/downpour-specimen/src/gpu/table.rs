@@ -23,16 +23,16 @@ impl SpecimenTableRenderer {
     /// Makes the pipelines.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// [`GpuError`] of the device.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { gpu: gpu.clone(), scenes: ScenePipeline::new(gpu)?, rains: RainPipeline::new(gpu)? })
     }
 
-    /// Renders a streak: what [`render_specimen_table`](crate::render_specimen_table) does on the CPU. The
-    /// background, a few lookups for each pixel, comes from there.
+    /// Renders a streak, as [`render_specimen_table`](crate::render_specimen_table) does on the CPU. The
+    /// background, a few lookups for each pixel, is computed there.
     ///
     /// # Errors
-    /// [`GpuSpecimenError::Specimen`] as there, else what the GPU says: a sky map needs 16 bytes per texel in one buffer.
+    /// [`GpuSpecimenError::Specimen`] as there, else the error of the device: a sky map needs 16 bytes per texel in one buffer.
     pub fn render(
         &self,
         shape: &DropShape,

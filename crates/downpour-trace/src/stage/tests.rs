@@ -12,7 +12,7 @@ use downpour_scene::sky::{SkyMap, Sun};
 use downpour_weather::{CameraPose, Loaded, Weather};
 use glam::{Affine2, Affine3A, DVec3, Vec2, Vec3};
 
-use super::{CameraChoice, MOST_TRIANGLES, Stage, StageError};
+use super::{CameraChoice, MAX_TRIANGLES, Stage, StageError};
 
 /// A triangle in the plane z = 0, `count` times.
 fn triangles(count: u32) -> Primitive {
@@ -156,7 +156,7 @@ fn pictures_of_the_same_pixels_are_stored_once() {
 #[test]
 fn too_many_triangles_are_over_a_limit() {
     let mut all = scene((0..5).map(|x| node(Some(0), Vec3::X * x as f32)).collect());
-    all.meshes[0].primitives = vec![triangles(MOST_TRIANGLES as u32 / 5 + 1)];
+    all.meshes[0].primitives = vec![triangles(MAX_TRIANGLES as u32 / 5 + 1)];
     let error = Stage::new(&Weather::default(), &loaded(all), 0.0).expect_err("a limit");
     assert!(matches!(error, StageError::OverLimit { .. }));
     assert!(error.to_string().starts_with("triangles of the scene"), "{error}");

@@ -1,6 +1,6 @@
 //! Values that may move: a number or a vector, or an array of keys `[time, value]`.
 
-use crate::fault::Places;
+use crate::fault::Positions;
 use crate::quantity::{ALLOWED, Exactly, In, KeyTimeS, Range};
 use downpour_scene::error::SceneError;
 use downpour_wind::timeline::Blend;
@@ -18,7 +18,7 @@ pub(crate) struct NumberKeys<R>(Moving<f64>, PhantomData<R>);
 #[derive(Debug)]
 pub(crate) struct VectorKeys<R>(Moving<DVec3>, PhantomData<R>);
 
-/// Keys as they stand in the file, each value in its range; only their times are still to be looked at.
+/// Keys as in the file, each value in its range; only their times are not checked yet.
 #[derive(Debug)]
 enum Moving<T> {
     Still(T),
@@ -26,43 +26,43 @@ enum Moving<T> {
 }
 
 impl<T: Blend> Moving<T> {
-    fn keyed(&self, path: &str, places: &Places<'_>) -> Result<Keyed<T>, SceneError> {
+    fn keyed(&self, path: &str, positions: &Positions<'_>) -> Result<Keyed<T>, SceneError> {
         match self {
             Self::Still(value) => Ok((*value).into()),
-            Self::Keys(keys) => keyed(keys.clone(), path, places),
+            Self::Keys(keys) => keyed(keys.clone(), path, positions),
         }
     }
 }
 
-/// Keys whose times rise.
+/// Keys with increasing times.
 pub(super) fn keyed<T: Blend>(
     keys: Vec<(f64, T)>,
     path: &str,
-    places: &Places<'_>,
+    positions: &Positions<'_>,
 ) -> Result<Keyed<T>, SceneError> {
     Keyed::new(keys).map_err(|error| match error {
         WindError::KeyCount { found: 0, .. } => {
-            places.bad(path, "no keys", "a number, or [[time, value], ...]")
+            positions.bad(path, "no keys", "a number, or [[time, value], ...]")
         }
         WindError::KeyCount { found, allowed } => {
-            places.limit(path, format!("{found} keys"), format!("at most {allowed}"))
+            positions.limit(path, format!("{found} keys"), format!("at most {allowed}"))
         }
         WindError::KeyTime { index, found, before } => {
             let at = format!("{path}[{index}]");
             let found = format!("a key at {found} s, after one at {before} s");
-            places.bad(&at, found, "times that rise by a microsecond at least")
+            positions.bad(&at, found, "times that rise by a microsecond at least")
         }
-        error => places.bad(path, error.to_string(), "keys of finite numbers"),
+        error => positions.bad(path, error.to_string(), "keys of finite numbers"),
     })
 }
 
 impl<R> NumberKeys<R> {
     /// The number over time.
-    pub(crate) fn keyed(&self, path: &str, places: &Places<'_>) -> Result<Keyed<f64>, SceneError> {
-        self.0.keyed(path, places)
+    pub(crate) fn keyed(&self, path: &str, positions: &Positions<'_>) -> Result<Keyed<f64>, SceneError> {
+        self.0.keyed(path, positions)
     }
 
-    /// The keys as they stand in the file; one at time 0 for a number.
+    /// Keys as in the file; one at time 0 for a number.
     pub(crate) fn raw(&self) -> Vec<(f64, f64)> {
         match &self.0 {
             Moving::Still(value) => vec![(0.0, *value)],
@@ -73,8 +73,8 @@ impl<R> NumberKeys<R> {
 
 impl<R> VectorKeys<R> {
     /// The vector over time.
-    pub(crate) fn keyed(&self, path: &str, places: &Places<'_>) -> Result<Keyed<DVec3>, SceneError> {
-        self.0.keyed(path, places)
+    pub(crate) fn keyed(&self, path: &str, positions: &Positions<'_>) -> Result<Keyed<DVec3>, SceneError> {
+        self.0.keyed(path, positions)
     }
 }
 

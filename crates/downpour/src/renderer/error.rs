@@ -57,7 +57,7 @@ pub enum RendererError {
     },
     /// The weather takes streaks from an atlas, and none was given.
     #[error(
-        "streaks.colour is \"atlas\" or \"atlas-random\", and there is no streak atlas; allowed: with a streak atlas in the options"
+        "streaks.color is \"atlas\" or \"atlas-random\", and there is no streak atlas; allowed: with a streak atlas in the options"
     )]
     NoAtlas,
     /// A GPU was asked for, of a library without the feature `wgpu`.

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use downpour_scene::beneath::{Files, NoFiles, OpenFile, RelativePath};
 use downpour_scene::gltf::read_scene;
+use downpour_scene::sandbox::{Files, NoFiles, OpenFile, RelativePath};
 use downpour_scene::{Budget, SceneError};
 use downpour_weather::{Loaded, Roots, Weather, load};
 

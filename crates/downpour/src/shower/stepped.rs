@@ -116,7 +116,7 @@ impl Stepped {
                 _ => SimVolume::View,
             },
             seed: rain.seed,
-            most_drops: rain.most_drops,
+            most_drops: rain.max_drops,
             wait_s: 1.0 / STEPS_PER_S,
             drag: match rain.drag {
                 RainDrag::Rousseau2008 => Drag::Rousseau2008,

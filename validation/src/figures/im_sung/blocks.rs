@@ -1,7 +1,7 @@
 //! A street of blocks, 90 m long: so simple that the time of a frame is mostly that of its rain.
 
-/// Half the width of the road, m, and of the street between the houses: these stand farther from the camera than drops are
-/// drawn, so that it is the volumes alone that lose drops and not the walls that hide them.
+/// Half the width of the road, m, and of the street between the houses: these are farther from the camera than drops are
+/// drawn, so that only the volumes lose drops, and no wall hides them.
 const ROAD_M: f64 = 4.5;
 const STREET_M: f64 = 10.5;
 
@@ -50,7 +50,7 @@ pub(super) fn blocks() -> Vec<Block> {
         blocks.push(Block { material: PAVEMENT, middle: [middle, 0.0, 0.0], size: [width, 0.3, long] });
         for k in 0..count {
             let z = -LENGTH_M + (f64::from(k) + 0.5) * length;
-            // Heights and colours of neighbours differ.
+            // Heights and colors of neighbors differ.
             let height = 7.0 + f64::from((5 * k + first) % 4) * 1.3;
             let material = WALLS[((k + first) % 4) as usize];
             let x = side * (STREET_M + 0.5 * depth);
@@ -69,28 +69,28 @@ pub(super) fn blocks() -> Vec<Block> {
     blocks
 }
 
-/// Places and normals of a cube with edges of 1 about the origin, and its triangles, counter-clockwise from outside.
+/// Positions and normals of a cube with edges of 1 about the origin, and its triangles, counter-clockwise from outside.
 pub(super) fn cube() -> (Vec<[f64; 3]>, Vec<[f64; 3]>, Vec<u16>) {
-    let (mut places, mut normals, mut corners) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut positions, mut normals, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
             let at = |u: f64, v: f64| {
-                let mut place = [0.0; 3];
-                place[axis] = 0.5 * side;
+                let mut position = [0.0; 3];
+                position[axis] = 0.5 * side;
                 // In the order of the axes these two and the side's are right-handed.
-                place[(axis + 1) % 3] = 0.5 * u * side;
-                place[(axis + 2) % 3] = 0.5 * v;
-                place
+                position[(axis + 1) % 3] = 0.5 * u * side;
+                position[(axis + 2) % 3] = 0.5 * v;
+                position
             };
             let mut normal = [0.0; 3];
             normal[axis] = side;
-            let first = places.len() as u16;
-            places.extend([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
+            let first = positions.len() as u16;
+            positions.extend([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
             normals.extend([normal; 4]);
             corners.extend([0, 1, 2, 0, 2, 3].map(|k: u16| first + k));
         }
     }
-    (places, normals, corners)
+    (positions, normals, corners)
 }
 
 #[cfg(test)]
@@ -99,10 +99,10 @@ mod tests {
 
     #[test]
     fn a_cube_faces_outwards() {
-        let (places, normals, corners) = cube();
-        assert_eq!((places.len(), normals.len(), corners.len()), (24, 24, 36));
+        let (positions, normals, corners) = cube();
+        assert_eq!((positions.len(), normals.len(), corners.len()), (24, 24, 36));
         for triangle in corners.chunks_exact(3) {
-            let [a, b, c] = [0, 1, 2].map(|k| places[usize::from(triangle[k])]);
+            let [a, b, c] = [0, 1, 2].map(|k| positions[usize::from(triangle[k])]);
             let normal = normals[usize::from(triangle[0])];
             let edge = |to: [f64; 3]| [to[0] - a[0], to[1] - a[1], to[2] - a[2]];
             let (p, q) = (edge(b), edge(c));
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn the_way_is_free() {
         for step in 0..=40u32 {
-            let eye = super::super::walk::eye(f64::from(step) * 0.05).place;
+            let eye = super::super::walk::eye(f64::from(step) * 0.05).position;
             for block in blocks() {
                 let away = (0..3).map(|k| (eye[k] - block.middle[k]).abs() - 0.5 * block.size[k]);
                 let least = if block.size[1] > 1.0 { super::super::weather::FAR_M } else { 1.0 };

@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::quantity::{size, within};
 
-/// Figures 6 to 11 of Im & Sung 2022: three ways to keep rain before a camera, and ours.
+/// Figures 6 to 11 of Im & Sung 2022: three methods to keep rain in front of a camera, and ours.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct Options {
     /// A `downpour` that is built already.

@@ -1,11 +1,11 @@
-//! What was done, as Markdown.
+//! Report of the runs, as Markdown.
 
 use super::options::Options;
 use super::table::{self, Run};
 use super::weather::{self, Model};
 use super::{MOST, NUMBERS, NUMBERS_FRAMES, NUMBERS_RATE_MM_H, RATE_MM_H, ZOOM_DEG, walk};
 
-/// What was done, the numbers, and what the sheets show.
+/// Method, numbers, and contents of the sheets.
 pub(super) fn text(runs: &[Run], options: &Options) -> String {
     let [width, height] = options.size;
     let moments: Vec<String> =
@@ -55,12 +55,12 @@ pub(super) fn text(runs: &[Run], options: &Options) -> String {
         ZOOM_DEG.map(|fov| fov.to_string()).join(", "),
         Model::ALL.map(Model::title).join(", "),
         moments.join(", "),
-        way = walk::WAY_M,
+        way = walk::PATH_M,
         fov = walk::FOV_DEG,
         shape = weather::SHAPE,
         median = weather::MEDIAN_MM,
         far = weather::FAR_M,
-        aim = 100.0 * table::LEAST_SHARE,
+        aim = 100.0 * table::MIN_FRACTION,
         three = columns([0, 2, 4]),
     )
 }

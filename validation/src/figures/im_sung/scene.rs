@@ -45,17 +45,17 @@ impl Buffer {
     }
 }
 
-/// The text of the glTF and its buffer, which lies beside it under the name `file`.
+/// Text of the glTF and its buffer, a file beside it with the name `file`.
 ///
-/// The movement has a key for each frame, and one more: it begins anew at the time of its last key.
+/// The animation has a key for each frame, and one more: it repeats at the time of its last key.
 pub(super) fn gltf(fps: u32, file: &str) -> (String, Vec<u8>) {
     let mut buffer = Buffer::default();
     let times: Vec<f64> = (0..=frames(fps)).map(|k| f64::from(k) / f64::from(fps)).collect();
     let eyes: Vec<Eye> = times.iter().map(|&time| eye(time)).collect();
     let last = times.last().map_or(0.0, |&time| f64::from(time as f32));
     let time = buffer.floats(&times, "SCALAR", 1, Some([json!([0.0]), json!([last])]));
-    let places: Vec<f64> = eyes.iter().flat_map(|eye| eye.place).collect();
-    let place = buffer.floats(&places, "VEC3", 3, None);
+    let positions: Vec<f64> = eyes.iter().flat_map(|eye| eye.position).collect();
+    let position = buffer.floats(&positions, "VEC3", 3, None);
     let turns: Vec<f64> =
         eyes.iter().flat_map(|eye| [0.0, ops::sin(0.5 * eye.yaw), 0.0, ops::cos(0.5 * eye.yaw)]).collect();
     let turn = buffer.floats(&turns, "VEC4", 4, None);
@@ -94,7 +94,7 @@ pub(super) fn gltf(fps: u32, file: &str) -> (String, Vec<u8>) {
         "animations": [{
             "name": "walk",
             "samplers": [
-                { "input": time, "output": place, "interpolation": "LINEAR" },
+                { "input": time, "output": position, "interpolation": "LINEAR" },
                 { "input": time, "output": turn, "interpolation": "LINEAR" },
             ],
             "channels": [
@@ -113,7 +113,7 @@ pub(super) fn gltf(fps: u32, file: &str) -> (String, Vec<u8>) {
 mod tests {
     use super::*;
 
-    /// What is read from the file is the path, and the movement is longer than the clip.
+    /// The file holds the path, and the animation is longer than the clip.
     #[test]
     fn the_file_holds_the_path() {
         let (text, bytes) = gltf(12, "walk.bin");
@@ -129,14 +129,14 @@ mod tests {
             assert_eq!(view["byteLength"].as_u64(), Some((count * width * 4) as u64));
             numbers[begin..begin + count * width].to_vec()
         };
-        let (times, places, turns) = (view(0, 1), view(1, 3), view(2, 4));
+        let (times, positions, turns) = (view(0, 1), view(1, 3), view(2, 4));
         assert!(f64::from(*times.last().expect("times")) > f64::from(frames(12) - 1) / 12.0);
         for (k, &time) in times.iter().enumerate() {
             let eye = eye(time.into());
-            for (axis, place) in eye.place.iter().enumerate() {
-                assert!((f64::from(places[3 * k + axis]) - place).abs() < 1.0e-5);
+            for (axis, position) in eye.position.iter().enumerate() {
+                assert!((f64::from(positions[3 * k + axis]) - position).abs() < 1.0e-5);
             }
-            // The direction in which a camera looks, -Z, turned by the quaternion.
+            // Viewing direction of the camera, -Z rotated by the quaternion.
             let [x, y, z, w] = [0, 1, 2, 3].map(|n| f64::from(turns[4 * k + n]));
             let forward = [-2.0 * (x * z + w * y), -2.0 * (y * z - w * x), -(1.0 - 2.0 * (x * x + y * y))];
             let expected = [-ops::sin(eye.yaw), 0.0, -ops::cos(eye.yaw)];

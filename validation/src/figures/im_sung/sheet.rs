@@ -5,7 +5,7 @@ use image::{Rgb, RgbImage, imageops};
 /// Pixels between pictures.
 const GAP: u32 = 8;
 
-/// What is between pictures.
+/// Color between pictures.
 const PAPER: Rgb<u8> = Rgb([255; 3]);
 
 /// Rows of pictures of one size on white paper; a smaller row ends earlier.
@@ -20,8 +20,8 @@ pub(super) fn sheet(rows: &[Vec<RgbImage>]) -> Result<RgbImage, String> {
     let mut sheet = RgbImage::from_pixel(along(columns, width), along(rows.len() as u32, height), PAPER);
     for (row, pictures) in rows.iter().enumerate() {
         for (column, picture) in pictures.iter().enumerate() {
-            let place = |number: usize, edge: u32| number as i64 * i64::from(edge + GAP);
-            imageops::replace(&mut sheet, picture, place(column, width), place(row, height));
+            let offset = |number: usize, edge: u32| number as i64 * i64::from(edge + GAP);
+            imageops::replace(&mut sheet, picture, offset(column, width), offset(row, height));
         }
     }
     Ok(sheet)
@@ -37,13 +37,13 @@ pub(super) fn halved(picture: &RgbImage) -> RgbImage {
 mod tests {
     use super::*;
 
-    fn grey(value: u8) -> RgbImage {
+    fn gray(value: u8) -> RgbImage {
         RgbImage::from_pixel(4, 3, Rgb([value; 3]))
     }
 
     #[test]
     fn pictures_are_in_their_places() {
-        let sheet = sheet(&[vec![grey(10), grey(20)], vec![grey(30)]]).expect("a sheet");
+        let sheet = sheet(&[vec![gray(10), gray(20)], vec![gray(30)]]).expect("a sheet");
         assert_eq!(sheet.dimensions(), (4 + 8 + 4, 3 + 8 + 3));
         for (x, y, value) in
             [(0, 0, 10), (3, 2, 10), (4, 0, 255), (12, 0, 20), (0, 3, 255), (3, 13, 30), (12, 13, 255)]
@@ -55,7 +55,7 @@ mod tests {
     #[test]
     fn sizes_that_differ_are_refused() {
         let wrong = RgbImage::new(5, 3);
-        assert!(sheet(&[vec![grey(10), wrong]]).is_err());
+        assert!(sheet(&[vec![gray(10), wrong]]).is_err());
         assert!(sheet(&[]).is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! What `--stats` tells of a clip.
+//! Contents of `--stats` of a clip.
 
 use serde_json::Value;
 
@@ -9,16 +9,16 @@ pub(super) struct Frame {
     pub(super) simulated: f64,
     pub(super) on_screen: f64,
     pub(super) drawn: f64,
-    /// Of the whole frame.
+    /// Time of the whole frame.
     pub(super) frame_ms: f64,
     /// Of the passes that draw drops.
     pub(super) drops_ms: f64,
-    /// Outside the passes: the simulation, what stops the drops, and the scene in its place.
+    /// Time outside the passes: the simulation, collision data, and the scene's pose.
     pub(super) step_ms: f64,
 }
 
 impl Frame {
-    /// Share of the simulated drops that are on screen; 0 where there are none.
+    /// Fraction of the simulated drops that are on screen; 0 without drops.
     pub(super) fn share(&self) -> f64 {
         if self.simulated > 0.0 { self.on_screen / self.simulated } else { 0.0 }
     }
@@ -28,7 +28,7 @@ impl Frame {
 pub(super) fn read(text: &str) -> Result<Vec<Frame>, String> {
     let stats: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     let frames = stats["frames"].as_array().filter(|frames| !frames.is_empty());
-    frames.ok_or("it tells of no frames")?.iter().map(frame).collect()
+    frames.ok_or("it has no frames")?.iter().map(frame).collect()
 }
 
 fn frame(value: &Value) -> Result<Frame, String> {
@@ -71,7 +71,7 @@ pub(super) mod tests {
 
     #[test]
     fn what_is_missing_is_named() {
-        assert_eq!(read("{}"), Err("it tells of no frames".to_owned()));
+        assert_eq!(read("{}"), Err("it has no frames".to_owned()));
         let less = CLIP.replace("\"drops_on_screen\": 950,", "");
         assert_eq!(read(&less), Err("a frame does not tell \"drops_on_screen\"".to_owned()));
         assert!(read("no JSON").is_err());

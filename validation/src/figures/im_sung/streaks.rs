@@ -1,5 +1,5 @@
-//! Drops as the papers draw them: a bright streak each, as long as a drop falls in a sixtieth of a second, whatever light
-//! falls on it. So the eye finds all of them, and where there are none.
+//! Drops as drawn in the papers: a bright streak each, as long as the fall of a drop in a sixtieth of a second, under any
+//! light. So all of them are visible, and gaps too.
 
 use downpour_math::ops::f64 as ops;
 use image::{Rgb, RgbImage};
@@ -9,16 +9,16 @@ use super::walk::Eye;
 /// Time of a streak, s.
 const STREAK_S: f64 = 1.0 / 60.0;
 
-/// What is left of the picture behind the streaks.
+/// Weight of the picture behind the streaks.
 const BEHIND: f64 = 0.4;
 
-/// How white a streak is, 0 to 1.
+/// Whiteness of a streak, 0 to 1.
 const WHITE: f64 = 0.35;
 
 /// A drop in the world: m and m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drop {
-    place: [f64; 3],
+    position: [f64; 3],
     velocity: [f64; 3],
 }
 
@@ -29,23 +29,23 @@ pub(super) fn read(list: &str) -> Result<Vec<Drop>, String> {
     let column = |name: &str| {
         names.iter().position(|n| *n == name).ok_or_else(|| format!("the list of drops has no \"{name}\""))
     };
-    let place = [column("x_m")?, column("y_m")?, column("z_m")?];
+    let position = [column("x_m")?, column("y_m")?, column("z_m")?];
     let velocity = [column("vx_m_s")?, column("vy_m_s")?, column("vz_m_s")?];
     lines
         .map(|line| {
             let cells: Vec<&str> = line.split(',').collect();
             let number = |column: usize| cells.get(column).and_then(|cell| cell.parse::<f64>().ok());
             let three = |[x, y, z]: [usize; 3]| Some([number(x)?, number(y)?, number(z)?]);
-            let drop = three(place).zip(three(velocity));
-            drop.map(|(place, velocity)| Drop { place, velocity })
+            let drop = three(position).zip(three(velocity));
+            drop.map(|(position, velocity)| Drop { position, velocity })
                 .ok_or_else(|| format!("no drop in \"{line}\""))
         })
         .collect()
 }
 
-/// Where a place is on a picture: columns from the left, rows from the top; nowhere behind the eye.
-fn project(eye: &Eye, fov_deg: f64, [width, height]: [u32; 2], place: [f64; 3]) -> Option<[f64; 2]> {
-    let [x, y, z]: [f64; 3] = std::array::from_fn(|axis| place[axis] - eye.place[axis]);
+/// Projection of a position to a picture: columns from the left, rows from the top; `None` behind the eye.
+fn project(eye: &Eye, fov_deg: f64, [width, height]: [u32; 2], position: [f64; 3]) -> Option<[f64; 2]> {
+    let [x, y, z]: [f64; 3] = std::array::from_fn(|axis| position[axis] - eye.position[axis]);
     let (sin, cos) = (ops::sin(eye.yaw), ops::cos(eye.yaw));
     let (right, ahead) = (x * cos - z * sin, -x * sin - z * cos);
     if ahead <= 1.0e-3 {
@@ -63,7 +63,7 @@ pub(super) fn draw(picture: &RgbImage, eye: &Eye, fov_deg: f64, drops: &[Drop]) 
     }
     let size = [picture.width(), picture.height()];
     for drop in drops {
-        let at = |time: f64| std::array::from_fn(|axis| drop.place[axis] + drop.velocity[axis] * time);
+        let at = |time: f64| std::array::from_fn(|axis| drop.position[axis] + drop.velocity[axis] * time);
         let end = |time: f64| project(eye, fov_deg, size, at(time));
         let ends = end(-0.5 * STREAK_S).zip(end(0.5 * STREAK_S));
         if let Some((from, to)) = ends {
@@ -102,7 +102,7 @@ mod tests {
     fn places_are_where_a_camera_sees_them() {
         let half_height = ops::tan(0.2);
         let fov = 0.4f64.to_degrees();
-        let ahead = Eye { place: [1.0, 2.0, 3.0], yaw: 0.0 };
+        let ahead = Eye { position: [1.0, 2.0, 3.0], yaw: 0.0 };
         near(project(&ahead, fov, SIZE, [1.0, 2.0, -7.0]), [32.0, 18.0]);
         near(project(&ahead, fov, SIZE, [1.0, 2.0 + 10.0 * half_height, -7.0]), [32.0, 0.0]);
         near(project(&ahead, fov, SIZE, [1.0 + 10.0 * half_height, 2.0, -7.0]), [50.0, 18.0]);
@@ -117,7 +117,7 @@ mod tests {
     fn a_streak_is_about_its_drop() {
         let list = "id,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,diameter_mm,kind\n7,0,0,-10,0,-6,0,3,falling\n";
         let drops = read(list).expect("a drop");
-        let eye = Eye { place: [0.0; 3], yaw: 0.0 };
+        let eye = Eye { position: [0.0; 3], yaw: 0.0 };
         let picture = RgbImage::from_pixel(SIZE[0], SIZE[1], Rgb([100; 3]));
         let drawn = draw(&picture, &eye, 10.0, &drops);
         let lit: Vec<(u32, u32)> =

@@ -3,10 +3,10 @@
 use super::stats::Frame;
 use super::weather::Rain;
 
-/// P8: the least share of the simulated drops that our rain has on screen.
-pub(super) const LEAST_SHARE: f64 = 0.95;
+/// P8: minimum fraction of the simulated drops that our rain has on screen.
+pub(super) const MIN_FRACTION: f64 = 0.95;
 
-/// A run and what came of it.
+/// A run and its results.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     /// `path`, `number` or `zoom`.
@@ -26,28 +26,28 @@ fn over(frames: &[Frame], value: impl Fn(&Frame) -> f64) -> [f64; 2] {
 }
 
 impl Run {
-    /// Mean and least share of the drops on screen.
+    /// Mean and minimum fraction of the drops on screen.
     pub(super) fn share(&self) -> [f64; 2] {
         over(&self.frames, Frame::share)
     }
 
-    /// What is below the aim of ours, in words.
+    /// Error text of a run of ours below the aim.
     pub(super) fn miss(&self) -> Option<String> {
         let [mean, least] = self.share();
         let percent = |share: f64| 100.0 * share;
-        (least.is_nan() || least < LEAST_SHARE).then(|| {
+        (least.is_nan() || least < MIN_FRACTION).then(|| {
             format!(
                 "{}: {:.1} % of the simulated drops on screen, least {:.1} %; aim {:.0} %",
                 self.name,
                 percent(mean),
                 percent(least),
-                percent(LEAST_SHARE)
+                percent(MIN_FRACTION)
             )
         })
     }
 }
 
-/// The share of drops on screen, of runs along a path or of single pictures.
+/// Fraction of drops on screen, of runs along a path or of single pictures.
 pub(super) fn shares(runs: &[Run], set: &str) -> String {
     let mut text = "| model | field of view | simulated | on screen: mean | least | share: mean | least | seen: mean |\n\
                     |---|--:|--:|--:|--:|--:|--:|--:|\n"
@@ -75,12 +75,12 @@ pub(super) fn times(runs: &[Run]) -> String {
             .to_owned();
     for run in runs.iter().filter(|run| run.set == "number") {
         let mean = |value: fn(&Frame) -> f64| over(&run.frames, value)[0];
-        // The least: whatever else the machine does only adds to a time.
+        // The minimum: other processes only add to a time.
         let least = |value: fn(&Frame) -> f64| over(&run.frames, value)[1];
         text += &format!(
             "| {} | {} | {:.0} | {:.0} | {:.0} | {:.1} | {:.0} |\n",
             run.rain.model.title(),
-            run.rain.most_drops,
+            run.rain.max_drops,
             mean(|f| f.simulated),
             mean(|f| f.on_screen),
             least(|f| f.frame_ms),
@@ -107,7 +107,7 @@ pub(super) fn csv(runs: &[Run]) -> String {
             run.set,
             rain.model.key(),
             rain.rate_mm_h,
-            rain.most_drops,
+            rain.max_drops,
             rain.fov_deg.unwrap_or(super::walk::FOV_DEG),
             run.frames.len(),
             over(&run.frames, |f| f.simulated)[0],
@@ -128,7 +128,7 @@ pub(super) fn frames_csv(runs: &[Run], fps: u32) -> String {
                 "{},{},{},{},{:.4},{},{},{},{:.5},{:.2}\n",
                 run.set,
                 run.rain.model.key(),
-                run.rain.most_drops,
+                run.rain.max_drops,
                 frame.number,
                 f64::from(frame.number) / f64::from(fps),
                 frame.simulated,
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     fn run(set: &'static str, model: Model) -> Run {
-        let rain = Rain { model, rate_mm_h: 60.0, most_drops: 1000, fov_deg: None };
+        let rain = Rain { model, rate_mm_h: 60.0, max_drops: 1000, fov_deg: None };
         Run { set, name: format!("{set}-{}", model.key()), rain, frames: read(CLIP).expect("a clip") }
     }
 

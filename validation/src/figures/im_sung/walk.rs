@@ -1,28 +1,28 @@
-//! What the camera does.
+//! Camera motion.
 
-/// It stands, then moves ahead, then turns about, then stands again. s.
+/// The camera rests, then moves ahead, then turns about, then rests again. s.
 const STANDS_S: f64 = 0.25;
 const MOVES_S: f64 = 1.0;
 const TURNS_S: f64 = 0.5;
 const RESTS_S: f64 = 0.25;
 
-/// How far it moves along -Z, m.
-pub(super) const WAY_M: f64 = 9.0;
+/// Length of the movement along -Z, m.
+pub(super) const PATH_M: f64 = 9.0;
 
-/// Where it begins, m: in the middle of the street's right lane, at the height of a person's eyes.
+/// Start position, m: in the middle of the street's right lane, at the height of a person's eyes.
 pub(super) const BEGIN_M: [f64; 3] = [0.8, 1.6, 14.0];
 
 /// Vertical field of view, degrees.
 pub(super) const FOV_DEG: f64 = 18.0;
 
-/// Nothing nearer is drawn, m.
+/// Near depth, m.
 pub(super) const NEAR_M: f64 = 0.05;
 
 /// An eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Eye {
     /// m.
-    pub(super) place: [f64; 3],
+    pub(super) position: [f64; 3],
     /// About +Y, radians: 0 looks along -Z, a quarter of a circle along -X.
     pub(super) yaw: f64,
 }
@@ -30,8 +30,8 @@ pub(super) struct Eye {
 /// Moments that are shown, with their times in s.
 pub(super) const MOMENTS: [(&str, f64); 6] = [
     ("before", 0.0),
-    ("half the way", STANDS_S + 0.5 * MOVES_S),
-    ("end of the way", STANDS_S + MOVES_S),
+    ("middle of the path", STANDS_S + 0.5 * MOVES_S),
+    ("end of the path", STANDS_S + MOVES_S),
     ("half turned", STANDS_S + MOVES_S + 0.5 * TURNS_S),
     ("turned about", STANDS_S + MOVES_S + TURNS_S),
     ("at rest again", STANDS_S + MOVES_S + TURNS_S + RESTS_S),
@@ -42,7 +42,7 @@ pub(super) fn eye(time_s: f64) -> Eye {
     let moved = ((time_s - STANDS_S) / MOVES_S).clamp(0.0, 1.0);
     let turned = ((time_s - STANDS_S - MOVES_S) / TURNS_S).clamp(0.0, 1.0);
     let [x, y, z] = BEGIN_M;
-    Eye { place: [x, y, z - WAY_M * moved], yaw: std::f64::consts::PI * turned }
+    Eye { position: [x, y, z - PATH_M * moved], yaw: std::f64::consts::PI * turned }
 }
 
 /// Frames of the path.
@@ -62,11 +62,11 @@ mod tests {
 
     #[test]
     fn it_stands_moves_turns_and_stands() {
-        assert_eq!(eye(0.0), Eye { place: BEGIN_M, yaw: 0.0 });
+        assert_eq!(eye(0.0), Eye { position: BEGIN_M, yaw: 0.0 });
         let moving = eye(STANDS_S + 0.25 * MOVES_S);
-        assert!((moving.place[2] - (BEGIN_M[2] - 0.25 * WAY_M)).abs() < 1.0e-12 && moving.yaw == 0.0);
+        assert!((moving.position[2] - (BEGIN_M[2] - 0.25 * PATH_M)).abs() < 1.0e-12 && moving.yaw == 0.0);
         let last = eye(100.0);
-        assert!((last.place[2] - (BEGIN_M[2] - WAY_M)).abs() < 1.0e-12);
+        assert!((last.position[2] - (BEGIN_M[2] - PATH_M)).abs() < 1.0e-12);
         assert!((last.yaw - std::f64::consts::PI).abs() < 1.0e-12);
         // It turns about within a second.
         assert_eq!(eye(STANDS_S + MOVES_S).yaw, 0.0);

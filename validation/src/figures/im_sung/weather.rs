@@ -1,22 +1,22 @@
-//! The weather files: one street, one rain, four ways to keep it before the camera.
+//! The weather files: one street, one rain, four volumes in front of the camera.
 
 use std::fmt::Write as _;
 
 /// Side of the box of Tariq's model, m.
 const BOX_M: f64 = 10.0;
 
-/// The cylinder of Creus and Patow's model, m: as much room as the box.
+/// Radius and height of the cylinder of Creus and Patow's model, m: the same volume as the box.
 const CYLINDER_M: [f64; 2] = [5.642, 10.0];
 
 /// Drops farther than this are not drawn, m. Theirs are 50 m away with streaks as large as the artist likes; a drop as
 /// large as a drop is less than a pixel there.
 pub(super) const FAR_M: f64 = 9.0;
 
-/// Median volume diameter, mm, and shape of the gamma law: nearly all drops can be seen up to [`FAR_M`].
+/// Median volume diameter, mm, and shape of the gamma law: nearly all drops are visible up to [`FAR_M`].
 pub(super) const MEDIAN_MM: f64 = 3.0;
 pub(super) const SHAPE: f64 = 8.0;
 
-/// A way to keep the rain before the camera.
+/// A method to keep the rain in front of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Model {
     ImSung,
@@ -29,7 +29,7 @@ impl Model {
     /// In the order of the paper's figure 6, ours last.
     pub(super) const ALL: [Self; 4] = [Self::ImSung, Self::Tariq, Self::CreusPatow, Self::View];
 
-    /// As `rain.volume` has it.
+    /// Name in `rain.volume`.
     pub(super) fn key(self) -> &'static str {
         match self {
             Self::ImSung => "im-sung-2022",
@@ -39,7 +39,7 @@ impl Model {
         }
     }
 
-    /// As the tables have it.
+    /// Title in the tables.
     pub(super) fn title(self) -> &'static str {
         match self {
             Self::ImSung => "Im & Sung 2022",
@@ -50,22 +50,22 @@ impl Model {
     }
 }
 
-/// What a run rains.
+/// Rain of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rain {
     pub(super) model: Model,
     pub(super) rate_mm_h: f64,
-    pub(super) most_drops: u32,
+    pub(super) max_drops: u32,
     /// `None`: that of the camera's file.
     pub(super) fov_deg: Option<f64>,
 }
 
 /// The weather of a run. `scene` is the file of street and camera.
 pub(super) fn text(rain: &Rain, scene: &str) -> String {
-    let Rain { model, rate_mm_h, most_drops, fov_deg } = *rain;
+    let Rain { model, rate_mm_h, max_drops, fov_deg } = *rain;
     let mut text = format!(
         "[[model]]\nfile = \"{scene}\"\n\n[rain]\nrate_mm_h = {rate_mm_h}\ndistribution = \"gamma\"\n\
-         gamma_shape = {SHAPE}\nmedian_diameter_mm = {MEDIAN_MM}\nseed = 6\nvolume = \"{}\"\nmost_drops = {most_drops}\n",
+         gamma_shape = {SHAPE}\nmedian_diameter_mm = {MEDIAN_MM}\nseed = 6\nvolume = \"{}\"\nmax_drops = {max_drops}\n",
         model.key(),
     );
     let [radius, height] = CYLINDER_M;
@@ -90,21 +90,21 @@ mod tests {
     #[test]
     fn keys_go_with_their_model() {
         for model in Model::ALL {
-            let rain = Rain { model, rate_mm_h: 60.0, most_drops: 10_000, fov_deg: None };
+            let rain = Rain { model, rate_mm_h: 60.0, max_drops: 10_000, fov_deg: None };
             let text = text(&rain, "street.gltf");
             assert!(text.contains(&format!("volume = \"{}\"\n", model.key())), "{text}");
             assert_eq!(text.contains("box_m"), model == Model::Tariq);
             assert_eq!(text.contains("cylinder"), model == Model::CreusPatow);
             assert!(!text.contains("fov_deg"));
         }
-        let rain = Rain { model: Model::View, rate_mm_h: 60.0, most_drops: 10, fov_deg: Some(12.0) };
+        let rain = Rain { model: Model::View, rate_mm_h: 60.0, max_drops: 10, fov_deg: Some(12.0) };
         assert!(
             text(&rain, "street.gltf")
                 .contains("[camera]\nfar_m = 9\nshutter_s = 0\nexposure_ev = 0.4\nfov_deg = 12\n")
         );
     }
 
-    /// The two models with a volume of their own have the same.
+    /// The two models with a fixed volume have the same volume.
     #[test]
     fn box_and_cylinder_hold_as_much() {
         let [radius, height] = CYLINDER_M;

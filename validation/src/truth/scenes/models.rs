@@ -13,7 +13,7 @@ struct Look([f64; 3], f64, f64);
 /// Triangles of one material.
 #[derive(Clone, Debug, Default)]
 struct Part {
-    places: Vec<[f64; 3]>,
+    positions: Vec<[f64; 3]>,
     normals: Vec<[f64; 3]>,
     indices: Vec<u32>,
 }
@@ -57,7 +57,7 @@ fn street(name: &'static str, of_night: bool) -> Model {
     }
     model.cuboid(STONE, [-6.0, -0.5, -60.0], [-4.4, 0.15, 20.0]);
     model.cuboid(STONE, [4.4, -0.5, -60.0], [6.0, 0.15, 20.0]);
-    // What stands about: a van, a kiosk, a bench.
+    // Objects: a van, a kiosk, a bench.
     model.cuboid(WHITE, [2.0, 0.35, -2.0], [3.9, 2.2, 2.4]);
     model.cuboid(GREEN, [-4.2, 0.0, 4.0], [-3.0, 2.4, 5.2]);
     model.cuboid(BRICK, [-3.9, 0.4, -6.0], [-3.3, 0.5, -3.8]);
@@ -157,15 +157,15 @@ impl Model {
         for face in 0..6 {
             let (axis, end) = (face % 3, face / 3);
             let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-            let first = part.places.len() as u32;
+            let first = part.positions.len() as u32;
             for (a, b) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
-                let mut place = [0.0; 3];
-                place[axis] = if end == 0 { low[axis] } else { high[axis] };
-                place[u] = if a == 0 { low[u] } else { high[u] };
-                place[v] = if b == 0 { low[v] } else { high[v] };
+                let mut position = [0.0; 3];
+                position[axis] = if end == 0 { low[axis] } else { high[axis] };
+                position[u] = if a == 0 { low[u] } else { high[u] };
+                position[v] = if b == 0 { low[v] } else { high[v] };
                 let mut normal = [0.0; 3];
                 normal[axis] = if end == 0 { -1.0 } else { 1.0 };
-                part.places.push(place);
+                part.positions.push(position);
                 part.normals.push(normal);
             }
             let order = if end == 0 { [0, 2, 1, 0, 3, 2] } else { [0, 1, 2, 0, 2, 3] };
@@ -184,7 +184,7 @@ impl Model {
                 let turn = std::f64::consts::TAU * f64::from(column) / f64::from(ROUND);
                 let normal =
                     [ops::sin(polar) * ops::cos(turn), ops::cos(polar), ops::sin(polar) * ops::sin(turn)];
-                part.places.push(std::array::from_fn(|k| middle[k] + radius * normal[k]));
+                part.positions.push(std::array::from_fn(|k| middle[k] + radius * normal[k]));
                 part.normals.push(normal);
             }
         }
@@ -205,8 +205,8 @@ impl Model {
         let [mut views, mut accessors, mut meshes, mut nodes, mut materials] =
             std::array::from_fn(|_| Vec::<String>::new());
         for (k, (Look(base, metallic, roughness), part)) in self.parts.iter().enumerate() {
-            let count = part.places.len();
-            for list in [&part.places, &part.normals] {
+            let count = part.positions.len();
+            for list in [&part.positions, &part.normals] {
                 views.push(format!(
                     "{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{}}}",
                     bytes.len(),
@@ -222,7 +222,7 @@ impl Model {
             bytes.extend(part.indices.iter().flat_map(|i| i.to_le_bytes()));
             let bound = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
                 std::array::from_fn(|axis| {
-                    part.places.iter().map(|place| f64::from(place[axis] as f32)).fold(start, pick)
+                    part.positions.iter().map(|position| f64::from(position[axis] as f32)).fold(start, pick)
                 })
             };
             let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));

@@ -35,7 +35,7 @@ fn map(radiance: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<u8> {
     bytes
 }
 
-/// Blue above, brighter at the horizon, bright round the sun; dark ground below.
+/// Blue above, brighter at the horizon, bright around the sun; dark ground below.
 fn clear([x, y, z]: [f64; 3], [elevation, azimuth]: [f64; 2], disc: f64, tint: [f64; 3]) -> [f64; 3] {
     let (elevation, azimuth) = (elevation.to_radians(), azimuth.to_radians());
     let flat = ops::cos(elevation);

@@ -73,7 +73,7 @@ pub(super) fn leaf(house: &House, x: f32, mesh: &mut Mesh) {
     );
     let (l, r) = (x - half + 0.07, x + half - 0.07);
     mesh.cuboid(paint, Vec3::new(l, low, z - 0.02), Vec3::new(r, low + LEAF_M, z + 0.01), BEHIND);
-    // Stiles and rails stand before sunk panels.
+    // Stiles and rails are in front of sunk panels.
     let middle = x;
     for [a, b] in [[l, l + 0.11], [middle - 0.05, middle + 0.05], [r - 0.11, r]] {
         mesh.cuboid(paint, Vec3::new(a, low, z), Vec3::new(b, low + LEAF_M, z + 0.035), BEHIND);

@@ -27,7 +27,7 @@ fn cuts(mut all: Vec<f32>) -> Vec<f32> {
     fine
 }
 
-/// What years of weather leave of a wall's color: splashes at the foot, soot under the cornice, runs under sills.
+/// Weathering of a wall's color: splashes at the foot, soot under the cornice, runs under sills.
 fn grime(house: &House, openings: &[Opening], x: f32, y: f32) -> f32 {
     let up = y - ground_m();
     let cloud = world(x, y, 3.0, 2, 301 + house.seed);
@@ -74,7 +74,7 @@ fn wall(house: &House, openings: &[Opening], mesh: &mut Mesh, heights: [f32; 2])
         [xs.len() - 1, ys.len() - 1],
         |i, j| {
             let (x, y) = (xs[i], ys[j]);
-            // Whole courses: the shift is a multiple of the tile's own rows.
+            // Whole courses: the shift is a multiple of the tile's rows.
             let uv = Vec2::new(x, -y) / tile + (shift * 18.0).floor() / 18.0;
             let tint = (Vec3::from(house.tint) * grime(house, openings, x, y)).min(Vec3::ONE);
             (Vec3::new(x, y, 0.0), uv, tint)
@@ -87,7 +87,7 @@ fn wall(house: &House, openings: &[Opening], mesh: &mut Mesh, heights: [f32; 2])
     );
 }
 
-/// The sides of an opening, as deep as the wall is seen.
+/// Sides of an opening, to the visible depth of the wall.
 fn reveal(house: &House, opening: &Opening, mesh: &mut Mesh) {
     let mut paint = house.wall_paint();
     paint.tint *= 0.9;

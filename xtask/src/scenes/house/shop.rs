@@ -8,7 +8,7 @@ use crate::scenes::mesh::{BEHIND, BELOW, LEFT, Mesh, plain, tinted};
 use crate::scenes::model::Lamp;
 use crate::scenes::noise::{hash, mix};
 
-/// What differs from shop to shop.
+/// Parameters of a shop.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scenes) struct Shop {
     pub(in crate::scenes) sign: Material,
@@ -21,11 +21,11 @@ pub(in crate::scenes) struct Shop {
 /// Height of the glass over the pavement, and of the board above.
 const GLASS_M: f32 = 2.62;
 const BOARD_M: [f32; 2] = [2.72, 3.24];
-/// How far the awning reaches out, and the heights of its edges over the pavement.
+/// Projection of the awning, and the heights of its edges over the pavement.
 const AWNING_M: [f32; 3] = [1.35, 2.78, 2.28];
 /// Depth of the room.
 const ROOM_M: f32 = 3.2;
-/// Width at the right that the house's own door takes.
+/// Width at the right of the house door.
 const DOOR_M: f32 = 1.5;
 
 /// The opening of a shop in the front; it takes in the door beside it.
@@ -131,7 +131,7 @@ fn awning(mesh: &mut Mesh, [a, b]: [f32; 2], low: f32, stripes: [[f32; 3]; 2]) {
             let down = Vec3::new(0.0, -0.004, 0.0);
             mesh.quad(paint, [point(x1, t), point(x0, t), point(x0, s), point(x1, s)].map(|p| p + down));
         }
-        // The valance hangs from the bar, cut round below.
+        // The valance is below the bar, with a rounded edge.
         let z = 0.08 + out;
         let middle = (x0 + x1) * 0.5;
         let outline = [
@@ -223,7 +223,7 @@ fn room(mesh: &mut Mesh, seed: u32, [left, right]: [f32; 2], low: f32, lamps: &m
             ],
         );
     }
-    // One lamp stands for both panels.
+    // One lamp represents both panels.
     lamps.push(Lamp {
         name: "shop",
         position: [mix(left, right, 0.5), top - 0.13, -1.3],

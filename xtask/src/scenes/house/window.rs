@@ -51,7 +51,7 @@ impl WindowKind {
     }
 }
 
-/// Stone round an opening.
+/// Stone around an opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::scenes) enum Dressing {
     None,
@@ -61,7 +61,7 @@ pub(in crate::scenes) enum Dressing {
     Surround,
 }
 
-/// What windows that share a mesh have in common.
+/// Parameters of windows that share a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::scenes) struct WindowDesign {
     pub(in crate::scenes) kind: WindowKind,

@@ -117,7 +117,7 @@ pub(super) fn roof_tiles() -> Tile {
     });
     let height = Raster::gray(SIZE, SIZE, |u, v| {
         let (down, side, tone, _) = tile(u, v);
-        // A tile rises to its lower edge, which stands over the next row.
+        // A tile rises to its lower edge, which is above the next row.
         (down * 0.012 + tone * 3.0e-3) * smooth(0.0, 0.03, side)
     });
     Tile { color, height, roughness: Raster::gray(8, 8, |_, _| 1.0) }

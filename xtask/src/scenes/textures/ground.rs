@@ -9,7 +9,7 @@ use crate::scenes::raster::Raster;
 
 /// Edges of the tiles, metres.
 pub(in crate::scenes) const ASPHALT_M: f32 = 2.4;
-/// A whole number of slabs each way.
+/// A whole number of slabs along each edge.
 pub(in crate::scenes) const SLABS_M: f32 = 2.4;
 pub(in crate::scenes) const SETTS_M: f32 = 0.9;
 /// Length of a kerb stone; its tile is half as wide.
@@ -37,7 +37,7 @@ pub(super) fn asphalt() -> Tile {
         let (dome, id) = dome(u, v);
         dome * mix(0.5e-3, 1.1e-3, id) + fractal(u, v, [14, 14], 3, 31) * 1.6e-3
     });
-    // Tops are polished by tyres; water lies between them.
+    // Tops are polished by tires; water is between them.
     let roughness =
         Raster::gray(SIZE, SIZE, |u, v| mix(0.5, 0.95, mottle(u + 0.3, v)) * mix(1.0, 0.85, dome(u, v).0));
     Tile { color, height, roughness }
@@ -113,7 +113,7 @@ pub(super) fn setts() -> Tile {
     Tile { color, height, roughness }
 }
 
-/// Fourth-order norm: a square with round corners.
+/// Fourth-order norm: a square with rounded corners.
 fn ops_norm(a: f32, b: f32) -> f32 {
     let (a, b) = (a * a, b * b);
     (a * a + b * b).sqrt().sqrt()

@@ -12,7 +12,7 @@ const LEAVES: i32 = 190;
 fn leaf(u: f32, v: f32) -> Option<([f32; 3], f32)> {
     (0..LEAVES).rev().find_map(|k| {
         let r = |n: i32| hash(k, n, 141);
-        // Leaves stand round the middle, denser inside.
+        // Leaves are around the middle, denser inside.
         let turn = r(0) * std::f32::consts::TAU;
         let reach = 0.41 * r(1).sqrt();
         let (cx, cy) = (0.5 + reach * ops::cos(turn), 0.5 + reach * ops::sin(turn));
@@ -37,7 +37,7 @@ fn leaf(u: f32, v: f32) -> Option<([f32; 3], f32)> {
     })
 }
 
-/// A spray of leaves, 256 texels square; where there is none, the color goes on so that edges do not turn dark.
+/// A spray of leaves, 256 texels square; outside the leaves the color continues so that edges do not turn dark.
 pub(super) fn leaves() -> Raster {
     Raster::new(256, 256, |u, v| match leaf(u, v) {
         Some(([r, g, b], a)) => [r, g, b, a],

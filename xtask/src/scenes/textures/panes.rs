@@ -1,4 +1,4 @@
-//! What is seen through windows: eight views of rooms, four in a row, by day and by lamp light.
+//! Views through windows: eight views of rooms, four in a row, by day and by lamp light.
 //!
 //! By day a room shows a few hundredths of the light of its walls through the pane, curtains a fifth. A room lit with 100 lux has
 //! walls and curtains of 10 to 40 cd/m^2; the lit picture is relative to the brightest.
@@ -25,7 +25,7 @@ fn folds(u: f32, count: f32, seed: u32) -> f32 {
     mix(0.45, 1.0, ridge)
 }
 
-/// The share of a view that a curtain covers, with its folds: view 0 has drawn curtains, 1 and 4 parted ones, 2 a net, 3 a blind,
+/// Fraction of a view that a curtain covers, with its folds: view 0 has drawn curtains, 1 and 4 parted ones, 2 a net, 3 a blind,
 /// 5 none, 6 a net below the middle, 7 one half drawn.
 fn curtain(view: u32, u: f32, v: f32) -> Option<(f32, [f32; 3])> {
     const LINEN: [f32; 3] = [0.55, 0.50, 0.42];
@@ -67,13 +67,13 @@ fn room(view: u32, u: f32, v: f32) -> [f32; 3] {
 
 /// Makes both pictures, 512 texels square.
 pub(super) fn panes() -> Panes {
-    let place = |u: f32, v: f32| {
+    let view_at = |u: f32, v: f32| {
         let (x, y) = (u * VIEWS[0] as f32, v * VIEWS[1] as f32);
         let view = x.floor() as u32 + VIEWS[0] * y.floor() as u32;
         (view, x.fract(), y.fract())
     };
     let by_day = Raster::new(512, 512, |u, v| {
-        let (view, u, v) = place(u, v);
+        let (view, u, v) = view_at(u, v);
         let [r, g, b] = match curtain(view, u, v) {
             Some((fold, color)) => color.map(|c| c * fold * 0.42),
             None => room(view, u, v).map(|c| c * 0.05 + 0.004),
@@ -81,7 +81,7 @@ pub(super) fn panes() -> Panes {
         [r, g, b, 1.0]
     });
     let lit = Raster::new(512, 512, |u, v| {
-        let (view, u, v) = place(u, v);
+        let (view, u, v) = view_at(u, v);
         // A lamp under the ceiling: brighter above and in the middle.
         let strength = mix(0.25, 1.0, hash(view as i32, 9, 133));
         let lamp = strength * mix(1.0, 0.4, v) * mix(1.0, 0.7, (2.0 * u - 1.0) * (2.0 * u - 1.0));
@@ -96,7 +96,7 @@ pub(super) fn panes() -> Panes {
                 std::array::from_fn(|k| WARM[k] * room[k] * lamp * 0.9)
             }
         };
-        // Edges of the pane get less of the light.
+        // Edges of the pane receive less light.
         let frame = smooth(0.0, 0.06, u.min(1.0 - u)) * smooth(0.0, 0.04, v.min(1.0 - v));
         let [r, g, b] = color.map(|c| c * mix(0.6, 1.0, frame));
         [r, g, b, 1.0]

@@ -1,4 +1,4 @@
-//! What a lattice is on: the CPU, or a GPU. The rest of the command sees one kind of it.
+//! Device of a lattice: the CPU, or a GPU, behind one interface.
 
 #[cfg(feature = "gpu")]
 use downpour::gpu::{Gpu, GpuError};
@@ -19,7 +19,7 @@ pub(super) trait Device: Sized {
     fn on_gpu(gpu: &Gpu, options: &Self::Options) -> Result<Self, RunError>;
 }
 
-/// Why a run has ended before its end: what was wrong with it, or with what it ran on.
+/// Error that ended a run early: of its input, or of its device.
 #[derive(Debug)]
 pub(super) enum RunError {
     Failed(Failure),
@@ -27,7 +27,7 @@ pub(super) enum RunError {
     Gpu(GpuError),
 }
 
-/// Runs a lattice on what the arguments ask for. `auto` takes the CPU where a lattice is too much for the GPU.
+/// Runs a lattice on the requested device. `auto` uses the CPU if a lattice is too large for the GPU.
 ///
 /// # Errors
 /// As [`compute`].
@@ -49,7 +49,7 @@ pub(super) fn with_device<D: Device, T>(
     );
     #[cfg(not(feature = "gpu"))]
     {
-        // A signal ends the work wherever it is.
+        // A signal ends the work at any point.
         let _ = interrupt;
         compute(arguments, say, on_cpu)
     }
@@ -95,7 +95,7 @@ mod gpu {
     use crate::backend::FromGpu;
 
     impl RunError {
-        /// An error of a run that has begun. Pictures may be there already, so that it does not begin again on the CPU.
+        /// Marks the error of a run that has started. Pictures may exist already, so it does not restart on the CPU.
         pub(super) fn begun(self) -> Self {
             match self {
                 Self::Gpu(error @ (GpuError::OverLimit { .. } | GpuError::OutOfMemory { .. })) => {
@@ -117,7 +117,7 @@ mod gpu {
             match error {
                 GpuGlassError::Glass(error) => error.into(),
                 GpuGlassError::Gpu(error) => Self::Gpu(error),
-                // Other kinds of errors may come.
+                // Other kinds of errors may be added.
                 error => Self::Failed(error.into()),
             }
         }

@@ -19,7 +19,7 @@ use crate::quantity;
 /// A step is a tick of the lattice: as long as no drop moves farther than a cell (2 ms for cells of 0.6 mm).
 #[derive(Debug, Args)]
 pub(super) struct GlassArguments {
-    /// Cells of the pane, 8 to 4096 each way.
+    /// Cells of the pane, 8 to 4096 along each edge.
     #[arg(long, value_name = "WxH", default_value = "256x256", value_parser = quantity::picture_size)]
     size: [u32; 2],
     /// Edge of a cell in mm, 0.25 to 5.
@@ -30,18 +30,18 @@ pub(super) struct GlassArguments {
     #[arg(long, value_name = "DEG", default_value = "90", value_parser = quantity::tilt_deg)]
     #[arg(allow_hyphen_values = true)]
     tilt: f64,
-    /// How fast the air with the rain comes at the pane, 0 to 100 m/s; without it no rain reaches a window.
+    /// Speed of the air with the rain towards the pane, 0 to 100 m/s; at 0 no rain reaches a window.
     #[arg(long, value_name = "M_S", default_value = "3", value_parser = quantity::speed_m_s)]
     #[arg(allow_hyphen_values = true)]
     speed: f64,
-    /// How many steps.
+    /// Number of steps.
     #[arg(long, value_name = "N", default_value = "1000", value_parser = quantity::steps)]
     #[arg(allow_hyphen_values = true)]
     steps: u64,
-    /// What has to hold: the exit code is 1 if it does not.
+    /// Invariant to check: the exit code is 1 if it does not hold.
     #[arg(long, value_enum)]
     check: Option<Check>,
-    /// What the picture shows.
+    /// Quantity that the picture shows.
     #[arg(long, value_enum, default_value = "height")]
     show: Show,
     #[command(flatten)]
@@ -114,7 +114,7 @@ impl GlassArguments {
         }
     }
 
-    /// What is told in the end, and what is broken of what had to hold.
+    /// Final report, and the first checked invariant that does not hold.
     fn invariants(&self, pane: &Pane) -> Result<([Entry; 11], Option<String>), RunError> {
         let totals = pane.totals()?;
         let entry = Entry::new;
@@ -146,10 +146,10 @@ impl GlassArguments {
 
     fn field(&self, pane: &Pane) -> Result<Field, RunError> {
         let size = self.size;
-        let grey = |numbers: Vec<f32>| numbers.into_iter().map(|n| [n; 3]).collect();
+        let gray = |numbers: Vec<f32>| numbers.into_iter().map(|n| [n; 3]).collect();
         Ok(match self.show {
             Show::Height => {
-                Field { size, numbers: grey(pane.heights()?), shade: |h, scale| h / scale, scale: 1.2e-3 }
+                Field { size, numbers: gray(pane.heights()?), shade: |h, scale| h / scale, scale: 1.2e-3 }
             }
             Show::Normal => Field {
                 size,
@@ -159,7 +159,7 @@ impl GlassArguments {
             },
             Show::Mass => Field {
                 size,
-                numbers: grey(pane.mass()?.into_iter().map(|m| m as f32).collect()),
+                numbers: gray(pane.mass()?.into_iter().map(|m| m as f32).collect()),
                 shade: |m, scale| downpour::math::ops::cbrt(m / scale),
                 scale: 1.0e4,
             },

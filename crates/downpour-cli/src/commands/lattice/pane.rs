@@ -30,7 +30,7 @@ impl Device for Pane {
 }
 
 impl Pane {
-    /// Lets seconds pass, and waits for them.
+    /// Advances by a time in seconds, and waits for the device.
     pub(super) fn step(&mut self, dt_s: f64) -> Result<(), RunError> {
         match self {
             Self::Cpu(glass) => glass.step(dt_s)?,
@@ -52,7 +52,7 @@ impl Pane {
         }
     }
 
-    /// How many ticks have passed.
+    /// Number of ticks so far.
     pub(super) fn ticks(&self) -> u64 {
         match self {
             Self::Cpu(glass) => glass.ticks(),
@@ -88,7 +88,7 @@ impl Pane {
         }
     }
 
-    /// Where the water is, nl.
+    /// Volumes of water by state, nl.
     pub(super) fn totals(&self) -> Result<GlassTotals, RunError> {
         match self {
             Self::Cpu(glass) => Ok(glass.totals()),
@@ -97,7 +97,7 @@ impl Pane {
         }
     }
 
-    /// Whether the state is one that can be. A GPU shows less of it: masses, and that nothing is lost.
+    /// True if the state is valid. A GPU checks less of it: masses, and that no water is lost.
     pub(super) fn is_sound(&self) -> Result<bool, RunError> {
         match self {
             Self::Cpu(glass) => Ok(glass.is_sound()),

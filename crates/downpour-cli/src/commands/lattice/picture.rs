@@ -1,4 +1,4 @@
-//! Pictures of lattices: heights as grey, normals as the usual colours, masses as brightness.
+//! Pictures of lattices: heights in gray, normals in the usual colors, masses as brightness.
 
 use downpour::render::file::{write_exr, write_png};
 
@@ -6,13 +6,13 @@ use super::Common;
 use crate::commands::pattern::Pattern;
 use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
-use crate::output::{Place, remove_leftovers};
+use crate::output::{OutputFile, remove_leftovers};
 use crate::stream;
 
 /// The most pictures of a clip.
-const MOST_PICTURES: u64 = 1_000_000;
+const MAX_PICTURES: u64 = 1_000_000;
 
-/// Where the pictures go, in which format, and after which steps.
+/// Paths of the pictures, their format, and their steps.
 pub(super) struct Target {
     names: Names,
     shown: String,
@@ -25,23 +25,23 @@ pub(super) struct Target {
 
 /// One picture after the last step, or one every few steps.
 enum Names {
-    One(Place),
+    One(OutputFile),
     Numbered { pattern: Pattern, every: u64, overwrite: bool },
 }
 
-/// Numbers of all cells, and how they become grey or colours.
+/// Values of all cells, and their mapping to gray or colors.
 pub(super) struct Field {
     pub(super) size: [u32; 2],
-    /// What an .exr holds: metres, units of mass, or parts of a unit vector.
+    /// Values in an .exr: metres, units of mass, or components of a unit vector.
     pub(super) numbers: Vec<[f32; 3]>,
     /// 0 to 1 from a number.
     pub(super) shade: fn(f32, f32) -> f32,
-    /// What the shade is relative to.
+    /// Reference value of the shade.
     pub(super) scale: f32,
 }
 
 impl Target {
-    /// The places of the pictures that were asked for, if any were.
+    /// Paths of the requested pictures, if any.
     ///
     /// # Errors
     /// Exit code 2 for another format, a name without a number for many, or too many; 5 for a file that exists.
@@ -57,22 +57,22 @@ impl Target {
             Some(every) => {
                 let pattern = Pattern::parse(path)?;
                 let last = steps / every;
-                if last >= MOST_PICTURES {
+                if last >= MAX_PICTURES {
                     let found = format!("--every {every} of {steps} steps: {} pictures", last + 1);
-                    return Err(Failure::new(INPUT, format!("{found}; allowed: at most {MOST_PICTURES}")));
+                    return Err(Failure::new(INPUT, format!("{found}; allowed: at most {MAX_PICTURES}")));
                 }
                 for number in 0..=last as u32 {
-                    Place::new(&pattern.path(number), overwrite)?;
+                    OutputFile::new(&pattern.path(number), overwrite)?;
                 }
                 remove_leftovers(pattern.folder());
                 Names::Numbered { pattern, every, overwrite }
             }
-            None => Names::One(Place::new(path, overwrite)?),
+            None => Names::One(OutputFile::new(path, overwrite)?),
         };
         Ok(Some(Self { names, shown: shown(path), exr, quiet: common.quiet, steps, scale: 0.0 }))
     }
 
-    /// Whether there is a picture after so many steps.
+    /// True if there is a picture after `done` steps.
     pub(super) fn is_due(&self, done: u64) -> bool {
         match &self.names {
             Names::One(_) => done == self.steps,
@@ -80,7 +80,7 @@ impl Target {
         }
     }
 
-    /// How many steps it is to the next picture: at least 1.
+    /// Number of steps to the next picture: at least 1.
     pub(super) fn steps_to_next(&self, done: u64) -> u64 {
         match &self.names {
             Names::One(_) => self.steps.saturating_sub(done).max(1),
@@ -88,10 +88,10 @@ impl Target {
         }
     }
 
-    /// Writes the picture after so many steps.
+    /// Writes the picture after `done` steps.
     ///
     /// # Errors
-    /// What the encoder or the file system says.
+    /// Error of the encoder or the file system.
     pub(super) fn write(&mut self, field: &Field, done: u64, interrupt: &Interrupt) -> Result<(), Failure> {
         let [width, height] = field.size;
         self.scale = self.scale.max(field.scale);
@@ -103,17 +103,17 @@ impl Target {
             write_png(width, height, &pixels)?
         };
         let pictures = match &self.names {
-            Names::One(place) => {
-                place.publish(&bytes, interrupt)?;
+            Names::One(file) => {
+                file.publish(&bytes, interrupt)?;
                 String::new()
             }
             Names::Numbered { pattern, every, overwrite } => {
                 let number = (done / every) as u32;
-                Place::new(&pattern.path(number), *overwrite)?.publish_among_many(&bytes, interrupt)?;
+                OutputFile::new(&pattern.path(number), *overwrite)?.publish_among_many(&bytes, interrupt)?;
                 format!(", {} pictures", number + 1)
             }
         };
-        // Of a clip only the end is told.
+        // Of a clip only the end is printed.
         if !self.quiet && done + self.steps_to_next(done) > self.steps {
             stream::message(&format!("wrote {}: {width} x {height}{pictures}", self.shown));
         }

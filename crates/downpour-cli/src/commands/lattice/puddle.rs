@@ -15,17 +15,17 @@ use crate::interrupt::Interrupt;
 use crate::listing::{Datum, Entry};
 use crate::quantity;
 
-/// How far the energy may drift, as a share of it.
+/// Tolerance of the drift of the energy, relative to it.
 const ENERGY_DRIFT: f64 = 1.0e-4;
 
-/// How far the volume may drift, as a share of the most that was above or below the level: what damping leaves of the
-/// ripples says nothing of what was moved.
+/// Tolerance of the drift of the volume, relative to the maximum above or below the level: the ripples that damping
+/// leaves do not measure the moved volume.
 const VOLUME_DRIFT: f64 = 1.0e-4;
 
 /// Let rain fall on a puddle.
 #[derive(Debug, Args)]
 pub(super) struct PuddleArguments {
-    /// Cells of the puddle, 64 to 4096 each way.
+    /// Cells of the puddle, 64 to 4096 along each edge.
     #[arg(long, value_name = "WxH", default_value = "256x256", value_parser = quantity::picture_size)]
     size: [u32; 2],
     /// Edge of a cell in mm, 0.1 to 1000.
@@ -40,17 +40,17 @@ pub(super) struct PuddleArguments {
     #[arg(long, value_name = "S", default_value = "0.005", value_parser = quantity::step_s)]
     #[arg(allow_hyphen_values = true)]
     step: f64,
-    /// How many steps.
+    /// Number of steps.
     #[arg(long, value_name = "N", default_value = "1000", value_parser = quantity::steps)]
     #[arg(allow_hyphen_values = true)]
     steps: u64,
-    /// The border absorbs what comes, as if there were more water.
+    /// Absorbing border, as if the water continued.
     #[arg(long)]
     open: bool,
-    /// What has to hold: the exit code is 1 if it does not. Checks are made without rain.
+    /// Invariant to check: the exit code is 1 if it does not hold. Checks run without rain.
     #[arg(long, value_enum)]
     check: Option<Check>,
-    /// What the picture shows.
+    /// Quantity that the picture shows.
     #[arg(long, value_enum, default_value = "height")]
     show: Show,
     #[command(flatten)]
@@ -69,7 +69,7 @@ enum Check {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Show {
-    /// Height over the level in metres; in a .png grey is the level, black and white are three times the rms; in a
+    /// Height over the level in metres; in a .png gray is the level, black and white are three times the rms; in a
     /// clip three times the largest rms so far.
     Height,
     /// Normals: x along the rows, y up, z along the columns.
@@ -98,8 +98,8 @@ impl PuddleArguments {
         let rain = (self.common.rate > 0.0).then(|| PuddleRain::new(&rain, self.common.seed));
         let say = |text: &str| self.common.say(text);
         let (entries, broken) = with_device(&backend, interrupt, say, &options, |mut water| {
-            let seen = self.step(&mut water, rain.as_ref(), target.borrow_mut().as_mut(), interrupt)?;
-            self.invariants(&mut water, &seen)
+            let stats = self.step(&mut water, rain.as_ref(), target.borrow_mut().as_mut(), interrupt)?;
+            self.invariants(&mut water, &stats)
         })?;
         if self.check.is_some() && broken.is_none() {
             self.common.say("the check holds");
@@ -114,13 +114,13 @@ impl PuddleArguments {
         rain: Option<&PuddleRain>,
         mut target: Option<&mut Target>,
         interrupt: &Interrupt,
-    ) -> Result<Seen, RunError> {
+    ) -> Result<RunStats, RunError> {
         if matches!(self.check, Some(Check::Energy | Check::Mass)) {
             let position_m = water.extent_m().map(|edge| 0.4 * edge);
             water.seed(&[Impact { position_m, speed_m_s: 8.0, diameter_m: 3.0e-3 }])?;
         }
         let dt = self.step as f32;
-        let mut seen = Seen { drops: 0, drift: 0.0, moved: moved_volume(water.look()?) };
+        let mut stats = RunStats { drops: 0, drift: 0.0, moved: moved_volume(water.look()?) };
         let mut first = None;
         let mut draw = |water: &mut Water, done: u64| match target
             .as_mut()
@@ -133,7 +133,7 @@ impl PuddleArguments {
         for step in 0..self.steps {
             if let Some(rain) = rain {
                 let impacts = rain.impacts(water.extent_m(), step, dt)?;
-                seen.drops += impacts.len() as u64;
+                stats.drops += impacts.len() as u64;
                 water.seed(&impacts)?;
             }
             water.step(dt)?;
@@ -143,18 +143,22 @@ impl PuddleArguments {
                 let puddle = water.look()?;
                 let energy = puddle.energy();
                 let begun = *first.get_or_insert(energy);
-                seen.moved = seen.moved.max(moved_volume(puddle));
-                seen.drift = seen.drift.max((energy - begun).abs() / begun.abs().max(f64::MIN_POSITIVE));
+                stats.moved = stats.moved.max(moved_volume(puddle));
+                stats.drift = stats.drift.max((energy - begun).abs() / begun.abs().max(f64::MIN_POSITIVE));
             }
         }
-        Ok(seen)
+        Ok(stats)
     }
 
-    /// What is told in the end, and what is broken of what had to hold.
-    fn invariants(&self, water: &mut Water, seen: &Seen) -> Result<([Entry; 9], Option<String>), RunError> {
+    /// Final report, and the first checked invariant that does not hold.
+    fn invariants(
+        &self,
+        water: &mut Water,
+        stats: &RunStats,
+    ) -> Result<([Entry; 9], Option<String>), RunError> {
         let (steps, reset_cells) = (water.steps(), water.reset_cells()?);
         let puddle = water.look()?;
-        let &Seen { drops, drift, moved } = seen;
+        let &RunStats { drops, drift, moved } = stats;
         let heights = puddle.heights();
         let volume = puddle.volume();
         let highest = heights.iter().fold(0.0f32, |most, h| most.max(h.abs()));
@@ -168,7 +172,7 @@ impl PuddleArguments {
             entry("energy_m4_s2", "energy", Datum::Computed(puddle.energy(), 6), "m^4/s^2"),
             entry("energy_drift", "drift of the energy", Datum::Computed(drift, 3), ""),
             entry("volume_m3", "volume over the level", Datum::Computed(volume, 3), "m^3"),
-            entry("volume_share", "share of the most moved volume", Datum::Computed(share, 3), ""),
+            entry("volume_share", "fraction of the maximum moved volume", Datum::Computed(share, 3), ""),
             entry("reset_cells", "cells that were reset", Datum::Count(reset_cells), ""),
         ];
         let level = heights.iter().all(|h| h.to_bits() == 0);
@@ -207,11 +211,11 @@ impl PuddleArguments {
     }
 }
 
-/// What was seen on the way.
-struct Seen {
+/// Statistics collected during the run.
+struct RunStats {
     /// Drops of the rain.
     drops: u64,
-    /// The largest drift of the energy, as a share of it.
+    /// Maximum drift of the energy, relative to it.
     drift: f64,
     /// The largest volume that was above or below the level, m^3.
     moved: f64,

@@ -10,7 +10,7 @@ use super::device::{Device, RunError};
 
 /// A puddle.
 pub(super) struct Water {
-    /// The puddle itself, or, beside a GPU, what its state is laid into to be looked at.
+    /// The puddle itself, or, with a GPU, a copy for reading its state.
     puddle: Puddle,
     #[cfg(feature = "gpu")]
     gpu: Option<GpuPuddle>,
@@ -48,7 +48,7 @@ impl Water {
         Ok(self.puddle.seed(impacts)?)
     }
 
-    /// Lets time pass: always the same.
+    /// Advances by a constant time step.
     pub(super) fn step(&mut self, dt_s: f32) -> Result<(), RunError> {
         #[cfg(feature = "gpu")]
         if let Some(gpu) = &mut self.gpu {
@@ -63,7 +63,7 @@ impl Water {
         Ok(())
     }
 
-    /// The puddle as it is now: all but how many steps it has made, and what it had to reset.
+    /// Current state of the puddle, without the number of its steps and resets.
     pub(super) fn look(&mut self) -> Result<&Puddle, RunError> {
         #[cfg(feature = "gpu")]
         if let Some(gpu) = &self.gpu {
@@ -73,7 +73,7 @@ impl Water {
         Ok(&self.puddle)
     }
 
-    /// How many time steps have been made.
+    /// Number of time steps so far.
     pub(super) fn steps(&self) -> u64 {
         #[cfg(feature = "gpu")]
         if let Some(gpu) = &self.gpu {
@@ -82,7 +82,7 @@ impl Water {
         self.puddle.steps()
     }
 
-    /// How many cells had to be set to rest.
+    /// Number of cells that were set to rest.
     pub(super) fn reset_cells(&self) -> Result<u64, RunError> {
         #[cfg(feature = "gpu")]
         if let Some(gpu) = &self.gpu {

@@ -1,7 +1,7 @@
 //! A clip: many pictures, each published as soon as it is made.
 //!
-//! Frames that an earlier run has made are not made again if its journal knows them and they are as they were. The exposure
-//! of all frames is that of the first one: what each frame would choose for itself flickers.
+//! Frames of an earlier run are not rendered again if its journal lists them and their digests match. The exposure
+//! of all frames is that of the first one: separate exposures would flicker.
 
 mod finish;
 
@@ -18,7 +18,7 @@ use super::frames::Frames;
 use super::job::{Job, atlas_digest, digest, scene_digest};
 use super::journal::{Journal, Record};
 use super::outputs::Format;
-use super::places::Places;
+use super::paths::ClipPaths;
 use super::report;
 use crate::failure::{Failure, INPUT};
 use crate::interrupt::Interrupt;
@@ -37,28 +37,28 @@ pub(super) fn run(
     interrupt: &Interrupt,
 ) -> Result<(), Failure> {
     let (stats, drops) = (arguments.stats.as_deref(), arguments.dump_drops.as_deref());
-    let places = Places::new(&arguments.output, stats, drops, arguments.overwrite)?;
-    arguments.check_layers(if places.video.is_some() { Format::Png } else { places.format })?;
+    let paths = ClipPaths::new(&arguments.output, stats, drops, arguments.overwrite)?;
+    arguments.check_layers(if paths.video.is_some() { Format::Png } else { paths.format })?;
     let last_s = time_s(arguments.input.time, frames.last(), fps);
     if last_s > LATEST_S {
         let found = format!("frame {} is at {last_s} s", frames.last());
         return Err(Failure::new(INPUT, format!("{found}; allowed: frames up to {LATEST_S} s")));
     }
-    places.check_free(frames)?;
+    paths.check_free(frames)?;
     let input =
         doing("reading", arguments.quiet, || arguments.input.read(&mut downpour::scene::Budget::default()))?;
-    places.keep(frames, &input.files)?;
+    paths.keep(frames, &input.files)?;
     #[cfg(feature = "video")]
-    if places.video.is_some() {
+    if paths.video.is_some() {
         super::video::check_size(input.weather.size)?;
     }
     let first_s = time_s(arguments.input.time, frames.first, fps);
-    let mut renderer = arguments.renderer(input, first_s, places.stats.is_some())?;
+    let mut renderer = arguments.renderer(input, first_s, paths.stats.is_some())?;
     let atlas = renderer.options().atlas.as_ref().map(atlas_digest);
     let scene = scene_digest(renderer.weather(), renderer.loaded(), renderer.first_stage());
     let weather = renderer.weather().clone();
     let refraction = format!("{:?}", renderer.refraction());
-    let clip = Clip { arguments, frames, fps, places, weather, atlas, refraction, scene, interrupt };
+    let clip = Clip { arguments, frames, fps, paths, weather, atlas, refraction, scene, interrupt };
     let rate = clip.weather.rain.rate_mm_h;
     arguments.say(&format!("rain: {rate} mm/h, {} frames", frames.count()));
     let (journal, made) = clip.make(&mut renderer)?;
@@ -75,7 +75,7 @@ struct Clip<'a> {
     arguments: &'a RenderArguments,
     frames: Frames,
     fps: f64,
-    places: Places,
+    paths: ClipPaths,
     weather: Weather,
     /// The digest of the streak atlas, if the weather takes the light of lamps from one.
     atlas: Option<String>,
@@ -86,10 +86,10 @@ struct Clip<'a> {
     interrupt: &'a Interrupt,
 }
 
-/// Why a clip is not whole.
+/// Reason why a clip is incomplete.
 #[derive(Debug)]
 enum Stopped {
-    /// Its first frame was too much for the GPU: the CPU goes on.
+    /// Its first frame was too large for the GPU: the CPU continues.
     OnGpu,
     Failed(Failure),
 }
@@ -107,19 +107,19 @@ impl From<RendererError> for Stopped {
 }
 
 impl Clip<'_> {
-    /// Makes the frames that are not there. Returns how many those were.
+    /// Renders the missing frames. Returns their number.
     fn make(&self, renderer: &mut Renderer) -> Result<(Journal, u32), Failure> {
-        self.places.make_folder()?;
+        self.paths.make_folder()?;
         loop {
             let computer = renderer.computer().clone();
             let mut journal = self.journal(&computer)?;
             match self.make_missing(renderer, &mut journal) {
                 Ok(made) => return Ok((journal, made)),
-                // Too much for the GPU, which has made nothing: the clip begins again on the CPU.
+                // Too large for the GPU, which has rendered nothing: the clip restarts on the CPU.
                 Err(Stopped::OnGpu) => journal.close(),
                 Err(Stopped::Failed(error)) => {
                     journal.close();
-                    self.places.remove_empty_folder();
+                    self.paths.remove_empty_folder();
                     return Err(error);
                 }
             }
@@ -128,37 +128,37 @@ impl Clip<'_> {
 
     /// Journal of the frames that a computer makes.
     fn journal(&self, computer: &Computer) -> Result<Journal, Failure> {
-        let (place, anew) = (&self.places.journal, self.arguments.overwrite);
-        let opened = Journal::open(place, &self.job(computer), anew, self.interrupt);
-        opened.inspect_err(|_| self.places.remove_empty_folder())
+        let (file, anew) = (&self.paths.journal, self.arguments.overwrite);
+        let opened = Journal::open(file, &self.job(computer), anew, self.interrupt);
+        opened.inspect_err(|_| self.paths.remove_empty_folder())
     }
 
     fn make_missing(&self, renderer: &mut Renderer, journal: &mut Journal) -> Result<u32, Stopped> {
         if self.is_published(journal) {
             return Ok(0);
         }
-        self.places.film(journal.overwrites())?;
+        self.paths.video_output(journal.overwrites())?;
         let kept = self.kept(journal)?;
         let missing = self.frames.count() - kept.len() as u32;
         if !kept.is_empty() {
             self.arguments.say(&format!("{} frames are there, {missing} are missing", kept.len()));
         }
-        remove_leftovers(self.places.pictures.folder());
-        if let Some(drops) = &self.places.drops {
+        remove_leftovers(self.paths.pictures.folder());
+        if let Some(drops) = &self.paths.drops {
             remove_leftovers(drops.folder());
         }
         renderer.set_exposure(self.exposure(journal));
         let mut progress = Progress::new("frame", missing, self.arguments.quiet);
         for number in self.frames.numbers() {
             if kept.contains(&number) {
-                // What comes later begins where this frame ends.
+                // The next frame starts from the state after this one.
                 renderer.pass(self.time_s(number))?;
                 continue;
             }
             let made = self.make_frame(number, renderer, journal);
             made.inspect_err(|stopped| {
                 if matches!(stopped, Stopped::Failed(_)) {
-                    self.say_how_to_go_on(journal);
+                    self.print_resume_hint(journal);
                 }
             })?;
             progress.step();
@@ -170,27 +170,27 @@ impl Clip<'_> {
         time_s(self.arguments.input.time, number, self.fps)
     }
 
-    fn say_how_to_go_on(&self, journal: &Journal) {
+    fn print_resume_hint(&self, journal: &Journal) {
         if let made @ 1.. = journal.numbers().len() {
             let how = if self.arguments.overwrite { "without --overwrite" } else { "with the same command" };
-            self.arguments.say(&format!("{made} frames are made: the clip goes on {how}"));
+            self.arguments.say(&format!("{made} frames are complete: resume the clip {how}"));
         }
     }
 
     /// The frames that are there and as they were made. Names that are taken by something else are an error.
     fn kept(&self, journal: &Journal) -> Result<BTreeSet<u32>, Failure> {
         let mut kept = BTreeSet::new();
-        let exposed = self.places.format == Format::Exr || journal.exposure().is_some();
+        let exposed = self.paths.format == Format::Exr || journal.exposure().is_some();
         for number in self.frames.numbers() {
             let record = journal.frame(number);
             let listed = record.is_some_and(|record| record.drops.is_some());
-            self.places.picture(number, journal.overwrites() || record.is_some())?;
-            self.places.list(number, journal.overwrites() || listed)?;
+            self.paths.picture(number, journal.overwrites() || record.is_some())?;
+            self.paths.list(number, journal.overwrites() || listed)?;
             let Some(record) = record.filter(|_| exposed) else { continue };
-            let told = self.places.stats.is_none() || !record.stats["measured_rate_mm_h"].is_null();
-            let picture = fs::read(self.places.pictures.path(number));
+            let told = self.paths.stats.is_none() || !record.stats["measured_rate_mm_h"].is_null();
+            let picture = fs::read(self.paths.pictures.path(number));
             let whole = picture.is_ok_and(|bytes| digest(&bytes) == record.picture);
-            let listed = self.places.drops.as_ref().is_none_or(|drops| {
+            let listed = self.paths.drops.as_ref().is_none_or(|drops| {
                 fs::read(drops.path(number)).is_ok_and(|bytes| record.drops == Some(digest(&bytes)))
             });
             if told && whole && listed {
@@ -206,22 +206,22 @@ impl Clip<'_> {
         if renderer.computer().backend != backend {
             return Err(Stopped::OnGpu);
         }
-        if self.places.format == Format::Png && journal.exposure().is_none() {
+        if self.paths.format == Format::Png && journal.exposure().is_none() {
             journal.expose(frame.exposure, self.interrupt)?;
         }
         let stats = report::stats(&frame, renderer.computer(), &self.weather.rain);
-        let list = self.places.drops.is_some().then(|| report::drops(&frame));
-        let bytes = self.arguments.encode(self.places.format, &frame)?;
+        let list = self.paths.drops.is_some().then(|| report::drops(&frame));
+        let bytes = self.arguments.encode(self.paths.format, &frame)?;
         drop::<Frame>(frame);
         Ok(self.publish(number, &bytes, list.as_deref(), stats, journal)?)
     }
 
-    /// The exposure of the whole clip, where its first frame is there. Linear radiance is not exposed.
+    /// Exposure of the whole clip, once its first frame exists. Linear radiance is not exposed.
     fn exposure(&self, journal: &Journal) -> Option<f32> {
-        if self.places.format == Format::Exr { Some(1.0) } else { journal.exposure() }
+        if self.paths.format == Format::Exr { Some(1.0) } else { journal.exposure() }
     }
 
-    /// Publishes a frame: the journal first, so that whatever has the frame's name is known there; the picture last.
+    /// Publishes a frame: the journal first, so that every file with a frame's name is listed there; the picture last.
     fn publish(
         &self,
         number: u32,
@@ -232,19 +232,19 @@ impl Clip<'_> {
     ) -> Result<(), Failure> {
         let known = journal.frame(number);
         let listed = known.is_some_and(|record| record.drops.is_some());
-        let place = self.places.picture(number, journal.overwrites() || known.is_some())?;
-        let list_place = self.places.list(number, journal.overwrites() || listed)?;
-        // A list that this run is not asked for stays known.
+        let file = self.paths.picture(number, journal.overwrites() || known.is_some())?;
+        let list_file = self.paths.list(number, journal.overwrites() || listed)?;
+        // A list that this run does not write stays listed.
         let before = known.and_then(|record| record.drops.clone());
         let drops = list.map(|list| digest(list.as_bytes())).or(before);
         journal.record(number, Record { picture: digest(picture), drops, stats }, self.interrupt)?;
-        if let (Some(place), Some(list)) = (list_place, list) {
-            place.publish_among_many(list.as_bytes(), self.interrupt)?;
+        if let (Some(file), Some(list)) = (list_file, list) {
+            file.publish_among_many(list.as_bytes(), self.interrupt)?;
         }
-        place.publish_among_many(picture, self.interrupt)
+        file.publish_among_many(picture, self.interrupt)
     }
 
-    /// What the frames depend on. Not how many they are: a clip can be made longer.
+    /// Parameters that the frames depend on. Not their number: a clip can be extended.
     fn job(&self, computer: &Computer) -> Job {
         let (arguments, weather) = (self.arguments, &self.weather);
         let [width, height] = weather.size;

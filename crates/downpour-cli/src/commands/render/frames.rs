@@ -1,7 +1,7 @@
-//! Which pictures a clip has, and when each is taken.
+//! Frames of a clip and their times.
 
 /// The most frames of a clip, and the last number that one may have.
-const MOST_FRAMES: u32 = 1_000_000;
+const MAX_FRAMES: u32 = 1_000_000;
 
 /// The frames of a clip by their numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,11 +29,11 @@ impl Frames {
 /// `A..B`: the frames from A to the one before B.
 pub(super) fn frames(text: &str) -> Result<Frames, String> {
     let allowed = format!(
-        "allowed: A..B, frames A to B - 1, for example 0..240, with B above A and at most {MOST_FRAMES}"
+        "allowed: A..B, frames A to B - 1, for example 0..240, with B above A and at most {MAX_FRAMES}"
     );
     let number = |part: &str| {
         let digits = !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
-        part.parse::<u32>().ok().filter(|number| digits && *number <= MOST_FRAMES)
+        part.parse::<u32>().ok().filter(|number| digits && *number <= MAX_FRAMES)
     };
     let ends = text.split_once("..").and_then(|(first, end)| Some((number(first)?, number(end)?)));
     match ends {

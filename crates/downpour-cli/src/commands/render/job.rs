@@ -1,4 +1,4 @@
-//! What the frames of a clip depend on: two runs with the same job make the same frames, bit for bit.
+//! Parameters of the frames of a clip: two runs with the same job render the same frames, bit for bit.
 
 use std::fmt::{self, Write as _};
 
@@ -8,7 +8,7 @@ use downpour::trace::stage::Stage;
 use downpour::weather::{Loaded, Weather};
 use sha2::{Digest as _, Sha256};
 
-/// Names and values, in a fixed order. Values are texts, so that no number is rounded on its way through a file.
+/// Names and values, in a fixed order. Values are text, so that no number is rounded by a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Job(pub(super) Vec<(&'static str, String)>);
 
@@ -28,8 +28,8 @@ pub(super) fn atlas_digest(atlas: &StreakAtlas) -> String {
     hexadecimal(sum)
 }
 
-/// The digest of a scene: its buffers and its eye at the first frame, all that the weather says, and all by which the
-/// scene will move.
+/// Digest of a scene: its buffers and its camera at the first frame, the weather, and the
+/// animations of the scene.
 pub(super) fn scene_digest(weather: &Weather, loaded: &Loaded, first: &Stage) -> String {
     let mut sum = Sha256::new();
     let data = &first.data;
@@ -56,9 +56,9 @@ pub(super) fn scene_digest(weather: &Weather, loaded: &Loaded, first: &Stage) ->
     }
     let rest = (data.slots, data.lights, data.light_count, data.sky_levels, data.sky_irradiance);
     let mut text = Text(sum);
-    // What messages call the file is no part of the scene.
+    // The name of the file in messages is not part of the scene.
     let weather = Weather { name: String::new(), ..weather.clone() };
-    // Nothing that is formatted fails, and neither does the digest.
+    // Formatting does not fail, and neither does the digest.
     let _ = write!(text, "{rest:?} {:?} {:?} {weather:?}", first.viewpoint, (first.origin, first.depth));
     if let Some(model) = &loaded.drop_model {
         let _ = write!(text, "{:?} {:?} {:?}", model.positions, model.normals, model.indices);

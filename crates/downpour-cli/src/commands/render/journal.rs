@@ -1,8 +1,8 @@
-//! What a clip has done so far, in a file beside its frames: `.NAME.downpour-job`.
+//! Journal of a clip, in a file beside its frames: `.NAME.downpour-job`.
 //!
-//! The first line tells the [`Job`]. Then comes a line for the exposure, and one for each frame *before* the frame gets its
-//! name: whatever stands under a frame's name is known by its digest, or was not ours. Each line begins with a digest of the
-//! rest of it, so that a line that was cut or edited counts as not written. The file is locked while a process works on it.
+//! The first line is the [`Job`]. Then comes a line for the exposure, and one for each frame *before* the frame gets its
+//! name: every file with a frame's name is known by its digest, or is not from this clip. Each line begins with a digest of
+//! its remaining text, so that a truncated or edited line counts as not written. The file is locked while a process works on it.
 
 #[cfg(test)]
 mod tests;
@@ -22,22 +22,22 @@ use crate::interrupt::Interrupt;
 const VERSION: u64 = 1;
 
 /// The longest file that is read, in bytes: a thousand for each frame of the longest clip.
-const LONGEST: u64 = 1 << 30;
+const MAX_BYTES: u64 = 1 << 30;
 
-/// The longest line that is read, in bytes: longer ones count as not written.
-const LONGEST_LINE: usize = 1 << 20;
+/// Maximum length of a line, in bytes: longer ones count as not written.
+const MAX_LINE: usize = 1 << 20;
 
 /// Digits of a line's digest.
 const CHECK_DIGITS: usize = 16;
 
-/// What is known of a frame.
+/// Record of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Record {
     /// The digest of the picture's file.
     pub(super) picture: String,
     /// That of the list of drops, if there is one.
     pub(super) drops: Option<String>,
-    /// What `--stats` tells of it.
+    /// Its entry in `--stats`.
     pub(super) stats: Value,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Journal {
     content: Content,
 }
 
-/// What a journal says.
+/// Contents of a journal.
 #[derive(Debug, Default)]
 struct Content {
     overwrite: bool,
@@ -59,24 +59,24 @@ struct Content {
 }
 
 /// The journal of files with this name.
-pub(super) fn place(name: &Path) -> PathBuf {
+pub(super) fn path_of(name: &Path) -> PathBuf {
     let file = name.file_name().unwrap_or_default().to_string_lossy();
     name.with_file_name(format!(".{file}.downpour-job"))
 }
 
 impl Journal {
-    /// Opens or begins a journal, and locks it. `anew`: what it says does not count.
+    /// Opens or creates a journal, and locks it. `anew`: existing contents are discarded.
     ///
     /// # Errors
     /// Exit code 2 for the journal of another job, or one that cannot be read; 5 if another process works on it, or for
-    /// a place that cannot be written.
+    /// a path that cannot be written.
     pub(super) fn open(path: &Path, job: &Job, anew: bool, interrupt: &Interrupt) -> Result<Self, Failure> {
         let failed = |error: &io::Error| Failure::file(path, error);
         let file = locked(path)?;
         let mut found = Found::default();
         if !anew {
-            if file.metadata().map_err(|error| failed(&error))?.len() > LONGEST {
-                let found = format!("{}: more than {LONGEST} bytes", shown(path));
+            if file.metadata().map_err(|error| failed(&error))?.len() > MAX_BYTES {
+                let found = format!("{}: more than {MAX_BYTES} bytes", shown(path));
                 return Err(Failure::new(
                     LIMIT,
                     format!("{found}; allowed: a journal of downpour, or --overwrite"),
@@ -105,12 +105,12 @@ impl Journal {
         Ok(journal)
     }
 
-    /// Whether the clip was begun over files that were there. It goes on so.
+    /// True if the clip was started over existing files. It continues so.
     pub(super) fn overwrites(&self) -> bool {
         self.content.overwrite
     }
 
-    /// The exposure of the clip, once it is known.
+    /// Exposure of the clip, once it is known.
     pub(super) fn exposure(&self) -> Option<f32> {
         self.content.exposure
     }
@@ -119,7 +119,7 @@ impl Journal {
         self.content.frames.get(&number)
     }
 
-    /// The digest of the video, if one was about to get its name.
+    /// Digest of the video, if one was about to be published.
     pub(super) fn video(&self) -> Option<&str> {
         self.content.video.as_deref()
     }
@@ -132,10 +132,10 @@ impl Journal {
         Ok(())
     }
 
-    /// Writes down a frame that will get its name at once.
+    /// Records a frame just before it is published.
     ///
     /// # Errors
-    /// Exit code 5, with what the system says.
+    /// Exit code 5, with the error of the system.
     pub(super) fn record(
         &mut self,
         number: u32,
@@ -160,7 +160,7 @@ impl Journal {
     fn append(&mut self, value: &Value, interrupt: &Interrupt) -> Result<(), Failure> {
         let text = value.to_string();
         let line = format!("{} {text}\n", check(&text));
-        // A signal waits until the line is whole.
+        // A signal waits until the line is complete.
         let _unfinished = interrupt.unfinished();
         let written = self.file.write_all(line.as_bytes()).and_then(|()| self.file.sync_data());
         written.map_err(|error| Failure::file(&self.path, &error))
@@ -171,12 +171,12 @@ impl Journal {
         self.content.frames.keys().copied().collect()
     }
 
-    /// Removes the file. The lock goes after it.
+    /// Removes the file. The lock is released after it.
     pub(super) fn remove(self) {
         let _ = fs::remove_file(&self.path);
     }
 
-    /// Leaves no file behind if there is nothing in it to go on with.
+    /// Removes the file if it has nothing to resume from.
     pub(super) fn close(self) {
         if self.content.frames.is_empty() {
             self.remove();
@@ -205,7 +205,7 @@ fn locked(path: &Path) -> Result<File, Failure> {
     };
     let file = match opened {
         Ok(file) => file,
-        // Somebody made it in between.
+        // Another process created it in between.
         Err(error) if !is_there && error.kind() == io::ErrorKind::AlreadyExists => return Err(busy()),
         Err(error) => return Err(failed(&error)),
     };
@@ -214,7 +214,7 @@ fn locked(path: &Path) -> Result<File, Failure> {
         // A file system without locks does without.
         Ok(()) | Err(fs::TryLockError::Error(_)) => {}
     }
-    // Who held the lock before may have removed the file.
+    // The previous owner of the lock may have removed the file.
     if !plain(fs::symlink_metadata(path))? { Err(busy()) } else { Ok(file) }
 }
 
@@ -224,7 +224,7 @@ fn header_of(job: &Job) -> Value {
     json!({ "downpour_job": VERSION, "job": job })
 }
 
-/// What a file says.
+/// Contents of a file.
 #[derive(Debug, Default)]
 struct Found {
     /// Bytes up to the end of the last line that has one: another was being written when its process was killed.
@@ -246,7 +246,7 @@ fn read(mut input: impl BufRead, expected: &Value) -> io::Result<Found> {
         if number == 0 {
             found.header = value;
         } else if let Some(value) = value {
-            found.content.hear(&value);
+            found.content.apply(&value);
         }
         if found.header.as_ref() != Some(expected) && !found.content.frames.is_empty() {
             break;
@@ -255,8 +255,8 @@ fn read(mut input: impl BufRead, expected: &Value) -> io::Result<Found> {
     Ok(found)
 }
 
-/// Reads a line without its end, and returns its length with it. `None` if nothing follows that has an end. Of a line that is too long,
-/// nothing is kept.
+/// Reads a line without its end, and returns its length with it. `None` if no complete line follows. A line that is too long
+/// is returned empty.
 fn next_line(input: &mut impl BufRead, bytes: &mut Vec<u8>) -> io::Result<Option<u64>> {
     bytes.clear();
     let mut length = 0;
@@ -267,7 +267,7 @@ fn next_line(input: &mut impl BufRead, bytes: &mut Vec<u8>) -> io::Result<Option
         }
         let end = part.iter().position(|byte| *byte == b'\n');
         let text = &part[..end.unwrap_or(part.len())];
-        if bytes.len() + text.len() <= LONGEST_LINE && length as usize == bytes.len() {
+        if bytes.len() + text.len() <= MAX_LINE && length as usize == bytes.len() {
             bytes.extend(text);
         } else {
             bytes.clear();
@@ -282,8 +282,8 @@ fn next_line(input: &mut impl BufRead, bytes: &mut Vec<u8>) -> io::Result<Option
 }
 
 impl Content {
-    /// Takes in what a line says.
-    fn hear(&mut self, value: &Value) {
+    /// Applies the contents of a line.
+    fn apply(&mut self, value: &Value) {
         if let Some(bits) = value["exposure_bits"].as_u64().and_then(|bits| u32::try_from(bits).ok()) {
             self.exposure = Some(f32::from_bits(bits)).filter(|exposure| exposure.is_finite());
         } else if value["overwrite"] == true {
@@ -315,9 +315,9 @@ fn check(text: &str) -> String {
     digest(text.as_bytes()).chars().take(CHECK_DIGITS).collect()
 }
 
-/// Says what of the job is not what it was.
+/// Error that names the parameters in which the job differs.
 fn other_job(path: &Path, header: Option<&Value>, job: &Job) -> Failure {
-    let allowed = "the same as before to go on, another name, or --overwrite to begin anew";
+    let allowed = "the same as before to resume, another name, or --overwrite to start again";
     let of = |found: &str| Failure::new(INPUT, format!("{}: {found}; allowed: {allowed}", shown(path)));
     let Some(header) = header else { return of("the first line is damaged") };
     match header["downpour_job"].as_u64() {

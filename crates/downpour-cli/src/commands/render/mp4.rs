@@ -1,16 +1,16 @@
 //! A track of AV1 as an MP4 file: ISO/IEC 14496-12 boxes, and the AV1 ISO Media File Format Binding 1.2.
 //!
-//! All that is told of the samples stands before them, so that a player can begin before it has the end.
+//! All metadata of the samples precedes them, so that a player can start before the end is loaded.
 
 /// A coded picture.
 pub(super) struct Sample {
     /// Its OBUs, without temporal delimiters.
     pub(super) data: Vec<u8>,
-    /// Whether decoding can begin here.
+    /// True if decoding can start here.
     pub(super) key: bool,
 }
 
-/// What a file is made of.
+/// Contents of a file.
 pub(super) struct Track<'a> {
     pub(super) size: [u16; 2],
     /// Units of time in a second.
@@ -19,8 +19,8 @@ pub(super) struct Track<'a> {
     pub(super) step: u32,
     /// The body of the box `av1C`.
     pub(super) configuration: &'a [u8],
-    /// Primaries, transfer function and matrix of ITU-T H.273, and whether all 256 values are used.
-    pub(super) colour: ([u16; 3], bool),
+    /// Primaries, transfer function and matrix of ITU-T H.273, and true if all 256 values are used.
+    pub(super) color: ([u16; 3], bool),
 }
 
 /// The identity, as boxes have matrices.
@@ -31,10 +31,10 @@ pub(super) fn write(track: &Track<'_>, samples: &[Sample]) -> Vec<u8> {
     let file_type =
         boxed(b"ftyp", &[b"isom", &0u32.to_be_bytes()[..], b"isom", b"iso6", b"av01", b"mp41"].concat());
     let payload: u64 = samples.iter().map(|sample| sample.data.len() as u64).sum();
-    // The length of a box that has more than 32 bits stands behind its name.
+    // The length of a box that needs more than 32 bits follows its name.
     let long = payload > u64::from(u32::MAX) - 8;
     let header: u64 = if long { 16 } else { 8 };
-    // What stands before the samples has one length wherever they begin.
+    // The boxes before the samples have one length for any offset.
     let before = file_type.len() as u64 + movie(track, samples, 0).len() as u64 + header;
     let mut file = file_type;
     file.extend(movie(track, samples, u32::try_from(before).unwrap_or(u32::MAX)));
@@ -81,7 +81,7 @@ fn movie(track: &Track<'_>, samples: &[Sample], first_byte: u32) -> Vec<u8> {
     boxed(b"moov", &moov.concat())
 }
 
-/// Where the samples are and how long each stays: one chunk holds them all.
+/// Offsets and durations of the samples: one chunk holds them all.
 fn sample_table(track: &Track<'_>, samples: &[Sample], first_byte: u32) -> Vec<u8> {
     let number = count(samples.len() as u64);
     let keys: Vec<u32> = (1..).zip(samples).filter(|(_, sample)| sample.key).map(|(k, _)| k).collect();
@@ -98,14 +98,14 @@ fn sample_table(track: &Track<'_>, samples: &[Sample], first_byte: u32) -> Vec<u
 }
 
 fn sample_entry(track: &Track<'_>) -> Vec<u8> {
-    let ([primaries, transfer, matrix], full) = track.colour;
+    let ([primaries, transfer, matrix], full) = track.color;
     let [width, height] = track.size.map(u16::to_be_bytes);
     let codes = [primaries, transfer, matrix].map(u16::to_be_bytes).concat();
-    let colour = [b"nclx", &codes[..], &[u8::from(full) << 7]].concat();
+    let color = [b"nclx", &codes[..], &[u8::from(full) << 7]].concat();
     // The second 1 is the number of pictures in a sample, 24 the bits of a pixel.
     let fixed = [&[0, 0, 0, 0, 0, 0, 0, 1][..], &[0; 16], &width, &height, &words(&[72 << 16, 72 << 16, 0])];
     let name = [&[0, 1][..], &[0; 32], &[0, 24, 0xff, 0xff]];
-    [&fixed.concat()[..], &name.concat(), &boxed(b"av1C", track.configuration), &boxed(b"colr", &colour)]
+    [&fixed.concat()[..], &name.concat(), &boxed(b"av1C", track.configuration), &boxed(b"colr", &color)]
         .concat()
 }
 

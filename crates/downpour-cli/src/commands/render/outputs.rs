@@ -1,26 +1,26 @@
-//! Where the files of a single picture go.
+//! Output files of a single picture.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, INPUT, shown};
 use crate::interrupt::Interrupt;
-use crate::output::Place;
+use crate::output::OutputFile;
 
-/// What the end of the picture's name says.
+/// Format by the extension of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Exr,
     Png,
 }
 
-/// The places of all files that a run writes.
+/// All output files of a run.
 #[derive(Debug)]
 pub(super) struct Outputs {
     pub(super) format: Format,
-    picture: Place,
-    stats: Option<Place>,
-    drops: Option<Place>,
+    picture: OutputFile,
+    stats: Option<OutputFile>,
+    drops: Option<OutputFile>,
     paths: Vec<PathBuf>,
 }
 
@@ -32,10 +32,10 @@ pub(super) struct Bytes {
 }
 
 impl Outputs {
-    /// Looks at all places before any work is done.
+    /// Checks all paths before any work is done.
     ///
     /// # Errors
-    /// Exit code 2 for a name that says another format, or the same name twice; 5 for a place that cannot be written.
+    /// Exit code 2 for a name of another format, or the same name twice; 5 for a path that cannot be written.
     pub(super) fn new(
         picture: &Path,
         stats: Option<&Path>,
@@ -51,17 +51,17 @@ impl Outputs {
         check_tables(stats, drops)?;
         let paths: Vec<PathBuf> =
             [Some(picture), stats, drops].into_iter().flatten().map(Path::to_owned).collect();
-        let place = |path: Option<&Path>| path.map(|path| Place::new(path, overwrite)).transpose();
+        let file = |path: Option<&Path>| path.map(|path| OutputFile::new(path, overwrite)).transpose();
         Ok(Self {
             format,
-            picture: Place::new(picture, overwrite)?,
-            stats: place(stats)?,
-            drops: place(drops)?,
+            picture: OutputFile::new(picture, overwrite)?,
+            stats: file(stats)?,
+            drops: file(drops)?,
             paths,
         })
     }
 
-    /// Refuses to write over what the picture is made of.
+    /// Refuses to overwrite the inputs of the picture.
     ///
     /// # Errors
     /// Exit code 2, with the name.
@@ -77,22 +77,22 @@ impl Outputs {
         self.drops.is_some()
     }
 
-    /// Publishes the files, the picture last: where it is, the others are.
+    /// Publishes the files, the picture last: if it exists, the others do.
     ///
     /// # Errors
-    /// Exit code 5, with what the system says.
+    /// Exit code 5, with the error of the system.
     pub(super) fn publish(&self, bytes: &Bytes, interrupt: &Interrupt) -> Result<(), Failure> {
-        if let Some(place) = &self.drops {
-            place.publish(&bytes.drops, interrupt)?;
+        if let Some(file) = &self.drops {
+            file.publish(&bytes.drops, interrupt)?;
         }
-        if let Some(place) = &self.stats {
-            place.publish(&bytes.stats, interrupt)?;
+        if let Some(file) = &self.stats {
+            file.publish(&bytes.stats, interrupt)?;
         }
         self.picture.publish(&bytes.picture, interrupt)
     }
 }
 
-/// Refuses lists whose names say another format.
+/// Rejects tables whose names have another format.
 pub(super) fn check_tables(stats: Option<&Path>, drops: Option<&Path>) -> Result<(), Failure> {
     for (path, allowed) in [(stats, "json"), (drops, "csv")] {
         if let Some(path) = path.filter(|path| extension(path).as_deref() != Some(allowed)) {

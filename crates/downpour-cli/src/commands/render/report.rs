@@ -1,4 +1,4 @@
-//! What was done, for scripts: `--stats` and `--dump-drops`.
+//! Reports for scripts: `--stats` and `--dump-drops`.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use super::frames::Frames;
 use crate::listing::number;
 
-/// What `--stats` tells of a picture of a rain.
+/// Statistics of a picture of a rain.
 pub(super) fn stats(frame: &Frame, computer: &Computer, rain: &Rain) -> Value {
     let Frame { picture, drops, medium, .. } = frame;
     let mut passes = Map::new();
@@ -43,13 +43,13 @@ pub(super) fn text(stats: &Value) -> String {
     format!("{stats:#}\n")
 }
 
-/// What `--stats` tells of a clip beside its frames.
-pub(super) struct ClipTold {
+/// Statistics of a clip in addition to its frames.
+pub(super) struct ClipStats {
     pub(super) frames: Frames,
     pub(super) fps: f64,
     /// Frames that this run made; the others were there.
     pub(super) made: u32,
-    /// How long the video took, if there is one.
+    /// Encoding time of the video, if there is one.
     pub(super) encode_ms: Option<f64>,
 }
 
@@ -57,9 +57,9 @@ pub(super) struct ClipTold {
 const MEANS: [&str; 5] =
     ["drops_simulated", "drops_drawn", "drops_on_screen", "measured_rate_mm_h", "frame_ms"];
 
-/// What `--stats` tells of a clip: the keys of a picture, where counts, the measured rate and times are means of the
-/// frames, and `frames` with what it tells of each.
-pub(super) fn clip_stats(frames: &[(u32, &Value)], told: &ClipTold) -> Value {
+/// Statistics of a clip: the keys of a picture, with counts, the measured rate and times as means of the
+/// frames, and `frames` with the statistics of each.
+pub(super) fn clip_stats(frames: &[(u32, &Value)], totals: &ClipStats) -> Value {
     let Some((_, Value::Object(first))) = frames.first() else { return Value::Null };
     let mut clip = first.clone();
     for key in MEANS {
@@ -71,11 +71,11 @@ pub(super) fn clip_stats(frames: &[(u32, &Value)], told: &ClipTold) -> Value {
         (name, value)
     });
     clip.insert("passes".to_owned(), Value::Object(passes.collect()));
-    clip.insert("fps".to_owned(), number(told.fps));
-    clip.insert("first_frame".to_owned(), json!(told.frames.first));
-    clip.insert("frame_count".to_owned(), json!(told.frames.count()));
-    clip.insert("frames_made".to_owned(), json!(told.made));
-    clip.insert("encode_ms".to_owned(), told.encode_ms.map_or(Value::Null, number));
+    clip.insert("fps".to_owned(), number(totals.fps));
+    clip.insert("first_frame".to_owned(), json!(totals.frames.first));
+    clip.insert("frame_count".to_owned(), json!(totals.frames.count()));
+    clip.insert("frames_made".to_owned(), json!(totals.made));
+    clip.insert("encode_ms".to_owned(), totals.encode_ms.map_or(Value::Null, number));
     let each = frames.iter().map(|(number, frame)| {
         let mut numbered = Map::new();
         numbered.insert("frame".to_owned(), json!(number));

@@ -1,8 +1,8 @@
-//! Frames as a video: AV1 by rav1e, in 8 bits with half the colour resolution, as all players take it.
+//! Frames as a video: AV1 by rav1e, in 8 bits with half the color resolution, as all players support it.
 //!
-//! The pixels of a frame are sRGB, as those of a PNG. They become luma and colour difference by the matrix of BT.709 in the
-//! limited range (16 to 235); the stream and the file both say so: primaries 1, transfer function 13 (sRGB), matrix 1 of
-//! ITU-T H.273. A colour sample stands level with every other luma sample and between two rows.
+//! The pixels of a frame are sRGB, as those of a PNG. They become luma and color difference by the matrix of BT.709 in the
+//! limited range (16 to 235); stream and file declare it: primaries 1, transfer function 13 (sRGB), matrix 1 of
+//! ITU-T H.273. A color sample is level with every other luma sample and between two rows.
 //!
 //! The bytes depend on the pixels alone, not on the number of threads.
 
@@ -15,26 +15,26 @@ use rav1e::prelude::{
 use super::mp4::{self, Sample, Track};
 use crate::failure::{Failure, INPUT, OTHER};
 
-/// How coarse, 0 to 255; chosen by eye so that drops keep their edges.
+/// Quantizer, 0 to 255; chosen by eye so that drops keep their edges.
 const QUANTIZER: usize = 64;
 
-/// How hurried the encoder is, 0 to 10: rain is noise to it, and more search finds little.
+/// Speed preset of the encoder, 0 to 10: rain is noise to it, and more search finds little.
 const SPEED: u8 = 10;
 
-/// Seconds between two pictures at which a player can begin.
+/// Seconds between two key frames.
 const KEY_SECONDS: f64 = 2.0;
 
 /// A picture of more pixels is coded in tiles, at the same time. Their number may not depend on the machine.
 const PIXELS_OF_TILES: usize = 640 * 360;
 const TILES: usize = 4;
 
-/// The type of an OBU that is nothing but a mark between pictures.
+/// Type of an OBU that only separates pictures.
 const TEMPORAL_DELIMITER: u8 = 2;
 
-/// Frames per second are whole multiples of 1 / this.
+/// Frames per second are integer multiples of 1 / this.
 const RATE_PARTS: f64 = 1000.0;
 
-/// Whether a video can have this size.
+/// Checks that a video can have this size.
 ///
 /// # Errors
 /// Exit code 2 for an odd edge, or one below 16 pixels.
@@ -42,14 +42,14 @@ pub(super) fn check_size([width, height]: [u32; 2]) -> Result<(), Failure> {
     if [width, height].iter().all(|edge| *edge >= 16 && edge % 2 == 0) {
         return Ok(());
     }
-    let allowed = "even numbers from 16 (one colour sample stands for 2 x 2 pixels)";
+    let allowed = "even numbers from 16 (one color sample stands for 2 x 2 pixels)";
     Err(Failure::new(INPUT, format!("{width} x {height} pixels for .mp4; allowed: {allowed}")))
 }
 
-/// The file of a video. `frame` gives the pixels of each picture, rows from the top; one is asked for at a time.
+/// Encodes a video. `frame` returns the pixels of each picture, rows from the top; one at a time.
 ///
 /// # Errors
-/// What `frame` says, or exit code 1 if the encoder fails.
+/// Errors of `frame`, or exit code 1 if the encoder fails.
 pub(super) fn encode(
     size: [u32; 2],
     fps: f64,
@@ -70,7 +70,7 @@ pub(super) fn encode(
         transfer_characteristics: TransferCharacteristics::SRGB,
         matrix_coefficients: MatrixCoefficients::BT709,
     });
-    // Pictures come out in the order of their showing.
+    // Pictures are returned in display order.
     options.low_latency = true;
     options.quantizer = QUANTIZER;
     options.tiles = if width * height > PIXELS_OF_TILES { TILES } else { 1 };
@@ -96,7 +96,7 @@ pub(super) fn encode(
         return Err(failed(&format!("{} of {count} pictures came out", samples.len())));
     }
     let mut configuration = context.container_sequence_header();
-    // The encoder leaves the place of the colour samples open there: level with luma samples, between rows.
+    // The encoder leaves the position of the color samples undefined there: level with luma samples, between rows.
     if let Some(byte) = configuration.get_mut(2) {
         *byte = (*byte & !3) | ChromaSamplePosition::Vertical as u8;
     }
@@ -106,7 +106,7 @@ pub(super) fn encode(
         timescale,
         step,
         configuration: &configuration,
-        colour: ([1, 13, 1], false),
+        color: ([1, 13, 1], false),
     };
     Ok(mp4::write(&track, &samples))
 }
@@ -132,7 +132,7 @@ fn without_delimiters(mut data: &[u8]) -> Option<Vec<u8>> {
     let mut kept = Vec::new();
     while let Some(&header) = data.first() {
         let extended = usize::from(header >> 2 & 1);
-        // Without a size an OBU goes to the end.
+        // Without a size an OBU extends to the end.
         let (size, at) = if header >> 1 & 1 == 1 { leb128(data, 1 + extended)? } else { (data.len() - 1, 1) };
         let (obu, rest) = data.split_at_checked(at.checked_add(size)?)?;
         if header >> 3 & 15 != TEMPORAL_DELIMITER {
@@ -143,13 +143,13 @@ fn without_delimiters(mut data: &[u8]) -> Option<Vec<u8>> {
     Some(kept)
 }
 
-/// A number of seven bits a byte, the lowest first, and where it ends.
+/// A number of seven bits per byte, the lowest first, and its end.
 fn leb128(data: &[u8], mut at: usize) -> Option<(usize, usize)> {
     let mut value = 0;
-    for place in 0..8 {
+    for index in 0..8 {
         let byte = *data.get(at)?;
         at += 1;
-        value |= usize::from(byte & 0x7f).checked_shl(7 * place)?;
+        value |= usize::from(byte & 0x7f).checked_shl(7 * index)?;
         if byte & 0x80 == 0 {
             return Some((value, at));
         }
@@ -160,7 +160,7 @@ fn leb128(data: &[u8], mut at: usize) -> Option<(usize, usize)> {
 /// The parts of luma in red, green and blue (BT.709), in 1/65536 of the range of 219 steps.
 const LUMA: [i32; 3] = [11966, 40254, 4064];
 
-/// Luma and the two colour differences, each as rows.
+/// Luma and the two color differences, each as rows.
 fn planes([width, height]: [u32; 2], pixels: &[[u8; 4]]) -> [Vec<u8>; 3] {
     let (width, rows) = (width as usize, height as usize / 2);
     let luma = pixels.iter().map(|&[r, g, b, _]| {
@@ -182,12 +182,12 @@ fn planes([width, height]: [u32; 2], pixels: &[[u8; 4]]) -> [Vec<u8>; 3] {
                 }
             }
             let [r, g, b] = sum.map(|part| part as f32 / 8.0);
-            let grey = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+            let gray = 0.2126 * r + 0.7152 * g + 0.0722 * b;
             let part = |difference: f32, most: f32| {
                 (128.0 + difference / most * (224.0 / 255.0 * 0.5)).round().clamp(16.0, 240.0) as u8
             };
-            planes[1].push(part(b - grey, 0.9278));
-            planes[2].push(part(r - grey, 0.7874));
+            planes[1].push(part(b - gray, 0.9278));
+            planes[2].push(part(r - gray, 0.7874));
         }
     }
     planes
@@ -205,9 +205,9 @@ fn failed(error: &dyn std::fmt::Display) -> Failure {
 mod tests {
     use super::*;
 
-    /// The colours of the standard: 75 % bars in 8 bits of limited range, as ITU-R BT.709 tabulates them.
+    /// The colors of the standard: 75 % bars in 8 bits of limited range, as ITU-R BT.709 tabulates them.
     #[test]
-    fn colours_are_those_of_the_standard() {
+    fn colors_are_those_of_the_standard() {
         for (pixel, [y, cb, cr]) in [
             ([0, 0, 0], [16, 128, 128]),
             ([255, 255, 255], [235, 128, 128]),

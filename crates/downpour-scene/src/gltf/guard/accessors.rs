@@ -1,6 +1,6 @@
 //! Accessors: known formats, and no element outside its view.
 //!
-//! An element takes component size times components; a matrix starts each column on a multiple of 4 bytes
+//! An element has component size times components bytes; a matrix starts each column on a multiple of 4 bytes
 //! (glTF 2.0, section 3.6.2.4). The last element ends at `byteOffset + stride (count - 1) + size`, less the
 //! padding of its last column, which is computed without wrapping.
 
@@ -50,7 +50,7 @@ fn one(accessor: &Spot<'_>, views: &[ViewFacts]) -> Result<AccessorFacts, SceneE
             Some(index)
         }
     };
-    // After the range: a count that its view does not hold is a mistake, one that no data bound is a cost.
+    // After the range: a count beyond its view is a mistake, one without data a cost.
     if count > MAX_ELEMENTS {
         return Err(SceneError::limit(
             count_spot.trail,
@@ -153,7 +153,7 @@ fn kind(spot: &Spot<'_>) -> Result<Type, SceneError> {
 /// The bytes of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gltf) struct Size {
-    /// With the padding of matrix columns: what elements are apart that follow each other closely.
+    /// Size with the padding of matrix columns: the stride of tightly packed elements.
     pub(in crate::gltf) whole: u64,
     /// Without the padding after the last column, which the last element may lack.
     pub(in crate::gltf) last: u64,

@@ -10,10 +10,10 @@ use crate::error::SceneError;
 use gltf::json::accessor::ComponentType::{F32, I8, I16, U8, U16, U32};
 use gltf::json::accessor::{ComponentType, Type};
 
-/// What a semantic may be made of.
+/// Allowed formats of a semantic.
 struct Formats {
     kinds: &'static [Type],
-    /// Component types, and whether they are normalised.
+    /// Component types, and whether they are normalized.
     plain: &'static [(ComponentType, bool)],
     /// Those that quantisation adds.
     quantized: &'static [(ComponentType, bool)],
@@ -102,7 +102,7 @@ fn numbered(semantic: &str) -> Option<&str> {
     (digits && (number == "0" || !number.starts_with('0'))).then_some(name)
 }
 
-/// Whether the specification knows an attribute of this name.
+/// True if the specification has an attribute of this name.
 pub(super) fn is_known(semantic: &str, morph: bool) -> bool {
     semantic.starts_with('_') || formats(semantic, morph).is_some()
 }
@@ -155,7 +155,7 @@ fn accessor(facts: &Facts<'_>, link: &Spot<'_>) -> Result<AccessorFacts, SceneEr
 }
 
 fn fits(link: &Spot<'_>, found: AccessorFacts, formats: &Formats, quantized: bool) -> Result<(), SceneError> {
-    // Some exporters flag floats as normalised, which says nothing: the flag is looked at for integers only.
+    // Some exporters flag floats as normalized, which has no meaning: the flag is read for integers only.
     let component = (found.component, found.normalized && found.component != F32);
     let known = formats.plain.contains(&component) || (quantized && formats.quantized.contains(&component));
     if known && formats.kinds.contains(&found.kind) {

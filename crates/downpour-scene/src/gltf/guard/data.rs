@@ -1,4 +1,4 @@
-//! Where the bytes are: buffers, views into them, and images.
+//! Checks of buffers, views into them, and images.
 
 use super::spot::Spot;
 use crate::base64;
@@ -20,7 +20,7 @@ fn address<'a>(uri: &Spot<'a>) -> Result<Address<'a>, SceneError> {
     uri::check(uri.text()?).map_err(|refused| uri.wrong(refused.found, refused.allowed))
 }
 
-/// The length of data in place.
+/// Length of a data URI's contents.
 fn data_len(uri: &Spot<'_>, text: &str) -> Result<u64, SceneError> {
     match base64::decoded_len(text) {
         Some(length) => Ok(length as u64),
@@ -28,7 +28,7 @@ fn data_len(uri: &Spot<'_>, text: &str) -> Result<u64, SceneError> {
     }
 }
 
-/// Checks the buffers and returns their lengths in bytes. How long a file is, is seen when it is opened.
+/// Checks the buffers and returns their lengths in bytes. The length of a file is checked when it is opened.
 pub(super) fn buffers(
     document: &Spot<'_>,
     binary: Option<&[u8]>,

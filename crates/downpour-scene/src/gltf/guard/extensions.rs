@@ -1,4 +1,4 @@
-//! Extensions: those without which a file cannot be read must be known.
+//! Extensions: required ones must be supported.
 
 use super::spot::Spot;
 use crate::error::SceneError;
@@ -24,7 +24,7 @@ const KNOWN: [&str; 17] = [
     "KHR_xmp_json_ld",
 ];
 
-/// The extension that lets positions be integers.
+/// Extension that allows integer positions.
 pub(super) const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// Checks the two lists of names.
@@ -46,7 +46,7 @@ pub(super) fn check(document: &Spot<'_>) -> Result<(), SceneError> {
     })
 }
 
-/// Whether the file says that it uses an extension.
+/// True if the file declares that it uses an extension.
 pub(super) fn used(document: &Spot<'_>, extension: &str) -> bool {
     ["extensionsUsed", "extensionsRequired"].iter().any(|list| {
         let names = document.value.get(*list).and_then(|names| names.as_array());

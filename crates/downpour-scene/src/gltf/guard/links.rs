@@ -1,13 +1,13 @@
 //! Links between objects: each index leads to an object that is there.
 //!
-//! One table says where indices stand and what they point into. A few are of their own kind: textures of
+//! One table lists the members that hold indices and the lists that they point into. A few are special: textures of
 //! material extensions, samplers of an animation, lights of an extension.
 
 use super::Facts;
 use super::spot::Spot;
 use crate::error::SceneError;
 
-/// Where an index stands, and the list that it points into.
+/// Path of an index, and the list that it points into.
 const LINKS: [(&[&str], &str); 24] = [
     (&["scene"], "scenes"),
     (&["scenes", "[]", "nodes", "[]"], "nodes"),
@@ -35,7 +35,7 @@ const LINKS: [(&[&str], &str); 24] = [
     (&["animations", "[]", "channels", "[]", "target", "node"], "nodes"),
 ];
 
-/// Checks every index of the document but those that later checks look at themselves.
+/// Checks every index of the document except those that later checks cover.
 pub(super) fn check(facts: &Facts<'_>) -> Result<(), SceneError> {
     let document = &facts.document;
     for (pattern, list) in LINKS {
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
     use serde_json::{Value, json};
 
-    /// The value at the end of a pattern, with one element or member on the way where the pattern has any.
+    /// The value at the end of a pattern, with one element or member for each wildcard of the pattern.
     fn grown(pattern: &[&str], end: Value) -> Value {
         pattern.iter().rev().fold(end, |inner, &step| match step {
             "[]" => json!([inner]),
@@ -105,7 +105,7 @@ mod tests {
     fn every_link_of_the_table_is_followed() {
         for (pattern, list) in LINKS {
             let mut document = grown(pattern, json!(7));
-            // What else an animation must have.
+            // Other required members of an animation.
             if let Some(animation) = document.pointer_mut("/animations/0") {
                 animation["samplers"] = json!([{"input": 0, "output": 0}]);
                 animation["channels"][0]["sampler"] = json!(0);

@@ -46,14 +46,14 @@ fn parents(document: &Spot<'_>) -> Result<Vec<Option<usize>>, SceneError> {
     let mut parents = vec![None; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         for (nth, child) in children(node).enumerate() {
-            let place = format_args!("nodes[{index}].children[{nth}]");
+            let path = format_args!("nodes[{index}].children[{nth}]");
             if child == index {
-                return Err(SceneError::bad(place, format!("{child}, the node itself"), "another node"));
+                return Err(SceneError::bad(path, format!("{child}, the node itself"), "another node"));
             }
             match parents.get_mut(child) {
                 Some(Some(other)) => {
                     let found = format!("{child}, which is a child of nodes[{other}] already");
-                    return Err(SceneError::bad(place, found, "one parent for each node"));
+                    return Err(SceneError::bad(path, found, "one parent for each node"));
                 }
                 Some(slot) => *slot = Some(index),
                 None => {}

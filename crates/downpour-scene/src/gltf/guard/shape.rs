@@ -1,4 +1,4 @@
-//! The frame of a document: lists of objects at its top, a version, cameras that have what their type asks for.
+//! Frame of a document: lists of objects at its top, a version, and cameras with the members that their type requires.
 
 use super::spot::Spot;
 use crate::error::SceneError;
@@ -21,7 +21,7 @@ pub(super) const LISTS: [&str; 13] = [
     "textures",
 ];
 
-/// Adds what the specification allows to leave out and the typed reader asks for.
+/// Adds members that the specification allows to omit and the typed reader requires.
 pub(super) fn complete(value: &mut Value) -> Result<(), SceneError> {
     if let Some(scenes) = value.get_mut("scenes").and_then(Value::as_array_mut) {
         for scene in scenes.iter_mut().filter_map(Value::as_object_mut) {
@@ -58,7 +58,7 @@ fn version(document: &Spot<'_>) -> Result<(), SceneError> {
     for (spot, least) in [(Some(version), false), (asset.get("minVersion")?, true)] {
         let Some(spot) = spot else { continue };
         let text = spot.text()?;
-        // A later minor version may be read as 2.0, but one that says it needs more may not.
+        // A later minor version may be read as 2.0, unless it declares that it requires more.
         let known = text.strip_prefix("2.").is_some_and(|minor| {
             !minor.is_empty() && minor.bytes().all(|b| b.is_ascii_digit()) && (!least || minor == "0")
         });
@@ -83,7 +83,7 @@ pub(super) fn cameras(document: &Spot<'_>) -> Result<(), SceneError> {
         for key in numbers {
             let member = lens.need(key)?;
             let number = member.number()?;
-            // An orthographic camera may mirror (negative magnification) and begin at its own plane.
+            // An orthographic camera may mirror (negative magnification) and have its near plane at 0.
             let fine = match *key {
                 "xmag" | "ymag" => number != 0.0,
                 "znear" if numbers.len() == 4 => number >= 0.0,

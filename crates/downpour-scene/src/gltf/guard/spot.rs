@@ -1,10 +1,10 @@
-//! A value of the document together with where it stands, so that each message can say it.
+//! A JSON value together with its path, for messages.
 
 use crate::error::{SceneError, escaped, quoted};
 use serde_json::{Map, Value};
 use std::fmt;
 
-/// A place in the document. Costs nothing until it is shown, as `accessors[3].sparse.count`.
+/// A path in the document. Formatted only when shown, as `accessors[3].sparse.count`.
 #[derive(Clone, Copy)]
 pub(crate) struct Trail<'a> {
     parent: Option<&'a Trail<'a>>,
@@ -53,7 +53,7 @@ impl fmt::Display for Trail<'_> {
     }
 }
 
-/// A value and its place.
+/// A value and its path.
 #[derive(Clone, Copy)]
 pub(in crate::gltf) struct Spot<'a> {
     pub(in crate::gltf) trail: Trail<'a>,
@@ -65,12 +65,12 @@ impl<'a> Spot<'a> {
         Self { trail: Trail::DOCUMENT, value }
     }
 
-    /// An error at this place.
+    /// Error at this path.
     pub(in crate::gltf) fn wrong(&self, found: impl Into<String>, allowed: impl Into<String>) -> SceneError {
         SceneError::bad(self.trail, found, allowed)
     }
 
-    /// An error that says what stands here.
+    /// Error that quotes the value at this path.
     pub(in crate::gltf) fn not(&self, allowed: impl Into<String>) -> SceneError {
         self.wrong(shown(self.value), allowed)
     }
@@ -122,22 +122,22 @@ impl<'a> Spot<'a> {
         }
     }
 
-    /// A whole number from 0 on.
+    /// An integer from 0 on.
     pub(in crate::gltf) fn whole(&self) -> Result<u64, SceneError> {
         self.value.as_u64().ok_or_else(|| self.not("a whole number from 0 on"))
     }
 
-    /// A whole number that is missing as 0.
+    /// An integer; 0 if missing.
     pub(in crate::gltf) fn whole_or_zero(&self, key: &str) -> Result<u64, SceneError> {
         self.get(key)?.map_or(Ok(0), |member| member.whole())
     }
 
-    /// A whole number from 1 on.
+    /// An integer from 1 on.
     pub(in crate::gltf) fn positive(&self) -> Result<u64, SceneError> {
         self.value.as_u64().filter(|&n| n > 0).ok_or_else(|| self.not("a whole number from 1 on"))
     }
 
-    /// A number; that it is in the range of `f32` has been seen to.
+    /// A number; an earlier check has verified the range of `f32`.
     pub(in crate::gltf) fn number(&self) -> Result<f64, SceneError> {
         self.value.as_f64().ok_or_else(|| self.not("a number"))
     }

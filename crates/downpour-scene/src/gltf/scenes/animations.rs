@@ -1,9 +1,9 @@
-//! Animations: glTF 2.0, section 3.11. That indices lead somewhere, the guard has seen to.
+//! Animations: glTF 2.0, section 3.11. The guard has checked the indices.
 
 use super::fields::{name, single};
 use super::primitives::Reading;
 use crate::error::SceneError;
-use crate::gltf::growth::Purse;
+use crate::gltf::growth::GrowthBudget;
 use crate::gltf::guard::Spot;
 use crate::gltf::irregular;
 use crate::scene::{Animation, Channel, Interpolation, Local, Node, Property, Track};
@@ -12,12 +12,12 @@ use gltf::json::Index;
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf::json::validation::Checked;
 
-/// All animations. Channels that move nothing that is read are left out, with a warning.
+/// All animations. Channels without a supported target are skipped, with a warning.
 pub(super) fn read(
     document: &Spot<'_>,
     reading: &Reading<'_>,
     nodes: &[Node],
-    purse: &mut Purse<'_>,
+    remaining: &mut GrowthBudget<'_>,
     warnings: &mut Warnings,
 ) -> Result<Vec<Animation>, SceneError> {
     let mut all = Vec::new();
@@ -28,7 +28,7 @@ pub(super) fn read(
             let Some((node, property, width)) = target(&spot, reading, nodes, warnings)? else { continue };
             let sampler = usize::try_from(spot.need("sampler")?.whole()?).unwrap_or(usize::MAX);
             if let Some(sampler) = samplers.item(sampler) {
-                let track = track(&sampler, property, width, reading, purse, warnings)?;
+                let track = track(&sampler, property, width, reading, remaining, warnings)?;
                 channels.push(Channel { node, property, track });
             }
         }
@@ -38,7 +38,7 @@ pub(super) fn read(
     Ok(all)
 }
 
-/// What a channel moves: the node, its property, and how many numbers that has.
+/// Target of a channel: the node, its property, and the number of components of that.
 fn target(
     channel: &Spot<'_>,
     reading: &Reading<'_>,
@@ -55,7 +55,7 @@ fn target(
         "scale" => (Property::Scale, 3),
         "weights" => (Property::Weights, 0),
         _ if target.value.get("extensions").is_some() => {
-            ignored("what an extension moves is not read");
+            ignored("the target of an extension is not read");
             return Ok(None);
         }
         _ => return Err(path.not("\"translation\", \"rotation\", \"scale\" or \"weights\"")),
@@ -89,7 +89,7 @@ fn track(
     property: Property,
     width: usize,
     reading: &Reading<'_>,
-    purse: &mut Purse<'_>,
+    remaining: &mut GrowthBudget<'_>,
     warnings: &mut Warnings,
 ) -> Result<Track, SceneError> {
     let interpolation = match sampler.get("interpolation")? {
@@ -118,7 +118,8 @@ fn track(
         let why = format!("{wanted}, {each} for each of {keys} keys");
         return Err(output.wrong(format!("an accessor of {found} elements"), why));
     }
-    purse.take(keys.saturating_add(found.saturating_mul(width as u64)).saturating_mul(4), sampler.trail)?;
+    remaining
+        .take(keys.saturating_add(found.saturating_mul(width as u64)).saturating_mul(4), sampler.trail)?;
     let times = times(&input, reading, warnings)?;
     let values = values(&output, property, reading)?;
     let turns = property == Property::Rotation;
@@ -160,7 +161,7 @@ fn index(link: &Spot<'_>) -> Result<Index<gltf::json::Accessor>, SceneError> {
 /// The times of keys: finite, from 0 on, never falling.
 fn times(input: &Spot<'_>, reading: &Reading<'_>, warnings: &mut Warnings) -> Result<Vec<f32>, SceneError> {
     let mut elements = reading.open(index(input)?)?;
-    let mut times = crate::Budget::room(elements.count(), input.trail)?;
+    let mut times = crate::Budget::vec_with_capacity(elements.count(), input.trail)?;
     let mut last = 0.0f64;
     let mut twice = 0usize;
     while let Some([time]) = elements.numbers::<1>(0.0)? {
@@ -187,7 +188,7 @@ fn values(output: &Spot<'_>, property: Property, reading: &Reading<'_>) -> Resul
         Property::Weights => 1,
     };
     let mut elements = reading.open(index(output)?)?;
-    let mut values = crate::Budget::room(elements.count().saturating_mul(width), output.trail)?;
+    let mut values = crate::Budget::vec_with_capacity(elements.count().saturating_mul(width), output.trail)?;
     let mut element = 0usize;
     while let Some(parts) = elements.numbers::<4>(0.0)? {
         for &part in parts.iter().take(width) {
@@ -201,7 +202,7 @@ fn values(output: &Spot<'_>, property: Property, reading: &Reading<'_>) -> Resul
     Ok(values)
 }
 
-/// Rotations of length 0 turn nothing.
+/// Checks that rotations have a length: those of length 0 are undefined.
 fn check_turns(track: &Track, output: &Spot<'_>) -> Result<(), SceneError> {
     let (step, first) = if track.interpolation == Interpolation::CubicSpline { (3, 1) } else { (1, 0) };
     let keys = track.values.chunks_exact(4).skip(first).step_by(step);

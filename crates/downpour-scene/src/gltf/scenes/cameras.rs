@@ -1,4 +1,4 @@
-//! Cameras. The guard has seen that each has what its type asks for.
+//! Cameras. The guard has checked the members that their type requires.
 
 use super::fields;
 use crate::error::SceneError;

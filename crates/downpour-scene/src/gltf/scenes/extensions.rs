@@ -1,11 +1,11 @@
-//! Which extensions are drawn, and a warning for each that is not.
+//! Warnings for extensions that are not drawn.
 
 use crate::error::{SceneError, quoted};
 use crate::gltf::guard::Spot;
 use crate::warning::{WarningKind, Warnings};
 use std::collections::BTreeMap;
 
-/// Extensions that are read, or that change nothing in a picture.
+/// Extensions that are read, or that have no effect on a picture.
 const READ: [&str; 9] = [
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -18,15 +18,15 @@ const READ: [&str; 9] = [
     "KHR_xmp",
 ];
 
-/// Where extensions stand that change what is drawn.
-const PLACES: [&[&str]; 4] = [
+/// Paths of objects whose extensions affect drawing.
+const PATHS: [&[&str]; 4] = [
     &["materials", "[]", "extensions"],
     &["textures", "[]", "extensions"],
     &["nodes", "[]", "extensions"],
     &["extensions"],
 ];
 
-/// Warns of what is not read, each extension once.
+/// Warns of unsupported extensions, each once.
 pub(super) fn look(document: &Spot<'_>, warnings: &mut Warnings) -> Result<(), SceneError> {
     let mut unread: BTreeMap<String, usize> = BTreeMap::new();
     document.each(&["extensionsUsed", "[]"], &mut |name| {
@@ -36,8 +36,8 @@ pub(super) fn look(document: &Spot<'_>, warnings: &mut Warnings) -> Result<(), S
         }
         Ok(())
     })?;
-    for place in PLACES {
-        document.each(place, &mut |extensions| {
+    for path in PATHS {
+        document.each(path, &mut |extensions| {
             for (name, _) in extensions.members()?.filter(|(name, _)| !READ.contains(name)) {
                 let count = unread.entry(name.to_owned()).or_insert(0);
                 *count = count.saturating_add(1);
@@ -47,7 +47,7 @@ pub(super) fn look(document: &Spot<'_>, warnings: &mut Warnings) -> Result<(), S
     }
     for (name, count) in unread {
         warnings.add(WarningKind::Ignored, "extensionsUsed", || {
-            format!("{} is not read; it stands at {count} objects", quoted(&name))
+            format!("{} is not read; it is used by {count} objects", quoted(&name))
         });
     }
     Ok(())

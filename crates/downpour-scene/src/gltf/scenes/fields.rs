@@ -1,4 +1,4 @@
-//! Members of objects as numbers, with what is taken where they are missing.
+//! Members of objects as numbers, with defaults for missing ones.
 
 use crate::error::SceneError;
 use crate::gltf::guard::Spot;
@@ -22,8 +22,8 @@ pub(super) fn from(owner: &Spot<'_>, key: &str, least: f32, missing: f32) -> Res
     if number >= least { Ok(number) } else { Err(member.not(format!("a number from {least} on"))) }
 }
 
-/// A share from 0 to 1. One outside is taken as the nearer end, with a warning.
-pub(super) fn share(
+/// A fraction from 0 to 1. One outside is clamped, with a warning.
+pub(super) fn fraction(
     owner: &Spot<'_>,
     key: &str,
     missing: f32,
@@ -32,8 +32,8 @@ pub(super) fn share(
     owner.get(key)?.map_or(Ok(missing), |member| clamped(&member, warnings))
 }
 
-/// Shares from 0 to 1, as many as `missing` has.
-pub(super) fn shares<const N: usize>(
+/// Fractions from 0 to 1, as many as `missing` has.
+pub(super) fn fractions<const N: usize>(
     owner: &Spot<'_>,
     key: &str,
     missing: [f32; N],
@@ -70,14 +70,14 @@ fn each<const N: usize>(
 
 fn clamped(member: &Spot<'_>, warnings: &mut Warnings) -> Result<f32, SceneError> {
     let found = single(member.number()?);
-    let share = found.clamp(0.0, 1.0);
-    if share != found {
-        irregular(warnings, member.trail, || format!("{found}, not from 0 to 1: taken as {share}"));
+    let fraction = found.clamp(0.0, 1.0);
+    if fraction != found {
+        irregular(warnings, member.trail, || format!("{found}, not from 0 to 1: taken as {fraction}"));
     }
-    Ok(share)
+    Ok(fraction)
 }
 
-/// Whether a flag is set.
+/// Value of a flag.
 pub(super) fn flag(owner: &Spot<'_>, key: &str) -> Result<bool, SceneError> {
     let Some(member) = owner.get(key)? else { return Ok(false) };
     member.value.as_bool().ok_or_else(|| member.not("true or false"))
@@ -88,7 +88,7 @@ pub(super) fn name(owner: &Spot<'_>) -> Result<String, SceneError> {
     Ok(owner.get("name")?.map_or(Ok(""), |name| name.text())?.to_owned())
 }
 
-/// A number in single precision; that it is in range has been seen to.
+/// A number in single precision; its range has been checked.
 #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
 pub(super) fn single(value: f64) -> f32 {
     value as f32

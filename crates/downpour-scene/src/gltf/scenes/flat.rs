@@ -1,5 +1,5 @@
-//! Flat normals for primitives that have none, as glTF 2.0 asks for (section 3.7.2.1): each triangle gets its own
-//! three vertices with the normal of its plane. Tangents of the file are not used then.
+//! Flat normals for primitives without normals, as glTF 2.0 requires (section 3.7.2.1): each triangle gets three
+//! separate vertices with the normal of its plane. Tangents of the file are not used then.
 
 use super::vertices::reorder;
 use crate::scene::Primitive;

@@ -1,4 +1,4 @@
-//! Lights (`KHR_lights_punctual`) and where they hang.
+//! Lights (`KHR_lights_punctual`) and their nodes.
 
 use super::fields;
 use crate::error::SceneError;
@@ -11,7 +11,7 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 const EXTENSION: &str = "KHR_lights_punctual";
 
 /// The largest product of color and intensity: a tenth of a millimetre from the lamp it is still within an `f32`.
-const BRIGHTEST: f32 = 1.0e30;
+const MAX_RADIANCE: f32 = 1.0e30;
 
 /// All lights.
 pub(super) fn read(document: &Spot<'_>, warnings: &mut Warnings) -> Result<Vec<Light>, SceneError> {
@@ -59,7 +59,7 @@ fn one(light: &Spot<'_>, warnings: &mut Warnings) -> Result<Light, SceneError> {
         irregular(warnings, spot.trail, || "more than 1: taken as it is".into());
     }
     let intensity = fields::from(light, "intensity", 0.0, 1.0)?;
-    if color.iter().any(|part| !(0.0..=BRIGHTEST).contains(&(part * intensity))) {
+    if color.iter().any(|part| !(0.0..=MAX_RADIANCE).contains(&(part * intensity))) {
         let found = format!(
             "a color times an intensity of {:e}",
             color.iter().fold(0.0f32, |a, &b| a.max(b)) * intensity

@@ -26,9 +26,9 @@ pub(super) fn read(
 fn one(spot: &Spot<'_>, textures: &mut Textures, warnings: &mut Warnings) -> Result<Material, SceneError> {
     let mut material = Material { name: fields::name(spot)?, ..Material::default() };
     if let Some(surface) = spot.get("pbrMetallicRoughness")? {
-        material.base_color = fields::shares(&surface, "baseColorFactor", [1.0; 4], warnings)?.into();
-        material.metallic = fields::share(&surface, "metallicFactor", 1.0, warnings)?;
-        material.roughness = fields::share(&surface, "roughnessFactor", 1.0, warnings)?;
+        material.base_color = fields::fractions(&surface, "baseColorFactor", [1.0; 4], warnings)?.into();
+        material.metallic = fields::fraction(&surface, "metallicFactor", 1.0, warnings)?;
+        material.roughness = fields::fraction(&surface, "roughnessFactor", 1.0, warnings)?;
         material.base_color_texture =
             texture(&surface, "baseColorTexture", Encoding::Srgb, textures, warnings)?;
         material.metallic_roughness_texture =
@@ -40,10 +40,10 @@ fn one(spot: &Spot<'_>, textures: &mut Textures, warnings: &mut Warnings) -> Res
     }
     material.occlusion_texture = texture(spot, "occlusionTexture", Encoding::Linear, textures, warnings)?;
     if let Some(occlusion) = spot.get("occlusionTexture")? {
-        material.occlusion_strength = fields::share(&occlusion, "strength", 1.0, warnings)?;
+        material.occlusion_strength = fields::fraction(&occlusion, "strength", 1.0, warnings)?;
     }
     material.emissive_texture = texture(spot, "emissiveTexture", Encoding::Srgb, textures, warnings)?;
-    material.emissive = fields::shares(spot, "emissiveFactor", [0.0; 3], warnings)?.into();
+    material.emissive = fields::fractions(spot, "emissiveFactor", [0.0; 3], warnings)?.into();
     material.alpha_mode = alpha_mode(spot)?;
     material.double_sided = fields::flag(spot, "doubleSided")?;
     if let Some(extensions) = spot.get("extensions")? {
@@ -81,7 +81,7 @@ fn extensions(
         }
     }
     if let Some(glass) = extensions.get("KHR_materials_transmission")? {
-        material.transmission = fields::share(&glass, "transmissionFactor", 0.0, warnings)?;
+        material.transmission = fields::fraction(&glass, "transmissionFactor", 0.0, warnings)?;
         material.transmission_texture =
             texture(&glass, "transmissionTexture", Encoding::Linear, textures, warnings)?;
     }
@@ -89,7 +89,7 @@ fn extensions(
     Ok(())
 }
 
-/// The use of a texture; `None` if there is none, or none that can be read.
+/// Use of a texture; `None` if there is none, or none that is supported.
 fn texture(
     owner: &Spot<'_>,
     key: &str,

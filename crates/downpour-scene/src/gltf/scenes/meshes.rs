@@ -2,7 +2,7 @@
 
 use super::primitives::{self, Reading};
 use crate::error::SceneError;
-use crate::gltf::growth::Purse;
+use crate::gltf::growth::GrowthBudget;
 use crate::gltf::plan;
 use crate::scene::{Material, Mesh, Node, Skin};
 use crate::warning::Warnings;
@@ -12,13 +12,13 @@ const PER_PRIMITIVE: u64 = 512;
 
 /// Reads the meshes that `drawn` nodes use; the others are empty.
 ///
-/// A primitive without material gets the default one, which is added to `materials` then.
+/// Reads the meshes. A primitive without material gets the default one, which is then appended to `materials`.
 pub(super) fn read(
     reading: &Reading<'_>,
     nodes: &[Node],
     drawn: &[usize],
     materials: &mut Vec<Material>,
-    purse: &mut Purse<'_>,
+    remaining: &mut GrowthBudget<'_>,
     warnings: &mut Warnings,
 ) -> Result<Vec<Mesh>, SceneError> {
     let root = reading.root;
@@ -35,21 +35,21 @@ pub(super) fn read(
         let mut mesh = Mesh { name: json.name.clone().unwrap_or_default(), ..Mesh::default() };
         mesh.weights = json.weights.clone().unwrap_or_default();
         if uses > 0 {
-            purse.take((json.primitives.len() as u64).saturating_mul(PER_PRIMITIVE), "meshes")?;
+            remaining.take((json.primitives.len() as u64).saturating_mul(PER_PRIMITIVE), "meshes")?;
             for (part, json) in json.primitives.iter().enumerate() {
-                let place = format!("meshes[{index}].primitives[{part}]");
-                let Some(shape) = plan::shape(root, json, format_args!("{place}"), warnings) else {
+                let path = format!("meshes[{index}].primitives[{part}]");
+                let Some(shape) = plan::shape(root, json, format_args!("{path}"), warnings) else {
                     continue;
                 };
                 let material = json.material.map(|material| material.value());
                 let used = material.and_then(|material| materials.get(material));
                 let normal_map = used.and_then(|material| material.normal_texture);
                 let read =
-                    primitives::read(reading, json, &shape, &place, uses, normal_map, purse, warnings)?;
+                    primitives::read(reading, json, &shape, &path, uses, normal_map, remaining, warnings)?;
                 if let Some(mut primitive) = read {
                     primitive.material = material.unwrap_or_else(|| *default.get_or_insert(given));
                     if let Some(material) = materials.get(primitive.material) {
-                        primitives::check_uvs(&primitive, material, &place, warnings);
+                        primitives::check_uvs(&primitive, material, &path, warnings);
                     }
                     mesh.primitives.push(primitive);
                 }
@@ -63,13 +63,13 @@ pub(super) fn read(
     Ok(all)
 }
 
-/// Checks that each skin has the joints that the meshes with it ask for, and takes what a pose of them costs.
+/// Checks that each skin has the joints that its meshes use, and deducts the cost of a pose of them.
 pub(super) fn check_joints(
     nodes: &[Node],
     drawn: &[usize],
     meshes: &[Mesh],
     skins: &[Skin],
-    purse: &mut Purse<'_>,
+    remaining: &mut GrowthBudget<'_>,
 ) -> Result<(), SceneError> {
     let lasts: Vec<Option<(usize, usize)>> = meshes.iter().map(last_joint).collect();
     for node in drawn.iter().filter_map(|&node| nodes.get(node)) {
@@ -78,7 +78,7 @@ pub(super) fn check_joints(
         let count = node.skin.and_then(|skin| skins.get(skin)).map_or(0, |skin| skin.joints.len());
         // A matrix in double and one in single precision.
         let matrices = (count as u64).saturating_mul(160);
-        purse.take(matrices.saturating_add((weights as u64).saturating_mul(8)), "nodes")?;
+        remaining.take(matrices.saturating_add((weights as u64).saturating_mul(8)), "nodes")?;
         let (Some(skin), Some((part, last))) = (node.skin, lasts.get(mesh).copied().flatten()) else {
             continue;
         };
@@ -93,7 +93,7 @@ pub(super) fn check_joints(
     Ok(())
 }
 
-/// The largest joint that a mesh asks for, after the primitive that does.
+/// Largest joint index of a mesh, with the primitive that uses it.
 fn last_joint(mesh: &Mesh) -> Option<(usize, usize)> {
     let skinned = mesh.primitives.iter().enumerate().filter(|(_, part)| part.is_skinned());
     let each =

@@ -4,7 +4,7 @@ use super::fields;
 use crate::error::SceneError;
 use crate::gltf::accessor::Elements;
 use crate::gltf::buffers::Buffers;
-use crate::gltf::growth::Purse;
+use crate::gltf::growth::GrowthBudget;
 use crate::gltf::guard::Spot;
 use crate::gltf::{instances, irregular};
 use crate::scene::{Local, Node, Parts, Skin};
@@ -14,14 +14,14 @@ use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index, Root};
 
-/// All nodes, and those that the scene begins at. A file without nodes shows each of its meshes once.
+/// All nodes, and the roots of the scene. A file without nodes shows each of its meshes once.
 pub(super) fn read(
     root: &Root,
     lights: &[Option<usize>],
-    purse: &mut Purse<'_>,
+    remaining: &mut GrowthBudget<'_>,
 ) -> Result<(Vec<Node>, Vec<usize>), SceneError> {
     let count = root.nodes.len().max(root.meshes.len()) as u64;
-    purse.take(count.saturating_mul(size_of::<Node>() as u64), "nodes")?;
+    remaining.take(count.saturating_mul(size_of::<Node>() as u64), "nodes")?;
     if root.nodes.is_empty() {
         let each = |mesh| Node { mesh: Some(mesh), ..Node::default() };
         return Ok(((0..root.meshes.len()).map(each).collect(), (0..root.meshes.len()).collect()));
@@ -66,7 +66,7 @@ pub(super) fn skins(
     document: &Spot<'_>,
     root: &Root,
     buffers: &Buffers<'_>,
-    purse: &mut Purse<'_>,
+    remaining: &mut GrowthBudget<'_>,
     warnings: &mut Warnings,
 ) -> Result<Vec<Skin>, SceneError> {
     let mut all = Vec::new();
@@ -79,7 +79,7 @@ pub(super) fn skins(
         if joints.is_empty() {
             return Err(list.not("one joint or more"));
         }
-        purse.take((joints.len() as u64).saturating_mul(64), spot.trail)?;
+        remaining.take((joints.len() as u64).saturating_mul(64), spot.trail)?;
         let inverse_bind = match spot.get("inverseBindMatrices")? {
             None => vec![Affine3A::IDENTITY; joints.len()],
             Some(link) => inverse_bind(&link, joints.len(), root, buffers, warnings)?,

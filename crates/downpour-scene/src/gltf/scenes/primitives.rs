@@ -4,7 +4,7 @@ use super::{flat, tangents, vertices, weights};
 use crate::error::SceneError;
 use crate::gltf::accessor::Elements;
 use crate::gltf::buffers::Buffers;
-use crate::gltf::growth::Purse;
+use crate::gltf::growth::GrowthBudget;
 use crate::gltf::plan::{self, Shape};
 use crate::gltf::{REACH, assembly, irregular};
 use crate::scene::{Bounds, Material, MorphTarget, Primitive, TextureRef};
@@ -14,7 +14,7 @@ use gltf::json::mesh::{self, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Index, Root};
 
-/// Where data comes from.
+/// Sources of the data.
 pub(super) struct Reading<'a> {
     pub(super) root: &'a Root,
     pub(super) buffers: &'a Buffers<'a>,
@@ -41,16 +41,16 @@ impl<'a> Reading<'a> {
 const PER_VERTEX: u64 = 12 + 12 + 16 + 8 + 8 + 16 + 8 + 16;
 const PER_CORNER: u64 = 4;
 
-/// Reads a primitive; `None`, with a warning, when its numbers are of no use. `uses` is how many nodes draw it.
+/// Reads a primitive; `None`, with a warning, if its data is unusable. `uses` is the number of nodes that draw it.
 #[expect(clippy::too_many_arguments, reason = "one call, and all of them are of different kinds")]
 pub(super) fn read(
     reading: &Reading<'_>,
     json: &mesh::Primitive,
     shape: &Shape,
-    place: &str,
+    path: &str,
     uses: u64,
     normal_map: Option<TextureRef>,
-    purse: &mut Purse<'_>,
+    remaining: &mut GrowthBudget<'_>,
     warnings: &mut Warnings,
 ) -> Result<Option<Primitive>, SceneError> {
     let targets = json.targets.as_deref().unwrap_or_default();
@@ -60,13 +60,13 @@ pub(super) fn read(
     let has_normals = has(Semantic::Normals);
     let makes_tangents = normal_map.is_some() && has_normals && !has(Semantic::Tangents);
     if !has_normals || makes_tangents {
-        // In the worst case no corner shares its vertex any more; both are held for a while.
+        // In the worst case no two corners share a vertex any more; both lists are held for a while.
         vertices = vertices.saturating_add(corners);
     }
-    purse.budget.take_vertices(vertices.saturating_mul(uses), place)?;
+    remaining.budget.take_vertices(vertices.saturating_mul(uses), path)?;
     let each = PER_VERTEX.saturating_add((targets.len() as u64).saturating_mul(24));
     let cost = vertices.saturating_mul(each).saturating_add(corners.saturating_mul(PER_CORNER));
-    purse.take(cost, place)?;
+    remaining.take(cost, path)?;
 
     let mut bad = 0usize;
     let positions = vertices::vectors(reading.open(shape.positions)?, &mut bad)?;
@@ -86,22 +86,22 @@ pub(super) fn read(
     if let Some(colors) = reading.attribute(json, Semantic::Colors(0))? {
         part.colors = Some(vertices::colors(colors, &mut bad)?);
     }
-    weights::read(reading, json, &mut part, place, warnings)?;
+    weights::read(reading, json, &mut part, path, warnings)?;
     for (index, target) in targets.iter().enumerate() {
         part.morphs.push(morph(reading, target, has_normals, &mut bad)?);
         if target.positions.is_none() && target.normals.is_none() {
-            irregular(warnings, format_args!("{place}.targets[{index}]"), || "moves nothing".into());
+            irregular(warnings, format_args!("{path}.targets[{index}]"), || "changes no vertex data".into());
         }
     }
     if bad > 0 {
-        warnings.add(WarningKind::Dropped, place, || {
+        warnings.add(WarningKind::Dropped, path, || {
             format!("dropped: {bad} positions, normals or other vertex data are not finite")
         });
         return Ok(None);
     }
     let farthest = part.morphs.iter().fold(reach, |all, morph| all.max(morph.farthest));
     if f64::from(farthest) > REACH {
-        warnings.add(WarningKind::Dropped, place, || {
+        warnings.add(WarningKind::Dropped, path, || {
             format!("dropped: a vertex is farther than {REACH:e} m from the origin")
         });
         return Ok(None);
@@ -109,8 +109,8 @@ pub(super) fn read(
 
     let indices = json.indices.map(|accessor| reading.open(accessor)).transpose()?;
     let room = usize::try_from(corners).unwrap_or(usize::MAX);
-    part.indices = crate::Budget::room(room, place)?;
-    assembly::triangles(indices, shape.mode, part.positions.len(), place, |corners| {
+    part.indices = crate::Budget::vec_with_capacity(room, path)?;
+    assembly::triangles(indices, shape.mode, part.positions.len(), path, |corners| {
         part.indices.extend(corners);
     })?;
     if part.indices.is_empty() {
@@ -119,7 +119,7 @@ pub(super) fn read(
     if has_normals {
         let made = vertices::unit_normals(&mut part);
         if made > 0 {
-            irregular(warnings, place, || format!("{made} normals of length 0: made from the faces"));
+            irregular(warnings, path, || format!("{made} normals of length 0: made from the faces"));
         }
     } else {
         flat::shade(&mut part);
@@ -148,10 +148,10 @@ fn morph(
     Ok(MorphTarget { positions, normals, farthest: longest.sqrt() })
 }
 
-/// Warns where a material asks for texture coordinates that are not there.
-pub(super) fn check_uvs(part: &Primitive, material: &Material, place: &str, warnings: &mut Warnings) {
+/// Warns if a material uses texture coordinates that are missing.
+pub(super) fn check_uvs(part: &Primitive, material: &Material, path: &str, warnings: &mut Warnings) {
     let missing = |set: &usize| part.uvs.get(*set).is_none_or(Vec::is_empty);
     if let Some(set) = material.textures().map(|used| used.uv_set).find(missing) {
-        irregular(warnings, place, || format!("no TEXCOORD_{set}, which its material uses: taken as (0, 0)"));
+        irregular(warnings, path, || format!("no TEXCOORD_{set}, which its material uses: taken as (0, 0)"));
     }
 }

@@ -1,4 +1,4 @@
-//! Tangents for primitives with a normal map that have none: `MikkTSpace`, as glTF 2.0 asks for (section 3.7.2.1).
+//! Tangents for primitives with a normal map but without tangents: `MikkTSpace`, as glTF 2.0 requires (section 3.7.2.1).
 //!
 //! Source: Mikkelsen, "Simulation of Wrinkled Surfaces Revisited" (2008), by the crate `bevy_mikktspace`. Tangents
 //! belong to corners: a vertex whose corners have different ones is split.
@@ -9,7 +9,7 @@ use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use glam::{Vec3, Vec4};
 use std::collections::BTreeMap;
 
-/// How far coordinates may go before squares of them leave the range of `f32`.
+/// Limit of coordinates, so that their squares stay in the range of `f32`.
 const FAR: f32 = 1e9;
 
 /// Functions with the same bits on every machine.
@@ -66,7 +66,7 @@ impl Geometry<PortableOps> for Corners<'_> {
         let normal = Vec3::from_array(self.normal(face, vert));
         let corner = face.checked_mul(3).and_then(|first| first.checked_add(vert));
         if let Some(slot) = corner.and_then(|corner| self.tangents.get_mut(corner)) {
-            // The algorithm takes the second coordinate to point up, glTF's points down: the bitangent turns round.
+            // The algorithm expects the second coordinate to point up, glTF's points down: the bitangent is reversed.
             let found = space.map(|space| {
                 let [x, y, z, w] = space.tangent_encoded();
                 Vec4::new(x, y, z, -w)
@@ -77,12 +77,12 @@ impl Geometry<PortableOps> for Corners<'_> {
     }
 }
 
-/// A tangent where texture coordinates give no direction.
+/// A tangent for texture coordinates without direction.
 fn any(normal: Vec3) -> Vec4 {
     normal.try_normalize().unwrap_or(Vec3::Y).any_orthonormal_vector().extend(1.0)
 }
 
-/// Makes the tangents of a primitive that has normals. Without texture coordinates of the set nothing is made.
+/// Computes the tangents of a primitive with normals. Without texture coordinates of the set it does nothing.
 pub(super) fn make(part: &mut Primitive, uv_set: usize) {
     let Some(uvs) = part.uvs.get(uv_set).filter(|uvs| !uvs.is_empty()) else { return };
     let fine = uvs.iter().all(|uv| uv.abs().max_element() <= FAR);
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
     use glam::Vec2;
 
-    /// A square of two triangles; its texture lies straight on it, or mirrored on the second.
+    /// A square of two triangles; its texture is aligned with it, or mirrored on the second.
     fn square(mirrored: bool) -> Primitive {
         let far = if mirrored { Vec2::Y } else { Vec2::X };
         Primitive {
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mirrored_neighbour_splits_the_vertices_between() {
+    fn a_mirrored_neighbor_splits_the_vertices_between() {
         let mut part = square(true);
         make(&mut part, 0);
         assert!(part.positions.len() > 4 && part.tangents.len() == part.positions.len());

@@ -1,17 +1,17 @@
 //! Textures, samplers and images: glTF 2.0, sections 5.29, 5.26 and 5.18.
 //!
-//! A picture is colour or plain data by the use that a material makes of it, so a texture of the file that is used
-//! for both becomes two. Images that no material uses are not opened.
+//! A picture is color or plain data by its use in a material, so a texture of the file with both uses becomes two.
+//! Images that no material uses are not opened.
 
 use super::fields;
 use crate::Budget;
 use crate::base64;
-use crate::beneath::{Files, RelativePath};
 use crate::error::{SceneError, quoted, size};
 use crate::gltf::buffers::Buffers;
 use crate::gltf::guard::Spot;
 use crate::gltf::{MAX_FILE, irregular};
 use crate::picture::{self, Picture};
+use crate::sandbox::{Files, RelativePath};
 use crate::scene::{Encoding, Filter, Sampler, Texture, Wrap};
 use crate::uri::{self, Address};
 use crate::warning::{WarningKind, Warnings};
@@ -21,10 +21,10 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::sync::Arc;
 
-/// A texture that can be used: an image and the way to sample it.
+/// A usable texture: an image and its sampler.
 type Source = (usize, Sampler);
 
-/// The textures of a file, and which of them are used for what.
+/// Textures of a file and their uses.
 pub(super) struct Textures {
     sources: Vec<Option<Source>>,
     wanted: Vec<(Source, Encoding)>,
@@ -32,7 +32,7 @@ pub(super) struct Textures {
 }
 
 impl Textures {
-    /// Reads what textures and samplers say.
+    /// Reads textures and samplers.
     pub(super) fn read(document: &Spot<'_>) -> Result<Self, SceneError> {
         let mut samplers = Vec::new();
         document.each(&["samplers", "[]"], &mut |spot| {
@@ -52,7 +52,7 @@ impl Textures {
         Ok(Self { sources, wanted: Vec::new(), known: BTreeMap::new() })
     }
 
-    /// The place in the scene's list of a texture of the file; `None`, with a warning, for one without an image.
+    /// Index in the scene's list of a texture of the file; `None`, with a warning, for one without an image.
     pub(super) fn used(
         &mut self,
         texture: usize,
@@ -66,11 +66,11 @@ impl Textures {
             return None;
         };
         let next = self.wanted.len();
-        let place = *self.known.entry((source, encoding)).or_insert(next);
-        if place == next {
+        let slot = *self.known.entry((source, encoding)).or_insert(next);
+        if slot == next {
             self.wanted.push((source, encoding));
         }
-        Some(place)
+        Some(slot)
     }
 
     /// Opens and decodes the images that are used, each once.
@@ -81,7 +81,7 @@ impl Textures {
         warnings: &mut Warnings,
     ) -> Result<Vec<Texture>, SceneError> {
         let mut pictures: BTreeMap<usize, Arc<Picture>> = BTreeMap::new();
-        let mut all = Budget::room(self.wanted.len(), "textures")?;
+        let mut all = Budget::vec_with_capacity(self.wanted.len(), "textures")?;
         for ((image, sampler), encoding) in self.wanted {
             let picture = match pictures.get(&image) {
                 Some(picture) => Arc::clone(picture),
@@ -130,7 +130,7 @@ fn sampler(spot: &Spot<'_>) -> Result<Sampler, SceneError> {
     Ok(Sampler { wrap_s: wrap("wrapS")?, wrap_t: wrap("wrapT")?, mag, min, mip })
 }
 
-/// Where the bytes of images are.
+/// Sources of the bytes of images.
 pub(super) struct Images<'a> {
     pub(super) document: Spot<'a>,
     pub(super) root: &'a Root,
@@ -200,7 +200,7 @@ impl Images<'_> {
             Address::Data { text, .. } => {
                 let length = base64::decoded_len(text).ok_or_else(lost)?;
                 budget.take_bytes(length as u64, place)?;
-                let mut bytes = Budget::room(length, place)?;
+                let mut bytes = Budget::vec_with_capacity(length, place)?;
                 base64::decode(text, length, &mut bytes);
                 Ok((None, Cow::Owned(bytes)))
             }
@@ -218,7 +218,7 @@ impl Images<'_> {
             return Err(SceneError::limit("", found, format!("at most {}", size(MAX_FILE))));
         }
         budget.take_bytes(file.size, "")?;
-        let mut bytes = Budget::room(usize::try_from(file.size).unwrap_or(usize::MAX), "")?;
+        let mut bytes = Budget::vec_with_capacity(usize::try_from(file.size).unwrap_or(usize::MAX), "")?;
         let read = file.bytes.take(file.size).read_to_end(&mut bytes);
         read.map_err(|error| SceneError::io("", path.as_str(), &error))?;
         Ok(bytes)

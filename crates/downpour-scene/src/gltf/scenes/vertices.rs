@@ -1,4 +1,4 @@
-//! Vertex data in single precision, with a count of what is not finite.
+//! Vertex data in single precision, with a count of values that are not finite.
 
 use super::fields::single;
 use crate::error::SceneError;
@@ -7,13 +7,13 @@ use crate::gltf::normals;
 use crate::scene::Primitive;
 use glam::{Vec2, Vec3, Vec4};
 
-/// All elements with as many components as `N`; missing ones are 1, the alpha of a colour.
+/// All elements with `N` components; missing ones are 1, the alpha of a color.
 fn all<const N: usize, T>(
     mut elements: Elements<'_>,
     bad: &mut usize,
     make: impl Fn([f64; N]) -> T,
 ) -> Result<Vec<T>, SceneError> {
-    let mut made = crate::Budget::room(elements.count(), "accessors")?;
+    let mut made = crate::Budget::vec_with_capacity(elements.count(), "accessors")?;
     while let Some(parts) = elements.numbers::<N>(1.0)? {
         *bad = bad.saturating_add(usize::from(!parts.iter().all(|part| part.is_finite())));
         made.push(make(parts));
@@ -31,7 +31,7 @@ pub(super) fn pairs(elements: Elements<'_>, bad: &mut usize) -> Result<Vec<Vec2>
     all(elements, bad, |[u, v]| Vec2::new(single(u), single(v)))
 }
 
-/// Colours, held to [0, 1].
+/// Colors, clamped to [0, 1].
 pub(super) fn colors(elements: Elements<'_>, bad: &mut usize) -> Result<Vec<Vec4>, SceneError> {
     all(elements, bad, |parts: [f64; 4]| Vec4::from_array(parts.map(|part| single(part.clamp(0.0, 1.0)))))
 }
@@ -44,10 +44,10 @@ pub(super) fn tangents(elements: Elements<'_>, bad: &mut usize) -> Result<Vec<Ve
     })
 }
 
-/// Gives normals length 1, and those without length the direction of their faces. Returns how many these are.
+/// Normalizes normals, and replaces those without length by the direction of their faces. Returns the number of these.
 pub(super) fn unit_normals(part: &mut Primitive) -> usize {
     let unit = |normal: &Vec3| {
-        // In double precision: quantised and very short ones too.
+        // In double precision: quantized and very short ones too.
         let unit = normal.as_dvec3().normalize_or_zero().as_vec3();
         unit.to_array()
     };
@@ -63,7 +63,7 @@ pub(super) fn unit_normals(part: &mut Primitive) -> usize {
     made
 }
 
-/// Lays the vertices out anew: the new vertex `i` is what the old vertex `order[i]` was.
+/// Reorders the vertices: the new vertex `i` is the old vertex `order[i]`.
 pub(super) fn reorder(part: &mut Primitive, order: &[u32]) {
     fn pick<T: Copy>(list: &mut Vec<T>, order: &[u32]) {
         if !list.is_empty() {

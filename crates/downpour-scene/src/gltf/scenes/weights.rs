@@ -9,7 +9,7 @@ use crate::warning::{WarningKind, Warnings};
 use gltf::json::mesh::{self, Semantic};
 use gltf::json::validation::Checked;
 
-/// How far the sum of weights may be from 1 without a warning.
+/// Tolerance of the sum of weights around 1 without a warning.
 const NEAR: f64 = 0.01;
 
 /// Reads the first set. Weights are scaled to a sum of 1; a joint without weight becomes joint 0.
@@ -17,7 +17,7 @@ pub(super) fn read(
     reading: &Reading<'_>,
     json: &mesh::Primitive,
     part: &mut Primitive,
-    place: &str,
+    path: &str,
     warnings: &mut Warnings,
 ) -> Result<(), SceneError> {
     let joints = reading.attribute(json, Semantic::Joints(0))?;
@@ -26,7 +26,7 @@ pub(super) fn read(
         return Ok(());
     };
     if json.attributes.contains_key(&Checked::Valid(Semantic::Joints(1))) {
-        warnings.add(WarningKind::Ignored, place, || {
+        warnings.add(WarningKind::Ignored, path, || {
             "more than four joints for a vertex: only those of the first set are read".into()
         });
     }
@@ -35,8 +35,8 @@ pub(super) fn read(
         let element = part.joints.len();
         let wrong = |part: &f64| !(part.is_finite() && *part >= 0.0);
         if let Some(found) = weight.iter().find(|weight| wrong(weight)) {
-            let place = format_args!("{place}.attributes.WEIGHTS_0");
-            return Err(SceneError::bad(place, format!("{found} at element {element}"), "numbers from 0 on"));
+            let path = format_args!("{path}.attributes.WEIGHTS_0");
+            return Err(SceneError::bad(path, format!("{found} at element {element}"), "numbers from 0 on"));
         }
         let sum: f64 = weight.iter().sum();
         odd = odd.saturating_add(usize::from((sum - 1.0).abs() > NEAR));
@@ -54,7 +54,7 @@ pub(super) fn read(
         }
     }
     if odd > 0 {
-        irregular(warnings, place, || {
+        irregular(warnings, path, || {
             format!(
                 "{odd} vertices whose weights do not add up to 1: scaled, or without any bound to the first joint"
             )

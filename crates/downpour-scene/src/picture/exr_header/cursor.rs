@@ -1,9 +1,9 @@
-//! Little-endian values in a row of bytes that may end at any place.
+//! Little-endian values in a row of bytes that may end at any position.
 
 use crate::error::SceneError;
 use std::borrow::Cow;
 
-/// What has not been read yet.
+/// Bytes that are not read yet.
 #[derive(Debug)]
 pub(super) struct Bytes<'a> {
     all: &'a [u8],
@@ -15,7 +15,7 @@ impl<'a> Bytes<'a> {
         Self { all, rest: all }
     }
 
-    /// How many bytes have been read.
+    /// Number of bytes read so far.
     pub(super) fn position(&self) -> usize {
         self.all.len().saturating_sub(self.rest.len())
     }
@@ -44,7 +44,7 @@ impl<'a> Bytes<'a> {
         self.u32().map(u32::cast_signed)
     }
 
-    /// A name up to a zero byte; what is not UTF-8 in it is replaced.
+    /// A name up to a zero byte; invalid UTF-8 in it is replaced.
     pub(super) fn text(&mut self) -> Result<Cow<'a, str>, SceneError> {
         // The longest name of the format is 255 bytes; a little more shows that it is too long.
         let end = self.rest.iter().take(1024).position(|&byte| byte == 0).ok_or_else(cut)?;

@@ -9,7 +9,7 @@ use crate::error::SceneError;
 /// The largest side of a tile.
 const MAX_TILE: u32 = 1 << 16;
 
-/// How an image is cut into tiles.
+/// Tiling of an image.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::picture) struct Tiles {
     width: u32,

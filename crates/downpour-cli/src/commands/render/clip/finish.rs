@@ -1,4 +1,4 @@
-//! What comes after the frames: what tells of all of them, and the video.
+//! Final steps of a clip: statistics of all frames, and the video.
 
 use std::fs;
 #[cfg(feature = "video")]
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::super::job::digest;
 use super::super::journal::Journal;
-use super::super::report::{self, ClipTold};
+use super::super::report::{self, ClipStats};
 use super::Clip;
 #[cfg(feature = "video")]
 use crate::failure::FILES;
@@ -18,9 +18,9 @@ use crate::output::remove_leftovers;
 use crate::progress::Progress;
 
 impl Clip<'_> {
-    /// Whether the video of this very journal has its name already: only the cleaning up was missed.
+    /// True if the video of this journal is already published: only the cleanup is missing.
     pub(super) fn is_published(&self, journal: &Journal) -> bool {
-        let (Some(video), Some(known)) = (&self.places.video, journal.video()) else { return false };
+        let (Some(video), Some(known)) = (&self.paths.video, journal.video()) else { return false };
         fs::read(&video.path).is_ok_and(|bytes| self.video_digest(&bytes) == known)
     }
 
@@ -29,29 +29,29 @@ impl Clip<'_> {
         format!("{} of {}..{}", digest(bytes), self.frames.first, self.frames.end)
     }
 
-    /// Writes what tells of all frames, and the video.
+    /// Writes the statistics of all frames, and the video.
     pub(super) fn finish(&self, mut journal: Journal, made: u32) -> Result<(), Failure> {
         let published = self.is_published(&journal);
         let (video, encode_ms) = if published { (None, None) } else { self.encode_video()? };
-        if let Some(place) = &self.places.stats {
-            let told = ClipTold { frames: self.frames, fps: self.fps, made, encode_ms };
+        if let Some(file) = &self.paths.stats {
+            let clip = ClipStats { frames: self.frames, fps: self.fps, made, encode_ms };
             let frames: Vec<(u32, &Value)> = self
                 .frames
                 .numbers()
                 .filter_map(|number| Some((number, &journal.frame(number)?.stats)))
                 .collect();
-            let text = report::text(&report::clip_stats(&frames, &told));
-            place.publish(text.as_bytes(), self.interrupt)?;
+            let text = report::text(&report::clip_stats(&frames, &clip));
+            file.publish(text.as_bytes(), self.interrupt)?;
         }
         let output = shown(&self.arguments.output);
         let ([width, height], count) = (self.weather.size, self.frames.count());
         if let Some(video) = &video
-            && let Some(place) = self.places.film(journal.overwrites())?
+            && let Some(file) = self.paths.video_output(journal.overwrites())?
         {
             journal.record_video(self.video_digest(video), self.interrupt)?;
-            place.publish(video, self.interrupt)?;
+            file.publish(video, self.interrupt)?;
         }
-        if self.places.video.is_some() {
+        if self.paths.video.is_some() {
             self.remove_frames(journal);
         }
         self.arguments.say(&format!("wrote {output}: {count} frames of {width} x {height}, {made} made now"));
@@ -62,14 +62,14 @@ impl Clip<'_> {
     #[cfg(feature = "video")]
     fn encode_video(&self) -> Result<(Option<Vec<u8>>, Option<f64>), Failure> {
         use downpour::scene::picture::{Pixels, decode};
-        if self.places.video.is_none() {
+        if self.paths.video.is_none() {
             return Ok((None, None));
         }
         let begin = Instant::now();
         let mut progress = Progress::new("encoding", self.frames.count(), self.arguments.quiet);
         let bytes =
             super::super::video::encode(self.weather.size, self.fps, self.frames.count(), |number| {
-                let path = self.places.pictures.path(self.frames.first + number);
+                let path = self.paths.pictures.path(self.frames.first + number);
                 let bytes = fs::read(&path).map_err(|error| Failure::file(&path, &error))?;
                 let picture = decode(&shown(&path), &bytes, &mut downpour::scene::Budget::default())?;
                 progress.step();
@@ -88,9 +88,9 @@ impl Clip<'_> {
         Ok((None, None))
     }
 
-    /// Removes the frames of a video, those of an earlier clip as well, and nothing else that may be in their folder.
+    /// Removes the frames of a video, including those of an earlier clip, and no other files of their folder.
     fn remove_frames(&self, journal: Journal) {
-        let folder = self.places.pictures.folder();
+        let folder = self.paths.pictures.folder();
         for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
             let number = name.strip_suffix(".png").unwrap_or_default();
@@ -100,6 +100,6 @@ impl Clip<'_> {
         }
         remove_leftovers(folder);
         journal.remove();
-        self.places.remove_empty_folder();
+        self.paths.remove_empty_folder();
     }
 }

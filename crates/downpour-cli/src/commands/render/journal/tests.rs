@@ -17,7 +17,7 @@ fn written(path: &Path) {
     }
 }
 
-/// Cut anywhere, the journal says a part of what it said, and never anything else.
+/// A truncated journal has a part of its contents, and never anything else.
 #[test]
 fn a_journal_that_was_cut_says_less() {
     let folder = tempfile::tempdir().unwrap();
@@ -36,7 +36,7 @@ fn a_journal_that_was_cut_says_less() {
     assert_eq!(journal.frame(2), Some(&record("2")));
 }
 
-/// A byte that was changed costs the line that it stands in.
+/// A byte that was changed invalidates its line.
 #[test]
 fn an_edited_line_does_not_count() {
     let folder = tempfile::tempdir().unwrap();
@@ -44,9 +44,9 @@ fn an_edited_line_does_not_count() {
     written(&path);
     let whole = fs::read(&path).unwrap();
     let second = whole.iter().position(|byte| *byte == b'\n').unwrap() + 1;
-    for place in second..whole.len() {
+    for index in second..whole.len() {
         let mut edited = whole.clone();
-        edited[place] ^= 1;
+        edited[index] ^= 1;
         fs::write(&path, &edited).unwrap();
         let journal = Journal::open(&path, &job("5"), false, &Interrupt::default()).unwrap();
         let numbers = journal.numbers();
@@ -55,7 +55,7 @@ fn an_edited_line_does_not_count() {
         );
         let lost = usize::from(journal.exposure().is_none()) + 3 - numbers.len();
         // The end of a line belongs to two.
-        assert!(lost == 1 || (lost == 2 && whole[place] == b'\n'), "{place}: {lost} lost");
+        assert!(lost == 1 || (lost == 2 && whole[index] == b'\n'), "{index}: {lost} lost");
     }
     let mut edited = whole;
     edited[3] ^= 1;
@@ -101,17 +101,17 @@ fn a_long_journal_is_read_in_pieces() {
     let mut bytes = Vec::new();
     let endless = io::Read::take(io::repeat(b'x'), 1 << 28);
     assert_eq!(next_line(&mut BufReader::new(endless), &mut bytes).unwrap(), None);
-    assert!(bytes.capacity() <= 2 * LONGEST_LINE, "{}", bytes.capacity());
+    assert!(bytes.capacity() <= 2 * MAX_LINE, "{}", bytes.capacity());
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("journal");
     written(&path);
     let old = fs::read(&path).unwrap();
-    let long = [&vec![b'x'; 3 * LONGEST_LINE][..], b"\n"].concat();
+    let long = [&vec![b'x'; 3 * MAX_LINE][..], b"\n"].concat();
     let head = old.iter().position(|byte| *byte == b'\n').unwrap() + 1;
     fs::write(&path, [&old[..head], &long, &old[head..], &long[1..long.len() - 1]].concat()).unwrap();
     let journal = Journal::open(&path, &job("5"), false, &Interrupt::default()).unwrap();
     assert_eq!((journal.numbers(), journal.exposure()), (vec![0, 1, 2], Some(0.1)));
-    // What had no end is cut off.
+    // An incomplete line is removed.
     assert_eq!(fs::metadata(&path).unwrap().len(), (old.len() + long.len()) as u64);
 }

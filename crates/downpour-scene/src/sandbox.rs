@@ -1,10 +1,10 @@
-//! Opening files that somebody else has named: beneath one folder, and only regular files.
+//! Sandbox for files that a scene file names: only regular files inside one folder are opened.
 //!
 //! A scene file may name others. A checked [`RelativePath`] has no `..`, but a symbolic link in the folder can
-//! still lead out of it, and a FIFO or a device never ends. On Linux the kernel itself refuses a path that
-//! leaves the folder (`openat2` with `RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS`). Where that call is missing, the
-//! path is resolved first and its beginning compared with the folder's; a link that is exchanged between the
-//! two steps is then not seen. Files are opened without waiting (`O_NONBLOCK`) and looked at through the open
+//! still lead out of it, and a FIFO or a device never ends. On Linux the kernel itself rejects a path that
+//! leaves the folder (`openat2` with `RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS`). Without that call, the
+//! path is resolved first and its prefix compared with the folder's; a link that is exchanged between the
+//! two steps is then not detected. Files are opened without blocking (`O_NONBLOCK`) and examined through the open
 //! handle.
 
 use crate::Budget;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 pub const MAX_FILE: u64 = 1 << 30;
 
 const REGULAR: &str = "a regular file";
-const INSIDE: &str = "only files beneath the scene folder";
+const INSIDE: &str = "only files inside the scene folder";
 const COPY_HERE: &str = "copy the file into the scene folder";
 
 /// A file that is open for reading, with its length.
@@ -31,7 +31,7 @@ pub struct OpenFile {
 }
 
 impl OpenFile {
-    /// Reads all bytes of the file. Nothing is taken from the budget, which limits the length.
+    /// Reads all bytes of the file. Nothing is deducted from the budget, which limits the length.
     ///
     /// # Errors
     /// [`SceneError::OverLimit`] for a file of more than [`MAX_FILE`] bytes, or more than the budget has left;
@@ -42,7 +42,7 @@ impl OpenFile {
             let allowed = format!("at most {most} bytes ({})", size(most));
             return Err(SceneError::limit("", format!("a file of {} bytes", self.size), allowed));
         }
-        let mut bytes = Budget::room(usize::try_from(self.size).unwrap_or(usize::MAX), "")?;
+        let mut bytes = Budget::vec_with_capacity(usize::try_from(self.size).unwrap_or(usize::MAX), "")?;
         self.bytes.take(self.size).read_to_end(&mut bytes).map_err(|error| SceneError::io("", "", &error))?;
         Ok(bytes)
     }
@@ -79,7 +79,7 @@ impl Files for BTreeMap<String, Vec<u8>> {
     }
 }
 
-/// A folder on disk, and everything beneath it.
+/// A folder on disk with all its subfolders.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -103,14 +103,14 @@ impl Folder {
             #[cfg(target_os = "linux")]
             handle: {
                 use rustix::fs::{Mode, OFlags, open};
-                // A handle that only marks the place: the folder need not be readable.
+                // A handle that only marks the folder, which need not be readable.
                 let flags = OFlags::PATH | OFlags::DIRECTORY | OFlags::CLOEXEC;
                 open(path, flags, Mode::empty()).map_err(|error| named(error.into()))?
             },
         })
     }
 
-    /// The kernel's own test, or `None` where it has none.
+    /// Opens a path with the kernel's own test; `None` if the kernel lacks it.
     #[cfg(target_os = "linux")]
     fn open_resolved(&self, path: &RelativePath) -> Option<Result<File, Refusal>> {
         use rustix::fs::{Mode, ResolveFlags, openat2};
@@ -120,7 +120,7 @@ impl Folder {
         for _ in 0..16 {
             match openat2(&self.handle, path.as_str(), read_flags(), Mode::empty(), resolve) {
                 Ok(handle) => return Some(Ok(File::from(handle))),
-                // Old kernels do not know the call; some sandboxes answer EPERM to all that they do not know.
+                // Old kernels do not have the call; some sandboxes answer EPERM to all calls that they do not recognize.
                 Err(Errno::NOSYS | Errno::PERM) => return None,
                 Err(Errno::AGAIN | Errno::INTR) => {}
                 Err(Errno::XDEV | Errno::LOOP) => return Some(Err(Refusal::Leaves)),
@@ -142,7 +142,7 @@ impl Folder {
         if !target.starts_with(&folder) {
             return Err(Refusal::Leaves);
         }
-        // Where opening may wait, look before.
+        // Opening may block: test first.
         let sort = fs::metadata(&target).map_err(Refusal::System)?.file_type();
         if !sort.is_file() {
             return Err(Refusal::NotRegular(sort_name(sort)));
@@ -159,7 +159,7 @@ impl Files for Folder {
     }
 }
 
-/// Opens a regular file that the user has named, wherever it is.
+/// Opens a regular file that the user has named, in any folder.
 ///
 /// # Errors
 /// The file is missing or cannot be opened, or is no regular file.
@@ -176,7 +176,7 @@ pub fn open_named(path: &Path) -> Result<OpenFile, SceneError> {
     look().map_err(|refusal| refusal.into_error("").in_file(&shown_path(path)))
 }
 
-/// Why a file was not opened.
+/// Reason why a file was not opened.
 enum Refusal {
     Leaves,
     NotRegular(&'static str),
@@ -184,7 +184,7 @@ enum Refusal {
 }
 
 impl Refusal {
-    /// The error; `name` is empty when the message begins with the file anyway.
+    /// Converts to the error; `name` is empty if the message already begins with the file.
     fn into_error(self, name: &str) -> SceneError {
         let file = subject(name);
         match self {
@@ -251,7 +251,7 @@ mod tests {
         }
     }
 
-    /// Both ways of opening agree on what may be opened.
+    /// Both methods of opening agree on the files that may be opened.
     #[test]
     fn the_kernel_and_the_comparison_agree() {
         let outside = tempfile::tempdir().unwrap();

@@ -1,7 +1,7 @@
-//! What is odd but clear: warnings, so that the author of a file can make it right.
+//! Lints: warnings about irregularities with a clear meaning, so that the author of a file can mend it.
 //!
-//! Everything here has passed the checks; a reader that ignores it is still safe. The rules are those of the
-//! glTF 2.0 specification that concern what Downpour reads, as the Khronos validator words them.
+//! The document has passed the checks; a reader that ignores these warnings is still safe. The rules are those of the
+//! glTF 2.0 specification that concern Downpour, in the wording of the Khronos validator.
 
 use super::attributes::is_known;
 use super::shape::LISTS;
@@ -14,7 +14,7 @@ use gltf::json::accessor::{ComponentType, Type};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// Looks at the whole document.
+/// Checks the whole document.
 pub(super) fn look(facts: &Facts<'_>, warnings: &mut Warnings) -> Result<(), SceneError> {
     let document = &facts.document;
     for list in LISTS {
@@ -102,7 +102,7 @@ fn accessor(
     Ok(())
 }
 
-/// A view with a stride under something that has none.
+/// Warns of a view with a stride whose data must have none.
 fn strided(
     facts: &Facts<'_>,
     spot: &Spot<'_>,
@@ -122,7 +122,7 @@ fn linked(facts: &Facts<'_>, link: &Spot<'_>) -> Option<AccessorFacts> {
 }
 
 fn meshes(facts: &Facts<'_>, warnings: &mut Warnings) -> Result<(), SceneError> {
-    // Which accessor a view without stride serves as vertex data.
+    // Accessor that uses a view without stride as vertex data.
     let mut tenants: Vec<Option<u64>> = vec![None; facts.views.len()];
     facts.document.each(&["meshes", "[]"], &mut |mesh| {
         let primitives = mesh.need("primitives")?;
@@ -185,7 +185,7 @@ fn attribute(
     };
     let mine = link.value.as_u64();
     if view.stride.is_none() && tenant.is_some() && *tenant != mine {
-        irregular(warnings, link.trail, || "shares a view that has no byteStride".into());
+        irregular(warnings, link.trail, || "uses the same view as another, without byteStride".into());
     }
     *tenant = mine;
     let stride = view.stride.unwrap_or_else(|| super::Size::of(accessor.kind, accessor.component).whole);

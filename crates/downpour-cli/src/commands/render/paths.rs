@@ -1,4 +1,4 @@
-//! Where the files of a clip go.
+//! Output files of a clip.
 
 use std::fs;
 use std::io;
@@ -9,19 +9,19 @@ use super::journal;
 use super::outputs::{Format, check_tables, extension, keep, refused};
 use crate::commands::pattern::Pattern;
 use crate::failure::{FILES, Failure, INPUT, shown};
-use crate::output::{Place, folder_of};
+use crate::output::{OutputFile, folder_of};
 
-/// The places of all files of a clip.
+/// Paths of all files of a clip.
 #[derive(Debug)]
-pub(super) struct Places {
+pub(super) struct ClipPaths {
     /// The format of the frames.
     pub(super) format: Format,
     /// The frames, one file each.
     pub(super) pictures: Pattern,
-    /// What has been done.
+    /// Path of the journal.
     pub(super) journal: PathBuf,
     pub(super) video: Option<Video>,
-    pub(super) stats: Option<Place>,
+    pub(super) stats: Option<OutputFile>,
     pub(super) drops: Option<Pattern>,
     stats_path: Option<PathBuf>,
     overwrite: bool,
@@ -34,11 +34,11 @@ pub(super) struct Video {
     pub(super) folder: PathBuf,
 }
 
-impl Places {
-    /// Looks at the names before any work is done.
+impl ClipPaths {
+    /// Checks the names before any work is done.
     ///
     /// # Errors
-    /// Exit code 2 for a name that says another format or has no place for a number; 5 for a folder that is none.
+    /// Exit code 2 for a name of another format or without a placeholder for a number; 5 for a path that is not a folder.
     pub(super) fn new(
         output: &Path,
         stats: Option<&Path>,
@@ -74,26 +74,26 @@ impl Places {
         }
         Ok(Self {
             format,
-            journal: journal::place(pictures.whole()),
+            journal: journal::path_of(pictures.whole()),
             pictures,
             video,
-            stats: stats.map(|path| Place::new(path, overwrite)).transpose()?,
+            stats: stats.map(|path| OutputFile::new(path, overwrite)).transpose()?,
             drops,
             stats_path: stats.map(Path::to_owned),
             overwrite,
         })
     }
 
-    /// Refuses frames that exist where nothing was begun, before any work is done.
+    /// Rejects existing frames of a clip without a journal, before any work is done.
     ///
     /// # Errors
     /// Exit code 5, with the name.
     pub(super) fn check_free(&self, frames: Frames) -> Result<(), Failure> {
         if fs::symlink_metadata(&self.journal).is_ok_and(|found| found.is_file()) {
-            // What it knows of is looked at when it is read.
+            // Listed frames are checked when they are read.
             return Ok(());
         }
-        self.film(self.overwrite)?;
+        self.video_output(self.overwrite)?;
         for number in frames.numbers() {
             if self.video.is_none() {
                 self.picture(number, self.overwrite)?;
@@ -103,7 +103,7 @@ impl Places {
         Ok(())
     }
 
-    /// Refuses to write over what the clip is made of.
+    /// Refuses to overwrite the inputs of the clip.
     ///
     /// # Errors
     /// Exit code 2, with the name.
@@ -115,41 +115,41 @@ impl Places {
         keep(paths.chain(others).flatten(), inputs)
     }
 
-    /// The place of a frame. `ours`: what is there may be replaced.
+    /// Output file of a frame. `ours`: an existing file may be replaced.
     ///
     /// # Errors
-    /// As [`Place::new`].
-    pub(super) fn picture(&self, number: u32, ours: bool) -> Result<Place, Failure> {
-        Place::new(&self.pictures.path(number), ours)
+    /// As [`OutputFile::new`].
+    pub(super) fn picture(&self, number: u32, ours: bool) -> Result<OutputFile, Failure> {
+        OutputFile::new(&self.pictures.path(number), ours)
     }
 
-    /// The place of a frame's list of drops.
+    /// Output file of a frame's list of drops.
     ///
     /// # Errors
-    /// As [`Place::new`].
-    pub(super) fn list(&self, number: u32, ours: bool) -> Result<Option<Place>, Failure> {
-        let place = |drops: &Pattern| Place::new(&drops.path(number), ours);
-        self.drops.as_ref().map(place).transpose()
+    /// As [`OutputFile::new`].
+    pub(super) fn list(&self, number: u32, ours: bool) -> Result<Option<OutputFile>, Failure> {
+        let file = |drops: &Pattern| OutputFile::new(&drops.path(number), ours);
+        self.drops.as_ref().map(file).transpose()
     }
 
-    /// The place of the video.
+    /// Output file of the video.
     ///
     /// # Errors
-    /// As [`Place::new`].
-    pub(super) fn film(&self, ours: bool) -> Result<Option<Place>, Failure> {
-        self.video.as_ref().map(|video| Place::new(&video.path, ours)).transpose()
+    /// As [`OutputFile::new`].
+    pub(super) fn video_output(&self, ours: bool) -> Result<Option<OutputFile>, Failure> {
+        self.video.as_ref().map(|video| OutputFile::new(&video.path, ours)).transpose()
     }
 
     /// Makes the folder of a video's frames.
     ///
     /// # Errors
-    /// Exit code 5: the name is taken by something else, or the system does not let us.
+    /// Exit code 5: the name is not a folder, or the system denies access.
     pub(super) fn make_folder(&self) -> Result<(), Failure> {
         let Some(Video { folder, .. }) = &self.video else { return Ok(()) };
         match fs::create_dir(folder) {
             Ok(()) => Ok(()),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                // A link would lead us to remove what is not ours.
+                // Behind a link, files of others could be removed.
                 if fs::symlink_metadata(folder).is_ok_and(|found| found.is_dir()) {
                     return Ok(());
                 }
@@ -160,7 +160,7 @@ impl Places {
         }
     }
 
-    /// Removes the folder of a video's frames if nothing is in it.
+    /// Removes the folder of a video's frames if it is empty.
     pub(super) fn remove_empty_folder(&self) {
         if let Some(Video { folder, .. }) = &self.video {
             let _ = fs::remove_dir(folder);

@@ -1,8 +1,8 @@
-//! Grey pictures of 16 bits.
+//! Gray pictures of 16 bits.
 
 mod exit_code;
 use downpour_scene::Budget;
-use downpour_scene::picture::decode_grey16;
+use downpour_scene::picture::decode_gray16;
 use exit_code::ExitCode as _;
 use image::{DynamicImage, ImageBuffer, ImageFormat, Luma, Rgb};
 use std::io::Cursor;
@@ -16,27 +16,27 @@ fn png(image: &DynamicImage) -> Vec<u8> {
 #[test]
 fn all_sixteen_bits_are_read() {
     let image = ImageBuffer::from_fn(5, 3, |x, y| Luma([1000 * x as u16 + y as u16]));
-    let grey = decode_grey16("a.png", &png(&image.clone().into()), &mut Budget::default()).expect("grey");
-    assert_eq!((grey.width, grey.height), (5, 3));
-    assert_eq!(grey.values, image.into_raw());
+    let gray = decode_gray16("a.png", &png(&image.clone().into()), &mut Budget::default()).expect("gray");
+    assert_eq!((gray.width, gray.height), (5, 3));
+    assert_eq!(gray.values, image.into_raw());
     let eight = ImageBuffer::from_fn(2, 1, |x, _| Luma([if x == 0 { 255u8 } else { 1 }]));
-    let grey = decode_grey16("a.png", &png(&eight.into()), &mut Budget::default()).expect("grey");
-    assert_eq!(grey.values, [65535, 257]);
+    let gray = decode_gray16("a.png", &png(&eight.into()), &mut Budget::default()).expect("gray");
+    assert_eq!(gray.values, [65535, 257]);
 }
 
 #[test]
-fn what_is_not_grey_is_refused() {
-    let colour: DynamicImage = ImageBuffer::from_pixel(2, 2, Rgb([1u8, 2, 3])).into();
-    let error = decode_grey16("c.png", &png(&colour), &mut Budget::default()).expect_err("colour");
+fn what_is_not_gray_is_refused() {
+    let color: DynamicImage = ImageBuffer::from_pixel(2, 2, Rgb([1u8, 2, 3])).into();
+    let error = decode_gray16("c.png", &png(&color), &mut Budget::default()).expect_err("color");
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().contains("c.png") && error.to_string().contains("one channel"), "{error}");
     let image: DynamicImage = ImageBuffer::from_pixel(64, 64, Luma([7u16])).into();
     let bytes = png(&image);
     for length in [0, 7, 30, bytes.len() / 2, bytes.len() - 13] {
-        decode_grey16("cut.png", &bytes[..length], &mut Budget::default()).expect_err("cut");
+        decode_gray16("cut.png", &bytes[..length], &mut Budget::default()).expect_err("cut");
     }
     let mut small = Budget { bytes: 1000, ..Budget::default() };
-    let error = decode_grey16("large.png", &bytes, &mut small).expect_err("over the budget");
+    let error = decode_gray16("large.png", &bytes, &mut small).expect_err("over the budget");
     assert_eq!(error.exit_code(), 3);
-    decode_grey16("a.jpg", &bytes, &mut Budget::default()).expect_err("another kind than the name says");
+    decode_gray16("a.jpg", &bytes, &mut Budget::default()).expect_err("another kind than the name says");
 }
