@@ -32,14 +32,16 @@ fn mask(diameter_mm: f64, size: u32) -> Result<Mask, String> {
 
 /// Every file of the folder that the code makes.
 fn make() -> Result<Vec<Asset>, String> {
-    let told = |error: downpour_mask::MaskError| error.to_string();
+    let to_error = |error: downpour_mask::MaskError| error.to_string();
     let array = ARRAY_MM.iter().map(|&d| mask(d, ARRAY_SIZE)).collect::<Result<Vec<_>, _>>()?;
-    let mut assets = vec![("drops.ktx2".to_owned(), ktx2::write_ktx2(&array).map_err(told)?)];
+    let mut assets = vec![("drops.ktx2".to_owned(), ktx2::write_ktx2(&array).map_err(to_error)?)];
     for d in SINGLE_MM {
         let single = mask(d, SINGLE_SIZE)?;
-        assets
-            .push((format!("drop_{d}mm.exr"), exr::write_exr(&single, exr::Precision::Half).map_err(told)?));
-        assets.push((format!("drop_{d}mm.png"), png::write_png(&single).map_err(told)?));
+        assets.push((
+            format!("drop_{d}mm.exr"),
+            exr::write_exr(&single, exr::Precision::Half).map_err(to_error)?,
+        ));
+        assets.push((format!("drop_{d}mm.png"), png::write_png(&single).map_err(to_error)?));
     }
     let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
     if bytes > BUDGET {

@@ -78,14 +78,14 @@ impl StreakAtlas {
         }
         let mut sets = Vec::new();
         for path in names {
-            let told = |error: std::io::Error| unreadable(&path, error.to_string());
-            let about = std::fs::metadata(&path).map_err(told)?;
+            let to_error = |error: std::io::Error| unreadable(&path, error.to_string());
+            let about = std::fs::metadata(&path).map_err(to_error)?;
             if !about.is_file() || about.len() > MAX_FILE_BYTES {
                 let found = format!("{} bytes", about.len());
                 return Err(AtlasError::File { place: "file", found, allowed: "a file of at most 64 MiB" }
                     .in_file(&path));
             }
-            let bytes = std::fs::read(&path).map_err(told)?;
+            let bytes = std::fs::read(&path).map_err(to_error)?;
             sets.push(read_streaks(&bytes).map_err(|error| error.in_file(&path))?);
         }
         Self::from_sets(sets).map_err(|error| error.in_file(folder))

@@ -63,10 +63,10 @@ impl GpuAtlas {
     pub fn query(&self, gpu: &Gpu, queries: &[AtlasQuery]) -> Result<Vec<f32>, GpuError> {
         let kernel = ComputeKernel::new(gpu, &atlas::ATLAS_QUERY_KERNEL, &[])?;
         let asked = gpu.storage_buffer("atlas queries", queries)?;
-        let told = gpu.storage_buffer("atlas radiances", &vec![f32::NAN; queries.len()])?;
+        let answers = gpu.storage_buffer("atlas radiances", &vec![f32::NAN; queries.len()])?;
         let Self { frame, triangles, texels, amounts } = self;
-        let bindings = kernel.bind(gpu, &[frame, triangles, texels, amounts, &asked, &told])?;
+        let bindings = kernel.bind(gpu, &[frame, triangles, texels, amounts, &asked, &answers])?;
         gpu.submit(&[kernel.dispatch(&bindings, [(queries.len() as u32).div_ceil(64), 1, 1])])?;
-        gpu.read(&told)
+        gpu.read(&answers)
     }
 }

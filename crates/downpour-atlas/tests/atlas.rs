@@ -124,14 +124,14 @@ fn with_text(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
 #[test]
 fn another_version_or_digest_is_refused() {
     let bytes = write_streaks(&counted()).unwrap();
-    let told = |bytes: &[u8]| read_streaks(bytes).unwrap_err().to_string();
-    let version = told(&with_text(&bytes, "version=1", "version=2"));
+    let message = |bytes: &[u8]| read_streaks(bytes).unwrap_err().to_string();
+    let version = message(&with_text(&bytes, "version=1", "version=2"));
     assert!(
         version.contains("version") && version.contains("\"2\"") && version.contains("\"1\""),
         "{version}"
     );
     // An edited number no longer has the digest.
-    let digest = told(&with_text(&bytes, "diameter_mm=2", "diameter_mm=3"));
+    let digest = message(&with_text(&bytes, "diameter_mm=2", "diameter_mm=3"));
     assert!(digest.contains("digest"), "{digest}");
 }
 
@@ -175,19 +175,19 @@ fn a_set_without_amounts_has_those_of_its_layers() {
 
 #[test]
 fn amounts_that_are_none_are_refused() {
-    let told = |change: fn(&mut StreakSet)| {
+    let message = |change: fn(&mut StreakSet)| {
         let mut set = counted();
         change(&mut set);
         write_streaks(&set).unwrap_err().to_string()
     };
     for bad in [
-        told(|set| set.amounts[777] = f16::NAN),
-        told(|set| set.amounts[777] = f16::INFINITY),
-        told(|set| set.amounts[777] = f16::from_f32(-1.0)),
+        message(|set| set.amounts[777] = f16::NAN),
+        message(|set| set.amounts[777] = f16::INFINITY),
+        message(|set| set.amounts[777] = f16::from_f32(-1.0)),
     ] {
         assert!(bad.contains("DownpourStreakAmounts") && bad.contains("node 777"), "{bad}");
     }
-    let short = told(|set| set.amounts.truncate(41));
+    let short = message(|set| set.amounts.truncate(41));
     assert!(short.contains("DownpourStreakAmounts") && short.contains("25 x 41 x 41"), "{short}");
     // In a file: an amount that is not the digest's, and a key that is gone.
     let bytes = write_streaks(&counted()).unwrap();
@@ -253,17 +253,17 @@ fn a_folder_is_loaded_or_the_file_is_named() {
 
 #[test]
 fn sets_that_do_not_belong_together_are_refused() {
-    let told = |sets: Vec<StreakSet>| StreakAtlas::from_sets(sets).unwrap_err().to_string();
+    let message = |sets: Vec<StreakSet>| StreakAtlas::from_sets(sets).unwrap_err().to_string();
     let (a, b) = (counted(), StreakSet { diameter: 3.0e-3, ..counted() });
-    assert!(told(vec![]).contains("no set"));
+    assert!(message(vec![]).contains("no set"));
     // 2 mm has two oscillations, 3 mm has one.
-    let short = told(vec![a.clone(), a.clone(), b.clone()]);
+    let short = message(vec![a.clone(), a.clone(), b.clone()]);
     assert!(short.contains("1 at 3 mm"), "{short}");
     let mut other = b.clone();
     other.options.half_extent = 1.5;
-    assert!(told(vec![a.clone(), other]).contains("differs"));
+    assert!(message(vec![a.clone(), other]).contains("differs"));
     let twice = StreakSet { directions: vec![vec![[0.0, 0.0, 1.0]; 41]; 3], ..a };
-    assert!(told(vec![twice]).contains("twice"));
+    assert!(message(vec![twice]).contains("twice"));
 }
 
 /// The triangles fill the disc but for slivers, none is crossed by a corner's circle (Delaunay), neighbors agree.

@@ -98,7 +98,7 @@ impl Mitsuba {
             command.arg(format!("{name}={value}"));
         }
         command.args(["--variant", self.variant()]);
-        Ok(read(&told(&format!("Mitsuba on {}", case.name()), command.output())?))
+        Ok(read(&output_of(&format!("Mitsuba on {}", case.name()), command.output())?))
     }
 
     /// Runs another script with files and numbers as its arguments: the names and values that it prints.
@@ -116,7 +116,7 @@ impl Mitsuba {
         for (name, value) in numbers {
             command.arg(format!("--{name}={value}"));
         }
-        Ok(read(&told(&format!("Mitsuba on {what}"), command.output())?))
+        Ok(read(&output_of(&format!("Mitsuba on {what}"), command.output())?))
     }
 
     fn script(&self, llvm: Option<&Path>) -> Command {
@@ -163,7 +163,7 @@ fn environment(folder: &Path) -> Result<PathBuf, String> {
     create(folder)?;
     let folder_text = folder.display().to_string();
     println!("$ python3 -m venv {folder_text}");
-    told(
+    output_of(
         "python3 -m venv (Debian: apt-get install python3 python3-venv)",
         run::command("python3", &["-m", "venv", &folder_text]).output(),
     )?;
@@ -172,7 +172,7 @@ fn environment(folder: &Path) -> Result<PathBuf, String> {
     println!("$ pip install {}", REQUIREMENTS.split_whitespace().collect::<Vec<_>>().join(" "));
     let mut pip = run::command(&python.display().to_string(), &["-m", "pip", "install", "--quiet"]);
     pip.args(["--disable-pip-version-check", "--no-input", "--only-binary", ":all:", "-r"]).arg(&list);
-    told(
+    output_of(
         "pip install (it needs the network, and a Python that these versions have wheels for)",
         pip.output(),
     )?;
@@ -233,7 +233,7 @@ fn install_llvm() -> bool {
 }
 
 /// Standard output of a child; if it failed, an error with its standard error.
-fn told(what: &str, output: std::io::Result<Output>) -> Result<String, String> {
+fn output_of(what: &str, output: std::io::Result<Output>) -> Result<String, String> {
     let output = output.map_err(|error| format!("{what} did not start: {error}"))?;
     let out = String::from_utf8_lossy(&output.stdout).into_owned();
     if output.status.success() {
@@ -265,9 +265,10 @@ mod tests {
 
     #[test]
     fn failures_say_what_failed() {
-        let error = told("nothing", Err(std::io::Error::other("not there"))).expect_err("did not start");
+        let error = output_of("nothing", Err(std::io::Error::other("not there"))).expect_err("did not start");
         assert_eq!(error, "nothing did not start: not there");
-        let error = told("cargo", run::command("cargo", &["no-such-command"]).output()).expect_err("fails");
+        let error =
+            output_of("cargo", run::command("cargo", &["no-such-command"]).output()).expect_err("fails");
         assert!(error.starts_with("cargo failed (") && error.contains("no-such-command"), "{error}");
     }
 }

@@ -170,14 +170,15 @@ struct Streak {
 
 impl Streak {
     fn new(diameter_mm: f64, (_, exposure_s): (&str, f64), pixels: f64) -> Result<Self, String> {
-        let told = |error: downpour_drop::DropError| error.to_string();
+        let to_error = |error: downpour_drop::DropError| error.to_string();
         let diameter = diameter_mm * 1.0e-3;
-        let shape = DropShape::new(diameter).map_err(told)?;
+        let shape = DropShape::new(diameter).map_err(to_error)?;
         let law = FrequencyLaw::default();
         let oscillation = Oscillation::new(diameter, Amplitudes::GARG_NAYAR_OBLATE, &Fluids::AT_20_C, law)
-            .map_err(told)?
+            .map_err(to_error)?
             .with_phases(PHASE);
-        let speed = terminal_speed(FallSpeedModel::Beard1976, diameter, &Air::standard()).map_err(told)?;
+        let speed =
+            terminal_speed(FallSpeedModel::Beard1976, diameter, &Air::standard()).map_err(to_error)?;
         let fall = speed * exposure_s;
         let high = fall + 2.0 * diameter;
         let height = (high / diameter * pixels).ceil();

@@ -31,15 +31,15 @@ struct Database {
 impl Database {
     fn bytes(&self, name: &str) -> Result<Option<Vec<u8>>, TextError> {
         let path = self.folder.join(name);
-        let told = |error: std::io::Error| TextError(format!("{}: {error}", path.display()));
+        let to_error = |error: std::io::Error| TextError(format!("{}: {error}", path.display()));
         let about = match std::fs::metadata(&path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            about => about.map_err(told)?,
+            about => about.map_err(to_error)?,
         };
         if !about.is_file() || about.len() > MAX_FILE_BYTES {
             return Err(TextError(format!("{}: no file of at most 4 MiB", path.display())));
         }
-        std::fs::read(&path).map(Some).map_err(told)
+        std::fs::read(&path).map(Some).map_err(to_error)
     }
 }
 

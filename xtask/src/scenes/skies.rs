@@ -165,9 +165,9 @@ fn render(program: &Path, weather: &Path, out: &Path, roots: &[&Path]) -> Result
 
 impl Face {
     fn read(path: &Path, yaw_deg: f64, pitch_deg: f64) -> Result<Self, String> {
-        let told = |error: exr::error::Error| format!("{}: {error}", path.display());
+        let to_error = |error: exr::error::Error| format!("{}: {error}", path.display());
         let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
-        let image = reader.all_attributes().from_file(path).map_err(told)?;
+        let image = reader.all_attributes().from_file(path).map_err(to_error)?;
         let channel = |name: &str| -> Result<Vec<f32>, String> {
             let all = &image.layer_data.channel_data.list;
             let found = all.iter().find(|channel| channel.name.eq(name));

@@ -26,8 +26,8 @@ fn too_little_memory_for_any_work_is_refused() {
         assert!(loaded || mebibytes < 96, "{mebibytes} MiB: {}", ended.stderr);
         if loaded {
             assert_eq!(ended.code, Some(3), "{mebibytes} MiB: {}", ended.stderr);
-            let told = format!("{mebibytes} MiB of address space; allowed: 256 MiB or more");
-            assert!(ended.stderr.contains(&told), "{}", ended.stderr);
+            let limit = format!("{mebibytes} MiB of address space; allowed: 256 MiB or more");
+            assert!(ended.stderr.contains(&limit), "{}", ended.stderr);
         }
     }
 }

@@ -21,12 +21,12 @@ fn flooded(arguments: &[&str]) -> Downpour {
 
 #[test]
 fn check_tells_of_the_water() {
-    let told = flooded(&["check", "storm.toml", "--json"]).run().succeeded().json();
-    let number = |key: &str| told[key].as_f64().unwrap();
+    let listed = flooded(&["check", "storm.toml", "--json"]).run().succeeded().json();
+    let number = |key: &str| listed[key].as_f64().unwrap();
     assert_eq!(number("puddles"), 2.0);
     // 2 m^2 are painted, 12 mm deep; of the other 12 m^2 some are hollows.
-    assert!((2.2..12.0).contains(&number("puddle_area_m2")), "{told}");
-    assert!(number("puddle_volume_l") > 24.0 && number("puddle_deepest_mm") >= 12.0, "{told}");
+    assert!((2.2..12.0).contains(&number("puddle_area_m2")), "{listed}");
+    assert!(number("puddle_volume_l") > 24.0 && number("puddle_deepest_mm") >= 12.0, "{listed}");
 }
 
 /// Water changes the picture, ripples continue from frame to frame, and a resumed clip is the same.

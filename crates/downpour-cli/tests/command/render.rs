@@ -51,7 +51,7 @@ fn rows(ended: &Ended) -> HashMap<u64, Row> {
     let all: Vec<(u64, Row)> = lines.map(row).collect();
     let count = all.len();
     let map: HashMap<u64, Row> = all.into_iter().collect();
-    assert_eq!(map.len(), count, "each drop has a number of its own");
+    assert_eq!(map.len(), count, "each drop has a separate id");
     map
 }
 

@@ -50,10 +50,10 @@ fn models_are_read_or_refused() {
             scope.spawn(|| {
                 while let Some(path) = found.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed)) {
                     let name = path.to_str().unwrap();
-                    let told = code(name, limited(&["check", name]).run(), &[]);
+                    let checked = code(name, limited(&["check", name]).run(), &[]);
                     let done = code(name, render(name).run(), &["a.png"]);
-                    assert_eq!(told, done, "{name}: what check says and what render does");
-                    counts.lock().unwrap()[usize::from(told != 0)] += 1;
+                    assert_eq!(checked, done, "{name}: what check says and what render does");
+                    counts.lock().unwrap()[usize::from(checked != 0)] += 1;
                 }
             });
         }

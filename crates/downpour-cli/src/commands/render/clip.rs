@@ -187,13 +187,13 @@ impl Clip<'_> {
             self.paths.picture(number, journal.overwrites() || record.is_some())?;
             self.paths.list(number, journal.overwrites() || listed)?;
             let Some(record) = record.filter(|_| exposed) else { continue };
-            let told = self.paths.stats.is_none() || !record.stats["measured_rate_mm_h"].is_null();
+            let measured = self.paths.stats.is_none() || !record.stats["measured_rate_mm_h"].is_null();
             let picture = fs::read(self.paths.pictures.path(number));
             let whole = picture.is_ok_and(|bytes| digest(&bytes) == record.picture);
             let listed = self.paths.drops.as_ref().is_none_or(|drops| {
                 fs::read(drops.path(number)).is_ok_and(|bytes| record.drops == Some(digest(&bytes)))
             });
-            if told && whole && listed {
+            if measured && whole && listed {
                 kept.insert(number);
             }
         }
