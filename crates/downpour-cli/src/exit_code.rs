@@ -31,7 +31,7 @@ pub(crate) const FILES: u8 = 5;
 pub(crate) const CANCELLED: u8 = 6;
 
 /// Message of `render` where no option names the streak atlas that the weather asks for.
-pub(crate) const NO_ATLAS: &str = "streaks.colour is \"atlas\" or \"atlas-random\", and no --streaks; allowed: with --streaks \
+pub(crate) const NO_ATLAS: &str = "streaks.color is \"atlas\" or \"atlas-random\", and no --streaks; allowed: with --streaks \
                                    FOLDER, where the streak atlas is";
 
 /// An error with the code that the command ends with.

@@ -21,6 +21,7 @@ cargo xtask mutants [OPTIONS]
   --list            say which, and try none
   --jobs N          processes (default: one per core)
   --report FILE     a line per mutant; those that are in it already are left out (default target/mutants.tsv)
+  --least PERCENT   fail if fewer are seen, or named in tests/mutants.txt
   --strict          fail if a mutant survives that tests/mutants.txt does not name";
 
 #[derive(Default)]
@@ -32,6 +33,7 @@ struct Options {
     list: bool,
     jobs: usize,
     report: Option<PathBuf>,
+    least: usize,
     strict: bool,
 }
 
@@ -50,6 +52,7 @@ impl Options {
                 "--list" => options.list = true,
                 "--jobs" => options.jobs = number(value()?)?,
                 "--report" => options.report = Some(value()?.into()),
+                "--least" => options.least = number(value()?)?,
                 "--strict" => options.strict = true,
                 _ => return Err(format!("no option \"{name}\"\n{USAGE}")),
             }
@@ -69,7 +72,7 @@ impl Options {
         };
         let mut chosen: Vec<usize> = (0..all.len()).filter(|&at| fits(&all[at])).collect();
         if let Some(count) = self.sample {
-            chosen = sample(chosen.len(), count, self.seed).into_iter().map(|at| chosen[at]).collect();
+            chosen = sample(all, &chosen, count, self.seed);
         }
         chosen
     }
@@ -117,17 +120,34 @@ fn run(arguments: &[String]) -> Result<(), String> {
         }
     })
     .map_err(|error| error.to_string())?;
-    tell(&all, &chosen, &read(&report), &known(), options.strict)
+    let unlisted = tell(&all, &chosen, &read(&report), &known());
+    check(unlisted, if options.strict { 100 } else { options.least })
 }
 
-/// Says what was seen, and what was not.
+/// Numbers of mutants that survive without a reason, and of all that were tried.
+struct Unlisted {
+    count: usize,
+    of: usize,
+}
+
+/// Fails if fewer than `least` percent of the mutants are seen or listed.
+fn check(unlisted: Unlisted, least: usize) -> Result<(), String> {
+    let Unlisted { count, of } = unlisted;
+    if 100 * (of - count) < least * of {
+        return Err(format!(
+            "{count} of {of} mutants survive and are not in tests/mutants.txt; at least {least} % have to be seen or listed"
+        ));
+    }
+    Ok(())
+}
+
+/// Prints what was seen, and what was not.
 fn tell(
     all: &[Mutant],
     chosen: &[usize],
     done: &BTreeMap<String, String>,
     list: &[Known],
-    strict: bool,
-) -> Result<(), String> {
+) -> Unlisted {
     let word = |at: usize| done.get(&all[at].describe()).map_or("failed: no answer", String::as_str);
     let valid: Vec<usize> = chosen.iter().copied().filter(|&at| word(at) != "refused").collect();
     let seen = valid.iter().filter(|&&at| word(at).starts_with("seen")).count();
@@ -159,10 +179,7 @@ fn tell(
         "{} mutants, {seen} seen ({share:.1} %), {listed} listed with a reason, {unlisted} not",
         valid.len()
     );
-    if strict && unlisted > 0 {
-        return Err(format!("{unlisted} mutants survive and are not in tests/mutants.txt"));
-    }
-    Ok(())
+    Unlisted { count: unlisted, of: valid.len() }
 }
 
 fn work() -> Result<(), String> {

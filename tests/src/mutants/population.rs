@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use downpour_math::rng::rng_draw;
 use downpour_shaders::{Module, compose, modules};
 
 use super::changes::{Change, ChangeKind, changes};
@@ -89,13 +90,19 @@ pub fn population() -> Vec<Mutant> {
     found
 }
 
-/// `count` of `all` indices, drawn by the seed: the same for the same arguments.
+/// `count` of the chosen mutants, drawn by the seed: the same for the same arguments. Each is drawn by its own text, so that a change
+/// of one function leaves those of the others in the sample.
 #[must_use]
-pub fn sample(all: usize, count: usize, seed: u32) -> Vec<usize> {
-    let mut order: Vec<(u32, usize)> =
-        (0..all).map(|at| (downpour_math::rng::rng_draw([seed, 0x6d75], at as u32, 0, 0)[0], at)).collect();
+pub fn sample(all: &[Mutant], chosen: &[usize], count: usize, seed: u32) -> Vec<usize> {
+    let mut order: Vec<([u32; 4], usize)> = chosen.iter().map(|&at| (draw(&all[at], seed), at)).collect();
     order.sort_unstable();
     let mut drawn: Vec<usize> = order.into_iter().take(count).map(|(_, at)| at).collect();
     drawn.sort_unstable();
     drawn
+}
+
+/// Random words of a mutant.
+fn draw(mutant: &Mutant, seed: u32) -> [u32; 4] {
+    let text = format!("{} {} {}", mutant.swap.function, mutant.right, mutant.wrong);
+    text.bytes().fold([seed, 0x6d75, 0, 0], |[a, b, c, _], byte| rng_draw([a, b], c, byte.into(), 0))
 }

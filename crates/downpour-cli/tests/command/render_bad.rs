@@ -272,9 +272,9 @@ fn a_streak_atlas_that_is_none_is_refused() {
                 .run()
         };
         let files = ["floor.gltf", "storm.toml"];
-        let told = run(&[]).failed(2, &["streaks.colour", "--streaks FOLDER"]).with_one_line().left(&files);
+        let told = run(&[]).failed(2, &["streaks.color", "--streaks FOLDER"]).with_one_line().left(&files);
         // The check lists the rest, and ends as the picture does.
-        let checked = check(&[]).failed(2, &["streaks.colour", "--streaks FOLDER"]).left(&files);
+        let checked = check(&[]).failed(2, &["streaks.color", "--streaks FOLDER"]).left(&files);
         assert_eq!(checked.stderr, told.stderr);
         assert!(checked.json()["streak_atlas"].as_str().unwrap().contains("no --streaks: render ends"));
         for (name, code, words) in [
