@@ -142,12 +142,7 @@ fn check(unlisted: Unlisted, least: usize) -> Result<(), String> {
 }
 
 /// Prints what was seen, and what was not.
-fn tell(
-    all: &[Mutant],
-    chosen: &[usize],
-    done: &BTreeMap<String, String>,
-    list: &[Known],
-) -> Unlisted {
+fn tell(all: &[Mutant], chosen: &[usize], done: &BTreeMap<String, String>, list: &[Known]) -> Unlisted {
     let word = |at: usize| done.get(&all[at].describe()).map_or("failed: no answer", String::as_str);
     let valid: Vec<usize> = chosen.iter().copied().filter(|&at| word(at) != "refused").collect();
     let seen = valid.iter().filter(|&&at| word(at).starts_with("seen")).count();

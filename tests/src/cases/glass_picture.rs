@@ -242,7 +242,10 @@ pub(super) fn kernels() -> Vec<KernelCase> {
     };
     vec![
         case("main_glass_picture: a window, the scene in focus", |gpu| {
-            self::case(gpu, "before_s = 8\naperture_mm = 2\ninterior_ambient = 0.3\nfilm_um = 30\nspeed_m_s = 6")
+            self::case(
+                gpu,
+                "before_s = 8\naperture_mm = 2\ninterior_ambient = 0.3\nfilm_um = 30\nspeed_m_s = 6",
+            )
         }),
         case("main_glass_picture: a windshield, the glass in focus", |gpu| {
             self::case(
