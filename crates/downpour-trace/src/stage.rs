@@ -88,7 +88,7 @@ impl Stage {
     ///
     /// # Errors
     /// [`StageError::OverLimit`] above [`MAX_TRIANGLES`] or [`MOST_LIGHTS`], [`StageError::Memory`], or
-    /// [`RenderError`]: a picture outside [`PIXELS`], a time beyond [`LATEST_S`], or a camera that is none.
+    /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or a camera that is none.
     pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
         check_size(weather.size)?;
         if !(-LATEST_S..=LATEST_S).contains(&time_s) {

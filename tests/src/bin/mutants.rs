@@ -121,7 +121,7 @@ fn run(arguments: &[String]) -> Result<(), String> {
     })
     .map_err(|error| error.to_string())?;
     let unlisted = tell(&all, &chosen, &read(&report), &known());
-    check(unlisted, if options.strict { 100 } else { options.least })
+    check(&unlisted, if options.strict { 100 } else { options.least })
 }
 
 /// Numbers of mutants that survive without a reason, and of all that were tried.
@@ -131,8 +131,8 @@ struct Unlisted {
 }
 
 /// Fails if fewer than `least` percent of the mutants are seen or listed.
-fn check(unlisted: Unlisted, least: usize) -> Result<(), String> {
-    let Unlisted { count, of } = unlisted;
+fn check(unlisted: &Unlisted, least: usize) -> Result<(), String> {
+    let &Unlisted { count, of } = unlisted;
     if 100 * (of - count) < least * of {
         return Err(format!(
             "{count} of {of} mutants survive and are not in tests/mutants.txt; at least {least} % have to be seen or listed"
