@@ -32,9 +32,9 @@ pub enum AtlasError {
     File {
         /// The part of the file.
         place: &'static str,
-        /// What is there.
+        /// The content found.
         found: String,
-        /// What could be there.
+        /// The allowed content.
         allowed: &'static str,
     },
     /// A file or folder is missing or cannot be read.

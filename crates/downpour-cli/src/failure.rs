@@ -1,4 +1,4 @@
-//! Why the command did not do what was asked, and the exit code that says so.
+//! Failures of the command: a message of one line, and an exit code.
 
 use std::fmt;
 use std::io;

@@ -1,15 +1,15 @@
-//! What can be wrong with a mask, a model, or a file.
+//! Errors of masks, models and files.
 
 use downpour_drop::DropError;
 
-/// Why a mask could not be traced, written or read.
+/// Reason why a mask could not be traced, written or read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MaskError {
     /// A number is not finite or outside its range.
     #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
     OutOfRange {
-        /// What it is.
+        /// Name of the quantity.
         quantity: &'static str,
         /// The value, in `unit`.
         found: f64,
@@ -34,9 +34,9 @@ pub enum MaskError {
     /// A mesh is not a closed surface that light could pass through.
     #[error("the drop model is not a closed surface: {found}; allowed: {allowed}")]
     Mesh {
-        /// What was found, and where.
+        /// The fault, and where it is.
         found: String,
-        /// What is needed.
+        /// The requirement.
         allowed: &'static str,
     },
     /// A mask file is not what it should be.
@@ -44,9 +44,9 @@ pub enum MaskError {
     File {
         /// The part of the file.
         place: &'static str,
-        /// What is there.
+        /// The content found.
         found: String,
-        /// What could be there.
+        /// The allowed content.
         allowed: &'static str,
     },
     /// A mask could not be encoded.
@@ -54,7 +54,7 @@ pub enum MaskError {
     Encode {
         /// The format.
         format: &'static str,
-        /// Why.
+        /// The encoder's reason.
         reason: String,
     },
     /// Something is wrong in a file with a name.
@@ -62,7 +62,7 @@ pub enum MaskError {
     InFile {
         /// The file or folder.
         path: String,
-        /// What it is.
+        /// The fault in it.
         error: Box<MaskError>,
     },
 }

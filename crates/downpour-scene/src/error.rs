@@ -1,4 +1,4 @@
-//! What can be wrong with a file, in one line that a person can act on.
+//! Errors of files, each in one line that a person can act on.
 //!
 //! Text that came from outside is shown through `quoted`: shortened, and with control characters escaped, so
 //! that a message never moves a terminal's cursor or breaks a log into two lines.
@@ -10,14 +10,14 @@ use std::path::Path;
 /// The longest piece of foreign text in a message, in characters.
 const SHOWN: usize = 80;
 
-/// Why a file could not be used.
+/// Reason why a file could not be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// What the file says cannot be, or is not supported.
+    /// The content of the file is invalid or not supported.
     #[error("{0}")]
     BadInput(Box<Fault>),
-    /// What the file says may be, but costs more than a budget or a fixed limit allows.
+    /// The content of the file is valid, but costs more than a budget or a fixed limit allows.
     #[error("{0}")]
     OverLimit(Box<Fault>),
     /// The file is not there, or cannot be opened or read.
@@ -32,11 +32,11 @@ pub struct Fault {
     pub file: String,
     /// The place inside the file, as `accessors[3].count`; empty when it is the file as a whole.
     pub place: String,
-    /// What was found.
+    /// The content found.
     pub found: String,
-    /// What would be accepted.
+    /// The accepted content.
     pub allowed: String,
-    /// What the user may do about it.
+    /// Advice for the user.
     pub way_out: Option<&'static str>,
 }
 

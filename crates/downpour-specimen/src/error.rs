@@ -1,18 +1,18 @@
-//! What can be wrong with a specimen.
+//! Errors of specimens.
 
 use downpour_drop::DropError;
 use downpour_mask::MaskError;
 
 use downpour_render::RenderError;
 
-/// Why a specimen cannot be rendered.
+/// Reason why a specimen cannot be rendered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpecimenError {
     /// A number is not finite or outside its range.
     #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
     OutOfRange {
-        /// What it is.
+        /// Name of the quantity.
         quantity: &'static str,
         /// The value, in `unit`.
         found: f64,
@@ -24,7 +24,7 @@ pub enum SpecimenError {
     /// The picture, or the sky map, would be smaller or larger than allowed.
     #[error("{quantity} is {found}; allowed: {least} to {most}")]
     Size {
-        /// What it is.
+        /// Name of the quantity.
         quantity: &'static str,
         /// The number asked for.
         found: u64,
@@ -36,9 +36,9 @@ pub enum SpecimenError {
     /// The sky map is not a picture of radiance.
     #[error("the sky map has {found}; allowed: {allowed}")]
     Sky {
-        /// What was found, and where.
+        /// The fault, and where it is.
         found: String,
-        /// What is needed.
+        /// The requirement.
         allowed: String,
     },
     /// The drop itself is not possible.

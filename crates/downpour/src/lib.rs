@@ -37,7 +37,7 @@
 //! | [`math`] | `downpour-math` | reproducible scalar functions and random numbers |
 //!
 //! Nothing here needs a GPU. With the feature `wgpu`, whatever runs on one also runs on a caller's device and queue.
-//! Who wants the physics alone takes `downpour-drop`: it builds in seconds.
+//! The physics alone is in `downpour-drop`, which builds in seconds.
 //!
 //! ```
 //! use downpour::drop::air::Air;

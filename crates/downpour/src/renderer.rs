@@ -410,7 +410,7 @@ fn rain_on(pane: &mut WetPane, time_s: f64, told: &mut dyn FnMut(Progress)) -> R
     Ok(pane.advance(time_s)?)
 }
 
-/// What a picture needs to be seen through a pane.
+/// Inputs of a picture that is seen through a pane.
 fn through(
     pane: &WetPane,
     stage: &Stage,

@@ -21,7 +21,7 @@ pub use error::ShowerError;
 pub use scenery::{MovingEye, MovingScenery, Scenery, Still};
 use stepped::Stepped;
 
-/// How the drops are found.
+/// Method by which the drops are found.
 #[derive(Clone, Debug)]
 enum Form {
     Closed(Box<RainField>),
@@ -59,13 +59,13 @@ impl Shower {
         Ok(Self { law, weather: weather.clone(), bounce: bounce(rain), form })
     }
 
-    /// Whether drops are where they are in closed form, and not step by step.
+    /// True if the drops are found in closed form, and not step by step.
     #[must_use]
     pub fn is_closed_form(&self) -> bool {
         matches!(self.form, Form::Closed(_))
     }
 
-    /// Whether a picture of any time can be made by itself, and is the same as among others. If not, pictures of a clip are
+    /// True if a picture of any time can be made by itself, and is the same as among others. If not, pictures of a clip are
     /// made in order of time, and each of them has to be asked for.
     #[must_use]
     pub fn can_seek(&self) -> bool {
@@ -171,7 +171,7 @@ fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<
     Ok(Form::Closed(Box::new(RainField::new(law, rain.seed)?.with_wind(wind))))
 }
 
-/// What happens to drops that meet a surface.
+/// Bounce of drops that meet a surface.
 fn bounce(rain: &Rain) -> Bounce {
     let bounce = &rain.bounce;
     Bounce {

@@ -1,4 +1,4 @@
-//! What draws frames: a GPU with its pipelines, or the CPU.
+//! Devices that draw frames: a GPU with its pipelines, or the CPU.
 
 use downpour_render::glass::GlassPicture;
 use downpour_render::picture::{Picture, PictureOptions};
@@ -77,7 +77,7 @@ impl Device {
     }
 }
 
-/// What frames are drawn by, for who wants to know on what their bits depend.
+/// The adapter and driver that draw frames, on which their bits depend.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Computer {
     /// The adapter as its driver names it, or the CPU.
@@ -86,7 +86,7 @@ pub struct Computer {
     pub backend: &'static str,
     /// The driver with its version, or the processor's architecture.
     pub driver: String,
-    /// Why the CPU draws in place of a GPU.
+    /// Reason why the CPU draws in place of a GPU.
     pub reason: Option<String>,
 }
 
@@ -106,7 +106,7 @@ struct OnGpu {
     glass: std::cell::OnceCell<downpour_render::gpu::GlassRenderer>,
 }
 
-/// What a frame through a pane is made of.
+/// Inputs of a frame seen through a pane.
 pub(super) struct Through {
     pub(super) glass: GlassPicture,
     pub(super) behind: Vec<[f32; 4]>,

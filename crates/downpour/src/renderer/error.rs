@@ -1,4 +1,4 @@
-//! Why there is no frame.
+//! Errors of the renderer.
 
 use crate::shower::ShowerError;
 use downpour_drop::DropError;
@@ -10,7 +10,7 @@ use downpour_scene::SceneError;
 use downpour_trace::puddle::PuddleError;
 use downpour_trace::stage::StageError;
 
-/// Why there is no frame. Messages are one line: the file or the quantity, what was found, what is allowed.
+/// Reason why there is no frame. Messages are one line: the file or the quantity, what was found, what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RendererError {

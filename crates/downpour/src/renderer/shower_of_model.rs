@@ -24,7 +24,7 @@ const SUN: f64 = 1.5;
 /// Tint of a sun that is low.
 const SUN_COLOR: [f64; 3] = [1.0, 0.93, 0.82];
 
-/// Where the sun is: so high, and so far to the right of the view, degrees. It is not in the picture.
+/// Elevation of the sun, and its azimuth to the right of the view, degrees. It is outside the picture.
 const ELEVATION_DEG: f64 = 22.0;
 const ASIDE_DEG: f64 = 24.0;
 

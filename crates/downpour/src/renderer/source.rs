@@ -1,4 +1,4 @@
-//! What frames are made of: a weather file with all that it names, or a bare model in a shower.
+//! Sources of frames: a weather file with all that it names, or a bare model in a shower.
 
 use std::cell::RefCell;
 use std::fs;

@@ -1,4 +1,4 @@
-//! What can be wrong with a rain before an eye.
+//! Errors of the rain of a weather.
 
 use downpour_drop::DropError;
 use downpour_sim::SimError;
@@ -8,7 +8,7 @@ use downpour_render::RenderError;
 use downpour_render::glass::PaneError;
 use downpour_trace::stage::StageError;
 
-/// Why there is no rain.
+/// Reason why there is no rain.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShowerError {

@@ -1,4 +1,4 @@
-//! What rain that goes step by step asks of a scene between pictures: where the eye is, and what stands there.
+//! A scene over time, as step-by-step rain asks for it between pictures: its eye and its obstacles.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use downpour_trace::stage::{Stage, StageError};
 
 /// A scene over time.
 pub trait Scenery {
-    /// Whether all of it stands still, the eye included.
+    /// True if all of it stands still, the eye included.
     fn is_still(&self) -> bool;
 
     /// The part of space that a picture at a time in seconds shows.

@@ -73,14 +73,14 @@ struct Running {
     surroundings: Surroundings,
 }
 
-/// What the drops meet.
+/// Obstacles and wind of the drops.
 #[derive(Clone, Debug)]
 struct Surroundings {
-    /// What the map was made of.
+    /// Digest of the scene that the map was made of.
     made_of: Option<(u64, CollisionOptions)>,
     map: Option<CollisionMap>,
     wind: Option<Blown>,
-    /// What map and field are relative to.
+    /// Origin of map and field.
     origin: DVec3,
 }
 
@@ -131,7 +131,7 @@ impl Stepped {
         Self { law, speeds, weather: weather.clone(), options, least_pixels: None, running: None }
     }
 
-    /// Whether the rain of a time depends on what was not long before alone.
+    /// True if the rain of a time depends on the recent past alone.
     pub(super) fn forgets(&self) -> bool {
         self.options.volume == SimVolume::View
     }
@@ -215,7 +215,7 @@ impl Stepped {
         self.running.as_ref().map_or(0.0, measured)
     }
 
-    /// What is asked once: of time 0, so that it is the same whatever is looked at first.
+    /// Sets what is asked once: at time 0, so that it does not depend on the first picture.
     fn begin(&mut self, scenery: &dyn Scenery) -> Result<(), ShowerError> {
         if self.least_pixels.is_some() {
             return Ok(());
@@ -357,7 +357,7 @@ impl Stepped {
         Ok(Blown { parts, modes, grid, field })
     }
 
-    /// What of the scene the map has to cover; nothing where nothing stands.
+    /// Part of the scene that the map has to cover; `None` without obstacles.
     fn region(
         &self,
         stage: &Stage,
