@@ -23,6 +23,7 @@ pub mod reach;
 pub mod relay;
 pub mod report;
 pub mod signature;
+pub mod sources;
 pub mod tolerance;
 pub mod words;
 

@@ -1,7 +1,9 @@
 //! What naga says of a function, and the WGSL that calls it with words and takes its result as words.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use downpour_shaders::{compose, modules};
 use naga::{Handle, Module, ScalarKind, Type, TypeInner, UniqueArena};
 
 /// Whether a word of a result is a number, compared with a tolerance, or has to be equal.
@@ -152,4 +154,16 @@ fn destruct(
         _ => return None,
     }
     Some(())
+}
+
+/// The names of all functions and entry points.
+#[must_use]
+pub fn all_functions() -> BTreeSet<String> {
+    modules()
+        .flat_map(|module| {
+            let parsed = parse(&compose(&[module]));
+            let functions = parsed.functions.iter().filter_map(|(_, f)| f.name.clone());
+            functions.chain(parsed.entry_points.iter().map(|e| e.name.clone())).collect::<Vec<_>>()
+        })
+        .collect()
 }

@@ -2,21 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use downpour_shaders::{compose, kernels, modules};
+use downpour_shaders::{kernels, modules};
 use downpour_tests::cases;
 use downpour_tests::kernel::OWN_ENTRY;
-use downpour_tests::signature::parse;
-
-/// The names of all functions and entry points.
-fn all_functions() -> BTreeSet<String> {
-    modules()
-        .flat_map(|module| {
-            let parsed = parse(&compose(&[module]));
-            let functions = parsed.functions.iter().filter_map(|(_, f)| f.name.clone());
-            functions.chain(parsed.entry_points.iter().map(|e| e.name.clone())).collect::<Vec<_>>()
-        })
-        .collect()
-}
+use downpour_tests::signature::all_functions;
 
 /// What function-level cases name, and what naga says that the kernels of kernel-level cases call.
 fn covered() -> BTreeSet<String> {

@@ -6,6 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use downpour_tests::sources::rust_files;
+
 /// The layer of each crate, as in ARCHITECTURE.md: a crate names those of lower layers alone.
 const LAYERS: [(&str, u32); 18] = [
     ("downpour-shaders", 0),
@@ -81,9 +83,7 @@ fn rain_names_no_triangle_and_no_material() {
     for scene in ["downpour-bvh", "downpour-scene", "downpour-trace"] {
         assert!(!named(&manifest).contains(scene), "downpour-render names {scene}");
     }
-    let mut all = Vec::new();
-    files(&folder("downpour-render").join("src"), &mut all);
-    for path in all {
+    for path in rust_files(&folder("downpour-render").join("src")).unwrap() {
         // The atlas finds a direction of light among triangles of directions.
         if path.ends_with("rain/light/atlas.rs") {
             continue;
@@ -109,22 +109,9 @@ fn the_architecture_shows_the_layers() {
     }
 }
 
-/// The files of a folder and of those in it.
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            files(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
-}
-
 /// What the modules at the root of a crate name of each other, tests and documentation left out.
 fn imports(source: &Path) -> BTreeMap<String, BTreeSet<String>> {
-    let mut all = Vec::new();
-    files(source, &mut all);
+    let all = rust_files(source).unwrap();
     let top = |path: &Path| -> String {
         let relative = path.strip_prefix(source).unwrap();
         let first = relative.components().next().unwrap().as_os_str().to_string_lossy().into_owned();

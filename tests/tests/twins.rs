@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use downpour_shaders::{compose, modules};
-use downpour_tests::signature::parse;
+use downpour_tests::signature::all_functions;
+use downpour_tests::sources::rust_files;
 
 /// WGSL functions whose work a Rust function of another name does, and where. Kernel-level cases compare the results.
 const ELSEWHERE: [(&[&str], &str); 8] = [
@@ -42,36 +42,25 @@ const ELSEWHERE: [(&[&str], &str); 8] = [
     (&["streak_rays_ray"], "the loop of downpour_render::rain::streak_rays"),
 ];
 
-/// The names of the WGSL functions, entry points left out.
-fn shader_functions() -> BTreeSet<String> {
-    let named = |module| {
-        let parsed = parse(&compose(&[module]));
-        parsed.functions.iter().filter_map(|(_, function)| function.name.clone()).collect::<Vec<_>>()
-    };
-    modules().flat_map(named).collect()
-}
-
 /// The names of the functions of the crates.
-fn rust_functions(folder: &Path, found: &mut BTreeSet<String>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path: PathBuf = entry.unwrap().path();
-        if path.is_dir() {
-            rust_functions(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let text = fs::read_to_string(&path).unwrap();
-            let is_name = |c: char| c.is_alphanumeric() || c == '_';
-            let named = text.split("fn ").skip(1);
-            found.extend(named.map(|rest| rest.chars().take_while(|&c| is_name(c)).collect::<String>()));
-        }
-    }
+fn rust_functions() -> BTreeSet<String> {
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    let named = |path: PathBuf| {
+        let text = fs::read_to_string(path).unwrap();
+        let begins = text.split("fn ").skip(1);
+        begins.map(|rest| rest.chars().take_while(|&c| is_name(c)).collect::<String>()).collect::<Vec<_>>()
+    };
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    rust_files(&crates).unwrap().into_iter().flat_map(named).collect()
 }
 
 #[test]
 fn every_shader_function_has_a_twin_of_its_name() {
-    let mut twins = BTreeSet::new();
-    rust_functions(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates"), &mut twins);
+    let twins = rust_functions();
     let listed: BTreeSet<&str> = ELSEWHERE.iter().flat_map(|(names, _)| names.iter().copied()).collect();
-    let all = shader_functions();
+    // Entry points have no twin.
+    let all: BTreeSet<String> =
+        all_functions().into_iter().filter(|name| !name.starts_with("main_")).collect();
     let without = all.iter().filter(|name| !twins.contains(*name) && !listed.contains(name.as_str()));
     assert_eq!(without.collect::<Vec<_>>(), Vec::<&String>::new(), "no Rust function of this name");
     for name in listed {

@@ -131,7 +131,8 @@ pub fn rain_layer(
     masks: &DropMasks,
     passes: &mut Vec<(&'static str, f64)>,
 ) -> Result<Vec<[f32; 4]>, RenderError> {
-    let Plate { pixels, environment, lighting, .. } = *plate;
+    let Plate { camera, pixels, environment, lighting } = *plate;
+    debug_assert_eq!(rain.camera, *camera, "rain is made for the camera of the plate");
     let of_streaks = rain.streak_lights(lighting, masks)?;
     let table = timed(passes, "streaks", || {
         rain.streak_table(masks, environment, &of_streaks.light(&rain.streak_rows()))

@@ -174,7 +174,6 @@ impl SceneBuilder {
             puddles: 0,
             puddle_count: 0,
             pane: 0,
-            shade: None,
             sky: Arc::new(sky.texels.clone()),
             sky_levels: sky.levels,
             sky_irradiance: sky.irradiance,

@@ -8,8 +8,7 @@ use std::sync::Arc;
 use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
-use downpour_render::glass::PaneShade;
-use downpour_render::light::{self, Light};
+use downpour_render::light::Light;
 use downpour_shaders::render::scene::{SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS, SKYLIGHT_RADIUS};
 use glam::Vec3;
 
@@ -101,8 +100,6 @@ pub struct SceneData {
     pub puddle_count: u32,
     /// Row where the pane begins that throws shadows; 0: none.
     pub pane: u32,
-    /// The pane with its corner, right, down and outward, which is laid anew where other rows move.
-    pub(crate) shade: Option<(Arc<PaneShade>, [Vec3; 4])>,
     /// Texels of all levels of the sky.
     pub sky: Arc<Vec<[f32; 4]>>,
     /// Width, height and first texel of each level of the sky.
@@ -122,10 +119,7 @@ impl SceneData {
     #[must_use]
     pub fn light_load(&self, index: u32) -> Light {
         let first = (self.lights + index * SCENE_LIGHT_ROWS) as usize;
-        let mut rows = [[0; 4]; light::ROWS];
-        for (row, from) in rows.iter_mut().zip(self.table.get(first..).unwrap_or_default()) {
-            *row = *from;
-        }
+        let rows = std::array::from_fn(|k| self.table[first + k]);
         Light::light_load(&rows)
     }
 

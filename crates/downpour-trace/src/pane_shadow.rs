@@ -9,8 +9,6 @@
 //! Limits: all drops have the mean focal length; light of the sky has no shadows of drops; the reflections of the drops'
 //! surfaces are those of dry glass.
 
-use std::sync::Arc;
-
 use downpour_drop::optics::optics_fresnel;
 use downpour_math::ops;
 use downpour_render::glass::{PaneError, PaneShade, RenderPane, WetPane};
@@ -23,31 +21,34 @@ use crate::scene::SceneView;
 use crate::stage::Stage;
 
 impl SceneData {
-    /// Removes the pane, if there is one, and returns it: its rows are the last of the table.
-    pub(crate) fn take_pane(&mut self) -> Option<(Arc<PaneShade>, [Vec3; 4])> {
-        if self.pane > 0 {
-            self.table.truncate(self.pane as usize);
-            self.pane = 0;
+    /// Removes the rows of the pane, which are the last of the table, and returns them; none without a pane.
+    pub(crate) fn take_pane(&mut self) -> Vec<[u32; 4]> {
+        if self.pane == 0 {
+            return Vec::new();
         }
-        self.shade.take()
+        let rows = self.table.split_off(self.pane as usize);
+        self.pane = 0;
+        rows
+    }
+
+    /// Adds the rows of a pane at the end of the table; nothing for no rows.
+    pub(crate) fn add_pane(&mut self, rows: &[[u32; 4]]) {
+        if !rows.is_empty() {
+            self.pane = self.table.len() as u32;
+            self.table.extend(rows);
+        }
     }
 
     /// Sets the pane before the lamps, in place of the one that is there; `axes`: its corner, right, down and outward, in the
     /// scene's coordinates.
-    pub fn set_pane(&mut self, shade: &Arc<PaneShade>, axes: [Vec3; 4]) {
+    pub fn set_pane(&mut self, shade: &PaneShade, axes: [Vec3; 4]) {
         self.take_pane();
-        self.pane = self.table.len() as u32;
-        let rows = shade.rows(self.pane, axes);
-        self.table.extend(rows);
-        self.shade = Some((Arc::clone(shade), axes));
+        self.add_pane(&shade.rows(axes));
     }
 
     /// Reads the pane.
     fn pane_load(&self) -> RenderPane {
-        let first = self.pane as usize;
-        let mut rows = [[0; 4]; PANE_SHADOW_LEVELS as usize];
-        rows.copy_from_slice(&self.table[first..first + PANE_SHADOW_LEVELS as usize]);
-        RenderPane::pane_load(&rows)
+        RenderPane::pane_load(&self.table, self.pane)
     }
 
     /// Reads columns, rows and first texel of a level.
@@ -90,46 +91,45 @@ pub fn is_lit_through(pane: &WetPane, stage: &Stage) -> bool {
 pub fn set_pane(pane: &WetPane, stage: &mut Stage) -> Result<(), PaneError> {
     let Some(shade) = pane.shade()? else { return Ok(()) };
     let axes = pane.axes(&stage.viewpoint)?;
-    stage.data.set_pane(&Arc::new(shade), axes.map(DVec3::as_vec3));
+    stage.data.set_pane(&shade, axes.map(DVec3::as_vec3));
     Ok(())
 }
 
 impl SceneView<'_> {
-    /// A texel of a level: cover, and gathered cover.
-    fn pane_shadow_texel(&self, level: u32, column: i32, line: i32) -> Vec2 {
+    /// A texel of a level: cover, and gathered cover. `texels` is the first row of the texels.
+    fn pane_shadow_texel(&self, texels: u32, level: u32, column: i32, line: i32) -> Vec2 {
         let [width, height, first] = self.data.pane_level(level);
         let x = column.clamp(0, width as i32 - 1) as u32;
         let y = line.clamp(0, height as i32 - 1) as u32;
         let index = first + y * width + x;
-        let word = self.data.pane_texels(self.data.pane_load().first + index / 8)[((index / 2) % 4) as usize];
+        let word = self.data.pane_texels(texels + index / 8)[((index / 2) % 4) as usize];
         let pair = word >> (16 * (index % 2));
         Vec2::new((pair & 255) as f32, ((pair >> 8) & 255) as f32 * PANE_SHADOW_PEAK) / 255.0
     }
 
     /// A level at a place of [0, 1], bilinear.
-    fn pane_shadow_level(&self, level: u32, place: Vec2) -> Vec2 {
+    fn pane_shadow_level(&self, texels: u32, level: u32, place: Vec2) -> Vec2 {
         let [width, height, _] = self.data.pane_level(level);
         let at = place * Vec2::new(width as f32, height as f32) - 0.5;
         let low = at.floor();
         let part = at - low;
         let (x, y) = (low.x as i32, low.y as i32);
-        let upper = self.pane_shadow_texel(level, x, y) * (1.0 - part.x)
-            + self.pane_shadow_texel(level, x + 1, y) * part.x;
-        let lower = self.pane_shadow_texel(level, x, y + 1) * (1.0 - part.x)
-            + self.pane_shadow_texel(level, x + 1, y + 1) * part.x;
+        let upper = self.pane_shadow_texel(texels, level, x, y) * (1.0 - part.x)
+            + self.pane_shadow_texel(texels, level, x + 1, y) * part.x;
+        let lower = self.pane_shadow_texel(texels, level, x, y + 1) * (1.0 - part.x)
+            + self.pane_shadow_texel(texels, level, x + 1, y + 1) * part.x;
         upper * (1.0 - part.y) + lower * part.y
     }
 
     /// Cover and gathered cover round a place of [0, 1], over a width in metres.
-    fn pane_shadow_at(&self, place: Vec2, width: f32) -> Vec2 {
-        let pane = self.data.pane_load();
+    fn pane_shadow_at(&self, pane: &RenderPane, place: Vec2, width: f32) -> Vec2 {
         let texels = width * pane.texels_per_metre;
         let level = ops::log2(texels.max(1.0)).clamp(0.0, pane.last as f32);
         let low = level.floor();
         let part = level - low;
-        let mut found = self.pane_shadow_level(low as u32, place) * (1.0 - part);
+        let mut found = self.pane_shadow_level(pane.first, low as u32, place) * (1.0 - part);
         if part > 0.0 {
-            found += self.pane_shadow_level(low as u32 + 1, place) * part;
+            found += self.pane_shadow_level(pane.first, low as u32 + 1, place) * part;
         }
         found
     }
@@ -156,7 +156,7 @@ impl SceneView<'_> {
         let mirrored = optics_fresnel(towards.abs(), GLASS_PICTURE_INDEX);
         let clear = (1.0 - mirrored) / (1.0 + mirrored);
         let soft = 2.0 * away * spread;
-        let cover = self.pane_shadow_at(at, soft);
+        let cover = self.pane_shadow_at(&pane, at, soft);
         if pane.form == PANE_SHADOW_TATARCHUK {
             return clear * (1.0 - cover.x + cover.y);
         }
@@ -164,7 +164,7 @@ impl SceneView<'_> {
         // How wide the light of a drop is, in its own radii: a point at the focus.
         let wide = (1.0 - away / focus).abs();
         let gathered = (1.0 - wide).max(0.0);
-        let spot = self.pane_shadow_at(at, soft + 2.0 * radius * (wide - 1.0).max(0.0));
+        let spot = self.pane_shadow_at(&pane, at, soft + 2.0 * radius * (wide - 1.0).max(0.0));
         clear * (1.0 - cover.x + spot.x * (1.0 - gathered) + cover.y * gathered)
     }
 }
@@ -194,7 +194,7 @@ mod tests {
             .collect();
         let shade = PaneShade::new([0.2, 0.1], &drops, form, 0.0, 1.333);
         let mut data = SceneBuilder::new().build(&SkyLight::uniform([1.0; 3]));
-        data.set_pane(&Arc::new(shade), [Vec3::new(-0.1, 0.05, 0.0), Vec3::X, Vec3::NEG_Y, Vec3::Z]);
+        data.set_pane(&shade, [Vec3::new(-0.1, 0.05, 0.0), Vec3::X, Vec3::NEG_Y, Vec3::Z]);
         (data, 2.2e-3 / 0.333)
     }
 

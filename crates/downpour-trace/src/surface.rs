@@ -10,6 +10,7 @@ use downpour_sim::shelter::Holes;
 use glam::{Vec3, Vec4};
 
 use crate::data::{RenderCorner, SceneData};
+use crate::material::RenderMaterial;
 
 /// Everything that shading needs at a hit.
 #[derive(Clone, Copy, Debug)]
@@ -66,8 +67,7 @@ impl SceneData {
     }
 
     /// Alpha at a hit.
-    pub(crate) fn surface_alpha(&self, hit: &Hit) -> f32 {
-        let material = self.material_load(self.corners_of(hit)[0].material);
+    pub(crate) fn surface_alpha(&self, material: &RenderMaterial, hit: &Hit) -> f32 {
         material.base.w
             * self.surface_texture(material.maps[0], self.surface_uv(hit), -20.0).w
             * self.surface_colour(hit).w
@@ -80,7 +80,7 @@ impl SceneData {
             return false;
         }
         let least = if material.flags & SCENE_MASKED != 0 { material.cutoff } else { SURFACE_OPEN };
-        self.surface_alpha(hit) < least
+        self.surface_alpha(&material, hit) < least
     }
 
     /// The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is

@@ -44,8 +44,7 @@ fn drop_light_entry(row: u32, angle: f32) -> vec4f {
 
 // Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles. What is
 // within the inner cone is lit, between the two cones light fades. Nothing of other lamps.
-fn drop_light_cone(index: u32, place: vec3f, least: f32) -> vec3f {
-    let light = light_load(index);
+fn drop_light_cone(light: RenderLight, place: vec3f, least: f32) -> vec3f {
     let cone = light.cone;
     if light.kind == SCENE_LIGHT_DIRECTIONAL || cone.x <= 0.0 {
         return vec3f(0.0);
@@ -124,8 +123,8 @@ fn drop_light_keep_streak(first: u32, radiance: vec3f, place: AtlasPlace) {
 }
 
 // The chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
-fn drop_light_reach(index: u32) -> f32 {
-    return max(light_load(index).chord, DROP_LIGHT_REACH);
+fn drop_light_reach(light: RenderLight) -> f32 {
+    return max(light.chord, DROP_LIGHT_REACH);
 }
 
 // What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
@@ -187,10 +186,11 @@ fn drop_light_of(index: u32) {
     let form = drop_light_frame.form;
     let end = min(drop_light_frame.first_light + DROP_LIGHT_LAMPS, render_frame.light_count);
     for (var k = drop_light_frame.first_light; k < end && form != DROP_LIGHT_NONE; k += 1u) {
-        let light = light_sample(light_load(k), drop.xyz, drop.w);
+        let lamp = light_load(k);
+        let light = light_sample(lamp, drop.xyz, drop.w);
         var lit = light.irradiance;
         if form == DROP_LIGHT_IM_SUNG {
-            lit = drop_light_cone(k, drop.xyz, drop.w);
+            lit = drop_light_cone(lamp, drop.xyz, drop.w);
         }
         if light_weight(lit) <= 0.0 {
             continue;
@@ -199,7 +199,7 @@ fn drop_light_of(index: u32) {
         if form == DROP_LIGHT_IM_SUNG {
             sum += lit;
         } else if form == DROP_LIGHT_LAMPS_TRACED || form == DROP_LIGHT_LAMPS_ROUSSEAU {
-            sum += drop_light_keep_lamp(slot + 1u, lit, drop_light_reach(k), light.direction, towards);
+            sum += drop_light_keep_lamp(slot + 1u, lit, drop_light_reach(lamp), light.direction, towards);
         } else if form == DROP_LIGHT_ROUSSEAU {
             let mean = drop_light_mean(towards, light.direction, drop_light_frame.terms);
             sum += lit * mean;

@@ -20,8 +20,7 @@ fn medium_light_phase(angle: f32) -> vec3f {
 }
 
 // The part of a ray that a lamp lights: within its cone and its range.
-fn medium_light_span(index: u32, origin: vec3f, direction: vec3f, farthest: f32) -> vec2f {
-    let light = light_load(index);
+fn medium_light_span(light: RenderLight, origin: vec3f, direction: vec3f, farthest: f32) -> vec2f {
     var span = vec2f(0.0, farthest);
     if light.kind == SCENE_LIGHT_DIRECTIONAL {
         return select(span, vec2f(farthest), medium_frame.lit == MEDIUM_SPOTS);
@@ -105,7 +104,7 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
     let eye = medium_frame.eye;
     let lamp = light_load(index);
     let parallel = lamp.kind == SCENE_LIGHT_DIRECTIONAL;
-    let lit = medium_light_span(index, eye, direction, select(reach.y, reach.x, parallel));
+    let lit = medium_light_span(lamp, eye, direction, select(reach.y, reach.x, parallel));
     if lit.y <= lit.x {
         return sum;
     }

@@ -1,5 +1,5 @@
 // The pane that throws shadows. Rows in the table: corner and texels in a metre; right, down and outward with the pane's width, height
-// and the form; size, first row and last level of the texels; mean radius and focal length of the drops; levels; texels.
+// and the form; size, first row after the pane's and last level of the texels; mean radius and focal length of the drops; levels; texels.
 // Twin: downpour_render::glass::shade.
 
 // A pane before the lamps.
@@ -33,7 +33,7 @@ fn pane_load() -> RenderPane {
     let texels = render_table[row + 4u];
     return RenderPane(
         corner.xyz, corner.w, across.xyz, across.w, down.xyz, down.w, bitcast<vec3f>(outward.xyz), outward.w,
-        texels.z, texels.w, bitcast<vec2f>(render_table[row + 5u].xy),
+        row + texels.z, texels.w, bitcast<vec2f>(render_table[row + 5u].xy),
     );
 }
 

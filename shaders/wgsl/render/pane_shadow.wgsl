@@ -4,39 +4,38 @@
 // Twin: downpour_trace::pane_shadow, where the method is described.
 
 // A texel of a level: cover, and gathered cover.
-fn pane_shadow_texel(level: u32, column: i32, line: i32) -> vec2f {
+fn pane_shadow_texel(texels: u32, level: u32, column: i32, line: i32) -> vec2f {
     let size = pane_level(level);
     let x = u32(clamp(column, 0, i32(size.x) - 1));
     let y = u32(clamp(line, 0, i32(size.y) - 1));
     let index = size.z + y * size.x + x;
-    let word = pane_texels(pane_load().first + index / 8u)[(index / 2u) % 4u];
+    let word = pane_texels(texels + index / 8u)[(index / 2u) % 4u];
     let pair = word >> (16u * (index % 2u));
     return vec2f(f32(pair & 255u), f32((pair >> 8u) & 255u) * PANE_SHADOW_PEAK) / 255.0;
 }
 
 // A level at a place of [0, 1], bilinear.
-fn pane_shadow_level(level: u32, place: vec2f) -> vec2f {
+fn pane_shadow_level(texels: u32, level: u32, place: vec2f) -> vec2f {
     let size = vec2f(pane_level(level).xy);
     let at = place * size - 0.5;
     let low = floor(at);
     let part = at - low;
     let x = i32(low.x);
     let y = i32(low.y);
-    let upper = pane_shadow_texel(level, x, y) * (1.0 - part.x) + pane_shadow_texel(level, x + 1, y) * part.x;
-    let lower = pane_shadow_texel(level, x, y + 1) * (1.0 - part.x) + pane_shadow_texel(level, x + 1, y + 1) * part.x;
+    let upper = pane_shadow_texel(texels, level, x, y) * (1.0 - part.x) + pane_shadow_texel(texels, level, x + 1, y) * part.x;
+    let lower = pane_shadow_texel(texels, level, x, y + 1) * (1.0 - part.x) + pane_shadow_texel(texels, level, x + 1, y + 1) * part.x;
     return upper * (1.0 - part.y) + lower * part.y;
 }
 
 // Cover and gathered cover round a place of [0, 1], over a width in metres.
-fn pane_shadow_at(place: vec2f, width: f32) -> vec2f {
-    let pane = pane_load();
+fn pane_shadow_at(pane: RenderPane, place: vec2f, width: f32) -> vec2f {
     let texels = width * pane.texels_per_metre;
     let level = clamp(log2(max(texels, 1.0)), 0.0, f32(pane.last));
     let low = floor(level);
     let part = level - low;
-    var found = pane_shadow_level(u32(low), place) * (1.0 - part);
+    var found = pane_shadow_level(pane.first, u32(low), place) * (1.0 - part);
     if part > 0.0 {
-        found += pane_shadow_level(u32(low) + 1u, place) * part;
+        found += pane_shadow_level(pane.first, u32(low) + 1u, place) * part;
     }
     return found;
 }
@@ -62,13 +61,13 @@ fn pane_shadow_share(place: vec3f, direction: vec3f, distance: f32, spread: f32)
     let mirrored = optics_fresnel(abs(towards), GLASS_PICTURE_INDEX);
     let clear = (1.0 - mirrored) / (1.0 + mirrored);
     let soft = 2.0 * away * spread;
-    let cover = pane_shadow_at(at, soft);
+    let cover = pane_shadow_at(pane, at, soft);
     if pane.form == PANE_SHADOW_TATARCHUK {
         return clear * (1.0 - cover.x + cover.y);
     }
     // How wide the light of a drop is, in its own radii: a point at the focus.
     let wide = abs(1.0 - away / pane.drops.y);
     let gathered = max(1.0 - wide, 0.0);
-    let spot = pane_shadow_at(at, soft + 2.0 * pane.drops.x * max(wide - 1.0, 0.0));
+    let spot = pane_shadow_at(pane, at, soft + 2.0 * pane.drops.x * max(wide - 1.0, 0.0));
     return clear * (1.0 - cover.x + spot.x * (1.0 - gathered) + cover.y * gathered);
 }

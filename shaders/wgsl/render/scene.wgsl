@@ -35,7 +35,7 @@ fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
         }
         let material = material_load(render_corners[hit.triangle * 3u].material);
         if (material.flags & SCENE_BLENDED) != 0u {
-            visible *= 1.0 - clamp(surface_alpha(hit), 0.0, 1.0);
+            visible *= 1.0 - clamp(surface_alpha(material, hit), 0.0, 1.0);
         } else if material.transmission > 0.0 {
             visible *= material.base.rgb * material.transmission;
         } else {

@@ -36,8 +36,7 @@ fn surface_texture(row: u32, uv: vec4f, spread: f32) -> vec4f {
 }
 
 // Alpha at a hit.
-fn surface_alpha(hit: SurfaceHit) -> f32 {
-    let material = material_load(render_corners[hit.triangle * 3u].material);
+fn surface_alpha(material: RenderMaterial, hit: SurfaceHit) -> f32 {
     return material.base.a
         * surface_texture(material.maps.x, surface_uv(hit), -20.0).a * surface_colour(hit).a;
 }
@@ -49,7 +48,7 @@ fn surface_is_open(hit: SurfaceHit) -> bool {
         return false;
     }
     let least = select(SURFACE_OPEN, material.cutoff, (material.flags & SCENE_MASKED) != 0u);
-    return surface_alpha(hit) < least;
+    return surface_alpha(material, hit) < least;
 }
 
 // The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is

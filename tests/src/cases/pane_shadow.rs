@@ -1,7 +1,5 @@
 //! `shaders/wgsl/render/pane_shadow.wgsl` against `downpour_render::glass`: the light of lamps through a wet pane.
 
-use std::sync::Arc;
-
 use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::{rng_pcg4d, rng_unit};
 use downpour_render::glass::{GlassPictureDrop, PaneShade, PaneShadows};
@@ -31,7 +29,7 @@ fn case(gpu: &Gpu, form: PaneShadows, gathers_m: f32, height: f32) -> Result<Run
     let drops: Vec<GlassPictureDrop> = (0..120).map(drop).collect();
     let shade = PaneShade::new([6.0, 6.0], &drops, form, gathers_m, 1.333);
     let mut scene = scene();
-    scene.set_pane(&Arc::new(shade), [Vec3::new(-3.0, height, -3.0), Vec3::X, Vec3::Z, Vec3::Y]);
+    scene.set_pane(&shade, [Vec3::new(-3.0, height, -3.0), Vec3::X, Vec3::Z, Vec3::Y]);
     picture(gpu, &scene, Vec3::new(0.6, 0.9, 2.6), 1)
 }
 

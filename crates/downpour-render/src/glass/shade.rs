@@ -138,12 +138,12 @@ fn halved(level: &[Vec2], [columns, rows]: [usize; 2]) -> (Vec<Vec2>, [usize; 2]
 }
 
 impl PaneShade {
-    /// The rows of the pane in a table, of which they begin at row `first_row`. `axes`: corner, right, down and outward of the
+    /// The rows of the pane in a table; wherever they begin, they are the same. `axes`: corner, right, down and outward of the
     /// pane, in the coordinates of the table.
     #[must_use]
-    pub fn rows(&self, first_row: u32, axes: [Vec3; 4]) -> Vec<[u32; 4]> {
+    pub fn rows(&self, axes: [Vec3; 4]) -> Vec<[u32; 4]> {
         let [corner, across, down, outward] = axes;
-        let first = first_row + PANE_SHADOW_LEVELS + self.levels.len() as u32;
+        let first = PANE_SHADOW_LEVELS + self.levels.len() as u32;
         // There is at least one level.
         let [columns, rows, _] = self.levels.first().copied().unwrap_or_default();
         let last = (self.levels.len() as u32).saturating_sub(1);
@@ -198,9 +198,10 @@ pub struct RenderPane {
 }
 
 impl RenderPane {
-    /// Reads the pane from its rows: [`PaneShade::rows`].
+    /// Reads the pane whose rows ([`PaneShade::rows`]) begin at row `row` of a table.
     #[must_use]
-    pub fn pane_load(rows: &[[u32; 4]; PANE_SHADOW_LEVELS as usize]) -> Self {
+    pub fn pane_load(table: &[[u32; 4]], row: u32) -> Self {
+        let rows = &table[row as usize..(row + PANE_SHADOW_LEVELS) as usize];
         let vector = |k: usize| Vec3::from_array([rows[k][0], rows[k][1], rows[k][2]].map(f32::from_bits));
         let last = |k: usize| f32::from_bits(rows[k][3]);
         Self {
@@ -212,7 +213,7 @@ impl RenderPane {
             height: last(2),
             outward: vector(3),
             form: rows[3][3],
-            first: rows[4][2],
+            first: row + rows[4][2],
             last: rows[4][3],
             drops: [rows[5][0], rows[5][1]].map(f32::from_bits),
         }

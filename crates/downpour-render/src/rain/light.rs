@@ -41,11 +41,11 @@ use super::glint::{
     drop_glint_angle, drop_glint_pack, drop_glint_right, drop_glint_rousseau, drop_glint_side,
 };
 use crate::RenderError;
-use crate::light::{check_lights, light_weight};
+use crate::light::{Light, check_lights, light_weight};
 use crate::plate::Lighting;
 
 use atlas::drop_atlas_place;
-use keep::{drop_light_keep, drop_light_keep_facing, drop_light_keep_streak};
+use keep::{drop_light_keep, drop_light_keep_facing, drop_light_keep_streak, drop_light_reach};
 pub use table::DropLightTable;
 
 /// What lamps do to a drop.
@@ -323,8 +323,7 @@ impl<'a> DropLights<'a> {
 
     /// Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles.
     /// What is within the inner cone is lit, between the two cones light fades. Nothing of other lamps.
-    fn drop_light_cone(&self, index: u32, place: Vec3, least: f32) -> Vec3 {
-        let light = self.lighting.light(index);
+    fn drop_light_cone(light: &Light, place: Vec3, least: f32) -> Vec3 {
         let (axis, [scale, edge]) = (light.axis, light.cone);
         if light.is_parallel || scale <= 0.0 {
             return Vec3::ZERO;
@@ -355,10 +354,11 @@ impl<'a> DropLights<'a> {
         let form = self.form;
         let count = if form == DROP_LIGHT_NONE { 0 } else { self.lighting.light_count() };
         for k in 0..count {
-            let light = self.lighting.light(k).light_sample(place, radius);
+            let lamp = self.lighting.light(k);
+            let light = lamp.light_sample(place, radius);
             let mut lit = light.irradiance;
             if form == DROP_LIGHT_IM_SUNG {
-                lit = self.drop_light_cone(k, place, radius);
+                lit = Self::drop_light_cone(&lamp, place, radius);
             }
             if light_weight(lit) <= 0.0 {
                 continue;
@@ -367,7 +367,7 @@ impl<'a> DropLights<'a> {
             match form {
                 DROP_LIGHT_IM_SUNG => sum += lit,
                 DROP_LIGHT_LAMPS_TRACED | DROP_LIGHT_LAMPS_ROUSSEAU => {
-                    let reach = self.drop_light_reach(k);
+                    let reach = drop_light_reach(&lamp);
                     let rows = [lit.extend(reach), light.direction.extend(0.0)];
                     sum += self.drop_light_keep_lamp(glints, rows, towards);
                 }

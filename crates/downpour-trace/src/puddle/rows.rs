@@ -125,9 +125,7 @@ impl SceneData {
         if !puddles.is_empty() {
             self.add_puddles(puddles, rows);
         }
-        if let Some((shade, axes)) = pane {
-            self.set_pane(&shade, axes);
-        }
+        self.add_pane(&pane);
     }
 
     /// Adds the rows of puddles at the end of the table.

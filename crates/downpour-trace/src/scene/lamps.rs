@@ -43,7 +43,7 @@ impl SceneView<'_> {
             let Some(hit) = hit else { return visible };
             let material = self.data.material_load(self.data.corners[hit.triangle as usize * 3].material);
             if material.flags & SCENE_BLENDED != 0 {
-                visible *= 1.0 - self.data.surface_alpha(&hit).clamp(0.0, 1.0);
+                visible *= 1.0 - self.data.surface_alpha(&material, &hit).clamp(0.0, 1.0);
             } else if material.transmission > 0.0 {
                 visible *= material.base.truncate() * material.transmission;
             } else {

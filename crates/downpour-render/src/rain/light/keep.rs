@@ -7,7 +7,7 @@ use downpour_shaders::render::drop_light::{DROP_ATLAS_ROWS, DROP_LIGHT_LAMPS_ROU
 use glam::{Vec3, Vec4};
 
 use super::{DropLights, drop_light_entry, drop_light_mean};
-use crate::light::light_weight;
+use crate::light::{Light, light_weight};
 use crate::rain::glint::drop_glint_angle;
 
 /// The rows of the faintest of a drop's lights, N rows each, if it is fainter than `share`.
@@ -51,12 +51,12 @@ pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, plac
     }
 }
 
-impl DropLights<'_> {
-    /// The chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
-    pub(super) fn drop_light_reach(&self, index: u32) -> f32 {
-        self.lighting.light(index).chord.max(DROP_LIGHT_REACH)
-    }
+/// Chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
+pub(super) fn drop_light_reach(light: &Light) -> f32 {
+    light.chord.max(DROP_LIGHT_REACH)
+}
 
+impl DropLights<'_> {
     /// What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
     fn drop_light_whole(&self, lit: Vec3, direction: Vec3, towards: Vec3) -> Vec3 {
         if self.form == DROP_LIGHT_LAMPS_ROUSSEAU {

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::MediumFrame;
 use super::frame::{medium_both, medium_node, medium_roots};
 use crate::camera::Camera;
-use crate::light::light_weight;
+use crate::light::{Light, light_weight};
 use crate::path_lattice::path_lattice_words;
 use crate::plate::Lighting;
 use crate::rain::glint::drop_glint_angle;
@@ -157,8 +157,7 @@ impl<'a> MediumLight<'a> {
     }
 
     /// The part of a ray that a lamp lights: within its cone and its range.
-    fn medium_light_span(&self, index: u32, origin: Vec3, direction: Vec3, farthest: f32) -> Vec2 {
-        let light = self.lighting.light(index);
+    fn medium_light_span(&self, light: &Light, origin: Vec3, direction: Vec3, farthest: f32) -> Vec2 {
         let spots = self.medium.lit == MEDIUM_SPOTS;
         let nothing = Vec2::splat(farthest);
         let mut span = Vec2::new(0.0, farthest);
@@ -201,7 +200,7 @@ impl<'a> MediumLight<'a> {
         let eye = Vec3::from(medium.eye);
         let lamp = self.lighting.light(index);
         let parallel = lamp.is_parallel;
-        let lit = self.medium_light_span(index, eye, direction, if parallel { reach.x } else { reach.y });
+        let lit = self.medium_light_span(&lamp, eye, direction, if parallel { reach.x } else { reach.y });
         if lit.y <= lit.x {
             return sum;
         }
