@@ -91,7 +91,8 @@ fn drops_mask_layer(sum: DropsTexel, layer: u32, u: f32, v: f32, weight: f32) ->
     return drops_mask_add(s, drops_mask_texel(layer, left + 1, top + 1), weight * fx * fy);
 }
 
-// Values of the masks for a drop at (x, y) in units of half the mask, right and up, interpolated between diameters and elevations.
+// Values of the masks for a drop at (x, y) in units of half the mask, right and up, interpolated between diameters and
+// elevations.
 fn drops_mask_at(row: vec2f, x: f32, y: f32) -> DropsTexel {
     let u = 0.5 + 0.5 * x;
     let v = 0.5 - 0.5 * y;

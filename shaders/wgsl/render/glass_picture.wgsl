@@ -1,10 +1,10 @@
 // A picture through a pane of glass with water on it, ray by ray through the lens.
 // Law: a ray from the lens meets the pane, goes straight through it, leaves the water by Snell's law at the local normal,
 // and shows what stands in its new direction: the picture where that is in it, else the capture of what is round the eye.
-// The position of a point is given by the distance in its own direction. Light that is not transmitted (Fresnel, exact, incoherent sum
-// over the reflections within the pane) shows the eye's side, whose light is a share of that of the surroundings; so does
-// what is totally reflected back to the eye. A lens of some size is a set of places: what is out of focus is blurred by as
-// much as the lens says, and no light is lost.
+// The position of a point is given by the distance in its own direction. Light that is not transmitted (Fresnel, exact,
+// incoherent sum over the reflections within the pane) shows the eye's side, whose light is a share of that of the
+// surroundings; so does what is totally reflected back to the eye. A lens of some size is a set of places: what is out
+// of focus is blurred by as much as the lens says, and no light is lost.
 // Limits: the pane's thickness does not shift what is behind it; light that is totally reflected within a drop and leaves
 // it elsewhere goes on without a second refraction.
 // Twin: downpour_render::glass::picture.
@@ -292,8 +292,8 @@ fn glass_picture_outer(cosine: f32, met: GlassPictureMet, within: f32) -> f32 {
     return 1.0 - (1.0 - surface) * (1.0 - inner);
 }
 
-// Radiance along a ray that meets the pane at a position, in a direction of the pane. `from_eye` is that position relative to the eye; `spread`
-// are the angle between neighbouring rays, and their distance on the pane.
+// Radiance along a ray that meets the pane at a position, in a direction of the pane. `from_eye` is that position
+// relative to the eye; `spread` are the angle between neighbouring rays, and their distance on the pane.
 fn glass_picture_through(place: vec2f, d: vec3f, from_eye: vec3f, shift: vec2f, spread: vec2f) -> vec3f {
     let water = glass_picture_frame.water;
     let aside = d.xy / water;

@@ -181,8 +181,8 @@ fn puddle_water_beneath(direction: vec3f) -> vec3f {
     return vec3f(x, sqrt(max(1.0 - x * x - z * z, 0.0)), z);
 }
 
-// Point at which light that falls on a position under a depth of level water has come through the surface, from the point above it
-// on the surface.
+// Point at which light that falls on a position under a depth of level water has come through the surface,
+// relative to the point of the surface above the position.
 fn puddle_water_entry(direction: vec3f, depth: f32) -> vec3f {
     let below = puddle_water_beneath(direction);
     let aside = depth / max(below.y, 0.1);

@@ -96,7 +96,8 @@ impl DropsView<'_> {
         drops_mask_add(s, texel(left + 1, top + 1), weight * fx * fy)
     }
 
-    /// Values of the masks for a drop at (x, y) in units of half the mask, right and up, interpolated between diameters and elevations.
+    /// Values of the masks for a drop at (x, y) in units of half the mask, right and up, interpolated between diameters and
+    /// elevations.
     pub(super) fn drops_mask_at(&self, row: [f32; 2], x: f32, y: f32) -> DropsTexel {
         let (u, v) = (0.5 + 0.5 * x, 0.5 - 0.5 * y);
         let low = row.map(f32::floor);
