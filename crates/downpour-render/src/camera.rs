@@ -1,4 +1,4 @@
-//! Where the picture is taken from.
+//! Camera of a picture: position, orientation and projection.
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -10,7 +10,7 @@ pub const PIXELS: std::ops::RangeInclusive<u32> = 1..=16384;
 /// The longest exposure, s.
 pub const LONGEST_EXPOSURE_S: f64 = 1.0;
 
-/// How the eye moves in the middle of the exposure.
+/// Motion of the eye in the middle of the exposure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EyeMotion {
     /// Velocity, m/s.

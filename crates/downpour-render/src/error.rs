@@ -1,13 +1,13 @@
-//! What can be wrong with a picture that is asked for.
+//! Errors of a requested picture.
 
-/// Why a picture was not made.
+/// Reason why a picture was not made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
     /// A number is not finite or outside its range.
     #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
     OutOfRange {
-        /// What it is.
+        /// Name of the quantity.
         quantity: &'static str,
         /// The value, in `unit`.
         found: f64,
@@ -39,7 +39,7 @@ pub enum RenderError {
     Encode {
         /// The format.
         format: &'static str,
-        /// Why.
+        /// Reason of the failure.
         reason: String,
     },
 }

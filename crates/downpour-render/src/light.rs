@@ -20,7 +20,7 @@ pub const ROWS: usize = SCENE_LIGHT_ROWS as usize;
 pub enum LightSource {
     /// Parallel light.
     Directional {
-        /// Where the light goes, of length 1.
+        /// Direction in which the light travels, of length 1.
         direction: Vec3,
         /// Irradiance on a surface that faces it.
         irradiance: Vec3,

@@ -21,7 +21,7 @@ pub fn noise_seed(seed: u64, time_s: f64) -> u64 {
     u64::from(low) | u64::from(high) << 32
 }
 
-/// What a picture costs and how it looks.
+/// Options of a picture: size, samples and appearance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureOptions {
     /// Columns and rows.
@@ -32,7 +32,7 @@ pub struct PictureOptions {
     pub sky_rays: u32,
     /// Seed of the rays: [`noise_seed`] for the frames of a clip.
     pub seed: u64,
-    /// How drops are drawn.
+    /// Options of the drawing of drops.
     pub rain: RainOptions,
 }
 
@@ -57,7 +57,7 @@ pub struct Picture {
     /// Those of them that the scene does not hide altogether: their places among the drops that were given, nearest
     /// first.
     pub drawn: Vec<u32>,
-    /// What is round the eye, all levels of an octahedral map.
+    /// Environment map around the eye, all levels of an octahedral map.
     pub surroundings: Vec<[f32; 4]>,
     /// The scene through the rain and through a pane of glass, if there is one.
     pub through_glass: Option<Vec<[f32; 3]>>,

@@ -78,7 +78,7 @@ pub use weather::drop_model;
 /// Glints that are kept of a drop where nothing else is said.
 const GLINTS: u32 = 4;
 
-/// How a drop's pixel finds its colour.
+/// Method that finds the color of a drop's pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum RefractionForm {
@@ -111,10 +111,10 @@ impl From<RainRefraction> for RefractionForm {
     }
 }
 
-/// How drops are drawn.
+/// Options of the drawing of drops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainOptions {
-    /// How a drop's pixel finds its colour.
+    /// Method that finds the color of a drop's pixel.
     pub form: RefractionForm,
     /// Texels along an edge of the capture: a power of two, 16 to 2048.
     pub capture_size: u32,
@@ -124,7 +124,7 @@ pub struct RainOptions {
     pub medium: RainMedium,
     /// In which time light is gathered.
     pub exposure: Exposure,
-    /// What lamps and the sun add.
+    /// Options of the light of lamps and the sun on drops.
     pub light: DropLightOptions,
 }
 

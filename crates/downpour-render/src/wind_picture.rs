@@ -35,7 +35,7 @@ const BRIGHTEST: f64 = 0.998;
 /// Pixels each way at which the divergence is measured, at most.
 const PROBES: u32 = 128;
 
-/// Which way a slice lies. +Y is up in all pictures but those from above.
+/// Orientation of a slice. +Y is up in all pictures but those from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WindPlane {
     /// At one z: x to the right, y up.
@@ -64,7 +64,7 @@ impl WindPlane {
         }
     }
 
-    /// What is written below the picture.
+    /// Name of the axis across the slice, written below the picture.
     fn name(self) -> &'static str {
         match self {
             Self::Xy => "z",
@@ -131,7 +131,7 @@ impl WindSlice {
     }
 }
 
-/// How tall the scale below is, in pixels.
+/// Height of the color scale below the picture, in pixels.
 fn legend_rows(size: [u32; 2]) -> u32 {
     22 * letter_size(size)
 }
@@ -158,7 +158,7 @@ pub struct WindPicture {
     pub divergence_rms: f64,
 }
 
-/// What flows through a slice.
+/// Wind in a slice, one value per pixel.
 struct Flow {
     columns: usize,
     rows: usize,

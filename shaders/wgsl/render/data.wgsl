@@ -17,7 +17,7 @@ struct RenderFrame {
     nearest: f32,
     // Part of the rays that look for the light of a surface that one of them is.
     ray_share: f32,
-    // What is traced: SCENE_PICTURE, SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
+    // Projection that is traced: SCENE_PICTURE, SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
     projection: u32,
     // 1: the capture leaves parallel light out.
     suns_out: u32,

@@ -1,4 +1,4 @@
-// Which streaks of an atlas a drop shows under a lamp: the choice of atlas/lookup.wgsl, out of a table of numbers that
+// Choice of the streaks of an atlas that a drop shows under a lamp: that of atlas/lookup.wgsl, out of a table of numbers that
 // stands behind the scattering of drops.
 // Law: an amount is the radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius that sends as much
 // light to the viewer as the drop of the streak does.

@@ -1,5 +1,5 @@
-// Where the light of a lamp leaves a drop, as the viewer sees it; and what a pixel of a drop shows of a lamp in the form of
-// Rousseau 2006. Nothing here reads a buffer: any shader may use it.
+// Position on a drop at which the light of a lamp leaves it, as the viewer sees it; and radiance of a lamp in a pixel of
+// a drop after Rousseau 2006. Nothing here reads a buffer: any shader may use it.
 // `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Places on the
 // disc are in radii, along the right and the up of the view.
 // Twin: downpour_render::rain::glint.

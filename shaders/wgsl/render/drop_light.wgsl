@@ -127,7 +127,7 @@ fn drop_light_reach(light: RenderLight) -> f32 {
     return max(light.chord, DROP_LIGHT_REACH);
 }
 
-// What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
+// Mean radiance of a lamp over a drop's whole disc, from the lamp's irradiance over pi and its direction.
 fn drop_light_whole(lit: vec3f, direction: vec3f, towards: vec3f) -> vec3f {
     if drop_light_frame.form == DROP_LIGHT_LAMPS_ROUSSEAU {
         return lit * drop_light_mean(towards, direction, drop_light_frame.terms);

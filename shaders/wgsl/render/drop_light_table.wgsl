@@ -1,4 +1,4 @@
-// How drops scatter the light of lamps. Host: downpour_render::rain::light::DropLightTable.
+// Table of the light of lamps that drops scatter. Host: downpour_render::rain::light::DropLightTable.
 
 // Row 0: (dsigma/dOmega) / (pi a^2) in 1/sr, red, green, blue; the other rows: the same for each way of light, and its
 // place on the disc. Behind them, if there is one, what has to be known of a streak atlas.

@@ -12,7 +12,7 @@
 @group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
 // At first the medium (medium_filter.wgsl): light of lamps, and mean distance and optical depth as halves. Then the rain.
 @group(0) @binding(6) var<storage, read_write> drops_layer: array<vec4f>;
-// What lamps add to each drop of the list: the mean over it, and its brightest glints.
+// Light of lamps on each drop of the list: the mean over it, and its brightest glints.
 @group(0) @binding(8) var<storage, read> drops_light: array<vec4f>;
 
 // The place of a ray on the plane at distance 1 through a drop's middle, along the right and up of its view.
@@ -310,7 +310,7 @@ fn drops_over(x: u32, y: u32) -> vec4f {
     var radiance = vec3f(0.0);
     var transmittance = 1.0;
     var behind = true;
-    // What the medium lets through up to here.
+    // Transmittance of the medium up to here.
     var left = 1.0;
     for (var k = drops_tiles[tile]; k < drops_tiles[tile + 1u]; k += 1u) {
         let drop = drops_tiles[k];

@@ -1,4 +1,4 @@
-// What was captured round the eye, between its texels and its levels.
+// Lookup in the environment map around the eye, interpolated between its texels and its levels.
 // Law: octahedral (the square goes on beyond an edge at the edge's mirror image) or the papers' wide picture; trilinear.
 // Twin: downpour_render::rain::drops_capture.
 
@@ -74,7 +74,7 @@ fn drops_capture_shifted(ray: vec3f, direction: vec3f) -> vec2f {
     return clamp(vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y), vec2f(0.0), vec2f(1.0));
 }
 
-// What is seen in a direction through a drop that is seen along `towards`, over a width in radians.
+// Radiance of the capture in a direction, for a drop that is seen along `towards`, averaged over a width in radians.
 fn drops_capture_about(towards: vec3f, direction: vec3f, width: f32) -> vec3f {
     if drops_frame.form == DROPS_SHIFT {
         let right = drop_glint_right(towards);

@@ -2,7 +2,7 @@
 // Law: sums are weighted by coverage, so that texels outside the drop have no say in a direction.
 // Twin: downpour_render::rain::drops_mask.
 
-// What a mask says.
+// Values of a mask at a point.
 struct DropsTexel {
     // Direction of the light that comes through, in the frame of the view: right, up, towards the viewer.
     direction: vec3f,
@@ -63,7 +63,7 @@ fn drops_mask_add(sum: DropsTexel, texel: DropsTexel, weight: f32) -> DropsTexel
     );
 }
 
-// What a sum of weighted texels says.
+// Normalizes a sum of weighted texels.
 fn drops_mask_mean(sum: DropsTexel) -> DropsTexel {
     let whole = max(sum.coverage, 1.0e-20);
     return DropsTexel(
@@ -91,7 +91,8 @@ fn drops_mask_layer(sum: DropsTexel, layer: u32, u: f32, v: f32, weight: f32) ->
     return drops_mask_add(s, drops_mask_texel(layer, left + 1, top + 1), weight * fx * fy);
 }
 
-// What the masks say for a drop at (x, y) in units of half the mask, up and right: between diameters and elevations.
+// Values of the masks for a drop at (x, y) in units of half the mask, right and up, interpolated between diameters and
+// elevations.
 fn drops_mask_at(row: vec2f, x: f32, y: f32) -> DropsTexel {
     let u = 0.5 + 0.5 * x;
     let v = 0.5 - 0.5 * y;

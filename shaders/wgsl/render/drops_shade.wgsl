@@ -1,5 +1,5 @@
-// What one ray sees through a drop: light that is refracted, mirrored, and reflected inside once, by the mask, looked up in the
-// capture.
+// Radiance along one ray through a drop: light that is refracted, mirrored, and reflected inside once, by the mask,
+// looked up in the capture.
 // Law: each has the share that the mask says; what is left, light that is reflected inside twice and more, is the mean of all
 // that is about. So nothing is lost: in uniform surroundings a drop vanishes. The mask's directions are for parallel rays;
 // a ray of the camera turns them by what it differs from the ray to the drop's middle (first order in the drop's
@@ -13,7 +13,7 @@ struct DropsShade {
     towards: vec3f,
     // Half the width of its mask, in equivalent radii.
     half_extent: f32,
-    // What the ray differs from `towards`, where it is as far along.
+    // Difference of the ray from `towards` at the same distance along it.
     lean: vec3f,
     // Equivalent radii between samples.
     spacing: f32,
@@ -26,7 +26,7 @@ fn drops_shade_shifted(ray: vec3f, texel: DropsTexel) -> vec2f {
     return drops_capture_shifted(ray, texel.direction);
 }
 
-// What a drop shows at (x, y), in units of half its mask: radiance times coverage, and coverage.
+// Light of a drop at (x, y), in units of half its mask: radiance times coverage, and coverage.
 fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
     let texel = drops_mask_at(drop.row, x, y);
     if texel.coverage <= 0.0 {
@@ -43,7 +43,7 @@ fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
     }
     let rest = max(1.0 - texel.transmittance - texel.reflectance - texel.internal_transmittance, 0.0);
     var sum = drops_capture_texel(drops_frame.capture_last, 0, 0) * rest;
-    // What comes through, what is mirrored, and what is reflected inside.
+    // Transmitted light, light mirrored at the outside, and light reflected inside.
     for (var k = 0u; k < 3u; k += 1u) {
         var seen = texel.direction;
         var weight = texel.transmittance;

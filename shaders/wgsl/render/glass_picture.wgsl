@@ -1,10 +1,10 @@
 // A picture through a pane of glass with water on it, ray by ray through the lens.
 // Law: a ray from the lens meets the pane, goes straight through it, leaves the water by Snell's law at the local normal,
 // and shows what stands in its new direction: the picture where that is in it, else the capture of what is round the eye.
-// Where a place is, is told by the distance in its own direction. What is not let through (Fresnel, exact, incoherent sum
-// over the reflections within the pane) shows the eye's side, whose light is a share of that of the surroundings; so does
-// what is totally reflected back to the eye. A lens of some size is a set of places: what is out of focus is blurred by as
-// much as the lens says, and no light is lost.
+// The position of a point is given by the distance in its own direction. Light that is not transmitted (Fresnel, exact,
+// incoherent sum over the reflections within the pane) shows the eye's side, whose light is a share of that of the
+// surroundings; so does what is totally reflected back to the eye. A lens of some size is a set of places: what is out
+// of focus is blurred by as much as the lens says, and no light is lost.
 // Limits: the pane's thickness does not shift what is behind it; light that is totally reflected within a drop and leaves
 // it elsewhere goes on without a second refraction.
 // Twin: downpour_render::glass::picture.
@@ -52,12 +52,12 @@ struct GlassPictureFrame {
     levels: array<vec4u, GLASS_PICTURE_LEVELS>,
 }
 
-// What a ray finds on the pane.
+// Surface of the pane that a ray meets.
 struct GlassPictureMet {
     normal: vec3f,
     // 0 where the glass is dry.
     wet: f32,
-    // How fast the normal turns, 1/m.
+    // Rate at which the normal turns, 1/m.
     curvature: f32,
     // 1 where it is a drop that shows lamps.
     lit: f32,
@@ -67,7 +67,7 @@ struct GlassPictureMet {
 @group(0) @binding(1) var<storage, read> glass_picture_drops: array<GlassPictureDrop>;
 // First the places where the bins' lists begin (one more than there are bins), then the lists.
 @group(0) @binding(2) var<storage, read> glass_picture_bins: array<u32>;
-// How wet the cells are, four to a word.
+// Wetness of the cells, four to a word.
 @group(0) @binding(3) var<storage, read> glass_picture_wet: array<u32>;
 @group(0) @binding(4) var<storage, read> glass_picture_lens: array<vec4f>;
 @group(0) @binding(5) var<storage, read> glass_picture_behind: array<vec4f>;
@@ -76,7 +76,7 @@ struct GlassPictureMet {
 // Those that shine on the pane, at least one.
 @group(0) @binding(8) var<storage, read> glass_picture_sources: array<GlassPictureLight>;
 
-// How wet a cell is, 0 to 1.
+// Wetness of a cell, 0 to 1.
 fn glass_picture_wetness(column: i32, row: i32) -> f32 {
     let size = vec2i(glass_picture_frame.wet_size);
     let x = u32(clamp(column, 0, size.x - 1));
@@ -211,13 +211,13 @@ fn glass_picture_at(of_capture: bool, place: vec2f, footprint: f32) -> vec3f {
     return sum;
 }
 
-// What stands round the eye in a direction, for a footprint of some angle.
+// Radiance of the environment map in a direction, averaged over a footprint in radians.
 fn glass_picture_round(direction: vec3f, footprint: f32) -> vec3f {
     let place = packing_octahedral_encode(direction) * 0.5 + 0.5;
     return glass_picture_at(true, place, footprint / glass_picture_frame.capture_texel);
 }
 
-// Where a direction is on the picture: -1 to 1 right and up, and its depth.
+// Projects a direction onto the picture: -1 to 1 right and up, and its depth.
 fn glass_picture_project(direction: vec3f) -> vec3f {
     let depth = dot(direction, glass_picture_frame.camera.forward);
     let near = max(depth, 1.0e-6);
@@ -228,7 +228,7 @@ fn glass_picture_project(direction: vec3f) -> vec3f {
     );
 }
 
-// What a ray shows that begins at an offset from the eye. Its footprint is an angle.
+// Radiance along a ray that begins at an offset from the eye. Its footprint is an angle.
 fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint: f32) -> vec3f {
     let size = vec2f(f32(glass_picture_frame.camera.width), f32(glass_picture_frame.camera.height));
     let guess = glass_picture_project(direction);
@@ -257,7 +257,7 @@ fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint
     return sum;
 }
 
-// What a drop shows of the lamps and the sun: they are points, and in no picture of what is behind the pane.
+// Radiance of the lamps and the sun in a drop: they are points, and in no picture of the scene behind the pane.
 fn glass_picture_lights(from_eye: vec3f, direction: vec3f, footprint: f32) -> vec3f {
     var sum = vec3f(0.0);
     for (var k = 0u; k < glass_picture_frame.lights; k += 1u) {
@@ -271,7 +271,7 @@ fn glass_picture_world(v: vec3f) -> vec3f {
     return glass_picture_frame.across * v.x + glass_picture_frame.down * v.y + glass_picture_frame.outward * v.z;
 }
 
-// What of the room a ray shows that leaves water towards the eye's side in a direction of the pane.
+// Radiance of the interior ambient along a ray that leaves water towards the eye's side, in a direction of the pane.
 fn glass_picture_inside(v: vec3f) -> vec3f {
     let aside = v.xy * glass_picture_frame.water;
     let out = vec3f(aside, -sqrt(max(1.0 - dot(aside, aside), 1.0e-4)));
@@ -292,8 +292,8 @@ fn glass_picture_outer(cosine: f32, met: GlassPictureMet, within: f32) -> f32 {
     return 1.0 - (1.0 - surface) * (1.0 - inner);
 }
 
-// What a ray shows that meets the pane at a place in a direction of the pane. `from_eye` is the place from the eye; `spread`
-// are the angle between neighbouring rays, and their distance on the pane.
+// Radiance along a ray that meets the pane at a position, in a direction of the pane. `from_eye` is that position
+// relative to the eye; `spread` are the angle between neighbouring rays, and their distance on the pane.
 fn glass_picture_through(place: vec2f, d: vec3f, from_eye: vec3f, shift: vec2f, spread: vec2f) -> vec3f {
     let water = glass_picture_frame.water;
     let aside = d.xy / water;
@@ -338,7 +338,7 @@ fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f) -> vec3f {
     let right = glass_picture_frame.camera.right / sqrt(dot(glass_picture_frame.camera.right, glass_picture_frame.camera.right));
     let up = glass_picture_frame.camera.up / sqrt(dot(glass_picture_frame.camera.up, glass_picture_frame.camera.up));
     let from_eye = (right * at.x + up * at.y) * glass_picture_frame.lens;
-    // What is behind is looked up for the pixel's middle: it is sampled already.
+    // The scene behind is looked up at the pixel's center: it is sampled already.
     let shift = vec2f(0.5 - at.z, 0.5 - at.w);
     let plane = dot(glass_picture_frame.corner, glass_picture_frame.outward);
     let towards = dot(ray, glass_picture_frame.outward);

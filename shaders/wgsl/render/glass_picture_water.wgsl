@@ -10,13 +10,13 @@ struct GlassPictureDrop {
     // Radius of the disc, and of the sphere whose cap it is.
     radius: f32,
     sphere: f32,
-    // Where it runs to, of length 1.
+    // Direction in which it runs, of length 1.
     along: vec2f,
     // Inverse of how much longer it is behind its middle than before it.
     behind: f32,
-    // How much steeper it is on one side than on the other, as a share.
+    // Relative excess of the slope on one side over that on the other.
     lean: f32,
-    // Which side that is, of length 1.
+    // Direction of the steeper side, of length 1.
     droop: vec2f,
     unused: vec2f,
     // The outline: what is added to the squared distance with the cosine and the sine of twice the angle, and of thrice.

@@ -3,7 +3,7 @@
 // coordinates and flags; width, height, first texel and levels.
 // Twin: downpour_trace::material.
 
-// How a surface looks, with rows of texture slots.
+// Appearance of a surface, with rows of texture slots.
 struct RenderMaterial {
     // Base color, linear, and alpha.
     base: vec4f,

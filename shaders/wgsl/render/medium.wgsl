@@ -16,7 +16,7 @@ struct MediumFrame {
     region: u32,
     // Edges of a box; radius and height of others.
     size: vec3f,
-    // How much more a drop covers from straight above than from the side.
+    // Relative excess of the area of a drop's outline from straight above over that from the side.
     flatness: f32,
     // The eye, relative to the scene's origin.
     eye: vec3f,
@@ -35,7 +35,7 @@ struct MediumFrame {
 
 @group(0) @binding(9) var<uniform> medium_frame: MediumFrame;
 
-// How much more drops cover, seen along a unit direction, than from the side.
+// Area of the drops' outlines seen along a unit direction, over that from the side.
 fn medium_outline(direction: vec3f) -> f32 {
     return 1.0 + medium_frame.flatness * direction.y * direction.y;
 }

@@ -7,7 +7,7 @@
 // Light of lamps, and mean distance and optical depth as halves.
 @group(0) @binding(3) var<storage, read_write> medium_filter_layer: array<vec4f>;
 
-// How far a neighbor has a say: as far as its ray is about as long.
+// Weight of a neighbor, 0 to 1: 1 if its ray is as long, 0 from a relative difference of 20 %.
 fn medium_filter_weight(own: f32, other: f32) -> f32 {
     let reach = min(own, MEDIUM_LAMP_REACH);
     let far = min(other, MEDIUM_LAMP_REACH);

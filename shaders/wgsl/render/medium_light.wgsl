@@ -2,7 +2,7 @@
 // Law: single scattering, L = Int sigma(s) exp(-tau(s)) E(s) p(angle(s)) ds, with the drops' phase function p. For a lamp at the
 // distance h from the ray the angle runs evenly along the ray as seen from the lamp, ds / r^2 = d angle / h, so that a part of
 // the ray between two angles needs but the integral of p over them (a table), and is exact however near the lamp is.
-// What of it is hidden is asked by one ray per pixel, drawn by what each part of the ray and each lamp would give; the mean over
+// Occlusion is tested with one ray per pixel, drawn by the light that each part of the ray and each lamp would give; the mean over
 // the pixels round it is taken by medium_filter.wgsl.
 // Light that is weakened on its way from the lamp to the drop is taken to be made good by what is scattered forward on it.
 // Twin: downpour_render::rain::medium::light.
@@ -38,7 +38,7 @@ fn medium_light_span(light: RenderLight, origin: vec3f, direction: vec3f, farthe
         // A lamp that shines everywhere, or over more than half of all directions.
         return select(span, vec2f(farthest), medium_frame.lit == MEDIUM_SPOTS && cone.x <= 0.0);
     }
-    // Where the ray is in the cone: (d . axis)^2 = edge^2 d^2, on the side to which the axis points.
+    // Part of the ray in the cone: (d . axis)^2 = edge^2 d^2, on the side to which the axis points.
     let rate = dot(direction, axis);
     let depth = dot(offset, axis);
     let a = rate * rate - edge * edge;
@@ -61,7 +61,7 @@ fn medium_light_span(light: RenderLight, origin: vec3f, direction: vec3f, farthe
     return medium_both(span, select(vec2f(-MEDIUM_FAR, first), vec2f(second, MEDIUM_FAR), rate > 0.0));
 }
 
-// What has been found of the light before a pixel, and the part of it that a ray is to be cast for.
+// Light found so far before a pixel, and the part of it for which a ray is to be cast.
 struct MediumLight {
     // Light if nothing hides it.
     whole: vec3f,
@@ -157,7 +157,7 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
     return next;
 }
 
-// What stands before a pixel of unresolved drops: their light, and their optical depth.
+// Light and optical depth of the unresolved drops before a pixel.
 fn medium_light_pixel(x: u32, y: u32) {
     let at = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES + 2u * (y * render_frame.camera.width + x);
     let scene = medium_clean[y * render_frame.camera.width + x].w;

@@ -1,4 +1,4 @@
-// Where the air is open to the rain: a grid over the picture, a column of slices of distance in each cell.
+// Air that is open to the rain: a grid over the picture, a column of slices of distance in each cell.
 // Method: one ray per cell and slice, from a place in it against the mean fall; the optical depth of a cell's ray is summed up
 // slice by slice, and a pixel interpolates between the four cells round it.
 // Twin: downpour_render::rain::medium::open.

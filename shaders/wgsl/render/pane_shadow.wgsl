@@ -1,4 +1,4 @@
-// What the water on a pane does to the light of lamps and the sun that falls through it: shadows of drops, and the light that
+// Light of lamps and the sun that falls through the water on a pane: shadows of drops, and the light that
 // they gather. A texel is two bytes: fraction of it that drops cover, and the same gathered in their middles, over
 // PANE_SHADOW_PEAK.
 // Twin: downpour_trace::pane_shadow, where the method is described.
@@ -65,7 +65,7 @@ fn pane_shadow_share(place: vec3f, direction: vec3f, distance: f32, spread: f32)
     if pane.form == PANE_SHADOW_TATARCHUK {
         return clear * (1.0 - cover.x + cover.y);
     }
-    // How wide the light of a drop is, in its own radii: a point at the focus.
+    // Width of the light of a drop, in its own radii: a point at the focus.
     let wide = abs(1.0 - away / pane.drops.y);
     let gathered = max(1.0 - wide, 0.0);
     let spot = pane_shadow_at(pane, at, soft + 2.0 * pane.drops.x * max(wide - 1.0, 0.0));

@@ -1,12 +1,12 @@
-// What a ray of the camera sees: surfaces, water, and the light that comes to them from lamps, sky and one another.
+// Path of a ray of the camera: surfaces, water, and the light that comes to them from lamps, sky and one another.
 // Twin: downpour_trace::path, where the method is described.
 
 // Light of which means are taken over neighbouring pixels.
 struct PathSlot {
     light: vec3f,
-    // How far from a place's plane another may be; 0: there is no light.
+    // Largest distance of another position from the plane; 0: there is no light.
     slack: f32,
-    // What it is multiplied with.
+    // Factor of the light.
     factor: vec3f,
     // Roughness of a gloss; 0 for light on a diffuse base.
     roughness: f32,
@@ -15,7 +15,7 @@ struct PathSlot {
     place: vec3f,
 }
 
-// What a ray of the camera finds.
+// Result of a ray of the camera.
 struct ViewPath {
     // All light but that which is told apart below.
     radiance: vec3f,
@@ -24,9 +24,9 @@ struct ViewPath {
     facet: vec3f,
     material: u32,
     place: vec3f,
-    // Whether it is what the sample before has seen.
+    // True if it is the surface that the sample before has seen.
     again: bool,
-    // Whether what it shows is the same over a pixel: no mirror, nothing behind a pane.
+    // True if its result is the same over a pixel: no mirror, nothing behind a pane.
     plain: bool,
     // Light of sky and surfaces on the diffuse base of the first opaque surface, over pi.
     base: PathSlot,
@@ -63,11 +63,11 @@ struct PathPlan {
     chance: f32,
     // Part of all rays that one is.
     share: f32,
-    // Whether rays of the gloss are drawn from its lobe; else they are a mirror's.
+    // True if rays of the gloss are drawn from its lobe; else they are a mirror's.
     drawn: bool,
-    // Whether means over neighbouring pixels are taken of what the gloss shows.
+    // True if the light that the gloss shows is averaged over neighboring pixels.
     kept: bool,
-    // Whether they are of the light on what the gloss shows.
+    // True if the average is of the light on the surface that the gloss shows.
     replaced: bool,
     // Width of the mirror's ray by what the surface turns within a pixel.
     spread: f32,
@@ -86,7 +86,7 @@ fn path_radiance(path: ViewPath) -> vec3f {
     return path.radiance + path.base.factor * path.base.light + path.mirror.factor * path.mirror.light;
 }
 
-// Whether a surface is the same where another sample of the pixel has met it.
+// True if a surface is the same that another sample of the pixel has met.
 fn path_same_surface(last: ViewPath, material: u32, facet: vec3f, place: vec3f, distance: f32) -> bool {
     return last.plain
         && last.material == material
@@ -139,7 +139,7 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
     let body = path_albedo(surface);
     let rays = render_frame.sky_rays;
     let drawn = told && free && !sharp && rays > 0u;
-    // Where neighbours mirror other things, a mean over them would be wider than the lobe.
+    // If neighbors mirror other things, a mean over them would be wider than the lobe.
     let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
     let share = select(1.0 / f32(max(rays, 1u)), render_frame.ray_share, told);
     var plan = PathPlan(body, 0u, gloss, rays, 0.0, share, drawn, kept, false, spread);
@@ -314,7 +314,7 @@ fn path_show_mirrored(slot: PathSlot, light: PathLight, gloss: vec3f, slack: f32
     return PathSlot(light.shown, its_slack, gloss * light.factor, 0.0, light.normal, light.place);
 }
 
-// What a ray sees. Where it meets the surface that `last` met, it sees the same.
+// Traces a ray. If it meets the surface that `last` met, it sees the same.
 fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: ViewPath) -> ViewPath {
     var path = path_nothing();
     var throughput = vec3f(1.0);
@@ -438,7 +438,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     found = path_glance(found, ray.roughness);
                     lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_GLANCE);
                     standoff = hit.distance * ray.width * 0.5;
-                    // Where there are lamps, they stand for what shines; small bright things would be noise.
+                    // Lamps, if there are any, stand for emissive surfaces; small bright surfaces would be noise.
                     shines = ray.roughness < PATH_SHINES || render_frame.light_count == 0u;
                 }
                 let unlit = (found.flags & SCENE_UNLIT) != 0u;
@@ -479,7 +479,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 if path_most(open) > PATH_OPEN {
                     leaves = PATH_STRAIGHT;
                     if !unlit {
-                        // What it reflects of the sky itself: half of the whole.
+                        // Light of the sky that it reflects itself: half of the whole.
                         ambient = sky_irradiance(found.normal) * (0.5 * found.occlusion * cover);
                     }
                 } else if of_shown && light.distance < 0.0 {

@@ -7,7 +7,7 @@ struct PuddleWater {
     puddle: u32,
     // Depth, m.
     depth: f32,
-    // How far the surface is over the place, m.
+    // Height of the surface over the position, m.
     rise: f32,
     // Share of the rain that arrives.
     open: f32,
@@ -181,8 +181,8 @@ fn puddle_water_beneath(direction: vec3f) -> vec3f {
     return vec3f(x, sqrt(max(1.0 - x * x - z * z, 0.0)), z);
 }
 
-// Where light that falls on a place under a depth of level water has come through the surface, from the place's own spot
-// on the surface.
+// Point at which light that falls on a position under a depth of level water has come through the surface,
+// relative to the point of the surface above the position.
 fn puddle_water_entry(direction: vec3f, depth: f32) -> vec3f {
     let below = puddle_water_beneath(direction);
     let aside = depth / max(below.y, 0.1);

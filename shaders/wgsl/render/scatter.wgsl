@@ -1,4 +1,4 @@
-// Where the light that a surface shows comes from: rays drawn for its diffuse base and for its gloss.
+// Sampling of the light that a surface shows: rays drawn for its diffuse base and for its gloss.
 // Twin: downpour_trace::scatter, where the method is described.
 
 // A ray that looks for light.
@@ -72,7 +72,7 @@ fn scatter_draw(
     } else {
         along = scatter_hemisphere(along, (a - chance) / (1.0 - chance), b);
     }
-    // What goes into the surface is lost; only what goes into the facet alone is thrown back.
+    // Rays into the surface are lost; only rays into the facet alone are thrown back.
     let above = dot(normal, along) > 0.0;
     along = scatter_above(surface.facet, along);
     var ray = ScatterRay(along, 0.0, vec3f(0.0), roughness, vec3f(0.0));

@@ -1,14 +1,14 @@
 // A scene of triangles under a sky, and the light of its lamps at a place.
 // Twin: downpour_trace::scene.
 
-// Whether there are puddles: what they need slows down the rest.
+// True if there are puddles: their code slows down the rest.
 override SCENE_WET: bool = true;
-// Whether a pane throws shadows: likewise.
+// True if a pane throws shadows: likewise.
 override SCENE_PANE: bool = true;
 
 // Light of a lamp that arrives at a surface, in air or under water.
 struct SceneArrival {
-    // Where the ray to the lamp begins.
+    // Origin of the ray to the lamp.
     start: vec3f,
     // Distance from there.
     distance: f32,

@@ -26,7 +26,7 @@ fn skylight_luminance(color: vec3f) -> f32 {
     return dot(color, vec3f(0.2126, 0.7152, 0.0722));
 }
 
-// How far two mirrored directions agree within the lobe of a roughness.
+// Agreement of two mirrored directions within the lobe of a roughness, 0 to 1.
 fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
     let alpha = roughness * roughness;
     return max(1.0 - (1.0 - cosine) / max(SKYLIGHT_LOBE * alpha * alpha, 1.0e-7), 0.0);
@@ -54,7 +54,7 @@ fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
     return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, found.place);
 }
 
-// How far two pixels show one surface.
+// Degree to which two pixels show the same surface, 0 to 1.
 fn skylight_same(own: SkylightSlot, other: SkylightSlot) -> f32 {
     if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
         return 0.0;
@@ -70,7 +70,7 @@ fn skylight_same(own: SkylightSlot, other: SkylightSlot) -> f32 {
     return fourth * fourth * near;
 }
 
-// How far two means are the same but for their noise: variances are those of the means.
+// Degree to which two means are the same but for their noise, 0 to 1; variances are those of the means.
 fn skylight_alike(own: vec4f, other: vec4f) -> f32 {
     let apart = skylight_luminance(own.xyz) - skylight_luminance(other.xyz);
     return max(1.0 - apart * apart / max(SKYLIGHT_NOISE * (own.w + other.w), 1.0e-20), 0.0);
@@ -107,7 +107,7 @@ fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     let mean = sum / weight;
     let luminance = skylight_luminance(mean);
     let variance = max(squares / weight - luminance * luminance, 0.0);
-    // How many there are; of one alone nothing is known.
+    // Effective number of samples; one alone gives no variance.
     let count = weight * weight / weights;
     return vec4f(mean, variance / max(count - 1.0, 0.5) + luminance * luminance / (count * count));
 }

@@ -81,7 +81,7 @@ fn specimen_ray(camera: SpecimenCamera, x: f32, y: f32) -> SpecimenRay {
     return SpecimenRay(foot, camera.distance * root, (across - camera.back) * root);
 }
 
-// Whether the ray meets the drop: the gauge at the nearest point is below 1, and that point is before the camera.
+// True if the ray meets the drop: the gauge at the nearest point is below 1, and that point is before the camera.
 fn specimen_hits(traced: MaskTracedDrop, ray: SpecimenRay) -> bool {
     let curvature = mask_trace_curvature(traced, ray.direction);
     let slope = mask_trace_spheroid(traced, ray.foot, ray.direction);
@@ -142,7 +142,7 @@ fn specimen_turns(y: f32, x: f32) -> f32 {
     return select(half, -half, y < 0.0);
 }
 
-// Where a direction (of any length) is on the sky map: u from the left, v from the top, both in [0, 1].
+// Position of a direction (of any length) on the sky map: u from the left, v from the top, both in [0, 1].
 fn specimen_sky_place(direction: vec3f) -> vec2f {
     let level = sqrt(direction.x * direction.x + direction.z * direction.z);
     let turn = specimen_turns(direction.z, direction.x);

@@ -73,7 +73,7 @@ fn specimen_streak_state(streak: SpecimenStreak, seconds: f32) -> vec3f {
     return vec3f(s, drop_oscillation_inverse_cube_root(1.0 + (even + odd)));
 }
 
-// Where in their parts the instants of a sample are, in [0, 1).
+// Position of a sample's instants in their parts of the exposure, in [0, 1).
 fn specimen_streak_offset(pixel: u32, sample: u32) -> f32 {
     return rng_unit(rng_draw(vec2u(0u), pixel, sample, SPECIMEN_STREAK_DIMENSION).x);
 }
@@ -99,7 +99,7 @@ fn specimen_streak_radiance(drop: SpecimenWobble, ray: SpecimenRay) -> vec3f {
     return radiance;
 }
 
-// What trace k adds to a sum over the samples of a pixel. The first instant of a sample brings the uncovered time.
+// Term of trace k in the sum over the samples of a pixel. The first instant of a sample brings the uncovered time.
 fn specimen_streak_trace(view: SpecimenView, streak: SpecimenStreak, column: u32, row: u32, k: u32) -> vec3f {
     let samples = view.camera.samples;
     let sample = k / streak.instants;

@@ -28,7 +28,7 @@ fn specimen_wobble_along(drop: SpecimenWobble, origin: vec3f, direction: vec3f, 
     return vec2f(surface.excess, dot(surface.half_gradient, direction));
 }
 
-// Where a line enters and leaves the spheroid that holds the drop; the second is below the first if it does not.
+// Distances at which a line enters and leaves the spheroid around the drop; the second is below the first if it misses.
 fn specimen_wobble_span(drop: SpecimenWobble, origin: vec3f, direction: vec3f) -> vec2f {
     let across = vec3f(drop.inverse_wide, drop.inverse_tall, drop.inverse_wide);
     let curvature = dot(direction * across, direction);
@@ -109,7 +109,7 @@ fn specimen_wobble_cross(
     return vec2f(min(max(last, a), b), 1.0);
 }
 
-// Where a ray of the camera meets the drop, and 1; the second is 0 if it misses.
+// Distance at which a ray of the camera meets the drop, and 1; the second is 0 if it misses.
 fn specimen_wobble_meet(drop: SpecimenWobble, ray: SpecimenRay) -> vec2f {
     let span = specimen_wobble_span(drop, ray.foot, ray.direction);
     let start = max(span.x, -ray.reach);

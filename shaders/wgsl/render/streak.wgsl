@@ -28,7 +28,7 @@ struct DropsDrop {
     area: f32,
     // Samples along an edge of a pixel; of a streak: samples of a pixel. 0: below a pixel, or out of focus.
     grid: u32,
-    // Where the exposure begins, and the way to where it ends: on the plane at distance 1, along the right and up of the
+    // Position when the exposure begins, and displacement until it ends: on the plane at distance 1, along the right and up of the
     // drop's view.
     start: vec2f,
     along: vec2f,
@@ -52,7 +52,7 @@ struct DropsDrop {
     nearest: f32,
     // DROPS_STILL, DROPS_TABLE or DROPS_LOOP.
     kind: u32,
-    // Which mean of the streak radiance table.
+    // Index of its mean in the streak radiance table.
     shape: u32,
     // First entry of its profile in the table.
     profile: u32,
@@ -61,11 +61,11 @@ struct DropsDrop {
     unused: vec2f,
 }
 
-// Where a ray passes a moving drop.
+// Chord along which a ray passes a moving drop.
 struct StreakChord {
     // Unit direction of the motion on the oval, which is a circle of radius 1 here.
     direction: vec2f,
-    // Where the chord is across the motion, -1 to 1.
+    // Position of the chord across the motion, -1 to 1.
     across: f32,
     // Half its length.
     half: f32,
@@ -104,7 +104,7 @@ fn streak_depth(recede: f32, time: f32) -> f32 {
     return (1.0 + (recede - 1.0) * time) * 2.0 / (1.0 + recede);
 }
 
-// How much wider the oval is on the left and on the right, and how much taller, at a time.
+// Scales of the oval at a time: width on the right and on the left, and height.
 fn streak_stretch(swing: vec4f, turns: vec2f, time: f32) -> vec3f {
     let s2 = swing.x * drop_oscillation_sine(swing.z + turns.x * time);
     let s3 = swing.y * drop_oscillation_sine(swing.w + turns.y * time);
@@ -112,7 +112,7 @@ fn streak_stretch(swing: vec4f, turns: vec2f, time: f32) -> vec3f {
     return vec3f(drop_oscillation_outline(state, 1.0), drop_oscillation_radius(state, 1.0, 0.0));
 }
 
-// Where a ray through a place of the plane passes the drop.
+// Returns the chord along which a ray through a point of the plane passes the drop.
 fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
     let way = streak_nearest(drop, at);
     let time = streak_time(drop.recede, way);
@@ -135,7 +135,7 @@ fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
     let path = drop.along / moves;
     let low = max((along - length * (1.0 - way)) * per_half, -1.0);
     let high = select(min((along + length * way) * per_half, 1.0), -2.0, half <= 1.0e-6);
-    // What is ahead on the chord has passed earlier.
+    // Points ahead on the chord have passed earlier.
     let begin = streak_time(drop.recede, clamp(way + (along - half * high) / length, 0.0, 1.0));
     let end = streak_time(drop.recede, clamp(way + (along - half * low) / length, 0.0, 1.0));
     let weights = vec2f(streak_weight(drop.weights, end), streak_weight(drop.weights, begin));

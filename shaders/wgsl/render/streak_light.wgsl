@@ -4,14 +4,14 @@
 // give each. Between the rays that were traced, directions go as a polynomial of degree two across, along and in time, from ray to
 // ray that pass as many interfaces. So the ray's own patch of the drop is known: how wide the surroundings are averaged, and where
 // in the patch a lamp shines, whose disc (or, where the patch's points are farther apart, a spot that some of them meet) is sampled.
-// What is lost inside shows the mean of all that is about, without lamps: it goes round the rim, and comes out there.
+// Light lost inside has the mean radiance of the environment, without lamps: it travels around the rim and comes out there.
 // Layout: behind the chords of streak_rays.wgsl, for each row of the profile and each fine column the light of the chord's first
 // part, of the first two, three and of all four, each over the length of the whole chord.
 // Twin: downpour_render::rain::streak_light.
 
 @group(0) @binding(2) var<storage, read> streak_light_drops: array<DropsDrop>;
 @group(0) @binding(3) var<storage, read> streak_light_paths: array<StreakPath>;
-// Which path, and the first of 64 columns of all rows of its profile.
+// Index of the path, and first of 64 columns of all rows of its profile.
 @group(0) @binding(4) var<storage, read> streak_light_jobs: array<vec2u>;
 @group(0) @binding(5) var<storage, read> streak_light_rays: array<StreakRay>;
 // For each path the mean of what is not told lamp by lamp, then two rows for each lamp: its irradiance and the chord from the
@@ -27,7 +27,7 @@ struct StreakExit {
     passed: u32,
 }
 
-// How an exit changes along an axis: a first and a second difference per ray, and a first one of its share.
+// Change of an exit along an axis: first and second difference per ray, and first difference of its share.
 struct StreakChange {
     first: vec3f,
     share: f32,
@@ -155,7 +155,7 @@ fn streak_light_direction(ray: StreakPatch, place: vec3f) -> vec3f {
     return normalize(linear + squares + mixed);
 }
 
-// How wide a patch is across and along, at a time.
+// Width of a patch across and along, at a time.
 fn streak_light_size(ray: StreakPatch, later: f32) -> vec2f {
     let across = ray.across.first + ray.across_later * later;
     let along = ray.along.first + ray.along_later * later;

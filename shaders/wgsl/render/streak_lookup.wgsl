@@ -8,7 +8,7 @@
 
 @group(0) @binding(7) var<storage, read> streak_table: array<vec4f>;
 
-// Where a ray passes a drop that has a profile.
+// Position in the profile of a drop at which a ray passes it.
 struct StreakPassage {
     // First entry of the profile, and its sizes: rows and columns of chords, rows of the profile and fine columns of each.
     first: u32,
@@ -35,7 +35,7 @@ fn streak_lookup_chord(first: u32, columns: u32, row: u32, at: f32) -> vec4f {
     return streak_table[entry] * (1.0 - part) + streak_table[entry + 1u] * part;
 }
 
-// Where a place of the plane passes a drop.
+// Returns the position in a drop's profile for a point of the plane.
 fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
     let first = drop.profile;
     let sizes = vec4u(streak_table[first]);

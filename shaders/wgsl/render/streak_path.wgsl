@@ -29,7 +29,7 @@ struct StreakPath {
     // First of its rays, and of its entries in the table.
     first_ray: u32,
     first_entry: u32,
-    // Which of the picture's drops.
+    // Index of the drop among the picture's.
     drop: u32,
     unused: u32,
 }

@@ -7,7 +7,7 @@
 
 @group(0) @binding(0) var<storage, read> streak_rays_drops: array<DropsDrop>;
 @group(0) @binding(1) var<storage, read> streak_rays_paths: array<StreakPath>;
-// Which path, and which row.
+// Indices of the path and of the row.
 @group(0) @binding(2) var<storage, read> streak_rays_jobs: array<vec2u>;
 @group(0) @binding(3) var<storage, read_write> streak_rays_table: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> streak_rays_made: array<StreakRay>;

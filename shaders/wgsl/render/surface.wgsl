@@ -1,4 +1,4 @@
-// What a ray finds: the nearest triangle that is not a hole, and its material there.
+// Intersection of a ray with the scene: the nearest triangle that is not a hole, and its material there.
 // Twin: downpour_trace::surface.
 
 struct SurfaceHit {
@@ -41,7 +41,7 @@ fn surface_alpha(material: RenderMaterial, hit: SurfaceHit) -> f32 {
         * surface_texture(material.maps.x, surface_uv(hit), -20.0).a * surface_colour(hit).a;
 }
 
-// Whether there is a hole at a hit.
+// True if there is a hole at a hit.
 fn surface_is_open(hit: SurfaceHit) -> bool {
     let material = material_load(render_corners[hit.triangle * 3u].material);
     if (material.flags & (SCENE_MASKED | SCENE_BLENDED)) == 0u {
@@ -103,7 +103,7 @@ fn surface_edges(hit: SurfaceHit) -> vec3f {
     return cross(bvh_triangles[hit.triangle].edge_1, bvh_triangles[hit.triangle].edge_2);
 }
 
-// How much the corners' normals turn per metre of the triangle that was hit.
+// Rate at which the corners' normals turn over the triangle that was hit, 1/m.
 fn surface_bend(hit: SurfaceHit) -> f32 {
     let first = hit.triangle * 3u;
     let a = render_corners[first].normal;

@@ -17,7 +17,7 @@ struct TraceSlot {
     light: f32,
     // Fractions of it that are red and green, 12 bits each, and the roughness of a gloss, 8 bits; 0: a diffuse base.
     look: u32,
-    // What it is multiplied with, and how far from the plane another place may be, per distance from the eye (0: there is
+    // Factor of the light, and largest distance of another position from the plane, per distance from the eye (0: there is
     // no light), as halves.
     factor: vec2u,
 }

@@ -18,7 +18,7 @@ use super::water::GlassPictureDrop;
 /// Edge of a bin, m.
 const BIN_M: f64 = 3.0e-3;
 
-/// How far the outline may be from round: of the squared radius.
+/// Largest deviation of the outline from a circle, as a fraction of the squared radius.
 const UNEVEN: f64 = 0.5;
 
 /// The radius, m, from which a drop is as uneven as the glass: small ones are round.
@@ -30,7 +30,7 @@ const SPOTS_M: [f64; 2] = [4.5e-3, 1.7e-3];
 /// Places round the outline at which the glass is asked.
 const ROUND: u32 = 8;
 
-/// How much steeper a drop is below than in its middle when it is about to slide: from tan 20 to tan 60 degrees.
+/// Relative excess of the slope below a drop over that in its middle when it is about to slide: from tan 20 to tan 60 degrees.
 const LEAN: f64 = 0.6;
 
 /// Cells off their middle, at most, that a resting drop is: drops do not sit on a grid.
@@ -45,7 +45,7 @@ pub(super) struct Binned {
     pub(super) per_metre: f64,
 }
 
-/// What the drops of a pane have in common.
+/// Parameters that all drops of a pane have in common.
 struct Common<'a> {
     options: &'a GlassOptions,
     seed: [u32; 2],
@@ -142,7 +142,7 @@ impl Common<'_> {
         }
     }
 
-    /// Where a drop is: on its way from a place near its cell's middle to one near the next cell's.
+    /// Position of a drop on its way from a point near the center of its cell to one near that of the next cell.
     fn centre(&self, cell: IVec2, v: IVec2, progress: i32) -> DVec2 {
         let near = |cell: IVec2| {
             let [a, b, ..] = rng_draw(self.seed, cell.x as u32, cell.y as u32, 0);
@@ -190,7 +190,7 @@ impl Common<'_> {
         lobes.map(|lobe| lobe.clamp(-0.3, 0.3) as f32)
     }
 
-    /// How the glass pulls at a place, -1 to 1: values at the corners of squares of two sizes.
+    /// Pull of the glass at a position, -1 to 1: value noise on square grids of two sizes.
     fn glass(&self, at: DVec2) -> f64 {
         let ease = |t: f64| t * t * (3.0 - 2.0 * t);
         let mut sum = 0.0;

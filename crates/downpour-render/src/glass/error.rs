@@ -1,10 +1,10 @@
-//! What can be wrong with a pane before a camera.
+//! Errors of a pane before a camera.
 
 use downpour_lattice::glass::GlassError;
 
 use crate::RenderError;
 
-/// Why there is no pane.
+/// Reason why there is no pane.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PaneError {

@@ -1,4 +1,4 @@
-//! What a picture asks of pane, lens and camera.
+//! Frame data of a picture through a pane: pane, lens and camera.
 
 use downpour_math::ops;
 use downpour_shaders::render::glass::GLASS_PICTURE_LEVELS;
@@ -17,7 +17,7 @@ const GOLDEN: f32 = 2.399_963_2;
 /// The plastic number's inverse and its square: places of a plane, evenly spread.
 const PLASTIC: [f32; 2] = [0.754_877_7, 0.569_840_3];
 
-/// What holds for all pixels. The same layout as `GlassPictureFrame` in WGSL.
+/// Constants of all pixels. The same layout as `GlassPictureFrame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassPictureFrame {
@@ -45,7 +45,7 @@ pub struct GlassPictureFrame {
     pub wet_size: [u32; 2],
     /// Radius of the lens, m.
     pub lens: f32,
-    /// What is in focus.
+    /// Focus: the glass or the scene behind it.
     pub focus: u32,
     /// The reflectance of water.
     pub fresnel: u32,
@@ -80,13 +80,13 @@ pub struct GlassPictureFrame {
 /// A pane with its drops, ready to be looked through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GlassPicture {
-    /// What holds for all pixels.
+    /// Constants of all pixels.
     pub frame: GlassPictureFrame,
     /// The drops.
     pub drops: Vec<GlassPictureDrop>,
-    /// Where each bin's list of drops begins (one more than there are bins), then the lists.
+    /// Index of the beginning of each bin's list of drops (one more than there are bins), then the lists.
     pub bins: Vec<u32>,
-    /// How wet the cells are, four to a word.
+    /// Wetness of the cells, four to a word.
     pub wet: Vec<u32>,
     /// Samples: a place of the lens, in its radius, and of the pixel.
     pub lens: Vec<[f32; 4]>,

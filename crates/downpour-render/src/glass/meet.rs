@@ -1,4 +1,4 @@
-//! What a ray finds on a pane: the cap of a drop, the film where water has run, or dry glass. Twin of a part of
+//! Intersection of a ray with a pane: the cap of a drop, the film where water has run, or dry glass. Twin of a part of
 //! `shaders/wgsl/render/glass_picture.wgsl`.
 
 use glam::{Vec2, Vec3};
@@ -6,12 +6,12 @@ use glam::{Vec2, Vec3};
 use super::picture::Look;
 use super::water::{glass_picture_water_cap, glass_picture_water_leave, glass_picture_water_normal};
 
-/// What a ray finds on the pane.
+/// Surface of the pane that a ray meets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
     pub(super) normal: Vec3,
     pub(super) wet: bool,
-    /// How fast the normal turns, 1/m.
+    /// Rate at which the normal turns, 1/m.
     pub(super) curvature: f32,
     /// A drop that shows lamps.
     pub(super) lit: bool,
@@ -28,7 +28,7 @@ pub fn glass_picture_spline(t: f32, which: i32) -> Vec2 {
 }
 
 impl Look<'_> {
-    /// How wet a cell is, 0 to 1.
+    /// Wetness of a cell, 0 to 1.
     fn glass_picture_wetness(&self, column: i32, row: i32) -> f32 {
         let [width, height] = self.glass.frame.wet_size;
         let x = column.clamp(0, width as i32 - 1) as u32;

@@ -23,7 +23,7 @@ use crate::rain::PanePlane;
 /// Largest width and height of a pane whose size is that of the picture, m.
 const LARGEST_M: f64 = 2.4;
 
-/// How much larger than the picture such a pane is.
+/// Ratio of the size of such a pane to that of the picture.
 const MARGIN: f64 = 1.04;
 
 /// Air and rain on the pane follow their keys at times this far apart, s.
@@ -232,7 +232,7 @@ pub fn pane_plane(weather: &Weather, viewpoint: &Viewpoint) -> Result<Option<Pan
     Ok(Some(PanePlane { outward: place.outward.as_vec3(), distance }))
 }
 
-/// Where a pane is, relative to the eye.
+/// Position and axes of a pane, relative to the eye.
 struct Place {
     across: DVec3,
     down: DVec3,

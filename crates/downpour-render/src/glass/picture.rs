@@ -16,11 +16,11 @@ use super::meet::Met;
 /// A ray that meets the pane.
 #[derive(Clone, Copy, Debug)]
 struct Ray {
-    /// Where, on the pane.
+    /// Position on the pane.
     place: Vec2,
     /// Its direction, in the pane's axes.
     d: Vec3,
-    /// Where, from the eye.
+    /// Position relative to the eye.
     from_eye: Vec3,
     /// From the sample's place in its pixel to the middle, pixels.
     shift: Vec2,
@@ -36,7 +36,7 @@ pub(super) struct Look<'a> {
     pub(super) glass: &'a GlassPicture,
     /// The picture behind the pane with its distances, all levels.
     pub(super) behind: &'a [[f32; 4]],
-    /// What is round the eye, all levels.
+    /// Environment map around the eye, all levels.
     pub(super) capture: &'a [[f32; 4]],
 }
 
@@ -53,7 +53,7 @@ impl Look<'_> {
         (0..frame.camera.height).into_par_iter().flat_map_iter(pixel).collect()
     }
 
-    /// What a drop shows of the lamps and the sun: they are points, and in no picture of what is behind the pane.
+    /// Radiance of the lamps and the sun in a drop: they are points, and in no picture of the scene behind the pane.
     fn glass_picture_lights(&self, from_eye: Vec3, direction: Vec3, footprint: f32) -> Vec3 {
         let mut sum = Vec3::ZERO;
         for light in self.glass.lights.iter().take(self.glass.frame.lights as usize) {
@@ -69,7 +69,7 @@ impl Look<'_> {
         across * v.x + down * v.y + outward * v.z
     }
 
-    /// What of the room a ray shows that leaves water towards the eye's side in a direction of the pane.
+    /// Radiance of the interior ambient along a ray that leaves water towards the eye's side, in a direction of the pane.
     fn glass_picture_inside(&self, v: Vec3) -> Vec3 {
         let aside = v.truncate() * self.glass.frame.water;
         let out = aside.extend(-(1.0 - aside.dot(aside)).max(1.0e-4).sqrt());
@@ -92,7 +92,7 @@ impl Look<'_> {
         1.0 - (1.0 - surface) * (1.0 - inner)
     }
 
-    /// What a ray shows that meets the pane.
+    /// Radiance along a ray that meets the pane.
     fn glass_picture_through(&self, ray: &Ray) -> Vec3 {
         let (water, room) = (self.glass.frame.water, self.glass.frame.room);
         let (d, shift) = (ray.d, ray.shift);
@@ -146,7 +146,7 @@ impl Look<'_> {
         let (right, up) = (frame.camera.right, frame.camera.up);
         let (right, up) = (right / right.dot(right).sqrt(), up / up.dot(up).sqrt());
         let from_eye = (right * lens_x + up * lens_y) * frame.lens;
-        // What is behind is looked up for the pixel's middle: it is sampled already.
+        // The scene behind is looked up at the pixel's center: it is sampled already.
         let shift = Vec2::new(0.5 - dx, 0.5 - dy);
         let (corner, outward) = (Vec3::from(frame.corner), Vec3::from(frame.outward));
         let plane = corner.dot(outward);

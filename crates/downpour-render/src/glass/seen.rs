@@ -1,4 +1,4 @@
-//! What stands in a direction: the picture behind the pane where that is in it, else the capture of what is round the eye.
+//! Radiance in a direction: of the picture behind the pane if the direction is in it, else of the environment map.
 //! Twin of a part of `shaders/wgsl/render/glass_picture.wgsl`.
 
 use downpour_math::ops;
@@ -80,13 +80,13 @@ impl Look<'_> {
         sum
     }
 
-    /// What stands round the eye in a direction, for a footprint of some angle.
+    /// Radiance of the environment map in a direction, averaged over a footprint in radians.
     pub(super) fn glass_picture_round(&self, direction: Vec3, footprint: f32) -> Vec3 {
         let place = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
         self.glass_picture_at(true, place, footprint / self.glass.frame.capture_texel)
     }
 
-    /// Where a direction is on the picture: -1 to 1 right and up, and its depth.
+    /// Projects a direction onto the picture: -1 to 1 right and up, and its depth.
     fn glass_picture_project(&self, direction: Vec3) -> Vec3 {
         let frame = &self.glass.frame;
         let [right, up, forward] =
@@ -100,7 +100,7 @@ impl Look<'_> {
         )
     }
 
-    /// What a ray shows that begins at an offset from the eye. Its footprint is an angle.
+    /// Radiance along a ray that begins at an offset from the eye. Its footprint is an angle.
     pub(super) fn glass_picture_seen(
         &self,
         from_eye: Vec3,

@@ -21,10 +21,10 @@ const SPOT: f32 = 0.26;
 /// Radii at which the spot ends.
 const SPOT_END: f32 = 0.7;
 
-/// Where a texel is asked whether a drop is on it, in its edge from its middle.
+/// Sample positions in a texel that are tested against the drops, from its center in units of its edge.
 const CORNERS: [[f32; 2]; 4] = [[-0.125, -0.375], [0.375, -0.125], [0.125, 0.375], [-0.375, 0.125]];
 
-/// How the light of lamps and the sun falls through a wet pane.
+/// Model of the light of lamps and the sun that falls through a wet pane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PaneShadows {
     /// Each drop is a lens: its light comes together at its focus and is spread behind it.

@@ -16,13 +16,13 @@ pub struct GlassPictureDrop {
     pub radius: f32,
     /// Radius of the sphere whose cap it is.
     pub sphere: f32,
-    /// Where it runs to, of length 1.
+    /// Direction in which it runs, of length 1.
     pub along: [f32; 2],
     /// Inverse of how much longer it is behind its middle than before it.
     pub behind: f32,
-    /// How much steeper it is on one side than on the other, as a share.
+    /// Relative excess of the slope on one side over that on the other.
     pub lean: f32,
-    /// Which side that is, of length 1.
+    /// Direction of the steeper side, of length 1.
     pub droop: [f32; 2],
     /// 0.
     pub unused: [f32; 2],

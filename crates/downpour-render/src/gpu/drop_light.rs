@@ -33,7 +33,7 @@ impl DropLightPipeline {
     /// Makes the pipeline.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { gpu: gpu.clone(), kernel: ComputeKernel::new(gpu, &DROP_LIGHT_KERNEL, &[])? })
     }
@@ -41,7 +41,7 @@ impl DropLightPipeline {
     /// Brings the table to the device.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn upload(&self, table: &DropLightTable) -> Result<DropLightOnGpu, GpuError> {
         Ok(DropLightOnGpu { table: self.gpu.storage_buffer("scattering of drops", table.rows())? })
     }
@@ -95,7 +95,7 @@ impl DropLightPass<'_> {
     /// Reads the light.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn read(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         let mut light = self.pipeline.gpu.read(&self.light)?;
         light.truncate(self.rows);

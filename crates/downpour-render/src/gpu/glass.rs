@@ -19,7 +19,7 @@ impl GlassRenderer {
     /// Makes the pipeline.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self { gpu: gpu.clone(), kernel: ComputeKernel::new(gpu, &GLASS_PICTURE_KERNEL, &[])? })
     }

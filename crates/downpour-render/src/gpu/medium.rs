@@ -31,7 +31,7 @@ impl MediumPipeline {
     /// Makes the pipelines.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
         Ok(Self {
@@ -99,7 +99,7 @@ impl MediumPass<'_> {
     /// Reads the grid and what was found before each pixel, as [`MediumLight::found`].
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn found(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         self.pipeline.gpu.read(&self.found)
     }

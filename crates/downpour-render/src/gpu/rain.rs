@@ -69,7 +69,7 @@ impl RainPipeline {
     /// Makes the pipelines.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
         Ok(Self {
@@ -239,7 +239,7 @@ impl RainPass<'_> {
     /// Reads what was found of the drops that are not drawn, as the twin has it.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn medium_found(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         self.medium.found()
     }
@@ -254,7 +254,7 @@ impl RainPass<'_> {
     /// Reads the rain: radiance, and the transmittance of the scene behind it; rows from the top.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn layer(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         self.pipeline.gpu.read(&self.layer)
     }
@@ -262,7 +262,7 @@ impl RainPass<'_> {
     /// Reads the streak radiance table.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn streak_table(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         self.pipeline.gpu.read(&self.table)
     }
@@ -270,7 +270,7 @@ impl RainPass<'_> {
     /// Reads the environment map, all levels.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn environment_texels(&self) -> Result<Vec<[f32; 4]>, GpuError> {
         self.pipeline.gpu.read(&self.texels)
     }

@@ -50,7 +50,7 @@ pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
     drop.swing[2] + drop.turns[0] * streak_time(drop.recede, way)
 }
 
-/// What the kernel reads.
+/// Data that the kernel reads.
 struct Buffers<'a> {
     view: DropsView<'a>,
     rain: &'a Rain,
@@ -356,7 +356,7 @@ impl Buffers<'_> {
         let shown_medium = if depth > 0.0 { self.drops_medium(x, y) } else { Vec3::ZERO };
         let (mut radiance, mut transmittance) = (Vec3::ZERO, 1.0);
         let mut behind = true;
-        // What the medium lets through up to here.
+        // Transmittance of the medium up to here.
         let mut left = 1.0f32;
         let tiles = &self.rain.tiles;
         for &index in &tiles[tiles[tile] as usize..tiles[tile + 1] as usize] {

@@ -70,7 +70,7 @@ impl DropsView<'_> {
         Vec2::new(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y).clamp(Vec2::ZERO, Vec2::ONE)
     }
 
-    /// What is seen in a direction through a drop that is seen along `towards`, over a width in radians.
+    /// Radiance of the capture in a direction, for a drop that is seen along `towards`, averaged over a width in radians.
     pub(super) fn drops_capture_about(&self, towards: Vec3, direction: Vec3, width: f32) -> Vec3 {
         if self.frame.form == DROPS_SHIFT {
             let right = drop_glint_right(towards);

@@ -45,7 +45,7 @@ pub struct DropsFrame {
     pub atlas: u32,
 }
 
-/// What the drops' kernels read besides the drops.
+/// Data that the drops' kernels read besides the drops.
 #[derive(Clone, Copy)]
 pub(crate) struct DropsView<'a> {
     pub(crate) frame: &'a DropsFrame,

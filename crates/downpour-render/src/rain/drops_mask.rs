@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::drops_frame::DropsView;
 
-/// What a mask says.
+/// Values of a mask at a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct DropsTexel {
     pub(super) direction: Vec3,
@@ -39,7 +39,7 @@ fn drops_mask_add(sum: DropsTexel, texel: DropsTexel, weight: f32) -> DropsTexel
     }
 }
 
-/// What a sum of weighted texels says.
+/// Normalizes a sum of weighted texels.
 fn drops_mask_mean(sum: DropsTexel) -> DropsTexel {
     let whole = sum.coverage.max(1.0e-20);
     DropsTexel {
@@ -96,7 +96,8 @@ impl DropsView<'_> {
         drops_mask_add(s, texel(left + 1, top + 1), weight * fx * fy)
     }
 
-    /// What the masks say for a drop at (x, y) in units of half the mask, up and right: between diameters and elevations.
+    /// Values of the masks for a drop at (x, y) in units of half the mask, right and up, interpolated between diameters and
+    /// elevations.
     pub(super) fn drops_mask_at(&self, row: [f32; 2], x: f32, y: f32) -> DropsTexel {
         let (u, v) = (0.5 + 0.5 * x, 0.5 - 0.5 * y);
         let low = row.map(f32::floor);

@@ -1,4 +1,4 @@
-//! What one ray sees through a drop. Twin of `shaders/wgsl/render/drops_shade.wgsl`, where the method is described.
+//! Radiance along one ray through a drop. Twin of `shaders/wgsl/render/drops_shade.wgsl`, where the method is described.
 
 use downpour_math::packing::packing_octahedral_encode;
 use downpour_shaders::render::rain::{DROPS_SHIFT, DROPS_STRAIGHT};
@@ -14,7 +14,7 @@ pub(super) struct DropsShade {
     pub(super) towards: Vec3,
     /// Half the width of its mask, in equivalent radii.
     pub(super) half_extent: f32,
-    /// What the ray differs from `towards`, where it is as far along.
+    /// Difference of the ray from `towards` at the same distance along it.
     pub(super) lean: Vec3,
     /// Equivalent radii between samples.
     pub(super) spacing: f32,
@@ -28,7 +28,7 @@ impl DropsView<'_> {
         self.drops_capture_shifted(ray, texel.direction)
     }
 
-    /// What a drop shows at (x, y), in units of half its mask: radiance times coverage, and coverage.
+    /// Light of a drop at (x, y), in units of half its mask: radiance times coverage, and coverage.
     pub(super) fn drops_shade_ray(&self, drop: &DropsShade, x: f32, y: f32) -> Vec4 {
         let texel = self.drops_mask_at(drop.row, x, y);
         if texel.coverage <= 0.0 {
@@ -46,7 +46,7 @@ impl DropsView<'_> {
         }
         let rest = (1.0 - texel.transmittance - texel.reflectance - texel.internal_transmittance).max(0.0);
         let mut sum = self.drops_capture_texel(self.frame.capture_last, 0, 0) * rest;
-        // What comes through, what is mirrored, and what is reflected inside.
+        // Transmitted light, light mirrored at the outside, and light reflected inside.
         for (seen, weight, bends) in [
             (texel.direction, texel.transmittance, bend - DROPS_STRAIGHT),
             (texel.reflected, texel.reflectance, bend),

@@ -1,4 +1,4 @@
-//! How long the shutter is open, how the eye moves meanwhile, and how what passes it is averaged.
+//! Exposure of a picture: shutter time, motion of the eye meanwhile, and average over moving drops.
 
 use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_shaders::render::rain::{STREAK_REFRACTED, STREAK_WHITE};
@@ -9,7 +9,7 @@ use crate::camera::EyeMotion;
 /// The most samples along the chord of a streak.
 pub const MOST_STREAK_SAMPLES: u32 = 4096;
 
-/// How the light of a streak is averaged over the time in which its drop passes a ray.
+/// Method that averages the light of a streak over the time in which its drop passes a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum StreakSamples {
     /// By a table that is made once per frame: one lookup, whatever the number of samples.
@@ -19,11 +19,11 @@ pub enum StreakSamples {
     Loop(u32),
 }
 
-/// What colour a streak has.
+/// Color of a streak.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum StreakColour {
-    /// What its drop refracts and reflects.
+    /// Light that its drop refracts and reflects.
     #[default]
     Refracted = STREAK_REFRACTED,
     /// One colour for all, the mean of the surroundings: the static streaks of Rousseau 2006, figure 9.
@@ -63,13 +63,13 @@ pub struct Exposure {
     pub response: TemporalResponse,
     /// The time of the picture, s: the phases of the drops' oscillation count from 0.
     pub time_s: f64,
-    /// How the eye moves.
+    /// Motion of the eye.
     pub eye: EyeMotion,
-    /// How streaks are averaged.
+    /// Method that averages streaks.
     pub samples: StreakSamples,
     /// Their colour.
     pub colour: StreakColour,
-    /// How far drops oscillate.
+    /// Amplitudes of the oscillation of drops.
     pub oscillation: Amplitudes,
     /// The drops' water and the air, on which their frequencies depend.
     pub fluids: Fluids,
@@ -82,7 +82,7 @@ pub struct Exposure {
 }
 
 impl Exposure {
-    /// What a weather says of it, for a picture at `time_s` whose eye moves.
+    /// Exposure of a weather, for a picture at `time_s` whose eye moves.
     #[must_use]
     pub fn of_weather(weather: &Weather, eye: EyeMotion, time_s: f64) -> Self {
         let (camera, streaks) = (&weather.camera, &weather.streaks);

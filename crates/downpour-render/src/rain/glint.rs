@@ -1,4 +1,5 @@
-//! Where the light of a lamp leaves a drop, as the viewer sees it. Twin of `shaders/wgsl/render/drop_glint.wgsl`.
+//! Position on a drop at which the light of a lamp leaves it, as the viewer sees it. Twin of
+//! `shaders/wgsl/render/drop_glint.wgsl`.
 //!
 //! `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Places on the
 //! disc are in radii, along the right and the up of the view.

@@ -48,7 +48,7 @@ use atlas::drop_atlas_place;
 use keep::{drop_light_keep, drop_light_keep_facing, drop_light_keep_streak, drop_light_reach};
 pub use table::DropLightTable;
 
-/// What lamps do to a drop.
+/// Model of the light of lamps on a drop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum DropLightForm {
@@ -106,10 +106,10 @@ impl From<RainDropLight> for DropLightForm {
     }
 }
 
-/// What is asked of the light on drops.
+/// Options of the light on drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DropLightOptions {
-    /// What lamps do to a drop.
+    /// Model of the light of lamps on a drop.
     pub form: DropLightForm,
     /// Rows that are told of each drop besides its mean, 0 to 16: in the traced form its brightest glints; in that of Rousseau 2006
     /// its brightest lamps, two rows each; of an atlas its brightest streaks, three rows each. The other forms have none.
@@ -120,7 +120,7 @@ impl DropLightOptions {
     /// The light of an atlas, four streaks of each drop.
     pub const ATLAS: Self = Self { form: DropLightForm::Atlas, glints: 4 * DROP_ATLAS_ROWS };
 
-    /// What a weather asks for: its `drop_light`, traced light by the streaks of an atlas if its streaks are of one.
+    /// Options of a weather: its `drop_light`, traced light by the streaks of an atlas if its streaks are of one.
     #[must_use]
     pub fn of_weather(weather: &Weather) -> Self {
         let form = weather.rain.drop_light.into();
@@ -133,7 +133,7 @@ impl DropLightOptions {
     }
 }
 
-/// What a dispatch is about. The same layout as `DropLightFrame` in WGSL.
+/// Constants of a dispatch. The same layout as `DropLightFrame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropLightFrame {
@@ -152,7 +152,7 @@ pub struct DropLightFrame {
 /// A place on a drop's disc where light of a lamp leaves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropGlint {
-    /// Which lamp of the scene.
+    /// Index of the lamp in the scene.
     pub light: u32,
     /// Internal reflections plus 1; 0: reflected at the outside.
     pub order: u32,
@@ -175,7 +175,7 @@ pub struct DropLights<'a> {
     glints: u32,
 }
 
-/// What an atlas has to know of drops: for each the axis, a unit vector against its velocity as the eye sees it (up, where it has
+/// Rows of drops for an atlas: for each the axis, a unit vector against its velocity as the eye sees it (up, where it has
 /// none), and a number that stays with it.
 #[must_use]
 pub(crate) fn drop_light_axes<'a>(drops: impl IntoIterator<Item = (&'a FallingDrop, Vec3)>) -> Vec<[f32; 4]> {
@@ -269,7 +269,7 @@ impl<'a> DropLights<'a> {
         (0..lights).step_by(DROP_LIGHT_LAMPS as usize).map(frame).collect()
     }
 
-    /// How many drops rows are of: those of an atlas have two each.
+    /// Number of drops in the rows: those of an atlas have two each.
     pub(crate) fn count(&self, rows: &[[f32; 4]]) -> usize {
         if self.form == DROP_LIGHT_ATLAS { rows.len() / 2 } else { rows.len() }
     }
@@ -322,7 +322,7 @@ impl<'a> DropLights<'a> {
     }
 
     /// Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles.
-    /// What is within the inner cone is lit, between the two cones light fades. Nothing of other lamps.
+    /// Full light within the inner cone; between the two cones it fades. Zero for other lamps.
     fn drop_light_cone(light: &Light, place: Vec3, least: f32) -> Vec3 {
         let (axis, [scale, edge]) = (light.axis, light.cone);
         if light.is_parallel || scale <= 0.0 {

@@ -45,9 +45,9 @@ pub struct DropMasks {
     pub size: u32,
     /// First word of the streak atlas behind the masks; 0: there is none.
     pub(crate) atlas: u32,
-    /// How a drop scatters the light of lamps.
+    /// Table of the light of lamps that a drop scatters.
     pub light: DropLightTable,
-    /// Whether drops of the smallest diameter are the same from everywhere.
+    /// True if drops of the smallest diameter look the same from everywhere.
     small_are_round: bool,
     /// Half the width of the masks of a diameter, in equivalent radii.
     half_extents: Vec<f32>,
@@ -59,7 +59,7 @@ pub struct DropMasks {
     shapes: Vec<StreakPath>,
 }
 
-/// Where a drop is among the masks.
+/// Position of a drop among the masks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MaskPlace {
     pub(crate) row: [f32; 2],
@@ -154,7 +154,7 @@ impl DropMasks {
         self
     }
 
-    /// Where a drop of a diameter in metres is, seen from `elevation` radians above it.
+    /// Position among the masks of a drop of a diameter in meters, seen from `elevation` radians above it.
     pub(crate) fn place(&self, diameter: f32, elevation: f32) -> MaskPlace {
         let last = self.half_extents.len().saturating_sub(1) as f32;
         let row = (diameter / DIAMETER_STEP as f32 - 1.0).clamp(0.0, last);

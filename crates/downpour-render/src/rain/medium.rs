@@ -45,21 +45,21 @@ pub struct PanePlane {
 }
 
 impl PanePlane {
-    /// Whether a place, relative to the eye, is on the eye's side.
+    /// True if a position, relative to the eye, is on the eye's side.
     #[must_use]
     pub fn is_before(&self, offset: Vec3) -> bool {
         offset.dot(self.outward) < self.distance
     }
 }
 
-/// What unresolved rain is made of beside its sizes.
+/// Options of unresolved rain besides its drop sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MediumOptions {
-    /// What a drop takes out, in its outline.
+    /// Extinction cross section of a drop over the area of its outline.
     pub efficiency: ExtinctionEfficiency,
     /// Mean velocity of the drops, m/s.
     pub velocity: Vec3,
-    /// What the scene's buffers are relative to, m.
+    /// Origin to which the scene's buffers are relative, m.
     pub origin: DVec3,
     /// A pane before the eye.
     pub pane: Option<PanePlane>,
@@ -84,11 +84,11 @@ pub struct RainMedium {
     depths: [f32; ENTRIES],
     /// Extinction of all drops for level rays, 1/m.
     all: f32,
-    /// How much more a drop covers from straight above than from the side.
+    /// Relative excess of the area of a drop's outline from straight above over that from the side.
     flatness: f32,
     /// Unit direction from which drops come.
     rise: Vec3,
-    /// Where drops are simulated, relative to the scene's origin.
+    /// Region in which drops are simulated, relative to the scene's origin.
     region: Region,
     /// Mean row of the masks' diameters, weighted by outline.
     row: f32,

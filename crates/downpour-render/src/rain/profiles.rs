@@ -1,4 +1,4 @@
-//! Which streaks of a picture have profiles in the streak radiance table, how fine these are, and where they stand.
+//! Profiles of a picture's streaks in the streak radiance table: choice of the streaks, resolution and position in the table.
 //!
 //! Every streak that is sampled in its pixels has one. Rays are the finer the wider the streak is on the picture: the light of a
 //! streak of a pixel or two has to be right as a whole, that of a wide one along and across, too.
@@ -25,7 +25,7 @@ const MOST_ENTRIES: u64 = 128 << 20 >> 4;
 /// Radians of the picture that a row of rays stands for: the directions in which a drop is seen differ by that.
 const TURNED: f32 = 0.1;
 
-/// How fine a profile is.
+/// Resolution of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fineness {
     /// Streaks up to this width, pixels.

@@ -38,7 +38,7 @@ const OSCILLATING: std::ops::RangeInclusive<f64> = 0.05e-3..=9.0e-3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Projected {
     pub(super) drop: DropsDrop,
-    /// How far from its path it reaches, pixels.
+    /// Largest distance from its path that it covers, pixels.
     pub(super) reach: f32,
     /// Velocity relative to the picture, m/s.
     pub(super) velocity: Vec3,
@@ -147,7 +147,7 @@ pub(super) fn project(
     Some(Projected { drop: shown, reach, velocity: path.velocity })
 }
 
-/// How a drop's light is found.
+/// Method that finds a drop's light.
 fn kind(path: &Path, exposure: &Exposure) -> u32 {
     match exposure.samples {
         _ if !path.moves => DROPS_STILL,
@@ -162,9 +162,9 @@ fn blur(exposure: &Exposure, distance: f32) -> f32 {
     (exposure.aperture_m * vergence.abs()) as f32
 }
 
-/// Where a drop is during the exposure, relative to the eye.
+/// Path of a drop during the exposure, relative to the eye.
 struct Path {
-    /// Where it is when the exposure begins and ends, or as long as it is before the eye.
+    /// Positions at the beginning and at the end of the exposure, or of the part of it in which it is before the eye.
     ends: [Vec3; 2],
     /// That part of the exposure.
     part: [f32; 2],
@@ -178,7 +178,7 @@ struct Path {
     moves: bool,
 }
 
-/// How long the shutter is open, s.
+/// Time for which the shutter is open, s.
 fn shutter(exposure: &Exposure) -> f32 {
     let shutter = exposure.shutter_s.clamp(0.0, LONGEST_EXPOSURE_S) as f32;
     if shutter.is_finite() { shutter } else { 0.0 }
@@ -214,7 +214,7 @@ impl Travel {
         }
     }
 
-    /// Where it is at a time from the picture's, s.
+    /// Position at a time relative to the picture's, s.
     fn at(&self, time: f32) -> Vec3 {
         turned(self.offset + self.velocity * time, -self.turning * time)
     }
@@ -271,7 +271,7 @@ impl Path {
     }
 }
 
-/// How a drop oscillates during the exposure.
+/// Oscillation of a drop during the exposure.
 #[derive(Clone, Copy, Debug, Default)]
 struct Swing {
     swing: [f32; 4],
@@ -295,7 +295,7 @@ impl Swing {
         let id = drop.id as u32 ^ (drop.id >> 32) as u32;
         let oscillation = oscillation.of_drop(seed, id);
         let [a20, a31] = exposure.oscillation.pair().map(|a| a as f32);
-        // Where the mode (3,1) bulges, against the right of the view.
+        // Direction in which the mode (3,1) bulges, against the right of the view.
         let azimuth = TAU * drop_oscillation_azimuth(seed, id);
         let right = drops_mask_right(towards);
         let cosine = ops::cos(azimuth) * right.x + ops::sin(azimuth) * right.z;

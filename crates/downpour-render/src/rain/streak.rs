@@ -1,4 +1,4 @@
-//! Which part of the exposure a ray passes a moving drop, and where. Twin of `shaders/wgsl/render/streak.wgsl`, where the
+//! Part of the exposure in which a ray passes a moving drop, and its chord. Twin of `shaders/wgsl/render/streak.wgsl`, where the
 //! method is described.
 
 use downpour_drop::oscillation::{
@@ -27,7 +27,7 @@ pub struct DropsDrop {
     pub area: f32,
     /// Samples along an edge of a pixel; of a streak: samples of a pixel. 0: below a pixel, or out of focus.
     pub grid: u32,
-    /// Where the exposure begins: on the plane at distance 1, along the right and up of the drop's view.
+    /// Position when the exposure begins: on the plane at distance 1, along the right and up of the drop's view.
     pub start: [f32; 2],
     /// The way to where it ends.
     pub along: [f32; 2],
@@ -53,7 +53,7 @@ pub struct DropsDrop {
     pub nearest: f32,
     /// Still, by the table, or by a loop.
     pub kind: u32,
-    /// Which mean of the streak radiance table.
+    /// Index of its mean in the streak radiance table.
     pub shape: u32,
     /// First entry of its profile in the table.
     pub profile: u32,
@@ -63,12 +63,12 @@ pub struct DropsDrop {
     pub unused: [f32; 2],
 }
 
-/// Where a ray passes a moving drop.
+/// Chord along which a ray passes a moving drop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreakChord {
     /// Unit direction of the motion on the oval, which is a circle of radius 1 here.
     pub direction: Vec2,
-    /// Where the chord is across the motion, -1 to 1.
+    /// Position of the chord across the motion, -1 to 1.
     pub across: f32,
     /// Half its length.
     pub half: f32,
@@ -113,7 +113,7 @@ pub fn streak_depth(recede: f32, time: f32) -> f32 {
     (1.0 + (recede - 1.0) * time) * 2.0 / (1.0 + recede)
 }
 
-/// How much wider the oval is on the left and on the right, and how much taller, at a time.
+/// Scales of the oval at a time: width on the right and on the left, and height.
 #[must_use]
 pub fn streak_stretch(swing: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 {
     let s2 = swing[0] * drop_oscillation_sine(swing[2] + turns[0] * time);
@@ -123,7 +123,7 @@ pub fn streak_stretch(swing: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 {
     Vec3::new(right, left, drop_oscillation_radius(state, 1.0, 0.0))
 }
 
-/// Where a ray through a place of the plane passes the drop.
+/// Returns the chord along which a ray through a point of the plane passes the drop.
 #[must_use]
 pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     let (start, path) = (Vec2::from(drop.start), Vec2::from(drop.along));
@@ -148,7 +148,7 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     let path = path / moves;
     let low = ((along - length * (1.0 - way)) * per_half).max(-1.0);
     let high = if half <= 1.0e-6 { -2.0 } else { ((along + length * way) * per_half).min(1.0) };
-    // What is ahead on the chord has passed earlier.
+    // Points ahead on the chord have passed earlier.
     let time = |v: f32| streak_time(drop.recede, (way + (along - half * v) / length).clamp(0.0, 1.0));
     let weights = Vec2::new(streak_weight(drop.weights, time(low)), streak_weight(drop.weights, time(high)));
     let weight = 0.5 * (weights.x + weights.y);

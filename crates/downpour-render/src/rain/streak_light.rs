@@ -37,7 +37,7 @@ struct StreakExit {
     passed: u32,
 }
 
-/// How an exit changes along an axis: a first and a second difference per ray, and a first one of its share.
+/// Change of an exit along an axis: first and second difference per ray, and first difference of its share.
 #[derive(Clone, Copy, Debug, Default)]
 struct StreakChange {
     first: Vec3,
@@ -110,7 +110,7 @@ fn streak_light_direction(ray: &StreakPatch, place: Vec3) -> Vec3 {
     drops_mask_unit(linear + squares + mixed)
 }
 
-/// How wide a patch is across and along, at a time.
+/// Width of a patch across and along, at a time.
 fn streak_light_size(ray: &StreakPatch, later: f32) -> Vec2 {
     let across = ray.across.first + ray.across_later * later;
     let along = ray.along.first + ray.along_later * later;
@@ -165,7 +165,7 @@ fn streak_light_view(drop: &DropsDrop, time: f32) -> Vec3 {
     drops_mask_unit(towards + right * middle.x + up * middle.y)
 }
 
-/// What the light of a streak is made of.
+/// Data from which the light of a streak is computed.
 struct Streak<'a> {
     view: DropsView<'a>,
     path: &'a StreakPath,

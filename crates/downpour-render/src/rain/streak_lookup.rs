@@ -16,7 +16,7 @@ pub struct StreakTable {
     pub entries: Vec<[f32; 4]>,
 }
 
-/// Where a ray passes a drop that has a profile.
+/// Position in the profile of a drop at which a ray passes it.
 #[derive(Clone, Copy, Debug)]
 struct StreakPassage {
     /// First entry of the profile.
@@ -51,7 +51,7 @@ impl StreakTable {
         self.entry(entry) * (1.0 - part) + self.entry(entry + 1) * part
     }
 
-    /// Where a place of the plane passes a drop.
+    /// Returns the position in a drop's profile for a point of the plane.
     fn streak_lookup_passage(&self, drop: &DropsDrop, at: Vec2) -> StreakPassage {
         let first = drop.profile;
         let [rows, columns, profile_rows, fine] = self.entry(first).to_array().map(|n| n as u32);

@@ -41,7 +41,7 @@ pub struct StreakPath {
     pub first_ray: u32,
     /// First of its entries in the table.
     pub first_entry: u32,
-    /// Which of the picture's drops.
+    /// Index of the drop among the picture's.
     pub drop: u32,
     /// 0.
     pub unused: u32,

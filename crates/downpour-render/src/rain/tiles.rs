@@ -19,24 +19,24 @@ use crate::plate::Lighting;
 /// The drops of one picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rain {
-    /// What the shader knows of the picture.
+    /// Constants of the picture that the shader reads.
     pub frame: DropsFrame,
     /// Drops that are not drawn one by one.
     pub medium: MediumFrame,
     /// Layout of the environment map.
     pub environment: EnvironmentFrame,
-    /// What the streak radiance table has of the drops that move.
+    /// Profiles of moving drops in the streak radiance table.
     pub profiles: StreakProfiles,
     /// The drops on the picture, nearest first.
     pub list: Vec<DropsDrop>,
-    /// Where each tile's list begins (one more than there are tiles), then the lists.
+    /// Index of the beginning of each tile's list (one more than there are tiles), then the lists.
     pub tiles: Vec<u32>,
     /// The drops of `list` as lamps light them: place relative to the scene's origin, and radius, m. For an atlas then their
     /// axes and ids.
     pub rows: Vec<[f32; 4]>,
     /// The camera of the picture that they are on.
     pub camera: Camera,
-    /// How lamps light them.
+    /// Options of the light of lamps on them.
     light: DropLightOptions,
     /// For each drop of `list`, its place among the drops that were given.
     pub given: Vec<u32>,

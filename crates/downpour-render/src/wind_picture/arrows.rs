@@ -55,7 +55,7 @@ fn arrow(canvas: &mut Canvas, flow: &Flow, [x, y]: [f32; 2], [u, v]: [f32; 2], l
     }
 }
 
-/// How far a point is from a line between two others.
+/// Distance of a point from the segment between two others.
 fn distance([x, y]: [f32; 2], [[ax, ay], [bx, by]]: [[f32; 2]; 2]) -> f32 {
     let (dx, dy) = (bx - ax, by - ay);
     let squared = (dx * dx + dy * dy).max(1.0e-12);

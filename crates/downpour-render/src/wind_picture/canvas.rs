@@ -44,7 +44,7 @@ impl Canvas {
         if column < self.columns { self.light.get_mut(row * self.columns + column) } else { None }
     }
 
-    /// What is outside the picture is not drawn.
+    /// Sets the color of a pixel. Positions outside the picture are ignored.
     pub(super) fn set(&mut self, column: usize, row: usize, colour: [f32; 3]) {
         if let Some(pixel) = self.pixel(column, row) {
             *pixel = colour;

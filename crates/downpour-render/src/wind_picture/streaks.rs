@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::Flow;
 
-/// How far a step along a streamline goes, in pixels.
+/// Length of a step along a streamline, in pixels.
 const STEP: f32 = 0.75;
 
 /// For each pixel how bright its streak is: 0 in the mean, mostly -1 to 1, 0 where nothing flows in the slice.

@@ -1,4 +1,4 @@
-//! Which streaks of an atlas a drop shows under a lamp. Twin of `shaders/wgsl/render/drop_atlas.wgsl`.
+//! Choice of the streaks of an atlas that a drop shows under a lamp. Twin of `shaders/wgsl/render/drop_atlas.wgsl`.
 //!
 //! The choice is that of [`downpour_atlas`], from the same numbers. Here they are rows of four behind the table of
 //! scattering, since the kernel has no buffer to spare: counts; by angle or at random, the first row of the amounts, and whether all

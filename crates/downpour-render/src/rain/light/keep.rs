@@ -1,4 +1,4 @@
-//! Which glints, streaks or lamps of a drop are kept: the brightest.
+//! Choice of the glints, streaks or lamps of a drop that are kept: the brightest.
 
 use std::f32::consts::PI;
 
@@ -57,7 +57,7 @@ pub(super) fn drop_light_reach(light: &Light) -> f32 {
 }
 
 impl DropLights<'_> {
-    /// What a drop shows of a lamp over all of its disc, by the lamp's irradiance over pi and its direction.
+    /// Mean radiance of a lamp over a drop's whole disc, from the lamp's irradiance over pi and its direction.
     fn drop_light_whole(&self, lit: Vec3, direction: Vec3, towards: Vec3) -> Vec3 {
         if self.form == DROP_LIGHT_LAMPS_ROUSSEAU {
             return lit * drop_light_mean(towards, direction, self.terms);

@@ -67,7 +67,7 @@ impl DropLightTable {
         self
     }
 
-    /// Whether there is an atlas.
+    /// True if there is an atlas.
     #[must_use]
     pub fn has_atlas(&self) -> bool {
         self.rows.len() > atlas::FIRST_ROW as usize

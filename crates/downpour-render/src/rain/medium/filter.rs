@@ -9,7 +9,7 @@ use super::light::MediumLight;
 use crate::halves::pack;
 use crate::light::light_weight;
 
-/// How far a neighbor has a say: as far as its ray is about as long.
+/// Weight of a neighbor, 0 to 1: 1 if its ray is as long, 0 from a relative difference of 20 %.
 fn medium_filter_weight(own: f32, other: f32) -> f32 {
     let (reach, far) = (own.min(MEDIUM_LAMP_REACH), other.min(MEDIUM_LAMP_REACH));
     (1.0 - (reach - far).abs() / (0.2 * reach.max(far))).max(0.0)

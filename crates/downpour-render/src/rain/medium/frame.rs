@@ -28,7 +28,7 @@ pub struct MediumFrame {
     pub region: u32,
     /// Edges of a box; radius and height of others, m.
     pub size: [f32; 3],
-    /// How much more a drop covers from straight above than from the side.
+    /// Relative excess of the area of a drop's outline from straight above over that from the side.
     pub flatness: f32,
     /// The eye, relative to the scene's origin, m.
     pub eye: [f32; 3],
@@ -79,7 +79,7 @@ impl MediumFrame {
         }
     }
 
-    /// How much more drops cover, seen along a unit direction, than from the side.
+    /// Area of the drops' outlines seen along a unit direction, over that from the side.
     pub(super) fn medium_outline(&self, direction: Vec3) -> f32 {
         1.0 + self.flatness * direction.y * direction.y
     }

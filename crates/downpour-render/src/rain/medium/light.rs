@@ -34,7 +34,7 @@ pub struct MediumLight<'a> {
     pub(crate) phase: Vec<[f32; 4]>,
 }
 
-/// What has been found of the light before a pixel.
+/// Light found so far before a pixel.
 #[derive(Clone, Copy, Debug, Default)]
 struct Found {
     /// Light if nothing hides it.
@@ -254,7 +254,7 @@ impl<'a> MediumLight<'a> {
         next
     }
 
-    /// What stands before a pixel of unresolved drops: their light, and their optical depth.
+    /// Light and optical depth of the unresolved drops before a pixel.
     fn medium_light_pixel(&self, clean: &[[f32; 4]], grid: &[[f32; 4]], x: u32, y: u32) -> [[f32; 4]; 2] {
         let (medium, camera) = (&self.medium, &self.camera);
         let scene = clean[(y * camera.width + x) as usize][3];

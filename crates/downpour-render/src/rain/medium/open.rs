@@ -1,4 +1,4 @@
-//! Where the air is open to the rain. Twin of `shaders/wgsl/render/medium_open.wgsl`, where the method is described.
+//! Grid of the air that is open to the rain. Twin of `shaders/wgsl/render/medium_open.wgsl`, where the method is described.
 
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
@@ -38,7 +38,7 @@ impl MediumLight<'_> {
         let [word, ..] = rng_draw([camera.seed, 0], cell, 0, MEDIUM_RANDOM_DIMENSION);
         let hit = |start: Vec3, along: Vec3| self.lighting.obstacle(start, along);
         let eye = Vec3::from(medium.eye);
-        // What stands before the cell; the other rays ask what is above the air before it.
+        // Distance of the obstacle before the cell; the other rays look for obstacles above the air before it.
         let solid = if medium.open == 0 { hit(eye, direction) } else { None }.unwrap_or(MEDIUM_FAR);
         let (mut begin, mut depth, mut before) = (0.0, 0.0, 0.0);
         std::array::from_fn(|slice| {
