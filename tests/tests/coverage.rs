@@ -18,7 +18,7 @@ fn all_functions() -> BTreeSet<String> {
         .collect()
 }
 
-/// What function-level cases name, and what naga says that the kernels of kernel-level cases call.
+/// Functions that function-level cases name, and those that the kernels of kernel-level cases call according to naga.
 fn covered() -> BTreeSet<String> {
     let named = cases::functions().into_iter().map(|case| case.function.to_owned());
     let called = cases::kernels().into_iter().flat_map(|case| case.reaches());

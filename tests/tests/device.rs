@@ -1,4 +1,4 @@
-//! What the GPU layer promises of devices: typed errors, limits checked first, loss seen before anything is handed
+//! Tests of what the GPU layer promises of devices: typed errors, limits checked first, loss seen before anything is handed
 //! out, a caller's handlers left alone.
 
 use std::process::ExitCode;

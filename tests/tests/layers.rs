@@ -121,7 +121,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// What the modules at the root of a crate name of each other, tests and documentation left out.
+/// Modules that each module at the root of a crate names, tests and documentation left out.
 fn imports(source: &Path) -> BTreeMap<String, BTreeSet<String>> {
     let mut all = Vec::new();
     files(source, &mut all);
