@@ -41,7 +41,7 @@ const TRUTH: u32 = 512;
 const FAR: [f32; 2] = [0.1, 10.0];
 const NEAR: [f32; 2] = [0.2, 1.0];
 
-/// Things that all pictures share.
+/// Setup that all pictures share.
 struct Bench<'a> {
     gpu: &'a Gpu,
     stage: &'a Stage,

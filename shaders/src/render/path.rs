@@ -52,8 +52,8 @@ shared_constants! {
         PATH_CURVED_PART: f32 = 0.8;
         /// Facets of rippled water of which the reflectance is the mean.
         PATH_WATER_FACETS: u32 = 16;
-        /// Ways a ray leaves what it has met. First: from the surface that the ray of the camera has met, whose light it looks
-        /// for.
+        /// Ways a ray leaves what it has met. First: from the surface that the ray of the camera has met, whose
+        /// light it looks for.
         PATH_FIRST: u32 = 0;
         /// Through it.
         PATH_STRAIGHT: u32 = 1;

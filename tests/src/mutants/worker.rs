@@ -74,8 +74,8 @@ struct KernelBench {
     took: Option<Option<Duration>>,
 }
 
-/// Largest numbers of kernel-level cases that a mutant is shown to, where its function has a case of its own and where it
-/// has none. The first of each kernel come first.
+/// Largest numbers of kernel-level cases that a mutant is shown to, where its function has a case of its own and where
+/// it has none. The first of each kernel come first.
 const MOST_KERNEL_CASES: [usize; 2] = [2, 8];
 
 /// Largest number of function-level cases that a mutant is shown to, its own first.
