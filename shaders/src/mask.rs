@@ -21,10 +21,10 @@ shared_constants! {
         MASK_TRACE_REFLECTIONS: u32 = 8;
         /// Steps to the point of a line that is nearest to the surface.
         MASK_SILHOUETTE_STEPS: u32 = 4;
-        /// Where the spheroid's gauge squared is below this, a pixel is inside for certain.
+        /// Squared gauge of the spheroid below which a pixel is certainly inside.
         MASK_SILHOUETTE_INSIDE: f32 = 0.7;
-        /// Where it is above this, a pixel is outside for certain, margin for the bleed included (large pixels
-        /// of small masks are handled by the width of the pixel).
+        /// Squared gauge of the spheroid above which a pixel is certainly outside, margin for the bleed included (large
+        /// pixels of small masks are handled by the width of the pixel).
         MASK_SILHOUETTE_OUTSIDE: f32 = 1.4;
         /// Pixels outside the silhouette that still hold directions, so that a filter at the edge mixes
         /// directions with directions.

@@ -8,13 +8,13 @@ pub const SWITCH: &str = "DOWNPOUR_GPU_TESTS";
 /// Part of the name of the adapter to take; by default a real GPU before a software driver.
 pub const ADAPTER: &str = "DOWNPOUR_ADAPTER";
 
-/// Whether GPU tests were switched off out loud.
+/// True if GPU tests were switched off explicitly.
 #[must_use]
 pub fn switched_off() -> bool {
     std::env::var(SWITCH).is_ok_and(|v| v == "no")
 }
 
-/// What to do where no adapter opens, in one line.
+/// Advice on what to do if no adapter opens, in one line.
 #[must_use]
 pub fn missing(error: &GpuError) -> String {
     let said = error.to_string().replace('\n', " ");
@@ -27,7 +27,7 @@ pub fn missing(error: &GpuError) -> String {
 /// A device with the limits that every WebGPU implementation has.
 ///
 /// # Errors
-/// What [`Gpu::open_with`] says: with no adapter, the drivers that were tried.
+/// Returns the error of [`Gpu::open_with`]: with no adapter, the drivers that were tried.
 pub fn open() -> Result<Gpu, GpuError> {
     let adapter = match std::env::var(ADAPTER) {
         Ok(name) if !name.is_empty() => AdapterChoice::Named(name),

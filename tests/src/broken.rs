@@ -13,9 +13,9 @@ use crate::relay::Swap;
 pub struct Broken {
     /// The function whose case has to go red.
     pub function: &'static str,
-    /// What stands in the shader.
+    /// Correct text in the shader.
     pub right: &'static str,
-    /// What stands there instead.
+    /// Wrong text that replaces it.
     pub wrong: &'static str,
 }
 

@@ -3,7 +3,7 @@
 use crate::signature::WordKind;
 use crate::tolerance::Tol;
 
-/// What an output buffer holds before a run. As an f32 it is a NaN; as a word it is none of the small numbers.
+/// Word that fills an output buffer before a run. As an f32 it is a NaN; as a word it is none of the small numbers.
 pub const POISON: u32 = 0x7fc0_dead;
 
 /// Relative differences are taken to at least this.
@@ -20,9 +20,9 @@ pub struct Gpu(pub Vec<u32>);
 /// The outcome of a comparison.
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
-    /// How many words were compared.
+    /// Number of words that were compared.
     pub compared: usize,
-    /// How many words are outside the tolerance.
+    /// Number of words outside the tolerance.
     pub outside: usize,
     /// Largest absolute difference of numbers.
     pub worst_abs: f64,
@@ -32,7 +32,7 @@ pub struct Comparison {
     pub worst_ulp: u32,
     /// Index of the word with the largest absolute difference, or of the first that is wrong in kind.
     pub worst_at: usize,
-    /// What is wrong, if anything.
+    /// Description of what is wrong, if anything.
     pub failure: Option<String>,
 }
 
@@ -89,7 +89,7 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
     out
 }
 
-/// How many representable numbers lie between the two. Both zeros are the same number.
+/// Distance of two numbers in steps between neighbouring representable numbers. Both zeros are the same number.
 #[must_use]
 pub fn ulp_distance(a: f32, b: f32) -> u32 {
     let order = |x: f32| {

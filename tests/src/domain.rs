@@ -1,4 +1,4 @@
-//! Where the arguments of a function-level case come from.
+//! Domains of the arguments of a function-level case.
 
 use downpour_math::ops;
 use downpour_math::rng::rng_draw;

@@ -9,7 +9,7 @@ use crate::signature::{Signature, WordKind, parse};
 use crate::tolerance::Tol;
 use crate::words::Args;
 
-/// How many calls a case makes if it does not say.
+/// Number of calls that a case makes by default.
 pub const CALLS: u32 = 8192;
 
 /// A WGSL function, where its arguments come from, and its twin.
@@ -23,9 +23,9 @@ pub struct FunctionCase {
     pub domains: Vec<Domain>,
     /// The twin: reads the arguments, gives the words of the result.
     pub cpu: fn(&mut Args<'_>) -> Vec<u32>,
-    /// How far the two may differ.
+    /// Largest difference allowed between the two.
     pub tol: Tol,
-    /// How many calls are made.
+    /// Number of calls.
     pub calls: u32,
 }
 
@@ -34,9 +34,9 @@ pub struct FunctionCase {
 pub struct Run {
     /// The arguments of each call.
     pub arguments: Vec<Vec<u32>>,
-    /// What the twin gives.
+    /// Words of the twin.
     pub cpu: Cpu,
-    /// What the shader gives.
+    /// Words of the shader.
     pub gpu: compare::Gpu,
     /// The kinds of the words of one result.
     pub kinds: Vec<WordKind>,
@@ -47,7 +47,7 @@ pub struct Run {
 pub struct Twin {
     /// The arguments of each call.
     pub arguments: Vec<Vec<u32>>,
-    /// What the twin gives, one result after the other.
+    /// Words of the twin, one result after the other.
     pub words: Cpu,
 }
 
@@ -115,7 +115,7 @@ fn main_parity(@builtin(global_invocation_id) parity_id: vec3u) {{
     /// Runs both sides. `source` is the text to test: [`compose`] of the module, or a broken one as a control.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     ///
     /// # Panics
     /// As [`FunctionCase::shader`] and [`FunctionCase::twin`].
@@ -128,7 +128,7 @@ fn main_parity(@builtin(global_invocation_id) parity_id: vec3u) {{
     /// Runs the GPU's side beside what the twin made. `text` and `kinds` are those of [`FunctionCase::shader`].
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     ///
     /// # Panics
     /// If the twin gave another number of words.
@@ -153,7 +153,7 @@ fn main_parity(@builtin(global_invocation_id) parity_id: vec3u) {{
     /// Runs both sides of the shader as it is.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn run(&self, gpu: &Gpu) -> Result<Run, GpuError> {
         self.run_source(gpu, &compose(&[self.module]))
     }

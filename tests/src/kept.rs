@@ -1,4 +1,4 @@
-//! What the CPU works out for a case, kept for the next run of it: twins do not change from mutant to mutant.
+//! Cache of what the CPU works out for a case, for the next run of it: twins do not change from mutant to mutant.
 
 use std::any::Any;
 use std::collections::HashMap;

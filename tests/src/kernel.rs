@@ -23,7 +23,7 @@ pub struct KernelCase {
     pub overrides: &'static [(&'static str, f64)],
     /// Text with an entry point `main_parity`, where the case asks the kernel's functions with that instead.
     pub text: Option<fn() -> String>,
-    /// How far the two may differ.
+    /// Largest difference allowed between the two.
     pub tol: Tol,
     /// Runs both sides. `arguments` of the run describe each element of the output.
     pub run: fn(&Gpu) -> Result<Run, GpuError>,
@@ -61,7 +61,7 @@ impl KernelCase {
         found
     }
 
-    /// Whether all this is among what was dispatched: the entry point with these values of its constants, and the others.
+    /// True if all this is among what was dispatched: the entry point with these values of its constants, and the others.
     #[must_use]
     pub fn is_among(&self, dispatched: &BTreeSet<Dispatched>) -> bool {
         let has = |constants: &[(String, u64)], (name, value): &(&str, f64)| {

@@ -1,4 +1,4 @@
-//! Which functions an entry point or a function really calls, as naga's module says.
+//! Functions that an entry point or a function really calls, as naga's module says.
 //!
 //! A branch on an `override` constant counts only where the constant's value takes it.
 
@@ -66,7 +66,7 @@ impl Walk<'_> {
         }
     }
 
-    /// What a condition is, if `override` constants alone say so.
+    /// Value of a condition, if `override` constants alone decide it.
     fn known(&self, within: &Function, condition: Handle<Expression>) -> Option<bool> {
         match &within.expressions[condition] {
             Expression::Override(handle) => {

@@ -18,7 +18,7 @@ use downpour_gpu::wgpu;
 
 use crate::reach;
 
-/// Why a call does not come back.
+/// Reason why a call panics: the relay does not forward it.
 const NOT_HANDED_ON: &str = "a relay hands on compute only";
 
 /// A kernel that was dispatched: its entry point, and the constants that it was given (bits of f64).
@@ -34,7 +34,7 @@ pub struct Swap {
     pub function: String,
     /// The function as it is, with its signature: the text that is looked for.
     pub right: String,
-    /// What is compiled instead.
+    /// Text that is compiled instead.
     pub wrong: String,
 }
 

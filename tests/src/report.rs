@@ -1,4 +1,4 @@
-//! What a run leaves behind: the worst error of each case, and the details of each failure.
+//! Report of a run: the worst error of each case, and the details of each failure.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ pub struct Report {
     lines: Mutex<Vec<String>>,
 }
 
-/// Where reports go: `DOWNPOUR_REPORT_DIR`, else `target/parity` of the workspace.
+/// Folder of the reports: `DOWNPOUR_REPORT_DIR`, else `target/parity` of the workspace.
 #[must_use]
 pub fn folder() -> PathBuf {
     std::env::var_os("DOWNPOUR_REPORT_DIR")

@@ -1,4 +1,4 @@
-//! What naga says of a function, and the WGSL that calls it with words and takes its result as words.
+//! Signature of a function, from naga, and the WGSL that calls it with words and takes its result as words.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use downpour_shaders::{compose, modules};
 use naga::{Handle, Module, ScalarKind, Type, TypeInner, UniqueArena};
 
-/// Whether a word of a result is a number, compared with a tolerance, or has to be equal.
+/// Kind of a word of a result: a number, compared with a tolerance, or a word that has to be equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordKind {
     /// f32.
@@ -22,7 +22,7 @@ pub struct Signature {
     pub call: String,
     /// Statements that write the result `r` to `parity_out[base + k]`.
     pub store: String,
-    /// How many words the arguments take.
+    /// Number of words of the arguments.
     pub argument_words: usize,
     /// The kind of each word of the result.
     pub result: Vec<WordKind>,

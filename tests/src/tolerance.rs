@@ -1,4 +1,4 @@
-//! How far two results may differ, and why.
+//! Largest difference allowed between two results, and the reason for it.
 
 /// A tolerance. There is no default: each case says what it allows, and `why`.
 ///
@@ -14,7 +14,7 @@ pub struct Tol {
     pub ulp: u32,
     /// Share of all numbers that may be outside (0 for almost every case).
     pub outliers: f64,
-    /// Where the numbers come from: the WGSL accuracy table, a condition number, a measured bound.
+    /// Source of the numbers: the WGSL accuracy table, a condition number, a measured bound.
     pub why: &'static str,
 }
 

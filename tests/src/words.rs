@@ -36,7 +36,7 @@ impl<'a> Args<'a> {
         std::array::from_fn(|_| self.u32())
     }
 
-    /// Whether all words were read.
+    /// True if all words were read.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.words.is_empty()

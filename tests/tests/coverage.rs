@@ -7,7 +7,7 @@ use downpour_tests::cases;
 use downpour_tests::kernel::OWN_ENTRY;
 use downpour_tests::signature::all_functions;
 
-/// What function-level cases name, and what naga says that the kernels of kernel-level cases call.
+/// Functions that function-level cases name, and those that the kernels of kernel-level cases call according to naga.
 fn covered() -> BTreeSet<String> {
     let named = cases::functions().into_iter().map(|case| case.function.to_owned());
     let called = cases::kernels().into_iter().flat_map(|case| case.reaches());

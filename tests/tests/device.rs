@@ -1,5 +1,5 @@
-//! What the GPU layer promises of devices: typed errors, limits checked first, loss seen before anything is handed
-//! out, a caller's handlers left alone.
+//! Tests of what the GPU layer promises of devices: typed errors, limits checked first, loss seen before anything is
+//! handed out, a caller's handlers left alone.
 
 use std::process::ExitCode;
 use std::sync::Arc;

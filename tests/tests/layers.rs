@@ -109,7 +109,7 @@ fn the_architecture_shows_the_layers() {
     }
 }
 
-/// What the modules at the root of a crate name of each other, tests and documentation left out.
+/// Modules that each module at the root of a crate names, tests and documentation left out.
 fn imports(source: &Path) -> BTreeMap<String, BTreeSet<String>> {
     let all = rust_files(source).unwrap();
     let top = |path: &Path| -> String {

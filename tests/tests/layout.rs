@@ -144,7 +144,7 @@ fn hosts() -> Vec<Host> {
     ]
 }
 
-/// What naga says of a struct: its span and the offsets of its members.
+/// Layout of a struct according to naga: its span and the offsets of its members.
 fn layout(module: &'static Module, name: &str) -> (usize, Vec<(String, usize)>) {
     let parsed = parse(&compose(&[module]));
     let found = parsed.types.iter().find(|(_, t)| t.name.as_deref() == Some(name));

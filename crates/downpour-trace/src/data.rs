@@ -31,7 +31,7 @@ pub struct RenderCorner {
     pub colour: [f32; 4],
 }
 
-/// What changes from frame to frame. The same layout as `RenderFrame` in WGSL.
+/// Values that change from frame to frame. The same layout as `RenderFrame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct RenderFrame {
@@ -53,7 +53,7 @@ pub struct RenderFrame {
     pub nearest: f32,
     /// Part of the rays that look for the light of a surface that one of them is.
     pub ray_share: f32,
-    /// What is traced: the picture, or a capture.
+    /// Kind of image that is traced: the picture, or a capture.
     pub projection: u32,
     /// 1: the capture leaves parallel light out, since drops are lit by it on their own ([`downpour_render::rain::light`]).
     pub suns_out: u32,

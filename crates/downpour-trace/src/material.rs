@@ -8,7 +8,7 @@ use crate::data::SceneData;
 pub(crate) const MATERIAL_ROWS: usize = SCENE_MATERIAL_ROWS as usize;
 const SLOT_ROWS: usize = SCENE_SLOT_ROWS as usize;
 
-/// How a surface looks: glTF's metallic-roughness, with indices of texture slots.
+/// Appearance of a surface: glTF's metallic-roughness, with indices of texture slots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialLook {
     /// Base colour, linear, and alpha.
@@ -77,7 +77,7 @@ pub struct TextureSlot {
     pub matrix: [f32; 4],
     /// Offset of the coordinates.
     pub offset: [f32; 2],
-    /// Which set of coordinates: 0 or 1.
+    /// Index of the set of coordinates: 0 or 1.
     pub uv_set: u32,
     /// `SCENE_ROOTED`, `SCENE_REPEAT_U` and its like.
     pub flags: u32,
@@ -184,7 +184,7 @@ impl SceneData {
     }
 }
 
-/// What the numbers of a texture mean.
+/// Meaning of the numbers of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextureUse {
     /// Colours, sRGB in the file.

@@ -1,4 +1,4 @@
-//! What a ray of the camera sees: surfaces, water, and the light that comes to them from lamps, sky and one another. Twin of
+//! Path of a ray of the camera: surfaces, water, and the light that comes to them from lamps, sky and one another. Twin of
 //! `shaders/wgsl/render/path.wgsl`.
 //!
 //! Both sides trace the same rays through the same hierarchy and filter the same texels, so a machine without a driver
@@ -45,7 +45,7 @@ use draw::{path_onward, path_replaced, path_water_ray, path_water_share};
 pub(crate) use plan::path_most;
 use plan::{PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface};
 
-/// What a ray of the camera finds.
+/// Result of tracing a ray of the camera.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ViewPath {
     /// All light but that which is told apart below.
@@ -55,9 +55,9 @@ pub(crate) struct ViewPath {
     pub(crate) facet: Vec3,
     pub(crate) material: u32,
     pub(crate) place: Vec3,
-    /// Whether it is what the sample before has seen.
+    /// True if it is the same surface that the sample before has seen.
     pub(crate) again: bool,
-    /// Whether what it shows is the same over a pixel: no mirror, nothing behind a pane.
+    /// True if it looks the same all over a pixel: no mirror, nothing behind a pane.
     pub(crate) plain: bool,
     /// Light of sky and surfaces on the diffuse base of the first opaque surface, over pi.
     pub(crate) base: PathSlot,
@@ -69,9 +69,9 @@ pub(crate) struct ViewPath {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathSlot {
     pub(crate) light: Vec3,
-    /// How far from a place's plane another may be; 0: there is no light.
+    /// Largest distance of another position from the plane of this one; 0: there is no light.
     pub(crate) slack: f32,
-    /// What it is multiplied with.
+    /// Factor of the light.
     pub(crate) factor: Vec3,
     /// Roughness of a gloss; 0 for light on a diffuse base.
     pub(crate) roughness: f32,
@@ -154,7 +154,7 @@ impl PathLight {
 /// Water that a ray has come through.
 #[derive(Clone, Copy, Debug)]
 struct PathWater {
-    /// What was found of it.
+    /// The water that was found.
     found: PuddleWater,
     /// Slopes of its surface, and their variance.
     ripple: Vec3,
@@ -172,13 +172,13 @@ struct PathMeeting {
     surface: Surface,
     direct: Vec3,
     plan: PathPlan,
-    /// Whether means over neighbouring pixels are taken of its light.
+    /// True if its light is averaged over neighbouring pixels.
     told: bool,
-    /// How far from its plane the surface of a neighbouring pixel may be.
+    /// Largest distance from its plane at which the surface of a neighbouring pixel may be.
     slack: f32,
 }
 
-/// How a ray leaves the surface that it has met.
+/// Way a ray leaves the surface that it has met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PathLeave {
     /// It is the first, and looks for the light of the surface that the ray of the camera has met.
@@ -193,7 +193,7 @@ enum PathLeave {
     Onward,
 }
 
-/// Whether a surface is the same where another sample of the pixel has met it.
+/// True if a surface is the same as the one that another sample of the pixel has met.
 fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, place: Vec3, distance: f32) -> bool {
     last.plain
         && last.material == material
@@ -202,7 +202,7 @@ fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, place: Vec3, d
 }
 
 impl SceneView<'_> {
-    /// What a ray sees. Where it meets the surface that `last` met, it sees the same.
+    /// Traces a ray of the camera. If it meets the surface that `last` met, it sees the same.
     pub(crate) fn path_trace(
         &self,
         origin: Vec3,

@@ -1,4 +1,4 @@
-//! Where the light that a surface shows comes from: rays drawn for its diffuse base and for its gloss. Twin of
+//! Rays that look for the light that a surface shows: drawn for its diffuse base and for its gloss. Twin of
 //! `shaders/wgsl/render/scatter.wgsl`.
 //!
 //! A ray's direction is drawn from the hemisphere, weighted by the cosine, or from the mirror images that the microfacets

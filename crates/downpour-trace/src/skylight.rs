@@ -44,14 +44,14 @@ fn skylight_luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// How far two mirrored directions agree within the lobe of a roughness.
+/// Agreement of two mirrored directions within the lobe of a roughness: 1 for the same direction, at least 0.
 #[must_use]
 pub fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
     let alpha = roughness * roughness;
     (1.0 - (1.0 - cosine) / (SKYLIGHT_LOBE * alpha * alpha).max(1.0e-7)).max(0.0)
 }
 
-/// How far two pixels show one surface.
+/// Weight of another pixel in the mean of a pixel: the degree to which both show one surface, 0 to 1.
 fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
     if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
         return 0.0;
@@ -67,14 +67,14 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
     fourth * fourth * near
 }
 
-/// How far two means are the same but for their noise: variances are those of the means.
+/// Degree to which two means are the same but for their noise, 0 to 1: variances are those of the means.
 #[must_use]
 pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
     let apart = skylight_luminance(own.truncate()) - skylight_luminance(other.truncate());
     (1.0 - apart * apart / (SKYLIGHT_NOISE * (own.w + other.w)).max(1.0e-20)).max(0.0)
 }
 
-/// What pixels have found, and the means so far of each of their two slots: color, and the variance of its luminance.
+/// Slots of all pixels. A mean of a slot is a color and the variance of its luminance.
 struct Pixels<'a> {
     width: u32,
     height: u32,
@@ -82,7 +82,7 @@ struct Pixels<'a> {
 }
 
 impl SceneView<'_> {
-    /// What the light of sky and surfaces adds to each pixel.
+    /// Light that sky and surfaces add to each pixel.
     pub(crate) fn skylight(&self, gather: &[TraceGather]) -> Vec<[f32; 3]> {
         let eye = self.frame.camera.eye;
         let slots: Vec<[SkylightSlot; 2]> = gather

@@ -59,11 +59,11 @@ pub struct Stage {
     pub data: SceneData,
     /// The eye, relative to `origin`.
     pub viewpoint: Viewpoint,
-    /// What the buffers are relative to: 0 unless the eye is more than 1 km from it.
+    /// Origin of the buffers: 0 unless the eye is more than 1 km from it.
     pub origin: DVec3,
-    /// How the eye moves.
+    /// Motion of the eye.
     pub motion: EyeMotion,
-    /// How long the shutter is open, in seconds.
+    /// Exposure time: the shutter is open for so long, in seconds.
     pub shutter_s: f64,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
@@ -227,7 +227,7 @@ impl Stage {
     }
 }
 
-/// What buffers are relative to, for an eye at a place.
+/// Origin of the buffers for an eye at a position.
 fn origin_near(eye: DVec3) -> DVec3 {
     if eye.abs().max_element() > NEAR_ORIGIN_M { eye.round() } else { DVec3::ZERO }
 }
@@ -270,7 +270,7 @@ fn view_of(
     })
 }
 
-/// How the eye moves at a time: from where it is when the shutter opens and closes.
+/// Motion of the eye at a time: from its positions when the shutter opens and closes.
 fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
     let moves = match &weather.camera.path {
         Some(path) => !path.is_still(),
@@ -290,7 +290,7 @@ fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
     }
 }
 
-/// Where everything is when all movements that play have run for a time.
+/// Pose of the scene when all animations that play have run for a time.
 fn posed(loaded: &Loaded, time_s: f64) -> Pose {
     let play = |&animation: &usize| {
         // Days have too many seconds for single precision; a round of a movement has not.

@@ -1,4 +1,4 @@
-//! What a ray finds: the nearest triangle that is not a hole, and its material there. Twin of
+//! Surface that a ray finds: the nearest triangle that is not a hole, and its material there. Twin of
 //! `shaders/wgsl/render/surface.wgsl`.
 
 use downpour_bvh::{Hit, bvh_nearest};
@@ -73,7 +73,7 @@ impl SceneData {
             * self.surface_colour(hit).w
     }
 
-    /// Whether there is a hole at a hit.
+    /// True if there is a hole at a hit.
     fn surface_is_open(&self, hit: &Hit) -> bool {
         let material = self.material_load(self.corners_of(hit)[0].material);
         if material.flags & (SCENE_MASKED | SCENE_BLENDED) == 0 {
@@ -134,7 +134,7 @@ impl SceneData {
         Vec3::from(triangle.edge_1).cross(Vec3::from(triangle.edge_2))
     }
 
-    /// How much the corners' normals turn per metre of the triangle that was hit.
+    /// Change of the corners' normals per metre of the triangle that was hit.
     fn surface_bend(&self, hit: &Hit) -> f32 {
         let triangle = &self.triangles[hit.triangle as usize];
         let [a, b, c] = [0, 1, 2].map(|k| Vec3::from(self.corners_of(hit)[k].normal));

@@ -20,7 +20,7 @@ use downpour_render::halves::{pack, unpack};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TraceSlot {
-    /// Where it is, metres.
+    /// Position, m.
     pub place: [f32; 3],
     /// The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
     pub normal: u32,
@@ -28,8 +28,8 @@ pub struct TraceSlot {
     pub light: f32,
     /// Fractions of it that are red and green, 12 bits each, and the roughness of a gloss, 8 bits; 0: a diffuse base.
     pub look: u32,
-    /// What it is multiplied with, and how far from the plane another place may be, per distance from the eye (0: there is
-    /// no light), as halves.
+    /// Factor of the light, and largest distance from the plane of another position on the same surface, per distance from
+    /// the eye (0: there is no light), as halves.
     pub factor: [u32; 2],
 }
 

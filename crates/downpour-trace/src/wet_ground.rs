@@ -14,7 +14,7 @@ const SEED: u64 = 0x7075_6464_6c65_0001;
 #[derive(Debug)]
 pub struct WetGround {
     puddles: Vec<(PuddleMap, PuddleLook)>,
-    /// What the maps' places are relative to.
+    /// Origin of the maps' positions.
     origin: DVec3,
     ripples: Ripples,
 }
@@ -61,13 +61,13 @@ impl WetGround {
         });
     }
 
-    /// Where the water of each puddle is.
+    /// Maps of the water of each puddle.
     pub fn maps(&self) -> impl Iterator<Item = &PuddleMap> {
         self.puddles.iter().map(|(map, _)| map)
     }
 }
 
-/// Where the water of a puddle is.
+/// Map of the water of a puddle.
 fn map(puddle: &Puddle, mask: Option<&Picture>, stage: &Stage) -> PuddleMap {
     let ground = Ground {
         middle: (DVec3::from(puddle.middle) - stage.origin).as_vec3(),

@@ -76,7 +76,7 @@ fn turned(from: Vec3, degrees: f32) -> Vec3 {
     from * ops::cos(degrees.to_radians()) + aside * ops::sin(degrees.to_radians())
 }
 
-/// What all eyes round a drop see of it is what it takes out of the light, but for orders above 3.
+/// The light of a drop, summed over all eyes around it, is what it takes out of the light, but for orders above 3.
 #[test]
 fn no_light_is_lost_or_made() -> Outcome {
     let indices = [1.3315, 1.3345, 1.3385];

@@ -23,7 +23,7 @@ type Outcome = Result<(), Box<dyn std::error::Error>>;
 /// Pixels along an edge of the pictures.
 const SIZE: usize = 160;
 
-/// Where the drop is before the eye, m, and half the field of view.
+/// Distance of the drop from the eye, m, and half the field of view, rad.
 const DISTANCE: f64 = 0.5;
 const HALF: f64 = 0.0125;
 

@@ -98,7 +98,7 @@ fn drop(centre: [f32; 2], radius: f32) -> GlassPictureDrop {
     }
 }
 
-/// What is let through and what is reflected is all that comes: before even light, whatever is on the glass vanishes.
+/// Light let through and light reflected add up to all that comes: before even light, whatever is on the glass vanishes.
 #[test]
 fn in_even_light_a_wet_pane_vanishes() -> Outcome {
     for keys in [
@@ -239,8 +239,8 @@ fn blur_keeps_the_light() -> Outcome {
     Ok(())
 }
 
-/// How large a paraboloid of a source of integral 1 looks through a drop, as the sum over rings of the picture: a ray at an
-/// angle from the drop's axis meets glass and sphere, in a plane.
+/// Light of the image of a paraboloid source of integral 1 through a drop, as the sum over rings of the picture: a ray at
+/// an angle from the drop's axis meets glass and sphere, in a plane.
 fn shown(spread: f64, pane: f64, radius: f64) -> f64 {
     use downpour_math::ops::f64 as ops;
     let (sphere, index) = (1.4 * radius, 1.333);

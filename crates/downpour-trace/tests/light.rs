@@ -213,8 +213,8 @@ fn puddle(look: MaterialLook, depth: f32, sky: f32, lamp: LightSource) -> SceneD
     scene
 }
 
-/// Where light from a lamp that is mirrored by level ground under level water comes out to an eye: along z, by bisection of
-/// Snell's law.
+/// Position where light from a lamp that is mirrored by level ground under level water comes out to an eye: along z, by
+/// bisection of Snell's law.
 fn mirrored_at(eye: [f64; 2], lamp: [f64; 2], depth: f64) -> f64 {
     let reach = |sine: f64| {
         let tangent = |s: f64| s / (1.0 - s * s).sqrt();
@@ -285,7 +285,7 @@ fn the_sun_lights_ground_under_water_by_fresnels_equations() -> Outcome {
     Ok(())
 }
 
-/// What two rows of numbers have in common, -1 to 1.
+/// Correlation of two rows of numbers, -1 to 1.
 fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
     let [ab, aa, bb] = pairs.fold([0.0; 3], |[ab, aa, bb], (a, b)| [ab + a * b, aa + a * a, bb + b * b]);
     ab / (aa * bb).sqrt()

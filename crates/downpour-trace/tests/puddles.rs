@@ -153,7 +153,7 @@ fn a_dish_of_the_model_fills_to_its_rim() -> Outcome {
     Ok(())
 }
 
-/// What is seen of a model's hollow is its water's surface: level, and nearer than the ground.
+/// Rays into a model's hollow end on the surface of its water: level, and nearer than the ground.
 #[test]
 fn rays_end_on_the_surface_of_the_water_in_a_hollow() -> Outcome {
     let dish = |place: Vec2| 0.1 * (place.length_squared() - 1.0).clamp(-1.0, 0.0);

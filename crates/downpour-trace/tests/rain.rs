@@ -107,7 +107,8 @@ fn a_large_drop_is_flat() -> Outcome {
     Ok(())
 }
 
-/// What comes through and what is reflected add up to what is there: before uniform surroundings drops cannot be seen.
+/// Light that comes through and light that is reflected add up to what is there: before uniform
+/// surroundings drops cannot be seen.
 #[test]
 fn in_uniform_surroundings_drops_vanish() -> Outcome {
     let scene = sky(|_| [0.25, 0.5, 2.0]);

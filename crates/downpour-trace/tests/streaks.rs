@@ -167,8 +167,8 @@ fn an_eye_sees_a_streak_fade() -> Outcome {
     Ok(())
 }
 
-/// What an eye sees of a drop before varied surroundings is the mean of short exposures one after the other, each with the weight
-/// of its age: also where the drop comes nearer, and as long as it takes to pass a ray.
+/// The image of a drop before varied surroundings in an eye is the mean of short exposures one after the other, each with
+/// the weight of its age: also where the drop comes nearer, and as long as it takes to pass a ray.
 #[test]
 fn an_eye_sees_moments_by_their_age() -> Outcome {
     const PARTS: u32 = 24;

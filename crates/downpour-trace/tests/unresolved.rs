@@ -47,7 +47,8 @@ fn marshall_palmer(rate: f64) -> impl Fn(f64) -> f64 {
     move |d| rate / carried * ops::exp(-slope * d)
 }
 
-/// What drops cover of a level path, per m: ellipsoids of revolution with the axis ratio of M. Thurai et al. 2007.
+/// Area that drops cover per volume of air along a level path, 1/m: ellipsoids of revolution with the axis ratio of
+/// M. Thurai et al. 2007.
 fn covered(rate: f64) -> f64 {
     let count = marshall_palmer(rate);
     let ratio = |d: f64| {

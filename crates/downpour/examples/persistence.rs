@@ -41,7 +41,7 @@ const TRUTH: u32 = 512;
 const FAR: [f32; 2] = [0.1, 10.0];
 const NEAR: [f32; 2] = [0.2, 1.0];
 
-/// What all pictures share.
+/// Setup that all pictures share.
 struct Bench<'a> {
     gpu: &'a Gpu,
     stage: &'a Stage,
@@ -123,7 +123,7 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// What lamps cost: the drops of table 1, without and with them.
+    /// Cost of lamps: the drops of table 1, without and with them.
     fn by_light(&self, count: u32) -> Result<(), Box<dyn Error>> {
         let drops = self.drops(count, 1.0e-3, FAR)?;
         let of = |form, glints| {

@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What of an impact the water needs, if it was on the water.
+/// Impact on the water; `None` if it was elsewhere.
 fn on_water(event: &StepEvent) -> Option<Impact> {
     let [x, y, z] = event.position;
     let position_m = [x - CORNER[0], z - CORNER[1]];

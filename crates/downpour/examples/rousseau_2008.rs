@@ -1,4 +1,4 @@
-//! How fast drops are animated on a GPU: the step against a copy of the same memory, and table 1 of Rousseau 2008.
+//! Speed of the animation of drops on a GPU: the step against a copy of the same memory, and table 1 of Rousseau 2008.
 //!
 //! ```sh
 //! cargo run --release -p downpour --features wgpu --example rousseau_2008

@@ -76,21 +76,21 @@ shared_constants! {
     }
 }
 
-/// Where light leaves a drop; needs no buffers. Twin: `downpour_render::rain::glint`.
+/// Points where light leaves a drop; needs no buffers. Twin: `downpour_render::rain::glint`.
 pub static DROP_GLINT: Module = Module {
     path: "render/drop_glint.wgsl",
     wgsl: include_str!("../../wgsl/render/drop_glint.wgsl"),
     uses: &[&DROP_LIGHT_CONSTANTS, &SPECIMEN_TABLES],
 };
 
-/// How drops scatter. Host: `downpour_render::rain::light::DropLightTable`.
+/// Scattering of light by drops. Host: `downpour_render::rain::light::DropLightTable`.
 pub static DROP_LIGHT_TABLE: Module = Module {
     path: "render/drop_light_table.wgsl",
     wgsl: include_str!("../../wgsl/render/drop_light_table.wgsl"),
     uses: &[],
 };
 
-/// Which streaks of an atlas a drop shows. Twin: `downpour_render::rain::light::atlas`.
+/// Streaks of an atlas that a drop shows. Twin: `downpour_render::rain::light::atlas`.
 pub static DROP_ATLAS: Module = Module {
     path: "render/drop_atlas.wgsl",
     wgsl: include_str!("../../wgsl/render/drop_atlas.wgsl"),

@@ -67,7 +67,7 @@ pub static MEDIUM: Module = Module {
     uses: &[&MEDIUM_CONSTANTS],
 };
 
-/// Where the air is open to the rain. Twin: `downpour_render::rain::medium::open`.
+/// Regions of the air that are open to the rain. Twin: `downpour_render::rain::medium::open`.
 pub static MEDIUM_OPEN: Module = Module {
     path: "render/medium_open.wgsl",
     wgsl: include_str!("../../wgsl/render/medium_open.wgsl"),

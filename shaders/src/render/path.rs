@@ -22,7 +22,7 @@ shared_constants! {
         PATH_LATTICE_SECOND: u32 = 30;
         /// See [`PATH_LATTICE_SCATTER`].
         PATH_LATTICE_THIRD: u32 = 37;
-        /// How far a ray's numbers are from the lattice's point, at most: about the distance of neighbouring points.
+        /// Largest distance of a ray's numbers from the lattice's point: about the distance of neighbouring points.
         PATH_JITTER: f32 = 0.14;
         /// Rays that follow each other, at most.
         PATH_BOUNCES: u32 = 6;
@@ -36,7 +36,7 @@ shared_constants! {
         PATH_APART: f32 = 1.5;
         /// Directions among which the one of a ray of the diffuse base is drawn.
         PATH_CANDIDATES: u32 = 8;
-        /// What a direction weighs in that, at least, in the mean of the sky.
+        /// Minimum weight of a direction in that draw, as a multiple of the mean of the sky.
         PATH_FLOOR: f32 = 1.0;
         /// Roughness from which one ray serves the diffuse base and the gloss, by chance.
         PATH_MIXED: f32 = 0.35;
@@ -52,7 +52,8 @@ shared_constants! {
         PATH_CURVED_PART: f32 = 0.8;
         /// Facets of rippled water of which the reflectance is the mean.
         PATH_WATER_FACETS: u32 = 16;
-        /// How a ray leaves what it has met: the surface that the ray of the camera has met, whose light it looks for.
+        /// Ways a ray leaves what it has met. First: from the surface that the ray of the camera has met, whose
+        /// light it looks for.
         PATH_FIRST: u32 = 0;
         /// Through it.
         PATH_STRAIGHT: u32 = 1;
@@ -86,7 +87,7 @@ pub static PATH_LATTICE: Module = Module {
     uses: &[&PATH_CONSTANTS, &DATA, &RNG],
 };
 
-/// What a ray of the camera sees. Twin: `downpour_trace::path`.
+/// Path of a ray of the camera. Twin: `downpour_trace::path`.
 pub static PATH: Module = Module {
     path: "render/path.wgsl",
     wgsl: include_str!("../../wgsl/render/path.wgsl"),

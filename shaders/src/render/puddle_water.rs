@@ -17,7 +17,7 @@ shared_constants! {
         PUDDLE_WATER_MOST: u32 = 16;
         /// Says that there is no water.
         PUDDLE_WATER_NONE: u32 = 4294967295;
-        /// What stands for the material of water where pixels are compared.
+        /// Number that stands for the material of water where pixels are compared.
         PUDDLE_WATER_MATERIAL: u32 = 4294967294;
         /// Refractive index of water.
         PUDDLE_WATER_INDEX: f32 = 1.333;
@@ -30,7 +30,7 @@ shared_constants! {
         PUDDLE_WATER_INSIDE: f32 = 0.4745906;
         /// Depth below which there is no water, m.
         PUDDLE_WATER_LEAST: f32 = 0.0002;
-        /// How far over or under the mapped ground a ray's hit may be, m.
+        /// Largest distance of a ray's hit over or under the mapped ground, m.
         PUDDLE_WATER_SLACK: f32 = 0.01;
         /// Least rise of a direction over the horizon that leaves a puddle.
         PUDDLE_WATER_GRAZING: f32 = 0.002;

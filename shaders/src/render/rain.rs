@@ -167,14 +167,15 @@ pub static DROPS_MASK: Module = Module {
     uses: &[&RAIN_CONSTANTS, &PACKING, &DROPS_FRAME],
 };
 
-/// What a ray sees through a drop. Twin: `downpour_render::rain::drops_shade`.
+/// Light that a ray sees through a drop. Twin: `downpour_render::rain::drops_shade`.
 pub static DROPS_SHADE: Module = Module {
     path: "render/drops_shade.wgsl",
     wgsl: include_str!("../../wgsl/render/drops_shade.wgsl"),
     uses: &[&RAIN_CONSTANTS, &PACKING, &DROPS_FRAME, &DROPS_CAPTURE, &DROPS_MASK],
 };
 
-/// Where a ray passes a drop that moves. Twin: `downpour_render::rain::streak`.
+/// Part of the exposure in which a ray passes a drop that moves, and the position there. Twin:
+/// `downpour_render::rain::streak`.
 pub static STREAK: Module = Module {
     path: "render/streak.wgsl",
     wgsl: include_str!("../../wgsl/render/streak.wgsl"),
@@ -242,7 +243,7 @@ pub static STREAK_LOOKUP: Module = Module {
     uses: &[&RAIN_CONSTANTS, &STREAK, &STREAK_PLACE],
 };
 
-/// How its means are made. Twin: `downpour_render::rain::streak_table`.
+/// Computation of the means of the streak radiance table. Twin: `downpour_render::rain::streak_table`.
 pub static STREAK_TABLE: Module = Module {
     path: "render/streak_table.wgsl",
     wgsl: include_str!("../../wgsl/render/streak_table.wgsl"),

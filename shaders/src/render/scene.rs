@@ -80,7 +80,7 @@ shared_constants! {
         SKYLIGHT_NOISE: f32 = 25.0;
         /// Cosine of the angle between normals up to which samples of a pixel are of one surface.
         TRACE_SAME_NORMAL: f32 = 0.9;
-        /// What is traced: the picture.
+        /// Projection of a trace: the picture.
         SCENE_PICTURE: u32 = 0;
         /// Samples of the sky along an edge of a texel of the capture that shows nothing else.
         CAPTURE_SKY: u32 = 4;
@@ -113,7 +113,7 @@ pub static TEXTURE: Module = Module {
 pub static SKY: Module =
     Module { path: "render/sky.wgsl", wgsl: include_str!("../../wgsl/render/sky.wgsl"), uses: &[&DATA] };
 
-/// What a ray finds. Twin: `downpour_trace::surface`.
+/// Surface that a ray finds. Twin: `downpour_trace::surface`.
 pub static SURFACE: Module = Module {
     path: "render/surface.wgsl",
     wgsl: include_str!("../../wgsl/render/surface.wgsl"),

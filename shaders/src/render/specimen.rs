@@ -87,7 +87,8 @@ shared_constants! {
         SPECIMEN_WOBBLE_STEPS: u32 = 4;
         /// Least curvature of the parabola of a step: below, it is a step on the tangent.
         SPECIMEN_WOBBLE_FLAT: f32 = 0.001;
-        /// How far a step may leave its bracket and is put back to its end.
+        /// Largest distance by which a step may leave its bracket and is put back to its end; beyond, it is put
+        /// in the middle.
         SPECIMEN_WOBBLE_SLACK: f32 = 0.0001;
         /// Internal reflections that are followed in a streak.
         SPECIMEN_STREAK_REFLECTIONS: u32 = 128;

@@ -97,7 +97,7 @@ fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
     RainMedium::new(&rain, &resolved, masks, &options).expect("a medium")
 }
 
-/// What is compared of a picture.
+/// Part of a picture that is compared.
 #[derive(Clone, Copy)]
 enum Part {
     Capture,
@@ -351,7 +351,7 @@ const PROFILED: Tol = Tol::relative(
 )
 .with_outliers(2.0e-2);
 
-/// Where the eye is, and where it looks.
+/// Positions of the eye, and the directions in which it looks.
 const LEVEL: [Vec3; 2] = [Vec3::new(0.6, 0.4, 3.0), Vec3::new(-0.1, 0.0, -1.0)];
 const ABOVE: [Vec3; 2] = [Vec3::new(0.1, 3.0, 0.4), Vec3::new(0.05, -1.0, -0.1)];
 

@@ -360,7 +360,7 @@ fn yard() -> CollisionMap {
     CollisionMap::new(&options, &Bvh::new(&corners)).expect("a map")
 }
 
-/// What a case runs.
+/// Setup of a case.
 #[derive(Clone, Copy)]
 struct Scenario {
     volume: SimVolume,
@@ -374,7 +374,7 @@ struct Scenario {
 const TURNING: Scenario =
     Scenario { volume: SimVolume::View, drag: Drag::Relaxation, windy: true, walls: true, jumps: false };
 
-/// What a step leaves behind on both sides.
+/// Drops and events that a step leaves behind on both sides.
 struct Both {
     drops: [Vec<StepDrop>; 2],
     happened: [StepEvents; 2],

@@ -8,7 +8,7 @@ use super::population::Mutant;
 use super::tokens::{Kind, tokens};
 use crate::relay::{CHOSEN, Swap};
 
-/// How many mutants share a text.
+/// Largest number of mutants that share a text.
 pub const MOST: usize = 16;
 
 /// The swap of all mutants of one function; number `k + 1` chooses the `k`-th, any other none. `None` for entry points,

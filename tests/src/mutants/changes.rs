@@ -47,7 +47,7 @@ impl fmt::Display for ChangeKind {
 /// Bytes of a text, and what stands there instead.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change {
-    /// What kind it is.
+    /// Kind of the change.
     pub kind: ChangeKind,
     /// The bytes.
     pub at: Range<usize>,
@@ -137,7 +137,7 @@ impl Body<'_> {
         close
     }
 
-    /// Whether the sign at `at` stands between two operands.
+    /// True if the sign at `at` stands between two operands.
     fn between(&self, at: usize) -> bool {
         at > self.range.start
             && match self.tokens[at - 1].kind {
@@ -202,7 +202,7 @@ impl Body<'_> {
         }
     }
 
-    /// Where the term ends that follows the `+` or `-` at `at`.
+    /// End of the term that follows the `+` or `-` at `at`.
     fn term_end(&self, at: usize) -> usize {
         let mut k = at + 1;
         let mut end = self.tokens[at].at.end;

@@ -9,7 +9,7 @@ pub struct Known {
     pub function: String,
     /// The changed line, as [`Mutant::wrong`] has it.
     pub wrong: String,
-    /// Why nothing sees it.
+    /// Reason why nothing sees it.
     pub reason: String,
 }
 

@@ -7,7 +7,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What became of a mutant, and how long it took.
+/// Outcome of a mutant, and the time it took.
 #[derive(Clone, Debug)]
 pub struct Verdict {
     /// The mutant's number in the population.

@@ -16,7 +16,7 @@ pub struct Mutant {
     pub module: &'static Module,
     /// The line of the change in the module's file.
     pub line: usize,
-    /// What kind of change it is.
+    /// Kind of the change.
     pub kind: ChangeKind,
     /// The line as it is.
     pub right: String,
@@ -47,7 +47,7 @@ impl Mutant {
         }
     }
 
-    /// Why naga refuses it, if it does: such a change is none that could stay in a shader.
+    /// Reason why naga refuses it, if it does: such a change could not stay in a shader.
     #[must_use]
     pub fn refused(&self) -> Option<String> {
         let text = compose(&[self.module]).replace(&self.swap.right, &self.swap.wrong);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A name or a keyword.
@@ -16,7 +16,7 @@ pub enum Kind {
 /// A token and its place in the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Token {
-    /// What it is.
+    /// Kind of the token.
     pub kind: Kind,
     /// Its bytes.
     pub at: Range<usize>,
@@ -75,7 +75,7 @@ pub fn tokens(source: &str) -> Vec<Token> {
     found
 }
 
-/// Where a number ends: `1.5e-3f`, `0x1fu`, `12i`.
+/// End of a number: `1.5e-3f`, `0x1fu`, `12i`.
 fn number_end(bytes: &[u8], from: usize) -> usize {
     let hex = bytes[from..].starts_with(b"0x");
     let mut at = from;

@@ -17,13 +17,13 @@ use crate::relay::Relay;
 use crate::signature::{WordKind, parse};
 use crate::{FunctionCase, KernelCase, cases, reach};
 
-/// How many calls of a function are made at first; those that nothing sees get all calls of their case.
+/// Number of calls of a function at first; mutants that nothing sees get all calls of their case.
 const FEW_CALLS: u32 = 1024;
 
-/// How long a step may take that no mutant is in.
+/// Time allowed for a step that no mutant is in.
 const WITHOUT: Duration = Duration::from_secs(600);
 
-/// How long a mutant may take above twenty times what the right shader takes.
+/// Time allowed for a mutant above twenty times what the right shader takes.
 const WITH: Duration = Duration::from_secs(40);
 
 /// A case to try: a function's, with so many calls, or a kernel's.
@@ -33,7 +33,7 @@ enum Step {
     Kernel(usize),
 }
 
-/// What became of a mutant.
+/// Outcome of a mutant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// A case is no longer within its tolerance, or fails in another way. Its name.
@@ -55,7 +55,7 @@ pub struct Bench {
 struct FunctionBench {
     case: FunctionCase,
     reaches: BTreeSet<String>,
-    /// What is ready to run, by the number of calls; `None` where the case fails as it is.
+    /// Shader and twin that are ready to run, by the number of calls; `None` where the case fails as it is.
     ready: HashMap<u32, Option<Ready>>,
 }
 
@@ -70,15 +70,15 @@ struct Ready {
 struct KernelBench {
     case: KernelCase,
     reaches: BTreeSet<String>,
-    /// How long the case takes; the inner `None`: it fails as it is.
+    /// Time that the case takes; the inner `None`: it fails as it is.
     took: Option<Option<Duration>>,
 }
 
-/// How many kernel-level cases a mutant is shown to, where its function has a case of its own and where it has none. The
-/// first of each kernel come first.
+/// Largest numbers of kernel-level cases that a mutant is shown to, where its function has a case of its own and where
+/// it has none. The first of each kernel come first.
 const MOST_KERNEL_CASES: [usize; 2] = [2, 8];
 
-/// How many function-level cases a mutant is shown to, its own first.
+/// Largest number of function-level cases that a mutant is shown to, its own first.
 const MOST_FUNCTION_CASES: usize = 12;
 
 impl Bench {
@@ -198,7 +198,7 @@ impl Bench {
         }
     }
 
-    /// Whether a case fails with what the relay has been told.
+    /// True if a case fails with what the relay has been told.
     fn sees(&self, step: Step, allow: &mut dyn FnMut(Duration)) -> bool {
         let (run, tol) = match step {
             Step::Function(at, calls) => {
@@ -238,7 +238,7 @@ impl Bench {
     }
 }
 
-/// What a run gives; `None` if it ends in an error or a panic.
+/// Result of a run; `None` if it ends in an error or a panic.
 fn quietly(run: impl FnOnce() -> Result<Run, GpuError>) -> Option<Run> {
     catch_unwind(AssertUnwindSafe(run)).ok().and_then(Result::ok)
 }

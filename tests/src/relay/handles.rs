@@ -1,4 +1,4 @@
-//! What a relayed device makes: buffers, bindings, pipelines. Each holds its counterpart on the other device.
+//! Handles that a relayed device makes: buffers, bindings, pipelines. Each holds its counterpart on the other device.
 
 use std::ops::Range;
 use std::pin::Pin;

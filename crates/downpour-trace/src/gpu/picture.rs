@@ -17,7 +17,7 @@ use crate::data::{RenderFrame, SceneData};
 use crate::picture::picture_frame;
 use crate::scene::SceneView;
 
-/// Why a picture could not be made on a GPU.
+/// Reason why a picture could not be made on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuPictureError {
@@ -43,7 +43,7 @@ impl PictureRenderer {
     /// Makes the pipelines.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuPictureError> {
         Ok(Self {
             gpu: gpu.clone(),

@@ -40,7 +40,7 @@ impl ScenePipeline {
     /// Makes the pipeline.
     ///
     /// # Errors
-    /// What the GPU says.
+    /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let plain = tracer(gpu, false, false)?;
         let skylight = ComputeKernel::new(gpu, &SKYLIGHT_KERNEL, &[])?;
@@ -211,7 +211,7 @@ impl SceneOnGpu {
         Ok(LightingOnGpu { buffers: [frame, nodes, triangles, corners, table, texels] })
     }
 
-    /// What the kernel that traces the scene binds, in order.
+    /// Buffers that the kernel that traces the scene binds, in order.
     pub(super) fn buffers<'a>(
         &'a self,
         frame: &'a wgpu::Buffer,

@@ -27,11 +27,11 @@ pub(super) struct PathPlan {
     pub(super) chance: f32,
     /// Part of all rays that one is.
     pub(super) share: f32,
-    /// Whether rays of the gloss are drawn from its lobe; else they are a mirror's.
+    /// True if rays of the gloss are drawn from its lobe; else they are a mirror's.
     pub(super) drawn: bool,
-    /// Whether means over neighbouring pixels are taken of what the gloss shows.
+    /// True if what the gloss shows is averaged over neighbouring pixels.
     pub(super) kept: bool,
-    /// Whether they are of the light on what the gloss shows.
+    /// True if the light on what the gloss shows is averaged instead.
     pub(super) replaced: bool,
     /// Width of the mirror's ray by what the surface turns within a pixel.
     pub(super) spread: f32,

@@ -1,9 +1,9 @@
-//! Why there is no puddle.
+//! Reasons why there is no puddle.
 
 use downpour_drop::DropError;
 use downpour_lattice::LatticeError;
 
-/// Why there is no puddle.
+/// Reason why there is no puddle.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PuddleError {

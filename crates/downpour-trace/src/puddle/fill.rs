@@ -14,7 +14,7 @@ pub struct Hollows<'a> {
     pub size: [usize; 2],
     /// Height of each cell, m; a number that is not finite has no ground.
     pub ground: &'a [f32],
-    /// How far hollows are filled: 0 nothing, 1 until they spill.
+    /// Fraction of the depth to which hollows are filled: 0 nothing, 1 until they spill.
     pub share: f32,
     /// The deepest water, m: hollows that are deeper are filled less.
     pub deepest: f32,

@@ -1,4 +1,4 @@
-//! Where water stands, and how deep.
+//! Map of the water that stands on the ground, and of its depth.
 
 use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
@@ -16,10 +16,10 @@ const SHORE_M: f32 = 5.0e-3;
 /// Cells round the water that know its level.
 const SHORE_CELLS: u32 = 2;
 
-/// What is land for certain, m.
+/// Depth in the map of what is certainly land, m.
 const LAND_M: f32 = -1.0;
 
-/// From where rays look up for a roof, m over the ground.
+/// Height over the ground from which rays look up for a roof, m.
 const OVER_GROUND_M: f32 = 0.02;
 
 /// A rectangle of the ground, seen from above.
@@ -31,7 +31,7 @@ pub struct Ground {
     pub size: Vec2,
     /// Turn about the vertical axis, rad, from +X towards +Z.
     pub turn: f32,
-    /// How far over and under the middle the ground is looked for, m.
+    /// Largest height over the middle, and depth under it, at which the ground is looked for, m.
     pub reach: f32,
 }
 

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3, Vec4};
 use super::map::{PuddleMap, turned};
 use crate::data::SceneData;
 
-/// How a puddle looks.
+/// Appearance of a puddle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PuddleLook {
     /// Size of the ripples, as a multiple of what they are.

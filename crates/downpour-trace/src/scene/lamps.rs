@@ -16,7 +16,7 @@ use crate::surface::Surface;
 /// Light of a lamp that arrives at a surface, in air or under water.
 #[derive(Clone, Copy, Debug)]
 struct SceneArrival {
-    /// Where the ray to the lamp begins.
+    /// Position where the ray to the lamp begins.
     start: Vec3,
     /// Distance from there.
     distance: f32,

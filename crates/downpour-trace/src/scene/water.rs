@@ -30,7 +30,7 @@ pub(crate) struct PuddleWater {
     pub(crate) puddle: u32,
     /// Depth, m.
     pub(crate) depth: f32,
-    /// How far the surface is over the place, m.
+    /// Height of the surface over the position, m.
     pub(crate) rise: f32,
     /// Share of the rain that arrives.
     pub(crate) open: f32,
@@ -203,8 +203,8 @@ pub fn puddle_water_beneath(direction: Vec3) -> Vec3 {
     Vec3::new(x, (1.0 - x * x - z * z).max(0.0).sqrt(), z)
 }
 
-/// Where light that falls on a place under a depth of level water has come through the surface, from the place's own spot
-/// on the surface.
+/// Point where light that falls on a position under a depth of level water enters the surface, relative to the point of
+/// the surface above that position.
 #[must_use]
 pub fn puddle_water_entry(direction: Vec3, depth: f32) -> Vec3 {
     let below = puddle_water_beneath(direction);

@@ -1,8 +1,8 @@
-//! What can be wrong with a weather that is to be a picture.
+//! Errors of a weather that is to be a picture.
 
 use downpour_render::RenderError;
 
-/// Why there is no stage for a weather.
+/// Reason why there is no stage for a weather.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StageError {
@@ -12,13 +12,13 @@ pub enum StageError {
     /// The scene is larger than a renderer takes.
     #[error("{quantity}: {found}; allowed: at most {most} ({way_out})")]
     OverLimit {
-        /// Of what there is too much.
+        /// Name of the quantity of which there is too much.
         quantity: &'static str,
-        /// How much there is.
+        /// Amount that was found.
         found: u64,
-        /// The most.
+        /// Largest amount allowed.
         most: u64,
-        /// What the user may do about it.
+        /// Advice on what the user may do about it.
         way_out: &'static str,
     },
     /// A moving eye is too far from where it began: places there have too few digits.
@@ -34,7 +34,7 @@ pub enum StageError {
         "the scene: {mebibytes} MiB of memory are needed; allowed: what this machine has (fewer copies need less)"
     )]
     Memory {
-        /// How much would be needed.
+        /// Memory that would be needed, in MiB.
         mebibytes: u64,
     },
 }

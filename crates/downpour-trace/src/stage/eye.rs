@@ -6,11 +6,11 @@ use glam::{DVec3, Vec3};
 
 use downpour_render::camera::{EyeMotion, Viewpoint};
 
-/// What moves faster, in m/s or rad/s, has been cut to another place.
+/// Speeds, in m/s and rad/s, above which an eye has not moved but been cut to another position.
 const FASTEST_M_S: f32 = 100.0;
 const FASTEST_RAD_S: f32 = 30.0;
 
-/// Whose eye it is.
+/// Choice of the eye.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CameraChoice {
     /// That of the weather.
@@ -67,7 +67,7 @@ impl Seen {
         })
     }
 
-    /// How the eye moves about a time, from where it is so many seconds apart.
+    /// Motion of the eye about a time, from its positions so many seconds apart.
     pub(super) fn motion(before: &Self, after: &Self, apart_s: f64) -> EyeMotion {
         let velocity = (after.eye - before.eye).as_vec3() / apart_s as f32;
         let axes = |seen: &Self| {

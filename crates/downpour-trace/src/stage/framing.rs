@@ -1,14 +1,14 @@
-//! Where a photographer would stand.
+//! Viewpoint of a photographer.
 
 use downpour_math::ops::f64 as ops;
 use glam::{DVec3, Vec3};
 
 use downpour_render::camera::Viewpoint;
 
-/// How far above the horizon of what is photographed, in radians: 12 degrees.
+/// Angle of the camera above the horizon of what is photographed, in radians: 12 degrees.
 const ABOVE: f64 = 12.0 * std::f64::consts::PI / 180.0;
 
-/// Which part of the picture it fills.
+/// Fraction of the picture that it fills.
 const FILLED: f64 = 0.85;
 
 /// Height of a person's eyes, metres.

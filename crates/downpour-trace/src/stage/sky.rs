@@ -10,7 +10,7 @@ const LEAST: [u32; 2] = [16, 32];
 /// Memory per pixel of a map, in bytes, while its light is prepared.
 const BYTES_PER_PIXEL: u64 = 48;
 
-/// What [`light`] takes up at most, in bytes.
+/// Memory that [`light`] takes up at most, in bytes.
 pub(super) fn bytes(map: &SkyMap) -> u64 {
     let [columns, rows] = repeats(map).map(u64::from);
     (map.radiance.len() as u64).saturating_mul(columns).saturating_mul(rows).saturating_mul(BYTES_PER_PIXEL)
@@ -37,7 +37,7 @@ pub(super) fn light(map: &SkyMap) -> SkyLight {
     SkyLight::new(map.width * columns, map.height * rows, &finer)
 }
 
-/// How often each pixel is repeated along and across a row.
+/// Number of times that each pixel is repeated along a row, and each row down.
 fn repeats(map: &SkyMap) -> [u32; 2] {
     [LEAST[0].div_ceil(map.width.max(1)), LEAST[1].div_ceil(map.height.max(1))]
 }
