@@ -132,7 +132,7 @@ pub fn rain_layer(
     passes: &mut Vec<(&'static str, f64)>,
 ) -> Result<Vec<[f32; 4]>, RenderError> {
     let Plate { camera, pixels, environment, lighting } = *plate;
-    debug_assert_eq!(rain.camera, *camera, "rain is made for the camera of the plate");
+    debug_assert_eq!(rain.frame.camera, *camera, "rain is made for the camera of the plate");
     let of_streaks = rain.streak_lights(lighting, masks)?;
     let table = timed(passes, "streaks", || {
         rain.streak_table(masks, environment, &of_streaks.light(&rain.streak_rows()))

@@ -34,8 +34,6 @@ pub struct Rain {
     /// The drops of `list` as lamps light them: place relative to the scene's origin, and radius, m. For an atlas then their
     /// axes and ids.
     pub rows: Vec<[f32; 4]>,
-    /// The camera of the picture that they are on.
-    pub camera: Camera,
     /// Options of the light of lamps on them.
     light: DropLightOptions,
     /// For each drop of `list`, its place among the drops that were given.
@@ -102,7 +100,6 @@ impl Rain {
             profiles,
             list: placed.iter().map(|p| p.1.drop).collect(),
             rows,
-            camera: *camera,
             light: options.light,
             given: placed.iter().map(|p| p.0).collect(),
             boxes: placed.iter().filter_map(|p| pixels(&p.1, width, height)).collect(),
@@ -119,7 +116,7 @@ impl Rain {
         lighting: &'a dyn Lighting,
         masks: &'a DropMasks,
     ) -> Result<DropLights<'a>, RenderError> {
-        DropLights::new(lighting, self.camera.eye, &masks.light, self.light)
+        DropLights::new(lighting, self.frame.camera.eye, &masks.light, self.light)
     }
 
     /// The lamps of a plate on the streaks that have profiles, lamp by lamp.
@@ -131,7 +128,7 @@ impl Rain {
         lighting: &'a dyn Lighting,
         masks: &'a DropMasks,
     ) -> Result<DropLights<'a>, RenderError> {
-        DropLights::of_streaks(lighting, self.camera.eye, &masks.light, self.light)
+        DropLights::of_streaks(lighting, self.frame.camera.eye, &masks.light, self.light)
     }
 
     /// The streaks that have profiles, as lamps light them.
@@ -143,7 +140,7 @@ impl Rain {
     /// The drops that are not drawn one by one, before a plate; `lights` are those of [`Rain::lights`].
     #[must_use]
     pub fn medium_light<'a>(&self, lights: &DropLights<'a>) -> MediumLight<'a> {
-        MediumLight::new(&self.medium, &self.camera, lights, self.light.form)
+        MediumLight::new(&self.medium, &self.frame.camera, lights, self.light.form)
     }
 
     /// For each drop that was given and is not hidden altogether by the scene, its place among those given.
