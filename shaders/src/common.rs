@@ -1,9 +1,12 @@
 //! `wgsl/common`: functions that every subsystem may use. The Rust twins are in `downpour-math`.
 
-use crate::Module;
+use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&OPS, &PACKING_CONSTANTS, &PACKING, &RNG_CONSTANTS, &RNG];
+pub const MODULES: &[&Module] = &[&OPS, &PACKING_CONSTANTS, &PACKING, &PYRAMID, &RNG_CONSTANTS, &RNG];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&PYRAMID_KERNEL];
 
 /// Tests and small functions on scalars. Twin: `downpour_math::ops`.
 pub static OPS: Module =
@@ -15,6 +18,13 @@ pub static RNG: Module = Module {
     wgsl: include_str!("../wgsl/common/rng.wgsl"),
     uses: &[&RNG_CONSTANTS],
 };
+
+/// Mip pyramid. Twin: `downpour_math::pyramid`.
+pub static PYRAMID: Module =
+    Module { path: "common/pyramid.wgsl", wgsl: include_str!("../wgsl/common/pyramid.wgsl"), uses: &[] };
+
+/// One invocation per texel of the level that is made.
+pub static PYRAMID_KERNEL: Kernel = Kernel { entry: "main_pyramid", module: &PYRAMID, workgroup: [8, 8, 1] };
 
 /// Unit vectors in two numbers. Twin: `downpour_math::packing`.
 pub static PACKING: Module = Module {

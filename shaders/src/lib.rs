@@ -74,6 +74,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
 pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
     [
         atlas::KERNELS,
+        common::KERNELS,
         lattice::glass::KERNELS,
         lattice::puddle::KERNELS,
         mask::KERNELS,

@@ -52,6 +52,7 @@ pub fn kernels() -> Vec<KernelCase> {
     [
         atlas::kernels(),
         collision::kernels(),
+        common::kernels(),
         drop_light::kernels(),
         glass::kernels(),
         glass_picture::kernels(),

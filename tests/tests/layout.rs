@@ -15,13 +15,16 @@ use downpour_lattice::puddle::PuddleSeed;
 use downpour_lattice::puddle::lattice::PuddleGrid;
 use downpour_mask::MaskTexel;
 use downpour_mask::gpu::{DropUniform, ModelUniform};
+use downpour_math::pyramid::PyramidLevel;
 use downpour_render::camera::Camera;
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
-use downpour_render::rain::{DropsDrop, DropsFrame, ReduceLevel, StreakPath, StreakRay};
+use downpour_render::rain::{DropsDrop, DropsFrame, StreakPath, StreakRay};
 use downpour_shaders::render::specimen;
-use downpour_shaders::{Module, atlas, bvh, compose, drop, lattice, mask, modules, render, sim, wind};
+use downpour_shaders::{
+    Module, atlas, bvh, common, compose, drop, lattice, mask, modules, render, sim, wind,
+};
 use downpour_sim::collision::{CollisionFrame, CollisionTexel};
 use downpour_sim::enter::EnterRegion;
 use downpour_sim::step::{StepEvent, StepFrame};
@@ -80,7 +83,7 @@ fn hosts() -> Vec<Host> {
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
         host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, place, normal, light, look, factor),
         host!(TraceGather as "TraceGather" in &render::scene::TRACE, base, mirror),
-        host!(ReduceLevel as "ReduceLevel" in &render::rain::REDUCE, size, source, target_texel, unused),
+        host!(PyramidLevel as "PyramidLevel" in &common::PYRAMID, size, source_size, source, target_texel, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             camera, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, tiles_across, light_terms, streak_samples,

@@ -19,6 +19,7 @@
 //! Files are the caller's ([`ColumbiaFiles`]): this crate never sees one.
 
 use downpour_drop::optics::WATER_INDEX;
+use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 use half::f16;
 
@@ -109,9 +110,13 @@ fn lights() -> impl Iterator<Item = (i32, &'static [i32])> {
 pub fn import<F: ColumbiaFiles>(files: &mut F, width: u32, rows: u32) -> Result<Vec<StreakSet>, F::Error> {
     if !WIDTHS.contains(&width) {
         let (quantity, found) = ("width of the database's pictures", f64::from(width));
-        return Err(
-            AtlasError::OutOfRange { quantity, found, unit: "columns", allowed: "4, 8, 16 or 32" }.into()
-        );
+        return Err(AtlasError::OutOfRange(OutOfRange {
+            quantity,
+            found,
+            unit: "columns",
+            allowed: "4, 8, 16 or 32".into(),
+        })
+        .into());
     }
     let options = StreakOptions {
         columns: width,

@@ -1,5 +1,6 @@
 //! Errors of streak atlases.
 
+use downpour_math::OutOfRange;
 use std::path::Path;
 
 use downpour_drop::DropError;
@@ -10,17 +11,8 @@ use downpour_mask::MaskError;
 #[non_exhaustive]
 pub enum AtlasError {
     /// A number is not finite or outside its range.
-    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
-    OutOfRange {
-        /// Name of the quantity.
-        quantity: &'static str,
-        /// The value, in `unit`.
-        found: f64,
-        /// The unit, as arguments write it.
-        unit: &'static str,
-        /// The range, in words.
-        allowed: &'static str,
-    },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// The drop itself is not possible.
     #[error(transparent)]
     Drop(#[from] DropError),

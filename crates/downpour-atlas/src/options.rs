@@ -2,6 +2,7 @@
 
 use downpour_drop::optics::WATER_INDEX;
 use downpour_drop::oscillation::Amplitudes;
+use downpour_math::OutOfRange;
 
 use crate::AtlasError;
 
@@ -65,11 +66,11 @@ impl Default for StreakOptions {
 
 impl StreakOptions {
     pub(crate) fn check(&self) -> Result<(), AtlasError> {
-        let of = |quantity, found: f64, range: std::ops::RangeInclusive<f64>, unit, allowed| {
+        let of = |quantity, found: f64, range: std::ops::RangeInclusive<f64>, unit, allowed: &'static str| {
             if range.contains(&found) {
                 return Ok(());
             }
-            Err(AtlasError::OutOfRange { quantity, found, unit, allowed })
+            Err(AtlasError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
         };
         let even = if self.columns.is_multiple_of(2) { f64::from(self.columns) } else { f64::NAN };
         of("columns of a streak", even, 2.0..=256.0, "texels", "2 to 256, even")?;

@@ -8,6 +8,7 @@
 //! The amount of a streak is its light without its pattern: the radiance of a disc of the equivalent radius that sends as much
 //! light to the viewer as the drop does. With the mean m of the texels and the half extent h it is 4 h m / pi.
 
+use downpour_math::OutOfRange;
 use std::f64::consts::{PI, TAU};
 
 use downpour_drop::DropShape;
@@ -66,7 +67,12 @@ impl StreakTracer {
             ("azimuth of an oscillation", oscillation.azimuth, "radians"),
         ] {
             if !found.is_finite() {
-                return Err(AtlasError::OutOfRange { quantity, found, unit, allowed: "a finite number" });
+                return Err(AtlasError::OutOfRange(OutOfRange {
+                    quantity,
+                    found,
+                    unit,
+                    allowed: "a finite number".into(),
+                }));
             }
         }
         let shape = DropShape::new(diameter)?;
@@ -122,7 +128,12 @@ impl StreakTracer {
         let degrees = elevation.to_degrees();
         if !(-80.0..=80.0).contains(&degrees) {
             let (quantity, unit, allowed) = ("elevation of a streak", "degrees", "-80 to 80");
-            return Err(AtlasError::OutOfRange { quantity, found: degrees, unit, allowed });
+            return Err(AtlasError::OutOfRange(OutOfRange {
+                quantity,
+                found: degrees,
+                unit,
+                allowed: allowed.into(),
+            }));
         }
         let frame = self.frame(elevation);
         let lights: Vec<[f64; 3]> = lights.iter().map(|&light| turned(&frame, light)).collect();

@@ -18,6 +18,7 @@
 //! they fall too low. The branches of Andsager and Thurai do not meet at their joints: the steps, up to 0.6
 //! %, are in the papers.
 
+use downpour_math::OutOfRange;
 use downpour_math::ops;
 
 use crate::DropError;
@@ -115,11 +116,21 @@ pub fn green_1975(diameter_m: f64, surface_tension: f64, density_difference: f64
     check_diameter(diameter_m, 1.0e-6..=9.0e-3, "0.001 to 9")?;
     if !(1.0e-3..=1.0).contains(&surface_tension) {
         let (quantity, unit, allowed) = ("surface tension", "N/m", "0.001 to 1");
-        return Err(DropError::OutOfRange { quantity, found: surface_tension, unit, allowed });
+        return Err(DropError::OutOfRange(OutOfRange {
+            quantity,
+            found: surface_tension,
+            unit,
+            allowed: allowed.into(),
+        }));
     }
     if !(100.0..=20_000.0).contains(&density_difference) {
         let (quantity, unit, allowed) = ("difference of densities", "kg/m3", "100 to 20000");
-        return Err(DropError::OutOfRange { quantity, found: density_difference, unit, allowed });
+        return Err(DropError::OutOfRange(OutOfRange {
+            quantity,
+            found: density_difference,
+            unit,
+            allowed: allowed.into(),
+        }));
     }
     Ok(green_root(diameter_m, surface_tension, density_difference))
 }

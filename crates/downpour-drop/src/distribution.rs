@@ -28,6 +28,7 @@ mod grid;
 mod law;
 mod sampling;
 
+use downpour_math::OutOfRange;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
@@ -127,12 +128,12 @@ impl DropSizeDistribution {
         let carried = rain.integrated_rate_mm_h();
         if !(carried.is_normal() && carried > 0.0) {
             // A range of diameters in which the law has no drop at all, to the last digit of f64.
-            return Err(DropError::OutOfRange {
+            return Err(DropError::OutOfRange(OutOfRange {
                 quantity: "rate that the law carries between these diameters",
                 found: carried,
                 unit: "mm/h",
-                allowed: "above 0: choose diameters between which the law has drops that fall",
-            });
+                allowed: "above 0: choose diameters between which the law has drops that fall".into(),
+            }));
         }
         rain.scale = rate_mm_h / carried;
         Ok(rain)

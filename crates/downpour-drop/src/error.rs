@@ -1,5 +1,6 @@
 //! Errors of physical quantities out of range.
 
+use downpour_math::OutOfRange;
 use std::ops::RangeInclusive;
 
 /// Error of a physical quantity outside the range of its law.
@@ -7,17 +8,8 @@ use std::ops::RangeInclusive;
 #[non_exhaustive]
 pub enum DropError {
     /// The number is not finite, or outside the range in which the law holds.
-    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
-    OutOfRange {
-        /// Name of the quantity: `diameter`, `temperature`, ...
-        quantity: &'static str,
-        /// Value found, in `unit`.
-        found: f64,
-        /// Unit of the value and of the range, as in files and arguments.
-        unit: &'static str,
-        /// Allowed range, in words.
-        allowed: &'static str,
-    },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
 }
 
 /// Returns `value` if it is within `range` (NaN is not). The ends have a rounding tolerance, so that `9.0 * 1e-3` is
@@ -35,6 +27,11 @@ pub(crate) fn in_range(
     if value >= start - ROUNDING * start.abs() && value <= end + ROUNDING * end.abs() {
         Ok(value.max(start).min(end))
     } else {
-        Err(DropError::OutOfRange { quantity, found: value * factor, unit, allowed })
+        Err(DropError::OutOfRange(OutOfRange {
+            quantity,
+            found: value * factor,
+            unit,
+            allowed: allowed.into(),
+        }))
     }
 }

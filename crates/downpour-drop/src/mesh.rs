@@ -8,6 +8,7 @@
 //! Vertices lie on the surface, and normals are those of the surface, not of the triangles. The volume is
 //! below the drop's by an error of second order in the spacing.
 
+use downpour_math::OutOfRange;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
@@ -161,7 +162,12 @@ fn check_count(
     if range.contains(&found) {
         return Ok(());
     }
-    Err(DropError::OutOfRange { quantity, found: found.into(), unit: "in all", allowed })
+    Err(DropError::OutOfRange(OutOfRange {
+        quantity,
+        found: found.into(),
+        unit: "in all",
+        allowed: allowed.into(),
+    }))
 }
 
 /// Triples of adjacent corners among the twelve, counter-clockwise from outside.

@@ -24,6 +24,7 @@ mod equilibrium;
 mod table;
 
 use bytemuck::{Pod, Zeroable};
+use downpour_math::OutOfRange;
 use downpour_math::real::Real;
 
 use crate::DropError;
@@ -77,7 +78,12 @@ pub(crate) fn check_diameter(
     if (range.start() * (1.0 - 1.0e-9)..=range.end() * (1.0 + 1.0e-9)).contains(&diameter_m) {
         return Ok(());
     }
-    Err(DropError::OutOfRange { quantity: "diameter", found: diameter_m * 1.0e3, unit: "mm", allowed })
+    Err(DropError::OutOfRange(OutOfRange {
+        quantity: "diameter",
+        found: diameter_m * 1.0e3,
+        unit: "mm",
+        allowed: allowed.into(),
+    }))
 }
 
 /// Checks that a diameter has a shape.

@@ -3,6 +3,7 @@
 use approx::assert_relative_eq;
 use downpour_drop::air::{Air, viscosity_linear, viscosity_pruppacher_klett};
 use downpour_drop::{DropError, water};
+use downpour_math::OutOfRange;
 
 /// (Celsius, density kg/m^3, surface tension N/m, viscosity mPa s).
 const WATER: [(f64, f64, f64, f64); 7] = [
@@ -53,7 +54,7 @@ fn temperatures_outside_are_errors() {
     for t in [-20.1, 40.1, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for property in [water::density, water::surface_tension, water::viscosity, water::kinematic_viscosity]
         {
-            assert!(matches!(property(t), Err(DropError::OutOfRange { .. })), "{t}");
+            assert!(matches!(property(t), Err(DropError::OutOfRange(OutOfRange { .. }))), "{t}");
         }
         assert!(Air::new(t, 101_325.0).is_err(), "{t}");
     }

@@ -1,23 +1,15 @@
 //! Errors of masks, models and files.
 
 use downpour_drop::DropError;
+use downpour_math::OutOfRange;
 
 /// Reason why a mask could not be traced, written or read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MaskError {
     /// A number is not finite or outside its range.
-    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
-    OutOfRange {
-        /// Name of the quantity.
-        quantity: &'static str,
-        /// The value, in `unit`.
-        found: f64,
-        /// The unit, as arguments write it.
-        unit: &'static str,
-        /// The range, in words.
-        allowed: &'static str,
-    },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// The mask would be larger than allowed.
     #[error("mask size is {found}; allowed: {least} to {most}")]
     Size {

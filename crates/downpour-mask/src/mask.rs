@@ -1,6 +1,7 @@
 //! Refraction mask and its options.
 
 use crate::{MaskError, View};
+use downpour_math::OutOfRange;
 
 /// Smallest and largest number of pixels along an edge of a mask.
 pub const SIZES: std::ops::RangeInclusive<u32> = 4..=4096;
@@ -118,12 +119,12 @@ impl MaskOptions {
             return Err(MaskError::Size { found: self.size, least: *SIZES.start(), most: *SIZES.end() });
         }
         if !(self.refractive_index > 1.0 && self.refractive_index <= 4.0) {
-            return Err(MaskError::OutOfRange {
+            return Err(MaskError::OutOfRange(OutOfRange {
                 quantity: "refractive index",
                 found: self.refractive_index,
                 unit: "relative to air",
-                allowed: "above 1, up to 4",
-            });
+                allowed: "above 1, up to 4".into(),
+            }));
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! Direction from which a drop is seen.
 
+use downpour_math::OutOfRange;
 use downpour_math::ops;
 
 use crate::MaskError;
@@ -22,12 +23,12 @@ impl View {
         if elevation.is_finite() && elevation.abs() <= std::f64::consts::FRAC_PI_2 + 1.0e-12 {
             Ok(Self { elevation })
         } else {
-            Err(MaskError::OutOfRange {
+            Err(MaskError::OutOfRange(OutOfRange {
                 quantity: "view elevation",
                 found: elevation.to_degrees(),
                 unit: "degrees",
-                allowed: "-90 to 90",
-            })
+                allowed: "-90 to 90".into(),
+            }))
         }
     }
 

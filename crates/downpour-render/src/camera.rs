@@ -1,5 +1,6 @@
 //! Camera of a picture: position, orientation and projection.
 
+use downpour_math::OutOfRange;
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::RenderError;
@@ -38,22 +39,24 @@ impl Viewpoint {
     /// # Errors
     /// [`RenderError::OutOfRange`] if a number is not finite, or the view direction or field of view is not one.
     pub fn axes(&self) -> Result<[Vec3; 3], RenderError> {
-        let bad = |quantity, found: f32, allowed| RenderError::OutOfRange {
-            quantity,
-            found: f64::from(found),
-            unit: "",
-            allowed,
+        let bad = |quantity, found: f32, allowed: &'static str| {
+            RenderError::OutOfRange(OutOfRange {
+                quantity,
+                found: f64::from(found),
+                unit: "",
+                allowed: allowed.into(),
+            })
         };
         if !(self.eye.is_finite() && self.forward.is_finite() && self.up.is_finite()) {
             return Err(bad("camera", f32::NAN, "finite numbers"));
         }
         if !(self.fov_y > 1.0e-4 && self.fov_y < std::f32::consts::PI - 1.0e-3) {
-            return Err(RenderError::OutOfRange {
+            return Err(RenderError::OutOfRange(OutOfRange {
                 quantity: "field of view",
                 found: f64::from(self.fov_y).to_degrees(),
                 unit: "degrees",
-                allowed: "above 0.006, below 179.9",
-            });
+                allowed: "above 0.006, below 179.9".into(),
+            }));
         }
         let length = self.forward.length();
         if !(length > 1.0e-12 && length.is_finite()) {

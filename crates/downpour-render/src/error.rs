@@ -1,21 +1,14 @@
 //! Errors of a requested picture.
 
+use downpour_math::OutOfRange;
+
 /// Reason why a picture was not made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
     /// A number is not finite or outside its range.
-    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
-    OutOfRange {
-        /// Name of the quantity.
-        quantity: &'static str,
-        /// The value, in `unit`.
-        found: f64,
-        /// The unit, as files and arguments write it.
-        unit: &'static str,
-        /// The range, in words.
-        allowed: &'static str,
-    },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// The picture is too small or too large.
     #[error("the picture is {} x {} pixels; allowed: {least} to {most} each way", found[0], found[1])]
     Size {

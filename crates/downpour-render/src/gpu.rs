@@ -7,7 +7,7 @@ mod plate;
 mod rain;
 
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
-pub use glass::GlassRenderer;
+pub use glass::{BehindGlass, GlassRenderer};
 pub use medium::{MediumPass, MediumPipeline};
 pub use plate::{LightingOnGpu, PlateOnGpu};
 pub use rain::{RainOnGpu, RainPass, RainPipeline};

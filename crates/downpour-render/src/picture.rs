@@ -90,8 +90,7 @@ impl Picture {
     /// The scene through the rain with its distances: what stands behind a pane of glass.
     #[must_use]
     pub fn behind_glass(&self) -> Vec<[f32; 4]> {
-        let distances = self.clean.iter().map(|pixel| pixel[3]);
-        through_rain(&self.clean, &self.rain).zip(distances).map(|([r, g, b], d)| [r, g, b, d]).collect()
+        self.clean.iter().zip(&self.rain).map(|(&clean, &rain)| compose_pixel(clean, rain)).collect()
     }
 
     /// The scene through the rain, and through the pane of glass if there is one.
@@ -109,7 +108,18 @@ pub fn through_rain<'a>(
     clean: &'a [[f32; 4]],
     rain: &'a [[f32; 4]],
 ) -> impl Iterator<Item = [f32; 3]> + use<'a> {
-    clean.iter().zip(rain).map(|(clean, rain)| std::array::from_fn(|k| clean[k] * rain[3] + rain[k]))
+    clean.iter().zip(rain).map(|(&clean, &rain)| {
+        let [r, g, b, _] = compose_pixel(clean, rain);
+        [r, g, b]
+    })
+}
+
+/// A pixel of a plate (radiance and distance) through the rain (radiance and transmittance): the radiance that is seen, and the
+/// plate's distance. Twin of the function of this name in `shaders/wgsl/render/compose.wgsl`.
+#[must_use]
+pub fn compose_pixel(plate: [f32; 4], rain: [f32; 4]) -> [f32; 4] {
+    let [r, g, b] = std::array::from_fn(|k| plate[k] * rain[3] + rain[k]);
+    [r, g, b, plate[3]]
 }
 
 /// Runs a pass and notes its time.

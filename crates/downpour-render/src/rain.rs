@@ -36,7 +36,6 @@ pub mod masks;
 pub mod medium;
 mod profiles;
 mod project;
-mod reduce;
 mod shapes;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod streak;
@@ -67,7 +66,6 @@ use light::DropLightOptions;
 pub use masks::DropMasks;
 pub use medium::{MediumOptions, PanePlane, RainMedium};
 pub use profiles::StreakProfiles;
-pub use reduce::{ReduceLevel, reduce_levels, reduce_texel};
 pub use streak::DropsDrop;
 pub use streak_lookup::StreakTable;
 pub use streak_path::StreakPath;

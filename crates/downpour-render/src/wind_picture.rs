@@ -19,6 +19,7 @@ mod canvas;
 mod colours;
 mod streaks;
 
+use downpour_math::OutOfRange;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -104,11 +105,16 @@ impl WindSlice {
         if !size.iter().all(|edge| (LEAST..=MOST).contains(edge)) {
             return Err(RenderError::Size { found: size, least: LEAST, most: MOST });
         }
-        let check = |quantity, found: f32, (least, most): (f32, f32), allowed| {
+        let check = |quantity, found: f32, (least, most): (f32, f32), allowed: &'static str| {
             if (least..=most).contains(&found) {
                 return Ok(());
             }
-            Err(RenderError::OutOfRange { quantity, found: found.into(), unit: "m", allowed })
+            Err(RenderError::OutOfRange(OutOfRange {
+                quantity,
+                found: found.into(),
+                unit: "m",
+                allowed: allowed.into(),
+            }))
         };
         check("slice of the wind", offset, (-1.0e6, 1.0e6), "-1e6 to 1e6")?;
         for (from, to) in low.to_array().into_iter().zip(high.to_array()) {

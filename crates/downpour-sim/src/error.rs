@@ -1,6 +1,7 @@
 //! Errors of simulations.
 
 use downpour_drop::DropError;
+use downpour_math::OutOfRange;
 
 /// Memory of a drop, including that of its creation.
 pub(crate) const BYTES_PER_DROP: u64 = 34;
@@ -10,17 +11,8 @@ pub(crate) const BYTES_PER_DROP: u64 = 34;
 #[non_exhaustive]
 pub enum SimError {
     /// A number is not finite or outside its range.
-    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
-    OutOfRange {
-        /// Name of the quantity.
-        quantity: &'static str,
-        /// Value found, in `unit`.
-        found: f64,
-        /// Unit, as in files and arguments.
-        unit: &'static str,
-        /// Allowed range, in words.
-        allowed: &'static str,
-    },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// The drops do not fit into memory.
     #[error("{drops} drops need {gib:.1} GiB; allowed: up to 268435456 drops, and what this machine has")]
     Memory {

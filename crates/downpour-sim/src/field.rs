@@ -21,6 +21,7 @@
 
 use downpour_drop::distribution::{DropSizeDistribution, SampleTable, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;
+use downpour_math::OutOfRange;
 use downpour_math::rng::{rng_draw, rng_pcg4d, seed_words};
 use downpour_shaders::sim::step::VOLUME_RADIUS;
 use downpour_wind::{UniformWind, Wind};
@@ -175,12 +176,17 @@ impl RainField {
         let extent = low.abs().max(high.abs()).max_element();
         if !(low.is_finite() && high.is_finite() && extent <= 1.0e7 && low.cmple(high).all()) {
             let (quantity, unit, allowed) = ("a side of the box", "m", "-1e7 to 1e7, low below high");
-            return Err(SimError::OutOfRange { quantity, found: extent, unit, allowed });
+            return Err(SimError::OutOfRange(OutOfRange {
+                quantity,
+                found: extent,
+                unit,
+                allowed: allowed.into(),
+            }));
         }
         let found = self.number_density() * (high - low).element_product();
         if found.is_nan() || found > 1.0e7 {
             let (quantity, unit, allowed) = ("number of drops in the box", "", "at most 1e7");
-            return Err(SimError::OutOfRange { quantity, found, unit, allowed });
+            return Err(SimError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }));
         }
         let bounds = Bounds { low, high };
         let drift = Drift::new(&self.wind, time_s);
@@ -406,5 +412,5 @@ pub(crate) fn check_time(time_s: f64) -> Result<(), SimError> {
         return Ok(());
     }
     let (quantity, unit, allowed) = ("time", "s", "-1e6 to 1e6");
-    Err(SimError::OutOfRange { quantity, found: time_s, unit, allowed })
+    Err(SimError::OutOfRange(OutOfRange { quantity, found: time_s, unit, allowed: allowed.into() }))
 }

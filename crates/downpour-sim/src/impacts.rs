@@ -26,6 +26,7 @@
 
 use downpour_bvh::Hit;
 use downpour_drop::fall_speed::relaxation;
+use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::sim::step::{STEP_CLEAR, VOLUME_RADIUS};
@@ -181,7 +182,12 @@ impl RainField {
         check_time(end)?;
         if !(begin <= end && end - begin <= MAX_SPAN_S) {
             let (quantity, unit, allowed) = ("span of time", "s", "0 to 60");
-            return Err(SimError::OutOfRange { quantity, found: end - begin, unit, allowed });
+            return Err(SimError::OutOfRange(OutOfRange {
+                quantity,
+                found: end - begin,
+                unit,
+                allowed: allowed.into(),
+            }));
         }
         let Some(root) = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty()) else {
             return Ok(Vec::new());
@@ -463,5 +469,5 @@ fn check_box(low: DVec3, high: DVec3) -> Result<(), SimError> {
         return Ok(());
     }
     let (quantity, unit, allowed) = ("a side of the box", "m", "-1e7 to 1e7, low below high");
-    Err(SimError::OutOfRange { quantity, found, unit, allowed })
+    Err(SimError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
 }

@@ -2,6 +2,7 @@
 
 use crate::SimError;
 use crate::step::StepCaught;
+use downpour_math::OutOfRange;
 
 /// Number of drops of one work item.
 pub(crate) const PIECE: usize = 1 << 14;
@@ -154,12 +155,13 @@ impl SimulationOptions {
     }
 
     pub(crate) fn check(&self) -> Result<(), SimError> {
-        let within = |quantity, found: f64, unit, range: std::ops::RangeInclusive<f64>, allowed| {
-            if range.contains(&found) {
-                return Ok(());
-            }
-            Err(SimError::OutOfRange { quantity, found, unit, allowed })
-        };
+        let within =
+            |quantity, found: f64, unit, range: std::ops::RangeInclusive<f64>, allowed: &'static str| {
+                if range.contains(&found) {
+                    return Ok(());
+                }
+                Err(SimError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
+            };
         match self.volume {
             SimVolume::Box { size_m } | SimVolume::Tariq { size_m } => {
                 for edge in size_m {

@@ -2,6 +2,7 @@
 
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::relaxation;
+use downpour_math::OutOfRange;
 use downpour_math::rng::seed_words;
 use downpour_shaders::sim::enter::ENTER_SIZES;
 use downpour_shaders::sim::step::{
@@ -189,7 +190,12 @@ impl Plan {
     ) -> Result<Vec<Turn>, SimError> {
         if !TIMES_S.contains(&time_s) {
             let (quantity, unit, allowed) = ("time of a step", "s", "1e-5 to 1");
-            return Err(SimError::OutOfRange { quantity, found: time_s, unit, allowed });
+            return Err(SimError::OutOfRange(OutOfRange {
+                quantity,
+                found: time_s,
+                unit,
+                allowed: allowed.into(),
+            }));
         }
         check(view, origin)?;
         let steps = (time_s / MAX_STEP_S).ceil().max(1.0);
@@ -321,5 +327,5 @@ fn check(view: &View, origin: DVec3) -> Result<(), SimError> {
         return Ok(());
     }
     let (quantity, unit, allowed) = ("distance of the eye from the origin", "m", "up to 1e5");
-    Err(SimError::OutOfRange { quantity, found, unit, allowed })
+    Err(SimError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
 }

@@ -1,5 +1,6 @@
 //! Camera view, and the drops that it can resolve.
 
+use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 use glam::DVec3;
 
@@ -79,8 +80,9 @@ impl View {
     /// # Errors
     /// [`SimError::OutOfRange`] if a number is not finite or the view is degenerate.
     pub(crate) fn check(&self) -> Result<(), SimError> {
-        let error =
-            |quantity, found, unit, allowed| Err(SimError::OutOfRange { quantity, found, unit, allowed });
+        let error = |quantity, found, unit, allowed: &'static str| {
+            Err(SimError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
+        };
         for axis in [self.right, self.up, self.forward] {
             let length = axis.length();
             if !length.is_finite() || (length - 1.0).abs() > 1.0e-3 {

@@ -1,5 +1,6 @@
 //! Rain in closed form: its numbers, its speeds, and that it is the same for all cameras.
 
+use downpour_math::OutOfRange;
 use std::collections::HashMap;
 
 use downpour_drop::air::Air;
@@ -159,7 +160,10 @@ fn no_rain_has_no_drops_and_bad_questions_have_no_answer() -> Outcome {
     assert_eq!(dry.measured_rate_mm_h(DVec3::ZERO, 0.0)?, 0.0);
     let field = RainField::new(&rain(1.0)?, 0)?;
     for time in [f64::NAN, f64::INFINITY, 1.0e7] {
-        assert!(matches!(field.visible(&View::default(), time), Err(SimError::OutOfRange { .. })));
+        assert!(matches!(
+            field.visible(&View::default(), time),
+            Err(SimError::OutOfRange(OutOfRange { .. }))
+        ));
     }
     let bad = [
         View { eye: DVec3::NAN, ..View::default() },
@@ -170,7 +174,10 @@ fn no_rain_has_no_drops_and_bad_questions_have_no_answer() -> Outcome {
         View { least_pixels: f64::NAN, ..View::default() },
     ];
     for view in bad {
-        assert!(matches!(field.visible(&view, 0.0), Err(SimError::OutOfRange { .. })), "{view:?}");
+        assert!(
+            matches!(field.visible(&view, 0.0), Err(SimError::OutOfRange(OutOfRange { .. }))),
+            "{view:?}"
+        );
     }
     assert!(field.in_box(DVec3::ONE, DVec3::ZERO, 0.0).is_err());
     assert!(field.in_box(DVec3::splat(-1.0e6), DVec3::splat(1.0e6), 0.0).is_err());

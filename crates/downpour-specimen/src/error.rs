@@ -2,6 +2,7 @@
 
 use downpour_drop::DropError;
 use downpour_mask::MaskError;
+use downpour_math::OutOfRange;
 
 use downpour_render::RenderError;
 
@@ -10,17 +11,8 @@ use downpour_render::RenderError;
 #[non_exhaustive]
 pub enum SpecimenError {
     /// A number is not finite or outside its range.
-    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
-    OutOfRange {
-        /// Name of the quantity.
-        quantity: &'static str,
-        /// The value, in `unit`.
-        found: f64,
-        /// The unit, as arguments write it.
-        unit: &'static str,
-        /// The range, in words.
-        allowed: String,
-    },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// The picture, or the sky map, would be smaller or larger than allowed.
     #[error("{quantity} is {found}; allowed: {least} to {most}")]
     Size {

@@ -7,6 +7,7 @@
 //! A direction is within the disc if its chord to the middle is shorter than 2 sin(r / 2), which keeps its digits for
 //! small discs, where a cosine has none left. Twin of `shaders/wgsl/render/specimen.wgsl`.
 
+use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 use downpour_math::real::Real;
 use downpour_math::vector::{dot, sub};
@@ -46,7 +47,12 @@ impl SpecimenLamp {
     pub fn new(yaw: f64, pitch: f64, radius: f64, radiance: [f32; 3]) -> Result<Self, SpecimenError> {
         let [least, most] = [RADII[0] * (1.0 - 1.0e-9), RADII[1] * (1.0 + 1.0e-9)];
         let wrong = |quantity, found: f64, unit, allowed: &str| {
-            Err(SpecimenError::OutOfRange { quantity, found, unit, allowed: allowed.to_owned() })
+            Err(SpecimenError::OutOfRange(OutOfRange {
+                quantity,
+                found,
+                unit,
+                allowed: allowed.to_owned().into(),
+            }))
         };
         if !yaw.is_finite() {
             return wrong("yaw of a lamp", yaw, "degrees", "a finite number");

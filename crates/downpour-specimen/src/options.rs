@@ -3,6 +3,7 @@
 use downpour_drop::DropShape;
 use downpour_drop::optics::WATER_INDEX;
 use downpour_drop::oscillation::Amplitudes;
+use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 pub use downpour_render::camera::LONGEST_EXPOSURE_S;
 use downpour_shaders::render::specimen::{SPECIMEN_SAMPLES, SPECIMEN_STREAK_INSTANTS};
@@ -81,17 +82,22 @@ impl SpecimenOptions {
                 return Ok(());
             }
             let allowed = allowed.to_owned();
-            Err(SpecimenError::OutOfRange { quantity, found: value * scale, unit, allowed })
+            Err(SpecimenError::OutOfRange(OutOfRange {
+                quantity,
+                found: value * scale,
+                unit,
+                allowed: allowed.into(),
+            }))
         };
         let degrees = 1.0_f64.to_degrees();
         let nearest = bounding_radius(shape);
         if !(self.distance_m > nearest && self.distance_m <= MAX_DISTANCE_M) {
-            return Err(SpecimenError::OutOfRange {
+            return Err(SpecimenError::OutOfRange(OutOfRange {
                 quantity: "camera distance",
                 found: self.distance_m,
                 unit: "m",
-                allowed: format!("above {nearest:.6} (outside the drop), up to {MAX_DISTANCE_M}"),
-            });
+                allowed: format!("above {nearest:.6} (outside the drop), up to {MAX_DISTANCE_M}").into(),
+            }));
         }
         within("camera yaw", self.yaw, f64::MIN, f64::MAX, "degrees", degrees, "a finite number")?;
         let quarter = std::f64::consts::FRAC_PI_2 * (1.0 + 1.0e-9);
@@ -130,12 +136,12 @@ impl SpecimenOptions {
         if found > nearest {
             return Ok(());
         }
-        Err(SpecimenError::OutOfRange {
+        Err(SpecimenError::OutOfRange(OutOfRange {
             quantity: "distance of the camera from the path of the drop",
             found,
             unit: "m",
-            allowed: format!("above {nearest:.6}"),
-        })
+            allowed: format!("above {nearest:.6}").into(),
+        }))
     }
 
     /// Fall in half of the exposure, in metres.

@@ -10,6 +10,7 @@
 //! Source: P. Rousseau et al., "GPU rainfall", 2008, section 2.2.3, for the oscillation of the outline; the table is
 //! described in `shaders/wgsl/render/streak_lookup.wgsl`.
 
+use downpour_math::OutOfRange;
 use std::f32::consts::PI;
 
 use downpour_drop::DropShape;
@@ -113,7 +114,7 @@ pub fn check_specimen_table(
     lamps: &[SpecimenLamp],
 ) -> Result<(), SpecimenError> {
     let wrong = |quantity, found: f64, unit, allowed: String| {
-        Err(SpecimenError::OutOfRange { quantity, found, unit, allowed })
+        Err(SpecimenError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
     };
     let diameter = 2.0 * shape.equivalent_radius();
     let [least, most] = [DIAMETER_STEP, f64::from(DIAMETERS) * DIAMETER_STEP];

@@ -13,6 +13,7 @@ mod sky;
 #[cfg(test)]
 mod tests;
 
+use downpour_math::OutOfRange;
 use std::borrow::Cow;
 
 use downpour_scene::scene::{Play, Pose};
@@ -93,7 +94,13 @@ impl Stage {
         check_size(weather.size)?;
         if !(-LATEST_S..=LATEST_S).contains(&time_s) {
             let (quantity, unit, allowed) = ("time", "s", "-1e6 to 1e6");
-            return Err(RenderError::OutOfRange { quantity, found: time_s, unit, allowed }.into());
+            return Err(RenderError::OutOfRange(OutOfRange {
+                quantity,
+                found: time_s,
+                unit,
+                allowed: allowed.into(),
+            })
+            .into());
         }
         let pose = posed(loaded, time_s);
         check_cost(loaded, &pose)?;

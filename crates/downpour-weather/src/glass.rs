@@ -11,6 +11,7 @@ use downpour_lattice::glass::{
     GlassAir, GlassContact, GlassError, GlassOptions, GlassRain, GlassWiper, GlassWiperKey, GlassWiperMotion,
     GlassWornBand,
 };
+use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 use downpour_scene::error::SceneError;
 use downpour_wind::Keyed;
@@ -348,8 +349,8 @@ fn refused(path: &str, size: [f64; 2], error: &GlassError, positions: &Positions
                 "a position from which the blade reaches the pane",
             )
         }
-        GlassError::OutOfRange { quantity, found, unit, allowed } => {
-            positions.bad(path, format!("{quantity} {found:.4} {unit}"), *allowed)
+        GlassError::OutOfRange(OutOfRange { quantity, found, unit, allowed }) => {
+            positions.bad(path, format!("{quantity} {found:.4} {unit}"), allowed.as_ref())
         }
         error => positions.bad(path, error.to_string(), "a wiper in its ranges"),
     }

@@ -7,6 +7,7 @@ use super::quantity::{
     CoreM, EddyM, EddyMS, Exactly, GustM, HeightM, In, Intensity, Outflow, Part, PositionM, Range, TurnDeg,
     Turning, Whole, WindBoxM, WindMS, WindPositionM,
 };
+use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 use downpour_scene::error::SceneError;
 use downpour_wind::grid::WIND_GRID_CELLS;
@@ -206,9 +207,9 @@ impl WindTable {
 /// Error of a part over time, although each number is in its range.
 fn refused(path: &str, error: &WindError, positions: &Positions<'_>) -> SceneError {
     match error {
-        WindError::OutOfRange { quantity, found, unit, allowed } => {
+        WindError::OutOfRange(OutOfRange { quantity, found, unit, allowed }) => {
             let key = if *quantity == "height" { format!("{path}.height_m") } else { path.to_owned() };
-            positions.bad(&key, format!("{quantity} {found} {unit}"), *allowed)
+            positions.bad(&key, format!("{quantity} {found} {unit}"), allowed.as_ref())
         }
         WindError::ZeroAxis { .. } => {
             positions.bad(&format!("{path}.axis"), "no length", "three numbers, not all 0")

@@ -1,8 +1,9 @@
 //! Wind primitives as a user designs them.
 
+use downpour_math::in_range;
 use glam::Vec3;
 
-use crate::error::{WindError, in_range};
+use crate::error::WindError;
 
 /// Spatial form of a source, sink or vortex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -123,7 +124,7 @@ impl WindPrimitive {
     pub fn check(&self) -> Result<(), WindError> {
         match self {
             Self::Uniform(wind) => {
-                in_range("wind speed", wind.speed, "m/s", &(0.0..=200.0), "0 to 200")?;
+                in_range("wind speed", wind.speed, "m/s", &(0.0..=200.0), 1.0, "0 to 200")?;
                 unit("direction of the wind", wind.direction).map(|_| ())
             }
             Self::Source(at) | Self::Sink(at) => at.check(0.0, "0 to 1e6"),
@@ -139,7 +140,7 @@ impl WindSingularity {
             WindForm::Line => "m^2/s",
             WindForm::Point => "m^3/s",
         };
-        in_range("strength", self.strength, unit_of_strength, &(smallest..=1.0e6), allowed)?;
+        in_range("strength", self.strength, unit_of_strength, &(smallest..=1.0e6), 1.0, allowed)?;
         check_position("center", self.center)?;
         core(self.core_radius)?;
         if self.form == WindForm::Point && self.core != WindCore::Rosenhead {
@@ -151,31 +152,33 @@ impl WindSingularity {
 
 impl WindTornado {
     fn check(&self) -> Result<(), WindError> {
-        in_range("circulation", self.circulation, "m^2/s", &(-1.0e6..=1.0e6), "-1e6 to 1e6")?;
-        in_range("discharge", self.discharge, "m^3/s", &(0.0..=1.0e6), "0 to 1e6")?;
+        in_range("circulation", self.circulation, "m^2/s", &(-1.0e6..=1.0e6), 1.0, "-1e6 to 1e6")?;
+        in_range("discharge", self.discharge, "m^3/s", &(0.0..=1.0e6), 1.0, "0 to 1e6")?;
         check_position("base", self.base)?;
         core(self.core_radius)?;
         // Rounded numbers of a matrix must stay in the range that they had.
         let smallest = 2.0 * self.core_radius * (1.0 - 1.0e-6);
-        in_range("height", self.height, "m", &(smallest..=1.0e5), "2 core radii to 1e5")?;
+        in_range("height", self.height, "m", &(smallest..=1.0e5), 1.0, "2 core radii to 1e5")?;
         unit("axis", self.axis).map(|_| ())
     }
 }
 
 fn core(radius: f32) -> Result<(), WindError> {
-    in_range("core radius", radius, "m", &(0.01..=1.0e4), "0.01 to 1e4")
+    in_range("core radius", radius, "m", &(0.01..=1.0e4), 1.0, "0.01 to 1e4")?;
+    Ok(())
 }
 
 fn check_position(quantity: &'static str, at: Vec3) -> Result<(), WindError> {
-    at.to_array()
-        .into_iter()
-        .try_for_each(|c| in_range(quantity, c, "m", &(-1.0e6..=1.0e6), "-1e6 to 1e6 in each direction"))
+    for c in at.to_array() {
+        in_range(quantity, c, "m", &(-1.0e6..=1.0e6), 1.0, "-1e6 to 1e6 in each direction")?;
+    }
+    Ok(())
 }
 
 /// Returns the vector with length 1. A unit vector, up to rounding, keeps its bits.
 pub(crate) fn unit(quantity: &'static str, vector: Vec3) -> Result<Vec3, WindError> {
     for c in vector.to_array() {
-        in_range(quantity, c, "(a component)", &(-1.0e6..=1.0e6), "-1e6 to 1e6")?;
+        in_range(quantity, c, "(a component)", &(-1.0e6..=1.0e6), 1.0, "-1e6 to 1e6")?;
     }
     let squared = vector.dot(vector);
     if squared < 1.0e-6 {

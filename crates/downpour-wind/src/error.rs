@@ -1,23 +1,14 @@
 //! Errors of wind parameters.
 
-use std::ops::RangeInclusive;
+use downpour_math::OutOfRange;
 
 /// Error of a wind parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WindError {
     /// A number is not finite or outside its range.
-    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
-    OutOfRange {
-        /// Name of the quantity.
-        quantity: &'static str,
-        /// Value found, in `unit`.
-        found: f64,
-        /// Unit of the value.
-        unit: &'static str,
-        /// Allowed range, in words.
-        allowed: &'static str,
-    },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// An axis has length 0.
     #[error("{quantity} is {found:?}; allowed: a vector at least 1e-3 long")]
     ZeroAxis {
@@ -103,34 +94,4 @@ pub enum WindError {
         /// Maximum number of cells.
         allowed: u64,
     },
-}
-
-/// [`in_range`] for f64.
-pub(crate) fn in_range_f64(
-    quantity: &'static str,
-    found: f64,
-    unit: &'static str,
-    range: RangeInclusive<f64>,
-    allowed: &'static str,
-) -> Result<(), WindError> {
-    if range.contains(&found) {
-        Ok(())
-    } else {
-        Err(WindError::OutOfRange { quantity, found, unit, allowed })
-    }
-}
-
-/// Checks that `value` is within `range` (NaN is not).
-pub(crate) fn in_range(
-    quantity: &'static str,
-    value: f32,
-    unit: &'static str,
-    range: &RangeInclusive<f32>,
-    allowed: &'static str,
-) -> Result<(), WindError> {
-    if range.contains(&value) {
-        Ok(())
-    } else {
-        Err(WindError::OutOfRange { quantity, found: value.into(), unit, allowed })
-    }
 }

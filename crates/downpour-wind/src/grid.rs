@@ -1,8 +1,9 @@
 //! A box of cells.
 
+use downpour_math::{OutOfRange, in_range};
 use glam::Vec3;
 
-use crate::error::{WindError, in_range};
+use crate::error::WindError;
 
 /// Maximum number of cells of a grid: at 16 bytes each, the 128 MiB that WebGPU binds as one buffer.
 pub const WIND_GRID_CELLS: u64 = 1 << 23;
@@ -23,17 +24,17 @@ impl WindGrid {
     /// to 4096; [`WindError::TooManyCells`] beyond [`WIND_GRID_CELLS`].
     pub fn new(low: Vec3, high: Vec3, size: [u32; 3]) -> Result<Self, WindError> {
         for (from, to) in low.to_array().into_iter().zip(high.to_array()) {
-            in_range("lower corner of the wind's box", from, "m", &(-1.0e6..=1.0e6), "-1e6 to 1e6")?;
-            in_range("edge of the wind's box", to - from, "m", &(0.01..=1.0e6), "0.01 to 1e6")?;
+            in_range("lower corner of the wind's box", from, "m", &(-1.0e6..=1.0e6), 1.0, "-1e6 to 1e6")?;
+            in_range("edge of the wind's box", to - from, "m", &(0.01..=1.0e6), 1.0, "0.01 to 1e6")?;
         }
         for n in size {
             if !(1..=4096).contains(&n) {
-                return Err(WindError::OutOfRange {
+                return Err(WindError::OutOfRange(OutOfRange {
                     quantity: "number of cells along an edge",
                     found: n.into(),
                     unit: "(a count)",
-                    allowed: "1 to 4096",
-                });
+                    allowed: "1 to 4096".into(),
+                }));
             }
         }
         let found = size.into_iter().map(u64::from).product();

@@ -15,10 +15,11 @@
 //! The sum is a function of (seed, time): any time in closed form, without steps. Amplitudes scale with the mean wind
 //! of the time, so a calm has no gusts; the frequencies are those of its mean speed from the first key to the last.
 
+use downpour_math::in_range;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, seed_words};
 
-use crate::error::{WindError, in_range_f64};
+use crate::error::WindError;
 
 /// Number of sinusoids in each direction.
 pub const WIND_GUST_MODES: usize = 32;
@@ -68,8 +69,9 @@ impl Gusts {
     /// # Errors
     /// [`WindError::OutOfRange`].
     pub fn check(&self) -> Result<(), WindError> {
-        in_range_f64("intensity of the gusts", self.intensity, "(a fraction)", 0.0..=1.0, "0 to 1")?;
-        in_range_f64("length of the gusts", self.length, "m", 1.0..=1.0e4, "1 to 1e4")
+        in_range("intensity of the gusts", self.intensity, "(a fraction)", &(0.0..=1.0), 1.0, "0 to 1")?;
+        in_range("length of the gusts", self.length, "m", &(1.0..=1.0e4), 1.0, "1 to 1e4")?;
+        Ok(())
     }
 
     /// S(f) of the fluctuation along the wind, m^2/s, at a frequency in Hz, for a mean speed in m/s.

@@ -1,8 +1,9 @@
 //! Mask of objects, inside which no wind blows (Rousseau 2008, 5.1.2).
 
+use downpour_math::in_range;
 use glam::{UVec3, Vec3};
 
-use crate::error::{WindError, in_range};
+use crate::error::WindError;
 use crate::field_grid::{WindFieldGrid, wind_field_center};
 use crate::grid::WindGrid;
 
@@ -57,7 +58,7 @@ impl WindMask {
         self.check(grid)?;
         let cell = grid.cell();
         let widest = 16.0 * cell.min_element();
-        in_range("width of the wind's cut-off", width, "m", &(0.0..=widest), "0 to 16 cells")?;
+        in_range("width of the wind's cut-off", width, "m", &(0.0..=widest), 1.0, "0 to 16 cells")?;
         let mut squared: Vec<f32> =
             self.openness.iter().map(|&open| if open > 0.0 { f32::INFINITY } else { 0.0 }).collect();
         let mut stride = 1;

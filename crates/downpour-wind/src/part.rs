@@ -1,5 +1,6 @@
 //! Primitives with parameters over time.
 
+use downpour_math::OutOfRange;
 use glam::{DVec3, Vec3};
 
 use crate::design::{WindCore, WindForm, WindPrimitive, WindSingularity, WindTornado, WindUniform};
@@ -150,7 +151,12 @@ impl WindPart {
                     // Length of a rounded vector.
                     if !(0.0..=MAX_SPEED_M_S * (1.0 + 1.0e-9)).contains(&found) {
                         let (quantity, unit, allowed) = ("wind speed", "m/s", "0 to 200");
-                        return Err(WindError::OutOfRange { quantity, found, unit, allowed });
+                        return Err(WindError::OutOfRange(OutOfRange {
+                            quantity,
+                            found,
+                            unit,
+                            allowed: allowed.into(),
+                        }));
                     }
                 }
                 return Ok(self);

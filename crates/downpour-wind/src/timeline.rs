@@ -1,5 +1,6 @@
 //! Values over time: keys with linear interpolation.
 
+use downpour_math::OutOfRange;
 use glam::DVec3;
 
 use crate::error::WindError;
@@ -85,8 +86,8 @@ impl<T: Blend> Keyed<T> {
         }
         let mut before = f64::NEG_INFINITY;
         for (index, (time, value)) in keys.iter_mut().enumerate() {
-            let out_of_range = |quantity, found, unit, allowed| {
-                Err(WindError::OutOfRange { quantity, found, unit, allowed })
+            let out_of_range = |quantity, found, unit, allowed: &'static str| {
+                Err(WindError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
             };
             if !WIND_KEY_TIMES.contains(time) {
                 return out_of_range("time of a key", *time, "s", "-1e6 to 1e6");

@@ -17,12 +17,13 @@
 //!
 //! A grid resolves waves of two cells or more: [`Turbulence::modes`] leaves out the shorter ones and their energy.
 
+use downpour_math::in_range;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, seed_words};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
 
-use crate::error::{WindError, in_range_f64};
+use crate::error::WindError;
 use crate::grid::WindGrid;
 use crate::gusts::unit;
 
@@ -90,8 +91,9 @@ impl Turbulence {
     /// # Errors
     /// [`WindError::OutOfRange`].
     pub fn check(&self) -> Result<(), WindError> {
-        in_range_f64("speed of the turbulence", self.speed, "m/s", 0.0..=50.0, "0 to 50")?;
-        in_range_f64("length of the turbulence", self.length, "m", 0.1..=1.0e4, "0.1 to 1e4")
+        in_range("speed of the turbulence", self.speed, "m/s", &(0.0..=50.0), 1.0, "0 to 50")?;
+        in_range("length of the turbulence", self.length, "m", &(0.1..=1.0e4), 1.0, "0.1 to 1e4")?;
+        Ok(())
     }
 
     /// E(k), m^3/s^2, at a wave number in rad/m.

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{CENTER, CORE, STRENGTH, singularity, tornado};
+use downpour_math::OutOfRange;
 use downpour_wind::{
     WindCore, WindError, WindForm, WindGrid, WindMatrix, WindPrimitive, WindSingularity, WindTornado,
     WindUniform,
@@ -80,7 +81,7 @@ fn foreign_matrices_are_checked() {
         let mut matrices = good.clone();
         matrices[index].rows[0][1] *= -1.0;
         let error = WindMatrix::decode(&matrices).expect_err("the wrong sign");
-        assert!(matches!(error, WindError::OutOfRange { quantity: "strength", .. }), "{error}");
+        assert!(matches!(error, WindError::OutOfRange(OutOfRange { quantity: "strength", .. })), "{error}");
     }
     // A tornado without a part, or with parts of two tornadoes.
     let updraft = 4;
@@ -105,7 +106,7 @@ fn foreign_matrices_are_checked() {
 
 fn found(primitive: WindPrimitive) -> (&'static str, f64) {
     match WindMatrix::encode(&[primitive]) {
-        Err(WindError::OutOfRange { quantity, found, .. }) => (quantity, found),
+        Err(WindError::OutOfRange(OutOfRange { quantity, found, .. })) => (quantity, found),
         Err(WindError::ZeroAxis { quantity, .. }) => (quantity, 0.0),
         other => panic!("{other:?} of {primitive:?}"),
     }
@@ -163,7 +164,7 @@ fn boxes_out_of_range_are_refused() {
     assert!(matches!(error, WindError::TooManyCells { .. }));
     assert!(!matches!(new(low, low, [1; 3]).expect_err("empty"), WindError::TooManyCells { .. }));
     for size in [[0, 1, 1], [1, 4097, 1], [1, 1, u32::MAX]] {
-        assert!(matches!(new(low, high, size), Err(WindError::OutOfRange { .. })), "{size:?}");
+        assert!(matches!(new(low, high, size), Err(WindError::OutOfRange(OutOfRange { .. }))), "{size:?}");
     }
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3.0e38] {
         assert!(new(Vec3::new(0.0, bad, 0.0), high, [4; 3]).is_err(), "{bad}");

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{singularity, tornado};
+use downpour_math::OutOfRange;
 use downpour_wind::{
     Gusts, Keyed, KeyedSingularity, KeyedTornado, Turbulence, WIND_KEYS, WIND_PARTS, Wind, WindCore,
     WindError, WindForm, WindPart, WindPrimitive, WindUniform,
@@ -66,10 +67,16 @@ fn keys_that_are_none_are_refused() {
     }
     assert!(Keyed::new(vec![(5.0, 0.0), (5.000_001, 1.0)]).is_ok());
     for bad in [f64::NAN, f64::INFINITY, -1.1e6] {
-        assert!(matches!(error(&[(bad, 0.0)]), WindError::OutOfRange { quantity: "time of a key", .. }));
+        assert!(matches!(
+            error(&[(bad, 0.0)]),
+            WindError::OutOfRange(OutOfRange { quantity: "time of a key", .. })
+        ));
     }
     for bad in [f64::NAN, f64::INFINITY] {
-        assert!(matches!(error(&[(0.0, bad)]), WindError::OutOfRange { quantity: "value of a key", .. }));
+        assert!(matches!(
+            error(&[(0.0, bad)]),
+            WindError::OutOfRange(OutOfRange { quantity: "value of a key", .. })
+        ));
     }
     assert!(Keyed::new(vec![(0.0, DVec3::new(0.0, f64::NAN, 0.0))]).is_err());
 }
@@ -158,7 +165,7 @@ fn refused(part: WindPart) -> WindError {
 #[test]
 fn what_is_out_of_range_at_any_time_is_refused() {
     let quantity = |error| match error {
-        WindError::OutOfRange { quantity, .. } | WindError::ZeroAxis { quantity, .. } => quantity,
+        WindError::OutOfRange(OutOfRange { quantity, .. }) | WindError::ZeroAxis { quantity, .. } => quantity,
         other => panic!("{other:?}"),
     };
     let bad = |change: fn(&mut KeyedSingularity)| {

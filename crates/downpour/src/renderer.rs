@@ -351,19 +351,16 @@ impl Renderer {
         self.options.refraction.unwrap_or_else(|| self.weather.rain.refraction.into())
     }
 
-    /// Draws a frame, and looks at it through the pane.
+    /// Draws a frame, seen through the pane if there is one.
     fn draw(
         &self,
         stage: &Stage,
         drops: &VisibleDrops,
         options: &PictureOptions,
     ) -> Result<Picture, RendererError> {
-        let mut picture = self.drawer.paint(stage, &drops.drops, &self.masks, options)?;
-        if let Some(pane) = self.water.as_ref().and_then(|water| water.pane.as_ref()) {
-            let through = through(pane, stage, &picture, options)?;
-            self.drawer.look(&mut picture, &through)?;
-        }
-        Ok(picture)
+        let pane = self.water.as_ref().and_then(|water| water.pane.as_ref());
+        let through = pane.map(|pane| through(pane, stage, options)).transpose()?;
+        self.drawer.paint(stage, &drops.drops, &self.masks, options, through.as_ref())
     }
 }
 
@@ -410,24 +407,21 @@ fn rain_on(pane: &mut WetPane, time_s: f64, told: &mut dyn FnMut(Progress)) -> R
     Ok(pane.advance(time_s)?)
 }
 
-/// Inputs of a picture that is seen through a pane.
-fn through(
-    pane: &WetPane,
-    stage: &Stage,
-    picture: &Picture,
-    options: &PictureOptions,
-) -> Result<Through, RendererError> {
+/// The pane that a picture is seen through.
+fn through(pane: &WetPane, stage: &Stage, options: &PictureOptions) -> Result<Through, RendererError> {
     let PictureOptions { size, grid, sky_rays, seed, .. } = *options;
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, size, grid, sky_rays, seed)?;
     let camera = frame.camera;
-    let capture = if options.rain.form == RefractionForm::Direction {
-        picture.surroundings.clone()
+    let lighting = SceneView { data: &stage.data, frame: &frame };
+    let of_drops = EnvironmentFrame::new(&camera, &options.rain);
+    let (layout, environment) = if options.rain.form == RefractionForm::Direction {
+        (of_drops, None)
     } else {
         // The papers' capture does not show all that is round the eye.
-        let environment = EnvironmentFrame::new(&camera, &RainOptions::default());
-        trace_environment(&stage.data, &frame, &environment).texels
+        let layout = EnvironmentFrame::new(&camera, &RainOptions::default());
+        (layout, Some(trace_environment(&stage.data, &frame, &layout).texels))
     };
-    let lighting = SceneView { data: &stage.data, frame: &frame };
-    let glass = pane.picture(&stage.viewpoint, &camera, frame.grid, &lighting, capture.len())?;
-    Ok(Through { glass, behind: picture.behind_glass(), capture })
+    let texels = layout.texels() as usize;
+    let glass = pane.picture(&stage.viewpoint, &camera, frame.grid, &lighting, texels)?;
+    Ok(Through { glass, environment })
 }

@@ -13,7 +13,7 @@ use crate::{Kernel, Module};
 /// Every module of this file.
 pub const MODULES: &[&Module] = &[
     &RAIN_CONSTANTS,
-    &REDUCE,
+    &COMPOSE,
     &DROPS_FRAME,
     &DROPS_CAPTURE,
     &DROPS_MASK,
@@ -32,7 +32,7 @@ pub const MODULES: &[&Module] = &[
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] =
-    &[&REDUCE_KERNEL, &STREAK_TABLE_KERNEL, &STREAK_RAYS_KERNEL, &STREAK_LIGHT_KERNEL, &DROPS_KERNEL];
+    &[&COMPOSE_KERNEL, &STREAK_TABLE_KERNEL, &STREAK_RAYS_KERNEL, &STREAK_LIGHT_KERNEL, &DROPS_KERNEL];
 
 shared_constants! {
     /// Numbers of the masks in a buffer.
@@ -142,9 +142,9 @@ shared_constants! {
     }
 }
 
-/// Coarser levels of a square map. Twin: `downpour_render::rain::reduce`.
-pub static REDUCE: Module =
-    Module { path: "render/reduce.wgsl", wgsl: include_str!("../../wgsl/render/reduce.wgsl"), uses: &[] };
+/// A plate through the rain before it. Twin: `downpour_render::picture`.
+pub static COMPOSE: Module =
+    Module { path: "render/compose.wgsl", wgsl: include_str!("../../wgsl/render/compose.wgsl"), uses: &[] };
 
 /// The picture as the drops' kernels know it. Twin: `downpour_render::rain::drops_frame`.
 pub static DROPS_FRAME: Module = Module {
@@ -277,8 +277,8 @@ pub static DROPS: Module = Module {
     ],
 };
 
-/// One invocation per texel of the level that is made.
-pub static REDUCE_KERNEL: Kernel = Kernel { entry: "main_reduce", module: &REDUCE, workgroup: [8, 8, 1] };
+/// One invocation per pixel.
+pub static COMPOSE_KERNEL: Kernel = Kernel { entry: "main_compose", module: &COMPOSE, workgroup: [8, 8, 1] };
 
 /// One workgroup per ray and class.
 pub static STREAK_TABLE_KERNEL: Kernel =

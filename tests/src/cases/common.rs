@@ -1,11 +1,16 @@
 //! `shaders/wgsl/common` against `downpour-math`.
 
+use downpour_gpu::{ComputeKernel, Gpu, GpuError};
+use downpour_math::pyramid::{PyramidLevel, PyramidRounding, pyramid_append, pyramid_levels};
 use downpour_math::{ops, packing, rng};
 use downpour_shaders::common;
 
 use crate::Domain::{AnyWord, Made, Uniform};
+use crate::compare::{Cpu, Gpu as FromGpu, POISON};
+use crate::function::Run;
+use crate::signature::WordKind;
 use crate::words::IntoWords as _;
-use crate::{FunctionCase, Tol};
+use crate::{FunctionCase, KernelCase, Tol};
 
 const INTEGERS: Tol = Tol::exact("integers are exact");
 const SCALED: Tol = Tol::exact("an integer below 2^24 converts, and a power of two multiplies, exactly");
@@ -63,5 +68,48 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             ),
             |a| packing::packing_octahedral_decode(a.f32s()).words(),
         ),
+    ]
+}
+
+/// All levels below random texels.
+fn pyramid_case(gpu: &Gpu, size: [u32; 2], rounding: PyramidRounding) -> Result<Run, GpuError> {
+    let mut texels: Vec<[f32; 4]> = (0..size[0] * size[1])
+        .map(|i| rng::rng_draw([1, 2], i, 0, 0).map(|w| 100.0 * rng::rng_unit(w)))
+        .collect();
+    let finest = texels.len();
+    let levels = pyramid_levels(size, rounding);
+    let mut poisoned = texels.clone();
+    for level in &levels {
+        pyramid_append(&mut texels, level);
+    }
+    poisoned.resize(texels.len(), [f32::from_bits(POISON); 4]);
+    let buffer = gpu.storage_buffer("levels", &poisoned)?;
+    let kernel = ComputeKernel::new(gpu, &common::PYRAMID_KERNEL, &[])?;
+    let bind = |level: &PyramidLevel| kernel.bind(gpu, &[&gpu.uniform_buffer("level", level)?, &buffer]);
+    for level in &levels {
+        let [columns, rows] = level.size;
+        gpu.submit(&[kernel.dispatch(&bind(level)?, [columns.div_ceil(8), rows.div_ceil(8), 1])])?;
+    }
+    let made = gpu.read::<[f32; 4]>(&buffer)?;
+    let words = |texels: &[[f32; 4]]| texels.iter().flatten().map(|v| v.to_bits()).collect();
+    Ok(Run {
+        arguments: (finest..texels.len()).map(|i| vec![(i as f32).to_bits()]).collect(),
+        cpu: Cpu(words(&texels[finest..])),
+        gpu: FromGpu(words(&made[finest..])),
+        kinds: vec![WordKind::Float; 4],
+    })
+}
+
+/// The cases.
+#[must_use]
+pub(super) fn kernels() -> Vec<KernelCase> {
+    let case = |name, run| {
+        let tol = Tol::relative(1.0e-6, 0.0, "the mean of four: three sums, each rounded once");
+        KernelCase { name, kernel: &common::PYRAMID_KERNEL, with: &[], overrides: &[], text: None, tol, run }
+    };
+    vec![
+        case("main_pyramid: 64 x 64", |gpu| pyramid_case(gpu, [64, 64], PyramidRounding::Down)),
+        case("main_pyramid: 61 x 7, rounded up", |gpu| pyramid_case(gpu, [61, 7], PyramidRounding::Up)),
+        case("main_pyramid: 5 x 38, rounded down", |gpu| pyramid_case(gpu, [5, 38], PyramidRounding::Down)),
     ]
 }

@@ -9,10 +9,14 @@ use downpour_render::glass::water::{
 use downpour_render::glass::{
     GlassPicture, GlassPictureDrop, GlassPictureLight, WetPane, glass_picture_spline,
 };
-use downpour_render::gpu::GlassRenderer;
+use downpour_render::gpu::{BehindGlass, GlassRenderer};
+use downpour_render::picture::compose_pixel;
 use downpour_scene::scene::Scene;
 use downpour_scene::sky::{SkyMap, Sun};
+use downpour_shaders::Kernel;
+use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::render::glass::{GLASS_PICTURE, GLASS_PICTURE_KERNEL, LIGHT, WATER};
+use downpour_shaders::render::rain::COMPOSE_KERNEL;
 use downpour_trace::data::RenderFrame;
 use downpour_trace::scene::SceneView;
 use downpour_trace::stage::Stage;
@@ -202,7 +206,13 @@ fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
     let glass = kept(keys, || pane(keys));
     assert!(glass.drops.len() > 30, "{} drops", glass.drops.len());
     assert_eq!(glass.frame.lights, 1);
-    let behind: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|k| light(k, SIZE[0])).collect();
+    let plate: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|k| light(k, SIZE[0])).collect();
+    // Rain as dense as drops and streaks are in places.
+    let rain: Vec<_> = (0..SIZE[0] * SIZE[1])
+        .map(|k| rng_draw([3, 4], k, 0, 0).map(rng_unit))
+        .map(|[a, b, c, d]| [0.4 * a, 0.4 * b, 0.4 * c, 0.6 + 0.4 * d])
+        .collect();
+    let behind: Vec<_> = plate.iter().zip(&rain).map(|(&plate, &rain)| compose_pixel(plate, rain)).collect();
     let mut capture = Vec::new();
     let mut size = CAPTURE;
     while size > 0 {
@@ -211,7 +221,10 @@ fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
     }
     let words = |pixels: Vec<[f32; 3]>| pixels.into_iter().flatten().map(f32::to_bits).collect();
     let cpu = kept(&format!("{keys} through"), || glass.through(&behind, &capture));
-    let made = GlassRenderer::new(gpu)?.through(&glass, &behind, &capture)?;
+    let [plate, rain] = [gpu.storage_buffer("plate", &plate)?, gpu.storage_buffer("rain", &rain)?];
+    let environment = gpu.storage_buffer("environment map", &capture)?;
+    let seen = BehindGlass { plate: &plate, rain: &rain, environment: &environment };
+    let made = GlassRenderer::new(gpu)?.through(&glass, &seen)?;
     Ok(Run {
         arguments: (0..SIZE[0] * SIZE[1])
             .map(|i| [i % SIZE[0], i / SIZE[0]].map(|c| (c as f32).to_bits()).to_vec())
@@ -222,13 +235,16 @@ fn case(gpu: &Gpu, keys: &str) -> Result<Run, GpuError> {
     })
 }
 
+/// Kernels that make what stands behind the pane.
+static BEFORE: &[&Kernel] = &[&COMPOSE_KERNEL, &PYRAMID_KERNEL];
+
 /// The cases.
 pub(super) fn kernels() -> Vec<KernelCase> {
     let case = |name, run| {
         KernelCase {
         name,
         kernel: &GLASS_PICTURE_KERNEL,
-        with: &[],
+        with: BEFORE,
         overrides: &[],
         text: None,
         tol: Tol::relative(

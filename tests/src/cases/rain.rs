@@ -7,19 +7,19 @@ use downpour_gpu::{ComputeKernel, Gpu, GpuError};
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::RainPipeline;
+use downpour_render::picture::compose_pixel;
 use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::streak::streak_weight;
 use downpour_render::rain::streak_place::{streak_place_index, streak_place_position};
 use downpour_render::rain::{
     DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
-    ReduceLevel, RefractionForm, StreakColour, StreakProfiles, StreakSamples, TemporalResponse,
-    reduce_levels, reduce_texel,
+    RefractionForm, StreakColour, StreakProfiles, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
-    DROPS_KERNEL, DROPS_MASK, REDUCE_KERNEL, STREAK, STREAK_LIGHT_KERNEL, STREAK_PLACE, STREAK_RAYS,
-    STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
+    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, DROPS_MASK, STREAK, STREAK_LIGHT_KERNEL, STREAK_PLACE,
+    STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
@@ -281,30 +281,25 @@ fn masks_case(
     }
 }
 
-/// All levels below 64 x 64 random texels.
-fn reduce_case(gpu: &Gpu) -> Result<Run, GpuError> {
-    let size = 64;
-    let mut texels: Vec<[f32; 4]> =
-        (0..size * size).map(|i| rng_draw([1, 2], i, 0, 0).map(|w| 100.0 * rng_unit(w))).collect();
-    let finest = texels.len();
-    let levels = reduce_levels(size);
-    let all = levels.iter().map(|l| (l.size * l.size) as usize).sum::<usize>() + finest;
-    let mut poisoned = texels.clone();
-    poisoned.resize(all, [f32::from_bits(POISON); 4]);
-    let buffer = gpu.storage_buffer("levels", &poisoned)?;
-    let kernel = ComputeKernel::new(gpu, &REDUCE_KERNEL, &[])?;
-    let bind = |level: &ReduceLevel| kernel.bind(gpu, &[&gpu.uniform_buffer("level", level)?, &buffer]);
-    for level in &levels {
-        let bindings = bind(level)?;
-        let groups = level.size.div_ceil(8);
-        gpu.submit(&[kernel.dispatch(&bindings, [groups, groups, 1])])?;
-        for i in 0..level.size * level.size {
-            let texel = reduce_texel(&texels, level, i % level.size, i / level.size);
-            texels.push(texel);
-        }
-    }
-    let made = gpu.read::<[f32; 4]>(&buffer)?;
-    Ok(run(size, &texels[finest..], &made[finest..]))
+/// A random plate through random rain.
+fn compose_case(gpu: &Gpu) -> Result<Run, GpuError> {
+    let [width, height] = [29, 19];
+    let random = |seed| {
+        let pixel = move |i| rng_draw([seed, 7], i, 0, 0).map(rng_unit);
+        (0..width * height).map(pixel).collect::<Vec<_>>()
+    };
+    let (plate, rain) = (random(1), random(2));
+    let composed: Vec<_> =
+        plate.iter().zip(&rain).map(|(&plate, &rain)| compose_pixel(plate, rain)).collect();
+    let poisoned = vec![[f32::from_bits(POISON); 4]; plate.len()];
+    let buffers = [&plate, &rain, &poisoned].map(|pixels| gpu.storage_buffer("pixels", pixels));
+    let [plate, rain, target] = buffers;
+    let (plate, rain, target) = (plate?, rain?, target?);
+    let size = gpu.uniform_buffer("size", &[width, height, 0, 0])?;
+    let kernel = ComputeKernel::new(gpu, &COMPOSE_KERNEL, &[])?;
+    let bindings = kernel.bind(gpu, &[&size, &plate, &rain, &target])?;
+    gpu.submit(&[kernel.dispatch(&bindings, [width.div_ceil(8), height.div_ceil(8), 1])])?;
+    Ok(run(width, &composed, &gpu.read(&target)?))
 }
 
 const CAPTURED: Tol = Tol::relative(
@@ -368,6 +363,13 @@ fn weights(random: [u32; 4]) -> Vec<u32> {
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
     vec![
+        FunctionCase::new(
+            "compose_pixel",
+            &COMPOSE,
+            &[Uniform(0.0, 4.0); 8],
+            Tol::relative(2.0e-7, 0.0, "a product and a sum of positive numbers, which may be fused"),
+            |a| compose_pixel(a.f32s(), a.f32s()).words(),
+        ),
         FunctionCase::new(
             "streak_weight",
             &STREAK,
@@ -443,13 +445,13 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             },
         },
         KernelCase {
-            name: "main_reduce: all levels of 64 x 64",
-            kernel: &REDUCE_KERNEL,
+            name: "main_compose: a plate through rain",
+            kernel: &COMPOSE_KERNEL,
             with: &[],
             overrides: &[],
             text: None,
-            tol: Tol::relative(1.0e-6, 0.0, "the mean of four: three sums, each rounded once"),
-            run: reduce_case,
+            tol: Tol::relative(2.0e-7, 0.0, "a product and a sum of positive numbers, which may be fused"),
+            run: compose_case,
         },
         medium("main_medium_open: a grid", &MEDIUM_OPEN_KERNEL, |gpu| {
             rain_case(gpu, LEVEL, RefractionForm::Direction, Exposure::default(), Part::Open)

@@ -4,6 +4,7 @@
 //! fall this relaxes with `v_t / (2g)` along the fall and `v_t / g` across it; from rest, after a fall of z,
 //! `v = v_t sqrt(1 - exp(-2 g z / v_t^2))`, and after a time t, `v = v_t tanh(g t / v_t)`.
 
+use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::drop::fall_speed::FALL_SPEED_GRAVITY;
 
@@ -80,7 +81,12 @@ fn checked_fraction(fraction: f64) -> Result<f64, DropError> {
         return Ok(fraction);
     }
     let quantity = "fraction of the terminal speed";
-    Err(DropError::OutOfRange { quantity, found: fraction, unit: "", allowed: "at least 0, below 1" })
+    Err(DropError::OutOfRange(OutOfRange {
+        quantity,
+        found: fraction,
+        unit: "",
+        allowed: "at least 0, below 1".into(),
+    }))
 }
 
 /// Dimensionless numbers of the flow around a drop at its terminal speed v, with d the diameter.

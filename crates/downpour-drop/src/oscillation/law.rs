@@ -1,5 +1,6 @@
 //! Frequency and damping of drop oscillations.
 
+use downpour_math::OutOfRange;
 use std::f64::consts::TAU;
 
 use crate::DropError;
@@ -43,11 +44,11 @@ impl Fluids {
     }
 
     fn check(&self) -> Result<(), DropError> {
-        let of = |quantity, found: f64, range: std::ops::RangeInclusive<f64>, unit, allowed| {
+        let of = |quantity, found: f64, range: std::ops::RangeInclusive<f64>, unit, allowed: &'static str| {
             if range.contains(&found) {
                 return Ok(());
             }
-            Err(DropError::OutOfRange { quantity, found, unit, allowed })
+            Err(DropError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
         };
         of("surface tension", self.surface_tension, 1.0e-3..=1.0, "N/m", "0.001 to 1")?;
         of("density of water", self.water_density, 100.0..=20_000.0, "kg/m3", "100 to 20000")?;
@@ -122,5 +123,5 @@ fn check_mode(n: u32) -> Result<(), DropError> {
         return Ok(());
     }
     let (quantity, unit, allowed) = ("degree of the mode", "(a whole number)", "2 to 100");
-    Err(DropError::OutOfRange { quantity, found: n.into(), unit, allowed })
+    Err(DropError::OutOfRange(OutOfRange { quantity, found: n.into(), unit, allowed: allowed.into() }))
 }

@@ -1,5 +1,6 @@
 //! Oscillation of one drop in time.
 
+use downpour_math::OutOfRange;
 use std::f64::consts::TAU;
 
 use downpour_math::ops;
@@ -32,7 +33,12 @@ impl Amplitudes {
         for (quantity, found) in [("amplitude of mode (2,0)", a20), ("amplitude of mode (3,1)", a31)] {
             if !(0.0..=0.3).contains(&found) {
                 let (unit, allowed) = ("of the radius", "0 to 0.3");
-                return Err(DropError::OutOfRange { quantity, found, unit, allowed });
+                return Err(DropError::OutOfRange(OutOfRange {
+                    quantity,
+                    found,
+                    unit,
+                    allowed: allowed.into(),
+                }));
             }
         }
         Ok(Self { a20, a31 })
@@ -91,7 +97,12 @@ impl Oscillation {
             [lamb_damping_time(2, diameter_m, fluids)?, lamb_damping_time(3, diameter_m, fluids)?];
         if frequency[1] >= 65536.0 {
             let (quantity, unit, allowed) = ("frequency of mode (3,1)", "Hz", "below 65536");
-            return Err(DropError::OutOfRange { quantity, found: frequency[1], unit, allowed });
+            return Err(DropError::OutOfRange(OutOfRange {
+                quantity,
+                found: frequency[1],
+                unit,
+                allowed: allowed.into(),
+            }));
         }
         Ok(Self { amplitudes, frequency, damping_time, phase: [0.0; 2], is_damped: false })
     }

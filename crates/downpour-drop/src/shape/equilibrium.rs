@@ -1,5 +1,6 @@
 //! Equilibrium shape of one drop, and its measures.
 
+use downpour_math::OutOfRange;
 use std::f64::consts::PI;
 
 use downpour_math::ops;
@@ -72,7 +73,7 @@ impl DropShape {
         check_shape_diameter(diameter_m)?;
         if let Some(&found) = c.iter().find(|c| !(-10.0..=10.0).contains(*c)) {
             let (quantity, unit, allowed) = ("shape coefficient", "of the radius", "-10 to 10");
-            return Err(DropError::OutOfRange { quantity, found, unit, allowed });
+            return Err(DropError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }));
         }
         let steepest: f64 = (0..).zip(&c).map(|(n, c)| f64::from(n) * c.abs()).sum();
         let steps = 2048;
@@ -82,7 +83,7 @@ impl DropShape {
         let found = smallest - 0.5 * steepest * PI / f64::from(steps);
         if found <= 0.0 {
             let (quantity, unit, allowed) = ("smallest radius", "of the sphere's", "above 0");
-            return Err(DropError::OutOfRange { quantity, found, unit, allowed });
+            return Err(DropError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }));
         }
         Ok(Self::scaled(diameter_m, c))
     }

@@ -6,6 +6,7 @@ use downpour_drop::distribution::{
     DistributionOptions, DropSizeDistribution, DropSizeLaw, ExtinctionLaw, SampledBy,
 };
 use downpour_drop::fall_speed::FallSpeedModel;
+use downpour_math::OutOfRange;
 
 use DropSizeLaw::{Best1950, FeingoldLevin1986, MarshallPalmer1948};
 
@@ -62,7 +63,7 @@ fn numbers_outside_are_errors() {
     for law in LAWS {
         for rate in [-0.1, 501.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -f64::MIN_POSITIVE] {
             assert!(
-                matches!(DropSizeDistribution::new(law, rate), Err(DropError::OutOfRange { .. })),
+                matches!(DropSizeDistribution::new(law, rate), Err(DropError::OutOfRange(OutOfRange { .. }))),
                 "{rate}"
             );
         }

@@ -4,11 +4,12 @@
 //! the cap of a sphere at the mean of the two angles. k is 1 in the classic form, 24 / pi^3 = 0.774 for the contact
 //! angle that varies as a cubic around the line (`ElSherbini` & Jacobi 2006). SI units, angles in radians.
 
+use downpour_math::in_range;
 use std::f64::consts::PI;
 
 use downpour_math::ops::f64 as ops;
 
-use super::error::{GlassError, in_range};
+use super::error::GlassError;
 
 /// Contact angles of water on a surface, and their retention.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,22 +52,22 @@ impl GlassContact {
         in_range(
             "advancing contact angle",
             self.advancing_rad,
-            smallest..=120f64.to_radians(),
-            degrees,
             "degrees",
+            &(smallest..=120f64.to_radians()),
+            degrees,
             "5 to 120",
         )?;
         in_range(
             "receding contact angle",
             self.receding_rad,
-            0.0..=self.advancing_rad,
-            degrees,
             "degrees",
+            &(0.0..=self.advancing_rad),
+            degrees,
             "0 to the advancing angle",
         )?;
-        in_range("retention factor", self.retention, 0.5..=1.0, 1.0, "", "0.5 to 1")?;
-        in_range("kinetic fraction of the friction", self.kinetic, 0.0..=1.0, 1.0, "", "0 to 1")?;
-        in_range("line drag", self.line_drag, 1.0..=1000.0, 1.0, "", "1 to 1000")?;
+        in_range("retention factor", self.retention, "", &(0.5..=1.0), 1.0, "0.5 to 1")?;
+        in_range("kinetic fraction of the friction", self.kinetic, "", &(0.0..=1.0), 1.0, "0 to 1")?;
+        in_range("line drag", self.line_drag, "", &(1.0..=1000.0), 1.0, "1 to 1000")?;
         Ok(())
     }
 

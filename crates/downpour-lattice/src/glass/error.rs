@@ -1,21 +1,14 @@
 //! Errors of panes.
 
+use downpour_math::OutOfRange;
+
 /// Error of a pane of glass.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GlassError {
     /// A number is not finite or outside its range.
-    #[error("{quantity} is {found} {unit}; allowed: {allowed}")]
-    OutOfRange {
-        /// Name of the quantity.
-        quantity: &'static str,
-        /// Value found, in `unit`.
-        found: f64,
-        /// Unit of the value.
-        unit: &'static str,
-        /// Allowed range, in words.
-        allowed: &'static str,
-    },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// A texture differs from the pane in the number of cells.
     #[error("{quantity} has {found} cells; allowed: {allowed}, as the pane")]
     CellCount {
@@ -61,20 +54,4 @@ pub enum GlassError {
     /// The rain is not valid.
     #[error(transparent)]
     Rain(#[from] downpour_drop::DropError),
-}
-
-/// Checks that `value` is within the range (NaN is not); `scale` converts it to `unit` for the message.
-pub(super) fn in_range(
-    quantity: &'static str,
-    value: f64,
-    range: std::ops::RangeInclusive<f64>,
-    scale: f64,
-    unit: &'static str,
-    allowed: &'static str,
-) -> Result<f64, GlassError> {
-    if range.contains(&value) {
-        Ok(value)
-    } else {
-        Err(GlassError::OutOfRange { quantity, found: value * scale, unit, allowed })
-    }
 }

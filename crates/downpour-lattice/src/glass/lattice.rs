@@ -1,10 +1,11 @@
 //! The pane on the CPU.
 
+use downpour_math::in_range;
 use downpour_shaders::lattice::glass::{GLASS_MAX_MASS, GLASS_OBSTACLE};
 use glam::Vec3;
 
 use super::cells::{Cells, Tick, load};
-use super::error::{GlassError, in_range};
+use super::error::GlassError;
 use super::motion::{glass_motion_unpack, glass_motion_wetness};
 use super::options::{GlassAir, GlassOptions, GlassRain};
 use super::plan::Plan;
@@ -218,9 +219,9 @@ pub(crate) fn poured_units(volume_m3: f64, mass: u32) -> Result<u32, GlassError>
     in_range(
         "poured volume",
         units,
-        0.0..=most,
-        1.0e-3,
         "mm^3",
+        &(0.0..=most),
+        1.0e-3,
         "0 to what the cell can still hold of 262.144",
     )?;
     Ok(units as u32)

@@ -3,9 +3,10 @@
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeLaw};
 use downpour_drop::fall_speed::FallSpeedModel;
+use downpour_math::{OutOfRange, in_range};
 
 use super::contact::GlassContact;
-use super::error::{GlassError, in_range};
+use super::error::GlassError;
 use super::wiper::GlassWiper;
 
 /// Range of the number of cells along an edge.
@@ -190,29 +191,34 @@ impl GlassOptions {
         for (quantity, edge) in ["columns of the pane", "rows of the pane"].into_iter().zip(self.size) {
             if !EDGE.contains(&edge) {
                 let found = edge.into();
-                return Err(GlassError::OutOfRange { quantity, found, unit: "cells", allowed: "8 to 4096" });
+                return Err(GlassError::OutOfRange(OutOfRange {
+                    quantity,
+                    found,
+                    unit: "cells",
+                    allowed: "8 to 4096".into(),
+                }));
             }
         }
         let degrees = 180.0 / std::f64::consts::PI;
-        in_range("edge of a cell", self.cell_m, 0.25e-3..=5.0e-3, 1.0e3, "mm", "0.25 to 5")?;
-        in_range("tilt", self.tilt_rad, 0.0..=std::f64::consts::FRAC_PI_2, degrees, "degrees", "0 to 90")?;
+        in_range("edge of a cell", self.cell_m, "mm", &(0.25e-3..=5.0e-3), 1.0e3, "0.25 to 5")?;
+        in_range("tilt", self.tilt_rad, "degrees", &(0.0..=std::f64::consts::FRAC_PI_2), degrees, "0 to 90")?;
         self.contact.check()?;
-        in_range("temperature", self.temperature_c, -20.0..=40.0, 1.0, "C", "-20 to 40")?;
-        in_range("rain rate", self.rain.rate_mm_h, 0.0..=500.0, 1.0, "mm/h", "0 to 500")?;
-        in_range("speed of the rain's air", self.rain.towards_m_s, 0.0..=100.0, 1.0, "m/s", "0 to 100")?;
-        in_range("air speed", self.air.speed_m_s, 0.0..=100.0, 1.0, "m/s", "0 to 100")?;
-        in_range("air direction", self.air.direction_rad, -10.0..=10.0, 1.0, "rad", "-10 to 10")?;
-        in_range("drag coefficient", self.air.drag, 0.0..=2.0, 1.0, "", "0 to 2")?;
+        in_range("temperature", self.temperature_c, "C", &(-20.0..=40.0), 1.0, "-20 to 40")?;
+        in_range("rain rate", self.rain.rate_mm_h, "mm/h", &(0.0..=500.0), 1.0, "0 to 500")?;
+        in_range("speed of the rain's air", self.rain.towards_m_s, "m/s", &(0.0..=100.0), 1.0, "0 to 100")?;
+        in_range("air speed", self.air.speed_m_s, "m/s", &(0.0..=100.0), 1.0, "0 to 100")?;
+        in_range("air direction", self.air.direction_rad, "rad", &(-10.0..=10.0), 1.0, "-10 to 10")?;
+        in_range("drag coefficient", self.air.drag, "", &(0.0..=2.0), 1.0, "0 to 2")?;
         if self.trail.spacing_m != f64::INFINITY {
-            in_range("spacing of beads", self.trail.spacing_m, 1.0e-4..=1.0, 1.0e3, "mm", "0.1 to 1000")?;
+            in_range("spacing of beads", self.trail.spacing_m, "mm", &(1.0e-4..=1.0), 1.0e3, "0.1 to 1000")?;
         }
-        in_range("diameter of beads", self.trail.bead_m, 0.0..=2.0e-3, 1.0e3, "mm", "0 to 2")?;
-        in_range("life of wetness", self.wetting.life_s, 0.1..=3600.0, 1.0, "s", "0.1 to 3600")?;
-        in_range("ease of wet glass", self.wetting.ease, 0.0..=1.0, 1.0, "", "0 to 1")?;
-        in_range("pull of wet glass", self.wetting.pull, 0.0..=4.0, 1.0, "", "0 to 4")?;
-        in_range("pull of affinity", self.affinity_pull, 0.0..=4.0, 1.0, "", "0 to 4")?;
-        in_range("evaporation", self.evaporation_mm_h, 0.0..=100.0, 1.0, "mm/h", "0 to 100")?;
-        in_range("speed limit", self.speed_limit_m_s, 0.01..=5.0, 1.0, "m/s", "0.01 to 5")?;
+        in_range("diameter of beads", self.trail.bead_m, "mm", &(0.0..=2.0e-3), 1.0e3, "0 to 2")?;
+        in_range("life of wetness", self.wetting.life_s, "s", &(0.1..=3600.0), 1.0, "0.1 to 3600")?;
+        in_range("ease of wet glass", self.wetting.ease, "", &(0.0..=1.0), 1.0, "0 to 1")?;
+        in_range("pull of wet glass", self.wetting.pull, "", &(0.0..=4.0), 1.0, "0 to 4")?;
+        in_range("pull of affinity", self.affinity_pull, "", &(0.0..=4.0), 1.0, "0 to 4")?;
+        in_range("evaporation", self.evaporation_mm_h, "mm/h", &(0.0..=100.0), 1.0, "0 to 100")?;
+        in_range("speed limit", self.speed_limit_m_s, "m/s", &(0.01..=5.0), 1.0, "0.01 to 5")?;
         for (index, wiper) in self.wipers.iter().enumerate() {
             wiper.check(index, self)?;
         }

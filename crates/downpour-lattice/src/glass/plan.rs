@@ -1,5 +1,6 @@
 //! Options as integers, for both the CPU and the GPU version.
 
+use downpour_math::in_range;
 use std::f64::consts::PI;
 
 use downpour_drop::air::STANDARD_GRAVITY;
@@ -9,7 +10,7 @@ use downpour_math::rng::seed_words;
 use downpour_shaders::lattice::glass::{GLASS_CELL, GLASS_CLASSES, GLASS_LANDING_QUADS};
 
 use super::blade::GlassBlade;
-use super::error::{GlassError, in_range};
+use super::error::GlassError;
 use super::frame::GlassFrame;
 use super::lattice::UNIT_M3;
 use super::options::{GlassAir, GlassOptions, GlassRain};
@@ -69,9 +70,9 @@ impl Plan {
         in_range(
             "rain on the pane",
             landing.number * edge * edge * self.tick_s,
-            0.0..=1.001 * MAX_PER_BLOCK,
-            1.0,
             "drops in a block and tick",
+            &(0.0..=1.001 * MAX_PER_BLOCK),
+            1.0,
             "0 to 0.5: make the pane with its heaviest rain, which sets the tick",
         )?;
         self.table = table(&options, &landing, self.tick_s)?;
@@ -100,7 +101,7 @@ impl Plan {
 
     /// Whole ticks of a step of `dt_s`; the remainder counts for the next step.
     pub(crate) fn ticks(&mut self, dt_s: f64) -> Result<Ticks, GlassError> {
-        in_range("step", dt_s, f64::MIN_POSITIVE..=MAX_STEP_S, 1.0, "s", "above 0 to 60")?;
+        in_range("step", dt_s, "s", &(f64::MIN_POSITIVE..=MAX_STEP_S), 1.0, "above 0 to 60")?;
         let whole = (self.backlog_s + dt_s) / self.tick_s;
         // Steps that are whole multiples of a tick must not lose one to rounding.
         let count = (whole + 1.0e-6).floor();
@@ -108,9 +109,9 @@ impl Plan {
         in_range(
             "time of the pane",
             clock / CLOCK_HZ,
-            0.0..=f64::from(u32::MAX) / CLOCK_HZ,
-            1.0,
             "s",
+            &(0.0..=f64::from(u32::MAX) / CLOCK_HZ),
+            1.0,
             "up to 12 days",
         )?;
         self.backlog_s = self.backlog_s + dt_s - count * self.tick_s;

@@ -1,9 +1,10 @@
 //! Surface of the glass: affinity, friction and obstacles of each cell, packed into a word.
 
+use downpour_math::in_range;
 use downpour_math::rng::{rng_draw, rng_unit, seed_words};
 use downpour_shaders::lattice::glass::GLASS_OBSTACLE;
 
-use super::error::{GlassError, in_range};
+use super::error::GlassError;
 use super::options::{GlassOptions, GlassTexture};
 
 /// Smooth noise in -1 to 1: three octaves of values at the corners of squares.
@@ -44,8 +45,8 @@ impl Bytes {
         match texture {
             GlassTexture::Even => Ok(vec![self.middle as u8; options.cells()]),
             GlassTexture::Noise { spot_m, amplitude } => {
-                in_range("width of spots", *spot_m, 1.0e-4..=1.0, 1.0e3, "mm", "0.1 to 1000")?;
-                in_range("amplitude of noise", *amplitude, 0.0..=1.0, 1.0, "", "0 to 1")?;
+                in_range("width of spots", *spot_m, "mm", &(1.0e-4..=1.0), 1.0e3, "0.1 to 1000")?;
+                in_range("amplitude of noise", *amplitude, "", &(0.0..=1.0), 1.0, "0 to 1")?;
                 let scale = options.cell_m / spot_m;
                 let [width, height] = options.size;
                 let cells = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));

@@ -1,11 +1,12 @@
 //! Wipers: blades that rotate about a pivot and push the water ahead of them.
 
+use downpour_math::in_range;
 use std::f64::consts::PI;
 
 use downpour_math::ops::f64 as ops;
 
 use super::blade::{GlassBlade, glass_blade_side};
-use super::error::{GlassError, in_range};
+use super::error::GlassError;
 use super::options::GlassOptions;
 
 /// Angle of a blade at a time.
@@ -70,8 +71,8 @@ impl GlassWiper {
             return Err(outside);
         }
         let reach = 2.0 * (width + height);
-        in_range("end of a blade", self.outer_m, 1.0e-3..=reach, 1.0, "m", "0.001 to twice the pane")?;
-        in_range("start of a blade", self.inner_m, 0.0..=self.outer_m, 1.0, "m", "0 to the blade's end")?;
+        in_range("end of a blade", self.outer_m, "m", &(1.0e-3..=reach), 1.0, "0.001 to twice the pane")?;
+        in_range("start of a blade", self.inner_m, "m", &(0.0..=self.outer_m), 1.0, "0 to the blade's end")?;
         let away = |at: f64, size: f64| (-at).max(at - size).max(0.0);
         let far = |at: f64, size: f64| at.abs().max((at - size).abs());
         if ops::hypot(away(x, width), away(y, height)) > self.outer_m
@@ -84,28 +85,35 @@ impl GlassWiper {
             in_range(
                 "start of a worn band",
                 band.from_m,
-                from..=self.outer_m,
-                1.0,
                 "m",
+                &(from..=self.outer_m),
+                1.0,
                 "on the blade, in order",
             )?;
-            in_range("end of a worn band", band.to_m, band.from_m..=self.outer_m, 1.0, "m", "on the blade")?;
-            in_range("fraction that a worn band leaves", band.leaves, 0.0..=1.0, 1.0, "", "0 to 1")?;
+            in_range(
+                "end of a worn band",
+                band.to_m,
+                "m",
+                &(band.from_m..=self.outer_m),
+                1.0,
+                "on the blade",
+            )?;
+            in_range("fraction that a worn band leaves", band.leaves, "", &(0.0..=1.0), 1.0, "0 to 1")?;
             from = band.to_m;
         }
         self.check_motion()
     }
 
     fn check_motion(&self) -> Result<(), GlassError> {
-        let angle = |a: f64| in_range("angle of a blade", a, -7.0..=7.0, 1.0, "rad", "-7 to 7");
+        let angle = |a: f64| in_range("angle of a blade", a, "rad", &(-7.0..=7.0), 1.0, "-7 to 7");
         match &self.motion {
             GlassWiperMotion::Sweep { from_rad, to_rad, period_s } => {
                 angle(*from_rad)?;
                 angle(*to_rad)?;
-                in_range("period of a wiper", *period_s, 0.1..=1.0e6, 1.0, "s", "0.1 to 1e6")?;
+                in_range("period of a wiper", *period_s, "s", &(0.1..=1.0e6), 1.0, "0.1 to 1e6")?;
             }
             GlassWiperMotion::Keys(keys) => {
-                in_range("number of a wiper's keys", keys.len() as f64, 1.0..=1.0e6, 1.0, "", "1 to 1e6")?;
+                in_range("number of a wiper's keys", keys.len() as f64, "", &(1.0..=1.0e6), 1.0, "1 to 1e6")?;
                 let mut before = f64::NEG_INFINITY;
                 for key in keys {
                     angle(key.angle_rad)?;
@@ -113,16 +121,16 @@ impl GlassWiper {
                     in_range(
                         "time of a wiper's key",
                         key.time_s,
-                        apart.max(-1.0e9)..=1.0e9,
-                        1.0,
                         "s",
+                        &(apart.max(-1.0e9)..=1.0e9),
+                        1.0,
                         "rising by 1 ms at least",
                     )?;
                     before = key.time_s;
                 }
             }
         }
-        in_range("speed of a blade", self.max_speed(), 0.0..=MAX_SPEED_RAD_S, 1.0, "rad/s", "0 to 20")?;
+        in_range("speed of a blade", self.max_speed(), "rad/s", &(0.0..=MAX_SPEED_RAD_S), 1.0, "0 to 20")?;
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! Options of a puddle, checked, and parameters of its time steps.
 
+use downpour_math::{OutOfRange, in_range};
 use std::f64::consts::TAU;
 
 use downpour_math::ops::f64 as ops;
@@ -8,7 +9,7 @@ use super::dispersion::{Dispersion, PuddleForm, PuddleWater};
 use super::lattice::{Links, PuddleGrid};
 use super::storage::PuddleStorage;
 use super::symbol::{MAX_COURANT, MAX_DEGREE, Stencil, Symbol, degree_for};
-use crate::error::{LatticeError, in_range};
+use crate::error::LatticeError;
 
 /// Range of the number of cells along an edge.
 pub const SIZE_RANGE: std::ops::RangeInclusive<u32> = 64..=4096;
@@ -120,7 +121,7 @@ impl PuddleOptions {
                 "64 to 4096 cells along an edge",
             )?;
         }
-        let check = |quantity, value: f32, unit, range, factor, allowed| {
+        let check = |quantity, value: f32, unit, range, factor, allowed: &'static str| {
             in_range(quantity, f64::from(value), unit, &range, factor, allowed)
         };
         check("edge of a cell", self.cell_m, "mm", 0.999e-4..=1.001, 1.0e3, "0.1 to 1000 mm")?;
@@ -243,12 +244,12 @@ impl Model {
         if wanted > f64::from(self.options.max_substeps) {
             // The same time in the maximum number of sub-steps.
             let courant = self.courant(dt / f64::from(self.options.max_substeps));
-            return Err(LatticeError::OutOfRange {
+            return Err(LatticeError::OutOfRange(OutOfRange {
                 quantity: "Courant number of the shortest sub-step",
                 found: courant,
                 unit: "",
-                allowed: "up to 0.70: a shorter time, larger cells, or more sub-steps (at most 64)",
-            });
+                allowed: "up to 0.70: a shorter time, larger cells, or more sub-steps (at most 64)".into(),
+            }));
         }
         Ok(wanted as u32)
     }

@@ -6,11 +6,12 @@
 
 use downpour_drop::distribution::{DropSizeDistribution, SampleTable, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;
+use downpour_math::in_range;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit, seed_words};
 
 use super::seed::Impact;
-use crate::error::{LatticeError, in_range};
+use crate::error::LatticeError;
 
 /// Maximum mean of a single Poisson draw, whose probability of 0 is far above the smallest number.
 const MAX_MEAN: f64 = 8.0;

@@ -14,6 +14,7 @@
 //! of the drop's. The two fractions are chosen, not measured. Slopes and depths stay within the linear law: a is at
 //! most half a length and half the depth, and a length is at least 1.25 cells.
 
+use downpour_math::in_range;
 use std::f64::consts::PI;
 
 use downpour_math::ops;
@@ -23,7 +24,7 @@ use downpour_shaders::lattice::puddle::{
 
 use super::lattice::Links;
 use super::model::Model;
-use crate::error::{LatticeError, in_range};
+use crate::error::LatticeError;
 
 /// Fraction of a drop's kinetic energy that opens the crater.
 const CRATER_FRACTION: f64 = 0.25;

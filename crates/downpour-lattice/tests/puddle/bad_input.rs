@@ -2,6 +2,7 @@
 
 use downpour_lattice::LatticeError;
 use downpour_lattice::puddle::{Impact, Puddle, PuddleDamping, PuddleForm, PuddleOptions, PuddleWater, Wake};
+use downpour_math::OutOfRange;
 
 use crate::{hill, membrane, set, undamped};
 
@@ -92,7 +93,7 @@ fn the_courant_number_is_enforced() {
     assert!((puddle.courant(at(0.72)) - 0.72).abs() < 1.0e-6);
     assert_eq!(puddle.step(at(0.699)).expect("a Courant number of 0.699"), 1);
     match puddle.step(at(0.72)).expect_err("a Courant number of 0.72") {
-        LatticeError::OutOfRange { quantity, found, .. } => {
+        LatticeError::OutOfRange(OutOfRange { quantity, found, .. }) => {
             assert!(quantity.contains("Courant") && (found - 0.72).abs() < 1.0e-3, "{quantity} {found}");
         }
         other => panic!("{other}"),

@@ -1,6 +1,7 @@
 //! Frame data of a picture through a pane: pane, lens and camera.
 
 use downpour_math::ops;
+use downpour_math::pyramid::{PyramidLevel, PyramidRounding, pyramid_append, pyramid_levels};
 use downpour_shaders::render::glass::GLASS_PICTURE_LEVELS;
 
 use super::light::GlassPictureLight;
@@ -105,37 +106,28 @@ impl GlassPicture {
 
     /// A picture with its coarser levels.
     pub(crate) fn levelled(&self, behind: &[[f32; 4]]) -> Vec<[f32; 4]> {
-        let levels = &self.frame.levels;
         let mut texels = behind.to_vec();
-        for pair in levels[..=self.frame.last as usize].windows(2) {
-            let (finer, coarser) = (pair[0], pair[1]);
-            for y in 0..coarser[1] {
-                for x in 0..coarser[0] {
-                    let at = |dx: u32, dy: u32| {
-                        let (x, y) = ((2 * x + dx).min(finer[0] - 1), (2 * y + dy).min(finer[1] - 1));
-                        texels[(finer[2] + y * finer[0] + x) as usize]
-                    };
-                    let (a, b, c, d) = (at(0, 0), at(1, 0), at(0, 1), at(1, 1));
-                    texels.push(std::array::from_fn(|k| ((a[k] + b[k]) + (c[k] + d[k])) * 0.25));
-                }
-            }
+        for level in self.coarser_levels() {
+            pyramid_append(&mut texels, &level);
         }
         texels
+    }
+
+    /// Levels of the picture behind the pane, below the finest.
+    pub(crate) fn coarser_levels(&self) -> Vec<PyramidLevel> {
+        pyramid_levels(self.frame.camera.size(), PyramidRounding::Up)
     }
 }
 
 /// Width, height and first texel of each level of a picture, and the number of the coarsest.
 pub(super) fn levels([width, height]: [u32; 2]) -> ([[u32; 4]; GLASS_PICTURE_LEVELS as usize], u32) {
     let mut levels = [[0; 4]; GLASS_PICTURE_LEVELS as usize];
-    let (mut size, mut first, mut last) = ([width, height], 0, 0);
-    for (k, level) in (0..).zip(&mut levels) {
-        *level = [size[0], size[1], first, 0];
-        last = k;
-        if size == [1, 1] {
-            break;
-        }
-        first += size[0] * size[1];
-        size = size.map(|edge| edge.div_ceil(2));
+    levels[0] = [width, height, 0, 0];
+    let mut last = 0;
+    for (row, level) in levels[1..].iter_mut().zip(pyramid_levels([width, height], PyramidRounding::Up)) {
+        let [columns, rows] = level.size;
+        *row = [columns, rows, level.target_texel, 0];
+        last += 1;
     }
     (levels, last)
 }

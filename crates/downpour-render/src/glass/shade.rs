@@ -1,6 +1,7 @@
 //! The drops of a pane as a picture that light of lamps is cast through: where they are, and where they gather it.
 
 use downpour_math::ops;
+use downpour_math::pyramid::{PyramidRounding, pyramid_append, pyramid_levels};
 use downpour_shaders::render::pane_shadow::{
     PANE_SHADOW_LENS, PANE_SHADOW_LEVELS, PANE_SHADOW_PEAK, PANE_SHADOW_TATARCHUK,
 };
@@ -71,19 +72,22 @@ impl PaneShade {
             sums[2] += area * drop.sphere / (water - 1.0).max(0.01);
             cast(&mut finest, [columns, rows], edge, drop, drop.radius >= gathers_m);
         }
-        let all = sums[0].max(1.0e-20);
-        let mean = if sums[0] > 0.0 { [sums[1] / all, sums[2] / all] } else { [1.0e-3, 1.0e-2] };
-        let (mut levels, mut texels) = (Vec::new(), Vec::new());
-        let (mut size, mut level) = ([columns, rows], finest);
-        loop {
-            levels.push([size[0] as u32, size[1] as u32, texels.len() as u32]);
-            let byte = |share: f32| (share.clamp(0.0, 1.0) * 255.0).round() as u8;
-            texels.extend(level.iter().map(|at| [byte(at.x), byte(at.y / PANE_SHADOW_PEAK)]));
-            if size[0].min(size[1]) == 1 {
+        let area = sums[0].max(1.0e-20);
+        let mean = if sums[0] > 0.0 { [sums[1] / area, sums[2] / area] } else { [1.0e-3, 1.0e-2] };
+        let size = [columns as u32, rows as u32];
+        let mut all: Vec<[f32; 2]> = finest.iter().map(Vec2::to_array).collect();
+        let mut levels = vec![[size[0], size[1], 0]];
+        // Down to the first level that has one row or one column.
+        for level in pyramid_levels(size, PyramidRounding::Down) {
+            if level.source_size.contains(&1) {
                 break;
             }
-            (level, size) = halved(&level, size);
+            pyramid_append(&mut all, &level);
+            levels.push([level.size[0], level.size[1], level.target_texel]);
         }
+        let byte = |part: f32| (part.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let texels =
+            all.iter().map(|&[cover, gathered]| [byte(cover), byte(gathered / PANE_SHADOW_PEAK)]).collect();
         let form = if form == PaneShadows::Tatarchuk2006 { PANE_SHADOW_TATARCHUK } else { PANE_SHADOW_LENS };
         Self { size_m: size_m.map(|edge| edge as f32), per_metre: 1.0 / edge, form, mean, levels, texels }
     }
@@ -125,16 +129,6 @@ fn cast(texels: &mut [Vec2], [columns, rows]: [usize; 2], edge: f32, drop: &Glas
             }
         }
     }
-}
-
-/// The level of half the size.
-fn halved(level: &[Vec2], [columns, rows]: [usize; 2]) -> (Vec<Vec2>, [usize; 2]) {
-    let size = [columns / 2, rows / 2];
-    let mean = |i: usize| {
-        let at = (i / size[0] * 2) * columns + i % size[0] * 2;
-        (level[at] + level[at + 1] + level[at + columns] + level[at + columns + 1]) * 0.25
-    };
-    ((0..size[0] * size[1]).map(mean).collect(), size)
 }
 
 impl PaneShade {

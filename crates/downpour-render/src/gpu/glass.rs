@@ -1,39 +1,78 @@
 //! A picture through a pane of glass, on a GPU.
 
 use downpour_gpu::{ComputeKernel, Gpu, GpuError, wgpu};
+use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::render::glass::GLASS_PICTURE_KERNEL;
+use downpour_shaders::render::rain::COMPOSE_KERNEL;
 
 use crate::glass::{GlassPicture, GlassPictureFrame};
 
 /// Samples of a dispatch, at most: a submission must stay far below the time after which a driver resets.
 const SAMPLES_PER_DISPATCH: u32 = 1 << 22;
 
-/// The pipeline of a pane: made once, used for any number of pictures.
+/// The pipelines of a pane: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
 pub struct GlassRenderer {
     gpu: Gpu,
+    compose: ComputeKernel,
+    pyramid: ComputeKernel,
     kernel: ComputeKernel,
 }
 
+/// What stands before a pane of glass, on the device.
+#[derive(Clone, Copy, Debug)]
+pub struct BehindGlass<'a> {
+    /// The plate: radiance and distance of each pixel, rows from the top.
+    pub plate: &'a wgpu::Buffer,
+    /// The rain before it: radiance and transmittance of each pixel.
+    pub rain: &'a wgpu::Buffer,
+    /// The environment map, all levels.
+    pub environment: &'a wgpu::Buffer,
+}
+
 impl GlassRenderer {
-    /// Makes the pipeline.
+    /// Makes the pipelines.
     ///
     /// # Errors
     /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { gpu: gpu.clone(), kernel: ComputeKernel::new(gpu, &GLASS_PICTURE_KERNEL, &[])? })
+        let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
+        Ok(Self {
+            gpu: gpu.clone(),
+            compose: kernel(&COMPOSE_KERNEL)?,
+            pyramid: kernel(&PYRAMID_KERNEL)?,
+            kernel: kernel(&GLASS_PICTURE_KERNEL)?,
+        })
+    }
+
+    /// The plate through the rain, with its coarser levels.
+    fn behind(&self, glass: &GlassPicture, seen: &BehindGlass<'_>) -> Result<wgpu::Buffer, GpuError> {
+        let gpu = &self.gpu;
+        let [width, height] = glass.frame.camera.size();
+        let levels = glass.coarser_levels();
+        let texels = levels.last().map_or(u64::from(width) * u64::from(height), |last| {
+            u64::from(last.target_texel) + u64::from(last.size[0]) * u64::from(last.size[1])
+        });
+        let behind = gpu.empty_buffer("picture behind glass", texels * 16, wgpu::BufferUsages::STORAGE)?;
+        let size = gpu.uniform_buffer("size of the picture behind glass", &[width, height, 0, 0])?;
+        let composed = self.compose.bind(gpu, &[&size, seen.plate, seen.rain, &behind])?;
+        let mut bound = Vec::new();
+        for level in &levels {
+            let uniform = gpu.uniform_buffer("level of the picture behind glass", level)?;
+            bound.push((self.pyramid.bind(gpu, &[&uniform, &behind])?, level.size));
+        }
+        let groups = |[columns, rows]: [u32; 2]| [columns.div_ceil(8), rows.div_ceil(8), 1];
+        let mut dispatches = vec![self.compose.dispatch(&composed, groups([width, height]))];
+        dispatches.extend(bound.iter().map(|(level, size)| self.pyramid.dispatch(level, groups(*size))));
+        gpu.submit(&dispatches)?;
+        Ok(behind)
     }
 
     /// The picture through the pane: what [`GlassPicture::through`] makes on the CPU.
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] if a buffer is larger than the device allows, or what else the GPU says.
-    pub fn through(
-        &self,
-        glass: &GlassPicture,
-        behind: &[[f32; 4]],
-        capture: &[[f32; 4]],
-    ) -> Result<Vec<[f32; 3]>, GpuError> {
+    pub fn through(&self, glass: &GlassPicture, seen: &BehindGlass<'_>) -> Result<Vec<[f32; 3]>, GpuError> {
         let gpu = &self.gpu;
         let frame = &glass.frame;
         let drops = gpu.storage_buffer("drops on glass", &glass.drops)?;
@@ -41,8 +80,7 @@ impl GlassRenderer {
         let wet = gpu.storage_buffer("wetness of glass", &glass.wet)?;
         let lens = gpu.storage_buffer("places of the lens", &glass.lens)?;
         let lights = gpu.storage_buffer("lamps before glass", &glass.lights)?;
-        let behind = gpu.storage_buffer("picture behind glass", &glass.levelled(behind))?;
-        let capture = gpu.storage_buffer("capture round the eye", capture)?;
+        let behind = self.behind(glass, seen)?;
         let pixels = u64::from(frame.camera.width) * u64::from(frame.camera.height);
         let made = gpu.empty_buffer("picture through glass", pixels * 16, wgpu::BufferUsages::STORAGE)?;
         let row = frame.camera.width.max(1).saturating_mul(frame.samples.max(1));
@@ -50,7 +88,7 @@ impl GlassRenderer {
         for first_row in (0..frame.camera.height).step_by(rows as usize) {
             let band = GlassPictureFrame { first_row, ..*frame };
             let uniform = gpu.uniform_buffer("glass picture frame", &band)?;
-            let buffers = [&uniform, &drops, &bins, &wet, &lens, &behind, &capture, &made, &lights];
+            let buffers = [&uniform, &drops, &bins, &wet, &lens, &behind, seen.environment, &made, &lights];
             let bindings = self.kernel.bind(gpu, &buffers)?;
             let groups =
                 [frame.camera.width.div_ceil(8), rows.min(frame.camera.height - first_row).div_ceil(8), 1];

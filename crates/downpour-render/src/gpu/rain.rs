@@ -3,21 +3,23 @@
 use std::sync::Arc;
 
 use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_math::pyramid::PyramidLevel;
+use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::render::rain::{
-    DROPS_KERNEL, REDUCE_KERNEL, STREAK_LIGHT_KERNEL, STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
+    DROPS_KERNEL, STREAK_LIGHT_KERNEL, STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
 };
 
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::medium::{MediumPass, MediumPipeline};
 use super::plate::PlateOnGpu;
 use crate::rain::light::{DropLightTable, DropLights};
-use crate::rain::{DropMasks, DropsDrop, Rain, ReduceLevel, StreakPath, StreakRay, reduce_levels};
+use crate::rain::{DropMasks, DropsDrop, Rain, StreakPath, StreakRay};
 
 /// The pipelines of drops: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
 pub struct RainPipeline {
     gpu: Gpu,
-    reduce: ComputeKernel,
+    pyramid: ComputeKernel,
     means: ComputeKernel,
     rays: ComputeKernel,
     light: ComputeKernel,
@@ -74,7 +76,7 @@ impl RainPipeline {
         let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
         Ok(Self {
             gpu: gpu.clone(),
-            reduce: kernel(&REDUCE_KERNEL)?,
+            pyramid: kernel(&PYRAMID_KERNEL)?,
             means: kernel(&STREAK_TABLE_KERNEL)?,
             rays: kernel(&STREAK_RAYS_KERNEL)?,
             light: kernel(&STREAK_LIGHT_KERNEL)?,
@@ -110,10 +112,8 @@ impl RainPipeline {
     /// # Errors
     /// As [`RainPipeline::upload`].
     pub fn environment(&self, rain: &Rain) -> Result<wgpu::Buffer, GpuError> {
-        let size = rain.environment.size;
-        let levels = reduce_levels(size);
-        let all = levels.last().map_or(size * size, |last| last.target_texel + last.size * last.size);
-        self.gpu.empty_buffer("environment map", u64::from(all) * 16, wgpu::BufferUsages::STORAGE)
+        let bytes = u64::from(rain.environment.texels()) * 16;
+        self.gpu.empty_buffer("environment map", bytes, wgpu::BufferUsages::STORAGE)
     }
 
     /// Makes ready to draw drops over a plate. `lights` are the lamps of `rain` on the drops, and those on the profiles of
@@ -129,14 +129,13 @@ impl RainPipeline {
         lights: &[DropLights<'_>; 2],
     ) -> Result<RainPass<'a>, GpuError> {
         let gpu = &self.gpu;
-        let levels = reduce_levels(rain.environment.size);
         let storage = wgpu::BufferUsages::STORAGE;
         let (clean, texels) = (plate.pixels, plate.environment.clone());
-        let level = |level: &ReduceLevel| {
+        let level = |level: &PyramidLevel| {
             let uniform = gpu.uniform_buffer("level of the environment map", level)?;
-            Ok((self.reduce.bind(gpu, &[&uniform, &texels])?, level.size.div_ceil(8)))
+            Ok((self.pyramid.bind(gpu, &[&uniform, &texels])?, level.size[0].div_ceil(8)))
         };
-        let levels = levels.iter().map(level).collect::<Result<_, GpuError>>()?;
+        let levels = rain.environment.levels().iter().map(level).collect::<Result<_, GpuError>>()?;
         let picture = rain.frame.camera.size();
         let pixels = u64::from(picture[0]) * u64::from(picture[1]);
         let layer = gpu.empty_buffer("rain", pixels * 16, storage)?;
@@ -206,7 +205,10 @@ impl RainPass<'_> {
     /// The coarser levels of the environment map, after its finest one.
     #[must_use]
     pub fn environment(&self) -> Vec<Dispatch<'_>> {
-        self.levels.iter().map(|(bindings, n)| self.pipeline.reduce.dispatch(bindings, [*n, *n, 1])).collect()
+        self.levels
+            .iter()
+            .map(|(bindings, n)| self.pipeline.pyramid.dispatch(bindings, [*n, *n, 1]))
+            .collect()
     }
 
     /// The light of lamps on the drops and on the streaks, in this order.
@@ -249,6 +251,12 @@ impl RainPass<'_> {
     pub fn drops(&self) -> Dispatch<'_> {
         let groups = [self.size[0].div_ceil(8), self.size[1].div_ceil(8), 1];
         self.pipeline.drops.dispatch(&self.drops, groups)
+    }
+
+    /// The rain on the device, as [`RainPass::layer`] reads it.
+    #[must_use]
+    pub fn layer_buffer(&self) -> &wgpu::Buffer {
+        &self.layer
     }
 
     /// Reads the rain: radiance, and the transmittance of the scene behind it; rows from the top.

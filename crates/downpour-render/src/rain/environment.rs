@@ -3,9 +3,10 @@
 //! By default an octahedral map: all directions, at nearly the same fineness everywhere. The papers' form is a
 //! perspective picture 165 degrees wide.
 
+use downpour_math::pyramid::{PyramidLevel, PyramidRounding, pyramid, pyramid_levels};
 use glam::Vec3;
 
-use super::{RainOptions, RefractionForm, reduce};
+use super::{RainOptions, RefractionForm};
 use crate::camera::Camera;
 
 /// Tangent of half of 165 degrees: what a drop of water refracts (Rousseau 2006 has 150 in one place: a rounding).
@@ -58,13 +59,27 @@ impl EnvironmentFrame {
             texel_angle,
         }
     }
+
+    /// Levels below the finest.
+    #[must_use]
+    pub fn levels(&self) -> Vec<PyramidLevel> {
+        pyramid_levels([self.size; 2], PyramidRounding::Down)
+    }
+
+    /// Number of texels of all levels.
+    #[must_use]
+    pub fn texels(&self) -> u32 {
+        self.levels()
+            .last()
+            .map_or(self.size * self.size, |last| last.target_texel + last.size[0] * last.size[1])
+    }
 }
 
 impl EnvironmentMap {
     /// A map from its finest level, rows from the top.
     #[must_use]
     pub fn new(frame: &EnvironmentFrame, mut texels: Vec<[f32; 4]>) -> Self {
-        reduce::reduce(&mut texels, frame.size);
+        pyramid(&mut texels, [frame.size; 2], PyramidRounding::Down);
         Self { texels }
     }
 }

@@ -20,6 +20,7 @@ mod atlas;
 mod keep;
 mod table;
 
+use downpour_math::OutOfRange;
 use std::f32::consts::PI;
 
 use downpour_math::ops;
@@ -211,20 +212,20 @@ impl<'a> DropLights<'a> {
     ) -> Result<Self, RenderError> {
         check_lights(lighting)?;
         if options.glints > DROP_LIGHT_GLINTS {
-            return Err(RenderError::OutOfRange {
+            return Err(RenderError::OutOfRange(OutOfRange {
                 quantity: "number of glints of a drop",
                 found: f64::from(options.glints),
                 unit: "",
-                allowed: "0 to 16",
-            });
+                allowed: "0 to 16".into(),
+            }));
         }
         if options.form == DropLightForm::Atlas && !table.has_atlas() {
-            return Err(RenderError::OutOfRange {
+            return Err(RenderError::OutOfRange(OutOfRange {
                 quantity: "number of streak atlases",
                 found: 0.0,
                 unit: "",
-                allowed: "1 (DropMasks::with_atlas)",
-            });
+                allowed: "1 (DropMasks::with_atlas)".into(),
+            }));
         }
         let DropLightOptions { form, glints } = options;
         Ok(Self { lighting, eye, table, form: form.number(), terms: form.terms(), glints })

@@ -3,6 +3,7 @@
 //! A drop's mask depends on its diameter (its shape) and on how far above or below it the viewer is. Masks are traced
 //! for diameters half a millimetre apart and elevations 30 degrees apart; the shader goes between them linearly.
 
+use downpour_math::OutOfRange;
 use std::sync::Arc;
 
 use downpour_atlas::StreakAtlas;
@@ -114,11 +115,13 @@ impl DropMasks {
             words: Arc::default(),
             size: SIZE,
             atlas: 0,
-            light: DropLightTable::water().map_err(|_| MaskError::OutOfRange {
-                quantity: "refractive index of water",
-                found: refractive_index,
-                unit: "",
-                allowed: "1.2 to 1.4",
+            light: DropLightTable::water().map_err(|_| {
+                MaskError::OutOfRange(OutOfRange {
+                    quantity: "refractive index of water",
+                    found: refractive_index,
+                    unit: "",
+                    allowed: "1.2 to 1.4".into(),
+                })
             })?,
             small_are_round: true,
             half_extents: Vec::new(),

@@ -1,6 +1,7 @@
 //! Position and resolution of a map.
 
 use downpour_bvh::{Bvh, BvhNode, BvhTriangle};
+use downpour_math::OutOfRange;
 use downpour_math::ops;
 use downpour_shaders::sim::collision::COLLISION_STEEP;
 use glam::Vec3;
@@ -58,8 +59,13 @@ impl CollisionOptions {
     }
 
     fn check(&self) -> Result<(), SimError> {
-        let error = |quantity, found: f32, unit, allowed| {
-            Err(SimError::OutOfRange { quantity, found: f64::from(found), unit, allowed })
+        let error = |quantity, found: f32, unit, allowed: &'static str| {
+            Err(SimError::OutOfRange(OutOfRange {
+                quantity,
+                found: f64::from(found),
+                unit,
+                allowed: allowed.into(),
+            }))
         };
         for position in [self.center, self.anchor] {
             let farthest = position.abs().max_element();
@@ -89,7 +95,7 @@ fn axes(fall: Vec3) -> Result<[Vec3; 3], SimError> {
         // To a tenth: the angle of a unit vector in f32 is no more accurate.
         let found = (f64::from(ops::acos(down.clamp(-1.0, 1.0))).to_degrees() * 10.0).round() / 10.0;
         let (quantity, unit, allowed) = ("angle of the fall from down", "degrees", "0 to 80");
-        return Err(SimError::OutOfRange { quantity, found, unit, allowed });
+        return Err(SimError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }));
     }
     let fall = fall / length;
     // Never parallel to the fall, and always near X while the wind turns.
@@ -160,12 +166,12 @@ impl CollisionFrame {
         });
         let farthest = low.abs().max(high.abs()).max_element();
         if !(low.is_finite() && high.is_finite() && farthest <= 2.0 * MAX_COORDINATE_M) {
-            return Err(SimError::OutOfRange {
+            return Err(SimError::OutOfRange(OutOfRange {
                 quantity: "reach of the scene from the drops",
                 found: f64::from(farthest),
                 unit: "m",
-                allowed: "at most 2e7",
-            });
+                allowed: "at most 2e7".into(),
+            }));
         }
         let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
         let top = fall.dot(middle) - fall.abs().dot(half);

@@ -1,5 +1,6 @@
 //! Textures on their way into a scene.
 
+use downpour_math::pyramid::{PyramidRounding, pyramid, pyramid_levels};
 use downpour_shaders::render::scene::{SCENE_REPEAT_U, SCENE_REPEAT_V, SCENE_ROOTED};
 
 use super::SceneBuilder;
@@ -18,34 +19,28 @@ impl SceneBuilder {
         let decode: Vec<f32> = (0..=255u8)
             .map(|v| if of == TextureUse::Colour { srgb_to_linear(v) } else { f32::from(v) / 255.0 })
             .collect();
-        let mut level: Vec<[f32; 4]> = texels
+        let mut all: Vec<[f32; 4]> = texels
             .iter()
             .map(|&[r, g, b, a]| {
                 let [r, g, b] = [r, g, b].map(|v| decode[usize::from(v)]);
                 [r, g, b, f32::from(a) / 255.0]
             })
             .collect();
-        let (mut w, mut h) = (width, height);
-        while w.max(h) > LARGEST_EDGE {
-            (level, w, h) = halve(&level, w, h);
-        }
-        let (top_width, top_height) = (w, h);
-        let mut packed = Vec::new();
-        let mut levels = 0;
-        loop {
-            packed.extend(level.iter().map(|&[r, g, b, a]| {
-                let store = |v: f32| {
-                    let v = v.clamp(0.0, 1.0);
-                    ((if of == TextureUse::Colour { v.sqrt() } else { v }) * 255.0).round() as u8
-                };
-                u32::from_le_bytes([store(r), store(g), store(b), (a.clamp(0.0, 1.0) * 255.0).round() as u8])
-            }));
-            levels += 1;
-            if w == 1 && h == 1 {
-                break;
-            }
-            (level, w, h) = halve(&level, w, h);
-        }
+        pyramid(&mut all, [width, height], PyramidRounding::Down);
+        let mut sizes = vec![([width, height], 0)];
+        let coarser = pyramid_levels([width, height], PyramidRounding::Down);
+        sizes.extend(coarser.iter().map(|level| (level.size, level.target_texel)));
+        sizes.retain(|(size, _)| size.iter().all(|&edge| edge <= LARGEST_EDGE));
+        let ([top_width, top_height], top) = sizes[0];
+        let levels = sizes.len() as u32;
+        let store = |v: f32| {
+            let v = v.clamp(0.0, 1.0);
+            ((if of == TextureUse::Colour { v.sqrt() } else { v }) * 255.0).round() as u8
+        };
+        let pack = |&[r, g, b, a]: &[f32; 4]| {
+            u32::from_le_bytes([store(r), store(g), store(b), (a.clamp(0.0, 1.0) * 255.0).round() as u8])
+        };
+        let packed: Vec<u32> = all[top as usize..].iter().map(pack).collect();
         let first = self.push_texels(&packed);
         TextureSlot {
             matrix: [1.0, 0.0, 0.0, 1.0],
@@ -58,21 +53,6 @@ impl SceneBuilder {
             levels,
         }
     }
-}
-
-/// The next level: means of 2 x 2 texels. The last row or column of an odd size counts for itself.
-fn halve(level: &[[f32; 4]], width: u32, height: u32) -> (Vec<[f32; 4]>, u32, u32) {
-    let (w, h) = ((width / 2).max(1), (height / 2).max(1));
-    let at = |x: u32, y: u32| level[(y.min(height - 1) * width + x.min(width - 1)) as usize];
-    let half = (0..h)
-        .flat_map(|y| (0..w).map(move |x| (x, y)))
-        .map(|(x, y)| {
-            let four =
-                [at(2 * x, 2 * y), at(2 * x + 1, 2 * y), at(2 * x, 2 * y + 1), at(2 * x + 1, 2 * y + 1)];
-            std::array::from_fn(|k| four.iter().map(|t| t[k]).sum::<f32>() * 0.25)
-        })
-        .collect();
-    (half, w, h)
 }
 
 /// The sRGB transfer function (IEC 61966-2-1).

@@ -2,13 +2,13 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use downpour_gpu::{Gpu, GpuError};
+use downpour_gpu::{Gpu, GpuError, wgpu};
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_RAYS;
 use downpour_sim::field::FallingDrop;
 
 use downpour_render::RenderError;
 use downpour_render::camera::Viewpoint;
-use downpour_render::gpu::{RainOnGpu, RainPipeline};
+use downpour_render::gpu::{BehindGlass, RainOnGpu, RainPipeline};
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::{DropMasks, Rain};
 
@@ -65,6 +65,21 @@ impl PictureRenderer {
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<Picture, GpuPictureError> {
+        Ok(self.draw(scene, viewpoint, drops, masks, options)?.read()?)
+    }
+
+    /// Makes a picture and leaves it on the device.
+    ///
+    /// # Errors
+    /// As [`PictureRenderer::render`].
+    pub fn draw(
+        &self,
+        scene: &SceneData,
+        viewpoint: &Viewpoint,
+        drops: &[FallingDrop],
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<PictureOnGpu, GpuPictureError> {
         let frame = picture_frame(scene, viewpoint, options)?;
         if self.gpu.adapter().is_software() {
             check_turns(&frame)?;
@@ -110,8 +125,40 @@ impl PictureRenderer {
             self.gpu.submit(&[pass.drops()])?;
             self.gpu.wait()
         })?;
+        let layer = pass.layer_buffer().clone();
+        let environment = plate.of(&clean).environment.clone();
+        drop(pass);
+        Ok(PictureOnGpu { gpu: self.gpu.clone(), rain, clean, layer, environment, passes })
+    }
+}
+
+/// A picture on the device, in layers.
+#[derive(Debug)]
+pub struct PictureOnGpu {
+    gpu: Gpu,
+    rain: Rain,
+    clean: wgpu::Buffer,
+    layer: wgpu::Buffer,
+    environment: wgpu::Buffer,
+    /// The passes in their order, with the milliseconds that each took.
+    pub passes: Vec<(&'static str, f64)>,
+}
+
+impl PictureOnGpu {
+    /// Its layers, for a pane of glass that it is seen through.
+    #[must_use]
+    pub fn behind_glass(&self) -> BehindGlass<'_> {
+        BehindGlass { plate: &self.clean, rain: &self.layer, environment: &self.environment }
+    }
+
+    /// Reads it.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn read(self) -> Result<Picture, GpuError> {
+        let Self { gpu, rain, clean, layer, environment, mut passes } = self;
         let (clean, layer, environment) = timed(&mut passes, "readback", || {
-            Ok::<_, GpuError>((self.gpu.read::<[f32; 4]>(&clean)?, pass.layer()?, pass.environment_texels()?))
+            Ok::<_, GpuError>((gpu.read::<[f32; 4]>(&clean)?, gpu.read(&layer)?, gpu.read(&environment)?))
         })?;
         Ok(Picture::new(&rain, clean, layer, environment, passes))
     }

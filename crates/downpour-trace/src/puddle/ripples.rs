@@ -2,6 +2,7 @@
 
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_lattice::puddle::{Puddle, PuddleBorder, PuddleOptions, PuddleRain};
+use downpour_math::pyramid::{PyramidRounding, pyramid_append, pyramid_levels};
 
 use super::PuddleError;
 
@@ -94,16 +95,9 @@ fn level_water() -> Result<Puddle, PuddleError> {
 /// two by two: what [`PuddleRows`](super::PuddleRows) takes.
 #[must_use]
 pub fn slope_levels(mut texels: Vec<[f32; 4]>, size: usize) -> Vec<[f32; 4]> {
-    let (mut first, mut edge) = (0, size);
-    while edge > 2 {
-        let half = edge / 2;
-        for i in 0..half * half {
-            let corner = first + (i / half * 2) * edge + i % half * 2;
-            let four = [corner, corner + 1, corner + edge, corner + edge + 1];
-            texels.push(std::array::from_fn(|k| four.iter().map(|&at| texels[at][k]).sum::<f32>() * 0.25));
-        }
-        first += edge * edge;
-        edge = half;
+    let levels = pyramid_levels([size as u32; 2], PyramidRounding::Down);
+    for level in levels.iter().filter(|level| level.size[0] > 1) {
+        pyramid_append(&mut texels, level);
     }
     texels
 }

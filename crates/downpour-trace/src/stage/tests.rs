@@ -1,5 +1,6 @@
 //! Stages of small scenes that are put together here.
 
+use downpour_math::OutOfRange;
 use std::sync::Arc;
 
 use downpour_render::RenderError;
@@ -167,7 +168,7 @@ fn times_and_sizes_are_checked() {
     let all = loaded(Scene::default());
     for time in [f64::NAN, f64::INFINITY, 1.1e6] {
         let error = Stage::new(&Weather::default(), &all, time).expect_err("no time");
-        assert!(matches!(error, StageError::Render(RenderError::OutOfRange { .. })));
+        assert!(matches!(error, StageError::Render(RenderError::OutOfRange(OutOfRange { .. }))));
     }
     let mut weather = Weather::default();
     for size in [[0, 5], [16_385, 1]] {

@@ -1,7 +1,7 @@
 //! Devices that draw frames: a GPU with its pipelines, or the CPU.
 
 use downpour_render::glass::GlassPicture;
-use downpour_render::picture::{Picture, PictureOptions};
+use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::DropMasks;
 use downpour_sim::field::FallingDrop;
 use downpour_trace::picture::render_picture;
@@ -106,11 +106,11 @@ struct OnGpu {
     glass: std::cell::OnceCell<downpour_render::gpu::GlassRenderer>,
 }
 
-/// Inputs of a frame seen through a pane.
+/// Pane that a frame is seen through.
 pub(super) struct Through {
     pub(super) glass: GlassPicture,
-    pub(super) behind: Vec<[f32; 4]>,
-    pub(super) capture: Vec<[f32; 4]>,
+    /// The environment map that the pane shows; `None` takes the one of the drops.
+    pub(super) environment: Option<Vec<[f32; 4]>>,
 }
 
 impl std::fmt::Debug for Drawer {
@@ -171,49 +171,65 @@ impl Drawer {
         may
     }
 
-    /// Draws a frame.
+    /// Draws a frame, seen through a pane if there is one.
     pub(super) fn paint(
         &self,
         stage: &Stage,
         drops: &[FallingDrop],
         masks: &DropMasks,
         options: &PictureOptions,
+        through: Option<&Through>,
     ) -> Result<Picture, RendererError> {
         let drops = stage.place(drops);
         #[cfg(feature = "wgpu")]
         if let Some(on_gpu) = &self.on_gpu {
-            return Ok(on_gpu.renderer.render(&stage.data, &stage.viewpoint, &drops, masks, options)?);
+            return on_gpu.paint(stage, &drops, masks, options, through);
         }
-        Ok(render_picture(&stage.data, &stage.viewpoint, &drops, masks, options)?)
+        let mut picture = render_picture(&stage.data, &stage.viewpoint, &drops, masks, options)?;
+        if let Some(Through { glass, environment }) = through {
+            let environment = environment.as_ref().unwrap_or(&picture.surroundings);
+            let behind = picture.behind_glass();
+            let seen = timed(&mut picture.passes, "glass", || glass.through(&behind, environment));
+            picture.through_glass = Some(seen);
+        }
+        Ok(picture)
     }
+}
 
-    /// Looks at a frame through a pane.
-    pub(super) fn look(&self, picture: &mut Picture, through: &Through) -> Result<(), RendererError> {
-        let Through { glass, behind, capture } = through;
-        let begin = std::time::Instant::now();
-        picture.through_glass = Some(self.seen(glass, behind, capture)?);
-        picture.passes.push(("glass", begin.elapsed().as_secs_f64() * 1.0e3));
-        Ok(())
-    }
-
-    fn seen(
+#[cfg(feature = "wgpu")]
+impl OnGpu {
+    fn paint(
         &self,
-        glass: &GlassPicture,
-        behind: &[[f32; 4]],
-        capture: &[[f32; 4]],
-    ) -> Result<Vec<[f32; 3]>, RendererError> {
-        #[cfg(feature = "wgpu")]
-        if let Some(on_gpu) = &self.on_gpu {
-            let renderer = match on_gpu.glass.get() {
-                Some(renderer) => renderer,
-                None => {
-                    let made = downpour_render::gpu::GlassRenderer::new(&on_gpu.gpu)?;
-                    on_gpu.glass.get_or_init(|| made)
-                }
-            };
-            return Ok(renderer.through(glass, behind, capture)?);
+        stage: &Stage,
+        drops: &[FallingDrop],
+        masks: &DropMasks,
+        options: &PictureOptions,
+        through: Option<&Through>,
+    ) -> Result<Picture, RendererError> {
+        use downpour_render::gpu::BehindGlass;
+        let mut drawn = self.renderer.draw(&stage.data, &stage.viewpoint, drops, masks, options)?;
+        let Some(Through { glass, environment }) = through else { return Ok(drawn.read()?) };
+        let begin = std::time::Instant::now();
+        let uploaded = environment
+            .as_ref()
+            .map(|texels| self.gpu.storage_buffer("environment map of a pane", texels))
+            .transpose()?;
+        let behind = drawn.behind_glass();
+        let environment = uploaded.as_ref().unwrap_or(behind.environment);
+        let seen = self.pane()?.through(glass, &BehindGlass { environment, ..behind })?;
+        drawn.passes.push(("glass", begin.elapsed().as_secs_f64() * 1.0e3));
+        let mut picture = drawn.read()?;
+        picture.through_glass = Some(seen);
+        Ok(picture)
+    }
+
+    /// The pipelines of panes.
+    fn pane(&self) -> Result<&downpour_render::gpu::GlassRenderer, RendererError> {
+        if let Some(renderer) = self.glass.get() {
+            return Ok(renderer);
         }
-        Ok(glass.through(behind, capture))
+        let made = downpour_render::gpu::GlassRenderer::new(&self.gpu)?;
+        Ok(self.glass.get_or_init(|| made))
     }
 }
 
