@@ -67,7 +67,7 @@ impl Gpu {
     }
 
     /// Writes `bytes` at the start of `buffer`, padded with zeros to a multiple of 4.
-    fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
+    pub(crate) fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
         let whole = bytes.len() / 4 * 4;
         if whole > 0 {
             self.queue().write_buffer(buffer, 0, &bytes[..whole]);

@@ -77,11 +77,23 @@ impl ComputeKernel {
         gpu: &Gpu,
         buffers: impl IntoIterator<Item = (u32, &'a wgpu::Buffer)>,
     ) -> Result<wgpu::BindGroup, GpuError> {
-        let entry = |(binding, buffer): (u32, &'a wgpu::Buffer)| wgpu::BindGroupEntry {
-            binding,
-            resource: buffer.as_entire_binding(),
-        };
-        let entries: Vec<wgpu::BindGroupEntry<'_>> = buffers.into_iter().map(entry).collect();
+        self.bind_resources(
+            gpu,
+            buffers.into_iter().map(|(binding, buffer)| (binding, buffer.as_entire_binding())),
+        )
+    }
+
+    /// Binds buffers and textures to bindings of group 0 by number.
+    ///
+    /// # Errors
+    /// As [`ComputeKernel::bind`].
+    pub fn bind_resources<'a>(
+        &self,
+        gpu: &Gpu,
+        resources: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>,
+    ) -> Result<wgpu::BindGroup, GpuError> {
+        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = resources.into_iter().map(entry).collect();
         gpu.create(&format!("bindings of \"{}\"", self.label), 0, |device| {
             device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(&self.label),
@@ -118,6 +130,16 @@ impl Dispatch<'_> {
             }),
             None => Ok(()),
         }
+    }
+
+    /// Records it in a caller's pass.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`] if it has more workgroups than the device of `gpu` allows.
+    pub fn encode(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) -> Result<(), GpuError> {
+        self.check(&gpu.device().limits())?;
+        self.encode_in(pass);
+        Ok(())
     }
 
     pub(crate) fn encode_in(&self, pass: &mut wgpu::ComputePass<'_>) {

@@ -8,6 +8,7 @@
 //!   never replaces the caller's handlers);
 //! - [`adapters`](adapter::adapters): the available GPUs and their capabilities;
 //! - [`ComputeKernel`], [`Dispatch`]: pipelines from `downpour-shaders`, checked against the device's limits;
+//! - [`BufferPool`]: buffers that stay from frame to frame;
 //! - [`Gpu::read`]: readback, which detects loss, hangs and late errors;
 //! - [`timing`]: time of whole passes, by timestamps where the device has them.
 //!
@@ -26,6 +27,7 @@ mod context;
 mod drivers;
 mod error;
 mod kernel;
+mod pool;
 mod readback;
 pub mod timing;
 
@@ -33,6 +35,7 @@ pub use adapter::{AdapterChoice, AdapterDescription};
 pub use context::{Gpu, GpuOptions, LimitSet};
 pub use error::GpuError;
 pub use kernel::{ComputeKernel, Dispatch};
+pub use pool::{BufferPool, BufferSource};
 pub use wgpu;
 
 /// Compiles the examples of the README as doctests.

@@ -2,12 +2,14 @@
 
 mod drop_light;
 mod glass;
+mod host;
 mod medium;
 mod plate;
 mod rain;
 
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 pub use glass::{BehindGlass, GlassRenderer};
+pub use host::{HostPass, HostPipeline, HostTextures};
 pub use medium::{MediumPass, MediumPipeline};
 pub use plate::{LightingOnGpu, PlateOnGpu};
 pub use rain::{RainOnGpu, RainPass, RainPipeline};

@@ -20,6 +20,7 @@ pub mod glass;
 pub mod gpu;
 #[doc(hidden)]
 pub mod halves;
+pub mod host;
 pub mod light;
 #[doc(hidden)]
 pub mod path_lattice;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_render::RenderError;
 use downpour_render::camera::{Camera, Viewpoint};
-use downpour_render::light::Light;
+use downpour_render::light::{Light, LightSource};
 use downpour_shaders::render::scene::{SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY_LEVELS, SKYLIGHT_RADIUS};
 use glam::Vec3;
 
@@ -121,6 +121,16 @@ impl SceneData {
         let first = (self.lights + index * SCENE_LIGHT_ROWS) as usize;
         let rows = std::array::from_fn(|k| self.table[first + k]);
         Light::light_load(&rows)
+    }
+
+    /// Sets the lights, in place of those that are there; puddles and a pane, which come after them in the table, are removed.
+    pub fn set_lights(&mut self, lights: &[LightSource]) {
+        self.table.truncate(self.lights as usize);
+        for light in lights {
+            self.table.extend(light.rows());
+        }
+        self.light_count = lights.len() as u32;
+        (self.puddles, self.puddle_count, self.pane) = (0, 0, 0);
     }
 
     /// Gives light `index` an angular radius, in radians: that of the disc that drops show of it. Without one it is the sun's.

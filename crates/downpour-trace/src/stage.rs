@@ -246,8 +246,12 @@ fn depth(weather: &Weather, seen: Option<&Seen>) -> [f64; 2] {
     [near, far]
 }
 
-/// The part of space that a picture shows.
-fn view_of(
+/// The part of space that a picture of `size` pixels shows, in the world, for
+/// [`RainField`](downpour_sim::field::RainField): drops between the distances `depth` from the eye, m.
+///
+/// # Errors
+/// As [`Viewpoint::axes`].
+pub fn view_of(
     viewpoint: &Viewpoint,
     origin: DVec3,
     size: [u32; 2],

@@ -198,7 +198,7 @@ impl Bench<'_> {
         let view = SceneView { data: &self.stage.data, frame: &self.frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
         let plate = self.scenes.plate(&self.scene, &self.frame, &self.rains, &rain)?;
-        let pass = self.rains.prepare(&plate.of(&self.clean), uploaded, &rain, &lights)?;
+        let pass = self.rains.prepare(self.gpu, &plate.of(&self.clean), uploaded, &rain, &lights)?;
         let capture = time(self.gpu, &plate.dispatches(&pass))?;
         let lamps = time(self.gpu, &pass.lamps())?;
         let streaks: Vec<Dispatch<'_>> = pass.streaks();

@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let view = SceneView { data: &stage.data, frame: &frame };
             let lights = [rain.lights(&view, &masks)?, rain.streak_lights(&view, &masks)?];
             let plate = scenes.plate(&scene, &frame, &rains, &rain)?;
-            let pass = rains.prepare(&plate.of(drawn.picture()), &uploaded, &rain, &lights)?;
+            let pass = rains.prepare(&gpu, &plate.of(drawn.picture()), &uploaded, &rain, &lights)?;
             let capture = time(&gpu, &plate.dispatches(&pass))?;
             let shown = time(&gpu, &[pass.drops()])?;
             let rate = 1.0e3 / (capture + shown);

@@ -55,9 +55,13 @@
 //! Units are SI (metres, seconds, kilograms, radians); a name says so where it is something else (`rate_mm_h`,
 //! `temperature_c`). Axes are those of glTF: right-handed, +Y up.
 
+#[cfg(feature = "wgpu")]
+pub mod rain;
 mod renderer;
 pub mod shower;
 
+#[cfg(feature = "wgpu")]
+pub use rain::{PlateTextures, Rain, RainError, RainSettings, RainView};
 pub use renderer::{
     Backend, Computer, Device, Frame, Progress, Renderer, RendererError, RendererOptions, Source,
 };

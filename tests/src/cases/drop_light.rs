@@ -175,7 +175,7 @@ fn rows_case(
     let cpu = lights.light(drops);
     let (scenes, pipeline) = (ScenePipeline::new(gpu)?, DropLightPipeline::new(gpu)?);
     let lighting = scenes.upload(scene)?.lighting(gpu, &frame)?;
-    let pass = pipeline.prepare(&lighting, &pipeline.upload(table)?, &lights, drops)?;
+    let pass = pipeline.prepare(gpu, &lighting, &pipeline.upload(table)?, &lights, drops)?;
     gpu.submit(&pass.dispatches())?;
     // Places are compared as places, streaks of an atlas as they are.
     let glints = if options.form == DropLightForm::Atlas { 0 } else { options.glints };

@@ -203,7 +203,7 @@ fn masks_case(
     let clean_buffer = gpu.storage_buffer("clean", clean)?;
     let lights = &both[0];
     let plate = scenes.plate(&uploaded, frame, &rains, rain)?;
-    let pass = rains.prepare(&plate.of(&clean_buffer), &rains.upload(masks)?, rain, &both)?;
+    let pass = rains.prepare(gpu, &plate.of(&clean_buffer), &rains.upload(masks)?, rain, &both)?;
     let table = || {
         kept(&format!("{key} table"), || {
             rain.streak_table(masks, capture, &both[1].light(&rain.streak_rows()))

@@ -1,6 +1,6 @@
 //! Light of lamps on drops on a GPU: what [`DropLights::light`] makes on the CPU.
 
-use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::drop_light::DROP_LIGHT_KERNEL;
 
 use super::plate::LightingOnGpu;
@@ -53,6 +53,7 @@ impl DropLightPipeline {
     /// [`GpuError::OverLimit`] if there are more drops than the device takes, or what else the GPU says.
     pub fn prepare<'a>(
         &'a self,
+        buffers: &impl BufferSource,
         lighting: &LightingOnGpu,
         table: &DropLightOnGpu,
         lights: &DropLights<'_>,
@@ -61,17 +62,16 @@ impl DropLightPipeline {
         let gpu = &self.gpu;
         let count = lights.count(drops);
         let rows = count * lights.stride();
-        let light =
-            gpu.empty_buffer("light on drops", rows.max(1) as u64 * 16, wgpu::BufferUsages::STORAGE)?;
+        let light = buffers.buffer("light on drops", rows.max(1) as u64 * 16, wgpu::BufferUsages::STORAGE)?;
         // A buffer has at least one element.
         let list: &[_] = if drops.is_empty() { &[[0.0; 4]] } else { drops };
-        let list = gpu.storage_buffer("places of drops", list)?;
+        let list = buffers.storage("positions of drops", list)?;
         let mut parts = Vec::new();
         for part in lights.frames(count as u32) {
-            let part = gpu.uniform_buffer("lamps", &part)?;
+            let part = buffers.uniform("lamps", &part)?;
             let own = [&list, &table.table, &light, &part];
-            let buffers: Vec<_> = lighting.buffers.iter().chain(own).collect();
-            parts.push(self.kernel.bind(gpu, &buffers)?);
+            let bound: Vec<_> = lighting.buffers.iter().chain(own).collect();
+            parts.push(self.kernel.bind(gpu, &bound)?);
         }
         let groups = (count as u32).div_ceil(64).max(1);
         Ok(DropLightPass { pipeline: self, parts, groups, rows, light })

@@ -1,6 +1,6 @@
 //! Unresolved rain on a GPU: what [`MediumLight::layer`] makes on the CPU.
 
-use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 
 use super::plate::PlateOnGpu;
@@ -48,6 +48,7 @@ impl MediumPipeline {
     /// [`GpuError::OverLimit`] if the picture is larger than the device takes, or what else the GPU says.
     pub fn prepare<'a>(
         &'a self,
+        buffers: &impl BufferSource,
         plate: &PlateOnGpu<'_>,
         medium: &MediumLight<'_>,
         layer: &wgpu::Buffer,
@@ -56,9 +57,9 @@ impl MediumPipeline {
         let [width, height] = medium.camera.size();
         let pixels = u64::from(width) * u64::from(height);
         let rows = medium.grid_rows() as u64 + 2 * pixels;
-        let found = gpu.empty_buffer("unresolved rain", rows * 16, wgpu::BufferUsages::STORAGE)?;
-        let phase = gpu.storage_buffer("phase function", &medium.phase)?;
-        let frame = gpu.uniform_buffer("medium frame", &medium.medium)?;
+        let found = buffers.buffer("unresolved rain", rows * 16, wgpu::BufferUsages::STORAGE)?;
+        let phase = buffers.storage("phase function", &medium.phase)?;
+        let frame = buffers.uniform("medium frame", &medium.medium)?;
         let clean = plate.pixels;
         let numbered = || (0u32..).zip(&plate.lighting.buffers);
         let open = self.open.bind_at(gpu, numbered().chain([(8, &found), (9, &frame)]))?;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_math::pyramid::PyramidLevel;
 use downpour_shaders::common::PYRAMID_KERNEL;
 use downpour_shaders::render::rain::{
@@ -60,9 +60,20 @@ struct Profiles {
     light: (wgpu::BindGroup, [u32; 3]),
 }
 
+/// Jobs along a row of workgroups: fewer than every device allows.
+const ALONG: u32 = 32_768;
+
+/// Jobs for all workgroups of [`groups`]: the last one is done again by those that are left over. Buffers may be longer than
+/// their contents, so that no workgroup may look beyond these.
+fn padded(jobs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let [x, y, _] = groups(jobs.len());
+    let mut all = jobs.to_vec();
+    all.resize((x * y) as usize, jobs.last().copied().unwrap_or_default());
+    all
+}
+
 /// Workgroups for so many jobs: no dimension has more than every device allows.
 fn groups(jobs: usize) -> [u32; 3] {
-    const ALONG: u32 = 32_768;
     let jobs = jobs as u32;
     [jobs.min(ALONG), jobs.div_ceil(ALONG), 1]
 }
@@ -111,18 +122,19 @@ impl RainPipeline {
     ///
     /// # Errors
     /// As [`RainPipeline::upload`].
-    pub fn environment(&self, rain: &Rain) -> Result<wgpu::Buffer, GpuError> {
+    pub fn environment(&self, buffers: &impl BufferSource, rain: &Rain) -> Result<wgpu::Buffer, GpuError> {
         let bytes = u64::from(rain.environment.texels()) * 16;
-        self.gpu.empty_buffer("environment map", bytes, wgpu::BufferUsages::STORAGE)
+        buffers.buffer("environment map", bytes, wgpu::BufferUsages::STORAGE)
     }
 
-    /// Makes ready to draw drops over a plate. `lights` are the lamps of `rain` on the drops, and those on the profiles of
+    /// Makes ready to draw drops over a plate, with buffers from `buffers`. `lights` are the lamps of `rain` on the drops, and those on the profiles of
     /// streaks.
     ///
     /// # Errors
     /// As [`RainPipeline::upload`].
     pub fn prepare<'a>(
         &'a self,
+        buffers: &impl BufferSource,
         plate: &PlateOnGpu<'_>,
         masks: &RainOnGpu,
         rain: &Rain,
@@ -132,38 +144,38 @@ impl RainPipeline {
         let storage = wgpu::BufferUsages::STORAGE;
         let (clean, texels) = (plate.pixels, plate.environment.clone());
         let level = |level: &PyramidLevel| {
-            let uniform = gpu.uniform_buffer("level of the environment map", level)?;
+            let uniform = buffers.uniform("level of the environment map", level)?;
             Ok((self.pyramid.bind(gpu, &[&uniform, &texels])?, level.size[0].div_ceil(8)))
         };
         let levels = rain.environment.levels().iter().map(level).collect::<Result<_, GpuError>>()?;
         let picture = rain.frame.camera.size();
         let pixels = u64::from(picture[0]) * u64::from(picture[1]);
-        let layer = gpu.empty_buffer("rain", pixels * 16, storage)?;
-        let frame = gpu.uniform_buffer("drops frame", &rain.frame)?;
+        let layer = buffers.buffer("rain", pixels * 16, storage)?;
+        let frame = buffers.uniform("drops frame", &rain.frame)?;
         // A buffer has at least one element.
         let list: &[_] = if rain.list.is_empty() { &[DropsDrop::default()] } else { &rain.list };
-        let list = gpu.storage_buffer("drops", list)?;
-        let tiles = gpu.storage_buffer("tiles of drops", &rain.tiles)?;
+        let list = buffers.storage("drops", list)?;
+        let tiles = buffers.storage("tiles of drops", &rain.tiles)?;
         let made = &rain.profiles;
-        let table = gpu.empty_buffer("streak radiance", u64::from(made.entries.max(1)) * 16, storage)?;
+        let table = buffers.buffer("streak radiance", u64::from(made.entries.max(1)) * 16, storage)?;
         let lamps = [
-            self.lamps.prepare(plate.lighting, &masks.light, &lights[0], &rain.rows)?,
-            self.lamps.prepare(plate.lighting, &masks.light, &lights[1], &rain.streak_rows())?,
+            self.lamps.prepare(buffers, plate.lighting, &masks.light, &lights[0], &rain.rows)?,
+            self.lamps.prepare(buffers, plate.lighting, &masks.light, &lights[1], &rain.streak_rows())?,
         ];
         let mut means = None;
         if !made.classes.is_empty() {
-            let classes = gpu.storage_buffer("classes of drops", &made.classes)?;
+            let classes = buffers.storage("classes of drops", &made.classes)?;
             let bindings = self.means.bind(gpu, &[&frame, &texels, &classes, &table])?;
             means = Some((bindings, made.classes.len() as u32));
         }
         let mut profiles = None;
         if !made.paths.is_empty() {
-            let paths = gpu.storage_buffer::<StreakPath>("paths of streaks", &made.paths)?;
+            let paths = buffers.storage::<StreakPath>("paths of streaks", &made.paths)?;
             let bytes = u64::from(made.rays) * size_of::<StreakRay>() as u64;
-            let rays = gpu.empty_buffer("rays of streaks", bytes, storage)?;
-            let jobs = gpu.storage_buffer("rows of rays", &made.ray_jobs)?;
+            let rays = buffers.buffer("rays of streaks", bytes, storage)?;
+            let jobs = buffers.storage("rows of rays", &padded(&made.ray_jobs))?;
             let traced = self.rays.bind(gpu, &[&list, &paths, &jobs, &table, &rays])?;
-            let jobs = gpu.storage_buffer("columns of profiles", &made.light_jobs)?;
+            let jobs = buffers.storage("columns of profiles", &padded(&made.light_jobs))?;
             let all = [&frame, &texels, &list, &paths, &jobs, &rays, lamps[1].light(), &table];
             let lit = self.light.bind(gpu, &all)?;
             profiles = Some(Profiles {
@@ -171,7 +183,7 @@ impl RainPipeline {
                 light: (lit, groups(made.light_jobs.len())),
             });
         }
-        let medium = self.medium.prepare(plate, &rain.medium_light(&lights[0]), &layer)?;
+        let medium = self.medium.prepare(buffers, plate, &rain.medium_light(&lights[0]), &layer)?;
         let bindings = [
             &frame,
             &texels,

@@ -3,6 +3,7 @@
 use downpour_shaders::render::rain::DROPS_TILE;
 use downpour_sim::field::FallingDrop;
 use glam::{DVec3, Vec2};
+use rayon::prelude::*;
 
 use super::drops_frame::DropsFrame;
 use super::environment::EnvironmentFrame;
@@ -54,13 +55,15 @@ impl Rain {
     ) -> Self {
         let environment = EnvironmentFrame::new(camera, options);
         let [width, height] = camera.size();
-        let mut placed: Vec<(u32, Projected)> = (0u32..)
-            .zip(drops)
-            .filter_map(|(k, drop)| Some((k, project(camera, eye, drop, masks, &options.exposure)?)))
+        let mut placed: Vec<(u32, Projected)> = drops
+            .par_iter()
+            .enumerate()
+            .filter_map(|(k, drop)| Some((k as u32, project(camera, eye, drop, masks, &options.exposure)?)))
             .filter(|(_, shown)| pixels(shown, width, height).is_some())
             .collect();
-        // Two drops at one distance go in the order in which they were given.
-        placed.sort_by(|a, b| a.1.drop.nearest.total_cmp(&b.1.drop.nearest).then(a.0.cmp(&b.0)));
+        // Two drops at one distance go in the order in which they were given, so that the order is the same for any number of
+        // threads.
+        placed.par_sort_unstable_by(|a, b| a.1.drop.nearest.total_cmp(&b.1.drop.nearest).then(a.0.cmp(&b.0)));
         let medium = options.medium.row().map(shapes::of_row);
         let profiles = StreakProfiles::new(&mut placed, drops, masks, &options.exposure, medium);
         let across = width.div_ceil(DROPS_TILE);

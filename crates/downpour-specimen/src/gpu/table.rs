@@ -46,7 +46,7 @@ impl SpecimenTableRenderer {
             let view = streak.view();
             let lights = [streak.lights(&view)?, streak.streak_lights(&view)?];
             let plate = self.scenes.plate(&scene, &streak.frame, &self.rains, &streak.rain)?;
-            let pass = self.rains.prepare(&plate.of(&clean), &masks, &streak.rain, &lights)?;
+            let pass = self.rains.prepare(&self.gpu, &plate.of(&clean), &masks, &streak.rain, &lights)?;
             let environment = plate.dispatches(&pass);
             for dispatches in [environment, pass.lamps(), pass.streaks(), vec![pass.drops()]] {
                 self.gpu.submit(&dispatches)?;

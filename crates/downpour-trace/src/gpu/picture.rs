@@ -101,7 +101,7 @@ impl PictureRenderer {
         let view = SceneView { data: scene, frame: &frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
         let plate = self.scene.plate(&uploaded.0, &frame, &self.rain, &rain)?;
-        let pass = self.rain.prepare(&plate.of(&clean), &uploaded.1, &rain, &lights)?;
+        let pass = self.rain.prepare(&self.gpu, &plate.of(&clean), &uploaded.1, &rain, &lights)?;
         timed(&mut passes, "capture", || {
             self.gpu.submit(&plate.dispatches(&pass))?;
             self.gpu.wait()

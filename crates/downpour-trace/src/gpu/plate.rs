@@ -32,7 +32,7 @@ impl ScenePipeline {
         rain: &Rain,
     ) -> Result<ScenePlate<'_>, GpuError> {
         let gpu: &Gpu = self.gpu();
-        let environment = rains.environment(rain)?;
+        let environment = rains.environment(gpu, rain)?;
         let of_map = environment_frame(frame, &rain.environment);
         let uniform = gpu.uniform_buffer("frame of the environment map", &of_map)?;
         // An environment map has no filter: nothing is written there.

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL};
 
 use downpour_render::gpu::LightingOnGpu;
@@ -81,26 +81,7 @@ impl ScenePipeline {
         scene: &SceneData,
         before: Option<&SceneOnGpu>,
     ) -> Result<SceneOnGpu, GpuError> {
-        macro_rules! buffer {
-            ($field:ident, $label:literal) => {
-                match before.filter(|before| Arc::ptr_eq(&before.of.$field, &scene.$field)) {
-                    Some(before) => before.$field.clone(),
-                    None => self.gpu.storage_buffer($label, &scene.$field)?,
-                }
-            };
-        }
-        Ok(SceneOnGpu {
-            nodes: buffer!(nodes, "scene nodes"),
-            triangles: buffer!(triangles, "scene triangles"),
-            corners: buffer!(corners, "scene corners"),
-            table: match before.filter(|before| before.of.table == scene.table) {
-                Some(before) => before.table.clone(),
-                None => self.gpu.storage_buffer("scene table", &scene.table)?,
-            },
-            texels: buffer!(texels, "scene texels"),
-            sky: buffer!(sky, "scene sky"),
-            of: scene.clone(),
-        })
+        SceneOnGpu::new(&self.gpu, scene, before)
     }
 
     /// The picture of a frame: radiance and nearest distance, rows from the top. What
@@ -200,12 +181,58 @@ impl ScenePass<'_> {
 }
 
 impl SceneOnGpu {
+    /// Brings a scene to the device where `before` is already: only what the two do not share.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn new(gpu: &Gpu, scene: &SceneData, before: Option<&Self>) -> Result<Self, GpuError> {
+        macro_rules! buffer {
+            ($field:ident, $label:literal) => {
+                match before.filter(|before| Arc::ptr_eq(&before.of.$field, &scene.$field)) {
+                    Some(before) => before.$field.clone(),
+                    None => gpu.storage_buffer($label, &scene.$field)?,
+                }
+            };
+        }
+        Ok(Self {
+            nodes: buffer!(nodes, "scene nodes"),
+            triangles: buffer!(triangles, "scene triangles"),
+            corners: buffer!(corners, "scene corners"),
+            table: match before.filter(|before| before.of.table == scene.table) {
+                Some(before) => before.table.clone(),
+                None => gpu.storage_buffer("scene table", &scene.table)?,
+            },
+            texels: buffer!(texels, "scene texels"),
+            sky: buffer!(sky, "scene sky"),
+            of: scene.clone(),
+        })
+    }
+
+    /// Lamps and obstacles of the scene with the table of `scene`, which differs from what was uploaded in its lights only, for
+    /// the rain of a frame.
+    ///
+    /// # Errors
+    /// As [`ScenePipeline::upload`].
+    pub fn lighting_of(
+        &self,
+        buffers: &impl BufferSource,
+        frame: &RenderFrame,
+        scene: &SceneData,
+    ) -> Result<LightingOnGpu, GpuError> {
+        let table = buffers.storage("scene table", &scene.table)?;
+        Self { table, ..self.clone() }.lighting(buffers, frame)
+    }
+
     /// Lamps and obstacles of the scene, for the rain of a frame.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].
-    pub fn lighting(&self, gpu: &Gpu, frame: &RenderFrame) -> Result<LightingOnGpu, GpuError> {
-        let frame = gpu.uniform_buffer("frame of the lighting", frame)?;
+    pub fn lighting(
+        &self,
+        buffers: &impl BufferSource,
+        frame: &RenderFrame,
+    ) -> Result<LightingOnGpu, GpuError> {
+        let frame = buffers.uniform("frame of the lighting", frame)?;
         let of_scene = [&self.nodes, &self.triangles, &self.corners, &self.table, &self.texels];
         let [nodes, triangles, corners, table, texels] = of_scene.map(Clone::clone);
         Ok(LightingOnGpu { buffers: [frame, nodes, triangles, corners, table, texels] })

@@ -1,0 +1,185 @@
+//! Buffers that stay from frame to frame.
+
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+use bytemuck::Pod;
+
+use crate::{Gpu, GpuError};
+
+/// Least size of a kept storage buffer, bytes: lists of few drops change the most from frame to frame.
+const LEAST: u64 = 256 << 10;
+
+/// Buffers below this size, bytes, get as much room again as they need; larger ones a quarter.
+const SMALL: u64 = 4 << 20;
+
+/// Maker of buffers: a [`Gpu`], which creates each anew, or a [`BufferPool`], which keeps them for the next frame.
+pub trait BufferSource {
+    /// Returns a buffer of `bytes` bytes or more with `usage` and both copy usages. Its contents are not defined.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`], [`GpuError::OutOfMemory`] or [`GpuError::Lost`].
+    fn buffer(
+        &self,
+        label: &'static str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError>;
+
+    /// Device and queue of the buffers.
+    fn gpu(&self) -> &Gpu;
+
+    /// Returns a storage buffer that begins with `data`.
+    ///
+    /// # Errors
+    /// As [`BufferSource::buffer`].
+    fn storage<T: Pod>(&self, label: &'static str, data: &[T]) -> Result<wgpu::Buffer, GpuError> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let buffer = self.buffer(label, bytes.len() as u64, wgpu::BufferUsages::STORAGE)?;
+        self.gpu().write(&buffer, bytes);
+        Ok(buffer)
+    }
+
+    /// Returns a uniform buffer with the contents `value`.
+    ///
+    /// # Errors
+    /// As [`BufferSource::buffer`].
+    fn uniform<T: Pod>(&self, label: &'static str, value: &T) -> Result<wgpu::Buffer, GpuError> {
+        let bytes = bytemuck::bytes_of(value);
+        let buffer = self.buffer(label, bytes.len() as u64, wgpu::BufferUsages::UNIFORM)?;
+        self.gpu().write(&buffer, bytes);
+        Ok(buffer)
+    }
+}
+
+impl BufferSource for Gpu {
+    fn buffer(
+        &self,
+        label: &'static str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        self.empty_buffer(label, bytes, usage)
+    }
+
+    fn gpu(&self) -> &Gpu {
+        self
+    }
+}
+
+/// Buffers of a frame, kept for the next one.
+///
+/// The n-th buffer of a label in a frame is the n-th of that label in the frame before, if that one is large enough; else it is
+/// created anew, with room to grow. So a loop of like frames creates no buffer after the first. All writes go through the
+/// queue: they come before whatever is submitted next, so that each frame has to be submitted before the next one begins.
+#[derive(Debug)]
+pub struct BufferPool {
+    gpu: Gpu,
+    kept: Mutex<Kept>,
+}
+
+#[derive(Debug, Default)]
+struct Kept {
+    buffers: HashMap<&'static str, Vec<wgpu::Buffer>>,
+    /// Buffers of each label that the current frame has.
+    used: HashMap<&'static str, usize>,
+    /// Buffers that were created.
+    made: u64,
+}
+
+impl BufferPool {
+    /// Creates a pool without buffers.
+    #[must_use]
+    pub fn new(gpu: &Gpu) -> Self {
+        Self { gpu: gpu.clone(), kept: Mutex::default() }
+    }
+
+    /// Begins a frame: all buffers may be used again.
+    pub fn begin_frame(&self) {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).used.clear();
+    }
+
+    /// Number of buffers that were created so far.
+    #[must_use]
+    pub fn made(&self) -> u64 {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).made
+    }
+
+    /// Size of a new buffer: with room to grow, as far as the device allows.
+    fn roomy(&self, bytes: u64, usage: wgpu::BufferUsages) -> u64 {
+        if usage.contains(wgpu::BufferUsages::UNIFORM) {
+            return bytes;
+        }
+        let limits = self.gpu.device().limits();
+        let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+        let room = if bytes < SMALL { bytes } else { bytes / 4 };
+        let wanted = (bytes + room).max(LEAST).next_multiple_of(256);
+        if wanted <= most { wanted } else { bytes }
+    }
+}
+
+impl BufferSource for BufferPool {
+    fn buffer(
+        &self,
+        label: &'static str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let nth = kept.used.get(label).copied().unwrap_or_default();
+        let known = kept.buffers.get(label).and_then(|buffers| buffers.get(nth));
+        let buffer = match known.filter(|known| known.size() >= bytes && known.usage().contains(usage)) {
+            Some(known) => known.clone(),
+            None => {
+                let made = self.gpu.empty_buffer(label, self.roomy(bytes, usage), usage)?;
+                let buffers = kept.buffers.entry(label).or_default();
+                match buffers.get_mut(nth) {
+                    Some(place) => *place = made.clone(),
+                    None => buffers.push(made.clone()),
+                }
+                kept.made += 1;
+                made
+            }
+        };
+        kept.used.insert(label, nth + 1);
+        Ok(buffer)
+    }
+
+    fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// wgpu's noop device.
+    fn noop() -> Gpu {
+        let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
+        Gpu::on_device(device, queue)
+    }
+
+    #[test]
+    fn like_frames_make_no_buffers() {
+        let pool = BufferPool::new(&noop());
+        let frame = |drops: usize| {
+            pool.begin_frame();
+            let a = pool.storage("drops", &vec![0u32; drops]).unwrap();
+            let b = pool.storage("drops", &[1u32]).unwrap();
+            let c = pool.uniform("frame", &[0u32; 4]).unwrap();
+            assert_ne!(a, b);
+            assert!(a.size() >= 4 * drops as u64 && c.size() == 16);
+        };
+        frame(1000);
+        assert_eq!(pool.made(), 3);
+        for drops in [1000, 900, 60_000, 0] {
+            frame(drops);
+        }
+        assert_eq!(pool.made(), 3);
+        frame(600_000);
+        assert_eq!(pool.made(), 4);
+        frame(1_000_000);
+        assert_eq!(pool.made(), 4);
+    }
+}

@@ -1,0 +1,295 @@
+//! Rain in the frames of a host application: on its device, over its color texture, in its command encoder.
+
+mod error;
+mod settings;
+mod textures;
+
+use downpour_drop::air::Air;
+use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
+use downpour_drop::fall_speed::TerminalSpeed;
+use downpour_drop::optics::water_index_in_air;
+use downpour_drop::oscillation::{Amplitudes, Fluids};
+use downpour_gpu::{BufferPool, Gpu, wgpu};
+use downpour_render::camera::{EyeMotion, Viewpoint};
+use downpour_render::gpu::{HostPipeline, PlateOnGpu, RainOnGpu, RainPipeline};
+use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
+use downpour_render::light::LightSource;
+use downpour_render::rain::{
+    DropMasks, Exposure, MediumOptions, Rain as PictureRain, RainMedium, RainOptions,
+};
+use downpour_sim::field::{RainField, VisibleDrops};
+use downpour_sim::shelter::Obstacles;
+use downpour_sim::view::View;
+use downpour_trace::builder::{MeshPart, SceneBuilder};
+use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::gpu::SceneOnGpu;
+use downpour_trace::scene::SceneView;
+use downpour_trace::sky_light::SkyLight;
+use downpour_trace::stage::{MAX_TRIANGLES, MOST_LIGHTS, view_of};
+use glam::{Affine3A, DVec3};
+
+pub use downpour_render::host::DepthRange;
+pub use error::RainError;
+pub use settings::RainSettings;
+pub use textures::{HostSky, PlateTextures};
+
+/// The line of sodium, m: the wavelength at which the refractive index of water is taken.
+const SODIUM_M: f64 = 589.3e-9;
+
+/// The coldest air, in Celsius, in which the refractive index of water is known.
+const COLDEST_INDEX_C: f64 = -12.0;
+
+/// View of a frame: a perspective camera in the host's world (right-handed, +Y up, metres), and its exposure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RainView {
+    /// The camera. The projection is symmetrical, and its pixels are square.
+    pub camera: Viewpoint,
+    /// Motion of the camera, for the streaks of what it passes.
+    pub motion: EyeMotion,
+    /// Time of the frame, s, -1e6 to 1e6: the same time shows the same drops.
+    pub time_s: f64,
+    /// Exposure time, s, 0 to 1: drops become streaks; 0 freezes them.
+    pub shutter_s: f64,
+}
+
+/// Numbers of a frame that was recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct RainStats {
+    /// Drops on the picture that are drawn one by one.
+    pub drops: usize,
+    /// Least diameter of these on the picture, pixels; smaller ones are an extinction and a light of their own.
+    pub least_pixels: f64,
+    /// Buffers that were created so far, in all frames: after the first frame of a size there are hardly any more.
+    pub buffers_made: u64,
+}
+
+/// Rain for a host application, drawn on the host's device.
+///
+/// [`Rain::render`] reads the color and depth textures of a frame, records compute passes and one render pass in the host's
+/// command encoder, and blends the rain into the color texture: refracted and lit drops and streaks, hidden by what the depth
+/// texture shows, and the extinction and the light of all smaller drops. It neither waits for the device nor reads from it.
+///
+/// Drops are found and sorted into tiles on the CPU, the same for the same seed and time; everything else is the device's work.
+/// Buffers stay from frame to frame. Submit the encoder before the next call of `render` of the same `Rain`: its buffers are
+/// written anew then. Two views in one submission take two `Rain`s.
+#[derive(Debug)]
+pub struct Rain {
+    gpu: Gpu,
+    settings: RainSettings,
+    sizes: DropSizeDistribution,
+    field: RainField,
+    masks: DropMasks,
+    masks_on_gpu: RainOnGpu,
+    /// Obstacles and lamps.
+    scene: SceneData,
+    scene_on_gpu: SceneOnGpu,
+    rains: RainPipeline,
+    host: HostPipeline,
+    pool: BufferPool,
+}
+
+impl Rain {
+    /// Creates the rain: traces the masks of its drops and compiles the pipelines, which takes some seconds. The device needs no
+    /// feature and no more than WebGPU's default limits; its callbacks stay the host's.
+    ///
+    /// # Errors
+    /// [`RainError`]: a setting outside its range, or what the GPU says.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        settings: RainSettings,
+    ) -> Result<Self, RainError> {
+        let gpu = Gpu::on_device(device.clone(), queue.clone());
+        let index_air =
+            Air::new(settings.air.temperature_c().max(COLDEST_INDEX_C), settings.air.pressure_pa())?;
+        let masks = DropMasks::trace(water_index_in_air(SODIUM_M, &index_air)?)?;
+        let (sizes, field) = falling(&settings)?;
+        let rains = RainPipeline::new(&gpu)?;
+        let scene = scene_of(&[])?;
+        Ok(Self {
+            masks_on_gpu: rains.upload(&masks)?,
+            scene_on_gpu: SceneOnGpu::new(&gpu, &scene, None)?,
+            host: HostPipeline::new(&gpu)?,
+            pool: BufferPool::new(&gpu),
+            gpu,
+            settings,
+            sizes,
+            field,
+            masks,
+            scene,
+            rains,
+        })
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &RainSettings {
+        &self.settings
+    }
+
+    /// Changes the settings from the next frame on. The refractive index of the drops stays that of the air in [`Rain::new`].
+    ///
+    /// # Errors
+    /// [`RainError`] for a setting outside its range; the old settings stay.
+    pub fn set_settings(&mut self, settings: RainSettings) -> Result<(), RainError> {
+        (self.sizes, self.field) = falling(&settings)?;
+        self.settings = settings;
+        Ok(())
+    }
+
+    /// Sets the triangles that stop rain and light, in the host's world, in place of those that were set: roofs, walls, ground.
+    /// Without any, rain falls everywhere that the depth texture does not hide.
+    ///
+    /// # Errors
+    /// [`RainError::TooMany`] above [`MAX_TRIANGLES`], or what the GPU says; the old triangles stay.
+    pub fn set_obstacles(&mut self, triangles: &[[[f32; 3]; 3]]) -> Result<(), RainError> {
+        let scene = scene_of(triangles)?;
+        self.scene_on_gpu = SceneOnGpu::new(&self.gpu, &scene, None)?;
+        self.scene = scene;
+        Ok(())
+    }
+
+    /// Drops that a frame of a size shows, in the host's world: what [`Rain::render`] draws.
+    ///
+    /// # Errors
+    /// [`RainError`] for a view outside its ranges.
+    pub fn drops(&self, view: &RainView, size: [u32; 2]) -> Result<VisibleDrops, RainError> {
+        let depth = [self.settings.near_m, self.settings.far_m];
+        let seen = view_of(&view.camera, DVec3::ZERO, size, depth, view.shutter_s, &view.motion)?;
+        let seen = View { most_drops: self.settings.max_drops, ..seen };
+        let obstacles = Obstacles {
+            nodes: &self.scene.nodes,
+            triangles: &self.scene.triangles,
+            holes: None,
+            origin: DVec3::ZERO,
+        };
+        Ok(self.field.visible_among(&obstacles, &seen, view.time_s)?)
+    }
+
+    /// Records the rain of a frame: it is blended into the color texture when `encoder` is submitted.
+    ///
+    /// # Errors
+    /// [`RainError`]: a view outside its ranges, textures that do not fit, or what the GPU says. Then nothing is blended.
+    pub fn render(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &RainView,
+        textures: &PlateTextures<'_>,
+    ) -> Result<RainStats, RainError> {
+        let size = textures.check()?;
+        settings::check_view(view)?;
+        let camera = view.camera.camera(size, 0)?;
+        let visible = self.drops(view, size)?;
+        self.set_lights(textures.lights)?;
+        let options = self.options(view, &visible)?;
+        let eye = view.camera.eye.as_dvec3();
+        let rain = PictureRain::new(&camera, eye, &visible.drops, &self.masks, &options);
+        let frame = RenderFrame::new(&self.scene, &view.camera, size, 1, 0, 0)?;
+        let lighting = SceneView { data: &self.scene, frame: &frame };
+        let lights = [rain.lights(&lighting, &self.masks)?, rain.streak_lights(&lighting, &self.masks)?];
+
+        let pool = &self.pool;
+        pool.begin_frame();
+        let lighting = self.scene_on_gpu.lighting_of(pool, &frame, &self.scene)?;
+        let environment = self.rains.environment(pool, &rain)?;
+        let plate_frame = HostPlateFrame {
+            camera,
+            inverse: textures.depth_range.inverse(),
+            clear: textures.depth_range.clear(),
+            scale: textures.radiance_scale,
+        };
+        let sky_scale = textures.sky.map(|sky| sky.radiance_scale);
+        let environment_frame = HostEnvironmentFrame::new(&camera, rain.environment.size, sky_scale);
+        let made =
+            self.host.prepare(pool, &textures.on_gpu(), &plate_frame, &environment_frame, &environment)?;
+        let plate = PlateOnGpu { pixels: made.pixels(), environment: &environment, lighting: &lighting };
+        let pass = self.rains.prepare(pool, &plate, &self.masks_on_gpu, &rain, &lights)?;
+        let mut dispatches = made.dispatches();
+        dispatches.extend(pass.environment());
+        dispatches.extend(pass.lamps());
+        dispatches.extend(pass.streaks());
+        dispatches.extend(pass.medium());
+        dispatches.push(pass.drops());
+        {
+            let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("rain"),
+                ..Default::default()
+            });
+            for dispatch in &dispatches {
+                dispatch.encode(&self.gpu, &mut compute)?;
+            }
+        }
+        let blend = HostBlendFrame { width: size[0], scale: 1.0 / textures.radiance_scale, unused: [0; 2] };
+        self.host.encode_blend(pool, encoder, textures.color, pass.layer_buffer(), &blend)?;
+        Ok(RainStats {
+            drops: rain.list.len(),
+            least_pixels: visible.resolved.least_pixels,
+            buffers_made: pool.made(),
+        })
+    }
+
+    fn set_lights(&mut self, lights: &[LightSource]) -> Result<(), RainError> {
+        if lights.len() > MOST_LIGHTS {
+            return Err(RainError::TooMany {
+                quantity: "lights",
+                found: lights.len() as u64,
+                allowed: MOST_LIGHTS as u64,
+            });
+        }
+        self.scene.set_lights(lights);
+        Ok(())
+    }
+
+    fn options(&self, view: &RainView, visible: &VisibleDrops) -> Result<RainOptions, RainError> {
+        let settings = &self.settings;
+        let speeds = TerminalSpeed::new(self.sizes.options().fall_speed, &settings.air);
+        let speed = speeds.at(self.sizes.effective_diameter()).unwrap_or_default();
+        let falling = settings.uniform_wind()?.velocity(view.time_s) - DVec3::Y * speed;
+        let medium = MediumOptions { velocity: falling.as_vec3(), ..MediumOptions::default() };
+        Ok(RainOptions {
+            medium: RainMedium::new(&self.sizes, &visible.resolved, &self.masks, &medium)?,
+            exposure: Exposure {
+                shutter_s: view.shutter_s,
+                time_s: view.time_s,
+                eye: view.motion,
+                oscillation: Amplitudes::GARG_NAYAR_EVEN,
+                fluids: Fluids::in_air(&settings.air),
+                seed: settings.seed,
+                ..Exposure::default()
+            },
+            ..RainOptions::default()
+        })
+    }
+}
+
+/// Sizes and drops of a rain.
+fn falling(settings: &RainSettings) -> Result<(DropSizeDistribution, RainField), RainError> {
+    settings.check()?;
+    let options = DistributionOptions { air: settings.air, ..DistributionOptions::default() };
+    let sizes = DropSizeDistribution::with_options(settings.sizes, settings.rate_mm_h, &options)?;
+    let field = RainField::new(&sizes, settings.seed)?.with_wind(settings.uniform_wind()?);
+    Ok((sizes, field))
+}
+
+/// A scene of obstacles alone.
+fn scene_of(triangles: &[[[f32; 3]; 3]]) -> Result<SceneData, RainError> {
+    let found = triangles.len() as u64;
+    if found > MAX_TRIANGLES {
+        return Err(RainError::TooMany { quantity: "triangles", found, allowed: MAX_TRIANGLES });
+    }
+    let positions: Vec<[f32; 3]> = triangles.iter().flatten().copied().collect();
+    let indices: Vec<u32> = (0..positions.len() as u32).collect();
+    let part = MeshPart {
+        positions: &positions,
+        normals: None,
+        tangents: None,
+        uvs: [None; 2],
+        colours: None,
+        indices: &indices,
+        material: 0,
+    };
+    let mut builder = SceneBuilder::new();
+    builder.add_mesh(&part, &Affine3A::IDENTITY);
+    Ok(builder.build(&SkyLight::uniform([0.0; 3])))
+}

@@ -1,0 +1,80 @@
+//! Settings of rain in a host application.
+
+use downpour_drop::air::Air;
+use downpour_drop::distribution::DropSizeLaw;
+use downpour_math::{OutOfRange, in_range};
+use downpour_wind::{UniformWind, Wind};
+
+use super::{RainError, RainView};
+
+/// Settings of rain in a host application. The physics is that of a weather file.
+#[derive(Clone, Debug)]
+pub struct RainSettings {
+    /// Rain rate, 0 to 500 mm/h.
+    pub rate_mm_h: f64,
+    /// Drop size distribution.
+    pub sizes: DropSizeLaw,
+    /// Air that the drops fall through.
+    pub air: Air,
+    /// Wind that carries them: uniform, with gusts.
+    pub wind: Wind,
+    /// Seed: the same seed, the same drops.
+    pub seed: u64,
+    /// Most drops that are drawn one by one, at least 1. What is beyond is drawn as extinction and scattered light.
+    pub max_drops: u32,
+    /// Least distance of drops from the eye, m.
+    pub near_m: f64,
+    /// Largest distance of drops that are drawn one by one, m.
+    pub far_m: f64,
+}
+
+impl Default for RainSettings {
+    /// 10 mm/h of Marshall & Palmer's sizes in still standard air; up to 200 000 drops from 5 cm to 50 m.
+    fn default() -> Self {
+        Self {
+            rate_mm_h: 10.0,
+            sizes: DropSizeLaw::MarshallPalmer1948,
+            air: Air::standard(),
+            wind: Wind::default(),
+            seed: 0,
+            max_drops: 200_000,
+            near_m: 0.05,
+            far_m: 50.0,
+        }
+    }
+}
+
+impl RainSettings {
+    /// The wind, if it is the same everywhere.
+    pub(super) fn uniform_wind(&self) -> Result<UniformWind, RainError> {
+        self.wind.uniform().ok_or(RainError::WindNotUniform)
+    }
+
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
+        in_range("rain rate", self.rate_mm_h, "mm/h", &(0.0..=500.0), 1.0, "0 to 500")?;
+        in_range("most drops", self.max_drops, "", &(1..=1 << 24), 1.0, "1 to 16777216")?;
+        in_range("least distance of drops", self.near_m, "m", &(0.001..=1.0e3), 1.0, "0.001 to 1000")?;
+        in_range(
+            "largest distance of drops",
+            self.far_m,
+            "m",
+            &(self.near_m..=1.0e5),
+            1.0,
+            "the least distance to 1e5",
+        )?;
+        Ok(())
+    }
+}
+
+/// # Errors
+/// [`OutOfRange`] for an exposure time or a motion outside its range; camera and time are checked where they are used.
+pub(super) fn check_view(view: &RainView) -> Result<(), OutOfRange> {
+    in_range("exposure time", view.shutter_s, "s", &(0.0..=1.0), 1.0, "0 to 1")?;
+    for v in view.motion.velocity.to_array() {
+        in_range("velocity of the camera", v, "m/s", &(-1.0e4..=1.0e4), 1.0, "-1e4 to 1e4 each way")?;
+    }
+    for v in view.motion.turning.to_array() {
+        in_range("turning of the camera", v, "rad/s", &(-100.0..=100.0), 1.0, "-100 to 100 about each axis")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,431 @@
+//! Rain in the frames of a host application, against the same passes on the CPU.
+
+#![cfg(feature = "wgpu")]
+
+use downpour::gpu::{AdapterChoice, Gpu, GpuOptions, LimitSet, wgpu};
+use downpour::rain::{DepthRange, PlateTextures, Rain, RainError, RainSettings, RainView};
+use downpour::render::camera::{EyeMotion, Viewpoint};
+use downpour::render::light::LightSource;
+use glam::Vec3;
+
+const SIZE: [u32; 2] = [160, 90];
+const NEAR_M: f32 = 0.1;
+
+/// A device with WebGPU's default limits; `None` if tests on a GPU were declined.
+fn device() -> Option<Gpu> {
+    if std::env::var("DOWNPOUR_GPU_TESTS").is_ok_and(|value| value == "no") {
+        return None;
+    }
+    let options =
+        GpuOptions { adapter: AdapterChoice::Auto, limits: LimitSet::WebGpuDefault, ..GpuOptions::default() };
+    Some(Gpu::open_with(&options).expect("a GPU or its software driver"))
+}
+
+/// A frame of a host: a gray sky above, a wall some metres away below.
+struct Host {
+    gpu: Gpu,
+    color: wgpu::Texture,
+    depth: wgpu::Texture,
+}
+
+const SKY: f64 = 0.5;
+const WALL: f64 = 0.0625;
+
+impl Host {
+    fn new(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
+        let texture = |format, usage| {
+            gpu.device().create_texture(&wgpu::TextureDescriptor {
+                label: None,
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+        };
+        Self {
+            gpu: gpu.clone(),
+            color: texture(format, wgpu::TextureUsages::COPY_SRC),
+            depth: texture(wgpu::TextureFormat::Depth32Float, wgpu::TextureUsages::empty()),
+        }
+    }
+
+    /// Draws the frame without rain: the wall `wall_m` away (infinite for none), from half the height downwards.
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, wall_m: f32) {
+        let source = "
+            @vertex fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+                return vec4f(f32((i & 1u) << 2u) - 1.0, 1.0 - f32((i & 2u) << 1u), 0.0, 1.0);
+            }
+            @fragment fn wall() -> @location(0) vec4f { return vec4f(0.0625, 0.0625, 0.0625, 1.0); }";
+        let device = self.gpu.device();
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: None,
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: wgpu::TextureFormat::Depth32Float,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Always),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: None,
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(self.color.format().into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let (color, depth) =
+            (self.color.create_view(&Default::default()), self.depth.create_view(&Default::default()));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &color,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color { r: SKY, g: SKY, b: SKY, a: 1.0 }),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        if wall_m.is_finite() {
+            let [width, height] = [self.color.width(), self.color.height()];
+            let value = NEAR_M / wall_m;
+            pass.set_pipeline(&pipeline);
+            pass.set_viewport(0.0, 0.0, width as f32, height as f32, value, value);
+            pass.set_scissor_rect(0, height / 2, width, height - height / 2);
+            pass.draw(0..3, 0..1);
+        }
+    }
+
+    /// The color texture, rows from the top, as linear numbers; `Rgba16Float` only.
+    fn read(&self) -> Vec<[f32; 4]> {
+        let (width, height) = (self.color.width(), self.color.height());
+        let row = (width * 8).next_multiple_of(256);
+        let buffer = self
+            .gpu
+            .empty_buffer("picture", u64::from(row) * u64::from(height), wgpu::BufferUsages::empty())
+            .unwrap();
+        let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(
+            self.color.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row),
+                    rows_per_image: Some(height),
+                },
+            },
+            self.color.size(),
+        );
+        self.gpu.queue().submit([encoder.finish()]);
+        let words: Vec<u16> = self.gpu.read(&buffer).unwrap();
+        words
+            .chunks(row as usize / 2)
+            .flat_map(|line| line[..width as usize * 4].chunks(4))
+            .map(|pixel| [0, 1, 2, 3].map(|k| half(pixel[k])))
+            .collect()
+    }
+
+    /// A frame with rain.
+    fn rain(
+        &self,
+        rain: &mut Rain,
+        view: &RainView,
+        wall_m: f32,
+        lights: &[LightSource],
+    ) -> Result<Vec<[f32; 4]>, RainError> {
+        let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
+        self.draw(&mut encoder, wall_m);
+        let (color, depth) =
+            (self.color.create_view(&Default::default()), self.depth.create_view(&Default::default()));
+        let textures = PlateTextures { lights, ..PlateTextures::new(&color, &depth, NEAR_M) };
+        rain.render(&mut encoder, view, &textures)?;
+        self.gpu.queue().submit([encoder.finish()]);
+        Ok(self.read())
+    }
+}
+
+/// A number of half precision.
+fn half(bits: u16) -> f32 {
+    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023));
+    let size = match exponent {
+        0 => fraction * 2.0f32.powi(-24),
+        _ => (1.0 + fraction / 1024.0) * 2.0f32.powi(exponent - 15),
+    };
+    if bits >> 15 == 1 { -size } else { size }
+}
+
+fn view() -> RainView {
+    RainView {
+        camera: Viewpoint { eye: Vec3::new(0.5, 1.6, -2.0), forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.8 },
+        motion: EyeMotion::default(),
+        time_s: 3.0,
+        shutter_s: 1.0 / 60.0,
+    }
+}
+
+fn settings() -> RainSettings {
+    RainSettings { rate_mm_h: 500.0, seed: 5, max_drops: 3000, ..RainSettings::default() }
+}
+
+fn mean(pixels: &[[f32; 4]]) -> f32 {
+    pixels.iter().map(|p| p[0] + p[1] + p[2]).sum::<f32>() / (3 * pixels.len()) as f32
+}
+
+/// The same passes on the CPU, from colors and depths that the test knows.
+fn expected(rain: &Rain, view: &RainView, wall_m: f32) -> Vec<[f32; 4]> {
+    use downpour::drop::oscillation::{Amplitudes, Fluids};
+    use downpour::render::host::{HostEnvironment, HostEnvironmentFrame, HostPlateFrame, host_plate};
+    use downpour::render::picture::compose_pixel;
+    use downpour::render::rain::{DropMasks, EnvironmentMap, Exposure, MediumOptions, Rain as PictureRain};
+    use downpour::render::rain::{RainMedium, RainOptions};
+    use downpour::render::{Plate, rain_layer};
+    use downpour::trace::{builder::SceneBuilder, data::RenderFrame, scene::SceneView, sky_light::SkyLight};
+
+    let settings = rain.settings();
+    let index = downpour::drop::optics::water_index_in_air(589.3e-9, &settings.air).unwrap();
+    let masks = DropMasks::trace(index).unwrap();
+    let sizes =
+        downpour::drop::distribution::DropSizeDistribution::new(settings.sizes, settings.rate_mm_h).unwrap();
+    let visible = rain.drops(view, SIZE).unwrap();
+    let speed = downpour::drop::fall_speed::TerminalSpeed::new(sizes.options().fall_speed, &settings.air);
+    let fall = speed.at(sizes.effective_diameter()).unwrap();
+    let medium = MediumOptions { velocity: Vec3::new(0.0, -fall as f32, 0.0), ..MediumOptions::default() };
+    let options = RainOptions {
+        medium: RainMedium::new(&sizes, &visible.resolved, &masks, &medium).unwrap(),
+        exposure: Exposure {
+            shutter_s: view.shutter_s,
+            time_s: view.time_s,
+            oscillation: Amplitudes::GARG_NAYAR_EVEN,
+            fluids: Fluids::in_air(&settings.air),
+            seed: settings.seed,
+            ..Exposure::default()
+        },
+        ..RainOptions::default()
+    };
+    let camera = view.camera.camera(SIZE, 0).unwrap();
+    let range = DepthRange::reversed(NEAR_M);
+    let frame = HostPlateFrame { camera, inverse: range.inverse(), clear: range.clear(), scale: 1.0 };
+    let is_wall = |i: u32| wall_m.is_finite() && i / SIZE[0] >= SIZE[1] / 2;
+    let color: Vec<[f32; 4]> =
+        (0..SIZE[0] * SIZE[1]).map(|i| [if is_wall(i) { WALL } else { SKY } as f32; 4]).collect();
+    let depth: Vec<f32> =
+        (0..SIZE[0] * SIZE[1]).map(|i| if is_wall(i) { NEAR_M / wall_m } else { 0.0 }).collect();
+    let pixels = host_plate(&frame, &color, &depth);
+    let picture = PictureRain::new(&camera, view.camera.eye.as_dvec3(), &visible.drops, &masks, &options);
+    let map = HostEnvironmentFrame::new(&camera, picture.environment.size, None);
+    let finest = HostEnvironment { frame: &map, plate: &pixels, sky: ([1, 1], &[[0.0; 4]]) }.map();
+    let environment = EnvironmentMap::new(&picture.environment, finest);
+    let scene = SceneBuilder::new().build(&SkyLight::uniform([0.0; 3]));
+    let of_scene = RenderFrame::new(&scene, &view.camera, SIZE, 1, 0, 0).unwrap();
+    let lighting = SceneView { data: &scene, frame: &of_scene };
+    let clean = &pixels[..(SIZE[0] * SIZE[1]) as usize];
+    let plate = Plate { camera: &camera, pixels: clean, environment: &environment, lighting: &lighting };
+    let layer = rain_layer(&plate, &picture, &masks, &mut Vec::new()).unwrap();
+    clean.iter().zip(&layer).map(|(&plate, &rain)| compose_pixel(plate, rain)).collect()
+}
+
+#[test]
+fn a_frame_is_that_of_the_cpu() {
+    let Some(gpu) = device() else { return };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    let (view, wall_m) = (view(), 6.0);
+    let made = host.rain(&mut rain, &view, wall_m, &[]).unwrap();
+    let expected = expected(&rain, &view, wall_m);
+    let plate = |i: usize| if i as u32 / SIZE[0] >= SIZE[1] / 2 { WALL } else { SKY } as f32;
+    let (mut off, mut rainy) = (0, 0);
+    for (i, (made, expected)) in made.iter().zip(&expected).enumerate() {
+        rainy += usize::from((expected[0] - plate(i)).abs() > 0.02);
+        // Half precision has 11 bits; a sample of a streak's outline may fall on either side.
+        off += usize::from((0..3).any(|k| (made[k] - expected[k]).abs() > 4.0e-3));
+    }
+    let pixels = made.len();
+    assert!(rainy > pixels / 50, "{rainy} of {pixels} pixels show drops");
+    assert!(off < pixels / 200, "{off} of {pixels} pixels differ");
+    assert!((mean(&made) / mean(&expected) - 1.0).abs() < 1.0e-3, "{} {}", mean(&made), mean(&expected));
+    // The control: other drops are another picture.
+    let other = host.rain(&mut rain, &RainView { time_s: 3.5, ..view }, wall_m, &[]).unwrap();
+    let differ = other.iter().zip(&expected).filter(|(a, b)| (a[0] - b[0]).abs() > 4.0e-3).count();
+    assert!(differ > pixels / 50, "{differ} of {pixels} pixels differ at another time");
+}
+
+#[test]
+fn frames_repeat_to_the_bit_and_make_no_buffers() {
+    let Some(gpu) = device() else { return };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    let lamp =
+        LightSource::Point { position: Vec3::new(1.0, 3.0, -8.0), intensity: Vec3::splat(60.0), range: 0.0 };
+    let first = host.rain(&mut rain, &view(), 6.0, &[lamp]).unwrap();
+    let made = |rain: &mut Rain, time_s| {
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        host.draw(&mut encoder, 6.0);
+        let (color, depth) =
+            (host.color.create_view(&Default::default()), host.depth.create_view(&Default::default()));
+        let lights = [lamp];
+        let textures = PlateTextures { lights: &lights, ..PlateTextures::new(&color, &depth, NEAR_M) };
+        let stats = rain.render(&mut encoder, &RainView { time_s, ..view() }, &textures).unwrap();
+        gpu.queue().submit([encoder.finish()]);
+        stats
+    };
+    let begun = made(&mut rain, 3.0).buffers_made;
+    for k in 0..6 {
+        let stats = made(&mut rain, 3.0 + f64::from(k) / 60.0);
+        assert!(stats.drops > 100, "{} drops", stats.drops);
+        assert_eq!(stats.buffers_made, begun, "frame {k}");
+    }
+    for _ in 0..3 {
+        assert!(host.rain(&mut rain, &view(), 6.0, &[lamp]).unwrap() == first, "a frame differs from itself");
+    }
+    // Two rains on one device, and another size.
+    let mut other = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let small = Host::new(&gpu, [96, 64], wgpu::TextureFormat::Rgba16Float);
+    let alone = small.rain(&mut other, &view(), 6.0, &[lamp]).unwrap();
+    assert!(small.rain(&mut rain, &view(), 6.0, &[lamp]).unwrap() == alone);
+    assert!(host.rain(&mut rain, &view(), 6.0, &[lamp]).unwrap() == first);
+    // A lamp lights the rain.
+    let dark = host.rain(&mut rain, &view(), 6.0, &[]).unwrap();
+    assert!(mean(&first) > 1.01 * mean(&dark), "{} {}", mean(&first), mean(&dark));
+}
+
+#[test]
+fn depth_hides_rain_and_a_roof_stops_it() {
+    let Some(gpu) = device() else { return };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    let below = |pixels: &[[f32; 4]]| pixels[pixels.len() / 2..].to_vec();
+    let changed =
+        |pixels: &[[f32; 4]]| below(pixels).iter().filter(|p| (p[0] - WALL as f32).abs() > 4.0e-3).count();
+    let far = host.rain(&mut rain, &view(), 20.0, &[]).unwrap();
+    let near = host.rain(&mut rain, &view(), 0.12, &[]).unwrap();
+    assert!(changed(&far) > 500, "{}", changed(&far));
+    assert!(changed(&near) < changed(&far) / 20, "{} of {}", changed(&near), changed(&far));
+    let [a, b, c, d] = [[-60.0, 3.0, -60.0], [60.0, 3.0, -60.0], [60.0, 3.0, 60.0], [-60.0, 3.0, 60.0]];
+    rain.set_obstacles(&[[a, b, c], [a, c, d]]).unwrap();
+    assert_eq!(
+        rain.drops(&view(), SIZE).unwrap().drops.iter().filter(|drop| drop.position.y < 2.99).count(),
+        0
+    );
+    rain.set_obstacles(&[]).unwrap();
+    assert!(host.rain(&mut rain, &view(), 20.0, &[]).unwrap() == far);
+    rain.set_settings(RainSettings { rate_mm_h: 0.0, ..settings() }).unwrap();
+    let dry = host.rain(&mut rain, &view(), 20.0, &[]).unwrap();
+    assert_eq!(changed(&dry), 0);
+}
+
+#[test]
+fn bad_input_is_an_error_and_leaves_the_rain_as_it_was() {
+    let Some(gpu) = device() else { return };
+    let refused =
+        |settings| Rain::new(gpu.device(), gpu.queue(), settings).map(|_| ()).unwrap_err().to_string();
+    assert_eq!(
+        refused(RainSettings { rate_mm_h: 501.0, ..settings() }),
+        "rain rate is 501 mm/h; allowed: 0 to 500"
+    );
+    assert!(refused(RainSettings { rate_mm_h: f64::NAN, ..settings() }).contains("rain rate is NaN"));
+    assert!(refused(RainSettings { max_drops: 0, ..settings() }).contains("most drops is 0"));
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    let first = host.rain(&mut rain, &view(), 6.0, &[]).unwrap();
+    for (bad, text) in [
+        (RainView { time_s: f64::NAN, ..view() }, "time is NaN s"),
+        (RainView { shutter_s: 2.0, ..view() }, "exposure time is 2 s"),
+        (RainView { camera: Viewpoint { fov_y: 0.0, ..view().camera }, ..view() }, "field of view is 0"),
+        (RainView { camera: Viewpoint { forward: Vec3::ZERO, ..view().camera }, ..view() }, "view direction"),
+    ] {
+        let error = host.rain(&mut rain, &bad, 6.0, &[]).unwrap_err().to_string();
+        assert!(error.contains(text), "{error}");
+    }
+    let render = |rain: &mut Rain, textures: &PlateTextures<'_>| {
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        rain.render(&mut encoder, &view(), textures).map(|_| ()).unwrap_err().to_string()
+    };
+    let views =
+        |host: &Host| [&host.color, &host.depth].map(|texture| texture.create_view(&Default::default()));
+    let [color, depth] = views(&host);
+    let [_, small] = views(&Host::new(&gpu, [64, 64], wgpu::TextureFormat::Rgba16Float));
+    let [float, deep] = views(&Host::new(&gpu, SIZE, wgpu::TextureFormat::R32Float));
+    assert_eq!(
+        render(&mut rain, &PlateTextures::new(&color, &small, NEAR_M)),
+        "the depth texture has 64 x 64 pixels; allowed: the size of the color texture, 160 x 90"
+    );
+    let error = render(&mut rain, &PlateTextures::new(&float, &deep, NEAR_M));
+    assert!(error.contains("format R32Float") && error.contains("Rgba16Float"), "{error}");
+    let error = render(&mut rain, &PlateTextures::new(&color, &depth, 0.0));
+    assert!(error.contains("near plane is 0 m"), "{error}");
+    let range = DepthRange::standard(1.0, 0.5);
+    let textures = PlateTextures { depth_range: range, ..PlateTextures::new(&color, &depth, NEAR_M) };
+    assert!(render(&mut rain, &textures).contains("far plane is 0.5 m"));
+    let textures = PlateTextures { radiance_scale: f32::NAN, ..PlateTextures::new(&color, &depth, NEAR_M) };
+    assert!(render(&mut rain, &textures).contains("radiance of the color 1 is NaN"));
+    let refused = rain.set_settings(RainSettings { far_m: 0.0, ..settings() }).unwrap_err().to_string();
+    assert!(refused.contains("largest distance of drops is 0 m"), "{refused}");
+    assert!(host.rain(&mut rain, &view(), 6.0, &[]).unwrap() == first);
+}
+
+#[test]
+fn a_color_texture_of_8_bits_is_rained_on_in_linear_light() {
+    let Some(gpu) = device() else { return };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba8UnormSrgb);
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
+    host.draw(&mut encoder, 6.0);
+    let (color, depth) =
+        (host.color.create_view(&Default::default()), host.depth.create_view(&Default::default()));
+    rain.render(&mut encoder, &view(), &PlateTextures::new(&color, &depth, NEAR_M)).unwrap();
+    let row = (SIZE[0] * 4).next_multiple_of(256);
+    let buffer = gpu.empty_buffer("picture", u64::from(row * SIZE[1]), wgpu::BufferUsages::empty()).unwrap();
+    encoder.copy_texture_to_buffer(
+        host.color.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
+        },
+        host.color.size(),
+    );
+    gpu.queue().submit([encoder.finish()]);
+    let bytes: Vec<u8> = gpu.read(&buffer).unwrap();
+    let expected = expected(&rain, &view(), 6.0);
+    let encode = |v: f32| {
+        let v = v.clamp(0.0, 1.0);
+        255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
+    };
+    let off = expected
+        .iter()
+        .enumerate()
+        .filter(|(i, pixel)| {
+            let (x, y) = (*i as u32 % SIZE[0], *i as u32 / SIZE[0]);
+            let made = bytes[(y * row + 4 * x) as usize];
+            (f32::from(made) - encode(pixel[0])).abs() > 2.5
+        })
+        .count();
+    assert!(off < expected.len() / 100, "{off} pixels differ");
+}
