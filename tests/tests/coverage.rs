@@ -65,6 +65,7 @@ fn names_carry_their_stem() {
             let fits = name.starts_with(&format!("{stem}_"))
                 || name.starts_with(&format!("{folder}_{stem}_"))
                 || name == format!("main_{stem}")
+                || ["vertex", "fragment"].iter().any(|stage| name == format!("main_{stem}_{stage}"))
                 || name.starts_with(&format!("main_{folder}_{stem}"));
             assert!(fits, "{}: function {name} does not carry its stem", module.path);
         }

@@ -18,6 +18,7 @@ use downpour_mask::gpu::{DropUniform, ModelUniform};
 use downpour_math::pyramid::PyramidLevel;
 use downpour_render::camera::Camera;
 use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLight};
+use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, StreakPath, StreakRay};
@@ -84,6 +85,10 @@ fn hosts() -> Vec<Host> {
         host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, place, normal, light, look, factor),
         host!(TraceGather as "TraceGather" in &render::scene::TRACE, base, mirror),
         host!(PyramidLevel as "PyramidLevel" in &common::PYRAMID, size, source_size, source, target_texel, unused),
+        host!(HostPlateFrame as "HostPlateFrame" in &render::host::HOST_PLATE, camera, inverse, clear, scale),
+        host!(HostEnvironmentFrame as "HostEnvironmentFrame" in &render::host::HOST_ENVIRONMENT,
+            camera, size, last, has_sky, sky_scale, levels),
+        host!(HostBlendFrame as "HostBlendFrame" in &render::host::HOST_BLEND, width, scale, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             camera, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, tiles_across, light_terms, streak_samples,

@@ -77,7 +77,12 @@ struct App {
 }
 
 impl App {
-    fn new(device: wgpu::Device, queue: wgpu::Queue, target: wgpu::TextureFormat, size: [u32; 2]) -> Result<Self> {
+    fn new(
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        target: wgpu::TextureFormat,
+        size: [u32; 2],
+    ) -> Result<Self> {
         let blocks = blocks();
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("street"),
@@ -223,7 +228,8 @@ fn attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassC
 
 /// Color and depth textures that the rain can read.
 fn textures(device: &wgpu::Device, [width, height]: [u32; 2]) -> [wgpu::TextureView; 2] {
-    [COLOR, DEPTH].map(|format| texture(device, [width, height], format, wgpu::TextureUsages::TEXTURE_BINDING))
+    [COLOR, DEPTH]
+        .map(|format| texture(device, [width, height], format, wgpu::TextureUsages::TEXTURE_BINDING))
 }
 
 fn texture(
@@ -318,8 +324,11 @@ fn save(frames: u32, size: [u32; 2], folder: &std::path::Path) -> Result<()> {
             mapped_at_creation: false,
         });
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(size[1]) };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(row),
+            rows_per_image: Some(size[1]),
+        };
         let copied = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         encoder.copy_texture_to_buffer(target.texture().as_image_copy(), copied, target.texture().size());
         queue.submit([encoder.finish()]);
@@ -393,7 +402,9 @@ impl Shown {
 
     fn draw(&mut self) -> Result<()> {
         let frame = match self.surface.get_current_texture() {
-            wgpu::CurrentSurfaceTexture::Success(frame) | wgpu::CurrentSurfaceTexture::Suboptimal(frame) => frame,
+            wgpu::CurrentSurfaceTexture::Success(frame) | wgpu::CurrentSurfaceTexture::Suboptimal(frame) => {
+                frame
+            }
             _ => {
                 self.resize();
                 self.window.request_redraw();

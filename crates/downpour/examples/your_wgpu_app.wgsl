@@ -101,6 +101,6 @@ fn present_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f
 // Exposure and a curve that ends at white.
 @fragment
 fn present_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let light = textureLoad(picture, vec2u(at.xy), 0).rgb * 2.2;
+    let light = textureLoad(picture, vec2u(at.xy), 0).rgb * 1.3;
     return vec4f(light * (1.0 + light / 16.0) / (1.0 + light), 1.0);
 }

@@ -14,7 +14,10 @@ use wgpu::custom::{
     PopErrorScopeFuture, QueueInterface,
 };
 
-use super::handles::{RelayBindings, RelayBuffer, RelayLayout, RelayModule, RelayPipeline, RelayQueries};
+use super::handles::{
+    RelayBindings, RelayBuffer, RelayLayout, RelayModule, RelayPipeline, RelayQueries, RelayTexture,
+    RelayView,
+};
 use super::pass::{RelayCommands, RelayEncoder, buffer};
 use super::{Key, NOT_HANDED_ON, Relay};
 
@@ -67,12 +70,18 @@ impl DeviceInterface for RelayDevice {
         let layout = &desc.layout.as_custom::<RelayLayout>().expect("a layout of this relay").0;
         let mut entries = Vec::with_capacity(desc.entries.len());
         for entry in desc.entries {
-            let wgpu::BindingResource::Buffer(bound) = &entry.resource else {
-                unreachable!("{NOT_HANDED_ON}")
+            let resource = match &entry.resource {
+                wgpu::BindingResource::Buffer(bound) => {
+                    let buffer = &bound.buffer.as_custom::<RelayBuffer>().expect("a buffer of this relay").0;
+                    let bound = wgpu::BufferBinding { buffer, offset: bound.offset, size: bound.size };
+                    wgpu::BindingResource::Buffer(bound)
+                }
+                wgpu::BindingResource::TextureView(view) => {
+                    let view = &view.as_custom::<RelayView>().expect("a texture of this relay").0;
+                    wgpu::BindingResource::TextureView(view)
+                }
+                _ => unreachable!("{NOT_HANDED_ON}"),
             };
-            let buffer = &bound.buffer.as_custom::<RelayBuffer>().expect("a buffer of this relay").0;
-            let bound = wgpu::BufferBinding { buffer, offset: bound.offset, size: bound.size };
-            let resource = wgpu::BindingResource::Buffer(bound);
             entries.push(wgpu::BindGroupEntry { binding: entry.binding, resource });
         }
         let desc = wgpu::BindGroupDescriptor { label: desc.label, layout, entries: &entries };
@@ -111,8 +120,8 @@ impl DeviceInterface for RelayDevice {
         DispatchBuffer::custom(RelayBuffer(self.inner.create_buffer(desc)))
     }
 
-    fn create_texture(&self, _: &wgpu::TextureDescriptor<'_>) -> DispatchTexture {
-        unreachable!("{NOT_HANDED_ON}")
+    fn create_texture(&self, desc: &wgpu::TextureDescriptor<'_>) -> DispatchTexture {
+        DispatchTexture::custom(RelayTexture(self.inner.create_texture(desc)))
     }
 
     fn create_external_texture(
@@ -242,12 +251,19 @@ impl QueueInterface for RelayQueue {
 
     fn write_texture(
         &self,
-        _: wgpu::TexelCopyTextureInfo<'_>,
-        _: &[u8],
-        _: wgpu::TexelCopyBufferLayout,
-        _: wgpu::Extent3d,
+        to: wgpu::TexelCopyTextureInfo<'_>,
+        data: &[u8],
+        layout: wgpu::TexelCopyBufferLayout,
+        size: wgpu::Extent3d,
     ) {
-        unreachable!("{NOT_HANDED_ON}")
+        let texture = &to.texture.as_custom::<RelayTexture>().expect("a texture of this relay").0;
+        let to = wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: to.mip_level,
+            origin: to.origin,
+            aspect: to.aspect,
+        };
+        self.inner.write_texture(to, data, layout, size);
     }
 
     fn submit(&self, commands: &mut dyn Iterator<Item = DispatchCommandBuffer>) -> u64 {

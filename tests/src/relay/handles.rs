@@ -1,4 +1,4 @@
-//! Handles that a relayed device makes: buffers, bindings, pipelines. Each holds its counterpart on the other device.
+//! Handles that a relayed device makes: buffers, textures, bindings, pipelines. Each holds its counterpart on the other device.
 
 use std::ops::Range;
 use std::pin::Pin;
@@ -7,7 +7,8 @@ use downpour_gpu::wgpu;
 use wgpu::custom::{
     BindGroupInterface, BindGroupLayoutInterface, BufferInterface, BufferMapCallback,
     BufferMappedRangeInterface, ComputePipelineInterface, DispatchBindGroupLayout, DispatchBufferMappedRange,
-    QuerySetInterface, ShaderCompilationInfoFuture, ShaderModuleInterface,
+    DispatchTextureView, QuerySetInterface, ShaderCompilationInfoFuture, ShaderModuleInterface,
+    TextureInterface, TextureViewInterface,
 };
 
 use super::{Dispatched, Made};
@@ -55,6 +56,24 @@ impl BufferMappedRangeInterface for RelayRange {
         unreachable!("a relay maps buffers to read them")
     }
 }
+
+#[derive(Debug)]
+pub(super) struct RelayTexture(pub(super) wgpu::Texture);
+
+impl TextureInterface for RelayTexture {
+    fn create_view(&self, desc: &wgpu::TextureViewDescriptor<'_>) -> DispatchTextureView {
+        DispatchTextureView::custom(RelayView(self.0.create_view(desc)))
+    }
+
+    fn destroy(&self) {
+        self.0.destroy();
+    }
+}
+
+#[derive(Debug)]
+pub(super) struct RelayView(pub(super) wgpu::TextureView);
+
+impl TextureViewInterface for RelayView {}
 
 #[derive(Debug)]
 pub(super) struct RelayLayout(pub(super) wgpu::BindGroupLayout);
