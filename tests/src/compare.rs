@@ -89,7 +89,7 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
     out
 }
 
-/// Distance of two numbers in steps between neighbouring representable numbers. Both zeros are the same number.
+/// Distance of two numbers in steps between neighboring representable numbers. Both zeros are the same number.
 #[must_use]
 pub fn ulp_distance(a: f32, b: f32) -> u32 {
     let order = |x: f32| {

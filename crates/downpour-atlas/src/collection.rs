@@ -36,7 +36,7 @@ pub enum StreakPick {
 /// State of a drop for the choice of its streak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreakParticle {
-    /// Equivalent diameter in metres.
+    /// Equivalent diameter in meters.
     pub diameter: f32,
     /// The drop's axis upwards, against its fall through the air: a unit vector.
     pub axis: [f32; 3],
@@ -247,7 +247,7 @@ fn same_diameter(a: &StreakSet, b: &StreakSet) -> bool {
     (a.diameter - b.diameter).abs() <= 1.0e-9 * a.diameter
 }
 
-/// The amount of each layer of a set: a layer of mean m and half width h is a disc of 4 h m / pi.
+/// The amount of each layer of a set: a layer of mean m and half width h is a disk of 4 h m / pi.
 fn layer_amounts(set: &StreakSet) -> Vec<f32> {
     let texels = set.layer_texels().max(1);
     let scale = 4.0 * set.options.half_extent / std::f64::consts::PI / texels as f64;
@@ -256,7 +256,7 @@ fn layer_amounts(set: &StreakSet) -> Vec<f32> {
 }
 
 /// Layers divided by their amounts, two half floats per word. A layer without light is uniform: so the mean of any mixture is
-/// that of a uniform disc.
+/// that of a uniform disk.
 fn patterns(sets: &[StreakSet], means: &[f32]) -> Vec<u32> {
     let layers = sets.iter().flat_map(|set| {
         let even = std::f64::consts::FRAC_PI_4 / set.options.half_extent;

@@ -12,7 +12,7 @@ use crate::StreakAtlas;
 pub struct AtlasQuery {
     /// From the drop to its light, a unit vector.
     pub light: [f32; 3],
-    /// Equivalent diameter in metres.
+    /// Equivalent diameter in meters.
     pub diameter: f32,
     /// From the drop to its viewer, a unit vector.
     pub view: [f32; 3],

@@ -76,7 +76,7 @@ pub struct AtlasPlace {
     pub side: f32,
     /// Weights of the three directions; together 1.
     pub weights: [f32; 3],
-    /// The radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius with as much light.
+    /// The radiance, in 1/sr for an irradiance of 1, of a disk of the equivalent radius with as much light.
     pub amount: f32,
     /// Weights of the higher diameter and of the higher elevation, 0 to 1, below 1 in all.
     pub parts: [f32; 2],
@@ -101,7 +101,7 @@ pub struct AtlasData<'a> {
     /// Triangles of all elevations.
     pub triangles: &'a [AtlasTriangle],
     /// Patterns, two half floats each, the first in the low bits: layers, rows, columns. A texel is the ratio of its brightness to
-    /// that of a uniform disc with the streak's amount.
+    /// that of a uniform disk with the streak's amount.
     pub texels: &'a [u32],
     /// Amounts: diameters, oscillations, elevations of the grids, rows, columns; then that of each layer.
     pub amounts: &'a [f32],
@@ -232,7 +232,7 @@ pub fn atlas_lookup_amount(data: &AtlasData<'_>, grid: u32, cell: [f32; 4]) -> f
     below * (1.0 - y) + above * y
 }
 
-/// The streak of a drop's id, diameter in metres and axis, and the unit vectors from it to its light and viewer.
+/// The streak of a drop's id, diameter in meters and axis, and the unit vectors from it to its light and viewer.
 #[must_use]
 pub fn atlas_lookup_place(
     data: &AtlasData<'_>,

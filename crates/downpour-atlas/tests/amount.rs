@@ -235,7 +235,7 @@ fn light_changes_by_small_steps() {
 #[test]
 fn oscillation_takes_light_aside() {
     const ENTRIES: usize = 4096;
-    // The atlas' light is about as wide as a disc of 4.6 degrees radius.
+    // The atlas' light is about as wide as a disk of 4.6 degrees radius.
     let sphere = SphereScattering::new(WATER_INDEX, ENTRIES, 0.16).unwrap();
     let phase = |degrees: f64| -> f64 {
         let entry = (degrees / 180.0 * (ENTRIES as f64 - 1.0)).round() as usize;

@@ -266,7 +266,7 @@ fn sets_that_do_not_belong_together_are_refused() {
     assert!(message(vec![twice]).contains("twice"));
 }
 
-/// The triangles fill the disc but for slivers, none is crossed by a corner's circle (Delaunay), neighbors agree.
+/// The triangles fill the disk but for slivers, none is crossed by a corner's circle (Delaunay), neighbors agree.
 #[test]
 fn triangles_are_those_of_delaunay() {
     let atlas = &*ATLAS;
@@ -456,7 +456,7 @@ fn the_frame_of_a_streak_is_right_handed() {
 #[test]
 fn radiance_is_bilinear_and_goes_round() {
     let atlas = StreakAtlas::from_sets(vec![counted()]).unwrap();
-    // The amount that makes a pattern of the layer: the mean of its texels, as a disc.
+    // The amount that makes a pattern of the layer: the mean of its texels, as a disk.
     let mean = |layer: u32| (32.0 * layer as f32 + 15.5) * 4.0 * 1.4 / std::f32::consts::PI;
     let place = |layer: u32, side| AtlasPlace {
         layers: [layer; 3],

@@ -26,9 +26,9 @@ pub(crate) const LIMIT: u8 = 3;
 pub(crate) const GPU: u8 = 4;
 /// A file that cannot be read or written.
 pub(crate) const FILES: u8 = 5;
-/// Cancelled by a signal.
+/// Canceled by a signal.
 #[cfg(unix)]
-pub(crate) const CANCELLED: u8 = 6;
+pub(crate) const CANCELED: u8 = 6;
 
 /// Message of `render` where no option names the streak atlas that the weather asks for.
 pub(crate) const NO_ATLAS: &str = "streaks.color is \"atlas\" or \"atlas-random\", and no --streaks; allowed: with --streaks \

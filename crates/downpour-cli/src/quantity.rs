@@ -59,7 +59,7 @@ pub(crate) fn fov_deg(text: &str) -> Result<f64, String> {
     read(text, &(1.0e-4..=170.0), "0.0001 to 170 degrees")
 }
 
-/// Distance of a camera, in metres.
+/// Distance of a camera, in meters.
 pub(crate) fn distance_m(text: &str) -> Result<f64, String> {
     read(text, &(1.0e-4..=1.0e4), "0.0001 to 10000 m")
 }

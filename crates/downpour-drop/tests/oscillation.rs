@@ -94,7 +94,7 @@ fn legendre_functions() {
     assert_eq!(drop_oscillation_legendre_31(1.0f32.next_up()), 0.0);
     let largest = (0..=10_000).map(|i| drop_oscillation_legendre_31(f64::from(i) * 1.0e-4).abs());
     assert!((largest.fold(0.0, f64::max) - 2.0656).abs() < 1.0e-4);
-    // Orthogonal, and of the norm of unnormalised functions: 2 / (2n + 1) (n + m)! / (n - m)!.
+    // Orthogonal, and of the norm of unnormalized functions: 2 / (2n + 1) (n + m)! / (n - m)!.
     let rule = GaussLegendre::new(12);
     let (p20, p31) = (drop_oscillation_legendre_20::<f64>, drop_oscillation_legendre_31::<f64>);
     let norms =
@@ -178,7 +178,7 @@ fn the_equilibrium_shape_keeps_its_volume() {
     }
 }
 
-/// To second order the two modes together move the center of mass towards phi = pi by 54/35 s2 s3 r0.
+/// To second order the two modes together move the center of mass toward phi = pi by 54/35 s2 s3 r0.
 #[test]
 fn the_center_of_mass_moves_sideways() {
     for displacement in [[0.01, 0.01], [-0.02, 0.01], [0.2, 0.1]] {

@@ -199,7 +199,7 @@ fn smooth_across_rows() {
             let (below, at, above) = (of(d - h), of(d), of(d + h));
             for n in 0..COEFFICIENTS {
                 let (left, right) = ((at[n] - below[n]) / h, (above[n] - at[n]) / h);
-                // Slopes are up to 50 per metre; curvature (below 2e4 per m^2) times h is the allowed difference.
+                // Slopes are up to 50 per meter; curvature (below 2e4 per m^2) times h is the allowed difference.
                 assert!((left - right).abs() < 1.0e-3, "{d} {n}: {left} {right}");
             }
         }

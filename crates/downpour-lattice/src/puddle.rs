@@ -99,7 +99,7 @@ impl Puddle {
         &self.model.options
     }
 
-    /// Degree of the operator: passes over the neighbours per time step.
+    /// Degree of the operator: passes over the neighbors per time step.
     #[must_use]
     pub fn degree(&self) -> u32 {
         self.model.degree

@@ -2,7 +2,7 @@
 //!
 //! The surface is r = rho(x) f(x, h) scale with f = 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h: the shape at rest times the factor of
 //! `downpour_drop::oscillation`. p is a point, x = -p.y / |p| and h = p.x / |p|; lengths are in units of the
-//! volume-equivalent radius, the drop's origin is at 0, its axis is +Y, the lobe of the mode (3,1) is towards +X. The gauge
+//! volume-equivalent radius, the drop's origin is at 0, its axis is +Y, the lobe of the mode (3,1) is toward +X. The gauge
 //! squared is G = |p|^2 / r^2; with `q = rho' / rho + f_x / f` and `k = f_h / f`,
 //!
 //! > 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2,

@@ -23,7 +23,7 @@ pub struct EyeMotion {
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
-    /// Place of the eye, metres.
+    /// Place of the eye, meters.
     pub eye: Vec3,
     /// View direction, of any length above 0.
     pub forward: Vec3,
@@ -100,7 +100,7 @@ impl Viewpoint {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Camera {
-    /// Position of the eye, metres.
+    /// Position of the eye, meters.
     pub eye: Vec3,
     /// Columns of the picture.
     pub width: u32,

@@ -20,7 +20,7 @@ pub enum RenderError {
         most: u32,
     },
     /// A lamp's light is no light.
-    #[error("light {index} has a colour of {found}; allowed: finite numbers from 0 to 1e30")]
+    #[error("light {index} has a color of {found}; allowed: finite numbers from 0 to 1e30")]
     Light {
         /// Its place among the lights of the scene.
         index: u32,

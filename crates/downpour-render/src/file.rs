@@ -8,7 +8,7 @@
 //! | `clean.R`, `clean.G`, `clean.B` | radiance of the scene without rain |
 //! | `rain.R`, `rain.G`, `rain.B` | radiance that the rain adds |
 //! | `transmittance.Y` | share of the scene's light that comes through the rain, 0 to 1 |
-//! | `depth.Z` | distance of the nearest surface from the eye along the ray, metres; 1e30 for the sky |
+//! | `depth.Z` | distance of the nearest surface from the eye along the ray, meters; 1e30 for the sky |
 
 use std::io::Cursor;
 

@@ -22,10 +22,10 @@ pub trait Lighting: Debug + Sync {
     /// Light `index`, below [`Lighting::light_count`].
     fn light(&self, index: u32) -> Light;
 
-    /// Fraction of light, by color, that passes from a point along a unit direction over a distance in metres.
+    /// Fraction of light, by color, that passes from a point along a unit direction over a distance in meters.
     fn visibility(&self, point: Vec3, direction: Vec3, distance: f32) -> Vec3;
 
-    /// Distance of the nearest solid from a point along a unit direction, metres; `None` where there is none.
+    /// Distance of the nearest solid from a point along a unit direction, meters; `None` where there is none.
     fn obstacle(&self, point: Vec3, direction: Vec3) -> Option<f32>;
 
     /// True if there are no obstacles at all.

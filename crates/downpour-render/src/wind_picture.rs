@@ -1,8 +1,8 @@
-//! A picture of a wind: its speed as colour in a slice, its direction as streaks and arrows.
+//! A picture of a wind: its speed as color in a slice, its direction as streaks and arrows.
 //!
 //! The streaks are a line integral convolution (Cabral, Leedom 1993): noise that is averaged along the streamlines of the
-//! wind's part in the slice, so what lies along a streamline has one brightness. The colour is the whole speed, on a scale
-//! whose lightness rises evenly in Oklab (Ottosson 2020); the scale stands below, with the length of a bar in metres.
+//! wind's part in the slice, so what lies along a streamline has one brightness. The color is the whole speed, on a scale
+//! whose lightness rises evenly in Oklab (Ottosson 2020); the scale stands below, with the length of a bar in meters.
 //!
 //! ```
 //! use downpour_render::wind_picture::{WindPlane, WindSlice, draw_wind};
@@ -16,7 +16,7 @@
 
 mod arrows;
 mod canvas;
-mod colours;
+mod colors;
 mod streaks;
 
 use downpour_math::OutOfRange;
@@ -30,7 +30,7 @@ use canvas::Canvas;
 const LEAST: u32 = 64;
 const MOST: u32 = 4096;
 
-/// The share of the slice that is slower than the brightest colour: a core of a few pixels shall not darken the rest.
+/// The share of the slice that is slower than the brightest color: a core of a few pixels shall not darken the rest.
 const BRIGHTEST: f64 = 0.998;
 
 /// Pixels each way at which the divergence is measured, at most.
@@ -81,7 +81,7 @@ pub struct WindSlice {
     plane: WindPlane,
     offset: f32,
     middle: Vec3,
-    /// Metres per pixel.
+    /// Meters per pixel.
     pixel: f32,
     /// Columns and rows of the picture, and rows of the slice.
     size: [u32; 2],
@@ -171,7 +171,7 @@ struct Flow {
     /// To the right and down, m/s.
     along: Vec<[f32; 2]>,
     speed: Vec<f32>,
-    /// The speed of the brightest colour, m/s; above 0.
+    /// The speed of the brightest color, m/s; above 0.
     scale: f32,
 }
 
@@ -207,8 +207,8 @@ pub fn draw_wind(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> Wind
     let streaks = streaks::streaks(&flow);
     let mut canvas = Canvas::new(slice.size);
     for (i, (speed, streak)) in flow.speed.iter().zip(&streaks).enumerate() {
-        let colour = colours::of_speed(speed / flow.scale);
-        canvas.set(i % flow.columns, i / flow.columns, colour.map(|c| c * (1.0 + 0.45 * streak)));
+        let color = colors::of_speed(speed / flow.scale);
+        canvas.set(i % flow.columns, i / flow.columns, color.map(|c| c * (1.0 + 0.45 * streak)));
     }
     arrows::draw(&mut canvas, &flow, letter_size(slice.size) as f32);
     legend(&mut canvas, slice, flow.scale);
@@ -244,16 +244,16 @@ fn divergence(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> f64 {
     (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
 
-/// The scale of the colours, where the slice is, and a bar of some metres.
+/// The scale of the colors, where the slice is, and a bar of some meters.
 fn legend(canvas: &mut Canvas, slice: &WindSlice, scale: f32) {
     let dot = letter_size(slice.size) as usize;
     let (width, top) = (slice.size[0] as usize, slice.rows as usize);
     let bar = (width / 3).max(20);
     let left = 4 * dot;
     for x in 0..bar {
-        let colour = colours::of_speed((x as f32 + 0.5) / bar as f32);
+        let color = colors::of_speed((x as f32 + 0.5) / bar as f32);
         for y in 0..5 * dot {
-            canvas.set(left + x, top + 4 * dot + y, colour);
+            canvas.set(left + x, top + 4 * dot + y, color);
         }
     }
     let base = top + 12 * dot;
@@ -264,15 +264,15 @@ fn legend(canvas: &mut Canvas, slice: &WindSlice, scale: f32) {
     let middle = left + bar + (width - left - bar) / 4;
     canvas.text(middle.saturating_sub(canvas::width(&what) * dot / 2), base, dot, &what);
     // The longest of 1, 2, 5 times a power of ten that fits a quarter of the picture.
-    let metres = canvas::round_down(f64::from(slice.pixel) * width as f64 * 0.25);
-    let long = ((metres / f64::from(slice.pixel)) as usize).clamp(1, width / 2);
+    let meters = canvas::round_down(f64::from(slice.pixel) * width as f64 * 0.25);
+    let long = ((meters / f64::from(slice.pixel)) as usize).clamp(1, width / 2);
     let start = width.saturating_sub(long + 4 * dot);
     for x in 0..long {
         for y in 0..2 * dot {
             canvas.set(start + x, top + 6 * dot + y, [0.8; 3]);
         }
     }
-    let text = format!("{} m", canvas::number(metres));
+    let text = format!("{} m", canvas::number(meters));
     let at = (start + long / 2).saturating_sub(canvas::width(&text) * dot / 2);
     canvas.text(at.min(width.saturating_sub(canvas::width(&text) * dot)), base, dot, &text);
 }

@@ -182,7 +182,7 @@ fn things_of_the_street() {
     }
 }
 
-/// Quantised positions give the cube of their floats: integers scaled by the node, and normalized integers.
+/// Quantized positions give the cube of their floats: integers scaled by the node, and normalized integers.
 #[test]
 fn quantized_positions() {
     let plain = read(&cube(&json!([{"mesh": 0}]))).expect("valid");

@@ -25,9 +25,9 @@ const MAX_INDEX: f64 = 4.0;
 /// A raindrop above 4 mm is so much wider than high that 80 % of the height do not fit into a square picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpecimenOptions {
-    /// Distance of the camera from the drop's origin, in metres: outside the drop, up to 1000.
+    /// Distance of the camera from the drop's origin, in meters: outside the drop, up to 1000.
     pub distance_m: f64,
-    /// Azimuth of the camera in radians, from +Z towards +X.
+    /// Azimuth of the camera in radians, from +Z toward +X.
     pub yaw: f64,
     /// Elevation of the camera above the drop's horizon in radians, -pi/2 to pi/2.
     pub pitch: f64,
@@ -144,7 +144,7 @@ impl SpecimenOptions {
         }))
     }
 
-    /// Fall in half of the exposure, in metres.
+    /// Fall in half of the exposure, in meters.
     pub(crate) fn half_path(&self, shape: &DropShape) -> Result<f64, SpecimenError> {
         Ok(0.5 * self.exposure_s * fall_speed(shape)?)
     }

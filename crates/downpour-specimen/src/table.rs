@@ -5,7 +5,7 @@
 //! of a scene. Uncovered pixels show the map itself, sampled as there.
 //!
 //! A lamp at infinity is parallel light for the renderer, excluded from the environment capture: the profile of the streak looks up its
-//! disc. A disc has to be small for that ([`MAX_TABLE_LAMP_DEG`]).
+//! disk. A disk has to be small for that ([`MAX_TABLE_LAMP_DEG`]).
 //!
 //! Source: P. Rousseau et al., "GPU rainfall", 2008, section 2.2.3, for the oscillation of the outline; the table is
 //! described in `shaders/wgsl/render/streak_lookup.wgsl`.
@@ -48,7 +48,7 @@ use downpour_trace::sky_light::SkyLight;
 /// Maximum angular radius, in degrees, of a lamp that may count as parallel light.
 pub const MAX_TABLE_LAMP_DEG: f64 = 5.0;
 
-/// Minimum distance from the eye, metres, above a diameter: nearer drops at mid-exposure do not move in a picture of rain.
+/// Minimum distance from the eye, meters, above a diameter: nearer drops at mid-exposure do not move in a picture of rain.
 const MIN_DISTANCE_M: f64 = 0.02;
 
 /// Seed and id of the drop: the phases and the azimuth that follow from them are replaced.
@@ -198,7 +198,7 @@ impl TableStreak {
             set_phases(drop, options);
         }
         for path in &mut rain.profiles.paths {
-            // Towards +X.
+            // Toward +X.
             path.lobe = [1.0, 0.0];
         }
         Ok(Self { scene, frame, masks, rain, clean: background(view, sky), channels: view.channels })
@@ -290,7 +290,7 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
         .collect()
 }
 
-/// Sets the phases of the specimen, and the lobe of the mode (3,1) towards +X.
+/// Sets the phases of the specimen, and the lobe of the mode (3,1) toward +X.
 fn set_phases(drop: &mut DropsDrop, options: &SpecimenOptions) {
     if options.oscillation == Amplitudes::NONE {
         return;

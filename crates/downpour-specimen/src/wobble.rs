@@ -105,7 +105,7 @@ pub fn specimen_wobble_cross<R: Real<Mask = bool>>(
         at_b = at(b);
         found = beyond(at_b[0]);
         if !found && beyond(at_a[1]) && (side * at_b[1]).less(zero) {
-            // G turns towards the other side: its extremum by the rule of the false position.
+            // G turns toward the other side: its extremum by the rule of the false position.
             let (mut low, mut high) = ([a, at_a[1]], [b, at_b[1]]);
             for _ in 0..SPECIMEN_WOBBLE_TURNS {
                 let middle = low[0] + (high[0] - low[0]) * (low[1] / (low[1] - high[1]));

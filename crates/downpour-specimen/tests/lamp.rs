@@ -116,7 +116,7 @@ fn bad_lamps_are_refused() {
     assert!(matches!(error, SpecimenError::Size { found: 9, most: 8, .. }), "{error}");
 }
 
-/// Mean radiance over a sphere's disc of the light of a lamp of radiance 1, by quadrature over the impact parameter: the plane
+/// Mean radiance over a sphere's disk of the light of a lamp of radiance 1, by quadrature over the impact parameter: the plane
 /// laws of a sphere, order by order, with unpolarized light at each interface. `scattering` is the angle between the direction of
 /// the light and the direction to the eye.
 fn sphere_shows(scattering: f64, radius: f64) -> f64 {
@@ -137,7 +137,7 @@ fn sphere_shows(scattering: f64, radius: f64) -> f64 {
             } else {
                 2.0 * (incident - refracted) + f64::from(p - 1) * (PI - 2.0 * refracted)
             };
-            // Fraction of the ring of that angle in the lamp's disc.
+            // Fraction of the ring of that angle in the lamp's disk.
             let (s, c) = (ops::sin(angle) * ops::sin(scattering), ops::cos(angle) * ops::cos(scattering));
             let edge =
                 if s.abs() < 1.0e-12 { -2.0 * f64::from(c >= lamp) + 1.0 } else { (lamp - c) / s.abs() };

@@ -38,7 +38,7 @@ pub fn brdf_fresnel(normal_reflectance: Vec3, cosine: f32) -> Vec3 {
     normal_reflectance + (Vec3::ONE - normal_reflectance) * fifth
 }
 
-/// Radiance towards the viewer for light of irradiance pi from one direction, cosine at the surface included.
+/// Radiance toward the viewer for light of irradiance pi from one direction, cosine at the surface included.
 #[must_use]
 pub fn brdf_direct(
     diffuse: Vec3,
@@ -78,7 +78,7 @@ pub fn brdf_visible_normal(view: Vec3, alpha: f32, a: f32, b: f32) -> Vec3 {
     let flat = v.x * v.x + v.y * v.y;
     let level = if flat > 0.0 { Vec3::new(-v.y, v.x, 0.0) / flat.sqrt() } else { Vec3::X };
     let rising = v.cross(level);
-    // A point of the disc that the hemisphere of normals shows: half of it is foreshortened.
+    // A point of the disk that the hemisphere of normals shows: half of it is foreshortened.
     let radius = a.sqrt();
     let angle = std::f32::consts::TAU * b;
     let x = radius * ops::cos(angle);

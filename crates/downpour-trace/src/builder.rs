@@ -15,7 +15,7 @@ use downpour_render::light::LightSource;
 /// A triangle mesh on its way into a scene, in its own space.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshPart<'a> {
-    /// Places of the vertices, metres.
+    /// Places of the vertices, meters.
     pub positions: &'a [[f32; 3]],
     /// Normals; those of the triangles where there are none.
     pub normals: Option<&'a [[f32; 3]]>,
@@ -23,8 +23,8 @@ pub struct MeshPart<'a> {
     pub tangents: Option<&'a [[f32; 4]]>,
     /// First and second set of texture coordinates.
     pub uvs: [Option<&'a [[f32; 2]]>; 2],
-    /// Vertex colours, linear.
-    pub colours: Option<&'a [[f32; 4]]>,
+    /// Vertex colors, linear.
+    pub colors: Option<&'a [[f32; 4]]>,
     /// Three vertices per triangle. Triangles that name a vertex that is not there are left out.
     pub indices: &'a [u32],
     /// Index of the material.
@@ -95,7 +95,7 @@ impl SceneBuilder {
                 material: part.material,
                 tangent: tangent.into(),
                 uv: [uv(0).x, uv(0).y, uv(1).x, uv(1).y],
-                colour: part.colours.and_then(|c| c.get(i)).copied().unwrap_or([1.0; 4]),
+                color: part.colors.and_then(|c| c.get(i)).copied().unwrap_or([1.0; 4]),
             };
             (place.is_finite()).then_some((place, corner))
         };

@@ -38,7 +38,7 @@ pub fn environment_frame(picture: &RenderFrame, environment: &EnvironmentFrame) 
             ..picture.camera
         },
         grid: environment.grid,
-        // No filter takes means over neighbours here, but the drops' lookups do.
+        // No filter takes means over neighbors here, but the drops' lookups do.
         sky_rays,
         ray_share: 1.0 / (LOOKUP_TEXELS * sky_rays.max(1) as f32),
         first_row: 0,

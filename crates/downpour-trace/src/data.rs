@@ -27,8 +27,8 @@ pub struct RenderCorner {
     pub tangent: [f32; 4],
     /// Two sets of texture coordinates.
     pub uv: [f32; 4],
-    /// Vertex colour, linear.
-    pub colour: [f32; 4],
+    /// Vertex color, linear.
+    pub color: [f32; 4],
 }
 
 /// Values that change from frame to frame. The same layout as `RenderFrame` in WGSL.
@@ -49,7 +49,7 @@ pub struct RenderFrame {
     pub sky_rays: u32,
     /// First row of pixels of a dispatch.
     pub first_row: u32,
-    /// Nearest distance of the next surface, metres.
+    /// Nearest distance of the next surface, meters.
     pub nearest: f32,
     /// Part of the rays that look for the light of a surface that one of them is.
     pub ray_share: f32,
@@ -63,7 +63,7 @@ pub struct RenderFrame {
     pub puddle_count: u32,
     /// Row of the table where the pane begins that throws shadows; 0: none.
     pub pane: u32,
-    /// Pass of the means over neighbouring pixels.
+    /// Pass of the means over neighboring pixels.
     pub skylight_pass: u32,
     /// 0.
     pub unused_1: u32,
@@ -109,7 +109,7 @@ pub struct SceneData {
 }
 
 impl SceneData {
-    /// The lower and upper corner of everything, metres.
+    /// The lower and upper corner of everything, meters.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.nodes.first().map_or((Vec3::ZERO, Vec3::ZERO), |root| (root.low.into(), root.high.into()))
@@ -123,7 +123,7 @@ impl SceneData {
         Light::light_load(&rows)
     }
 
-    /// Gives light `index` an angular radius, in radians: that of the disc that drops show of it. Without one it is the sun's.
+    /// Gives light `index` an angular radius, in radians: that of the disk that drops show of it. Without one it is the sun's.
     pub fn set_light_radius(&mut self, index: u32, radius: f32) {
         let row = (self.lights + index * SCENE_LIGHT_ROWS + 1) as usize;
         // The chord from the middle to the edge.

@@ -121,9 +121,9 @@ impl SceneView<'_> {
         upper * (1.0 - part.y) + lower * part.y
     }
 
-    /// Cover and gathered cover round a place of [0, 1], over a width in metres.
+    /// Cover and gathered cover round a place of [0, 1], over a width in meters.
     fn pane_shadow_at(&self, pane: &RenderPane, place: Vec2, width: f32) -> Vec2 {
-        let texels = width * pane.texels_per_metre;
+        let texels = width * pane.texels_per_meter;
         let level = ops::log2(texels.max(1.0)).clamp(0.0, pane.last as f32);
         let low = level.floor();
         let part = level - low;
@@ -183,7 +183,7 @@ mod tests {
     fn scene(form: PaneShadows) -> (SceneData, f32) {
         let drops: Vec<GlassPictureDrop> = (0..25 * 12)
             .map(|k| GlassPictureDrop {
-                centre: [4.0e-3 + (k % 25) as f32 * 8.0e-3, 6.0e-3 + (k / 25) as f32 * 8.0e-3],
+                center: [4.0e-3 + (k % 25) as f32 * 8.0e-3, 6.0e-3 + (k / 25) as f32 * 8.0e-3],
                 radius: 2.0e-3,
                 sphere: 2.2e-3,
                 along: [0.0, 1.0],

@@ -14,7 +14,7 @@
 //!   surfaces are dark: each goes on with the probability of its albedo. The light that falls on the last surface is taken to
 //!   be the mean of what the path has met, and a tenth of the open sky's.
 //!
-//! [`skylight`](crate::skylight) takes means of this light over neighbouring pixels, but for that of mirrors.
+//! [`skylight`](crate::skylight) takes means of this light over neighboring pixels, but for that of mirrors.
 //!
 //! Limits: what a diffuse base finds reflects diffusely (no caustics); things that shine light up others only where
 //! there are no lamps, which else stand for them; rays that look for light do not see the water of puddles.
@@ -65,7 +65,7 @@ pub(crate) struct ViewPath {
     pub(crate) mirror: PathSlot,
 }
 
-/// Light of which means are taken over neighbouring pixels.
+/// Light of which means are taken over neighboring pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathSlot {
     pub(crate) light: Vec3,
@@ -172,9 +172,9 @@ struct PathMeeting {
     surface: Surface,
     direct: Vec3,
     plan: PathPlan,
-    /// True if its light is averaged over neighbouring pixels.
+    /// True if its light is averaged over neighboring pixels.
     told: bool,
-    /// Largest distance from its plane at which the surface of a neighbouring pixel may be.
+    /// Largest distance from its plane at which the surface of a neighboring pixel may be.
     slack: f32,
 }
 
@@ -274,7 +274,7 @@ impl SceneView<'_> {
             } else if !unlit {
                 plan = self.path_plan(&found, -towards, cone * hit.distance, told, free && !under);
             }
-            // Neighbouring pixels are on one plane if they are no farther from it than this.
+            // Neighboring pixels are on one plane if they are no farther from it than this.
             let from_eye = found.position - origin;
             let slack = from_eye.dot(from_eye).sqrt() * (cone * 2.0 + SKYLIGHT_SLACK);
             let ripple = if met.is_some() { water.map(|water| water.ripple) } else { None };

@@ -10,7 +10,7 @@ use downpour_math::ops;
 use downpour_math::packing::packing_sign;
 use downpour_shaders::render::brdf::BRDF_GRAZING;
 use downpour_shaders::render::scatter::{
-    SCATTER_DISC, SCATTER_MAX_WIDTH, SCATTER_MIN_ALPHA, SCATTER_SMALLEST,
+    SCATTER_DISK, SCATTER_MAX_WIDTH, SCATTER_MIN_ALPHA, SCATTER_SMALLEST,
 };
 use glam::Vec3;
 
@@ -125,7 +125,7 @@ pub(crate) fn scatter_draw(
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
     let density = (glossy * chance + cosine * (1.0 - chance)).max(SCATTER_SMALLEST);
     let mut ray = none;
-    ray.width = (SCATTER_DISC * share / density).sqrt().min(SCATTER_MAX_WIDTH);
+    ray.width = (SCATTER_DISK * share / density).sqrt().min(SCATTER_MAX_WIDTH);
     if chance < 1.0 {
         ray.diffuse = (Vec3::ONE - fresnel) * (cosine / density);
     }
@@ -144,7 +144,7 @@ pub(crate) fn scatter_mirror(surface: &Surface, view: Vec3) -> ScatterRay {
     let density = brdf_visible_density(scatter_alpha(surface.roughness), 1.0, cosine.max(BRDF_GRAZING));
     ScatterRay {
         along: scatter_above(surface.facet, along),
-        width: (SCATTER_DISC / density.max(SCATTER_SMALLEST)).sqrt().min(SCATTER_MAX_WIDTH),
+        width: (SCATTER_DISK / density.max(SCATTER_SMALLEST)).sqrt().min(SCATTER_MAX_WIDTH),
         diffuse: Vec3::ZERO,
         roughness: surface.roughness,
         mirror: Vec3::ONE,
@@ -191,7 +191,7 @@ mod tests {
         let view = DVec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
         let (n, mut sums) = (700u32, [0.0; 2]);
         for i in 0..n {
-            // The light's height, finer towards the horizon.
+            // The light's height, finer toward the horizon.
             let u = (f64::from(i) + 0.5) / f64::from(n);
             let polar = std::f64::consts::FRAC_PI_2 * u;
             let (height, flat) = (exact::cos(polar), exact::sin(polar));

@@ -6,7 +6,7 @@
 //! 2010, for the steps; C. Schied et al., HPG 2017, for the variance). A hat of twice the width is the sum of three hats, halved
 //! at the sides: what one pixel has found is spread by one hat in the end, 32 pixels to each side, without edges or overlaps.
 //!
-//! A neighbour counts as far as its normal agrees and as it is on the plane through the pixel's place; in the gloss, as far
+//! A neighbor counts as far as its normal agrees and as it is on the plane through the pixel's place; in the gloss, as far
 //! as it mirrors the same direction, within the lobe.
 
 use downpour_shaders::render::scene::{

@@ -41,7 +41,7 @@ pub const MOST_LIGHTS: usize = 1024;
 /// Memory per triangle, in bytes, while its hierarchy is built: the corners twice, and the builder's own lists.
 const BYTES_PER_TRIANGLE: u64 = 540;
 
-/// Farther than this from the world's origin, in metres, buffers are relative to a place near the eye.
+/// Farther than this from the world's origin, in meters, buffers are relative to a place near the eye.
 const NEAR_ORIGIN_M: f64 = 1000.0;
 
 /// The latest time of a picture, in seconds, and the earliest below 0.
@@ -70,7 +70,7 @@ pub struct Stage {
     pub size: [u32; 2],
     /// The picture is multiplied by two to this power.
     pub exposure_ev: f32,
-    /// Distances from the eye, in metres, between which drops are drawn.
+    /// Distances from the eye, in meters, between which drops are drawn.
     pub depth: [f64; 2],
     /// Whose eye it is.
     pub camera: CameraChoice,

@@ -1,7 +1,7 @@
 //! Pixels by rays: of the picture, and of the capture of the surroundings. Twin of `shaders/wgsl/render/trace.wgsl`.
 //!
 //! Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others
-//! are taken to do so too. [`skylight`](crate::skylight) takes means of what neighbouring pixels have found of the light of
+//! are taken to do so too. [`skylight`](crate::skylight) takes means of what neighboring pixels have found of the light of
 //! sky and surfaces.
 
 use downpour_math::packing::{
@@ -16,7 +16,7 @@ use crate::path::{PathSlot, ViewPath, path_lattice_words, path_most};
 use crate::scene::SceneView;
 use downpour_render::halves::{pack, unpack};
 
-/// Light of which means are taken over neighbouring pixels, packed. The same layout as `TraceSlot` in WGSL.
+/// Light of which means are taken over neighboring pixels, packed. The same layout as `TraceSlot` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TraceSlot {

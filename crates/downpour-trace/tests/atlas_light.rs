@@ -50,7 +50,7 @@ fn viewpoint() -> Viewpoint {
 /// Streaks by their profiles, the light of whose drops swings; by a loop the light of lamps is that of a sphere.
 const SPHERE: StreakSamples = StreakSamples::Loop(16);
 
-/// One drop in the middle of the picture, `away` metres before the eye.
+/// One drop in the middle of the picture, `away` meters before the eye.
 fn drawn(
     masks: &DropMasks,
     scene: &SceneData,
@@ -93,7 +93,7 @@ fn mean(masks: &DropMasks, scene: &SceneData, id: f32, light: DropLightOptions) 
         .light(&rows)[0][0])
 }
 
-/// Lamps all round a drop light it as an even sky does: together its disc is as bright as the sky, since nothing is lost.
+/// Lamps all round a drop light it as an even sky does: together its disk is as bright as the sky, since nothing is lost.
 #[test]
 fn lamps_all_round_make_an_even_sky() -> Outcome {
     let masks = DropMasks::trace(1.333)?.with_atlas(&atlas());

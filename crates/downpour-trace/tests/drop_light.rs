@@ -1,4 +1,4 @@
-//! Light of lamps and sun on drops: its amount, its direction, its colours, its shadows.
+//! Light of lamps and sun on drops: its amount, its direction, its colors, its shadows.
 
 use std::f32::consts::PI;
 
@@ -36,7 +36,7 @@ fn scene(lights: &[LightSource], wall: Option<Vec3>) -> SceneData {
             normals: None,
             tangents: None,
             uvs: [None, None],
-            colours: None,
+            colors: None,
             indices: &[0, 1, 2, 0, 2, 3],
             material: 0,
         };
@@ -99,7 +99,7 @@ fn no_light_is_lost_or_made() -> Outcome {
         )?
         .light(&[[0.0, 0.0, 0.0, RADIUS]])[0];
         let ring = 2.0 * PI * ops::sin(angle) * PI / f32::from(steps);
-        // Radiance times the disc's area, over all directions, over the power on the disc.
+        // Radiance times the disk's area, over all directions, over the power on the disk.
         sum += Vec3::new(light[0], light[1], light[2]) * ring / irradiance;
     }
     for (found, index) in sum.to_array().into_iter().zip(indices) {
@@ -254,7 +254,7 @@ fn lamps_add_up_and_none_is_none() -> Outcome {
     Ok(())
 }
 
-/// Lamp behind the eye: `A_1 A_2` is the square of the cosine, 1/2 over the disc; `A_3` has nothing. Lamp behind the drop:
+/// Lamp behind the eye: `A_1 A_2` is the square of the cosine, 1/2 over the disk; `A_3` has nothing. Lamp behind the drop:
 /// `A_2` has nothing, `A_3` is cos (1 - cos) where the normal is level.
 #[test]
 fn rousseau_2006_is_as_printed() -> Outcome {
@@ -266,7 +266,7 @@ fn rousseau_2006_is_as_printed() -> Outcome {
     let front = of(Vec3::new(0.0, 0.0, 2.0))? / white;
     assert!((front - 0.5).abs().max_element() < 1e-4, "{front}");
     let behind = of(Vec3::new(0.0, 0.0, -2.0))?.x / white;
-    // The mean over the disc of c^2 (1 - c) / sqrt(x^2 + c^2), by a fine sum.
+    // The mean over the disk of c^2 (1 - c) / sqrt(x^2 + c^2), by a fine sum.
     let (mut sum, mut count) = (0.0, 0.0);
     for k in 0..400 * 400 {
         let [x, y] = [k % 400, k / 400].map(|k| (k as f32 + 0.5) / 200.0 - 1.0);
@@ -278,7 +278,7 @@ fn rousseau_2006_is_as_printed() -> Outcome {
         }
     }
     let expected = sum / count;
-    // 32 places stand for the disc.
+    // 32 places stand for the disk.
     assert!((behind / expected - 1.0).abs() < 0.05, "{behind} for {expected}");
     Ok(())
 }
@@ -334,7 +334,7 @@ fn light_that_is_none_is_refused() -> Outcome {
         )
         .unwrap_err();
         let words = error.to_string();
-        assert!(words.starts_with(&format!("light 1 has a colour of {said}")), "{words}");
+        assert!(words.starts_with(&format!("light 1 has a color of {said}")), "{words}");
         assert!(words.ends_with("allowed: finite numbers from 0 to 1e30"), "{words}");
     }
     let scene = scene(&[], None);

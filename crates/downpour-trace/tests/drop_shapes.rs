@@ -27,7 +27,7 @@ const SIZE: usize = 160;
 const DISTANCE: f64 = 0.5;
 const HALF: f64 = 0.0125;
 
-/// Pixels per metre at the drop.
+/// Pixels per meter at the drop.
 fn scale() -> f64 {
     SIZE as f64 / (2.0 * ops::tan(HALF) * DISTANCE)
 }
@@ -156,7 +156,7 @@ fn a_printed_row_gives_the_printed_outline() -> Outcome {
 fn the_tables_differ_between_the_papers_rows() -> Outcome {
     let tables =
         [masks("", &BTreeMap::new())?, masks("[rain]\ndrop_shape = 'rousseau-2006'", &BTreeMap::new())?];
-    // Masks stand half a millimetre apart, from 0.5 to 9 mm.
+    // Masks stand half a millimeter apart, from 0.5 to 9 mm.
     let each = tables[0].words.len() / 18;
     let differing: Vec<usize> = (1..=18)
         .filter(|k| tables[0].words[(k - 1) * each..k * each] != tables[1].words[(k - 1) * each..k * each])

@@ -86,9 +86,9 @@ fn with_drop(glass: &mut GlassPicture, radius: f32) {
     glass.bins = (0..=bins).map(|k| (bins + 1 + k) as u32).chain(std::iter::repeat_n(0, bins)).collect();
 }
 
-fn drop(centre: [f32; 2], radius: f32) -> GlassPictureDrop {
+fn drop(center: [f32; 2], radius: f32) -> GlassPictureDrop {
     GlassPictureDrop {
-        centre,
+        center,
         radius,
         sphere: radius * 1.4,
         along: [0.0, 1.0],
@@ -166,7 +166,7 @@ fn a_round_drop_is_a_cap_of_a_sphere() {
         let angle = k as f32 * 2.4;
         let r = 1.9e-3 * (k as f32 / 200.0);
         let off = Vec2::new(downpour_math::ops::cos(angle), downpour_math::ops::sin(angle)) * r;
-        let place = Vec2::from(drop.centre) + off;
+        let place = Vec2::from(drop.center) + off;
         let cap = glass_picture_water_cap(&drop, place);
         let height = (2.8e-3f32.powf_2() - r * r).sqrt() - base;
         assert!((cap.x - height).abs() < 2.0e-8, "{k}: {} {height}", cap.x);
@@ -280,7 +280,7 @@ fn a_drop_shows_a_lamp_as_bright_as_it_is() -> Outcome {
         glass.lights = vec![GlassPictureLight {
             place: (ahead * 1.0e5).to_array(),
             radius: half_angle,
-            colour: [5.0; 3],
+            color: [5.0; 3],
             distance: 1.0e5,
         }];
         glass.frame.lights = 1;
@@ -360,7 +360,7 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &[0, 2, 1, 0, 3, 2],
         material: white,
     };
@@ -402,7 +402,7 @@ fn bands(above_m: f64, seeds: u32) -> Result<Vec<f64>, Box<dyn std::error::Error
             let (r, sphere) = (f64::from(drop.radius), f64::from(drop.sphere));
             let height = sphere - (sphere * sphere - r * r).max(0.0).sqrt();
             let volume = std::f64::consts::PI * height * height * (sphere - height / 3.0);
-            let band = (f64::from(drop.centre[1]) / 0.03).floor();
+            let band = (f64::from(drop.center[1]) / 0.03).floor();
             if (0.0..8.0).contains(&band) {
                 sums[band as usize] += volume;
             }

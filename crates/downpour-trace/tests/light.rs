@@ -20,14 +20,14 @@ type Outcome = Result<(), Box<dyn std::error::Error>>;
 /// A material of one diffuse albedo and nothing else.
 fn diffuse(albedo: f32) -> MaterialLook {
     MaterialLook {
-        base_colour: [albedo, albedo, albedo, 1.0],
+        base_color: [albedo, albedo, albedo, 1.0],
         roughness: 1.0,
         ior: 1.0,
         ..MaterialLook::default()
     }
 }
 
-/// A square by its middle and half its edges; its front is towards their cross product.
+/// A square by its middle and half its edges; its front is toward their cross product.
 fn square(builder: &mut SceneBuilder, material: u32, middle: Vec3, across: Vec3, along: Vec3) {
     let positions = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
         .map(|(x, y)| (middle + across * x + along * y).to_array());
@@ -36,14 +36,14 @@ fn square(builder: &mut SceneBuilder, material: u32, middle: Vec3, across: Vec3,
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &[0, 1, 2, 0, 2, 3],
         material,
     };
     builder.add_mesh(&part, &Affine3A::IDENTITY);
 }
 
-/// A picture from an eye towards a place.
+/// A picture from an eye toward a place.
 fn picture(
     scene: &SceneData,
     eye: Vec3,
@@ -69,7 +69,7 @@ fn an_unlit_wall_of_one_is_one() -> Outcome {
         let mut builder = SceneBuilder::new();
         let look = MaterialLook {
             flags: SCENE_UNLIT,
-            base_colour: [color, color, color, 1.0],
+            base_color: [color, color, color, 1.0],
             metallic,
             ..MaterialLook::default()
         };
@@ -109,7 +109,7 @@ fn texel(i: u32, width: u32, height: u32) -> (DVec3, f64) {
     (DVec3::new(flat * exact::cos(around), up, flat * exact::sin(around)), angle)
 }
 
-/// Faces of every side have the light that the sky's map sends them, towards a low sun and away from it.
+/// Faces of every side have the light that the sky's map sends them, toward a low sun and away from it.
 #[test]
 fn faces_have_the_light_of_the_sky_before_them() -> Outcome {
     let (width, height) = (128, 64);
@@ -141,10 +141,10 @@ fn faces_have_the_light_of_the_sky_before_them() -> Outcome {
 fn metal_mirrors_what_stands_there() -> Outcome {
     let mut builder = SceneBuilder::new();
     let metal =
-        MaterialLook { base_colour: [1.0; 4], metallic: 1.0, roughness: 0.0, ..MaterialLook::default() };
+        MaterialLook { base_color: [1.0; 4], metallic: 1.0, roughness: 0.0, ..MaterialLook::default() };
     let floor = builder.add_material(metal);
     let unlit =
-        MaterialLook { flags: SCENE_UNLIT, base_colour: [0.7, 0.7, 0.7, 1.0], ..MaterialLook::default() };
+        MaterialLook { flags: SCENE_UNLIT, base_color: [0.7, 0.7, 0.7, 1.0], ..MaterialLook::default() };
     let wall = builder.add_material(unlit);
     square(&mut builder, floor, Vec3::ZERO, Vec3::Z * 5.0, Vec3::X * 5.0);
     // 1 m high, at z = -2.
@@ -236,7 +236,7 @@ fn mirrored_at(eye: [f64; 2], lamp: [f64; 2], depth: f64) -> f64 {
 #[test]
 fn a_lamp_has_one_mirror_image_in_a_puddle() -> Outcome {
     let metal = MaterialLook {
-        base_colour: [0.9, 0.9, 0.9, 1.0],
+        base_color: [0.9, 0.9, 0.9, 1.0],
         metallic: 1.0,
         roughness: 0.12,
         ..MaterialLook::default()

@@ -38,7 +38,7 @@ fn sheet(builder: &mut SceneBuilder, material: u32, n: usize, height: impl Fn(Ve
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &indices,
         material,
     };
@@ -47,11 +47,8 @@ fn sheet(builder: &mut SceneBuilder, material: u32, n: usize, height: impl Fn(Ve
 
 fn ground(albedo: f32, n: usize, height: impl Fn(Vec2) -> f32) -> SceneBuilder {
     let mut builder = SceneBuilder::new();
-    let look = MaterialLook {
-        base_colour: [albedo, albedo, albedo, 1.0],
-        roughness: 1.0,
-        ..MaterialLook::default()
-    };
+    let look =
+        MaterialLook { base_color: [albedo, albedo, albedo, 1.0], roughness: 1.0, ..MaterialLook::default() };
     let material = builder.add_material(look);
     sheet(&mut builder, material, n, height);
     builder
@@ -115,9 +112,9 @@ fn dark_ground_is_darker_under_water_and_mirrors_by_fresnel() -> Outcome {
     Ok(())
 }
 
-/// Light goes through 1/cos of the depth to the eye and 1.2 depths down; what is lost is the water's own colour.
+/// Light goes through 1/cos of the depth to the eye and 1.2 depths down; what is lost is the water's own color.
 #[test]
-fn deep_murky_water_has_its_own_colour() -> Outcome {
+fn deep_murky_water_has_its_own_color() -> Outcome {
     let look = PuddleLook { extinction: 10.0, murk: Vec3::splat(0.3), ..PuddleLook::default() };
     let beneath = |albedo: f32| albedo * 0.525_409 / (1.0 - albedo * 0.474_591);
     for depth in [0.001f32, 0.05, 5.0] {

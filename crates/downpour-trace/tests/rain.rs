@@ -149,14 +149,14 @@ fn the_image_in_a_drop_is_upside_down() -> Outcome {
 fn the_scene_hides_drops_behind_it() -> Outcome {
     let mut builder = SceneBuilder::new();
     let corners = [[-5.0, -5.0, -2.0], [5.0, -5.0, -2.0], [0.0, 9.0, -2.0]];
-    let (normals, uvs, colours) = (None, [None, None], None);
+    let (normals, uvs, colors) = (None, [None, None], None);
     let indices = [0, 1, 2];
     let wall = MeshPart {
         positions: &corners,
         normals,
         tangents: None,
         uvs,
-        colours,
+        colors,
         indices: &indices,
         material: 0,
     };

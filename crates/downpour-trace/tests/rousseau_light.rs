@@ -52,7 +52,7 @@ fn drawn(
     Ok(picture.rain.iter().map(|pixel| pixel[0]).collect())
 }
 
-/// Rousseau 2006, section 6, as printed, at a place of a sphere's disc: (V . N) (A2 + A3), seen along -z.
+/// Rousseau 2006, section 6, as printed, at a place of a sphere's disk: (V . N) (A2 + A3), seen along -z.
 fn printed(place: Vec2, from: Vec3) -> f32 {
     printed_terms(place, from).into_iter().sum()
 }
@@ -66,7 +66,7 @@ fn printed_terms(place: Vec2, from: Vec3) -> [f32; 2] {
     [normal.z * outside, normal.z * within]
 }
 
-/// The place of a pixel's middle on the disc, radii.
+/// The place of a pixel's middle on the disk, radii.
 fn place(column: u32, row: u32) -> Vec2 {
     let middle = Vec2::new(SIZE[0] as f32, SIZE[1] as f32) * 0.5;
     (Vec2::new(column as f32 + 0.5, row as f32 + 0.5) - middle) * Vec2::new(1.0, -1.0) / ACROSS

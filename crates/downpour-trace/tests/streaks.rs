@@ -122,9 +122,9 @@ fn a_streak_takes_out_what_its_drop_does() -> Outcome {
     Ok(())
 }
 
-/// Rows of a streak that fades, by the law of a disc of diameter `d` pixels that goes down `way` pixels at one speed while what it
-/// leaves behind fades away in that time: a row that the whole disc passes loses `(pi d^2 / 4) / way` by `2 s`, `s` the part of the
-/// way that lies above it. All rows together lose the disc's area, and their middle is at two thirds of the way.
+/// Rows of a streak that fades, by the law of a disk of diameter `d` pixels that goes down `way` pixels at one speed while what it
+/// leaves behind fades away in that time: a row that the whole disk passes loses `(pi d^2 / 4) / way` by `2 s`, `s` the part of the
+/// way that lies above it. All rows together lose the disk's area, and their middle is at two thirds of the way.
 #[test]
 fn an_eye_sees_a_streak_fade() -> Outcome {
     let scene = sky(|_, _| [1.0; 3]);
@@ -213,7 +213,7 @@ fn an_eye_sees_moments_by_their_age() -> Outcome {
     Ok(())
 }
 
-/// Half a millimetre to 6 mm, near and far, straight and slanted, with their oscillation.
+/// Half a millimeter to 6 mm, near and far, straight and slanted, with their oscillation.
 fn many() -> Vec<FallingDrop> {
     (0..40)
         .map(|k| {
@@ -385,9 +385,9 @@ fn the_outline_oscillates() -> Outcome {
     Ok(())
 }
 
-/// Static streaks have one colour, and take out as much.
+/// Static streaks have one color, and take out as much.
 #[test]
-fn white_streaks_have_one_colour() -> Outcome {
+fn white_streaks_have_one_color() -> Outcome {
     let scene = varied();
     let with = |colour| Exposure { shutter_s: 1.0 / 250.0, colour, ..Exposure::default() };
     let refracted = picture(&scene, SIZE, &many(), with(StreakColour::Refracted))?;

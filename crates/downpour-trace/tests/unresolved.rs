@@ -63,8 +63,8 @@ fn covered(rate: f64) -> f64 {
     integral(0.1, 8.0, 400, |d| count(d) * PI / 4.0 * d * d * 1.0e-6 * outline(d))
 }
 
-/// Cross-section of a sphere of water by scattering angle over that of its disc, 1/sr: orders 0 to 3 of geometric optics, from
-/// rays that are spread evenly over the disc and counted in `BINS` intervals of the angle.
+/// Cross-section of a sphere of water by scattering angle over that of its disk, 1/sr: orders 0 to 3 of geometric optics, from
+/// rays that are spread evenly over the disk and counted in `BINS` intervals of the angle.
 fn phase() -> Vec<f64> {
     const BINS: usize = 90;
     let (rays, index) = (100_000, 1.3330);
@@ -135,14 +135,14 @@ fn screened(distance: f32, edge: f32, lights: &[LightSource], sky: [f32; 3]) -> 
 
 fn add(builder: &mut SceneBuilder, corners: &[[f32; 3]; 4]) {
     let black =
-        downpour_trace::material::MaterialLook { base_colour: [0.0, 0.0, 0.0, 1.0], ..Default::default() };
+        downpour_trace::material::MaterialLook { base_color: [0.0, 0.0, 0.0, 1.0], ..Default::default() };
     let material = builder.add_material(black);
     let part = MeshPart {
         positions: corners,
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &[0, 1, 2, 0, 2, 3],
         material,
     };

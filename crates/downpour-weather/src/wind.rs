@@ -19,7 +19,7 @@ use glam::DVec3;
 use keys::{NumberKeys, VectorKeys, keyed};
 use serde::Deserialize;
 
-/// Default core radius, in metres: three cells of the default grid.
+/// Default core radius, in meters: three cells of the default grid.
 const CORE_M: f64 = 5.0;
 
 /// Spacing of the keys of a turning wind, in degrees: between two of them it is 0.1 % slower.
@@ -32,7 +32,7 @@ pub struct WindBox {
     pub size: [u32; 3],
     /// Edges of the box, 0.01 to 1e6 m.
     pub edges: DVec3,
-    /// Center, in metres; `None` for the eye.
+    /// Center, in meters; `None` for the eye.
     pub center: Option<DVec3>,
 }
 
@@ -44,7 +44,7 @@ impl Default for WindBox {
 }
 
 impl WindBox {
-    /// Grid for an eye at a position, in metres.
+    /// Grid for an eye at a position, in meters.
     ///
     /// # Errors
     /// As [`WindGrid::new`]: the box is farther than 1e6 m from the origin.

@@ -22,7 +22,7 @@ shared_constants! {
         PATH_LATTICE_SECOND: u32 = 30;
         /// See [`PATH_LATTICE_SCATTER`].
         PATH_LATTICE_THIRD: u32 = 37;
-        /// Largest distance of a ray's numbers from the lattice's point: about the distance of neighbouring points.
+        /// Largest distance of a ray's numbers from the lattice's point: about the distance of neighboring points.
         PATH_JITTER: f32 = 0.14;
         /// Rays that follow each other, at most.
         PATH_BOUNCES: u32 = 6;
@@ -32,7 +32,7 @@ shared_constants! {
         PATH_SAME_PLANE: f32 = 0.005;
         /// Roughness below which gloss is that of a mirror: its lobe is narrower than some pixels.
         PATH_SHARP: f32 = 0.1;
-        /// Alphas that neighbouring pixels' mirror images are apart from which gloss is that of a mirror.
+        /// Alphas that neighboring pixels' mirror images are apart from which gloss is that of a mirror.
         PATH_APART: f32 = 1.5;
         /// Directions among which the one of a ray of the diffuse base is drawn.
         PATH_CANDIDATES: u32 = 8;
@@ -46,7 +46,7 @@ shared_constants! {
         PATH_PLAIN_GLOSS: f32 = 0.1;
         /// See [`PATH_PLAIN_GLOSS`].
         PATH_CURVED: f32 = 0.3;
-        /// Part of all rays that one is of a gloss of which no means over neighbours are taken: there are some per pixel.
+        /// Part of all rays that one is of a gloss of which no means over neighbors are taken: there are some per pixel.
         PATH_CURVED_SHARE: f32 = 0.25;
         /// The inner part of such a gloss that rays are drawn from.
         PATH_CURVED_PART: f32 = 0.8;

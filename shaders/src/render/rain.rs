@@ -61,7 +61,7 @@ shared_constants! {
         DROPS_LOOP: u32 = 2;
         /// Streaks show what drops refract and reflect.
         STREAK_REFRACTED: u32 = 0;
-        /// Streaks have one colour, the mean of the surroundings.
+        /// Streaks have one color, the mean of the surroundings.
         STREAK_WHITE: u32 = 1;
         /// Rays of the means of the streak radiance table along an edge of the picture.
         STREAK_RAYS: u32 = 17;
@@ -77,11 +77,11 @@ shared_constants! {
         STREAK_MEAN_THIRD: f32 = 0.6287067;
         /// See `STREAK_MEAN_FIRST`.
         STREAK_MEAN_FOURTH: f32 = 0.5385973;
-        /// Radius of the disc of points of a mean, over that of the spheroid that is meant by the mode (2,0).
+        /// Radius of the disk of points of a mean, over that of the spheroid that is meant by the mode (2,0).
         STREAK_MEAN_REACH: f32 = 1.25;
-        /// Width of a point of a mean, in radii of its disc: the square root of pi over the points.
+        /// Width of a point of a mean, in radii of its disk: the square root of pi over the points.
         STREAK_MEAN_WIDTH: f32 = 0.15666;
-        /// Least squared cosine at the rim of the disc of points.
+        /// Least squared cosine at the rim of the disk of points.
         STREAK_MEAN_RIM: f32 = 0.02;
         /// Chord samples across a drop as far apart as what they show is smoothed, for loops.
         STREAK_FINE: u32 = 36;
@@ -131,7 +131,7 @@ shared_constants! {
         STREAK_GOLDEN: u32 = 40503;
         /// The least width of a glint, in radii.
         DROPS_GLINT: f32 = 0.03;
-        /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disc.
+        /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disk.
         DROPS_LINE: f32 = 1.2533141;
         /// Place of Gauss's two points: 1 / sqrt(3).
         STREAK_GAUSS: f32 = 0.57735026;

@@ -1,5 +1,5 @@
-// Directions of light among those of a streak atlas. The frame of a streak: z towards the viewer, y the drop's axis as
-// the picture shows it, x to the right. The half sphere x >= 0 is mapped to the unit disc by (y, z) / (1 + x).
+// Directions of light among those of a streak atlas. The frame of a streak: z toward the viewer, y the drop's axis as
+// the picture shows it, x to the right. The half sphere x >= 0 is mapped to the unit disk by (y, z) / (1 + x).
 // Twin: downpour_atlas::lookup.
 
 struct AtlasFrame {
@@ -45,7 +45,7 @@ struct AtlasPlace {
     side: f32,
     // Weights of the three directions; together 1.
     weights: vec3f,
-    // The radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius with as much light.
+    // The radiance, in 1/sr for an irradiance of 1, of a disk of the equivalent radius with as much light.
     amount: f32,
     // Weights of the higher diameter and of the higher elevation.
     parts: vec2f,

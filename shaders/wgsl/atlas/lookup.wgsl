@@ -29,7 +29,7 @@ fn atlas_lookup_amount(grid: u32, cell: vec4f) -> f32 {
     return below * (1.0 - cell.w) + above * cell.w;
 }
 
-// The streak of a drop's id, diameter in metres and axis, and the unit vectors to its light and viewer.
+// The streak of a drop's id, diameter in meters and axis, and the unit vectors to its light and viewer.
 fn atlas_lookup_place(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: vec3f) -> AtlasPlace {
     let counts = atlas_data_frame.counts;
     let within = atlas_light(light, view, axis);

@@ -3,7 +3,7 @@
 struct AtlasQuery {
     // From the drop to its light, a unit vector.
     light: vec3f,
-    // Equivalent diameter in metres.
+    // Equivalent diameter in meters.
     diameter: f32,
     // From the drop to its viewer, a unit vector.
     view: vec3f,

@@ -1,10 +1,10 @@
-// Terminal fall speed of water drops, and relaxation towards it.
+// Terminal fall speed of water drops, and relaxation toward it.
 //
 // Law: K. V. Beard, J. Atmos. Sci. 33, 851 (1976): three regimes, by temperature and pressure, for diameters
 // up to 7 mm; the speed is held constant beyond. The two tables and the five fits of other authors hold for
 // 20 C and 1013.25 hPa; in other air they are multiplied by (rho0/rho)^0.4 (Foote & du Toit 1969).
-// Relaxation towards the terminal speed v with quadratic drag: v/(2g) vertically, v/g across.
-// Units: diameters in metres, speeds in m/s, times in seconds. Diameters above 9 mm are not drops.
+// Relaxation toward the terminal speed v with quadratic drag: v/(2g) vertically, v/g across.
+// Units: diameters in meters, speeds in m/s, times in seconds. Diameters above 9 mm are not drops.
 // Twin: downpour_drop::fall_speed, which also computes FallSpeedAir, in f64, from temperature and pressure.
 
 // Properties of air and water that the models need. Eight numbers, 32 bytes.

@@ -10,7 +10,7 @@
 @group(0) @binding(5) var<storage, read_write> glass_claim_wet: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read> glass_claim_totals: array<u32>;
 
-// Claims the disc of a drop; a moving drop also wets it.
+// Claims the disk of a drop; a moving drop also wets it.
 fn glass_claim_drop(cell: vec2i) {
     let index = glass_frame_index(glass_claim_frame, cell);
     let mass = glass_claim_mass[index];

@@ -6,7 +6,7 @@
 
 // Properties of a drop of a mass.
 struct GlassSizeRow {
-    // Radius of the wetted disc, in cells / 256.
+    // Radius of the wetted disk, in cells / 256.
     radius: u32,
     // Retention by the contact line (Furmidge) in one tick, in units of velocity.
     hold: u32,

@@ -54,7 +54,7 @@ fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
     let incident = vec3f(0.0, 0.0, -1.0);
     let index = mask_model.index;
     let entry_normal = mask_model_normal(hit);
-    let entry = optics_fresnel_polarised(max(entry_normal.z, 0.0), index);
+    let entry = optics_fresnel_polarized(max(entry_normal.z, 0.0), index);
     let entered = 1.0 - (entry.x + entry.y) * 0.5;
     let reflected = normalize(optics_reflect(incident, entry_normal));
     let inside = normalize(optics_refract(incident, entry_normal, 1.0 / index).xyz);
@@ -63,12 +63,12 @@ fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
     if exit.lost > 0.0 {
         return texel;
     }
-    var polarised = 0.0;
+    var polarized = 0.0;
     if exit.reflections == 0.0 {
-        polarised = (entry.y - entry.x) * 0.5 * mask_trace_plane_turn(inside, entry_normal, exit.normal);
+        polarized = (entry.y - entry.x) * 0.5 * mask_trace_plane_turn(inside, entry_normal, exit.normal);
     }
     let leaving = mask_trace_reflectance(exit, index);
-    let through = entered * (1.0 - (leaving.x + leaving.y) * 0.5) + polarised * (leaving.y - leaving.x) * 0.5;
+    let through = entered * (1.0 - (leaving.x + leaving.y) * 0.5) + polarized * (leaving.y - leaving.x) * 0.5;
     texel.direction = normalize(exit.outside);
     texel.transmittance = through;
     texel.internal = texel.direction;
@@ -79,16 +79,16 @@ fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
         return texel;
     }
     let kept = entered - through;
-    var kept_polarised = (entered * (leaving.x - leaving.y) + polarised * (leaving.x + leaving.y)) * 0.5;
+    var kept_polarized = (entered * (leaving.x - leaving.y) + polarized * (leaving.x + leaving.y)) * 0.5;
     if second.reflections == 0.0 {
-        kept_polarised *= mask_trace_plane_turn(back, exit.normal, second.normal);
+        kept_polarized *= mask_trace_plane_turn(back, exit.normal, second.normal);
     } else {
-        kept_polarised = 0.0;
+        kept_polarized = 0.0;
     }
     let last = mask_trace_reflectance(second, index);
     texel.internal = normalize(second.outside);
     texel.internal_transmittance =
-        kept * (1.0 - (last.x + last.y) * 0.5) + kept_polarised * (last.y - last.x) * 0.5;
+        kept * (1.0 - (last.x + last.y) * 0.5) + kept_polarized * (last.y - last.x) * 0.5;
     return texel;
 }
 
@@ -107,18 +107,18 @@ fn mask_model_sample(x: f32, y: f32, i: u32) -> vec2f {
 fn mask_model_texel(x: f32, y: f32) -> MaskTexel {
     let nothing = MaskTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0u);
     let half_width = 0.5 * mask_model.pixel;
-    let centre = mask_model_hit(x, y);
+    let center = mask_model_hit(x, y);
     var corners = 0u;
     for (var k = 0u; k < 4u; k += 1u) {
         let dx = select(half_width, -half_width, (k & 1u) == 0u);
         let dy = select(half_width, -half_width, (k & 2u) == 0u);
         corners += select(0u, 1u, mask_model_hit(x + dx, y + dy).distance >= 0.0);
     }
-    if centre.distance < 0.0 && corners == 0u {
+    if center.distance < 0.0 && corners == 0u {
         return nothing;
     }
-    if centre.distance >= 0.0 && corners == 4u {
-        return mask_model_through(x, y, centre, 1.0);
+    if center.distance >= 0.0 && corners == 4u {
+        return mask_model_through(x, y, center, 1.0);
     }
     // The outline cuts the texel.
     let n = MASK_MODEL_SUBSAMPLES * MASK_MODEL_SUBSAMPLES;

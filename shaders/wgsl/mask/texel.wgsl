@@ -8,11 +8,11 @@ struct MaskTexel {
     coverage: f32,
     // Direction of the light that is seen by reflection on the outside.
     reflected: vec3f,
-    // Share of unpolarised light that comes through.
+    // Share of unpolarized light that comes through.
     transmittance: f32,
     // Direction of the light that is seen after one reflection inside that was not total.
     internal: vec3f,
-    // Share of unpolarised light that comes so.
+    // Share of unpolarized light that comes so.
     internal_transmittance: f32,
     // Total reflections inside.
     reflections: u32,

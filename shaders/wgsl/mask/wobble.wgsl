@@ -1,10 +1,10 @@
 // A ray through a drop that oscillates, for pictures of many: to where its light leaves, three times over.
 // The surface is r = rho(x) f(x, h) scale with f = 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h. p is a point, x = -p.y / |p| and
 // h = p.x / |p|. Lengths are in units of the volume-equivalent radius; the drop's origin is at 0, its axis is +Y, the lobe of
-// the mode (3,1) is towards +X. The gauge squared is G = |p|^2 / r^2. With q = rho' / rho + f_x / f and k = f_h / f,
+// the mode (3,1) is toward +X. The gauge squared is G = |p|^2 / r^2. With q = rho' / rho + f_x / f and k = f_h / f,
 // 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2.
 // The surface is met by the steps of mask_trace_step from the spheroid that the mode (2,0) makes of the drop.
-// Law: at each interface light is split into what leaves and what stays, unpolarised each time; what is left after the third
+// Law: at each interface light is split into what leaves and what stays, unpolarized each time; what is left after the third
 // exit leaves with it.
 // Limits: a drop is taken to be met once on the way in and once on the way out; light that has not left after
 // MASK_WOBBLE_BOUNCES interfaces is not followed.

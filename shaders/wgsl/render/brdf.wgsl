@@ -29,7 +29,7 @@ fn brdf_fresnel(normal_reflectance: vec3f, cosine: f32) -> vec3f {
     return normal_reflectance + (vec3f(1.0) - normal_reflectance) * fifth;
 }
 
-// Radiance towards the viewer for light of irradiance pi from one direction, cosine at the surface included.
+// Radiance toward the viewer for light of irradiance pi from one direction, cosine at the surface included.
 fn brdf_direct(
     diffuse: vec3f, normal_reflectance: vec3f, alpha: f32,
     normal: vec3f, view: vec3f, light: vec3f,
@@ -65,7 +65,7 @@ fn brdf_visible_normal(view: vec3f, alpha: f32, a: f32, b: f32) -> vec3f {
         level = vec3f(-v.y, v.x, 0.0) / sqrt(flat_part);
     }
     let rising = cross(v, level);
-    // A point of the disc that the hemisphere of normals shows: half of it is foreshortened.
+    // A point of the disk that the hemisphere of normals shows: half of it is foreshortened.
     let radius = sqrt(a);
     let angle = 6.2831853 * b;
     let x = radius * cos(angle);

@@ -1,6 +1,6 @@
 // Choice of the streaks of an atlas that a drop shows under a lamp: that of atlas/lookup.wgsl, out of a table of numbers that
 // stands behind the scattering of drops.
-// Law: an amount is the radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius that sends as much
+// Law: an amount is the radiance, in 1/sr for an irradiance of 1, of a disk of the equivalent radius that sends as much
 // light to the viewer as the drop of the streak does.
 // Twin: downpour_render::rain::light::atlas, where the rows are laid out.
 
@@ -59,7 +59,7 @@ fn drop_atlas_position(first: u32, value: f32) -> f32 {
     );
 }
 
-// The streak of a drop's id, diameter in metres and axis, and the unit vectors to its light and viewer.
+// The streak of a drop's id, diameter in meters and axis, and the unit vectors to its light and viewer.
 fn drop_atlas_place(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: vec3f) -> AtlasPlace {
     let counts = vec4u(drop_atlas_row(DROP_ATLAS_COUNTS));
     let head = drop_atlas_row(DROP_ATLAS_PICK);

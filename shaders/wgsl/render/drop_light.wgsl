@@ -1,4 +1,4 @@
-// Light of lamps and sun on falling drops: for each drop the mean radiance over its disc, and its brightest glints.
+// Light of lamps and sun on falling drops: for each drop the mean radiance over its disk, and its brightest glints.
 // Forms: geometric optics of a sphere, by a table over the scattering angle; the streaks of an atlas; the formula of Rousseau 2006, section 6; the
 // cones of Im & Sung 2022, section III.C. One ray per drop and lamp says what of the lamp is hidden.
 // Twin: downpour_render::rain::light, where the method is described.
@@ -18,14 +18,14 @@ struct DropLightFrame {
     terms: u32,
 }
 
-// Place relative to the scene's origin, and radius, metres. For the atlas then for each drop its axis, against its motion
+// Place relative to the scene's origin, and radius, meters. For the atlas then for each drop its axis, against its motion
 // as the eye sees it, and its id.
 @group(0) @binding(6) var<storage, read> drop_light_drops: array<vec4f>;
 // For each drop its mean radiance, then its glints: their part of the mean, and their place, packed. Or its streaks: their part
 // of the mean, and -1 if it is mirrored, else 1; the three layers, and the weight of the first; the weight of the second, those of the
 // higher diameter and of the higher elevation, and 0. Or its
 // lamps in the form of Rousseau 2006: the irradiance over pi, and -1 less what the formula gives on the mean; the direction. Or its
-// lamps for the profile of its streak: the irradiance, and the chord from the middle to the edge of the disc (in the form of
+// lamps for the profile of its streak: the irradiance, and the chord from the middle to the edge of the disk (in the form of
 // Rousseau 2006 the irradiance over pi, and -1); the direction, and how bright the drop is by it.
 @group(0) @binding(8) var<storage, read_write> drop_light_out: array<vec4f>;
 @group(0) @binding(9) var<uniform> drop_light_frame: DropLightFrame;
@@ -66,7 +66,7 @@ fn drop_light_cone(light: RenderLight, place: vec3f, least: f32) -> vec3f {
     return light.color * (share / square);
 }
 
-// The mean over a drop's disc of what Rousseau's formula gives at its pixels.
+// The mean over a drop's disk of what Rousseau's formula gives at its pixels.
 fn drop_light_mean(towards: vec3f, light: vec3f, terms: u32) -> f32 {
     let right = drop_glint_right(towards);
     let up = cross(right, towards);
@@ -122,12 +122,12 @@ fn drop_light_keep_streak(first: u32, radiance: vec3f, place: AtlasPlace) {
     }
 }
 
-// The chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
+// The chord from the middle to the edge of a lamp's disk: that of the sun where the lamp has no size.
 fn drop_light_reach(light: RenderLight) -> f32 {
     return max(light.chord, DROP_LIGHT_REACH);
 }
 
-// Mean radiance of a lamp over a drop's whole disc, from the lamp's irradiance over pi and its direction.
+// Mean radiance of a lamp over a drop's whole disk, from the lamp's irradiance over pi and its direction.
 fn drop_light_whole(lit: vec3f, direction: vec3f, towards: vec3f) -> vec3f {
     if drop_light_frame.form == DROP_LIGHT_LAMPS_ROUSSEAU {
         return lit * drop_light_mean(towards, direction, drop_light_frame.terms);

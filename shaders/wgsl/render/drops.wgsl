@@ -25,7 +25,7 @@ fn drops_light_row(index: u32) -> u32 {
     return index * (1u + drops_frame.glints);
 }
 
-// Light of lamps at a place of a drop's disc, in radii: its glints as spots of some width, and the rest everywhere.
+// Light of lamps at a place of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
 fn drops_spots(index: u32, at: vec2f, width: f32) -> vec3f {
     let row = drops_light_row(index);
     var light = drops_light[row].rgb;
@@ -127,7 +127,7 @@ fn drops_beads(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
     return max(light, vec3f(0.0));
 }
 
-// A spot of unit mean over the disc, summed along a line that passes it at some distance; all in radii.
+// A spot of unit mean over the disk, summed along a line that passes it at some distance; all in radii.
 fn drops_line(off: f32, width: f32) -> f32 {
     return DROPS_LINE / width * exp(-0.5 * off * off / (width * width));
 }
@@ -260,7 +260,7 @@ fn drops_depth(drop: DropsDrop, x: u32, y: u32) -> f32 {
     return drop.distance * streak_depth(drop.recede, streak_time(drop.recede, way));
 }
 
-// A drop over a pixel whose scene is `scene` metres away: radiance times coverage, and coverage.
+// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
 fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     let drop = drops_list[index];
     var shown = vec4f(0.0);
@@ -272,7 +272,7 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     if shown.w <= 0.0 {
         return shown;
     }
-    if drops_frame.streak_colour == STREAK_WHITE {
+    if drops_frame.streak_color == STREAK_WHITE {
         shown = vec4f(drops_capture_texel(drops_frame.capture_last, 0, 0) * shown.w, shown.w);
     }
     // A drop that meets a surface goes into it over its own size.
@@ -282,7 +282,7 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
 
 // Mean radiance of an unresolved drop before a pixel.
 fn drops_medium(x: u32, y: u32) -> vec3f {
-    if drops_frame.streak_colour == STREAK_WHITE {
+    if drops_frame.streak_color == STREAK_WHITE {
         return drops_capture_texel(drops_frame.capture_last, 0, 0);
     }
     let size = vec2f(f32(drops_frame.camera.width), f32(drops_frame.camera.height));

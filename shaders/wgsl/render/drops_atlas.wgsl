@@ -1,8 +1,8 @@
 // The patterns of an atlas between their texels. They stand behind the masks: columns, rows, half of the width in equivalent
 // radii; layers from an elevation to the next, layers from a diameter to the next, a word of nothing; then halves, two a word: layers,
 // rows, columns, and at the end of each row its mean.
-// Law: over the width and a turn the mean of a layer is that of a disc of even light, so that a texel says how many times
-// as bright it is as the disc would be, in the time in which the drop moves on by its diameter. So is that of any mixture.
+// Law: over the width and a turn the mean of a layer is that of a disk of even light, so that a texel says how many times
+// as bright it is as the disk would be, in the time in which the drop moves on by its diameter. So is that of any mixture.
 // Twin: downpour_render::rain::drops_atlas.
 
 // Three layers of the lower diameter and elevation, -1 if they are to be mirrored, else 1; weights of the three, weights of the higher

@@ -59,7 +59,7 @@ fn drops_capture_at(place: vec2f, footprint: f32) -> vec3f {
 }
 
 // The place in the papers' capture of a ray that is turned by a drop: the refracted ray, in the frame of the drop's view (right, up,
-// towards the viewer), meets the plane of the capture as far from the ray's own place as the tangent of its deviation.
+// toward the viewer), meets the plane of the capture as far from the ray's own place as the tangent of its deviation.
 fn drops_capture_shifted(ray: vec3f, direction: vec3f) -> vec2f {
     let depth = max(dot(ray, drops_frame.capture_forward), 1.0e-3);
     let deep = max(-direction.z, 1.0e-3);

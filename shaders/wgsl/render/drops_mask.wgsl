@@ -4,7 +4,7 @@
 
 // Values of a mask at a point.
 struct DropsTexel {
-    // Direction of the light that comes through, in the frame of the view: right, up, towards the viewer.
+    // Direction of the light that comes through, in the frame of the view: right, up, toward the viewer.
     direction: vec3f,
     coverage: f32,
     reflected: vec3f,

@@ -18,11 +18,11 @@ struct GlassPictureFrame {
     down: vec3f,
     rows: u32,
     outward: vec3f,
-    // Bins in a metre.
+    // Bins in a meter.
     bins: f32,
     // From the eye to the pane's upper left corner.
     corner: vec3f,
-    // Cells of the lattice in a metre.
+    // Cells of the lattice in a meter.
     cells: f32,
     size: vec2f,
     wet_size: vec2u,
@@ -44,7 +44,7 @@ struct GlassPictureFrame {
     // Refractive indices.
     water: f32,
     first_row: u32,
-    // Lamps, and the least radius of the discs of drops that show them, m.
+    // Lamps, and the least radius of the disks of drops that show them, m.
     lights: u32,
     lit_from: f32,
     unused: vec2u,
@@ -100,8 +100,8 @@ fn glass_picture_film(place: vec2f) -> vec3f {
             sum += vec3f(wx.x * wy.x, wx.y * wy.x, wx.x * wy.y) * wet;
         }
     }
-    let per_metre = glass_picture_frame.film * glass_picture_frame.cells;
-    return vec3f(sum.x * glass_picture_frame.film, sum.y * per_metre, sum.z * per_metre);
+    let per_meter = glass_picture_frame.film * glass_picture_frame.cells;
+    return vec3f(sum.x * glass_picture_frame.film, sum.y * per_meter, sum.z * per_meter);
 }
 
 // Weight of the cell before, at or after a place, and how it changes; t is -0.5 to 0.5.
@@ -243,7 +243,7 @@ fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint
     let to = direction + from_eye / clamp(distance, 0.1, GLASS_PICTURE_FAR);
     let place = glass_picture_project(to);
     let texels = max(footprint / glass_picture_frame.camera.pixel_angle, 1.0);
-    // Towards the picture's edge the capture takes over, within the footprint.
+    // Toward the picture's edge the capture takes over, within the footprint.
     let at = vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) + shift / size;
     let inside = min(min(at.x, 1.0 - at.x) * size.x, min(at.y, 1.0 - at.y) * size.y);
     let share = select(0.0, clamp((inside + 0.5) / texels, 0.0, 1.0), place.z > 0.0);
@@ -271,7 +271,7 @@ fn glass_picture_world(v: vec3f) -> vec3f {
     return glass_picture_frame.across * v.x + glass_picture_frame.down * v.y + glass_picture_frame.outward * v.z;
 }
 
-// Radiance of the interior ambient along a ray that leaves water towards the eye's side, in a direction of the pane.
+// Radiance of the interior ambient along a ray that leaves water toward the eye's side, in a direction of the pane.
 fn glass_picture_inside(v: vec3f) -> vec3f {
     let aside = v.xy * glass_picture_frame.water;
     let out = vec3f(aside, -sqrt(max(1.0 - dot(aside, aside), 1.0e-4)));
@@ -293,7 +293,7 @@ fn glass_picture_outer(cosine: f32, met: GlassPictureMet, within: f32) -> f32 {
 }
 
 // Radiance along a ray that meets the pane at a position, in a direction of the pane. `from_eye` is that position
-// relative to the eye; `spread` are the angle between neighbouring rays, and their distance on the pane.
+// relative to the eye; `spread` are the angle between neighboring rays, and their distance on the pane.
 fn glass_picture_through(place: vec2f, d: vec3f, from_eye: vec3f, shift: vec2f, spread: vec2f) -> vec3f {
     let water = glass_picture_frame.water;
     let aside = d.xy / water;

@@ -1,6 +1,6 @@
 // Lamps and the sun as a drop on a pane shows them: bright spots, the quasi-caustic highlights of Tatarchuk and Isidoro 2006.
 // Law: a drop is a lens that images a source of light; radiance times solid angle is the irradiance that comes through. The
-// image is spread over what neighbouring rays see apart, or over the source where that is larger; its sum stays.
+// image is spread over what neighboring rays see apart, or over the source where that is larger; its sum stays.
 // Twin: downpour_render::glass::light.
 
 struct GlassPictureLight {
@@ -9,7 +9,7 @@ struct GlassPictureLight {
     // Half the angle that it takes, radians.
     radius: f32,
     // Irradiance at the eye of a surface that faces it.
-    colour: vec3f,
+    color: vec3f,
     // From the eye, m.
     distance: f32,
 }
@@ -29,5 +29,5 @@ fn glass_picture_light_seen(light: GlassPictureLight, from_eye: vec3f, direction
     let width = footprint * GLASS_PICTURE_LIGHT_WIDTH;
     let radius = sqrt(light.radius * light.radius + width * width);
     let nearer = light.distance * light.distance / squared;
-    return light.colour * (nearer * glass_picture_light_lobe(dot(away, away), radius));
+    return light.color * (nearer * glass_picture_light_lobe(dot(away, away), radius));
 }

@@ -1,13 +1,13 @@
-// Water on a pane as smooth surfaces: each drop is a cap of a sphere over its disc, with an outline that is not quite round,
+// Water on a pane as smooth surfaces: each drop is a cap of a sphere over its disk, with an outline that is not quite round,
 // drawn out behind if it runs, and steeper on the side to which its weight pulls it (from the receding angle to the
 // advancing one).
-// Metres on the pane: x right, y down it, z out of it, away from the eye.
+// Meters on the pane: x right, y down it, z out of it, away from the eye.
 // Twin: downpour_render::glass::water.
 
 struct GlassPictureDrop {
-    // Middle of the disc.
-    centre: vec2f,
-    // Radius of the disc, and of the sphere whose cap it is.
+    // Middle of the disk.
+    center: vec2f,
+    // Radius of the disk, and of the sphere whose cap it is.
     radius: f32,
     sphere: f32,
     // Direction in which it runs, of length 1.
@@ -25,7 +25,7 @@ struct GlassPictureDrop {
 
 // Height over the glass, and its slopes along x and y. Beyond the outline the height is below 0.
 fn glass_picture_water_cap(drop: GlassPictureDrop, place: vec2f) -> vec3f {
-    let away = place - drop.centre;
+    let away = place - drop.center;
     let ahead = away.x * drop.along.x + away.y * drop.along.y;
     let stretch = select(drop.behind, 1.0, ahead > 0.0);
     let x = ahead * stretch;
@@ -57,7 +57,7 @@ fn glass_picture_water_top(drop: GlassPictureDrop) -> f32 {
 }
 
 // Height at which a ray that enters a drop at a place of the glass leaves it. `aside` is how far it goes along the pane for
-// each metre away from it. The bracket of regula falsi (Illinois).
+// each meter away from it. The bracket of regula falsi (Illinois).
 fn glass_picture_water_leave(drop: GlassPictureDrop, place: vec2f, aside: vec2f) -> f32 {
     var low = 0.0;
     var high = glass_picture_water_top(drop);

@@ -1,4 +1,4 @@
-// Light of lamps and sun that unresolved drops scatter towards the eye, before a pixel.
+// Light of lamps and sun that unresolved drops scatter toward the eye, before a pixel.
 // Law: single scattering, L = Int sigma(s) exp(-tau(s)) E(s) p(angle(s)) ds, with the drops' phase function p. For a lamp at the
 // distance h from the ray the angle runs evenly along the ray as seen from the lamp, ds / r^2 = d angle / h, so that a part of
 // the ray between two angles needs but the integral of p over them (a table), and is exact however near the lamp is.

@@ -27,9 +27,9 @@ fn pane_shadow_level(texels: u32, level: u32, place: vec2f) -> vec2f {
     return upper * (1.0 - part.y) + lower * part.y;
 }
 
-// Cover and gathered cover round a place of [0, 1], over a width in metres.
+// Cover and gathered cover round a place of [0, 1], over a width in meters.
 fn pane_shadow_at(pane: RenderPane, place: vec2f, width: f32) -> vec2f {
-    let texels = width * pane.texels_per_metre;
+    let texels = width * pane.texels_per_meter;
     let level = clamp(log2(max(texels, 1.0)), 0.0, f32(pane.last));
     let low = floor(level);
     let part = level - low;

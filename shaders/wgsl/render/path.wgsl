@@ -1,7 +1,7 @@
 // Path of a ray of the camera: surfaces, water, and the light that comes to them from lamps, sky and one another.
 // Twin: downpour_trace::path, where the method is described.
 
-// Light of which means are taken over neighbouring pixels.
+// Light of which means are taken over neighboring pixels.
 struct PathSlot {
     light: vec3f,
     // Largest distance of another position from the plane; 0: there is no light.
@@ -129,10 +129,10 @@ fn path_open(surface: Surface) -> vec3f {
 }
 
 // The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
-// neighbouring pixels are taken of what they find; `free`: of what the gloss shows, too.
+// neighboring pixels are taken of what they find; `free`: of what the gloss shows, too.
 fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bool) -> PathPlan {
     let cosine = max(dot(surface.normal, view), 0.0);
-    // Neighbouring pixels mirror directions as far apart as this.
+    // Neighboring pixels mirror directions as far apart as this.
     let spread = 2.0 * surface.bend * footprint / max(cosine, 0.2);
     let sharp = surface.roughness < PATH_SHARP;
     let gloss = scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
@@ -176,7 +176,7 @@ fn path_water_ray(ripple: vec3f, roughness: f32, view: vec3f, cone: f32, a: f32,
     return ScatterRay(along, cone + PUDDLE_WATER_CONE, vec3f(0.0), roughness, vec3f(share));
 }
 
-// Fraction of light that water mirrors towards a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
+// Fraction of light that water mirrors toward a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
 // has no noise.
 fn path_water_share(ripple: vec3f, view: vec3f) -> f32 {
     let count = select(1u, PATH_WATER_FACETS, ripple.z > PUDDLE_WATER_RIPPLED);
@@ -246,7 +246,7 @@ fn path_candidate(surface: Surface, a: f32, b: f32, number: f32, share: f32) -> 
         if dot(surface.facet, along) <= 0.0 {
             continue;
         }
-        let width = sqrt(SCATTER_DISC * share / (f32(PATH_CANDIDATES) * sqrt(max(1.0 - x, 0.01))));
+        let width = sqrt(SCATTER_DISK * share / (f32(PATH_CANDIDATES) * sqrt(max(1.0 - x, 0.01))));
         let seen = sky_cone(along, width);
         let light = seen.x + seen.y + seen.z + least;
         sum += light;
@@ -463,7 +463,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     } else if !unlit {
                         plan = path_plan(found, -towards, cone * hit.distance, told, free && !under);
                     }
-                    // Neighbouring pixels are on one plane if they are no farther from it than this.
+                    // Neighboring pixels are on one plane if they are no farther from it than this.
                     let from_eye = found.position - origin;
                     slack = sqrt(dot(from_eye, from_eye)) * (cone * 2.0 + SKYLIGHT_SLACK);
                     break;

@@ -14,7 +14,7 @@ struct RenderPuddle {
     ripples: vec4f,
     // Albedo of deep water.
     murk: vec3f,
-    // Fraction of light that is lost per metre of water, 1/m.
+    // Fraction of light that is lost per meter of water, 1/m.
     extinction: f32,
     // Depth of full ripples, and the puddle's own part of the lattice.
     own: vec3f,

@@ -174,7 +174,7 @@ fn puddle_water_refracted(direction: vec3f, normal: vec3f) -> vec3f {
     return along / sqrt(dot(along, along));
 }
 
-// The direction beneath level water of light from above, both towards where it comes from.
+// The direction beneath level water of light from above, both toward where it comes from.
 fn puddle_water_beneath(direction: vec3f) -> vec3f {
     let x = direction.x / PUDDLE_WATER_INDEX;
     let z = direction.z / PUDDLE_WATER_INDEX;

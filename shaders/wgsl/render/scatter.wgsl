@@ -87,7 +87,7 @@ fn scatter_draw(
     // All densities times pi.
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
     let density = max(glossy * chance + cosine * (1.0 - chance), SCATTER_SMALLEST);
-    ray.width = min(sqrt(SCATTER_DISC * share / density), SCATTER_MAX_WIDTH);
+    ray.width = min(sqrt(SCATTER_DISK * share / density), SCATTER_MAX_WIDTH);
     if chance < 1.0 {
         ray.diffuse = (vec3f(1.0) - fresnel) * (cosine / density);
     }
@@ -103,7 +103,7 @@ fn scatter_mirror(surface: Surface, view: vec3f) -> ScatterRay {
     let cosine = max(dot(surface.normal, view), 0.0);
     let along = surface.normal * (2.0 * dot(surface.normal, view)) - view;
     let density = brdf_visible_density(scatter_alpha(surface.roughness), 1.0, max(cosine, BRDF_GRAZING));
-    let width = min(sqrt(SCATTER_DISC / max(density, SCATTER_SMALLEST)), SCATTER_MAX_WIDTH);
+    let width = min(sqrt(SCATTER_DISK / max(density, SCATTER_SMALLEST)), SCATTER_MAX_WIDTH);
     return ScatterRay(scatter_above(surface.facet, along), width, vec3f(0.0), surface.roughness, vec3f(1.0));
 }
 

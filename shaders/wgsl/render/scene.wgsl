@@ -95,7 +95,7 @@ fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> S
     return arrival;
 }
 
-// Light of one lamp on a surface, towards the viewer, if nothing is between them.
+// Light of one lamp on a surface, toward the viewer, if nothing is between them.
 fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival) -> vec3f {
     if dot(surface.facet, light.direction) <= 0.0 {
         return vec3f(0.0);
@@ -106,7 +106,7 @@ fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival) -> vec3f {
     );
 }
 
-// Light of lamps and sun on a surface, towards the viewer. With `draws` of 0, or of at least as many as there are, all lamps
+// Light of lamps and sun on a surface, toward the viewer. With `draws` of 0, or of at least as many as there are, all lamps
 // are asked whether something hides them; else so many are drawn by what each would give (`chance` in [0, 1)), for all of
 // them. `standoff` and `under`: scene_arrival.
 fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff: f32, under: vec2f) -> vec3f {

@@ -35,7 +35,7 @@ fn sky_level(level: u32, direction: vec3f) -> vec3f {
 
 // The sky as a ray sees it that is as wide as `width` at distance 1.
 fn sky_cone(direction: vec3f, width: f32) -> vec3f {
-    // Texels of the map across the ray; a texel between its neighbours is wider than one alone.
+    // Texels of the map across the ray; a texel between its neighbors is wider than one alone.
     let texels = width * f32(render_frame.sky_levels[0].y) * SKY_CONE_TEXELS;
     let level = min(log2(max(texels, 1.0)), f32(SCENE_SKY_LEVELS - 1u));
     let below = u32(level);

@@ -4,7 +4,7 @@
 // Twin: downpour_trace::skylight, where the method is described.
 
 @group(0) @binding(1) var<storage, read> skylight_gather: array<TraceGather>;
-// Means of each pixel's two slots: colour, and the variance of its luminance.
+// Means of each pixel's two slots: color, and the variance of its luminance.
 @group(0) @binding(2) var<storage, read> skylight_before: array<vec4f>;
 @group(0) @binding(3) var<storage, read_write> skylight_means: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> skylight_picture: array<vec4f>;

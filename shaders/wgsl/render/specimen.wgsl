@@ -1,11 +1,11 @@
 // One exact drop, large, in front of a sky map.
 // Law: geometrical optics with all orders of light. A ray of the camera is reflected and refracted where it enters
 // the drop, and again wherever it meets the surface from inside; each branch that leaves carries the share that
-// Fresnel's equations for unpolarised light give it, and the radiance of the sky where it goes.
+// Fresnel's equations for unpolarized light give it, and the radiance of the sky where it goes.
 // Lengths are in units of the drop's volume-equivalent radius; the frame is the world's: +Y up, the drop's origin
 // at 0. Radiance is linear, in the units of the map.
 // Sky map: equirectangular, u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top, bilinear between the
-// middles of texels, round in u. To its light come lamps far away: discs of even radiance on the sphere of the sky.
+// middles of texels, round in u. To its light come lamps far away: disks of even radiance on the sphere of the sky.
 // Limits: light that has left the drop does not meet it again (it is convex up to 5.9 mm); 256 internal reflections.
 // Twin: downpour_specimen.
 
@@ -31,7 +31,7 @@ struct SpecimenView {
     // First row of the band, and its number of rows.
     first_row: u32,
     rows: u32,
-    // Bit c: the colour c is written.
+    // Bit c: the color c is written.
     channels: u32,
 }
 
@@ -56,7 +56,7 @@ struct SpecimenLight {
     inside: vec3f,
 }
 
-// A disc of the sky: towards its middle, the squared chord from there to its edge, and its radiance. Zeros are no lamp.
+// A disk of the sky: toward its middle, the squared chord from there to its edge, and its radiance. Zeros are no lamp.
 struct SpecimenLamp {
     direction: vec3f,
     reach: f32,

@@ -62,7 +62,7 @@ fn specimen_wobble_cross(
         at_b = specimen_wobble_along(drop, origin, direction, b);
         found = side * at_b.x > 0.0;
         if !found && side * at_a.y > 0.0 && side * at_b.y < 0.0 {
-            // G turns towards the other side: its extremum by the rule of the false position.
+            // G turns toward the other side: its extremum by the rule of the false position.
             var low = vec2f(a, at_a.y);
             var high = vec2f(b, at_b.y);
             for (var m = 0u; m < SPECIMEN_WOBBLE_TURNS; m += 1u) {

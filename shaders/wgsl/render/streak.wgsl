@@ -14,7 +14,7 @@
 struct DropsDrop {
     // From the eye to the drop's middle, of length 1.
     towards: vec3f,
-    // Metres from the eye.
+    // Meters from the eye.
     distance: f32,
     // Place of the middle on the picture, pixels from the top left.
     place: vec2f,

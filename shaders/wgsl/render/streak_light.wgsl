@@ -3,7 +3,7 @@
 // Law: the light that a ray brings is that of the directions in which it leaves the drop, weighted by what Fresnel's equations
 // give each. Between the rays that were traced, directions go as a polynomial of degree two across, along and in time, from ray to
 // ray that pass as many interfaces. So the ray's own patch of the drop is known: how wide the surroundings are averaged, and where
-// in the patch a lamp shines, whose disc (or, where the patch's points are farther apart, a spot that some of them meet) is sampled.
+// in the patch a lamp shines, whose disk (or, where the patch's points are farther apart, a spot that some of them meet) is sampled.
 // Light lost inside has the mean radiance of the environment, without lamps: it travels around the rim and comes out there.
 // Layout: behind the chords of streak_rays.wgsl, for each row of the profile and each fine column the light of the chord's first
 // part, of the first two, three and of all four, each over the length of the whole chord.
@@ -15,7 +15,7 @@
 @group(0) @binding(4) var<storage, read> streak_light_jobs: array<vec2u>;
 @group(0) @binding(5) var<storage, read> streak_light_rays: array<StreakRay>;
 // For each path the mean of what is not told lamp by lamp, then two rows for each lamp: its irradiance and the chord from the
-// middle to the edge of its disc (below 0: its irradiance over pi, in the form of Rousseau 2006); its direction.
+// middle to the edge of its disk (below 0: its irradiance over pi, in the form of Rousseau 2006); its direction.
 @group(0) @binding(6) var<storage, read> streak_light_lamps: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> streak_light_table: array<vec4f>;
 
@@ -64,7 +64,7 @@ fn streak_light_exit(path: StreakPath, row: i32, column: i32, tap: i32, number: 
     );
 }
 
-// The change between an exit's neighbours, as far as their light went the same way.
+// The change between an exit's neighbors, as far as their light went the same way.
 fn streak_light_change(before: StreakExit, here: StreakExit, after: StreakExit) -> StreakChange {
     let has_before = before.passed == here.passed;
     let has_after = after.passed == here.passed;
@@ -84,7 +84,7 @@ fn streak_light_change(before: StreakExit, here: StreakExit, after: StreakExit) 
     return StreakChange(vec3f(0.0), 0.0, vec3f(0.0));
 }
 
-// The mixed second difference, from the two neighbours on a diagonal.
+// The mixed second difference, from the two neighbors on a diagonal.
 fn streak_light_mixed(
     before: StreakExit,
     here: StreakExit,
@@ -162,9 +162,9 @@ fn streak_light_size(ray: StreakPatch, later: f32) -> vec2f {
     return sqrt(vec2f(dot(across, across), dot(along, along)));
 }
 
-// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disc. Its radiance is that of an
-// irradiance of 1. `reach`: the chord from the middle to the edge of the disc; `span`: rays between two rows of the profile;
-// `shift` tells the points of a patch from its neighbours'.
+// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that of an
+// irradiance of 1. `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the profile;
+// `shift` tells the points of a patch from its neighbors'.
 fn streak_light_spot(
     ray: StreakPatch,
     later: f32,
@@ -194,7 +194,7 @@ fn streak_light_spot(
         let apart = streak_light_direction(ray, vec3f(place.xy, later + place.z * span)) - lamp;
         let off = dot(apart, apart) / (wide * wide);
         if off < 1.0 {
-            // A disc, or a spot that fades towards its edge.
+            // A disk, or a spot that fades toward its edge.
             let faded = select(1.0, 2.0 * (1.0 - off), spot > reach);
             spots[min(u32(point.x * f32(fine)), fine - 1u)] += radiance * faded;
         }

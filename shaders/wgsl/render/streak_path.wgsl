@@ -16,7 +16,7 @@ struct StreakPath {
     tall: f32,
     // Refractive index of water relative to air.
     index: f32,
-    // Cosine and sine of the azimuth of the lobe of the mode (3,1), from +X towards +Z.
+    // Cosine and sine of the azimuth of the lobe of the mode (3,1), from +X toward +Z.
     lobe: vec2f,
     // Amplitudes of the modes (2,0) and (3,1), over the radius.
     amplitudes: vec2f,
@@ -47,7 +47,7 @@ struct StreakInstant {
     pace: f32,
 }
 
-// A ray in the frame of the drop, whose lobe is towards +X: the point on the plane, and the direction.
+// A ray in the frame of the drop, whose lobe is toward +X: the point on the plane, and the direction.
 struct StreakLine {
     origin: vec3f,
     direction: vec3f,

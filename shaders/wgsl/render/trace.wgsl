@@ -2,13 +2,13 @@
 // compiles the walk through the scene anew for each.
 // Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others are
 // taken to do so too. Light of sky and surfaces on the first surface leaves the picture's kernel as what one pixel has found
-// of it; skylight.wgsl takes means over neighbours.
+// of it; skylight.wgsl takes means over neighbors.
 // Twin: downpour_trace::trace.
 
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> trace_gather: array<TraceGather>;
 
-// Light of which means are taken over neighbouring pixels, packed.
+// Light of which means are taken over neighboring pixels, packed.
 struct TraceSlot {
     place: vec3f,
     // The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.

@@ -87,7 +87,7 @@ fn read(a: &mut Args<'_>) -> GlassPictureDrop {
 const CAP: Tol = Tol::relative(
     2.0e-5,
     2.0e-6,
-    "two roots (2.5 ulp) whose difference is a height of a tenth of a millimetre, in metres; slopes of about 1",
+    "two roots (2.5 ulp) whose difference is a height of a tenth of a millimeter, in meters; slopes of about 1",
 );
 
 /// The cases.
@@ -196,7 +196,7 @@ fn pane(keys: &str) -> GlassPicture {
     pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, texels as usize).expect("a picture")
 }
 
-/// Smooth light of some colours, at distances of 1 to 30 m.
+/// Smooth light of some colors, at distances of 1 to 30 m.
 fn light(k: u32, width: u32) -> [f32; 4] {
     let (x, y) = ((k % width) as f32 / width as f32, (k / width) as f32 / width as f32);
     [1.0 + x, 1.0 + y * y, 2.0 - x * y, 1.0 + 29.0 * x]

@@ -293,7 +293,7 @@ fn seeds(gpu: &Gpu) -> Result<Run, GpuError> {
             }
         })
         .collect();
-    let wake = Wake { from_m: [0.1, 0.1], to_m: [0.12, 0.13], radius_m: 0.03, draught_m: 2.0e-3 };
+    let wake = Wake { from_m: [0.1, 0.1], to_m: [0.12, 0.13], radius_m: 0.03, draft_m: 2.0e-3 };
     cpu.seed(&impacts).expect("drops");
     cpu.displace(&wake).expect("a wake");
     on_gpu.seed(&impacts).map_err(told)?;
@@ -366,7 +366,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             },
         },
         KernelCase {
-            name: "main_lattice_puddle_step_direct: water of degree 1, whose diagonal neighbours have a weight",
+            name: "main_lattice_puddle_step_direct: water of degree 1, whose diagonal neighbors have a weight",
             kernel: &DIRECT_KERNEL,
             with: &[],
             overrides: &[],

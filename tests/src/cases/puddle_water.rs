@@ -112,7 +112,7 @@ fn bank() -> (SceneData, PuddleMap) {
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &[0, 1, 2, 0, 2, 3],
         material,
     };

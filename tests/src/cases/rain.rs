@@ -342,7 +342,7 @@ const OUTLINED: Tol = Tol::relative(
 const PROFILED: Tol = Tol::relative(
     1.0e-2,
     5.0e-3,
-    "the outlines and the capture above; a point of a patch at the edge of a lamp's disc may fall on either side",
+    "the outlines and the capture above; a point of a patch at the edge of a lamp's disk may fall on either side",
 )
 .with_outliers(2.0e-2);
 

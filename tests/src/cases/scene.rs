@@ -49,8 +49,8 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let cosine = Uniform(0.02, 1.0);
     let share = Uniform(0.0, 1.0);
     let alpha = Uniform(0.05, 1.0);
-    let colour = [Uniform(0.0, 1.0); 3];
-    let [r, g, b] = colour;
+    let color = [Uniform(0.0, 1.0); 3];
+    let [r, g, b] = color;
     vec![
         FunctionCase::new(
             "brdf_distribution",
@@ -209,15 +209,15 @@ pub(super) fn scene() -> SceneData {
     let noise: Vec<[u8; 4]> = (0..32 * 16)
         .map(|i| downpour_math::rng::rng_pcg4d([i, 1, 2, 3]).map(|w| (rng_unit(w) * 255.0) as u8))
         .collect();
-    let mut colour = builder.texture(32, 16, &noise, TextureUse::Colour);
-    colour.matrix = [2.0, 0.5, -0.5, 2.0];
-    let colour = builder.add_slot(colour);
+    let mut color = builder.texture(32, 16, &noise, TextureUse::Color);
+    color.matrix = [2.0, 0.5, -0.5, 2.0];
+    let color = builder.add_slot(color);
     let data = builder.texture(32, 16, &noise, TextureUse::Data);
     let data = builder.add_slot(data);
     let plain = MaterialLook::default();
     let looks = [
-        MaterialLook { maps: [Some(colour), None, None, None, None, None], roughness: 0.6, ..plain },
-        MaterialLook { metallic: 1.0, roughness: 0.25, base_colour: [0.9, 0.6, 0.3, 1.0], ..plain },
+        MaterialLook { maps: [Some(color), None, None, None, None, None], roughness: 0.6, ..plain },
+        MaterialLook { metallic: 1.0, roughness: 0.25, base_color: [0.9, 0.6, 0.3, 1.0], ..plain },
         MaterialLook {
             maps: [None, Some(data), Some(data), None, Some(data), None],
             roughness: 0.8,
@@ -225,11 +225,11 @@ pub(super) fn scene() -> SceneData {
         },
         MaterialLook {
             flags: SCENE_MASKED | SCENE_DOUBLE_SIDED,
-            maps: [Some(colour), None, None, None, None, None],
+            maps: [Some(color), None, None, None, None, None],
             ..plain
         },
-        MaterialLook { flags: SCENE_BLENDED, base_colour: [0.2, 0.9, 0.4, 0.4], ..plain },
-        MaterialLook { flags: SCENE_UNLIT, base_colour: [1.0, 0.2, 0.7, 1.0], ..plain },
+        MaterialLook { flags: SCENE_BLENDED, base_color: [0.2, 0.9, 0.4, 0.4], ..plain },
+        MaterialLook { flags: SCENE_UNLIT, base_color: [1.0, 0.2, 0.7, 1.0], ..plain },
         MaterialLook { transmission: 0.8, roughness: 0.1, emission: [0.1, 0.0, 0.2], ..plain },
     ];
     let materials = looks.map(|look| builder.add_material(look));
@@ -261,7 +261,7 @@ pub(super) fn scene() -> SceneData {
             normals: None,
             tangents: Some(&tangents),
             uvs: [Some(&uvs), None],
-            colours: None,
+            colors: None,
             indices: &indices,
             material,
         };

@@ -24,7 +24,7 @@ use downpour_sim::step::{
 use downpour_sim::view::View;
 use downpour_sim::volume::{
     VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
-    volume_offset, volume_on_disc, volume_range, volume_spread,
+    volume_offset, volume_on_disk, volume_range, volume_spread,
 };
 use downpour_wind::{
     Keyed, UniformWind, Wind, WindCore, WindField, WindForm, WindGrid, WindMask, WindPart, WindPrimitive,
@@ -242,8 +242,8 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             sphere,
             |a| volume_in_sphere(vec3(a), a.f32()).to_array().words(),
         ),
-        FunctionCase::new("volume_on_disc", &VOLUME, &[share, share], sphere, |a| {
-            volume_on_disc(Vec2::new(a.f32(), a.f32())).to_array().words()
+        FunctionCase::new("volume_on_disk", &VOLUME, &[share, share], sphere, |a| {
+            volume_on_disk(Vec2::new(a.f32(), a.f32())).to_array().words()
         }),
         FunctionCase::new("step_kind", &STEP, &[AnyWord], Tol::exact("bits of a word"), |a| {
             step_kind(a.u32()).words()
@@ -289,7 +289,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "enter_offset",
             &ENTER,
             &[Made(region_words), Unit3, Unit3, share, share, share, share],
-            Tol::absolute(2.0e-5, "roots, a quotient and products of numbers up to 3; at the edge of the disc or by chance it may be none")
+            Tol::absolute(2.0e-5, "roots, a quotient and products of numbers up to 3; at the edge of the disk or by chance it may be none")
                 .with_outliers(1.0e-3),
             |a| enter_offset(&region(a), vec3(a), vec3(a), vec3(a), a.f32()).to_array().words(),
         ),
@@ -554,7 +554,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         case(
             "main_step: what happened",
             &[],
-            Tol::exact("sorted by drop; places to the millimetre").with_outliers(2.0e-2),
+            Tol::exact("sorted by drop; places to the millimeter").with_outliers(2.0e-2),
             |gpu| {
                 happened_case(
                     gpu,

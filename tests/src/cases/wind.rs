@@ -42,8 +42,8 @@ fn matrix_words(random: [u32; 4]) -> Vec<u32> {
     // The up of an updraft is as long as the updraft.
     let up = if kind > 6.5 && kind < 7.5 { axis * (6.0 + 10.0 * a) } else { axis };
     let strength = 80.0 * b - 40.0;
-    let centre = [8.0 * c - 4.0, 8.0 * d - 4.0, 8.0 * a - 4.0];
-    [[kind, strength, 1.0 + 2.0 * c], centre, up.to_array()].words()
+    let center = [8.0 * c - 4.0, 8.0 * d - 4.0, 8.0 * a - 4.0];
+    [[kind, strength, 1.0 + 2.0 * c], center, up.to_array()].words()
 }
 
 fn matrix(args: &mut Args<'_>) -> WindMatrix {

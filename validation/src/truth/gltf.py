@@ -94,19 +94,19 @@ def material(file, index, kind):
     look = found.get("pbrMetallicRoughness", {})
     base = look.get("baseColorFactor", [1, 1, 1, 1])
     roughness, metallic = look.get("roughnessFactor", 1.0), look.get("metallicFactor", 1.0)
-    colour = {"type": "rgb", "value": base[:3]}
+    color = {"type": "rgb", "value": base[:3]}
     if "baseColorTexture" in look:
-        colour = texture(file, look["baseColorTexture"], False)
+        color = texture(file, look["baseColorTexture"], False)
     if "metallicRoughnessTexture" in look:
         used = look["metallicRoughnessTexture"]
         roughness, metallic = channel(file, used, 1, roughness), channel(file, used, 2, metallic)
     if kind == "principled":
-        bsdf = {"type": "principled", "base_color": colour, "roughness": roughness, "metallic": metallic, "specular": 0.5}
+        bsdf = {"type": "principled", "base_color": color, "roughness": roughness, "metallic": metallic, "specular": 0.5}
         if not isinstance(roughness, dict):
             bsdf["roughness"] = max(roughness, 0.03)
     else:
         number = lambda value: value if isinstance(value, dict) else {"type": "rgb", "value": [float(value)] * 3}
-        bsdf = {"type": "gltf", "base": colour, "roughness": number(roughness), "metallic": number(metallic)}
+        bsdf = {"type": "gltf", "base": color, "roughness": number(roughness), "metallic": number(metallic)}
     two_sided = {"type": "twosided", "inner": bsdf} if kind == "principled" else bsdf
     glow = found.get("emissiveFactor")
     strength = found.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)

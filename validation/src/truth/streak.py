@@ -2,7 +2,7 @@
 prints `name value` lines.
 
 Each instant is a mesh file, its drop where it is at that time; Mitsuba's own path tracer draws the rows round it, with the sky
-hidden where it is seen directly. What is left out of a pixel over all instants shows the sky. A lamp is a bright disc a kilometre
+hidden where it is seen directly. What is left out of a pixel over all instants shows the sky. A lamp is a bright disk a kilometer
 away, which the camera does not see directly.
 """
 

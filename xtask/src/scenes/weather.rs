@@ -111,7 +111,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
         ),
         file(
             "puddles.toml",
-            "The street at night: puddles in the hollows of the road and along the kerbs, and one painted on the pavement.",
+            "The street at night: puddles in the hollows of the road and along the curbs, and one painted on the pavement.",
             night.clone(),
             &[
                 &rain(25),

@@ -22,7 +22,7 @@ const MIN_DIAMETER_M: f64 = 0.2e-3;
 const MAX_DIAMETER_M: f64 = 7.5e-3;
 
 impl GlassOptions {
-    /// Number of drops that land on a square metre of the pane per second, from rain, tilt and speed.
+    /// Number of drops that land on a square meter of the pane per second, from rain, tilt and speed.
     ///
     /// # Errors
     /// [`GlassError::Rain`] if the rain is not valid.

@@ -6,7 +6,7 @@ use downpour_shaders::lattice::glass::GLASS_LANDING_QUADS;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassSizeRow {
-    /// Radius of the wetted disc, in cells / 256.
+    /// Radius of the wetted disk, in cells / 256.
     pub radius: u32,
     /// Retention by the contact line in one tick, in units of velocity.
     pub hold: u32,

@@ -75,7 +75,7 @@ pub struct PuddleOptions {
     /// Longest wavelength that has to be accurate, m; `None`: 40 cells. A shorter one gives a lower degree or smaller
     /// errors.
     pub longest_wave_m: Option<f32>,
-    /// Degree of the operator, 1 to 12: number of passes over the neighbours per time step. `None`: the lowest with
+    /// Degree of the operator, 1 to 12: number of passes over the neighbors per time step. `None`: the lowest with
     /// errors of the phase speed below 2.5 %, or 12. The membrane has 1.
     pub degree: Option<u32>,
     /// Maximum number of sub-steps of one call of `step`: 1 to 64.

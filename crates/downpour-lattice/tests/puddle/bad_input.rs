@@ -175,12 +175,12 @@ fn impacts_and_objects_have_ranges() {
     // Positions beyond the lattice are no error: rain falls beside a puddle too.
     puddle.seed(&[Impact { position_m: [-50.0, 1.0e5], ..good }]).expect("a drop elsewhere");
     assert!(puddle.heights().iter().all(|&h| h == 0.0));
-    let wake = Wake { from_m: [0.1, 0.1], to_m: [0.11, 0.1], radius_m: 0.02, draught_m: 2.0e-3 };
+    let wake = Wake { from_m: [0.1, 0.1], to_m: [0.11, 0.1], radius_m: 0.02, draft_m: 2.0e-3 };
     for bad in [
         Wake { radius_m: 0.0, ..wake },
         Wake { radius_m: f32::NAN, ..wake },
-        Wake { draught_m: 0.006, ..wake },
-        Wake { draught_m: -1.0, ..wake },
+        Wake { draft_m: 0.006, ..wake },
+        Wake { draft_m: -1.0, ..wake },
         Wake { from_m: [f32::NAN, 0.0], ..wake },
     ] {
         puddle.displace(&bad).expect_err("a wake");

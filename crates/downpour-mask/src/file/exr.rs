@@ -3,7 +3,7 @@
 //! Channels: `R`, `G`, `B` direction through the drop, `A` coverage; `reflected.R`, `.G`, `.B` direction of the
 //! reflection outside; `transmittance.Y`; `internal.R`, `.G`, `.B` direction of light that was reflected inside once without
 //! being totally reflected; `internalTransmittance.Y`; `reflections.Y` total reflections inside. Directions are in the frame
-//! of the view (x right, y up, z towards the viewer). The attribute `downpourMask` holds the diameter, the half
+//! of the view (x right, y up, z toward the viewer). The attribute `downpourMask` holds the diameter, the half
 //! extent of the picture in equivalent radii, the view's elevation and the refractive index.
 //!
 //! The reader accepts files of this module's writer. The header is checked first: compression schemes whose decoders are

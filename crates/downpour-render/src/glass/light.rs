@@ -2,7 +2,7 @@
 //!
 //! Tatarchuk & Isidoro 2006, section 5, draw a quasi-caustic highlight in drops above a mass that an artist says. Here it is
 //! the image of the source in the lens that a drop is: as bright as its irradiance says, spread over what a pixel sees, so that
-//! the light in the picture does not depend on resolution. Sources are points or discs that no picture of the scene shows.
+//! the light in the picture does not depend on resolution. Sources are points or disks that no picture of the scene shows.
 
 use std::f32::consts::PI;
 
@@ -22,7 +22,7 @@ pub struct GlassPictureLight {
     /// Half the angle that it takes, radians.
     pub radius: f32,
     /// Irradiance at the eye of a surface that faces it.
-    pub colour: [f32; 3],
+    pub color: [f32; 3],
     /// From the eye, m.
     pub distance: f32,
 }
@@ -49,7 +49,7 @@ pub fn glass_picture_light_seen(
     let width = footprint * GLASS_PICTURE_LIGHT_WIDTH;
     let radius = (light.radius * light.radius + width * width).sqrt();
     let nearer = light.distance * light.distance / squared;
-    Vec3::from(light.colour) * (nearer * glass_picture_light_lobe(away.dot(away), radius))
+    Vec3::from(light.color) * (nearer * glass_picture_light_lobe(away.dot(away), radius))
 }
 
 /// The lamps and the sun that the eye sees, with one ray for what stands between.
@@ -57,13 +57,13 @@ pub(super) fn sources(lighting: &dyn Lighting, eye: Vec3) -> Vec<GlassPictureLig
     let source = |k: u32| {
         let light = lighting.light(k).light_sample(eye, 0.0);
         let lit = light.irradiance * PI;
-        let colour = lit * lighting.visibility(eye, light.direction, light.distance);
+        let color = lit * lighting.visibility(eye, light.direction, light.distance);
         let distance = light.distance.min(GLASS_PICTURE_FAR);
         let place = light.direction * distance;
-        (colour.max_element() > 0.0).then(|| GlassPictureLight {
+        (color.max_element() > 0.0).then(|| GlassPictureLight {
             place: place.into(),
             radius: light.spread,
-            colour: colour.into(),
+            color: color.into(),
             distance,
         })
     };

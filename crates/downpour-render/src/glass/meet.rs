@@ -53,8 +53,8 @@ impl Look<'_> {
                 sum += Vec3::new(wx.x * wy.x, wx.y * wy.x, wx.x * wy.y) * wet;
             }
         }
-        let per_metre = frame.film * frame.cells;
-        Vec3::new(sum.x * frame.film, sum.y * per_metre, sum.z * per_metre)
+        let per_meter = frame.film * frame.cells;
+        Vec3::new(sum.x * frame.film, sum.y * per_meter, sum.z * per_meter)
     }
 
     /// The surface that a ray leaves by, which enters the water at a place of the glass.

@@ -108,7 +108,7 @@ impl WetPane {
     }
 
     /// Corner (upper left), right, down and outward of the pane before an eye: positions relative to the same origin as the
-    /// eye, metres, and unit vectors.
+    /// eye, meters, and unit vectors.
     ///
     /// # Errors
     /// [`PaneError::EdgeOn`] if the eye looks along the pane, or what is wrong with the eye.
@@ -138,7 +138,7 @@ impl WetPane {
         Ok(Some(PaneShade::new(self.size, &drops, form, self.highlight_radius(), self.water as f32)))
     }
 
-    /// Radius, m, of the discs of drops from which on they are bright.
+    /// Radius, m, of the disks of drops from which on they are bright.
     fn highlight_radius(&self) -> f32 {
         let diameter = self.pane.highlight;
         self.glass.options().contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32
@@ -183,7 +183,7 @@ impl WetPane {
                 down: vector(place.down),
                 rows: binned.rows,
                 outward: vector(place.outward),
-                bins: binned.per_metre as f32,
+                bins: binned.per_meter as f32,
                 corner: vector(corner),
                 cells: (1.0 / options.cell_m) as f32,
                 size: [width as f32, height as f32],

@@ -24,7 +24,7 @@ struct Ray {
     from_eye: Vec3,
     /// From the sample's place in its pixel to the middle, pixels.
     shift: Vec2,
-    /// The angle between neighbouring rays.
+    /// The angle between neighboring rays.
     angle: f32,
     /// Their distance on the pane.
     apart: f32,
@@ -69,7 +69,7 @@ impl Look<'_> {
         across * v.x + down * v.y + outward * v.z
     }
 
-    /// Radiance of the interior ambient along a ray that leaves water towards the eye's side, in a direction of the pane.
+    /// Radiance of the interior ambient along a ray that leaves water toward the eye's side, in a direction of the pane.
     fn glass_picture_inside(&self, v: Vec3) -> Vec3 {
         let aside = v.truncate() * self.glass.frame.water;
         let out = aside.extend(-(1.0 - aside.dot(aside)).max(1.0e-4).sqrt());

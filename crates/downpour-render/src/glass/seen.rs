@@ -122,7 +122,7 @@ impl Look<'_> {
         let to = direction + from_eye / distance.clamp(0.1, GLASS_PICTURE_FAR);
         let place = self.glass_picture_project(to);
         let texels = (footprint / frame.camera.pixel_angle).max(1.0);
-        // Towards the picture's edge the capture takes over, within the footprint.
+        // Toward the picture's edge the capture takes over, within the footprint.
         let at = Vec2::new(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) + shift / size;
         let inside = (at.x.min(1.0 - at.x) * size.x).min(at.y.min(1.0 - at.y) * size.y);
         let share = if place.z > 0.0 { ((inside + 0.5) / texels).clamp(0.0, 1.0) } else { 0.0 };

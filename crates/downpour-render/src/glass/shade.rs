@@ -39,7 +39,7 @@ pub enum PaneShadows {
 #[derive(Clone, Debug)]
 pub struct PaneShade {
     size_m: [f32; 2],
-    per_metre: f32,
+    per_meter: f32,
     form: u32,
     /// Mean radius and focal length of the drops, m.
     mean: [f32; 2],
@@ -50,7 +50,7 @@ pub struct PaneShade {
 }
 
 impl PaneShade {
-    /// The shade of a pane of a size in metres with these drops. Those whose disc is at least `gathers_m` in radius gather
+    /// The shade of a pane of a size in meters with these drops. Those whose disk is at least `gathers_m` in radius gather
     /// light; `water` is their refractive index.
     #[must_use]
     pub fn new(
@@ -89,26 +89,26 @@ impl PaneShade {
         let texels =
             all.iter().map(|&[cover, gathered]| [byte(cover), byte(gathered / PANE_SHADOW_PEAK)]).collect();
         let form = if form == PaneShadows::Tatarchuk2006 { PANE_SHADOW_TATARCHUK } else { PANE_SHADOW_LENS };
-        Self { size_m: size_m.map(|edge| edge as f32), per_metre: 1.0 / edge, form, mean, levels, texels }
+        Self { size_m: size_m.map(|edge| edge as f32), per_meter: 1.0 / edge, form, mean, levels, texels }
     }
 }
 
 /// Adds a drop. Its gathered light is as much as its cover, texel by texel, whatever their edge.
 fn cast(texels: &mut [Vec2], [columns, rows]: [usize; 2], edge: f32, drop: &GlassPictureDrop, gathers: bool) {
-    let centre = Vec2::from(drop.centre);
+    let center = Vec2::from(drop.center);
     let reach = drop.radius * 1.5 / drop.behind;
     let range = |at: f32, most: usize| {
         let low = ((at - reach) / edge).floor().max(0.0) as usize;
         low.min(most)..(((at + reach) / edge).ceil().max(0.0) as usize).min(most)
     };
     let spot = |place: Vec2| {
-        let away = (place - centre).length_squared() / (drop.radius * drop.radius);
+        let away = (place - center).length_squared() / (drop.radius * drop.radius);
         if away < SPOT_END * SPOT_END { ops::exp(-0.5 * away / (SPOT * SPOT)) } else { 0.0 }
     };
     let (mut covered, mut spots) = (0.0, 0.0);
     for step in [false, true] {
-        for row in range(centre.y, rows) {
-            for column in range(centre.x, columns) {
+        for row in range(center.y, rows) {
+            for column in range(center.x, columns) {
                 let place = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * edge;
                 let cover = CORNERS
                     .iter()
@@ -144,7 +144,7 @@ impl PaneShade {
         let row = |v: Vec3, w: f32| [v.x, v.y, v.z, w].map(f32::to_bits);
         let form = f32::from_bits(self.form);
         let mut table = vec![
-            row(corner, self.per_metre),
+            row(corner, self.per_meter),
             row(across, self.size_m[0]),
             row(down, self.size_m[1]),
             row(outward, form),
@@ -167,10 +167,10 @@ impl PaneShade {
 /// A pane before the lamps as the shaders read it. Twin of the struct of the same name in `shaders/wgsl/render/pane.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderPane {
-    /// Upper left corner, metres.
+    /// Upper left corner, meters.
     pub corner: Vec3,
-    /// Texels in a metre.
-    pub texels_per_metre: f32,
+    /// Texels in a meter.
+    pub texels_per_meter: f32,
     /// Unit vector to the right.
     pub across: Vec3,
     /// Width, m.
@@ -200,7 +200,7 @@ impl RenderPane {
         let last = |k: usize| f32::from_bits(rows[k][3]);
         Self {
             corner: vector(0),
-            texels_per_metre: last(0),
+            texels_per_meter: last(0),
             across: vector(1),
             width: last(1),
             down: vector(2),
@@ -220,11 +220,11 @@ mod tests {
 
     use super::*;
 
-    /// A texel that no drop is on is clear, a drop covers its disc, and gathers as much.
+    /// A texel that no drop is on is clear, a drop covers its disk, and gathers as much.
     #[test]
-    fn a_drop_covers_its_disc_and_gathers_as_much() {
+    fn a_drop_covers_its_disk_and_gathers_as_much() {
         let drop = GlassPictureDrop {
-            centre: [0.01, 0.012],
+            center: [0.01, 0.012],
             radius: 2.0e-3,
             sphere: 2.5e-3,
             along: [0.0, 1.0],
@@ -238,12 +238,12 @@ mod tests {
         let area = |channel: usize, peak: f32| {
             finest.iter().map(|texel| f32::from(texel[channel]) / 255.0 * peak).sum::<f32>() * 6.25e-8
         };
-        let disc = PI * 4.0e-6;
-        assert!((area(0, 1.0) / disc - 1.0).abs() < 0.02, "{}", area(0, 1.0) / disc);
+        let disk = PI * 4.0e-6;
+        assert!((area(0, 1.0) / disk - 1.0).abs() < 0.02, "{}", area(0, 1.0) / disk);
         assert!(
-            (area(1, PANE_SHADOW_PEAK) / disc - 1.0).abs() < 0.03,
+            (area(1, PANE_SHADOW_PEAK) / disk - 1.0).abs() < 0.03,
             "{}",
-            area(1, PANE_SHADOW_PEAK) / disc
+            area(1, PANE_SHADOW_PEAK) / disk
         );
         assert_eq!(finest[0], [0, 0]);
         assert!((shade.mean[0] - 2.0e-3).abs() < 1.0e-8 && (shade.mean[1] - 2.5e-3 / 0.333).abs() < 1.0e-6);
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn small_drops_do_not_gather() {
         let drop = GlassPictureDrop {
-            centre: [0.01, 0.01],
+            center: [0.01, 0.01],
             radius: 1.0e-3,
             sphere: 1.2e-3,
             along: [0.0, 1.0],

@@ -1,18 +1,18 @@
 //! Water on a pane as smooth surfaces. Twin of `shaders/wgsl/render/glass_picture_water.wgsl`.
 //!
-//! Each drop is a cap of a sphere over its disc, with an outline that is not quite round, drawn out behind if it runs, and
+//! Each drop is a cap of a sphere over its disk, with an outline that is not quite round, drawn out behind if it runs, and
 //! steeper on the side to which its weight pulls it: from the receding angle to the advancing one.
 
 use downpour_shaders::render::glass::GLASS_PICTURE_TURNS;
 use glam::{Vec2, Vec3};
 
-/// A drop on a pane, in metres: x right, y down, z out of the pane. The same layout as `GlassPictureDrop` in WGSL.
+/// A drop on a pane, in meters: x right, y down, z out of the pane. The same layout as `GlassPictureDrop` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassPictureDrop {
-    /// Middle of the disc.
-    pub centre: [f32; 2],
-    /// Radius of the disc.
+    /// Middle of the disk.
+    pub center: [f32; 2],
+    /// Radius of the disk.
     pub radius: f32,
     /// Radius of the sphere whose cap it is.
     pub sphere: f32,
@@ -33,7 +33,7 @@ pub struct GlassPictureDrop {
 /// Height over the glass, and its slopes along x and y. Beyond the outline the height is below 0.
 #[must_use]
 pub fn glass_picture_water_cap(drop: &GlassPictureDrop, place: Vec2) -> Vec3 {
-    let away = place - Vec2::from(drop.centre);
+    let away = place - Vec2::from(drop.center);
     let (along, droop) = (Vec2::from(drop.along), Vec2::from(drop.droop));
     let ahead = away.x * along.x + away.y * along.y;
     let stretch = if ahead > 0.0 { 1.0 } else { drop.behind };
@@ -74,7 +74,7 @@ pub fn glass_picture_water_top(drop: &GlassPictureDrop) -> f32 {
 }
 
 /// Height at which a ray that enters a drop at a place of the glass leaves it. `aside` is how far it goes along the pane for
-/// each metre away from it. The bracket of regula falsi (Illinois).
+/// each meter away from it. The bracket of regula falsi (Illinois).
 #[must_use]
 pub fn glass_picture_water_leave(drop: &GlassPictureDrop, place: Vec2, aside: Vec2) -> f32 {
     let mut low = 0.0;

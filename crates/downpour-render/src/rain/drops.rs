@@ -31,7 +31,7 @@ pub fn drops_on_plane(towards: Vec3, ray: Vec3) -> Vec3 {
     ray / ray.dot(towards).max(1.0e-6) - towards
 }
 
-/// A spot of unit mean over the disc, summed along a line that passes it at some distance; all in radii.
+/// A spot of unit mean over the disk, summed along a line that passes it at some distance; all in radii.
 #[must_use]
 pub fn drops_line(off: f32, width: f32) -> f32 {
     DROPS_LINE / width * ops::exp(-0.5 * off * off / (width * width))
@@ -68,7 +68,7 @@ impl Buffers<'_> {
         self.light.get(first..first + stride).unwrap_or(&[[0.0; 4]])
     }
 
-    /// Light of lamps at a place of a drop's disc, in radii: its glints as spots of some width, and the rest everywhere.
+    /// Light of lamps at a place of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
     fn drops_spots(&self, index: u32, at: Vec2, width: f32) -> Vec3 {
         let row = self.drops_light_row(index);
         let mut light = Vec4::from(row[0]).truncate();
@@ -121,7 +121,7 @@ impl Buffers<'_> {
         light.max(Vec3::ZERO) * part
     }
 
-    /// The streaks of a drop's row of light: their colours, and where they are in the atlas.
+    /// The streaks of a drop's row of light: their colors, and where they are in the atlas.
     fn streaks(&self, index: u32) -> impl Iterator<Item = (Vec3, DropsAtlasStreak)> {
         let (streaks, _) = self.drops_light_row(index)[1..].as_chunks::<{ DROP_ATLAS_ROWS as usize }>();
         streaks.iter().filter(|[first, ..]| first[3] != 0.0).map(|rows| {
@@ -140,9 +140,9 @@ impl Buffers<'_> {
         let part = (chord.high - chord.low) * 0.5;
         let turns = drops_turns(drop, streak_nearest(drop, at));
         let mut light = Vec4::from(row[0]).truncate() * chord.share;
-        for (colour, streak) in self.streaks(index) {
+        for (color, streak) in self.streaks(index) {
             let shown = self.atlas().drops_atlas_across(&streak, -chord.aside, turns);
-            light += colour * (shown * 2.0 * chord.pace - chord.share);
+            light += color * (shown * 2.0 * chord.pace - chord.share);
         }
         light.max(Vec3::ZERO) * part
     }
@@ -158,14 +158,14 @@ impl Buffers<'_> {
         let square = way.dot(way).max(1.0);
         let at = (Vec2::new(x as f32, y as f32) + 0.5 - Vec2::from(drop.first)).dot(way) / square;
         let pixel = 1.0 / square.sqrt();
-        for (colour, streak) in self.streaks(index) {
+        for (color, streak) in self.streaks(index) {
             let mut mean = 0.0;
             for n in 0..DROPS_ATLAS_TAPS {
                 let off = (n as f32 + 0.5) / DROPS_ATLAS_TAPS as f32 - 0.5;
                 let turns = drops_turns(drop, (at + off * pixel).clamp(0.0, 1.0));
                 mean += self.atlas().drops_atlas_along(&streak, turns);
             }
-            light += colour * (mean / DROPS_ATLAS_TAPS as f32 - 1.0);
+            light += color * (mean / DROPS_ATLAS_TAPS as f32 - 1.0);
         }
         light.max(Vec3::ZERO)
     }
@@ -306,7 +306,7 @@ impl Buffers<'_> {
         drop.distance * streak_depth(drop.recede, streak_time(drop.recede, way))
     }
 
-    /// A drop over a pixel whose scene is `scene` metres away: radiance times coverage, and coverage.
+    /// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
     fn drops_pixel(&self, index: u32, x: u32, y: u32, scene: f32) -> Vec4 {
         let drop = &self.rain.list[index as usize];
         let mut shown = if drop.kind == DROPS_STILL {
@@ -317,7 +317,7 @@ impl Buffers<'_> {
         if shown.w <= 0.0 {
             return shown;
         }
-        if self.view.frame.streak_colour == STREAK_WHITE {
+        if self.view.frame.streak_color == STREAK_WHITE {
             let white = self.view.drops_capture_texel(self.view.frame.capture_last, 0, 0);
             shown = (white * shown.w).extend(shown.w);
         }
@@ -329,7 +329,7 @@ impl Buffers<'_> {
     /// Mean radiance of an unresolved drop before a pixel.
     fn drops_medium(&self, x: u32, y: u32) -> Vec3 {
         let frame = self.view.frame;
-        if frame.streak_colour == STREAK_WHITE {
+        if frame.streak_color == STREAK_WHITE {
             return self.view.drops_capture_texel(frame.capture_last, 0, 0);
         }
         let size = Vec2::new(frame.camera.width as f32, frame.camera.height as f32);

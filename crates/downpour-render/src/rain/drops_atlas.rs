@@ -16,7 +16,7 @@ pub(super) fn words(atlas: &StreakAtlas) -> Vec<u32> {
     let mut halves: Vec<half::f16> = Vec::new();
     let numbers = data.texels.iter().flat_map(|word| [*word as u16, (*word >> 16) as u16]);
     let numbers: Vec<half::f16> = numbers.map(half::f16::from_bits).collect();
-    // Over a whole layer the mean of a pattern is that of an even disc over the width.
+    // Over a whole layer the mean of a pattern is that of an even disk over the width.
     let scale = 4.0 * data.frame.half_extent * FRAC_1_PI / columns as f32;
     for row in numbers.chunks_exact(columns.max(1) as usize) {
         halves.extend(row);

@@ -56,7 +56,7 @@ impl DropsView<'_> {
     }
 
     /// The place in the papers' capture of a ray that is turned by a drop: the refracted ray, in the frame of the drop's view
-    /// (right, up, towards the viewer), meets the plane of the capture as far from the ray's own place as the tangent of its
+    /// (right, up, toward the viewer), meets the plane of the capture as far from the ray's own place as the tangent of its
     /// deviation.
     pub(super) fn drops_capture_shifted(&self, ray: Vec3, direction: Vec3) -> Vec2 {
         let frame = self.frame;

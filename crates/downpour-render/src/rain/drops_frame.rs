@@ -37,8 +37,8 @@ pub struct DropsFrame {
     pub light_terms: u32,
     /// Samples along the chord of a streak that is averaged by a loop.
     pub streak_samples: u32,
-    /// The colour of streaks.
-    pub streak_colour: u32,
+    /// The color of streaks.
+    pub streak_color: u32,
     /// Rows of light of each drop besides its mean: glints, or streaks of the atlas.
     pub glints: u32,
     /// First word of the atlas behind the masks; 0: there is none.
@@ -78,7 +78,7 @@ impl DropsFrame {
             tiles_across,
             light_terms: options.light.form.terms(),
             streak_samples,
-            streak_colour: options.exposure.colour as u32,
+            streak_color: options.exposure.colour as u32,
             glints: options.light.glints,
             atlas: if options.light.form == DropLightForm::Atlas { masks.atlas } else { 0 },
         }

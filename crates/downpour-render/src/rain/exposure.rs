@@ -26,7 +26,7 @@ pub enum StreakColour {
     /// Light that its drop refracts and reflects.
     #[default]
     Refracted = STREAK_REFRACTED,
-    /// One colour for all, the mean of the surroundings: the static streaks of Rousseau 2006, figure 9.
+    /// One color for all, the mean of the surroundings: the static streaks of Rousseau 2006, figure 9.
     White = STREAK_WHITE,
 }
 
@@ -67,7 +67,7 @@ pub struct Exposure {
     pub eye: EyeMotion,
     /// Method that averages streaks.
     pub samples: StreakSamples,
-    /// Their colour.
+    /// Their color.
     pub colour: StreakColour,
     /// Amplitudes of the oscillation of drops.
     pub oscillation: Amplitudes,

@@ -1,11 +1,11 @@
 //! Light of lamps and sun on falling drops. Twin of `shaders/wgsl/render/drop_light.wgsl`.
 //!
 //! A drop shows what is behind and round it through its mask; a lamp is far smaller than a texel of that. Here is what
-//! lamps add: for each drop the mean radiance over its disc, and where on the disc its brightest glints stand. Each lamp
+//! lamps add: for each drop the mean radiance over its disk, and where on the disk its brightest glints stand. Each lamp
 //! is looked up at the drop's own place (distance, cone, range), with one ray for what stands between.
 //!
-//! Law of the default form: a drop of radius a in an irradiance E sends E pi a^2 phase(theta) per steradian towards the
-//! eye ([`SphereScattering`](downpour_drop::optics::SphereScattering)); seen as a disc of pi a^2, its mean radiance is
+//! Law of the default form: a drop of radius a in an irradiance E sends E pi a^2 phase(theta) per steradian toward the
+//! eye ([`SphereScattering`](downpour_drop::optics::SphereScattering)); seen as a disk of pi a^2, its mean radiance is
 //! L = E phase(theta). The drop is a sphere: a flattened one has its bows elsewhere, but nearly the same mean.
 //!
 //! With the form [`DropLightForm::Atlas`] the drop's light is that of a streak atlas ([`downpour_atlas`], where its amount is
@@ -53,18 +53,18 @@ pub use table::DropLightTable;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum DropLightForm {
-    /// Geometric optics of a sphere of water: Fresnel's equations, orders 0 to 3, bows in their colours.
+    /// Geometric optics of a sphere of water: Fresnel's equations, orders 0 to 3, bows in their colors.
     #[default]
     Traced = DROP_LIGHT_TRACED,
     /// Rousseau 2006, section 6: `C_L DistFact (V_PE . V_N) (A_2 + A_3)`, as printed, without exponents, at each pixel by the
-    /// drop's normal there; a drop below a pixel shows the mean over its disc, a streak the mean over what passes. `C_L DistFact`
+    /// drop's normal there; a drop below a pixel shows the mean over its disk, a streak the mean over what passes. `C_L DistFact`
     /// is taken as the irradiance over pi at the drop: what a white surface shows.
     Rousseau2006 = DROP_LIGHT_ROUSSEAU,
     /// Of [`DropLightForm::Rousseau2006`] the term of external reflection alone: `A_1 A_2`.
     Rousseau2006External = DROP_LIGHT_ROUSSEAU | DROP_LIGHT_EXTERNAL << 8,
     /// Of [`DropLightForm::Rousseau2006`] the term of internal reflection alone: `A_1 A_3`.
     Rousseau2006Internal = DROP_LIGHT_ROUSSEAU | DROP_LIGHT_INTERNAL << 8,
-    /// Im & Sung 2022, equations (7) to (10): drops in a spot's cone have the light's colour, others nothing; point lights
+    /// Im & Sung 2022, equations (7) to (10): drops in a spot's cone have the light's color, others nothing; point lights
     /// and parallel ones are left out. The cone is as high as the lamp's range. Here its edge is soft, from the inner
     /// cone to the outer, and the intensity falls with the distance (their light has one intensity everywhere).
     ImSung2022 = DROP_LIGHT_IM_SUNG,
@@ -150,16 +150,16 @@ pub struct DropLightFrame {
     pub terms: u32,
 }
 
-/// A place on a drop's disc where light of a lamp leaves it.
+/// A place on a drop's disk where light of a lamp leaves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropGlint {
     /// Index of the lamp in the scene.
     pub light: u32,
     /// Internal reflections plus 1; 0: reflected at the outside.
     pub order: u32,
-    /// Place on the disc, radii along the right ([`drop_glint_right`]) and the up of the view.
+    /// Place on the disk, radii along the right ([`drop_glint_right`]) and the up of the view.
     pub place: Vec2,
-    /// Its part of the mean radiance over the disc: a glint that covers a share s of the disc is 1/s times as bright.
+    /// Its part of the mean radiance over the disk: a glint that covers a share s of the disk is 1/s times as bright.
     pub radiance: Vec3,
 }
 
@@ -191,7 +191,7 @@ pub(crate) fn drop_light_axes<'a>(drops: impl IntoIterator<Item = (&'a FallingDr
 /// Numbers of drops are below 2^24: single precision has them exactly.
 const DROP_IDS: u32 = 0x00ff_ffff;
 
-/// Drops as the light wants them: place relative to the scene's origin, and radius, metres.
+/// Drops as the light wants them: place relative to the scene's origin, and radius, meters.
 #[must_use]
 pub fn drop_light_rows<'a>(drops: impl IntoIterator<Item = &'a FallingDrop>) -> Vec<[f32; 4]> {
     let row = |drop: &FallingDrop| drop.position.as_vec3().extend(0.5 * drop.diameter).to_array();
@@ -202,7 +202,7 @@ impl<'a> DropLights<'a> {
     /// The lamps of a plate, seen from an eye.
     ///
     /// # Errors
-    /// [`RenderError::Light`] if a lamp's colour is not finite, or negative; [`RenderError::OutOfRange`] above 16 glints, or for
+    /// [`RenderError::Light`] if a lamp's color is not finite, or negative; [`RenderError::OutOfRange`] above 16 glints, or for
     /// the form of an atlas if the table has none.
     pub fn new(
         lighting: &'a dyn Lighting,
@@ -232,7 +232,7 @@ impl<'a> DropLights<'a> {
     }
 
     /// The lamps of a plate as the profiles of streaks want them: of each drop the brightest ones, two rows each (its irradiance,
-    /// and the chord from the middle to the edge of its disc; its direction), the others in the mean. In the form of
+    /// and the chord from the middle to the edge of its disk; its direction), the others in the mean. In the form of
     /// [`DropLightForm::Rousseau2006`] the irradiance is that over pi, and the chord is below 0. Other forms have no more than
     /// their mean; an atlas adds its streaks elsewhere.
     ///
@@ -277,7 +277,7 @@ impl<'a> DropLights<'a> {
 
     /// The light on drops ([`drop_light_rows`]; for an atlas then a row for each drop with its axis, against its motion, and its
     /// id below 2^24), in parallel; the same bits for any number of threads. For each drop
-    /// [`DropLights::stride`] rows: the mean radiance over its disc and 0; then its brightest glints in no order, their part
+    /// [`DropLights::stride`] rows: the mean radiance over its disk and 0; then its brightest glints in no order, their part
     /// of the mean and their place ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas:
     /// its streaks, three rows each as in the shader.
     #[must_use]
@@ -414,7 +414,7 @@ fn drop_light_entry(table: &DropLightTable, row: u32, angle: f32) -> Vec4 {
     here + (at((low + 1).min(last)) - here) * part
 }
 
-/// The mean over a drop's disc of what Rousseau's formula gives at its pixels.
+/// The mean over a drop's disk of what Rousseau's formula gives at its pixels.
 #[must_use]
 pub fn drop_light_mean(towards: Vec3, light: Vec3, terms: u32) -> f32 {
     let right = drop_glint_right(towards);

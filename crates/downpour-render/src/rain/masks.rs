@@ -1,7 +1,7 @@
 //! The masks of drops of all sizes from all elevations, packed for the shader.
 //!
 //! A drop's mask depends on its diameter (its shape) and on how far above or below it the viewer is. Masks are traced
-//! for diameters half a millimetre apart and elevations 30 degrees apart; the shader goes between them linearly.
+//! for diameters half a millimeter apart and elevations 30 degrees apart; the shader goes between them linearly.
 
 use downpour_math::OutOfRange;
 use std::sync::Arc;
@@ -22,10 +22,10 @@ use super::streak_path::StreakPath;
 
 /// Number of diameters, from a sphere to the largest drop that has a shape.
 pub const DIAMETERS: u32 = 18;
-/// Step from a diameter to the next, metres.
+/// Step from a diameter to the next, meters.
 pub const DIAMETER_STEP: f64 = 0.5e-3;
 
-/// Metres between the shapes for the rays of streaks, and their number.
+/// Meters between the shapes for the rays of streaks, and their number.
 const SHAPE_STEP: f64 = 0.1e-3;
 const SHAPES: u32 = 90;
 
@@ -93,7 +93,7 @@ impl DropMasks {
         Ok(masks)
     }
 
-    /// The same with a model in place of the drops' own shapes: scaled to their volume, its +Y up, its +Z towards the eye.
+    /// The same with a model in place of the drops' own shapes: scaled to their volume, its +Y up, its +Z toward the eye.
     /// Rays of streaks and the light of lamps keep those shapes.
     ///
     /// # Errors
@@ -182,12 +182,12 @@ impl DropMasks {
         }
     }
 
-    /// Area that a drop covers, seen from `elevation` radians above it, over that of the disc of its diameter.
+    /// Area that a drop covers, seen from `elevation` radians above it, over that of the disk of its diameter.
     pub(super) fn outline(&self, diameter: f32, elevation: f32) -> f64 {
         f64::from(self.place(diameter, elevation).area) / std::f64::consts::PI
     }
 
-    /// The shape of a drop of a diameter in metres, for the rays of its streak.
+    /// The shape of a drop of a diameter in meters, for the rays of its streak.
     pub(super) fn streak_shape(&self, diameter: f32) -> StreakPath {
         let last = self.shapes.len() - 1;
         let at = (diameter / SHAPE_STEP as f32 - 1.0).clamp(0.0, last as f32);

@@ -31,7 +31,7 @@ const NARROW: f32 = 4.0;
 const NARROW_SAMPLES: u32 = 8;
 const WIDE_SAMPLES: u32 = 5;
 
-/// Diameters, metres, of drops that oscillate.
+/// Diameters, meters, of drops that oscillate.
 const OSCILLATING: std::ops::RangeInclusive<f64> = 0.05e-3..=9.0e-3;
 
 /// A drop on the picture, and the pixels that it may touch.

@@ -13,7 +13,7 @@ use glam::{Vec2, Vec3};
 pub struct DropsDrop {
     /// From the eye to the drop's middle at mid-exposure, of length 1.
     pub towards: [f32; 3],
-    /// Metres from the eye, in the middle of its path.
+    /// Meters from the eye, in the middle of its path.
     pub distance: f32,
     /// Place of the middle on the picture, pixels from the top left.
     pub place: [f32; 2],

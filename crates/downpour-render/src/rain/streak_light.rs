@@ -57,7 +57,7 @@ struct StreakPatch {
     along_later: Vec3,
 }
 
-/// The change between an exit's neighbours, as far as their light went the same way.
+/// The change between an exit's neighbors, as far as their light went the same way.
 fn streak_light_change(before: &StreakExit, here: &StreakExit, after: &StreakExit) -> StreakChange {
     let has_before = before.passed == here.passed;
     let has_after = after.passed == here.passed;
@@ -81,7 +81,7 @@ fn streak_light_change(before: &StreakExit, here: &StreakExit, after: &StreakExi
     }
 }
 
-/// The mixed second difference, from the two neighbours on a diagonal.
+/// The mixed second difference, from the two neighbors on a diagonal.
 fn streak_light_mixed(
     before: &StreakExit,
     here: &StreakExit,
@@ -117,9 +117,9 @@ fn streak_light_size(ray: &StreakPatch, later: f32) -> Vec2 {
     Vec2::new(across.dot(across).sqrt(), along.dot(along).sqrt())
 }
 
-/// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disc. Its radiance is that
-/// of an irradiance of 1. `reach`: the chord from the middle to the edge of the disc; `span`: rays between two rows of the
-/// profile; `shift` tells the points of a patch from its neighbours'.
+/// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that
+/// of an irradiance of 1. `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the
+/// profile; `shift` tells the points of a patch from its neighbors'.
 fn streak_light_spot(
     ray: &StreakPatch,
     [later, span]: [f32; 2],
@@ -148,7 +148,7 @@ fn streak_light_spot(
         let apart = streak_light_direction(ray, Vec3::new(place.x, place.y, later + place.z * span)) - lamp;
         let off = apart.dot(apart) / (wide * wide);
         if off < 1.0 {
-            // A disc, or a spot that fades towards its edge.
+            // A disk, or a spot that fades toward its edge.
             let faded = if spot > reach { 2.0 * (1.0 - off) } else { 1.0 };
             spots[((point.x * fine as f32) as u32).min(fine - 1) as usize] += radiance * faded;
         }

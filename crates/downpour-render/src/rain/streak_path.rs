@@ -25,7 +25,7 @@ pub struct StreakPath {
     pub tall: f32,
     /// Refractive index of water relative to air.
     pub index: f32,
-    /// Cosine and sine of the azimuth of the lobe of the mode (3,1), from +X towards +Z.
+    /// Cosine and sine of the azimuth of the lobe of the mode (3,1), from +X toward +Z.
     pub lobe: [f32; 2],
     /// Amplitudes of the modes (2,0) and (3,1), over the radius.
     pub amplitudes: [f32; 2],

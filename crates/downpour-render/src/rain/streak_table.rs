@@ -30,7 +30,7 @@ impl DropsView<'_> {
             a31 * drop_oscillation_sine(phase(STREAK_MEAN_THIRD)),
         ];
         let body = path.streak_path_body(path.coefficients(), displacement);
-        // Evenly over a disc that holds the drop.
+        // Evenly over a disk that holds the drop.
         let reach = STREAK_MEAN_REACH / body.inverse_wide.min(body.inverse_tall).sqrt();
         let away = (number / STREAK_MEAN_POINTS as f32).sqrt();
         let angle = STREAK_TURN * phase(STREAK_MEAN_FIRST);

@@ -7,7 +7,7 @@ use downpour_weather::{Loaded, Weather};
 
 use super::DropMasks;
 
-/// The line of sodium, in metres: the wavelength at which water's index is taken.
+/// The line of sodium, in meters: the wavelength at which water's index is taken.
 const SODIUM_M: f64 = 589.3e-9;
 
 /// The coldest air, in Celsius, in which water's index is known.

@@ -45,15 +45,15 @@ impl Canvas {
     }
 
     /// Sets the color of a pixel. Positions outside the picture are ignored.
-    pub(super) fn set(&mut self, column: usize, row: usize, colour: [f32; 3]) {
+    pub(super) fn set(&mut self, column: usize, row: usize, color: [f32; 3]) {
         if let Some(pixel) = self.pixel(column, row) {
-            *pixel = colour;
+            *pixel = color;
         }
     }
 
-    pub(super) fn blend(&mut self, column: usize, row: usize, colour: [f32; 3], share: f32) {
+    pub(super) fn blend(&mut self, column: usize, row: usize, color: [f32; 3], share: f32) {
         if let Some(pixel) = self.pixel(column, row) {
-            for (old, new) in pixel.iter_mut().zip(colour) {
+            for (old, new) in pixel.iter_mut().zip(color) {
                 *old += (new - *old) * share;
             }
         }
@@ -76,7 +76,7 @@ impl Canvas {
 
     /// As sRGB.
     pub(super) fn pixels(&self) -> Vec<[u8; 3]> {
-        self.light.iter().map(|colour| colour.map(encoded)).collect()
+        self.light.iter().map(|color| color.map(encoded)).collect()
     }
 }
 

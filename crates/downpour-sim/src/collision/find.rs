@@ -18,11 +18,11 @@ pub struct CollisionHit {
     /// Fraction of the path, 0 to 1. For `COLLISION_OPEN`: the fraction that was followed, 1 except for paths across
     /// more than 31 borders of texels.
     pub fraction: f32,
-    /// Unit vector towards the side that the drop came from; 0 for `COLLISION_OPEN`.
+    /// Unit vector toward the side that the drop came from; 0 for `COLLISION_OPEN`.
     pub normal: Vec3,
 }
 
-/// Converts a position to map coordinates: texels across, texels along, metres of depth.
+/// Converts a position to map coordinates: texels across, texels along, meters of depth.
 #[must_use]
 pub fn collision_place(map: &CollisionFrame, at: Vec3) -> Vec3 {
     let offset = at - Vec3::from(map.low);
@@ -40,7 +40,7 @@ pub fn collision_turn(map: &CollisionFrame, normal: Vec3) -> Vec3 {
     Vec3::from(map.across) * normal.x + Vec3::from(map.along) * normal.y - Vec3::from(map.fall) * normal.z
 }
 
-/// Normal of a wall that stops a drop: against its path across the map. `way` is in texels and metres of depth.
+/// Normal of a wall that stops a drop: against its path across the map. `way` is in texels and meters of depth.
 #[must_use]
 pub fn collision_wall(map: &CollisionFrame, way: Vec3) -> Vec3 {
     let [width, height] = map.edge;

@@ -5,7 +5,7 @@ use downpour_shaders::render::path::{PATH_CANDIDATES, PATH_FLOOR, PATH_WATER_FAC
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_CONE, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_RIPPLED,
 };
-use downpour_shaders::render::scatter::SCATTER_DISC;
+use downpour_shaders::render::scatter::SCATTER_DISK;
 use glam::{Vec2, Vec3};
 
 use super::plan::{path_albedo, path_most};
@@ -35,7 +35,7 @@ pub(super) fn path_water_ray(
     }
 }
 
-/// Fraction of light that water mirrors towards a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
+/// Fraction of light that water mirrors toward a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
 /// has no noise.
 pub(super) fn path_water_share(ripple: Vec3, view: Vec3) -> f32 {
     let count = if ripple.z > PUDDLE_WATER_RIPPLED { PATH_WATER_FACETS } else { 1 };
@@ -96,7 +96,7 @@ impl SceneView<'_> {
             if surface.facet.dot(along) <= 0.0 {
                 continue;
             }
-            let width = (SCATTER_DISC * share / (PATH_CANDIDATES as f32 * (1.0 - x).max(0.01).sqrt())).sqrt();
+            let width = (SCATTER_DISK * share / (PATH_CANDIDATES as f32 * (1.0 - x).max(0.01).sqrt())).sqrt();
             let seen = self.data.sky_cone(along, width);
             let light = seen.x + seen.y + seen.z + floor;
             sum += light;

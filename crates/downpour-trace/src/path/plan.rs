@@ -29,7 +29,7 @@ pub(super) struct PathPlan {
     pub(super) share: f32,
     /// True if rays of the gloss are drawn from its lobe; else they are a mirror's.
     pub(super) drawn: bool,
-    /// True if what the gloss shows is averaged over neighbouring pixels.
+    /// True if what the gloss shows is averaged over neighboring pixels.
     pub(super) kept: bool,
     /// True if the light on what the gloss shows is averaged instead.
     pub(super) replaced: bool,
@@ -119,7 +119,7 @@ pub(super) fn path_glance(surface: &Surface, roughness: f32) -> Surface {
 
 impl SceneView<'_> {
     /// The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
-    /// neighbouring pixels are taken of what they find; `free`: of what the gloss shows, too.
+    /// neighboring pixels are taken of what they find; `free`: of what the gloss shows, too.
     pub(super) fn path_plan(
         &self,
         surface: &Surface,
@@ -129,7 +129,7 @@ impl SceneView<'_> {
         free: bool,
     ) -> PathPlan {
         let cosine = surface.normal.dot(view).max(0.0);
-        // Neighbouring pixels mirror directions as far apart as this.
+        // Neighboring pixels mirror directions as far apart as this.
         let spread = 2.0 * surface.bend * footprint / cosine.max(0.2);
         let sharp = surface.roughness < PATH_SHARP;
         let gloss =
@@ -137,7 +137,7 @@ impl SceneView<'_> {
         let body = path_albedo(surface);
         let rays = self.frame.sky_rays;
         let drawn = told && free && !sharp && rays > 0;
-        // Where neighbours mirror other things, a mean over them would be wider than the lobe.
+        // Where neighbors mirror other things, a mean over them would be wider than the lobe.
         let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
         let mut plan = PathPlan {
             body,

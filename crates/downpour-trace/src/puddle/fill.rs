@@ -41,7 +41,7 @@ pub fn fill(hollows: &Hollows<'_>) -> Vec<Option<f32>> {
         known[start] = true;
         while let Some(cell) = ahead.pop() {
             basin.push(cell);
-            for next in neighbours(hollows.size, cell) {
+            for next in neighbors(hollows.size, cell) {
                 if !known[next] && floods(next) {
                     known[next] = true;
                     ahead.push(next);
@@ -84,7 +84,7 @@ fn spill_levels(hollows: &Hollows<'_>) -> Vec<f32> {
         }
     }
     while let Some(Reverse((_, cell))) = open.pop() {
-        for next in neighbours(hollows.size, cell) {
+        for next in neighbors(hollows.size, cell) {
             if levels[next] == f32::INFINITY {
                 let own = ground(next).unwrap_or(f32::NEG_INFINITY);
                 levels[next] = own.max(levels[cell]);
@@ -102,7 +102,7 @@ fn ordered(level: f32) -> u32 {
 }
 
 /// The four cells beside a cell.
-fn neighbours([columns, rows]: [usize; 2], cell: usize) -> impl Iterator<Item = usize> {
+fn neighbors([columns, rows]: [usize; 2], cell: usize) -> impl Iterator<Item = usize> {
     let (x, y) = (cell % columns, cell / columns);
     let beside = [
         (x > 0).then(|| cell - 1),

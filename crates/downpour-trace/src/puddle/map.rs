@@ -29,7 +29,7 @@ pub struct Ground {
     pub middle: Vec3,
     /// Edges, m.
     pub size: Vec2,
-    /// Turn about the vertical axis, rad, from +X towards +Z.
+    /// Turn about the vertical axis, rad, from +X toward +Z.
     pub turn: f32,
     /// Largest height over the middle, and depth under it, at which the ground is looked for, m.
     pub reach: f32,
@@ -160,7 +160,7 @@ pub(super) fn turned(angle: f32) -> Vec2 {
     Vec2::new(ops::cos(angle), ops::sin(angle))
 }
 
-/// Levels with those of their neighbours: the highest of them where there is none.
+/// Levels with those of their neighbors: the highest of them where there is none.
 fn spread(levels: &[Option<f32>], [columns, rows]: [usize; 2]) -> Vec<Option<f32>> {
     let at = |x: isize, y: isize| {
         let inside = x >= 0 && y >= 0 && x < columns as isize && y < rows as isize;

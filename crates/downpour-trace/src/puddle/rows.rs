@@ -19,7 +19,7 @@ pub struct PuddleLook {
     pub rippling_depth: f32,
     /// Albedo of water so deep that the ground is not seen.
     pub murk: Vec3,
-    /// Share of light that is lost per metre of water, 1/m.
+    /// Share of light that is lost per meter of water, 1/m.
     pub extinction: f32,
 }
 
@@ -63,7 +63,7 @@ pub(crate) struct RenderPuddle {
     pub(crate) ripples: Vec4,
     /// Albedo of deep water.
     pub(crate) murk: Vec3,
-    /// Fraction of light that is lost per metre of water, 1/m.
+    /// Fraction of light that is lost per meter of water, 1/m.
     pub(crate) extinction: f32,
     /// Depth of full ripples, and the puddle's own part of the lattice.
     pub(crate) own: Vec3,

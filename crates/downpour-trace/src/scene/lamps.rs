@@ -102,7 +102,7 @@ impl SceneView<'_> {
         arrival
     }
 
-    /// Light of one lamp on a surface, towards the viewer, if nothing is between them.
+    /// Light of one lamp on a surface, toward the viewer, if nothing is between them.
     fn scene_lamp(&self, surface: &Surface, view: Vec3, light: &SceneArrival) -> Vec3 {
         if surface.facet.dot(light.direction) <= 0.0 {
             return Vec3::ZERO;
@@ -114,7 +114,7 @@ impl SceneView<'_> {
             * brdf_direct(diffuse, normal_reflectance, alpha, surface.normal, view, light.direction)
     }
 
-    /// Light of lamps and sun on a surface, towards the viewer. With `draws` of 0, or of at least as many as there are, all
+    /// Light of lamps and sun on a surface, toward the viewer. With `draws` of 0, or of at least as many as there are, all
     /// lamps are asked whether something hides them; else so many are drawn by what each would give (`chance` in [0, 1)),
     /// for all of them. `standoff` and `under`: [`SceneView::scene_arrival`].
     pub(crate) fn scene_direct(

@@ -196,7 +196,7 @@ pub fn puddle_water_refracted(direction: Vec3, normal: Vec3) -> Vec3 {
     along / along.dot(along).sqrt()
 }
 
-/// The direction beneath level water of light from above, both towards where it comes from.
+/// The direction beneath level water of light from above, both toward where it comes from.
 #[must_use]
 pub fn puddle_water_beneath(direction: Vec3) -> Vec3 {
     let (x, z) = (direction.x / PUDDLE_WATER_INDEX, direction.z / PUDDLE_WATER_INDEX);

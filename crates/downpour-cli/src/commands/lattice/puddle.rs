@@ -69,7 +69,7 @@ enum Check {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Show {
-    /// Height over the level in metres; in a .png gray is the level, black and white are three times the rms; in a
+    /// Height over the level in meters; in a .png gray is the level, black and white are three times the rms; in a
     /// clip three times the largest rms so far.
     Height,
     /// Normals: x along the rows, y up, z along the columns.

@@ -111,7 +111,7 @@ fn drop_atlas_position(table: &DropLightTable, first: u32, value: f32) -> f32 {
     atlas_position(row(0), row(1), row(2), row(3), value)
 }
 
-/// The streak of a drop's id, diameter in metres and axis, and the unit vectors to its light and viewer.
+/// The streak of a drop's id, diameter in meters and axis, and the unit vectors to its light and viewer.
 pub(super) fn drop_atlas_place(
     table: &DropLightTable,
     id: u32,

@@ -51,13 +51,13 @@ pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, plac
     }
 }
 
-/// Chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
+/// Chord from the middle to the edge of a lamp's disk: that of the sun where the lamp has no size.
 pub(super) fn drop_light_reach(light: &Light) -> f32 {
     light.chord.max(DROP_LIGHT_REACH)
 }
 
 impl DropLights<'_> {
-    /// Mean radiance of a lamp over a drop's whole disc, from the lamp's irradiance over pi and its direction.
+    /// Mean radiance of a lamp over a drop's whole disk, from the lamp's irradiance over pi and its direction.
     fn drop_light_whole(&self, lit: Vec3, direction: Vec3, towards: Vec3) -> Vec3 {
         if self.form == DROP_LIGHT_LAMPS_ROUSSEAU {
             return lit * drop_light_mean(towards, direction, self.terms);

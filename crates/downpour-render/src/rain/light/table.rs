@@ -15,7 +15,7 @@ const _: () = assert!(SCATTERING_PATHS == DROP_LIGHT_PATHS as usize);
 /// Cross-sections over the scattering angle, made once.
 ///
 /// Row 0: (dsigma/dOmega) / (pi a^2) in 1/sr, red, green, blue. Rows 1 to 6: the same for each
-/// [`ScatteringPath`](downpour_drop::optics::ScatteringPath), and green's place on the disc. Behind them, if there is one, what has
+/// [`ScatteringPath`](downpour_drop::optics::ScatteringPath), and green's place on the disk. Behind them, if there is one, what has
 /// to be known of a streak atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropLightTable {
@@ -23,25 +23,25 @@ pub struct DropLightTable {
 }
 
 impl DropLightTable {
-    /// The table for three refractive indices, 1.2 to 1.4, and lamps whose discs have a diameter in radians, 0 to 0.2.
+    /// The table for three refractive indices, 1.2 to 1.4, and lamps whose disks have a diameter in radians, 0 to 0.2.
     ///
     /// # Errors
     /// [`DropError::OutOfRange`] outside these ranges.
     pub fn new(indices: [f64; 3], diameter: f64) -> Result<Self, DropError> {
         let entries = DROP_LIGHT_ENTRIES as usize;
-        let mut colours = Vec::with_capacity(indices.len());
+        let mut colors = Vec::with_capacity(indices.len());
         for index in indices {
-            colours.push(SphereScattering::new(index, entries, diameter)?);
+            colors.push(SphereScattering::new(index, entries, diameter)?);
         }
         let mut rows = vec![[0.0; 4]; entries * (1 + SCATTERING_PATHS)];
         let (whole, paths) = rows.split_at_mut(entries);
-        for (colour, sphere) in colours.iter().enumerate() {
+        for (color, sphere) in colors.iter().enumerate() {
             for (row, path) in paths.chunks_exact_mut(entries).zip(sphere.paths()) {
                 for (k, entry) in row.iter_mut().enumerate() {
                     let phase = path.phase[k] as f32;
-                    entry[colour] = phase;
-                    whole[k][colour] += phase;
-                    if colour == 1 {
+                    entry[color] = phase;
+                    whole[k][color] += phase;
+                    if color == 1 {
                         entry[3] = path.exit_position[k] as f32;
                     }
                 }

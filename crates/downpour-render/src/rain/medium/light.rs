@@ -1,4 +1,4 @@
-//! Light of lamps and sun that unresolved drops scatter towards the eye. Twin of `shaders/wgsl/render/medium_light.wgsl`,
+//! Light of lamps and sun that unresolved drops scatter toward the eye. Twin of `shaders/wgsl/render/medium_light.wgsl`,
 //! where the method is described.
 
 use std::f32::consts::PI;
