@@ -7,7 +7,7 @@ use crate::tolerance::Tol;
 pub const POISON: u32 = 0x7fc0_dead;
 
 /// Relative differences are taken to at least this.
-pub const SMALLEST: f64 = 1.0e-30;
+pub const MIN_SCALE: f64 = 1.0e-30;
 
 /// Words that the CPU computed. Only twins make these.
 #[derive(Clone, Debug)]
@@ -60,7 +60,7 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
                 (a != b || a.is_nan()).then(|| format!("CPU {a}, GPU {b}"))
             } else {
                 let difference = (f64::from(a) - f64::from(b)).abs();
-                let relative = difference / f64::from(a).abs().max(SMALLEST);
+                let relative = difference / f64::from(a).abs().max(MIN_SCALE);
                 let ulp = ulp_distance(a, b);
                 if difference > out.worst_abs {
                     out.worst_abs = difference;

@@ -3,7 +3,7 @@
 use std::mem::offset_of;
 
 use downpour_atlas::gpu::AtlasQuery;
-use downpour_atlas::lookup::{AtlasFrame, AtlasPlace, AtlasTriangle};
+use downpour_atlas::lookup::{AtlasFrame, AtlasSlot, AtlasTriangle};
 use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_drop::fall_speed::FallSpeedAir;
 use downpour_drop::oscillation::{DropOscillation, DropOscillationTime};
@@ -72,7 +72,7 @@ fn hosts() -> Vec<Host> {
             size, half_extent, pick, counts, seed, is_shared, unused, diameters, elevations, first),
         host!(AtlasTriangle as "AtlasTriangle" in &atlas::ATLAS,
             a, b, c, unused, directions, unused_1, next, unused_2),
-        host!(AtlasPlace as "AtlasPlace" in &atlas::ATLAS, layers, side, weights, amount, parts, unused),
+        host!(AtlasSlot as "AtlasSlot" in &atlas::ATLAS, layers, side, weights, amount, parts, unused),
         host!(AtlasQuery as "AtlasQuery" in &atlas::ATLAS_QUERY,
             light, diameter, view, id, axis, across, turns, unused),
         host!(Camera as "RenderCamera" in &render::camera::CAMERA,

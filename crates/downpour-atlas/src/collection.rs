@@ -9,8 +9,8 @@ use half::f16;
 
 use crate::AtlasError;
 use crate::lookup::{
-    AtlasData, AtlasFrame, AtlasPlace, AtlasTriangle, atlas_lookup_mix, atlas_lookup_place,
-    atlas_lookup_radiance, atlas_map, atlas_position,
+    AtlasData, AtlasFrame, AtlasSlot, AtlasTriangle, atlas_lookup_mix, atlas_lookup_radiance,
+    atlas_lookup_slot, atlas_map, atlas_position,
 };
 use crate::set::stored;
 use crate::triangles::triangulate;
@@ -231,14 +231,14 @@ impl StreakAtlas {
     /// The streak of a drop: its amount, three layers and their weights. `light` and `view` are unit vectors from the drop to its
     /// light and to its viewer.
     #[must_use]
-    pub fn place(&self, drop: &StreakParticle, light: [f32; 3], view: [f32; 3]) -> AtlasPlace {
-        atlas_lookup_place(&self.data(), drop.id, drop.diameter, drop.axis, light, view)
+    pub fn place(&self, drop: &StreakParticle, light: [f32; 3], view: [f32; 3]) -> AtlasSlot {
+        atlas_lookup_slot(&self.data(), drop.id, drop.diameter, drop.axis, light, view)
     }
 
     /// Radiance at a position in the atlas, in 1/sr for an irradiance of 1, during a fall by one diameter: `across`
     /// equivalent radii to the right of the middle, `turns` of the mode (2,0) along.
     #[must_use]
-    pub fn radiance(&self, place: &AtlasPlace, across: f32, turns: f32) -> f32 {
+    pub fn radiance(&self, place: &AtlasSlot, across: f32, turns: f32) -> f32 {
         atlas_lookup_radiance(&self.data(), place, across, turns)
     }
 }

@@ -45,7 +45,7 @@ const HALF_EXTENT: f64 = 1.27;
 /// Missing files that a message names.
 const NAMED: usize = 5;
 /// The highest picture that is taken.
-const TALLEST: u32 = 4096;
+const MAX_HEIGHT: u32 = 4096;
 
 /// A grayscale picture of 16 bits, rows from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -253,7 +253,7 @@ fn wrong(name: &str, place: &'static str, found: String, allowed: &'static str) 
 fn resampled(name: &str, picture: &GrayPicture, width: u32, rows: u32) -> Result<Vec<f64>, AtlasError> {
     let GrayPicture { width: found, height, values } = picture;
     let whole = values.len() == *found as usize * *height as usize;
-    if *found != width || !(1..=TALLEST).contains(height) || !whole {
+    if *found != width || !(1..=MAX_HEIGHT).contains(height) || !whole {
         let found = format!("{found} x {height} pixels");
         return Err(wrong(name, "size", found, "as many columns as the folder says, 1 to 4096 rows"));
     }

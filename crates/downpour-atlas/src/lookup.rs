@@ -13,7 +13,7 @@ use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_math::vector::{cross, dot, scale};
 use downpour_shaders::atlas::{
-    ATLAS_DIMENSION, ATLAS_GRID, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISE_LIMIT, ATLAS_RISES, ATLAS_SMALLEST,
+    ATLAS_DIMENSION, ATLAS_GRID, ATLAS_MIN_DIAMETER, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISE_LIMIT, ATLAS_RISES,
     ATLAS_STEPS, ATLAS_TINY,
 };
 
@@ -69,7 +69,7 @@ pub struct AtlasTriangle {
 /// Position of a streak in the atlas: the WGSL struct of the same name, 48 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct AtlasPlace {
+pub struct AtlasSlot {
     /// Three layers of the atlas, of the lower diameter and the lower elevation.
     pub layers: [u32; 3],
     /// -1 if the streak is to be mirrored, else 1.
@@ -234,14 +234,14 @@ pub fn atlas_lookup_amount(data: &AtlasData<'_>, grid: u32, cell: [f32; 4]) -> f
 
 /// The streak of a drop's id, diameter in meters and axis, and the unit vectors from it to its light and viewer.
 #[must_use]
-pub fn atlas_lookup_place(
+pub fn atlas_lookup_slot(
     data: &AtlasData<'_>,
     id: u32,
     diameter: f32,
     axis: [f32; 3],
     light: [f32; 3],
     view: [f32; 3],
-) -> AtlasPlace {
+) -> AtlasSlot {
     let frame = data.frame;
     let [diameters, oscillations, elevations, directions] = frame.counts;
     let within = atlas_light(light, view, axis);
@@ -250,17 +250,17 @@ pub fn atlas_lookup_place(
         let sets = diameters * oscillations;
         let layer = atlas_draw(frame.seed, id, 1, sets * elevations * directions);
         let amount = data.amounts[(sets * ATLAS_RISES * ATLAS_GRID * ATLAS_GRID + layer) as usize];
-        return AtlasPlace {
+        return AtlasSlot {
             layers: [layer; 3],
             side,
             weights: [1.0, 0.0, 0.0],
             amount,
-            ..AtlasPlace::default()
+            ..AtlasSlot::default()
         };
     }
     let position =
         |gaps: &[[f32; 4]; 4], value: f32| atlas_position(gaps[0], gaps[1], gaps[2], gaps[3], value);
-    let size = position(&frame.diameters, ops::log2(diameter.max(ATLAS_SMALLEST)));
+    let size = position(&frame.diameters, ops::log2(diameter.max(ATLAS_MIN_DIAMETER)));
     let lower = size.floor();
     let oscillation = atlas_draw(frame.seed, id, 0, oscillations);
     let group = lower as u32 * oscillations + oscillation;
@@ -283,7 +283,7 @@ pub fn atlas_lookup_place(
     let parts = [size - lower, if nearest { 0.0 } else { level - level.floor() }];
     let mix = atlas_lookup_mix(data, elevation, point);
     let base = (group * elevations + elevation) * directions;
-    AtlasPlace {
+    AtlasSlot {
         layers: mix.directions.map(|direction| base + direction),
         side,
         weights: mix.weights,
@@ -322,7 +322,7 @@ pub fn atlas_lookup_layer(data: &AtlasData<'_>, layer: u32, across: f32, down: f
 
 /// Radiance at a position in the atlas, `across` equivalent radii to the right of the middle, `turns` of the mode (2,0) along.
 #[must_use]
-pub fn atlas_lookup_radiance(data: &AtlasData<'_>, place: &AtlasPlace, across: f32, turns: f32) -> f32 {
+pub fn atlas_lookup_radiance(data: &AtlasData<'_>, place: &AtlasSlot, across: f32, turns: f32) -> f32 {
     let frame = data.frame;
     let half = 0.5 * frame.size[0] as f32;
     let column = half + half * (across * place.side / frame.half_extent).clamp(-2.0, 2.0);

@@ -8,7 +8,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use downpour_atlas::lookup::AtlasPlace;
+use downpour_atlas::lookup::AtlasSlot;
 use downpour_atlas::{StreakAtlas, StreakOptions, StreakOscillation, StreakParticle, StreakTracer};
 use downpour_drop::optics::{SphereScattering, WATER_INDEX};
 use downpour_math::ops::f64 as ops;
@@ -43,7 +43,7 @@ fn axis(degrees: f64) -> [f32; 3] {
 }
 
 /// Index of the oscillation of an atlas position.
-fn oscillation(place: &AtlasPlace) -> usize {
+fn oscillation(place: &AtlasSlot) -> usize {
     let [_, oscillations, elevations, directions] = ATLAS.data().frame.counts;
     (place.layers[0] / (elevations * directions) % oscillations) as usize
 }
@@ -58,14 +58,14 @@ static IDS: LazyLock<Vec<u32>> = LazyLock::new(|| {
 });
 
 /// Streak of a drop of one of the oscillations, seen from `degrees` above.
-fn place(millimeters: f64, oscillation: usize, degrees: f64, light: [f64; 3]) -> AtlasPlace {
+fn place(millimeters: f64, oscillation: usize, degrees: f64, light: [f64; 3]) -> AtlasSlot {
     let drop =
         StreakParticle { diameter: (millimeters * 1.0e-3) as f32, axis: axis(degrees), id: IDS[oscillation] };
     ATLAS.place(&drop, light.map(|c| c as f32), VIEW)
 }
 
 /// Mean over three layers of their amounts: the amount that is interpolated between 41 directions.
-fn of_triangle(place: &AtlasPlace) -> f64 {
+fn of_triangle(place: &AtlasSlot) -> f64 {
     let amounts = ATLAS.data().amounts;
     let means = &amounts[amounts.len() - ATLAS.layers()..];
     (0..3).map(|k| f64::from(place.weights[k] * means[place.layers[k] as usize])).sum()
@@ -107,7 +107,7 @@ fn compared(millimeters: f64, degrees: f64) -> [Ratios; 3] {
         StreakOscillation::COMMITTED.par_iter().map(|kind| traced(millimeters, kind, degrees)).collect();
     let (mut means, mut each, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
     for (n, (angle, light)) in lights().iter().enumerate().filter(|(_, (angle, _))| *angle >= 20.0) {
-        let places: Vec<AtlasPlace> =
+        let places: Vec<AtlasSlot> =
             (0..OSCILLATIONS).map(|k| place(millimeters, k, degrees, *light)).collect();
         let whole: f64 = all.iter().map(|of| of[n]).sum();
         assert!(whole > 0.0, "{angle}");
@@ -196,7 +196,7 @@ fn a_pattern_leaves_the_amount_as_it_is() {
 }
 
 /// Largest change of an amount, and of a texel over the amount, from one of these positions to the next, each over the larger of the two.
-fn largest_step(places: impl Iterator<Item = AtlasPlace>) -> [f32; 2] {
+fn largest_step(places: impl Iterator<Item = AtlasSlot>) -> [f32; 2] {
     let mut before: Option<[f32; 2]> = None;
     let mut largest = [0.0f32; 2];
     for place in places {

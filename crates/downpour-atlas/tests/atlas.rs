@@ -5,7 +5,7 @@
 use std::sync::LazyLock;
 
 use downpour_atlas::AtlasError;
-use downpour_atlas::lookup::{AtlasPlace, atlas_light, atlas_map};
+use downpour_atlas::lookup::{AtlasSlot, atlas_light, atlas_map};
 use downpour_atlas::{
     StreakAtlas, StreakOptions, StreakOscillation, StreakParticle, StreakPick, StreakSet, light_directions,
     read_streaks, write_streaks,
@@ -429,7 +429,7 @@ fn chance_picks_any_layer() {
     let random = atlas.with_pick(StreakPick::Random);
     let mut met = vec![0u32; random.layers()];
     for id in 0..40 * random.layers() as u32 {
-        let AtlasPlace { layers, weights, parts, .. } = random.place(&drop(2.0e-3, id), light, level);
+        let AtlasSlot { layers, weights, parts, .. } = random.place(&drop(2.0e-3, id), light, level);
         assert_eq!((weights, parts), ([1.0, 0.0, 0.0], [0.0, 0.0]));
         met[layers[0] as usize] += 1;
     }
@@ -458,12 +458,12 @@ fn radiance_is_bilinear_and_goes_round() {
     let atlas = StreakAtlas::from_sets(vec![counted()]).unwrap();
     // The amount that makes a pattern of the layer: the mean of its texels, as a disk.
     let mean = |layer: u32| (32.0 * layer as f32 + 15.5) * 4.0 * 1.4 / std::f32::consts::PI;
-    let place = |layer: u32, side| AtlasPlace {
+    let place = |layer: u32, side| AtlasSlot {
         layers: [layer; 3],
         side,
         weights: [1.0, 0.0, 0.0],
         amount: mean(layer),
-        ..AtlasPlace::default()
+        ..AtlasSlot::default()
     };
     let across = |column: f32| (column + 0.5) / 8.0 * 2.8 - 1.4;
     let at = |column, row: f32| atlas.radiance(&place(2, 1.0), across(column), (row + 0.5) / 4.0);

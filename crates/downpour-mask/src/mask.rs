@@ -116,7 +116,7 @@ impl MaskOptions {
     /// [`MaskError::Size`] or [`MaskError::OutOfRange`].
     pub fn check(&self) -> Result<(), MaskError> {
         if !SIZES.contains(&self.size) {
-            return Err(MaskError::Size { found: self.size, least: *SIZES.start(), most: *SIZES.end() });
+            return Err(MaskError::Size { found: self.size, min: *SIZES.start(), max: *SIZES.end() });
         }
         if !(self.refractive_index > 1.0 && self.refractive_index <= 4.0) {
             return Err(MaskError::OutOfRange(OutOfRange {

@@ -9,7 +9,7 @@
 
 use downpour_drop::optics::{optics_fresnel_polarized, optics_reflect, optics_refract};
 use downpour_math::vector::{add_scaled, normalize, scale};
-use downpour_shaders::mask::{MASK_MODEL_NEAREST, MASK_MODEL_SUBSAMPLES, MASK_TRACE_REFLECTIONS};
+use downpour_shaders::mask::{MASK_MODEL_MIN_DISTANCE, MASK_MODEL_SUBSAMPLES, MASK_TRACE_REFLECTIONS};
 use rayon::prelude::*;
 
 use crate::closed_mesh::ClosedMesh;
@@ -55,7 +55,7 @@ impl TracedModel {
 
     /// Hit of the viewer's ray through (x, y) with the mesh, if any.
     fn mask_model_hit(&self, x: f32, y: f32) -> Option<Hit> {
-        self.bvh.hit([x, y, self.front], [0.0, 0.0, -1.0], MASK_MODEL_NEAREST)
+        self.bvh.hit([x, y, self.front], [0.0, 0.0, -1.0], MASK_MODEL_MIN_DISTANCE)
     }
 
     /// The interpolated normal at a hit.
@@ -70,7 +70,7 @@ impl TracedModel {
     fn mask_model_exit(&self, start: [f32; 3], inside: [f32; 3]) -> Option<Exit<f32>> {
         let (mut point, mut inside) = (start, inside);
         for reflections in 0..=MASK_TRACE_REFLECTIONS {
-            let hit = self.bvh.hit(point, inside, MASK_MODEL_NEAREST)?;
+            let hit = self.bvh.hit(point, inside, MASK_MODEL_MIN_DISTANCE)?;
             let normal = self.mask_model_normal(&hit);
             point = add_scaled(point, inside, hit.distance);
             let (outside, cos2) = optics_refract(inside, scale(normal, -1.0), self.index);

@@ -9,7 +9,7 @@ use crate::RenderError;
 pub const PIXELS: std::ops::RangeInclusive<u32> = 1..=16384;
 
 /// The longest exposure, s.
-pub const LONGEST_EXPOSURE_S: f64 = 1.0;
+pub const MAX_EXPOSURE_S: f64 = 1.0;
 
 /// Motion of the eye in the middle of the exposure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -189,5 +189,5 @@ pub fn check_size(size: [u32; 2]) -> Result<(), RenderError> {
     if size.iter().all(|edge| PIXELS.contains(edge)) {
         return Ok(());
     }
-    Err(RenderError::Size { found: size, least: *PIXELS.start(), most: *PIXELS.end() })
+    Err(RenderError::Size { found: size, min: *PIXELS.start(), max: *PIXELS.end() })
 }

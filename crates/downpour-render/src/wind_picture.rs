@@ -27,8 +27,8 @@ use crate::RenderError;
 use canvas::Canvas;
 
 /// Pixels each way.
-const LEAST: u32 = 64;
-const MOST: u32 = 4096;
+const MIN_PIXELS: u32 = 64;
+const MAX_PIXELS: u32 = 4096;
 
 /// The share of the slice that is slower than the brightest color: a core of a few pixels shall not darken the rest.
 const BRIGHTEST: f64 = 0.998;
@@ -102,8 +102,8 @@ impl WindSlice {
         high: Vec3,
         size: [u32; 2],
     ) -> Result<Self, RenderError> {
-        if !size.iter().all(|edge| (LEAST..=MOST).contains(edge)) {
-            return Err(RenderError::Size { found: size, least: LEAST, most: MOST });
+        if !size.iter().all(|edge| (MIN_PIXELS..=MAX_PIXELS).contains(edge)) {
+            return Err(RenderError::Size { found: size, min: MIN_PIXELS, max: MAX_PIXELS });
         }
         let check = |quantity, found: f32, (least, most): (f32, f32), allowed: &'static str| {
             if (least..=most).contains(&found) {

@@ -37,7 +37,7 @@ pub struct Fault {
     /// The accepted content.
     pub allowed: String,
     /// Advice for the user.
-    pub way_out: Option<&'static str>,
+    pub advice: Option<&'static str>,
 }
 
 impl SceneError {
@@ -67,8 +67,8 @@ impl SceneError {
 
     /// The same error with advice at its end.
     #[must_use]
-    pub fn way_out(mut self, advice: &'static str) -> Self {
-        self.fault_mut().way_out = Some(advice);
+    pub fn with_advice(mut self, advice: &'static str) -> Self {
+        self.fault_mut().advice = Some(advice);
         self
     }
 
@@ -126,7 +126,7 @@ impl SceneError {
 impl Fault {
     fn boxed(place: impl fmt::Display, found: impl Into<String>, allowed: impl Into<String>) -> Box<Self> {
         let (place, found, allowed) = (place.to_string(), found.into(), allowed.into());
-        Box::new(Self { file: String::new(), place, found, allowed, way_out: None })
+        Box::new(Self { file: String::new(), place, found, allowed, advice: None })
     }
 }
 
@@ -138,7 +138,7 @@ impl fmt::Display for Fault {
             }
         }
         write!(f, "{}; allowed: {}", self.found, self.allowed)?;
-        self.way_out.map_or(Ok(()), |advice| write!(f, " ({advice})"))
+        self.advice.map_or(Ok(()), |advice| write!(f, " ({advice})"))
     }
 }
 

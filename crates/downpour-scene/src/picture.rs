@@ -188,7 +188,7 @@ impl Kind {
             Some(_) => {
                 let found = format!("{} with the ending {}", self.name(), quoted(&format!(".{extension}")));
                 let allowed = format!("{} for {}", self.endings(), self.name());
-                Err(SceneError::bad("", found, allowed).way_out("rename or convert the file"))
+                Err(SceneError::bad("", found, allowed).with_advice("rename or convert the file"))
             }
         }
     }
@@ -232,16 +232,16 @@ fn check_cost(
     let pixels = u64::from(width).saturating_mul(u64::from(height));
     if pixels > budget.pixels {
         let allowed = format!("{} pixels left in the budget", budget.pixels);
-        return Err(SceneError::limit(place, shown(), allowed).way_out("scale the picture down"));
+        return Err(SceneError::limit(place, shown(), allowed).with_advice("scale the picture down"));
     }
     let mut remaining = *budget;
     remaining.take_bytes(file.len() as u64, place)?;
-    remaining.take_bytes(cost, place).map_err(|error| error.way_out("scale the picture down"))?;
+    remaining.take_bytes(cost, place).map_err(|error| error.with_advice("scale the picture down"))?;
     let most = BASE_COST.saturating_add(COST_PER_BYTE.saturating_mul(file.len() as u64));
     if cost > most {
         let found = format!("{} in a file of {} bytes: {} to decode", shown(), file.len(), size(cost));
         let allowed = format!("{} for a file of this length", size(most));
-        return Err(SceneError::limit(place, found, allowed).way_out("scale the picture down"));
+        return Err(SceneError::limit(place, found, allowed).with_advice("scale the picture down"));
     }
     Ok(())
 }

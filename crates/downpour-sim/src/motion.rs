@@ -7,7 +7,7 @@
 use downpour_drop::fall_speed::{TerminalSpeed, fall_speed_relaxation};
 use downpour_math::ops;
 use downpour_shaders::sim::step::{
-    MOTION_DIAMETER_STEP, MOTION_SHORTEST, MOTION_TABLE_LAST, MOTION_TABLE_PER_METER,
+    MOTION_DIAMETER_STEP, MOTION_MIN_RELAXATION, MOTION_TABLE_LAST, MOTION_TABLE_PER_METER,
 };
 use glam::Vec3;
 
@@ -71,7 +71,7 @@ pub fn motion_settled(wind: Vec3, speed: f32) -> Vec3 {
 pub fn motion_relax(velocity: Vec3, wind: Vec3, speed: f32, time: f32) -> MotionStep {
     let settled = motion_settled(wind, speed);
     let slip = velocity - settled;
-    let [along, across] = fall_speed_relaxation(speed).map(|t| t.max(MOTION_SHORTEST));
+    let [along, across] = fall_speed_relaxation(speed).map(|t| t.max(MOTION_MIN_RELAXATION));
     // Along the fall the slip relaxes twice as fast.
     let left = ops::exp(-time / across);
     let stay = Vec3::new(left, left * left, left);

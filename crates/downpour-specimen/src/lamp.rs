@@ -93,7 +93,7 @@ impl SpecimenLamp {
     pub fn check_count(lamps: &[Self]) -> Result<(), SpecimenError> {
         let (found, most) = (lamps.len() as u64, SPECIMEN_LAMPS.into());
         if found > most {
-            return Err(SpecimenError::Size { quantity: "number of lamps", found, least: 0, most });
+            return Err(SpecimenError::Size { quantity: "number of lamps", found, min: 0, max: most });
         }
         Ok(())
     }

@@ -92,7 +92,7 @@ pub use error::SpecimenError;
 pub use image::Image;
 pub use lamp::SpecimenLamp;
 pub use motion::SpecimenMotion;
-pub use options::{LONGEST_EXPOSURE_S, MAX_SIZE, SpecimenOptions};
+pub use options::{MAX_EXPOSURE_S, MAX_SIZE, SpecimenOptions};
 pub use render::{render_specimen, render_specimen_f64, render_specimen_scalar, specimen_jitter};
 pub use sky::Sky;
 pub use table::{MAX_TABLE_LAMP_DEG, check_specimen_table, render_specimen_table};

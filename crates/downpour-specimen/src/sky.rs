@@ -41,7 +41,7 @@ impl<'a> Sky<'a> {
         for (quantity, found) in [("sky map width", width), ("sky map height", height)] {
             if !(1..=MAX_SIZE).contains(&found) {
                 let (found, most) = (found.into(), MAX_SIZE.into());
-                return Err(SpecimenError::Size { quantity, found, least: 1, most });
+                return Err(SpecimenError::Size { quantity, found, min: 1, max: most });
             }
         }
         let texels = u64::from(width) * u64::from(height);

@@ -16,7 +16,7 @@ use downpour_math::real::Real;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_math::vector::{add, add_scaled, scale};
 use downpour_shaders::render::specimen::{
-    SPECIMEN_ALL, SPECIMEN_LEAST, SPECIMEN_STREAK_DIMENSION, SPECIMEN_STREAK_REFLECTIONS,
+    SPECIMEN_ALL, SPECIMEN_MIN_FRACTION, SPECIMEN_STREAK_DIMENSION, SPECIMEN_STREAK_REFLECTIONS,
     SPECIMEN_STREAK_TRACES, SPECIMEN_TINY,
 };
 
@@ -157,7 +157,7 @@ fn specimen_streak_radiance<R: Precision>(
         if !zero.less(light.rest) {
             break;
         }
-        let least = if k == SPECIMEN_STREAK_REFLECTIONS { SPECIMEN_ALL } else { SPECIMEN_LEAST };
+        let least = if k == SPECIMEN_STREAK_REFLECTIONS { SPECIMEN_ALL } else { SPECIMEN_MIN_FRACTION };
         light = specimen_wobble_bounce(drop, &light, R::single(least));
         if zero.less(light.share) {
             radiance = add_scaled(radiance, R::sky(sky, light.exit), light.share);

@@ -21,7 +21,7 @@ use downpour_math::real::Real;
 use downpour_math::vector::{add, add_scaled, dot, normalize, scale, select, sub};
 use downpour_shaders::mask::{MASK_SILHOUETTE_INSIDE, MASK_SILHOUETTE_OUTSIDE, MASK_TRACE_STEPS};
 use downpour_shaders::render::specimen::{
-    SPECIMEN_ALL, SPECIMEN_LEAST, SPECIMEN_NEAREST_STEPS, SPECIMEN_REFLECTIONS,
+    SPECIMEN_ALL, SPECIMEN_MIN_FRACTION, SPECIMEN_NEAREST_STEPS, SPECIMEN_REFLECTIONS,
 };
 
 use super::sky::{Sky, specimen_sky_light};
@@ -203,7 +203,7 @@ pub fn specimen_light<R: Real>(
         if !one.any(zero.less(light.rest)) {
             break;
         }
-        let least = if k == SPECIMEN_REFLECTIONS { SPECIMEN_ALL } else { SPECIMEN_LEAST };
+        let least = if k == SPECIMEN_REFLECTIONS { SPECIMEN_ALL } else { SPECIMEN_MIN_FRACTION };
         light = specimen_bounce(drop, &light, one.constant(f64::from(least)));
         receiver.receive(light.exit, light.share);
     }

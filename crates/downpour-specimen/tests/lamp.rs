@@ -113,7 +113,7 @@ fn bad_lamps_are_refused() {
     }
     let many = [lamp(0.0, 0.0, 0.1, 1.0); 9];
     let error = Sky::new(2, 1, &DARK).unwrap().with_lamps(&many).unwrap_err();
-    assert!(matches!(error, SpecimenError::Size { found: 9, most: 8, .. }), "{error}");
+    assert!(matches!(error, SpecimenError::Size { found: 9, max: 8, .. }), "{error}");
 }
 
 /// Mean radiance over a sphere's disk of the light of a lamp of radiance 1, by quadrature over the impact parameter: the plane

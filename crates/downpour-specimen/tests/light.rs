@@ -4,7 +4,7 @@ use downpour_drop::DropShape;
 use downpour_drop::optics::optics_fresnel;
 use downpour_math::ops::f64 as ops;
 use downpour_math::vector::{add_scaled, dot, normalize, scale, sub};
-use downpour_shaders::render::specimen::{SPECIMEN_LEAST, SPECIMEN_REFLECTIONS};
+use downpour_shaders::render::specimen::{SPECIMEN_MIN_FRACTION, SPECIMEN_REFLECTIONS};
 use downpour_specimen::trace::{
     Receiver, SpecimenCamera, specimen_hits, specimen_light, specimen_ray, upright_drop,
 };
@@ -75,7 +75,7 @@ fn a_sphere_sends_light_where_the_formula_says() {
                 _ => (1.0 - reflectance) * (1.0 - reflectance) * ops::pow(reflectance, k as f64 - 1.0),
             };
             // The last exit includes the light that is not followed.
-            let slack = if k + 1 == all.0.len() { f64::from(SPECIMEN_LEAST) } else { 1.0e-12 };
+            let slack = if k + 1 == all.0.len() { f64::from(SPECIMEN_MIN_FRACTION) } else { 1.0e-12 };
             assert!((share - expected).abs() <= slack, "order {k} at {offset}: {share} {expected}");
         }
     }

@@ -42,7 +42,7 @@ use crate::scene::water::{PuddleWater, puddle_water_above, puddle_water_refracte
 use crate::surface::Surface;
 pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words};
 use draw::{path_onward, path_replaced, path_water_ray, path_water_share};
-pub(crate) use plan::path_most;
+pub(crate) use plan::path_max;
 use plan::{PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface};
 
 /// Result of tracing a ray of the camera.
@@ -299,7 +299,7 @@ impl SceneView<'_> {
             self.path_show(&mut path, &meeting, &light, towards, layer, throughput);
             under = false;
             throughput *= path_open(&found);
-            if path_most(throughput) < 1.0e-3 {
+            if path_max(throughput) < 1.0e-3 {
                 return path;
             }
         }
@@ -357,7 +357,7 @@ impl SceneView<'_> {
                         PathLeave::Shown => ray = path_replaced(&ray, &next),
                         _ => ray = path_onward(&ray, &next, &at, numbers[2]),
                     }
-                    if path_most(ray.diffuse + ray.mirror) <= 0.0 {
+                    if path_max(ray.diffuse + ray.mirror) <= 0.0 {
                         break;
                     }
                 }
@@ -386,7 +386,7 @@ impl SceneView<'_> {
                 let open = path_open(&found);
                 let mut ambient = Vec3::ZERO;
                 leaves = PathLeave::Onward;
-                if path_most(open) > PATH_OPEN {
+                if path_max(open) > PATH_OPEN {
                     leaves = PathLeave::Straight;
                     if !unlit {
                         // What it reflects of the sky itself: half of the whole.
@@ -394,7 +394,7 @@ impl SceneView<'_> {
                     }
                 } else if of_shown && light.distance < 0.0 {
                     leaves = PathLeave::Mirror;
-                    if path_most(path_albedo(&found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                    if path_max(path_albedo(&found)) > 0.0 || found.roughness >= PATH_GLANCE {
                         leaves = PathLeave::Shown;
                         found = path_glance(&found, 1.0);
                         light.factor = ray.mirror * (path_albedo(&found) + found.normal_reflectance * 0.5);
@@ -492,7 +492,7 @@ impl SceneView<'_> {
             path.base = PathSlot { light: base, factor: of_base, normal: surface.normal, ..slot };
             let mirrors = plan.mirrors > 0
                 && (surface.roughness < PATH_CURVED || !plan.kept)
-                && path_most(plan.gloss) > PATH_PLAIN_GLOSS;
+                && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
             path.plain = !(mirrors || layer > 0);
         } else {
             path.radiance += of_base * base;

@@ -10,7 +10,7 @@ use downpour_math::ops;
 use downpour_math::packing::packing_sign;
 use downpour_shaders::render::brdf::BRDF_GRAZING;
 use downpour_shaders::render::scatter::{
-    SCATTER_DISK, SCATTER_MAX_WIDTH, SCATTER_MIN_ALPHA, SCATTER_SMALLEST,
+    SCATTER_DISK, SCATTER_MAX_WIDTH, SCATTER_MIN_ALPHA, SCATTER_MIN_DIVISOR,
 };
 use glam::Vec3;
 
@@ -118,12 +118,12 @@ pub(crate) fn scatter_draw(
         return none;
     }
     let sum = view + along;
-    let half = sum / sum.dot(sum).sqrt().max(SCATTER_SMALLEST);
+    let half = sum / sum.dot(sum).sqrt().max(SCATTER_MIN_DIVISOR);
     let cosine_half = normal.dot(half).clamp(0.0, 1.0);
     let fresnel = brdf_fresnel(surface.normal_reflectance, view.dot(half));
     // All densities times pi.
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
-    let density = (glossy * chance + cosine * (1.0 - chance)).max(SCATTER_SMALLEST);
+    let density = (glossy * chance + cosine * (1.0 - chance)).max(SCATTER_MIN_DIVISOR);
     let mut ray = none;
     ray.width = (SCATTER_DISK * share / density).sqrt().min(SCATTER_MAX_WIDTH);
     if chance < 1.0 {
@@ -132,7 +132,7 @@ pub(crate) fn scatter_draw(
     if chance > 0.0 {
         let lobe =
             brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine) * cosine;
-        ray.mirror = fresnel * (lobe / density) / gloss.max(Vec3::splat(SCATTER_SMALLEST));
+        ray.mirror = fresnel * (lobe / density) / gloss.max(Vec3::splat(SCATTER_MIN_DIVISOR));
     }
     ray
 }
@@ -144,7 +144,7 @@ pub(crate) fn scatter_mirror(surface: &Surface, view: Vec3) -> ScatterRay {
     let density = brdf_visible_density(scatter_alpha(surface.roughness), 1.0, cosine.max(BRDF_GRAZING));
     ScatterRay {
         along: scatter_above(surface.facet, along),
-        width: (SCATTER_DISK / density.max(SCATTER_SMALLEST)).sqrt().min(SCATTER_MAX_WIDTH),
+        width: (SCATTER_DISK / density.max(SCATTER_MIN_DIVISOR)).sqrt().min(SCATTER_MAX_WIDTH),
         diffuse: Vec3::ZERO,
         roughness: surface.roughness,
         mirror: Vec3::ONE,

@@ -25,7 +25,7 @@ use glam::{DVec3, Vec3};
 use crate::builder::SceneBuilder;
 use crate::data::SceneData;
 use downpour_render::RenderError;
-use downpour_render::camera::{EyeMotion, LONGEST_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
+use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
 use downpour_render::light::LightSource;
 use downpour_render::tone::{tone_automatic_exposure, tone_luminance};
 pub use error::StageError;
@@ -36,7 +36,7 @@ use eye::Seen;
 pub const MAX_TRIANGLES: u64 = 1 << 22;
 
 /// The most lamps of a scene: each surface asks each of them.
-pub const MOST_LIGHTS: usize = 1024;
+pub const MAX_LIGHTS: usize = 1024;
 
 /// Memory per triangle, in bytes, while its hierarchy is built: the corners twice, and the builder's own lists.
 const BYTES_PER_TRIANGLE: u64 = 540;
@@ -48,7 +48,7 @@ const NEAR_ORIGIN_M: f64 = 1000.0;
 pub const LATEST_S: f64 = downpour_sim::field::MAX_TIME_S;
 
 /// The eye's motion is taken over this time at least, s.
-const LEAST_APART_S: f64 = 1.0e-3;
+const MIN_INTERVAL_S: f64 = 1.0e-3;
 
 /// Pixels darker than this part of the mean have no say in the exposure.
 const UNLIT: f32 = 1.0e-4;
@@ -88,7 +88,7 @@ impl Stage {
     /// The stage of a weather at a time in seconds: its models in motion, its sky, sun and lamps, its eye.
     ///
     /// # Errors
-    /// [`StageError::OverLimit`] above [`MAX_TRIANGLES`] or [`MOST_LIGHTS`], [`StageError::Memory`], or
+    /// [`StageError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`StageError::Memory`], or
     /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or a camera that is none.
     pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
         check_size(weather.size)?;
@@ -270,7 +270,7 @@ fn view_of(
         pixel_angle: 2.0 * half_height / f64::from(size[1]),
         near,
         far,
-        shutter_s: shutter_s.clamp(0.0, LONGEST_EXPOSURE_S),
+        shutter_s: shutter_s.clamp(0.0, MAX_EXPOSURE_S),
         velocity: motion.velocity.as_dvec3(),
         turning: motion.turning.as_dvec3(),
         ..usual
@@ -286,7 +286,7 @@ fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
     if !moves {
         return EyeMotion::default();
     }
-    let apart_s = weather.camera.shutter.max(LEAST_APART_S);
+    let apart_s = weather.camera.shutter.max(MIN_INTERVAL_S);
     let at = |half: f64| {
         let time_s = time_s + half * apart_s;
         Seen::of(weather, loaded, &posed(loaded, time_s), time_s)
@@ -320,16 +320,16 @@ fn check_cost(loaded: &Loaded, pose: &Pose) -> Result<(), StageError> {
         return Err(StageError::OverLimit {
             quantity: "triangles of the scene, all copies counted",
             found: triangles,
-            most: MAX_TRIANGLES,
-            way_out: "fewer copies, or simpler models",
+            max: MAX_TRIANGLES,
+            advice: "fewer copies, or simpler models",
         });
     }
-    if pose.lights.len() > MOST_LIGHTS {
+    if pose.lights.len() > MAX_LIGHTS {
         return Err(StageError::OverLimit {
             quantity: "lamps of the scene, all copies counted",
             found: pose.lights.len() as u64,
-            most: MOST_LIGHTS as u64,
-            way_out: "fewer copies of models with lamps",
+            max: MAX_LIGHTS as u64,
+            advice: "fewer copies of models with lamps",
         });
     }
     let bytes = triangles * BYTES_PER_TRIANGLE + sky::bytes(&loaded.sky);

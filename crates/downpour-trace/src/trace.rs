@@ -12,7 +12,7 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::capture::{capture_direction, capture_sky, capture_suns};
-use crate::path::{PathSlot, ViewPath, path_lattice_words, path_most};
+use crate::path::{PathSlot, ViewPath, path_lattice_words, path_max};
 use crate::scene::SceneView;
 use downpour_render::halves::{pack, unpack};
 
@@ -104,7 +104,7 @@ impl TraceSum {
         // Another surface's light is not told apart, and taken to be the same.
         let off = first.normal.dot(sample.place - first.place).abs();
         let same = off < first.slack && first.normal.dot(sample.normal) > TRACE_SAME_NORMAL;
-        let weight = if same { path_most(sample.factor).max(1.0e-6) } else { 0.0 };
+        let weight = if same { path_max(sample.factor).max(1.0e-6) } else { 0.0 };
         Self {
             slot: PathSlot {
                 light: self.slot.light + sample.light * weight,

@@ -14,7 +14,7 @@ shared_constants! {
         /// Rows of a puddle in the scene's table.
         PUDDLE_WATER_ROWS: u32 = 6;
         /// Most puddles of a scene.
-        PUDDLE_WATER_MOST: u32 = 16;
+        PUDDLE_WATER_MAX_COUNT: u32 = 16;
         /// Says that there is no water.
         PUDDLE_WATER_NONE: u32 = 4294967295;
         /// Number that stands for the material of water where pixels are compared.
@@ -29,7 +29,7 @@ shared_constants! {
         /// Share of diffuse light that the surface reflects back into the water: 1 - (1 - outside) / index^2.
         PUDDLE_WATER_INSIDE: f32 = 0.4745906;
         /// Depth below which there is no water, m.
-        PUDDLE_WATER_LEAST: f32 = 0.0002;
+        PUDDLE_WATER_MIN_DEPTH: f32 = 0.0002;
         /// Largest distance of a ray's hit over or under the mapped ground, m.
         PUDDLE_WATER_SLACK: f32 = 0.01;
         /// Least rise of a direction over the horizon that leaves a puddle.

@@ -94,9 +94,9 @@ shared_constants! {
         /// Least slope of the gauge along a radius, for a step.
         STREAK_OUTLINE_SLOPE: f32 = 0.2;
         /// No point of an outline is nearer to the middle, in radii.
-        STREAK_OUTLINE_LEAST: f32 = 0.3;
+        STREAK_OUTLINE_MIN: f32 = 0.3;
         /// No point of an outline is farther from the middle, in radii.
-        STREAK_OUTLINE_MOST: f32 = 2.0;
+        STREAK_OUTLINE_MAX: f32 = 2.0;
         /// Exits of a ray from inside that are looked up, as the tracer tells them apart.
         STREAK_EXITS: u32 = 3;
         /// Lamps on a streak that are told apart.

@@ -18,7 +18,7 @@ shared_constants! {
         /// Alpha of the sharpest lobe that rays are drawn from.
         SCATTER_MIN_ALPHA: f32 = 0.001;
         /// Keeps a quotient finite.
-        SCATTER_SMALLEST: f32 = 1.0e-6;
+        SCATTER_MIN_DIVISOR: f32 = 1.0e-6;
     }
 }
 

@@ -62,9 +62,9 @@ shared_constants! {
         /// Texels of a map of one row, over pi, across a ray of width 1: a texel between its neighbors is wider than one.
         SKY_CONE_TEXELS: f32 = 0.2;
         /// Least roughness of the light of points and of the sun: a mirror would need their size.
-        SCENE_LEAST_ROUGHNESS: f32 = 0.06;
+        SCENE_MIN_ROUGHNESS: f32 = 0.06;
         /// Lamps that give less than this part of what all would give cast no ray.
-        SCENE_LEAST_LAMP: f32 = 0.001;
+        SCENE_MIN_LAMP: f32 = 0.001;
         /// Pixels to each side over which the sky's light is averaged.
         SKYLIGHT_RADIUS: u32 = 3;
         /// Distance from the plane of a pixel's surface at which a neighbor no longer counts, per distance from the eye.

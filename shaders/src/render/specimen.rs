@@ -26,7 +26,7 @@ shared_constants! {
         SPECIMEN_REFLECTIONS: u32 = 256;
         /// Share of the light below which what is left inside is not followed any further. A sky holds a sun of 10^5
         /// times its mean: this share of it would still be seen above 10^-4.
-        SPECIMEN_LEAST: f32 = 0.0001;
+        SPECIMEN_MIN_FRACTION: f32 = 0.0001;
         /// More than any share: all light leaves.
         SPECIMEN_ALL: f32 = 2.0;
         /// Steps to the point of a ray that is nearest to the drop.

@@ -23,7 +23,7 @@ shared_constants! {
         /// Last entry of that table: that of 9.3 mm.
         MOTION_TABLE_LAST: u32 = 1023;
         /// Minimum relaxation time, s, used for a drop without speed.
-        MOTION_SHORTEST: f32 = 1.0e-6;
+        MOTION_MIN_RELAXATION: f32 = 1.0e-6;
     }
 }
 

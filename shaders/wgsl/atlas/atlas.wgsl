@@ -38,7 +38,7 @@ struct AtlasTriangle {
     unused_2: u32,
 }
 
-struct AtlasPlace {
+struct AtlasSlot {
     // Three layers of the atlas, of the lower diameter and the lower elevation.
     layers: vec3u,
     // -1 if the streak is to be mirrored, else 1.

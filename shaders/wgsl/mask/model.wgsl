@@ -18,7 +18,7 @@ struct MaskModelParameters {
 
 // Whether the viewer's ray through (x, y) hits the mesh, and where.
 fn mask_model_hit(x: f32, y: f32) -> BvhHit {
-    return bvh_hit(vec3f(x, y, mask_model.front), vec3f(0.0, 0.0, -1.0), MASK_MODEL_NEAREST, BVH_FAR);
+    return bvh_hit(vec3f(x, y, mask_model.front), vec3f(0.0, 0.0, -1.0), MASK_MODEL_MIN_DISTANCE, BVH_FAR);
 }
 
 // The interpolated normal at a hit.
@@ -34,7 +34,7 @@ fn mask_model_exit(start: vec3f, inside_start: vec3f) -> MaskTraceExit {
     var point = start;
     var inside = inside_start;
     for (var reflections = 0u; reflections <= MASK_TRACE_REFLECTIONS; reflections += 1u) {
-        let hit = bvh_hit(point, inside, MASK_MODEL_NEAREST, BVH_FAR);
+        let hit = bvh_hit(point, inside, MASK_MODEL_MIN_DISTANCE, BVH_FAR);
         if hit.distance < 0.0 {
             break;
         }

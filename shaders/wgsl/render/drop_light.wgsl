@@ -113,7 +113,7 @@ fn drop_light_keep_facing(first: u32, light: vec4f, direction: vec4f) {
 }
 
 // Keeps a streak of an atlas, three rows, if it is brighter than the least of those that are kept.
-fn drop_light_keep_streak(first: u32, radiance: vec3f, place: AtlasPlace) {
+fn drop_light_keep_streak(first: u32, radiance: vec3f, place: AtlasSlot) {
     let weakest = drop_light_weakest(first, DROP_ATLAS_ROWS, light_weight(radiance));
     if weakest > 0u {
         drop_light_out[weakest] = vec4f(radiance, place.side);
@@ -206,7 +206,7 @@ fn drop_light_of(index: u32) {
             drop_light_keep_facing(slot + 1u, vec4f(lit, -1.0 - mean), vec4f(light.direction, 0.0));
         } else if form == DROP_LIGHT_ATLAS {
             let about = drop_light_drops[drop_light_frame.count + index];
-            let place = drop_atlas_place(u32(about.w), 2.0 * drop.w, about.xyz, light.direction, -towards);
+            let place = drop_atlas_slot(u32(about.w), 2.0 * drop.w, about.xyz, light.direction, -towards);
             let radiance = lit * (DROP_LIGHT_PI * place.amount);
             sum += radiance;
             drop_light_keep_streak(slot + 1u, radiance, place);

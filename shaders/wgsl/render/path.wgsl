@@ -108,7 +108,7 @@ fn path_gathered(light: PathLight, ray: ScatterRay, radiance: vec3f, of_shown: b
 }
 
 // The greatest part of a color.
-fn path_most(color: vec3f) -> f32 {
+fn path_max(color: vec3f) -> f32 {
     return max(color.x, max(color.y, color.z));
 }
 
@@ -145,11 +145,11 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
     var plan = PathPlan(body, 0u, gloss, rays, 0.0, share, drawn, kept, false, spread);
     if rays == 0u {
         plan.body = body * (vec3f(1.0) - gloss);
-    } else if path_most(body) <= 0.0 {
+    } else if path_max(body) <= 0.0 {
         plan.rays = 0u;
         plan.mirrors = select(1u, rays, drawn);
     } else if surface.roughness < PATH_MIXED {
-        plan.mirrors = select(0u, 1u, path_most(gloss) > PATH_MIN_GLOSS);
+        plan.mirrors = select(0u, 1u, path_max(gloss) > PATH_MIN_GLOSS);
     } else if kept {
         plan.chance = scatter_chance(body, gloss);
     }
@@ -220,7 +220,7 @@ fn path_replaced(ray: ScatterRay, next: ScatterRay) -> ScatterRay {
 // A ray that goes on from a surface that the ray before has met; without weight if it does not.
 fn path_onward(ray: ScatterRay, next: ScatterRay, surface: Surface, number: f32) -> ScatterRay {
     let factor = path_albedo(surface) * next.diffuse + next.mirror;
-    let probability = min(path_most(factor), 1.0);
+    let probability = min(path_max(factor), 1.0);
     var onward = next;
     let weight = select(0.0, 1.0 / max(probability, 1.0e-6), number < probability);
     onward.diffuse = ray.diffuse * factor * weight;
@@ -383,7 +383,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     } else {
                         ray = path_onward(ray, next, at, numbers.z);
                     }
-                    if path_most(ray.diffuse + ray.mirror) <= 0.0 {
+                    if path_max(ray.diffuse + ray.mirror) <= 0.0 {
                         break;
                     }
                 }
@@ -476,7 +476,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 let open = path_open(found);
                 var ambient = vec3f(0.0);
                 leaves = PATH_ONWARD;
-                if path_most(open) > PATH_OPEN {
+                if path_max(open) > PATH_OPEN {
                     leaves = PATH_STRAIGHT;
                     if !unlit {
                         // Light of the sky that it reflects itself: half of the whole.
@@ -484,7 +484,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     }
                 } else if of_shown && light.distance < 0.0 {
                     leaves = PATH_MIRROR;
-                    if path_most(path_albedo(found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                    if path_max(path_albedo(found)) > 0.0 || found.roughness >= PATH_GLANCE {
                         leaves = PATH_SHOWN;
                         found = path_glance(found, 1.0);
                         light.factor = ray.mirror * (path_albedo(found) + found.normal_reflectance * 0.5);
@@ -556,7 +556,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
             if told {
                 path.base = PathSlot(base, slack, of_base, 0.0, surface.normal, surface.position);
                 let mirrors = plan.mirrors > 0u && (surface.roughness < PATH_CURVED || !plan.kept)
-                    && path_most(plan.gloss) > PATH_PLAIN_GLOSS;
+                    && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
                 path.plain = !(mirrors || layer > 0u);
             } else {
                 path.radiance += of_base * base;
@@ -570,7 +570,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         }
         under = false;
         throughput *= path_open(surface);
-        if path_most(throughput) < 1.0e-3 {
+        if path_max(throughput) < 1.0e-3 {
             return path;
         }
     }

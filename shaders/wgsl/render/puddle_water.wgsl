@@ -48,7 +48,7 @@ fn puddle_water_find(place: vec3f, upward: f32) -> PuddleWater {
     for (var k = 0u; k < render_frame.puddle_count; k += 1u) {
         let puddle = puddle_load(k);
         let found = puddle_water_map(puddle, place);
-        if found.z < PUDDLE_WATER_LEAST {
+        if found.z < PUDDLE_WATER_MIN_DEPTH {
             continue;
         }
         let height = place.y - puddle.middle.y - found.x;

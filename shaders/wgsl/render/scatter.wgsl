@@ -81,19 +81,19 @@ fn scatter_draw(
         return ray;
     }
     let sum = view + along;
-    let halfway = sum / max(sqrt(dot(sum, sum)), SCATTER_SMALLEST);
+    let halfway = sum / max(sqrt(dot(sum, sum)), SCATTER_MIN_DIVISOR);
     let cosine_half = clamp(dot(normal, halfway), 0.0, 1.0);
     let fresnel = brdf_fresnel(surface.normal_reflectance, dot(view, halfway));
     // All densities times pi.
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
-    let density = max(glossy * chance + cosine * (1.0 - chance), SCATTER_SMALLEST);
+    let density = max(glossy * chance + cosine * (1.0 - chance), SCATTER_MIN_DIVISOR);
     ray.width = min(sqrt(SCATTER_DISK * share / density), SCATTER_MAX_WIDTH);
     if chance < 1.0 {
         ray.diffuse = (vec3f(1.0) - fresnel) * (cosine / density);
     }
     if chance > 0.0 {
         let lobe = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine) * cosine;
-        ray.mirror = fresnel * (lobe / density) / max(gloss, vec3f(SCATTER_SMALLEST));
+        ray.mirror = fresnel * (lobe / density) / max(gloss, vec3f(SCATTER_MIN_DIVISOR));
     }
     return ray;
 }
@@ -103,7 +103,7 @@ fn scatter_mirror(surface: Surface, view: vec3f) -> ScatterRay {
     let cosine = max(dot(surface.normal, view), 0.0);
     let along = surface.normal * (2.0 * dot(surface.normal, view)) - view;
     let density = brdf_visible_density(scatter_alpha(surface.roughness), 1.0, max(cosine, BRDF_GRAZING));
-    let width = min(sqrt(SCATTER_DISK / max(density, SCATTER_SMALLEST)), SCATTER_MAX_WIDTH);
+    let width = min(sqrt(SCATTER_DISK / max(density, SCATTER_MIN_DIVISOR)), SCATTER_MAX_WIDTH);
     return ScatterRay(scatter_above(surface.facet, along), width, vec3f(0.0), surface.roughness, vec3f(1.0));
 }
 

@@ -100,7 +100,7 @@ fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival) -> vec3f {
     if dot(surface.facet, light.direction) <= 0.0 {
         return vec3f(0.0);
     }
-    let alpha = max(surface.roughness * surface.roughness, SCENE_LEAST_ROUGHNESS * SCENE_LEAST_ROUGHNESS);
+    let alpha = max(surface.roughness * surface.roughness, SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS);
     return light.irradiance * brdf_direct(
         surface.diffuse * light.diffuse, surface.normal_reflectance, alpha, surface.normal, view, light.direction,
     );
@@ -141,7 +141,7 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
             let times = floor((run - next) / step) + 1.0;
             next += times * step;
             weight = times * step / share;
-        } else if share <= total * SCENE_LEAST_LAMP {
+        } else if share <= total * SCENE_MIN_LAMP {
             continue;
         }
         let visible = scene_visibility(arrival.start, arrival.along, arrival.distance);

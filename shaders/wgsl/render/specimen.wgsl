@@ -216,7 +216,7 @@ fn specimen_radiance(view: SpecimenView, x: f32, y: f32) -> vec3f {
         if light.rest <= 0.0 {
             break;
         }
-        let least = select(SPECIMEN_LEAST, SPECIMEN_ALL, k == SPECIMEN_REFLECTIONS);
+        let least = select(SPECIMEN_MIN_FRACTION, SPECIMEN_ALL, k == SPECIMEN_REFLECTIONS);
         light = specimen_bounce(view.traced, light, least);
         if light.share > 0.0 {
             radiance += specimen_sky_light(light.exit) * light.share;

@@ -90,7 +90,7 @@ fn specimen_streak_radiance(drop: SpecimenWobble, ray: SpecimenRay) -> vec3f {
         if light.rest <= 0.0 {
             break;
         }
-        let least = select(SPECIMEN_LEAST, SPECIMEN_ALL, k == SPECIMEN_STREAK_REFLECTIONS);
+        let least = select(SPECIMEN_MIN_FRACTION, SPECIMEN_ALL, k == SPECIMEN_STREAK_REFLECTIONS);
         light = specimen_wobble_bounce(drop, light, least);
         if light.share > 0.0 {
             radiance += specimen_sky_light(light.exit) * light.share;

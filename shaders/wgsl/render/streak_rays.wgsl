@@ -34,7 +34,7 @@ fn streak_rays_outline(path: StreakPath, drop: DropsDrop, instant: StreakInstant
         let gauge = sqrt(max(surface.excess + 1.0, 0.0));
         let slope = max(dot(surface.half_gradient, radial), STREAK_OUTLINE_SLOPE);
         let next = radius - surface.excess / (gauge + 1.0) * gauge / slope;
-        radius = clamp(next, STREAK_OUTLINE_LEAST, STREAK_OUTLINE_MOST);
+        radius = clamp(next, STREAK_OUTLINE_MIN, STREAK_OUTLINE_MAX);
     }
     return vec2f(radius * s, radius * c);
 }
@@ -52,8 +52,8 @@ fn streak_rays_width() -> vec2f {
 
 // Middle and half of the chord at a place across the motion.
 fn streak_rays_chord(across: f32) -> vec2f {
-    var low = STREAK_OUTLINE_MOST;
-    var high = -STREAK_OUTLINE_MOST;
+    var low = STREAK_OUTLINE_MAX;
+    var high = -STREAK_OUTLINE_MAX;
     for (var k = 0u; k < STREAK_OUTLINE; k += 1u) {
         let p = streak_rays_points[k];
         let q = streak_rays_points[(k + 1u) % STREAK_OUTLINE];

@@ -83,7 +83,7 @@ fn trace_add(sum: TraceSum, sample: PathSlot) -> TraceSum {
     // Another surface's light is not told apart, and taken to be the same.
     let off = abs(dot(next.slot.normal, sample.place - next.slot.place));
     let same = off < next.slot.slack && dot(next.slot.normal, sample.normal) > TRACE_SAME_NORMAL;
-    let weight = select(0.0, max(path_most(sample.factor), 1.0e-6), same);
+    let weight = select(0.0, max(path_max(sample.factor), 1.0e-6), same);
     next.slot.light += sample.light * weight;
     next.slot.factor += sample.factor;
     next.weight += weight;

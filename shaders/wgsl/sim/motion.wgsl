@@ -38,7 +38,7 @@ fn motion_settled(wind: vec3f, speed: f32) -> vec3f {
 fn motion_relax(velocity: vec3f, wind: vec3f, speed: f32, time: f32) -> MotionStep {
     let settled = motion_settled(wind, speed);
     let slip = velocity - settled;
-    let relaxation = max(fall_speed_relaxation(speed), vec2f(MOTION_SHORTEST));
+    let relaxation = max(fall_speed_relaxation(speed), vec2f(MOTION_MIN_RELAXATION));
     // Along the fall the slip relaxes twice as fast.
     let left = exp(-time / relaxation.y);
     let stay = vec3f(left, left * left, left);

@@ -84,7 +84,7 @@ fn batches(all: &[Mutant], chosen: &[usize]) -> Vec<Vec<usize>> {
     for &at in chosen {
         by_function.entry((all[at].module.path, &all[at].swap.function)).or_default().push(at);
     }
-    by_function.values().flat_map(|one| one.chunks(bundle::MOST).map(<[usize]>::to_vec)).collect()
+    by_function.values().flat_map(|one| one.chunks(bundle::MAX_MUTANTS).map(<[usize]>::to_vec)).collect()
 }
 
 /// The lines of a report by the mutants that they are about.

@@ -76,10 +76,10 @@ struct KernelBench {
 
 /// Largest numbers of kernel-level cases that a mutant is shown to, where its function has a case of its own and where
 /// it has none. The first of each kernel come first.
-const MOST_KERNEL_CASES: [usize; 2] = [2, 8];
+const MAX_KERNEL_CASES: [usize; 2] = [2, 8];
 
 /// Largest number of function-level cases that a mutant is shown to, its own first.
-const MOST_FUNCTION_CASES: usize = 12;
+const MAX_FUNCTION_CASES: usize = 12;
 
 impl Bench {
     /// All cases before a device.
@@ -154,7 +154,7 @@ impl Bench {
         let mut functions: Vec<usize> = reaching.collect();
         functions.sort_by_key(|&at| self.functions[at].case.function != name);
         let own = functions.iter().copied().filter(|&at| self.functions[at].case.function == name);
-        let few = functions.iter().take(MOST_FUNCTION_CASES).map(|&at| Step::Function(at, FEW_CALLS));
+        let few = functions.iter().take(MAX_FUNCTION_CASES).map(|&at| Step::Function(at, FEW_CALLS));
         let all = own.map(|at| Step::Function(at, self.functions[at].case.calls));
         few.chain(all).chain(self.kernels_for(name).into_iter().map(Step::Kernel)).collect()
     }
@@ -232,7 +232,7 @@ impl Bench {
             }
         }
         order.sort_unstable();
-        let [own, none] = MOST_KERNEL_CASES;
+        let [own, none] = MAX_KERNEL_CASES;
         let has_own = self.functions.iter().any(|bench| bench.case.function == name);
         order.into_iter().take(if has_own { own } else { none }).map(|(_, at)| at).collect()
     }

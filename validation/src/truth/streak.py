@@ -15,7 +15,7 @@ import numpy as np
 # Distance of a lamp in the units of the meshes, of which a drop has some hundreds and a path ten thousand.
 LAMP_DISTANCE = 1.0e8
 # Share of the exposure below which a pixel is not of the streak, against the most covered one.
-LEAST_COVER = 0.1
+MIN_COVER = 0.1
 
 
 def arguments():
@@ -102,9 +102,9 @@ def main(given):
     layer /= len(meshes)
     light, cover = layer[..., :3], layer[..., 3:]
     theirs = behind * (1.0 - cover) + light
-    within = cover[..., 0] > LEAST_COVER * cover.max()
+    within = cover[..., 0] > MIN_COVER * cover.max()
     # The streak alone, as bright as if it covered its pixels all of the time.
-    safe = np.maximum(cover, LEAST_COVER * cover.max())
+    safe = np.maximum(cover, MIN_COVER * cover.max())
     alone = np.where(within[..., None], light / safe, behind)
     ours_light = ours - behind * (1.0 - cover)
     ours_alone = np.where(within[..., None], ours_light / safe, behind)

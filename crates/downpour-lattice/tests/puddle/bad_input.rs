@@ -42,7 +42,7 @@ fn options_have_ranges() {
     refused(&PuddleOptions { water: tension, ..good.clone() }, "surface tension");
     refused(&PuddleOptions { degree: Some(0), ..good.clone() }, "degree");
     refused(&PuddleOptions { degree: Some(13), ..good.clone() }, "degree");
-    refused(&PuddleOptions { longest_wave_m: Some(f32::NAN), ..good.clone() }, "longest wavelength");
+    refused(&PuddleOptions { max_wave_m: Some(f32::NAN), ..good.clone() }, "longest wavelength");
     refused(&PuddleOptions { max_substeps: 0, ..good.clone() }, "sub-steps");
     refused(&PuddleOptions { max_substeps: 65, ..good.clone() }, "sub-steps");
     refused(&PuddleOptions { steps_per_sweep: 0, ..good.clone() }, "steps per sweep");

@@ -160,7 +160,7 @@ fn check_header(bytes: &[u8]) -> core::result::Result<(u32, Description), MaskEr
     let (width, height) = (header.layer_size.0, header.layer_size.1);
     let size = u32::try_from(width).unwrap_or(u32::MAX);
     if !SIZES.contains(&size) {
-        return Err(MaskError::Size { found: size, least: *SIZES.start(), most: *SIZES.end() });
+        return Err(MaskError::Size { found: size, min: *SIZES.start(), max: *SIZES.end() });
     }
     if width != height {
         return Err(file("data window", format!("{width} x {height}"), "a square"));

@@ -21,7 +21,7 @@ use crate::plate::Lighting;
 use crate::rain::PanePlane;
 
 /// Largest width and height of a pane whose size is that of the picture, m.
-const LARGEST_M: f64 = 2.4;
+const MAX_SIZE_M: f64 = 2.4;
 
 /// Ratio of the size of such a pane to that of the picture.
 const MARGIN: f64 = 1.04;
@@ -266,7 +266,7 @@ impl Place {
     /// Width and height of the pane that the picture shows, m.
     fn shown(&self, viewpoint: &Viewpoint, size: [u32; 2]) -> [f64; 2] {
         let mut half = [0.0f64; 2];
-        let Ok(view) = PictureEdge::new(viewpoint, size) else { return [LARGEST_M; 2] };
+        let Ok(view) = PictureEdge::new(viewpoint, size) else { return [MAX_SIZE_M; 2] };
         for k in 0..4u32 {
             let sign = |bit: u32| if k & bit == 0 { -1.0 } else { 1.0 };
             let ray = view.forward
@@ -279,6 +279,6 @@ impl Place {
             half[0] = half[0].max(off.dot(self.across).abs());
             half[1] = half[1].max(off.dot(self.down).abs());
         }
-        half.map(|half| (2.0 * MARGIN * half).clamp(0.02, LARGEST_M))
+        half.map(|half| (2.0 * MARGIN * half).clamp(0.02, MAX_SIZE_M))
     }
 }

@@ -13,7 +13,7 @@ use super::water::{GlassPictureDrop, glass_picture_water_cap};
 const TEXEL_M: f64 = 2.5e-4;
 
 /// Most texels of the finest level.
-const MOST_TEXELS: f64 = 1048576.0;
+const MAX_TEXELS: f64 = 1048576.0;
 
 /// Width of the spot to which a drop gathers light, in its radii: with the drop's light it is not quite
 /// [`PANE_SHADOW_PEAK`] high.
@@ -60,7 +60,7 @@ impl PaneShade {
         gathers_m: f32,
         water: f32,
     ) -> Self {
-        let edge = TEXEL_M.max((size_m[0] * size_m[1] / MOST_TEXELS).sqrt());
+        let edge = TEXEL_M.max((size_m[0] * size_m[1] / MAX_TEXELS).sqrt());
         let [columns, rows] = size_m.map(|size| ((size / edge).round() as usize).max(1));
         let edge = edge as f32;
         let mut finest = vec![Vec2::ZERO; columns * rows];

@@ -1,7 +1,7 @@
 //! The picture as the drops' kernels know it. Twin of `shaders/wgsl/render/drops_frame.wgsl`.
 
 use super::environment::EnvironmentFrame;
-use super::exposure::{MOST_STREAK_SAMPLES, StreakSamples};
+use super::exposure::{MAX_STREAK_SAMPLES, StreakSamples};
 use super::light::DropLightForm;
 use super::{DropMasks, RainOptions};
 use crate::camera::Camera;
@@ -63,7 +63,7 @@ impl DropsFrame {
     ) -> Self {
         let streak_samples = match options.exposure.samples {
             StreakSamples::Table => STREAK_SPARE,
-            StreakSamples::Loop(samples) => samples.clamp(1, MOST_STREAK_SAMPLES),
+            StreakSamples::Loop(samples) => samples.clamp(1, MAX_STREAK_SAMPLES),
         };
         Self {
             camera: *camera,

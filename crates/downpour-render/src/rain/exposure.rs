@@ -7,7 +7,7 @@ use downpour_weather::{Observer, StreakLook, Weather};
 use crate::camera::EyeMotion;
 
 /// The most samples along the chord of a streak.
-pub const MOST_STREAK_SAMPLES: u32 = 4096;
+pub const MAX_STREAK_SAMPLES: u32 = 4096;
 
 /// Method that averages the light of a streak over the time in which its drop passes a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -15,7 +15,7 @@ pub enum StreakSamples {
     /// By a table that is made once per frame: one lookup, whatever the number of samples.
     #[default]
     Table,
-    /// By a loop over so many samples, 1 to [`MOST_STREAK_SAMPLES`] (Rousseau 2006, section 5).
+    /// By a loop over so many samples, 1 to [`MAX_STREAK_SAMPLES`] (Rousseau 2006, section 5).
     Loop(u32),
 }
 
@@ -57,7 +57,7 @@ impl TemporalResponse {
 /// The time in which light is gathered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposure {
-    /// Seconds, 0 (drops stand still) to [`LONGEST_EXPOSURE_S`](crate::camera::LONGEST_EXPOSURE_S); half of it is before the time of the picture.
+    /// Seconds, 0 (drops stand still) to [`MAX_EXPOSURE_S`](crate::camera::MAX_EXPOSURE_S); half of it is before the time of the picture.
     pub shutter_s: f64,
     /// Weight of light over the exposure.
     pub response: TemporalResponse,

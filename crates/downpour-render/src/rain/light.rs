@@ -45,7 +45,7 @@ use crate::RenderError;
 use crate::light::{Light, check_lights, light_weight};
 use crate::plate::Lighting;
 
-use atlas::drop_atlas_place;
+use atlas::drop_atlas_slot;
 use keep::{drop_light_keep, drop_light_keep_facing, drop_light_keep_streak, drop_light_reach};
 pub use table::DropLightTable;
 
@@ -380,7 +380,7 @@ impl<'a> DropLights<'a> {
                 DROP_LIGHT_ATLAS => {
                     let (axis, id) = (Vec4::from(about).truncate(), about[3] as u32);
                     let diameter = 2.0 * radius;
-                    let place = drop_atlas_place(self.table, id, diameter, axis, light.direction, -towards);
+                    let place = drop_atlas_slot(self.table, id, diameter, axis, light.direction, -towards);
                     let radiance = lit * (PI * place.amount);
                     sum += radiance;
                     drop_light_keep_streak(glints, radiance, &place);

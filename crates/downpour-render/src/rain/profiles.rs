@@ -19,8 +19,8 @@ use super::streak_lookup::STREAK_MEAN_ENTRIES;
 use super::streak_path::StreakPath;
 
 /// The most rays, and the most entries of the table: 128 MiB each, what every device binds.
-const MOST_RAYS: u64 = 128 << 20 >> 5;
-const MOST_ENTRIES: u64 = 128 << 20 >> 4;
+const MAX_RAYS: u64 = 128 << 20 >> 5;
+const MAX_ENTRIES: u64 = 128 << 20 >> 4;
 
 /// Radians of the picture that a row of rays stands for: the directions in which a drop is seen differ by that.
 const TURNED: f32 = 0.1;
@@ -121,7 +121,7 @@ impl StreakProfiles {
             let all_rays: u64 = self.paths.iter().map(rays).sum();
             let all_entries: u64 = self.paths.iter().map(entries).sum::<u64>() + u64::from(self.entries);
             let coarsest = self.paths.iter().all(|path| path.rows == 2 && path.fine == 1);
-            if (all_rays <= MOST_RAYS && all_entries <= MOST_ENTRIES) || coarsest {
+            if (all_rays <= MAX_RAYS && all_entries <= MAX_ENTRIES) || coarsest {
                 return;
             }
             for path in &mut self.paths {

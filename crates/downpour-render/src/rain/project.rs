@@ -14,7 +14,7 @@ use super::exposure::{Exposure, StreakSamples};
 use super::streak::DropsDrop;
 use super::{DropMasks, shapes};
 use crate::camera::Camera;
-use crate::camera::LONGEST_EXPOSURE_S;
+use crate::camera::MAX_EXPOSURE_S;
 
 /// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels round them.
 const SMALL: f32 = 1.0;
@@ -180,7 +180,7 @@ struct Path {
 
 /// Time for which the shutter is open, s.
 fn shutter(exposure: &Exposure) -> f32 {
-    let shutter = exposure.shutter_s.clamp(0.0, LONGEST_EXPOSURE_S) as f32;
+    let shutter = exposure.shutter_s.clamp(0.0, MAX_EXPOSURE_S) as f32;
     if shutter.is_finite() { shutter } else { 0.0 }
 }
 

@@ -9,7 +9,7 @@ use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, pack
 use downpour_math::real::{Lanes, Simd, WithLanes, with_widest_lanes};
 use downpour_math::vector::dot;
 use downpour_shaders::render::rain::{
-    STREAK_OUTLINE, STREAK_OUTLINE_LEAST, STREAK_OUTLINE_MOST, STREAK_OUTLINE_SLOPE, STREAK_OUTLINE_STEPS,
+    STREAK_OUTLINE, STREAK_OUTLINE_MAX, STREAK_OUTLINE_MIN, STREAK_OUTLINE_SLOPE, STREAK_OUTLINE_STEPS,
     STREAK_TURN,
 };
 use glam::{Vec2, Vec3};
@@ -21,7 +21,7 @@ use super::streak_path::{StreakInstant, StreakPath, streak_path_axes, streak_pat
 use super::streak_place::streak_place_position;
 
 /// More lanes than any vector has.
-const MOST_LANES: usize = 64;
+const MAX_LANES: usize = 64;
 
 /// A ray of a profile. The same layout as `StreakRay` in WGSL.
 #[repr(C)]
@@ -64,7 +64,7 @@ fn streak_rays_outline(path: &StreakPath, drop: &DropsDrop, instant: &StreakInst
         let gauge = (surface.excess + 1.0).max(0.0).sqrt();
         let slope = dot(surface.half_gradient, radial.to_array()).max(STREAK_OUTLINE_SLOPE);
         let next = radius - surface.excess / (gauge + 1.0) * gauge / slope;
-        radius = next.clamp(STREAK_OUTLINE_LEAST, STREAK_OUTLINE_MOST);
+        radius = next.clamp(STREAK_OUTLINE_MIN, STREAK_OUTLINE_MAX);
     }
     Vec2::new(radius * s, radius * c)
 }
@@ -80,7 +80,7 @@ fn streak_rays_width(points: &[Vec2]) -> Vec2 {
 
 /// Middle and half of the chord at a place across the motion.
 fn streak_rays_chord(points: &[Vec2], across: f32) -> Vec2 {
-    let (mut low, mut high) = (STREAK_OUTLINE_MOST, -STREAK_OUTLINE_MOST);
+    let (mut low, mut high) = (STREAK_OUTLINE_MAX, -STREAK_OUTLINE_MAX);
     for (k, p) in points.iter().enumerate() {
         let q = points[(k + 1) % points.len()];
         if (p.x - across) * (q.x - across) <= 0.0 && p.x != q.x {
@@ -107,13 +107,13 @@ impl WithLanes for Rays<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let lanes = Lanes::<S>::COUNT;
-        debug_assert!(lanes <= MOST_LANES, "a machine with vectors of more than {MOST_LANES} numbers");
+        debug_assert!(lanes <= MAX_LANES, "a machine with vectors of more than {MAX_LANES} numbers");
         let Self { path, drop, instant, points, rays } = self;
         let [along_axis, across_axis] = streak_path_axes(drop);
         let coefficients = path.coefficients();
         for (points, rays) in points.chunks(lanes).zip(rays.chunks_mut(lanes)) {
             // Origin, direction, state, and both numbers of the spheroid; lanes past the end repeat the last ray.
-            let mut numbers = [[0.0f32; MOST_LANES]; 11];
+            let mut numbers = [[0.0f32; MAX_LANES]; 11];
             for k in 0..lanes {
                 let point = points[k.min(points.len() - 1)];
                 let offset = along_axis * point.y + across_axis * point.x;
@@ -155,9 +155,9 @@ impl WithLanes for Rays<'_> {
 /// Packs the lanes of the light of rays.
 #[inline(always)]
 fn store<S: Simd>(path: &StreakPath, light: &WobbleLight<Lanes<S>>, rays: &mut [StreakRay]) {
-    let mut exits = [[[0.0f32; MOST_LANES]; 3]; 4];
-    let mut shares = [[0.0f32; MOST_LANES]; 4];
-    let mut passed = [[0.0f32; MOST_LANES]; 4];
+    let mut exits = [[[0.0f32; MAX_LANES]; 3]; 4];
+    let mut shares = [[0.0f32; MAX_LANES]; 4];
+    let mut passed = [[0.0f32; MAX_LANES]; 4];
     for n in 0..4 {
         for (lanes, into) in light.exits[n].iter().zip(&mut exits[n]) {
             lanes.store(into);

@@ -7,7 +7,7 @@ use super::SceneBuilder;
 use crate::material::{TextureSlot, TextureUse};
 
 /// The largest edge of a texture: larger ones are halved until they fit.
-const LARGEST_EDGE: u32 = 2048;
+const MAX_EDGE: u32 = 2048;
 
 impl SceneBuilder {
     /// Adds a texture of 8-bit texels with all its levels, repeating in both directions. Its slot can be changed
@@ -30,7 +30,7 @@ impl SceneBuilder {
         let mut sizes = vec![([width, height], 0)];
         let coarser = pyramid_levels([width, height], PyramidRounding::Down);
         sizes.extend(coarser.iter().map(|level| (level.size, level.target_texel)));
-        sizes.retain(|(size, _)| size.iter().all(|&edge| edge <= LARGEST_EDGE));
+        sizes.retain(|(size, _)| size.iter().all(|&edge| edge <= MAX_EDGE));
         let ([top_width, top_height], top) = sizes[0];
         let levels = sizes.len() as u32;
         let store = |v: f32| {

@@ -165,7 +165,7 @@ impl PictureOnGpu {
 }
 
 /// Turns of loops after which a software driver of Mesa ends a shader, without a word.
-const MOST_TURNS: u64 = 65_535;
+const MAX_LOOP_ITERATIONS: u64 = 65_535;
 
 /// Turns that a ray takes through the hierarchy, and a texture through its levels: a generous mean.
 const TURNS_PER_RAY: u64 = 200;
@@ -178,14 +178,14 @@ fn check_turns(frame: &RenderFrame) -> Result<(), GpuError> {
     let mirrored = if frame.puddle_count > 0 { 2 * sky.max(u64::from(PUDDLE_WATER_RAYS)) } else { 0 };
     let rays = 1 + lights + 2 * sky + mirrored;
     let needed = grid * grid * (rays * TURNS_PER_RAY + 2 * lights * (1 + sky));
-    if needed <= MOST_TURNS {
+    if needed <= MAX_LOOP_ITERATIONS {
         return Ok(());
     }
     Err(GpuError::OverLimit {
         what: "the work of a pixel (samples, rays to the sky, lamps), in turns of loops,".to_owned(),
         found: needed,
         limit_name: "LP_MAX_TGSI_LOOP_ITERATIONS",
-        allowed: MOST_TURNS,
+        allowed: MAX_LOOP_ITERATIONS,
     })
 }
 

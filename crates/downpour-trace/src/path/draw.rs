@@ -8,7 +8,7 @@ use downpour_shaders::render::puddle_water::{
 use downpour_shaders::render::scatter::SCATTER_DISK;
 use glam::{Vec2, Vec3};
 
-use super::plan::{path_albedo, path_most};
+use super::plan::{path_albedo, path_max};
 use crate::scatter::{ScatterRay, scatter_hemisphere};
 use crate::scene::SceneView;
 use crate::scene::water::{puddle_water_mirrored, puddle_water_normal};
@@ -61,7 +61,7 @@ pub(super) fn path_replaced(ray: &ScatterRay, next: &ScatterRay) -> ScatterRay {
 /// A ray that goes on from a surface that the ray before has met; without weight if it does not.
 pub(super) fn path_onward(ray: &ScatterRay, next: &ScatterRay, surface: &Surface, number: f32) -> ScatterRay {
     let factor = path_albedo(surface) * next.diffuse + next.mirror;
-    let probability = path_most(factor).min(1.0);
+    let probability = path_max(factor).min(1.0);
     let weight = if number < probability { 1.0 / probability.max(1.0e-6) } else { 0.0 };
     ScatterRay {
         diffuse: ray.diffuse * factor * weight,

@@ -54,7 +54,7 @@ impl PathPlan {
 }
 
 /// The greatest part of a color.
-pub(crate) fn path_most(color: Vec3) -> f32 {
+pub(crate) fn path_max(color: Vec3) -> f32 {
     color.max_element()
 }
 
@@ -153,11 +153,11 @@ impl SceneView<'_> {
         };
         if rays == 0 {
             plan.body = body * (Vec3::ONE - gloss);
-        } else if path_most(body) <= 0.0 {
+        } else if path_max(body) <= 0.0 {
             plan.rays = 0;
             plan.mirrors = if drawn { rays } else { 1 };
         } else if surface.roughness < PATH_MIXED {
-            plan.mirrors = u32::from(path_most(gloss) > PATH_MIN_GLOSS);
+            plan.mirrors = u32::from(path_max(gloss) > PATH_MIN_GLOSS);
         } else if kept {
             plan.chance = scatter_chance(body, gloss);
         }

@@ -2,7 +2,7 @@
 
 use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
-use downpour_shaders::render::puddle_water::PUDDLE_WATER_LEAST;
+use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -107,7 +107,7 @@ impl PuddleMap {
             };
             let depth = level - uneven[i];
             // Land that is lower than water beside it is behind a shore.
-            let depth = if wet[i] { depth } else { depth.clamp(-SHORE_M, -0.1 * PUDDLE_WATER_LEAST) };
+            let depth = if wet[i] { depth } else { depth.clamp(-SHORE_M, -0.1 * PUDDLE_WATER_MIN_DEPTH) };
             [height, (level - model[i]).max(0.0), depth, open[i]]
         };
         Self { ground: *ground, size, cells: (0..columns * rows).map(cell).collect() }
@@ -123,7 +123,7 @@ impl PuddleMap {
         let (model, open) = ground.measure(scene, size);
         let cell = |((&height, &open), &depth): ((&f32, &f32), &f32)| {
             if height.is_finite() {
-                [height, 0.0, if depth > 0.0 { depth } else { -0.1 * PUDDLE_WATER_LEAST }, open]
+                [height, 0.0, if depth > 0.0 { depth } else { -0.1 * PUDDLE_WATER_MIN_DEPTH }, open]
             } else {
                 [-2.0 * ground.reach, 0.0, LAND_M, 0.0]
             }
@@ -134,7 +134,7 @@ impl PuddleMap {
     /// Area under water, m^2.
     #[must_use]
     pub fn area_m2(&self) -> f32 {
-        let wet = self.cells.iter().filter(|cell| cell[2] >= PUDDLE_WATER_LEAST).count();
+        let wet = self.cells.iter().filter(|cell| cell[2] >= PUDDLE_WATER_MIN_DEPTH).count();
         wet as f32 * self.cell_m2()
     }
 

@@ -9,7 +9,7 @@ use downpour_math::rng::{rng_draw, rng_unit, seed_words};
 use glam::Vec2;
 
 /// The longest wave, m.
-const LONGEST_M: f32 = 8.0;
+const MAX_WAVELENGTH_M: f32 = 8.0;
 
 /// Octaves: the shortest wave is 0.5 m.
 const OCTAVES: u32 = 5;
@@ -40,7 +40,7 @@ impl Relief {
         // 1 + 1/2 + 1/4 + ...
         let whole = 2.0 - ops::exp2(1.0 - OCTAVES as f32);
         let mut sum = 0.0;
-        let mut wave = LONGEST_M;
+        let mut wave = MAX_WAVELENGTH_M;
         let mut share = 1.0;
         for octave in 0..OCTAVES {
             // Turned from octave to octave, so that the squares do not show.

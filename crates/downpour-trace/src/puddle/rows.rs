@@ -1,6 +1,6 @@
 //! Puddles as rows of the scene's table. Twin of `shaders/wgsl/render/puddle.wgsl`.
 
-use downpour_shaders::render::puddle_water::{PUDDLE_WATER_MOST, PUDDLE_WATER_ROWS};
+use downpour_shaders::render::puddle_water::{PUDDLE_WATER_MAX_COUNT, PUDDLE_WATER_ROWS};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::map::{PuddleMap, turned};
@@ -40,7 +40,7 @@ impl Default for PuddleLook {
 /// Puddles and their ripples on their way into a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct PuddleRows<'a> {
-    /// The puddles, at most [`PUDDLE_WATER_MOST`]; those beyond are left out.
+    /// The puddles, at most [`PUDDLE_WATER_MAX_COUNT`]; those beyond are left out.
     pub puddles: &'a [(PuddleMap, PuddleLook)],
     /// Columns of the finest level of the ripples, levels, edge of a cell (m).
     pub shape: (u32, u32, f32),
@@ -119,7 +119,7 @@ impl SceneData {
         if self.puddle_count > 0 {
             self.table.truncate(self.puddles as usize);
         }
-        let puddles = &rows.puddles[..rows.puddles.len().min(PUDDLE_WATER_MOST as usize)];
+        let puddles = &rows.puddles[..rows.puddles.len().min(PUDDLE_WATER_MAX_COUNT as usize)];
         self.puddles = self.table.len() as u32;
         self.puddle_count = puddles.len() as u32;
         if !puddles.is_empty() {

@@ -5,7 +5,7 @@ use downpour_render::light::{Light, light_weight};
 use downpour_render::plate::Lighting;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OUTSIDE};
-use downpour_shaders::render::scene::{SCENE_BLENDED, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS};
+use downpour_shaders::render::scene::{SCENE_BLENDED, SCENE_LAYERS, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS};
 use glam::{Vec2, Vec3};
 
 use super::SceneView;
@@ -107,8 +107,7 @@ impl SceneView<'_> {
         if surface.facet.dot(light.direction) <= 0.0 {
             return Vec3::ZERO;
         }
-        let alpha =
-            (surface.roughness * surface.roughness).max(SCENE_LEAST_ROUGHNESS * SCENE_LEAST_ROUGHNESS);
+        let alpha = (surface.roughness * surface.roughness).max(SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS);
         let (diffuse, normal_reflectance) = (surface.diffuse * light.diffuse, surface.normal_reflectance);
         light.irradiance
             * brdf_direct(diffuse, normal_reflectance, alpha, surface.normal, view, light.direction)
@@ -149,7 +148,7 @@ impl SceneView<'_> {
                 let times = ((run - next) / step).floor() + 1.0;
                 next += times * step;
                 weight = times * step / share;
-            } else if share <= total * SCENE_LEAST_LAMP {
+            } else if share <= total * SCENE_MIN_LAMP {
                 continue;
             }
             let visible = self.scene_visibility(arrival.start, arrival.along, arrival.distance);

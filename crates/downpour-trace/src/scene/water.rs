@@ -15,8 +15,8 @@
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::render::puddle_water::{
-    PUDDLE_WATER_DIMENSION, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_INSIDE,
-    PUDDLE_WATER_LEAST, PUDDLE_WATER_MESH, PUDDLE_WATER_OUTSIDE, PUDDLE_WATER_SLACK,
+    PUDDLE_WATER_DIMENSION, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_INSIDE, PUDDLE_WATER_MESH,
+    PUDDLE_WATER_MIN_DEPTH, PUDDLE_WATER_OUTSIDE, PUDDLE_WATER_SLACK,
 };
 use glam::{Vec2, Vec3, Vec4};
 
@@ -71,7 +71,7 @@ impl SceneView<'_> {
         (0..self.frame.puddle_count).find_map(|puddle| {
             let water = self.data.puddle_load(puddle);
             let found = self.puddle_water_map(&water, place);
-            if found.z < PUDDLE_WATER_LEAST {
+            if found.z < PUDDLE_WATER_MIN_DEPTH {
                 return None;
             }
             let height = place.y - water.middle.y - found.x;

@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 use downpour_render::camera::{EyeMotion, Viewpoint};
 
 /// Speeds, in m/s and rad/s, above which an eye has not moved but been cut to another position.
-const FASTEST_M_S: f32 = 100.0;
-const FASTEST_RAD_S: f32 = 30.0;
+const MAX_SPEED_M_S: f32 = 100.0;
+const MAX_SPEED_RAD_S: f32 = 30.0;
 
 /// Choice of the eye.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -80,7 +80,7 @@ impl Seen {
         let sine = turned.length();
         let angle = downpour_math::ops::asin(sine.min(1.0));
         let turning = if sine > 1.0e-9 { turned * (angle / sine / apart_s as f32) } else { Vec3::ZERO };
-        let jumps = !(velocity.length() <= FASTEST_M_S && turning.length() <= FASTEST_RAD_S);
+        let jumps = !(velocity.length() <= MAX_SPEED_M_S && turning.length() <= MAX_SPEED_RAD_S);
         if jumps { EyeMotion::default() } else { EyeMotion { velocity, turning } }
     }
 

@@ -94,7 +94,7 @@ pub(super) fn times(runs: &[Run]) -> String {
 /// A row for each run.
 pub(super) fn csv(runs: &[Run]) -> String {
     let mut text =
-        "set,model,rate_mm_h,most_drops,fov_deg,frames,simulated,on_screen_mean,on_screen_least,drawn_mean,\
+        "set,model,rate_mm_h,max_drops,fov_deg,frames,simulated,on_screen_mean,on_screen_least,drawn_mean,\
                     share_mean,share_least,frame_ms_mean,frame_ms_least,drops_ms_least,step_ms_least\n"
             .to_owned();
     for run in runs {
@@ -121,7 +121,7 @@ pub(super) fn csv(runs: &[Run]) -> String {
 
 /// A row for each frame of each run.
 pub(super) fn frames_csv(runs: &[Run], fps: u32) -> String {
-    let mut text = "set,model,most_drops,frame,time_s,simulated,on_screen,drawn,share,frame_ms\n".to_owned();
+    let mut text = "set,model,max_drops,frame,time_s,simulated,on_screen,drawn,share,frame_ms\n".to_owned();
     for run in runs {
         for frame in &run.frames {
             text += &format!(

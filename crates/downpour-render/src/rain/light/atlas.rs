@@ -8,12 +8,12 @@
 
 use downpour_atlas::StreakAtlas;
 use downpour_atlas::lookup::{
-    AtlasPlace, atlas_cell, atlas_clamp, atlas_corner, atlas_draw, atlas_light, atlas_map, atlas_position,
+    AtlasSlot, atlas_cell, atlas_clamp, atlas_corner, atlas_draw, atlas_light, atlas_map, atlas_position,
     atlas_rise, atlas_weights,
 };
 use downpour_math::ops;
 use downpour_shaders::atlas::{
-    ATLAS_GRID, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISES, ATLAS_SMALLEST, ATLAS_STEPS,
+    ATLAS_GRID, ATLAS_MIN_DIAMETER, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISES, ATLAS_STEPS,
 };
 use downpour_shaders::render::drop_light::{
     DROP_ATLAS_COUNTS, DROP_ATLAS_FIRST, DROP_ATLAS_PICK, DROP_ATLAS_RISES, DROP_ATLAS_SEED,
@@ -112,14 +112,14 @@ fn drop_atlas_position(table: &DropLightTable, first: u32, value: f32) -> f32 {
 }
 
 /// The streak of a drop's id, diameter in meters and axis, and the unit vectors to its light and viewer.
-pub(super) fn drop_atlas_place(
+pub(super) fn drop_atlas_slot(
     table: &DropLightTable,
     id: u32,
     diameter: f32,
     axis: Vec3,
     light: Vec3,
     view: Vec3,
-) -> AtlasPlace {
+) -> AtlasSlot {
     let row = |k| drop_atlas_row(table, k);
     let [sizes, oscillations, elevations, directions] = row(DROP_ATLAS_COUNTS).map(|n| n as u32);
     let [pick, _, is_shared, _] = row(DROP_ATLAS_PICK).map(|n| n as u32);
@@ -130,15 +130,15 @@ pub(super) fn drop_atlas_place(
         let sets = sizes * oscillations;
         let layer = atlas_draw(seed, id, 1, sets * elevations * directions);
         let amount = drop_atlas_number(table, sets * ATLAS_RISES * ATLAS_GRID * ATLAS_GRID + layer);
-        return AtlasPlace {
+        return AtlasSlot {
             layers: [layer; 3],
             side,
             weights: [1.0, 0.0, 0.0],
             amount,
-            ..AtlasPlace::default()
+            ..AtlasSlot::default()
         };
     }
-    let size = drop_atlas_position(table, DROP_ATLAS_SIZES, ops::log2(diameter.max(ATLAS_SMALLEST)));
+    let size = drop_atlas_position(table, DROP_ATLAS_SIZES, ops::log2(diameter.max(ATLAS_MIN_DIAMETER)));
     let lower = size.floor();
     let group = lower as u32 * oscillations + atlas_draw(seed, id, 0, oscillations);
     let point = atlas_map(within);
@@ -177,7 +177,7 @@ pub(super) fn drop_atlas_place(
         triangle = drop_atlas_triangle(table, first + over as u32);
         weights = atlas_weights(triangle.a, triangle.b, triangle.c, point);
     }
-    AtlasPlace {
+    AtlasSlot {
         layers: triangle.directions.map(|direction| base + direction as u32),
         side,
         weights: atlas_clamp(weights),
@@ -215,7 +215,7 @@ mod tests {
                 let diameter = 0.5e-3 + 1.0e-5 * k as f32;
                 let particle = StreakParticle { diameter, axis: [0.0, 1.0, 0.0], id: k };
                 let wanted = atlas.place(&particle, light.to_array(), view.to_array());
-                let found = drop_atlas_place(&table, k, diameter, Vec3::Y, light, view);
+                let found = drop_atlas_slot(&table, k, diameter, Vec3::Y, light, view);
                 assert_eq!(found, wanted, "{k}");
             }
         }

@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use downpour_atlas::lookup::AtlasPlace;
+use downpour_atlas::lookup::AtlasSlot;
 use downpour_shaders::render::drop_light::{DROP_ATLAS_ROWS, DROP_LIGHT_LAMPS_ROUSSEAU, DROP_LIGHT_REACH};
 use glam::{Vec3, Vec4};
 
@@ -40,7 +40,7 @@ pub(super) fn drop_light_keep_facing(rows: &mut [[f32; 4]], light: Vec4, directi
 }
 
 /// Keeps a streak of an atlas, three rows, if it is brighter than the least of those that are kept.
-pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, place: &AtlasPlace) {
+pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, place: &AtlasSlot) {
     if let Some(weakest) = drop_light_weakest::<{ DROP_ATLAS_ROWS as usize }>(rows, light_weight(radiance)) {
         let [a, b, c] = place.layers.map(|layer| layer as f32);
         *weakest = [
