@@ -82,8 +82,12 @@ impl StreakAtlas {
             let about = std::fs::metadata(&path).map_err(to_error)?;
             if !about.is_file() || about.len() > MAX_FILE_BYTES {
                 let found = format!("{} bytes", about.len());
-                return Err(AtlasError::File { place: "file", found, allowed: "a file of at most 64 MiB" }
-                    .in_file(&path));
+                return Err(AtlasError::File {
+                    location: "file",
+                    found,
+                    allowed: "a file of at most 64 MiB",
+                }
+                .in_file(&path));
             }
             let bytes = std::fs::read(&path).map_err(to_error)?;
             sets.push(read_streaks(&bytes).map_err(|error| error.in_file(&path))?);
@@ -117,7 +121,7 @@ impl StreakAtlas {
     /// [`AtlasError::File`] if there are none, if they differ in size, extent, elevations or directions, or if a
     /// diameter has more oscillations than another.
     pub fn from_sets(mut sets: Vec<StreakSet>) -> Result<Self, AtlasError> {
-        let wrong = |place, found: String, allowed| AtlasError::File { place, found, allowed };
+        let wrong = |location, found: String, allowed| AtlasError::File { location, found, allowed };
         for set in &sets {
             set.check()?;
         }
@@ -231,15 +235,15 @@ impl StreakAtlas {
     /// The streak of a drop: its amount, three layers and their weights. `light` and `view` are unit vectors from the drop to its
     /// light and to its viewer.
     #[must_use]
-    pub fn place(&self, drop: &StreakParticle, light: [f32; 3], view: [f32; 3]) -> AtlasSlot {
+    pub fn slot(&self, drop: &StreakParticle, light: [f32; 3], view: [f32; 3]) -> AtlasSlot {
         atlas_lookup_slot(&self.data(), drop.id, drop.diameter, drop.axis, light, view)
     }
 
     /// Radiance at a position in the atlas, in 1/sr for an irradiance of 1, during a fall by one diameter: `across`
     /// equivalent radii to the right of the middle, `turns` of the mode (2,0) along.
     #[must_use]
-    pub fn radiance(&self, place: &AtlasSlot, across: f32, turns: f32) -> f32 {
-        atlas_lookup_radiance(&self.data(), place, across, turns)
+    pub fn radiance(&self, slot: &AtlasSlot, across: f32, turns: f32) -> f32 {
+        atlas_lookup_radiance(&self.data(), slot, across, turns)
     }
 }
 

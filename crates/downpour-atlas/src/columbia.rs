@@ -245,8 +245,8 @@ impl<'a> Brightness<'a> {
     }
 }
 
-fn wrong(name: &str, place: &'static str, found: String, allowed: &'static str) -> AtlasError {
-    AtlasError::File { place, found, allowed }.in_file(name.as_ref())
+fn wrong(name: &str, location: &'static str, found: String, allowed: &'static str) -> AtlasError {
+    AtlasError::File { location, found, allowed }.in_file(name.as_ref())
 }
 
 /// Picture resampled to `rows` rows, each the mean of the rows it covers; 1 is the brightest value.

@@ -56,7 +56,7 @@ impl GpuAtlas {
         })
     }
 
-    /// Radiances of points of streaks, as [`StreakAtlas::place`] and [`StreakAtlas::radiance`] return them.
+    /// Radiances of points of streaks, as [`StreakAtlas::slot`] and [`StreakAtlas::radiance`] return them.
     ///
     /// # Errors
     /// [`GpuError`] of the device.

@@ -74,8 +74,8 @@
 //! use downpour_atlas::{StreakAtlas, StreakParticle, StreakPick};
 //! let atlas = StreakAtlas::load("assets/streaks".as_ref())?.with_pick(StreakPick::ByAngle);
 //! let particle = StreakParticle { diameter: 2.0e-3, axis: [0.0, 1.0, 0.0], id: 42 };
-//! let place = atlas.place(&particle, [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]);
-//! let texel = atlas.radiance(&place, 0.25, 1.7); // a quarter radius to the right, after 1.7 turns
+//! let slot = atlas.slot(&particle, [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]);
+//! let texel = atlas.radiance(&slot, 0.25, 1.7); // a quarter radius to the right, after 1.7 turns
 //! # Ok::<(), downpour_atlas::AtlasError>(())
 //! ```
 

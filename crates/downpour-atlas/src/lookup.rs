@@ -322,22 +322,22 @@ pub fn atlas_lookup_layer(data: &AtlasData<'_>, layer: u32, across: f32, down: f
 
 /// Radiance at a position in the atlas, `across` equivalent radii to the right of the middle, `turns` of the mode (2,0) along.
 #[must_use]
-pub fn atlas_lookup_radiance(data: &AtlasData<'_>, place: &AtlasSlot, across: f32, turns: f32) -> f32 {
+pub fn atlas_lookup_radiance(data: &AtlasData<'_>, slot: &AtlasSlot, across: f32, turns: f32) -> f32 {
     let frame = data.frame;
     let half = 0.5 * frame.size[0] as f32;
-    let column = half + half * (across * place.side / frame.half_extent).clamp(-2.0, 2.0);
+    let column = half + half * (across * slot.side / frame.half_extent).clamp(-2.0, 2.0);
     let row = (turns - turns.floor()) * frame.size[1] as f32;
     let mut pattern = 0.0;
     for corner in 0..4 {
-        let weight = atlas_corner(place.parts[0], place.parts[1], corner);
+        let weight = atlas_corner(slot.parts[0], slot.parts[1], corner);
         if weight > 0.0 {
             let sizes = (corner & 1) * frame.counts[1] * frame.counts[2];
             let step = (sizes + (corner >> 1)) * frame.counts[3];
-            let mean = place.weights[0] * atlas_lookup_layer(data, place.layers[0] + step, column, row)
-                + place.weights[1] * atlas_lookup_layer(data, place.layers[1] + step, column, row)
-                + place.weights[2] * atlas_lookup_layer(data, place.layers[2] + step, column, row);
+            let mean = slot.weights[0] * atlas_lookup_layer(data, slot.layers[0] + step, column, row)
+                + slot.weights[1] * atlas_lookup_layer(data, slot.layers[1] + step, column, row)
+                + slot.weights[2] * atlas_lookup_layer(data, slot.layers[2] + step, column, row);
             pattern += weight * mean;
         }
     }
-    place.amount * pattern
+    slot.amount * pattern
 }

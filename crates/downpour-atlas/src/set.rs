@@ -112,7 +112,7 @@ impl StreakSet {
     /// # Errors
     /// [`AtlasError`] for options, elevations, directions or texels that are wrong.
     pub fn check(&self) -> Result<(), AtlasError> {
-        let wrong = |place, found: String, allowed| Err(AtlasError::File { place, found, allowed });
+        let wrong = |location, found: String, allowed| Err(AtlasError::File { location, found, allowed });
         self.options.check()?;
         self.oscillation.amplitudes()?;
         downpour_drop::DropShape::new(self.diameter)?;

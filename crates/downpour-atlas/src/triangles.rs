@@ -28,9 +28,9 @@ impl HasPosition for Corner {
 /// # Errors
 /// [`AtlasError::File`] if two directions are the same, or all lie on one circle.
 pub(crate) fn triangulate(directions: &[[f64; 3]]) -> Result<Vec<AtlasTriangle>, AtlasError> {
-    const PLACE: &str = "directions of streaks";
+    const LOCATION: &str = "directions of streaks";
     let wrong = |found: String| AtlasError::File {
-        place: PLACE,
+        location: LOCATION,
         found,
         allowed: "three or more directions that differ and do not lie on one circle",
     };

@@ -64,7 +64,7 @@ impl ExitCode for SceneError {
 impl ExitCode for MaskError {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::Size { found, most, .. } if found > most => LIMIT,
+            Self::Size { found, max, .. } if found > max => LIMIT,
             Self::Encode { .. } => OTHER,
             Self::InFile { error, .. } => error.exit_code(),
             _ => INPUT,
@@ -115,7 +115,7 @@ impl ExitCode for GlassError {
 impl ExitCode for RenderError {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::Size { found, most, .. } if found.iter().any(|n| n > most) => LIMIT,
+            Self::Size { found, max, .. } if found.iter().any(|n| n > max) => LIMIT,
             Self::Encode { .. } => OTHER,
             _ => INPUT,
         }
@@ -163,7 +163,7 @@ impl ExitCode for ShowerError {
 impl ExitCode for SpecimenError {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::Size { found, most, .. } if found > most => LIMIT,
+            Self::Size { found, max, .. } if found > max => LIMIT,
             Self::Mask(error) => error.exit_code(),
             Self::Render(error) => error.exit_code(),
             _ => INPUT,

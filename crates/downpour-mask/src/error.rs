@@ -32,10 +32,10 @@ pub enum MaskError {
         allowed: &'static str,
     },
     /// A mask file is not what it should be.
-    #[error("{place}: found {found}; allowed: {allowed}")]
+    #[error("{location}: found {found}; allowed: {allowed}")]
     File {
         /// The part of the file.
-        place: &'static str,
+        location: &'static str,
         /// The content found.
         found: String,
         /// The allowed content.

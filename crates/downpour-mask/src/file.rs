@@ -44,9 +44,9 @@ impl Description {
         )
     }
 
-    pub(crate) fn read(place: &'static str, text: &str) -> Result<Self, MaskError> {
+    pub(crate) fn read(location: &'static str, text: &str) -> Result<Self, MaskError> {
         const ALLOWED: &str = "version=2;diameter_mm=..;half_extent=..;elevation_deg=..;refractive_index=..";
-        let bad = || MaskError::File { place, found: shorten(text), allowed: ALLOWED };
+        let bad = || MaskError::File { location, found: shorten(text), allowed: ALLOWED };
         let value = |key: &str| {
             text.split(';').find_map(|pair| pair.split_once('=').filter(|(k, _)| *k == key)).map(|(_, v)| v)
         };

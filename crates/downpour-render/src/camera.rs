@@ -23,7 +23,7 @@ pub struct EyeMotion {
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
-    /// Place of the eye, meters.
+    /// Position of the eye, meters.
     pub eye: Vec3,
     /// View direction, of any length above 0.
     pub forward: Vec3,

@@ -27,7 +27,7 @@ pub enum LightSource {
     },
     /// Light from a point.
     Point {
-        /// Place, meters.
+        /// Position, meters.
         position: Vec3,
         /// Radiant intensity: irradiance at 1 m.
         intensity: Vec3,
@@ -36,7 +36,7 @@ pub enum LightSource {
     },
     /// Light from a point in a cone.
     Spot {
-        /// Place, meters.
+        /// Position, meters.
         position: Vec3,
         /// Axis of the cone, of length 1.
         direction: Vec3,

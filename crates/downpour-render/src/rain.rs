@@ -42,14 +42,14 @@ pub(crate) mod streak;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod streak;
+#[cfg(not(feature = "parity"))]
+pub(crate) mod streak_cell;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod streak_cell;
 mod streak_light;
 mod streak_lookup;
 mod streak_path;
-#[cfg(not(feature = "parity"))]
-pub(crate) mod streak_place;
-#[cfg(feature = "parity")]
-#[doc(hidden)]
-pub mod streak_place;
 mod streak_rays;
 mod streak_table;
 mod tiles;
@@ -84,7 +84,7 @@ pub enum RefractionForm {
     /// added: exact for a scene that is far compared with the drop's distance.
     #[default]
     Direction = DROPS_DIRECTION,
-    /// Rousseau 2006, 4.2.3: the place of the pixel in a picture 165 degrees wide is shifted by the mask. No reflection.
+    /// Rousseau 2006, 4.2.3: the position of the pixel in a picture 165 degrees wide is shifted by the mask. No reflection.
     /// Their perspective loses the middle (1.7 degrees per pixel at 512), and directions beyond its edge are the edge.
     Rousseau2006 = DROPS_SHIFT,
 }

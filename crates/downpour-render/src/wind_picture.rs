@@ -94,7 +94,7 @@ impl WindSlice {
     ///
     /// # Errors
     /// [`RenderError::Size`] if an edge is not 64 to 4096 pixels; [`RenderError::OutOfRange`] for an edge of the box that is
-    /// not 0.01 to 1e6 m, or a place beyond 1e6 m.
+    /// not 0.01 to 1e6 m, or a position beyond 1e6 m.
     pub fn new(
         plane: WindPlane,
         offset: f32,
@@ -127,8 +127,8 @@ impl WindSlice {
         Ok(Self { plane, offset, middle: 0.5 * (low + high), pixel, size, rows })
     }
 
-    /// The place of a pixel's middle.
-    fn place(&self, column: u32, row: u32) -> Vec3 {
+    /// The position of a pixel's middle.
+    fn position(&self, column: u32, row: u32) -> Vec3 {
         let [right, down] = self.plane.axes();
         let normal = self.plane.normal();
         let from_middle = |n: u32, count: u32| (n as f32 + 0.5 - 0.5 * count as f32) * self.pixel;
@@ -179,7 +179,7 @@ impl Flow {
     fn new(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> Self {
         let [columns, rows] = [slice.size[0], slice.rows].map(|n| n as usize);
         let [right, down] = slice.plane.axes();
-        let velocity = |i: usize| air(slice.place((i % columns) as u32, (i / columns) as u32));
+        let velocity = |i: usize| air(slice.position((i % columns) as u32, (i / columns) as u32));
         let velocities: Vec<Vec3> = (0..columns * rows).into_par_iter().map(velocity).collect();
         let speed: Vec<f32> = velocities.iter().map(|v| v.length()).collect();
         let along = velocities.iter().map(|v| [v.dot(right), v.dot(down)]).collect();
@@ -190,7 +190,7 @@ impl Flow {
         Self { columns, rows, along, speed, scale }
     }
 
-    /// The flow at a place in pixels; nothing outside.
+    /// The flow at a position in pixels; nothing outside.
     fn at(&self, x: f32, y: f32) -> Option<[f32; 2]> {
         if x < 0.0 || y < 0.0 {
             return None;
@@ -200,7 +200,7 @@ impl Flow {
     }
 }
 
-/// Draws the wind in a slice; `air` gives the velocity at a place, m/s. The same bytes for any number of threads.
+/// Draws the wind in a slice; `air` gives the velocity at a position, m/s. The same bytes for any number of threads.
 #[must_use]
 pub fn draw_wind(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> WindPicture {
     let flow = Flow::new(slice, air);
@@ -227,15 +227,15 @@ pub fn draw_wind(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> Wind
 fn divergence(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> f64 {
     let step = |n: u32| n.div_ceil(PROBES).max(1);
     let (across, down) = (step(slice.size[0]), step(slice.rows));
-    let places: Vec<[u32; 2]> = (0..slice.rows)
+    let positions: Vec<[u32; 2]> = (0..slice.rows)
         .step_by(down as usize)
         .flat_map(|row| (0..slice.size[0]).step_by(across as usize).map(move |column| [column, row]))
         .collect();
     let h = 0.1 * slice.pixel;
-    let squares: Vec<f64> = places
+    let squares: Vec<f64> = positions
         .par_iter()
         .map(|&[column, row]| {
-            let at = slice.place(column, row);
+            let at = slice.position(column, row);
             let slope = |axis: Vec3| (air(at + axis * h) - air(at - axis * h)).dot(axis) / (2.0 * h);
             let sum = f64::from(slope(Vec3::X)) + f64::from(slope(Vec3::Y)) + f64::from(slope(Vec3::Z));
             sum * sum

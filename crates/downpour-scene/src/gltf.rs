@@ -219,6 +219,6 @@ fn too_long(length: u64, most: u64) -> SceneError {
 }
 
 /// A warning of the common kind: the meaning is clear, the form is not quite the specification's.
-fn irregular(warnings: &mut Warnings, place: impl std::fmt::Display, what: impl FnOnce() -> String) {
-    warnings.add(WarningKind::Irregular, place, what);
+fn irregular(warnings: &mut Warnings, location: impl std::fmt::Display, what: impl FnOnce() -> String) {
+    warnings.add(WarningKind::Irregular, location, what);
 }

@@ -34,7 +34,7 @@ use rayon::prelude::*;
 
 pub use column::{CollisionMeeting, CollisionPiece, collision_column};
 pub use find::{
-    CollisionHit, collision_cover, collision_find, collision_inside, collision_open, collision_place,
+    CollisionHit, collision_cover, collision_find, collision_inside, collision_open, collision_position,
     collision_texel, collision_turn, collision_wall,
 };
 pub use frame::{CollisionFrame, CollisionOptions};

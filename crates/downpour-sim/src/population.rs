@@ -26,7 +26,7 @@ const BINS_PER_OCTAVE: f64 = 8.0;
 /// Dimensions of the random numbers.
 const COUNT: u32 = 8230;
 const SIZE: u32 = 8231;
-const PLACE: u32 = 8250;
+const POSITION: u32 = 8250;
 
 /// Number of tries of a rejection sampling before the last is used.
 const TRIES: u32 = 64;
@@ -195,7 +195,7 @@ pub(crate) fn initial_position(
 ) -> (Vec3, u32) {
     let seed = seed_words(seed);
     let draw = |attempt: u32| {
-        let [a, b, c, d] = rng_draw(seed, drop, attempt, PLACE);
+        let [a, b, c, d] = rng_draw(seed, drop, attempt, POSITION);
         let unit = |word: u32| (f64::from(word) + 0.5) / 4_294_967_296.0;
         (DVec3::new(unit(a), unit(b), unit(c)), unit(d))
     };

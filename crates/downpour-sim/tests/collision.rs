@@ -429,7 +429,8 @@ fn a_covering_map_covers() {
     let map = CollisionMap::new(&options, &Bvh::new(&boxes(3))).unwrap();
     for corner in 0..8 {
         let pick = |k: usize| if corner >> k & 1 == 1 { high[k] } else { low[k] };
-        let position = downpour_sim::collision::collision_place(map.frame(), at(pick(0), pick(1), pick(2)));
+        let position =
+            downpour_sim::collision::collision_position(map.frame(), at(pick(0), pick(1), pick(2)));
         assert!(
             position.x > -0.01 && position.x < 64.01 && position.y > -0.01 && position.y < 32.01,
             "{position}"

@@ -172,7 +172,7 @@ fn vortex() -> WindField {
 fn the_frame_rate_does_not_matter() {
     let field = vortex();
     let view = View { eye: DVec3::new(0.0, 0.0, 6.0), ..View::default() };
-    let places = |drag: Drag, per_second: u32| {
+    let positions = |drag: Drag, per_second: u32| {
         let options = SimulationOptions {
             volume: SimVolume::Box { size_m: [30.0; 3] },
             most_drops: 2_000,
@@ -192,13 +192,13 @@ fn the_frame_rate_does_not_matter() {
         apart.sort_by(f32::total_cmp);
         [apart[apart.len() / 2], apart[apart.len() * 4 / 5]]
     };
-    let fine = places(Drag::Relaxation, 240);
+    let fine = positions(Drag::Relaxation, 240);
     for per_second in [30, 60] {
-        let [half, most] = median(&places(Drag::Relaxation, per_second), &fine);
+        let [half, most] = median(&positions(Drag::Relaxation, per_second), &fine);
         assert!(half < 2.0e-3 && most < 2.0e-2, "{per_second}: {half} m, {most} m");
     }
-    let [average, _] = median(&places(Drag::Rousseau2008, 30), &places(Drag::Rousseau2008, 240));
-    let [half, _] = median(&places(Drag::Relaxation, 30), &fine);
+    let [average, _] = median(&positions(Drag::Rousseau2008, 30), &positions(Drag::Rousseau2008, 240));
+    let [half, _] = median(&positions(Drag::Relaxation, 30), &fine);
     println!("30 against 240 steps a second: {half} m, with the papers' average {average} m");
     assert!(average > 3.0 * half, "the papers' average: {average} m, relaxation: {half} m");
 }

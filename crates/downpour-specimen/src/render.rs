@@ -13,7 +13,7 @@ use downpour_shaders::render::specimen::SPECIMEN_LATTICE;
 use rayon::prelude::*;
 
 use super::options::SpecimenOptions;
-use super::sky::{Sky, sky_f64, specimen_sky, specimen_sky_lamps, specimen_sky_place};
+use super::sky::{Sky, sky_f64, specimen_sky, specimen_sky_lamps, specimen_sky_position};
 use super::streak::{Precision, Streak};
 use super::trace::{Receiver, SpecimenCamera, specimen_light, specimen_radiance, upright_drop};
 use super::{Image, SpecimenError};
@@ -205,7 +205,7 @@ struct LaneSums<'a> {
 impl<S: Simd> Receiver<Lanes<S>> for LaneSums<'_> {
     #[inline(always)]
     fn receive(&mut self, direction: [Lanes<S>; 3], share: Lanes<S>) {
-        let [u, v] = specimen_sky_place(direction);
+        let [u, v] = specimen_sky_position(direction);
         let [x, y, z] = direction;
         let mut stored = [[0.0f32; MAX_LANES]; 6];
         let kept = if self.sky.lamps().is_empty() { 3 } else { 6 };

@@ -22,7 +22,7 @@ use downpour_render::light::LightSource;
 /// Pictures that are in the scene already, each as color and as data.
 #[derive(Default)]
 struct Stored<'a> {
-    by_place: HashMap<(*const Picture, bool), TextureSlot>,
+    by_pointer: HashMap<(*const Picture, bool), TextureSlot>,
     /// A kit of parts has one atlas, which each of its files brings along.
     by_content: HashMap<(u64, bool), (&'a Arc<Picture>, TextureSlot)>,
 }
@@ -63,8 +63,8 @@ impl SceneBuilder {
             let Some(light) = scene.lights.get(placed.light) else { continue };
             let strength = light.color * light.intensity;
             let range = light.range.unwrap_or(0.0);
-            let place = pose.world_f64(placed.node).map_or(placed.position.as_dvec3(), |w| w.translation);
-            let (position, direction) = ((place - origin).as_vec3(), placed.direction);
+            let position = pose.world_f64(placed.node).map_or(placed.position.as_dvec3(), |w| w.translation);
+            let (position, direction) = ((position - origin).as_vec3(), placed.direction);
             self.add_light(match light.kind {
                 LightKind::Directional => LightSource::Directional { direction, irradiance: strength },
                 LightKind::Point => LightSource::Point { position, intensity: strength, range },
@@ -122,8 +122,8 @@ impl SceneBuilder {
         let texture = scene.textures.get(used.texture)?;
         let color = texture.encoding == Encoding::Srgb;
         let picture = &texture.picture;
-        let place = (Arc::as_ptr(picture), color);
-        let slot = match stored.by_place.get(&place) {
+        let key = (Arc::as_ptr(picture), color);
+        let slot = match stored.by_pointer.get(&key) {
             Some(slot) => *slot,
             None => {
                 let content = (digest(picture), color);
@@ -135,7 +135,7 @@ impl SceneBuilder {
                         slot
                     }
                 };
-                stored.by_place.insert(place, slot);
+                stored.by_pointer.insert(key, slot);
                 slot
             }
         };
@@ -172,7 +172,7 @@ impl SceneBuilder {
     }
 }
 
-/// An instance whose place is relative to `origin`.
+/// An instance whose position is relative to `origin`.
 fn relative<'a>(instance: &'a Instance, pose: &Pose, origin: DVec3) -> Cow<'a, Instance> {
     if origin == DVec3::ZERO {
         return Cow::Borrowed(instance);

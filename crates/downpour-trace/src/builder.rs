@@ -15,7 +15,7 @@ use downpour_render::light::LightSource;
 /// A triangle mesh on its way into a scene, in its own space.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshPart<'a> {
-    /// Places of the vertices, meters.
+    /// Positions of the vertices, meters.
     pub positions: &'a [[f32; 3]],
     /// Normals; those of the triangles where there are none.
     pub normals: Option<&'a [[f32; 3]]>,
@@ -35,7 +35,7 @@ pub struct MeshPart<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuilder {
     corners: Vec<[RenderCorner; 3]>,
-    places: Vec<[[f32; 3]; 3]>,
+    positions: Vec<[[f32; 3]; 3]>,
     materials: Vec<MaterialLook>,
     slots: Vec<TextureSlot>,
     texels: Vec<u32>,
@@ -79,7 +79,7 @@ impl SceneBuilder {
         let normal_matrix = transform.matrix3.inverse().transpose();
         let vertex = |i: u32| -> Option<(Vec3, RenderCorner)> {
             let i = i as usize;
-            let place = transform.transform_point3(Vec3::from(*part.positions.get(i)?));
+            let position = transform.transform_point3(Vec3::from(*part.positions.get(i)?));
             let normal = part
                 .normals
                 .and_then(|n| n.get(i))
@@ -97,7 +97,7 @@ impl SceneBuilder {
                 uv: [uv(0).x, uv(0).y, uv(1).x, uv(1).y],
                 color: part.colors.and_then(|c| c.get(i)).copied().unwrap_or([1.0; 4]),
             };
-            (place.is_finite()).then_some((place, corner))
+            (position.is_finite()).then_some((position, corner))
         };
         for triangle in part.indices.chunks_exact(3) {
             let order = if mirrored { [0, 2, 1] } else { [0, 1, 2] };
@@ -114,7 +114,7 @@ impl SceneBuilder {
                 }
                 corner
             };
-            self.places.push([a.0.into(), b.0.into(), c.0.into()]);
+            self.positions.push([a.0.into(), b.0.into(), c.0.into()]);
             self.corners.push([corner(a.1), corner(b.1), corner(c.1)]);
         }
     }
@@ -122,7 +122,7 @@ impl SceneBuilder {
     /// Number of triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
-        self.places.len()
+        self.positions.len()
     }
 
     /// Builds the hierarchy and lays everything out.
@@ -131,12 +131,12 @@ impl SceneBuilder {
         if self.materials.is_empty() {
             self.materials.push(MaterialLook::default());
         }
-        if self.places.is_empty() {
+        if self.positions.is_empty() {
             // A triangle far below and too small to be seen: a hierarchy has at least one.
-            self.places.push([[0.0, -1.0e6, 0.0], [1.0e-3, -1.0e6, 0.0], [0.0, -1.0e6, 1.0e-3]]);
+            self.positions.push([[0.0, -1.0e6, 0.0], [1.0e-3, -1.0e6, 0.0], [0.0, -1.0e6, 1.0e-3]]);
             self.corners.push([RenderCorner { normal: [0.0, 1.0, 0.0], ..RenderCorner::default() }; 3]);
         }
-        let bvh = Bvh::new(&self.places);
+        let bvh = Bvh::new(&self.positions);
         let mut triangles = bvh.triangles;
         let last_material = self.materials.len() as u32 - 1;
         let mut corners = Vec::with_capacity(3 * triangles.len());

@@ -80,7 +80,7 @@ pub struct RenderFrame {
 pub struct SceneData {
     /// Nodes of the hierarchy.
     pub nodes: Arc<Vec<BvhNode>>,
-    /// Triangles in the order of the leaves; `index` is the place in this list.
+    /// Triangles in the order of the leaves; `index` is the index in this list.
     pub triangles: Arc<Vec<BvhTriangle>>,
     /// Three corners per triangle.
     pub corners: Arc<Vec<RenderCorner>>,
@@ -148,7 +148,7 @@ impl RenderFrame {
         let camera = viewpoint.camera(size, (seed ^ (seed >> 32)) as u32)?;
         let (low, high) = scene.bounds();
         let extent = (high - low).length().clamp(1.0e-3, 1.0e5);
-        // Rays of a place far from the origin start where f32 still tells it from its surface.
+        // Rays from a position far from the origin start where f32 still resolves the distance to the surface.
         let far = camera.eye.abs().max_element().max(low.abs().max_element()).max(high.abs().max_element());
         Ok(Self {
             camera,

@@ -107,10 +107,10 @@ impl SceneView<'_> {
         Vec2::new((pair & 255) as f32, ((pair >> 8) & 255) as f32 * PANE_SHADOW_PEAK) / 255.0
     }
 
-    /// A level at a place of [0, 1], bilinear.
-    fn pane_shadow_level(&self, texels: u32, level: u32, place: Vec2) -> Vec2 {
+    /// A level at a position in [0, 1], bilinear.
+    fn pane_shadow_level(&self, texels: u32, level: u32, position: Vec2) -> Vec2 {
         let [width, height, _] = self.data.pane_level(level);
-        let at = place * Vec2::new(width as f32, height as f32) - 0.5;
+        let at = position * Vec2::new(width as f32, height as f32) - 0.5;
         let low = at.floor();
         let part = at - low;
         let (x, y) = (low.x as i32, low.y as i32);
@@ -121,33 +121,39 @@ impl SceneView<'_> {
         upper * (1.0 - part.y) + lower * part.y
     }
 
-    /// Cover and gathered cover round a place of [0, 1], over a width in meters.
-    fn pane_shadow_at(&self, pane: &RenderPane, place: Vec2, width: f32) -> Vec2 {
+    /// Cover and gathered cover round a position of [0, 1], over a width in meters.
+    fn pane_shadow_at(&self, pane: &RenderPane, position: Vec2, width: f32) -> Vec2 {
         let texels = width * pane.texels_per_meter;
         let level = ops::log2(texels.max(1.0)).clamp(0.0, pane.last as f32);
         let low = level.floor();
         let part = level - low;
-        let mut found = self.pane_shadow_level(pane.first, low as u32, place) * (1.0 - part);
+        let mut found = self.pane_shadow_level(pane.first, low as u32, position) * (1.0 - part);
         if part > 0.0 {
-            found += self.pane_shadow_level(pane.first, low as u32 + 1, place) * part;
+            found += self.pane_shadow_level(pane.first, low as u32 + 1, position) * part;
         }
         found
     }
 
-    /// Share of light that comes through the pane to a place from a distance along a direction; `spread` is half the angle
+    /// Share of light that comes through the pane to a position from a distance along a direction; `spread` is half the angle
     /// that its source takes. 1 where the pane is not between them.
-    pub(crate) fn pane_shadow_share(&self, place: Vec3, direction: Vec3, distance: f32, spread: f32) -> f32 {
+    pub(crate) fn pane_shadow_share(
+        &self,
+        position: Vec3,
+        direction: Vec3,
+        distance: f32,
+        spread: f32,
+    ) -> f32 {
         if self.frame.pane == 0 {
             return 1.0;
         }
         let pane = self.data.pane_load();
         let towards = direction.dot(pane.outward);
-        let above = (pane.corner - place).dot(pane.outward);
+        let above = (pane.corner - position).dot(pane.outward);
         let away = above / if towards == 0.0 { 1.0 } else { towards };
         if towards.abs() < 1.0e-4 || away <= 0.0 || away >= distance {
             return 1.0;
         }
-        let on = place + direction * away - pane.corner;
+        let on = position + direction * away - pane.corner;
         let at = Vec2::new(on.dot(pane.across) / pane.width, on.dot(pane.down) / pane.height);
         if at.x < 0.0 || at.y < 0.0 || at.x > 1.0 || at.y > 1.0 {
             return 1.0;

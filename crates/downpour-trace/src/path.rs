@@ -54,7 +54,7 @@ pub(crate) struct ViewPath {
     pub(crate) distance: f32,
     pub(crate) facet: Vec3,
     pub(crate) material: u32,
-    pub(crate) place: Vec3,
+    pub(crate) position: Vec3,
     /// True if it is the same surface that the sample before has seen.
     pub(crate) again: bool,
     /// True if it looks the same all over a pixel: no mirror, nothing behind a pane.
@@ -77,7 +77,7 @@ pub(crate) struct PathSlot {
     pub(crate) roughness: f32,
     /// The surface's normal; of a gloss, the direction that a mirror would show.
     pub(crate) normal: Vec3,
-    pub(crate) place: Vec3,
+    pub(crate) position: Vec3,
 }
 
 impl PathSlot {
@@ -88,7 +88,7 @@ impl PathSlot {
         factor: Vec3::ZERO,
         roughness: 0.0,
         normal: Vec3::ZERO,
-        place: Vec3::ZERO,
+        position: Vec3::ZERO,
     };
 }
 
@@ -99,7 +99,7 @@ impl ViewPath {
         distance: SCENE_FAR,
         facet: Vec3::ZERO,
         material: SCENE_NONE,
-        place: Vec3::ZERO,
+        position: Vec3::ZERO,
         again: false,
         plain: false,
         base: PathSlot::NONE,
@@ -125,7 +125,7 @@ struct PathLight {
     factor: Vec3,
     distance: f32,
     normal: Vec3,
-    place: Vec3,
+    position: Vec3,
 }
 
 impl PathLight {
@@ -136,7 +136,7 @@ impl PathLight {
         factor: Vec3::ZERO,
         distance: -1.0,
         normal: Vec3::ZERO,
-        place: Vec3::ZERO,
+        position: Vec3::ZERO,
     };
 
     /// With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
@@ -194,11 +194,11 @@ enum PathLeave {
 }
 
 /// True if a surface is the same as the one that another sample of the pixel has met.
-fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, place: Vec3, distance: f32) -> bool {
+fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, position: Vec3, distance: f32) -> bool {
     last.plain
         && last.material == material
         && last.facet.dot(facet) > PATH_SAME_FACET
-        && last.facet.dot(place - last.place).abs() < PATH_SAME_PLANE * distance
+        && last.facet.dot(position - last.position).abs() < PATH_SAME_PLANE * distance
 }
 
 impl SceneView<'_> {
@@ -234,12 +234,13 @@ impl SceneView<'_> {
             if let Some(met) = met {
                 // Back along the ray to where it came through the surface.
                 distance = (hit.distance - met.rise / (-towards.y).max(0.01)).max(near);
-                let place = start + towards * distance;
+                let position = start + towards * distance;
                 let footprint = cone * distance / (-towards.y).max(0.02).sqrt();
-                let ripple = self.puddle_water_ripple(met.puddle, place, footprint, met.depth, met.open);
+                let ripple = self.puddle_water_ripple(met.puddle, position, footprint, met.depth, met.open);
                 found = path_water_surface(start, towards, distance, ripple);
                 material = PUDDLE_WATER_MATERIAL;
-                water = Some(PathWater { found: met, ripple, level: place.y, clear: 1.0, murk: Vec3::ZERO });
+                water =
+                    Some(PathWater { found: met, ripple, level: position.y, clear: 1.0, murk: Vec3::ZERO });
             } else if layer == 0
                 && path_same_surface(last, material, found.facet, found.position, hit.distance)
             {
@@ -254,7 +255,7 @@ impl SceneView<'_> {
                 path.distance = distance;
                 path.material = material;
                 path.facet = found.facet;
-                path.place = found.position;
+                path.position = found.position;
             }
             near = hit.distance + frame.nearest;
             let unlit = found.flags & SCENE_UNLIT != 0;
@@ -400,7 +401,7 @@ impl SceneView<'_> {
                         light.factor = ray.mirror * (path_albedo(&found) + found.normal_reflectance * 0.5);
                         light.distance = hit.distance;
                         light.normal = found.normal;
-                        light.place = found.position;
+                        light.position = found.position;
                     }
                 } else if bounce + 1 == PATH_BOUNCES {
                     ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
@@ -487,7 +488,7 @@ impl SceneView<'_> {
         }
         let of_base = throughput * plan.body * cover;
         let of_gloss = throughput * plan.gloss * cover;
-        let slot = PathSlot { slack, place: surface.position, ..PathSlot::NONE };
+        let slot = PathSlot { slack, position: surface.position, ..PathSlot::NONE };
         if told {
             path.base = PathSlot { light: base, factor: of_base, normal: surface.normal, ..slot };
             let mirrors = plan.mirrors > 0
@@ -519,7 +520,7 @@ impl ViewPath {
             slack: meeting.slack + light.distance * (2.0 * meeting.plan.spread + SKYLIGHT_SLACK),
             roughness: 0.0,
             normal: light.normal,
-            place: light.place,
+            position: light.position,
         };
     }
 
@@ -543,7 +544,7 @@ impl ViewPath {
                 slack: meeting.slack,
                 roughness: surface.roughness,
                 normal: towards - surface.normal * (2.0 * towards.dot(surface.normal)),
-                place: surface.position,
+                position: surface.position,
             };
         } else {
             self.radiance += throughput * light.mirror / all;

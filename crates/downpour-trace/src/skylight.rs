@@ -6,7 +6,7 @@
 //! 2010, for the steps; C. Schied et al., HPG 2017, for the variance). A hat of twice the width is the sum of three hats, halved
 //! at the sides: what one pixel has found is spread by one hat in the end, 32 pixels to each side, without edges or overlaps.
 //!
-//! A neighbor counts as far as its normal agrees and as it is on the plane through the pixel's place; in the gloss, as far
+//! A neighbor counts as far as its normal agrees and as it is on the plane through the pixel's position; in the gloss, as far
 //! as it mirrors the same direction, within the lobe.
 
 use downpour_shaders::render::scene::{
@@ -34,7 +34,7 @@ struct SkylightSlot {
     normal: Vec3,
     /// Of what counts as the same: the normal, or the direction that a mirror would show.
     direction: Vec3,
-    place: Vec3,
+    position: Vec3,
     slack: f32,
     roughness: f32,
 }
@@ -56,7 +56,7 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
     if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
         return 0.0;
     }
-    let off = own.normal.dot(other.place - own.place).abs();
+    let off = own.normal.dot(other.position - own.position).abs();
     let near = (1.0 - off / own.slack).max(0.0);
     let cosine = own.direction.dot(other.direction);
     if own.roughness > 0.0 {
@@ -110,15 +110,15 @@ impl SceneView<'_> {
 
 /// A slot, unpacked.
 fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
-    let PathSlot { light, slack, factor, roughness, normal: direction, place } = trace_unpack(slot, eye);
+    let PathSlot { light, slack, factor, roughness, normal: direction, position } = trace_unpack(slot, eye);
     let mut normal = direction;
     if roughness > 0.0 {
         // Between what is seen and what is mirrored.
-        let seen = place - eye;
+        let seen = position - eye;
         let sum = direction - seen / seen.dot(seen).sqrt().max(1.0e-20);
         normal = sum / sum.dot(sum).sqrt().max(1.0e-20);
     }
-    SkylightSlot { light, factor, normal, direction, place, slack, roughness }
+    SkylightSlot { light, factor, normal, direction, position, slack, roughness }
 }
 
 impl Pixels<'_> {

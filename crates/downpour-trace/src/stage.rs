@@ -4,7 +4,7 @@
 //! `I` candela lights a surface at a distance `r` with `I / r^2` lux and a sun is given in lux.
 //!
 //! Far from the world's origin single precision is coarse (1 m at 10 000 km), so that buffers there are relative to a
-//! whole place near the eye, [`Stage::origin`].
+//! whole-number position near the eye, [`Stage::origin`].
 
 mod error;
 mod eye;
@@ -41,7 +41,7 @@ pub const MAX_LIGHTS: usize = 1024;
 /// Memory per triangle, in bytes, while its hierarchy is built: the corners twice, and the builder's own lists.
 const BYTES_PER_TRIANGLE: u64 = 540;
 
-/// Farther than this from the world's origin, in meters, buffers are relative to a place near the eye.
+/// Farther than this from the world's origin, in meters, buffers are relative to a position near the eye.
 const NEAR_ORIGIN_M: f64 = 1000.0;
 
 /// The latest time of a picture, in seconds, and the earliest below 0.
@@ -76,7 +76,7 @@ pub struct Stage {
     pub camera: CameraChoice,
     /// Triangles, all copies counted.
     pub triangles: usize,
-    /// Meshes at their places.
+    /// Mesh instances.
     pub instances: usize,
     /// Lamps, without the sun.
     pub lamps: usize,

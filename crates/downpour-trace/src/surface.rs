@@ -15,7 +15,7 @@ use crate::material::RenderMaterial;
 /// Everything that shading needs at a hit.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// Place.
+    /// Position.
     pub position: Vec3,
     /// Opacity.
     pub alpha: f32,

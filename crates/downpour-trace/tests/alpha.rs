@@ -50,7 +50,7 @@ const ROOFS: [(u32, [u8; 2], [bool; 2]); 5] = [
     (0, [0, 255], [false, false]),
 ];
 
-/// Places under both halves, away from their edges.
+/// Positions under both halves, away from their edges.
 fn under(half: usize) -> Vec3 {
     Vec3::new([-1.2, 1.2][half], 1.0, 0.3)
 }

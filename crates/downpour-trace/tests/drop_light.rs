@@ -174,15 +174,15 @@ fn glints_stand_where_they_belong_and_sum_to_the_mean() -> Outcome {
         assert!((kept / mean - 1.0).abs().max_element() < 1e-5, "{kept} for {mean}");
         for glint in &all {
             let row = rows[1..].iter().find(|row| row[0] == glint.radiance.x).ok_or("a glint is not kept")?;
-            assert!((drop_glint_unpack(row[3]) - glint.place).abs().max_element() < 3e-4);
+            assert!((drop_glint_unpack(row[3]) - glint.position).abs().max_element() < 3e-4);
         }
         let normal = (light - towards).normalize();
         let mirror = all.iter().find(|glint| glint.order == 0).ok_or("no mirror")?;
         let expected = Vec2::new(normal.dot(right), normal.dot(up));
-        assert!(mirror.place.distance(expected) < 0.01, "{} for {expected}", mirror.place);
+        assert!(mirror.position.distance(expected) < 0.01, "{} for {expected}", mirror.position);
         let side = drop_glint_side(light, right, up);
         if let Some(lens) = all.iter().find(|glint| glint.order == 1) {
-            assert!(lens.place.dot(side) < -0.1, "{}", lens.place);
+            assert!(lens.position.dot(side) < -0.1, "{}", lens.position);
         } else {
             assert!(light.dot(towards) < 0.2, "no light through the drop");
         }
@@ -192,10 +192,10 @@ fn glints_stand_where_they_belong_and_sum_to_the_mean() -> Outcome {
 
 #[test]
 fn places_are_packed_and_spots_have_unit_mean() {
-    for place in [Vec2::ZERO, Vec2::new(1.0, -1.0), Vec2::new(-0.123, 0.987), Vec2::new(-1.0, 1.0)] {
-        let word = drop_glint_pack(place);
+    for position in [Vec2::ZERO, Vec2::new(1.0, -1.0), Vec2::new(-0.123, 0.987), Vec2::new(-1.0, 1.0)] {
+        let word = drop_glint_pack(position);
         assert!(word.fract() == 0.0 && (0.0..16_777_216.0).contains(&word), "{word}");
-        assert!((drop_glint_unpack(word) - place).abs().max_element() <= 1.001 / 4094.0, "{place}");
+        assert!((drop_glint_unpack(word) - position).abs().max_element() <= 1.001 / 4094.0, "{position}");
     }
     let (steps, width) = (200i16, 0.1);
     let step = 2.0 / f32::from(steps);
@@ -278,7 +278,7 @@ fn rousseau_2006_is_as_printed() -> Outcome {
         }
     }
     let expected = sum / count;
-    // 32 places stand for the disk.
+    // 32 points stand for the disk.
     assert!((behind / expected - 1.0).abs() < 0.05, "{behind} for {expected}");
     Ok(())
 }

@@ -34,30 +34,30 @@ fn scale() -> f64 {
 
 /// A file of triangles.
 fn model(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> BTreeMap<String, Vec<u8>> {
-    let (of_places, of_triangles) = (12 * positions.len(), 12 * triangles.len());
+    let (of_positions, of_triangles) = (12 * positions.len(), 12 * triangles.len());
     let json = format!(
         r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
             "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "indices": 1}}]}}],
             "buffers": [{{"byteLength": {}, "uri": "drop.bin"}}],
-            "bufferViews": [{{"buffer": 0, "byteLength": {of_places}}},
-                            {{"buffer": 0, "byteOffset": {of_places}, "byteLength": {of_triangles}}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": {of_positions}}},
+                            {{"buffer": 0, "byteOffset": {of_positions}, "byteLength": {of_triangles}}}],
             "accessors": [{{"bufferView": 0, "componentType": 5126, "count": {}, "type": "VEC3"}},
                           {{"bufferView": 1, "componentType": 5125, "count": {}, "type": "SCALAR"}}]}}"#,
-        of_places + of_triangles,
+        of_positions + of_triangles,
         positions.len(),
         3 * triangles.len(),
     );
-    let places = positions.iter().flatten().flat_map(|x| x.to_le_bytes());
-    let binary = places.chain(triangles.iter().flatten().flat_map(|i| i.to_le_bytes())).collect();
+    let positions = positions.iter().flatten().flat_map(|x| x.to_le_bytes());
+    let binary = positions.chain(triangles.iter().flatten().flat_map(|i| i.to_le_bytes())).collect();
     [("drop.gltf".to_owned(), json.into_bytes()), ("drop.bin".to_owned(), binary)].into()
 }
 
 /// A box of 2 x 1 x 1 m.
 fn brick() -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
-    let place = |i: usize| [2.0 * (i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32];
+    let corner = |i: usize| [2.0 * (i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32];
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]];
-    ((0..8).map(place).collect(), faces.iter().flat_map(halves).collect())
+    ((0..8).map(corner).collect(), faces.iter().flat_map(halves).collect())
 }
 
 const MODEL: &str = "[rain]\nmask_model = 'drop.gltf'\n[streaks]\nsamples = 8";

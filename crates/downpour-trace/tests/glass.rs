@@ -166,8 +166,8 @@ fn a_round_drop_is_a_cap_of_a_sphere() {
         let angle = k as f32 * 2.4;
         let r = 1.9e-3 * (k as f32 / 200.0);
         let off = Vec2::new(downpour_math::ops::cos(angle), downpour_math::ops::sin(angle)) * r;
-        let place = Vec2::from(drop.center) + off;
-        let cap = glass_picture_water_cap(&drop, place);
+        let position = Vec2::from(drop.center) + off;
+        let cap = glass_picture_water_cap(&drop, position);
         let height = (2.8e-3f32.powf_2() - r * r).sqrt() - base;
         assert!((cap.x - height).abs() < 2.0e-8, "{k}: {} {height}", cap.x);
         let normal = glass_picture_water_normal(Vec2::new(cap.y, cap.z));
@@ -175,7 +175,7 @@ fn a_round_drop_is_a_cap_of_a_sphere() {
         assert!((normal - radial).length() < 1.0e-4, "{k}: {normal} {radial}");
         // A slanted ray, against the quadratic.
         let aside = Vec2::new(0.6, -0.3);
-        let z = glass_picture_water_leave(&drop, place, aside);
+        let z = glass_picture_water_leave(&drop, position, aside);
         let on = off + aside * z;
         let miss = (on.length_squared() + (z + base) * (z + base)).sqrt() - 2.8e-3;
         assert!(miss.abs() < 3.0e-6, "{k}: {miss} off the sphere");
@@ -206,15 +206,15 @@ fn slopes_are_those_of_the_height() {
     };
     let step = 2.0e-5;
     for k in 0..400u32 {
-        let place = Vec2::new((k % 20) as f32 - 9.7, (k / 20) as f32 - 9.6) * 1.4e-4;
-        let cap = glass_picture_water_cap(&odd, place);
+        let position = Vec2::new((k % 20) as f32 - 9.7, (k / 20) as f32 - 9.6) * 1.4e-4;
+        let cap = glass_picture_water_cap(&odd, position);
         let slope = |x, y| {
             let by = Vec2::new(x, y) * step;
-            (glass_picture_water_cap(&odd, place + by).x - glass_picture_water_cap(&odd, place - by).x)
+            (glass_picture_water_cap(&odd, position + by).x - glass_picture_water_cap(&odd, position - by).x)
                 / (2.0 * step)
         };
         let off = Vec2::new(slope(1.0, 0.0) - cap.y, slope(0.0, 1.0) - cap.z).length();
-        assert!(off < 0.02, "{k} at {place}: {off}");
+        assert!(off < 0.02, "{k} at {position}: {off}");
     }
 }
 
@@ -247,12 +247,12 @@ fn shown(spread: f64, pane: f64, radius: f64) -> f64 {
     let step = 1.0e-5;
     let ring = |k: u32| {
         let angle = (f64::from(k) + 0.5) * step;
-        let place = pane * ops::sin(angle) / ops::cos(angle);
+        let position = pane * ops::sin(angle) / ops::cos(angle);
         let inside = ops::asin(ops::sin(angle) / index);
-        let mut x = place;
+        let mut x = position;
         for _ in 0..20 {
             let height = (sphere * sphere - x * x).sqrt() - (sphere * sphere - radius * radius).sqrt();
-            x = place + ops::sin(inside) / ops::cos(inside) * height;
+            x = position + ops::sin(inside) / ops::cos(inside) * height;
         }
         let normal = ops::asin(x / sphere);
         let out = normal - ops::asin(index * ops::sin(normal - inside));
@@ -278,7 +278,7 @@ fn a_drop_shows_a_lamp_as_bright_as_it_is() -> Outcome {
     // Far away, straight ahead, with an irradiance of 5.
     let mut light = |half_angle: f32, least: f32| -> (f32, usize) {
         glass.lights = vec![GlassPictureLight {
-            place: (ahead * 1.0e5).to_array(),
+            position: (ahead * 1.0e5).to_array(),
             radius: half_angle,
             color: [5.0; 3],
             distance: 1.0e5,

@@ -43,7 +43,7 @@ fn square(builder: &mut SceneBuilder, material: u32, middle: Vec3, across: Vec3,
     builder.add_mesh(&part, &Affine3A::IDENTITY);
 }
 
-/// A picture from an eye toward a place.
+/// A picture from an eye toward a point.
 fn picture(
     scene: &SceneData,
     eye: Vec3,
@@ -201,8 +201,8 @@ fn puddle(look: MaterialLook, depth: f32, sky: f32, lamp: LightSource) -> SceneD
     square(&mut builder, ground, Vec3::ZERO, Vec3::Z * 2.0, Vec3::X * 2.0);
     builder.add_light(lamp);
     let mut scene = builder.build(&SkyLight::uniform([sky; 3]));
-    let place = Ground { middle: Vec3::ZERO, size: Vec2::splat(3.0), turn: 0.0, reach: 0.5 };
-    let map = PuddleMap::painted(&scene, &place, [4, 4], &[depth; 16]);
+    let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(3.0), turn: 0.0, reach: 0.5 };
+    let map = PuddleMap::painted(&scene, &ground, [4, 4], &[depth; 16]);
     let water = PuddleLook { extinction: 0.0, ..PuddleLook::default() };
     scene.set_puddles(&PuddleRows {
         puddles: &[(map, water)],
@@ -250,14 +250,14 @@ fn a_lamp_has_one_mirror_image_in_a_puddle() -> Outcome {
     let (mut sum, mut weighted, mut far) = (0.0, 0.0, 0.0);
     for (i, pixel) in view.picture().iter().enumerate() {
         let along = view.frame.camera.camera_direction((i % 48) as f32 + 0.5, (i / 48) as f32 + 0.5);
-        let place = eye + along * ((depth - eye.y) / along.y);
-        if along.y > -0.1 || place.abs().max_element() > 1.45 {
+        let position = eye + along * ((depth - eye.y) / along.y);
+        if along.y > -0.1 || position.abs().max_element() > 1.45 {
             continue;
         }
-        let (light, z) = (f64::from(pixel[1]), f64::from(place.z));
+        let (light, z) = (f64::from(pixel[1]), f64::from(position.z));
         sum += light;
         weighted += light * z;
-        far += if Vec2::new(place.x, place.z).length() > 0.7 { light } else { 0.0 };
+        far += if Vec2::new(position.x, position.z).length() > 0.7 { light } else { 0.0 };
     }
     let expected = mirrored_at([2.0, 1.0], [-2.0, 1.2], f64::from(depth));
     assert!((weighted / sum - expected).abs() < 0.12, "{}, {expected}", weighted / sum);
@@ -301,8 +301,8 @@ fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
     let ground = builder.add_material(diffuse(0.05));
     square(&mut builder, ground, Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0);
     let mut scene = builder.build(&SkyLight::new(64, 32, &sky));
-    let place = Ground { middle: Vec3::ZERO, size: Vec2::splat(7.0), turn: 0.0, reach: 0.5 };
-    let map = PuddleMap::painted(&scene, &place, [4, 4], &[0.03; 16]);
+    let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(7.0), turn: 0.0, reach: 0.5 };
+    let map = PuddleMap::painted(&scene, &ground, [4, 4], &[0.03; 16]);
     let finest = (0..128 * 128u32).map(|i| {
         let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| 0.3 * (rng_unit(word) - 0.5));
         [a, b, a * a + b * b, 0.0]
@@ -330,12 +330,12 @@ fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
     let truth: Vec<f64> =
         (0..width * height).map(|i| pictures[2..].iter().map(|p| p[i]).sum::<f64>() / 8.0).collect();
     let noise = |k: usize, x: usize, y: usize| pictures[k][y * width + x] - truth[y * width + x];
-    let places = || (0..height - 8).flat_map(|y| (0..width - 8).map(move |x| (x, y)));
+    let pixels = || (0..height - 8).flat_map(|y| (0..width - 8).map(move |x| (x, y)));
     // The mean of eight has an eighth of the noise, which both share.
-    let in_time = correlation(places().map(|(x, y)| (noise(0, x, y), noise(1, x, y))));
+    let in_time = correlation(pixels().map(|(x, y)| (noise(0, x, y), noise(1, x, y))));
     assert!(in_time.abs() < 0.35, "frames share noise: {in_time}");
     let lag =
-        |dx: usize, dy: usize| correlation(places().map(|(x, y)| (noise(0, x, y), noise(0, x + dx, y + dy))));
+        |dx: usize, dy: usize| correlation(pixels().map(|(x, y)| (noise(0, x, y), noise(0, x + dx, y + dy))));
     for (name, lags) in
         [("across", [lag(6, 0), lag(7, 0), lag(8, 0)]), ("down", [lag(0, 6), lag(0, 7), lag(0, 8)])]
     {

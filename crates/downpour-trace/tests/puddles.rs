@@ -17,14 +17,14 @@ use glam::{Affine3A, Vec2, Vec3};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// A sheet of ground, `n` squares each way, from -2 to 2 m, at a height by place.
+/// A sheet of ground, `n` squares each way, from -2 to 2 m, at a height by position.
 fn sheet(builder: &mut SceneBuilder, material: u32, n: usize, height: impl Fn(Vec2) -> f32) {
-    let place = |i: usize| {
+    let position = |i: usize| {
         let at = |k: usize| 4.0 * k as f32 / n as f32 - 2.0;
         let (x, z) = (at(i % (n + 1)), at(i / (n + 1)));
         [x, height(Vec2::new(x, z)), z]
     };
-    let positions: Vec<[f32; 3]> = (0..(n + 1) * (n + 1)).map(place).collect();
+    let positions: Vec<[f32; 3]> = (0..(n + 1) * (n + 1)).map(position).collect();
     let corner = |x: usize, z: usize| (z * (n + 1) + x) as u32;
     let indices: Vec<u32> = (0..n * n)
         .flat_map(|i| {
@@ -131,7 +131,7 @@ fn deep_murky_water_has_its_own_color() -> Outcome {
 /// A dish whose depth falls as the square of the distance: 0.04 m over a radius of 1 m, within higher ground.
 #[test]
 fn a_dish_of_the_model_fills_to_its_rim() -> Outcome {
-    let dish = |place: Vec2| 0.04 * (place.length_squared() - 1.0).clamp(-1.0, 0.2);
+    let dish = |position: Vec2| 0.04 * (position.length_squared() - 1.0).clamp(-1.0, 0.2);
     let scene = ground(0.5, 80, dish).build(&SkyLight::new(1, 1, &[[1.0; 3]]));
     let level_ground = Relief { rms_m: 0.0, seed: 0 };
     // The ground goes on rising to 0.008 m over the dish's nominal rim.
@@ -153,7 +153,7 @@ fn a_dish_of_the_model_fills_to_its_rim() -> Outcome {
 /// Rays into a model's hollow end on the surface of its water: level, and nearer than the ground.
 #[test]
 fn rays_end_on_the_surface_of_the_water_in_a_hollow() -> Outcome {
-    let dish = |place: Vec2| 0.1 * (place.length_squared() - 1.0).clamp(-1.0, 0.0);
+    let dish = |position: Vec2| 0.1 * (position.length_squared() - 1.0).clamp(-1.0, 0.0);
     let mut scene = ground(0.5, 60, dish).build(&SkyLight::new(1, 1, &[[1.0; 3]]));
     let map =
         PuddleMap::found(&scene, &SQUARE, [120, 120], &Relief { rms_m: 0.0, seed: 0 }, [0.8, 1.0, 0.001]);

@@ -80,14 +80,14 @@ fn covered(picture: &Picture) -> f64 {
 
 /// Covered pixels, and the weighted middle of them.
 fn middle(picture: &Picture) -> [f64; 2] {
-    let (mut area, mut place) = (0.0, [0.0; 2]);
+    let (mut area, mut position) = (0.0, [0.0; 2]);
     for (i, pixel) in picture.rain.iter().enumerate() {
         let share = f64::from(1.0 - pixel[3]);
         area += share;
-        place[0] += share * ((i % picture.size[0] as usize) as f64 + 0.5);
-        place[1] += share * ((i / picture.size[0] as usize) as f64 + 0.5);
+        position[0] += share * ((i % picture.size[0] as usize) as f64 + 0.5);
+        position[1] += share * ((i / picture.size[0] as usize) as f64 + 0.5);
     }
-    place.map(|p| p / area)
+    position.map(|p| p / area)
 }
 
 /// A drop takes out its area, however long the exposure and wherever it goes, in the picture: by the table, by a loop, and
@@ -114,8 +114,8 @@ fn a_streak_takes_out_what_its_drop_does() -> Outcome {
                     (found / expected - 1.0).abs() < tolerance,
                     "{pixels} pixels, {samples:?}, {way:?}: {found}, not {expected}"
                 );
-                let place = middle(&shown);
-                assert!((place[0] - 80.0).abs() < 0.3 && (place[1] - 60.0).abs() < 0.3, "{place:?}");
+                let position = middle(&shown);
+                assert!((position[0] - 80.0).abs() < 0.3 && (position[1] - 60.0).abs() < 0.3, "{position:?}");
             }
         }
     }
@@ -218,10 +218,10 @@ fn many() -> Vec<FallingDrop> {
     (0..40)
         .map(|k| {
             let k = f64::from(k);
-            let place =
+            let position =
                 DVec3::new(0.11 * (k * 0.618).fract() - 0.055, 0.09 * (k * 0.755).fract() - 0.045, -1.0);
             let mut drop =
-                drop_at(place * (0.15 + 0.03 * k), (0.3 + 0.14 * k as f32) * 1.0e-3, [0.4, -6.0, 0.3]);
+                drop_at(position * (0.15 + 0.03 * k), (0.3 + 0.14 * k as f32) * 1.0e-3, [0.4, -6.0, 0.3]);
             drop.id = k as u64;
             drop
         })

@@ -47,8 +47,8 @@ shared_constants! {
         DROP_LIGHT_LAMPS: u32 = 64;
         /// Rings of equal area for the mean over a drop's disk.
         DROP_LIGHT_RINGS: u32 = 4;
-        /// Places along a ring.
-        DROP_LIGHT_PLACES: u32 = 8;
+        /// Positions along a ring.
+        DROP_LIGHT_POINTS: u32 = 8;
         /// Steps of a packed coordinate from the middle of the disk to its rim.
         DROP_GLINT_STEPS: f32 = 2047.0;
         /// Steps of a packed coordinate, both signs.

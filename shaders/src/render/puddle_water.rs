@@ -44,7 +44,7 @@ shared_constants! {
         PUDDLE_WATER_RIPPLED: f32 = 0.000001;
         /// Step of the mesh of triangles over which pieces of the ripples are mixed, m.
         PUDDLE_WATER_MESH: f32 = 0.35;
-        /// Dimension of the random numbers of the pieces' places.
+        /// Dimension of the random numbers of the pieces' positions.
         PUDDLE_WATER_DIMENSION: u32 = 4200;
     }
 }

@@ -19,7 +19,7 @@ pub const MODULES: &[&Module] = &[
     &DROPS_MASK,
     &DROPS_SHADE,
     &STREAK,
-    &STREAK_PLACE,
+    &STREAK_CELL,
     &STREAK_PATH,
     &STREAK_RAY,
     &STREAK_RAYS_MODULE,
@@ -47,7 +47,7 @@ shared_constants! {
         DROPS_SMALL_GRID: u32 = 3;
         /// Form of refraction: the direction of the refracted light is looked up.
         DROPS_DIRECTION: u32 = 0;
-        /// Form of refraction: the place in the captured picture is shifted (Rousseau 2006).
+        /// Form of refraction: the position in the captured picture is shifted (Rousseau 2006).
         DROPS_SHIFT: u32 = 1;
         /// Below this transmittance the rest of the drops is not seen.
         DROPS_OPAQUE: f32 = 1.0e-3;
@@ -133,7 +133,7 @@ shared_constants! {
         DROPS_GLINT: f32 = 0.03;
         /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disk.
         DROPS_LINE: f32 = 1.2533141;
-        /// Place of Gauss's two points: 1 / sqrt(3).
+        /// Position of Gauss's two points: 1 / sqrt(3).
         STREAK_GAUSS: f32 = 0.57735026;
         /// Words before the texels of an atlas.
         DROPS_ATLAS_HEAD: u32 = 6;
@@ -182,10 +182,10 @@ pub static STREAK: Module = Module {
     uses: &[&RAIN_CONSTANTS, &OSCILLATION],
 };
 
-/// Places across a drop. Twin: `downpour_render::rain::streak_place`.
-pub static STREAK_PLACE: Module = Module {
-    path: "render/streak_place.wgsl",
-    wgsl: include_str!("../../wgsl/render/streak_place.wgsl"),
+/// Positions across a drop. Twin: `downpour_render::rain::streak_cell`.
+pub static STREAK_CELL: Module = Module {
+    path: "render/streak_cell.wgsl",
+    wgsl: include_str!("../../wgsl/render/streak_cell.wgsl"),
     uses: &[&RAIN_CONSTANTS],
 };
 
@@ -212,7 +212,7 @@ pub static STREAK_RAYS_MODULE: Module = Module {
         &PACKING,
         &WOBBLE,
         &STREAK,
-        &STREAK_PLACE,
+        &STREAK_CELL,
         &STREAK_PATH,
         &STREAK_RAY,
         &DROP_GLINT,
@@ -229,7 +229,7 @@ pub static STREAK_LIGHT: Module = Module {
         &DROPS_FRAME,
         &DROPS_CAPTURE,
         &STREAK,
-        &STREAK_PLACE,
+        &STREAK_CELL,
         &STREAK_PATH,
         &STREAK_RAY,
         &DROP_GLINT,
@@ -240,7 +240,7 @@ pub static STREAK_LIGHT: Module = Module {
 pub static STREAK_LOOKUP: Module = Module {
     path: "render/streak_lookup.wgsl",
     wgsl: include_str!("../../wgsl/render/streak_lookup.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &STREAK, &STREAK_PLACE],
+    uses: &[&RAIN_CONSTANTS, &STREAK, &STREAK_CELL],
 };
 
 /// Computation of the means of the streak radiance table. Twin: `downpour_render::rain::streak_table`.

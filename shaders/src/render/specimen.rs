@@ -81,7 +81,7 @@ shared_constants! {
         SPECIMEN_WOBBLE_PARTS: u32 = 5;
         /// One part.
         SPECIMEN_WOBBLE_PART: f32 = 0.2;
-        /// Steps to an extremum of the gauge between two places where it turns.
+        /// Steps to an extremum of the gauge between two positions where it turns.
         SPECIMEN_WOBBLE_TURNS: u32 = 4;
         /// Steps from a bracket to the surface, one more without a look.
         SPECIMEN_WOBBLE_STEPS: u32 = 4;

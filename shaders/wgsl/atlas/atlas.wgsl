@@ -25,7 +25,7 @@ struct AtlasFrame {
 }
 
 struct AtlasTriangle {
-    // Places of the corners in the map.
+    // Positions of the corners in the map.
     a: vec2f,
     b: vec2f,
     c: vec2f,
@@ -70,7 +70,7 @@ fn atlas_light(light: vec3f, view: vec3f, axis: vec3f) -> vec3f {
     return vec3f(dot(light, x), dot(light, y), dot(light, view));
 }
 
-// The place of a direction in the map.
+// The position of a direction in the map.
 fn atlas_map(direction: vec3f) -> vec2f {
     let below = 1.0 / (1.0 + abs(direction.x));
     return direction.yz * below;

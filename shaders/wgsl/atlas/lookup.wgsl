@@ -97,21 +97,21 @@ fn atlas_lookup_layer(layer: u32, across: f32, down: f32) -> f32 {
     return above * (1.0 - y) + below * y;
 }
 
-// The radiance of a place, so many equivalent radii to the right of the middle, so many turns of the mode (2,0) along.
-fn atlas_lookup_radiance(place: AtlasSlot, across: f32, turns: f32) -> f32 {
+// The radiance at a slot, `across` equivalent radii to the right of the middle, after `turns` turns of the mode (2,0).
+fn atlas_lookup_radiance(slot: AtlasSlot, across: f32, turns: f32) -> f32 {
     let counts = atlas_data_frame.counts;
     let half = 0.5 * f32(atlas_data_frame.size.x);
-    let column = half + half * clamp(across * place.side / atlas_data_frame.half_extent, -2.0, 2.0);
+    let column = half + half * clamp(across * slot.side / atlas_data_frame.half_extent, -2.0, 2.0);
     let row = (turns - floor(turns)) * f32(atlas_data_frame.size.y);
     var pattern = 0.0;
     for (var corner = 0u; corner < 4u; corner += 1u) {
-        let weight = atlas_corner(place.parts.x, place.parts.y, corner);
+        let weight = atlas_corner(slot.parts.x, slot.parts.y, corner);
         if weight > 0.0 {
-            let layers = place.layers + vec3u(((corner & 1u) * counts.y * counts.z + (corner >> 1u)) * counts.w);
-            pattern += weight * (place.weights.x * atlas_lookup_layer(layers.x, column, row)
-                + place.weights.y * atlas_lookup_layer(layers.y, column, row)
-                + place.weights.z * atlas_lookup_layer(layers.z, column, row));
+            let layers = slot.layers + vec3u(((corner & 1u) * counts.y * counts.z + (corner >> 1u)) * counts.w);
+            pattern += weight * (slot.weights.x * atlas_lookup_layer(layers.x, column, row)
+                + slot.weights.y * atlas_lookup_layer(layers.y, column, row)
+                + slot.weights.z * atlas_lookup_layer(layers.z, column, row));
         }
     }
-    return place.amount * pattern;
+    return slot.amount * pattern;
 }

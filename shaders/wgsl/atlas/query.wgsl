@@ -26,6 +26,6 @@ fn main_atlas_query(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let point = atlas_query_points[id.x];
-    let place = atlas_lookup_slot(point.id, point.diameter, point.axis, point.light, point.view);
-    atlas_query_radiances[id.x] = atlas_lookup_radiance(place, point.across, point.turns);
+    let slot = atlas_lookup_slot(point.id, point.diameter, point.axis, point.light, point.view);
+    atlas_query_radiances[id.x] = atlas_lookup_radiance(slot, point.across, point.turns);
 }

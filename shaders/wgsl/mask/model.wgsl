@@ -92,7 +92,7 @@ fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
     return texel;
 }
 
-// The place of sample i of the texel round (x, y).
+// The position of sample i of the texel round (x, y).
 fn mask_model_sample(x: f32, y: f32, i: u32) -> vec2f {
     let n = MASK_MODEL_SUBSAMPLES;
     let half_width = 0.5 * mask_model.pixel;
@@ -125,10 +125,10 @@ fn mask_model_texel(x: f32, y: f32) -> MaskTexel {
     var count = 0u;
     var sum = vec2f(0.0);
     for (var i = 0u; i < n; i += 1u) {
-        let place = mask_model_sample(x, y, i);
-        if mask_model_hit(place.x, place.y).distance >= 0.0 {
+        let position = mask_model_sample(x, y, i);
+        if mask_model_hit(position.x, position.y).distance >= 0.0 {
             count += 1u;
-            sum += place;
+            sum += position;
         }
     }
     if count == 0u {
@@ -142,22 +142,22 @@ fn mask_model_texel(x: f32, y: f32) -> MaskTexel {
     }
     // The covered part is not convex: take the sample nearest to its middle.
     var best = BVH_FAR;
-    var best_place = middle;
+    var best_position = middle;
     var best_hit = hit;
     for (var i = 0u; i < n; i += 1u) {
-        let place = mask_model_sample(x, y, i);
-        let offset = place - middle;
+        let position = mask_model_sample(x, y, i);
+        let offset = position - middle;
         let square = offset.x * offset.x + offset.y * offset.y;
         if square < best {
-            let candidate = mask_model_hit(place.x, place.y);
+            let candidate = mask_model_hit(position.x, position.y);
             if candidate.distance >= 0.0 {
                 best = square;
-                best_place = place;
+                best_position = position;
                 best_hit = candidate;
             }
         }
     }
-    return mask_model_through(best_place.x, best_place.y, best_hit, coverage);
+    return mask_model_through(best_position.x, best_position.y, best_hit, coverage);
 }
 
 @compute @workgroup_size(8, 8, 1)

@@ -4,7 +4,7 @@
 // light to the viewer as the drop of the streak does.
 // Twin: downpour_render::rain::light::atlas, where the rows are laid out.
 
-// Three directions: places in the map, what is across from each corner (below 0: the rim), and their numbers.
+// Three directions: positions in the map, what is across from each corner (below 0: the rim), and their numbers.
 struct DropAtlasTriangle {
     a: vec2f,
     b: vec2f,

@@ -1,6 +1,6 @@
 // Position on a drop at which the light of a lamp leaves it, as the viewer sees it; and radiance of a lamp in a pixel of
 // a drop after Rousseau 2006. Nothing here reads a buffer: any shader may use it.
-// `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Places on the
+// `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Positions on the
 // disk are in radii, along the right and the up of the view.
 // Twin: downpour_render::rain::glint.
 
@@ -40,13 +40,13 @@ fn drop_glint_side(light: vec3f, right: vec3f, up: vec3f) -> vec2f {
     return select(vec2f(1.0, 0.0), side / sqrt(max(square, DROP_GLINT_TINY)), square > DROP_GLINT_AXIS);
 }
 
-// A place on the disk as one number, a whole one below 2^24: within 1/4094 of a radius.
-fn drop_glint_pack(place: vec2f) -> f32 {
-    let steps = floor(clamp(place, vec2f(-1.0), vec2f(1.0)) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE);
+// A position on the disk as one number, a whole one below 2^24: within 1/4094 of a radius.
+fn drop_glint_pack(position: vec2f) -> f32 {
+    let steps = floor(clamp(position, vec2f(-1.0), vec2f(1.0)) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE);
     return steps.x * DROP_GLINT_RANGE + steps.y;
 }
 
-// The place that was packed.
+// The unpacked position.
 fn drop_glint_unpack(word: f32) -> vec2f {
     // Whole numbers: a compiler may add in another order, and 2^23 + 0.5 is no f32.
     let steps = u32(word);
@@ -66,7 +66,7 @@ fn drop_glint_level(direction: vec3f) -> vec2f {
     return level / sqrt(max(dot(level, level), DROP_GLINT_TINY));
 }
 
-// Rousseau 2006, section 6, at a place with a normal: (V_PE . V_N) (A_2 + A_3), to be multiplied with the lamp's color and
+// Rousseau 2006, section 6, at a position with a normal: (V_PE . V_N) (A_2 + A_3), to be multiplied with the lamp's color and
 // attenuation. The plane in which rays do not go sideways is the level one. `terms` is DROP_LIGHT_EXTERNAL for A_2,
 // DROP_LIGHT_INTERNAL for A_3, or both.
 fn drop_glint_rousseau(normal: vec3f, to_eye: vec3f, light: vec3f, terms: u32) -> f32 {

@@ -7,7 +7,7 @@
 // Twin: downpour_render::rain::drops.
 
 @group(0) @binding(3) var<storage, read> drops_list: array<DropsDrop>;
-// First the places where the tiles' lists begin (one more than there are tiles), then the lists.
+// First the indices at which the lists of the tiles begin (one more than there are tiles), then the lists.
 @group(0) @binding(4) var<storage, read> drops_tiles: array<u32>;
 @group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
 // At first the medium (medium_filter.wgsl): light of lamps, and mean distance and optical depth as halves. Then the rain.
@@ -15,7 +15,7 @@
 // Light of lamps on each drop of the list: the mean over it, and its brightest glints.
 @group(0) @binding(8) var<storage, read> drops_light: array<vec4f>;
 
-// The place of a ray on the plane at distance 1 through a drop's middle, along the right and up of its view.
+// The position of a ray on the plane at distance 1 through a drop's middle, along the right and up of its view.
 fn drops_on_plane(towards: vec3f, ray: vec3f) -> vec3f {
     return ray / max(dot(ray, towards), 1.0e-6) - towards;
 }
@@ -25,7 +25,7 @@ fn drops_light_row(index: u32) -> u32 {
     return index * (1u + drops_frame.glints);
 }
 
-// Light of lamps at a place of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
+// Light of lamps at a position of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
 fn drops_spots(index: u32, at: vec2f, width: f32) -> vec3f {
     let row = drops_light_row(index);
     var light = drops_light[row].rgb;
@@ -40,7 +40,7 @@ fn drops_spots(index: u32, at: vec2f, width: f32) -> vec3f {
     return max(light, vec3f(0.0));
 }
 
-// Light of lamps in the form of Rousseau 2006 at a place of a drop's mask, by the normal there, which halves the angle between the
+// Light of lamps in the form of Rousseau 2006 at a position of a drop's mask, by the normal there, which halves the angle between the
 // eye and what is mirrored: what it is more than the mean over the drop.
 fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
     let row = drops_light_row(index);
@@ -72,8 +72,8 @@ fn drops_lines(index: u32, chord: StreakChord, width: f32) -> vec3f {
     for (var k = 1u; k <= drops_frame.glints; k += 1u) {
         let glint = drops_light[row + k];
         if glint.w > 0.0 {
-            let place = drop_glint_unpack(glint.w);
-            let off = chord.aside - (place.x * chord.path.y - place.y * chord.path.x);
+            let position = drop_glint_unpack(glint.w);
+            let off = chord.aside - (position.x * chord.path.y - position.y * chord.path.x);
             light += glint.rgb * (drops_line(off, width) * chord.pace - chord.share);
         }
     }
@@ -85,7 +85,7 @@ fn drops_turns(drop: DropsDrop, way: f32) -> f32 {
     return drop.swing.z + drop.turns.x * streak_time(drop.recede, way);
 }
 
-// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a place on the plane.
+// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
 fn drops_streaks(index: u32, drop: DropsDrop, chord: StreakChord, at: vec2f) -> vec3f {
     let row = drops_light_row(index);
     let part = (chord.high - chord.low) * 0.5;
@@ -188,7 +188,7 @@ fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> v
     var sum = vec4f(0.0);
     for (var k = 0u; k < drops_frame.streak_samples; k += 1u) {
         let part = (f32(k) + 0.5) / f32(drops_frame.streak_samples);
-        let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
+        let at = streak_mask_position(drop, chord, chord.low + (chord.high - chord.low) * part);
         if abs(at.x) < 1.0 && abs(at.y) < 1.0 {
             let shown = drops_shade_ray(shade, at.x, at.y);
             let light = shown + vec4f(drops_facing(index, drop, at.x, at.y) * shown.w, 0.0);
@@ -212,8 +212,8 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         if cover <= 0.0 {
             return vec4f(0.0);
         }
-        let place = vec2f(f32(x) + 0.5, f32(y) + 0.5) / size;
-        let mean = streak_lookup_mean(drop.shape, place) + drops_beads(index, drop, x, y);
+        let position = vec2f(f32(x) + 0.5, f32(y) + 0.5) / size;
+        let mean = streak_lookup_mean(drop.shape, position) + drops_beads(index, drop, x, y);
         return vec4f(mean, 1.0) * cover;
     }
     let right = drops_mask_right(drop.towards);
@@ -226,15 +226,15 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         let at = vec2f(f32(x), f32(y)) + (vec2f(f32(k), f32(turned)) + shift) / f32(drop.grid);
         let ray = camera_ray(drops_frame.camera, at.x, at.y);
         let lean = drops_on_plane(drop.towards, ray);
-        let place = vec2f(dot(lean, right), dot(lean, up));
+        let position = vec2f(dot(lean, right), dot(lean, up));
         let by_profile = drop.kind == DROPS_TABLE;
         if by_profile {
-            sum += streak_lookup_shown(drop, place);
+            sum += streak_lookup_shown(drop, position);
         }
         if by_profile && drops_frame.atlas == 0u {
             continue;
         }
-        let chord = streak_chord(drop, place);
+        let chord = streak_chord(drop, position);
         if chord.high <= chord.low {
             continue;
         }
@@ -242,7 +242,7 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
             sum += drops_chord(index, drop, chord, ray) * chord.share;
         }
         if drops_frame.atlas > 0u {
-            sum += vec4f(drops_streaks(index, drop, chord, place), 0.0);
+            sum += vec4f(drops_streaks(index, drop, chord, position), 0.0);
         } else {
             sum += vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
         }

@@ -64,7 +64,7 @@ fn drops_atlas_layer(layer: u32, across: f32, down: f32) -> f32 {
     return above * (1.0 - y) + below * y;
 }
 
-// A streak so many equivalent radii to the right of the middle, so many turns of the mode (2,0) along.
+// A streak so many equivalent radii to the right of the middle, after `turns` turns of the mode (2,0).
 fn drops_atlas_across(streak: DropsAtlasStreak, across: f32, turns: f32) -> f32 {
     let half = 0.5 * f32(drops_masks[drops_frame.atlas]);
     let extent = bitcast<f32>(drops_masks[drops_frame.atlas + 2u]);

@@ -17,11 +17,11 @@ struct DropsShade {
     lean: vec3f,
     // Equivalent radii between samples.
     spacing: f32,
-    // Place in the masks: rows of diameters, and of elevations.
+    // Position in the masks: rows of diameters, and of elevations.
     row: vec2f,
 }
 
-// The place in the papers' capture of a ray, shifted by what the mask says.
+// The position in the papers' capture of a ray, shifted by what the mask says.
 fn drops_shade_shifted(ray: vec3f, texel: DropsTexel) -> vec2f {
     return drops_capture_shifted(ray, texel.direction);
 }
@@ -38,8 +38,8 @@ fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
     let q = min((x * x + y * y) * drop.half_extent * drop.half_extent, 0.98);
     let bend = 2.0 / sqrt(1.0 - q);
     if drops_frame.form == DROPS_SHIFT {
-        let place = drops_shade_shifted(drop.towards + drop.lean, texel);
-        return vec4f(drops_capture_at(place, drop.spacing * (bend - DROPS_STRAIGHT)), 1.0) * texel.coverage;
+        let position = drops_shade_shifted(drop.towards + drop.lean, texel);
+        return vec4f(drops_capture_at(position, drop.spacing * (bend - DROPS_STRAIGHT)), 1.0) * texel.coverage;
     }
     let rest = max(1.0 - texel.transmittance - texel.reflectance - texel.internal_transmittance, 0.0);
     var sum = drops_capture_texel(drops_frame.capture_last, 0, 0) * rest;

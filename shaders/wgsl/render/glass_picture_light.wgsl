@@ -5,7 +5,7 @@
 
 struct GlassPictureLight {
     // From the eye, m; a sun is far.
-    place: vec3f,
+    position: vec3f,
     // Half the angle that it takes, radians.
     radius: f32,
     // Irradiance at the eye of a surface that faces it.
@@ -21,9 +21,9 @@ fn glass_picture_light_lobe(away: f32, radius: f32) -> f32 {
     return max(1.0 - away / squared, 0.0) * GLASS_PICTURE_LIGHT_PEAK / squared;
 }
 
-// Radiance of a source in a direction from a place of the pane, for a footprint of some angle.
+// Radiance of a source in a direction from a position of the pane, for a footprint of some angle.
 fn glass_picture_light_seen(light: GlassPictureLight, from_eye: vec3f, direction: vec3f, footprint: f32) -> vec3f {
-    let way = light.place - from_eye;
+    let way = light.position - from_eye;
     let squared = max(dot(way, way), 1.0e-6);
     let away = direction - way / sqrt(squared);
     let width = footprint * GLASS_PICTURE_LIGHT_WIDTH;

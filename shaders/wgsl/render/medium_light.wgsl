@@ -116,7 +116,7 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
     // No ray is thinner than a pixel: the mean over its square of 1 / h is that of 0.284 of its width.
     let least = 0.284 * pixel * max(nearest, 0.0);
     let h = sqrt(dot(aside, aside) + least * least + 1.0e-8);
-    // The angle at the lamp, between the ray's direction and the place, runs from behind the drops to before them.
+    // The angle at the lamp, between the ray's direction and the position, runs from behind the drops to before them.
     let first = atan2(h, nearest - lit.x);
     var next = sum;
     var near = lit.x;
@@ -161,11 +161,11 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
 fn medium_light_pixel(x: u32, y: u32) {
     let at = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES + 2u * (y * render_frame.camera.width + x);
     let scene = medium_clean[y * render_frame.camera.width + x].w;
-    let place = vec2f(f32(x), f32(y)) + 0.5;
-    let direction = camera_direction(render_frame.camera, place.x, place.y);
+    let position = vec2f(f32(x), f32(y)) + 0.5;
+    let direction = camera_direction(render_frame.camera, position.x, position.y);
     // The sky is as it is seen through the rain beyond.
     let end = select(scene, MEDIUM_SKY_REACH, scene >= MEDIUM_SKY);
-    let depth = medium_open_at(place.x, place.y, end).x;
+    let depth = medium_open_at(position.x, position.y, end).x;
     var sum = MediumLight(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec2f(0.0), 0u);
     var seen = vec3f(0.0);
     if medium_frame.lit != MEDIUM_DARK && medium_frame.all > 0.0 {
@@ -178,10 +178,10 @@ fn medium_light_pixel(x: u32, y: u32) {
         let share = light_weight(sum.drawn);
         if share > 0.0 {
             let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random.y);
-            let from_place = medium_frame.eye + direction * distance;
-            let light = light_sample(light_load(sum.lamp), from_place, 0.0);
-            seen = scene_visibility(from_place, light.direction, light.distance)
-                * medium_open_at(place.x, place.y, distance).y
+            let from_position = medium_frame.eye + direction * distance;
+            let light = light_sample(light_load(sum.lamp), from_position, 0.0);
+            seen = scene_visibility(from_position, light.direction, light.distance)
+                * medium_open_at(position.x, position.y, distance).y
                 * (sum.drawn * (light_weight(sum.whole) / share));
         }
     }

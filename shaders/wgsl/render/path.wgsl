@@ -12,7 +12,7 @@ struct PathSlot {
     roughness: f32,
     // The surface's normal; of a gloss, the direction that a mirror would show.
     normal: vec3f,
-    place: vec3f,
+    position: vec3f,
 }
 
 // Result of a ray of the camera.
@@ -23,7 +23,7 @@ struct ViewPath {
     distance: f32,
     facet: vec3f,
     material: u32,
-    place: vec3f,
+    position: vec3f,
     // True if it is the surface that the sample before has seen.
     again: bool,
     // True if its result is the same over a pixel: no mirror, nothing behind a pane.
@@ -46,7 +46,7 @@ struct PathLight {
     factor: vec3f,
     distance: f32,
     normal: vec3f,
-    place: vec3f,
+    position: vec3f,
 }
 
 // The rays that look for the light of a surface.
@@ -87,11 +87,11 @@ fn path_radiance(path: ViewPath) -> vec3f {
 }
 
 // True if a surface is the same that another sample of the pixel has met.
-fn path_same_surface(last: ViewPath, material: u32, facet: vec3f, place: vec3f, distance: f32) -> bool {
+fn path_same_surface(last: ViewPath, material: u32, facet: vec3f, position: vec3f, distance: f32) -> bool {
     return last.plain
         && last.material == material
         && dot(last.facet, facet) > PATH_SAME_FACET
-        && abs(dot(last.facet, place - last.place)) < PATH_SAME_PLANE * distance;
+        && abs(dot(last.facet, position - last.position)) < PATH_SAME_PLANE * distance;
 }
 
 // With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
@@ -164,8 +164,8 @@ fn path_water_surface(start: vec3f, along: vec3f, distance: f32, ripple: vec3f) 
     let normal = puddle_water_normal(vec3f(ripple.xy, 0.0), 0.0, 0.0);
     // Beckmann's alpha squared is the variance of the slope.
     let roughness = clamp(sqrt(sqrt(ripple.z)), 0.0, 1.0);
-    let place = start + along * distance;
-    return Surface(place, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0);
+    let position = start + along * distance;
+    return Surface(position, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0);
 }
 
 // A ray that water mirrors: drawn from its ripples. Its weight is Fresnel's.
@@ -311,7 +311,7 @@ fn path_show_mirrored(slot: PathSlot, light: PathLight, gloss: vec3f, slack: f32
         return slot;
     }
     let its_slack = slack + light.distance * (2.0 * spread + SKYLIGHT_SLACK);
-    return PathSlot(light.shown, its_slack, gloss * light.factor, 0.0, light.normal, light.place);
+    return PathSlot(light.shown, its_slack, gloss * light.factor, 0.0, light.normal, light.position);
 }
 
 // Traces a ray. If it meets the surface that `last` met, it sees the same.
@@ -341,7 +341,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         var ripple = vec3f(0.0);
         for (var turn = 0u; turn <= plan.mirrors + plan.rays; turn += 1u) {
             var ray = ScatterRay(towards, cone, vec3f(1.0), 0.0, vec3f(1.0));
-            var from_place = start;
+            var from_position = start;
             var nearest = near;
             var at = surface;
             var view = -towards;
@@ -365,7 +365,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     } else {
                         next = path_draw(at, view, plan, leaves, is_mirror, numbers);
                     }
-                    from_place = at.position + at.facet * render_frame.nearest;
+                    from_position = at.position + at.facet * render_frame.nearest;
                     nearest = render_frame.nearest;
                     if is_first {
                         if SCENE_WET && under && is_mirror {
@@ -387,7 +387,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         break;
                     }
                 }
-                let hit = surface_hit(from_place, ray.along, nearest, BVH_FAR);
+                let hit = surface_hit(from_position, ray.along, nearest, BVH_FAR);
                 if hit.distance < 0.0 {
                     if turn == 0u {
                         path.radiance += throughput * sky_level(0u, towards);
@@ -396,7 +396,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     light = path_gathered(light, ray, sky_cone(ray.along, ray.width), of_shown);
                     break;
                 }
-                var found = surface_at(hit, from_place, ray.along, ray.width);
+                var found = surface_at(hit, from_position, ray.along, ray.width);
                 // All lamps, of the first surface; else some drawn for all, at a glance.
                 var lamps = 0u;
                 var standoff = 0.0;
@@ -412,9 +412,9 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     if SCENE_WET && of_water {
                         // Back along the ray to where it came through the surface.
                         distance = max(hit.distance - water.rise / max(-towards.y, 0.01), near);
-                        let place = start + towards * distance;
+                        let position = start + towards * distance;
                         let footprint = cone * distance / sqrt(max(-towards.y, 0.02));
-                        ripple = puddle_water_ripple(water.puddle, place, footprint, water.depth, water.open);
+                        ripple = puddle_water_ripple(water.puddle, position, footprint, water.depth, water.open);
                         found = path_water_surface(start, towards, distance, ripple);
                     } else if layer == 0u
                         && path_same_surface(last, material, found.facet, found.position, hit.distance) {
@@ -431,7 +431,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         path.distance = distance;
                         path.material = select(material, PUDDLE_WATER_MATERIAL, of_water);
                         path.facet = found.facet;
-                        path.place = found.position;
+                        path.position = found.position;
                     }
                     near = hit.distance + render_frame.nearest;
                 } else {
@@ -490,7 +490,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         light.factor = ray.mirror * (path_albedo(found) + found.normal_reflectance * 0.5);
                         light.distance = hit.distance;
                         light.normal = found.normal;
-                        light.place = found.position;
+                        light.position = found.position;
                     }
                 } else if bounce + 1u == PATH_BOUNCES {
                     ambient = path_ambient(found, (given + lit) / f32(bounce + 1u));
@@ -501,7 +501,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 if leaves == PATH_STRAIGHT {
                     ray.diffuse *= open;
                     ray.mirror *= open;
-                    from_place = found.position;
+                    from_position = found.position;
                     nearest = render_frame.nearest;
                 }
                 at = found;

@@ -1,7 +1,7 @@
 // Puddles as rays meet them: depth maps over the ground, ripples of one lattice, what water does to the ground beneath it.
 // Twin: downpour_trace::scene::water, where the method is described.
 
-// Water over a place.
+// Water over a position.
 struct PuddleWater {
     // Number of the puddle, or PUDDLE_WATER_NONE.
     puddle: u32,
@@ -21,12 +21,12 @@ fn puddle_water_texel(map: vec3u, x: i32, y: i32) -> vec4f {
     return puddle_texel(map.z + u32(line) * map.x + u32(column));
 }
 
-// The map over a place, bilinear. Beyond the map all is land.
-fn puddle_water_map(puddle: RenderPuddle, place: vec3f) -> vec4f {
+// The map over a position, bilinear. Beyond the map all is land.
+fn puddle_water_map(puddle: RenderPuddle, position: vec3f) -> vec4f {
     let axes = puddle.axes;
     let map = puddle.map;
-    let dx = place.x - puddle.middle.x;
-    let dz = place.z - puddle.middle.z;
+    let dx = position.x - puddle.middle.x;
+    let dz = position.z - puddle.middle.z;
     let along = dx * axes.x + dz * axes.y;
     let across = dz * axes.x - dx * axes.y;
     if abs(along) >= axes.z || abs(across) >= axes.w {
@@ -43,15 +43,15 @@ fn puddle_water_map(puddle: RenderPuddle, place: vec3f) -> vec4f {
     return upper * (1.0 - fy) + lower * fy;
 }
 
-// The water over a place that a ray has met, on ground whose facet rises by `upward`, or in the water.
-fn puddle_water_find(place: vec3f, upward: f32) -> PuddleWater {
+// The water over a position that a ray has met, on ground whose facet rises by `upward`, or in the water.
+fn puddle_water_find(position: vec3f, upward: f32) -> PuddleWater {
     for (var k = 0u; k < render_frame.puddle_count; k += 1u) {
         let puddle = puddle_load(k);
-        let found = puddle_water_map(puddle, place);
+        let found = puddle_water_map(puddle, position);
         if found.z < PUDDLE_WATER_MIN_DEPTH {
             continue;
         }
-        let height = place.y - puddle.middle.y - found.x;
+        let height = position.y - puddle.middle.y - found.x;
         let rise = clamp(found.y - height, 0.0, max(found.y, 0.0));
         let stands = height > 0.0 && rise > 0.0;
         let lies = abs(height) <= PUDDLE_WATER_SLACK && upward > 0.7;
@@ -89,9 +89,9 @@ fn puddle_water_piece(vertex: vec2i, offset: vec2f, first: u32, size: u32, steps
 }
 
 // Slopes along x and z of the water's surface, and the variance of the slope within a footprint (m). One lattice serves
-// all water: pieces of it, from a place of its own for each vertex of a mesh of triangles, are mixed so that the variance
+// all water: pieces of it, from a different position for each vertex of a triangle mesh, are mixed so that the variance
 // stays.
-fn puddle_water_ripple(puddle: u32, place: vec3f, footprint: f32, depth: f32, open: f32) -> vec3f {
+fn puddle_water_ripple(puddle: u32, position: vec3f, footprint: f32, depth: f32, open: f32) -> vec3f {
     let water = puddle_load(puddle);
     let look = water.ripples;
     let more = water.own;
@@ -109,8 +109,8 @@ fn puddle_water_ripple(puddle: u32, place: vec3f, footprint: f32, depth: f32, op
     let first = head.first + (head.size * head.size - size * size) / 3u * 4u;
     let steps = PUDDLE_WATER_MESH / cell * f32(size) / f32(head.size);
 
-    let px = (place.x * look.y + place.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
-    let pz = (place.z * look.y - place.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
+    let px = (position.x * look.y + position.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
+    let pz = (position.z * look.y - position.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
     // Skewed, so that triangles become halves of squares.
     let sx = px - pz * 0.57735027;
     let sz = pz * 1.1547005;

@@ -1,4 +1,4 @@
-// A scene of triangles under a sky, and the light of its lamps at a place.
+// A scene of triangles under a sky, and the light of its lamps at a position.
 // Twin: downpour_trace::scene.
 
 // True if there are puddles: their code slows down the rest.
@@ -24,12 +24,12 @@ struct SceneArrival {
     irradiance: vec3f,
 }
 
-// Share of light that reaches a place from a distance along a direction: surfaces that let light through dim it.
-fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
+// Share of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
+fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
     var from_distance = render_frame.nearest;
     var visible = vec3f(1.0);
     for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
-        let hit = surface_hit(place, direction, from_distance, distance - render_frame.nearest);
+        let hit = surface_hit(position, direction, from_distance, distance - render_frame.nearest);
         if hit.distance < 0.0 {
             return visible;
         }
@@ -52,21 +52,21 @@ fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
 // water's surface is over it in the model; light is refracted where it enters, and what Fresnel's equations do not reflect
 // goes in.
 fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> SceneArrival {
-    var place = surface.position;
+    var position = surface.position;
     var light = LightSample();
     var arrival = SceneArrival();
     var height = 0.0;
     var passes = 1u;
     for (var k = 0u; k < passes; k += 1u) {
         if k > 0u {
-            place = surface.position - surface.facet * (standoff - height);
+            position = surface.position - surface.facet * (standoff - height);
             if SCENE_WET && under.x > 0.0 {
-                place = surface.position + vec3f(0.0, under.y, 0.0) + puddle_water_entry(light.direction, under.x);
+                position = surface.position + vec3f(0.0, under.y, 0.0) + puddle_water_entry(light.direction, under.x);
             }
         }
-        light = light_sample(light_load(index), place, 0.0);
+        light = light_sample(light_load(index), position, 0.0);
         if k == 0u {
-            let start = place + surface.facet * render_frame.nearest;
+            let start = position + surface.facet * render_frame.nearest;
             arrival = SceneArrival(
                 start, light.distance, light.direction, light.spread, light.direction, 1.0, light.irradiance,
             );
@@ -80,7 +80,7 @@ fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> S
     arrival.direction = light.direction;
     arrival.irradiance = light.irradiance;
     if SCENE_WET && under.x > 0.0 {
-        arrival.start = place + vec3f(0.0, render_frame.nearest, 0.0);
+        arrival.start = position + vec3f(0.0, render_frame.nearest, 0.0);
         arrival.distance = light.distance;
         arrival.along = light.direction;
         arrival.direction = puddle_water_beneath(light.direction);
@@ -128,7 +128,7 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
             continue;
         }
         if k == count {
-            // Places at equal steps along what all give together: the lamps that they fall on are drawn.
+            // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
             step = total / f32(max(draws, 1u));
             next = chance * step;
         }

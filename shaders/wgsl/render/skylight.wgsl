@@ -18,7 +18,7 @@ struct SkylightSlot {
     roughness: f32,
     // Of what counts as the same: the normal, or the direction that a mirror would show.
     direction: vec3f,
-    place: vec3f,
+    position: vec3f,
 }
 
 // The luminance of a color, for comparisons.
@@ -47,11 +47,11 @@ fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
     var normal = found.normal;
     if found.roughness > 0.0 {
         // Between what is seen and what is mirrored.
-        let seen = found.place - render_frame.camera.eye;
+        let seen = found.position - render_frame.camera.eye;
         let sum = found.normal - seen / max(sqrt(dot(seen, seen)), 1.0e-20);
         normal = sum / max(sqrt(dot(sum, sum)), 1.0e-20);
     }
-    return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, found.place);
+    return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, found.position);
 }
 
 // Degree to which two pixels show the same surface, 0 to 1.
@@ -59,7 +59,7 @@ fn skylight_same(own: SkylightSlot, other: SkylightSlot) -> f32 {
     if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
         return 0.0;
     }
-    let off = abs(dot(own.normal, other.place - own.place));
+    let off = abs(dot(own.normal, other.position - own.position));
     let near = max(1.0 - off / own.slack, 0.0);
     let cosine = dot(own.direction, other.direction);
     if own.roughness > 0.0 {

@@ -143,7 +143,7 @@ fn specimen_turns(y: f32, x: f32) -> f32 {
 }
 
 // Position of a direction (of any length) on the sky map: u from the left, v from the top, both in [0, 1].
-fn specimen_sky_place(direction: vec3f) -> vec2f {
+fn specimen_sky_position(direction: vec3f) -> vec2f {
     let level = sqrt(direction.x * direction.x + direction.z * direction.z);
     let turn = specimen_turns(direction.z, direction.x);
     let rise = specimen_turns(direction.y, level);
@@ -156,12 +156,12 @@ fn specimen_sky_texel(column: u32, row: u32) -> vec3f {
     return vec3f(specimen_map[at], specimen_map[at + 1u], specimen_map[at + 2u]);
 }
 
-// The radiance of the sky at a place of its map.
-fn specimen_sky(place: vec2f) -> vec3f {
+// The radiance of the sky at a position of its map.
+fn specimen_sky(position: vec2f) -> vec3f {
     let width = f32(specimen_view.sky.x);
     let last = f32(specimen_view.sky.y - 1u);
-    let x = place.x * width - 0.5;
-    let y = min(max(place.y * (last + 1.0) - 0.5, 0.0), last);
+    let x = position.x * width - 0.5;
+    let y = min(max(position.y * (last + 1.0) - 0.5, 0.0), last);
     let left = floor(x);
     let top = floor(y);
     let next = left + 1.0;
@@ -201,7 +201,7 @@ fn specimen_sky_lamps(direction: vec3f) -> vec3f {
 
 // The radiance of the map and of the lamps along a direction of length 1.
 fn specimen_sky_light(direction: vec3f) -> vec3f {
-    return specimen_sky(specimen_sky_place(direction)) + specimen_sky_lamps(direction);
+    return specimen_sky(specimen_sky_position(direction)) + specimen_sky_lamps(direction);
 }
 
 // The radiance of the sample (x, y), in samples from the middle of the picture.

@@ -2,7 +2,7 @@
 // A drop that falls is a ray that rises: in the drop's frame, at u radii of fall after the middle of the exposure, the ray
 // of the camera is shifted by u along +Y. It meets the spheroid that holds the drop for one interval of u, which is known in
 // closed form; the rest of the exposure shows the sky, with its exact weight. The interval is cut into equal parts, one
-// instant in each, all at the same place of their part, which is drawn for each sample of the picture.
+// instant in each, all at the same position of their part, which is drawn for each sample of the picture.
 // u is in units of the volume-equivalent radius. Everything else is as in render/specimen.wgsl.
 // Twin: downpour_specimen::streak.
 

@@ -16,13 +16,13 @@ struct DropsDrop {
     towards: vec3f,
     // Meters from the eye.
     distance: f32,
-    // Place of the middle on the picture, pixels from the top left.
-    place: vec2f,
+    // Position of the middle on the picture, pixels from the top left.
+    position: vec2f,
     // Equivalent radius over distance.
     slope: f32,
     // Half the width of its mask, in equivalent radii.
     half_extent: f32,
-    // Place in the masks: rows of diameters, and of elevations.
+    // Position in the masks: rows of diameters, and of elevations.
     row: vec2f,
     // Area on the picture, pixels.
     area: f32,
@@ -78,7 +78,7 @@ struct StreakChord {
     pace: f32,
     // Weights of the light at `low` and at `high`.
     weights: vec2f,
-    // Place of the ray across the path, in equivalent radii.
+    // Position of the ray across the path, in equivalent radii.
     aside: f32,
     // Unit direction of the motion.
     path: vec2f,
@@ -94,7 +94,7 @@ fn streak_weight(weights: vec2f, time: f32) -> f32 {
     return weights.x + (weights.y - weights.x) * clamp(time, 0.0, 1.0);
 }
 
-// The share of the way that is nearest to a place on the plane.
+// The share of the way that is nearest to a position on the plane.
 fn streak_nearest(drop: DropsDrop, at: vec2f) -> f32 {
     return clamp(dot(at - drop.start, drop.along) / max(dot(drop.along, drop.along), 1.0e-20), 0.0, 1.0);
 }
@@ -154,8 +154,8 @@ fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
     );
 }
 
-// The place in the mask, in units of half of it, of a place on a chord, in units of half its length.
-fn streak_place(drop: DropsDrop, chord: StreakChord, v: f32) -> vec2f {
+// Position in the mask, in units of half its width, of a position on a chord, in units of half its length.
+fn streak_mask_position(drop: DropsDrop, chord: StreakChord, v: f32) -> vec2f {
     let away = vec2f(chord.direction.y, -chord.direction.x);
     let at = (away * chord.across + chord.direction * (v * chord.half)) * drop.oval.xy;
     return (at + vec2f(0.0, drop.oval.z)) / drop.half_extent;

@@ -140,18 +140,18 @@ fn streak_light_patch(path: StreakPath, row: i32, column: i32, tap: i32, number:
     return StreakPatch(here, across, along, later, across_along, across_later, along_later);
 }
 
-// The direction at a place of a patch: rays across, along and later, from its middle.
-fn streak_light_direction(ray: StreakPatch, place: vec3f) -> vec3f {
+// The direction at a position of a patch: rays across, along and later, from its middle.
+fn streak_light_direction(ray: StreakPatch, position: vec3f) -> vec3f {
     let linear = ray.middle.direction
-        + ray.across.first * place.x
-        + ray.along.first * place.y
-        + ray.later.first * place.z;
-    let squares = ray.across.second * (0.5 * place.x * place.x)
-        + ray.along.second * (0.5 * place.y * place.y)
-        + ray.later.second * (0.5 * place.z * place.z);
-    let mixed = ray.across_along * (place.x * place.y)
-        + ray.across_later * (place.x * place.z)
-        + ray.along_later * (place.y * place.z);
+        + ray.across.first * position.x
+        + ray.along.first * position.y
+        + ray.later.first * position.z;
+    let squares = ray.across.second * (0.5 * position.x * position.x)
+        + ray.along.second * (0.5 * position.y * position.y)
+        + ray.later.second * (0.5 * position.z * position.z);
+    let mixed = ray.across_along * (position.x * position.y)
+        + ray.across_later * (position.x * position.z)
+        + ray.along_later * (position.y * position.z);
     return normalize(linear + squares + mixed);
 }
 
@@ -190,8 +190,8 @@ fn streak_light_spot(
         let number = f32(k) + 0.5;
         let steps = vec3f(1.0 / f32(STREAK_SPOTS), STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
         let point = fract(number * steps + shift);
-        let place = point - 0.5;
-        let apart = streak_light_direction(ray, vec3f(place.xy, later + place.z * span)) - lamp;
+        let position = point - 0.5;
+        let apart = streak_light_direction(ray, vec3f(position.xy, later + position.z * span)) - lamp;
         let off = dot(apart, apart) / (wide * wide);
         if off < 1.0 {
             // A disk, or a spot that fades toward its edge.
@@ -244,8 +244,8 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
     let per_part = path.columns / STREAK_SUMS;
     let first_light = path.first_entry + 1u + path.rows * path.columns;
     for (var tap = 0u; tap < path.columns; tap += 1u) {
-        let low = streak_place_position(f32(tap), path.columns);
-        let high = streak_place_position(f32(tap + 1u), path.columns);
+        let low = streak_cell_position(f32(tap), path.columns);
+        let high = streak_cell_position(f32(tap + 1u), path.columns);
         let weight = 0.5 * (high - low);
         let number = f32((row * path.columns + column) * path.columns + tap);
         let shift = fract(number * vec3f(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD));
@@ -286,8 +286,8 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
         if (tap + 1u) % per_part == 0u {
             let sum = (tap + 1u) / per_part - 1u;
             for (var part = 0u; part < fine; part += 1u) {
-                let place = (row * path.columns + column) * fine + part;
-                streak_light_table[first_light + place * STREAK_SUMS + sum] = vec4f(sums[part], 0.0);
+                let cell = (row * path.columns + column) * fine + part;
+                streak_light_table[first_light + cell * STREAK_SUMS + sum] = vec4f(sums[part], 0.0);
             }
         }
     }

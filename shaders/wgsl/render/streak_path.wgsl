@@ -109,8 +109,8 @@ fn streak_path_back(path: StreakPath, v: vec3f) -> vec3f {
 fn streak_path_line(path: StreakPath, drop: DropsDrop, instant: StreakInstant, offset: vec2f) -> StreakLine {
     let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
-    let place = instant.middle + offset * instant.scale;
-    let direction = normalize(drop.towards + right * place.x + up * place.y);
+    let position = instant.middle + offset * instant.scale;
+    let direction = normalize(drop.towards + right * position.x + up * position.y);
     let origin = right * offset.x + up * offset.y;
     return StreakLine(streak_path_turned(path, origin), streak_path_turned(path, direction));
 }

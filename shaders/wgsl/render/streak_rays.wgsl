@@ -1,7 +1,7 @@
 // Traces the rays of the profiles of streaks: for an instant of the exposure the drop's outline, chords along the motion across it,
 // and rays along each chord to where their light leaves the drop.
 // Layout: a streak has a head in the table (rows, columns, rows of the profile, fine columns), then for each row and column the
-// middle and half of the outline's width and the middle and half of the chord, the latter over sqrt(1 - a^2) at the place a
+// middle and half of the outline's width and the middle and half of the chord, the latter over sqrt(1 - a^2) at the position a
 // across; rays stand in a buffer of their own, row by row, column by column, along the chord.
 // Twin: downpour_render::rain::streak_rays.
 
@@ -50,7 +50,7 @@ fn streak_rays_width() -> vec2f {
     return vec2f(0.5 * (high + low), 0.5 * (high - low));
 }
 
-// Middle and half of the chord at a place across the motion.
+// Middle and half of the chord at a position across the motion.
 fn streak_rays_chord(across: f32) -> vec2f {
     var low = STREAK_OUTLINE_MAX;
     var high = -STREAK_OUTLINE_MAX;
@@ -112,14 +112,14 @@ fn main_streak_rays(
     }
     for (var k = index; k < columns * columns; k += 64u) {
         let column = k / columns;
-        let place = streak_place_position(f32(column) + 0.5, columns);
-        let across = width.x + width.y * place;
+        let position = streak_cell_position(f32(column) + 0.5, columns);
+        let across = width.x + width.y * position;
         let chord = streak_rays_chord(across);
-        let along = chord.x + chord.y * streak_place_position(f32(k % columns) + 0.5, columns);
+        let along = chord.x + chord.y * streak_cell_position(f32(k % columns) + 0.5, columns);
         streak_rays_made[path.first_ray + row * columns * columns + k] =
             streak_rays_ray(path, drop, instant, vec2f(across, along));
         if k % columns == 0u {
-            let round = chord.y / sqrt(max(1.0 - place * place, 1.0e-6));
+            let round = chord.y / sqrt(max(1.0 - position * position, 1.0e-6));
             streak_rays_table[path.first_entry + 1u + row * columns + column] = vec4f(width, chord.x, round);
         }
     }

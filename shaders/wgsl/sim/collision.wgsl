@@ -71,7 +71,7 @@ struct CollisionHit {
 @group(0) @binding(9) var<storage, read> collision_texels: array<CollisionTexel>;
 
 // Converts a position to map coordinates.
-fn collision_place(map: CollisionMap, at: vec3f) -> vec3f {
+fn collision_position(map: CollisionMap, at: vec3f) -> vec3f {
     let offset = at - map.low;
     return vec3f(
         dot(offset, map.across) * map.per_edge.x,
@@ -204,7 +204,7 @@ fn collision_texel(cell: vec2i) -> CollisionTexel {
 
 // Number of surfaces above a position, and the lowest of them (0: none).
 fn collision_cover(at: vec3f) -> vec2u {
-    let position = collision_place(collision_map, at);
+    let position = collision_position(collision_map, at);
     let corner = floor(min(max(position.xy, vec2f(-COLLISION_EDGE)), vec2f(COLLISION_EDGE)));
     let texel = collision_texel(vec2i(corner));
     let count = collision_count(collision_depths(collision_map, texel, position.xy - corner - 0.5), position.z);
@@ -223,8 +223,8 @@ fn collision_inside(at: vec3f) -> bool {
 
 // Finds the first hit of a drop on its straight path from `start` to `end`.
 fn collision_find(start: vec3f, end: vec3f) -> CollisionHit {
-    let origin = collision_place(collision_map, start);
-    let way = collision_place(collision_map, end) - origin;
+    let origin = collision_position(collision_map, start);
+    let way = collision_position(collision_map, end) - origin;
     let forward = way.xy > vec2f(0.0);
     let moves = way.xy != vec2f(0.0);
     let inverse = vec2f(1.0) / select(vec2f(1.0), way.xy, moves);

@@ -167,7 +167,7 @@ fn query_case(gpu: &Gpu, pick: StreakPick, with_amounts: bool) -> Result<Run, Gp
     let made = GpuAtlas::new(gpu, &atlas)?.query(gpu, &queries)?;
     let told = queries.iter().map(|q| {
         let drop = StreakParticle { diameter: q.diameter, axis: q.axis, id: q.id };
-        atlas.radiance(&atlas.place(&drop, q.light, q.view), q.across, q.turns).to_bits()
+        atlas.radiance(&atlas.slot(&drop, q.light, q.view), q.across, q.turns).to_bits()
     });
     Ok(Run {
         arguments: queries

@@ -216,7 +216,7 @@ fn motions() -> Vec<FunctionCase> {
     ]
 }
 
-fn places() -> Vec<FunctionCase> {
+fn positions() -> Vec<FunctionCase> {
     let (blade_of, frame_of, at) = (Made(blade_words), Made(frame_words), Made(near));
     vec![
         FunctionCase::new("glass_blade_side", &shaders::BLADE, &[Made(drive), Made(drive)], INTEGERS, |a| {
@@ -275,7 +275,7 @@ fn heights() -> Vec<FunctionCase> {
 
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
-    [sizes(), motions(), places(), heights()].into_iter().flatten().collect()
+    [sizes(), motions(), positions(), heights()].into_iter().flatten().collect()
 }
 
 /// A small windshield with everything: rain, air, drying, obstacles, a wiper with a worn band.

@@ -69,8 +69,10 @@ fn drop(random: [u32; 4]) -> Vec<u32> {
 fn lamp(random: [u32; 4]) -> Vec<u32> {
     let [a, b, c, d] = random.map(rng_unit);
     let distance = 5.0 + 35.0 * a;
-    let place = [distance * (0.4 * b - 0.2), distance * (0.4 * c - 0.2), -distance];
-    [place[0], place[1], place[2], 0.01 * d, 1.0 + b, 1.0, 0.5 + c, distance].map(f32::to_bits).to_vec()
+    let position = [distance * (0.4 * b - 0.2), distance * (0.4 * c - 0.2), -distance];
+    [position[0], position[1], position[2], 0.01 * d, 1.0 + b, 1.0, 0.5 + c, distance]
+        .map(f32::to_bits)
+        .to_vec()
 }
 
 /// A direction of length 1, about forward, as words.
@@ -92,12 +94,12 @@ const CAP: Tol = Tol::relative(
 
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
-    let place = [Uniform(0.0085, 0.0115), Uniform(0.0185, 0.0215)];
+    let position = [Uniform(0.0085, 0.0115), Uniform(0.0185, 0.0215)];
     vec![
         FunctionCase::new(
             "glass_picture_water_cap",
             &WATER,
-            &[Made(drop), place[0], place[1]],
+            &[Made(drop), position[0], position[1]],
             CAP.with_outliers(2.0e-3),
             |a| glass_picture_water_cap(&read(a), Vec2::from(a.f32s())).to_array().words(),
         ),
@@ -111,7 +113,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "glass_picture_water_leave",
             &WATER,
-            &[Made(drop), place[0], place[1], Uniform(-0.8, 0.8), Uniform(-0.8, 0.8)],
+            &[Made(drop), position[0], position[1], Uniform(-0.8, 0.8), Uniform(-0.8, 0.8)],
             Tol::relative(1.0e-3, 2.0e-6, "five turns of regula falsi; a turn may take the other side")
                 .with_outliers(1.0e-2),
             |a| {

@@ -38,8 +38,8 @@ fn weight_words(random: [u32; 4]) -> Vec<u32> {
 fn seed_words(random: [u32; 4]) -> Vec<u32> {
     let [a, b, c, d] = random.map(rng_unit);
     let per_length = 0.05 + 0.5 * c;
-    let place = [20.0 + 20.0 * a, 20.0 + 20.0 * b];
-    let mut words = place.words();
+    let position = [20.0 + 20.0 * a, 20.0 + 20.0 * b];
+    let mut words = position.words();
     words.extend([per_length, 2.0 * d - 1.0, 0.01 * a, 6.0 / per_length].words());
     words.extend([random[0] % 2, 0]);
     words
@@ -257,9 +257,9 @@ fn run_of(nx: u32, cpu: &[Vec<f32>], gpu: &[Vec<f32>]) -> Run {
     let words = |columns: &[Vec<f32>]| -> Vec<u32> {
         (0..columns[0].len()).flat_map(|i| columns.iter().map(move |c| c[i].to_bits())).collect()
     };
-    let place = |i: u32| [i % nx, i / nx].map(|c| (c as f32).to_bits()).to_vec();
+    let cell = |i: u32| [i % nx, i / nx].map(|c| (c as f32).to_bits()).to_vec();
     Run {
-        arguments: (0..cpu[0].len() as u32).map(place).collect(),
+        arguments: (0..cpu[0].len() as u32).map(cell).collect(),
         cpu: Cpu(words(cpu)),
         gpu: FromGpu(words(gpu)),
         kinds: vec![WordKind::Float; cpu.len()],
@@ -405,7 +405,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             with: &[],
             overrides: &[],
             text: None,
-            tol: Tol::absolute(2.0e-6, "as the step in sixteen bits; the velocity's half in its place"),
+            tol: Tol::absolute(2.0e-6, "as the step in sixteen bits; the velocity's half in its position"),
             run: |gpu| {
                 let storage = PuddleStorage::Half;
                 let options = PuddleOptions { size: [65, 66], storage, ..PuddleOptions::default() };

@@ -255,7 +255,7 @@ pub(super) fn scene() -> SceneData {
         })
         .collect();
     let indices: Vec<u32> = (0..6).flat_map(|f| [0, 1, 2, 0, 2, 3].map(|k| 4 * f + k)).collect();
-    let mut place = |material: u32, at: Vec3, size: Vec3| {
+    let mut add = |material: u32, at: Vec3, size: Vec3| {
         let part = MeshPart {
             positions: &positions,
             normals: None,
@@ -267,10 +267,10 @@ pub(super) fn scene() -> SceneData {
         };
         builder.add_mesh(&part, &(Affine3A::from_translation(at) * Affine3A::from_scale(size)));
     };
-    place(materials[0], Vec3::new(0.0, -0.6, 0.0), Vec3::new(8.0, 0.2, 8.0));
+    add(materials[0], Vec3::new(0.0, -0.6, 0.0), Vec3::new(8.0, 0.2, 8.0));
     for (k, &material) in (0i16..).zip(&materials[1..]) {
         let x = f32::from(k) - 2.5;
-        place(
+        add(
             material,
             Vec3::new(x, 0.1 * f32::from(k % 3), -0.7 * f32::from(k % 2)),
             Vec3::new(0.7, 0.9, 0.7),

@@ -530,7 +530,7 @@ const BOX: SimVolume = SimVolume::Box { size_m: [6.0, 6.0, 6.0] };
 
 const STEPPED: Tol = Tol::absolute(
     1.0e-4,
-    "places up to 10 m after an exponential, a lookup of wind and some products; a drop that grazes a face or a surface \
+    "positions up to 10 m after an exponential, a lookup of wind and some products; a drop that grazes a face or a surface \
      may be on either side of it",
 )
 .with_outliers(3.0e-3);
@@ -554,7 +554,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         case(
             "main_step: what happened",
             &[],
-            Tol::exact("sorted by drop; places to the millimeter").with_outliers(2.0e-2),
+            Tol::exact("sorted by drop; positions to the millimeter").with_outliers(2.0e-2),
             |gpu| {
                 happened_case(
                     gpu,

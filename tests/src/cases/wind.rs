@@ -320,7 +320,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         tol: Tol::relative(
             1.0e-5,
             2.0e-5,
-            "a sum of 13 velocities up to 7 m/s, each known to 1e-6 of it, at places known to 1e-6 m",
+            "a sum of 13 velocities up to 7 m/s, each known to 1e-6 of it, at positions known to 1e-6 m",
         ),
         run,
     };

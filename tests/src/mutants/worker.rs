@@ -103,7 +103,7 @@ impl Bench {
     }
 
     /// Shows mutants of one function to the cases that reach it, each until one sees it. `allow` is told how long each step
-    /// may take and of which mutant it is (by its place), `tell` what became of each.
+    /// may take and of which mutant it is (by its index), `tell` what became of each.
     pub fn judge(
         &mut self,
         mutants: &[&Mutant],

@@ -1,4 +1,4 @@
-"""An integrator for Mitsuba 3 that draws nothing at random but the places within a pixel.
+"""An integrator for Mitsuba 3 that draws nothing at random but the positions within a pixel.
 
 To be imported after the variant is set, a vectorised one. Rays, dielectric and sky are Mitsuba's. Drops are taken to be
 convex: light that has left does not come back.

@@ -49,12 +49,12 @@ def lamps(given):
         return {}
     yaw, pitch, radius = np.radians([given.lamp_yaw, given.lamp_pitch, given.lamp_radius])
     towards = np.array([np.sin(yaw) * np.cos(pitch), np.sin(pitch), np.cos(yaw) * np.cos(pitch)])
-    place = mi.ScalarTransform4f().look_at((LAMP_DISTANCE * towards).tolist(), [0, 0, 0], [0, 1, 0])
+    position = mi.ScalarTransform4f().look_at((LAMP_DISTANCE * towards).tolist(), [0, 0, 0], [0, 1, 0])
     light = {"type": "rgb", "value": [given.lamp_red, given.lamp_green, given.lamp_blue]}
     return {
         "lamp": {
             "type": "disk",
-            "to_world": place.scale(float(LAMP_DISTANCE * np.tan(radius))),
+            "to_world": position.scale(float(LAMP_DISTANCE * np.tan(radius))),
             "emitter": {"type": "area", "radiance": light},
         }
     }
@@ -64,13 +64,13 @@ def rows_of(mesh, given):
     """The rows in which a mesh may be seen."""
     box = mesh.bbox()
     scale = 0.5 * given.height / np.tan(0.5 * np.radians(given.fov))
-    places = [
+    rows = [
         0.5 * given.height - scale * y / (given.distance - side * given.reach)
         for y in (box.min.y, box.max.y)
         for side in (-1.0, 1.0)
     ]
-    first = max(int(np.floor(min(places))) - 1, 0)
-    last = min(int(np.ceil(max(places))) + 1, given.height)
+    first = max(int(np.floor(min(rows))) - 1, 0)
+    last = min(int(np.ceil(max(rows))) + 1, given.height)
     return (first, last)
 
 

@@ -69,9 +69,9 @@ impl SampleTable {
     /// Diameter of a word, in meters.
     #[must_use]
     pub fn sample(&self, word: u32) -> f32 {
-        let place = distribution_table_position(word);
-        let index = place.index as usize;
-        distribution_lerp(self.nodes[index], self.nodes[index + 1], place.fraction)
+        let position = distribution_table_position(word);
+        let index = position.index as usize;
+        distribution_lerp(self.nodes[index], self.nodes[index + 1], position.fraction)
     }
 }
 
@@ -155,8 +155,8 @@ mod tests {
     fn nodes_and_positions_agree() {
         for node in 0..DISTRIBUTION_SIDE_NODES - 1 {
             let first = words_before(node);
-            let place = distribution_table_position(first);
-            assert_eq!((place.index, place.fraction), (node, 0.0), "word {first}");
+            let position = distribution_table_position(first);
+            assert_eq!((position.index, position.fraction), (node, 0.0), "word {first}");
             let last = distribution_table_position(words_before(node + 1) - 1);
             assert_eq!(last.index, node);
             assert!(last.fraction < 1.0);

@@ -127,8 +127,8 @@ pub fn read_exr(bytes: &[u8]) -> core::result::Result<Mask, MaskError> {
     })
 }
 
-fn file(place: &'static str, found: String, allowed: &'static str) -> MaskError {
-    MaskError::File { place, found, allowed }
+fn file(location: &'static str, found: String, allowed: &'static str) -> MaskError {
+    MaskError::File { location, found, allowed }
 }
 
 /// Size and description, from the header alone.

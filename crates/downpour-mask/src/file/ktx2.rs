@@ -113,8 +113,8 @@ pub fn read_ktx2(bytes: &[u8]) -> Result<Vec<Mask>, MaskError> {
     unpack(&texels, size, &description)
 }
 
-fn file(place: &'static str, found: String, allowed: &'static str) -> MaskError {
-    MaskError::File { place, found, allowed }
+fn file(location: &'static str, found: String, allowed: &'static str) -> MaskError {
+    MaskError::File { location, found, allowed }
 }
 
 /// Size and number of layers, if the header is that of masks.

@@ -27,7 +27,7 @@ const ROUND_M: f64 = 1.4e-3;
 /// Widths of spots of the glass that pull the outline, m.
 const SPOTS_M: [f64; 2] = [4.5e-3, 1.7e-3];
 
-/// Places round the outline at which the glass is asked.
+/// Positions round the outline at which the glass is asked.
 const ROUND: u32 = 8;
 
 /// Relative excess of the slope below a drop over that in its middle when it is about to slide: from tan 20 to tan 60 degrees.
@@ -54,7 +54,7 @@ struct Common<'a> {
     air_density: f64,
 }
 
-/// All drops of a pane whose uppermost rows are above what is seen of it. Places are from the corner of what is seen.
+/// All drops of a pane whose uppermost rows are above what is seen of it. Positions are from the corner of what is seen.
 ///
 /// # Errors
 /// [`GlassError::Rain`] if water at the pane's temperature is not known.
@@ -77,12 +77,12 @@ pub(super) fn binned(glass: &Glass, above: u32) -> Result<Binned, GlassError> {
     let size = [columns, rows - above].map(|edge| f64::from(edge) * options.cell_m);
     let [columns, rows] = size.map(|edge| ((edge / BIN_M).ceil() as u32).max(1));
     let count = (columns * rows) as usize;
-    let place = |at: f64, most: u32| ((at / BIN_M).max(0.0) as u32).min(most - 1);
+    let bin = |at: f64, most: u32| ((at / BIN_M).max(0.0) as u32).min(most - 1);
     let touched = |drop: &GlassPictureDrop| {
         let reach = f64::from(drop.radius) * 1.5 / f64::from(drop.behind);
         let [x, y] = drop.center.map(f64::from);
-        let (left, right) = (place(x - reach, columns), place(x + reach, columns));
-        let (top, bottom) = (place(y - reach, rows), place(y + reach, rows));
+        let (left, right) = (bin(x - reach, columns), bin(x + reach, columns));
+        let (top, bottom) = (bin(y - reach, rows), bin(y + reach, rows));
         (top..=bottom)
             .flat_map(move |row| (left..=right).map(move |column| (row * columns + column) as usize))
     };

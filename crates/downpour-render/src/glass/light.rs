@@ -18,7 +18,7 @@ use crate::plate::Lighting;
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassPictureLight {
     /// From the eye, m; a sun is far.
-    pub place: [f32; 3],
+    pub position: [f32; 3],
     /// Half the angle that it takes, radians.
     pub radius: f32,
     /// Irradiance at the eye of a surface that faces it.
@@ -35,7 +35,7 @@ pub fn glass_picture_light_lobe(away: f32, radius: f32) -> f32 {
     (1.0 - away / squared).max(0.0) * GLASS_PICTURE_LIGHT_PEAK / squared
 }
 
-/// Radiance of a source in a direction from a place of the pane (m from the eye), for a footprint in radians.
+/// Radiance of a source in a direction from a position of the pane (m from the eye), for a footprint in radians.
 #[must_use]
 pub fn glass_picture_light_seen(
     light: &GlassPictureLight,
@@ -43,7 +43,7 @@ pub fn glass_picture_light_seen(
     direction: Vec3,
     footprint: f32,
 ) -> Vec3 {
-    let way = Vec3::from(light.place) - from_eye;
+    let way = Vec3::from(light.position) - from_eye;
     let squared = way.dot(way).max(1.0e-6);
     let away = direction - way / squared.sqrt();
     let width = footprint * GLASS_PICTURE_LIGHT_WIDTH;
@@ -59,9 +59,9 @@ pub(super) fn sources(lighting: &dyn Lighting, eye: Vec3) -> Vec<GlassPictureLig
         let lit = light.irradiance * PI;
         let color = lit * lighting.visibility(eye, light.direction, light.distance);
         let distance = light.distance.min(GLASS_PICTURE_FAR);
-        let place = light.direction * distance;
+        let position = light.direction * distance;
         (color.max_element() > 0.0).then(|| GlassPictureLight {
-            place: place.into(),
+            position: position.into(),
             radius: light.spread,
             color: color.into(),
             distance,

@@ -56,8 +56,8 @@ impl WetPane {
     /// [`PaneError`] if the pane cannot be what is asked for, or the camera does not look through it.
     pub fn new(weather: &Weather, viewpoint: &Viewpoint, first_s: f64) -> Result<Option<Self>, PaneError> {
         let Some(pane) = &weather.glass else { return Ok(None) };
-        let place = Place::new(pane, viewpoint)?;
-        let size = pane.size.unwrap_or_else(|| place.shown(viewpoint, weather.size));
+        let position = PanePosition::new(pane, viewpoint)?;
+        let size = pane.size.unwrap_or_else(|| position.shown(viewpoint, weather.size));
         let begin_s = first_s - pane.before;
         let mut glass = Glass::new(&pane.options(size, &weather.rain, begin_s))?;
         let (rain, air) = pane.weather(&weather.rain, pane.speed.at(begin_s));
@@ -113,9 +113,9 @@ impl WetPane {
     /// # Errors
     /// [`PaneError::EdgeOn`] if the eye looks along the pane, or what is wrong with the eye.
     pub fn axes(&self, viewpoint: &Viewpoint) -> Result<[DVec3; 4], PaneError> {
-        let place = Place::new(&self.pane, viewpoint)?;
-        let corner = place.corner(self.size) + DVec3::from(viewpoint.eye);
-        Ok([corner, place.across, place.down, place.outward])
+        let position = PanePosition::new(&self.pane, viewpoint)?;
+        let corner = position.corner(self.size) + DVec3::from(viewpoint.eye);
+        Ok([corner, position.across, position.down, position.outward])
     }
 
     /// True if the light of lamps that falls in through the pane has the shadows of its drops.
@@ -157,17 +157,17 @@ impl WetPane {
         lighting: &dyn Lighting,
         environment_texels: usize,
     ) -> Result<GlassPicture, PaneError> {
-        let place = Place::new(&self.pane, viewpoint)?;
+        let position = PanePosition::new(&self.pane, viewpoint)?;
         let binned = binned(&self.glass, self.above)?;
         let [width, height] = self.size;
-        let corner = place.corner(self.size);
+        let corner = position.corner(self.size);
         let options = self.glass.options();
         let vector = |v: DVec3| v.as_vec3().to_array();
         let (levels, last) = levels(camera.size());
         // (4 n^2 - 1) / 3 texels in all levels of n x n.
         let capture_size = ((environment_texels as f64 * 0.75).sqrt().round() as u32).max(1);
         let lens = (0.5 * self.pane.aperture) as f32;
-        let lens_places = samples(grid, lens);
+        let lens_points = samples(grid, lens);
         let [columns, rows] = options.size;
         let hidden = (columns * self.above) as usize;
         let wet = self.glass.traversal().split_off(hidden);
@@ -178,11 +178,11 @@ impl WetPane {
         Ok(GlassPicture {
             frame: GlassPictureFrame {
                 camera: *camera,
-                across: vector(place.across),
+                across: vector(position.across),
                 columns: binned.columns,
-                down: vector(place.down),
+                down: vector(position.down),
                 rows: binned.rows,
-                outward: vector(place.outward),
+                outward: vector(position.outward),
                 bins: binned.per_meter as f32,
                 corner: vector(corner),
                 cells: (1.0 / options.cell_m) as f32,
@@ -198,7 +198,7 @@ impl WetPane {
                     PaneFresnel::Tatarchuk2006 => GLASS_PICTURE_TATARCHUK,
                 },
                 room: self.pane.interior_ambient as f32,
-                samples: lens_places.len() as u32,
+                samples: lens_points.len() as u32,
                 last,
                 capture_size,
                 capture_last: capture_size.ilog2(),
@@ -215,7 +215,7 @@ impl WetPane {
             drops: if binned.drops.is_empty() { vec![Default::default()] } else { binned.drops },
             bins: binned.bins,
             wet: wet.chunks(4).map(word).collect(),
-            lens: lens_places,
+            lens: lens_points,
             lights: if lights.is_empty() { vec![GlassPictureLight::default()] } else { lights },
         })
     }
@@ -227,20 +227,20 @@ impl WetPane {
 /// [`PaneError::EdgeOn`] if the eye looks along it, or what is wrong with the eye.
 pub fn pane_plane(weather: &Weather, viewpoint: &Viewpoint) -> Result<Option<PanePlane>, PaneError> {
     let Some(pane) = &weather.glass else { return Ok(None) };
-    let place = Place::new(pane, viewpoint)?;
-    let distance = place.middle.dot(place.outward) as f32;
-    Ok(Some(PanePlane { outward: place.outward.as_vec3(), distance }))
+    let position = PanePosition::new(pane, viewpoint)?;
+    let distance = position.middle.dot(position.outward) as f32;
+    Ok(Some(PanePlane { outward: position.outward.as_vec3(), distance }))
 }
 
 /// Position and axes of a pane, relative to the eye.
-struct Place {
+struct PanePosition {
     across: DVec3,
     down: DVec3,
     outward: DVec3,
     middle: DVec3,
 }
 
-impl Place {
+impl PanePosition {
     fn new(pane: &Pane, viewpoint: &Viewpoint) -> Result<Self, PaneError> {
         let [right, _, forward] = viewpoint.axes()?.map(DVec3::from);
         // A pane stands upright however the camera is turned about its own axis.

@@ -17,12 +17,12 @@ use super::meet::Met;
 #[derive(Clone, Copy, Debug)]
 struct Ray {
     /// Position on the pane.
-    place: Vec2,
+    position: Vec2,
     /// Its direction, in the pane's axes.
     d: Vec3,
     /// Position relative to the eye.
     from_eye: Vec3,
-    /// From the sample's place in its pixel to the middle, pixels.
+    /// From the sample's position in its pixel to the middle, pixels.
     shift: Vec2,
     /// The angle between neighboring rays.
     angle: f32,
@@ -98,7 +98,7 @@ impl Look<'_> {
         let (d, shift) = (ray.d, ray.shift);
         let aside = d.truncate() / water;
         let w = aside.extend((1.0 - aside.dot(aside)).max(0.0).sqrt());
-        let met = self.glass_picture_meet(ray.place, w.truncate() / w.z);
+        let met = self.glass_picture_meet(ray.position, w.truncate() / w.z);
         let within = w.dot(met.normal);
         let first = optics_fresnel(d.z, GLASS_PICTURE_INDEX);
         let outer = self.glass_picture_outer(d.z, &met, within.max(0.0));
@@ -138,7 +138,7 @@ impl Look<'_> {
         sum
     }
 
-    /// A sample of a pixel: a place of the lens (in its radius) and of the pixel.
+    /// A sample of a pixel: a position of the lens (in its radius) and of the pixel.
     fn glass_picture_sample(&self, x: f32, y: f32, distance: f32, sample: [f32; 4]) -> Vec3 {
         let frame = &self.glass.frame;
         let [lens_x, lens_y, dx, dy] = sample;
@@ -164,17 +164,17 @@ impl Look<'_> {
         let way = (plane - from_eye.dot(outward)) / d.z;
         let met = from_eye + direction * way;
         let on = met - corner;
-        let place = Vec2::new(on.dot(across), on.dot(down));
+        let position = Vec2::new(on.dot(across), on.dot(down));
         let among = (1.0 / frame.samples as f32).sqrt();
         let apart = frame.lens * GLASS_PICTURE_APART * among;
         let pixel = frame.camera.pixel_angle;
         let [width, height] = frame.size;
-        if place.x < 0.0 || place.y < 0.0 || place.x > width || place.y > height {
+        if position.x < 0.0 || position.y < 0.0 || position.x > width || position.y > height {
             let angle = pixel + apart * (1.0 / depth - 1.0 / far).abs();
             return self.glass_picture_seen(from_eye, direction, shift, angle);
         }
         self.glass_picture_through(&Ray {
-            place,
+            position,
             d,
             from_eye: met,
             shift,

@@ -101,28 +101,28 @@ fn cast(texels: &mut [Vec2], [columns, rows]: [usize; 2], edge: f32, drop: &Glas
         let low = ((at - reach) / edge).floor().max(0.0) as usize;
         low.min(most)..(((at + reach) / edge).ceil().max(0.0) as usize).min(most)
     };
-    let spot = |place: Vec2| {
-        let away = (place - center).length_squared() / (drop.radius * drop.radius);
+    let spot = |position: Vec2| {
+        let away = (position - center).length_squared() / (drop.radius * drop.radius);
         if away < SPOT_END * SPOT_END { ops::exp(-0.5 * away / (SPOT * SPOT)) } else { 0.0 }
     };
     let (mut covered, mut spots) = (0.0, 0.0);
     for step in [false, true] {
         for row in range(center.y, rows) {
             for column in range(center.x, columns) {
-                let place = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * edge;
+                let position = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * edge;
                 let cover = CORNERS
                     .iter()
-                    .filter(|&&at| glass_picture_water_cap(drop, place + Vec2::from(at) * edge).x > 0.0)
+                    .filter(|&&at| glass_picture_water_cap(drop, position + Vec2::from(at) * edge).x > 0.0)
                     .count() as f32
                     * 0.25;
                 let texel = &mut texels[row * columns + column];
                 if !step {
                     covered += cover;
-                    spots += spot(place);
-                } else if cover > 0.0 || spot(place) > 0.0 {
+                    spots += spot(position);
+                } else if cover > 0.0 || spot(position) > 0.0 {
                     // Drops may overlap: none takes more light than there is.
                     let taken = cover * (1.0 - texel.x);
-                    let share = if spots > 0.0 { covered * spot(place) / spots } else { cover };
+                    let share = if spots > 0.0 { covered * spot(position) / spots } else { cover };
                     texel.x += taken;
                     texel.y += if gathers { share } else { taken };
                 }

@@ -32,8 +32,8 @@ pub struct GlassPictureDrop {
 
 /// Height over the glass, and its slopes along x and y. Beyond the outline the height is below 0.
 #[must_use]
-pub fn glass_picture_water_cap(drop: &GlassPictureDrop, place: Vec2) -> Vec3 {
-    let away = place - Vec2::from(drop.center);
+pub fn glass_picture_water_cap(drop: &GlassPictureDrop, position: Vec2) -> Vec3 {
+    let away = position - Vec2::from(drop.center);
     let (along, droop) = (Vec2::from(drop.along), Vec2::from(drop.droop));
     let ahead = away.x * along.x + away.y * along.y;
     let stretch = if ahead > 0.0 { 1.0 } else { drop.behind };
@@ -73,14 +73,14 @@ pub fn glass_picture_water_top(drop: &GlassPictureDrop) -> f32 {
     (drop.sphere - (whole - drop.radius * drop.radius).sqrt()) * (1.0 + 1.5 * drop.lean)
 }
 
-/// Height at which a ray that enters a drop at a place of the glass leaves it. `aside` is how far it goes along the pane for
+/// Height at which a ray that enters a drop at a position of the glass leaves it. `aside` is how far it goes along the pane for
 /// each meter away from it. The bracket of regula falsi (Illinois).
 #[must_use]
-pub fn glass_picture_water_leave(drop: &GlassPictureDrop, place: Vec2, aside: Vec2) -> f32 {
+pub fn glass_picture_water_leave(drop: &GlassPictureDrop, position: Vec2, aside: Vec2) -> f32 {
     let mut low = 0.0;
     let mut high = glass_picture_water_top(drop);
-    let mut above = glass_picture_water_cap(drop, place).x;
-    let mut below = glass_picture_water_cap(drop, place + aside * high).x - high;
+    let mut above = glass_picture_water_cap(drop, position).x;
+    let mut below = glass_picture_water_cap(drop, position + aside * high).x - high;
     if below >= 0.0 {
         return high;
     }
@@ -88,7 +88,7 @@ pub fn glass_picture_water_leave(drop: &GlassPictureDrop, place: Vec2, aside: Ve
     let mut side = 0;
     for _ in 0..GLASS_PICTURE_TURNS {
         z = low + (high - low) * (above / (above - below));
-        let off = glass_picture_water_cap(drop, place + aside * z).x - z;
+        let off = glass_picture_water_cap(drop, position + aside * z).x - z;
         if off > 0.0 {
             low = z;
             above = off;

@@ -18,14 +18,14 @@ use super::drops_shade::DropsShade;
 use super::environment::EnvironmentMap;
 use super::glint::{drop_glint_rousseau, drop_glint_spot, drop_glint_unpack};
 use super::streak::{
-    DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_nearest, streak_place,
+    DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
     streak_time, streak_weight,
 };
 use super::streak_lookup::StreakTable;
 use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
 use crate::halves::unpack;
 
-/// The place of a ray on the plane at distance 1 through a drop's middle.
+/// The position of a ray on the plane at distance 1 through a drop's middle.
 #[must_use]
 pub fn drops_on_plane(towards: Vec3, ray: Vec3) -> Vec3 {
     ray / ray.dot(towards).max(1.0e-6) - towards
@@ -68,7 +68,7 @@ impl Buffers<'_> {
         self.light.get(first..first + stride).unwrap_or(&[[0.0; 4]])
     }
 
-    /// Light of lamps at a place of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
+    /// Light of lamps at a position of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
     fn drops_spots(&self, index: u32, at: Vec2, width: f32) -> Vec3 {
         let row = self.drops_light_row(index);
         let mut light = Vec4::from(row[0]).truncate();
@@ -81,7 +81,7 @@ impl Buffers<'_> {
         light.max(Vec3::ZERO)
     }
 
-    /// Light of lamps in the form of Rousseau 2006 at a place of a drop's mask, by the normal there, which halves the angle
+    /// Light of lamps in the form of Rousseau 2006 at a position of a drop's mask, by the normal there, which halves the angle
     /// between the eye and what is mirrored: what it is more than the mean over the drop.
     fn drops_facing(&self, index: u32, drop: &DropsDrop, x: f32, y: f32) -> Vec3 {
         let row = self.drops_light_row(index);
@@ -114,8 +114,8 @@ impl Buffers<'_> {
         let part = (chord.high - chord.low) * 0.5;
         let mut light = Vec4::from(row[0]).truncate() * chord.share;
         for glint in row[1..].iter().filter(|glint| glint[3] > 0.0) {
-            let place = drop_glint_unpack(glint[3]);
-            let off = chord.aside - (place.x * chord.path.y - place.y * chord.path.x);
+            let position = drop_glint_unpack(glint[3]);
+            let off = chord.aside - (position.x * chord.path.y - position.y * chord.path.x);
             light += Vec4::from(*glint).truncate() * (drops_line(off, width) * chord.pace - chord.share);
         }
         light.max(Vec3::ZERO) * part
@@ -134,7 +134,7 @@ impl Buffers<'_> {
         DropsAtlas { masks: self.view.masks, first: self.view.frame.atlas }
     }
 
-    /// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a place on the plane.
+    /// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
     fn drops_streaks(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, at: Vec2) -> Vec3 {
         let row = self.drops_light_row(index);
         let part = (chord.high - chord.low) * 0.5;
@@ -236,7 +236,7 @@ impl Buffers<'_> {
         let mut sum = Vec4::ZERO;
         for k in 0..frame.streak_samples {
             let part = (k as f32 + 0.5) / frame.streak_samples as f32;
-            let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
+            let at = streak_mask_position(drop, chord, chord.low + (chord.high - chord.low) * part);
             if at.x.abs() < 1.0 && at.y.abs() < 1.0 {
                 let shown = self.view.drops_shade_ray(&shade, at.x, at.y);
                 let light = shown + (self.drops_facing(index, drop, at.x, at.y) * shown.w).extend(0.0);
@@ -254,9 +254,9 @@ impl Buffers<'_> {
             if cover <= 0.0 {
                 return Vec4::ZERO;
             }
-            let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
+            let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
             let light = self.drops_beads(index, drop, x, y);
-            return (self.table.streak_lookup_mean(drop.shape, place) + light).extend(1.0) * cover;
+            return (self.table.streak_lookup_mean(drop.shape, position) + light).extend(1.0) * cover;
         }
         let towards = Vec3::from(drop.towards);
         let right = drops_mask_right(towards);
@@ -270,15 +270,15 @@ impl Buffers<'_> {
                 + (Vec2::new(k as f32, turned as f32) + shift) / drop.grid as f32;
             let ray = self.view.frame.camera.camera_ray(at.x, at.y);
             let lean = drops_on_plane(towards, ray);
-            let place = Vec2::new(lean.dot(right), lean.dot(up));
+            let position = Vec2::new(lean.dot(right), lean.dot(up));
             let by_profile = drop.kind == DROPS_TABLE;
             if by_profile {
-                sum += self.table.streak_lookup_shown(drop, place);
+                sum += self.table.streak_lookup_shown(drop, position);
             }
             if by_profile && self.view.frame.atlas == 0 {
                 continue;
             }
-            let chord = streak_chord(drop, place);
+            let chord = streak_chord(drop, position);
             if chord.high <= chord.low {
                 continue;
             }
@@ -286,7 +286,7 @@ impl Buffers<'_> {
                 sum += self.drops_chord(index, drop, &chord, ray) * chord.share;
             }
             let lines = if self.view.frame.atlas > 0 {
-                self.drops_streaks(index, drop, &chord, place)
+                self.drops_streaks(index, drop, &chord, position)
             } else {
                 self.drops_lines(index, &chord, self.drops_glint_width(drop))
             };
@@ -333,8 +333,8 @@ impl Buffers<'_> {
             return self.view.drops_capture_texel(frame.capture_last, 0, 0);
         }
         let size = Vec2::new(frame.camera.width as f32, frame.camera.height as f32);
-        let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
-        self.table.streak_lookup_mean(self.rain.medium.shape, place)
+        let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
+        self.table.streak_lookup_mean(self.rain.medium.shape, position)
     }
 
     /// The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of their nearest

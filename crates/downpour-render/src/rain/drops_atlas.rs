@@ -1,4 +1,4 @@
-//! The patterns of an atlas between their texels. Twin of `shaders/wgsl/render/drops_atlas.wgsl`, where their place behind the
+//! The patterns of an atlas between their texels. Twin of `shaders/wgsl/render/drops_atlas.wgsl`, where their position behind the
 //! masks is described.
 
 use std::f32::consts::FRAC_1_PI;
@@ -104,7 +104,7 @@ impl DropsAtlas<'_> {
         above * (1.0 - y) + below * y
     }
 
-    /// A streak so many equivalent radii to the right of the middle, so many turns of the mode (2,0) along.
+    /// A streak so many equivalent radii to the right of the middle, after `turns` turns of the mode (2,0).
     pub(super) fn drops_atlas_across(&self, streak: &DropsAtlasStreak, across: f32, turns: f32) -> f32 {
         let half = 0.5 * self.word(0) as f32;
         let extent = f32::from_bits(self.word(2));

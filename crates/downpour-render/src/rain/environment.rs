@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::{RainOptions, RefractionForm};
 use crate::camera::Camera;
 
-/// Tangent of half of 165 degrees: what a drop of water refracts (Rousseau 2006 has 150 in one place: a rounding).
+/// Tangent of half of 165 degrees: what a drop of water refracts (Rousseau 2006 once has 150: a rounding).
 const WIDE: f32 = 7.595_754;
 
 /// Layout of an environment map.

@@ -1,7 +1,7 @@
 //! Position on a drop at which the light of a lamp leaves it, as the viewer sees it. Twin of
 //! `shaders/wgsl/render/drop_glint.wgsl`.
 //!
-//! `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Places on the
+//! `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Positions on the
 //! disk are in radii, along the right and the up of the view.
 
 use downpour_math::ops;
@@ -53,14 +53,15 @@ pub fn drop_glint_side(light: Vec3, right: Vec3, up: Vec3) -> Vec2 {
     if square > DROP_GLINT_AXIS { side / square.max(DROP_GLINT_TINY).sqrt() } else { Vec2::X }
 }
 
-/// A place on the disk as one number, a whole one below 2^24: within 1/4094 of a radius.
+/// A position on the disk as one number, a whole one below 2^24: within 1/4094 of a radius.
 #[must_use]
-pub fn drop_glint_pack(place: Vec2) -> f32 {
-    let steps = (place.clamp(Vec2::NEG_ONE, Vec2::ONE) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE).floor();
+pub fn drop_glint_pack(position: Vec2) -> f32 {
+    let steps =
+        (position.clamp(Vec2::NEG_ONE, Vec2::ONE) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE).floor();
     steps.x * DROP_GLINT_RANGE + steps.y
 }
 
-/// The place that was packed.
+/// The unpacked position.
 #[must_use]
 pub fn drop_glint_unpack(word: f32) -> Vec2 {
     // Whole numbers: a compiler of shaders may add in another order, and 2^23 + 0.5 is no f32.
@@ -83,7 +84,7 @@ pub fn drop_glint_level(direction: Vec3) -> Vec2 {
     level / level.dot(level).max(DROP_GLINT_TINY).sqrt()
 }
 
-/// Rousseau 2006, section 6, at a place with a normal: `(V_PE . V_N) (A_2 + A_3)`, to be multiplied with the lamp's color
+/// Rousseau 2006, section 6, at a position with a normal: `(V_PE . V_N) (A_2 + A_3)`, to be multiplied with the lamp's color
 /// and attenuation. The plane in which rays do not go sideways is the level one. `terms` is `DROP_LIGHT_EXTERNAL` (1) for `A_2`,
 /// `DROP_LIGHT_INTERNAL` (2) for `A_3`, or both (3).
 #[must_use]

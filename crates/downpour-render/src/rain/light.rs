@@ -2,7 +2,7 @@
 //!
 //! A drop shows what is behind and round it through its mask; a lamp is far smaller than a texel of that. Here is what
 //! lamps add: for each drop the mean radiance over its disk, and where on the disk its brightest glints stand. Each lamp
-//! is looked up at the drop's own place (distance, cone, range), with one ray for what stands between.
+//! is looked up at the drop's own position (distance, cone, range), with one ray for what stands between.
 //!
 //! Law of the default form: a drop of radius a in an irradiance E sends E pi a^2 phase(theta) per steradian toward the
 //! eye ([`SphereScattering`](downpour_drop::optics::SphereScattering)); seen as a disk of pi a^2, its mean radiance is
@@ -27,7 +27,7 @@ use downpour_math::ops;
 use downpour_shaders::render::drop_light::{
     DROP_ATLAS_ROWS, DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_EXTERNAL,
     DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG, DROP_LIGHT_INTERNAL, DROP_LIGHT_LAMPS, DROP_LIGHT_LAMPS_ROUSSEAU,
-    DROP_LIGHT_LAMPS_TRACED, DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_PLACES, DROP_LIGHT_RINGS,
+    DROP_LIGHT_LAMPS_TRACED, DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_POINTS, DROP_LIGHT_RINGS,
     DROP_LIGHT_ROUSSEAU, DROP_LIGHT_TRACED,
 };
 use downpour_shaders::render::rain::STREAK_LAMPS;
@@ -150,15 +150,15 @@ pub struct DropLightFrame {
     pub terms: u32,
 }
 
-/// A place on a drop's disk where light of a lamp leaves it.
+/// A position on a drop's disk where light of a lamp leaves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropGlint {
     /// Index of the lamp in the scene.
     pub light: u32,
     /// Internal reflections plus 1; 0: reflected at the outside.
     pub order: u32,
-    /// Place on the disk, radii along the right ([`drop_glint_right`]) and the up of the view.
-    pub place: Vec2,
+    /// Position on the disk, radii along the right ([`drop_glint_right`]) and the up of the view.
+    pub position: Vec2,
     /// Its part of the mean radiance over the disk: a glint that covers a share s of the disk is 1/s times as bright.
     pub radiance: Vec3,
 }
@@ -191,7 +191,7 @@ pub(crate) fn drop_light_axes<'a>(drops: impl IntoIterator<Item = (&'a FallingDr
 /// Numbers of drops are below 2^24: single precision has them exactly.
 const DROP_IDS: u32 = 0x00ff_ffff;
 
-/// Drops as the light wants them: place relative to the scene's origin, and radius, meters.
+/// Drops as the light wants them: position relative to the scene's origin, and radius, meters.
 #[must_use]
 pub fn drop_light_rows<'a>(drops: impl IntoIterator<Item = &'a FallingDrop>) -> Vec<[f32; 4]> {
     let row = |drop: &FallingDrop| drop.position.as_vec3().extend(0.5 * drop.diameter).to_array();
@@ -278,7 +278,7 @@ impl<'a> DropLights<'a> {
     /// The light on drops ([`drop_light_rows`]; for an atlas then a row for each drop with its axis, against its motion, and its
     /// id below 2^24), in parallel; the same bits for any number of threads. For each drop
     /// [`DropLights::stride`] rows: the mean radiance over its disk and 0; then its brightest glints in no order, their part
-    /// of the mean and their place ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas:
+    /// of the mean and their position ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas:
     /// its streaks, three rows each as in the shader.
     #[must_use]
     pub fn light(&self, drops: &[[f32; 4]]) -> Vec<[f32; 4]> {
@@ -294,12 +294,12 @@ impl<'a> DropLights<'a> {
     /// sum is the mean radiance, up to the table's rounding.
     #[must_use]
     pub fn glints(&self, drop: [f32; 4]) -> Vec<DropGlint> {
-        let (place, least) = (Vec4::from(drop).truncate(), drop[3]);
-        let (towards, right, up) = self.facing(place);
+        let (position, least) = (Vec4::from(drop).truncate(), drop[3]);
+        let (towards, right, up) = self.facing(position);
         let mut all = Vec::new();
         for k in 0..self.lighting.light_count() {
-            let light = self.lighting.light(k).light_sample(place, least);
-            let visible = self.lighting.visibility(place, light.direction, light.distance);
+            let light = self.lighting.light(k).light_sample(position, least);
+            let visible = self.lighting.visibility(position, light.direction, light.distance);
             let irradiance = light.irradiance * visible * PI;
             let angle = drop_glint_angle(light.direction, towards);
             let side = drop_glint_side(light.direction, right, up);
@@ -307,29 +307,29 @@ impl<'a> DropLights<'a> {
                 let entry = drop_light_entry(self.table, path, angle);
                 let radiance = irradiance * entry.truncate();
                 if light_weight(radiance) > 0.0 {
-                    all.push(DropGlint { light: k, order, place: side * entry.w, radiance });
+                    all.push(DropGlint { light: k, order, position: side * entry.w, radiance });
                 }
             }
         }
         all
     }
 
-    /// Direction of a place from the eye, and right and up of its view.
-    fn facing(&self, place: Vec3) -> (Vec3, Vec3, Vec3) {
-        let offset = place - self.eye;
+    /// Direction of a position from the eye, and right and up of its view.
+    fn facing(&self, position: Vec3) -> (Vec3, Vec3, Vec3) {
+        let offset = position - self.eye;
         let towards = offset / offset.dot(offset).max(DROP_GLINT_TINY).sqrt();
         let right = drop_glint_right(towards);
         (towards, right, right.cross(towards))
     }
 
-    /// Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles.
+    /// Im & Sung 2022, equations (7) to (10): irradiance over pi at a position in a spot's cone, which is a pile of circles.
     /// Full light within the inner cone; between the two cones it fades. Zero for other lamps.
-    fn drop_light_cone(light: &Light, place: Vec3, least: f32) -> Vec3 {
+    fn drop_light_cone(light: &Light, position: Vec3, least: f32) -> Vec3 {
         let (axis, [scale, edge]) = (light.axis, light.cone);
         if light.is_parallel || scale <= 0.0 {
             return Vec3::ZERO;
         }
-        let offset = place - light.position;
+        let offset = position - light.position;
         let below = offset.dot(axis);
         let height = if light.range > 0.0 { light.range } else { SCENE_FAR };
         if below <= 0.0 || below > height {
@@ -349,22 +349,22 @@ impl<'a> DropLights<'a> {
     /// The light on a drop: its mean, then its glints.
     fn drop_light_of(&self, drop: &[f32; 4], about: [f32; 4], slot: &mut [[f32; 4]]) {
         let Some((mean, glints)) = slot.split_first_mut() else { return };
-        let (place, radius) = (Vec4::from(*drop).truncate(), drop[3]);
+        let (position, radius) = (Vec4::from(*drop).truncate(), drop[3]);
         let mut sum = Vec3::ZERO;
-        let (towards, right, up) = self.facing(place);
+        let (towards, right, up) = self.facing(position);
         let form = self.form;
         let count = if form == DROP_LIGHT_NONE { 0 } else { self.lighting.light_count() };
         for k in 0..count {
             let lamp = self.lighting.light(k);
-            let light = lamp.light_sample(place, radius);
+            let light = lamp.light_sample(position, radius);
             let mut lit = light.irradiance;
             if form == DROP_LIGHT_IM_SUNG {
-                lit = Self::drop_light_cone(&lamp, place, radius);
+                lit = Self::drop_light_cone(&lamp, position, radius);
             }
             if light_weight(lit) <= 0.0 {
                 continue;
             }
-            lit *= self.lighting.visibility(place, light.direction, light.distance);
+            lit *= self.lighting.visibility(position, light.direction, light.distance);
             match form {
                 DROP_LIGHT_IM_SUNG => sum += lit,
                 DROP_LIGHT_LAMPS_TRACED | DROP_LIGHT_LAMPS_ROUSSEAU => {
@@ -380,10 +380,10 @@ impl<'a> DropLights<'a> {
                 DROP_LIGHT_ATLAS => {
                     let (axis, id) = (Vec4::from(about).truncate(), about[3] as u32);
                     let diameter = 2.0 * radius;
-                    let place = drop_atlas_slot(self.table, id, diameter, axis, light.direction, -towards);
-                    let radiance = lit * (PI * place.amount);
+                    let streak = drop_atlas_slot(self.table, id, diameter, axis, light.direction, -towards);
+                    let radiance = lit * (PI * streak.amount);
                     sum += radiance;
-                    drop_light_keep_streak(glints, radiance, &place);
+                    drop_light_keep_streak(glints, radiance, &streak);
                 }
                 _ => {
                     let angle = drop_glint_angle(light.direction, towards);
@@ -420,13 +420,13 @@ pub fn drop_light_mean(towards: Vec3, light: Vec3, terms: u32) -> f32 {
     let right = drop_glint_right(towards);
     let up = right.cross(towards);
     let mut sum = 0.0;
-    for k in 0..DROP_LIGHT_RINGS * DROP_LIGHT_PLACES {
-        let square = ((k / DROP_LIGHT_PLACES) as f32 + 0.5) / DROP_LIGHT_RINGS as f32;
-        let angle = 2.0 * PI * ((k % DROP_LIGHT_PLACES) as f32 + 0.5) / DROP_LIGHT_PLACES as f32;
+    for k in 0..DROP_LIGHT_RINGS * DROP_LIGHT_POINTS {
+        let square = ((k / DROP_LIGHT_POINTS) as f32 + 0.5) / DROP_LIGHT_RINGS as f32;
+        let angle = 2.0 * PI * ((k % DROP_LIGHT_POINTS) as f32 + 0.5) / DROP_LIGHT_POINTS as f32;
         let away = square.sqrt();
         let normal = right * (away * ops::cos(angle)) + up * (away * ops::sin(angle))
             - towards * (1.0 - square).sqrt();
         sum += drop_glint_rousseau(normal, -towards, light, terms);
     }
-    sum / (DROP_LIGHT_RINGS * DROP_LIGHT_PLACES) as f32
+    sum / (DROP_LIGHT_RINGS * DROP_LIGHT_POINTS) as f32
 }

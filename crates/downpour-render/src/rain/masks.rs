@@ -60,9 +60,9 @@ pub struct DropMasks {
     shapes: Vec<StreakPath>,
 }
 
-/// Position of a drop among the masks.
+/// Masks of a drop: their rows, and what they say of its outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MaskPlace {
+pub(crate) struct MaskLookup {
     pub(crate) row: [f32; 2],
     pub(crate) half_extent: f32,
     pub(crate) area: f32,
@@ -158,7 +158,7 @@ impl DropMasks {
     }
 
     /// Position among the masks of a drop of a diameter in meters, seen from `elevation` radians above it.
-    pub(crate) fn place(&self, diameter: f32, elevation: f32) -> MaskPlace {
+    pub(crate) fn lookup(&self, diameter: f32, elevation: f32) -> MaskLookup {
         let last = self.half_extents.len().saturating_sub(1) as f32;
         let row = (diameter / DIAMETER_STEP as f32 - 1.0).clamp(0.0, last);
         let half = (DROPS_ELEVATIONS - 1) as f32 * 0.5;
@@ -174,7 +174,7 @@ impl DropMasks {
         let first = |k: usize| k * DROPS_ELEVATIONS as usize;
         let areas = |k: usize| between(&|j| self.areas[first(k) + j], column);
         let oval = |part: usize| between(&|k| between(&|j| self.ovals[first(k) + j][part], column), row);
-        MaskPlace {
+        MaskLookup {
             row: [row, column],
             half_extent: between(&|k| self.half_extents[k], row),
             area: between(&areas, row),
@@ -184,7 +184,7 @@ impl DropMasks {
 
     /// Area that a drop covers, seen from `elevation` radians above it, over that of the disk of its diameter.
     pub(super) fn outline(&self, diameter: f32, elevation: f32) -> f64 {
-        f64::from(self.place(diameter, elevation).area) / std::f64::consts::PI
+        f64::from(self.lookup(diameter, elevation).area) / std::f64::consts::PI
     }
 
     /// The shape of a drop of a diameter in meters, for the rays of its streak.

@@ -67,7 +67,7 @@ pub struct StreakProfiles {
 }
 
 impl StreakProfiles {
-    /// Gives each streak among `drops` its place, and its drop the way to it. `given` are the drops that they are of; of the class
+    /// Gives each streak among `drops` its position, and its drop the way to it. `given` are the drops that they are of; of the class
     /// `medium`, if there is one, the mean is wanted in any case.
     pub(super) fn new(
         drops: &mut [(u32, Projected)],

@@ -88,7 +88,7 @@ pub(super) fn project(
         return None;
     }
     let elevation = ops::asin((-towards.y).clamp(-1.0, 1.0));
-    let place = masks.place(drop.diameter, elevation);
+    let mask = masks.lookup(drop.diameter, elevation);
     let path = Path::of(camera, drop, eye, offset, radius, present, exposure)?;
     let distance = if path.moves { path.depth } else { length };
     let slope = radius / distance;
@@ -113,7 +113,7 @@ pub(super) fn project(
     let reach = if grid == 0 {
         0.5 * (spread + 1.0)
     } else {
-        place.half_extent * pixels * larger * (1.0 + swing.most) / cosine * 1.02 + 1.0
+        mask.half_extent * pixels * larger * (1.0 + swing.most) / cosine * 1.02 + 1.0
     };
     let [first, last] = path.ends.map(|p| camera.project(p));
     let (right, up) = (drops_mask_right(towards), drops_mask_right(towards).cross(towards));
@@ -121,17 +121,17 @@ pub(super) fn project(
     let shown = DropsDrop {
         towards: towards.into(),
         distance,
-        place: camera.project(offset).into(),
+        position: camera.project(offset).into(),
         slope,
-        half_extent: place.half_extent,
-        row: place.row,
-        area: place.area * pixels * pixels / cosine,
+        half_extent: mask.half_extent,
+        row: mask.row,
+        area: mask.area * pixels * pixels / cosine,
         grid,
         start: start.into(),
         along: (end - start).into(),
         first: first.into(),
         way: (last - first).into(),
-        oval: place.oval,
+        oval: mask.oval,
         recede: path.recede,
         swing: swing.swing,
         turns: swing.turns,
@@ -139,7 +139,7 @@ pub(super) fn project(
         spread,
         nearest: path.nearest - 2.0 * radius,
         kind: kind(&path, exposure),
-        shape: shapes::of_row(place.row[0]),
+        shape: shapes::of_row(mask.row[0]),
         profile: 0,
         weights: if path.moves { path.part.map(|part| exposure.response.weight(part)) } else { [1.0; 2] },
         unused: [0.0; 2],

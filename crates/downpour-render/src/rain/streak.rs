@@ -15,13 +15,13 @@ pub struct DropsDrop {
     pub towards: [f32; 3],
     /// Meters from the eye, in the middle of its path.
     pub distance: f32,
-    /// Place of the middle on the picture, pixels from the top left.
-    pub place: [f32; 2],
+    /// Position of the middle on the picture, pixels from the top left.
+    pub position: [f32; 2],
     /// Equivalent radius over distance.
     pub slope: f32,
     /// Half the width of its mask, in equivalent radii.
     pub half_extent: f32,
-    /// Place in the masks: rows of diameters, and of elevations.
+    /// Position in the masks: rows of diameters, and of elevations.
     pub row: [f32; 2],
     /// Area on the picture, pixels.
     pub area: f32,
@@ -82,7 +82,7 @@ pub struct StreakChord {
     pub pace: f32,
     /// Weights of the light at `low` and at `high`.
     pub weights: Vec2,
-    /// Place of the ray across the path, in equivalent radii.
+    /// Position of the ray across the path, in equivalent radii.
     pub aside: f32,
     /// Unit direction of the motion.
     pub path: Vec2,
@@ -100,7 +100,7 @@ pub fn streak_weight(weights: [f32; 2], time: f32) -> f32 {
     weights[0] + (weights[1] - weights[0]) * time.clamp(0.0, 1.0)
 }
 
-/// The share of the way that is nearest to a place on the plane.
+/// The share of the way that is nearest to a position on the plane.
 #[must_use]
 pub fn streak_nearest(drop: &DropsDrop, at: Vec2) -> f32 {
     let along = Vec2::from(drop.along);
@@ -166,9 +166,9 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     }
 }
 
-/// The place in the mask, in units of half of it, of a place on a chord, in units of half its length.
+/// Position in the mask, in units of half its width, of a position on a chord, in units of half its length.
 #[must_use]
-pub fn streak_place(drop: &DropsDrop, chord: &StreakChord, v: f32) -> Vec2 {
+pub fn streak_mask_position(drop: &DropsDrop, chord: &StreakChord, v: f32) -> Vec2 {
     let away = Vec2::new(chord.direction.y, -chord.direction.x);
     let at =
         (away * chord.across + chord.direction * (v * chord.half)) * Vec2::new(drop.oval[0], drop.oval[1]);

@@ -14,8 +14,8 @@ use super::drops_frame::DropsView;
 use super::drops_mask::drops_mask_unit;
 use super::glint::{drop_glint_right, drop_glint_rousseau};
 use super::streak::DropsDrop;
+use super::streak_cell::streak_cell_position;
 use super::streak_path::{StreakPath, streak_path_instant};
-use super::streak_place::streak_place_position;
 use super::streak_rays::StreakRay;
 
 /// Columns of the profile of a job.
@@ -95,18 +95,18 @@ fn streak_light_mixed(
     (before.direction + after.direction - here.direction * 2.0 - a.second - b.second) * 0.5
 }
 
-/// The direction at a place of a patch: rays across, along and later, from its middle.
-fn streak_light_direction(ray: &StreakPatch, place: Vec3) -> Vec3 {
+/// The direction at a position of a patch: rays across, along and later, from its middle.
+fn streak_light_direction(ray: &StreakPatch, position: Vec3) -> Vec3 {
     let linear = ray.middle.direction
-        + ray.across.first * place.x
-        + ray.along.first * place.y
-        + ray.later.first * place.z;
-    let squares = ray.across.second * (0.5 * place.x * place.x)
-        + ray.along.second * (0.5 * place.y * place.y)
-        + ray.later.second * (0.5 * place.z * place.z);
-    let mixed = ray.across_along * (place.x * place.y)
-        + ray.across_later * (place.x * place.z)
-        + ray.along_later * (place.y * place.z);
+        + ray.across.first * position.x
+        + ray.along.first * position.y
+        + ray.later.first * position.z;
+    let squares = ray.across.second * (0.5 * position.x * position.x)
+        + ray.along.second * (0.5 * position.y * position.y)
+        + ray.later.second * (0.5 * position.z * position.z);
+    let mixed = ray.across_along * (position.x * position.y)
+        + ray.across_later * (position.x * position.z)
+        + ray.along_later * (position.y * position.z);
     drops_mask_unit(linear + squares + mixed)
 }
 
@@ -144,8 +144,9 @@ fn streak_light_spot(
         let number = k as f32 + 0.5;
         let steps = Vec3::new(1.0 / count, STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
         let point = (steps * number + shift).fract();
-        let place = point - 0.5;
-        let apart = streak_light_direction(ray, Vec3::new(place.x, place.y, later + place.z * span)) - lamp;
+        let position = point - 0.5;
+        let apart =
+            streak_light_direction(ray, Vec3::new(position.x, position.y, later + position.z * span)) - lamp;
         let off = apart.dot(apart) / (wide * wide);
         if off < 1.0 {
             // A disk, or a spot that fades toward its edge.
@@ -237,18 +238,18 @@ impl Streak<'_> {
         let per_part = path.columns / STREAK_SUMS;
         let shifts = frame.form == DROPS_SHIFT;
         for tap in 0..path.columns {
-            let low = streak_place_position(tap as f32, path.columns);
-            let high = streak_place_position((tap + 1) as f32, path.columns);
+            let low = streak_cell_position(tap as f32, path.columns);
+            let high = streak_cell_position((tap + 1) as f32, path.columns);
             let weight = 0.5 * (high - low);
             let number = ((row * path.columns + column) * path.columns + tap) as f32;
             let shift =
                 (Vec3::new(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD) * number).fract();
-            let place = [nearest, column, tap].map(|n| n as i32);
-            let mut even = none + self.streak_light_facing(view, place);
+            let nodes = [nearest, column, tap].map(|n| n as i32);
+            let mut even = none + self.streak_light_facing(view, nodes);
             let mut seen = Vec3::ZERO;
             let mut rest = 1.0f32;
             for exit in 0..=STREAK_EXITS as usize {
-                let ray = self.streak_light_patch(place, exit);
+                let ray = self.streak_light_patch(nodes, exit);
                 if ray.middle.passed == 0 {
                     continue;
                 }

@@ -136,8 +136,8 @@ impl StreakPath {
         let towards = Vec3::from(drop.towards);
         let right = drop_glint_right(towards);
         let up = right.cross(towards);
-        let place = instant.middle + offset * instant.scale;
-        let direction = towards + right * place.x + up * place.y;
+        let position = instant.middle + offset * instant.scale;
+        let direction = towards + right * position.x + up * position.y;
         let direction = direction / direction.dot(direction).sqrt();
         let origin = right * offset.x + up * offset.y;
         [self.streak_path_turned(origin), self.streak_path_turned(direction)]

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 
 use super::glint::drop_glint_right;
 use super::streak::DropsDrop;
+use super::streak_cell::streak_cell_position;
 use super::streak_path::{StreakInstant, StreakPath, streak_path_axes, streak_path_instant};
-use super::streak_place::streak_place_position;
 
 /// More lanes than any vector has.
 const MAX_LANES: usize = 64;
@@ -78,7 +78,7 @@ fn streak_rays_width(points: &[Vec2]) -> Vec2 {
     Vec2::new(0.5 * (high + low), 0.5 * (high - low))
 }
 
-/// Middle and half of the chord at a place across the motion.
+/// Middle and half of the chord at a position across the motion.
 fn streak_rays_chord(points: &[Vec2], across: f32) -> Vec2 {
     let (mut low, mut high) = (STREAK_OUTLINE_MAX, -STREAK_OUTLINE_MAX);
     for (k, p) in points.iter().enumerate() {
@@ -193,12 +193,12 @@ fn row(path: &StreakPath, drop: &DropsDrop, row: u32) -> Row {
     let mut chords = Vec::with_capacity(columns as usize);
     let mut points = Vec::with_capacity((columns * columns) as usize);
     for column in 0..columns {
-        let place = streak_place_position(column as f32 + 0.5, columns);
-        let across = width.x + width.y * place;
+        let position = streak_cell_position(column as f32 + 0.5, columns);
+        let across = width.x + width.y * position;
         let chord = streak_rays_chord(&outline, across);
-        let round = chord.y / (1.0 - place * place).max(1.0e-6).sqrt();
+        let round = chord.y / (1.0 - position * position).max(1.0e-6).sqrt();
         chords.push([width.x, width.y, chord.x, round]);
-        let along = |tap: u32| chord.x + chord.y * streak_place_position(tap as f32 + 0.5, columns);
+        let along = |tap: u32| chord.x + chord.y * streak_cell_position(tap as f32 + 0.5, columns);
         points.extend((0..columns).map(|tap| Vec2::new(across, along(tap))));
     }
     let mut rays = vec![StreakRay::default(); points.len()];

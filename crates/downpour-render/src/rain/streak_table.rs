@@ -82,8 +82,9 @@ impl DropsView<'_> {
             return [0.0; 4];
         }
         let last = (STREAK_RAYS - 1) as f32;
-        let place = Vec2::new((ray % STREAK_RAYS) as f32 / last, (ray / STREAK_RAYS) as f32 / last);
-        let (x, y) = (place.x * self.frame.camera.width as f32, place.y * self.frame.camera.height as f32);
+        let position = Vec2::new((ray % STREAK_RAYS) as f32 / last, (ray / STREAK_RAYS) as f32 / last);
+        let (x, y) =
+            (position.x * self.frame.camera.width as f32, position.y * self.frame.camera.height as f32);
         let towards = drops_mask_unit(self.frame.camera.camera_ray(x, y));
         let mut sum = Vec4::ZERO;
         for part in 0..STREAK_MEAN_GROUP {

@@ -28,7 +28,7 @@ pub(super) fn draw(canvas: &mut Canvas, flow: &Flow, dot: f32) {
     }
 }
 
-/// An arrow about a place: a dark one, and a white one within.
+/// An arrow about a position: a dark one, and a white one within.
 fn arrow(canvas: &mut Canvas, flow: &Flow, [x, y]: [f32; 2], [u, v]: [f32; 2], long: f32, dot: f32) {
     let half = 0.5 * long;
     let tip = [x + half * u, y + half * v];

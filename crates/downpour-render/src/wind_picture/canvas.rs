@@ -61,11 +61,11 @@ impl Canvas {
 
     /// Writes text; what has no letter is left blank.
     pub(super) fn text(&mut self, left: usize, top: usize, dot: usize, text: &str) {
-        for (place, c) in text.chars().enumerate() {
+        for (index, c) in text.chars().enumerate() {
             let Some((_, rows)) = LETTERS.iter().find(|(letter, _)| *letter == c) else { continue };
             for (y, bits) in rows.iter().enumerate() {
                 for x in (0..5).filter(|x| bits & (16 >> x) != 0) {
-                    let (column, row) = (left + (place * ADVANCE + x) * dot, top + y * dot);
+                    let (column, row) = (left + (index * ADVANCE + x) * dot, top + y * dot);
                     for inner in 0..dot * dot {
                         self.set(column + inner % dot, row + inner / dot, [0.85; 3]);
                     }

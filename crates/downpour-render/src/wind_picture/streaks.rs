@@ -57,7 +57,7 @@ fn average(flow: &Flow, noise: &[f32], weights: &[f32], i: usize) -> f32 {
     if whole > 0.0 { sum / whole.sqrt() } else { 0.0 }
 }
 
-/// The direction of the flow at a place in pixels, if there is any.
+/// The direction of the flow at a position in pixels, if there is any.
 fn unit(flow: &Flow, x: f32, y: f32) -> Option<[f32; 2]> {
     let [u, v] = flow.at(x, y)?;
     let length = (u * u + v * v).sqrt();

@@ -57,7 +57,7 @@ impl TriangleModel {
             None => Ok(self),
             Some(loss) => {
                 let error = SceneError::bad(
-                    &loss.place,
+                    &loss.location,
                     loss.what.as_str(),
                     "a file of which all geometry is of use",
                 );

@@ -51,17 +51,17 @@ impl ScenePipeline {
     pub(super) fn tracer(&self, frame: &RenderFrame) -> Result<&ComputeKernel, GpuError> {
         let (wet, paned) = (frame.puddle_count > 0, frame.pane > 0);
         let [of_wet, of_paned, of_both] = &self.others;
-        let place = match (wet, paned) {
+        let cell = match (wet, paned) {
             (false, false) => return Ok(&self.plain),
             (true, false) => of_wet,
             (false, true) => of_paned,
             (true, true) => of_both,
         };
-        if let Some(kernel) = place.get() {
+        if let Some(kernel) = cell.get() {
             return Ok(kernel);
         }
         let made = tracer(&self.gpu, wet, paned)?;
-        Ok(place.get_or_init(|| made))
+        Ok(cell.get_or_init(|| made))
     }
 
     /// Brings a scene to the device.

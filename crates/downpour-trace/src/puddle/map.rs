@@ -48,8 +48,8 @@ pub struct PuddleMap {
 }
 
 impl Ground {
-    /// The place over a part of the rectangle, 0 to 1 along its edges, at its middle's height.
-    fn place(&self, u: f32, v: f32) -> Vec3 {
+    /// The position over a part of the rectangle, 0 to 1 along its edges, at its middle's height.
+    fn position(&self, u: f32, v: f32) -> Vec3 {
         let turn = turned(self.turn);
         let offset = turn.rotate(Vec2::new(u - 0.5, v - 0.5) * self.size);
         self.middle + Vec3::new(offset.x, 0.0, offset.y)
@@ -61,7 +61,8 @@ impl Ground {
         let [columns, rows] = size;
         let cell = |i: usize| {
             let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
-            let top = self.place(part(i % columns, columns), part(i / columns, rows)) + Vec3::Y * self.reach;
+            let top =
+                self.position(part(i % columns, columns), part(i / columns, rows)) + Vec3::Y * self.reach;
             let down = scene.surface_hit(top, Vec3::NEG_Y, 0.0, 2.0 * self.reach);
             let Some(hit) = down else { return (f32::NAN, 0.0) };
             let height = self.reach - hit.distance;
@@ -90,8 +91,8 @@ impl PuddleMap {
             .into_par_iter()
             .map(|i| {
                 let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
-                let place = ground.place(part(i % columns, columns), part(i / columns, rows));
-                model[i] + relief.height(Vec2::new(place.x, place.z))
+                let position = ground.position(part(i % columns, columns), part(i / columns, rows));
+                model[i] + relief.height(Vec2::new(position.x, position.z))
             })
             .collect();
         let mut levels = fill(&Hollows { size, ground: &uneven, share, deepest, least });

@@ -30,9 +30,9 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// Height at a place of the horizontal plane, m.
+    /// Height at a position of the horizontal plane, m.
     #[must_use]
-    pub fn height(&self, place_m: Vec2) -> f32 {
+    pub fn height(&self, position_m: Vec2) -> f32 {
         if self.rms_m <= 0.0 {
             return 0.0;
         }
@@ -45,7 +45,7 @@ impl Relief {
         for octave in 0..OCTAVES {
             // Turned from octave to octave, so that the squares do not show.
             let angle = 0.9 * octave as f32 + 0.3;
-            let turned = Vec2::new(ops::cos(angle), ops::sin(angle)).rotate(place_m);
+            let turned = Vec2::new(ops::cos(angle), ops::sin(angle)).rotate(position_m);
             // A square is half a wave.
             sum += (share / SQUARE_MEAN).sqrt() * noise(turned / (0.5 * wave), seed, octave);
             wave *= 0.5;
@@ -55,7 +55,7 @@ impl Relief {
     }
 }
 
-/// Values between -1 and 1 at whole places, mixed between them.
+/// Values between -1 and 1 at integer positions, interpolated between them.
 fn noise(at: Vec2, seed: [u32; 2], octave: u32) -> f32 {
     let corner = at.floor();
     let part = at - corner;
@@ -95,8 +95,8 @@ mod tests {
         let relief = Relief { rms_m: 1.0, seed: 11 };
         let differences = |apart: f32| {
             variance((0..40_000).map(|i| {
-                let place = Vec2::new((i % 200) as f32, (i / 200) as f32) * 0.731;
-                relief.height(place + Vec2::new(apart, 0.0)) - relief.height(place)
+                let position = Vec2::new((i % 200) as f32, (i / 200) as f32) * 0.731;
+                relief.height(position + Vec2::new(apart, 0.0)) - relief.height(position)
             }))
         };
         let growth = differences(1.6) / differences(0.4);

@@ -46,7 +46,7 @@ pub struct PuddleRows<'a> {
     pub shape: (u32, u32, f32),
     /// [`Ripples::slopes`](super::Ripples::slopes); none: level water.
     pub slopes: &'a [[f32; 4]],
-    /// Added to the place of each map, m.
+    /// Added to the position of each map, m.
     pub shift: Vec3,
 }
 

@@ -33,13 +33,13 @@ struct SceneArrival {
 }
 
 impl SceneView<'_> {
-    /// Share of light that reaches a place from a distance along a direction: surfaces that let light through dim it.
-    pub(crate) fn scene_visibility(&self, place: Vec3, direction: Vec3, distance: f32) -> Vec3 {
+    /// Share of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
+    pub(crate) fn scene_visibility(&self, position: Vec3, direction: Vec3, distance: f32) -> Vec3 {
         let nearest = self.frame.nearest;
         let mut from_distance = nearest;
         let mut visible = Vec3::ONE;
         for _ in 0..SCENE_LAYERS {
-            let hit = self.data.surface_hit(place, direction, from_distance, distance - nearest);
+            let hit = self.data.surface_hit(position, direction, from_distance, distance - nearest);
             let Some(hit) = hit else { return visible };
             let material = self.data.material_load(self.data.corners[hit.triangle as usize * 3].material);
             if material.flags & SCENE_BLENDED != 0 {
@@ -62,10 +62,10 @@ impl SceneView<'_> {
     /// reflect goes in.
     fn scene_arrival(&self, index: u32, surface: &Surface, standoff: f32, under: Vec2) -> SceneArrival {
         let nearest = self.frame.nearest;
-        let mut place = surface.position;
-        let mut light = self.data.light_load(index).light_sample(place, 0.0);
+        let mut position = surface.position;
+        let mut light = self.data.light_load(index).light_sample(position, 0.0);
         let mut arrival = SceneArrival {
-            start: place + surface.facet * nearest,
+            start: position + surface.facet * nearest,
             distance: light.distance,
             along: light.direction,
             spread: light.spread,
@@ -77,16 +77,17 @@ impl SceneView<'_> {
         let moved = if height > 0.0 && height < standoff { 1 } else { 0 };
         let passes = if under.x > 0.0 { 2 } else { moved };
         for _ in 0..passes {
-            place = surface.position - surface.facet * (standoff - height);
+            position = surface.position - surface.facet * (standoff - height);
             if under.x > 0.0 {
-                place = surface.position + Vec3::Y * under.y + puddle_water_entry(light.direction, under.x);
+                position =
+                    surface.position + Vec3::Y * under.y + puddle_water_entry(light.direction, under.x);
             }
-            light = self.data.light_load(index).light_sample(place, 0.0);
+            light = self.data.light_load(index).light_sample(position, 0.0);
         }
         arrival.direction = light.direction;
         arrival.irradiance = light.irradiance;
         if under.x > 0.0 {
-            arrival.start = place + Vec3::Y * nearest;
+            arrival.start = position + Vec3::Y * nearest;
             arrival.distance = light.distance;
             arrival.along = light.direction;
             arrival.direction = puddle_water_beneath(light.direction);
@@ -132,7 +133,7 @@ impl SceneView<'_> {
             let arrival = self.scene_arrival(k, surface, standoff, under);
             total += light_weight(self.scene_lamp(surface, view, &arrival));
         }
-        // Places at equal steps along what all give together: the lamps that they fall on are drawn.
+        // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
         let step = total / draws.max(1) as f32;
         let (mut run, mut next) = (0.0, chance * step);
         for k in 0..count {

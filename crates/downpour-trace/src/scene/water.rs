@@ -23,7 +23,7 @@ use glam::{Vec2, Vec3, Vec4};
 use super::SceneView;
 use crate::puddle::RenderPuddle;
 
-/// Water over a place.
+/// Water over a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PuddleWater {
     /// Number of the puddle.
@@ -46,11 +46,11 @@ impl SceneView<'_> {
         self.data.puddle_texel(first + line * columns + column)
     }
 
-    /// The map over a place, bilinear. Beyond the map all is land.
-    fn puddle_water_map(&self, puddle: &RenderPuddle, place: Vec3) -> Vec4 {
+    /// The map over a position, bilinear. Beyond the map all is land.
+    fn puddle_water_map(&self, puddle: &RenderPuddle, position: Vec3) -> Vec4 {
         let (axes, map) = (puddle.axes, puddle.map);
         let [columns, rows, _] = map;
-        let (dx, dz) = (place.x - puddle.middle.x, place.z - puddle.middle.z);
+        let (dx, dz) = (position.x - puddle.middle.x, position.z - puddle.middle.z);
         let along = dx * axes.x + dz * axes.y;
         let across = dz * axes.x - dx * axes.y;
         if along.abs() >= axes.z || across.abs() >= axes.w {
@@ -66,15 +66,15 @@ impl SceneView<'_> {
         upper * (1.0 - fy) + lower * fy
     }
 
-    /// The water over a place that a ray has met, on ground whose facet rises by `upward`, or in the water.
-    pub(crate) fn puddle_water_find(&self, place: Vec3, upward: f32) -> Option<PuddleWater> {
+    /// The water over a position that a ray has met, on ground whose facet rises by `upward`, or in the water.
+    pub(crate) fn puddle_water_find(&self, position: Vec3, upward: f32) -> Option<PuddleWater> {
         (0..self.frame.puddle_count).find_map(|puddle| {
             let water = self.data.puddle_load(puddle);
-            let found = self.puddle_water_map(&water, place);
+            let found = self.puddle_water_map(&water, position);
             if found.z < PUDDLE_WATER_MIN_DEPTH {
                 return None;
             }
-            let height = place.y - water.middle.y - found.x;
+            let height = position.y - water.middle.y - found.x;
             let rise = (found.y - height).clamp(0.0, found.y.max(0.0));
             let stands = height > 0.0 && rise > 0.0;
             let lies = height.abs() <= PUDDLE_WATER_SLACK && upward > 0.7;
@@ -113,7 +113,7 @@ impl SceneView<'_> {
     pub(crate) fn puddle_water_ripple(
         &self,
         puddle: u32,
-        place: Vec3,
+        position: Vec3,
         footprint: f32,
         depth: f32,
         open: f32,
@@ -135,8 +135,8 @@ impl SceneView<'_> {
         let first = head.first + (head.size * head.size - size * size) / 3 * 4;
         let steps = PUDDLE_WATER_MESH / cell * size as f32 / head.size as f32;
 
-        let px = (place.x * look.y + place.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
-        let pz = (place.z * look.y - place.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
+        let px = (position.x * look.y + position.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
+        let pz = (position.z * look.y - position.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
         // Skewed, so that triangles become halves of squares.
         let sx = px - pz * 0.577_350_27;
         let sz = pz * 1.154_700_5;
@@ -273,9 +273,9 @@ mod tests {
         for footprint in [0.0, 0.03, 0.3, 5.0] {
             let (mut shown, mut hidden) = (0.0, 0.0);
             for k in 0..10_000u16 {
-                let place =
+                let position =
                     Vec3::new(f32::from(k % 100), 0.0, f32::from(k / 100)) * 0.377 - Vec3::splat(18.0);
-                let ripple = view.puddle_water_ripple(0, place, footprint, 0.1, 1.0);
+                let ripple = view.puddle_water_ripple(0, position, footprint, 0.1, 1.0);
                 shown += (ripple.x * ripple.x + ripple.y * ripple.y) / 1.0e4;
                 hidden += ripple.z / 1.0e4;
             }

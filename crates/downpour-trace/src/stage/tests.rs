@@ -27,8 +27,8 @@ fn triangles(count: u32) -> Primitive {
     }
 }
 
-fn node(mesh: Option<usize>, place: Vec3) -> Node {
-    Node { mesh, local: Local::Matrix(Affine3A::from_translation(place)), ..Node::default() }
+fn node(mesh: Option<usize>, position: Vec3) -> Node {
+    Node { mesh, local: Local::Matrix(Affine3A::from_translation(position)), ..Node::default() }
 }
 
 fn scene(nodes: Vec<Node>) -> Scene {

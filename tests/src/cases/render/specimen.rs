@@ -9,7 +9,7 @@ use downpour_shaders::mask::MASK_TRACE_STEPS;
 use downpour_shaders::render::specimen;
 use downpour_specimen::gpu::{GpuSpecimenError, SpecimenRenderer};
 use downpour_specimen::lamp::specimen_lamp;
-use downpour_specimen::sky::{specimen_sky_place, specimen_turns};
+use downpour_specimen::sky::{specimen_sky_position, specimen_turns};
 use downpour_specimen::trace::{
     SpecimenCamera, SpecimenLight, SpecimenRay, specimen_bounce, specimen_enter, specimen_hits, specimen_ray,
     upright_drop,
@@ -199,11 +199,11 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| specimen_jitter(a.u32()).words(),
         ),
         FunctionCase::new(
-            "specimen_sky_place",
+            "specimen_sky_position",
             module,
             &[Unit3],
             Tol::absolute(4.0e-7, "two angles of the polynomial, one of them doubled"),
-            |a| specimen_sky_place(a.f32s()).words(),
+            |a| specimen_sky_position(a.f32s()).words(),
         ),
     ]
 }
@@ -250,9 +250,9 @@ pub(super) fn lit_picture(
     let cpu = render_specimen(&shape, options, sky).expect("a picture");
     let gpu = SpecimenRenderer::new(gpu)?.render(&shape, options, sky).map_err(told)?;
     let words = |image: &Image| image.pixels.iter().flat_map(IntoWords::words).collect();
-    let place = |i: u32| [i % cpu.width, i / cpu.width].map(|c| (c as f32).to_bits()).to_vec();
+    let cell = |i: u32| [i % cpu.width, i / cpu.width].map(|c| (c as f32).to_bits()).to_vec();
     Ok(Run {
-        arguments: (0..cpu.width * cpu.height).map(place).collect(),
+        arguments: (0..cpu.width * cpu.height).map(cell).collect(),
         cpu: Cpu(words(&cpu)),
         gpu: FromGpu(words(&gpu)),
         kinds: vec![WordKind::Float; 3],

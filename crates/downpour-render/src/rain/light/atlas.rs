@@ -3,7 +3,7 @@
 //! The choice is that of [`downpour_atlas`], from the same numbers. Here they are rows of four behind the table of
 //! scattering, since the kernel has no buffer to spare: counts; by angle or at random, the first row of the amounts, and whether all
 //! elevations have the same directions; the seed in parts of 16 bits; gaps between diameters and between elevations, four rows each;
-//! first triangles, three rows; three rows for each triangle (places of its corners, triangles across with -1 for the rim, its
+//! first triangles, three rows; three rows for each triangle (positions of its corners, triangles across with -1 for the rim, its
 //! directions); the amounts, four a row.
 
 use downpour_atlas::StreakAtlas;
@@ -52,7 +52,7 @@ pub(super) fn rows(atlas: &StreakAtlas) -> Vec<[f32; 4]> {
     rows
 }
 
-/// Three directions: places in the map, what is across from each corner (below 0: the rim), and their numbers.
+/// Three directions: positions in the map, what is across from each corner (below 0: the rim), and their numbers.
 #[derive(Clone, Copy, Debug)]
 struct DropAtlasTriangle {
     a: [f32; 2],
@@ -214,7 +214,7 @@ mod tests {
                 let (light, view) = (unit(0), unit(1));
                 let diameter = 0.5e-3 + 1.0e-5 * k as f32;
                 let particle = StreakParticle { diameter, axis: [0.0, 1.0, 0.0], id: k };
-                let wanted = atlas.place(&particle, light.to_array(), view.to_array());
+                let wanted = atlas.slot(&particle, light.to_array(), view.to_array());
                 let found = drop_atlas_slot(&table, k, diameter, Vec3::Y, light, view);
                 assert_eq!(found, wanted, "{k}");
             }

@@ -40,13 +40,13 @@ pub(super) fn drop_light_keep_facing(rows: &mut [[f32; 4]], light: Vec4, directi
 }
 
 /// Keeps a streak of an atlas, three rows, if it is brighter than the least of those that are kept.
-pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, place: &AtlasSlot) {
+pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, slot: &AtlasSlot) {
     if let Some(weakest) = drop_light_weakest::<{ DROP_ATLAS_ROWS as usize }>(rows, light_weight(radiance)) {
-        let [a, b, c] = place.layers.map(|layer| layer as f32);
+        let [a, b, c] = slot.layers.map(|layer| layer as f32);
         *weakest = [
-            radiance.extend(place.side).to_array(),
-            [a, b, c, place.weights[0]],
-            [place.weights[1], place.parts[0], place.parts[1], 0.0],
+            radiance.extend(slot.side).to_array(),
+            [a, b, c, slot.weights[0]],
+            [slot.weights[1], slot.parts[0], slot.parts[1], 0.0],
         ];
     }
 }

@@ -15,7 +15,7 @@ const _: () = assert!(SCATTERING_PATHS == DROP_LIGHT_PATHS as usize);
 /// Cross-sections over the scattering angle, made once.
 ///
 /// Row 0: (dsigma/dOmega) / (pi a^2) in 1/sr, red, green, blue. Rows 1 to 6: the same for each
-/// [`ScatteringPath`](downpour_drop::optics::ScatteringPath), and green's place on the disk. Behind them, if there is one, what has
+/// [`ScatteringPath`](downpour_drop::optics::ScatteringPath), and green's position on the disk. Behind them, if there is one, what has
 /// to be known of a streak atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropLightTable {

@@ -258,10 +258,10 @@ impl<'a> MediumLight<'a> {
     fn medium_light_pixel(&self, clean: &[[f32; 4]], grid: &[[f32; 4]], x: u32, y: u32) -> [[f32; 4]; 2] {
         let (medium, camera) = (&self.medium, &self.camera);
         let scene = clean[(y * camera.width + x) as usize][3];
-        let place = Vec2::new(x as f32, y as f32) + 0.5;
-        let direction = camera.camera_direction(place.x, place.y);
+        let position = Vec2::new(x as f32, y as f32) + 0.5;
+        let direction = camera.camera_direction(position.x, position.y);
         let end = if scene >= MEDIUM_SKY { MEDIUM_SKY_REACH } else { scene };
-        let depth = self.medium_open_at(grid, place.x, place.y, end).x;
+        let depth = self.medium_open_at(grid, position.x, position.y, end).x;
         let mut sum = Found::default();
         let mut seen = Vec3::ZERO;
         if medium.lit != MEDIUM_DARK && medium.all > 0.0 {
@@ -277,7 +277,7 @@ impl<'a> MediumLight<'a> {
                 let from = Vec3::from(medium.eye) + direction * distance;
                 let light = self.lighting.light(sum.lamp).light_sample(from, 0.0);
                 seen = self.lighting.visibility(from, light.direction, light.distance)
-                    * self.medium_open_at(grid, place.x, place.y, distance).y
+                    * self.medium_open_at(grid, position.x, position.y, distance).y
                     * (sum.drawn * (light_weight(sum.whole) / share));
             }
         }
