@@ -7,7 +7,7 @@
 //! | `R`, `G`, `B` | the picture: `clean * transmittance + rain`, or that through a pane of wet glass; the other channels are behind the pane |
 //! | `clean.R`, `clean.G`, `clean.B` | radiance of the scene without rain |
 //! | `rain.R`, `rain.G`, `rain.B` | radiance that the rain adds |
-//! | `transmittance.Y` | share of the scene's light that comes through the rain, 0 to 1 |
+//! | `transmittance.Y` | fraction of the scene's light that comes through the rain, 0 to 1 |
 //! | `depth.Z` | distance of the nearest surface from the eye along the ray, meters; 1e30 for the sky |
 
 use std::io::Cursor;

@@ -80,7 +80,7 @@ const GLINTS: u32 = 4;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum RefractionForm {
-    /// The direction of the refracted light is looked up in everything round the eye, and what the drop reflects is
+    /// The direction of the refracted light is looked up in everything around the eye, and what the drop reflects is
     /// added: exact for a scene that is far compared with the drop's distance.
     #[default]
     Direction = DROPS_DIRECTION,

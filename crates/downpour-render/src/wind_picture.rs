@@ -30,7 +30,7 @@ use canvas::Canvas;
 const MIN_PIXELS: u32 = 64;
 const MAX_PIXELS: u32 = 4096;
 
-/// The share of the slice that is slower than the brightest color: a core of a few pixels shall not darken the rest.
+/// The fraction of the slice that is slower than the brightest color: a core of a few pixels shall not darken the rest.
 const BRIGHTEST: f64 = 0.998;
 
 /// Pixels each way at which the divergence is measured, at most.

@@ -97,7 +97,7 @@ pub fn brdf_visible_density(alpha: f32, cosine_half: f32, cosine_view: f32) -> f
         / cosine_view.max(BRDF_MIN_DIVISOR)
 }
 
-/// Share of a uniform environment that microfacets reflect.
+/// Fraction of a uniform environment that microfacets reflect.
 #[must_use]
 pub fn brdf_environment(normal_reflectance: Vec3, roughness: f32, cosine_view: f32) -> Vec3 {
     let r =

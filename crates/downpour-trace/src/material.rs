@@ -27,7 +27,7 @@ pub struct MaterialLook {
     pub alpha_cutoff: f32,
     /// `SCENE_MASKED`, `SCENE_BLENDED`, `SCENE_DOUBLE_SIDED`, `SCENE_UNLIT`.
     pub flags: u32,
-    /// Share of light that passes a thin dielectric.
+    /// Fraction of light that passes a thin dielectric.
     pub transmission: f32,
     /// Refractive index.
     pub ior: f32,

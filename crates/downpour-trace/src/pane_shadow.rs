@@ -3,7 +3,7 @@
 //! Tatarchuk & Isidoro 2006, section 5, project the masses of the drops on what stands behind the pane, and draw a highlight in
 //! the middle of the shadow of each heavy drop. Here a drop is a lens: light that falls on it is missing behind it, and comes
 //! together at its focal length `f`, where it is a bright point; as far again it is as wide as the drop, and beyond it is
-//! spread over what a drop of mean size makes of it. So all forms of light but the paper's are kept: over the pane the mean share
+//! spread over what a drop of mean size makes of it. So all forms of light but the paper's are kept: over the pane the mean fraction
 //! is that of dry glass at any distance.
 //!
 //! Limits: all drops have the mean focal length; light of the sky has no shadows of drops; the reflections of the drops'
@@ -121,7 +121,7 @@ impl SceneView<'_> {
         upper * (1.0 - part.y) + lower * part.y
     }
 
-    /// Cover and gathered cover round a position of [0, 1], over a width in meters.
+    /// Cover and gathered cover around a position of [0, 1], over a width in meters.
     fn pane_shadow_at(&self, pane: &RenderPane, position: Vec2, width: f32) -> Vec2 {
         let texels = width * pane.texels_per_meter;
         let level = ops::log2(texels.max(1.0)).clamp(0.0, pane.last as f32);
@@ -134,7 +134,7 @@ impl SceneView<'_> {
         found
     }
 
-    /// Share of light that comes through the pane to a position from a distance along a direction; `spread` is half the angle
+    /// Fraction of light that comes through the pane to a position from a distance along a direction; `spread` is half the angle
     /// that its source takes. 1 where the pane is not between them.
     pub(crate) fn pane_shadow_share(
         &self,

@@ -50,7 +50,7 @@ pub fn scatter_tangent(normal: Vec3) -> Vec3 {
     Vec3::new(1.0 + side * normal.x * normal.x * p, side * (normal.x * normal.y * p), -side * normal.x)
 }
 
-/// A direction over the hemisphere round a normal, cosine-weighted, for two numbers in [0, 1).
+/// A direction over the hemisphere around a normal, cosine-weighted, for two numbers in [0, 1).
 #[must_use]
 pub fn scatter_hemisphere(normal: Vec3, a: f32, b: f32) -> Vec3 {
     let radius = a.sqrt();

@@ -117,7 +117,7 @@ impl SkyLight {
     }
 }
 
-/// Irradiance over pi: the map's projection on the nine harmonics, each times its share of a cosine lobe.
+/// Irradiance over pi: the map's projection on the nine harmonics, each times its fraction of a cosine lobe.
 fn irradiance(map: &Level) -> [[f32; 4]; 9] {
     let mut sums = [[0.0f64; 3]; 9];
     let texel = std::f64::consts::TAU / f64::from(map.width) * std::f64::consts::PI / f64::from(map.height);
@@ -144,7 +144,7 @@ fn irradiance(map: &Level) -> [[f32; 4]; 9] {
             }
         }
     }
-    // (harmonic's factor)^2 times the cosine lobe's share (pi, 2 pi / 3, pi / 4), over pi.
+    // (harmonic's factor)^2 times the cosine lobe's fraction (pi, 2 pi / 3, pi / 4), over pi.
     let pi = std::f64::consts::PI;
     let first = 1.0 / (4.0 * pi);
     let second = 3.0 / (4.0 * pi) * 2.0 / 3.0;

@@ -1,4 +1,4 @@
-//! Light of sky and surfaces on surfaces: means over what the pixels round a pixel have found on the same surface. Twin of
+//! Light of sky and surfaces on surfaces: means over what the pixels around a pixel have found on the same surface. Twin of
 //! `shaders/wgsl/render/skylight.wgsl`.
 //!
 //! First the mean of a window of 7 x 7 pixels, whose weights fall to 0 at 4 pixels, with the variance of that mean. Then means
@@ -122,7 +122,7 @@ fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
 }
 
 impl Pixels<'_> {
-    /// The mean of the window round a pixel, and the variance of its luminance.
+    /// The mean of the window around a pixel, and the variance of its luminance.
     fn skylight_mean(&self, x: u32, y: u32, slot: usize) -> Vec4 {
         let index = |x: u32, y: u32| (y * self.width + x) as usize;
         let own = &self.slots[index(x, y)][slot];

@@ -25,7 +25,7 @@ pub struct Surface {
     pub roughness: f32,
     /// The triangle's own normal, facing the viewer.
     pub facet: Vec3,
-    /// Share of the surroundings that the material says is seen.
+    /// Fraction of the surroundings that the material says is seen.
     pub occlusion: f32,
     /// Albedo of the diffuse base.
     pub diffuse: Vec3,
@@ -33,7 +33,7 @@ pub struct Surface {
     pub flags: u32,
     /// Reflectance at normal incidence.
     pub normal_reflectance: Vec3,
-    /// Share of light that passes.
+    /// Fraction of light that passes.
     pub transmission: f32,
     /// Emitted radiance.
     pub emission: Vec3,

@@ -96,7 +96,7 @@ fn picture(
     Ok(render_picture(scene, &eye, &[drop], masks, &options)?)
 }
 
-/// Covered share of each row, in pixels.
+/// Covered fraction of each row, in pixels.
 fn widths(picture: &Picture) -> Vec<f64> {
     let covered = |row: &[[f32; 4]]| row.iter().map(|pixel| f64::from(1.0 - pixel[3])).sum();
     picture.rain.chunks(SIZE).map(covered).collect()
@@ -167,7 +167,7 @@ fn the_tables_differ_between_the_papers_rows() -> Outcome {
     Ok(())
 }
 
-/// A drop that is a sphere's mesh is round at any size, and shows what a sphere shows: at the share b of its radius above its
+/// A drop that is a sphere's mesh is round at any size, and shows what a sphere shows: at the fraction b of its radius above its
 /// middle, light from 2 (asin b - asin(b / n)) below.
 #[test]
 fn the_model_of_a_sphere_shows_what_a_sphere_shows() -> Outcome {

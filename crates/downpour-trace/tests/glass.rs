@@ -134,7 +134,7 @@ fn a_dry_pane_dims_and_moves_nothing() -> Outcome {
     Ok(())
 }
 
-/// The sky stands below the ground in a drop; round it, it stands above.
+/// The sky stands below the ground in a drop; around it, it stands above.
 #[test]
 fn a_drop_shows_the_far_scene_upside_down() -> Outcome {
     let mut glass = picture("interior_ambient = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;

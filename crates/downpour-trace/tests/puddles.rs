@@ -97,7 +97,7 @@ fn clear_water_on_white_ground_is_not_seen() -> Outcome {
     Ok(())
 }
 
-/// Ground of albedo 0.2 under water: (1 - `F_d`) / n^2 of it, times what is thrown back, and Fresnel's share of the sky.
+/// Ground of albedo 0.2 under water: (1 - `F_d`) / n^2 of it, times what is thrown back, and Fresnel's fraction of the sky.
 #[test]
 fn dark_ground_is_darker_under_water_and_mirrors_by_fresnel() -> Outcome {
     for angle in [12.0f32, 30.0, 89.0] {
@@ -141,7 +141,7 @@ fn a_dish_of_the_model_fills_to_its_rim() -> Outcome {
         let deep = rim * share;
         let wet_radius = radius * share.sqrt();
         let area = std::f32::consts::PI * wet_radius * wet_radius;
-        // A paraboloid has half of the volume of the cylinder round it.
+        // A paraboloid has half of the volume of the cylinder around it.
         let volume = 0.5 * area * deep;
         assert!((map.deepest_m() / deep - 1.0).abs() < 0.03, "{share}: {}", map.deepest_m());
         assert!((map.area_m2() / area - 1.0).abs() < 0.03, "{share}: {} {area}", map.area_m2());

@@ -285,7 +285,7 @@ fn the_table_has_the_light_of_a_loop() -> Outcome {
     Ok(())
 }
 
-/// The same drops on pictures of 120, 270 and 540 lines take out the same share, and show the same light.
+/// The same drops on pictures of 120, 270 and 540 lines take out the same fraction, and show the same light.
 #[test]
 fn the_light_is_that_of_any_resolution() -> Outcome {
     let scene = varied();

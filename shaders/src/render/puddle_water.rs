@@ -23,10 +23,10 @@ shared_constants! {
         PUDDLE_WATER_INDEX: f32 = 1.333;
         /// Reflectance of water at normal incidence.
         PUDDLE_WATER_NORMAL: f32 = 0.020373;
-        /// Share of diffuse light that the surface reflects on its way into the water: the mean of Fresnel's equations over
+        /// Fraction of diffuse light that the surface reflects on its way into the water: the mean of Fresnel's equations over
         /// the hemisphere, cosine-weighted.
         PUDDLE_WATER_OUTSIDE: f32 = 0.0664058;
-        /// Share of diffuse light that the surface reflects back into the water: 1 - (1 - outside) / index^2.
+        /// Fraction of diffuse light that the surface reflects back into the water: 1 - (1 - outside) / index^2.
         PUDDLE_WATER_INSIDE: f32 = 0.4745906;
         /// Depth below which there is no water, m.
         PUDDLE_WATER_MIN_DEPTH: f32 = 0.0002;

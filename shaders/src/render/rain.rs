@@ -37,7 +37,7 @@ pub const KERNELS: &[&Kernel] =
 shared_constants! {
     /// Numbers of the masks in a buffer.
     RAIN_CONSTANTS at "render/rain constants" {
-        /// Words of a texel of a mask: three directions, and four shares.
+        /// Words of a texel of a mask: three directions, and four fractions.
         DROPS_TEXEL_WORDS: u32 = 5;
         /// Masks of a diameter, from below (-90 degrees) to above (90 degrees).
         DROPS_ELEVATIONS: u32 = 7;
@@ -107,11 +107,11 @@ shared_constants! {
         STREAK_SPOT_ALONG: f32 = 0.7548777;
         /// See `STREAK_SPOT_ALONG`.
         STREAK_SPOT_LATER: f32 = 0.5698403;
-        /// A lamp is looked for this share of a patch's size from its middle.
+        /// A lamp is looked for this fraction of a patch's size from its middle.
         STREAK_SPOT_REACH: f32 = 0.75;
         /// Radius of a round spot over whose points a patch's light is shared evenly enough, over their distance.
         STREAK_SPOT_WIDTH: f32 = 1.8;
-        /// A patch counts as no narrower than this share of its length, for its points.
+        /// A patch counts as no narrower than this fraction of its length, for its points.
         STREAK_SPOT_NARROW: f32 = 0.2;
         /// The same for the width over which the surroundings are averaged.
         STREAK_NARROWEST: f32 = 0.25;

@@ -104,7 +104,7 @@ fn atlas_corner(size: f32, rise: f32, corner: u32) -> f32 {
     return select(1.0 - size, size, (corner & 1u) == 1u) * select(1.0 - rise, rise, (corner & 2u) == 2u);
 }
 
-// Shares of the corners in a point of the map; together 1, below 0 beyond the opposite edge.
+// Fractions of the corners in a point of the map; together 1, below 0 beyond the opposite edge.
 fn atlas_weights(a: vec2f, b: vec2f, c: vec2f, point: vec2f) -> vec3f {
     let ab = b - a;
     let ac = c - a;

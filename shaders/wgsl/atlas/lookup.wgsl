@@ -67,7 +67,7 @@ fn atlas_lookup_slot(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: ve
     return AtlasSlot(vec3u(base) + corners.directions, side, corners.weights, amount, vec2f(parts.x, higher), vec2f(0.0));
 }
 
-// A texel. Columns outside are 0, rows go round.
+// A texel. Columns outside are 0, rows wrap around.
 fn atlas_lookup_texel(layer: u32, column: i32, row: i32) -> f32 {
     let size = atlas_data_frame.size;
     if column < 0 || column >= i32(size.x) {

@@ -92,7 +92,7 @@ fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
     return texel;
 }
 
-// The position of sample i of the texel round (x, y).
+// The position of sample i of the texel around (x, y).
 fn mask_model_sample(x: f32, y: f32, i: u32) -> vec2f {
     let n = MASK_MODEL_SUBSAMPLES;
     let half_width = 0.5 * mask_model.pixel;
@@ -103,7 +103,7 @@ fn mask_model_sample(x: f32, y: f32, i: u32) -> vec2f {
     );
 }
 
-// The texel round (x, y).
+// The texel around (x, y).
 fn mask_model_texel(x: f32, y: f32) -> MaskTexel {
     let nothing = MaskTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0u);
     let half_width = 0.5 * mask_model.pixel;

@@ -139,7 +139,7 @@ fn mask_trace_exit(traced: MaskTracedDrop, start: vec3f, inside_start: vec3f) ->
     return MaskTraceExit(point, reflections + one, normal, one, inside, select(outside.xyz, inside, lost));
 }
 
-// Shares of the power that are reflected where light comes to leave, across and within the plane of incidence.
+// Fractions of the power that are reflected where light comes to leave, across and within the plane of incidence.
 fn mask_trace_reflectance(exit: MaskTraceExit, index: f32) -> vec2f {
     return optics_fresnel_polarized(max(dot(exit.inside, exit.normal), 0.0), 1.0 / index);
 }

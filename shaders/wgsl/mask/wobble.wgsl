@@ -28,7 +28,7 @@ struct MaskWobbleLight {
     first: vec3f,
     second: vec3f,
     third: vec3f,
-    // Shares of the light, in this order; what they leave of 1 is lost.
+    // Fractions of the light, in this order; what they leave of 1 is lost.
     shares: vec4f,
     // Interfaces passed up to there (from 1); 0 where there is no exit.
     interfaces: vec4f,

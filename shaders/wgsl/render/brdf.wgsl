@@ -83,7 +83,7 @@ fn brdf_visible_density(alpha: f32, cosine_half: f32, cosine_view: f32) -> f32 {
         / max(cosine_view, BRDF_MIN_DIVISOR);
 }
 
-// Share of a uniform environment that microfacets reflect.
+// Fraction of a uniform environment that microfacets reflect.
 fn brdf_environment(normal_reflectance: vec3f, roughness: f32, cosine_view: f32) -> vec3f {
     let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
     let lift = min(r.x * r.x, exp2(-9.28 * cosine_view)) * r.x + r.y;

@@ -1,6 +1,6 @@
 // Drops as refractive particles that face the camera: still ones, and the streaks of those that move while the shutter is
 // open.
-// Law: a drop below a pixel, or out of focus, covers the pixels round its path by its area and its share of the exposure, so
+// Law: a drop below a pixel, or out of focus, covers the pixels around its path by its area and its fraction of the exposure, so
 // its light does not depend on where it falls; a larger one is sampled in each pixel. What lamps add is the mean over the
 // drop.
 // Unresolved drops are a medium between them (medium.wgsl): it shows the mean radiance of a drop, and the light of lamps.
@@ -80,7 +80,7 @@ fn drops_lines(index: u32, chord: StreakChord, width: f32) -> vec3f {
     return max(light, vec3f(0.0)) * part;
 }
 
-// The phase of the mode (2,0), in turns, where a passing drop is at a share of its way.
+// The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
 fn drops_turns(drop: DropsDrop, way: f32) -> f32 {
     return drop.swing.z + drop.turns.x * streak_time(drop.recede, way);
 }
@@ -198,7 +198,7 @@ fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> v
     return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * ((chord.high - chord.low) * 0.5);
 }
 
-// The share of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet the thin
+// The fraction of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet the thin
 // image of a lamp in it, or miss it, alike.
 fn drops_shift(line: u32) -> f32 {
     return f32((line * STREAK_GOLDEN) & 0xffffu) / 65536.0;

@@ -31,7 +31,7 @@ fn drops_atlas_half(index: u32) -> f32 {
     return select(pair.x, pair.y, (index & 1u) == 1u);
 }
 
-// A texel. Rows go round. The column behind the last is the mean of the row.
+// A texel. Rows wrap around. The column behind the last is the mean of the row.
 fn drops_atlas_texel(layer: u32, column: i32, row: i32) -> f32 {
     let columns = drops_masks[drops_frame.atlas];
     let rows = i32(drops_masks[drops_frame.atlas + 1u]);

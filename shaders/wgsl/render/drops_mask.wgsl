@@ -12,7 +12,7 @@ struct DropsTexel {
     // Direction of the light that is reflected inside once.
     internal: vec3f,
     internal_transmittance: f32,
-    // Share that is reflected outside.
+    // Fraction that is reflected outside.
     reflectance: f32,
 }
 

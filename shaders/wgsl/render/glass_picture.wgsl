@@ -1,8 +1,8 @@
 // A picture through a pane of glass with water on it, ray by ray through the lens.
 // Law: a ray from the lens meets the pane, goes straight through it, leaves the water by Snell's law at the local normal,
-// and shows what stands in its new direction: the picture where that is in it, else the capture of what is round the eye.
+// and shows what stands in its new direction: the picture where that is in it, else the capture of what is around the eye.
 // The position of a point is given by the distance in its own direction. Light that is not transmitted (Fresnel, exact,
-// incoherent sum over the reflections within the pane) shows the eye's side, whose light is a share of that of the
+// incoherent sum over the reflections within the pane) shows the eye's side, whose light is a fraction of that of the
 // surroundings; so does what is totally reflected back to the eye. A lens of some size is a set of points: what is out
 // of focus is blurred by as much as the lens says, and no light is lost.
 // Limits: the pane's thickness does not shift what is behind it; light that is totally reflected within a drop and leaves
@@ -278,7 +278,7 @@ fn glass_picture_inside(v: vec3f) -> vec3f {
     return glass_picture_round(glass_picture_world(out), GLASS_PICTURE_MIRROR) * glass_picture_frame.room;
 }
 
-// Share of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
+// Fraction of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
 fn glass_picture_outer(cosine: f32, met: GlassPictureMet, within: f32) -> f32 {
     if met.wet == 0.0 {
         return optics_fresnel(cosine, GLASS_PICTURE_INDEX);

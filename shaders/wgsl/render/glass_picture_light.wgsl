@@ -14,7 +14,7 @@ struct GlassPictureLight {
     distance: f32,
 }
 
-// Share of a source's light per solid angle, at a squared distance in direction from its middle: a paraboloid whose integral
+// Fraction of a source's light per solid angle, at a squared distance in direction from its middle: a paraboloid whose integral
 // is 1.
 fn glass_picture_light_lobe(away: f32, radius: f32) -> f32 {
     let squared = radius * radius;

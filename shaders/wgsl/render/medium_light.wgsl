@@ -3,7 +3,7 @@
 // distance h from the ray the angle runs evenly along the ray as seen from the lamp, ds / r^2 = d angle / h, so that a part of
 // the ray between two angles needs but the integral of p over them (a table), and is exact however near the lamp is.
 // Occlusion is tested with one ray per pixel, drawn by the light that each part of the ray and each lamp would give; the mean over
-// the pixels round it is taken by medium_filter.wgsl.
+// the pixels around it is taken by medium_filter.wgsl.
 // Light that is weakened on its way from the lamp to the drop is taken to be made good by what is scattered forward on it.
 // Twin: downpour_render::rain::medium::light.
 

@@ -1,6 +1,6 @@
 // Air that is open to the rain: a grid over the picture, a column of slices of distance in each cell.
 // Method: one ray per cell and slice, from a position in it against the mean fall; the optical depth of a cell's ray is summed up
-// slice by slice, and a pixel interpolates between the four cells round it.
+// slice by slice, and a pixel interpolates between the four cells around it.
 // Twin: downpour_render::rain::medium::open.
 
 // First the grid, MEDIUM_SLICES rows for each cell: optical depth up to the slice's end, 1 if the slice is open. Then for each

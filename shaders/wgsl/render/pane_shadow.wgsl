@@ -27,7 +27,7 @@ fn pane_shadow_level(texels: u32, level: u32, position: vec2f) -> vec2f {
     return upper * (1.0 - part.y) + lower * part.y;
 }
 
-// Cover and gathered cover round a position of [0, 1], over a width in meters.
+// Cover and gathered cover around a position of [0, 1], over a width in meters.
 fn pane_shadow_at(pane: RenderPane, position: vec2f, width: f32) -> vec2f {
     let texels = width * pane.texels_per_meter;
     let level = clamp(log2(max(texels, 1.0)), 0.0, f32(pane.last));
@@ -40,7 +40,7 @@ fn pane_shadow_at(pane: RenderPane, position: vec2f, width: f32) -> vec2f {
     return found;
 }
 
-// Share of light that comes through the pane to a position from a distance along a direction; `spread` is half the angle that its
+// Fraction of light that comes through the pane to a position from a distance along a direction; `spread` is half the angle that its
 // source takes. 1 where the pane is not between them.
 fn pane_shadow_share(position: vec3f, direction: vec3f, distance: f32, spread: f32) -> f32 {
     if render_frame.pane == 0u {

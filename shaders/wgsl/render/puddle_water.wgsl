@@ -9,12 +9,12 @@ struct PuddleWater {
     depth: f32,
     // Height of the surface over the position, m.
     rise: f32,
-    // Share of the rain that arrives.
+    // Fraction of the rain that arrives.
     open: f32,
 }
 
 // A texel of a map: ground over the map's height (m), rise of the surface over the ground (m), depth (m, below 0 on
-// land), share of the rain that arrives.
+// land), fraction of the rain that arrives.
 fn puddle_water_texel(map: vec3u, x: i32, y: i32) -> vec4f {
     let column = clamp(x, 0, i32(map.x) - 1);
     let line = clamp(y, 0, i32(map.y) - 1);
@@ -69,7 +69,7 @@ fn puddle_water_slope(first: u32, size: u32, x: i32, y: i32) -> vec4f {
     return puddle_texel(first + line * size + column);
 }
 
-// A piece of the ripples round a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
+// A piece of the ripples around a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
 // from the vertex, in the mesh's steps; `level` has size, first row and texels per step.
 fn puddle_water_piece(vertex: vec2i, offset: vec2f, first: u32, size: u32, steps: f32) -> vec3f {
     let words = rng_draw(vec2u(0u, 0u), bitcast<u32>(vertex.x), bitcast<u32>(vertex.y), PUDDLE_WATER_DIMENSION);
@@ -196,7 +196,7 @@ fn puddle_water_above(direction: vec3f) -> vec3f {
     return vec3f(x, sqrt(max(1.0 - x * x - z * z, 0.0)), z);
 }
 
-// Albedo of what lies under water, as seen through its surface over the share that comes out along the ray: light goes
+// Albedo of what lies under water, as seen through its surface over the fraction that comes out along the ray: light goes
 // in diffusely, and is thrown back between ground and surface. White stays white.
 fn puddle_water_albedo(albedo: vec3f) -> vec3f {
     let out = (1.0 - PUDDLE_WATER_OUTSIDE) / (PUDDLE_WATER_INDEX * PUDDLE_WATER_INDEX);

@@ -23,7 +23,7 @@ fn scatter_tangent(normal: vec3f) -> vec3f {
     return vec3f(1.0 + side * normal.x * normal.x * p, side * (normal.x * normal.y * p), -side * normal.x);
 }
 
-// A direction over the hemisphere round a normal, cosine-weighted, for two numbers in [0, 1).
+// A direction over the hemisphere around a normal, cosine-weighted, for two numbers in [0, 1).
 fn scatter_hemisphere(normal: vec3f, a: f32, b: f32) -> vec3f {
     let radius = sqrt(a);
     let angle = 6.2831853 * b;

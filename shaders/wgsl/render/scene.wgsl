@@ -24,7 +24,7 @@ struct SceneArrival {
     irradiance: vec3f,
 }
 
-// Share of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
+// Fraction of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
 fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
     var from_distance = render_frame.nearest;
     var visible = vec3f(1.0);
@@ -48,7 +48,7 @@ fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
 
 // Light of row `index` as it arrives at a surface.
 // `standoff`: a lamp that is nearer to the surface's plane than this gives it the same light from so far: a spot close to a
-// lamp is small, and far brighter than all round it. `under`: the depth of level water over the surface, and how far the
+// lamp is small, and far brighter than all around it. `under`: the depth of level water over the surface, and how far the
 // water's surface is over it in the model; light is refracted where it enters, and what Fresnel's equations do not reflect
 // goes in.
 fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> SceneArrival {

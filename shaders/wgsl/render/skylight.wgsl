@@ -1,4 +1,4 @@
-// Light of sky and surfaces on surfaces: means over what the pixels round a pixel have found on the same surface, times what
+// Light of sky and surfaces on surfaces: means over what the pixels around a pixel have found on the same surface, times what
 // the surface makes of it. The kernel makes one pass: means over windows, then wider means of them; the last adds them to the
 // picture.
 // Twin: downpour_trace::skylight, where the method is described.
@@ -76,7 +76,7 @@ fn skylight_alike(own: vec4f, other: vec4f) -> f32 {
     return max(1.0 - apart * apart / max(SKYLIGHT_NOISE * (own.w + other.w), 1.0e-20), 0.0);
 }
 
-// The mean of the window round a pixel, and the variance of its luminance.
+// The mean of the window around a pixel, and the variance of its luminance.
 fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     let own = skylight_slot(y * render_frame.camera.width + x, slot);
     if own.slack <= 0.0 {

@@ -1,6 +1,6 @@
 // One exact drop, large, in front of a sky map.
 // Law: geometrical optics with all orders of light. A ray of the camera is reflected and refracted where it enters
-// the drop, and again wherever it meets the surface from inside; each branch that leaves carries the share that
+// the drop, and again wherever it meets the surface from inside; each branch that leaves carries the fraction that
 // Fresnel's equations for unpolarized light give it, and the radiance of the sky where it goes.
 // Lengths are in units of the drop's volume-equivalent radius; the frame is the world's: +Y up, the drop's origin
 // at 0. Radiance is linear, in the units of the map.
@@ -46,11 +46,11 @@ struct SpecimenRay {
 struct SpecimenLight {
     // Point of the last interface.
     point: vec3f,
-    // Share of the light that left there.
+    // Fraction of the light that left there.
     share: f32,
     // Direction of the light that left.
     exit: vec3f,
-    // Share of the light that is still inside.
+    // Fraction of the light that is still inside.
     rest: f32,
     // Its direction.
     inside: vec3f,

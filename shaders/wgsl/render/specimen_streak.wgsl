@@ -34,7 +34,7 @@ struct SpecimenPassage {
     // The interval of u.
     first: f32,
     last: f32,
-    // Its share of the exposure.
+    // Its fraction of the exposure.
     cover: f32,
 }
 

@@ -4,7 +4,7 @@
 // oscillation stretches: left and right each by the mode's radius there, up and down by that of the poles. While a drop
 // passes a ray, which takes some tenths of a millisecond, its shape stands still.
 // Law: a ray that meets the oval's chord of half length h at the speed s is covered for 2 h / s of the exposure, so the
-// light that a drop takes out does not depend on how it is sampled. Where light of earlier moments weighs less, the share is
+// light that a drop takes out does not depend on how it is sampled. Where light of earlier moments weighs less, the fraction is
 // multiplied by the weight in the middle of the time in which the ray is covered: exact for a drop that keeps its depth, since weights
 // are straight lines.
 // Source: Rousseau 2006, section 5; Rousseau 2008, section 2.2.3 (oscillation, left and right with phi + pi).
@@ -44,7 +44,7 @@ struct DropsDrop {
     swing: vec4f,
     // Turns of both modes until the end.
     turns: vec2f,
-    // Share of the exposure in which it is before the eye.
+    // Fraction of the exposure in which it is before the eye.
     share: f32,
     // Width over which a drop that is not sampled is spread, pixels.
     spread: f32,
@@ -72,9 +72,9 @@ struct StreakChord {
     // The part of it that passes during the exposure, in units of `half`; none if `high` is not above `low`.
     low: f32,
     high: f32,
-    // Share of the exposure in which the whole chord would pass, by weight.
+    // Fraction of the exposure in which the whole chord would pass, by weight.
     share: f32,
-    // Share of the exposure in which it moves by an equivalent radius, by weight.
+    // Fraction of the exposure in which it moves by an equivalent radius, by weight.
     pace: f32,
     // Weights of the light at `low` and at `high`.
     weights: vec2f,
@@ -84,7 +84,7 @@ struct StreakChord {
     path: vec2f,
 }
 
-// The time, as a share of the exposure, at which the drop is at a share of its way on the picture.
+// The time, as a fraction of the exposure, at which the drop is at a fraction of its way on the picture.
 fn streak_time(recede: f32, way: f32) -> f32 {
     return way / max(way + (1.0 - way) * recede, 1.0e-20);
 }
@@ -94,7 +94,7 @@ fn streak_weight(weights: vec2f, time: f32) -> f32 {
     return weights.x + (weights.y - weights.x) * clamp(time, 0.0, 1.0);
 }
 
-// The share of the way that is nearest to a position on the plane.
+// The fraction of the way that is nearest to a position on the plane.
 fn streak_nearest(drop: DropsDrop, at: vec2f) -> f32 {
     return clamp(dot(at - drop.start, drop.along) / max(dot(drop.along, drop.along), 1.0e-20), 0.0, 1.0);
 }
@@ -161,13 +161,13 @@ fn streak_mask_position(drop: DropsDrop, chord: StreakChord, v: f32) -> vec2f {
     return (at + vec2f(0.0, drop.oval.z)) / drop.half_extent;
 }
 
-// The share of a pixel's width that a box of some width (1 or more), `off` pixels from the pixel's middle, covers, over that
+// The fraction of a pixel's width that a box of some width (1 or more), `off` pixels from the pixel's middle, covers, over that
 // width: over all pixels it is 1.
 fn streak_box(width: f32, off: f32) -> f32 {
     return clamp((width + 1.0) * 0.5 - abs(off), 0.0, 1.0) / width;
 }
 
-// Both edges, as shares of the way, of where a path is less than `reach` from 0.
+// Both edges, as fractions of the way, of where a path is less than `reach` from 0.
 fn streak_within(begin: f32, way: f32, reach: f32) -> vec2f {
     if abs(way) < 1.0e-6 {
         return select(vec2f(2.0, -1.0), vec2f(0.0, 1.0), abs(begin) < reach);
@@ -210,7 +210,7 @@ fn streak_mean(begin: vec2f, way: vec2f, width: f32, weights: vec2f) -> f32 {
     return sum;
 }
 
-// The share of a pixel that a drop which is not sampled covers, by weight.
+// The fraction of a pixel that a drop which is not sampled covers, by weight.
 fn streak_cover(drop: DropsDrop, x: u32, y: u32) -> f32 {
     let begin = drop.first - vec2f(f32(x) + 0.5, f32(y) + 0.5);
     return min(drop.area * drop.share * streak_mean(begin, drop.way, drop.spread, drop.weights), 1.0);

@@ -27,7 +27,7 @@ struct StreakExit {
     passed: u32,
 }
 
-// Change of an exit along an axis: first and second difference per ray, and first difference of its share.
+// Change of an exit along an axis: first and second difference per ray, and first difference of its fraction.
 struct StreakChange {
     first: vec3f,
     share: f32,
@@ -162,7 +162,7 @@ fn streak_light_size(ray: StreakPatch, later: f32) -> vec2f {
     return sqrt(vec2f(dot(across, across), dot(along, along)));
 }
 
-// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that of an
+// Fraction of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that of an
 // irradiance of 1. `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the profile;
 // `shift` tells the points of a patch from its neighbors'.
 fn streak_light_spot(
@@ -277,7 +277,7 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
                 }
             }
         }
-        // Between rows shares may sum to a little more than all.
+        // Between rows fractions may sum to a little more than all.
         let whole = select(max(1.0 - rest, 1.0), 1.0, drops_frame.form == DROPS_SHIFT);
         even += seen / whole + lost * select(max(rest, 0.0), 0.0, drops_frame.form == DROPS_SHIFT);
         for (var part = 0u; part < fine; part += 1u) {

@@ -18,12 +18,12 @@ struct StreakPassage {
     fine: u32,
     // Time at which the drop is nearest, 0 to 1.
     time: f32,
-    // Position across the outline in shares of its columns, 0 to 1.
+    // Position across the outline in fractions of its columns, 0 to 1.
     across: f32,
     // The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
     low: f32,
     high: f32,
-    // Share of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
+    // Fraction of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
     share: f32,
 }
 
@@ -114,7 +114,7 @@ fn streak_lookup_until(passage: StreakPassage, position: f32) -> vec3f {
     return streak_lookup_sum(passage, low) * (1.0 - part) + streak_lookup_sum(passage, low + 1u) * part;
 }
 
-// A streak at a position of the plane: radiance times the share of the exposure in which it is covered, and this share.
+// A streak at a position of the plane: radiance times the fraction of the exposure in which it is covered, and this fraction.
 fn streak_lookup_shown(drop: DropsDrop, at: vec2f) -> vec4f {
     let passage = streak_lookup_passage(drop, at);
     if passage.high <= passage.low {

@@ -41,7 +41,7 @@ struct StreakInstant {
     // Equivalent radius on the plane.
     scale: f32,
     time: f32,
-    // Share of the way on the picture.
+    // Fraction of the way on the picture.
     way: f32,
     // Time in which it moves by an equivalent radius.
     pace: f32,
@@ -100,7 +100,7 @@ fn streak_path_turned(path: StreakPath, v: vec3f) -> vec3f {
     return vec3f(v.x * path.lobe.x + v.z * path.lobe.y, v.y, v.z * path.lobe.x - v.x * path.lobe.y);
 }
 
-// The other way round.
+// The inverse.
 fn streak_path_back(path: StreakPath, v: vec3f) -> vec3f {
     return vec3f(v.x * path.lobe.x - v.z * path.lobe.y, v.y, v.z * path.lobe.x + v.x * path.lobe.y);
 }

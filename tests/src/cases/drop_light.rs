@@ -112,7 +112,7 @@ fn terms(random: [u32; 4]) -> Vec<u32> {
     vec![1 + random[0] % 3]
 }
 
-/// Drops round what stands in the scene.
+/// Drops around what stands in the scene.
 fn drops() -> Vec<[f32; 4]> {
     (0..600)
         .map(|k| {

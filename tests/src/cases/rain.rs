@@ -79,7 +79,7 @@ fn run(width: u32, cpu: &[[f32; 4]], gpu: &[[f32; 4]]) -> Run {
     }
 }
 
-/// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside a box round the eye, small ones everywhere.
+/// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside a box around the eye, small ones everywhere.
 fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 500.0).expect("a rain");
     let region = Region::Box { center: eye.as_dvec3() + DVec3::new(0.5, 0.2, -1.0), size: DVec3::splat(7.0) };

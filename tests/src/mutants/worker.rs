@@ -178,7 +178,7 @@ impl Bench {
                     let (text, kinds) = case.shader(&compose(&[case.module]), twin.arguments[0].len());
                     let start = Instant::now();
                     let run = quietly(|| case.run_shader(&self.gpu, &text, kinds.clone(), twin.clone()));
-                    // With few calls a share of outliers may be over its limit by chance.
+                    // With few calls a fraction of outliers may be over its limit by chance.
                     let passes = run.is_some_and(|run| run.compare(&case.tol).failure.is_none());
                     passes.then(|| Ready { text, kinds, twin, took: start.elapsed() })
                 });

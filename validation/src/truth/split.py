@@ -8,7 +8,7 @@ import drjit as dr
 import mitsuba as mi
 from reference import INTERFACES
 
-# Share of the light below which a branch is not followed.
+# Fraction of the light below which a branch is not followed.
 LEAST = 1.0e-6
 
 

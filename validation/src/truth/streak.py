@@ -14,7 +14,7 @@ import numpy as np
 
 # Distance of a lamp in the units of the meshes, of which a drop has some hundreds and a path ten thousand.
 LAMP_DISTANCE = 1.0e8
-# Share of the exposure below which a pixel is not of the streak, against the most covered one.
+# Fraction of the exposure below which a pixel is not of the streak, against the most covered one.
 MIN_COVER = 0.1
 
 

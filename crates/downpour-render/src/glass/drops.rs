@@ -27,7 +27,7 @@ const ROUND_M: f64 = 1.4e-3;
 /// Widths of spots of the glass that pull the outline, m.
 const SPOTS_M: [f64; 2] = [4.5e-3, 1.7e-3];
 
-/// Positions round the outline at which the glass is asked.
+/// Positions around the outline at which the glass is asked.
 const ROUND: u32 = 8;
 
 /// Relative excess of the slope below a drop over that in its middle when it is about to slide: from tan 20 to tan 60 degrees.
@@ -168,7 +168,7 @@ impl Common<'_> {
         DVec2::Y * weight + towards * push
     }
 
-    /// The outline: the glass round a drop, as its second and third harmonic.
+    /// The outline: the glass around a drop, as its second and third harmonic.
     fn lobes(&self, center: DVec2, radius: f64, along: DVec2) -> [f32; 4] {
         let share = UNEVEN * (radius / ROUND_M).min(1.0) * 2.0 / f64::from(ROUND);
         let mut lobes = [0.0; 4];

@@ -27,7 +27,7 @@ pub struct GlassPictureLight {
     pub distance: f32,
 }
 
-/// Share of a source's light per solid angle, at a squared distance in direction from its middle: a paraboloid whose
+/// Fraction of a source's light per solid angle, at a squared distance in direction from its middle: a paraboloid whose
 /// integral is 1.
 #[must_use]
 pub fn glass_picture_light_lobe(away: f32, radius: f32) -> f32 {

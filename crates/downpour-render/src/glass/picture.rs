@@ -76,7 +76,7 @@ impl Look<'_> {
         self.glass_picture_round(self.glass_picture_world(out), GLASS_PICTURE_MIRROR) * self.glass.frame.room
     }
 
-    /// Share of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
+    /// Fraction of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
     fn glass_picture_outer(&self, cosine: f32, met: &Met, within: f32) -> f32 {
         let frame = &self.glass.frame;
         if !met.wet {

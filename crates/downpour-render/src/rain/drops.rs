@@ -37,14 +37,14 @@ pub fn drops_line(off: f32, width: f32) -> f32 {
     DROPS_LINE / width * ops::exp(-0.5 * off * off / (width * width))
 }
 
-/// The share of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet
+/// The fraction of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet
 /// the thin image of a lamp in it, or miss it, alike.
 #[must_use]
 pub fn drops_shift(line: u32) -> f32 {
     (line.wrapping_mul(STREAK_GOLDEN) & 0xffff) as f32 / 65_536.0
 }
 
-/// The phase of the mode (2,0), in turns, where a passing drop is at a share of its way.
+/// The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
 #[must_use]
 pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
     drop.swing[2] + drop.turns[0] * streak_time(drop.recede, way)

@@ -76,7 +76,7 @@ impl DropsAtlas<'_> {
         half::f16::from_bits((word >> (16 * (index & 1))) as u16).to_f32()
     }
 
-    /// A texel. Rows go round. The column behind the last is the mean of the row.
+    /// A texel. Rows wrap around. The column behind the last is the mean of the row.
     fn drops_atlas_texel(&self, layer: u32, column: i32, row: i32) -> f32 {
         let (columns, rows) = (self.word(0), self.word(1).max(1) as i32);
         let down = row.rem_euclid(rows) as u32;

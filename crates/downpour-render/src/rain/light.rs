@@ -1,6 +1,6 @@
 //! Light of lamps and sun on falling drops. Twin of `shaders/wgsl/render/drop_light.wgsl`.
 //!
-//! A drop shows what is behind and round it through its mask; a lamp is far smaller than a texel of that. Here is what
+//! A drop shows what is behind and around it through its mask; a lamp is far smaller than a texel of that. Here is what
 //! lamps add: for each drop the mean radiance over its disk, and where on the disk its brightest glints stand. Each lamp
 //! is looked up at the drop's own position (distance, cone, range), with one ray for what stands between.
 //!
@@ -159,7 +159,7 @@ pub struct DropGlint {
     pub order: u32,
     /// Position on the disk, radii along the right ([`drop_glint_right`]) and the up of the view.
     pub position: Vec2,
-    /// Its part of the mean radiance over the disk: a glint that covers a share s of the disk is 1/s times as bright.
+    /// Its part of the mean radiance over the disk: a glint that covers a fraction s of the disk is 1/s times as bright.
     pub radiance: Vec3,
 }
 

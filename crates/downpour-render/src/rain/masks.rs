@@ -240,7 +240,7 @@ fn streak_shape(diameter: f64, table: ShapeTable, refractive_index: f64) -> Stre
     }
 }
 
-/// The ellipse of the shape of the box round an outline, and of its area.
+/// The ellipse of the shape of the box around an outline, and of its area.
 fn oval(mask: &Mask) -> [f32; 3] {
     let (width, half) = (mask.texel_width(), mask.half_extent);
     let size = mask.size as usize;

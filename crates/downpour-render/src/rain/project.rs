@@ -16,13 +16,13 @@ use super::{DropMasks, shapes};
 use crate::camera::Camera;
 use crate::camera::MAX_EXPOSURE_S;
 
-/// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels round them.
+/// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels around them.
 const SMALL: f32 = 1.0;
 
 /// So are the streaks of drops below this diameter.
 const THIN: f32 = 1.5;
 
-/// Drops whose path is shorter than this share of their radius stand still.
+/// Drops whose path is shorter than this fraction of their radius stand still.
 const STILL: f32 = 0.05;
 
 /// Samples of a pixel of a streak of less than this many pixels across, and of a wider one. No multiples of
@@ -55,7 +55,7 @@ fn turned(v: Vec3, axis: Vec3) -> Vec3 {
     v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine))
 }
 
-/// The share of a path from `from` to `to` on which it is at least `least`.
+/// The fraction of a path from `from` to `to` on which it is at least `least`.
 fn ahead(from: f32, to: f32, least: f32) -> [f32; 2] {
     match (from >= least, to >= least) {
         (true, true) => [0.0, 1.0],
@@ -276,7 +276,7 @@ impl Path {
 struct Swing {
     swing: [f32; 4],
     turns: [f32; 2],
-    /// No part of the surface goes farther, as a share of the radius.
+    /// No part of the surface goes farther, as a fraction of the radius.
     most: f32,
 }
 

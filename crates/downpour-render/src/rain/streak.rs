@@ -35,7 +35,7 @@ pub struct DropsDrop {
     pub first: [f32; 2],
     /// `along` on the picture, pixels.
     pub way: [f32; 2],
-    /// Half the width and half the height of the oval round its outline, and how far its middle is up, in equivalent
+    /// Half the width and half the height of the oval around its outline, and how far its middle is up, in equivalent
     /// radii.
     pub oval: [f32; 3],
     /// Depth at the end over that at the beginning.
@@ -45,7 +45,7 @@ pub struct DropsDrop {
     pub swing: [f32; 4],
     /// Turns of both modes until the end.
     pub turns: [f32; 2],
-    /// Share of the exposure in which it is before the eye.
+    /// Fraction of the exposure in which it is before the eye.
     pub share: f32,
     /// Width over which a drop that is not sampled is spread, pixels.
     pub spread: f32,
@@ -76,9 +76,9 @@ pub struct StreakChord {
     pub low: f32,
     /// See `low`.
     pub high: f32,
-    /// Share of the exposure in which the whole chord would pass, by weight.
+    /// Fraction of the exposure in which the whole chord would pass, by weight.
     pub share: f32,
-    /// Share of the exposure in which it moves by an equivalent radius, by weight.
+    /// Fraction of the exposure in which it moves by an equivalent radius, by weight.
     pub pace: f32,
     /// Weights of the light at `low` and at `high`.
     pub weights: Vec2,
@@ -88,7 +88,7 @@ pub struct StreakChord {
     pub path: Vec2,
 }
 
-/// The time, as a share of the exposure, at which the drop is at a share of its way on the picture.
+/// The time, as a fraction of the exposure, at which the drop is at a fraction of its way on the picture.
 #[must_use]
 pub fn streak_time(recede: f32, way: f32) -> f32 {
     way / (way + (1.0 - way) * recede).max(1.0e-20)
@@ -100,7 +100,7 @@ pub fn streak_weight(weights: [f32; 2], time: f32) -> f32 {
     weights[0] + (weights[1] - weights[0]) * time.clamp(0.0, 1.0)
 }
 
-/// The share of the way that is nearest to a position on the plane.
+/// The fraction of the way that is nearest to a position on the plane.
 #[must_use]
 pub fn streak_nearest(drop: &DropsDrop, at: Vec2) -> f32 {
     let along = Vec2::from(drop.along);
@@ -175,14 +175,14 @@ pub fn streak_mask_position(drop: &DropsDrop, chord: &StreakChord, v: f32) -> Ve
     (at + Vec2::new(0.0, drop.oval[2])) / drop.half_extent
 }
 
-/// The share of a pixel's width that a box of some width (1 or more), `off` pixels from the pixel's middle, covers, over that
+/// The fraction of a pixel's width that a box of some width (1 or more), `off` pixels from the pixel's middle, covers, over that
 /// width: over all pixels it is 1.
 #[must_use]
 pub fn streak_box(width: f32, off: f32) -> f32 {
     ((width + 1.0) * 0.5 - off.abs()).clamp(0.0, 1.0) / width
 }
 
-/// Both edges, as shares of the way, of where a path is less than `reach` from 0.
+/// Both edges, as fractions of the way, of where a path is less than `reach` from 0.
 #[must_use]
 pub fn streak_within(from: f32, way: f32, reach: f32) -> Vec2 {
     if way.abs() < 1.0e-6 {
@@ -227,7 +227,7 @@ pub fn streak_mean(from: Vec2, way: Vec2, width: f32, weights: [f32; 2]) -> f32 
     sum
 }
 
-/// The share of a pixel that a drop which is not sampled covers, by weight.
+/// The fraction of a pixel that a drop which is not sampled covers, by weight.
 #[must_use]
 pub fn streak_cover(drop: &DropsDrop, x: u32, y: u32) -> f32 {
     let from = Vec2::from(drop.first) - Vec2::new(x as f32 + 0.5, y as f32 + 0.5);

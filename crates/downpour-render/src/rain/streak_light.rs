@@ -37,7 +37,7 @@ struct StreakExit {
     passed: u32,
 }
 
-/// Change of an exit along an axis: first and second difference per ray, and first difference of its share.
+/// Change of an exit along an axis: first and second difference per ray, and first difference of its fraction.
 #[derive(Clone, Copy, Debug, Default)]
 struct StreakChange {
     first: Vec3,
@@ -117,7 +117,7 @@ fn streak_light_size(ray: &StreakPatch, later: f32) -> Vec2 {
     Vec2::new(across.dot(across).sqrt(), along.dot(along).sqrt())
 }
 
-/// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that
+/// Fraction of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that
 /// of an irradiance of 1. `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the
 /// profile; `shift` tells the points of a patch from its neighbors'.
 fn streak_light_spot(
@@ -273,7 +273,7 @@ impl Streak<'_> {
                     }
                 }
             }
-            // Between rows shares may sum to a little more than all.
+            // Between rows fractions may sum to a little more than all.
             let whole = if shifts { 1.0 } else { (1.0 - rest).max(1.0) };
             even += seen / whole + lost * if shifts { 0.0 } else { rest.max(0.0) };
             for sum in &mut sums[..fine] {

@@ -29,12 +29,12 @@ struct StreakPassage {
     fine: u32,
     /// Time at which the drop is nearest, 0 to 1.
     time: f32,
-    /// Position across the outline in shares of its columns, 0 to 1.
+    /// Position across the outline in fractions of its columns, 0 to 1.
     across: f32,
     /// The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
     low: f32,
     high: f32,
-    /// Share of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
+    /// Fraction of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
     share: f32,
 }
 
@@ -132,7 +132,7 @@ impl StreakTable {
         self.streak_lookup_sum(passage, low) * (1.0 - part) + self.streak_lookup_sum(passage, low + 1) * part
     }
 
-    /// A streak at a position of the plane: radiance times the share of the exposure in which it is covered, and this share.
+    /// A streak at a position of the plane: radiance times the fraction of the exposure in which it is covered, and this fraction.
     pub(super) fn streak_lookup_shown(&self, drop: &DropsDrop, at: Vec2) -> Vec4 {
         let passage = self.streak_lookup_passage(drop, at);
         let (low, high) = (passage.low, passage.high);

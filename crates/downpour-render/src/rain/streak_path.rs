@@ -120,7 +120,7 @@ impl StreakPath {
         Vec3::new(v.x * cosine + v.z * sine, v.y, v.z * cosine - v.x * sine)
     }
 
-    /// The other way round.
+    /// The inverse.
     pub(super) fn streak_path_back(&self, v: Vec3) -> Vec3 {
         let [cosine, sine] = self.lobe;
         Vec3::new(v.x * cosine - v.z * sine, v.y, v.z * cosine + v.x * sine)

@@ -29,7 +29,7 @@ const MAX_LANES: usize = 64;
 pub struct StreakRay {
     /// Directions in which its light leaves, octahedral, two numbers of 16 bits each.
     pub exits: [u32; 4],
-    /// Their shares, two numbers of 16 bits each.
+    /// Their fractions, two numbers of 16 bits each.
     pub shares: [u32; 2],
     /// Interfaces passed up to there, 8 bits each; 0: there is no such exit.
     pub interfaces: u32,

@@ -2,7 +2,7 @@
 
 use downpour_math::ops;
 
-/// Linear light for a share of the scale, 0 to 1: from a dark blue over green to a light yellow.
+/// Linear light for a fraction of the scale, 0 to 1: from a dark blue over green to a light yellow.
 pub(super) fn of_speed(share: f32) -> [f32; 3] {
     let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
     let lightness = 0.24 + 0.65 * share;

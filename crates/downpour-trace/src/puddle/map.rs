@@ -13,7 +13,7 @@ use crate::data::SceneData;
 /// Land beside water tells how far it lies over the water's level up to this far, m: the shore runs between the cells.
 const SHORE_M: f32 = 5.0e-3;
 
-/// Cells round the water that know its level.
+/// Cells around the water that know its level.
 const SHORE_CELLS: u32 = 2;
 
 /// Depth in the map of what is certainly land, m.
@@ -43,7 +43,7 @@ pub struct PuddleMap {
     /// Columns and rows.
     pub size: [usize; 2],
     /// For each cell: height of the ground over the middle (m), rise of the water's surface over that (m), depth (m, below
-    /// 0 on land), share of the rain that arrives.
+    /// 0 on land), fraction of the rain that arrives.
     pub cells: Vec<[f32; 4]>,
 }
 
@@ -55,7 +55,7 @@ impl Ground {
         self.middle + Vec3::new(offset.x, 0.0, offset.y)
     }
 
-    /// Height over the middle of the highest surface within reach, and the share of the rain that arrives there; not a
+    /// Height over the middle of the highest surface within reach, and the fraction of the rain that arrives there; not a
     /// number where there is none.
     fn measure(&self, scene: &SceneData, size: [usize; 2]) -> (Vec<f32>, Vec<f32>) {
         let [columns, rows] = size;

@@ -19,7 +19,7 @@ pub struct PuddleLook {
     pub rippling_depth: f32,
     /// Albedo of water so deep that the ground is not seen.
     pub murk: Vec3,
-    /// Share of light that is lost per meter of water, 1/m.
+    /// Fraction of light that is lost per meter of water, 1/m.
     pub extinction: f32,
 }
 

@@ -33,7 +33,7 @@ struct SceneArrival {
 }
 
 impl SceneView<'_> {
-    /// Share of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
+    /// Fraction of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
     pub(crate) fn scene_visibility(&self, position: Vec3, direction: Vec3, distance: f32) -> Vec3 {
         let nearest = self.frame.nearest;
         let mut from_distance = nearest;
@@ -57,7 +57,7 @@ impl SceneView<'_> {
     /// Light of row `index` as it arrives at a surface.
     ///
     /// `standoff`: a lamp that is nearer to the surface's plane than this gives it the same light from so far: a spot close
-    /// to a lamp is small, and far brighter than all round it. `under`: the depth of level water over the surface, and how far
+    /// to a lamp is small, and far brighter than all around it. `under`: the depth of level water over the surface, and how far
     /// the water's surface is over it in the model; light is refracted where it enters, and what Fresnel's equations do not
     /// reflect goes in.
     fn scene_arrival(&self, index: u32, surface: &Surface, standoff: f32, under: Vec2) -> SceneArrival {

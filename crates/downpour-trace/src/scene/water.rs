@@ -32,13 +32,13 @@ pub(crate) struct PuddleWater {
     pub(crate) depth: f32,
     /// Height of the surface over the position, m.
     pub(crate) rise: f32,
-    /// Share of the rain that arrives.
+    /// Fraction of the rain that arrives.
     pub(crate) open: f32,
 }
 
 impl SceneView<'_> {
     /// A texel of a map: ground over the map's height (m), rise of the surface over the ground (m), depth (m, below 0 on
-    /// land), share of the rain that arrives.
+    /// land), fraction of the rain that arrives.
     fn puddle_water_texel(&self, map: [u32; 3], x: i32, y: i32) -> Vec4 {
         let [columns, rows, first] = map;
         let column = x.clamp(0, columns as i32 - 1) as u32;
@@ -91,7 +91,7 @@ impl SceneView<'_> {
         self.data.puddle_texel(first + line * size + column)
     }
 
-    /// A piece of the ripples round a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
+    /// A piece of the ripples around a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
     /// from the vertex, in the mesh's steps; the level begins at row `first`, with `steps` texels per step.
     fn puddle_water_piece(&self, vertex: [i32; 2], offset: Vec2, first: u32, size: u32, steps: f32) -> Vec3 {
         let words = rng_draw([0; 2], vertex[0] as u32, vertex[1] as u32, PUDDLE_WATER_DIMENSION);
@@ -219,7 +219,7 @@ pub fn puddle_water_above(direction: Vec3) -> Vec3 {
     Vec3::new(x, (1.0 - x * x - z * z).max(0.0).sqrt(), z)
 }
 
-/// Albedo of what lies under water, as seen through its surface over the share that comes out along the ray: light goes
+/// Albedo of what lies under water, as seen through its surface over the fraction that comes out along the ray: light goes
 /// in diffusely, and is thrown back between ground and surface. White stays white.
 #[must_use]
 pub fn puddle_water_albedo(albedo: Vec3) -> Vec3 {

@@ -178,7 +178,7 @@ fn times_and_sizes_are_checked() {
     }
 }
 
-/// Darkness round a subject does not change how it is exposed.
+/// Darkness around a subject does not change how it is exposed.
 #[test]
 fn exposure_is_of_what_is_lit() {
     let mut weather = Weather::default();
