@@ -79,8 +79,8 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
             first_wrong.get_or_insert((at, text));
         }
     }
-    let share = out.outside as f64 / out.compared as f64;
-    if let Some((at, text)) = first_wrong.filter(|_| share > tol.outliers) {
+    let fraction = out.outside as f64 / out.compared as f64;
+    if let Some((at, text)) = first_wrong.filter(|_| fraction > tol.outliers) {
         out.failure = Some(format!(
             "{} of {} words are outside {tol:?}; first at word {at}: {text}",
             out.outside, out.compared

@@ -45,8 +45,8 @@ impl Tol {
 
     /// The same with a fraction of numbers that may be outside.
     #[must_use]
-    pub const fn with_outliers(mut self, share: f64) -> Self {
-        self.outliers = share;
+    pub const fn with_outliers(mut self, fraction: f64) -> Self {
+        self.outliers = fraction;
         self
     }
 }

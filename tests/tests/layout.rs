@@ -32,7 +32,7 @@ use downpour_sim::volume::{VolumeEye, VolumeFrustum};
 use downpour_specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_tests::signature::parse;
 use downpour_trace::data::{RenderCorner, RenderFrame};
-use downpour_trace::trace::{TraceGather, TraceSlot};
+use downpour_trace::trace::{TraceAmbient, TraceSlot};
 use downpour_wind::WindTurbulenceMode;
 use downpour_wind::field::WindFieldGrid;
 
@@ -78,11 +78,11 @@ fn hosts() -> Vec<Host> {
         host!(Camera as "RenderCamera" in &render::camera::CAMERA,
             eye, width, right, height, up, seed, forward, pixel_angle),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
-            camera, grid, slots, lights, light_count, sky_rays, first_row, nearest, ray_share, projection, suns_out, puddles, puddle_count, pane,
+            camera, grid, slots, lights, light_count, sky_rays, first_row, nearest, ray_fraction, projection, suns_out, puddles, puddle_count, pane,
             skylight_pass, unused_1, unused_2, sky_levels, sky_irradiance),
         host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, color),
         host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, position, normal, light, look, factor),
-        host!(TraceGather as "TraceGather" in &render::scene::TRACE, base, mirror),
+        host!(TraceAmbient as "TraceAmbient" in &render::scene::TRACE, base, mirror),
         host!(PyramidLevel as "PyramidLevel" in &common::PYRAMID, size, source_size, source, target_texel, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             camera, capture_right, capture_size, capture_up, capture_last,
@@ -91,12 +91,12 @@ fn hosts() -> Vec<Host> {
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
             depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
-            towards, distance, position, slope, half_extent, row, area, grid, start, along, first, way, oval, recede,
-            swing, turns, share, spread, nearest, kind, shape, profile, weights, unused),
+            towards, distance, position, slope, half_extent, mask_index, area, grid, start, along, first, way, oval, depth_ratio,
+            mode_phase, cycles, fraction, spread, nearest, kind, shape, profile, weights, unused),
         host!(StreakPath as "StreakPath" in &render::rain::STREAK_PATH,
             shape, volume, volume_last, wide, tall, index, lobe, amplitudes, rows, columns, profile_rows, fine,
             first_ray, first_entry, drop, unused),
-        host!(StreakRay as "StreakRay" in &render::rain::STREAK_RAY, exits, shares, interfaces, unused),
+        host!(StreakRay as "StreakRay" in &render::rain::STREAK_RAY, exits, fractions, interfaces, unused),
         host!(DropLightFrame as "DropLightFrame" in &render::drop_light::DROP_LIGHT,
             count, form, glints, first_light, terms),
         host!(GlassPictureDrop as "GlassPictureDrop" in &render::glass::WATER,

@@ -265,10 +265,10 @@ fn resampled(name: &str, picture: &GrayPicture, width: u32, rows: u32) -> Result
         let last = (to.ceil() as u32).min(*height);
         let mut sums = vec![0.0; columns];
         for source in from as u32..last {
-            let share = (to.min(f64::from(source + 1)) - from.max(f64::from(source))).max(0.0) / scale;
+            let fraction = (to.min(f64::from(source + 1)) - from.max(f64::from(source))).max(0.0) / scale;
             let start = source as usize * columns;
             for (sum, &value) in sums.iter_mut().zip(&values[start..start + columns]) {
-                *sum += share * f64::from(value) / 65535.0;
+                *sum += fraction * f64::from(value) / 65535.0;
             }
         }
         out.extend(sums);

@@ -187,18 +187,18 @@ impl StreakTracer {
                     Surface { instant: &self.instants[instant], inverse_radius: self.inverse_radius };
                 let column = (i / rays) as usize;
                 let origin = turned(&frame, [x, y, 0.0]);
-                let met = follow(&surface, refractive_index, origin, towards, |direction, share| {
+                let met = follow(&surface, refractive_index, origin, towards, |direction, fraction| {
                     for (k, light) in lights.iter().enumerate() {
                         let left = 1.0 - (1.0 - dot(direction, *light)) / edge;
                         if left > 0.0 {
-                            sums[k * width + column] += weight * share * peak * left * left;
+                            sums[k * width + column] += weight * fraction * peak * left * left;
                         }
                     }
                     let (first, within) = near.about(direction);
                     for (light, amount) in within.iter().zip(&mut amounts[first..]) {
                         let left = 1.0 - (1.0 - dot(direction, *light)) / edge;
                         if left > 0.0 {
-                            *amount += weight * share * peak * left * left;
+                            *amount += weight * fraction * peak * left * left;
                         }
                     }
                 });

@@ -64,9 +64,9 @@ fn an_oscillating_drop_keeps_the_light_too() {
     let lights = spiral(500);
     let streaks = trace(4.0e-3, StreakOscillation::COMMITTED[1], &options, &lights);
     let sum: f64 = streaks.radiance.iter().map(|s| power(s, &options)).sum();
-    let share = sum * 4.0 * PI / lights.len() as f64 / power(&streaks.coverage, &options);
+    let fraction = sum * 4.0 * PI / lights.len() as f64 / power(&streaks.coverage, &options);
     // Light that circles in the bulges for more than four reflections is lost.
-    assert!((0.95..1.01).contains(&share), "{share}");
+    assert!((0.95..1.01).contains(&fraction), "{fraction}");
 }
 
 /// Scattering by a sphere to the side of the first rainbow is external reflection and twice refracted light: a law of
@@ -80,7 +80,7 @@ fn the_power_of_one_direction_is_that_of_the_sphere() {
     let found = power(&streaks.radiance[0], &options);
     let fresnel = |b: f64| downpour_drop::optics::optics_fresnel_polarized((1.0 - b * b).sqrt(), index);
     // Cross-section per steradian: b db / (sin(theta) d theta), by differences.
-    let of = |turn: &dyn Fn(f64) -> f64, share: &dyn Fn(f64) -> f64| -> f64 {
+    let of = |turn: &dyn Fn(f64) -> f64, fraction: &dyn Fn(f64) -> f64| -> f64 {
         let (mut low, mut high) = (0.0, 1.0);
         let falling = turn(0.0) > turn(1.0);
         for _ in 0..60 {
@@ -89,7 +89,7 @@ fn the_power_of_one_direction_is_that_of_the_sphere() {
         }
         let b = low;
         let slope = (turn(b + 1.0e-5) - turn(b - 1.0e-5)) / 2.0e-5;
-        b * share(b) / (ops::sin(turn(b)) * slope.abs())
+        b * fraction(b) / (ops::sin(turn(b)) * slope.abs())
     };
     let outside = of(&|b| PI - 2.0 * ops::asin(b), &|b| {
         let [s, p] = fresnel(b);

@@ -50,7 +50,7 @@ pub struct WobbleLight<R> {
     /// Directions, of length 1; 0 for a missing exit.
     pub exits: [[R; 3]; 4],
     /// Fractions of the light; 1 minus their sum is lost.
-    pub shares: [R; 4],
+    pub fractions: [R; 4],
     /// Number of interfaces up to the exit (from 1), by which the paths of neighboring rays are compared; 0 for a missing exit.
     pub interfaces: [R; 4],
 }
@@ -138,7 +138,7 @@ pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], directio
     let reflectance = optics_fresnel(-dot(direction, normal), index);
     let mut light = WobbleLight {
         exits: [optics_reflect(direction, normal), [zero; 3], [zero; 3], [zero; 3]],
-        shares: [reflectance, zero, zero, zero],
+        fractions: [reflectance, zero, zero, zero],
         interfaces: [one, zero, zero, zero],
     };
     let (entering, _) = optics_refract(direction, normal, one / index);
@@ -163,7 +163,7 @@ pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], directio
             let is_this = one.both(leaves, number.less(next + one.constant(0.5)));
             let is_this = one.both(is_this, next.less(number + one.constant(0.5)));
             light.exits[exit] = select(is_this, outside, light.exits[exit]);
-            light.shares[exit] = R::select(is_this, rest * (one - kept), light.shares[exit]);
+            light.fractions[exit] = R::select(is_this, rest * (one - kept), light.fractions[exit]);
             let passed = one.constant(f64::from(bounce + 2));
             light.interfaces[exit] = R::select(is_this, passed, light.interfaces[exit]);
         }
@@ -175,7 +175,7 @@ pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], directio
         let number = one.constant(exit as f64);
         let is_last =
             one.both(number.less(found + one.constant(0.5)), found.less(number + one.constant(0.5)));
-        light.shares[exit] = light.shares[exit] + R::select(is_last, rest, zero);
+        light.fractions[exit] = light.fractions[exit] + R::select(is_last, rest, zero);
     }
     light
 }

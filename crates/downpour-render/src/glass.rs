@@ -26,7 +26,7 @@ pub mod light;
 mod meet;
 mod pane;
 mod picture;
-mod seen;
+mod radiance;
 mod shade;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod water;

@@ -149,7 +149,7 @@ impl Population {
         let space = volume_of(volume, view);
         // The largest first, and a part of one bin.
         let mut room = f64::from(most);
-        let shares: Vec<f64> = bins
+        let fractions: Vec<f64> = bins
             .iter()
             .rev()
             .map(|bin| {
@@ -159,7 +159,7 @@ impl Population {
                 fraction
             })
             .collect();
-        let kept: Vec<(&Bin, f64)> = bins.iter().zip(shares.into_iter().rev()).collect();
+        let kept: Vec<(&Bin, f64)> = bins.iter().zip(fractions.into_iter().rev()).collect();
         let counts: Vec<u32> = (0..)
             .zip(&kept)
             .map(|(k, (bin, fraction))| poisson_at(bin.density * space * fraction, seed, k, COUNT))

@@ -235,14 +235,14 @@ fn drops_of_a_view_are_on_the_screen() {
         let options = SimulationOptions { volume, most_drops: 40_000, ..SimulationOptions::default() };
         let mut simulation =
             Simulation::new(&rain(25.0), &options, &input(&walk(0), Vec3::X)).expect("in range");
-        let mut shares = Vec::new();
+        let mut fractions = Vec::new();
         for step in 1..20 {
             let view = walk(step);
             simulation.advance(1.0 / 60.0, &input(&view, Vec3::X)).expect("in range");
             let seen = simulation.visible(&View { near: 1.0e-3, least_pixels: 0.0, ..view });
-            shares.push(seen.drops.len() as f64 / simulation.drops().len() as f64);
+            fractions.push(seen.drops.len() as f64 / simulation.drops().len() as f64);
         }
-        shares.iter().sum::<f64>() / shares.len() as f64
+        fractions.iter().sum::<f64>() / fractions.len() as f64
     };
     assert!(fraction(SimVolume::View) > 0.95);
     assert!(fraction(SimVolume::Box { size_m: [16.0; 3] }) < 0.3);

@@ -152,15 +152,15 @@ fn specimen_streak_radiance<R: Precision>(
     let Some(s) = specimen_wobble_meet(drop, ray) else { return R::sky(sky, ray.direction) };
     let zero = s.constant(0.0);
     let mut light = specimen_wobble_enter(drop, ray, s);
-    let mut radiance = scale(R::sky(sky, light.exit), light.share);
+    let mut radiance = scale(R::sky(sky, light.exit), light.fraction);
     for k in 0..=SPECIMEN_STREAK_REFLECTIONS {
         if !zero.less(light.rest) {
             break;
         }
         let least = if k == SPECIMEN_STREAK_REFLECTIONS { SPECIMEN_ALL } else { SPECIMEN_MIN_FRACTION };
         light = specimen_wobble_bounce(drop, &light, R::single(least));
-        if zero.less(light.share) {
-            radiance = add_scaled(radiance, R::sky(sky, light.exit), light.share);
+        if zero.less(light.fraction) {
+            radiance = add_scaled(radiance, R::sky(sky, light.exit), light.fraction);
         }
     }
     radiance

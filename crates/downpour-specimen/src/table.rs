@@ -296,11 +296,11 @@ fn set_phases(drop: &mut DropsDrop, options: &SpecimenOptions) {
         return;
     }
     let drawn = drop_oscillation_phase(seed_words(SEED), ID);
-    let [_, _, begin @ ..] = &mut drop.swing;
+    let [_, _, begin @ ..] = &mut drop.mode_phase;
     for ((begin, asked), drawn) in begin.iter_mut().zip(options.phase).zip(drawn) {
         let late = asked.rem_euclid(1.0) - f64::from(drawn);
         *begin = (f64::from(*begin) + late).rem_euclid(1.0) as f32;
     }
     let [_, a31] = options.oscillation.pair();
-    drop.swing[1] = a31 as f32 * drops_mask_right(drop.towards.into()).x;
+    drop.mode_phase[1] = a31 as f32 * drops_mask_right(drop.towards.into()).x;
 }

@@ -180,7 +180,7 @@ pub fn specimen_wobble_enter<R: Real>(
     let (inside, _) = optics_refract(ray.direction, normal, one / index);
     SpecimenLight {
         point,
-        share: reflectance,
+        fraction: reflectance,
         exit: optics_reflect(ray.direction, normal),
         rest: one - reflectance,
         inside: normalize(inside),
@@ -210,7 +210,7 @@ pub fn specimen_wobble_bounce<R: Real<Mask = bool>>(
     let rest = R::select(kept.less(least), zero, kept);
     SpecimenLight {
         point,
-        share: light.rest - rest,
+        fraction: light.rest - rest,
         exit: select(passes, through, light.exit),
         rest,
         inside: optics_reflect(light.inside, normal),

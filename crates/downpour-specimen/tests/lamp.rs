@@ -126,10 +126,10 @@ fn sphere_shows(scattering: f64, radius: f64) -> f64 {
         let b = (f64::from(k) + 0.5) / f64::from(steps);
         let (incident, refracted) = (ops::asin(b), ops::asin(b / WATER_INDEX));
         let mirrored: f64 = optics_fresnel(ops::cos(incident), WATER_INDEX);
-        let mut share = mirrored;
+        let mut fraction = mirrored;
         for p in 0..12 {
             if p > 0 {
-                share = (1.0 - mirrored) * (1.0 - mirrored) * ops::pow(mirrored, f64::from(p - 1));
+                fraction = (1.0 - mirrored) * (1.0 - mirrored) * ops::pow(mirrored, f64::from(p - 1));
             }
             // Van de Hulst, Light scattering by small particles, 12.21: the deflection of order p.
             let angle = if p == 0 {
@@ -142,7 +142,7 @@ fn sphere_shows(scattering: f64, radius: f64) -> f64 {
             let edge =
                 if s.abs() < 1.0e-12 { -2.0 * f64::from(c >= lamp) + 1.0 } else { (lamp - c) / s.abs() };
             let within = ops::acos(edge.clamp(-1.0, 1.0)) / PI;
-            sum += 2.0 * b / f64::from(steps) * share * within;
+            sum += 2.0 * b / f64::from(steps) * fraction * within;
         }
     }
     sum

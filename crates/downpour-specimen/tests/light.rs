@@ -16,8 +16,8 @@ const INDEX: f64 = 1.333;
 struct All<R>(Vec<([R; 3], R)>);
 
 impl<R> Receiver<R> for All<R> {
-    fn receive(&mut self, direction: [R; 3], share: R) {
-        self.0.push((direction, share));
+    fn receive(&mut self, direction: [R; 3], fraction: R) {
+        self.0.push((direction, fraction));
     }
 }
 
@@ -66,7 +66,7 @@ fn a_sphere_sends_light_where_the_formula_says() {
             0 => -(pi - 2.0 * incidence),
             _ => 2.0 * (incidence - refraction) + (k as f64 - 1.0) * (pi - 2.0 * refraction),
         });
-        for (k, (&(direction, share), turn)) in all.0.iter().zip(turns).enumerate() {
+        for (k, (&(direction, fraction), turn)) in all.0.iter().zip(turns).enumerate() {
             let expected = add_scaled(scale(ray.direction, ops::cos(turn)), outward, -ops::sin(turn));
             let apart = sub(normalize(direction), expected);
             assert!(dot(apart, apart).sqrt() < 1.0e-9, "order {k} at {offset}: {direction:?} {expected:?}");
@@ -76,7 +76,7 @@ fn a_sphere_sends_light_where_the_formula_says() {
             };
             // The last exit includes the light that is not followed.
             let slack = if k + 1 == all.0.len() { f64::from(SPECIMEN_MIN_FRACTION) } else { 1.0e-12 };
-            assert!((share - expected).abs() <= slack, "order {k} at {offset}: {share} {expected}");
+            assert!((fraction - expected).abs() <= slack, "order {k} at {offset}: {fraction} {expected}");
         }
     }
     assert!(seen > 100, "{seen}");

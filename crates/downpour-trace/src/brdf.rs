@@ -82,8 +82,8 @@ pub fn brdf_visible_normal(view: Vec3, alpha: f32, a: f32, b: f32) -> Vec3 {
     let radius = a.sqrt();
     let angle = std::f32::consts::TAU * b;
     let x = radius * ops::cos(angle);
-    let share = 0.5 * (1.0 + v.z);
-    let y = (1.0 - share) * (1.0 - x * x).max(0.0).sqrt() + share * (radius * ops::sin(angle));
+    let fraction = 0.5 * (1.0 + v.z);
+    let y = (1.0 - fraction) * (1.0 - x * x).max(0.0).sqrt() + fraction * (radius * ops::sin(angle));
     let z = (1.0 - x * x - y * y).max(0.0).sqrt();
     let normal = level * x + rising * y + v * z;
     let back = Vec3::new(alpha * normal.x, alpha * normal.y, normal.z.max(0.0));
@@ -160,8 +160,8 @@ mod tests {
 
     #[test]
     fn environment_fit_is_the_mirror_at_no_roughness() {
-        let share = brdf_environment(Vec3::splat(0.04), 0.0, 1.0);
-        assert!((share.x - 0.04).abs() < 0.01, "{share}");
+        let fraction = brdf_environment(Vec3::splat(0.04), 0.0, 1.0);
+        assert!((fraction.x - 0.04).abs() < 0.01, "{fraction}");
         assert!(brdf_environment(Vec3::ONE, 0.5, 0.5).x <= 1.01);
     }
 }

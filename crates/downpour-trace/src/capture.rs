@@ -40,7 +40,7 @@ pub fn environment_frame(picture: &RenderFrame, environment: &EnvironmentFrame) 
         grid: environment.grid,
         // No filter takes means over neighbors here, but the drops' lookups do.
         sky_rays,
-        ray_share: 1.0 / (LOOKUP_TEXELS * sky_rays.max(1) as f32),
+        ray_fraction: 1.0 / (LOOKUP_TEXELS * sky_rays.max(1) as f32),
         first_row: 0,
         projection,
         ..*picture

@@ -13,7 +13,7 @@ use downpour_shaders::render::scene::{SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY
 use glam::Vec3;
 
 /// Part of the pixels over which the filter takes means that one is.
-const WINDOW_SHARE: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
+const WINDOW_FRACTION: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
 
 /// A corner of a triangle. The same layout as `RenderCorner` in WGSL.
 #[repr(C)]
@@ -52,7 +52,7 @@ pub struct RenderFrame {
     /// Nearest distance of the next surface, meters.
     pub nearest: f32,
     /// Part of the rays that look for the light of a surface that one of them is.
-    pub ray_share: f32,
+    pub ray_fraction: f32,
     /// Kind of image that is traced: the picture, or a capture.
     pub projection: u32,
     /// 1: the capture leaves parallel light out, since drops are lit by it on their own ([`downpour_render::rain::light`]).
@@ -159,7 +159,7 @@ impl RenderFrame {
             sky_rays,
             first_row: 0,
             nearest: (extent * 1.0e-5).max(far.min(1.0e5) * 1.0e-6).max(1.0e-6),
-            ray_share: WINDOW_SHARE / sky_rays.max(1) as f32,
+            ray_fraction: WINDOW_FRACTION / sky_rays.max(1) as f32,
             projection: SCENE_PICTURE,
             suns_out: 0,
             puddles: scene.puddles,

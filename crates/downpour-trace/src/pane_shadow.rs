@@ -136,7 +136,7 @@ impl SceneView<'_> {
 
     /// Fraction of light that comes through the pane to a position from a distance along a direction; `spread` is half the angle
     /// that its source takes. 1 where the pane is not between them.
-    pub(crate) fn pane_shadow_share(
+    pub(crate) fn pane_shadow_fraction(
         &self,
         position: Vec3,
         direction: Vec3,
@@ -204,18 +204,18 @@ mod tests {
         (data, 2.2e-3 / 0.333)
     }
 
-    fn share(data: &SceneData, x: f32, y: f32, away: f32) -> f32 {
+    fn fraction(data: &SceneData, x: f32, y: f32, away: f32) -> f32 {
         let eye = Viewpoint { eye: Vec3::ZERO, forward: Vec3::Z, up: Vec3::Y, fov_y: 1.0 };
         let frame = RenderFrame::new(data, &eye, [8, 8], 1, 1, 0).expect("a frame");
         let view = SceneView { data, frame: &frame };
-        view.pane_shadow_share(Vec3::new(x - 0.1, 0.05 - y, -away), Vec3::Z, 10.0, 0.0)
+        view.pane_shadow_fraction(Vec3::new(x - 0.1, 0.05 - y, -away), Vec3::Z, 10.0, 0.0)
     }
 
     /// The mean over a period of the drops, far from the pane's edges.
     fn mean(data: &SceneData, away: f32) -> f32 {
         let n = 64;
         let step = 8.0e-3 / n as f32;
-        let at = |k: u32| share(data, 0.1 + (k % n) as f32 * step, 0.05 + (k / n) as f32 * step, away);
+        let at = |k: u32| fraction(data, 0.1 + (k % n) as f32 * step, 0.05 + (k / n) as f32 * step, away);
         (0..n * n).map(at).sum::<f32>() / (n * n) as f32
     }
 
@@ -243,11 +243,11 @@ mod tests {
         let (gap_x, gap_y) = (bx + 4.0e-3, by + 4.0e-3);
         assert!((ax - bx).abs() < 9.0e-3 && (ay - by).abs() < 9.0e-3);
         // Touching the pane there are no shadows.
-        assert!((share(&data, bx, by, 1.0e-5) - share(&data, gap_x, gap_y, 1.0e-5)).abs() < 0.02);
-        assert!(share(&data, bx, by, focus) > 4.0);
-        assert!(share(&data, bx + 1.5e-3, by, focus) < 0.2);
+        assert!((fraction(&data, bx, by, 1.0e-5) - fraction(&data, gap_x, gap_y, 1.0e-5)).abs() < 0.02);
+        assert!(fraction(&data, bx, by, focus) > 4.0);
+        assert!(fraction(&data, bx + 1.5e-3, by, focus) < 0.2);
         // Far away a drop's shadow has what the light of all is: their cover of pi / 16.
-        let (dark, light) = (share(&data, bx, by, 1.0), share(&data, gap_x, gap_y, 1.0));
+        let (dark, light) = (fraction(&data, bx, by, 1.0), fraction(&data, gap_x, gap_y, 1.0));
         let cover = std::f32::consts::PI * 4.0 / 64.0;
         assert!((dark / (light - dark) - cover).abs() < 0.02, "{dark} {light}");
     }
@@ -258,7 +258,7 @@ mod tests {
         let x = 4.0e-3 + 12.0 * 8.0e-3;
         let y = 6.0e-3 + 5.0 * 8.0e-3;
         for away in [0.01, 0.1, 1.0] {
-            assert!(share(&data, x, y, away) > 4.0 && share(&data, x + 1.5e-3, y, away) < 0.2);
+            assert!(fraction(&data, x, y, away) > 4.0 && fraction(&data, x + 1.5e-3, y, away) < 0.2);
         }
     }
 
@@ -266,7 +266,7 @@ mod tests {
     fn beside_the_pane_and_before_it_nothing_changes() {
         let (data, _) = scene(PaneShadows::Lens);
         for (x, y, away) in [(-0.01, 0.05, 0.1), (0.1, 0.11, 0.1), (0.1, 0.05, -0.1), (0.1, 0.05, 11.0)] {
-            assert_eq!(share(&data, x, y, away), 1.0, "{x} {y} {away}");
+            assert_eq!(fraction(&data, x, y, away), 1.0, "{x} {y} {away}");
         }
     }
 }

@@ -25,9 +25,9 @@ mod plan;
 use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
-    PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_PART, PATH_CURVED_SHARE, PATH_GLANCE,
-    PATH_LATER_SHARE, PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE,
-    PATH_SHINES,
+    PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_FRACTION, PATH_CURVED_PART, PATH_LATER_FRACTION,
+    PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE,
+    PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
@@ -41,9 +41,11 @@ use crate::scene::SceneView;
 use crate::scene::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
 use crate::surface::Surface;
 pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words};
-use draw::{path_onward, path_replaced, path_water_ray, path_water_share};
+use draw::{path_onward, path_replaced, path_water_fraction, path_water_ray};
 pub(crate) use plan::path_max;
-use plan::{PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface};
+use plan::{
+    PathPlan, path_albedo, path_cover, path_open, path_secondary, path_submerged, path_water_surface,
+};
 
 /// Result of tracing a ray of the camera.
 #[derive(Clone, Copy, Debug)]
@@ -140,7 +142,7 @@ impl PathLight {
     };
 
     /// With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
-    fn path_gathered(self, ray: &ScatterRay, radiance: Vec3, of_shown: bool) -> Self {
+    fn path_accumulated(self, ray: &ScatterRay, radiance: Vec3, of_shown: bool) -> Self {
         let of_base = ray.diffuse * radiance;
         Self {
             base: if of_shown { self.base } else { self.base + of_base },
@@ -163,7 +165,7 @@ struct PathWater {
     /// Fraction of the light of what lies beneath that it lets through.
     clear: f32,
     /// Albedo of the water itself.
-    murk: Vec3,
+    scattering_albedo: Vec3,
 }
 
 /// A surface that a ray of the camera has met.
@@ -239,8 +241,13 @@ impl SceneView<'_> {
                 let ripple = self.puddle_water_ripple(met.puddle, position, footprint, met.depth, met.open);
                 found = path_water_surface(start, towards, distance, ripple);
                 material = PUDDLE_WATER_MATERIAL;
-                water =
-                    Some(PathWater { found: met, ripple, level: position.y, clear: 1.0, murk: Vec3::ZERO });
+                water = Some(PathWater {
+                    found: met,
+                    ripple,
+                    level: position.y,
+                    clear: 1.0,
+                    scattering_albedo: Vec3::ZERO,
+                });
             } else if layer == 0
                 && path_same_surface(last, material, found.facet, found.position, hit.distance)
             {
@@ -249,7 +256,7 @@ impl SceneView<'_> {
             if let (true, Some(water)) = (under, &water) {
                 let rise = (water.level - found.position.y).max(0.0);
                 depth = Vec2::new(rise + (water.found.depth - water.found.rise).max(0.0), rise);
-                found = path_soaked(&found, water.clear, water.murk);
+                found = path_submerged(&found, water.clear, water.scattering_albedo);
             }
             if layer == 0 {
                 path.distance = distance;
@@ -270,8 +277,15 @@ impl SceneView<'_> {
                 let rippled = water.ripple.z > PUDDLE_WATER_RIPPLED;
                 let mirrors = frame.sky_rays.max(if rippled { PUDDLE_WATER_RAYS } else { 1 });
                 let (drawn, replaced) = (rippled && free, !rippled && free);
-                plan =
-                    PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn, kept: drawn, replaced, ..plan };
+                plan = PathPlan {
+                    mirrors,
+                    gloss: Vec3::ONE,
+                    fraction: 1.0,
+                    drawn,
+                    kept: drawn,
+                    replaced,
+                    ..plan
+                };
             } else if !unlit {
                 plan = self.path_plan(&found, -towards, cone * hit.distance, told, free && !under);
             }
@@ -287,7 +301,7 @@ impl SceneView<'_> {
                 let puddle = data.puddle_load(water.found.puddle);
                 towards = puddle_water_refracted(towards, found.normal);
                 let steep = (-towards.y).max(0.1);
-                water.murk = puddle.murk;
+                water.scattering_albedo = puddle.scattering_albedo;
                 water.clear =
                     ops::exp(-puddle.extinction * water.found.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
                 let aside = (water.found.depth - water.found.rise).max(0.0) / steep;
@@ -364,12 +378,12 @@ impl SceneView<'_> {
                 }
                 let Some(hit) = data.surface_hit(from, ray.along, frame.nearest, BVH_FAR) else {
                     let beyond = data.sky_cone(ray.along, ray.width);
-                    light = light.path_gathered(&ray, beyond, of_shown);
+                    light = light.path_accumulated(&ray, beyond, of_shown);
                     break;
                 };
                 let found = data.surface_at(&hit, from, ray.along, ray.width);
-                let mut found = path_glance(&found, ray.roughness);
-                let lamps = if ray.roughness < PATH_GLANCE { PATH_MIRROR_LAMPS } else { 1 };
+                let mut found = path_secondary(&found, ray.roughness);
+                let lamps = if ray.roughness < PATH_SECONDARY_ROUGHNESS { PATH_MIRROR_LAMPS } else { 1 };
                 let standoff = hit.distance * ray.width * 0.5;
                 // Where there are lamps, they stand for what shines; small bright things would be noise.
                 let shines = ray.roughness < PATH_SHINES || frame.light_count == 0;
@@ -380,7 +394,7 @@ impl SceneView<'_> {
                         + self.scene_direct(&found, -ray.along, lamps, numbers[3], standoff, Vec2::ZERO);
                 }
                 let cover = path_cover(&found);
-                light = light.path_gathered(&ray, lit * cover, of_shown);
+                light = light.path_accumulated(&ray, lit * cover, of_shown);
                 if unlit && cover == 1.0 {
                     break;
                 }
@@ -395,9 +409,9 @@ impl SceneView<'_> {
                     }
                 } else if of_shown && light.distance < 0.0 {
                     leaves = PathLeave::Mirror;
-                    if path_max(path_albedo(&found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                    if path_max(path_albedo(&found)) > 0.0 || found.roughness >= PATH_SECONDARY_ROUGHNESS {
                         leaves = PathLeave::Shown;
-                        found = path_glance(&found, 1.0);
+                        found = path_secondary(&found, 1.0);
                         light.factor = ray.mirror * (path_albedo(&found) + found.normal_reflectance * 0.5);
                         light.distance = hit.distance;
                         light.normal = found.normal;
@@ -407,7 +421,7 @@ impl SceneView<'_> {
                     ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
                 }
                 let own = (path_albedo(&found) + found.normal_reflectance) * ambient;
-                light = light.path_gathered(&ray, own, of_shown);
+                light = light.path_accumulated(&ray, own, of_shown);
                 given += lit;
                 if leaves == PathLeave::Straight {
                     ray.diffuse *= open;
@@ -433,26 +447,26 @@ impl SceneView<'_> {
         let [mut a, mut b, number, _] = numbers;
         let mut gloss = Vec3::ONE;
         let mut chance = scatter_chance(at.diffuse, at.normal_reflectance);
-        let (mut share, mut weight) = (PATH_LATER_SHARE, 1.0);
+        let (mut fraction, mut weight) = (PATH_LATER_FRACTION, 1.0);
         if leaves == PathLeave::Shown {
             chance = 0.0;
         }
         if leaves == PathLeave::First {
             gloss = plan.gloss;
             chance = if is_mirror { 1.0 } else { plan.chance };
-            share = plan.share;
+            fraction = plan.fraction;
             if is_mirror && !plan.kept {
                 // Few rays: far out in the lobe they would be noise.
-                (share, a) = (PATH_CURVED_SHARE, a * PATH_CURVED_PART);
+                (fraction, a) = (PATH_CURVED_FRACTION, a * PATH_CURVED_PART);
             }
             if a >= chance {
                 let own = (a - chance) / (1.0 - chance);
-                let (numbers, factor) = self.path_candidate(at, own, b, number, share);
+                let (numbers, factor) = self.path_candidate(at, own, b, number, fraction);
                 (a, b, weight) = (chance + numbers.x * (1.0 - chance), numbers.y, factor);
-                share /= PATH_CANDIDATES as f32;
+                fraction /= PATH_CANDIDATES as f32;
             }
         }
-        let mut ray = scatter_draw(at, view, gloss, chance, a, b, share);
+        let mut ray = scatter_draw(at, view, gloss, chance, a, b, fraction);
         ray.diffuse *= weight;
         ray.mirror *= weight;
         ray
@@ -535,12 +549,12 @@ impl ViewPath {
     ) -> f32 {
         let surface = &meeting.surface;
         let all = meeting.plan.mirrors as f32;
-        let share = path_water_share(ripple, -towards);
+        let fraction = path_water_fraction(ripple, -towards);
         self.radiance += throughput * meeting.direct;
         if meeting.plan.kept {
             self.mirror = PathSlot {
-                light: light.mirror / (all * share).max(1.0e-6),
-                factor: throughput * share,
+                light: light.mirror / (all * fraction).max(1.0e-6),
+                factor: throughput * fraction,
                 slack: meeting.slack,
                 roughness: surface.roughness,
                 normal: towards - surface.normal * (2.0 * towards.dot(surface.normal)),
@@ -550,6 +564,6 @@ impl ViewPath {
             self.radiance += throughput * light.mirror / all;
             self.path_show_mirrored(light, throughput / all, meeting);
         }
-        1.0 - share
+        1.0 - fraction
     }
 }

@@ -83,7 +83,7 @@ pub fn scatter_gloss(normal_reflectance: Vec3, roughness: f32, cosine: f32, shar
 }
 
 /// A ray of a surface: of its gloss where `a` is below `chance`, else of its diffuse base. `view` points to the viewer,
-/// `gloss` is what the weight of the gloss is divided by, `share` the part of all rays that this is.
+/// `gloss` is what the weight of the gloss is divided by, `fraction` the part of all rays that this is.
 pub(crate) fn scatter_draw(
     surface: &Surface,
     view: Vec3,
@@ -91,7 +91,7 @@ pub(crate) fn scatter_draw(
     chance: f32,
     a: f32,
     b: f32,
-    share: f32,
+    fraction: f32,
 ) -> ScatterRay {
     let normal = surface.normal;
     let alpha = scatter_alpha(surface.roughness);
@@ -125,7 +125,7 @@ pub(crate) fn scatter_draw(
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
     let density = (glossy * chance + cosine * (1.0 - chance)).max(SCATTER_MIN_DIVISOR);
     let mut ray = none;
-    ray.width = (SCATTER_DISK * share / density).sqrt().min(SCATTER_MAX_WIDTH);
+    ray.width = (SCATTER_DISK * fraction / density).sqrt().min(SCATTER_MAX_WIDTH);
     if chance < 1.0 {
         ray.diffuse = (Vec3::ONE - fresnel) * (cosine / density);
     }

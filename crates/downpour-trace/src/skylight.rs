@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::path::PathSlot;
 use crate::scene::SceneView;
-use crate::trace::{TraceGather, TraceSlot, trace_unpack};
+use crate::trace::{TraceAmbient, TraceSlot, trace_unpack};
 
 /// Weight of a pixel by its distance along an edge, in pixels.
 #[must_use]
@@ -83,9 +83,9 @@ struct Pixels<'a> {
 
 impl SceneView<'_> {
     /// Light that sky and surfaces add to each pixel.
-    pub(crate) fn skylight(&self, gather: &[TraceGather]) -> Vec<[f32; 3]> {
+    pub(crate) fn skylight(&self, ambient: &[TraceAmbient]) -> Vec<[f32; 3]> {
         let eye = self.frame.camera.eye;
-        let slots: Vec<[SkylightSlot; 2]> = gather
+        let slots: Vec<[SkylightSlot; 2]> = ambient
             .par_iter()
             .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
             .collect();

@@ -30,7 +30,7 @@ use downpour_render::light::LightSource;
 use downpour_render::tone::{tone_automatic_exposure, tone_luminance};
 pub use error::StageError;
 pub use eye::CameraChoice;
-use eye::Seen;
+use eye::CameraView;
 
 /// The most triangles of a scene, all copies counted.
 pub const MAX_TRIANGLES: u64 = 1 << 22;
@@ -104,7 +104,7 @@ impl Stage {
         }
         let pose = posed(loaded, time_s);
         check_cost(loaded, &pose)?;
-        let seen = Seen::of(weather, loaded, &pose, time_s);
+        let seen = CameraView::of(weather, loaded, &pose, time_s);
         let anchor = seen.as_ref().map_or_else(|| middle(loaded, &pose), |seen| seen.eye);
         let origin = origin_near(anchor);
         let mut builder = SceneBuilder::new();
@@ -153,7 +153,7 @@ impl Stage {
     /// # Errors
     /// [`StageError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
     pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
-        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s), time_s) else {
+        let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
             return Ok(self.clone());
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
@@ -179,7 +179,7 @@ impl Stage {
     /// # Errors
     /// As [`Stage::new`].
     pub fn view_at(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, StageError> {
-        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s), time_s) else {
+        let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
             return Ok(Self::new(weather, loaded, time_s)?.view()?);
         };
         let origin = origin_near(seen.eye);
@@ -240,7 +240,7 @@ fn origin_near(eye: DVec3) -> DVec3 {
 }
 
 /// Distances from the eye between which drops are drawn, m.
-fn depth(weather: &Weather, seen: Option<&Seen>) -> [f64; 2] {
+fn depth(weather: &Weather, seen: Option<&CameraView>) -> [f64; 2] {
     let near = weather.camera.near.or_else(|| seen?.near).unwrap_or(weather::NEAR_M);
     let far = weather.camera.far.or_else(|| seen?.far).unwrap_or(weather::FAR_M);
     [near, far]
@@ -289,10 +289,10 @@ fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
     let apart_s = weather.camera.shutter.max(MIN_INTERVAL_S);
     let at = |half: f64| {
         let time_s = time_s + half * apart_s;
-        Seen::of(weather, loaded, &posed(loaded, time_s), time_s)
+        CameraView::of(weather, loaded, &posed(loaded, time_s), time_s)
     };
     match (at(-0.5), at(0.5)) {
-        (Some(before), Some(after)) => Seen::motion(&before, &after, apart_s),
+        (Some(before), Some(after)) => CameraView::motion(&before, &after, apart_s),
         _ => EyeMotion::default(),
     }
 }

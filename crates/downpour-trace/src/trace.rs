@@ -33,10 +33,10 @@ pub struct TraceSlot {
     pub factor: [u32; 2],
 }
 
-/// Light of sky and surfaces that a pixel shows. The same layout as `TraceGather` in WGSL.
+/// Light of sky and surfaces that a pixel shows. The same layout as `TraceAmbient` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct TraceGather {
+pub struct TraceAmbient {
     /// On the diffuse base of the first opaque surface, over pi.
     pub base: TraceSlot,
     /// In the first gloss or mirror.
@@ -115,13 +115,13 @@ impl TraceSum {
         }
     }
 
-    /// The mean, where `share` is one over the number of all samples.
-    fn trace_mean(&self, share: f32, eye: Vec3) -> TraceSlot {
+    /// The mean, where `fraction` is one over the number of all samples.
+    fn trace_mean(&self, fraction: f32, eye: Vec3) -> TraceSlot {
         if self.weight <= 0.0 {
             return TraceSlot::default();
         }
         let slot = &self.slot;
-        let mean = PathSlot { light: slot.light / self.weight, factor: slot.factor * share, ..*slot };
+        let mean = PathSlot { light: slot.light / self.weight, factor: slot.factor * fraction, ..*slot };
         trace_pack(&mean, eye)
     }
 }
@@ -138,7 +138,7 @@ impl SceneView<'_> {
     /// A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and
     /// surfaces on the first surface is left out; it is the second of the two.
     #[must_use]
-    pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceGather) {
+    pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceAmbient) {
         let is_picture = self.frame.projection == SCENE_PICTURE;
         let (mut sum, mut nearest) = (Vec3::ZERO, SCENE_FAR);
         let (mut base, mut mirror) = (TraceSum::NONE, TraceSum::NONE);
@@ -169,31 +169,32 @@ impl SceneView<'_> {
             }
             last = path;
         }
-        let share = 1.0 / f32::from(count);
+        let fraction = 1.0 / f32::from(count);
         if !is_picture {
             let is_sky = nearest >= SCENE_FAR && self.frame.projection == SCENE_OCTAHEDRAL;
-            let seen = if is_sky { capture_sky(self, x, y) } else { sum * share };
+            let seen = if is_sky { capture_sky(self, x, y) } else { sum * fraction };
             let radiance = seen + capture_suns(self, x, y);
-            return (radiance.extend(nearest), TraceGather::default());
+            return (radiance.extend(nearest), TraceAmbient::default());
         }
-        let gather = TraceGather { base: base.trace_mean(share, eye), mirror: mirror.trace_mean(share, eye) };
-        ((sum * share).extend(nearest), gather)
+        let ambient =
+            TraceAmbient { base: base.trace_mean(fraction, eye), mirror: mirror.trace_mean(fraction, eye) };
+        ((sum * fraction).extend(nearest), ambient)
     }
 
     /// The whole picture, rows from the top, in parallel; the same bits for any number of threads.
     #[must_use]
     pub fn picture(&self) -> Vec<[f32; 4]> {
         let width = self.frame.camera.width;
-        let (mut picture, gather): (Vec<[f32; 4]>, Vec<TraceGather>) = (0..self.frame.camera.height)
+        let (mut picture, ambient): (Vec<[f32; 4]>, Vec<TraceAmbient>) = (0..self.frame.camera.height)
             .into_par_iter()
             .flat_map_iter(|y| {
                 (0..width).map(move |x| {
-                    let (pixel, gather) = self.trace_pixel(x, y);
-                    (pixel.to_array(), gather)
+                    let (pixel, ambient) = self.trace_pixel(x, y);
+                    (pixel.to_array(), ambient)
                 })
             })
             .unzip();
-        let shown = self.skylight(&gather);
+        let shown = self.skylight(&ambient);
         for (pixel, shown) in picture.iter_mut().zip(shown) {
             for k in 0..3 {
                 pixel[k] += shown[k];

@@ -103,7 +103,7 @@ fn look(puddle: &Puddle) -> PuddleLook {
         scale: puddle.ripple_scale as f32,
         angle: puddle.ripple_turn as f32,
         influence: puddle.ripple_influence as f32,
-        murk: Vec3::from(puddle.color.map(|part| part as f32)),
+        scattering_albedo: Vec3::from(puddle.color.map(|part| part as f32)),
         extinction: (1.0 / puddle.attenuation_length) as f32,
         ..PuddleLook::default()
     }

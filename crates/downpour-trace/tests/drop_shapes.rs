@@ -183,12 +183,12 @@ fn the_model_of_a_sphere_shows_what_a_sphere_shows() -> Outcome {
     let shown = picture(&masks, &scene, 6.0e-3)?;
     let radius = 0.5 * 6.0e-3 * scale();
     for row in [48, 56, 66, 75, 85, 94, 104, 110] {
-        let share = (0.5 * SIZE as f64 - (row as f64 + 0.5)) / radius;
-        let down = 2.0 * (ops::asin(share) - ops::asin(share / 1.3334));
+        let fraction = (0.5 * SIZE as f64 - (row as f64 + 0.5)) / radius;
+        let down = 2.0 * (ops::asin(fraction) - ops::asin(fraction / 1.3334));
         let [red, green, ..] = shown.rain[row * SIZE + SIZE / 2].map(f64::from);
         let (found, expected) = (green / red, 0.5 - 0.5 * ops::sin(down));
         // 2 % to 5 % are reflected.
-        assert!((found - expected).abs() < 0.04, "{share}: {found}, not {expected}");
+        assert!((found - expected).abs() < 0.04, "{fraction}: {found}, not {expected}");
     }
     Ok(())
 }

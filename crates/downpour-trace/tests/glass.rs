@@ -256,8 +256,8 @@ fn shown(spread: f64, pane: f64, radius: f64) -> f64 {
         }
         let normal = ops::asin(x / sphere);
         let out = normal - ops::asin(index * ops::sin(normal - inside));
-        let share = (1.0 - out * out / (spread * spread)).max(0.0);
-        share * 2.0 / (std::f64::consts::PI * spread * spread) * std::f64::consts::TAU * angle * step
+        let fraction = (1.0 - out * out / (spread * spread)).max(0.0);
+        fraction * 2.0 / (std::f64::consts::PI * spread * spread) * std::f64::consts::TAU * angle * step
     };
     (0..6000).map(ring).sum()
 }
@@ -379,10 +379,11 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
     let open = lit(&stage.data)?;
     set_pane(&pane, &mut stage)?;
     let through = lit(&stage.data)?;
-    let shares: Vec<f32> = through.iter().zip(&open).map(|(a, b)| a / b).collect();
-    let mean = shares.iter().sum::<f32>() / shares.len() as f32;
+    let fractions: Vec<f32> = through.iter().zip(&open).map(|(a, b)| a / b).collect();
+    let mean = fractions.iter().sum::<f32>() / fractions.len() as f32;
     assert!((0.85..0.97).contains(&mean), "{mean}");
-    let dark = shares.iter().filter(|&&share| share < 0.5 * mean).count() as f32 / shares.len() as f32;
+    let dark =
+        fractions.iter().filter(|&&fraction| fraction < 0.5 * mean).count() as f32 / fractions.len() as f32;
     assert!((0.01..0.5).contains(&dark), "{dark} of the sill is in shadow");
     // The same again takes the place of the first.
     let rows = stage.data.table.len();

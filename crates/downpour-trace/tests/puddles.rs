@@ -115,7 +115,7 @@ fn dark_ground_is_darker_under_water_and_mirrors_by_fresnel() -> Outcome {
 /// Light goes through 1/cos of the depth to the eye and 1.2 depths down; what is lost is the water's own color.
 #[test]
 fn deep_murky_water_has_its_own_color() -> Outcome {
-    let look = PuddleLook { extinction: 10.0, murk: Vec3::splat(0.3), ..PuddleLook::default() };
+    let look = PuddleLook { extinction: 10.0, scattering_albedo: Vec3::splat(0.3), ..PuddleLook::default() };
     let beneath = |albedo: f32| albedo * 0.525_409 / (1.0 - albedo * 0.474_591);
     for depth in [0.001f32, 0.05, 5.0] {
         let mut scene = flat(0.8);
@@ -136,16 +136,16 @@ fn a_dish_of_the_model_fills_to_its_rim() -> Outcome {
     let level_ground = Relief { rms_m: 0.0, seed: 0 };
     // The ground goes on rising to 0.008 m over the dish's nominal rim.
     let (rim, radius) = (0.048f32, 1.2f32.sqrt());
-    for share in [1.0f32, 0.5] {
-        let map = PuddleMap::found(&scene, &SQUARE, [150, 150], &level_ground, [share, 1.0, 0.001]);
-        let deep = rim * share;
-        let wet_radius = radius * share.sqrt();
+    for fraction in [1.0f32, 0.5] {
+        let map = PuddleMap::found(&scene, &SQUARE, [150, 150], &level_ground, [fraction, 1.0, 0.001]);
+        let deep = rim * fraction;
+        let wet_radius = radius * fraction.sqrt();
         let area = std::f32::consts::PI * wet_radius * wet_radius;
         // A paraboloid has half of the volume of the cylinder around it.
         let volume = 0.5 * area * deep;
-        assert!((map.deepest_m() / deep - 1.0).abs() < 0.03, "{share}: {}", map.deepest_m());
-        assert!((map.area_m2() / area - 1.0).abs() < 0.03, "{share}: {} {area}", map.area_m2());
-        assert!((map.volume_m3() / volume - 1.0).abs() < 0.05, "{share}: {} {volume}", map.volume_m3());
+        assert!((map.deepest_m() / deep - 1.0).abs() < 0.03, "{fraction}: {}", map.deepest_m());
+        assert!((map.area_m2() / area - 1.0).abs() < 0.03, "{fraction}: {} {area}", map.area_m2());
+        assert!((map.volume_m3() / volume - 1.0).abs() < 0.05, "{fraction}: {} {volume}", map.volume_m3());
     }
     Ok(())
 }
@@ -249,8 +249,8 @@ fn a_weathers_puddles_lie_on_its_stage() -> Outcome {
     let spot = Ground { size: Vec2::new(4.0, 4.0), ..SQUARE };
     let map =
         PuddleMap::found(&street, &spot, [100, 100], &Relief { rms_m: 2.2e-3, seed: 1 }, [1.0, 0.1, 1.5e-3]);
-    let share = map.area_m2() / 16.0;
-    assert!((0.02..0.6).contains(&share), "{share}");
+    let fraction = map.area_m2() / 16.0;
+    assert!((0.02..0.6).contains(&fraction), "{fraction}");
     assert!(map.deepest_m() < 0.02, "{}", map.deepest_m());
     Ok(())
 }

@@ -48,10 +48,10 @@ fn sky(radiance: impl Fn(f32) -> [f32; 3]) -> SceneData {
 fn covered(picture: &Picture) -> (f64, [f64; 2]) {
     let (mut area, mut position) = (0.0, [0.0; 2]);
     for (i, pixel) in picture.rain.iter().enumerate() {
-        let share = f64::from(1.0 - pixel[3]);
-        area += share;
-        position[0] += share * ((i % SIZE[0] as usize) as f64 + 0.5);
-        position[1] += share * ((i / SIZE[0] as usize) as f64 + 0.5);
+        let fraction = f64::from(1.0 - pixel[3]);
+        area += fraction;
+        position[0] += fraction * ((i % SIZE[0] as usize) as f64 + 0.5);
+        position[1] += fraction * ((i / SIZE[0] as usize) as f64 + 0.5);
     }
     (area, position.map(|p| p / area))
 }

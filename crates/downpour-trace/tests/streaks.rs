@@ -82,10 +82,10 @@ fn covered(picture: &Picture) -> f64 {
 fn middle(picture: &Picture) -> [f64; 2] {
     let (mut area, mut position) = (0.0, [0.0; 2]);
     for (i, pixel) in picture.rain.iter().enumerate() {
-        let share = f64::from(1.0 - pixel[3]);
-        area += share;
-        position[0] += share * ((i % picture.size[0] as usize) as f64 + 0.5);
-        position[1] += share * ((i / picture.size[0] as usize) as f64 + 0.5);
+        let fraction = f64::from(1.0 - pixel[3]);
+        area += fraction;
+        position[0] += fraction * ((i % picture.size[0] as usize) as f64 + 0.5);
+        position[1] += fraction * ((i / picture.size[0] as usize) as f64 + 0.5);
     }
     position.map(|p| p / area)
 }
@@ -325,8 +325,8 @@ fn streaks_of_a_view_upwards_meet_above() -> Outcome {
         for (i, pixel) in shown.rain.iter().enumerate() {
             let x = (i % 160) as f64 + 0.5 - 80.0;
             let y = (i / 160) as f64 + 0.5 - 60.0;
-            let share = f64::from(1.0 - pixel[3]);
-            (xx, xy, yy) = (xx + share * x * x, xy + share * x * y, yy + share * y * y);
+            let fraction = f64::from(1.0 - pixel[3]);
+            (xx, xy, yy) = (xx + fraction * x * x, xy + fraction * x * y, yy + fraction * y * y);
         }
         let narrow = 0.5 * (xx + yy - ((xx - yy) * (xx - yy) + 4.0 * xy * xy).sqrt());
         let along = xx + yy - narrow;

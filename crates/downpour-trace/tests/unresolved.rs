@@ -75,7 +75,7 @@ fn phase() -> Vec<f64> {
         let (ci, cr) = (ops::cos(i), ops::cos(r));
         let amplitudes = [(ci - index * cr) / (ci + index * cr), (index * ci - cr) / (index * ci + cr)];
         for order in 0..4 {
-            let share: f64 = amplitudes
+            let fraction: f64 = amplitudes
                 .iter()
                 .map(|a| {
                     let reflected = a * a;
@@ -85,7 +85,7 @@ fn phase() -> Vec<f64> {
                 .sum();
             let turn = 2.0 * i - 2.0 * f64::from(order) * r + (f64::from(order) - 1.0) * PI;
             let angle = ops::acos(ops::cos(turn).clamp(-1.0, 1.0));
-            bins[((angle / PI * BINS as f64) as usize).min(BINS - 1)] += share / f64::from(rays);
+            bins[((angle / PI * BINS as f64) as usize).min(BINS - 1)] += fraction / f64::from(rays);
         }
     }
     for (k, bin) in bins.iter_mut().enumerate() {

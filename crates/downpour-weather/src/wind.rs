@@ -272,8 +272,8 @@ fn turning(
         let steps = ((to - from).abs() / TURN_STEP_DEG).min((end - start) * 1e5).ceil().max(1.0);
         let mut step = 0.0;
         while step < steps {
-            let share = step / steps;
-            keys.push((start + (end - start) * share, towards(from + (to - from) * share)));
+            let fraction = step / steps;
+            keys.push((start + (end - start) * fraction, towards(from + (to - from) * fraction)));
             step += 1.0;
         }
     }

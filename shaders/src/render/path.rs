@@ -47,7 +47,7 @@ shared_constants! {
         /// See [`PATH_PLAIN_GLOSS`].
         PATH_CURVED: f32 = 0.3;
         /// Part of all rays that one is of a gloss of which no means over neighbors are taken: there are some per pixel.
-        PATH_CURVED_SHARE: f32 = 0.25;
+        PATH_CURVED_FRACTION: f32 = 0.25;
         /// The inner part of such a gloss that rays are drawn from.
         PATH_CURVED_PART: f32 = 0.8;
         /// Facets of rippled water of which the reflectance is the mean.
@@ -64,15 +64,15 @@ shared_constants! {
         /// As chance has it.
         PATH_ONWARD: u32 = 4;
         /// Roughness of a path from which surfaces are seen at a glance: as diffuse, with one lamp for all.
-        PATH_GLANCE: f32 = 0.25;
+        PATH_SECONDARY_ROUGHNESS: f32 = 0.25;
         /// The most that a surface reflects as gloss, seen at a glance.
-        PATH_GLANCE_GLOSS: f32 = 0.05;
+        PATH_SECONDARY_MAX_SPECULAR: f32 = 0.05;
         /// Roughness of a path from which lamps stand for what shines.
         PATH_SHINES: f32 = 0.6;
         /// Lamps that are drawn for all where a mirror shows a surface.
         PATH_MIRROR_LAMPS: u32 = 4;
         /// Part of all rays that one is which has met a surface.
-        PATH_LATER_SHARE: f32 = 0.01;
+        PATH_LATER_FRACTION: f32 = 0.01;
         /// Fraction of light let through from which a surface is seen through.
         PATH_OPEN: f32 = 0.02;
         /// Part of its surroundings that surfaces take up, for a surface that a path of surfaces has led to.

@@ -19,7 +19,7 @@ fn glass_claim_drop(cell: vec2i) {
     }
     let class_of = glass_size_class(mass);
     let row = glass_size_row(
-        glass_claim_sizes.rows[class_of], glass_claim_sizes.rows[class_of + 1u], glass_size_share(mass));
+        glass_claim_sizes.rows[class_of], glass_claim_sizes.rows[class_of + 1u], glass_size_fraction(mass));
     let key = glass_size_key(mass, index);
     let moves = glass_claim_motion[index].x != 0u;
     let clock = glass_claim_frame.first_clock + glass_claim_totals[GLASS_TOTAL_TICK] * glass_claim_frame.clock_step;

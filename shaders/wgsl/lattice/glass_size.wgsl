@@ -40,7 +40,7 @@ fn glass_size_floor(class_of: u32) -> u32 {
 }
 
 // Fraction of a mass between its class and the next, in units of 1/256.
-fn glass_size_share(mass: u32) -> u32 {
+fn glass_size_fraction(mass: u32) -> u32 {
     if mass < 16u {
         return 0u;
     }

@@ -52,7 +52,7 @@ fn puddle_step_sums(block: mat4x4f, column: i32, row: i32, links: vec4u, weights
 }
 
 // Writes a block into the tile, after all have read the old contents.
-fn puddle_step_share(block: mat4x4f, column: i32, row: i32) {
+fn puddle_step_fraction(block: mat4x4f, column: i32, row: i32) {
     workgroupBarrier();
     let at = u32(row * 16 + column);
     puddle_step_tile[at] = block[0];
@@ -123,7 +123,7 @@ fn main_puddle_step(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
         } else {
             now = heights * puddle_step_coefficient(puddle_grid, puddle_grid.degree - 1u);
         }
-        puddle_step_share(now, column, row);
+        puddle_step_fraction(now, column, row);
         var before = mat4x4f();
         for (var j = puddle_grid.degree - 1u; j > 0u; j -= 1u) {
             let last = j == 1u;
@@ -142,7 +142,7 @@ fn main_puddle_step(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
             }
             before = now;
             now = next;
-            puddle_step_share(now, column, row);
+            puddle_step_fraction(now, column, row);
         }
         let sums = puddle_step_sums(now, column, row, links, weights);
         velocities = velocities - sums * puddle_grid.kick;

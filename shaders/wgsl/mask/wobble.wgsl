@@ -29,7 +29,7 @@ struct MaskWobbleLight {
     second: vec3f,
     third: vec3f,
     // Fractions of the light, in this order; what they leave of 1 is lost.
-    shares: vec4f,
+    fractions: vec4f,
     // Interfaces passed up to there (from 1); 0 where there is no exit.
     interfaces: vec4f,
 }
@@ -116,14 +116,14 @@ fn mask_wobble_light(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f) -> M
             } else {
                 light.third = outside;
             }
-            light.shares[found] = rest * (1.0 - kept);
+            light.fractions[found] = rest * (1.0 - kept);
             light.interfaces[found] = f32(bounce + 2u);
         }
         rest *= kept;
         inside = optics_reflect(inside, normal);
     }
     if found > 0u {
-        light.shares[found] += rest;
+        light.fractions[found] += rest;
     }
     return light;
 }

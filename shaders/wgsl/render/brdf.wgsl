@@ -69,8 +69,8 @@ fn brdf_visible_normal(view: vec3f, alpha: f32, a: f32, b: f32) -> vec3f {
     let radius = sqrt(a);
     let angle = 6.2831853 * b;
     let x = radius * cos(angle);
-    let share = 0.5 * (1.0 + v.z);
-    let y = (1.0 - share) * sqrt(max(1.0 - x * x, 0.0)) + share * (radius * sin(angle));
+    let fraction = 0.5 * (1.0 + v.z);
+    let y = (1.0 - fraction) * sqrt(max(1.0 - x * x, 0.0)) + fraction * (radius * sin(angle));
     let z = sqrt(max(1.0 - x * x - y * y, 0.0));
     let normal = level * x + rising * y + v * z;
     let back = vec3f(alpha * normal.x, alpha * normal.y, max(normal.z, 0.0));

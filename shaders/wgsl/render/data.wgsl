@@ -16,7 +16,7 @@ struct RenderFrame {
     // Nearest distance of the next surface, meters.
     nearest: f32,
     // Part of the rays that look for the light of a surface that one of them is.
-    ray_share: f32,
+    ray_fraction: f32,
     // Projection that is traced: SCENE_PICTURE, SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
     projection: u32,
     // 1: the capture leaves parallel light out.

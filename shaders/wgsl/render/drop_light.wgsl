@@ -61,9 +61,9 @@ fn drop_light_cone(light: RenderLight, position: vec3f, least: f32) -> vec3f {
     let core = below * sqrt(max(1.0 - inner * inner, 0.0)) / inner;
     let aside = offset - light.axis * below;
     let away = sqrt(dot(aside, aside));
-    let share = clamp((circle - away) / max(circle - core, 1.0e-6 * below), 0.0, 1.0);
+    let fraction = clamp((circle - away) / max(circle - core, 1.0e-6 * below), 0.0, 1.0);
     let square = max(dot(offset, offset), max(least * least, 1.0e-8));
-    return light.color * (share / square);
+    return light.color * (fraction / square);
 }
 
 // The mean over a drop's disk of what Rousseau's formula gives at its pixels.
@@ -81,10 +81,10 @@ fn drop_light_mean(towards: vec3f, light: vec3f, terms: u32) -> f32 {
     return sum / f32(DROP_LIGHT_RINGS * DROP_LIGHT_POINTS);
 }
 
-// First row of the faintest of the lights of a drop, `rows` rows each from `first` on, if it is fainter than `share`; else 0.
-fn drop_light_weakest(first: u32, rows: u32, share: f32) -> u32 {
+// First row of the faintest of the lights of a drop, `rows` rows each from `first` on, if it is fainter than `fraction`; else 0.
+fn drop_light_weakest(first: u32, rows: u32, fraction: f32) -> u32 {
     var weakest = 0u;
-    var least = share;
+    var least = fraction;
     for (var k = rows; k <= drop_light_frame.glints; k += rows) {
         let kept = light_weight(drop_light_out[first + k - rows].rgb);
         if kept < least {
@@ -140,8 +140,8 @@ fn drop_light_whole(lit: vec3f, direction: vec3f, towards: vec3f) -> vec3f {
 // the lamp that is not kept.
 fn drop_light_keep_lamp(slot: u32, lit: vec3f, reach: f32, direction: vec3f, towards: vec3f) -> vec3f {
     let whole = drop_light_whole(lit, direction, towards);
-    let share = light_weight(whole);
-    var least = share;
+    let fraction = light_weight(whole);
+    var least = fraction;
     var weakest = slot;
     var found = false;
     for (var k = 0u; k + 1u < drop_light_frame.glints; k += 2u) {
@@ -160,7 +160,7 @@ fn drop_light_keep_lamp(slot: u32, lit: vec3f, reach: f32, direction: vec3f, tow
     let is_rousseau = drop_light_frame.form == DROP_LIGHT_LAMPS_ROUSSEAU;
     let factor = select(DROP_LIGHT_PI, 1.0, is_rousseau);
     drop_light_out[weakest] = vec4f(lit * factor, select(reach, -1.0, is_rousseau));
-    drop_light_out[weakest + 1u] = vec4f(direction, share);
+    drop_light_out[weakest + 1u] = vec4f(direction, fraction);
     if old.w == 0.0 {
         return vec3f(0.0);
     }

@@ -51,7 +51,7 @@ fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
     }
     let right = drops_mask_right(drop.towards);
     let up = cross(right, drop.towards);
-    let turned = drops_mask_unit(drops_mask_at(drop.row, x, y).reflected + vec3f(0.0, 0.0, 1.0));
+    let turned = drops_mask_unit(drops_mask_at(drop.mask_index, x, y).reflected + vec3f(0.0, 0.0, 1.0));
     let normal = right * turned.x + up * turned.y - drop.towards * turned.z;
     for (var k = 1u; k < drops_frame.glints; k += 2u) {
         let lamp = drops_light[row + k];
@@ -68,13 +68,13 @@ fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
 fn drops_lines(index: u32, chord: StreakChord, width: f32) -> vec3f {
     let row = drops_light_row(index);
     let part = (chord.high - chord.low) * 0.5;
-    var light = drops_light[row].rgb * chord.share;
+    var light = drops_light[row].rgb * chord.fraction;
     for (var k = 1u; k <= drops_frame.glints; k += 1u) {
         let glint = drops_light[row + k];
         if glint.w > 0.0 {
             let position = drop_glint_unpack(glint.w);
             let off = chord.aside - (position.x * chord.path.y - position.y * chord.path.x);
-            light += glint.rgb * (drops_line(off, width) * chord.pace - chord.share);
+            light += glint.rgb * (drops_line(off, width) * chord.pace - chord.fraction);
         }
     }
     return max(light, vec3f(0.0)) * part;
@@ -82,7 +82,7 @@ fn drops_lines(index: u32, chord: StreakChord, width: f32) -> vec3f {
 
 // The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
 fn drops_turns(drop: DropsDrop, way: f32) -> f32 {
-    return drop.swing.z + drop.turns.x * streak_time(drop.recede, way);
+    return drop.mode_phase.z + drop.cycles.x * streak_time(drop.depth_ratio, way);
 }
 
 // Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
@@ -90,13 +90,13 @@ fn drops_streaks(index: u32, drop: DropsDrop, chord: StreakChord, at: vec2f) -> 
     let row = drops_light_row(index);
     let part = (chord.high - chord.low) * 0.5;
     let turns = drops_turns(drop, streak_nearest(drop, at));
-    var light = drops_light[row].rgb * chord.share;
+    var light = drops_light[row].rgb * chord.fraction;
     for (var k = DROP_ATLAS_ROWS; k <= drops_frame.glints; k += DROP_ATLAS_ROWS) {
         let first = drops_light[row + k - 2u];
         if first.w != 0.0 {
             let streak = drops_atlas_streak(first, drops_light[row + k - 1u], drops_light[row + k]);
             let shown = drops_atlas_across(streak, -chord.aside, turns);
-            light += first.rgb * (shown * 2.0 * chord.pace - chord.share);
+            light += first.rgb * (shown * 2.0 * chord.pace - chord.fraction);
         }
     }
     return max(light, vec3f(0.0)) * part;
@@ -158,7 +158,7 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
             sy = dot(lean, up) / extent;
         }
         if abs(sx) < 1.0 && abs(sy) < 1.0 {
-            var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.row), sx, sy);
+            var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.mask_index), sx, sy);
             if !small {
                 let at = vec2f(sx, sy) * drop.half_extent;
                 let light = drops_spots(index, at, drops_glint_width(drop)) + drops_facing(index, drop, sx, sy);
@@ -184,7 +184,7 @@ fn drops_glint_width(drop: DropsDrop) -> f32 {
 fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
     let towards = drops_mask_unit(ray);
     let spacing = 2.0 * drop.oval.x / f32(STREAK_FINE);
-    let shade = DropsShade(towards, drop.half_extent, vec3f(0.0), spacing, drop.row);
+    let shade = DropsShade(towards, drop.half_extent, vec3f(0.0), spacing, drop.mask_index);
     var sum = vec4f(0.0);
     for (var k = 0u; k < drops_frame.streak_samples; k += 1u) {
         let part = (f32(k) + 0.5) / f32(drops_frame.streak_samples);
@@ -239,7 +239,7 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
             continue;
         }
         if !by_profile {
-            sum += drops_chord(index, drop, chord, ray) * chord.share;
+            sum += drops_chord(index, drop, chord, ray) * chord.fraction;
         }
         if drops_frame.atlas > 0u {
             sum += vec4f(drops_streaks(index, drop, chord, position), 0.0);
@@ -257,7 +257,7 @@ fn drops_depth(drop: DropsDrop, x: u32, y: u32) -> f32 {
     let up = cross(right, drop.towards);
     let lean = drops_on_plane(drop.towards, camera_ray(drops_frame.camera, f32(x) + 0.5, f32(y) + 0.5));
     let way = streak_nearest(drop, vec2f(dot(lean, right), dot(lean, up)));
-    return drop.distance * streak_depth(drop.recede, streak_time(drop.recede, way));
+    return drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way));
 }
 
 // A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.

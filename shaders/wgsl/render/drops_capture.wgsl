@@ -49,11 +49,11 @@ fn drops_capture_at(position: vec2f, footprint: f32) -> vec3f {
     let level = clamp(log2(max(footprint / drops_frame.capture_texel, 1.0e-6)), 0.0, last);
     let low = floor(level);
     let part = level - low;
-    var share = 1.0 - part;
+    var fraction = 1.0 - part;
     var sum = vec3f(0.0);
-    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
-        sum += drops_capture_level(u32(low) + k, position) * share;
-        share = select(0.0, part, k == 0u);
+    for (var k = 0u; k < 2u && fraction > 0.0; k += 1u) {
+        sum += drops_capture_level(u32(low) + k, position) * fraction;
+        fraction = select(0.0, part, k == 0u);
     }
     return sum;
 }

@@ -17,8 +17,8 @@ struct DropsShade {
     lean: vec3f,
     // Equivalent radii between samples.
     spacing: f32,
-    // Position in the masks: rows of diameters, and of elevations.
-    row: vec2f,
+    // Index of its mask, fractional: diameter, elevation.
+    mask_index: vec2f,
 }
 
 // The position in the papers' capture of a ray, shifted by what the mask says.
@@ -28,7 +28,7 @@ fn drops_shade_shifted(ray: vec3f, texel: DropsTexel) -> vec2f {
 
 // Light of a drop at (x, y), in units of half its mask: radiance times coverage, and coverage.
 fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
-    let texel = drops_mask_at(drop.row, x, y);
+    let texel = drops_mask_at(drop.mask_index, x, y);
     if texel.coverage <= 0.0 {
         return vec4f(0.0);
     }

@@ -53,7 +53,7 @@ struct GlassPictureFrame {
 }
 
 // Surface of the pane that a ray meets.
-struct GlassPictureMet {
+struct GlassPictureHit {
     normal: vec3f,
     // 0 where the glass is dry.
     wet: f32,
@@ -116,7 +116,7 @@ fn glass_picture_spline(t: f32, which: i32) -> vec2f {
 }
 
 // The surface that a ray leaves by, which enters the water at a position of the glass.
-fn glass_picture_meet(position: vec2f, aside: vec2f) -> GlassPictureMet {
+fn glass_picture_meet(position: vec2f, aside: vec2f) -> GlassPictureHit {
     let column = min(u32(max(position.x * glass_picture_frame.bins, 0.0)), glass_picture_frame.columns - 1u);
     let row = min(u32(max(position.y * glass_picture_frame.bins, 0.0)), glass_picture_frame.rows - 1u);
     let bin = row * glass_picture_frame.columns + column;
@@ -135,13 +135,13 @@ fn glass_picture_meet(position: vec2f, aside: vec2f) -> GlassPictureMet {
         let z = glass_picture_water_leave(drop, position, aside);
         let cap = glass_picture_water_cap(drop, position + aside * z);
         let lit = select(0.0, 1.0, drop.radius >= glass_picture_frame.lit_from);
-        return GlassPictureMet(glass_picture_water_normal(cap.yz), 1.0, 1.0 / drop.sphere, lit);
+        return GlassPictureHit(glass_picture_water_normal(cap.yz), 1.0, 1.0 / drop.sphere, lit);
     }
     if glass_picture_frame.film <= 0.0 {
-        return GlassPictureMet(vec3f(0.0, 0.0, 1.0), 0.0, 0.0, 0.0);
+        return GlassPictureHit(vec3f(0.0, 0.0, 1.0), 0.0, 0.0, 0.0);
     }
     let film = glass_picture_film(position);
-    return GlassPictureMet(glass_picture_water_normal(film.yz), select(0.0, 1.0, film.x > 0.0), 0.0, 0.0);
+    return GlassPictureHit(glass_picture_water_normal(film.yz), select(0.0, 1.0, film.x > 0.0), 0.0, 0.0);
 }
 
 // A texel of a level of the picture; the nearest where there is none.
@@ -183,13 +183,13 @@ fn glass_picture_level(of_capture: bool, level: u32, position: vec2f) -> vec3f {
     var sum = vec3f(0.0);
     for (var k = 0; k < 4; k += 1) {
         let step = vec2i(k & 1, k >> 1u);
-        let share = select(1.0 - part.x, part.x, step.x == 1) * select(1.0 - part.y, part.y, step.y == 1);
+        let fraction = select(1.0 - part.x, part.x, step.x == 1) * select(1.0 - part.y, part.y, step.y == 1);
         let cell = vec2i(low) + step;
-        if share > 0.0 {
+        if fraction > 0.0 {
             if of_capture {
-                sum += glass_picture_round_texel(level, cell.x, cell.y).rgb * share;
+                sum += glass_picture_round_texel(level, cell.x, cell.y).rgb * fraction;
             } else {
-                sum += glass_picture_texel(level, cell.x, cell.y).rgb * share;
+                sum += glass_picture_texel(level, cell.x, cell.y).rgb * fraction;
             }
         }
     }
@@ -202,11 +202,11 @@ fn glass_picture_at(of_capture: bool, position: vec2f, footprint: f32) -> vec3f 
     let level = clamp(log2(max(footprint, 1.0e-6)), 0.0, last);
     let low = floor(level);
     let part = level - low;
-    var share = 1.0 - part;
+    var fraction = 1.0 - part;
     var sum = vec3f(0.0);
-    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
-        sum += glass_picture_level(of_capture, u32(low) + k, position) * share;
-        share = select(0.0, part, k == 0u);
+    for (var k = 0u; k < 2u && fraction > 0.0; k += 1u) {
+        sum += glass_picture_level(of_capture, u32(low) + k, position) * fraction;
+        fraction = select(0.0, part, k == 0u);
     }
     return sum;
 }
@@ -246,13 +246,13 @@ fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint
     // Toward the picture's edge the capture takes over, within the footprint.
     let at = vec2f(0.5 + 0.5 * position.x, 0.5 - 0.5 * position.y) + shift / size;
     let inside = min(min(at.x, 1.0 - at.x) * size.x, min(at.y, 1.0 - at.y) * size.y);
-    let share = select(0.0, clamp((inside + 0.5) / texels, 0.0, 1.0), position.z > 0.0);
+    let fraction = select(0.0, clamp((inside + 0.5) / texels, 0.0, 1.0), position.z > 0.0);
     var sum = vec3f(0.0);
-    if share > 0.0 {
-        sum = glass_picture_at(false, at, texels) * share;
+    if fraction > 0.0 {
+        sum = glass_picture_at(false, at, texels) * fraction;
     }
-    if share < 1.0 {
-        sum += glass_picture_round(to, footprint) * (1.0 - share);
+    if fraction < 1.0 {
+        sum += glass_picture_round(to, footprint) * (1.0 - fraction);
     }
     return sum;
 }
@@ -279,7 +279,7 @@ fn glass_picture_inside(v: vec3f) -> vec3f {
 }
 
 // Fraction of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
-fn glass_picture_outer(cosine: f32, met: GlassPictureMet, within: f32) -> f32 {
+fn glass_picture_outer(cosine: f32, met: GlassPictureHit, within: f32) -> f32 {
     if met.wet == 0.0 {
         return optics_fresnel(cosine, GLASS_PICTURE_INDEX);
     }

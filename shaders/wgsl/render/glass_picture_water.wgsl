@@ -46,8 +46,8 @@ fn glass_picture_water_cap(drop: GlassPictureDrop, position: vec2f) -> vec3f {
     let down_y = steep * of_y;
     let slope = drop.along * down_x + vec2f(-drop.along.y, drop.along.x) * down_y;
     let pulled = drop.lean * r;
-    let share = max(1.0 + pulled * (away.x * drop.droop.x + away.y * drop.droop.y), 0.1);
-    return vec3f(height * share, slope * share + drop.droop * (height * pulled));
+    let fraction = max(1.0 + pulled * (away.x * drop.droop.x + away.y * drop.droop.y), 0.1);
+    return vec3f(height * fraction, slope * fraction + drop.droop * (height * pulled));
 }
 
 // The highest that a drop may be.

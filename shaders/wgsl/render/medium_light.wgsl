@@ -79,14 +79,14 @@ struct MediumLight {
 
 // Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
 fn medium_light_add(sum: MediumLight, light: vec3f, lamp: u32, near: f32, far: f32) -> MediumLight {
-    let share = light_weight(light);
-    if share <= 0.0 {
+    let fraction = light_weight(light);
+    if fraction <= 0.0 {
         return sum;
     }
-    let chance = share / (light_weight(sum.whole) + share);
+    let chance = fraction / (light_weight(sum.whole) + fraction);
     var next = sum;
     next.whole += light;
-    next.weighted += 0.5 * (near + far) * share;
+    next.weighted += 0.5 * (near + far) * fraction;
     if sum.rest < chance {
         // The part of the interval that is left is as good as a new number.
         next.rest = sum.rest / chance;
@@ -175,14 +175,14 @@ fn medium_light_pixel(x: u32, y: u32) {
         for (var k = 0u; k < render_frame.light_count; k += 1u) {
             sum = medium_light_lamp(sum, k, direction, reach, render_frame.camera.pixel_angle);
         }
-        let share = light_weight(sum.drawn);
-        if share > 0.0 {
+        let fraction = light_weight(sum.drawn);
+        if fraction > 0.0 {
             let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random.y);
             let from_position = medium_frame.eye + direction * distance;
             let light = light_sample(light_load(sum.lamp), from_position, 0.0);
             seen = scene_visibility(from_position, light.direction, light.distance)
                 * medium_open_at(position.x, position.y, distance).y
-                * (sum.drawn * (light_weight(sum.whole) / share));
+                * (sum.drawn * (light_weight(sum.whole) / fraction));
         }
     }
     let mean = sum.weighted / max(light_weight(sum.whole), 1.0e-20);

@@ -42,7 +42,7 @@ fn pane_shadow_at(pane: RenderPane, position: vec2f, width: f32) -> vec2f {
 
 // Fraction of light that comes through the pane to a position from a distance along a direction; `spread` is half the angle that its
 // source takes. 1 where the pane is not between them.
-fn pane_shadow_share(position: vec3f, direction: vec3f, distance: f32, spread: f32) -> f32 {
+fn pane_shadow_fraction(position: vec3f, direction: vec3f, distance: f32, spread: f32) -> f32 {
     if render_frame.pane == 0u {
         return 1.0;
     }

@@ -62,7 +62,7 @@ struct PathPlan {
     // Part of the latter that is drawn for the gloss.
     chance: f32,
     // Part of all rays that one is.
-    share: f32,
+    fraction: f32,
     // True if rays of the gloss are drawn from its lobe; else they are a mirror's.
     drawn: bool,
     // True if the light that the gloss shows is averaged over neighboring pixels.
@@ -95,7 +95,7 @@ fn path_same_surface(last: ViewPath, material: u32, facet: vec3f, position: vec3
 }
 
 // With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
-fn path_gathered(light: PathLight, ray: ScatterRay, radiance: vec3f, of_shown: bool) -> PathLight {
+fn path_accumulated(light: PathLight, ray: ScatterRay, radiance: vec3f, of_shown: bool) -> PathLight {
     var sum = light;
     let of_base = ray.diffuse * radiance;
     if of_shown {
@@ -141,8 +141,8 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
     let drawn = told && free && !sharp && rays > 0u;
     // If neighbors mirror other things, a mean over them would be wider than the lobe.
     let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
-    let share = select(1.0 / f32(max(rays, 1u)), render_frame.ray_share, told);
-    var plan = PathPlan(body, 0u, gloss, rays, 0.0, share, drawn, kept, false, spread);
+    let fraction = select(1.0 / f32(max(rays, 1u)), render_frame.ray_fraction, told);
+    var plan = PathPlan(body, 0u, gloss, rays, 0.0, fraction, drawn, kept, false, spread);
     if rays == 0u {
         plan.body = body * (vec3f(1.0) - gloss);
     } else if path_max(body) <= 0.0 {
@@ -172,13 +172,13 @@ fn path_water_surface(start: vec3f, along: vec3f, distance: f32, ripple: vec3f) 
 fn path_water_ray(ripple: vec3f, roughness: f32, view: vec3f, cone: f32, a: f32, b: f32) -> ScatterRay {
     let normal = puddle_water_normal(ripple, a, b);
     let along = puddle_water_mirrored(-view, normal);
-    let share = optics_fresnel(max(dot(view, normal), PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
-    return ScatterRay(along, cone + PUDDLE_WATER_CONE, vec3f(0.0), roughness, vec3f(share));
+    let fraction = optics_fresnel(max(dot(view, normal), PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
+    return ScatterRay(along, cone + PUDDLE_WATER_CONE, vec3f(0.0), roughness, vec3f(fraction));
 }
 
 // Fraction of light that water mirrors toward a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
 // has no noise.
-fn path_water_share(ripple: vec3f, view: vec3f) -> f32 {
+fn path_water_fraction(ripple: vec3f, view: vec3f) -> f32 {
     let count = select(1u, PATH_WATER_FACETS, ripple.z > PUDDLE_WATER_RIPPLED);
     var sum = 0.0;
     for (var k = 0u; k < count; k += 1u) {
@@ -189,19 +189,19 @@ fn path_water_share(ripple: vec3f, view: vec3f) -> f32 {
 }
 
 // A surface as it looks under water of which a fraction `clear` of the light is left.
-fn path_soaked(surface: Surface, clear: f32, murk: vec3f) -> Surface {
-    var soaked = surface;
-    soaked.diffuse = puddle_water_albedo(surface.diffuse * clear + murk * (1.0 - clear));
-    soaked.normal_reflectance = puddle_water_reflectance(surface.normal_reflectance) * clear;
-    soaked.emission = surface.emission * clear;
-    return soaked;
+fn path_submerged(surface: Surface, clear: f32, scattering_albedo: vec3f) -> Surface {
+    var wet = surface;
+    wet.diffuse = puddle_water_albedo(surface.diffuse * clear + scattering_albedo * (1.0 - clear));
+    wet.normal_reflectance = puddle_water_reflectance(surface.normal_reflectance) * clear;
+    wet.emission = surface.emission * clear;
+    return wet;
 }
 
 // A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
-fn path_glance(surface: Surface, roughness: f32) -> Surface {
+fn path_secondary(surface: Surface, roughness: f32) -> Surface {
     var seen = surface;
-    if roughness >= PATH_GLANCE {
-        let gloss = min(surface.normal_reflectance, vec3f(PATH_GLANCE_GLOSS));
+    if roughness >= PATH_SECONDARY_ROUGHNESS {
+        let gloss = min(surface.normal_reflectance, vec3f(PATH_SECONDARY_MAX_SPECULAR));
         seen.diffuse = surface.diffuse + surface.normal_reflectance - gloss;
         seen.normal_reflectance = gloss;
         seen.roughness = 1.0;
@@ -232,7 +232,7 @@ fn path_onward(ray: ScatterRay, next: ScatterRay, surface: Surface, number: f32)
 // A direction for a ray of the diffuse base, as numbers for scatter_hemisphere, drawn among some of the hemisphere by the
 // light of the open sky from each: numbers, and the factor of the ray's weight. What is drawn often counts less (J. Talbot et
 // al., EGSR 2005).
-fn path_candidate(surface: Surface, a: f32, b: f32, number: f32, share: f32) -> vec3f {
+fn path_candidate(surface: Surface, a: f32, b: f32, number: f32, fraction: f32) -> vec3f {
     let sky = sky_irradiance(surface.normal);
     let least = (sky.x + sky.y + sky.z) * PATH_FLOOR + 1.0e-6;
     var sum = 0.0;
@@ -246,7 +246,7 @@ fn path_candidate(surface: Surface, a: f32, b: f32, number: f32, share: f32) -> 
         if dot(surface.facet, along) <= 0.0 {
             continue;
         }
-        let width = sqrt(SCATTER_DISK * share / (f32(PATH_CANDIDATES) * sqrt(max(1.0 - x, 0.01))));
+        let width = sqrt(SCATTER_DISK * fraction / (f32(PATH_CANDIDATES) * sqrt(max(1.0 - x, 0.01))));
         let seen = sky_cone(along, width);
         let light = seen.x + seen.y + seen.z + least;
         sum += light;
@@ -276,7 +276,7 @@ fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: b
     var b = numbers.y;
     var gloss = vec3f(1.0);
     var chance = scatter_chance(at.diffuse, at.normal_reflectance);
-    var share = PATH_LATER_SHARE;
+    var fraction = PATH_LATER_FRACTION;
     var weight = 1.0;
     if leaves == PATH_SHOWN {
         chance = 0.0;
@@ -284,22 +284,22 @@ fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: b
     if leaves == PATH_FIRST {
         gloss = plan.gloss;
         chance = select(plan.chance, 1.0, is_mirror);
-        share = plan.share;
+        fraction = plan.fraction;
         if is_mirror && !plan.kept {
             // Few rays: far out in the lobe they would be noise.
-            share = PATH_CURVED_SHARE;
+            fraction = PATH_CURVED_FRACTION;
             a = a * PATH_CURVED_PART;
         }
         if a >= chance {
             let own = (a - chance) / (1.0 - chance);
-            let drawn = path_candidate(at, own, b, numbers.z, share);
+            let drawn = path_candidate(at, own, b, numbers.z, fraction);
             a = chance + drawn.x * (1.0 - chance);
             b = drawn.y;
             weight = drawn.z;
-            share /= f32(PATH_CANDIDATES);
+            fraction /= f32(PATH_CANDIDATES);
         }
     }
-    var ray = scatter_draw(at, view, gloss, chance, a, b, share);
+    var ray = scatter_draw(at, view, gloss, chance, a, b, fraction);
     ray.diffuse *= weight;
     ray.mirror *= weight;
     return ray;
@@ -323,7 +323,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
     var near = render_frame.nearest;
     // Water that the ray has come through, and whether it has met nothing since.
     var water = PuddleWater(PUDDLE_WATER_NONE, 0.0, 0.0, 0.0);
-    var murk = vec3f(0.0);
+    var scattering_albedo = vec3f(0.0);
     var clear = 1.0;
     var level = 0.0;
     var under = false;
@@ -393,7 +393,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         path.radiance += throughput * sky_level(0u, towards);
                         return path;
                     }
-                    light = path_gathered(light, ray, sky_cone(ray.along, ray.width), of_shown);
+                    light = path_accumulated(light, ray, sky_cone(ray.along, ray.width), of_shown);
                     break;
                 }
                 var found = surface_at(hit, from_position, ray.along, ray.width);
@@ -425,7 +425,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     if SCENE_WET && under {
                         let rise = max(level - found.position.y, 0.0);
                         depth = vec2f(rise + max(water.depth - water.rise, 0.0), rise);
-                        found = path_soaked(found, clear, murk);
+                        found = path_submerged(found, clear, scattering_albedo);
                     }
                     if layer == 0u {
                         path.distance = distance;
@@ -435,8 +435,8 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     }
                     near = hit.distance + render_frame.nearest;
                 } else {
-                    found = path_glance(found, ray.roughness);
-                    lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_GLANCE);
+                    found = path_secondary(found, ray.roughness);
+                    lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_SECONDARY_ROUGHNESS);
                     standoff = hit.distance * ray.width * 0.5;
                     // Lamps, if there are any, stand for emissive surfaces; small bright surfaces would be noise.
                     shines = ray.roughness < PATH_SHINES || render_frame.light_count == 0u;
@@ -456,7 +456,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         let rippled = ripple.z > PUDDLE_WATER_RIPPLED;
                         plan.mirrors = max(render_frame.sky_rays, select(1u, PUDDLE_WATER_RAYS, rippled));
                         plan.gloss = vec3f(1.0);
-                        plan.share = 1.0;
+                        plan.fraction = 1.0;
                         plan.drawn = rippled && free;
                         plan.kept = plan.drawn;
                         plan.replaced = !rippled && free;
@@ -469,7 +469,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     break;
                 }
                 let cover = path_cover(found);
-                light = path_gathered(light, ray, lit * cover, of_shown);
+                light = path_accumulated(light, ray, lit * cover, of_shown);
                 if unlit && cover == 1.0 {
                     break;
                 }
@@ -484,9 +484,9 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     }
                 } else if of_shown && light.distance < 0.0 {
                     leaves = PATH_MIRROR;
-                    if path_max(path_albedo(found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                    if path_max(path_albedo(found)) > 0.0 || found.roughness >= PATH_SECONDARY_ROUGHNESS {
                         leaves = PATH_SHOWN;
-                        found = path_glance(found, 1.0);
+                        found = path_secondary(found, 1.0);
                         light.factor = ray.mirror * (path_albedo(found) + found.normal_reflectance * 0.5);
                         light.distance = hit.distance;
                         light.normal = found.normal;
@@ -496,7 +496,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     ambient = path_ambient(found, (given + lit) / f32(bounce + 1u));
                 }
                 let own = (path_albedo(found) + found.normal_reflectance) * ambient;
-                light = path_gathered(light, ray, own, of_shown);
+                light = path_accumulated(light, ray, own, of_shown);
                 given += lit;
                 if leaves == PATH_STRAIGHT {
                     ray.diffuse *= open;
@@ -511,21 +511,21 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         let mirrored = towards - surface.normal * (2.0 * dot(towards, surface.normal));
         if SCENE_WET && of_water {
             let all = f32(plan.mirrors);
-            let share = path_water_share(ripple, -towards);
+            let fraction = path_water_fraction(ripple, -towards);
             path.radiance += throughput * direct;
             if plan.kept {
                 path.mirror = PathSlot(
-                    light.mirror / max(all * share, 1.0e-6), slack, throughput * share, surface.roughness, mirrored,
+                    light.mirror / max(all * fraction, 1.0e-6), slack, throughput * fraction, surface.roughness, mirrored,
                     surface.position,
                 );
             } else {
                 path.radiance += throughput * light.mirror / all;
                 path.mirror = path_show_mirrored(path.mirror, light, throughput / all, slack, plan.spread);
             }
-            throughput *= 1.0 - share;
+            throughput *= 1.0 - fraction;
             // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
             let puddle = puddle_load(water.puddle);
-            murk = puddle.murk;
+            scattering_albedo = puddle.scattering_albedo;
             towards = puddle_water_refracted(towards, surface.normal);
             let steep = max(-towards.y, 0.1);
             clear = exp(-puddle.extinction * water.depth * (1.0 / steep + PUDDLE_WATER_DOWN));

@@ -1,7 +1,7 @@
 // Random numbers of a pixel's rays, of which the mean over a window of pixels has no pattern.
 // Twin: downpour_trace::path::lattice.
 
-// Words for the rays of sample k of a pixel. The first three are those of a lattice of rank 1, of which the pixels of any
+// Words for the rays of sample k of a pixel. The first three are those of a rank-1 lattice, of which the pixels of any
 // window of the filter's size have each point once; the last is the pixel's own.
 fn path_lattice_words(x: u32, y: u32, k: u32) -> vec4u {
     let seed = rng_draw(vec2u(render_frame.camera.seed, 0u), k, 0u, PATH_DIMENSION);

@@ -52,9 +52,9 @@ fn scatter_gloss(normal_reflectance: vec3f, roughness: f32, cosine: f32, sharp: 
 }
 
 // A ray of a surface: of its gloss where `a` is below `chance`, else of its diffuse base. `view` points to the viewer,
-// `gloss` is what the weight of the gloss is divided by, `share` the part of all rays that this is.
+// `gloss` is what the weight of the gloss is divided by, `fraction` the part of all rays that this is.
 fn scatter_draw(
-    surface: Surface, view: vec3f, gloss: vec3f, chance: f32, a: f32, b: f32, share: f32,
+    surface: Surface, view: vec3f, gloss: vec3f, chance: f32, a: f32, b: f32, fraction: f32,
 ) -> ScatterRay {
     let normal = surface.normal;
     let alpha = scatter_alpha(surface.roughness);
@@ -87,7 +87,7 @@ fn scatter_draw(
     // All densities times pi.
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
     let density = max(glossy * chance + cosine * (1.0 - chance), SCATTER_MIN_DIVISOR);
-    ray.width = min(sqrt(SCATTER_DISK * share / density), SCATTER_MAX_WIDTH);
+    ray.width = min(sqrt(SCATTER_DISK * fraction / density), SCATTER_MAX_WIDTH);
     if chance < 1.0 {
         ray.diffuse = (vec3f(1.0) - fresnel) * (cosine / density);
     }

@@ -122,9 +122,9 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
         let index = k % count;
         let arrival = scene_arrival(index, surface, standoff, under);
         let lit = scene_lamp(surface, view, arrival);
-        let share = light_weight(lit);
+        let fraction = light_weight(lit);
         if k < count {
-            total += share;
+            total += fraction;
             continue;
         }
         if k == count {
@@ -132,7 +132,7 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
             step = total / f32(max(draws, 1u));
             next = chance * step;
         }
-        run += share;
+        run += fraction;
         var weight = 1.0;
         if few {
             if next >= run {
@@ -140,16 +140,16 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
             }
             let times = floor((run - next) / step) + 1.0;
             next += times * step;
-            weight = times * step / share;
-        } else if share <= total * SCENE_MIN_LAMP {
+            weight = times * step / fraction;
+        } else if fraction <= total * SCENE_MIN_LAMP {
             continue;
         }
         let visible = scene_visibility(arrival.start, arrival.along, arrival.distance);
-        var share_of_pane = 1.0;
+        var fraction_of_pane = 1.0;
         if SCENE_PANE {
-            share_of_pane = pane_shadow_share(arrival.start, arrival.along, arrival.distance, arrival.spread);
+            fraction_of_pane = pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
         }
-        sum += lit * visible * (share_of_pane * weight);
+        sum += lit * visible * (fraction_of_pane * weight);
     }
     return sum;
 }

@@ -3,7 +3,7 @@
 // picture.
 // Twin: downpour_trace::skylight, where the method is described.
 
-@group(0) @binding(1) var<storage, read> skylight_gather: array<TraceGather>;
+@group(0) @binding(1) var<storage, read> skylight_ambient: array<TraceAmbient>;
 // Means of each pixel's two slots: color, and the variance of its luminance.
 @group(0) @binding(2) var<storage, read> skylight_before: array<vec4f>;
 @group(0) @binding(3) var<storage, read_write> skylight_means: array<vec4f>;
@@ -39,9 +39,9 @@ fn skylight_hat(from_pixel: u32, to_pixel: u32) -> f32 {
 
 // A slot of a pixel, unpacked.
 fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
-    var packed = skylight_gather[pixel].base;
+    var packed = skylight_ambient[pixel].base;
     if slot > 0u {
-        packed = skylight_gather[pixel].mirror;
+        packed = skylight_ambient[pixel].mirror;
     }
     let found = trace_unpack(packed);
     var normal = found.normal;
@@ -159,8 +159,8 @@ fn main_skylight(@builtin(global_invocation_id) id: vec3u) {
         skylight_means[2u * index + slot] = mean;
     }
     if step == SKYLIGHT_PASSES {
-        let of_base = trace_unpack(skylight_gather[index].base).factor * skylight_means[2u * index].xyz;
-        let of_mirror = trace_unpack(skylight_gather[index].mirror).factor * skylight_means[2u * index + 1u].xyz;
+        let of_base = trace_unpack(skylight_ambient[index].base).factor * skylight_means[2u * index].xyz;
+        let of_mirror = trace_unpack(skylight_ambient[index].mirror).factor * skylight_means[2u * index + 1u].xyz;
         skylight_picture[index] += vec4f(of_base + of_mirror, 0.0);
     }
 }

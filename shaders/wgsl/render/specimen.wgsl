@@ -47,7 +47,7 @@ struct SpecimenLight {
     // Point of the last interface.
     point: vec3f,
     // Fraction of the light that left there.
-    share: f32,
+    fraction: f32,
     // Direction of the light that left.
     exit: vec3f,
     // Fraction of the light that is still inside.
@@ -211,22 +211,22 @@ fn specimen_radiance(view: SpecimenView, x: f32, y: f32) -> vec3f {
         return specimen_sky_light(ray.direction);
     }
     var light = specimen_enter(view.traced, ray);
-    var radiance = specimen_sky_light(light.exit) * light.share;
+    var radiance = specimen_sky_light(light.exit) * light.fraction;
     for (var k = 0u; k <= SPECIMEN_REFLECTIONS; k += 1u) {
         if light.rest <= 0.0 {
             break;
         }
         let least = select(SPECIMEN_MIN_FRACTION, SPECIMEN_ALL, k == SPECIMEN_REFLECTIONS);
         light = specimen_bounce(view.traced, light, least);
-        if light.share > 0.0 {
-            radiance += specimen_sky_light(light.exit) * light.share;
+        if light.fraction > 0.0 {
+            radiance += specimen_sky_light(light.exit) * light.fraction;
         }
     }
     return radiance;
 }
 
 // Position of the samples of a line within their cells, 0 to 1. Each line is shifted against the next by the golden ratio
-// (a lattice of rank 1): what is narrower than a cell, as the image of a small lamp that a falling drop draws out along a
+// (a rank-1 lattice): what is narrower than a cell, as the image of a small lamp that a falling drop draws out along a
 // column, is not missed, or met, by all lines alike.
 fn specimen_jitter(line: u32) -> f32 {
     return rng_unit(line * SPECIMEN_LATTICE);

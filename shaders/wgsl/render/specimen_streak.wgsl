@@ -85,15 +85,15 @@ fn specimen_streak_radiance(drop: SpecimenWobble, ray: SpecimenRay) -> vec3f {
         return specimen_sky_light(ray.direction);
     }
     var light = specimen_wobble_enter(drop, ray, meets.x);
-    var radiance = specimen_sky_light(light.exit) * light.share;
+    var radiance = specimen_sky_light(light.exit) * light.fraction;
     for (var k = 0u; k <= SPECIMEN_STREAK_REFLECTIONS; k += 1u) {
         if light.rest <= 0.0 {
             break;
         }
         let least = select(SPECIMEN_MIN_FRACTION, SPECIMEN_ALL, k == SPECIMEN_STREAK_REFLECTIONS);
         light = specimen_wobble_bounce(drop, light, least);
-        if light.share > 0.0 {
-            radiance += specimen_sky_light(light.exit) * light.share;
+        if light.fraction > 0.0 {
+            radiance += specimen_sky_light(light.exit) * light.fraction;
         }
     }
     return radiance;

@@ -22,7 +22,7 @@
 // One exit of a ray.
 struct StreakExit {
     direction: vec3f,
-    share: f32,
+    fraction: f32,
     // Interfaces passed; 0: there is none.
     passed: u32,
 }
@@ -30,7 +30,7 @@ struct StreakExit {
 // Change of an exit along an axis: first and second difference per ray, and first difference of its fraction.
 struct StreakChange {
     first: vec3f,
-    share: f32,
+    fraction: f32,
     second: vec3f,
 }
 
@@ -56,10 +56,10 @@ fn streak_light_exit(path: StreakPath, row: i32, column: i32, tap: i32, number: 
     if passed == 0u {
         return StreakExit(vec3f(0.0), 0.0, 0u);
     }
-    let shares = unpack2x16unorm(streak_light_rays[at].shares[number >> 1u]);
+    let fractions = unpack2x16unorm(streak_light_rays[at].fractions[number >> 1u]);
     return StreakExit(
         packing_octahedral_decode(unpack2x16snorm(streak_light_rays[at].exits[number])),
-        select(shares.x, shares.y, (number & 1u) == 1u),
+        select(fractions.x, fractions.y, (number & 1u) == 1u),
         passed,
     );
 }
@@ -71,15 +71,15 @@ fn streak_light_change(before: StreakExit, here: StreakExit, after: StreakExit) 
     if has_before && has_after {
         return StreakChange(
             (after.direction - before.direction) * 0.5,
-            (after.share - before.share) * 0.5,
+            (after.fraction - before.fraction) * 0.5,
             after.direction + before.direction - here.direction * 2.0,
         );
     }
     if has_after {
-        return StreakChange(after.direction - here.direction, after.share - here.share, vec3f(0.0));
+        return StreakChange(after.direction - here.direction, after.fraction - here.fraction, vec3f(0.0));
     }
     if has_before {
-        return StreakChange(here.direction - before.direction, here.share - before.share, vec3f(0.0));
+        return StreakChange(here.direction - before.direction, here.fraction - before.fraction, vec3f(0.0));
     }
     return StreakChange(vec3f(0.0), 0.0, vec3f(0.0));
 }
@@ -257,10 +257,10 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
             if ray.middle.passed == 0u {
                 continue;
             }
-            let share = clamp(ray.middle.share + ray.later.share * later, 0.0, 1.0);
-            rest -= share;
+            let fraction = clamp(ray.middle.fraction + ray.later.fraction * later, 0.0, 1.0);
+            rest -= fraction;
             // The papers' form has what comes through, undimmed, and nothing else.
-            let shown = select(share, select(0.0, 1.0, exit == 1u), drops_frame.form == DROPS_SHIFT);
+            let shown = select(fraction, select(0.0, 1.0, exit == 1u), drops_frame.form == DROPS_SHIFT);
             let size = streak_light_size(ray, later);
             let width = max(sqrt(size.x * size.y), STREAK_NARROWEST * max(size.x, size.y));
             let direction = streak_light_direction(ray, vec3f(0.0, 0.0, later));
@@ -273,7 +273,7 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
                 let towards = streak_light_lamps[first_lamp + 2u + 2u * k].xyz;
                 let spots = streak_light_spot(ray, later, rays_per_row, size, towards, lamp.w, fine, shift);
                 for (var part = 0u; part < fine; part += 1u) {
-                    sums[part] += lamp.rgb * (spots[part] * share * weight);
+                    sums[part] += lamp.rgb * (spots[part] * fraction * weight);
                 }
             }
         }

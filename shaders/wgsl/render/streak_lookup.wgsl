@@ -24,7 +24,7 @@ struct StreakPassage {
     low: f32,
     high: f32,
     // Fraction of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
-    share: f32,
+    fraction: f32,
 }
 
 // The chords between columns of a row: middle and half of the outline's width, middle and half of the chord.
@@ -40,8 +40,8 @@ fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
     let first = drop.profile;
     let sizes = vec4u(streak_table[first]);
     let way = streak_nearest(drop, at);
-    let time = streak_time(drop.recede, way);
-    let scale = drop.slope / streak_depth(drop.recede, time);
+    let time = streak_time(drop.depth_ratio, way);
+    let scale = drop.slope / streak_depth(drop.depth_ratio, time);
     let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
     let path = drop.along / moves;
     let offset = (at - drop.start - drop.along * way) / scale;
@@ -60,12 +60,12 @@ fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
     let half = chord.w * sqrt(max(1.0 - position * position, 0.0));
     let per_half = 1.0 / max(half, 1.0e-6);
     let length = moves / scale;
-    let faster = way + (1.0 - way) * drop.recede;
-    let rate = drop.share * drop.recede / max(faster * faster, 1.0e-12);
+    let faster = way + (1.0 - way) * drop.depth_ratio;
+    let rate = drop.fraction * drop.depth_ratio / max(faster * faster, 1.0e-12);
     let low = max(((ahead - chord.z) - length * (1.0 - way)) * per_half, -1.0);
     let high = select(min(((ahead - chord.z) + length * way) * per_half, 1.0), -2.0, half <= 1.0e-6);
     let middle = clamp(way + ((ahead - chord.z) - 0.5 * half * (low + high)) / length, 0.0, 1.0);
-    let weight = streak_weight(drop.weights, streak_time(drop.recede, middle));
+    let weight = streak_weight(drop.weights, streak_time(drop.depth_ratio, middle));
     return StreakPassage(
         first,
         sizes.x,
@@ -126,7 +126,7 @@ fn streak_lookup_shown(drop: DropsDrop, at: vec2f) -> vec4f {
     } else {
         light = streak_lookup_until(passage, passage.high) - streak_lookup_until(passage, passage.low);
     }
-    return vec4f(light, (passage.high - passage.low) * 0.5) * passage.share;
+    return vec4f(light, (passage.high - passage.low) * 0.5) * passage.fraction;
 }
 
 // The mean radiance of a whole drop of a class. `position` is in [0, 1] from the top left of the picture.

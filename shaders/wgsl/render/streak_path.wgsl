@@ -55,10 +55,10 @@ struct StreakLine {
 
 // A drop at a time.
 fn streak_path_instant(drop: DropsDrop, time: f32) -> StreakInstant {
-    let way = time * drop.recede / max(1.0 - time + time * drop.recede, 1.0e-20);
-    let scale = drop.slope / streak_depth(drop.recede, time);
-    let faster = way + (1.0 - way) * drop.recede;
-    let rate = drop.recede / max(faster * faster, 1.0e-12);
+    let way = time * drop.depth_ratio / max(1.0 - time + time * drop.depth_ratio, 1.0e-20);
+    let scale = drop.slope / streak_depth(drop.depth_ratio, time);
+    let faster = way + (1.0 - way) * drop.depth_ratio;
+    let rate = drop.depth_ratio / max(faster * faster, 1.0e-12);
     let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
     return StreakInstant(drop.start + drop.along * way, scale, time, way, rate * scale / moves);
 }
@@ -72,8 +72,8 @@ fn streak_path_axes(drop: DropsDrop) -> vec4f {
 // s2 and s3 at a time.
 fn streak_path_displacement(path: StreakPath, drop: DropsDrop, time: f32) -> vec2f {
     return vec2f(
-        path.amplitudes.x * drop_oscillation_sine(drop.swing.z + drop.turns.x * time),
-        path.amplitudes.y * drop_oscillation_sine(drop.swing.w + drop.turns.y * time),
+        path.amplitudes.x * drop_oscillation_sine(drop.mode_phase.z + drop.cycles.x * time),
+        path.amplitudes.y * drop_oscillation_sine(drop.mode_phase.w + drop.cycles.y * time),
     );
 }
 

@@ -81,7 +81,7 @@ fn streak_rays_ray(path: StreakPath, drop: DropsDrop, instant: StreakInstant, po
             pack2x16snorm(packing_octahedral_encode(streak_path_back(path, light.second))),
             pack2x16snorm(packing_octahedral_encode(streak_path_back(path, light.third))),
         ),
-        vec2u(pack2x16unorm(light.shares.xy), pack2x16unorm(light.shares.zw)),
+        vec2u(pack2x16unorm(light.fractions.xy), pack2x16unorm(light.fractions.zw)),
         passed.x | (passed.y << 8u) | (passed.z << 16u) | (passed.w << 24u),
         0u,
     );

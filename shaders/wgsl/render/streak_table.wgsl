@@ -1,6 +1,6 @@
 // Makes the means of the streak radiance table: what a drop of a class of sizes shows, over its disk and over all phases of its
 // oscillation.
-// Law: points of a lattice of rank 1 over the disk, the phases of both modes and the azimuth of the lobe; those that meet the drop
+// Law: points of a rank-1 lattice over the disk, the phases of both modes and the azimuth of the lobe; those that meet the drop
 // as it is then are traced. Rays are parallel: such drops are below two pixels.
 // Twin: downpour_render::rain::streak_table.
 
@@ -49,10 +49,10 @@ fn streak_table_point(kind: u32, towards: vec3f, point: u32) -> vec4f {
     var rest = 1.0;
     for (var k = 0u; k <= STREAK_EXITS; k += 1u) {
         if light.interfaces[k] > 0.0 {
-            let shown = select(light.shares[k], select(0.0, 1.0, k == 1u), shifts);
+            let shown = select(light.fractions[k], select(0.0, 1.0, k == 1u), shifts);
             let seen = streak_path_back(path, exits[k]);
             sum += drops_capture_about(towards, seen, width * bends[k]) * shown;
-            rest -= light.shares[k];
+            rest -= light.fractions[k];
         }
     }
     sum += drops_capture_texel(drops_frame.capture_last, 0, 0) * select(max(rest, 0.0), 0.0, shifts);

@@ -6,7 +6,7 @@
 // Twin: downpour_trace::trace.
 
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
-@group(0) @binding(8) var<storage, read_write> trace_gather: array<TraceGather>;
+@group(0) @binding(8) var<storage, read_write> trace_ambient: array<TraceAmbient>;
 
 // Light of which means are taken over neighboring pixels, packed.
 struct TraceSlot {
@@ -23,7 +23,7 @@ struct TraceSlot {
 }
 
 // Light of sky and surfaces that a pixel shows.
-struct TraceGather {
+struct TraceAmbient {
     // On the diffuse base of the first opaque surface, over pi.
     base: TraceSlot,
     // In the first gloss or mirror.
@@ -90,14 +90,14 @@ fn trace_add(sum: TraceSum, sample: PathSlot) -> TraceSum {
     return next;
 }
 
-// The mean, where `share` is one over the number of all samples.
-fn trace_mean(sum: TraceSum, share: f32) -> TraceSlot {
+// The mean, where `fraction` is one over the number of all samples.
+fn trace_mean(sum: TraceSum, fraction: f32) -> TraceSlot {
     if sum.weight <= 0.0 {
         return TraceSlot();
     }
     var mean = sum.slot;
     mean.light /= sum.weight;
-    mean.factor *= share;
+    mean.factor *= fraction;
     return trace_pack(mean);
 }
 
@@ -143,12 +143,12 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
         }
         last = path;
     }
-    let share = 1.0 / f32(count);
+    let fraction = 1.0 / f32(count);
     if is_picture {
-        trace_gather[y * render_frame.camera.width + x] = TraceGather(trace_mean(base, share), trace_mean(mirror, share));
-        return vec4f(sum * share, nearest);
+        trace_ambient[y * render_frame.camera.width + x] = TraceAmbient(trace_mean(base, fraction), trace_mean(mirror, fraction));
+        return vec4f(sum * fraction, nearest);
     }
-    var seen = sum * share;
+    var seen = sum * fraction;
     if nearest >= SCENE_FAR && render_frame.projection == SCENE_OCTAHEDRAL {
         seen = capture_sky(x, y);
     }

@@ -169,9 +169,9 @@ fn tell(all: &[Mutant], chosen: &[usize], done: &BTreeMap<String, String>, list:
     for (kind, [count, survive]) in kinds {
         println!("{kind}: {} of {count} seen", count - survive);
     }
-    let share = 100.0 * seen as f64 / valid.len().max(1) as f64;
+    let fraction = 100.0 * seen as f64 / valid.len().max(1) as f64;
     println!(
-        "{} mutants, {seen} seen ({share:.1} %), {listed} listed with a reason, {unlisted} not",
+        "{} mutants, {seen} seen ({fraction:.1} %), {listed} listed with a reason, {unlisted} not",
         valid.len()
     );
     Unlisted { count: unlisted, of: valid.len() }

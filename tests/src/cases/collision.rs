@@ -123,7 +123,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             [0, 1, 2].map(|k| more(r, k).map(|x| (x - 0.5).to_bits())[..3].to_vec());
         [corner, vec![r[0] % 9], edge_1, edge_2].concat()
     });
-    let (near, share, offset) = (Uniform(-20.0, 20.0), Uniform(-1.0, 1.0), Uniform(-0.5, 0.5));
+    let (near, fraction, offset) = (Uniform(-20.0, 20.0), Uniform(-1.0, 1.0), Uniform(-0.5, 0.5));
     vec![
         FunctionCase::new(
             "collision_position",
@@ -236,7 +236,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "collision_wall",
             &COLLISION,
-            &[a_map, share, share, share],
+            &[a_map, fraction, fraction, fraction],
             Tol::absolute(1.0e-5, "a unit vector of a sum of two products: a square root and a division"),
             |a| collision_wall(&map(a), vec3(a)).to_array().words(),
         ),

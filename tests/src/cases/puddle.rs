@@ -67,7 +67,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let value = Uniform(-1.0, 1.0);
     let quads = |n: usize| -> Vec<Domain> { vec![value; 4 * n] };
     let with = |n: usize, more: &[Domain]| -> Vec<Domain> { [quads(n), more.to_vec()].concat() };
-    let (share, cells) = (Uniform(0.0, 1.0), Uniform(0.0, 40.0));
+    let (fraction, cells) = (Uniform(0.0, 1.0), Uniform(0.0, 40.0));
     vec![
         FunctionCase::new(
             "puddle_linked",
@@ -115,7 +115,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "puddle_keep",
             &PUDDLE,
-            &[cells, share, cells, Uniform(0.0, 2.0)],
+            &[cells, fraction, cells, Uniform(0.0, 2.0)],
             Tol::relative(2.0e-6, 0.0, "divisions, 2.5 ulp each"),
             |a| puddle_keep(a.f32(), a.f32(), a.f32(), a.f32()).words(),
         ),

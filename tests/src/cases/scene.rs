@@ -47,7 +47,7 @@ const FORMULA: Tol =
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
     let cosine = Uniform(0.02, 1.0);
-    let share = Uniform(0.0, 1.0);
+    let fraction = Uniform(0.0, 1.0);
     let alpha = Uniform(0.05, 1.0);
     let color = [Uniform(0.0, 1.0); 3];
     let [r, g, b] = color;
@@ -116,7 +116,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "brdf_visible_normal",
             &BRDF,
-            &[Unit3, alpha, share, share],
+            &[Unit3, alpha, fraction, fraction],
             Tol::absolute(3.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
                 .with_outliers(1.0e-3),
             |a| {
@@ -137,7 +137,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "scatter_hemisphere",
             &SCATTER,
-            &[Unit3, share, share],
+            &[Unit3, fraction, fraction],
             Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
                 .with_outliers(1.0e-3),
             |a| scatter_hemisphere(vec3(a), a.f32(), a.f32()).to_array().words(),
@@ -145,11 +145,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("scatter_above", &SCATTER, &[Unit3, Unit3], FORMULA, |a| {
             scatter_above(vec3(a), vec3(a)).to_array().words()
         }),
-        FunctionCase::new("scatter_alpha", &SCATTER, &[share], FORMULA, |a| scatter_alpha(a.f32()).words()),
+        FunctionCase::new("scatter_alpha", &SCATTER, &[fraction], FORMULA, |a| {
+            scatter_alpha(a.f32()).words()
+        }),
         FunctionCase::new(
             "scatter_gloss",
             &SCATTER,
-            &[r, g, b, share, share, Below(2)],
+            &[r, g, b, fraction, fraction, Below(2)],
             Tol::absolute(1.0e-5, "an exp2 of numbers up to 10 (3 + 2|x| ulp) and sums of numbers up to 1"),
             |a| {
                 let normal_reflectance = vec3(a);

@@ -144,7 +144,7 @@ const MOTIONS: Tol =
 pub(super) fn functions() -> Vec<FunctionCase> {
     let (velocity, wind) = (Uniform(-10.0, 10.0), Uniform(-10.0, 10.0));
     let diameter = Uniform(1.0e-4, 9.0e-3);
-    let share = Uniform(0.0, 1.0);
+    let fraction = Uniform(0.0, 1.0);
     let near = Uniform(-6.0, 6.0);
     let step = [velocity, velocity, velocity, wind, wind, wind, Uniform(0.3, 9.5), Uniform(1.0e-3, 0.1)];
     let sphere = Tol::absolute(3.0e-3, "sine and cosine (2^-11), times radii up to 4");
@@ -188,7 +188,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "motion_bounce",
             &MOTION,
-            &[velocity, velocity, velocity, Unit3, share, share],
+            &[velocity, velocity, velocity, Unit3, fraction, fraction],
             MOTIONS,
             |a| motion_bounce(vec3(a), vec3(a), a.f32(), a.f32()).to_array().words(),
         ),
@@ -238,11 +238,11 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "volume_in_sphere",
             &VOLUME,
-            &[share, share, share, Uniform(2.0, 8.0)],
+            &[fraction, fraction, fraction, Uniform(2.0, 8.0)],
             sphere,
             |a| volume_in_sphere(vec3(a), a.f32()).to_array().words(),
         ),
-        FunctionCase::new("volume_on_disk", &VOLUME, &[share, share], sphere, |a| {
+        FunctionCase::new("volume_on_disk", &VOLUME, &[fraction, fraction], sphere, |a| {
             volume_on_disk(Vec2::new(a.f32(), a.f32())).to_array().words()
         }),
         FunctionCase::new("step_kind", &STEP, &[AnyWord], Tol::exact("bits of a word"), |a| {
@@ -274,7 +274,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "enter_code",
             &ENTER,
-            &[Uniform(700.0, 60_000.0), Uniform(700.0, 60_000.0), share],
+            &[Uniform(700.0, 60_000.0), Uniform(700.0, 60_000.0), fraction],
             Tol::exact("a product and sums, which a GPU may fuse, and their whole part").with_outliers(2.0e-2),
             |a| enter_code(a.f32(), a.f32(), a.f32()).words(),
         ),
@@ -288,7 +288,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "enter_offset",
             &ENTER,
-            &[Made(region_words), Unit3, Unit3, share, share, share, share],
+            &[Made(region_words), Unit3, Unit3, fraction, fraction, fraction, fraction],
             Tol::absolute(2.0e-5, "roots, a quotient and products of numbers up to 3; at the edge of the disk or by chance it may be none")
                 .with_outliers(1.0e-3),
             |a| enter_offset(&region(a), vec3(a), vec3(a), vec3(a), a.f32()).to_array().words(),
@@ -296,7 +296,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "step_shown",
             &STEP,
-            &[AnyWord, share],
+            &[AnyWord, fraction],
             Tol::ulp(2, "two products, each rounded once"),
             |a| step_shown(a.u32(), a.f32()).words(),
         ),

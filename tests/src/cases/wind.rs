@@ -112,10 +112,10 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let squared = LogUniform(1.0e-2, 1.0e3);
     let (strength, core) = (Uniform(-50.0, 50.0), Uniform(1.0, 3.0));
     let value = Uniform(-10.0, 10.0);
-    let share = Uniform(0.0, 1.0);
+    let fraction = Uniform(0.0, 1.0);
     let cell = [Below(64); 3];
     let mut mix = vec![value; 24];
-    mix.extend([share; 3]);
+    mix.extend([fraction; 3]);
     vec![
         FunctionCase::new(
             "wind_primitive_across",
@@ -217,7 +217,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "wind_field_corner",
             &FIELD,
-            &[cell[0], cell[1], cell[2], cell[0], cell[1], cell[2], share, share, share, Below(8)],
+            &[cell[0], cell[1], cell[2], cell[0], cell[1], cell[2], fraction, fraction, fraction, Below(8)],
             Tol::exact("a choice between integers"),
             |a| {
                 let (cell, next) = (UVec3::from(a.u32s()), UVec3::from(a.u32s()));

@@ -144,7 +144,7 @@ impl<'a> Maker<'a> {
         }
         let frames = stats::read(&read(&stats)?).map_err(|message| in_file(&stats, message))?;
         let run = Run { set, name, rain, frames };
-        let [mean, least] = run.share();
+        let [mean, least] = run.fraction();
         eprintln!("{}: {:.1} % on screen, least {:.1} %", run.name, 100.0 * mean, 100.0 * least);
         Ok(run)
     }

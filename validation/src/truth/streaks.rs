@@ -115,7 +115,7 @@ pub(super) fn compare(
     }
     let text = format!(
         "# Streaks and Mitsuba\n\n`downpour specimen --exposure S --oscillation 0.2,0.1 --samples {OURS}` against the mean of instants by \
-         Mitsuba's path tracer (`scalar_rgb`, {PATH_SAMPLES} samples per pixel each; with a lamp {OURS_LIT} and {PATH_SAMPLES_LIT}). `alone`: the streak divided by the share of the \
+         Mitsuba's path tracer (`scalar_rgb`, {PATH_SAMPLES} samples per pixel each; with a lamp {OURS_LIT} and {PATH_SAMPLES_LIT}). `alone`: the streak divided by the fraction of the \
          exposure in which it covers a pixel; `absent`: the sky instead of it.\n\n\
          | streak | instants | cover | mean FLIP | luminance | FLIP alone | luminance alone | FLIP absent | sky outside |\n\
          |---|---|---|---|---|---|---|---|---|\n{}\n",

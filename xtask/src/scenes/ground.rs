@@ -237,19 +237,19 @@ fn sweep(mesh: &mut Mesh, stations: &[Station], mirror: f32, side: u32) {
     mesh.grid(
         [columns, stations.len() - 1],
         |i, j| {
-            let (distance, share, more, material) = PROFILE[column(i)];
+            let (distance, fraction, more, material) = PROFILE[column(i)];
             let station = &stations[j];
             // Behind a dropped curb the pavement rises to its height over 1.2 m.
             let curb = mix(station.curb, 1.0, smooth(0.15, 1.35, distance));
-            let wave = if distance < 0.01 { gutter_wave(station.at.y, side) * (1.0 - share) } else { 0.0 };
+            let wave = if distance < 0.01 { gutter_wave(station.at.y, side) * (1.0 - fraction) } else { 0.0 };
             let flat = station.at + station.out * distance;
-            let y = share * CURB_HEIGHT_M * curb + more + wave * smooth(-39.0, -36.0, station.at.y);
+            let y = fraction * CURB_HEIGHT_M * curb + more + wave * smooth(-39.0, -36.0, station.at.y);
             let p = Vec3::new(flat.x * mirror, y, flat.y);
             let (uv, tint) = match material {
                 Material::Kerb => {
                     // From the foot of the face over the edge to the back.
-                    let over = share * 0.12 + distance.max(0.0);
-                    let dirt = mix(0.62, 1.0, smooth(0.0, 0.6, share));
+                    let over = fraction * 0.12 + distance.max(0.0);
+                    let dirt = mix(0.62, 1.0, smooth(0.0, 0.6, fraction));
                     (
                         Vec2::new(station.length, over / 0.5),
                         dirt * mix(0.85, 1.1, hash(station.length as i32, 3, 241)),

@@ -22,7 +22,7 @@ const MAX_HALO: u32 = 24;
 
 /// Width of the absorbing border, in cells, and its maximum fraction of the lattice.
 const SPONGE_CELLS: f64 = 32.0;
-const SPONGE_SHARE: f64 = 0.25;
+const SPONGE_FRACTION: f64 = 0.25;
 
 /// Border of the lattice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -306,7 +306,7 @@ impl Model {
             return (0.0, 0.0);
         }
         let [nx, ny] = self.options.size;
-        let cells = SPONGE_CELLS.min(SPONGE_SHARE * f64::from(nx.min(ny)));
+        let cells = SPONGE_CELLS.min(SPONGE_FRACTION * f64::from(nx.min(ny)));
         let width = cells * self.cell();
         // A ripple of twelve cells, there and back through a drag that grows as the square, keeps exp(-4).
         let speed = self.law.phase_speed(12.0 * self.cell());

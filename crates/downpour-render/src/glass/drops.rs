@@ -153,8 +153,8 @@ impl Common<'_> {
             return near(cell);
         }
         let next = cell + glass_motion_offset(glass_motion_octant(v));
-        let share = (f64::from(progress) / 16384.0).clamp(0.0, 1.0);
-        near(cell).lerp(near(next), share)
+        let fraction = (f64::from(progress) / 16384.0).clamp(0.0, 1.0);
+        near(cell).lerp(near(next), fraction)
     }
 
     /// The force along the pane on a drop, N.
@@ -170,13 +170,13 @@ impl Common<'_> {
 
     /// The outline: the glass around a drop, as its second and third harmonic.
     fn lobes(&self, center: DVec2, radius: f64, along: DVec2) -> [f32; 4] {
-        let share = UNEVEN * (radius / ROUND_M).min(1.0) * 2.0 / f64::from(ROUND);
+        let fraction = UNEVEN * (radius / ROUND_M).min(1.0) * 2.0 / f64::from(ROUND);
         let mut lobes = [0.0; 4];
         for k in 0..ROUND {
             let angle = TAU * f64::from(k) / f64::from(ROUND);
             let (sin, cos) = (ops::sin(angle), ops::cos(angle));
             let at = center + (along * cos + along.perp() * sin) * radius;
-            let pulls = share * self.glass(at);
+            let pulls = fraction * self.glass(at);
             let parts = [
                 cos * cos - sin * sin,
                 2.0 * sin * cos,

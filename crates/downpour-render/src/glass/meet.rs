@@ -8,7 +8,7 @@ use super::water::{glass_picture_water_cap, glass_picture_water_leave, glass_pic
 
 /// Surface of the pane that a ray meets.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Met {
+pub(super) struct PaneHit {
     pub(super) normal: Vec3,
     pub(super) wet: bool,
     /// Rate at which the normal turns, 1/m.
@@ -58,7 +58,7 @@ impl Look<'_> {
     }
 
     /// The surface that a ray leaves by, which enters the water at a position of the glass.
-    pub(super) fn glass_picture_meet(&self, position: Vec2, aside: Vec2) -> Met {
+    pub(super) fn glass_picture_meet(&self, position: Vec2, aside: Vec2) -> PaneHit {
         let frame = &self.glass.frame;
         let column = ((position.x * frame.bins).max(0.0) as u32).min(frame.columns - 1);
         let row = ((position.y * frame.bins).max(0.0) as u32).min(frame.rows - 1);
@@ -79,13 +79,13 @@ impl Look<'_> {
             let cap = glass_picture_water_cap(drop, position + aside * z);
             let normal = glass_picture_water_normal(Vec2::new(cap.y, cap.z));
             let lit = drop.radius >= frame.lit_from;
-            return Met { normal, wet: true, curvature: 1.0 / drop.sphere, lit };
+            return PaneHit { normal, wet: true, curvature: 1.0 / drop.sphere, lit };
         }
         if frame.film <= 0.0 {
-            return Met { normal: Vec3::Z, wet: false, curvature: 0.0, lit: false };
+            return PaneHit { normal: Vec3::Z, wet: false, curvature: 0.0, lit: false };
         }
         let film = self.glass_picture_film(position);
         let normal = glass_picture_water_normal(Vec2::new(film.y, film.z));
-        Met { normal, wet: film.x > 0.0, curvature: 0.0, lit: false }
+        PaneHit { normal, wet: film.x > 0.0, curvature: 0.0, lit: false }
     }
 }

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::GlassPicture;
 use super::light::glass_picture_light_seen;
-use super::meet::Met;
+use super::meet::PaneHit;
 
 /// A ray that meets the pane.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +77,7 @@ impl Look<'_> {
     }
 
     /// Fraction of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
-    fn glass_picture_outer(&self, cosine: f32, met: &Met, within: f32) -> f32 {
+    fn glass_picture_outer(&self, cosine: f32, met: &PaneHit, within: f32) -> f32 {
         let frame = &self.glass.frame;
         if !met.wet {
             return optics_fresnel(cosine, GLASS_PICTURE_INDEX);

@@ -122,9 +122,9 @@ fn cast(texels: &mut [Vec2], [columns, rows]: [usize; 2], edge: f32, drop: &Glas
                 } else if cover > 0.0 || spot(position) > 0.0 {
                     // Drops may overlap: none takes more light than there is.
                     let taken = cover * (1.0 - texel.x);
-                    let share = if spots > 0.0 { covered * spot(position) / spots } else { cover };
+                    let fraction = if spots > 0.0 { covered * spot(position) / spots } else { cover };
                     texel.x += taken;
-                    texel.y += if gathers { share } else { taken };
+                    texel.y += if gathers { fraction } else { taken };
                 }
             }
         }

@@ -61,9 +61,9 @@ pub fn glass_picture_water_cap(drop: &GlassPictureDrop, position: Vec2) -> Vec3 
     let down_y = steep * of_y;
     let slope = along * down_x + Vec2::new(-along.y, along.x) * down_y;
     let pulled = drop.lean * r;
-    let share = (1.0 + pulled * (away.x * droop.x + away.y * droop.y)).max(0.1);
-    let slope = slope * share + droop * (height * pulled);
-    Vec3::new(height * share, slope.x, slope.y)
+    let fraction = (1.0 + pulled * (away.x * droop.x + away.y * droop.y)).max(0.1);
+    let slope = slope * fraction + droop * (height * pulled);
+    Vec3::new(height * fraction, slope.x, slope.y)
 }
 
 /// The highest that a drop may be.

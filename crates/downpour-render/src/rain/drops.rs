@@ -47,7 +47,7 @@ pub fn drops_shift(line: u32) -> f32 {
 /// The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
 #[must_use]
 pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
-    drop.swing[2] + drop.turns[0] * streak_time(drop.recede, way)
+    drop.mode_phase[2] + drop.cycles[0] * streak_time(drop.depth_ratio, way)
 }
 
 /// Data that the kernel reads.
@@ -93,7 +93,7 @@ impl Buffers<'_> {
         let towards = Vec3::from(drop.towards);
         let right = drops_mask_right(towards);
         let up = right.cross(towards);
-        let turned = drops_mask_unit(self.view.drops_mask_at(drop.row, x, y).reflected + Vec3::Z);
+        let turned = drops_mask_unit(self.view.drops_mask_at(drop.mask_index, x, y).reflected + Vec3::Z);
         let normal = right * turned.x + up * turned.y - towards * turned.z;
         let (lamps, _) = row[1..].as_chunks::<2>();
         for [lamp, way] in lamps.iter().filter(|[lamp, _]| lamp[3] < 0.0) {
@@ -112,11 +112,11 @@ impl Buffers<'_> {
     fn drops_lines(&self, index: u32, chord: &StreakChord, width: f32) -> Vec3 {
         let row = self.drops_light_row(index);
         let part = (chord.high - chord.low) * 0.5;
-        let mut light = Vec4::from(row[0]).truncate() * chord.share;
+        let mut light = Vec4::from(row[0]).truncate() * chord.fraction;
         for glint in row[1..].iter().filter(|glint| glint[3] > 0.0) {
             let position = drop_glint_unpack(glint[3]);
             let off = chord.aside - (position.x * chord.path.y - position.y * chord.path.x);
-            light += Vec4::from(*glint).truncate() * (drops_line(off, width) * chord.pace - chord.share);
+            light += Vec4::from(*glint).truncate() * (drops_line(off, width) * chord.pace - chord.fraction);
         }
         light.max(Vec3::ZERO) * part
     }
@@ -139,10 +139,10 @@ impl Buffers<'_> {
         let row = self.drops_light_row(index);
         let part = (chord.high - chord.low) * 0.5;
         let turns = drops_turns(drop, streak_nearest(drop, at));
-        let mut light = Vec4::from(row[0]).truncate() * chord.share;
+        let mut light = Vec4::from(row[0]).truncate() * chord.fraction;
         for (color, streak) in self.streaks(index) {
             let shown = self.atlas().drops_atlas_across(&streak, -chord.aside, turns);
-            light += color * (shown * 2.0 * chord.pace - chord.share);
+            light += color * (shown * 2.0 * chord.pace - chord.fraction);
         }
         light.max(Vec3::ZERO) * part
     }
@@ -204,8 +204,13 @@ impl Buffers<'_> {
                 sy = lean.dot(up) / extent;
             }
             if sx.abs() < 1.0 && sy.abs() < 1.0 {
-                let shade =
-                    DropsShade { towards, half_extent: drop.half_extent, lean, spacing, row: drop.row };
+                let shade = DropsShade {
+                    towards,
+                    half_extent: drop.half_extent,
+                    lean,
+                    spacing,
+                    mask_index: drop.mask_index,
+                };
                 let mut shown = self.view.drops_shade_ray(&shade, sx, sy);
                 if !small {
                     let at = Vec2::new(sx, sy) * drop.half_extent;
@@ -231,7 +236,7 @@ impl Buffers<'_> {
             half_extent: drop.half_extent,
             lean: Vec3::ZERO,
             spacing: 2.0 * drop.oval[0] / STREAK_FINE as f32,
-            row: drop.row,
+            mask_index: drop.mask_index,
         };
         let mut sum = Vec4::ZERO;
         for k in 0..frame.streak_samples {
@@ -283,7 +288,7 @@ impl Buffers<'_> {
                 continue;
             }
             if !by_profile {
-                sum += self.drops_chord(index, drop, &chord, ray) * chord.share;
+                sum += self.drops_chord(index, drop, &chord, ray) * chord.fraction;
             }
             let lines = if self.view.frame.atlas > 0 {
                 self.drops_streaks(index, drop, &chord, position)
@@ -303,7 +308,7 @@ impl Buffers<'_> {
         let up = right.cross(towards);
         let lean = drops_on_plane(towards, self.view.frame.camera.camera_ray(x as f32 + 0.5, y as f32 + 0.5));
         let way = streak_nearest(drop, Vec2::new(lean.dot(right), lean.dot(up)));
-        drop.distance * streak_depth(drop.recede, streak_time(drop.recede, way))
+        drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way))
     }
 
     /// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.

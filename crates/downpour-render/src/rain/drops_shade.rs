@@ -18,8 +18,8 @@ pub(super) struct DropsShade {
     pub(super) lean: Vec3,
     /// Equivalent radii between samples.
     pub(super) spacing: f32,
-    /// Position in the masks: rows of diameters, and of elevations.
-    pub(super) row: [f32; 2],
+    /// Index of its mask, fractional: diameter, elevation.
+    pub(super) mask_index: [f32; 2],
 }
 
 impl DropsView<'_> {
@@ -30,7 +30,7 @@ impl DropsView<'_> {
 
     /// Light of a drop at (x, y), in units of half its mask: radiance times coverage, and coverage.
     pub(super) fn drops_shade_ray(&self, drop: &DropsShade, x: f32, y: f32) -> Vec4 {
-        let texel = self.drops_mask_at(drop.row, x, y);
+        let texel = self.drops_mask_at(drop.mask_index, x, y);
         if texel.coverage <= 0.0 {
             return Vec4::ZERO;
         }

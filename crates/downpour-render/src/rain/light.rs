@@ -341,9 +341,9 @@ impl<'a> DropLights<'a> {
         let core = below * (1.0 - inner * inner).max(0.0).sqrt() / inner;
         let aside = offset - axis * below;
         let away = aside.dot(aside).sqrt();
-        let share = ((circle - away) / (circle - core).max(1.0e-6 * below)).clamp(0.0, 1.0);
+        let fraction = ((circle - away) / (circle - core).max(1.0e-6 * below)).clamp(0.0, 1.0);
         let square = offset.dot(offset).max((least * least).max(1.0e-8));
-        light.color * (share / square)
+        light.color * (fraction / square)
     }
 
     /// The light on a drop: its mean, then its glints.

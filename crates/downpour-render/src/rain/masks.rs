@@ -63,7 +63,7 @@ pub struct DropMasks {
 /// Masks of a drop: their rows, and what they say of its outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MaskLookup {
-    pub(crate) row: [f32; 2],
+    pub(crate) index: [f32; 2],
     pub(crate) half_extent: f32,
     pub(crate) area: f32,
     pub(crate) oval: [f32; 3],
@@ -175,7 +175,7 @@ impl DropMasks {
         let areas = |k: usize| between(&|j| self.areas[first(k) + j], column);
         let oval = |part: usize| between(&|k| between(&|j| self.ovals[first(k) + j][part], column), row);
         MaskLookup {
-            row: [row, column],
+            index: [row, column],
             half_extent: between(&|k| self.half_extents[k], row),
             area: between(&areas, row),
             oval: [oval(0), oval(1), oval(2)],

@@ -93,7 +93,7 @@ impl StreakProfiles {
         for (index, (k, projected)) in sampled() {
             let mut path = masks.streak_shape(given[*k as usize].diameter);
             let id = given[*k as usize].id;
-            let oscillates = projected.drop.swing[0] != 0.0 || projected.drop.swing[1] != 0.0;
+            let oscillates = projected.drop.mode_phase[0] != 0.0 || projected.drop.mode_phase[1] != 0.0;
             let pair = exposure.oscillation.pair().map(|a| a as f32);
             path.amplitudes = if oscillates { pair } else { [0.0; 2] };
             let azimuth = drop_oscillation_azimuth(seed_words(exposure.seed), id as u32 ^ (id >> 32) as u32);
@@ -159,7 +159,7 @@ fn sized(path: StreakPath, projected: &Projected) -> StreakPath {
     let [x, y] = drop.along;
     let turned = ops::atan2((x * x + y * y).sqrt(), 1.0) / TURNED;
     let oscillates = path.amplitudes != [0.0; 2];
-    let (turns, least) = if oscillates { (drop.turns[1], fineness.least) } else { (0.0, 1) };
+    let (turns, least) = if oscillates { (drop.cycles[1], fineness.least) } else { (0.0, 1) };
     let wanted = (turns * fineness.per_turn).max(turned).ceil();
     let rows = 1 + (wanted as u32).clamp(least, fineness.most);
     StreakPath {

@@ -109,11 +109,12 @@ pub(super) fn project(
     };
     let spread = if blurred { (0.75 * width * width + blur * blur).sqrt().max(1.0) } else { 1.0 };
     let larger = if path.moves { distance / path.nearest } else { 1.0 };
-    let swing = if path.moves { Swing::of(drop, towards, exposure, &path.part) } else { Swing::default() };
+    let motion =
+        if path.moves { ModeMotion::of(drop, towards, exposure, &path.part) } else { ModeMotion::default() };
     let reach = if grid == 0 {
         0.5 * (spread + 1.0)
     } else {
-        mask.half_extent * pixels * larger * (1.0 + swing.most) / cosine * 1.02 + 1.0
+        mask.half_extent * pixels * larger * (1.0 + motion.most) / cosine * 1.02 + 1.0
     };
     let [first, last] = path.ends.map(|p| camera.project(p));
     let (right, up) = (drops_mask_right(towards), drops_mask_right(towards).cross(towards));
@@ -124,7 +125,7 @@ pub(super) fn project(
         position: camera.project(offset).into(),
         slope,
         half_extent: mask.half_extent,
-        row: mask.row,
+        mask_index: mask.index,
         area: mask.area * pixels * pixels / cosine,
         grid,
         start: start.into(),
@@ -132,14 +133,14 @@ pub(super) fn project(
         first: first.into(),
         way: (last - first).into(),
         oval: mask.oval,
-        recede: path.recede,
-        swing: swing.swing,
-        turns: swing.turns,
-        share: path.part[1] - path.part[0],
+        depth_ratio: path.depth_ratio,
+        mode_phase: motion.mode_phase,
+        cycles: motion.cycles,
+        fraction: path.part[1] - path.part[0],
         spread,
         nearest: path.nearest - 2.0 * radius,
         kind: kind(&path, exposure),
-        shape: shapes::of_row(mask.row[0]),
+        shape: shapes::of_row(mask.index[0]),
         profile: 0,
         weights: if path.moves { path.part.map(|part| exposure.response.weight(part)) } else { [1.0; 2] },
         unused: [0.0; 2],
@@ -173,7 +174,7 @@ struct Path {
     /// The least of it.
     nearest: f32,
     /// Depth at the end over that at the beginning.
-    recede: f32,
+    depth_ratio: f32,
     velocity: Vec3,
     moves: bool,
 }
@@ -238,7 +239,7 @@ impl Path {
             part: [0.0, 1.0],
             depth: distance,
             nearest: distance,
-            recede: 1.0,
+            depth_ratio: 1.0,
             velocity: Vec3::ZERO,
             moves: false,
         };
@@ -252,7 +253,7 @@ impl Path {
         let in_front = ahead(open.dot(forward), close.dot(forward), 2.0 * radius + 0.02);
         let beside = ahead(open.dot(towards), close.dot(towards), 0.2 * distance);
         let part = [in_front[0].max(beside[0]).max(present[0]), in_front[1].min(beside[1]).min(present[1])];
-        let ends = part.map(|share| open + (close - open) * share);
+        let ends = part.map(|fraction| open + (close - open) * fraction);
         let depths = ends.map(|p| p.dot(towards));
         let across = (ends[1] / depths[1].max(1.0e-6) - ends[0] / depths[0].max(1.0e-6)).length();
         if part[1] <= part[0] || !across.is_finite() || across < STILL * radius / distance {
@@ -264,7 +265,7 @@ impl Path {
             part,
             depth: 0.5 * (depths[0] + depths[1]),
             nearest: depths[0].min(depths[1]),
-            recede: depths[1] / depths[0],
+            depth_ratio: depths[1] / depths[0],
             velocity: (close - open) / shutter,
             moves: true,
         })
@@ -273,14 +274,14 @@ impl Path {
 
 /// Oscillation of a drop during the exposure.
 #[derive(Clone, Copy, Debug, Default)]
-struct Swing {
-    swing: [f32; 4],
-    turns: [f32; 2],
+struct ModeMotion {
+    mode_phase: [f32; 4],
+    cycles: [f32; 2],
     /// No part of the surface goes farther, as a fraction of the radius.
     most: f32,
 }
 
-impl Swing {
+impl ModeMotion {
     fn of(drop: &FallingDrop, towards: Vec3, exposure: &Exposure, part: &[f32; 2]) -> Self {
         let diameter = f64::from(drop.diameter);
         if exposure.oscillation.pair() == [0.0; 2] || !OSCILLATING.contains(&diameter) {
@@ -304,8 +305,8 @@ impl Swing {
         let (frequency, phase) = (oscillation.frequency(), oscillation.phase());
         let at = [0, 1].map(|mode| (frequency[mode] * begin + phase[mode]).rem_euclid(1.0) as f32);
         Self {
-            swing: [a20, a31 * cosine, at[0], at[1]],
-            turns: frequency.map(|f| (f * open) as f32),
+            mode_phase: [a20, a31 * cosine, at[0], at[1]],
+            cycles: frequency.map(|f| (f * open) as f32),
             // P31 reaches 2.07.
             most: a20 + 2.1 * a31,
         }

@@ -21,8 +21,8 @@ pub struct DropsDrop {
     pub slope: f32,
     /// Half the width of its mask, in equivalent radii.
     pub half_extent: f32,
-    /// Position in the masks: rows of diameters, and of elevations.
-    pub row: [f32; 2],
+    /// Index of its mask, fractional: diameter, elevation.
+    pub mask_index: [f32; 2],
     /// Area on the picture, pixels.
     pub area: f32,
     /// Samples along an edge of a pixel; of a streak: samples of a pixel. 0: below a pixel, or out of focus.
@@ -39,14 +39,14 @@ pub struct DropsDrop {
     /// radii.
     pub oval: [f32; 3],
     /// Depth at the end over that at the beginning.
-    pub recede: f32,
+    pub depth_ratio: f32,
     /// Amplitudes of the modes (2,0) and (3,1), the latter times the cosine of its azimuth, and phases at the beginning,
     /// in turns.
-    pub swing: [f32; 4],
+    pub mode_phase: [f32; 4],
     /// Turns of both modes until the end.
-    pub turns: [f32; 2],
+    pub cycles: [f32; 2],
     /// Fraction of the exposure in which it is before the eye.
-    pub share: f32,
+    pub fraction: f32,
     /// Width over which a drop that is not sampled is spread, pixels.
     pub spread: f32,
     /// No part of it is nearer, m.
@@ -77,7 +77,7 @@ pub struct StreakChord {
     /// See `low`.
     pub high: f32,
     /// Fraction of the exposure in which the whole chord would pass, by weight.
-    pub share: f32,
+    pub fraction: f32,
     /// Fraction of the exposure in which it moves by an equivalent radius, by weight.
     pub pace: f32,
     /// Weights of the light at `low` and at `high`.
@@ -90,8 +90,8 @@ pub struct StreakChord {
 
 /// The time, as a fraction of the exposure, at which the drop is at a fraction of its way on the picture.
 #[must_use]
-pub fn streak_time(recede: f32, way: f32) -> f32 {
-    way / (way + (1.0 - way) * recede).max(1.0e-20)
+pub fn streak_time(depth_ratio: f32, way: f32) -> f32 {
+    way / (way + (1.0 - way) * depth_ratio).max(1.0e-20)
 }
 
 /// Weight of the light at a time, 0 to 1, by the weights at the beginning and at the end of the way.
@@ -109,15 +109,15 @@ pub fn streak_nearest(drop: &DropsDrop, at: Vec2) -> f32 {
 
 /// The depth at a time, over that in the middle of the exposure.
 #[must_use]
-pub fn streak_depth(recede: f32, time: f32) -> f32 {
-    (1.0 + (recede - 1.0) * time) * 2.0 / (1.0 + recede)
+pub fn streak_depth(depth_ratio: f32, time: f32) -> f32 {
+    (1.0 + (depth_ratio - 1.0) * time) * 2.0 / (1.0 + depth_ratio)
 }
 
 /// Scales of the oval at a time: width on the right and on the left, and height.
 #[must_use]
-pub fn streak_stretch(swing: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 {
-    let s2 = swing[0] * drop_oscillation_sine(swing[2] + turns[0] * time);
-    let s3 = swing[1] * drop_oscillation_sine(swing[3] + turns[1] * time);
+pub fn streak_stretch(mode_phase: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 {
+    let s2 = mode_phase[0] * drop_oscillation_sine(mode_phase[2] + turns[0] * time);
+    let s3 = mode_phase[1] * drop_oscillation_sine(mode_phase[3] + turns[1] * time);
     let state = drop_oscillation_state([s2, s3]);
     let [right, left] = drop_oscillation_outline(state, 1.0);
     Vec3::new(right, left, drop_oscillation_radius(state, 1.0, 0.0))
@@ -128,9 +128,9 @@ pub fn streak_stretch(swing: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 {
 pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     let (start, path) = (Vec2::from(drop.start), Vec2::from(drop.along));
     let way = streak_nearest(drop, at);
-    let time = streak_time(drop.recede, way);
-    let scale = drop.slope / streak_depth(drop.recede, time);
-    let stretch = streak_stretch(drop.swing, drop.turns, time);
+    let time = streak_time(drop.depth_ratio, way);
+    let scale = drop.slope / streak_depth(drop.depth_ratio, time);
+    let stretch = streak_stretch(drop.mode_phase, drop.cycles, time);
     let offset = (at - start - path * way) / scale;
     let side = if offset.x < 0.0 { stretch.y } else { stretch.x };
     let oval = Vec2::new(drop.oval[0] * side, drop.oval[1] * stretch.z);
@@ -142,14 +142,14 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     let along = on_oval.dot(direction);
     let half = (1.0 - across * across).max(0.0).sqrt();
     let per_half = 1.0 / half.max(1.0e-6);
-    let faster = way + (1.0 - way) * drop.recede;
-    let rate = drop.share * drop.recede / (faster * faster).max(1.0e-12);
+    let faster = way + (1.0 - way) * drop.depth_ratio;
+    let rate = drop.fraction * drop.depth_ratio / (faster * faster).max(1.0e-12);
     let moves = path.dot(path).sqrt().max(1.0e-20);
     let path = path / moves;
     let low = ((along - length * (1.0 - way)) * per_half).max(-1.0);
     let high = if half <= 1.0e-6 { -2.0 } else { ((along + length * way) * per_half).min(1.0) };
     // Points ahead on the chord have passed earlier.
-    let time = |v: f32| streak_time(drop.recede, (way + (along - half * v) / length).clamp(0.0, 1.0));
+    let time = |v: f32| streak_time(drop.depth_ratio, (way + (along - half * v) / length).clamp(0.0, 1.0));
     let weights = Vec2::new(streak_weight(drop.weights, time(low)), streak_weight(drop.weights, time(high)));
     let weight = 0.5 * (weights.x + weights.y);
     StreakChord {
@@ -158,7 +158,7 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
         half,
         low,
         high,
-        share: 2.0 * half / length * rate * weight,
+        fraction: 2.0 * half / length * rate * weight,
         pace: rate * scale / moves * weight,
         weights,
         aside: offset.x * path.y - offset.y * path.x,
@@ -232,5 +232,5 @@ pub fn streak_mean(from: Vec2, way: Vec2, width: f32, weights: [f32; 2]) -> f32 
 pub fn streak_cover(drop: &DropsDrop, x: u32, y: u32) -> f32 {
     let from = Vec2::from(drop.first) - Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
     let mean = streak_mean(from, Vec2::from(drop.way), drop.spread, drop.weights);
-    (drop.area * drop.share * mean).min(1.0)
+    (drop.area * drop.fraction * mean).min(1.0)
 }

@@ -32,7 +32,7 @@ pub(super) const LIGHT_ROWS: usize = 1 + 2 * STREAK_LAMPS as usize;
 #[derive(Clone, Copy, Debug, Default)]
 struct StreakExit {
     direction: Vec3,
-    share: f32,
+    fraction: f32,
     /// Interfaces passed; 0: there is none.
     passed: u32,
 }
@@ -41,7 +41,7 @@ struct StreakExit {
 #[derive(Clone, Copy, Debug, Default)]
 struct StreakChange {
     first: Vec3,
-    share: f32,
+    fraction: f32,
     second: Vec3,
 }
 
@@ -64,17 +64,17 @@ fn streak_light_change(before: &StreakExit, here: &StreakExit, after: &StreakExi
     match (has_before, has_after) {
         (true, true) => StreakChange {
             first: (after.direction - before.direction) * 0.5,
-            share: (after.share - before.share) * 0.5,
+            fraction: (after.fraction - before.fraction) * 0.5,
             second: after.direction + before.direction - here.direction * 2.0,
         },
         (false, true) => StreakChange {
             first: after.direction - here.direction,
-            share: after.share - here.share,
+            fraction: after.fraction - here.fraction,
             second: Vec3::ZERO,
         },
         (true, false) => StreakChange {
             first: here.direction - before.direction,
-            share: here.share - before.share,
+            fraction: here.fraction - before.fraction,
             second: Vec3::ZERO,
         },
         (false, false) => StreakChange::default(),
@@ -253,13 +253,13 @@ impl Streak<'_> {
                 if ray.middle.passed == 0 {
                     continue;
                 }
-                let share = (ray.middle.share + ray.later.share * later).clamp(0.0, 1.0);
-                rest -= share;
+                let fraction = (ray.middle.fraction + ray.later.fraction * later).clamp(0.0, 1.0);
+                rest -= fraction;
                 // The papers' form has what comes through, undimmed, and nothing else.
                 let shown = match (shifts, exit) {
                     (true, 1) => 1.0,
                     (true, _) => 0.0,
-                    (false, _) => share,
+                    (false, _) => fraction,
                 };
                 let size = streak_light_size(&ray, later);
                 let width = (size.x * size.y).sqrt().max(STREAK_NARROWEST * size.x.max(size.y));
@@ -269,7 +269,7 @@ impl Streak<'_> {
                     let time = [later, rays_per_row];
                     let spots = streak_light_spot(&ray, time, size, towards, lamp.w, path.fine, shift);
                     for (sum, spot) in sums.iter_mut().zip(spots) {
-                        *sum += lamp.truncate() * (spot * share * weight);
+                        *sum += lamp.truncate() * (spot * fraction * weight);
                     }
                 }
             }
@@ -298,8 +298,8 @@ fn unpacked(rays: &[StreakRay]) -> Vec<[StreakExit; 4]> {
             return StreakExit::default();
         }
         let direction = packing_octahedral_decode(packing_unpack_snorm(ray.exits[number])).into();
-        let share = packing_unpack_unorm(ray.shares[number >> 1])[number & 1];
-        StreakExit { direction, share, passed }
+        let fraction = packing_unpack_unorm(ray.fractions[number >> 1])[number & 1];
+        StreakExit { direction, fraction, passed }
     };
     rays.iter().map(|ray| std::array::from_fn(|number| exit(ray, number))).collect()
 }

@@ -35,7 +35,7 @@ struct StreakPassage {
     low: f32,
     high: f32,
     /// Fraction of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
-    share: f32,
+    fraction: f32,
 }
 
 impl StreakTable {
@@ -56,8 +56,8 @@ impl StreakTable {
         let first = drop.profile;
         let [rows, columns, profile_rows, fine] = self.entry(first).to_array().map(|n| n as u32);
         let way = streak_nearest(drop, at);
-        let time = streak_time(drop.recede, way);
-        let scale = drop.slope / streak_depth(drop.recede, time);
+        let time = streak_time(drop.depth_ratio, way);
+        let scale = drop.slope / streak_depth(drop.depth_ratio, time);
         let along = Vec2::from(drop.along);
         let moves = along.dot(along).sqrt().max(1.0e-20);
         let path = along / moves;
@@ -77,13 +77,13 @@ impl StreakTable {
         let half = chord.w * (1.0 - position * position).max(0.0).sqrt();
         let per_half = 1.0 / half.max(1.0e-6);
         let length = moves / scale;
-        let faster = way + (1.0 - way) * drop.recede;
-        let rate = drop.share * drop.recede / (faster * faster).max(1.0e-12);
+        let faster = way + (1.0 - way) * drop.depth_ratio;
+        let rate = drop.fraction * drop.depth_ratio / (faster * faster).max(1.0e-12);
         let low = (((ahead - chord.z) - length * (1.0 - way)) * per_half).max(-1.0);
         let high =
             if half <= 1.0e-6 { -2.0 } else { (((ahead - chord.z) + length * way) * per_half).min(1.0) };
         let middle = (way + ((ahead - chord.z) - 0.5 * half * (low + high)) / length).clamp(0.0, 1.0);
-        let weight = streak_weight(drop.weights, streak_time(drop.recede, middle));
+        let weight = streak_weight(drop.weights, streak_time(drop.depth_ratio, middle));
         StreakPassage {
             first,
             rows,
@@ -94,7 +94,7 @@ impl StreakTable {
             across,
             low,
             high,
-            share: 2.0 * half / length * rate * weight,
+            fraction: 2.0 * half / length * rate * weight,
         }
     }
 
@@ -144,7 +144,7 @@ impl StreakTable {
         } else {
             self.streak_lookup_until(&passage, high) - self.streak_lookup_until(&passage, low)
         };
-        light.extend((high - low) * 0.5) * passage.share
+        light.extend((high - low) * 0.5) * passage.fraction
     }
 
     /// The mean radiance of a whole drop of a class. `position` is in [0, 1] from the top left of the picture.

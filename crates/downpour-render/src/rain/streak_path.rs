@@ -61,10 +61,10 @@ pub(super) struct StreakInstant {
 
 /// A drop at a time.
 pub(super) fn streak_path_instant(drop: &DropsDrop, time: f32) -> StreakInstant {
-    let way = time * drop.recede / (1.0 - time + time * drop.recede).max(1.0e-20);
-    let scale = drop.slope / streak_depth(drop.recede, time);
-    let faster = way + (1.0 - way) * drop.recede;
-    let rate = drop.recede / (faster * faster).max(1.0e-12);
+    let way = time * drop.depth_ratio / (1.0 - time + time * drop.depth_ratio).max(1.0e-20);
+    let scale = drop.slope / streak_depth(drop.depth_ratio, time);
+    let faster = way + (1.0 - way) * drop.depth_ratio;
+    let rate = drop.depth_ratio / (faster * faster).max(1.0e-12);
     let along = Vec2::from(drop.along);
     let moves = along.dot(along).sqrt().max(1.0e-20);
     StreakInstant { middle: Vec2::from(drop.start) + along * way, scale, time, pace: rate * scale / moves }
@@ -81,8 +81,8 @@ impl StreakPath {
     /// s2 and s3 at a time.
     pub(super) fn streak_path_displacement(&self, drop: &DropsDrop, time: f32) -> [f32; 2] {
         [
-            self.amplitudes[0] * drop_oscillation_sine(drop.swing[2] + drop.turns[0] * time),
-            self.amplitudes[1] * drop_oscillation_sine(drop.swing[3] + drop.turns[1] * time),
+            self.amplitudes[0] * drop_oscillation_sine(drop.mode_phase[2] + drop.cycles[0] * time),
+            self.amplitudes[1] * drop_oscillation_sine(drop.mode_phase[3] + drop.cycles[1] * time),
         ]
     }
 

@@ -30,7 +30,7 @@ pub struct StreakRay {
     /// Directions in which its light leaves, octahedral, two numbers of 16 bits each.
     pub exits: [u32; 4],
     /// Their fractions, two numbers of 16 bits each.
-    pub shares: [u32; 2],
+    pub fractions: [u32; 2],
     /// Interfaces passed up to there, 8 bits each; 0: there is no such exit.
     pub interfaces: u32,
     /// 0.
@@ -156,13 +156,13 @@ impl WithLanes for Rays<'_> {
 #[inline(always)]
 fn store<S: Simd>(path: &StreakPath, light: &WobbleLight<Lanes<S>>, rays: &mut [StreakRay]) {
     let mut exits = [[[0.0f32; MAX_LANES]; 3]; 4];
-    let mut shares = [[0.0f32; MAX_LANES]; 4];
+    let mut fractions = [[0.0f32; MAX_LANES]; 4];
     let mut passed = [[0.0f32; MAX_LANES]; 4];
     for n in 0..4 {
         for (lanes, into) in light.exits[n].iter().zip(&mut exits[n]) {
             lanes.store(into);
         }
-        light.shares[n].store(&mut shares[n]);
+        light.fractions[n].store(&mut fractions[n]);
         light.interfaces[n].store(&mut passed[n]);
     }
     for (k, ray) in rays.iter_mut().enumerate() {
@@ -171,11 +171,11 @@ fn store<S: Simd>(path: &StreakPath, light: &WobbleLight<Lanes<S>>, rays: &mut [
             let world = path.streak_path_back(Vec3::new(x[k], y[k], z[k]));
             packing_pack_snorm(packing_octahedral_encode(world.to_array()))
         };
-        let pair = |n: usize| packing_pack_unorm([shares[n][k], shares[n + 1][k]]);
+        let pair = |n: usize| packing_pack_unorm([fractions[n][k], fractions[n + 1][k]]);
         let count = |n: usize| (passed[n][k] as u32) << (8 * n);
         *ray = StreakRay {
             exits: [exit(0), exit(1), exit(2), exit(3)],
-            shares: [pair(0), pair(2)],
+            fractions: [pair(0), pair(2)],
             interfaces: count(0) | count(1) | count(2) | count(3),
             unused: 0,
         };

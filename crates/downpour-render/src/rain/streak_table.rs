@@ -63,11 +63,11 @@ impl DropsView<'_> {
                 let shown = match (shifts, k) {
                     (true, 1) => 1.0,
                     (true, _) => 0.0,
-                    (false, _) => light.shares[k],
+                    (false, _) => light.fractions[k],
                 };
                 let seen = path.streak_path_back(light.exits[k].into());
                 sum += self.drops_capture_about(towards, seen, width * bend) * shown;
-                rest -= light.shares[k];
+                rest -= light.fractions[k];
             }
         }
         let lost = if shifts { 0.0 } else { rest.max(0.0) };

@@ -51,10 +51,10 @@ impl Canvas {
         }
     }
 
-    pub(super) fn blend(&mut self, column: usize, row: usize, color: [f32; 3], share: f32) {
+    pub(super) fn blend(&mut self, column: usize, row: usize, color: [f32; 3], fraction: f32) {
         if let Some(pixel) = self.pixel(column, row) {
             for (old, new) in pixel.iter_mut().zip(color) {
-                *old += (new - *old) * share;
+                *old += (new - *old) * fraction;
             }
         }
     }

@@ -3,17 +3,17 @@
 use downpour_math::ops;
 
 /// Linear light for a fraction of the scale, 0 to 1: from a dark blue over green to a light yellow.
-pub(super) fn of_speed(share: f32) -> [f32; 3] {
-    let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
-    let lightness = 0.24 + 0.65 * share;
-    let hue = (282.0 - 180.0 * share).to_radians();
+pub(super) fn of_speed(fraction: f32) -> [f32; 3] {
+    let fraction = if fraction > 0.0 { fraction.min(1.0) } else { 0.0 };
+    let lightness = 0.24 + 0.65 * fraction;
+    let hue = (282.0 - 180.0 * fraction).to_radians();
     let (a, b) = (ops::cos(hue), ops::sin(hue));
     let within = |chroma: f32| {
         let color = from_oklab(lightness, chroma * a, chroma * b);
         color.iter().all(|c| (0.0..=1.0).contains(c)).then_some(color)
     };
     // Less colorful until it is a color that a screen has. By halves: steps would show as lines.
-    let (mut inside, mut outside) = (0.0, 0.115 + 0.03 * share);
+    let (mut inside, mut outside) = (0.0, 0.115 + 0.03 * fraction);
     if let Some(color) = within(outside) {
         return color;
     }
@@ -21,7 +21,7 @@ pub(super) fn of_speed(share: f32) -> [f32; 3] {
         let middle = 0.5 * (inside + outside);
         if within(middle).is_some() { inside = middle } else { outside = middle }
     }
-    within(inside).unwrap_or([share; 3])
+    within(inside).unwrap_or([fraction; 3])
 }
 
 /// Linear sRGB of a color in Oklab (B. Ottosson, "A perceptual color space for image processing", 2020).
@@ -44,8 +44,8 @@ mod tests {
     /// More wind is lighter, evenly in L* of CIE 1976 as well, and every color is one of the screen.
     #[test]
     fn lightness_rises_with_the_speed() {
-        let lightness = |share: f32| {
-            let [r, g, b] = of_speed(share);
+        let lightness = |fraction: f32| {
+            let [r, g, b] = of_speed(fraction);
             116.0 * ops::cbrt(0.2126 * r + 0.7152 * g + 0.0722 * b) - 16.0
         };
         let steps: Vec<f32> =

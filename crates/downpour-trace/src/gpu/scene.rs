@@ -8,7 +8,7 @@ use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KE
 use downpour_render::gpu::LightingOnGpu;
 
 use crate::data::{RenderFrame, SceneData};
-use crate::trace::TraceGather;
+use crate::trace::TraceAmbient;
 
 /// Most pixels of a dispatch: a submission must stay far below the time after which a driver resets.
 const PIXELS_PER_DISPATCH: u32 = 1 << 17;
@@ -119,7 +119,7 @@ impl ScenePipeline {
     pub fn prepare(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<ScenePass<'_>, GpuError> {
         let pixels = u64::from(frame.camera.width) * u64::from(frame.camera.height);
         let picture = self.gpu.empty_buffer("picture", pixels * 16, wgpu::BufferUsages::STORAGE)?;
-        let bytes = pixels * size_of::<TraceGather>() as u64;
+        let bytes = pixels * size_of::<TraceAmbient>() as u64;
         let gather = self.gpu.empty_buffer("light of the sky", bytes, wgpu::BufferUsages::STORAGE)?;
         let rows = (PIXELS_PER_DISPATCH / frame.camera.width.max(1)).max(8).next_multiple_of(8);
         let tracer = self.tracer(frame)?;

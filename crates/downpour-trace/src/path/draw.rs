@@ -25,19 +25,19 @@ pub(super) fn path_water_ray(
 ) -> ScatterRay {
     let normal = puddle_water_normal(ripple, a, b);
     let along = puddle_water_mirrored(-view, normal);
-    let share = optics_fresnel(view.dot(normal).max(PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
+    let fraction = optics_fresnel(view.dot(normal).max(PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
     ScatterRay {
         along,
         width: cone + PUDDLE_WATER_CONE,
         diffuse: Vec3::ZERO,
         roughness,
-        mirror: Vec3::splat(share),
+        mirror: Vec3::splat(fraction),
     }
 }
 
 /// Fraction of light that water mirrors toward a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
 /// has no noise.
-pub(super) fn path_water_share(ripple: Vec3, view: Vec3) -> f32 {
+pub(super) fn path_water_fraction(ripple: Vec3, view: Vec3) -> f32 {
     let count = if ripple.z > PUDDLE_WATER_RIPPLED { PATH_WATER_FACETS } else { 1 };
     let mut sum = 0.0;
     for k in 0..count {
@@ -83,7 +83,7 @@ impl SceneView<'_> {
         a: f32,
         b: f32,
         number: f32,
-        share: f32,
+        fraction: f32,
     ) -> (Vec2, f32) {
         let sky = self.data.sky_irradiance(surface.normal);
         let floor = (sky.x + sky.y + sky.z) * PATH_FLOOR + 1.0e-6;
@@ -96,7 +96,8 @@ impl SceneView<'_> {
             if surface.facet.dot(along) <= 0.0 {
                 continue;
             }
-            let width = (SCATTER_DISK * share / (PATH_CANDIDATES as f32 * (1.0 - x).max(0.01).sqrt())).sqrt();
+            let width =
+                (SCATTER_DISK * fraction / (PATH_CANDIDATES as f32 * (1.0 - x).max(0.01).sqrt())).sqrt();
             let seen = self.data.sky_cone(along, width);
             let light = seen.x + seen.y + seen.z + floor;
             sum += light;

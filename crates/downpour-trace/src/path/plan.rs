@@ -1,7 +1,8 @@
 //! Surfaces as rays take them, and the rays that look for their light.
 
 use downpour_shaders::render::path::{
-    PATH_APART, PATH_ENCLOSED, PATH_GLANCE, PATH_GLANCE_GLOSS, PATH_MIN_GLOSS, PATH_MIXED, PATH_SHARP,
+    PATH_APART, PATH_ENCLOSED, PATH_MIN_GLOSS, PATH_MIXED, PATH_SECONDARY_MAX_SPECULAR,
+    PATH_SECONDARY_ROUGHNESS, PATH_SHARP,
 };
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_NORMAL;
 use downpour_shaders::render::scene::SCENE_BLENDED;
@@ -26,7 +27,7 @@ pub(super) struct PathPlan {
     /// Part of the latter that is drawn for the gloss.
     pub(super) chance: f32,
     /// Part of all rays that one is.
-    pub(super) share: f32,
+    pub(super) fraction: f32,
     /// True if rays of the gloss are drawn from its lobe; else they are a mirror's.
     pub(super) drawn: bool,
     /// True if what the gloss shows is averaged over neighboring pixels.
@@ -45,7 +46,7 @@ impl PathPlan {
         gloss: Vec3::ZERO,
         rays: 0,
         chance: 0.0,
-        share: 0.0,
+        fraction: 0.0,
         drawn: false,
         kept: false,
         replaced: false,
@@ -94,9 +95,9 @@ pub(super) fn path_water_surface(start: Vec3, along: Vec3, distance: f32, ripple
 }
 
 /// A surface as it looks under water of which a fraction `clear` of the light is left.
-pub(super) fn path_soaked(surface: &Surface, clear: f32, murk: Vec3) -> Surface {
+pub(super) fn path_submerged(surface: &Surface, clear: f32, scattering_albedo: Vec3) -> Surface {
     Surface {
-        diffuse: puddle_water_albedo(surface.diffuse * clear + murk * (1.0 - clear)),
+        diffuse: puddle_water_albedo(surface.diffuse * clear + scattering_albedo * (1.0 - clear)),
         normal_reflectance: puddle_water_reflectance(surface.normal_reflectance) * clear,
         emission: surface.emission * clear,
         ..*surface
@@ -104,11 +105,11 @@ pub(super) fn path_soaked(surface: &Surface, clear: f32, murk: Vec3) -> Surface 
 }
 
 /// A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
-pub(super) fn path_glance(surface: &Surface, roughness: f32) -> Surface {
-    if roughness < PATH_GLANCE {
+pub(super) fn path_secondary(surface: &Surface, roughness: f32) -> Surface {
+    if roughness < PATH_SECONDARY_ROUGHNESS {
         return *surface;
     }
-    let gloss = surface.normal_reflectance.min(Vec3::splat(PATH_GLANCE_GLOSS));
+    let gloss = surface.normal_reflectance.min(Vec3::splat(PATH_SECONDARY_MAX_SPECULAR));
     Surface {
         diffuse: surface.diffuse + surface.normal_reflectance - gloss,
         normal_reflectance: gloss,
@@ -145,7 +146,7 @@ impl SceneView<'_> {
             gloss,
             rays,
             chance: 0.0,
-            share: if told { self.frame.ray_share } else { 1.0 / rays.max(1) as f32 },
+            fraction: if told { self.frame.ray_fraction } else { 1.0 / rays.max(1) as f32 },
             drawn,
             kept,
             replaced: false,

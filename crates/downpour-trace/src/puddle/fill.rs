@@ -15,7 +15,7 @@ pub struct Hollows<'a> {
     /// Height of each cell, m; a number that is not finite has no ground.
     pub ground: &'a [f32],
     /// Fraction of the depth to which hollows are filled: 0 nothing, 1 until they spill.
-    pub share: f32,
+    pub fraction: f32,
     /// The deepest water, m: hollows that are deeper are filled less.
     pub deepest: f32,
     /// Hollows less deep than this, in m, hold no water.
@@ -49,7 +49,7 @@ pub fn fill(hollows: &Hollows<'_>) -> Vec<Option<f32>> {
             }
         }
         let bottom = basin.iter().map(|&cell| hollows.ground[cell]).fold(f32::INFINITY, f32::min);
-        let deep = ((spill[start] - bottom) * hollows.share).min(hollows.deepest);
+        let deep = ((spill[start] - bottom) * hollows.fraction).min(hollows.deepest);
         if deep < hollows.least {
             continue;
         }
@@ -118,10 +118,10 @@ mod tests {
     use super::*;
     use glam::Vec2;
 
-    fn filled(size: [usize; 2], share: f32, ground: impl Fn(f32, f32) -> f32) -> Vec<Option<f32>> {
+    fn filled(size: [usize; 2], fraction: f32, ground: impl Fn(f32, f32) -> f32) -> Vec<Option<f32>> {
         let ground: Vec<f32> =
             (0..size[0] * size[1]).map(|i| ground((i % size[0]) as f32, (i / size[0]) as f32)).collect();
-        fill(&Hollows { size, ground: &ground, share, deepest: 10.0, least: 1.0e-3 })
+        fill(&Hollows { size, ground: &ground, fraction, deepest: 10.0, least: 1.0e-3 })
     }
 
     /// Two bowls whose rims are at 1 and at 2, the second with a notch at 1.5.
@@ -161,7 +161,7 @@ mod tests {
         let ground: Vec<f32> =
             (0..400u16).map(|i| if (5..8).contains(&(i % 20)) && i / 20 == 9 { -2.0 } else { 0.0 }).collect();
         let levels = |deepest, least| {
-            fill(&Hollows { size: [20, 20], ground: &ground, share: 1.0, deepest, least })[9 * 20 + 6]
+            fill(&Hollows { size: [20, 20], ground: &ground, fraction: 1.0, deepest, least })[9 * 20 + 6]
         };
         assert_eq!(levels(10.0, 0.1), Some(0.0));
         assert_eq!(levels(0.5, 0.1), Some(-1.5));

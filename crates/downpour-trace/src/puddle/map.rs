@@ -75,7 +75,7 @@ impl Ground {
 }
 
 impl PuddleMap {
-    /// Water in the hollows of a scene. `relief` is what the ground has beside its model; `share`, `deepest` (m) and `least`
+    /// Water in the hollows of a scene. `relief` is what the ground has beside its model; `fraction`, `deepest` (m) and `least`
     /// (m) are those of [`Hollows`].
     #[must_use]
     pub fn found(
@@ -83,7 +83,7 @@ impl PuddleMap {
         ground: &Ground,
         size: [usize; 2],
         relief: &Relief,
-        [share, deepest, least]: [f32; 3],
+        [fraction, deepest, least]: [f32; 3],
     ) -> Self {
         let (model, open) = ground.measure(scene, size);
         let [columns, rows] = size;
@@ -95,7 +95,7 @@ impl PuddleMap {
                 model[i] + relief.height(Vec2::new(position.x, position.z))
             })
             .collect();
-        let mut levels = fill(&Hollows { size, ground: &uneven, share, deepest, least });
+        let mut levels = fill(&Hollows { size, ground: &uneven, fraction, deepest, least });
         // Who is beside water knows its level too, so that the shore runs between the cells.
         let wet: Vec<bool> = levels.iter().map(Option::is_some).collect();
         for _ in 0..SHORE_CELLS {

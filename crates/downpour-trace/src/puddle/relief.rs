@@ -41,15 +41,15 @@ impl Relief {
         let whole = 2.0 - ops::exp2(1.0 - OCTAVES as f32);
         let mut sum = 0.0;
         let mut wave = MAX_WAVELENGTH_M;
-        let mut share = 1.0;
+        let mut fraction = 1.0;
         for octave in 0..OCTAVES {
             // Turned from octave to octave, so that the squares do not show.
             let angle = 0.9 * octave as f32 + 0.3;
             let turned = Vec2::new(ops::cos(angle), ops::sin(angle)).rotate(position_m);
             // A square is half a wave.
-            sum += (share / SQUARE_MEAN).sqrt() * noise(turned / (0.5 * wave), seed, octave);
+            sum += (fraction / SQUARE_MEAN).sqrt() * noise(turned / (0.5 * wave), seed, octave);
             wave *= 0.5;
-            share *= 0.5;
+            fraction *= 0.5;
         }
         sum * self.rms_m / whole.sqrt()
     }

@@ -18,7 +18,7 @@ pub struct PuddleLook {
     /// Water less deep than this, in m, has smaller ripples.
     pub rippling_depth: f32,
     /// Albedo of water so deep that the ground is not seen.
-    pub murk: Vec3,
+    pub scattering_albedo: Vec3,
     /// Fraction of light that is lost per meter of water, 1/m.
     pub extinction: f32,
 }
@@ -31,7 +31,7 @@ impl Default for PuddleLook {
             angle: 0.0,
             influence: 1.0,
             rippling_depth: 1.5e-3,
-            murk: Vec3::new(0.12, 0.105, 0.08),
+            scattering_albedo: Vec3::new(0.12, 0.105, 0.08),
             extinction: 4.0,
         }
     }
@@ -62,7 +62,7 @@ pub(crate) struct RenderPuddle {
     /// Ripples: scale, cosine and sine of the angle, influence.
     pub(crate) ripples: Vec4,
     /// Albedo of deep water.
-    pub(crate) murk: Vec3,
+    pub(crate) scattering_albedo: Vec3,
     /// Fraction of light that is lost per meter of water, 1/m.
     pub(crate) extinction: f32,
     /// Depth of full ripples, and the puddle's own part of the lattice.
@@ -94,7 +94,7 @@ impl SceneData {
             axes: numbers(1),
             map: [columns, lines, texels],
             ripples: numbers(3),
-            murk: numbers(4).truncate(),
+            scattering_albedo: numbers(4).truncate(),
             extinction: numbers(4).w,
             own: numbers(5).truncate(),
         }
@@ -145,7 +145,12 @@ impl SceneData {
                 words([turn.x, turn.y, half.x, half.y]),
                 [map.size[0] as u32, map.size[1] as u32, first, 0],
                 words([look.scale, ripples.x, ripples.y, look.influence]),
-                words([look.murk.x, look.murk.y, look.murk.z, look.extinction]),
+                words([
+                    look.scattering_albedo.x,
+                    look.scattering_albedo.y,
+                    look.scattering_albedo.z,
+                    look.extinction,
+                ]),
                 words([look.rippling_depth, own.x, own.y, 0.0]),
             ]);
             first += map.cells.len() as u32;

@@ -139,8 +139,8 @@ impl SceneView<'_> {
         for k in 0..count {
             let arrival = self.scene_arrival(k, surface, standoff, under);
             let lit = self.scene_lamp(surface, view, &arrival);
-            let share = light_weight(lit);
-            run += share;
+            let fraction = light_weight(lit);
+            run += fraction;
             let mut weight = 1.0;
             if few {
                 if next >= run {
@@ -148,12 +148,13 @@ impl SceneView<'_> {
                 }
                 let times = ((run - next) / step).floor() + 1.0;
                 next += times * step;
-                weight = times * step / share;
-            } else if share <= total * SCENE_MIN_LAMP {
+                weight = times * step / fraction;
+            } else if fraction <= total * SCENE_MIN_LAMP {
                 continue;
             }
             let visible = self.scene_visibility(arrival.start, arrival.along, arrival.distance);
-            let pane = self.pane_shadow_share(arrival.start, arrival.along, arrival.distance, arrival.spread);
+            let pane =
+                self.pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
             sum += lit * visible * (pane * weight);
         }
         sum

@@ -24,7 +24,7 @@ pub enum CameraChoice {
 }
 
 /// An eye that somebody has placed.
-pub(super) struct Seen {
+pub(super) struct CameraView {
     pub(super) choice: CameraChoice,
     pub(super) eye: DVec3,
     forward: Vec3,
@@ -34,7 +34,7 @@ pub(super) struct Seen {
     pub(super) far: Option<f64>,
 }
 
-impl Seen {
+impl CameraView {
     /// That of the weather, else the first one of the scene.
     pub(super) fn of(weather: &Weather, loaded: &Loaded, pose: &Pose, time_s: f64) -> Option<Self> {
         if let Some(path) = &weather.camera.path {

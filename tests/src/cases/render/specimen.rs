@@ -76,7 +76,7 @@ fn drop_and_light(random: [u32; 4]) -> Vec<u32> {
 }
 
 pub(super) fn light_words(light: &SpecimenLight<f32>) -> Vec<u32> {
-    ((((light.point, light.share), light.exit), light.rest), light.inside).words()
+    ((((light.point, light.fraction), light.exit), light.rest), light.inside).words()
 }
 
 pub(super) fn ray(args: &mut Args<'_>) -> SpecimenRay<f32> {
@@ -86,9 +86,9 @@ pub(super) fn ray(args: &mut Args<'_>) -> SpecimenRay<f32> {
 
 pub(super) fn light(args: &mut Args<'_>) -> SpecimenLight<f32> {
     let point = args.f32s();
-    let share = args.f32();
+    let fraction = args.f32();
     let exit = args.f32s();
-    SpecimenLight { point, share, exit, rest: args.f32(), inside: args.f32s() }
+    SpecimenLight { point, fraction, exit, rest: args.f32(), inside: args.f32s() }
 }
 
 /// A camera at 1.2 to 10^5 radii in which the drop fills most of a picture 400 samples high.

@@ -10,9 +10,9 @@ use super::{DropLights, drop_light_entry, drop_light_mean};
 use crate::light::{Light, light_weight};
 use crate::rain::glint::drop_glint_angle;
 
-/// The rows of the faintest of a drop's lights, N rows each, if it is fainter than `share`.
-fn drop_light_weakest<const N: usize>(rows: &mut [[f32; 4]], share: f32) -> Option<&mut [[f32; 4]; N]> {
-    let mut least = share;
+/// The rows of the faintest of a drop's lights, N rows each, if it is fainter than `fraction`.
+fn drop_light_weakest<const N: usize>(rows: &mut [[f32; 4]], fraction: f32) -> Option<&mut [[f32; 4]; N]> {
+    let mut least = fraction;
     let mut weakest = None;
     let (lights, _) = rows.as_chunks_mut::<N>();
     for light in lights {

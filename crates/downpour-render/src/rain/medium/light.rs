@@ -271,14 +271,14 @@ impl<'a> MediumLight<'a> {
             for k in 0..self.lighting.light_count() {
                 sum = self.medium_light_lamp(sum, k, direction, reach, camera.pixel_angle);
             }
-            let share = light_weight(sum.drawn);
-            if share > 0.0 {
+            let fraction = light_weight(sum.drawn);
+            if fraction > 0.0 {
                 let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random[1]);
                 let from = Vec3::from(medium.eye) + direction * distance;
                 let light = self.lighting.light(sum.lamp).light_sample(from, 0.0);
                 seen = self.lighting.visibility(from, light.direction, light.distance)
                     * self.medium_open_at(grid, position.x, position.y, distance).y
-                    * (sum.drawn * (light_weight(sum.whole) / share));
+                    * (sum.drawn * (light_weight(sum.whole) / fraction));
             }
         }
         let mean = sum.weighted / light_weight(sum.whole).max(1.0e-20);
@@ -288,14 +288,14 @@ impl<'a> MediumLight<'a> {
 
 /// Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
 fn medium_light_add(sum: Found, light: Vec3, lamp: u32, near: f32, far: f32) -> Found {
-    let share = light_weight(light);
-    if share <= 0.0 {
+    let fraction = light_weight(light);
+    if fraction <= 0.0 {
         return sum;
     }
-    let chance = share / (light_weight(sum.whole) + share);
+    let chance = fraction / (light_weight(sum.whole) + fraction);
     let mut next = sum;
     next.whole += light;
-    next.weighted += 0.5 * (near + far) * share;
+    next.weighted += 0.5 * (near + far) * fraction;
     if sum.rest < chance {
         next.rest = sum.rest / chance;
         next.drawn = light;

@@ -51,16 +51,16 @@ impl Look<'_> {
         let mut sum = Vec3::ZERO;
         for k in 0..4 {
             let step = IVec2::new(k & 1, k >> 1);
-            let share_x = if step.x == 1 { part.x } else { 1.0 - part.x };
-            let share = share_x * if step.y == 1 { part.y } else { 1.0 - part.y };
+            let fraction_x = if step.x == 1 { part.x } else { 1.0 - part.x };
+            let fraction = fraction_x * if step.y == 1 { part.y } else { 1.0 - part.y };
             let cell = low.as_ivec2() + step;
-            if share > 0.0 {
+            if fraction > 0.0 {
                 let texel = if of_capture {
                     self.glass_picture_round_texel(level, cell.x, cell.y)
                 } else {
                     self.glass_picture_texel(level, cell.x, cell.y)
                 };
-                sum += texel.truncate() * share;
+                sum += texel.truncate() * fraction;
             }
         }
         sum
@@ -125,13 +125,13 @@ impl Look<'_> {
         // Toward the picture's edge the capture takes over, within the footprint.
         let at = Vec2::new(0.5 + 0.5 * position.x, 0.5 - 0.5 * position.y) + shift / size;
         let inside = (at.x.min(1.0 - at.x) * size.x).min(at.y.min(1.0 - at.y) * size.y);
-        let share = if position.z > 0.0 { ((inside + 0.5) / texels).clamp(0.0, 1.0) } else { 0.0 };
+        let fraction = if position.z > 0.0 { ((inside + 0.5) / texels).clamp(0.0, 1.0) } else { 0.0 };
         let mut sum = Vec3::ZERO;
-        if share > 0.0 {
-            sum = self.glass_picture_at(false, at, texels) * share;
+        if fraction > 0.0 {
+            sum = self.glass_picture_at(false, at, texels) * fraction;
         }
-        if share < 1.0 {
-            sum += self.glass_picture_round(to, footprint) * (1.0 - share);
+        if fraction < 1.0 {
+            sum += self.glass_picture_round(to, footprint) * (1.0 - fraction);
         }
         sum
     }
