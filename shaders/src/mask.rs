@@ -43,7 +43,7 @@ shared_constants! {
         MASK_WOBBLE_NEAREST_STEPS: u32 = 2;
         /// Interfaces inside that are followed, total reflections included.
         MASK_WOBBLE_BOUNCES: u32 = 12;
-        /// Exits from inside that are told apart.
+        /// Exits from inside that are distinguished.
         MASK_WOBBLE_EXITS: u32 = 3;
     }
 }

@@ -71,5 +71,5 @@ pub fn kernels() -> Vec<KernelCase> {
     .collect()
 }
 
-/// Functions without a case of their own, each with the reason.
+/// Functions without a case, each with the reason.
 pub const ALLOWED: &[(&str, &str)] = &[];

@@ -16,7 +16,7 @@ use downpour::trace::puddle::PuddleError;
 use downpour::trace::stage::StageError;
 use downpour::wind::WindError;
 
-/// Anything that has no code of its own, as a defect of ours.
+/// Any error without a specific code, such as a bug in Downpour.
 pub(crate) const OTHER: u8 = 1;
 /// Bad arguments or input.
 pub(crate) const INPUT: u8 = 2;

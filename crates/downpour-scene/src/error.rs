@@ -190,7 +190,7 @@ pub fn shown_path(path: &Path) -> String {
     }
 }
 
-/// A number of bytes as a person reads it.
+/// A number of bytes in a readable unit.
 pub(crate) fn size(bytes: u64) -> String {
     let mut scale = (bytes as f64, "bytes");
     for unit in ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"] {

@@ -26,7 +26,7 @@ use super::sky::{Sky, sky_f64, specimen_sky_light};
 use super::trace::{SpecimenRay, specimen_ray};
 use super::wobble::{SpecimenWobble, specimen_wobble_bounce, specimen_wobble_enter, specimen_wobble_meet};
 
-/// When a ray meets the drop.
+/// Time interval in which a ray meets the drop.
 #[derive(Clone, Copy, Debug)]
 pub struct SpecimenPassage<R> {
     /// Foot of the shifted ray at the nearest approach of the drop's axis and the ray.

@@ -1,4 +1,4 @@
-//! A ray of the camera through the drop, with all that becomes of it.
+//! A camera ray through the drop, with all its reflections and refractions.
 //!
 //! Surface and normals are those of `downpour_mask::trace`; lengths are in units of the equivalent radius, the frame is
 //! the world's. A ray starts at its foot, the point nearest to the drop's origin: with q the slopes of the ray across

@@ -133,7 +133,7 @@ impl SceneData {
 
 impl RenderFrame {
     /// The frame of a picture of a scene. `grid` samples along an edge of a pixel, `sky_rays` rays to the sky per
-    /// sample (0: no surroundings hide the sky).
+    /// sample (0: nothing hides the sky).
     ///
     /// # Errors
     /// [`RenderError::Size`] outside [`PIXELS`](downpour_render::camera::PIXELS), or as [`Viewpoint::axes`].

@@ -11,7 +11,7 @@
 //! - light of the sky and of other surfaces: rays that are drawn for the diffuse base and for the gloss
 //!   ([`scatter`](crate::scatter)). Such a ray finds the sky at the level of its own width, or a surface, which has light of
 //!   its own: of one lamp drawn for all, and of the next ray. At most `PATH_BOUNCES` follow each other, and fewer where
-//!   surfaces are dark: each goes on with the probability of its albedo. The light that falls on the last surface is taken to
+//!   surfaces are dark: each survives with the probability of its albedo. The light that falls on the last surface is taken to
 //!   be the mean of what the path has met, and a tenth of the open sky's.
 //!
 //! [`skylight`](crate::skylight) takes means of this light over neighboring pixels, but for that of mirrors.
@@ -50,7 +50,7 @@ use plan::{
 /// Result of tracing a ray of the camera.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ViewPath {
-    /// All light but that which is told apart below.
+    /// All light except what the fields below hold.
     pub(crate) radiance: Vec3,
     /// Distance of the first surface (`SCENE_FAR` for the sky).
     pub(crate) distance: f32,
@@ -496,7 +496,7 @@ impl SceneView<'_> {
             base = self.data.sky_irradiance(surface.normal);
             mirror = self.data.sky_cone(mirrored, scatter_mirror(&surface, -towards).width);
         } else if plan.mirrors == 0 && plan.chance == 0.0 {
-            // Too little for rays of its own.
+            // Too faint to trace rays for it.
             plan.body += plan.gloss;
             plan.gloss = Vec3::ZERO;
         }

@@ -89,7 +89,7 @@ impl Stage {
     ///
     /// # Errors
     /// [`StageError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`StageError::Memory`], or
-    /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or a camera that is none.
+    /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or an invalid camera.
     pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
         check_size(weather.size)?;
         if !(-LATEST_S..=LATEST_S).contains(&time_s) {
@@ -129,7 +129,7 @@ impl Stage {
             }
             None => (CameraChoice::Standing, framing::standing(fov)),
         };
-        // A camera that is none is told of here and not in the middle of the work.
+        // An invalid camera is reported here, before the work begins.
         viewpoint.axes()?;
         Ok(Self {
             data,

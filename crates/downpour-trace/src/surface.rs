@@ -25,7 +25,7 @@ pub struct Surface {
     pub roughness: f32,
     /// The triangle's own normal, facing the viewer.
     pub facet: Vec3,
-    /// Fraction of the surroundings that the material says is seen.
+    /// Ambient occlusion of the material: fraction of the environment that is visible.
     pub occlusion: f32,
     /// Albedo of the diffuse base.
     pub diffuse: Vec3,

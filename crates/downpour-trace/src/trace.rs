@@ -1,4 +1,4 @@
-//! Pixels by rays: of the picture, and of the capture of the surroundings. Twin of `shaders/wgsl/render/trace.wgsl`.
+//! Pixels by rays: of the picture, and of the environment capture. Twin of `shaders/wgsl/render/trace.wgsl`.
 //!
 //! Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others
 //! are taken to do so too. [`skylight`](crate::skylight) takes means of what neighboring pixels have found of the light of
@@ -101,7 +101,7 @@ impl TraceSum {
             return *self;
         }
         let first = if self.weight > 0.0 { self.slot } else { *sample };
-        // Another surface's light is not told apart, and taken to be the same.
+        // Light of a sample on another surface is not kept apart: it is taken to be the same.
         let off = first.normal.dot(sample.position - first.position).abs();
         let same = off < first.slack && first.normal.dot(sample.normal) > TRACE_SAME_NORMAL;
         let weight = if same { path_max(sample.factor).max(1.0e-6) } else { 0.0 };

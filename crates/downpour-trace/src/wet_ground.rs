@@ -24,7 +24,7 @@ impl WetGround {
     /// moves afterwards leaves them where they are.
     ///
     /// # Errors
-    /// [`PuddleError`] if the rain or the lattice of its ripples is none.
+    /// [`PuddleError`] if the rain or the lattice of its ripples is invalid.
     pub fn new(
         weather: &Weather,
         loaded: &Loaded,

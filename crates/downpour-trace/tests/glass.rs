@@ -1,4 +1,4 @@
-//! Wet glass before a scene: energy, lenses, focus, and the lattice that goes on.
+//! Wet glass before a scene: energy, lenses, focus, and the lattice that is stepped on.
 
 use downpour_render::camera::Viewpoint;
 use downpour_render::glass::water::{
@@ -218,7 +218,7 @@ fn slopes_are_those_of_the_height() {
     }
 }
 
-/// A lens moves light about and takes none: the mean of a picture that goes on beyond its edge stays.
+/// A lens redistributes light and loses none: the mean of a picture that extends beyond its edge stays.
 #[test]
 fn blur_keeps_the_light() -> Outcome {
     let sharp = picture("interior_ambient = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;

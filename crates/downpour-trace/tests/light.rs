@@ -291,7 +291,7 @@ fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
     ab / (aa * bb).sqrt()
 }
 
-/// The noise of rippled water has no pattern of the filter's size, and each time has a noise of its own.
+/// The noise of rippled water has no pattern of the filter's size, and each frame has different noise.
 #[test]
 fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
     let sky: Vec<[f32; 3]> = (0..64 * 32)

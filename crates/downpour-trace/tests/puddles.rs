@@ -134,7 +134,7 @@ fn a_dish_of_the_model_fills_to_its_rim() -> Outcome {
     let dish = |position: Vec2| 0.04 * (position.length_squared() - 1.0).clamp(-1.0, 0.2);
     let scene = ground(0.5, 80, dish).build(&SkyLight::new(1, 1, &[[1.0; 3]]));
     let level_ground = Relief { rms_m: 0.0, seed: 0 };
-    // The ground goes on rising to 0.008 m over the dish's nominal rim.
+    // The ground keeps rising to 0.008 m over the dish's nominal rim.
     let (rim, radius) = (0.048f32, 1.2f32.sqrt());
     for fraction in [1.0f32, 0.5] {
         let map = PuddleMap::found(&scene, &SQUARE, [150, 150], &level_ground, [fraction, 1.0, 0.001]);

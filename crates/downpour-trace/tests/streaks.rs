@@ -167,7 +167,7 @@ fn an_eye_sees_a_streak_fade() -> Outcome {
     Ok(())
 }
 
-/// The image of a drop before varied surroundings in an eye is the mean of short exposures one after the other, each with
+/// The image of a drop before a varied environment in an eye is the mean of short exposures one after the other, each with
 /// the weight of its age: also where the drop comes nearer, and as long as it takes to pass a ray.
 #[test]
 fn an_eye_sees_moments_by_their_age() -> Outcome {
@@ -228,7 +228,7 @@ fn many() -> Vec<FallingDrop> {
         .collect()
 }
 
-/// Transmission and reflection are all there is: before uniform surroundings streaks cannot be seen.
+/// Transmission and reflection are all there is: in a uniform environment streaks cannot be seen.
 #[test]
 fn in_uniform_surroundings_streaks_vanish() -> Outcome {
     let scene = sky(|_, _| [0.25, 0.5, 2.0]);

@@ -39,7 +39,7 @@ shared_constants! {
         DROP_LIGHT_REACH: f32 = 0.00465;
         /// Entries of a row of the table: equal intervals of the scattering angle.
         DROP_LIGHT_ENTRIES: u32 = 256;
-        /// Ways of light that are told apart; row 0 of the table is their sum.
+        /// Light paths that are distinguished; row 0 of the table is their sum.
         DROP_LIGHT_PATHS: u32 = 6;
         /// Glints that are kept of a drop, at most.
         DROP_LIGHT_GLINTS: u32 = 16;

@@ -22,7 +22,7 @@ shared_constants! {
         GLASS_PICTURE_INDEX: f32 = 1.52;
         /// Distance, m, beyond which all is equally far.
         GLASS_PICTURE_FAR: f32 = 1.0e6;
-        /// Width of what a pane mirrors of the eye's side, radians: a room is out of focus.
+        /// Blur of what a pane mirrors of the eye's side, radians: the interior is out of focus.
         GLASS_PICTURE_MIRROR: f32 = 0.1;
         /// Distance of neighboring positions of a lens with one sample, in its radius: the root of pi.
         GLASS_PICTURE_APART: f32 = 1.7724539;

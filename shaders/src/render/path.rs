@@ -40,7 +40,7 @@ shared_constants! {
         PATH_FLOOR: f32 = 1.0;
         /// Roughness from which one ray serves the diffuse base and the gloss, by chance.
         PATH_MIXED: f32 = 0.35;
-        /// Gloss that is worth rays of its own.
+        /// Specular weight from which rays are traced for it.
         PATH_MIN_GLOSS: f32 = 0.005;
         /// Gloss and roughness from which, and below which, each sample of a pixel sees for itself what is mirrored.
         PATH_PLAIN_GLOSS: f32 = 0.1;
@@ -63,9 +63,9 @@ shared_constants! {
         PATH_SHOWN: u32 = 3;
         /// As chance has it.
         PATH_ONWARD: u32 = 4;
-        /// Roughness of a path from which surfaces are seen at a glance: as diffuse, with one lamp for all.
+        /// Path roughness from which surfaces are shaded in simplified form: as diffuse, with one lamp for all.
         PATH_SECONDARY_ROUGHNESS: f32 = 0.25;
-        /// The most that a surface reflects as gloss, seen at a glance.
+        /// Maximum specular reflectance in that simplified form.
         PATH_SECONDARY_MAX_SPECULAR: f32 = 0.05;
         /// Roughness of a path from which lamps stand for what shines.
         PATH_SHINES: f32 = 0.6;
@@ -75,7 +75,7 @@ shared_constants! {
         PATH_LATER_FRACTION: f32 = 0.01;
         /// Fraction of light let through from which a surface is seen through.
         PATH_OPEN: f32 = 0.02;
-        /// Part of its surroundings that surfaces take up, for a surface that a path of surfaces has led to.
+        /// Fraction of the hemisphere that surfaces occupy, for a surface that a path of surfaces has led to.
         PATH_ENCLOSED: f32 = 0.9;
     }
 }

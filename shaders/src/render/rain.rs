@@ -61,7 +61,7 @@ shared_constants! {
         DROPS_LOOP: u32 = 2;
         /// Streaks show what drops refract and reflect.
         STREAK_REFRACTED: u32 = 0;
-        /// Streaks have one color, the mean of the surroundings.
+        /// Streaks have one color, the mean of the environment.
         STREAK_WHITE: u32 = 1;
         /// Rays of the means of the streak radiance table along an edge of the picture.
         STREAK_RAYS: u32 = 17;
@@ -99,7 +99,7 @@ shared_constants! {
         STREAK_OUTLINE_MAX: f32 = 2.0;
         /// Exits of a ray from inside that are looked up, as the tracer tells them apart.
         STREAK_EXITS: u32 = 3;
-        /// Lamps on a streak that are told apart.
+        /// Lamps on a streak that are resolved one by one.
         STREAK_LAMPS: u32 = 8;
         /// Points of a ray's patch at which a lamp is looked for.
         STREAK_SPOTS: u32 = 64;
@@ -113,7 +113,7 @@ shared_constants! {
         STREAK_SPOT_WIDTH: f32 = 1.8;
         /// A patch counts as no narrower than this fraction of its length, for its points.
         STREAK_SPOT_NARROW: f32 = 0.2;
-        /// The same for the width over which the surroundings are averaged.
+        /// The same for the width over which the environment is averaged.
         STREAK_NARROWEST: f32 = 0.25;
         /// Steps from patch to patch of the shift of these points: powers of 0.8191725, the third dimension's golden ratio.
         STREAK_SPOT_FIRST: f32 = 0.8191725;

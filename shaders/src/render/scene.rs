@@ -134,7 +134,7 @@ pub static TRACE: Module = Module {
     uses: &[&SCENE, &PATH, &CAPTURE, &PACKING],
 };
 
-/// The surroundings of the eye. Twin: `downpour_trace::capture`.
+/// The environment capture around the eye. Twin: `downpour_trace::capture`.
 pub static CAPTURE: Module = Module {
     path: "render/capture.wgsl",
     wgsl: include_str!("../../wgsl/render/capture.wgsl"),

@@ -16,7 +16,7 @@ struct MaskModelParameters {
 @group(0) @binding(3) var<storage, read> mask_model_normals: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> mask_model_texels: array<MaskTexel>;
 
-// Whether the viewer's ray through (x, y) hits the mesh, and where.
+// Hit of the viewer's ray through (x, y) on the mesh, if any.
 fn mask_model_hit(x: f32, y: f32) -> BvhHit {
     return bvh_hit(vec3f(x, y, mask_model.front), vec3f(0.0, 0.0, -1.0), MASK_MODEL_MIN_DISTANCE, BVH_FAR);
 }
@@ -28,7 +28,7 @@ fn mask_model_normal(hit: BvhHit) -> vec3f {
     return normalize(a + mask_model_normals[first + 1u].xyz * hit.u + mask_model_normals[first + 2u].xyz * hit.v);
 }
 
-// Where light that starts at `start`, along `inside_start`, comes to leave, after total reflections. A ray that finds no way
+// Exit of light that starts at `start`, along `inside_start`, after total reflections. A ray that finds no way
 // out has slipped along an edge of the surface: it counts as lost.
 fn mask_model_exit(start: vec3f, inside_start: vec3f) -> MaskTraceExit {
     var point = start;

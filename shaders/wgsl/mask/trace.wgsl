@@ -24,7 +24,7 @@ struct MaskTraceSurface {
     excess: f32,
 }
 
-// Where light inside a drop comes to leave it, after total reflections.
+// Exit of light from inside a drop, after total reflections.
 struct MaskTraceExit {
     point: vec3f,
     // Total reflections on the way there.
@@ -117,7 +117,7 @@ fn mask_trace_plane_turn(direction: vec3f, from_normal: vec3f, to_normal: vec3f)
     return select(turn, 1.0, both < MASK_TINY);
 }
 
-// Where light that starts at a point of the surface, along `inside_start`, comes to leave, after total reflections.
+// Exit of light that starts at a point of the surface, along `inside_start`, after total reflections.
 fn mask_trace_exit(traced: MaskTracedDrop, start: vec3f, inside_start: vec3f) -> MaskTraceExit {
     var inside = inside_start;
     var point = mask_trace_meet(traced, start, inside, 1.0);

@@ -75,7 +75,7 @@ fn mask_wobble_meet(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f, side:
     return point;
 }
 
-// How far along a line its nearest approach is, from a guess.
+// Distance along a line of its nearest approach, from a guess.
 fn mask_wobble_nearest(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f, guess: f32) -> f32 {
     let curvature = mask_wobble_spheroid(drop, direction, direction);
     var along = guess;
@@ -86,7 +86,7 @@ fn mask_wobble_nearest(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f, gu
     return along;
 }
 
-// Where the light of a ray leaves the drop. The ray should meet it; one that misses is treated as grazing.
+// Exit of the light of a ray from the drop. The ray should meet it; one that misses is treated as grazing.
 fn mask_wobble_light(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f) -> MaskWobbleLight {
     var point = mask_wobble_meet(drop, origin, direction, -1.0);
     let entry_normal = normalize(mask_wobble_surface(drop.shape, drop.state, point).half_gradient);

@@ -1,4 +1,4 @@
-// The surroundings of the eye: what drops show of the scene. On an octahedral map, or as the papers' wide picture.
+// The environment capture around the eye: what drops show of the scene. On an octahedral map, or as the papers' wide picture.
 // Law: a texel holds the mean radiance of its directions. The sun is no part of the sky (its light is parallel); its
 // disk goes into the texel that holds its direction, as irradiance over solid angle.
 // The map's halves: +z in the middle of the square, -z in its corners.

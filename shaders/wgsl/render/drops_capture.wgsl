@@ -1,10 +1,10 @@
 // Lookup in the environment map around the eye, interpolated between its texels and its levels.
-// Law: octahedral (the square goes on beyond an edge at the edge's mirror image) or the papers' wide picture; trilinear.
+// Law: octahedral (beyond an edge, the square continues mirrored about the edge's middle) or the papers' wide picture; trilinear.
 // Twin: downpour_render::rain::drops_capture.
 
 @group(0) @binding(1) var<storage, read> drops_capture: array<vec4f>;
 
-// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+// A texel of a level of the capture. Beyond an edge, the octahedral map continues mirrored about the edge's middle.
 fn drops_capture_texel(level: u32, column: i32, row: i32) -> vec3f {
     let whole = drops_frame.capture_size;
     let size = whole >> level;

@@ -1,10 +1,10 @@
 // Radiance along one ray through a drop: light that is refracted, mirrored, and reflected inside once, by the mask,
 // looked up in the capture.
 // Law: each has the fraction that the mask says; what is left, light that is reflected inside twice and more, is the mean of all
-// that is about. So nothing is lost: in uniform surroundings a drop vanishes. The mask's directions are for parallel rays;
+// that is about. So nothing is lost: in a uniform environment a drop vanishes. The mask's directions are for parallel rays;
 // a ray of the camera turns them by what it differs from the ray to the drop's middle (first order in the drop's
 // angle).
-// Limits: the surroundings are those of the eye, not of the drop; a drop does not show other drops.
+// Limits: the environment is that of the eye, not of the drop; a drop does not show other drops.
 // Twin: downpour_render::rain::drops_shade.
 
 // A drop as a ray meets it.

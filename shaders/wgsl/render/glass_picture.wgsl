@@ -6,7 +6,7 @@
 // surroundings; so does what is totally reflected back to the eye. A lens of some size is a set of points: what is out
 // of focus is blurred by as much as the lens says, and no light is lost.
 // Limits: the pane's thickness does not shift what is behind it; light that is totally reflected within a drop and leaves
-// it elsewhere goes on without a second refraction.
+// it elsewhere continues without a second refraction.
 // Twin: downpour_render::glass::picture.
 
 struct GlassPictureFrame {
@@ -30,7 +30,7 @@ struct GlassPictureFrame {
     lens: f32,
     focus: u32,
     fresnel: u32,
-    // Light of the eye's side, of that of the surroundings.
+    // Light on the eye's side, relative to that of the environment.
     room: f32,
     samples: u32,
     // The coarsest level of the picture, and of the capture.
@@ -152,7 +152,7 @@ fn glass_picture_texel(level: u32, column: i32, row: i32) -> vec4f {
     return glass_picture_behind[size.z + y * size.x + x];
 }
 
-// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+// A texel of a level of the capture. Beyond an edge, the octahedral map continues mirrored about the edge's middle.
 fn glass_picture_round_texel(level: u32, column: i32, row: i32) -> vec4f {
     let whole = glass_picture_frame.capture_size;
     let size = whole >> level;

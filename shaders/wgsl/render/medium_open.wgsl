@@ -93,7 +93,7 @@ fn medium_open_at(x: f32, y: f32, distance: f32) -> vec2f {
         begin = medium_depth(medium_open_end(slice - 1u), span, outline);
     }
     let end = medium_depth(medium_open_end(slice), span, outline);
-    // Beyond the last slice its own air goes on.
+    // Beyond the last slice, its density continues.
     let fraction = max((whole - begin) / max(end - begin, 1.0e-12), 0.0);
     let last = vec2f(f32(medium_frame.columns - 1u), f32(medium_frame.rows - 1u));
     let size = vec2f(f32(render_frame.camera.width), f32(render_frame.camera.height));

@@ -17,7 +17,7 @@ struct PathSlot {
 
 // Result of a ray of the camera.
 struct ViewPath {
-    // All light but that which is told apart below.
+    // All light except what the fields below hold.
     radiance: vec3f,
     // Distance of the first surface (SCENE_FAR for the sky).
     distance: f32,
@@ -209,7 +209,7 @@ fn path_secondary(surface: Surface, roughness: f32) -> Surface {
     return seen;
 }
 
-// A ray that goes on from what a mirror shows, whose diffuse base takes the mirror's place.
+// Continuation of a ray from the surface that a mirror shows; its diffuse base replaces the mirror.
 fn path_replaced(ray: ScatterRay, next: ScatterRay) -> ScatterRay {
     var onward = next;
     onward.mirror = ray.mirror * next.mirror;
@@ -217,7 +217,7 @@ fn path_replaced(ray: ScatterRay, next: ScatterRay) -> ScatterRay {
     return onward;
 }
 
-// A ray that goes on from a surface that the ray before has met; without weight if it does not.
+// Continuation of a ray from the surface that it met; has no weight if the ray ends there.
 fn path_onward(ray: ScatterRay, next: ScatterRay, surface: Surface, number: f32) -> ScatterRay {
     let factor = path_albedo(surface) * next.diffuse + next.mirror;
     let probability = min(path_max(factor), 1.0);
@@ -397,7 +397,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     break;
                 }
                 var found = surface_at(hit, from_position, ray.along, ray.width);
-                // All lamps, of the first surface; else some drawn for all, at a glance.
+                // All lamps for the first surface; for others, some sampled lamps.
                 var lamps = 0u;
                 var standoff = 0.0;
                 var depth = vec2f(0.0);
@@ -547,7 +547,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 base = sky_irradiance(surface.normal);
                 mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
             } else if plan.mirrors == 0u && plan.chance == 0.0 {
-                // Too little for rays of its own.
+                // Too faint to trace rays for it.
                 plan.body += plan.gloss;
                 plan.gloss = vec3f(0.0);
             }

@@ -25,7 +25,7 @@ struct SpecimenStreak {
     count: u32,
 }
 
-// When a ray meets the drop.
+// Time interval in which a ray meets the drop.
 struct SpecimenPassage {
     // The foot of the shifted ray where the drop's axis and the ray are nearest to each other.
     foot: vec3f,

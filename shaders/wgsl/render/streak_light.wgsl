@@ -2,7 +2,7 @@
 // parts.
 // Law: the light that a ray brings is that of the directions in which it leaves the drop, weighted by what Fresnel's equations
 // give each. Between the rays that were traced, directions go as a polynomial of degree two across, along and in time, from ray to
-// ray that pass as many interfaces. So the ray's own patch of the drop is known: how wide the surroundings are averaged, and where
+// ray that pass as many interfaces. So the ray's own patch of the drop is known: how wide the environment is averaged, and where
 // in the patch a lamp shines, whose disk (or, where the patch's points are farther apart, a spot that some of them meet) is sampled.
 // Light lost inside has the mean radiance of the environment, without lamps: it travels around the rim and comes out there.
 // Layout: behind the chords of streak_rays.wgsl, for each row of the profile and each fine column the light of the chord's first
@@ -14,7 +14,7 @@
 // Index of the path, and first of 64 columns of all rows of its profile.
 @group(0) @binding(4) var<storage, read> streak_light_jobs: array<vec2u>;
 @group(0) @binding(5) var<storage, read> streak_light_rays: array<StreakRay>;
-// For each path the mean of what is not told lamp by lamp, then two rows for each lamp: its irradiance and the chord from the
+// For each path the mean of what is not resolved by lamp, then two rows for each lamp: its irradiance and the chord from the
 // middle to the edge of its disk (below 0: its irradiance over pi, in the form of Rousseau 2006); its direction.
 @group(0) @binding(6) var<storage, read> streak_light_lamps: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> streak_light_table: array<vec4f>;

@@ -107,7 +107,7 @@ fn streak_lookup_sum(passage: StreakPassage, sums: u32) -> vec3f {
 fn streak_lookup_until(passage: StreakPassage, position: f32) -> vec3f {
     let at = streak_cell_index(position, STREAK_SUMS);
     let low = min(u32(at), STREAK_SUMS - 1u);
-    // By length: in uniform surroundings light goes as coverage does.
+    // By length: in a uniform environment light is proportional to coverage.
     let first = streak_cell_position(f32(low), STREAK_SUMS);
     let length = streak_cell_position(f32(low + 1u), STREAK_SUMS) - first;
     let part = clamp((position - first) / length, 0.0, 1.0);

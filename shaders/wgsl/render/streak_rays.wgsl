@@ -2,7 +2,7 @@
 // and rays along each chord to where their light leaves the drop.
 // Layout: a streak has a head in the table (rows, columns, rows of the profile, fine columns), then for each row and column the
 // middle and half of the outline's width and the middle and half of the chord, the latter over sqrt(1 - a^2) at the position a
-// across; rays stand in a buffer of their own, row by row, column by column, along the chord.
+// across; rays are in a separate buffer, row by row, column by column, along the chord.
 // Twin: downpour_render::rain::streak_rays.
 
 @group(0) @binding(0) var<storage, read> streak_rays_drops: array<DropsDrop>;

@@ -1,4 +1,4 @@
-// Pixels by rays: of the picture, and of the capture of the surroundings. Both are one kernel, since a software driver
+// Pixels by rays: of the picture, and of the environment capture. Both are one kernel, since a software driver
 // compiles the walk through the scene anew for each.
 // Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others are
 // taken to do so too. Light of sky and surfaces on the first surface leaves the picture's kernel as what one pixel has found
@@ -80,7 +80,7 @@ fn trace_add(sum: TraceSum, sample: PathSlot) -> TraceSum {
         next.slot.light = before.light;
         next.slot.factor = before.factor;
     }
-    // Another surface's light is not told apart, and taken to be the same.
+    // Light of a sample on another surface is not kept apart: it is taken to be the same.
     let off = abs(dot(next.slot.normal, sample.position - next.slot.position));
     let same = off < next.slot.slack && dot(next.slot.normal, sample.normal) > TRACE_SAME_NORMAL;
     let weight = select(0.0, max(path_max(sample.factor), 1.0e-6), same);

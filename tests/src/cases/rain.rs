@@ -192,7 +192,7 @@ fn masks_case(
     masks: &DropMasks,
     part: Part,
 ) -> Result<Run, GpuError> {
-    // Masks with an atlas have exposures of their own.
+    // Masks with an atlas have their own exposures.
     let key = format!("{eye} {forward} {options:?}");
     let prepared = kept(&key, || Prepared::new([eye, forward], options, masks));
     let Prepared { scene, frame, rain, capture, clean } = &*prepared;

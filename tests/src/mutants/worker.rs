@@ -1,4 +1,4 @@
-//! The process that tries mutants: it is told which on its input and says on its output what became of each.
+//! The process that tries mutants: reads which on its input and writes the outcome of each on its output.
 //!
 //! Before each step it says how long that may take; the pool ends a worker that takes longer.
 

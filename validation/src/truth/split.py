@@ -36,7 +36,7 @@ def follow(context, meets, active):
 
 
 class Split(mi.SamplingIntegrator):
-    """Follows both branches at each interface: what leaves sees the sky, what stays goes on."""
+    """Follows both branches at each interface: what leaves sees the sky, what stays continues."""
 
     @dr.syntax
     def sample(self, scene, sampler, ray, medium=None, active=True):

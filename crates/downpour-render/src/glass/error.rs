@@ -11,7 +11,7 @@ pub enum PaneError {
     /// The lattice cannot be what is asked for.
     #[error("glass: {0}")]
     Glass(#[from] GlassError),
-    /// The camera is none.
+    /// The camera is invalid.
     #[error(transparent)]
     Render(#[from] RenderError),
     /// The camera does not look through the pane.

@@ -17,7 +17,7 @@ impl Look<'_> {
         Vec4::from(self.behind[(first + y * width + x) as usize])
     }
 
-    /// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+    /// A texel of a level of the capture. Beyond an edge, the octahedral map continues mirrored about the edge's middle.
     fn glass_picture_round_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
         let whole = self.glass.frame.capture_size;
         let size = whole >> level;

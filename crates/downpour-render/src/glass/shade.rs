@@ -249,7 +249,7 @@ mod tests {
         assert!((shade.mean[0] - 2.0e-3).abs() < 1.0e-8 && (shade.mean[1] - 2.5e-3 / 0.333).abs() < 1.0e-6);
     }
 
-    /// Below the threshold by mass a drop gathers nothing: its light goes on as it came.
+    /// Below the threshold by mass a drop focuses no light: its light continues in its direction.
     #[test]
     fn small_drops_do_not_gather() {
         let drop = GlassPictureDrop {

@@ -9,7 +9,7 @@ use super::drops_frame::DropsView;
 use super::glint::drop_glint_right;
 
 impl DropsView<'_> {
-    /// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+    /// A texel of a level of the capture. Beyond an edge, the octahedral map continues mirrored about the edge's middle.
     pub(super) fn drops_capture_texel(&self, level: u32, column: i32, row: i32) -> Vec3 {
         let whole = self.frame.capture_size;
         let size = whole >> level;

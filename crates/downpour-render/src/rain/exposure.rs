@@ -26,7 +26,7 @@ pub enum StreakColour {
     /// Light that its drop refracts and reflects.
     #[default]
     Refracted = STREAK_REFRACTED,
-    /// One color for all, the mean of the surroundings: the static streaks of Rousseau 2006, figure 9.
+    /// One color for all, the mean of the environment: the static streaks of Rousseau 2006, figure 9.
     White = STREAK_WHITE,
 }
 

@@ -73,7 +73,7 @@ impl DropMasks {
     /// Traces the masks of water of this refractive index.
     ///
     /// # Errors
-    /// [`MaskError::OutOfRange`] for an index that is none.
+    /// [`MaskError::OutOfRange`] for an invalid index.
     pub fn trace(refractive_index: f64) -> Result<Self, MaskError> {
         Self::trace_shapes(refractive_index, ShapeTable::default())
     }

@@ -77,7 +77,7 @@ impl Default for MediumOptions {
     }
 }
 
-/// Unresolved rain before an eye. The default is none.
+/// Unresolved rain before an eye. The default is no rain.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainMedium {
     /// Optical depth of level rays, at 0.25 m, then a factor of 2^(1/3) farther each.

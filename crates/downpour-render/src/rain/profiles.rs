@@ -115,7 +115,7 @@ impl StreakProfiles {
         made
     }
 
-    /// Makes profiles coarser in time until all have room.
+    /// Makes profiles coarser in time until all fit.
     fn fit(&mut self) {
         loop {
             let all_rays: u64 = self.paths.iter().map(rays).sum();

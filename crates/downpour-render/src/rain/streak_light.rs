@@ -25,7 +25,7 @@ pub(super) const UNITS: u32 = 64;
 const FINE: usize = 4;
 const SUMS: usize = STREAK_SUMS as usize;
 
-/// Rows of light of each path: the mean of what is not told lamp by lamp, and two for each lamp.
+/// Rows of light of each path: the mean of what is not resolved by lamp, and two for each lamp.
 pub(super) const LIGHT_ROWS: usize = 1 + 2 * STREAK_LAMPS as usize;
 
 /// One exit of a ray.

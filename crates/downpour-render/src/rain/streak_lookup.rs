@@ -125,7 +125,7 @@ impl StreakTable {
     fn streak_lookup_until(&self, passage: &StreakPassage, position: f32) -> Vec3 {
         let at = streak_cell_index(position, STREAK_SUMS);
         let low = (at as u32).min(STREAK_SUMS - 1);
-        // By length: in uniform surroundings light goes as coverage does.
+        // By length: in a uniform environment light is proportional to coverage.
         let first = streak_cell_position(low as f32, STREAK_SUMS);
         let length = streak_cell_position((low + 1) as f32, STREAK_SUMS) - first;
         let part = ((position - first) / length).clamp(0.0, 1.0);

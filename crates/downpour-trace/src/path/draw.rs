@@ -1,4 +1,4 @@
-//! Rays that are drawn, and rays that go on.
+//! Sampling of rays, and their continuation.
 
 use downpour_drop::optics::optics_fresnel;
 use downpour_shaders::render::path::{PATH_CANDIDATES, PATH_FLOOR, PATH_WATER_FACETS};
@@ -48,7 +48,7 @@ pub(super) fn path_water_fraction(ripple: Vec3, view: Vec3) -> f32 {
     sum / count as f32
 }
 
-/// A ray that goes on from what a mirror shows, whose diffuse base takes the mirror's place.
+/// Continuation of a ray from the surface that a mirror shows; its diffuse base replaces the mirror.
 pub(super) fn path_replaced(ray: &ScatterRay, next: &ScatterRay) -> ScatterRay {
     ScatterRay {
         diffuse: next.diffuse,
@@ -58,7 +58,7 @@ pub(super) fn path_replaced(ray: &ScatterRay, next: &ScatterRay) -> ScatterRay {
     }
 }
 
-/// A ray that goes on from a surface that the ray before has met; without weight if it does not.
+/// Continuation of a ray from the surface that it met; has no weight if the ray ends there.
 pub(super) fn path_onward(ray: &ScatterRay, next: &ScatterRay, surface: &Surface, number: f32) -> ScatterRay {
     let factor = path_albedo(surface) * next.diffuse + next.mirror;
     let probability = path_max(factor).min(1.0);

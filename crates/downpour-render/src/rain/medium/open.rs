@@ -84,7 +84,7 @@ impl MediumLight<'_> {
             begin = medium.medium_depth(medium_open_end(slice - 1), span, outline);
         }
         let end = medium.medium_depth(medium_open_end(slice), span, outline);
-        // Beyond the last slice its own air goes on.
+        // Beyond the last slice, its density continues.
         let fraction = ((whole - begin) / (end - begin).max(1.0e-12)).max(0.0);
         let last = Vec2::new((medium.columns - 1) as f32, (medium.rows - 1) as f32);
         let size = Vec2::new(camera.width as f32, camera.height as f32);
