@@ -2,7 +2,7 @@
 
 use downpour_math::OutOfRange;
 
-/// Reason why a picture was not made.
+/// Error of a picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -19,7 +19,7 @@ pub enum RenderError {
         /// Maximum edge.
         max: u32,
     },
-    /// A lamp's light is no light.
+    /// The color of a lamp is negative or not finite.
     #[error("light {index} has a color of {found}; allowed: finite numbers from 0 to 1e30")]
     Light {
         /// Index among the lights of the scene.

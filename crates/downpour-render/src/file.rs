@@ -18,7 +18,7 @@ use image::{ImageFormat, RgbImage};
 use crate::RenderError;
 use crate::picture::through_rain;
 
-/// Linear radiance as the bytes of an OpenEXR file: channels R, G, B of 32 bits, ZIP compressed. Rows from the top.
+/// Encodes linear radiance as an OpenEXR file: channels R, G, B of 32 bits, ZIP compressed. Rows from the top.
 ///
 /// # Errors
 /// [`RenderError::Encode`] if the pixels are not `width` times `height`, or the encoder fails.
@@ -28,7 +28,7 @@ pub fn write_exr(width: u32, height: u32, pixels: &[[f32; 3]]) -> core::result::
     exr([width, height], pixels.len(), channels.collect())
 }
 
-/// A picture with all its layers as the bytes of one OpenEXR file: see [the module](self) for the channels.
+/// Encodes a picture with all its layers as one OpenEXR file: see [the module](self) for the channels.
 ///
 /// `clean` is radiance and distance of the scene, `rain` radiance and transmittance of the rain, `glass` the picture through a
 /// pane, if there is one.
@@ -88,7 +88,7 @@ fn exr(
     Ok(bytes.into_inner())
 }
 
-/// 8-bit sRGB pixels as the bytes of a PNG file. Rows from the top.
+/// Encodes 8-bit sRGB pixels as a PNG file. Rows from the top.
 ///
 /// # Errors
 /// As [`write_exr`].

@@ -31,7 +31,7 @@ pub enum LightSource {
         position: Vec3,
         /// Radiant intensity: irradiance at 1 m.
         intensity: Vec3,
-        /// No light beyond this, meters; 0 for no end.
+        /// Range of the light, meters; 0: unlimited.
         range: f32,
     },
     /// Light from a point in a cone.
@@ -42,7 +42,7 @@ pub enum LightSource {
         direction: Vec3,
         /// Radiant intensity on the axis.
         intensity: Vec3,
-        /// No light beyond this, meters; 0 for no end.
+        /// Range of the light, meters; 0: unlimited.
         range: f32,
         /// Half angle of the full light, radians.
         inner: f32,
@@ -58,13 +58,13 @@ pub struct Light {
     pub position: Vec3,
     /// True for parallel light.
     pub is_parallel: bool,
-    /// Direction in which the light goes, or the axis of the cone.
+    /// Direction of the light, or axis of the cone.
     pub axis: Vec3,
-    /// Chord from the middle to the edge of the disk that a drop shows of it; 0: that of the sun.
+    /// Chord from the center to the edge of its disk as seen in a drop; 0: that of the sun.
     pub chord: f32,
     /// Irradiance over pi of a surface that faces it, for a lamp at 1 m.
     pub color: Vec3,
-    /// No light beyond this, meters; 0 for no end.
+    /// Range of the light, meters; 0: unlimited.
     pub range: f32,
     /// Scale and offset of the cosine at the edge of the cone: `clamp(cosine * scale + offset, 0, 1)` squared.
     pub cone: [f32; 2],
@@ -99,7 +99,7 @@ impl Light {
         }
     }
 
-    /// The light at a point. A lamp that is nearer than `least` is as bright as from there.
+    /// Returns the light at a point. A lamp nearer than `least` is as bright as at that distance.
     #[must_use]
     pub fn light_sample(&self, point: Vec3, least: f32) -> LightSample {
         if self.is_parallel {
@@ -125,14 +125,14 @@ impl Light {
     }
 }
 
-/// Sum of a color's parts, by which lights are compared.
+/// Sum of a color's components, by which lights are compared.
 #[must_use]
 pub fn light_weight(color: Vec3) -> f32 {
     color.x + color.y + color.z
 }
 
 impl LightSource {
-    /// The rows of the light in a table.
+    /// Returns the rows of the light in a table.
     #[must_use]
     pub fn rows(&self) -> [[u32; 4]; ROWS] {
         let over_pi = |c: Vec3| c / PI;

@@ -32,12 +32,12 @@ pub trait Lighting: Debug + Sync {
     fn is_open(&self) -> bool;
 }
 
-/// A picture without rain, with what is needed to rain on it.
+/// A picture without rain, with all that is needed to add rain.
 #[derive(Clone, Copy, Debug)]
 pub struct Plate<'a> {
-    /// The camera that took it.
+    /// Camera of the picture.
     pub camera: &'a Camera,
-    /// Radiance, linear, and distance of what is nearest in each pixel (1e30 for the sky), rows from the top.
+    /// Linear radiance, and distance of the nearest surface in each pixel (1e30 for the sky), rows from the top.
     pub pixels: &'a [[f32; 4]],
     /// Radiance from every direction around the eye.
     pub environment: &'a EnvironmentMap,

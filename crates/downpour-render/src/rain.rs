@@ -76,11 +76,11 @@ pub use weather::drop_model;
 /// Glints that are kept of a drop where nothing else is said.
 const GLINTS: u32 = 4;
 
-/// Method that finds the color of a drop's pixel.
+/// Lookup of the color of a drop's pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum RefractionForm {
-    /// The direction of the refracted light is looked up in everything around the eye, and what the drop reflects is
+    /// The direction of the refracted light is looked up in an environment map around the eye, and reflected light is
     /// added: exact for a scene that is far compared with the drop's distance.
     #[default]
     Direction = DROPS_DIRECTION,
@@ -109,10 +109,10 @@ impl From<RainRefraction> for RefractionForm {
     }
 }
 
-/// Options of the drawing of drops.
+/// Options of rain in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainOptions {
-    /// Method that finds the color of a drop's pixel.
+    /// Lookup of the color of a drop's pixel.
     pub form: RefractionForm,
     /// Texels along an edge of the capture: a power of two, 16 to 2048.
     pub capture_size: u32,
@@ -120,7 +120,7 @@ pub struct RainOptions {
     pub capture_grid: u32,
     /// Drops that are not drawn one by one.
     pub medium: RainMedium,
-    /// In which time light is gathered.
+    /// Exposure.
     pub exposure: Exposure,
     /// Options of the light of lamps and the sun on drops.
     pub light: DropLightOptions,

@@ -18,7 +18,7 @@ pub fn tone_luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// The tone curve, in [0, 1].
+/// Applies the tone curve; the result is in [0, 1].
 #[must_use]
 pub fn tone_neutral(color: Vec3) -> Vec3 {
     let color = color.max(Vec3::ZERO);
@@ -63,7 +63,7 @@ pub fn tone_automatic_exposure(pixels: &[[f32; 4]]) -> f32 {
     (GRAY / mean).clamp(1.0 / 65_536.0, 65_536.0)
 }
 
-/// The 8-bit picture of linear radiance.
+/// Converts linear radiance to an 8-bit picture.
 #[must_use]
 pub fn tone_picture(pixels: &[[f32; 4]], exposure: f32) -> Vec<[u8; 3]> {
     pixels

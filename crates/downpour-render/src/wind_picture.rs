@@ -39,11 +39,11 @@ const PROBES: u32 = 128;
 /// Orientation of a slice. +Y is up in all pictures but those from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WindPlane {
-    /// At one z: x to the right, y up.
+    /// Constant z: x to the right, y up.
     Xy,
-    /// At one y, seen from above: x to the right, z down.
+    /// Constant y, seen from above: x to the right, z down.
     Xz,
-    /// At one x: z to the left, as seen from +X; y up.
+    /// Constant x: z to the left, as seen from +X; y up.
     Yz,
 }
 
@@ -147,20 +147,20 @@ fn letter_size(size: [u32; 2]) -> u32 {
     (size[0].min(size[1]) / 400).clamp(1, 4)
 }
 
-/// A picture and what was measured for it.
+/// Picture of a wind, with its statistics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindPicture {
     /// Columns and rows.
     pub size: [u32; 2],
     /// sRGB, rows from the top.
     pub pixels: Vec<[u8; 3]>,
-    /// The least speed in the slice, m/s.
+    /// Minimum speed in the slice, m/s.
     pub slowest: f64,
-    /// The mean speed, m/s.
+    /// Mean speed, m/s.
     pub mean: f64,
-    /// The greatest speed, m/s.
+    /// Maximum speed, m/s.
     pub fastest: f64,
-    /// The root of the mean squared divergence, 1/s, from differences over a fifth of a pixel.
+    /// Root mean square of the divergence, 1/s, from differences over a fifth of a pixel.
     pub divergence_rms: f64,
 }
 

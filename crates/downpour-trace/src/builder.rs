@@ -12,12 +12,12 @@ use crate::material::{MaterialLook, TextureSlot};
 use crate::sky_light::SkyLight;
 use downpour_render::light::LightSource;
 
-/// A triangle mesh on its way into a scene, in its own space.
+/// Triangle mesh to be added to a scene, in its own space.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshPart<'a> {
     /// Positions of the vertices, meters.
     pub positions: &'a [[f32; 3]],
-    /// Normals; those of the triangles where there are none.
+    /// Vertex normals; `None`: the triangles' normals.
     pub normals: Option<&'a [[f32; 3]]>,
     /// Tangents with handedness; only normal maps need them.
     pub tangents: Option<&'a [[f32; 4]]>,
@@ -25,13 +25,13 @@ pub struct MeshPart<'a> {
     pub uvs: [Option<&'a [[f32; 2]]>; 2],
     /// Vertex colors, linear.
     pub colors: Option<&'a [[f32; 4]]>,
-    /// Three vertices per triangle. Triangles that name a vertex that is not there are left out.
+    /// Three vertices per triangle. Triangles with an index out of range are left out.
     pub indices: &'a [u32],
     /// Index of the material.
     pub material: u32,
 }
 
-/// A scene being put together.
+/// Builder of a [`SceneData`].
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuilder {
     corners: Vec<[RenderCorner; 3]>,
@@ -43,7 +43,7 @@ pub struct SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// Nothing yet.
+    /// Creates an empty builder.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -56,13 +56,13 @@ impl SceneBuilder {
         first
     }
 
-    /// Adds a texture as a material uses it, and gives its index.
+    /// Adds a texture slot and returns its index.
     pub fn add_slot(&mut self, slot: TextureSlot) -> u32 {
         self.slots.push(slot);
         self.slots.len() as u32 - 1
     }
 
-    /// Adds a material and gives its index.
+    /// Adds a material and returns its index.
     pub fn add_material(&mut self, material: MaterialLook) -> u32 {
         self.materials.push(material);
         self.materials.len() as u32 - 1
@@ -125,7 +125,7 @@ impl SceneBuilder {
         self.positions.len()
     }
 
-    /// Builds the hierarchy and lays everything out.
+    /// Builds the hierarchy and the buffers.
     #[must_use]
     pub fn build(mut self, sky: &SkyLight) -> SceneData {
         if self.materials.is_empty() {

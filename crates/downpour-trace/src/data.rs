@@ -49,9 +49,9 @@ pub struct RenderFrame {
     pub sky_rays: u32,
     /// First row of pixels of a dispatch.
     pub first_row: u32,
-    /// Nearest distance of the next surface, meters.
+    /// Minimum distance of the next surface along a ray, meters.
     pub nearest: f32,
-    /// Part of the rays that look for the light of a surface that one of them is.
+    /// Inverse of the number of rays that sample the light of a surface.
     pub ray_fraction: f32,
     /// Kind of image that is traced: the picture, or a capture.
     pub projection: u32,
@@ -61,7 +61,7 @@ pub struct RenderFrame {
     pub puddles: u32,
     /// Number of puddles.
     pub puddle_count: u32,
-    /// Row of the table where the pane begins that throws shadows; 0: none.
+    /// Row of the table where the pane that casts shadows begins; 0: no pane.
     pub pane: u32,
     /// Pass of the means over neighboring pixels.
     pub skylight_pass: u32,
@@ -98,7 +98,7 @@ pub struct SceneData {
     pub puddles: u32,
     /// Number of puddles.
     pub puddle_count: u32,
-    /// Row where the pane begins that throws shadows; 0: none.
+    /// Row where the pane that casts shadows begins; 0: no pane.
     pub pane: u32,
     /// Texels of all levels of the sky.
     pub sky: Arc<Vec<[f32; 4]>>,
@@ -109,7 +109,7 @@ pub struct SceneData {
 }
 
 impl SceneData {
-    /// The lower and upper corner of everything, meters.
+    /// Lower and upper corner of the bounding box, meters.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.nodes.first().map_or((Vec3::ZERO, Vec3::ZERO), |root| (root.low.into(), root.high.into()))

@@ -23,7 +23,7 @@ pub struct MaterialLook {
     pub normal_scale: f32,
     /// Strength of the occlusion map.
     pub occlusion_strength: f32,
-    /// Below this alpha a masked material has a hole.
+    /// Alpha below which a masked material is transparent.
     pub alpha_cutoff: f32,
     /// `SCENE_MASKED`, `SCENE_BLENDED`, `SCENE_DOUBLE_SIDED`, `SCENE_UNLIT`.
     pub flags: u32,
@@ -79,7 +79,7 @@ pub struct TextureSlot {
     pub offset: [f32; 2],
     /// Index of the set of coordinates: 0 or 1.
     pub uv_set: u32,
-    /// `SCENE_ROOTED`, `SCENE_REPEAT_U` and its like.
+    /// Flags: `SCENE_ROOTED`, `SCENE_REPEAT_U`, `SCENE_REPEAT_V`, ...
     pub flags: u32,
     /// Texels across.
     pub width: u32,
@@ -116,7 +116,7 @@ pub struct RenderMaterial {
     pub normal_scale: f32,
     /// Strength of the occlusion map.
     pub occlusion_strength: f32,
-    /// Below this alpha a masked material has a hole.
+    /// Alpha below which a masked material is transparent.
     pub cutoff: f32,
     /// `SCENE_MASKED`, `SCENE_BLENDED`, `SCENE_DOUBLE_SIDED`, `SCENE_UNLIT`.
     pub flags: u32,
@@ -139,7 +139,7 @@ pub struct RenderSlot {
     pub offset: [f32; 2],
     /// Set of coordinates, 0 or 1.
     pub uv_set: u32,
-    /// `SCENE_ROOTED`, `SCENE_REPEAT_U` and its like.
+    /// Flags: `SCENE_ROOTED`, `SCENE_REPEAT_U`, `SCENE_REPEAT_V`, ...
     pub flags: u32,
     /// Width, height, first texel, and levels.
     pub image: [u32; 4],

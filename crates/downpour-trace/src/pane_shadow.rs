@@ -1,10 +1,10 @@
 //! Light of lamps and the sun that falls through a wet pane. Twin of `shaders/wgsl/render/pane_shadow.wgsl`.
 //!
-//! Tatarchuk & Isidoro 2006, section 5, project the masses of the drops on what stands behind the pane, and draw a highlight in
-//! the middle of the shadow of each heavy drop. Here a drop is a lens: light that falls on it is missing behind it, and comes
-//! together at its focal length `f`, where it is a bright point; as far again it is as wide as the drop, and beyond it is
-//! spread over what a drop of mean size makes of it. So all forms of light but the paper's are kept: over the pane the mean fraction
-//! is that of dry glass at any distance.
+//! Tatarchuk & Isidoro 2006, section 5, project the masses of the drops on what stands behind the pane, and draw a
+//! highlight in the middle of the shadow of each heavy drop. Here a drop is a lens: light that falls on it is missing
+//! behind it, and comes together at its focal length `f`, where it is a bright point; as far again it is as wide as the
+//! drop, and beyond it is spread over what a drop of mean size makes of it. So all forms of light but the paper's are kept:
+//! over the pane the mean fraction is that of dry glass at any distance.
 //!
 //! Limits: all drops have the mean focal length; light of the sky has no shadows of drops; the reflections of the drops'
 //! surfaces are those of dry glass.
@@ -39,7 +39,7 @@ impl SceneData {
         }
     }
 
-    /// Sets the pane before the lamps, in place of the one that is there; `axes`: its corner, right, down and outward, in the
+    /// Sets the pane in front of the lamps; replaces an earlier one; `axes`: its corner, right, down and outward, in the
     /// scene's coordinates.
     pub fn set_pane(&mut self, shade: &PaneShade, axes: [Vec3; 4]) {
         self.take_pane();

@@ -12,7 +12,7 @@ pub mod water;
 
 use crate::data::{RenderFrame, SceneData};
 
-/// A scene and a frame: what a ray needs.
+/// A scene and a frame, as rays need them.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneView<'a> {
     /// The scene.

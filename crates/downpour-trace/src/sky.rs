@@ -41,7 +41,7 @@ impl SceneData {
             + (at(below + left) * (1.0 - fx) + at(below + right) * fx) * fy
     }
 
-    /// The sky as a ray sees it that is as wide as `width` at distance 1.
+    /// Radiance of the sky for a ray of width `width` at distance 1.
     #[must_use]
     pub fn sky_cone(&self, direction: Vec3, width: f32) -> Vec3 {
         // Texels of the map across the ray; a texel between its neighbors is wider than one alone.

@@ -11,7 +11,7 @@ use glam::Vec3;
 /// Rows of the coarsest level, at least.
 const COARSEST: u32 = 4;
 
-/// The sky as the shaders read it.
+/// Sky map with levels and irradiance, as the shaders read it.
 #[derive(Clone, Debug)]
 pub struct SkyLight {
     /// Texels of all levels.
@@ -85,7 +85,7 @@ fn direction_of(x: u32, y: u32, width: u32, height: u32) -> Vec3 {
 }
 
 impl SkyLight {
-    /// The light of an equirectangular map: rows from the top, +Y up, u = 0.5 + atan2(z, x) / 2 pi.
+    /// Builds the light of an equirectangular map: rows from the top, +Y up, u = 0.5 + atan2(z, x) / 2 pi.
     ///
     /// # Panics
     /// If the map is empty or its texels are not width times height.
@@ -110,7 +110,7 @@ impl SkyLight {
         Self { texels, levels, irradiance }
     }
 
-    /// A sky of one radiance.
+    /// Builds a sky of uniform radiance.
     #[must_use]
     pub fn uniform(radiance: [f32; 3]) -> Self {
         Self::new(8, 4, &[radiance; 32])

@@ -67,7 +67,7 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
     fourth * fourth * near
 }
 
-/// Degree to which two means are the same but for their noise, 0 to 1: variances are those of the means.
+/// Similarity of two means given their noise, 0 to 1: variances are those of the means.
 #[must_use]
 pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
     let apart = skylight_luminance(own.truncate()) - skylight_luminance(other.truncate());

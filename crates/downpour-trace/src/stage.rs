@@ -32,10 +32,10 @@ pub use error::StageError;
 pub use eye::CameraChoice;
 use eye::CameraView;
 
-/// The most triangles of a scene, all copies counted.
+/// Maximum number of triangles of a scene, all copies counted.
 pub const MAX_TRIANGLES: u64 = 1 << 22;
 
-/// The most lamps of a scene: each surface asks each of them.
+/// Maximum number of lamps of a scene: each surface samples all of them.
 pub const MAX_LIGHTS: usize = 1024;
 
 /// Memory per triangle, in bytes, while its hierarchy is built: the corners twice, and the builder's own lists.
@@ -44,7 +44,7 @@ const BYTES_PER_TRIANGLE: u64 = 540;
 /// Farther than this from the world's origin, in meters, buffers are relative to a position near the eye.
 const NEAR_ORIGIN_M: f64 = 1000.0;
 
-/// The latest time of a picture, in seconds, and the earliest below 0.
+/// Maximum absolute time of a picture, in seconds.
 pub const LATEST_S: f64 = downpour_sim::field::MAX_TIME_S;
 
 /// The eye's motion is taken over this time at least, s.
@@ -53,7 +53,7 @@ const MIN_INTERVAL_S: f64 = 1.0e-3;
 /// Pixels darker than this part of the mean have no say in the exposure.
 const UNLIT: f32 = 1.0e-4;
 
-/// A scene with its light and an eye.
+/// A scene at one time: its buffers, light and camera.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The scene's buffers, relative to `origin`.
@@ -64,15 +64,15 @@ pub struct Stage {
     pub origin: DVec3,
     /// Motion of the eye.
     pub motion: EyeMotion,
-    /// Exposure time: the shutter is open for so long, in seconds.
+    /// Exposure time, s.
     pub shutter_s: f64,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
-    /// The picture is multiplied by two to this power.
+    /// Exposure compensation in stops: the picture is multiplied by 2 to this power.
     pub exposure_ev: f32,
     /// Distances from the eye, in meters, between which drops are drawn.
     pub depth: [f64; 2],
-    /// Whose eye it is.
+    /// Choice of the camera.
     pub camera: CameraChoice,
     /// Triangles, all copies counted.
     pub triangles: usize,
@@ -80,12 +80,12 @@ pub struct Stage {
     pub instances: usize,
     /// Lamps, without the sun.
     pub lamps: usize,
-    /// Meshes that are not drawn because their transform has no inverse, or leads too far.
+    /// Number of meshes left out because their transform has no inverse or is out of range.
     pub left_out: usize,
 }
 
 impl Stage {
-    /// The stage of a weather at a time in seconds: its models in motion, its sky, sun and lamps, its eye.
+    /// Builds the stage of a weather at a time in seconds: animated models, sky, sun, lamps, camera.
     ///
     /// # Errors
     /// [`StageError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`StageError::Memory`], or
@@ -189,7 +189,7 @@ impl Stage {
         Ok(view_of(&viewpoint, origin, weather.size, depth, weather.camera.shutter, &motion)?)
     }
 
-    /// Drops of the world as the picture takes them, relative to `origin`.
+    /// Returns drops with their positions relative to `origin`.
     #[must_use]
     pub fn place<'a>(&self, drops: &'a [FallingDrop]) -> Cow<'a, [FallingDrop]> {
         if self.origin == DVec3::ZERO {
@@ -198,7 +198,7 @@ impl Stage {
         drops.iter().map(|drop| FallingDrop { position: drop.position - self.origin, ..*drop }).collect()
     }
 
-    /// The factor from radiance to a picture to look at: automatic exposure of the scene without rain, where there is light
+    /// Returns the exposure factor for display: automatic exposure of the scene without rain, where there is light
     /// on it, times two to the power of `exposure_ev`.
     ///
     /// Pixels without light are left out: nothing comes from below the horizon of an overcast sky. So is the rain: drops

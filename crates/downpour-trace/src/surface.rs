@@ -83,8 +83,8 @@ impl SceneData {
         self.surface_alpha(&material, hit) < least
     }
 
-    /// The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is
-    /// blended has no alpha. Twelve holes in a row end the ray.
+    /// Returns the nearest surface up to a distance. Holes are skipped: where a masked material is below its cutoff, or one
+    /// that is blended has no alpha. Twelve holes in a row end the ray.
     #[must_use]
     pub fn surface_hit(&self, origin: Vec3, direction: Vec3, nearest: f32, farthest: f32) -> Option<Hit> {
         let mut from_distance = nearest;

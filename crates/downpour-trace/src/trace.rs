@@ -16,7 +16,7 @@ use crate::path::{PathSlot, ViewPath, path_lattice_words, path_max};
 use crate::scene::SceneView;
 use downpour_render::halves::{pack, unpack};
 
-/// Light of which means are taken over neighboring pixels, packed. The same layout as `TraceSlot` in WGSL.
+/// Light that is denoised over neighboring pixels, packed. The same layout as `TraceSlot` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TraceSlot {
@@ -33,7 +33,7 @@ pub struct TraceSlot {
     pub factor: [u32; 2],
 }
 
-/// Light of sky and surfaces that a pixel shows. The same layout as `TraceAmbient` in WGSL.
+/// Ambient sample of a pixel: light of sky and surfaces. The same layout as `TraceAmbient` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TraceAmbient {

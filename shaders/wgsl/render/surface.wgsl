@@ -51,7 +51,7 @@ fn surface_is_open(hit: SurfaceHit) -> bool {
     return surface_alpha(material, hit) < least;
 }
 
-// The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is
+// Returns the nearest surface up to a distance. Holes are skipped: where a masked material is below its cutoff, or one that is
 // blended has no alpha. Twelve holes in a row end the ray.
 fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> SurfaceHit {
     var from_distance = nearest;

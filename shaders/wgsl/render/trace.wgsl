@@ -8,7 +8,7 @@
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> trace_ambient: array<TraceAmbient>;
 
-// Light of which means are taken over neighboring pixels, packed.
+// Light that is denoised over neighboring pixels, packed.
 struct TraceSlot {
     position: vec3f,
     // The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
@@ -22,7 +22,7 @@ struct TraceSlot {
     factor: vec2u,
 }
 
-// Light of sky and surfaces that a pixel shows.
+// Ambient sample of a pixel: light of sky and surfaces.
 struct TraceAmbient {
     // On the diffuse base of the first opaque surface, over pi.
     base: TraceSlot,

@@ -17,13 +17,13 @@ use crate::plate::Lighting;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassPictureLight {
-    /// From the eye, m; a sun is far.
+    /// Position relative to the eye, m; a sun is far away.
     pub position: [f32; 3],
-    /// Half the angle that it takes, radians.
+    /// Angular radius, radians.
     pub radius: f32,
     /// Irradiance at the eye of a surface that faces it.
     pub color: [f32; 3],
-    /// From the eye, m.
+    /// Distance from the eye, m.
     pub distance: f32,
 }
 

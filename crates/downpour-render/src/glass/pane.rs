@@ -35,7 +35,7 @@ const WATER_INDEX: f64 = 1.333;
 /// The line of sodium, m.
 const SODIUM_M: f64 = 589.3e-9;
 
-/// A pane before the camera, with the rain on it.
+/// A pane of glass in front of the camera, with the rain on it.
 #[derive(Debug)]
 pub struct WetPane {
     pane: Pane,
@@ -49,8 +49,8 @@ pub struct WetPane {
 }
 
 impl WetPane {
-    /// The dry pane of a weather, if it has one; `first_s` is the time of the first picture, before which it has rained for
-    /// as long as the weather says.
+    /// Creates the dry pane of a weather, if it has one; `first_s` is the time of the first picture, before which it has
+    /// rained for as long as the weather says.
     ///
     /// # Errors
     /// [`PaneError`] if the pane cannot be what is asked for, or the camera does not look through it.
@@ -67,7 +67,7 @@ impl WetPane {
         Ok(Some(Self { pane: pane.clone(), rain: weather.rain, size, begin_s, water, above, glass }))
     }
 
-    /// Lets rain fall and wipers go until a time in seconds. The same drops for any division of the time.
+    /// Steps rain and wipers to a time in seconds. The drops do not depend on how the time is divided.
     ///
     /// # Errors
     /// [`GlassError`], as the lattice's step.
@@ -89,13 +89,13 @@ impl WetPane {
         Ok(())
     }
 
-    /// The time that rain and wipers have come to, s.
+    /// Time that rain and wipers have been stepped to, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
         self.begin_s + self.glass.ticks() as f64 * self.glass.tick_s()
     }
 
-    /// The lattice.
+    /// Lattice of the drops.
     #[must_use]
     pub fn glass(&self) -> &Glass {
         &self.glass
@@ -118,13 +118,13 @@ impl WetPane {
         Ok([corner, position.across, position.down, position.outward])
     }
 
-    /// True if the light of lamps that falls in through the pane has the shadows of its drops.
+    /// True if drops on the pane cast shadows in the light of lamps behind it.
     #[must_use]
     pub fn has_shadows(&self) -> bool {
         self.pane.shadows != PaneShadow::None
     }
 
-    /// Shadows of the drops that are on the pane now; `None` if it has none.
+    /// Returns the shadows of the drops now on the pane; `None` if shadows are off.
     ///
     /// # Errors
     /// [`PaneError::Glass`] if the drops are more than bins can hold.
@@ -144,8 +144,8 @@ impl WetPane {
         self.glass.options().contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32
     }
 
-    /// The pane as it is now, before a picture of `grid` samples along an edge of a pixel. `environment_texels` is the number
-    /// of texels of the environment map, all levels.
+    /// Returns the pane in its present state, in front of a picture of `grid` samples along an edge of a pixel.
+    /// `environment_texels` is the number of texels of the environment map, all levels.
     ///
     /// # Errors
     /// As [`WetPane::new`].
@@ -221,7 +221,7 @@ impl WetPane {
     }
 }
 
-/// The plane of a weather's pane before an eye, if there is one.
+/// Returns the plane of a weather's pane in front of an eye, if there is one.
 ///
 /// # Errors
 /// [`PaneError::EdgeOn`] if the eye looks along it, or what is wrong with the eye.

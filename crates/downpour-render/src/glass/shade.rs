@@ -28,14 +28,14 @@ const CORNERS: [[f32; 2]; 4] = [[-0.125, -0.375], [0.375, -0.125], [0.125, 0.375
 /// Model of the light of lamps and the sun that falls through a wet pane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PaneShadows {
-    /// Each drop is a lens: its light comes together at its focus and is spread behind it.
+    /// Each drop is a lens: its light converges at its focus and spreads behind it.
     #[default]
     Lens,
     /// The shadow of a heavy drop has a highlight in its middle at any distance (Tatarchuk & Isidoro 2006).
     Tatarchuk2006,
 }
 
-/// Cover and gathered cover of a pane, in levels.
+/// Coverage and focused light of the drops on a pane, as a mip pyramid.
 #[derive(Clone, Debug)]
 pub struct PaneShade {
     size_m: [f32; 2],
@@ -50,8 +50,8 @@ pub struct PaneShade {
 }
 
 impl PaneShade {
-    /// The shade of a pane of a size in meters with these drops. Those whose disk is at least `gathers_m` in radius gather
-    /// light; `water` is their refractive index.
+    /// Computes the shade of a pane of a size in meters with these drops. Those whose disk is at least `gathers_m` in
+    /// radius gather light; `water` is their refractive index.
     #[must_use]
     pub fn new(
         size_m: [f64; 2],
@@ -132,8 +132,8 @@ fn cast(texels: &mut [Vec2], [columns, rows]: [usize; 2], edge: f32, drop: &Glas
 }
 
 impl PaneShade {
-    /// The rows of the pane in a table; wherever they begin, they are the same. `axes`: corner, right, down and outward of the
-    /// pane, in the coordinates of the table.
+    /// Returns the rows of the pane in a table, which do not depend on their position there. `axes`: corner, right, down
+    /// and outward of the pane, in the coordinates of the table.
     #[must_use]
     pub fn rows(&self, axes: [Vec3; 4]) -> Vec<[u32; 4]> {
         let [corner, across, down, outward] = axes;
@@ -164,18 +164,18 @@ impl PaneShade {
     }
 }
 
-/// A pane before the lamps as the shaders read it. Twin of the struct of the same name in `shaders/wgsl/render/pane.wgsl`.
+/// A pane in front of the lamps, as the shaders read it. Twin of the struct of the same name in `shaders/wgsl/render/pane.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderPane {
     /// Upper left corner, meters.
     pub corner: Vec3,
-    /// Texels in a meter.
+    /// Texels per meter.
     pub texels_per_meter: f32,
     /// Unit vector to the right.
     pub across: Vec3,
     /// Width, m.
     pub width: f32,
-    /// Unit vector downwards.
+    /// Unit vector down.
     pub down: Vec3,
     /// Height, m.
     pub height: f32,
@@ -185,7 +185,7 @@ pub struct RenderPane {
     pub form: u32,
     /// First row of the texels.
     pub first: u32,
-    /// Coarsest level.
+    /// Index of the coarsest level.
     pub last: u32,
     /// Mean radius and focal length of the drops, m.
     pub drops: [f32; 2],

@@ -26,7 +26,7 @@ pub struct GlassPictureDrop {
     pub droop: [f32; 2],
     /// 0.
     pub unused: [f32; 2],
-    /// The outline: what is added to the squared distance with the cosine and the sine of twice the angle, and of thrice.
+    /// Harmonics of the outline: added to the squared distance with the cosine and sine of twice and of three times the angle.
     pub lobes: [f32; 4],
 }
 
@@ -66,7 +66,7 @@ pub fn glass_picture_water_cap(drop: &GlassPictureDrop, position: Vec2) -> Vec3 
     Vec3::new(height * fraction, slope.x, slope.y)
 }
 
-/// The highest that a drop may be.
+/// Maximum height of a drop.
 #[must_use]
 pub fn glass_picture_water_top(drop: &GlassPictureDrop) -> f32 {
     let whole = drop.sphere * drop.sphere;

@@ -25,7 +25,7 @@ use super::streak_lookup::StreakTable;
 use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
 use crate::halves::unpack;
 
-/// The position of a ray on the plane at distance 1 through a drop's middle.
+/// Position of a ray on the plane at distance 1 through a drop's center.
 #[must_use]
 pub fn drops_on_plane(towards: Vec3, ray: Vec3) -> Vec3 {
     ray / ray.dot(towards).max(1.0e-6) - towards
@@ -413,9 +413,9 @@ impl Rain {
     }
 
     /// The rain over a scene: radiance, and the transmittance of the scene behind it; rows from the top. `clean` is the
-    /// scene's picture with its distances, `light` what lamps add to each drop of the list ([`DropLights::light`](super::light::DropLights::light); nothing
-    /// where it is empty), `medium` the drops that are not drawn
-    /// ([`MediumLight::layer`](super::medium::MediumLight::layer); none where it is empty).
+    /// scene's picture with its distances, `light` what lamps add to each drop of the list
+    /// ([`DropLights::light`](super::light::DropLights::light); nothing where it is empty), `medium` the drops that are not
+    /// drawn ([`MediumLight::layer`](super::medium::MediumLight::layer); none where it is empty).
     #[must_use]
     pub fn layer(
         &self,

@@ -9,25 +9,25 @@ use crate::camera::Camera;
 /// Samples of a streak for which the table has no entry: too short, or across the others.
 const STREAK_SPARE: u32 = 16;
 
-/// The picture as the drops' shader knows it. The same layout as `DropsFrame` in WGSL.
+/// Uniforms of the drops' shader. The same layout as `DropsFrame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropsFrame {
     /// The camera.
     pub camera: Camera,
-    /// Axes of the capture in the papers' form: the whole of it at distance 1.
+    /// Right axis of the capture in the papers' form: its whole width at distance 1.
     pub capture_right: [f32; 3],
     /// Texels along an edge of the capture.
     pub capture_size: u32,
     /// See `capture_right`.
     pub capture_up: [f32; 3],
-    /// The coarsest level of the capture.
+    /// Index of the coarsest level of the capture.
     pub capture_last: u32,
-    /// The view direction of the capture.
+    /// View direction of the capture.
     pub capture_forward: [f32; 3],
     /// Angle of a texel of the capture.
     pub capture_texel: f32,
-    /// The form of refraction.
+    /// Form of refraction.
     pub form: u32,
     /// Texels along an edge of a mask.
     pub mask_size: u32,
@@ -41,7 +41,7 @@ pub struct DropsFrame {
     pub streak_color: u32,
     /// Rows of light of each drop besides its mean: glints, or streaks of the atlas.
     pub glints: u32,
-    /// First word of the atlas behind the masks; 0: there is none.
+    /// First word of the atlas behind the masks; 0: no atlas.
     pub atlas: u32,
 }
 

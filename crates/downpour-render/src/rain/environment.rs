@@ -39,7 +39,7 @@ pub struct EnvironmentMap {
 }
 
 impl EnvironmentFrame {
-    /// The layout that belongs to a camera.
+    /// Computes the layout for a camera.
     #[must_use]
     pub fn new(camera: &Camera, options: &RainOptions) -> Self {
         let size = options.capture_size.clamp(16, 2048).next_power_of_two();
@@ -76,7 +76,7 @@ impl EnvironmentFrame {
 }
 
 impl EnvironmentMap {
-    /// A map from its finest level, rows from the top.
+    /// Builds a map from its finest level, rows from the top.
     #[must_use]
     pub fn new(frame: &EnvironmentFrame, mut texels: Vec<[f32; 4]>) -> Self {
         pyramid(&mut texels, [frame.size; 2], PyramidRounding::Down);

@@ -12,7 +12,7 @@ use downpour_shaders::render::drop_light::{
 use downpour_shaders::render::specimen::SPECIMEN_TURN;
 use glam::{Vec2, Vec3};
 
-/// The right of the view of a drop, level; where the view is plumb, +x. Up is `right.cross(toward)`.
+/// Right axis of the view of a drop, horizontal; +x where the view is vertical. Up is `right.cross(toward)`.
 #[must_use]
 pub fn drop_glint_right(towards: Vec3) -> Vec3 {
     let sideways = Vec3::new(-towards.z, 0.0, towards.x);
@@ -45,7 +45,7 @@ pub fn drop_glint_angle(light: Vec3, towards: Vec3) -> f32 {
     4.0 * if c < s { 0.25 - octant } else { octant }
 }
 
-/// The side of the disk on which the lamp stands, of length 1; right where it stands on none.
+/// Unit vector on the disk to the side of the lamp; right if the lamp is on the axis.
 #[must_use]
 pub fn drop_glint_side(light: Vec3, right: Vec3, up: Vec3) -> Vec2 {
     let side = Vec2::new(light.dot(right), light.dot(up));
@@ -53,7 +53,7 @@ pub fn drop_glint_side(light: Vec3, right: Vec3, up: Vec3) -> Vec2 {
     if square > DROP_GLINT_AXIS { side / square.max(DROP_GLINT_TINY).sqrt() } else { Vec2::X }
 }
 
-/// A position on the disk as one number, a whole one below 2^24: within 1/4094 of a radius.
+/// Packs a position on the disk into one integer below 2^24, to within 1/4094 of a radius.
 #[must_use]
 pub fn drop_glint_pack(position: Vec2) -> f32 {
     let steps =
@@ -61,7 +61,7 @@ pub fn drop_glint_pack(position: Vec2) -> f32 {
     steps.x * DROP_GLINT_RANGE + steps.y
 }
 
-/// The unpacked position.
+/// Unpacks a position.
 #[must_use]
 pub fn drop_glint_unpack(word: f32) -> Vec2 {
     // Whole numbers: a compiler of shaders may add in another order, and 2^23 + 0.5 is no f32.
@@ -77,7 +77,7 @@ pub fn drop_glint_spot(offset: Vec2, width: f32) -> f32 {
     0.5 / square * ops::exp(-0.5 * offset.dot(offset) / square)
 }
 
-/// The level part of a direction, (x, z), of length 1; nothing of a plumb one.
+/// Normalized horizontal part (x, z) of a direction; 0 for a vertical one.
 #[must_use]
 pub fn drop_glint_level(direction: Vec3) -> Vec2 {
     let level = Vec2::new(direction.x, direction.z);

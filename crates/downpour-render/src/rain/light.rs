@@ -53,25 +53,25 @@ pub use table::DropLightTable;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum DropLightForm {
-    /// Geometric optics of a sphere of water: Fresnel's equations, orders 0 to 3, bows in their colors.
+    /// Geometric optics of a sphere of water: Fresnel's equations, orders 0 to 3, with colored rainbows.
     #[default]
     Traced = DROP_LIGHT_TRACED,
     /// Rousseau 2006, section 6: `C_L DistFact (V_PE . V_N) (A_2 + A_3)`, as printed, without exponents, at each pixel by the
     /// drop's normal there; a drop below a pixel shows the mean over its disk, a streak the mean over what passes. `C_L DistFact`
     /// is taken as the irradiance over pi at the drop: what a white surface shows.
     Rousseau2006 = DROP_LIGHT_ROUSSEAU,
-    /// Of [`DropLightForm::Rousseau2006`] the term of external reflection alone: `A_1 A_2`.
+    /// [`DropLightForm::Rousseau2006`], external reflection only: `A_1 A_2`.
     Rousseau2006External = DROP_LIGHT_ROUSSEAU | DROP_LIGHT_EXTERNAL << 8,
-    /// Of [`DropLightForm::Rousseau2006`] the term of internal reflection alone: `A_1 A_3`.
+    /// [`DropLightForm::Rousseau2006`], internal reflection only: `A_1 A_3`.
     Rousseau2006Internal = DROP_LIGHT_ROUSSEAU | DROP_LIGHT_INTERNAL << 8,
     /// Im & Sung 2022, equations (7) to (10): drops in a spot's cone have the light's color, others nothing; point lights
     /// and parallel ones are left out. The cone is as high as the lamp's range. Here its edge is soft, from the inner
     /// cone to the outer, and the intensity falls with the distance (their light has one intensity everywhere).
     ImSung2022 = DROP_LIGHT_IM_SUNG,
-    /// The streaks of an atlas, by the directions of lamp and viewer, by elevation and diameter, or at random: for drops that move. One that
-    /// stands still shows the mean of its streak.
+    /// The streaks of an atlas, by the directions of lamp and viewer, by elevation and diameter, or at random: for drops
+    /// that move. One that stands still shows the mean of its streak.
     Atlas = DROP_LIGHT_ATLAS,
-    /// Nothing.
+    /// No light.
     None = DROP_LIGHT_NONE,
 }
 
@@ -112,13 +112,13 @@ impl From<RainDropLight> for DropLightForm {
 pub struct DropLightOptions {
     /// Model of the light of lamps on a drop.
     pub form: DropLightForm,
-    /// Rows that are told of each drop besides its mean, 0 to 16: in the traced form its brightest glints; in that of Rousseau 2006
+    /// Rows of light of each drop besides its mean, 0 to 16: in the traced form its brightest glints; in that of Rousseau 2006
     /// its brightest lamps, two rows each; of an atlas its brightest streaks, three rows each. The other forms have none.
     pub glints: u32,
 }
 
 impl DropLightOptions {
-    /// The light of an atlas, four streaks of each drop.
+    /// Light of an atlas, with four streaks per drop.
     pub const ATLAS: Self = Self { form: DropLightForm::Atlas, glints: 4 * DROP_ATLAS_ROWS };
 
     /// Options of a weather: its `drop_light`, traced light by the streaks of an atlas if its streaks are of one.
@@ -138,11 +138,11 @@ impl DropLightOptions {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropLightFrame {
-    /// Drops.
+    /// Number of drops.
     pub count: u32,
-    /// [`DropLightForm`].
+    /// Form of the light, a [`DropLightForm`].
     pub form: u32,
-    /// Rows that are kept of each drop besides its mean.
+    /// Rows kept for each drop besides its mean.
     pub glints: u32,
     /// First lamp of the dispatch.
     pub first_light: u32,
@@ -163,7 +163,7 @@ pub struct DropGlint {
     pub radiance: Vec3,
 }
 
-/// The lamps of a plate, on drops before an eye.
+/// Light of a plate's lamps on drops.
 #[derive(Clone, Copy, Debug)]
 pub struct DropLights<'a> {
     pub(crate) lighting: &'a dyn Lighting,
@@ -191,7 +191,7 @@ pub(crate) fn drop_light_axes<'a>(drops: impl IntoIterator<Item = (&'a FallingDr
 /// Numbers of drops are below 2^24: single precision has them exactly.
 const DROP_IDS: u32 = 0x00ff_ffff;
 
-/// Drops as the light wants them: position relative to the scene's origin, and radius, meters.
+/// Rows of drops for [`DropLights::light`]: position relative to the scene's origin, and radius, meters.
 #[must_use]
 pub fn drop_light_rows<'a>(drops: impl IntoIterator<Item = &'a FallingDrop>) -> Vec<[f32; 4]> {
     let row = |drop: &FallingDrop| drop.position.as_vec3().extend(0.5 * drop.diameter).to_array();
@@ -255,13 +255,13 @@ impl<'a> DropLights<'a> {
         Ok(Self { form, glints: 2 * STREAK_LAMPS, ..Self::new(lighting, eye, table, options)? })
     }
 
-    /// Numbers of a drop in [`DropLights::light`]: its mean, and its glints.
+    /// Number of rows of a drop in [`DropLights::light`]: its mean and its glints.
     #[must_use]
     pub fn stride(&self) -> usize {
         1 + self.glints as usize
     }
 
-    /// The dispatches of so many drops: all lamps, a part of them each.
+    /// Returns the dispatches for `count` drops, each with a part of the lamps.
     #[must_use]
     pub fn frames(&self, count: u32) -> Vec<DropLightFrame> {
         let (form, glints, terms) = (self.form, self.glints, self.terms);
@@ -275,11 +275,11 @@ impl<'a> DropLights<'a> {
         if self.form == DROP_LIGHT_ATLAS { rows.len() / 2 } else { rows.len() }
     }
 
-    /// The light on drops ([`drop_light_rows`]; for an atlas then a row for each drop with its axis, against its motion, and its
-    /// id below 2^24), in parallel; the same bits for any number of threads. For each drop
-    /// [`DropLights::stride`] rows: the mean radiance over its disk and 0; then its brightest glints in no order, their part
-    /// of the mean and their position ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas:
-    /// its streaks, three rows each as in the shader.
+    /// The light on drops ([`drop_light_rows`]; for an atlas then a row for each drop with its axis, against its motion,
+    /// and its id below 2^24), in parallel; the same bits for any number of threads. For each drop [`DropLights::stride`]
+    /// rows: the mean radiance over its disk and 0; then its brightest glints in no order, their part of the mean and their
+    /// position ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas: its
+    /// streaks, three rows each as in the shader.
     #[must_use]
     pub fn light(&self, drops: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let (drops, about) = drops.split_at(self.count(drops));
@@ -290,7 +290,7 @@ impl<'a> DropLights<'a> {
         out
     }
 
-    /// All glints of a drop in the traced form, lamp by lamp and way by way, without those that have no light. Their
+    /// Returns all glints of a drop in the traced form, by lamp and light path, without dark ones. Their
     /// sum is the mean radiance, up to the table's rounding.
     #[must_use]
     pub fn glints(&self, drop: [f32; 4]) -> Vec<DropGlint> {

@@ -20,9 +20,9 @@ use super::drops_atlas;
 use super::light::DropLightTable;
 use super::streak_path::StreakPath;
 
-/// Number of diameters, from a sphere to the largest drop that has a shape.
+/// Number of diameters, from a sphere to the largest drop with a known shape.
 pub const DIAMETERS: u32 = 18;
-/// Step from a diameter to the next, meters.
+/// Step between diameters, meters.
 pub const DIAMETER_STEP: f64 = 0.5e-3;
 
 /// Meters between the shapes for the rays of streaks, and their number.
@@ -38,9 +38,9 @@ const WORDS: usize = DROPS_TEXEL_WORDS as usize;
 /// Masks of drops of all sizes from all elevations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropMasks {
-    /// Five words per texel: the refracted, the reflected and the internally reflected direction as octahedral pairs of 16 bits;
-    /// coverage and transmittance, then the internal transmittance and the reflectance as 16 bits each. Rows from the top, elevations within diameters. Behind them the streak atlas, if there
-    /// is one.
+    /// Five words per texel: the refracted, the reflected and the internally reflected direction as octahedral pairs of 16
+    /// bits; coverage and transmittance, then the internal transmittance and the reflectance as 16 bits each. Rows from the
+    /// top, elevations within diameters. Behind them the streak atlas, if there is one.
     pub words: Arc<Vec<u32>>,
     /// Texels along an edge of a mask.
     pub size: u32,
@@ -70,7 +70,7 @@ pub(crate) struct MaskLookup {
 }
 
 impl DropMasks {
-    /// Traces the masks of water of this refractive index.
+    /// Traces the masks of drops with this refractive index.
     ///
     /// # Errors
     /// [`MaskError::OutOfRange`] for an invalid index.
@@ -78,7 +78,7 @@ impl DropMasks {
         Self::trace_shapes(refractive_index, ShapeTable::default())
     }
 
-    /// The same for the shapes of a table.
+    /// Traces the masks of the shapes of a table.
     ///
     /// # Errors
     /// As [`DropMasks::trace`].
@@ -93,7 +93,7 @@ impl DropMasks {
         Ok(masks)
     }
 
-    /// The same with a model in place of the drops' own shapes: scaled to their volume, its +Y up, its +Z toward the eye.
+    /// Traces the masks of a model instead of the drops' shapes: scaled to their volume, its +Y up, its +Z toward the eye.
     /// Rays of streaks and the light of lamps keep those shapes.
     ///
     /// # Errors
@@ -144,8 +144,8 @@ impl DropMasks {
         }
     }
 
-    /// The same, with the streaks of an atlas for [`DropLightForm::Atlas`](super::light::DropLightForm::Atlas), instead of those of
-    /// another.
+    /// Returns the masks with the streaks of an atlas for [`DropLightForm::Atlas`](super::light::DropLightForm::Atlas),
+    /// instead of those of another.
     #[must_use]
     pub fn with_atlas(mut self, atlas: &StreakAtlas) -> Self {
         if self.atlas > 0 {

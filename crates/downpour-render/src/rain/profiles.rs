@@ -49,10 +49,10 @@ const FINENESS: [Fineness; 4] = [
 /// Profiles have half as many rows again as rays have.
 const ROWS_FOR_TWO: u32 = 3;
 
-/// The profiles of a picture, and the classes of drops that have a mean.
+/// Profiles of the streaks of a picture, and classes of drops with a mean radiance.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StreakProfiles {
-    /// Classes of drops that are not sampled; those without rows are not wanted.
+    /// Classes of drops that are not sampled; those without rows are unused.
     pub classes: Vec<StreakPath>,
     /// Streaks that have a profile.
     pub paths: Vec<StreakPath>,
@@ -67,8 +67,8 @@ pub struct StreakProfiles {
 }
 
 impl StreakProfiles {
-    /// Gives each streak among `drops` its position, and its drop the way to it. `given` are the drops that they are of; of the class
-    /// `medium`, if there is one, the mean is wanted in any case.
+    /// Gives each streak among `drops` its position, and its drop the way to it. `given` are the drops that they are of; of
+    /// the class `medium`, if there is one, the mean is wanted in any case.
     pub(super) fn new(
         drops: &mut [(u32, Projected)],
         given: &[FallingDrop],

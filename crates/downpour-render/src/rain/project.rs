@@ -173,7 +173,7 @@ struct Path {
     depth: f32,
     /// The least of it.
     nearest: f32,
-    /// Depth at the end over that at the beginning.
+    /// Depth at the end divided by that at the beginning.
     depth_ratio: f32,
     velocity: Vec3,
     moves: bool,

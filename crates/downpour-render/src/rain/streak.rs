@@ -7,17 +7,17 @@ use downpour_drop::oscillation::{
 use downpour_shaders::render::rain::STREAK_GAUSS;
 use glam::{Vec2, Vec3};
 
-/// A drop on the picture. The same layout as `DropsDrop` in WGSL.
+/// A drop in the picture. The same layout as `DropsDrop` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropsDrop {
-    /// From the eye to the drop's middle at mid-exposure, of length 1.
+    /// Unit vector from the eye to the drop's center at mid-exposure.
     pub towards: [f32; 3],
-    /// Meters from the eye, in the middle of its path.
+    /// Distance from the eye in the middle of its path, m.
     pub distance: f32,
     /// Position of the middle on the picture, pixels from the top left.
     pub position: [f32; 2],
-    /// Equivalent radius over distance.
+    /// Equivalent radius divided by distance.
     pub slope: f32,
     /// Half the width of its mask, in equivalent radii.
     pub half_extent: f32,
@@ -29,7 +29,7 @@ pub struct DropsDrop {
     pub grid: u32,
     /// Position when the exposure begins: on the plane at distance 1, along the right and up of the drop's view.
     pub start: [f32; 2],
-    /// The way to where it ends.
+    /// Displacement during the exposure, on the same plane.
     pub along: [f32; 2],
     /// `start` on the picture, pixels.
     pub first: [f32; 2],
@@ -38,20 +38,20 @@ pub struct DropsDrop {
     /// Half the width and half the height of the oval around its outline, and how far its middle is up, in equivalent
     /// radii.
     pub oval: [f32; 3],
-    /// Depth at the end over that at the beginning.
+    /// Depth at the end divided by that at the beginning.
     pub depth_ratio: f32,
     /// Amplitudes of the modes (2,0) and (3,1), the latter times the cosine of its azimuth, and phases at the beginning,
     /// in turns.
     pub mode_phase: [f32; 4],
-    /// Turns of both modes until the end.
+    /// Cycles of both modes during the exposure.
     pub cycles: [f32; 2],
-    /// Fraction of the exposure in which it is before the eye.
+    /// Fraction of the exposure in which it is in front of the eye.
     pub fraction: f32,
     /// Width over which a drop that is not sampled is spread, pixels.
     pub spread: f32,
-    /// No part of it is nearer, m.
+    /// Minimum distance of any part of it, m.
     pub nearest: f32,
-    /// Still, by the table, or by a loop.
+    /// `DROPS_STILL`, `DROPS_TABLE` or `DROPS_LOOP`.
     pub kind: u32,
     /// Index of its mean in the streak radiance table.
     pub shape: u32,
@@ -59,7 +59,7 @@ pub struct DropsDrop {
     pub profile: u32,
     /// Weight of the light at the beginning and at the end of its way; over the whole exposure the mean weight is 1.
     pub weights: [f32; 2],
-    /// Fills the layout.
+    /// Padding.
     pub unused: [f32; 2],
 }
 
@@ -72,9 +72,9 @@ pub struct StreakChord {
     pub across: f32,
     /// Half its length.
     pub half: f32,
-    /// The part of it that passes during the exposure, in units of `half`; none if `high` is not above `low`.
+    /// Start of the part that passes during the exposure, in units of `half`; empty unless `high` is above `low`.
     pub low: f32,
-    /// See `low`.
+    /// End of that part.
     pub high: f32,
     /// Fraction of the exposure in which the whole chord would pass, by weight.
     pub fraction: f32,
@@ -88,7 +88,7 @@ pub struct StreakChord {
     pub path: Vec2,
 }
 
-/// The time, as a fraction of the exposure, at which the drop is at a fraction of its way on the picture.
+/// Time, as a fraction of the exposure, at which the drop is at a fraction of its path in the picture.
 #[must_use]
 pub fn streak_time(depth_ratio: f32, way: f32) -> f32 {
     way / (way + (1.0 - way) * depth_ratio).max(1.0e-20)
@@ -100,14 +100,14 @@ pub fn streak_weight(weights: [f32; 2], time: f32) -> f32 {
     weights[0] + (weights[1] - weights[0]) * time.clamp(0.0, 1.0)
 }
 
-/// The fraction of the way that is nearest to a position on the plane.
+/// Fraction of the path that is nearest to a position on the plane.
 #[must_use]
 pub fn streak_nearest(drop: &DropsDrop, at: Vec2) -> f32 {
     let along = Vec2::from(drop.along);
     ((at - Vec2::from(drop.start)).dot(along) / along.dot(along).max(1.0e-20)).clamp(0.0, 1.0)
 }
 
-/// The depth at a time, over that in the middle of the exposure.
+/// Depth at a time, relative to mid-exposure.
 #[must_use]
 pub fn streak_depth(depth_ratio: f32, time: f32) -> f32 {
     (1.0 + (depth_ratio - 1.0) * time) * 2.0 / (1.0 + depth_ratio)
@@ -193,7 +193,7 @@ pub fn streak_within(from: f32, way: f32, reach: f32) -> Vec2 {
     Vec2::new(a.min(b), a.max(b))
 }
 
-/// The mean of the box over a path, by the weights of its light: exact, by pieces in which both edges are straight.
+/// Weighted mean of the box filter over a path: exact, by pieces in which both edges are straight.
 #[must_use]
 pub fn streak_mean(from: Vec2, way: Vec2, width: f32, weights: [f32; 2]) -> f32 {
     let outer_x = streak_within(from.x, way.x, (width + 1.0) * 0.5);
@@ -227,7 +227,7 @@ pub fn streak_mean(from: Vec2, way: Vec2, width: f32, weights: [f32; 2]) -> f32 
     sum
 }
 
-/// The fraction of a pixel that a drop which is not sampled covers, by weight.
+/// Weighted fraction of a pixel that an unsampled drop covers.
 #[must_use]
 pub fn streak_cover(drop: &DropsDrop, x: u32, y: u32) -> f32 {
     let from = Vec2::from(drop.first) - Vec2::new(x as f32 + 0.5, y as f32 + 0.5);

@@ -9,7 +9,7 @@ use super::streak_cell::{streak_cell_index, streak_cell_position};
 /// Entries of the mean of a class of drops.
 pub(super) const STREAK_MEAN_ENTRIES: u32 = STREAK_RAYS * STREAK_RAYS;
 
-/// The averages of a frame.
+/// Streak radiance table of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StreakTable {
     /// Means of classes of drops, then the profiles of streaks.

@@ -17,7 +17,7 @@ pub struct StreakPath {
     pub shape: DropShapeCoefficients,
     /// The first four coefficients of the volume over that of the shape at rest.
     pub volume: [f32; 4],
-    /// The fifth.
+    /// Fifth coefficient of the volume.
     pub volume_last: f32,
     /// Half the width of the shape at rest, in equivalent radii.
     pub wide: f32,

@@ -23,15 +23,15 @@ use super::streak_path::{StreakInstant, StreakPath, streak_path_axes, streak_pat
 /// More lanes than any vector has.
 const MAX_LANES: usize = 64;
 
-/// A ray of a profile. The same layout as `StreakRay` in WGSL.
+/// A traced ray of a streak profile. The same layout as `StreakRay` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct StreakRay {
-    /// Directions in which its light leaves, octahedral, two numbers of 16 bits each.
+    /// Directions of its exits, octahedral, two numbers of 16 bits each.
     pub exits: [u32; 4],
-    /// Their fractions, two numbers of 16 bits each.
+    /// Fractions of the light of the exits, two numbers of 16 bits each.
     pub fractions: [u32; 2],
-    /// Interfaces passed up to there, 8 bits each; 0: there is no such exit.
+    /// Interfaces passed before each exit, 8 bits each; 0: no such exit.
     pub interfaces: u32,
     /// 0.
     pub unused: u32,

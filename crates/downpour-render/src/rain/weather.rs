@@ -14,7 +14,7 @@ const SODIUM_M: f64 = 589.3e-9;
 const COLDEST_INDEX_C: f64 = -12.0;
 
 impl DropMasks {
-    /// Masks of drops in the air of a weather, of the shape or the model that it asks for.
+    /// Traces the masks of a weather's drops, of the shape or the model that it names.
     ///
     /// # Errors
     /// [`MaskError`] if the air is outside what the laws know, or as [`drop_model`].

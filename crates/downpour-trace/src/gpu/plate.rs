@@ -9,7 +9,7 @@ use crate::capture::environment_frame;
 use crate::data::RenderFrame;
 use crate::trace::TraceAmbient;
 
-/// Environment map, lamps and obstacles of a scene, ready to be asked by rain.
+/// Environment map, lamps and obstacles of a scene, on the device, for rain.
 #[derive(Debug)]
 pub struct ScenePlate<'a> {
     tracer: &'a ComputeKernel,
@@ -20,7 +20,7 @@ pub struct ScenePlate<'a> {
 }
 
 impl ScenePipeline {
-    /// Makes ready to trace what `rain` asks of a scene besides its picture; `frame` is that of the picture.
+    /// Prepares what `rain` needs of a scene besides its picture; `frame` is that of the picture.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].

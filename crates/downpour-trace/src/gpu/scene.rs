@@ -13,7 +13,7 @@ use crate::trace::TraceAmbient;
 /// Most pixels of a dispatch: a submission must stay far below the time after which a driver resets.
 const PIXELS_PER_DISPATCH: u32 = 1 << 17;
 
-/// The pipeline of the scene: made once, used for any number of scenes.
+/// Pipeline that traces scenes.
 #[derive(Clone, Debug)]
 pub struct ScenePipeline {
     gpu: Gpu,
@@ -37,7 +37,7 @@ pub struct SceneOnGpu {
 }
 
 impl ScenePipeline {
-    /// Makes the pipeline.
+    /// Creates the pipeline.
     ///
     /// # Errors
     /// Returns the error of the GPU.
@@ -64,7 +64,7 @@ impl ScenePipeline {
         Ok(cell.get_or_init(|| made))
     }
 
-    /// Brings a scene to the device.
+    /// Uploads a scene.
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] if a buffer is larger than the device allows, or what else the GPU says.
@@ -72,7 +72,7 @@ impl ScenePipeline {
         self.upload_after(scene, None)
     }
 
-    /// Brings a scene to the device where `before` is already: only what the two do not share.
+    /// Uploads a scene, reusing the buffers that it shares with `before`.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].
@@ -112,7 +112,7 @@ impl ScenePipeline {
         self.gpu.read(&self.draw(scene, frame)?)
     }
 
-    /// Makes ready to draw a frame of a scene.
+    /// Prepares a frame of a scene.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].
@@ -181,7 +181,7 @@ pub struct ScenePass<'a> {
 }
 
 impl ScenePass<'_> {
-    /// The dispatches, a band of rows each: first all that trace, then all that filter.
+    /// Returns the dispatches, one band of rows each: first those that trace, then those that filter.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
         let traced = self.bands.iter().map(|band| (self.tracer, band));

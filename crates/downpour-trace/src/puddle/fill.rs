@@ -7,7 +7,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// The ground of a grid of cells, row by row, and how it is filled.
+/// Ground as a grid of cells, row by row, and the degree of filling.
 #[derive(Clone, Copy, Debug)]
 pub struct Hollows<'a> {
     /// Columns and rows.
@@ -16,9 +16,9 @@ pub struct Hollows<'a> {
     pub ground: &'a [f32],
     /// Fraction of the depth to which hollows are filled: 0 nothing, 1 until they spill.
     pub fraction: f32,
-    /// The deepest water, m: hollows that are deeper are filled less.
+    /// Maximum depth of water, m: deeper hollows are filled less.
     pub deepest: f32,
-    /// Hollows less deep than this, in m, hold no water.
+    /// Minimum depth of a hollow that holds water, m.
     pub least: f32,
 }
 

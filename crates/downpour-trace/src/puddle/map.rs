@@ -145,7 +145,7 @@ impl PuddleMap {
         self.cells.iter().map(|cell| cell[2].max(0.0)).sum::<f32>() * self.cell_m2()
     }
 
-    /// The greatest depth, m.
+    /// Maximum depth, m.
     #[must_use]
     pub fn deepest_m(&self) -> f32 {
         self.cells.iter().map(|cell| cell[2]).fold(0.0, f32::max)

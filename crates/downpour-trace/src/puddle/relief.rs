@@ -20,12 +20,12 @@ const SQUARE_MEAN: f32 = 0.204_6;
 /// Dimension of the random numbers.
 const DIMENSION: u32 = 4_300;
 
-/// The unevenness of some ground.
+/// Unevenness of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relief {
-    /// Root of the mean of the square of the height, m.
+    /// Root mean square of the height, m.
     pub rms_m: f32,
-    /// Another number, other ground.
+    /// Seed: another seed gives another ground.
     pub seed: u64,
 }
 

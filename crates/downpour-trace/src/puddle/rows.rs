@@ -9,11 +9,11 @@ use crate::data::SceneData;
 /// Appearance of a puddle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PuddleLook {
-    /// Size of the ripples, as a multiple of what they are.
+    /// Size of the ripples, as a multiple of the true one.
     pub scale: f32,
     /// Turn of the ripples, rad.
     pub angle: f32,
-    /// Slopes of the ripples, as a multiple of what they are.
+    /// Slopes of the ripples, as a multiple of the true ones.
     pub influence: f32,
     /// Water less deep than this, in m, has smaller ripples.
     pub rippling_depth: f32,
@@ -37,7 +37,7 @@ impl Default for PuddleLook {
     }
 }
 
-/// Puddles and their ripples on their way into a scene.
+/// Puddles and their ripples, to be added to a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct PuddleRows<'a> {
     /// The puddles, at most [`PUDDLE_WATER_MAX_COUNT`]; those beyond are left out.
@@ -112,7 +112,7 @@ impl SceneData {
         Vec4::from(self.table[row as usize].map(f32::from_bits))
     }
 
-    /// Sets the puddles on the ground, in place of those that are there.
+    /// Sets the puddles of the scene; replaces earlier ones.
     pub fn set_puddles(&mut self, rows: &PuddleRows<'_>) {
         // A pane comes after the puddles in the table, wherever they end.
         let pane = self.take_pane();

@@ -2,14 +2,14 @@
 
 use downpour_render::RenderError;
 
-/// Reason why there is no stage for a weather.
+/// Error of a stage.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StageError {
-    /// The picture cannot be made.
+    /// The picture is invalid.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The scene is larger than a renderer takes.
+    /// The scene exceeds a limit of the renderer.
     #[error("{quantity}: {found}; allowed: at most {max} ({advice})")]
     OverLimit {
         /// Name of the quantity of which there is too much.

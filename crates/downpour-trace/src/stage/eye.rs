@@ -10,16 +10,16 @@ use downpour_render::camera::{EyeMotion, Viewpoint};
 const MAX_SPEED_M_S: f32 = 100.0;
 const MAX_SPEED_RAD_S: f32 = 30.0;
 
-/// Choice of the eye.
+/// Choice of the camera.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CameraChoice {
-    /// That of the weather.
+    /// The camera of the weather.
     Weather,
     /// This camera of the scene, the first with a perspective.
     Scene(usize),
-    /// One that stands in front of all that there is, a little above.
+    /// A camera in front of the whole scene, a little above it.
     Framing,
-    /// One at the height of a person's eyes that looks along -Z: there is nothing to frame.
+    /// A camera at eye level that looks along -Z, for an empty scene.
     Standing,
 }
 

@@ -1,10 +1,10 @@
 //! Choice of the streaks of an atlas that a drop shows under a lamp. Twin of `shaders/wgsl/render/drop_atlas.wgsl`.
 //!
 //! The choice is that of [`downpour_atlas`], from the same numbers. Here they are rows of four behind the table of
-//! scattering, since the kernel has no buffer to spare: counts; by angle or at random, the first row of the amounts, and whether all
-//! elevations have the same directions; the seed in parts of 16 bits; gaps between diameters and between elevations, four rows each;
-//! first triangles, three rows; three rows for each triangle (positions of its corners, triangles across with -1 for the rim, its
-//! directions); the amounts, four a row.
+//! scattering, since the kernel has no buffer to spare: counts; by angle or at random, the first row of the amounts, and
+//! whether all elevations have the same directions; the seed in parts of 16 bits; gaps between diameters and between
+//! elevations, four rows each; first triangles, three rows; three rows for each triangle (positions of its corners,
+//! triangles across with -1 for the rim, its directions); the amounts, four a row.
 
 use downpour_atlas::StreakAtlas;
 use downpour_atlas::lookup::{

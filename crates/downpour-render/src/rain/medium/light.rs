@@ -24,7 +24,7 @@ use crate::rain::light::{DropLightForm, DropLightTable, DropLights, drop_light_m
 
 const _: () = assert!(MEDIUM_ANGLES == DROP_LIGHT_ENTRIES);
 
-/// Unresolved rain before a picture, and the lamps of its scene.
+/// Light of a scene's lamps on unresolved rain.
 #[derive(Clone, Debug)]
 pub struct MediumLight<'a> {
     pub(crate) lighting: &'a dyn Lighting,
