@@ -9,7 +9,7 @@ import mitsuba as mi
 from reference import INTERFACES
 
 # Fraction of the light below which a branch is not followed.
-LEAST = 1.0e-6
+MIN_FRACTION = 1.0e-6
 
 
 def branch(component):
@@ -62,7 +62,7 @@ class Split(mi.SamplingIntegrator):
             fraction *= weight
             inside = meets.spawn_ray(mirrored)
             count += 1
-            alive &= (dr.max(fraction) > LEAST) & (count < INTERFACES)
+            alive &= (dr.max(fraction) > MIN_FRACTION) & (count < INTERFACES)
         return light, mi.Bool(active), []
 
 
