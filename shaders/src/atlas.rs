@@ -28,8 +28,8 @@ shared_constants! {
         ATLAS_RISES: u32 = 25;
         /// Sine of the highest elevation of a grid; the lowest has the same below 0.
         ATLAS_RISE_LIMIT: f32 = 0.96;
-        /// The diameter that smaller ones count as, in metres.
-        ATLAS_SMALLEST: f32 = 1.0e-6;
+        /// The diameter that smaller ones count as, in meters.
+        ATLAS_MIN_DIAMETER: f32 = 1.0e-6;
         /// The axis is taken to point to the viewer where the square of its part across is below this.
         ATLAS_TINY: f32 = 1.0e-8;
     }

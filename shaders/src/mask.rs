@@ -32,7 +32,7 @@ shared_constants! {
         /// Depth below the outline, in pixels, above which no ray is traced.
         MASK_EDGE_DEPTH: f32 = 0.1;
         /// Nearest distance of the next surface, in equivalent radii: a ray must not meet the point that it left.
-        MASK_MODEL_NEAREST: f32 = 1.0e-4;
+        MASK_MODEL_MIN_DISTANCE: f32 = 1.0e-4;
         /// Rays along an edge of a texel that the outline of a model cuts.
         MASK_MODEL_SUBSAMPLES: u32 = 8;
         /// Below this, a squared length has no direction.
@@ -43,7 +43,7 @@ shared_constants! {
         MASK_WOBBLE_NEAREST_STEPS: u32 = 2;
         /// Interfaces inside that are followed, total reflections included.
         MASK_WOBBLE_BOUNCES: u32 = 12;
-        /// Exits from inside that are told apart.
+        /// Exits from inside that are distinguished.
         MASK_WOBBLE_EXITS: u32 = 3;
     }
 }

@@ -46,7 +46,7 @@ macro_rules! shared_constants {
 ///     downpour_shaders::shared_tables! {
 ///         /// What the example looks up.
 ///         LIGHT_TABLES at "light/tables" {
-///             /// Wavelengths in nanometres.
+///             /// Wavelengths in nanometers.
 ///             LIGHT_WAVELENGTHS: [f32; 3] = [611.0, 549.0, 464.0];
 ///         }
 ///     }

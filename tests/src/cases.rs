@@ -74,7 +74,7 @@ pub fn kernels() -> Vec<KernelCase> {
     .collect()
 }
 
-/// Functions without a case of their own, each with the reason.
+/// Functions without a case, each with the reason.
 pub const ALLOWED: &[(&str, &str)] = &[
     (
         "main_host_blend_vertex",

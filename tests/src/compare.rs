@@ -7,7 +7,7 @@ use crate::tolerance::Tol;
 pub const POISON: u32 = 0x7fc0_dead;
 
 /// Relative differences are taken to at least this.
-pub const SMALLEST: f64 = 1.0e-30;
+pub const MIN_SCALE: f64 = 1.0e-30;
 
 /// Words that the CPU computed. Only twins make these.
 #[derive(Clone, Debug)]
@@ -60,7 +60,7 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
                 (a != b || a.is_nan()).then(|| format!("CPU {a}, GPU {b}"))
             } else {
                 let difference = (f64::from(a) - f64::from(b)).abs();
-                let relative = difference / f64::from(a).abs().max(SMALLEST);
+                let relative = difference / f64::from(a).abs().max(MIN_SCALE);
                 let ulp = ulp_distance(a, b);
                 if difference > out.worst_abs {
                     out.worst_abs = difference;
@@ -79,8 +79,8 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
             first_wrong.get_or_insert((at, text));
         }
     }
-    let share = out.outside as f64 / out.compared as f64;
-    if let Some((at, text)) = first_wrong.filter(|_| share > tol.outliers) {
+    let fraction = out.outside as f64 / out.compared as f64;
+    if let Some((at, text)) = first_wrong.filter(|_| fraction > tol.outliers) {
         out.failure = Some(format!(
             "{} of {} words are outside {tol:?}; first at word {at}: {text}",
             out.outside, out.compared
@@ -89,7 +89,7 @@ pub fn compare(cpu: &Cpu, gpu: &Gpu, kinds: &[WordKind], tol: &Tol) -> Compariso
     out
 }
 
-/// Distance of two numbers in steps between neighbouring representable numbers. Both zeros are the same number.
+/// Distance of two numbers in steps between neighboring representable numbers. Both zeros are the same number.
 #[must_use]
 pub fn ulp_distance(a: f32, b: f32) -> u32 {
     let order = |x: f32| {

@@ -1,6 +1,6 @@
 //! Negative controls: runs that have to fail. A comparison that cannot go red proves nothing.
 
-use crate::compare::{Cpu, SMALLEST, compare};
+use crate::compare::{Cpu, MIN_SCALE, compare};
 use crate::function::Run;
 use crate::signature::WordKind;
 use crate::tolerance::Tol;
@@ -52,7 +52,7 @@ fn flip(word: u32, kind: WordKind, tol: &Tol) -> u32 {
         let after = f32::from_bits(word ^ (1 << bit));
         let difference = (f64::from(after) - f64::from(before)).abs();
         let outside = difference > 2.0 * tol.abs
-            && difference > 2.0 * tol.rel * f64::from(before).abs().max(SMALLEST)
+            && difference > 2.0 * tol.rel * f64::from(before).abs().max(MIN_SCALE)
             && crate::compare::ulp_distance(before, after) > 2 * tol.ulp;
         if after.is_finite() && outside {
             return after.to_bits();

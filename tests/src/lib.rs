@@ -1,7 +1,7 @@
 //! The harness that compares each WGSL function and kernel with its CPU twin.
 //!
 //! - [`function`]: a function-level case needs a name, domains for its arguments, the CPU twin and a tolerance;
-//!   the shader round it is written from the signature that naga reads;
+//!   the shader around it is written from the signature that naga reads;
 //! - [`kernel`]: a kernel-level case runs a whole kernel and its CPU counterpart;
 //! - [`mod@compare`]: the one comparer. The two sides have different types, so that a result cannot be compared
 //!   with itself; outputs are poisoned before a run; untouched slots and NaN fail;

@@ -12,7 +12,7 @@ pub struct Tol {
     pub rel: f64,
     /// Largest distance in units in the last place.
     pub ulp: u32,
-    /// Share of all numbers that may be outside (0 for almost every case).
+    /// Fraction of all numbers that may be outside (0 for almost every case).
     pub outliers: f64,
     /// Source of the numbers: the WGSL accuracy table, a condition number, a measured bound.
     pub why: &'static str,
@@ -43,10 +43,10 @@ impl Tol {
         Self { abs, rel: 0.0, ulp: 0, outliers: 0.0, why }
     }
 
-    /// The same with a share of numbers that may be outside.
+    /// The same with a fraction of numbers that may be outside.
     #[must_use]
-    pub const fn with_outliers(mut self, share: f64) -> Self {
-        self.outliers = share;
+    pub const fn with_outliers(mut self, fraction: f64) -> Self {
+        self.outliers = fraction;
         self
     }
 }

@@ -12,7 +12,7 @@ use downpour_mask::file::exr::{Precision, read_exr, write_exr};
 use downpour_mask::{Mask, MaskOptions, View, trace_drop};
 use downpour_tests::report;
 
-/// Name, diameter in metres, elevation of the view in degrees.
+/// Name, diameter in meters, elevation of the view in degrees.
 const MASKS: [(&str, f64, f64); 6] = [
     ("mask_0.5mm_side", 0.5e-3, 0.0),
     ("mask_2mm_side", 2.0e-3, 0.0),
@@ -74,7 +74,7 @@ fn goldens_are_small_and_all_used() {
     assert!(total <= LIMITS.1, "{total} bytes in all");
 }
 
-/// The comparison can fail: a drop a hundredth of a millimetre larger is another picture.
+/// The comparison can fail: a drop a hundredth of a millimeter larger is another picture.
 #[test]
 fn another_drop_is_another_picture() {
     let half = |d: f64| read_exr(&write_exr(&make(d, 0.0), Precision::Half).unwrap()).unwrap().texels;

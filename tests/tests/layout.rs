@@ -3,7 +3,7 @@
 use std::mem::offset_of;
 
 use downpour_atlas::gpu::AtlasQuery;
-use downpour_atlas::lookup::{AtlasFrame, AtlasPlace, AtlasTriangle};
+use downpour_atlas::lookup::{AtlasFrame, AtlasSlot, AtlasTriangle};
 use downpour_bvh::{BvhNode, BvhTriangle};
 use downpour_drop::fall_speed::FallSpeedAir;
 use downpour_drop::oscillation::{DropOscillation, DropOscillationTime};
@@ -33,7 +33,7 @@ use downpour_sim::volume::{VolumeEye, VolumeFrustum};
 use downpour_specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
 use downpour_tests::signature::parse;
 use downpour_trace::data::{RenderCorner, RenderFrame};
-use downpour_trace::trace::{TraceGather, TraceSlot};
+use downpour_trace::trace::{TraceAmbient, TraceSlot};
 use downpour_wind::WindTurbulenceMode;
 use downpour_wind::field::WindFieldGrid;
 
@@ -73,17 +73,17 @@ fn hosts() -> Vec<Host> {
             size, half_extent, pick, counts, seed, is_shared, unused, diameters, elevations, first),
         host!(AtlasTriangle as "AtlasTriangle" in &atlas::ATLAS,
             a, b, c, unused, directions, unused_1, next, unused_2),
-        host!(AtlasPlace as "AtlasPlace" in &atlas::ATLAS, layers, side, weights, amount, parts, unused),
+        host!(AtlasSlot as "AtlasSlot" in &atlas::ATLAS, layers, side, weights, amount, parts, unused),
         host!(AtlasQuery as "AtlasQuery" in &atlas::ATLAS_QUERY,
             light, diameter, view, id, axis, across, turns, unused),
         host!(Camera as "RenderCamera" in &render::camera::CAMERA,
             eye, width, right, height, up, seed, forward, pixel_angle),
         host!(RenderFrame as "RenderFrame" in &render::scene::DATA,
-            camera, grid, slots, lights, light_count, sky_rays, first_row, nearest, ray_share, projection, suns_out, puddles, puddle_count, pane,
+            camera, grid, slots, lights, light_count, sky_rays, first_row, nearest, ray_fraction, projection, suns_out, puddles, puddle_count, pane,
             skylight_pass, unused_1, unused_2, sky_levels, sky_irradiance),
-        host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, colour),
-        host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, place, normal, light, look, factor),
-        host!(TraceGather as "TraceGather" in &render::scene::TRACE, base, mirror),
+        host!(RenderCorner as "RenderCorner" in &render::scene::DATA, normal, material, tangent, uv, color),
+        host!(TraceSlot as "TraceSlot" in &render::scene::TRACE, position, normal, light, look, factor),
+        host!(TraceAmbient as "TraceAmbient" in &render::scene::TRACE, base, mirror),
         host!(PyramidLevel as "PyramidLevel" in &common::PYRAMID, size, source_size, source, target_texel, unused),
         host!(HostPlateFrame as "HostPlateFrame" in &render::host::HOST_PLATE, camera, inverse, clear, scale),
         host!(HostEnvironmentFrame as "HostEnvironmentFrame" in &render::host::HOST_ENVIRONMENT,
@@ -92,25 +92,25 @@ fn hosts() -> Vec<Host> {
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             camera, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, tiles_across, light_terms, streak_samples,
-            streak_colour, glints, atlas),
+            streak_color, glints, atlas),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
             depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
-            towards, distance, place, slope, half_extent, row, area, grid, start, along, first, way, oval, recede,
-            swing, turns, share, spread, nearest, kind, shape, profile, weights, unused),
+            towards, distance, position, slope, half_extent, mask_index, area, grid, start, along, first, way, oval, depth_ratio,
+            mode_phase, cycles, fraction, spread, nearest, kind, shape, profile, weights, unused),
         host!(StreakPath as "StreakPath" in &render::rain::STREAK_PATH,
             shape, volume, volume_last, wide, tall, index, lobe, amplitudes, rows, columns, profile_rows, fine,
             first_ray, first_entry, drop, unused),
-        host!(StreakRay as "StreakRay" in &render::rain::STREAK_RAY, exits, shares, interfaces, unused),
+        host!(StreakRay as "StreakRay" in &render::rain::STREAK_RAY, exits, fractions, interfaces, unused),
         host!(DropLightFrame as "DropLightFrame" in &render::drop_light::DROP_LIGHT,
             count, form, glints, first_light, terms),
         host!(GlassPictureDrop as "GlassPictureDrop" in &render::glass::WATER,
-            centre, radius, sphere, along, behind, lean, droop, unused, lobes),
+            center, radius, sphere, along, behind, lean, droop, unused, lobes),
         host!(GlassPictureFrame as "GlassPictureFrame" in &render::glass::GLASS_PICTURE,
             camera, across, columns, down, rows, outward, bins, corner, cells,
             size, wet_size, lens, focus, fresnel, room, samples, last, capture_size, capture_last, capture_texel, film,
             water, first_row, lights, lit_from, unused, levels),
-        host!(GlassPictureLight as "GlassPictureLight" in &render::glass::LIGHT, place, radius, colour, distance),
+        host!(GlassPictureLight as "GlassPictureLight" in &render::glass::LIGHT, position, radius, color, distance),
         host!(PuddleGrid as "PuddleGrid" in &lattice::puddle::PUDDLE,
             size, quads, degree, coefficients, weights, dt, twice, kick, viscosity, keep, sponge_cells, sponge_drag,
             steps, halo, half_storage, slope),

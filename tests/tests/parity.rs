@@ -1,6 +1,6 @@
 //! Every function-level and kernel-level case on the machine's adapter, each followed by its negative controls.
 //!
-//! No adapter is a failure, told in one line; `DOWNPOUR_GPU_TESTS=no` shows the cases as ignored. The worst error of each case is
+//! No adapter is a failure, reported in one line; `DOWNPOUR_GPU_TESTS=no` shows the cases as ignored. The worst error of each case is
 //! written to `target/parity/<adapter>.csv`.
 
 use std::process::ExitCode;
@@ -103,7 +103,7 @@ fn must_fail_in(name: &str, broken: &Broken, gpu: &Gpu) -> Result<(), Failed> {
     if !case.kernel.source().contains(broken.right) {
         return Err(format!("\"{}\" is not in {}", broken.right, case.kernel.entry).into());
     }
-    // A relay of its own: other cases run beside this one.
+    // A separate relay: other cases run beside this one.
     let (relay, gpu) = Relay::before(gpu);
     relay.swap(Some(broken.swap()));
     match (case.run)(&gpu)?.compare(&case.tol).failure {

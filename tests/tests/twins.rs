@@ -27,7 +27,7 @@ const ELSEWHERE: [(&[&str], &str); 8] = [
             "puddle_step_keep",
             "puddle_step_row",
             "puddle_step_settle",
-            "puddle_step_share",
+            "puddle_step_fraction",
             "puddle_step_shift",
             "puddle_step_sums",
         ],

@@ -1,4 +1,4 @@
-//! Figures of papers made again, with our rain beside theirs.
+//! Reproduced figures of papers, with our rain beside theirs.
 
 mod im_sung;
 mod persistence;

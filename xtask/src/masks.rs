@@ -8,7 +8,7 @@ use downpour_mask::{Mask, MaskOptions, trace_drop};
 
 use crate::run;
 
-/// Diameters of the texture array in millimetres: the range of natural rain, denser where shape changes fast.
+/// Diameters of the texture array in millimeters: the range of natural rain, denser where shape changes fast.
 const ARRAY_MM: [f64; 10] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0];
 /// Texels along an edge of the array's masks. A drop drawn with its mask is a hundred pixels wide at most.
 const ARRAY_SIZE: u32 = 128;

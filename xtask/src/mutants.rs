@@ -2,7 +2,7 @@
 
 use crate::{driver, run};
 
-/// The sample that every run of the tests tries, of functions with a case of their own: seconds.
+/// The sample that every run of the tests tries, of functions with a case: seconds.
 const SAMPLE: [&str; 8] = ["--own", "--sample", "40", "--seed", "1", "--least", "90", "--report"];
 
 /// Tries those that the arguments ask for.

@@ -9,8 +9,8 @@ use half::f16;
 
 use crate::AtlasError;
 use crate::lookup::{
-    AtlasData, AtlasFrame, AtlasPlace, AtlasTriangle, atlas_lookup_mix, atlas_lookup_place,
-    atlas_lookup_radiance, atlas_map, atlas_position,
+    AtlasData, AtlasFrame, AtlasSlot, AtlasTriangle, atlas_lookup_mix, atlas_lookup_radiance,
+    atlas_lookup_slot, atlas_map, atlas_position,
 };
 use crate::set::stored;
 use crate::triangles::triangulate;
@@ -36,7 +36,7 @@ pub enum StreakPick {
 /// State of a drop for the choice of its streak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreakParticle {
-    /// Equivalent diameter in metres.
+    /// Equivalent diameter in meters.
     pub diameter: f32,
     /// The drop's axis upwards, against its fall through the air: a unit vector.
     pub axis: [f32; 3],
@@ -82,8 +82,12 @@ impl StreakAtlas {
             let about = std::fs::metadata(&path).map_err(to_error)?;
             if !about.is_file() || about.len() > MAX_FILE_BYTES {
                 let found = format!("{} bytes", about.len());
-                return Err(AtlasError::File { place: "file", found, allowed: "a file of at most 64 MiB" }
-                    .in_file(&path));
+                return Err(AtlasError::File {
+                    location: "file",
+                    found,
+                    allowed: "a file of at most 64 MiB",
+                }
+                .in_file(&path));
             }
             let bytes = std::fs::read(&path).map_err(to_error)?;
             sets.push(read_streaks(&bytes).map_err(|error| error.in_file(&path))?);
@@ -117,7 +121,7 @@ impl StreakAtlas {
     /// [`AtlasError::File`] if there are none, if they differ in size, extent, elevations or directions, or if a
     /// diameter has more oscillations than another.
     pub fn from_sets(mut sets: Vec<StreakSet>) -> Result<Self, AtlasError> {
-        let wrong = |place, found: String, allowed| AtlasError::File { place, found, allowed };
+        let wrong = |location, found: String, allowed| AtlasError::File { location, found, allowed };
         for set in &sets {
             set.check()?;
         }
@@ -231,15 +235,15 @@ impl StreakAtlas {
     /// The streak of a drop: its amount, three layers and their weights. `light` and `view` are unit vectors from the drop to its
     /// light and to its viewer.
     #[must_use]
-    pub fn place(&self, drop: &StreakParticle, light: [f32; 3], view: [f32; 3]) -> AtlasPlace {
-        atlas_lookup_place(&self.data(), drop.id, drop.diameter, drop.axis, light, view)
+    pub fn slot(&self, drop: &StreakParticle, light: [f32; 3], view: [f32; 3]) -> AtlasSlot {
+        atlas_lookup_slot(&self.data(), drop.id, drop.diameter, drop.axis, light, view)
     }
 
     /// Radiance at a position in the atlas, in 1/sr for an irradiance of 1, during a fall by one diameter: `across`
     /// equivalent radii to the right of the middle, `turns` of the mode (2,0) along.
     #[must_use]
-    pub fn radiance(&self, place: &AtlasPlace, across: f32, turns: f32) -> f32 {
-        atlas_lookup_radiance(&self.data(), place, across, turns)
+    pub fn radiance(&self, slot: &AtlasSlot, across: f32, turns: f32) -> f32 {
+        atlas_lookup_radiance(&self.data(), slot, across, turns)
     }
 }
 
@@ -247,7 +251,7 @@ fn same_diameter(a: &StreakSet, b: &StreakSet) -> bool {
     (a.diameter - b.diameter).abs() <= 1.0e-9 * a.diameter
 }
 
-/// The amount of each layer of a set: a layer of mean m and half width h is a disc of 4 h m / pi.
+/// The amount of each layer of a set: a layer of mean m and half width h is a disk of 4 h m / pi.
 fn layer_amounts(set: &StreakSet) -> Vec<f32> {
     let texels = set.layer_texels().max(1);
     let scale = 4.0 * set.options.half_extent / std::f64::consts::PI / texels as f64;
@@ -256,7 +260,7 @@ fn layer_amounts(set: &StreakSet) -> Vec<f32> {
 }
 
 /// Layers divided by their amounts, two half floats per word. A layer without light is uniform: so the mean of any mixture is
-/// that of a uniform disc.
+/// that of a uniform disk.
 fn patterns(sets: &[StreakSet], means: &[f32]) -> Vec<u32> {
     let layers = sets.iter().flat_map(|set| {
         let even = std::f64::consts::FRAC_PI_4 / set.options.half_extent;

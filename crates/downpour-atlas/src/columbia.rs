@@ -45,7 +45,7 @@ const HALF_EXTENT: f64 = 1.27;
 /// Missing files that a message names.
 const NAMED: usize = 5;
 /// The highest picture that is taken.
-const TALLEST: u32 = 4096;
+const MAX_HEIGHT: u32 = 4096;
 
 /// A grayscale picture of 16 bits, rows from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -245,15 +245,15 @@ impl<'a> Brightness<'a> {
     }
 }
 
-fn wrong(name: &str, place: &'static str, found: String, allowed: &'static str) -> AtlasError {
-    AtlasError::File { place, found, allowed }.in_file(name.as_ref())
+fn wrong(name: &str, location: &'static str, found: String, allowed: &'static str) -> AtlasError {
+    AtlasError::File { location, found, allowed }.in_file(name.as_ref())
 }
 
 /// Picture resampled to `rows` rows, each the mean of the rows it covers; 1 is the brightest value.
 fn resampled(name: &str, picture: &GrayPicture, width: u32, rows: u32) -> Result<Vec<f64>, AtlasError> {
     let GrayPicture { width: found, height, values } = picture;
     let whole = values.len() == *found as usize * *height as usize;
-    if *found != width || !(1..=TALLEST).contains(height) || !whole {
+    if *found != width || !(1..=MAX_HEIGHT).contains(height) || !whole {
         let found = format!("{found} x {height} pixels");
         return Err(wrong(name, "size", found, "as many columns as the folder says, 1 to 4096 rows"));
     }
@@ -265,10 +265,10 @@ fn resampled(name: &str, picture: &GrayPicture, width: u32, rows: u32) -> Result
         let last = (to.ceil() as u32).min(*height);
         let mut sums = vec![0.0; columns];
         for source in from as u32..last {
-            let share = (to.min(f64::from(source + 1)) - from.max(f64::from(source))).max(0.0) / scale;
+            let fraction = (to.min(f64::from(source + 1)) - from.max(f64::from(source))).max(0.0) / scale;
             let start = source as usize * columns;
             for (sum, &value) in sums.iter_mut().zip(&values[start..start + columns]) {
-                *sum += share * f64::from(value) / 65535.0;
+                *sum += fraction * f64::from(value) / 65535.0;
             }
         }
         out.extend(sums);

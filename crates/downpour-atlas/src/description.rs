@@ -6,7 +6,7 @@ use downpour_mask::file::shorten;
 
 /// Version of the file. Another one is refused.
 const VERSION: &str = "1";
-const PLACE: &str = "key DownpourStreaks";
+const LOCATION: &str = "key DownpourStreaks";
 const PAIRS: &str = "version, origin, diameter_mm, amplitudes, phase, azimuth_deg, elevation_deg, half_extent, \
                      light_radius_deg, refractive_index, rays, directions, digest";
 
@@ -55,15 +55,16 @@ pub(crate) fn read(
     texels: &[u8],
     amounts: &[u8],
 ) -> Result<StreakSet, AtlasError> {
-    let wrong = |place, found: &str, allowed| AtlasError::File { place, found: shorten(found), allowed };
+    let wrong =
+        |location, found: &str, allowed| AtlasError::File { location, found: shorten(found), allowed };
     let Some((rest, sum)) = text.rsplit_once(";digest=") else {
-        return Err(wrong(PLACE, text, PAIRS));
+        return Err(wrong(LOCATION, text, PAIRS));
     };
     let value = |key: &str| {
         rest.split(';')
             .find_map(|pair| pair.split_once('=').filter(|(k, _)| *k == key))
             .map(|(_, v)| v)
-            .ok_or_else(|| wrong(PLACE, key, PAIRS))
+            .ok_or_else(|| wrong(LOCATION, key, PAIRS))
     };
     let version = value("version")?;
     if version != VERSION {
@@ -80,14 +81,14 @@ pub(crate) fn read(
                 n.parse::<f64>()
                     .ok()
                     .filter(|v| v.is_finite())
-                    .ok_or_else(|| wrong(PLACE, n, "finite numbers"))
+                    .ok_or_else(|| wrong(LOCATION, n, "finite numbers"))
             })
             .collect()
     };
     let one = |key: &str| -> Result<f64, AtlasError> {
         match numbers(key)?[..] {
             [number] => Ok(number),
-            _ => Err(wrong(PLACE, key, "one number")),
+            _ => Err(wrong(LOCATION, key, "one number")),
         }
     };
     let origin = match value("origin")? {
@@ -96,7 +97,7 @@ pub(crate) fn read(
         other => return Err(wrong("origin of the streaks", other, "traced or columbia")),
     };
     let [a20, a31] = numbers("amplitudes")?[..] else {
-        return Err(wrong(PLACE, "amplitudes", "two numbers"));
+        return Err(wrong(LOCATION, "amplitudes", "two numbers"));
     };
     let elevations: Vec<f64> = numbers("elevation_deg")?.iter().map(|e| e.to_radians()).collect();
     let options = StreakOptions {

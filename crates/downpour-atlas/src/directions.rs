@@ -10,7 +10,7 @@ use downpour_shaders::atlas::{ATLAS_GRID, ATLAS_RISE_LIMIT, ATLAS_RISES};
 const RINGS: [(f64, u32); 9] =
     [(0.0, 1), (20.0, 4), (40.0, 5), (60.0, 6), (80.0, 7), (105.0, 7), (130.0, 6), (155.0, 4), (180.0, 1)];
 
-/// The directions towards the light of the committed atlas, in the frame of the streak, x >= 0.
+/// The directions toward the light of the committed atlas, in the frame of the streak, x >= 0.
 #[must_use]
 pub fn light_directions() -> Vec<[f64; 3]> {
     let mut all = Vec::new();
@@ -31,10 +31,10 @@ pub fn light_directions() -> Vec<[f64; 3]> {
     all
 }
 
-/// Directions towards the light for which the amount of a streak is stored, in the frame of the streak, x >= 0: `ATLAS_GRID`
+/// Directions toward the light for which the amount of a streak is stored, in the frame of the streak, x >= 0: `ATLAS_GRID`
 /// columns times as many rows, rows along z, columns along y.
 ///
-/// Node (i, k) is the direction whose point (y, z) / (1 + x) is (i, k) in cells of the square from -1 to 1. The disc holds all
+/// Node (i, k) is the direction whose point (y, z) / (1 + x) is (i, k) in cells of the square from -1 to 1. The disk holds all
 /// directions with x >= 0; a node outside of it is a direction with x < 0, and its mirror image is in its slot, so that linear
 /// interpolation holds at the rim too.
 #[must_use]
@@ -58,7 +58,7 @@ pub fn amount_elevations() -> Vec<f64> {
     (0..ATLAS_RISES).map(|k| ops::asin(step * (f64::from(k) - f64::from(middle)))).collect()
 }
 
-/// Right, up and towards the viewer of the streak of a drop with the axis +Y, seen from `elevation` radians above its
+/// Right, up and toward the viewer of the streak of a drop with the axis +Y, seen from `elevation` radians above its
 /// horizontal plane.
 #[must_use]
 pub fn streak_frame(elevation: f64) -> [[f64; 3]; 3] {

@@ -20,10 +20,10 @@ pub enum AtlasError {
     #[error(transparent)]
     Encode(#[from] MaskError),
     /// An atlas file is not what it should be.
-    #[error("{place}: found {found}; allowed: {allowed}")]
+    #[error("{location}: found {found}; allowed: {allowed}")]
     File {
         /// The part of the file.
-        place: &'static str,
+        location: &'static str,
         /// The content found.
         found: String,
         /// The allowed content.

@@ -52,7 +52,8 @@ pub fn write_streaks(set: &StreakSet) -> Result<Vec<u8>, AtlasError> {
 /// [`AtlasError::File`] with the part of the file and what was found: it is truncated, not a streak file, of another version,
 /// too large, or holds values that are not numbers.
 pub fn read_streaks(bytes: &[u8]) -> Result<StreakSet, AtlasError> {
-    let truncated = |place| file(place, format!("a file of {} bytes", bytes.len()), "a complete KTX2 file");
+    let truncated =
+        |location| file(location, format!("a file of {} bytes", bytes.len()), "a complete KTX2 file");
     let header: &[u8; Header::LENGTH] = bytes.first_chunk().ok_or_else(|| truncated("header"))?;
     let header = Header::from_bytes(header)
         .map_err(|error| file("header", shorten(&error.to_string()), "a KTX2 texture array of streaks"))?;
@@ -91,8 +92,8 @@ pub fn read_streaks(bytes: &[u8]) -> Result<StreakSet, AtlasError> {
     Ok(set)
 }
 
-fn file(place: &'static str, found: String, allowed: &'static str) -> AtlasError {
-    AtlasError::File { place, found, allowed }
+fn file(location: &'static str, found: String, allowed: &'static str) -> AtlasError {
+    AtlasError::File { location, found, allowed }
 }
 
 /// The bytes of all texels.

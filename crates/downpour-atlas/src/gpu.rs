@@ -12,7 +12,7 @@ use crate::StreakAtlas;
 pub struct AtlasQuery {
     /// From the drop to its light, a unit vector.
     pub light: [f32; 3],
-    /// Equivalent diameter in metres.
+    /// Equivalent diameter in meters.
     pub diameter: f32,
     /// From the drop to its viewer, a unit vector.
     pub view: [f32; 3],
@@ -56,7 +56,7 @@ impl GpuAtlas {
         })
     }
 
-    /// Radiances of points of streaks, as [`StreakAtlas::place`] and [`StreakAtlas::radiance`] return them.
+    /// Radiances of points of streaks, as [`StreakAtlas::slot`] and [`StreakAtlas::radiance`] return them.
     ///
     /// # Errors
     /// [`GpuError`] of the device.

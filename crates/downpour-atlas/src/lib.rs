@@ -6,7 +6,7 @@
 //!
 //! # Definition of a streak
 //!
-//! The frame of a streak: z towards the viewer, y the drop's axis as the picture shows it (the drop falls towards -y),
+//! The frame of a streak: z toward the viewer, y the drop's axis as the picture shows it (the drop falls toward -y),
 //! x = y cross z, to the right. By symmetry, only light directions with x >= 0 are traced; others are mirrored.
 //!
 //! A texel is the radiance, in 1/sr for an irradiance of 1 across the light, at a point of the picture, averaged over
@@ -25,11 +25,11 @@
 //! The light of a drop falls by orders of magnitude within a few degrees of the light's direction, and its bows move with the
 //! viewer's elevation and with the drop's size. So a lookup has two parts:
 //!
-//! - The amount is the radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius that sends as much light to the
+//! - The amount is the radiance, in 1/sr for an irradiance of 1, of a disk of the equivalent radius that sends as much light to the
 //!   viewer. It is traced for 41 x 41 directions of the light ([`amount_directions`]: 3 to 6 degrees apart) and 25 elevations of the
 //!   viewer ([`amount_elevations`]: 4.6 degrees apart at the horizon), and interpolated linearly over directions, the sine of the
 //!   elevation and the logarithm of the diameter; beyond the ends it is constant.
-//! - The pattern is the ratio of the brightness at a point of the streak to that of the disc. It is a mixture of twelve layers, each
+//! - The pattern is the ratio of the brightness at a point of the streak to that of the disk. It is a mixture of twelve layers, each
 //!   divided by its mean: of the three directions nearest the light's, of two elevations and of two diameters. The mean of any mixture is
 //!   1, so that the light of a streak is its amount. If elevations have different directions (Columbia's), the pattern is that of the
 //!   nearest elevation.
@@ -60,7 +60,7 @@
 //! # Method of tracing
 //!
 //! Backwards: rays of the viewer, refracted and reflected up to [`INTERNAL`] times inside; each exit is
-//! weighted with a light of some width (8 degrees, brightest in the middle, like a disc of 4.6 degrees). One ray then
+//! weighted with a light of some width (8 degrees, brightest in the middle, like a disk of 4.6 degrees). One ray then
 //! serves all lights of a view, each texel has the same number of rays, and a smooth light makes the
 //! sum over a regular grid converge like a quadrature. Photons of one light would serve all views instead, but atlases
 //! have more lights than views, and the few photons in dim directions are noise.
@@ -74,8 +74,8 @@
 //! use downpour_atlas::{StreakAtlas, StreakParticle, StreakPick};
 //! let atlas = StreakAtlas::load("assets/streaks".as_ref())?.with_pick(StreakPick::ByAngle);
 //! let particle = StreakParticle { diameter: 2.0e-3, axis: [0.0, 1.0, 0.0], id: 42 };
-//! let place = atlas.place(&particle, [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]);
-//! let texel = atlas.radiance(&place, 0.25, 1.7); // a quarter radius to the right, after 1.7 turns
+//! let slot = atlas.slot(&particle, [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]);
+//! let texel = atlas.radiance(&slot, 0.25, 1.7); // a quarter radius to the right, after 1.7 turns
 //! # Ok::<(), downpour_atlas::AtlasError>(())
 //! ```
 

@@ -13,7 +13,7 @@ use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_math::vector::{cross, dot, scale};
 use downpour_shaders::atlas::{
-    ATLAS_DIMENSION, ATLAS_GRID, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISE_LIMIT, ATLAS_RISES, ATLAS_SMALLEST,
+    ATLAS_DIMENSION, ATLAS_GRID, ATLAS_MIN_DIAMETER, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISE_LIMIT, ATLAS_RISES,
     ATLAS_STEPS, ATLAS_TINY,
 };
 
@@ -69,14 +69,14 @@ pub struct AtlasTriangle {
 /// Position of a streak in the atlas: the WGSL struct of the same name, 48 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct AtlasPlace {
+pub struct AtlasSlot {
     /// Three layers of the atlas, of the lower diameter and the lower elevation.
     pub layers: [u32; 3],
     /// -1 if the streak is to be mirrored, else 1.
     pub side: f32,
     /// Weights of the three directions; together 1.
     pub weights: [f32; 3],
-    /// The radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius with as much light.
+    /// The radiance, in 1/sr for an irradiance of 1, of a disk of the equivalent radius with as much light.
     pub amount: f32,
     /// Weights of the higher diameter and of the higher elevation, 0 to 1, below 1 in all.
     pub parts: [f32; 2],
@@ -101,7 +101,7 @@ pub struct AtlasData<'a> {
     /// Triangles of all elevations.
     pub triangles: &'a [AtlasTriangle],
     /// Patterns, two half floats each, the first in the low bits: layers, rows, columns. A texel is the ratio of its brightness to
-    /// that of a uniform disc with the streak's amount.
+    /// that of a uniform disk with the streak's amount.
     pub texels: &'a [u32],
     /// Amounts: diameters, oscillations, elevations of the grids, rows, columns; then that of each layer.
     pub amounts: &'a [f32],
@@ -232,16 +232,16 @@ pub fn atlas_lookup_amount(data: &AtlasData<'_>, grid: u32, cell: [f32; 4]) -> f
     below * (1.0 - y) + above * y
 }
 
-/// The streak of a drop's id, diameter in metres and axis, and the unit vectors from it to its light and viewer.
+/// The streak of a drop's id, diameter in meters and axis, and the unit vectors from it to its light and viewer.
 #[must_use]
-pub fn atlas_lookup_place(
+pub fn atlas_lookup_slot(
     data: &AtlasData<'_>,
     id: u32,
     diameter: f32,
     axis: [f32; 3],
     light: [f32; 3],
     view: [f32; 3],
-) -> AtlasPlace {
+) -> AtlasSlot {
     let frame = data.frame;
     let [diameters, oscillations, elevations, directions] = frame.counts;
     let within = atlas_light(light, view, axis);
@@ -250,17 +250,17 @@ pub fn atlas_lookup_place(
         let sets = diameters * oscillations;
         let layer = atlas_draw(frame.seed, id, 1, sets * elevations * directions);
         let amount = data.amounts[(sets * ATLAS_RISES * ATLAS_GRID * ATLAS_GRID + layer) as usize];
-        return AtlasPlace {
+        return AtlasSlot {
             layers: [layer; 3],
             side,
             weights: [1.0, 0.0, 0.0],
             amount,
-            ..AtlasPlace::default()
+            ..AtlasSlot::default()
         };
     }
     let position =
         |gaps: &[[f32; 4]; 4], value: f32| atlas_position(gaps[0], gaps[1], gaps[2], gaps[3], value);
-    let size = position(&frame.diameters, ops::log2(diameter.max(ATLAS_SMALLEST)));
+    let size = position(&frame.diameters, ops::log2(diameter.max(ATLAS_MIN_DIAMETER)));
     let lower = size.floor();
     let oscillation = atlas_draw(frame.seed, id, 0, oscillations);
     let group = lower as u32 * oscillations + oscillation;
@@ -283,7 +283,7 @@ pub fn atlas_lookup_place(
     let parts = [size - lower, if nearest { 0.0 } else { level - level.floor() }];
     let mix = atlas_lookup_mix(data, elevation, point);
     let base = (group * elevations + elevation) * directions;
-    AtlasPlace {
+    AtlasSlot {
         layers: mix.directions.map(|direction| base + direction),
         side,
         weights: mix.weights,
@@ -322,22 +322,22 @@ pub fn atlas_lookup_layer(data: &AtlasData<'_>, layer: u32, across: f32, down: f
 
 /// Radiance at a position in the atlas, `across` equivalent radii to the right of the middle, `turns` of the mode (2,0) along.
 #[must_use]
-pub fn atlas_lookup_radiance(data: &AtlasData<'_>, place: &AtlasPlace, across: f32, turns: f32) -> f32 {
+pub fn atlas_lookup_radiance(data: &AtlasData<'_>, slot: &AtlasSlot, across: f32, turns: f32) -> f32 {
     let frame = data.frame;
     let half = 0.5 * frame.size[0] as f32;
-    let column = half + half * (across * place.side / frame.half_extent).clamp(-2.0, 2.0);
+    let column = half + half * (across * slot.side / frame.half_extent).clamp(-2.0, 2.0);
     let row = (turns - turns.floor()) * frame.size[1] as f32;
     let mut pattern = 0.0;
     for corner in 0..4 {
-        let weight = atlas_corner(place.parts[0], place.parts[1], corner);
+        let weight = atlas_corner(slot.parts[0], slot.parts[1], corner);
         if weight > 0.0 {
             let sizes = (corner & 1) * frame.counts[1] * frame.counts[2];
             let step = (sizes + (corner >> 1)) * frame.counts[3];
-            let mean = place.weights[0] * atlas_lookup_layer(data, place.layers[0] + step, column, row)
-                + place.weights[1] * atlas_lookup_layer(data, place.layers[1] + step, column, row)
-                + place.weights[2] * atlas_lookup_layer(data, place.layers[2] + step, column, row);
+            let mean = slot.weights[0] * atlas_lookup_layer(data, slot.layers[0] + step, column, row)
+                + slot.weights[1] * atlas_lookup_layer(data, slot.layers[1] + step, column, row)
+                + slot.weights[2] * atlas_lookup_layer(data, slot.layers[2] + step, column, row);
             pattern += weight * mean;
         }
     }
-    place.amount * pattern
+    slot.amount * pattern
 }

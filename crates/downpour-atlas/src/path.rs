@@ -1,6 +1,6 @@
 //! Path of a viewer's ray: the outside reflection, and each ray that leaves the drop.
 
-use downpour_drop::optics::{optics_fresnel_polarised, optics_reflect, optics_refract};
+use downpour_drop::optics::{optics_fresnel_polarized, optics_reflect, optics_refract};
 use downpour_math::vector::{dot, normalize, scale};
 
 use crate::surface::Surface;
@@ -22,7 +22,7 @@ pub(crate) fn follow(
 ) -> bool {
     let Some(entry) = surface.enter(origin, direction) else { return false };
     let cosine = -dot(direction, entry.normal);
-    let [s, p] = optics_fresnel_polarised(cosine, index);
+    let [s, p] = optics_fresnel_polarized(cosine, index);
     light(optics_reflect(direction, entry.normal), 0.5 * (s + p));
     let (mut s, mut p) = (1.0 - s, 1.0 - p);
     let (inside, _) = optics_refract(direction, entry.normal, 1.0 / index);
@@ -30,7 +30,7 @@ pub(crate) fn follow(
     let mut point = entry.point;
     for _ in 0..=INTERNAL {
         let Some(exit) = surface.leave(point, inside) else { break };
-        let [rs, rp] = optics_fresnel_polarised(dot(inside, exit.normal), 1.0 / index);
+        let [rs, rp] = optics_fresnel_polarized(dot(inside, exit.normal), 1.0 / index);
         let (outside, squared) = optics_refract(inside, scale(exit.normal, -1.0), index);
         if squared > 0.0 {
             light(normalize(outside), 0.5 * (s * (1.0 - rs) + p * (1.0 - rp)));

@@ -20,7 +20,7 @@ pub enum StreakOrigin {
 pub struct StreakSet {
     /// Origin of the streaks.
     pub origin: StreakOrigin,
-    /// Equivalent diameter in metres.
+    /// Equivalent diameter in meters.
     pub diameter: f64,
     /// The oscillation.
     pub oscillation: StreakOscillation,
@@ -28,7 +28,7 @@ pub struct StreakSet {
     pub options: StreakOptions,
     /// Elevations of the viewer above the drop's horizontal plane in radians, ascending.
     pub elevations: Vec<f64>,
-    /// For each elevation, the directions towards the light in the frame of the streak, x >= 0; all of one length.
+    /// For each elevation, the directions toward the light in the frame of the streak, x >= 0; all of one length.
     pub directions: Vec<Vec<[f64; 3]>>,
     /// `columns * rows` texels for each elevation and direction.
     pub texels: Vec<f16>,
@@ -112,7 +112,7 @@ impl StreakSet {
     /// # Errors
     /// [`AtlasError`] for options, elevations, directions or texels that are wrong.
     pub fn check(&self) -> Result<(), AtlasError> {
-        let wrong = |place, found: String, allowed| Err(AtlasError::File { place, found, allowed });
+        let wrong = |location, found: String, allowed| Err(AtlasError::File { location, found, allowed });
         self.options.check()?;
         self.oscillation.amplitudes()?;
         downpour_drop::DropShape::new(self.diameter)?;

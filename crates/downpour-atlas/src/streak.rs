@@ -5,7 +5,7 @@
 //! Y when the center is y beyond it, so the row of its center's phase takes the shape at the phase
 //! y a / (v cos(elevation) T) later. a: equivalent radius, v: fall speed, T: period of the mode (2,0).
 //!
-//! The amount of a streak is its light without its pattern: the radiance of a disc of the equivalent radius that sends as much
+//! The amount of a streak is its light without its pattern: the radiance of a disk of the equivalent radius that sends as much
 //! light to the viewer as the drop does. With the mean m of the texels and the half extent h it is 4 h m / pi.
 
 use downpour_math::OutOfRange;
@@ -51,7 +51,7 @@ pub struct StreakTracer {
 }
 
 impl StreakTracer {
-    /// A drop of this diameter in metres.
+    /// A drop of this diameter in meters.
     ///
     /// # Errors
     /// If the diameter is not in 0.05 to 9 mm, an amplitude not in 0 to 0.3, an angle not finite, or an option out of
@@ -100,7 +100,7 @@ impl StreakTracer {
         })
     }
 
-    /// Its streaks for a viewer `elevation` radians above the drop's horizontal plane, one for each direction towards
+    /// Its streaks for a viewer `elevation` radians above the drop's horizontal plane, one for each direction toward
     /// the light, a unit vector in the frame of the streak. The same bits for any number of threads.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl StreakTracer {
         Ok(self.rays(elevation, lights, &[])?.0)
     }
 
-    /// Amounts of its streaks, in 1/sr for an irradiance of 1 across the light: one for each direction towards the light, as in
+    /// Amounts of its streaks, in 1/sr for an irradiance of 1 across the light: one for each direction toward the light, as in
     /// [`StreakTracer::trace`] and by the same rays. It is far faster for many lights.
     ///
     /// # Errors
@@ -187,18 +187,18 @@ impl StreakTracer {
                     Surface { instant: &self.instants[instant], inverse_radius: self.inverse_radius };
                 let column = (i / rays) as usize;
                 let origin = turned(&frame, [x, y, 0.0]);
-                let met = follow(&surface, refractive_index, origin, towards, |direction, share| {
+                let met = follow(&surface, refractive_index, origin, towards, |direction, fraction| {
                     for (k, light) in lights.iter().enumerate() {
                         let left = 1.0 - (1.0 - dot(direction, *light)) / edge;
                         if left > 0.0 {
-                            sums[k * width + column] += weight * share * peak * left * left;
+                            sums[k * width + column] += weight * fraction * peak * left * left;
                         }
                     }
                     let (first, within) = near.about(direction);
                     for (light, amount) in within.iter().zip(&mut amounts[first..]) {
                         let left = 1.0 - (1.0 - dot(direction, *light)) / edge;
                         if left > 0.0 {
-                            *amount += weight * share * peak * left * left;
+                            *amount += weight * fraction * peak * left * left;
                         }
                     }
                 });

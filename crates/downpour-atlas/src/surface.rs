@@ -16,7 +16,7 @@ const STEPS: u32 = 16;
 /// Tolerance of G - 1.
 const CLOSE: f64 = 1.0e-9;
 /// Distance from its start at which a ray is next tested, in radii: it must not meet its starting point.
-const NEAREST: f64 = 1.0e-6;
+const MIN_DISTANCE: f64 = 1.0e-6;
 /// Number of steps of the search, and its length in radii: longer than any drop.
 const SEARCH: u32 = 64;
 const MAX_DISTANCE: f64 = 3.2;
@@ -90,7 +90,7 @@ impl Surface<'_> {
         let start = mask_trace_step(dot(origin, origin) - 1.0, dot(origin, direction), 1.0, 1.0);
         let found = self.settle(origin, direction, start, 1.0);
         let usable = |&(distance, meeting): &(f64, Meeting)| {
-            distance > NEAREST && dot(meeting.normal, direction) > 0.0
+            distance > MIN_DISTANCE && dot(meeting.normal, direction) > 0.0
         };
         match found.filter(usable) {
             Some((_, meeting)) => Some(meeting),

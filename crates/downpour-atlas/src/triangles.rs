@@ -28,9 +28,9 @@ impl HasPosition for Corner {
 /// # Errors
 /// [`AtlasError::File`] if two directions are the same, or all lie on one circle.
 pub(crate) fn triangulate(directions: &[[f64; 3]]) -> Result<Vec<AtlasTriangle>, AtlasError> {
-    const PLACE: &str = "directions of streaks";
+    const LOCATION: &str = "directions of streaks";
     let wrong = |found: String| AtlasError::File {
-        place: PLACE,
+        location: LOCATION,
         found,
         allowed: "three or more directions that differ and do not lie on one circle",
     };
@@ -60,8 +60,8 @@ pub(crate) fn triangulate(directions: &[[f64; 3]]) -> Result<Vec<AtlasTriangle>,
         return Err(wrong(format!("{} directions without a triangle", directions.len())));
     }
     let across = |me: usize, edge: [u32; 2]| -> u32 {
-        let shares = |other: &[u32; 3]| edge.iter().all(|corner| other.contains(corner));
-        let found = corners.iter().enumerate().position(|(k, other)| k != me && shares(other));
+        let fractions = |other: &[u32; 3]| edge.iter().all(|corner| other.contains(corner));
+        let found = corners.iter().enumerate().position(|(k, other)| k != me && fractions(other));
         found.map_or(ATLAS_NONE, |k| k as u32)
     };
     Ok(corners

@@ -8,7 +8,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use downpour_atlas::lookup::AtlasPlace;
+use downpour_atlas::lookup::AtlasSlot;
 use downpour_atlas::{StreakAtlas, StreakOptions, StreakOscillation, StreakParticle, StreakTracer};
 use downpour_drop::optics::{SphereScattering, WATER_INDEX};
 use downpour_math::ops::f64 as ops;
@@ -43,32 +43,32 @@ fn axis(degrees: f64) -> [f32; 3] {
 }
 
 /// Index of the oscillation of an atlas position.
-fn oscillation(place: &AtlasPlace) -> usize {
+fn oscillation(slot: &AtlasSlot) -> usize {
     let [_, oscillations, elevations, directions] = ATLAS.data().frame.counts;
-    (place.layers[0] / (elevations * directions) % oscillations) as usize
+    (slot.layers[0] / (elevations * directions) % oscillations) as usize
 }
 
 /// The first drop of each oscillation.
 static IDS: LazyLock<Vec<u32>> = LazyLock::new(|| {
     let of = |id| {
         let drop = StreakParticle { diameter: 1.0e-3, axis: axis(0.0), id };
-        oscillation(&ATLAS.place(&drop, VIEW, VIEW))
+        oscillation(&ATLAS.slot(&drop, VIEW, VIEW))
     };
     (0..OSCILLATIONS).map(|k| (0..).find(|&id| of(id) == k).unwrap()).collect()
 });
 
 /// Streak of a drop of one of the oscillations, seen from `degrees` above.
-fn place(millimeters: f64, oscillation: usize, degrees: f64, light: [f64; 3]) -> AtlasPlace {
+fn slot(millimeters: f64, oscillation: usize, degrees: f64, light: [f64; 3]) -> AtlasSlot {
     let drop =
         StreakParticle { diameter: (millimeters * 1.0e-3) as f32, axis: axis(degrees), id: IDS[oscillation] };
-    ATLAS.place(&drop, light.map(|c| c as f32), VIEW)
+    ATLAS.slot(&drop, light.map(|c| c as f32), VIEW)
 }
 
 /// Mean over three layers of their amounts: the amount that is interpolated between 41 directions.
-fn of_triangle(place: &AtlasPlace) -> f64 {
+fn of_triangle(slot: &AtlasSlot) -> f64 {
     let amounts = ATLAS.data().amounts;
     let means = &amounts[amounts.len() - ATLAS.layers()..];
-    (0..3).map(|k| f64::from(place.weights[k] * means[place.layers[k] as usize])).sum()
+    (0..3).map(|k| f64::from(slot.weights[k] * means[slot.layers[k] as usize])).sum()
 }
 
 /// Amounts of the lights by rays, with other numbers of rows and of rays than the atlas has.
@@ -107,13 +107,13 @@ fn compared(millimeters: f64, degrees: f64) -> [Ratios; 3] {
         StreakOscillation::COMMITTED.par_iter().map(|kind| traced(millimeters, kind, degrees)).collect();
     let (mut means, mut each, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
     for (n, (angle, light)) in lights().iter().enumerate().filter(|(_, (angle, _))| *angle >= 20.0) {
-        let places: Vec<AtlasPlace> =
-            (0..OSCILLATIONS).map(|k| place(millimeters, k, degrees, *light)).collect();
+        let slots: Vec<AtlasSlot> =
+            (0..OSCILLATIONS).map(|k| slot(millimeters, k, degrees, *light)).collect();
         let whole: f64 = all.iter().map(|of| of[n]).sum();
         assert!(whole > 0.0, "{angle}");
-        means.push(places.iter().map(|place| f64::from(place.amount)).sum::<f64>() / whole);
-        triangles.push(places.iter().map(of_triangle).sum::<f64>() / whole);
-        each.extend(places.iter().zip(&all).map(|(place, of)| f64::from(place.amount) / of[n]));
+        means.push(slots.iter().map(|slot| f64::from(slot.amount)).sum::<f64>() / whole);
+        triangles.push(slots.iter().map(of_triangle).sum::<f64>() / whole);
+        each.extend(slots.iter().zip(&all).map(|(slot, of)| f64::from(slot.amount) / of[n]));
     }
     let found = [ratios(&means), ratios(&each), ratios(&triangles)];
     println!(
@@ -182,25 +182,25 @@ fn a_pattern_leaves_the_amount_as_it_is() {
         let drop = StreakParticle { diameter: 0.5e-3 + 5.0e-3 * b, axis, id: k };
         let (z, x) = (2.0 * c - 1.0, 2.0 * d - 1.0);
         let light = [x * (1.0 - z * z).sqrt(), (1.0 - x * x).sqrt() * (1.0 - z * z).sqrt(), z];
-        let place = ATLAS.place(&drop, light, VIEW);
+        let slot = ATLAS.slot(&drop, light, VIEW);
         let mut sum = 0.0;
         for column in 0..columns {
             let across = ((column as f32 + 0.5) / columns as f32 * 2.0 - 1.0) * frame.half_extent;
             for row in 0..rows {
-                sum += ATLAS.radiance(&place, across, (row as f32 + 0.5) / rows as f32);
+                sum += ATLAS.radiance(&slot, across, (row as f32 + 0.5) / rows as f32);
             }
         }
         let found = 4.0 * frame.half_extent / std::f32::consts::PI * sum / (columns * rows) as f32;
-        assert!((found / place.amount - 1.0).abs() < 2.0e-3, "{k}: {found} for {}", place.amount);
+        assert!((found / slot.amount - 1.0).abs() < 2.0e-3, "{k}: {found} for {}", slot.amount);
     }
 }
 
 /// Largest change of an amount, and of a texel over the amount, from one of these positions to the next, each over the larger of the two.
-fn largest_step(places: impl Iterator<Item = AtlasPlace>) -> [f32; 2] {
+fn largest_step(slots: impl Iterator<Item = AtlasSlot>) -> [f32; 2] {
     let mut before: Option<[f32; 2]> = None;
     let mut largest = [0.0f32; 2];
-    for place in places {
-        let now = [place.amount, ATLAS.radiance(&place, 0.2, 0.3) / place.amount];
+    for slot in slots {
+        let now = [slot.amount, ATLAS.radiance(&slot, 0.2, 0.3) / slot.amount];
         if let Some(before) = before {
             let step = (now[0] - before[0]).abs() / now[0].max(before[0]);
             largest = [largest[0].max(step), largest[1].max((now[1] - before[1]).abs())];
@@ -218,12 +218,12 @@ fn light_changes_by_small_steps() {
         for (angle, light) in lights().into_iter().filter(|(angle, _)| *angle >= 20.0) {
             // Elevations in steps of 0.005 degrees, about the layers', the middles between them, and the highest of all.
             for from in [-41.0, -21.0, -1.0, 19.0, 39.0, 73.0] {
-                let rising = (0..400).map(|n| place(2.0, k, from + 0.005 * f64::from(n), light));
+                let rising = (0..400).map(|n| slot(2.0, k, from + 0.005 * f64::from(n), light));
                 let [amount, pattern] = largest_step(rising);
                 assert!(amount < 0.05 && pattern < 0.05, "{angle}, {from} degrees: {amount} {pattern}");
             }
             // Diameters in steps of 0.1 %, 0.9 to 4.4 mm.
-            let growing = (0..1600).map(|n| place(0.9 * ops::exp(0.001 * f64::from(n)), k, 10.0, light));
+            let growing = (0..1600).map(|n| slot(0.9 * ops::exp(0.001 * f64::from(n)), k, 10.0, light));
             let [amount, pattern] = largest_step(growing);
             assert!(amount < 0.05 && pattern < 0.05, "{angle}: {amount} {pattern}");
         }
@@ -235,7 +235,7 @@ fn light_changes_by_small_steps() {
 #[test]
 fn oscillation_takes_light_aside() {
     const ENTRIES: usize = 4096;
-    // The atlas' light is about as wide as a disc of 4.6 degrees radius.
+    // The atlas' light is about as wide as a disk of 4.6 degrees radius.
     let sphere = SphereScattering::new(WATER_INDEX, ENTRIES, 0.16).unwrap();
     let phase = |degrees: f64| -> f64 {
         let entry = (degrees / 180.0 * (ENTRIES as f64 - 1.0)).round() as usize;

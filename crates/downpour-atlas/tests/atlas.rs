@@ -5,7 +5,7 @@
 use std::sync::LazyLock;
 
 use downpour_atlas::AtlasError;
-use downpour_atlas::lookup::{AtlasPlace, atlas_light, atlas_map};
+use downpour_atlas::lookup::{AtlasSlot, atlas_light, atlas_map};
 use downpour_atlas::{
     StreakAtlas, StreakOptions, StreakOscillation, StreakParticle, StreakPick, StreakSet, light_directions,
     read_streaks, write_streaks,
@@ -161,15 +161,15 @@ fn a_set_without_amounts_has_those_of_its_layers() {
     // Straight ahead, above and aslant: nodes of the grid, and directions of the list.
     for (k, d) in light_directions().iter().enumerate() {
         let [y, z] = atlas_map(d.map(|c| c as f32)).map(|c| (c + 1.0) * 20.0);
-        let place = atlas.place(&drop(2.0e-3, 0), d.map(|c| c as f32), [0.0, 0.0, 1.0]);
+        let slot = atlas.slot(&drop(2.0e-3, 0), d.map(|c| c as f32), [0.0, 0.0, 1.0]);
         let layer = 41 + k;
         let wanted = (32.0 * layer as f32 + 15.5) * 4.0 * 1.4 / std::f32::consts::PI;
         if (y - y.round()).abs() < 1.0e-4 && (z - z.round()).abs() < 1.0e-4 {
             // Half floats of the texels are integers up to 2048.
-            assert!((place.amount / wanted - 1.0).abs() < 1.0e-3, "{d:?}: {} for {wanted}", place.amount);
+            assert!((slot.amount / wanted - 1.0).abs() < 1.0e-3, "{d:?}: {} for {wanted}", slot.amount);
         }
         // Between the smallest and the largest of its elevation everywhere.
-        assert!((32.0 * 41.0 * 1.7..32.0 * 82.0 * 1.8).contains(&place.amount), "{}", place.amount);
+        assert!((32.0 * 41.0 * 1.7..32.0 * 82.0 * 1.8).contains(&slot.amount), "{}", slot.amount);
     }
 }
 
@@ -266,7 +266,7 @@ fn sets_that_do_not_belong_together_are_refused() {
     assert!(message(vec![twice]).contains("twice"));
 }
 
-/// The triangles fill the disc but for slivers, none is crossed by a corner's circle (Delaunay), neighbors agree.
+/// The triangles fill the disk but for slivers, none is crossed by a corner's circle (Delaunay), neighbors agree.
 #[test]
 fn triangles_are_those_of_delaunay() {
     let atlas = &*ATLAS;
@@ -307,25 +307,25 @@ fn places_are_barycentric() {
     let atlas = &*ATLAS;
     let data = atlas.data();
     for (k, d) in light_directions().iter().enumerate() {
-        let place = atlas.place(&drop(2.0e-3, 1), d.map(|c| c as f32), [0.0, 0.0, 1.0]);
+        let slot = atlas.slot(&drop(2.0e-3, 1), d.map(|c| c as f32), [0.0, 0.0, 1.0]);
         let weight: f32 =
-            (0..3).filter(|&j| (place.layers[j] as usize % 123) % 41 == k).map(|j| place.weights[j]).sum();
-        assert!(weight > 0.999, "{k}: {place:?}");
+            (0..3).filter(|&j| (slot.layers[j] as usize % 123) % 41 == k).map(|j| slot.weights[j]).sum();
+        assert!(weight > 0.999, "{k}: {slot:?}");
     }
     let mut mirrored = 0;
     for k in 0..4000 {
         let light = direction(k);
-        let place = atlas.place(&drop(2.0e-3, k), light, [0.0, 0.0, 1.0]);
-        assert!(place.weights.iter().all(|w| (0.0..=1.0).contains(w)), "{place:?}");
-        assert!((place.weights.iter().sum::<f32>() - 1.0).abs() < 1.0e-6);
-        assert_eq!(place.side, if light[0] < 0.0 { -1.0 } else { 1.0 });
-        mirrored += u32::from(place.side < 0.0);
+        let slot = atlas.slot(&drop(2.0e-3, k), light, [0.0, 0.0, 1.0]);
+        assert!(slot.weights.iter().all(|w| (0.0..=1.0).contains(w)), "{slot:?}");
+        assert!((slot.weights.iter().sum::<f32>() - 1.0).abs() < 1.0e-6);
+        assert_eq!(slot.side, if light[0] < 0.0 { -1.0 } else { 1.0 });
+        mirrored += u32::from(slot.side < 0.0);
         // The mean of the corners is the position of the light, but for the slivers at the rim.
         let corners =
-            place.layers.map(|layer| atlas_map(light_directions()[layer as usize % 41].map(|c| c as f32)));
+            slot.layers.map(|layer| atlas_map(light_directions()[layer as usize % 41].map(|c| c as f32)));
         let at = atlas_map(light);
         for axis in 0..2 {
-            let mean: f32 = (0..3).map(|j| place.weights[j] * corners[j][axis]).sum();
+            let mean: f32 = (0..3).map(|j| slot.weights[j] * corners[j][axis]).sum();
             assert!((mean - at[axis]).abs() < 0.05, "{light:?}: {mean} {}", at[axis]);
         }
     }
@@ -349,8 +349,8 @@ fn radiance_is_continuous_over_triangles() {
             [x / length, y / length, z / length]
         };
         let of = |light| {
-            let place = atlas.place(&drop(2.0e-3, 5), light, [0.0, 0.0, 1.0]);
-            atlas.radiance(&place, 0.3, 0.4)
+            let slot = atlas.slot(&drop(2.0e-3, 5), light, [0.0, 0.0, 1.0]);
+            atlas.radiance(&slot, 0.3, 0.4)
         };
         let (a, b) = (of(light), of(shifted));
         assert!((a - b).abs() < 0.02, "{light:?}: {a} {b}");
@@ -363,11 +363,11 @@ fn diameter_and_elevation_are_between_those_of_the_sets() {
     let atlas = StreakAtlas::clone(&ATLAS).with_seed(11);
     let light = [0.6, 0.0, -0.8];
     let level = [0.0, 0.0, 1.0];
-    let place = |diameter, view: [f32; 3], id| atlas.place(&drop(diameter, id), light, view);
+    let slot = |diameter, view: [f32; 3], id| atlas.slot(&drop(diameter, id), light, view);
     // Layers of 41 directions: three elevations in each of two oscillations of each diameter.
     let position = |diameter| {
-        let place = place(diameter, level, 0);
-        (place.layers[0] / 41 / 6) as f32 + place.parts[0]
+        let slot = slot(diameter, level, 0);
+        (slot.layers[0] / 41 / 6) as f32 + slot.parts[0]
     };
     let root = 2.0f32.sqrt();
     for (diameter, wanted) in [
@@ -391,11 +391,11 @@ fn diameter_and_elevation_are_between_those_of_the_sets() {
         (high, 2.0),
         (0.99, 2.0),
     ] {
-        let place = place(2.0e-3, [0.0, sine, (1.0 - sine * sine).sqrt()], 0);
-        let found = (place.layers[0] / 41 % 3) as f32 + place.parts[1];
+        let slot = slot(2.0e-3, [0.0, sine, (1.0 - sine * sine).sqrt()], 0);
+        let found = (slot.layers[0] / 41 % 3) as f32 + slot.parts[1];
         assert!((found - wanted).abs() < 1.0e-5, "{sine}: {found}");
     }
-    let second = (0..1000).filter(|&id| (place(2.0e-3, level, id).layers[0] / 41 / 3) % 2 == 1).count();
+    let second = (0..1000).filter(|&id| (slot(2.0e-3, level, id).layers[0] / 41 / 3) % 2 == 1).count();
     assert!((430..570).contains(&second), "{second}");
 }
 
@@ -407,9 +407,9 @@ fn other_directions_at_each_elevation_have_patterns_of_the_nearest() {
     set.directions[2].reverse();
     let atlas = StreakAtlas::from_sets(vec![set]).unwrap();
     let amount = |sine: f32| {
-        let place = atlas.place(&drop(2.0e-3, 0), [0.6, 0.0, -0.8], [0.0, sine, (1.0 - sine * sine).sqrt()]);
-        assert_eq!(place.parts[1].to_bits(), 0.0f32.to_bits());
-        (place.layers[0] / 41, place.amount)
+        let slot = atlas.slot(&drop(2.0e-3, 0), [0.6, 0.0, -0.8], [0.0, sine, (1.0 - sine * sine).sqrt()]);
+        assert_eq!(slot.parts[1].to_bits(), 0.0f32.to_bits());
+        (slot.layers[0] / 41, slot.amount)
     };
     let high = downpour_math::ops::sin(0.7);
     for (sine, elevation) in
@@ -429,7 +429,7 @@ fn chance_picks_any_layer() {
     let random = atlas.with_pick(StreakPick::Random);
     let mut met = vec![0u32; random.layers()];
     for id in 0..40 * random.layers() as u32 {
-        let AtlasPlace { layers, weights, parts, .. } = random.place(&drop(2.0e-3, id), light, level);
+        let AtlasSlot { layers, weights, parts, .. } = random.slot(&drop(2.0e-3, id), light, level);
         assert_eq!((weights, parts), ([1.0, 0.0, 0.0], [0.0, 0.0]));
         met[layers[0] as usize] += 1;
     }
@@ -456,17 +456,17 @@ fn the_frame_of_a_streak_is_right_handed() {
 #[test]
 fn radiance_is_bilinear_and_goes_round() {
     let atlas = StreakAtlas::from_sets(vec![counted()]).unwrap();
-    // The amount that makes a pattern of the layer: the mean of its texels, as a disc.
+    // The amount that makes a pattern of the layer: the mean of its texels, as a disk.
     let mean = |layer: u32| (32.0 * layer as f32 + 15.5) * 4.0 * 1.4 / std::f32::consts::PI;
-    let place = |layer: u32, side| AtlasPlace {
+    let slot = |layer: u32, side| AtlasSlot {
         layers: [layer; 3],
         side,
         weights: [1.0, 0.0, 0.0],
         amount: mean(layer),
-        ..AtlasPlace::default()
+        ..AtlasSlot::default()
     };
     let across = |column: f32| (column + 0.5) / 8.0 * 2.8 - 1.4;
-    let at = |column, row: f32| atlas.radiance(&place(2, 1.0), across(column), (row + 0.5) / 4.0);
+    let at = |column, row: f32| atlas.radiance(&slot(2, 1.0), across(column), (row + 0.5) / 4.0);
     assert!((at(3.0, 1.0) - 75.0).abs() < 0.05);
     assert!((at(3.5, 1.0) - 75.5).abs() < 0.05);
     assert!((at(3.0, 1.25) - 77.0).abs() < 0.05);
@@ -474,7 +474,7 @@ fn radiance_is_bilinear_and_goes_round() {
     assert!((at(3.0, 9.0) - 75.0).abs() < 0.05, "two turns on");
     assert!((at(7.5, 1.0) - 0.5 * 79.0).abs() < 0.05, "0 outside");
     assert_eq!(at(9.0, 1.0), 0.0);
-    let mirrored = atlas.radiance(&place(2, -1.0), across(3.0), 1.5 / 4.0);
+    let mirrored = atlas.radiance(&slot(2, -1.0), across(3.0), 1.5 / 4.0);
     assert!((mirrored - 76.0).abs() < 0.05, "{mirrored}");
 }
 

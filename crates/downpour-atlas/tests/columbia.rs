@@ -84,7 +84,7 @@ fn a_whole_database_becomes_an_atlas() {
     let sin = downpour_math::ops::f64::sin;
     let law = [cos(v) * sin(h), sin(v), -cos(v) * cos(h)];
     assert!(direction.iter().zip(law).all(|(a, b)| (a - b).abs() < 1.0e-12), "{direction:?} {law:?}");
-    // Seen from 60 degrees above, the light straight above is towards the viewer.
+    // Seen from 60 degrees above, the light straight above is toward the viewer.
     let above = set.directions[3][73];
     assert!((above[2] - sin(60.0f64.to_radians())).abs() < 1.0e-12, "{above:?}");
     let again = read_streaks(&write_streaks(set).unwrap()).unwrap();

@@ -43,18 +43,18 @@ fn power(texels: &[f32], options: &StreakOptions) -> f64 {
     2.0 * width * texels.iter().map(|&v| f64::from(v)).sum::<f64>() / f64::from(options.rows)
 }
 
-/// Over all lights, a drop without absorption scatters the light that falls on its disc. Paths of more than four reflections
+/// Over all lights, a drop without absorption scatters the light that falls on its disk. Paths of more than four reflections
 /// inside are missing: 0.1 %.
 #[test]
-fn all_lights_together_give_the_disc() {
+fn all_lights_together_give_the_disk() {
     let options = StreakOptions { light_radius: 12.0_f64.to_radians(), rays: 6, ..options() };
     let lights = spiral(500);
     let streaks = trace(SPHERE, StreakOscillation::NONE, &options, &lights);
     let sum: f64 = streaks.radiance.iter().map(|s| power(s, &options)).sum();
     let scattered = sum * 4.0 * PI / lights.len() as f64;
     assert!((scattered / PI - 1.0).abs() < 0.015, "{scattered} of pi");
-    let disc = power(&streaks.coverage, &options);
-    assert!((disc / PI - 1.0).abs() < 5.0e-3, "{disc} of pi");
+    let disk = power(&streaks.coverage, &options);
+    assert!((disk / PI - 1.0).abs() < 5.0e-3, "{disk} of pi");
 }
 
 /// The same holds for a drop of any shape: the light on its outline's area is scattered.
@@ -64,9 +64,9 @@ fn an_oscillating_drop_keeps_the_light_too() {
     let lights = spiral(500);
     let streaks = trace(4.0e-3, StreakOscillation::COMMITTED[1], &options, &lights);
     let sum: f64 = streaks.radiance.iter().map(|s| power(s, &options)).sum();
-    let share = sum * 4.0 * PI / lights.len() as f64 / power(&streaks.coverage, &options);
+    let fraction = sum * 4.0 * PI / lights.len() as f64 / power(&streaks.coverage, &options);
     // Light that circles in the bulges for more than four reflections is lost.
-    assert!((0.95..1.01).contains(&share), "{share}");
+    assert!((0.95..1.01).contains(&fraction), "{fraction}");
 }
 
 /// Scattering by a sphere to the side of the first rainbow is external reflection and twice refracted light: a law of
@@ -78,9 +78,9 @@ fn the_power_of_one_direction_is_that_of_the_sphere() {
     let index = options.refractive_index;
     let streaks = trace(SPHERE, StreakOscillation::NONE, &options, &[light(60.0, 0.4)]);
     let found = power(&streaks.radiance[0], &options);
-    let fresnel = |b: f64| downpour_drop::optics::optics_fresnel_polarised((1.0 - b * b).sqrt(), index);
+    let fresnel = |b: f64| downpour_drop::optics::optics_fresnel_polarized((1.0 - b * b).sqrt(), index);
     // Cross-section per steradian: b db / (sin(theta) d theta), by differences.
-    let of = |turn: &dyn Fn(f64) -> f64, share: &dyn Fn(f64) -> f64| -> f64 {
+    let of = |turn: &dyn Fn(f64) -> f64, fraction: &dyn Fn(f64) -> f64| -> f64 {
         let (mut low, mut high) = (0.0, 1.0);
         let falling = turn(0.0) > turn(1.0);
         for _ in 0..60 {
@@ -89,7 +89,7 @@ fn the_power_of_one_direction_is_that_of_the_sphere() {
         }
         let b = low;
         let slope = (turn(b + 1.0e-5) - turn(b - 1.0e-5)) / 2.0e-5;
-        b * share(b) / (ops::sin(turn(b)) * slope.abs())
+        b * fraction(b) / (ops::sin(turn(b)) * slope.abs())
     };
     let outside = of(&|b| PI - 2.0 * ops::asin(b), &|b| {
         let [s, p] = fresnel(b);

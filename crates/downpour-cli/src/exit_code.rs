@@ -16,7 +16,7 @@ use downpour::trace::puddle::PuddleError;
 use downpour::trace::stage::StageError;
 use downpour::wind::WindError;
 
-/// Anything that has no code of its own, as a defect of ours.
+/// Any error without a specific code, such as a bug in Downpour.
 pub(crate) const OTHER: u8 = 1;
 /// Bad arguments or input.
 pub(crate) const INPUT: u8 = 2;
@@ -26,9 +26,9 @@ pub(crate) const LIMIT: u8 = 3;
 pub(crate) const GPU: u8 = 4;
 /// A file that cannot be read or written.
 pub(crate) const FILES: u8 = 5;
-/// Cancelled by a signal.
+/// Canceled by a signal.
 #[cfg(unix)]
-pub(crate) const CANCELLED: u8 = 6;
+pub(crate) const CANCELED: u8 = 6;
 
 /// Message of `render` where no option names the streak atlas that the weather asks for.
 pub(crate) const NO_ATLAS: &str = "streaks.color is \"atlas\" or \"atlas-random\", and no --streaks; allowed: with --streaks \
@@ -64,7 +64,7 @@ impl ExitCode for SceneError {
 impl ExitCode for MaskError {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::Size { found, most, .. } if found > most => LIMIT,
+            Self::Size { found, max, .. } if found > max => LIMIT,
             Self::Encode { .. } => OTHER,
             Self::InFile { error, .. } => error.exit_code(),
             _ => INPUT,
@@ -115,7 +115,7 @@ impl ExitCode for GlassError {
 impl ExitCode for RenderError {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::Size { found, most, .. } if found.iter().any(|n| n > most) => LIMIT,
+            Self::Size { found, max, .. } if found.iter().any(|n| n > max) => LIMIT,
             Self::Encode { .. } => OTHER,
             _ => INPUT,
         }
@@ -163,7 +163,7 @@ impl ExitCode for ShowerError {
 impl ExitCode for SpecimenError {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::Size { found, most, .. } if found > most => LIMIT,
+            Self::Size { found, max, .. } if found > max => LIMIT,
             Self::Mask(error) => error.exit_code(),
             Self::Render(error) => error.exit_code(),
             _ => INPUT,

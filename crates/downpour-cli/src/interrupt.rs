@@ -58,7 +58,7 @@ mod unix {
     use signal_hook::iterator::Signals;
 
     use super::Interrupt;
-    use crate::exit_code::CANCELLED;
+    use crate::exit_code::CANCELED;
     use crate::stream;
 
     pub(super) fn listen(interrupt: Interrupt) -> io::Result<()> {
@@ -67,8 +67,8 @@ mod unix {
         let mut signals = Signals::new([SIGINT, SIGTERM])?;
         std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
             if signals.forever().next().is_some() {
-                stream::message("cancelled");
-                interrupt.leave(CANCELLED);
+                stream::message("canceled");
+                interrupt.leave(CANCELED);
             }
         })?;
         Ok(())

@@ -113,7 +113,7 @@ fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse::<f64>().unwrap_or(value) + 0.0
 }
 
-/// A number with `digits` significant digits, as a person writes it.
+/// A number with `digits` significant digits, in the shortest notation.
 fn significant(value: f64, digits: usize) -> String {
     let value = rounded(value, digits);
     if value == 0.0 {

@@ -27,7 +27,7 @@ use interrupt::Interrupt;
 #[derive(Debug, Parser)]
 #[command(name = "downpour", version, arg_required_else_help = true)]
 #[command(after_help = "Exit codes: 0 done, 2 bad arguments or input, 3 over a limit, 4 GPU, 5 files, \
-6 cancelled, 1 anything else.")]
+6 canceled, 1 anything else.")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

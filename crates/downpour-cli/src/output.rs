@@ -47,8 +47,8 @@ impl OutputFile {
 
     /// Checks that the name is free, or that the file may be overwritten.
     fn check_name(&self) -> Result<(), Failure> {
-        let refused = |found: &str, way_out: &str| {
-            Err(Failure::new(FILES, format!("{} {found}; allowed: {way_out}", shown(&self.path))))
+        let refused = |found: &str, advice: &str| {
+            Err(Failure::new(FILES, format!("{} {found}; allowed: {advice}", shown(&self.path))))
         };
         match fs::symlink_metadata(&self.path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),

@@ -8,7 +8,7 @@ use downpour::drop::oscillation::Amplitudes;
 use downpour::drop::shape::{MAX_DIAMETER, MIN_DIAMETER};
 use downpour::drop::water::TEMPERATURE_RANGE_C;
 use downpour::mask::SIZES;
-use downpour::specimen::{LONGEST_EXPOSURE_S, SpecimenLamp};
+use downpour::specimen::{MAX_EXPOSURE_S, SpecimenLamp};
 use downpour::trace::stage::LATEST_S;
 
 /// Minimum temperature of water, in Celsius, with a known refractive index.
@@ -59,7 +59,7 @@ pub(crate) fn fov_deg(text: &str) -> Result<f64, String> {
     read(text, &(1.0e-4..=170.0), "0.0001 to 170 degrees")
 }
 
-/// Distance of a camera, in metres.
+/// Distance of a camera, in meters.
 pub(crate) fn distance_m(text: &str) -> Result<f64, String> {
     read(text, &(1.0e-4..=1.0e4), "0.0001 to 10000 m")
 }
@@ -86,7 +86,7 @@ pub(crate) fn time_s(text: &str) -> Result<f64, String> {
 
 /// Exposure of a streak, in seconds.
 pub(crate) fn exposure_s(text: &str) -> Result<f64, String> {
-    read(text, &(0.0..=LONGEST_EXPOSURE_S), "0 to 1 s")
+    read(text, &(0.0..=MAX_EXPOSURE_S), "0 to 1 s")
 }
 
 /// Sampling of a specimen.

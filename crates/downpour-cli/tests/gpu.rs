@@ -113,7 +113,13 @@ fn differing(a: &Mask, b: &Mask, tolerance: f32) -> usize {
 }
 
 /// The same arguments on both sides, with a control: another drop must differ.
-fn agree(arguments: &[&str], files: &[(&str, String)], read: fn(&[u8]) -> Mask, tolerance: f32, share: f64) {
+fn agree(
+    arguments: &[&str],
+    files: &[(&str, String)],
+    read: fn(&[u8]) -> Mask,
+    tolerance: f32,
+    fraction: f64,
+) {
     let name = arguments.last().copied().expect("an output");
     let adapter = adapter();
     let run = |arguments: &[&str]| {
@@ -122,7 +128,7 @@ fn agree(arguments: &[&str], files: &[(&str, String)], read: fn(&[u8]) -> Mask, 
     };
     let on_gpu = run(&gpu(arguments, &adapter));
     let on_cpu = run(&[arguments, &["--backend", "cpu"]].concat());
-    let most = (share * on_cpu.texels.len() as f64) as usize;
+    let most = (fraction * on_cpu.texels.len() as f64) as usize;
     let count = differing(&on_gpu, &on_cpu, tolerance);
     assert!(count <= most, "{arguments:?}: {count} of {} texels differ, allowed {most}", on_cpu.texels.len());
     let other = run(&[arguments, &["--backend", "cpu", "--refractive-index", "1.34"]].concat());

@@ -1,7 +1,7 @@
 //! Air that drops fall through: density, viscosity, mean free path.
 //!
 //! Laws, with the absolute temperature T and the pressure p:
-//! - density: dry ideal gas, `rho = p / (287.04 T)`. Moist air is lighter by 0.378 times the ratio of vapour pressure
+//! - density: dry ideal gas, `rho = p / (287.04 T)`. Moist air is lighter by 0.378 times the ratio of vapor pressure
 //!   to pressure (1.6 % if saturated at 30 C): neglected;
 //! - viscosity: H. R. Pruppacher, J. D. Klett, Microphysics of Clouds and Precipitation, after Beard 1976:
 //!   `(1.718 + 0.0049 t) e-5 Pa s` in Celsius, less `1.2e-10 t^2` below 0 C. By name, the straight line
@@ -9,7 +9,7 @@
 //! - mean free path: K. V. Beard, J. Atmos. Sci. 33, 851 (1976):
 //!   `6.62e-8 m (eta / 1.818e-5) (101325 / p) sqrt(T / 293.15)`.
 //!
-//! Units: Celsius, Pa, kg/m^3, Pa s, metres. Limits: -20 to 40 C, where drops are liquid and the laws of water
+//! Units: Celsius, Pa, kg/m^3, Pa s, meters. Limits: -20 to 40 C, where drops are liquid and the laws of water
 //! hold too; 300 to 1100 hPa, from the top of rain clouds to the lowest lands. A drop has the temperature of the air
 //! here; real rain is a few degrees colder, at the wet-bulb temperature.
 
@@ -97,7 +97,7 @@ impl Air {
         viscosity_pruppacher_klett(self.temperature_c)
     }
 
-    /// Mean free path of the molecules in metres.
+    /// Mean free path of the molecules in meters.
     #[must_use]
     pub fn mean_free_path(&self) -> f64 {
         let warmth = (self.temperature_k() / 293.15).sqrt();

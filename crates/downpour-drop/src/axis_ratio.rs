@@ -1,6 +1,6 @@
 //! Axis ratio, height over width, of a falling drop by published fits.
 //!
-//! d is the diameter of the sphere of equal volume: metres in the functions, millimetres in the formulas
+//! d is the diameter of the sphere of equal volume: meters in the functions, millimeters in the formulas
 //! here. The ratio is 1 for a sphere and falls with the size. [`DropShape`](crate::shape::DropShape) gives
 //! the ratio of the whole shape; these are fits to models and measurements, for comparison and for users who
 //! need a specific one.
@@ -66,7 +66,7 @@ impl AxisRatioModel {
         Self::Green1975,
     ];
 
-    /// Axis ratio of a drop whose sphere of equal volume has this diameter in metres.
+    /// Axis ratio of a drop whose sphere of equal volume has this diameter in meters.
     ///
     /// # Errors
     /// [`DropError::OutOfRange`] if the diameter is outside [the model's range](self).

@@ -61,9 +61,9 @@ const MM_H: f64 = 1.0e-3 / 3600.0;
 /// Range of diameters of a distribution, and the fall speed of its drops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DistributionOptions {
-    /// Smallest diameter, in metres: 0 (if the law has a finite number of drops), or from 1e-6.
+    /// Smallest diameter, in meters: 0 (if the law has a finite number of drops), or from 1e-6.
     pub min_diameter_m: f64,
-    /// Largest diameter, in metres: at most 9e-3.
+    /// Largest diameter, in meters: at most 9e-3.
     pub max_diameter_m: f64,
     /// Model of terminal speed.
     pub fall_speed: FallSpeedModel,
@@ -195,7 +195,7 @@ impl DropSizeDistribution {
         Ok(Self { options, grid, ..self.clone() })
     }
 
-    /// Bounds of diameter classes in metres, `per_octave` classes per factor of two, from the smallest diameter
+    /// Bounds of diameter classes in meters, `per_octave` classes per factor of two, from the smallest diameter
     /// (0.001 mm if that is 0). The last class ends at the largest diameter and may be narrow.
     #[must_use]
     pub fn diameter_classes(&self, per_octave: f64) -> Vec<[f64; 2]> {
@@ -231,7 +231,7 @@ impl DropSizeDistribution {
         &self.options
     }
 
-    /// N(D) in m^-4: drops per m^3 and per metre of diameter (1 per m^3 and mm = 1000 m^-4). 0 outside the range of
+    /// N(D) in m^-4: drops per m^3 and per meter of diameter (1 per m^3 and mm = 1000 m^-4). 0 outside the range of
     /// diameters.
     #[must_use]
     pub fn concentration(&self, diameter_m: f64) -> f64 {
@@ -293,7 +293,7 @@ impl DropSizeDistribution {
         ExtinctionEfficiency::Total.factor() * self.cross_section()
     }
 
-    /// Meteorological visibility in metres (Koschmieder); infinite in dry weather.
+    /// Meteorological visibility in meters (Koschmieder); infinite in dry weather.
     #[must_use]
     pub fn visibility(&self) -> f64 {
         visibility(self.extinction())
@@ -305,25 +305,25 @@ impl DropSizeDistribution {
         self.integrate(|d| cube(d) * cube(d))
     }
 
-    /// Mean diameter in metres: ratio of the moments 1 and 0. 0 in dry weather, as the following diameters.
+    /// Mean diameter in meters: ratio of the moments 1 and 0. 0 in dry weather, as the following diameters.
     #[must_use]
     pub fn mean_diameter(&self) -> f64 {
         ratio(self.integrate(|d| d), self.number_density())
     }
 
-    /// Effective diameter in metres: ratio of the moments 3 and 2.
+    /// Effective diameter in meters: ratio of the moments 3 and 2.
     #[must_use]
     pub fn effective_diameter(&self) -> f64 {
         ratio(self.integrate(cube), self.integrate(|d| d * d))
     }
 
-    /// Mass-weighted mean diameter in metres: ratio of the moments 4 and 3.
+    /// Mass-weighted mean diameter in meters: ratio of the moments 4 and 3.
     #[must_use]
     pub fn mass_weighted_diameter(&self) -> f64 {
         ratio(self.integrate(|d| d * cube(d)), self.integrate(cube))
     }
 
-    /// Median volume diameter D0 in metres: half of the liquid water is in larger drops.
+    /// Median volume diameter D0 in meters: half of the liquid water is in larger drops.
     #[must_use]
     pub fn median_volume_diameter(&self) -> f64 {
         if self.scale > 0.0 {

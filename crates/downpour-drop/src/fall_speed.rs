@@ -1,10 +1,10 @@
-//! Terminal fall speed of water drops, and relaxation towards it.
+//! Terminal fall speed of water drops, and relaxation toward it.
 //!
 //! Law: K. V. Beard, J. Atmos. Sci. 33, 851 (1976): three regimes, by temperature and pressure, for diameters
 //! up to 7 mm; the speed is held constant beyond. The two tables and the five fits of other authors hold for
 //! 20 C and 1013.25 hPa; in other air they are multiplied by (rho0/rho)^0.4 (Foote & du Toit 1969).
-//! Relaxation towards the terminal speed v with quadratic drag: v/(2g) vertically, v/g across.
-//! Units: diameters in metres, speeds in m/s, times in seconds. Diameters above 9 mm are not drops: an error.
+//! Relaxation toward the terminal speed v with quadratic drag: v/(2g) vertically, v/g across.
+//! Units: diameters in meters, speeds in m/s, times in seconds. Diameters above 9 mm are not drops: an error.
 //!
 //! | model | form | range | against Gunn & Kinzer, 0.5 to 5.8 mm |
 //! |---|---|---|---|
@@ -42,7 +42,7 @@ pub use motion::{
 };
 pub use tables::{fall_speed_gunn_kinzer_1949, fall_speed_rousseau_2006};
 
-/// Largest diameter of a drop, in metres. Larger drops break up.
+/// Largest diameter of a drop, in meters. Larger drops break up.
 pub const MAX_DIAMETER_M: f64 = 9.0e-3;
 
 /// A published model of terminal speed. The number of a variant is the one that shaders use.
@@ -119,7 +119,7 @@ impl FallSpeedModel {
     }
 }
 
-/// Terminal speed in m/s of a drop of `diameter_m` metres (of the sphere of equal volume) in `air`.
+/// Terminal speed in m/s of a drop of `diameter_m` meters (of the sphere of equal volume) in `air`.
 ///
 /// ```
 /// use downpour_drop::air::Air;
@@ -159,7 +159,7 @@ impl TerminalSpeed {
         Self { model, beard: beard::Beard::new(air), density_factor: air.speed_factor() }
     }
 
-    /// Speed in m/s of a drop of `diameter_m` metres.
+    /// Speed in m/s of a drop of `diameter_m` meters.
     ///
     /// # Errors
     /// [`DropError::OutOfRange`] if the diameter is not above 0 and at most 9 mm.
@@ -183,7 +183,7 @@ impl TerminalSpeed {
         standard * self.density_factor
     }
 
-    /// Diameters, in metres and ascending, of the steps and kinks of the law, which no integral should cross.
+    /// Diameters, in meters and ascending, of the steps and kinks of the law, which no integral should cross.
     pub(crate) fn kinks(&self) -> Vec<f64> {
         let mm: Vec<f64> = match self.model {
             FallSpeedModel::Beard1976 => beard::JOINTS_MM.to_vec(),
@@ -205,7 +205,7 @@ pub(crate) fn drop_diameter(diameter_m: f64) -> Result<f64, DropError> {
     in_range("diameter", diameter_m, "mm", &range, 1.0e3, "above 0, at most 9 mm")
 }
 
-/// Terminal speed in m/s by the number of a model; an unknown number selects Beard 1976. Diameter in metres, 0 to 9e-3.
+/// Terminal speed in m/s by the number of a model; an unknown number selects Beard 1976. Diameter in meters, 0 to 9e-3.
 #[must_use]
 pub fn fall_speed_terminal(model: u32, diameter_m: f32, air: FallSpeedAir) -> f32 {
     match model {

@@ -4,8 +4,8 @@
 //! [`optics`]. Many drops: their size [`distribution`], computed from a rain rate. The media: [`water`] and
 //! [`air`].
 //!
-//! Units are SI: metres, seconds, kilograms, radians, pascals; temperatures in degrees Celsius where the name says
-//! `_c`, rain rates in millimetres per hour where it says `_mm_h`. A diameter is that of the sphere of the same
+//! Units are SI: meters, seconds, kilograms, radians, pascals; temperatures in degrees Celsius where the name says
+//! `_c`, rain rates in millimeters per hour where it says `_mm_h`. A diameter is that of the sphere of the same
 //! volume. Functions whose names start with the stem of their module are twins of WGSL functions.
 //!
 //! ```

@@ -1,7 +1,7 @@
 //! A drop as a closed triangle mesh with exact normals.
 //!
-//! Positions are in metres from the drop's origin, in glTF's axes: right-handed, +Y up, the bottom of the
-//! drop towards -Y. Triangles are counter-clockwise seen from outside. All triangles that meet at a point share
+//! Positions are in meters from the drop's origin, in glTF's axes: right-handed, +Y up, the bottom of the
+//! drop toward -Y. Triangles are counter-clockwise seen from outside. All triangles that meet at a point share
 //! one vertex, the poles included, so the mesh is watertight by its indices: each edge belongs to two
 //! triangles that traverse it in opposite directions.
 //!
@@ -19,7 +19,7 @@ use crate::shape::{DropShape, drop_shape_normal, drop_shape_radius};
 
 /// A star-shaped surface: each ray from the origin leaves it once.
 pub trait DropSurface {
-    /// Distance from the origin to the surface, in metres, along a unit vector (+Y up).
+    /// Distance from the origin to the surface, in meters, along a unit vector (+Y up).
     fn radius_along(&self, direction: [f64; 3]) -> f64;
 
     /// Outward unit normal at that point.
@@ -127,7 +127,7 @@ impl DropMesh {
         self.normals.push(surface.normal_along(direction).map(|n| n as f32));
     }
 
-    /// Positions of the vertices, in metres.
+    /// Positions of the vertices, in meters.
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
         &self.positions
@@ -145,7 +145,7 @@ impl DropMesh {
         &self.triangles
     }
 
-    /// Volume within the triangles, in cubic metres.
+    /// Volume within the triangles, in cubic meters.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let corner = |i: u32| self.positions[i as usize].map(f64::from);
@@ -189,7 +189,7 @@ fn icosahedron_faces(corners: &[[f64; 3]]) -> Vec<[u32; 3]> {
     faces
 }
 
-/// Splits each triangle into four at the middles of its edges, which neighbours share.
+/// Splits each triangle into four at the middles of its edges, which neighbors share.
 fn subdivide(directions: &mut Vec<[f64; 3]>, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut middles = HashMap::new();
     let mut middle = |a: u32, b: u32| -> u32 {

@@ -1,7 +1,7 @@
 //! Optics of a drop: refractive index of water, refraction and reflection at its surface.
 //!
 //! Laws: reflection and Snell's law in vectors; Fresnel's equations for a dielectric (Born & Wolf, Principles of
-//! Optics, 1.5.2), exact, for both polarisations; by name, the approximations of Schlick 1994 and of Tatarchuk &
+//! Optics, 1.5.2), exact, for both polarizations; by name, the approximations of Schlick 1994 and of Tatarchuk &
 //! Isidoro 2006. Unit vectors; the normal faces against the incident ray; eta = n(from) / n(to);
 //! index = n(to) / n(from); cosines in [0, 1]. Absorption within a drop is negligible: the
 //! absorption index of water is below 3.4e-8 in visible light, which removes 0.4 % of red light along 6 mm.
@@ -79,15 +79,15 @@ pub fn optics_reflect<R: Real>(incident: [R; 3], normal: [R; 3]) -> [R; 3] {
 /// `cosine` is that of the angle of incidence (negative counts as 0), `index` = n(to) / n(from).
 ///
 /// ```
-/// use downpour_drop::optics::optics_fresnel_polarised;
+/// use downpour_drop::optics::optics_fresnel_polarized;
 /// // At Brewster's angle no light is reflected within the plane.
 /// let brewster = downpour_math::ops::f64::cos(downpour_math::ops::f64::atan(1.333));
-/// let [s, p] = optics_fresnel_polarised(brewster, 1.333);
+/// let [s, p] = optics_fresnel_polarized(brewster, 1.333);
 /// assert!((s - 0.0783).abs() < 1e-4 && p < 1e-20);
 /// ```
 #[inline(always)]
 #[must_use]
-pub fn optics_fresnel_polarised<R: Real>(cosine: R, index: R) -> [R; 2] {
+pub fn optics_fresnel_polarized<R: Real>(cosine: R, index: R) -> [R; 2] {
     let zero = index.constant(0.0);
     let one = index.constant(1.0);
     let smallest = index.constant(f64::from(shared::OPTICS_MIN));
@@ -102,7 +102,7 @@ pub fn optics_fresnel_polarised<R: Real>(cosine: R, index: R) -> [R; 2] {
     [R::select(total, one, s * s), R::select(total, one, p * p)]
 }
 
-/// Fraction of unpolarised light that is reflected. Arguments as for [`optics_fresnel_polarised`].
+/// Fraction of unpolarized light that is reflected. Arguments as for [`optics_fresnel_polarized`].
 ///
 /// ```
 /// let r = downpour_drop::optics::optics_fresnel(1.0f64, 1.333);
@@ -111,7 +111,7 @@ pub fn optics_fresnel_polarised<R: Real>(cosine: R, index: R) -> [R; 2] {
 #[inline(always)]
 #[must_use]
 pub fn optics_fresnel<R: Real>(cosine: R, index: R) -> R {
-    let [s, p] = optics_fresnel_polarised(cosine, index);
+    let [s, p] = optics_fresnel_polarized(cosine, index);
     index.constant(0.5) * (s + p)
 }
 

@@ -5,9 +5,9 @@
 //! "Photorealistic rendering of rain streaks", 2006, and A. Frohn, N. Roth, "Dynamics of droplets", 2000;
 //! frequencies of Lord Rayleigh 1879, damping of H. Lamb, "Hydrodynamics".
 //!
-//! - `r0`: radius of the sphere of equal volume, in metres. `theta`: angle from the vertical axis; both modes
+//! - `r0`: radius of the sphere of equal volume, in meters. `theta`: angle from the vertical axis; both modes
 //!   are the same up and down. `phi`: angle about the axis.
-//! - `P20`, `P31`: associated Legendre functions, not normalised. The papers leave the sign of P31 open. Here
+//! - `P20`, `P31`: associated Legendre functions, not normalized. The papers leave the sign of P31 open. Here
 //!   it has the Condon-Shortley sign, `P31 = -3/2 (5 x^2 - 1) sqrt(1 - x^2)`, by which a positive s3 pushes
 //!   the outline (theta = pi / 2) outwards at phi = 0. The other sign is the same drop rotated by half a turn.
 //! - `V`: volume of equation 2 over that of the sphere. The equation alone does not keep the volume: it

@@ -35,10 +35,10 @@ pub use table::{Correction, ShapeRow, ShapeTable};
 /// Number of coefficients: n = 0 to 10.
 pub const COEFFICIENTS: usize = 11;
 
-/// Smallest diameter with a shape, in metres: a cloud droplet of 1 um, a sphere for every purpose.
+/// Smallest diameter with a shape, in meters: a cloud droplet of 1 um, a sphere for every purpose.
 pub const MIN_DIAMETER: f64 = 1.0e-6;
 
-/// Largest diameter with a shape, in metres: the last row of the table.
+/// Largest diameter with a shape, in meters: the last row of the table.
 pub const MAX_DIAMETER: f64 = 9.0e-3;
 
 /// Coefficients as a shader reads them: the WGSL struct of the same name, 48 bytes.
@@ -67,7 +67,7 @@ impl From<DropShapeCoefficients> for [f64; COEFFICIENTS] {
     }
 }
 
-/// Checks that a diameter (in metres) is within the range, which `allowed` states in millimetres. The ends have a
+/// Checks that a diameter (in meters) is within the range, which `allowed` states in millimeters. The ends have a
 /// relative tolerance of 1e-9: 9.0 * 1.0e-3 is above 9.0e-3.
 pub(crate) fn check_diameter(
     diameter_m: f64,

@@ -355,7 +355,7 @@ fn fall_numbers_balance_weight_and_drag() {
 }
 
 #[test]
-fn two_millimetres_relax_in_a_third_of_a_second() {
+fn two_millimeters_relax_in_a_third_of_a_second() {
     let r = relaxation(standard(GunnKinzer1949, 2.0));
     assert!((r.vertical_s - 0.33).abs() < 0.005, "{r:?}");
     assert!((r.horizontal_s - 0.66).abs() < 0.005, "{r:?}");
@@ -364,7 +364,7 @@ fn two_millimetres_relax_in_a_third_of_a_second() {
 
 /// 99 % of the terminal speed after 8.4 m (2 mm), 13 m (3 mm).
 #[test]
-fn a_drop_is_at_full_speed_after_some_metres() {
+fn a_drop_is_at_full_speed_after_some_meters() {
     for (d, distance) in [(2.0, 8.4), (3.0, 13.0)] {
         let v = standard(GunnKinzer1949, d);
         let z = distance_to_fraction(v, 0.99).unwrap();

@@ -12,7 +12,7 @@ fn cos_deg(angle: f64) -> f64 {
     ops::cos(angle.to_radians())
 }
 
-/// n = 1.333: degrees, across, within, unpolarised, Tatarchuk & Isidoro, Schlick.
+/// n = 1.333: degrees, across, within, unpolarized, Tatarchuk & Isidoro, Schlick.
 #[rustfmt::skip]
 const FRESNEL: [[f64; 6]; 18] = [
     [0.0, 0.020373, 0.020373, 0.020373, 0.05, 0.02037],
@@ -39,7 +39,7 @@ const FRESNEL: [[f64; 6]; 18] = [
 fn fresnel_has_its_tabulated_values() {
     for [degrees, s, p, r, tatarchuk, schlick] in FRESNEL {
         let c = cos_deg(degrees);
-        let [found_s, found_p] = optics_fresnel_polarised(c, 1.333);
+        let [found_s, found_p] = optics_fresnel_polarized(c, 1.333);
         for (found, expected) in [
             (found_s, s),
             (found_p, p),
@@ -65,7 +65,7 @@ fn schlick_is_as_far_off_as_said() {
 #[test]
 fn brewster_s_angle_reflects_no_p() {
     for n in [1.1, 1.333, 1.5, 2.4] {
-        let [s, p] = optics_fresnel_polarised(ops::cos(brewster_angle(n).unwrap()), n);
+        let [s, p] = optics_fresnel_polarized(ops::cos(brewster_angle(n).unwrap()), n);
         let expected = (n * n - 1.0) / (n * n + 1.0);
         assert!(p < 1e-28, "{n}: {p}");
         assert_relative_eq!(s, expected * expected, max_relative = 1e-12);
@@ -82,7 +82,7 @@ fn fresnel_is_reciprocal() {
         for i in 1..=1000 {
             let c = f64::from(i) / 1000.0;
             let c_t = (1.0 - (1.0 - c * c) / (n * n)).sqrt();
-            let (there, back) = (optics_fresnel_polarised(c, n), optics_fresnel_polarised(c_t, 1.0 / n));
+            let (there, back) = (optics_fresnel_polarized(c, n), optics_fresnel_polarized(c_t, 1.0 / n));
             for k in 0..2 {
                 assert!((there[k] - back[k]).abs() < 1e-10, "{n} {c}: {there:?} {back:?}");
             }
@@ -99,7 +99,7 @@ fn no_power_is_lost() {
         let c_t = (1.0 - (1.0 - c * c) / (n * n)).sqrt();
         let t_s = 2.0 * c / (c + n * c_t);
         let t_p = 2.0 * c / (n * c + c_t);
-        let [r_s, r_p] = optics_fresnel_polarised(c, n);
+        let [r_s, r_p] = optics_fresnel_polarized(c, n);
         assert!((r_s + n * c_t / c * t_s * t_s - 1.0).abs() < 1e-13);
         assert!((r_p + n * c_t / c * t_p * t_p - 1.0).abs() < 1e-13);
     }
@@ -108,14 +108,14 @@ fn no_power_is_lost() {
 #[test]
 fn fresnel_at_its_ends() {
     // Grazing and total reflection: 1. No interface: 0.
-    assert_eq!(optics_fresnel_polarised(0.0f32, 1.333), [1.0, 1.0]);
-    assert_eq!(optics_fresnel_polarised(-1.0e-3f32, 1.333), [1.0, 1.0]);
-    assert_eq!(optics_fresnel_polarised(0.0f32, 0.75), [1.0, 1.0]);
+    assert_eq!(optics_fresnel_polarized(0.0f32, 1.333), [1.0, 1.0]);
+    assert_eq!(optics_fresnel_polarized(-1.0e-3f32, 1.333), [1.0, 1.0]);
+    assert_eq!(optics_fresnel_polarized(0.0f32, 0.75), [1.0, 1.0]);
     let critical = critical_angle(1.333).unwrap();
-    assert_eq!(optics_fresnel_polarised(ops::cos(critical + 1e-6), 1.0 / 1.333), [1.0, 1.0]);
+    assert_eq!(optics_fresnel_polarized(ops::cos(critical + 1e-6), 1.0 / 1.333), [1.0, 1.0]);
     assert!(optics_fresnel(ops::cos(critical - 1e-3), 1.0 / 1.333) < 0.85);
     for c in [0.0, 1.0e-3, 0.5, 1.0f32] {
-        assert_eq!(optics_fresnel_polarised(c, 1.0), [0.0, 0.0], "{c}");
+        assert_eq!(optics_fresnel_polarized(c, 1.0), [0.0, 0.0], "{c}");
     }
     // f32 keeps five digits up to 89.99 degrees.
     for degrees in [0.0, 45.0, 80.0, 89.0, 89.9, 89.99] {
@@ -131,12 +131,12 @@ fn fresnel_at_its_ends() {
 fn a_sphere_reflects_what_diffuse_light_does() {
     let diffuse = diffuse_reflectance(1.333).unwrap();
     assert!((diffuse - 0.0664).abs() < 5e-5, "{diffuse}");
-    // Over the disc, in rings of b db, with b = sin^2 so that the edge is resolved.
-    let disc = GaussLegendre::new(64).integrate(0.0, 1.0, |u| {
+    // Over the disk, in rings of b db, with b = sin^2 so that the edge is resolved.
+    let disk = GaussLegendre::new(64).integrate(0.0, 1.0, |u| {
         let c = u * u;
         4.0 * u * c * optics_fresnel(c, 1.333)
     });
-    assert_relative_eq!(disc, diffuse, max_relative = 1e-9);
+    assert_relative_eq!(disk, diffuse, max_relative = 1e-9);
 }
 
 fn unit(random: [u32; 2]) -> [f64; 3] {

@@ -94,7 +94,7 @@ fn legendre_functions() {
     assert_eq!(drop_oscillation_legendre_31(1.0f32.next_up()), 0.0);
     let largest = (0..=10_000).map(|i| drop_oscillation_legendre_31(f64::from(i) * 1.0e-4).abs());
     assert!((largest.fold(0.0, f64::max) - 2.0656).abs() < 1.0e-4);
-    // Orthogonal, and of the norm of unnormalised functions: 2 / (2n + 1) (n + m)! / (n - m)!.
+    // Orthogonal, and of the norm of unnormalized functions: 2 / (2n + 1) (n + m)! / (n - m)!.
     let rule = GaussLegendre::new(12);
     let (p20, p31) = (drop_oscillation_legendre_20::<f64>, drop_oscillation_legendre_31::<f64>);
     let norms =
@@ -178,7 +178,7 @@ fn the_equilibrium_shape_keeps_its_volume() {
     }
 }
 
-/// To second order the two modes together move the center of mass towards phi = pi by 54/35 s2 s3 r0.
+/// To second order the two modes together move the center of mass toward phi = pi by 54/35 s2 s3 r0.
 #[test]
 fn the_center_of_mass_moves_sideways() {
     for displacement in [[0.01, 0.01], [-0.02, 0.01], [0.2, 0.1]] {
@@ -225,14 +225,15 @@ fn normals_and_mesh_of_an_oscillating_drop() {
     let motion = oscillation(5.0e-3, Amplitudes::GARG_NAYAR_OBLATE).with_phases([0.25, 0.25]);
     let instant = OscillatingDrop::new(shape, motion).at(0.0, 0.0);
     let direction = |theta: f64, phi: f64| [sin(theta) * cos(phi), -cos(theta), -sin(theta) * sin(phi)];
-    let place = |theta: f64, phi: f64| direction(theta, phi).map(|d| d * instant.radius(theta, phi));
+    let position = |theta: f64, phi: f64| direction(theta, phi).map(|d| d * instant.radius(theta, phi));
     for i in 1..40 {
         let (theta, phi) = (PI * f64::from(i) / 40.0, 2.4 * f64::from(i));
         let normal = instant.normal_along(direction(theta, phi));
         let h = 1.0e-5;
-        for [a, b] in
-            [[place(theta + h, phi), place(theta - h, phi)], [place(theta, phi + h), place(theta, phi - h)]]
-        {
+        for [a, b] in [
+            [position(theta + h, phi), position(theta - h, phi)],
+            [position(theta, phi + h), position(theta, phi - h)],
+        ] {
             let along: f64 = (0..3).map(|k| normal[k] * (a[k] - b[k])).sum::<f64>() / (2.0 * h * 2.5e-3);
             assert!(along.abs() < 1.0e-8, "{theta} {phi}: {along}");
         }

@@ -27,13 +27,13 @@ fn means(k: usize, count: usize, of: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
 /// Fraction of each order by the impact parameter, with the angles of each interaction computed separately.
 fn fraction_by_interactions(order: u32) -> f64 {
     let rule = GaussLegendre::new(32);
-    // The reflectance rises steeply towards the rim: b = 1 - t^4.
+    // The reflectance rises steeply toward the rim: b = 1 - t^4.
     let of = |t: f64| {
         let b = 1.0 - t * t * t * t;
         let outside = (1.0 - b * b).sqrt();
         let inside = (1.0 - b * b / (N * N)).sqrt();
-        let entry = optics_fresnel_polarised(outside, N);
-        let exit = optics_fresnel_polarised(inside, 1.0 / N);
+        let entry = optics_fresnel_polarized(outside, N);
+        let exit = optics_fresnel_polarized(inside, 1.0 / N);
         let fraction = [0, 1].map(|k| match order {
             0 => entry[k],
             p => (1.0 - entry[k]) * ops::pow(exit[k], f64::from(p - 1)) * (1.0 - exit[k]),
@@ -58,7 +58,7 @@ fn orders_have_the_fractions_of_fresnel() {
     assert!(total > 0.99 && total < 1.0, "{total}");
     let all: f64 = (0..40).map(|order| scattered_fraction(N, order).unwrap()).sum();
     assert!((all - 1.0).abs() < 1e-4, "{all}");
-    // The outside reflects the mean of Fresnel's reflectance over the disc.
+    // The outside reflects the mean of Fresnel's reflectance over the disk.
     let outside = diffuse_reflectance(N).unwrap();
     assert!((scattered_fraction(N, 0).unwrap() - outside).abs() < 1e-6);
 }
@@ -88,7 +88,7 @@ fn what_goes_through_has_its_closed_form() {
         let c = ops::cos(0.5 * angle);
         let spread = 1.0 + N * N - 2.0 * N * c;
         let b = N * ops::sin(0.5 * angle) / spread.sqrt();
-        let [s, p] = optics_fresnel_polarised((1.0 - b * b).sqrt(), N).map(|r| (1.0 - r) * (1.0 - r));
+        let [s, p] = optics_fresnel_polarized((1.0 - b * b).sqrt(), N).map(|r| (1.0 - r) * (1.0 - r));
         let cross = N * N * (N * c - 1.0) * (N - c) / (4.0 * c * spread * spread);
         // A lens of water shows the background upside down.
         [0.5 * (s + p) * cross / PI, -b]
@@ -136,9 +136,9 @@ fn bows_stand_where_the_table_of_rainbows_says() {
     }
 }
 
-/// The bow of a disc is wider and lower, and has the same light.
+/// The bow of a disk is wider and lower, and has the same light.
 #[test]
-fn a_disc_of_light_makes_a_wide_bow() {
+fn a_disk_of_light_makes_a_wide_bow() {
     let tables = [0.0, 0.05].map(|diameter| SphereScattering::new(N, 1800, diameter).unwrap());
     let highest = |table: &SphereScattering| table.paths()[2].phase.iter().copied().fold(0.0, f64::max);
     let lit = |table: &SphereScattering| table.paths()[2].phase.iter().filter(|&&phase| phase > 0.0).count();
@@ -147,8 +147,8 @@ fn a_disc_of_light_makes_a_wide_bow() {
     let wider = lit(&tables[1]) - lit(&tables[0]);
     assert!((12..=16).contains(&wider), "{wider}");
     for order in 0..SCATTERING_ORDERS {
-        let [point, disc] = [0, 1].map(|k| tables[k].fraction(order));
-        assert!((point / disc - 1.0).abs() < 1e-9, "{order}: {point}, {disc}");
+        let [point, disk] = [0, 1].map(|k| tables[k].fraction(order));
+        assert!((point / disk - 1.0).abs() < 1e-9, "{order}: {point}, {disk}");
     }
 }
 
@@ -175,7 +175,7 @@ fn glints_stand_where_a_ray_leaves() {
                     };
                 }
             }
-            // The light is at (-1, 0): its side of the disc, seen against the direction of the ray.
+            // The light is at (-1, 0): its side of the disk, seen against the direction of the ray.
             let side = [-1.0 + along[0] * along[0], along[0] * along[1], 0.0];
             let length = ops::hypot(side[0], side[1]);
             let expected = (at[0] * side[0] + at[1] * side[1]) / length;

@@ -199,7 +199,7 @@ fn smooth_across_rows() {
             let (below, at, above) = (of(d - h), of(d), of(d + h));
             for n in 0..COEFFICIENTS {
                 let (left, right) = ((at[n] - below[n]) / h, (above[n] - at[n]) / h);
-                // Slopes are up to 50 per metre; curvature (below 2e4 per m^2) times h is the allowed difference.
+                // Slopes are up to 50 per meter; curvature (below 2e4 per m^2) times h is the allowed difference.
                 assert!((left - right).abs() < 1.0e-3, "{d} {n}: {left} {right}");
             }
         }
@@ -329,7 +329,7 @@ fn directions(up: [f64; 3]) -> Vec<[f64; 3]> {
 fn normals_against_differences() {
     for (mm, up) in [(1.0, [0.0, 1.0, 0.0]), (5.0, unit([0.2, 0.9, -0.4])), (9.0, unit([-1.0, 0.1, 0.3]))] {
         let c = DropShape::new(mm * 1.0e-3).unwrap().coefficients();
-        let place = |p: [f64; 3]| {
+        let position = |p: [f64; 3]| {
             let r = drop_shape_radius(&c, -dot(p, up));
             p.map(|x| r * x)
         };
@@ -339,7 +339,7 @@ fn normals_against_differences() {
             let side = unit(cross(p, [0.48, 0.6, 0.64]));
             for tangent in [side, cross(p, side)] {
                 let h = 1.0e-5;
-                let at = |h: f64| place(unit(std::array::from_fn(|k| p[k] + h * tangent[k])));
+                let at = |h: f64| position(unit(std::array::from_fn(|k| p[k] + h * tangent[k])));
                 let (ahead, behind) = (at(h), at(-h));
                 let along: [f64; 3] = std::array::from_fn(|k| (ahead[k] - behind[k]) / (2.0 * h));
                 assert!(dot(along, normal).abs() < 2.0e-9, "{mm} {p:?}: {}", dot(along, normal));

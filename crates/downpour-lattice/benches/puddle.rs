@@ -11,7 +11,7 @@ use downpour_gpu::{AdapterChoice, ComputeKernel, Gpu, wgpu};
 use downpour_lattice::gpu::puddle::GpuPuddle;
 use downpour_lattice::puddle::{Puddle, PuddleForm, PuddleOptions, PuddleStorage};
 
-/// Naive membrane: two copies of the heights, neighbours clamped at the border.
+/// Naive membrane: two copies of the heights, neighbors clamped at the border.
 const NAIVE: &str = include_str!("naive.wgsl");
 
 fn options(size: u32, membrane: bool) -> PuddleOptions {

@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     })
     .save(folder.join("puddle_normal.png"))?;
 
-    // Seen from 35 degrees above the ground towards -z, under a sky that is dark above and bright at the horizon.
+    // Seen from 35 degrees above the ground toward -z, under a sky that is dark above and bright at the horizon.
     let seen = |x, y| {
         let [nx, ny, nz] = normal(x, y);
         let view = [0.0f32, 0.5736, 0.8192];

@@ -20,7 +20,7 @@ use downpour_lattice::gpu::glass::GpuGlass;
 use downpour_lattice::gpu::puddle::GpuPuddle;
 use downpour_lattice::puddle::{Puddle, PuddleForm, PuddleOptions, PuddleStorage};
 
-/// Two copies of the heights, neighbours clamped at the border.
+/// Two copies of the heights, neighbors clamped at the border.
 const NAIVE: &str = include_str!("../benches/naive.wgsl");
 
 const COPY: &str = "

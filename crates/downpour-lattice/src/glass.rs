@@ -1,13 +1,13 @@
 //! Drops on a pane of glass: landing, growth, merging, sliding, trails and wipers.
 //!
 //! After Tatarchuk & Isidoro 2006, section 5 (a lattice of masses, velocities and traversals, after Kaneda et al.
-//! 1999). A drop has its mass in one cell and wets the cells of a disc around it: the base of a spherical cap at the
-//! mean of the contact angles. Drops whose discs touch merge, at the position of the larger. A drop begins to slide
+//! 1999). A drop has its mass in one cell and wets the cells of a disk around it: the base of a spherical cap at the
+//! mean of the contact angles. Drops whose disks touch merge, at the position of the larger. A drop begins to slide
 //! where the forces along the pane exceed Furmidge's retention ([`GlassContact`]), which the paper leaves to the
 //! artist. It then moves to one of the three cells ahead of it (ahead along its velocity, not always below), chosen at
 //! random by affinity and wetness, and leaves beads behind.
 //!
-//! Mass is in whole nanolitres, and all forces, velocities and choices are integers: the water that came in is exactly
+//! Mass is in whole nanoliters, and all forces, velocities and choices are integers: the water that came in is exactly
 //! the water that is stored and that went out, and a GPU has the same bits. Only normals are `f32`.
 //!
 //! The pane: x is right, y is down, z out of it; rows begin at the top. SI units; angles in radians.

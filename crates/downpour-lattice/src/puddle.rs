@@ -14,7 +14,7 @@
 //!
 //! Errors of the phase speed of real water ([`Puddle::speed_error`] has them by wavelength). Water of up to 5 mm: 2.5
 //! % from 4 cells to any length, below 1 % from 6. Deeper water: the operator has a small support, so waves much
-//! longer than [`longest_wave_m`](PuddleOptions::longest_wave_m) are too slow, at 20 mm of depth by a tenth at 60
+//! longer than [`max_wave_m`](PuddleOptions::max_wave_m) are too slow, at 20 mm of depth by a tenth at 60
 //! cells. Waves below 4 cells are too slow as well, and no lattice resolves their directions. The model is linear:
 //! breaking, jets and splashes are not included.
 
@@ -99,7 +99,7 @@ impl Puddle {
         &self.model.options
     }
 
-    /// Degree of the operator: passes over the neighbours per time step.
+    /// Degree of the operator: passes over the neighbors per time step.
     #[must_use]
     pub fn degree(&self) -> u32 {
         self.model.degree

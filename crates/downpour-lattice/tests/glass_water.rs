@@ -103,7 +103,7 @@ fn the_same_bits_for_any_number_of_threads_and_any_steps() {
 
 #[test]
 fn a_pane_gets_the_rain_that_falls_on_its_slope() {
-    // Level ground gets the rate; a pane that moves towards the rain also gets the water of the air that it meets.
+    // Level ground gets the rate; a pane that moves toward the rain also gets the water of the air that it meets.
     for (tilt, speed) in [(0.0, 0.0), (0.0, 20.0), (60.0, 0.0), (90.0, 8.0), (30.0, 15.0)] {
         let tilt_rad = f64::to_radians(tilt);
         let options =
@@ -234,7 +234,7 @@ fn drops_dry_at_the_rate_that_was_asked() {
         glass.pour(8 + 16 * (k % 4), 8 + 16 * (k / 4), 4.0e-9).expect("a drop");
     }
     glass.step(3.0).expect("a step");
-    // 10 um/s over the discs.
+    // 10 um/s over the disks.
     let radius = GlassContact::default().radius(4.0e-9);
     let expected = 16.0 * std::f64::consts::PI * radius * radius * 1.0e-5 * 3.0 / Glass::UNIT_M3;
     let dried = glass.totals().evaporated as f64;

@@ -11,14 +11,14 @@ pub enum MaskError {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// The mask would be larger than allowed.
-    #[error("mask size is {found}; allowed: {least} to {most}")]
+    #[error("mask size is {found}; allowed: {min} to {max}")]
     Size {
         /// The size asked for, in pixels along an edge.
         found: u32,
-        /// The smallest size.
-        least: u32,
-        /// The largest size.
-        most: u32,
+        /// Minimum size.
+        min: u32,
+        /// Maximum size.
+        max: u32,
     },
     /// The drop itself is not possible.
     #[error(transparent)]
@@ -32,10 +32,10 @@ pub enum MaskError {
         allowed: &'static str,
     },
     /// A mask file is not what it should be.
-    #[error("{place}: found {found}; allowed: {allowed}")]
+    #[error("{location}: found {found}; allowed: {allowed}")]
     File {
         /// The part of the file.
-        place: &'static str,
+        location: &'static str,
         /// The content found.
         found: String,
         /// The allowed content.

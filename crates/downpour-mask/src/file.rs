@@ -20,7 +20,7 @@ use crate::{MaskError, View};
 /// Description of the masks in a file besides the texels: `key=value` pairs, separated by semicolons.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Description {
-    /// Volume-equivalent diameters in metres.
+    /// Volume-equivalent diameters in meters.
     pub(crate) diameters: Vec<f64>,
     /// Half extents in equivalent radii, one per diameter.
     pub(crate) half_extents: Vec<f64>,
@@ -34,19 +34,19 @@ const VERSION: &str = "2";
 impl Description {
     pub(crate) fn write(&self) -> String {
         let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-        let millimetres: Vec<f64> = self.diameters.iter().map(|d| d * 1.0e3).collect();
+        let millimeters: Vec<f64> = self.diameters.iter().map(|d| d * 1.0e3).collect();
         format!(
             "version={VERSION};diameter_mm={};half_extent={};elevation_deg={};refractive_index={}",
-            list(&millimetres),
+            list(&millimeters),
             list(&self.half_extents),
             self.view.elevation().to_degrees(),
             self.refractive_index
         )
     }
 
-    pub(crate) fn read(place: &'static str, text: &str) -> Result<Self, MaskError> {
+    pub(crate) fn read(location: &'static str, text: &str) -> Result<Self, MaskError> {
         const ALLOWED: &str = "version=2;diameter_mm=..;half_extent=..;elevation_deg=..;refractive_index=..";
-        let bad = || MaskError::File { place, found: shorten(text), allowed: ALLOWED };
+        let bad = || MaskError::File { location, found: shorten(text), allowed: ALLOWED };
         let value = |key: &str| {
             text.split(';').find_map(|pair| pair.split_once('=').filter(|(k, _)| *k == key)).map(|(_, v)| v)
         };

@@ -9,7 +9,7 @@
 //! - [`mod@file`]: OpenEXR, KTX2, PNG.
 //!
 //! Lengths inside a mask are in units of the drop's volume-equivalent radius; directions are in the frame of the
-//! view: x right, y up, z towards the viewer.
+//! view: x right, y up, z toward the viewer.
 
 mod closed_mesh;
 mod drop;

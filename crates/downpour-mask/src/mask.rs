@@ -8,7 +8,7 @@ pub const SIZES: std::ops::RangeInclusive<u32> = 4..=4096;
 
 /// One texel: the viewer's ray through it after the drop. The same layout as `MaskTexel` in WGSL.
 ///
-/// Directions are in the frame of the view: x right, y up, z towards the viewer. Light that comes straight from
+/// Directions are in the frame of the view: x right, y up, z toward the viewer. Light that comes straight from
 /// behind the drop has the direction (0, 0, -1).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -42,7 +42,7 @@ impl MaskTexel {
         }
         // The normal halves the angle between viewer and reflection: cos^2 i = (1 + reflected.z) / 2.
         let cosine = ((1.0 + self.reflected[2]) * 0.5).max(0.0).sqrt();
-        let [s, p] = downpour_drop::optics::optics_fresnel_polarised(cosine, refractive_index);
+        let [s, p] = downpour_drop::optics::optics_fresnel_polarized(cosine, refractive_index);
         (s + p) * 0.5
     }
 }
@@ -52,7 +52,7 @@ impl MaskTexel {
 pub struct Mask {
     /// Pixels along an edge.
     pub size: u32,
-    /// Volume-equivalent diameter in metres.
+    /// Volume-equivalent diameter in meters.
     pub diameter: f64,
     /// Direction from which the drop is seen.
     pub view: View,
@@ -116,7 +116,7 @@ impl MaskOptions {
     /// [`MaskError::Size`] or [`MaskError::OutOfRange`].
     pub fn check(&self) -> Result<(), MaskError> {
         if !SIZES.contains(&self.size) {
-            return Err(MaskError::Size { found: self.size, least: *SIZES.start(), most: *SIZES.end() });
+            return Err(MaskError::Size { found: self.size, min: *SIZES.start(), max: *SIZES.end() });
         }
         if !(self.refractive_index > 1.0 && self.refractive_index <= 4.0) {
             return Err(MaskError::OutOfRange(OutOfRange {

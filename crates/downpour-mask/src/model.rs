@@ -7,9 +7,9 @@
 //!
 //! Limits: light that leaves the mesh and would enter it again (a hollow in the outline) is not followed.
 
-use downpour_drop::optics::{optics_fresnel_polarised, optics_reflect, optics_refract};
+use downpour_drop::optics::{optics_fresnel_polarized, optics_reflect, optics_refract};
 use downpour_math::vector::{add_scaled, normalize, scale};
-use downpour_shaders::mask::{MASK_MODEL_NEAREST, MASK_MODEL_SUBSAMPLES, MASK_TRACE_REFLECTIONS};
+use downpour_shaders::mask::{MASK_MODEL_MIN_DISTANCE, MASK_MODEL_SUBSAMPLES, MASK_TRACE_REFLECTIONS};
 use rayon::prelude::*;
 
 use crate::closed_mesh::ClosedMesh;
@@ -55,7 +55,7 @@ impl TracedModel {
 
     /// Hit of the viewer's ray through (x, y) with the mesh, if any.
     fn mask_model_hit(&self, x: f32, y: f32) -> Option<Hit> {
-        self.bvh.hit([x, y, self.front], [0.0, 0.0, -1.0], MASK_MODEL_NEAREST)
+        self.bvh.hit([x, y, self.front], [0.0, 0.0, -1.0], MASK_MODEL_MIN_DISTANCE)
     }
 
     /// The interpolated normal at a hit.
@@ -70,7 +70,7 @@ impl TracedModel {
     fn mask_model_exit(&self, start: [f32; 3], inside: [f32; 3]) -> Option<Exit<f32>> {
         let (mut point, mut inside) = (start, inside);
         for reflections in 0..=MASK_TRACE_REFLECTIONS {
-            let hit = self.bvh.hit(point, inside, MASK_MODEL_NEAREST)?;
+            let hit = self.bvh.hit(point, inside, MASK_MODEL_MIN_DISTANCE)?;
             let normal = self.mask_model_normal(&hit);
             point = add_scaled(point, inside, hit.distance);
             let (outside, cos2) = optics_refract(inside, scale(normal, -1.0), self.index);
@@ -94,7 +94,7 @@ impl TracedModel {
         let incident = [0.0, 0.0, -1.0];
         let index = self.index;
         let entry_normal = self.mask_model_normal(hit);
-        let [entry_s, entry_p] = optics_fresnel_polarised(entry_normal[2].max(0.0), index);
+        let [entry_s, entry_p] = optics_fresnel_polarized(entry_normal[2].max(0.0), index);
         let entered = 1.0 - (entry_s + entry_p) * 0.5;
         let reflected = normalize(optics_reflect(incident, entry_normal));
         let (refracted, _) = optics_refract(incident, entry_normal, 1.0 / index);
@@ -108,12 +108,12 @@ impl TracedModel {
                 ..MaskTexel::default()
             };
         };
-        let mut polarised = 0.0;
+        let mut polarized = 0.0;
         if exit.reflections == 0.0 {
-            polarised = (entry_p - entry_s) * 0.5 * mask_trace_plane_turn(inside, entry_normal, exit.normal);
+            polarized = (entry_p - entry_s) * 0.5 * mask_trace_plane_turn(inside, entry_normal, exit.normal);
         }
         let [exit_s, exit_p] = mask_trace_reflectance(&exit, index);
-        let transmittance = entered * (1.0 - (exit_s + exit_p) * 0.5) + polarised * (exit_p - exit_s) * 0.5;
+        let transmittance = entered * (1.0 - (exit_s + exit_p) * 0.5) + polarized * (exit_p - exit_s) * 0.5;
         let direction = normalize(exit.outside);
         let texel = MaskTexel {
             direction,
@@ -126,17 +126,17 @@ impl TracedModel {
         let back = normalize(optics_reflect(exit.inside, exit.normal));
         let Some(second) = self.mask_model_exit(exit.point, back) else { return texel };
         let kept = entered - transmittance;
-        let mut kept_polarised = (entered * (exit_s - exit_p) + polarised * (exit_s + exit_p)) * 0.5;
+        let mut kept_polarized = (entered * (exit_s - exit_p) + polarized * (exit_s + exit_p)) * 0.5;
         if second.reflections == 0.0 {
-            kept_polarised *= mask_trace_plane_turn(back, exit.normal, second.normal);
+            kept_polarized *= mask_trace_plane_turn(back, exit.normal, second.normal);
         } else {
-            kept_polarised = 0.0;
+            kept_polarized = 0.0;
         }
         let [second_s, second_p] = mask_trace_reflectance(&second, index);
         MaskTexel {
             internal: normalize(second.outside),
             internal_transmittance: kept * (1.0 - (second_s + second_p) * 0.5)
-                + kept_polarised * (second_p - second_s) * 0.5,
+                + kept_polarized * (second_p - second_s) * 0.5,
             ..texel
         }
     }
@@ -197,7 +197,7 @@ impl TracedModel {
 
 /// Traces the mask of a drop model, rows in parallel. The model's +Y is the drop's axis.
 ///
-/// `diameter` is written to the mask, in metres; `None` takes the model's units for metres.
+/// `diameter` is written to the mask, in meters; `None` takes the model's units for meters.
 ///
 /// # Errors
 /// [`MaskError::Size`] or [`MaskError::OutOfRange`] if an option is out of range.

@@ -3,7 +3,7 @@
 //! On the viewer's ray through a pixel the gauge g has a minimum; the drop is hit where that is below 1. At the
 //! minimum the gradient of g lies in the image plane, so (g - 1) / |grad g| is the distance to the outline, and
 //! the pixel is cut by a half plane at that distance. Its covered area is exact for a straight edge; the curvature
-//! of the outline within a pixel is neglected: it adds 1 / (12 R^2) to the area of a disc of R
+//! of the outline within a pixel is neglected: it adds 1 / (12 R^2) to the area of a disk of R
 //! pixels.
 //!
 //! A pixel on the outline is traced at the middle of its covered part, not at its center: the ray then hits the

@@ -1,7 +1,7 @@
 //! A ray through a drop of revolution: two interfaces, exactly.
 //!
 //! All lengths are in units of the drop's volume-equivalent radius a. The frame is that of the view: x right, y
-//! up, z towards the viewer, the drop's origin at 0; a ray of the viewer runs along -z. `up` is the drop's axis
+//! up, z toward the viewer, the drop's origin at 0; a ray of the viewer runs along -z. `up` is the drop's axis
 //! in that frame, so the angle of a point p from the downward axis has the cosine x = -p.up / |p|, and the surface
 //! is |p| = rho(x) (`downpour_drop::shape`).
 //!
@@ -23,7 +23,7 @@
 //!
 //! Limits: orthographic rays (a drop is much smaller than its distance); geometrical optics.
 
-use downpour_drop::optics::{optics_fresnel_polarised, optics_reflect, optics_refract};
+use downpour_drop::optics::{optics_fresnel_polarized, optics_reflect, optics_refract};
 use downpour_drop::shape::drop_shape_radius_slope;
 use downpour_math::real::Real;
 use downpour_math::vector::{add_scaled, cross, dot, normalize, scale, select};
@@ -231,7 +231,7 @@ pub fn mask_trace_exit<R: Real>(drop: &TracedDrop, start: [R; 3], inside: [R; 3]
 #[must_use]
 pub fn mask_trace_reflectance<R: Real>(exit: &Exit<R>, index: R) -> [R; 2] {
     let zero = index.constant(0.0);
-    optics_fresnel_polarised(dot(exit.inside, exit.normal).at_least(zero), index.constant(1.0) / index)
+    optics_fresnel_polarized(dot(exit.inside, exit.normal).at_least(zero), index.constant(1.0) / index)
 }
 
 /// The viewer's ray through the point (x, y) of the image plane, through the drop.
@@ -247,32 +247,32 @@ pub fn mask_trace_through<R: Real>(drop: &TracedDrop, x: R, y: R) -> Through<R> 
     let incident = [zero, zero, -one];
     let entry = mask_trace_meet(drop, [x, y, zero], incident, -one);
     let entry_normal = mask_trace_normal(drop, entry);
-    let [entry_s, entry_p] = optics_fresnel_polarised(entry_normal[2].at_least(zero), index);
+    let [entry_s, entry_p] = optics_fresnel_polarized(entry_normal[2].at_least(zero), index);
     let reflectance = (entry_s + entry_p) * half;
     let reflected = optics_reflect(incident, entry_normal);
     let (mut inside, _) = optics_refract(incident, entry_normal, one / index);
     inside = normalize(inside);
 
-    // Polarization is followed from interface to interface: `polarised` is half the difference between the power polarized
+    // Polarization is followed from interface to interface: `polarized` is half the difference between the power polarized
     // across and that within the plane of incidence. A total reflection changes it by a phase-dependent amount; from there on
     // light counts as unpolarized.
     let exit = mask_trace_exit(drop, entry, inside);
     let turn = mask_trace_plane_turn(inside, entry_normal, exit.normal);
-    let polarised = R::select(zero.less(exit.reflections), zero, (entry_p - entry_s) * half * turn);
+    let polarized = R::select(zero.less(exit.reflections), zero, (entry_p - entry_s) * half * turn);
     let [exit_s, exit_p] = mask_trace_reflectance(&exit, index);
     let entered = one - reflectance;
     let exit_mean = one - (exit_s + exit_p) * half;
-    let through = entered * exit_mean + polarised * (exit_p - exit_s) * half;
+    let through = entered * exit_mean + polarized * (exit_p - exit_s) * half;
 
     let back = optics_reflect(exit.inside, exit.normal);
     let second = mask_trace_exit(drop, exit.point, back);
     let kept = entered - through;
-    let kept_polarised = (entered * (exit_s - exit_p) + polarised * (exit_s + exit_p)) * half;
+    let kept_polarized = (entered * (exit_s - exit_p) + polarized * (exit_s + exit_p)) * half;
     let second_turn = mask_trace_plane_turn(back, exit.normal, second.normal);
-    let second_polarised = R::select(zero.less(second.reflections), zero, kept_polarised * second_turn);
+    let second_polarized = R::select(zero.less(second.reflections), zero, kept_polarized * second_turn);
     let [second_s, second_p] = mask_trace_reflectance(&second, index);
     let second_mean = one - (second_s + second_p) * half;
-    let internal = kept * second_mean + second_polarised * (second_p - second_s) * half;
+    let internal = kept * second_mean + second_polarized * (second_p - second_s) * half;
     let lost = zero.less(exit.lost);
     Through {
         direction: normalize(exit.outside),

@@ -38,7 +38,7 @@ impl View {
         self.elevation
     }
 
-    /// The drop's upward axis in the frame of the view (x right, y up, z towards the viewer).
+    /// The drop's upward axis in the frame of the view (x right, y up, z toward the viewer).
     ///
     /// ```
     /// use downpour_mask::View;

@@ -2,7 +2,7 @@
 //!
 //! The surface is r = rho(x) f(x, h) scale with f = 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h: the shape at rest times the factor of
 //! `downpour_drop::oscillation`. p is a point, x = -p.y / |p| and h = p.x / |p|; lengths are in units of the
-//! volume-equivalent radius, the drop's origin is at 0, its axis is +Y, the lobe of the mode (3,1) is towards +X. The gauge
+//! volume-equivalent radius, the drop's origin is at 0, its axis is +Y, the lobe of the mode (3,1) is toward +X. The gauge
 //! squared is G = |p|^2 / r^2; with `q = rho' / rho + f_x / f` and `k = f_h / f`,
 //!
 //! > 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2,
@@ -50,7 +50,7 @@ pub struct WobbleLight<R> {
     /// Directions, of length 1; 0 for a missing exit.
     pub exits: [[R; 3]; 4],
     /// Fractions of the light; 1 minus their sum is lost.
-    pub shares: [R; 4],
+    pub fractions: [R; 4],
     /// Number of interfaces up to the exit (from 1), by which the paths of neighboring rays are compared; 0 for a missing exit.
     pub interfaces: [R; 4],
 }
@@ -138,7 +138,7 @@ pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], directio
     let reflectance = optics_fresnel(-dot(direction, normal), index);
     let mut light = WobbleLight {
         exits: [optics_reflect(direction, normal), [zero; 3], [zero; 3], [zero; 3]],
-        shares: [reflectance, zero, zero, zero],
+        fractions: [reflectance, zero, zero, zero],
         interfaces: [one, zero, zero, zero],
     };
     let (entering, _) = optics_refract(direction, normal, one / index);
@@ -163,7 +163,7 @@ pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], directio
             let is_this = one.both(leaves, number.less(next + one.constant(0.5)));
             let is_this = one.both(is_this, next.less(number + one.constant(0.5)));
             light.exits[exit] = select(is_this, outside, light.exits[exit]);
-            light.shares[exit] = R::select(is_this, rest * (one - kept), light.shares[exit]);
+            light.fractions[exit] = R::select(is_this, rest * (one - kept), light.fractions[exit]);
             let passed = one.constant(f64::from(bounce + 2));
             light.interfaces[exit] = R::select(is_this, passed, light.interfaces[exit]);
         }
@@ -175,7 +175,7 @@ pub fn mask_wobble_light<R: Real>(drop: &WobbleDrop<R>, origin: [R; 3], directio
         let number = one.constant(exit as f64);
         let is_last =
             one.both(number.less(found + one.constant(0.5)), found.less(number + one.constant(0.5)));
-        light.shares[exit] = light.shares[exit] + R::select(is_last, rest, zero);
+        light.fractions[exit] = light.fractions[exit] + R::select(is_last, rest, zero);
     }
     light
 }

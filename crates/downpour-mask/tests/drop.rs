@@ -49,10 +49,10 @@ fn a_sphere_turns_a_ray_by_twice_the_difference() {
         let phi = 0.7 * f64::from(k);
         let (x, y) = (b * ops::cos(phi), b * ops::sin(phi));
         let turn = 2.0 * (ops::asin(b) - ops::asin(b / INDEX));
-        // The ray bends towards the axis: the picture in the drop is upside down.
+        // The ray bends toward the axis: the picture in the drop is upside down.
         let exact = [-ops::sin(turn) * ops::cos(phi), -ops::sin(turn) * ops::sin(phi), -ops::cos(turn)];
         let through = mask_trace_through(&drop, x, y);
-        // The derivative of asin grows without bound towards the rim.
+        // The derivative of asin grows without bound toward the rim.
         let slack = 1.0e-9 / (1.0 - b * b).sqrt().max(1.0e-6);
         let error = largest_difference(through.direction, exact);
         assert!(error < slack.max(1.0e-12), "b = {b}: {:?} for {exact:?}", through.direction);
@@ -148,14 +148,14 @@ fn a_mask_has_almost_all_light() {
 }
 
 #[test]
-fn the_area_of_a_sphere_is_that_of_a_disc() {
+fn the_area_of_a_sphere_is_that_of_a_disk() {
     for size in [16, 63, 64, 256] {
         let mask = trace_drop(&sphere(), &options(size, 0.0)).unwrap();
         let area: f64 = mask.texels.iter().map(|t| f64::from(t.coverage)).sum::<f64>()
             * mask.texel_width()
             * mask.texel_width();
         let error = (area / std::f64::consts::PI - 1.0).abs();
-        // A tangent instead of an arc adds 1 / (12 R^2) to the area of a disc of R pixels.
+        // A tangent instead of an arc adds 1 / (12 R^2) to the area of a disk of R pixels.
         let radius = 1.0 / mask.texel_width();
         let allowed = 1.0 / (12.0 * radius * radius);
         assert!(error < 1.1 * allowed + 1.0e-6, "size {size}: {error:e} of {allowed:e}");

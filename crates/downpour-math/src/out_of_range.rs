@@ -27,7 +27,7 @@ pub struct OutOfRange {
 }
 
 /// Returns `value` if it is within `range`; NaN is in no range. The message names the value times `factor`, so that
-/// metres can be reported as millimetres.
+/// meters can be reported as millimeters.
 ///
 /// # Errors
 /// [`OutOfRange`] with the value in `unit`.

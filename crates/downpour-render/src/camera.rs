@@ -5,25 +5,25 @@ use glam::{DVec3, Vec2, Vec3};
 
 use crate::RenderError;
 
-/// Smallest and largest number of pixels along an edge.
+/// Allowed number of pixels along an edge of a picture.
 pub const PIXELS: std::ops::RangeInclusive<u32> = 1..=16384;
 
-/// The longest exposure, s.
-pub const LONGEST_EXPOSURE_S: f64 = 1.0;
+/// Maximum exposure time, s.
+pub const MAX_EXPOSURE_S: f64 = 1.0;
 
-/// Motion of the eye in the middle of the exposure.
+/// Motion of the eye at mid-exposure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EyeMotion {
     /// Velocity, m/s.
     pub velocity: Vec3,
-    /// The axis about which it turns, right-handed, of the length of its angular speed, rad/s.
+    /// Angular velocity: right-handed axis, its length is the angular speed, rad/s.
     pub turning: Vec3,
 }
 
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
-    /// Place of the eye, metres.
+    /// Position of the eye, meters.
     pub eye: Vec3,
     /// View direction, of any length above 0.
     pub forward: Vec3,
@@ -34,7 +34,7 @@ pub struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// The camera's axes: right, up, forward, of length 1.
+    /// Returns the camera's unit axes: right, up, forward.
     ///
     /// # Errors
     /// [`RenderError::OutOfRange`] if a number is not finite, or the view direction or field of view is not one.
@@ -73,7 +73,7 @@ impl Viewpoint {
         Ok([right, right.cross(forward), forward])
     }
 
-    /// The camera of a picture of `size` pixels; `seed` is that of its random numbers.
+    /// Returns the camera of a picture of `size` pixels; `seed` is the seed of its random numbers.
     ///
     /// # Errors
     /// [`RenderError::Size`] outside [`PIXELS`], or as [`Viewpoint::axes`].
@@ -100,7 +100,7 @@ impl Viewpoint {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Camera {
-    /// Position of the eye, metres.
+    /// Position of the eye, meters.
     pub eye: Vec3,
     /// Columns of the picture.
     pub width: u32,
@@ -158,7 +158,7 @@ impl Camera {
 pub struct PictureEdge {
     /// Unit vector to the right.
     pub right: DVec3,
-    /// Unit vector upwards in the picture.
+    /// Unit vector up in the picture.
     pub up: DVec3,
     /// Unit view direction.
     pub forward: DVec3,
@@ -169,7 +169,7 @@ pub struct PictureEdge {
 }
 
 impl PictureEdge {
-    /// Those of a viewpoint, for a picture of columns and rows.
+    /// Computes the axes of a viewpoint, for a picture of `size` columns and rows.
     ///
     /// # Errors
     /// As [`Viewpoint::axes`].
@@ -189,5 +189,5 @@ pub fn check_size(size: [u32; 2]) -> Result<(), RenderError> {
     if size.iter().all(|edge| PIXELS.contains(edge)) {
         return Ok(());
     }
-    Err(RenderError::Size { found: size, least: *PIXELS.start(), most: *PIXELS.end() })
+    Err(RenderError::Size { found: size, min: *PIXELS.start(), max: *PIXELS.end() })
 }

@@ -2,7 +2,7 @@
 
 use downpour_math::OutOfRange;
 
-/// Reason why a picture was not made.
+/// Error of a picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -10,19 +10,19 @@ pub enum RenderError {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// The picture is too small or too large.
-    #[error("the picture is {} x {} pixels; allowed: {least} to {most} each way", found[0], found[1])]
+    #[error("the picture is {} x {} pixels; allowed: {min} to {max} each way", found[0], found[1])]
     Size {
         /// Width and height asked for.
         found: [u32; 2],
-        /// The least.
-        least: u32,
-        /// The most.
-        most: u32,
+        /// Minimum edge.
+        min: u32,
+        /// Maximum edge.
+        max: u32,
     },
-    /// A lamp's light is no light.
-    #[error("light {index} has a colour of {found}; allowed: finite numbers from 0 to 1e30")]
+    /// The color of a lamp is negative or not finite.
+    #[error("light {index} has a color of {found}; allowed: finite numbers from 0 to 1e30")]
     Light {
-        /// Its place among the lights of the scene.
+        /// Index among the lights of the scene.
         index: u32,
         /// The first number that is wrong.
         found: f32,

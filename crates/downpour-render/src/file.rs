@@ -7,8 +7,8 @@
 //! | `R`, `G`, `B` | the picture: `clean * transmittance + rain`, or that through a pane of wet glass; the other channels are behind the pane |
 //! | `clean.R`, `clean.G`, `clean.B` | radiance of the scene without rain |
 //! | `rain.R`, `rain.G`, `rain.B` | radiance that the rain adds |
-//! | `transmittance.Y` | share of the scene's light that comes through the rain, 0 to 1 |
-//! | `depth.Z` | distance of the nearest surface from the eye along the ray, metres; 1e30 for the sky |
+//! | `transmittance.Y` | fraction of the scene's light that comes through the rain, 0 to 1 |
+//! | `depth.Z` | distance of the nearest surface from the eye along the ray, meters; 1e30 for the sky |
 
 use std::io::Cursor;
 
@@ -18,7 +18,7 @@ use image::{ImageFormat, RgbImage};
 use crate::RenderError;
 use crate::picture::through_rain;
 
-/// Linear radiance as the bytes of an OpenEXR file: channels R, G, B of 32 bits, ZIP compressed. Rows from the top.
+/// Encodes linear radiance as an OpenEXR file: channels R, G, B of 32 bits, ZIP compressed. Rows from the top.
 ///
 /// # Errors
 /// [`RenderError::Encode`] if the pixels are not `width` times `height`, or the encoder fails.
@@ -28,7 +28,7 @@ pub fn write_exr(width: u32, height: u32, pixels: &[[f32; 3]]) -> core::result::
     exr([width, height], pixels.len(), channels.collect())
 }
 
-/// A picture with all its layers as the bytes of one OpenEXR file: see [the module](self) for the channels.
+/// Encodes a picture with all its layers as one OpenEXR file: see [the module](self) for the channels.
 ///
 /// `clean` is radiance and distance of the scene, `rain` radiance and transmittance of the rain, `glass` the picture through a
 /// pane, if there is one.
@@ -88,7 +88,7 @@ fn exr(
     Ok(bytes.into_inner())
 }
 
-/// 8-bit sRGB pixels as the bytes of a PNG file. Rows from the top.
+/// Encodes 8-bit sRGB pixels as a PNG file. Rows from the top.
 ///
 /// # Errors
 /// As [`write_exr`].

@@ -1,6 +1,6 @@
 //! Rain on a pane of glass before the camera, and the picture through it.
 //!
-//! 1. [`WetPane`]: the pane of a weather, whose lattice ([`downpour_lattice::glass`]) goes on from picture to picture;
+//! 1. [`WetPane`]: the pane of a weather, whose lattice ([`downpour_lattice::glass`]) is kept and stepped from picture to picture;
 //! 2. [`GlassPicture`]: its drops as smooth surfaces, sorted into bins, with what a picture asks of pane and lens;
 //! 3. [`GlassPicture::through`] (or [`gpu::GlassRenderer`](crate::gpu::GlassRenderer)): the picture through it, ray by ray.
 //!
@@ -26,7 +26,7 @@ pub mod light;
 mod meet;
 mod pane;
 mod picture;
-mod seen;
+mod radiance;
 mod shade;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod water;

@@ -263,7 +263,7 @@ impl HostEnvironment<'_> {
     }
 }
 
-/// Corner 0 to 2 of a triangle that covers the picture.
+/// Corner 0 to 2 of what covers the picture.
 #[must_use]
 pub fn host_blend_corner(index: u32) -> [f32; 4] {
     let x = ((index & 1) << 2) as f32 - 1.0;
@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn the_triangle_covers_the_picture() {
+    fn the_corners_cover_the_picture() {
         let corners = [0, 1, 2].map(host_blend_corner);
         assert_eq!(corners.map(|c| [c[0], c[1]]), [[-1.0, 1.0], [3.0, 1.0], [-1.0, -3.0]]);
     }

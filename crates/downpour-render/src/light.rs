@@ -27,22 +27,22 @@ pub enum LightSource {
     },
     /// Light from a point.
     Point {
-        /// Place, metres.
+        /// Position, meters.
         position: Vec3,
         /// Radiant intensity: irradiance at 1 m.
         intensity: Vec3,
-        /// No light beyond this, metres; 0 for no end.
+        /// Range of the light, meters; 0: unlimited.
         range: f32,
     },
     /// Light from a point in a cone.
     Spot {
-        /// Place, metres.
+        /// Position, meters.
         position: Vec3,
         /// Axis of the cone, of length 1.
         direction: Vec3,
         /// Radiant intensity on the axis.
         intensity: Vec3,
-        /// No light beyond this, metres; 0 for no end.
+        /// Range of the light, meters; 0: unlimited.
         range: f32,
         /// Half angle of the full light, radians.
         inner: f32,
@@ -54,17 +54,17 @@ pub enum LightSource {
 /// A lamp or the sun as the shaders read it: four rows of a table. Twin of `RenderLight` in `shaders/wgsl/render/light.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Light {
-    /// Position, metres; nothing for parallel light.
+    /// Position, meters; nothing for parallel light.
     pub position: Vec3,
     /// True for parallel light.
     pub is_parallel: bool,
-    /// Direction in which the light goes, or the axis of the cone.
+    /// Direction of the light, or axis of the cone.
     pub axis: Vec3,
-    /// Chord from the middle to the edge of the disc that a drop shows of it; 0: that of the sun.
+    /// Chord from the center to the edge of its disk as seen in a drop; 0: that of the sun.
     pub chord: f32,
     /// Irradiance over pi of a surface that faces it, for a lamp at 1 m.
     pub color: Vec3,
-    /// No light beyond this, metres; 0 for no end.
+    /// Range of the light, meters; 0: unlimited.
     pub range: f32,
     /// Scale and offset of the cosine at the edge of the cone: `clamp(cosine * scale + offset, 0, 1)` squared.
     pub cone: [f32; 2],
@@ -75,7 +75,7 @@ pub struct Light {
 pub struct LightSample {
     /// Unit direction to the lamp.
     pub direction: Vec3,
-    /// Distance of the lamp, metres.
+    /// Distance of the lamp, meters.
     pub distance: f32,
     /// Irradiance over pi of a surface that faces it.
     pub irradiance: Vec3,
@@ -99,7 +99,7 @@ impl Light {
         }
     }
 
-    /// The light at a point. A lamp that is nearer than `least` is as bright as from there.
+    /// Returns the light at a point. A lamp nearer than `least` is as bright as at that distance.
     #[must_use]
     pub fn light_sample(&self, point: Vec3, least: f32) -> LightSample {
         if self.is_parallel {
@@ -125,14 +125,14 @@ impl Light {
     }
 }
 
-/// Sum of a color's parts, by which lights are compared.
+/// Sum of a color's components, by which lights are compared.
 #[must_use]
 pub fn light_weight(color: Vec3) -> f32 {
     color.x + color.y + color.z
 }
 
 impl LightSource {
-    /// The rows of the light in a table.
+    /// Returns the rows of the light in a table.
     #[must_use]
     pub fn rows(&self) -> [[u32; 4]; ROWS] {
         let over_pi = |c: Vec3| c / PI;
@@ -167,7 +167,7 @@ impl LightSource {
     }
 }
 
-/// The brightest light: a tenth of a millimetre from the lamp it is still within an `f32`.
+/// The brightest light: a tenth of a millimeter from the lamp it is still within an `f32`.
 const BRIGHTEST: f32 = 1.0e30;
 
 /// Checks that the colors of all lights are finite and not negative.

@@ -7,7 +7,7 @@ use downpour_shaders::render::path::{
 };
 use downpour_shaders::render::scene::SKYLIGHT_RADIUS;
 
-/// Words for the rays of sample k of a pixel. The first three are those of a lattice of rank 1, of which the pixels of any
+/// Words for the rays of sample k of a pixel. The first three are those of a rank-1 lattice, of which the pixels of any
 /// window of the filter's size have each point once: their mean has no pattern. The last is the pixel's own.
 #[must_use]
 pub fn path_lattice_words(seed: u32, x: u32, y: u32, k: u32) -> [u32; 4] {
@@ -25,7 +25,7 @@ pub fn path_lattice_words(seed: u32, x: u32, y: u32, k: u32) -> [u32; 4] {
     ]
 }
 
-/// Numbers in [0, 1) for ray `index` of `count` of a turn: two for its direction, one for whether it goes on, one for a lamp.
+/// Numbers in [0, 1) for ray `index` of `count` of a turn: two for its direction, one for its survival, one for a lamp.
 #[must_use]
 pub fn path_lattice_numbers(random: [u32; 4], turn: u32, bounce: u32, index: u32, count: u32) -> [f32; 4] {
     let own = rng_pcg4d([random[3], turn, bounce, PATH_DIMENSION]).map(rng_unit);

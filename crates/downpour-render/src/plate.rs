@@ -22,22 +22,22 @@ pub trait Lighting: Debug + Sync {
     /// Light `index`, below [`Lighting::light_count`].
     fn light(&self, index: u32) -> Light;
 
-    /// Fraction of light, by color, that passes from a point along a unit direction over a distance in metres.
+    /// Fraction of light, by color, that passes from a point along a unit direction over a distance in meters.
     fn visibility(&self, point: Vec3, direction: Vec3, distance: f32) -> Vec3;
 
-    /// Distance of the nearest solid from a point along a unit direction, metres; `None` where there is none.
+    /// Distance of the nearest solid from a point along a unit direction, meters; `None` where there is none.
     fn obstacle(&self, point: Vec3, direction: Vec3) -> Option<f32>;
 
     /// True if there are no obstacles at all.
     fn is_open(&self) -> bool;
 }
 
-/// A picture without rain, with what is needed to rain on it.
+/// A picture without rain, with all that is needed to add rain.
 #[derive(Clone, Copy, Debug)]
 pub struct Plate<'a> {
-    /// The camera that took it.
+    /// Camera of the picture.
     pub camera: &'a Camera,
-    /// Radiance, linear, and distance of what is nearest in each pixel (1e30 for the sky), rows from the top.
+    /// Linear radiance, and distance of the nearest surface in each pixel (1e30 for the sky), rows from the top.
     pub pixels: &'a [[f32; 4]],
     /// Radiance from every direction around the eye.
     pub environment: &'a EnvironmentMap,

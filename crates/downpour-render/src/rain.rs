@@ -42,14 +42,14 @@ pub(crate) mod streak;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod streak;
+#[cfg(not(feature = "parity"))]
+pub(crate) mod streak_cell;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod streak_cell;
 mod streak_light;
 mod streak_lookup;
 mod streak_path;
-#[cfg(not(feature = "parity"))]
-pub(crate) mod streak_place;
-#[cfg(feature = "parity")]
-#[doc(hidden)]
-pub mod streak_place;
 mod streak_rays;
 mod streak_table;
 mod tiles;
@@ -76,15 +76,15 @@ pub use weather::drop_model;
 /// Glints that are kept of a drop where nothing else is said.
 const GLINTS: u32 = 4;
 
-/// Method that finds the color of a drop's pixel.
+/// Lookup of the color of a drop's pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum RefractionForm {
-    /// The direction of the refracted light is looked up in everything round the eye, and what the drop reflects is
+    /// The direction of the refracted light is looked up in an environment map around the eye, and reflected light is
     /// added: exact for a scene that is far compared with the drop's distance.
     #[default]
     Direction = DROPS_DIRECTION,
-    /// Rousseau 2006, 4.2.3: the place of the pixel in a picture 165 degrees wide is shifted by the mask. No reflection.
+    /// Rousseau 2006, 4.2.3: the position of the pixel in a picture 165 degrees wide is shifted by the mask. No reflection.
     /// Their perspective loses the middle (1.7 degrees per pixel at 512), and directions beyond its edge are the edge.
     Rousseau2006 = DROPS_SHIFT,
 }
@@ -109,10 +109,10 @@ impl From<RainRefraction> for RefractionForm {
     }
 }
 
-/// Options of the drawing of drops.
+/// Options of rain in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainOptions {
-    /// Method that finds the color of a drop's pixel.
+    /// Lookup of the color of a drop's pixel.
     pub form: RefractionForm,
     /// Texels along an edge of the capture: a power of two, 16 to 2048.
     pub capture_size: u32,
@@ -120,7 +120,7 @@ pub struct RainOptions {
     pub capture_grid: u32,
     /// Drops that are not drawn one by one.
     pub medium: RainMedium,
-    /// In which time light is gathered.
+    /// Exposure.
     pub exposure: Exposure,
     /// Options of the light of lamps and the sun on drops.
     pub light: DropLightOptions,

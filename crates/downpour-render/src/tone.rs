@@ -1,30 +1,30 @@
 //! From scene-referred radiance to a picture.
 //!
-//! The curve is the neutral tone mapper of Khronos (2024): colours up to 0.8 less the toe stay as they are, brighter
-//! ones are compressed and lose saturation towards white. Exposure is a factor of 2 per stop; automatic exposure puts
-//! the logarithmic mean of the picture at middle grey.
+//! The curve is the neutral tone mapper of Khronos (2024): colors up to 0.8 less the toe stay as they are, brighter
+//! ones are compressed and lose saturation toward white. Exposure is a factor of 2 per stop; automatic exposure puts
+//! the logarithmic mean of the picture at middle gray.
 
 use downpour_math::ops;
 use glam::Vec3;
 
 const START: f32 = 0.8 - 0.04;
 const DESATURATION: f32 = 0.15;
-/// Middle grey.
-const GREY: f32 = 0.18;
+/// Middle gray.
+const GRAY: f32 = 0.18;
 
 /// Luminance of linear BT.709.
 #[must_use]
-pub fn tone_luminance(colour: Vec3) -> f32 {
-    colour.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+pub fn tone_luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// The tone curve, in [0, 1].
+/// Applies the tone curve; the result is in [0, 1].
 #[must_use]
-pub fn tone_neutral(colour: Vec3) -> Vec3 {
-    let colour = colour.max(Vec3::ZERO);
-    let least = colour.min_element();
+pub fn tone_neutral(color: Vec3) -> Vec3 {
+    let color = color.max(Vec3::ZERO);
+    let least = color.min_element();
     let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
-    let lifted = colour - Vec3::splat(offset);
+    let lifted = color - Vec3::splat(offset);
     let peak = lifted.max_element();
     if peak < START {
         return lifted;
@@ -44,7 +44,7 @@ pub fn tone_srgb(linear: f32) -> u8 {
     (encoded * 255.0).round() as u8
 }
 
-/// The exposure that puts the logarithmic mean of the picture at middle grey, within 16 stops of 1. Pixels are
+/// The exposure that puts the logarithmic mean of the picture at middle gray, within 16 stops of 1. Pixels are
 /// radiance and anything.
 #[must_use]
 pub fn tone_automatic_exposure(pixels: &[[f32; 4]]) -> f32 {
@@ -60,10 +60,10 @@ pub fn tone_automatic_exposure(pixels: &[[f32; 4]]) -> f32 {
         return 1.0;
     }
     let mean = ops::exp2((sum / f64::from(count)) as f32);
-    (GREY / mean).clamp(1.0 / 65_536.0, 65_536.0)
+    (GRAY / mean).clamp(1.0 / 65_536.0, 65_536.0)
 }
 
-/// The 8-bit picture of linear radiance.
+/// Converts linear radiance to an 8-bit picture.
 #[must_use]
 pub fn tone_picture(pixels: &[[f32; 4]], exposure: f32) -> Vec<[u8; 3]> {
     pixels
@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dark_colours_stay_and_bright_ones_end_at_white() {
+    fn dark_colors_stay_and_bright_ones_end_at_white() {
         let dark = Vec3::new(0.2, 0.3, 0.4);
         assert!((tone_neutral(dark) - (dark - Vec3::splat(0.04))).length() < 1.0e-6);
         let bright = tone_neutral(Vec3::new(1.0e4, 10.0, 10.0));
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn exposure_brings_the_mean_to_grey() {
+    fn exposure_brings_the_mean_to_gray() {
         let exposure = tone_automatic_exposure(&[[4.0, 4.0, 4.0, 0.0]; 10]);
         assert!((exposure - 0.045).abs() < 1.0e-4, "{exposure}");
         assert_eq!(tone_automatic_exposure(&[]), 1.0);

@@ -1,8 +1,8 @@
-//! A picture of a wind: its speed as colour in a slice, its direction as streaks and arrows.
+//! A picture of a wind: its speed as color in a slice, its direction as streaks and arrows.
 //!
 //! The streaks are a line integral convolution (Cabral, Leedom 1993): noise that is averaged along the streamlines of the
-//! wind's part in the slice, so what lies along a streamline has one brightness. The colour is the whole speed, on a scale
-//! whose lightness rises evenly in Oklab (Ottosson 2020); the scale stands below, with the length of a bar in metres.
+//! wind's part in the slice, so what lies along a streamline has one brightness. The color is the whole speed, on a scale
+//! whose lightness rises evenly in Oklab (Ottosson 2020); the scale stands below, with the length of a bar in meters.
 //!
 //! ```
 //! use downpour_render::wind_picture::{WindPlane, WindSlice, draw_wind};
@@ -16,7 +16,7 @@
 
 mod arrows;
 mod canvas;
-mod colours;
+mod colors;
 mod streaks;
 
 use downpour_math::OutOfRange;
@@ -27,10 +27,10 @@ use crate::RenderError;
 use canvas::Canvas;
 
 /// Pixels each way.
-const LEAST: u32 = 64;
-const MOST: u32 = 4096;
+const MIN_PIXELS: u32 = 64;
+const MAX_PIXELS: u32 = 4096;
 
-/// The share of the slice that is slower than the brightest colour: a core of a few pixels shall not darken the rest.
+/// The fraction of the slice that is slower than the brightest color: a core of a few pixels shall not darken the rest.
 const BRIGHTEST: f64 = 0.998;
 
 /// Pixels each way at which the divergence is measured, at most.
@@ -39,11 +39,11 @@ const PROBES: u32 = 128;
 /// Orientation of a slice. +Y is up in all pictures but those from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WindPlane {
-    /// At one z: x to the right, y up.
+    /// Constant z: x to the right, y up.
     Xy,
-    /// At one y, seen from above: x to the right, z down.
+    /// Constant y, seen from above: x to the right, z down.
     Xz,
-    /// At one x: z to the left, as seen from +X; y up.
+    /// Constant x: z to the left, as seen from +X; y up.
     Yz,
 }
 
@@ -81,7 +81,7 @@ pub struct WindSlice {
     plane: WindPlane,
     offset: f32,
     middle: Vec3,
-    /// Metres per pixel.
+    /// Meters per pixel.
     pixel: f32,
     /// Columns and rows of the picture, and rows of the slice.
     size: [u32; 2],
@@ -94,7 +94,7 @@ impl WindSlice {
     ///
     /// # Errors
     /// [`RenderError::Size`] if an edge is not 64 to 4096 pixels; [`RenderError::OutOfRange`] for an edge of the box that is
-    /// not 0.01 to 1e6 m, or a place beyond 1e6 m.
+    /// not 0.01 to 1e6 m, or a position beyond 1e6 m.
     pub fn new(
         plane: WindPlane,
         offset: f32,
@@ -102,8 +102,8 @@ impl WindSlice {
         high: Vec3,
         size: [u32; 2],
     ) -> Result<Self, RenderError> {
-        if !size.iter().all(|edge| (LEAST..=MOST).contains(edge)) {
-            return Err(RenderError::Size { found: size, least: LEAST, most: MOST });
+        if !size.iter().all(|edge| (MIN_PIXELS..=MAX_PIXELS).contains(edge)) {
+            return Err(RenderError::Size { found: size, min: MIN_PIXELS, max: MAX_PIXELS });
         }
         let check = |quantity, found: f32, (least, most): (f32, f32), allowed: &'static str| {
             if (least..=most).contains(&found) {
@@ -127,8 +127,8 @@ impl WindSlice {
         Ok(Self { plane, offset, middle: 0.5 * (low + high), pixel, size, rows })
     }
 
-    /// The place of a pixel's middle.
-    fn place(&self, column: u32, row: u32) -> Vec3 {
+    /// The position of a pixel's middle.
+    fn position(&self, column: u32, row: u32) -> Vec3 {
         let [right, down] = self.plane.axes();
         let normal = self.plane.normal();
         let from_middle = |n: u32, count: u32| (n as f32 + 0.5 - 0.5 * count as f32) * self.pixel;
@@ -147,20 +147,20 @@ fn letter_size(size: [u32; 2]) -> u32 {
     (size[0].min(size[1]) / 400).clamp(1, 4)
 }
 
-/// A picture and what was measured for it.
+/// Picture of a wind, with its statistics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindPicture {
     /// Columns and rows.
     pub size: [u32; 2],
     /// sRGB, rows from the top.
     pub pixels: Vec<[u8; 3]>,
-    /// The least speed in the slice, m/s.
+    /// Minimum speed in the slice, m/s.
     pub slowest: f64,
-    /// The mean speed, m/s.
+    /// Mean speed, m/s.
     pub mean: f64,
-    /// The greatest speed, m/s.
+    /// Maximum speed, m/s.
     pub fastest: f64,
-    /// The root of the mean squared divergence, 1/s, from differences over a fifth of a pixel.
+    /// Root mean square of the divergence, 1/s, from differences over a fifth of a pixel.
     pub divergence_rms: f64,
 }
 
@@ -171,7 +171,7 @@ struct Flow {
     /// To the right and down, m/s.
     along: Vec<[f32; 2]>,
     speed: Vec<f32>,
-    /// The speed of the brightest colour, m/s; above 0.
+    /// The speed of the brightest color, m/s; above 0.
     scale: f32,
 }
 
@@ -179,7 +179,7 @@ impl Flow {
     fn new(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> Self {
         let [columns, rows] = [slice.size[0], slice.rows].map(|n| n as usize);
         let [right, down] = slice.plane.axes();
-        let velocity = |i: usize| air(slice.place((i % columns) as u32, (i / columns) as u32));
+        let velocity = |i: usize| air(slice.position((i % columns) as u32, (i / columns) as u32));
         let velocities: Vec<Vec3> = (0..columns * rows).into_par_iter().map(velocity).collect();
         let speed: Vec<f32> = velocities.iter().map(|v| v.length()).collect();
         let along = velocities.iter().map(|v| [v.dot(right), v.dot(down)]).collect();
@@ -190,7 +190,7 @@ impl Flow {
         Self { columns, rows, along, speed, scale }
     }
 
-    /// The flow at a place in pixels; nothing outside.
+    /// The flow at a position in pixels; nothing outside.
     fn at(&self, x: f32, y: f32) -> Option<[f32; 2]> {
         if x < 0.0 || y < 0.0 {
             return None;
@@ -200,15 +200,15 @@ impl Flow {
     }
 }
 
-/// Draws the wind in a slice; `air` gives the velocity at a place, m/s. The same bytes for any number of threads.
+/// Draws the wind in a slice; `air` gives the velocity at a position, m/s. The same bytes for any number of threads.
 #[must_use]
 pub fn draw_wind(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> WindPicture {
     let flow = Flow::new(slice, air);
     let streaks = streaks::streaks(&flow);
     let mut canvas = Canvas::new(slice.size);
     for (i, (speed, streak)) in flow.speed.iter().zip(&streaks).enumerate() {
-        let colour = colours::of_speed(speed / flow.scale);
-        canvas.set(i % flow.columns, i / flow.columns, colour.map(|c| c * (1.0 + 0.45 * streak)));
+        let color = colors::of_speed(speed / flow.scale);
+        canvas.set(i % flow.columns, i / flow.columns, color.map(|c| c * (1.0 + 0.45 * streak)));
     }
     arrows::draw(&mut canvas, &flow, letter_size(slice.size) as f32);
     legend(&mut canvas, slice, flow.scale);
@@ -227,15 +227,15 @@ pub fn draw_wind(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> Wind
 fn divergence(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> f64 {
     let step = |n: u32| n.div_ceil(PROBES).max(1);
     let (across, down) = (step(slice.size[0]), step(slice.rows));
-    let places: Vec<[u32; 2]> = (0..slice.rows)
+    let positions: Vec<[u32; 2]> = (0..slice.rows)
         .step_by(down as usize)
         .flat_map(|row| (0..slice.size[0]).step_by(across as usize).map(move |column| [column, row]))
         .collect();
     let h = 0.1 * slice.pixel;
-    let squares: Vec<f64> = places
+    let squares: Vec<f64> = positions
         .par_iter()
         .map(|&[column, row]| {
-            let at = slice.place(column, row);
+            let at = slice.position(column, row);
             let slope = |axis: Vec3| (air(at + axis * h) - air(at - axis * h)).dot(axis) / (2.0 * h);
             let sum = f64::from(slope(Vec3::X)) + f64::from(slope(Vec3::Y)) + f64::from(slope(Vec3::Z));
             sum * sum
@@ -244,16 +244,16 @@ fn divergence(slice: &WindSlice, air: &(dyn Fn(Vec3) -> Vec3 + Sync)) -> f64 {
     (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
 
-/// The scale of the colours, where the slice is, and a bar of some metres.
+/// The scale of the colors, where the slice is, and a bar of some meters.
 fn legend(canvas: &mut Canvas, slice: &WindSlice, scale: f32) {
     let dot = letter_size(slice.size) as usize;
     let (width, top) = (slice.size[0] as usize, slice.rows as usize);
     let bar = (width / 3).max(20);
     let left = 4 * dot;
     for x in 0..bar {
-        let colour = colours::of_speed((x as f32 + 0.5) / bar as f32);
+        let color = colors::of_speed((x as f32 + 0.5) / bar as f32);
         for y in 0..5 * dot {
-            canvas.set(left + x, top + 4 * dot + y, colour);
+            canvas.set(left + x, top + 4 * dot + y, color);
         }
     }
     let base = top + 12 * dot;
@@ -264,15 +264,15 @@ fn legend(canvas: &mut Canvas, slice: &WindSlice, scale: f32) {
     let middle = left + bar + (width - left - bar) / 4;
     canvas.text(middle.saturating_sub(canvas::width(&what) * dot / 2), base, dot, &what);
     // The longest of 1, 2, 5 times a power of ten that fits a quarter of the picture.
-    let metres = canvas::round_down(f64::from(slice.pixel) * width as f64 * 0.25);
-    let long = ((metres / f64::from(slice.pixel)) as usize).clamp(1, width / 2);
+    let meters = canvas::round_down(f64::from(slice.pixel) * width as f64 * 0.25);
+    let long = ((meters / f64::from(slice.pixel)) as usize).clamp(1, width / 2);
     let start = width.saturating_sub(long + 4 * dot);
     for x in 0..long {
         for y in 0..2 * dot {
             canvas.set(start + x, top + 6 * dot + y, [0.8; 3]);
         }
     }
-    let text = format!("{} m", canvas::number(metres));
+    let text = format!("{} m", canvas::number(meters));
     let at = (start + long / 2).saturating_sub(canvas::width(&text) * dot / 2);
     canvas.text(at.min(width.saturating_sub(canvas::width(&text) * dot)), base, dot, &text);
 }

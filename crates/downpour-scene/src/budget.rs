@@ -48,7 +48,7 @@ impl Budget {
                 format!("{} needed", size(wanted)),
                 format!("{} left in the budget", size(left)),
             )
-            .way_out(RAISE)
+            .with_advice(RAISE)
         })
     }
 
@@ -78,7 +78,7 @@ impl Budget {
             Err(_) => {
                 let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
                 Err(SceneError::limit(item, format!("{} needed", size(bytes)), "the memory of the machine")
-                    .way_out(RAISE))
+                    .with_advice(RAISE))
             }
         }
     }
@@ -92,7 +92,7 @@ fn take(left: &mut u64, wanted: u64) -> Result<(), u64> {
 
 fn over(item: impl fmt::Display, wanted: u64, left: u64, what: &str) -> SceneError {
     SceneError::limit(item, format!("{wanted} {what}"), format!("{left} {what} left in the budget"))
-        .way_out(RAISE)
+        .with_advice(RAISE)
 }
 
 #[cfg(test)]

@@ -30,45 +30,47 @@ pub enum SceneError {
 pub struct Fault {
     /// The file as the user knows it; empty until the reader has named it.
     pub file: String,
-    /// The place inside the file, as `accessors[3].count`; empty when it is the file as a whole.
-    pub place: String,
+    /// The location inside the file, as `accessors[3].count`; empty when it is the file as a whole.
+    pub location: String,
     /// The content found.
     pub found: String,
     /// The accepted content.
     pub allowed: String,
     /// Advice for the user.
-    pub way_out: Option<&'static str>,
+    pub advice: Option<&'static str>,
 }
 
 impl SceneError {
     /// Error of input that cannot be.
     #[must_use]
-    pub fn bad(place: impl fmt::Display, found: impl Into<String>, allowed: impl Into<String>) -> Self {
-        Self::BadInput(Fault::boxed(place, found, allowed))
+    pub fn bad(location: impl fmt::Display, found: impl Into<String>, allowed: impl Into<String>) -> Self {
+        Self::BadInput(Fault::boxed(location, found, allowed))
     }
 
     /// Error of input that costs too much.
     #[must_use]
-    pub fn limit(place: impl fmt::Display, found: impl Into<String>, allowed: impl Into<String>) -> Self {
-        Self::OverLimit(Fault::boxed(place, found, allowed))
+    pub fn limit(location: impl fmt::Display, found: impl Into<String>, allowed: impl Into<String>) -> Self {
+        Self::OverLimit(Fault::boxed(location, found, allowed))
     }
 
     /// A file that the system does not hand out. A name that no file can have is the input's fault.
     ///
     /// `name` is empty when the message begins with the file anyway.
-    pub(crate) fn io(place: impl fmt::Display, name: &str, error: &io::Error) -> Self {
+    pub(crate) fn io(location: impl fmt::Display, name: &str, error: &io::Error) -> Self {
         let found = format!("{}cannot be read: {}", subject(name), escaped(&error.to_string()));
         let allowed = "a file that can be opened and read";
         match error.kind() {
-            io::ErrorKind::InvalidFilename | io::ErrorKind::InvalidInput => Self::bad(place, found, allowed),
-            _ => Self::Unreadable(Fault::boxed(place, found, allowed)),
+            io::ErrorKind::InvalidFilename | io::ErrorKind::InvalidInput => {
+                Self::bad(location, found, allowed)
+            }
+            _ => Self::Unreadable(Fault::boxed(location, found, allowed)),
         }
     }
 
     /// The same error with advice at its end.
     #[must_use]
-    pub fn way_out(mut self, advice: &'static str) -> Self {
-        self.fault_mut().way_out = Some(advice);
+    pub fn with_advice(mut self, advice: &'static str) -> Self {
+        self.fault_mut().advice = Some(advice);
         self
     }
 
@@ -82,29 +84,29 @@ impl SceneError {
         self
     }
 
-    /// The same error with the place named; a place that is there already stays.
+    /// The same error with its location; a location that is set already is kept.
     #[must_use]
-    pub fn at(mut self, place: impl fmt::Display) -> Self {
+    pub fn at(mut self, location: impl fmt::Display) -> Self {
         let fault = self.fault_mut();
-        if fault.place.is_empty() {
-            fault.place = place.to_string();
+        if fault.location.is_empty() {
+            fault.location = location.to_string();
         }
         self
     }
 
-    /// The same error of a file that another file names at a place: both, and the name, become the place.
+    /// The same error, of a file that another file names at `location`: that location and the file name come first.
     #[must_use]
-    pub fn inside(mut self, place: impl fmt::Display) -> Self {
+    pub fn inside(mut self, location: impl fmt::Display) -> Self {
         let fault = self.fault_mut();
         let file = std::mem::take(&mut fault.file);
-        let mut whole = place.to_string();
-        for part in [file, std::mem::take(&mut fault.place)] {
+        let mut whole = location.to_string();
+        for part in [file, std::mem::take(&mut fault.location)] {
             if !part.is_empty() {
                 whole.push_str(": ");
                 whole.push_str(&part);
             }
         }
-        fault.place = whole;
+        fault.location = whole;
         self
     }
 
@@ -124,21 +126,21 @@ impl SceneError {
 }
 
 impl Fault {
-    fn boxed(place: impl fmt::Display, found: impl Into<String>, allowed: impl Into<String>) -> Box<Self> {
-        let (place, found, allowed) = (place.to_string(), found.into(), allowed.into());
-        Box::new(Self { file: String::new(), place, found, allowed, way_out: None })
+    fn boxed(location: impl fmt::Display, found: impl Into<String>, allowed: impl Into<String>) -> Box<Self> {
+        let (location, found, allowed) = (location.to_string(), found.into(), allowed.into());
+        Box::new(Self { file: String::new(), location, found, allowed, advice: None })
     }
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for part in [&self.file, &self.place] {
+        for part in [&self.file, &self.location] {
             if !part.is_empty() {
                 write!(f, "{part}: ")?;
             }
         }
         write!(f, "{}; allowed: {}", self.found, self.allowed)?;
-        self.way_out.map_or(Ok(()), |advice| write!(f, " ({advice})"))
+        self.advice.map_or(Ok(()), |advice| write!(f, " ({advice})"))
     }
 }
 
@@ -188,7 +190,7 @@ pub fn shown_path(path: &Path) -> String {
     }
 }
 
-/// A number of bytes as a person reads it.
+/// A number of bytes in a readable unit.
 pub(crate) fn size(bytes: u64) -> String {
     let mut scale = (bytes as f64, "bytes");
     for unit in ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"] {

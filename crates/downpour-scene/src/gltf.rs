@@ -1,7 +1,7 @@
 //! Scenes of glTF 2.0 files, and their triangles alone in world space.
 //!
 //! Source: Khronos Group, "glTF 2.0 Specification", version 2.0.1 (ISO/IEC 12113:2022). Axes are glTF's:
-//! right-handed, +Y up, metres; front faces are counter-clockwise.
+//! right-handed, +Y up, meters; front faces are counter-clockwise.
 //!
 //! The order is check, then parse (the module `guard`): the JSON is read as plain values, the whole document is checked
 //! on them, and only then are the typed objects created and the buffers opened. Supported are accessors of any component
@@ -219,6 +219,6 @@ fn too_long(length: u64, most: u64) -> SceneError {
 }
 
 /// A warning of the common kind: the meaning is clear, the form is not quite the specification's.
-fn irregular(warnings: &mut Warnings, place: impl std::fmt::Display, what: impl FnOnce() -> String) {
-    warnings.add(WarningKind::Irregular, place, what);
+fn irregular(warnings: &mut Warnings, location: impl std::fmt::Display, what: impl FnOnce() -> String) {
+    warnings.add(WarningKind::Irregular, location, what);
 }

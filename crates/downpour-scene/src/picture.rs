@@ -97,7 +97,7 @@ impl Picture {
         match self.warnings.iter().find(|warning| warning.kind.is_loss()) {
             None => Ok(self),
             Some(loss) => {
-                let error = SceneError::bad(&loss.place, loss.what.as_str(), "pixels that are all of use");
+                let error = SceneError::bad(&loss.location, loss.what.as_str(), "pixels that are all of use");
                 Err(error.in_file(&self.name))
             }
         }
@@ -188,7 +188,7 @@ impl Kind {
             Some(_) => {
                 let found = format!("{} with the ending {}", self.name(), quoted(&format!(".{extension}")));
                 let allowed = format!("{} for {}", self.endings(), self.name());
-                Err(SceneError::bad("", found, allowed).way_out("rename or convert the file"))
+                Err(SceneError::bad("", found, allowed).with_advice("rename or convert the file"))
             }
         }
     }
@@ -216,7 +216,7 @@ impl Kind {
 ///
 /// `cost` is the most memory that decoding needs at one time, in bytes, the file itself not counted.
 fn check_cost(
-    place: &str,
+    location: &str,
     (width, height): (u32, u32),
     cost: u64,
     file: &[u8],
@@ -224,24 +224,24 @@ fn check_cost(
 ) -> Result<(), SceneError> {
     let shown = || format!("{width} x {height} pixels");
     if width == 0 || height == 0 {
-        return Err(SceneError::bad(place, shown(), "at least 1 x 1 pixels"));
+        return Err(SceneError::bad(location, shown(), "at least 1 x 1 pixels"));
     }
     if width > MAX_SIDE || height > MAX_SIDE {
-        return Err(SceneError::limit(place, shown(), format!("sides of at most {MAX_SIDE} pixels")));
+        return Err(SceneError::limit(location, shown(), format!("sides of at most {MAX_SIDE} pixels")));
     }
     let pixels = u64::from(width).saturating_mul(u64::from(height));
     if pixels > budget.pixels {
         let allowed = format!("{} pixels left in the budget", budget.pixels);
-        return Err(SceneError::limit(place, shown(), allowed).way_out("scale the picture down"));
+        return Err(SceneError::limit(location, shown(), allowed).with_advice("scale the picture down"));
     }
     let mut remaining = *budget;
-    remaining.take_bytes(file.len() as u64, place)?;
-    remaining.take_bytes(cost, place).map_err(|error| error.way_out("scale the picture down"))?;
+    remaining.take_bytes(file.len() as u64, location)?;
+    remaining.take_bytes(cost, location).map_err(|error| error.with_advice("scale the picture down"))?;
     let most = BASE_COST.saturating_add(COST_PER_BYTE.saturating_mul(file.len() as u64));
     if cost > most {
         let found = format!("{} in a file of {} bytes: {} to decode", shown(), file.len(), size(cost));
         let allowed = format!("{} for a file of this length", size(most));
-        return Err(SceneError::limit(place, found, allowed).way_out("scale the picture down"));
+        return Err(SceneError::limit(location, found, allowed).with_advice("scale the picture down"));
     }
     Ok(())
 }

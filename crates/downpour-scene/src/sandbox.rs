@@ -65,7 +65,7 @@ pub struct NoFiles;
 impl Files for NoFiles {
     fn open(&self, path: &RelativePath) -> Result<OpenFile, SceneError> {
         let found = format!("{} is another file", quoted(path.as_str()));
-        Err(SceneError::bad("", found, "data in the file itself").way_out("export as one .glb"))
+        Err(SceneError::bad("", found, "data in the file itself").with_advice("export as one .glb"))
     }
 }
 
@@ -190,7 +190,7 @@ impl Refusal {
         match self {
             Self::Leaves => {
                 let found = format!("{file}leaves the scene folder through a link");
-                SceneError::bad("", found, INSIDE).way_out(COPY_HERE)
+                SceneError::bad("", found, INSIDE).with_advice(COPY_HERE)
             }
             Self::NotRegular(sort) => {
                 SceneError::bad("", format!("{file}is {sort}, not a regular file"), REGULAR)

@@ -2,7 +2,7 @@
 //!
 //! The model is that of glTF 2.0 (Khronos Group, version 2.0.1, ISO/IEC 12113:2022): meshes of triangles, metallic
 //! and rough materials, a forest of nodes, skins, animations, lights and cameras. Axes are right-handed, +Y up,
-//! in metres; front faces are counter-clockwise; colors of factors are linear with the primaries of BT.709.
+//! in meters; front faces are counter-clockwise; colors of factors are linear with the primaries of BT.709.
 //!
 //! A [`Scene`] has no time; [`Scene::pose`] returns the transforms at a time. Objects name each other by index.
 //! Scenes from a reader of this crate have valid indices only; an invalid one in a scene made by hand is ignored.
@@ -33,7 +33,7 @@ pub use skin::Skin;
 pub use skinning::{SkinnedPrimitive, skin_primitive};
 pub use texture::{Encoding, Filter, Sampler, Texture, Wrap};
 
-/// Maximum distance of a vertex from the origin, in metres. Beyond it the steps between `f32` numbers are 64 m, and
+/// Maximum distance of a vertex from the origin, in meters. Beyond it the steps between `f32` numbers are 64 m, and
 /// squares of distances come near the end of the range of `f32`.
 pub const REACH: f64 = 1e9;
 

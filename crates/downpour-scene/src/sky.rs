@@ -28,7 +28,7 @@ use crate::warning::Warning;
 pub use file::{from_picture, read_sky, read_sky_from_bytes};
 pub use sun::{MAX_SUN_RADIUS, SUN_THRESHOLD, Sun};
 
-/// The largest radiance of a pixel, in the unit of the file; the sun's disc is 1.6e9 cd/m^2.
+/// The largest radiance of a pixel, in the unit of the file; the sun's disk is 1.6e9 cd/m^2.
 pub const MAX_RADIANCE: f32 = 1e12;
 
 /// The light of the sky from each direction: rows from the top, see [the module](self) for the directions.

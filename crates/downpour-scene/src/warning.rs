@@ -11,7 +11,7 @@ pub struct Warning {
     /// Kind of the warning.
     pub kind: WarningKind,
     /// Path inside the file, as `meshes[0].primitives[2]`.
-    pub place: String,
+    pub location: String,
     /// Defect and its treatment, on one line.
     pub what: String,
 }
@@ -47,8 +47,8 @@ impl WarningKind {
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.place.is_empty() {
-            write!(f, "{}: ", self.place)?;
+        if !self.location.is_empty() {
+            write!(f, "{}: ", self.location)?;
         }
         f.write_str(&self.what)
     }
@@ -64,10 +64,10 @@ pub struct Warnings {
 
 impl Warnings {
     /// Adds one. The words are made only when they will be kept.
-    pub fn add(&mut self, kind: WarningKind, place: impl fmt::Display, what: impl FnOnce() -> String) {
+    pub fn add(&mut self, kind: WarningKind, location: impl fmt::Display, what: impl FnOnce() -> String) {
         // A loss must be seen however many small things came before it.
         if self.kept.len() < KEPT || (kind.is_loss() && !self.loss) {
-            self.kept.push(Warning { kind, place: place.to_string(), what: what() });
+            self.kept.push(Warning { kind, location: location.to_string(), what: what() });
         } else {
             self.more = self.more.saturating_add(1);
         }
@@ -79,7 +79,7 @@ impl Warnings {
     pub fn finish(mut self) -> Vec<Warning> {
         if self.more > 0 {
             let what = format!("and {} more", self.more);
-            self.kept.push(Warning { kind: WarningKind::More, place: String::new(), what });
+            self.kept.push(Warning { kind: WarningKind::More, location: String::new(), what });
         }
         self.kept
     }

@@ -95,7 +95,7 @@ fn all_safe_schemes_are_read() {
                 assert!(close, "{compression:?} {i}: {is} {was}");
             }
         }
-        // E16: cut in the middle, at many places.
+        // E16: cut in the middle, at many locations.
         for end in (0..bytes.len() - 1).step_by(61) {
             assert_eq!(read(&bytes[..end]).unwrap_err().exit_code(), 2, "{compression:?} cut at {end}");
         }

@@ -182,7 +182,7 @@ fn things_of_the_street() {
     }
 }
 
-/// Quantised positions give the cube of their floats: integers scaled by the node, and normalized integers.
+/// Quantized positions give the cube of their floats: integers scaled by the node, and normalized integers.
 #[test]
 fn quantized_positions() {
     let plain = read(&cube(&json!([{"mesh": 0}]))).expect("valid");
@@ -305,9 +305,9 @@ fn ways_of_writing() {
     let model = document::read_bytes(text.as_bytes()).expect("valid");
     assert_eq!(model, read(&triangle()).expect("valid"));
     let extras = json!({"deep": [1e300, {"extensions": 7}]});
-    for place in ["/extras", "/nodes/0/extras", "/meshes/0/primitives/0/extras"] {
+    for pointer in ["/extras", "/nodes/0/extras", "/meshes/0/primitives/0/extras"] {
         for value in [extras.clone(), json!(42), json!("text"), Value::Null] {
-            assert_eq!(read(&spoiled(&[(place, value)])).expect("valid"), model);
+            assert_eq!(read(&spoiled(&[(pointer, value)])).expect("valid"), model);
         }
     }
 }

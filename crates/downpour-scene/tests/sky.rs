@@ -129,7 +129,7 @@ fn sky_green(sky: &SkyMap, direction: [f32; 3]) -> f32 {
     sky.radiance(direction)[1]
 }
 
-/// A disc of known radius, direction and radiance is found as that.
+/// A disk of known radius, direction and radiance is found as that.
 #[test]
 fn a_sun_is_taken_out_with_all_its_light() {
     let size = (2048, 1024);

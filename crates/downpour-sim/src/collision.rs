@@ -3,7 +3,7 @@
 //! Rousseau 2008, 4, looks down on the scene and keeps the height and the normal of the highest surface. This map
 //! looks along the mean fall direction, which wind slants, and keeps four surfaces per column, so that the road under
 //! a bridge stops the drops that the wind carries there. It is made by rays through the same hierarchy of triangles as
-//! the pictures: moving objects are included, and the order of surfaces does not depend on a rasteriser.
+//! the pictures: moving objects are included, and the order of surfaces does not depend on a rasterizer.
 //!
 //! - A surface within a texel is its tangent plane at the center of the texel, so a slope has no steps. It deviates
 //!   from the depth at the center by at most 4 texel edges.
@@ -34,7 +34,7 @@ use rayon::prelude::*;
 
 pub use column::{CollisionMeeting, CollisionPiece, collision_column};
 pub use find::{
-    CollisionHit, collision_cover, collision_find, collision_inside, collision_open, collision_place,
+    CollisionHit, collision_cover, collision_find, collision_inside, collision_open, collision_position,
     collision_texel, collision_turn, collision_wall,
 };
 pub use frame::{CollisionFrame, CollisionOptions};

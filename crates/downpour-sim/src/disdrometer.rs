@@ -105,10 +105,10 @@ fn point(plan: &Plan, random: DVec3) -> Option<(DVec3, f64, f64)> {
         }
         SimVolume::Tariq { size_m } => Some(((random - 0.5) * DVec3::from(size_m), 1.0, 1.0)),
         SimVolume::Cylinder { base_m, radius_m, height_m } => {
-            let disc = (random - 0.5) * 2.0 * radius_m;
-            let inside = disc.x * disc.x + disc.z * disc.z <= radius_m * radius_m;
+            let disk = (random - 0.5) * 2.0 * radius_m;
+            let inside = disk.x * disk.x + disk.z * disk.z <= radius_m * radius_m;
             let base = DVec3::from(base_m) - view.eye;
-            inside.then_some((base + DVec3::new(disc.x, random.y * height_m, disc.z), 1.0, 1.0))
+            inside.then_some((base + DVec3::new(disk.x, random.y * height_m, disk.z), 1.0, 1.0))
         }
         SimVolume::View | SimVolume::ImSung => {
             // As many points for each size: uniform in the logarithm of the distance.

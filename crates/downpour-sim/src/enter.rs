@@ -34,10 +34,10 @@ pub fn enter_offset(region: &EnterRegion, normal: Vec3, tangent: Vec3, random: V
     let across = normal.cross(tangent);
     let distance = region.low + (region.high - region.low) * random.x;
     if region.face == VOLUME_BALL {
-        let disc = 2.0 * random.yz() - 1.0;
-        let square = disc.dot(disc);
+        let disk = 2.0 * random.yz() - 1.0;
+        let square = disk.dot(disk);
         let lean = square * region.slope;
-        let aside = disc * (region.slope * (2.0 - lean).max(0.0)).sqrt();
+        let aside = disk * (region.slope * (2.0 - lean).max(0.0)).sqrt();
         let direction = tangent * aside.x + across * aside.y - normal * (1.0 - lean);
         let there = square <= 1.0 && chance * region.high * region.high <= distance * distance;
         return (direction * distance).extend(if there { 1.0 } else { 0.0 });

@@ -33,7 +33,7 @@ pub struct FallingDrop {
     pub position: DVec3,
     /// Velocity, m/s.
     pub velocity: [f32; 3],
-    /// Volume-equivalent diameter, metres.
+    /// Volume-equivalent diameter, meters.
     pub diameter: f32,
     /// Id of the drop: the same at other times and in other pictures.
     pub id: u64,

@@ -5,7 +5,7 @@
 //! that pictures show.
 //!
 //! In a steady wind a path is one straight line and the impact exact; else it is divided at whole sixteenths of a
-//! second, so that an impact is some millimetres off. Moving objects are taken at their current position.
+//! second, so that an impact is some millimeters off. Moving objects are taken at their current position.
 //!
 //! ```
 //! use downpour_bvh::Bvh;
@@ -18,7 +18,7 @@
 //! let ground = Bvh::new(&[[a, b, c], [a, c, d]]);
 //! let obstacles = Obstacles { nodes: &ground.nodes, triangles: &ground.triangles, holes: None, origin: DVec3::ZERO };
 //! let (low, high) = (DVec3::new(-0.5, -0.1, -0.5), DVec3::new(0.5, 0.1, 0.5));
-//! // What has hit a square metre within the last tenth of a second.
+//! // What has hit a square meter within the last tenth of a second.
 //! let impacts = rain.impacts(&obstacles, low, high, [12.4, 12.5], 0.5e-3)?;
 //! assert!(impacts.iter().all(|impact| impact.position.y.abs() < 1.0e-3 && impact.normal.y > 0.999));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -25,7 +25,7 @@ const COUNT: u32 = 24_576;
 /// Tolerance of the bounds for rounding, m.
 const SLACK_M: f64 = 1.0e-4;
 
-/// Neighbours of a plane on its positive and negative side along normal x tangent, and the half width or height of the
+/// Neighbors of a plane on its positive and negative side along normal x tangent, and the half width or height of the
 /// picture along it.
 const NEIGHBORS: [[usize; 2]; PLANES] = [[2, 3], [3, 2], [1, 0], [0, 1], [2, 3]];
 
@@ -97,7 +97,7 @@ fn of(
         let (rise, sink) = (tangent.dot(forward), -normal.dot(forward));
         let half = if k < 2 || k == PLANES - 1 { high_half } else { wide };
         let stretch = (1.0 + half * half).sqrt();
-        // Limits by the neighbouring planes: half * depth + their distance.
+        // Limits by the neighboring planes: half * depth + their distance.
         let depth_less = if sink > 0.0 { sink * low[k] } else { sink * high[k] };
         let [up, down] = NEIGHBORS[k].map(|beside| high[beside] * stretch - half * depth_less);
         let (mut slope, mut width, mut middle) = (half * rise, 0.5 * (up + down), 0.5 * (up - down));
@@ -158,7 +158,7 @@ fn of(
             slope: lean as f32,
             ..EnterRegion::default()
         };
-        // A square around the disc of directions, and the largest radius for all.
+        // A square around the disk of directions, and the largest radius for all.
         Some((region, 8.0 * lean * radius * radius * (radius - least)))
     };
     (0..PLANES).filter_map(plane).chain(std::iter::once_with(ball).flatten())

@@ -7,7 +7,7 @@
 use downpour_drop::fall_speed::{TerminalSpeed, fall_speed_relaxation};
 use downpour_math::ops;
 use downpour_shaders::sim::step::{
-    MOTION_DIAMETER_STEP, MOTION_SHORTEST, MOTION_TABLE_LAST, MOTION_TABLE_PER_METRE,
+    MOTION_DIAMETER_STEP, MOTION_MIN_RELAXATION, MOTION_TABLE_LAST, MOTION_TABLE_PER_METER,
 };
 use glam::Vec3;
 
@@ -35,14 +35,14 @@ pub fn motion_diameter_bits(diameter: f32) -> u32 {
 /// Index of a diameter in the table of terminal speeds: between this entry and the next.
 #[must_use]
 pub fn motion_table_entry(diameter: f32) -> u32 {
-    let position = (diameter * MOTION_TABLE_PER_METRE).clamp(0.0, MOTION_TABLE_LAST as f32);
+    let position = (diameter * MOTION_TABLE_PER_METER).clamp(0.0, MOTION_TABLE_LAST as f32);
     (position as u32).min(MOTION_TABLE_LAST - 1)
 }
 
 /// Terminal speed between two entries of the table, m/s.
 #[must_use]
 pub fn motion_table_speed(lower: f32, upper: f32, diameter: f32) -> f32 {
-    let position = (diameter * MOTION_TABLE_PER_METRE).clamp(0.0, MOTION_TABLE_LAST as f32);
+    let position = (diameter * MOTION_TABLE_PER_METER).clamp(0.0, MOTION_TABLE_LAST as f32);
     let fraction = position - motion_table_entry(diameter) as f32;
     lower + (upper - lower) * fraction
 }
@@ -53,7 +53,7 @@ pub fn motion_table(law: &TerminalSpeed) -> Vec<f32> {
     let mut speeds = Vec::with_capacity(MOTION_TABLE_LAST as usize + 1);
     let mut last = 0.0;
     for entry in 0..=MOTION_TABLE_LAST {
-        let diameter = f64::from(entry) / f64::from(MOTION_TABLE_PER_METRE);
+        let diameter = f64::from(entry) / f64::from(MOTION_TABLE_PER_METER);
         last = law.at(diameter).map_or(last, |speed| speed as f32);
         speeds.push(last);
     }
@@ -71,7 +71,7 @@ pub fn motion_settled(wind: Vec3, speed: f32) -> Vec3 {
 pub fn motion_relax(velocity: Vec3, wind: Vec3, speed: f32, time: f32) -> MotionStep {
     let settled = motion_settled(wind, speed);
     let slip = velocity - settled;
-    let [along, across] = fall_speed_relaxation(speed).map(|t| t.max(MOTION_SHORTEST));
+    let [along, across] = fall_speed_relaxation(speed).map(|t| t.max(MOTION_MIN_RELAXATION));
     // Along the fall the slip relaxes twice as fast.
     let left = ops::exp(-time / across);
     let stay = Vec3::new(left, left * left, left);

@@ -26,7 +26,7 @@ const BINS_PER_OCTAVE: f64 = 8.0;
 /// Dimensions of the random numbers.
 const COUNT: u32 = 8230;
 const SIZE: u32 = 8231;
-const PLACE: u32 = 8250;
+const POSITION: u32 = 8250;
 
 /// Number of tries of a rejection sampling before the last is used.
 const TRIES: u32 = 64;
@@ -149,7 +149,7 @@ impl Population {
         let space = volume_of(volume, view);
         // The largest first, and a part of one bin.
         let mut room = f64::from(most);
-        let shares: Vec<f64> = bins
+        let fractions: Vec<f64> = bins
             .iter()
             .rev()
             .map(|bin| {
@@ -159,7 +159,7 @@ impl Population {
                 fraction
             })
             .collect();
-        let kept: Vec<(&Bin, f64)> = bins.iter().zip(shares.into_iter().rev()).collect();
+        let kept: Vec<(&Bin, f64)> = bins.iter().zip(fractions.into_iter().rev()).collect();
         let counts: Vec<u32> = (0..)
             .zip(&kept)
             .map(|(k, (bin, fraction))| poisson_at(bin.density * space * fraction, seed, k, COUNT))
@@ -195,7 +195,7 @@ pub(crate) fn initial_position(
 ) -> (Vec3, u32) {
     let seed = seed_words(seed);
     let draw = |attempt: u32| {
-        let [a, b, c, d] = rng_draw(seed, drop, attempt, PLACE);
+        let [a, b, c, d] = rng_draw(seed, drop, attempt, POSITION);
         let unit = |word: u32| (f64::from(word) + 0.5) / 4_294_967_296.0;
         (DVec3::new(unit(a), unit(b), unit(c)), unit(d))
     };

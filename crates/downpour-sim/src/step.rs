@@ -28,7 +28,7 @@ use crate::motion::{
 use crate::region::EnterRegion;
 use crate::volume::{
     VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
-    volume_offset, volume_on_disc,
+    volume_offset, volume_on_disk,
 };
 
 /// Parameters common to all drops of a step, in the layout of `StepFrame` in WGSL.
@@ -471,9 +471,9 @@ impl StepWorld<'_> {
                 if offset.y >= -half && offset.xz().dot(offset.xz()) <= radius * radius {
                     return (position, count);
                 }
-                let disc = radius * volume_on_disc(random);
+                let disk = radius * volume_on_disk(random);
                 let height = offset.y + if offset.y < -half { size.y } else { 0.0 };
-                (center + Vec3::new(disc.x, height, disc.y), next)
+                (center + Vec3::new(disk.x, height, disk.y), next)
             }
         }
     }

@@ -16,7 +16,7 @@ const HALF_HEIGHT: f64 = 0.466_307_658_154_998_6;
 /// others are unresolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Position of the eye, metres.
+    /// Position of the eye, meters.
     pub eye: DVec3,
     /// Unit vectors along the columns, the rows from below, and the view.
     pub right: DVec3,
@@ -30,9 +30,9 @@ pub struct View {
     pub half_height: f64,
     /// Width of a pixel at distance 1.
     pub pixel_angle: f64,
-    /// Minimum distance from the eye, metres.
+    /// Minimum distance from the eye, meters.
     pub near: f64,
-    /// Maximum distance from the eye, metres.
+    /// Maximum distance from the eye, meters.
     pub far: f64,
     /// Minimum diameter on the picture, pixels.
     pub least_pixels: f64,
@@ -124,7 +124,7 @@ impl View {
         Ok(())
     }
 
-    /// Distance, in metres, up to which a drop of a diameter in metres has so many pixels.
+    /// Distance, in meters, up to which a drop of a diameter in meters has so many pixels.
     #[must_use]
     pub fn range(&self, diameter: f64, least_pixels: f64) -> f64 {
         let range = diameter / (self.pixel_angle * least_pixels).max(1.0e-12);

@@ -159,9 +159,9 @@ pub fn volume_in_sphere(random: Vec3, range: f32) -> Vec3 {
     )
 }
 
-/// Position on a disc of radius 1, from two random numbers in [0, 1).
+/// Position on a disk of radius 1, from two random numbers in [0, 1).
 #[must_use]
-pub fn volume_on_disc(random: Vec2) -> Vec2 {
+pub fn volume_on_disk(random: Vec2) -> Vec2 {
     let angle = VOLUME_TURN * (random.x - 0.5);
     random.y.sqrt() * Vec2::new(ops::cos(angle), ops::sin(angle))
 }

@@ -16,7 +16,7 @@ use scenes::{Triangle, boxes, cuboid, floor, quad, sphere, turned, units};
 
 const DOWN: Vec3 = Vec3::NEG_Y;
 
-/// A map of `n` x `n` texels over `size` metres around the origin.
+/// A map of `n` x `n` texels over `size` meters around the origin.
 fn map(scene: &[Triangle], fall: Vec3, size: f32, n: u32) -> CollisionMap {
     let options = CollisionOptions { fall, size: [size; 2], texels: [n; 2], ..CollisionOptions::default() };
     CollisionMap::new(&options, &Bvh::new(scene)).expect("a map")
@@ -37,7 +37,7 @@ fn expect(hit: Option<CollisionHit>, kind: u32, fraction: f32, normal: Vec3) {
     assert!((hit.fraction - fraction).abs() < 1.0e-3 && angle(hit.normal, normal) < 1.0e-3, "{hit:?}");
 }
 
-/// A fall of so many degrees from down towards +X.
+/// A fall of so many degrees from down toward +X.
 fn slanted(degrees: f32) -> Vec3 {
     let a = degrees.to_radians();
     at(ops::sin(a), -ops::cos(a), 0.0)
@@ -357,7 +357,7 @@ fn random_ways_are_stopped_as_exact_rays_are() {
     assert!(different * 100 < ways, "{different} of {ways}, {hits} of them stopped");
 }
 
-/// A house of the street with its neighbours' walls, its shop and its awning.
+/// A house of the street with its neighbors' walls, its shop and its awning.
 #[test]
 fn a_roof_of_the_street_does_not_leak() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/street/models/street.gltf");
@@ -429,7 +429,8 @@ fn a_covering_map_covers() {
     let map = CollisionMap::new(&options, &Bvh::new(&boxes(3))).unwrap();
     for corner in 0..8 {
         let pick = |k: usize| if corner >> k & 1 == 1 { high[k] } else { low[k] };
-        let position = downpour_sim::collision::collision_place(map.frame(), at(pick(0), pick(1), pick(2)));
+        let position =
+            downpour_sim::collision::collision_position(map.frame(), at(pick(0), pick(1), pick(2)));
         assert!(
             position.x > -0.01 && position.x < 64.01 && position.y > -0.01 && position.y < 32.01,
             "{position}"

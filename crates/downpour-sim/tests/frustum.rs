@@ -53,12 +53,12 @@ fn part(drop: &StepDrop, view: &View, ahead_s: f64) -> Option<usize> {
     }
     // Equal parts of the solid angle: slices of the azimuth's fraction, then of the height within the slice.
     let signed = |x: f64| 2.0 * ops::asin(x * high / ((1.0 + x * x) * (1.0 + high * high)).sqrt());
-    let share_x = 0.5 + 0.5 * signed(x / z) / signed(wide);
+    let fraction_x = 0.5 + 0.5 * signed(x / z) / signed(wide);
     let sine = ops::sin(ops::atan2(y, (x * x + z * z).sqrt()));
-    let share_y = 0.5 + 0.5 * sine / (high / (1.0 + high * high + (x / z) * (x / z)).sqrt());
-    let share_z = ops::pow(offset.length() / range, 3.0);
+    let fraction_y = 0.5 + 0.5 * sine / (high / (1.0 + high * high + (x / z) * (x / z)).sqrt());
+    let fraction_z = ops::pow(offset.length() / range, 3.0);
     let cell = |fraction: f64| ((fraction * PARTS as f64) as usize).min(PARTS - 1);
-    Some((cell(share_x) * PARTS + cell(share_y)) * PARTS + cell(share_z))
+    Some((cell(fraction_x) * PARTS + cell(fraction_y)) * PARTS + cell(fraction_z))
 }
 
 /// Chi-square against an expectation, minus its mean, in its standard deviations. The counts are Poisson distributed.

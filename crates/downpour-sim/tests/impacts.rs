@@ -57,7 +57,7 @@ fn speed(diameter: f64) -> f64 {
     terminal_speed(FallSpeedModel::Beard1976, diameter, &Air::standard()).expect("in range")
 }
 
-/// Number of drops between two diameters that fall through a horizontal square metre per second.
+/// Number of drops between two diameters that fall through a horizontal square meter per second.
 fn flux(from: f64, to: f64) -> f64 {
     let steps = 4000;
     let of = |k: u32| {

@@ -100,8 +100,8 @@ fn no_drop_of_a_box_keeps_its_column() {
     }
     // Between the last two samples a drop falls through a box, and the wind carries it by 1 m and 0.5 m a second.
     let (mut same, mut fallen) = (0, 0);
-    for places in columns.values() {
-        let (first, last) = (places[0], places[3]);
+    for positions in columns.values() {
+        let (first, last) = (positions[0], positions[3]);
         let carried = first + Vec3::new(3.0, 0.0, 1.5);
         let away = (last - carried) / size as f32;
         let away = away - away.round();

@@ -172,7 +172,7 @@ fn vortex() -> WindField {
 fn the_frame_rate_does_not_matter() {
     let field = vortex();
     let view = View { eye: DVec3::new(0.0, 0.0, 6.0), ..View::default() };
-    let places = |drag: Drag, per_second: u32| {
+    let positions = |drag: Drag, per_second: u32| {
         let options = SimulationOptions {
             volume: SimVolume::Box { size_m: [30.0; 3] },
             most_drops: 2_000,
@@ -192,13 +192,13 @@ fn the_frame_rate_does_not_matter() {
         apart.sort_by(f32::total_cmp);
         [apart[apart.len() / 2], apart[apart.len() * 4 / 5]]
     };
-    let fine = places(Drag::Relaxation, 240);
+    let fine = positions(Drag::Relaxation, 240);
     for per_second in [30, 60] {
-        let [half, most] = median(&places(Drag::Relaxation, per_second), &fine);
+        let [half, most] = median(&positions(Drag::Relaxation, per_second), &fine);
         assert!(half < 2.0e-3 && most < 2.0e-2, "{per_second}: {half} m, {most} m");
     }
-    let [average, _] = median(&places(Drag::Rousseau2008, 30), &places(Drag::Rousseau2008, 240));
-    let [half, _] = median(&places(Drag::Relaxation, 30), &fine);
+    let [average, _] = median(&positions(Drag::Rousseau2008, 30), &positions(Drag::Rousseau2008, 240));
+    let [half, _] = median(&positions(Drag::Relaxation, 30), &fine);
     println!("30 against 240 steps a second: {half} m, with the papers' average {average} m");
     assert!(average > 3.0 * half, "the papers' average: {average} m, relaxation: {half} m");
 }
@@ -235,14 +235,14 @@ fn drops_of_a_view_are_on_the_screen() {
         let options = SimulationOptions { volume, most_drops: 40_000, ..SimulationOptions::default() };
         let mut simulation =
             Simulation::new(&rain(25.0), &options, &input(&walk(0), Vec3::X)).expect("in range");
-        let mut shares = Vec::new();
+        let mut fractions = Vec::new();
         for step in 1..20 {
             let view = walk(step);
             simulation.advance(1.0 / 60.0, &input(&view, Vec3::X)).expect("in range");
             let seen = simulation.visible(&View { near: 1.0e-3, least_pixels: 0.0, ..view });
-            shares.push(seen.drops.len() as f64 / simulation.drops().len() as f64);
+            fractions.push(seen.drops.len() as f64 / simulation.drops().len() as f64);
         }
-        shares.iter().sum::<f64>() / shares.len() as f64
+        fractions.iter().sum::<f64>() / fractions.len() as f64
     };
     assert!(fraction(SimVolume::View) > 0.95);
     assert!(fraction(SimVolume::Box { size_m: [16.0; 3] }) < 0.3);

@@ -2,7 +2,7 @@
 //!
 //! The outline of the drop is highest and lowest in the plane of the drop's axis and the camera: the drop is the same
 //! on both sides of it. There the profile is a closed curve P(theta), and the image of a point is
-//! P.up / (D - P.back), which is maximised.
+//! P.up / (D - P.back), which is maximized.
 
 use downpour_drop::DropShape;
 use downpour_math::ops::f64 as ops;
@@ -18,13 +18,13 @@ const FILLED: f64 = 0.8;
 const PROFILE_POINTS: u32 = 720;
 const PROFILE_STEPS: u32 = 60;
 
-/// The largest distance of the surface from the drop's origin, in metres.
+/// The largest distance of the surface from the drop's origin, in meters.
 pub(crate) fn bounding_radius(shape: &DropShape) -> f64 {
     let step = std::f64::consts::PI / f64::from(PROFILE_POINTS);
     (0..=PROFILE_POINTS).map(|i| shape.radius(f64::from(i) * step)).fold(0.0, f64::max)
 }
 
-/// The vertical field of view, in radians, in which the drop fills 80 % of the height, seen from `distance_m` metres at
+/// The vertical field of view, in radians, in which the drop fills 80 % of the height, seen from `distance_m` meters at
 /// an elevation of `pitch` radians.
 ///
 /// ```
@@ -43,7 +43,7 @@ pub fn default_fov(shape: &DropShape, distance_m: f64, pitch: f64) -> Result<f64
     Ok(2.0 * ops::atan(height / (2.0 * FILLED)))
 }
 
-/// The same for a drop that falls from `half_path` metres above the origin to as far below it: the farther end of its path
+/// The same for a drop that falls from `half_path` meters above the origin to as far below it: the farther end of its path
 /// is at 80 % of the distance to the edge of the picture.
 pub(crate) fn path_fov(
     shape: &DropShape,
@@ -66,7 +66,7 @@ pub(crate) fn path_fov(
 }
 
 /// Slope (tangent of the angle to the axis of the camera) of the upper (`side` = 1) or lower (-1) end of the outline,
-/// away from the axis, for a drop `lift` metres above the origin.
+/// away from the axis, for a drop `lift` meters above the origin.
 pub(crate) fn outline(shape: &DropShape, distance_m: f64, pitch: f64, side: f64, lift: f64) -> f64 {
     let (sin, cos) = (ops::sin(pitch), ops::cos(pitch));
     // theta from the downward axis, on the camera's side for positive theta.

@@ -14,16 +14,16 @@ pub enum SpecimenError {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// The picture, or the sky map, would be smaller or larger than allowed.
-    #[error("{quantity} is {found}; allowed: {least} to {most}")]
+    #[error("{quantity} is {found}; allowed: {min} to {max}")]
     Size {
         /// Name of the quantity.
         quantity: &'static str,
         /// The number asked for.
         found: u64,
-        /// The smallest.
-        least: u64,
-        /// The largest.
-        most: u64,
+        /// Minimum allowed.
+        min: u64,
+        /// Maximum allowed.
+        max: u64,
     },
     /// The sky map is not a picture of radiance.
     #[error("the sky map has {found}; allowed: {allowed}")]

@@ -75,7 +75,7 @@ pub struct SpecimenUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LampUniform {
-    /// Towards the middle, of length 1.
+    /// Toward the middle, of length 1.
     pub direction: [f32; 3],
     /// The squared chord from the middle to the edge.
     pub reach: f32,

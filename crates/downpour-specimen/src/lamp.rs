@@ -1,11 +1,11 @@
-//! A lamp that is far away: a disc of even radiance on the sphere of the sky.
+//! A lamp that is far away: a disk of even radiance on the sphere of the sky.
 //!
-//! No ray that leaves a smooth drop would hit a point. A disc of angular radius r is hit, and its irradiance on a
+//! No ray that leaves a smooth drop would hit a point. A disk of angular radius r is hit, and its irradiance on a
 //! surface that faces it is pi sin^2(r) times its radiance: 3.8e-3 of it at 2 degrees. In the picture a
-//! drop shows an image of the disc for each order of light.
+//! drop shows an image of the disk for each order of light.
 //!
-//! A direction is within the disc if its chord to the middle is shorter than 2 sin(r / 2), which keeps its digits for
-//! small discs, where a cosine has none left. Twin of `shaders/wgsl/render/specimen.wgsl`.
+//! A direction is within the disk if its chord to the middle is shorter than 2 sin(r / 2), which keeps its digits for
+//! small disks, where a cosine has none left. Twin of `shaders/wgsl/render/specimen.wgsl`.
 
 use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
@@ -23,7 +23,7 @@ const MAX_RADIANCE: f32 = 1.0e9;
 /// A lamp far away. Its light adds to that of the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpecimenLamp {
-    /// Towards the middle, of length 1.
+    /// Toward the middle, of length 1.
     pub direction: [f64; 3],
     /// The squared chord from the middle to the edge.
     pub reach: f64,
@@ -93,7 +93,7 @@ impl SpecimenLamp {
     pub fn check_count(lamps: &[Self]) -> Result<(), SpecimenError> {
         let (found, most) = (lamps.len() as u64, SPECIMEN_LAMPS.into());
         if found > most {
-            return Err(SpecimenError::Size { quantity: "number of lamps", found, least: 0, most });
+            return Err(SpecimenError::Size { quantity: "number of lamps", found, min: 0, max: most });
         }
         Ok(())
     }

@@ -8,7 +8,7 @@
 //!
 //! Frame: the world's, right-handed, +Y up; the drop's origin at 0, its axis vertical, the bottom down. The camera
 //! is at distance (sin yaw cos pitch, sin pitch, cos yaw cos pitch), looks at the origin, +Y up. Arguments are in
-//! metres and radians; inside, lengths are in units of the drop's volume-equivalent radius. Radiance is linear, in
+//! meters and radians; inside, lengths are in units of the drop's volume-equivalent radius. Radiance is linear, in
 //! the units of the map, unexposed.
 //!
 //! Sky maps are equirectangular: u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top, bilinear
@@ -26,7 +26,7 @@
 //! its terminal speed, at the origin at mid-exposure, and oscillates ([`streak`], [`wobble`], [`SpecimenMotion`]). Without
 //! either it is that of the drop at rest, bit for bit.
 //!
-//! Limits: no diffraction (drops above some hundredths of a millimetre), no absorption (below 0.4 % in 6 mm). Light
+//! Limits: no diffraction (drops above some hundredths of a millimeter), no absorption (below 0.4 % in 6 mm). Light
 //! that is still inside after 256 internal reflections, or of which less than 10^-4 is left, leaves at the last
 //! exit, so that all fractions sum to 1. Exact up to 5.9 mm, where drops are convex. The bottom of larger
 //! ones has a ripple (`downpour_drop::shape`): light that leaves it and would meet it again continues, and rays that
@@ -92,7 +92,7 @@ pub use error::SpecimenError;
 pub use image::Image;
 pub use lamp::SpecimenLamp;
 pub use motion::SpecimenMotion;
-pub use options::{LONGEST_EXPOSURE_S, MAX_SIZE, SpecimenOptions};
+pub use options::{MAX_EXPOSURE_S, MAX_SIZE, SpecimenOptions};
 pub use render::{render_specimen, render_specimen_f64, render_specimen_scalar, specimen_jitter};
 pub use sky::Sky;
 pub use table::{MAX_TABLE_LAMP_DEG, check_specimen_table, render_specimen_table};

@@ -22,7 +22,7 @@ const MARGIN: f64 = 1.002;
 
 /// A drop that falls at its terminal speed (Beard 1976, at 20 C and 1013.25 hPa) and oscillates, at the origin at time 0. The
 /// radius at rest is multiplied by the factor of `downpour_drop::oscillation`, and the volume is conserved; phi = 0, the
-/// direction of the lobe of the mode (3,1), is towards +X.
+/// direction of the lobe of the mode (3,1), is toward +X.
 #[derive(Clone, Copy, Debug)]
 pub struct SpecimenMotion {
     /// The drop and its oscillation.
@@ -64,7 +64,7 @@ impl SpecimenMotion {
         }))
     }
 
-    /// The largest distance of the surface from the drop's origin, in metres.
+    /// The largest distance of the surface from the drop's origin, in meters.
     pub(crate) fn bounding_radius(&self) -> f64 {
         self.drop.shape().equivalent_radius() / self.inverse_wide.min(self.inverse_tall).sqrt()
     }

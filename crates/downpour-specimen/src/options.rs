@@ -5,7 +5,7 @@ use downpour_drop::optics::WATER_INDEX;
 use downpour_drop::oscillation::Amplitudes;
 use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
-pub use downpour_render::camera::LONGEST_EXPOSURE_S;
+pub use downpour_render::camera::MAX_EXPOSURE_S;
 use downpour_shaders::render::specimen::{SPECIMEN_SAMPLES, SPECIMEN_STREAK_INSTANTS};
 
 use super::SpecimenError;
@@ -25,9 +25,9 @@ const MAX_INDEX: f64 = 4.0;
 /// A raindrop above 4 mm is so much wider than high that 80 % of the height do not fit into a square picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpecimenOptions {
-    /// Distance of the camera from the drop's origin, in metres: outside the drop, up to 1000.
+    /// Distance of the camera from the drop's origin, in meters: outside the drop, up to 1000.
     pub distance_m: f64,
-    /// Azimuth of the camera in radians, from +Z towards +X.
+    /// Azimuth of the camera in radians, from +Z toward +X.
     pub yaw: f64,
     /// Elevation of the camera above the drop's horizon in radians, -pi/2 to pi/2.
     pub pitch: f64,
@@ -41,7 +41,7 @@ pub struct SpecimenOptions {
     /// Refractive index of water against air for red, green and blue, each 1 to 4. Three different ones take three
     /// times as long (`downpour_drop::optics::rgb_indices` has those of real water).
     pub refractive_index: [f64; 3],
-    /// Exposure in seconds, 0 to [`LONGEST_EXPOSURE_S`]: the drop falls at its terminal speed and
+    /// Exposure in seconds, 0 to [`MAX_EXPOSURE_S`]: the drop falls at its terminal speed and
     /// is at the origin at mid-exposure.
     pub exposure_s: f64,
     /// Instants for each sample of a pixel, 1 to 4096, spread over the time in which the drop may cover it.
@@ -113,13 +113,13 @@ impl SpecimenOptions {
             if (1..=most).contains(&found) {
                 return Ok(());
             }
-            Err(SpecimenError::Size { quantity, found: found.into(), least: 1, most: most.into() })
+            Err(SpecimenError::Size { quantity, found: found.into(), min: 1, max: most.into() })
         };
         size("picture width", self.size[0], MAX_SIZE)?;
         size("picture height", self.size[1], MAX_SIZE)?;
         size("samples along an edge of a pixel", self.samples, SPECIMEN_SAMPLES)?;
         size("instants of an exposure", self.instants, SPECIMEN_STREAK_INSTANTS)?;
-        within("exposure", self.exposure_s, 0.0, LONGEST_EXPOSURE_S, "s", 1.0, "0 to 1")?;
+        within("exposure", self.exposure_s, 0.0, MAX_EXPOSURE_S, "s", 1.0, "0 to 1")?;
         for turns in self.phase {
             within("phase of the oscillation", turns, f64::MIN, f64::MAX, "turns", 1.0, "a finite number")?;
         }
@@ -144,7 +144,7 @@ impl SpecimenOptions {
         }))
     }
 
-    /// Fall in half of the exposure, in metres.
+    /// Fall in half of the exposure, in meters.
     pub(crate) fn half_path(&self, shape: &DropShape) -> Result<f64, SpecimenError> {
         Ok(0.5 * self.exposure_s * fall_speed(shape)?)
     }

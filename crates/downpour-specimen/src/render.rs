@@ -13,7 +13,7 @@ use downpour_shaders::render::specimen::SPECIMEN_LATTICE;
 use rayon::prelude::*;
 
 use super::options::SpecimenOptions;
-use super::sky::{Sky, sky_f64, specimen_sky, specimen_sky_lamps, specimen_sky_place};
+use super::sky::{Sky, sky_f64, specimen_sky, specimen_sky_lamps, specimen_sky_position};
 use super::streak::{Precision, Streak};
 use super::trace::{Receiver, SpecimenCamera, specimen_light, specimen_radiance, upright_drop};
 use super::{Image, SpecimenError};
@@ -204,20 +204,20 @@ struct LaneSums<'a> {
 
 impl<S: Simd> Receiver<Lanes<S>> for LaneSums<'_> {
     #[inline(always)]
-    fn receive(&mut self, direction: [Lanes<S>; 3], share: Lanes<S>) {
-        let [u, v] = specimen_sky_place(direction);
+    fn receive(&mut self, direction: [Lanes<S>; 3], fraction: Lanes<S>) {
+        let [u, v] = specimen_sky_position(direction);
         let [x, y, z] = direction;
         let mut stored = [[0.0f32; MAX_LANES]; 6];
         let kept = if self.sky.lamps().is_empty() { 3 } else { 6 };
-        for (lanes, into) in [u, v, share, x, y, z].into_iter().zip(&mut stored[..kept]) {
+        for (lanes, into) in [u, v, fraction, x, y, z].into_iter().zip(&mut stored[..kept]) {
             lanes.store(into);
         }
-        let [u, v, share, x, y, z] = &stored;
+        let [u, v, fraction, x, y, z] = &stored;
         for (k, sum) in self.sums.iter_mut().enumerate() {
-            if share[k] > 0.0 {
+            if fraction[k] > 0.0 {
                 let lamps = specimen_sky_lamps(self.sky, [x[k], y[k], z[k]]);
                 let light = add(specimen_sky(self.sky, [u[k], v[k]]), lamps);
-                *sum = add_scaled(*sum, light, share[k]);
+                *sum = add_scaled(*sum, light, fraction[k]);
             }
         }
     }
@@ -253,9 +253,9 @@ struct SumF64<'a> {
 }
 
 impl Receiver<f64> for SumF64<'_> {
-    fn receive(&mut self, direction: [f64; 3], share: f64) {
-        if share > 0.0 {
-            self.radiance = add_scaled(self.radiance, sky_f64(self.sky, direction), share);
+    fn receive(&mut self, direction: [f64; 3], fraction: f64) {
+        if fraction > 0.0 {
+            self.radiance = add_scaled(self.radiance, sky_f64(self.sky, direction), fraction);
         }
     }
 }

@@ -41,7 +41,7 @@ impl<'a> Sky<'a> {
         for (quantity, found) in [("sky map width", width), ("sky map height", height)] {
             if !(1..=MAX_SIZE).contains(&found) {
                 let (found, most) = (found.into(), MAX_SIZE.into());
-                return Err(SpecimenError::Size { quantity, found, least: 1, most });
+                return Err(SpecimenError::Size { quantity, found, min: 1, max: most });
             }
         }
         let texels = u64::from(width) * u64::from(height);
@@ -117,7 +117,7 @@ pub fn specimen_turns<R: Real>(y: R, x: R) -> R {
 /// Position of a direction (of any length) on the sky map: u from the left, v from the top, both in [0, 1].
 #[inline(always)]
 #[must_use]
-pub fn specimen_sky_place<R: Real>(direction: [R; 3]) -> [R; 2] {
+pub fn specimen_sky_position<R: Real>(direction: [R; 3]) -> [R; 2] {
     let [x, y, z] = direction;
     let half = x.constant(0.5);
     let level = (x * x + z * z).sqrt();
@@ -168,7 +168,7 @@ pub fn specimen_sky_lamps<R: Real<Mask = bool>>(sky: Sky<'_>, direction: [R; 3])
 #[inline]
 #[must_use]
 pub fn specimen_sky_light(sky: Sky<'_>, direction: [f32; 3]) -> [f32; 3] {
-    add(specimen_sky(sky, specimen_sky_place(direction)), specimen_sky_lamps(sky, direction))
+    add(specimen_sky(sky, specimen_sky_position(direction)), specimen_sky_lamps(sky, direction))
 }
 
 /// The radiance of the sky along a direction, in f64 and with the library's inverse functions: the reference.

@@ -16,7 +16,7 @@ use downpour_math::real::Real;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_math::vector::{add, add_scaled, scale};
 use downpour_shaders::render::specimen::{
-    SPECIMEN_ALL, SPECIMEN_LEAST, SPECIMEN_STREAK_DIMENSION, SPECIMEN_STREAK_REFLECTIONS,
+    SPECIMEN_ALL, SPECIMEN_MIN_FRACTION, SPECIMEN_STREAK_DIMENSION, SPECIMEN_STREAK_REFLECTIONS,
     SPECIMEN_STREAK_TRACES, SPECIMEN_TINY,
 };
 
@@ -26,7 +26,7 @@ use super::sky::{Sky, sky_f64, specimen_sky_light};
 use super::trace::{SpecimenRay, specimen_ray};
 use super::wobble::{SpecimenWobble, specimen_wobble_bounce, specimen_wobble_enter, specimen_wobble_meet};
 
-/// When a ray meets the drop.
+/// Time interval in which a ray meets the drop.
 #[derive(Clone, Copy, Debug)]
 pub struct SpecimenPassage<R> {
     /// Foot of the shifted ray at the nearest approach of the drop's axis and the ray.
@@ -152,15 +152,15 @@ fn specimen_streak_radiance<R: Precision>(
     let Some(s) = specimen_wobble_meet(drop, ray) else { return R::sky(sky, ray.direction) };
     let zero = s.constant(0.0);
     let mut light = specimen_wobble_enter(drop, ray, s);
-    let mut radiance = scale(R::sky(sky, light.exit), light.share);
+    let mut radiance = scale(R::sky(sky, light.exit), light.fraction);
     for k in 0..=SPECIMEN_STREAK_REFLECTIONS {
         if !zero.less(light.rest) {
             break;
         }
-        let least = if k == SPECIMEN_STREAK_REFLECTIONS { SPECIMEN_ALL } else { SPECIMEN_LEAST };
+        let least = if k == SPECIMEN_STREAK_REFLECTIONS { SPECIMEN_ALL } else { SPECIMEN_MIN_FRACTION };
         light = specimen_wobble_bounce(drop, &light, R::single(least));
-        if zero.less(light.share) {
-            radiance = add_scaled(radiance, R::sky(sky, light.exit), light.share);
+        if zero.less(light.fraction) {
+            radiance = add_scaled(radiance, R::sky(sky, light.exit), light.fraction);
         }
     }
     radiance

@@ -5,7 +5,7 @@
 //! of a scene. Uncovered pixels show the map itself, sampled as there.
 //!
 //! A lamp at infinity is parallel light for the renderer, excluded from the environment capture: the profile of the streak looks up its
-//! disc. A disc has to be small for that ([`MAX_TABLE_LAMP_DEG`]).
+//! disk. A disk has to be small for that ([`MAX_TABLE_LAMP_DEG`]).
 //!
 //! Source: P. Rousseau et al., "GPU rainfall", 2008, section 2.2.3, for the oscillation of the outline; the table is
 //! described in `shaders/wgsl/render/streak_lookup.wgsl`.
@@ -48,7 +48,7 @@ use downpour_trace::sky_light::SkyLight;
 /// Maximum angular radius, in degrees, of a lamp that may count as parallel light.
 pub const MAX_TABLE_LAMP_DEG: f64 = 5.0;
 
-/// Minimum distance from the eye, metres, above a diameter: nearer drops at mid-exposure do not move in a picture of rain.
+/// Minimum distance from the eye, meters, above a diameter: nearer drops at mid-exposure do not move in a picture of rain.
 const MIN_DISTANCE_M: f64 = 0.02;
 
 /// Seed and id of the drop: the phases and the azimuth that follow from them are replaced.
@@ -198,7 +198,7 @@ impl TableStreak {
             set_phases(drop, options);
         }
         for path in &mut rain.profiles.paths {
-            // Towards +X.
+            // Toward +X.
             path.lobe = [1.0, 0.0];
         }
         Ok(Self { scene, frame, masks, rain, clean: background(view, sky), channels: view.channels })
@@ -290,17 +290,17 @@ fn background(view: &View, sky: Sky<'_>) -> Vec<[f32; 4]> {
         .collect()
 }
 
-/// Sets the phases of the specimen, and the lobe of the mode (3,1) towards +X.
+/// Sets the phases of the specimen, and the lobe of the mode (3,1) toward +X.
 fn set_phases(drop: &mut DropsDrop, options: &SpecimenOptions) {
     if options.oscillation == Amplitudes::NONE {
         return;
     }
     let drawn = drop_oscillation_phase(seed_words(SEED), ID);
-    let [_, _, begin @ ..] = &mut drop.swing;
+    let [_, _, begin @ ..] = &mut drop.mode_phase;
     for ((begin, asked), drawn) in begin.iter_mut().zip(options.phase).zip(drawn) {
         let late = asked.rem_euclid(1.0) - f64::from(drawn);
         *begin = (f64::from(*begin) + late).rem_euclid(1.0) as f32;
     }
     let [_, a31] = options.oscillation.pair();
-    drop.swing[1] = a31 as f32 * drops_mask_right(drop.towards.into()).x;
+    drop.mode_phase[1] = a31 as f32 * drops_mask_right(drop.towards.into()).x;
 }

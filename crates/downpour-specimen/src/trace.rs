@@ -1,4 +1,4 @@
-//! A ray of the camera through the drop, with all that becomes of it.
+//! A camera ray through the drop, with all its reflections and refractions.
 //!
 //! Surface and normals are those of `downpour_mask::trace`; lengths are in units of the equivalent radius, the frame is
 //! the world's. A ray starts at its foot, the point nearest to the drop's origin: with q the slopes of the ray across
@@ -21,7 +21,7 @@ use downpour_math::real::Real;
 use downpour_math::vector::{add, add_scaled, dot, normalize, scale, select, sub};
 use downpour_shaders::mask::{MASK_SILHOUETTE_INSIDE, MASK_SILHOUETTE_OUTSIDE, MASK_TRACE_STEPS};
 use downpour_shaders::render::specimen::{
-    SPECIMEN_ALL, SPECIMEN_LEAST, SPECIMEN_NEAREST_STEPS, SPECIMEN_REFLECTIONS,
+    SPECIMEN_ALL, SPECIMEN_MIN_FRACTION, SPECIMEN_NEAREST_STEPS, SPECIMEN_REFLECTIONS,
 };
 
 use super::sky::{Sky, specimen_sky_light};
@@ -74,7 +74,7 @@ pub struct SpecimenLight<R> {
     /// Point of the last interface.
     pub point: [R; 3],
     /// Fraction of the light that left there.
-    pub share: R,
+    pub fraction: R,
     /// Direction of the light that left.
     pub exit: [R; 3],
     /// Fraction of the light that is still inside.
@@ -85,8 +85,8 @@ pub struct SpecimenLight<R> {
 
 /// Takes the light that leaves, in order.
 pub trait Receiver<R> {
-    /// Receives light of the fraction `share` (0 if no light leaves) that leaves along `direction`.
-    fn receive(&mut self, direction: [R; 3], share: R);
+    /// Receives light of the fraction `fraction` (0 if no light leaves) that leaves along `direction`.
+    fn receive(&mut self, direction: [R; 3], fraction: R);
 }
 
 /// The ray through the point (x, y) of the picture, in samples from its middle, y upwards.
@@ -144,7 +144,7 @@ pub fn specimen_enter<R: Real>(drop: &TracedDrop, ray: &SpecimenRay<R>) -> Speci
     let (inside, _) = optics_refract(ray.direction, normal, one / index);
     SpecimenLight {
         point,
-        share: reflectance,
+        fraction: reflectance,
         exit: optics_reflect(ray.direction, normal),
         rest: one - reflectance,
         inside: normalize(inside),
@@ -168,7 +168,7 @@ pub fn specimen_bounce<R: Real>(drop: &TracedDrop, light: &SpecimenLight<R>, lea
     let rest = R::select(kept.less(least), zero, kept);
     SpecimenLight {
         point,
-        share: light.rest - rest,
+        fraction: light.rest - rest,
         exit: select(passes, through, light.exit),
         rest,
         inside: optics_reflect(light.inside, normal),
@@ -198,14 +198,14 @@ pub fn specimen_light<R: Real>(
     }
     let mut light = specimen_enter(drop, &ray);
     light.rest = R::select(hits, light.rest, zero);
-    receiver.receive(light.exit, R::select(hits, light.share, zero));
+    receiver.receive(light.exit, R::select(hits, light.fraction, zero));
     for k in 0..=SPECIMEN_REFLECTIONS {
         if !one.any(zero.less(light.rest)) {
             break;
         }
-        let least = if k == SPECIMEN_REFLECTIONS { SPECIMEN_ALL } else { SPECIMEN_LEAST };
+        let least = if k == SPECIMEN_REFLECTIONS { SPECIMEN_ALL } else { SPECIMEN_MIN_FRACTION };
         light = specimen_bounce(drop, &light, one.constant(f64::from(least)));
-        receiver.receive(light.exit, light.share);
+        receiver.receive(light.exit, light.fraction);
     }
 }
 
@@ -217,9 +217,9 @@ struct Sum<'a> {
 
 impl Receiver<f32> for Sum<'_> {
     #[inline(always)]
-    fn receive(&mut self, direction: [f32; 3], share: f32) {
-        if share > 0.0 {
-            self.radiance = add_scaled(self.radiance, specimen_sky_light(self.sky, direction), share);
+    fn receive(&mut self, direction: [f32; 3], fraction: f32) {
+        if fraction > 0.0 {
+            self.radiance = add_scaled(self.radiance, specimen_sky_light(self.sky, direction), fraction);
         }
     }
 }

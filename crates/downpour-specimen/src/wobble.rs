@@ -105,7 +105,7 @@ pub fn specimen_wobble_cross<R: Real<Mask = bool>>(
         at_b = at(b);
         found = beyond(at_b[0]);
         if !found && beyond(at_a[1]) && (side * at_b[1]).less(zero) {
-            // G turns towards the other side: its extremum by the rule of the false position.
+            // G turns toward the other side: its extremum by the rule of the false position.
             let (mut low, mut high) = ([a, at_a[1]], [b, at_b[1]]);
             for _ in 0..SPECIMEN_WOBBLE_TURNS {
                 let middle = low[0] + (high[0] - low[0]) * (low[1] / (low[1] - high[1]));
@@ -180,7 +180,7 @@ pub fn specimen_wobble_enter<R: Real>(
     let (inside, _) = optics_refract(ray.direction, normal, one / index);
     SpecimenLight {
         point,
-        share: reflectance,
+        fraction: reflectance,
         exit: optics_reflect(ray.direction, normal),
         rest: one - reflectance,
         inside: normalize(inside),
@@ -210,7 +210,7 @@ pub fn specimen_wobble_bounce<R: Real<Mask = bool>>(
     let rest = R::select(kept.less(least), zero, kept);
     SpecimenLight {
         point,
-        share: light.rest - rest,
+        fraction: light.rest - rest,
         exit: select(passes, through, light.exit),
         rest,
         inside: optics_reflect(light.inside, normal),

@@ -113,10 +113,10 @@ fn bad_lamps_are_refused() {
     }
     let many = [lamp(0.0, 0.0, 0.1, 1.0); 9];
     let error = Sky::new(2, 1, &DARK).unwrap().with_lamps(&many).unwrap_err();
-    assert!(matches!(error, SpecimenError::Size { found: 9, most: 8, .. }), "{error}");
+    assert!(matches!(error, SpecimenError::Size { found: 9, max: 8, .. }), "{error}");
 }
 
-/// Mean radiance over a sphere's disc of the light of a lamp of radiance 1, by quadrature over the impact parameter: the plane
+/// Mean radiance over a sphere's disk of the light of a lamp of radiance 1, by quadrature over the impact parameter: the plane
 /// laws of a sphere, order by order, with unpolarized light at each interface. `scattering` is the angle between the direction of
 /// the light and the direction to the eye.
 fn sphere_shows(scattering: f64, radius: f64) -> f64 {
@@ -126,10 +126,10 @@ fn sphere_shows(scattering: f64, radius: f64) -> f64 {
         let b = (f64::from(k) + 0.5) / f64::from(steps);
         let (incident, refracted) = (ops::asin(b), ops::asin(b / WATER_INDEX));
         let mirrored: f64 = optics_fresnel(ops::cos(incident), WATER_INDEX);
-        let mut share = mirrored;
+        let mut fraction = mirrored;
         for p in 0..12 {
             if p > 0 {
-                share = (1.0 - mirrored) * (1.0 - mirrored) * ops::pow(mirrored, f64::from(p - 1));
+                fraction = (1.0 - mirrored) * (1.0 - mirrored) * ops::pow(mirrored, f64::from(p - 1));
             }
             // Van de Hulst, Light scattering by small particles, 12.21: the deflection of order p.
             let angle = if p == 0 {
@@ -137,12 +137,12 @@ fn sphere_shows(scattering: f64, radius: f64) -> f64 {
             } else {
                 2.0 * (incident - refracted) + f64::from(p - 1) * (PI - 2.0 * refracted)
             };
-            // Fraction of the ring of that angle in the lamp's disc.
+            // Fraction of the ring of that angle in the lamp's disk.
             let (s, c) = (ops::sin(angle) * ops::sin(scattering), ops::cos(angle) * ops::cos(scattering));
             let edge =
                 if s.abs() < 1.0e-12 { -2.0 * f64::from(c >= lamp) + 1.0 } else { (lamp - c) / s.abs() };
             let within = ops::acos(edge.clamp(-1.0, 1.0)) / PI;
-            sum += 2.0 * b / f64::from(steps) * share * within;
+            sum += 2.0 * b / f64::from(steps) * fraction * within;
         }
     }
     sum

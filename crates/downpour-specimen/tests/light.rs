@@ -4,7 +4,7 @@ use downpour_drop::DropShape;
 use downpour_drop::optics::optics_fresnel;
 use downpour_math::ops::f64 as ops;
 use downpour_math::vector::{add_scaled, dot, normalize, scale, sub};
-use downpour_shaders::render::specimen::{SPECIMEN_LEAST, SPECIMEN_REFLECTIONS};
+use downpour_shaders::render::specimen::{SPECIMEN_MIN_FRACTION, SPECIMEN_REFLECTIONS};
 use downpour_specimen::trace::{
     Receiver, SpecimenCamera, specimen_hits, specimen_light, specimen_ray, upright_drop,
 };
@@ -16,8 +16,8 @@ const INDEX: f64 = 1.333;
 struct All<R>(Vec<([R; 3], R)>);
 
 impl<R> Receiver<R> for All<R> {
-    fn receive(&mut self, direction: [R; 3], share: R) {
-        self.0.push((direction, share));
+    fn receive(&mut self, direction: [R; 3], fraction: R) {
+        self.0.push((direction, fraction));
     }
 }
 
@@ -66,7 +66,7 @@ fn a_sphere_sends_light_where_the_formula_says() {
             0 => -(pi - 2.0 * incidence),
             _ => 2.0 * (incidence - refraction) + (k as f64 - 1.0) * (pi - 2.0 * refraction),
         });
-        for (k, (&(direction, share), turn)) in all.0.iter().zip(turns).enumerate() {
+        for (k, (&(direction, fraction), turn)) in all.0.iter().zip(turns).enumerate() {
             let expected = add_scaled(scale(ray.direction, ops::cos(turn)), outward, -ops::sin(turn));
             let apart = sub(normalize(direction), expected);
             assert!(dot(apart, apart).sqrt() < 1.0e-9, "order {k} at {offset}: {direction:?} {expected:?}");
@@ -75,8 +75,8 @@ fn a_sphere_sends_light_where_the_formula_says() {
                 _ => (1.0 - reflectance) * (1.0 - reflectance) * ops::pow(reflectance, k as f64 - 1.0),
             };
             // The last exit includes the light that is not followed.
-            let slack = if k + 1 == all.0.len() { f64::from(SPECIMEN_LEAST) } else { 1.0e-12 };
-            assert!((share - expected).abs() <= slack, "order {k} at {offset}: {share} {expected}");
+            let slack = if k + 1 == all.0.len() { f64::from(SPECIMEN_MIN_FRACTION) } else { 1.0e-12 };
+            assert!((fraction - expected).abs() <= slack, "order {k} at {offset}: {fraction} {expected}");
         }
     }
     assert!(seen > 100, "{seen}");

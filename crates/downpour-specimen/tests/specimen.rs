@@ -3,7 +3,7 @@
 use downpour_drop::DropShape;
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
-use downpour_specimen::sky::{specimen_sky, specimen_sky_place, specimen_turns};
+use downpour_specimen::sky::{specimen_sky, specimen_sky_position, specimen_turns};
 use downpour_specimen::{
     Image, MAX_SIZE, Sky, SpecimenError, SpecimenOptions, render_specimen, render_specimen_f64,
     render_specimen_scalar,
@@ -179,7 +179,7 @@ fn a_sky_map_lies_as_agreed() {
         ([0.0, -0.1, 0.0], [0.5, 1.0]),
         ([1.0, 1.0, 0.0], [0.5, 0.25]),
     ] {
-        assert!(near(specimen_sky_place(direction), position), "{direction:?}");
+        assert!(near(specimen_sky_position(direction), position), "{direction:?}");
     }
     let texels: Vec<[f32; 3]> = (0..8u8).map(|i| [f32::from(i), 0.0, 1.0]).collect();
     let sky = Sky::new(4, 2, &texels).unwrap();

@@ -15,7 +15,7 @@ fn drop(diameter_mm: f64) -> DropShape {
 }
 
 /// Squares of 15 degrees, bright and dark; the horizon is in the middle of theirs.
-fn chequered() -> Vec<[f32; 3]> {
+fn checkered() -> Vec<[f32; 3]> {
     (0..96 * 48)
         .map(|i| {
             let (column, row) = (i % 96 / 4, (i / 96 + 2) / 4);
@@ -77,7 +77,7 @@ fn difference(found: &Image, exact: &Image, bare: &Image) -> Difference {
 /// the table's streak before the same squares a quarter of a turn on.
 #[test]
 fn the_table_shows_what_the_exact_streak_does() {
-    let radiance = chequered();
+    let radiance = checkered();
     let sky = Sky::new(96, 48, &radiance).unwrap();
     let turned: Vec<[f32; 3]> = (0..96 * 48).map(|i| radiance[i / 96 * 96 + (i % 96 + 50) % 96]).collect();
     let turned = Sky::new(96, 48, &turned).unwrap();
@@ -186,7 +186,7 @@ fn a_streak_before_dark_ground_has_the_light_of_the_exact_one() {
     }
 }
 
-/// The light of a lamp through the drop equals the exact one, and beside the drop its disc is visible.
+/// The light of a lamp through the drop equals the exact one, and beside the drop its disk is visible.
 #[test]
 fn a_lamp_lights_the_streak() {
     const DARK: [[f32; 3]; 2] = [[0.0; 3]; 2];
@@ -219,7 +219,7 @@ fn a_lamp_lights_the_streak() {
 /// Three indices give three colors, each that of its index.
 #[test]
 fn colors_are_those_of_their_indices() {
-    let radiance = chequered();
+    let radiance = checkered();
     let sky = Sky::new(96, 48, &radiance).unwrap();
     let with = |refractive_index| {
         let options = SpecimenOptions { refractive_index, ..options(1.0e-3, Amplitudes::NONE) };

@@ -19,16 +19,16 @@ use crate::builder::{MeshPart, SceneBuilder};
 use crate::material::{MaterialLook, TextureSlot, TextureUse};
 use downpour_render::light::LightSource;
 
-/// Pictures that are in the scene already, each as colour and as data.
+/// Pictures that are in the scene already, each as color and as data.
 #[derive(Default)]
 struct Stored<'a> {
-    by_place: HashMap<(*const Picture, bool), TextureSlot>,
+    by_pointer: HashMap<(*const Picture, bool), TextureSlot>,
     /// A kit of parts has one atlas, which each of its files brings along.
     by_content: HashMap<(u64, bool), (&'a Arc<Picture>, TextureSlot)>,
 }
 
 impl SceneBuilder {
-    /// Adds all that a pose of a scene shows, relative to `origin`, metres: far from the world's origin single precision
+    /// Adds all that a pose of a scene shows, relative to `origin`, meters: far from the world's origin single precision
     /// is coarse, near the eye it need not be.
     ///
     /// Lights keep their numbers: 1 is what the sky's radiance of 1 is, so that a lamp of `I` candela lights a surface
@@ -52,7 +52,7 @@ impl SceneBuilder {
                     normals: (normals.len() == positions.len()).then_some(normals),
                     tangents: (tangents.len() == positions.len()).then_some(tangents),
                     uvs: [Some(bytemuck::cast_slice(first)), Some(bytemuck::cast_slice(second))],
-                    colours: primitive.colors.as_deref().map(bytemuck::cast_slice),
+                    colors: primitive.colors.as_deref().map(bytemuck::cast_slice),
                     indices: &primitive.indices,
                     material: materials.get(primitive.material).copied().unwrap_or(fallback),
                 };
@@ -63,8 +63,8 @@ impl SceneBuilder {
             let Some(light) = scene.lights.get(placed.light) else { continue };
             let strength = light.color * light.intensity;
             let range = light.range.unwrap_or(0.0);
-            let place = pose.world_f64(placed.node).map_or(placed.position.as_dvec3(), |w| w.translation);
-            let (position, direction) = ((place - origin).as_vec3(), placed.direction);
+            let position = pose.world_f64(placed.node).map_or(placed.position.as_dvec3(), |w| w.translation);
+            let (position, direction) = ((position - origin).as_vec3(), placed.direction);
             self.add_light(match light.kind {
                 LightKind::Directional => LightSource::Directional { direction, irradiance: strength },
                 LightKind::Point => LightSource::Point { position, intensity: strength, range },
@@ -96,7 +96,7 @@ impl SceneBuilder {
         ];
         let maps = textures.map(|t| t.as_ref().and_then(|t| self.add_texture_use(scene, t, stored)));
         self.add_material(MaterialLook {
-            base_colour: material.base_color.into(),
+            base_color: material.base_color.into(),
             emission: material.emissive.into(),
             metallic: material.metallic,
             roughness: material.roughness,
@@ -120,22 +120,22 @@ impl SceneBuilder {
         stored: &mut Stored<'a>,
     ) -> Option<u32> {
         let texture = scene.textures.get(used.texture)?;
-        let colour = texture.encoding == Encoding::Srgb;
+        let color = texture.encoding == Encoding::Srgb;
         let picture = &texture.picture;
-        let place = (Arc::as_ptr(picture), colour);
-        let slot = match stored.by_place.get(&place) {
+        let key = (Arc::as_ptr(picture), color);
+        let slot = match stored.by_pointer.get(&key) {
             Some(slot) => *slot,
             None => {
-                let content = (digest(picture), colour);
+                let content = (digest(picture), color);
                 let slot = match stored.by_content.get(&content) {
                     Some((known, slot)) if same(known, picture) => *slot,
                     _ => {
-                        let slot = self.add_picture(picture, colour);
+                        let slot = self.add_picture(picture, color);
                         stored.by_content.insert(content, (picture, slot));
                         slot
                     }
                 };
-                stored.by_place.insert(place, slot);
+                stored.by_pointer.insert(key, slot);
                 slot
             }
         };
@@ -160,8 +160,8 @@ impl SceneBuilder {
         Some(self.add_slot(slot))
     }
 
-    fn add_picture(&mut self, picture: &Picture, colour: bool) -> TextureSlot {
-        let of = if colour { TextureUse::Colour } else { TextureUse::Data };
+    fn add_picture(&mut self, picture: &Picture, color: bool) -> TextureSlot {
+        let of = if color { TextureUse::Color } else { TextureUse::Data };
         let bytes: Cow<'_, [[u8; 4]]> = match &picture.pixels {
             Pixels::Rgba8(pixels) => Cow::Borrowed(pixels),
             Pixels::RgbaF32(pixels) => {
@@ -172,7 +172,7 @@ impl SceneBuilder {
     }
 }
 
-/// An instance whose place is relative to `origin`.
+/// An instance whose position is relative to `origin`.
 fn relative<'a>(instance: &'a Instance, pose: &Pose, origin: DVec3) -> Cow<'a, Instance> {
     if origin == DVec3::ZERO {
         return Cow::Borrowed(instance);

@@ -9,7 +9,7 @@
 //! Symbols: alpha = roughness^2; all cosines in [0, 1]. Twin of `shaders/wgsl/render/brdf.wgsl`.
 
 use downpour_math::ops;
-use downpour_shaders::render::brdf::{BRDF_GRAZING, BRDF_SMALLEST};
+use downpour_shaders::render::brdf::{BRDF_GRAZING, BRDF_MIN_DIVISOR};
 use glam::Vec3;
 
 /// Normal distribution times pi: D(h) pi, at a cosine to the normal.
@@ -26,7 +26,7 @@ pub fn brdf_visibility(alpha: f32, cosine_view: f32, cosine_light: f32) -> f32 {
     let a2 = alpha * alpha;
     let view = cosine_light * ((cosine_view - a2 * cosine_view) * cosine_view + a2).sqrt();
     let light = cosine_view * ((cosine_light - a2 * cosine_light) * cosine_light + a2).sqrt();
-    0.5 / (view + light).max(BRDF_SMALLEST)
+    0.5 / (view + light).max(BRDF_MIN_DIVISOR)
 }
 
 /// Schlick's Fresnel for a reflectance at normal incidence.
@@ -38,7 +38,7 @@ pub fn brdf_fresnel(normal_reflectance: Vec3, cosine: f32) -> Vec3 {
     normal_reflectance + (Vec3::ONE - normal_reflectance) * fifth
 }
 
-/// Radiance towards the viewer for light of irradiance pi from one direction, cosine at the surface included.
+/// Radiance toward the viewer for light of irradiance pi from one direction, cosine at the surface included.
 #[must_use]
 pub fn brdf_direct(
     diffuse: Vec3,
@@ -54,7 +54,7 @@ pub fn brdf_direct(
     }
     let cosine_view = normal.dot(view).max(BRDF_GRAZING);
     let sum = view + light;
-    let halfway = sum / sum.dot(sum).sqrt().max(BRDF_SMALLEST);
+    let halfway = sum / sum.dot(sum).sqrt().max(BRDF_MIN_DIVISOR);
     let cosine_half = normal.dot(halfway).clamp(0.0, 1.0);
     let fresnel = brdf_fresnel(normal_reflectance, view.dot(halfway));
     let specular = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine_light);
@@ -65,7 +65,7 @@ pub fn brdf_direct(
 #[must_use]
 pub fn brdf_masking(alpha: f32, cosine: f32) -> f32 {
     let a2 = alpha * alpha;
-    2.0 * cosine / (cosine + ((cosine - a2 * cosine) * cosine + a2).sqrt()).max(BRDF_SMALLEST)
+    2.0 * cosine / (cosine + ((cosine - a2 * cosine) * cosine + a2).sqrt()).max(BRDF_MIN_DIVISOR)
 }
 
 /// Normal of a microfacet, drawn from those that a viewer sees. `view` points to the viewer, in axes whose third is the
@@ -74,30 +74,30 @@ pub fn brdf_masking(alpha: f32, cosine: f32) -> f32 {
 pub fn brdf_visible_normal(view: Vec3, alpha: f32, a: f32, b: f32) -> Vec3 {
     // Stretched, so that the surface is one of roughness 1.
     let stretched = Vec3::new(alpha * view.x, alpha * view.y, view.z);
-    let v = stretched / stretched.dot(stretched).sqrt().max(BRDF_SMALLEST);
+    let v = stretched / stretched.dot(stretched).sqrt().max(BRDF_MIN_DIVISOR);
     let flat = v.x * v.x + v.y * v.y;
     let level = if flat > 0.0 { Vec3::new(-v.y, v.x, 0.0) / flat.sqrt() } else { Vec3::X };
     let rising = v.cross(level);
-    // A point of the disc that the hemisphere of normals shows: half of it is foreshortened.
+    // A point of the disk that the hemisphere of normals shows: half of it is foreshortened.
     let radius = a.sqrt();
     let angle = std::f32::consts::TAU * b;
     let x = radius * ops::cos(angle);
-    let share = 0.5 * (1.0 + v.z);
-    let y = (1.0 - share) * (1.0 - x * x).max(0.0).sqrt() + share * (radius * ops::sin(angle));
+    let fraction = 0.5 * (1.0 + v.z);
+    let y = (1.0 - fraction) * (1.0 - x * x).max(0.0).sqrt() + fraction * (radius * ops::sin(angle));
     let z = (1.0 - x * x - y * y).max(0.0).sqrt();
     let normal = level * x + rising * y + v * z;
     let back = Vec3::new(alpha * normal.x, alpha * normal.y, normal.z.max(0.0));
-    back / back.dot(back).sqrt().max(BRDF_SMALLEST)
+    back / back.dot(back).sqrt().max(BRDF_MIN_DIVISOR)
 }
 
 /// Density, per solid angle, of reflections drawn with [`brdf_visible_normal`], times pi.
 #[must_use]
 pub fn brdf_visible_density(alpha: f32, cosine_half: f32, cosine_view: f32) -> f32 {
     brdf_distribution(alpha, cosine_half) * brdf_masking(alpha, cosine_view) * 0.25
-        / cosine_view.max(BRDF_SMALLEST)
+        / cosine_view.max(BRDF_MIN_DIVISOR)
 }
 
-/// Share of a uniform environment that microfacets reflect.
+/// Fraction of a uniform environment that microfacets reflect.
 #[must_use]
 pub fn brdf_environment(normal_reflectance: Vec3, roughness: f32, cosine_view: f32) -> Vec3 {
     let r =
@@ -160,8 +160,8 @@ mod tests {
 
     #[test]
     fn environment_fit_is_the_mirror_at_no_roughness() {
-        let share = brdf_environment(Vec3::splat(0.04), 0.0, 1.0);
-        assert!((share.x - 0.04).abs() < 0.01, "{share}");
+        let fraction = brdf_environment(Vec3::splat(0.04), 0.0, 1.0);
+        assert!((fraction.x - 0.04).abs() < 0.01, "{fraction}");
         assert!(brdf_environment(Vec3::ONE, 0.5, 0.5).x <= 1.01);
     }
 }

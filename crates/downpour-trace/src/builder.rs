@@ -12,30 +12,30 @@ use crate::material::{MaterialLook, TextureSlot};
 use crate::sky_light::SkyLight;
 use downpour_render::light::LightSource;
 
-/// A triangle mesh on its way into a scene, in its own space.
+/// Triangle mesh to be added to a scene, in its own space.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshPart<'a> {
-    /// Places of the vertices, metres.
+    /// Positions of the vertices, meters.
     pub positions: &'a [[f32; 3]],
-    /// Normals; those of the triangles where there are none.
+    /// Vertex normals; `None`: the triangles' normals.
     pub normals: Option<&'a [[f32; 3]]>,
     /// Tangents with handedness; only normal maps need them.
     pub tangents: Option<&'a [[f32; 4]]>,
     /// First and second set of texture coordinates.
     pub uvs: [Option<&'a [[f32; 2]]>; 2],
-    /// Vertex colours, linear.
-    pub colours: Option<&'a [[f32; 4]]>,
-    /// Three vertices per triangle. Triangles that name a vertex that is not there are left out.
+    /// Vertex colors, linear.
+    pub colors: Option<&'a [[f32; 4]]>,
+    /// Three vertices per triangle. Triangles with an index out of range are left out.
     pub indices: &'a [u32],
     /// Index of the material.
     pub material: u32,
 }
 
-/// A scene being put together.
+/// Builder of a [`SceneData`].
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuilder {
     corners: Vec<[RenderCorner; 3]>,
-    places: Vec<[[f32; 3]; 3]>,
+    positions: Vec<[[f32; 3]; 3]>,
     materials: Vec<MaterialLook>,
     slots: Vec<TextureSlot>,
     texels: Vec<u32>,
@@ -43,7 +43,7 @@ pub struct SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// Nothing yet.
+    /// Creates an empty builder.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -56,13 +56,13 @@ impl SceneBuilder {
         first
     }
 
-    /// Adds a texture as a material uses it, and gives its index.
+    /// Adds a texture slot and returns its index.
     pub fn add_slot(&mut self, slot: TextureSlot) -> u32 {
         self.slots.push(slot);
         self.slots.len() as u32 - 1
     }
 
-    /// Adds a material and gives its index.
+    /// Adds a material and returns its index.
     pub fn add_material(&mut self, material: MaterialLook) -> u32 {
         self.materials.push(material);
         self.materials.len() as u32 - 1
@@ -79,7 +79,7 @@ impl SceneBuilder {
         let normal_matrix = transform.matrix3.inverse().transpose();
         let vertex = |i: u32| -> Option<(Vec3, RenderCorner)> {
             let i = i as usize;
-            let place = transform.transform_point3(Vec3::from(*part.positions.get(i)?));
+            let position = transform.transform_point3(Vec3::from(*part.positions.get(i)?));
             let normal = part
                 .normals
                 .and_then(|n| n.get(i))
@@ -95,9 +95,9 @@ impl SceneBuilder {
                 material: part.material,
                 tangent: tangent.into(),
                 uv: [uv(0).x, uv(0).y, uv(1).x, uv(1).y],
-                colour: part.colours.and_then(|c| c.get(i)).copied().unwrap_or([1.0; 4]),
+                color: part.colors.and_then(|c| c.get(i)).copied().unwrap_or([1.0; 4]),
             };
-            (place.is_finite()).then_some((place, corner))
+            (position.is_finite()).then_some((position, corner))
         };
         for triangle in part.indices.chunks_exact(3) {
             let order = if mirrored { [0, 2, 1] } else { [0, 1, 2] };
@@ -114,7 +114,7 @@ impl SceneBuilder {
                 }
                 corner
             };
-            self.places.push([a.0.into(), b.0.into(), c.0.into()]);
+            self.positions.push([a.0.into(), b.0.into(), c.0.into()]);
             self.corners.push([corner(a.1), corner(b.1), corner(c.1)]);
         }
     }
@@ -122,21 +122,21 @@ impl SceneBuilder {
     /// Number of triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
-        self.places.len()
+        self.positions.len()
     }
 
-    /// Builds the hierarchy and lays everything out.
+    /// Builds the hierarchy and the buffers.
     #[must_use]
     pub fn build(mut self, sky: &SkyLight) -> SceneData {
         if self.materials.is_empty() {
             self.materials.push(MaterialLook::default());
         }
-        if self.places.is_empty() {
+        if self.positions.is_empty() {
             // A triangle far below and too small to be seen: a hierarchy has at least one.
-            self.places.push([[0.0, -1.0e6, 0.0], [1.0e-3, -1.0e6, 0.0], [0.0, -1.0e6, 1.0e-3]]);
+            self.positions.push([[0.0, -1.0e6, 0.0], [1.0e-3, -1.0e6, 0.0], [0.0, -1.0e6, 1.0e-3]]);
             self.corners.push([RenderCorner { normal: [0.0, 1.0, 0.0], ..RenderCorner::default() }; 3]);
         }
-        let bvh = Bvh::new(&self.places);
+        let bvh = Bvh::new(&self.positions);
         let mut triangles = bvh.triangles;
         let last_material = self.materials.len() as u32 - 1;
         let mut corners = Vec::with_capacity(3 * triangles.len());

@@ -38,9 +38,9 @@ pub fn environment_frame(picture: &RenderFrame, environment: &EnvironmentFrame) 
             ..picture.camera
         },
         grid: environment.grid,
-        // No filter takes means over neighbours here, but the drops' lookups do.
+        // No filter takes means over neighbors here, but the drops' lookups do.
         sky_rays,
-        ray_share: 1.0 / (LOOKUP_TEXELS * sky_rays.max(1) as f32),
+        ray_fraction: 1.0 / (LOOKUP_TEXELS * sky_rays.max(1) as f32),
         first_row: 0,
         projection,
         ..*picture
@@ -64,7 +64,7 @@ pub fn trace_environment(
     EnvironmentMap::new(environment, texels)
 }
 
-/// The direction of a place of the map, in texels from the top left.
+/// The direction of a position of the map, in texels from the top left.
 pub(crate) fn capture_direction(frame: &RenderFrame, x: f32, y: f32) -> Vec3 {
     let scale = 2.0 / frame.camera.width as f32;
     packing_octahedral_decode([x * scale - 1.0, y * scale - 1.0]).into()
@@ -97,8 +97,8 @@ pub(crate) fn capture_suns(view: &SceneView<'_>, x: u32, y: u32) -> Vec3 {
         }
         let light = light.light_sample(eye, 0.0);
         let square = packing_octahedral_encode(light.direction.to_array());
-        let place = square.map(|s| ((s * 0.5 + 0.5) * size).clamp(0.0, size - 1.0));
-        if place[0] as u32 != x || place[1] as u32 != y {
+        let position = square.map(|s| ((s * 0.5 + 0.5) * size).clamp(0.0, size - 1.0));
+        if position[0] as u32 != x || position[1] as u32 != y {
             continue;
         }
         // A square of the plane |x| + |y| + |z| = 1, seen from its middle.

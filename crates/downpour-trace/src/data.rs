@@ -13,7 +13,7 @@ use downpour_shaders::render::scene::{SCENE_LIGHT_ROWS, SCENE_PICTURE, SCENE_SKY
 use glam::Vec3;
 
 /// Part of the pixels over which the filter takes means that one is.
-const WINDOW_SHARE: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
+const WINDOW_FRACTION: f32 = 1.0 / ((2 * SKYLIGHT_RADIUS + 1) * (2 * SKYLIGHT_RADIUS + 1)) as f32;
 
 /// A corner of a triangle. The same layout as `RenderCorner` in WGSL.
 #[repr(C)]
@@ -27,8 +27,8 @@ pub struct RenderCorner {
     pub tangent: [f32; 4],
     /// Two sets of texture coordinates.
     pub uv: [f32; 4],
-    /// Vertex colour, linear.
-    pub colour: [f32; 4],
+    /// Vertex color, linear.
+    pub color: [f32; 4],
 }
 
 /// Values that change from frame to frame. The same layout as `RenderFrame` in WGSL.
@@ -49,10 +49,10 @@ pub struct RenderFrame {
     pub sky_rays: u32,
     /// First row of pixels of a dispatch.
     pub first_row: u32,
-    /// Nearest distance of the next surface, metres.
+    /// Minimum distance of the next surface along a ray, meters.
     pub nearest: f32,
-    /// Part of the rays that look for the light of a surface that one of them is.
-    pub ray_share: f32,
+    /// Inverse of the number of rays that sample the light of a surface.
+    pub ray_fraction: f32,
     /// Kind of image that is traced: the picture, or a capture.
     pub projection: u32,
     /// 1: the capture leaves parallel light out, since drops are lit by it on their own ([`downpour_render::rain::light`]).
@@ -61,9 +61,9 @@ pub struct RenderFrame {
     pub puddles: u32,
     /// Number of puddles.
     pub puddle_count: u32,
-    /// Row of the table where the pane begins that throws shadows; 0: none.
+    /// Row of the table where the pane that casts shadows begins; 0: no pane.
     pub pane: u32,
-    /// Pass of the means over neighbouring pixels.
+    /// Pass of the means over neighboring pixels.
     pub skylight_pass: u32,
     /// 0.
     pub unused_1: u32,
@@ -80,7 +80,7 @@ pub struct RenderFrame {
 pub struct SceneData {
     /// Nodes of the hierarchy.
     pub nodes: Arc<Vec<BvhNode>>,
-    /// Triangles in the order of the leaves; `index` is the place in this list.
+    /// Triangles in the order of the leaves; `index` is the index in this list.
     pub triangles: Arc<Vec<BvhTriangle>>,
     /// Three corners per triangle.
     pub corners: Arc<Vec<RenderCorner>>,
@@ -98,7 +98,7 @@ pub struct SceneData {
     pub puddles: u32,
     /// Number of puddles.
     pub puddle_count: u32,
-    /// Row where the pane begins that throws shadows; 0: none.
+    /// Row where the pane that casts shadows begins; 0: no pane.
     pub pane: u32,
     /// Texels of all levels of the sky.
     pub sky: Arc<Vec<[f32; 4]>>,
@@ -109,7 +109,7 @@ pub struct SceneData {
 }
 
 impl SceneData {
-    /// The lower and upper corner of everything, metres.
+    /// Lower and upper corner of the bounding box, meters.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.nodes.first().map_or((Vec3::ZERO, Vec3::ZERO), |root| (root.low.into(), root.high.into()))
@@ -133,7 +133,7 @@ impl SceneData {
         (self.puddles, self.puddle_count, self.pane) = (0, 0, 0);
     }
 
-    /// Gives light `index` an angular radius, in radians: that of the disc that drops show of it. Without one it is the sun's.
+    /// Gives light `index` an angular radius, in radians: that of the disk that drops show of it. Without one it is the sun's.
     pub fn set_light_radius(&mut self, index: u32, radius: f32) {
         let row = (self.lights + index * SCENE_LIGHT_ROWS + 1) as usize;
         // The chord from the middle to the edge.
@@ -143,7 +143,7 @@ impl SceneData {
 
 impl RenderFrame {
     /// The frame of a picture of a scene. `grid` samples along an edge of a pixel, `sky_rays` rays to the sky per
-    /// sample (0: no surroundings hide the sky).
+    /// sample (0: nothing hides the sky).
     ///
     /// # Errors
     /// [`RenderError::Size`] outside [`PIXELS`](downpour_render::camera::PIXELS), or as [`Viewpoint::axes`].
@@ -158,7 +158,7 @@ impl RenderFrame {
         let camera = viewpoint.camera(size, (seed ^ (seed >> 32)) as u32)?;
         let (low, high) = scene.bounds();
         let extent = (high - low).length().clamp(1.0e-3, 1.0e5);
-        // Rays of a place far from the origin start where f32 still tells it from its surface.
+        // Rays from a position far from the origin start where f32 still resolves the distance to the surface.
         let far = camera.eye.abs().max_element().max(low.abs().max_element()).max(high.abs().max_element());
         Ok(Self {
             camera,
@@ -169,7 +169,7 @@ impl RenderFrame {
             sky_rays,
             first_row: 0,
             nearest: (extent * 1.0e-5).max(far.min(1.0e5) * 1.0e-6).max(1.0e-6),
-            ray_share: WINDOW_SHARE / sky_rays.max(1) as f32,
+            ray_fraction: WINDOW_FRACTION / sky_rays.max(1) as f32,
             projection: SCENE_PICTURE,
             suns_out: 0,
             puddles: scene.puddles,

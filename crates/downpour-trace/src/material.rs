@@ -11,8 +11,8 @@ const SLOT_ROWS: usize = SCENE_SLOT_ROWS as usize;
 /// Appearance of a surface: glTF's metallic-roughness, with indices of texture slots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialLook {
-    /// Base colour, linear, and alpha.
-    pub base_colour: [f32; 4],
+    /// Base color, linear, and alpha.
+    pub base_color: [f32; 4],
     /// Emitted radiance.
     pub emission: [f32; 3],
     /// 0 dielectric, 1 metal.
@@ -23,23 +23,23 @@ pub struct MaterialLook {
     pub normal_scale: f32,
     /// Strength of the occlusion map.
     pub occlusion_strength: f32,
-    /// Below this alpha a masked material has a hole.
+    /// Alpha below which a masked material is transparent.
     pub alpha_cutoff: f32,
     /// `SCENE_MASKED`, `SCENE_BLENDED`, `SCENE_DOUBLE_SIDED`, `SCENE_UNLIT`.
     pub flags: u32,
-    /// Share of light that passes a thin dielectric.
+    /// Fraction of light that passes a thin dielectric.
     pub transmission: f32,
     /// Refractive index.
     pub ior: f32,
-    /// Slots of base colour, metallic-roughness, normal, emission, occlusion, transmission.
+    /// Slots of base color, metallic-roughness, normal, emission, occlusion, transmission.
     pub maps: [Option<u32>; 6],
 }
 
 impl Default for MaterialLook {
-    /// glTF's default material, but not metallic: a mesh without a material is grey plastic, not a mirror.
+    /// glTF's default material, but not metallic: a mesh without a material is gray plastic, not a mirror.
     fn default() -> Self {
         Self {
-            base_colour: [1.0; 4],
+            base_color: [1.0; 4],
             emission: [0.0; 3],
             metallic: 0.0,
             roughness: 1.0,
@@ -60,7 +60,7 @@ impl MaterialLook {
         let [r, g, b] = self.emission;
         let map = |k: usize| self.maps[k].map_or(SCENE_NONE, |slot| slots + slot * SCENE_SLOT_ROWS);
         [
-            bits(self.base_colour),
+            bits(self.base_color),
             bits([r, g, b, self.metallic]),
             bits([self.roughness, self.normal_scale, self.occlusion_strength, self.alpha_cutoff]),
             [self.flags, self.transmission.to_bits(), self.ior.to_bits(), 0],
@@ -79,7 +79,7 @@ pub struct TextureSlot {
     pub offset: [f32; 2],
     /// Index of the set of coordinates: 0 or 1.
     pub uv_set: u32,
-    /// `SCENE_ROOTED`, `SCENE_REPEAT_U` and its like.
+    /// Flags: `SCENE_ROOTED`, `SCENE_REPEAT_U`, `SCENE_REPEAT_V`, ...
     pub flags: u32,
     /// Texels across.
     pub width: u32,
@@ -116,7 +116,7 @@ pub struct RenderMaterial {
     pub normal_scale: f32,
     /// Strength of the occlusion map.
     pub occlusion_strength: f32,
-    /// Below this alpha a masked material has a hole.
+    /// Alpha below which a masked material is transparent.
     pub cutoff: f32,
     /// `SCENE_MASKED`, `SCENE_BLENDED`, `SCENE_DOUBLE_SIDED`, `SCENE_UNLIT`.
     pub flags: u32,
@@ -139,7 +139,7 @@ pub struct RenderSlot {
     pub offset: [f32; 2],
     /// Set of coordinates, 0 or 1.
     pub uv_set: u32,
-    /// `SCENE_ROOTED`, `SCENE_REPEAT_U` and its like.
+    /// Flags: `SCENE_ROOTED`, `SCENE_REPEAT_U`, `SCENE_REPEAT_V`, ...
     pub flags: u32,
     /// Width, height, first texel, and levels.
     pub image: [u32; 4],
@@ -187,8 +187,8 @@ impl SceneData {
 /// Meaning of the numbers of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextureUse {
-    /// Colours, sRGB in the file.
-    Colour,
+    /// Colors, sRGB in the file.
+    Color,
     /// Numbers: normals, roughness, occlusion.
     Data,
 }

@@ -1,10 +1,10 @@
 //! Light of lamps and the sun that falls through a wet pane. Twin of `shaders/wgsl/render/pane_shadow.wgsl`.
 //!
-//! Tatarchuk & Isidoro 2006, section 5, project the masses of the drops on what stands behind the pane, and draw a highlight in
-//! the middle of the shadow of each heavy drop. Here a drop is a lens: light that falls on it is missing behind it, and comes
-//! together at its focal length `f`, where it is a bright point; as far again it is as wide as the drop, and beyond it is
-//! spread over what a drop of mean size makes of it. So all forms of light but the paper's are kept: over the pane the mean share
-//! is that of dry glass at any distance.
+//! Tatarchuk & Isidoro 2006, section 5, project the masses of the drops on what stands behind the pane, and draw a
+//! highlight in the middle of the shadow of each heavy drop. Here a drop is a lens: light that falls on it is missing
+//! behind it, and comes together at its focal length `f`, where it is a bright point; as far again it is as wide as the
+//! drop, and beyond it is spread over what a drop of mean size makes of it. So all forms of light but the paper's are kept:
+//! over the pane the mean fraction is that of dry glass at any distance.
 //!
 //! Limits: all drops have the mean focal length; light of the sky has no shadows of drops; the reflections of the drops'
 //! surfaces are those of dry glass.
@@ -39,7 +39,7 @@ impl SceneData {
         }
     }
 
-    /// Sets the pane before the lamps, in place of the one that is there; `axes`: its corner, right, down and outward, in the
+    /// Sets the pane in front of the lamps; replaces an earlier one; `axes`: its corner, right, down and outward, in the
     /// scene's coordinates.
     pub fn set_pane(&mut self, shade: &PaneShade, axes: [Vec3; 4]) {
         self.take_pane();
@@ -107,10 +107,10 @@ impl SceneView<'_> {
         Vec2::new((pair & 255) as f32, ((pair >> 8) & 255) as f32 * PANE_SHADOW_PEAK) / 255.0
     }
 
-    /// A level at a place of [0, 1], bilinear.
-    fn pane_shadow_level(&self, texels: u32, level: u32, place: Vec2) -> Vec2 {
+    /// A level at a position in [0, 1], bilinear.
+    fn pane_shadow_level(&self, texels: u32, level: u32, position: Vec2) -> Vec2 {
         let [width, height, _] = self.data.pane_level(level);
-        let at = place * Vec2::new(width as f32, height as f32) - 0.5;
+        let at = position * Vec2::new(width as f32, height as f32) - 0.5;
         let low = at.floor();
         let part = at - low;
         let (x, y) = (low.x as i32, low.y as i32);
@@ -121,33 +121,39 @@ impl SceneView<'_> {
         upper * (1.0 - part.y) + lower * part.y
     }
 
-    /// Cover and gathered cover round a place of [0, 1], over a width in metres.
-    fn pane_shadow_at(&self, pane: &RenderPane, place: Vec2, width: f32) -> Vec2 {
-        let texels = width * pane.texels_per_metre;
+    /// Cover and gathered cover around a position of [0, 1], over a width in meters.
+    fn pane_shadow_at(&self, pane: &RenderPane, position: Vec2, width: f32) -> Vec2 {
+        let texels = width * pane.texels_per_meter;
         let level = ops::log2(texels.max(1.0)).clamp(0.0, pane.last as f32);
         let low = level.floor();
         let part = level - low;
-        let mut found = self.pane_shadow_level(pane.first, low as u32, place) * (1.0 - part);
+        let mut found = self.pane_shadow_level(pane.first, low as u32, position) * (1.0 - part);
         if part > 0.0 {
-            found += self.pane_shadow_level(pane.first, low as u32 + 1, place) * part;
+            found += self.pane_shadow_level(pane.first, low as u32 + 1, position) * part;
         }
         found
     }
 
-    /// Share of light that comes through the pane to a place from a distance along a direction; `spread` is half the angle
+    /// Fraction of light that comes through the pane to a position from a distance along a direction; `spread` is half the angle
     /// that its source takes. 1 where the pane is not between them.
-    pub(crate) fn pane_shadow_share(&self, place: Vec3, direction: Vec3, distance: f32, spread: f32) -> f32 {
+    pub(crate) fn pane_shadow_fraction(
+        &self,
+        position: Vec3,
+        direction: Vec3,
+        distance: f32,
+        spread: f32,
+    ) -> f32 {
         if self.frame.pane == 0 {
             return 1.0;
         }
         let pane = self.data.pane_load();
         let towards = direction.dot(pane.outward);
-        let above = (pane.corner - place).dot(pane.outward);
+        let above = (pane.corner - position).dot(pane.outward);
         let away = above / if towards == 0.0 { 1.0 } else { towards };
         if towards.abs() < 1.0e-4 || away <= 0.0 || away >= distance {
             return 1.0;
         }
-        let on = place + direction * away - pane.corner;
+        let on = position + direction * away - pane.corner;
         let at = Vec2::new(on.dot(pane.across) / pane.width, on.dot(pane.down) / pane.height);
         if at.x < 0.0 || at.y < 0.0 || at.x > 1.0 || at.y > 1.0 {
             return 1.0;
@@ -183,7 +189,7 @@ mod tests {
     fn scene(form: PaneShadows) -> (SceneData, f32) {
         let drops: Vec<GlassPictureDrop> = (0..25 * 12)
             .map(|k| GlassPictureDrop {
-                centre: [4.0e-3 + (k % 25) as f32 * 8.0e-3, 6.0e-3 + (k / 25) as f32 * 8.0e-3],
+                center: [4.0e-3 + (k % 25) as f32 * 8.0e-3, 6.0e-3 + (k / 25) as f32 * 8.0e-3],
                 radius: 2.0e-3,
                 sphere: 2.2e-3,
                 along: [0.0, 1.0],
@@ -198,18 +204,18 @@ mod tests {
         (data, 2.2e-3 / 0.333)
     }
 
-    fn share(data: &SceneData, x: f32, y: f32, away: f32) -> f32 {
+    fn fraction(data: &SceneData, x: f32, y: f32, away: f32) -> f32 {
         let eye = Viewpoint { eye: Vec3::ZERO, forward: Vec3::Z, up: Vec3::Y, fov_y: 1.0 };
         let frame = RenderFrame::new(data, &eye, [8, 8], 1, 1, 0).expect("a frame");
         let view = SceneView { data, frame: &frame };
-        view.pane_shadow_share(Vec3::new(x - 0.1, 0.05 - y, -away), Vec3::Z, 10.0, 0.0)
+        view.pane_shadow_fraction(Vec3::new(x - 0.1, 0.05 - y, -away), Vec3::Z, 10.0, 0.0)
     }
 
     /// The mean over a period of the drops, far from the pane's edges.
     fn mean(data: &SceneData, away: f32) -> f32 {
         let n = 64;
         let step = 8.0e-3 / n as f32;
-        let at = |k: u32| share(data, 0.1 + (k % n) as f32 * step, 0.05 + (k / n) as f32 * step, away);
+        let at = |k: u32| fraction(data, 0.1 + (k % n) as f32 * step, 0.05 + (k / n) as f32 * step, away);
         (0..n * n).map(at).sum::<f32>() / (n * n) as f32
     }
 
@@ -237,11 +243,11 @@ mod tests {
         let (gap_x, gap_y) = (bx + 4.0e-3, by + 4.0e-3);
         assert!((ax - bx).abs() < 9.0e-3 && (ay - by).abs() < 9.0e-3);
         // Touching the pane there are no shadows.
-        assert!((share(&data, bx, by, 1.0e-5) - share(&data, gap_x, gap_y, 1.0e-5)).abs() < 0.02);
-        assert!(share(&data, bx, by, focus) > 4.0);
-        assert!(share(&data, bx + 1.5e-3, by, focus) < 0.2);
+        assert!((fraction(&data, bx, by, 1.0e-5) - fraction(&data, gap_x, gap_y, 1.0e-5)).abs() < 0.02);
+        assert!(fraction(&data, bx, by, focus) > 4.0);
+        assert!(fraction(&data, bx + 1.5e-3, by, focus) < 0.2);
         // Far away a drop's shadow has what the light of all is: their cover of pi / 16.
-        let (dark, light) = (share(&data, bx, by, 1.0), share(&data, gap_x, gap_y, 1.0));
+        let (dark, light) = (fraction(&data, bx, by, 1.0), fraction(&data, gap_x, gap_y, 1.0));
         let cover = std::f32::consts::PI * 4.0 / 64.0;
         assert!((dark / (light - dark) - cover).abs() < 0.02, "{dark} {light}");
     }
@@ -252,7 +258,7 @@ mod tests {
         let x = 4.0e-3 + 12.0 * 8.0e-3;
         let y = 6.0e-3 + 5.0 * 8.0e-3;
         for away in [0.01, 0.1, 1.0] {
-            assert!(share(&data, x, y, away) > 4.0 && share(&data, x + 1.5e-3, y, away) < 0.2);
+            assert!(fraction(&data, x, y, away) > 4.0 && fraction(&data, x + 1.5e-3, y, away) < 0.2);
         }
     }
 
@@ -260,7 +266,7 @@ mod tests {
     fn beside_the_pane_and_before_it_nothing_changes() {
         let (data, _) = scene(PaneShadows::Lens);
         for (x, y, away) in [(-0.01, 0.05, 0.1), (0.1, 0.11, 0.1), (0.1, 0.05, -0.1), (0.1, 0.05, 11.0)] {
-            assert_eq!(share(&data, x, y, away), 1.0, "{x} {y} {away}");
+            assert_eq!(fraction(&data, x, y, away), 1.0, "{x} {y} {away}");
         }
     }
 }

@@ -11,10 +11,10 @@
 //! - light of the sky and of other surfaces: rays that are drawn for the diffuse base and for the gloss
 //!   ([`scatter`](crate::scatter)). Such a ray finds the sky at the level of its own width, or a surface, which has light of
 //!   its own: of one lamp drawn for all, and of the next ray. At most `PATH_BOUNCES` follow each other, and fewer where
-//!   surfaces are dark: each goes on with the probability of its albedo. The light that falls on the last surface is taken to
+//!   surfaces are dark: each survives with the probability of its albedo. The light that falls on the last surface is taken to
 //!   be the mean of what the path has met, and a tenth of the open sky's.
 //!
-//! [`skylight`](crate::skylight) takes means of this light over neighbouring pixels, but for that of mirrors.
+//! [`skylight`](crate::skylight) takes means of this light over neighboring pixels, but for that of mirrors.
 //!
 //! Limits: what a diffuse base finds reflects diffusely (no caustics); things that shine light up others only where
 //! there are no lamps, which else stand for them; rays that look for light do not see the water of puddles.
@@ -25,9 +25,9 @@ mod plan;
 use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
-    PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_PART, PATH_CURVED_SHARE, PATH_GLANCE,
-    PATH_LATER_SHARE, PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE,
-    PATH_SHINES,
+    PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_FRACTION, PATH_CURVED_PART, PATH_LATER_FRACTION,
+    PATH_MIRROR_LAMPS, PATH_OPEN, PATH_PLAIN_GLOSS, PATH_SAME_FACET, PATH_SAME_PLANE,
+    PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
@@ -41,20 +41,22 @@ use crate::scene::SceneView;
 use crate::scene::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
 use crate::surface::Surface;
 pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words};
-use draw::{path_onward, path_replaced, path_water_ray, path_water_share};
-pub(crate) use plan::path_most;
-use plan::{PathPlan, path_albedo, path_cover, path_glance, path_open, path_soaked, path_water_surface};
+use draw::{path_onward, path_replaced, path_water_fraction, path_water_ray};
+pub(crate) use plan::path_max;
+use plan::{
+    PathPlan, path_albedo, path_cover, path_open, path_secondary, path_submerged, path_water_surface,
+};
 
 /// Result of tracing a ray of the camera.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ViewPath {
-    /// All light but that which is told apart below.
+    /// All light except what the fields below hold.
     pub(crate) radiance: Vec3,
     /// Distance of the first surface (`SCENE_FAR` for the sky).
     pub(crate) distance: f32,
     pub(crate) facet: Vec3,
     pub(crate) material: u32,
-    pub(crate) place: Vec3,
+    pub(crate) position: Vec3,
     /// True if it is the same surface that the sample before has seen.
     pub(crate) again: bool,
     /// True if it looks the same all over a pixel: no mirror, nothing behind a pane.
@@ -65,7 +67,7 @@ pub(crate) struct ViewPath {
     pub(crate) mirror: PathSlot,
 }
 
-/// Light of which means are taken over neighbouring pixels.
+/// Light of which means are taken over neighboring pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathSlot {
     pub(crate) light: Vec3,
@@ -77,7 +79,7 @@ pub(crate) struct PathSlot {
     pub(crate) roughness: f32,
     /// The surface's normal; of a gloss, the direction that a mirror would show.
     pub(crate) normal: Vec3,
-    pub(crate) place: Vec3,
+    pub(crate) position: Vec3,
 }
 
 impl PathSlot {
@@ -88,7 +90,7 @@ impl PathSlot {
         factor: Vec3::ZERO,
         roughness: 0.0,
         normal: Vec3::ZERO,
-        place: Vec3::ZERO,
+        position: Vec3::ZERO,
     };
 }
 
@@ -99,7 +101,7 @@ impl ViewPath {
         distance: SCENE_FAR,
         facet: Vec3::ZERO,
         material: SCENE_NONE,
-        place: Vec3::ZERO,
+        position: Vec3::ZERO,
         again: false,
         plain: false,
         base: PathSlot::NONE,
@@ -125,7 +127,7 @@ struct PathLight {
     factor: Vec3,
     distance: f32,
     normal: Vec3,
-    place: Vec3,
+    position: Vec3,
 }
 
 impl PathLight {
@@ -136,11 +138,11 @@ impl PathLight {
         factor: Vec3::ZERO,
         distance: -1.0,
         normal: Vec3::ZERO,
-        place: Vec3::ZERO,
+        position: Vec3::ZERO,
     };
 
     /// With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
-    fn path_gathered(self, ray: &ScatterRay, radiance: Vec3, of_shown: bool) -> Self {
+    fn path_accumulated(self, ray: &ScatterRay, radiance: Vec3, of_shown: bool) -> Self {
         let of_base = ray.diffuse * radiance;
         Self {
             base: if of_shown { self.base } else { self.base + of_base },
@@ -163,7 +165,7 @@ struct PathWater {
     /// Fraction of the light of what lies beneath that it lets through.
     clear: f32,
     /// Albedo of the water itself.
-    murk: Vec3,
+    scattering_albedo: Vec3,
 }
 
 /// A surface that a ray of the camera has met.
@@ -172,9 +174,9 @@ struct PathMeeting {
     surface: Surface,
     direct: Vec3,
     plan: PathPlan,
-    /// True if its light is averaged over neighbouring pixels.
+    /// True if its light is averaged over neighboring pixels.
     told: bool,
-    /// Largest distance from its plane at which the surface of a neighbouring pixel may be.
+    /// Largest distance from its plane at which the surface of a neighboring pixel may be.
     slack: f32,
 }
 
@@ -194,11 +196,11 @@ enum PathLeave {
 }
 
 /// True if a surface is the same as the one that another sample of the pixel has met.
-fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, place: Vec3, distance: f32) -> bool {
+fn path_same_surface(last: &ViewPath, material: u32, facet: Vec3, position: Vec3, distance: f32) -> bool {
     last.plain
         && last.material == material
         && last.facet.dot(facet) > PATH_SAME_FACET
-        && last.facet.dot(place - last.place).abs() < PATH_SAME_PLANE * distance
+        && last.facet.dot(position - last.position).abs() < PATH_SAME_PLANE * distance
 }
 
 impl SceneView<'_> {
@@ -234,12 +236,18 @@ impl SceneView<'_> {
             if let Some(met) = met {
                 // Back along the ray to where it came through the surface.
                 distance = (hit.distance - met.rise / (-towards.y).max(0.01)).max(near);
-                let place = start + towards * distance;
+                let position = start + towards * distance;
                 let footprint = cone * distance / (-towards.y).max(0.02).sqrt();
-                let ripple = self.puddle_water_ripple(met.puddle, place, footprint, met.depth, met.open);
+                let ripple = self.puddle_water_ripple(met.puddle, position, footprint, met.depth, met.open);
                 found = path_water_surface(start, towards, distance, ripple);
                 material = PUDDLE_WATER_MATERIAL;
-                water = Some(PathWater { found: met, ripple, level: place.y, clear: 1.0, murk: Vec3::ZERO });
+                water = Some(PathWater {
+                    found: met,
+                    ripple,
+                    level: position.y,
+                    clear: 1.0,
+                    scattering_albedo: Vec3::ZERO,
+                });
             } else if layer == 0
                 && path_same_surface(last, material, found.facet, found.position, hit.distance)
             {
@@ -248,13 +256,13 @@ impl SceneView<'_> {
             if let (true, Some(water)) = (under, &water) {
                 let rise = (water.level - found.position.y).max(0.0);
                 depth = Vec2::new(rise + (water.found.depth - water.found.rise).max(0.0), rise);
-                found = path_soaked(&found, water.clear, water.murk);
+                found = path_submerged(&found, water.clear, water.scattering_albedo);
             }
             if layer == 0 {
                 path.distance = distance;
                 path.material = material;
                 path.facet = found.facet;
-                path.place = found.position;
+                path.position = found.position;
             }
             near = hit.distance + frame.nearest;
             let unlit = found.flags & SCENE_UNLIT != 0;
@@ -269,12 +277,19 @@ impl SceneView<'_> {
                 let rippled = water.ripple.z > PUDDLE_WATER_RIPPLED;
                 let mirrors = frame.sky_rays.max(if rippled { PUDDLE_WATER_RAYS } else { 1 });
                 let (drawn, replaced) = (rippled && free, !rippled && free);
-                plan =
-                    PathPlan { mirrors, gloss: Vec3::ONE, share: 1.0, drawn, kept: drawn, replaced, ..plan };
+                plan = PathPlan {
+                    mirrors,
+                    gloss: Vec3::ONE,
+                    fraction: 1.0,
+                    drawn,
+                    kept: drawn,
+                    replaced,
+                    ..plan
+                };
             } else if !unlit {
                 plan = self.path_plan(&found, -towards, cone * hit.distance, told, free && !under);
             }
-            // Neighbouring pixels are on one plane if they are no farther from it than this.
+            // Neighboring pixels are on one plane if they are no farther from it than this.
             let from_eye = found.position - origin;
             let slack = from_eye.dot(from_eye).sqrt() * (cone * 2.0 + SKYLIGHT_SLACK);
             let ripple = if met.is_some() { water.map(|water| water.ripple) } else { None };
@@ -286,7 +301,7 @@ impl SceneView<'_> {
                 let puddle = data.puddle_load(water.found.puddle);
                 towards = puddle_water_refracted(towards, found.normal);
                 let steep = (-towards.y).max(0.1);
-                water.murk = puddle.murk;
+                water.scattering_albedo = puddle.scattering_albedo;
                 water.clear =
                     ops::exp(-puddle.extinction * water.found.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
                 let aside = (water.found.depth - water.found.rise).max(0.0) / steep;
@@ -299,7 +314,7 @@ impl SceneView<'_> {
             self.path_show(&mut path, &meeting, &light, towards, layer, throughput);
             under = false;
             throughput *= path_open(&found);
-            if path_most(throughput) < 1.0e-3 {
+            if path_max(throughput) < 1.0e-3 {
                 return path;
             }
         }
@@ -357,18 +372,18 @@ impl SceneView<'_> {
                         PathLeave::Shown => ray = path_replaced(&ray, &next),
                         _ => ray = path_onward(&ray, &next, &at, numbers[2]),
                     }
-                    if path_most(ray.diffuse + ray.mirror) <= 0.0 {
+                    if path_max(ray.diffuse + ray.mirror) <= 0.0 {
                         break;
                     }
                 }
                 let Some(hit) = data.surface_hit(from, ray.along, frame.nearest, BVH_FAR) else {
                     let beyond = data.sky_cone(ray.along, ray.width);
-                    light = light.path_gathered(&ray, beyond, of_shown);
+                    light = light.path_accumulated(&ray, beyond, of_shown);
                     break;
                 };
                 let found = data.surface_at(&hit, from, ray.along, ray.width);
-                let mut found = path_glance(&found, ray.roughness);
-                let lamps = if ray.roughness < PATH_GLANCE { PATH_MIRROR_LAMPS } else { 1 };
+                let mut found = path_secondary(&found, ray.roughness);
+                let lamps = if ray.roughness < PATH_SECONDARY_ROUGHNESS { PATH_MIRROR_LAMPS } else { 1 };
                 let standoff = hit.distance * ray.width * 0.5;
                 // Where there are lamps, they stand for what shines; small bright things would be noise.
                 let shines = ray.roughness < PATH_SHINES || frame.light_count == 0;
@@ -379,14 +394,14 @@ impl SceneView<'_> {
                         + self.scene_direct(&found, -ray.along, lamps, numbers[3], standoff, Vec2::ZERO);
                 }
                 let cover = path_cover(&found);
-                light = light.path_gathered(&ray, lit * cover, of_shown);
+                light = light.path_accumulated(&ray, lit * cover, of_shown);
                 if unlit && cover == 1.0 {
                     break;
                 }
                 let open = path_open(&found);
                 let mut ambient = Vec3::ZERO;
                 leaves = PathLeave::Onward;
-                if path_most(open) > PATH_OPEN {
+                if path_max(open) > PATH_OPEN {
                     leaves = PathLeave::Straight;
                     if !unlit {
                         // What it reflects of the sky itself: half of the whole.
@@ -394,19 +409,19 @@ impl SceneView<'_> {
                     }
                 } else if of_shown && light.distance < 0.0 {
                     leaves = PathLeave::Mirror;
-                    if path_most(path_albedo(&found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                    if path_max(path_albedo(&found)) > 0.0 || found.roughness >= PATH_SECONDARY_ROUGHNESS {
                         leaves = PathLeave::Shown;
-                        found = path_glance(&found, 1.0);
+                        found = path_secondary(&found, 1.0);
                         light.factor = ray.mirror * (path_albedo(&found) + found.normal_reflectance * 0.5);
                         light.distance = hit.distance;
                         light.normal = found.normal;
-                        light.place = found.position;
+                        light.position = found.position;
                     }
                 } else if bounce + 1 == PATH_BOUNCES {
                     ambient = self.path_ambient(&found, (given + lit) / (bounce + 1) as f32);
                 }
                 let own = (path_albedo(&found) + found.normal_reflectance) * ambient;
-                light = light.path_gathered(&ray, own, of_shown);
+                light = light.path_accumulated(&ray, own, of_shown);
                 given += lit;
                 if leaves == PathLeave::Straight {
                     ray.diffuse *= open;
@@ -432,26 +447,26 @@ impl SceneView<'_> {
         let [mut a, mut b, number, _] = numbers;
         let mut gloss = Vec3::ONE;
         let mut chance = scatter_chance(at.diffuse, at.normal_reflectance);
-        let (mut share, mut weight) = (PATH_LATER_SHARE, 1.0);
+        let (mut fraction, mut weight) = (PATH_LATER_FRACTION, 1.0);
         if leaves == PathLeave::Shown {
             chance = 0.0;
         }
         if leaves == PathLeave::First {
             gloss = plan.gloss;
             chance = if is_mirror { 1.0 } else { plan.chance };
-            share = plan.share;
+            fraction = plan.fraction;
             if is_mirror && !plan.kept {
                 // Few rays: far out in the lobe they would be noise.
-                (share, a) = (PATH_CURVED_SHARE, a * PATH_CURVED_PART);
+                (fraction, a) = (PATH_CURVED_FRACTION, a * PATH_CURVED_PART);
             }
             if a >= chance {
                 let own = (a - chance) / (1.0 - chance);
-                let (numbers, factor) = self.path_candidate(at, own, b, number, share);
+                let (numbers, factor) = self.path_candidate(at, own, b, number, fraction);
                 (a, b, weight) = (chance + numbers.x * (1.0 - chance), numbers.y, factor);
-                share /= PATH_CANDIDATES as f32;
+                fraction /= PATH_CANDIDATES as f32;
             }
         }
-        let mut ray = scatter_draw(at, view, gloss, chance, a, b, share);
+        let mut ray = scatter_draw(at, view, gloss, chance, a, b, fraction);
         ray.diffuse *= weight;
         ray.mirror *= weight;
         ray
@@ -481,18 +496,18 @@ impl SceneView<'_> {
             base = self.data.sky_irradiance(surface.normal);
             mirror = self.data.sky_cone(mirrored, scatter_mirror(&surface, -towards).width);
         } else if plan.mirrors == 0 && plan.chance == 0.0 {
-            // Too little for rays of its own.
+            // Too faint to trace rays for it.
             plan.body += plan.gloss;
             plan.gloss = Vec3::ZERO;
         }
         let of_base = throughput * plan.body * cover;
         let of_gloss = throughput * plan.gloss * cover;
-        let slot = PathSlot { slack, place: surface.position, ..PathSlot::NONE };
+        let slot = PathSlot { slack, position: surface.position, ..PathSlot::NONE };
         if told {
             path.base = PathSlot { light: base, factor: of_base, normal: surface.normal, ..slot };
             let mirrors = plan.mirrors > 0
                 && (surface.roughness < PATH_CURVED || !plan.kept)
-                && path_most(plan.gloss) > PATH_PLAIN_GLOSS;
+                && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
             path.plain = !(mirrors || layer > 0);
         } else {
             path.radiance += of_base * base;
@@ -519,7 +534,7 @@ impl ViewPath {
             slack: meeting.slack + light.distance * (2.0 * meeting.plan.spread + SKYLIGHT_SLACK),
             roughness: 0.0,
             normal: light.normal,
-            place: light.place,
+            position: light.position,
         };
     }
 
@@ -534,21 +549,21 @@ impl ViewPath {
     ) -> f32 {
         let surface = &meeting.surface;
         let all = meeting.plan.mirrors as f32;
-        let share = path_water_share(ripple, -towards);
+        let fraction = path_water_fraction(ripple, -towards);
         self.radiance += throughput * meeting.direct;
         if meeting.plan.kept {
             self.mirror = PathSlot {
-                light: light.mirror / (all * share).max(1.0e-6),
-                factor: throughput * share,
+                light: light.mirror / (all * fraction).max(1.0e-6),
+                factor: throughput * fraction,
                 slack: meeting.slack,
                 roughness: surface.roughness,
                 normal: towards - surface.normal * (2.0 * towards.dot(surface.normal)),
-                place: surface.position,
+                position: surface.position,
             };
         } else {
             self.radiance += throughput * light.mirror / all;
             self.path_show_mirrored(light, throughput / all, meeting);
         }
-        1.0 - share
+        1.0 - fraction
     }
 }

@@ -31,7 +31,7 @@ pub fn picture_frame(
     Ok(RenderFrame { suns_out: u32::from(traced), ..frame })
 }
 
-/// Makes a picture on the CPU: the same bits for any number of threads.
+/// Renders a picture on the CPU. The bits do not depend on the number of threads.
 ///
 /// # Errors
 /// [`RenderError`] if the options cannot be met.

@@ -10,7 +10,7 @@ use downpour_math::ops;
 use downpour_math::packing::packing_sign;
 use downpour_shaders::render::brdf::BRDF_GRAZING;
 use downpour_shaders::render::scatter::{
-    SCATTER_DISC, SCATTER_MAX_WIDTH, SCATTER_MIN_ALPHA, SCATTER_SMALLEST,
+    SCATTER_DISK, SCATTER_MAX_WIDTH, SCATTER_MIN_ALPHA, SCATTER_MIN_DIVISOR,
 };
 use glam::Vec3;
 
@@ -50,7 +50,7 @@ pub fn scatter_tangent(normal: Vec3) -> Vec3 {
     Vec3::new(1.0 + side * normal.x * normal.x * p, side * (normal.x * normal.y * p), -side * normal.x)
 }
 
-/// A direction over the hemisphere round a normal, cosine-weighted, for two numbers in [0, 1).
+/// A direction over the hemisphere around a normal, cosine-weighted, for two numbers in [0, 1).
 #[must_use]
 pub fn scatter_hemisphere(normal: Vec3, a: f32, b: f32) -> Vec3 {
     let radius = a.sqrt();
@@ -83,7 +83,7 @@ pub fn scatter_gloss(normal_reflectance: Vec3, roughness: f32, cosine: f32, shar
 }
 
 /// A ray of a surface: of its gloss where `a` is below `chance`, else of its diffuse base. `view` points to the viewer,
-/// `gloss` is what the weight of the gloss is divided by, `share` the part of all rays that this is.
+/// `gloss` is what the weight of the gloss is divided by, `fraction` the part of all rays that this is.
 pub(crate) fn scatter_draw(
     surface: &Surface,
     view: Vec3,
@@ -91,7 +91,7 @@ pub(crate) fn scatter_draw(
     chance: f32,
     a: f32,
     b: f32,
-    share: f32,
+    fraction: f32,
 ) -> ScatterRay {
     let normal = surface.normal;
     let alpha = scatter_alpha(surface.roughness);
@@ -118,21 +118,21 @@ pub(crate) fn scatter_draw(
         return none;
     }
     let sum = view + along;
-    let half = sum / sum.dot(sum).sqrt().max(SCATTER_SMALLEST);
+    let half = sum / sum.dot(sum).sqrt().max(SCATTER_MIN_DIVISOR);
     let cosine_half = normal.dot(half).clamp(0.0, 1.0);
     let fresnel = brdf_fresnel(surface.normal_reflectance, view.dot(half));
     // All densities times pi.
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
-    let density = (glossy * chance + cosine * (1.0 - chance)).max(SCATTER_SMALLEST);
+    let density = (glossy * chance + cosine * (1.0 - chance)).max(SCATTER_MIN_DIVISOR);
     let mut ray = none;
-    ray.width = (SCATTER_DISC * share / density).sqrt().min(SCATTER_MAX_WIDTH);
+    ray.width = (SCATTER_DISK * fraction / density).sqrt().min(SCATTER_MAX_WIDTH);
     if chance < 1.0 {
         ray.diffuse = (Vec3::ONE - fresnel) * (cosine / density);
     }
     if chance > 0.0 {
         let lobe =
             brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine) * cosine;
-        ray.mirror = fresnel * (lobe / density) / gloss.max(Vec3::splat(SCATTER_SMALLEST));
+        ray.mirror = fresnel * (lobe / density) / gloss.max(Vec3::splat(SCATTER_MIN_DIVISOR));
     }
     ray
 }
@@ -144,7 +144,7 @@ pub(crate) fn scatter_mirror(surface: &Surface, view: Vec3) -> ScatterRay {
     let density = brdf_visible_density(scatter_alpha(surface.roughness), 1.0, cosine.max(BRDF_GRAZING));
     ScatterRay {
         along: scatter_above(surface.facet, along),
-        width: (SCATTER_DISC / density.max(SCATTER_SMALLEST)).sqrt().min(SCATTER_MAX_WIDTH),
+        width: (SCATTER_DISK / density.max(SCATTER_MIN_DIVISOR)).sqrt().min(SCATTER_MAX_WIDTH),
         diffuse: Vec3::ZERO,
         roughness: surface.roughness,
         mirror: Vec3::ONE,
@@ -191,7 +191,7 @@ mod tests {
         let view = DVec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
         let (n, mut sums) = (700u32, [0.0; 2]);
         for i in 0..n {
-            // The light's height, finer towards the horizon.
+            // The light's height, finer toward the horizon.
             let u = (f64::from(i) + 0.5) / f64::from(n);
             let polar = std::f64::consts::FRAC_PI_2 * u;
             let (height, flat) = (exact::cos(polar), exact::sin(polar));

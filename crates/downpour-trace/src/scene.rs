@@ -1,4 +1,4 @@
-//! A scene of triangles under a sky, and the light of its lamps at a place. Twin of `shaders/wgsl/render/scene.wgsl`.
+//! A scene of triangles under a sky, and the light of its lamps at a position. Twin of `shaders/wgsl/render/scene.wgsl`.
 //!
 //! Light of lamps and sun comes with rays that find what hides it; see-through surfaces dim it. [`path`](crate::path) follows
 //! the rays of the camera, [`scatter`](crate::scatter) draws those that look for the light of sky and surfaces.
@@ -12,7 +12,7 @@ pub mod water;
 
 use crate::data::{RenderFrame, SceneData};
 
-/// A scene and a frame: what a ray needs.
+/// A scene and a frame, as rays need them.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneView<'a> {
     /// The scene.

@@ -41,10 +41,10 @@ impl SceneData {
             + (at(below + left) * (1.0 - fx) + at(below + right) * fx) * fy
     }
 
-    /// The sky as a ray sees it that is as wide as `width` at distance 1.
+    /// Radiance of the sky for a ray of width `width` at distance 1.
     #[must_use]
     pub fn sky_cone(&self, direction: Vec3, width: f32) -> Vec3 {
-        // Texels of the map across the ray; a texel between its neighbours is wider than one alone.
+        // Texels of the map across the ray; a texel between its neighbors is wider than one alone.
         let texels = width * self.sky_levels[0][1] as f32 * SKY_CONE_TEXELS;
         let level = ops::log2(texels.max(1.0)).min((SCENE_SKY_LEVELS - 1) as f32);
         let below = level as u32;

@@ -11,7 +11,7 @@ use glam::Vec3;
 /// Rows of the coarsest level, at least.
 const COARSEST: u32 = 4;
 
-/// The sky as the shaders read it.
+/// Sky map with levels and irradiance, as the shaders read it.
 #[derive(Clone, Debug)]
 pub struct SkyLight {
     /// Texels of all levels.
@@ -85,7 +85,7 @@ fn direction_of(x: u32, y: u32, width: u32, height: u32) -> Vec3 {
 }
 
 impl SkyLight {
-    /// The light of an equirectangular map: rows from the top, +Y up, u = 0.5 + atan2(z, x) / 2 pi.
+    /// Builds the light of an equirectangular map: rows from the top, +Y up, u = 0.5 + atan2(z, x) / 2 pi.
     ///
     /// # Panics
     /// If the map is empty or its texels are not width times height.
@@ -110,14 +110,14 @@ impl SkyLight {
         Self { texels, levels, irradiance }
     }
 
-    /// A sky of one radiance.
+    /// Builds a sky of uniform radiance.
     #[must_use]
     pub fn uniform(radiance: [f32; 3]) -> Self {
         Self::new(8, 4, &[radiance; 32])
     }
 }
 
-/// Irradiance over pi: the map's projection on the nine harmonics, each times its share of a cosine lobe.
+/// Irradiance over pi: the map's projection on the nine harmonics, each times its fraction of a cosine lobe.
 fn irradiance(map: &Level) -> [[f32; 4]; 9] {
     let mut sums = [[0.0f64; 3]; 9];
     let texel = std::f64::consts::TAU / f64::from(map.width) * std::f64::consts::PI / f64::from(map.height);
@@ -144,7 +144,7 @@ fn irradiance(map: &Level) -> [[f32; 4]; 9] {
             }
         }
     }
-    // (harmonic's factor)^2 times the cosine lobe's share (pi, 2 pi / 3, pi / 4), over pi.
+    // (harmonic's factor)^2 times the cosine lobe's fraction (pi, 2 pi / 3, pi / 4), over pi.
     let pi = std::f64::consts::PI;
     let first = 1.0 / (4.0 * pi);
     let second = 3.0 / (4.0 * pi) * 2.0 / 3.0;

@@ -1,4 +1,4 @@
-//! Light of sky and surfaces on surfaces: means over what the pixels round a pixel have found on the same surface. Twin of
+//! Light of sky and surfaces on surfaces: means over what the pixels around a pixel have found on the same surface. Twin of
 //! `shaders/wgsl/render/skylight.wgsl`.
 //!
 //! First the mean of a window of 7 x 7 pixels, whose weights fall to 0 at 4 pixels, with the variance of that mean. Then means
@@ -6,7 +6,7 @@
 //! 2010, for the steps; C. Schied et al., HPG 2017, for the variance). A hat of twice the width is the sum of three hats, halved
 //! at the sides: what one pixel has found is spread by one hat in the end, 32 pixels to each side, without edges or overlaps.
 //!
-//! A neighbour counts as far as its normal agrees and as it is on the plane through the pixel's place; in the gloss, as far
+//! A neighbor counts as far as its normal agrees and as it is on the plane through the pixel's position; in the gloss, as far
 //! as it mirrors the same direction, within the lobe.
 
 use downpour_shaders::render::scene::{
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::path::PathSlot;
 use crate::scene::SceneView;
-use crate::trace::{TraceGather, TraceSlot, trace_unpack};
+use crate::trace::{TraceAmbient, TraceSlot, trace_unpack};
 
 /// Weight of a pixel by its distance along an edge, in pixels.
 #[must_use]
@@ -34,7 +34,7 @@ struct SkylightSlot {
     normal: Vec3,
     /// Of what counts as the same: the normal, or the direction that a mirror would show.
     direction: Vec3,
-    place: Vec3,
+    position: Vec3,
     slack: f32,
     roughness: f32,
 }
@@ -56,7 +56,7 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
     if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
         return 0.0;
     }
-    let off = own.normal.dot(other.place - own.place).abs();
+    let off = own.normal.dot(other.position - own.position).abs();
     let near = (1.0 - off / own.slack).max(0.0);
     let cosine = own.direction.dot(other.direction);
     if own.roughness > 0.0 {
@@ -67,7 +67,7 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
     fourth * fourth * near
 }
 
-/// Degree to which two means are the same but for their noise, 0 to 1: variances are those of the means.
+/// Similarity of two means given their noise, 0 to 1: variances are those of the means.
 #[must_use]
 pub fn skylight_alike(own: Vec4, other: Vec4) -> f32 {
     let apart = skylight_luminance(own.truncate()) - skylight_luminance(other.truncate());
@@ -83,9 +83,9 @@ struct Pixels<'a> {
 
 impl SceneView<'_> {
     /// Light that sky and surfaces add to each pixel.
-    pub(crate) fn skylight(&self, gather: &[TraceGather]) -> Vec<[f32; 3]> {
+    pub(crate) fn skylight(&self, ambient: &[TraceAmbient]) -> Vec<[f32; 3]> {
         let eye = self.frame.camera.eye;
-        let slots: Vec<[SkylightSlot; 2]> = gather
+        let slots: Vec<[SkylightSlot; 2]> = ambient
             .par_iter()
             .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
             .collect();
@@ -110,19 +110,19 @@ impl SceneView<'_> {
 
 /// A slot, unpacked.
 fn skylight_slot(slot: &TraceSlot, eye: Vec3) -> SkylightSlot {
-    let PathSlot { light, slack, factor, roughness, normal: direction, place } = trace_unpack(slot, eye);
+    let PathSlot { light, slack, factor, roughness, normal: direction, position } = trace_unpack(slot, eye);
     let mut normal = direction;
     if roughness > 0.0 {
         // Between what is seen and what is mirrored.
-        let seen = place - eye;
+        let seen = position - eye;
         let sum = direction - seen / seen.dot(seen).sqrt().max(1.0e-20);
         normal = sum / sum.dot(sum).sqrt().max(1.0e-20);
     }
-    SkylightSlot { light, factor, normal, direction, place, slack, roughness }
+    SkylightSlot { light, factor, normal, direction, position, slack, roughness }
 }
 
 impl Pixels<'_> {
-    /// The mean of the window round a pixel, and the variance of its luminance.
+    /// The mean of the window around a pixel, and the variance of its luminance.
     fn skylight_mean(&self, x: u32, y: u32, slot: usize) -> Vec4 {
         let index = |x: u32, y: u32| (y * self.width + x) as usize;
         let own = &self.slots[index(x, y)][slot];

@@ -4,7 +4,7 @@
 //! `I` candela lights a surface at a distance `r` with `I / r^2` lux and a sun is given in lux.
 //!
 //! Far from the world's origin single precision is coarse (1 m at 10 000 km), so that buffers there are relative to a
-//! whole place near the eye, [`Stage::origin`].
+//! whole-number position near the eye, [`Stage::origin`].
 
 mod error;
 mod eye;
@@ -25,35 +25,35 @@ use glam::{DVec3, Vec3};
 use crate::builder::SceneBuilder;
 use crate::data::SceneData;
 use downpour_render::RenderError;
-use downpour_render::camera::{EyeMotion, LONGEST_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
+use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
 use downpour_render::light::LightSource;
 use downpour_render::tone::{tone_automatic_exposure, tone_luminance};
 pub use error::StageError;
 pub use eye::CameraChoice;
-use eye::Seen;
+use eye::CameraView;
 
-/// The most triangles of a scene, all copies counted.
+/// Maximum number of triangles of a scene, all copies counted.
 pub const MAX_TRIANGLES: u64 = 1 << 22;
 
-/// The most lamps of a scene: each surface asks each of them.
-pub const MOST_LIGHTS: usize = 1024;
+/// Maximum number of lamps of a scene: each surface samples all of them.
+pub const MAX_LIGHTS: usize = 1024;
 
 /// Memory per triangle, in bytes, while its hierarchy is built: the corners twice, and the builder's own lists.
 const BYTES_PER_TRIANGLE: u64 = 540;
 
-/// Farther than this from the world's origin, in metres, buffers are relative to a place near the eye.
+/// Farther than this from the world's origin, in meters, buffers are relative to a position near the eye.
 const NEAR_ORIGIN_M: f64 = 1000.0;
 
-/// The latest time of a picture, in seconds, and the earliest below 0.
+/// Maximum absolute time of a picture, in seconds.
 pub const LATEST_S: f64 = downpour_sim::field::MAX_TIME_S;
 
 /// The eye's motion is taken over this time at least, s.
-const LEAST_APART_S: f64 = 1.0e-3;
+const MIN_INTERVAL_S: f64 = 1.0e-3;
 
 /// Pixels darker than this part of the mean have no say in the exposure.
 const UNLIT: f32 = 1.0e-4;
 
-/// A scene with its light and an eye.
+/// A scene at one time: its buffers, light and camera.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The scene's buffers, relative to `origin`.
@@ -64,32 +64,32 @@ pub struct Stage {
     pub origin: DVec3,
     /// Motion of the eye.
     pub motion: EyeMotion,
-    /// Exposure time: the shutter is open for so long, in seconds.
+    /// Exposure time, s.
     pub shutter_s: f64,
     /// Columns and rows of the picture.
     pub size: [u32; 2],
-    /// The picture is multiplied by two to this power.
+    /// Exposure compensation in stops: the picture is multiplied by 2 to this power.
     pub exposure_ev: f32,
-    /// Distances from the eye, in metres, between which drops are drawn.
+    /// Distances from the eye, in meters, between which drops are drawn.
     pub depth: [f64; 2],
-    /// Whose eye it is.
+    /// Choice of the camera.
     pub camera: CameraChoice,
     /// Triangles, all copies counted.
     pub triangles: usize,
-    /// Meshes at their places.
+    /// Mesh instances.
     pub instances: usize,
     /// Lamps, without the sun.
     pub lamps: usize,
-    /// Meshes that are not drawn because their transform has no inverse, or leads too far.
+    /// Number of meshes left out because their transform has no inverse or is out of range.
     pub left_out: usize,
 }
 
 impl Stage {
-    /// The stage of a weather at a time in seconds: its models in motion, its sky, sun and lamps, its eye.
+    /// Builds the stage of a weather at a time in seconds: animated models, sky, sun, lamps, camera.
     ///
     /// # Errors
-    /// [`StageError::OverLimit`] above [`MAX_TRIANGLES`] or [`MOST_LIGHTS`], [`StageError::Memory`], or
-    /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or a camera that is none.
+    /// [`StageError::OverLimit`] above [`MAX_TRIANGLES`] or [`MAX_LIGHTS`], [`StageError::Memory`], or
+    /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or an invalid camera.
     pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
         check_size(weather.size)?;
         if !(-LATEST_S..=LATEST_S).contains(&time_s) {
@@ -104,7 +104,7 @@ impl Stage {
         }
         let pose = posed(loaded, time_s);
         check_cost(loaded, &pose)?;
-        let seen = Seen::of(weather, loaded, &pose, time_s);
+        let seen = CameraView::of(weather, loaded, &pose, time_s);
         let anchor = seen.as_ref().map_or_else(|| middle(loaded, &pose), |seen| seen.eye);
         let origin = origin_near(anchor);
         let mut builder = SceneBuilder::new();
@@ -129,7 +129,7 @@ impl Stage {
             }
             None => (CameraChoice::Standing, framing::standing(fov)),
         };
-        // A camera that is none is told of here and not in the middle of the work.
+        // An invalid camera is reported here, before the work begins.
         viewpoint.axes()?;
         Ok(Self {
             data,
@@ -153,7 +153,7 @@ impl Stage {
     /// # Errors
     /// [`StageError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
     pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
-        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s), time_s) else {
+        let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
             return Ok(self.clone());
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
@@ -179,7 +179,7 @@ impl Stage {
     /// # Errors
     /// As [`Stage::new`].
     pub fn view_at(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<View, StageError> {
-        let Some(seen) = Seen::of(weather, loaded, &posed(loaded, time_s), time_s) else {
+        let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
             return Ok(Self::new(weather, loaded, time_s)?.view()?);
         };
         let origin = origin_near(seen.eye);
@@ -189,7 +189,7 @@ impl Stage {
         Ok(view_of(&viewpoint, origin, weather.size, depth, weather.camera.shutter, &motion)?)
     }
 
-    /// Drops of the world as the picture takes them, relative to `origin`.
+    /// Returns drops with their positions relative to `origin`.
     #[must_use]
     pub fn place<'a>(&self, drops: &'a [FallingDrop]) -> Cow<'a, [FallingDrop]> {
         if self.origin == DVec3::ZERO {
@@ -198,7 +198,7 @@ impl Stage {
         drops.iter().map(|drop| FallingDrop { position: drop.position - self.origin, ..*drop }).collect()
     }
 
-    /// The factor from radiance to a picture to look at: automatic exposure of the scene without rain, where there is light
+    /// Returns the exposure factor for display: automatic exposure of the scene without rain, where there is light
     /// on it, times two to the power of `exposure_ev`.
     ///
     /// Pixels without light are left out: nothing comes from below the horizon of an overcast sky. So is the rain: drops
@@ -240,7 +240,7 @@ fn origin_near(eye: DVec3) -> DVec3 {
 }
 
 /// Distances from the eye between which drops are drawn, m.
-fn depth(weather: &Weather, seen: Option<&Seen>) -> [f64; 2] {
+fn depth(weather: &Weather, seen: Option<&CameraView>) -> [f64; 2] {
     let near = weather.camera.near.or_else(|| seen?.near).unwrap_or(weather::NEAR_M);
     let far = weather.camera.far.or_else(|| seen?.far).unwrap_or(weather::FAR_M);
     [near, far]
@@ -274,7 +274,7 @@ pub fn view_of(
         pixel_angle: 2.0 * half_height / f64::from(size[1]),
         near,
         far,
-        shutter_s: shutter_s.clamp(0.0, LONGEST_EXPOSURE_S),
+        shutter_s: shutter_s.clamp(0.0, MAX_EXPOSURE_S),
         velocity: motion.velocity.as_dvec3(),
         turning: motion.turning.as_dvec3(),
         ..usual
@@ -290,13 +290,13 @@ fn motion(weather: &Weather, loaded: &Loaded, time_s: f64) -> EyeMotion {
     if !moves {
         return EyeMotion::default();
     }
-    let apart_s = weather.camera.shutter.max(LEAST_APART_S);
+    let apart_s = weather.camera.shutter.max(MIN_INTERVAL_S);
     let at = |half: f64| {
         let time_s = time_s + half * apart_s;
-        Seen::of(weather, loaded, &posed(loaded, time_s), time_s)
+        CameraView::of(weather, loaded, &posed(loaded, time_s), time_s)
     };
     match (at(-0.5), at(0.5)) {
-        (Some(before), Some(after)) => Seen::motion(&before, &after, apart_s),
+        (Some(before), Some(after)) => CameraView::motion(&before, &after, apart_s),
         _ => EyeMotion::default(),
     }
 }
@@ -324,16 +324,16 @@ fn check_cost(loaded: &Loaded, pose: &Pose) -> Result<(), StageError> {
         return Err(StageError::OverLimit {
             quantity: "triangles of the scene, all copies counted",
             found: triangles,
-            most: MAX_TRIANGLES,
-            way_out: "fewer copies, or simpler models",
+            max: MAX_TRIANGLES,
+            advice: "fewer copies, or simpler models",
         });
     }
-    if pose.lights.len() > MOST_LIGHTS {
+    if pose.lights.len() > MAX_LIGHTS {
         return Err(StageError::OverLimit {
             quantity: "lamps of the scene, all copies counted",
             found: pose.lights.len() as u64,
-            most: MOST_LIGHTS as u64,
-            way_out: "fewer copies of models with lamps",
+            max: MAX_LIGHTS as u64,
+            advice: "fewer copies of models with lamps",
         });
     }
     let bytes = triangles * BYTES_PER_TRIANGLE + sky::bytes(&loaded.sky);

@@ -15,7 +15,7 @@ use crate::material::RenderMaterial;
 /// Everything that shading needs at a hit.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// Place.
+    /// Position.
     pub position: Vec3,
     /// Opacity.
     pub alpha: f32,
@@ -25,7 +25,7 @@ pub struct Surface {
     pub roughness: f32,
     /// The triangle's own normal, facing the viewer.
     pub facet: Vec3,
-    /// Share of the surroundings that the material says is seen.
+    /// Ambient occlusion of the material: fraction of the environment that is visible.
     pub occlusion: f32,
     /// Albedo of the diffuse base.
     pub diffuse: Vec3,
@@ -33,11 +33,11 @@ pub struct Surface {
     pub flags: u32,
     /// Reflectance at normal incidence.
     pub normal_reflectance: Vec3,
-    /// Share of light that passes.
+    /// Fraction of light that passes.
     pub transmission: f32,
     /// Emitted radiance.
     pub emission: Vec3,
-    /// Curvature, 1/m: how much the normal turns per metre.
+    /// Curvature, 1/m: how much the normal turns per meter.
     pub bend: f32,
 }
 
@@ -70,7 +70,7 @@ impl SceneData {
     pub(crate) fn surface_alpha(&self, material: &RenderMaterial, hit: &Hit) -> f32 {
         material.base.w
             * self.surface_texture(material.maps[0], self.surface_uv(hit), -20.0).w
-            * self.surface_colour(hit).w
+            * self.surface_color(hit).w
     }
 
     /// True if there is a hole at a hit.
@@ -83,8 +83,8 @@ impl SceneData {
         self.surface_alpha(&material, hit) < least
     }
 
-    /// The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is
-    /// blended has no alpha. Twelve holes in a row end the ray.
+    /// Returns the nearest surface up to a distance. Holes are skipped: where a masked material is below its cutoff, or one
+    /// that is blended has no alpha. Twelve holes in a row end the ray.
     #[must_use]
     pub fn surface_hit(&self, origin: Vec3, direction: Vec3, nearest: f32, farthest: f32) -> Option<Hit> {
         let mut from_distance = nearest;
@@ -110,9 +110,9 @@ impl SceneData {
         self.mix(hit, |c| c.uv.into())
     }
 
-    /// Vertex colour at a hit.
-    fn surface_colour(&self, hit: &Hit) -> Vec4 {
-        self.mix(hit, |c| c.colour.into())
+    /// Vertex color at a hit.
+    fn surface_color(&self, hit: &Hit) -> Vec4 {
+        self.mix(hit, |c| c.color.into())
     }
 
     /// Logarithm to base 2 of the width of a ray's cone at a hit, in units of texture coordinates: the mean scale of
@@ -134,7 +134,7 @@ impl SceneData {
         Vec3::from(triangle.edge_1).cross(Vec3::from(triangle.edge_2))
     }
 
-    /// Change of the corners' normals per metre of the triangle that was hit.
+    /// Change of the corners' normals per meter of the triangle that was hit.
     fn surface_bend(&self, hit: &Hit) -> f32 {
         let triangle = &self.triangles[hit.triangle as usize];
         let [a, b, c] = [0, 1, 2].map(|k| Vec3::from(self.corners_of(hit)[k].normal));
@@ -156,7 +156,7 @@ impl SceneData {
         let spread = self.surface_spread(hit, geometric, direction, cone * hit.distance);
         let (flags, maps, more) = (material.flags, material.maps, material.more);
 
-        let base = material.base * self.surface_texture(maps[0], uv, spread) * self.surface_colour(hit);
+        let base = material.base * self.surface_texture(maps[0], uv, spread) * self.surface_color(hit);
         let rough = self.surface_texture(maps[1], uv, spread);
         let metallic = (material.metallic * rough.z).clamp(0.0, 1.0);
         let roughness = (material.roughness * rough.y).clamp(0.0, 1.0);
@@ -180,12 +180,12 @@ impl SceneData {
             normal -= direction * (away + 0.01);
             normal /= normal.dot(normal).sqrt().max(1.0e-20);
         }
-        // Unlit, the base colour is all that is seen.
+        // Unlit, the base color is all that is seen.
         let unlit = flags & SCENE_UNLIT != 0;
         let dielectric = (material.ior - 1.0) / (material.ior + 1.0);
         let f0 = if unlit { 0.0 } else { dielectric * dielectric };
         let metallic = if unlit { 0.0 } else { metallic };
-        let colour = base.truncate();
+        let color = base.truncate();
         Surface {
             position: origin + direction * hit.distance,
             alpha: base.w,
@@ -193,9 +193,9 @@ impl SceneData {
             roughness,
             facet,
             occlusion: occlusion.clamp(0.0, 1.0),
-            diffuse: colour * (1.0 - metallic),
+            diffuse: color * (1.0 - metallic),
             flags,
-            normal_reflectance: Vec3::splat(f0) * (1.0 - metallic) + colour * metallic,
+            normal_reflectance: Vec3::splat(f0) * (1.0 - metallic) + color * metallic,
             transmission: transmission.clamp(0.0, 1.0) * (1.0 - metallic),
             emission,
             bend: self.surface_bend(hit),

@@ -1,7 +1,7 @@
-//! Pixels by rays: of the picture, and of the capture of the surroundings. Twin of `shaders/wgsl/render/trace.wgsl`.
+//! Pixels by rays: of the picture, and of the environment capture. Twin of `shaders/wgsl/render/trace.wgsl`.
 //!
 //! Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others
-//! are taken to do so too. [`skylight`](crate::skylight) takes means of what neighbouring pixels have found of the light of
+//! are taken to do so too. [`skylight`](crate::skylight) takes means of what neighboring pixels have found of the light of
 //! sky and surfaces.
 
 use downpour_math::packing::{
@@ -12,16 +12,16 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::capture::{capture_direction, capture_sky, capture_suns};
-use crate::path::{PathSlot, ViewPath, path_lattice_words, path_most};
+use crate::path::{PathSlot, ViewPath, path_lattice_words, path_max};
 use crate::scene::SceneView;
 use downpour_render::halves::{pack, unpack};
 
-/// Light of which means are taken over neighbouring pixels, packed. The same layout as `TraceSlot` in WGSL.
+/// Light that is denoised over neighboring pixels, packed. The same layout as `TraceSlot` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TraceSlot {
     /// Position, m.
-    pub place: [f32; 3],
+    pub position: [f32; 3],
     /// The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
     pub normal: u32,
     /// Sum of the light's red, green and blue: the mean of the samples that have found some.
@@ -33,10 +33,10 @@ pub struct TraceSlot {
     pub factor: [u32; 2],
 }
 
-/// Light of sky and surfaces that a pixel shows. The same layout as `TraceGather` in WGSL.
+/// Ambient sample of a pixel: light of sky and surfaces. The same layout as `TraceAmbient` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct TraceGather {
+pub struct TraceAmbient {
     /// On the diffuse base of the first opaque surface, over pi.
     pub base: TraceSlot,
     /// In the first gloss or mirror.
@@ -56,11 +56,11 @@ fn trace_pack(slot: &PathSlot, eye: Vec3) -> TraceSlot {
     } else {
         ((slot.roughness.clamp(0.0, 1.0) * 255.0 + 0.5) as u32).max(1)
     };
-    let from_eye = slot.place - eye;
+    let from_eye = slot.position - eye;
     let slack = (slot.slack / from_eye.dot(from_eye).sqrt().max(1.0e-20)).clamp(1.0e-4, 6.0e4);
     let factor = slot.factor.min(Vec3::splat(6.0e4));
     TraceSlot {
-        place: slot.place.to_array(),
+        position: slot.position.to_array(),
         normal: packing_pack_snorm(packing_octahedral_encode(slot.normal.to_array())),
         light: sum,
         look: part(slot.light.x) | part(slot.light.y) << 12 | rough << 24,
@@ -73,15 +73,15 @@ pub(crate) fn trace_unpack(slot: &TraceSlot, eye: Vec3) -> PathSlot {
     let red = (slot.look & 4095) as f32 * (slot.light / 4095.0);
     let green = (slot.look >> 12 & 4095) as f32 * (slot.light / 4095.0);
     let [low, high] = slot.factor.map(unpack);
-    let place = Vec3::from(slot.place);
-    let from_eye = place - eye;
+    let position = Vec3::from(slot.position);
+    let from_eye = position - eye;
     PathSlot {
         light: Vec3::new(red, green, (slot.light - red - green).max(0.0)),
         slack: high[1] * from_eye.dot(from_eye).sqrt(),
         factor: Vec3::new(low[0], low[1], high[0]),
         roughness: (slot.look >> 24) as f32 / 255.0,
         normal: Vec3::from(packing_octahedral_decode(packing_unpack_snorm(slot.normal))),
-        place,
+        position,
     }
 }
 
@@ -101,10 +101,10 @@ impl TraceSum {
             return *self;
         }
         let first = if self.weight > 0.0 { self.slot } else { *sample };
-        // Another surface's light is not told apart, and taken to be the same.
-        let off = first.normal.dot(sample.place - first.place).abs();
+        // Light of a sample on another surface is not kept apart: it is taken to be the same.
+        let off = first.normal.dot(sample.position - first.position).abs();
         let same = off < first.slack && first.normal.dot(sample.normal) > TRACE_SAME_NORMAL;
-        let weight = if same { path_most(sample.factor).max(1.0e-6) } else { 0.0 };
+        let weight = if same { path_max(sample.factor).max(1.0e-6) } else { 0.0 };
         Self {
             slot: PathSlot {
                 light: self.slot.light + sample.light * weight,
@@ -115,19 +115,19 @@ impl TraceSum {
         }
     }
 
-    /// The mean, where `share` is one over the number of all samples.
-    fn trace_mean(&self, share: f32, eye: Vec3) -> TraceSlot {
+    /// The mean, where `fraction` is one over the number of all samples.
+    fn trace_mean(&self, fraction: f32, eye: Vec3) -> TraceSlot {
         if self.weight <= 0.0 {
             return TraceSlot::default();
         }
         let slot = &self.slot;
-        let mean = PathSlot { light: slot.light / self.weight, factor: slot.factor * share, ..*slot };
+        let mean = PathSlot { light: slot.light / self.weight, factor: slot.factor * fraction, ..*slot };
         trace_pack(&mean, eye)
     }
 }
 
 impl SceneView<'_> {
-    /// The direction of a place of the picture or of the capture, in pixels from the top left.
+    /// The direction of a position of the picture or of the capture, in pixels from the top left.
     fn trace_direction(&self, x: f32, y: f32) -> Vec3 {
         if self.frame.projection == SCENE_OCTAHEDRAL {
             return capture_direction(self.frame, x, y);
@@ -138,7 +138,7 @@ impl SceneView<'_> {
     /// A pixel: mean radiance, and the distance of what stands nearest in it. In the picture the light of sky and
     /// surfaces on the first surface is left out; it is the second of the two.
     #[must_use]
-    pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceGather) {
+    pub fn trace_pixel(&self, x: u32, y: u32) -> (Vec4, TraceAmbient) {
         let is_picture = self.frame.projection == SCENE_PICTURE;
         let (mut sum, mut nearest) = (Vec3::ZERO, SCENE_FAR);
         let (mut base, mut mirror) = (TraceSum::NONE, TraceSum::NONE);
@@ -148,15 +148,15 @@ impl SceneView<'_> {
         let mut count = 0u16;
         for k in 0..n * n {
             // First the opposite corners.
-            let place = match k {
+            let index = match k {
                 0 => 0,
                 1 => n * n - 1,
                 _ => k - 1,
             };
-            let dx = ((place % n) as f32 + 0.5) / n as f32;
-            let dy = ((place / n) as f32 + 0.5) / n as f32;
+            let dx = ((index % n) as f32 + 0.5) / n as f32;
+            let dy = ((index / n) as f32 + 0.5) / n as f32;
             let direction = self.trace_direction(x as f32 + dx, y as f32 + dy);
-            let random = path_lattice_words(self.frame.camera.seed, x, y, place);
+            let random = path_lattice_words(self.frame.camera.seed, x, y, index);
             let path = self.path_trace(eye, direction, self.frame.camera.pixel_angle, random, &last);
             sum += if is_picture { path.radiance } else { path.path_radiance() };
             base = base.trace_add(&path.base);
@@ -169,31 +169,32 @@ impl SceneView<'_> {
             }
             last = path;
         }
-        let share = 1.0 / f32::from(count);
+        let fraction = 1.0 / f32::from(count);
         if !is_picture {
             let is_sky = nearest >= SCENE_FAR && self.frame.projection == SCENE_OCTAHEDRAL;
-            let seen = if is_sky { capture_sky(self, x, y) } else { sum * share };
+            let seen = if is_sky { capture_sky(self, x, y) } else { sum * fraction };
             let radiance = seen + capture_suns(self, x, y);
-            return (radiance.extend(nearest), TraceGather::default());
+            return (radiance.extend(nearest), TraceAmbient::default());
         }
-        let gather = TraceGather { base: base.trace_mean(share, eye), mirror: mirror.trace_mean(share, eye) };
-        ((sum * share).extend(nearest), gather)
+        let ambient =
+            TraceAmbient { base: base.trace_mean(fraction, eye), mirror: mirror.trace_mean(fraction, eye) };
+        ((sum * fraction).extend(nearest), ambient)
     }
 
     /// The whole picture, rows from the top, in parallel; the same bits for any number of threads.
     #[must_use]
     pub fn picture(&self) -> Vec<[f32; 4]> {
         let width = self.frame.camera.width;
-        let (mut picture, gather): (Vec<[f32; 4]>, Vec<TraceGather>) = (0..self.frame.camera.height)
+        let (mut picture, ambient): (Vec<[f32; 4]>, Vec<TraceAmbient>) = (0..self.frame.camera.height)
             .into_par_iter()
             .flat_map_iter(|y| {
                 (0..width).map(move |x| {
-                    let (pixel, gather) = self.trace_pixel(x, y);
-                    (pixel.to_array(), gather)
+                    let (pixel, ambient) = self.trace_pixel(x, y);
+                    (pixel.to_array(), ambient)
                 })
             })
             .unzip();
-        let shown = self.skylight(&gather);
+        let shown = self.skylight(&ambient);
         for (pixel, shown) in picture.iter_mut().zip(shown) {
             for k in 0..3 {
                 pixel[k] += shown[k];
@@ -216,7 +217,7 @@ mod tests {
             factor: Vec3::new(0.5, 0.02, 0.9),
             roughness: 0.4,
             normal: Vec3::new(0.6, -0.64, 0.48),
-            place: Vec3::new(7.0, 1.0, 1.0),
+            position: Vec3::new(7.0, 1.0, 1.0),
         };
         let found = trace_unpack(&trace_pack(&slot, eye), eye);
         // 12 bits of the sum; 11 of a half; 8 of the roughness; 16 of the normal.
@@ -224,7 +225,10 @@ mod tests {
         assert!(((found.factor - slot.factor) / slot.factor).abs().max_element() < 5.0e-4, "{found:?}");
         assert!((found.slack / slot.slack - 1.0).abs() < 5.0e-4, "{found:?}");
         assert!((found.roughness - slot.roughness).abs() <= 0.5 / 255.0, "{found:?}");
-        assert!((found.normal - slot.normal).length() < 1.0e-4 && found.place == slot.place, "{found:?}");
+        assert!(
+            (found.normal - slot.normal).length() < 1.0e-4 && found.position == slot.position,
+            "{found:?}"
+        );
         // A smooth gloss stays one.
         let smooth = trace_unpack(&trace_pack(&PathSlot { roughness: 1.0e-4, ..slot }, eye), eye);
         assert!(smooth.roughness > 0.0);

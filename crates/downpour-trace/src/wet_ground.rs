@@ -10,7 +10,7 @@ use crate::stage::Stage;
 /// Mixed into the rain's seed, so that drops on water are not the drops in the air.
 const SEED: u64 = 0x7075_6464_6c65_0001;
 
-/// The ground of a weather with the water that stands on it.
+/// Puddles of a weather on the ground of its scene.
 #[derive(Debug)]
 pub struct WetGround {
     puddles: Vec<(PuddleMap, PuddleLook)>,
@@ -24,7 +24,7 @@ impl WetGround {
     /// moves afterwards leaves them where they are.
     ///
     /// # Errors
-    /// [`PuddleError`] if the rain or the lattice of its ripples is none.
+    /// [`PuddleError`] if the rain or the lattice of its ripples is invalid.
     pub fn new(
         weather: &Weather,
         loaded: &Loaded,
@@ -43,7 +43,7 @@ impl WetGround {
         Ok(Some(Self { puddles: puddles.collect(), origin: stage.origin, ripples }))
     }
 
-    /// Lets rain fall until a time in seconds; times rise.
+    /// Steps the rain to a time in seconds; times must not decrease.
     ///
     /// # Errors
     /// As [`WetGround::new`].
@@ -51,7 +51,7 @@ impl WetGround {
         self.ripples.advance(time_s)
     }
 
-    /// Lays the water, as it is now, on the ground of a stage.
+    /// Sets the puddles of a stage to the present state of the water.
     pub fn lay(&self, stage: &mut Stage) {
         stage.data.set_puddles(&PuddleRows {
             puddles: &self.puddles,
@@ -103,7 +103,7 @@ fn look(puddle: &Puddle) -> PuddleLook {
         scale: puddle.ripple_scale as f32,
         angle: puddle.ripple_turn as f32,
         influence: puddle.ripple_influence as f32,
-        murk: Vec3::from(puddle.color.map(|part| part as f32)),
+        scattering_albedo: Vec3::from(puddle.color.map(|part| part as f32)),
         extinction: (1.0 / puddle.attenuation_length) as f32,
         ..PuddleLook::default()
     }

@@ -18,7 +18,7 @@ fn roofed(flags: u32, alphas: [u8; 2]) -> SceneData {
     let mut builder = SceneBuilder::new();
     let ground = builder.add_material(MaterialLook::default());
     let texels: Vec<[u8; 4]> = (0..64).map(|i| [255, 255, 255, alphas[i % 8 / 4]]).collect();
-    let texture = builder.texture(8, 8, &texels, TextureUse::Colour);
+    let texture = builder.texture(8, 8, &texels, TextureUse::Color);
     let texture = builder.add_slot(texture);
     let maps = [Some(texture), None, None, None, None, None];
     let roof = builder.add_material(MaterialLook { flags, maps, ..MaterialLook::default() });
@@ -31,7 +31,7 @@ fn roofed(flags: u32, alphas: [u8; 2]) -> SceneData {
             normals: None,
             tangents: None,
             uvs: [Some(&uvs), None],
-            colours: None,
+            colors: None,
             indices: &[0, 2, 1, 0, 3, 2],
             material,
         };
@@ -50,7 +50,7 @@ const ROOFS: [(u32, [u8; 2], [bool; 2]); 5] = [
     (0, [0, 255], [false, false]),
 ];
 
-/// Places under both halves, away from their edges.
+/// Positions under both halves, away from their edges.
 fn under(half: usize) -> Vec3 {
     Vec3::new([-1.2, 1.2][half], 1.0, 0.3)
 }

@@ -50,7 +50,7 @@ fn viewpoint() -> Viewpoint {
 /// Streaks by their profiles, the light of whose drops swings; by a loop the light of lamps is that of a sphere.
 const SPHERE: StreakSamples = StreakSamples::Loop(16);
 
-/// One drop in the middle of the picture, `away` metres before the eye.
+/// One drop in the middle of the picture, `away` meters before the eye.
 fn drawn(
     masks: &DropMasks,
     scene: &SceneData,
@@ -93,14 +93,14 @@ fn mean(masks: &DropMasks, scene: &SceneData, id: f32, light: DropLightOptions) 
         .light(&rows)[0][0])
 }
 
-/// Lamps all round a drop light it as an even sky does: together its disc is as bright as the sky, since nothing is lost.
+/// Lamps all around a drop light it as an even sky does: together its disk is as bright as the sky, since nothing is lost.
 #[test]
 fn lamps_all_round_make_an_even_sky() -> Outcome {
     let masks = DropMasks::trace(1.333)?.with_atlas(&atlas());
     let count = 1000;
     let lamps: Vec<LightSource> = (0..count)
         .map(|k| {
-            // Evenly over the sphere: by height, and by golden steps round it.
+            // Evenly over the sphere: by height, and by golden steps around it.
             let height = 1.0 - 2.0 * (k as f32 + 0.5) / count as f32;
             let turn = TAU * (k as f32 * 0.618_034).fract();
             let level = (1.0 - height * height).sqrt();

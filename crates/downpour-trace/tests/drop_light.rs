@@ -1,4 +1,4 @@
-//! Light of lamps and sun on drops: its amount, its direction, its colours, its shadows.
+//! Light of lamps and sun on drops: its amount, its direction, its colors, its shadows.
 
 use std::f32::consts::PI;
 
@@ -36,7 +36,7 @@ fn scene(lights: &[LightSource], wall: Option<Vec3>) -> SceneData {
             normals: None,
             tangents: None,
             uvs: [None, None],
-            colours: None,
+            colors: None,
             indices: &[0, 1, 2, 0, 2, 3],
             material: 0,
         };
@@ -99,7 +99,7 @@ fn no_light_is_lost_or_made() -> Outcome {
         )?
         .light(&[[0.0, 0.0, 0.0, RADIUS]])[0];
         let ring = 2.0 * PI * ops::sin(angle) * PI / f32::from(steps);
-        // Radiance times the disc's area, over all directions, over the power on the disc.
+        // Radiance times the disk's area, over all directions, over the power on the disk.
         sum += Vec3::new(light[0], light[1], light[2]) * ring / irradiance;
     }
     for (found, index) in sum.to_array().into_iter().zip(indices) {
@@ -174,15 +174,15 @@ fn glints_stand_where_they_belong_and_sum_to_the_mean() -> Outcome {
         assert!((kept / mean - 1.0).abs().max_element() < 1e-5, "{kept} for {mean}");
         for glint in &all {
             let row = rows[1..].iter().find(|row| row[0] == glint.radiance.x).ok_or("a glint is not kept")?;
-            assert!((drop_glint_unpack(row[3]) - glint.place).abs().max_element() < 3e-4);
+            assert!((drop_glint_unpack(row[3]) - glint.position).abs().max_element() < 3e-4);
         }
         let normal = (light - towards).normalize();
         let mirror = all.iter().find(|glint| glint.order == 0).ok_or("no mirror")?;
         let expected = Vec2::new(normal.dot(right), normal.dot(up));
-        assert!(mirror.place.distance(expected) < 0.01, "{} for {expected}", mirror.place);
+        assert!(mirror.position.distance(expected) < 0.01, "{} for {expected}", mirror.position);
         let side = drop_glint_side(light, right, up);
         if let Some(lens) = all.iter().find(|glint| glint.order == 1) {
-            assert!(lens.place.dot(side) < -0.1, "{}", lens.place);
+            assert!(lens.position.dot(side) < -0.1, "{}", lens.position);
         } else {
             assert!(light.dot(towards) < 0.2, "no light through the drop");
         }
@@ -192,10 +192,10 @@ fn glints_stand_where_they_belong_and_sum_to_the_mean() -> Outcome {
 
 #[test]
 fn places_are_packed_and_spots_have_unit_mean() {
-    for place in [Vec2::ZERO, Vec2::new(1.0, -1.0), Vec2::new(-0.123, 0.987), Vec2::new(-1.0, 1.0)] {
-        let word = drop_glint_pack(place);
+    for position in [Vec2::ZERO, Vec2::new(1.0, -1.0), Vec2::new(-0.123, 0.987), Vec2::new(-1.0, 1.0)] {
+        let word = drop_glint_pack(position);
         assert!(word.fract() == 0.0 && (0.0..16_777_216.0).contains(&word), "{word}");
-        assert!((drop_glint_unpack(word) - place).abs().max_element() <= 1.001 / 4094.0, "{place}");
+        assert!((drop_glint_unpack(word) - position).abs().max_element() <= 1.001 / 4094.0, "{position}");
     }
     let (steps, width) = (200i16, 0.1);
     let step = 2.0 / f32::from(steps);
@@ -254,7 +254,7 @@ fn lamps_add_up_and_none_is_none() -> Outcome {
     Ok(())
 }
 
-/// Lamp behind the eye: `A_1 A_2` is the square of the cosine, 1/2 over the disc; `A_3` has nothing. Lamp behind the drop:
+/// Lamp behind the eye: `A_1 A_2` is the square of the cosine, 1/2 over the disk; `A_3` has nothing. Lamp behind the drop:
 /// `A_2` has nothing, `A_3` is cos (1 - cos) where the normal is level.
 #[test]
 fn rousseau_2006_is_as_printed() -> Outcome {
@@ -266,7 +266,7 @@ fn rousseau_2006_is_as_printed() -> Outcome {
     let front = of(Vec3::new(0.0, 0.0, 2.0))? / white;
     assert!((front - 0.5).abs().max_element() < 1e-4, "{front}");
     let behind = of(Vec3::new(0.0, 0.0, -2.0))?.x / white;
-    // The mean over the disc of c^2 (1 - c) / sqrt(x^2 + c^2), by a fine sum.
+    // The mean over the disk of c^2 (1 - c) / sqrt(x^2 + c^2), by a fine sum.
     let (mut sum, mut count) = (0.0, 0.0);
     for k in 0..400 * 400 {
         let [x, y] = [k % 400, k / 400].map(|k| (k as f32 + 0.5) / 200.0 - 1.0);
@@ -278,7 +278,7 @@ fn rousseau_2006_is_as_printed() -> Outcome {
         }
     }
     let expected = sum / count;
-    // 32 places stand for the disc.
+    // 32 points stand for the disk.
     assert!((behind / expected - 1.0).abs() < 0.05, "{behind} for {expected}");
     Ok(())
 }
@@ -334,7 +334,7 @@ fn light_that_is_none_is_refused() -> Outcome {
         )
         .unwrap_err();
         let words = error.to_string();
-        assert!(words.starts_with(&format!("light 1 has a colour of {said}")), "{words}");
+        assert!(words.starts_with(&format!("light 1 has a color of {said}")), "{words}");
         assert!(words.ends_with("allowed: finite numbers from 0 to 1e30"), "{words}");
     }
     let scene = scene(&[], None);

@@ -27,37 +27,37 @@ const SIZE: usize = 160;
 const DISTANCE: f64 = 0.5;
 const HALF: f64 = 0.0125;
 
-/// Pixels per metre at the drop.
+/// Pixels per meter at the drop.
 fn scale() -> f64 {
     SIZE as f64 / (2.0 * ops::tan(HALF) * DISTANCE)
 }
 
 /// A file of triangles.
 fn model(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> BTreeMap<String, Vec<u8>> {
-    let (of_places, of_triangles) = (12 * positions.len(), 12 * triangles.len());
+    let (of_positions, of_triangles) = (12 * positions.len(), 12 * triangles.len());
     let json = format!(
         r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
             "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "indices": 1}}]}}],
             "buffers": [{{"byteLength": {}, "uri": "drop.bin"}}],
-            "bufferViews": [{{"buffer": 0, "byteLength": {of_places}}},
-                            {{"buffer": 0, "byteOffset": {of_places}, "byteLength": {of_triangles}}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": {of_positions}}},
+                            {{"buffer": 0, "byteOffset": {of_positions}, "byteLength": {of_triangles}}}],
             "accessors": [{{"bufferView": 0, "componentType": 5126, "count": {}, "type": "VEC3"}},
                           {{"bufferView": 1, "componentType": 5125, "count": {}, "type": "SCALAR"}}]}}"#,
-        of_places + of_triangles,
+        of_positions + of_triangles,
         positions.len(),
         3 * triangles.len(),
     );
-    let places = positions.iter().flatten().flat_map(|x| x.to_le_bytes());
-    let binary = places.chain(triangles.iter().flatten().flat_map(|i| i.to_le_bytes())).collect();
+    let positions = positions.iter().flatten().flat_map(|x| x.to_le_bytes());
+    let binary = positions.chain(triangles.iter().flatten().flat_map(|i| i.to_le_bytes())).collect();
     [("drop.gltf".to_owned(), json.into_bytes()), ("drop.bin".to_owned(), binary)].into()
 }
 
 /// A box of 2 x 1 x 1 m.
 fn brick() -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
-    let place = |i: usize| [2.0 * (i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32];
+    let corner = |i: usize| [2.0 * (i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32];
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]];
-    ((0..8).map(place).collect(), faces.iter().flat_map(halves).collect())
+    ((0..8).map(corner).collect(), faces.iter().flat_map(halves).collect())
 }
 
 const MODEL: &str = "[rain]\nmask_model = 'drop.gltf'\n[streaks]\nsamples = 8";
@@ -96,7 +96,7 @@ fn picture(
     Ok(render_picture(scene, &eye, &[drop], masks, &options)?)
 }
 
-/// Covered share of each row, in pixels.
+/// Covered fraction of each row, in pixels.
 fn widths(picture: &Picture) -> Vec<f64> {
     let covered = |row: &[[f32; 4]]| row.iter().map(|pixel| f64::from(1.0 - pixel[3])).sum();
     picture.rain.chunks(SIZE).map(covered).collect()
@@ -156,7 +156,7 @@ fn a_printed_row_gives_the_printed_outline() -> Outcome {
 fn the_tables_differ_between_the_papers_rows() -> Outcome {
     let tables =
         [masks("", &BTreeMap::new())?, masks("[rain]\ndrop_shape = 'rousseau-2006'", &BTreeMap::new())?];
-    // Masks stand half a millimetre apart, from 0.5 to 9 mm.
+    // Masks stand half a millimeter apart, from 0.5 to 9 mm.
     let each = tables[0].words.len() / 18;
     let differing: Vec<usize> = (1..=18)
         .filter(|k| tables[0].words[(k - 1) * each..k * each] != tables[1].words[(k - 1) * each..k * each])
@@ -167,7 +167,7 @@ fn the_tables_differ_between_the_papers_rows() -> Outcome {
     Ok(())
 }
 
-/// A drop that is a sphere's mesh is round at any size, and shows what a sphere shows: at the share b of its radius above its
+/// A drop that is a sphere's mesh is round at any size, and shows what a sphere shows: at the fraction b of its radius above its
 /// middle, light from 2 (asin b - asin(b / n)) below.
 #[test]
 fn the_model_of_a_sphere_shows_what_a_sphere_shows() -> Outcome {
@@ -183,12 +183,12 @@ fn the_model_of_a_sphere_shows_what_a_sphere_shows() -> Outcome {
     let shown = picture(&masks, &scene, 6.0e-3)?;
     let radius = 0.5 * 6.0e-3 * scale();
     for row in [48, 56, 66, 75, 85, 94, 104, 110] {
-        let share = (0.5 * SIZE as f64 - (row as f64 + 0.5)) / radius;
-        let down = 2.0 * (ops::asin(share) - ops::asin(share / 1.3334));
+        let fraction = (0.5 * SIZE as f64 - (row as f64 + 0.5)) / radius;
+        let down = 2.0 * (ops::asin(fraction) - ops::asin(fraction / 1.3334));
         let [red, green, ..] = shown.rain[row * SIZE + SIZE / 2].map(f64::from);
         let (found, expected) = (green / red, 0.5 - 0.5 * ops::sin(down));
         // 2 % to 5 % are reflected.
-        assert!((found - expected).abs() < 0.04, "{share}: {found}, not {expected}");
+        assert!((found - expected).abs() < 0.04, "{fraction}: {found}, not {expected}");
     }
     Ok(())
 }

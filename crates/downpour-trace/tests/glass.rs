@@ -1,4 +1,4 @@
-//! Wet glass before a scene: energy, lenses, focus, and the lattice that goes on.
+//! Wet glass before a scene: energy, lenses, focus, and the lattice that is stepped on.
 
 use downpour_render::camera::Viewpoint;
 use downpour_render::glass::water::{
@@ -86,9 +86,9 @@ fn with_drop(glass: &mut GlassPicture, radius: f32) {
     glass.bins = (0..=bins).map(|k| (bins + 1 + k) as u32).chain(std::iter::repeat_n(0, bins)).collect();
 }
 
-fn drop(centre: [f32; 2], radius: f32) -> GlassPictureDrop {
+fn drop(center: [f32; 2], radius: f32) -> GlassPictureDrop {
     GlassPictureDrop {
-        centre,
+        center,
         radius,
         sphere: radius * 1.4,
         along: [0.0, 1.0],
@@ -134,7 +134,7 @@ fn a_dry_pane_dims_and_moves_nothing() -> Outcome {
     Ok(())
 }
 
-/// The sky stands below the ground in a drop; round it, it stands above.
+/// The sky stands below the ground in a drop; around it, it stands above.
 #[test]
 fn a_drop_shows_the_far_scene_upside_down() -> Outcome {
     let mut glass = picture("interior_ambient = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
@@ -166,8 +166,8 @@ fn a_round_drop_is_a_cap_of_a_sphere() {
         let angle = k as f32 * 2.4;
         let r = 1.9e-3 * (k as f32 / 200.0);
         let off = Vec2::new(downpour_math::ops::cos(angle), downpour_math::ops::sin(angle)) * r;
-        let place = Vec2::from(drop.centre) + off;
-        let cap = glass_picture_water_cap(&drop, place);
+        let position = Vec2::from(drop.center) + off;
+        let cap = glass_picture_water_cap(&drop, position);
         let height = (2.8e-3f32.powf_2() - r * r).sqrt() - base;
         assert!((cap.x - height).abs() < 2.0e-8, "{k}: {} {height}", cap.x);
         let normal = glass_picture_water_normal(Vec2::new(cap.y, cap.z));
@@ -175,7 +175,7 @@ fn a_round_drop_is_a_cap_of_a_sphere() {
         assert!((normal - radial).length() < 1.0e-4, "{k}: {normal} {radial}");
         // A slanted ray, against the quadratic.
         let aside = Vec2::new(0.6, -0.3);
-        let z = glass_picture_water_leave(&drop, place, aside);
+        let z = glass_picture_water_leave(&drop, position, aside);
         let on = off + aside * z;
         let miss = (on.length_squared() + (z + base) * (z + base)).sqrt() - 2.8e-3;
         assert!(miss.abs() < 3.0e-6, "{k}: {miss} off the sphere");
@@ -206,19 +206,19 @@ fn slopes_are_those_of_the_height() {
     };
     let step = 2.0e-5;
     for k in 0..400u32 {
-        let place = Vec2::new((k % 20) as f32 - 9.7, (k / 20) as f32 - 9.6) * 1.4e-4;
-        let cap = glass_picture_water_cap(&odd, place);
+        let position = Vec2::new((k % 20) as f32 - 9.7, (k / 20) as f32 - 9.6) * 1.4e-4;
+        let cap = glass_picture_water_cap(&odd, position);
         let slope = |x, y| {
             let by = Vec2::new(x, y) * step;
-            (glass_picture_water_cap(&odd, place + by).x - glass_picture_water_cap(&odd, place - by).x)
+            (glass_picture_water_cap(&odd, position + by).x - glass_picture_water_cap(&odd, position - by).x)
                 / (2.0 * step)
         };
         let off = Vec2::new(slope(1.0, 0.0) - cap.y, slope(0.0, 1.0) - cap.z).length();
-        assert!(off < 0.02, "{k} at {place}: {off}");
+        assert!(off < 0.02, "{k} at {position}: {off}");
     }
 }
 
-/// A lens moves light about and takes none: the mean of a picture that goes on beyond its edge stays.
+/// A lens redistributes light and loses none: the mean of a picture that extends beyond its edge stays.
 #[test]
 fn blur_keeps_the_light() -> Outcome {
     let sharp = picture("interior_ambient = 0\nbefore_s = 0\naperture_mm = 0\nspeed_m_s = 0")?;
@@ -247,17 +247,17 @@ fn shown(spread: f64, pane: f64, radius: f64) -> f64 {
     let step = 1.0e-5;
     let ring = |k: u32| {
         let angle = (f64::from(k) + 0.5) * step;
-        let place = pane * ops::sin(angle) / ops::cos(angle);
+        let position = pane * ops::sin(angle) / ops::cos(angle);
         let inside = ops::asin(ops::sin(angle) / index);
-        let mut x = place;
+        let mut x = position;
         for _ in 0..20 {
             let height = (sphere * sphere - x * x).sqrt() - (sphere * sphere - radius * radius).sqrt();
-            x = place + ops::sin(inside) / ops::cos(inside) * height;
+            x = position + ops::sin(inside) / ops::cos(inside) * height;
         }
         let normal = ops::asin(x / sphere);
         let out = normal - ops::asin(index * ops::sin(normal - inside));
-        let share = (1.0 - out * out / (spread * spread)).max(0.0);
-        share * 2.0 / (std::f64::consts::PI * spread * spread) * std::f64::consts::TAU * angle * step
+        let fraction = (1.0 - out * out / (spread * spread)).max(0.0);
+        fraction * 2.0 / (std::f64::consts::PI * spread * spread) * std::f64::consts::TAU * angle * step
     };
     (0..6000).map(ring).sum()
 }
@@ -278,9 +278,9 @@ fn a_drop_shows_a_lamp_as_bright_as_it_is() -> Outcome {
     // Far away, straight ahead, with an irradiance of 5.
     let mut light = |half_angle: f32, least: f32| -> (f32, usize) {
         glass.lights = vec![GlassPictureLight {
-            place: (ahead * 1.0e5).to_array(),
+            position: (ahead * 1.0e5).to_array(),
             radius: half_angle,
-            colour: [5.0; 3],
+            color: [5.0; 3],
             distance: 1.0e5,
         }];
         glass.frame.lights = 1;
@@ -360,7 +360,7 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &[0, 2, 1, 0, 3, 2],
         material: white,
     };
@@ -379,10 +379,11 @@ fn lamps_throw_the_shadows_of_drops_on_a_sill() -> Outcome {
     let open = lit(&stage.data)?;
     set_pane(&pane, &mut stage)?;
     let through = lit(&stage.data)?;
-    let shares: Vec<f32> = through.iter().zip(&open).map(|(a, b)| a / b).collect();
-    let mean = shares.iter().sum::<f32>() / shares.len() as f32;
+    let fractions: Vec<f32> = through.iter().zip(&open).map(|(a, b)| a / b).collect();
+    let mean = fractions.iter().sum::<f32>() / fractions.len() as f32;
     assert!((0.85..0.97).contains(&mean), "{mean}");
-    let dark = shares.iter().filter(|&&share| share < 0.5 * mean).count() as f32 / shares.len() as f32;
+    let dark =
+        fractions.iter().filter(|&&fraction| fraction < 0.5 * mean).count() as f32 / fractions.len() as f32;
     assert!((0.01..0.5).contains(&dark), "{dark} of the sill is in shadow");
     // The same again takes the place of the first.
     let rows = stage.data.table.len();
@@ -402,7 +403,7 @@ fn bands(above_m: f64, seeds: u32) -> Result<Vec<f64>, Box<dyn std::error::Error
             let (r, sphere) = (f64::from(drop.radius), f64::from(drop.sphere));
             let height = sphere - (sphere * sphere - r * r).max(0.0).sqrt();
             let volume = std::f64::consts::PI * height * height * (sphere - height / 3.0);
-            let band = (f64::from(drop.centre[1]) / 0.03).floor();
+            let band = (f64::from(drop.center[1]) / 0.03).floor();
             if (0.0..8.0).contains(&band) {
                 sums[band as usize] += volume;
             }

@@ -20,14 +20,14 @@ type Outcome = Result<(), Box<dyn std::error::Error>>;
 /// A material of one diffuse albedo and nothing else.
 fn diffuse(albedo: f32) -> MaterialLook {
     MaterialLook {
-        base_colour: [albedo, albedo, albedo, 1.0],
+        base_color: [albedo, albedo, albedo, 1.0],
         roughness: 1.0,
         ior: 1.0,
         ..MaterialLook::default()
     }
 }
 
-/// A square by its middle and half its edges; its front is towards their cross product.
+/// A square by its middle and half its edges; its front is toward their cross product.
 fn square(builder: &mut SceneBuilder, material: u32, middle: Vec3, across: Vec3, along: Vec3) {
     let positions = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
         .map(|(x, y)| (middle + across * x + along * y).to_array());
@@ -36,14 +36,14 @@ fn square(builder: &mut SceneBuilder, material: u32, middle: Vec3, across: Vec3,
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &[0, 1, 2, 0, 2, 3],
         material,
     };
     builder.add_mesh(&part, &Affine3A::IDENTITY);
 }
 
-/// A picture from an eye towards a place.
+/// A picture from an eye toward a point.
 fn picture(
     scene: &SceneData,
     eye: Vec3,
@@ -69,7 +69,7 @@ fn an_unlit_wall_of_one_is_one() -> Outcome {
         let mut builder = SceneBuilder::new();
         let look = MaterialLook {
             flags: SCENE_UNLIT,
-            base_colour: [color, color, color, 1.0],
+            base_color: [color, color, color, 1.0],
             metallic,
             ..MaterialLook::default()
         };
@@ -109,7 +109,7 @@ fn texel(i: u32, width: u32, height: u32) -> (DVec3, f64) {
     (DVec3::new(flat * exact::cos(around), up, flat * exact::sin(around)), angle)
 }
 
-/// Faces of every side have the light that the sky's map sends them, towards a low sun and away from it.
+/// Faces of every side have the light that the sky's map sends them, toward a low sun and away from it.
 #[test]
 fn faces_have_the_light_of_the_sky_before_them() -> Outcome {
     let (width, height) = (128, 64);
@@ -141,10 +141,10 @@ fn faces_have_the_light_of_the_sky_before_them() -> Outcome {
 fn metal_mirrors_what_stands_there() -> Outcome {
     let mut builder = SceneBuilder::new();
     let metal =
-        MaterialLook { base_colour: [1.0; 4], metallic: 1.0, roughness: 0.0, ..MaterialLook::default() };
+        MaterialLook { base_color: [1.0; 4], metallic: 1.0, roughness: 0.0, ..MaterialLook::default() };
     let floor = builder.add_material(metal);
     let unlit =
-        MaterialLook { flags: SCENE_UNLIT, base_colour: [0.7, 0.7, 0.7, 1.0], ..MaterialLook::default() };
+        MaterialLook { flags: SCENE_UNLIT, base_color: [0.7, 0.7, 0.7, 1.0], ..MaterialLook::default() };
     let wall = builder.add_material(unlit);
     square(&mut builder, floor, Vec3::ZERO, Vec3::Z * 5.0, Vec3::X * 5.0);
     // 1 m high, at z = -2.
@@ -201,8 +201,8 @@ fn puddle(look: MaterialLook, depth: f32, sky: f32, lamp: LightSource) -> SceneD
     square(&mut builder, ground, Vec3::ZERO, Vec3::Z * 2.0, Vec3::X * 2.0);
     builder.add_light(lamp);
     let mut scene = builder.build(&SkyLight::uniform([sky; 3]));
-    let place = Ground { middle: Vec3::ZERO, size: Vec2::splat(3.0), turn: 0.0, reach: 0.5 };
-    let map = PuddleMap::painted(&scene, &place, [4, 4], &[depth; 16]);
+    let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(3.0), turn: 0.0, reach: 0.5 };
+    let map = PuddleMap::painted(&scene, &ground, [4, 4], &[depth; 16]);
     let water = PuddleLook { extinction: 0.0, ..PuddleLook::default() };
     scene.set_puddles(&PuddleRows {
         puddles: &[(map, water)],
@@ -236,7 +236,7 @@ fn mirrored_at(eye: [f64; 2], lamp: [f64; 2], depth: f64) -> f64 {
 #[test]
 fn a_lamp_has_one_mirror_image_in_a_puddle() -> Outcome {
     let metal = MaterialLook {
-        base_colour: [0.9, 0.9, 0.9, 1.0],
+        base_color: [0.9, 0.9, 0.9, 1.0],
         metallic: 1.0,
         roughness: 0.12,
         ..MaterialLook::default()
@@ -250,14 +250,14 @@ fn a_lamp_has_one_mirror_image_in_a_puddle() -> Outcome {
     let (mut sum, mut weighted, mut far) = (0.0, 0.0, 0.0);
     for (i, pixel) in view.picture().iter().enumerate() {
         let along = view.frame.camera.camera_direction((i % 48) as f32 + 0.5, (i / 48) as f32 + 0.5);
-        let place = eye + along * ((depth - eye.y) / along.y);
-        if along.y > -0.1 || place.abs().max_element() > 1.45 {
+        let position = eye + along * ((depth - eye.y) / along.y);
+        if along.y > -0.1 || position.abs().max_element() > 1.45 {
             continue;
         }
-        let (light, z) = (f64::from(pixel[1]), f64::from(place.z));
+        let (light, z) = (f64::from(pixel[1]), f64::from(position.z));
         sum += light;
         weighted += light * z;
-        far += if Vec2::new(place.x, place.z).length() > 0.7 { light } else { 0.0 };
+        far += if Vec2::new(position.x, position.z).length() > 0.7 { light } else { 0.0 };
     }
     let expected = mirrored_at([2.0, 1.0], [-2.0, 1.2], f64::from(depth));
     assert!((weighted / sum - expected).abs() < 0.12, "{}, {expected}", weighted / sum);
@@ -291,7 +291,7 @@ fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
     ab / (aa * bb).sqrt()
 }
 
-/// The noise of rippled water has no pattern of the filter's size, and each time has a noise of its own.
+/// The noise of rippled water has no pattern of the filter's size, and each frame has different noise.
 #[test]
 fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
     let sky: Vec<[f32; 3]> = (0..64 * 32)
@@ -301,8 +301,8 @@ fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
     let ground = builder.add_material(diffuse(0.05));
     square(&mut builder, ground, Vec3::ZERO, Vec3::Z * 4.0, Vec3::X * 4.0);
     let mut scene = builder.build(&SkyLight::new(64, 32, &sky));
-    let place = Ground { middle: Vec3::ZERO, size: Vec2::splat(7.0), turn: 0.0, reach: 0.5 };
-    let map = PuddleMap::painted(&scene, &place, [4, 4], &[0.03; 16]);
+    let ground = Ground { middle: Vec3::ZERO, size: Vec2::splat(7.0), turn: 0.0, reach: 0.5 };
+    let map = PuddleMap::painted(&scene, &ground, [4, 4], &[0.03; 16]);
     let finest = (0..128 * 128u32).map(|i| {
         let [a, b, ..] = rng_pcg4d([i, 4, 5, 6]).map(|word| 0.3 * (rng_unit(word) - 0.5));
         [a, b, a * a + b * b, 0.0]
@@ -330,12 +330,12 @@ fn noise_of_water_has_no_pattern_and_changes_with_time() -> Outcome {
     let truth: Vec<f64> =
         (0..width * height).map(|i| pictures[2..].iter().map(|p| p[i]).sum::<f64>() / 8.0).collect();
     let noise = |k: usize, x: usize, y: usize| pictures[k][y * width + x] - truth[y * width + x];
-    let places = || (0..height - 8).flat_map(|y| (0..width - 8).map(move |x| (x, y)));
+    let pixels = || (0..height - 8).flat_map(|y| (0..width - 8).map(move |x| (x, y)));
     // The mean of eight has an eighth of the noise, which both share.
-    let in_time = correlation(places().map(|(x, y)| (noise(0, x, y), noise(1, x, y))));
+    let in_time = correlation(pixels().map(|(x, y)| (noise(0, x, y), noise(1, x, y))));
     assert!(in_time.abs() < 0.35, "frames share noise: {in_time}");
     let lag =
-        |dx: usize, dy: usize| correlation(places().map(|(x, y)| (noise(0, x, y), noise(0, x + dx, y + dy))));
+        |dx: usize, dy: usize| correlation(pixels().map(|(x, y)| (noise(0, x, y), noise(0, x + dx, y + dy))));
     for (name, lags) in
         [("across", [lag(6, 0), lag(7, 0), lag(8, 0)]), ("down", [lag(0, 6), lag(0, 7), lag(0, 8)])]
     {

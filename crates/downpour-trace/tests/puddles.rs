@@ -17,14 +17,14 @@ use glam::{Affine3A, Vec2, Vec3};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// A sheet of ground, `n` squares each way, from -2 to 2 m, at a height by place.
+/// A sheet of ground, `n` squares each way, from -2 to 2 m, at a height by position.
 fn sheet(builder: &mut SceneBuilder, material: u32, n: usize, height: impl Fn(Vec2) -> f32) {
-    let place = |i: usize| {
+    let position = |i: usize| {
         let at = |k: usize| 4.0 * k as f32 / n as f32 - 2.0;
         let (x, z) = (at(i % (n + 1)), at(i / (n + 1)));
         [x, height(Vec2::new(x, z)), z]
     };
-    let positions: Vec<[f32; 3]> = (0..(n + 1) * (n + 1)).map(place).collect();
+    let positions: Vec<[f32; 3]> = (0..(n + 1) * (n + 1)).map(position).collect();
     let corner = |x: usize, z: usize| (z * (n + 1) + x) as u32;
     let indices: Vec<u32> = (0..n * n)
         .flat_map(|i| {
@@ -38,7 +38,7 @@ fn sheet(builder: &mut SceneBuilder, material: u32, n: usize, height: impl Fn(Ve
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &indices,
         material,
     };
@@ -47,11 +47,8 @@ fn sheet(builder: &mut SceneBuilder, material: u32, n: usize, height: impl Fn(Ve
 
 fn ground(albedo: f32, n: usize, height: impl Fn(Vec2) -> f32) -> SceneBuilder {
     let mut builder = SceneBuilder::new();
-    let look = MaterialLook {
-        base_colour: [albedo, albedo, albedo, 1.0],
-        roughness: 1.0,
-        ..MaterialLook::default()
-    };
+    let look =
+        MaterialLook { base_color: [albedo, albedo, albedo, 1.0], roughness: 1.0, ..MaterialLook::default() };
     let material = builder.add_material(look);
     sheet(&mut builder, material, n, height);
     builder
@@ -100,7 +97,7 @@ fn clear_water_on_white_ground_is_not_seen() -> Outcome {
     Ok(())
 }
 
-/// Ground of albedo 0.2 under water: (1 - `F_d`) / n^2 of it, times what is thrown back, and Fresnel's share of the sky.
+/// Ground of albedo 0.2 under water: (1 - `F_d`) / n^2 of it, times what is thrown back, and Fresnel's fraction of the sky.
 #[test]
 fn dark_ground_is_darker_under_water_and_mirrors_by_fresnel() -> Outcome {
     for angle in [12.0f32, 30.0, 89.0] {
@@ -115,10 +112,10 @@ fn dark_ground_is_darker_under_water_and_mirrors_by_fresnel() -> Outcome {
     Ok(())
 }
 
-/// Light goes through 1/cos of the depth to the eye and 1.2 depths down; what is lost is the water's own colour.
+/// Light goes through 1/cos of the depth to the eye and 1.2 depths down; what is lost is the water's own color.
 #[test]
-fn deep_murky_water_has_its_own_colour() -> Outcome {
-    let look = PuddleLook { extinction: 10.0, murk: Vec3::splat(0.3), ..PuddleLook::default() };
+fn deep_murky_water_has_its_own_color() -> Outcome {
+    let look = PuddleLook { extinction: 10.0, scattering_albedo: Vec3::splat(0.3), ..PuddleLook::default() };
     let beneath = |albedo: f32| albedo * 0.525_409 / (1.0 - albedo * 0.474_591);
     for depth in [0.001f32, 0.05, 5.0] {
         let mut scene = flat(0.8);
@@ -134,21 +131,21 @@ fn deep_murky_water_has_its_own_colour() -> Outcome {
 /// A dish whose depth falls as the square of the distance: 0.04 m over a radius of 1 m, within higher ground.
 #[test]
 fn a_dish_of_the_model_fills_to_its_rim() -> Outcome {
-    let dish = |place: Vec2| 0.04 * (place.length_squared() - 1.0).clamp(-1.0, 0.2);
+    let dish = |position: Vec2| 0.04 * (position.length_squared() - 1.0).clamp(-1.0, 0.2);
     let scene = ground(0.5, 80, dish).build(&SkyLight::new(1, 1, &[[1.0; 3]]));
     let level_ground = Relief { rms_m: 0.0, seed: 0 };
-    // The ground goes on rising to 0.008 m over the dish's nominal rim.
+    // The ground keeps rising to 0.008 m over the dish's nominal rim.
     let (rim, radius) = (0.048f32, 1.2f32.sqrt());
-    for share in [1.0f32, 0.5] {
-        let map = PuddleMap::found(&scene, &SQUARE, [150, 150], &level_ground, [share, 1.0, 0.001]);
-        let deep = rim * share;
-        let wet_radius = radius * share.sqrt();
+    for fraction in [1.0f32, 0.5] {
+        let map = PuddleMap::found(&scene, &SQUARE, [150, 150], &level_ground, [fraction, 1.0, 0.001]);
+        let deep = rim * fraction;
+        let wet_radius = radius * fraction.sqrt();
         let area = std::f32::consts::PI * wet_radius * wet_radius;
-        // A paraboloid has half of the volume of the cylinder round it.
+        // A paraboloid has half of the volume of the cylinder around it.
         let volume = 0.5 * area * deep;
-        assert!((map.deepest_m() / deep - 1.0).abs() < 0.03, "{share}: {}", map.deepest_m());
-        assert!((map.area_m2() / area - 1.0).abs() < 0.03, "{share}: {} {area}", map.area_m2());
-        assert!((map.volume_m3() / volume - 1.0).abs() < 0.05, "{share}: {} {volume}", map.volume_m3());
+        assert!((map.deepest_m() / deep - 1.0).abs() < 0.03, "{fraction}: {}", map.deepest_m());
+        assert!((map.area_m2() / area - 1.0).abs() < 0.03, "{fraction}: {} {area}", map.area_m2());
+        assert!((map.volume_m3() / volume - 1.0).abs() < 0.05, "{fraction}: {} {volume}", map.volume_m3());
     }
     Ok(())
 }
@@ -156,7 +153,7 @@ fn a_dish_of_the_model_fills_to_its_rim() -> Outcome {
 /// Rays into a model's hollow end on the surface of its water: level, and nearer than the ground.
 #[test]
 fn rays_end_on_the_surface_of_the_water_in_a_hollow() -> Outcome {
-    let dish = |place: Vec2| 0.1 * (place.length_squared() - 1.0).clamp(-1.0, 0.0);
+    let dish = |position: Vec2| 0.1 * (position.length_squared() - 1.0).clamp(-1.0, 0.0);
     let mut scene = ground(0.5, 60, dish).build(&SkyLight::new(1, 1, &[[1.0; 3]]));
     let map =
         PuddleMap::found(&scene, &SQUARE, [120, 120], &Relief { rms_m: 0.0, seed: 0 }, [0.8, 1.0, 0.001]);
@@ -252,8 +249,8 @@ fn a_weathers_puddles_lie_on_its_stage() -> Outcome {
     let spot = Ground { size: Vec2::new(4.0, 4.0), ..SQUARE };
     let map =
         PuddleMap::found(&street, &spot, [100, 100], &Relief { rms_m: 2.2e-3, seed: 1 }, [1.0, 0.1, 1.5e-3]);
-    let share = map.area_m2() / 16.0;
-    assert!((0.02..0.6).contains(&share), "{share}");
+    let fraction = map.area_m2() / 16.0;
+    assert!((0.02..0.6).contains(&fraction), "{fraction}");
     assert!(map.deepest_m() < 0.02, "{}", map.deepest_m());
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Drops before a scene: their size, their light, their place.
+//! Drops before a scene: their size, their light, their position.
 
 use downpour_drop::DropShape;
 use downpour_render::camera::Viewpoint;
@@ -46,14 +46,14 @@ fn sky(radiance: impl Fn(f32) -> [f32; 3]) -> SceneData {
 
 /// Covered pixels, and the weighted middle of them.
 fn covered(picture: &Picture) -> (f64, [f64; 2]) {
-    let (mut area, mut place) = (0.0, [0.0; 2]);
+    let (mut area, mut position) = (0.0, [0.0; 2]);
     for (i, pixel) in picture.rain.iter().enumerate() {
-        let share = f64::from(1.0 - pixel[3]);
-        area += share;
-        place[0] += share * ((i % SIZE[0] as usize) as f64 + 0.5);
-        place[1] += share * ((i / SIZE[0] as usize) as f64 + 0.5);
+        let fraction = f64::from(1.0 - pixel[3]);
+        area += fraction;
+        position[0] += fraction * ((i % SIZE[0] as usize) as f64 + 0.5);
+        position[1] += fraction * ((i / SIZE[0] as usize) as f64 + 0.5);
     }
-    (area, place.map(|p| p / area))
+    (area, position.map(|p| p / area))
 }
 
 /// From 60 pixels across down to a tenth of one, wherever it falls: area pi a^2 over distance squared.
@@ -65,7 +65,7 @@ fn a_sphere_covers_its_area_at_any_distance() -> Outcome {
         let distance = f64::from(diameter) * scale() / pixels;
         for shift in [[0.0, 0.0], [0.3, 0.6], [0.5, 0.1]] {
             let offset = DVec3::new(shift[0] / scale(), shift[1] / scale(), -1.0) * distance;
-            let (area, place) =
+            let (area, position) =
                 covered(&picture(&scene, &[drop_at(offset, diameter)], RefractionForm::Direction)?);
             let expected = std::f64::consts::FRAC_PI_4 * pixels * pixels;
             assert!(
@@ -74,7 +74,7 @@ fn a_sphere_covers_its_area_at_any_distance() -> Outcome {
             );
             let middle = [80.0 + shift[0], 60.0 - shift[1]];
             for k in 0..2 {
-                assert!((place[k] - middle[k]).abs() < 0.06, "{pixels} pixels, {shift:?}: {place:?}");
+                assert!((position[k] - middle[k]).abs() < 0.06, "{pixels} pixels, {shift:?}: {position:?}");
             }
         }
     }
@@ -115,9 +115,9 @@ fn in_uniform_surroundings_drops_vanish() -> Outcome {
     let drops: Vec<FallingDrop> = (0..40)
         .map(|k| {
             let k = f64::from(k);
-            let place =
+            let position =
                 DVec3::new(0.11 * (k * 0.618).fract() - 0.055, 0.09 * (k * 0.755).fract() - 0.045, -1.0);
-            drop_at(place * (0.05 + 0.02 * k), (0.3 + 0.14 * k as f32) * 1.0e-3)
+            drop_at(position * (0.05 + 0.02 * k), (0.3 + 0.14 * k as f32) * 1.0e-3)
         })
         .collect();
     let shown = picture(&scene, &drops, RefractionForm::Direction)?;
@@ -149,14 +149,14 @@ fn the_image_in_a_drop_is_upside_down() -> Outcome {
 fn the_scene_hides_drops_behind_it() -> Outcome {
     let mut builder = SceneBuilder::new();
     let corners = [[-5.0, -5.0, -2.0], [5.0, -5.0, -2.0], [0.0, 9.0, -2.0]];
-    let (normals, uvs, colours) = (None, [None, None], None);
+    let (normals, uvs, colors) = (None, [None, None], None);
     let indices = [0, 1, 2];
     let wall = MeshPart {
         positions: &corners,
         normals,
         tangents: None,
         uvs,
-        colours,
+        colors,
         indices: &indices,
         material: 0,
     };
@@ -168,8 +168,8 @@ fn the_scene_hides_drops_behind_it() -> Outcome {
     assert_eq!(shown.drawn, [1]);
     assert_eq!(shown.drops_on_screen, 2);
     let expected = std::f64::consts::FRAC_PI_4 * (1.0e-3 * scale() / 1.9) * (1.0e-3 * scale() / 1.9);
-    let (area, place) = covered(&shown);
-    assert!((area / expected - 1.0).abs() < 0.05 && place[0] > 80.0, "{area} at {place:?}");
+    let (area, position) = covered(&shown);
+    assert!((area / expected - 1.0).abs() < 0.05 && position[0] > 80.0, "{area} at {position:?}");
     Ok(())
 }
 

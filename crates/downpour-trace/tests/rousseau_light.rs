@@ -52,22 +52,22 @@ fn drawn(
     Ok(picture.rain.iter().map(|pixel| pixel[0]).collect())
 }
 
-/// Rousseau 2006, section 6, as printed, at a place of a sphere's disc: (V . N) (A2 + A3), seen along -z.
-fn printed(place: Vec2, from: Vec3) -> f32 {
-    printed_terms(place, from).into_iter().sum()
+/// Rousseau 2006, section 6, as printed, at a position of a sphere's disk: (V . N) (A2 + A3), seen along -z.
+fn printed(position: Vec2, from: Vec3) -> f32 {
+    printed_terms(position, from).into_iter().sum()
 }
 
 /// Its terms: (V . N) A2, and (V . N) A3.
-fn printed_terms(place: Vec2, from: Vec3) -> [f32; 2] {
-    let normal = place.extend((1.0 - place.length_squared()).max(0.0).sqrt());
+fn printed_terms(position: Vec2, from: Vec3) -> [f32; 2] {
+    let normal = position.extend((1.0 - position.length_squared()).max(0.0).sqrt());
     let level = |v: Vec3| Vec2::new(v.x, v.z).normalize_or_zero();
     let outside = from.dot(normal).max(0.0);
     let within = (-level(from).dot(level(normal)) * (1.0 + from.dot(normal))).max(0.0);
     [normal.z * outside, normal.z * within]
 }
 
-/// The place of a pixel's middle on the disc, radii.
-fn place(column: u32, row: u32) -> Vec2 {
+/// The position of a pixel's middle on the disk, radii.
+fn on_disk(column: u32, row: u32) -> Vec2 {
     let middle = Vec2::new(SIZE[0] as f32, SIZE[1] as f32) * 0.5;
     (Vec2::new(column as f32 + 0.5, row as f32 + 0.5) - middle) * Vec2::new(1.0, -1.0) / ACROSS
 }
@@ -80,10 +80,10 @@ fn each_pixel_of_a_still_drop_is_shaded_by_its_normal() -> Outcome {
         let found = drawn(DropLightForm::Rousseau2006, from, 0.0, 0.0, StreakSamples::Table)?;
         let (mut worst, mut light, mut wanted_light) = (0.0f32, 0.0, 0.0);
         for (i, found) in (0..).zip(found) {
-            let place = place(i % SIZE[0], i / SIZE[0]);
+            let position = on_disk(i % SIZE[0], i / SIZE[0]);
             // Without the rim, where a pixel is in part beside the drop.
-            if place.length() < 0.9 {
-                let wanted = printed(place, from);
+            if position.length() < 0.9 {
+                let wanted = printed(position, from);
                 worst = worst.max((found - wanted).abs());
                 (light, wanted_light) = (light + found, wanted_light + wanted);
             }
@@ -107,9 +107,9 @@ fn each_term_alone_is_the_papers() -> Outcome {
             let found = drawn(form, from, 0.0, 0.0, StreakSamples::Table)?;
             let (mut worst, mut most) = (0.0f32, 0.0f32);
             for (i, found) in (0..).zip(found) {
-                let place = place(i % SIZE[0], i / SIZE[0]);
-                if place.length() < 0.9 {
-                    let wanted = printed_terms(place, from)[term];
+                let position = on_disk(i % SIZE[0], i / SIZE[0]);
+                if position.length() < 0.9 {
+                    let wanted = printed_terms(position, from)[term];
                     worst = worst.max((found - wanted).abs());
                     most = most.max(wanted);
                 }
@@ -126,7 +126,7 @@ fn each_term_alone_is_the_papers() -> Outcome {
 /// The streak of a drop that falls has along each column the mean over the chord there, by its profile and by a loop.
 #[test]
 fn a_streak_is_shaded_along_its_chords() -> Outcome {
-    // It falls by 4 radii while the shutter is open, the middle of the picture in the middle: there each place of a chord
+    // It falls by 4 radii while the shutter is open, the middle of the picture in the middle: there each position of a chord
     // passes once.
     let (speed, shutter_s) = (2.0f32, f64::from(4.0 * RADIUS / 2.0));
     for from in LAMPS {
@@ -134,7 +134,7 @@ fn a_streak_is_shaded_along_its_chords() -> Outcome {
             let found = drawn(DropLightForm::Rousseau2006, from, speed, shutter_s, samples)?;
             let (mut squares, mut all, mut light, mut wanted_light) = (0.0, 0.0, 0.0, 0.0);
             for column in 0..SIZE[0] {
-                let across = place(column, 0).x;
+                let across = on_disk(column, 0).x;
                 let half = (1.0 - across * across).max(0.0).sqrt();
                 // Of the exposure the chord takes 2 half / 4.
                 let mean = (0..400).map(|k| {

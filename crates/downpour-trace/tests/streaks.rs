@@ -80,14 +80,14 @@ fn covered(picture: &Picture) -> f64 {
 
 /// Covered pixels, and the weighted middle of them.
 fn middle(picture: &Picture) -> [f64; 2] {
-    let (mut area, mut place) = (0.0, [0.0; 2]);
+    let (mut area, mut position) = (0.0, [0.0; 2]);
     for (i, pixel) in picture.rain.iter().enumerate() {
-        let share = f64::from(1.0 - pixel[3]);
-        area += share;
-        place[0] += share * ((i % picture.size[0] as usize) as f64 + 0.5);
-        place[1] += share * ((i / picture.size[0] as usize) as f64 + 0.5);
+        let fraction = f64::from(1.0 - pixel[3]);
+        area += fraction;
+        position[0] += fraction * ((i % picture.size[0] as usize) as f64 + 0.5);
+        position[1] += fraction * ((i / picture.size[0] as usize) as f64 + 0.5);
     }
-    place.map(|p| p / area)
+    position.map(|p| p / area)
 }
 
 /// A drop takes out its area, however long the exposure and wherever it goes, in the picture: by the table, by a loop, and
@@ -114,17 +114,17 @@ fn a_streak_takes_out_what_its_drop_does() -> Outcome {
                     (found / expected - 1.0).abs() < tolerance,
                     "{pixels} pixels, {samples:?}, {way:?}: {found}, not {expected}"
                 );
-                let place = middle(&shown);
-                assert!((place[0] - 80.0).abs() < 0.3 && (place[1] - 60.0).abs() < 0.3, "{place:?}");
+                let position = middle(&shown);
+                assert!((position[0] - 80.0).abs() < 0.3 && (position[1] - 60.0).abs() < 0.3, "{position:?}");
             }
         }
     }
     Ok(())
 }
 
-/// Rows of a streak that fades, by the law of a disc of diameter `d` pixels that goes down `way` pixels at one speed while what it
-/// leaves behind fades away in that time: a row that the whole disc passes loses `(pi d^2 / 4) / way` by `2 s`, `s` the part of the
-/// way that lies above it. All rows together lose the disc's area, and their middle is at two thirds of the way.
+/// Rows of a streak that fades, by the law of a disk of diameter `d` pixels that goes down `way` pixels at one speed while what it
+/// leaves behind fades away in that time: a row that the whole disk passes loses `(pi d^2 / 4) / way` by `2 s`, `s` the part of the
+/// way that lies above it. All rows together lose the disk's area, and their middle is at two thirds of the way.
 #[test]
 fn an_eye_sees_a_streak_fade() -> Outcome {
     let scene = sky(|_, _| [1.0; 3]);
@@ -167,7 +167,7 @@ fn an_eye_sees_a_streak_fade() -> Outcome {
     Ok(())
 }
 
-/// The image of a drop before varied surroundings in an eye is the mean of short exposures one after the other, each with
+/// The image of a drop before a varied environment in an eye is the mean of short exposures one after the other, each with
 /// the weight of its age: also where the drop comes nearer, and as long as it takes to pass a ray.
 #[test]
 fn an_eye_sees_moments_by_their_age() -> Outcome {
@@ -213,22 +213,22 @@ fn an_eye_sees_moments_by_their_age() -> Outcome {
     Ok(())
 }
 
-/// Half a millimetre to 6 mm, near and far, straight and slanted, with their oscillation.
+/// Half a millimeter to 6 mm, near and far, straight and slanted, with their oscillation.
 fn many() -> Vec<FallingDrop> {
     (0..40)
         .map(|k| {
             let k = f64::from(k);
-            let place =
+            let position =
                 DVec3::new(0.11 * (k * 0.618).fract() - 0.055, 0.09 * (k * 0.755).fract() - 0.045, -1.0);
             let mut drop =
-                drop_at(place * (0.15 + 0.03 * k), (0.3 + 0.14 * k as f32) * 1.0e-3, [0.4, -6.0, 0.3]);
+                drop_at(position * (0.15 + 0.03 * k), (0.3 + 0.14 * k as f32) * 1.0e-3, [0.4, -6.0, 0.3]);
             drop.id = k as u64;
             drop
         })
         .collect()
 }
 
-/// Transmission and reflection are all there is: before uniform surroundings streaks cannot be seen.
+/// Transmission and reflection are all there is: in a uniform environment streaks cannot be seen.
 #[test]
 fn in_uniform_surroundings_streaks_vanish() -> Outcome {
     let scene = sky(|_, _| [0.25, 0.5, 2.0]);
@@ -285,7 +285,7 @@ fn the_table_has_the_light_of_a_loop() -> Outcome {
     Ok(())
 }
 
-/// The same drops on pictures of 120, 270 and 540 lines take out the same share, and show the same light.
+/// The same drops on pictures of 120, 270 and 540 lines take out the same fraction, and show the same light.
 #[test]
 fn the_light_is_that_of_any_resolution() -> Outcome {
     let scene = varied();
@@ -325,8 +325,8 @@ fn streaks_of_a_view_upwards_meet_above() -> Outcome {
         for (i, pixel) in shown.rain.iter().enumerate() {
             let x = (i % 160) as f64 + 0.5 - 80.0;
             let y = (i / 160) as f64 + 0.5 - 60.0;
-            let share = f64::from(1.0 - pixel[3]);
-            (xx, xy, yy) = (xx + share * x * x, xy + share * x * y, yy + share * y * y);
+            let fraction = f64::from(1.0 - pixel[3]);
+            (xx, xy, yy) = (xx + fraction * x * x, xy + fraction * x * y, yy + fraction * y * y);
         }
         let narrow = 0.5 * (xx + yy - ((xx - yy) * (xx - yy) + 4.0 * xy * xy).sqrt());
         let along = xx + yy - narrow;
@@ -385,9 +385,9 @@ fn the_outline_oscillates() -> Outcome {
     Ok(())
 }
 
-/// Static streaks have one colour, and take out as much.
+/// Static streaks have one color, and take out as much.
 #[test]
-fn white_streaks_have_one_colour() -> Outcome {
+fn white_streaks_have_one_color() -> Outcome {
     let scene = varied();
     let with = |colour| Exposure { shutter_s: 1.0 / 250.0, colour, ..Exposure::default() };
     let refracted = picture(&scene, SIZE, &many(), with(StreakColour::Refracted))?;

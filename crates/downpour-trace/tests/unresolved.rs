@@ -63,8 +63,8 @@ fn covered(rate: f64) -> f64 {
     integral(0.1, 8.0, 400, |d| count(d) * PI / 4.0 * d * d * 1.0e-6 * outline(d))
 }
 
-/// Cross-section of a sphere of water by scattering angle over that of its disc, 1/sr: orders 0 to 3 of geometric optics, from
-/// rays that are spread evenly over the disc and counted in `BINS` intervals of the angle.
+/// Cross-section of a sphere of water by scattering angle over that of its disk, 1/sr: orders 0 to 3 of geometric optics, from
+/// rays that are spread evenly over the disk and counted in `BINS` intervals of the angle.
 fn phase() -> Vec<f64> {
     const BINS: usize = 90;
     let (rays, index) = (100_000, 1.3330);
@@ -75,7 +75,7 @@ fn phase() -> Vec<f64> {
         let (ci, cr) = (ops::cos(i), ops::cos(r));
         let amplitudes = [(ci - index * cr) / (ci + index * cr), (index * ci - cr) / (index * ci + cr)];
         for order in 0..4 {
-            let share: f64 = amplitudes
+            let fraction: f64 = amplitudes
                 .iter()
                 .map(|a| {
                     let reflected = a * a;
@@ -85,7 +85,7 @@ fn phase() -> Vec<f64> {
                 .sum();
             let turn = 2.0 * i - 2.0 * f64::from(order) * r + (f64::from(order) - 1.0) * PI;
             let angle = ops::acos(ops::cos(turn).clamp(-1.0, 1.0));
-            bins[((angle / PI * BINS as f64) as usize).min(BINS - 1)] += share / f64::from(rays);
+            bins[((angle / PI * BINS as f64) as usize).min(BINS - 1)] += fraction / f64::from(rays);
         }
     }
     for (k, bin) in bins.iter_mut().enumerate() {
@@ -135,14 +135,14 @@ fn screened(distance: f32, edge: f32, lights: &[LightSource], sky: [f32; 3]) -> 
 
 fn add(builder: &mut SceneBuilder, corners: &[[f32; 3]; 4]) {
     let black =
-        downpour_trace::material::MaterialLook { base_colour: [0.0, 0.0, 0.0, 1.0], ..Default::default() };
+        downpour_trace::material::MaterialLook { base_color: [0.0, 0.0, 0.0, 1.0], ..Default::default() };
     let material = builder.add_material(black);
     let part = MeshPart {
         positions: corners,
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &[0, 1, 2, 0, 2, 3],
         material,
     };

@@ -14,10 +14,10 @@ use serde::Deserialize;
 /// Default vertical field of view if neither the file nor the model has one, in radians: 50 degrees.
 pub const FOV_RAD: f64 = 50.0 * std::f64::consts::PI / 180.0;
 
-/// Default near depth if neither the file nor the model has one, in metres.
+/// Default near depth if neither the file nor the model has one, in meters.
 pub const NEAR_M: f64 = 0.05;
 
-/// Default far depth if neither the file nor the model has one, in metres.
+/// Default far depth if neither the file nor the model has one, in meters.
 pub const FAR_M: f64 = 2000.0;
 
 /// Default persistence of an eye, in seconds, in which an image fades away: the middle of the 60 to 90 ms of
@@ -42,9 +42,9 @@ pub struct Camera {
     pub path: Option<CameraPath>,
     /// Vertical field of view in radians; `None` takes the model's, else [`FOV_RAD`].
     pub fov: Option<f64>,
-    /// Near depth, in metres; `None` takes the model's, else [`NEAR_M`].
+    /// Near depth, in meters; `None` takes the model's, else [`NEAR_M`].
     pub near: Option<f64>,
-    /// Far depth, in metres; `None` takes the model's, else [`FAR_M`].
+    /// Far depth, in meters; `None` takes the model's, else [`FAR_M`].
     pub far: Option<f64>,
     /// The picture is multiplied by two to this power.
     pub exposure_ev: f64,
@@ -53,16 +53,16 @@ pub struct Camera {
     /// Time in which light is collected, in seconds: opening time of a camera's shutter, 0 to 1 (0 freezes the drops), or
     /// the persistence of an eye, 0.06 to 0.09.
     pub shutter: f64,
-    /// Diameter of the lens's pupil, in metres; 0: all is in focus.
+    /// Diameter of the lens's pupil, in meters; 0: all is in focus.
     pub aperture: f64,
-    /// Distance in focus, in metres; `None` for infinity.
+    /// Distance in focus, in meters; `None` for infinity.
     pub focus: Option<f64>,
 }
 
 /// Position and direction of the eye. Up is +Y; `forward` is never vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraPose {
-    /// Position of the eye, in metres.
+    /// Position of the eye, in meters.
     pub position: DVec3,
     /// Unit direction into the center of the picture.
     pub forward: DVec3,

@@ -68,7 +68,7 @@ pub enum PaneShadow {
 pub struct Pane {
     /// Distance from the eye to the pane along the center of the picture, m.
     pub distance: f64,
-    /// Tilt from the horizontal, rad: pi/2 is a window; a windshield leans towards the eye.
+    /// Tilt from the horizontal, rad: pi/2 is a window; a windshield leans toward the eye.
     pub tilt: f64,
     /// Width and height along the pane, m; it is centered in the picture. `None`: the visible size.
     pub size: Option<[f64; 2]>,
@@ -76,7 +76,7 @@ pub struct Pane {
     pub cell: f64,
     /// Height of the pane above the picture, m: water runs down from there.
     pub above: f64,
-    /// Speed of the air with the rain towards the pane, m/s, over time.
+    /// Speed of the air with the rain toward the pane, m/s, over time.
     pub speed: Keyed<f64>,
     /// Time of rain on the pane before the first picture, s.
     pub before: f64,
@@ -106,7 +106,7 @@ pub struct Pane {
 }
 
 impl Pane {
-    /// Number of cells along a pane of a size in metres.
+    /// Number of cells along a pane of a size in meters.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "whole, and within the range of u32")]
     pub fn cells(&self, size: [f64; 2]) -> [u32; 2] {
@@ -121,7 +121,7 @@ impl Pane {
         ((self.above / self.cell).round().clamp(0.0, 4096.0) as u32).min(MAX_ROWS.saturating_sub(rows))
     }
 
-    /// Options of the lattice for a pane of a visible size in metres, in a rain, from a time in seconds on: its uppermost
+    /// Options of the lattice for a pane of a visible size in meters, in a rain, from a time in seconds on: its uppermost
     /// [`Pane::rows_above`] rows are above the visible part. The tick is that of the fastest air.
     #[must_use]
     pub fn options(&self, size: [f64; 2], rain: &Rain, begin_s: f64) -> GlassOptions {

@@ -20,18 +20,18 @@ const CONE_DEG: (f64, f64) = (20.0, 30.0);
 pub enum Lamp {
     /// Shines in all directions.
     Point {
-        /// Position, in metres.
+        /// Position, in meters.
         position: DVec3,
         /// Tint, linear, 0 to 1.
         color: DVec3,
         /// Luminous intensity in candela.
         intensity_cd: f64,
-        /// Distance at which its light has faded to zero, in metres; `None` for an unlimited range.
+        /// Distance at which its light has faded to zero, in meters; `None` for an unlimited range.
         range: Option<f64>,
     },
     /// Shines in a cone.
     Spot {
-        /// Position, in metres.
+        /// Position, in meters.
         position: DVec3,
         /// Unit direction of the light.
         direction: DVec3,
@@ -43,7 +43,7 @@ pub enum Lamp {
         inner: f64,
         /// Half the angle outside of which there is no light, in radians.
         outer: f64,
-        /// Distance at which its light has faded to zero, in metres; `None` for an unlimited range.
+        /// Distance at which its light has faded to zero, in meters; `None` for an unlimited range.
         range: Option<f64>,
     },
     /// Parallel light from far away.

@@ -124,7 +124,7 @@ pub fn load(weather: &Weather, files: &dyn Files, budget: &mut Budget) -> Result
     }
     for lamp in &weather.lights {
         remaining.take_nodes(1, "light").map_err(|error| error.in_file(&weather.name))?;
-        hang(&mut scene, lamp);
+        add_lamp(&mut scene, lamp);
     }
     let masks = masks(weather, files, &mut remaining)?;
     let drop_model = drop_model(weather, files, &mut remaining)?;
@@ -377,7 +377,7 @@ fn copy(scene: &mut Scene, part: Range<usize>, animations: Range<usize>, transfo
 }
 
 /// Adds a lamp to the scene.
-fn hang(scene: &mut Scene, lamp: &Lamp) {
+fn add_lamp(scene: &mut Scene, lamp: &Lamp) {
     let (position, direction, color, intensity, range, kind) = match *lamp {
         Lamp::Point { position, color, intensity_cd, range } => {
             (position, DVec3::NEG_Z, color, intensity_cd, range, LightKind::Point)

@@ -17,7 +17,7 @@ const MAX_COPIES: u64 = 65_536;
 pub struct Model {
     /// The glTF file, inside the folder of the weather file or an asset root.
     pub file: RelativePath,
-    /// Position of its origin, in metres.
+    /// Position of its origin, in meters.
     pub translation: DVec3,
     /// Rotation.
     pub rotation: DQuat,
@@ -34,7 +34,7 @@ pub struct Model {
 pub struct Repeat {
     /// Number of copies along x, y and z; each at least 1.
     pub count: [u32; 3],
-    /// Distance between copies, in metres.
+    /// Distance between copies, in meters.
     pub step: DVec3,
 }
 

@@ -47,7 +47,7 @@ pub struct Puddle {
     pub middle: [f64; 3],
     /// Its edges, m, along X and Z before it is turned.
     pub size: [f64; 2],
-    /// Turn about the vertical axis, rad, from +X towards +Z.
+    /// Turn about the vertical axis, rad, from +X toward +Z.
     pub turn: f64,
     /// Distance above and below the center in which the ground is searched, m.
     pub reach: f64,
@@ -96,7 +96,7 @@ impl Puddle {
     ) -> Result<Self, SceneError> {
         let at = |name: &str| format!("puddle[{index}].{name}");
         let size = table.size_m.numbers();
-        let metres = |given: Option<f64>, default_mm: f64| given.unwrap_or(default_mm) * 1.0e-3;
+        let meters = |given: Option<f64>, default_mm: f64| given.unwrap_or(default_mm) * 1.0e-3;
         let shape = if let Some(mask) = &table.mask {
             for (name, given) in [
                 ("fill", table.fill.is_some()),
@@ -122,8 +122,8 @@ impl Puddle {
             }
             PuddleShape::Found {
                 fill: table.fill.map_or(1.0, |fraction| fraction.0),
-                min_depth: metres(table.min_depth_mm.map(|mm| mm.0), 1.5),
-                relief: metres(table.relief_mm.map(|mm| mm.0), 2.2),
+                min_depth: meters(table.min_depth_mm.map(|mm| mm.0), 1.5),
+                relief: meters(table.relief_mm.map(|mm| mm.0), 2.2),
                 seed: table.seed.unwrap_or(0),
                 cells,
             }
@@ -135,7 +135,7 @@ impl Puddle {
             turn: table.turn_deg.map_or(0.0, |deg| deg.0.to_radians()),
             reach: table.reach_m.map_or(0.3, |m| m.0),
             shape,
-            depth: metres(table.depth_mm.map(|mm| mm.0), usual_depth_mm),
+            depth: meters(table.depth_mm.map(|mm| mm.0), usual_depth_mm),
             ripple_scale: table.ripple_scale.map_or(1.0, |scale| scale.0),
             ripple_turn: table.ripple_deg.map_or(0.0, |deg| deg.0.to_radians()),
             ripple_influence: table.ripple_influence.map_or(1.0, |influence| influence.0),

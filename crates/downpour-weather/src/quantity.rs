@@ -58,7 +58,7 @@ ranges! {
     Stops: -30.0, 30.0, "-30 to 30 stops";
     Lux: 0.0, 1e9, "0 to 1e9 lux";
     Candela: 0.0, 1e9, "0 to 1e9 cd";
-    DiscDeg: 0.0, 20.0, "0 to 20 degrees";
+    DiskDeg: 0.0, 20.0, "0 to 20 degrees";
     PositionM: -1e7, 1e7, "-1e7 to 1e7 m";
     FovDeg: 1.0, 170.0, "1 to 170 degrees";
     DepthM: 1e-4, 1e7, "1e-4 to 1e7 m";

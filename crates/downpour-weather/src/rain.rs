@@ -251,7 +251,7 @@ pub struct Rain {
     pub one_diameter: Option<f64>,
     /// Volume in which drops are simulated, and method.
     pub volume: RainVolume,
-    /// Side of a box of rain, in metres, 1 to 1000; `None` leaves it to the renderer.
+    /// Side of a box of rain, in meters, 1 to 1000; `None` leaves it to the renderer.
     pub box_m: Option<f64>,
     /// Cylinder of rain.
     pub cylinder: RainCylinder,

@@ -2,7 +2,7 @@
 
 use super::fault::Positions;
 use super::file::path;
-use super::quantity::{Brightness, DiscDeg, ElevationDeg, Exactly, In, Lux, Stops, Tint, TurnDeg};
+use super::quantity::{Brightness, DiskDeg, ElevationDeg, Exactly, In, Lux, Stops, Tint, TurnDeg};
 use downpour_math::ops::f64 as ops;
 use downpour_scene::error::SceneError;
 use downpour_scene::uri::RelativePath;
@@ -11,7 +11,7 @@ use serde::Deserialize;
 /// Illuminance of the sun at noon on a clear day, in lux.
 const SUN_LUX: f64 = 1e5;
 
-/// Diameter of the sun's disc, in degrees.
+/// Diameter of the sun's disk, in degrees.
 const SUN_DEG: f64 = 0.53;
 
 /// Light of the sky.
@@ -50,13 +50,13 @@ pub enum SunSource {
     FromSkyIfAny,
     /// A sun apart from the sky map.
     Directional {
-        /// Unit direction towards the sun.
+        /// Unit direction toward the sun.
         towards: [f64; 3],
         /// Illuminance of a surface that faces it, in lux.
         illuminance_lux: f64,
         /// Tint, linear, 0 to 1.
         color: [f64; 3],
-        /// Angular radius of its disc, in radians.
+        /// Angular radius of its disk, in radians.
         angular_radius: f64,
     },
 }
@@ -87,7 +87,7 @@ pub(super) struct SunTable {
     elevation_deg: Option<In<ElevationDeg>>,
     illuminance_lux: Option<In<Lux>>,
     color: Option<Exactly<In<Tint>, 3>>,
-    diameter_deg: Option<In<DiscDeg>>,
+    diameter_deg: Option<In<DiskDeg>>,
 }
 
 impl Sky {

@@ -19,7 +19,7 @@ use glam::DVec3;
 use keys::{NumberKeys, VectorKeys, keyed};
 use serde::Deserialize;
 
-/// Default core radius, in metres: three cells of the default grid.
+/// Default core radius, in meters: three cells of the default grid.
 const CORE_M: f64 = 5.0;
 
 /// Spacing of the keys of a turning wind, in degrees: between two of them it is 0.1 % slower.
@@ -32,7 +32,7 @@ pub struct WindBox {
     pub size: [u32; 3],
     /// Edges of the box, 0.01 to 1e6 m.
     pub edges: DVec3,
-    /// Center, in metres; `None` for the eye.
+    /// Center, in meters; `None` for the eye.
     pub center: Option<DVec3>,
 }
 
@@ -44,7 +44,7 @@ impl Default for WindBox {
 }
 
 impl WindBox {
-    /// Grid for an eye at a position, in metres.
+    /// Grid for an eye at a position, in meters.
     ///
     /// # Errors
     /// As [`WindGrid::new`]: the box is farther than 1e6 m from the origin.
@@ -272,8 +272,8 @@ fn turning(
         let steps = ((to - from).abs() / TURN_STEP_DEG).min((end - start) * 1e5).ceil().max(1.0);
         let mut step = 0.0;
         while step < steps {
-            let share = step / steps;
-            keys.push((start + (end - start) * share, towards(from + (to - from) * share)));
+            let fraction = step / steps;
+            keys.push((start + (end - start) * fraction, towards(from + (to - from) * fraction)));
             step += 1.0;
         }
     }

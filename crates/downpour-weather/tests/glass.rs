@@ -84,7 +84,7 @@ fn a_pane_of_its_own_size_needs_nothing() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_its_place() {
+fn what_cannot_be_is_refused_with_its_key() {
     says("[glass]\ntilt_deg = 5\n", 2, "line 2, column 12: glass.tilt_deg: 5; allowed: 10 to 90 degrees");
     says(
         "[glass]\nfocus = \"lens\"\n",

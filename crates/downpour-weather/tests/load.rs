@@ -38,7 +38,7 @@ fn swing() -> (Vec<u8>, Vec<u8>) {
     (json.as_bytes().to_vec(), numbers.iter().flat_map(|n| n.to_le_bytes()).collect())
 }
 
-/// A sky of 64 x 32 pixels of radiance 0.5 with a sun of 4 pixels towards +X, 45 degrees up.
+/// A sky of 64 x 32 pixels of radiance 0.5 with a sun of 4 pixels toward +X, 45 degrees up.
 fn sunny() -> Vec<u8> {
     let pixel = |x: usize, y: usize| {
         if (31..33).contains(&x) && (7..9).contains(&y) { [128, 128, 128, 142] } else { [128, 128, 128, 128] }

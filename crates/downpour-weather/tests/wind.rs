@@ -89,8 +89,8 @@ fn every_key_arrives() {
     assert_eq!((sink.form, sink.strength, sink.axis), (WindForm::Line, 7.0, Vec3::X));
     assert_eq!((sink.core, sink.core_radius, sink.center), (WindCore::LambOseen, 5.0, Vec3::ZERO));
     assert_eq!((vortex.strength, vortex.core_radius, vortex.core), (-40.0, 1.5, WindCore::Rankine));
-    let share = 5.0 / 30.5;
-    assert!(vortex.center.distance(Vec3::new(-20.0 + 40.0 * share, 0.0, 10.0 * share)) < 1e-5);
+    let fraction = 5.0 / 30.5;
+    assert!(vortex.center.distance(Vec3::new(-20.0 + 40.0 * fraction, 0.0, 10.0 * fraction)) < 1e-5);
     assert_eq!((tornado.circulation, tornado.discharge, tornado.height), (400.0, 2000.0, 60.0));
     assert_eq!((tornado.base, tornado.core_radius), (Vec3::new(5.0, 0.0, -5.0), 4.0));
     let grid = weather.wind_box.grid(DVec3::splat(1e9)).unwrap();

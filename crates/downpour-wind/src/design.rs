@@ -56,7 +56,7 @@ impl WindCore {
 pub struct WindUniform {
     /// Speed, 0 to 200 m/s.
     pub speed: f32,
-    /// Direction towards which the wind blows; any length.
+    /// Direction toward which the wind blows; any length.
     pub direction: Vec3,
 }
 
@@ -69,7 +69,7 @@ pub struct WindSingularity {
     /// length). 0 to 1e6 for sources and sinks; a vortex may be negative, and is right-handed about its axis if it is
     /// positive.
     pub strength: f32,
-    /// A point of the axis, or the point of a point form. Metres, up to 1e6.
+    /// A point of the axis, or the point of a point form. Meters, up to 1e6.
     pub center: Vec3,
     /// Axis; any length. A point source or sink has the same wind for every axis.
     pub axis: Vec3,
@@ -90,7 +90,7 @@ pub struct WindTornado {
     pub circulation: f32,
     /// Discharge in at the base and out at the top, 0 to 1e6 m^3/s.
     pub discharge: f32,
-    /// Center of the base. Metres, up to 1e6.
+    /// Center of the base. Meters, up to 1e6.
     pub base: Vec3,
     /// Axis from base to top; any length.
     pub axis: Vec3,

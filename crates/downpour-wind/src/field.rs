@@ -151,8 +151,8 @@ impl WindField {
         wind_field_mix(&corners, position.fraction)
     }
 
-    /// Bounds on the difference between the wind within `reach` metres of a position and the wind at the position: per
-    /// metre of distance, 1/s, and in total, m/s.
+    /// Bounds on the difference between the wind within `reach` meters of a position and the wind at the position: per
+    /// meter of distance, 1/s, and in total, m/s.
     #[must_use]
     pub fn spread(&self, at: Vec3, reach: f32) -> [f32; 2] {
         let [low, high] = [-reach, reach].map(|way| wind_field_locate(&self.uniform, at + Vec3::splat(way)));

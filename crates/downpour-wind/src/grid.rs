@@ -17,7 +17,7 @@ pub struct WindGrid {
 }
 
 impl WindGrid {
-    /// Creates a box from `low` to `high`, metres, with `size` cells along each axis.
+    /// Creates a box from `low` to `high`, meters, with `size` cells along each axis.
     ///
     /// # Errors
     /// [`WindError::OutOfRange`] if a corner is beyond 1e6 m, an edge is not 0.01 to 1e6 m, or the cells along it are not 1

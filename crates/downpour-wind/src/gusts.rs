@@ -48,7 +48,7 @@ pub struct Gusts {
 }
 
 impl Default for Gusts {
-    /// 20 % and 100 m: open terrain, some metres above the ground.
+    /// 20 % and 100 m: open terrain, some meters above the ground.
     fn default() -> Self {
         Self { intensity: 0.2, length: 100.0, seed: 0 }
     }

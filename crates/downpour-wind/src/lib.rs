@@ -12,7 +12,7 @@
 //! - [`wind`]: the complete wind; [`uniform`]: uniform wind, and the response of drops to it;
 //! - `gpu` (feature `wgpu`): the field in a buffer of a GPU.
 //!
-//! Units are SI: metres, m/s. A strength is in m^2/s for line forms (flow per length, circulation) and in m^3/s for
+//! Units are SI: meters, m/s. A strength is in m^2/s for line forms (flow per length, circulation) and in m^3/s for
 //! point forms (flow, circulation times length). Axes are those of glTF: right-handed, +Y up.
 //!
 //! Uniform wind, vortices and tornadoes have no divergence. Sources and sinks have theirs around their line or point; a

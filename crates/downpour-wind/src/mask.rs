@@ -93,7 +93,7 @@ impl WindMask {
     }
 }
 
-/// One axis of the squared Euclidean distance: the minimum over neighbours of their value plus squared distance, within
+/// One axis of the squared Euclidean distance: the minimum over neighbors of their value plus squared distance, within
 /// `width`. After all axes it is exact for distances up to `width`.
 fn nearest_along(values: &[f32], n: usize, stride: usize, edge: f32, width: f32) -> Vec<f32> {
     let reach = (width / edge).ceil() as usize;

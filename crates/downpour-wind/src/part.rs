@@ -47,7 +47,7 @@ pub struct KeyedTornado {
 /// A primitive over time.
 ///
 /// Numbers, positions and the velocity of a uniform wind are linear between their keys. Axes are interpolated along
-/// straight lines between unit vectors and normalised again: the axis rotates in the plane of the two keys. A uniform
+/// straight lines between unit vectors and normalized again: the axis rotates in the plane of the two keys. A uniform
 /// wind is keyed as a velocity, not as a speed with a direction, so between two keys its tip moves on a straight line:
 /// a wind that reverses passes through calm, and one that keeps its speed while it rotates needs a key every few
 /// degrees.
@@ -99,7 +99,7 @@ impl From<WindPrimitive> for WindPart {
 }
 
 impl WindPart {
-    /// Creates a uniform wind of a speed, m/s, towards a direction. The velocity has the keys of both.
+    /// Creates a uniform wind of a speed, m/s, toward a direction. The velocity has the keys of both.
     ///
     /// # Errors
     /// [`WindError::ZeroAxis`] for an undefined direction; a speed is checked by [`Wind::new`](crate::Wind::new).

@@ -156,7 +156,7 @@ pub(crate) fn sort_times(times: &mut Vec<f64>) {
 }
 
 impl Keyed<DVec3> {
-    /// Normalises the directions at the keys.
+    /// Normalizes the directions at the keys.
     ///
     /// # Errors
     /// [`WindError::ZeroAxis`] for a key without direction, [`WindError::AxisReverses`] if the line from one key to the next

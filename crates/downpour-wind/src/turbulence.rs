@@ -64,7 +64,7 @@ impl Default for Turbulence {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct WindTurbulenceMode {
-    /// Wave vector, waves per metre along each axis.
+    /// Wave vector, waves per meter along each axis.
     pub wave: [f32; 3],
     /// Phase in turns, 0 to 1, at the lower corner of the box.
     pub phase: f32,
@@ -77,7 +77,7 @@ pub struct WindTurbulenceMode {
 /// A wave, independent of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurbulenceWave {
-    /// Wave vector, waves per metre along each axis.
+    /// Wave vector, waves per meter along each axis.
     pub wave: DVec3,
     /// Phase in turns at the origin at time 0, 0 to 1.
     pub phase: f64,

@@ -154,7 +154,7 @@ impl UniformWind {
     pub fn prepared(&self, time_s: f64) -> UniformWindAt<'_> {
         let here = self.instant(limited(time_s));
         let start = self.instant(0.0);
-        let travel = self.travelled(&here) - self.travelled(&start);
+        let travel = self.traveled(&here) - self.traveled(&start);
         let air = self.gain(&here.phasors).apply(here.mean);
         UniformWindAt { wind: self, here, start, travel, air }
     }
@@ -247,7 +247,7 @@ impl UniformWind {
     }
 
     /// Displacement of the air from the first key to a time, m.
-    fn travelled(&self, at: &WindInstant) -> DVec3 {
+    fn traveled(&self, at: &WindInstant) -> DVec3 {
         let (start, from) = self.key_before(at.segment);
         let before = self.travel.get(at.segment.saturating_sub(1)).copied().unwrap_or(DVec3::ZERO);
         before + self.integral(start, at.time, from.midpoint(at.mean), self.slope(at.segment))

@@ -76,7 +76,7 @@ fn no_air_is_lost_anywhere() {
     }
 }
 
-/// Through a wide disc between base and top: the flow up the core, minus the flow that the ends draw down outside it.
+/// Through a wide disk between base and top: the flow up the core, minus the flow that the ends draw down outside it.
 #[test]
 fn the_core_carries_the_discharge() {
     let tornado = WindTornado { height: 200.0, ..tornado() };
@@ -95,7 +95,7 @@ fn the_core_carries_the_discharge() {
     let e = f64::from(tornado.core_radius);
     let within = radius * radius / (radius * radius + e * e);
     let ends = 1.0 - 100.0 / (100.0_f64 * 100.0 + radius * radius).sqrt();
-    close(flow, Q * (within - ends), Q, 1.0e-3, "flow through the disc");
+    close(flow, Q * (within - ends), Q, 1.0e-3, "flow through the disk");
     // Speed on the axis of a long updraft.
     let fastest = Q / (PI * e * e);
     close(field(middle).dot(up), fastest, fastest, 1.0e-3, "speed on the axis");

@@ -48,18 +48,18 @@ fn there_is_no_divergence() {
 /// Each component has sigma^2, none is preferred, and two are uncorrelated.
 #[test]
 fn every_component_has_its_variance() {
-    let (seeds, places) = (300, 24);
+    let (seeds, points) = (300, 24);
     let (mut sums, mut shear, mut mean) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
     for seed in 0..seeds {
         let field = velocity(&turbulence(seed));
-        for k in 0..places {
+        for k in 0..points {
             let v = field(position(seed, k));
             sums += v * v;
             shear += v * DVec3::new(v.y, v.z, v.x);
             mean += v;
         }
     }
-    let n = seeds as f64 * f64::from(places);
+    let n = seeds as f64 * f64::from(points);
     for (found, axis) in (sums / n).to_array().into_iter().zip(["x", "y", "z"]) {
         // 7200 values whose squares spread by 1.5: a standard error of 1.8 %.
         assert!((found / (SIGMA * SIGMA) - 1.0).abs() < 0.07, "{axis}: {found}");
@@ -124,16 +124,16 @@ fn the_waves_have_the_energy_of_the_spectrum() {
 fn differences_grow_as_in_the_inertial_range() {
     let distances = [0.3, 0.6, 1.2];
     let mut found = [0.0; 3];
-    let (seeds, places) = (150, 40);
+    let (seeds, points) = (150, 40);
     for seed in 0..seeds {
         let field = velocity(&turbulence(seed));
-        for k in 0..places {
+        for k in 0..points {
             let at = position(seed, k);
             let axis = [DVec3::X, DVec3::Y, DVec3::Z][k as usize % 3];
             let here = field(at).dot(axis);
             for (sum, r) in found.iter_mut().zip(distances) {
                 let step = field(at + axis * r).dot(axis) - here;
-                *sum += step * step / (f64::from(places) * seeds as f64);
+                *sum += step * step / (f64::from(points) * seeds as f64);
             }
         }
     }

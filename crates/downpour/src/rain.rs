@@ -25,7 +25,7 @@ use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::gpu::SceneOnGpu;
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
-use downpour_trace::stage::{MAX_TRIANGLES, MOST_LIGHTS, view_of};
+use downpour_trace::stage::{MAX_TRIANGLES, MAX_LIGHTS, view_of};
 use glam::{Affine3A, DVec3};
 
 pub use downpour_render::host::DepthRange;
@@ -230,11 +230,11 @@ impl Rain {
     }
 
     fn set_lights(&mut self, lights: &[LightSource]) -> Result<(), RainError> {
-        if lights.len() > MOST_LIGHTS {
+        if lights.len() > MAX_LIGHTS {
             return Err(RainError::TooMany {
                 quantity: "lights",
                 found: lights.len() as u64,
-                allowed: MOST_LIGHTS as u64,
+                allowed: MAX_LIGHTS as u64,
             });
         }
         self.scene.set_lights(lights);
@@ -285,7 +285,7 @@ fn scene_of(triangles: &[[[f32; 3]; 3]]) -> Result<SceneData, RainError> {
         normals: None,
         tangents: None,
         uvs: [None; 2],
-        colours: None,
+        colors: None,
         indices: &indices,
         material: 0,
     };

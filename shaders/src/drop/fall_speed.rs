@@ -5,7 +5,7 @@ use crate::Module;
 /// Every module of this file.
 pub const MODULES: &[&Module] = &[&FALL_SPEED_CONSTANTS, &FALL_SPEED_TABLES, &FALL_SPEED];
 
-/// Terminal speed of a drop by every model, and relaxation towards it. Twin: `downpour_drop::fall_speed`.
+/// Terminal speed of a drop by every model, and relaxation toward it. Twin: `downpour_drop::fall_speed`.
 pub static FALL_SPEED: Module = Module {
     path: "drop/fall_speed.wgsl",
     wgsl: include_str!("../../wgsl/drop/fall_speed.wgsl"),
@@ -61,7 +61,7 @@ shared_tables! {
     FALL_SPEED_BRANDES: [f32; 5] = [-0.1021, 4.932, -0.9551, 0.07934, -0.002362];
     /// van Dijk 2002: coefficients in m/s and mm, lowest power first.
     FALL_SPEED_VAN_DIJK: [f32; 4] = [-0.254, 5.03, -0.912, 0.0561];
-    /// Gunn & Kinzer 1949, table 2: diameters in micrometres. Whole numbers, so that they are exact.
+    /// Gunn & Kinzer 1949, table 2: diameters in micrometers. Whole numbers, so that they are exact.
     FALL_SPEED_GUNN_KINZER_DIAMETERS_UM: [f32; 35] = [
         78.0, 100.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 800.0, 900.0, 1000.0, 1200.0,
         1400.0, 1600.0, 1800.0, 2000.0, 2200.0, 2400.0, 2600.0, 2800.0, 3000.0, 3200.0, 3400.0,
@@ -75,7 +75,7 @@ shared_tables! {
         860.0, 872.0, 883.0, 892.0, 898.0, 903.0, 907.0, 909.0, 912.0, 914.0, 916.0,
         917.0
     ];
-    /// Rousseau 2006, table 2 (twice its radii): diameters in micrometres, spherical and ellipsoidal drops.
+    /// Rousseau 2006, table 2 (twice its radii): diameters in micrometers, spherical and ellipsoidal drops.
     FALL_SPEED_ROUSSEAU_DIAMETERS_UM: [f32; 23] = [
         200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 800.0, 900.0,
         1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0,

@@ -19,7 +19,7 @@ shared_constants! {
         OPTICS_MIN: f32 = 1.0e-30;
         /// Tatarchuk & Isidoro 2006: reflectance at normal incidence.
         OPTICS_TATARCHUK_BASE: f32 = 0.05;
-        /// Tatarchuk & Isidoro 2006: increase of the reflectance towards grazing incidence.
+        /// Tatarchuk & Isidoro 2006: increase of the reflectance toward grazing incidence.
         OPTICS_TATARCHUK_RISE: f32 = 0.95;
     }
 }

@@ -36,7 +36,7 @@ pub const KERNELS: &[&Kernel] = &[
 shared_constants! {
     /// Units and flags of the lattice of drops.
     GLASS_CONSTANTS at "lattice/glass constants" {
-        /// Maximum mass of a cell, in units of a nanolitre: a drop of 7.9 mm.
+        /// Maximum mass of a cell, in units of a nanoliter: a drop of 7.9 mm.
         GLASS_MAX_MASS: u32 = 262144;
         /// Number of classes of mass, including one above the last for interpolation.
         GLASS_CLASSES: u32 = 130;

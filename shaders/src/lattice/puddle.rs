@@ -13,21 +13,21 @@ pub const KERNELS: &[&Kernel] = &[&STEP_KERNEL, &DIRECT_KERNEL, &SEED_KERNEL, &N
 shared_constants! {
     /// Links between cells, limits and shapes.
     PUDDLE_CONSTANTS at "lattice/puddle constants" {
-        /// The neighbour towards lower x is linked.
+        /// The neighbor toward lower x is linked.
         PUDDLE_LINK_WEST: u32 = 1;
-        /// The neighbour towards higher x.
+        /// The neighbor toward higher x.
         PUDDLE_LINK_EAST: u32 = 2;
-        /// The neighbour towards lower y.
+        /// The neighbor toward lower y.
         PUDDLE_LINK_NORTH: u32 = 4;
-        /// The neighbour towards higher y.
+        /// The neighbor toward higher y.
         PUDDLE_LINK_SOUTH: u32 = 8;
-        /// The neighbour towards lower x and y.
+        /// The neighbor toward lower x and y.
         PUDDLE_LINK_NORTH_WEST: u32 = 16;
-        /// The neighbour towards higher x and lower y.
+        /// The neighbor toward higher x and lower y.
         PUDDLE_LINK_NORTH_EAST: u32 = 32;
-        /// The neighbour towards lower x and higher y.
+        /// The neighbor toward lower x and higher y.
         PUDDLE_LINK_SOUTH_WEST: u32 = 64;
-        /// The neighbour towards higher x and y.
+        /// The neighbor toward higher x and y.
         PUDDLE_LINK_SOUTH_EAST: u32 = 128;
         /// Smaller numbers, in m or m/s, become 0: denormal numbers are slow on some machines.
         PUDDLE_MIN: f32 = 1.0e-20;
@@ -50,7 +50,7 @@ shared_constants! {
     }
 }
 
-/// A cell and its neighbours. Twin: `downpour_lattice::puddle::lattice`.
+/// A cell and its neighbors. Twin: `downpour_lattice::puddle::lattice`.
 pub static PUDDLE: Module = Module {
     path: "lattice/puddle.wgsl",
     wgsl: include_str!("../../wgsl/lattice/puddle.wgsl"),

@@ -9,7 +9,7 @@ shared_constants! {
     /// Guards of the microfacet terms.
     BRDF_CONSTANTS at "render/brdf constants" {
         /// Keeps a quotient finite.
-        BRDF_SMALLEST: f32 = 1.0e-7;
+        BRDF_MIN_DIVISOR: f32 = 1.0e-7;
         /// The least cosine to the viewer: interpolated normals may face away.
         BRDF_GRAZING: f32 = 1.0e-3;
     }

@@ -35,21 +35,21 @@ shared_constants! {
         DROP_LIGHT_EXTERNAL: u32 = 1;
         /// Term of the formula of Rousseau 2006, a bit: light that is reflected inside (`A_3`).
         DROP_LIGHT_INTERNAL: u32 = 2;
-        /// Chord from the middle to the edge of the sun's disc: lamps that have no size count as wide.
+        /// Chord from the middle to the edge of the sun's disk: lamps that have no size count as wide.
         DROP_LIGHT_REACH: f32 = 0.00465;
         /// Entries of a row of the table: equal intervals of the scattering angle.
         DROP_LIGHT_ENTRIES: u32 = 256;
-        /// Ways of light that are told apart; row 0 of the table is their sum.
+        /// Light paths that are distinguished; row 0 of the table is their sum.
         DROP_LIGHT_PATHS: u32 = 6;
         /// Glints that are kept of a drop, at most.
         DROP_LIGHT_GLINTS: u32 = 16;
         /// Lamps of a dispatch.
         DROP_LIGHT_LAMPS: u32 = 64;
-        /// Rings of equal area for the mean over a drop's disc.
+        /// Rings of equal area for the mean over a drop's disk.
         DROP_LIGHT_RINGS: u32 = 4;
-        /// Places along a ring.
-        DROP_LIGHT_PLACES: u32 = 8;
-        /// Steps of a packed coordinate from the middle of the disc to its rim.
+        /// Positions along a ring.
+        DROP_LIGHT_POINTS: u32 = 8;
+        /// Steps of a packed coordinate from the middle of the disk to its rim.
         DROP_GLINT_STEPS: f32 = 2047.0;
         /// Steps of a packed coordinate, both signs.
         DROP_GLINT_RANGE: f32 = 4096.0;

@@ -22,13 +22,13 @@ shared_constants! {
         GLASS_PICTURE_INDEX: f32 = 1.52;
         /// Distance, m, beyond which all is equally far.
         GLASS_PICTURE_FAR: f32 = 1.0e6;
-        /// Width of what a pane mirrors of the eye's side, radians: a room is out of focus.
+        /// Blur of what a pane mirrors of the eye's side, radians: the interior is out of focus.
         GLASS_PICTURE_MIRROR: f32 = 0.1;
-        /// Distance of neighbouring places of a lens with one sample, in its radius: the root of pi.
+        /// Distance of neighboring positions of a lens with one sample, in its radius: the root of pi.
         GLASS_PICTURE_APART: f32 = 1.7724539;
         /// Height of a paraboloid of radius 1 whose integral is 1: 2 / pi.
         GLASS_PICTURE_LIGHT_PEAK: f32 = 0.63661975;
-        /// Radius over which a lamp's image is spread, in what neighbouring rays see apart: smooth for any places of rays.
+        /// Radius over which a lamp's image is spread, in what neighboring rays see apart: smooth for any positions of rays.
         GLASS_PICTURE_LIGHT_WIDTH: f32 = 1.5;
         /// Focus on what is behind the pane.
         GLASS_PICTURE_SCENE: u32 = 0;

@@ -22,7 +22,7 @@ shared_constants! {
         PATH_LATTICE_SECOND: u32 = 30;
         /// See [`PATH_LATTICE_SCATTER`].
         PATH_LATTICE_THIRD: u32 = 37;
-        /// Largest distance of a ray's numbers from the lattice's point: about the distance of neighbouring points.
+        /// Largest distance of a ray's numbers from the lattice's point: about the distance of neighboring points.
         PATH_JITTER: f32 = 0.14;
         /// Rays that follow each other, at most.
         PATH_BOUNCES: u32 = 6;
@@ -32,7 +32,7 @@ shared_constants! {
         PATH_SAME_PLANE: f32 = 0.005;
         /// Roughness below which gloss is that of a mirror: its lobe is narrower than some pixels.
         PATH_SHARP: f32 = 0.1;
-        /// Alphas that neighbouring pixels' mirror images are apart from which gloss is that of a mirror.
+        /// Alphas that neighboring pixels' mirror images are apart from which gloss is that of a mirror.
         PATH_APART: f32 = 1.5;
         /// Directions among which the one of a ray of the diffuse base is drawn.
         PATH_CANDIDATES: u32 = 8;
@@ -40,14 +40,14 @@ shared_constants! {
         PATH_FLOOR: f32 = 1.0;
         /// Roughness from which one ray serves the diffuse base and the gloss, by chance.
         PATH_MIXED: f32 = 0.35;
-        /// Gloss that is worth rays of its own.
+        /// Specular weight from which rays are traced for it.
         PATH_MIN_GLOSS: f32 = 0.005;
         /// Gloss and roughness from which, and below which, each sample of a pixel sees for itself what is mirrored.
         PATH_PLAIN_GLOSS: f32 = 0.1;
         /// See [`PATH_PLAIN_GLOSS`].
         PATH_CURVED: f32 = 0.3;
-        /// Part of all rays that one is of a gloss of which no means over neighbours are taken: there are some per pixel.
-        PATH_CURVED_SHARE: f32 = 0.25;
+        /// Part of all rays that one is of a gloss of which no means over neighbors are taken: there are some per pixel.
+        PATH_CURVED_FRACTION: f32 = 0.25;
         /// The inner part of such a gloss that rays are drawn from.
         PATH_CURVED_PART: f32 = 0.8;
         /// Facets of rippled water of which the reflectance is the mean.
@@ -63,19 +63,19 @@ shared_constants! {
         PATH_SHOWN: u32 = 3;
         /// As chance has it.
         PATH_ONWARD: u32 = 4;
-        /// Roughness of a path from which surfaces are seen at a glance: as diffuse, with one lamp for all.
-        PATH_GLANCE: f32 = 0.25;
-        /// The most that a surface reflects as gloss, seen at a glance.
-        PATH_GLANCE_GLOSS: f32 = 0.05;
+        /// Path roughness from which surfaces are shaded in simplified form: as diffuse, with one lamp for all.
+        PATH_SECONDARY_ROUGHNESS: f32 = 0.25;
+        /// Maximum specular reflectance in that simplified form.
+        PATH_SECONDARY_MAX_SPECULAR: f32 = 0.05;
         /// Roughness of a path from which lamps stand for what shines.
         PATH_SHINES: f32 = 0.6;
         /// Lamps that are drawn for all where a mirror shows a surface.
         PATH_MIRROR_LAMPS: u32 = 4;
         /// Part of all rays that one is which has met a surface.
-        PATH_LATER_SHARE: f32 = 0.01;
+        PATH_LATER_FRACTION: f32 = 0.01;
         /// Fraction of light let through from which a surface is seen through.
         PATH_OPEN: f32 = 0.02;
-        /// Part of its surroundings that surfaces take up, for a surface that a path of surfaces has led to.
+        /// Fraction of the hemisphere that surfaces occupy, for a surface that a path of surfaces has led to.
         PATH_ENCLOSED: f32 = 0.9;
     }
 }

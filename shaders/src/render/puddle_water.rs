@@ -14,7 +14,7 @@ shared_constants! {
         /// Rows of a puddle in the scene's table.
         PUDDLE_WATER_ROWS: u32 = 6;
         /// Most puddles of a scene.
-        PUDDLE_WATER_MOST: u32 = 16;
+        PUDDLE_WATER_MAX_COUNT: u32 = 16;
         /// Says that there is no water.
         PUDDLE_WATER_NONE: u32 = 4294967295;
         /// Number that stands for the material of water where pixels are compared.
@@ -23,13 +23,13 @@ shared_constants! {
         PUDDLE_WATER_INDEX: f32 = 1.333;
         /// Reflectance of water at normal incidence.
         PUDDLE_WATER_NORMAL: f32 = 0.020373;
-        /// Share of diffuse light that the surface reflects on its way into the water: the mean of Fresnel's equations over
+        /// Fraction of diffuse light that the surface reflects on its way into the water: the mean of Fresnel's equations over
         /// the hemisphere, cosine-weighted.
         PUDDLE_WATER_OUTSIDE: f32 = 0.0664058;
-        /// Share of diffuse light that the surface reflects back into the water: 1 - (1 - outside) / index^2.
+        /// Fraction of diffuse light that the surface reflects back into the water: 1 - (1 - outside) / index^2.
         PUDDLE_WATER_INSIDE: f32 = 0.4745906;
         /// Depth below which there is no water, m.
-        PUDDLE_WATER_LEAST: f32 = 0.0002;
+        PUDDLE_WATER_MIN_DEPTH: f32 = 0.0002;
         /// Largest distance of a ray's hit over or under the mapped ground, m.
         PUDDLE_WATER_SLACK: f32 = 0.01;
         /// Least rise of a direction over the horizon that leaves a puddle.
@@ -44,7 +44,7 @@ shared_constants! {
         PUDDLE_WATER_RIPPLED: f32 = 0.000001;
         /// Step of the mesh of triangles over which pieces of the ripples are mixed, m.
         PUDDLE_WATER_MESH: f32 = 0.35;
-        /// Dimension of the random numbers of the pieces' places.
+        /// Dimension of the random numbers of the pieces' positions.
         PUDDLE_WATER_DIMENSION: u32 = 4200;
     }
 }

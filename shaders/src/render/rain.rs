@@ -19,7 +19,7 @@ pub const MODULES: &[&Module] = &[
     &DROPS_MASK,
     &DROPS_SHADE,
     &STREAK,
-    &STREAK_PLACE,
+    &STREAK_CELL,
     &STREAK_PATH,
     &STREAK_RAY,
     &STREAK_RAYS_MODULE,
@@ -37,7 +37,7 @@ pub const KERNELS: &[&Kernel] =
 shared_constants! {
     /// Numbers of the masks in a buffer.
     RAIN_CONSTANTS at "render/rain constants" {
-        /// Words of a texel of a mask: three directions, and four shares.
+        /// Words of a texel of a mask: three directions, and four fractions.
         DROPS_TEXEL_WORDS: u32 = 5;
         /// Masks of a diameter, from below (-90 degrees) to above (90 degrees).
         DROPS_ELEVATIONS: u32 = 7;
@@ -47,7 +47,7 @@ shared_constants! {
         DROPS_SMALL_GRID: u32 = 3;
         /// Form of refraction: the direction of the refracted light is looked up.
         DROPS_DIRECTION: u32 = 0;
-        /// Form of refraction: the place in the captured picture is shifted (Rousseau 2006).
+        /// Form of refraction: the position in the captured picture is shifted (Rousseau 2006).
         DROPS_SHIFT: u32 = 1;
         /// Below this transmittance the rest of the drops is not seen.
         DROPS_OPAQUE: f32 = 1.0e-3;
@@ -61,7 +61,7 @@ shared_constants! {
         DROPS_LOOP: u32 = 2;
         /// Streaks show what drops refract and reflect.
         STREAK_REFRACTED: u32 = 0;
-        /// Streaks have one colour, the mean of the surroundings.
+        /// Streaks have one color, the mean of the environment.
         STREAK_WHITE: u32 = 1;
         /// Rays of the means of the streak radiance table along an edge of the picture.
         STREAK_RAYS: u32 = 17;
@@ -77,11 +77,11 @@ shared_constants! {
         STREAK_MEAN_THIRD: f32 = 0.6287067;
         /// See `STREAK_MEAN_FIRST`.
         STREAK_MEAN_FOURTH: f32 = 0.5385973;
-        /// Radius of the disc of points of a mean, over that of the spheroid that is meant by the mode (2,0).
+        /// Radius of the disk of points of a mean, over that of the spheroid that is meant by the mode (2,0).
         STREAK_MEAN_REACH: f32 = 1.25;
-        /// Width of a point of a mean, in radii of its disc: the square root of pi over the points.
+        /// Width of a point of a mean, in radii of its disk: the square root of pi over the points.
         STREAK_MEAN_WIDTH: f32 = 0.15666;
-        /// Least squared cosine at the rim of the disc of points.
+        /// Least squared cosine at the rim of the disk of points.
         STREAK_MEAN_RIM: f32 = 0.02;
         /// Chord samples across a drop as far apart as what they show is smoothed, for loops.
         STREAK_FINE: u32 = 36;
@@ -94,12 +94,12 @@ shared_constants! {
         /// Least slope of the gauge along a radius, for a step.
         STREAK_OUTLINE_SLOPE: f32 = 0.2;
         /// No point of an outline is nearer to the middle, in radii.
-        STREAK_OUTLINE_LEAST: f32 = 0.3;
+        STREAK_OUTLINE_MIN: f32 = 0.3;
         /// No point of an outline is farther from the middle, in radii.
-        STREAK_OUTLINE_MOST: f32 = 2.0;
+        STREAK_OUTLINE_MAX: f32 = 2.0;
         /// Exits of a ray from inside that are looked up, as the tracer tells them apart.
         STREAK_EXITS: u32 = 3;
-        /// Lamps on a streak that are told apart.
+        /// Lamps on a streak that are resolved one by one.
         STREAK_LAMPS: u32 = 8;
         /// Points of a ray's patch at which a lamp is looked for.
         STREAK_SPOTS: u32 = 64;
@@ -107,13 +107,13 @@ shared_constants! {
         STREAK_SPOT_ALONG: f32 = 0.7548777;
         /// See `STREAK_SPOT_ALONG`.
         STREAK_SPOT_LATER: f32 = 0.5698403;
-        /// A lamp is looked for this share of a patch's size from its middle.
+        /// A lamp is looked for this fraction of a patch's size from its middle.
         STREAK_SPOT_REACH: f32 = 0.75;
         /// Radius of a round spot over whose points a patch's light is shared evenly enough, over their distance.
         STREAK_SPOT_WIDTH: f32 = 1.8;
-        /// A patch counts as no narrower than this share of its length, for its points.
+        /// A patch counts as no narrower than this fraction of its length, for its points.
         STREAK_SPOT_NARROW: f32 = 0.2;
-        /// The same for the width over which the surroundings are averaged.
+        /// The same for the width over which the environment is averaged.
         STREAK_NARROWEST: f32 = 0.25;
         /// Steps from patch to patch of the shift of these points: powers of 0.8191725, the third dimension's golden ratio.
         STREAK_SPOT_FIRST: f32 = 0.8191725;
@@ -131,9 +131,9 @@ shared_constants! {
         STREAK_GOLDEN: u32 = 40503;
         /// The least width of a glint, in radii.
         DROPS_GLINT: f32 = 0.03;
-        /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disc.
+        /// Half the square root of 2 pi: a normal distribution along a line, of unit mean over a disk.
         DROPS_LINE: f32 = 1.2533141;
-        /// Place of Gauss's two points: 1 / sqrt(3).
+        /// Position of Gauss's two points: 1 / sqrt(3).
         STREAK_GAUSS: f32 = 0.57735026;
         /// Words before the texels of an atlas.
         DROPS_ATLAS_HEAD: u32 = 6;
@@ -182,10 +182,10 @@ pub static STREAK: Module = Module {
     uses: &[&RAIN_CONSTANTS, &OSCILLATION],
 };
 
-/// Places across a drop. Twin: `downpour_render::rain::streak_place`.
-pub static STREAK_PLACE: Module = Module {
-    path: "render/streak_place.wgsl",
-    wgsl: include_str!("../../wgsl/render/streak_place.wgsl"),
+/// Positions across a drop. Twin: `downpour_render::rain::streak_cell`.
+pub static STREAK_CELL: Module = Module {
+    path: "render/streak_cell.wgsl",
+    wgsl: include_str!("../../wgsl/render/streak_cell.wgsl"),
     uses: &[&RAIN_CONSTANTS],
 };
 
@@ -212,7 +212,7 @@ pub static STREAK_RAYS_MODULE: Module = Module {
         &PACKING,
         &WOBBLE,
         &STREAK,
-        &STREAK_PLACE,
+        &STREAK_CELL,
         &STREAK_PATH,
         &STREAK_RAY,
         &DROP_GLINT,
@@ -229,7 +229,7 @@ pub static STREAK_LIGHT: Module = Module {
         &DROPS_FRAME,
         &DROPS_CAPTURE,
         &STREAK,
-        &STREAK_PLACE,
+        &STREAK_CELL,
         &STREAK_PATH,
         &STREAK_RAY,
         &DROP_GLINT,
@@ -240,7 +240,7 @@ pub static STREAK_LIGHT: Module = Module {
 pub static STREAK_LOOKUP: Module = Module {
     path: "render/streak_lookup.wgsl",
     wgsl: include_str!("../../wgsl/render/streak_lookup.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &STREAK, &STREAK_PLACE],
+    uses: &[&RAIN_CONSTANTS, &STREAK, &STREAK_CELL],
 };
 
 /// Computation of the means of the streak radiance table. Twin: `downpour_render::rain::streak_table`.

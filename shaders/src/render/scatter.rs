@@ -12,13 +12,13 @@ shared_constants! {
     /// Numbers of rays that look for light.
     SCATTER_CONSTANTS at "render/scatter constants" {
         /// Square of a cone's width over its solid angle over pi.
-        SCATTER_DISC: f32 = 4.0;
+        SCATTER_DISK: f32 = 4.0;
         /// Width at distance 1 of the widest ray.
         SCATTER_MAX_WIDTH: f32 = 1.5;
         /// Alpha of the sharpest lobe that rays are drawn from.
         SCATTER_MIN_ALPHA: f32 = 0.001;
         /// Keeps a quotient finite.
-        SCATTER_SMALLEST: f32 = 1.0e-6;
+        SCATTER_MIN_DIVISOR: f32 = 1.0e-6;
     }
 }
 

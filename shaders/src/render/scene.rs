@@ -39,9 +39,9 @@ shared_constants! {
         SCENE_DOUBLE_SIDED: u32 = 4;
         /// Alpha below which a blended material is a hole.
         SURFACE_OPEN: f32 = 0.002;
-        /// Material flag: the base colour is what is seen, without light.
+        /// Material flag: the base color is what is seen, without light.
         SCENE_UNLIT: u32 = 8;
-        /// Texture flag: texels are square roots of linear colours.
+        /// Texture flag: texels are square roots of linear colors.
         SCENE_ROOTED: u32 = 1;
         /// Texture flag: repeats in u.
         SCENE_REPEAT_U: u32 = 2;
@@ -59,17 +59,17 @@ shared_constants! {
         SCENE_LAYERS: u32 = 12;
         /// Levels of the sky: the map itself, and means of it down to 4 rows from 16384.
         SCENE_SKY_LEVELS: u32 = 13;
-        /// Texels of a map of one row, over pi, across a ray of width 1: a texel between its neighbours is wider than one.
+        /// Texels of a map of one row, over pi, across a ray of width 1: a texel between its neighbors is wider than one.
         SKY_CONE_TEXELS: f32 = 0.2;
         /// Least roughness of the light of points and of the sun: a mirror would need their size.
-        SCENE_LEAST_ROUGHNESS: f32 = 0.06;
+        SCENE_MIN_ROUGHNESS: f32 = 0.06;
         /// Lamps that give less than this part of what all would give cast no ray.
-        SCENE_LEAST_LAMP: f32 = 0.001;
+        SCENE_MIN_LAMP: f32 = 0.001;
         /// Pixels to each side over which the sky's light is averaged.
         SKYLIGHT_RADIUS: u32 = 3;
-        /// Distance from the plane of a pixel's surface at which a neighbour no longer counts, per distance from the eye.
+        /// Distance from the plane of a pixel's surface at which a neighbor no longer counts, per distance from the eye.
         SKYLIGHT_SLACK: f32 = 0.002;
-        /// Half the square of the angle, in alphas, at which a neighbour's gloss no longer counts.
+        /// Half the square of the angle, in alphas, at which a neighbor's gloss no longer counts.
         SKYLIGHT_LOBE: f32 = 2.0;
         /// Pixels between the means of which the first wider mean is taken: as far as the weights of a window reach, so that
         /// they add up to the same everywhere.
@@ -134,7 +134,7 @@ pub static TRACE: Module = Module {
     uses: &[&SCENE, &PATH, &CAPTURE, &PACKING],
 };
 
-/// The surroundings of the eye. Twin: `downpour_trace::capture`.
+/// The environment capture around the eye. Twin: `downpour_trace::capture`.
 pub static CAPTURE: Module = Module {
     path: "render/capture.wgsl",
     wgsl: include_str!("../../wgsl/render/capture.wgsl"),
@@ -144,7 +144,7 @@ pub static CAPTURE: Module = Module {
 /// One invocation per pixel.
 pub static TRACE_KERNEL: Kernel = Kernel { entry: "main_trace", module: &TRACE, workgroup: [8, 8, 1] };
 
-/// The sky's light over neighbouring pixels. Twin: `downpour_trace::skylight`.
+/// The sky's light over neighboring pixels. Twin: `downpour_trace::skylight`.
 pub static SKYLIGHT: Module = Module {
     path: "render/skylight.wgsl",
     wgsl: include_str!("../../wgsl/render/skylight.wgsl"),

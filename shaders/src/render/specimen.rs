@@ -24,10 +24,10 @@ shared_constants! {
         /// Internal reflections that are followed, total ones included. What is left then leaves with the last light
         /// that left: below 1 % of all light in any view, below 0.04 % in level views up to 6 mm.
         SPECIMEN_REFLECTIONS: u32 = 256;
-        /// Share of the light below which what is left inside is not followed any further. A sky holds a sun of 10^5
-        /// times its mean: this share of it would still be seen above 10^-4.
-        SPECIMEN_LEAST: f32 = 0.0001;
-        /// More than any share: all light leaves.
+        /// Fraction of the light below which what is left inside is not followed any further. A sky holds a sun of 10^5
+        /// times its mean: this fraction of it would still be seen above 10^-4.
+        SPECIMEN_MIN_FRACTION: f32 = 0.0001;
+        /// More than any fraction: all light leaves.
         SPECIMEN_ALL: f32 = 2.0;
         /// Steps to the point of a ray that is nearest to the drop.
         SPECIMEN_NEAREST_STEPS: u32 = 5;
@@ -81,7 +81,7 @@ shared_constants! {
         SPECIMEN_WOBBLE_PARTS: u32 = 5;
         /// One part.
         SPECIMEN_WOBBLE_PART: f32 = 0.2;
-        /// Steps to an extremum of the gauge between two places where it turns.
+        /// Steps to an extremum of the gauge between two positions where it turns.
         SPECIMEN_WOBBLE_TURNS: u32 = 4;
         /// Steps from a bracket to the surface, one more without a look.
         SPECIMEN_WOBBLE_STEPS: u32 = 4;

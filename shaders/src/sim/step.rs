@@ -18,12 +18,12 @@ shared_constants! {
     MOTION_CONSTANTS at "sim/motion_constants" {
         /// Diameter per step of its 16 bits, m: 65 535 of them are 9.2 mm.
         MOTION_DIAMETER_STEP: f32 = 1.4e-7;
-        /// Entries of the table of terminal speeds per metre of diameter.
-        MOTION_TABLE_PER_METRE: f32 = 110000.0;
+        /// Entries of the table of terminal speeds per meter of diameter.
+        MOTION_TABLE_PER_METER: f32 = 110000.0;
         /// Last entry of that table: that of 9.3 mm.
         MOTION_TABLE_LAST: u32 = 1023;
         /// Minimum relaxation time, s, used for a drop without speed.
-        MOTION_SHORTEST: f32 = 1.0e-6;
+        MOTION_MIN_RELAXATION: f32 = 1.0e-6;
     }
 }
 

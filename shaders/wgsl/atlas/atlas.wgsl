@@ -1,5 +1,5 @@
-// Directions of light among those of a streak atlas. The frame of a streak: z towards the viewer, y the drop's axis as
-// the picture shows it, x to the right. The half sphere x >= 0 is mapped to the unit disc by (y, z) / (1 + x).
+// Directions of light among those of a streak atlas. The frame of a streak: z toward the viewer, y the drop's axis as
+// the picture shows it, x to the right. The half sphere x >= 0 is mapped to the unit disk by (y, z) / (1 + x).
 // Twin: downpour_atlas::lookup.
 
 struct AtlasFrame {
@@ -25,7 +25,7 @@ struct AtlasFrame {
 }
 
 struct AtlasTriangle {
-    // Places of the corners in the map.
+    // Positions of the corners in the map.
     a: vec2f,
     b: vec2f,
     c: vec2f,
@@ -38,14 +38,14 @@ struct AtlasTriangle {
     unused_2: u32,
 }
 
-struct AtlasPlace {
+struct AtlasSlot {
     // Three layers of the atlas, of the lower diameter and the lower elevation.
     layers: vec3u,
     // -1 if the streak is to be mirrored, else 1.
     side: f32,
     // Weights of the three directions; together 1.
     weights: vec3f,
-    // The radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius with as much light.
+    // The radiance, in 1/sr for an irradiance of 1, of a disk of the equivalent radius with as much light.
     amount: f32,
     // Weights of the higher diameter and of the higher elevation.
     parts: vec2f,
@@ -70,7 +70,7 @@ fn atlas_light(light: vec3f, view: vec3f, axis: vec3f) -> vec3f {
     return vec3f(dot(light, x), dot(light, y), dot(light, view));
 }
 
-// The place of a direction in the map.
+// The position of a direction in the map.
 fn atlas_map(direction: vec3f) -> vec2f {
     let below = 1.0 / (1.0 + abs(direction.x));
     return direction.yz * below;
@@ -104,7 +104,7 @@ fn atlas_corner(size: f32, rise: f32, corner: u32) -> f32 {
     return select(1.0 - size, size, (corner & 1u) == 1u) * select(1.0 - rise, rise, (corner & 2u) == 2u);
 }
 
-// Shares of the corners in a point of the map; together 1, below 0 beyond the opposite edge.
+// Fractions of the corners in a point of the map; together 1, below 0 beyond the opposite edge.
 fn atlas_weights(a: vec2f, b: vec2f, c: vec2f, point: vec2f) -> vec3f {
     let ab = b - a;
     let ac = c - a;

@@ -29,8 +29,8 @@ fn atlas_lookup_amount(grid: u32, cell: vec4f) -> f32 {
     return below * (1.0 - cell.w) + above * cell.w;
 }
 
-// The streak of a drop's id, diameter in metres and axis, and the unit vectors to its light and viewer.
-fn atlas_lookup_place(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: vec3f) -> AtlasPlace {
+// The streak of a drop's id, diameter in meters and axis, and the unit vectors to its light and viewer.
+fn atlas_lookup_slot(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: vec3f) -> AtlasSlot {
     let counts = atlas_data_frame.counts;
     let within = atlas_light(light, view, axis);
     let side = select(1.0, -1.0, within.x < 0.0);
@@ -38,11 +38,11 @@ fn atlas_lookup_place(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: v
         let sets = counts.x * counts.y;
         let layer = atlas_draw(atlas_data_frame.seed, id, 1u, sets * counts.z * counts.w);
         let amount = atlas_data_amounts[sets * ATLAS_RISES * ATLAS_GRID * ATLAS_GRID + layer];
-        return AtlasPlace(vec3u(layer), side, vec3f(1.0, 0.0, 0.0), amount, vec2f(0.0), vec2f(0.0));
+        return AtlasSlot(vec3u(layer), side, vec3f(1.0, 0.0, 0.0), amount, vec2f(0.0), vec2f(0.0));
     }
     let sizes = atlas_data_frame.diameters;
     let rises = atlas_data_frame.elevations;
-    let size = atlas_position(sizes[0], sizes[1], sizes[2], sizes[3], log2(max(diameter, ATLAS_SMALLEST)));
+    let size = atlas_position(sizes[0], sizes[1], sizes[2], sizes[3], log2(max(diameter, ATLAS_MIN_DIAMETER)));
     let sine = dot(view, axis);
     let rise = atlas_rise(sine);
     let lower = vec2u(vec2f(size, rise));
@@ -64,10 +64,10 @@ fn atlas_lookup_place(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: v
     let higher = select(level - floor(level), 0.0, nearest);
     let corners = atlas_lookup_mix(elevation, point);
     let base = (group * counts.z + elevation) * counts.w;
-    return AtlasPlace(vec3u(base) + corners.directions, side, corners.weights, amount, vec2f(parts.x, higher), vec2f(0.0));
+    return AtlasSlot(vec3u(base) + corners.directions, side, corners.weights, amount, vec2f(parts.x, higher), vec2f(0.0));
 }
 
-// A texel. Columns outside are 0, rows go round.
+// A texel. Columns outside are 0, rows wrap around.
 fn atlas_lookup_texel(layer: u32, column: i32, row: i32) -> f32 {
     let size = atlas_data_frame.size;
     if column < 0 || column >= i32(size.x) {
@@ -97,21 +97,21 @@ fn atlas_lookup_layer(layer: u32, across: f32, down: f32) -> f32 {
     return above * (1.0 - y) + below * y;
 }
 
-// The radiance of a place, so many equivalent radii to the right of the middle, so many turns of the mode (2,0) along.
-fn atlas_lookup_radiance(place: AtlasPlace, across: f32, turns: f32) -> f32 {
+// The radiance at a slot, `across` equivalent radii to the right of the middle, after `turns` turns of the mode (2,0).
+fn atlas_lookup_radiance(slot: AtlasSlot, across: f32, turns: f32) -> f32 {
     let counts = atlas_data_frame.counts;
     let half = 0.5 * f32(atlas_data_frame.size.x);
-    let column = half + half * clamp(across * place.side / atlas_data_frame.half_extent, -2.0, 2.0);
+    let column = half + half * clamp(across * slot.side / atlas_data_frame.half_extent, -2.0, 2.0);
     let row = (turns - floor(turns)) * f32(atlas_data_frame.size.y);
     var pattern = 0.0;
     for (var corner = 0u; corner < 4u; corner += 1u) {
-        let weight = atlas_corner(place.parts.x, place.parts.y, corner);
+        let weight = atlas_corner(slot.parts.x, slot.parts.y, corner);
         if weight > 0.0 {
-            let layers = place.layers + vec3u(((corner & 1u) * counts.y * counts.z + (corner >> 1u)) * counts.w);
-            pattern += weight * (place.weights.x * atlas_lookup_layer(layers.x, column, row)
-                + place.weights.y * atlas_lookup_layer(layers.y, column, row)
-                + place.weights.z * atlas_lookup_layer(layers.z, column, row));
+            let layers = slot.layers + vec3u(((corner & 1u) * counts.y * counts.z + (corner >> 1u)) * counts.w);
+            pattern += weight * (slot.weights.x * atlas_lookup_layer(layers.x, column, row)
+                + slot.weights.y * atlas_lookup_layer(layers.y, column, row)
+                + slot.weights.z * atlas_lookup_layer(layers.z, column, row));
         }
     }
-    return place.amount * pattern;
+    return slot.amount * pattern;
 }

@@ -3,7 +3,7 @@
 struct AtlasQuery {
     // From the drop to its light, a unit vector.
     light: vec3f,
-    // Equivalent diameter in metres.
+    // Equivalent diameter in meters.
     diameter: f32,
     // From the drop to its viewer, a unit vector.
     view: vec3f,
@@ -26,6 +26,6 @@ fn main_atlas_query(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let point = atlas_query_points[id.x];
-    let place = atlas_lookup_place(point.id, point.diameter, point.axis, point.light, point.view);
-    atlas_query_radiances[id.x] = atlas_lookup_radiance(place, point.across, point.turns);
+    let slot = atlas_lookup_slot(point.id, point.diameter, point.axis, point.light, point.view);
+    atlas_query_radiances[id.x] = atlas_lookup_radiance(slot, point.across, point.turns);
 }

@@ -6,7 +6,7 @@
 // probability on either side of the median, down to single words, so that the rare large drops are drawn as exactly
 // as the many small ones. Finding the cell needs no transcendental function: the result has the same bits on every
 // device.
-// Units: diameters in metres, slopes in 1/m.
+// Units: diameters in meters, slopes in 1/m.
 // Twin: downpour_drop::distribution, which also creates the table.
 
 // Position in the table, between the nodes `index` and `index + 1`.

@@ -1,10 +1,10 @@
-// Terminal fall speed of water drops, and relaxation towards it.
+// Terminal fall speed of water drops, and relaxation toward it.
 //
 // Law: K. V. Beard, J. Atmos. Sci. 33, 851 (1976): three regimes, by temperature and pressure, for diameters
 // up to 7 mm; the speed is held constant beyond. The two tables and the five fits of other authors hold for
 // 20 C and 1013.25 hPa; in other air they are multiplied by (rho0/rho)^0.4 (Foote & du Toit 1969).
-// Relaxation towards the terminal speed v with quadratic drag: v/(2g) vertically, v/g across.
-// Units: diameters in metres, speeds in m/s, times in seconds. Diameters above 9 mm are not drops.
+// Relaxation toward the terminal speed v with quadratic drag: v/(2g) vertically, v/g across.
+// Units: diameters in meters, speeds in m/s, times in seconds. Diameters above 9 mm are not drops.
 // Twin: downpour_drop::fall_speed, which also computes FallSpeedAir, in f64, from temperature and pressure.
 
 // Properties of air and water that the models need. Eight numbers, 32 bytes.
@@ -62,8 +62,8 @@ fn fall_speed_beard_flattened(diameter_mm: f32, air: FallSpeedAir) -> f32 {
 fn fall_speed_gunn_kinzer_1949(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = clamp(diameter_m * 1.0e6, 0.0, FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[34]);
     if d < FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[0] {
-        let share = d / FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[0];
-        return FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[0] * share * share * 0.01 * air.density_factor;
+        let fraction = d / FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[0];
+        return FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[0] * fraction * fraction * 0.01 * air.density_factor;
     }
     // At most 33 iterations.
     var i = 1u;
@@ -72,8 +72,8 @@ fn fall_speed_gunn_kinzer_1949(diameter_m: f32, air: FallSpeedAir) -> f32 {
     }
     let d0 = FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[i - 1u];
     let v0 = FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[i - 1u];
-    let share = (d - d0) / (FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[i] - d0);
-    return (v0 + (FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[i] - v0) * share) * 0.01 * air.density_factor;
+    let fraction = (d - d0) / (FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[i] - d0);
+    return (v0 + (FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[i] - v0) * fraction) * 0.01 * air.density_factor;
 }
 
 // Rousseau 2006, table 2 (spherical, then ellipsoidal drops), between its points by straight lines; as d^2 below
@@ -81,8 +81,8 @@ fn fall_speed_gunn_kinzer_1949(diameter_m: f32, air: FallSpeedAir) -> f32 {
 fn fall_speed_rousseau_2006(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = clamp(diameter_m * 1.0e6, 0.0, FALL_SPEED_ROUSSEAU_DIAMETERS_UM[22]);
     if d < FALL_SPEED_ROUSSEAU_DIAMETERS_UM[0] {
-        let share = d / FALL_SPEED_ROUSSEAU_DIAMETERS_UM[0];
-        return FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[0] * share * share * 0.01 * air.density_factor;
+        let fraction = d / FALL_SPEED_ROUSSEAU_DIAMETERS_UM[0];
+        return FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[0] * fraction * fraction * 0.01 * air.density_factor;
     }
     // At most 21 iterations.
     var i = 1u;
@@ -91,8 +91,8 @@ fn fall_speed_rousseau_2006(diameter_m: f32, air: FallSpeedAir) -> f32 {
     }
     let d0 = FALL_SPEED_ROUSSEAU_DIAMETERS_UM[i - 1u];
     let v0 = FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[i - 1u];
-    let share = (d - d0) / (FALL_SPEED_ROUSSEAU_DIAMETERS_UM[i] - d0);
-    return (v0 + (FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[i] - v0) * share) * 0.01 * air.density_factor;
+    let fraction = (d - d0) / (FALL_SPEED_ROUSSEAU_DIAMETERS_UM[i] - d0);
+    return (v0 + (FALL_SPEED_ROUSSEAU_SPEEDS_CM_S[i] - v0) * fraction) * 0.01 * air.density_factor;
 }
 
 // Atlas, Srivastava & Sekhon 1973; 0 where the fit is negative, below 0.109 mm.

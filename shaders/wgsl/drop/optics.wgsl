@@ -1,7 +1,7 @@
 // Optics of the interface between air and water.
 //
 // Laws: reflection and Snell's law in vectors; Fresnel's equations for a dielectric (Born & Wolf, Principles of
-// Optics, 1.5.2), exact, for both polarisations; by name, the approximations of Schlick 1994 and of Tatarchuk &
+// Optics, 1.5.2), exact, for both polarizations; by name, the approximations of Schlick 1994 and of Tatarchuk &
 // Isidoro 2006. Unit vectors; the normal faces against the incident ray; eta = n(from) / n(to);
 // index = n(to) / n(from); cosines in [0, 1]. Absorption within a drop is negligible.
 // Twin: downpour_drop::optics.
@@ -32,7 +32,7 @@ fn optics_reflect(incident: vec3f, normal: vec3f) -> vec3f {
 }
 
 // Fraction of the power that is reflected: across (s) and within (p) the plane of incidence. 1 in total reflection.
-fn optics_fresnel_polarised(cosine: f32, index: f32) -> vec2f {
+fn optics_fresnel_polarized(cosine: f32, index: f32) -> vec2f {
     let c = max(cosine, 0.0);
     // index^2 - sin^2, without the loss of digits of 1 - cos^2.
     let squared = (index - 1.0) * (index + 1.0) + c * c;
@@ -44,9 +44,9 @@ fn optics_fresnel_polarised(cosine: f32, index: f32) -> vec2f {
     return vec2f(select(s * s, 1.0, total), select(p * p, 1.0, total));
 }
 
-// Fraction of unpolarised light that is reflected.
+// Fraction of unpolarized light that is reflected.
 fn optics_fresnel(cosine: f32, index: f32) -> f32 {
-    let r = optics_fresnel_polarised(cosine, index);
+    let r = optics_fresnel_polarized(cosine, index);
     return 0.5 * (r.x + r.y);
 }
 

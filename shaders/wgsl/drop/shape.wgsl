@@ -3,7 +3,7 @@
 // a: radius of the sphere of equal volume, the unit of length here. theta: angle from the downward axis.
 // Everything is a function of x = cos(theta): cos(n theta) is the Chebyshev polynomial T_n(x), so the sum is
 // Clenshaw's recurrence: no trigonometry, and no special case at the poles.
-// Limits: x in [-1, 1]; the coefficients come from the host, normalised to the volume of the sphere.
+// Limits: x in [-1, 1]; the coefficients come from the host, normalized to the volume of the sphere.
 // Twin: downpour_drop::shape.
 
 // c_0 to c_10, and a padding 0.

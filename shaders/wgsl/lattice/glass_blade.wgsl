@@ -9,7 +9,7 @@ struct GlassBlade {
     pivot: vec2i,
     // Start and end along the blade, in half cells.
     reach: vec2i,
-    // Sense of rotation: 1 from +x towards +y, -1 the other way, 0 at rest.
+    // Sense of rotation: 1 from +x toward +y, -1 the other way, 0 at rest.
     turn: i32,
     // Fraction of the water that stays behind, in units of 1/256.
     leaves: u32,

@@ -10,7 +10,7 @@
 @group(0) @binding(5) var<storage, read_write> glass_claim_wet: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read> glass_claim_totals: array<u32>;
 
-// Claims the disc of a drop; a moving drop also wets it.
+// Claims the disk of a drop; a moving drop also wets it.
 fn glass_claim_drop(cell: vec2i) {
     let index = glass_frame_index(glass_claim_frame, cell);
     let mass = glass_claim_mass[index];
@@ -19,7 +19,7 @@ fn glass_claim_drop(cell: vec2i) {
     }
     let class_of = glass_size_class(mass);
     let row = glass_size_row(
-        glass_claim_sizes.rows[class_of], glass_claim_sizes.rows[class_of + 1u], glass_size_share(mass));
+        glass_claim_sizes.rows[class_of], glass_claim_sizes.rows[class_of + 1u], glass_size_fraction(mass));
     let key = glass_size_key(mass, index);
     let moves = glass_claim_motion[index].x != 0u;
     let clock = glass_claim_frame.first_clock + glass_claim_totals[GLASS_TOTAL_TICK] * glass_claim_frame.clock_step;

@@ -109,7 +109,7 @@ fn glass_decide_drop(cell: vec2i) {
     }
     let class_of = glass_size_class(mass);
     let row = glass_size_row(
-        glass_decide_sizes.rows[class_of], glass_decide_sizes.rows[class_of + 1u], glass_size_share(mass));
+        glass_decide_sizes.rows[class_of], glass_decide_sizes.rows[class_of + 1u], glass_size_fraction(mass));
     let own = glass_size_key(mass, index);
     let touched = glass_decide_touch(cell, row.radius);
     // A drop that could exceed the maximum mass of a cell stays separate.

@@ -1,4 +1,4 @@
-// Heights of the water: each drop is a cap of a sphere over its disc, stretched behind its center if it moves; the
+// Heights of the water: each drop is a cap of a sphere over its disk, stretched behind its center if it moves; the
 // highest of overlapping caps counts.
 // Twin: downpour_lattice::glass::height.
 
@@ -46,9 +46,9 @@ fn glass_height_drop(cell: vec2i) {
     }
     let class_of = glass_size_class(mass);
     let row = glass_size_row(
-        glass_height_sizes.rows[class_of], glass_height_sizes.rows[class_of + 1u], glass_size_share(mass));
+        glass_height_sizes.rows[class_of], glass_height_sizes.rows[class_of + 1u], glass_size_fraction(mass));
     let v = glass_motion_unpack(glass_height_motion[index].x);
-    // The rim may be 15 % beyond the disc.
+    // The rim may be 15 % beyond the disk.
     let reach = i32(row.radius * glass_height_stretch(glass_motion_length(v)) / 56000u) + 1;
     for (var y = -reach; y <= reach; y += 1) {
         for (var x = -reach; x <= reach; x += 1) {

@@ -1,8 +1,8 @@
 // Motion of a drop on a pane: forces, friction, and the choice among the three cells ahead of it.
 //
 // Tatarchuk & Isidoro 2006, section 5, after Kaneda et al. 1999; the static friction is Furmidge's. Velocities are
-// integers: 16384 is one cell per tick. Directions are octants: 0 along +x, then by eighths of a turn towards +y,
-// which is down the pane. Divisions of signed numbers round towards 0, shifts of them down, as in Rust.
+// integers: 16384 is one cell per tick. Directions are octants: 0 along +x, then by eighths of a turn toward +y,
+// which is down the pane. Divisions of signed numbers round toward 0, shifts of them down, as in Rust.
 // Twin: downpour_lattice::glass::motion.
 
 // Integer part of the square root of a number below 2^31.
@@ -101,7 +101,7 @@ fn glass_motion_choose(weights: vec3u, word: u32) -> u32 {
     return select(select(2u, 1u, at < weights.x + weights.y), 0u, at < weights.x);
 }
 
-// Turns a velocity by a quarter of the difference towards an octant.
+// Turns a velocity by a quarter of the difference toward an octant.
 fn glass_motion_turn(v: vec2i, octant: u32) -> vec2i {
     let size = i32(glass_motion_length(v));
     let along = glass_motion_offset(octant) * ((size * glass_motion_unit(octant)) / 256);

@@ -6,7 +6,7 @@
 
 // Properties of a drop of a mass.
 struct GlassSizeRow {
-    // Radius of the wetted disc, in cells / 256.
+    // Radius of the wetted disk, in cells / 256.
     radius: u32,
     // Retention by the contact line (Furmidge) in one tick, in units of velocity.
     hold: u32,
@@ -40,7 +40,7 @@ fn glass_size_floor(class_of: u32) -> u32 {
 }
 
 // Fraction of a mass between its class and the next, in units of 1/256.
-fn glass_size_share(mass: u32) -> u32 {
+fn glass_size_fraction(mass: u32) -> u32 {
     if mass < 16u {
         return 0u;
     }

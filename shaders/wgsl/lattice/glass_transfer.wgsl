@@ -132,7 +132,7 @@ fn glass_transfer_drop(cell: vec2i, tick: u32) {
     let key = glass_size_key(mass, index);
     let class_of = glass_size_class(mass);
     let row = glass_size_row(
-        glass_transfer_sizes.rows[class_of], glass_transfer_sizes.rows[class_of + 1u], glass_size_share(mass));
+        glass_transfer_sizes.rows[class_of], glass_transfer_sizes.rows[class_of + 1u], glass_size_fraction(mass));
     let decided = glass_transfer_target[index];
     let free = decided == GLASS_OUT || (decided & GLASS_TAKEN) == 0u;
     let goal = glass_transfer_goal(index);

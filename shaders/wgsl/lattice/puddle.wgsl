@@ -1,8 +1,8 @@
-// One step of a cell of a puddle: the weighted sum over its neighbours, Clenshaw's recurrence of the polynomial that
+// One step of a cell of a puddle: the weighted sum over its neighbors, Clenshaw's recurrence of the polynomial that
 // approximates omega^2, and the damping of a velocity.
 //
-// Four cells of a row are a quad. A link is a bit: the neighbour exists and is water. Where a link is missing, the
-// neighbour is replaced by the cell itself, or by its image in a straight wall.
+// Four cells of a row are a quad. A link is a bit: the neighbor exists and is water. Where a link is missing, the
+// neighbor is replaced by the cell itself, or by its image in a straight wall.
 // Twin: downpour_lattice::puddle::lattice.
 
 struct PuddleGrid {
@@ -12,7 +12,7 @@ struct PuddleGrid {
     // Degree of the polynomial, and its coefficients over the first of them.
     degree: u32,
     coefficients: array<vec4f, 4>,
-    // Weights of the cell, of its straight and of its diagonal neighbours.
+    // Weights of the cell, of its straight and of its diagonal neighbors.
     weights: vec3f,
     dt: f32,
     // Factors from a weighted sum to 2 x of the polynomial, and to a change of velocity.
@@ -34,26 +34,26 @@ struct PuddleGrid {
     slope: f32,
 }
 
-// Values of the neighbours, or of the cells themselves where the link is missing. A byte of `links` per cell.
+// Values of the neighbors, or of the cells themselves where the link is missing. A byte of `links` per cell.
 fn puddle_linked(own: vec4f, other: vec4f, links: u32, link: u32) -> vec4f {
     let bits = vec4u(link, link << 8u, link << 16u, link << 24u);
     return select(own, other, (vec4u(links) & bits) != vec4u(0u));
 }
 
-// For a diagonal neighbour: the links of the two adjacent straight ones, and its own.
+// For a diagonal neighbor: the links of the two adjacent straight ones, and its own.
 const PUDDLE_LINKS_NORTH_WEST = vec3u(PUDDLE_LINK_NORTH, PUDDLE_LINK_WEST, PUDDLE_LINK_NORTH_WEST);
 const PUDDLE_LINKS_NORTH_EAST = vec3u(PUDDLE_LINK_NORTH, PUDDLE_LINK_EAST, PUDDLE_LINK_NORTH_EAST);
 const PUDDLE_LINKS_SOUTH_WEST = vec3u(PUDDLE_LINK_SOUTH, PUDDLE_LINK_WEST, PUDDLE_LINK_SOUTH_WEST);
 const PUDDLE_LINKS_SOUTH_EAST = vec3u(PUDDLE_LINK_SOUTH, PUDDLE_LINK_EAST, PUDDLE_LINK_SOUTH_EAST);
 
-// Values of the diagonal neighbours. Where the link is missing, it is the mirror image in the wall that the straight
-// neighbours `a` and `b` define: `b` if only that is water, `a` if only that is, else the cell itself.
+// Values of the diagonal neighbors. Where the link is missing, it is the mirror image in the wall that the straight
+// neighbors `a` and `b` define: `b` if only that is water, `a` if only that is, else the cell itself.
 fn puddle_corner(own: vec4f, a: vec4f, b: vec4f, diagonal: vec4f, links: u32, bits: vec3u) -> vec4f {
     let level = puddle_linked(b, puddle_linked(a, own, links, bits.y), links, bits.x);
     return puddle_linked(level, diagonal, links, bits.z);
 }
 
-// Weighted sum over the neighbours. Rows are the quads west of, at and east of the quad.
+// Weighted sum over the neighbors. Rows are the quads west of, at and east of the quad.
 fn puddle_laplacian(north: mat3x4f, here: mat3x4f, south: mat3x4f, links: u32, weights: vec3f) -> vec4f {
     let own = here[1];
     let n = puddle_linked(own, north[1], links, PUDDLE_LINK_NORTH);

@@ -1,4 +1,4 @@
-// Normals of the water by Sobel sums. Missing neighbours are replaced as for the ripples: by the cell itself, or by its
+// Normals of the water by Sobel sums. Missing neighbors are replaced as for the ripples: by the cell itself, or by its
 // image in the wall.
 //
 // x runs along the rows, z along the columns, y is up. Two components are stored in 16 bits each; y completes the

@@ -2,7 +2,7 @@
 // of its passes, and its inner part is written: the same operations per cell as one step at a time.
 //
 // An invocation has a block of 4 x 4 cells: four quads above each other, as the columns of a matrix. Twelve passes over
-// the neighbours at most.
+// the neighbors at most.
 // Twin: downpour_lattice::puddle::sweep.
 
 // The state after the sweep.
@@ -52,7 +52,7 @@ fn puddle_step_sums(block: mat4x4f, column: i32, row: i32, links: vec4u, weights
 }
 
 // Writes a block into the tile, after all have read the old contents.
-fn puddle_step_share(block: mat4x4f, column: i32, row: i32) {
+fn puddle_step_fraction(block: mat4x4f, column: i32, row: i32) {
     workgroupBarrier();
     let at = u32(row * 16 + column);
     puddle_step_tile[at] = block[0];
@@ -123,7 +123,7 @@ fn main_puddle_step(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
         } else {
             now = heights * puddle_step_coefficient(puddle_grid, puddle_grid.degree - 1u);
         }
-        puddle_step_share(now, column, row);
+        puddle_step_fraction(now, column, row);
         var before = mat4x4f();
         for (var j = puddle_grid.degree - 1u; j > 0u; j -= 1u) {
             let last = j == 1u;
@@ -142,7 +142,7 @@ fn main_puddle_step(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
             }
             before = now;
             now = next;
-            puddle_step_share(now, column, row);
+            puddle_step_fraction(now, column, row);
         }
         let sums = puddle_step_sums(now, column, row, links, weights);
         velocities = velocities - sums * puddle_grid.kick;
@@ -196,7 +196,7 @@ fn puddle_step_direct_row(column: i32, row: i32) -> mat3x4f {
     );
 }
 
-// Number of a quad that is nearest to its eastern neighbour, or to its western one, as puddle_step_direct; for 32-bit
+// Number of a quad that is nearest to its eastern neighbor, or to its western one, as puddle_step_direct; for 32-bit
 // storage.
 fn puddle_step_direct_side(column: i32, row: i32, east: bool) -> f32 {
     let x = u32(clamp(column, 0, i32(puddle_grid.quads) - 1));
@@ -207,7 +207,7 @@ fn puddle_step_direct_side(column: i32, row: i32, east: bool) -> f32 {
     return bitcast<f32>(puddle_state[at].x) + bitcast<f32>(puddle_state[at + 1u].x) * puddle_grid.viscosity;
 }
 
-// Weighted sums of a quad with zero weight of the diagonal neighbours: a third of the reads.
+// Weighted sums of a quad with zero weight of the diagonal neighbors: a third of the reads.
 fn puddle_step_direct_straight(quad: PuddleStateQuad, column: i32, row: i32, links: u32) -> vec4f {
     let own = quad.height + quad.velocity * puddle_grid.viscosity;
     let here = puddle_step_shift(
@@ -219,7 +219,7 @@ fn puddle_step_direct_straight(quad: PuddleStateQuad, column: i32, row: i32, lin
     return puddle_grid.weights.x * own - puddle_grid.weights.y * ((n + s) + (w + e));
 }
 
-// One time step of degree 1: a quad per invocation, from memory to memory. Neighbours share data through the caches.
+// One time step of degree 1: a quad per invocation, from memory to memory. Neighbors share data through the caches.
 @compute @workgroup_size(32, 8)
 fn main_lattice_puddle_step_direct(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= puddle_grid.quads || id.y >= puddle_grid.size.y {

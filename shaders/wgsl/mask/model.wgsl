@@ -16,9 +16,9 @@ struct MaskModelParameters {
 @group(0) @binding(3) var<storage, read> mask_model_normals: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> mask_model_texels: array<MaskTexel>;
 
-// Whether the viewer's ray through (x, y) hits the mesh, and where.
+// Hit of the viewer's ray through (x, y) on the mesh, if any.
 fn mask_model_hit(x: f32, y: f32) -> BvhHit {
-    return bvh_hit(vec3f(x, y, mask_model.front), vec3f(0.0, 0.0, -1.0), MASK_MODEL_NEAREST, BVH_FAR);
+    return bvh_hit(vec3f(x, y, mask_model.front), vec3f(0.0, 0.0, -1.0), MASK_MODEL_MIN_DISTANCE, BVH_FAR);
 }
 
 // The interpolated normal at a hit.
@@ -28,13 +28,13 @@ fn mask_model_normal(hit: BvhHit) -> vec3f {
     return normalize(a + mask_model_normals[first + 1u].xyz * hit.u + mask_model_normals[first + 2u].xyz * hit.v);
 }
 
-// Where light that starts at `start`, along `inside_start`, comes to leave, after total reflections. A ray that finds no way
+// Exit of light that starts at `start`, along `inside_start`, after total reflections. A ray that finds no way
 // out has slipped along an edge of the surface: it counts as lost.
 fn mask_model_exit(start: vec3f, inside_start: vec3f) -> MaskTraceExit {
     var point = start;
     var inside = inside_start;
     for (var reflections = 0u; reflections <= MASK_TRACE_REFLECTIONS; reflections += 1u) {
-        let hit = bvh_hit(point, inside, MASK_MODEL_NEAREST, BVH_FAR);
+        let hit = bvh_hit(point, inside, MASK_MODEL_MIN_DISTANCE, BVH_FAR);
         if hit.distance < 0.0 {
             break;
         }
@@ -54,7 +54,7 @@ fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
     let incident = vec3f(0.0, 0.0, -1.0);
     let index = mask_model.index;
     let entry_normal = mask_model_normal(hit);
-    let entry = optics_fresnel_polarised(max(entry_normal.z, 0.0), index);
+    let entry = optics_fresnel_polarized(max(entry_normal.z, 0.0), index);
     let entered = 1.0 - (entry.x + entry.y) * 0.5;
     let reflected = normalize(optics_reflect(incident, entry_normal));
     let inside = normalize(optics_refract(incident, entry_normal, 1.0 / index).xyz);
@@ -63,12 +63,12 @@ fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
     if exit.lost > 0.0 {
         return texel;
     }
-    var polarised = 0.0;
+    var polarized = 0.0;
     if exit.reflections == 0.0 {
-        polarised = (entry.y - entry.x) * 0.5 * mask_trace_plane_turn(inside, entry_normal, exit.normal);
+        polarized = (entry.y - entry.x) * 0.5 * mask_trace_plane_turn(inside, entry_normal, exit.normal);
     }
     let leaving = mask_trace_reflectance(exit, index);
-    let through = entered * (1.0 - (leaving.x + leaving.y) * 0.5) + polarised * (leaving.y - leaving.x) * 0.5;
+    let through = entered * (1.0 - (leaving.x + leaving.y) * 0.5) + polarized * (leaving.y - leaving.x) * 0.5;
     texel.direction = normalize(exit.outside);
     texel.transmittance = through;
     texel.internal = texel.direction;
@@ -79,20 +79,20 @@ fn mask_model_through(x: f32, y: f32, hit: BvhHit, coverage: f32) -> MaskTexel {
         return texel;
     }
     let kept = entered - through;
-    var kept_polarised = (entered * (leaving.x - leaving.y) + polarised * (leaving.x + leaving.y)) * 0.5;
+    var kept_polarized = (entered * (leaving.x - leaving.y) + polarized * (leaving.x + leaving.y)) * 0.5;
     if second.reflections == 0.0 {
-        kept_polarised *= mask_trace_plane_turn(back, exit.normal, second.normal);
+        kept_polarized *= mask_trace_plane_turn(back, exit.normal, second.normal);
     } else {
-        kept_polarised = 0.0;
+        kept_polarized = 0.0;
     }
     let last = mask_trace_reflectance(second, index);
     texel.internal = normalize(second.outside);
     texel.internal_transmittance =
-        kept * (1.0 - (last.x + last.y) * 0.5) + kept_polarised * (last.y - last.x) * 0.5;
+        kept * (1.0 - (last.x + last.y) * 0.5) + kept_polarized * (last.y - last.x) * 0.5;
     return texel;
 }
 
-// The place of sample i of the texel round (x, y).
+// The position of sample i of the texel around (x, y).
 fn mask_model_sample(x: f32, y: f32, i: u32) -> vec2f {
     let n = MASK_MODEL_SUBSAMPLES;
     let half_width = 0.5 * mask_model.pixel;
@@ -103,32 +103,32 @@ fn mask_model_sample(x: f32, y: f32, i: u32) -> vec2f {
     );
 }
 
-// The texel round (x, y).
+// The texel around (x, y).
 fn mask_model_texel(x: f32, y: f32) -> MaskTexel {
     let nothing = MaskTexel(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0u);
     let half_width = 0.5 * mask_model.pixel;
-    let centre = mask_model_hit(x, y);
+    let center = mask_model_hit(x, y);
     var corners = 0u;
     for (var k = 0u; k < 4u; k += 1u) {
         let dx = select(half_width, -half_width, (k & 1u) == 0u);
         let dy = select(half_width, -half_width, (k & 2u) == 0u);
         corners += select(0u, 1u, mask_model_hit(x + dx, y + dy).distance >= 0.0);
     }
-    if centre.distance < 0.0 && corners == 0u {
+    if center.distance < 0.0 && corners == 0u {
         return nothing;
     }
-    if centre.distance >= 0.0 && corners == 4u {
-        return mask_model_through(x, y, centre, 1.0);
+    if center.distance >= 0.0 && corners == 4u {
+        return mask_model_through(x, y, center, 1.0);
     }
     // The outline cuts the texel.
     let n = MASK_MODEL_SUBSAMPLES * MASK_MODEL_SUBSAMPLES;
     var count = 0u;
     var sum = vec2f(0.0);
     for (var i = 0u; i < n; i += 1u) {
-        let place = mask_model_sample(x, y, i);
-        if mask_model_hit(place.x, place.y).distance >= 0.0 {
+        let position = mask_model_sample(x, y, i);
+        if mask_model_hit(position.x, position.y).distance >= 0.0 {
             count += 1u;
-            sum += place;
+            sum += position;
         }
     }
     if count == 0u {
@@ -142,22 +142,22 @@ fn mask_model_texel(x: f32, y: f32) -> MaskTexel {
     }
     // The covered part is not convex: take the sample nearest to its middle.
     var best = BVH_FAR;
-    var best_place = middle;
+    var best_position = middle;
     var best_hit = hit;
     for (var i = 0u; i < n; i += 1u) {
-        let place = mask_model_sample(x, y, i);
-        let offset = place - middle;
+        let position = mask_model_sample(x, y, i);
+        let offset = position - middle;
         let square = offset.x * offset.x + offset.y * offset.y;
         if square < best {
-            let candidate = mask_model_hit(place.x, place.y);
+            let candidate = mask_model_hit(position.x, position.y);
             if candidate.distance >= 0.0 {
                 best = square;
-                best_place = place;
+                best_position = position;
                 best_hit = candidate;
             }
         }
     }
-    return mask_model_through(best_place.x, best_place.y, best_hit, coverage);
+    return mask_model_through(best_position.x, best_position.y, best_hit, coverage);
 }
 
 @compute @workgroup_size(8, 8, 1)

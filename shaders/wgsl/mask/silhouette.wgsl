@@ -33,8 +33,8 @@ fn mask_silhouette_distance(traced: MaskTracedDrop, x: f32, y: f32) -> vec3f {
     return vec3f(distance, gx / across, gy / across);
 }
 
-// The share of a unit square on the inner side of a line at a distance from the square's centre (positive if the
-// centre is outside), with the line's unit normal (nx, ny).
+// The fraction of a unit square on the inner side of a line at a distance from the square's center (positive if the
+// center is outside), with the line's unit normal (nx, ny).
 fn mask_silhouette_area(distance: f32, nx: f32, ny: f32) -> f32 {
     let long = max(abs(nx), abs(ny));
     let short = min(abs(nx), abs(ny));
@@ -45,7 +45,7 @@ fn mask_silhouette_area(distance: f32, nx: f32, ny: f32) -> f32 {
     return select(1.0 - smaller, smaller, distance > 0.0);
 }
 
-// Coverage and sample point of the pixel round (x, y).
+// Coverage and sample point of the pixel around (x, y).
 fn mask_silhouette_cut(traced: MaskTracedDrop, x: f32, y: f32) -> MaskSilhouetteCut {
     let pixel = traced.pixel;
     let estimate = mask_silhouette_estimate(traced, x, y);

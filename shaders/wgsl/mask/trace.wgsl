@@ -1,6 +1,6 @@
 // A ray through a drop of revolution: two interfaces, exactly.
 // Lengths are in units of the drop's volume-equivalent radius. The frame is that of the view: x right, y up, z
-// towards the viewer. The gauge of a point is |p| / rho(-p.up / |p|), 1 on the surface; along a line its square G
+// toward the viewer. The gauge of a point is |p| / rho(-p.up / |p|), 1 on the surface; along a line its square G
 // is close to a parabola, and the surface is met by Newton steps on the parabola with the value and slope of G and
 // the curvature of the reference spheroid.
 // Twin: downpour_mask::trace, where the method is derived.
@@ -24,7 +24,7 @@ struct MaskTraceSurface {
     excess: f32,
 }
 
-// Where light inside a drop comes to leave it, after total reflections.
+// Exit of light from inside a drop, after total reflections.
 struct MaskTraceExit {
     point: vec3f,
     // Total reflections on the way there.
@@ -117,7 +117,7 @@ fn mask_trace_plane_turn(direction: vec3f, from_normal: vec3f, to_normal: vec3f)
     return select(turn, 1.0, both < MASK_TINY);
 }
 
-// Where light that starts at a point of the surface, along `inside_start`, comes to leave, after total reflections.
+// Exit of light that starts at a point of the surface, along `inside_start`, after total reflections.
 fn mask_trace_exit(traced: MaskTracedDrop, start: vec3f, inside_start: vec3f) -> MaskTraceExit {
     var inside = inside_start;
     var point = mask_trace_meet(traced, start, inside, 1.0);
@@ -139,9 +139,9 @@ fn mask_trace_exit(traced: MaskTracedDrop, start: vec3f, inside_start: vec3f) ->
     return MaskTraceExit(point, reflections + one, normal, one, inside, select(outside.xyz, inside, lost));
 }
 
-// Shares of the power that are reflected where light comes to leave, across and within the plane of incidence.
+// Fractions of the power that are reflected where light comes to leave, across and within the plane of incidence.
 fn mask_trace_reflectance(exit: MaskTraceExit, index: f32) -> vec2f {
-    return optics_fresnel_polarised(max(dot(exit.inside, exit.normal), 0.0), 1.0 / index);
+    return optics_fresnel_polarized(max(dot(exit.inside, exit.normal), 0.0), 1.0 / index);
 }
 
 // The viewer's ray through the point (x, y) of the image plane, through the drop.
@@ -149,31 +149,31 @@ fn mask_trace_through(traced: MaskTracedDrop, x: f32, y: f32) -> MaskTraceThroug
     let incident = vec3f(0.0, 0.0, -1.0);
     let entry = mask_trace_meet(traced, vec3f(x, y, 0.0), incident, -1.0);
     let entry_normal = mask_trace_normal(traced, entry);
-    let entry_fresnel = optics_fresnel_polarised(max(entry_normal.z, 0.0), traced.index);
+    let entry_fresnel = optics_fresnel_polarized(max(entry_normal.z, 0.0), traced.index);
     let reflectance = (entry_fresnel.x + entry_fresnel.y) * 0.5;
     let reflected = optics_reflect(incident, entry_normal);
     let inside = normalize(optics_refract(incident, entry_normal, 1.0 / traced.index).xyz);
 
-    // Polarisation is followed from interface to interface; after a total reflection light counts as unpolarised.
+    // Polarization is followed from interface to interface; after a total reflection light counts as unpolarized.
     let exit = mask_trace_exit(traced, entry, inside);
     let turn = mask_trace_plane_turn(inside, entry_normal, exit.normal);
     let followed = (entry_fresnel.y - entry_fresnel.x) * 0.5 * turn;
-    let polarised = select(followed, 0.0, exit.reflections > 0.0);
+    let polarized = select(followed, 0.0, exit.reflections > 0.0);
     let exit_fresnel = mask_trace_reflectance(exit, traced.index);
     let entered = 1.0 - reflectance;
     let exit_mean = 1.0 - (exit_fresnel.x + exit_fresnel.y) * 0.5;
-    let through = entered * exit_mean + polarised * (exit_fresnel.y - exit_fresnel.x) * 0.5;
+    let through = entered * exit_mean + polarized * (exit_fresnel.y - exit_fresnel.x) * 0.5;
 
     let back = optics_reflect(exit.inside, exit.normal);
     let second = mask_trace_exit(traced, exit.point, back);
     let kept = entered - through;
     let difference = entered * (exit_fresnel.x - exit_fresnel.y);
-    let kept_polarised = (difference + polarised * (exit_fresnel.x + exit_fresnel.y)) * 0.5;
+    let kept_polarized = (difference + polarized * (exit_fresnel.x + exit_fresnel.y)) * 0.5;
     let second_turn = mask_trace_plane_turn(back, exit.normal, second.normal);
-    let second_polarised = select(kept_polarised * second_turn, 0.0, second.reflections > 0.0);
+    let second_polarized = select(kept_polarized * second_turn, 0.0, second.reflections > 0.0);
     let second_fresnel = mask_trace_reflectance(second, traced.index);
     let second_mean = 1.0 - (second_fresnel.x + second_fresnel.y) * 0.5;
-    let internal = kept * second_mean + second_polarised * (second_fresnel.y - second_fresnel.x) * 0.5;
+    let internal = kept * second_mean + second_polarized * (second_fresnel.y - second_fresnel.x) * 0.5;
     return MaskTraceThrough(
         normalize(exit.outside),
         select(through, 0.0, exit.lost > 0.0),

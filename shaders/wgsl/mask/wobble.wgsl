@@ -1,10 +1,10 @@
 // A ray through a drop that oscillates, for pictures of many: to where its light leaves, three times over.
 // The surface is r = rho(x) f(x, h) scale with f = 1 + s2 P20(x) + 3/2 s3 (1 - 5 x^2) h. p is a point, x = -p.y / |p| and
 // h = p.x / |p|. Lengths are in units of the volume-equivalent radius; the drop's origin is at 0, its axis is +Y, the lobe of
-// the mode (3,1) is towards +X. The gauge squared is G = |p|^2 / r^2. With q = rho' / rho + f_x / f and k = f_h / f,
+// the mode (3,1) is toward +X. The gauge squared is G = |p|^2 / r^2. With q = rho' / rho + f_x / f and k = f_h / f,
 // 1/2 grad G = (p (1 + q x + k h) + |p| (q up - k right)) / r^2.
 // The surface is met by the steps of mask_trace_step from the spheroid that the mode (2,0) makes of the drop.
-// Law: at each interface light is split into what leaves and what stays, unpolarised each time; what is left after the third
+// Law: at each interface light is split into what leaves and what stays, unpolarized each time; what is left after the third
 // exit leaves with it.
 // Limits: a drop is taken to be met once on the way in and once on the way out; light that has not left after
 // MASK_WOBBLE_BOUNCES interfaces is not followed.
@@ -28,8 +28,8 @@ struct MaskWobbleLight {
     first: vec3f,
     second: vec3f,
     third: vec3f,
-    // Shares of the light, in this order; what they leave of 1 is lost.
-    shares: vec4f,
+    // Fractions of the light, in this order; what they leave of 1 is lost.
+    fractions: vec4f,
     // Interfaces passed up to there (from 1); 0 where there is no exit.
     interfaces: vec4f,
 }
@@ -75,7 +75,7 @@ fn mask_wobble_meet(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f, side:
     return point;
 }
 
-// How far along a line its nearest approach is, from a guess.
+// Distance along a line of its nearest approach, from a guess.
 fn mask_wobble_nearest(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f, guess: f32) -> f32 {
     let curvature = mask_wobble_spheroid(drop, direction, direction);
     var along = guess;
@@ -86,7 +86,7 @@ fn mask_wobble_nearest(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f, gu
     return along;
 }
 
-// Where the light of a ray leaves the drop. The ray should meet it; one that misses is treated as grazing.
+// Exit of the light of a ray from the drop. The ray should meet it; one that misses is treated as grazing.
 fn mask_wobble_light(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f) -> MaskWobbleLight {
     var point = mask_wobble_meet(drop, origin, direction, -1.0);
     let entry_normal = normalize(mask_wobble_surface(drop.shape, drop.state, point).half_gradient);
@@ -116,14 +116,14 @@ fn mask_wobble_light(drop: MaskWobbleDrop, origin: vec3f, direction: vec3f) -> M
             } else {
                 light.third = outside;
             }
-            light.shares[found] = rest * (1.0 - kept);
+            light.fractions[found] = rest * (1.0 - kept);
             light.interfaces[found] = f32(bounce + 2u);
         }
         rest *= kept;
         inside = optics_reflect(inside, normal);
     }
     if found > 0u {
-        light.shares[found] += rest;
+        light.fractions[found] += rest;
     }
     return light;
 }

@@ -18,7 +18,7 @@ fn brdf_visibility(alpha: f32, cosine_view: f32, cosine_light: f32) -> f32 {
     let a2 = alpha * alpha;
     let view = cosine_light * sqrt((cosine_view - a2 * cosine_view) * cosine_view + a2);
     let light = cosine_view * sqrt((cosine_light - a2 * cosine_light) * cosine_light + a2);
-    return 0.5 / max(view + light, BRDF_SMALLEST);
+    return 0.5 / max(view + light, BRDF_MIN_DIVISOR);
 }
 
 // Schlick's Fresnel for a reflectance at normal incidence.
@@ -29,7 +29,7 @@ fn brdf_fresnel(normal_reflectance: vec3f, cosine: f32) -> vec3f {
     return normal_reflectance + (vec3f(1.0) - normal_reflectance) * fifth;
 }
 
-// Radiance towards the viewer for light of irradiance pi from one direction, cosine at the surface included.
+// Radiance toward the viewer for light of irradiance pi from one direction, cosine at the surface included.
 fn brdf_direct(
     diffuse: vec3f, normal_reflectance: vec3f, alpha: f32,
     normal: vec3f, view: vec3f, light: vec3f,
@@ -40,7 +40,7 @@ fn brdf_direct(
     }
     let cosine_view = max(dot(normal, view), BRDF_GRAZING);
     let sum = view + light;
-    let halfway = sum / max(sqrt(dot(sum, sum)), BRDF_SMALLEST);
+    let halfway = sum / max(sqrt(dot(sum, sum)), BRDF_MIN_DIVISOR);
     let cosine_half = clamp(dot(normal, halfway), 0.0, 1.0);
     let fresnel = brdf_fresnel(normal_reflectance, dot(view, halfway));
     let specular = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine_light);
@@ -50,7 +50,7 @@ fn brdf_direct(
 // Smith's masking: fraction of the microfacets facing a direction that is visible from it.
 fn brdf_masking(alpha: f32, cosine: f32) -> f32 {
     let a2 = alpha * alpha;
-    return 2.0 * cosine / max(cosine + sqrt((cosine - a2 * cosine) * cosine + a2), BRDF_SMALLEST);
+    return 2.0 * cosine / max(cosine + sqrt((cosine - a2 * cosine) * cosine + a2), BRDF_MIN_DIVISOR);
 }
 
 // Normal of a microfacet, drawn from those that a viewer sees. `view` points to the viewer, in axes whose third is the
@@ -58,32 +58,32 @@ fn brdf_masking(alpha: f32, cosine: f32) -> f32 {
 fn brdf_visible_normal(view: vec3f, alpha: f32, a: f32, b: f32) -> vec3f {
     // Stretched, so that the surface is one of roughness 1.
     let stretched = vec3f(alpha * view.x, alpha * view.y, view.z);
-    let v = stretched / max(sqrt(dot(stretched, stretched)), BRDF_SMALLEST);
+    let v = stretched / max(sqrt(dot(stretched, stretched)), BRDF_MIN_DIVISOR);
     let flat_part = v.x * v.x + v.y * v.y;
     var level = vec3f(1.0, 0.0, 0.0);
     if flat_part > 0.0 {
         level = vec3f(-v.y, v.x, 0.0) / sqrt(flat_part);
     }
     let rising = cross(v, level);
-    // A point of the disc that the hemisphere of normals shows: half of it is foreshortened.
+    // A point of the disk that the hemisphere of normals shows: half of it is foreshortened.
     let radius = sqrt(a);
     let angle = 6.2831853 * b;
     let x = radius * cos(angle);
-    let share = 0.5 * (1.0 + v.z);
-    let y = (1.0 - share) * sqrt(max(1.0 - x * x, 0.0)) + share * (radius * sin(angle));
+    let fraction = 0.5 * (1.0 + v.z);
+    let y = (1.0 - fraction) * sqrt(max(1.0 - x * x, 0.0)) + fraction * (radius * sin(angle));
     let z = sqrt(max(1.0 - x * x - y * y, 0.0));
     let normal = level * x + rising * y + v * z;
     let back = vec3f(alpha * normal.x, alpha * normal.y, max(normal.z, 0.0));
-    return back / max(sqrt(dot(back, back)), BRDF_SMALLEST);
+    return back / max(sqrt(dot(back, back)), BRDF_MIN_DIVISOR);
 }
 
 // Density, per solid angle, of reflections drawn with brdf_visible_normal, times pi.
 fn brdf_visible_density(alpha: f32, cosine_half: f32, cosine_view: f32) -> f32 {
     return brdf_distribution(alpha, cosine_half) * brdf_masking(alpha, cosine_view) * 0.25
-        / max(cosine_view, BRDF_SMALLEST);
+        / max(cosine_view, BRDF_MIN_DIVISOR);
 }
 
-// Share of a uniform environment that microfacets reflect.
+// Fraction of a uniform environment that microfacets reflect.
 fn brdf_environment(normal_reflectance: vec3f, roughness: f32, cosine_view: f32) -> vec3f {
     let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
     let lift = min(r.x * r.x, exp2(-9.28 * cosine_view)) * r.x + r.y;

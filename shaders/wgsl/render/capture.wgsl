@@ -1,10 +1,10 @@
-// The surroundings of the eye: what drops show of the scene. On an octahedral map, or as the papers' wide picture.
+// The environment capture around the eye: what drops show of the scene. On an octahedral map, or as the papers' wide picture.
 // Law: a texel holds the mean radiance of its directions. The sun is no part of the sky (its light is parallel); its
-// disc goes into the texel that holds its direction, as irradiance over solid angle.
+// disk goes into the texel that holds its direction, as irradiance over solid angle.
 // The map's halves: +z in the middle of the square, -z in its corners.
 // Twin: downpour_trace::capture.
 
-// The direction of a place of the map, in texels from the top left.
+// The direction of a position of the map, in texels from the top left.
 fn capture_direction(x: f32, y: f32) -> vec3f {
     let scale = 2.0 / f32(render_frame.camera.width);
     return packing_octahedral_decode(vec2f(x * scale - 1.0, y * scale - 1.0));
@@ -35,8 +35,8 @@ fn capture_suns(x: u32, y: u32) -> vec3f {
         }
         let light = light_sample(lamp, render_frame.camera.eye, 0.0);
         let square = packing_octahedral_encode(light.direction);
-        let place = clamp((square * 0.5 + 0.5) * size, vec2f(0.0), vec2f(size - 1.0));
-        if u32(place.x) != x || u32(place.y) != y {
+        let position = clamp((square * 0.5 + 0.5) * size, vec2f(0.0), vec2f(size - 1.0));
+        if u32(position.x) != x || u32(position.y) != y {
             continue;
         }
         // A square of the plane |x| + |y| + |z| = 1, seen from its middle.

@@ -13,10 +13,10 @@ struct RenderFrame {
     sky_rays: u32,
     // First row of pixels of this dispatch.
     first_row: u32,
-    // Nearest distance of the next surface, metres.
+    // Nearest distance of the next surface, meters.
     nearest: f32,
     // Part of the rays that look for the light of a surface that one of them is.
-    ray_share: f32,
+    ray_fraction: f32,
     // Projection that is traced: SCENE_PICTURE, SCENE_OCTAHEDRAL or SCENE_PERSPECTIVE.
     projection: u32,
     // 1: the capture leaves parallel light out.
@@ -26,7 +26,7 @@ struct RenderFrame {
     puddle_count: u32,
     // Row of the table where the pane begins that throws shadows; 0: none.
     pane: u32,
-    // Pass of the means over neighbouring pixels.
+    // Pass of the means over neighboring pixels.
     skylight_pass: u32,
     unused_1: u32,
     unused_2: u32,
@@ -44,7 +44,7 @@ struct RenderCorner {
     tangent: vec4f,
     // Two sets of texture coordinates.
     uv: vec4f,
-    colour: vec4f,
+    color: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> render_frame: RenderFrame;

@@ -1,10 +1,10 @@
 // Choice of the streaks of an atlas that a drop shows under a lamp: that of atlas/lookup.wgsl, out of a table of numbers that
 // stands behind the scattering of drops.
-// Law: an amount is the radiance, in 1/sr for an irradiance of 1, of a disc of the equivalent radius that sends as much
+// Law: an amount is the radiance, in 1/sr for an irradiance of 1, of a disk of the equivalent radius that sends as much
 // light to the viewer as the drop of the streak does.
 // Twin: downpour_render::rain::light::atlas, where the rows are laid out.
 
-// Three directions: places in the map, what is across from each corner (below 0: the rim), and their numbers.
+// Three directions: positions in the map, what is across from each corner (below 0: the rim), and their numbers.
 struct DropAtlasTriangle {
     a: vec2f,
     b: vec2f,
@@ -59,8 +59,8 @@ fn drop_atlas_position(first: u32, value: f32) -> f32 {
     );
 }
 
-// The streak of a drop's id, diameter in metres and axis, and the unit vectors to its light and viewer.
-fn drop_atlas_place(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: vec3f) -> AtlasPlace {
+// The streak of a drop's id, diameter in meters and axis, and the unit vectors to its light and viewer.
+fn drop_atlas_slot(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: vec3f) -> AtlasSlot {
     let counts = vec4u(drop_atlas_row(DROP_ATLAS_COUNTS));
     let head = drop_atlas_row(DROP_ATLAS_PICK);
     let seed = drop_atlas_seed();
@@ -70,9 +70,9 @@ fn drop_atlas_place(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: vec
         let sets = counts.x * counts.y;
         let layer = atlas_draw(seed, id, 1u, sets * counts.z * counts.w);
         let amount = drop_atlas_number(sets * ATLAS_RISES * ATLAS_GRID * ATLAS_GRID + layer);
-        return AtlasPlace(vec3u(layer), side, vec3f(1.0, 0.0, 0.0), amount, vec2f(0.0), vec2f(0.0));
+        return AtlasSlot(vec3u(layer), side, vec3f(1.0, 0.0, 0.0), amount, vec2f(0.0), vec2f(0.0));
     }
-    let size = drop_atlas_position(DROP_ATLAS_SIZES, log2(max(diameter, ATLAS_SMALLEST)));
+    let size = drop_atlas_position(DROP_ATLAS_SIZES, log2(max(diameter, ATLAS_MIN_DIAMETER)));
     let sine = dot(view, axis);
     let rise = atlas_rise(sine);
     let lower = vec2u(vec2f(size, rise));
@@ -107,5 +107,5 @@ fn drop_atlas_place(id: u32, diameter: f32, axis: vec3f, light: vec3f, view: vec
         weights = atlas_weights(triangle.a, triangle.b, triangle.c, point);
     }
     let layers = vec3u(base) + vec3u(triangle.directions);
-    return AtlasPlace(layers, side, atlas_clamp(weights), amount, vec2f(parts.x, higher), vec2f(0.0));
+    return AtlasSlot(layers, side, atlas_clamp(weights), amount, vec2f(parts.x, higher), vec2f(0.0));
 }

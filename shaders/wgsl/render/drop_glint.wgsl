@@ -1,7 +1,7 @@
 // Position on a drop at which the light of a lamp leaves it, as the viewer sees it; and radiance of a lamp in a pixel of
 // a drop after Rousseau 2006. Nothing here reads a buffer: any shader may use it.
-// `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Places on the
-// disc are in radii, along the right and the up of the view.
+// `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Positions on the
+// disk are in radii, along the right and the up of the view.
 // Twin: downpour_render::rain::glint.
 
 // The right of the view of a drop, level; where the view is plumb, +x.
@@ -33,20 +33,20 @@ fn drop_glint_angle(light: vec3f, towards: vec3f) -> f32 {
     return 4.0 * select(octant, 0.25 - octant, c < s);
 }
 
-// The side of the disc on which the lamp stands, of length 1; right where it stands on none.
+// The side of the disk on which the lamp stands, of length 1; right where it stands on none.
 fn drop_glint_side(light: vec3f, right: vec3f, up: vec3f) -> vec2f {
     let side = vec2f(dot(light, right), dot(light, up));
     let square = dot(side, side);
     return select(vec2f(1.0, 0.0), side / sqrt(max(square, DROP_GLINT_TINY)), square > DROP_GLINT_AXIS);
 }
 
-// A place on the disc as one number, a whole one below 2^24: within 1/4094 of a radius.
-fn drop_glint_pack(place: vec2f) -> f32 {
-    let steps = floor(clamp(place, vec2f(-1.0), vec2f(1.0)) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE);
+// A position on the disk as one number, a whole one below 2^24: within 1/4094 of a radius.
+fn drop_glint_pack(position: vec2f) -> f32 {
+    let steps = floor(clamp(position, vec2f(-1.0), vec2f(1.0)) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE);
     return steps.x * DROP_GLINT_RANGE + steps.y;
 }
 
-// The place that was packed.
+// The unpacked position.
 fn drop_glint_unpack(word: f32) -> vec2f {
     // Whole numbers: a compiler may add in another order, and 2^23 + 0.5 is no f32.
     let steps = u32(word);
@@ -54,7 +54,7 @@ fn drop_glint_unpack(word: f32) -> vec2f {
     return (vec2f(f32(steps / range), f32(steps % range)) + 0.5 - 0.5 * DROP_GLINT_RANGE) / DROP_GLINT_STEPS;
 }
 
-// A glint of unit mean over the disc: a normal distribution `width` radii wide, `offset` radii from its middle.
+// A glint of unit mean over the disk: a normal distribution `width` radii wide, `offset` radii from its middle.
 fn drop_glint_spot(offset: vec2f, width: f32) -> f32 {
     let square = width * width;
     return 0.5 / square * exp(-0.5 * dot(offset, offset) / square);
@@ -66,7 +66,7 @@ fn drop_glint_level(direction: vec3f) -> vec2f {
     return level / sqrt(max(dot(level, level), DROP_GLINT_TINY));
 }
 
-// Rousseau 2006, section 6, at a place with a normal: (V_PE . V_N) (A_2 + A_3), to be multiplied with the lamp's colour and
+// Rousseau 2006, section 6, at a position with a normal: (V_PE . V_N) (A_2 + A_3), to be multiplied with the lamp's color and
 // attenuation. The plane in which rays do not go sideways is the level one. `terms` is DROP_LIGHT_EXTERNAL for A_2,
 // DROP_LIGHT_INTERNAL for A_3, or both.
 fn drop_glint_rousseau(normal: vec3f, to_eye: vec3f, light: vec3f, terms: u32) -> f32 {

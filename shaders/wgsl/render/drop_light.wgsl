@@ -1,4 +1,4 @@
-// Light of lamps and sun on falling drops: for each drop the mean radiance over its disc, and its brightest glints.
+// Light of lamps and sun on falling drops: for each drop the mean radiance over its disk, and its brightest glints.
 // Forms: geometric optics of a sphere, by a table over the scattering angle; the streaks of an atlas; the formula of Rousseau 2006, section 6; the
 // cones of Im & Sung 2022, section III.C. One ray per drop and lamp says what of the lamp is hidden.
 // Twin: downpour_render::rain::light, where the method is described.
@@ -18,14 +18,14 @@ struct DropLightFrame {
     terms: u32,
 }
 
-// Place relative to the scene's origin, and radius, metres. For the atlas then for each drop its axis, against its motion
+// Position relative to the scene's origin, and radius, meters. For the atlas then for each drop its axis, against its motion
 // as the eye sees it, and its id.
 @group(0) @binding(6) var<storage, read> drop_light_drops: array<vec4f>;
-// For each drop its mean radiance, then its glints: their part of the mean, and their place, packed. Or its streaks: their part
+// For each drop its mean radiance, then its glints: their part of the mean, and their position, packed. Or its streaks: their part
 // of the mean, and -1 if it is mirrored, else 1; the three layers, and the weight of the first; the weight of the second, those of the
 // higher diameter and of the higher elevation, and 0. Or its
 // lamps in the form of Rousseau 2006: the irradiance over pi, and -1 less what the formula gives on the mean; the direction. Or its
-// lamps for the profile of its streak: the irradiance, and the chord from the middle to the edge of the disc (in the form of
+// lamps for the profile of its streak: the irradiance, and the chord from the middle to the edge of the disk (in the form of
 // Rousseau 2006 the irradiance over pi, and -1); the direction, and how bright the drop is by it.
 @group(0) @binding(8) var<storage, read_write> drop_light_out: array<vec4f>;
 @group(0) @binding(9) var<uniform> drop_light_frame: DropLightFrame;
@@ -42,14 +42,14 @@ fn drop_light_entry(row: u32, angle: f32) -> vec4f {
     return here + (there - here) * part;
 }
 
-// Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles. What is
+// Im & Sung 2022, equations (7) to (10): irradiance over pi at a position in a spot's cone, which is a pile of circles. What is
 // within the inner cone is lit, between the two cones light fades. Nothing of other lamps.
-fn drop_light_cone(light: RenderLight, place: vec3f, least: f32) -> vec3f {
+fn drop_light_cone(light: RenderLight, position: vec3f, least: f32) -> vec3f {
     let cone = light.cone;
     if light.kind == SCENE_LIGHT_DIRECTIONAL || cone.x <= 0.0 {
         return vec3f(0.0);
     }
-    let offset = place - light.position;
+    let offset = position - light.position;
     let below = dot(offset, light.axis);
     let height = select(SCENE_FAR, light.range, light.range > 0.0);
     if below <= 0.0 || below > height {
@@ -61,30 +61,30 @@ fn drop_light_cone(light: RenderLight, place: vec3f, least: f32) -> vec3f {
     let core = below * sqrt(max(1.0 - inner * inner, 0.0)) / inner;
     let aside = offset - light.axis * below;
     let away = sqrt(dot(aside, aside));
-    let share = clamp((circle - away) / max(circle - core, 1.0e-6 * below), 0.0, 1.0);
+    let fraction = clamp((circle - away) / max(circle - core, 1.0e-6 * below), 0.0, 1.0);
     let square = max(dot(offset, offset), max(least * least, 1.0e-8));
-    return light.color * (share / square);
+    return light.color * (fraction / square);
 }
 
-// The mean over a drop's disc of what Rousseau's formula gives at its pixels.
+// The mean over a drop's disk of what Rousseau's formula gives at its pixels.
 fn drop_light_mean(towards: vec3f, light: vec3f, terms: u32) -> f32 {
     let right = drop_glint_right(towards);
     let up = cross(right, towards);
     var sum = 0.0;
-    for (var k = 0u; k < DROP_LIGHT_RINGS * DROP_LIGHT_PLACES; k += 1u) {
-        let square = (f32(k / DROP_LIGHT_PLACES) + 0.5) / f32(DROP_LIGHT_RINGS);
-        let angle = 2.0 * DROP_LIGHT_PI * (f32(k % DROP_LIGHT_PLACES) + 0.5) / f32(DROP_LIGHT_PLACES);
+    for (var k = 0u; k < DROP_LIGHT_RINGS * DROP_LIGHT_POINTS; k += 1u) {
+        let square = (f32(k / DROP_LIGHT_POINTS) + 0.5) / f32(DROP_LIGHT_RINGS);
+        let angle = 2.0 * DROP_LIGHT_PI * (f32(k % DROP_LIGHT_POINTS) + 0.5) / f32(DROP_LIGHT_POINTS);
         let away = sqrt(square);
         let normal = right * (away * cos(angle)) + up * (away * sin(angle)) - towards * sqrt(1.0 - square);
         sum += drop_glint_rousseau(normal, -towards, light, terms);
     }
-    return sum / f32(DROP_LIGHT_RINGS * DROP_LIGHT_PLACES);
+    return sum / f32(DROP_LIGHT_RINGS * DROP_LIGHT_POINTS);
 }
 
-// First row of the faintest of the lights of a drop, `rows` rows each from `first` on, if it is fainter than `share`; else 0.
-fn drop_light_weakest(first: u32, rows: u32, share: f32) -> u32 {
+// First row of the faintest of the lights of a drop, `rows` rows each from `first` on, if it is fainter than `fraction`; else 0.
+fn drop_light_weakest(first: u32, rows: u32, fraction: f32) -> u32 {
     var weakest = 0u;
-    var least = share;
+    var least = fraction;
     for (var k = rows; k <= drop_light_frame.glints; k += rows) {
         let kept = light_weight(drop_light_out[first + k - rows].rgb);
         if kept < least {
@@ -113,21 +113,21 @@ fn drop_light_keep_facing(first: u32, light: vec4f, direction: vec4f) {
 }
 
 // Keeps a streak of an atlas, three rows, if it is brighter than the least of those that are kept.
-fn drop_light_keep_streak(first: u32, radiance: vec3f, place: AtlasPlace) {
+fn drop_light_keep_streak(first: u32, radiance: vec3f, streak: AtlasSlot) {
     let weakest = drop_light_weakest(first, DROP_ATLAS_ROWS, light_weight(radiance));
     if weakest > 0u {
-        drop_light_out[weakest] = vec4f(radiance, place.side);
-        drop_light_out[weakest + 1u] = vec4f(vec3f(place.layers), place.weights.x);
-        drop_light_out[weakest + 2u] = vec4f(place.weights.y, place.parts, 0.0);
+        drop_light_out[weakest] = vec4f(radiance, streak.side);
+        drop_light_out[weakest + 1u] = vec4f(vec3f(streak.layers), streak.weights.x);
+        drop_light_out[weakest + 2u] = vec4f(streak.weights.y, streak.parts, 0.0);
     }
 }
 
-// The chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
+// The chord from the middle to the edge of a lamp's disk: that of the sun where the lamp has no size.
 fn drop_light_reach(light: RenderLight) -> f32 {
     return max(light.chord, DROP_LIGHT_REACH);
 }
 
-// Mean radiance of a lamp over a drop's whole disc, from the lamp's irradiance over pi and its direction.
+// Mean radiance of a lamp over a drop's whole disk, from the lamp's irradiance over pi and its direction.
 fn drop_light_whole(lit: vec3f, direction: vec3f, towards: vec3f) -> vec3f {
     if drop_light_frame.form == DROP_LIGHT_LAMPS_ROUSSEAU {
         return lit * drop_light_mean(towards, direction, drop_light_frame.terms);
@@ -140,8 +140,8 @@ fn drop_light_whole(lit: vec3f, direction: vec3f, towards: vec3f) -> vec3f {
 // the lamp that is not kept.
 fn drop_light_keep_lamp(slot: u32, lit: vec3f, reach: f32, direction: vec3f, towards: vec3f) -> vec3f {
     let whole = drop_light_whole(lit, direction, towards);
-    let share = light_weight(whole);
-    var least = share;
+    let fraction = light_weight(whole);
+    var least = fraction;
     var weakest = slot;
     var found = false;
     for (var k = 0u; k + 1u < drop_light_frame.glints; k += 2u) {
@@ -160,7 +160,7 @@ fn drop_light_keep_lamp(slot: u32, lit: vec3f, reach: f32, direction: vec3f, tow
     let is_rousseau = drop_light_frame.form == DROP_LIGHT_LAMPS_ROUSSEAU;
     let factor = select(DROP_LIGHT_PI, 1.0, is_rousseau);
     drop_light_out[weakest] = vec4f(lit * factor, select(reach, -1.0, is_rousseau));
-    drop_light_out[weakest + 1u] = vec4f(direction, share);
+    drop_light_out[weakest + 1u] = vec4f(direction, fraction);
     if old.w == 0.0 {
         return vec3f(0.0);
     }
@@ -206,10 +206,10 @@ fn drop_light_of(index: u32) {
             drop_light_keep_facing(slot + 1u, vec4f(lit, -1.0 - mean), vec4f(light.direction, 0.0));
         } else if form == DROP_LIGHT_ATLAS {
             let about = drop_light_drops[drop_light_frame.count + index];
-            let place = drop_atlas_place(u32(about.w), 2.0 * drop.w, about.xyz, light.direction, -towards);
-            let radiance = lit * (DROP_LIGHT_PI * place.amount);
+            let streak = drop_atlas_slot(u32(about.w), 2.0 * drop.w, about.xyz, light.direction, -towards);
+            let radiance = lit * (DROP_LIGHT_PI * streak.amount);
             sum += radiance;
-            drop_light_keep_streak(slot + 1u, radiance, place);
+            drop_light_keep_streak(slot + 1u, radiance, streak);
         } else {
             let angle = drop_glint_angle(light.direction, towards);
             let side = drop_glint_side(light.direction, right, up);

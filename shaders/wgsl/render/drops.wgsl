@@ -1,13 +1,13 @@
 // Drops as refractive particles that face the camera: still ones, and the streaks of those that move while the shutter is
 // open.
-// Law: a drop below a pixel, or out of focus, covers the pixels round its path by its area and its share of the exposure, so
+// Law: a drop below a pixel, or out of focus, covers the pixels around its path by its area and its fraction of the exposure, so
 // its light does not depend on where it falls; a larger one is sampled in each pixel. What lamps add is the mean over the
 // drop.
 // Unresolved drops are a medium between them (medium.wgsl): it shows the mean radiance of a drop, and the light of lamps.
 // Twin: downpour_render::rain::drops.
 
 @group(0) @binding(3) var<storage, read> drops_list: array<DropsDrop>;
-// First the places where the tiles' lists begin (one more than there are tiles), then the lists.
+// First the indices at which the lists of the tiles begin (one more than there are tiles), then the lists.
 @group(0) @binding(4) var<storage, read> drops_tiles: array<u32>;
 @group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
 // At first the medium (medium_filter.wgsl): light of lamps, and mean distance and optical depth as halves. Then the rain.
@@ -15,7 +15,7 @@
 // Light of lamps on each drop of the list: the mean over it, and its brightest glints.
 @group(0) @binding(8) var<storage, read> drops_light: array<vec4f>;
 
-// The place of a ray on the plane at distance 1 through a drop's middle, along the right and up of its view.
+// The position of a ray on the plane at distance 1 through a drop's middle, along the right and up of its view.
 fn drops_on_plane(towards: vec3f, ray: vec3f) -> vec3f {
     return ray / max(dot(ray, towards), 1.0e-6) - towards;
 }
@@ -25,7 +25,7 @@ fn drops_light_row(index: u32) -> u32 {
     return index * (1u + drops_frame.glints);
 }
 
-// Light of lamps at a place of a drop's disc, in radii: its glints as spots of some width, and the rest everywhere.
+// Light of lamps at a position of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
 fn drops_spots(index: u32, at: vec2f, width: f32) -> vec3f {
     let row = drops_light_row(index);
     var light = drops_light[row].rgb;
@@ -40,7 +40,7 @@ fn drops_spots(index: u32, at: vec2f, width: f32) -> vec3f {
     return max(light, vec3f(0.0));
 }
 
-// Light of lamps in the form of Rousseau 2006 at a place of a drop's mask, by the normal there, which halves the angle between the
+// Light of lamps in the form of Rousseau 2006 at a position of a drop's mask, by the normal there, which halves the angle between the
 // eye and what is mirrored: what it is more than the mean over the drop.
 fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
     let row = drops_light_row(index);
@@ -51,7 +51,7 @@ fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
     }
     let right = drops_mask_right(drop.towards);
     let up = cross(right, drop.towards);
-    let turned = drops_mask_unit(drops_mask_at(drop.row, x, y).reflected + vec3f(0.0, 0.0, 1.0));
+    let turned = drops_mask_unit(drops_mask_at(drop.mask_index, x, y).reflected + vec3f(0.0, 0.0, 1.0));
     let normal = right * turned.x + up * turned.y - drop.towards * turned.z;
     for (var k = 1u; k < drops_frame.glints; k += 2u) {
         let lamp = drops_light[row + k];
@@ -68,35 +68,35 @@ fn drops_facing(index: u32, drop: DropsDrop, x: f32, y: f32) -> vec3f {
 fn drops_lines(index: u32, chord: StreakChord, width: f32) -> vec3f {
     let row = drops_light_row(index);
     let part = (chord.high - chord.low) * 0.5;
-    var light = drops_light[row].rgb * chord.share;
+    var light = drops_light[row].rgb * chord.fraction;
     for (var k = 1u; k <= drops_frame.glints; k += 1u) {
         let glint = drops_light[row + k];
         if glint.w > 0.0 {
-            let place = drop_glint_unpack(glint.w);
-            let off = chord.aside - (place.x * chord.path.y - place.y * chord.path.x);
-            light += glint.rgb * (drops_line(off, width) * chord.pace - chord.share);
+            let position = drop_glint_unpack(glint.w);
+            let off = chord.aside - (position.x * chord.path.y - position.y * chord.path.x);
+            light += glint.rgb * (drops_line(off, width) * chord.pace - chord.fraction);
         }
     }
     return max(light, vec3f(0.0)) * part;
 }
 
-// The phase of the mode (2,0), in turns, where a passing drop is at a share of its way.
+// The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
 fn drops_turns(drop: DropsDrop, way: f32) -> f32 {
-    return drop.swing.z + drop.turns.x * streak_time(drop.recede, way);
+    return drop.mode_phase.z + drop.cycles.x * streak_time(drop.depth_ratio, way);
 }
 
-// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a place on the plane.
+// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
 fn drops_streaks(index: u32, drop: DropsDrop, chord: StreakChord, at: vec2f) -> vec3f {
     let row = drops_light_row(index);
     let part = (chord.high - chord.low) * 0.5;
     let turns = drops_turns(drop, streak_nearest(drop, at));
-    var light = drops_light[row].rgb * chord.share;
+    var light = drops_light[row].rgb * chord.fraction;
     for (var k = DROP_ATLAS_ROWS; k <= drops_frame.glints; k += DROP_ATLAS_ROWS) {
         let first = drops_light[row + k - 2u];
         if first.w != 0.0 {
             let streak = drops_atlas_streak(first, drops_light[row + k - 1u], drops_light[row + k]);
             let shown = drops_atlas_across(streak, -chord.aside, turns);
-            light += first.rgb * (shown * 2.0 * chord.pace - chord.share);
+            light += first.rgb * (shown * 2.0 * chord.pace - chord.fraction);
         }
     }
     return max(light, vec3f(0.0)) * part;
@@ -127,7 +127,7 @@ fn drops_beads(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec3f {
     return max(light, vec3f(0.0));
 }
 
-// A spot of unit mean over the disc, summed along a line that passes it at some distance; all in radii.
+// A spot of unit mean over the disk, summed along a line that passes it at some distance; all in radii.
 fn drops_line(off: f32, width: f32) -> f32 {
     return DROPS_LINE / width * exp(-0.5 * off * off / (width * width));
 }
@@ -158,7 +158,7 @@ fn drops_still(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
             sy = dot(lean, up) / extent;
         }
         if abs(sx) < 1.0 && abs(sy) < 1.0 {
-            var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.row), sx, sy);
+            var shown = drops_shade_ray(DropsShade(drop.towards, drop.half_extent, lean, spacing, drop.mask_index), sx, sy);
             if !small {
                 let at = vec2f(sx, sy) * drop.half_extent;
                 let light = drops_spots(index, at, drops_glint_width(drop)) + drops_facing(index, drop, sx, sy);
@@ -184,11 +184,11 @@ fn drops_glint_width(drop: DropsDrop) -> f32 {
 fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> vec4f {
     let towards = drops_mask_unit(ray);
     let spacing = 2.0 * drop.oval.x / f32(STREAK_FINE);
-    let shade = DropsShade(towards, drop.half_extent, vec3f(0.0), spacing, drop.row);
+    let shade = DropsShade(towards, drop.half_extent, vec3f(0.0), spacing, drop.mask_index);
     var sum = vec4f(0.0);
     for (var k = 0u; k < drops_frame.streak_samples; k += 1u) {
         let part = (f32(k) + 0.5) / f32(drops_frame.streak_samples);
-        let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
+        let at = streak_mask_position(drop, chord, chord.low + (chord.high - chord.low) * part);
         if abs(at.x) < 1.0 && abs(at.y) < 1.0 {
             let shown = drops_shade_ray(shade, at.x, at.y);
             let light = shown + vec4f(drops_facing(index, drop, at.x, at.y) * shown.w, 0.0);
@@ -198,7 +198,7 @@ fn drops_chord(index: u32, drop: DropsDrop, chord: StreakChord, ray: vec3f) -> v
     return vec4f(sum.rgb / max(sum.w, 1.0e-20), 1.0) * ((chord.high - chord.low) * 0.5);
 }
 
-// The share of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet the thin
+// The fraction of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet the thin
 // image of a lamp in it, or miss it, alike.
 fn drops_shift(line: u32) -> f32 {
     return f32((line * STREAK_GOLDEN) & 0xffffu) / 65536.0;
@@ -212,8 +212,8 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         if cover <= 0.0 {
             return vec4f(0.0);
         }
-        let place = vec2f(f32(x) + 0.5, f32(y) + 0.5) / size;
-        let mean = streak_lookup_mean(drop.shape, place) + drops_beads(index, drop, x, y);
+        let position = vec2f(f32(x) + 0.5, f32(y) + 0.5) / size;
+        let mean = streak_lookup_mean(drop.shape, position) + drops_beads(index, drop, x, y);
         return vec4f(mean, 1.0) * cover;
     }
     let right = drops_mask_right(drop.towards);
@@ -226,23 +226,23 @@ fn drops_streak(index: u32, drop: DropsDrop, x: u32, y: u32) -> vec4f {
         let at = vec2f(f32(x), f32(y)) + (vec2f(f32(k), f32(turned)) + shift) / f32(drop.grid);
         let ray = camera_ray(drops_frame.camera, at.x, at.y);
         let lean = drops_on_plane(drop.towards, ray);
-        let place = vec2f(dot(lean, right), dot(lean, up));
+        let position = vec2f(dot(lean, right), dot(lean, up));
         let by_profile = drop.kind == DROPS_TABLE;
         if by_profile {
-            sum += streak_lookup_shown(drop, place);
+            sum += streak_lookup_shown(drop, position);
         }
         if by_profile && drops_frame.atlas == 0u {
             continue;
         }
-        let chord = streak_chord(drop, place);
+        let chord = streak_chord(drop, position);
         if chord.high <= chord.low {
             continue;
         }
         if !by_profile {
-            sum += drops_chord(index, drop, chord, ray) * chord.share;
+            sum += drops_chord(index, drop, chord, ray) * chord.fraction;
         }
         if drops_frame.atlas > 0u {
-            sum += vec4f(drops_streaks(index, drop, chord, place), 0.0);
+            sum += vec4f(drops_streaks(index, drop, chord, position), 0.0);
         } else {
             sum += vec4f(drops_lines(index, chord, drops_glint_width(drop)), 0.0);
         }
@@ -257,10 +257,10 @@ fn drops_depth(drop: DropsDrop, x: u32, y: u32) -> f32 {
     let up = cross(right, drop.towards);
     let lean = drops_on_plane(drop.towards, camera_ray(drops_frame.camera, f32(x) + 0.5, f32(y) + 0.5));
     let way = streak_nearest(drop, vec2f(dot(lean, right), dot(lean, up)));
-    return drop.distance * streak_depth(drop.recede, streak_time(drop.recede, way));
+    return drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way));
 }
 
-// A drop over a pixel whose scene is `scene` metres away: radiance times coverage, and coverage.
+// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
 fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     let drop = drops_list[index];
     var shown = vec4f(0.0);
@@ -272,7 +272,7 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
     if shown.w <= 0.0 {
         return shown;
     }
-    if drops_frame.streak_colour == STREAK_WHITE {
+    if drops_frame.streak_color == STREAK_WHITE {
         shown = vec4f(drops_capture_texel(drops_frame.capture_last, 0, 0) * shown.w, shown.w);
     }
     // A drop that meets a surface goes into it over its own size.
@@ -282,7 +282,7 @@ fn drops_pixel(index: u32, x: u32, y: u32, scene: f32) -> vec4f {
 
 // Mean radiance of an unresolved drop before a pixel.
 fn drops_medium(x: u32, y: u32) -> vec3f {
-    if drops_frame.streak_colour == STREAK_WHITE {
+    if drops_frame.streak_color == STREAK_WHITE {
         return drops_capture_texel(drops_frame.capture_last, 0, 0);
     }
     let size = vec2f(f32(drops_frame.camera.width), f32(drops_frame.camera.height));

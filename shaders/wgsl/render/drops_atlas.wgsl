@@ -1,8 +1,8 @@
 // The patterns of an atlas between their texels. They stand behind the masks: columns, rows, half of the width in equivalent
 // radii; layers from an elevation to the next, layers from a diameter to the next, a word of nothing; then halves, two a word: layers,
 // rows, columns, and at the end of each row its mean.
-// Law: over the width and a turn the mean of a layer is that of a disc of even light, so that a texel says how many times
-// as bright it is as the disc would be, in the time in which the drop moves on by its diameter. So is that of any mixture.
+// Law: over the width and a turn the mean of a layer is that of a disk of even light, so that a texel says how many times
+// as bright it is as the disk would be, in the time in which the drop moves on by its diameter. So is that of any mixture.
 // Twin: downpour_render::rain::drops_atlas.
 
 // Three layers of the lower diameter and elevation, -1 if they are to be mirrored, else 1; weights of the three, weights of the higher
@@ -31,7 +31,7 @@ fn drops_atlas_half(index: u32) -> f32 {
     return select(pair.x, pair.y, (index & 1u) == 1u);
 }
 
-// A texel. Rows go round. The column behind the last is the mean of the row.
+// A texel. Rows wrap around. The column behind the last is the mean of the row.
 fn drops_atlas_texel(layer: u32, column: i32, row: i32) -> f32 {
     let columns = drops_masks[drops_frame.atlas];
     let rows = i32(drops_masks[drops_frame.atlas + 1u]);
@@ -64,7 +64,7 @@ fn drops_atlas_layer(layer: u32, across: f32, down: f32) -> f32 {
     return above * (1.0 - y) + below * y;
 }
 
-// A streak so many equivalent radii to the right of the middle, so many turns of the mode (2,0) along.
+// A streak so many equivalent radii to the right of the middle, after `turns` turns of the mode (2,0).
 fn drops_atlas_across(streak: DropsAtlasStreak, across: f32, turns: f32) -> f32 {
     let half = 0.5 * f32(drops_masks[drops_frame.atlas]);
     let extent = bitcast<f32>(drops_masks[drops_frame.atlas + 2u]);

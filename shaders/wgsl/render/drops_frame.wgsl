@@ -23,8 +23,8 @@ struct DropsFrame {
     light_terms: u32,
     // Samples along the chord of a streak that is averaged by a loop.
     streak_samples: u32,
-    // The colour of streaks: STREAK_REFRACTED, or STREAK_WHITE.
-    streak_colour: u32,
+    // The color of streaks: STREAK_REFRACTED, or STREAK_WHITE.
+    streak_color: u32,
     // Rows of light of each drop besides its mean: glints, or streaks of the atlas.
     glints: u32,
     // First word of the atlas behind the masks; 0: there is none.

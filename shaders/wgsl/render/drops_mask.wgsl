@@ -4,7 +4,7 @@
 
 // Values of a mask at a point.
 struct DropsTexel {
-    // Direction of the light that comes through, in the frame of the view: right, up, towards the viewer.
+    // Direction of the light that comes through, in the frame of the view: right, up, toward the viewer.
     direction: vec3f,
     coverage: f32,
     reflected: vec3f,
@@ -12,7 +12,7 @@ struct DropsTexel {
     // Direction of the light that is reflected inside once.
     internal: vec3f,
     internal_transmittance: f32,
-    // Share that is reflected outside.
+    // Fraction that is reflected outside.
     reflectance: f32,
 }
 
@@ -36,13 +36,13 @@ fn drops_mask_texel(layer: u32, column: i32, row: i32) -> DropsTexel {
     let x = u32(clamp(column, 0, last));
     let y = u32(clamp(row, 0, last));
     let at = ((layer * drops_frame.mask_size + y) * drops_frame.mask_size + x) * DROPS_TEXEL_WORDS;
-    let shares = unpack2x16unorm(drops_masks[at + 3u]);
+    let fractions = unpack2x16unorm(drops_masks[at + 3u]);
     let more = unpack2x16unorm(drops_masks[at + 4u]);
     return DropsTexel(
         packing_octahedral_decode(unpack2x16snorm(drops_masks[at])),
-        shares.x,
+        fractions.x,
         packing_octahedral_decode(unpack2x16snorm(drops_masks[at + 1u])),
-        shares.y,
+        fractions.y,
         packing_octahedral_decode(unpack2x16snorm(drops_masks[at + 2u])),
         more.x,
         more.y,

@@ -1,10 +1,10 @@
 // Radiance along one ray through a drop: light that is refracted, mirrored, and reflected inside once, by the mask,
 // looked up in the capture.
-// Law: each has the share that the mask says; what is left, light that is reflected inside twice and more, is the mean of all
-// that is about. So nothing is lost: in uniform surroundings a drop vanishes. The mask's directions are for parallel rays;
+// Law: each has the fraction that the mask says; what is left, light that is reflected inside twice and more, is the mean of all
+// that is about. So nothing is lost: in a uniform environment a drop vanishes. The mask's directions are for parallel rays;
 // a ray of the camera turns them by what it differs from the ray to the drop's middle (first order in the drop's
 // angle).
-// Limits: the surroundings are those of the eye, not of the drop; a drop does not show other drops.
+// Limits: the environment is that of the eye, not of the drop; a drop does not show other drops.
 // Twin: downpour_render::rain::drops_shade.
 
 // A drop as a ray meets it.
@@ -17,18 +17,18 @@ struct DropsShade {
     lean: vec3f,
     // Equivalent radii between samples.
     spacing: f32,
-    // Place in the masks: rows of diameters, and of elevations.
-    row: vec2f,
+    // Index of its mask, fractional: diameter, elevation.
+    mask_index: vec2f,
 }
 
-// The place in the papers' capture of a ray, shifted by what the mask says.
+// The position in the papers' capture of a ray, shifted by what the mask says.
 fn drops_shade_shifted(ray: vec3f, texel: DropsTexel) -> vec2f {
     return drops_capture_shifted(ray, texel.direction);
 }
 
 // Light of a drop at (x, y), in units of half its mask: radiance times coverage, and coverage.
 fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
-    let texel = drops_mask_at(drop.row, x, y);
+    let texel = drops_mask_at(drop.mask_index, x, y);
     if texel.coverage <= 0.0 {
         return vec4f(0.0);
     }
@@ -38,8 +38,8 @@ fn drops_shade_ray(drop: DropsShade, x: f32, y: f32) -> vec4f {
     let q = min((x * x + y * y) * drop.half_extent * drop.half_extent, 0.98);
     let bend = 2.0 / sqrt(1.0 - q);
     if drops_frame.form == DROPS_SHIFT {
-        let place = drops_shade_shifted(drop.towards + drop.lean, texel);
-        return vec4f(drops_capture_at(place, drop.spacing * (bend - DROPS_STRAIGHT)), 1.0) * texel.coverage;
+        let position = drops_shade_shifted(drop.towards + drop.lean, texel);
+        return vec4f(drops_capture_at(position, drop.spacing * (bend - DROPS_STRAIGHT)), 1.0) * texel.coverage;
     }
     let rest = max(1.0 - texel.transmittance - texel.reflectance - texel.internal_transmittance, 0.0);
     var sum = drops_capture_texel(drops_frame.capture_last, 0, 0) * rest;

@@ -1,12 +1,12 @@
 // A picture through a pane of glass with water on it, ray by ray through the lens.
 // Law: a ray from the lens meets the pane, goes straight through it, leaves the water by Snell's law at the local normal,
-// and shows what stands in its new direction: the picture where that is in it, else the capture of what is round the eye.
+// and shows what stands in its new direction: the picture where that is in it, else the capture of what is around the eye.
 // The position of a point is given by the distance in its own direction. Light that is not transmitted (Fresnel, exact,
-// incoherent sum over the reflections within the pane) shows the eye's side, whose light is a share of that of the
-// surroundings; so does what is totally reflected back to the eye. A lens of some size is a set of places: what is out
+// incoherent sum over the reflections within the pane) shows the eye's side, whose light is a fraction of that of the
+// surroundings; so does what is totally reflected back to the eye. A lens of some size is a set of points: what is out
 // of focus is blurred by as much as the lens says, and no light is lost.
 // Limits: the pane's thickness does not shift what is behind it; light that is totally reflected within a drop and leaves
-// it elsewhere goes on without a second refraction.
+// it elsewhere continues without a second refraction.
 // Twin: downpour_render::glass::picture.
 
 struct GlassPictureFrame {
@@ -18,11 +18,11 @@ struct GlassPictureFrame {
     down: vec3f,
     rows: u32,
     outward: vec3f,
-    // Bins in a metre.
+    // Bins in a meter.
     bins: f32,
     // From the eye to the pane's upper left corner.
     corner: vec3f,
-    // Cells of the lattice in a metre.
+    // Cells of the lattice in a meter.
     cells: f32,
     size: vec2f,
     wet_size: vec2u,
@@ -30,7 +30,7 @@ struct GlassPictureFrame {
     lens: f32,
     focus: u32,
     fresnel: u32,
-    // Light of the eye's side, of that of the surroundings.
+    // Light on the eye's side, relative to that of the environment.
     room: f32,
     samples: u32,
     // The coarsest level of the picture, and of the capture.
@@ -44,7 +44,7 @@ struct GlassPictureFrame {
     // Refractive indices.
     water: f32,
     first_row: u32,
-    // Lamps, and the least radius of the discs of drops that show them, m.
+    // Lamps, and the least radius of the disks of drops that show them, m.
     lights: u32,
     lit_from: f32,
     unused: vec2u,
@@ -53,7 +53,7 @@ struct GlassPictureFrame {
 }
 
 // Surface of the pane that a ray meets.
-struct GlassPictureMet {
+struct GlassPictureHit {
     normal: vec3f,
     // 0 where the glass is dry.
     wet: f32,
@@ -65,7 +65,7 @@ struct GlassPictureMet {
 
 @group(0) @binding(0) var<uniform> glass_picture_frame: GlassPictureFrame;
 @group(0) @binding(1) var<storage, read> glass_picture_drops: array<GlassPictureDrop>;
-// First the places where the bins' lists begin (one more than there are bins), then the lists.
+// First the indices at which the lists of the bins begin (one more than there are bins), then the lists.
 @group(0) @binding(2) var<storage, read> glass_picture_bins: array<u32>;
 // Wetness of the cells, four to a word.
 @group(0) @binding(3) var<storage, read> glass_picture_wet: array<u32>;
@@ -87,8 +87,8 @@ fn glass_picture_wetness(column: i32, row: i32) -> f32 {
 }
 
 // Height of the film and its slopes: the quadratic B-spline over the cells.
-fn glass_picture_film(place: vec2f) -> vec3f {
-    let at = place * glass_picture_frame.cells - 0.5;
+fn glass_picture_film(position: vec2f) -> vec3f {
+    let at = position * glass_picture_frame.cells - 0.5;
     let middle = floor(at + 0.5);
     let t = at - middle;
     var sum = vec3f(0.0);
@@ -100,11 +100,11 @@ fn glass_picture_film(place: vec2f) -> vec3f {
             sum += vec3f(wx.x * wy.x, wx.y * wy.x, wx.x * wy.y) * wet;
         }
     }
-    let per_metre = glass_picture_frame.film * glass_picture_frame.cells;
-    return vec3f(sum.x * glass_picture_frame.film, sum.y * per_metre, sum.z * per_metre);
+    let per_meter = glass_picture_frame.film * glass_picture_frame.cells;
+    return vec3f(sum.x * glass_picture_frame.film, sum.y * per_meter, sum.z * per_meter);
 }
 
-// Weight of the cell before, at or after a place, and how it changes; t is -0.5 to 0.5.
+// Weight of the cell before, at or after a position, and how it changes; t is -0.5 to 0.5.
 fn glass_picture_spline(t: f32, which: i32) -> vec2f {
     if which == 0 {
         return vec2f(0.5 * (0.5 - t) * (0.5 - t), t - 0.5);
@@ -115,16 +115,16 @@ fn glass_picture_spline(t: f32, which: i32) -> vec2f {
     return vec2f(0.5 * (0.5 + t) * (0.5 + t), t + 0.5);
 }
 
-// The surface that a ray leaves by, which enters the water at a place of the glass.
-fn glass_picture_meet(place: vec2f, aside: vec2f) -> GlassPictureMet {
-    let column = min(u32(max(place.x * glass_picture_frame.bins, 0.0)), glass_picture_frame.columns - 1u);
-    let row = min(u32(max(place.y * glass_picture_frame.bins, 0.0)), glass_picture_frame.rows - 1u);
+// The surface that a ray leaves by, which enters the water at a position of the glass.
+fn glass_picture_meet(position: vec2f, aside: vec2f) -> GlassPictureHit {
+    let column = min(u32(max(position.x * glass_picture_frame.bins, 0.0)), glass_picture_frame.columns - 1u);
+    let row = min(u32(max(position.y * glass_picture_frame.bins, 0.0)), glass_picture_frame.rows - 1u);
     let bin = row * glass_picture_frame.columns + column;
     var highest = 0.0;
     var found = 0u;
     for (var k = glass_picture_bins[bin]; k < glass_picture_bins[bin + 1u]; k += 1u) {
         let index = glass_picture_bins[k];
-        let height = glass_picture_water_cap(glass_picture_drops[index], place).x;
+        let height = glass_picture_water_cap(glass_picture_drops[index], position).x;
         if height > highest {
             highest = height;
             found = index;
@@ -132,16 +132,16 @@ fn glass_picture_meet(place: vec2f, aside: vec2f) -> GlassPictureMet {
     }
     if highest > 0.0 {
         let drop = glass_picture_drops[found];
-        let z = glass_picture_water_leave(drop, place, aside);
-        let cap = glass_picture_water_cap(drop, place + aside * z);
+        let z = glass_picture_water_leave(drop, position, aside);
+        let cap = glass_picture_water_cap(drop, position + aside * z);
         let lit = select(0.0, 1.0, drop.radius >= glass_picture_frame.lit_from);
-        return GlassPictureMet(glass_picture_water_normal(cap.yz), 1.0, 1.0 / drop.sphere, lit);
+        return GlassPictureHit(glass_picture_water_normal(cap.yz), 1.0, 1.0 / drop.sphere, lit);
     }
     if glass_picture_frame.film <= 0.0 {
-        return GlassPictureMet(vec3f(0.0, 0.0, 1.0), 0.0, 0.0, 0.0);
+        return GlassPictureHit(vec3f(0.0, 0.0, 1.0), 0.0, 0.0, 0.0);
     }
-    let film = glass_picture_film(place);
-    return GlassPictureMet(glass_picture_water_normal(film.yz), select(0.0, 1.0, film.x > 0.0), 0.0, 0.0);
+    let film = glass_picture_film(position);
+    return GlassPictureHit(glass_picture_water_normal(film.yz), select(0.0, 1.0, film.x > 0.0), 0.0, 0.0);
 }
 
 // A texel of a level of the picture; the nearest where there is none.
@@ -152,7 +152,7 @@ fn glass_picture_texel(level: u32, column: i32, row: i32) -> vec4f {
     return glass_picture_behind[size.z + y * size.x + x];
 }
 
-// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+// A texel of a level of the capture. Beyond an edge, the octahedral map continues mirrored about the edge's middle.
 fn glass_picture_round_texel(level: u32, column: i32, row: i32) -> vec4f {
     let whole = glass_picture_frame.capture_size;
     let size = whole >> level;
@@ -171,50 +171,50 @@ fn glass_picture_round_texel(level: u32, column: i32, row: i32) -> vec4f {
     return glass_picture_capture[first + u32(clamp(y, 0, edge - 1)) * size + u32(clamp(x, 0, edge - 1))];
 }
 
-// A level of the picture or of the capture at a place of [0, 1], bilinear.
-fn glass_picture_level(of_capture: bool, level: u32, place: vec2f) -> vec3f {
+// A level of the picture or of the capture at a position in [0, 1], bilinear.
+fn glass_picture_level(of_capture: bool, level: u32, position: vec2f) -> vec3f {
     var size = vec2f(f32(glass_picture_frame.capture_size >> level));
     if !of_capture {
         size = vec2f(glass_picture_frame.levels[level].xy);
     }
-    let at = place * size - 0.5;
+    let at = position * size - 0.5;
     let low = floor(at);
     let part = at - low;
     var sum = vec3f(0.0);
     for (var k = 0; k < 4; k += 1) {
         let step = vec2i(k & 1, k >> 1u);
-        let share = select(1.0 - part.x, part.x, step.x == 1) * select(1.0 - part.y, part.y, step.y == 1);
+        let fraction = select(1.0 - part.x, part.x, step.x == 1) * select(1.0 - part.y, part.y, step.y == 1);
         let cell = vec2i(low) + step;
-        if share > 0.0 {
+        if fraction > 0.0 {
             if of_capture {
-                sum += glass_picture_round_texel(level, cell.x, cell.y).rgb * share;
+                sum += glass_picture_round_texel(level, cell.x, cell.y).rgb * fraction;
             } else {
-                sum += glass_picture_texel(level, cell.x, cell.y).rgb * share;
+                sum += glass_picture_texel(level, cell.x, cell.y).rgb * fraction;
             }
         }
     }
     return sum;
 }
 
-// The picture or the capture at a place of [0, 1], for a footprint in texels of its finest level.
-fn glass_picture_at(of_capture: bool, place: vec2f, footprint: f32) -> vec3f {
+// The picture or the capture at a position of [0, 1], for a footprint in texels of its finest level.
+fn glass_picture_at(of_capture: bool, position: vec2f, footprint: f32) -> vec3f {
     let last = f32(select(glass_picture_frame.last, glass_picture_frame.capture_last, of_capture));
     let level = clamp(log2(max(footprint, 1.0e-6)), 0.0, last);
     let low = floor(level);
     let part = level - low;
-    var share = 1.0 - part;
+    var fraction = 1.0 - part;
     var sum = vec3f(0.0);
-    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
-        sum += glass_picture_level(of_capture, u32(low) + k, place) * share;
-        share = select(0.0, part, k == 0u);
+    for (var k = 0u; k < 2u && fraction > 0.0; k += 1u) {
+        sum += glass_picture_level(of_capture, u32(low) + k, position) * fraction;
+        fraction = select(0.0, part, k == 0u);
     }
     return sum;
 }
 
 // Radiance of the environment map in a direction, averaged over a footprint in radians.
 fn glass_picture_round(direction: vec3f, footprint: f32) -> vec3f {
-    let place = packing_octahedral_encode(direction) * 0.5 + 0.5;
-    return glass_picture_at(true, place, footprint / glass_picture_frame.capture_texel);
+    let position = packing_octahedral_encode(direction) * 0.5 + 0.5;
+    return glass_picture_at(true, position, footprint / glass_picture_frame.capture_texel);
 }
 
 // Projects a direction onto the picture: -1 to 1 right and up, and its depth.
@@ -241,18 +241,18 @@ fn glass_picture_seen(from_eye: vec3f, direction: vec3f, shift: vec2f, footprint
         distance = glass_picture_round_texel(0u, i32(texel.x), i32(texel.y)).w;
     }
     let to = direction + from_eye / clamp(distance, 0.1, GLASS_PICTURE_FAR);
-    let place = glass_picture_project(to);
+    let position = glass_picture_project(to);
     let texels = max(footprint / glass_picture_frame.camera.pixel_angle, 1.0);
-    // Towards the picture's edge the capture takes over, within the footprint.
-    let at = vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) + shift / size;
+    // Toward the picture's edge the capture takes over, within the footprint.
+    let at = vec2f(0.5 + 0.5 * position.x, 0.5 - 0.5 * position.y) + shift / size;
     let inside = min(min(at.x, 1.0 - at.x) * size.x, min(at.y, 1.0 - at.y) * size.y);
-    let share = select(0.0, clamp((inside + 0.5) / texels, 0.0, 1.0), place.z > 0.0);
+    let fraction = select(0.0, clamp((inside + 0.5) / texels, 0.0, 1.0), position.z > 0.0);
     var sum = vec3f(0.0);
-    if share > 0.0 {
-        sum = glass_picture_at(false, at, texels) * share;
+    if fraction > 0.0 {
+        sum = glass_picture_at(false, at, texels) * fraction;
     }
-    if share < 1.0 {
-        sum += glass_picture_round(to, footprint) * (1.0 - share);
+    if fraction < 1.0 {
+        sum += glass_picture_round(to, footprint) * (1.0 - fraction);
     }
     return sum;
 }
@@ -271,15 +271,15 @@ fn glass_picture_world(v: vec3f) -> vec3f {
     return glass_picture_frame.across * v.x + glass_picture_frame.down * v.y + glass_picture_frame.outward * v.z;
 }
 
-// Radiance of the interior ambient along a ray that leaves water towards the eye's side, in a direction of the pane.
+// Radiance of the interior ambient along a ray that leaves water toward the eye's side, in a direction of the pane.
 fn glass_picture_inside(v: vec3f) -> vec3f {
     let aside = v.xy * glass_picture_frame.water;
     let out = vec3f(aside, -sqrt(max(1.0 - dot(aside, aside), 1.0e-4)));
     return glass_picture_round(glass_picture_world(out), GLASS_PICTURE_MIRROR) * glass_picture_frame.room;
 }
 
-// Share of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
-fn glass_picture_outer(cosine: f32, met: GlassPictureMet, within: f32) -> f32 {
+// Fraction of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
+fn glass_picture_outer(cosine: f32, met: GlassPictureHit, within: f32) -> f32 {
     if met.wet == 0.0 {
         return optics_fresnel(cosine, GLASS_PICTURE_INDEX);
     }
@@ -293,12 +293,12 @@ fn glass_picture_outer(cosine: f32, met: GlassPictureMet, within: f32) -> f32 {
 }
 
 // Radiance along a ray that meets the pane at a position, in a direction of the pane. `from_eye` is that position
-// relative to the eye; `spread` are the angle between neighbouring rays, and their distance on the pane.
-fn glass_picture_through(place: vec2f, d: vec3f, from_eye: vec3f, shift: vec2f, spread: vec2f) -> vec3f {
+// relative to the eye; `spread` are the angle between neighboring rays, and their distance on the pane.
+fn glass_picture_through(position: vec2f, d: vec3f, from_eye: vec3f, shift: vec2f, spread: vec2f) -> vec3f {
     let water = glass_picture_frame.water;
     let aside = d.xy / water;
     let w = vec3f(aside, sqrt(max(1.0 - dot(aside, aside), 0.0)));
-    let met = glass_picture_meet(place, w.xy / w.z);
+    let met = glass_picture_meet(position, w.xy / w.z);
     let within = dot(w, met.normal);
     let first = optics_fresnel(d.z, GLASS_PICTURE_INDEX);
     let outer = glass_picture_outer(d.z, met, max(within, 0.0));
@@ -332,7 +332,7 @@ fn glass_picture_through(place: vec2f, d: vec3f, from_eye: vec3f, shift: vec2f, 
     return sum;
 }
 
-// A sample of a pixel: a place of the lens (xy, in its radius) and of the pixel (zw).
+// A sample of a pixel: a position of the lens (xy, in its radius) and of the pixel (zw).
 fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f) -> vec3f {
     let ray = camera_direction(glass_picture_frame.camera, x + at.z, y + at.w);
     let right = glass_picture_frame.camera.right / sqrt(dot(glass_picture_frame.camera.right, glass_picture_frame.camera.right));
@@ -358,16 +358,16 @@ fn glass_picture_sample(x: f32, y: f32, distance: f32, at: vec4f) -> vec3f {
     let way = (plane - dot(from_eye, glass_picture_frame.outward)) / d.z;
     let met = from_eye + direction * way;
     let on = met - glass_picture_frame.corner;
-    let place = vec2f(dot(on, glass_picture_frame.across), dot(on, glass_picture_frame.down));
+    let position = vec2f(dot(on, glass_picture_frame.across), dot(on, glass_picture_frame.down));
     let among = sqrt(1.0 / f32(glass_picture_frame.samples));
     let apart = glass_picture_frame.lens * GLASS_PICTURE_APART * among;
     let pixel = glass_picture_frame.camera.pixel_angle;
-    if place.x < 0.0 || place.y < 0.0 || place.x > glass_picture_frame.size.x || place.y > glass_picture_frame.size.y {
+    if position.x < 0.0 || position.y < 0.0 || position.x > glass_picture_frame.size.x || position.y > glass_picture_frame.size.y {
         return glass_picture_seen(from_eye, direction, shift, pixel + apart * abs(1.0 / depth - 1.0 / far));
     }
     let angle = pixel * among + apart * abs(1.0 / depth - 1.0 / far);
     let spread = vec2f(angle, pixel * pane * among + apart * abs(1.0 - pane / depth));
-    return glass_picture_through(place, d, met, shift, spread);
+    return glass_picture_through(position, d, met, shift, spread);
 }
 
 // A pixel.

@@ -1,13 +1,13 @@
-// Water on a pane as smooth surfaces: each drop is a cap of a sphere over its disc, with an outline that is not quite round,
+// Water on a pane as smooth surfaces: each drop is a cap of a sphere over its disk, with an outline that is not quite round,
 // drawn out behind if it runs, and steeper on the side to which its weight pulls it (from the receding angle to the
 // advancing one).
-// Metres on the pane: x right, y down it, z out of it, away from the eye.
+// Meters on the pane: x right, y down it, z out of it, away from the eye.
 // Twin: downpour_render::glass::water.
 
 struct GlassPictureDrop {
-    // Middle of the disc.
-    centre: vec2f,
-    // Radius of the disc, and of the sphere whose cap it is.
+    // Middle of the disk.
+    center: vec2f,
+    // Radius of the disk, and of the sphere whose cap it is.
     radius: f32,
     sphere: f32,
     // Direction in which it runs, of length 1.
@@ -24,8 +24,8 @@ struct GlassPictureDrop {
 }
 
 // Height over the glass, and its slopes along x and y. Beyond the outline the height is below 0.
-fn glass_picture_water_cap(drop: GlassPictureDrop, place: vec2f) -> vec3f {
-    let away = place - drop.centre;
+fn glass_picture_water_cap(drop: GlassPictureDrop, position: vec2f) -> vec3f {
+    let away = position - drop.center;
     let ahead = away.x * drop.along.x + away.y * drop.along.y;
     let stretch = select(drop.behind, 1.0, ahead > 0.0);
     let x = ahead * stretch;
@@ -46,8 +46,8 @@ fn glass_picture_water_cap(drop: GlassPictureDrop, place: vec2f) -> vec3f {
     let down_y = steep * of_y;
     let slope = drop.along * down_x + vec2f(-drop.along.y, drop.along.x) * down_y;
     let pulled = drop.lean * r;
-    let share = max(1.0 + pulled * (away.x * drop.droop.x + away.y * drop.droop.y), 0.1);
-    return vec3f(height * share, slope * share + drop.droop * (height * pulled));
+    let fraction = max(1.0 + pulled * (away.x * drop.droop.x + away.y * drop.droop.y), 0.1);
+    return vec3f(height * fraction, slope * fraction + drop.droop * (height * pulled));
 }
 
 // The highest that a drop may be.
@@ -56,13 +56,13 @@ fn glass_picture_water_top(drop: GlassPictureDrop) -> f32 {
     return (drop.sphere - sqrt(whole - drop.radius * drop.radius)) * (1.0 + 1.5 * drop.lean);
 }
 
-// Height at which a ray that enters a drop at a place of the glass leaves it. `aside` is how far it goes along the pane for
-// each metre away from it. The bracket of regula falsi (Illinois).
-fn glass_picture_water_leave(drop: GlassPictureDrop, place: vec2f, aside: vec2f) -> f32 {
+// Height at which a ray that enters a drop at a position of the glass leaves it. `aside` is how far it goes along the pane for
+// each meter away from it. The bracket of regula falsi (Illinois).
+fn glass_picture_water_leave(drop: GlassPictureDrop, position: vec2f, aside: vec2f) -> f32 {
     var low = 0.0;
     var high = glass_picture_water_top(drop);
-    var above = glass_picture_water_cap(drop, place).x;
-    var below = glass_picture_water_cap(drop, place + aside * high).x - high;
+    var above = glass_picture_water_cap(drop, position).x;
+    var below = glass_picture_water_cap(drop, position + aside * high).x - high;
     if below >= 0.0 {
         return high;
     }
@@ -70,7 +70,7 @@ fn glass_picture_water_leave(drop: GlassPictureDrop, place: vec2f, aside: vec2f)
     var side = 0;
     for (var k = 0u; k < GLASS_PICTURE_TURNS; k += 1u) {
         z = low + (high - low) * (above / (above - below));
-        let off = glass_picture_water_cap(drop, place + aside * z).x - z;
+        let off = glass_picture_water_cap(drop, position + aside * z).x - z;
         if off > 0.0 {
             low = z;
             above = off;

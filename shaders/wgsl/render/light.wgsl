@@ -8,11 +8,11 @@ struct RenderLight {
     kind: u32,
     // Direction in which the light goes, or the axis of the cone.
     axis: vec3f,
-    // Chord from the middle to the edge of the disc that a drop shows of it; 0: that of the sun.
+    // Chord from the middle to the edge of the disk that a drop shows of it; 0: that of the sun.
     chord: f32,
     // Irradiance over pi of a surface that faces it, for a lamp at 1 m.
     color: vec3f,
-    // No light beyond this, metres; 0 for no end.
+    // No light beyond this, meters; 0 for no end.
     range: f32,
     // Scale and offset of the cosine at the edge of the cone.
     cone: vec2f,

@@ -53,8 +53,8 @@ fn material_load(index: u32) -> RenderMaterial {
 
 // Reads a texture slot.
 fn material_slot(row: u32) -> RenderSlot {
-    let place = render_table[row + 1u];
+    let header = render_table[row + 1u];
     return RenderSlot(
-        bitcast<vec4f>(render_table[row]), bitcast<vec2f>(place.xy), place.z, place.w, render_table[row + 2u],
+        bitcast<vec4f>(render_table[row]), bitcast<vec2f>(header.xy), header.z, header.w, render_table[row + 2u],
     );
 }

@@ -63,12 +63,12 @@ fn medium_within(distance: f32) -> f32 {
 }
 
 // First and last distance of a coordinate between -half and half, of a ray that begins at `from`.
-fn medium_slab(from_place: f32, rate: f32, half: f32) -> vec2f {
+fn medium_slab(from_position: f32, rate: f32, half: f32) -> vec2f {
     if abs(rate) < 1.0e-9 {
-        return select(vec2f(MEDIUM_FAR, 0.0), vec2f(0.0, MEDIUM_FAR), abs(from_place) <= half);
+        return select(vec2f(MEDIUM_FAR, 0.0), vec2f(0.0, MEDIUM_FAR), abs(from_position) <= half);
     }
-    let a = (-half - from_place) / rate;
-    let b = (half - from_place) / rate;
+    let a = (-half - from_position) / rate;
+    let b = (half - from_position) / rate;
     return vec2f(min(a, b), max(a, b));
 }
 

@@ -1,4 +1,4 @@
-// The light of lamps on unresolved drops: what could be seen of it at most, times the part of it that the pixels round a pixel
+// The light of lamps on unresolved drops: what could be seen of it at most, times the part of it that the pixels around a pixel
 // have seen. So nothing is blurred but shadows.
 // Twin: downpour_render::rain::medium::filter.
 

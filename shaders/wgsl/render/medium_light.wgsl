@@ -1,9 +1,9 @@
-// Light of lamps and sun that unresolved drops scatter towards the eye, before a pixel.
+// Light of lamps and sun that unresolved drops scatter toward the eye, before a pixel.
 // Law: single scattering, L = Int sigma(s) exp(-tau(s)) E(s) p(angle(s)) ds, with the drops' phase function p. For a lamp at the
 // distance h from the ray the angle runs evenly along the ray as seen from the lamp, ds / r^2 = d angle / h, so that a part of
 // the ray between two angles needs but the integral of p over them (a table), and is exact however near the lamp is.
 // Occlusion is tested with one ray per pixel, drawn by the light that each part of the ray and each lamp would give; the mean over
-// the pixels round it is taken by medium_filter.wgsl.
+// the pixels around it is taken by medium_filter.wgsl.
 // Light that is weakened on its way from the lamp to the drop is taken to be made good by what is scattered forward on it.
 // Twin: downpour_render::rain::medium::light.
 
@@ -79,14 +79,14 @@ struct MediumLight {
 
 // Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
 fn medium_light_add(sum: MediumLight, light: vec3f, lamp: u32, near: f32, far: f32) -> MediumLight {
-    let share = light_weight(light);
-    if share <= 0.0 {
+    let fraction = light_weight(light);
+    if fraction <= 0.0 {
         return sum;
     }
-    let chance = share / (light_weight(sum.whole) + share);
+    let chance = fraction / (light_weight(sum.whole) + fraction);
     var next = sum;
     next.whole += light;
-    next.weighted += 0.5 * (near + far) * share;
+    next.weighted += 0.5 * (near + far) * fraction;
     if sum.rest < chance {
         // The part of the interval that is left is as good as a new number.
         next.rest = sum.rest / chance;
@@ -116,7 +116,7 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
     // No ray is thinner than a pixel: the mean over its square of 1 / h is that of 0.284 of its width.
     let least = 0.284 * pixel * max(nearest, 0.0);
     let h = sqrt(dot(aside, aside) + least * least + 1.0e-8);
-    // The angle at the lamp, between the ray's direction and the place, runs from behind the drops to before them.
+    // The angle at the lamp, between the ray's direction and the position, runs from behind the drops to before them.
     let first = atan2(h, nearest - lit.x);
     var next = sum;
     var near = lit.x;
@@ -161,11 +161,11 @@ fn medium_light_lamp(sum: MediumLight, index: u32, direction: vec3f, reach: vec2
 fn medium_light_pixel(x: u32, y: u32) {
     let at = medium_frame.columns * medium_frame.rows * MEDIUM_SLICES + 2u * (y * render_frame.camera.width + x);
     let scene = medium_clean[y * render_frame.camera.width + x].w;
-    let place = vec2f(f32(x), f32(y)) + 0.5;
-    let direction = camera_direction(render_frame.camera, place.x, place.y);
+    let position = vec2f(f32(x), f32(y)) + 0.5;
+    let direction = camera_direction(render_frame.camera, position.x, position.y);
     // The sky is as it is seen through the rain beyond.
     let end = select(scene, MEDIUM_SKY_REACH, scene >= MEDIUM_SKY);
-    let depth = medium_open_at(place.x, place.y, end).x;
+    let depth = medium_open_at(position.x, position.y, end).x;
     var sum = MediumLight(vec3f(0.0), 0.0, vec3f(0.0), 0.0, vec2f(0.0), 0u);
     var seen = vec3f(0.0);
     if medium_frame.lit != MEDIUM_DARK && medium_frame.all > 0.0 {
@@ -175,14 +175,14 @@ fn medium_light_pixel(x: u32, y: u32) {
         for (var k = 0u; k < render_frame.light_count; k += 1u) {
             sum = medium_light_lamp(sum, k, direction, reach, render_frame.camera.pixel_angle);
         }
-        let share = light_weight(sum.drawn);
-        if share > 0.0 {
+        let fraction = light_weight(sum.drawn);
+        if fraction > 0.0 {
             let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random.y);
-            let from_place = medium_frame.eye + direction * distance;
-            let light = light_sample(light_load(sum.lamp), from_place, 0.0);
-            seen = scene_visibility(from_place, light.direction, light.distance)
-                * medium_open_at(place.x, place.y, distance).y
-                * (sum.drawn * (light_weight(sum.whole) / share));
+            let from_position = medium_frame.eye + direction * distance;
+            let light = light_sample(light_load(sum.lamp), from_position, 0.0);
+            seen = scene_visibility(from_position, light.direction, light.distance)
+                * medium_open_at(position.x, position.y, distance).y
+                * (sum.drawn * (light_weight(sum.whole) / fraction));
         }
     }
     let mean = sum.weighted / max(light_weight(sum.whole), 1.0e-20);

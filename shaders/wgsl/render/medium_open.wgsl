@@ -1,6 +1,6 @@
 // Air that is open to the rain: a grid over the picture, a column of slices of distance in each cell.
-// Method: one ray per cell and slice, from a place in it against the mean fall; the optical depth of a cell's ray is summed up
-// slice by slice, and a pixel interpolates between the four cells round it.
+// Method: one ray per cell and slice, from a position in it against the mean fall; the optical depth of a cell's ray is summed up
+// slice by slice, and a pixel interpolates between the four cells around it.
 // Twin: downpour_render::rain::medium::open.
 
 // First the grid, MEDIUM_SLICES rows for each cell: optical depth up to the slice's end, 1 if the slice is open. Then for each
@@ -77,7 +77,7 @@ fn medium_open_cell(column: u32, row: u32, slice: u32, part: f32) -> vec2f {
     return vec2f(before + (here.x - before) * part, here.y);
 }
 
-// Optical depth of unresolved drops up to a distance along the ray through a place of the picture (pixels from the top left),
+// Optical depth of unresolved drops up to a distance along the ray through a position of the picture (pixels from the top left),
 // and whether the air is open to the rain there.
 fn medium_open_at(x: f32, y: f32, distance: f32) -> vec2f {
     let direction = camera_direction(render_frame.camera, x, y);
@@ -93,14 +93,14 @@ fn medium_open_at(x: f32, y: f32, distance: f32) -> vec2f {
         begin = medium_depth(medium_open_end(slice - 1u), span, outline);
     }
     let end = medium_depth(medium_open_end(slice), span, outline);
-    // Beyond the last slice its own air goes on.
+    // Beyond the last slice, its density continues.
     let fraction = max((whole - begin) / max(end - begin, 1.0e-12), 0.0);
     let last = vec2f(f32(medium_frame.columns - 1u), f32(medium_frame.rows - 1u));
     let size = vec2f(f32(render_frame.camera.width), f32(render_frame.camera.height));
-    let place = clamp(vec2f(x, y) / size * (last + 1.0) - 0.5, vec2f(0.0), last);
-    let low = vec2u(place);
+    let position = clamp(vec2f(x, y) / size * (last + 1.0) - 0.5, vec2f(0.0), last);
+    let low = vec2u(position);
     let high = min(low + 1u, vec2u(last));
-    let part = place - vec2f(low);
+    let part = position - vec2f(low);
     var sum = vec2f(0.0);
     for (var k = 0u; k < 4u; k += 1u) {
         let right = (k & 1u) == 1u;

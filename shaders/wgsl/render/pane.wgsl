@@ -1,11 +1,11 @@
-// The pane that throws shadows. Rows in the table: corner and texels in a metre; right, down and outward with the pane's width, height
+// The pane that throws shadows. Rows in the table: corner and texels in a meter; right, down and outward with the pane's width, height
 // and the form; size, first row after the pane's and last level of the texels; mean radius and focal length of the drops; levels; texels.
 // Twin: downpour_render::glass::shade.
 
 // A pane before the lamps.
 struct RenderPane {
     corner: vec3f,
-    texels_per_metre: f32,
+    texels_per_meter: f32,
     across: vec3f,
     // Width, m.
     width: f32,

@@ -14,10 +14,10 @@ fn pane_shadow_texel(texels: u32, level: u32, column: i32, line: i32) -> vec2f {
     return vec2f(f32(pair & 255u), f32((pair >> 8u) & 255u) * PANE_SHADOW_PEAK) / 255.0;
 }
 
-// A level at a place of [0, 1], bilinear.
-fn pane_shadow_level(texels: u32, level: u32, place: vec2f) -> vec2f {
+// A level at a position in [0, 1], bilinear.
+fn pane_shadow_level(texels: u32, level: u32, position: vec2f) -> vec2f {
     let size = vec2f(pane_level(level).xy);
-    let at = place * size - 0.5;
+    let at = position * size - 0.5;
     let low = floor(at);
     let part = at - low;
     let x = i32(low.x);
@@ -27,32 +27,32 @@ fn pane_shadow_level(texels: u32, level: u32, place: vec2f) -> vec2f {
     return upper * (1.0 - part.y) + lower * part.y;
 }
 
-// Cover and gathered cover round a place of [0, 1], over a width in metres.
-fn pane_shadow_at(pane: RenderPane, place: vec2f, width: f32) -> vec2f {
-    let texels = width * pane.texels_per_metre;
+// Cover and gathered cover around a position of [0, 1], over a width in meters.
+fn pane_shadow_at(pane: RenderPane, position: vec2f, width: f32) -> vec2f {
+    let texels = width * pane.texels_per_meter;
     let level = clamp(log2(max(texels, 1.0)), 0.0, f32(pane.last));
     let low = floor(level);
     let part = level - low;
-    var found = pane_shadow_level(pane.first, u32(low), place) * (1.0 - part);
+    var found = pane_shadow_level(pane.first, u32(low), position) * (1.0 - part);
     if part > 0.0 {
-        found += pane_shadow_level(pane.first, u32(low) + 1u, place) * part;
+        found += pane_shadow_level(pane.first, u32(low) + 1u, position) * part;
     }
     return found;
 }
 
-// Share of light that comes through the pane to a place from a distance along a direction; `spread` is half the angle that its
+// Fraction of light that comes through the pane to a position from a distance along a direction; `spread` is half the angle that its
 // source takes. 1 where the pane is not between them.
-fn pane_shadow_share(place: vec3f, direction: vec3f, distance: f32, spread: f32) -> f32 {
+fn pane_shadow_fraction(position: vec3f, direction: vec3f, distance: f32, spread: f32) -> f32 {
     if render_frame.pane == 0u {
         return 1.0;
     }
     let pane = pane_load();
     let towards = dot(direction, pane.outward);
-    let away = dot(pane.corner - place, pane.outward) / select(towards, 1.0, towards == 0.0);
+    let away = dot(pane.corner - position, pane.outward) / select(towards, 1.0, towards == 0.0);
     if abs(towards) < 1.0e-4 || away <= 0.0 || away >= distance {
         return 1.0;
     }
-    let on = place + direction * away - pane.corner;
+    let on = position + direction * away - pane.corner;
     let at = vec2f(dot(on, pane.across) / pane.width, dot(on, pane.down) / pane.height);
     if at.x < 0.0 || at.y < 0.0 || at.x > 1.0 || at.y > 1.0 {
         return 1.0;

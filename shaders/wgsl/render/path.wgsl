@@ -1,7 +1,7 @@
 // Path of a ray of the camera: surfaces, water, and the light that comes to them from lamps, sky and one another.
 // Twin: downpour_trace::path, where the method is described.
 
-// Light of which means are taken over neighbouring pixels.
+// Light of which means are taken over neighboring pixels.
 struct PathSlot {
     light: vec3f,
     // Largest distance of another position from the plane; 0: there is no light.
@@ -12,18 +12,18 @@ struct PathSlot {
     roughness: f32,
     // The surface's normal; of a gloss, the direction that a mirror would show.
     normal: vec3f,
-    place: vec3f,
+    position: vec3f,
 }
 
 // Result of a ray of the camera.
 struct ViewPath {
-    // All light but that which is told apart below.
+    // All light except what the fields below hold.
     radiance: vec3f,
     // Distance of the first surface (SCENE_FAR for the sky).
     distance: f32,
     facet: vec3f,
     material: u32,
-    place: vec3f,
+    position: vec3f,
     // True if it is the surface that the sample before has seen.
     again: bool,
     // True if its result is the same over a pixel: no mirror, nothing behind a pane.
@@ -46,7 +46,7 @@ struct PathLight {
     factor: vec3f,
     distance: f32,
     normal: vec3f,
-    place: vec3f,
+    position: vec3f,
 }
 
 // The rays that look for the light of a surface.
@@ -62,7 +62,7 @@ struct PathPlan {
     // Part of the latter that is drawn for the gloss.
     chance: f32,
     // Part of all rays that one is.
-    share: f32,
+    fraction: f32,
     // True if rays of the gloss are drawn from its lobe; else they are a mirror's.
     drawn: bool,
     // True if the light that the gloss shows is averaged over neighboring pixels.
@@ -87,15 +87,15 @@ fn path_radiance(path: ViewPath) -> vec3f {
 }
 
 // True if a surface is the same that another sample of the pixel has met.
-fn path_same_surface(last: ViewPath, material: u32, facet: vec3f, place: vec3f, distance: f32) -> bool {
+fn path_same_surface(last: ViewPath, material: u32, facet: vec3f, position: vec3f, distance: f32) -> bool {
     return last.plain
         && last.material == material
         && dot(last.facet, facet) > PATH_SAME_FACET
-        && abs(dot(last.facet, place - last.place)) < PATH_SAME_PLANE * distance;
+        && abs(dot(last.facet, position - last.position)) < PATH_SAME_PLANE * distance;
 }
 
 // With what a ray brings: `of_shown` for the diffuse base of what a mirror shows.
-fn path_gathered(light: PathLight, ray: ScatterRay, radiance: vec3f, of_shown: bool) -> PathLight {
+fn path_accumulated(light: PathLight, ray: ScatterRay, radiance: vec3f, of_shown: bool) -> PathLight {
     var sum = light;
     let of_base = ray.diffuse * radiance;
     if of_shown {
@@ -108,7 +108,7 @@ fn path_gathered(light: PathLight, ray: ScatterRay, radiance: vec3f, of_shown: b
 }
 
 // The greatest part of a color.
-fn path_most(color: vec3f) -> f32 {
+fn path_max(color: vec3f) -> f32 {
     return max(color.x, max(color.y, color.z));
 }
 
@@ -129,10 +129,10 @@ fn path_open(surface: Surface) -> vec3f {
 }
 
 // The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
-// neighbouring pixels are taken of what they find; `free`: of what the gloss shows, too.
+// neighboring pixels are taken of what they find; `free`: of what the gloss shows, too.
 fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bool) -> PathPlan {
     let cosine = max(dot(surface.normal, view), 0.0);
-    // Neighbouring pixels mirror directions as far apart as this.
+    // Neighboring pixels mirror directions as far apart as this.
     let spread = 2.0 * surface.bend * footprint / max(cosine, 0.2);
     let sharp = surface.roughness < PATH_SHARP;
     let gloss = scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
@@ -141,15 +141,15 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
     let drawn = told && free && !sharp && rays > 0u;
     // If neighbors mirror other things, a mean over them would be wider than the lobe.
     let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
-    let share = select(1.0 / f32(max(rays, 1u)), render_frame.ray_share, told);
-    var plan = PathPlan(body, 0u, gloss, rays, 0.0, share, drawn, kept, false, spread);
+    let fraction = select(1.0 / f32(max(rays, 1u)), render_frame.ray_fraction, told);
+    var plan = PathPlan(body, 0u, gloss, rays, 0.0, fraction, drawn, kept, false, spread);
     if rays == 0u {
         plan.body = body * (vec3f(1.0) - gloss);
-    } else if path_most(body) <= 0.0 {
+    } else if path_max(body) <= 0.0 {
         plan.rays = 0u;
         plan.mirrors = select(1u, rays, drawn);
     } else if surface.roughness < PATH_MIXED {
-        plan.mirrors = select(0u, 1u, path_most(gloss) > PATH_MIN_GLOSS);
+        plan.mirrors = select(0u, 1u, path_max(gloss) > PATH_MIN_GLOSS);
     } else if kept {
         plan.chance = scatter_chance(body, gloss);
     }
@@ -164,21 +164,21 @@ fn path_water_surface(start: vec3f, along: vec3f, distance: f32, ripple: vec3f) 
     let normal = puddle_water_normal(vec3f(ripple.xy, 0.0), 0.0, 0.0);
     // Beckmann's alpha squared is the variance of the slope.
     let roughness = clamp(sqrt(sqrt(ripple.z)), 0.0, 1.0);
-    let place = start + along * distance;
-    return Surface(place, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0);
+    let position = start + along * distance;
+    return Surface(position, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0);
 }
 
 // A ray that water mirrors: drawn from its ripples. Its weight is Fresnel's.
 fn path_water_ray(ripple: vec3f, roughness: f32, view: vec3f, cone: f32, a: f32, b: f32) -> ScatterRay {
     let normal = puddle_water_normal(ripple, a, b);
     let along = puddle_water_mirrored(-view, normal);
-    let share = optics_fresnel(max(dot(view, normal), PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
-    return ScatterRay(along, cone + PUDDLE_WATER_CONE, vec3f(0.0), roughness, vec3f(share));
+    let fraction = optics_fresnel(max(dot(view, normal), PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
+    return ScatterRay(along, cone + PUDDLE_WATER_CONE, vec3f(0.0), roughness, vec3f(fraction));
 }
 
-// Fraction of light that water mirrors towards a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
+// Fraction of light that water mirrors toward a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
 // has no noise.
-fn path_water_share(ripple: vec3f, view: vec3f) -> f32 {
+fn path_water_fraction(ripple: vec3f, view: vec3f) -> f32 {
     let count = select(1u, PATH_WATER_FACETS, ripple.z > PUDDLE_WATER_RIPPLED);
     var sum = 0.0;
     for (var k = 0u; k < count; k += 1u) {
@@ -189,19 +189,19 @@ fn path_water_share(ripple: vec3f, view: vec3f) -> f32 {
 }
 
 // A surface as it looks under water of which a fraction `clear` of the light is left.
-fn path_soaked(surface: Surface, clear: f32, murk: vec3f) -> Surface {
-    var soaked = surface;
-    soaked.diffuse = puddle_water_albedo(surface.diffuse * clear + murk * (1.0 - clear));
-    soaked.normal_reflectance = puddle_water_reflectance(surface.normal_reflectance) * clear;
-    soaked.emission = surface.emission * clear;
-    return soaked;
+fn path_submerged(surface: Surface, clear: f32, scattering_albedo: vec3f) -> Surface {
+    var wet = surface;
+    wet.diffuse = puddle_water_albedo(surface.diffuse * clear + scattering_albedo * (1.0 - clear));
+    wet.normal_reflectance = puddle_water_reflectance(surface.normal_reflectance) * clear;
+    wet.emission = surface.emission * clear;
+    return wet;
 }
 
 // A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
-fn path_glance(surface: Surface, roughness: f32) -> Surface {
+fn path_secondary(surface: Surface, roughness: f32) -> Surface {
     var seen = surface;
-    if roughness >= PATH_GLANCE {
-        let gloss = min(surface.normal_reflectance, vec3f(PATH_GLANCE_GLOSS));
+    if roughness >= PATH_SECONDARY_ROUGHNESS {
+        let gloss = min(surface.normal_reflectance, vec3f(PATH_SECONDARY_MAX_SPECULAR));
         seen.diffuse = surface.diffuse + surface.normal_reflectance - gloss;
         seen.normal_reflectance = gloss;
         seen.roughness = 1.0;
@@ -209,7 +209,7 @@ fn path_glance(surface: Surface, roughness: f32) -> Surface {
     return seen;
 }
 
-// A ray that goes on from what a mirror shows, whose diffuse base takes the mirror's place.
+// Continuation of a ray from the surface that a mirror shows; its diffuse base replaces the mirror.
 fn path_replaced(ray: ScatterRay, next: ScatterRay) -> ScatterRay {
     var onward = next;
     onward.mirror = ray.mirror * next.mirror;
@@ -217,10 +217,10 @@ fn path_replaced(ray: ScatterRay, next: ScatterRay) -> ScatterRay {
     return onward;
 }
 
-// A ray that goes on from a surface that the ray before has met; without weight if it does not.
+// Continuation of a ray from the surface that it met; has no weight if the ray ends there.
 fn path_onward(ray: ScatterRay, next: ScatterRay, surface: Surface, number: f32) -> ScatterRay {
     let factor = path_albedo(surface) * next.diffuse + next.mirror;
-    let probability = min(path_most(factor), 1.0);
+    let probability = min(path_max(factor), 1.0);
     var onward = next;
     let weight = select(0.0, 1.0 / max(probability, 1.0e-6), number < probability);
     onward.diffuse = ray.diffuse * factor * weight;
@@ -232,7 +232,7 @@ fn path_onward(ray: ScatterRay, next: ScatterRay, surface: Surface, number: f32)
 // A direction for a ray of the diffuse base, as numbers for scatter_hemisphere, drawn among some of the hemisphere by the
 // light of the open sky from each: numbers, and the factor of the ray's weight. What is drawn often counts less (J. Talbot et
 // al., EGSR 2005).
-fn path_candidate(surface: Surface, a: f32, b: f32, number: f32, share: f32) -> vec3f {
+fn path_candidate(surface: Surface, a: f32, b: f32, number: f32, fraction: f32) -> vec3f {
     let sky = sky_irradiance(surface.normal);
     let least = (sky.x + sky.y + sky.z) * PATH_FLOOR + 1.0e-6;
     var sum = 0.0;
@@ -246,7 +246,7 @@ fn path_candidate(surface: Surface, a: f32, b: f32, number: f32, share: f32) -> 
         if dot(surface.facet, along) <= 0.0 {
             continue;
         }
-        let width = sqrt(SCATTER_DISC * share / (f32(PATH_CANDIDATES) * sqrt(max(1.0 - x, 0.01))));
+        let width = sqrt(SCATTER_DISK * fraction / (f32(PATH_CANDIDATES) * sqrt(max(1.0 - x, 0.01))));
         let seen = sky_cone(along, width);
         let light = seen.x + seen.y + seen.z + least;
         sum += light;
@@ -276,7 +276,7 @@ fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: b
     var b = numbers.y;
     var gloss = vec3f(1.0);
     var chance = scatter_chance(at.diffuse, at.normal_reflectance);
-    var share = PATH_LATER_SHARE;
+    var fraction = PATH_LATER_FRACTION;
     var weight = 1.0;
     if leaves == PATH_SHOWN {
         chance = 0.0;
@@ -284,22 +284,22 @@ fn path_draw(at: Surface, view: vec3f, plan: PathPlan, leaves: u32, is_mirror: b
     if leaves == PATH_FIRST {
         gloss = plan.gloss;
         chance = select(plan.chance, 1.0, is_mirror);
-        share = plan.share;
+        fraction = plan.fraction;
         if is_mirror && !plan.kept {
             // Few rays: far out in the lobe they would be noise.
-            share = PATH_CURVED_SHARE;
+            fraction = PATH_CURVED_FRACTION;
             a = a * PATH_CURVED_PART;
         }
         if a >= chance {
             let own = (a - chance) / (1.0 - chance);
-            let drawn = path_candidate(at, own, b, numbers.z, share);
+            let drawn = path_candidate(at, own, b, numbers.z, fraction);
             a = chance + drawn.x * (1.0 - chance);
             b = drawn.y;
             weight = drawn.z;
-            share /= f32(PATH_CANDIDATES);
+            fraction /= f32(PATH_CANDIDATES);
         }
     }
-    var ray = scatter_draw(at, view, gloss, chance, a, b, share);
+    var ray = scatter_draw(at, view, gloss, chance, a, b, fraction);
     ray.diffuse *= weight;
     ray.mirror *= weight;
     return ray;
@@ -311,7 +311,7 @@ fn path_show_mirrored(slot: PathSlot, light: PathLight, gloss: vec3f, slack: f32
         return slot;
     }
     let its_slack = slack + light.distance * (2.0 * spread + SKYLIGHT_SLACK);
-    return PathSlot(light.shown, its_slack, gloss * light.factor, 0.0, light.normal, light.place);
+    return PathSlot(light.shown, its_slack, gloss * light.factor, 0.0, light.normal, light.position);
 }
 
 // Traces a ray. If it meets the surface that `last` met, it sees the same.
@@ -323,7 +323,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
     var near = render_frame.nearest;
     // Water that the ray has come through, and whether it has met nothing since.
     var water = PuddleWater(PUDDLE_WATER_NONE, 0.0, 0.0, 0.0);
-    var murk = vec3f(0.0);
+    var scattering_albedo = vec3f(0.0);
     var clear = 1.0;
     var level = 0.0;
     var under = false;
@@ -341,7 +341,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         var ripple = vec3f(0.0);
         for (var turn = 0u; turn <= plan.mirrors + plan.rays; turn += 1u) {
             var ray = ScatterRay(towards, cone, vec3f(1.0), 0.0, vec3f(1.0));
-            var from_place = start;
+            var from_position = start;
             var nearest = near;
             var at = surface;
             var view = -towards;
@@ -365,7 +365,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     } else {
                         next = path_draw(at, view, plan, leaves, is_mirror, numbers);
                     }
-                    from_place = at.position + at.facet * render_frame.nearest;
+                    from_position = at.position + at.facet * render_frame.nearest;
                     nearest = render_frame.nearest;
                     if is_first {
                         if SCENE_WET && under && is_mirror {
@@ -383,21 +383,21 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     } else {
                         ray = path_onward(ray, next, at, numbers.z);
                     }
-                    if path_most(ray.diffuse + ray.mirror) <= 0.0 {
+                    if path_max(ray.diffuse + ray.mirror) <= 0.0 {
                         break;
                     }
                 }
-                let hit = surface_hit(from_place, ray.along, nearest, BVH_FAR);
+                let hit = surface_hit(from_position, ray.along, nearest, BVH_FAR);
                 if hit.distance < 0.0 {
                     if turn == 0u {
                         path.radiance += throughput * sky_level(0u, towards);
                         return path;
                     }
-                    light = path_gathered(light, ray, sky_cone(ray.along, ray.width), of_shown);
+                    light = path_accumulated(light, ray, sky_cone(ray.along, ray.width), of_shown);
                     break;
                 }
-                var found = surface_at(hit, from_place, ray.along, ray.width);
-                // All lamps, of the first surface; else some drawn for all, at a glance.
+                var found = surface_at(hit, from_position, ray.along, ray.width);
+                // All lamps for the first surface; for others, some sampled lamps.
                 var lamps = 0u;
                 var standoff = 0.0;
                 var depth = vec2f(0.0);
@@ -412,9 +412,9 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     if SCENE_WET && of_water {
                         // Back along the ray to where it came through the surface.
                         distance = max(hit.distance - water.rise / max(-towards.y, 0.01), near);
-                        let place = start + towards * distance;
+                        let position = start + towards * distance;
                         let footprint = cone * distance / sqrt(max(-towards.y, 0.02));
-                        ripple = puddle_water_ripple(water.puddle, place, footprint, water.depth, water.open);
+                        ripple = puddle_water_ripple(water.puddle, position, footprint, water.depth, water.open);
                         found = path_water_surface(start, towards, distance, ripple);
                     } else if layer == 0u
                         && path_same_surface(last, material, found.facet, found.position, hit.distance) {
@@ -425,18 +425,18 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     if SCENE_WET && under {
                         let rise = max(level - found.position.y, 0.0);
                         depth = vec2f(rise + max(water.depth - water.rise, 0.0), rise);
-                        found = path_soaked(found, clear, murk);
+                        found = path_submerged(found, clear, scattering_albedo);
                     }
                     if layer == 0u {
                         path.distance = distance;
                         path.material = select(material, PUDDLE_WATER_MATERIAL, of_water);
                         path.facet = found.facet;
-                        path.place = found.position;
+                        path.position = found.position;
                     }
                     near = hit.distance + render_frame.nearest;
                 } else {
-                    found = path_glance(found, ray.roughness);
-                    lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_GLANCE);
+                    found = path_secondary(found, ray.roughness);
+                    lamps = select(1u, PATH_MIRROR_LAMPS, ray.roughness < PATH_SECONDARY_ROUGHNESS);
                     standoff = hit.distance * ray.width * 0.5;
                     // Lamps, if there are any, stand for emissive surfaces; small bright surfaces would be noise.
                     shines = ray.roughness < PATH_SHINES || render_frame.light_count == 0u;
@@ -456,27 +456,27 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                         let rippled = ripple.z > PUDDLE_WATER_RIPPLED;
                         plan.mirrors = max(render_frame.sky_rays, select(1u, PUDDLE_WATER_RAYS, rippled));
                         plan.gloss = vec3f(1.0);
-                        plan.share = 1.0;
+                        plan.fraction = 1.0;
                         plan.drawn = rippled && free;
                         plan.kept = plan.drawn;
                         plan.replaced = !rippled && free;
                     } else if !unlit {
                         plan = path_plan(found, -towards, cone * hit.distance, told, free && !under);
                     }
-                    // Neighbouring pixels are on one plane if they are no farther from it than this.
+                    // Neighboring pixels are on one plane if they are no farther from it than this.
                     let from_eye = found.position - origin;
                     slack = sqrt(dot(from_eye, from_eye)) * (cone * 2.0 + SKYLIGHT_SLACK);
                     break;
                 }
                 let cover = path_cover(found);
-                light = path_gathered(light, ray, lit * cover, of_shown);
+                light = path_accumulated(light, ray, lit * cover, of_shown);
                 if unlit && cover == 1.0 {
                     break;
                 }
                 let open = path_open(found);
                 var ambient = vec3f(0.0);
                 leaves = PATH_ONWARD;
-                if path_most(open) > PATH_OPEN {
+                if path_max(open) > PATH_OPEN {
                     leaves = PATH_STRAIGHT;
                     if !unlit {
                         // Light of the sky that it reflects itself: half of the whole.
@@ -484,24 +484,24 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     }
                 } else if of_shown && light.distance < 0.0 {
                     leaves = PATH_MIRROR;
-                    if path_most(path_albedo(found)) > 0.0 || found.roughness >= PATH_GLANCE {
+                    if path_max(path_albedo(found)) > 0.0 || found.roughness >= PATH_SECONDARY_ROUGHNESS {
                         leaves = PATH_SHOWN;
-                        found = path_glance(found, 1.0);
+                        found = path_secondary(found, 1.0);
                         light.factor = ray.mirror * (path_albedo(found) + found.normal_reflectance * 0.5);
                         light.distance = hit.distance;
                         light.normal = found.normal;
-                        light.place = found.position;
+                        light.position = found.position;
                     }
                 } else if bounce + 1u == PATH_BOUNCES {
                     ambient = path_ambient(found, (given + lit) / f32(bounce + 1u));
                 }
                 let own = (path_albedo(found) + found.normal_reflectance) * ambient;
-                light = path_gathered(light, ray, own, of_shown);
+                light = path_accumulated(light, ray, own, of_shown);
                 given += lit;
                 if leaves == PATH_STRAIGHT {
                     ray.diffuse *= open;
                     ray.mirror *= open;
-                    from_place = found.position;
+                    from_position = found.position;
                     nearest = render_frame.nearest;
                 }
                 at = found;
@@ -511,21 +511,21 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         let mirrored = towards - surface.normal * (2.0 * dot(towards, surface.normal));
         if SCENE_WET && of_water {
             let all = f32(plan.mirrors);
-            let share = path_water_share(ripple, -towards);
+            let fraction = path_water_fraction(ripple, -towards);
             path.radiance += throughput * direct;
             if plan.kept {
                 path.mirror = PathSlot(
-                    light.mirror / max(all * share, 1.0e-6), slack, throughput * share, surface.roughness, mirrored,
+                    light.mirror / max(all * fraction, 1.0e-6), slack, throughput * fraction, surface.roughness, mirrored,
                     surface.position,
                 );
             } else {
                 path.radiance += throughput * light.mirror / all;
                 path.mirror = path_show_mirrored(path.mirror, light, throughput / all, slack, plan.spread);
             }
-            throughput *= 1.0 - share;
+            throughput *= 1.0 - fraction;
             // On beneath the surface. Ground that the model does not have is where it would be, seen in the model.
             let puddle = puddle_load(water.puddle);
-            murk = puddle.murk;
+            scattering_albedo = puddle.scattering_albedo;
             towards = puddle_water_refracted(towards, surface.normal);
             let steep = max(-towards.y, 0.1);
             clear = exp(-puddle.extinction * water.depth * (1.0 / steep + PUDDLE_WATER_DOWN));
@@ -547,7 +547,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 base = sky_irradiance(surface.normal);
                 mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
             } else if plan.mirrors == 0u && plan.chance == 0.0 {
-                // Too little for rays of its own.
+                // Too faint to trace rays for it.
                 plan.body += plan.gloss;
                 plan.gloss = vec3f(0.0);
             }
@@ -556,7 +556,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
             if told {
                 path.base = PathSlot(base, slack, of_base, 0.0, surface.normal, surface.position);
                 let mirrors = plan.mirrors > 0u && (surface.roughness < PATH_CURVED || !plan.kept)
-                    && path_most(plan.gloss) > PATH_PLAIN_GLOSS;
+                    && path_max(plan.gloss) > PATH_PLAIN_GLOSS;
                 path.plain = !(mirrors || layer > 0u);
             } else {
                 path.radiance += of_base * base;
@@ -570,7 +570,7 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         }
         under = false;
         throughput *= path_open(surface);
-        if path_most(throughput) < 1.0e-3 {
+        if path_max(throughput) < 1.0e-3 {
             return path;
         }
     }

@@ -1,7 +1,7 @@
 // Random numbers of a pixel's rays, of which the mean over a window of pixels has no pattern.
 // Twin: downpour_trace::path::lattice.
 
-// Words for the rays of sample k of a pixel. The first three are those of a lattice of rank 1, of which the pixels of any
+// Words for the rays of sample k of a pixel. The first three are those of a rank-1 lattice, of which the pixels of any
 // window of the filter's size have each point once; the last is the pixel's own.
 fn path_lattice_words(x: u32, y: u32, k: u32) -> vec4u {
     let seed = rng_draw(vec2u(render_frame.camera.seed, 0u), k, 0u, PATH_DIMENSION);
@@ -18,7 +18,7 @@ fn path_lattice_words(x: u32, y: u32, k: u32) -> vec4u {
     );
 }
 
-// Numbers in [0, 1) for ray `index` of `count` of a turn: two for its direction, one for whether it goes on, one for a lamp.
+// Numbers in [0, 1) for ray `index` of `count` of a turn: two for its direction, one for its survival, one for a lamp.
 fn path_lattice_numbers(random: vec4u, turn: u32, bounce: u32, index: u32, count: u32) -> vec4f {
     let words = rng_pcg4d(vec4u(random.w, turn, bounce, PATH_DIMENSION));
     let own = vec4f(rng_unit(words.x), rng_unit(words.y), rng_unit(words.z), rng_unit(words.w));

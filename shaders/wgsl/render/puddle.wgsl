@@ -13,8 +13,8 @@ struct RenderPuddle {
     // Ripples: scale, cosine and sine of the angle, influence.
     ripples: vec4f,
     // Albedo of deep water.
-    murk: vec3f,
-    // Fraction of light that is lost per metre of water, 1/m.
+    scattering_albedo: vec3f,
+    // Fraction of light that is lost per meter of water, 1/m.
     extinction: f32,
     // Depth of full ripples, and the puddle's own part of the lattice.
     own: vec3f,

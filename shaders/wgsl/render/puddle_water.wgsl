@@ -1,7 +1,7 @@
 // Puddles as rays meet them: depth maps over the ground, ripples of one lattice, what water does to the ground beneath it.
 // Twin: downpour_trace::scene::water, where the method is described.
 
-// Water over a place.
+// Water over a position.
 struct PuddleWater {
     // Number of the puddle, or PUDDLE_WATER_NONE.
     puddle: u32,
@@ -9,24 +9,24 @@ struct PuddleWater {
     depth: f32,
     // Height of the surface over the position, m.
     rise: f32,
-    // Share of the rain that arrives.
+    // Fraction of the rain that arrives.
     open: f32,
 }
 
 // A texel of a map: ground over the map's height (m), rise of the surface over the ground (m), depth (m, below 0 on
-// land), share of the rain that arrives.
+// land), fraction of the rain that arrives.
 fn puddle_water_texel(map: vec3u, x: i32, y: i32) -> vec4f {
     let column = clamp(x, 0, i32(map.x) - 1);
     let line = clamp(y, 0, i32(map.y) - 1);
     return puddle_texel(map.z + u32(line) * map.x + u32(column));
 }
 
-// The map over a place, bilinear. Beyond the map all is land.
-fn puddle_water_map(puddle: RenderPuddle, place: vec3f) -> vec4f {
+// The map over a position, bilinear. Beyond the map all is land.
+fn puddle_water_map(puddle: RenderPuddle, position: vec3f) -> vec4f {
     let axes = puddle.axes;
     let map = puddle.map;
-    let dx = place.x - puddle.middle.x;
-    let dz = place.z - puddle.middle.z;
+    let dx = position.x - puddle.middle.x;
+    let dz = position.z - puddle.middle.z;
     let along = dx * axes.x + dz * axes.y;
     let across = dz * axes.x - dx * axes.y;
     if abs(along) >= axes.z || abs(across) >= axes.w {
@@ -43,15 +43,15 @@ fn puddle_water_map(puddle: RenderPuddle, place: vec3f) -> vec4f {
     return upper * (1.0 - fy) + lower * fy;
 }
 
-// The water over a place that a ray has met, on ground whose facet rises by `upward`, or in the water.
-fn puddle_water_find(place: vec3f, upward: f32) -> PuddleWater {
+// The water over a position that a ray has met, on ground whose facet rises by `upward`, or in the water.
+fn puddle_water_find(position: vec3f, upward: f32) -> PuddleWater {
     for (var k = 0u; k < render_frame.puddle_count; k += 1u) {
         let puddle = puddle_load(k);
-        let found = puddle_water_map(puddle, place);
-        if found.z < PUDDLE_WATER_LEAST {
+        let found = puddle_water_map(puddle, position);
+        if found.z < PUDDLE_WATER_MIN_DEPTH {
             continue;
         }
-        let height = place.y - puddle.middle.y - found.x;
+        let height = position.y - puddle.middle.y - found.x;
         let rise = clamp(found.y - height, 0.0, max(found.y, 0.0));
         let stands = height > 0.0 && rise > 0.0;
         let lies = abs(height) <= PUDDLE_WATER_SLACK && upward > 0.7;
@@ -69,7 +69,7 @@ fn puddle_water_slope(first: u32, size: u32, x: i32, y: i32) -> vec4f {
     return puddle_texel(first + line * size + column);
 }
 
-// A piece of the ripples round a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
+// A piece of the ripples around a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
 // from the vertex, in the mesh's steps; `level` has size, first row and texels per step.
 fn puddle_water_piece(vertex: vec2i, offset: vec2f, first: u32, size: u32, steps: f32) -> vec3f {
     let words = rng_draw(vec2u(0u, 0u), bitcast<u32>(vertex.x), bitcast<u32>(vertex.y), PUDDLE_WATER_DIMENSION);
@@ -89,9 +89,9 @@ fn puddle_water_piece(vertex: vec2i, offset: vec2f, first: u32, size: u32, steps
 }
 
 // Slopes along x and z of the water's surface, and the variance of the slope within a footprint (m). One lattice serves
-// all water: pieces of it, from a place of its own for each vertex of a mesh of triangles, are mixed so that the variance
+// all water: pieces of it, from a different position for each vertex of a triangle mesh, are mixed so that the variance
 // stays.
-fn puddle_water_ripple(puddle: u32, place: vec3f, footprint: f32, depth: f32, open: f32) -> vec3f {
+fn puddle_water_ripple(puddle: u32, position: vec3f, footprint: f32, depth: f32, open: f32) -> vec3f {
     let water = puddle_load(puddle);
     let look = water.ripples;
     let more = water.own;
@@ -109,8 +109,8 @@ fn puddle_water_ripple(puddle: u32, place: vec3f, footprint: f32, depth: f32, op
     let first = head.first + (head.size * head.size - size * size) / 3u * 4u;
     let steps = PUDDLE_WATER_MESH / cell * f32(size) / f32(head.size);
 
-    let px = (place.x * look.y + place.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
-    let pz = (place.z * look.y - place.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
+    let px = (position.x * look.y + position.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
+    let pz = (position.z * look.y - position.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
     // Skewed, so that triangles become halves of squares.
     let sx = px - pz * 0.57735027;
     let sz = pz * 1.1547005;
@@ -174,7 +174,7 @@ fn puddle_water_refracted(direction: vec3f, normal: vec3f) -> vec3f {
     return along / sqrt(dot(along, along));
 }
 
-// The direction beneath level water of light from above, both towards where it comes from.
+// The direction beneath level water of light from above, both toward where it comes from.
 fn puddle_water_beneath(direction: vec3f) -> vec3f {
     let x = direction.x / PUDDLE_WATER_INDEX;
     let z = direction.z / PUDDLE_WATER_INDEX;
@@ -196,7 +196,7 @@ fn puddle_water_above(direction: vec3f) -> vec3f {
     return vec3f(x, sqrt(max(1.0 - x * x - z * z, 0.0)), z);
 }
 
-// Albedo of what lies under water, as seen through its surface over the share that comes out along the ray: light goes
+// Albedo of what lies under water, as seen through its surface over the fraction that comes out along the ray: light goes
 // in diffusely, and is thrown back between ground and surface. White stays white.
 fn puddle_water_albedo(albedo: vec3f) -> vec3f {
     let out = (1.0 - PUDDLE_WATER_OUTSIDE) / (PUDDLE_WATER_INDEX * PUDDLE_WATER_INDEX);

@@ -23,7 +23,7 @@ fn scatter_tangent(normal: vec3f) -> vec3f {
     return vec3f(1.0 + side * normal.x * normal.x * p, side * (normal.x * normal.y * p), -side * normal.x);
 }
 
-// A direction over the hemisphere round a normal, cosine-weighted, for two numbers in [0, 1).
+// A direction over the hemisphere around a normal, cosine-weighted, for two numbers in [0, 1).
 fn scatter_hemisphere(normal: vec3f, a: f32, b: f32) -> vec3f {
     let radius = sqrt(a);
     let angle = 6.2831853 * b;
@@ -52,9 +52,9 @@ fn scatter_gloss(normal_reflectance: vec3f, roughness: f32, cosine: f32, sharp: 
 }
 
 // A ray of a surface: of its gloss where `a` is below `chance`, else of its diffuse base. `view` points to the viewer,
-// `gloss` is what the weight of the gloss is divided by, `share` the part of all rays that this is.
+// `gloss` is what the weight of the gloss is divided by, `fraction` the part of all rays that this is.
 fn scatter_draw(
-    surface: Surface, view: vec3f, gloss: vec3f, chance: f32, a: f32, b: f32, share: f32,
+    surface: Surface, view: vec3f, gloss: vec3f, chance: f32, a: f32, b: f32, fraction: f32,
 ) -> ScatterRay {
     let normal = surface.normal;
     let alpha = scatter_alpha(surface.roughness);
@@ -81,19 +81,19 @@ fn scatter_draw(
         return ray;
     }
     let sum = view + along;
-    let halfway = sum / max(sqrt(dot(sum, sum)), SCATTER_SMALLEST);
+    let halfway = sum / max(sqrt(dot(sum, sum)), SCATTER_MIN_DIVISOR);
     let cosine_half = clamp(dot(normal, halfway), 0.0, 1.0);
     let fresnel = brdf_fresnel(surface.normal_reflectance, dot(view, halfway));
     // All densities times pi.
     let glossy = brdf_visible_density(alpha, cosine_half, cosine_view);
-    let density = max(glossy * chance + cosine * (1.0 - chance), SCATTER_SMALLEST);
-    ray.width = min(sqrt(SCATTER_DISC * share / density), SCATTER_MAX_WIDTH);
+    let density = max(glossy * chance + cosine * (1.0 - chance), SCATTER_MIN_DIVISOR);
+    ray.width = min(sqrt(SCATTER_DISK * fraction / density), SCATTER_MAX_WIDTH);
     if chance < 1.0 {
         ray.diffuse = (vec3f(1.0) - fresnel) * (cosine / density);
     }
     if chance > 0.0 {
         let lobe = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine) * cosine;
-        ray.mirror = fresnel * (lobe / density) / max(gloss, vec3f(SCATTER_SMALLEST));
+        ray.mirror = fresnel * (lobe / density) / max(gloss, vec3f(SCATTER_MIN_DIVISOR));
     }
     return ray;
 }
@@ -103,7 +103,7 @@ fn scatter_mirror(surface: Surface, view: vec3f) -> ScatterRay {
     let cosine = max(dot(surface.normal, view), 0.0);
     let along = surface.normal * (2.0 * dot(surface.normal, view)) - view;
     let density = brdf_visible_density(scatter_alpha(surface.roughness), 1.0, max(cosine, BRDF_GRAZING));
-    let width = min(sqrt(SCATTER_DISC / max(density, SCATTER_SMALLEST)), SCATTER_MAX_WIDTH);
+    let width = min(sqrt(SCATTER_DISK / max(density, SCATTER_MIN_DIVISOR)), SCATTER_MAX_WIDTH);
     return ScatterRay(scatter_above(surface.facet, along), width, vec3f(0.0), surface.roughness, vec3f(1.0));
 }
 

@@ -1,4 +1,4 @@
-// A scene of triangles under a sky, and the light of its lamps at a place.
+// A scene of triangles under a sky, and the light of its lamps at a position.
 // Twin: downpour_trace::scene.
 
 // True if there are puddles: their code slows down the rest.
@@ -24,12 +24,12 @@ struct SceneArrival {
     irradiance: vec3f,
 }
 
-// Share of light that reaches a place from a distance along a direction: surfaces that let light through dim it.
-fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
+// Fraction of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
+fn scene_visibility(position: vec3f, direction: vec3f, distance: f32) -> vec3f {
     var from_distance = render_frame.nearest;
     var visible = vec3f(1.0);
     for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
-        let hit = surface_hit(place, direction, from_distance, distance - render_frame.nearest);
+        let hit = surface_hit(position, direction, from_distance, distance - render_frame.nearest);
         if hit.distance < 0.0 {
             return visible;
         }
@@ -48,25 +48,25 @@ fn scene_visibility(place: vec3f, direction: vec3f, distance: f32) -> vec3f {
 
 // Light of row `index` as it arrives at a surface.
 // `standoff`: a lamp that is nearer to the surface's plane than this gives it the same light from so far: a spot close to a
-// lamp is small, and far brighter than all round it. `under`: the depth of level water over the surface, and how far the
+// lamp is small, and far brighter than all around it. `under`: the depth of level water over the surface, and how far the
 // water's surface is over it in the model; light is refracted where it enters, and what Fresnel's equations do not reflect
 // goes in.
 fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> SceneArrival {
-    var place = surface.position;
+    var position = surface.position;
     var light = LightSample();
     var arrival = SceneArrival();
     var height = 0.0;
     var passes = 1u;
     for (var k = 0u; k < passes; k += 1u) {
         if k > 0u {
-            place = surface.position - surface.facet * (standoff - height);
+            position = surface.position - surface.facet * (standoff - height);
             if SCENE_WET && under.x > 0.0 {
-                place = surface.position + vec3f(0.0, under.y, 0.0) + puddle_water_entry(light.direction, under.x);
+                position = surface.position + vec3f(0.0, under.y, 0.0) + puddle_water_entry(light.direction, under.x);
             }
         }
-        light = light_sample(light_load(index), place, 0.0);
+        light = light_sample(light_load(index), position, 0.0);
         if k == 0u {
-            let start = place + surface.facet * render_frame.nearest;
+            let start = position + surface.facet * render_frame.nearest;
             arrival = SceneArrival(
                 start, light.distance, light.direction, light.spread, light.direction, 1.0, light.irradiance,
             );
@@ -80,7 +80,7 @@ fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> S
     arrival.direction = light.direction;
     arrival.irradiance = light.irradiance;
     if SCENE_WET && under.x > 0.0 {
-        arrival.start = place + vec3f(0.0, render_frame.nearest, 0.0);
+        arrival.start = position + vec3f(0.0, render_frame.nearest, 0.0);
         arrival.distance = light.distance;
         arrival.along = light.direction;
         arrival.direction = puddle_water_beneath(light.direction);
@@ -95,18 +95,18 @@ fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> S
     return arrival;
 }
 
-// Light of one lamp on a surface, towards the viewer, if nothing is between them.
+// Light of one lamp on a surface, toward the viewer, if nothing is between them.
 fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival) -> vec3f {
     if dot(surface.facet, light.direction) <= 0.0 {
         return vec3f(0.0);
     }
-    let alpha = max(surface.roughness * surface.roughness, SCENE_LEAST_ROUGHNESS * SCENE_LEAST_ROUGHNESS);
+    let alpha = max(surface.roughness * surface.roughness, SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS);
     return light.irradiance * brdf_direct(
         surface.diffuse * light.diffuse, surface.normal_reflectance, alpha, surface.normal, view, light.direction,
     );
 }
 
-// Light of lamps and sun on a surface, towards the viewer. With `draws` of 0, or of at least as many as there are, all lamps
+// Light of lamps and sun on a surface, toward the viewer. With `draws` of 0, or of at least as many as there are, all lamps
 // are asked whether something hides them; else so many are drawn by what each would give (`chance` in [0, 1)), for all of
 // them. `standoff` and `under`: scene_arrival.
 fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff: f32, under: vec2f) -> vec3f {
@@ -122,17 +122,17 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
         let index = k % count;
         let arrival = scene_arrival(index, surface, standoff, under);
         let lit = scene_lamp(surface, view, arrival);
-        let share = light_weight(lit);
+        let fraction = light_weight(lit);
         if k < count {
-            total += share;
+            total += fraction;
             continue;
         }
         if k == count {
-            // Places at equal steps along what all give together: the lamps that they fall on are drawn.
+            // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
             step = total / f32(max(draws, 1u));
             next = chance * step;
         }
-        run += share;
+        run += fraction;
         var weight = 1.0;
         if few {
             if next >= run {
@@ -140,16 +140,16 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
             }
             let times = floor((run - next) / step) + 1.0;
             next += times * step;
-            weight = times * step / share;
-        } else if share <= total * SCENE_LEAST_LAMP {
+            weight = times * step / fraction;
+        } else if fraction <= total * SCENE_MIN_LAMP {
             continue;
         }
         let visible = scene_visibility(arrival.start, arrival.along, arrival.distance);
-        var share_of_pane = 1.0;
+        var fraction_of_pane = 1.0;
         if SCENE_PANE {
-            share_of_pane = pane_shadow_share(arrival.start, arrival.along, arrival.distance, arrival.spread);
+            fraction_of_pane = pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
         }
-        sum += lit * visible * (share_of_pane * weight);
+        sum += lit * visible * (fraction_of_pane * weight);
     }
     return sum;
 }

@@ -35,17 +35,17 @@ fn sky_level(level: u32, direction: vec3f) -> vec3f {
 
 // The sky as a ray sees it that is as wide as `width` at distance 1.
 fn sky_cone(direction: vec3f, width: f32) -> vec3f {
-    // Texels of the map across the ray; a texel between its neighbours is wider than one alone.
+    // Texels of the map across the ray; a texel between its neighbors is wider than one alone.
     let texels = width * f32(render_frame.sky_levels[0].y) * SKY_CONE_TEXELS;
     let level = min(log2(max(texels, 1.0)), f32(SCENE_SKY_LEVELS - 1u));
     let below = u32(level);
     let fraction = level - f32(below);
-    var share = 1.0 - fraction;
+    var weight = 1.0 - fraction;
     var sum = vec3f(0.0);
     // Two levels, or one.
-    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
-        sum += sky_level(below + k, direction) * share;
-        share = select(0.0, fraction, k == 0u);
+    for (var k = 0u; k < 2u && weight > 0.0; k += 1u) {
+        sum += sky_level(below + k, direction) * weight;
+        weight = select(0.0, fraction, k == 0u);
     }
     return sum;
 }

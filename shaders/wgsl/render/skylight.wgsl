@@ -1,10 +1,10 @@
-// Light of sky and surfaces on surfaces: means over what the pixels round a pixel have found on the same surface, times what
+// Light of sky and surfaces on surfaces: means over what the pixels around a pixel have found on the same surface, times what
 // the surface makes of it. The kernel makes one pass: means over windows, then wider means of them; the last adds them to the
 // picture.
 // Twin: downpour_trace::skylight, where the method is described.
 
-@group(0) @binding(1) var<storage, read> skylight_gather: array<TraceGather>;
-// Means of each pixel's two slots: colour, and the variance of its luminance.
+@group(0) @binding(1) var<storage, read> skylight_ambient: array<TraceAmbient>;
+// Means of each pixel's two slots: color, and the variance of its luminance.
 @group(0) @binding(2) var<storage, read> skylight_before: array<vec4f>;
 @group(0) @binding(3) var<storage, read_write> skylight_means: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> skylight_picture: array<vec4f>;
@@ -18,7 +18,7 @@ struct SkylightSlot {
     roughness: f32,
     // Of what counts as the same: the normal, or the direction that a mirror would show.
     direction: vec3f,
-    place: vec3f,
+    position: vec3f,
 }
 
 // The luminance of a color, for comparisons.
@@ -39,19 +39,19 @@ fn skylight_hat(from_pixel: u32, to_pixel: u32) -> f32 {
 
 // A slot of a pixel, unpacked.
 fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
-    var packed = skylight_gather[pixel].base;
+    var packed = skylight_ambient[pixel].base;
     if slot > 0u {
-        packed = skylight_gather[pixel].mirror;
+        packed = skylight_ambient[pixel].mirror;
     }
     let found = trace_unpack(packed);
     var normal = found.normal;
     if found.roughness > 0.0 {
         // Between what is seen and what is mirrored.
-        let seen = found.place - render_frame.camera.eye;
+        let seen = found.position - render_frame.camera.eye;
         let sum = found.normal - seen / max(sqrt(dot(seen, seen)), 1.0e-20);
         normal = sum / max(sqrt(dot(sum, sum)), 1.0e-20);
     }
-    return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, found.place);
+    return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, found.position);
 }
 
 // Degree to which two pixels show the same surface, 0 to 1.
@@ -59,7 +59,7 @@ fn skylight_same(own: SkylightSlot, other: SkylightSlot) -> f32 {
     if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
         return 0.0;
     }
-    let off = abs(dot(own.normal, other.place - own.place));
+    let off = abs(dot(own.normal, other.position - own.position));
     let near = max(1.0 - off / own.slack, 0.0);
     let cosine = dot(own.direction, other.direction);
     if own.roughness > 0.0 {
@@ -76,7 +76,7 @@ fn skylight_alike(own: vec4f, other: vec4f) -> f32 {
     return max(1.0 - apart * apart / max(SKYLIGHT_NOISE * (own.w + other.w), 1.0e-20), 0.0);
 }
 
-// The mean of the window round a pixel, and the variance of its luminance.
+// The mean of the window around a pixel, and the variance of its luminance.
 fn skylight_mean(x: u32, y: u32, slot: u32) -> vec4f {
     let own = skylight_slot(y * render_frame.camera.width + x, slot);
     if own.slack <= 0.0 {
@@ -159,8 +159,8 @@ fn main_skylight(@builtin(global_invocation_id) id: vec3u) {
         skylight_means[2u * index + slot] = mean;
     }
     if step == SKYLIGHT_PASSES {
-        let of_base = trace_unpack(skylight_gather[index].base).factor * skylight_means[2u * index].xyz;
-        let of_mirror = trace_unpack(skylight_gather[index].mirror).factor * skylight_means[2u * index + 1u].xyz;
+        let of_base = trace_unpack(skylight_ambient[index].base).factor * skylight_means[2u * index].xyz;
+        let of_mirror = trace_unpack(skylight_ambient[index].mirror).factor * skylight_means[2u * index + 1u].xyz;
         skylight_picture[index] += vec4f(of_base + of_mirror, 0.0);
     }
 }

@@ -1,11 +1,11 @@
 // One exact drop, large, in front of a sky map.
 // Law: geometrical optics with all orders of light. A ray of the camera is reflected and refracted where it enters
-// the drop, and again wherever it meets the surface from inside; each branch that leaves carries the share that
-// Fresnel's equations for unpolarised light give it, and the radiance of the sky where it goes.
+// the drop, and again wherever it meets the surface from inside; each branch that leaves carries the fraction that
+// Fresnel's equations for unpolarized light give it, and the radiance of the sky where it goes.
 // Lengths are in units of the drop's volume-equivalent radius; the frame is the world's: +Y up, the drop's origin
 // at 0. Radiance is linear, in the units of the map.
 // Sky map: equirectangular, u = 0.5 + atan2(z, x) / 2 pi, v = 0.5 - asin(y) / pi from the top, bilinear between the
-// middles of texels, round in u. To its light come lamps far away: discs of even radiance on the sphere of the sky.
+// middles of texels, round in u. To its light come lamps far away: disks of even radiance on the sphere of the sky.
 // Limits: light that has left the drop does not meet it again (it is convex up to 5.9 mm); 256 internal reflections.
 // Twin: downpour_specimen.
 
@@ -31,7 +31,7 @@ struct SpecimenView {
     // First row of the band, and its number of rows.
     first_row: u32,
     rows: u32,
-    // Bit c: the colour c is written.
+    // Bit c: the color c is written.
     channels: u32,
 }
 
@@ -46,17 +46,17 @@ struct SpecimenRay {
 struct SpecimenLight {
     // Point of the last interface.
     point: vec3f,
-    // Share of the light that left there.
-    share: f32,
+    // Fraction of the light that left there.
+    fraction: f32,
     // Direction of the light that left.
     exit: vec3f,
-    // Share of the light that is still inside.
+    // Fraction of the light that is still inside.
     rest: f32,
     // Its direction.
     inside: vec3f,
 }
 
-// A disc of the sky: towards its middle, the squared chord from there to its edge, and its radiance. Zeros are no lamp.
+// A disk of the sky: toward its middle, the squared chord from there to its edge, and its radiance. Zeros are no lamp.
 struct SpecimenLamp {
     direction: vec3f,
     reach: f32,
@@ -143,7 +143,7 @@ fn specimen_turns(y: f32, x: f32) -> f32 {
 }
 
 // Position of a direction (of any length) on the sky map: u from the left, v from the top, both in [0, 1].
-fn specimen_sky_place(direction: vec3f) -> vec2f {
+fn specimen_sky_position(direction: vec3f) -> vec2f {
     let level = sqrt(direction.x * direction.x + direction.z * direction.z);
     let turn = specimen_turns(direction.z, direction.x);
     let rise = specimen_turns(direction.y, level);
@@ -156,12 +156,12 @@ fn specimen_sky_texel(column: u32, row: u32) -> vec3f {
     return vec3f(specimen_map[at], specimen_map[at + 1u], specimen_map[at + 2u]);
 }
 
-// The radiance of the sky at a place of its map.
-fn specimen_sky(place: vec2f) -> vec3f {
+// The radiance of the sky at a position of its map.
+fn specimen_sky(position: vec2f) -> vec3f {
     let width = f32(specimen_view.sky.x);
     let last = f32(specimen_view.sky.y - 1u);
-    let x = place.x * width - 0.5;
-    let y = min(max(place.y * (last + 1.0) - 0.5, 0.0), last);
+    let x = position.x * width - 0.5;
+    let y = min(max(position.y * (last + 1.0) - 0.5, 0.0), last);
     let left = floor(x);
     let top = floor(y);
     let next = left + 1.0;
@@ -201,7 +201,7 @@ fn specimen_sky_lamps(direction: vec3f) -> vec3f {
 
 // The radiance of the map and of the lamps along a direction of length 1.
 fn specimen_sky_light(direction: vec3f) -> vec3f {
-    return specimen_sky(specimen_sky_place(direction)) + specimen_sky_lamps(direction);
+    return specimen_sky(specimen_sky_position(direction)) + specimen_sky_lamps(direction);
 }
 
 // The radiance of the sample (x, y), in samples from the middle of the picture.
@@ -211,22 +211,22 @@ fn specimen_radiance(view: SpecimenView, x: f32, y: f32) -> vec3f {
         return specimen_sky_light(ray.direction);
     }
     var light = specimen_enter(view.traced, ray);
-    var radiance = specimen_sky_light(light.exit) * light.share;
+    var radiance = specimen_sky_light(light.exit) * light.fraction;
     for (var k = 0u; k <= SPECIMEN_REFLECTIONS; k += 1u) {
         if light.rest <= 0.0 {
             break;
         }
-        let least = select(SPECIMEN_LEAST, SPECIMEN_ALL, k == SPECIMEN_REFLECTIONS);
+        let least = select(SPECIMEN_MIN_FRACTION, SPECIMEN_ALL, k == SPECIMEN_REFLECTIONS);
         light = specimen_bounce(view.traced, light, least);
-        if light.share > 0.0 {
-            radiance += specimen_sky_light(light.exit) * light.share;
+        if light.fraction > 0.0 {
+            radiance += specimen_sky_light(light.exit) * light.fraction;
         }
     }
     return radiance;
 }
 
 // Position of the samples of a line within their cells, 0 to 1. Each line is shifted against the next by the golden ratio
-// (a lattice of rank 1): what is narrower than a cell, as the image of a small lamp that a falling drop draws out along a
+// (a rank-1 lattice): what is narrower than a cell, as the image of a small lamp that a falling drop draws out along a
 // column, is not missed, or met, by all lines alike.
 fn specimen_jitter(line: u32) -> f32 {
     return rng_unit(line * SPECIMEN_LATTICE);

@@ -2,7 +2,7 @@
 // A drop that falls is a ray that rises: in the drop's frame, at u radii of fall after the middle of the exposure, the ray
 // of the camera is shifted by u along +Y. It meets the spheroid that holds the drop for one interval of u, which is known in
 // closed form; the rest of the exposure shows the sky, with its exact weight. The interval is cut into equal parts, one
-// instant in each, all at the same place of their part, which is drawn for each sample of the picture.
+// instant in each, all at the same position of their part, which is drawn for each sample of the picture.
 // u is in units of the volume-equivalent radius. Everything else is as in render/specimen.wgsl.
 // Twin: downpour_specimen::streak.
 
@@ -25,7 +25,7 @@ struct SpecimenStreak {
     count: u32,
 }
 
-// When a ray meets the drop.
+// Time interval in which a ray meets the drop.
 struct SpecimenPassage {
     // The foot of the shifted ray where the drop's axis and the ray are nearest to each other.
     foot: vec3f,
@@ -34,7 +34,7 @@ struct SpecimenPassage {
     // The interval of u.
     first: f32,
     last: f32,
-    // Its share of the exposure.
+    // Its fraction of the exposure.
     cover: f32,
 }
 
@@ -85,15 +85,15 @@ fn specimen_streak_radiance(drop: SpecimenWobble, ray: SpecimenRay) -> vec3f {
         return specimen_sky_light(ray.direction);
     }
     var light = specimen_wobble_enter(drop, ray, meets.x);
-    var radiance = specimen_sky_light(light.exit) * light.share;
+    var radiance = specimen_sky_light(light.exit) * light.fraction;
     for (var k = 0u; k <= SPECIMEN_STREAK_REFLECTIONS; k += 1u) {
         if light.rest <= 0.0 {
             break;
         }
-        let least = select(SPECIMEN_LEAST, SPECIMEN_ALL, k == SPECIMEN_STREAK_REFLECTIONS);
+        let least = select(SPECIMEN_MIN_FRACTION, SPECIMEN_ALL, k == SPECIMEN_STREAK_REFLECTIONS);
         light = specimen_wobble_bounce(drop, light, least);
-        if light.share > 0.0 {
-            radiance += specimen_sky_light(light.exit) * light.share;
+        if light.fraction > 0.0 {
+            radiance += specimen_sky_light(light.exit) * light.fraction;
         }
     }
     return radiance;

@@ -22,7 +22,7 @@ fn specimen_wobble_surface(drop: SpecimenWobble, point: vec3f) -> MaskTraceSurfa
     return mask_wobble_surface(drop.shape, drop.state, point);
 }
 
-// G - 1 and half of dG/ds at the place s of a line.
+// G - 1 and half of dG/ds at the position s of a line.
 fn specimen_wobble_along(drop: SpecimenWobble, origin: vec3f, direction: vec3f, s: f32) -> vec2f {
     let surface = specimen_wobble_surface(drop, origin + direction * s);
     return vec2f(surface.excess, dot(surface.half_gradient, direction));
@@ -41,7 +41,7 @@ fn specimen_wobble_span(drop: SpecimenWobble, origin: vec3f, direction: vec3f) -
     return select(vec2f(near, far), vec2f(1.0, -1.0), discriminant < 0.0);
 }
 
-// The first place between `start` and `end` at which a line goes into the drop (side = -1) or out of it (side = 1), and 1;
+// The first point between `start` and `end` at which a line goes into the drop (side = -1) or out of it (side = 1), and 1;
 // the second is 0 if there is none. At `start` it is on the other side, or on the surface.
 fn specimen_wobble_cross(
     drop: SpecimenWobble,
@@ -62,7 +62,7 @@ fn specimen_wobble_cross(
         at_b = specimen_wobble_along(drop, origin, direction, b);
         found = side * at_b.x > 0.0;
         if !found && side * at_a.y > 0.0 && side * at_b.y < 0.0 {
-            // G turns towards the other side: its extremum by the rule of the false position.
+            // G turns toward the other side: its extremum by the rule of the false position.
             var low = vec2f(a, at_a.y);
             var high = vec2f(b, at_b.y);
             for (var m = 0u; m < SPECIMEN_WOBBLE_TURNS; m += 1u) {
@@ -119,7 +119,7 @@ fn specimen_wobble_meet(drop: SpecimenWobble, ray: SpecimenRay) -> vec2f {
     return specimen_wobble_cross(drop, ray.foot, ray.direction, start, span.y, -1.0);
 }
 
-// The first interface, at the place s of the ray: what is reflected outside leaves, the rest enters.
+// The first interface, at the position s of the ray: what is reflected outside leaves, the rest enters.
 fn specimen_wobble_enter(drop: SpecimenWobble, ray: SpecimenRay, s: f32) -> SpecimenLight {
     let point = ray.foot + ray.direction * s;
     let normal = normalize(specimen_wobble_surface(drop, point).half_gradient);

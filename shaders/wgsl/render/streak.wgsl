@@ -4,7 +4,7 @@
 // oscillation stretches: left and right each by the mode's radius there, up and down by that of the poles. While a drop
 // passes a ray, which takes some tenths of a millisecond, its shape stands still.
 // Law: a ray that meets the oval's chord of half length h at the speed s is covered for 2 h / s of the exposure, so the
-// light that a drop takes out does not depend on how it is sampled. Where light of earlier moments weighs less, the share is
+// light that a drop takes out does not depend on how it is sampled. Where light of earlier moments weighs less, the fraction is
 // multiplied by the weight in the middle of the time in which the ray is covered: exact for a drop that keeps its depth, since weights
 // are straight lines.
 // Source: Rousseau 2006, section 5; Rousseau 2008, section 2.2.3 (oscillation, left and right with phi + pi).
@@ -14,16 +14,16 @@
 struct DropsDrop {
     // From the eye to the drop's middle, of length 1.
     towards: vec3f,
-    // Metres from the eye.
+    // Meters from the eye.
     distance: f32,
-    // Place of the middle on the picture, pixels from the top left.
-    place: vec2f,
+    // Position of the middle on the picture, pixels from the top left.
+    position: vec2f,
     // Equivalent radius over distance.
     slope: f32,
     // Half the width of its mask, in equivalent radii.
     half_extent: f32,
-    // Place in the masks: rows of diameters, and of elevations.
-    row: vec2f,
+    // Index of its mask, fractional: diameter, elevation.
+    mask_index: vec2f,
     // Area on the picture, pixels.
     area: f32,
     // Samples along an edge of a pixel; of a streak: samples of a pixel. 0: below a pixel, or out of focus.
@@ -38,14 +38,14 @@ struct DropsDrop {
     // Half the width and half the height of the oval, and how far its middle is up, in equivalent radii.
     oval: vec3f,
     // Depth at the end over that at the beginning.
-    recede: f32,
+    depth_ratio: f32,
     // Amplitudes of the modes (2,0) and (3,1), the latter times the cosine of its azimuth, and phases at the beginning, in
     // turns.
-    swing: vec4f,
+    mode_phase: vec4f,
     // Turns of both modes until the end.
-    turns: vec2f,
-    // Share of the exposure in which it is before the eye.
-    share: f32,
+    cycles: vec2f,
+    // Fraction of the exposure in which it is before the eye.
+    fraction: f32,
     // Width over which a drop that is not sampled is spread, pixels.
     spread: f32,
     // No part of it is nearer, m.
@@ -72,21 +72,21 @@ struct StreakChord {
     // The part of it that passes during the exposure, in units of `half`; none if `high` is not above `low`.
     low: f32,
     high: f32,
-    // Share of the exposure in which the whole chord would pass, by weight.
-    share: f32,
-    // Share of the exposure in which it moves by an equivalent radius, by weight.
+    // Fraction of the exposure in which the whole chord would pass, by weight.
+    fraction: f32,
+    // Fraction of the exposure in which it moves by an equivalent radius, by weight.
     pace: f32,
     // Weights of the light at `low` and at `high`.
     weights: vec2f,
-    // Place of the ray across the path, in equivalent radii.
+    // Position of the ray across the path, in equivalent radii.
     aside: f32,
     // Unit direction of the motion.
     path: vec2f,
 }
 
-// The time, as a share of the exposure, at which the drop is at a share of its way on the picture.
-fn streak_time(recede: f32, way: f32) -> f32 {
-    return way / max(way + (1.0 - way) * recede, 1.0e-20);
+// The time, as a fraction of the exposure, at which the drop is at a fraction of its way on the picture.
+fn streak_time(depth_ratio: f32, way: f32) -> f32 {
+    return way / max(way + (1.0 - way) * depth_ratio, 1.0e-20);
 }
 
 // Weight of the light at a time, 0 to 1, by the weights at the beginning and at the end of the way.
@@ -94,20 +94,20 @@ fn streak_weight(weights: vec2f, time: f32) -> f32 {
     return weights.x + (weights.y - weights.x) * clamp(time, 0.0, 1.0);
 }
 
-// The share of the way that is nearest to a place on the plane.
+// The fraction of the way that is nearest to a position on the plane.
 fn streak_nearest(drop: DropsDrop, at: vec2f) -> f32 {
     return clamp(dot(at - drop.start, drop.along) / max(dot(drop.along, drop.along), 1.0e-20), 0.0, 1.0);
 }
 
 // The depth at a time, over that in the middle of the exposure.
-fn streak_depth(recede: f32, time: f32) -> f32 {
-    return (1.0 + (recede - 1.0) * time) * 2.0 / (1.0 + recede);
+fn streak_depth(depth_ratio: f32, time: f32) -> f32 {
+    return (1.0 + (depth_ratio - 1.0) * time) * 2.0 / (1.0 + depth_ratio);
 }
 
 // Scales of the oval at a time: width on the right and on the left, and height.
-fn streak_stretch(swing: vec4f, turns: vec2f, time: f32) -> vec3f {
-    let s2 = swing.x * drop_oscillation_sine(swing.z + turns.x * time);
-    let s3 = swing.y * drop_oscillation_sine(swing.w + turns.y * time);
+fn streak_stretch(mode_phase: vec4f, turns: vec2f, time: f32) -> vec3f {
+    let s2 = mode_phase.x * drop_oscillation_sine(mode_phase.z + turns.x * time);
+    let s3 = mode_phase.y * drop_oscillation_sine(mode_phase.w + turns.y * time);
     let state = drop_oscillation_state(vec2f(s2, s3));
     return vec3f(drop_oscillation_outline(state, 1.0), drop_oscillation_radius(state, 1.0, 0.0));
 }
@@ -115,9 +115,9 @@ fn streak_stretch(swing: vec4f, turns: vec2f, time: f32) -> vec3f {
 // Returns the chord along which a ray through a point of the plane passes the drop.
 fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
     let way = streak_nearest(drop, at);
-    let time = streak_time(drop.recede, way);
-    let scale = drop.slope / streak_depth(drop.recede, time);
-    let stretch = streak_stretch(drop.swing, drop.turns, time);
+    let time = streak_time(drop.depth_ratio, way);
+    let scale = drop.slope / streak_depth(drop.depth_ratio, time);
+    let stretch = streak_stretch(drop.mode_phase, drop.cycles, time);
     let offset = (at - drop.start - drop.along * way) / scale;
     let side = select(stretch.x, stretch.y, offset.x < 0.0);
     let oval = vec2f(drop.oval.x * side, drop.oval.y * stretch.z);
@@ -129,15 +129,15 @@ fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
     let along = dot(on_oval, direction);
     let half = sqrt(max(1.0 - across * across, 0.0));
     let per_half = 1.0 / max(half, 1.0e-6);
-    let faster = way + (1.0 - way) * drop.recede;
-    let rate = drop.share * drop.recede / max(faster * faster, 1.0e-12);
+    let faster = way + (1.0 - way) * drop.depth_ratio;
+    let rate = drop.fraction * drop.depth_ratio / max(faster * faster, 1.0e-12);
     let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
     let path = drop.along / moves;
     let low = max((along - length * (1.0 - way)) * per_half, -1.0);
     let high = select(min((along + length * way) * per_half, 1.0), -2.0, half <= 1.0e-6);
     // Points ahead on the chord have passed earlier.
-    let begin = streak_time(drop.recede, clamp(way + (along - half * high) / length, 0.0, 1.0));
-    let end = streak_time(drop.recede, clamp(way + (along - half * low) / length, 0.0, 1.0));
+    let begin = streak_time(drop.depth_ratio, clamp(way + (along - half * high) / length, 0.0, 1.0));
+    let end = streak_time(drop.depth_ratio, clamp(way + (along - half * low) / length, 0.0, 1.0));
     let weights = vec2f(streak_weight(drop.weights, end), streak_weight(drop.weights, begin));
     let weight = 0.5 * (weights.x + weights.y);
     return StreakChord(
@@ -154,20 +154,20 @@ fn streak_chord(drop: DropsDrop, at: vec2f) -> StreakChord {
     );
 }
 
-// The place in the mask, in units of half of it, of a place on a chord, in units of half its length.
-fn streak_place(drop: DropsDrop, chord: StreakChord, v: f32) -> vec2f {
+// Position in the mask, in units of half its width, of a position on a chord, in units of half its length.
+fn streak_mask_position(drop: DropsDrop, chord: StreakChord, v: f32) -> vec2f {
     let away = vec2f(chord.direction.y, -chord.direction.x);
     let at = (away * chord.across + chord.direction * (v * chord.half)) * drop.oval.xy;
     return (at + vec2f(0.0, drop.oval.z)) / drop.half_extent;
 }
 
-// The share of a pixel's width that a box of some width (1 or more), `off` pixels from the pixel's middle, covers, over that
+// The fraction of a pixel's width that a box of some width (1 or more), `off` pixels from the pixel's middle, covers, over that
 // width: over all pixels it is 1.
 fn streak_box(width: f32, off: f32) -> f32 {
     return clamp((width + 1.0) * 0.5 - abs(off), 0.0, 1.0) / width;
 }
 
-// Both edges, as shares of the way, of where a path is less than `reach` from 0.
+// Both edges, as fractions of the way, of where a path is less than `reach` from 0.
 fn streak_within(begin: f32, way: f32, reach: f32) -> vec2f {
     if abs(way) < 1.0e-6 {
         return select(vec2f(2.0, -1.0), vec2f(0.0, 1.0), abs(begin) < reach);
@@ -210,8 +210,8 @@ fn streak_mean(begin: vec2f, way: vec2f, width: f32, weights: vec2f) -> f32 {
     return sum;
 }
 
-// The share of a pixel that a drop which is not sampled covers, by weight.
+// The fraction of a pixel that a drop which is not sampled covers, by weight.
 fn streak_cover(drop: DropsDrop, x: u32, y: u32) -> f32 {
     let begin = drop.first - vec2f(f32(x) + 0.5, f32(y) + 0.5);
-    return min(drop.area * drop.share * streak_mean(begin, drop.way, drop.spread, drop.weights), 1.0);
+    return min(drop.area * drop.fraction * streak_mean(begin, drop.way, drop.spread, drop.weights), 1.0);
 }

@@ -2,8 +2,8 @@
 // parts.
 // Law: the light that a ray brings is that of the directions in which it leaves the drop, weighted by what Fresnel's equations
 // give each. Between the rays that were traced, directions go as a polynomial of degree two across, along and in time, from ray to
-// ray that pass as many interfaces. So the ray's own patch of the drop is known: how wide the surroundings are averaged, and where
-// in the patch a lamp shines, whose disc (or, where the patch's points are farther apart, a spot that some of them meet) is sampled.
+// ray that pass as many interfaces. So the ray's own patch of the drop is known: how wide the environment is averaged, and where
+// in the patch a lamp shines, whose disk (or, where the patch's points are farther apart, a spot that some of them meet) is sampled.
 // Light lost inside has the mean radiance of the environment, without lamps: it travels around the rim and comes out there.
 // Layout: behind the chords of streak_rays.wgsl, for each row of the profile and each fine column the light of the chord's first
 // part, of the first two, three and of all four, each over the length of the whole chord.
@@ -14,23 +14,23 @@
 // Index of the path, and first of 64 columns of all rows of its profile.
 @group(0) @binding(4) var<storage, read> streak_light_jobs: array<vec2u>;
 @group(0) @binding(5) var<storage, read> streak_light_rays: array<StreakRay>;
-// For each path the mean of what is not told lamp by lamp, then two rows for each lamp: its irradiance and the chord from the
-// middle to the edge of its disc (below 0: its irradiance over pi, in the form of Rousseau 2006); its direction.
+// For each path the mean of what is not resolved by lamp, then two rows for each lamp: its irradiance and the chord from the
+// middle to the edge of its disk (below 0: its irradiance over pi, in the form of Rousseau 2006); its direction.
 @group(0) @binding(6) var<storage, read> streak_light_lamps: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> streak_light_table: array<vec4f>;
 
 // One exit of a ray.
 struct StreakExit {
     direction: vec3f,
-    share: f32,
+    fraction: f32,
     // Interfaces passed; 0: there is none.
     passed: u32,
 }
 
-// Change of an exit along an axis: first and second difference per ray, and first difference of its share.
+// Change of an exit along an axis: first and second difference per ray, and first difference of its fraction.
 struct StreakChange {
     first: vec3f,
-    share: f32,
+    fraction: f32,
     second: vec3f,
 }
 
@@ -56,35 +56,35 @@ fn streak_light_exit(path: StreakPath, row: i32, column: i32, tap: i32, number: 
     if passed == 0u {
         return StreakExit(vec3f(0.0), 0.0, 0u);
     }
-    let shares = unpack2x16unorm(streak_light_rays[at].shares[number >> 1u]);
+    let fractions = unpack2x16unorm(streak_light_rays[at].fractions[number >> 1u]);
     return StreakExit(
         packing_octahedral_decode(unpack2x16snorm(streak_light_rays[at].exits[number])),
-        select(shares.x, shares.y, (number & 1u) == 1u),
+        select(fractions.x, fractions.y, (number & 1u) == 1u),
         passed,
     );
 }
 
-// The change between an exit's neighbours, as far as their light went the same way.
+// The change between an exit's neighbors, as far as their light went the same way.
 fn streak_light_change(before: StreakExit, here: StreakExit, after: StreakExit) -> StreakChange {
     let has_before = before.passed == here.passed;
     let has_after = after.passed == here.passed;
     if has_before && has_after {
         return StreakChange(
             (after.direction - before.direction) * 0.5,
-            (after.share - before.share) * 0.5,
+            (after.fraction - before.fraction) * 0.5,
             after.direction + before.direction - here.direction * 2.0,
         );
     }
     if has_after {
-        return StreakChange(after.direction - here.direction, after.share - here.share, vec3f(0.0));
+        return StreakChange(after.direction - here.direction, after.fraction - here.fraction, vec3f(0.0));
     }
     if has_before {
-        return StreakChange(here.direction - before.direction, here.share - before.share, vec3f(0.0));
+        return StreakChange(here.direction - before.direction, here.fraction - before.fraction, vec3f(0.0));
     }
     return StreakChange(vec3f(0.0), 0.0, vec3f(0.0));
 }
 
-// The mixed second difference, from the two neighbours on a diagonal.
+// The mixed second difference, from the two neighbors on a diagonal.
 fn streak_light_mixed(
     before: StreakExit,
     here: StreakExit,
@@ -140,18 +140,18 @@ fn streak_light_patch(path: StreakPath, row: i32, column: i32, tap: i32, number:
     return StreakPatch(here, across, along, later, across_along, across_later, along_later);
 }
 
-// The direction at a place of a patch: rays across, along and later, from its middle.
-fn streak_light_direction(ray: StreakPatch, place: vec3f) -> vec3f {
+// The direction at a position of a patch: rays across, along and later, from its middle.
+fn streak_light_direction(ray: StreakPatch, position: vec3f) -> vec3f {
     let linear = ray.middle.direction
-        + ray.across.first * place.x
-        + ray.along.first * place.y
-        + ray.later.first * place.z;
-    let squares = ray.across.second * (0.5 * place.x * place.x)
-        + ray.along.second * (0.5 * place.y * place.y)
-        + ray.later.second * (0.5 * place.z * place.z);
-    let mixed = ray.across_along * (place.x * place.y)
-        + ray.across_later * (place.x * place.z)
-        + ray.along_later * (place.y * place.z);
+        + ray.across.first * position.x
+        + ray.along.first * position.y
+        + ray.later.first * position.z;
+    let squares = ray.across.second * (0.5 * position.x * position.x)
+        + ray.along.second * (0.5 * position.y * position.y)
+        + ray.later.second * (0.5 * position.z * position.z);
+    let mixed = ray.across_along * (position.x * position.y)
+        + ray.across_later * (position.x * position.z)
+        + ray.along_later * (position.y * position.z);
     return normalize(linear + squares + mixed);
 }
 
@@ -162,9 +162,9 @@ fn streak_light_size(ray: StreakPatch, later: f32) -> vec2f {
     return sqrt(vec2f(dot(across, across), dot(along, along)));
 }
 
-// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disc. Its radiance is that of an
-// irradiance of 1. `reach`: the chord from the middle to the edge of the disc; `span`: rays between two rows of the profile;
-// `shift` tells the points of a patch from its neighbours'.
+// Fraction of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that of an
+// irradiance of 1. `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the profile;
+// `shift` tells the points of a patch from its neighbors'.
 fn streak_light_spot(
     ray: StreakPatch,
     later: f32,
@@ -190,11 +190,11 @@ fn streak_light_spot(
         let number = f32(k) + 0.5;
         let steps = vec3f(1.0 / f32(STREAK_SPOTS), STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
         let point = fract(number * steps + shift);
-        let place = point - 0.5;
-        let apart = streak_light_direction(ray, vec3f(place.xy, later + place.z * span)) - lamp;
+        let position = point - 0.5;
+        let apart = streak_light_direction(ray, vec3f(position.xy, later + position.z * span)) - lamp;
         let off = dot(apart, apart) / (wide * wide);
         if off < 1.0 {
-            // A disc, or a spot that fades towards its edge.
+            // A disk, or a spot that fades toward its edge.
             let faded = select(1.0, 2.0 * (1.0 - off), spot > reach);
             spots[min(u32(point.x * f32(fine)), fine - 1u)] += radiance * faded;
         }
@@ -244,8 +244,8 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
     let per_part = path.columns / STREAK_SUMS;
     let first_light = path.first_entry + 1u + path.rows * path.columns;
     for (var tap = 0u; tap < path.columns; tap += 1u) {
-        let low = streak_place_position(f32(tap), path.columns);
-        let high = streak_place_position(f32(tap + 1u), path.columns);
+        let low = streak_cell_position(f32(tap), path.columns);
+        let high = streak_cell_position(f32(tap + 1u), path.columns);
         let weight = 0.5 * (high - low);
         let number = f32((row * path.columns + column) * path.columns + tap);
         let shift = fract(number * vec3f(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD));
@@ -257,10 +257,10 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
             if ray.middle.passed == 0u {
                 continue;
             }
-            let share = clamp(ray.middle.share + ray.later.share * later, 0.0, 1.0);
-            rest -= share;
+            let fraction = clamp(ray.middle.fraction + ray.later.fraction * later, 0.0, 1.0);
+            rest -= fraction;
             // The papers' form has what comes through, undimmed, and nothing else.
-            let shown = select(share, select(0.0, 1.0, exit == 1u), drops_frame.form == DROPS_SHIFT);
+            let shown = select(fraction, select(0.0, 1.0, exit == 1u), drops_frame.form == DROPS_SHIFT);
             let size = streak_light_size(ray, later);
             let width = max(sqrt(size.x * size.y), STREAK_NARROWEST * max(size.x, size.y));
             let direction = streak_light_direction(ray, vec3f(0.0, 0.0, later));
@@ -273,11 +273,11 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
                 let towards = streak_light_lamps[first_lamp + 2u + 2u * k].xyz;
                 let spots = streak_light_spot(ray, later, rays_per_row, size, towards, lamp.w, fine, shift);
                 for (var part = 0u; part < fine; part += 1u) {
-                    sums[part] += lamp.rgb * (spots[part] * share * weight);
+                    sums[part] += lamp.rgb * (spots[part] * fraction * weight);
                 }
             }
         }
-        // Between rows shares may sum to a little more than all.
+        // Between rows fractions may sum to a little more than all.
         let whole = select(max(1.0 - rest, 1.0), 1.0, drops_frame.form == DROPS_SHIFT);
         even += seen / whole + lost * select(max(rest, 0.0), 0.0, drops_frame.form == DROPS_SHIFT);
         for (var part = 0u; part < fine; part += 1u) {
@@ -286,8 +286,8 @@ fn streak_light_column(path_index: u32, row: u32, column: u32) {
         if (tap + 1u) % per_part == 0u {
             let sum = (tap + 1u) / per_part - 1u;
             for (var part = 0u; part < fine; part += 1u) {
-                let place = (row * path.columns + column) * fine + part;
-                streak_light_table[first_light + place * STREAK_SUMS + sum] = vec4f(sums[part], 0.0);
+                let cell = (row * path.columns + column) * fine + part;
+                streak_light_table[first_light + cell * STREAK_SUMS + sum] = vec4f(sums[part], 0.0);
             }
         }
     }

@@ -18,13 +18,13 @@ struct StreakPassage {
     fine: u32,
     // Time at which the drop is nearest, 0 to 1.
     time: f32,
-    // Place across the outline in shares of its columns, 0 to 1.
+    // Position across the outline in fractions of its columns, 0 to 1.
     across: f32,
     // The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
     low: f32,
     high: f32,
-    // Share of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
-    share: f32,
+    // Fraction of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
+    fraction: f32,
 }
 
 // The chords between columns of a row: middle and half of the outline's width, middle and half of the chord.
@@ -40,8 +40,8 @@ fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
     let first = drop.profile;
     let sizes = vec4u(streak_table[first]);
     let way = streak_nearest(drop, at);
-    let time = streak_time(drop.recede, way);
-    let scale = drop.slope / streak_depth(drop.recede, time);
+    let time = streak_time(drop.depth_ratio, way);
+    let scale = drop.slope / streak_depth(drop.depth_ratio, time);
     let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
     let path = drop.along / moves;
     let offset = (at - drop.start - drop.along * way) / scale;
@@ -52,20 +52,20 @@ fn streak_lookup_passage(drop: DropsDrop, at: vec2f) -> StreakPassage {
     let row_part = row_at - f32(row);
     let width = streak_table[first + 1u + row * sizes.y].xy * (1.0 - row_part)
         + streak_table[first + 1u + (row + 1u) * sizes.y].xy * row_part;
-    let place = (aside - width.x) / max(width.y, 1.0e-6);
-    let across = streak_place_index(place, 1u);
+    let position = (aside - width.x) / max(width.y, 1.0e-6);
+    let across = streak_cell_index(position, 1u);
     let column_at = clamp(across * f32(sizes.y) - 0.5, 0.0, f32(sizes.y - 1u));
     let chord = streak_lookup_chord(first, sizes.y, row, column_at) * (1.0 - row_part)
         + streak_lookup_chord(first, sizes.y, row + 1u, column_at) * row_part;
-    let half = chord.w * sqrt(max(1.0 - place * place, 0.0));
+    let half = chord.w * sqrt(max(1.0 - position * position, 0.0));
     let per_half = 1.0 / max(half, 1.0e-6);
     let length = moves / scale;
-    let faster = way + (1.0 - way) * drop.recede;
-    let rate = drop.share * drop.recede / max(faster * faster, 1.0e-12);
+    let faster = way + (1.0 - way) * drop.depth_ratio;
+    let rate = drop.fraction * drop.depth_ratio / max(faster * faster, 1.0e-12);
     let low = max(((ahead - chord.z) - length * (1.0 - way)) * per_half, -1.0);
     let high = select(min(((ahead - chord.z) + length * way) * per_half, 1.0), -2.0, half <= 1.0e-6);
     let middle = clamp(way + ((ahead - chord.z) - 0.5 * half * (low + high)) / length, 0.0, 1.0);
-    let weight = streak_weight(drop.weights, streak_time(drop.recede, middle));
+    let weight = streak_weight(drop.weights, streak_time(drop.depth_ratio, middle));
     return StreakPassage(
         first,
         sizes.x,
@@ -103,18 +103,18 @@ fn streak_lookup_sum(passage: StreakPassage, sums: u32) -> vec3f {
         + streak_lookup_column(passage, low + 1u, sums) * part;
 }
 
-// The running sum up to a place on the chord, -1 to 1.
-fn streak_lookup_until(passage: StreakPassage, place: f32) -> vec3f {
-    let at = streak_place_index(place, STREAK_SUMS);
+// The running sum up to a position on the chord, -1 to 1.
+fn streak_lookup_until(passage: StreakPassage, position: f32) -> vec3f {
+    let at = streak_cell_index(position, STREAK_SUMS);
     let low = min(u32(at), STREAK_SUMS - 1u);
-    // By length: in uniform surroundings light goes as coverage does.
-    let first = streak_place_position(f32(low), STREAK_SUMS);
-    let length = streak_place_position(f32(low + 1u), STREAK_SUMS) - first;
-    let part = clamp((place - first) / length, 0.0, 1.0);
+    // By length: in a uniform environment light is proportional to coverage.
+    let first = streak_cell_position(f32(low), STREAK_SUMS);
+    let length = streak_cell_position(f32(low + 1u), STREAK_SUMS) - first;
+    let part = clamp((position - first) / length, 0.0, 1.0);
     return streak_lookup_sum(passage, low) * (1.0 - part) + streak_lookup_sum(passage, low + 1u) * part;
 }
 
-// A streak at a place of the plane: radiance times the share of the exposure in which it is covered, and this share.
+// A streak at a position of the plane: radiance times the fraction of the exposure in which it is covered, and this fraction.
 fn streak_lookup_shown(drop: DropsDrop, at: vec2f) -> vec4f {
     let passage = streak_lookup_passage(drop, at);
     if passage.high <= passage.low {
@@ -126,12 +126,12 @@ fn streak_lookup_shown(drop: DropsDrop, at: vec2f) -> vec4f {
     } else {
         light = streak_lookup_until(passage, passage.high) - streak_lookup_until(passage, passage.low);
     }
-    return vec4f(light, (passage.high - passage.low) * 0.5) * passage.share;
+    return vec4f(light, (passage.high - passage.low) * 0.5) * passage.fraction;
 }
 
-// The mean radiance of a whole drop of a class. `place` is in [0, 1] from the top left of the picture.
-fn streak_lookup_mean(shape: u32, place: vec2f) -> vec3f {
-    let at = clamp(place, vec2f(0.0), vec2f(1.0)) * f32(STREAK_RAYS - 1u);
+// The mean radiance of a whole drop of a class. `position` is in [0, 1] from the top left of the picture.
+fn streak_lookup_mean(shape: u32, position: vec2f) -> vec3f {
+    let at = clamp(position, vec2f(0.0), vec2f(1.0)) * f32(STREAK_RAYS - 1u);
     let low = min(vec2u(at), vec2u(STREAK_RAYS - 2u));
     let part = at - vec2f(low);
     let entry = (shape * STREAK_RAYS + low.y) * STREAK_RAYS + low.x;

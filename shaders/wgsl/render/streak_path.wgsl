@@ -16,7 +16,7 @@ struct StreakPath {
     tall: f32,
     // Refractive index of water relative to air.
     index: f32,
-    // Cosine and sine of the azimuth of the lobe of the mode (3,1), from +X towards +Z.
+    // Cosine and sine of the azimuth of the lobe of the mode (3,1), from +X toward +Z.
     lobe: vec2f,
     // Amplitudes of the modes (2,0) and (3,1), over the radius.
     amplitudes: vec2f,
@@ -41,13 +41,13 @@ struct StreakInstant {
     // Equivalent radius on the plane.
     scale: f32,
     time: f32,
-    // Share of the way on the picture.
+    // Fraction of the way on the picture.
     way: f32,
     // Time in which it moves by an equivalent radius.
     pace: f32,
 }
 
-// A ray in the frame of the drop, whose lobe is towards +X: the point on the plane, and the direction.
+// A ray in the frame of the drop, whose lobe is toward +X: the point on the plane, and the direction.
 struct StreakLine {
     origin: vec3f,
     direction: vec3f,
@@ -55,10 +55,10 @@ struct StreakLine {
 
 // A drop at a time.
 fn streak_path_instant(drop: DropsDrop, time: f32) -> StreakInstant {
-    let way = time * drop.recede / max(1.0 - time + time * drop.recede, 1.0e-20);
-    let scale = drop.slope / streak_depth(drop.recede, time);
-    let faster = way + (1.0 - way) * drop.recede;
-    let rate = drop.recede / max(faster * faster, 1.0e-12);
+    let way = time * drop.depth_ratio / max(1.0 - time + time * drop.depth_ratio, 1.0e-20);
+    let scale = drop.slope / streak_depth(drop.depth_ratio, time);
+    let faster = way + (1.0 - way) * drop.depth_ratio;
+    let rate = drop.depth_ratio / max(faster * faster, 1.0e-12);
     let moves = max(sqrt(dot(drop.along, drop.along)), 1.0e-20);
     return StreakInstant(drop.start + drop.along * way, scale, time, way, rate * scale / moves);
 }
@@ -72,8 +72,8 @@ fn streak_path_axes(drop: DropsDrop) -> vec4f {
 // s2 and s3 at a time.
 fn streak_path_displacement(path: StreakPath, drop: DropsDrop, time: f32) -> vec2f {
     return vec2f(
-        path.amplitudes.x * drop_oscillation_sine(drop.swing.z + drop.turns.x * time),
-        path.amplitudes.y * drop_oscillation_sine(drop.swing.w + drop.turns.y * time),
+        path.amplitudes.x * drop_oscillation_sine(drop.mode_phase.z + drop.cycles.x * time),
+        path.amplitudes.y * drop_oscillation_sine(drop.mode_phase.w + drop.cycles.y * time),
     );
 }
 
@@ -100,7 +100,7 @@ fn streak_path_turned(path: StreakPath, v: vec3f) -> vec3f {
     return vec3f(v.x * path.lobe.x + v.z * path.lobe.y, v.y, v.z * path.lobe.x - v.x * path.lobe.y);
 }
 
-// The other way round.
+// The inverse.
 fn streak_path_back(path: StreakPath, v: vec3f) -> vec3f {
     return vec3f(v.x * path.lobe.x - v.z * path.lobe.y, v.y, v.z * path.lobe.x + v.x * path.lobe.y);
 }
@@ -109,8 +109,8 @@ fn streak_path_back(path: StreakPath, v: vec3f) -> vec3f {
 fn streak_path_line(path: StreakPath, drop: DropsDrop, instant: StreakInstant, offset: vec2f) -> StreakLine {
     let right = drop_glint_right(drop.towards);
     let up = cross(right, drop.towards);
-    let place = instant.middle + offset * instant.scale;
-    let direction = normalize(drop.towards + right * place.x + up * place.y);
+    let position = instant.middle + offset * instant.scale;
+    let direction = normalize(drop.towards + right * position.x + up * position.y);
     let origin = right * offset.x + up * offset.y;
     return StreakLine(streak_path_turned(path, origin), streak_path_turned(path, direction));
 }

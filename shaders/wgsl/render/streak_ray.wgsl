@@ -4,8 +4,8 @@
 struct StreakRay {
     // Directions in which its light leaves, octahedral, two numbers of 16 bits each: reflected outside, then the exits from inside.
     exits: vec4u,
-    // Their shares, two numbers of 16 bits each.
-    shares: vec2u,
+    // Their fractions, two numbers of 16 bits each.
+    fractions: vec2u,
     // Interfaces passed up to there, 8 bits each; 0: there is no such exit.
     interfaces: u32,
     unused: u32,

@@ -1,8 +1,8 @@
 // Traces the rays of the profiles of streaks: for an instant of the exposure the drop's outline, chords along the motion across it,
 // and rays along each chord to where their light leaves the drop.
 // Layout: a streak has a head in the table (rows, columns, rows of the profile, fine columns), then for each row and column the
-// middle and half of the outline's width and the middle and half of the chord, the latter over sqrt(1 - a^2) at the place a
-// across; rays stand in a buffer of their own, row by row, column by column, along the chord.
+// middle and half of the outline's width and the middle and half of the chord, the latter over sqrt(1 - a^2) at the position a
+// across; rays are in a separate buffer, row by row, column by column, along the chord.
 // Twin: downpour_render::rain::streak_rays.
 
 @group(0) @binding(0) var<storage, read> streak_rays_drops: array<DropsDrop>;
@@ -34,7 +34,7 @@ fn streak_rays_outline(path: StreakPath, drop: DropsDrop, instant: StreakInstant
         let gauge = sqrt(max(surface.excess + 1.0, 0.0));
         let slope = max(dot(surface.half_gradient, radial), STREAK_OUTLINE_SLOPE);
         let next = radius - surface.excess / (gauge + 1.0) * gauge / slope;
-        radius = clamp(next, STREAK_OUTLINE_LEAST, STREAK_OUTLINE_MOST);
+        radius = clamp(next, STREAK_OUTLINE_MIN, STREAK_OUTLINE_MAX);
     }
     return vec2f(radius * s, radius * c);
 }
@@ -50,10 +50,10 @@ fn streak_rays_width() -> vec2f {
     return vec2f(0.5 * (high + low), 0.5 * (high - low));
 }
 
-// Middle and half of the chord at a place across the motion.
+// Middle and half of the chord at a position across the motion.
 fn streak_rays_chord(across: f32) -> vec2f {
-    var low = STREAK_OUTLINE_MOST;
-    var high = -STREAK_OUTLINE_MOST;
+    var low = STREAK_OUTLINE_MAX;
+    var high = -STREAK_OUTLINE_MAX;
     for (var k = 0u; k < STREAK_OUTLINE; k += 1u) {
         let p = streak_rays_points[k];
         let q = streak_rays_points[(k + 1u) % STREAK_OUTLINE];
@@ -81,7 +81,7 @@ fn streak_rays_ray(path: StreakPath, drop: DropsDrop, instant: StreakInstant, po
             pack2x16snorm(packing_octahedral_encode(streak_path_back(path, light.second))),
             pack2x16snorm(packing_octahedral_encode(streak_path_back(path, light.third))),
         ),
-        vec2u(pack2x16unorm(light.shares.xy), pack2x16unorm(light.shares.zw)),
+        vec2u(pack2x16unorm(light.fractions.xy), pack2x16unorm(light.fractions.zw)),
         passed.x | (passed.y << 8u) | (passed.z << 16u) | (passed.w << 24u),
         0u,
     );
@@ -112,14 +112,14 @@ fn main_streak_rays(
     }
     for (var k = index; k < columns * columns; k += 64u) {
         let column = k / columns;
-        let place = streak_place_position(f32(column) + 0.5, columns);
-        let across = width.x + width.y * place;
+        let position = streak_cell_position(f32(column) + 0.5, columns);
+        let across = width.x + width.y * position;
         let chord = streak_rays_chord(across);
-        let along = chord.x + chord.y * streak_place_position(f32(k % columns) + 0.5, columns);
+        let along = chord.x + chord.y * streak_cell_position(f32(k % columns) + 0.5, columns);
         streak_rays_made[path.first_ray + row * columns * columns + k] =
             streak_rays_ray(path, drop, instant, vec2f(across, along));
         if k % columns == 0u {
-            let round = chord.y / sqrt(max(1.0 - place * place, 1.0e-6));
+            let round = chord.y / sqrt(max(1.0 - position * position, 1.0e-6));
             streak_rays_table[path.first_entry + 1u + row * columns + column] = vec4f(width, chord.x, round);
         }
     }

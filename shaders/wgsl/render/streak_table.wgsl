@@ -1,6 +1,6 @@
-// Makes the means of the streak radiance table: what a drop of a class of sizes shows, over its disc and over all phases of its
+// Makes the means of the streak radiance table: what a drop of a class of sizes shows, over its disk and over all phases of its
 // oscillation.
-// Law: points of a lattice of rank 1 over the disc, the phases of both modes and the azimuth of the lobe; those that meet the drop
+// Law: points of a rank-1 lattice over the disk, the phases of both modes and the azimuth of the lobe; those that meet the drop
 // as it is then are traced. Rays are parallel: such drops are below two pixels.
 // Twin: downpour_render::rain::streak_table.
 
@@ -19,7 +19,7 @@ fn streak_table_point(kind: u32, towards: vec3f, point: u32) -> vec4f {
     let displacement =
         path.amplitudes * vec2f(drop_oscillation_sine(phases.x), drop_oscillation_sine(phases.y));
     let body = streak_path_body(path, displacement);
-    // Evenly over a disc that holds the drop.
+    // Evenly over a disk that holds the drop.
     let reach = STREAK_MEAN_REACH / sqrt(min(body.inverse_wide, body.inverse_tall));
     let away = sqrt(number / f32(STREAK_MEAN_POINTS));
     let angle = STREAK_TURN * fract(number * STREAK_MEAN_FIRST);
@@ -49,10 +49,10 @@ fn streak_table_point(kind: u32, towards: vec3f, point: u32) -> vec4f {
     var rest = 1.0;
     for (var k = 0u; k <= STREAK_EXITS; k += 1u) {
         if light.interfaces[k] > 0.0 {
-            let shown = select(light.shares[k], select(0.0, 1.0, k == 1u), shifts);
+            let shown = select(light.fractions[k], select(0.0, 1.0, k == 1u), shifts);
             let seen = streak_path_back(path, exits[k]);
             sum += drops_capture_about(towards, seen, width * bends[k]) * shown;
-            rest -= light.shares[k];
+            rest -= light.fractions[k];
         }
     }
     sum += drops_capture_texel(drops_frame.capture_last, 0, 0) * select(max(rest, 0.0), 0.0, shifts);

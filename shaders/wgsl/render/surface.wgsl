@@ -23,7 +23,7 @@ struct Surface {
     normal_reflectance: vec3f,
     transmission: f32,
     emission: vec3f,
-    // Curvature, 1/m: how much the normal turns per metre.
+    // Curvature, 1/m: how much the normal turns per meter.
     bend: f32,
 }
 
@@ -38,7 +38,7 @@ fn surface_texture(row: u32, uv: vec4f, spread: f32) -> vec4f {
 // Alpha at a hit.
 fn surface_alpha(material: RenderMaterial, hit: SurfaceHit) -> f32 {
     return material.base.a
-        * surface_texture(material.maps.x, surface_uv(hit), -20.0).a * surface_colour(hit).a;
+        * surface_texture(material.maps.x, surface_uv(hit), -20.0).a * surface_color(hit).a;
 }
 
 // True if there is a hole at a hit.
@@ -51,7 +51,7 @@ fn surface_is_open(hit: SurfaceHit) -> bool {
     return surface_alpha(material, hit) < least;
 }
 
-// The nearest surface up to a distance. Holes are none: where a masked material is below its cutoff, or one that is
+// Returns the nearest surface up to a distance. Holes are skipped: where a masked material is below its cutoff, or one that is
 // blended has no alpha. Twelve holes in a row end the ray.
 fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> SurfaceHit {
     var from_distance = nearest;
@@ -77,12 +77,12 @@ fn surface_uv(hit: SurfaceHit) -> vec4f {
         + render_corners[first + 2u].uv * hit.v;
 }
 
-// Vertex colour at a hit.
-fn surface_colour(hit: SurfaceHit) -> vec4f {
+// Vertex color at a hit.
+fn surface_color(hit: SurfaceHit) -> vec4f {
     let first = hit.triangle * 3u;
     let w = 1.0 - hit.u - hit.v;
-    return render_corners[first].colour * w + render_corners[first + 1u].colour * hit.u
-        + render_corners[first + 2u].colour * hit.v;
+    return render_corners[first].color * w + render_corners[first + 1u].color * hit.u
+        + render_corners[first + 2u].color * hit.v;
 }
 
 // Logarithm to base 2 of the width of a ray's cone at a hit, in units of texture coordinates: the mean scale of
@@ -140,9 +140,9 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
     for (var k = 0u; k < 6u; k += 1u) {
         texels[k] = surface_texture(rows[k], uv, spread);
     }
-    let base = material.base * texels[0] * surface_colour(hit);
+    let base = material.base * texels[0] * surface_color(hit);
     let rough = texels[1];
-    // Unlit, the base colour is all that is seen.
+    // Unlit, the base color is all that is seen.
     let unlit = (flags & SCENE_UNLIT) != 0u;
     let metallic = select(clamp(material.metallic * rough.b, 0.0, 1.0), 0.0, unlit);
     let roughness = clamp(material.roughness * rough.g, 0.0, 1.0);

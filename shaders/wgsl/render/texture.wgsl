@@ -68,15 +68,15 @@ fn texture_sample(slot: u32, uv: vec4f, spread: f32) -> vec4f {
         height = max(height / 2, 1);
     }
     let fraction = select(lod - f32(level), 0.0, level + 1u >= image.w);
-    var share = 1.0 - fraction;
+    var weight = 1.0 - fraction;
     var sum = vec4f(0.0);
     // Two levels, or one.
-    for (var k = 0u; k < 2u && share > 0.0; k += 1u) {
-        sum += texture_level(first, width, height, inside, found.flags) * share;
+    for (var k = 0u; k < 2u && weight > 0.0; k += 1u) {
+        sum += texture_level(first, width, height, inside, found.flags) * weight;
         first += u32(width * height);
         width = max(width / 2, 1);
         height = max(height / 2, 1);
-        share = select(0.0, fraction, k == 0u);
+        weight = select(0.0, fraction, k == 0u);
     }
     return sum;
 }

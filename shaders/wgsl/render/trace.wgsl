@@ -1,16 +1,16 @@
-// Pixels by rays: of the picture, and of the capture of the surroundings. Both are one kernel, since a software driver
+// Pixels by rays: of the picture, and of the environment capture. Both are one kernel, since a software driver
 // compiles the walk through the scene anew for each.
 // Samples of a pixel that meet one surface are shaded once; where the two samples at opposite corners do, the others are
 // taken to do so too. Light of sky and surfaces on the first surface leaves the picture's kernel as what one pixel has found
-// of it; skylight.wgsl takes means over neighbours.
+// of it; skylight.wgsl takes means over neighbors.
 // Twin: downpour_trace::trace.
 
 @group(0) @binding(7) var<storage, read_write> trace_picture: array<vec4f>;
-@group(0) @binding(8) var<storage, read_write> trace_gather: array<TraceGather>;
+@group(0) @binding(8) var<storage, read_write> trace_ambient: array<TraceAmbient>;
 
-// Light of which means are taken over neighbouring pixels, packed.
+// Light that is denoised over neighboring pixels, packed.
 struct TraceSlot {
-    place: vec3f,
+    position: vec3f,
     // The surface's normal; of a gloss, the direction that a mirror would show. Octahedral, 16 bits each.
     normal: u32,
     // Sum of the light's red, green and blue.
@@ -22,8 +22,8 @@ struct TraceSlot {
     factor: vec2u,
 }
 
-// Light of sky and surfaces that a pixel shows.
-struct TraceGather {
+// Ambient sample of a pixel: light of sky and surfaces.
+struct TraceAmbient {
     // On the diffuse base of the first opaque surface, over pi.
     base: TraceSlot,
     // In the first gloss or mirror.
@@ -45,11 +45,11 @@ fn trace_pack(slot: PathSlot) -> TraceSlot {
     let parts = slot.light.xy * (1.0 / max(sum, 1.0e-30));
     let rough = select(max(u32(clamp(slot.roughness, 0.0, 1.0) * 255.0 + 0.5), 1u), 0u, slot.roughness <= 0.0);
     let look = u32(clamp(parts.x, 0.0, 1.0) * 4095.0 + 0.5) | u32(clamp(parts.y, 0.0, 1.0) * 4095.0 + 0.5) << 12u | rough << 24u;
-    let from_eye = slot.place - render_frame.camera.eye;
+    let from_eye = slot.position - render_frame.camera.eye;
     let slack = clamp(slot.slack / max(sqrt(dot(from_eye, from_eye)), 1.0e-20), 1.0e-4, 6.0e4);
     let factor = min(slot.factor, vec3f(6.0e4));
     return TraceSlot(
-        slot.place, pack2x16snorm(packing_octahedral_encode(slot.normal)), sum, look,
+        slot.position, pack2x16snorm(packing_octahedral_encode(slot.normal)), sum, look,
         vec2u(pack2x16float(factor.xy), pack2x16float(vec2f(factor.z, slack))),
     );
 }
@@ -61,10 +61,10 @@ fn trace_unpack(slot: TraceSlot) -> PathSlot {
     let light = vec3f(red, green, max(slot.light - red - green, 0.0));
     let low = unpack2x16float(slot.factor.x);
     let high = unpack2x16float(slot.factor.y);
-    let from_eye = slot.place - render_frame.camera.eye;
+    let from_eye = slot.position - render_frame.camera.eye;
     return PathSlot(
         light, high.y * sqrt(dot(from_eye, from_eye)), vec3f(low, high.x), f32(slot.look >> 24u) / 255.0,
-        packing_octahedral_decode(unpack2x16snorm(slot.normal)), slot.place,
+        packing_octahedral_decode(unpack2x16snorm(slot.normal)), slot.position,
     );
 }
 
@@ -80,28 +80,28 @@ fn trace_add(sum: TraceSum, sample: PathSlot) -> TraceSum {
         next.slot.light = before.light;
         next.slot.factor = before.factor;
     }
-    // Another surface's light is not told apart, and taken to be the same.
-    let off = abs(dot(next.slot.normal, sample.place - next.slot.place));
+    // Light of a sample on another surface is not kept apart: it is taken to be the same.
+    let off = abs(dot(next.slot.normal, sample.position - next.slot.position));
     let same = off < next.slot.slack && dot(next.slot.normal, sample.normal) > TRACE_SAME_NORMAL;
-    let weight = select(0.0, max(path_most(sample.factor), 1.0e-6), same);
+    let weight = select(0.0, max(path_max(sample.factor), 1.0e-6), same);
     next.slot.light += sample.light * weight;
     next.slot.factor += sample.factor;
     next.weight += weight;
     return next;
 }
 
-// The mean, where `share` is one over the number of all samples.
-fn trace_mean(sum: TraceSum, share: f32) -> TraceSlot {
+// The mean, where `fraction` is one over the number of all samples.
+fn trace_mean(sum: TraceSum, fraction: f32) -> TraceSlot {
     if sum.weight <= 0.0 {
         return TraceSlot();
     }
     var mean = sum.slot;
     mean.light /= sum.weight;
-    mean.factor *= share;
+    mean.factor *= fraction;
     return trace_pack(mean);
 }
 
-// The direction of a place of the picture or of the capture, in pixels from the top left.
+// The direction of a position of the picture or of the capture, in pixels from the top left.
 fn trace_direction(x: f32, y: f32) -> vec3f {
     if render_frame.projection == SCENE_OCTAHEDRAL {
         return capture_direction(x, y);
@@ -122,11 +122,11 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
     var count = 0u;
     for (var k = 0u; k < n * n; k += 1u) {
         // First the opposite corners.
-        let place = select(select(k - 1u, n * n - 1u, k == 1u), 0u, k == 0u);
-        let dx = (f32(place % n) + 0.5) / f32(n);
-        let dy = (f32(place / n) + 0.5) / f32(n);
+        let index = select(select(k - 1u, n * n - 1u, k == 1u), 0u, k == 0u);
+        let dx = (f32(index % n) + 0.5) / f32(n);
+        let dy = (f32(index / n) + 0.5) / f32(n);
         let direction = trace_direction(f32(x) + dx, f32(y) + dy);
-        let random = path_lattice_words(x, y, place);
+        let random = path_lattice_words(x, y, index);
         let path = path_trace(render_frame.camera.eye, direction, render_frame.camera.pixel_angle, random, last);
         if is_picture {
             sum += path.radiance;
@@ -143,12 +143,12 @@ fn trace_pixel(x: u32, y: u32) -> vec4f {
         }
         last = path;
     }
-    let share = 1.0 / f32(count);
+    let fraction = 1.0 / f32(count);
     if is_picture {
-        trace_gather[y * render_frame.camera.width + x] = TraceGather(trace_mean(base, share), trace_mean(mirror, share));
-        return vec4f(sum * share, nearest);
+        trace_ambient[y * render_frame.camera.width + x] = TraceAmbient(trace_mean(base, fraction), trace_mean(mirror, fraction));
+        return vec4f(sum * fraction, nearest);
     }
-    var seen = sum * share;
+    var seen = sum * fraction;
     if nearest >= SCENE_FAR && render_frame.projection == SCENE_OCTAHEDRAL {
         seen = capture_sky(x, y);
     }

@@ -3,7 +3,7 @@
 // Rousseau 2008, 4 and 5.1.2: a drop below the top of its column has bounced if it is slightly below, and is absorbed
 // by a wall if it is far below. Here a column has several surfaces, so that the ground under a bridge stops drops as
 // well, and a surface within a texel is its tangent plane.
-// Map coordinates are texels across, texels along, and depth in metres. Normals "of the map" have the components
+// Map coordinates are texels across, texels along, and depth in meters. Normals "of the map" have the components
 // across, along and against the fall.
 // Twin: downpour_sim::collision.
 
@@ -36,7 +36,7 @@ struct CollisionTexel {
     surfaces: vec4u,
 }
 
-// Segment of a drop's path within a texel: its ends in texels from the center and metres of depth, and the number of
+// Segment of a drop's path within a texel: its ends in texels from the center and meters of depth, and the number of
 // surfaces above the drop when it left the previous texel.
 struct CollisionPiece {
     start: vec3f,
@@ -63,7 +63,7 @@ struct CollisionHit {
     // Fraction of the path, 0 to 1. For COLLISION_OPEN: the fraction that was followed, 1 except for paths across many
     // texels.
     fraction: f32,
-    // Unit vector towards the side that the drop came from.
+    // Unit vector toward the side that the drop came from.
     normal: vec3f,
 }
 
@@ -71,7 +71,7 @@ struct CollisionHit {
 @group(0) @binding(9) var<storage, read> collision_texels: array<CollisionTexel>;
 
 // Converts a position to map coordinates.
-fn collision_place(map: CollisionMap, at: vec3f) -> vec3f {
+fn collision_position(map: CollisionMap, at: vec3f) -> vec3f {
     let offset = at - map.low;
     return vec3f(
         dot(offset, map.across) * map.per_edge.x,
@@ -91,7 +91,7 @@ fn collision_solid(surface: u32) -> bool {
     return (surface & COLLISION_SOLID) != 0u;
 }
 
-// Normal of a surface, not normalised.
+// Normal of a surface, not normalized.
 fn collision_square(surface: u32) -> vec3f {
     let square = unpack2x16snorm(surface & ~COLLISION_SOLID);
     return vec3f(square, max(1.0 - abs(square.x) - abs(square.y), 0.0));
@@ -103,7 +103,7 @@ fn collision_normal(surface: u32) -> vec3f {
     return square * (1.0 / sqrt(dot(square, square)));
 }
 
-// Slope of a surface: increase of depth per metre across and along.
+// Slope of a surface: increase of depth per meter across and along.
 fn collision_slope(surface: u32) -> vec2f {
     let square = collision_square(surface);
     return square.xy * (1.0 / max(square.z, 1.0e-4));
@@ -111,11 +111,11 @@ fn collision_slope(surface: u32) -> vec2f {
 
 // Depths of a texel's surfaces at an offset from its center, ascending. `offset` is in texels.
 fn collision_depths(map: CollisionMap, texel: CollisionTexel, offset: vec2f) -> vec4f {
-    let metres = offset * map.edge;
+    let meters = offset * map.edge;
     var depths = vec4f(COLLISION_NONE);
     var above = -COLLISION_NONE;
     for (var k = 0u; k < COLLISION_LAYERS; k += 1u) {
-        let deeper = dot(collision_slope(texel.surfaces[k]), metres);
+        let deeper = dot(collision_slope(texel.surfaces[k]), meters);
         // Planes that cross within the texel coincide from there on.
         above = max(above, texel.depths[k] + min(max(deeper, -map.steep), map.steep));
         depths[k] = above;
@@ -156,7 +156,7 @@ fn collision_column(map: CollisionMap, texel: CollisionTexel, piece: CollisionPi
         if solid && !leaves {
             return CollisionMeeting(select(COLLISION_WALL, COLLISION_SURFACE, shallow), 0.0, layer, 0u, count);
         }
-        // Planes of neighbouring texels do not join exactly at the border.
+        // Planes of neighboring texels do not join exactly at the border.
         if !solid && count > piece.before && shallow {
             return CollisionMeeting(COLLISION_SURFACE, 0.0, layer, 0u, count);
         }
@@ -184,7 +184,7 @@ fn collision_turn(map: CollisionMap, normal: vec3f) -> vec3f {
     return map.across * normal.x + map.along * normal.y - map.fall * normal.z;
 }
 
-// Normal of a wall that stops a drop: against its path across the map. `way` is in texels and metres of depth.
+// Normal of a wall that stops a drop: against its path across the map. `way` is in texels and meters of depth.
 fn collision_wall(map: CollisionMap, way: vec3f) -> vec3f {
     let sideways = map.across * (way.x * map.edge.x) + map.along * (way.y * map.edge.y);
     let squared = dot(sideways, sideways);
@@ -204,7 +204,7 @@ fn collision_texel(cell: vec2i) -> CollisionTexel {
 
 // Number of surfaces above a position, and the lowest of them (0: none).
 fn collision_cover(at: vec3f) -> vec2u {
-    let position = collision_place(collision_map, at);
+    let position = collision_position(collision_map, at);
     let corner = floor(min(max(position.xy, vec2f(-COLLISION_EDGE)), vec2f(COLLISION_EDGE)));
     let texel = collision_texel(vec2i(corner));
     let count = collision_count(collision_depths(collision_map, texel, position.xy - corner - 0.5), position.z);
@@ -223,8 +223,8 @@ fn collision_inside(at: vec3f) -> bool {
 
 // Finds the first hit of a drop on its straight path from `start` to `end`.
 fn collision_find(start: vec3f, end: vec3f) -> CollisionHit {
-    let origin = collision_place(collision_map, start);
-    let way = collision_place(collision_map, end) - origin;
+    let origin = collision_position(collision_map, start);
+    let way = collision_position(collision_map, end) - origin;
     let forward = way.xy > vec2f(0.0);
     let moves = way.xy != vec2f(0.0);
     let inverse = vec2f(1.0) / select(vec2f(1.0), way.xy, moves);

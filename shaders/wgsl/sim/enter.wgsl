@@ -75,10 +75,10 @@ fn enter_offset(region: EnterRegion, normal: vec3f, tangent: vec3f, random: vec3
     let across = cross(normal, tangent);
     let distance = region.low + (region.high - region.low) * random.x;
     if region.face == VOLUME_BALL {
-        let disc = 2.0 * random.yz - 1.0;
-        let square = dot(disc, disc);
+        let disk = 2.0 * random.yz - 1.0;
+        let square = dot(disk, disk);
         let lean = square * region.slope;
-        let aside = disc * sqrt(region.slope * max(2.0 - lean, 0.0));
+        let aside = disk * sqrt(region.slope * max(2.0 - lean, 0.0));
         let direction = tangent * aside.x + across * aside.y - normal * (1.0 - lean);
         let there = square <= 1.0 && chance * region.high * region.high <= distance * distance;
         return vec4f(direction * distance, select(0.0, 1.0, there));

@@ -18,13 +18,13 @@ fn motion_diameter(bits: u32) -> f32 {
 
 // Index of a diameter in the table of terminal speeds: between this entry and the next.
 fn motion_table_entry(diameter: f32) -> u32 {
-    let position = clamp(diameter * MOTION_TABLE_PER_METRE, 0.0, f32(MOTION_TABLE_LAST));
+    let position = clamp(diameter * MOTION_TABLE_PER_METER, 0.0, f32(MOTION_TABLE_LAST));
     return min(u32(position), MOTION_TABLE_LAST - 1u);
 }
 
 // Terminal speed between two entries of the table, m/s.
 fn motion_table_speed(lower: f32, upper: f32, diameter: f32) -> f32 {
-    let position = clamp(diameter * MOTION_TABLE_PER_METRE, 0.0, f32(MOTION_TABLE_LAST));
+    let position = clamp(diameter * MOTION_TABLE_PER_METER, 0.0, f32(MOTION_TABLE_LAST));
     let fraction = position - f32(motion_table_entry(diameter));
     return lower + (upper - lower) * fraction;
 }
@@ -38,7 +38,7 @@ fn motion_settled(wind: vec3f, speed: f32) -> vec3f {
 fn motion_relax(velocity: vec3f, wind: vec3f, speed: f32, time: f32) -> MotionStep {
     let settled = motion_settled(wind, speed);
     let slip = velocity - settled;
-    let relaxation = max(fall_speed_relaxation(speed), vec2f(MOTION_SHORTEST));
+    let relaxation = max(fall_speed_relaxation(speed), vec2f(MOTION_MIN_RELAXATION));
     // Along the fall the slip relaxes twice as fast.
     let left = exp(-time / relaxation.y);
     let stay = vec3f(left, left * left, left);

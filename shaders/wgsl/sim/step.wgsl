@@ -385,9 +385,9 @@ fn step_relocate(drop: u32, count: u32, position: vec3f) -> StepKept {
             if offset.y >= -half && dot(offset.xz, offset.xz) <= radius * radius {
                 return StepKept(position, count);
             }
-            let disc = radius * volume_on_disc(random);
+            let disk = radius * volume_on_disk(random);
             let height = offset.y + select(0.0, step_frame.size.y, offset.y < -half);
-            return StepKept(step_frame.center + vec3f(disc.x, height, disc.y), next);
+            return StepKept(step_frame.center + vec3f(disk.x, height, disk.y), next);
         }
     }
 }

@@ -104,8 +104,8 @@ fn volume_in_sphere(random: vec3f, range: f32) -> vec3f {
     return vec3f(distance * across * cos(angle), distance * across * sin(angle), radius + distance * along);
 }
 
-// Position on a disc of radius 1, from two random numbers in [0, 1).
-fn volume_on_disc(random: vec2f) -> vec2f {
+// Position on a disk of radius 1, from two random numbers in [0, 1).
+fn volume_on_disk(random: vec2f) -> vec2f {
     let angle = VOLUME_TURN * (random.x - 0.5);
     return sqrt(random.y) * vec2f(cos(angle), sin(angle));
 }

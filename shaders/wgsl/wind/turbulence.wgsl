@@ -5,7 +5,7 @@
 // Twin: downpour_wind::turbulence.
 
 struct WindTurbulenceMode {
-    // Wave vector, waves per metre along each axis.
+    // Wave vector, waves per meter along each axis.
     wave: vec3f,
     // Phase in turns, 0 to 1, at the lower corner of the box.
     phase: f32,

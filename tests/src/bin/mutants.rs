@@ -84,7 +84,7 @@ fn batches(all: &[Mutant], chosen: &[usize]) -> Vec<Vec<usize>> {
     for &at in chosen {
         by_function.entry((all[at].module.path, &all[at].swap.function)).or_default().push(at);
     }
-    by_function.values().flat_map(|one| one.chunks(bundle::MOST).map(<[usize]>::to_vec)).collect()
+    by_function.values().flat_map(|one| one.chunks(bundle::MAX_MUTANTS).map(<[usize]>::to_vec)).collect()
 }
 
 /// The lines of a report by the mutants that they are about.
@@ -169,9 +169,9 @@ fn tell(all: &[Mutant], chosen: &[usize], done: &BTreeMap<String, String>, list:
     for (kind, [count, survive]) in kinds {
         println!("{kind}: {} of {count} seen", count - survive);
     }
-    let share = 100.0 * seen as f64 / valid.len().max(1) as f64;
+    let fraction = 100.0 * seen as f64 / valid.len().max(1) as f64;
     println!(
-        "{} mutants, {seen} seen ({share:.1} %), {listed} listed with a reason, {unlisted} not",
+        "{} mutants, {seen} seen ({fraction:.1} %), {listed} listed with a reason, {unlisted} not",
         valid.len()
     );
     Unlisted { count: unlisted, of: valid.len() }

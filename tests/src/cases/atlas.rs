@@ -115,7 +115,7 @@ fn atlas(pick: StreakPick, with_amounts: bool) -> StreakAtlas {
     let elevations = [-0.9, -0.3, 0.1, 0.5, 1.0];
     let mut directions = vec![light_directions(); elevations.len()];
     if !with_amounts {
-        // As those of the Columbia database, elevations have directions of their own.
+        // As those of the Columbia database, elevations have their own directions.
         directions[2].reverse();
     }
     let set = |diameter: u32, oscillation: u32| {
@@ -167,7 +167,7 @@ fn query_case(gpu: &Gpu, pick: StreakPick, with_amounts: bool) -> Result<Run, Gp
     let made = GpuAtlas::new(gpu, &atlas)?.query(gpu, &queries)?;
     let told = queries.iter().map(|q| {
         let drop = StreakParticle { diameter: q.diameter, axis: q.axis, id: q.id };
-        atlas.radiance(&atlas.place(&drop, q.light, q.view), q.across, q.turns).to_bits()
+        atlas.radiance(&atlas.slot(&drop, q.light, q.view), q.across, q.turns).to_bits()
     });
     Ok(Run {
         arguments: queries

@@ -27,7 +27,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 }),
                 Unit3,
                 Made(|r| {
-                    // Rays towards the middle, so that some hit and some do not.
+                    // Rays toward the middle, so that some hit and some do not.
                     let d: [f32; 3] = std::array::from_fn(|k| rng_unit(r[k]) - 0.5);
                     bvh_inverse(d).map(f32::to_bits).to_vec()
                 }),

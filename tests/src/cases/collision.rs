@@ -11,7 +11,7 @@ use downpour_shaders::sim::collision::{
 use downpour_sim::collision::{
     CollisionFrame, CollisionMap, CollisionOptions, CollisionPiece, CollisionTexel, collision_column,
     collision_count, collision_depths, collision_find, collision_map_add, collision_map_between,
-    collision_map_faces, collision_map_normal, collision_normal, collision_pack, collision_place,
+    collision_map_faces, collision_map_normal, collision_normal, collision_pack, collision_position,
     collision_shallow, collision_slope, collision_solid, collision_square, collision_turn, collision_wall,
 };
 use downpour_sim::gpu::collision::GpuCollisionMap;
@@ -123,10 +123,10 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             [0, 1, 2].map(|k| more(r, k).map(|x| (x - 0.5).to_bits())[..3].to_vec());
         [corner, vec![r[0] % 9], edge_1, edge_2].concat()
     });
-    let (near, share, offset) = (Uniform(-20.0, 20.0), Uniform(-1.0, 1.0), Uniform(-0.5, 0.5));
+    let (near, fraction, offset) = (Uniform(-20.0, 20.0), Uniform(-1.0, 1.0), Uniform(-0.5, 0.5));
     vec![
         FunctionCase::new(
-            "collision_place",
+            "collision_position",
             &COLLISION,
             &[a_map, near, near, near],
             Tol::relative(
@@ -134,7 +134,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 1.0e-3,
                 "scalar products of up to 40 m, known to 1e-5 m, times 20 per m; a GPU may fuse them",
             ),
-            |a| collision_place(&map(a), vec3(a)).to_array().words(),
+            |a| collision_position(&map(a), vec3(a)).to_array().words(),
         ),
         FunctionCase::new(
             "collision_pack",
@@ -236,7 +236,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "collision_wall",
             &COLLISION,
-            &[a_map, share, share, share],
+            &[a_map, fraction, fraction, fraction],
             Tol::absolute(1.0e-5, "a unit vector of a sum of two products: a square root and a division"),
             |a| collision_wall(&map(a), vec3(a)).to_array().words(),
         ),
@@ -301,10 +301,10 @@ fn scene() -> Bvh {
         let ([a, b, c, d], [e, f, g, h]) = (more([i, 1, 2, 3], 0), more([i, 1, 2, 3], 1));
         let half = Vec3::new(0.2 + 0.8 * a, 0.2 + 0.8 * b, 0.2 + 0.8 * c);
         let turn = Quat::from_rotation_y(6.0 * d) * Quat::from_rotation_x(if h < 0.3 { h } else { 0.0 });
-        let place = Vec3::new(8.0 * e - 4.0, 2.5 * f, 8.0 * g - 4.0);
+        let position = Vec3::new(8.0 * e - 4.0, 2.5 * f, 8.0 * g - 4.0);
         let at = |bits: u32| {
             let sign = |k: u32| if bits >> k & 1 == 1 { 1.0 } else { -1.0 };
-            place + turn * (half * Vec3::new(sign(0), sign(1), sign(2)))
+            position + turn * (half * Vec3::new(sign(0), sign(1), sign(2)))
         };
         for face in [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]] {
             quad(face.map(at));
@@ -444,7 +444,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         text: Some(find_text),
         tol: Tol::absolute(
             1.0e-3,
-            "places known to 1e-5 m of ways of 0.1 m and more; a drop at a border or on a surface may be on either side",
+            "positions known to 1e-5 m of ways of 0.1 m and more; a drop at a border or on a surface may be on either side",
         )
         .with_outliers(3.0e-3),
         run,

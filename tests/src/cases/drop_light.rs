@@ -33,10 +33,10 @@ fn vec3(args: &mut Args<'_>) -> Vec3 {
     Vec3::from(args.f32s())
 }
 
-/// A packed place.
+/// A packed position.
 fn packed(random: [u32; 4]) -> Vec<u32> {
-    let place = Vec2::new(rng_unit(random[0]), rng_unit(random[1])) * 2.0 - 1.0;
-    drop_glint_pack(place).words()
+    let position = Vec2::new(rng_unit(random[0]), rng_unit(random[1])) * 2.0 - 1.0;
+    drop_glint_pack(position).words()
 }
 
 /// Two directions that are no worse than a hundredth of a radian from each other's line.
@@ -55,7 +55,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let case =
         |function, domains: &[_], tol, cpu| FunctionCase::new(function, &DROP_GLINT, domains, tol, cpu);
     let root = Tol::absolute(2.0e-6, "products of unit vectors, a square root and a division (2.5 ulp)");
-    let place = Uniform(-1.0, 1.0);
+    let position = Uniform(-1.0, 1.0);
     vec![
         case("drop_glint_right", &[Unit3], root, |a| drop_glint_right(vec3(a)).to_array().words()),
         case(
@@ -73,7 +73,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         ),
         case(
             "drop_glint_pack",
-            &[place, place],
+            &[position, position],
             Tol::absolute(1.0, "a whole number; at its border a fused product may give the next")
                 .with_outliers(1.0e-3),
             |a| drop_glint_pack(Vec2::from(a.f32s())).words(),
@@ -86,7 +86,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         ),
         case(
             "drop_glint_spot",
-            &[place, place, Uniform(0.05, 1.0)],
+            &[position, position, Uniform(0.05, 1.0)],
             Tol::relative(1.0e-3, 1.0e-6, "exp of numbers down to -400 (3 + 2|x| ulp)"),
             |a| drop_glint_spot(Vec2::from(a.f32s()), a.f32()).words(),
         ),
@@ -112,7 +112,7 @@ fn terms(random: [u32; 4]) -> Vec<u32> {
     vec![1 + random[0] % 3]
 }
 
-/// Drops round what stands in the scene.
+/// Drops around what stands in the scene.
 fn drops() -> Vec<[f32; 4]> {
     (0..600)
         .map(|k| {
@@ -177,7 +177,7 @@ fn rows_case(
     let lighting = scenes.upload(scene)?.lighting(gpu, &frame)?;
     let pass = pipeline.prepare(gpu, &lighting, &pipeline.upload(table)?, &lights, drops)?;
     gpu.submit(&pass.dispatches())?;
-    // Places are compared as places, streaks of an atlas as they are.
+    // Positions are compared as positions, streaks of an atlas as they are.
     let glints = if options.form == DropLightForm::Atlas { 0 } else { options.glints };
     let words = |rows: &[[f32; 4]]| -> Vec<u32> {
         let of_drop = |rows: &[[f32; 4]]| {

@@ -15,8 +15,8 @@ use downpour_lattice::glass::motion::{
 };
 use downpour_lattice::glass::normal::glass_normal_unit;
 use downpour_lattice::glass::size::{
-    GlassSizeRow, glass_size_class, glass_size_floor, glass_size_key, glass_size_mix, glass_size_row,
-    glass_size_share,
+    GlassSizeRow, glass_size_class, glass_size_floor, glass_size_fraction, glass_size_key, glass_size_mix,
+    glass_size_row,
 };
 use downpour_lattice::glass::{
     Glass, GlassAir, GlassOptions, GlassRain, GlassWiper, GlassWiperMotion, GlassWornBand,
@@ -138,7 +138,9 @@ fn sizes() -> Vec<FunctionCase> {
         FunctionCase::new("glass_size_floor", m, &[Below(130)], INTEGERS, |a| {
             glass_size_floor(a.u32()).words()
         }),
-        FunctionCase::new("glass_size_share", m, &[mass], INTEGERS, |a| glass_size_share(a.u32()).words()),
+        FunctionCase::new("glass_size_fraction", m, &[mass], INTEGERS, |a| {
+            glass_size_fraction(a.u32()).words()
+        }),
         FunctionCase::new("glass_size_key", m, &[mass, Below(1 << 24)], INTEGERS, |a| {
             glass_size_key(a.u32(), a.u32()).words()
         }),
@@ -216,7 +218,7 @@ fn motions() -> Vec<FunctionCase> {
     ]
 }
 
-fn places() -> Vec<FunctionCase> {
+fn positions() -> Vec<FunctionCase> {
     let (blade_of, frame_of, at) = (Made(blade_words), Made(frame_words), Made(near));
     vec![
         FunctionCase::new("glass_blade_side", &shaders::BLADE, &[Made(drive), Made(drive)], INTEGERS, |a| {
@@ -275,7 +277,7 @@ fn heights() -> Vec<FunctionCase> {
 
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
-    [sizes(), motions(), places(), heights()].into_iter().flatten().collect()
+    [sizes(), motions(), positions(), heights()].into_iter().flatten().collect()
 }
 
 /// A small windshield with everything: rain, air, drying, obstacles, a wiper with a worn band.

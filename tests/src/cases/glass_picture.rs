@@ -69,8 +69,10 @@ fn drop(random: [u32; 4]) -> Vec<u32> {
 fn lamp(random: [u32; 4]) -> Vec<u32> {
     let [a, b, c, d] = random.map(rng_unit);
     let distance = 5.0 + 35.0 * a;
-    let place = [distance * (0.4 * b - 0.2), distance * (0.4 * c - 0.2), -distance];
-    [place[0], place[1], place[2], 0.01 * d, 1.0 + b, 1.0, 0.5 + c, distance].map(f32::to_bits).to_vec()
+    let position = [distance * (0.4 * b - 0.2), distance * (0.4 * c - 0.2), -distance];
+    [position[0], position[1], position[2], 0.01 * d, 1.0 + b, 1.0, 0.5 + c, distance]
+        .map(f32::to_bits)
+        .to_vec()
 }
 
 /// A direction of length 1, about forward, as words.
@@ -87,17 +89,17 @@ fn read(a: &mut Args<'_>) -> GlassPictureDrop {
 const CAP: Tol = Tol::relative(
     2.0e-5,
     2.0e-6,
-    "two roots (2.5 ulp) whose difference is a height of a tenth of a millimetre, in metres; slopes of about 1",
+    "two roots (2.5 ulp) whose difference is a height of a tenth of a millimeter, in meters; slopes of about 1",
 );
 
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
-    let place = [Uniform(0.0085, 0.0115), Uniform(0.0185, 0.0215)];
+    let position = [Uniform(0.0085, 0.0115), Uniform(0.0185, 0.0215)];
     vec![
         FunctionCase::new(
             "glass_picture_water_cap",
             &WATER,
-            &[Made(drop), place[0], place[1]],
+            &[Made(drop), position[0], position[1]],
             CAP.with_outliers(2.0e-3),
             |a| glass_picture_water_cap(&read(a), Vec2::from(a.f32s())).to_array().words(),
         ),
@@ -111,7 +113,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "glass_picture_water_leave",
             &WATER,
-            &[Made(drop), place[0], place[1], Uniform(-0.8, 0.8), Uniform(-0.8, 0.8)],
+            &[Made(drop), position[0], position[1], Uniform(-0.8, 0.8), Uniform(-0.8, 0.8)],
             Tol::relative(1.0e-3, 2.0e-6, "five turns of regula falsi; a turn may take the other side")
                 .with_outliers(1.0e-2),
             |a| {
@@ -196,7 +198,7 @@ fn pane(keys: &str) -> GlassPicture {
     pane.picture(&stage.viewpoint, &frame.camera, frame.grid, &lighting, texels as usize).expect("a picture")
 }
 
-/// Smooth light of some colours, at distances of 1 to 30 m.
+/// Smooth light of some colors, at distances of 1 to 30 m.
 fn light(k: u32, width: u32) -> [f32; 4] {
     let (x, y) = ((k % width) as f32 / width as f32, (k / width) as f32 / width as f32);
     [1.0 + x, 1.0 + y * y, 2.0 - x * y, 1.0 + 29.0 * x]

@@ -243,12 +243,12 @@ fn run(cpu: &Mask, gpu: &Mask) -> Run {
         };
         mask.texels.iter().flat_map(texel).collect()
     };
-    let place =
+    let texel =
         |i: u32| vec![(i % cpu.size) as f32, (i / cpu.size) as f32].into_iter().map(f32::to_bits).collect();
     let mut kinds = vec![WordKind::Float; 12];
     kinds.push(WordKind::Integer);
     Run {
-        arguments: (0..cpu.size * cpu.size).map(place).collect(),
+        arguments: (0..cpu.size * cpu.size).map(texel).collect(),
         cpu: Cpu(words(cpu)),
         gpu: FromGpu(words(gpu)),
         kinds,

@@ -16,7 +16,7 @@ fn case(gpu: &Gpu, form: PaneShadows, gathers_m: f32, height: f32) -> Result<Run
         let [x, y, size, _] = rng_pcg4d([k, 7, 8, 9]).map(rng_unit);
         let radius = 0.05 + 0.1 * size;
         GlassPictureDrop {
-            centre: [6.0 * x, 6.0 * y],
+            center: [6.0 * x, 6.0 * y],
             radius,
             sphere: 1.1 * radius,
             along: [0.6, 0.8],

@@ -38,8 +38,8 @@ fn weight_words(random: [u32; 4]) -> Vec<u32> {
 fn seed_words(random: [u32; 4]) -> Vec<u32> {
     let [a, b, c, d] = random.map(rng_unit);
     let per_length = 0.05 + 0.5 * c;
-    let place = [20.0 + 20.0 * a, 20.0 + 20.0 * b];
-    let mut words = place.words();
+    let position = [20.0 + 20.0 * a, 20.0 + 20.0 * b];
+    let mut words = position.words();
     words.extend([per_length, 2.0 * d - 1.0, 0.01 * a, 6.0 / per_length].words());
     words.extend([random[0] % 2, 0]);
     words
@@ -67,7 +67,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let value = Uniform(-1.0, 1.0);
     let quads = |n: usize| -> Vec<Domain> { vec![value; 4 * n] };
     let with = |n: usize, more: &[Domain]| -> Vec<Domain> { [quads(n), more.to_vec()].concat() };
-    let (share, cells) = (Uniform(0.0, 1.0), Uniform(0.0, 40.0));
+    let (fraction, cells) = (Uniform(0.0, 1.0), Uniform(0.0, 40.0));
     vec![
         FunctionCase::new(
             "puddle_linked",
@@ -115,7 +115,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "puddle_keep",
             &PUDDLE,
-            &[cells, share, cells, Uniform(0.0, 2.0)],
+            &[cells, fraction, cells, Uniform(0.0, 2.0)],
             Tol::relative(2.0e-6, 0.0, "divisions, 2.5 ulp each"),
             |a| puddle_keep(a.f32(), a.f32(), a.f32(), a.f32()).words(),
         ),
@@ -257,9 +257,9 @@ fn run_of(nx: u32, cpu: &[Vec<f32>], gpu: &[Vec<f32>]) -> Run {
     let words = |columns: &[Vec<f32>]| -> Vec<u32> {
         (0..columns[0].len()).flat_map(|i| columns.iter().map(move |c| c[i].to_bits())).collect()
     };
-    let place = |i: u32| [i % nx, i / nx].map(|c| (c as f32).to_bits()).to_vec();
+    let cell = |i: u32| [i % nx, i / nx].map(|c| (c as f32).to_bits()).to_vec();
     Run {
-        arguments: (0..cpu[0].len() as u32).map(place).collect(),
+        arguments: (0..cpu[0].len() as u32).map(cell).collect(),
         cpu: Cpu(words(cpu)),
         gpu: FromGpu(words(gpu)),
         kinds: vec![WordKind::Float; cpu.len()],
@@ -293,7 +293,7 @@ fn seeds(gpu: &Gpu) -> Result<Run, GpuError> {
             }
         })
         .collect();
-    let wake = Wake { from_m: [0.1, 0.1], to_m: [0.12, 0.13], radius_m: 0.03, draught_m: 2.0e-3 };
+    let wake = Wake { from_m: [0.1, 0.1], to_m: [0.12, 0.13], radius_m: 0.03, draft_m: 2.0e-3 };
     cpu.seed(&impacts).expect("drops");
     cpu.displace(&wake).expect("a wake");
     on_gpu.seed(&impacts).map_err(told)?;
@@ -366,7 +366,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             },
         },
         KernelCase {
-            name: "main_lattice_puddle_step_direct: water of degree 1, whose diagonal neighbours have a weight",
+            name: "main_lattice_puddle_step_direct: water of degree 1, whose diagonal neighbors have a weight",
             kernel: &DIRECT_KERNEL,
             with: &[],
             overrides: &[],
@@ -405,7 +405,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             with: &[],
             overrides: &[],
             text: None,
-            tol: Tol::absolute(2.0e-6, "as the step in sixteen bits; the velocity's half in its place"),
+            tol: Tol::absolute(2.0e-6, "as the step in sixteen bits; the velocity's half in its position"),
             run: |gpu| {
                 let storage = PuddleStorage::Half;
                 let options = PuddleOptions { size: [65, 66], storage, ..PuddleOptions::default() };

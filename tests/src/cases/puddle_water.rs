@@ -36,12 +36,12 @@ const DIRECTION: Tol = Tol::relative(
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
     let slope = Uniform(-0.5, 0.5);
-    let share = Uniform(0.0, 1.0);
+    let fraction = Uniform(0.0, 1.0);
     vec![
         FunctionCase::new(
             "puddle_water_normal",
             &PUDDLE_WATER,
-            &[slope, slope, Uniform(0.0, 0.1), share, share],
+            &[slope, slope, Uniform(0.0, 0.1), fraction, fraction],
             Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
                 .with_outliers(1.0e-3),
             |a| puddle_water_normal(vec3(a), a.f32(), a.f32()).to_array().words(),
@@ -55,7 +55,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("puddle_water_beneath", &PUDDLE_WATER, &[Unit3], DIRECTION, |a| {
             puddle_water_beneath(vec3(a)).to_array().words()
         }),
-        FunctionCase::new("puddle_water_entry", &PUDDLE_WATER, &[Unit3, share], DIRECTION, |a| {
+        FunctionCase::new("puddle_water_entry", &PUDDLE_WATER, &[Unit3, fraction], DIRECTION, |a| {
             puddle_water_entry(vec3(a), a.f32()).to_array().words()
         }),
         FunctionCase::new(
@@ -65,13 +65,17 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::absolute(2.0e-3, "the root of a difference, which cancels at total reflection"),
             |a| puddle_water_above(vec3(a)).to_array().words(),
         ),
-        FunctionCase::new("puddle_water_albedo", &PUDDLE_WATER, &[share, share, share], DIRECTION, |a| {
-            puddle_water_albedo(vec3(a)).to_array().words()
-        }),
+        FunctionCase::new(
+            "puddle_water_albedo",
+            &PUDDLE_WATER,
+            &[fraction, fraction, fraction],
+            DIRECTION,
+            |a| puddle_water_albedo(vec3(a)).to_array().words(),
+        ),
         FunctionCase::new(
             "puddle_water_reflectance",
             &PUDDLE_WATER,
-            &[share, share, share],
+            &[fraction, fraction, fraction],
             Tol::relative(2.0e-3, 1.0e-5, "a difference of refractive indices, and 1 - root(0.98), cancel"),
             |a| puddle_water_reflectance(vec3(a)).to_array().words(),
         ),
@@ -112,7 +116,7 @@ fn bank() -> (SceneData, PuddleMap) {
         normals: None,
         tangents: None,
         uvs: [None, None],
-        colours: None,
+        colors: None,
         indices: &[0, 1, 2, 0, 2, 3],
         material,
     };

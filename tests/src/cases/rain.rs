@@ -11,15 +11,15 @@ use downpour_render::picture::compose_pixel;
 use downpour_render::rain::drops_mask::drops_mask_right;
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::streak::streak_weight;
-use downpour_render::rain::streak_place::{streak_place_index, streak_place_position};
+use downpour_render::rain::streak_cell::{streak_cell_index, streak_cell_position};
 use downpour_render::rain::{
     DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
     RefractionForm, StreakColour, StreakProfiles, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
-    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, DROPS_MASK, STREAK, STREAK_LIGHT_KERNEL, STREAK_PLACE,
-    STREAK_RAYS, STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
+    COMPOSE, COMPOSE_KERNEL, DROPS_KERNEL, DROPS_MASK, STREAK, STREAK_CELL, STREAK_LIGHT_KERNEL, STREAK_RAYS,
+    STREAK_RAYS_KERNEL, STREAK_TABLE_KERNEL,
 };
 use downpour_shaders::render::scene::TRACE_KERNEL;
 use downpour_sim::field::{DropKind, FallingDrop};
@@ -51,9 +51,9 @@ fn drops(eye: Vec3, forward: Vec3) -> Vec<FallingDrop> {
         .map(|k| {
             let [a, b, c, d] = rng_draw([3, 4], k, 0, 0).map(rng_unit);
             let depth = 0.02 + 5.0 * c * c * c;
-            let place = forward + right * (1.5 * a - 0.75) + up * (1.1 * b - 0.55);
+            let position = forward + right * (1.5 * a - 0.75) + up * (1.1 * b - 0.55);
             FallingDrop {
-                position: (eye + place * depth).as_dvec3(),
+                position: (eye + position * depth).as_dvec3(),
                 velocity: [0.0, -5.0, 0.0],
                 diameter: 0.3e-3 + 7.7e-3 * d * d,
                 id: u64::from(k),
@@ -79,7 +79,7 @@ fn run(width: u32, cpu: &[[f32; 4]], gpu: &[[f32; 4]]) -> Run {
     }
 }
 
-/// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside a box round the eye, small ones everywhere.
+/// Unresolved rain of 500 mm/h, thick within some tens of meters: all drops outside a box around the eye, small ones everywhere.
 fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
     let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 500.0).expect("a rain");
     let region = Region::Box { center: eye.as_dvec3() + DVec3::new(0.5, 0.2, -1.0), size: DVec3::splat(7.0) };
@@ -127,21 +127,21 @@ fn exposure(shutter_s: f64, samples: StreakSamples) -> Exposure {
 
 fn rain_case(
     gpu: &Gpu,
-    place: [Vec3; 2],
+    placement: [Vec3; 2],
     form: RefractionForm,
     exposure: Exposure,
     part: Part,
 ) -> Result<Run, GpuError> {
     let options = RainOptions { form, exposure, ..RainOptions::default() };
-    masks_case(gpu, place, options, &DropMasks::trace(1.333).expect("masks"), part)
+    masks_case(gpu, placement, options, &DropMasks::trace(1.333).expect("masks"), part)
 }
 
 /// Streaks with the light of an atlas.
-fn atlas_case(gpu: &Gpu, place: [Vec3; 2], shutter_s: f64, pick: StreakPick) -> Result<Run, GpuError> {
+fn atlas_case(gpu: &Gpu, placement: [Vec3; 2], shutter_s: f64, pick: StreakPick) -> Result<Run, GpuError> {
     let masks = DropMasks::trace(1.333).expect("masks").with_atlas(&atlas(pick));
     let exposure = Exposure { aperture_m: 0.0, ..exposure(shutter_s, StreakSamples::Table) };
     let options = RainOptions { exposure, light: DropLightOptions::ATLAS, ..RainOptions::default() };
-    masks_case(gpu, place, options, &masks, Part::Drops)
+    masks_case(gpu, placement, options, &masks, Part::Drops)
 }
 
 /// The entries of the streak radiance table that a part is about.
@@ -192,7 +192,7 @@ fn masks_case(
     masks: &DropMasks,
     part: Part,
 ) -> Result<Run, GpuError> {
-    // Masks with an atlas have exposures of their own.
+    // Masks with an atlas have their own exposures.
     let key = format!("{eye} {forward} {options:?}");
     let prepared = kept(&key, || Prepared::new([eye, forward], options, masks));
     let Prepared { scene, frame, rain, capture, clean } = &*prepared;
@@ -342,7 +342,7 @@ const OUTLINED: Tol = Tol::relative(
 const PROFILED: Tol = Tol::relative(
     1.0e-2,
     5.0e-3,
-    "the outlines and the capture above; a point of a patch at the edge of a lamp's disc may fall on either side",
+    "the outlines and the capture above; a point of a patch at the edge of a lamp's disk may fall on either side",
 )
 .with_outliers(2.0e-2);
 
@@ -385,18 +385,18 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| drops_mask_right(Vec3::from(a.f32s())).to_array().words(),
         ),
         FunctionCase::new(
-            "streak_place_position",
-            &STREAK_PLACE,
+            "streak_cell_position",
+            &STREAK_CELL,
             &[Uniform(0.0, 24.0), Made(cells)],
             Tol::absolute(6.0e-4, "sine (2^-11) of numbers up to pi / 2"),
-            |a| streak_place_position(a.f32(), a.u32()).words(),
+            |a| streak_cell_position(a.f32(), a.u32()).words(),
         ),
         FunctionCase::new(
-            "streak_place_index",
-            &STREAK_PLACE,
+            "streak_cell_index",
+            &STREAK_CELL,
             &[Uniform(-1.5, 1.5), Made(cells)],
             Tol::absolute(1.2e-2, "arc sine (4096 ulp) of numbers up to 1, times up to 24 / pi"),
-            |a| streak_place_index(a.f32(), a.u32()).words(),
+            |a| streak_cell_index(a.f32(), a.u32()).words(),
         ),
     ]
 }

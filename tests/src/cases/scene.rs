@@ -47,10 +47,10 @@ const FORMULA: Tol =
 /// The cases.
 pub(super) fn functions() -> Vec<FunctionCase> {
     let cosine = Uniform(0.02, 1.0);
-    let share = Uniform(0.0, 1.0);
+    let fraction = Uniform(0.0, 1.0);
     let alpha = Uniform(0.05, 1.0);
-    let colour = [Uniform(0.0, 1.0); 3];
-    let [r, g, b] = colour;
+    let color = [Uniform(0.0, 1.0); 3];
+    let [r, g, b] = color;
     vec![
         FunctionCase::new(
             "brdf_distribution",
@@ -116,7 +116,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "brdf_visible_normal",
             &BRDF,
-            &[Unit3, alpha, share, share],
+            &[Unit3, alpha, fraction, fraction],
             Tol::absolute(3.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
                 .with_outliers(1.0e-3),
             |a| {
@@ -137,7 +137,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "scatter_hemisphere",
             &SCATTER,
-            &[Unit3, share, share],
+            &[Unit3, fraction, fraction],
             Tol::absolute(2.0e-3, "sine and cosine (2^-11 within pi, and unspecified reduction beyond)")
                 .with_outliers(1.0e-3),
             |a| scatter_hemisphere(vec3(a), a.f32(), a.f32()).to_array().words(),
@@ -145,11 +145,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("scatter_above", &SCATTER, &[Unit3, Unit3], FORMULA, |a| {
             scatter_above(vec3(a), vec3(a)).to_array().words()
         }),
-        FunctionCase::new("scatter_alpha", &SCATTER, &[share], FORMULA, |a| scatter_alpha(a.f32()).words()),
+        FunctionCase::new("scatter_alpha", &SCATTER, &[fraction], FORMULA, |a| {
+            scatter_alpha(a.f32()).words()
+        }),
         FunctionCase::new(
             "scatter_gloss",
             &SCATTER,
-            &[r, g, b, share, share, Below(2)],
+            &[r, g, b, fraction, fraction, Below(2)],
             Tol::absolute(1.0e-5, "an exp2 of numbers up to 10 (3 + 2|x| ulp) and sums of numbers up to 1"),
             |a| {
                 let normal_reflectance = vec3(a);
@@ -209,15 +211,15 @@ pub(super) fn scene() -> SceneData {
     let noise: Vec<[u8; 4]> = (0..32 * 16)
         .map(|i| downpour_math::rng::rng_pcg4d([i, 1, 2, 3]).map(|w| (rng_unit(w) * 255.0) as u8))
         .collect();
-    let mut colour = builder.texture(32, 16, &noise, TextureUse::Colour);
-    colour.matrix = [2.0, 0.5, -0.5, 2.0];
-    let colour = builder.add_slot(colour);
+    let mut color = builder.texture(32, 16, &noise, TextureUse::Color);
+    color.matrix = [2.0, 0.5, -0.5, 2.0];
+    let color = builder.add_slot(color);
     let data = builder.texture(32, 16, &noise, TextureUse::Data);
     let data = builder.add_slot(data);
     let plain = MaterialLook::default();
     let looks = [
-        MaterialLook { maps: [Some(colour), None, None, None, None, None], roughness: 0.6, ..plain },
-        MaterialLook { metallic: 1.0, roughness: 0.25, base_colour: [0.9, 0.6, 0.3, 1.0], ..plain },
+        MaterialLook { maps: [Some(color), None, None, None, None, None], roughness: 0.6, ..plain },
+        MaterialLook { metallic: 1.0, roughness: 0.25, base_color: [0.9, 0.6, 0.3, 1.0], ..plain },
         MaterialLook {
             maps: [None, Some(data), Some(data), None, Some(data), None],
             roughness: 0.8,
@@ -225,11 +227,11 @@ pub(super) fn scene() -> SceneData {
         },
         MaterialLook {
             flags: SCENE_MASKED | SCENE_DOUBLE_SIDED,
-            maps: [Some(colour), None, None, None, None, None],
+            maps: [Some(color), None, None, None, None, None],
             ..plain
         },
-        MaterialLook { flags: SCENE_BLENDED, base_colour: [0.2, 0.9, 0.4, 0.4], ..plain },
-        MaterialLook { flags: SCENE_UNLIT, base_colour: [1.0, 0.2, 0.7, 1.0], ..plain },
+        MaterialLook { flags: SCENE_BLENDED, base_color: [0.2, 0.9, 0.4, 0.4], ..plain },
+        MaterialLook { flags: SCENE_UNLIT, base_color: [1.0, 0.2, 0.7, 1.0], ..plain },
         MaterialLook { transmission: 0.8, roughness: 0.1, emission: [0.1, 0.0, 0.2], ..plain },
     ];
     let materials = looks.map(|look| builder.add_material(look));
@@ -255,22 +257,22 @@ pub(super) fn scene() -> SceneData {
         })
         .collect();
     let indices: Vec<u32> = (0..6).flat_map(|f| [0, 1, 2, 0, 2, 3].map(|k| 4 * f + k)).collect();
-    let mut place = |material: u32, at: Vec3, size: Vec3| {
+    let mut add = |material: u32, at: Vec3, size: Vec3| {
         let part = MeshPart {
             positions: &positions,
             normals: None,
             tangents: Some(&tangents),
             uvs: [Some(&uvs), None],
-            colours: None,
+            colors: None,
             indices: &indices,
             material,
         };
         builder.add_mesh(&part, &(Affine3A::from_translation(at) * Affine3A::from_scale(size)));
     };
-    place(materials[0], Vec3::new(0.0, -0.6, 0.0), Vec3::new(8.0, 0.2, 8.0));
+    add(materials[0], Vec3::new(0.0, -0.6, 0.0), Vec3::new(8.0, 0.2, 8.0));
     for (k, &material) in (0i16..).zip(&materials[1..]) {
         let x = f32::from(k) - 2.5;
-        place(
+        add(
             material,
             Vec3::new(x, 0.1 * f32::from(k % 3), -0.7 * f32::from(k % 2)),
             Vec3::new(0.7, 0.9, 0.7),

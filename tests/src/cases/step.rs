@@ -24,7 +24,7 @@ use downpour_sim::step::{
 use downpour_sim::view::View;
 use downpour_sim::volume::{
     VolumeEye, VolumeFrustum, volume_images, volume_in_area, volume_in_sphere, volume_limit, volume_local,
-    volume_offset, volume_on_disc, volume_range, volume_spread,
+    volume_offset, volume_on_disk, volume_range, volume_spread,
 };
 use downpour_wind::{
     Keyed, UniformWind, Wind, WindCore, WindField, WindForm, WindGrid, WindMask, WindPart, WindPrimitive,
@@ -144,7 +144,7 @@ const MOTIONS: Tol =
 pub(super) fn functions() -> Vec<FunctionCase> {
     let (velocity, wind) = (Uniform(-10.0, 10.0), Uniform(-10.0, 10.0));
     let diameter = Uniform(1.0e-4, 9.0e-3);
-    let share = Uniform(0.0, 1.0);
+    let fraction = Uniform(0.0, 1.0);
     let near = Uniform(-6.0, 6.0);
     let step = [velocity, velocity, velocity, wind, wind, wind, Uniform(0.3, 9.5), Uniform(1.0e-3, 0.1)];
     let sphere = Tol::absolute(3.0e-3, "sine and cosine (2^-11), times radii up to 4");
@@ -188,7 +188,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "motion_bounce",
             &MOTION,
-            &[velocity, velocity, velocity, Unit3, share, share],
+            &[velocity, velocity, velocity, Unit3, fraction, fraction],
             MOTIONS,
             |a| motion_bounce(vec3(a), vec3(a), a.f32(), a.f32()).to_array().words(),
         ),
@@ -238,12 +238,12 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "volume_in_sphere",
             &VOLUME,
-            &[share, share, share, Uniform(2.0, 8.0)],
+            &[fraction, fraction, fraction, Uniform(2.0, 8.0)],
             sphere,
             |a| volume_in_sphere(vec3(a), a.f32()).to_array().words(),
         ),
-        FunctionCase::new("volume_on_disc", &VOLUME, &[share, share], sphere, |a| {
-            volume_on_disc(Vec2::new(a.f32(), a.f32())).to_array().words()
+        FunctionCase::new("volume_on_disk", &VOLUME, &[fraction, fraction], sphere, |a| {
+            volume_on_disk(Vec2::new(a.f32(), a.f32())).to_array().words()
         }),
         FunctionCase::new("step_kind", &STEP, &[AnyWord], Tol::exact("bits of a word"), |a| {
             step_kind(a.u32()).words()
@@ -274,7 +274,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "enter_code",
             &ENTER,
-            &[Uniform(700.0, 60_000.0), Uniform(700.0, 60_000.0), share],
+            &[Uniform(700.0, 60_000.0), Uniform(700.0, 60_000.0), fraction],
             Tol::exact("a product and sums, which a GPU may fuse, and their whole part").with_outliers(2.0e-2),
             |a| enter_code(a.f32(), a.f32(), a.f32()).words(),
         ),
@@ -288,15 +288,15 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "enter_offset",
             &ENTER,
-            &[Made(region_words), Unit3, Unit3, share, share, share, share],
-            Tol::absolute(2.0e-5, "roots, a quotient and products of numbers up to 3; at the edge of the disc or by chance it may be none")
+            &[Made(region_words), Unit3, Unit3, fraction, fraction, fraction, fraction],
+            Tol::absolute(2.0e-5, "roots, a quotient and products of numbers up to 3; at the edge of the disk or by chance it may be none")
                 .with_outliers(1.0e-3),
             |a| enter_offset(&region(a), vec3(a), vec3(a), vec3(a), a.f32()).to_array().words(),
         ),
         FunctionCase::new(
             "step_shown",
             &STEP,
-            &[AnyWord, share],
+            &[AnyWord, fraction],
             Tol::ulp(2, "two products, each rounded once"),
             |a| step_shown(a.u32(), a.f32()).words(),
         ),
@@ -530,7 +530,7 @@ const BOX: SimVolume = SimVolume::Box { size_m: [6.0, 6.0, 6.0] };
 
 const STEPPED: Tol = Tol::absolute(
     1.0e-4,
-    "places up to 10 m after an exponential, a lookup of wind and some products; a drop that grazes a face or a surface \
+    "positions up to 10 m after an exponential, a lookup of wind and some products; a drop that grazes a face or a surface \
      may be on either side of it",
 )
 .with_outliers(3.0e-3);
@@ -554,7 +554,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         case(
             "main_step: what happened",
             &[],
-            Tol::exact("sorted by drop; places to the millimetre").with_outliers(2.0e-2),
+            Tol::exact("sorted by drop; positions to the millimeter").with_outliers(2.0e-2),
             |gpu| {
                 happened_case(
                     gpu,

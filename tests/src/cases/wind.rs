@@ -42,8 +42,8 @@ fn matrix_words(random: [u32; 4]) -> Vec<u32> {
     // The up of an updraft is as long as the updraft.
     let up = if kind > 6.5 && kind < 7.5 { axis * (6.0 + 10.0 * a) } else { axis };
     let strength = 80.0 * b - 40.0;
-    let centre = [8.0 * c - 4.0, 8.0 * d - 4.0, 8.0 * a - 4.0];
-    [[kind, strength, 1.0 + 2.0 * c], centre, up.to_array()].words()
+    let center = [8.0 * c - 4.0, 8.0 * d - 4.0, 8.0 * a - 4.0];
+    [[kind, strength, 1.0 + 2.0 * c], center, up.to_array()].words()
 }
 
 fn matrix(args: &mut Args<'_>) -> WindMatrix {
@@ -112,10 +112,10 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     let squared = LogUniform(1.0e-2, 1.0e3);
     let (strength, core) = (Uniform(-50.0, 50.0), Uniform(1.0, 3.0));
     let value = Uniform(-10.0, 10.0);
-    let share = Uniform(0.0, 1.0);
+    let fraction = Uniform(0.0, 1.0);
     let cell = [Below(64); 3];
     let mut mix = vec![value; 24];
-    mix.extend([share; 3]);
+    mix.extend([fraction; 3]);
     vec![
         FunctionCase::new(
             "wind_primitive_across",
@@ -217,7 +217,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new(
             "wind_field_corner",
             &FIELD,
-            &[cell[0], cell[1], cell[2], cell[0], cell[1], cell[2], share, share, share, Below(8)],
+            &[cell[0], cell[1], cell[2], cell[0], cell[1], cell[2], fraction, fraction, fraction, Below(8)],
             Tol::exact("a choice between integers"),
             |a| {
                 let (cell, next) = (UVec3::from(a.u32s()), UVec3::from(a.u32s()));
@@ -320,7 +320,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         tol: Tol::relative(
             1.0e-5,
             2.0e-5,
-            "a sum of 13 velocities up to 7 m/s, each known to 1e-6 of it, at places known to 1e-6 m",
+            "a sum of 13 velocities up to 7 m/s, each known to 1e-6 of it, at positions known to 1e-6 m",
         ),
         run,
     };

@@ -9,7 +9,7 @@ use super::tokens::{Kind, tokens};
 use crate::relay::{CHOSEN, Swap};
 
 /// Largest number of mutants that share a text.
-pub const MOST: usize = 16;
+pub const MAX_MUTANTS: usize = 16;
 
 /// The swap of all mutants of one function; number `k + 1` chooses the `k`-th, any other none. `None` for entry points,
 /// which nothing can call: they are tried one by one.

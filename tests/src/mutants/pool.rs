@@ -1,4 +1,4 @@
-//! Workers as processes: each is told one mutant after the other, and ended when it takes too long.
+//! Workers as processes: each receives one mutant after the other, and is killed when it takes too long.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::Path;

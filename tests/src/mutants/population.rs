@@ -61,7 +61,7 @@ impl Mutant {
         checked.err().map(|error| error.as_inner().to_string())
     }
 
-    /// Place, kind and change in one line.
+    /// Position, kind and change in one line.
     #[must_use]
     pub fn describe(&self) -> String {
         format!(

@@ -13,7 +13,7 @@ pub enum Kind {
     Sign,
 }
 
-/// A token and its place in the text.
+/// A token and its position in the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Token {
     /// Kind of the token.

@@ -1,4 +1,4 @@
-//! The process that tries mutants: it is told which on its input and says on its output what became of each.
+//! The process that tries mutants: reads which on its input and writes the outcome of each on its output.
 //!
 //! Before each step it says how long that may take; the pool ends a worker that takes longer.
 
@@ -76,10 +76,10 @@ struct KernelBench {
 
 /// Largest numbers of kernel-level cases that a mutant is shown to, where its function has a case of its own and where
 /// it has none. The first of each kernel come first.
-const MOST_KERNEL_CASES: [usize; 2] = [2, 8];
+const MAX_KERNEL_CASES: [usize; 2] = [2, 8];
 
 /// Largest number of function-level cases that a mutant is shown to, its own first.
-const MOST_FUNCTION_CASES: usize = 12;
+const MAX_FUNCTION_CASES: usize = 12;
 
 impl Bench {
     /// All cases before a device.
@@ -103,7 +103,7 @@ impl Bench {
     }
 
     /// Shows mutants of one function to the cases that reach it, each until one sees it. `allow` is told how long each step
-    /// may take and of which mutant it is (by its place), `tell` what became of each.
+    /// may take and of which mutant it is (by its index), `tell` what became of each.
     pub fn judge(
         &mut self,
         mutants: &[&Mutant],
@@ -154,7 +154,7 @@ impl Bench {
         let mut functions: Vec<usize> = reaching.collect();
         functions.sort_by_key(|&at| self.functions[at].case.function != name);
         let own = functions.iter().copied().filter(|&at| self.functions[at].case.function == name);
-        let few = functions.iter().take(MOST_FUNCTION_CASES).map(|&at| Step::Function(at, FEW_CALLS));
+        let few = functions.iter().take(MAX_FUNCTION_CASES).map(|&at| Step::Function(at, FEW_CALLS));
         let all = own.map(|at| Step::Function(at, self.functions[at].case.calls));
         few.chain(all).chain(self.kernels_for(name).into_iter().map(Step::Kernel)).collect()
     }
@@ -178,7 +178,7 @@ impl Bench {
                     let (text, kinds) = case.shader(&compose(&[case.module]), twin.arguments[0].len());
                     let start = Instant::now();
                     let run = quietly(|| case.run_shader(&self.gpu, &text, kinds.clone(), twin.clone()));
-                    // With few calls a share of outliers may be over its limit by chance.
+                    // With few calls a fraction of outliers may be over its limit by chance.
                     let passes = run.is_some_and(|run| run.compare(&case.tol).failure.is_none());
                     passes.then(|| Ready { text, kinds, twin, took: start.elapsed() })
                 });
@@ -232,7 +232,7 @@ impl Bench {
             }
         }
         order.sort_unstable();
-        let [own, none] = MOST_KERNEL_CASES;
+        let [own, none] = MAX_KERNEL_CASES;
         let has_own = self.functions.iter().any(|bench| bench.case.function == name);
         order.into_iter().take(if has_own { own } else { none }).map(|(_, at)| at).collect()
     }

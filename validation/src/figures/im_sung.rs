@@ -34,12 +34,12 @@ const SCENE: &str = "street.gltf";
 const SAMPLES: &str = "1";
 
 /// Drops of figures 6, 8, 9 and 10.
-const MOST: u32 = 10_000;
+const MAX_DROPS: u32 = 10_000;
 
 /// Numbers of drops of figures 7 and 11.
 const NUMBERS: [u32; 5] = [1_000, 5_000, 10_000, 20_000, 40_000];
 
-/// Rain of the path, mm/h: above [`MOST`] drops in each of the volumes, in ours from 480 x 270 pixels on.
+/// Rain of the path, mm/h: above [`MAX_DROPS`] drops in each of the volumes, in ours from 480 x 270 pixels on.
 const RATE_MM_H: f64 = 300.0;
 
 /// Rain rate of the comparison of numbers, mm/h: as many drops as the largest of [`NUMBERS`], in ours from 640 x 360 pixels on.
@@ -77,12 +77,12 @@ fn plan(options: &Options) -> Vec<(&'static str, String, Rain, u32)> {
     let mut runs = Vec::new();
     let mut add = |set, name: String, rain: Rain, frames| runs.push((set, name, rain, frames));
     for model in Model::ALL {
-        let rain = Rain { model, rate_mm_h: RATE_MM_H, max_drops: MOST, fov_deg: None };
+        let rain = Rain { model, rate_mm_h: RATE_MM_H, max_drops: MAX_DROPS, fov_deg: None };
         add("path", format!("path-{}", model.key()), rain, walk::frames(options.fps));
     }
     for fov in ZOOM_DEG {
         for model in [Model::ImSung, Model::View] {
-            let rain = Rain { model, rate_mm_h: RATE_MM_H, max_drops: MOST, fov_deg: Some(fov) };
+            let rain = Rain { model, rate_mm_h: RATE_MM_H, max_drops: MAX_DROPS, fov_deg: Some(fov) };
             add("zoom", format!("zoom-{}-{fov}", model.key()), rain, 1);
         }
     }
@@ -144,7 +144,7 @@ impl<'a> Maker<'a> {
         }
         let frames = stats::read(&read(&stats)?).map_err(|message| in_file(&stats, message))?;
         let run = Run { set, name, rain, frames };
-        let [mean, least] = run.share();
+        let [mean, least] = run.fraction();
         eprintln!("{}: {:.1} % on screen, least {:.1} %", run.name, 100.0 * mean, 100.0 * least);
         Ok(run)
     }

@@ -7,7 +7,7 @@ import numpy as np
 # FLIP's default: an eye 0.7 m from a screen of 3840 pixels on 0.7 m.
 PIXELS_PER_DEGREE = 67.0
 # Where the logarithmic mean of the reference within the silhouette goes.
-GREY = 0.18
+GRAY = 0.18
 # Pixels between the panels of the picture.
 GAP = 4
 
@@ -22,9 +22,9 @@ def mean_luminance(picture, within):
 
 
 def exposure(reference, within):
-    """The factor, one for both pictures, that puts the reference's logarithmic mean at middle grey."""
+    """The factor, one for both pictures, that puts the reference's logarithmic mean at middle gray."""
     values = np.maximum(luminance(reference)[within], 1.0e-6)
-    return float(GREY / np.exp(np.log(values).mean()))
+    return float(GRAY / np.exp(np.log(values).mean()))
 
 
 def encoded(picture, factor):
@@ -35,7 +35,7 @@ def encoded(picture, factor):
 
 
 def flip(reference, test, magma=False):
-    """The map of LDR-FLIP (Andersson et al. 2020) of two encoded pictures, in 0 to 1, or its colours."""
+    """The map of LDR-FLIP (Andersson et al. 2020) of two encoded pictures, in 0 to 1, or its colors."""
     parameters = {"ppd": PIXELS_PER_DEGREE}
     result, _, _ = flip_evaluator.evaluate(reference, test, "LDR", True, magma, False, parameters)
     return np.array(result)

@@ -94,19 +94,19 @@ def material(file, index, kind):
     look = found.get("pbrMetallicRoughness", {})
     base = look.get("baseColorFactor", [1, 1, 1, 1])
     roughness, metallic = look.get("roughnessFactor", 1.0), look.get("metallicFactor", 1.0)
-    colour = {"type": "rgb", "value": base[:3]}
+    color = {"type": "rgb", "value": base[:3]}
     if "baseColorTexture" in look:
-        colour = texture(file, look["baseColorTexture"], False)
+        color = texture(file, look["baseColorTexture"], False)
     if "metallicRoughnessTexture" in look:
         used = look["metallicRoughnessTexture"]
         roughness, metallic = channel(file, used, 1, roughness), channel(file, used, 2, metallic)
     if kind == "principled":
-        bsdf = {"type": "principled", "base_color": colour, "roughness": roughness, "metallic": metallic, "specular": 0.5}
+        bsdf = {"type": "principled", "base_color": color, "roughness": roughness, "metallic": metallic, "specular": 0.5}
         if not isinstance(roughness, dict):
             bsdf["roughness"] = max(roughness, 0.03)
     else:
         number = lambda value: value if isinstance(value, dict) else {"type": "rgb", "value": [float(value)] * 3}
-        bsdf = {"type": "gltf", "base": colour, "roughness": number(roughness), "metallic": number(metallic)}
+        bsdf = {"type": "gltf", "base": color, "roughness": number(roughness), "metallic": number(metallic)}
     two_sided = {"type": "twosided", "inner": bsdf} if kind == "principled" else bsdf
     glow = found.get("emissiveFactor")
     strength = found.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
@@ -123,15 +123,15 @@ def material(file, index, kind):
 
 
 def shapes(name, kind):
-    """Parts of a scene, a mesh for each primitive at its place."""
+    """Parts of a scene, a mesh for each primitive at its position."""
     file = File(name)
     found = {}
     looks = {}
     for k, (mesh, matrix) in enumerate(placed(file)):
         for p, part in enumerate(file.json["meshes"][mesh]["primitives"]):
             attributes = part["attributes"]
-            places = file.accessor(attributes["POSITION"]).astype(np.float64)
-            places = places @ matrix[:3, :3].T + matrix[:3, 3]
+            positions = file.accessor(attributes["POSITION"]).astype(np.float64)
+            positions = positions @ matrix[:3, :3].T + matrix[:3, 3]
             indices = file.accessor(part["indices"]).reshape(-1, 3).astype(np.uint32)
             if np.linalg.det(matrix[:3, :3]) < 0:
                 indices = indices[:, ::-1]
@@ -145,10 +145,10 @@ def shapes(name, kind):
                 properties["emitter"] = mi.load_dict({"type": "area", "radiance": {"type": "rgb", "value": emission}})
             smooth = "NORMAL" in attributes
             made = mi.Mesh(
-                f"part_{k}_{p}", len(places), len(indices), properties, smooth, "TEXCOORD_0" in attributes
+                f"part_{k}_{p}", len(positions), len(indices), properties, smooth, "TEXCOORD_0" in attributes
             )
             values = mi.traverse(made)
-            values["vertex_positions"] = places.astype(np.float32).ravel()
+            values["vertex_positions"] = positions.astype(np.float32).ravel()
             values["faces"] = indices.ravel()
             if smooth:
                 normals = file.accessor(attributes["NORMAL"]) @ np.linalg.inv(matrix[:3, :3])

@@ -10,7 +10,7 @@ import mitsuba as mi
 # Reflectance of a dielectric of index 1.5 at normal incidence.
 DIELECTRIC = 0.04
 # The sharpest lobe.
-LEAST_ALPHA = 1.0e-3
+MIN_ALPHA = 1.0e-3
 
 
 class Gltf(mi.BSDF):
@@ -27,7 +27,7 @@ class Gltf(mi.BSDF):
         base = self.base.eval(si, active)
         metallic = self.metallic.eval_1(si, active)
         roughness = self.roughness.eval_1(si, active)
-        alpha = dr.maximum(roughness * roughness, LEAST_ALPHA)
+        alpha = dr.maximum(roughness * roughness, MIN_ALPHA)
         normal = DIELECTRIC * (1.0 - metallic) + base * metallic
         # Half of the samples to each lobe of a dielectric; a metal has one.
         chance = dr.select(metallic > 0.99, 1.0, 0.5)

@@ -3,9 +3,9 @@
 use downpour_drop::DropShape;
 use downpour_drop::mesh::DropMesh;
 
-/// Units of the file per metre. Mitsuba moves the foot of a ray by an epsilon of 9e-5 times its coordinates, but
-/// at least times 1, so drops of a millimetre have to be large in its units. The sky is at infinity: nothing else changes.
-pub(super) const UNITS_PER_METRE: f64 = 1.0e5;
+/// Units of the file per meter. Mitsuba moves the foot of a ray by an epsilon of 9e-5 times its coordinates, but
+/// at least times 1, so drops of a millimeter have to be large in its units. The sky is at infinity: nothing else changes.
+pub(super) const UNITS_PER_METER: f64 = 1.0e5;
 
 /// A binary PLY with normals: 20 * 4^`subdivisions` triangles.
 pub(super) fn ply(shape: &DropShape, subdivisions: u32) -> Result<Vec<u8>, String> {
@@ -13,7 +13,7 @@ pub(super) fn ply(shape: &DropShape, subdivisions: u32) -> Result<Vec<u8>, Strin
     Ok(moved_ply(&mesh, 0.0))
 }
 
-/// A binary PLY with normals, of a drop whose origin is `height` metres above the world's.
+/// A binary PLY with normals, of a drop whose origin is `height` meters above the world's.
 pub(super) fn moved_ply(mesh: &DropMesh, height: f64) -> Vec<u8> {
     let (vertices, faces) = (mesh.positions().len(), mesh.triangles().len());
     let mut bytes = format!(
@@ -24,7 +24,7 @@ pub(super) fn moved_ply(mesh: &DropMesh, height: f64) -> Vec<u8> {
     .into_bytes();
     for (position, normal) in mesh.positions().iter().zip(mesh.normals()) {
         let [x, y, z] = position.map(f64::from);
-        let scaled = [x, y + height, z].map(|p| (p * UNITS_PER_METRE) as f32);
+        let scaled = [x, y + height, z].map(|p| (p * UNITS_PER_METER) as f32);
         bytes.extend(scaled.iter().chain(normal).flat_map(|v| v.to_le_bytes()));
     }
     for triangle in mesh.triangles() {

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use downpour_drop::optics::WATER_INDEX;
 
 use super::cases::Case;
-use super::mesh::UNITS_PER_METRE;
+use super::mesh::UNITS_PER_METER;
 use super::{Options, create, run, write};
 
 /// Versions of the packages.
@@ -86,7 +86,7 @@ impl Mitsuba {
         }
         for (name, value) in [
             ("--index", WATER_INDEX),
-            ("--distance", view.distance_m * UNITS_PER_METRE),
+            ("--distance", view.distance_m * UNITS_PER_METER),
             ("--yaw", view.yaw_deg),
             ("--pitch", view.pitch_deg),
             ("--fov", case.fov_deg),

@@ -1,6 +1,6 @@
 """Renders a glTF scene with Mitsuba's path tracer, compares it with a picture of `downpour render`, and prints `name value` lines.
 
-The file is read here anew: triangles, metallic-roughness materials with textures of base colour, point lamps. Surfaces have glTF's own
+The file is read here anew: triangles, metallic-roughness materials with textures of base color, point lamps. Surfaces have glTF's own
 reflection (gltf_bsdf.py), so that what differs is the light and not the material.
 """
 
@@ -54,14 +54,14 @@ def sensor(given):
 
 
 def lamps(text):
-    """Point lamps: `x,y,z,r,g,b` each, separated by semicolons; the colour is radiant intensity."""
+    """Point lamps: `x,y,z,r,g,b` each, separated by semicolons; the color is radiant intensity."""
     found = {}
     for k, lamp in enumerate(part for part in text.split(";") if part):
-        x, y, z, *colour = (float(number) for number in lamp.split(","))
+        x, y, z, *color = (float(number) for number in lamp.split(","))
         found[f"lamp_{k}"] = {
             "type": "point",
             "position": [x, y, z],
-            "intensity": {"type": "rgb", "value": colour},
+            "intensity": {"type": "rgb", "value": color},
         }
     return found
 

@@ -1,4 +1,4 @@
-"""An integrator for Mitsuba 3 that draws nothing at random but the places within a pixel.
+"""An integrator for Mitsuba 3 that draws nothing at random but the positions within a pixel.
 
 To be imported after the variant is set, a vectorised one. Rays, dielectric and sky are Mitsuba's. Drops are taken to be
 convex: light that has left does not come back.
@@ -8,8 +8,8 @@ import drjit as dr
 import mitsuba as mi
 from reference import INTERFACES
 
-# Share of the light below which a branch is not followed.
-LEAST = 1.0e-6
+# Fraction of the light below which a branch is not followed.
+MIN_FRACTION = 1.0e-6
 
 
 def branch(component):
@@ -36,7 +36,7 @@ def follow(context, meets, active):
 
 
 class Split(mi.SamplingIntegrator):
-    """Follows both branches at each interface: what leaves sees the sky, what stays goes on."""
+    """Follows both branches at each interface: what leaves sees the sky, what stays continues."""
 
     @dr.syntax
     def sample(self, scene, sampler, ray, medium=None, active=True):
@@ -45,7 +45,7 @@ class Split(mi.SamplingIntegrator):
         light = mi.Spectrum(dr.select(hits, 0, sky(scene, ray.d, ~hits)))
         mirrored, weight = follow(REFLECTION, meets, hits)
         light += weight * sky(scene, mirrored, hits)
-        entering, share = follow(TRANSMISSION, meets, hits)
+        entering, fraction = follow(TRANSMISSION, meets, hits)
         inside = meets.spawn_ray(entering)
         alive = mi.Bool(hits)
         count = mi.UInt32(0)
@@ -53,16 +53,16 @@ class Split(mi.SamplingIntegrator):
             meets = scene.ray_intersect(inside, alive)
             # A ray that slips out between two triangles sees the sky.
             slipped = alive & ~meets.is_valid()
-            light += dr.select(slipped, share * sky(scene, inside.d, slipped), 0)
+            light += dr.select(slipped, fraction * sky(scene, inside.d, slipped), 0)
             alive &= meets.is_valid()
             leaving, weight = follow(TRANSMISSION, meets, alive)
             passes = alive & dr.any(weight > 0)
-            light += dr.select(passes, share * weight * sky(scene, leaving, passes), 0)
+            light += dr.select(passes, fraction * weight * sky(scene, leaving, passes), 0)
             mirrored, weight = follow(REFLECTION, meets, alive)
-            share *= weight
+            fraction *= weight
             inside = meets.spawn_ray(mirrored)
             count += 1
-            alive &= (dr.max(share) > LEAST) & (count < INTERFACES)
+            alive &= (dr.max(fraction) > MIN_FRACTION) & (count < INTERFACES)
         return light, mi.Bool(active), []
 
 

@@ -2,7 +2,7 @@
 prints `name value` lines.
 
 Each instant is a mesh file, its drop where it is at that time; Mitsuba's own path tracer draws the rows round it, with the sky
-hidden where it is seen directly. What is left out of a pixel over all instants shows the sky. A lamp is a bright disc a kilometre
+hidden where it is seen directly. What is left out of a pixel over all instants shows the sky. A lamp is a bright disk a kilometer
 away, which the camera does not see directly.
 """
 
@@ -14,8 +14,8 @@ import numpy as np
 
 # Distance of a lamp in the units of the meshes, of which a drop has some hundreds and a path ten thousand.
 LAMP_DISTANCE = 1.0e8
-# Share of the exposure below which a pixel is not of the streak, against the most covered one.
-LEAST_COVER = 0.1
+# Fraction of the exposure below which a pixel is not of the streak, against the most covered one.
+MIN_COVER = 0.1
 
 
 def arguments():
@@ -49,12 +49,12 @@ def lamps(given):
         return {}
     yaw, pitch, radius = np.radians([given.lamp_yaw, given.lamp_pitch, given.lamp_radius])
     towards = np.array([np.sin(yaw) * np.cos(pitch), np.sin(pitch), np.cos(yaw) * np.cos(pitch)])
-    place = mi.ScalarTransform4f().look_at((LAMP_DISTANCE * towards).tolist(), [0, 0, 0], [0, 1, 0])
+    position = mi.ScalarTransform4f().look_at((LAMP_DISTANCE * towards).tolist(), [0, 0, 0], [0, 1, 0])
     light = {"type": "rgb", "value": [given.lamp_red, given.lamp_green, given.lamp_blue]}
     return {
         "lamp": {
             "type": "disk",
-            "to_world": place.scale(float(LAMP_DISTANCE * np.tan(radius))),
+            "to_world": position.scale(float(LAMP_DISTANCE * np.tan(radius))),
             "emitter": {"type": "area", "radiance": light},
         }
     }
@@ -64,13 +64,13 @@ def rows_of(mesh, given):
     """The rows in which a mesh may be seen."""
     box = mesh.bbox()
     scale = 0.5 * given.height / np.tan(0.5 * np.radians(given.fov))
-    places = [
+    rows = [
         0.5 * given.height - scale * y / (given.distance - side * given.reach)
         for y in (box.min.y, box.max.y)
         for side in (-1.0, 1.0)
     ]
-    first = max(int(np.floor(min(places))) - 1, 0)
-    last = min(int(np.ceil(max(places))) + 1, given.height)
+    first = max(int(np.floor(min(rows))) - 1, 0)
+    last = min(int(np.ceil(max(rows))) + 1, given.height)
     return (first, last)
 
 
@@ -102,9 +102,9 @@ def main(given):
     layer /= len(meshes)
     light, cover = layer[..., :3], layer[..., 3:]
     theirs = behind * (1.0 - cover) + light
-    within = cover[..., 0] > LEAST_COVER * cover.max()
+    within = cover[..., 0] > MIN_COVER * cover.max()
     # The streak alone, as bright as if it covered its pixels all of the time.
-    safe = np.maximum(cover, LEAST_COVER * cover.max())
+    safe = np.maximum(cover, MIN_COVER * cover.max())
     alone = np.where(within[..., None], light / safe, behind)
     ours_light = ours - behind * (1.0 - cover)
     ours_alone = np.where(within[..., None], ours_light / safe, behind)

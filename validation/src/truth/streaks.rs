@@ -5,7 +5,7 @@
 //! a picture; so the streak is compared alone as well, divided by the fraction of the time in which it covers a pixel. Its negative
 //! control is the sky instead of it.
 //!
-//! Lamps are discs of some degrees, at infinity, before a uniform dusk: no ray of either renderer would hit a point. Their images
+//! Lamps are disks of some degrees, at infinity, before a uniform dusk: no ray of either renderer would hit a point. Their images
 //! on a drop are glints of a thousandth of its area, and both sides need more samples for the same noise. They are not
 //! visible directly.
 
@@ -20,7 +20,7 @@ use downpour_drop::oscillation::{Amplitudes, Fluids, FrequencyLaw, OscillatingDr
 use downpour_math::rng::{rng_draw, rng_unit};
 
 use super::cases::Map;
-use super::mesh::{UNITS_PER_METRE, moved_ply};
+use super::mesh::{UNITS_PER_METER, moved_ply};
 use super::mitsuba::Mitsuba;
 use super::{Options, create, run, write};
 
@@ -115,7 +115,7 @@ pub(super) fn compare(
     }
     let text = format!(
         "# Streaks and Mitsuba\n\n`downpour specimen --exposure S --oscillation 0.2,0.1 --samples {OURS}` against the mean of instants by \
-         Mitsuba's path tracer (`scalar_rgb`, {PATH_SAMPLES} samples per pixel each; with a lamp {OURS_LIT} and {PATH_SAMPLES_LIT}). `alone`: the streak divided by the share of the \
+         Mitsuba's path tracer (`scalar_rgb`, {PATH_SAMPLES} samples per pixel each; with a lamp {OURS_LIT} and {PATH_SAMPLES_LIT}). `alone`: the streak divided by the fraction of the \
          exposure in which it covers a pixel; `absent`: the sky instead of it.\n\n\
          | streak | instants | cover | mean FLIP | luminance | FLIP alone | luminance alone | FLIP absent | sky outside |\n\
          |---|---|---|---|---|---|---|---|---|\n{}\n",
@@ -259,8 +259,8 @@ impl Streak {
         ];
         let mut values = vec![
             ("index", downpour_drop::optics::WATER_INDEX),
-            ("distance", DISTANCE_M * UNITS_PER_METRE),
-            ("reach", self.reach_m * UNITS_PER_METRE),
+            ("distance", DISTANCE_M * UNITS_PER_METER),
+            ("reach", self.reach_m * UNITS_PER_METER),
             ("fov", self.fov_deg),
             ("width", width.into()),
             ("height", height.into()),

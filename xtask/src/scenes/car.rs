@@ -201,7 +201,7 @@ fn wheel(mesh: &mut Mesh, x: f32, z: f32) {
     let mut wheel = Mesh::default();
     // Turned about the vertical, then laid on its side.
     let (r, half) = (WHEEL_M, 0.10);
-    let tyre = [
+    let tire = [
         [0.20, half - 0.012],
         [0.235, half],
         [r - 0.03, half],
@@ -209,7 +209,7 @@ fn wheel(mesh: &mut Mesh, x: f32, z: f32) {
         [r, -half + 0.035],
         [r - 0.03, -half],
     ];
-    let mut up: Vec<[f32; 2]> = tyre.to_vec();
+    let mut up: Vec<[f32; 2]> = tire.to_vec();
     up.reverse();
     wheel.lathe(plain(Material::Rubber), Vec3::ZERO, &up, 16);
     wheel.lathe(

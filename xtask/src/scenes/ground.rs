@@ -1,7 +1,7 @@
-//! Carriageway with crown and hollows, gutters, kerbs and pavements: a street along -z that ends in a cross street.
+//! Carriageway with crown and hollows, gutters, curbs and pavements: a street along -z that ends in a cross street.
 //!
 //! Heights are above the bottom of the gutters. The crown and the fall of the pavements are those of common practice: 2.5 %
-//! and 2 %; kerbs stand 12 cm high, 3 cm at the crossing.
+//! and 2 %; curbs stand 12 cm high, 3 cm at the crossing.
 
 use downpour_math::ops;
 use glam::{Vec2, Vec3};
@@ -10,13 +10,13 @@ use super::material::Material;
 use super::mesh::{Mesh, Paint, plain, tinted};
 use super::noise::{hash, mix, smooth, world};
 
-/// Half the width of the carriageway between kerbs.
+/// Half the width of the carriageway between curbs.
 pub(super) const HALF_ROAD_M: f32 = 3.4;
 /// Distance of the houses from the middle.
 pub(super) const HALF_STREET_M: f32 = 6.0;
 /// Start of the street, behind the eye.
 pub(super) const START_M: f32 = 25.0;
-/// The near kerb of the cross street, and its far one.
+/// The near curb of the cross street, and its far one.
 pub(super) const CROSS_NEAR_M: f32 = -46.4;
 pub(super) const CROSS_FAR_M: f32 = -53.0;
 /// Length of the cross street to both sides.
@@ -28,16 +28,16 @@ pub(super) const ZEBRA_M: [f32; 2] = [-13.8, 1.6];
 const GUTTER_M: f32 = 0.3;
 /// Half the width of the asphalt.
 const HALF_ASPHALT_M: f32 = HALF_ROAD_M - GUTTER_M;
-/// Radius of the kerbs at the corners.
+/// Radius of the curbs at the corners.
 const CORNER_M: f32 = 3.0;
 /// Height of the middle of the road.
 const CROWN_M: f32 = 0.085;
-/// Height of the kerbs.
-const KERB_HEIGHT_M: f32 = 0.12;
-/// Width of kerb and pavement.
+/// Height of the curbs.
+const CURB_HEIGHT_M: f32 = 0.12;
+/// Width of curb and pavement.
 const PAVEMENT_M: f32 = HALF_STREET_M - HALF_ROAD_M + 0.05;
 
-/// Hollows of the carriageway: middle, half-widths and depth, metres.
+/// Hollows of the carriageway: middle, half-widths and depth, meters.
 const HOLLOWS: [[f32; 5]; 9] = [
     [-0.9, 2.5, 0.75, 1.2, 0.026],
     [0.8, -2.8, 0.9, 0.7, 0.022],
@@ -60,10 +60,10 @@ const REPAIRS: [[f32; 5]; 4] = [
 
 /// Height of the pavement at a distance from the middle of the street.
 pub(super) fn pavement_height(x: f32) -> f32 {
-    KERB_HEIGHT_M + 0.02 * (x.abs() - HALF_ROAD_M - 0.15).max(0.0)
+    CURB_HEIGHT_M + 0.02 * (x.abs() - HALF_ROAD_M - 0.15).max(0.0)
 }
 
-/// Unevenness along a gutter, metres: water stands in the low parts.
+/// Unevenness along a gutter, meters: water stands in the low parts.
 fn gutter_wave(s: f32, side: u32) -> f32 {
     (world(s, side as f32 * 31.0, 4.6, 2, 201 + side) - 0.5) * 0.038
 }
@@ -87,21 +87,21 @@ pub(super) fn road_height(x: f32, z: f32) -> f32 {
     crown + wave - hollow
 }
 
-/// Tint of the asphalt: tyres polish and darken, dust gathers at the edges, repairs differ.
+/// Tint of the asphalt: tires polish and darken, dust gathers at the edges, repairs differ.
 fn road_tint(x: f32, z: f32) -> f32 {
     let patchy = mix(0.90, 1.06, world(x, z, 7.0, 3, 211));
     let track = |at: f32| {
         let d = (x.abs() - at) / 0.28;
         ops::exp(-d * d)
     };
-    let tyres = 1.0 - 0.13 * (track(0.55) + track(1.95).min(1.0));
+    let tires = 1.0 - 0.13 * (track(0.55) + track(1.95).min(1.0));
     let oil = 1.0 - 0.10 * ops::exp(-(x.abs() - 1.25) * (x.abs() - 1.25) / 0.06);
     let dust = mix(1.0, 1.16, smooth(2.3, 3.1, x.abs()));
     let repair = REPAIRS
         .iter()
         .find(|[x0, x1, z0, z1, _]| (*x0..*x1).contains(&x) && (*z0..*z1).contains(&z))
         .map_or(1.0, |repair| repair[4]);
-    (patchy * tyres * oil * dust * repair * 0.86).min(1.0)
+    (patchy * tires * oil * dust * repair * 0.86).min(1.0)
 }
 
 /// True if a point is painted: dashes along the middle and the bars of the crossing.
@@ -114,7 +114,7 @@ fn is_painted(x: f32, z: f32) -> bool {
     x.abs() < 0.05 && dash && zebra > ZEBRA_M[1] + 1.5 && (-40.0..22.0).contains(&z)
 }
 
-/// Sorted cuts without those that are closer than a millimetre.
+/// Sorted cuts without those that are closer than a millimeter.
 fn cuts(mut all: Vec<f32>) -> Vec<f32> {
     all.sort_by(f32::total_cmp);
     all.dedup_by(|a, b| (*a - *b).abs() < 1.0e-3);
@@ -201,15 +201,15 @@ fn cross_street(mesh: &mut Mesh) {
     );
 }
 
-/// A station of a kerb line: position, direction to the houses, length so far, and height of the kerb relative to 1.
+/// A station of a curb line: position, direction to the houses, length so far, and height of the curb relative to 1.
 struct Station {
     at: Vec2,
     out: Vec2,
     length: f32,
-    kerb: f32,
+    curb: f32,
 }
 
-/// Profile of gutter, kerb and pavement: distance from the kerb's face, height as a fraction of the kerb's, additional
+/// Profile of gutter, curb and pavement: distance from the curb's face, height as a fraction of the curb's, additional
 /// height, and the material up to the next point.
 const PROFILE: [(f32, f32, f32, Material); 15] = [
     (-GUTTER_M, 0.0, 0.0143, Material::Setts),
@@ -237,19 +237,19 @@ fn sweep(mesh: &mut Mesh, stations: &[Station], mirror: f32, side: u32) {
     mesh.grid(
         [columns, stations.len() - 1],
         |i, j| {
-            let (distance, share, more, material) = PROFILE[column(i)];
+            let (distance, fraction, more, material) = PROFILE[column(i)];
             let station = &stations[j];
-            // Behind a dropped kerb the pavement rises to its height over 1.2 m.
-            let kerb = mix(station.kerb, 1.0, smooth(0.15, 1.35, distance));
-            let wave = if distance < 0.01 { gutter_wave(station.at.y, side) * (1.0 - share) } else { 0.0 };
+            // Behind a dropped curb the pavement rises to its height over 1.2 m.
+            let curb = mix(station.curb, 1.0, smooth(0.15, 1.35, distance));
+            let wave = if distance < 0.01 { gutter_wave(station.at.y, side) * (1.0 - fraction) } else { 0.0 };
             let flat = station.at + station.out * distance;
-            let y = share * KERB_HEIGHT_M * kerb + more + wave * smooth(-39.0, -36.0, station.at.y);
+            let y = fraction * CURB_HEIGHT_M * curb + more + wave * smooth(-39.0, -36.0, station.at.y);
             let p = Vec3::new(flat.x * mirror, y, flat.y);
             let (uv, tint) = match material {
                 Material::Kerb => {
                     // From the foot of the face over the edge to the back.
-                    let over = share * 0.12 + distance.max(0.0);
-                    let dirt = mix(0.62, 1.0, smooth(0.0, 0.6, share));
+                    let over = fraction * 0.12 + distance.max(0.0);
+                    let dirt = mix(0.62, 1.0, smooth(0.0, 0.6, fraction));
                     (
                         Vec2::new(station.length, over / 0.5),
                         dirt * mix(0.85, 1.1, hash(station.length as i32, 3, 241)),
@@ -274,14 +274,14 @@ fn sweep(mesh: &mut Mesh, stations: &[Station], mirror: f32, side: u32) {
     );
 }
 
-/// Gutter, kerb and pavement of one side, around the corner into the cross street.
+/// Gutter, curb and pavement of one side, around the corner into the cross street.
 fn sidewalk(mesh: &mut Mesh, mirror: f32) {
     let side = u32::from(mirror > 0.0);
     let mut stations = Vec::new();
     let mut length = 0.0;
-    let mut add = |at: Vec2, out: Vec2, kerb: f32, step: f32| {
+    let mut add = |at: Vec2, out: Vec2, curb: f32, step: f32| {
         length += step;
-        stations.push(Station { at, out, length, kerb });
+        stations.push(Station { at, out, length, curb });
     };
     let straight = START_M - (CROSS_NEAR_M + CORNER_M);
     let count = (straight / 0.5).round() as i32;
@@ -314,7 +314,7 @@ fn far_sidewalk(mesh: &mut Mesh) {
             at: Vec2::new(CROSS_REACH_M - k as f32, CROSS_FAR_M),
             out: Vec2::new(0.0, -1.0),
             length: k as f32,
-            kerb: 1.0,
+            curb: 1.0,
         })
         .collect();
     sweep(mesh, &stations, 1.0, 2);

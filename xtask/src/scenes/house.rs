@@ -1,6 +1,6 @@
 //! Houses: a front with openings, a roof, and attached parts.
 //!
-//! A house stands on x from 0 to its width, its front in the plane z = 0 looking along +z. Storeys are 3 m high, windows 1.1 x 1.6 m,
+//! A house stands on x from 0 to its width, its front in the plane z = 0 looking along +z. Stories are 3 m high, windows 1.1 x 1.6 m,
 //! doors 1 x 2.1 m under a fanlight.
 
 mod door;
@@ -25,8 +25,8 @@ pub(super) fn ground_m() -> f32 {
     pavement_height(super::ground::HALF_STREET_M)
 }
 
-/// Height of storeys above the first.
-const STOREY_M: f32 = 3.0;
+/// Height of stories above the first.
+const STORY_M: f32 = 3.0;
 /// Depth of a house.
 pub(super) const DEPTH_M: f32 = 9.0;
 
@@ -55,8 +55,8 @@ impl StoneColor {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct House {
     pub(super) width_m: f32,
-    /// Storeys, with the ground floor.
-    pub(super) storeys: u32,
+    /// Stories, with the ground floor.
+    pub(super) stories: u32,
     pub(super) wall: Material,
     /// Paint of plaster, weathering of brick.
     pub(super) tint: [f32; 3],
@@ -64,7 +64,7 @@ pub(super) struct House {
     pub(super) stone: StoneColor,
     pub(super) joinery: Joinery,
     pub(super) windows: WindowKind,
-    /// Windows of a storey.
+    /// Windows of a story.
     pub(super) bays: u32,
     pub(super) door: [f32; 3],
     /// The bay of the door.
@@ -104,7 +104,7 @@ impl House {
 
     /// Height of the front, to the top of its cornice.
     fn height_m(&self) -> f32 {
-        ground_m() + self.ground_floor_m() + STOREY_M * (self.storeys - 1) as f32 + 0.25
+        ground_m() + self.ground_floor_m() + STORY_M * (self.stories - 1) as f32 + 0.25
     }
 
     fn wall_paint(&self) -> Paint {
@@ -151,14 +151,14 @@ impl House {
     fn openings(&self) -> Vec<Opening> {
         let [w, h] = self.windows.size_m();
         let mut all = Vec::new();
-        for storey in 0..self.storeys {
-            let floor = match storey {
+        for story in 0..self.stories {
+            let floor = match story {
                 0 => ground_m(),
-                _ => ground_m() + self.ground_floor_m() + STOREY_M * (storey - 1) as f32,
+                _ => ground_m() + self.ground_floor_m() + STORY_M * (story - 1) as f32,
             };
             for bay in 0..self.bays {
                 let x = self.bay_m(bay);
-                if storey == 0 {
+                if story == 0 {
                     if self.shop.is_some() {
                         continue;
                     }
@@ -167,7 +167,7 @@ impl House {
                         continue;
                     }
                 }
-                let sill = floor + if storey == 0 { 1.0 } else { 0.85 };
+                let sill = floor + if story == 0 { 1.0 } else { 0.85 };
                 all.push(Opening { x: [x - w / 2.0, x + w / 2.0], y: [sill, sill + h], is_window: true });
             }
         }

@@ -4,7 +4,7 @@
 
 use serde_json::{Value, json};
 
-use super::textures::{ASPHALT_M, BRICK_M, COVER_M, KERB_M, PLASTER_M, ROOF_M, SETTS_M, SLABS_M};
+use super::textures::{ASPHALT_M, BRICK_M, COVER_M, CURB_M, PLASTER_M, ROOF_M, SETTS_M, SLABS_M};
 
 /// All materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -85,13 +85,13 @@ fn textured(color: &'static str, normal: Option<(&'static str, f64)>, roughness:
 }
 
 impl Material {
-    /// Edge of the tile of its texture, metres; 1 without one.
+    /// Edge of the tile of its texture, meters; 1 without one.
     pub(super) fn tile_m(self) -> f32 {
         match self {
             Self::Asphalt => ASPHALT_M,
             Self::Slabs => SLABS_M,
             Self::Setts => SETTS_M,
-            Self::Kerb => KERB_M,
+            Self::Kerb => CURB_M,
             Self::Cover => COVER_M,
             Self::Brick | Self::BrickPale => BRICK_M,
             Self::Plaster => PLASTER_M,

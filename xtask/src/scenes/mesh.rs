@@ -80,7 +80,7 @@ impl Mesh {
         part.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
     }
 
-    /// A flat quad, corners counter-clockwise, with the material's texture laid on in metres.
+    /// A flat quad, corners counter-clockwise, with the material's texture laid on in meters.
     pub(super) fn quad(&mut self, paint: Paint, corners: [Vec3; 4]) {
         let normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
         let uvs = corners.map(|corner| laid_on(corner, normal, paint.material.tile_m()));
@@ -279,14 +279,14 @@ pub(super) fn turn(degrees: f32) -> (f32, f32) {
 /// Texture coordinates of a point of a face, projected along the axis that is nearest to its normal.
 fn laid_on(point: Vec3, normal: Vec3, tile_m: f32) -> Vec2 {
     let n = normal.abs();
-    let metres = if n.y >= n.x && n.y >= n.z {
+    let meters = if n.y >= n.x && n.y >= n.z {
         Vec2::new(point.x, point.z)
     } else if n.x >= n.z {
         Vec2::new(-point.z * normal.x.signum(), -point.y)
     } else {
         Vec2::new(point.x * normal.z.signum(), -point.y)
     };
-    metres / tile_m
+    meters / tile_m
 }
 
 #[cfg(test)]

@@ -52,7 +52,7 @@ pub(super) fn fractal(u: f32, v: f32, cells: [i32; 2], octaves: u32, seed: u32) 
     sum / all
 }
 
-/// Value noise over world coordinates in metres, octaves from `size_m` down, in [0, 1).
+/// Value noise over world coordinates in meters, octaves from `size_m` down, in [0, 1).
 pub(super) fn world(x: f32, y: f32, size_m: f32, octaves: u32, seed: u32) -> f32 {
     const NO_PERIOD: i32 = 1 << 20;
     let (mut sum, mut weight, mut all, mut scale) = (0.0, 1.0, 0.0, 1.0 / size_m);

@@ -51,7 +51,7 @@ impl Raster {
         })
     }
 
-    /// Normal map of a surface whose heights are the first component, in metres; `width_m` is the edge of the tile.
+    /// Normal map of a surface whose heights are the first component, in meters; `width_m` is the edge of the tile.
     ///
     /// Slopes are central differences; the tile repeats. Green points up (to smaller v), as in glTF.
     pub(super) fn normals(&self, width_m: f32) -> Self {

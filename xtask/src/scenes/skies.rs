@@ -1,7 +1,7 @@
 //! `cargo xtask scenes skies`: the maps of `assets/skies`, captures of the street from its middle.
 //!
 //! A capture is six square pictures of the dry street by `downpour render --backend cpu`, resampled into an equirectangular map. For rays
-//! that miss the scene under a clear sky, the map has the sun's disc as well. The CPU's pictures are the same bytes on every machine, and
+//! that miss the scene under a clear sky, the map has the sun's disk as well. The CPU's pictures are the same bytes on every machine, and
 //! so are the maps; they depend on the renderer, and are generated again when it changes.
 
 use std::path::{Path, PathBuf};
@@ -118,7 +118,7 @@ impl Capture {
             render(program, &file, &out, &[&street, &made])?;
             faces.push(Face::read(&out, yaw, pitch)?);
         }
-        let sun = self.sky.map(|sky| Disc::of(&sky));
+        let sun = self.sky.map(|sky| Disk::of(&sky));
         equirectangular(SIZE, |direction| {
             let (mut color, is_open) = look(&faces, direction);
             if let (Some(sun), true) = (&sun, is_open) {
@@ -214,19 +214,19 @@ fn look(faces: &[Face], direction: [f64; 3]) -> ([f64; 3], bool) {
     ([r, g, b].map(f64::from), distance > 1.0e20)
 }
 
-/// The sun's disc.
-struct Disc {
+/// The sun's disk.
+struct Disk {
     towards: [f64; 3],
     radiance: [f64; 3],
 }
 
-impl Disc {
+impl Disk {
     fn of(sky: &ClearSky) -> Self {
         let solid_angle = std::f64::consts::PI * SUN_RADIUS * SUN_RADIUS;
         Self { towards: sky.sun(), radiance: SUN_COLOR.map(|c| c * sky.sun_lux() / solid_angle) }
     }
 
-    /// Radiance of the disc in a direction: its edge is spread over a pixel of the map.
+    /// Radiance of the disk in a direction: its edge is spread over a pixel of the map.
     fn radiance(&self, direction: [f64; 3]) -> [f64; 3] {
         let cosine: f64 = direction.iter().zip(self.towards).map(|(a, b)| a * b).sum();
         let angle = ops::acos(cosine.clamp(-1.0, 1.0));

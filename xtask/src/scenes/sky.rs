@@ -12,7 +12,7 @@
 
 use downpour_math::ops::f64 as ops;
 
-/// Radius of the sun's disc, radians.
+/// Radius of the sun's disk, radians.
 pub(super) const SUN_RADIUS: f64 = 0.004_65;
 
 /// A clear sky.
@@ -85,7 +85,7 @@ impl ClearSky {
         [luminance * 1000.0 * self.scale, chromaticity[0], chromaticity[1]]
     }
 
-    /// Luminance (cd/m^2) and chromaticity towards a unit direction above the horizon; the sun's disc is not in it.
+    /// Luminance (cd/m^2) and chromaticity toward a unit direction above the horizon; the sun's disk is not in it.
     fn luminance_xy(&self, direction: [f64; 3]) -> [f64; 3] {
         let up = direction[1].max(0.01);
         let cosine: f64 = direction.iter().zip(self.sun).map(|(a, b)| a * b).sum();
@@ -102,7 +102,7 @@ impl ClearSky {
         })
     }
 
-    /// Linear sRGB radiance, scaled so that its luminance is in cd/m^2; the sun's disc is not in it.
+    /// Linear sRGB radiance, scaled so that its luminance is in cd/m^2; the sun's disk is not in it.
     pub(super) fn radiance(&self, direction: [f64; 3]) -> [f64; 3] {
         let [luminance, x, y] = self.luminance_xy(direction);
         let (tx, tz) = (x / y * luminance, (1.0 - x - y) / y * luminance);

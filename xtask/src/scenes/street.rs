@@ -17,7 +17,7 @@ const SLATE: [f32; 3] = [0.105, 0.112, 0.125];
 /// Default house of a row: most houses differ little from it.
 const PLAIN: House = House {
     width_m: 7.0,
-    storeys: 3,
+    stories: 3,
     wall: Material::Brick,
     tint: [0.92; 3],
     stone: StoneColor::Limestone,
@@ -62,7 +62,7 @@ fn left() -> Vec<House> {
         },
         House {
             width_m: 7.4,
-            storeys: 4,
+            stories: 4,
             tint: [0.85, 0.82, 0.80],
             stone: StoneColor::Sandstone,
             roof: Roof::Mansard { tiles: SLATE, dormers: 2 },
@@ -91,13 +91,13 @@ fn left() -> Vec<House> {
         },
         House {
             width_m: 7.9,
-            storeys: 3,
+            stories: 3,
             roof: Roof::Pitched { pitch_deg: 36.0, tiles: BROWN },
             ..plastered([0.46, 0.49, 0.48])
         },
         House {
             width_m: 7.2,
-            storeys: 4,
+            stories: 4,
             tint: [1.0, 0.95, 0.92],
             door_bay: 2,
             roof: Roof::Parapet { height_m: 1.0 },
@@ -118,7 +118,7 @@ fn right() -> Vec<House> {
     vec![
         House {
             width_m: 8.0,
-            storeys: 4,
+            stories: 4,
             bays: 4,
             wall: Material::BrickPale,
             door_bay: 1,
@@ -140,7 +140,7 @@ fn right() -> Vec<House> {
         },
         House {
             width_m: 8.0,
-            storeys: 3,
+            stories: 3,
             windows: WindowKind::Sash,
             shop: Some(Shop {
                 sign: Material::SignCafe,
@@ -152,7 +152,7 @@ fn right() -> Vec<House> {
         },
         House {
             width_m: 7.0,
-            storeys: 4,
+            stories: 4,
             bays: 3,
             door_bay: 0,
             roof: Roof::Mansard { tiles: SLATE, dormers: 2 },
@@ -170,12 +170,12 @@ fn right() -> Vec<House> {
         },
         House {
             width_m: 6.9,
-            storeys: 3,
+            stories: 3,
             door_bay: 1,
             door: [0.02, 0.03, 0.06],
             ..plastered([0.55, 0.44, 0.38])
         },
-        House { width_m: 7.5, storeys: 3, tint: [0.95, 0.9, 0.88], door_bay: 2, ..PLAIN },
+        House { width_m: 7.5, stories: 3, tint: [0.95, 0.9, 0.88], door_bay: 2, ..PLAIN },
         House { width_m: 8.7, bays: 4, ..plastered([0.62, 0.58, 0.50]) },
     ]
 }
@@ -187,7 +187,7 @@ fn far() -> Vec<House> {
         House { width_m: 7.0, door_bay: 1, ..plastered([0.60, 0.57, 0.52]) },
         House {
             width_m: 7.8,
-            storeys: 4,
+            stories: 4,
             wall: Material::BrickPale,
             roof: Roof::Parapet { height_m: 0.8 },
             door_bay: 2,
@@ -195,14 +195,14 @@ fn far() -> Vec<House> {
         },
         House {
             width_m: 9.6,
-            storeys: 4,
+            stories: 4,
             bays: 5,
             door_bay: 2,
             roof: Roof::Mansard { tiles: SLATE, dormers: 3 },
             ..plastered([0.67, 0.62, 0.52])
         },
-        House { width_m: 7.2, storeys: 3, tint: [0.9, 0.86, 0.84], door_bay: 0, ..PLAIN },
-        House { width_m: 7.4, storeys: 3, ..plastered([0.50, 0.52, 0.50]) },
+        House { width_m: 7.2, stories: 3, tint: [0.9, 0.86, 0.84], door_bay: 0, ..PLAIN },
+        House { width_m: 7.4, stories: 3, ..plastered([0.50, 0.52, 0.50]) },
         House { width_m: 7.5, wall: Material::BrickPale, ..PLAIN },
     ]
 }
@@ -228,7 +228,7 @@ struct Row {
 fn rows() -> Vec<Row> {
     let half = HALF_STREET_M;
     let far_z = CROSS_FAR_M - (half - super::ground::HALF_ROAD_M);
-    let end = House { bays: 4, width_m: 11.8, storeys: 4, ..plastered([0.6, 0.56, 0.48]) };
+    let end = House { bays: 4, width_m: 11.8, stories: 4, ..plastered([0.6, 0.56, 0.48]) };
     vec![
         Row { houses: left(), starts: vec![Start([-half, START_M], 90.0)] },
         Row { houses: right(), starts: vec![Start([half, CROSS_NEAR_M + 2.6], -90.0)] },

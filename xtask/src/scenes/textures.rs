@@ -9,7 +9,7 @@ mod sign;
 use super::raster::{Format, Raster};
 
 pub(super) use facade::{BRICK_M, PLASTER_M, ROOF_M};
-pub(super) use ground::{ASPHALT_M, COVER_M, KERB_M, SETTS_M, SLABS_M};
+pub(super) use ground::{ASPHALT_M, COVER_M, CURB_M, SETTS_M, SLABS_M};
 pub(super) use panes::VIEWS as PANE_VIEWS;
 
 /// A picture to be written to a file.
@@ -43,7 +43,7 @@ pub(super) fn make() -> Result<Vec<TextureFile>, String> {
         file("slabs_roughness.jpg", &slabs.roughness, Format::GrayData),
         file("setts_color.jpg", &setts.color, Format::Color),
         file("setts_normal.jpg", &setts.height.normals(ground::SETTS_M), Format::Data),
-        file("kerb_color.jpg", &ground::kerb(), Format::Color),
+        file("kerb_color.jpg", &ground::curb(), Format::Color),
         file("cover_normal.jpg", &ground::cover().normals(ground::COVER_M), Format::Data),
         file("brick_color.jpg", &brick.color, Format::Color),
         file("brick_pale_color.jpg", &facade::brick(&facade::PALE).color, Format::Color),
@@ -74,7 +74,7 @@ pub(super) fn puddle_mask() -> Result<Vec<u8>, String> {
     ground::puddle().encode(Format::Mask)
 }
 
-/// A surface as a tile: its color, its height in metres, its roughness.
+/// A surface as a tile: its color, its height in meters, its roughness.
 pub(super) struct Tile {
     pub(super) color: Raster,
     pub(super) height: Raster,

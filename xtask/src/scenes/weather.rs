@@ -111,7 +111,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
         ),
         file(
             "puddles.toml",
-            "The street at night: puddles in the hollows of the road and along the kerbs, and one painted on the pavement.",
+            "The street at night: puddles in the hollows of the road and along the curbs, and one painted on the pavement.",
             night.clone(),
             &[
                 &rain(25),
@@ -119,7 +119,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
                 "\n[camera]\nposition_m = [0.9, 1.15, 4.2]\nlook_at_m = [-0.5, 0.35, -6]\nfov_deg = 44\nshutter_s = 0.0167\n\
                  exposure_ev = -1.8\n",
                 SIZE,
-                "\n# The road has hollows of its own; the relief is that of a road of ISO 8608 class B.\n[[puddle]]\n\
+                "\n# The road model has hollows; the relief is that of a road of ISO 8608 class B.\n[[puddle]]\n\
                  position_m = [0, 0.05, -9]\nsize_m = [6.7, 26]\nfill = 0.9\nseed = 3\ncell_mm = 30\n\
                  \n[[puddle]]\nposition_m = [4.9, 0.15, -1.6]\nsize_m = [1.3, 4]\nmask = \"pavement_puddle.png\"\ndepth_mm = 12\n",
             ],

@@ -156,7 +156,7 @@ fn light(input: &Input) -> Vec<Entry> {
         ),
         Entry::new(
             "sun_diameter_deg",
-            "diameter of its disc",
+            "diameter of its disk",
             of_sun(|sun| Computed(2.0 * f64::from(sun.angular_radius).to_degrees(), 3)),
             "degrees",
         ),

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::listing::{Datum, Entry};
 use crate::{listing, quantity, stream};
 
-/// Wavelength, in metres, of the refractive index that is printed: sodium light.
+/// Wavelength, in meters, of the refractive index that is printed: sodium light.
 const SODIUM_M: f64 = 589.3e-9;
 
 /// Print the physical properties of one drop.

@@ -39,7 +39,7 @@ pub(crate) struct MaskArguments {
     #[arg(long, value_name = "MM", group = "drop", value_delimiter = ',', allow_hyphen_values = true)]
     #[arg(value_parser = quantity::diameter_mm)]
     diameter: Vec<f64>,
-    /// A drop model: a closed mesh in a .glb or .gltf file, in metres, its +Y up.
+    /// A drop model: a closed mesh in a .glb or .gltf file, in meters, its +Y up.
     #[arg(long, value_name = "DROP.glb", group = "drop")]
     model: Option<PathBuf>,
     /// Edge of the mask in pixels, 4 to 4096.

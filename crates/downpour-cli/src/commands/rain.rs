@@ -110,7 +110,7 @@ impl RainArguments {
         })
     }
 
-    /// The median volume diameter, in metres, of Marshall & Palmer's drops at this rate.
+    /// The median volume diameter, in meters, of Marshall & Palmer's drops at this rate.
     fn usual_median(&self) -> Result<f64, Failure> {
         let rate = self.rate.max(MIN_SHAPE_RATE_MM_H);
         Ok(DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, rate)?.median_volume_diameter())

@@ -56,7 +56,7 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", value_parser = frames::fps, allow_hyphen_values = true)]
     #[arg(requires = "frames")]
     fps: Option<f64>,
-    /// Write all layers into one .exr: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (metres along
+    /// Write all layers into one .exr: R, G, B; clean.R, .G, .B; rain.R, .G, .B; transmittance.Y; depth.Z (meters along
     /// the ray, 1e30 for the sky).
     #[arg(long)]
     layers: bool,

@@ -34,7 +34,7 @@ pub(crate) struct SpecimenArguments {
     /// The sky map: equirectangular, +Y up, .hdr or .exr.
     #[arg(long, value_name = "ENV.hdr")]
     environment: PathBuf,
-    /// Distance of the camera in metres.
+    /// Distance of the camera in meters.
     #[arg(long, value_name = "M", default_value = "0.1", value_parser = quantity::distance_m)]
     #[arg(allow_hyphen_values = true)]
     distance: f64,

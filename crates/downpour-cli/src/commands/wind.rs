@@ -34,10 +34,10 @@ pub(crate) struct WindArguments {
     #[arg(long, value_name = "S", default_value = "0", value_parser = quantity::time_s)]
     #[arg(allow_hyphen_values = true)]
     time: f64,
-    /// Slice: xy=Z, xz=Y (from above) or yz=X, in metres.
+    /// Slice: xy=Z, xz=Y (from above) or yz=X, in meters.
     #[arg(long, value_name = "PLANE=M", value_parser = slice, allow_hyphen_values = true)]
     slice: (WindPlane, f32),
-    /// Minimum region of the picture: the lower corner and the upper, metres [default: the weather's box of cells].
+    /// Minimum region of the picture: the lower corner and the upper, meters [default: the weather's box of cells].
     #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", value_parser = corners, allow_hyphen_values = true)]
     region: Option<[f32; 6]>,
     /// Width and height in pixels, 64 to 4096.
@@ -74,7 +74,7 @@ enum Form {
 
 /// A plane and its coordinate.
 fn slice(text: &str) -> Result<(WindPlane, f32), String> {
-    let allowed = "xy=Z, xz=Y or yz=X with a number of metres, -1e6 to 1e6";
+    let allowed = "xy=Z, xz=Y or yz=X with a number of meters, -1e6 to 1e6";
     let wrong = || format!("allowed: {allowed}");
     let (plane, offset) = text.split_once('=').ok_or_else(wrong)?;
     let plane = match plane {
@@ -89,7 +89,7 @@ fn slice(text: &str) -> Result<(WindPlane, f32), String> {
 
 /// Two corners of a box.
 fn corners(text: &str) -> Result<[f32; 6], String> {
-    let wrong = |_| "allowed: six numbers of metres, as -10,0,-10,10,20,10".to_owned();
+    let wrong = |_| "allowed: six numbers of meters, as -10,0,-10,10,20,10".to_owned();
     let numbers: Vec<f32> = text
         .split(',')
         .map(|part| part.trim().parse().map_err(|_| ()))

@@ -126,7 +126,7 @@ fn a_moving_scene_keeps_its_exposure() {
     assert!(content(folder.path()) == whole, "other files");
 }
 
-/// Complete frames stay, changed or missing ones are made again, and a later end makes the clip longer.
+/// Complete frames stay, changed or missing ones are rendered again, and a later end makes the clip longer.
 #[test]
 fn a_clip_goes_on_where_it_stopped() {
     let folder = tempfile::tempdir().unwrap();
@@ -186,7 +186,7 @@ fn a_damaged_journal_costs_what_it_knew() {
     fs::remove_file(folder.path().join("2.png")).unwrap();
     assert!(run().succeeded().stderr.contains("1 made now"));
     assert!(content(folder.path()) == whole, "other files");
-    // Without its exposure all of it is made again.
+    // Without its exposure the whole clip is rendered again.
     let lines: Vec<&str> = text.lines().filter(|line| !line.contains("exposure")).collect();
     fs::write(&journal, lines.join("\n") + "\n").unwrap();
     assert!(run().succeeded().stderr.contains("3 made now"));

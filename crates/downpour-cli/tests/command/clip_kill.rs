@@ -65,7 +65,7 @@ fn an_interrupt_drops_the_frame_and_keeps_the_clip() {
         wait_for(folder.path(), ".png", before + 2);
         running.signal(signal);
         let ended = running.end();
-        assert_eq!((ended.code, ended.stderr.as_str()), (Some(6), "downpour: cancelled\n"));
+        assert_eq!((ended.code, ended.stderr.as_str()), (Some(6), "downpour: canceled\n"));
         assert!(names_in(folder.path()).iter().all(|name| !name.ends_with(".part")));
     }
     let ended = start(folder.path(), &["--frames", "0..3", "-o", "@%d.png"]).end().succeeded();

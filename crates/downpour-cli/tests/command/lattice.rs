@@ -7,7 +7,7 @@ fn lattice(arguments: &[&str]) -> Downpour {
 }
 
 #[test]
-fn water_on_glass_is_counted_to_the_nanolitre() {
+fn water_on_glass_is_counted_to_the_nanoliter() {
     let arguments = [
         "glass", "--size", "96x64", "--rate", "300", "--speed", "12", "--steps", "4000", "--check", "mass",
         "--json",

@@ -27,7 +27,7 @@ fn lattice(arguments: &[&str], backend: &[&str]) -> Ended {
 
 const CPU: [&str; 2] = ["--backend", "cpu"];
 
-/// The same list, to the nanolitre, and the same pictures. The control is another seed.
+/// The same list, to the nanoliter, and the same pictures. The control is another seed.
 pub(crate) fn a_pane_is_that_of_the_cpu(on: &[&str]) {
     let fixed = ["glass", "--size", "96x64", "--rate", "300", "--speed", "12", "--steps", "1200", "--json"];
     for show in ["height", "normal", "mass"] {

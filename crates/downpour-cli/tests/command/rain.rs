@@ -27,7 +27,7 @@ const CONTRACT: [&str; 6] = [
 /// drops as published, of which 78 % are above 0.1 mm, times 0.86 to carry the rate; extinction near 0.365 R^0.63 times
 /// 0.86 = 1.34 per km.
 #[test]
-fn ten_millimetres_an_hour_are_what_marshall_and_palmer_measured() {
+fn ten_millimeters_an_hour_are_what_marshall_and_palmer_measured() {
     let json = downpour(&["rain", "--rate", "10", "--json"]).succeeded().json();
     assert_eq!(json["distribution"], "marshall-palmer");
     for (key, value, tolerance) in [

@@ -277,7 +277,7 @@ fn the_picture_of_a_bare_model_shows_rain() {
 
 /// A scene far from the world's origin looks as near it, and drops are listed at their positions.
 #[test]
-fn ten_thousand_kilometres_away_nothing_is_lost() {
+fn ten_thousand_kilometers_away_nothing_is_lost() {
     let far = weather("").replace("look_at_m = [0, 0.6, 0]", "look_at_m = [8388608, 0.6, 0]");
     let far = far.replace("position_m = [0, 1.2, 6]", "position_m = [8388608, 1.2, 6]");
     let far = far.replace("'floor.gltf'", "'floor.gltf'\ntranslation_m = [8388608, 0, 0]");

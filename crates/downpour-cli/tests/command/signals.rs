@@ -15,7 +15,7 @@ fn interrupted(running: Running, signal: &str, wait: u64) -> Ended {
     running.signal(signal);
     let ended = running.end();
     assert_eq!(ended.code, Some(6), "{}", ended.stderr);
-    assert_eq!(ended.stderr, "downpour: cancelled\n");
+    assert_eq!(ended.stderr, "downpour: canceled\n");
     ended
 }
 

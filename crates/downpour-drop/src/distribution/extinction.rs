@@ -5,7 +5,7 @@
 //! `pi N0 / Lambda^3 = 0.365 R^0.63` per km. An eye or a camera receives most of the diffracted light, which
 //! continues within a fraction of a degree: its effective Q is 1.1 to 1.5. Published laws are available by name. H.
 //! Koschmieder 1924: a black object is visible until its contrast is 2 %, so at `-ln 0.02 = 3.912` over the extinction.
-//! Units: 1/m, metres, mm/h.
+//! Units: 1/m, meters, mm/h.
 
 use downpour_math::ops::f64 as ops;
 
@@ -38,7 +38,7 @@ impl ExtinctionEfficiency {
 /// -ln 0.02: product of visibility and extinction.
 pub const KOSCHMIEDER: f64 = 3.912;
 
-/// Visibility in metres for an extinction in 1/m; infinite for 0.
+/// Visibility in meters for an extinction in 1/m; infinite for 0.
 #[must_use]
 pub fn visibility(extinction: f64) -> f64 {
     if extinction > 0.0 { KOSCHMIEDER / extinction } else { f64::INFINITY }

@@ -5,10 +5,10 @@
 
 use downpour_math::quadrature::GaussLegendre;
 
-/// Maximum width of a panel, in metres.
+/// Maximum width of a panel, in meters.
 const MAX_PANEL_M: f64 = 1.0e-3 / 32.0;
 
-/// Width in metres from which panels grow.
+/// Width in meters from which panels grow.
 const MIN_PANEL_M: f64 = 1.0e-6;
 
 /// Maximum width of a panel relative to its diameter.

@@ -30,7 +30,7 @@ pub enum DropSizeLaw {
     GammaByMedian {
         /// Shape mu, -3 to 8. 0 is the exponential law; larger is narrower.
         mu: f64,
-        /// Median volume diameter D0 in metres, 0.2e-3 to 5e-3.
+        /// Median volume diameter D0 in meters, 0.2e-3 to 5e-3.
         median_volume_diameter_m: f64,
     },
     /// Gamma (Ulbrich 1983), by its intercept; the slope follows from the rate.
@@ -141,7 +141,7 @@ pub(super) enum Spectrum {
 }
 
 impl Spectrum {
-    /// N in m^-4 for a diameter in metres above 0.
+    /// N in m^-4 for a diameter in meters above 0.
     pub(super) fn concentration(&self, diameter_m: f64) -> f64 {
         let d = diameter_m * 1.0e3;
         let per_m3_mm = match *self {

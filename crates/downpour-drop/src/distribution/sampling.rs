@@ -3,7 +3,7 @@
 //! A random word of 32 bits becomes a diameter; a larger word gives a larger drop. The table of quantiles has cells
 //! that halve with the remaining probability on either side of the median, down to single words, so that the rare
 //! large drops are drawn as exactly as the many small ones: drops of a probability of 1e-9 carry water, and a
-//! second of heavy rain over a square kilometre has 1e10 drops. Finding the cell needs no transcendental function: the
+//! second of heavy rain over a square kilometer has 1e10 drops. Finding the cell needs no transcendental function: the
 //! result has the same bits on every device.
 
 use downpour_math::ops;
@@ -60,18 +60,18 @@ impl SampleTable {
         self.by
     }
 
-    /// Diameters at the nodes, in metres: from the smallest up to the median, then from the largest down to it.
+    /// Diameters at the nodes, in meters: from the smallest up to the median, then from the largest down to it.
     #[must_use]
     pub fn nodes(&self) -> &[f32] {
         &self.nodes
     }
 
-    /// Diameter of a word, in metres.
+    /// Diameter of a word, in meters.
     #[must_use]
     pub fn sample(&self, word: u32) -> f32 {
-        let place = distribution_table_position(word);
-        let index = place.index as usize;
-        distribution_lerp(self.nodes[index], self.nodes[index + 1], place.fraction)
+        let position = distribution_table_position(word);
+        let index = position.index as usize;
+        distribution_lerp(self.nodes[index], self.nodes[index + 1], position.fraction)
     }
 }
 
@@ -127,7 +127,7 @@ pub fn distribution_probability(word: u32) -> f32 {
     if word < DISTRIBUTION_RARE_WORDS { rare } else { coarse }
 }
 
-/// Draws a diameter of the exponential law N ~ exp(-slope D) between two diameters in metres. The slope in 1/m is
+/// Draws a diameter of the exponential law N ~ exp(-slope D) between two diameters in meters. The slope in 1/m is
 /// positive.
 ///
 /// ```
@@ -155,8 +155,8 @@ mod tests {
     fn nodes_and_positions_agree() {
         for node in 0..DISTRIBUTION_SIDE_NODES - 1 {
             let first = words_before(node);
-            let place = distribution_table_position(first);
-            assert_eq!((place.index, place.fraction), (node, 0.0), "word {first}");
+            let position = distribution_table_position(first);
+            assert_eq!((position.index, position.fraction), (node, 0.0), "word {first}");
             let last = distribution_table_position(words_before(node + 1) - 1);
             assert_eq!(last.index, node);
             assert!(last.fraction < 1.0);

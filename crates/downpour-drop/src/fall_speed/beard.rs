@@ -127,7 +127,7 @@ impl FallSpeedAir {
     }
 }
 
-/// Terminal speed in m/s by Beard 1976. Diameter in metres, 0 to 9e-3.
+/// Terminal speed in m/s by Beard 1976. Diameter in meters, 0 to 9e-3.
 #[must_use]
 pub fn fall_speed_beard_1976(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1000.0).clamp(0.0, FALL_SPEED_BEARD_MAX_MM);

@@ -44,21 +44,21 @@ pub(super) fn lhermitte(d: f64) -> f64 {
     -9.25 * ops::f64::exp_m1(-((0.068 * d + 0.488) * d))
 }
 
-/// Atlas, Srivastava & Sekhon 1973, in m/s. Diameter in metres, 0 to 9e-3; 0 below 0.109 mm.
+/// Atlas, Srivastava & Sekhon 1973, in m/s. Diameter in meters, 0 to 9e-3; 0 below 0.109 mm.
 #[must_use]
 pub fn fall_speed_atlas_1973(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1000.0).max(0.0);
     (9.65 - 10.3 * ops::exp(-0.6 * d)).max(0.0) * air.density_factor
 }
 
-/// Atlas & Ulbrich 1977, in m/s: a power law, rough, for 0.5 to 5 mm. Diameter in metres, 0 to 9e-3.
+/// Atlas & Ulbrich 1977, in m/s: a power law, rough, for 0.5 to 5 mm. Diameter in meters, 0 to 9e-3.
 #[must_use]
 pub fn fall_speed_atlas_ulbrich_1977(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1000.0).max(0.0);
     3.78 * ops::pow(d, 0.67) * air.density_factor
 }
 
-/// Brandes, Zhang & Vivekanandan 2002, in m/s. Diameter in metres, 0 to 9e-3; 0 below 0.021 mm.
+/// Brandes, Zhang & Vivekanandan 2002, in m/s. Diameter in meters, 0 to 9e-3; 0 below 0.021 mm.
 #[must_use]
 pub fn fall_speed_brandes_2002(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1000.0).max(0.0);
@@ -70,7 +70,7 @@ pub fn fall_speed_brandes_2002(diameter_m: f32, air: FallSpeedAir) -> f32 {
     v.max(0.0) * air.density_factor
 }
 
-/// van Dijk, Bruijnzeel & Rosewell 2002, in m/s. Diameter in metres, 0 to 9e-3; 0 below 0.051 mm, constant above 6 mm.
+/// van Dijk, Bruijnzeel & Rosewell 2002, in m/s. Diameter in meters, 0 to 9e-3; 0 below 0.051 mm, constant above 6 mm.
 #[must_use]
 pub fn fall_speed_van_dijk_2002(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1000.0).clamp(0.0, FALL_SPEED_VAN_DIJK_MAX_MM);
@@ -81,7 +81,7 @@ pub fn fall_speed_van_dijk_2002(diameter_m: f32, air: FallSpeedAir) -> f32 {
     v.max(0.0) * air.density_factor
 }
 
-/// Lhermitte 1988, as corrected, in m/s. Diameter in metres, 0 to 9e-3.
+/// Lhermitte 1988, as corrected, in m/s. Diameter in meters, 0 to 9e-3.
 #[must_use]
 pub fn fall_speed_lhermitte_1988(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1000.0).max(0.0);

@@ -17,7 +17,7 @@ use crate::air::{Air, STANDARD_GRAVITY};
 pub struct Relaxation {
     /// Along the fall: v / (2g).
     pub vertical_s: f64,
-    /// Across the fall, as towards a wind: v / g.
+    /// Across the fall, as toward a wind: v / g.
     pub horizontal_s: f64,
 }
 
@@ -40,7 +40,7 @@ pub fn fall_speed_relaxation(speed: f32) -> [f32; 2] {
     [0.5 * across, across]
 }
 
-/// Distance in metres that a drop of terminal speed `terminal_m_s` falls from rest until it has a `fraction` of that
+/// Distance in meters that a drop of terminal speed `terminal_m_s` falls from rest until it has a `fraction` of that
 /// speed.
 ///
 /// ```
@@ -66,7 +66,7 @@ pub fn time_to_fraction(terminal_m_s: f64, fraction: f64) -> Result<f64, DropErr
     Ok(0.5 * terminal_m_s / STANDARD_GRAVITY * (ops::ln_1p(fraction) - ops::ln_1p(-fraction)))
 }
 
-/// Speed in m/s of a drop of terminal speed `terminal_m_s` that fell `distance_m` metres from rest.
+/// Speed in m/s of a drop of terminal speed `terminal_m_s` that fell `distance_m` meters from rest.
 #[must_use]
 pub fn speed_after_fall(terminal_m_s: f64, distance_m: f64) -> f64 {
     if terminal_m_s <= 0.0 {
@@ -104,7 +104,7 @@ pub struct FallNumbers {
     pub drag_coefficient: f64,
 }
 
-/// Numbers of the flow around a drop of `diameter_m` metres that falls in `air`.
+/// Numbers of the flow around a drop of `diameter_m` meters that falls in `air`.
 ///
 /// ```
 /// use downpour_drop::air::Air;

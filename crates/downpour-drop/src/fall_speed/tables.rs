@@ -1,6 +1,6 @@
 //! Tables of Gunn & Kinzer 1949 and of Rousseau 2006, linearly interpolated.
 //!
-//! Both are declared in whole micrometres and cm/s, which f32 and f64 hold exactly.
+//! Both are declared in whole micrometers and cm/s, which f32 and f64 hold exactly.
 
 use downpour_shaders::drop::fall_speed::{
     FALL_SPEED_GUNN_KINZER_DIAMETERS_UM, FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S,
@@ -42,7 +42,7 @@ fn between<const N: usize>(d: f64, diameters: &[f32; N], speeds: &[f32; N]) -> f
     v0 * (1.0 - fraction) + v1 * fraction
 }
 
-/// Gunn & Kinzer 1949, table 2, in m/s. Diameter in metres, 0 to 9e-3. As d^2 below 0.078 mm, constant above 5.8 mm.
+/// Gunn & Kinzer 1949, table 2, in m/s. Diameter in meters, 0 to 9e-3. As d^2 below 0.078 mm, constant above 5.8 mm.
 #[must_use]
 pub fn fall_speed_gunn_kinzer_1949(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1.0e6).clamp(0.0, FALL_SPEED_GUNN_KINZER_DIAMETERS_UM[34]);
@@ -60,7 +60,7 @@ pub fn fall_speed_gunn_kinzer_1949(diameter_m: f32, air: FallSpeedAir) -> f32 {
     (v0 + (FALL_SPEED_GUNN_KINZER_SPEEDS_CM_S[i] - v0) * fraction) * 0.01 * air.density_factor
 }
 
-/// Rousseau 2006, table 2, in m/s. Diameter in metres, 0 to 9e-3. As d^2 below 0.2 mm, constant above 8 mm.
+/// Rousseau 2006, table 2, in m/s. Diameter in meters, 0 to 9e-3. As d^2 below 0.2 mm, constant above 8 mm.
 #[must_use]
 pub fn fall_speed_rousseau_2006(diameter_m: f32, air: FallSpeedAir) -> f32 {
     let d = (diameter_m * 1.0e6).clamp(0.0, FALL_SPEED_ROUSSEAU_DIAMETERS_UM[22]);

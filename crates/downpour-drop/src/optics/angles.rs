@@ -105,7 +105,7 @@ pub fn rainbow(index: f64, reflections: u32) -> Result<Rainbow, DropError> {
 }
 
 /// Fraction of diffuse light that water reflects, which is also the fraction of parallel light that a sphere reflects
-/// at its first surface: the mean of Fresnel's reflectance over the disc. 0.0664 for n = 1.333.
+/// at its first surface: the mean of Fresnel's reflectance over the disk. 0.0664 for n = 1.333.
 ///
 /// # Errors
 /// [`DropError::OutOfRange`] if the index is not 1 to 4.

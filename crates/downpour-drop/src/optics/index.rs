@@ -15,7 +15,7 @@ use crate::water::{self, CELSIUS_ZERO_K};
 /// Commonly used index of water in air: sodium light (589.3 nm) at 20 C, rounded from 1.33298.
 pub const WATER_INDEX: f64 = 1.333;
 
-/// Wavelengths, in metres, at which red, green and blue light is refracted: 611, 549 and 464 nm, the dominant
+/// Wavelengths, in meters, at which red, green and blue light is refracted: 611, 549 and 464 nm, the dominant
 /// wavelengths of the primaries of ITU-R BT.709 (sRGB) against D65, for the CIE 1931 observer.
 pub const RGB_WAVELENGTHS_M: [f64; 3] = [611.0e-9, 549.0e-9, 464.0e-9];
 
@@ -23,7 +23,7 @@ const WAVELENGTH_RANGE_M: RangeInclusive<f64> = 200.0e-9..=1100.0e-9;
 const TEMPERATURE_RANGE_C: RangeInclusive<f64> = -12.0..=500.0;
 const DENSITY_RANGE: RangeInclusive<f64> = 0.0..=1060.0;
 
-/// Index of water against vacuum at a wavelength in metres, a temperature in Celsius, and a density in kg/m^3.
+/// Index of water against vacuum at a wavelength in meters, a temperature in Celsius, and a density in kg/m^3.
 ///
 /// ```
 /// let n = downpour_drop::optics::water_index_iapws_1997(226.5e-9, 25.0, 997.047435)?;
@@ -73,7 +73,7 @@ pub fn water_index_iapws_1997(
     Ok(((2.0 * molar + 1.0) / (1.0 - molar)).sqrt())
 }
 
-/// Index of water against vacuum at a wavelength in metres and a temperature in Celsius, at atmospheric pressure.
+/// Index of water against vacuum at a wavelength in meters and a temperature in Celsius, at atmospheric pressure.
 ///
 /// # Errors
 /// [`DropError::OutOfRange`] outside 200 to 1100 nm and -12 to 40 C.
@@ -81,7 +81,7 @@ pub fn water_index(wavelength_m: f64, temperature_c: f64) -> Result<f64, DropErr
     water_index_iapws_1997(wavelength_m, temperature_c, water::density(temperature_c)?)
 }
 
-/// Index of air against vacuum at a wavelength in metres (Ciddor 1996): 1.000272 for visible light at 20 C.
+/// Index of air against vacuum at a wavelength in meters (Ciddor 1996): 1.000272 for visible light at 20 C.
 ///
 /// # Errors
 /// [`DropError::OutOfRange`] outside 200 to 1100 nm.
@@ -94,7 +94,7 @@ pub fn air_index(wavelength_m: f64, air: &Air) -> Result<f64, DropError> {
     Ok(1.0 + refractivity * density)
 }
 
-/// Index of water against the surrounding air, both at one temperature, at a wavelength in metres.
+/// Index of water against the surrounding air, both at one temperature, at a wavelength in meters.
 ///
 /// ```
 /// use downpour_drop::{air::Air, optics::water_index_in_air};

@@ -2,15 +2,15 @@
 //!
 //! Law: parallel light meets a sphere; a ray with the impact parameter b (in radii) meets its surface at i = asin b and
 //! continues inside at r = asin(b / n). Order p leaves after p - 1 internal reflections (0: reflected at the
-//! outside). It carries R, or (1 - R)^2 R^(p - 1), per polarisation, since each interaction is at the angle of the
-//! first; the plane of incidence is the same for all, so that polarisations do not mix. The deviation is
-//! 2 i - 2 p r + (p - 1) pi. The part 2 b db of the light on the disc goes into the ring 2 pi sin(theta) dtheta. The
-//! light in a direction is the differential cross-section over the disc, (dsigma/dOmega) / (pi a^2), in 1/sr. Its
+//! outside). It carries R, or (1 - R)^2 R^(p - 1), per polarization, since each interaction is at the angle of the
+//! first; the plane of incidence is the same for all, so that polarizations do not mix. The deviation is
+//! 2 i - 2 p r + (p - 1) pi. The part 2 b db of the light on the disk goes into the ring 2 pi sin(theta) dtheta. The
+//! light in a direction is the differential cross-section over the disk, (dsigma/dOmega) / (pi a^2), in 1/sr. Its
 //! integral over the sphere is the order's fraction of the light; all orders together have 1.
 //!
 //! Orders 0 to 3 hold 99.5 % of the light. Not included: diffraction (a drop of 1 mm: within 0.04 degrees of the
 //! light's direction), interference (supernumerary bows), flattening. At a rainbow the cross-section of geometric
-//! optics is infinite; here it is the mean over an interval of the angle and over the light's disc, and no light is
+//! optics is infinite; here it is the mean over an interval of the angle and over the light's disk, and no light is
 //! lost.
 //!
 //! - [`scattered_ray`]: one ray;
@@ -25,7 +25,7 @@ use std::f64::consts::PI;
 use downpour_math::ops::f64 as ops;
 use downpour_math::quadrature::GaussLegendre;
 
-use super::optics_fresnel_polarised;
+use super::optics_fresnel_polarized;
 use crate::DropError;
 use crate::error::in_range;
 
@@ -42,11 +42,11 @@ pub const SUN_DIAMETER: f64 = 0.009_250;
 pub struct ScatteredRay {
     /// Fraction of the ray's light that leaves with this order, 0 to 1.
     pub fraction: f64,
-    /// Signed deviation, radians: positive towards the sphere's axis; whole turns count.
+    /// Signed deviation, radians: positive toward the sphere's axis; whole turns count.
     pub turn: f64,
     /// Scattering angle between the directions before and after, 0 to pi.
     pub angle: f64,
-    /// Exit position as the viewer sees it, in radii from the middle of the disc: positive on the side of the light.
+    /// Exit position as the viewer sees it, in radii from the middle of the disk: positive on the side of the light.
     pub exit_position: f64,
 }
 
@@ -91,11 +91,11 @@ pub fn scattered_fraction(index: f64, order: u32) -> Result<f64, DropError> {
 fn ray(i: f64, index: f64, order: u32) -> ScatteredRay {
     let b = ops::sin(i);
     let r = ops::asin((b / index).min(1.0));
-    let reflected = optics_fresnel_polarised(ops::cos(i), index);
+    let reflected = optics_fresnel_polarized(ops::cos(i), index);
     let fraction = 0.5 * reflected.map(|fraction| carried(fraction, order)).iter().sum::<f64>();
     let p = f64::from(order);
     let turn = 2.0 * i - 2.0 * p * r + (p - 1.0) * PI;
-    // A deviation from the axis ends on the light's side of the disc, one across it on the other.
+    // A deviation from the axis ends on the light's side of the disk, one across it on the other.
     let exit_position = if ops::sin(turn) > 0.0 { -b } else { b };
     ScatteredRay { fraction, turn, angle: ops::acos(ops::cos(turn).clamp(-1.0, 1.0)), exit_position }
 }

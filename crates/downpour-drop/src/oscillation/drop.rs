@@ -134,7 +134,7 @@ impl OscillatingDrop {
     }
 }
 
-/// An oscillating drop at one time. phi = 0 is towards +X; phi counts from there about +Y, towards -Z.
+/// An oscillating drop at one time. phi = 0 is toward +X; phi counts from there about +Y, toward -Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropInstant {
     shape: DropShape,
@@ -148,7 +148,7 @@ impl DropInstant {
         self.state
     }
 
-    /// Distance from the origin to the surface in metres, at `theta` radians from the downward axis and `phi`
+    /// Distance from the origin to the surface in meters, at `theta` radians from the downward axis and `phi`
     /// about it.
     #[must_use]
     pub fn radius(&self, theta: f64, phi: f64) -> f64 {
@@ -156,7 +156,7 @@ impl DropInstant {
         self.radius_along([away * ops::f64::cos(phi), -down, -away * ops::f64::sin(phi)])
     }
 
-    /// Distances in metres from the axis to the left (phi) and right (phi + pi) outline at theta = pi / 2.
+    /// Distances in meters from the axis to the left (phi) and right (phi + pi) outline at theta = pi / 2.
     #[must_use]
     pub fn outline(&self, phi: f64) -> [f64; 2] {
         let half = std::f64::consts::FRAC_PI_2;

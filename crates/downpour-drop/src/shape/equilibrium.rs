@@ -17,7 +17,7 @@ const NODES: usize = 24;
 
 /// Shape of a drop: radius as a function of the angle from the downward axis.
 ///
-/// Lengths are in metres, heights are positive upwards, and the origin is that of the table: the center of
+/// Lengths are in meters, heights are positive upwards, and the origin is that of the table: the center of
 /// mass within 1.4 % of the radius ([`DropShape::centroid_height`]). The volume is that of the sphere of the
 /// diameter: the coefficients are scaled to it, by less than 0.02 % at the rows of the table.
 ///
@@ -25,7 +25,7 @@ const NODES: usize = 24;
 /// use downpour_drop::shape::DropShape;
 /// let drop = DropShape::new(5.0e-3)?;
 /// assert!((drop.axis_ratio() - 0.700).abs() < 1e-4);
-/// assert!((drop.volume() - 65.45e-9).abs() < 1e-11); // 65 microlitres
+/// assert!((drop.volume() - 65.45e-9).abs() < 1e-11); // 65 microliters
 /// # Ok::<(), downpour_drop::DropError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,13 +97,13 @@ impl DropShape {
         Self { diameter, coefficients }
     }
 
-    /// Diameter of the sphere of equal volume, in metres.
+    /// Diameter of the sphere of equal volume, in meters.
     #[must_use]
     pub fn diameter(&self) -> f64 {
         self.diameter
     }
 
-    /// Radius of the sphere of equal volume, in metres: the `a` of the law.
+    /// Radius of the sphere of equal volume, in meters: the `a` of the law.
     #[must_use]
     pub fn equivalent_radius(&self) -> f64 {
         0.5 * self.diameter
@@ -121,13 +121,13 @@ impl DropShape {
         self.coefficients.into()
     }
 
-    /// Distance from the origin to the surface, in metres, at `theta` radians from the downward axis.
+    /// Distance from the origin to the surface, in meters, at `theta` radians from the downward axis.
     #[must_use]
     pub fn radius(&self, theta: f64) -> f64 {
         self.equivalent_radius() * drop_shape_radius(&self.coefficients, ops::f64::cos(theta))
     }
 
-    /// Point of the meridian at `theta`: distance from the axis and height above the origin, in metres.
+    /// Point of the meridian at `theta`: distance from the axis and height above the origin, in meters.
     #[must_use]
     pub fn profile(&self, theta: f64) -> [f64; 2] {
         let r = self.radius(theta);
@@ -142,19 +142,19 @@ impl DropShape {
         [away, up]
     }
 
-    /// Largest distance of the surface from the axis, in metres.
+    /// Largest distance of the surface from the axis, in meters.
     #[must_use]
     pub fn max_half_width(&self) -> f64 {
         largest(|theta| self.profile(theta)[0])
     }
 
-    /// Distance from the origin to the lowest point of the drop, in metres.
+    /// Distance from the origin to the lowest point of the drop, in meters.
     #[must_use]
     pub fn extent_down(&self) -> f64 {
         largest(|theta| -self.profile(theta)[1])
     }
 
-    /// Distance from the origin to the highest point of the drop, in metres.
+    /// Distance from the origin to the highest point of the drop, in meters.
     #[must_use]
     pub fn extent_up(&self) -> f64 {
         largest(|theta| self.profile(theta)[1])
@@ -166,14 +166,14 @@ impl DropShape {
         (self.extent_down() + self.extent_up()) / (2.0 * self.max_half_width())
     }
 
-    /// Volume in cubic metres: pi d^3 / 6.
+    /// Volume in cubic meters: pi d^3 / 6.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let a = self.equivalent_radius();
         4.0 / 3.0 * PI * a * a * a * volume_ratio(&self.coefficients)
     }
 
-    /// Surface area in square metres.
+    /// Surface area in square meters.
     #[must_use]
     pub fn surface_area(&self) -> f64 {
         let a = self.equivalent_radius();
@@ -185,7 +185,7 @@ impl DropShape {
         2.0 * PI * a * a * GaussLegendre::new(64).integrate(-1.0, 1.0, integrand)
     }
 
-    /// Height of the center of mass above the origin, in metres.
+    /// Height of the center of mass above the origin, in meters.
     #[must_use]
     pub fn centroid_height(&self) -> f64 {
         let moment = GaussLegendre::new(NODES).integrate(-1.0, 1.0, |x| {
@@ -210,7 +210,7 @@ fn largest(f: impl Fn(f64) -> f64) -> f64 {
     let step = PI / f64::from(steps);
     let best =
         (0..=steps).map(|i| step * f64::from(i)).max_by(|&a, &b| f(a).total_cmp(&f(b))).unwrap_or_default();
-    // Golden section between the neighbours of the best sample.
+    // Golden section between the neighbors of the best sample.
     let golden = 0.5 * (5.0f64.sqrt() - 1.0);
     let (mut a, mut b) = ((best - step).max(0.0), (best + step).min(PI));
     let (mut inner, mut outer) = (b - golden * (b - a), a + golden * (b - a));

@@ -6,14 +6,14 @@ use crate::DropError;
 /// One row of a table: coefficients of one drop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeRow {
-    /// Diameter of the sphere of equal volume, in metres.
+    /// Diameter of the sphere of equal volume, in meters.
     pub diameter_m: f64,
     /// `c_0` to `c_10` in units of 1e-4, as tables print them.
     pub printed: [i16; COEFFICIENTS],
 }
 
 impl ShapeRow {
-    /// `c_0` to `c_10`, not normalised: the volume is that of the sphere within 0.05 % (0.12 % in the last
+    /// `c_0` to `c_10`, not normalized: the volume is that of the sphere within 0.05 % (0.12 % in the last
     /// row of Rousseau 2006).
     #[must_use]
     pub fn coefficients(&self) -> [f64; COEFFICIENTS] {
@@ -24,7 +24,7 @@ impl ShapeRow {
 /// Correction of an entry that differs from a printed or copied one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
-    /// Diameter of the row, in metres.
+    /// Diameter of the row, in meters.
     pub diameter_m: f64,
     /// Index of the coefficient.
     pub n: usize,
@@ -92,7 +92,7 @@ impl ShapeTable {
             n: 1,
             found: -465,
             used: -456,
-            reason: "copies of the table have -465; the neighbouring rows predict -456.7, and no other entry \
+            reason: "copies of the table have -465; the neighboring rows predict -456.7, and no other entry \
                      of the column leaves the smooth curve: two digits were exchanged",
         },
         Correction {
@@ -122,10 +122,10 @@ impl ShapeTable {
         }
     }
 
-    /// Coefficients of a drop, not normalised: exactly the row's at a row, a cubic between rows.
+    /// Coefficients of a drop, not normalized: exactly the row's at a row, a cubic between rows.
     ///
     /// Each coefficient is C1 in the diameter: a cubic Hermite curve whose slope at a row is that of the
-    /// parabola through the row and its neighbours. Below 1 mm all coefficients are proportional to d^2, as
+    /// parabola through the row and its neighbors. Below 1 mm all coefficients are proportional to d^2, as
     /// the Bond number `rho g d^2 / sigma` is, and the curve starts with that slope at 1 mm.
     ///
     /// # Errors
@@ -154,7 +154,7 @@ fn interpolate(rows: &[ShapeRow], diameter_m: f64) -> [f64; COEFFICIENTS] {
     std::array::from_fn(|n| c0[n] * (1.0 - rise) + c1[n] * rise + m0[n] * start + m1[n] * end)
 }
 
-/// `d c_n / d d` at row `i`, per metre.
+/// `d c_n / d d` at row `i`, per meter.
 fn slopes(rows: &[ShapeRow], i: usize) -> [f64; COEFFICIENTS] {
     let secant = |i: usize| -> [f64; COEFFICIENTS] {
         let (c0, c1) = (rows[i].coefficients(), rows[i + 1].coefficients());

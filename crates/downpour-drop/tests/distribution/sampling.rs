@@ -50,7 +50,7 @@ fn chi_square(seed: u32, n: u32, density: impl Fn(f64) -> f64, draw: impl Fn(u32
             found[((ops::ln(d / MIN) / growth) as usize).min(bins - 1)] += 1;
         }
     }
-    // Neighbouring bins are merged until 5 are expected.
+    // Neighboring bins are merged until 5 are expected.
     let (mut chi2, mut joined, mut expected, mut seen) = (0.0, 0, 0.0, 0);
     let mut rest = f64::from(n);
     for (m, count) in mass.iter().zip(&found) {

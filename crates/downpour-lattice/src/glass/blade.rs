@@ -15,7 +15,7 @@ pub struct GlassBlade {
     pub pivot: [i32; 2],
     /// Start and end along the blade, in half cells.
     pub reach: [i32; 2],
-    /// Sense of rotation: 1 from +x towards +y, -1 the other way, 0 at rest.
+    /// Sense of rotation: 1 from +x toward +y, -1 the other way, 0 at rest.
     pub turn: i32,
     /// Fraction of the water that stays behind, in units of 1/256.
     pub leaves: u32,

@@ -19,7 +19,7 @@ const CHUNK: usize = 256;
 /// Number of ticks after which the drops are sorted by their index in memory. It changes no result.
 const SORTED: u32 = 32;
 
-/// Velocity and progress of a drop: a packed velocity, and the progress towards the next cell (an i32).
+/// Velocity and progress of a drop: a packed velocity, and the progress toward the next cell (an i32).
 pub(super) type Motion = [u32; 2];
 
 /// State per cell. Fields that threads write are atomic; sums and maxima do not depend on their order.
@@ -114,7 +114,7 @@ impl Cells {
             .reduce(Vec::new, joined);
         come.extend(self.land(tick, counters));
         if tick.step.is_multiple_of(SORTED) {
-            // Neighbouring cells are then processed together, which helps the caches.
+            // Neighboring cells are then processed together, which helps the caches.
             come.sort_unstable();
         }
         self.settle(come, counters);

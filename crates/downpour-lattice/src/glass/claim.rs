@@ -8,7 +8,7 @@ use super::cells::{Cells, Tick};
 use super::frame::{glass_frame_holds, glass_frame_index};
 use super::size::glass_size_key;
 
-/// Claims the disc of a drop; a moving drop also wets it.
+/// Claims the disk of a drop; a moving drop also wets it.
 pub(super) fn glass_claim_drop(cells: &Cells, tick: &Tick<'_>, cell: IVec2) {
     let index = glass_frame_index(tick.frame, cell);
     let mass = cells.mass[index as usize];

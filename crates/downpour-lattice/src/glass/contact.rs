@@ -77,7 +77,7 @@ impl GlassContact {
         0.5 * (self.advancing_rad + self.receding_rad)
     }
 
-    /// Radius of the wetted disc of a drop, m, from its volume in m^3.
+    /// Radius of the wetted disk of a drop, m, from its volume in m^3.
     #[must_use]
     pub fn radius(&self, volume: f64) -> f64 {
         ops::cbrt(volume / (PI * self.cap()))
@@ -91,14 +91,14 @@ impl GlassContact {
         (1.0 - cos) * (1.0 - cos) * (2.0 + cos) / (3.0 * sin * sin * sin)
     }
 
-    /// Radius of the sphere whose cap is rendered over a disc of radius `radius`, m. The angle is limited to 85
+    /// Radius of the sphere whose cap is rendered over a disk of radius `radius`, m. The angle is limited to 85
     /// degrees, since a height field has one value per cell.
     #[must_use]
     pub fn sphere(&self, radius: f64) -> f64 {
         radius / ops::sin(self.mean_rad().min(85f64.to_radians()))
     }
 
-    /// Frontal area of a cap over a disc of radius `radius` to the wind along the pane, m^2.
+    /// Frontal area of a cap over a disk of radius `radius` to the wind along the pane, m^2.
     #[must_use]
     pub fn frontal_area(&self, radius: f64) -> f64 {
         let theta = self.mean_rad();

@@ -1,6 +1,6 @@
 //! Heights of the water, and normals of its surface. Twin of `shaders/wgsl/lattice/glass_height.wgsl`.
 //!
-//! Each drop is a cap of a sphere over its disc, stretched behind its center if it moves; the highest of overlapping
+//! Each drop is a cap of a sphere over its disk, stretched behind its center if it moves; the highest of overlapping
 //! caps counts.
 
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -58,7 +58,7 @@ fn glass_height_drop(
     let index = glass_frame_index(frame, cell) as usize;
     let row = table.row(cells.mass[index]);
     let v = glass_motion_unpack(cells.motion[index][0]);
-    // The rim may be 15 % beyond the disc.
+    // The rim may be 15 % beyond the disk.
     let reach = (row.radius * glass_height_stretch(glass_motion_length(v)) / 56000) as i32 + 1;
     for y in -reach..=reach {
         for x in -reach..=reach {

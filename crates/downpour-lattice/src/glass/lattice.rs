@@ -12,7 +12,7 @@ use super::plan::Plan;
 use super::totals::{Counters, GlassTotals};
 use super::{height, normal, smooth, surface};
 
-/// Volume of a unit of mass, m^3: a nanolitre.
+/// Volume of a unit of mass, m^3: a nanoliter.
 pub(super) const UNIT_M3: f64 = 1.0e-12;
 
 /// A pane of glass with drops.
@@ -38,7 +38,7 @@ pub struct Glass {
 }
 
 impl Glass {
-    /// Volume of a unit of mass, m^3: a nanolitre.
+    /// Volume of a unit of mass, m^3: a nanoliter.
     pub const UNIT_M3: f64 = UNIT_M3;
 
     /// Maximum mass of a cell, in units: a drop of 7.9 mm.

@@ -2,7 +2,7 @@
 //! 5). Twin of `shaders/wgsl/lattice/glass_motion.wgsl`.
 //!
 //! Velocities are integers: 16384 is one cell per tick. Directions are octants: 0 along +x, then by eighths of a turn
-//! towards +y, which is down the pane.
+//! toward +y, which is down the pane.
 
 use downpour_shaders::lattice::glass::GLASS_CELL;
 use glam::{IVec2, UVec2, UVec3};
@@ -133,7 +133,7 @@ pub fn glass_motion_choose(weights: UVec3, word: u32) -> u32 {
     }
 }
 
-/// Turns a velocity by a quarter of the difference towards an octant.
+/// Turns a velocity by a quarter of the difference toward an octant.
 #[inline]
 #[must_use]
 pub fn glass_motion_turn(v: IVec2, octant: u32) -> IVec2 {

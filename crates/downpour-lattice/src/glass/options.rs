@@ -25,7 +25,7 @@ pub struct GlassRain {
     pub fall_speed: FallSpeedModel,
     /// Air that the rain falls through: temperature and pressure determine the fall speed.
     pub air: Air,
-    /// Horizontal speed of the air with the rain towards the pane, m/s: the car's speed, or the wind on a window. 0 to
+    /// Horizontal speed of the air with the rain toward the pane, m/s: the car's speed, or the wind on a window. 0 to
     /// 100. At 0 no rain reaches a vertical pane.
     pub towards_m_s: f64,
 }
@@ -50,7 +50,7 @@ impl Default for GlassRain {
 pub struct GlassAir {
     /// Speed along the pane, m/s: 0 to 100.
     pub speed_m_s: f64,
-    /// Direction along the pane, radians from +x towards the top: pi/2 is up, as over a windshield.
+    /// Direction along the pane, radians from +x toward the top: pi/2 is up, as over a windshield.
     pub direction_rad: f64,
     /// Drag coefficient of a drop for the speed far from the pane; it includes the effect of the boundary layer: 0 to
     /// 2.

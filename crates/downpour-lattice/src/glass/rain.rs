@@ -22,7 +22,7 @@ const MIN_DIAMETER_M: f64 = 0.2e-3;
 const MAX_DIAMETER_M: f64 = 7.5e-3;
 
 impl GlassOptions {
-    /// Number of drops that land on a square metre of the pane per second, from rain, tilt and speed.
+    /// Number of drops that land on a square meter of the pane per second, from rain, tilt and speed.
     ///
     /// # Errors
     /// [`GlassError::Rain`] if the rain is not valid.
@@ -44,7 +44,7 @@ impl Landing {
     /// Computes the landing rain. Drops of diameter D land at a rate of `N(D) (v(D) cos(tilt) + u sin(tilt))`: they
     /// fall at v while the air moves at u.
     pub(super) fn new(options: &GlassOptions) -> Result<Self, GlassError> {
-        let shares = 4 * GLASS_LANDING_QUADS as usize;
+        let fractions = 4 * GLASS_LANDING_QUADS as usize;
         let [least, most] = options.rain.diameters_m;
         let (smallest, largest) = (least.max(MIN_DIAMETER_M), most.min(MAX_DIAMETER_M));
         let diameters = DistributionOptions {
@@ -79,11 +79,11 @@ impl Landing {
                 _ => volume,
             }
         };
-        let mut masses = vec![1; shares];
+        let mut masses = vec![1; fractions];
         if number > 0.0 {
             for (k, mass) in masses.iter_mut().enumerate() {
-                let fraction = |k: usize| volume_to(k as f64 / shares as f64);
-                let mean = (fraction(k + 1) - fraction(k)) * shares as f64 / number;
+                let fraction = |k: usize| volume_to(k as f64 / fractions as f64);
+                let mean = (fraction(k + 1) - fraction(k)) * fractions as f64 / number;
                 *mass = (mean / UNIT_M3).round().clamp(1.0, f64::from(GLASS_MAX_MASS)) as u32;
             }
         }

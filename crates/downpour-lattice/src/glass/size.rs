@@ -6,7 +6,7 @@ use downpour_shaders::lattice::glass::GLASS_LANDING_QUADS;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassSizeRow {
-    /// Radius of the wetted disc, in cells / 256.
+    /// Radius of the wetted disk, in cells / 256.
     pub radius: u32,
     /// Retention by the contact line in one tick, in units of velocity.
     pub hold: u32,
@@ -41,7 +41,7 @@ impl GlassTable {
     pub fn row(&self, mass: u32) -> GlassSizeRow {
         let class = glass_size_class(mass) as usize;
         match self.rows.as_flattened().get(class..class + 2) {
-            Some([low, high]) => glass_size_row(*low, *high, glass_size_share(mass)),
+            Some([low, high]) => glass_size_row(*low, *high, glass_size_fraction(mass)),
             _ => GlassSizeRow::default(),
         }
     }
@@ -71,7 +71,7 @@ pub fn glass_size_floor(class: u32) -> u32 {
 /// Fraction of a mass between its class and the next, in units of 1/256.
 #[inline]
 #[must_use]
-pub fn glass_size_share(mass: u32) -> u32 {
+pub fn glass_size_fraction(mass: u32) -> u32 {
     if mass < 16 {
         return 0;
     }
@@ -122,7 +122,7 @@ mod tests {
             assert!(glass_size_floor(class) <= mass && mass < glass_size_floor(class + 1), "{mass}");
             assert!(class + 1 < GLASS_CLASSES, "{mass}");
             let (low, high) = (glass_size_floor(class), glass_size_floor(class + 1));
-            let off = i64::from(glass_size_mix(low, high, glass_size_share(mass))) - i64::from(mass);
+            let off = i64::from(glass_size_mix(low, high, glass_size_fraction(mass))) - i64::from(mass);
             assert!(off.unsigned_abs() * 256 <= u64::from(high), "{mass}: {off}");
         }
     }

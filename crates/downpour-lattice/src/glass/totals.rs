@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Water balance since the pane was created, in units of [`Glass::UNIT_M3`](super::Glass::UNIT_M3), a nanolitre.
+/// Water balance since the pane was created, in units of [`Glass::UNIT_M3`](super::Glass::UNIT_M3), a nanoliter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GlassTotals {
     /// Rain that has landed.

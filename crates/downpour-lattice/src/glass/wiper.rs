@@ -18,7 +18,7 @@ pub struct GlassWiperKey {
     pub angle_rad: f64,
 }
 
-/// Motion of a blade. Angles are radians from +x (right) towards the top of the pane, -7 to 7.
+/// Motion of a blade. Angles are radians from +x (right) toward the top of the pane, -7 to 7.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GlassWiperMotion {
     /// Back and forth in a period, as driven by a crank: `(1 - cos(2 pi t / period)) / 2` of the range.

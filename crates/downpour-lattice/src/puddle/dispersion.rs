@@ -78,7 +78,7 @@ impl Dispersion {
     }
 }
 
-/// Phase speed, in m/s, of ripples of a wavelength on water of a depth (both in metres, above 0).
+/// Phase speed, in m/s, of ripples of a wavelength on water of a depth (both in meters, above 0).
 ///
 /// ```
 /// use downpour_lattice::puddle::{PuddleWater, phase_speed};

@@ -1,7 +1,7 @@
 //! Cells, their links, and one step of a cell. Twin of `shaders/wgsl/lattice/puddle.wgsl`.
 //!
-//! Four cells of a row are a quad, the unit of memory and of the shaders' arithmetic. A link is a bit: the neighbour
-//! exists and is water. Where a link is missing, the neighbour is replaced by the cell itself, or by its image in a
+//! Four cells of a row are a quad, the unit of memory and of the shaders' arithmetic. A link is a bit: the neighbor
+//! exists and is water. Where a link is missing, the neighbor is replaced by the cell itself, or by its image in a
 //! straight wall: that reflects ripples without loss, and the operator stays symmetric. For every square of four cells
 //! its quadratic form is at most that of open water, so no coast has a larger eigenvalue, and the time step that is
 //! stable on open water is stable everywhere.
@@ -28,7 +28,7 @@ pub struct PuddleGrid {
     pub degree: u32,
     /// Coefficients of the polynomial over the first of them.
     pub coefficients: [[f32; 4]; 4],
-    /// Weights of the cell, of its straight and of its diagonal neighbours.
+    /// Weights of the cell, of its straight and of its diagonal neighbors.
     pub weights: [f32; 3],
     /// Time step, s.
     pub dt: f32,
@@ -56,15 +56,15 @@ pub struct PuddleGrid {
     pub padding: [u32; 2],
 }
 
-/// Value of the neighbour, or of the cell itself where the link is missing.
+/// Value of the neighbor, or of the cell itself where the link is missing.
 #[inline(always)]
 #[must_use]
 pub fn puddle_linked(own: f32, other: f32, links: u32, link: u32) -> f32 {
     if links & link != 0 { other } else { own }
 }
 
-/// Value of a diagonal neighbour. Where its link is missing, it is the mirror image in the wall that the two adjacent
-/// straight neighbours `a` and `b` define: `b` if only that is water, `a` if only that is, else the cell itself.
+/// Value of a diagonal neighbor. Where its link is missing, it is the mirror image in the wall that the two adjacent
+/// straight neighbors `a` and `b` define: `b` if only that is water, `a` if only that is, else the cell itself.
 #[inline(always)]
 #[must_use]
 pub fn puddle_corner(own: f32, straight: [f32; 2], diagonal: f32, links: u32, bits: [u32; 3]) -> f32 {
@@ -97,7 +97,7 @@ pub(crate) fn linked(north: [f32; 3], here: [f32; 3], south: [f32; 3], links: u3
     ]
 }
 
-/// Weighted sum over the neighbours of one cell. `north`, `here` and `south` are three values each, west to east.
+/// Weighted sum over the neighbors of one cell. `north`, `here` and `south` are three values each, west to east.
 #[inline(always)]
 pub(crate) fn laplacian<R: Real>(north: [R; 3], here: [R; 3], south: [R; 3], weights: [R; 3]) -> R {
     let straight = (north[1] + south[1]) + (here[0] + here[2]);
@@ -118,7 +118,7 @@ pub(crate) fn laplacian_linked(
     laplacian(north, here, south, weights)
 }
 
-/// Weighted sum over the neighbours, for a quad. Rows are the quads west of, at and east of the quad; `links` has a
+/// Weighted sum over the neighbors, for a quad. Rows are the quads west of, at and east of the quad; `links` has a
 /// byte per cell, the first in the lowest bits.
 #[must_use]
 pub fn puddle_laplacian(
@@ -202,7 +202,7 @@ pub fn puddle_state_unpack(word: u32) -> [f32; 2] {
     [word & 0xffff, word >> 16].map(|half| puddle_state_float(half) * (1.0 / PUDDLE_HALF_SCALE))
 }
 
-/// Cells of water and the links to their neighbours.
+/// Cells of water and the links to their neighbors.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Links {
     pub(crate) size: [usize; 2],
@@ -254,7 +254,7 @@ impl Links {
         self.size[0].next_multiple_of(4)
     }
 
-    /// True if a cell is water with at least one neighbour.
+    /// True if a cell is water with at least one neighbor.
     pub(crate) fn is_water(&self, x: usize, y: usize) -> bool {
         self.bytes.get(y * self.stride() + x).is_some_and(|&byte| byte != 0)
     }

@@ -22,7 +22,7 @@ const MAX_HALO: u32 = 24;
 
 /// Width of the absorbing border, in cells, and its maximum fraction of the lattice.
 const SPONGE_CELLS: f64 = 32.0;
-const SPONGE_SHARE: f64 = 0.25;
+const SPONGE_FRACTION: f64 = 0.25;
 
 /// Border of the lattice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -74,8 +74,8 @@ pub struct PuddleOptions {
     pub storage: PuddleStorage,
     /// Longest wavelength that has to be accurate, m; `None`: 40 cells. A shorter one gives a lower degree or smaller
     /// errors.
-    pub longest_wave_m: Option<f32>,
-    /// Degree of the operator, 1 to 12: number of passes over the neighbours per time step. `None`: the lowest with
+    pub max_wave_m: Option<f32>,
+    /// Degree of the operator, 1 to 12: number of passes over the neighbors per time step. `None`: the lowest with
     /// errors of the phase speed below 2.5 %, or 12. The membrane has 1.
     pub degree: Option<u32>,
     /// Maximum number of sub-steps of one call of `step`: 1 to 64.
@@ -99,7 +99,7 @@ impl Default for PuddleOptions {
             damping: PuddleDamping::Water,
             border: PuddleBorder::Reflecting,
             storage: PuddleStorage::Full,
-            longest_wave_m: None,
+            max_wave_m: None,
             degree: None,
             max_substeps: MAX_SUBSTEPS,
             steps_per_sweep: 8,
@@ -138,7 +138,7 @@ impl PuddleOptions {
             check("drag", drag_per_s, "1/s", 0.0..=1000.0, 1.0, "0 to 1000 1/s")?;
             check("viscosity", viscosity_m2_s, "m^2/s", 0.0..=1.0e-2, 1.0, "0 to 0.01 m^2/s")?;
         }
-        if let Some(longest) = self.longest_wave_m {
+        if let Some(longest) = self.max_wave_m {
             let cells = f64::from(longest) / f64::from(self.cell_m);
             in_range("longest wavelength", cells, "cells", &(8.0..=4096.0), 1.0, "8 to 4096 cells")?;
         }
@@ -183,7 +183,7 @@ impl Model {
         }
         let law = Dispersion { form: options.form, water: options.water, depth: f64::from(options.depth_m) };
         let cell = f64::from(options.cell_m);
-        let longest = options.longest_wave_m.map_or(40.0 * cell, f64::from);
+        let longest = options.max_wave_m.map_or(40.0 * cell, f64::from);
         let degree = match (options.form, options.degree) {
             (PuddleForm::Membrane { .. }, _) => 1,
             (_, Some(degree)) => degree,
@@ -306,7 +306,7 @@ impl Model {
             return (0.0, 0.0);
         }
         let [nx, ny] = self.options.size;
-        let cells = SPONGE_CELLS.min(SPONGE_SHARE * f64::from(nx.min(ny)));
+        let cells = SPONGE_CELLS.min(SPONGE_FRACTION * f64::from(nx.min(ny)));
         let width = cells * self.cell();
         // A ripple of twelve cells, there and back through a drag that grows as the square, keeps exp(-4).
         let speed = self.law.phase_speed(12.0 * self.cell());

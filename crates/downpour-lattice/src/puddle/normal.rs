@@ -1,6 +1,6 @@
 //! Normals of the water by Sobel sums. Twin of `shaders/wgsl/lattice/puddle_normal.wgsl`.
 //!
-//! x runs along the rows of the lattice, z along its columns, y is up. Missing neighbours are replaced as for the
+//! x runs along the rows of the lattice, z along its columns, y is up. Missing neighbors are replaced as for the
 //! ripples: by the cell itself, or by its image in the wall.
 
 use rayon::prelude::*;

@@ -8,7 +8,7 @@ use downpour_shaders::lattice::puddle::{
 use super::lattice::Links;
 use super::symbol::Symbol;
 
-/// x of the polynomial, applied to a field: weighted differences to linked neighbours over the largest sum.
+/// x of the polynomial, applied to a field: weighted differences to linked neighbors over the largest sum.
 fn normalized_laplacian(links: &Links, symbol: &Symbol, field: &[f64]) -> Vec<f64> {
     const STRAIGHT: [(u32, isize, isize); 4] = [
         (PUDDLE_LINK_WEST, -1, 0),
@@ -36,7 +36,7 @@ fn normalized_laplacian(links: &Links, symbol: &Symbol, field: &[f64]) -> Vec<f6
                 sum += straight * (field[i] - field[i.wrapping_add_signed(step(bit))]);
             }
             for (bit, a, b) in DIAGONAL {
-                // With both or neither of the straight neighbours: the diagonal itself, or nothing.
+                // With both or neither of the straight neighbors: the diagonal itself, or nothing.
                 let whole = bits & a != 0 && bits & b != 0;
                 let away = if bits & bit != 0 {
                     let (_, _, dy) = STRAIGHT.into_iter().find(|s| s.0 == a).unwrap_or((0, 0, 0));

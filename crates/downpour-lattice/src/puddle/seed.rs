@@ -56,8 +56,8 @@ pub struct Wake {
     pub to_m: [f32; 2],
     /// Radius of its footprint, m: at least 2 cells.
     pub radius_m: f32,
-    /// Draught, the depth to which it presses the water down, m: up to the depth.
-    pub draught_m: f32,
+    /// Draft, the depth to which it presses the water down, m: up to the depth.
+    pub draft_m: f32,
 }
 
 /// A crater or a bump, in the layout of `PuddleSeed` in WGSL.
@@ -191,8 +191,8 @@ pub(crate) fn footprints(model: &Model, wake: &Wake) -> Result<Vec<PuddleSeed>, 
     let (from, to) = (to_cells(model, wake.from_m)?, to_cells(model, wake.to_m)?);
     let radius = f64::from(wake.radius_m) / model.cell();
     let radius = in_range("radius of a footprint", radius, "cells", &(2.0..=4096.0), 1.0, "2 to 4096 cells")?;
-    let draught = f64::from(wake.draught_m);
-    in_range("draught", draught, "mm", &(0.0..=model.law.depth), 1.0e3, "0 to the depth of the water")?;
+    let draft = f64::from(wake.draft_m);
+    in_range("draft", draft, "mm", &(0.0..=model.law.depth), 1.0e3, "0 to the depth of the water")?;
     let bump = |center, amplitude: f64| PuddleSeed {
         center,
         per_length: (1.0 / radius) as f32,
@@ -202,13 +202,13 @@ pub(crate) fn footprints(model: &Model, wake: &Wake) -> Result<Vec<PuddleSeed>, 
         shape: PUDDLE_SEED_BUMP,
         unused: 0,
     };
-    let (left, made) = (bump(from, draught), bump(to, -draught));
+    let (left, made) = (bump(from, draft), bump(to, -draft));
     let (up, down) = (left.sums(&model.links)[0], made.sums(&model.links)[0]);
     if !(up > 0.0 && down > 0.0) {
         // The object enters or leaves the water: its displaced volume is not on the lattice, and no seed is made.
         return Ok(Vec::new());
     }
-    Ok(vec![left, bump(to, -draught * up / down)])
+    Ok(vec![left, bump(to, -draft * up / down)])
 }
 
 /// Seeds sorted by squares of cells, in the layout of the shader.

@@ -8,10 +8,10 @@
 //! > omega^2 ~ p(lambda) = x (c_0 + c_1 T_1(2 x - 1) + ... ),   x = lambda / largest lambda
 //!
 //! with Chebyshev's `T_j`; c is found by weighted least squares of p / omega^2 - 1 over wavelengths and directions. The
-//! advantage of a polynomial of L over a freely fitted convolution: L couples neighbours with positive weights, and
+//! advantage of a polynomial of L over a freely fitted convolution: L couples neighbors with positive weights, and
 //! stays symmetric and positive without the links to land. So p(L), with p > 0, conserves volume and energy, keeps
 //! level water level, lets nothing through a wall, and is stable below one known time step, around any obstacle. It
-//! costs one pass over the neighbours per degree.
+//! costs one pass over the neighbors per degree.
 //!
 //! Leapfrog turns omega^2 into 4 sin^2(omega dt / 2) / dt^2. The fit includes this, so that the coefficients
 //! compensate the error of the time step.
@@ -22,7 +22,7 @@ use downpour_math::ops::f64 as ops;
 
 use super::dispersion::{Dispersion, PuddleForm};
 
-/// Maximum degree, the number of passes over the neighbours per step.
+/// Maximum degree, the number of passes over the neighbors per step.
 pub const MAX_DEGREE: u32 = 12;
 
 /// Maximum Courant number of a step; leapfrog is stable below 1 / sqrt(2).
@@ -34,7 +34,7 @@ pub(crate) const MIN_WAVE_CELLS: f64 = 4.0;
 /// Stencil of the Laplacian.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stencil {
-    /// Weights of the cell, of its four straight and of its four diagonal neighbours.
+    /// Weights of the cell, of its four straight and of its four diagonal neighbors.
     pub(crate) weights: [f32; 3],
     /// Divisor of the weights for a cell of 1 m.
     pub(crate) unit: f64,
@@ -43,7 +43,7 @@ pub(crate) struct Stencil {
 }
 
 impl Stencil {
-    /// Stencil of a form: four neighbours, as the paper's membrane; nine cells, isotropic to fourth order, for real
+    /// Stencil of a form: four neighbors, as the paper's membrane; nine cells, isotropic to fourth order, for real
     /// water.
     pub(crate) fn of(form: PuddleForm) -> Self {
         match form {

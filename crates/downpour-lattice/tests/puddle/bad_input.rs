@@ -42,7 +42,7 @@ fn options_have_ranges() {
     refused(&PuddleOptions { water: tension, ..good.clone() }, "surface tension");
     refused(&PuddleOptions { degree: Some(0), ..good.clone() }, "degree");
     refused(&PuddleOptions { degree: Some(13), ..good.clone() }, "degree");
-    refused(&PuddleOptions { longest_wave_m: Some(f32::NAN), ..good.clone() }, "longest wavelength");
+    refused(&PuddleOptions { max_wave_m: Some(f32::NAN), ..good.clone() }, "longest wavelength");
     refused(&PuddleOptions { max_substeps: 0, ..good.clone() }, "sub-steps");
     refused(&PuddleOptions { max_substeps: 65, ..good.clone() }, "sub-steps");
     refused(&PuddleOptions { steps_per_sweep: 0, ..good.clone() }, "steps per sweep");
@@ -175,12 +175,12 @@ fn impacts_and_objects_have_ranges() {
     // Positions beyond the lattice are no error: rain falls beside a puddle too.
     puddle.seed(&[Impact { position_m: [-50.0, 1.0e5], ..good }]).expect("a drop elsewhere");
     assert!(puddle.heights().iter().all(|&h| h == 0.0));
-    let wake = Wake { from_m: [0.1, 0.1], to_m: [0.11, 0.1], radius_m: 0.02, draught_m: 2.0e-3 };
+    let wake = Wake { from_m: [0.1, 0.1], to_m: [0.11, 0.1], radius_m: 0.02, draft_m: 2.0e-3 };
     for bad in [
         Wake { radius_m: 0.0, ..wake },
         Wake { radius_m: f32::NAN, ..wake },
-        Wake { draught_m: 0.006, ..wake },
-        Wake { draught_m: -1.0, ..wake },
+        Wake { draft_m: 0.006, ..wake },
+        Wake { draft_m: -1.0, ..wake },
         Wake { from_m: [f32::NAN, 0.0], ..wake },
     ] {
         puddle.displace(&bad).expect_err("a wake");

@@ -67,7 +67,7 @@ fn thin_water_is_right_at_every_wavelength() {
 #[test]
 fn deep_water_has_its_slowest_wave() {
     let options =
-        PuddleOptions { depth_m: 1.0, cell_m: 1.5e-3, longest_wave_m: Some(0.045), ..undamped([256, 64]) };
+        PuddleOptions { depth_m: 1.0, cell_m: 1.5e-3, max_wave_m: Some(0.045), ..undamped([256, 64]) };
     let water = PuddleWater::default();
     let speeds: Vec<(f64, f64)> =
         [76, 64, 56, 50, 45, 40, 36, 30, 25, 20].iter().map(|&m| measured(&options, m, 1.5e-3)).collect();

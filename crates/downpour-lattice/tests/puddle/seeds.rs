@@ -92,15 +92,15 @@ fn a_wake_needs_a_speed() {
         let (mut x, mut ahead) = (0.1f32, 0.0);
         while x < 0.6 {
             // Slowly into the water, so that the start makes no wave.
-            let draught_m = 1.0e-3 * ((x - 0.1) / 0.2).min(1.0);
+            let draft_m = 1.0e-3 * ((x - 0.1) / 0.2).min(1.0);
             let next = x + speed * dt;
-            let wake = |from: f32, to: f32, draught_m| Wake {
+            let wake = |from: f32, to: f32, draft_m| Wake {
                 from_m: [from, 0.128],
                 to_m: [to, 0.128],
                 radius_m: 0.012,
-                draught_m,
+                draft_m,
             };
-            puddle.displace(&wake(x, next, draught_m)).expect("a wake");
+            puddle.displace(&wake(x, next, draft_m)).expect("a wake");
             puddle.step(dt).expect("a step");
             x = next;
             if x >= 0.6 {

@@ -3,7 +3,7 @@
 //! Channels: `R`, `G`, `B` direction through the drop, `A` coverage; `reflected.R`, `.G`, `.B` direction of the
 //! reflection outside; `transmittance.Y`; `internal.R`, `.G`, `.B` direction of light that was reflected inside once without
 //! being totally reflected; `internalTransmittance.Y`; `reflections.Y` total reflections inside. Directions are in the frame
-//! of the view (x right, y up, z towards the viewer). The attribute `downpourMask` holds the diameter, the half
+//! of the view (x right, y up, z toward the viewer). The attribute `downpourMask` holds the diameter, the half
 //! extent of the picture in equivalent radii, the view's elevation and the refractive index.
 //!
 //! The reader accepts files of this module's writer. The header is checked first: compression schemes whose decoders are
@@ -127,8 +127,8 @@ pub fn read_exr(bytes: &[u8]) -> core::result::Result<Mask, MaskError> {
     })
 }
 
-fn file(place: &'static str, found: String, allowed: &'static str) -> MaskError {
-    MaskError::File { place, found, allowed }
+fn file(location: &'static str, found: String, allowed: &'static str) -> MaskError {
+    MaskError::File { location, found, allowed }
 }
 
 /// Size and description, from the header alone.
@@ -160,7 +160,7 @@ fn check_header(bytes: &[u8]) -> core::result::Result<(u32, Description), MaskEr
     let (width, height) = (header.layer_size.0, header.layer_size.1);
     let size = u32::try_from(width).unwrap_or(u32::MAX);
     if !SIZES.contains(&size) {
-        return Err(MaskError::Size { found: size, least: *SIZES.start(), most: *SIZES.end() });
+        return Err(MaskError::Size { found: size, min: *SIZES.start(), max: *SIZES.end() });
     }
     if width != height {
         return Err(file("data window", format!("{width} x {height}"), "a square"));

@@ -113,8 +113,8 @@ pub fn read_ktx2(bytes: &[u8]) -> Result<Vec<Mask>, MaskError> {
     unpack(&texels, size, &description)
 }
 
-fn file(place: &'static str, found: String, allowed: &'static str) -> MaskError {
-    MaskError::File { place, found, allowed }
+fn file(location: &'static str, found: String, allowed: &'static str) -> MaskError {
+    MaskError::File { location, found, allowed }
 }
 
 /// Size and number of layers, if the header is that of masks.
@@ -127,7 +127,7 @@ fn check_header(header: &Header) -> Result<(u32, usize), MaskError> {
         return Err(file("supercompressionScheme", found, "0 (none) or 3 (ZLIB)"));
     }
     if !SIZES.contains(&header.pixel_width) {
-        return Err(MaskError::Size { found: header.pixel_width, least: *SIZES.start(), most: *SIZES.end() });
+        return Err(MaskError::Size { found: header.pixel_width, min: *SIZES.start(), max: *SIZES.end() });
     }
     let flat = header.pixel_height == header.pixel_width
         && header.pixel_depth == 0

@@ -27,7 +27,7 @@ const ROUND_M: f64 = 1.4e-3;
 /// Widths of spots of the glass that pull the outline, m.
 const SPOTS_M: [f64; 2] = [4.5e-3, 1.7e-3];
 
-/// Places round the outline at which the glass is asked.
+/// Positions around the outline at which the glass is asked.
 const ROUND: u32 = 8;
 
 /// Relative excess of the slope below a drop over that in its middle when it is about to slide: from tan 20 to tan 60 degrees.
@@ -42,7 +42,7 @@ pub(super) struct Binned {
     pub(super) bins: Vec<u32>,
     pub(super) columns: u32,
     pub(super) rows: u32,
-    pub(super) per_metre: f64,
+    pub(super) per_meter: f64,
 }
 
 /// Parameters that all drops of a pane have in common.
@@ -54,7 +54,7 @@ struct Common<'a> {
     air_density: f64,
 }
 
-/// All drops of a pane whose uppermost rows are above what is seen of it. Places are from the corner of what is seen.
+/// All drops of a pane whose uppermost rows are above what is seen of it. Positions are from the corner of what is seen.
 ///
 /// # Errors
 /// [`GlassError::Rain`] if water at the pane's temperature is not known.
@@ -77,12 +77,12 @@ pub(super) fn binned(glass: &Glass, above: u32) -> Result<Binned, GlassError> {
     let size = [columns, rows - above].map(|edge| f64::from(edge) * options.cell_m);
     let [columns, rows] = size.map(|edge| ((edge / BIN_M).ceil() as u32).max(1));
     let count = (columns * rows) as usize;
-    let place = |at: f64, most: u32| ((at / BIN_M).max(0.0) as u32).min(most - 1);
+    let bin = |at: f64, most: u32| ((at / BIN_M).max(0.0) as u32).min(most - 1);
     let touched = |drop: &GlassPictureDrop| {
         let reach = f64::from(drop.radius) * 1.5 / f64::from(drop.behind);
-        let [x, y] = drop.centre.map(f64::from);
-        let (left, right) = (place(x - reach, columns), place(x + reach, columns));
-        let (top, bottom) = (place(y - reach, rows), place(y + reach, rows));
+        let [x, y] = drop.center.map(f64::from);
+        let (left, right) = (bin(x - reach, columns), bin(x + reach, columns));
+        let (top, bottom) = (bin(y - reach, rows), bin(y + reach, rows));
         (top..=bottom)
             .flat_map(move |row| (left..=right).map(move |column| (row * columns + column) as usize))
     };
@@ -103,13 +103,13 @@ pub(super) fn binned(glass: &Glass, above: u32) -> Result<Binned, GlassError> {
             next[bin] += 1;
         }
     }
-    Ok(Binned { drops, bins, columns, rows, per_metre: 1.0 / BIN_M })
+    Ok(Binned { drops, bins, columns, rows, per_meter: 1.0 / BIN_M })
 }
 
 /// A drop from a corner that is so many meters lower; `None` if it is all above.
 fn lowered(mut drop: GlassPictureDrop, by: f64) -> Option<GlassPictureDrop> {
-    drop.centre[1] -= by as f32;
-    (drop.centre[1] + 1.5 * drop.radius / drop.behind > 0.0).then_some(drop)
+    drop.center[1] -= by as f32;
+    (drop.center[1] + 1.5 * drop.radius / drop.behind > 0.0).then_some(drop)
 }
 
 impl Common<'_> {
@@ -121,7 +121,7 @@ impl Common<'_> {
         let v = glass_motion_unpack(velocity);
         let speed = glass_motion_length(v);
         let cell = IVec2::new((index % options.size[0]) as i32, (index / options.size[0]) as i32);
-        let centre = self.centre(cell, v, progress as i32);
+        let center = self.center(cell, v, progress as i32);
         let pull = self.pull(volume, radius);
         let strength = pull.length();
         let droop = if strength > 0.0 { pull / strength } else { DVec2::Y };
@@ -130,7 +130,7 @@ impl Common<'_> {
         let along = if runs { v.as_dvec2().normalize() } else { droop };
         let behind = if runs { 256.0 / f64::from(glass_height_stretch(speed)) } else { 1.0 };
         GlassPictureDrop {
-            centre: centre.as_vec2().into(),
+            center: center.as_vec2().into(),
             radius: radius as f32,
             sphere: contact.sphere(radius) as f32,
             along: along.as_vec2().into(),
@@ -138,12 +138,12 @@ impl Common<'_> {
             lean: (LEAN * (strength / held.max(1.0e-12)).min(1.0)) as f32,
             droop: droop.as_vec2().into(),
             unused: [0.0; 2],
-            lobes: self.lobes(centre, radius, along),
+            lobes: self.lobes(center, radius, along),
         }
     }
 
     /// Position of a drop on its way from a point near the center of its cell to one near that of the next cell.
-    fn centre(&self, cell: IVec2, v: IVec2, progress: i32) -> DVec2 {
+    fn center(&self, cell: IVec2, v: IVec2, progress: i32) -> DVec2 {
         let near = |cell: IVec2| {
             let [a, b, ..] = rng_draw(self.seed, cell.x as u32, cell.y as u32, 0);
             let off = DVec2::new(f64::from(rng_unit(a)), f64::from(rng_unit(b))) - 0.5;
@@ -153,8 +153,8 @@ impl Common<'_> {
             return near(cell);
         }
         let next = cell + glass_motion_offset(glass_motion_octant(v));
-        let share = (f64::from(progress) / 16384.0).clamp(0.0, 1.0);
-        near(cell).lerp(near(next), share)
+        let fraction = (f64::from(progress) / 16384.0).clamp(0.0, 1.0);
+        near(cell).lerp(near(next), fraction)
     }
 
     /// The force along the pane on a drop, N.
@@ -168,15 +168,15 @@ impl Common<'_> {
         DVec2::Y * weight + towards * push
     }
 
-    /// The outline: the glass round a drop, as its second and third harmonic.
-    fn lobes(&self, centre: DVec2, radius: f64, along: DVec2) -> [f32; 4] {
-        let share = UNEVEN * (radius / ROUND_M).min(1.0) * 2.0 / f64::from(ROUND);
+    /// The outline: the glass around a drop, as its second and third harmonic.
+    fn lobes(&self, center: DVec2, radius: f64, along: DVec2) -> [f32; 4] {
+        let fraction = UNEVEN * (radius / ROUND_M).min(1.0) * 2.0 / f64::from(ROUND);
         let mut lobes = [0.0; 4];
         for k in 0..ROUND {
             let angle = TAU * f64::from(k) / f64::from(ROUND);
             let (sin, cos) = (ops::sin(angle), ops::cos(angle));
-            let at = centre + (along * cos + along.perp() * sin) * radius;
-            let pulls = share * self.glass(at);
+            let at = center + (along * cos + along.perp() * sin) * radius;
+            let pulls = fraction * self.glass(at);
             let parts = [
                 cos * cos - sin * sin,
                 2.0 * sin * cos,

@@ -4,14 +4,14 @@ use downpour_lattice::glass::GlassError;
 
 use crate::RenderError;
 
-/// Reason why there is no pane.
+/// Error of a pane of glass.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PaneError {
-    /// The lattice cannot be what is asked for.
+    /// The options of the lattice are invalid.
     #[error("glass: {0}")]
     Glass(#[from] GlassError),
-    /// The camera is none.
+    /// The camera is invalid.
     #[error(transparent)]
     Render(#[from] RenderError),
     /// The camera does not look through the pane.

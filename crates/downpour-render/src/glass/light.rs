@@ -2,7 +2,7 @@
 //!
 //! Tatarchuk & Isidoro 2006, section 5, draw a quasi-caustic highlight in drops above a mass that an artist says. Here it is
 //! the image of the source in the lens that a drop is: as bright as its irradiance says, spread over what a pixel sees, so that
-//! the light in the picture does not depend on resolution. Sources are points or discs that no picture of the scene shows.
+//! the light in the picture does not depend on resolution. Sources are points or disks that no picture of the scene shows.
 
 use std::f32::consts::PI;
 
@@ -17,17 +17,17 @@ use crate::plate::Lighting;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassPictureLight {
-    /// From the eye, m; a sun is far.
-    pub place: [f32; 3],
-    /// Half the angle that it takes, radians.
+    /// Position relative to the eye, m; a sun is far away.
+    pub position: [f32; 3],
+    /// Angular radius, radians.
     pub radius: f32,
     /// Irradiance at the eye of a surface that faces it.
-    pub colour: [f32; 3],
-    /// From the eye, m.
+    pub color: [f32; 3],
+    /// Distance from the eye, m.
     pub distance: f32,
 }
 
-/// Share of a source's light per solid angle, at a squared distance in direction from its middle: a paraboloid whose
+/// Fraction of a source's light per solid angle, at a squared distance in direction from its middle: a paraboloid whose
 /// integral is 1.
 #[must_use]
 pub fn glass_picture_light_lobe(away: f32, radius: f32) -> f32 {
@@ -35,7 +35,7 @@ pub fn glass_picture_light_lobe(away: f32, radius: f32) -> f32 {
     (1.0 - away / squared).max(0.0) * GLASS_PICTURE_LIGHT_PEAK / squared
 }
 
-/// Radiance of a source in a direction from a place of the pane (m from the eye), for a footprint in radians.
+/// Radiance of a source in a direction from a position of the pane (m from the eye), for a footprint in radians.
 #[must_use]
 pub fn glass_picture_light_seen(
     light: &GlassPictureLight,
@@ -43,13 +43,13 @@ pub fn glass_picture_light_seen(
     direction: Vec3,
     footprint: f32,
 ) -> Vec3 {
-    let way = Vec3::from(light.place) - from_eye;
+    let way = Vec3::from(light.position) - from_eye;
     let squared = way.dot(way).max(1.0e-6);
     let away = direction - way / squared.sqrt();
     let width = footprint * GLASS_PICTURE_LIGHT_WIDTH;
     let radius = (light.radius * light.radius + width * width).sqrt();
     let nearer = light.distance * light.distance / squared;
-    Vec3::from(light.colour) * (nearer * glass_picture_light_lobe(away.dot(away), radius))
+    Vec3::from(light.color) * (nearer * glass_picture_light_lobe(away.dot(away), radius))
 }
 
 /// The lamps and the sun that the eye sees, with one ray for what stands between.
@@ -57,13 +57,13 @@ pub(super) fn sources(lighting: &dyn Lighting, eye: Vec3) -> Vec<GlassPictureLig
     let source = |k: u32| {
         let light = lighting.light(k).light_sample(eye, 0.0);
         let lit = light.irradiance * PI;
-        let colour = lit * lighting.visibility(eye, light.direction, light.distance);
+        let color = lit * lighting.visibility(eye, light.direction, light.distance);
         let distance = light.distance.min(GLASS_PICTURE_FAR);
-        let place = light.direction * distance;
-        (colour.max_element() > 0.0).then(|| GlassPictureLight {
-            place: place.into(),
+        let position = light.direction * distance;
+        (color.max_element() > 0.0).then(|| GlassPictureLight {
+            position: position.into(),
             radius: light.spread,
-            colour: colour.into(),
+            color: color.into(),
             distance,
         })
     };

@@ -8,7 +8,7 @@ use super::water::{glass_picture_water_cap, glass_picture_water_leave, glass_pic
 
 /// Surface of the pane that a ray meets.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Met {
+pub(super) struct PaneHit {
     pub(super) normal: Vec3,
     pub(super) wet: bool,
     /// Rate at which the normal turns, 1/m.
@@ -17,7 +17,7 @@ pub(super) struct Met {
     pub(super) lit: bool,
 }
 
-/// Weight of the cell before, at or after a place, and how it changes; t is -0.5 to 0.5.
+/// Weight of the cell before, at or after a position, and how it changes; t is -0.5 to 0.5.
 #[must_use]
 pub fn glass_picture_spline(t: f32, which: i32) -> Vec2 {
     match which {
@@ -39,9 +39,9 @@ impl Look<'_> {
     }
 
     /// Height of the film and its slopes: the quadratic B-spline over the cells.
-    fn glass_picture_film(&self, place: Vec2) -> Vec3 {
+    fn glass_picture_film(&self, position: Vec2) -> Vec3 {
         let frame = &self.glass.frame;
-        let at = place * frame.cells - 0.5;
+        let at = position * frame.cells - 0.5;
         let middle = (at + 0.5).floor();
         let t = at - middle;
         let mut sum = Vec3::ZERO;
@@ -53,21 +53,21 @@ impl Look<'_> {
                 sum += Vec3::new(wx.x * wy.x, wx.y * wy.x, wx.x * wy.y) * wet;
             }
         }
-        let per_metre = frame.film * frame.cells;
-        Vec3::new(sum.x * frame.film, sum.y * per_metre, sum.z * per_metre)
+        let per_meter = frame.film * frame.cells;
+        Vec3::new(sum.x * frame.film, sum.y * per_meter, sum.z * per_meter)
     }
 
-    /// The surface that a ray leaves by, which enters the water at a place of the glass.
-    pub(super) fn glass_picture_meet(&self, place: Vec2, aside: Vec2) -> Met {
+    /// The surface that a ray leaves by, which enters the water at a position of the glass.
+    pub(super) fn glass_picture_meet(&self, position: Vec2, aside: Vec2) -> PaneHit {
         let frame = &self.glass.frame;
-        let column = ((place.x * frame.bins).max(0.0) as u32).min(frame.columns - 1);
-        let row = ((place.y * frame.bins).max(0.0) as u32).min(frame.rows - 1);
+        let column = ((position.x * frame.bins).max(0.0) as u32).min(frame.columns - 1);
+        let row = ((position.y * frame.bins).max(0.0) as u32).min(frame.rows - 1);
         let bin = (row * frame.columns + column) as usize;
         let bins = &self.glass.bins;
         let mut highest = 0.0;
         let mut found = 0;
         for &index in &bins[bins[bin] as usize..bins[bin + 1] as usize] {
-            let height = glass_picture_water_cap(&self.glass.drops[index as usize], place).x;
+            let height = glass_picture_water_cap(&self.glass.drops[index as usize], position).x;
             if height > highest {
                 highest = height;
                 found = index;
@@ -75,17 +75,17 @@ impl Look<'_> {
         }
         if highest > 0.0 {
             let drop = &self.glass.drops[found as usize];
-            let z = glass_picture_water_leave(drop, place, aside);
-            let cap = glass_picture_water_cap(drop, place + aside * z);
+            let z = glass_picture_water_leave(drop, position, aside);
+            let cap = glass_picture_water_cap(drop, position + aside * z);
             let normal = glass_picture_water_normal(Vec2::new(cap.y, cap.z));
             let lit = drop.radius >= frame.lit_from;
-            return Met { normal, wet: true, curvature: 1.0 / drop.sphere, lit };
+            return PaneHit { normal, wet: true, curvature: 1.0 / drop.sphere, lit };
         }
         if frame.film <= 0.0 {
-            return Met { normal: Vec3::Z, wet: false, curvature: 0.0, lit: false };
+            return PaneHit { normal: Vec3::Z, wet: false, curvature: 0.0, lit: false };
         }
-        let film = self.glass_picture_film(place);
+        let film = self.glass_picture_film(position);
         let normal = glass_picture_water_normal(Vec2::new(film.y, film.z));
-        Met { normal, wet: film.x > 0.0, curvature: 0.0, lit: false }
+        PaneHit { normal, wet: film.x > 0.0, curvature: 0.0, lit: false }
     }
 }

@@ -21,7 +21,7 @@ use crate::plate::Lighting;
 use crate::rain::PanePlane;
 
 /// Largest width and height of a pane whose size is that of the picture, m.
-const LARGEST_M: f64 = 2.4;
+const MAX_SIZE_M: f64 = 2.4;
 
 /// Ratio of the size of such a pane to that of the picture.
 const MARGIN: f64 = 1.04;
@@ -35,7 +35,7 @@ const WATER_INDEX: f64 = 1.333;
 /// The line of sodium, m.
 const SODIUM_M: f64 = 589.3e-9;
 
-/// A pane before the camera, with the rain on it.
+/// A pane of glass in front of the camera, with the rain on it.
 #[derive(Debug)]
 pub struct WetPane {
     pane: Pane,
@@ -49,15 +49,15 @@ pub struct WetPane {
 }
 
 impl WetPane {
-    /// The dry pane of a weather, if it has one; `first_s` is the time of the first picture, before which it has rained for
-    /// as long as the weather says.
+    /// Creates the dry pane of a weather, if it has one; `first_s` is the time of the first picture, before which it has
+    /// rained for as long as the weather says.
     ///
     /// # Errors
     /// [`PaneError`] if the pane cannot be what is asked for, or the camera does not look through it.
     pub fn new(weather: &Weather, viewpoint: &Viewpoint, first_s: f64) -> Result<Option<Self>, PaneError> {
         let Some(pane) = &weather.glass else { return Ok(None) };
-        let place = Place::new(pane, viewpoint)?;
-        let size = pane.size.unwrap_or_else(|| place.shown(viewpoint, weather.size));
+        let position = PanePosition::new(pane, viewpoint)?;
+        let size = pane.size.unwrap_or_else(|| position.shown(viewpoint, weather.size));
         let begin_s = first_s - pane.before;
         let mut glass = Glass::new(&pane.options(size, &weather.rain, begin_s))?;
         let (rain, air) = pane.weather(&weather.rain, pane.speed.at(begin_s));
@@ -67,7 +67,7 @@ impl WetPane {
         Ok(Some(Self { pane: pane.clone(), rain: weather.rain, size, begin_s, water, above, glass }))
     }
 
-    /// Lets rain fall and wipers go until a time in seconds. The same drops for any division of the time.
+    /// Steps rain and wipers to a time in seconds. The drops do not depend on how the time is divided.
     ///
     /// # Errors
     /// [`GlassError`], as the lattice's step.
@@ -89,13 +89,13 @@ impl WetPane {
         Ok(())
     }
 
-    /// The time that rain and wipers have come to, s.
+    /// Time that rain and wipers have been stepped to, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
         self.begin_s + self.glass.ticks() as f64 * self.glass.tick_s()
     }
 
-    /// The lattice.
+    /// Lattice of the drops.
     #[must_use]
     pub fn glass(&self) -> &Glass {
         &self.glass
@@ -108,23 +108,23 @@ impl WetPane {
     }
 
     /// Corner (upper left), right, down and outward of the pane before an eye: positions relative to the same origin as the
-    /// eye, metres, and unit vectors.
+    /// eye, meters, and unit vectors.
     ///
     /// # Errors
     /// [`PaneError::EdgeOn`] if the eye looks along the pane, or what is wrong with the eye.
     pub fn axes(&self, viewpoint: &Viewpoint) -> Result<[DVec3; 4], PaneError> {
-        let place = Place::new(&self.pane, viewpoint)?;
-        let corner = place.corner(self.size) + DVec3::from(viewpoint.eye);
-        Ok([corner, place.across, place.down, place.outward])
+        let position = PanePosition::new(&self.pane, viewpoint)?;
+        let corner = position.corner(self.size) + DVec3::from(viewpoint.eye);
+        Ok([corner, position.across, position.down, position.outward])
     }
 
-    /// True if the light of lamps that falls in through the pane has the shadows of its drops.
+    /// True if drops on the pane cast shadows in the light of lamps behind it.
     #[must_use]
     pub fn has_shadows(&self) -> bool {
         self.pane.shadows != PaneShadow::None
     }
 
-    /// Shadows of the drops that are on the pane now; `None` if it has none.
+    /// Returns the shadows of the drops now on the pane; `None` if shadows are off.
     ///
     /// # Errors
     /// [`PaneError::Glass`] if the drops are more than bins can hold.
@@ -138,14 +138,14 @@ impl WetPane {
         Ok(Some(PaneShade::new(self.size, &drops, form, self.highlight_radius(), self.water as f32)))
     }
 
-    /// Radius, m, of the discs of drops from which on they are bright.
+    /// Radius, m, of the disks of drops from which on they are bright.
     fn highlight_radius(&self) -> f32 {
         let diameter = self.pane.highlight;
         self.glass.options().contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32
     }
 
-    /// The pane as it is now, before a picture of `grid` samples along an edge of a pixel. `environment_texels` is the number
-    /// of texels of the environment map, all levels.
+    /// Returns the pane in its present state, in front of a picture of `grid` samples along an edge of a pixel.
+    /// `environment_texels` is the number of texels of the environment map, all levels.
     ///
     /// # Errors
     /// As [`WetPane::new`].
@@ -157,17 +157,17 @@ impl WetPane {
         lighting: &dyn Lighting,
         environment_texels: usize,
     ) -> Result<GlassPicture, PaneError> {
-        let place = Place::new(&self.pane, viewpoint)?;
+        let position = PanePosition::new(&self.pane, viewpoint)?;
         let binned = binned(&self.glass, self.above)?;
         let [width, height] = self.size;
-        let corner = place.corner(self.size);
+        let corner = position.corner(self.size);
         let options = self.glass.options();
         let vector = |v: DVec3| v.as_vec3().to_array();
         let (levels, last) = levels(camera.size());
         // (4 n^2 - 1) / 3 texels in all levels of n x n.
         let capture_size = ((environment_texels as f64 * 0.75).sqrt().round() as u32).max(1);
         let lens = (0.5 * self.pane.aperture) as f32;
-        let lens_places = samples(grid, lens);
+        let lens_points = samples(grid, lens);
         let [columns, rows] = options.size;
         let hidden = (columns * self.above) as usize;
         let wet = self.glass.traversal().split_off(hidden);
@@ -178,12 +178,12 @@ impl WetPane {
         Ok(GlassPicture {
             frame: GlassPictureFrame {
                 camera: *camera,
-                across: vector(place.across),
+                across: vector(position.across),
                 columns: binned.columns,
-                down: vector(place.down),
+                down: vector(position.down),
                 rows: binned.rows,
-                outward: vector(place.outward),
-                bins: binned.per_metre as f32,
+                outward: vector(position.outward),
+                bins: binned.per_meter as f32,
                 corner: vector(corner),
                 cells: (1.0 / options.cell_m) as f32,
                 size: [width as f32, height as f32],
@@ -198,7 +198,7 @@ impl WetPane {
                     PaneFresnel::Tatarchuk2006 => GLASS_PICTURE_TATARCHUK,
                 },
                 room: self.pane.interior_ambient as f32,
-                samples: lens_places.len() as u32,
+                samples: lens_points.len() as u32,
                 last,
                 capture_size,
                 capture_last: capture_size.ilog2(),
@@ -215,32 +215,32 @@ impl WetPane {
             drops: if binned.drops.is_empty() { vec![Default::default()] } else { binned.drops },
             bins: binned.bins,
             wet: wet.chunks(4).map(word).collect(),
-            lens: lens_places,
+            lens: lens_points,
             lights: if lights.is_empty() { vec![GlassPictureLight::default()] } else { lights },
         })
     }
 }
 
-/// The plane of a weather's pane before an eye, if there is one.
+/// Returns the plane of a weather's pane in front of an eye, if there is one.
 ///
 /// # Errors
 /// [`PaneError::EdgeOn`] if the eye looks along it, or what is wrong with the eye.
 pub fn pane_plane(weather: &Weather, viewpoint: &Viewpoint) -> Result<Option<PanePlane>, PaneError> {
     let Some(pane) = &weather.glass else { return Ok(None) };
-    let place = Place::new(pane, viewpoint)?;
-    let distance = place.middle.dot(place.outward) as f32;
-    Ok(Some(PanePlane { outward: place.outward.as_vec3(), distance }))
+    let position = PanePosition::new(pane, viewpoint)?;
+    let distance = position.middle.dot(position.outward) as f32;
+    Ok(Some(PanePlane { outward: position.outward.as_vec3(), distance }))
 }
 
 /// Position and axes of a pane, relative to the eye.
-struct Place {
+struct PanePosition {
     across: DVec3,
     down: DVec3,
     outward: DVec3,
     middle: DVec3,
 }
 
-impl Place {
+impl PanePosition {
     fn new(pane: &Pane, viewpoint: &Viewpoint) -> Result<Self, PaneError> {
         let [right, _, forward] = viewpoint.axes()?.map(DVec3::from);
         // A pane stands upright however the camera is turned about its own axis.
@@ -266,7 +266,7 @@ impl Place {
     /// Width and height of the pane that the picture shows, m.
     fn shown(&self, viewpoint: &Viewpoint, size: [u32; 2]) -> [f64; 2] {
         let mut half = [0.0f64; 2];
-        let Ok(view) = PictureEdge::new(viewpoint, size) else { return [LARGEST_M; 2] };
+        let Ok(view) = PictureEdge::new(viewpoint, size) else { return [MAX_SIZE_M; 2] };
         for k in 0..4u32 {
             let sign = |bit: u32| if k & bit == 0 { -1.0 } else { 1.0 };
             let ray = view.forward
@@ -279,6 +279,6 @@ impl Place {
             half[0] = half[0].max(off.dot(self.across).abs());
             half[1] = half[1].max(off.dot(self.down).abs());
         }
-        half.map(|half| (2.0 * MARGIN * half).clamp(0.02, LARGEST_M))
+        half.map(|half| (2.0 * MARGIN * half).clamp(0.02, MAX_SIZE_M))
     }
 }

@@ -11,20 +11,20 @@ use rayon::prelude::*;
 
 use super::GlassPicture;
 use super::light::glass_picture_light_seen;
-use super::meet::Met;
+use super::meet::PaneHit;
 
 /// A ray that meets the pane.
 #[derive(Clone, Copy, Debug)]
 struct Ray {
     /// Position on the pane.
-    place: Vec2,
+    position: Vec2,
     /// Its direction, in the pane's axes.
     d: Vec3,
     /// Position relative to the eye.
     from_eye: Vec3,
-    /// From the sample's place in its pixel to the middle, pixels.
+    /// From the sample's position in its pixel to the middle, pixels.
     shift: Vec2,
-    /// The angle between neighbouring rays.
+    /// The angle between neighboring rays.
     angle: f32,
     /// Their distance on the pane.
     apart: f32,
@@ -69,15 +69,15 @@ impl Look<'_> {
         across * v.x + down * v.y + outward * v.z
     }
 
-    /// Radiance of the interior ambient along a ray that leaves water towards the eye's side, in a direction of the pane.
+    /// Radiance of the interior ambient along a ray that leaves water toward the eye's side, in a direction of the pane.
     fn glass_picture_inside(&self, v: Vec3) -> Vec3 {
         let aside = v.truncate() * self.glass.frame.water;
         let out = aside.extend(-(1.0 - aside.dot(aside)).max(1.0e-4).sqrt());
         self.glass_picture_round(self.glass_picture_world(out), GLASS_PICTURE_MIRROR) * self.glass.frame.room
     }
 
-    /// Share of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
-    fn glass_picture_outer(&self, cosine: f32, met: &Met, within: f32) -> f32 {
+    /// Fraction of the light that the outer surface reflects: that of water under a normal, or that of dry glass.
+    fn glass_picture_outer(&self, cosine: f32, met: &PaneHit, within: f32) -> f32 {
         let frame = &self.glass.frame;
         if !met.wet {
             return optics_fresnel(cosine, GLASS_PICTURE_INDEX);
@@ -98,7 +98,7 @@ impl Look<'_> {
         let (d, shift) = (ray.d, ray.shift);
         let aside = d.truncate() / water;
         let w = aside.extend((1.0 - aside.dot(aside)).max(0.0).sqrt());
-        let met = self.glass_picture_meet(ray.place, w.truncate() / w.z);
+        let met = self.glass_picture_meet(ray.position, w.truncate() / w.z);
         let within = w.dot(met.normal);
         let first = optics_fresnel(d.z, GLASS_PICTURE_INDEX);
         let outer = self.glass_picture_outer(d.z, &met, within.max(0.0));
@@ -138,7 +138,7 @@ impl Look<'_> {
         sum
     }
 
-    /// A sample of a pixel: a place of the lens (in its radius) and of the pixel.
+    /// A sample of a pixel: a position of the lens (in its radius) and of the pixel.
     fn glass_picture_sample(&self, x: f32, y: f32, distance: f32, sample: [f32; 4]) -> Vec3 {
         let frame = &self.glass.frame;
         let [lens_x, lens_y, dx, dy] = sample;
@@ -164,17 +164,17 @@ impl Look<'_> {
         let way = (plane - from_eye.dot(outward)) / d.z;
         let met = from_eye + direction * way;
         let on = met - corner;
-        let place = Vec2::new(on.dot(across), on.dot(down));
+        let position = Vec2::new(on.dot(across), on.dot(down));
         let among = (1.0 / frame.samples as f32).sqrt();
         let apart = frame.lens * GLASS_PICTURE_APART * among;
         let pixel = frame.camera.pixel_angle;
         let [width, height] = frame.size;
-        if place.x < 0.0 || place.y < 0.0 || place.x > width || place.y > height {
+        if position.x < 0.0 || position.y < 0.0 || position.x > width || position.y > height {
             let angle = pixel + apart * (1.0 / depth - 1.0 / far).abs();
             return self.glass_picture_seen(from_eye, direction, shift, angle);
         }
         self.glass_picture_through(&Ray {
-            place,
+            position,
             d,
             from_eye: met,
             shift,

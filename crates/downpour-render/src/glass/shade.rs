@@ -13,7 +13,7 @@ use super::water::{GlassPictureDrop, glass_picture_water_cap};
 const TEXEL_M: f64 = 2.5e-4;
 
 /// Most texels of the finest level.
-const MOST_TEXELS: f64 = 1048576.0;
+const MAX_TEXELS: f64 = 1048576.0;
 
 /// Width of the spot to which a drop gathers light, in its radii: with the drop's light it is not quite
 /// [`PANE_SHADOW_PEAK`] high.
@@ -28,18 +28,18 @@ const CORNERS: [[f32; 2]; 4] = [[-0.125, -0.375], [0.375, -0.125], [0.125, 0.375
 /// Model of the light of lamps and the sun that falls through a wet pane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PaneShadows {
-    /// Each drop is a lens: its light comes together at its focus and is spread behind it.
+    /// Each drop is a lens: its light converges at its focus and spreads behind it.
     #[default]
     Lens,
     /// The shadow of a heavy drop has a highlight in its middle at any distance (Tatarchuk & Isidoro 2006).
     Tatarchuk2006,
 }
 
-/// Cover and gathered cover of a pane, in levels.
+/// Coverage and focused light of the drops on a pane, as a mip pyramid.
 #[derive(Clone, Debug)]
 pub struct PaneShade {
     size_m: [f32; 2],
-    per_metre: f32,
+    per_meter: f32,
     form: u32,
     /// Mean radius and focal length of the drops, m.
     mean: [f32; 2],
@@ -50,8 +50,8 @@ pub struct PaneShade {
 }
 
 impl PaneShade {
-    /// The shade of a pane of a size in metres with these drops. Those whose disc is at least `gathers_m` in radius gather
-    /// light; `water` is their refractive index.
+    /// Computes the shade of a pane of a size in meters with these drops. Those whose disk is at least `gathers_m` in
+    /// radius gather light; `water` is their refractive index.
     #[must_use]
     pub fn new(
         size_m: [f64; 2],
@@ -60,7 +60,7 @@ impl PaneShade {
         gathers_m: f32,
         water: f32,
     ) -> Self {
-        let edge = TEXEL_M.max((size_m[0] * size_m[1] / MOST_TEXELS).sqrt());
+        let edge = TEXEL_M.max((size_m[0] * size_m[1] / MAX_TEXELS).sqrt());
         let [columns, rows] = size_m.map(|size| ((size / edge).round() as usize).max(1));
         let edge = edge as f32;
         let mut finest = vec![Vec2::ZERO; columns * rows];
@@ -89,42 +89,42 @@ impl PaneShade {
         let texels =
             all.iter().map(|&[cover, gathered]| [byte(cover), byte(gathered / PANE_SHADOW_PEAK)]).collect();
         let form = if form == PaneShadows::Tatarchuk2006 { PANE_SHADOW_TATARCHUK } else { PANE_SHADOW_LENS };
-        Self { size_m: size_m.map(|edge| edge as f32), per_metre: 1.0 / edge, form, mean, levels, texels }
+        Self { size_m: size_m.map(|edge| edge as f32), per_meter: 1.0 / edge, form, mean, levels, texels }
     }
 }
 
 /// Adds a drop. Its gathered light is as much as its cover, texel by texel, whatever their edge.
 fn cast(texels: &mut [Vec2], [columns, rows]: [usize; 2], edge: f32, drop: &GlassPictureDrop, gathers: bool) {
-    let centre = Vec2::from(drop.centre);
+    let center = Vec2::from(drop.center);
     let reach = drop.radius * 1.5 / drop.behind;
     let range = |at: f32, most: usize| {
         let low = ((at - reach) / edge).floor().max(0.0) as usize;
         low.min(most)..(((at + reach) / edge).ceil().max(0.0) as usize).min(most)
     };
-    let spot = |place: Vec2| {
-        let away = (place - centre).length_squared() / (drop.radius * drop.radius);
+    let spot = |position: Vec2| {
+        let away = (position - center).length_squared() / (drop.radius * drop.radius);
         if away < SPOT_END * SPOT_END { ops::exp(-0.5 * away / (SPOT * SPOT)) } else { 0.0 }
     };
     let (mut covered, mut spots) = (0.0, 0.0);
     for step in [false, true] {
-        for row in range(centre.y, rows) {
-            for column in range(centre.x, columns) {
-                let place = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * edge;
+        for row in range(center.y, rows) {
+            for column in range(center.x, columns) {
+                let position = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * edge;
                 let cover = CORNERS
                     .iter()
-                    .filter(|&&at| glass_picture_water_cap(drop, place + Vec2::from(at) * edge).x > 0.0)
+                    .filter(|&&at| glass_picture_water_cap(drop, position + Vec2::from(at) * edge).x > 0.0)
                     .count() as f32
                     * 0.25;
                 let texel = &mut texels[row * columns + column];
                 if !step {
                     covered += cover;
-                    spots += spot(place);
-                } else if cover > 0.0 || spot(place) > 0.0 {
+                    spots += spot(position);
+                } else if cover > 0.0 || spot(position) > 0.0 {
                     // Drops may overlap: none takes more light than there is.
                     let taken = cover * (1.0 - texel.x);
-                    let share = if spots > 0.0 { covered * spot(place) / spots } else { cover };
+                    let fraction = if spots > 0.0 { covered * spot(position) / spots } else { cover };
                     texel.x += taken;
-                    texel.y += if gathers { share } else { taken };
+                    texel.y += if gathers { fraction } else { taken };
                 }
             }
         }
@@ -132,8 +132,8 @@ fn cast(texels: &mut [Vec2], [columns, rows]: [usize; 2], edge: f32, drop: &Glas
 }
 
 impl PaneShade {
-    /// The rows of the pane in a table; wherever they begin, they are the same. `axes`: corner, right, down and outward of the
-    /// pane, in the coordinates of the table.
+    /// Returns the rows of the pane in a table, which do not depend on their position there. `axes`: corner, right, down
+    /// and outward of the pane, in the coordinates of the table.
     #[must_use]
     pub fn rows(&self, axes: [Vec3; 4]) -> Vec<[u32; 4]> {
         let [corner, across, down, outward] = axes;
@@ -144,7 +144,7 @@ impl PaneShade {
         let row = |v: Vec3, w: f32| [v.x, v.y, v.z, w].map(f32::to_bits);
         let form = f32::from_bits(self.form);
         let mut table = vec![
-            row(corner, self.per_metre),
+            row(corner, self.per_meter),
             row(across, self.size_m[0]),
             row(down, self.size_m[1]),
             row(outward, form),
@@ -164,18 +164,18 @@ impl PaneShade {
     }
 }
 
-/// A pane before the lamps as the shaders read it. Twin of the struct of the same name in `shaders/wgsl/render/pane.wgsl`.
+/// A pane in front of the lamps, as the shaders read it. Twin of the struct of the same name in `shaders/wgsl/render/pane.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderPane {
-    /// Upper left corner, metres.
+    /// Upper left corner, meters.
     pub corner: Vec3,
-    /// Texels in a metre.
-    pub texels_per_metre: f32,
+    /// Texels per meter.
+    pub texels_per_meter: f32,
     /// Unit vector to the right.
     pub across: Vec3,
     /// Width, m.
     pub width: f32,
-    /// Unit vector downwards.
+    /// Unit vector down.
     pub down: Vec3,
     /// Height, m.
     pub height: f32,
@@ -185,7 +185,7 @@ pub struct RenderPane {
     pub form: u32,
     /// First row of the texels.
     pub first: u32,
-    /// Coarsest level.
+    /// Index of the coarsest level.
     pub last: u32,
     /// Mean radius and focal length of the drops, m.
     pub drops: [f32; 2],
@@ -200,7 +200,7 @@ impl RenderPane {
         let last = |k: usize| f32::from_bits(rows[k][3]);
         Self {
             corner: vector(0),
-            texels_per_metre: last(0),
+            texels_per_meter: last(0),
             across: vector(1),
             width: last(1),
             down: vector(2),
@@ -220,11 +220,11 @@ mod tests {
 
     use super::*;
 
-    /// A texel that no drop is on is clear, a drop covers its disc, and gathers as much.
+    /// A texel that no drop is on is clear, a drop covers its disk, and gathers as much.
     #[test]
-    fn a_drop_covers_its_disc_and_gathers_as_much() {
+    fn a_drop_covers_its_disk_and_gathers_as_much() {
         let drop = GlassPictureDrop {
-            centre: [0.01, 0.012],
+            center: [0.01, 0.012],
             radius: 2.0e-3,
             sphere: 2.5e-3,
             along: [0.0, 1.0],
@@ -238,22 +238,22 @@ mod tests {
         let area = |channel: usize, peak: f32| {
             finest.iter().map(|texel| f32::from(texel[channel]) / 255.0 * peak).sum::<f32>() * 6.25e-8
         };
-        let disc = PI * 4.0e-6;
-        assert!((area(0, 1.0) / disc - 1.0).abs() < 0.02, "{}", area(0, 1.0) / disc);
+        let disk = PI * 4.0e-6;
+        assert!((area(0, 1.0) / disk - 1.0).abs() < 0.02, "{}", area(0, 1.0) / disk);
         assert!(
-            (area(1, PANE_SHADOW_PEAK) / disc - 1.0).abs() < 0.03,
+            (area(1, PANE_SHADOW_PEAK) / disk - 1.0).abs() < 0.03,
             "{}",
-            area(1, PANE_SHADOW_PEAK) / disc
+            area(1, PANE_SHADOW_PEAK) / disk
         );
         assert_eq!(finest[0], [0, 0]);
         assert!((shade.mean[0] - 2.0e-3).abs() < 1.0e-8 && (shade.mean[1] - 2.5e-3 / 0.333).abs() < 1.0e-6);
     }
 
-    /// Below the threshold by mass a drop gathers nothing: its light goes on as it came.
+    /// Below the threshold by mass a drop focuses no light: its light continues in its direction.
     #[test]
     fn small_drops_do_not_gather() {
         let drop = GlassPictureDrop {
-            centre: [0.01, 0.01],
+            center: [0.01, 0.01],
             radius: 1.0e-3,
             sphere: 1.2e-3,
             along: [0.0, 1.0],

@@ -1,18 +1,18 @@
 //! Water on a pane as smooth surfaces. Twin of `shaders/wgsl/render/glass_picture_water.wgsl`.
 //!
-//! Each drop is a cap of a sphere over its disc, with an outline that is not quite round, drawn out behind if it runs, and
+//! Each drop is a cap of a sphere over its disk, with an outline that is not quite round, drawn out behind if it runs, and
 //! steeper on the side to which its weight pulls it: from the receding angle to the advancing one.
 
 use downpour_shaders::render::glass::GLASS_PICTURE_TURNS;
 use glam::{Vec2, Vec3};
 
-/// A drop on a pane, in metres: x right, y down, z out of the pane. The same layout as `GlassPictureDrop` in WGSL.
+/// A drop on a pane, in meters: x right, y down, z out of the pane. The same layout as `GlassPictureDrop` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GlassPictureDrop {
-    /// Middle of the disc.
-    pub centre: [f32; 2],
-    /// Radius of the disc.
+    /// Middle of the disk.
+    pub center: [f32; 2],
+    /// Radius of the disk.
     pub radius: f32,
     /// Radius of the sphere whose cap it is.
     pub sphere: f32,
@@ -26,14 +26,14 @@ pub struct GlassPictureDrop {
     pub droop: [f32; 2],
     /// 0.
     pub unused: [f32; 2],
-    /// The outline: what is added to the squared distance with the cosine and the sine of twice the angle, and of thrice.
+    /// Harmonics of the outline: added to the squared distance with the cosine and sine of twice and of three times the angle.
     pub lobes: [f32; 4],
 }
 
 /// Height over the glass, and its slopes along x and y. Beyond the outline the height is below 0.
 #[must_use]
-pub fn glass_picture_water_cap(drop: &GlassPictureDrop, place: Vec2) -> Vec3 {
-    let away = place - Vec2::from(drop.centre);
+pub fn glass_picture_water_cap(drop: &GlassPictureDrop, position: Vec2) -> Vec3 {
+    let away = position - Vec2::from(drop.center);
     let (along, droop) = (Vec2::from(drop.along), Vec2::from(drop.droop));
     let ahead = away.x * along.x + away.y * along.y;
     let stretch = if ahead > 0.0 { 1.0 } else { drop.behind };
@@ -61,26 +61,26 @@ pub fn glass_picture_water_cap(drop: &GlassPictureDrop, place: Vec2) -> Vec3 {
     let down_y = steep * of_y;
     let slope = along * down_x + Vec2::new(-along.y, along.x) * down_y;
     let pulled = drop.lean * r;
-    let share = (1.0 + pulled * (away.x * droop.x + away.y * droop.y)).max(0.1);
-    let slope = slope * share + droop * (height * pulled);
-    Vec3::new(height * share, slope.x, slope.y)
+    let fraction = (1.0 + pulled * (away.x * droop.x + away.y * droop.y)).max(0.1);
+    let slope = slope * fraction + droop * (height * pulled);
+    Vec3::new(height * fraction, slope.x, slope.y)
 }
 
-/// The highest that a drop may be.
+/// Maximum height of a drop.
 #[must_use]
 pub fn glass_picture_water_top(drop: &GlassPictureDrop) -> f32 {
     let whole = drop.sphere * drop.sphere;
     (drop.sphere - (whole - drop.radius * drop.radius).sqrt()) * (1.0 + 1.5 * drop.lean)
 }
 
-/// Height at which a ray that enters a drop at a place of the glass leaves it. `aside` is how far it goes along the pane for
-/// each metre away from it. The bracket of regula falsi (Illinois).
+/// Height at which a ray that enters a drop at a position of the glass leaves it. `aside` is how far it goes along the pane for
+/// each meter away from it. The bracket of regula falsi (Illinois).
 #[must_use]
-pub fn glass_picture_water_leave(drop: &GlassPictureDrop, place: Vec2, aside: Vec2) -> f32 {
+pub fn glass_picture_water_leave(drop: &GlassPictureDrop, position: Vec2, aside: Vec2) -> f32 {
     let mut low = 0.0;
     let mut high = glass_picture_water_top(drop);
-    let mut above = glass_picture_water_cap(drop, place).x;
-    let mut below = glass_picture_water_cap(drop, place + aside * high).x - high;
+    let mut above = glass_picture_water_cap(drop, position).x;
+    let mut below = glass_picture_water_cap(drop, position + aside * high).x - high;
     if below >= 0.0 {
         return high;
     }
@@ -88,7 +88,7 @@ pub fn glass_picture_water_leave(drop: &GlassPictureDrop, place: Vec2, aside: Ve
     let mut side = 0;
     for _ in 0..GLASS_PICTURE_TURNS {
         z = low + (high - low) * (above / (above - below));
-        let off = glass_picture_water_cap(drop, place + aside * z).x - z;
+        let off = glass_picture_water_cap(drop, position + aside * z).x - z;
         if off > 0.0 {
             low = z;
             above = off;

@@ -18,36 +18,36 @@ use super::drops_shade::DropsShade;
 use super::environment::EnvironmentMap;
 use super::glint::{drop_glint_rousseau, drop_glint_spot, drop_glint_unpack};
 use super::streak::{
-    DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_nearest, streak_place,
+    DropsDrop, StreakChord, streak_chord, streak_cover, streak_depth, streak_mask_position, streak_nearest,
     streak_time, streak_weight,
 };
 use super::streak_lookup::StreakTable;
 use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
 use crate::halves::unpack;
 
-/// The place of a ray on the plane at distance 1 through a drop's middle.
+/// Position of a ray on the plane at distance 1 through a drop's center.
 #[must_use]
 pub fn drops_on_plane(towards: Vec3, ray: Vec3) -> Vec3 {
     ray / ray.dot(towards).max(1.0e-6) - towards
 }
 
-/// A spot of unit mean over the disc, summed along a line that passes it at some distance; all in radii.
+/// A spot of unit mean over the disk, summed along a line that passes it at some distance; all in radii.
 #[must_use]
 pub fn drops_line(off: f32, width: f32) -> f32 {
     DROPS_LINE / width * ops::exp(-0.5 * off * off / (width * width))
 }
 
-/// The share of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet
+/// The fraction of a step by which the samples of a line of pixels are shifted: unshifted, all lines of a plumb streak would meet
 /// the thin image of a lamp in it, or miss it, alike.
 #[must_use]
 pub fn drops_shift(line: u32) -> f32 {
     (line.wrapping_mul(STREAK_GOLDEN) & 0xffff) as f32 / 65_536.0
 }
 
-/// The phase of the mode (2,0), in turns, where a passing drop is at a share of its way.
+/// The phase of the mode (2,0), in turns, where a passing drop is at a fraction of its way.
 #[must_use]
 pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
-    drop.swing[2] + drop.turns[0] * streak_time(drop.recede, way)
+    drop.mode_phase[2] + drop.cycles[0] * streak_time(drop.depth_ratio, way)
 }
 
 /// Data that the kernel reads.
@@ -68,7 +68,7 @@ impl Buffers<'_> {
         self.light.get(first..first + stride).unwrap_or(&[[0.0; 4]])
     }
 
-    /// Light of lamps at a place of a drop's disc, in radii: its glints as spots of some width, and the rest everywhere.
+    /// Light of lamps at a position of a drop's disk, in radii: its glints as spots of some width, and the rest everywhere.
     fn drops_spots(&self, index: u32, at: Vec2, width: f32) -> Vec3 {
         let row = self.drops_light_row(index);
         let mut light = Vec4::from(row[0]).truncate();
@@ -81,7 +81,7 @@ impl Buffers<'_> {
         light.max(Vec3::ZERO)
     }
 
-    /// Light of lamps in the form of Rousseau 2006 at a place of a drop's mask, by the normal there, which halves the angle
+    /// Light of lamps in the form of Rousseau 2006 at a position of a drop's mask, by the normal there, which halves the angle
     /// between the eye and what is mirrored: what it is more than the mean over the drop.
     fn drops_facing(&self, index: u32, drop: &DropsDrop, x: f32, y: f32) -> Vec3 {
         let row = self.drops_light_row(index);
@@ -93,7 +93,7 @@ impl Buffers<'_> {
         let towards = Vec3::from(drop.towards);
         let right = drops_mask_right(towards);
         let up = right.cross(towards);
-        let turned = drops_mask_unit(self.view.drops_mask_at(drop.row, x, y).reflected + Vec3::Z);
+        let turned = drops_mask_unit(self.view.drops_mask_at(drop.mask_index, x, y).reflected + Vec3::Z);
         let normal = right * turned.x + up * turned.y - towards * turned.z;
         let (lamps, _) = row[1..].as_chunks::<2>();
         for [lamp, way] in lamps.iter().filter(|[lamp, _]| lamp[3] < 0.0) {
@@ -112,16 +112,16 @@ impl Buffers<'_> {
     fn drops_lines(&self, index: u32, chord: &StreakChord, width: f32) -> Vec3 {
         let row = self.drops_light_row(index);
         let part = (chord.high - chord.low) * 0.5;
-        let mut light = Vec4::from(row[0]).truncate() * chord.share;
+        let mut light = Vec4::from(row[0]).truncate() * chord.fraction;
         for glint in row[1..].iter().filter(|glint| glint[3] > 0.0) {
-            let place = drop_glint_unpack(glint[3]);
-            let off = chord.aside - (place.x * chord.path.y - place.y * chord.path.x);
-            light += Vec4::from(*glint).truncate() * (drops_line(off, width) * chord.pace - chord.share);
+            let position = drop_glint_unpack(glint[3]);
+            let off = chord.aside - (position.x * chord.path.y - position.y * chord.path.x);
+            light += Vec4::from(*glint).truncate() * (drops_line(off, width) * chord.pace - chord.fraction);
         }
         light.max(Vec3::ZERO) * part
     }
 
-    /// The streaks of a drop's row of light: their colours, and where they are in the atlas.
+    /// The streaks of a drop's row of light: their colors, and where they are in the atlas.
     fn streaks(&self, index: u32) -> impl Iterator<Item = (Vec3, DropsAtlasStreak)> {
         let (streaks, _) = self.drops_light_row(index)[1..].as_chunks::<{ DROP_ATLAS_ROWS as usize }>();
         streaks.iter().filter(|[first, ..]| first[3] != 0.0).map(|rows| {
@@ -134,15 +134,15 @@ impl Buffers<'_> {
         DropsAtlas { masks: self.view.masks, first: self.view.frame.atlas }
     }
 
-    /// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a place on the plane.
+    /// Light of lamps on a passing drop by the streaks of an atlas, for as long as it passes a position on the plane.
     fn drops_streaks(&self, index: u32, drop: &DropsDrop, chord: &StreakChord, at: Vec2) -> Vec3 {
         let row = self.drops_light_row(index);
         let part = (chord.high - chord.low) * 0.5;
         let turns = drops_turns(drop, streak_nearest(drop, at));
-        let mut light = Vec4::from(row[0]).truncate() * chord.share;
-        for (colour, streak) in self.streaks(index) {
+        let mut light = Vec4::from(row[0]).truncate() * chord.fraction;
+        for (color, streak) in self.streaks(index) {
             let shown = self.atlas().drops_atlas_across(&streak, -chord.aside, turns);
-            light += colour * (shown * 2.0 * chord.pace - chord.share);
+            light += color * (shown * 2.0 * chord.pace - chord.fraction);
         }
         light.max(Vec3::ZERO) * part
     }
@@ -158,14 +158,14 @@ impl Buffers<'_> {
         let square = way.dot(way).max(1.0);
         let at = (Vec2::new(x as f32, y as f32) + 0.5 - Vec2::from(drop.first)).dot(way) / square;
         let pixel = 1.0 / square.sqrt();
-        for (colour, streak) in self.streaks(index) {
+        for (color, streak) in self.streaks(index) {
             let mut mean = 0.0;
             for n in 0..DROPS_ATLAS_TAPS {
                 let off = (n as f32 + 0.5) / DROPS_ATLAS_TAPS as f32 - 0.5;
                 let turns = drops_turns(drop, (at + off * pixel).clamp(0.0, 1.0));
                 mean += self.atlas().drops_atlas_along(&streak, turns);
             }
-            light += colour * (mean / DROPS_ATLAS_TAPS as f32 - 1.0);
+            light += color * (mean / DROPS_ATLAS_TAPS as f32 - 1.0);
         }
         light.max(Vec3::ZERO)
     }
@@ -204,8 +204,13 @@ impl Buffers<'_> {
                 sy = lean.dot(up) / extent;
             }
             if sx.abs() < 1.0 && sy.abs() < 1.0 {
-                let shade =
-                    DropsShade { towards, half_extent: drop.half_extent, lean, spacing, row: drop.row };
+                let shade = DropsShade {
+                    towards,
+                    half_extent: drop.half_extent,
+                    lean,
+                    spacing,
+                    mask_index: drop.mask_index,
+                };
                 let mut shown = self.view.drops_shade_ray(&shade, sx, sy);
                 if !small {
                     let at = Vec2::new(sx, sy) * drop.half_extent;
@@ -231,12 +236,12 @@ impl Buffers<'_> {
             half_extent: drop.half_extent,
             lean: Vec3::ZERO,
             spacing: 2.0 * drop.oval[0] / STREAK_FINE as f32,
-            row: drop.row,
+            mask_index: drop.mask_index,
         };
         let mut sum = Vec4::ZERO;
         for k in 0..frame.streak_samples {
             let part = (k as f32 + 0.5) / frame.streak_samples as f32;
-            let at = streak_place(drop, chord, chord.low + (chord.high - chord.low) * part);
+            let at = streak_mask_position(drop, chord, chord.low + (chord.high - chord.low) * part);
             if at.x.abs() < 1.0 && at.y.abs() < 1.0 {
                 let shown = self.view.drops_shade_ray(&shade, at.x, at.y);
                 let light = shown + (self.drops_facing(index, drop, at.x, at.y) * shown.w).extend(0.0);
@@ -254,9 +259,9 @@ impl Buffers<'_> {
             if cover <= 0.0 {
                 return Vec4::ZERO;
             }
-            let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
+            let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
             let light = self.drops_beads(index, drop, x, y);
-            return (self.table.streak_lookup_mean(drop.shape, place) + light).extend(1.0) * cover;
+            return (self.table.streak_lookup_mean(drop.shape, position) + light).extend(1.0) * cover;
         }
         let towards = Vec3::from(drop.towards);
         let right = drops_mask_right(towards);
@@ -270,23 +275,23 @@ impl Buffers<'_> {
                 + (Vec2::new(k as f32, turned as f32) + shift) / drop.grid as f32;
             let ray = self.view.frame.camera.camera_ray(at.x, at.y);
             let lean = drops_on_plane(towards, ray);
-            let place = Vec2::new(lean.dot(right), lean.dot(up));
+            let position = Vec2::new(lean.dot(right), lean.dot(up));
             let by_profile = drop.kind == DROPS_TABLE;
             if by_profile {
-                sum += self.table.streak_lookup_shown(drop, place);
+                sum += self.table.streak_lookup_shown(drop, position);
             }
             if by_profile && self.view.frame.atlas == 0 {
                 continue;
             }
-            let chord = streak_chord(drop, place);
+            let chord = streak_chord(drop, position);
             if chord.high <= chord.low {
                 continue;
             }
             if !by_profile {
-                sum += self.drops_chord(index, drop, &chord, ray) * chord.share;
+                sum += self.drops_chord(index, drop, &chord, ray) * chord.fraction;
             }
             let lines = if self.view.frame.atlas > 0 {
-                self.drops_streaks(index, drop, &chord, place)
+                self.drops_streaks(index, drop, &chord, position)
             } else {
                 self.drops_lines(index, &chord, self.drops_glint_width(drop))
             };
@@ -303,10 +308,10 @@ impl Buffers<'_> {
         let up = right.cross(towards);
         let lean = drops_on_plane(towards, self.view.frame.camera.camera_ray(x as f32 + 0.5, y as f32 + 0.5));
         let way = streak_nearest(drop, Vec2::new(lean.dot(right), lean.dot(up)));
-        drop.distance * streak_depth(drop.recede, streak_time(drop.recede, way))
+        drop.distance * streak_depth(drop.depth_ratio, streak_time(drop.depth_ratio, way))
     }
 
-    /// A drop over a pixel whose scene is `scene` metres away: radiance times coverage, and coverage.
+    /// A drop over a pixel whose scene is `scene` meters away: radiance times coverage, and coverage.
     fn drops_pixel(&self, index: u32, x: u32, y: u32, scene: f32) -> Vec4 {
         let drop = &self.rain.list[index as usize];
         let mut shown = if drop.kind == DROPS_STILL {
@@ -317,7 +322,7 @@ impl Buffers<'_> {
         if shown.w <= 0.0 {
             return shown;
         }
-        if self.view.frame.streak_colour == STREAK_WHITE {
+        if self.view.frame.streak_color == STREAK_WHITE {
             let white = self.view.drops_capture_texel(self.view.frame.capture_last, 0, 0);
             shown = (white * shown.w).extend(shown.w);
         }
@@ -329,12 +334,12 @@ impl Buffers<'_> {
     /// Mean radiance of an unresolved drop before a pixel.
     fn drops_medium(&self, x: u32, y: u32) -> Vec3 {
         let frame = self.view.frame;
-        if frame.streak_colour == STREAK_WHITE {
+        if frame.streak_color == STREAK_WHITE {
             return self.view.drops_capture_texel(frame.capture_last, 0, 0);
         }
         let size = Vec2::new(frame.camera.width as f32, frame.camera.height as f32);
-        let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
-        self.table.streak_lookup_mean(self.rain.medium.shape, place)
+        let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / size;
+        self.table.streak_lookup_mean(self.rain.medium.shape, position)
     }
 
     /// The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of their nearest
@@ -408,9 +413,9 @@ impl Rain {
     }
 
     /// The rain over a scene: radiance, and the transmittance of the scene behind it; rows from the top. `clean` is the
-    /// scene's picture with its distances, `light` what lamps add to each drop of the list ([`DropLights::light`](super::light::DropLights::light); nothing
-    /// where it is empty), `medium` the drops that are not drawn
-    /// ([`MediumLight::layer`](super::medium::MediumLight::layer); none where it is empty).
+    /// scene's picture with its distances, `light` what lamps add to each drop of the list
+    /// ([`DropLights::light`](super::light::DropLights::light); nothing where it is empty), `medium` the drops that are not
+    /// drawn ([`MediumLight::layer`](super::medium::MediumLight::layer); none where it is empty).
     #[must_use]
     pub fn layer(
         &self,

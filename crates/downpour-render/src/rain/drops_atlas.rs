@@ -1,4 +1,4 @@
-//! The patterns of an atlas between their texels. Twin of `shaders/wgsl/render/drops_atlas.wgsl`, where their place behind the
+//! The patterns of an atlas between their texels. Twin of `shaders/wgsl/render/drops_atlas.wgsl`, where their position behind the
 //! masks is described.
 
 use std::f32::consts::FRAC_1_PI;
@@ -16,7 +16,7 @@ pub(super) fn words(atlas: &StreakAtlas) -> Vec<u32> {
     let mut halves: Vec<half::f16> = Vec::new();
     let numbers = data.texels.iter().flat_map(|word| [*word as u16, (*word >> 16) as u16]);
     let numbers: Vec<half::f16> = numbers.map(half::f16::from_bits).collect();
-    // Over a whole layer the mean of a pattern is that of an even disc over the width.
+    // Over a whole layer the mean of a pattern is that of an even disk over the width.
     let scale = 4.0 * data.frame.half_extent * FRAC_1_PI / columns as f32;
     for row in numbers.chunks_exact(columns.max(1) as usize) {
         halves.extend(row);
@@ -76,7 +76,7 @@ impl DropsAtlas<'_> {
         half::f16::from_bits((word >> (16 * (index & 1))) as u16).to_f32()
     }
 
-    /// A texel. Rows go round. The column behind the last is the mean of the row.
+    /// A texel. Rows wrap around. The column behind the last is the mean of the row.
     fn drops_atlas_texel(&self, layer: u32, column: i32, row: i32) -> f32 {
         let (columns, rows) = (self.word(0), self.word(1).max(1) as i32);
         let down = row.rem_euclid(rows) as u32;
@@ -104,7 +104,7 @@ impl DropsAtlas<'_> {
         above * (1.0 - y) + below * y
     }
 
-    /// A streak so many equivalent radii to the right of the middle, so many turns of the mode (2,0) along.
+    /// A streak so many equivalent radii to the right of the middle, after `turns` turns of the mode (2,0).
     pub(super) fn drops_atlas_across(&self, streak: &DropsAtlasStreak, across: f32, turns: f32) -> f32 {
         let half = 0.5 * self.word(0) as f32;
         let extent = f32::from_bits(self.word(2));

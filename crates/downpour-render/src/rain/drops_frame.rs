@@ -1,7 +1,7 @@
 //! The picture as the drops' kernels know it. Twin of `shaders/wgsl/render/drops_frame.wgsl`.
 
 use super::environment::EnvironmentFrame;
-use super::exposure::{MOST_STREAK_SAMPLES, StreakSamples};
+use super::exposure::{MAX_STREAK_SAMPLES, StreakSamples};
 use super::light::DropLightForm;
 use super::{DropMasks, RainOptions};
 use crate::camera::Camera;
@@ -9,25 +9,25 @@ use crate::camera::Camera;
 /// Samples of a streak for which the table has no entry: too short, or across the others.
 const STREAK_SPARE: u32 = 16;
 
-/// The picture as the drops' shader knows it. The same layout as `DropsFrame` in WGSL.
+/// Uniforms of the drops' shader. The same layout as `DropsFrame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropsFrame {
     /// The camera.
     pub camera: Camera,
-    /// Axes of the capture in the papers' form: the whole of it at distance 1.
+    /// Right axis of the capture in the papers' form: its whole width at distance 1.
     pub capture_right: [f32; 3],
     /// Texels along an edge of the capture.
     pub capture_size: u32,
     /// See `capture_right`.
     pub capture_up: [f32; 3],
-    /// The coarsest level of the capture.
+    /// Index of the coarsest level of the capture.
     pub capture_last: u32,
-    /// The view direction of the capture.
+    /// View direction of the capture.
     pub capture_forward: [f32; 3],
     /// Angle of a texel of the capture.
     pub capture_texel: f32,
-    /// The form of refraction.
+    /// Form of refraction.
     pub form: u32,
     /// Texels along an edge of a mask.
     pub mask_size: u32,
@@ -37,11 +37,11 @@ pub struct DropsFrame {
     pub light_terms: u32,
     /// Samples along the chord of a streak that is averaged by a loop.
     pub streak_samples: u32,
-    /// The colour of streaks.
-    pub streak_colour: u32,
+    /// The color of streaks.
+    pub streak_color: u32,
     /// Rows of light of each drop besides its mean: glints, or streaks of the atlas.
     pub glints: u32,
-    /// First word of the atlas behind the masks; 0: there is none.
+    /// First word of the atlas behind the masks; 0: no atlas.
     pub atlas: u32,
 }
 
@@ -63,7 +63,7 @@ impl DropsFrame {
     ) -> Self {
         let streak_samples = match options.exposure.samples {
             StreakSamples::Table => STREAK_SPARE,
-            StreakSamples::Loop(samples) => samples.clamp(1, MOST_STREAK_SAMPLES),
+            StreakSamples::Loop(samples) => samples.clamp(1, MAX_STREAK_SAMPLES),
         };
         Self {
             camera: *camera,
@@ -78,7 +78,7 @@ impl DropsFrame {
             tiles_across,
             light_terms: options.light.form.terms(),
             streak_samples,
-            streak_colour: options.exposure.colour as u32,
+            streak_color: options.exposure.colour as u32,
             glints: options.light.glints,
             atlas: if options.light.form == DropLightForm::Atlas { masks.atlas } else { 0 },
         }

@@ -16,7 +16,7 @@ pub(super) struct DropsTexel {
     /// Direction of the light that is reflected inside once.
     pub(super) internal: Vec3,
     pub(super) internal_transmittance: f32,
-    /// Share that is reflected outside.
+    /// Fraction that is reflected outside.
     pub(super) reflectance: f32,
 }
 

@@ -18,19 +18,19 @@ pub(super) struct DropsShade {
     pub(super) lean: Vec3,
     /// Equivalent radii between samples.
     pub(super) spacing: f32,
-    /// Place in the masks: rows of diameters, and of elevations.
-    pub(super) row: [f32; 2],
+    /// Index of its mask, fractional: diameter, elevation.
+    pub(super) mask_index: [f32; 2],
 }
 
 impl DropsView<'_> {
-    /// The place in the papers' capture of a ray, shifted by what the mask says.
+    /// The position in the papers' capture of a ray, shifted by what the mask says.
     pub(super) fn drops_shade_shifted(&self, ray: Vec3, texel: &DropsTexel) -> Vec2 {
         self.drops_capture_shifted(ray, texel.direction)
     }
 
     /// Light of a drop at (x, y), in units of half its mask: radiance times coverage, and coverage.
     pub(super) fn drops_shade_ray(&self, drop: &DropsShade, x: f32, y: f32) -> Vec4 {
-        let texel = self.drops_mask_at(drop.row, x, y);
+        let texel = self.drops_mask_at(drop.mask_index, x, y);
         if texel.coverage <= 0.0 {
             return Vec4::ZERO;
         }
@@ -40,8 +40,8 @@ impl DropsView<'_> {
         let q = ((x * x + y * y) * drop.half_extent * drop.half_extent).min(0.98);
         let bend = 2.0 / (1.0 - q).sqrt();
         if self.frame.form == DROPS_SHIFT {
-            let place = self.drops_shade_shifted(drop.towards + drop.lean, &texel);
-            let sum = self.drops_capture_at(place, drop.spacing * (bend - DROPS_STRAIGHT));
+            let position = self.drops_shade_shifted(drop.towards + drop.lean, &texel);
+            let sum = self.drops_capture_at(position, drop.spacing * (bend - DROPS_STRAIGHT));
             return sum.extend(1.0) * texel.coverage;
         }
         let rest = (1.0 - texel.transmittance - texel.reflectance - texel.internal_transmittance).max(0.0);
@@ -53,8 +53,8 @@ impl DropsView<'_> {
             (texel.internal, texel.internal_transmittance, (bend - 2.0 * DROPS_STRAIGHT).abs().max(1.0)),
         ] {
             let direction = right * seen.x + up * seen.y - drop.towards * seen.z + drop.lean;
-            let place = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
-            sum += self.drops_capture_at(place, drop.spacing * bends) * weight;
+            let position = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
+            sum += self.drops_capture_at(position, drop.spacing * bends) * weight;
         }
         sum.extend(1.0) * texel.coverage
     }

@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::{RainOptions, RefractionForm};
 use crate::camera::Camera;
 
-/// Tangent of half of 165 degrees: what a drop of water refracts (Rousseau 2006 has 150 in one place: a rounding).
+/// Tangent of half of 165 degrees: what a drop of water refracts (Rousseau 2006 once has 150: a rounding).
 const WIDE: f32 = 7.595_754;
 
 /// Layout of an environment map.
@@ -39,7 +39,7 @@ pub struct EnvironmentMap {
 }
 
 impl EnvironmentFrame {
-    /// The layout that belongs to a camera.
+    /// Computes the layout for a camera.
     #[must_use]
     pub fn new(camera: &Camera, options: &RainOptions) -> Self {
         let size = options.capture_size.clamp(16, 2048).next_power_of_two();
@@ -76,7 +76,7 @@ impl EnvironmentFrame {
 }
 
 impl EnvironmentMap {
-    /// A map from its finest level, rows from the top.
+    /// Builds a map from its finest level, rows from the top.
     #[must_use]
     pub fn new(frame: &EnvironmentFrame, mut texels: Vec<[f32; 4]>) -> Self {
         pyramid(&mut texels, [frame.size; 2], PyramidRounding::Down);

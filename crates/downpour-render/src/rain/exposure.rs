@@ -6,16 +6,16 @@ use downpour_weather::{Observer, StreakLook, Weather};
 
 use crate::camera::EyeMotion;
 
-/// The most samples along the chord of a streak.
-pub const MOST_STREAK_SAMPLES: u32 = 4096;
+/// Maximum number of samples along the chord of a streak.
+pub const MAX_STREAK_SAMPLES: u32 = 4096;
 
 /// Method that averages the light of a streak over the time in which its drop passes a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum StreakSamples {
-    /// By a table that is made once per frame: one lookup, whatever the number of samples.
+    /// By a table that is computed once per frame: one lookup per ray.
     #[default]
     Table,
-    /// By a loop over so many samples, 1 to [`MOST_STREAK_SAMPLES`] (Rousseau 2006, section 5).
+    /// By a loop over this number of samples, 1 to [`MAX_STREAK_SAMPLES`] (Rousseau 2006, section 5).
     Loop(u32),
 }
 
@@ -23,18 +23,18 @@ pub enum StreakSamples {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum StreakColour {
-    /// Light that its drop refracts and reflects.
+    /// Light that the drop refracts and reflects.
     #[default]
     Refracted = STREAK_REFRACTED,
-    /// One colour for all, the mean of the surroundings: the static streaks of Rousseau 2006, figure 9.
+    /// One color for all, the mean of the environment: the static streaks of Rousseau 2006, figure 9.
     White = STREAK_WHITE,
 }
 
-/// Weight of light by the moment of the exposure in which it comes. The mean weight over the exposure is 1, so that light which
+/// Weight of light over the time of the exposure. The mean weight over the exposure is 1, so that light which
 /// does not change is the same in all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TemporalResponse {
-    /// A camera's shutter: all of the exposure weighs the same.
+    /// A camera's shutter: constant weight over the exposure.
     #[default]
     Shutter,
     /// An eye: what it sees takes the time of the exposure to fade away, evenly. Light of age `a` has the weight `2 (1 - a / T)`
@@ -54,35 +54,36 @@ impl TemporalResponse {
     }
 }
 
-/// The time in which light is gathered.
+/// Exposure of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposure {
-    /// Seconds, 0 (drops stand still) to [`LONGEST_EXPOSURE_S`](crate::camera::LONGEST_EXPOSURE_S); half of it is before the time of the picture.
+    /// Exposure time, s, 0 (drops stand still) to [`MAX_EXPOSURE_S`](crate::camera::MAX_EXPOSURE_S); half of it is before
+    /// the time of the picture.
     pub shutter_s: f64,
     /// Weight of light over the exposure.
     pub response: TemporalResponse,
-    /// The time of the picture, s: the phases of the drops' oscillation count from 0.
+    /// Time of the picture, s: the phases of the drops' oscillation count from time 0.
     pub time_s: f64,
     /// Motion of the eye.
     pub eye: EyeMotion,
     /// Method that averages streaks.
     pub samples: StreakSamples,
-    /// Their colour.
+    /// Color of streaks.
     pub colour: StreakColour,
     /// Amplitudes of the oscillation of drops.
     pub oscillation: Amplitudes,
-    /// The drops' water and the air, on which their frequencies depend.
+    /// Water and air, on which the frequencies of the oscillation depend.
     pub fluids: Fluids,
     /// Seed of the drops' phases.
     pub seed: u64,
     /// Diameter of the lens's pupil, m; 0: everything is in focus.
     pub aperture_m: f64,
-    /// Distance in focus, m; infinite for the far.
+    /// Distance in focus, m; may be infinite.
     pub focus_m: f64,
 }
 
 impl Exposure {
-    /// Exposure of a weather, for a picture at `time_s` whose eye moves.
+    /// Returns the exposure of a weather, for a picture at `time_s` with a moving eye.
     #[must_use]
     pub fn of_weather(weather: &Weather, eye: EyeMotion, time_s: f64) -> Self {
         let (camera, streaks) = (&weather.camera, &weather.streaks);

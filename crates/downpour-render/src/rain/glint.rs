@@ -1,8 +1,8 @@
 //! Position on a drop at which the light of a lamp leaves it, as the viewer sees it. Twin of
 //! `shaders/wgsl/render/drop_glint.wgsl`.
 //!
-//! `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Places on the
-//! disc are in radii, along the right and the up of the view.
+//! `light` leads from the drop to the lamp, `towards` from the eye to the drop; directions have length 1. Positions on the
+//! disk are in radii, along the right and the up of the view.
 
 use downpour_math::ops;
 use downpour_shaders::render::drop_light::{
@@ -12,7 +12,7 @@ use downpour_shaders::render::drop_light::{
 use downpour_shaders::render::specimen::SPECIMEN_TURN;
 use glam::{Vec2, Vec3};
 
-/// The right of the view of a drop, level; where the view is plumb, +x. Up is `right.cross(towards)`.
+/// Right axis of the view of a drop, horizontal; +x where the view is vertical. Up is `right.cross(toward)`.
 #[must_use]
 pub fn drop_glint_right(towards: Vec3) -> Vec3 {
     let sideways = Vec3::new(-towards.z, 0.0, towards.x);
@@ -45,7 +45,7 @@ pub fn drop_glint_angle(light: Vec3, towards: Vec3) -> f32 {
     4.0 * if c < s { 0.25 - octant } else { octant }
 }
 
-/// The side of the disc on which the lamp stands, of length 1; right where it stands on none.
+/// Unit vector on the disk to the side of the lamp; right if the lamp is on the axis.
 #[must_use]
 pub fn drop_glint_side(light: Vec3, right: Vec3, up: Vec3) -> Vec2 {
     let side = Vec2::new(light.dot(right), light.dot(up));
@@ -53,14 +53,15 @@ pub fn drop_glint_side(light: Vec3, right: Vec3, up: Vec3) -> Vec2 {
     if square > DROP_GLINT_AXIS { side / square.max(DROP_GLINT_TINY).sqrt() } else { Vec2::X }
 }
 
-/// A place on the disc as one number, a whole one below 2^24: within 1/4094 of a radius.
+/// Packs a position on the disk into one integer below 2^24, to within 1/4094 of a radius.
 #[must_use]
-pub fn drop_glint_pack(place: Vec2) -> f32 {
-    let steps = (place.clamp(Vec2::NEG_ONE, Vec2::ONE) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE).floor();
+pub fn drop_glint_pack(position: Vec2) -> f32 {
+    let steps =
+        (position.clamp(Vec2::NEG_ONE, Vec2::ONE) * DROP_GLINT_STEPS + 0.5 * DROP_GLINT_RANGE).floor();
     steps.x * DROP_GLINT_RANGE + steps.y
 }
 
-/// The place that was packed.
+/// Unpacks a position.
 #[must_use]
 pub fn drop_glint_unpack(word: f32) -> Vec2 {
     // Whole numbers: a compiler of shaders may add in another order, and 2^23 + 0.5 is no f32.
@@ -69,21 +70,21 @@ pub fn drop_glint_unpack(word: f32) -> Vec2 {
         / DROP_GLINT_STEPS
 }
 
-/// A glint of unit mean over the disc: a normal distribution `width` radii wide, `offset` radii from its middle.
+/// A glint of unit mean over the disk: a normal distribution `width` radii wide, `offset` radii from its middle.
 #[must_use]
 pub fn drop_glint_spot(offset: Vec2, width: f32) -> f32 {
     let square = width * width;
     0.5 / square * ops::exp(-0.5 * offset.dot(offset) / square)
 }
 
-/// The level part of a direction, (x, z), of length 1; nothing of a plumb one.
+/// Normalized horizontal part (x, z) of a direction; 0 for a vertical one.
 #[must_use]
 pub fn drop_glint_level(direction: Vec3) -> Vec2 {
     let level = Vec2::new(direction.x, direction.z);
     level / level.dot(level).max(DROP_GLINT_TINY).sqrt()
 }
 
-/// Rousseau 2006, section 6, at a place with a normal: `(V_PE . V_N) (A_2 + A_3)`, to be multiplied with the lamp's colour
+/// Rousseau 2006, section 6, at a position with a normal: `(V_PE . V_N) (A_2 + A_3)`, to be multiplied with the lamp's color
 /// and attenuation. The plane in which rays do not go sideways is the level one. `terms` is `DROP_LIGHT_EXTERNAL` (1) for `A_2`,
 /// `DROP_LIGHT_INTERNAL` (2) for `A_3`, or both (3).
 #[must_use]

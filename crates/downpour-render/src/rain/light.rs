@@ -1,11 +1,11 @@
 //! Light of lamps and sun on falling drops. Twin of `shaders/wgsl/render/drop_light.wgsl`.
 //!
-//! A drop shows what is behind and round it through its mask; a lamp is far smaller than a texel of that. Here is what
-//! lamps add: for each drop the mean radiance over its disc, and where on the disc its brightest glints stand. Each lamp
-//! is looked up at the drop's own place (distance, cone, range), with one ray for what stands between.
+//! A drop shows what is behind and around it through its mask; a lamp is far smaller than a texel of that. Here is what
+//! lamps add: for each drop the mean radiance over its disk, and where on the disk its brightest glints stand. Each lamp
+//! is looked up at the drop's own position (distance, cone, range), with one ray for what stands between.
 //!
-//! Law of the default form: a drop of radius a in an irradiance E sends E pi a^2 phase(theta) per steradian towards the
-//! eye ([`SphereScattering`](downpour_drop::optics::SphereScattering)); seen as a disc of pi a^2, its mean radiance is
+//! Law of the default form: a drop of radius a in an irradiance E sends E pi a^2 phase(theta) per steradian toward the
+//! eye ([`SphereScattering`](downpour_drop::optics::SphereScattering)); seen as a disk of pi a^2, its mean radiance is
 //! L = E phase(theta). The drop is a sphere: a flattened one has its bows elsewhere, but nearly the same mean.
 //!
 //! With the form [`DropLightForm::Atlas`] the drop's light is that of a streak atlas ([`downpour_atlas`], where its amount is
@@ -27,7 +27,7 @@ use downpour_math::ops;
 use downpour_shaders::render::drop_light::{
     DROP_ATLAS_ROWS, DROP_GLINT_TINY, DROP_LIGHT_ATLAS, DROP_LIGHT_ENTRIES, DROP_LIGHT_EXTERNAL,
     DROP_LIGHT_GLINTS, DROP_LIGHT_IM_SUNG, DROP_LIGHT_INTERNAL, DROP_LIGHT_LAMPS, DROP_LIGHT_LAMPS_ROUSSEAU,
-    DROP_LIGHT_LAMPS_TRACED, DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_PLACES, DROP_LIGHT_RINGS,
+    DROP_LIGHT_LAMPS_TRACED, DROP_LIGHT_NONE, DROP_LIGHT_PATHS, DROP_LIGHT_POINTS, DROP_LIGHT_RINGS,
     DROP_LIGHT_ROUSSEAU, DROP_LIGHT_TRACED,
 };
 use downpour_shaders::render::rain::STREAK_LAMPS;
@@ -45,7 +45,7 @@ use crate::RenderError;
 use crate::light::{Light, check_lights, light_weight};
 use crate::plate::Lighting;
 
-use atlas::drop_atlas_place;
+use atlas::drop_atlas_slot;
 use keep::{drop_light_keep, drop_light_keep_facing, drop_light_keep_streak, drop_light_reach};
 pub use table::DropLightTable;
 
@@ -53,25 +53,25 @@ pub use table::DropLightTable;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum DropLightForm {
-    /// Geometric optics of a sphere of water: Fresnel's equations, orders 0 to 3, bows in their colours.
+    /// Geometric optics of a sphere of water: Fresnel's equations, orders 0 to 3, with colored rainbows.
     #[default]
     Traced = DROP_LIGHT_TRACED,
     /// Rousseau 2006, section 6: `C_L DistFact (V_PE . V_N) (A_2 + A_3)`, as printed, without exponents, at each pixel by the
-    /// drop's normal there; a drop below a pixel shows the mean over its disc, a streak the mean over what passes. `C_L DistFact`
+    /// drop's normal there; a drop below a pixel shows the mean over its disk, a streak the mean over what passes. `C_L DistFact`
     /// is taken as the irradiance over pi at the drop: what a white surface shows.
     Rousseau2006 = DROP_LIGHT_ROUSSEAU,
-    /// Of [`DropLightForm::Rousseau2006`] the term of external reflection alone: `A_1 A_2`.
+    /// [`DropLightForm::Rousseau2006`], external reflection only: `A_1 A_2`.
     Rousseau2006External = DROP_LIGHT_ROUSSEAU | DROP_LIGHT_EXTERNAL << 8,
-    /// Of [`DropLightForm::Rousseau2006`] the term of internal reflection alone: `A_1 A_3`.
+    /// [`DropLightForm::Rousseau2006`], internal reflection only: `A_1 A_3`.
     Rousseau2006Internal = DROP_LIGHT_ROUSSEAU | DROP_LIGHT_INTERNAL << 8,
-    /// Im & Sung 2022, equations (7) to (10): drops in a spot's cone have the light's colour, others nothing; point lights
+    /// Im & Sung 2022, equations (7) to (10): drops in a spot's cone have the light's color, others nothing; point lights
     /// and parallel ones are left out. The cone is as high as the lamp's range. Here its edge is soft, from the inner
     /// cone to the outer, and the intensity falls with the distance (their light has one intensity everywhere).
     ImSung2022 = DROP_LIGHT_IM_SUNG,
-    /// The streaks of an atlas, by the directions of lamp and viewer, by elevation and diameter, or at random: for drops that move. One that
-    /// stands still shows the mean of its streak.
+    /// The streaks of an atlas, by the directions of lamp and viewer, by elevation and diameter, or at random: for drops
+    /// that move. One that stands still shows the mean of its streak.
     Atlas = DROP_LIGHT_ATLAS,
-    /// Nothing.
+    /// No light.
     None = DROP_LIGHT_NONE,
 }
 
@@ -112,13 +112,13 @@ impl From<RainDropLight> for DropLightForm {
 pub struct DropLightOptions {
     /// Model of the light of lamps on a drop.
     pub form: DropLightForm,
-    /// Rows that are told of each drop besides its mean, 0 to 16: in the traced form its brightest glints; in that of Rousseau 2006
+    /// Rows of light of each drop besides its mean, 0 to 16: in the traced form its brightest glints; in that of Rousseau 2006
     /// its brightest lamps, two rows each; of an atlas its brightest streaks, three rows each. The other forms have none.
     pub glints: u32,
 }
 
 impl DropLightOptions {
-    /// The light of an atlas, four streaks of each drop.
+    /// Light of an atlas, with four streaks per drop.
     pub const ATLAS: Self = Self { form: DropLightForm::Atlas, glints: 4 * DROP_ATLAS_ROWS };
 
     /// Options of a weather: its `drop_light`, traced light by the streaks of an atlas if its streaks are of one.
@@ -138,11 +138,11 @@ impl DropLightOptions {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropLightFrame {
-    /// Drops.
+    /// Number of drops.
     pub count: u32,
-    /// [`DropLightForm`].
+    /// Form of the light, a [`DropLightForm`].
     pub form: u32,
-    /// Rows that are kept of each drop besides its mean.
+    /// Rows kept for each drop besides its mean.
     pub glints: u32,
     /// First lamp of the dispatch.
     pub first_light: u32,
@@ -150,20 +150,20 @@ pub struct DropLightFrame {
     pub terms: u32,
 }
 
-/// A place on a drop's disc where light of a lamp leaves it.
+/// A position on a drop's disk where light of a lamp leaves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropGlint {
     /// Index of the lamp in the scene.
     pub light: u32,
     /// Internal reflections plus 1; 0: reflected at the outside.
     pub order: u32,
-    /// Place on the disc, radii along the right ([`drop_glint_right`]) and the up of the view.
-    pub place: Vec2,
-    /// Its part of the mean radiance over the disc: a glint that covers a share s of the disc is 1/s times as bright.
+    /// Position on the disk, radii along the right ([`drop_glint_right`]) and the up of the view.
+    pub position: Vec2,
+    /// Its part of the mean radiance over the disk: a glint that covers a fraction s of the disk is 1/s times as bright.
     pub radiance: Vec3,
 }
 
-/// The lamps of a plate, on drops before an eye.
+/// Light of a plate's lamps on drops.
 #[derive(Clone, Copy, Debug)]
 pub struct DropLights<'a> {
     pub(crate) lighting: &'a dyn Lighting,
@@ -191,7 +191,7 @@ pub(crate) fn drop_light_axes<'a>(drops: impl IntoIterator<Item = (&'a FallingDr
 /// Numbers of drops are below 2^24: single precision has them exactly.
 const DROP_IDS: u32 = 0x00ff_ffff;
 
-/// Drops as the light wants them: place relative to the scene's origin, and radius, metres.
+/// Rows of drops for [`DropLights::light`]: position relative to the scene's origin, and radius, meters.
 #[must_use]
 pub fn drop_light_rows<'a>(drops: impl IntoIterator<Item = &'a FallingDrop>) -> Vec<[f32; 4]> {
     let row = |drop: &FallingDrop| drop.position.as_vec3().extend(0.5 * drop.diameter).to_array();
@@ -202,7 +202,7 @@ impl<'a> DropLights<'a> {
     /// The lamps of a plate, seen from an eye.
     ///
     /// # Errors
-    /// [`RenderError::Light`] if a lamp's colour is not finite, or negative; [`RenderError::OutOfRange`] above 16 glints, or for
+    /// [`RenderError::Light`] if a lamp's color is not finite, or negative; [`RenderError::OutOfRange`] above 16 glints, or for
     /// the form of an atlas if the table has none.
     pub fn new(
         lighting: &'a dyn Lighting,
@@ -232,7 +232,7 @@ impl<'a> DropLights<'a> {
     }
 
     /// The lamps of a plate as the profiles of streaks want them: of each drop the brightest ones, two rows each (its irradiance,
-    /// and the chord from the middle to the edge of its disc; its direction), the others in the mean. In the form of
+    /// and the chord from the middle to the edge of its disk; its direction), the others in the mean. In the form of
     /// [`DropLightForm::Rousseau2006`] the irradiance is that over pi, and the chord is below 0. Other forms have no more than
     /// their mean; an atlas adds its streaks elsewhere.
     ///
@@ -255,13 +255,13 @@ impl<'a> DropLights<'a> {
         Ok(Self { form, glints: 2 * STREAK_LAMPS, ..Self::new(lighting, eye, table, options)? })
     }
 
-    /// Numbers of a drop in [`DropLights::light`]: its mean, and its glints.
+    /// Number of rows of a drop in [`DropLights::light`]: its mean and its glints.
     #[must_use]
     pub fn stride(&self) -> usize {
         1 + self.glints as usize
     }
 
-    /// The dispatches of so many drops: all lamps, a part of them each.
+    /// Returns the dispatches for `count` drops, each with a part of the lamps.
     #[must_use]
     pub fn frames(&self, count: u32) -> Vec<DropLightFrame> {
         let (form, glints, terms) = (self.form, self.glints, self.terms);
@@ -275,11 +275,11 @@ impl<'a> DropLights<'a> {
         if self.form == DROP_LIGHT_ATLAS { rows.len() / 2 } else { rows.len() }
     }
 
-    /// The light on drops ([`drop_light_rows`]; for an atlas then a row for each drop with its axis, against its motion, and its
-    /// id below 2^24), in parallel; the same bits for any number of threads. For each drop
-    /// [`DropLights::stride`] rows: the mean radiance over its disc and 0; then its brightest glints in no order, their part
-    /// of the mean and their place ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas:
-    /// its streaks, three rows each as in the shader.
+    /// The light on drops ([`drop_light_rows`]; for an atlas then a row for each drop with its axis, against its motion,
+    /// and its id below 2^24), in parallel; the same bits for any number of threads. For each drop [`DropLights::stride`]
+    /// rows: the mean radiance over its disk and 0; then its brightest glints in no order, their part of the mean and their
+    /// position ([`drop_glint_unpack`](super::glint::drop_glint_unpack)), 0 where there are no more. Of an atlas: its
+    /// streaks, three rows each as in the shader.
     #[must_use]
     pub fn light(&self, drops: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let (drops, about) = drops.split_at(self.count(drops));
@@ -290,16 +290,16 @@ impl<'a> DropLights<'a> {
         out
     }
 
-    /// All glints of a drop in the traced form, lamp by lamp and way by way, without those that have no light. Their
+    /// Returns all glints of a drop in the traced form, by lamp and light path, without dark ones. Their
     /// sum is the mean radiance, up to the table's rounding.
     #[must_use]
     pub fn glints(&self, drop: [f32; 4]) -> Vec<DropGlint> {
-        let (place, least) = (Vec4::from(drop).truncate(), drop[3]);
-        let (towards, right, up) = self.facing(place);
+        let (position, least) = (Vec4::from(drop).truncate(), drop[3]);
+        let (towards, right, up) = self.facing(position);
         let mut all = Vec::new();
         for k in 0..self.lighting.light_count() {
-            let light = self.lighting.light(k).light_sample(place, least);
-            let visible = self.lighting.visibility(place, light.direction, light.distance);
+            let light = self.lighting.light(k).light_sample(position, least);
+            let visible = self.lighting.visibility(position, light.direction, light.distance);
             let irradiance = light.irradiance * visible * PI;
             let angle = drop_glint_angle(light.direction, towards);
             let side = drop_glint_side(light.direction, right, up);
@@ -307,29 +307,29 @@ impl<'a> DropLights<'a> {
                 let entry = drop_light_entry(self.table, path, angle);
                 let radiance = irradiance * entry.truncate();
                 if light_weight(radiance) > 0.0 {
-                    all.push(DropGlint { light: k, order, place: side * entry.w, radiance });
+                    all.push(DropGlint { light: k, order, position: side * entry.w, radiance });
                 }
             }
         }
         all
     }
 
-    /// Direction of a place from the eye, and right and up of its view.
-    fn facing(&self, place: Vec3) -> (Vec3, Vec3, Vec3) {
-        let offset = place - self.eye;
+    /// Direction of a position from the eye, and right and up of its view.
+    fn facing(&self, position: Vec3) -> (Vec3, Vec3, Vec3) {
+        let offset = position - self.eye;
         let towards = offset / offset.dot(offset).max(DROP_GLINT_TINY).sqrt();
         let right = drop_glint_right(towards);
         (towards, right, right.cross(towards))
     }
 
-    /// Im & Sung 2022, equations (7) to (10): irradiance over pi at a place in a spot's cone, which is a pile of circles.
+    /// Im & Sung 2022, equations (7) to (10): irradiance over pi at a position in a spot's cone, which is a pile of circles.
     /// Full light within the inner cone; between the two cones it fades. Zero for other lamps.
-    fn drop_light_cone(light: &Light, place: Vec3, least: f32) -> Vec3 {
+    fn drop_light_cone(light: &Light, position: Vec3, least: f32) -> Vec3 {
         let (axis, [scale, edge]) = (light.axis, light.cone);
         if light.is_parallel || scale <= 0.0 {
             return Vec3::ZERO;
         }
-        let offset = place - light.position;
+        let offset = position - light.position;
         let below = offset.dot(axis);
         let height = if light.range > 0.0 { light.range } else { SCENE_FAR };
         if below <= 0.0 || below > height {
@@ -341,30 +341,30 @@ impl<'a> DropLights<'a> {
         let core = below * (1.0 - inner * inner).max(0.0).sqrt() / inner;
         let aside = offset - axis * below;
         let away = aside.dot(aside).sqrt();
-        let share = ((circle - away) / (circle - core).max(1.0e-6 * below)).clamp(0.0, 1.0);
+        let fraction = ((circle - away) / (circle - core).max(1.0e-6 * below)).clamp(0.0, 1.0);
         let square = offset.dot(offset).max((least * least).max(1.0e-8));
-        light.color * (share / square)
+        light.color * (fraction / square)
     }
 
     /// The light on a drop: its mean, then its glints.
     fn drop_light_of(&self, drop: &[f32; 4], about: [f32; 4], slot: &mut [[f32; 4]]) {
         let Some((mean, glints)) = slot.split_first_mut() else { return };
-        let (place, radius) = (Vec4::from(*drop).truncate(), drop[3]);
+        let (position, radius) = (Vec4::from(*drop).truncate(), drop[3]);
         let mut sum = Vec3::ZERO;
-        let (towards, right, up) = self.facing(place);
+        let (towards, right, up) = self.facing(position);
         let form = self.form;
         let count = if form == DROP_LIGHT_NONE { 0 } else { self.lighting.light_count() };
         for k in 0..count {
             let lamp = self.lighting.light(k);
-            let light = lamp.light_sample(place, radius);
+            let light = lamp.light_sample(position, radius);
             let mut lit = light.irradiance;
             if form == DROP_LIGHT_IM_SUNG {
-                lit = Self::drop_light_cone(&lamp, place, radius);
+                lit = Self::drop_light_cone(&lamp, position, radius);
             }
             if light_weight(lit) <= 0.0 {
                 continue;
             }
-            lit *= self.lighting.visibility(place, light.direction, light.distance);
+            lit *= self.lighting.visibility(position, light.direction, light.distance);
             match form {
                 DROP_LIGHT_IM_SUNG => sum += lit,
                 DROP_LIGHT_LAMPS_TRACED | DROP_LIGHT_LAMPS_ROUSSEAU => {
@@ -380,10 +380,10 @@ impl<'a> DropLights<'a> {
                 DROP_LIGHT_ATLAS => {
                     let (axis, id) = (Vec4::from(about).truncate(), about[3] as u32);
                     let diameter = 2.0 * radius;
-                    let place = drop_atlas_place(self.table, id, diameter, axis, light.direction, -towards);
-                    let radiance = lit * (PI * place.amount);
+                    let streak = drop_atlas_slot(self.table, id, diameter, axis, light.direction, -towards);
+                    let radiance = lit * (PI * streak.amount);
                     sum += radiance;
-                    drop_light_keep_streak(glints, radiance, &place);
+                    drop_light_keep_streak(glints, radiance, &streak);
                 }
                 _ => {
                     let angle = drop_glint_angle(light.direction, towards);
@@ -414,19 +414,19 @@ fn drop_light_entry(table: &DropLightTable, row: u32, angle: f32) -> Vec4 {
     here + (at((low + 1).min(last)) - here) * part
 }
 
-/// The mean over a drop's disc of what Rousseau's formula gives at its pixels.
+/// The mean over a drop's disk of what Rousseau's formula gives at its pixels.
 #[must_use]
 pub fn drop_light_mean(towards: Vec3, light: Vec3, terms: u32) -> f32 {
     let right = drop_glint_right(towards);
     let up = right.cross(towards);
     let mut sum = 0.0;
-    for k in 0..DROP_LIGHT_RINGS * DROP_LIGHT_PLACES {
-        let square = ((k / DROP_LIGHT_PLACES) as f32 + 0.5) / DROP_LIGHT_RINGS as f32;
-        let angle = 2.0 * PI * ((k % DROP_LIGHT_PLACES) as f32 + 0.5) / DROP_LIGHT_PLACES as f32;
+    for k in 0..DROP_LIGHT_RINGS * DROP_LIGHT_POINTS {
+        let square = ((k / DROP_LIGHT_POINTS) as f32 + 0.5) / DROP_LIGHT_RINGS as f32;
+        let angle = 2.0 * PI * ((k % DROP_LIGHT_POINTS) as f32 + 0.5) / DROP_LIGHT_POINTS as f32;
         let away = square.sqrt();
         let normal = right * (away * ops::cos(angle)) + up * (away * ops::sin(angle))
             - towards * (1.0 - square).sqrt();
         sum += drop_glint_rousseau(normal, -towards, light, terms);
     }
-    sum / (DROP_LIGHT_RINGS * DROP_LIGHT_PLACES) as f32
+    sum / (DROP_LIGHT_RINGS * DROP_LIGHT_POINTS) as f32
 }

@@ -1,7 +1,7 @@
 //! The masks of drops of all sizes from all elevations, packed for the shader.
 //!
 //! A drop's mask depends on its diameter (its shape) and on how far above or below it the viewer is. Masks are traced
-//! for diameters half a millimetre apart and elevations 30 degrees apart; the shader goes between them linearly.
+//! for diameters half a millimeter apart and elevations 30 degrees apart; the shader goes between them linearly.
 
 use downpour_math::OutOfRange;
 use std::sync::Arc;
@@ -20,12 +20,12 @@ use super::drops_atlas;
 use super::light::DropLightTable;
 use super::streak_path::StreakPath;
 
-/// Number of diameters, from a sphere to the largest drop that has a shape.
+/// Number of diameters, from a sphere to the largest drop with a known shape.
 pub const DIAMETERS: u32 = 18;
-/// Step from a diameter to the next, metres.
+/// Step between diameters, meters.
 pub const DIAMETER_STEP: f64 = 0.5e-3;
 
-/// Metres between the shapes for the rays of streaks, and their number.
+/// Meters between the shapes for the rays of streaks, and their number.
 const SHAPE_STEP: f64 = 0.1e-3;
 const SHAPES: u32 = 90;
 
@@ -38,9 +38,9 @@ const WORDS: usize = DROPS_TEXEL_WORDS as usize;
 /// Masks of drops of all sizes from all elevations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropMasks {
-    /// Five words per texel: the refracted, the reflected and the internally reflected direction as octahedral pairs of 16 bits;
-    /// coverage and transmittance, then the internal transmittance and the reflectance as 16 bits each. Rows from the top, elevations within diameters. Behind them the streak atlas, if there
-    /// is one.
+    /// Five words per texel: the refracted, the reflected and the internally reflected direction as octahedral pairs of 16
+    /// bits; coverage and transmittance, then the internal transmittance and the reflectance as 16 bits each. Rows from the
+    /// top, elevations within diameters. Behind them the streak atlas, if there is one.
     pub words: Arc<Vec<u32>>,
     /// Texels along an edge of a mask.
     pub size: u32,
@@ -60,25 +60,25 @@ pub struct DropMasks {
     shapes: Vec<StreakPath>,
 }
 
-/// Position of a drop among the masks.
+/// Masks of a drop: their rows, and what they say of its outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MaskPlace {
-    pub(crate) row: [f32; 2],
+pub(crate) struct MaskLookup {
+    pub(crate) index: [f32; 2],
     pub(crate) half_extent: f32,
     pub(crate) area: f32,
     pub(crate) oval: [f32; 3],
 }
 
 impl DropMasks {
-    /// Traces the masks of water of this refractive index.
+    /// Traces the masks of drops with this refractive index.
     ///
     /// # Errors
-    /// [`MaskError::OutOfRange`] for an index that is none.
+    /// [`MaskError::OutOfRange`] for an invalid index.
     pub fn trace(refractive_index: f64) -> Result<Self, MaskError> {
         Self::trace_shapes(refractive_index, ShapeTable::default())
     }
 
-    /// The same for the shapes of a table.
+    /// Traces the masks of the shapes of a table.
     ///
     /// # Errors
     /// As [`DropMasks::trace`].
@@ -93,7 +93,7 @@ impl DropMasks {
         Ok(masks)
     }
 
-    /// The same with a model in place of the drops' own shapes: scaled to their volume, its +Y up, its +Z towards the eye.
+    /// Traces the masks of a model instead of the drops' shapes: scaled to their volume, its +Y up, its +Z toward the eye.
     /// Rays of streaks and the light of lamps keep those shapes.
     ///
     /// # Errors
@@ -144,8 +144,8 @@ impl DropMasks {
         }
     }
 
-    /// The same, with the streaks of an atlas for [`DropLightForm::Atlas`](super::light::DropLightForm::Atlas), instead of those of
-    /// another.
+    /// Returns the masks with the streaks of an atlas for [`DropLightForm::Atlas`](super::light::DropLightForm::Atlas),
+    /// instead of those of another.
     #[must_use]
     pub fn with_atlas(mut self, atlas: &StreakAtlas) -> Self {
         if self.atlas > 0 {
@@ -158,7 +158,7 @@ impl DropMasks {
     }
 
     /// Position among the masks of a drop of a diameter in meters, seen from `elevation` radians above it.
-    pub(crate) fn place(&self, diameter: f32, elevation: f32) -> MaskPlace {
+    pub(crate) fn lookup(&self, diameter: f32, elevation: f32) -> MaskLookup {
         let last = self.half_extents.len().saturating_sub(1) as f32;
         let row = (diameter / DIAMETER_STEP as f32 - 1.0).clamp(0.0, last);
         let half = (DROPS_ELEVATIONS - 1) as f32 * 0.5;
@@ -174,20 +174,20 @@ impl DropMasks {
         let first = |k: usize| k * DROPS_ELEVATIONS as usize;
         let areas = |k: usize| between(&|j| self.areas[first(k) + j], column);
         let oval = |part: usize| between(&|k| between(&|j| self.ovals[first(k) + j][part], column), row);
-        MaskPlace {
-            row: [row, column],
+        MaskLookup {
+            index: [row, column],
             half_extent: between(&|k| self.half_extents[k], row),
             area: between(&areas, row),
             oval: [oval(0), oval(1), oval(2)],
         }
     }
 
-    /// Area that a drop covers, seen from `elevation` radians above it, over that of the disc of its diameter.
+    /// Area that a drop covers, seen from `elevation` radians above it, over that of the disk of its diameter.
     pub(super) fn outline(&self, diameter: f32, elevation: f32) -> f64 {
-        f64::from(self.place(diameter, elevation).area) / std::f64::consts::PI
+        f64::from(self.lookup(diameter, elevation).area) / std::f64::consts::PI
     }
 
-    /// The shape of a drop of a diameter in metres, for the rays of its streak.
+    /// The shape of a drop of a diameter in meters, for the rays of its streak.
     pub(super) fn streak_shape(&self, diameter: f32) -> StreakPath {
         let last = self.shapes.len() - 1;
         let at = (diameter / SHAPE_STEP as f32 - 1.0).clamp(0.0, last as f32);
@@ -240,7 +240,7 @@ fn streak_shape(diameter: f64, table: ShapeTable, refractive_index: f64) -> Stre
     }
 }
 
-/// The ellipse of the shape of the box round an outline, and of its area.
+/// The ellipse of the shape of the box around an outline, and of its area.
 fn oval(mask: &Mask) -> [f32; 3] {
     let (width, half) = (mask.texel_width(), mask.half_extent);
     let size = mask.size as usize;

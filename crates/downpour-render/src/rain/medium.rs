@@ -35,7 +35,7 @@ const ENTRIES: usize = 4 * MEDIUM_QUARTERS as usize;
 /// Bins of diameter per factor of two.
 const BINS_PER_OCTAVE: f64 = 16.0;
 
-/// A pane of glass before an eye: on the eye's side of its plane there is no rain.
+/// Plane of a pane of glass in front of an eye: there is no rain on the eye's side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PanePlane {
     /// Unit normal, away from the eye.
@@ -77,7 +77,7 @@ impl Default for MediumOptions {
     }
 }
 
-/// Unresolved rain before an eye. The default is none.
+/// Unresolved rain in front of an eye, as a participating medium. The default is no rain.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainMedium {
     /// Optical depth of level rays, at 0.25 m, then a factor of 2^(1/3) farther each.
@@ -86,7 +86,7 @@ pub struct RainMedium {
     all: f32,
     /// Relative excess of the area of a drop's outline from straight above over that from the side.
     flatness: f32,
-    /// Unit direction from which drops come.
+    /// Unit vector against the mean fall.
     rise: Vec3,
     /// Region in which drops are simulated, relative to the scene's origin.
     region: Region,
@@ -98,7 +98,7 @@ pub struct RainMedium {
 }
 
 impl RainMedium {
-    /// All drops of a rain that a list for a picture does not hold.
+    /// Creates the medium of all drops of a rain that a picture's list of drops does not hold.
     ///
     /// # Errors
     /// [`DropError`] if the distribution cannot be cut into bins.
@@ -140,7 +140,7 @@ impl RainMedium {
             let reach = f64::from(MEDIUM_SKY_REACH);
             let unresolved = level * (reach - drawn(reach));
             weight += unresolved;
-            row += unresolved * f64::from(masks.place(diameter as f32, 0.0).row[0]);
+            row += unresolved * f64::from(masks.lookup(diameter as f32, 0.0).index[0]);
         }
         let from = -options.velocity;
         Ok(Self {
@@ -173,7 +173,7 @@ impl RainMedium {
         }
     }
 
-    /// Rate of the sizes of which no drop is drawn anywhere, mm/h.
+    /// Rain rate of the drop sizes that are never drawn one by one, mm/h.
     #[must_use]
     pub fn unresolved_rate_mm_h(&self) -> f64 {
         self.rate_mm_h

@@ -19,8 +19,8 @@ use super::streak_lookup::STREAK_MEAN_ENTRIES;
 use super::streak_path::StreakPath;
 
 /// The most rays, and the most entries of the table: 128 MiB each, what every device binds.
-const MOST_RAYS: u64 = 128 << 20 >> 5;
-const MOST_ENTRIES: u64 = 128 << 20 >> 4;
+const MAX_RAYS: u64 = 128 << 20 >> 5;
+const MAX_ENTRIES: u64 = 128 << 20 >> 4;
 
 /// Radians of the picture that a row of rays stands for: the directions in which a drop is seen differ by that.
 const TURNED: f32 = 0.1;
@@ -49,10 +49,10 @@ const FINENESS: [Fineness; 4] = [
 /// Profiles have half as many rows again as rays have.
 const ROWS_FOR_TWO: u32 = 3;
 
-/// The profiles of a picture, and the classes of drops that have a mean.
+/// Profiles of the streaks of a picture, and classes of drops with a mean radiance.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StreakProfiles {
-    /// Classes of drops that are not sampled; those without rows are not wanted.
+    /// Classes of drops that are not sampled; those without rows are unused.
     pub classes: Vec<StreakPath>,
     /// Streaks that have a profile.
     pub paths: Vec<StreakPath>,
@@ -67,8 +67,8 @@ pub struct StreakProfiles {
 }
 
 impl StreakProfiles {
-    /// Gives each streak among `drops` its place, and its drop the way to it. `given` are the drops that they are of; of the class
-    /// `medium`, if there is one, the mean is wanted in any case.
+    /// Gives each streak among `drops` its position, and its drop the way to it. `given` are the drops that they are of; of
+    /// the class `medium`, if there is one, the mean is wanted in any case.
     pub(super) fn new(
         drops: &mut [(u32, Projected)],
         given: &[FallingDrop],
@@ -93,7 +93,7 @@ impl StreakProfiles {
         for (index, (k, projected)) in sampled() {
             let mut path = masks.streak_shape(given[*k as usize].diameter);
             let id = given[*k as usize].id;
-            let oscillates = projected.drop.swing[0] != 0.0 || projected.drop.swing[1] != 0.0;
+            let oscillates = projected.drop.mode_phase[0] != 0.0 || projected.drop.mode_phase[1] != 0.0;
             let pair = exposure.oscillation.pair().map(|a| a as f32);
             path.amplitudes = if oscillates { pair } else { [0.0; 2] };
             let azimuth = drop_oscillation_azimuth(seed_words(exposure.seed), id as u32 ^ (id >> 32) as u32);
@@ -115,13 +115,13 @@ impl StreakProfiles {
         made
     }
 
-    /// Makes profiles coarser in time until all have room.
+    /// Makes profiles coarser in time until all fit.
     fn fit(&mut self) {
         loop {
             let all_rays: u64 = self.paths.iter().map(rays).sum();
             let all_entries: u64 = self.paths.iter().map(entries).sum::<u64>() + u64::from(self.entries);
             let coarsest = self.paths.iter().all(|path| path.rows == 2 && path.fine == 1);
-            if (all_rays <= MOST_RAYS && all_entries <= MOST_ENTRIES) || coarsest {
+            if (all_rays <= MAX_RAYS && all_entries <= MAX_ENTRIES) || coarsest {
                 return;
             }
             for path in &mut self.paths {
@@ -159,7 +159,7 @@ fn sized(path: StreakPath, projected: &Projected) -> StreakPath {
     let [x, y] = drop.along;
     let turned = ops::atan2((x * x + y * y).sqrt(), 1.0) / TURNED;
     let oscillates = path.amplitudes != [0.0; 2];
-    let (turns, least) = if oscillates { (drop.turns[1], fineness.least) } else { (0.0, 1) };
+    let (turns, least) = if oscillates { (drop.cycles[1], fineness.least) } else { (0.0, 1) };
     let wanted = (turns * fineness.per_turn).max(turned).ceil();
     let rows = 1 + (wanted as u32).clamp(least, fineness.most);
     StreakPath {

@@ -14,15 +14,15 @@ use super::exposure::{Exposure, StreakSamples};
 use super::streak::DropsDrop;
 use super::{DropMasks, shapes};
 use crate::camera::Camera;
-use crate::camera::LONGEST_EXPOSURE_S;
+use crate::camera::MAX_EXPOSURE_S;
 
-/// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels round them.
+/// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels around them.
 const SMALL: f32 = 1.0;
 
 /// So are the streaks of drops below this diameter.
 const THIN: f32 = 1.5;
 
-/// Drops whose path is shorter than this share of their radius stand still.
+/// Drops whose path is shorter than this fraction of their radius stand still.
 const STILL: f32 = 0.05;
 
 /// Samples of a pixel of a streak of less than this many pixels across, and of a wider one. No multiples of
@@ -31,7 +31,7 @@ const NARROW: f32 = 4.0;
 const NARROW_SAMPLES: u32 = 8;
 const WIDE_SAMPLES: u32 = 5;
 
-/// Diameters, metres, of drops that oscillate.
+/// Diameters, meters, of drops that oscillate.
 const OSCILLATING: std::ops::RangeInclusive<f64> = 0.05e-3..=9.0e-3;
 
 /// A drop on the picture, and the pixels that it may touch.
@@ -55,7 +55,7 @@ fn turned(v: Vec3, axis: Vec3) -> Vec3 {
     v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine))
 }
 
-/// The share of a path from `from` to `to` on which it is at least `least`.
+/// The fraction of a path from `from` to `to` on which it is at least `least`.
 fn ahead(from: f32, to: f32, least: f32) -> [f32; 2] {
     match (from >= least, to >= least) {
         (true, true) => [0.0, 1.0],
@@ -88,7 +88,7 @@ pub(super) fn project(
         return None;
     }
     let elevation = ops::asin((-towards.y).clamp(-1.0, 1.0));
-    let place = masks.place(drop.diameter, elevation);
+    let mask = masks.lookup(drop.diameter, elevation);
     let path = Path::of(camera, drop, eye, offset, radius, present, exposure)?;
     let distance = if path.moves { path.depth } else { length };
     let slope = radius / distance;
@@ -109,11 +109,12 @@ pub(super) fn project(
     };
     let spread = if blurred { (0.75 * width * width + blur * blur).sqrt().max(1.0) } else { 1.0 };
     let larger = if path.moves { distance / path.nearest } else { 1.0 };
-    let swing = if path.moves { Swing::of(drop, towards, exposure, &path.part) } else { Swing::default() };
+    let motion =
+        if path.moves { ModeMotion::of(drop, towards, exposure, &path.part) } else { ModeMotion::default() };
     let reach = if grid == 0 {
         0.5 * (spread + 1.0)
     } else {
-        place.half_extent * pixels * larger * (1.0 + swing.most) / cosine * 1.02 + 1.0
+        mask.half_extent * pixels * larger * (1.0 + motion.most) / cosine * 1.02 + 1.0
     };
     let [first, last] = path.ends.map(|p| camera.project(p));
     let (right, up) = (drops_mask_right(towards), drops_mask_right(towards).cross(towards));
@@ -121,25 +122,25 @@ pub(super) fn project(
     let shown = DropsDrop {
         towards: towards.into(),
         distance,
-        place: camera.project(offset).into(),
+        position: camera.project(offset).into(),
         slope,
-        half_extent: place.half_extent,
-        row: place.row,
-        area: place.area * pixels * pixels / cosine,
+        half_extent: mask.half_extent,
+        mask_index: mask.index,
+        area: mask.area * pixels * pixels / cosine,
         grid,
         start: start.into(),
         along: (end - start).into(),
         first: first.into(),
         way: (last - first).into(),
-        oval: place.oval,
-        recede: path.recede,
-        swing: swing.swing,
-        turns: swing.turns,
-        share: path.part[1] - path.part[0],
+        oval: mask.oval,
+        depth_ratio: path.depth_ratio,
+        mode_phase: motion.mode_phase,
+        cycles: motion.cycles,
+        fraction: path.part[1] - path.part[0],
         spread,
         nearest: path.nearest - 2.0 * radius,
         kind: kind(&path, exposure),
-        shape: shapes::of_row(place.row[0]),
+        shape: shapes::of_row(mask.index[0]),
         profile: 0,
         weights: if path.moves { path.part.map(|part| exposure.response.weight(part)) } else { [1.0; 2] },
         unused: [0.0; 2],
@@ -172,15 +173,15 @@ struct Path {
     depth: f32,
     /// The least of it.
     nearest: f32,
-    /// Depth at the end over that at the beginning.
-    recede: f32,
+    /// Depth at the end divided by that at the beginning.
+    depth_ratio: f32,
     velocity: Vec3,
     moves: bool,
 }
 
 /// Time for which the shutter is open, s.
 fn shutter(exposure: &Exposure) -> f32 {
-    let shutter = exposure.shutter_s.clamp(0.0, LONGEST_EXPOSURE_S) as f32;
+    let shutter = exposure.shutter_s.clamp(0.0, MAX_EXPOSURE_S) as f32;
     if shutter.is_finite() { shutter } else { 0.0 }
 }
 
@@ -238,7 +239,7 @@ impl Path {
             part: [0.0, 1.0],
             depth: distance,
             nearest: distance,
-            recede: 1.0,
+            depth_ratio: 1.0,
             velocity: Vec3::ZERO,
             moves: false,
         };
@@ -252,7 +253,7 @@ impl Path {
         let in_front = ahead(open.dot(forward), close.dot(forward), 2.0 * radius + 0.02);
         let beside = ahead(open.dot(towards), close.dot(towards), 0.2 * distance);
         let part = [in_front[0].max(beside[0]).max(present[0]), in_front[1].min(beside[1]).min(present[1])];
-        let ends = part.map(|share| open + (close - open) * share);
+        let ends = part.map(|fraction| open + (close - open) * fraction);
         let depths = ends.map(|p| p.dot(towards));
         let across = (ends[1] / depths[1].max(1.0e-6) - ends[0] / depths[0].max(1.0e-6)).length();
         if part[1] <= part[0] || !across.is_finite() || across < STILL * radius / distance {
@@ -264,7 +265,7 @@ impl Path {
             part,
             depth: 0.5 * (depths[0] + depths[1]),
             nearest: depths[0].min(depths[1]),
-            recede: depths[1] / depths[0],
+            depth_ratio: depths[1] / depths[0],
             velocity: (close - open) / shutter,
             moves: true,
         })
@@ -273,14 +274,14 @@ impl Path {
 
 /// Oscillation of a drop during the exposure.
 #[derive(Clone, Copy, Debug, Default)]
-struct Swing {
-    swing: [f32; 4],
-    turns: [f32; 2],
-    /// No part of the surface goes farther, as a share of the radius.
+struct ModeMotion {
+    mode_phase: [f32; 4],
+    cycles: [f32; 2],
+    /// No part of the surface goes farther, as a fraction of the radius.
     most: f32,
 }
 
-impl Swing {
+impl ModeMotion {
     fn of(drop: &FallingDrop, towards: Vec3, exposure: &Exposure, part: &[f32; 2]) -> Self {
         let diameter = f64::from(drop.diameter);
         if exposure.oscillation.pair() == [0.0; 2] || !OSCILLATING.contains(&diameter) {
@@ -304,8 +305,8 @@ impl Swing {
         let (frequency, phase) = (oscillation.frequency(), oscillation.phase());
         let at = [0, 1].map(|mode| (frequency[mode] * begin + phase[mode]).rem_euclid(1.0) as f32);
         Self {
-            swing: [a20, a31 * cosine, at[0], at[1]],
-            turns: frequency.map(|f| (f * open) as f32),
+            mode_phase: [a20, a31 * cosine, at[0], at[1]],
+            cycles: frequency.map(|f| (f * open) as f32),
             // P31 reaches 2.07.
             most: a20 + 2.1 * a31,
         }

@@ -7,51 +7,51 @@ use downpour_drop::oscillation::{
 use downpour_shaders::render::rain::STREAK_GAUSS;
 use glam::{Vec2, Vec3};
 
-/// A drop on the picture. The same layout as `DropsDrop` in WGSL.
+/// A drop in the picture. The same layout as `DropsDrop` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DropsDrop {
-    /// From the eye to the drop's middle at mid-exposure, of length 1.
+    /// Unit vector from the eye to the drop's center at mid-exposure.
     pub towards: [f32; 3],
-    /// Metres from the eye, in the middle of its path.
+    /// Distance from the eye in the middle of its path, m.
     pub distance: f32,
-    /// Place of the middle on the picture, pixels from the top left.
-    pub place: [f32; 2],
-    /// Equivalent radius over distance.
+    /// Position of the middle on the picture, pixels from the top left.
+    pub position: [f32; 2],
+    /// Equivalent radius divided by distance.
     pub slope: f32,
     /// Half the width of its mask, in equivalent radii.
     pub half_extent: f32,
-    /// Place in the masks: rows of diameters, and of elevations.
-    pub row: [f32; 2],
+    /// Index of its mask, fractional: diameter, elevation.
+    pub mask_index: [f32; 2],
     /// Area on the picture, pixels.
     pub area: f32,
     /// Samples along an edge of a pixel; of a streak: samples of a pixel. 0: below a pixel, or out of focus.
     pub grid: u32,
     /// Position when the exposure begins: on the plane at distance 1, along the right and up of the drop's view.
     pub start: [f32; 2],
-    /// The way to where it ends.
+    /// Displacement during the exposure, on the same plane.
     pub along: [f32; 2],
     /// `start` on the picture, pixels.
     pub first: [f32; 2],
     /// `along` on the picture, pixels.
     pub way: [f32; 2],
-    /// Half the width and half the height of the oval round its outline, and how far its middle is up, in equivalent
+    /// Half the width and half the height of the oval around its outline, and how far its middle is up, in equivalent
     /// radii.
     pub oval: [f32; 3],
-    /// Depth at the end over that at the beginning.
-    pub recede: f32,
+    /// Depth at the end divided by that at the beginning.
+    pub depth_ratio: f32,
     /// Amplitudes of the modes (2,0) and (3,1), the latter times the cosine of its azimuth, and phases at the beginning,
     /// in turns.
-    pub swing: [f32; 4],
-    /// Turns of both modes until the end.
-    pub turns: [f32; 2],
-    /// Share of the exposure in which it is before the eye.
-    pub share: f32,
+    pub mode_phase: [f32; 4],
+    /// Cycles of both modes during the exposure.
+    pub cycles: [f32; 2],
+    /// Fraction of the exposure in which it is in front of the eye.
+    pub fraction: f32,
     /// Width over which a drop that is not sampled is spread, pixels.
     pub spread: f32,
-    /// No part of it is nearer, m.
+    /// Minimum distance of any part of it, m.
     pub nearest: f32,
-    /// Still, by the table, or by a loop.
+    /// `DROPS_STILL`, `DROPS_TABLE` or `DROPS_LOOP`.
     pub kind: u32,
     /// Index of its mean in the streak radiance table.
     pub shape: u32,
@@ -59,7 +59,7 @@ pub struct DropsDrop {
     pub profile: u32,
     /// Weight of the light at the beginning and at the end of its way; over the whole exposure the mean weight is 1.
     pub weights: [f32; 2],
-    /// Fills the layout.
+    /// Padding.
     pub unused: [f32; 2],
 }
 
@@ -72,26 +72,26 @@ pub struct StreakChord {
     pub across: f32,
     /// Half its length.
     pub half: f32,
-    /// The part of it that passes during the exposure, in units of `half`; none if `high` is not above `low`.
+    /// Start of the part that passes during the exposure, in units of `half`; empty unless `high` is above `low`.
     pub low: f32,
-    /// See `low`.
+    /// End of that part.
     pub high: f32,
-    /// Share of the exposure in which the whole chord would pass, by weight.
-    pub share: f32,
-    /// Share of the exposure in which it moves by an equivalent radius, by weight.
+    /// Fraction of the exposure in which the whole chord would pass, by weight.
+    pub fraction: f32,
+    /// Fraction of the exposure in which it moves by an equivalent radius, by weight.
     pub pace: f32,
     /// Weights of the light at `low` and at `high`.
     pub weights: Vec2,
-    /// Place of the ray across the path, in equivalent radii.
+    /// Position of the ray across the path, in equivalent radii.
     pub aside: f32,
     /// Unit direction of the motion.
     pub path: Vec2,
 }
 
-/// The time, as a share of the exposure, at which the drop is at a share of its way on the picture.
+/// Time, as a fraction of the exposure, at which the drop is at a fraction of its path in the picture.
 #[must_use]
-pub fn streak_time(recede: f32, way: f32) -> f32 {
-    way / (way + (1.0 - way) * recede).max(1.0e-20)
+pub fn streak_time(depth_ratio: f32, way: f32) -> f32 {
+    way / (way + (1.0 - way) * depth_ratio).max(1.0e-20)
 }
 
 /// Weight of the light at a time, 0 to 1, by the weights at the beginning and at the end of the way.
@@ -100,24 +100,24 @@ pub fn streak_weight(weights: [f32; 2], time: f32) -> f32 {
     weights[0] + (weights[1] - weights[0]) * time.clamp(0.0, 1.0)
 }
 
-/// The share of the way that is nearest to a place on the plane.
+/// Fraction of the path that is nearest to a position on the plane.
 #[must_use]
 pub fn streak_nearest(drop: &DropsDrop, at: Vec2) -> f32 {
     let along = Vec2::from(drop.along);
     ((at - Vec2::from(drop.start)).dot(along) / along.dot(along).max(1.0e-20)).clamp(0.0, 1.0)
 }
 
-/// The depth at a time, over that in the middle of the exposure.
+/// Depth at a time, relative to mid-exposure.
 #[must_use]
-pub fn streak_depth(recede: f32, time: f32) -> f32 {
-    (1.0 + (recede - 1.0) * time) * 2.0 / (1.0 + recede)
+pub fn streak_depth(depth_ratio: f32, time: f32) -> f32 {
+    (1.0 + (depth_ratio - 1.0) * time) * 2.0 / (1.0 + depth_ratio)
 }
 
 /// Scales of the oval at a time: width on the right and on the left, and height.
 #[must_use]
-pub fn streak_stretch(swing: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 {
-    let s2 = swing[0] * drop_oscillation_sine(swing[2] + turns[0] * time);
-    let s3 = swing[1] * drop_oscillation_sine(swing[3] + turns[1] * time);
+pub fn streak_stretch(mode_phase: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 {
+    let s2 = mode_phase[0] * drop_oscillation_sine(mode_phase[2] + turns[0] * time);
+    let s3 = mode_phase[1] * drop_oscillation_sine(mode_phase[3] + turns[1] * time);
     let state = drop_oscillation_state([s2, s3]);
     let [right, left] = drop_oscillation_outline(state, 1.0);
     Vec3::new(right, left, drop_oscillation_radius(state, 1.0, 0.0))
@@ -128,9 +128,9 @@ pub fn streak_stretch(swing: [f32; 4], turns: [f32; 2], time: f32) -> Vec3 {
 pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     let (start, path) = (Vec2::from(drop.start), Vec2::from(drop.along));
     let way = streak_nearest(drop, at);
-    let time = streak_time(drop.recede, way);
-    let scale = drop.slope / streak_depth(drop.recede, time);
-    let stretch = streak_stretch(drop.swing, drop.turns, time);
+    let time = streak_time(drop.depth_ratio, way);
+    let scale = drop.slope / streak_depth(drop.depth_ratio, time);
+    let stretch = streak_stretch(drop.mode_phase, drop.cycles, time);
     let offset = (at - start - path * way) / scale;
     let side = if offset.x < 0.0 { stretch.y } else { stretch.x };
     let oval = Vec2::new(drop.oval[0] * side, drop.oval[1] * stretch.z);
@@ -142,14 +142,14 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     let along = on_oval.dot(direction);
     let half = (1.0 - across * across).max(0.0).sqrt();
     let per_half = 1.0 / half.max(1.0e-6);
-    let faster = way + (1.0 - way) * drop.recede;
-    let rate = drop.share * drop.recede / (faster * faster).max(1.0e-12);
+    let faster = way + (1.0 - way) * drop.depth_ratio;
+    let rate = drop.fraction * drop.depth_ratio / (faster * faster).max(1.0e-12);
     let moves = path.dot(path).sqrt().max(1.0e-20);
     let path = path / moves;
     let low = ((along - length * (1.0 - way)) * per_half).max(-1.0);
     let high = if half <= 1.0e-6 { -2.0 } else { ((along + length * way) * per_half).min(1.0) };
     // Points ahead on the chord have passed earlier.
-    let time = |v: f32| streak_time(drop.recede, (way + (along - half * v) / length).clamp(0.0, 1.0));
+    let time = |v: f32| streak_time(drop.depth_ratio, (way + (along - half * v) / length).clamp(0.0, 1.0));
     let weights = Vec2::new(streak_weight(drop.weights, time(low)), streak_weight(drop.weights, time(high)));
     let weight = 0.5 * (weights.x + weights.y);
     StreakChord {
@@ -158,7 +158,7 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
         half,
         low,
         high,
-        share: 2.0 * half / length * rate * weight,
+        fraction: 2.0 * half / length * rate * weight,
         pace: rate * scale / moves * weight,
         weights,
         aside: offset.x * path.y - offset.y * path.x,
@@ -166,23 +166,23 @@ pub fn streak_chord(drop: &DropsDrop, at: Vec2) -> StreakChord {
     }
 }
 
-/// The place in the mask, in units of half of it, of a place on a chord, in units of half its length.
+/// Position in the mask, in units of half its width, of a position on a chord, in units of half its length.
 #[must_use]
-pub fn streak_place(drop: &DropsDrop, chord: &StreakChord, v: f32) -> Vec2 {
+pub fn streak_mask_position(drop: &DropsDrop, chord: &StreakChord, v: f32) -> Vec2 {
     let away = Vec2::new(chord.direction.y, -chord.direction.x);
     let at =
         (away * chord.across + chord.direction * (v * chord.half)) * Vec2::new(drop.oval[0], drop.oval[1]);
     (at + Vec2::new(0.0, drop.oval[2])) / drop.half_extent
 }
 
-/// The share of a pixel's width that a box of some width (1 or more), `off` pixels from the pixel's middle, covers, over that
+/// The fraction of a pixel's width that a box of some width (1 or more), `off` pixels from the pixel's middle, covers, over that
 /// width: over all pixels it is 1.
 #[must_use]
 pub fn streak_box(width: f32, off: f32) -> f32 {
     ((width + 1.0) * 0.5 - off.abs()).clamp(0.0, 1.0) / width
 }
 
-/// Both edges, as shares of the way, of where a path is less than `reach` from 0.
+/// Both edges, as fractions of the way, of where a path is less than `reach` from 0.
 #[must_use]
 pub fn streak_within(from: f32, way: f32, reach: f32) -> Vec2 {
     if way.abs() < 1.0e-6 {
@@ -193,7 +193,7 @@ pub fn streak_within(from: f32, way: f32, reach: f32) -> Vec2 {
     Vec2::new(a.min(b), a.max(b))
 }
 
-/// The mean of the box over a path, by the weights of its light: exact, by pieces in which both edges are straight.
+/// Weighted mean of the box filter over a path: exact, by pieces in which both edges are straight.
 #[must_use]
 pub fn streak_mean(from: Vec2, way: Vec2, width: f32, weights: [f32; 2]) -> f32 {
     let outer_x = streak_within(from.x, way.x, (width + 1.0) * 0.5);
@@ -227,10 +227,10 @@ pub fn streak_mean(from: Vec2, way: Vec2, width: f32, weights: [f32; 2]) -> f32 
     sum
 }
 
-/// The share of a pixel that a drop which is not sampled covers, by weight.
+/// Weighted fraction of a pixel that an unsampled drop covers.
 #[must_use]
 pub fn streak_cover(drop: &DropsDrop, x: u32, y: u32) -> f32 {
     let from = Vec2::from(drop.first) - Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
     let mean = streak_mean(from, Vec2::from(drop.way), drop.spread, drop.weights);
-    (drop.area * drop.share * mean).min(1.0)
+    (drop.area * drop.fraction * mean).min(1.0)
 }

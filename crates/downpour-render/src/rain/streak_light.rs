@@ -14,8 +14,8 @@ use super::drops_frame::DropsView;
 use super::drops_mask::drops_mask_unit;
 use super::glint::{drop_glint_right, drop_glint_rousseau};
 use super::streak::DropsDrop;
+use super::streak_cell::streak_cell_position;
 use super::streak_path::{StreakPath, streak_path_instant};
-use super::streak_place::streak_place_position;
 use super::streak_rays::StreakRay;
 
 /// Columns of the profile of a job.
@@ -25,23 +25,23 @@ pub(super) const UNITS: u32 = 64;
 const FINE: usize = 4;
 const SUMS: usize = STREAK_SUMS as usize;
 
-/// Rows of light of each path: the mean of what is not told lamp by lamp, and two for each lamp.
+/// Rows of light of each path: the mean of what is not resolved by lamp, and two for each lamp.
 pub(super) const LIGHT_ROWS: usize = 1 + 2 * STREAK_LAMPS as usize;
 
 /// One exit of a ray.
 #[derive(Clone, Copy, Debug, Default)]
 struct StreakExit {
     direction: Vec3,
-    share: f32,
+    fraction: f32,
     /// Interfaces passed; 0: there is none.
     passed: u32,
 }
 
-/// Change of an exit along an axis: first and second difference per ray, and first difference of its share.
+/// Change of an exit along an axis: first and second difference per ray, and first difference of its fraction.
 #[derive(Clone, Copy, Debug, Default)]
 struct StreakChange {
     first: Vec3,
-    share: f32,
+    fraction: f32,
     second: Vec3,
 }
 
@@ -57,31 +57,31 @@ struct StreakPatch {
     along_later: Vec3,
 }
 
-/// The change between an exit's neighbours, as far as their light went the same way.
+/// The change between an exit's neighbors, as far as their light went the same way.
 fn streak_light_change(before: &StreakExit, here: &StreakExit, after: &StreakExit) -> StreakChange {
     let has_before = before.passed == here.passed;
     let has_after = after.passed == here.passed;
     match (has_before, has_after) {
         (true, true) => StreakChange {
             first: (after.direction - before.direction) * 0.5,
-            share: (after.share - before.share) * 0.5,
+            fraction: (after.fraction - before.fraction) * 0.5,
             second: after.direction + before.direction - here.direction * 2.0,
         },
         (false, true) => StreakChange {
             first: after.direction - here.direction,
-            share: after.share - here.share,
+            fraction: after.fraction - here.fraction,
             second: Vec3::ZERO,
         },
         (true, false) => StreakChange {
             first: here.direction - before.direction,
-            share: here.share - before.share,
+            fraction: here.fraction - before.fraction,
             second: Vec3::ZERO,
         },
         (false, false) => StreakChange::default(),
     }
 }
 
-/// The mixed second difference, from the two neighbours on a diagonal.
+/// The mixed second difference, from the two neighbors on a diagonal.
 fn streak_light_mixed(
     before: &StreakExit,
     here: &StreakExit,
@@ -95,18 +95,18 @@ fn streak_light_mixed(
     (before.direction + after.direction - here.direction * 2.0 - a.second - b.second) * 0.5
 }
 
-/// The direction at a place of a patch: rays across, along and later, from its middle.
-fn streak_light_direction(ray: &StreakPatch, place: Vec3) -> Vec3 {
+/// The direction at a position of a patch: rays across, along and later, from its middle.
+fn streak_light_direction(ray: &StreakPatch, position: Vec3) -> Vec3 {
     let linear = ray.middle.direction
-        + ray.across.first * place.x
-        + ray.along.first * place.y
-        + ray.later.first * place.z;
-    let squares = ray.across.second * (0.5 * place.x * place.x)
-        + ray.along.second * (0.5 * place.y * place.y)
-        + ray.later.second * (0.5 * place.z * place.z);
-    let mixed = ray.across_along * (place.x * place.y)
-        + ray.across_later * (place.x * place.z)
-        + ray.along_later * (place.y * place.z);
+        + ray.across.first * position.x
+        + ray.along.first * position.y
+        + ray.later.first * position.z;
+    let squares = ray.across.second * (0.5 * position.x * position.x)
+        + ray.along.second * (0.5 * position.y * position.y)
+        + ray.later.second * (0.5 * position.z * position.z);
+    let mixed = ray.across_along * (position.x * position.y)
+        + ray.across_later * (position.x * position.z)
+        + ray.along_later * (position.y * position.z);
     drops_mask_unit(linear + squares + mixed)
 }
 
@@ -117,9 +117,9 @@ fn streak_light_size(ray: &StreakPatch, later: f32) -> Vec2 {
     Vec2::new(across.dot(across).sqrt(), along.dot(along).sqrt())
 }
 
-/// Share of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disc. Its radiance is that
-/// of an irradiance of 1. `reach`: the chord from the middle to the edge of the disc; `span`: rays between two rows of the
-/// profile; `shift` tells the points of a patch from its neighbours'.
+/// Fraction of a patch's points, and the part of the fine column that each is in, that lie in a lamp's disk. Its radiance is that
+/// of an irradiance of 1. `reach`: the chord from the middle to the edge of the disk; `span`: rays between two rows of the
+/// profile; `shift` tells the points of a patch from its neighbors'.
 fn streak_light_spot(
     ray: &StreakPatch,
     [later, span]: [f32; 2],
@@ -144,11 +144,12 @@ fn streak_light_spot(
         let number = k as f32 + 0.5;
         let steps = Vec3::new(1.0 / count, STREAK_SPOT_ALONG, STREAK_SPOT_LATER);
         let point = (steps * number + shift).fract();
-        let place = point - 0.5;
-        let apart = streak_light_direction(ray, Vec3::new(place.x, place.y, later + place.z * span)) - lamp;
+        let position = point - 0.5;
+        let apart =
+            streak_light_direction(ray, Vec3::new(position.x, position.y, later + position.z * span)) - lamp;
         let off = apart.dot(apart) / (wide * wide);
         if off < 1.0 {
-            // A disc, or a spot that fades towards its edge.
+            // A disk, or a spot that fades toward its edge.
             let faded = if spot > reach { 2.0 * (1.0 - off) } else { 1.0 };
             spots[((point.x * fine as f32) as u32).min(fine - 1) as usize] += radiance * faded;
         }
@@ -237,28 +238,28 @@ impl Streak<'_> {
         let per_part = path.columns / STREAK_SUMS;
         let shifts = frame.form == DROPS_SHIFT;
         for tap in 0..path.columns {
-            let low = streak_place_position(tap as f32, path.columns);
-            let high = streak_place_position((tap + 1) as f32, path.columns);
+            let low = streak_cell_position(tap as f32, path.columns);
+            let high = streak_cell_position((tap + 1) as f32, path.columns);
             let weight = 0.5 * (high - low);
             let number = ((row * path.columns + column) * path.columns + tap) as f32;
             let shift =
                 (Vec3::new(STREAK_SPOT_FIRST, STREAK_SPOT_SECOND, STREAK_SPOT_THIRD) * number).fract();
-            let place = [nearest, column, tap].map(|n| n as i32);
-            let mut even = none + self.streak_light_facing(view, place);
+            let nodes = [nearest, column, tap].map(|n| n as i32);
+            let mut even = none + self.streak_light_facing(view, nodes);
             let mut seen = Vec3::ZERO;
             let mut rest = 1.0f32;
             for exit in 0..=STREAK_EXITS as usize {
-                let ray = self.streak_light_patch(place, exit);
+                let ray = self.streak_light_patch(nodes, exit);
                 if ray.middle.passed == 0 {
                     continue;
                 }
-                let share = (ray.middle.share + ray.later.share * later).clamp(0.0, 1.0);
-                rest -= share;
+                let fraction = (ray.middle.fraction + ray.later.fraction * later).clamp(0.0, 1.0);
+                rest -= fraction;
                 // The papers' form has what comes through, undimmed, and nothing else.
                 let shown = match (shifts, exit) {
                     (true, 1) => 1.0,
                     (true, _) => 0.0,
-                    (false, _) => share,
+                    (false, _) => fraction,
                 };
                 let size = streak_light_size(&ray, later);
                 let width = (size.x * size.y).sqrt().max(STREAK_NARROWEST * size.x.max(size.y));
@@ -268,11 +269,11 @@ impl Streak<'_> {
                     let time = [later, rays_per_row];
                     let spots = streak_light_spot(&ray, time, size, towards, lamp.w, path.fine, shift);
                     for (sum, spot) in sums.iter_mut().zip(spots) {
-                        *sum += lamp.truncate() * (spot * share * weight);
+                        *sum += lamp.truncate() * (spot * fraction * weight);
                     }
                 }
             }
-            // Between rows shares may sum to a little more than all.
+            // Between rows fractions may sum to a little more than all.
             let whole = if shifts { 1.0 } else { (1.0 - rest).max(1.0) };
             even += seen / whole + lost * if shifts { 0.0 } else { rest.max(0.0) };
             for sum in &mut sums[..fine] {
@@ -297,8 +298,8 @@ fn unpacked(rays: &[StreakRay]) -> Vec<[StreakExit; 4]> {
             return StreakExit::default();
         }
         let direction = packing_octahedral_decode(packing_unpack_snorm(ray.exits[number])).into();
-        let share = packing_unpack_unorm(ray.shares[number >> 1])[number & 1];
-        StreakExit { direction, share, passed }
+        let fraction = packing_unpack_unorm(ray.fractions[number >> 1])[number & 1];
+        StreakExit { direction, fraction, passed }
     };
     rays.iter().map(|ray| std::array::from_fn(|number| exit(ray, number))).collect()
 }

@@ -4,12 +4,12 @@ use downpour_shaders::render::rain::{STREAK_RAYS, STREAK_SUMS};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::streak::{DropsDrop, streak_depth, streak_nearest, streak_time, streak_weight};
-use super::streak_place::{streak_place_index, streak_place_position};
+use super::streak_cell::{streak_cell_index, streak_cell_position};
 
 /// Entries of the mean of a class of drops.
 pub(super) const STREAK_MEAN_ENTRIES: u32 = STREAK_RAYS * STREAK_RAYS;
 
-/// The averages of a frame.
+/// Streak radiance table of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StreakTable {
     /// Means of classes of drops, then the profiles of streaks.
@@ -29,13 +29,13 @@ struct StreakPassage {
     fine: u32,
     /// Time at which the drop is nearest, 0 to 1.
     time: f32,
-    /// Place across the outline in shares of its columns, 0 to 1.
+    /// Position across the outline in fractions of its columns, 0 to 1.
     across: f32,
     /// The part of the chord that passes during the exposure, -1 to 1; none if `high` is not above `low`.
     low: f32,
     high: f32,
-    /// Share of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
-    share: f32,
+    /// Fraction of the exposure in which the whole chord would pass, by the weight in the middle of the part that does.
+    fraction: f32,
 }
 
 impl StreakTable {
@@ -56,8 +56,8 @@ impl StreakTable {
         let first = drop.profile;
         let [rows, columns, profile_rows, fine] = self.entry(first).to_array().map(|n| n as u32);
         let way = streak_nearest(drop, at);
-        let time = streak_time(drop.recede, way);
-        let scale = drop.slope / streak_depth(drop.recede, time);
+        let time = streak_time(drop.depth_ratio, way);
+        let scale = drop.slope / streak_depth(drop.depth_ratio, time);
         let along = Vec2::from(drop.along);
         let moves = along.dot(along).sqrt().max(1.0e-20);
         let path = along / moves;
@@ -69,21 +69,21 @@ impl StreakTable {
         let row_part = row_at - row as f32;
         let width_of = |row: u32| self.entry(first + 1 + row * columns);
         let width = width_of(row) * (1.0 - row_part) + width_of(row + 1) * row_part;
-        let place = (aside - width.x) / width.y.max(1.0e-6);
-        let across = streak_place_index(place, 1);
+        let position = (aside - width.x) / width.y.max(1.0e-6);
+        let across = streak_cell_index(position, 1);
         let column_at = (across * columns as f32 - 0.5).clamp(0.0, (columns - 1) as f32);
         let chord = self.streak_lookup_chord(first, columns, row, column_at) * (1.0 - row_part)
             + self.streak_lookup_chord(first, columns, row + 1, column_at) * row_part;
-        let half = chord.w * (1.0 - place * place).max(0.0).sqrt();
+        let half = chord.w * (1.0 - position * position).max(0.0).sqrt();
         let per_half = 1.0 / half.max(1.0e-6);
         let length = moves / scale;
-        let faster = way + (1.0 - way) * drop.recede;
-        let rate = drop.share * drop.recede / (faster * faster).max(1.0e-12);
+        let faster = way + (1.0 - way) * drop.depth_ratio;
+        let rate = drop.fraction * drop.depth_ratio / (faster * faster).max(1.0e-12);
         let low = (((ahead - chord.z) - length * (1.0 - way)) * per_half).max(-1.0);
         let high =
             if half <= 1.0e-6 { -2.0 } else { (((ahead - chord.z) + length * way) * per_half).min(1.0) };
         let middle = (way + ((ahead - chord.z) - 0.5 * half * (low + high)) / length).clamp(0.0, 1.0);
-        let weight = streak_weight(drop.weights, streak_time(drop.recede, middle));
+        let weight = streak_weight(drop.weights, streak_time(drop.depth_ratio, middle));
         StreakPassage {
             first,
             rows,
@@ -94,7 +94,7 @@ impl StreakTable {
             across,
             low,
             high,
-            share: 2.0 * half / length * rate * weight,
+            fraction: 2.0 * half / length * rate * weight,
         }
     }
 
@@ -121,18 +121,18 @@ impl StreakTable {
             + self.streak_lookup_column(passage, low + 1, sums) * part
     }
 
-    /// The running sum up to a place on the chord, -1 to 1.
-    fn streak_lookup_until(&self, passage: &StreakPassage, place: f32) -> Vec3 {
-        let at = streak_place_index(place, STREAK_SUMS);
+    /// The running sum up to a position on the chord, -1 to 1.
+    fn streak_lookup_until(&self, passage: &StreakPassage, position: f32) -> Vec3 {
+        let at = streak_cell_index(position, STREAK_SUMS);
         let low = (at as u32).min(STREAK_SUMS - 1);
-        // By length: in uniform surroundings light goes as coverage does.
-        let first = streak_place_position(low as f32, STREAK_SUMS);
-        let length = streak_place_position((low + 1) as f32, STREAK_SUMS) - first;
-        let part = ((place - first) / length).clamp(0.0, 1.0);
+        // By length: in a uniform environment light is proportional to coverage.
+        let first = streak_cell_position(low as f32, STREAK_SUMS);
+        let length = streak_cell_position((low + 1) as f32, STREAK_SUMS) - first;
+        let part = ((position - first) / length).clamp(0.0, 1.0);
         self.streak_lookup_sum(passage, low) * (1.0 - part) + self.streak_lookup_sum(passage, low + 1) * part
     }
 
-    /// A streak at a place of the plane: radiance times the share of the exposure in which it is covered, and this share.
+    /// A streak at a position of the plane: radiance times the fraction of the exposure in which it is covered, and this fraction.
     pub(super) fn streak_lookup_shown(&self, drop: &DropsDrop, at: Vec2) -> Vec4 {
         let passage = self.streak_lookup_passage(drop, at);
         let (low, high) = (passage.low, passage.high);
@@ -144,12 +144,12 @@ impl StreakTable {
         } else {
             self.streak_lookup_until(&passage, high) - self.streak_lookup_until(&passage, low)
         };
-        light.extend((high - low) * 0.5) * passage.share
+        light.extend((high - low) * 0.5) * passage.fraction
     }
 
-    /// The mean radiance of a whole drop of a class. `place` is in [0, 1] from the top left of the picture.
-    pub(super) fn streak_lookup_mean(&self, shape: u32, place: Vec2) -> Vec3 {
-        let at = place.clamp(Vec2::ZERO, Vec2::ONE) * (STREAK_RAYS - 1) as f32;
+    /// The mean radiance of a whole drop of a class. `position` is in [0, 1] from the top left of the picture.
+    pub(super) fn streak_lookup_mean(&self, shape: u32, position: Vec2) -> Vec3 {
+        let at = position.clamp(Vec2::ZERO, Vec2::ONE) * (STREAK_RAYS - 1) as f32;
         let low = [at.x, at.y].map(|a| (a as u32).min(STREAK_RAYS - 2));
         let part = at - Vec2::new(low[0] as f32, low[1] as f32);
         let first = (shape * STREAK_RAYS + low[1]) * STREAK_RAYS + low[0];

@@ -17,7 +17,7 @@ pub struct StreakPath {
     pub shape: DropShapeCoefficients,
     /// The first four coefficients of the volume over that of the shape at rest.
     pub volume: [f32; 4],
-    /// The fifth.
+    /// Fifth coefficient of the volume.
     pub volume_last: f32,
     /// Half the width of the shape at rest, in equivalent radii.
     pub wide: f32,
@@ -25,7 +25,7 @@ pub struct StreakPath {
     pub tall: f32,
     /// Refractive index of water relative to air.
     pub index: f32,
-    /// Cosine and sine of the azimuth of the lobe of the mode (3,1), from +X towards +Z.
+    /// Cosine and sine of the azimuth of the lobe of the mode (3,1), from +X toward +Z.
     pub lobe: [f32; 2],
     /// Amplitudes of the modes (2,0) and (3,1), over the radius.
     pub amplitudes: [f32; 2],
@@ -61,10 +61,10 @@ pub(super) struct StreakInstant {
 
 /// A drop at a time.
 pub(super) fn streak_path_instant(drop: &DropsDrop, time: f32) -> StreakInstant {
-    let way = time * drop.recede / (1.0 - time + time * drop.recede).max(1.0e-20);
-    let scale = drop.slope / streak_depth(drop.recede, time);
-    let faster = way + (1.0 - way) * drop.recede;
-    let rate = drop.recede / (faster * faster).max(1.0e-12);
+    let way = time * drop.depth_ratio / (1.0 - time + time * drop.depth_ratio).max(1.0e-20);
+    let scale = drop.slope / streak_depth(drop.depth_ratio, time);
+    let faster = way + (1.0 - way) * drop.depth_ratio;
+    let rate = drop.depth_ratio / (faster * faster).max(1.0e-12);
     let along = Vec2::from(drop.along);
     let moves = along.dot(along).sqrt().max(1.0e-20);
     StreakInstant { middle: Vec2::from(drop.start) + along * way, scale, time, pace: rate * scale / moves }
@@ -81,8 +81,8 @@ impl StreakPath {
     /// s2 and s3 at a time.
     pub(super) fn streak_path_displacement(&self, drop: &DropsDrop, time: f32) -> [f32; 2] {
         [
-            self.amplitudes[0] * drop_oscillation_sine(drop.swing[2] + drop.turns[0] * time),
-            self.amplitudes[1] * drop_oscillation_sine(drop.swing[3] + drop.turns[1] * time),
+            self.amplitudes[0] * drop_oscillation_sine(drop.mode_phase[2] + drop.cycles[0] * time),
+            self.amplitudes[1] * drop_oscillation_sine(drop.mode_phase[3] + drop.cycles[1] * time),
         ]
     }
 
@@ -120,7 +120,7 @@ impl StreakPath {
         Vec3::new(v.x * cosine + v.z * sine, v.y, v.z * cosine - v.x * sine)
     }
 
-    /// The other way round.
+    /// The inverse.
     pub(super) fn streak_path_back(&self, v: Vec3) -> Vec3 {
         let [cosine, sine] = self.lobe;
         Vec3::new(v.x * cosine - v.z * sine, v.y, v.z * cosine + v.x * sine)
@@ -136,8 +136,8 @@ impl StreakPath {
         let towards = Vec3::from(drop.towards);
         let right = drop_glint_right(towards);
         let up = right.cross(towards);
-        let place = instant.middle + offset * instant.scale;
-        let direction = towards + right * place.x + up * place.y;
+        let position = instant.middle + offset * instant.scale;
+        let direction = towards + right * position.x + up * position.y;
         let direction = direction / direction.dot(direction).sqrt();
         let origin = right * offset.x + up * offset.y;
         [self.streak_path_turned(origin), self.streak_path_turned(direction)]

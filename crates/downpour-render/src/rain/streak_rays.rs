@@ -9,7 +9,7 @@ use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, pack
 use downpour_math::real::{Lanes, Simd, WithLanes, with_widest_lanes};
 use downpour_math::vector::dot;
 use downpour_shaders::render::rain::{
-    STREAK_OUTLINE, STREAK_OUTLINE_LEAST, STREAK_OUTLINE_MOST, STREAK_OUTLINE_SLOPE, STREAK_OUTLINE_STEPS,
+    STREAK_OUTLINE, STREAK_OUTLINE_MAX, STREAK_OUTLINE_MIN, STREAK_OUTLINE_SLOPE, STREAK_OUTLINE_STEPS,
     STREAK_TURN,
 };
 use glam::{Vec2, Vec3};
@@ -17,21 +17,21 @@ use rayon::prelude::*;
 
 use super::glint::drop_glint_right;
 use super::streak::DropsDrop;
+use super::streak_cell::streak_cell_position;
 use super::streak_path::{StreakInstant, StreakPath, streak_path_axes, streak_path_instant};
-use super::streak_place::streak_place_position;
 
 /// More lanes than any vector has.
-const MOST_LANES: usize = 64;
+const MAX_LANES: usize = 64;
 
-/// A ray of a profile. The same layout as `StreakRay` in WGSL.
+/// A traced ray of a streak profile. The same layout as `StreakRay` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct StreakRay {
-    /// Directions in which its light leaves, octahedral, two numbers of 16 bits each.
+    /// Directions of its exits, octahedral, two numbers of 16 bits each.
     pub exits: [u32; 4],
-    /// Their shares, two numbers of 16 bits each.
-    pub shares: [u32; 2],
-    /// Interfaces passed up to there, 8 bits each; 0: there is no such exit.
+    /// Fractions of the light of the exits, two numbers of 16 bits each.
+    pub fractions: [u32; 2],
+    /// Interfaces passed before each exit, 8 bits each; 0: no such exit.
     pub interfaces: u32,
     /// 0.
     pub unused: u32,
@@ -64,7 +64,7 @@ fn streak_rays_outline(path: &StreakPath, drop: &DropsDrop, instant: &StreakInst
         let gauge = (surface.excess + 1.0).max(0.0).sqrt();
         let slope = dot(surface.half_gradient, radial.to_array()).max(STREAK_OUTLINE_SLOPE);
         let next = radius - surface.excess / (gauge + 1.0) * gauge / slope;
-        radius = next.clamp(STREAK_OUTLINE_LEAST, STREAK_OUTLINE_MOST);
+        radius = next.clamp(STREAK_OUTLINE_MIN, STREAK_OUTLINE_MAX);
     }
     Vec2::new(radius * s, radius * c)
 }
@@ -78,9 +78,9 @@ fn streak_rays_width(points: &[Vec2]) -> Vec2 {
     Vec2::new(0.5 * (high + low), 0.5 * (high - low))
 }
 
-/// Middle and half of the chord at a place across the motion.
+/// Middle and half of the chord at a position across the motion.
 fn streak_rays_chord(points: &[Vec2], across: f32) -> Vec2 {
-    let (mut low, mut high) = (STREAK_OUTLINE_MOST, -STREAK_OUTLINE_MOST);
+    let (mut low, mut high) = (STREAK_OUTLINE_MAX, -STREAK_OUTLINE_MAX);
     for (k, p) in points.iter().enumerate() {
         let q = points[(k + 1) % points.len()];
         if (p.x - across) * (q.x - across) <= 0.0 && p.x != q.x {
@@ -107,13 +107,13 @@ impl WithLanes for Rays<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let lanes = Lanes::<S>::COUNT;
-        debug_assert!(lanes <= MOST_LANES, "a machine with vectors of more than {MOST_LANES} numbers");
+        debug_assert!(lanes <= MAX_LANES, "a machine with vectors of more than {MAX_LANES} numbers");
         let Self { path, drop, instant, points, rays } = self;
         let [along_axis, across_axis] = streak_path_axes(drop);
         let coefficients = path.coefficients();
         for (points, rays) in points.chunks(lanes).zip(rays.chunks_mut(lanes)) {
             // Origin, direction, state, and both numbers of the spheroid; lanes past the end repeat the last ray.
-            let mut numbers = [[0.0f32; MOST_LANES]; 11];
+            let mut numbers = [[0.0f32; MAX_LANES]; 11];
             for k in 0..lanes {
                 let point = points[k.min(points.len() - 1)];
                 let offset = along_axis * point.y + across_axis * point.x;
@@ -155,14 +155,14 @@ impl WithLanes for Rays<'_> {
 /// Packs the lanes of the light of rays.
 #[inline(always)]
 fn store<S: Simd>(path: &StreakPath, light: &WobbleLight<Lanes<S>>, rays: &mut [StreakRay]) {
-    let mut exits = [[[0.0f32; MOST_LANES]; 3]; 4];
-    let mut shares = [[0.0f32; MOST_LANES]; 4];
-    let mut passed = [[0.0f32; MOST_LANES]; 4];
+    let mut exits = [[[0.0f32; MAX_LANES]; 3]; 4];
+    let mut fractions = [[0.0f32; MAX_LANES]; 4];
+    let mut passed = [[0.0f32; MAX_LANES]; 4];
     for n in 0..4 {
         for (lanes, into) in light.exits[n].iter().zip(&mut exits[n]) {
             lanes.store(into);
         }
-        light.shares[n].store(&mut shares[n]);
+        light.fractions[n].store(&mut fractions[n]);
         light.interfaces[n].store(&mut passed[n]);
     }
     for (k, ray) in rays.iter_mut().enumerate() {
@@ -171,11 +171,11 @@ fn store<S: Simd>(path: &StreakPath, light: &WobbleLight<Lanes<S>>, rays: &mut [
             let world = path.streak_path_back(Vec3::new(x[k], y[k], z[k]));
             packing_pack_snorm(packing_octahedral_encode(world.to_array()))
         };
-        let pair = |n: usize| packing_pack_unorm([shares[n][k], shares[n + 1][k]]);
+        let pair = |n: usize| packing_pack_unorm([fractions[n][k], fractions[n + 1][k]]);
         let count = |n: usize| (passed[n][k] as u32) << (8 * n);
         *ray = StreakRay {
             exits: [exit(0), exit(1), exit(2), exit(3)],
-            shares: [pair(0), pair(2)],
+            fractions: [pair(0), pair(2)],
             interfaces: count(0) | count(1) | count(2) | count(3),
             unused: 0,
         };
@@ -193,12 +193,12 @@ fn row(path: &StreakPath, drop: &DropsDrop, row: u32) -> Row {
     let mut chords = Vec::with_capacity(columns as usize);
     let mut points = Vec::with_capacity((columns * columns) as usize);
     for column in 0..columns {
-        let place = streak_place_position(column as f32 + 0.5, columns);
-        let across = width.x + width.y * place;
+        let position = streak_cell_position(column as f32 + 0.5, columns);
+        let across = width.x + width.y * position;
         let chord = streak_rays_chord(&outline, across);
-        let round = chord.y / (1.0 - place * place).max(1.0e-6).sqrt();
+        let round = chord.y / (1.0 - position * position).max(1.0e-6).sqrt();
         chords.push([width.x, width.y, chord.x, round]);
-        let along = |tap: u32| chord.x + chord.y * streak_place_position(tap as f32 + 0.5, columns);
+        let along = |tap: u32| chord.x + chord.y * streak_cell_position(tap as f32 + 0.5, columns);
         points.extend((0..columns).map(|tap| Vec2::new(across, along(tap))));
     }
     let mut rays = vec![StreakRay::default(); points.len()];

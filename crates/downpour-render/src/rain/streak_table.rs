@@ -30,7 +30,7 @@ impl DropsView<'_> {
             a31 * drop_oscillation_sine(phase(STREAK_MEAN_THIRD)),
         ];
         let body = path.streak_path_body(path.coefficients(), displacement);
-        // Evenly over a disc that holds the drop.
+        // Evenly over a disk that holds the drop.
         let reach = STREAK_MEAN_REACH / body.inverse_wide.min(body.inverse_tall).sqrt();
         let away = (number / STREAK_MEAN_POINTS as f32).sqrt();
         let angle = STREAK_TURN * phase(STREAK_MEAN_FIRST);
@@ -63,11 +63,11 @@ impl DropsView<'_> {
                 let shown = match (shifts, k) {
                     (true, 1) => 1.0,
                     (true, _) => 0.0,
-                    (false, _) => light.shares[k],
+                    (false, _) => light.fractions[k],
                 };
                 let seen = path.streak_path_back(light.exits[k].into());
                 sum += self.drops_capture_about(towards, seen, width * bend) * shown;
-                rest -= light.shares[k];
+                rest -= light.fractions[k];
             }
         }
         let lost = if shifts { 0.0 } else { rest.max(0.0) };
@@ -82,8 +82,9 @@ impl DropsView<'_> {
             return [0.0; 4];
         }
         let last = (STREAK_RAYS - 1) as f32;
-        let place = Vec2::new((ray % STREAK_RAYS) as f32 / last, (ray / STREAK_RAYS) as f32 / last);
-        let (x, y) = (place.x * self.frame.camera.width as f32, place.y * self.frame.camera.height as f32);
+        let position = Vec2::new((ray % STREAK_RAYS) as f32 / last, (ray / STREAK_RAYS) as f32 / last);
+        let (x, y) =
+            (position.x * self.frame.camera.width as f32, position.y * self.frame.camera.height as f32);
         let towards = drops_mask_unit(self.frame.camera.camera_ray(x, y));
         let mut sum = Vec4::ZERO;
         for part in 0..STREAK_MEAN_GROUP {

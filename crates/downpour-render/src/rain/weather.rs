@@ -7,14 +7,14 @@ use downpour_weather::{Loaded, Weather};
 
 use super::DropMasks;
 
-/// The line of sodium, in metres: the wavelength at which water's index is taken.
+/// The line of sodium, in meters: the wavelength at which water's index is taken.
 const SODIUM_M: f64 = 589.3e-9;
 
 /// The coldest air, in Celsius, in which water's index is known.
 const COLDEST_INDEX_C: f64 = -12.0;
 
 impl DropMasks {
-    /// Masks of drops in the air of a weather, of the shape or the model that it asks for.
+    /// Traces the masks of a weather's drops, of the shape or the model that it names.
     ///
     /// # Errors
     /// [`MaskError`] if the air is outside what the laws know, or as [`drop_model`].

@@ -15,9 +15,9 @@ pub(super) fn draw(canvas: &mut Canvas, flow: &Flow, dot: f32) {
         while x < flow.columns as f32 {
             if let Some([u, v]) = flow.at(x, y) {
                 let speed = (u * u + v * v).sqrt();
-                let share = (speed / flow.scale).min(1.0);
-                if share > 0.005 {
-                    let long = (0.18 + 0.62 * share.sqrt()) * spacing;
+                let fraction = (speed / flow.scale).min(1.0);
+                if fraction > 0.005 {
+                    let long = (0.18 + 0.62 * fraction.sqrt()) * spacing;
                     arrow(canvas, flow, [x, y], [u / speed, v / speed], long, dot);
                 }
             }
@@ -28,7 +28,7 @@ pub(super) fn draw(canvas: &mut Canvas, flow: &Flow, dot: f32) {
     }
 }
 
-/// An arrow about a place: a dark one, and a white one within.
+/// An arrow about a position: a dark one, and a white one within.
 fn arrow(canvas: &mut Canvas, flow: &Flow, [x, y]: [f32; 2], [u, v]: [f32; 2], long: f32, dot: f32) {
     let half = 0.5 * long;
     let tip = [x + half * u, y + half * v];
@@ -59,7 +59,7 @@ fn arrow(canvas: &mut Canvas, flow: &Flow, [x, y]: [f32; 2], [u, v]: [f32; 2], l
 fn distance([x, y]: [f32; 2], [[ax, ay], [bx, by]]: [[f32; 2]; 2]) -> f32 {
     let (dx, dy) = (bx - ax, by - ay);
     let squared = (dx * dx + dy * dy).max(1.0e-12);
-    let share = (((x - ax) * dx + (y - ay) * dy) / squared).clamp(0.0, 1.0);
-    let (ex, ey) = (x - ax - share * dx, y - ay - share * dy);
+    let fraction = (((x - ax) * dx + (y - ay) * dy) / squared).clamp(0.0, 1.0);
+    let (ex, ey) = (x - ax - fraction * dx, y - ay - fraction * dy);
     (ex * ex + ey * ey).sqrt()
 }

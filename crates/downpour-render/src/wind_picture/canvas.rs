@@ -45,27 +45,27 @@ impl Canvas {
     }
 
     /// Sets the color of a pixel. Positions outside the picture are ignored.
-    pub(super) fn set(&mut self, column: usize, row: usize, colour: [f32; 3]) {
+    pub(super) fn set(&mut self, column: usize, row: usize, color: [f32; 3]) {
         if let Some(pixel) = self.pixel(column, row) {
-            *pixel = colour;
+            *pixel = color;
         }
     }
 
-    pub(super) fn blend(&mut self, column: usize, row: usize, colour: [f32; 3], share: f32) {
+    pub(super) fn blend(&mut self, column: usize, row: usize, color: [f32; 3], fraction: f32) {
         if let Some(pixel) = self.pixel(column, row) {
-            for (old, new) in pixel.iter_mut().zip(colour) {
-                *old += (new - *old) * share;
+            for (old, new) in pixel.iter_mut().zip(color) {
+                *old += (new - *old) * fraction;
             }
         }
     }
 
     /// Writes text; what has no letter is left blank.
     pub(super) fn text(&mut self, left: usize, top: usize, dot: usize, text: &str) {
-        for (place, c) in text.chars().enumerate() {
+        for (index, c) in text.chars().enumerate() {
             let Some((_, rows)) = LETTERS.iter().find(|(letter, _)| *letter == c) else { continue };
             for (y, bits) in rows.iter().enumerate() {
                 for x in (0..5).filter(|x| bits & (16 >> x) != 0) {
-                    let (column, row) = (left + (place * ADVANCE + x) * dot, top + y * dot);
+                    let (column, row) = (left + (index * ADVANCE + x) * dot, top + y * dot);
                     for inner in 0..dot * dot {
                         self.set(column + inner % dot, row + inner / dot, [0.85; 3]);
                     }
@@ -76,7 +76,7 @@ impl Canvas {
 
     /// As sRGB.
     pub(super) fn pixels(&self) -> Vec<[u8; 3]> {
-        self.light.iter().map(|colour| colour.map(encoded)).collect()
+        self.light.iter().map(|color| color.map(encoded)).collect()
     }
 }
 

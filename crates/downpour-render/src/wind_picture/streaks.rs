@@ -44,9 +44,9 @@ fn average(flow: &Flow, noise: &[f32], weights: &[f32], i: usize) -> f32 {
             let Some(here) = unit(flow, x, y) else { break };
             let index = y as usize * flow.columns + x as usize;
             // The first pixel belongs to both sides.
-            let share = if k == 0 { 0.5 * weight } else { *weight };
-            sum += share * noise.get(index).copied().unwrap_or(0.0);
-            whole += share;
+            let fraction = if k == 0 { 0.5 * weight } else { *weight };
+            sum += fraction * noise.get(index).copied().unwrap_or(0.0);
+            whole += fraction;
             // The middle of the step says where it leads.
             let half = 0.5 * sign * STEP;
             let [u, v] = unit(flow, x + half * here[0], y + half * here[1]).unwrap_or(here);
@@ -57,7 +57,7 @@ fn average(flow: &Flow, noise: &[f32], weights: &[f32], i: usize) -> f32 {
     if whole > 0.0 { sum / whole.sqrt() } else { 0.0 }
 }
 
-/// The direction of the flow at a place in pixels, if there is any.
+/// The direction of the flow at a position in pixels, if there is any.
 fn unit(flow: &Flow, x: f32, y: f32) -> Option<[f32; 2]> {
     let [u, v] = flow.at(x, y)?;
     let length = (u * u + v * v).sqrt();

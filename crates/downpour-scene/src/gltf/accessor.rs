@@ -195,7 +195,7 @@ fn unsigned(component: ComponentType, bytes: &[u8]) -> Option<usize> {
     }
 }
 
-/// A component as a number. Normalised integers: c / 255, max(c / 127, -1) and so on.
+/// A component as a number. Normalized integers: c / 255, max(c / 127, -1) and so on.
 fn number(component: ComponentType, normalized: bool, bytes: &[u8]) -> Option<f64> {
     let (value, full) = match component {
         ComponentType::I8 => (f64::from(i8::from_le_bytes(*bytes.first_chunk()?)), f64::from(i8::MAX)),

@@ -41,19 +41,19 @@ pub(super) fn load<'a>(
     let longest = longest(root);
     let mut opened: BTreeMap<RelativePath, usize> = BTreeMap::new();
     for (index, buffer) in root.buffers.iter().enumerate() {
-        let place = format!("buffers[{index}]");
-        let length = bytes_of(buffer, &place)?;
+        let location = format!("buffers[{index}]");
+        let length = bytes_of(buffer, &location)?;
         let address = match &buffer.uri {
             None => None,
             Some(uri) => {
-                Some(uri::check(uri).map_err(|why| SceneError::bad(&place, why.found, why.allowed))?)
+                Some(uri::check(uri).map_err(|why| SceneError::bad(&location, why.found, why.allowed))?)
             }
         };
         let source = match address {
             None => Cow::Borrowed(binary.unwrap_or_default()),
             Some(Address::Data { text, .. }) => {
-                budget.take_bytes(length as u64, &place)?;
-                let mut bytes = Budget::vec_with_capacity(length, &place)?;
+                budget.take_bytes(length as u64, &location)?;
+                let mut bytes = Budget::vec_with_capacity(length, &location)?;
                 base64::decode(text, length, &mut bytes);
                 Cow::Owned(bytes)
             }
@@ -76,10 +76,10 @@ pub(super) fn load<'a>(
     Ok(all)
 }
 
-fn bytes_of(buffer: &Buffer, place: &str) -> Result<usize, SceneError> {
+fn bytes_of(buffer: &Buffer, location: &str) -> Result<usize, SceneError> {
     let length = buffer.byte_length.0;
     usize::try_from(length)
-        .map_err(|_| SceneError::limit(place, size(length), "the address space of this machine"))
+        .map_err(|_| SceneError::limit(location, size(length), "the address space of this machine"))
 }
 
 /// For each file the longest buffer that names it, with its length in bytes.

@@ -33,7 +33,7 @@ pub(super) fn open<'a>(bytes: &'a [u8], warnings: &mut Warnings) -> Result<Conta
 }
 
 fn glb<'a>(bytes: &'a [u8], warnings: &mut Warnings) -> Result<Container<'a>, SceneError> {
-    let cut = |path: &str, found: String| Err(SceneError::bad(path, found, GLTF).way_out(EXPORT_AGAIN));
+    let cut = |path: &str, found: String| Err(SceneError::bad(path, found, GLTF).with_advice(EXPORT_AGAIN));
     let (Some(version), Some(length), true) = (word(bytes, 4), word(bytes, 8), bytes.len() >= MIN_FILE_BYTES)
     else {
         return cut(
@@ -43,13 +43,13 @@ fn glb<'a>(bytes: &'a [u8], warnings: &mut Warnings) -> Result<Container<'a>, Sc
     };
     if version != 2 {
         return Err(SceneError::bad("GLB header", format!("version {version}"), "version 2")
-            .way_out("convert the file to glTF 2.0"));
+            .with_advice("convert the file to glTF 2.0"));
     }
     let declared = length as usize;
     let Some(mut rest) = bytes.get(HEADER..declared).filter(|_| declared >= MIN_FILE_BYTES) else {
         let found = format!("length {length} in a file of {} bytes", bytes.len());
         let allowed = format!("{MIN_FILE_BYTES} to {}", bytes.len());
-        return Err(SceneError::bad("GLB header", found, allowed).way_out(EXPORT_AGAIN));
+        return Err(SceneError::bad("GLB header", found, allowed).with_advice(EXPORT_AGAIN));
     };
     if declared < bytes.len() {
         let more = bytes.len().saturating_sub(declared) as u64;

@@ -28,7 +28,7 @@ impl<'a> GrowthBudget<'a> {
         if self.spent > most {
             let found = format!("{} of geometry from {} of files", size(self.spent), size(self.source));
             return Err(SceneError::limit(path, found, format!("{} for files of this size", size(most)))
-                .way_out("instance or simplify less, or store the geometry itself"));
+                .with_advice("instance or simplify less, or store the geometry itself"));
         }
         self.budget.take_bytes(cost, path)
     }

@@ -70,6 +70,6 @@ pub(super) fn check(
     data::images(&document, warnings)?;
     shape::cameras(&document)?;
     nodes::check(&document)?;
-    lints::look(&facts, warnings)?;
+    lints::check(&facts, warnings)?;
     Ok(Checked { value })
 }

@@ -3,7 +3,7 @@
 use crate::error::SceneError;
 use crate::warning::Warning;
 
-/// All triangles of a file as one mesh, in world space (metres, +Y up, counter-clockwise front faces).
+/// All triangles of a file as one mesh, in world space (meters, +Y up, counter-clockwise front faces).
 ///
 /// Positions are finite and at most [`REACH`](super::REACH) from the origin in each coordinate, normals have
 /// length 1, and each index is below the number of positions.
@@ -18,7 +18,7 @@ use crate::warning::Warning;
 pub struct TriangleModel {
     /// Name of the file in messages.
     pub name: String,
-    /// Vertices, in metres.
+    /// Vertices, in meters.
     pub positions: Vec<[f32; 3]>,
     /// A unit normal for each position; `None` when the file has no normals at all.
     pub normals: Option<Vec<[f32; 3]>>,
@@ -35,7 +35,7 @@ impl TriangleModel {
         self.indices.is_empty()
     }
 
-    /// Smallest and largest coordinates of all positions, in metres; `None` without positions.
+    /// Smallest and largest coordinates of all positions, in meters; `None` without positions.
     #[must_use]
     pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
         let merge = |(low, high): ([f32; 3], [f32; 3]), (l, h): ([f32; 3], [f32; 3])| {
@@ -57,7 +57,7 @@ impl TriangleModel {
             None => Ok(self),
             Some(loss) => {
                 let error = SceneError::bad(
-                    &loss.place,
+                    &loss.location,
                     loss.what.as_str(),
                     "a file of which all geometry is of use",
                 );

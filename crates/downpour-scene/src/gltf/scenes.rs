@@ -38,7 +38,7 @@ pub(super) fn read(
 ) -> Result<Scene, SceneError> {
     let warnings = &mut warnings;
     let whole = Spot::document(&checked.value);
-    extensions::look(&whole, warnings)?;
+    extensions::check(&whole, warnings)?;
     let lights_at = lights::of_nodes(&whole)?;
     let root = document::typed(&mut checked)?;
     let rest = Spot::document(&checked.value);

@@ -63,7 +63,9 @@ impl Header {
         let blocks = self.blocks;
         if blocks > MAX_BLOCKS {
             let found = format!("{blocks} blocks");
-            return Err(SceneError::limit("tiles", found, format!("at most {MAX_BLOCKS}")).way_out(CONVERT));
+            return Err(
+                SceneError::limit("tiles", found, format!("at most {MAX_BLOCKS}")).with_advice(CONVERT)
+            );
         }
         let rest = (bytes.len() as u64).saturating_sub(self.table as u64);
         if blocks.saturating_mul(8) > rest {
@@ -142,8 +144,9 @@ pub(super) fn check(file: &[u8], warnings: &mut Warnings) -> Result<Header, Scen
 fn version(word: u32) -> Result<bool, SceneError> {
     const TILED: u32 = 0x200;
     const LONG_NAMES: u32 = 0x400;
-    let refuse =
-        |found: String| Err(SceneError::bad("version", found, "one flat part, version 2").way_out(CONVERT));
+    let refuse = |found: String| {
+        Err(SceneError::bad("version", found, "one flat part, version 2").with_advice(CONVERT))
+    };
     if word & 0xff != 2 {
         return refuse(format!("version {}", word & 0xff));
     }
@@ -223,7 +226,7 @@ fn attribute(
             let kind = String::from_utf8_lossy(value.rest()).into_owned();
             if !matches!(kind.as_str(), "scanlineimage" | "tiledimage") {
                 let allowed = "scanlineimage or tiledimage";
-                return Err(SceneError::bad(name, quoted(&kind), allowed).way_out(CONVERT));
+                return Err(SceneError::bad(name, quoted(&kind), allowed).with_advice(CONVERT));
             }
         }
     }
@@ -283,7 +286,7 @@ fn block_lines(scheme: u8) -> Result<u32, SceneError> {
         _ => "an unknown scheme",
     };
     let found = format!("{name} ({scheme}) is not supported");
-    Err(SceneError::bad("compression", found, "none, RLE, ZIPS, ZIP, PIZ or PXR24").way_out(CONVERT))
+    Err(SceneError::bad("compression", found, "none, RLE, ZIPS, ZIP, PIZ or PXR24").with_advice(CONVERT))
 }
 
 /// The list of channels: sorted by name, each once, none subsampled.
@@ -314,7 +317,7 @@ fn channels(value: &mut Bytes<'_>) -> Result<Vec<Channel>, SceneError> {
         let (x, y) = (value.i32()?, value.i32()?);
         if (x, y) != (1, 1) {
             let found = format!("{} subsampled by {x} x {y}", quoted(&name));
-            return Err(SceneError::bad(path(), found, "1 x 1").way_out(CONVERT));
+            return Err(SceneError::bad(path(), found, "1 x 1").with_advice(CONVERT));
         }
         list.push(Channel { name: name.into_owned(), bytes });
     }

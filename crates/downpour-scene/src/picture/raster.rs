@@ -64,7 +64,7 @@ fn refused(path: &str, error: &ImageError) -> SceneError {
         ImageError::Limits(limit) => {
             let found = format!("asks for too much: {}", crate::error::escaped(&limit.to_string()));
             let allowed = format!("sides of at most {MAX_SIDE} pixels, within the budget");
-            SceneError::limit(path, found, allowed).way_out("scale the picture down")
+            SceneError::limit(path, found, allowed).with_advice("scale the picture down")
         }
         error => damaged(error).at(path),
     }

@@ -25,7 +25,7 @@ pub struct Channel {
 /// Animated property of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Property {
-    /// Three numbers, in metres.
+    /// Three numbers, in meters.
     Translation,
     /// The four parts x, y, z, w of a unit quaternion.
     Rotation,

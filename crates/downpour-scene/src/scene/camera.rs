@@ -20,20 +20,20 @@ pub enum Lens {
         yfov: f32,
         /// Width by height; `None` for that of the picture.
         aspect: Option<f32>,
-        /// The nearest distance, in metres; above 0.
+        /// The nearest distance, in meters; above 0.
         near: f32,
-        /// The farthest distance, in metres; `None` for no end.
+        /// The farthest distance, in meters; `None` for no end.
         far: Option<f32>,
     },
     /// Parallel rays.
     Orthographic {
-        /// Half the width, in metres; negative for a mirrored picture.
+        /// Half the width, in meters; negative for a mirrored picture.
         xmag: f32,
-        /// Half the height, in metres; negative for a mirrored picture.
+        /// Half the height, in meters; negative for a mirrored picture.
         ymag: f32,
-        /// The nearest distance, in metres; from 0 on.
+        /// The nearest distance, in meters; from 0 on.
         near: f32,
-        /// The farthest distance, in metres.
+        /// The farthest distance, in meters.
         far: f32,
     },
 }
@@ -45,7 +45,7 @@ pub struct PlacedCamera {
     pub node: usize,
     /// Index of the camera.
     pub camera: usize,
-    /// Position, in metres.
+    /// Position, in meters.
     pub eye: Vec3,
     /// Viewing direction.
     pub forward: Vec3,

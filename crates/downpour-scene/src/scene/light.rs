@@ -15,7 +15,7 @@ pub struct Light {
     pub color: Vec3,
     /// Candela of a point or spot light, lux of a directional one; 0 or more.
     pub intensity: f32,
-    /// Distance at which the light has faded to zero, in metres; `None` for an unlimited range.
+    /// Distance at which the light has faded to zero, in meters; `None` for an unlimited range.
     pub range: Option<f32>,
     /// Kind of the light.
     pub kind: LightKind,
@@ -44,14 +44,14 @@ pub struct PlacedLight {
     pub node: usize,
     /// Index of the light.
     pub light: usize,
-    /// Position, in metres; without meaning for a directional light.
+    /// Position, in meters; without meaning for a directional light.
     pub position: Vec3,
     /// The unit direction in which it shines; without meaning for a point light.
     pub direction: Vec3,
 }
 
 impl Light {
-    /// The part of the intensity that remains at a distance in metres because the range ends.
+    /// The part of the intensity that remains at a distance in meters because the range ends.
     ///
     /// `clamp(1 - (d / range)^4, 0, 1)` as the extension recommends; the fall with the square of the distance is
     /// not in it. 1 without a range.

@@ -26,7 +26,7 @@ pub struct Material {
     pub occlusion_strength: f32,
     /// Red is the part of the surrounding light that arrives; linear.
     pub occlusion_texture: Option<TextureRef>,
-    /// Radiance that the surface sends out, factor times strength, in candela per square metre.
+    /// Radiance that the surface sends out, factor times strength, in candela per square meter.
     pub emissive: Vec3,
     /// Multiplies `emissive`; sRGB.
     pub emissive_texture: Option<TextureRef>,

@@ -18,7 +18,7 @@ pub struct Mesh {
 /// Each list of vertex data has as many elements as `positions` or is empty. All numbers are finite.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Primitive {
-    /// Vertices, in metres.
+    /// Vertices, in meters.
     pub positions: Vec<Vec3>,
     /// Unit normals: those of the file, or else those of the faces.
     pub normals: Vec<Vec3>,
@@ -46,20 +46,20 @@ pub struct Primitive {
 /// Differences added to a primitive, times a weight.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MorphTarget {
-    /// Added to positions, in metres; empty for none.
+    /// Added to positions, in meters; empty for none.
     pub positions: Vec<Vec3>,
     /// Added to normals; empty for none.
     pub normals: Vec<Vec3>,
-    /// The length of the longest of `positions`, in metres.
+    /// The length of the longest of `positions`, in meters.
     pub farthest: f32,
 }
 
 /// A box along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// The smallest coordinates, in metres.
+    /// The smallest coordinates, in meters.
     pub min: Vec3,
-    /// The largest coordinates, in metres.
+    /// The largest coordinates, in meters.
     pub max: Vec3,
 }
 

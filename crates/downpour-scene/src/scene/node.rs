@@ -35,7 +35,7 @@ pub enum Local {
 /// The parts of a transform: translation x rotation x scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parts {
-    /// In metres.
+    /// In meters.
     pub translation: Vec3,
     /// A unit quaternion; zero for a file's rotation of length 0, which has no inverse.
     pub rotation: Quat,

@@ -47,7 +47,7 @@ pub struct Instance {
     pub mesh: usize,
     /// From the mesh to the world.
     pub world: Affine3A,
-    /// For normals: the inverse transpose of `world`. Normalise after it.
+    /// For normals: the inverse transpose of `world`. Normalize after it.
     pub normal: Mat3,
     /// True if the transform mirrors, so that triangles are clockwise: swap two corners, or the sides that are
     /// culled. The sign of the bitangents is reversed too.
@@ -72,7 +72,7 @@ impl Pose {
         self.world.get(node).copied()
     }
 
-    /// Bounding box of all instances, in metres. Skinned and morphed ones lie in it, but may not fill it.
+    /// Bounding box of all instances, in meters. Skinned and morphed ones lie in it, but may not fill it.
     #[must_use]
     pub fn bounds(&self, scene: &Scene) -> Bounds {
         let each = self.instances.iter().filter_map(|instance| {

@@ -11,7 +11,7 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A, Vec4};
 /// The vertices of a primitive in the world.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinnedPrimitive {
-    /// In metres.
+    /// In meters.
     pub positions: Vec<Vec3>,
     /// Unit normals.
     pub normals: Vec<Vec3>,

@@ -36,8 +36,8 @@ impl SkyMap {
         let row = |row: u32| {
             // The mean of sin e = cos(polar angle) over a band is the mean of the cosines of its edges.
             let middle = f64::midpoint(cosine(row), cosine(row.saturating_add(1)));
-            let share = if row < ROWS / 2 { (1.0 + 2.0 * middle) / 3.0 } else { 0.0 };
-            zenith.map(|value| narrowed(f64::from(value) * share))
+            let fraction = if row < ROWS / 2 { (1.0 + 2.0 * middle) / 3.0 } else { 0.0 };
+            zenith.map(|value| narrowed(f64::from(value) * fraction))
         };
         Self { width: 1, height: ROWS, radiance: (0..ROWS).map(row).collect(), warnings: Vec::new() }
     }

@@ -5,8 +5,8 @@
 //! irradiance on a surface that faces it, `E = sum (L - L_sky) dOmega`. Source and remaining map together have the light of
 //! the original map, in each color.
 //!
-//! The angular radius is that of a uniform disc with the same first two moments of radiance,
-//! `Omega = (sum L dOmega)^2 / sum L^2 dOmega`, `cos r = 1 - Omega / 2 pi`. Photographs blur the sun's disc (0.27
+//! The angular radius is that of a uniform disk with the same first two moments of radiance,
+//! `Omega = (sum L dOmega)^2 / sum L^2 dOmega`, `cos r = 1 - Omega / 2 pi`. Photographs blur the sun's disk (0.27
 //! degrees) over a few pixels, so maps of 1024 x 512 give about half a degree.
 
 use super::model::narrowed;
@@ -27,11 +27,11 @@ const MIN_FRACTION: f64 = 0.01;
 /// A compact source far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
-    /// The unit direction towards it.
+    /// The unit direction toward it.
     pub direction: [f32; 3],
     /// Irradiance of a surface that faces it, in the map's unit of radiance times steradian.
     pub irradiance_rgb: [f32; 3],
-    /// The radius of the disc that it appears as, in radians.
+    /// The radius of the disk that it appears as, in radians.
     pub angular_radius: f32,
 }
 
@@ -46,7 +46,7 @@ struct Moments {
 
 impl SkyMap {
     /// Removes the brightest compact source from the map and returns it; `None`, and the map unchanged, if nothing
-    /// is `threshold` times as bright as the mean, if such pixels cover more than a disc of [`MAX_SUN_RADIUS`], or if they
+    /// is `threshold` times as bright as the mean, if such pixels cover more than a disk of [`MAX_SUN_RADIUS`], or if they
     /// hold less than 1 % of the light.
     ///
     /// [`SUN_THRESHOLD`] is a good threshold. The pixels of the source are filled with the mean of their neighbors.

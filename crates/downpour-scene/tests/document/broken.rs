@@ -24,17 +24,17 @@ fn values() -> [(&'static str, Value); 8] {
 }
 
 /// Pointers to all values of a document that are no objects or lists, and to all lists.
-fn places(value: &Value, here: &str, found: &mut Vec<String>) {
+fn pointers(value: &Value, here: &str, found: &mut Vec<String>) {
     match value {
         Value::Object(members) => {
             for (key, value) in members {
-                places(value, &format!("{here}/{key}"), found);
+                pointers(value, &format!("{here}/{key}"), found);
             }
         }
         Value::Array(items) => {
             found.push(here.to_owned());
             for (index, value) in items.iter().enumerate() {
-                places(value, &format!("{here}/{index}"), found);
+                pointers(value, &format!("{here}/{index}"), found);
             }
         }
         _ => found.push(here.to_owned()),
@@ -44,12 +44,12 @@ fn places(value: &Value, here: &str, found: &mut Vec<String>) {
 /// A valid triangle with each of its values replaced by each of [`values`], one at a time.
 pub(crate) fn replaced() -> Vec<Broken> {
     let mut found = Vec::new();
-    places(&triangle(), "", &mut found);
+    pointers(&triangle(), "", &mut found);
     let mut all = Vec::new();
-    for place in found {
+    for pointer in found {
         for (word, value) in values() {
-            let name = format!("{}_{word}.gltf", place.trim_start_matches('/').replace('/', "_"));
-            all.push(Broken { name, bytes: spoiled(&[(&place, value)]).to_string().into_bytes() });
+            let name = format!("{}_{word}.gltf", pointer.trim_start_matches('/').replace('/', "_"));
+            all.push(Broken { name, bytes: spoiled(&[(&pointer, value)]).to_string().into_bytes() });
         }
     }
     all

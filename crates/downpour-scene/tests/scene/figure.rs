@@ -18,7 +18,7 @@ pub(crate) fn bytes() -> Vec<u8> {
     bytes.extend([0; 12]);
     // 60: weights.
     bytes.extend(floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]));
-    // 108: inverse bind matrices: identity, and one metre down.
+    // 108: inverse bind matrices: identity, and one meter down.
     for height in [0.0, -1.0] {
         bytes.extend(floats(&[
             1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, height, 0.0, 1.0,

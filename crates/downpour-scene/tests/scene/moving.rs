@@ -129,13 +129,13 @@ fn scenes_are_put_together() {
     let plays = [Play { animation: 0, time_s: 1.0 }, Play { animation: 1, time_s: 0.0 }];
     let pose = street.pose_of(&plays);
     assert_eq!((pose.instances.len(), pose.lights.len(), pose.cameras.len()), (3, 2, 2));
-    let place = |instance: usize| {
+    let position = |instance: usize| {
         let instance = &pose.instances[instance];
         skin_primitive(&street.meshes[instance.mesh].primitives[0], instance).positions
     };
     // (1, 1, 0) of `movements_meet_their_keys`, turned about Y: x to -z, and shifted.
-    close(place(1)[2], Vec3::new(1.0, 1.0, -1.0));
-    close(place(2)[2], Vec3::new(0.0, 6.0, 0.0));
+    close(position(1)[2], Vec3::new(1.0, 1.0, -1.0));
+    close(position(2)[2], Vec3::new(0.0, 6.0, 0.0));
     let model = street.triangles(&pose);
     assert_eq!((model.indices.len(), model.positions.len()), (3, 9));
     assert!(matches!(street.nodes[6].local, Local::Matrix(_)));

@@ -5,7 +5,7 @@ use downpour_scene::Budget;
 use downpour_scene::sky::{SUN_THRESHOLD, read_sky};
 
 pub(crate) fn photographs_of_skies() {
-    for (file, sun_share) in [
+    for (file, sun_fraction) in [
         ("rooitou_park_1k.hdr", Some(0.5..0.8)),
         ("kiara_1_dawn_1k.hdr", None),
         ("potsdamer_platz_1k.hdr", None),
@@ -16,10 +16,10 @@ pub(crate) fn photographs_of_skies() {
         let before = sky.mean_radiance();
         let sun = sky.extract_sun(SUN_THRESHOLD);
         let after = sky.mean_radiance();
-        let share = 1.0 - after[1] / before[1];
-        println!("{file}: mean {before:?}, {share:.3} of green in {sun:?}");
-        if let Some(expected) = sun_share {
-            assert!(expected.contains(&share), "{file}: {share}");
+        let fraction = 1.0 - after[1] / before[1];
+        println!("{file}: mean {before:?}, {fraction:.3} of green in {sun:?}");
+        if let Some(expected) = sun_fraction {
+            assert!(expected.contains(&fraction), "{file}: {fraction}");
             let sun = sun.expect("a sun in the park");
             assert!(sun.direction[1] > 0.1 && sun.angular_radius < 0.03, "{sun:?}");
         }

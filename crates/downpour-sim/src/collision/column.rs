@@ -11,7 +11,7 @@ use super::{CollisionFrame, CollisionTexel};
 /// Segment of a drop's path within a texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CollisionPiece {
-    /// Start: texels from the center, and metres of depth.
+    /// Start: texels from the center, and meters of depth.
     pub start: Vec3,
     /// End, as `start`.
     pub end: Vec3,
@@ -68,7 +68,7 @@ pub fn collision_column(
             let kind = if shallow { COLLISION_SURFACE } else { COLLISION_WALL };
             return CollisionMeeting { kind, ..surface(0.0, layer, 0, count) };
         }
-        // Planes of neighbouring texels do not join exactly at the border.
+        // Planes of neighboring texels do not join exactly at the border.
         if !solid && count > piece.before && shallow {
             return surface(0.0, layer, 0, count);
         }

@@ -18,13 +18,13 @@ pub struct CollisionHit {
     /// Fraction of the path, 0 to 1. For `COLLISION_OPEN`: the fraction that was followed, 1 except for paths across
     /// more than 31 borders of texels.
     pub fraction: f32,
-    /// Unit vector towards the side that the drop came from; 0 for `COLLISION_OPEN`.
+    /// Unit vector toward the side that the drop came from; 0 for `COLLISION_OPEN`.
     pub normal: Vec3,
 }
 
-/// Converts a position to map coordinates: texels across, texels along, metres of depth.
+/// Converts a position to map coordinates: texels across, texels along, meters of depth.
 #[must_use]
-pub fn collision_place(map: &CollisionFrame, at: Vec3) -> Vec3 {
+pub fn collision_position(map: &CollisionFrame, at: Vec3) -> Vec3 {
     let offset = at - Vec3::from(map.low);
     let [x, y] = map.per_edge;
     Vec3::new(
@@ -40,7 +40,7 @@ pub fn collision_turn(map: &CollisionFrame, normal: Vec3) -> Vec3 {
     Vec3::from(map.across) * normal.x + Vec3::from(map.along) * normal.y - Vec3::from(map.fall) * normal.z
 }
 
-/// Normal of a wall that stops a drop: against its path across the map. `way` is in texels and metres of depth.
+/// Normal of a wall that stops a drop: against its path across the map. `way` is in texels and meters of depth.
 #[must_use]
 pub fn collision_wall(map: &CollisionFrame, way: Vec3) -> Vec3 {
     let [width, height] = map.edge;
@@ -72,7 +72,7 @@ fn corner(position: Vec2) -> Vec2 {
 /// Number of surfaces above a position, and the lowest of them (0: none).
 #[must_use]
 pub fn collision_cover(map: &CollisionFrame, texels: &[CollisionTexel], at: Vec3) -> [u32; 2] {
-    let position = collision_place(map, at);
+    let position = collision_position(map, at);
     let corner = corner(position.truncate());
     let texel = collision_texel(map, texels, corner.as_ivec2());
     let count =
@@ -100,8 +100,8 @@ pub fn collision_find(
     start: Vec3,
     end: Vec3,
 ) -> CollisionHit {
-    let origin = collision_place(map, start);
-    let way = collision_place(map, end) - origin;
+    let origin = collision_position(map, start);
+    let way = collision_position(map, end) - origin;
     let axis =
         |k: usize, if_still: f32, f: &dyn Fn(f32) -> f32| if way[k] != 0.0 { f(way[k]) } else { if_still };
     let inverse = [0, 1].map(|k| axis(k, 1.0, &|w| 1.0 / w));

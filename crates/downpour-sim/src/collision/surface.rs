@@ -42,7 +42,7 @@ pub fn collision_solid(surface: u32) -> bool {
     surface & COLLISION_SOLID != 0
 }
 
-/// Normal of a surface, not normalised.
+/// Normal of a surface, not normalized.
 #[must_use]
 pub fn collision_square(surface: u32) -> Vec3 {
     let [x, y] = packing_unpack_snorm(surface & !COLLISION_SOLID);
@@ -56,7 +56,7 @@ pub fn collision_normal(surface: u32) -> Vec3 {
     square * (1.0 / square.dot(square).sqrt())
 }
 
-/// Slope of a surface: increase of depth per metre across and along.
+/// Slope of a surface: increase of depth per meter across and along.
 #[must_use]
 pub fn collision_slope(surface: u32) -> Vec2 {
     let square = collision_square(surface);
@@ -66,10 +66,10 @@ pub fn collision_slope(surface: u32) -> Vec2 {
 /// Depths of a texel's surfaces at an offset from its center, m, ascending. `offset` is in texels.
 #[must_use]
 pub fn collision_depths(map: &CollisionFrame, texel: &CollisionTexel, offset: Vec2) -> [f32; LAYERS] {
-    let metres = offset * Vec2::from(map.edge);
+    let meters = offset * Vec2::from(map.edge);
     let mut above = -COLLISION_NONE;
     std::array::from_fn(|k| {
-        let deeper = collision_slope(texel.surfaces[k]).dot(metres);
+        let deeper = collision_slope(texel.surfaces[k]).dot(meters);
         // Planes that cross within the texel coincide from there on.
         above = above.max(texel.depths[k] + deeper.max(-map.steep).min(map.steep));
         above

@@ -7,17 +7,17 @@ use super::SceneBuilder;
 use crate::material::{TextureSlot, TextureUse};
 
 /// The largest edge of a texture: larger ones are halved until they fit.
-const LARGEST_EDGE: u32 = 2048;
+const MAX_EDGE: u32 = 2048;
 
 impl SceneBuilder {
     /// Adds a texture of 8-bit texels with all its levels, repeating in both directions. Its slot can be changed
     /// before it is added.
     ///
-    /// Colours are stored as square roots of linear values, 8 bits each: as fine as sRGB, and decoded by one product.
+    /// Colors are stored as square roots of linear values, 8 bits each: as fine as sRGB, and decoded by one product.
     #[must_use]
     pub fn texture(&mut self, width: u32, height: u32, texels: &[[u8; 4]], of: TextureUse) -> TextureSlot {
         let decode: Vec<f32> = (0..=255u8)
-            .map(|v| if of == TextureUse::Colour { srgb_to_linear(v) } else { f32::from(v) / 255.0 })
+            .map(|v| if of == TextureUse::Color { srgb_to_linear(v) } else { f32::from(v) / 255.0 })
             .collect();
         let mut all: Vec<[f32; 4]> = texels
             .iter()
@@ -30,12 +30,12 @@ impl SceneBuilder {
         let mut sizes = vec![([width, height], 0)];
         let coarser = pyramid_levels([width, height], PyramidRounding::Down);
         sizes.extend(coarser.iter().map(|level| (level.size, level.target_texel)));
-        sizes.retain(|(size, _)| size.iter().all(|&edge| edge <= LARGEST_EDGE));
+        sizes.retain(|(size, _)| size.iter().all(|&edge| edge <= MAX_EDGE));
         let ([top_width, top_height], top) = sizes[0];
         let levels = sizes.len() as u32;
         let store = |v: f32| {
             let v = v.clamp(0.0, 1.0);
-            ((if of == TextureUse::Colour { v.sqrt() } else { v }) * 255.0).round() as u8
+            ((if of == TextureUse::Color { v.sqrt() } else { v }) * 255.0).round() as u8
         };
         let pack = |&[r, g, b, a]: &[f32; 4]| {
             u32::from_le_bytes([store(r), store(g), store(b), (a.clamp(0.0, 1.0) * 255.0).round() as u8])
@@ -46,7 +46,7 @@ impl SceneBuilder {
             matrix: [1.0, 0.0, 0.0, 1.0],
             offset: [0.0; 2],
             uv_set: 0,
-            flags: SCENE_REPEAT_U | SCENE_REPEAT_V | if of == TextureUse::Colour { SCENE_ROOTED } else { 0 },
+            flags: SCENE_REPEAT_U | SCENE_REPEAT_V | if of == TextureUse::Color { SCENE_ROOTED } else { 0 },
             width: top_width,
             height: top_height,
             first,

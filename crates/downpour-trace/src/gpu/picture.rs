@@ -17,19 +17,19 @@ use crate::data::{RenderFrame, SceneData};
 use crate::picture::picture_frame;
 use crate::scene::SceneView;
 
-/// Reason why a picture could not be made on a GPU.
+/// Error of a picture on a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuPictureError {
-    /// The picture itself is not possible.
+    /// The picture is invalid.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The GPU did not do it.
+    /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
 
-/// The pipelines of a picture: made once, used for any number of pictures.
+/// Pipelines that render pictures.
 #[derive(Clone, Debug)]
 pub struct PictureRenderer {
     gpu: Gpu,
@@ -40,7 +40,7 @@ pub struct PictureRenderer {
 }
 
 impl PictureRenderer {
-    /// Makes the pipelines.
+    /// Creates the pipelines.
     ///
     /// # Errors
     /// Returns the error of the GPU.
@@ -53,7 +53,7 @@ impl PictureRenderer {
         })
     }
 
-    /// Makes a picture: what [`render_picture`](crate::picture::render_picture) makes on the CPU.
+    /// Renders a picture, as [`render_picture`](crate::picture::render_picture) does on the CPU.
     ///
     /// # Errors
     /// [`GpuPictureError`] if the options cannot be met, or what the GPU says.
@@ -68,7 +68,7 @@ impl PictureRenderer {
         Ok(self.draw(scene, viewpoint, drops, masks, options)?.read()?)
     }
 
-    /// Makes a picture and leaves it on the device.
+    /// Renders a picture and leaves it on the device.
     ///
     /// # Errors
     /// As [`PictureRenderer::render`].
@@ -140,7 +140,7 @@ pub struct PictureOnGpu {
     clean: wgpu::Buffer,
     layer: wgpu::Buffer,
     environment: wgpu::Buffer,
-    /// The passes in their order, with the milliseconds that each took.
+    /// Passes in order, with the time of each in ms.
     pub passes: Vec<(&'static str, f64)>,
 }
 
@@ -151,7 +151,7 @@ impl PictureOnGpu {
         BehindGlass { plate: &self.clean, rain: &self.layer, environment: &self.environment }
     }
 
-    /// Reads it.
+    /// Reads the picture back.
     ///
     /// # Errors
     /// Returns the error of the GPU.
@@ -165,7 +165,7 @@ impl PictureOnGpu {
 }
 
 /// Turns of loops after which a software driver of Mesa ends a shader, without a word.
-const MOST_TURNS: u64 = 65_535;
+const MAX_LOOP_ITERATIONS: u64 = 65_535;
 
 /// Turns that a ray takes through the hierarchy, and a texture through its levels: a generous mean.
 const TURNS_PER_RAY: u64 = 200;
@@ -178,14 +178,14 @@ fn check_turns(frame: &RenderFrame) -> Result<(), GpuError> {
     let mirrored = if frame.puddle_count > 0 { 2 * sky.max(u64::from(PUDDLE_WATER_RAYS)) } else { 0 };
     let rays = 1 + lights + 2 * sky + mirrored;
     let needed = grid * grid * (rays * TURNS_PER_RAY + 2 * lights * (1 + sky));
-    if needed <= MOST_TURNS {
+    if needed <= MAX_LOOP_ITERATIONS {
         return Ok(());
     }
     Err(GpuError::OverLimit {
         what: "the work of a pixel (samples, rays to the sky, lamps), in turns of loops,".to_owned(),
         found: needed,
         limit_name: "LP_MAX_TGSI_LOOP_ITERATIONS",
-        allowed: MOST_TURNS,
+        allowed: MAX_LOOP_ITERATIONS,
     })
 }
 

@@ -7,9 +7,9 @@ use downpour_render::rain::Rain;
 use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::capture::environment_frame;
 use crate::data::RenderFrame;
-use crate::trace::TraceGather;
+use crate::trace::TraceAmbient;
 
-/// Environment map, lamps and obstacles of a scene, ready to be asked by rain.
+/// Environment map, lamps and obstacles of a scene, on the device, for rain.
 #[derive(Debug)]
 pub struct ScenePlate<'a> {
     tracer: &'a ComputeKernel,
@@ -20,7 +20,7 @@ pub struct ScenePlate<'a> {
 }
 
 impl ScenePipeline {
-    /// Makes ready to trace what `rain` asks of a scene besides its picture; `frame` is that of the picture.
+    /// Prepares what `rain` needs of a scene besides its picture; `frame` is that of the picture.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].
@@ -36,7 +36,7 @@ impl ScenePipeline {
         let of_map = environment_frame(frame, &rain.environment);
         let uniform = gpu.uniform_buffer("frame of the environment map", &of_map)?;
         // An environment map has no filter: nothing is written there.
-        let nothing = gpu.storage_buffer("no light of the sky", &[TraceGather::default()])?;
+        let nothing = gpu.storage_buffer("no light of the sky", &[TraceAmbient::default()])?;
         let tracer = self.tracer(&of_map)?;
         let bindings = tracer.bind(gpu, &scene.buffers(&uniform, &environment, &nothing))?;
         let lighting = scene.lighting(gpu, frame)?;

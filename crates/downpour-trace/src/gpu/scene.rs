@@ -8,12 +8,12 @@ use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KE
 use downpour_render::gpu::LightingOnGpu;
 
 use crate::data::{RenderFrame, SceneData};
-use crate::trace::TraceGather;
+use crate::trace::TraceAmbient;
 
 /// Most pixels of a dispatch: a submission must stay far below the time after which a driver resets.
 const PIXELS_PER_DISPATCH: u32 = 1 << 17;
 
-/// The pipeline of the scene: made once, used for any number of scenes.
+/// Pipeline that traces scenes.
 #[derive(Clone, Debug)]
 pub struct ScenePipeline {
     gpu: Gpu,
@@ -37,7 +37,7 @@ pub struct SceneOnGpu {
 }
 
 impl ScenePipeline {
-    /// Makes the pipeline.
+    /// Creates the pipeline.
     ///
     /// # Errors
     /// Returns the error of the GPU.
@@ -51,20 +51,20 @@ impl ScenePipeline {
     pub(super) fn tracer(&self, frame: &RenderFrame) -> Result<&ComputeKernel, GpuError> {
         let (wet, paned) = (frame.puddle_count > 0, frame.pane > 0);
         let [of_wet, of_paned, of_both] = &self.others;
-        let place = match (wet, paned) {
+        let cell = match (wet, paned) {
             (false, false) => return Ok(&self.plain),
             (true, false) => of_wet,
             (false, true) => of_paned,
             (true, true) => of_both,
         };
-        if let Some(kernel) = place.get() {
+        if let Some(kernel) = cell.get() {
             return Ok(kernel);
         }
         let made = tracer(&self.gpu, wet, paned)?;
-        Ok(place.get_or_init(|| made))
+        Ok(cell.get_or_init(|| made))
     }
 
-    /// Brings a scene to the device.
+    /// Uploads a scene.
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] if a buffer is larger than the device allows, or what else the GPU says.
@@ -72,7 +72,7 @@ impl ScenePipeline {
         self.upload_after(scene, None)
     }
 
-    /// Brings a scene to the device where `before` is already: only what the two do not share.
+    /// Uploads a scene, reusing the buffers that it shares with `before`.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].
@@ -93,14 +93,14 @@ impl ScenePipeline {
         self.gpu.read(&self.draw(scene, frame)?)
     }
 
-    /// Makes ready to draw a frame of a scene.
+    /// Prepares a frame of a scene.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].
     pub fn prepare(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<ScenePass<'_>, GpuError> {
         let pixels = u64::from(frame.camera.width) * u64::from(frame.camera.height);
         let picture = self.gpu.empty_buffer("picture", pixels * 16, wgpu::BufferUsages::STORAGE)?;
-        let bytes = pixels * size_of::<TraceGather>() as u64;
+        let bytes = pixels * size_of::<TraceAmbient>() as u64;
         let gather = self.gpu.empty_buffer("light of the sky", bytes, wgpu::BufferUsages::STORAGE)?;
         let rows = (PIXELS_PER_DISPATCH / frame.camera.width.max(1)).max(8).next_multiple_of(8);
         let tracer = self.tracer(frame)?;
@@ -162,7 +162,7 @@ pub struct ScenePass<'a> {
 }
 
 impl ScenePass<'_> {
-    /// The dispatches, a band of rows each: first all that trace, then all that filter.
+    /// Returns the dispatches, one band of rows each: first those that trace, then those that filter.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
         let traced = self.bands.iter().map(|band| (self.tracer, band));

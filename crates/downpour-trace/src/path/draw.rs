@@ -1,14 +1,14 @@
-//! Rays that are drawn, and rays that go on.
+//! Sampling of rays, and their continuation.
 
 use downpour_drop::optics::optics_fresnel;
 use downpour_shaders::render::path::{PATH_CANDIDATES, PATH_FLOOR, PATH_WATER_FACETS};
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_CONE, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_RIPPLED,
 };
-use downpour_shaders::render::scatter::SCATTER_DISC;
+use downpour_shaders::render::scatter::SCATTER_DISK;
 use glam::{Vec2, Vec3};
 
-use super::plan::{path_albedo, path_most};
+use super::plan::{path_albedo, path_max};
 use crate::scatter::{ScatterRay, scatter_hemisphere};
 use crate::scene::SceneView;
 use crate::scene::water::{puddle_water_mirrored, puddle_water_normal};
@@ -25,19 +25,19 @@ pub(super) fn path_water_ray(
 ) -> ScatterRay {
     let normal = puddle_water_normal(ripple, a, b);
     let along = puddle_water_mirrored(-view, normal);
-    let share = optics_fresnel(view.dot(normal).max(PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
+    let fraction = optics_fresnel(view.dot(normal).max(PUDDLE_WATER_GRAZING), PUDDLE_WATER_INDEX);
     ScatterRay {
         along,
         width: cone + PUDDLE_WATER_CONE,
         diffuse: Vec3::ZERO,
         roughness,
-        mirror: Vec3::splat(share),
+        mirror: Vec3::splat(fraction),
     }
 }
 
-/// Fraction of light that water mirrors towards a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
+/// Fraction of light that water mirrors toward a viewer: Fresnel's, in the mean over its ripples. Always the same of them: it
 /// has no noise.
-pub(super) fn path_water_share(ripple: Vec3, view: Vec3) -> f32 {
+pub(super) fn path_water_fraction(ripple: Vec3, view: Vec3) -> f32 {
     let count = if ripple.z > PUDDLE_WATER_RIPPLED { PATH_WATER_FACETS } else { 1 };
     let mut sum = 0.0;
     for k in 0..count {
@@ -48,7 +48,7 @@ pub(super) fn path_water_share(ripple: Vec3, view: Vec3) -> f32 {
     sum / count as f32
 }
 
-/// A ray that goes on from what a mirror shows, whose diffuse base takes the mirror's place.
+/// Continuation of a ray from the surface that a mirror shows; its diffuse base replaces the mirror.
 pub(super) fn path_replaced(ray: &ScatterRay, next: &ScatterRay) -> ScatterRay {
     ScatterRay {
         diffuse: next.diffuse,
@@ -58,10 +58,10 @@ pub(super) fn path_replaced(ray: &ScatterRay, next: &ScatterRay) -> ScatterRay {
     }
 }
 
-/// A ray that goes on from a surface that the ray before has met; without weight if it does not.
+/// Continuation of a ray from the surface that it met; has no weight if the ray ends there.
 pub(super) fn path_onward(ray: &ScatterRay, next: &ScatterRay, surface: &Surface, number: f32) -> ScatterRay {
     let factor = path_albedo(surface) * next.diffuse + next.mirror;
-    let probability = path_most(factor).min(1.0);
+    let probability = path_max(factor).min(1.0);
     let weight = if number < probability { 1.0 / probability.max(1.0e-6) } else { 0.0 };
     ScatterRay {
         diffuse: ray.diffuse * factor * weight,
@@ -83,7 +83,7 @@ impl SceneView<'_> {
         a: f32,
         b: f32,
         number: f32,
-        share: f32,
+        fraction: f32,
     ) -> (Vec2, f32) {
         let sky = self.data.sky_irradiance(surface.normal);
         let floor = (sky.x + sky.y + sky.z) * PATH_FLOOR + 1.0e-6;
@@ -96,7 +96,8 @@ impl SceneView<'_> {
             if surface.facet.dot(along) <= 0.0 {
                 continue;
             }
-            let width = (SCATTER_DISC * share / (PATH_CANDIDATES as f32 * (1.0 - x).max(0.01).sqrt())).sqrt();
+            let width =
+                (SCATTER_DISK * fraction / (PATH_CANDIDATES as f32 * (1.0 - x).max(0.01).sqrt())).sqrt();
             let seen = self.data.sky_cone(along, width);
             let light = seen.x + seen.y + seen.z + floor;
             sum += light;

@@ -1,7 +1,8 @@
 //! Surfaces as rays take them, and the rays that look for their light.
 
 use downpour_shaders::render::path::{
-    PATH_APART, PATH_ENCLOSED, PATH_GLANCE, PATH_GLANCE_GLOSS, PATH_MIN_GLOSS, PATH_MIXED, PATH_SHARP,
+    PATH_APART, PATH_ENCLOSED, PATH_MIN_GLOSS, PATH_MIXED, PATH_SECONDARY_MAX_SPECULAR,
+    PATH_SECONDARY_ROUGHNESS, PATH_SHARP,
 };
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_NORMAL;
 use downpour_shaders::render::scene::SCENE_BLENDED;
@@ -26,10 +27,10 @@ pub(super) struct PathPlan {
     /// Part of the latter that is drawn for the gloss.
     pub(super) chance: f32,
     /// Part of all rays that one is.
-    pub(super) share: f32,
+    pub(super) fraction: f32,
     /// True if rays of the gloss are drawn from its lobe; else they are a mirror's.
     pub(super) drawn: bool,
-    /// True if what the gloss shows is averaged over neighbouring pixels.
+    /// True if what the gloss shows is averaged over neighboring pixels.
     pub(super) kept: bool,
     /// True if the light on what the gloss shows is averaged instead.
     pub(super) replaced: bool,
@@ -45,7 +46,7 @@ impl PathPlan {
         gloss: Vec3::ZERO,
         rays: 0,
         chance: 0.0,
-        share: 0.0,
+        fraction: 0.0,
         drawn: false,
         kept: false,
         replaced: false,
@@ -54,7 +55,7 @@ impl PathPlan {
 }
 
 /// The greatest part of a color.
-pub(crate) fn path_most(color: Vec3) -> f32 {
+pub(crate) fn path_max(color: Vec3) -> f32 {
     color.max_element()
 }
 
@@ -94,9 +95,9 @@ pub(super) fn path_water_surface(start: Vec3, along: Vec3, distance: f32, ripple
 }
 
 /// A surface as it looks under water of which a fraction `clear` of the light is left.
-pub(super) fn path_soaked(surface: &Surface, clear: f32, murk: Vec3) -> Surface {
+pub(super) fn path_submerged(surface: &Surface, clear: f32, scattering_albedo: Vec3) -> Surface {
     Surface {
-        diffuse: puddle_water_albedo(surface.diffuse * clear + murk * (1.0 - clear)),
+        diffuse: puddle_water_albedo(surface.diffuse * clear + scattering_albedo * (1.0 - clear)),
         normal_reflectance: puddle_water_reflectance(surface.normal_reflectance) * clear,
         emission: surface.emission * clear,
         ..*surface
@@ -104,11 +105,11 @@ pub(super) fn path_soaked(surface: &Surface, clear: f32, murk: Vec3) -> Surface 
 }
 
 /// A surface as it looks to rays that are not a mirror's: rough, and what a metal reflects, it reflects diffusely.
-pub(super) fn path_glance(surface: &Surface, roughness: f32) -> Surface {
-    if roughness < PATH_GLANCE {
+pub(super) fn path_secondary(surface: &Surface, roughness: f32) -> Surface {
+    if roughness < PATH_SECONDARY_ROUGHNESS {
         return *surface;
     }
-    let gloss = surface.normal_reflectance.min(Vec3::splat(PATH_GLANCE_GLOSS));
+    let gloss = surface.normal_reflectance.min(Vec3::splat(PATH_SECONDARY_MAX_SPECULAR));
     Surface {
         diffuse: surface.diffuse + surface.normal_reflectance - gloss,
         normal_reflectance: gloss,
@@ -119,7 +120,7 @@ pub(super) fn path_glance(surface: &Surface, roughness: f32) -> Surface {
 
 impl SceneView<'_> {
     /// The rays of a surface that shows itself to a viewer, to whom a pixel is `footprint` wide there. `told`: means over
-    /// neighbouring pixels are taken of what they find; `free`: of what the gloss shows, too.
+    /// neighboring pixels are taken of what they find; `free`: of what the gloss shows, too.
     pub(super) fn path_plan(
         &self,
         surface: &Surface,
@@ -129,7 +130,7 @@ impl SceneView<'_> {
         free: bool,
     ) -> PathPlan {
         let cosine = surface.normal.dot(view).max(0.0);
-        // Neighbouring pixels mirror directions as far apart as this.
+        // Neighboring pixels mirror directions as far apart as this.
         let spread = 2.0 * surface.bend * footprint / cosine.max(0.2);
         let sharp = surface.roughness < PATH_SHARP;
         let gloss =
@@ -137,7 +138,7 @@ impl SceneView<'_> {
         let body = path_albedo(surface);
         let rays = self.frame.sky_rays;
         let drawn = told && free && !sharp && rays > 0;
-        // Where neighbours mirror other things, a mean over them would be wider than the lobe.
+        // Where neighbors mirror other things, a mean over them would be wider than the lobe.
         let kept = drawn && surface.roughness * surface.roughness >= spread * PATH_APART;
         let mut plan = PathPlan {
             body,
@@ -145,7 +146,7 @@ impl SceneView<'_> {
             gloss,
             rays,
             chance: 0.0,
-            share: if told { self.frame.ray_share } else { 1.0 / rays.max(1) as f32 },
+            fraction: if told { self.frame.ray_fraction } else { 1.0 / rays.max(1) as f32 },
             drawn,
             kept,
             replaced: false,
@@ -153,11 +154,11 @@ impl SceneView<'_> {
         };
         if rays == 0 {
             plan.body = body * (Vec3::ONE - gloss);
-        } else if path_most(body) <= 0.0 {
+        } else if path_max(body) <= 0.0 {
             plan.rays = 0;
             plan.mirrors = if drawn { rays } else { 1 };
         } else if surface.roughness < PATH_MIXED {
-            plan.mirrors = u32::from(path_most(gloss) > PATH_MIN_GLOSS);
+            plan.mirrors = u32::from(path_max(gloss) > PATH_MIN_GLOSS);
         } else if kept {
             plan.chance = scatter_chance(body, gloss);
         }

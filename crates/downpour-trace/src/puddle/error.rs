@@ -3,7 +3,7 @@
 use downpour_drop::DropError;
 use downpour_lattice::LatticeError;
 
-/// Reason why there is no puddle.
+/// Error of puddles.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PuddleError {

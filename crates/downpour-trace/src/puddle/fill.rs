@@ -7,7 +7,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// The ground of a grid of cells, row by row, and how it is filled.
+/// Ground as a grid of cells, row by row, and the degree of filling.
 #[derive(Clone, Copy, Debug)]
 pub struct Hollows<'a> {
     /// Columns and rows.
@@ -15,10 +15,10 @@ pub struct Hollows<'a> {
     /// Height of each cell, m; a number that is not finite has no ground.
     pub ground: &'a [f32],
     /// Fraction of the depth to which hollows are filled: 0 nothing, 1 until they spill.
-    pub share: f32,
-    /// The deepest water, m: hollows that are deeper are filled less.
+    pub fraction: f32,
+    /// Maximum depth of water, m: deeper hollows are filled less.
     pub deepest: f32,
-    /// Hollows less deep than this, in m, hold no water.
+    /// Minimum depth of a hollow that holds water, m.
     pub least: f32,
 }
 
@@ -41,7 +41,7 @@ pub fn fill(hollows: &Hollows<'_>) -> Vec<Option<f32>> {
         known[start] = true;
         while let Some(cell) = ahead.pop() {
             basin.push(cell);
-            for next in neighbours(hollows.size, cell) {
+            for next in neighbors(hollows.size, cell) {
                 if !known[next] && floods(next) {
                     known[next] = true;
                     ahead.push(next);
@@ -49,7 +49,7 @@ pub fn fill(hollows: &Hollows<'_>) -> Vec<Option<f32>> {
             }
         }
         let bottom = basin.iter().map(|&cell| hollows.ground[cell]).fold(f32::INFINITY, f32::min);
-        let deep = ((spill[start] - bottom) * hollows.share).min(hollows.deepest);
+        let deep = ((spill[start] - bottom) * hollows.fraction).min(hollows.deepest);
         if deep < hollows.least {
             continue;
         }
@@ -84,7 +84,7 @@ fn spill_levels(hollows: &Hollows<'_>) -> Vec<f32> {
         }
     }
     while let Some(Reverse((_, cell))) = open.pop() {
-        for next in neighbours(hollows.size, cell) {
+        for next in neighbors(hollows.size, cell) {
             if levels[next] == f32::INFINITY {
                 let own = ground(next).unwrap_or(f32::NEG_INFINITY);
                 levels[next] = own.max(levels[cell]);
@@ -102,7 +102,7 @@ fn ordered(level: f32) -> u32 {
 }
 
 /// The four cells beside a cell.
-fn neighbours([columns, rows]: [usize; 2], cell: usize) -> impl Iterator<Item = usize> {
+fn neighbors([columns, rows]: [usize; 2], cell: usize) -> impl Iterator<Item = usize> {
     let (x, y) = (cell % columns, cell / columns);
     let beside = [
         (x > 0).then(|| cell - 1),
@@ -118,10 +118,10 @@ mod tests {
     use super::*;
     use glam::Vec2;
 
-    fn filled(size: [usize; 2], share: f32, ground: impl Fn(f32, f32) -> f32) -> Vec<Option<f32>> {
+    fn filled(size: [usize; 2], fraction: f32, ground: impl Fn(f32, f32) -> f32) -> Vec<Option<f32>> {
         let ground: Vec<f32> =
             (0..size[0] * size[1]).map(|i| ground((i % size[0]) as f32, (i / size[0]) as f32)).collect();
-        fill(&Hollows { size, ground: &ground, share, deepest: 10.0, least: 1.0e-3 })
+        fill(&Hollows { size, ground: &ground, fraction, deepest: 10.0, least: 1.0e-3 })
     }
 
     /// Two bowls whose rims are at 1 and at 2, the second with a notch at 1.5.
@@ -161,7 +161,7 @@ mod tests {
         let ground: Vec<f32> =
             (0..400u16).map(|i| if (5..8).contains(&(i % 20)) && i / 20 == 9 { -2.0 } else { 0.0 }).collect();
         let levels = |deepest, least| {
-            fill(&Hollows { size: [20, 20], ground: &ground, share: 1.0, deepest, least })[9 * 20 + 6]
+            fill(&Hollows { size: [20, 20], ground: &ground, fraction: 1.0, deepest, least })[9 * 20 + 6]
         };
         assert_eq!(levels(10.0, 0.1), Some(0.0));
         assert_eq!(levels(0.5, 0.1), Some(-1.5));

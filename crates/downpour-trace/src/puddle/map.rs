@@ -2,7 +2,7 @@
 
 use downpour_math::ops;
 use downpour_shaders::bvh::BVH_FAR;
-use downpour_shaders::render::puddle_water::PUDDLE_WATER_LEAST;
+use downpour_shaders::render::puddle_water::PUDDLE_WATER_MIN_DEPTH;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use crate::data::SceneData;
 /// Land beside water tells how far it lies over the water's level up to this far, m: the shore runs between the cells.
 const SHORE_M: f32 = 5.0e-3;
 
-/// Cells round the water that know its level.
+/// Cells around the water that know its level.
 const SHORE_CELLS: u32 = 2;
 
 /// Depth in the map of what is certainly land, m.
@@ -29,7 +29,7 @@ pub struct Ground {
     pub middle: Vec3,
     /// Edges, m.
     pub size: Vec2,
-    /// Turn about the vertical axis, rad, from +X towards +Z.
+    /// Turn about the vertical axis, rad, from +X toward +Z.
     pub turn: f32,
     /// Largest height over the middle, and depth under it, at which the ground is looked for, m.
     pub reach: f32,
@@ -43,25 +43,26 @@ pub struct PuddleMap {
     /// Columns and rows.
     pub size: [usize; 2],
     /// For each cell: height of the ground over the middle (m), rise of the water's surface over that (m), depth (m, below
-    /// 0 on land), share of the rain that arrives.
+    /// 0 on land), fraction of the rain that arrives.
     pub cells: Vec<[f32; 4]>,
 }
 
 impl Ground {
-    /// The place over a part of the rectangle, 0 to 1 along its edges, at its middle's height.
-    fn place(&self, u: f32, v: f32) -> Vec3 {
+    /// The position over a part of the rectangle, 0 to 1 along its edges, at its middle's height.
+    fn position(&self, u: f32, v: f32) -> Vec3 {
         let turn = turned(self.turn);
         let offset = turn.rotate(Vec2::new(u - 0.5, v - 0.5) * self.size);
         self.middle + Vec3::new(offset.x, 0.0, offset.y)
     }
 
-    /// Height over the middle of the highest surface within reach, and the share of the rain that arrives there; not a
+    /// Height over the middle of the highest surface within reach, and the fraction of the rain that arrives there; not a
     /// number where there is none.
     fn measure(&self, scene: &SceneData, size: [usize; 2]) -> (Vec<f32>, Vec<f32>) {
         let [columns, rows] = size;
         let cell = |i: usize| {
             let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
-            let top = self.place(part(i % columns, columns), part(i / columns, rows)) + Vec3::Y * self.reach;
+            let top =
+                self.position(part(i % columns, columns), part(i / columns, rows)) + Vec3::Y * self.reach;
             let down = scene.surface_hit(top, Vec3::NEG_Y, 0.0, 2.0 * self.reach);
             let Some(hit) = down else { return (f32::NAN, 0.0) };
             let height = self.reach - hit.distance;
@@ -74,7 +75,7 @@ impl Ground {
 }
 
 impl PuddleMap {
-    /// Water in the hollows of a scene. `relief` is what the ground has beside its model; `share`, `deepest` (m) and `least`
+    /// Water in the hollows of a scene. `relief` is what the ground has beside its model; `fraction`, `deepest` (m) and `least`
     /// (m) are those of [`Hollows`].
     #[must_use]
     pub fn found(
@@ -82,7 +83,7 @@ impl PuddleMap {
         ground: &Ground,
         size: [usize; 2],
         relief: &Relief,
-        [share, deepest, least]: [f32; 3],
+        [fraction, deepest, least]: [f32; 3],
     ) -> Self {
         let (model, open) = ground.measure(scene, size);
         let [columns, rows] = size;
@@ -90,11 +91,11 @@ impl PuddleMap {
             .into_par_iter()
             .map(|i| {
                 let part = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
-                let place = ground.place(part(i % columns, columns), part(i / columns, rows));
-                model[i] + relief.height(Vec2::new(place.x, place.z))
+                let position = ground.position(part(i % columns, columns), part(i / columns, rows));
+                model[i] + relief.height(Vec2::new(position.x, position.z))
             })
             .collect();
-        let mut levels = fill(&Hollows { size, ground: &uneven, share, deepest, least });
+        let mut levels = fill(&Hollows { size, ground: &uneven, fraction, deepest, least });
         // Who is beside water knows its level too, so that the shore runs between the cells.
         let wet: Vec<bool> = levels.iter().map(Option::is_some).collect();
         for _ in 0..SHORE_CELLS {
@@ -107,7 +108,7 @@ impl PuddleMap {
             };
             let depth = level - uneven[i];
             // Land that is lower than water beside it is behind a shore.
-            let depth = if wet[i] { depth } else { depth.clamp(-SHORE_M, -0.1 * PUDDLE_WATER_LEAST) };
+            let depth = if wet[i] { depth } else { depth.clamp(-SHORE_M, -0.1 * PUDDLE_WATER_MIN_DEPTH) };
             [height, (level - model[i]).max(0.0), depth, open[i]]
         };
         Self { ground: *ground, size, cells: (0..columns * rows).map(cell).collect() }
@@ -123,7 +124,7 @@ impl PuddleMap {
         let (model, open) = ground.measure(scene, size);
         let cell = |((&height, &open), &depth): ((&f32, &f32), &f32)| {
             if height.is_finite() {
-                [height, 0.0, if depth > 0.0 { depth } else { -0.1 * PUDDLE_WATER_LEAST }, open]
+                [height, 0.0, if depth > 0.0 { depth } else { -0.1 * PUDDLE_WATER_MIN_DEPTH }, open]
             } else {
                 [-2.0 * ground.reach, 0.0, LAND_M, 0.0]
             }
@@ -134,7 +135,7 @@ impl PuddleMap {
     /// Area under water, m^2.
     #[must_use]
     pub fn area_m2(&self) -> f32 {
-        let wet = self.cells.iter().filter(|cell| cell[2] >= PUDDLE_WATER_LEAST).count();
+        let wet = self.cells.iter().filter(|cell| cell[2] >= PUDDLE_WATER_MIN_DEPTH).count();
         wet as f32 * self.cell_m2()
     }
 
@@ -144,7 +145,7 @@ impl PuddleMap {
         self.cells.iter().map(|cell| cell[2].max(0.0)).sum::<f32>() * self.cell_m2()
     }
 
-    /// The greatest depth, m.
+    /// Maximum depth, m.
     #[must_use]
     pub fn deepest_m(&self) -> f32 {
         self.cells.iter().map(|cell| cell[2]).fold(0.0, f32::max)
@@ -160,7 +161,7 @@ pub(super) fn turned(angle: f32) -> Vec2 {
     Vec2::new(ops::cos(angle), ops::sin(angle))
 }
 
-/// Levels with those of their neighbours: the highest of them where there is none.
+/// Levels with those of their neighbors: the highest of them where there is none.
 fn spread(levels: &[Option<f32>], [columns, rows]: [usize; 2]) -> Vec<Option<f32>> {
     let at = |x: isize, y: isize| {
         let inside = x >= 0 && y >= 0 && x < columns as isize && y < rows as isize;

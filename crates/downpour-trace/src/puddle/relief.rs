@@ -9,7 +9,7 @@ use downpour_math::rng::{rng_draw, rng_unit, seed_words};
 use glam::Vec2;
 
 /// The longest wave, m.
-const LONGEST_M: f32 = 8.0;
+const MAX_WAVELENGTH_M: f32 = 8.0;
 
 /// Octaves: the shortest wave is 0.5 m.
 const OCTAVES: u32 = 5;
@@ -20,19 +20,19 @@ const SQUARE_MEAN: f32 = 0.204_6;
 /// Dimension of the random numbers.
 const DIMENSION: u32 = 4_300;
 
-/// The unevenness of some ground.
+/// Unevenness of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relief {
-    /// Root of the mean of the square of the height, m.
+    /// Root mean square of the height, m.
     pub rms_m: f32,
-    /// Another number, other ground.
+    /// Seed: another seed gives another ground.
     pub seed: u64,
 }
 
 impl Relief {
-    /// Height at a place of the horizontal plane, m.
+    /// Height at a position of the horizontal plane, m.
     #[must_use]
-    pub fn height(&self, place_m: Vec2) -> f32 {
+    pub fn height(&self, position_m: Vec2) -> f32 {
         if self.rms_m <= 0.0 {
             return 0.0;
         }
@@ -40,22 +40,22 @@ impl Relief {
         // 1 + 1/2 + 1/4 + ...
         let whole = 2.0 - ops::exp2(1.0 - OCTAVES as f32);
         let mut sum = 0.0;
-        let mut wave = LONGEST_M;
-        let mut share = 1.0;
+        let mut wave = MAX_WAVELENGTH_M;
+        let mut fraction = 1.0;
         for octave in 0..OCTAVES {
             // Turned from octave to octave, so that the squares do not show.
             let angle = 0.9 * octave as f32 + 0.3;
-            let turned = Vec2::new(ops::cos(angle), ops::sin(angle)).rotate(place_m);
+            let turned = Vec2::new(ops::cos(angle), ops::sin(angle)).rotate(position_m);
             // A square is half a wave.
-            sum += (share / SQUARE_MEAN).sqrt() * noise(turned / (0.5 * wave), seed, octave);
+            sum += (fraction / SQUARE_MEAN).sqrt() * noise(turned / (0.5 * wave), seed, octave);
             wave *= 0.5;
-            share *= 0.5;
+            fraction *= 0.5;
         }
         sum * self.rms_m / whole.sqrt()
     }
 }
 
-/// Values between -1 and 1 at whole places, mixed between them.
+/// Values between -1 and 1 at integer positions, interpolated between them.
 fn noise(at: Vec2, seed: [u32; 2], octave: u32) -> f32 {
     let corner = at.floor();
     let part = at - corner;
@@ -95,8 +95,8 @@ mod tests {
         let relief = Relief { rms_m: 1.0, seed: 11 };
         let differences = |apart: f32| {
             variance((0..40_000).map(|i| {
-                let place = Vec2::new((i % 200) as f32, (i / 200) as f32) * 0.731;
-                relief.height(place + Vec2::new(apart, 0.0)) - relief.height(place)
+                let position = Vec2::new((i % 200) as f32, (i / 200) as f32) * 0.731;
+                relief.height(position + Vec2::new(apart, 0.0)) - relief.height(position)
             }))
         };
         let growth = differences(1.6) / differences(0.4);

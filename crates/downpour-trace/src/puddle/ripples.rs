@@ -21,7 +21,7 @@ const STEP_S: f64 = 5.0e-3;
 /// Ripples older than this have gone, s.
 const MEMORY_S: f64 = 2.5;
 
-/// The surface of water in the rain.
+/// Ripples of water in the rain.
 #[derive(Debug)]
 pub struct Ripples {
     lattice: Puddle,
@@ -41,7 +41,7 @@ impl Ripples {
         Ok(Self { lattice, rain, step: step_of(time_s - MEMORY_S) })
     }
 
-    /// Lets rain fall until a time in seconds. The same ripples for any division of the time into parts of up to 5 s; a time
+    /// Steps the rain to a time in seconds. The ripples do not depend on the division of the time into parts of up to 5 s; a time
     /// longer after the last one begins anew with level water.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Puddles as rows of the scene's table. Twin of `shaders/wgsl/render/puddle.wgsl`.
 
-use downpour_shaders::render::puddle_water::{PUDDLE_WATER_MOST, PUDDLE_WATER_ROWS};
+use downpour_shaders::render::puddle_water::{PUDDLE_WATER_MAX_COUNT, PUDDLE_WATER_ROWS};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::map::{PuddleMap, turned};
@@ -9,17 +9,17 @@ use crate::data::SceneData;
 /// Appearance of a puddle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PuddleLook {
-    /// Size of the ripples, as a multiple of what they are.
+    /// Size of the ripples, as a multiple of the true one.
     pub scale: f32,
     /// Turn of the ripples, rad.
     pub angle: f32,
-    /// Slopes of the ripples, as a multiple of what they are.
+    /// Slopes of the ripples, as a multiple of the true ones.
     pub influence: f32,
     /// Water less deep than this, in m, has smaller ripples.
     pub rippling_depth: f32,
     /// Albedo of water so deep that the ground is not seen.
-    pub murk: Vec3,
-    /// Share of light that is lost per metre of water, 1/m.
+    pub scattering_albedo: Vec3,
+    /// Fraction of light that is lost per meter of water, 1/m.
     pub extinction: f32,
 }
 
@@ -31,22 +31,22 @@ impl Default for PuddleLook {
             angle: 0.0,
             influence: 1.0,
             rippling_depth: 1.5e-3,
-            murk: Vec3::new(0.12, 0.105, 0.08),
+            scattering_albedo: Vec3::new(0.12, 0.105, 0.08),
             extinction: 4.0,
         }
     }
 }
 
-/// Puddles and their ripples on their way into a scene.
+/// Puddles and their ripples, to be added to a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct PuddleRows<'a> {
-    /// The puddles, at most [`PUDDLE_WATER_MOST`]; those beyond are left out.
+    /// The puddles, at most [`PUDDLE_WATER_MAX_COUNT`]; those beyond are left out.
     pub puddles: &'a [(PuddleMap, PuddleLook)],
     /// Columns of the finest level of the ripples, levels, edge of a cell (m).
     pub shape: (u32, u32, f32),
     /// [`Ripples::slopes`](super::Ripples::slopes); none: level water.
     pub slopes: &'a [[f32; 4]],
-    /// Added to the place of each map, m.
+    /// Added to the position of each map, m.
     pub shift: Vec3,
 }
 
@@ -62,8 +62,8 @@ pub(crate) struct RenderPuddle {
     /// Ripples: scale, cosine and sine of the angle, influence.
     pub(crate) ripples: Vec4,
     /// Albedo of deep water.
-    pub(crate) murk: Vec3,
-    /// Fraction of light that is lost per metre of water, 1/m.
+    pub(crate) scattering_albedo: Vec3,
+    /// Fraction of light that is lost per meter of water, 1/m.
     pub(crate) extinction: f32,
     /// Depth of full ripples, and the puddle's own part of the lattice.
     pub(crate) own: Vec3,
@@ -94,7 +94,7 @@ impl SceneData {
             axes: numbers(1),
             map: [columns, lines, texels],
             ripples: numbers(3),
-            murk: numbers(4).truncate(),
+            scattering_albedo: numbers(4).truncate(),
             extinction: numbers(4).w,
             own: numbers(5).truncate(),
         }
@@ -112,14 +112,14 @@ impl SceneData {
         Vec4::from(self.table[row as usize].map(f32::from_bits))
     }
 
-    /// Sets the puddles on the ground, in place of those that are there.
+    /// Sets the puddles of the scene; replaces earlier ones.
     pub fn set_puddles(&mut self, rows: &PuddleRows<'_>) {
         // A pane comes after the puddles in the table, wherever they end.
         let pane = self.take_pane();
         if self.puddle_count > 0 {
             self.table.truncate(self.puddles as usize);
         }
-        let puddles = &rows.puddles[..rows.puddles.len().min(PUDDLE_WATER_MOST as usize)];
+        let puddles = &rows.puddles[..rows.puddles.len().min(PUDDLE_WATER_MAX_COUNT as usize)];
         self.puddles = self.table.len() as u32;
         self.puddle_count = puddles.len() as u32;
         if !puddles.is_empty() {
@@ -145,7 +145,12 @@ impl SceneData {
                 words([turn.x, turn.y, half.x, half.y]),
                 [map.size[0] as u32, map.size[1] as u32, first, 0],
                 words([look.scale, ripples.x, ripples.y, look.influence]),
-                words([look.murk.x, look.murk.y, look.murk.z, look.extinction]),
+                words([
+                    look.scattering_albedo.x,
+                    look.scattering_albedo.y,
+                    look.scattering_albedo.z,
+                    look.extinction,
+                ]),
                 words([look.rippling_depth, own.x, own.y, 0.0]),
             ]);
             first += map.cells.len() as u32;

@@ -5,7 +5,7 @@ use downpour_render::light::{Light, light_weight};
 use downpour_render::plate::Lighting;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OUTSIDE};
-use downpour_shaders::render::scene::{SCENE_BLENDED, SCENE_LAYERS, SCENE_LEAST_LAMP, SCENE_LEAST_ROUGHNESS};
+use downpour_shaders::render::scene::{SCENE_BLENDED, SCENE_LAYERS, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS};
 use glam::{Vec2, Vec3};
 
 use super::SceneView;
@@ -33,13 +33,13 @@ struct SceneArrival {
 }
 
 impl SceneView<'_> {
-    /// Share of light that reaches a place from a distance along a direction: surfaces that let light through dim it.
-    pub(crate) fn scene_visibility(&self, place: Vec3, direction: Vec3, distance: f32) -> Vec3 {
+    /// Fraction of light that reaches a position from a distance along a direction: surfaces that let light through dim it.
+    pub(crate) fn scene_visibility(&self, position: Vec3, direction: Vec3, distance: f32) -> Vec3 {
         let nearest = self.frame.nearest;
         let mut from_distance = nearest;
         let mut visible = Vec3::ONE;
         for _ in 0..SCENE_LAYERS {
-            let hit = self.data.surface_hit(place, direction, from_distance, distance - nearest);
+            let hit = self.data.surface_hit(position, direction, from_distance, distance - nearest);
             let Some(hit) = hit else { return visible };
             let material = self.data.material_load(self.data.corners[hit.triangle as usize * 3].material);
             if material.flags & SCENE_BLENDED != 0 {
@@ -57,15 +57,15 @@ impl SceneView<'_> {
     /// Light of row `index` as it arrives at a surface.
     ///
     /// `standoff`: a lamp that is nearer to the surface's plane than this gives it the same light from so far: a spot close
-    /// to a lamp is small, and far brighter than all round it. `under`: the depth of level water over the surface, and how far
+    /// to a lamp is small, and far brighter than all around it. `under`: the depth of level water over the surface, and how far
     /// the water's surface is over it in the model; light is refracted where it enters, and what Fresnel's equations do not
     /// reflect goes in.
     fn scene_arrival(&self, index: u32, surface: &Surface, standoff: f32, under: Vec2) -> SceneArrival {
         let nearest = self.frame.nearest;
-        let mut place = surface.position;
-        let mut light = self.data.light_load(index).light_sample(place, 0.0);
+        let mut position = surface.position;
+        let mut light = self.data.light_load(index).light_sample(position, 0.0);
         let mut arrival = SceneArrival {
-            start: place + surface.facet * nearest,
+            start: position + surface.facet * nearest,
             distance: light.distance,
             along: light.direction,
             spread: light.spread,
@@ -77,16 +77,17 @@ impl SceneView<'_> {
         let moved = if height > 0.0 && height < standoff { 1 } else { 0 };
         let passes = if under.x > 0.0 { 2 } else { moved };
         for _ in 0..passes {
-            place = surface.position - surface.facet * (standoff - height);
+            position = surface.position - surface.facet * (standoff - height);
             if under.x > 0.0 {
-                place = surface.position + Vec3::Y * under.y + puddle_water_entry(light.direction, under.x);
+                position =
+                    surface.position + Vec3::Y * under.y + puddle_water_entry(light.direction, under.x);
             }
-            light = self.data.light_load(index).light_sample(place, 0.0);
+            light = self.data.light_load(index).light_sample(position, 0.0);
         }
         arrival.direction = light.direction;
         arrival.irradiance = light.irradiance;
         if under.x > 0.0 {
-            arrival.start = place + Vec3::Y * nearest;
+            arrival.start = position + Vec3::Y * nearest;
             arrival.distance = light.distance;
             arrival.along = light.direction;
             arrival.direction = puddle_water_beneath(light.direction);
@@ -102,19 +103,18 @@ impl SceneView<'_> {
         arrival
     }
 
-    /// Light of one lamp on a surface, towards the viewer, if nothing is between them.
+    /// Light of one lamp on a surface, toward the viewer, if nothing is between them.
     fn scene_lamp(&self, surface: &Surface, view: Vec3, light: &SceneArrival) -> Vec3 {
         if surface.facet.dot(light.direction) <= 0.0 {
             return Vec3::ZERO;
         }
-        let alpha =
-            (surface.roughness * surface.roughness).max(SCENE_LEAST_ROUGHNESS * SCENE_LEAST_ROUGHNESS);
+        let alpha = (surface.roughness * surface.roughness).max(SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS);
         let (diffuse, normal_reflectance) = (surface.diffuse * light.diffuse, surface.normal_reflectance);
         light.irradiance
             * brdf_direct(diffuse, normal_reflectance, alpha, surface.normal, view, light.direction)
     }
 
-    /// Light of lamps and sun on a surface, towards the viewer. With `draws` of 0, or of at least as many as there are, all
+    /// Light of lamps and sun on a surface, toward the viewer. With `draws` of 0, or of at least as many as there are, all
     /// lamps are asked whether something hides them; else so many are drawn by what each would give (`chance` in [0, 1)),
     /// for all of them. `standoff` and `under`: [`SceneView::scene_arrival`].
     pub(crate) fn scene_direct(
@@ -133,14 +133,14 @@ impl SceneView<'_> {
             let arrival = self.scene_arrival(k, surface, standoff, under);
             total += light_weight(self.scene_lamp(surface, view, &arrival));
         }
-        // Places at equal steps along what all give together: the lamps that they fall on are drawn.
+        // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
         let step = total / draws.max(1) as f32;
         let (mut run, mut next) = (0.0, chance * step);
         for k in 0..count {
             let arrival = self.scene_arrival(k, surface, standoff, under);
             let lit = self.scene_lamp(surface, view, &arrival);
-            let share = light_weight(lit);
-            run += share;
+            let fraction = light_weight(lit);
+            run += fraction;
             let mut weight = 1.0;
             if few {
                 if next >= run {
@@ -148,12 +148,13 @@ impl SceneView<'_> {
                 }
                 let times = ((run - next) / step).floor() + 1.0;
                 next += times * step;
-                weight = times * step / share;
-            } else if share <= total * SCENE_LEAST_LAMP {
+                weight = times * step / fraction;
+            } else if fraction <= total * SCENE_MIN_LAMP {
                 continue;
             }
             let visible = self.scene_visibility(arrival.start, arrival.along, arrival.distance);
-            let pane = self.pane_shadow_share(arrival.start, arrival.along, arrival.distance, arrival.spread);
+            let pane =
+                self.pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
             sum += lit * visible * (pane * weight);
         }
         sum

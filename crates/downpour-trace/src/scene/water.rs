@@ -15,15 +15,15 @@
 use downpour_math::ops;
 use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_shaders::render::puddle_water::{
-    PUDDLE_WATER_DIMENSION, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_INSIDE,
-    PUDDLE_WATER_LEAST, PUDDLE_WATER_MESH, PUDDLE_WATER_OUTSIDE, PUDDLE_WATER_SLACK,
+    PUDDLE_WATER_DIMENSION, PUDDLE_WATER_GRAZING, PUDDLE_WATER_INDEX, PUDDLE_WATER_INSIDE, PUDDLE_WATER_MESH,
+    PUDDLE_WATER_MIN_DEPTH, PUDDLE_WATER_OUTSIDE, PUDDLE_WATER_SLACK,
 };
 use glam::{Vec2, Vec3, Vec4};
 
 use super::SceneView;
 use crate::puddle::RenderPuddle;
 
-/// Water over a place.
+/// Water over a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PuddleWater {
     /// Number of the puddle.
@@ -32,13 +32,13 @@ pub(crate) struct PuddleWater {
     pub(crate) depth: f32,
     /// Height of the surface over the position, m.
     pub(crate) rise: f32,
-    /// Share of the rain that arrives.
+    /// Fraction of the rain that arrives.
     pub(crate) open: f32,
 }
 
 impl SceneView<'_> {
     /// A texel of a map: ground over the map's height (m), rise of the surface over the ground (m), depth (m, below 0 on
-    /// land), share of the rain that arrives.
+    /// land), fraction of the rain that arrives.
     fn puddle_water_texel(&self, map: [u32; 3], x: i32, y: i32) -> Vec4 {
         let [columns, rows, first] = map;
         let column = x.clamp(0, columns as i32 - 1) as u32;
@@ -46,11 +46,11 @@ impl SceneView<'_> {
         self.data.puddle_texel(first + line * columns + column)
     }
 
-    /// The map over a place, bilinear. Beyond the map all is land.
-    fn puddle_water_map(&self, puddle: &RenderPuddle, place: Vec3) -> Vec4 {
+    /// The map over a position, bilinear. Beyond the map all is land.
+    fn puddle_water_map(&self, puddle: &RenderPuddle, position: Vec3) -> Vec4 {
         let (axes, map) = (puddle.axes, puddle.map);
         let [columns, rows, _] = map;
-        let (dx, dz) = (place.x - puddle.middle.x, place.z - puddle.middle.z);
+        let (dx, dz) = (position.x - puddle.middle.x, position.z - puddle.middle.z);
         let along = dx * axes.x + dz * axes.y;
         let across = dz * axes.x - dx * axes.y;
         if along.abs() >= axes.z || across.abs() >= axes.w {
@@ -66,15 +66,15 @@ impl SceneView<'_> {
         upper * (1.0 - fy) + lower * fy
     }
 
-    /// The water over a place that a ray has met, on ground whose facet rises by `upward`, or in the water.
-    pub(crate) fn puddle_water_find(&self, place: Vec3, upward: f32) -> Option<PuddleWater> {
+    /// The water over a position that a ray has met, on ground whose facet rises by `upward`, or in the water.
+    pub(crate) fn puddle_water_find(&self, position: Vec3, upward: f32) -> Option<PuddleWater> {
         (0..self.frame.puddle_count).find_map(|puddle| {
             let water = self.data.puddle_load(puddle);
-            let found = self.puddle_water_map(&water, place);
-            if found.z < PUDDLE_WATER_LEAST {
+            let found = self.puddle_water_map(&water, position);
+            if found.z < PUDDLE_WATER_MIN_DEPTH {
                 return None;
             }
-            let height = place.y - water.middle.y - found.x;
+            let height = position.y - water.middle.y - found.x;
             let rise = (found.y - height).clamp(0.0, found.y.max(0.0));
             let stands = height > 0.0 && rise > 0.0;
             let lies = height.abs() <= PUDDLE_WATER_SLACK && upward > 0.7;
@@ -91,7 +91,7 @@ impl SceneView<'_> {
         self.data.puddle_texel(first + line * size + column)
     }
 
-    /// A piece of the ripples round a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
+    /// A piece of the ripples around a vertex of the mesh: slopes, and the variance that the level does not show. `offset` is
     /// from the vertex, in the mesh's steps; the level begins at row `first`, with `steps` texels per step.
     fn puddle_water_piece(&self, vertex: [i32; 2], offset: Vec2, first: u32, size: u32, steps: f32) -> Vec3 {
         let words = rng_draw([0; 2], vertex[0] as u32, vertex[1] as u32, PUDDLE_WATER_DIMENSION);
@@ -113,7 +113,7 @@ impl SceneView<'_> {
     pub(crate) fn puddle_water_ripple(
         &self,
         puddle: u32,
-        place: Vec3,
+        position: Vec3,
         footprint: f32,
         depth: f32,
         open: f32,
@@ -135,8 +135,8 @@ impl SceneView<'_> {
         let first = head.first + (head.size * head.size - size * size) / 3 * 4;
         let steps = PUDDLE_WATER_MESH / cell * size as f32 / head.size as f32;
 
-        let px = (place.x * look.y + place.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
-        let pz = (place.z * look.y - place.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
+        let px = (position.x * look.y + position.z * look.z) / (look.x * PUDDLE_WATER_MESH) + more.y;
+        let pz = (position.z * look.y - position.x * look.z) / (look.x * PUDDLE_WATER_MESH) + more.z;
         // Skewed, so that triangles become halves of squares.
         let sx = px - pz * 0.577_350_27;
         let sz = pz * 1.154_700_5;
@@ -196,7 +196,7 @@ pub fn puddle_water_refracted(direction: Vec3, normal: Vec3) -> Vec3 {
     along / along.dot(along).sqrt()
 }
 
-/// The direction beneath level water of light from above, both towards where it comes from.
+/// The direction beneath level water of light from above, both toward where it comes from.
 #[must_use]
 pub fn puddle_water_beneath(direction: Vec3) -> Vec3 {
     let (x, z) = (direction.x / PUDDLE_WATER_INDEX, direction.z / PUDDLE_WATER_INDEX);
@@ -219,7 +219,7 @@ pub fn puddle_water_above(direction: Vec3) -> Vec3 {
     Vec3::new(x, (1.0 - x * x - z * z).max(0.0).sqrt(), z)
 }
 
-/// Albedo of what lies under water, as seen through its surface over the share that comes out along the ray: light goes
+/// Albedo of what lies under water, as seen through its surface over the fraction that comes out along the ray: light goes
 /// in diffusely, and is thrown back between ground and surface. White stays white.
 #[must_use]
 pub fn puddle_water_albedo(albedo: Vec3) -> Vec3 {
@@ -273,9 +273,9 @@ mod tests {
         for footprint in [0.0, 0.03, 0.3, 5.0] {
             let (mut shown, mut hidden) = (0.0, 0.0);
             for k in 0..10_000u16 {
-                let place =
+                let position =
                     Vec3::new(f32::from(k % 100), 0.0, f32::from(k / 100)) * 0.377 - Vec3::splat(18.0);
-                let ripple = view.puddle_water_ripple(0, place, footprint, 0.1, 1.0);
+                let ripple = view.puddle_water_ripple(0, position, footprint, 0.1, 1.0);
                 shown += (ripple.x * ripple.x + ripple.y * ripple.y) / 1.0e4;
                 hidden += ripple.z / 1.0e4;
             }

@@ -2,26 +2,26 @@
 
 use downpour_render::RenderError;
 
-/// Reason why there is no stage for a weather.
+/// Error of a stage.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StageError {
-    /// The picture cannot be made.
+    /// The picture is invalid.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The scene is larger than a renderer takes.
-    #[error("{quantity}: {found}; allowed: at most {most} ({way_out})")]
+    /// The scene exceeds a limit of the renderer.
+    #[error("{quantity}: {found}; allowed: at most {max} ({advice})")]
     OverLimit {
         /// Name of the quantity of which there is too much.
         quantity: &'static str,
         /// Amount that was found.
         found: u64,
-        /// Largest amount allowed.
-        most: u64,
+        /// Maximum allowed.
+        max: u64,
         /// Advice on what the user may do about it.
-        way_out: &'static str,
+        advice: &'static str,
     },
-    /// A moving eye is too far from where it began: places there have too few digits.
+    /// A moving eye is too far from where it began: positions there have too few digits.
     #[error(
         "camera: {distance_m} m from where the scene was set; allowed: a way within 1 km of its beginning"
     )]

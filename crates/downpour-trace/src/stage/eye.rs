@@ -7,24 +7,24 @@ use glam::{DVec3, Vec3};
 use downpour_render::camera::{EyeMotion, Viewpoint};
 
 /// Speeds, in m/s and rad/s, above which an eye has not moved but been cut to another position.
-const FASTEST_M_S: f32 = 100.0;
-const FASTEST_RAD_S: f32 = 30.0;
+const MAX_SPEED_M_S: f32 = 100.0;
+const MAX_SPEED_RAD_S: f32 = 30.0;
 
-/// Choice of the eye.
+/// Choice of the camera.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CameraChoice {
-    /// That of the weather.
+    /// The camera of the weather.
     Weather,
     /// This camera of the scene, the first with a perspective.
     Scene(usize),
-    /// One that stands in front of all that there is, a little above.
+    /// A camera in front of the whole scene, a little above it.
     Framing,
-    /// One at the height of a person's eyes that looks along -Z: there is nothing to frame.
+    /// A camera at eye level that looks along -Z, for an empty scene.
     Standing,
 }
 
 /// An eye that somebody has placed.
-pub(super) struct Seen {
+pub(super) struct CameraView {
     pub(super) choice: CameraChoice,
     pub(super) eye: DVec3,
     forward: Vec3,
@@ -34,7 +34,7 @@ pub(super) struct Seen {
     pub(super) far: Option<f64>,
 }
 
-impl Seen {
+impl CameraView {
     /// That of the weather, else the first one of the scene.
     pub(super) fn of(weather: &Weather, loaded: &Loaded, pose: &Pose, time_s: f64) -> Option<Self> {
         if let Some(path) = &weather.camera.path {
@@ -80,7 +80,7 @@ impl Seen {
         let sine = turned.length();
         let angle = downpour_math::ops::asin(sine.min(1.0));
         let turning = if sine > 1.0e-9 { turned * (angle / sine / apart_s as f32) } else { Vec3::ZERO };
-        let jumps = !(velocity.length() <= FASTEST_M_S && turning.length() <= FASTEST_RAD_S);
+        let jumps = !(velocity.length() <= MAX_SPEED_M_S && turning.length() <= MAX_SPEED_RAD_S);
         if jumps { EyeMotion::default() } else { EyeMotion { velocity, turning } }
     }
 

@@ -11,7 +11,7 @@ const ABOVE: f64 = 12.0 * std::f64::consts::PI / 180.0;
 /// Fraction of the picture that it fills.
 const FILLED: f64 = 0.85;
 
-/// Height of a person's eyes, metres.
+/// Height of a person's eyes, meters.
 const EYES_M: f32 = 1.6;
 
 /// A camera in front of a box, on the side of +Z as glTF has it, and a little above: the whole box is in the picture and

@@ -5,7 +5,7 @@ use downpour_scene::sky::SkyMap;
 use crate::sky_light::SkyLight;
 
 /// The least columns and rows from which light is summed up: skies by a formula have a single column, or a single pixel.
-const LEAST: [u32; 2] = [16, 32];
+const MIN_SIZE: [u32; 2] = [16, 32];
 
 /// Memory per pixel of a map, in bytes, while its light is prepared.
 const BYTES_PER_PIXEL: u64 = 48;
@@ -39,7 +39,7 @@ pub(super) fn light(map: &SkyMap) -> SkyLight {
 
 /// Number of times that each pixel is repeated along a row, and each row down.
 fn repeats(map: &SkyMap) -> [u32; 2] {
-    [LEAST[0].div_ceil(map.width.max(1)), LEAST[1].div_ceil(map.height.max(1))]
+    [MIN_SIZE[0].div_ceil(map.width.max(1)), MIN_SIZE[1].div_ceil(map.height.max(1))]
 }
 
 #[cfg(test)]

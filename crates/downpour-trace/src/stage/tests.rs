@@ -27,8 +27,8 @@ fn triangles(count: u32) -> Primitive {
     }
 }
 
-fn node(mesh: Option<usize>, place: Vec3) -> Node {
-    Node { mesh, local: Local::Matrix(Affine3A::from_translation(place)), ..Node::default() }
+fn node(mesh: Option<usize>, position: Vec3) -> Node {
+    Node { mesh, local: Local::Matrix(Affine3A::from_translation(position)), ..Node::default() }
 }
 
 fn scene(nodes: Vec<Node>) -> Scene {
@@ -178,7 +178,7 @@ fn times_and_sizes_are_checked() {
     }
 }
 
-/// Darkness round a subject does not change how it is exposed.
+/// Darkness around a subject does not change how it is exposed.
 #[test]
 fn exposure_is_of_what_is_lit() {
     let mut weather = Weather::default();

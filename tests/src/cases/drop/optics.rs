@@ -1,7 +1,7 @@
 //! `drop/optics.wgsl` against `downpour_drop::optics`.
 
 use downpour_drop::optics::{
-    optics_fresnel, optics_fresnel_polarised, optics_fresnel_schlick, optics_fresnel_tatarchuk,
+    optics_fresnel, optics_fresnel_polarized, optics_fresnel_schlick, optics_fresnel_tatarchuk,
     optics_reflect, optics_refract,
 };
 use downpour_math::ops;
@@ -66,8 +66,8 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::absolute(1.0e-6, "a dot product and a sum of unit vectors"),
             |a| optics_reflect(a.f32s(), a.f32s()).words(),
         ),
-        case("optics_fresnel_polarised", &[Made(interface)], FRESNEL, |a| {
-            optics_fresnel_polarised(a.f32(), a.f32()).words()
+        case("optics_fresnel_polarized", &[Made(interface)], FRESNEL, |a| {
+            optics_fresnel_polarized(a.f32(), a.f32()).words()
         }),
         case("optics_fresnel", &[Made(interface)], FRESNEL, |a| optics_fresnel(a.f32(), a.f32()).words()),
         case("optics_fresnel_schlick", &[cosine, index], FORMULA, |a| {

@@ -40,7 +40,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "drop_shape_normal",
             &SHAPE,
             &[c, Unit3, Unit3],
-            Tol::absolute(4.0e-6, "the slope above, a division (2.5 ulp) and a normalisation"),
+            Tol::absolute(4.0e-6, "the slope above, a division (2.5 ulp) and a normalization"),
             |a| drop_shape_normal(&shape(a), a.f32s(), a.f32s()).words(),
         ),
     ]

@@ -9,7 +9,7 @@ use downpour_shaders::mask::MASK_TRACE_STEPS;
 use downpour_shaders::render::specimen;
 use downpour_specimen::gpu::{GpuSpecimenError, SpecimenRenderer};
 use downpour_specimen::lamp::specimen_lamp;
-use downpour_specimen::sky::{specimen_sky_place, specimen_turns};
+use downpour_specimen::sky::{specimen_sky_position, specimen_turns};
 use downpour_specimen::trace::{
     SpecimenCamera, SpecimenLight, SpecimenRay, specimen_bounce, specimen_enter, specimen_hits, specimen_ray,
     upright_drop,
@@ -76,7 +76,7 @@ fn drop_and_light(random: [u32; 4]) -> Vec<u32> {
 }
 
 pub(super) fn light_words(light: &SpecimenLight<f32>) -> Vec<u32> {
-    ((((light.point, light.share), light.exit), light.rest), light.inside).words()
+    ((((light.point, light.fraction), light.exit), light.rest), light.inside).words()
 }
 
 pub(super) fn ray(args: &mut Args<'_>) -> SpecimenRay<f32> {
@@ -86,9 +86,9 @@ pub(super) fn ray(args: &mut Args<'_>) -> SpecimenRay<f32> {
 
 pub(super) fn light(args: &mut Args<'_>) -> SpecimenLight<f32> {
     let point = args.f32s();
-    let share = args.f32();
+    let fraction = args.f32();
     let exit = args.f32s();
-    SpecimenLight { point, share, exit, rest: args.f32(), inside: args.f32s() }
+    SpecimenLight { point, fraction, exit, rest: args.f32(), inside: args.f32s() }
 }
 
 /// A camera at 1.2 to 10^5 radii in which the drop fills most of a picture 400 samples high.
@@ -199,11 +199,11 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             |a| specimen_jitter(a.u32()).words(),
         ),
         FunctionCase::new(
-            "specimen_sky_place",
+            "specimen_sky_position",
             module,
             &[Unit3],
             Tol::absolute(4.0e-7, "two angles of the polynomial, one of them doubled"),
-            |a| specimen_sky_place(a.f32s()).words(),
+            |a| specimen_sky_position(a.f32s()).words(),
         ),
     ]
 }
@@ -250,9 +250,9 @@ pub(super) fn lit_picture(
     let cpu = render_specimen(&shape, options, sky).expect("a picture");
     let gpu = SpecimenRenderer::new(gpu)?.render(&shape, options, sky).map_err(told)?;
     let words = |image: &Image| image.pixels.iter().flat_map(IntoWords::words).collect();
-    let place = |i: u32| [i % cpu.width, i / cpu.width].map(|c| (c as f32).to_bits()).to_vec();
+    let cell = |i: u32| [i % cpu.width, i / cpu.width].map(|c| (c as f32).to_bits()).to_vec();
     Ok(Run {
-        arguments: (0..cpu.width * cpu.height).map(place).collect(),
+        arguments: (0..cpu.width * cpu.height).map(cell).collect(),
         cpu: Cpu(words(&cpu)),
         gpu: FromGpu(words(&gpu)),
         kinds: vec![WordKind::Float; 3],

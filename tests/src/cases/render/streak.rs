@@ -117,7 +117,7 @@ fn wobble_and_part(random: [u32; 4]) -> Vec<u32> {
 const INSIDE: f32 = 0.35;
 
 /// A drop, a ray that meets it, and where.
-fn wobble_and_place(random: [u32; 4]) -> Vec<u32> {
+fn wobble_and_position(random: [u32; 4]) -> Vec<u32> {
     let words = wobble_words(random[2] ^ random[1]);
     let ray = ray_of(random, INSIDE);
     let s = specimen_wobble_meet(&wobble(&mut Args::new(&words)), &ray).expect("a ray through the drop");
@@ -228,7 +228,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             };
             [s, 1.0].words()
         }),
-        FunctionCase::new("specimen_wobble_enter", wobbles, &[Made(wobble_and_place)], MEETS, |a| {
+        FunctionCase::new("specimen_wobble_enter", wobbles, &[Made(wobble_and_position)], MEETS, |a| {
             let (drop, ray) = (wobble(a), ray(a));
             light_words(&specimen_wobble_enter(&drop, &ray, a.f32()))
         }),

@@ -3,7 +3,7 @@
 use super::options::Options;
 use super::table::{self, Run};
 use super::weather::{self, Model};
-use super::{MOST, NUMBERS, NUMBERS_FRAMES, NUMBERS_RATE_MM_H, RATE_MM_H, ZOOM_DEG, walk};
+use super::{MAX_DROPS, NUMBERS, NUMBERS_FRAMES, NUMBERS_RATE_MM_H, RATE_MM_H, ZOOM_DEG, walk};
 
 /// Method, numbers, and contents of the sheets.
 pub(super) fn text(runs: &[Run], options: &Options) -> String {
@@ -30,7 +30,7 @@ pub(super) fn text(runs: &[Run], options: &Options) -> String {
          Drops are as large as drops are: a gamma law (shape {shape}) with a median volume diameter of {median} mm, \
          {RATE_MM_H} mm/h along the path and {NUMBERS_RATE_MM_H} mm/h for figures 7 and 11, frozen (shutter 0), none farther \
          than {far} m. The papers' streaks have no such size, so that theirs may be 50 m away.\n\n\
-         {MOST} drops at most, for all four. Tariq's box of 10 m, Creus and Patow's cylinder of the same volume round the \
+         {MAX_DROPS} drops at most, for all four. Tariq's box of 10 m, Creus and Patow's cylinder of the same volume round the \
          first eye, and Im & Sung's sphere then leave out the smaller drops of the rain, a whole class of sizes at a time, so \
          that they have up to a fifth less than they may; ours shortens the distance up to which each size is simulated. None \
          of the four shows all of the rain.\n\n\
@@ -49,8 +49,8 @@ pub(super) fn text(runs: &[Run], options: &Options) -> String {
          {last}| `path.png` | streaks alone; rows: {}; columns: {} |\n",
         options.fps,
         options.backend,
-        table::shares(runs, "path"),
-        table::shares(runs, "zoom"),
+        table::fractions(runs, "path"),
+        table::fractions(runs, "zoom"),
         Model::ALL.map(Model::title).join(", "),
         ZOOM_DEG.map(|fov| fov.to_string()).join(", "),
         Model::ALL.map(Model::title).join(", "),

@@ -19,7 +19,7 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Fraction of the simulated drops that are on screen; 0 without drops.
-    pub(super) fn share(&self) -> f64 {
+    pub(super) fn fraction(&self) -> f64 {
         if self.simulated > 0.0 { self.on_screen / self.simulated } else { 0.0 }
     }
 }
@@ -66,7 +66,7 @@ pub(super) mod tests {
         assert_eq!(frames.len(), 2);
         let first = frames[0];
         assert_eq!((first.number, first.drawn, first.drops_ms, first.step_ms), (0, 900.0, 10.0, 30.0));
-        assert!((first.share() - 0.96).abs() < 1.0e-12);
+        assert!((first.fraction() - 0.96).abs() < 1.0e-12);
     }
 
     #[test]

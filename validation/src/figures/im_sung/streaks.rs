@@ -77,8 +77,8 @@ fn line(picture: &mut RgbImage, from: [f64; 2], to: [f64; 2]) {
     // Longer than the picture is high happens at the eye alone.
     let steps = (to[0] - from[0]).abs().max((to[1] - from[1]).abs()).ceil().clamp(1.0, 4096.0);
     for step in 0..=steps as u32 {
-        let share = f64::from(step) / steps;
-        let [x, y] = [0, 1].map(|axis| (from[axis] + (to[axis] - from[axis]) * share).floor());
+        let fraction = f64::from(step) / steps;
+        let [x, y] = [0, 1].map(|axis| (from[axis] + (to[axis] - from[axis]) * fraction).floor());
         if x < 0.0 || y < 0.0 || x >= f64::from(picture.width()) || y >= f64::from(picture.height()) {
             continue;
         }

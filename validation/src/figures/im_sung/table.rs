@@ -27,14 +27,14 @@ fn over(frames: &[Frame], value: impl Fn(&Frame) -> f64) -> [f64; 2] {
 
 impl Run {
     /// Mean and minimum fraction of the drops on screen.
-    pub(super) fn share(&self) -> [f64; 2] {
-        over(&self.frames, Frame::share)
+    pub(super) fn fraction(&self) -> [f64; 2] {
+        over(&self.frames, Frame::fraction)
     }
 
     /// Error text of a run of ours below the aim.
     pub(super) fn miss(&self) -> Option<String> {
-        let [mean, least] = self.share();
-        let percent = |share: f64| 100.0 * share;
+        let [mean, least] = self.fraction();
+        let percent = |fraction: f64| 100.0 * fraction;
         (least.is_nan() || least < MIN_FRACTION).then(|| {
             format!(
                 "{}: {:.1} % of the simulated drops on screen, least {:.1} %; aim {:.0} %",
@@ -48,20 +48,20 @@ impl Run {
 }
 
 /// Fraction of drops on screen, of runs along a path or of single pictures.
-pub(super) fn shares(runs: &[Run], set: &str) -> String {
-    let mut text = "| model | field of view | simulated | on screen: mean | least | share: mean | least | seen: mean |\n\
+pub(super) fn fractions(runs: &[Run], set: &str) -> String {
+    let mut text = "| model | field of view | simulated | on screen: mean | least | fraction: mean | least | seen: mean |\n\
                     |---|--:|--:|--:|--:|--:|--:|--:|\n"
         .to_owned();
     for run in runs.iter().filter(|run| run.set == set) {
         let ([simulated, _], [mean, least]) =
             (over(&run.frames, |f| f.simulated), over(&run.frames, |f| f.on_screen));
-        let ([drawn, _], [share, least_share]) = (over(&run.frames, |f| f.drawn), run.share());
+        let ([drawn, _], [fraction, least_fraction]) = (over(&run.frames, |f| f.drawn), run.fraction());
         text += &format!(
             "| {} | {:.0}° | {simulated:.0} | {mean:.0} | {least:.0} | {:.2} % | {:.2} % | {drawn:.0} |\n",
             run.rain.model.title(),
             run.rain.fov_deg.unwrap_or(super::walk::FOV_DEG),
-            100.0 * share,
-            100.0 * least_share,
+            100.0 * fraction,
+            100.0 * least_fraction,
         );
     }
     text
@@ -94,15 +94,16 @@ pub(super) fn times(runs: &[Run]) -> String {
 /// A row for each run.
 pub(super) fn csv(runs: &[Run]) -> String {
     let mut text =
-        "set,model,rate_mm_h,most_drops,fov_deg,frames,simulated,on_screen_mean,on_screen_least,drawn_mean,\
+        "set,model,rate_mm_h,max_drops,fov_deg,frames,simulated,on_screen_mean,on_screen_least,drawn_mean,\
                     share_mean,share_least,frame_ms_mean,frame_ms_least,drops_ms_least,step_ms_least\n"
             .to_owned();
     for run in runs {
         let rain = &run.rain;
-        let ([seen, least_seen], [share, least_share]) = (over(&run.frames, |f| f.on_screen), run.share());
+        let ([seen, least_seen], [fraction, least_fraction]) =
+            (over(&run.frames, |f| f.on_screen), run.fraction());
         let [frame, least_frame] = over(&run.frames, |f| f.frame_ms);
         text += &format!(
-            "{},{},{},{},{},{},{:.1},{seen:.1},{least_seen},{:.1},{share:.5},{least_share:.5},{frame:.2},{least_frame:.2},\
+            "{},{},{},{},{},{},{:.1},{seen:.1},{least_seen},{:.1},{fraction:.5},{least_fraction:.5},{frame:.2},{least_frame:.2},\
              {:.2},{:.2}\n",
             run.set,
             rain.model.key(),
@@ -121,7 +122,7 @@ pub(super) fn csv(runs: &[Run]) -> String {
 
 /// A row for each frame of each run.
 pub(super) fn frames_csv(runs: &[Run], fps: u32) -> String {
-    let mut text = "set,model,most_drops,frame,time_s,simulated,on_screen,drawn,share,frame_ms\n".to_owned();
+    let mut text = "set,model,max_drops,frame,time_s,simulated,on_screen,drawn,share,frame_ms\n".to_owned();
     for run in runs {
         for frame in &run.frames {
             text += &format!(
@@ -134,7 +135,7 @@ pub(super) fn frames_csv(runs: &[Run], fps: u32) -> String {
                 frame.simulated,
                 frame.on_screen,
                 frame.drawn,
-                frame.share(),
+                frame.fraction(),
                 frame.frame_ms,
             );
         }
@@ -155,7 +156,7 @@ mod tests {
 
     #[test]
     fn shares_are_means_and_the_least() {
-        let text = shares(&[run("path", Model::View), run("number", Model::Tariq)], "path");
+        let text = fractions(&[run("path", Model::View), run("number", Model::Tariq)], "path");
         let rows: Vec<&str> = text.lines().skip(2).collect();
         assert_eq!(rows, ["| ours (view) | 18° | 1000 | 955 | 950 | 95.50 % | 95.00 % | 800 |"]);
     }

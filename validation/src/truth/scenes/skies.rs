@@ -7,8 +7,8 @@ const SIZE: [u32; 2] = [1024, 512];
 /// Elevation and azimuth of the low sun, degrees, and of the higher one.
 const LOW: [f64; 2] = [9.0, 60.0];
 const HIGH: [f64; 2] = [42.0, 200.0];
-/// Radius of the sun's disc, degrees: a few pixels.
-const DISC: f64 = 0.7;
+/// Radius of the sun's disk, degrees: a few pixels.
+const DISK: f64 = 0.7;
 
 /// Names, files and factors.
 pub(super) fn all() -> [(&'static str, Vec<u8>, f64); 4] {
@@ -36,7 +36,7 @@ fn map(radiance: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<u8> {
 }
 
 /// Blue above, brighter at the horizon, bright around the sun; dark ground below.
-fn clear([x, y, z]: [f64; 3], [elevation, azimuth]: [f64; 2], disc: f64, tint: [f64; 3]) -> [f64; 3] {
+fn clear([x, y, z]: [f64; 3], [elevation, azimuth]: [f64; 2], disk: f64, tint: [f64; 3]) -> [f64; 3] {
     let (elevation, azimuth) = (elevation.to_radians(), azimuth.to_radians());
     let flat = ops::cos(elevation);
     let sun = [flat * ops::cos(azimuth), ops::sin(elevation), flat * ops::sin(azimuth)];
@@ -47,7 +47,7 @@ fn clear([x, y, z]: [f64; 3], [elevation, azimuth]: [f64; 2], disc: f64, tint: [
     }
     let horizon = ops::exp(-6.0 * y);
     let glow = 9.0 * ops::exp(-angle / 7.0) + 0.8 * ops::exp(-angle / 40.0);
-    let inside = if angle < DISC { disc } else { 0.0 };
+    let inside = if angle < DISK { disk } else { 0.0 };
     let blue = [0.22, 0.38, 0.75];
     std::array::from_fn(|k| blue[k] + horizon * 0.5 * (0.4 + tint[k]) + (glow + inside) * tint[k])
 }

@@ -15,7 +15,7 @@ pub(in crate::scenes) enum Roof {
     Pitched { pitch_deg: f32, tiles: [f32; 3] },
     /// A steep slope with dormers, flat above.
     Mansard { tiles: [f32; 3], dormers: u32 },
-    /// A parapet of a height in metres.
+    /// A parapet of a height in meters.
     Parapet { height_m: f32 },
 }
 

@@ -7,7 +7,7 @@ use super::Tile;
 use crate::scenes::noise::{fractal, hash, mix, mix3, smooth};
 use crate::scenes::raster::Raster;
 
-/// Edges of the tiles, metres.
+/// Edges of the tiles, meters.
 pub(in crate::scenes) const BRICK_M: f32 = 1.35;
 pub(in crate::scenes) const PLASTER_M: f32 = 3.0;
 pub(in crate::scenes) const ROOF_M: f32 = 1.32;
@@ -37,7 +37,7 @@ pub(super) fn brick(look: &Bricks) -> Tile {
     const SIZE: u32 = 512;
     const COURSES: i32 = 18;
     const PAIRS: i32 = 4;
-    // Distance to the nearest edge of the brick, metres, with two random numbers of it.
+    // Distance to the nearest edge of the brick, meters, with two random numbers of it.
     let brick = |u: f32, v: f32| {
         let course = (v * COURSES as f32).floor();
         let shift = if course as i32 % 2 == 0 { 0.0 } else { 0.5 };

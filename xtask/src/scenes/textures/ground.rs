@@ -1,4 +1,4 @@
-//! Asphalt, slabs, setts, kerb stones and iron covers.
+//! Asphalt, slabs, setts, curb stones and iron covers.
 //!
 //! Albedos of dry surfaces: worn asphalt 0.10 to 0.13, concrete slabs 0.25 to 0.35, granite 0.25 to 0.30 (Oke 1987, table 1.1,
 //! and Levinson & Akbari 2002 for pavements).
@@ -7,13 +7,13 @@ use super::Tile;
 use crate::scenes::noise::{cellular, fractal, hash, mix, mix3, smooth};
 use crate::scenes::raster::Raster;
 
-/// Edges of the tiles, metres.
+/// Edges of the tiles, meters.
 pub(in crate::scenes) const ASPHALT_M: f32 = 2.4;
 /// A whole number of slabs along each edge.
 pub(in crate::scenes) const SLABS_M: f32 = 2.4;
 pub(in crate::scenes) const SETTS_M: f32 = 0.9;
-/// Length of a kerb stone; its tile is half as wide.
-pub(in crate::scenes) const KERB_M: f32 = 1.0;
+/// Length of a curb stone; its tile is half as wide.
+pub(in crate::scenes) const CURB_M: f32 = 1.0;
 pub(in crate::scenes) const COVER_M: f32 = 0.3;
 
 /// Worn asphalt: stones of 10 mm in a dark binder, polished on top.
@@ -48,7 +48,7 @@ pub(super) fn slabs() -> Tile {
     const SIZE: u32 = 512;
     const ROWS: i32 = 6;
     const COLUMNS: i32 = 4;
-    // Position within a slab in metres from its edges, and its number.
+    // Position within a slab in meters from its edges, and its number.
     let slab = |u: f32, v: f32| {
         let row = (v * ROWS as f32).floor();
         let shift = if (row as i32) % 2 == 0 { 0.0 } else { 0.5 };
@@ -119,8 +119,8 @@ fn ops_norm(a: f32, b: f32) -> f32 {
     (a * a + b * b).sqrt().sqrt()
 }
 
-/// Granite of kerb stones, one stone long, with a joint at its ends.
-pub(super) fn kerb() -> Raster {
+/// Granite of curb stones, one stone long, with a joint at its ends.
+pub(super) fn curb() -> Raster {
     Raster::new(256, 128, |u, v| {
         let grain = fractal(u, v, [128, 64], 2, 61);
         let fleck = smooth(0.62, 0.8, fractal(u, v, [90, 45], 2, 62));

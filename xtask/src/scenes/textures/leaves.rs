@@ -65,7 +65,7 @@ mod tests {
         let there = (0..n * n)
             .filter(|k| leaf((k % n) as f32 / n as f32, (k / n) as f32 / n as f32).is_some())
             .count();
-        let share = there as f32 / (n * n) as f32;
-        assert!((0.25..0.6).contains(&share), "{share}");
+        let fraction = there as f32 / (n * n) as f32;
+        assert!((0.25..0.6).contains(&fraction), "{fraction}");
     }
 }

@@ -48,7 +48,7 @@ fn curtain(view: u32, u: f32, v: f32) -> Option<(f32, [f32; 3])> {
     }
 }
 
-/// A room behind the pane: a far wall with a picture or a shelf, darker towards the floor, in [0, 1].
+/// A room behind the pane: a far wall with a picture or a shelf, darker toward the floor, in [0, 1].
 fn room(view: u32, u: f32, v: f32) -> [f32; 3] {
     let wall = mix3([0.75, 0.62, 0.42], [0.62, 0.62, 0.58], hash(view as i32, 0, 130));
     let light = mix(1.0, 0.35, v) * mix(0.75, 1.1, fractal(u, v, [3, 5], 2, 131 + view));

@@ -30,7 +30,7 @@ pub(super) struct GlassArguments {
     #[arg(long, value_name = "DEG", default_value = "90", value_parser = quantity::tilt_deg)]
     #[arg(allow_hyphen_values = true)]
     tilt: f64,
-    /// Speed of the air with the rain towards the pane, 0 to 100 m/s; at 0 no rain reaches a window.
+    /// Speed of the air with the rain toward the pane, 0 to 100 m/s; at 0 no rain reaches a window.
     #[arg(long, value_name = "M_S", default_value = "3", value_parser = quantity::speed_m_s)]
     #[arg(allow_hyphen_values = true)]
     speed: f64,
@@ -50,17 +50,17 @@ pub(super) struct GlassArguments {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Check {
-    /// Water that came is water that is there and water that went, to the nanolitre.
+    /// Water that came is water that is there and water that went, to the nanoliter.
     Mass,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Show {
-    /// Height of the water in metres; in a .png white is 1.2 mm.
+    /// Height of the water in meters; in a .png white is 1.2 mm.
     Height,
     /// Normals: x right, y down, z out of the pane.
     Normal,
-    /// Mass of each cell in nanolitres; in a .png by the cube root, white is 10 mm^3.
+    /// Mass of each cell in nanoliters; in a .png by the cube root, white is 10 mm^3.
     Mass,
 }
 
@@ -86,7 +86,7 @@ impl GlassArguments {
             self.invariants(&pane)
         })?;
         if self.check.is_some() && broken.is_none() {
-            self.common.say("mass: every nanolitre is there");
+            self.common.say("mass: every nanoliter is there");
         }
         report(&self.common, &entries, broken)
     }

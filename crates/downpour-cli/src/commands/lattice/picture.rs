@@ -32,7 +32,7 @@ enum Names {
 /// Values of all cells, and their mapping to gray or colors.
 pub(super) struct Field {
     pub(super) size: [u32; 2],
-    /// Values in an .exr: metres, units of mass, or components of a unit vector.
+    /// Values in an .exr: meters, units of mass, or components of a unit vector.
     pub(super) numbers: Vec<[f32; 3]>,
     /// 0 to 1 from a number.
     pub(super) shade: fn(f32, f32) -> f32,

@@ -69,7 +69,7 @@ enum Check {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Show {
-    /// Height over the level in metres; in a .png gray is the level, black and white are three times the rms; in a
+    /// Height over the level in meters; in a .png gray is the level, black and white are three times the rms; in a
     /// clip three times the largest rms so far.
     Height,
     /// Normals: x along the rows, y up, z along the columns.
@@ -162,7 +162,7 @@ impl PuddleArguments {
         let heights = puddle.heights();
         let volume = puddle.volume();
         let highest = heights.iter().fold(0.0f32, |most, h| most.max(h.abs()));
-        let share = volume.abs() / moved.max(f64::MIN_POSITIVE);
+        let fraction = volume.abs() / moved.max(f64::MIN_POSITIVE);
         let entry = Entry::new;
         let entries = [
             entry("steps", "steps", Datum::Count(steps), ""),
@@ -172,7 +172,7 @@ impl PuddleArguments {
             entry("energy_m4_s2", "energy", Datum::Computed(puddle.energy(), 6), "m^4/s^2"),
             entry("energy_drift", "drift of the energy", Datum::Computed(drift, 3), ""),
             entry("volume_m3", "volume over the level", Datum::Computed(volume, 3), "m^3"),
-            entry("volume_share", "fraction of the maximum moved volume", Datum::Computed(share, 3), ""),
+            entry("volume_share", "fraction of the maximum moved volume", Datum::Computed(fraction, 3), ""),
             entry("reset_cells", "cells that were reset", Datum::Count(reset_cells), ""),
         ];
         let level = heights.iter().all(|h| h.to_bits() == 0);
@@ -180,8 +180,8 @@ impl PuddleArguments {
             Some(Check::Energy) if drift.is_nan() || drift > ENERGY_DRIFT => {
                 Some(format!("energy: it drifts by {drift:.2e}; allowed: {ENERGY_DRIFT:.0e}"))
             }
-            Some(Check::Mass) if share.is_nan() || share > VOLUME_DRIFT => {
-                Some(format!("mass: {share:.2e} of the moved volume; allowed: {VOLUME_DRIFT:.0e}"))
+            Some(Check::Mass) if fraction.is_nan() || fraction > VOLUME_DRIFT => {
+                Some(format!("mass: {fraction:.2e} of the moved volume; allowed: {VOLUME_DRIFT:.0e}"))
             }
             Some(Check::Rest) if !level => {
                 Some("rest: level water has moved; allowed: heights of 0, bit for bit".to_owned())

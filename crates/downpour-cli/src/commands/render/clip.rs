@@ -65,7 +65,7 @@ pub(super) fn run(
     clip.finish(journal, made)
 }
 
-/// When a frame is taken, in seconds.
+/// Time of a frame, in seconds.
 fn time_s(begin: f64, number: u32, fps: f64) -> f64 {
     begin + f64::from(number) / fps
 }

@@ -4,14 +4,14 @@ use std::f64::consts::PI;
 
 use downpour_math::ops::f64 as ops;
 
-/// Equal intervals of [0, pi], each with its light and that light's first moment of the position on the disc.
+/// Equal intervals of [0, pi], each with its light and that light's first moment of the position on the disk.
 #[derive(Clone, Debug)]
 pub(super) struct Bins {
     width: f64,
     bins: Vec<[f64; 2]>,
 }
 
-/// Rings, and points along half a ring, that sample a disc of light.
+/// Rings, and points along half a ring, that sample a disk of light.
 const RINGS: u32 = 6;
 const POINTS: u32 = 8;
 
@@ -52,7 +52,7 @@ impl Bins {
     }
 
     /// The same light from a source of this angular diameter in radians instead of a point.
-    pub(super) fn of_disc(&self, diameter: f64) -> Self {
+    pub(super) fn of_disk(&self, diameter: f64) -> Self {
         if diameter <= 0.0 {
             return self.clone();
         }

@@ -48,7 +48,7 @@ pub struct SphereScattering {
 }
 
 impl SphereScattering {
-    /// Sweeps the light paths. `intervals` of the angle, 16 to 4096; the light comes from a disc of `diameter` radians
+    /// Sweeps the light paths. `intervals` of the angle, 16 to 4096; the light comes from a disk of `diameter` radians
     /// (0 for a point, up to 0.2), seen from the sphere.
     ///
     /// # Errors
@@ -58,7 +58,7 @@ impl SphereScattering {
         let n = in_range("refractive index", index, "", &(1.2..=1.4), 1.0, "1.2 to 1.4")?;
         let quantity = "intervals of the scattering angle";
         in_range(quantity, intervals as f64, "", &(16.0..=4096.0), 1.0, "16 to 4096")?;
-        let disc =
+        let disk =
             in_range("diameter of the light", diameter, "radians", &(0.0..=0.2), 1.0, "0 to 0.2 radians")?;
         let bows = [1, 2].map(|reflections| rainbow(n, reflections).map(|bow| bow.incidence));
         let ([first, second], whole) = ([bows[0].clone()?, bows[1].clone()?], 0.5 * PI);
@@ -71,7 +71,7 @@ impl SphereScattering {
             (3, [second, whole]),
         ];
         let paths =
-            ways.map(|(order, incidences)| ScatteringPath::swept(n, order, incidences, intervals, disc));
+            ways.map(|(order, incidences)| ScatteringPath::swept(n, order, incidences, intervals, disk));
         Ok(Self { paths })
     }
 
@@ -106,18 +106,18 @@ impl SphereScattering {
 }
 
 impl ScatteringPath {
-    fn swept(index: f64, order: u32, incidences: [f64; 2], intervals: usize, disc: f64) -> Self {
+    fn swept(index: f64, order: u32, incidences: [f64; 2], intervals: usize, disk: f64) -> Self {
         let mut bins = Bins::new(intervals * FINE);
         let step = (incidences[1] - incidences[0]) / f64::from(STEPS);
         let at = |k: f64| ray(incidences[0] + step * k, index, order);
         for k in 0..STEPS {
             let k = f64::from(k);
             let (start, middle, end) = (at(k), at(k + 0.5), at(k + 1.0));
-            // Part of the disc's area between the two impact parameters.
+            // Part of the disk's area between the two impact parameters.
             let area = end.exit_position * end.exit_position - start.exit_position * start.exit_position;
             bins.add_between([start.angle, end.angle], middle.fraction * area, middle.exit_position);
         }
-        let merged = bins.of_disc(disc).merged(FINE);
+        let merged = bins.of_disk(disk).merged(FINE);
         let phase = merged.iter().enumerate().map(|(k, bin)| bin[0] / ring(k, intervals)).collect();
         Self { order, impacts: incidences.map(ops::sin), phase, exit_position: positions(&merged) }
     }

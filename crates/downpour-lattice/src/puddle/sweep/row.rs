@@ -10,7 +10,7 @@ use downpour_shaders::lattice::puddle::PUDDLE_MIN;
 use super::tile::Tile;
 use crate::puddle::lattice::{Links, PuddleGrid, laplacian, laplacian_linked, puddle_recur, puddle_settle};
 
-/// Three by three vectors: a vector and its neighbours.
+/// Three by three vectors: a vector and its neighbors.
 type Neighborhood<S> = [[Lanes<S>; 3]; 3];
 
 /// Three rows of the argument, from one cell before a run to one after it.

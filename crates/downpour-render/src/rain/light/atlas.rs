@@ -1,19 +1,19 @@
 //! Choice of the streaks of an atlas that a drop shows under a lamp. Twin of `shaders/wgsl/render/drop_atlas.wgsl`.
 //!
 //! The choice is that of [`downpour_atlas`], from the same numbers. Here they are rows of four behind the table of
-//! scattering, since the kernel has no buffer to spare: counts; by angle or at random, the first row of the amounts, and whether all
-//! elevations have the same directions; the seed in parts of 16 bits; gaps between diameters and between elevations, four rows each;
-//! first triangles, three rows; three rows for each triangle (places of its corners, triangles across with -1 for the rim, its
-//! directions); the amounts, four a row.
+//! scattering, since the kernel has no buffer to spare: counts; by angle or at random, the first row of the amounts, and
+//! whether all elevations have the same directions; the seed in parts of 16 bits; gaps between diameters and between
+//! elevations, four rows each; first triangles, three rows; three rows for each triangle (positions of its corners,
+//! triangles across with -1 for the rim, its directions); the amounts, four a row.
 
 use downpour_atlas::StreakAtlas;
 use downpour_atlas::lookup::{
-    AtlasPlace, atlas_cell, atlas_clamp, atlas_corner, atlas_draw, atlas_light, atlas_map, atlas_position,
+    AtlasSlot, atlas_cell, atlas_clamp, atlas_corner, atlas_draw, atlas_light, atlas_map, atlas_position,
     atlas_rise, atlas_weights,
 };
 use downpour_math::ops;
 use downpour_shaders::atlas::{
-    ATLAS_GRID, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISES, ATLAS_SMALLEST, ATLAS_STEPS,
+    ATLAS_GRID, ATLAS_MIN_DIAMETER, ATLAS_NONE, ATLAS_RANDOM, ATLAS_RISES, ATLAS_STEPS,
 };
 use downpour_shaders::render::drop_light::{
     DROP_ATLAS_COUNTS, DROP_ATLAS_FIRST, DROP_ATLAS_PICK, DROP_ATLAS_RISES, DROP_ATLAS_SEED,
@@ -52,7 +52,7 @@ pub(super) fn rows(atlas: &StreakAtlas) -> Vec<[f32; 4]> {
     rows
 }
 
-/// Three directions: places in the map, what is across from each corner (below 0: the rim), and their numbers.
+/// Three directions: positions in the map, what is across from each corner (below 0: the rim), and their numbers.
 #[derive(Clone, Copy, Debug)]
 struct DropAtlasTriangle {
     a: [f32; 2],
@@ -111,15 +111,15 @@ fn drop_atlas_position(table: &DropLightTable, first: u32, value: f32) -> f32 {
     atlas_position(row(0), row(1), row(2), row(3), value)
 }
 
-/// The streak of a drop's id, diameter in metres and axis, and the unit vectors to its light and viewer.
-pub(super) fn drop_atlas_place(
+/// The streak of a drop's id, diameter in meters and axis, and the unit vectors to its light and viewer.
+pub(super) fn drop_atlas_slot(
     table: &DropLightTable,
     id: u32,
     diameter: f32,
     axis: Vec3,
     light: Vec3,
     view: Vec3,
-) -> AtlasPlace {
+) -> AtlasSlot {
     let row = |k| drop_atlas_row(table, k);
     let [sizes, oscillations, elevations, directions] = row(DROP_ATLAS_COUNTS).map(|n| n as u32);
     let [pick, _, is_shared, _] = row(DROP_ATLAS_PICK).map(|n| n as u32);
@@ -130,15 +130,15 @@ pub(super) fn drop_atlas_place(
         let sets = sizes * oscillations;
         let layer = atlas_draw(seed, id, 1, sets * elevations * directions);
         let amount = drop_atlas_number(table, sets * ATLAS_RISES * ATLAS_GRID * ATLAS_GRID + layer);
-        return AtlasPlace {
+        return AtlasSlot {
             layers: [layer; 3],
             side,
             weights: [1.0, 0.0, 0.0],
             amount,
-            ..AtlasPlace::default()
+            ..AtlasSlot::default()
         };
     }
-    let size = drop_atlas_position(table, DROP_ATLAS_SIZES, ops::log2(diameter.max(ATLAS_SMALLEST)));
+    let size = drop_atlas_position(table, DROP_ATLAS_SIZES, ops::log2(diameter.max(ATLAS_MIN_DIAMETER)));
     let lower = size.floor();
     let group = lower as u32 * oscillations + atlas_draw(seed, id, 0, oscillations);
     let point = atlas_map(within);
@@ -177,7 +177,7 @@ pub(super) fn drop_atlas_place(
         triangle = drop_atlas_triangle(table, first + over as u32);
         weights = atlas_weights(triangle.a, triangle.b, triangle.c, point);
     }
-    AtlasPlace {
+    AtlasSlot {
         layers: triangle.directions.map(|direction| base + direction as u32),
         side,
         weights: atlas_clamp(weights),
@@ -214,8 +214,8 @@ mod tests {
                 let (light, view) = (unit(0), unit(1));
                 let diameter = 0.5e-3 + 1.0e-5 * k as f32;
                 let particle = StreakParticle { diameter, axis: [0.0, 1.0, 0.0], id: k };
-                let wanted = atlas.place(&particle, light.to_array(), view.to_array());
-                let found = drop_atlas_place(&table, k, diameter, Vec3::Y, light, view);
+                let wanted = atlas.slot(&particle, light.to_array(), view.to_array());
+                let found = drop_atlas_slot(&table, k, diameter, Vec3::Y, light, view);
                 assert_eq!(found, wanted, "{k}");
             }
         }

@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use downpour_atlas::lookup::AtlasPlace;
+use downpour_atlas::lookup::AtlasSlot;
 use downpour_shaders::render::drop_light::{DROP_ATLAS_ROWS, DROP_LIGHT_LAMPS_ROUSSEAU, DROP_LIGHT_REACH};
 use glam::{Vec3, Vec4};
 
@@ -10,9 +10,9 @@ use super::{DropLights, drop_light_entry, drop_light_mean};
 use crate::light::{Light, light_weight};
 use crate::rain::glint::drop_glint_angle;
 
-/// The rows of the faintest of a drop's lights, N rows each, if it is fainter than `share`.
-fn drop_light_weakest<const N: usize>(rows: &mut [[f32; 4]], share: f32) -> Option<&mut [[f32; 4]; N]> {
-    let mut least = share;
+/// The rows of the faintest of a drop's lights, N rows each, if it is fainter than `fraction`.
+fn drop_light_weakest<const N: usize>(rows: &mut [[f32; 4]], fraction: f32) -> Option<&mut [[f32; 4]; N]> {
+    let mut least = fraction;
     let mut weakest = None;
     let (lights, _) = rows.as_chunks_mut::<N>();
     for light in lights {
@@ -40,24 +40,24 @@ pub(super) fn drop_light_keep_facing(rows: &mut [[f32; 4]], light: Vec4, directi
 }
 
 /// Keeps a streak of an atlas, three rows, if it is brighter than the least of those that are kept.
-pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, place: &AtlasPlace) {
+pub(super) fn drop_light_keep_streak(rows: &mut [[f32; 4]], radiance: Vec3, slot: &AtlasSlot) {
     if let Some(weakest) = drop_light_weakest::<{ DROP_ATLAS_ROWS as usize }>(rows, light_weight(radiance)) {
-        let [a, b, c] = place.layers.map(|layer| layer as f32);
+        let [a, b, c] = slot.layers.map(|layer| layer as f32);
         *weakest = [
-            radiance.extend(place.side).to_array(),
-            [a, b, c, place.weights[0]],
-            [place.weights[1], place.parts[0], place.parts[1], 0.0],
+            radiance.extend(slot.side).to_array(),
+            [a, b, c, slot.weights[0]],
+            [slot.weights[1], slot.parts[0], slot.parts[1], 0.0],
         ];
     }
 }
 
-/// Chord from the middle to the edge of a lamp's disc: that of the sun where the lamp has no size.
+/// Chord from the middle to the edge of a lamp's disk: that of the sun where the lamp has no size.
 pub(super) fn drop_light_reach(light: &Light) -> f32 {
     light.chord.max(DROP_LIGHT_REACH)
 }
 
 impl DropLights<'_> {
-    /// Mean radiance of a lamp over a drop's whole disc, from the lamp's irradiance over pi and its direction.
+    /// Mean radiance of a lamp over a drop's whole disk, from the lamp's irradiance over pi and its direction.
     fn drop_light_whole(&self, lit: Vec3, direction: Vec3, towards: Vec3) -> Vec3 {
         if self.form == DROP_LIGHT_LAMPS_ROUSSEAU {
             return lit * drop_light_mean(towards, direction, self.terms);

@@ -12,36 +12,36 @@ use super::atlas;
 
 const _: () = assert!(SCATTERING_PATHS == DROP_LIGHT_PATHS as usize);
 
-/// Cross-sections over the scattering angle, made once.
+/// Table of scattering cross-sections over the angle.
 ///
 /// Row 0: (dsigma/dOmega) / (pi a^2) in 1/sr, red, green, blue. Rows 1 to 6: the same for each
-/// [`ScatteringPath`](downpour_drop::optics::ScatteringPath), and green's place on the disc. Behind them, if there is one, what has
-/// to be known of a streak atlas.
+/// [`ScatteringPath`](downpour_drop::optics::ScatteringPath), and green's position on the disk. Behind them, if there is
+/// one, what has to be known of a streak atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropLightTable {
     rows: Arc<Vec<[f32; 4]>>,
 }
 
 impl DropLightTable {
-    /// The table for three refractive indices, 1.2 to 1.4, and lamps whose discs have a diameter in radians, 0 to 0.2.
+    /// Computes the table for three refractive indices, 1.2 to 1.4, and lamps whose disks have a diameter in radians, 0 to 0.2.
     ///
     /// # Errors
     /// [`DropError::OutOfRange`] outside these ranges.
     pub fn new(indices: [f64; 3], diameter: f64) -> Result<Self, DropError> {
         let entries = DROP_LIGHT_ENTRIES as usize;
-        let mut colours = Vec::with_capacity(indices.len());
+        let mut colors = Vec::with_capacity(indices.len());
         for index in indices {
-            colours.push(SphereScattering::new(index, entries, diameter)?);
+            colors.push(SphereScattering::new(index, entries, diameter)?);
         }
         let mut rows = vec![[0.0; 4]; entries * (1 + SCATTERING_PATHS)];
         let (whole, paths) = rows.split_at_mut(entries);
-        for (colour, sphere) in colours.iter().enumerate() {
+        for (color, sphere) in colors.iter().enumerate() {
             for (row, path) in paths.chunks_exact_mut(entries).zip(sphere.paths()) {
                 for (k, entry) in row.iter_mut().enumerate() {
                     let phase = path.phase[k] as f32;
-                    entry[colour] = phase;
-                    whole[k][colour] += phase;
-                    if colour == 1 {
+                    entry[color] = phase;
+                    whole[k][color] += phase;
+                    if color == 1 {
                         entry[3] = path.exit_position[k] as f32;
                     }
                 }
@@ -50,7 +50,7 @@ impl DropLightTable {
         Ok(Self { rows: Arc::new(rows) })
     }
 
-    /// The table of water in standard air under lamps as wide as the sun. Three sweeps of 50 000 rays.
+    /// Computes the table of water in standard air, for lamps of the sun's angular diameter. Three sweeps of 50 000 rays.
     ///
     /// # Errors
     /// None that is known: those of [`DropLightTable::new`] for the indices of water.
@@ -58,7 +58,7 @@ impl DropLightTable {
         Self::new(rgb_indices(&Air::standard())?, SUN_DIAMETER)
     }
 
-    /// The same, with the streaks of an atlas instead of those of another.
+    /// Returns the table with the streaks of this atlas.
     #[must_use]
     pub fn with_atlas(mut self, atlas: &StreakAtlas) -> Self {
         let rows = Arc::make_mut(&mut self.rows);
@@ -73,7 +73,7 @@ impl DropLightTable {
         self.rows.len() > atlas::FIRST_ROW as usize
     }
 
-    /// All rows, one after the other.
+    /// All rows of the table.
     #[must_use]
     pub fn rows(&self) -> &[[f32; 4]] {
         &self.rows

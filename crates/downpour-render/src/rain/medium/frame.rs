@@ -12,13 +12,13 @@ use glam::{Vec2, Vec3, Vec3Swizzles as _, Vec4};
 use super::RainMedium;
 use crate::rain::shapes;
 
-/// The unresolved rain of a picture as shaders know it. The same layout as `MediumFrame` in WGSL.
+/// Uniforms of the unresolved rain of a picture. The same layout as `MediumFrame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MediumFrame {
     /// Optical depth of level rays within the region: at 0.25 m, then a factor of 2^(1/3) farther each.
     pub depths: [[f32; 4]; MEDIUM_QUARTERS as usize],
-    /// Unit direction from which drops come.
+    /// Unit vector against the mean fall.
     pub rise: [f32; 3],
     /// Extinction of all drops, 1/m, for level rays.
     pub all: f32,
@@ -32,7 +32,7 @@ pub struct MediumFrame {
     pub flatness: f32,
     /// The eye, relative to the scene's origin, m.
     pub eye: [f32; 3],
-    /// 1: nothing stands anywhere that could keep rain off.
+    /// 1: no obstacle shelters anything from the rain.
     pub open: u32,
     /// Columns of the grid of open air.
     pub columns: u32,
@@ -40,7 +40,7 @@ pub struct MediumFrame {
     pub rows: u32,
     /// One of `MEDIUM_DARK`, `MEDIUM_LAMPS`, `MEDIUM_SPOTS`.
     pub lit: u32,
-    /// Class of drops whose mean radiance the medium has.
+    /// Class of drops whose mean radiance the medium uses.
     pub shape: u32,
     /// A pane before the eye, which keeps rain off this side of it: unit normal away from the eye, and its distance, m; 0: none.
     pub pane: [f32; 4],

@@ -1,4 +1,4 @@
-//! Light of lamps and sun that unresolved drops scatter towards the eye. Twin of `shaders/wgsl/render/medium_light.wgsl`,
+//! Light of lamps and sun that unresolved drops scatter toward the eye. Twin of `shaders/wgsl/render/medium_light.wgsl`,
 //! where the method is described.
 
 use std::f32::consts::PI;
@@ -24,7 +24,7 @@ use crate::rain::light::{DropLightForm, DropLightTable, DropLights, drop_light_m
 
 const _: () = assert!(MEDIUM_ANGLES == DROP_LIGHT_ENTRIES);
 
-/// Unresolved rain before a picture, and the lamps of its scene.
+/// Light of a scene's lamps on unresolved rain.
 #[derive(Clone, Debug)]
 pub struct MediumLight<'a> {
     pub(crate) lighting: &'a dyn Lighting,
@@ -258,10 +258,10 @@ impl<'a> MediumLight<'a> {
     fn medium_light_pixel(&self, clean: &[[f32; 4]], grid: &[[f32; 4]], x: u32, y: u32) -> [[f32; 4]; 2] {
         let (medium, camera) = (&self.medium, &self.camera);
         let scene = clean[(y * camera.width + x) as usize][3];
-        let place = Vec2::new(x as f32, y as f32) + 0.5;
-        let direction = camera.camera_direction(place.x, place.y);
+        let position = Vec2::new(x as f32, y as f32) + 0.5;
+        let direction = camera.camera_direction(position.x, position.y);
         let end = if scene >= MEDIUM_SKY { MEDIUM_SKY_REACH } else { scene };
-        let depth = self.medium_open_at(grid, place.x, place.y, end).x;
+        let depth = self.medium_open_at(grid, position.x, position.y, end).x;
         let mut sum = Found::default();
         let mut seen = Vec3::ZERO;
         if medium.lit != MEDIUM_DARK && medium.all > 0.0 {
@@ -271,14 +271,14 @@ impl<'a> MediumLight<'a> {
             for k in 0..self.lighting.light_count() {
                 sum = self.medium_light_lamp(sum, k, direction, reach, camera.pixel_angle);
             }
-            let share = light_weight(sum.drawn);
-            if share > 0.0 {
+            let fraction = light_weight(sum.drawn);
+            if fraction > 0.0 {
                 let distance = sum.part.x + (sum.part.y - sum.part.x) * rng_unit(random[1]);
                 let from = Vec3::from(medium.eye) + direction * distance;
                 let light = self.lighting.light(sum.lamp).light_sample(from, 0.0);
                 seen = self.lighting.visibility(from, light.direction, light.distance)
-                    * self.medium_open_at(grid, place.x, place.y, distance).y
-                    * (sum.drawn * (light_weight(sum.whole) / share));
+                    * self.medium_open_at(grid, position.x, position.y, distance).y
+                    * (sum.drawn * (light_weight(sum.whole) / fraction));
             }
         }
         let mean = sum.weighted / light_weight(sum.whole).max(1.0e-20);
@@ -288,14 +288,14 @@ impl<'a> MediumLight<'a> {
 
 /// Adds a part of a ray, from one distance to another, that would give `light`; draws it by what it gives.
 fn medium_light_add(sum: Found, light: Vec3, lamp: u32, near: f32, far: f32) -> Found {
-    let share = light_weight(light);
-    if share <= 0.0 {
+    let fraction = light_weight(light);
+    if fraction <= 0.0 {
         return sum;
     }
-    let chance = share / (light_weight(sum.whole) + share);
+    let chance = fraction / (light_weight(sum.whole) + fraction);
     let mut next = sum;
     next.whole += light;
-    next.weighted += 0.5 * (near + far) * share;
+    next.weighted += 0.5 * (near + far) * fraction;
     if sum.rest < chance {
         next.rest = sum.rest / chance;
         next.drawn = light;

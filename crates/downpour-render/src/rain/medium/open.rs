@@ -67,7 +67,7 @@ impl MediumLight<'_> {
         Vec2::new(before + (here[0] - before) * part, here[1])
     }
 
-    /// Optical depth of unresolved drops up to a distance along the ray through a place of the picture (pixels from the top
+    /// Optical depth of unresolved drops up to a distance along the ray through a position of the picture (pixels from the top
     /// left), and whether the air is open to the rain there.
     pub(super) fn medium_open_at(&self, grid: &[[f32; 4]], x: f32, y: f32, distance: f32) -> Vec2 {
         let (medium, camera) = (&self.medium, self.camera);
@@ -84,14 +84,14 @@ impl MediumLight<'_> {
             begin = medium.medium_depth(medium_open_end(slice - 1), span, outline);
         }
         let end = medium.medium_depth(medium_open_end(slice), span, outline);
-        // Beyond the last slice its own air goes on.
+        // Beyond the last slice, its density continues.
         let fraction = ((whole - begin) / (end - begin).max(1.0e-12)).max(0.0);
         let last = Vec2::new((medium.columns - 1) as f32, (medium.rows - 1) as f32);
         let size = Vec2::new(camera.width as f32, camera.height as f32);
-        let place = (Vec2::new(x, y) / size * (last + 1.0) - 0.5).clamp(Vec2::ZERO, last);
-        let low = [place.x as u32, place.y as u32];
+        let position = (Vec2::new(x, y) / size * (last + 1.0) - 0.5).clamp(Vec2::ZERO, last);
+        let low = [position.x as u32, position.y as u32];
         let high = [(low[0] + 1).min(last.x as u32), (low[1] + 1).min(last.y as u32)];
-        let part = place - place.floor();
+        let part = position - position.floor();
         let mut sum = Vec2::ZERO;
         for k in 0..4u32 {
             let (right, below) = (k & 1 == 1, k >= 2);

@@ -15,7 +15,7 @@ struct Formats {
     kinds: &'static [Type],
     /// Component types, and whether they are normalized.
     plain: &'static [(ComponentType, bool)],
-    /// Those that quantisation adds.
+    /// Those that quantization adds.
     quantized: &'static [(ComponentType, bool)],
     words: &'static str,
 }

@@ -39,9 +39,9 @@ pub(super) fn check(document: &Spot<'_>) -> Result<(), SceneError> {
             ["draco", "meshopt", "basisu", "webp", "avif"].iter().any(|part| text.contains(part));
         let error = name.not("no required extension but those that Downpour knows");
         Err(if compressed {
-            error.way_out("export again without mesh or texture compression")
+            error.with_advice("export again without mesh or texture compression")
         } else {
-            error.way_out("export again without that extension")
+            error.with_advice("export again without that extension")
         })
     })
 }

@@ -128,6 +128,6 @@ mod tests {
         let vendor = json!({"materials": [{"extensions": {"ACME_paint": {"paintTexture": "by name"}}}]});
         assert!(checked(&vendor).is_ok());
         let sampler = json!({"animations": [{"samplers": [], "channels": [{"sampler": 0, "target": {}}]}]});
-        assert_eq!(checked(&sampler).unwrap_err().fault().place, "animations[0].channels[0].sampler");
+        assert_eq!(checked(&sampler).unwrap_err().fault().location, "animations[0].channels[0].sampler");
     }
 }

@@ -15,7 +15,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Checks the whole document.
-pub(super) fn look(facts: &Facts<'_>, warnings: &mut Warnings) -> Result<(), SceneError> {
+pub(super) fn check(facts: &Facts<'_>, warnings: &mut Warnings) -> Result<(), SceneError> {
     let document = &facts.document;
     for list in LISTS {
         document.each(&[list], &mut |list| empty(list, warnings))?;

@@ -66,7 +66,7 @@ mod tests {
     fn whole_numbers_become_integers() {
         let mut value: Value = serde_json::from_str(r#"[1.0, 2e0, 30e-1, -4.0, 0.5, -0.0, 1e300]"#).unwrap();
         let error = settle(&mut value).unwrap_err();
-        assert_eq!(error.fault().place, "[6]");
+        assert_eq!(error.fault().location, "[6]");
         value.as_array_mut().unwrap().pop();
         settle(&mut value).unwrap();
         assert_eq!(value.to_string(), "[1,2,3,-4,0.5,0]");
@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn extras_are_taken_out() {
         let mut value: Value = serde_json::from_str(r#"{"extras": {"a": 1e300}, "b": 3.5e38}"#).unwrap();
-        assert_eq!(settle(&mut value).unwrap_err().fault().place, "b");
+        assert_eq!(settle(&mut value).unwrap_err().fault().location, "b");
         value["b"] = 3.4e38.into();
         settle(&mut value).unwrap();
         assert_eq!(value.to_string(), r#"{"b":3.4e+38}"#);

@@ -64,7 +64,7 @@ fn version(document: &Spot<'_>) -> Result<(), SceneError> {
         });
         if !known {
             let allowed = if least { "\"2.0\"" } else { "\"2.0\" or a later \"2.x\"" };
-            return Err(spot.not(allowed).way_out("convert the file to glTF 2.0"));
+            return Err(spot.not(allowed).with_advice("convert the file to glTF 2.0"));
         }
     }
     Ok(())

@@ -27,7 +27,7 @@ const PATHS: [&[&str]; 4] = [
 ];
 
 /// Warns of unsupported extensions, each once.
-pub(super) fn look(document: &Spot<'_>, warnings: &mut Warnings) -> Result<(), SceneError> {
+pub(super) fn check(document: &Spot<'_>, warnings: &mut Warnings) -> Result<(), SceneError> {
     let mut unread: BTreeMap<String, usize> = BTreeMap::new();
     document.each(&["extensionsUsed", "[]"], &mut |name| {
         let name = name.text()?;

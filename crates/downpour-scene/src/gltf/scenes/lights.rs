@@ -10,7 +10,7 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 const EXTENSION: &str = "KHR_lights_punctual";
 
-/// The largest product of color and intensity: a tenth of a millimetre from the lamp it is still within an `f32`.
+/// The largest product of color and intensity: a tenth of a millimeter from the lamp it is still within an `f32`.
 const MAX_RADIANCE: f32 = 1.0e30;
 
 /// All lights.

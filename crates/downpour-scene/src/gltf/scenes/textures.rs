@@ -146,13 +146,13 @@ impl Images<'_> {
         budget: &mut Budget,
         warnings: &mut Warnings,
     ) -> Result<Picture, SceneError> {
-        let place = format!("images[{index}]");
+        let location = format!("images[{index}]");
         let images = self.document.need("images")?;
         let Some(image) = images.item(index) else {
-            return Err(SceneError::bad(place, "no such image", "an image of the list"));
+            return Err(SceneError::bad(location, "no such image", "an image of the list"));
         };
         let before = budget.bytes;
-        let (name, bytes) = self.bytes(&image, &place, budget)?;
+        let (name, bytes) = self.bytes(&image, &location, budget)?;
         let held = before.saturating_sub(budget.bytes);
         let name = match name {
             Some(path) => path,
@@ -161,11 +161,11 @@ impl Images<'_> {
         // Only a file's name promises a kind: an image in a view may be called anything.
         let promise = if image.value.get("uri").is_some() { name.as_str() } else { "" };
         let picture = picture::decode(promise, &bytes, budget);
-        let mut picture = picture.map_err(|error| error.inside(&place))?;
+        let mut picture = picture.map_err(|error| error.inside(&location))?;
         // The encoded bytes are dropped here.
         budget.bytes = budget.bytes.saturating_add(held);
         for warning in &picture.warnings {
-            warnings.add(warning.kind, &place, || warning.to_string());
+            warnings.add(warning.kind, &location, || warning.to_string());
         }
         picture.name = name;
         self.media_type(&image, warnings)?;
@@ -186,10 +186,10 @@ impl Images<'_> {
     fn bytes(
         &self,
         image: &Spot<'_>,
-        place: &str,
+        location: &str,
         budget: &mut Budget,
     ) -> Result<(Option<String>, Cow<'_, [u8]>), SceneError> {
-        let lost = || SceneError::bad(place, "data outside its buffer", "data inside");
+        let lost = || SceneError::bad(location, "data outside its buffer", "data inside");
         if let Some(view) = image.get("bufferView")? {
             let view = u32::try_from(view.whole()?).ok().and_then(|view| self.root.get(Index::new(view)));
             let bytes = view.and_then(|view| self.buffers.view(view)).ok_or_else(lost)?;
@@ -199,8 +199,8 @@ impl Images<'_> {
         match uri::check(uri.text()?).map_err(|why| SceneError::bad(uri.trail, why.found, why.allowed))? {
             Address::Data { text, .. } => {
                 let length = base64::decoded_len(text).ok_or_else(lost)?;
-                budget.take_bytes(length as u64, place)?;
-                let mut bytes = Budget::vec_with_capacity(length, place)?;
+                budget.take_bytes(length as u64, location)?;
+                let mut bytes = Budget::vec_with_capacity(length, location)?;
                 base64::decode(text, length, &mut bytes);
                 Ok((None, Cow::Owned(bytes)))
             }

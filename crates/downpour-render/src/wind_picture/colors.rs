@@ -1,30 +1,30 @@
-//! Colours whose lightness says how much.
+//! Colors whose lightness says how much.
 
 use downpour_math::ops;
 
-/// Linear light for a share of the scale, 0 to 1: from a dark blue over green to a light yellow.
-pub(super) fn of_speed(share: f32) -> [f32; 3] {
-    let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
-    let lightness = 0.24 + 0.65 * share;
-    let hue = (282.0 - 180.0 * share).to_radians();
+/// Linear light for a fraction of the scale, 0 to 1: from a dark blue over green to a light yellow.
+pub(super) fn of_speed(fraction: f32) -> [f32; 3] {
+    let fraction = if fraction > 0.0 { fraction.min(1.0) } else { 0.0 };
+    let lightness = 0.24 + 0.65 * fraction;
+    let hue = (282.0 - 180.0 * fraction).to_radians();
     let (a, b) = (ops::cos(hue), ops::sin(hue));
     let within = |chroma: f32| {
-        let colour = from_oklab(lightness, chroma * a, chroma * b);
-        colour.iter().all(|c| (0.0..=1.0).contains(c)).then_some(colour)
+        let color = from_oklab(lightness, chroma * a, chroma * b);
+        color.iter().all(|c| (0.0..=1.0).contains(c)).then_some(color)
     };
-    // Less colourful until it is a colour that a screen has. By halves: steps would show as lines.
-    let (mut inside, mut outside) = (0.0, 0.115 + 0.03 * share);
-    if let Some(colour) = within(outside) {
-        return colour;
+    // Less colorful until it is a color that a screen has. By halves: steps would show as lines.
+    let (mut inside, mut outside) = (0.0, 0.115 + 0.03 * fraction);
+    if let Some(color) = within(outside) {
+        return color;
     }
     for _ in 0..14 {
         let middle = 0.5 * (inside + outside);
         if within(middle).is_some() { inside = middle } else { outside = middle }
     }
-    within(inside).unwrap_or([share; 3])
+    within(inside).unwrap_or([fraction; 3])
 }
 
-/// Linear sRGB of a colour in Oklab (B. Ottosson, "A perceptual color space for image processing", 2020).
+/// Linear sRGB of a color in Oklab (B. Ottosson, "A perceptual color space for image processing", 2020).
 fn from_oklab(lightness: f32, a: f32, b: f32) -> [f32; 3] {
     let cube = |x: f32| x * x * x;
     let l = cube(lightness + 0.396_337_78 * a + 0.215_803_76 * b);
@@ -41,11 +41,11 @@ fn from_oklab(lightness: f32, a: f32, b: f32) -> [f32; 3] {
 mod tests {
     use super::*;
 
-    /// More wind is lighter, evenly in L* of CIE 1976 as well, and every colour is one of the screen.
+    /// More wind is lighter, evenly in L* of CIE 1976 as well, and every color is one of the screen.
     #[test]
     fn lightness_rises_with_the_speed() {
-        let lightness = |share: f32| {
-            let [r, g, b] = of_speed(share);
+        let lightness = |fraction: f32| {
+            let [r, g, b] = of_speed(fraction);
             116.0 * ops::cbrt(0.2126 * r + 0.7152 * g + 0.0722 * b) - 16.0
         };
         let steps: Vec<f32> =

@@ -17,7 +17,7 @@ impl Look<'_> {
         Vec4::from(self.behind[(first + y * width + x) as usize])
     }
 
-    /// A texel of a level of the capture. Beyond an edge the octahedral map goes on at the edge's mirror image.
+    /// A texel of a level of the capture. Beyond an edge, the octahedral map continues mirrored about the edge's middle.
     fn glass_picture_round_texel(&self, level: u32, column: i32, row: i32) -> Vec4 {
         let whole = self.glass.frame.capture_size;
         let size = whole >> level;
@@ -36,8 +36,8 @@ impl Look<'_> {
         Vec4::from(self.capture[(first + y * size + x) as usize])
     }
 
-    /// A level of the picture or of the capture at a place of [0, 1], bilinear.
-    fn glass_picture_level(&self, of_capture: bool, level: u32, place: Vec2) -> Vec3 {
+    /// A level of the picture or of the capture at a position in [0, 1], bilinear.
+    fn glass_picture_level(&self, of_capture: bool, level: u32, position: Vec2) -> Vec3 {
         let frame = &self.glass.frame;
         let size = if of_capture {
             Vec2::splat((frame.capture_size >> level) as f32)
@@ -45,45 +45,45 @@ impl Look<'_> {
             let [width, height, ..] = frame.levels[level as usize];
             UVec2::new(width, height).as_vec2()
         };
-        let at = place * size - 0.5;
+        let at = position * size - 0.5;
         let low = at.floor();
         let part = at - low;
         let mut sum = Vec3::ZERO;
         for k in 0..4 {
             let step = IVec2::new(k & 1, k >> 1);
-            let share_x = if step.x == 1 { part.x } else { 1.0 - part.x };
-            let share = share_x * if step.y == 1 { part.y } else { 1.0 - part.y };
+            let fraction_x = if step.x == 1 { part.x } else { 1.0 - part.x };
+            let fraction = fraction_x * if step.y == 1 { part.y } else { 1.0 - part.y };
             let cell = low.as_ivec2() + step;
-            if share > 0.0 {
+            if fraction > 0.0 {
                 let texel = if of_capture {
                     self.glass_picture_round_texel(level, cell.x, cell.y)
                 } else {
                     self.glass_picture_texel(level, cell.x, cell.y)
                 };
-                sum += texel.truncate() * share;
+                sum += texel.truncate() * fraction;
             }
         }
         sum
     }
 
-    /// The picture or the capture at a place of [0, 1], for a footprint in texels of its finest level.
-    fn glass_picture_at(&self, of_capture: bool, place: Vec2, footprint: f32) -> Vec3 {
+    /// The picture or the capture at a position of [0, 1], for a footprint in texels of its finest level.
+    fn glass_picture_at(&self, of_capture: bool, position: Vec2, footprint: f32) -> Vec3 {
         let frame = &self.glass.frame;
         let last = (if of_capture { frame.capture_last } else { frame.last }) as f32;
         let level = ops::log2(footprint.max(1.0e-6)).clamp(0.0, last);
         let low = level.floor();
         let part = level - low;
-        let mut sum = self.glass_picture_level(of_capture, low as u32, place) * (1.0 - part);
+        let mut sum = self.glass_picture_level(of_capture, low as u32, position) * (1.0 - part);
         if part > 0.0 {
-            sum += self.glass_picture_level(of_capture, low as u32 + 1, place) * part;
+            sum += self.glass_picture_level(of_capture, low as u32 + 1, position) * part;
         }
         sum
     }
 
     /// Radiance of the environment map in a direction, averaged over a footprint in radians.
     pub(super) fn glass_picture_round(&self, direction: Vec3, footprint: f32) -> Vec3 {
-        let place = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
-        self.glass_picture_at(true, place, footprint / self.glass.frame.capture_texel)
+        let position = Vec2::from(packing_octahedral_encode(direction.to_array())) * 0.5 + 0.5;
+        self.glass_picture_at(true, position, footprint / self.glass.frame.capture_texel)
     }
 
     /// Projects a direction onto the picture: -1 to 1 right and up, and its depth.
@@ -120,18 +120,18 @@ impl Look<'_> {
             self.glass_picture_round_texel(0, texel.x as i32, texel.y as i32).w
         };
         let to = direction + from_eye / distance.clamp(0.1, GLASS_PICTURE_FAR);
-        let place = self.glass_picture_project(to);
+        let position = self.glass_picture_project(to);
         let texels = (footprint / frame.camera.pixel_angle).max(1.0);
-        // Towards the picture's edge the capture takes over, within the footprint.
-        let at = Vec2::new(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y) + shift / size;
+        // Toward the picture's edge the capture takes over, within the footprint.
+        let at = Vec2::new(0.5 + 0.5 * position.x, 0.5 - 0.5 * position.y) + shift / size;
         let inside = (at.x.min(1.0 - at.x) * size.x).min(at.y.min(1.0 - at.y) * size.y);
-        let share = if place.z > 0.0 { ((inside + 0.5) / texels).clamp(0.0, 1.0) } else { 0.0 };
+        let fraction = if position.z > 0.0 { ((inside + 0.5) / texels).clamp(0.0, 1.0) } else { 0.0 };
         let mut sum = Vec3::ZERO;
-        if share > 0.0 {
-            sum = self.glass_picture_at(false, at, texels) * share;
+        if fraction > 0.0 {
+            sum = self.glass_picture_at(false, at, texels) * fraction;
         }
-        if share < 1.0 {
-            sum += self.glass_picture_round(to, footprint) * (1.0 - share);
+        if fraction < 1.0 {
+            sum += self.glass_picture_round(to, footprint) * (1.0 - fraction);
         }
         sum
     }

@@ -1,0 +1,12 @@
+// Positions across a drop and along a chord: the rim, where the light changes fastest, has more of them.
+// Twin: downpour_render::rain::streak_cell.
+
+// Position between -1 and 1 of a cell coordinate from 0 to `count`: 0 is the first edge, 0.5 the middle of the first cell.
+fn streak_cell_position(position: f32, count: u32) -> f32 {
+    return sin(STREAK_QUARTER * (position * (2.0 / f32(count)) - 1.0));
+}
+
+// Cell coordinate of a position: 0 at -1, `count` at 1.
+fn streak_cell_index(position: f32, count: u32) -> f32 {
+    return (asin(clamp(position, -1.0, 1.0)) / STREAK_QUARTER * 0.5 + 0.5) * f32(count);
+}
