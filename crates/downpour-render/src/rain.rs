@@ -61,7 +61,7 @@ use downpour_weather::RainRefraction;
 pub use crate::camera::EyeMotion;
 pub use drops_frame::DropsFrame;
 pub use environment::{EnvironmentFrame, EnvironmentMap};
-pub use exposure::{Exposure, StreakColour, StreakSamples, TemporalResponse};
+pub use exposure::{Exposure, StreakColor, StreakSamples, TemporalResponse};
 use light::DropLightOptions;
 pub use masks::DropMasks;
 pub use medium::{MediumOptions, PanePlane, RainMedium};

@@ -42,7 +42,7 @@ fn step(criterion: &mut Criterion) {
             map: walls.then_some(&map),
             ..StepInput::new(&view, DVec3::ZERO, Vec3::X)
         };
-        let options = SimulationOptions { volume, most_drops: 200_000, ..SimulationOptions::default() };
+        let options = SimulationOptions { volume, max_drops: 200_000, ..SimulationOptions::default() };
         let mut simulation = Simulation::new(&rain(), &options, &input).expect("a simulation");
         let count = simulation.drops().len() as u64;
         group.throughput(Throughput::Elements(count));

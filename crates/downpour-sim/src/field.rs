@@ -248,7 +248,7 @@ impl RainField {
         let expected = |least: f64| -> f64 {
             self.classes.iter().map(|c| c.density * view.volume(view.range(c.largest, least))).sum()
         };
-        let most = f64::from(view.most_drops.max(1));
+        let most = f64::from(view.max_drops.max(1));
         let mut least = view.least_pixels;
         while expected(least) > most {
             // 3 % at a time: a power law of at most the third order reaches the limit in a few dozen steps.

@@ -89,12 +89,12 @@ impl RainField {
         low: DVec3,
         high: DVec3,
         span_s: [f64; 2],
-        least_diameter: f64,
+        min_diameter: f64,
     ) -> Result<Vec<Impact>, SimError> {
         check_box(low, high)?;
-        let all = |class: &Class| (class.largest >= least_diameter).then_some(Bounds { low, high });
+        let all = |class: &Class| (class.largest >= min_diameter).then_some(Bounds { low, high });
         let mut impacts = self.impacts_of(&Surfaces::new(obstacles), span_s, all, |_| true)?;
-        impacts.retain(|impact| f64::from(impact.diameter) >= least_diameter);
+        impacts.retain(|impact| f64::from(impact.diameter) >= min_diameter);
         Ok(impacts)
     }
 
@@ -119,7 +119,7 @@ impl RainField {
             return Ok(Vec::new());
         }
         let half = 0.5 * view.shutter_s;
-        let longest = f64::from(bounce.longest_s).min(MAX_SPAN_S - view.shutter_s);
+        let longest = f64::from(bounce.max_time_s).min(MAX_SPAN_S - view.shutter_s);
         let sent_up = |id: u64| {
             let [chance, ..] = rng_draw([id as u32, (id >> 32) as u32], 0, 0, CHANCE).map(rng_unit);
             chance < bounce.fraction

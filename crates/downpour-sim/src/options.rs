@@ -72,12 +72,12 @@ pub struct Bounce {
     /// Diameter of the droplet relative to that of the drop, 0.05 to 1.
     pub size: f32,
     /// Maximum time of the droplet, 0.01 to 10 s.
-    pub longest_s: f32,
+    pub max_time_s: f32,
 }
 
 impl Default for Bounce {
     fn default() -> Self {
-        Self { fraction: 0.1, restitution: 0.25, grip: 0.7, size: 0.25, longest_s: 1.0 }
+        Self { fraction: 0.1, restitution: 0.25, grip: 0.7, size: 0.25, max_time_s: 1.0 }
     }
 }
 
@@ -110,7 +110,7 @@ pub struct SimulationOptions {
     pub seed: u64,
     /// Maximum expected number of drops, 1 to 2^28. A view leaves out drops that are small on the picture, other
     /// volumes small drops.
-    pub most_drops: u32,
+    pub max_drops: u32,
     /// Number of the first step: steps of the same number draw the same random numbers.
     pub first_step: u32,
     /// Maximum exposure of a picture, s, 0 to 10; for a view.
@@ -135,7 +135,7 @@ impl Default for SimulationOptions {
         Self {
             volume: SimVolume::View,
             seed: 0,
-            most_drops: 2_000_000,
+            max_drops: 2_000_000,
             first_step: 0,
             shutter_s: 0.0,
             wait_s: 0.0,
@@ -177,19 +177,19 @@ impl SimulationOptions {
             }
             SimVolume::View | SimVolume::ImSung => {}
         }
-        within("most drops", self.most_drops.into(), "", 1.0..=MAX_DROPS as f64, "1 to 2^30")?;
-        if u64::from(self.most_drops) > MAX_DROPS_IN_MEMORY {
-            return Err(SimError::memory(self.most_drops.into()));
+        within("most drops", self.max_drops.into(), "", 1.0..=MAX_DROPS as f64, "1 to 2^30")?;
+        if u64::from(self.max_drops) > MAX_DROPS_IN_MEMORY {
+            return Err(SimError::memory(self.max_drops.into()));
         }
         within("time of the shutter", self.shutter_s, "s", 0.0..=10.0, "0 to 10")?;
         within("time from a state to the shutter's opening", self.wait_s, "s", 0.0..=1.0, "0 to 1")?;
         within("time of a drop in view", self.oldest_s, "s", 0.1..=1000.0, "0.1 to 1000")?;
-        let Bounce { fraction, restitution, grip, size, longest_s } = self.bounce;
+        let Bounce { fraction, restitution, grip, size, max_time_s } = self.bounce;
         within("fraction of impacts that bounce", fraction.into(), "", 0.0..=1.0, "0 to 1")?;
         within("restitution", restitution.into(), "", 0.0..=1.0, "0 to 1")?;
         within("grip", grip.into(), "", 0.0..=1.0, "0 to 1")?;
         within("size of a bounced drop", size.into(), "", 0.05 - 1.0e-6..=1.0, "0.05 to 1")?;
-        within("time of a bounced drop", longest_s.into(), "s", 0.01 - 1.0e-6..=10.0, "0.01 to 10")?;
+        within("time of a bounced drop", max_time_s.into(), "s", 0.01 - 1.0e-6..=10.0, "0.01 to 10")?;
         if let Some(Gauge { height_m, low_m, high_m }) = self.gauge {
             for position in [height_m, low_m[0], low_m[1], high_m[0], high_m[1]] {
                 within("position of the gauge", position, "m", -1.0e7..=1.0e7, "-1e7 to 1e7")?;

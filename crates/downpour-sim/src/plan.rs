@@ -76,7 +76,7 @@ pub(crate) struct Turn {
 pub(crate) struct Plan {
     pub(crate) options: SimulationOptions,
     pub(crate) least_pixels: f64,
-    pub(crate) least_diameter: f64,
+    pub(crate) min_diameter: f64,
     pub(crate) bins: Vec<Bin>,
     view: View,
     frustum: Frustum,
@@ -100,7 +100,7 @@ impl Plan {
         let bins = bins(rain)?;
         let times = [options.horizon_s(), options.wait_s];
         let least_pixels = match options.volume {
-            SimVolume::View => affordable_pixels(&bins, view, times, options.most_drops),
+            SimVolume::View => affordable_pixels(&bins, view, times, options.max_drops),
             _ => view.least_pixels,
         };
         let frustum = frustum(view, least_pixels, air, times);
@@ -109,7 +109,7 @@ impl Plan {
         Ok(Self {
             options,
             least_pixels,
-            least_diameter: 0.0,
+            min_diameter: 0.0,
             bins,
             view: *view,
             frustum,
@@ -177,7 +177,7 @@ impl Plan {
                 Region::Cylinder { base: base_m.into(), radius: radius_m, height: height_m }
             }
         };
-        Resolved { least_diameter: self.least_diameter, region, ..Resolved::of(view, self.least_pixels) }
+        Resolved { min_diameter: self.min_diameter, region, ..Resolved::of(view, self.least_pixels) }
     }
 
     /// Steps of a time in which the camera moves to `view`: one, or several if the time is too long.
@@ -286,7 +286,7 @@ impl Plan {
             restitution: options.bounce.restitution,
             grip: options.bounce.grip,
             bounced_size: options.bounce.size,
-            bounced_time: options.bounce.longest_s,
+            bounced_time: options.bounce.max_time_s,
             gauge_height: (gauge.height_m - origin.y) as f32,
             gauge: options.gauge.is_some().into(),
             boxes: 0,

@@ -91,7 +91,7 @@ pub(crate) struct Population {
     /// Diameters in 16 bits, in the order of the bins.
     pub(crate) sizes: Vec<u16>,
     /// Minimum diameter, m: smaller drops are left out.
-    pub(crate) least_diameter: f64,
+    pub(crate) min_diameter: f64,
 }
 
 /// Volume of a box, of the sphere that contains the rain area of Im & Sung, or of a cylinder, m^3.
@@ -177,11 +177,11 @@ impl Population {
             number += count;
         }
         let least = kept.iter().find(|(_, fraction)| *fraction > 0.0);
-        let least_diameter = least.map_or(0.0, |&(bin, fraction)| {
+        let min_diameter = least.map_or(0.0, |&(bin, fraction)| {
             let code = f64::from(bin.code(1.0 - fraction)) * f64::from(MOTION_DIAMETER_STEP);
             if fraction < 1.0 { code } else { bin.diameters[0] }
         });
-        Ok(Self { sizes, least_diameter })
+        Ok(Self { sizes, min_diameter })
     }
 }
 

@@ -50,7 +50,7 @@ pub struct Resolved {
     /// Minimum diameter on the picture, pixels.
     pub least_pixels: f64,
     /// Minimum diameter, m.
-    pub least_diameter: f64,
+    pub min_diameter: f64,
     /// Region in which drops are listed.
     pub region: Region,
 }
@@ -63,7 +63,7 @@ impl Resolved {
             far: view.far,
             pixel_angle: view.pixel_angle,
             least_pixels,
-            least_diameter: 0.0,
+            min_diameter: 0.0,
             region: Region::Everywhere,
         }
     }
@@ -71,7 +71,7 @@ impl Resolved {
     /// Maximum distance from the eye, m, at which a drop of a diameter in m is listed; 0 if none of that size is.
     #[must_use]
     pub fn range(&self, diameter: f64) -> f64 {
-        if diameter < self.least_diameter {
+        if diameter < self.min_diameter {
             return 0.0;
         }
         let range = (diameter / (self.pixel_angle * self.least_pixels).max(1.0e-12)).min(self.far);
@@ -172,7 +172,7 @@ mod tests {
         let resolved = Resolved::of(&View::default(), 0.4);
         assert_eq!(resolved.range(1.0e-9), 0.0);
         assert_eq!(resolved.range(1.0), 50.0);
-        let largest = Resolved { least_diameter: 2.0e-3, ..resolved };
+        let largest = Resolved { min_diameter: 2.0e-3, ..resolved };
         assert_eq!(largest.range(1.9e-3), 0.0);
         assert!((largest.range(2.1e-3) - 2.1e-3 / (0.4 * resolved.pixel_angle)).abs() < 1.0e-9);
     }

@@ -47,7 +47,7 @@ pub fn least_pixels(
     options.check()?;
     view.check()?;
     let times = [options.horizon_s(), options.wait_s];
-    Ok(affordable_pixels(&bins(rain)?, view, times, options.most_drops))
+    Ok(affordable_pixels(&bins(rain)?, view, times, options.max_drops))
 }
 
 /// Input of a step: the state at its end. Wind and map are relative to `origin`.
@@ -128,8 +128,8 @@ impl Simulation {
             filled(&plan, &world(&frame, &speeds, &sizes, &[], input))?
         } else {
             let (view, seed) = (plan.view(), options.seed);
-            let population = Population::new(&plan.bins, &options.volume, view, options.most_drops, seed)?;
-            plan.least_diameter = population.least_diameter;
+            let population = Population::new(&plan.bins, &options.volume, view, options.max_drops, seed)?;
+            plan.min_diameter = population.min_diameter;
             begin(&plan, &population, &speeds, input)?
         };
         Ok(Self { plan, speeds, sizes, drops })
@@ -227,8 +227,8 @@ impl Simulation {
 
     /// Minimum diameter, m: smaller drops are unresolved.
     #[must_use]
-    pub fn least_diameter(&self) -> f64 {
-        self.plan.least_diameter
+    pub fn min_diameter(&self) -> f64 {
+        self.plan.min_diameter
     }
 
     /// Maximum distance from the eye of a view at which a drop is resolved, m.

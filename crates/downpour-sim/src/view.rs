@@ -43,7 +43,7 @@ pub struct View {
     /// Axis of the camera's rotation, right-handed, with the length of its angular speed, rad/s.
     pub turning: DVec3,
     /// Maximum expected number of drops; the minimum diameter is raised to meet it.
-    pub most_drops: u32,
+    pub max_drops: u32,
 }
 
 impl Default for View {
@@ -64,7 +64,7 @@ impl Default for View {
             shutter_s: 0.0,
             velocity: DVec3::ZERO,
             turning: DVec3::ZERO,
-            most_drops: 2_000_000,
+            max_drops: 2_000_000,
         }
     }
 }

@@ -146,7 +146,7 @@ fn the_same_seed_is_the_same_rain() -> Outcome {
 #[test]
 fn too_many_drops_are_cut_at_a_larger_size() -> Outcome {
     let field = RainField::new(&rain(100.0)?, 0)?;
-    let fine = View { pixel_angle: 1.0e-4, most_drops: 50_000, ..View::default() };
+    let fine = View { pixel_angle: 1.0e-4, max_drops: 50_000, ..View::default() };
     let seen = field.visible(&fine, 0.0)?;
     assert!(seen.resolved.least_pixels > fine.least_pixels);
     assert!((10_000..=50_500).contains(&seen.drops.len()), "{}", seen.drops.len());

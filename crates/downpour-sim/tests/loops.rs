@@ -75,7 +75,7 @@ fn no_drop_of_a_box_keeps_its_column() {
     let size = 6.0;
     let options = SimulationOptions {
         volume: SimVolume::Box { size_m: [size; 3] },
-        most_drops: 4000,
+        max_drops: 4000,
         ..SimulationOptions::default()
     };
     let views = [
@@ -135,7 +135,7 @@ fn no_drop_of_a_box_keeps_its_column() {
 fn a_drop_keeps_its_number() {
     let (view, field) = (view(), turbulent());
     for volume in [SimVolume::View, SimVolume::Box { size_m: [4.0; 3] }] {
-        let options = SimulationOptions { volume, most_drops: 50_000, ..SimulationOptions::default() };
+        let options = SimulationOptions { volume, max_drops: 50_000, ..SimulationOptions::default() };
         let now = StepInput { field: Some(&field), ..StepInput::new(&view, DVec3::ZERO, Vec3::ZERO) };
         let mut simulation = Simulation::new(&rain(50.0), &options, &now).expect("in range");
         let mut before: BTreeMap<u64, DVec3> = BTreeMap::new();

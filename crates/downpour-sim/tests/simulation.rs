@@ -50,7 +50,7 @@ fn excess(counts: &[u32]) -> f64 {
 fn the_sampling_of_im_and_sung_is_not_uniform() {
     let view = looking(DVec3::new(0.0, 2.0, 0.0), 0.0, 0.0);
     let options =
-        SimulationOptions { volume: SimVolume::ImSung, most_drops: 30_000, ..SimulationOptions::default() };
+        SimulationOptions { volume: SimVolume::ImSung, max_drops: 30_000, ..SimulationOptions::default() };
     let simulation = Simulation::new(&rain(25.0), &options, &input(&view, Vec3::ZERO)).expect("in range");
     let middle = view.eye + view.forward * 4.0;
     let near = simulation
@@ -68,7 +68,7 @@ fn a_box_stays_uniform_however_the_camera_moves() {
     let size = DVec3::new(8.0, 6.0, 8.0);
     let options = SimulationOptions {
         volume: SimVolume::Box { size_m: size.to_array() },
-        most_drops: 60_000,
+        max_drops: 60_000,
         ..SimulationOptions::default()
     };
     let wind = Vec3::new(-6.0, 0.0, 3.0);
@@ -126,7 +126,7 @@ fn the_gauge_reads_what_was_asked_for() {
     for rate in [5.0, 25.0, 100.0] {
         let options = SimulationOptions {
             volume: SimVolume::Box { size_m },
-            most_drops: 400_000,
+            max_drops: 400_000,
             gauge: Some(gauge),
             ..SimulationOptions::default()
         };
@@ -175,7 +175,7 @@ fn the_frame_rate_does_not_matter() {
     let positions = |drag: Drag, per_second: u32| {
         let options = SimulationOptions {
             volume: SimVolume::Box { size_m: [30.0; 3] },
-            most_drops: 2_000,
+            max_drops: 2_000,
             drag,
             ..SimulationOptions::default()
         };
@@ -207,7 +207,7 @@ fn the_frame_rate_does_not_matter() {
 #[test]
 fn far_from_the_origin() {
     let run = |far: DVec3| {
-        let options = SimulationOptions { most_drops: 5_000, ..SimulationOptions::default() };
+        let options = SimulationOptions { max_drops: 5_000, ..SimulationOptions::default() };
         let at = |step: u32| {
             looking(far + DVec3::new(0.05, 0.01, 0.02) * f64::from(step), 0.01 * f64::from(step), 0.1)
         };
@@ -232,7 +232,7 @@ fn far_from_the_origin() {
 #[test]
 fn drops_of_a_view_are_on_the_screen() {
     let fraction = |volume: SimVolume| {
-        let options = SimulationOptions { volume, most_drops: 40_000, ..SimulationOptions::default() };
+        let options = SimulationOptions { volume, max_drops: 40_000, ..SimulationOptions::default() };
         let mut simulation =
             Simulation::new(&rain(25.0), &options, &input(&walk(0), Vec3::X)).expect("in range");
         let mut fractions = Vec::new();
@@ -253,7 +253,7 @@ fn the_same_bits_for_any_number_of_threads() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("in range");
         pool.install(|| {
-            let options = SimulationOptions { most_drops: 50_000, ..SimulationOptions::default() };
+            let options = SimulationOptions { max_drops: 50_000, ..SimulationOptions::default() };
             let field = vortex();
             let now = walk(0);
             let start = StepInput { field: Some(&field), ..input(&now, Vec3::ZERO) };
@@ -286,10 +286,10 @@ fn what_is_out_of_range_is_refused() {
         let error = made(of(volume)).unwrap_err();
         assert!(error.to_string().contains("allowed"), "{error}");
     }
-    assert!(made(SimulationOptions { most_drops: 0, ..SimulationOptions::default() }).is_err());
-    assert!(made(SimulationOptions { most_drops: u32::MAX, ..SimulationOptions::default() }).is_err());
+    assert!(made(SimulationOptions { max_drops: 0, ..SimulationOptions::default() }).is_err());
+    assert!(made(SimulationOptions { max_drops: u32::MAX, ..SimulationOptions::default() }).is_err());
     let mut simulation =
-        Simulation::new(&rain(10.0), &SimulationOptions { most_drops: 100, ..of(SimVolume::View) }, &now)
+        Simulation::new(&rain(10.0), &SimulationOptions { max_drops: 100, ..of(SimVolume::View) }, &now)
             .expect("in range");
     let before = simulation.drops().to_vec();
     for time in [0.0, -1.0, 10.0, f64::NAN, 1.0e-9] {
@@ -315,7 +315,7 @@ fn dry() {
 #[test]
 fn too_many_drops_say_what_they_need() {
     let view = View::default();
-    let options = SimulationOptions { most_drops: 1_000_000_000, ..SimulationOptions::default() };
+    let options = SimulationOptions { max_drops: 1_000_000_000, ..SimulationOptions::default() };
     let error = Simulation::new(&rain(100.0), &options, &input(&view, Vec3::ZERO)).unwrap_err();
     assert!(matches!(error, SimError::Memory { .. }));
     assert!(

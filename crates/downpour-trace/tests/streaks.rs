@@ -6,8 +6,7 @@ use downpour_drop::oscillation::Amplitudes;
 use downpour_render::camera::Viewpoint;
 use downpour_render::picture::{Picture, PictureOptions};
 use downpour_render::rain::{
-    DropMasks, Exposure, EyeMotion, RainOptions, RefractionForm, StreakColour, StreakSamples,
-    TemporalResponse,
+    DropMasks, Exposure, EyeMotion, RainOptions, RefractionForm, StreakColor, StreakSamples, TemporalResponse,
 };
 use downpour_sim::field::{DropKind, FallingDrop};
 use downpour_trace::builder::SceneBuilder;
@@ -389,9 +388,9 @@ fn the_outline_oscillates() -> Outcome {
 #[test]
 fn white_streaks_have_one_color() -> Outcome {
     let scene = varied();
-    let with = |colour| Exposure { shutter_s: 1.0 / 250.0, colour, ..Exposure::default() };
-    let refracted = picture(&scene, SIZE, &many(), with(StreakColour::Refracted))?;
-    let white = picture(&scene, SIZE, &many(), with(StreakColour::White))?;
+    let with = |color| Exposure { shutter_s: 1.0 / 250.0, color, ..Exposure::default() };
+    let refracted = picture(&scene, SIZE, &many(), with(StreakColor::Refracted))?;
+    let white = picture(&scene, SIZE, &many(), with(StreakColor::White))?;
     assert!((covered(&refracted) / covered(&white) - 1.0).abs() < 1.0e-6);
     let ratio = |p: &[f32; 4]| p[2] / p[0];
     let touched: Vec<&[f32; 4]> = white.rain.iter().filter(|p| p[3] < 0.99).collect();

@@ -162,7 +162,7 @@ fn nothing_drawn() -> Resolved {
         far: 50.0,
         pixel_angle: 1.0e-3,
         least_pixels: 0.4,
-        least_diameter: 1.0,
+        min_diameter: 1.0,
         region: Region::Everywhere,
     }
 }
@@ -216,7 +216,7 @@ fn what_a_region_leaves_out_is_unresolved() -> Outcome {
     let region = Region::Box { center: DVec3::new(0.0, 0.0, -4.0), size: DVec3::splat(10.0) };
     // Everything from 2 mm on is drawn in the box, which the ray leaves after 9 m.
     let resolved =
-        Resolved { near: 1.0e-9, least_pixels: 1.0e-6, least_diameter: 2.0e-3, region, ..nothing_drawn() };
+        Resolved { near: 1.0e-9, least_pixels: 1.0e-6, min_diameter: 2.0e-3, region, ..nothing_drawn() };
     let medium = RainMedium::new(&law(rate), &resolved, masks, &MediumOptions::default())?;
     let scene = walled(distance as f32, &[], [1.0; 3]);
     let found = -ops::ln(f64::from(layer(&scene, &view(0.02), [4, 2], medium, masks)[5][3]));

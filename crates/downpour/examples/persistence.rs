@@ -22,7 +22,7 @@ use downpour::mask::MaskOptions;
 use downpour::math::rng::{rng_draw, rng_unit};
 use downpour::render::gpu::{RainOnGpu, RainPipeline};
 use downpour::render::rain::light::{DropLightForm, DropLightOptions};
-use downpour::render::rain::{DropMasks, Exposure, Rain, RainOptions, StreakColour, StreakSamples};
+use downpour::render::rain::{DropMasks, Exposure, Rain, RainOptions, StreakColor, StreakSamples};
 use downpour::scene::Budget;
 use downpour::sim::field::{DropKind, FallingDrop};
 use downpour::trace::data::RenderFrame;
@@ -110,7 +110,7 @@ impl Bench<'_> {
         for count in [0, 5000, 10_000, 20_000, 40_000] {
             let count = if quick { count / 10 } else { count };
             let drops = self.drops(count, 1.0e-3, FAR)?;
-            let white = Exposure { colour: StreakColour::White, ..exposure(StreakSamples::Table) };
+            let white = Exposure { color: StreakColor::White, ..exposure(StreakSamples::Table) };
             let white = self.picture(&drops, white)?.drops;
             let still = self.picture(&drops, Exposure::default())?.drops;
             let Cost { binning, capture, table, drops, .. } =

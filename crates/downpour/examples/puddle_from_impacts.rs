@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mean = heights.iter().map(|&h| f64::from(h * h)).sum::<f64>() / heights.len() as f64;
         println!("{name}: {count} impacts, ripples of {:.4} mm rms", 1.0e3 * mean.sqrt());
     }
-    println!("drops below {:.2} mm are not in the box", 1.0e3 * simulation.least_diameter());
+    println!("drops below {:.2} mm are not in the box", 1.0e3 * simulation.min_diameter());
     Ok(())
 }
 

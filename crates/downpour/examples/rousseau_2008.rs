@@ -129,7 +129,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     for most in if software { [1 << 16, 1 << 18, 1 << 20] } else { [1 << 20, 1 << 22, 1 << 24] } {
         for (name, volume) in [("box", boxed), ("view", SimVolume::View)] {
-            let options = SimulationOptions { volume, most_drops: most, ..SimulationOptions::default() };
+            let options = SimulationOptions { volume, max_drops: most, ..SimulationOptions::default() };
             let mut simulation = GpuSimulation::new(&gpu, &rain, &options, &start)?;
             let count = simulation.count();
             let words = vec![[0u32; 4]; count.min(1 << 22) as usize];
@@ -177,7 +177,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     wind_speed(&gpu)?;
     println!("Rousseau 2008, table 1, first column: steps per second of a box, with wind and map");
     for most in [1, 5_000, 10_000, 20_000, 40_000, 100_000, 1_000_000] {
-        let options = SimulationOptions { volume: boxed, most_drops: most, ..SimulationOptions::default() };
+        let options = SimulationOptions { volume: boxed, max_drops: most, ..SimulationOptions::default() };
         let mut simulation = GpuSimulation::new(&gpu, &rain, &options, &start)?;
         let time = simulation.time(1.0 / 60.0, &full, if software { 3 } else { 100 })?;
         let ms = if software { time.wall } else { time.device.unwrap_or(time.wall) }.as_secs_f64() * 1.0e3;

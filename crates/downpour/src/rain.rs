@@ -25,7 +25,7 @@ use downpour_trace::data::{RenderFrame, SceneData};
 use downpour_trace::gpu::SceneOnGpu;
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
-use downpour_trace::stage::{MAX_TRIANGLES, MAX_LIGHTS, view_of};
+use downpour_trace::stage::{MAX_LIGHTS, MAX_TRIANGLES, view_of};
 use glam::{Affine3A, DVec3};
 
 pub use downpour_render::host::DepthRange;
@@ -157,7 +157,7 @@ impl Rain {
     pub fn drops(&self, view: &RainView, size: [u32; 2]) -> Result<VisibleDrops, RainError> {
         let depth = [self.settings.near_m, self.settings.far_m];
         let seen = view_of(&view.camera, DVec3::ZERO, size, depth, view.shutter_s, &view.motion)?;
-        let seen = View { most_drops: self.settings.max_drops, ..seen };
+        let seen = View { max_drops: self.settings.max_drops, ..seen };
         let obstacles = Obstacles {
             nodes: &self.scene.nodes,
             triangles: &self.scene.triangles,

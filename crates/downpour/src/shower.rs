@@ -90,7 +90,7 @@ impl Shower {
     ) -> Result<VisibleDrops, ShowerError> {
         let mut visible = match &mut self.form {
             Form::Closed(field) => {
-                let view = View { most_drops: self.weather.rain.max_drops, ..stage.view()? };
+                let view = View { max_drops: self.weather.rain.max_drops, ..stage.view()? };
                 let obstacles = Obstacles {
                     nodes: &stage.data.nodes,
                     triangles: &stage.data.triangles,
@@ -179,6 +179,6 @@ fn bounce(rain: &Rain) -> Bounce {
         restitution: bounce.restitution as f32,
         grip: bounce.grip as f32,
         size: bounce.size as f32,
-        longest_s: bounce.max_time_s as f32,
+        max_time_s: bounce.max_time_s as f32,
     }
 }

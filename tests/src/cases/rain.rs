@@ -14,7 +14,7 @@ use downpour_render::rain::streak::streak_weight;
 use downpour_render::rain::streak_cell::{streak_cell_index, streak_cell_position};
 use downpour_render::rain::{
     DropMasks, EnvironmentMap, Exposure, EyeMotion, MediumOptions, PanePlane, Rain, RainMedium, RainOptions,
-    RefractionForm, StreakColour, StreakProfiles, StreakSamples, TemporalResponse,
+    RefractionForm, StreakColor, StreakProfiles, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::render::medium::{MEDIUM_FILTER_KERNEL, MEDIUM_LIGHT_KERNEL, MEDIUM_OPEN_KERNEL};
 use downpour_shaders::render::rain::{
@@ -88,7 +88,7 @@ fn medium(masks: &DropMasks, eye: Vec3) -> RainMedium {
         far: 50.0,
         pixel_angle: 0.0025,
         least_pixels: 1.0,
-        least_diameter: 0.4e-3,
+        min_diameter: 0.4e-3,
         region,
     };
     let pane = Some(PanePlane { outward: Vec3::new(0.0, 0.28, -0.96), distance: 0.7 });
@@ -557,8 +557,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             atlas_case(gpu, ABOVE, 1.0 / 120.0, StreakPick::Random)
         }),
         drops("main_drops: white streaks", |gpu| {
-            let white =
-                Exposure { colour: StreakColour::White, ..exposure(1.0 / 250.0, StreakSamples::Table) };
+            let white = Exposure { color: StreakColor::White, ..exposure(1.0 / 250.0, StreakSamples::Table) };
             rain_case(gpu, LEVEL, RefractionForm::Direction, white, Part::Drops)
         }),
     ]

@@ -387,7 +387,7 @@ fn both(gpu: &Gpu, scenario: Scenario) -> Result<Both, GpuError> {
     let options = SimulationOptions {
         volume: scenario.volume,
         seed: 11,
-        most_drops: 6000,
+        max_drops: 6000,
         shutter_s: 1.0 / 48.0,
         wait_s: 1.0 / 60.0,
         drag: scenario.drag,

@@ -101,11 +101,11 @@ impl GlassPicture {
     /// has them.
     #[must_use]
     pub fn through(&self, behind: &[[f32; 4]], capture: &[[f32; 4]]) -> Vec<[f32; 3]> {
-        Look { glass: self, behind: &self.levelled(behind), capture }.picture()
+        Look { glass: self, behind: &self.with_levels(behind), capture }.picture()
     }
 
     /// A picture with its coarser levels.
-    pub(crate) fn levelled(&self, behind: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    pub(crate) fn with_levels(&self, behind: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let mut texels = behind.to_vec();
         for level in self.coarser_levels() {
             pyramid_append(&mut texels, &level);

@@ -78,7 +78,7 @@ impl DropsFrame {
             tiles_across,
             light_terms: options.light.form.terms(),
             streak_samples,
-            streak_color: options.exposure.colour as u32,
+            streak_color: options.exposure.color as u32,
             glints: options.light.glints,
             atlas: if options.light.form == DropLightForm::Atlas { masks.atlas } else { 0 },
         }

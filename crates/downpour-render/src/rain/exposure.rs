@@ -22,7 +22,7 @@ pub enum StreakSamples {
 /// Color of a streak.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
-pub enum StreakColour {
+pub enum StreakColor {
     /// Light that the drop refracts and reflects.
     #[default]
     Refracted = STREAK_REFRACTED,
@@ -69,7 +69,7 @@ pub struct Exposure {
     /// Method that averages streaks.
     pub samples: StreakSamples,
     /// Color of streaks.
-    pub colour: StreakColour,
+    pub color: StreakColor,
     /// Amplitudes of the oscillation of drops.
     pub oscillation: Amplitudes,
     /// Water and air, on which the frequencies of the oscillation depend.
@@ -97,9 +97,9 @@ impl Exposure {
             time_s,
             eye,
             samples: streaks.samples.map_or(StreakSamples::Table, StreakSamples::Loop),
-            colour: match streaks.look {
-                StreakLook::White => StreakColour::White,
-                _ => StreakColour::Refracted,
+            color: match streaks.look {
+                StreakLook::White => StreakColor::White,
+                _ => StreakColor::Refracted,
             },
             // A weather holds none that are out of range.
             oscillation: Amplitudes::new(a20, a31).unwrap_or(Amplitudes::NONE),
@@ -120,7 +120,7 @@ impl Default for Exposure {
             time_s: 0.0,
             eye: EyeMotion::default(),
             samples: StreakSamples::default(),
-            colour: StreakColour::default(),
+            color: StreakColor::default(),
             oscillation: Amplitudes::NONE,
             fluids: Fluids::AT_20_C,
             seed: 0,

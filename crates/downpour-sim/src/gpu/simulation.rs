@@ -331,8 +331,8 @@ impl GpuSimulation {
 
     /// Minimum diameter, m: smaller drops are unresolved.
     #[must_use]
-    pub fn least_diameter(&self) -> f64 {
-        self.plan.least_diameter
+    pub fn min_diameter(&self) -> f64 {
+        self.plan.min_diameter
     }
 
     /// Drops that a picture of the current time can show, as [`Simulation::visible`].

@@ -116,7 +116,7 @@ impl Stepped {
                 _ => SimVolume::View,
             },
             seed: rain.seed,
-            most_drops: rain.max_drops,
+            max_drops: rain.max_drops,
             wait_s: 1.0 / STEPS_PER_S,
             drag: match rain.drag {
                 RainDrag::Rousseau2008 => Drag::Rousseau2008,
@@ -270,7 +270,7 @@ impl Stepped {
         let options = SimulationOptions {
             first_step: (STEP_ZERO + step).clamp(1, i64::from(u32::MAX)) as u32,
             // What a view may hold is in its least diameter.
-            most_drops: if self.forgets() { 1 << 28 } else { self.options.most_drops },
+            max_drops: if self.forgets() { 1 << 28 } else { self.options.max_drops },
             ..self.options.clone()
         };
         let simulation = Simulation::new(&self.law, &options, &moment)?;
