@@ -8,7 +8,7 @@ use bytemuck::Pod;
 use crate::{Gpu, GpuError};
 
 /// Least size of a kept storage buffer, bytes: lists of few drops change the most from frame to frame.
-const LEAST: u64 = 256 << 10;
+const MIN_BYTES: u64 = 256 << 10;
 
 /// Buffers below this size, bytes, get as much room again as they need; larger ones a quarter.
 const SMALL: u64 = 4 << 20;
@@ -75,6 +75,8 @@ impl BufferSource for Gpu {
 #[derive(Debug)]
 pub struct BufferPool {
     gpu: Gpu,
+    /// Least size of the buffers of some labels, bytes.
+    room: HashMap<&'static str, u64>,
     kept: Mutex<Kept>,
 }
 
@@ -91,7 +93,14 @@ impl BufferPool {
     /// Creates a pool without buffers.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Self {
-        Self { gpu: gpu.clone(), kept: Mutex::default() }
+        Self { gpu: gpu.clone(), room: HashMap::new(), kept: Mutex::default() }
+    }
+
+    /// Sets the least size, bytes, of the storage buffers of labels whose contents change much from frame to frame.
+    #[must_use]
+    pub fn with_room(mut self, room: &[(&'static str, u64)]) -> Self {
+        self.room.extend(room.iter().copied());
+        self
     }
 
     /// Begins a frame: all buffers may be used again.
@@ -106,14 +115,15 @@ impl BufferPool {
     }
 
     /// Size of a new buffer: with room to grow, as far as the device allows.
-    fn roomy(&self, bytes: u64, usage: wgpu::BufferUsages) -> u64 {
+    fn roomy(&self, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> u64 {
         if usage.contains(wgpu::BufferUsages::UNIFORM) {
             return bytes;
         }
         let limits = self.gpu.device().limits();
         let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         let room = if bytes < SMALL { bytes } else { bytes / 4 };
-        let wanted = (bytes + room).max(LEAST).next_multiple_of(256);
+        let least = self.room.get(label).copied().unwrap_or(MIN_BYTES);
+        let wanted = (bytes + room).max(least).next_multiple_of(256);
         if wanted <= most { wanted } else { bytes }
     }
 }
@@ -131,7 +141,7 @@ impl BufferSource for BufferPool {
         let buffer = match known.filter(|known| known.size() >= bytes && known.usage().contains(usage)) {
             Some(known) => known.clone(),
             None => {
-                let made = self.gpu.empty_buffer(label, self.roomy(bytes, usage), usage)?;
+                let made = self.gpu.empty_buffer(label, self.roomy(label, bytes, usage), usage)?;
                 let buffers = kept.buffers.entry(label).or_default();
                 match buffers.get_mut(nth) {
                     Some(place) => *place = made.clone(),

@@ -12,4 +12,4 @@ pub use glass::{BehindGlass, GlassRenderer};
 pub use host::{HostPass, HostPipeline, HostTextures};
 pub use medium::{MediumPass, MediumPipeline};
 pub use plate::{LightingOnGpu, PlateOnGpu};
-pub use rain::{RainOnGpu, RainPass, RainPipeline};
+pub use rain::{RAIN_BUFFERS, RainOnGpu, RainPass, RainPipeline};

@@ -343,7 +343,7 @@ fn light_that_is_none_is_refused() -> Outcome {
     let error =
         DropLights::new(&SceneView { data: &scene, frame: &frame }, frame.camera.eye, &table, options)
             .unwrap_err();
-    assert_eq!(error.to_string(), "number of glints of a drop is 17 ; allowed: 0 to 16");
+    assert_eq!(error.to_string(), "number of glints of a drop is 17; allowed: 0 to 16");
     Ok(())
 }
 

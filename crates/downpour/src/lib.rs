@@ -12,11 +12,13 @@
 //!
 //! - [`Renderer`] makes the frames of a weather, one after the other: a picture, a clip, with a camera of the file or one that is
 //!   set from code ([`Renderer::set_camera`]). The command `downpour render` is built on it.
+//! - `Rain` (feature `wgpu`) draws rain over the frames of your own wgpu application: your device, your command encoder, your color
+//!   and depth textures.
 //! - [`Frame`] has the layers of a frame, the drops in it, and its files.
 //! - [`Source`] reads weather files; its [`Weather`](weather::Weather) may be changed, or built from nothing.
 //! - [`Backend`] and [`Device`] say what draws: a GPU, your GPU, or the CPU, with the same drops.
 //!
-//! The examples `render_weather` and `clip` are whole programs. Below the front door are the parts:
+//! The examples `render_weather`, `clip` and `your_wgpu_app` are whole programs. Below the front door are the parts:
 //!
 //! | module | crate | what is in it |
 //! |---|---|---|

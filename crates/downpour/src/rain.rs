@@ -11,7 +11,7 @@ use downpour_drop::optics::water_index_in_air;
 use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_gpu::{BufferPool, Gpu, wgpu};
 use downpour_render::camera::{EyeMotion, Viewpoint};
-use downpour_render::gpu::{HostPipeline, PlateOnGpu, RainOnGpu, RainPipeline};
+use downpour_render::gpu::{HostPipeline, PlateOnGpu, RAIN_BUFFERS, RainOnGpu, RainPipeline};
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::light::LightSource;
 use downpour_render::rain::{
@@ -111,7 +111,7 @@ impl Rain {
             masks_on_gpu: rains.upload(&masks)?,
             scene_on_gpu: SceneOnGpu::new(&gpu, &scene, None)?,
             host: HostPipeline::new(&gpu)?,
-            pool: BufferPool::new(&gpu),
+            pool: BufferPool::new(&gpu).with_room(&RAIN_BUFFERS),
             gpu,
             settings,
             sizes,

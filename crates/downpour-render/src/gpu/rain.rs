@@ -60,6 +60,10 @@ struct Profiles {
     light: (wgpu::BindGroup, [u32; 3]),
 }
 
+/// Least sizes, bytes, for a [`BufferPool`](downpour_gpu::BufferPool): a drop before the lens has a thousand times the rays of
+/// one farther off.
+pub const RAIN_BUFFERS: [(&str, u64); 2] = [("rays of streaks", 32 << 20), ("streak radiance", 32 << 20)];
+
 /// Jobs along a row of workgroups: fewer than every device allows.
 const ALONG: u32 = 32_768;
 
