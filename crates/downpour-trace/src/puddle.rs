@@ -3,7 +3,7 @@
 //! 1. [`PuddleMap`]: where water stands and how deep, painted or found from the scene by filling its hollows ([`fill`]), on
 //!    ground whose unevenness may be finer than its model ([`relief`]);
 //! 2. [`WetGround`](crate::wet_ground::WetGround): the maps of a weather, and the ripples of the rain on them, from picture
-//! to picture;
+//!    to picture;
 //! 3. [`SceneData::set_puddles`](crate::data::SceneData::set_puddles): both as rows of the scene's table;
 //! 4. [`water`](crate::scene::water): what a ray finds of them, on CPU and GPU.
 

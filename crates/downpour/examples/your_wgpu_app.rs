@@ -2,8 +2,10 @@
 //!
 //! What rain adds to the application stands between the lines "Rain". Everything else is an application as one has it.
 //!
+//! ```sh
 //! cargo run --release -p downpour --features wgpu --example your_wgpu_app
 //! cargo run --release -p downpour --features wgpu --example your_wgpu_app -- --frames 3 --save FOLDER
+//! ```
 
 use std::path::PathBuf;
 use std::sync::Arc;

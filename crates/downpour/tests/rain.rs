@@ -5,6 +5,7 @@
 use downpour::gpu::{AdapterChoice, Gpu, GpuOptions, LimitSet, wgpu};
 use downpour::rain::{DepthRange, PlateTextures, Rain, RainError, RainSettings, RainView};
 use downpour::render::camera::{EyeMotion, Viewpoint};
+use downpour::render::halves::unpack;
 use downpour::render::light::LightSource;
 use glam::Vec3;
 
@@ -130,7 +131,7 @@ impl Host {
         let buffer = self
             .gpu
             .empty_buffer("picture", u64::from(row) * u64::from(height), wgpu::BufferUsages::empty())
-            .unwrap();
+            .expect("it is possible");
         let mut encoder = self.gpu.device().create_command_encoder(&Default::default());
         encoder.copy_texture_to_buffer(
             self.color.as_image_copy(),
@@ -145,11 +146,15 @@ impl Host {
             self.color.size(),
         );
         self.gpu.queue().submit([encoder.finish()]);
-        let words: Vec<u16> = self.gpu.read(&buffer).unwrap();
+        let words: Vec<u16> = self.gpu.read(&buffer).expect("it is possible");
         words
             .chunks(row as usize / 2)
             .flat_map(|line| line[..width as usize * 4].chunks(4))
-            .map(|pixel| [0, 1, 2, 3].map(|k| half(pixel[k])))
+            .map(|pixel| {
+                let [[r, g], [b, a]] =
+                    [0, 2].map(|k| unpack(u32::from(pixel[k]) | u32::from(pixel[k + 1]) << 16));
+                [r, g, b, a]
+            })
             .collect()
     }
 
@@ -170,16 +175,6 @@ impl Host {
         self.gpu.queue().submit([encoder.finish()]);
         Ok(self.read())
     }
-}
-
-/// A number of half precision.
-fn half(bits: u16) -> f32 {
-    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023));
-    let size = match exponent {
-        0 => fraction * 2.0f32.powi(-24),
-        _ => (1.0 + fraction / 1024.0) * 2.0f32.powi(exponent - 15),
-    };
-    if bits >> 15 == 1 { -size } else { size }
 }
 
 fn view() -> RainView {
@@ -210,16 +205,16 @@ fn expected(rain: &Rain, view: &RainView, wall_m: f32) -> Vec<[f32; 4]> {
     use downpour::trace::{builder::SceneBuilder, data::RenderFrame, scene::SceneView, sky_light::SkyLight};
 
     let settings = rain.settings();
-    let index = downpour::drop::optics::water_index_in_air(589.3e-9, &settings.air).unwrap();
-    let masks = DropMasks::trace(index).unwrap();
-    let sizes =
-        downpour::drop::distribution::DropSizeDistribution::new(settings.sizes, settings.rate_mm_h).unwrap();
-    let visible = rain.drops(view, SIZE).unwrap();
+    let index = downpour::drop::optics::water_index_in_air(589.3e-9, &settings.air).expect("it is possible");
+    let masks = DropMasks::trace(index).expect("it is possible");
+    let sizes = downpour::drop::distribution::DropSizeDistribution::new(settings.sizes, settings.rate_mm_h)
+        .expect("it is possible");
+    let visible = rain.drops(view, SIZE).expect("it is possible");
     let speed = downpour::drop::fall_speed::TerminalSpeed::new(sizes.options().fall_speed, &settings.air);
-    let fall = speed.at(sizes.effective_diameter()).unwrap();
+    let fall = speed.at(sizes.effective_diameter()).expect("it is possible");
     let medium = MediumOptions { velocity: Vec3::new(0.0, -fall as f32, 0.0), ..MediumOptions::default() };
     let options = RainOptions {
-        medium: RainMedium::new(&sizes, &visible.resolved, &masks, &medium).unwrap(),
+        medium: RainMedium::new(&sizes, &visible.resolved, &masks, &medium).expect("it is possible"),
         exposure: Exposure {
             shutter_s: view.shutter_s,
             time_s: view.time_s,
@@ -230,7 +225,7 @@ fn expected(rain: &Rain, view: &RainView, wall_m: f32) -> Vec<[f32; 4]> {
         },
         ..RainOptions::default()
     };
-    let camera = view.camera.camera(SIZE, 0).unwrap();
+    let camera = view.camera.camera(SIZE, 0).expect("it is possible");
     let range = DepthRange::reversed(NEAR_M);
     let frame = HostPlateFrame { camera, inverse: range.inverse(), clear: range.clear(), scale: 1.0 };
     let is_wall = |i: u32| wall_m.is_finite() && i / SIZE[0] >= SIZE[1] / 2;
@@ -244,11 +239,11 @@ fn expected(rain: &Rain, view: &RainView, wall_m: f32) -> Vec<[f32; 4]> {
     let finest = HostEnvironment { frame: &map, plate: &pixels, sky: ([1, 1], &[[0.0; 4]]) }.map();
     let environment = EnvironmentMap::new(&picture.environment, finest);
     let scene = SceneBuilder::new().build(&SkyLight::uniform([0.0; 3]));
-    let of_scene = RenderFrame::new(&scene, &view.camera, SIZE, 1, 0, 0).unwrap();
+    let of_scene = RenderFrame::new(&scene, &view.camera, SIZE, 1, 0, 0).expect("it is possible");
     let lighting = SceneView { data: &scene, frame: &of_scene };
     let clean = &pixels[..(SIZE[0] * SIZE[1]) as usize];
     let plate = Plate { camera: &camera, pixels: clean, environment: &environment, lighting: &lighting };
-    let layer = rain_layer(&plate, &picture, &masks, &mut Vec::new()).unwrap();
+    let layer = rain_layer(&plate, &picture, &masks, &mut Vec::new()).expect("it is possible");
     clean.iter().zip(&layer).map(|(&plate, &rain)| compose_pixel(plate, rain)).collect()
 }
 
@@ -416,7 +411,12 @@ fn a_color_texture_of_8_bits_is_rained_on_in_linear_light() {
     let expected = expected(&rain, &view(), 6.0);
     let encode = |v: f32| {
         let v = v.clamp(0.0, 1.0);
-        255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
+        255.0
+            * if v <= 0.003_130_8 {
+                12.92 * v
+            } else {
+                1.055 * downpour::math::ops::pow(v, 1.0 / 2.4) - 0.055
+            }
     };
     let off = expected
         .iter()
