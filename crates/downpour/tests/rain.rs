@@ -429,3 +429,38 @@ fn a_color_texture_of_8_bits_is_rained_on_in_linear_light() {
         .count();
     assert!(off < expected.len() / 100, "{off} pixels differ");
 }
+
+#[test]
+fn a_lost_device_is_an_error() {
+    let Some(gpu) = device() else { return };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    let (color, depth) =
+        (host.color.create_view(&Default::default()), host.depth.create_view(&Default::default()));
+    gpu.device().destroy();
+    let mut encoder = gpu.device().create_command_encoder(&Default::default());
+    let error = rain.render(&mut encoder, &view(), &PlateTextures::new(&color, &depth, NEAR_M));
+    let error = error.map(|_| ()).unwrap_err();
+    assert!(matches!(error, RainError::Gpu(_)), "{error}");
+}
+
+#[test]
+fn what_is_too_much_is_an_error_or_drawn_as_what_is_not_resolved() {
+    let Some(gpu) = device() else { return };
+    let mut rain = Rain::new(gpu.device(), gpu.queue(), settings()).unwrap();
+    let error = rain.set_obstacles(&vec![[[0.0; 3]; 3]; 10_000_000]).map(|_| ()).unwrap_err();
+    assert_eq!(error.to_string(), "10000000 triangles; allowed: up to 4194304");
+    let lamp = LightSource::Point { position: Vec3::ZERO, intensity: Vec3::ONE, range: 0.0 };
+    let host = Host::new(&gpu, SIZE, wgpu::TextureFormat::Rgba16Float);
+    let error = host.rain(&mut rain, &view(), 6.0, &vec![lamp; 2000]).map(|_| ()).unwrap_err();
+    assert_eq!(error.to_string(), "2000 lights; allowed: up to 1024");
+    // With fewer drops than the picture resolves, the rest is extinction: the mean stays.
+    let all = host.rain(&mut rain, &view(), f32::INFINITY, &[]).unwrap();
+    rain.set_settings(RainSettings { max_drops: 20, ..settings() }).unwrap();
+    let few = host.rain(&mut rain, &view(), f32::INFINITY, &[]).unwrap();
+    assert!((mean(&few) / mean(&all) - 1.0).abs() < 0.02, "{} {}", mean(&few), mean(&all));
+    rain.set_settings(RainSettings { max_drops: 1 << 24, ..settings() }).unwrap();
+    let most = host.rain(&mut rain, &view(), f32::INFINITY, &[]).unwrap();
+    assert!((mean(&most) / mean(&all) - 1.0).abs() < 0.02, "{} {}", mean(&most), mean(&all));
+    rain.set_settings(RainSettings { max_drops: (1 << 24) + 1, ..settings() }).unwrap_err();
+}
