@@ -63,9 +63,8 @@ pub fn pyramid_levels(size: [u32; 2], rounding: PyramidRounding) -> Vec<PyramidL
 #[must_use]
 pub fn pyramid_texel<const N: usize>(texels: &[[f32; N]], level: &PyramidLevel, x: u32, y: u32) -> [f32; N] {
     let [edge, rows] = level.source_size;
-    let (left, right) = ((2 * x).min(edge - 1), (2 * x + 1).min(edge - 1));
-    let row = |y: u32| level.source + y.min(rows - 1) * edge;
-    let [upper, lower] = [row(2 * y), row(2 * y + 1)];
+    let (left, right) = (2 * x, (2 * x + 1).min(edge - 1));
+    let [upper, lower] = [2 * y, (2 * y + 1).min(rows - 1)].map(|row| level.source + row * edge);
     let at = |i: u32| texels[i as usize];
     let [a, b, c, d] = [at(upper + left), at(upper + right), at(lower + left), at(lower + right)];
     std::array::from_fn(|k| (((a[k] + b[k]) + c[k]) + d[k]) * 0.25)

@@ -20,9 +20,9 @@ struct PyramidLevel {
 // Mean of the four texels below a texel.
 fn pyramid_texel(x: u32, y: u32) -> vec4f {
     let edge = pyramid_level.source_size.x;
-    let left = min(2u * x, edge - 1u);
+    let left = 2u * x;
     let right = min(2u * x + 1u, edge - 1u);
-    let upper = pyramid_level.source + min(2u * y, pyramid_level.source_size.y - 1u) * edge;
+    let upper = pyramid_level.source + 2u * y * edge;
     let lower = pyramid_level.source + min(2u * y + 1u, pyramid_level.source_size.y - 1u) * edge;
     let first_row = pyramid_texels[upper + left] + pyramid_texels[upper + right];
     return (first_row + pyramid_texels[lower + left] + pyramid_texels[lower + right]) * 0.25;
