@@ -2,7 +2,7 @@
 
 use downpour_drop::optics::WATER_INDEX;
 use downpour_drop::oscillation::Amplitudes;
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 
 use crate::AtlasError;
 
@@ -66,18 +66,20 @@ impl Default for StreakOptions {
 
 impl StreakOptions {
     pub(crate) fn check(&self) -> Result<(), AtlasError> {
-        let of = |quantity, found: f64, range: std::ops::RangeInclusive<f64>, unit, allowed: &'static str| {
-            if range.contains(&found) {
-                return Ok(());
-            }
-            Err(AtlasError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
-        };
         let even = if self.columns.is_multiple_of(2) { f64::from(self.columns) } else { f64::NAN };
-        of("columns of a streak", even, 2.0..=256.0, "texels", "2 to 256, even")?;
-        of("rows of a streak", self.rows.into(), 1.0..=4096.0, "texels", "1 to 4096")?;
-        of("rays of a texel", self.rays.into(), 1.0..=64.0, "along an edge", "1 to 64")?;
-        of("half extent of a streak", self.half_extent, 0.5..=4.0, "radii", "0.5 to 4")?;
-        of("radius of the light", self.light_radius.to_degrees(), 0.5..=60.0, "degrees", "0.5 to 60")?;
-        of("refractive index", self.refractive_index, 1.01..=3.0, "", "1.01 to 3")
+        in_range("columns of a streak", even, "texels", &(2.0..=256.0), 1.0, "2 to 256, even")?;
+        in_range("rows of a streak", self.rows, "texels", &(1..=4096), 1.0, "1 to 4096")?;
+        in_range("rays of a texel", self.rays, "along an edge", &(1..=64), 1.0, "1 to 64")?;
+        in_range("half extent of a streak", self.half_extent, "radii", &(0.5..=4.0), 1.0, "0.5 to 4")?;
+        in_range(
+            "radius of the light",
+            self.light_radius.to_degrees(),
+            "degrees",
+            &(0.5..=60.0),
+            1.0,
+            "0.5 to 60",
+        )?;
+        in_range("refractive index", self.refractive_index, "", &(1.01..=3.0), 1.0, "1.01 to 3")?;
+        Ok(())
     }
 }

@@ -8,7 +8,7 @@
 //! The amount of a streak is its light without its pattern: the radiance of a disk of the equivalent radius that sends as much
 //! light to the viewer as the drop does. With the mean m of the texels and the half extent h it is 4 h m / pi.
 
-use downpour_math::OutOfRange;
+use downpour_math::{OutOfRange, in_range};
 use std::f64::consts::{PI, TAU};
 
 use downpour_drop::DropShape;
@@ -126,15 +126,7 @@ impl StreakTracer {
         amount_lights: &[[f64; 3]],
     ) -> Result<(Streaks, Vec<f64>), AtlasError> {
         let degrees = elevation.to_degrees();
-        if !(-80.0..=80.0).contains(&degrees) {
-            let (quantity, unit, allowed) = ("elevation of a streak", "degrees", "-80 to 80");
-            return Err(AtlasError::OutOfRange(OutOfRange {
-                quantity,
-                found: degrees,
-                unit,
-                allowed: allowed.into(),
-            }));
-        }
+        in_range("elevation of a streak", degrees, "degrees", &(-80.0..=80.0), 1.0, "-80 to 80")?;
         let frame = self.frame(elevation);
         let lights: Vec<[f64; 3]> = lights.iter().map(|&light| turned(&frame, light)).collect();
         let amount_lights: Vec<[f64; 3]> = amount_lights.iter().map(|&light| turned(&frame, light)).collect();

@@ -18,7 +18,7 @@ use std::ops::RangeInclusive;
 use downpour_math::ops::f64 as ops;
 
 use crate::DropError;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 use crate::water::{self, CELSIUS_ZERO_K};
 
 /// Standard gravity, m/s^2.
@@ -60,10 +60,22 @@ impl Air {
     /// # Errors
     /// [`DropError::OutOfRange`] outside -20 to 40 C or 300 to 1100 hPa.
     pub fn new(temperature_c: f64, pressure_pa: f64) -> Result<Self, DropError> {
-        let temperature_c =
-            in_range("air temperature", temperature_c, "C", &water::TEMPERATURE_RANGE_C, 1.0, "-20 to 40 C")?;
-        let pressure_pa =
-            in_range("air pressure", pressure_pa, "hPa", &PRESSURE_RANGE_PA, 0.01, "300 to 1100 hPa")?;
+        let temperature_c = in_rounded_range(
+            "air temperature",
+            temperature_c,
+            "C",
+            &water::TEMPERATURE_RANGE_C,
+            1.0,
+            "-20 to 40 C",
+        )?;
+        let pressure_pa = in_rounded_range(
+            "air pressure",
+            pressure_pa,
+            "hPa",
+            &PRESSURE_RANGE_PA,
+            0.01,
+            "300 to 1100 hPa",
+        )?;
         Ok(Self { temperature_c, pressure_pa })
     }
 

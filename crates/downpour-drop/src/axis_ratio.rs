@@ -18,7 +18,7 @@
 //! they fall too low. The branches of Andsager and Thurai do not meet at their joints: the steps, up to 0.6
 //! %, are in the papers.
 
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 use downpour_math::ops;
 
 use crate::DropError;
@@ -114,24 +114,9 @@ fn polynomial(d: f64, c: [f64; 5]) -> f64 {
 /// difference of densities not 100 to 20000 kg/m3.
 pub fn green_1975(diameter_m: f64, surface_tension: f64, density_difference: f64) -> Result<f64, DropError> {
     check_diameter(diameter_m, 1.0e-6..=9.0e-3, "0.001 to 9")?;
-    if !(1.0e-3..=1.0).contains(&surface_tension) {
-        let (quantity, unit, allowed) = ("surface tension", "N/m", "0.001 to 1");
-        return Err(DropError::OutOfRange(OutOfRange {
-            quantity,
-            found: surface_tension,
-            unit,
-            allowed: allowed.into(),
-        }));
-    }
-    if !(100.0..=20_000.0).contains(&density_difference) {
-        let (quantity, unit, allowed) = ("difference of densities", "kg/m3", "100 to 20000");
-        return Err(DropError::OutOfRange(OutOfRange {
-            quantity,
-            found: density_difference,
-            unit,
-            allowed: allowed.into(),
-        }));
-    }
+    in_range("surface tension", surface_tension, "N/m", &(1.0e-3..=1.0), 1.0, "0.001 to 1")?;
+    let densities = &(100.0..=20_000.0);
+    in_range("difference of densities", density_difference, "kg/m3", densities, 1.0, "100 to 20000")?;
     Ok(green_root(diameter_m, surface_tension, density_difference))
 }
 

@@ -36,7 +36,7 @@ use downpour_math::ops::f64 as ops;
 
 use crate::DropError;
 use crate::air::Air;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 use crate::fall_speed::{FallSpeedModel, MAX_DIAMETER_M, TerminalSpeed};
 
 pub use extinction::{ExtinctionEfficiency, ExtinctionLaw, KOSCHMIEDER, visibility};
@@ -163,7 +163,8 @@ impl DropSizeDistribution {
 
     /// Creates the published distribution. Its shape is that of [`MIN_SHAPE_RATE_MM_H`] for lower rates.
     fn unscaled(law: DropSizeLaw, rate_mm_h: f64, options: &DistributionOptions) -> Result<Self, DropError> {
-        let rate_mm_h = in_range("rain rate", rate_mm_h, "mm/h", &RATE_RANGE_MM_H, 1.0, "0 to 500 mm/h")?;
+        let rate_mm_h =
+            in_rounded_range("rain rate", rate_mm_h, "mm/h", &RATE_RANGE_MM_H, 1.0, "0 to 500 mm/h")?;
         let spectrum = law.spectrum(rate_mm_h.max(MIN_SHAPE_RATE_MM_H))?;
         check_diameters(options, &spectrum)?;
         let speed = TerminalSpeed::new(options.fall_speed, &options.air);
@@ -187,7 +188,7 @@ impl DropSizeDistribution {
     pub fn restricted_to(&self, min_diameter_m: f64, max_diameter_m: f64) -> Result<Self, DropError> {
         let range = self.options.min_diameter_m..=self.options.max_diameter_m;
         for d in [min_diameter_m, max_diameter_m] {
-            in_range("diameter", d, "mm", &range, 1.0e3, "the diameters of the whole rain")?;
+            in_rounded_range("diameter", d, "mm", &range, 1.0e3, "the diameters of the whole rain")?;
         }
         let options = DistributionOptions { min_diameter_m, max_diameter_m, ..self.options };
         check_diameters(&options, &self.spectrum)?;
@@ -373,10 +374,10 @@ fn check_diameters(options: &DistributionOptions, spectrum: &Spectrum) -> Result
     let range = 1.0e-6..=MAX_DIAMETER_M;
     if !(smallest == 0.0 && spectrum.has_finite_number()) {
         let allowed = "0.001 to 9 mm (0 too, where the law has a finite number of drops)";
-        in_range("smallest diameter", smallest, "mm", &range, 1.0e3, allowed)?;
+        in_rounded_range("smallest diameter", smallest, "mm", &range, 1.0e3, allowed)?;
     }
     let above = smallest + 1.0e-6..=MAX_DIAMETER_M;
     let allowed = "at most 9 mm, and at least 0.001 mm above the smallest";
-    in_range("largest diameter", largest, "mm", &above, 1.0e3, allowed)?;
+    in_rounded_range("largest diameter", largest, "mm", &above, 1.0e3, allowed)?;
     Ok(())
 }

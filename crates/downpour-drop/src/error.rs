@@ -14,7 +14,7 @@ pub enum DropError {
 
 /// Returns `value` if it is within `range` (NaN is not). The ends have a rounding tolerance, so that `9.0 * 1e-3` is
 /// 9 mm; the result is clamped to them. The message shows the value times `factor`, in `unit`.
-pub(crate) fn in_range(
+pub(crate) fn in_rounded_range(
     quantity: &'static str,
     value: f64,
     unit: &'static str,
@@ -24,14 +24,7 @@ pub(crate) fn in_range(
 ) -> Result<f64, DropError> {
     const ROUNDING: f64 = 1.0e-12;
     let (start, end) = (*range.start(), *range.end());
-    if value >= start - ROUNDING * start.abs() && value <= end + ROUNDING * end.abs() {
-        Ok(value.max(start).min(end))
-    } else {
-        Err(DropError::OutOfRange(OutOfRange {
-            quantity,
-            found: value * factor,
-            unit,
-            allowed: allowed.into(),
-        }))
-    }
+    let rounded = start - ROUNDING * start.abs()..=end + ROUNDING * end.abs();
+    let value = downpour_math::in_range(quantity, value, unit, &rounded, factor, allowed)?;
+    Ok(value.max(start).min(end))
 }

@@ -29,7 +29,7 @@ use downpour_shaders::drop::fall_speed as shared;
 
 use crate::DropError;
 use crate::air::Air;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 
 pub use beard::{FallSpeedAir, fall_speed_beard_1976, fall_speed_beard_flattened, fall_speed_beard_sphere};
 pub use fits::{
@@ -202,7 +202,7 @@ impl TerminalSpeed {
 /// Returns `diameter_m` if it is in the range of drops.
 pub(crate) fn drop_diameter(diameter_m: f64) -> Result<f64, DropError> {
     let range = f64::MIN_POSITIVE..=MAX_DIAMETER_M;
-    in_range("diameter", diameter_m, "mm", &range, 1.0e3, "above 0, at most 9 mm")
+    in_rounded_range("diameter", diameter_m, "mm", &range, 1.0e3, "above 0, at most 9 mm")
 }
 
 /// Terminal speed in m/s by the number of a model; an unknown number selects Beard 1976. Diameter in meters, 0 to 9e-3.

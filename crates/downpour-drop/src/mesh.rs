@@ -8,7 +8,7 @@
 //! Vertices lie on the surface, and normals are those of the surface, not of the triangles. The volume is
 //! below the drop's by an error of second order in the spacing.
 
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
@@ -159,15 +159,8 @@ fn check_count(
     range: std::ops::RangeInclusive<u32>,
     allowed: &'static str,
 ) -> Result<(), DropError> {
-    if range.contains(&found) {
-        return Ok(());
-    }
-    Err(DropError::OutOfRange(OutOfRange {
-        quantity,
-        found: found.into(),
-        unit: "in all",
-        allowed: allowed.into(),
-    }))
+    in_range(quantity, found, "in all", &range, 1.0, allowed)?;
+    Ok(())
 }
 
 /// Triples of adjacent corners among the twelve, counter-clockwise from outside.

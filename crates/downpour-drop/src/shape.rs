@@ -24,7 +24,7 @@ mod equilibrium;
 mod table;
 
 use bytemuck::{Pod, Zeroable};
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 use downpour_math::real::Real;
 
 use crate::DropError;
@@ -75,15 +75,9 @@ pub(crate) fn check_diameter(
     allowed: &'static str,
 ) -> Result<(), DropError> {
     // A NaN is in no range.
-    if (range.start() * (1.0 - 1.0e-9)..=range.end() * (1.0 + 1.0e-9)).contains(&diameter_m) {
-        return Ok(());
-    }
-    Err(DropError::OutOfRange(OutOfRange {
-        quantity: "diameter",
-        found: diameter_m * 1.0e3,
-        unit: "mm",
-        allowed: allowed.into(),
-    }))
+    let range = range.start() * (1.0 - 1.0e-9)..=range.end() * (1.0 + 1.0e-9);
+    in_range("diameter", diameter_m, "mm", &range, 1.0e3, allowed)?;
+    Ok(())
 }
 
 /// Checks that a diameter has a shape.

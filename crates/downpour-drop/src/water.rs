@@ -14,7 +14,7 @@ use std::ops::RangeInclusive;
 use downpour_math::ops::f64 as ops;
 
 use crate::DropError;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 
 /// Range of temperatures, in Celsius, in which the properties are given.
 pub const TEMPERATURE_RANGE_C: RangeInclusive<f64> = -20.0..=40.0;
@@ -92,5 +92,5 @@ fn viscosity_at(t: f64) -> f64 {
 }
 
 fn liquid(temperature_c: f64) -> Result<f64, DropError> {
-    in_range("water temperature", temperature_c, "C", &TEMPERATURE_RANGE_C, 1.0, "-20 to 40 C")
+    in_rounded_range("water temperature", temperature_c, "C", &TEMPERATURE_RANGE_C, 1.0, "-20 to 40 C")
 }

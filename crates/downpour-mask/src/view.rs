@@ -1,6 +1,6 @@
 //! Direction from which a drop is seen.
 
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 use downpour_math::ops;
 
 use crate::MaskError;
@@ -20,16 +20,10 @@ impl View {
     /// # Errors
     /// [`MaskError::OutOfRange`] outside [-pi/2, pi/2] or if not finite.
     pub fn from_elevation(elevation: f64) -> Result<Self, MaskError> {
-        if elevation.is_finite() && elevation.abs() <= std::f64::consts::FRAC_PI_2 + 1.0e-12 {
-            Ok(Self { elevation })
-        } else {
-            Err(MaskError::OutOfRange(OutOfRange {
-                quantity: "view elevation",
-                found: elevation.to_degrees(),
-                unit: "degrees",
-                allowed: "-90 to 90".into(),
-            }))
-        }
+        let most = std::f64::consts::FRAC_PI_2 + 1.0e-12;
+        let degrees = 1.0_f64.to_degrees();
+        in_range("view elevation", elevation, "degrees", &(-most..=most), degrees, "-90 to 90")?;
+        Ok(Self { elevation })
     }
 
     /// The elevation in radians.

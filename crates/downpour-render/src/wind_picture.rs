@@ -19,7 +19,7 @@ mod canvas;
 mod colors;
 mod streaks;
 
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -105,21 +105,10 @@ impl WindSlice {
         if !size.iter().all(|edge| (MIN_PIXELS..=MAX_PIXELS).contains(edge)) {
             return Err(RenderError::Size { found: size, min: MIN_PIXELS, max: MAX_PIXELS });
         }
-        let check = |quantity, found: f32, (least, most): (f32, f32), allowed: &'static str| {
-            if (least..=most).contains(&found) {
-                return Ok(());
-            }
-            Err(RenderError::OutOfRange(OutOfRange {
-                quantity,
-                found: found.into(),
-                unit: "m",
-                allowed: allowed.into(),
-            }))
-        };
-        check("slice of the wind", offset, (-1.0e6, 1.0e6), "-1e6 to 1e6")?;
+        in_range("slice of the wind", offset, "m", &(-1.0e6..=1.0e6), 1.0, "-1e6 to 1e6")?;
         for (from, to) in low.to_array().into_iter().zip(high.to_array()) {
-            check("corner of the box", from, (-1.0e6, 1.0e6), "-1e6 to 1e6")?;
-            check("edge of the box", to - from, (0.01, 1.0e6), "0.01 to 1e6")?;
+            in_range("corner of the box", from, "m", &(-1.0e6..=1.0e6), 1.0, "-1e6 to 1e6")?;
+            in_range("edge of the box", to - from, "m", &(0.01..=1.0e6), 1.0, "0.01 to 1e6")?;
         }
         let rows = size[1].saturating_sub(legend_rows(size));
         let edges = plane.axes().map(|axis| axis.abs().dot(high - low));

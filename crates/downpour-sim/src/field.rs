@@ -21,8 +21,8 @@
 
 use downpour_drop::distribution::{DropSizeDistribution, SampleTable, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;
-use downpour_math::OutOfRange;
 use downpour_math::rng::{rng_draw, rng_pcg4d, seed_words};
+use downpour_math::{OutOfRange, in_range};
 use downpour_shaders::sim::step::VOLUME_RADIUS;
 use downpour_wind::{UniformWind, Wind};
 use glam::{DVec3, Vec3};
@@ -408,9 +408,6 @@ fn class_seed(seed: u64, class: u32) -> [u32; 2] {
 }
 
 pub(crate) fn check_time(time_s: f64) -> Result<(), SimError> {
-    if time_s.abs() <= MAX_TIME_S {
-        return Ok(());
-    }
-    let (quantity, unit, allowed) = ("time", "s", "-1e6 to 1e6");
-    Err(SimError::OutOfRange(OutOfRange { quantity, found: time_s, unit, allowed: allowed.into() }))
+    in_range("time", time_s, "s", &(-MAX_TIME_S..=MAX_TIME_S), 1.0, "-1e6 to 1e6")?;
+    Ok(())
 }

@@ -26,9 +26,9 @@
 
 use downpour_bvh::Hit;
 use downpour_drop::fall_speed::relaxation;
-use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_math::{OutOfRange, in_range};
 use downpour_shaders::sim::step::{STEP_CLEAR, VOLUME_RADIUS};
 use glam::{DVec3, Vec3};
 
@@ -180,15 +180,7 @@ impl RainField {
         let [begin, end] = span_s;
         check_time(begin)?;
         check_time(end)?;
-        if !(begin <= end && end - begin <= MAX_SPAN_S) {
-            let (quantity, unit, allowed) = ("span of time", "s", "0 to 60");
-            return Err(SimError::OutOfRange(OutOfRange {
-                quantity,
-                found: end - begin,
-                unit,
-                allowed: allowed.into(),
-            }));
-        }
+        in_range("span of time", end - begin, "s", &(0.0..=MAX_SPAN_S), 1.0, "0 to 60")?;
         let Some(root) = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty()) else {
             return Ok(Vec::new());
         };

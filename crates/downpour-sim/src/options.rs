@@ -2,7 +2,7 @@
 
 use crate::SimError;
 use crate::step::StepCaught;
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 
 /// Number of drops of one work item.
 pub(crate) const PIECE: usize = 1 << 14;
@@ -155,47 +155,61 @@ impl SimulationOptions {
     }
 
     pub(crate) fn check(&self) -> Result<(), SimError> {
-        let within =
-            |quantity, found: f64, unit, range: std::ops::RangeInclusive<f64>, allowed: &'static str| {
-                if range.contains(&found) {
-                    return Ok(());
-                }
-                Err(SimError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
-            };
         match self.volume {
             SimVolume::Box { size_m } | SimVolume::Tariq { size_m } => {
                 for edge in size_m {
-                    within("edge of the rain box", edge, "m", 1.0..=1000.0, "1 to 1000")?;
+                    in_range("edge of the rain box", edge, "m", &(1.0..=1000.0), 1.0, "1 to 1000")?;
                 }
             }
             SimVolume::Cylinder { base_m, radius_m, height_m } => {
                 for position in base_m {
-                    within("position of the rain cylinder", position, "m", -1.0e7..=1.0e7, "-1e7 to 1e7")?;
+                    in_range(
+                        "position of the rain cylinder",
+                        position,
+                        "m",
+                        &(-1.0e7..=1.0e7),
+                        1.0,
+                        "-1e7 to 1e7",
+                    )?;
                 }
-                within("radius of the rain cylinder", radius_m, "m", 0.5..=1000.0, "0.5 to 1000")?;
-                within("height of the rain cylinder", height_m, "m", 1.0..=1000.0, "1 to 1000")?;
+                in_range("radius of the rain cylinder", radius_m, "m", &(0.5..=1000.0), 1.0, "0.5 to 1000")?;
+                in_range("height of the rain cylinder", height_m, "m", &(1.0..=1000.0), 1.0, "1 to 1000")?;
             }
             SimVolume::View | SimVolume::ImSung => {}
         }
-        within("most drops", self.max_drops.into(), "", 1.0..=MAX_DROPS as f64, "1 to 2^30")?;
+        in_range("most drops", f64::from(self.max_drops), "", &(1.0..=MAX_DROPS as f64), 1.0, "1 to 2^30")?;
         if u64::from(self.max_drops) > MAX_DROPS_IN_MEMORY {
             return Err(SimError::memory(self.max_drops.into()));
         }
-        within("time of the shutter", self.shutter_s, "s", 0.0..=10.0, "0 to 10")?;
-        within("time from a state to the shutter's opening", self.wait_s, "s", 0.0..=1.0, "0 to 1")?;
-        within("time of a drop in view", self.oldest_s, "s", 0.1..=1000.0, "0.1 to 1000")?;
+        in_range("time of the shutter", self.shutter_s, "s", &(0.0..=10.0), 1.0, "0 to 10")?;
+        in_range(
+            "time from a state to the shutter's opening",
+            self.wait_s,
+            "s",
+            &(0.0..=1.0),
+            1.0,
+            "0 to 1",
+        )?;
+        in_range("time of a drop in view", self.oldest_s, "s", &(0.1..=1000.0), 1.0, "0.1 to 1000")?;
         let Bounce { fraction, restitution, grip, size, max_time_s } = self.bounce;
-        within("fraction of impacts that bounce", fraction.into(), "", 0.0..=1.0, "0 to 1")?;
-        within("restitution", restitution.into(), "", 0.0..=1.0, "0 to 1")?;
-        within("grip", grip.into(), "", 0.0..=1.0, "0 to 1")?;
-        within("size of a bounced drop", size.into(), "", 0.05 - 1.0e-6..=1.0, "0.05 to 1")?;
-        within("time of a bounced drop", max_time_s.into(), "s", 0.01 - 1.0e-6..=10.0, "0.01 to 10")?;
+        in_range("fraction of impacts that bounce", f64::from(fraction), "", &(0.0..=1.0), 1.0, "0 to 1")?;
+        in_range("restitution", f64::from(restitution), "", &(0.0..=1.0), 1.0, "0 to 1")?;
+        in_range("grip", f64::from(grip), "", &(0.0..=1.0), 1.0, "0 to 1")?;
+        in_range("size of a bounced drop", f64::from(size), "", &(0.05 - 1.0e-6..=1.0), 1.0, "0.05 to 1")?;
+        in_range(
+            "time of a bounced drop",
+            f64::from(max_time_s),
+            "s",
+            &(0.01 - 1.0e-6..=10.0),
+            1.0,
+            "0.01 to 10",
+        )?;
         if let Some(Gauge { height_m, low_m, high_m }) = self.gauge {
             for position in [height_m, low_m[0], low_m[1], high_m[0], high_m[1]] {
-                within("position of the gauge", position, "m", -1.0e7..=1.0e7, "-1e7 to 1e7")?;
+                in_range("position of the gauge", position, "m", &(-1.0e7..=1.0e7), 1.0, "-1e7 to 1e7")?;
             }
             let edge = (high_m[0] - low_m[0]).min(high_m[1] - low_m[1]);
-            within("edge of the gauge", edge, "m", 1.0e-3..=1.0e4, "0.001 to 1e4")?;
+            in_range("edge of the gauge", edge, "m", &(1.0e-3..=1.0e4), 1.0, "0.001 to 1e4")?;
         }
         Ok(())
     }

@@ -2,8 +2,8 @@
 
 use downpour_drop::distribution::DropSizeDistribution;
 use downpour_drop::fall_speed::relaxation;
-use downpour_math::OutOfRange;
 use downpour_math::rng::seed_words;
+use downpour_math::{OutOfRange, in_range};
 use downpour_shaders::sim::enter::ENTER_SIZES;
 use downpour_shaders::sim::step::{
     MOTION_TABLE_LAST, STEP_LAGS, STEP_VOLUME_AREA, STEP_VOLUME_BOX, STEP_VOLUME_CYLINDER, STEP_VOLUME_TARIQ,
@@ -188,15 +188,7 @@ impl Plan {
         origin: DVec3,
         air: AirAtEye,
     ) -> Result<Vec<Turn>, SimError> {
-        if !TIMES_S.contains(&time_s) {
-            let (quantity, unit, allowed) = ("time of a step", "s", "1e-5 to 1");
-            return Err(SimError::OutOfRange(OutOfRange {
-                quantity,
-                found: time_s,
-                unit,
-                allowed: allowed.into(),
-            }));
-        }
+        in_range("time of a step", time_s, "s", &TIMES_S, 1.0, "1e-5 to 1")?;
         check(view, origin)?;
         let steps = (time_s / MAX_STEP_S).ceil().max(1.0);
         (0..steps as u32).map(|_| self.turn(time_s / steps, view, origin, air)).collect()

@@ -7,7 +7,7 @@
 //! A direction is within the disk if its chord to the middle is shorter than 2 sin(r / 2), which keeps its digits for
 //! small disks, where a cosine has none left. Twin of `shaders/wgsl/render/specimen.wgsl`.
 
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 use downpour_math::ops::f64 as ops;
 use downpour_math::real::Real;
 use downpour_math::vector::{dot, sub};
@@ -46,28 +46,13 @@ impl SpecimenLamp {
     /// ```
     pub fn new(yaw: f64, pitch: f64, radius: f64, radiance: [f32; 3]) -> Result<Self, SpecimenError> {
         let [least, most] = [RADII[0] * (1.0 - 1.0e-9), RADII[1] * (1.0 + 1.0e-9)];
-        let wrong = |quantity, found: f64, unit, allowed: &str| {
-            Err(SpecimenError::OutOfRange(OutOfRange {
-                quantity,
-                found,
-                unit,
-                allowed: allowed.to_owned().into(),
-            }))
-        };
-        if !yaw.is_finite() {
-            return wrong("yaw of a lamp", yaw, "degrees", "a finite number");
-        }
-        // A NaN is in no range.
-        if !(-most..=most).contains(&pitch) {
-            return wrong("pitch of a lamp", pitch.to_degrees(), "degrees", "-90 to 90");
-        }
-        if !(least..=most).contains(&radius) {
-            return wrong("angular radius of a lamp", radius.to_degrees(), "degrees", "0.01 to 90");
-        }
+        let degrees = 1.0_f64.to_degrees();
+        in_range("yaw of a lamp", yaw, "degrees", &(f64::MIN..=f64::MAX), 1.0, "a finite number")?;
+        in_range("pitch of a lamp", pitch, "degrees", &(-most..=most), degrees, "-90 to 90")?;
+        in_range("angular radius of a lamp", radius, "degrees", &(least..=most), degrees, "0.01 to 90")?;
         for color in radiance {
-            if !(0.0..=MAX_RADIANCE).contains(&color) {
-                return wrong("radiance of a lamp", color.into(), "(units of the sky map)", "0 to 1e9");
-            }
+            let unit = "(units of the sky map)";
+            in_range("radiance of a lamp", color, unit, &(0.0..=MAX_RADIANCE), 1.0, "0 to 1e9")?;
         }
         let chord = 2.0 * ops::sin(0.5 * radius);
         let level = ops::cos(pitch);

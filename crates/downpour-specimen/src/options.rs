@@ -3,8 +3,8 @@
 use downpour_drop::DropShape;
 use downpour_drop::optics::WATER_INDEX;
 use downpour_drop::oscillation::Amplitudes;
-use downpour_math::OutOfRange;
 use downpour_math::ops::f64 as ops;
+use downpour_math::{OutOfRange, in_range};
 pub use downpour_render::camera::MAX_EXPOSURE_S;
 use downpour_shaders::render::specimen::{SPECIMEN_SAMPLES, SPECIMEN_STREAK_INSTANTS};
 
@@ -76,19 +76,6 @@ impl SpecimenOptions {
     /// # Errors
     /// [`SpecimenError::OutOfRange`] or [`SpecimenError::Size`], naming the option.
     pub fn check(&self, shape: &DropShape) -> Result<(), SpecimenError> {
-        let within = |quantity, value: f64, low: f64, high: f64, unit, scale: f64, allowed: &str| {
-            // A NaN is in no range.
-            if value >= low && value <= high {
-                return Ok(());
-            }
-            let allowed = allowed.to_owned();
-            Err(SpecimenError::OutOfRange(OutOfRange {
-                quantity,
-                found: value * scale,
-                unit,
-                allowed: allowed.into(),
-            }))
-        };
         let degrees = 1.0_f64.to_degrees();
         let nearest = bounding_radius(shape);
         if !(self.distance_m > nearest && self.distance_m <= MAX_DISTANCE_M) {
@@ -99,15 +86,22 @@ impl SpecimenOptions {
                 allowed: format!("above {nearest:.6} (outside the drop), up to {MAX_DISTANCE_M}").into(),
             }));
         }
-        within("camera yaw", self.yaw, f64::MIN, f64::MAX, "degrees", degrees, "a finite number")?;
+        in_range("camera yaw", self.yaw, "degrees", &(f64::MIN..=f64::MAX), degrees, "a finite number")?;
         let quarter = std::f64::consts::FRAC_PI_2 * (1.0 + 1.0e-9);
-        within("camera pitch", self.pitch, -quarter, quarter, "degrees", degrees, "-90 to 90")?;
+        in_range("camera pitch", self.pitch, "degrees", &(-quarter..=quarter), degrees, "-90 to 90")?;
         if let Some(fov) = self.fov {
             let most = MAX_FOV_DEG.to_radians() * (1.0 + 1.0e-9);
-            within("field of view", fov, f64::MIN_POSITIVE, most, "degrees", degrees, "above 0, up to 175")?;
+            in_range(
+                "field of view",
+                fov,
+                "degrees",
+                &(f64::MIN_POSITIVE..=most),
+                degrees,
+                "above 0, up to 175",
+            )?;
         }
         for index in self.refractive_index {
-            within("refractive index", index, 1.0, MAX_INDEX, "(no unit)", 1.0, "1 to 4")?;
+            in_range("refractive index", index, "(no unit)", &(1.0..=MAX_INDEX), 1.0, "1 to 4")?;
         }
         let size = |quantity, found: u32, most: u32| {
             if (1..=most).contains(&found) {
@@ -119,9 +113,16 @@ impl SpecimenOptions {
         size("picture height", self.size[1], MAX_SIZE)?;
         size("samples along an edge of a pixel", self.samples, SPECIMEN_SAMPLES)?;
         size("instants of an exposure", self.instants, SPECIMEN_STREAK_INSTANTS)?;
-        within("exposure", self.exposure_s, 0.0, MAX_EXPOSURE_S, "s", 1.0, "0 to 1")?;
+        in_range("exposure", self.exposure_s, "s", &(0.0..=MAX_EXPOSURE_S), 1.0, "0 to 1")?;
         for turns in self.phase {
-            within("phase of the oscillation", turns, f64::MIN, f64::MAX, "turns", 1.0, "a finite number")?;
+            in_range(
+                "phase of the oscillation",
+                turns,
+                "turns",
+                &(f64::MIN..=f64::MAX),
+                1.0,
+                "a finite number",
+            )?;
         }
         self.check_path(shape)
     }

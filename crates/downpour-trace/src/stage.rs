@@ -13,7 +13,7 @@ mod sky;
 #[cfg(test)]
 mod tests;
 
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 use std::borrow::Cow;
 
 use downpour_scene::scene::{Play, Pose};
@@ -92,16 +92,8 @@ impl Stage {
     /// [`RenderError`]: a picture outside [`PIXELS`](downpour_render::camera::PIXELS), a time beyond [`LATEST_S`], or an invalid camera.
     pub fn new(weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
         check_size(weather.size)?;
-        if !(-LATEST_S..=LATEST_S).contains(&time_s) {
-            let (quantity, unit, allowed) = ("time", "s", "-1e6 to 1e6");
-            return Err(RenderError::OutOfRange(OutOfRange {
-                quantity,
-                found: time_s,
-                unit,
-                allowed: allowed.into(),
-            })
-            .into());
-        }
+        in_range("time", time_s, "s", &(-LATEST_S..=LATEST_S), 1.0, "-1e6 to 1e6")
+            .map_err(RenderError::from)?;
         let pose = posed(loaded, time_s);
         check_cost(loaded, &pose)?;
         let seen = CameraView::of(weather, loaded, &pose, time_s);

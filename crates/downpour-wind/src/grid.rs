@@ -1,6 +1,6 @@
 //! A box of cells.
 
-use downpour_math::{OutOfRange, in_range};
+use downpour_math::in_range;
 use glam::Vec3;
 
 use crate::error::WindError;
@@ -28,14 +28,7 @@ impl WindGrid {
             in_range("edge of the wind's box", to - from, "m", &(0.01..=1.0e6), 1.0, "0.01 to 1e6")?;
         }
         for n in size {
-            if !(1..=4096).contains(&n) {
-                return Err(WindError::OutOfRange(OutOfRange {
-                    quantity: "number of cells along an edge",
-                    found: n.into(),
-                    unit: "(a count)",
-                    allowed: "1 to 4096".into(),
-                }));
-            }
+            in_range("number of cells along an edge", n, "(a count)", &(1..=4096), 1.0, "1 to 4096")?;
         }
         let found = size.into_iter().map(u64::from).product();
         if found > WIND_GRID_CELLS {

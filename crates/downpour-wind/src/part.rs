@@ -1,6 +1,6 @@
 //! Primitives with parameters over time.
 
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 use glam::{DVec3, Vec3};
 
 use crate::design::{WindCore, WindForm, WindPrimitive, WindSingularity, WindTornado, WindUniform};
@@ -147,17 +147,9 @@ impl WindPart {
         match &mut self {
             Self::Uniform(velocity) => {
                 for &(_, v) in velocity.keys() {
-                    let found = v.length();
                     // Length of a rounded vector.
-                    if !(0.0..=MAX_SPEED_M_S * (1.0 + 1.0e-9)).contains(&found) {
-                        let (quantity, unit, allowed) = ("wind speed", "m/s", "0 to 200");
-                        return Err(WindError::OutOfRange(OutOfRange {
-                            quantity,
-                            found,
-                            unit,
-                            allowed: allowed.into(),
-                        }));
-                    }
+                    let speeds = 0.0..=MAX_SPEED_M_S * (1.0 + 1.0e-9);
+                    in_range("wind speed", v.length(), "m/s", &speeds, 1.0, "0 to 200")?;
                 }
                 return Ok(self);
             }

@@ -1,6 +1,6 @@
 //! Values over time: keys with linear interpolation.
 
-use downpour_math::OutOfRange;
+use downpour_math::{OutOfRange, in_range};
 use glam::DVec3;
 
 use crate::error::WindError;
@@ -86,14 +86,10 @@ impl<T: Blend> Keyed<T> {
         }
         let mut before = f64::NEG_INFINITY;
         for (index, (time, value)) in keys.iter_mut().enumerate() {
-            let out_of_range = |quantity, found, unit, allowed: &'static str| {
-                Err(WindError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
-            };
-            if !WIND_KEY_TIMES.contains(time) {
-                return out_of_range("time of a key", *time, "s", "-1e6 to 1e6");
-            }
+            in_range("time of a key", *time, "s", &WIND_KEY_TIMES, 1.0, "-1e6 to 1e6")?;
             if let Some(found) = value.not_finite() {
-                return out_of_range("value of a key", found, "(a component)", "finite numbers");
+                let (quantity, unit, allowed) = ("value of a key", "(a component)", "finite numbers".into());
+                return Err(OutOfRange { quantity, found, unit, allowed }.into());
             }
             *time = (*time * TICKS_PER_SECOND).round() / TICKS_PER_SECOND;
             if *time <= before {

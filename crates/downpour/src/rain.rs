@@ -4,10 +4,7 @@ mod error;
 mod settings;
 mod textures;
 
-use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
-use downpour_drop::fall_speed::TerminalSpeed;
-use downpour_drop::optics::water_index_in_air;
 use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_gpu::{BufferPool, Gpu, wgpu};
 use downpour_render::camera::{EyeMotion, Viewpoint};
@@ -28,16 +25,12 @@ use downpour_trace::sky_light::SkyLight;
 use downpour_trace::stage::{MAX_LIGHTS, MAX_TRIANGLES, view_of};
 use glam::{Affine3A, DVec3};
 
+use crate::shower::mean_velocity;
+
 pub use downpour_render::host::DepthRange;
 pub use error::RainError;
 pub use settings::RainSettings;
 pub use textures::{HostSky, PlateTextures};
-
-/// The line of sodium, m: the wavelength at which the refractive index of water is taken.
-const SODIUM_M: f64 = 589.3e-9;
-
-/// The coldest air, in Celsius, in which the refractive index of water is known.
-const COLDEST_INDEX_C: f64 = -12.0;
 
 /// View of a frame: a perspective camera in the host's world (right-handed, +Y up, metres), and its exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,9 +94,7 @@ impl Rain {
         settings: RainSettings,
     ) -> Result<Self, RainError> {
         let gpu = Gpu::on_device(device.clone(), queue.clone());
-        let index_air =
-            Air::new(settings.air.temperature_c().max(COLDEST_INDEX_C), settings.air.pressure_pa())?;
-        let masks = DropMasks::trace(water_index_in_air(SODIUM_M, &index_air)?)?;
+        let masks = DropMasks::in_air(&settings.air)?;
         let (sizes, field) = falling(&settings)?;
         let rains = RainPipeline::new(&gpu)?;
         let scene = scene_of(&[])?;
@@ -243,10 +234,8 @@ impl Rain {
 
     fn options(&self, view: &RainView, visible: &VisibleDrops) -> Result<RainOptions, RainError> {
         let settings = &self.settings;
-        let speeds = TerminalSpeed::new(self.sizes.options().fall_speed, &settings.air);
-        let speed = speeds.at(self.sizes.effective_diameter()).unwrap_or_default();
-        let falling = settings.uniform_wind()?.velocity(view.time_s) - DVec3::Y * speed;
-        let medium = MediumOptions { velocity: falling.as_vec3(), ..MediumOptions::default() };
+        let velocity = mean_velocity(&self.sizes, settings.wind.air(), view.time_s);
+        let medium = MediumOptions { velocity, ..MediumOptions::default() };
         Ok(RainOptions {
             medium: RainMedium::new(&self.sizes, &visible.resolved, &self.masks, &medium)?,
             exposure: Exposure {

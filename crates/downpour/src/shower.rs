@@ -12,7 +12,7 @@ use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
 use downpour_weather::{Rain, RainDrag, RainExtinction, RainVolume, Weather};
 use downpour_wind::{UniformWind, WindField};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use downpour_render::glass::pane_plane;
 use downpour_render::rain::{DropMasks, MediumOptions, RainMedium};
@@ -139,14 +139,12 @@ impl Shower {
         masks: &DropMasks,
         time_s: f64,
     ) -> Result<RainMedium, ShowerError> {
-        let speeds = TerminalSpeed::new(self.law.options().fall_speed, &self.law.options().air);
-        let speed = speeds.at(self.law.effective_diameter()).unwrap_or_default();
         let options = MediumOptions {
             efficiency: match self.weather.rain.extinction {
                 RainExtinction::Total => ExtinctionEfficiency::Total,
                 _ => ExtinctionEfficiency::Camera,
             },
-            velocity: (self.weather.wind.air().velocity(time_s) - DVec3::Y * speed).as_vec3(),
+            velocity: mean_velocity(&self.law, self.weather.wind.air(), time_s),
             origin: stage.origin,
             pane: pane_plane(&self.weather, &stage.viewpoint)?,
         };
@@ -164,6 +162,13 @@ impl Shower {
             Form::Stepped(stepped) => Ok(stepped.measured_rate_mm_h()),
         }
     }
+}
+
+/// Velocity, m/s, of drops of the effective diameter of a rain, at a time in a uniform wind.
+pub(crate) fn mean_velocity(sizes: &DropSizeDistribution, wind: &UniformWind, time_s: f64) -> Vec3 {
+    let speeds = TerminalSpeed::new(sizes.options().fall_speed, &sizes.options().air);
+    let speed = speeds.at(sizes.effective_diameter()).unwrap_or_default();
+    (wind.velocity(time_s) - DVec3::Y * speed).as_vec3()
 }
 
 /// Rain in closed form.

@@ -11,7 +11,7 @@ use downpour_math::ops::f64 as ops;
 
 use super::RATE_RANGE_MM_H;
 use crate::DropError;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 
 /// Extinction efficiency Q of a drop much larger than the wavelength.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -73,7 +73,7 @@ impl ExtinctionLaw {
     /// # Errors
     /// [`DropError::OutOfRange`] if the rate is not 0 to 500 mm/h.
     pub fn extinction(self, rate_mm_h: f64) -> Result<f64, DropError> {
-        let r = in_range("rain rate", rate_mm_h, "mm/h", &RATE_RANGE_MM_H, 1.0, "0 to 500 mm/h")?;
+        let r = in_rounded_range("rain rate", rate_mm_h, "mm/h", &RATE_RANGE_MM_H, 1.0, "0 to 500 mm/h")?;
         // A decibel is a tenth of a power of ten.
         let db = std::f64::consts::LN_10 / 10.0;
         let per_km = match self {

@@ -15,7 +15,7 @@ use std::f64::consts::{PI, TAU};
 use downpour_math::ops::f64 as ops;
 
 use crate::DropError;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 
 /// A published drop size distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -85,7 +85,7 @@ impl DropSizeLaw {
             },
             Self::GammaByMedian { mu, median_volume_diameter_m } => {
                 let mu = checked_mu(mu)?;
-                let median = in_range(
+                let median = in_rounded_range(
                     "median volume diameter",
                     median_volume_diameter_m,
                     "mm",
@@ -98,7 +98,7 @@ impl DropSizeLaw {
             }
             Self::GammaByIntercept { mu, intercept_m3_mm } => {
                 let mu = checked_mu(mu)?;
-                let n0 = in_range(
+                let n0 = in_rounded_range(
                     "gamma intercept",
                     intercept_m3_mm,
                     "m^-3 mm^-(1 + mu)",
@@ -106,7 +106,7 @@ impl DropSizeLaw {
                     1.0,
                     "1e-2 to 1e10",
                 )?;
-                let slope = in_range(
+                let slope = in_rounded_range(
                     "slope of the gamma law, from its intercept and the rate,",
                     ops::pow(gamma_rate(mu) * n0 / r, 1.0 / (4.67 + mu)),
                     "per mm",
@@ -126,7 +126,7 @@ fn gamma_rate(mu: f64) -> f64 {
 }
 
 fn checked_mu(mu: f64) -> Result<f64, DropError> {
-    in_range("gamma shape mu", mu, "", &(-3.0..=8.0), 1.0, "-3 to 8")
+    in_rounded_range("gamma shape mu", mu, "", &(-3.0..=8.0), 1.0, "-3 to 8")
 }
 
 /// Parameters of a law at one rate, in the field's units.

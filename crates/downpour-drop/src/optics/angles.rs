@@ -14,7 +14,7 @@ use downpour_math::quadrature::GaussLegendre;
 
 use super::optics_fresnel;
 use crate::DropError;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 
 /// Critical angle of total reflection within water, to the normal: asin(1/n).
 ///
@@ -60,7 +60,7 @@ pub fn field_of_view(index: f64) -> Result<f64, DropError> {
 /// [`DropError::OutOfRange`] if the index is not 1 to 4, or the impact parameter not 0 to 1.
 pub fn deviation(impact: f64, index: f64) -> Result<f64, DropError> {
     let index = checked_index(index)?;
-    let b = in_range("impact parameter", impact, "radii", &(0.0..=1.0), 1.0, "0 to 1 radii")?;
+    let b = in_rounded_range("impact parameter", impact, "radii", &(0.0..=1.0), 1.0, "0 to 1 radii")?;
     Ok(2.0 * (ops::asin(b) - ops::asin(b / index)))
 }
 
@@ -88,8 +88,8 @@ pub struct Rainbow {
 /// then there is no bow.
 pub fn rainbow(index: f64, reflections: u32) -> Result<Rainbow, DropError> {
     let k = f64::from(reflections);
-    in_range("reflections of a rainbow", k, "", &(1.0..=f64::from(u32::MAX)), 1.0, "1 or more")?;
-    let n = in_range(
+    in_rounded_range("reflections of a rainbow", k, "", &(1.0..=f64::from(u32::MAX)), 1.0, "1 or more")?;
+    let n = in_rounded_range(
         "refractive index",
         index,
         "",
@@ -115,5 +115,5 @@ pub fn diffuse_reflectance(index: f64) -> Result<f64, DropError> {
 }
 
 fn checked_index(index: f64) -> Result<f64, DropError> {
-    in_range("refractive index", index, "", &(1.0..=4.0), 1.0, "1 to 4")
+    in_rounded_range("refractive index", index, "", &(1.0..=4.0), 1.0, "1 to 4")
 }

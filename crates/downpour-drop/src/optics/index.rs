@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 
 use crate::DropError;
 use crate::air::Air;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 use crate::water::{self, CELSIUS_ZERO_K};
 
 /// Commonly used index of water in air: sodium light (589.3 nm) at 20 C, rounded from 1.33298.
@@ -51,11 +51,11 @@ pub fn water_index_iapws_1997(
     const ULTRAVIOLET: f64 = 0.229_202;
     const INFRARED: f64 = 5.432_937;
     let wavelength =
-        in_range("wavelength", wavelength_m, "nm", &WAVELENGTH_RANGE_M, 1.0e9, "200 to 1100 nm")?;
+        in_rounded_range("wavelength", wavelength_m, "nm", &WAVELENGTH_RANGE_M, 1.0e9, "200 to 1100 nm")?;
     let celsius =
-        in_range("water temperature", temperature_c, "C", &TEMPERATURE_RANGE_C, 1.0, "-12 to 500 C")?;
+        in_rounded_range("water temperature", temperature_c, "C", &TEMPERATURE_RANGE_C, 1.0, "-12 to 500 C")?;
     let density =
-        in_range("water density", density_kg_m3, "kg/m^3", &DENSITY_RANGE, 1.0, "0 to 1060 kg/m^3")?;
+        in_rounded_range("water density", density_kg_m3, "kg/m^3", &DENSITY_RANGE, 1.0, "0 to 1060 kg/m^3")?;
 
     let t = (celsius + CELSIUS_ZERO_K) / CELSIUS_ZERO_K;
     let d = density / 1000.0;
@@ -87,7 +87,8 @@ pub fn water_index(wavelength_m: f64, temperature_c: f64) -> Result<f64, DropErr
 /// [`DropError::OutOfRange`] outside 200 to 1100 nm.
 pub fn air_index(wavelength_m: f64, air: &Air) -> Result<f64, DropError> {
     let wavelength =
-        in_range("wavelength", wavelength_m, "nm", &WAVELENGTH_RANGE_M, 1.0e9, "200 to 1100 nm")? * 1.0e6;
+        in_rounded_range("wavelength", wavelength_m, "nm", &WAVELENGTH_RANGE_M, 1.0e9, "200 to 1100 nm")?
+            * 1.0e6;
     let squared = 1.0 / (wavelength * wavelength);
     let refractivity = 0.057_921_05 / (238.0185 - squared) + 0.001_679_17 / (57.362 - squared);
     let density = (air.pressure_pa() / 101_325.0) * (288.15 / air.temperature_k());

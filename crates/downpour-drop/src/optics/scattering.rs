@@ -27,7 +27,7 @@ use downpour_math::quadrature::GaussLegendre;
 
 use super::optics_fresnel_polarized;
 use crate::DropError;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 
 pub use table::{SCATTERING_PATHS, ScatteringPath, SphereScattering};
 
@@ -63,9 +63,9 @@ pub struct ScatteredRay {
 /// # Errors
 /// [`DropError::OutOfRange`] if the impact parameter is not 0 to 1, the index not 1 to 4, or the order above 1000.
 pub fn scattered_ray(impact: f64, index: f64, order: u32) -> Result<ScatteredRay, DropError> {
-    let b = in_range("impact parameter", impact, "radii", &(0.0..=1.0), 1.0, "0 to 1 radii")?;
-    let n = in_range("refractive index", index, "", &(1.0..=4.0), 1.0, "1 to 4")?;
-    in_range("order of scattering", f64::from(order), "", &(0.0..=1000.0), 1.0, "0 to 1000")?;
+    let b = in_rounded_range("impact parameter", impact, "radii", &(0.0..=1.0), 1.0, "0 to 1 radii")?;
+    let n = in_rounded_range("refractive index", index, "", &(1.0..=4.0), 1.0, "1 to 4")?;
+    in_rounded_range("order of scattering", f64::from(order), "", &(0.0..=1000.0), 1.0, "0 to 1000")?;
     Ok(ray(ops::asin(b), n, order))
 }
 

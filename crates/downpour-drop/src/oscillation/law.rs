@@ -1,6 +1,6 @@
 //! Frequency and damping of drop oscillations.
 
-use downpour_math::OutOfRange;
+use downpour_math::in_range;
 use std::f64::consts::TAU;
 
 use crate::DropError;
@@ -44,16 +44,11 @@ impl Fluids {
     }
 
     fn check(&self) -> Result<(), DropError> {
-        let of = |quantity, found: f64, range: std::ops::RangeInclusive<f64>, unit, allowed: &'static str| {
-            if range.contains(&found) {
-                return Ok(());
-            }
-            Err(DropError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }))
-        };
-        of("surface tension", self.surface_tension, 1.0e-3..=1.0, "N/m", "0.001 to 1")?;
-        of("density of water", self.water_density, 100.0..=20_000.0, "kg/m3", "100 to 20000")?;
-        of("density of air", self.air_density, 0.0..=100.0, "kg/m3", "0 to 100")?;
-        of("kinematic viscosity", self.kinematic_viscosity, 1.0e-9..=1.0, "m2/s", "1e-9 to 1")
+        in_range("surface tension", self.surface_tension, "N/m", &(1.0e-3..=1.0), 1.0, "0.001 to 1")?;
+        in_range("density of water", self.water_density, "kg/m3", &(100.0..=20_000.0), 1.0, "100 to 20000")?;
+        in_range("density of air", self.air_density, "kg/m3", &(0.0..=100.0), 1.0, "0 to 100")?;
+        in_range("kinematic viscosity", self.kinematic_viscosity, "m2/s", &(1.0e-9..=1.0), 1.0, "1e-9 to 1")?;
+        Ok(())
     }
 }
 
@@ -119,9 +114,6 @@ pub fn lamb_damping_time(n: u32, diameter_m: f64, fluids: &Fluids) -> Result<f64
 
 /// Checks the degree of a mode: degrees 0 and 1 change the volume and move the drop, and do not oscillate.
 fn check_mode(n: u32) -> Result<(), DropError> {
-    if (2..=100).contains(&n) {
-        return Ok(());
-    }
-    let (quantity, unit, allowed) = ("degree of the mode", "(a whole number)", "2 to 100");
-    Err(DropError::OutOfRange(OutOfRange { quantity, found: n.into(), unit, allowed: allowed.into() }))
+    in_range("degree of the mode", n, "(a whole number)", &(2..=100), 1.0, "2 to 100")?;
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! Equilibrium shape of one drop, and its measures.
 
-use downpour_math::OutOfRange;
+use downpour_math::{OutOfRange, in_range};
 use std::f64::consts::PI;
 
 use downpour_math::ops;
@@ -71,9 +71,8 @@ impl DropShape {
     /// well.)
     pub fn from_coefficients(diameter_m: f64, c: [f64; COEFFICIENTS]) -> Result<Self, DropError> {
         check_shape_diameter(diameter_m)?;
-        if let Some(&found) = c.iter().find(|c| !(-10.0..=10.0).contains(*c)) {
-            let (quantity, unit, allowed) = ("shape coefficient", "of the radius", "-10 to 10");
-            return Err(DropError::OutOfRange(OutOfRange { quantity, found, unit, allowed: allowed.into() }));
+        for coefficient in c {
+            in_range("shape coefficient", coefficient, "of the radius", &(-10.0..=10.0), 1.0, "-10 to 10")?;
         }
         let steepest: f64 = (0..).zip(&c).map(|(n, c)| f64::from(n) * c.abs()).sum();
         let steps = 2048;

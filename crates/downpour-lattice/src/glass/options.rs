@@ -3,7 +3,7 @@
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DistributionOptions, DropSizeLaw};
 use downpour_drop::fall_speed::FallSpeedModel;
-use downpour_math::{OutOfRange, in_range};
+use downpour_math::in_range;
 
 use super::contact::GlassContact;
 use super::error::GlassError;
@@ -189,15 +189,7 @@ impl GlassOptions {
     /// [`GlassError`] that names the first number out of range.
     pub fn check(&self) -> Result<(), GlassError> {
         for (quantity, edge) in ["columns of the pane", "rows of the pane"].into_iter().zip(self.size) {
-            if !EDGE.contains(&edge) {
-                let found = edge.into();
-                return Err(GlassError::OutOfRange(OutOfRange {
-                    quantity,
-                    found,
-                    unit: "cells",
-                    allowed: "8 to 4096".into(),
-                }));
-            }
+            in_range(quantity, edge, "cells", &EDGE, 1.0, "8 to 4096")?;
         }
         let degrees = 180.0 / std::f64::consts::PI;
         in_range("edge of a cell", self.cell_m, "mm", &(0.25e-3..=5.0e-3), 1.0e3, "0.25 to 5")?;

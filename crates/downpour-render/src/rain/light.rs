@@ -20,7 +20,7 @@ mod atlas;
 mod keep;
 mod table;
 
-use downpour_math::OutOfRange;
+use downpour_math::{OutOfRange, in_range};
 use std::f32::consts::PI;
 
 use downpour_math::ops;
@@ -211,14 +211,7 @@ impl<'a> DropLights<'a> {
         options: DropLightOptions,
     ) -> Result<Self, RenderError> {
         check_lights(lighting)?;
-        if options.glints > DROP_LIGHT_GLINTS {
-            return Err(RenderError::OutOfRange(OutOfRange {
-                quantity: "number of glints of a drop",
-                found: f64::from(options.glints),
-                unit: "",
-                allowed: "0 to 16".into(),
-            }));
-        }
+        in_range("number of glints of a drop", options.glints, "", &(0..=DROP_LIGHT_GLINTS), 1.0, "0 to 16")?;
         if options.form == DropLightForm::Atlas && !table.has_atlas() {
             return Err(RenderError::OutOfRange(OutOfRange {
                 quantity: "number of streak atlases",

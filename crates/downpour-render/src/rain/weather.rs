@@ -19,14 +19,26 @@ impl DropMasks {
     /// # Errors
     /// [`MaskError`] if the air is outside what the laws know, or as [`drop_model`].
     pub fn of_weather(weather: &Weather, loaded: &Loaded) -> Result<Self, MaskError> {
-        let air = &weather.rain.air;
-        let air = Air::new(air.temperature_c().max(COLDEST_INDEX_C), air.pressure_pa())?;
-        let index = water_index_in_air(SODIUM_M, &air)?;
+        let index = index_of_water(&weather.rain.air)?;
         match drop_model(weather, loaded)? {
             Some(model) => Self::trace_model(index, &model),
             None => Self::trace_shapes(index, weather.rain.drop_shape.table()),
         }
     }
+
+    /// Traces the masks of drops in an air: of its temperature, but of no colder one than the refractive index is known for.
+    ///
+    /// # Errors
+    /// [`MaskError`] if the air is outside what the laws know.
+    pub fn in_air(air: &Air) -> Result<Self, MaskError> {
+        Self::trace(index_of_water(air)?)
+    }
+}
+
+/// Refractive index of the drops in an air, against it.
+fn index_of_water(air: &Air) -> Result<f64, MaskError> {
+    let air = Air::new(air.temperature_c().max(COLDEST_INDEX_C), air.pressure_pa())?;
+    Ok(water_index_in_air(SODIUM_M, &air)?)
 }
 
 /// The model that the drops of a weather are drawn as, if it has one.

@@ -7,7 +7,7 @@ use downpour_math::ops::f64 as ops;
 use super::bins::Bins;
 use super::ray;
 use crate::DropError;
-use crate::error::in_range;
+use crate::error::in_rounded_range;
 use crate::optics::rainbow;
 
 /// Number of separate light paths: orders 0 and 1, and orders 2 and 3 each inside and outside the rainbow ray.
@@ -55,11 +55,17 @@ impl SphereScattering {
     /// [`DropError::OutOfRange`] if a number is outside its range; the index is 1.2 to 1.4.
     pub fn new(index: f64, intervals: usize, diameter: f64) -> Result<Self, DropError> {
         // Above the root of 2 light of order 2 returns along the axis: a glory, which this table cannot hold.
-        let n = in_range("refractive index", index, "", &(1.2..=1.4), 1.0, "1.2 to 1.4")?;
+        let n = in_rounded_range("refractive index", index, "", &(1.2..=1.4), 1.0, "1.2 to 1.4")?;
         let quantity = "intervals of the scattering angle";
-        in_range(quantity, intervals as f64, "", &(16.0..=4096.0), 1.0, "16 to 4096")?;
-        let disk =
-            in_range("diameter of the light", diameter, "radians", &(0.0..=0.2), 1.0, "0 to 0.2 radians")?;
+        in_rounded_range(quantity, intervals as f64, "", &(16.0..=4096.0), 1.0, "16 to 4096")?;
+        let disk = in_rounded_range(
+            "diameter of the light",
+            diameter,
+            "radians",
+            &(0.0..=0.2),
+            1.0,
+            "0 to 0.2 radians",
+        )?;
         let bows = [1, 2].map(|reflections| rainbow(n, reflections).map(|bow| bow.incidence));
         let ([first, second], whole) = ([bows[0].clone()?, bows[1].clone()?], 0.5 * PI);
         let ways = [
