@@ -21,6 +21,7 @@ use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLi
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
+use downpour_render::rain::tiles::TilesFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, StreakPath, StreakRay};
 use downpour_shaders::render::specimen;
 use downpour_shaders::{
@@ -91,13 +92,14 @@ fn hosts() -> Vec<Host> {
         host!(HostBlendFrame as "HostBlendFrame" in &render::host::HOST_BLEND, width, scale, unused),
         host!(DropsFrame as "DropsFrame" in &render::rain::DROPS_FRAME,
             camera, capture_right, capture_size, capture_up, capture_last,
-            capture_forward, capture_texel, form, mask_size, tiles_across, light_terms, streak_samples,
+            capture_forward, capture_texel, form, mask_size, unused, light_terms, streak_samples,
             streak_color, glints, atlas),
+        host!(TilesFrame as "TilesFrame" in &render::rain::TILES, size, count, room),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
             depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane),
         host!(DropsDrop as "DropsDrop" in &render::rain::STREAK,
             towards, distance, position, slope, half_extent, mask_index, area, grid, start, along, first, way, oval, depth_ratio,
-            mode_phase, cycles, fraction, spread, nearest, kind, shape, profile, weights, unused),
+            mode_phase, cycles, fraction, spread, nearest, kind, shape, profile, weights, reach, id),
         host!(StreakPath as "StreakPath" in &render::rain::STREAK_PATH,
             shape, volume, volume_last, wide, tall, index, lobe, amplitudes, rows, columns, profile_rows, fine,
             first_ray, first_entry, drop, unused),

@@ -6,6 +6,11 @@ mod host;
 mod medium;
 mod plate;
 mod rain;
+#[cfg(not(feature = "parity"))]
+pub(crate) mod tiles;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod tiles;
 
 pub use drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 pub use glass::{BehindGlass, GlassRenderer};

@@ -1,7 +1,7 @@
 //! Drops before a scene: refractive particles that face the camera, drawn through precomputed masks.
 //!
 //! 1. [`DropMasks`]: masks of drops of all sizes from all elevations, traced once, in milliseconds;
-//! 2. [`Rain`]: the drops of a picture, nearest first, and for each tile of 8 x 8 pixels those that touch it;
+//! 2. [`Rain`]: the drops of a picture; for each tile of 8 x 8 pixels those that touch it, nearest first;
 //! 3. [`EnvironmentMap`]: radiance around the eye, on an octahedral map (default) or as the papers' wide picture;
 //! 4. [`light`]: what lamps and sun add, drop by drop; [`glint`]: where on a drop;
 //! 5. [`StreakTable`]: what drops that move while the shutter is open show on the mean, made once per frame: a profile of each
@@ -31,6 +31,7 @@ pub(crate) mod glint;
 #[doc(hidden)]
 pub mod glint;
 pub mod light;
+mod list;
 #[doc(hidden)]
 pub mod masks;
 pub mod medium;
@@ -52,7 +53,11 @@ mod streak_lookup;
 mod streak_path;
 mod streak_rays;
 mod streak_table;
-mod tiles;
+#[cfg(not(feature = "parity"))]
+pub(crate) mod tiles;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod tiles;
 mod weather;
 
 use downpour_shaders::render::rain::{DROPS_DIRECTION, DROPS_SHIFT};
@@ -63,6 +68,7 @@ pub use drops_frame::DropsFrame;
 pub use environment::{EnvironmentFrame, EnvironmentMap};
 pub use exposure::{Exposure, StreakColor, StreakSamples, TemporalResponse};
 use light::DropLightOptions;
+pub use list::Rain;
 pub use masks::DropMasks;
 pub use medium::{MediumOptions, PanePlane, RainMedium};
 pub use profiles::StreakProfiles;
@@ -70,7 +76,6 @@ pub use streak::DropsDrop;
 pub use streak_lookup::StreakTable;
 pub use streak_path::StreakPath;
 pub use streak_rays::StreakRay;
-pub use tiles::Rain;
 pub use weather::drop_model;
 
 /// Glints that are kept of a drop where nothing else is said.

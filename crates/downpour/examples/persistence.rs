@@ -203,7 +203,7 @@ impl Bench<'_> {
         let lamps = time(self.gpu, &pass.lamps())?;
         let streaks: Vec<Dispatch<'_>> = pass.streaks();
         let table = if streaks.is_empty() { 0.0 } else { time(self.gpu, &streaks)? };
-        let drops = time(self.gpu, &[pass.drops()])?;
+        let drops = time(self.gpu, &pass.drops())?;
         Ok(Cost { binning, capture, table, lamps, drops, layer: pass.layer()? })
     }
 

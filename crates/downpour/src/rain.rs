@@ -201,7 +201,7 @@ impl Rain {
         dispatches.extend(pass.lamps());
         dispatches.extend(pass.streaks());
         dispatches.extend(pass.medium());
-        dispatches.push(pass.drops());
+        dispatches.extend(pass.drops());
         {
             let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("rain"),

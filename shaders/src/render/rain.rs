@@ -26,13 +26,25 @@ pub const MODULES: &[&Module] = &[
     &STREAK_LIGHT,
     &STREAK_LOOKUP,
     &STREAK_TABLE,
+    &TILES,
     &DROPS_ATLAS,
     &DROPS,
 ];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] =
-    &[&COMPOSE_KERNEL, &STREAK_TABLE_KERNEL, &STREAK_RAYS_KERNEL, &STREAK_LIGHT_KERNEL, &DROPS_KERNEL];
+pub const KERNELS: &[&Kernel] = &[
+    &COMPOSE_KERNEL,
+    &STREAK_TABLE_KERNEL,
+    &STREAK_RAYS_KERNEL,
+    &STREAK_LIGHT_KERNEL,
+    &TILES_CLEAR_KERNEL,
+    &TILES_MEASURE_KERNEL,
+    &TILES_COUNT_KERNEL,
+    &TILES_SCAN_KERNEL,
+    &TILES_PLACE_KERNEL,
+    &TILES_SORT_KERNEL,
+    &DROPS_KERNEL,
+];
 
 shared_constants! {
     /// Numbers of the masks in a buffer.
@@ -41,8 +53,16 @@ shared_constants! {
         DROPS_TEXEL_WORDS: u32 = 5;
         /// Masks of a diameter, from below (-90 degrees) to above (90 degrees).
         DROPS_ELEVATIONS: u32 = 7;
-        /// Edge of a tile of the picture, pixels.
+        /// Smallest edge of a tile of the picture, pixels.
         DROPS_TILE: u32 = 8;
+        /// Edges of tiles, each twice the one before: the largest is a picture.
+        TILES_EDGES: u32 = 12;
+        /// Words before the numbers of drops of the tiles.
+        TILES_HEAD: u32 = 16;
+        /// Invocations that sum up the numbers of drops.
+        TILES_SCAN: u32 = 256;
+        /// Drops of a tile that are sorted in workgroup memory.
+        TILES_SORTED: u32 = 1024;
         /// Samples along an edge of the mask of a drop below a pixel.
         DROPS_SMALL_GRID: u32 = 3;
         /// Form of refraction: the direction of the refracted light is looked up.
@@ -276,6 +296,37 @@ pub static DROPS: Module = Module {
         &MEDIUM,
     ],
 };
+
+/// Lists of drops for the tiles of a picture. Twin: `downpour_render::rain::tiles`.
+pub static TILES: Module = Module {
+    path: "render/tiles.wgsl",
+    wgsl: include_str!("../../wgsl/render/tiles.wgsl"),
+    uses: &[&RAIN_CONSTANTS, &OSCILLATION, &STREAK],
+};
+
+/// One invocation per word of the counts.
+pub static TILES_CLEAR_KERNEL: Kernel =
+    Kernel { entry: "main_tiles_clear", module: &TILES, workgroup: [64, 1, 1] };
+
+/// One invocation per drop.
+pub static TILES_MEASURE_KERNEL: Kernel =
+    Kernel { entry: "main_tiles_measure", module: &TILES, workgroup: [64, 1, 1] };
+
+/// One invocation per drop.
+pub static TILES_COUNT_KERNEL: Kernel =
+    Kernel { entry: "main_tiles_count", module: &TILES, workgroup: [64, 1, 1] };
+
+/// One workgroup.
+pub static TILES_SCAN_KERNEL: Kernel =
+    Kernel { entry: "main_tiles_scan", module: &TILES, workgroup: [256, 1, 1] };
+
+/// One invocation per drop.
+pub static TILES_PLACE_KERNEL: Kernel =
+    Kernel { entry: "main_tiles_place", module: &TILES, workgroup: [64, 1, 1] };
+
+/// One workgroup per tile of the smallest edge.
+pub static TILES_SORT_KERNEL: Kernel =
+    Kernel { entry: "main_tiles_sort", module: &TILES, workgroup: [64, 1, 1] };
 
 /// One invocation per pixel.
 pub static COMPOSE_KERNEL: Kernel = Kernel { entry: "main_compose", module: &COMPOSE, workgroup: [8, 8, 1] };

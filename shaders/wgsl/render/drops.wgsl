@@ -7,7 +7,7 @@
 // Twin: downpour_render::rain::drops.
 
 @group(0) @binding(3) var<storage, read> drops_list: array<DropsDrop>;
-// First the indices at which the lists of the tiles begin (one more than there are tiles), then the lists.
+// The lists of the tiles (tiles.wgsl).
 @group(0) @binding(4) var<storage, read> drops_tiles: array<u32>;
 @group(0) @binding(5) var<storage, read> drops_clean: array<vec4f>;
 // At first the medium (medium_filter.wgsl): light of lamps, and mean distance and optical depth as halves. Then the rain.
@@ -292,7 +292,8 @@ fn drops_medium(x: u32, y: u32) -> vec3f {
 // The rain over a pixel: radiance, and the transmittance of the scene behind it. Drops are in order of their nearest
 // points, with the medium between them.
 fn drops_over(x: u32, y: u32) -> vec4f {
-    let tile = (y / DROPS_TILE) * drops_frame.tiles_across + x / DROPS_TILE;
+    let edge = drops_tiles[0];
+    let tile = (y / edge) * ((drops_frame.camera.width + edge - 1u) / edge) + x / edge;
     let index = y * drops_frame.camera.width + x;
     let scene = drops_clean[index].w;
     let lamps = drops_layer[index];
@@ -312,7 +313,7 @@ fn drops_over(x: u32, y: u32) -> vec4f {
     var behind = true;
     // Transmittance of the medium up to here.
     var left = 1.0;
-    for (var k = drops_tiles[tile]; k < drops_tiles[tile + 1u]; k += 1u) {
+    for (var k = drops_tiles[1u + tile]; k < drops_tiles[2u + tile]; k += 1u) {
         let drop = drops_tiles[k];
         if drops_list[drop].nearest >= scene || transmittance < DROPS_OPAQUE {
             break;

@@ -17,8 +17,7 @@ struct DropsFrame {
     form: u32,
     // Texels along an edge of a mask.
     mask_size: u32,
-    // Tiles across the picture.
-    tiles_across: u32,
+    unused: u32,
     // Terms of the formula of Rousseau 2006 for the light of lamps: DROP_LIGHT_EXTERNAL, DROP_LIGHT_INTERNAL, or both.
     light_terms: u32,
     // Samples along the chord of a streak that is averaged by a loop.

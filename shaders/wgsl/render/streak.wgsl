@@ -58,7 +58,10 @@ struct DropsDrop {
     profile: u32,
     // Weight of the light at the beginning and at the end of its way; over the whole exposure the mean weight is 1.
     weights: vec2f,
-    unused: vec2f,
+    // Largest distance from its path that it covers, pixels.
+    reach: f32,
+    // Its id in 32 bits.
+    id: u32,
 }
 
 // Chord along which a ray passes a moving drop.

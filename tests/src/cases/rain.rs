@@ -231,7 +231,7 @@ fn masks_case(
                     .into_iter()
                     .chain(pass.streaks())
                     .chain(pass.medium())
-                    .chain([pass.drops()])
+                    .chain(pass.drops())
                     .collect::<Vec<_>>(),
             )?;
             let layer = kept(&format!("{key} layer"), || {

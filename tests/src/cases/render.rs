@@ -2,17 +2,18 @@
 
 mod specimen;
 mod streak;
+mod tiles;
 
 use crate::{FunctionCase, KernelCase};
 
 /// The cases.
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
-    [specimen::functions(), streak::functions()].concat()
+    [specimen::functions(), streak::functions(), tiles::functions()].concat()
 }
 
 /// The cases.
 #[must_use]
 pub(super) fn kernels() -> Vec<KernelCase> {
-    specimen::kernels().into_iter().chain(streak::kernels()).collect()
+    specimen::kernels().into_iter().chain(streak::kernels()).chain(tiles::kernels()).collect()
 }

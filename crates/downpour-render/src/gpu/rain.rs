@@ -12,7 +12,9 @@ use downpour_shaders::render::rain::{
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::medium::{MediumPass, MediumPipeline};
 use super::plate::PlateOnGpu;
+use super::tiles::{TilesPass, TilesPipeline};
 use crate::rain::light::{DropLightTable, DropLights};
+use crate::rain::tiles::TilesFrame;
 use crate::rain::{DropMasks, DropsDrop, Rain, StreakPath, StreakRay};
 
 /// The pipelines of drops: made once, used for any number of pictures.
@@ -23,6 +25,7 @@ pub struct RainPipeline {
     means: ComputeKernel,
     rays: ComputeKernel,
     light: ComputeKernel,
+    tiles: TilesPipeline,
     lamps: DropLightPipeline,
     medium: MediumPipeline,
     drops: ComputeKernel,
@@ -45,6 +48,7 @@ pub struct RainPass<'a> {
     levels: Vec<(wgpu::BindGroup, u32)>,
     means: Option<(wgpu::BindGroup, u32)>,
     profiles: Option<Profiles>,
+    tiles: TilesPass<'a>,
     lamps: [DropLightPass<'a>; 2],
     medium: MediumPass<'a>,
     drops: wgpu::BindGroup,
@@ -70,15 +74,14 @@ const ALONG: u32 = 32_768;
 /// Jobs for all workgroups of [`groups`]: the last one is done again by those that are left over. Buffers may be longer than
 /// their contents, so that no workgroup may look beyond these.
 fn padded(jobs: &[[u32; 2]]) -> Vec<[u32; 2]> {
-    let [x, y, _] = groups(jobs.len());
+    let [x, y, _] = groups(jobs.len() as u32);
     let mut all = jobs.to_vec();
     all.resize((x * y) as usize, jobs.last().copied().unwrap_or_default());
     all
 }
 
 /// Workgroups for so many jobs: no dimension has more than every device allows.
-fn groups(jobs: usize) -> [u32; 3] {
-    let jobs = jobs as u32;
+pub(super) fn groups(jobs: u32) -> [u32; 3] {
     [jobs.min(ALONG), jobs.div_ceil(ALONG), 1]
 }
 
@@ -95,6 +98,7 @@ impl RainPipeline {
             means: kernel(&STREAK_TABLE_KERNEL)?,
             rays: kernel(&STREAK_RAYS_KERNEL)?,
             light: kernel(&STREAK_LIGHT_KERNEL)?,
+            tiles: TilesPipeline::new(gpu)?,
             lamps: DropLightPipeline::new(gpu)?,
             medium: MediumPipeline::new(gpu)?,
             drops: kernel(&DROPS_KERNEL)?,
@@ -159,7 +163,7 @@ impl RainPipeline {
         // A buffer has at least one element.
         let list: &[_] = if rain.list.is_empty() { &[DropsDrop::default()] } else { &rain.list };
         let list = buffers.storage("drops", list)?;
-        let tiles = buffers.storage("tiles of drops", &rain.tiles)?;
+        let tiles = self.tiles.prepare(buffers, &list, &TilesFrame::new(picture, rain.list.len() as u32))?;
         let made = &rain.profiles;
         let table = buffers.buffer("streak radiance", u64::from(made.entries.max(1)) * 16, storage)?;
         let lamps = [
@@ -183,8 +187,8 @@ impl RainPipeline {
             let all = [&frame, &texels, &list, &paths, &jobs, &rays, lamps[1].light(), &table];
             let lit = self.light.bind(gpu, &all)?;
             profiles = Some(Profiles {
-                rays: (traced, groups(made.ray_jobs.len())),
-                light: (lit, groups(made.light_jobs.len())),
+                rays: (traced, groups(made.ray_jobs.len() as u32)),
+                light: (lit, groups(made.light_jobs.len() as u32)),
             });
         }
         let medium = self.medium.prepare(buffers, plate, &rain.medium_light(&lights[0]), &layer)?;
@@ -193,7 +197,7 @@ impl RainPipeline {
             &texels,
             &masks.masks,
             &list,
-            &tiles,
+            tiles.lists(),
             clean,
             &layer,
             &table,
@@ -207,6 +211,7 @@ impl RainPipeline {
             levels,
             means,
             profiles,
+            tiles,
             lamps,
             medium,
             drops,
@@ -225,6 +230,14 @@ impl RainPass<'_> {
             .iter()
             .map(|(bindings, n)| self.pipeline.pyramid.dispatch(bindings, [*n, *n, 1]))
             .collect()
+    }
+
+    /// Reads the lists of drops for the tiles of the picture, as the twin has them ([`TileLists::words`](crate::rain::tiles::TileLists::words)).
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn tile_lists(&self) -> Result<Vec<u32>, GpuError> {
+        self.tiles.read()
     }
 
     /// The light of lamps on the drops and on the streaks, in this order.
@@ -262,11 +275,13 @@ impl RainPass<'_> {
         self.medium.found()
     }
 
-    /// The drops.
+    /// The drops: the lists of the tiles, and then what their pixels show, in this order.
     #[must_use]
-    pub fn drops(&self) -> Dispatch<'_> {
+    pub fn drops(&self) -> Vec<Dispatch<'_>> {
+        let mut all = self.tiles.dispatches();
         let groups = [self.size[0].div_ceil(8), self.size[1].div_ceil(8), 1];
-        self.pipeline.drops.dispatch(&self.drops, groups)
+        all.push(self.pipeline.drops.dispatch(&self.drops, groups));
+        all
     }
 
     /// The rain on the device, as [`RainPass::layer`] reads it.

@@ -6,7 +6,7 @@ use downpour_shaders::render::drop_light::DROP_ATLAS_ROWS;
 use downpour_shaders::render::medium::{MEDIUM_SKY, MEDIUM_SKY_REACH};
 use downpour_shaders::render::rain::{
     DROPS_ATLAS_TAPS, DROPS_GLINT, DROPS_LINE, DROPS_OPAQUE, DROPS_SMALL_GRID, DROPS_STILL, DROPS_TABLE,
-    DROPS_TILE, STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
+    STREAK_FINE, STREAK_GOLDEN, STREAK_LATTICE, STREAK_WHITE,
 };
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -22,6 +22,7 @@ use super::streak::{
     streak_time, streak_weight,
 };
 use super::streak_lookup::StreakTable;
+use super::tiles::TileLists;
 use super::{DropMasks, Rain, StreakProfiles, StreakRay, streak_light, streak_rays};
 use crate::halves::unpack;
 
@@ -54,6 +55,7 @@ pub fn drops_turns(drop: &DropsDrop, way: f32) -> f32 {
 struct Buffers<'a> {
     view: DropsView<'a>,
     rain: &'a Rain,
+    tiles: &'a TileLists,
     table: &'a StreakTable,
     light: &'a [[f32; 4]],
     clean: &'a [[f32; 4]],
@@ -346,7 +348,6 @@ impl Buffers<'_> {
     /// points, with the medium between them.
     fn drops_over(&self, x: u32, y: u32) -> Vec4 {
         let (frame, medium) = (self.view.frame, &self.rain.medium);
-        let tile = ((y / DROPS_TILE) * frame.tiles_across + x / DROPS_TILE) as usize;
         let index = (y * frame.camera.width + x) as usize;
         let scene = self.clean[index][3];
         let lamps = self.medium.get(index).copied().map_or(Vec4::ZERO, Vec4::from);
@@ -363,8 +364,7 @@ impl Buffers<'_> {
         let mut behind = true;
         // Transmittance of the medium up to here.
         let mut left = 1.0f32;
-        let tiles = &self.rain.tiles;
-        for &index in &tiles[tiles[tile] as usize..tiles[tile + 1] as usize] {
+        for &index in self.tiles.of_pixel(x, y) {
             let drop = &self.rain.list[index as usize];
             if drop.nearest >= scene || transmittance < DROPS_OPAQUE {
                 break;
@@ -427,7 +427,8 @@ impl Rain {
         medium: &[[f32; 4]],
     ) -> Vec<[f32; 4]> {
         let view = DropsView { frame: &self.frame, masks: &masks.words, capture: &environment.texels };
-        let buffers = Buffers { view, rain: self, table, light, clean, medium };
+        let tiles = TileLists::new(&self.list, self.frame.camera.size());
+        let buffers = Buffers { view, rain: self, tiles: &tiles, table, light, clean, medium };
         let (width, buffers) = (self.frame.camera.width, &buffers);
         (0..self.frame.camera.height)
             .into_par_iter()

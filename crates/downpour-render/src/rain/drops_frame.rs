@@ -31,8 +31,8 @@ pub struct DropsFrame {
     pub form: u32,
     /// Texels along an edge of a mask.
     pub mask_size: u32,
-    /// Tiles across the picture.
-    pub tiles_across: u32,
+    /// 0.
+    pub unused: u32,
     /// Terms of the formula of Rousseau 2006 for the light of lamps.
     pub light_terms: u32,
     /// Samples along the chord of a streak that is averaged by a loop.
@@ -58,7 +58,6 @@ impl DropsFrame {
         camera: &Camera,
         environment: &EnvironmentFrame,
         masks: &DropMasks,
-        tiles_across: u32,
         options: &RainOptions,
     ) -> Self {
         let streak_samples = match options.exposure.samples {
@@ -75,7 +74,7 @@ impl DropsFrame {
             capture_texel: environment.texel_angle,
             form: environment.form as u32,
             mask_size: masks.size,
-            tiles_across,
+            unused: 0,
             light_terms: options.light.form.terms(),
             streak_samples,
             streak_color: options.exposure.color as u32,

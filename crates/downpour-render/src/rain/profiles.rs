@@ -92,11 +92,10 @@ impl StreakProfiles {
         let sampled = || (0u32..).zip(drops.iter()).filter(|(_, (_, p))| is_sampled(&p.drop));
         for (index, (k, projected)) in sampled() {
             let mut path = masks.streak_shape(given[*k as usize].diameter);
-            let id = given[*k as usize].id;
             let oscillates = projected.drop.mode_phase[0] != 0.0 || projected.drop.mode_phase[1] != 0.0;
             let pair = exposure.oscillation.pair().map(|a| a as f32);
             path.amplitudes = if oscillates { pair } else { [0.0; 2] };
-            let azimuth = drop_oscillation_azimuth(seed_words(exposure.seed), id as u32 ^ (id >> 32) as u32);
+            let azimuth = drop_oscillation_azimuth(seed_words(exposure.seed), projected.drop.id);
             let azimuth = STREAK_TURN * azimuth;
             path.lobe = [ops::cos(azimuth), ops::sin(azimuth)];
             path.drop = index;

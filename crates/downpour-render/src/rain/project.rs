@@ -34,14 +34,17 @@ const WIDE_SAMPLES: u32 = 5;
 /// Diameters, meters, of drops that oscillate.
 const OSCILLATING: std::ops::RangeInclusive<f64> = 0.05e-3..=9.0e-3;
 
-/// A drop on the picture, and the pixels that it may touch.
+/// A drop on the picture, and how it moves there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Projected {
     pub(super) drop: DropsDrop,
-    /// Largest distance from its path that it covers, pixels.
-    pub(super) reach: f32,
     /// Velocity relative to the picture, m/s.
     pub(super) velocity: Vec3,
+}
+
+/// The id of a drop in 32 bits, from which its oscillation is drawn.
+pub(super) fn short_id(id: u64) -> u32 {
+    id as u32 ^ (id >> 32) as u32
 }
 
 /// `v` turned about an axis by the axis's length, in radians.
@@ -143,9 +146,10 @@ pub(super) fn project(
         shape: shapes::of_row(mask.index[0]),
         profile: 0,
         weights: if path.moves { path.part.map(|part| exposure.response.weight(part)) } else { [1.0; 2] },
-        unused: [0.0; 2],
+        reach,
+        id: short_id(drop.id),
     };
-    Some(Projected { drop: shown, reach, velocity: path.velocity })
+    Some(Projected { drop: shown, velocity: path.velocity })
 }
 
 /// Method that finds a drop's light.
@@ -293,7 +297,7 @@ impl ModeMotion {
             return Self::default();
         };
         let seed = seed_words(exposure.seed);
-        let id = drop.id as u32 ^ (drop.id >> 32) as u32;
+        let id = short_id(drop.id);
         let oscillation = oscillation.of_drop(seed, id);
         let [a20, a31] = exposure.oscillation.pair().map(|a| a as f32);
         // Direction in which the mode (3,1) bulges, against the right of the view.

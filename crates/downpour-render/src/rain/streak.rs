@@ -59,8 +59,10 @@ pub struct DropsDrop {
     pub profile: u32,
     /// Weight of the light at the beginning and at the end of its way; over the whole exposure the mean weight is 1.
     pub weights: [f32; 2],
-    /// Padding.
-    pub unused: [f32; 2],
+    /// Largest distance from its path that it covers, pixels.
+    pub reach: f32,
+    /// Its id in 32 bits.
+    pub id: u32,
 }
 
 /// Chord along which a ray passes a moving drop.

@@ -1,202 +1,205 @@
-//! The drops of a picture, nearest first, and for each tile of the picture those that touch it.
+//! Lists of drops for the tiles of a picture: in each list the drops that may touch the tile, nearest first. Twin of
+//! `shaders/wgsl/render/tiles.wgsl`, where the method is described.
 
-use downpour_shaders::render::rain::DROPS_TILE;
-use downpour_sim::field::FallingDrop;
-use glam::{DVec3, Vec2};
+use std::cmp::Ordering;
+
+use downpour_shaders::render::rain::{DROPS_TILE, TILES_EDGES};
+use glam::Vec2;
 use rayon::prelude::*;
 
-use super::drops_frame::DropsFrame;
-use super::environment::EnvironmentFrame;
-use super::light::{DropLightForm, DropLightOptions, DropLights, drop_light_axes, drop_light_rows};
-use super::medium::{MediumFrame, MediumLight, lamps_of};
-use super::profiles::StreakProfiles;
-use super::project::{Projected, project};
 use super::streak::DropsDrop;
-use super::{DropMasks, RainOptions, shapes};
-use crate::RenderError;
-use crate::camera::Camera;
-use crate::plate::Lighting;
 
-/// The drops of one picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rain {
-    /// Constants of the picture that the shader reads.
-    pub frame: DropsFrame,
-    /// Drops that are not drawn one by one.
-    pub medium: MediumFrame,
-    /// Layout of the environment map.
-    pub environment: EnvironmentFrame,
-    /// Profiles of moving drops in the streak radiance table.
-    pub profiles: StreakProfiles,
-    /// The drops on the picture, nearest first.
-    pub list: Vec<DropsDrop>,
-    /// Index of the beginning of each tile's list (one more than there are tiles), then the lists.
-    pub tiles: Vec<u32>,
-    /// The drops of `list` as lamps light them: place relative to the scene's origin, and radius, m. For an atlas then their
-    /// axes and ids.
-    pub rows: Vec<[f32; 4]>,
-    /// Options of the light of lamps on them.
-    light: DropLightOptions,
-    /// For each drop of `list`, its place among the drops that were given.
-    pub given: Vec<u32>,
-    /// Pixels that each drop may touch: first and last column, first and last row.
-    boxes: Vec<[u32; 4]>,
+/// Drops that the lists of all tiles have room for, by the number of drops: on the mean a streak touches some ten tiles.
+const ROOM_PER_DROP: u32 = 32;
+
+/// Least and most room: 128 MiB, which every device binds, less the largest number of tiles.
+const ROOM: [u32; 2] = [1 << 18, (32 << 20) - (5 << 20)];
+
+/// Uniforms of the kernels. The same layout as `TilesFrame` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TilesFrame {
+    /// Columns and rows of the picture.
+    pub size: [u32; 2],
+    /// Number of drops.
+    pub count: u32,
+    /// Drops that all lists together have room for, at least `count`.
+    pub room: u32,
 }
 
-impl Rain {
-    /// Puts drops on a picture whose eye is `eye` (in f64, so that drops far from the origin keep their places).
+impl TilesFrame {
+    /// Lists of so many drops for a picture.
     #[must_use]
-    pub fn new(
-        camera: &Camera,
-        eye: DVec3,
-        drops: &[FallingDrop],
-        masks: &DropMasks,
-        options: &RainOptions,
-    ) -> Self {
-        let environment = EnvironmentFrame::new(camera, options);
-        let [width, height] = camera.size();
-        let mut placed: Vec<(u32, Projected)> = drops
-            .par_iter()
-            .enumerate()
-            .filter_map(|(k, drop)| Some((k as u32, project(camera, eye, drop, masks, &options.exposure)?)))
-            .filter(|(_, shown)| pixels(shown, width, height).is_some())
-            .collect();
-        // Two drops at one distance go in the order in which they were given, so that the order is the same for any number of
-        // threads.
-        placed.par_sort_unstable_by(|a, b| a.1.drop.nearest.total_cmp(&b.1.drop.nearest).then(a.0.cmp(&b.0)));
-        let medium = options.medium.row().map(shapes::of_row);
-        let profiles = StreakProfiles::new(&mut placed, drops, masks, &options.exposure, medium);
-        let across = width.div_ceil(DROPS_TILE);
-        let count = (across * height.div_ceil(DROPS_TILE)) as usize;
-        let touched = |shown: &Projected| tiles_of(*shown, width, height);
-        let mut tiles = vec![0u32; count + 1];
-        for (_, shown) in &placed {
-            for tile in touched(shown) {
-                tiles[tile + 1] += 1;
-            }
-        }
-        let mut first = count as u32 + 1;
-        for start in &mut tiles {
-            first += *start;
-            *start = first;
-        }
-        let mut next = tiles.clone();
-        tiles.resize(first as usize, 0);
-        for (index, (_, shown)) in (0u32..).zip(&placed) {
-            for tile in touched(shown) {
-                tiles[next[tile] as usize] = index;
-                next[tile] += 1;
-            }
-        }
-        let given = || placed.iter().filter_map(|p| Some((drops.get(p.0 as usize)?, p.1.velocity)));
-        let mut rows = drop_light_rows(given().map(|(drop, _)| drop));
-        if options.light.form == DropLightForm::Atlas {
-            rows.extend(drop_light_axes(given()));
-        }
-        Self {
-            frame: DropsFrame::new(camera, &environment, masks, across, options),
-            medium: MediumFrame {
-                lit: lamps_of(options.light.form),
-                ..MediumFrame::new(&options.medium, eye.as_vec3(), [width, height])
-            },
-            environment,
-            profiles,
-            list: placed.iter().map(|p| p.1.drop).collect(),
-            rows,
-            light: options.light,
-            given: placed.iter().map(|p| p.0).collect(),
-            boxes: placed.iter().filter_map(|p| pixels(&p.1, width, height)).collect(),
-            tiles,
-        }
+    pub fn new(size: [u32; 2], count: u32) -> Self {
+        let room = count.saturating_mul(ROOM_PER_DROP).clamp(ROOM[0], ROOM[1]);
+        Self { size, count, room: room.max(count) }
     }
 
-    /// The lamps of a plate on these drops.
-    ///
-    /// # Errors
-    /// As [`DropLights::new`].
-    pub fn lights<'a>(
-        &'a self,
-        lighting: &'a dyn Lighting,
-        masks: &'a DropMasks,
-    ) -> Result<DropLights<'a>, RenderError> {
-        DropLights::new(lighting, self.frame.camera.eye, &masks.light, self.light)
-    }
-
-    /// The lamps of a plate on the streaks that have profiles, lamp by lamp.
-    ///
-    /// # Errors
-    /// As [`DropLights::new`].
-    pub fn streak_lights<'a>(
-        &'a self,
-        lighting: &'a dyn Lighting,
-        masks: &'a DropMasks,
-    ) -> Result<DropLights<'a>, RenderError> {
-        DropLights::of_streaks(lighting, self.frame.camera.eye, &masks.light, self.light)
-    }
-
-    /// The streaks that have profiles, as lamps light them.
+    /// Number of tiles of the smallest edge.
     #[must_use]
-    pub fn streak_rows(&self) -> Vec<[f32; 4]> {
-        self.profiles.paths.iter().map(|path| self.rows[path.drop as usize]).collect()
-    }
-
-    /// The drops that are not drawn one by one, before a plate; `lights` are those of [`Rain::lights`].
-    #[must_use]
-    pub fn medium_light<'a>(&self, lights: &DropLights<'a>) -> MediumLight<'a> {
-        MediumLight::new(&self.medium, &self.frame.camera, lights, self.light.form)
-    }
-
-    /// For each drop that was given and is not hidden altogether by the scene, its place among those given.
-    #[must_use]
-    pub fn drawn(&self, clean: &[[f32; 4]]) -> Vec<u32> {
-        let width = self.frame.camera.width as usize;
-        let seen = |drop: &DropsDrop, [left, right, top, bottom]: [u32; 4]| {
-            (top as usize..=bottom as usize).any(|row| {
-                let row = &clean[row * width..(row + 1) * width];
-                row[left as usize..=right as usize].iter().any(|pixel| drop.nearest < pixel[3])
-            })
-        };
-        let all = self.list.iter().zip(&self.boxes).zip(&self.given);
-        all.filter(|((drop, pixels), _)| seen(drop, **pixels)).map(|(_, &k)| k).collect()
+    pub fn tiles(&self) -> u32 {
+        self.size.map(|pixels| pixels.div_ceil(DROPS_TILE)).iter().product()
     }
 }
 
-/// Columns and rows from the first to the last that lie within a range; `None` if none does.
-fn within(low: f32, high: f32, count: u32) -> Option<[u32; 2]> {
+/// First and last column (or row) of those within a range of pixels; `None` if there is none.
+#[must_use]
+pub fn tiles_within(low: f32, high: f32, count: u32) -> Option<[u32; 2]> {
     let (first, last) = (low.floor(), high.ceil() - 1.0);
     // The comparison is false for what is no number.
     (last >= 0.0 && first < count as f32 && first <= last)
         .then(|| [first, last].map(|v| v.clamp(0.0, count as f32 - 1.0) as u32))
 }
 
-/// The pixels that a drop may touch: first and last column, first and last row.
-fn pixels(shown: &Projected, width: u32, height: u32) -> Option<[u32; 4]> {
-    let (from, reach) = (Vec2::from(shown.drop.first), shown.reach);
-    let to = from + Vec2::from(shown.drop.way);
-    let (low, high) = (from.min(to) - reach, from.max(to) + reach);
-    let [left, right] = within(low.x, high.x, width)?;
-    let [top, bottom] = within(low.y, high.y, height)?;
-    Some([left, right, top, bottom])
+/// First and last row of tiles that a drop may touch; `None` if there is none.
+#[must_use]
+pub fn tiles_rows(drop: &DropsDrop, edge: u32, size: [u32; 2]) -> Option<[u32; 2]> {
+    if drop.reach <= 0.0 {
+        return None;
+    }
+    let (first, way) = (Vec2::from(drop.first), Vec2::from(drop.way));
+    let (low, high) = (first.min(first + way) - drop.reach, first.max(first + way) + drop.reach);
+    tiles_within(low.x, high.x, size[0])?;
+    tiles_within(low.y, high.y, size[1]).map(|rows| rows.map(|row| row / edge))
 }
 
-/// The tiles that a drop may touch: row by row those that its path passes there.
-fn tiles_of(shown: Projected, width: u32, height: u32) -> impl Iterator<Item = usize> {
-    let across = width.div_ceil(DROPS_TILE);
-    let (from, way, reach) = (Vec2::from(shown.drop.first), Vec2::from(shown.drop.way), shown.reach);
-    let box_of = pixels(&shown, width, height);
-    let rows = box_of.map_or(0..0, |[_, _, top, bottom]| top / DROPS_TILE..bottom / DROPS_TILE + 1);
-    rows.flat_map(move |row| {
-        let top = (row * DROPS_TILE) as f32 - reach;
-        let bottom = ((row + 1) * DROPS_TILE) as f32 + reach;
-        // The part of the path that is as high as this row.
-        let (mut low, mut high) = (0.0f32, 1.0f32);
-        if way.y.abs() > 1.0e-3 {
-            let (a, b) = ((top - from.y) / way.y, (bottom - from.y) / way.y);
-            (low, high) = (low.max(a.min(b)), high.min(a.max(b)));
+/// First and last tile of a row of tiles that the path of a drop may touch; `None` if there is none.
+#[must_use]
+pub fn tiles_columns(drop: &DropsDrop, row: u32, edge: u32, width: u32) -> Option<[u32; 2]> {
+    let (first, way, reach) = (Vec2::from(drop.first), Vec2::from(drop.way), drop.reach);
+    let top = (row * edge) as f32 - reach;
+    let bottom = ((row + 1) * edge) as f32 + reach;
+    // The part of the path that is as high as this row.
+    let (mut low, mut high) = (0.0f32, 1.0f32);
+    if way.y.abs() > 1.0e-3 {
+        let (a, b) = ((top - first.y) / way.y, (bottom - first.y) / way.y);
+        (low, high) = (low.max(a.min(b)), high.min(a.max(b)));
+    }
+    if low > high {
+        return None;
+    }
+    let (a, b) = (first.x + way.x * low, first.x + way.x * high);
+    tiles_within(a.min(b) - reach, a.max(b) + reach, width).map(|columns| columns.map(|column| column / edge))
+}
+
+/// No fewer tiles of an edge than a drop may touch.
+#[must_use]
+pub fn tiles_bound(drop: &DropsDrop, edge: u32, size: [u32; 2]) -> u32 {
+    let Some([top, bottom]) = tiles_rows(drop, edge, size) else { return 0 };
+    let [x, y] = drop.way.map(f32::abs);
+    // Of each row of tiles the path covers what it is slanted, and its own width.
+    let reached = edge as f32 + 2.0 * drop.reach;
+    let slanted = x.min(reached * x / y.max(1.0e-3));
+    let columns = (slanted + 2.0 * drop.reach).min(size[0] as f32) / edge as f32 + 3.0;
+    (bottom + 1 - top) * (columns as u32).min(size[0].div_ceil(edge))
+}
+
+/// The smallest edge whose lists have room: for each edge, how many drops its lists have at most.
+#[must_use]
+pub fn tiles_edge(totals: &[u64; TILES_EDGES as usize], room: u32) -> u32 {
+    let fits = totals.iter().position(|&total| total <= u64::from(room));
+    DROPS_TILE << fits.unwrap_or(totals.len() - 1)
+}
+
+/// The sort key of a drop: distances are above 0, whose bits are in their order.
+#[must_use]
+pub fn tiles_key(drops: &[DropsDrop], index: u32) -> [u32; 2] {
+    [drops[index as usize].nearest.to_bits(), index]
+}
+
+/// True if a drop comes before another, by their sort keys.
+#[must_use]
+pub fn tiles_is_before(drops: &[DropsDrop], a: [u32; 2], b: [u32; 2]) -> bool {
+    let all = |key: [u32; 2]| (key[0], drops[key[1] as usize].id, key[1]);
+    all(a) < all(b)
+}
+
+/// The lists of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TileLists {
+    /// Edge of a tile, pixels.
+    edge: u32,
+    /// Tiles across the picture.
+    across: u32,
+    /// Begin of each list, and of one more.
+    starts: Vec<u32>,
+    drops: Vec<u32>,
+}
+
+impl TileLists {
+    /// The lists of some drops; the same for any number of threads.
+    #[must_use]
+    pub fn new(drops: &[DropsDrop], size: [u32; 2]) -> Self {
+        Self::with_room(drops, size, TilesFrame::new(size, drops.len() as u32).room)
+    }
+
+    /// The lists of some drops, with tiles so large that there is room.
+    #[must_use]
+    pub fn with_room(drops: &[DropsDrop], size: [u32; 2], room: u32) -> Self {
+        let mut totals = [0; TILES_EDGES as usize];
+        for drop in drops {
+            for (k, total) in totals.iter_mut().enumerate() {
+                *total += u64::from(tiles_bound(drop, DROPS_TILE << k, size));
+            }
         }
-        let (a, b) = (from.x + way.x * low, from.x + way.x * high);
-        let columns = if low <= high { within(a.min(b) - reach, a.max(b) + reach, width) } else { None };
-        let columns = columns.map_or(0..0, |[left, right]| left / DROPS_TILE..right / DROPS_TILE + 1);
-        columns.map(move |column| (row * across + column) as usize)
-    })
+        let edge = tiles_edge(&totals, room);
+        let [across, down] = size.map(|pixels| pixels.div_ceil(edge));
+        let mut starts = vec![0u32; (across * down) as usize + 1];
+        let touched = |drop: &DropsDrop, each: &mut dyn FnMut(usize)| {
+            let Some([top, bottom]) = tiles_rows(drop, edge, size) else { return };
+            for row in top..=bottom {
+                let Some([left, right]) = tiles_columns(drop, row, edge, size[0]) else { continue };
+                (left..=right).for_each(|column| each((row * across + column) as usize));
+            }
+        };
+        for drop in drops {
+            touched(drop, &mut |tile| starts[tile + 1] += 1);
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut next = starts.clone();
+        let mut lists = vec![0; sum as usize];
+        for (index, drop) in (0u32..).zip(drops) {
+            touched(drop, &mut |tile| {
+                lists[next[tile] as usize] = index;
+                next[tile] += 1;
+            });
+        }
+        let mut rest = lists.as_mut_slice();
+        let mut all = Vec::with_capacity(starts.len());
+        for pair in starts.windows(2) {
+            let (list, behind) = rest.split_at_mut((pair[1] - pair[0]) as usize);
+            all.push(list);
+            rest = behind;
+        }
+        all.into_par_iter().for_each(|list| {
+            list.sort_unstable_by(|&a, &b| {
+                let keys = [tiles_key(drops, a), tiles_key(drops, b)];
+                match tiles_is_before(drops, keys[0], keys[1]) {
+                    _ if a == b => Ordering::Equal,
+                    true => Ordering::Less,
+                    false => Ordering::Greater,
+                }
+            });
+        });
+        Self { edge, across, starts, drops: lists }
+    }
+
+    /// The list of the tile of a pixel, nearest first.
+    #[must_use]
+    pub fn of_pixel(&self, x: u32, y: u32) -> &[u32] {
+        let tile = ((y / self.edge) * self.across + x / self.edge) as usize;
+        &self.drops[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+
+    /// The lists as the shader has them.
+    #[must_use]
+    pub fn words(&self) -> Vec<u32> {
+        let first = self.starts.len() as u32 + 1;
+        let starts = self.starts.iter().map(|start| start + first);
+        std::iter::once(self.edge).chain(starts).chain(self.drops.iter().copied()).collect()
+    }
 }

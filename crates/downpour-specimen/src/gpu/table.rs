@@ -48,7 +48,7 @@ impl SpecimenTableRenderer {
             let plate = self.scenes.plate(&scene, &streak.frame, &self.rains, &streak.rain)?;
             let pass = self.rains.prepare(&self.gpu, &plate.of(&clean), &masks, &streak.rain, &lights)?;
             let environment = plate.dispatches(&pass);
-            for dispatches in [environment, pass.lamps(), pass.streaks(), vec![pass.drops()]] {
+            for dispatches in [environment, pass.lamps(), pass.streaks(), pass.drops()] {
                 self.gpu.submit(&dispatches)?;
                 // One submission at a time: software drivers queue without end.
                 self.gpu.wait()?;

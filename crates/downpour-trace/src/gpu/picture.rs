@@ -122,7 +122,7 @@ impl PictureRenderer {
             Ok::<_, GpuError>(())
         })?;
         timed(&mut passes, "drops", || {
-            self.gpu.submit(&[pass.drops()])?;
+            self.gpu.submit(&pass.drops())?;
             self.gpu.wait()
         })?;
         let layer = pass.layer_buffer().clone();

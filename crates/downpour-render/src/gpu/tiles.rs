@@ -1,0 +1,108 @@
+//! Lists of drops for the tiles of a picture on a GPU: what [`TileLists`](crate::rain::tiles::TileLists) makes on the CPU.
+
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_shaders::Kernel;
+use downpour_shaders::render::rain::{
+    TILES_CLEAR_KERNEL, TILES_COUNT_KERNEL, TILES_HEAD, TILES_MEASURE_KERNEL, TILES_PLACE_KERNEL,
+    TILES_SCAN_KERNEL, TILES_SORT_KERNEL,
+};
+
+use super::rain::groups;
+use crate::rain::tiles::TilesFrame;
+
+/// Kernels in the order in which they run.
+const KERNELS: [&Kernel; 6] = [
+    &TILES_CLEAR_KERNEL,
+    &TILES_MEASURE_KERNEL,
+    &TILES_COUNT_KERNEL,
+    &TILES_SCAN_KERNEL,
+    &TILES_PLACE_KERNEL,
+    &TILES_SORT_KERNEL,
+];
+
+/// Bindings of each of them.
+const BINDINGS: [&[u32]; 6] = [&[2], &[0, 1, 2], &[0, 1, 2], &[0, 2, 3], &[0, 1, 2, 3], &[0, 1, 3]];
+
+/// The pipelines of the lists.
+#[derive(Clone, Debug)]
+pub struct TilesPipeline {
+    gpu: Gpu,
+    kernels: Vec<ComputeKernel>,
+}
+
+/// The lists of a picture, ready to be made.
+#[derive(Debug)]
+pub struct TilesPass<'a> {
+    pipeline: &'a TilesPipeline,
+    bound: Vec<(wgpu::BindGroup, [u32; 3])>,
+    lists: wgpu::Buffer,
+}
+
+impl TilesPipeline {
+    /// Makes the pipelines.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let kernels = KERNELS.iter().map(|kernel| ComputeKernel::new(gpu, kernel, &[]));
+        Ok(Self { gpu: gpu.clone(), kernels: kernels.collect::<Result<_, _>>()? })
+    }
+
+    /// Makes ready to list drops ([`DropsDrop`](crate::rain::DropsDrop)) that are on the device.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`] if the lists are larger than the device allows, or what else the GPU says.
+    pub fn prepare(
+        &self,
+        buffers: &impl BufferSource,
+        drops: &wgpu::Buffer,
+        frame: &TilesFrame,
+    ) -> Result<TilesPass<'_>, GpuError> {
+        let storage = wgpu::BufferUsages::STORAGE;
+        let tiles = frame.tiles();
+        let counts = buffers.buffer("drops of tiles", u64::from(TILES_HEAD + tiles) * 4, storage)?;
+        let words = 2 + u64::from(tiles) + u64::from(frame.room);
+        let lists = buffers.buffer("tiles of drops", words * 4, storage)?;
+        let uniform = buffers.uniform("tiles frame", frame)?;
+        let all = [&uniform, drops, &counts, &lists];
+        let by_drop = groups(frame.count.div_ceil(64).max(1));
+        let of_kernel = [
+            groups((counts.size() / 4).div_ceil(64) as u32),
+            by_drop,
+            by_drop,
+            [1; 3],
+            by_drop,
+            groups(tiles),
+        ];
+        let bind = |((kernel, bindings), groups): ((&ComputeKernel, &[u32]), [u32; 3])| {
+            let bound = bindings.iter().map(|&k| (k, all[k as usize]));
+            Ok((kernel.bind_at(&self.gpu, bound)?, groups))
+        };
+        let bound = self.kernels.iter().zip(BINDINGS).zip(of_kernel).map(bind);
+        let bound = bound.collect::<Result<_, GpuError>>()?;
+        Ok(TilesPass { pipeline: self, bound, lists })
+    }
+}
+
+impl TilesPass<'_> {
+    /// The dispatches, in this order.
+    #[must_use]
+    pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
+        let kernels = self.pipeline.kernels.iter();
+        kernels.zip(&self.bound).map(|(kernel, (bound, groups))| kernel.dispatch(bound, *groups)).collect()
+    }
+
+    /// The lists on the device ([`TileLists::words`](crate::rain::tiles::TileLists::words)).
+    #[must_use]
+    pub fn lists(&self) -> &wgpu::Buffer {
+        &self.lists
+    }
+
+    /// Reads the lists.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn read(&self) -> Result<Vec<u32>, GpuError> {
+        self.pipeline.gpu.read(&self.lists)
+    }
+}

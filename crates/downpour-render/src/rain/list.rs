@@ -1,0 +1,143 @@
+//! The drops of a picture, with all that the shaders read of it.
+
+use downpour_sim::field::FallingDrop;
+use glam::{DVec3, Vec2};
+use rayon::prelude::*;
+
+use super::drops_frame::DropsFrame;
+use super::environment::EnvironmentFrame;
+use super::light::{DropLightForm, DropLightOptions, DropLights, drop_light_axes, drop_light_rows};
+use super::medium::{MediumFrame, MediumLight, lamps_of};
+use super::profiles::StreakProfiles;
+use super::project::{Projected, project};
+use super::streak::DropsDrop;
+use super::tiles::tiles_within;
+use super::{DropMasks, RainOptions, shapes};
+use crate::RenderError;
+use crate::camera::Camera;
+use crate::plate::Lighting;
+
+/// The drops of one picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rain {
+    /// Constants of the picture that the shader reads.
+    pub frame: DropsFrame,
+    /// Drops that are not drawn one by one.
+    pub medium: MediumFrame,
+    /// Layout of the environment map.
+    pub environment: EnvironmentFrame,
+    /// Profiles of moving drops in the streak radiance table.
+    pub profiles: StreakProfiles,
+    /// The drops on the picture, in the order in which they were given.
+    pub list: Vec<DropsDrop>,
+    /// The drops of `list` as lamps light them: place relative to the scene's origin, and radius, m. For an atlas then their
+    /// axes and ids.
+    pub rows: Vec<[f32; 4]>,
+    /// Options of the light of lamps on them.
+    light: DropLightOptions,
+    /// For each drop of `list`, its place among the drops that were given.
+    pub given: Vec<u32>,
+}
+
+impl Rain {
+    /// Puts drops on a picture whose eye is `eye` (in f64, so that drops far from the origin keep their places).
+    #[must_use]
+    pub fn new(
+        camera: &Camera,
+        eye: DVec3,
+        drops: &[FallingDrop],
+        masks: &DropMasks,
+        options: &RainOptions,
+    ) -> Self {
+        let environment = EnvironmentFrame::new(camera, options);
+        let [width, height] = camera.size();
+        let mut placed: Vec<(u32, Projected)> = drops
+            .par_iter()
+            .enumerate()
+            .filter_map(|(k, drop)| Some((k as u32, project(camera, eye, drop, masks, &options.exposure)?)))
+            .filter(|(_, shown)| pixels(&shown.drop, [width, height]).is_some())
+            .collect();
+        let medium = options.medium.row().map(shapes::of_row);
+        let profiles = StreakProfiles::new(&mut placed, drops, masks, &options.exposure, medium);
+        let given = || placed.iter().filter_map(|p| Some((drops.get(p.0 as usize)?, p.1.velocity)));
+        let mut rows = drop_light_rows(given().map(|(drop, _)| drop));
+        if options.light.form == DropLightForm::Atlas {
+            rows.extend(drop_light_axes(given()));
+        }
+        Self {
+            frame: DropsFrame::new(camera, &environment, masks, options),
+            medium: MediumFrame {
+                lit: lamps_of(options.light.form),
+                ..MediumFrame::new(&options.medium, eye.as_vec3(), [width, height])
+            },
+            environment,
+            profiles,
+            list: placed.iter().map(|p| p.1.drop).collect(),
+            rows,
+            light: options.light,
+            given: placed.iter().map(|p| p.0).collect(),
+        }
+    }
+
+    /// The lamps of a plate on these drops.
+    ///
+    /// # Errors
+    /// As [`DropLights::new`].
+    pub fn lights<'a>(
+        &'a self,
+        lighting: &'a dyn Lighting,
+        masks: &'a DropMasks,
+    ) -> Result<DropLights<'a>, RenderError> {
+        DropLights::new(lighting, self.frame.camera.eye, &masks.light, self.light)
+    }
+
+    /// The lamps of a plate on the streaks that have profiles, lamp by lamp.
+    ///
+    /// # Errors
+    /// As [`DropLights::new`].
+    pub fn streak_lights<'a>(
+        &'a self,
+        lighting: &'a dyn Lighting,
+        masks: &'a DropMasks,
+    ) -> Result<DropLights<'a>, RenderError> {
+        DropLights::of_streaks(lighting, self.frame.camera.eye, &masks.light, self.light)
+    }
+
+    /// The streaks that have profiles, as lamps light them.
+    #[must_use]
+    pub fn streak_rows(&self) -> Vec<[f32; 4]> {
+        self.profiles.paths.iter().map(|path| self.rows[path.drop as usize]).collect()
+    }
+
+    /// The drops that are not drawn one by one, before a plate; `lights` are those of [`Rain::lights`].
+    #[must_use]
+    pub fn medium_light<'a>(&self, lights: &DropLights<'a>) -> MediumLight<'a> {
+        MediumLight::new(&self.medium, &self.frame.camera, lights, self.light.form)
+    }
+
+    /// For each drop that was given and is not hidden altogether by the scene, its place among those given.
+    #[must_use]
+    pub fn drawn(&self, clean: &[[f32; 4]]) -> Vec<u32> {
+        let size = self.frame.camera.size();
+        let width = size[0] as usize;
+        let seen = |drop: &DropsDrop| {
+            pixels(drop, size).is_some_and(|[left, right, top, bottom]| {
+                (top as usize..=bottom as usize).any(|row| {
+                    let row = &clean[row * width..(row + 1) * width];
+                    row[left as usize..=right as usize].iter().any(|pixel| drop.nearest < pixel[3])
+                })
+            })
+        };
+        let all = self.list.iter().zip(&self.given);
+        all.filter(|(drop, _)| seen(drop)).map(|(_, &k)| k).collect()
+    }
+}
+
+/// The pixels that a drop may touch: first and last column, first and last row; `None` where it touches none.
+fn pixels(drop: &DropsDrop, [width, height]: [u32; 2]) -> Option<[u32; 4]> {
+    let (from, way) = (Vec2::from(drop.first), Vec2::from(drop.way));
+    let (low, high) = (from.min(from + way) - drop.reach, from.max(from + way) + drop.reach);
+    let [left, right] = tiles_within(low.x, high.x, width)?;
+    let [top, bottom] = tiles_within(low.y, high.y, height)?;
+    Some([left, right, top, bottom])
+}

@@ -1,0 +1,166 @@
+//! `shaders/wgsl/render/tiles.wgsl` against `downpour_render::rain::tiles`.
+
+use downpour_gpu::{Gpu, GpuError};
+use downpour_math::rng::rng_draw;
+use downpour_render::gpu::tiles::TilesPipeline;
+use downpour_render::rain::DropsDrop;
+use downpour_render::rain::tiles::{
+    TileLists, TilesFrame, tiles_bound, tiles_columns, tiles_rows, tiles_within,
+};
+use downpour_shaders::Kernel;
+use downpour_shaders::render::rain::{
+    TILES, TILES_CLEAR_KERNEL, TILES_COUNT_KERNEL, TILES_MEASURE_KERNEL, TILES_PLACE_KERNEL,
+    TILES_SCAN_KERNEL, TILES_SORT_KERNEL,
+};
+
+use crate::Domain::{Below, Made, OneOf, Uniform};
+use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::IntoWords as _;
+use crate::{FunctionCase, KernelCase, Tol};
+
+const SIZE: [u32; 2] = [157, 91];
+
+/// Words of a drop.
+const WORDS: usize = size_of::<DropsDrop>() / 4;
+
+/// A drop on or about a picture. All numbers have few digits in base two and slopes are powers of two, so that both sides compute
+/// without rounding.
+fn drop(random: [u32; 4]) -> DropsDrop {
+    let [a, b, c, d] = random;
+    // Eighths of a pixel.
+    let eighths = |word: u32, range: u32| (word % (8 * range)) as f32 / 8.0;
+    let steep = [0.0, 0.25, 1.0, 8.0, -8.0, 64.0, -128.0][(c >> 8) as usize % 7];
+    DropsDrop {
+        first: [eighths(a, 2 * SIZE[0]) - 60.0, eighths(b, 2 * SIZE[1]) - 40.0],
+        way: [eighths(c, 48) - 24.0, steep],
+        // Some are not on the picture at all, a few cover much of it.
+        reach: match d % 16 {
+            0 => -1.0,
+            1 => eighths(d >> 8, 48),
+            _ => eighths(d >> 8, 4),
+        },
+        // So few distances that many are equal.
+        nearest: 0.5 + ((d >> 4) % 61) as f32,
+        id: (d >> 11) % 1021,
+        ..DropsDrop::default()
+    }
+}
+
+fn drop_words(random: [u32; 4]) -> Vec<u32> {
+    bytemuck::cast::<DropsDrop, [u32; WORDS]>(drop(random)).to_vec()
+}
+
+/// A number of columns or rows.
+fn count(random: [u32; 4]) -> Vec<u32> {
+    vec![1 + random[0] % 157]
+}
+
+/// An edge of tiles.
+fn edge(random: [u32; 4]) -> Vec<u32> {
+    vec![8 << (random[0] % 5)]
+}
+
+fn size_words(_: [u32; 4]) -> Vec<u32> {
+    SIZE.to_vec()
+}
+
+/// First and last as the shader has them.
+fn pair(found: Option<[u32; 2]>) -> Vec<u32> {
+    found.unwrap_or([1, 0]).words()
+}
+
+/// The cases.
+#[must_use]
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let exact = Tol::exact("sums, products and quotients without rounding");
+    vec![
+        FunctionCase::new(
+            "tiles_within",
+            &TILES,
+            &[
+                OneOf(&[-9.0, -1.0, -0.25, 0.0, 0.5, 7.0, 90.75, 91.0, 300.0]),
+                Uniform(-3.0, 200.0),
+                Made(count),
+            ],
+            exact,
+            |a| pair(tiles_within(a.f32(), a.f32(), a.u32())),
+        ),
+        FunctionCase::new(
+            "tiles_rows",
+            &TILES,
+            &[Made(drop_words), Made(edge), Made(size_words)],
+            exact,
+            |a| pair(tiles_rows(&bytemuck::cast(a.u32s::<WORDS>()), a.u32(), a.u32s())),
+        ),
+        FunctionCase::new(
+            "tiles_columns",
+            &TILES,
+            &[Made(drop_words), Below(14), Made(edge), Made(count)],
+            exact,
+            |a| pair(tiles_columns(&bytemuck::cast(a.u32s::<WORDS>()), a.u32(), a.u32(), a.u32())),
+        ),
+        FunctionCase::new(
+            "tiles_bound",
+            &TILES,
+            &[Made(drop_words), Made(edge), Made(size_words)],
+            exact,
+            |a| tiles_bound(&bytemuck::cast(a.u32s::<WORDS>()), a.u32(), a.u32s()).words(),
+        ),
+    ]
+}
+
+/// The lists of so many drops, with room for so many entries, in three pictures: the second and third find what the one before left.
+fn case(gpu: &Gpu, count: u32, room: Option<u32>) -> Result<Run, GpuError> {
+    let pipeline = TilesPipeline::new(gpu)?;
+    let (mut cpu, mut found) = (Vec::new(), Vec::new());
+    for seed in 0..3 {
+        let drops: Vec<DropsDrop> = (0..count).map(|k| drop(rng_draw([seed, 5], k, 0, 0))).collect();
+        let mut frame = TilesFrame::new(SIZE, count);
+        frame.room = room.unwrap_or(frame.room);
+        let lists = TileLists::with_room(&drops, SIZE, frame.room).words();
+        let list = gpu.storage_buffer("drops", &drops)?;
+        let pass = pipeline.prepare(gpu, &list, &frame)?;
+        gpu.submit(&pass.dispatches())?;
+        gpu.submit(&pass.dispatches())?;
+        let words = pass.read()?;
+        // Words behind the lists are not written.
+        found.extend(words.into_iter().take(lists.len()));
+        cpu.extend(lists);
+    }
+    Ok(Run {
+        arguments: (0..cpu.len() as u32).map(|k| vec![k]).collect(),
+        cpu: Cpu(cpu),
+        gpu: FromGpu(found),
+        kinds: vec![WordKind::Integer],
+    })
+}
+
+/// The cases.
+#[must_use]
+pub(super) fn kernels() -> Vec<KernelCase> {
+    const OTHERS: &[&Kernel] = &[
+        &TILES_CLEAR_KERNEL,
+        &TILES_MEASURE_KERNEL,
+        &TILES_COUNT_KERNEL,
+        &TILES_SCAN_KERNEL,
+        &TILES_PLACE_KERNEL,
+    ];
+    let exact = Tol::exact("integers, from numbers without rounding");
+    let of = |name, run| KernelCase {
+        name,
+        kernel: &TILES_SORT_KERNEL,
+        with: OTHERS,
+        overrides: &[],
+        text: None,
+        tol: exact,
+        run,
+    };
+    vec![
+        of("main_tiles_sort (tiles of 8 pixels)", |gpu| case(gpu, 700, None)),
+        of("main_tiles_sort (larger tiles, long lists)", |gpu| case(gpu, 4500, Some(20_000))),
+        of("main_tiles_sort (one list)", |gpu| case(gpu, 3000, Some(3000))),
+        of("main_tiles_sort (two drops)", |gpu| case(gpu, 2, None)),
+    ]
+}
