@@ -106,8 +106,27 @@ impl ComputeKernel {
     /// Creates a dispatch of `groups` workgroups.
     #[must_use]
     pub fn dispatch<'a>(&'a self, bindings: &'a wgpu::BindGroup, groups: [u32; 3]) -> Dispatch<'a> {
-        Dispatch { kernel: self, bindings, groups }
+        Dispatch { kernel: self, bindings, groups: Groups::Given(groups) }
     }
+
+    /// Creates a dispatch of as many workgroups as three words of a buffer say when it runs, from a byte on. A number beyond the
+    /// limits of the device runs none.
+    #[must_use]
+    pub fn dispatch_indirect<'a>(
+        &'a self,
+        bindings: &'a wgpu::BindGroup,
+        groups: &'a wgpu::Buffer,
+        offset: u64,
+    ) -> Dispatch<'a> {
+        Dispatch { kernel: self, bindings, groups: Groups::Found { groups, offset } }
+    }
+}
+
+/// Number of workgroups.
+#[derive(Clone, Copy, Debug)]
+enum Groups<'a> {
+    Given([u32; 3]),
+    Found { groups: &'a wgpu::Buffer, offset: u64 },
 }
 
 /// A kernel with its bindings and its number of workgroups.
@@ -115,13 +134,14 @@ impl ComputeKernel {
 pub struct Dispatch<'a> {
     kernel: &'a ComputeKernel,
     bindings: &'a wgpu::BindGroup,
-    groups: [u32; 3],
+    groups: Groups<'a>,
 }
 
 impl Dispatch<'_> {
     pub(crate) fn check(&self, limits: &wgpu::Limits) -> Result<(), GpuError> {
         let allowed = u64::from(limits.max_compute_workgroups_per_dimension);
-        match self.groups.iter().map(|&n| u64::from(n)).find(|&n| n > allowed) {
+        let Groups::Given(groups) = self.groups else { return Ok(()) };
+        match groups.iter().map(|&n| u64::from(n)).find(|&n| n > allowed) {
             Some(found) => Err(GpuError::OverLimit {
                 what: format!("the number of workgroups of kernel \"{}\"", self.kernel.label),
                 found,
@@ -145,7 +165,9 @@ impl Dispatch<'_> {
     pub(crate) fn encode_in(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(&self.kernel.pipeline);
         pass.set_bind_group(0, self.bindings, &[]);
-        let [x, y, z] = self.groups;
-        pass.dispatch_workgroups(x, y, z);
+        match self.groups {
+            Groups::Given([x, y, z]) => pass.dispatch_workgroups(x, y, z),
+            Groups::Found { groups, offset } => pass.dispatch_workgroups_indirect(groups, offset),
+        }
     }
 }

@@ -143,7 +143,7 @@ impl Camera {
 
     /// Position on the picture, in pixels from the top left, of a point relative to the eye.
     #[must_use]
-    pub fn project(&self, point: Vec3) -> Vec2 {
+    pub fn camera_project(&self, point: Vec3) -> Vec2 {
         let (right, up) = (self.right, self.up);
         let depth = point.dot(self.forward);
         Vec2::new(

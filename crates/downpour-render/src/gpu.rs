@@ -5,6 +5,7 @@ mod glass;
 mod host;
 mod medium;
 mod plate;
+mod project;
 mod rain;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod tiles;
@@ -17,4 +18,5 @@ pub use glass::{BehindGlass, GlassRenderer};
 pub use host::{HostPass, HostPipeline, HostTextures};
 pub use medium::{MediumPass, MediumPipeline};
 pub use plate::{LightingOnGpu, PlateOnGpu};
+pub use project::{FallingOnGpu, ProjectPass, ProjectPipeline};
 pub use rain::{RAIN_BUFFERS, RainOnGpu, RainPass, RainPipeline};

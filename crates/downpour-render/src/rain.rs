@@ -35,8 +35,16 @@ mod list;
 #[doc(hidden)]
 pub mod masks;
 pub mod medium;
-mod profiles;
-mod project;
+#[cfg(not(feature = "parity"))]
+pub(crate) mod profiles;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod profiles;
+#[cfg(not(feature = "parity"))]
+pub(crate) mod project;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod project;
 mod shapes;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod streak;
@@ -72,6 +80,7 @@ pub use list::Rain;
 pub use masks::DropMasks;
 pub use medium::{MediumOptions, PanePlane, RainMedium};
 pub use profiles::StreakProfiles;
+pub use project::ProjectDrop;
 pub use streak::DropsDrop;
 pub use streak_lookup::StreakTable;
 pub use streak_path::StreakPath;

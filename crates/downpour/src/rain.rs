@@ -6,13 +6,13 @@ mod textures;
 
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::oscillation::{Amplitudes, Fluids};
-use downpour_gpu::{BufferPool, Gpu, wgpu};
+use downpour_gpu::{BufferPool, BufferSource as _, Gpu, wgpu};
 use downpour_render::camera::{EyeMotion, Viewpoint};
-use downpour_render::gpu::{HostPipeline, PlateOnGpu, RAIN_BUFFERS, RainOnGpu, RainPipeline};
+use downpour_render::gpu::{FallingOnGpu, HostPipeline, PlateOnGpu, RAIN_BUFFERS, RainOnGpu, RainPipeline};
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::light::LightSource;
 use downpour_render::rain::{
-    DropMasks, Exposure, MediumOptions, Rain as PictureRain, RainMedium, RainOptions,
+    DropMasks, Exposure, MediumOptions, ProjectDrop, Rain as PictureRain, RainMedium, RainOptions,
 };
 use downpour_sim::field::{RainField, VisibleDrops};
 use downpour_sim::shelter::Obstacles;
@@ -49,7 +49,7 @@ pub struct RainView {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RainStats {
-    /// Drops on the picture that are drawn one by one.
+    /// Drops in the view that are drawn one by one.
     pub drops: usize,
     /// Least diameter of these on the picture, pixels; smaller ones are an extinction and a light of their own.
     pub least_pixels: f64,
@@ -175,7 +175,7 @@ impl Rain {
         self.set_lights(textures.lights)?;
         let options = self.options(view, &visible)?;
         let eye = view.camera.eye.as_dvec3();
-        let rain = PictureRain::new(&camera, eye, &visible.drops, &self.masks, &options);
+        let rain = PictureRain::new(&camera, eye, &[], &self.masks, &options);
         let frame = RenderFrame::new(&self.scene, &view.camera, size, 1, 0, 0)?;
         let lighting = SceneView { data: &self.scene, frame: &frame };
         let lights = [rain.lights(&lighting, &self.masks)?, rain.streak_lights(&lighting, &self.masks)?];
@@ -195,8 +195,15 @@ impl Rain {
         let made =
             self.host.prepare(pool, &textures.on_gpu(), &plate_frame, &environment_frame, &environment)?;
         let plate = PlateOnGpu { pixels: made.pixels(), environment: &environment, lighting: &lighting };
-        let pass = self.rains.prepare(pool, &plate, &self.masks_on_gpu, &rain, &lights)?;
+        let falling: Vec<ProjectDrop> =
+            visible.drops.iter().map(|drop| ProjectDrop::new(drop, eye)).collect();
+        let uploaded: &[_] = if falling.is_empty() { &[ProjectDrop::default()] } else { &falling };
+        let uploaded = pool.storage("falling drops", uploaded)?;
+        let falling = FallingOnGpu { drops: &uploaded, count: falling.len() as u32 };
+        let masks = (&self.masks_on_gpu, &self.masks);
+        let pass = self.rains.prepare_falling(pool, &plate, masks, (&rain, &options), &lights, falling)?;
         let mut dispatches = made.dispatches();
+        dispatches.extend(pass.project());
         dispatches.extend(pass.environment());
         dispatches.extend(pass.lamps());
         dispatches.extend(pass.streaks());
@@ -214,7 +221,7 @@ impl Rain {
         let blend = HostBlendFrame { width: size[0], scale: 1.0 / textures.radiance_scale, unused: [0; 2] };
         self.host.encode_blend(pool, encoder, textures.color, pass.layer_buffer(), &blend)?;
         Ok(RainStats {
-            drops: rain.list.len(),
+            drops: visible.drops.len(),
             least_pixels: visible.resolved.least_pixels,
             buffers_made: pool.made(),
         })

@@ -4,7 +4,7 @@ use super::camera::CAMERA;
 use super::drop_light::{DROP_GLINT, DROP_LIGHT_CONSTANTS};
 use super::medium::MEDIUM;
 use crate::atlas::ATLAS;
-use crate::common::PACKING;
+use crate::common::{OPS, PACKING};
 use crate::drop::oscillation::OSCILLATION;
 use crate::drop::shape::SHAPE;
 use crate::mask::WOBBLE;
@@ -26,6 +26,10 @@ pub const MODULES: &[&Module] = &[
     &STREAK_LIGHT,
     &STREAK_LOOKUP,
     &STREAK_TABLE,
+    &PROJECT_TABLES,
+    &PROJECT,
+    &PROFILES_TABLES,
+    &PROFILES,
     &TILES,
     &DROPS_ATLAS,
     &DROPS,
@@ -37,6 +41,11 @@ pub const KERNELS: &[&Kernel] = &[
     &STREAK_TABLE_KERNEL,
     &STREAK_RAYS_KERNEL,
     &STREAK_LIGHT_KERNEL,
+    &PROJECT_KERNEL,
+    &PROFILES_CLEAR_KERNEL,
+    &PROFILES_MEASURE_KERNEL,
+    &PROFILES_PLACE_KERNEL,
+    &PROFILES_FINISH_KERNEL,
     &TILES_CLEAR_KERNEL,
     &TILES_MEASURE_KERNEL,
     &TILES_COUNT_KERNEL,
@@ -63,6 +72,70 @@ shared_constants! {
         TILES_SCAN: u32 = 256;
         /// Drops of a tile that are sorted in workgroup memory.
         TILES_SORTED: u32 = 1024;
+        /// Diameters of the masks.
+        PROJECT_DIAMETERS: u32 = 18;
+        /// Meters between them; the first is one step.
+        PROJECT_DIAMETER_STEP: f32 = 0.5e-3;
+        /// Drops whose path is shorter than this fraction of their radius stand still.
+        PROJECT_STILL: f32 = 0.05;
+        /// Still drops of a smaller diameter on the picture, in pixels, are spread over the pixels around them.
+        PROJECT_SMALL: f32 = 1.0;
+        /// So are the streaks of drops below this diameter.
+        PROJECT_THIN: f32 = 1.5;
+        /// Streaks below this diameter on the picture, in pixels, have more samples.
+        PROJECT_NARROW: f32 = 4.0;
+        /// Samples of a pixel of a narrow streak, no multiple of `STREAK_LATTICE`.
+        PROJECT_NARROW_SAMPLES: u32 = 8;
+        /// Samples of a pixel of a wide streak, no multiple of `STREAK_LATTICE`.
+        PROJECT_WIDE_SAMPLES: u32 = 5;
+        /// Smallest diameter, m, of a drop that oscillates.
+        PROJECT_OSCILLATES_MIN: f32 = 0.05e-3;
+        /// Largest diameter, m, of a drop that oscillates.
+        PROJECT_OSCILLATES_MAX: f32 = 9.0e-3;
+        /// Bits of the first diameter of the frequencies, 2^-15 m; entries are 2^16 bits apart, 128 for each octave.
+        PROJECT_FIRST_BITS: u32 = 0x38000000;
+        /// Bits of the last diameter of the frequencies: just below 2^-6 m.
+        PROJECT_LAST_BITS: u32 = 0x3c7fffff;
+        /// Classes of drops that have a mean in the streak radiance table.
+        PROJECT_CLASSES: u32 = 8;
+        /// No class.
+        PROJECT_NO_CLASS: u32 = 0xffffffff;
+        /// Kinds of profiles, by the width of the streak.
+        PROFILES_KINDS: u32 = 4;
+        /// Times that profiles are made coarser, at most, and one.
+        PROFILES_LEVELS: u32 = 7;
+        /// Sums over all profiles: rays and entries for each level.
+        PROFILES_TOTALS: u32 = 14;
+        /// Word of the classes that are wanted, behind the sums.
+        PROFILES_CLASSES: u32 = 28;
+        /// Word of the number of paths.
+        PROFILES_PATHS: u32 = 29;
+        /// Word of the number of rays.
+        PROFILES_RAYS: u32 = 30;
+        /// Word of the number of entries.
+        PROFILES_ENTRIES: u32 = 31;
+        /// Word of the number of rows of rays.
+        PROFILES_RAY_JOBS: u32 = 32;
+        /// Word of the number of parts of profiles.
+        PROFILES_LIGHT_JOBS: u32 = 33;
+        /// Number of these words.
+        PROFILES_STATE: u32 = 34;
+        /// Radians of the picture that a row of rays stands for: the directions in which a drop is seen differ by that.
+        PROFILES_TURNED: f32 = 0.1;
+        /// Profiles have half as many rows again as rays have.
+        PROFILES_ROWS_FOR_TWO: u32 = 3;
+        /// Shapes for the rays of streaks.
+        PROFILES_SHAPES: u32 = 90;
+        /// Meters between them; the first is one step.
+        PROFILES_SHAPE_STEP: f32 = 0.1e-3;
+        /// Numbers of a shape.
+        PROFILES_SHAPE_WORDS: u32 = 20;
+        /// First of them: behind 18 half extents, 126 areas and 126 ovals of three numbers.
+        PROFILES_SHAPES_BEGIN: u32 = 522;
+        /// Workgroups along a row: fewer than every device allows.
+        PROFILES_ALONG: u32 = 32768;
+        /// pi.
+        PROFILES_PI: f32 = 3.1415927;
         /// Samples along an edge of the mask of a drop below a pixel.
         DROPS_SMALL_GRID: u32 = 3;
         /// Form of refraction: the direction of the refracted light is looked up.
@@ -159,6 +232,32 @@ shared_constants! {
         DROPS_ATLAS_HEAD: u32 = 6;
         /// Samples of a streak's length in a pixel, where it has no width.
         DROPS_ATLAS_TAPS: u32 = 4;
+    }
+}
+
+shared_tables! {
+    /// Table of `project.wgsl`.
+    PROJECT_TABLES at "render/project tables" {
+        /// Rows of the masks' diameters of the classes: 0.5, 1, 1.5, 2, 3, 4, 5 and 6.5 mm.
+        PROJECT_CLASS_ROWS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 5.0, 7.0, 9.0, 12.0];
+    }
+}
+
+shared_tables! {
+    /// Tables of `profiles.wgsl`: from thin streaks to wide ones.
+    PROFILES_TABLES at "render/profiles tables" {
+        /// Widths, pixels, up to which a streak is of a kind; the last has no limit.
+        PROFILES_WIDTHS: [f32; 4] = [3.0, 6.0, 14.0, 3.0e38];
+        /// Columns across the motion.
+        PROFILES_COLUMNS: [f32; 4] = [12.0, 16.0, 24.0, 24.0];
+        /// Rows for each turn of the mode (3,1).
+        PROFILES_PER_TURN: [f32; 4] = [8.0, 12.0, 20.0, 24.0];
+        /// The least of them, besides the first row.
+        PROFILES_LEAST: [f32; 4] = [3.0, 4.0, 6.0, 6.0];
+        /// The most of them.
+        PROFILES_MOST: [f32; 4] = [24.0, 48.0, 96.0, 128.0];
+        /// Columns of the profile for each of the rays'.
+        PROFILES_FINE: [f32; 4] = [1.0, 2.0, 2.0, 4.0];
     }
 }
 
@@ -297,12 +396,45 @@ pub static DROPS: Module = Module {
     ],
 };
 
+/// Falling drops on a picture. Twin: `downpour_render::rain::project`.
+pub static PROJECT: Module = Module {
+    path: "render/project.wgsl",
+    wgsl: include_str!("../../wgsl/render/project.wgsl"),
+    uses: &[&OPS, &RAIN_CONSTANTS, &PROJECT_TABLES, &CAMERA, &OSCILLATION, &STREAK, &DROP_GLINT],
+};
+
+/// Profiles of streaks in the streak radiance table. Twin: `downpour_render::rain::profiles`.
+pub static PROFILES: Module = Module {
+    path: "render/profiles.wgsl",
+    wgsl: include_str!("../../wgsl/render/profiles.wgsl"),
+    uses: &[&RAIN_CONSTANTS, &PROFILES_TABLES, &OSCILLATION, &SHAPE, &STREAK, &STREAK_PATH],
+};
+
 /// Lists of drops for the tiles of a picture. Twin: `downpour_render::rain::tiles`.
 pub static TILES: Module = Module {
     path: "render/tiles.wgsl",
     wgsl: include_str!("../../wgsl/render/tiles.wgsl"),
     uses: &[&RAIN_CONSTANTS, &OSCILLATION, &STREAK],
 };
+
+/// One invocation per place in the list.
+pub static PROJECT_KERNEL: Kernel = Kernel { entry: "main_project", module: &PROJECT, workgroup: [64, 1, 1] };
+
+/// One invocation per word of the state and streak.
+pub static PROFILES_CLEAR_KERNEL: Kernel =
+    Kernel { entry: "main_profiles_clear", module: &PROFILES, workgroup: [64, 1, 1] };
+
+/// One invocation per drop.
+pub static PROFILES_MEASURE_KERNEL: Kernel =
+    Kernel { entry: "main_profiles_measure", module: &PROFILES, workgroup: [64, 1, 1] };
+
+/// One invocation per drop.
+pub static PROFILES_PLACE_KERNEL: Kernel =
+    Kernel { entry: "main_profiles_place", module: &PROFILES, workgroup: [64, 1, 1] };
+
+/// One workgroup.
+pub static PROFILES_FINISH_KERNEL: Kernel =
+    Kernel { entry: "main_profiles_finish", module: &PROFILES, workgroup: [64, 1, 1] };
 
 /// One invocation per word of the counts.
 pub static TILES_CLEAR_KERNEL: Kernel =

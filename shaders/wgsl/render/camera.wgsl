@@ -32,3 +32,12 @@ fn camera_direction(camera: RenderCamera, x: f32, y: f32) -> vec3f {
     let ray = camera_ray(camera, x, y);
     return ray / sqrt(dot(ray, ray));
 }
+
+// Position on the picture, in pixels from the top left, of a point relative to the eye.
+fn camera_project(camera: RenderCamera, point: vec3f) -> vec2f {
+    let depth = dot(point, camera.forward);
+    return vec2f(
+        (0.5 + 0.5 * dot(point, camera.right) / (dot(camera.right, camera.right) * depth)) * f32(camera.width),
+        (0.5 - 0.5 * dot(point, camera.up) / (dot(camera.up, camera.up) * depth)) * f32(camera.height),
+    );
+}

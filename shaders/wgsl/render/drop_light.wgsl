@@ -170,6 +170,10 @@ fn drop_light_keep_lamp(slot: u32, lit: vec3f, reach: f32, direction: vec3f, tow
 // The light on a drop: adds this dispatch's lamps to those before.
 fn drop_light_of(index: u32) {
     let drop = drop_light_drops[index];
+    // An empty place in the list.
+    if drop.w <= 0.0 {
+        return;
+    }
     let slot = index * (1u + drop_light_frame.glints);
     var sum = vec3f(0.0);
     if drop_light_frame.first_light > 0u {

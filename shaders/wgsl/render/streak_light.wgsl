@@ -11,7 +11,7 @@
 
 @group(0) @binding(2) var<storage, read> streak_light_drops: array<DropsDrop>;
 @group(0) @binding(3) var<storage, read> streak_light_paths: array<StreakPath>;
-// Index of the path, and first of 64 columns of all rows of its profile.
+// First the number of jobs; then for each the index of the path, and the first of 64 columns of all rows of its profile.
 @group(0) @binding(4) var<storage, read> streak_light_jobs: array<vec2u>;
 @group(0) @binding(5) var<storage, read> streak_light_rays: array<StreakRay>;
 // For each path the mean of what is not resolved by lamp, then two rows for each lamp: its irradiance and the chord from the
@@ -300,11 +300,11 @@ fn main_streak_light(
     @builtin(local_invocation_index) index: u32,
 ) {
     let job = group.y * groups.x + group.x;
-    if job >= arrayLength(&streak_light_jobs) {
+    if job >= streak_light_jobs[0].x {
         return;
     }
-    let path = streak_light_jobs[job].x;
-    let unit = streak_light_jobs[job].y + index;
+    let path = streak_light_jobs[1u + job].x;
+    let unit = streak_light_jobs[1u + job].y + index;
     let columns = streak_light_paths[path].columns;
     if unit < columns * streak_light_paths[path].profile_rows {
         streak_light_column(path, unit / columns, unit % columns);

@@ -7,7 +7,7 @@
 
 @group(0) @binding(0) var<storage, read> streak_rays_drops: array<DropsDrop>;
 @group(0) @binding(1) var<storage, read> streak_rays_paths: array<StreakPath>;
-// Indices of the path and of the row.
+// First the number of jobs; then for each the indices of the path and of the row.
 @group(0) @binding(2) var<storage, read> streak_rays_jobs: array<vec2u>;
 @group(0) @binding(3) var<storage, read_write> streak_rays_table: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> streak_rays_made: array<StreakRay>;
@@ -93,8 +93,11 @@ fn main_streak_rays(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) index: u32,
 ) {
-    // Groups beyond the last job do it once more.
-    let job = streak_rays_jobs[min(group.y * groups.x + group.x, arrayLength(&streak_rays_jobs) - 1u)];
+    let number = group.y * groups.x + group.x;
+    if number >= streak_rays_jobs[0].x {
+        return;
+    }
+    let job = streak_rays_jobs[1u + number];
     let path = streak_rays_paths[job.x];
     let drop = streak_rays_drops[path.drop];
     let row = job.y;

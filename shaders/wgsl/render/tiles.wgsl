@@ -100,7 +100,7 @@ fn tiles_bound(drop: DropsDrop, edge: u32, size: vec2u) -> u32 {
 fn tiles_edge() -> u32 {
     let beyond = atomicLoad(&tiles_counts[TILES_EDGES]);
     for (var k = 0u; k < TILES_EDGES; k += 1u) {
-        if (beyond >> k & 1u) == 0u && atomicLoad(&tiles_counts[k]) <= tiles_frame.room {
+        if ((beyond >> k) & 1u) == 0u && atomicLoad(&tiles_counts[k]) <= tiles_frame.room {
             return DROPS_TILE << k;
         }
     }

@@ -59,21 +59,36 @@ impl DropLightPipeline {
         lights: &DropLights<'_>,
         drops: &[[f32; 4]],
     ) -> Result<DropLightPass<'a>, GpuError> {
-        let gpu = &self.gpu;
-        let count = lights.count(drops);
-        let rows = count * lights.stride();
-        let light = buffers.buffer("light on drops", rows.max(1) as u64 * 16, wgpu::BufferUsages::STORAGE)?;
         // A buffer has at least one element.
         let list: &[_] = if drops.is_empty() { &[[0.0; 4]] } else { drops };
         let list = buffers.storage("positions of drops", list)?;
+        self.prepare_rows(buffers, lighting, table, lights, &list, lights.count(drops) as u32)
+    }
+
+    /// Makes ready to light `count` drops whose rows are on the device; rows without a radius are passed over.
+    ///
+    /// # Errors
+    /// As [`DropLightPipeline::prepare`].
+    pub fn prepare_rows<'a>(
+        &'a self,
+        buffers: &impl BufferSource,
+        lighting: &LightingOnGpu,
+        table: &DropLightOnGpu,
+        lights: &DropLights<'_>,
+        drops: &wgpu::Buffer,
+        count: u32,
+    ) -> Result<DropLightPass<'a>, GpuError> {
+        let gpu = &self.gpu;
+        let rows = count as usize * lights.stride();
+        let light = buffers.buffer("light on drops", rows.max(1) as u64 * 16, wgpu::BufferUsages::STORAGE)?;
         let mut parts = Vec::new();
-        for part in lights.frames(count as u32) {
+        for part in lights.frames(count) {
             let part = buffers.uniform("lamps", &part)?;
-            let own = [&list, &table.table, &light, &part];
+            let own = [drops, &table.table, &light, &part];
             let bound: Vec<_> = lighting.buffers.iter().chain(own).collect();
             parts.push(self.kernel.bind(gpu, &bound)?);
         }
-        let groups = (count as u32).div_ceil(64).max(1);
+        let groups = count.div_ceil(64).max(1);
         Ok(DropLightPass { pipeline: self, parts, groups, rows, light })
     }
 }

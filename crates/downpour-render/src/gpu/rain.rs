@@ -12,10 +12,13 @@ use downpour_shaders::render::rain::{
 use super::drop_light::{DropLightOnGpu, DropLightPass, DropLightPipeline};
 use super::medium::{MediumPass, MediumPipeline};
 use super::plate::PlateOnGpu;
+use super::project::{FallingOnGpu, JobGroups, ListOnGpu, ProjectPass, ProjectPipeline};
 use super::tiles::{TilesPass, TilesPipeline};
 use crate::rain::light::{DropLightTable, DropLights};
+use crate::rain::profiles::{MAX_ENTRIES, MAX_RAYS, ProfilesFrame};
+use crate::rain::project::ProjectFrame;
 use crate::rain::tiles::TilesFrame;
-use crate::rain::{DropMasks, DropsDrop, Rain, StreakPath, StreakRay};
+use crate::rain::{DropMasks, DropsDrop, Rain, RainOptions, StreakPath, StreakRay};
 
 /// The pipelines of drops: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
@@ -25,6 +28,7 @@ pub struct RainPipeline {
     means: ComputeKernel,
     rays: ComputeKernel,
     light: ComputeKernel,
+    project: ProjectPipeline,
     tiles: TilesPipeline,
     lamps: DropLightPipeline,
     medium: MediumPipeline,
@@ -37,6 +41,7 @@ pub struct RainOnGpu {
     /// Masks that were uploaded.
     of: (Arc<Vec<u32>>, DropLightTable),
     masks: wgpu::Buffer,
+    tables: wgpu::Buffer,
     light: DropLightOnGpu,
 }
 
@@ -46,22 +51,19 @@ pub struct RainPass<'a> {
     pipeline: &'a RainPipeline,
     size: [u32; 2],
     levels: Vec<(wgpu::BindGroup, u32)>,
-    means: Option<(wgpu::BindGroup, u32)>,
-    profiles: Option<Profiles>,
+    project: Option<ProjectPass<'a>>,
+    means: (wgpu::BindGroup, u32),
+    /// Their rays, and their light.
+    profiles: [wgpu::BindGroup; 2],
+    groups: JobGroups,
     tiles: TilesPass<'a>,
     lamps: [DropLightPass<'a>; 2],
     medium: MediumPass<'a>,
     drops: wgpu::BindGroup,
+    list: wgpu::Buffer,
     texels: wgpu::Buffer,
     table: wgpu::Buffer,
     layer: wgpu::Buffer,
-}
-
-/// The profiles of streaks, ready to be traced and lit.
-#[derive(Debug)]
-struct Profiles {
-    rays: (wgpu::BindGroup, [u32; 3]),
-    light: (wgpu::BindGroup, [u32; 3]),
 }
 
 /// Least sizes, bytes, for a [`BufferPool`](downpour_gpu::BufferPool): a drop before the lens has a thousand times the rays of
@@ -70,15 +72,6 @@ pub const RAIN_BUFFERS: [(&str, u64); 2] = [("rays of streaks", 32 << 20), ("str
 
 /// Jobs along a row of workgroups: fewer than every device allows.
 const ALONG: u32 = 32_768;
-
-/// Jobs for all workgroups of [`groups`]: the last one is done again by those that are left over. Buffers may be longer than
-/// their contents, so that no workgroup may look beyond these.
-fn padded(jobs: &[[u32; 2]]) -> Vec<[u32; 2]> {
-    let [x, y, _] = groups(jobs.len() as u32);
-    let mut all = jobs.to_vec();
-    all.resize((x * y) as usize, jobs.last().copied().unwrap_or_default());
-    all
-}
 
 /// Workgroups for so many jobs: no dimension has more than every device allows.
 pub(super) fn groups(jobs: u32) -> [u32; 3] {
@@ -98,6 +91,7 @@ impl RainPipeline {
             means: kernel(&STREAK_TABLE_KERNEL)?,
             rays: kernel(&STREAK_RAYS_KERNEL)?,
             light: kernel(&STREAK_LIGHT_KERNEL)?,
+            project: ProjectPipeline::new(gpu)?,
             tiles: TilesPipeline::new(gpu)?,
             lamps: DropLightPipeline::new(gpu)?,
             medium: MediumPipeline::new(gpu)?,
@@ -113,6 +107,7 @@ impl RainPipeline {
         Ok(RainOnGpu {
             of: (Arc::clone(&masks.words), masks.light.clone()),
             masks: self.gpu.storage_buffer("masks of drops", &masks.words)?,
+            tables: self.gpu.storage_buffer("tables of masks", masks.tables())?,
             light: self.lamps.upload(&masks.light)?,
         })
     }
@@ -135,8 +130,8 @@ impl RainPipeline {
         buffers.buffer("environment map", bytes, wgpu::BufferUsages::STORAGE)
     }
 
-    /// Makes ready to draw drops over a plate, with buffers from `buffers`. `lights` are the lamps of `rain` on the drops, and those on the profiles of
-    /// streaks.
+    /// Makes ready to draw drops over a plate, with buffers from `buffers`. `lights` are the lamps of `rain` on the drops, and those
+    /// on the profiles of streaks.
     ///
     /// # Errors
     /// As [`RainPipeline::upload`].
@@ -147,6 +142,59 @@ impl RainPipeline {
         masks: &RainOnGpu,
         rain: &Rain,
         lights: &[DropLights<'_>; 2],
+    ) -> Result<RainPass<'a>, GpuError> {
+        let drops = upload_list(buffers, rain)?;
+        let of_lamps = [
+            self.lamps.prepare_rows(
+                buffers,
+                plate.lighting,
+                &masks.light,
+                &lights[0],
+                &drops.rows,
+                lights[0].count(&rain.rows) as u32,
+            )?,
+            self.lamps.prepare(buffers, plate.lighting, &masks.light, &lights[1], &rain.streak_rows())?,
+        ];
+        self.prepare_list(buffers, plate, masks, rain, lights, (None, drops, of_lamps))
+    }
+
+    /// Makes ready to put drops on a picture that are on the device, and to draw them over a plate. `rain` is one without drops, of
+    /// these options.
+    ///
+    /// # Errors
+    /// As [`RainPipeline::upload`].
+    pub fn prepare_falling<'a>(
+        &'a self,
+        buffers: &impl BufferSource,
+        plate: &PlateOnGpu<'_>,
+        masks: (&RainOnGpu, &DropMasks),
+        (rain, options): (&Rain, &RainOptions),
+        lights: &[DropLights<'_>; 2],
+        falling: FallingOnGpu<'_>,
+    ) -> Result<RainPass<'a>, GpuError> {
+        let (masks, of_masks) = masks;
+        let project = ProjectFrame::new(&rain.frame.camera, of_masks, options, falling.count);
+        let profiles = ProfilesFrame::new(&options.exposure, project.room, project.medium)
+            .with_room(MAX_RAYS / 2, MAX_ENTRIES / 2);
+        let frames = (&project, &profiles);
+        let (pass, drops, streaks) =
+            self.project.prepare(buffers, falling, &masks.tables, frames, &rain.profiles, options)?;
+        let lamps = |lights, rows, count| {
+            self.lamps.prepare_rows(buffers, plate.lighting, &masks.light, lights, rows, count)
+        };
+        let of_lamps =
+            [lamps(&lights[0], &drops.rows, drops.count)?, lamps(&lights[1], &streaks.rows, streaks.count)?];
+        self.prepare_list(buffers, plate, masks, rain, lights, (Some(pass), drops, of_lamps))
+    }
+
+    fn prepare_list<'a>(
+        &'a self,
+        buffers: &impl BufferSource,
+        plate: &PlateOnGpu<'_>,
+        masks: &RainOnGpu,
+        rain: &Rain,
+        lights: &[DropLights<'_>; 2],
+        (project, drops, lamps): (Option<ProjectPass<'a>>, ListOnGpu, [DropLightPass<'a>; 2]),
     ) -> Result<RainPass<'a>, GpuError> {
         let gpu = &self.gpu;
         let storage = wgpu::BufferUsages::STORAGE;
@@ -160,43 +208,21 @@ impl RainPipeline {
         let pixels = u64::from(picture[0]) * u64::from(picture[1]);
         let layer = buffers.buffer("rain", pixels * 16, storage)?;
         let frame = buffers.uniform("drops frame", &rain.frame)?;
-        // A buffer has at least one element.
-        let list: &[_] = if rain.list.is_empty() { &[DropsDrop::default()] } else { &rain.list };
-        let list = buffers.storage("drops", list)?;
-        let tiles = self.tiles.prepare(buffers, &list, &TilesFrame::new(picture, rain.list.len() as u32))?;
-        let made = &rain.profiles;
-        let table = buffers.buffer("streak radiance", u64::from(made.entries.max(1)) * 16, storage)?;
-        let lamps = [
-            self.lamps.prepare(buffers, plate.lighting, &masks.light, &lights[0], &rain.rows)?,
-            self.lamps.prepare(buffers, plate.lighting, &masks.light, &lights[1], &rain.streak_rows())?,
-        ];
-        let mut means = None;
-        if !made.classes.is_empty() {
-            let classes = buffers.storage("classes of drops", &made.classes)?;
-            let bindings = self.means.bind(gpu, &[&frame, &texels, &classes, &table])?;
-            means = Some((bindings, made.classes.len() as u32));
-        }
-        let mut profiles = None;
-        if !made.paths.is_empty() {
-            let paths = buffers.storage::<StreakPath>("paths of streaks", &made.paths)?;
-            let bytes = u64::from(made.rays) * size_of::<StreakRay>() as u64;
-            let rays = buffers.buffer("rays of streaks", bytes, storage)?;
-            let jobs = buffers.storage("rows of rays", &padded(&made.ray_jobs))?;
-            let traced = self.rays.bind(gpu, &[&list, &paths, &jobs, &table, &rays])?;
-            let jobs = buffers.storage("columns of profiles", &padded(&made.light_jobs))?;
-            let all = [&frame, &texels, &list, &paths, &jobs, &rays, lamps[1].light(), &table];
-            let lit = self.light.bind(gpu, &all)?;
-            profiles = Some(Profiles {
-                rays: (traced, groups(made.ray_jobs.len() as u32)),
-                light: (lit, groups(made.light_jobs.len() as u32)),
-            });
-        }
+        let tiles = self.tiles.prepare(buffers, &drops.list, &TilesFrame::new(picture, drops.count))?;
+        let [rays, entries] = drops.room.map(|count| u64::from(count.max(1)));
+        let table = buffers.buffer("streak radiance", entries * 16, storage)?;
+        let rays = buffers.buffer("rays of streaks", rays * size_of::<StreakRay>() as u64, storage)?;
+        let means = (self.means.bind(gpu, &[&frame, &texels, &drops.classes.0, &table])?, drops.classes.1);
+        let [ray_jobs, light_jobs] = &drops.jobs;
+        let traced = self.rays.bind(gpu, &[&drops.list, &drops.paths, ray_jobs, &table, &rays])?;
+        let all = [&frame, &texels, &drops.list, &drops.paths, light_jobs, &rays, lamps[1].light(), &table];
+        let lit = self.light.bind(gpu, &all)?;
         let medium = self.medium.prepare(buffers, plate, &rain.medium_light(&lights[0]), &layer)?;
         let bindings = [
             &frame,
             &texels,
             &masks.masks,
-            &list,
+            &drops.list,
             tiles.lists(),
             clean,
             &layer,
@@ -204,22 +230,50 @@ impl RainPipeline {
             lamps[0].light(),
             medium.frame(),
         ];
-        let drops = self.drops.bind(gpu, &bindings)?;
+        let shown = self.drops.bind(gpu, &bindings)?;
         Ok(RainPass {
             pipeline: self,
             size: picture,
             levels,
+            project,
             means,
-            profiles,
+            profiles: [traced, lit],
+            groups: drops.groups,
             tiles,
             lamps,
             medium,
-            drops,
+            drops: shown,
+            list: drops.list,
             texels,
             table,
             layer,
         })
     }
+}
+
+/// Brings the drops of a picture to the device.
+fn upload_list(buffers: &impl BufferSource, rain: &Rain) -> Result<ListOnGpu, GpuError> {
+    let made = &rain.profiles;
+    // Each list of jobs begins with their number.
+    let headed = |jobs: &[[u32; 2]]| [&[[jobs.len() as u32, 0]], jobs].concat();
+    Ok(ListOnGpu {
+        count: rain.list.len() as u32,
+        list: buffers.storage("drops", not_empty(&rain.list, &[DropsDrop::default()]))?,
+        rows: buffers.storage("positions of drops", not_empty(&rain.rows, &[[0.0; 4]]))?,
+        classes: (buffers.storage("classes of drops", &made.classes)?, made.classes.len() as u32),
+        paths: buffers.storage("paths of streaks", not_empty(&made.paths, &[StreakPath::default()]))?,
+        jobs: [
+            buffers.storage("rows of rays", &headed(&made.ray_jobs))?,
+            buffers.storage("columns of profiles", &headed(&made.light_jobs))?,
+        ],
+        groups: JobGroups::Given([made.ray_jobs.len() as u32, made.light_jobs.len() as u32]),
+        room: [made.rays, made.entries],
+    })
+}
+
+/// A buffer has at least one element.
+fn not_empty<'a, T>(all: &'a [T], one: &'a [T]) -> &'a [T] {
+    if all.is_empty() { one } else { all }
 }
 
 impl RainPass<'_> {
@@ -230,6 +284,14 @@ impl RainPass<'_> {
             .iter()
             .map(|(bindings, n)| self.pipeline.pyramid.dispatch(bindings, [*n, *n, 1]))
             .collect()
+    }
+
+    /// Reads the drops; those that are not on the picture have no reach.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn list(&self) -> Result<Vec<DropsDrop>, GpuError> {
+        self.pipeline.gpu.read(&self.list)
     }
 
     /// Reads the lists of drops for the tiles of the picture, as the twin has them ([`TileLists::words`](crate::rain::tiles::TileLists::words)).
@@ -246,19 +308,22 @@ impl RainPass<'_> {
         self.lamps.iter().flat_map(DropLightPass::dispatches).collect()
     }
 
-    /// The streak radiance table, after the environment map and the lamps; nothing where no drop moves.
+    /// The drops that are put on the picture, before all that draws them; nothing where that was done on the CPU.
+    #[must_use]
+    pub fn project(&self) -> Vec<Dispatch<'_>> {
+        self.project.as_ref().map(ProjectPass::dispatches).unwrap_or_default()
+    }
+
+    /// The streak radiance table, after the environment map and the lamps.
     #[must_use]
     pub fn streaks(&self) -> Vec<Dispatch<'_>> {
+        let (means, classes) = &self.means;
         let pipeline = self.pipeline;
-        let mut all = Vec::new();
-        if let Some((bindings, classes)) = &self.means {
-            all.push(pipeline.means.dispatch(bindings, [STREAK_RAYS * STREAK_RAYS, *classes, 1]));
-        }
-        if let Some(Profiles { rays, light }) = &self.profiles {
-            all.push(pipeline.rays.dispatch(&rays.0, rays.1));
-            all.push(pipeline.light.dispatch(&light.0, light.1));
-        }
-        all
+        let means = pipeline.means.dispatch(means, [STREAK_RAYS * STREAK_RAYS, *classes, 1]);
+        let [rays, light] = &self.profiles;
+        let rays = self.groups.dispatch(0, &pipeline.rays, rays);
+        let light = self.groups.dispatch(1, &pipeline.light, light);
+        std::iter::once(means).chain(rays).chain(light).collect()
     }
 
     /// The drops that are not drawn one by one, in this order; before [`RainPass::drops`].

@@ -176,21 +176,6 @@ pub struct DropLights<'a> {
     glints: u32,
 }
 
-/// Rows of drops for an atlas: for each the axis, a unit vector against its velocity as the eye sees it (up, where it has
-/// none), and a number that stays with it.
-#[must_use]
-pub(crate) fn drop_light_axes<'a>(drops: impl IntoIterator<Item = (&'a FallingDrop, Vec3)>) -> Vec<[f32; 4]> {
-    let row = |(drop, velocity): (&FallingDrop, Vec3)| {
-        let id = (drop.id as u32 ^ (drop.id >> 32) as u32) & DROP_IDS;
-        let axis = (-velocity).try_normalize().unwrap_or(Vec3::Y);
-        axis.extend(id as f32).to_array()
-    };
-    drops.into_iter().map(row).collect()
-}
-
-/// Numbers of drops are below 2^24: single precision has them exactly.
-const DROP_IDS: u32 = 0x00ff_ffff;
-
 /// Rows of drops for [`DropLights::light`]: position relative to the scene's origin, and radius, meters.
 #[must_use]
 pub fn drop_light_rows<'a>(drops: impl IntoIterator<Item = &'a FallingDrop>) -> Vec<[f32; 4]> {
@@ -343,6 +328,10 @@ impl<'a> DropLights<'a> {
     fn drop_light_of(&self, drop: &[f32; 4], about: [f32; 4], slot: &mut [[f32; 4]]) {
         let Some((mean, glints)) = slot.split_first_mut() else { return };
         let (position, radius) = (Vec4::from(*drop).truncate(), drop[3]);
+        // An empty place in the list.
+        if radius <= 0.0 {
+            return;
+        }
         let mut sum = Vec3::ZERO;
         let (towards, right, up) = self.facing(position);
         let form = self.form;

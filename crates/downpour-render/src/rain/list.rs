@@ -1,21 +1,31 @@
 //! The drops of a picture, with all that the shaders read of it.
 
+use downpour_shaders::render::rain::PROJECT_NO_CLASS;
 use downpour_sim::field::FallingDrop;
-use glam::{DVec3, Vec2};
+use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::drops_frame::DropsFrame;
 use super::environment::EnvironmentFrame;
-use super::light::{DropLightForm, DropLightOptions, DropLights, drop_light_axes, drop_light_rows};
+use super::light::{DropLightForm, DropLightOptions, DropLights};
 use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::profiles::StreakProfiles;
-use super::project::{Projected, project};
+use super::project::{ProjectDrop, Projected, Projector, project_axis, project_class, project_row};
 use super::streak::DropsDrop;
 use super::tiles::tiles_within;
-use super::{DropMasks, RainOptions, shapes};
+use super::{DropMasks, RainOptions};
 use crate::RenderError;
 use crate::camera::Camera;
 use crate::plate::Lighting;
+
+/// A drop that is shown.
+struct Shown {
+    /// Its place among the drops that were given.
+    given: u32,
+    drop: DropsDrop,
+    velocity: Vec3,
+    row: [f32; 4],
+}
 
 /// The drops of one picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,32 +60,38 @@ impl Rain {
         options: &RainOptions,
     ) -> Self {
         let environment = EnvironmentFrame::new(camera, options);
-        let [width, height] = camera.size();
-        let mut placed: Vec<(u32, Projected)> = drops
+        let size = camera.size();
+        let projector = Projector::new(camera, masks, options);
+        let shown: Vec<Shown> = drops
             .par_iter()
             .enumerate()
-            .filter_map(|(k, drop)| Some((k as u32, project(camera, eye, drop, masks, &options.exposure)?)))
-            .filter(|(_, shown)| pixels(&shown.drop, [width, height]).is_some())
+            .filter_map(|(k, drop)| {
+                let placed = ProjectDrop::new(drop, eye);
+                let Projected { drop, velocity } = projector.project_drop(&placed)?;
+                pixels(&drop, size)?;
+                Some(Shown { given: k as u32, drop, velocity, row: project_row(camera.eye, &placed) })
+            })
             .collect();
-        let medium = options.medium.row().map(shapes::of_row);
-        let profiles = StreakProfiles::new(&mut placed, drops, masks, &options.exposure, medium);
-        let given = || placed.iter().filter_map(|p| Some((drops.get(p.0 as usize)?, p.1.velocity)));
-        let mut rows = drop_light_rows(given().map(|(drop, _)| drop));
+        let mut list: Vec<DropsDrop> = shown.iter().map(|shown| shown.drop).collect();
+        let mut rows: Vec<[f32; 4]> = shown.iter().map(|shown| shown.row).collect();
+        let radii: Vec<f32> = rows.iter().map(|row| row[3]).collect();
+        let medium = options.medium.row().map_or(PROJECT_NO_CLASS, project_class);
+        let profiles = StreakProfiles::new(&mut list, &radii, masks, &options.exposure, medium);
         if options.light.form == DropLightForm::Atlas {
-            rows.extend(drop_light_axes(given()));
+            rows.extend(shown.iter().map(|shown| project_axis(shown.velocity, shown.drop.id)));
         }
         Self {
             frame: DropsFrame::new(camera, &environment, masks, options),
             medium: MediumFrame {
                 lit: lamps_of(options.light.form),
-                ..MediumFrame::new(&options.medium, eye.as_vec3(), [width, height])
+                ..MediumFrame::new(&options.medium, eye.as_vec3(), size)
             },
             environment,
             profiles,
-            list: placed.iter().map(|p| p.1.drop).collect(),
+            list,
             rows,
             light: options.light,
-            given: placed.iter().map(|p| p.0).collect(),
+            given: shown.iter().map(|shown| shown.given).collect(),
         }
     }
 

@@ -14,20 +14,22 @@ use downpour_mask::{
     ClosedMesh, Mask, MaskError, MaskOptions, MaskTexel, View, trace_drop, trace_model_views,
 };
 use downpour_math::packing::{packing_octahedral_encode, packing_pack_snorm, packing_pack_unorm};
-use downpour_shaders::render::rain::{DROPS_ELEVATIONS, DROPS_TEXEL_WORDS};
+use downpour_shaders::render::rain::{
+    DROPS_ELEVATIONS, DROPS_TEXEL_WORDS, PROFILES_SHAPE_WORDS, PROFILES_SHAPES, PROFILES_SHAPES_BEGIN,
+    PROJECT_DIAMETERS,
+};
 
 use super::drops_atlas;
 use super::light::DropLightTable;
 use super::streak_path::StreakPath;
 
 /// Number of diameters, from a sphere to the largest drop with a known shape.
-pub const DIAMETERS: u32 = 18;
+pub const DIAMETERS: u32 = PROJECT_DIAMETERS;
 /// Step between diameters, meters.
 pub const DIAMETER_STEP: f64 = 0.5e-3;
 
-/// Meters between the shapes for the rays of streaks, and their number.
+/// Meters between the shapes for the rays of streaks.
 const SHAPE_STEP: f64 = 0.1e-3;
-const SHAPES: u32 = 90;
 
 /// Texels along an edge of a mask.
 const SIZE: u32 = 96;
@@ -50,14 +52,18 @@ pub struct DropMasks {
     pub light: DropLightTable,
     /// True if drops of the smallest diameter look the same from everywhere.
     small_are_round: bool,
-    /// Half the width of the masks of a diameter, in equivalent radii.
+    /// Half the width of the masks of each diameter; the area of the outline of each mask; the oval of each outline (half its width,
+    /// half its height, and how far its middle is up); all in equivalent radii. Then shapes of drops for the rays of streaks,
+    /// [`SHAPE_STEP`] apart: coefficients, volume, half width and height, and refractive index.
+    tables: Arc<Vec<f32>>,
+}
+
+/// Outlines of masks.
+#[derive(Debug, Default)]
+struct Outlines {
     half_extents: Vec<f32>,
-    /// Area of the outline of each mask, in squared equivalent radii.
     areas: Vec<f32>,
-    /// The oval of each outline: half its width, half its height, and how far its middle is up, in equivalent radii.
     ovals: Vec<[f32; 3]>,
-    /// Shapes of drops for the rays of streaks, [`SHAPE_STEP`] apart.
-    shapes: Vec<StreakPath>,
 }
 
 /// Masks of a drop: their rows, and what they say of its outline.
@@ -83,14 +89,15 @@ impl DropMasks {
     /// # Errors
     /// As [`DropMasks::trace`].
     pub fn trace_shapes(refractive_index: f64, table: ShapeTable) -> Result<Self, MaskError> {
-        let mut masks = Self::empty(refractive_index, table)?;
+        let mut masks = Self::empty(refractive_index)?;
         let views = views()?;
+        let mut outlines = Outlines::default();
         for k in 1..=DIAMETERS {
             let shape = DropShape::with_table(table, f64::from(k) * DIAMETER_STEP)?;
             let seen = views.iter().map(|&view| trace_drop(&shape, &options(view, refractive_index)));
-            masks.append(&seen.collect::<Result<Vec<Mask>, _>>()?);
+            masks.append(&mut outlines, &seen.collect::<Result<Vec<Mask>, _>>()?);
         }
-        Ok(masks)
+        Ok(masks.with_tables(&outlines, table, refractive_index))
     }
 
     /// Traces the masks of a model instead of the drops' shapes: scaled to their volume, its +Y up, its +Z toward the eye.
@@ -99,18 +106,18 @@ impl DropMasks {
     /// # Errors
     /// As [`DropMasks::trace`].
     pub fn trace_model(refractive_index: f64, model: &ClosedMesh) -> Result<Self, MaskError> {
-        let mut masks = Self::empty(refractive_index, ShapeTable::default())?;
+        let mut masks = Self::empty(refractive_index)?;
         masks.small_are_round = false;
         let seen = trace_model_views(model, &options(View::SIDE, refractive_index), &views()?)?;
+        let mut outlines = Outlines::default();
         for _ in 0..DIAMETERS {
-            masks.append(&seen);
+            masks.append(&mut outlines, &seen);
         }
-        Ok(masks)
+        Ok(masks.with_tables(&outlines, ShapeTable::default(), refractive_index))
     }
 
     /// No masks yet.
-    fn empty(refractive_index: f64, table: ShapeTable) -> Result<Self, MaskError> {
-        let shape = |k: u32| streak_shape(f64::from(k) * SHAPE_STEP, table, refractive_index);
+    fn empty(refractive_index: f64) -> Result<Self, MaskError> {
         Ok(Self {
             words: Arc::default(),
             size: SIZE,
@@ -124,21 +131,18 @@ impl DropMasks {
                 })
             })?,
             small_are_round: true,
-            half_extents: Vec::new(),
-            areas: Vec::new(),
-            ovals: Vec::new(),
-            shapes: (1..=SHAPES).map(shape).collect(),
+            tables: Arc::default(),
         })
     }
 
     /// Adds the masks of a diameter, one per elevation, all of one scale.
-    fn append(&mut self, seen: &[Mask]) {
-        self.half_extents.extend(seen.first().map(|mask| mask.half_extent as f32));
+    fn append(&mut self, outlines: &mut Outlines, seen: &[Mask]) {
+        outlines.half_extents.extend(seen.first().map(|mask| mask.half_extent as f32));
         for mask in seen {
             let width = mask.texel_width();
             let covered: f64 = mask.texels.iter().map(|texel| f64::from(texel.coverage)).sum();
-            self.areas.push((covered * width * width) as f32);
-            self.ovals.push(oval(mask));
+            outlines.areas.push((covered * width * width) as f32);
+            outlines.ovals.push(oval(mask));
             let words = |texel| pack(texel, mask.refractive_index as f32);
             Arc::make_mut(&mut self.words).extend(mask.texels.iter().flat_map(words));
         }
@@ -157,55 +161,90 @@ impl DropMasks {
         self
     }
 
+    /// The masks with the tables of their outlines and of the shapes.
+    fn with_tables(self, outlines: &Outlines, table: ShapeTable, refractive_index: f64) -> Self {
+        let mut tables = outlines.half_extents.clone();
+        tables.extend(&outlines.areas);
+        tables.extend(outlines.ovals.iter().flatten());
+        for k in 1..=PROFILES_SHAPES {
+            let path = streak_shape(f64::from(k) * SHAPE_STEP, table, refractive_index);
+            let DropShapeCoefficients { c0, c1, c2 } = path.shape;
+            tables.extend([c0, c1, c2, path.volume].concat());
+            tables.extend([path.volume_last, path.wide, path.tall, path.index]);
+        }
+        Self { tables: Arc::new(tables), ..self }
+    }
+
+    /// Half extents, areas and ovals of the masks, then the shapes, as the shaders read them.
+    #[must_use]
+    pub fn tables(&self) -> &[f32] {
+        &self.tables
+    }
+
+    /// True if drops of the smallest diameter look the same from everywhere.
+    #[must_use]
+    pub fn small_are_round(&self) -> bool {
+        self.small_are_round
+    }
+
+    /// A value of the masks between two diameters and two elevations; `stride` numbers for each.
+    fn project_between(&self, first: u32, stride: u32, index: [f32; 2]) -> f32 {
+        let [row, column] = index;
+        let (low, part) = ([row as u32, column as u32], [row - row.floor(), column - column.floor()]);
+        let high = [(low[0] + 1).min(DIAMETERS - 1), (low[1] + 1).min(DROPS_ELEVATIONS - 1)];
+        let at = |row: u32, column: u32| {
+            self.tables[(first + (row * DROPS_ELEVATIONS + column) * stride) as usize]
+        };
+        let of_row = |row: u32| at(row, low[1]) * (1.0 - part[1]) + at(row, high[1]) * part[1];
+        of_row(low[0]) * (1.0 - part[0]) + of_row(high[0]) * part[0]
+    }
+
     /// Position among the masks of a drop of a diameter in meters, seen from `elevation` radians above it.
-    pub(crate) fn lookup(&self, diameter: f32, elevation: f32) -> MaskLookup {
-        let last = self.half_extents.len().saturating_sub(1) as f32;
+    pub(crate) fn project_lookup(&self, diameter: f32, elevation: f32) -> MaskLookup {
+        let last = (DIAMETERS - 1) as f32;
         let row = (diameter / DIAMETER_STEP as f32 - 1.0).clamp(0.0, last);
         let half = (DROPS_ELEVATIONS - 1) as f32 * 0.5;
         let turned = (elevation / std::f32::consts::FRAC_PI_2 + 1.0) * half;
         // A sphere is the same from everywhere: one mask does.
         let column = if row == 0.0 && self.small_are_round { half } else { turned.clamp(0.0, 2.0 * half) };
-        let between = |values: &dyn Fn(usize) -> f32, at: f32| {
-            let low = at.floor();
-            let part = at - low;
-            let near = values(low as usize);
-            if part == 0.0 { near } else { near * (1.0 - part) + values(low as usize + 1) * part }
-        };
-        let first = |k: usize| k * DROPS_ELEVATIONS as usize;
-        let areas = |k: usize| between(&|j| self.areas[first(k) + j], column);
-        let oval = |part: usize| between(&|k| between(&|j| self.ovals[first(k) + j][part], column), row);
+        let index = [row, column];
+        let (low, part) = (row as u32, row - row.floor());
+        let extent = |k: u32| self.tables[k.min(DIAMETERS - 1) as usize];
+        let areas = DIAMETERS;
+        let ovals = areas + DIAMETERS * DROPS_ELEVATIONS;
         MaskLookup {
-            index: [row, column],
-            half_extent: between(&|k| self.half_extents[k], row),
-            area: between(&areas, row),
-            oval: [oval(0), oval(1), oval(2)],
+            index,
+            half_extent: extent(low) * (1.0 - part) + extent(low + 1) * part,
+            area: self.project_between(areas, 1, index),
+            oval: [0, 1, 2].map(|part| self.project_between(ovals + part, 3, index)),
         }
     }
 
     /// Area that a drop covers, seen from `elevation` radians above it, over that of the disk of its diameter.
     pub(super) fn outline(&self, diameter: f32, elevation: f32) -> f64 {
-        f64::from(self.lookup(diameter, elevation).area) / std::f64::consts::PI
+        f64::from(self.project_lookup(diameter, elevation).area) / std::f64::consts::PI
     }
 
     /// The shape of a drop of a diameter in meters, for the rays of its streak.
-    pub(super) fn streak_shape(&self, diameter: f32) -> StreakPath {
-        let last = self.shapes.len() - 1;
-        let at = (diameter / SHAPE_STEP as f32 - 1.0).clamp(0.0, last as f32);
-        let low = (at as usize).min(last.saturating_sub(1));
-        let (part, near, far) = (at - low as f32, &self.shapes[low], &self.shapes[(low + 1).min(last)]);
-        let between = |a: f32, b: f32| a + (b - a) * part;
-        let four = |a: [f32; 4], b: [f32; 4]| std::array::from_fn(|k| between(a[k], b[k]));
+    #[must_use]
+    pub fn profiles_shape(&self, diameter: f32) -> StreakPath {
+        let last = (PROFILES_SHAPES - 1) as f32;
+        let at = (diameter / SHAPE_STEP as f32 - 1.0).clamp(0.0, last);
+        let low = (at as u32).min(PROFILES_SHAPES - 2);
+        let part = at - low as f32;
+        let near = (PROFILES_SHAPES_BEGIN + low * PROFILES_SHAPE_WORDS) as usize;
+        let words = PROFILES_SHAPE_WORDS as usize;
+        let (a, b) = (&self.tables[near..near + words], &self.tables[near + words..near + 2 * words]);
+        let at = |k: usize| a[k] + (b[k] - a[k]) * part;
+        let four = |first: usize| std::array::from_fn(|k| at(first + k));
         StreakPath {
-            shape: DropShapeCoefficients {
-                c0: four(near.shape.c0, far.shape.c0),
-                c1: four(near.shape.c1, far.shape.c1),
-                c2: four(near.shape.c2, far.shape.c2),
-            },
-            volume: four(near.volume, far.volume),
-            volume_last: between(near.volume_last, far.volume_last),
-            wide: between(near.wide, far.wide),
-            tall: between(near.tall, far.tall),
-            ..*near
+            shape: DropShapeCoefficients { c0: four(0), c1: four(4), c2: four(8) },
+            volume: four(12),
+            volume_last: at(16),
+            wide: at(17),
+            tall: at(18),
+            index: at(19),
+            ..StreakPath::default()
         }
     }
 }

@@ -140,7 +140,7 @@ impl RainMedium {
             let reach = f64::from(MEDIUM_SKY_REACH);
             let unresolved = level * (reach - drawn(reach));
             weight += unresolved;
-            row += unresolved * f64::from(masks.lookup(diameter as f32, 0.0).index[0]);
+            row += unresolved * f64::from(masks.project_lookup(diameter as f32, 0.0).index[0]);
         }
         let from = -options.velocity;
         Ok(Self {

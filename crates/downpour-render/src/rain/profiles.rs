@@ -1,58 +1,95 @@
-//! Profiles of a picture's streaks in the streak radiance table: choice of the streaks, resolution and position in the table.
-//!
-//! Every streak that is sampled in its pixels has one. Rays are the finer the wider the streak is on the picture: the light of a
-//! streak of a pixel or two has to be right as a whole, that of a wide one along and across, too.
+//! Profiles of a picture's streaks in the streak radiance table: which streaks have one, how fine it is, and where it is. Twin of
+//! `shaders/wgsl/render/profiles.wgsl`, where the method is described.
 
 use downpour_drop::oscillation::drop_oscillation_azimuth;
 use downpour_math::ops;
 use downpour_math::rng::seed_words;
-use downpour_shaders::render::rain::{DROPS_STILL, DROPS_TABLE, STREAK_SUMS, STREAK_TURN};
-use downpour_sim::field::FallingDrop;
+use downpour_shaders::render::rain::{
+    DROPS_LOOP, DROPS_STILL, DROPS_TABLE, PROFILES_ALONG, PROFILES_COLUMNS, PROFILES_FINE, PROFILES_KINDS,
+    PROFILES_LEAST, PROFILES_LEVELS, PROFILES_MOST, PROFILES_PER_TURN, PROFILES_ROWS_FOR_TWO,
+    PROFILES_TURNED, PROFILES_WIDTHS, PROJECT_CLASSES, STREAK_SUMS, STREAK_TURN,
+};
 
-use super::DropMasks;
 use super::exposure::Exposure;
-use super::project::Projected;
 use super::shapes;
 use super::streak::DropsDrop;
 use super::streak_light::UNITS;
 use super::streak_lookup::STREAK_MEAN_ENTRIES;
 use super::streak_path::StreakPath;
+use super::{DropMasks, StreakRay};
 
-/// The most rays, and the most entries of the table: 128 MiB each, what every device binds.
-const MAX_RAYS: u64 = 128 << 20 >> 5;
-const MAX_ENTRIES: u64 = 128 << 20 >> 4;
+/// Most rays, and most entries of the table: 128 MiB each, what every device binds.
+pub const MAX_RAYS: u32 = (128 << 20) / size_of::<StreakRay>() as u32;
+/// See [`MAX_RAYS`].
+pub const MAX_ENTRIES: u32 = 128 << 20 >> 4;
 
-/// Radians of the picture that a row of rays stands for: the directions in which a drop is seen differ by that.
-const TURNED: f32 = 0.1;
-
-/// Resolution of a profile.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Fineness {
-    /// Streaks up to this width, pixels.
-    width: f32,
-    columns: u32,
-    /// Rows for each turn of the mode (3,1), and the least and the most of them.
-    per_turn: f32,
-    least: u32,
-    most: u32,
-    fine: u32,
+/// Uniforms of the kernels. The same layout as `ProfilesFrame` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ProfilesFrame {
+    /// Number of drops.
+    pub count: u32,
+    /// Most rays.
+    pub max_rays: u32,
+    /// Most entries of the table.
+    pub max_entries: u32,
+    /// Entries of the table before the first profile.
+    pub first_entry: u32,
+    /// Seed of the phases.
+    pub seed: [u32; 2],
+    /// Amplitudes of the oscillation, over the radius.
+    pub amplitudes: [f32; 2],
+    /// Class of the drops that are not drawn one by one; `PROJECT_NO_CLASS`: there is none.
+    pub medium: u32,
+    /// 0.
+    pub unused_1: u32,
+    /// 0.
+    pub unused_2: u32,
+    /// 0.
+    pub unused_3: u32,
 }
 
-/// From thin streaks to wide ones.
-const FINENESS: [Fineness; 4] = [
-    Fineness { width: 3.0, columns: 12, per_turn: 8.0, least: 3, most: 24, fine: 1 },
-    Fineness { width: 6.0, columns: 16, per_turn: 12.0, least: 4, most: 48, fine: 2 },
-    Fineness { width: 14.0, columns: 24, per_turn: 20.0, least: 6, most: 96, fine: 2 },
-    Fineness { width: f32::INFINITY, columns: 24, per_turn: 24.0, least: 6, most: 128, fine: 4 },
-];
+impl ProfilesFrame {
+    /// The frame of a picture of `count` drops; `medium` is the class of those that are not drawn one by one.
+    #[must_use]
+    pub fn new(exposure: &Exposure, count: u32, medium: u32) -> Self {
+        Self {
+            count,
+            max_rays: MAX_RAYS,
+            max_entries: MAX_ENTRIES,
+            first_entry: PROJECT_CLASSES * STREAK_MEAN_ENTRIES,
+            seed: seed_words(exposure.seed),
+            amplitudes: exposure.oscillation.pair().map(|a| a as f32),
+            medium,
+            unused_1: 0,
+            unused_2: 0,
+            unused_3: 0,
+        }
+    }
 
-/// Profiles have half as many rows again as rays have.
-const ROWS_FOR_TWO: u32 = 3;
+    /// The frame with room for fewer rays and entries.
+    #[must_use]
+    pub fn with_room(self, max_rays: u32, max_entries: u32) -> Self {
+        Self { max_rays, max_entries: max_entries.max(self.first_entry), ..self }
+    }
+
+    /// Most streaks that have a profile: the coarsest has two rows of 12 x 12 rays.
+    #[must_use]
+    pub fn max_paths(&self) -> u32 {
+        (self.max_rays / (2 * 144)).max(1)
+    }
+
+    /// Most jobs of each kind: rows of rays, and parts of profiles, whose points have [`STREAK_SUMS`] entries each.
+    #[must_use]
+    pub fn max_jobs(&self) -> [u32; 2] {
+        [self.max_rays / 144, self.max_entries / STREAK_SUMS / UNITS + self.max_paths()]
+    }
+}
 
 /// Profiles of the streaks of a picture, and classes of drops with a mean radiance.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StreakProfiles {
-    /// Classes of drops that are not sampled; those without rows are unused.
+    /// Classes of drops that are not sampled; those without rows are not wanted.
     pub classes: Vec<StreakPath>,
     /// Streaks that have a profile.
     pub paths: Vec<StreakPath>,
@@ -66,106 +103,169 @@ pub struct StreakProfiles {
     pub entries: u32,
 }
 
+/// Rows and columns of the rays of a profile, its rows, and its columns for each of the rays'.
+pub type Sizes = [u32; 4];
+
+/// True if a drop is a streak that is sampled.
+#[must_use]
+pub fn profiles_is_sampled(drop: &DropsDrop) -> bool {
+    drop.reach > 0.0 && drop.kind == DROPS_TABLE && drop.grid > 0
+}
+
+/// True if a drop shows the mean of its class.
+#[must_use]
+pub fn profiles_is_mean(drop: &DropsDrop) -> bool {
+    drop.reach > 0.0 && drop.kind != DROPS_STILL && drop.grid == 0
+}
+
+/// True if a drop oscillates.
+#[must_use]
+pub fn profiles_oscillates(drop: &DropsDrop) -> bool {
+    drop.mode_phase[0] != 0.0 || drop.mode_phase[1] != 0.0
+}
+
+/// Rows of a profile of so many rows of rays: half as many again.
+#[must_use]
+pub fn profiles_rows_of(rows: u32) -> u32 {
+    if rows == 2 { 2 } else { (rows - 1) * PROFILES_ROWS_FOR_TWO / 2 + 1 }
+}
+
+/// Sizes of the profile of a streak, by its width and its turns: rays are the finer the wider the streak is on the picture. The
+/// light of a streak of a pixel or two has to be right as a whole, that of a wide one along and across, too.
+#[must_use]
+pub fn profiles_sized(drop: &DropsDrop) -> Sizes {
+    // The drop's area on the picture is that of its mask.
+    let width = 2.0 * (drop.area / std::f32::consts::PI).sqrt();
+    let mut kind = 0;
+    while kind + 1 < PROFILES_KINDS as usize && width > PROFILES_WIDTHS[kind] {
+        kind += 1;
+    }
+    let [x, y] = drop.along;
+    let turned = ops::atan2((x * x + y * y).sqrt(), 1.0) / PROFILES_TURNED;
+    let (turns, least) =
+        if profiles_oscillates(drop) { (drop.cycles[1], PROFILES_LEAST[kind]) } else { (0.0, 1.0) };
+    let wanted = (turns * PROFILES_PER_TURN[kind]).max(turned).ceil();
+    let rows = 1 + wanted.clamp(least, PROFILES_MOST[kind]) as u32;
+    [rows, PROFILES_COLUMNS[kind] as u32, profiles_rows_of(rows), PROFILES_FINE[kind] as u32]
+}
+
+/// Sizes of a profile that is made coarser so many times.
+#[must_use]
+pub fn profiles_coarser(sizes: Sizes, level: u32) -> Sizes {
+    if level == 0 {
+        return sizes;
+    }
+    let rows = (sizes[0] >> level).max(2);
+    [rows, sizes[1], profiles_rows_of(rows), 1]
+}
+
+/// Rays of a profile, and its entries in the table.
+#[must_use]
+pub fn profiles_room([rows, columns, profile_rows, fine]: Sizes) -> [u32; 2] {
+    let chords = rows * columns;
+    [chords * columns, 1 + chords + profile_rows * columns * fine * STREAK_SUMS]
+}
+
+/// The first level that has room, by the rays and entries of all profiles for each; `PROFILES_LEVELS`: none has.
+#[must_use]
+pub fn profiles_level(totals: &[[u64; 2]; PROFILES_LEVELS as usize], frame: &ProfilesFrame) -> u32 {
+    let room = [frame.max_rays, frame.max_entries - frame.first_entry].map(u64::from);
+    let fits = |total: &[u64; 2]| total[0] <= room[0] && total[1] <= room[1];
+    totals.iter().position(fits).map_or(PROFILES_LEVELS, |level| level as u32)
+}
+
+/// Workgroups for so many jobs.
+#[must_use]
+pub fn profiles_groups_of(jobs: u32) -> [u32; 2] {
+    [jobs.min(PROFILES_ALONG), jobs.div_ceil(PROFILES_ALONG)]
+}
+
 impl StreakProfiles {
-    /// Gives each streak among `drops` its position, and its drop the way to it. `given` are the drops that they are of; of
-    /// the class `medium`, if there is one, the mean is wanted in any case.
-    pub(super) fn new(
-        drops: &mut [(u32, Projected)],
-        given: &[FallingDrop],
+    /// Gives each streak among `drops` its position, and its drop the way to it; streaks for which there is no room are averaged
+    /// by a loop. `radii` are those of the drops; `medium` is the class of the drops that are not drawn one by one, whose mean is
+    /// wanted in any case.
+    #[must_use]
+    pub fn new(
+        drops: &mut [DropsDrop],
+        radii: &[f32],
         masks: &DropMasks,
         exposure: &Exposure,
-        medium: Option<u32>,
+        medium: u32,
     ) -> Self {
-        let mut made = Self::default();
-        let is_mean = |drop: &DropsDrop| drop.kind != DROPS_STILL && drop.grid == 0;
-        let is_sampled = |drop: &DropsDrop| drop.kind == DROPS_TABLE && drop.grid > 0;
-        if medium.is_some() || drops.iter().any(|(_, projected)| is_mean(&projected.drop)) {
-            made.classes = shapes::classes(masks, exposure);
-            if let Some(class) = medium.and_then(|class| made.classes.get_mut(class as usize)) {
+        let frame = ProfilesFrame::new(exposure, drops.len() as u32, medium);
+        Self::with_frame(drops, radii, masks, exposure, &frame)
+    }
+
+    /// As [`StreakProfiles::new`], with the room that a frame has.
+    #[must_use]
+    pub fn with_frame(
+        drops: &mut [DropsDrop],
+        radii: &[f32],
+        masks: &DropMasks,
+        exposure: &Exposure,
+        frame: &ProfilesFrame,
+    ) -> Self {
+        let mut made = Self { classes: shapes::classes(masks, exposure), ..Self::default() };
+        let means = drops.iter().filter(|drop| profiles_is_mean(drop)).map(|drop| drop.shape);
+        for class in means.chain([frame.medium]) {
+            if let Some(class) = made.classes.get_mut(class as usize) {
                 class.rows = 1;
             }
-            for (_, projected) in drops.iter().filter(|(_, projected)| is_mean(&projected.drop)) {
-                made.classes[projected.drop.shape as usize].rows = 1;
+        }
+        made.entries = frame.first_entry;
+        let mut totals = [[0; 2]; PROFILES_LEVELS as usize];
+        for drop in drops.iter().filter(|drop| profiles_is_sampled(drop)) {
+            let sizes = profiles_sized(drop);
+            for (level, total) in (0..).zip(&mut totals) {
+                let room = profiles_room(profiles_coarser(sizes, level));
+                *total = [0, 1].map(|k| total[k] + u64::from(room[k]));
             }
         }
-        made.entries = made.classes.len() as u32 * STREAK_MEAN_ENTRIES;
-        let sampled = || (0u32..).zip(drops.iter()).filter(|(_, (_, p))| is_sampled(&p.drop));
-        for (index, (k, projected)) in sampled() {
-            let mut path = masks.streak_shape(given[*k as usize].diameter);
-            let oscillates = projected.drop.mode_phase[0] != 0.0 || projected.drop.mode_phase[1] != 0.0;
-            let pair = exposure.oscillation.pair().map(|a| a as f32);
-            path.amplitudes = if oscillates { pair } else { [0.0; 2] };
-            let azimuth = drop_oscillation_azimuth(seed_words(exposure.seed), projected.drop.id);
-            let azimuth = STREAK_TURN * azimuth;
-            path.lobe = [ops::cos(azimuth), ops::sin(azimuth)];
-            path.drop = index;
-            made.paths.push(sized(path, projected));
-        }
-        made.fit();
-        for (path, k) in made.paths.iter_mut().zip(0u32..) {
-            (path.first_ray, path.first_entry) = (made.rays, made.entries);
-            made.rays += rays(path) as u32;
-            made.entries += entries(path) as u32;
-            made.ray_jobs.extend((0..path.rows).map(|row| [k, row]));
-            let units = path.profile_rows * path.columns;
-            made.light_jobs.extend((0..units).step_by(UNITS as usize).map(|first| [k, first]));
-            drops[path.drop as usize].1.drop.profile = path.first_entry;
+        let level = profiles_level(&totals, frame);
+        for (index, (drop, radius)) in (0u32..).zip(drops.iter_mut().zip(radii)) {
+            if !profiles_is_sampled(drop) {
+                continue;
+            }
+            if level == PROFILES_LEVELS {
+                drop.kind = DROPS_LOOP;
+                continue;
+            }
+            let sizes = profiles_coarser(profiles_sized(drop), level);
+            made.place(index, drop, &sizes, masks.profiles_shape(2.0 * radius), frame);
         }
         made
     }
 
-    /// Makes profiles coarser in time until all fit.
-    fn fit(&mut self) {
-        loop {
-            let all_rays: u64 = self.paths.iter().map(rays).sum();
-            let all_entries: u64 = self.paths.iter().map(entries).sum::<u64>() + u64::from(self.entries);
-            let coarsest = self.paths.iter().all(|path| path.rows == 2 && path.fine == 1);
-            if (all_rays <= MAX_RAYS && all_entries <= MAX_ENTRIES) || coarsest {
-                return;
-            }
-            for path in &mut self.paths {
-                path.rows = (path.rows / 2).max(2);
-                path.profile_rows = profile_rows(path.rows);
-                path.fine = 1;
-            }
-        }
-    }
-}
-
-/// Rows of a profile of so many rows of rays.
-fn profile_rows(rows: u32) -> u32 {
-    if rows == 2 { 2 } else { (rows - 1) * ROWS_FOR_TWO / 2 + 1 }
-}
-
-/// Rays of a path.
-fn rays(path: &StreakPath) -> u64 {
-    u64::from(path.rows) * u64::from(path.columns * path.columns)
-}
-
-/// Entries of a path in the table.
-fn entries(path: &StreakPath) -> u64 {
-    let chords = u64::from(path.rows) * u64::from(path.columns);
-    let light = u64::from(path.profile_rows) * u64::from(path.columns * path.fine * STREAK_SUMS);
-    1 + chords + light
-}
-
-/// A path with its numbers of rows and columns.
-fn sized(path: StreakPath, projected: &Projected) -> StreakPath {
-    let drop = &projected.drop;
-    // The drop's area on the picture is that of its mask.
-    let width = 2.0 * (drop.area / std::f32::consts::PI).sqrt();
-    let fineness = FINENESS.into_iter().find(|f| width <= f.width).unwrap_or(FINENESS[3]);
-    let [x, y] = drop.along;
-    let turned = ops::atan2((x * x + y * y).sqrt(), 1.0) / TURNED;
-    let oscillates = path.amplitudes != [0.0; 2];
-    let (turns, least) = if oscillates { (drop.cycles[1], fineness.least) } else { (0.0, 1) };
-    let wanted = (turns * fineness.per_turn).max(turned).ceil();
-    let rows = 1 + (wanted as u32).clamp(least, fineness.most);
-    StreakPath {
-        rows,
-        columns: fineness.columns,
-        profile_rows: profile_rows(rows),
-        fine: fineness.fine,
-        ..path
+    fn place(
+        &mut self,
+        index: u32,
+        drop: &mut DropsDrop,
+        sizes: &Sizes,
+        shape: StreakPath,
+        frame: &ProfilesFrame,
+    ) {
+        let azimuth = STREAK_TURN * drop_oscillation_azimuth(frame.seed, drop.id);
+        let [rows, columns, profile_rows, fine] = *sizes;
+        let path = StreakPath {
+            amplitudes: if profiles_oscillates(drop) { frame.amplitudes } else { [0.0; 2] },
+            lobe: [ops::cos(azimuth), ops::sin(azimuth)],
+            rows,
+            columns,
+            profile_rows,
+            fine,
+            drop: index,
+            first_ray: self.rays,
+            first_entry: self.entries,
+            ..shape
+        };
+        let [rays, entries] = profiles_room(*sizes);
+        self.rays += rays;
+        self.entries += entries;
+        let number = self.paths.len() as u32;
+        self.ray_jobs.extend((0..rows).map(|row| [number, row]));
+        let units = profile_rows * columns;
+        self.light_jobs.extend((0..units).step_by(UNITS as usize).map(|first| [number, first]));
+        drop.profile = path.first_entry;
+        self.paths.push(path);
     }
 }

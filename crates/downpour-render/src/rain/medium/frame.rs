@@ -10,7 +10,7 @@ use downpour_sim::resolved::Region;
 use glam::{Vec2, Vec3, Vec3Swizzles as _, Vec4};
 
 use super::RainMedium;
-use crate::rain::shapes;
+use crate::rain::project::project_class;
 
 /// Uniforms of the unresolved rain of a picture. The same layout as `MediumFrame` in WGSL.
 #[repr(C)]
@@ -74,7 +74,7 @@ impl MediumFrame {
             columns: MEDIUM_COLUMNS,
             rows: rows.clamp(1.0, f64::from(2 * MEDIUM_COLUMNS)) as u32,
             lit: 0,
-            shape: shapes::of_row(medium.row),
+            shape: project_class(medium.row),
             pane: medium.pane.map_or([0.0; 4], |pane| pane.outward.extend(pane.distance).into()),
         }
     }

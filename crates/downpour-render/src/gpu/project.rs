@@ -1,0 +1,190 @@
+//! Drops put on a picture by a GPU: what [`Rain`](crate::rain::Rain) makes of its drops on the CPU.
+
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_shaders::render::rain::{
+    PROFILES_CLEAR_KERNEL, PROFILES_FINISH_KERNEL, PROFILES_MEASURE_KERNEL, PROFILES_PLACE_KERNEL,
+    PROFILES_STATE, PROJECT_KERNEL,
+};
+
+use super::rain::groups;
+use crate::rain::profiles::{ProfilesFrame, StreakProfiles};
+use crate::rain::project::{ProjectFrame, project_frequencies};
+use crate::rain::{DropsDrop, RainOptions, StreakPath};
+
+/// Bindings of the kernels of the profiles.
+const PROFILES: [&[u32]; 4] = [&[4, 8], &[0, 1, 4], &[0, 1, 2, 3, 4, 5, 6, 7, 8], &[0, 4, 6, 7, 9, 10]];
+
+/// Byte of the workgroups of the light among those of all jobs.
+const LIGHT_GROUPS: u64 = 16;
+
+/// Falling drops on the device: [`ProjectDrop`](crate::rain::project::ProjectDrop).
+#[derive(Clone, Copy, Debug)]
+pub struct FallingOnGpu<'a> {
+    /// The drops.
+    pub drops: &'a wgpu::Buffer,
+    /// Number of drops.
+    pub count: u32,
+}
+
+/// The pipelines that put drops on a picture.
+#[derive(Clone, Debug)]
+pub struct ProjectPipeline {
+    gpu: Gpu,
+    project: ComputeKernel,
+    profiles: [ComputeKernel; 4],
+}
+
+/// Drops of a picture on the device, and the streaks among them that have a profile.
+#[derive(Debug)]
+pub(super) struct ListOnGpu {
+    /// Places in the list; those that are empty are marked.
+    pub(super) count: u32,
+    pub(super) list: wgpu::Buffer,
+    /// Positions and radii, for the light of lamps.
+    pub(super) rows: wgpu::Buffer,
+    pub(super) classes: (wgpu::Buffer, u32),
+    pub(super) paths: wgpu::Buffer,
+    /// Rows of rays, and parts of profiles, each behind their number.
+    pub(super) jobs: [wgpu::Buffer; 2],
+    pub(super) groups: JobGroups,
+    /// Rays, and entries of the table.
+    pub(super) room: [u32; 2],
+}
+
+/// Positions and radii of the streaks that have a profile, for the light of lamps; empty places have no radius.
+#[derive(Debug)]
+pub(super) struct StreaksOnGpu {
+    pub(super) rows: wgpu::Buffer,
+    pub(super) count: u32,
+}
+
+/// Workgroups of the jobs.
+#[derive(Debug)]
+pub(super) enum JobGroups {
+    /// For so many jobs.
+    Given([u32; 2]),
+    /// As a buffer says.
+    Found(wgpu::Buffer),
+}
+
+impl JobGroups {
+    /// A dispatch of the rows of rays (0), or of the parts of profiles (1); `None` where there is none.
+    pub(super) fn dispatch<'a>(
+        &'a self,
+        kind: usize,
+        kernel: &'a ComputeKernel,
+        bindings: &'a wgpu::BindGroup,
+    ) -> Option<Dispatch<'a>> {
+        match self {
+            Self::Given(jobs) => (jobs[kind] > 0).then(|| kernel.dispatch(bindings, groups(jobs[kind]))),
+            Self::Found(groups) => {
+                Some(kernel.dispatch_indirect(bindings, groups, LIGHT_GROUPS * kind as u64))
+            }
+        }
+    }
+}
+
+/// The drops of a picture, ready to be put on it.
+#[derive(Debug)]
+pub struct ProjectPass<'a> {
+    pipeline: &'a ProjectPipeline,
+    project: (wgpu::BindGroup, [u32; 3]),
+    profiles: Vec<(wgpu::BindGroup, [u32; 3])>,
+}
+
+impl ProjectPipeline {
+    /// Makes the pipelines.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
+        Ok(Self {
+            gpu: gpu.clone(),
+            project: kernel(&PROJECT_KERNEL)?,
+            profiles: [
+                kernel(&PROFILES_CLEAR_KERNEL)?,
+                kernel(&PROFILES_MEASURE_KERNEL)?,
+                kernel(&PROFILES_PLACE_KERNEL)?,
+                kernel(&PROFILES_FINISH_KERNEL)?,
+            ],
+        })
+    }
+
+    /// Makes ready to put drops on a picture; `masks` are the tables of the masks ([`DropMasks::tables`](crate::rain::DropMasks::tables)), and `classes` those of a
+    /// rain without drops.
+    ///
+    /// # Errors
+    /// [`GpuError::OverLimit`] if the lists are larger than the device allows, or what else the GPU says.
+    pub(super) fn prepare(
+        &self,
+        buffers: &impl BufferSource,
+        falling: FallingOnGpu<'_>,
+        masks: &wgpu::Buffer,
+        frames: (&ProjectFrame, &ProfilesFrame),
+        classes: &StreakProfiles,
+        options: &RainOptions,
+    ) -> Result<(ProjectPass<'_>, ListOnGpu, StreaksOnGpu), GpuError> {
+        let (project, profiles) = frames;
+        let storage = wgpu::BufferUsages::STORAGE;
+        let room = project.room.max(1);
+        let words = |label, count: u32, size: usize| {
+            buffers.buffer(label, u64::from(count.max(1)) * size as u64, storage)
+        };
+        let list = words("drops", room, size_of::<DropsDrop>())?;
+        let rows = words("positions of drops", room * (1 + project.has_axes), 16)?;
+        let uniform = buffers.uniform("project frame", project)?;
+        let frequencies =
+            buffers.storage("frequencies of drops", &project_frequencies(&options.exposure.fluids))?;
+        let bound = [&uniform, falling.drops, masks, &frequencies, &list, &rows];
+        let by_drop = groups(room.div_ceil(64));
+        let of_project = (self.project.bind(&self.gpu, &bound)?, by_drop);
+
+        let uniform = buffers.uniform("profiles frame", profiles)?;
+        let (max_paths, [ray_jobs, light_jobs]) = (profiles.max_paths(), profiles.max_jobs());
+        let state = words("sums of profiles", PROFILES_STATE, 4)?;
+        let paths = words("paths of streaks", max_paths, size_of::<StreakPath>())?;
+        let jobs =
+            [words("rows of rays", 1 + ray_jobs, 8)?, words("columns of profiles", 1 + light_jobs, 8)?];
+        let streaks = words("positions of streaks", max_paths, 16)?;
+        let class_count = classes.classes.len() as u32;
+        let classes = buffers.storage("classes of drops", &classes.classes)?;
+        let found =
+            buffers.buffer("groups of jobs", 2 * LIGHT_GROUPS, storage | wgpu::BufferUsages::INDIRECT)?;
+        let all =
+            [&uniform, &list, &rows, masks, &state, &paths, &jobs[0], &jobs[1], &streaks, &classes, &found];
+        let clear = groups((streaks.size() / 16).div_ceil(64) as u32);
+        let groups_of = [clear, by_drop, by_drop, [1; 3]];
+        let bind = |((kernel, bindings), groups): ((&ComputeKernel, &[u32]), [u32; 3])| {
+            let bound = bindings.iter().map(|&k| (k, all[k as usize]));
+            Ok((kernel.bind_at(&self.gpu, bound)?, groups))
+        };
+        let of_profiles = self.profiles.iter().zip(PROFILES).zip(groups_of).map(bind);
+        let of_profiles = of_profiles.collect::<Result<_, GpuError>>()?;
+        let made = ListOnGpu {
+            count: room,
+            list,
+            rows,
+            classes: (classes, class_count),
+            paths,
+            jobs,
+            groups: JobGroups::Found(found),
+            room: [profiles.max_rays, profiles.max_entries],
+        };
+        let pass = ProjectPass { pipeline: self, project: of_project, profiles: of_profiles };
+        Ok((pass, made, StreaksOnGpu { rows: streaks, count: max_paths }))
+    }
+}
+
+impl ProjectPass<'_> {
+    /// The dispatches, in this order.
+    #[must_use]
+    pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
+        let pipeline = self.pipeline;
+        let first = pipeline.project.dispatch(&self.project.0, self.project.1);
+        let others = pipeline.profiles.iter().zip(&self.profiles);
+        std::iter::once(first)
+            .chain(others.map(|(kernel, (bound, groups))| kernel.dispatch(bound, *groups)))
+            .collect()
+    }
+}
