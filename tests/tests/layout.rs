@@ -21,6 +21,8 @@ use downpour_render::glass::{GlassPictureDrop, GlassPictureFrame, GlassPictureLi
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
+use downpour_render::rain::profiles::ProfilesFrame;
+use downpour_render::rain::project::{ProjectDrop, ProjectFrame};
 use downpour_render::rain::tiles::TilesFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, StreakPath, StreakRay};
 use downpour_shaders::render::specimen;
@@ -94,6 +96,13 @@ fn hosts() -> Vec<Host> {
             camera, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, unused, light_terms, streak_samples,
             streak_color, glints, atlas),
+        host!(ProjectDrop as "ProjectDrop" in &render::rain::PROJECT,
+            offset, diameter, velocity, id, present, unused),
+        host!(ProjectFrame as "ProjectFrame" in &render::rain::PROJECT,
+            camera, eye_velocity, shutter, turning, aperture, amplitudes, inverse_focus, streaks, seed, ticks,
+            time_offset, count, room, is_fading, small_are_round, medium, has_axes, unused),
+        host!(ProfilesFrame as "ProfilesFrame" in &render::rain::PROFILES,
+            count, max_rays, max_entries, first_entry, seed, amplitudes, medium, unused_1, unused_2, unused_3),
         host!(TilesFrame as "TilesFrame" in &render::rain::TILES, size, count, room),
         host!(MediumFrame as "MediumFrame" in &render::medium::MEDIUM,
             depths, rise, all, center, region, size, flatness, eye, open, columns, rows, lit, shape, pane),

@@ -1,5 +1,6 @@
 //! `shaders/wgsl/render` against `downpour-render`, a file per shader.
 
+mod project;
 mod specimen;
 mod streak;
 mod tiles;
@@ -9,11 +10,16 @@ use crate::{FunctionCase, KernelCase};
 /// The cases.
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
-    [specimen::functions(), streak::functions(), tiles::functions()].concat()
+    [project::functions(), specimen::functions(), streak::functions(), tiles::functions()].concat()
 }
 
 /// The cases.
 #[must_use]
 pub(super) fn kernels() -> Vec<KernelCase> {
-    specimen::kernels().into_iter().chain(streak::kernels()).chain(tiles::kernels()).collect()
+    project::kernels()
+        .into_iter()
+        .chain(specimen::kernels())
+        .chain(streak::kernels())
+        .chain(tiles::kernels())
+        .collect()
 }

@@ -188,3 +188,60 @@ impl ProjectPass<'_> {
             .collect()
     }
 }
+
+/// What the kernels made, read back.
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+#[derive(Debug)]
+pub struct ProjectFound {
+    pub list: Vec<DropsDrop>,
+    pub rows: Vec<[f32; 4]>,
+    pub streaks: Vec<[f32; 4]>,
+    pub classes: Vec<StreakPath>,
+    pub paths: Vec<StreakPath>,
+    pub jobs: [Vec<[u32; 2]>; 2],
+    pub groups: Vec<u32>,
+}
+
+#[cfg(feature = "parity")]
+impl ProjectPipeline {
+    /// Runs all kernels twice on the same buffers and reads what the second run made.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    #[doc(hidden)]
+    pub fn run(
+        &self,
+        drops: &[crate::rain::ProjectDrop],
+        masks: &crate::rain::DropMasks,
+        frames: (&ProjectFrame, &ProfilesFrame),
+        options: &RainOptions,
+    ) -> Result<ProjectFound, GpuError> {
+        let gpu = &self.gpu;
+        let falling = gpu.storage_buffer("falling drops", drops)?;
+        let falling = FallingOnGpu { drops: &falling, count: drops.len() as u32 };
+        let tables = gpu.storage_buffer("tables of masks", masks.tables())?;
+        let classes = StreakProfiles::new(
+            &mut [],
+            &[],
+            masks,
+            &options.exposure,
+            downpour_shaders::render::rain::PROJECT_NO_CLASS,
+        );
+        let (pass, made, streaks) = self.prepare(gpu, falling, &tables, frames, &classes, options)?;
+        gpu.submit(&pass.dispatches())?;
+        gpu.submit(&pass.dispatches())?;
+        Ok(ProjectFound {
+            list: gpu.read(&made.list)?,
+            rows: gpu.read(&made.rows)?,
+            streaks: gpu.read(&streaks.rows)?,
+            classes: gpu.read(&made.classes.0)?,
+            paths: gpu.read(&made.paths)?,
+            jobs: [gpu.read(&made.jobs[0])?, gpu.read(&made.jobs[1])?],
+            groups: match &made.groups {
+                JobGroups::Given(_) => Vec::new(),
+                JobGroups::Found(groups) => gpu.read(groups)?,
+            },
+        })
+    }
+}

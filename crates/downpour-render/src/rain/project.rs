@@ -286,6 +286,12 @@ impl<'a> Projector<'a> {
         Self { frame, masks, frequencies: project_frequencies(&options.exposure.fluids) }
     }
 
+    /// The frame of the picture; it has no drops.
+    #[must_use]
+    pub fn frame(&self) -> &ProjectFrame {
+        &self.frame
+    }
+
     /// Position relative to the eye at a time relative to the picture's, s.
     fn project_position(&self, drop: &ProjectDrop, time: f32) -> Vec3 {
         let velocity = Vec3::from(drop.velocity) - self.frame.eye_velocity;
