@@ -63,6 +63,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::table::MODULES,
         sim::collision::MODULES,
         sim::enter::MODULES,
+        sim::field::MODULES,
         sim::step::MODULES,
         wind::MODULES,
     ]
@@ -88,6 +89,7 @@ pub fn kernels() -> impl Iterator<Item = &'static Kernel> {
         render::specimen::KERNELS,
         sim::collision::KERNELS,
         sim::enter::KERNELS,
+        sim::field::KERNELS,
         sim::step::KERNELS,
         wind::KERNELS,
     ]

@@ -2,4 +2,5 @@
 
 pub mod collision;
 pub mod enter;
+pub mod field;
 pub mod step;

@@ -6,6 +6,7 @@ mod collision;
 mod common;
 mod drop;
 mod drop_light;
+mod field;
 mod glass;
 mod glass_picture;
 mod host;
@@ -31,6 +32,7 @@ pub fn functions() -> Vec<FunctionCase> {
         common::functions(),
         drop::functions(),
         drop_light::functions(),
+        field::functions(),
         glass::functions(),
         glass_picture::functions(),
         host::functions(),
@@ -56,6 +58,7 @@ pub fn kernels() -> Vec<KernelCase> {
         collision::kernels(),
         common::kernels(),
         drop_light::kernels(),
+        field::kernels(),
         glass::kernels(),
         glass_picture::kernels(),
         host::kernels(),

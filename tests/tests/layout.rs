@@ -22,7 +22,7 @@ use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame
 use downpour_render::rain::light::DropLightFrame;
 use downpour_render::rain::medium::MediumFrame;
 use downpour_render::rain::profiles::ProfilesFrame;
-use downpour_render::rain::project::{ProjectDrop, ProjectFrame};
+use downpour_render::rain::project::ProjectFrame;
 use downpour_render::rain::tiles::TilesFrame;
 use downpour_render::rain::{DropsDrop, DropsFrame, StreakPath, StreakRay};
 use downpour_shaders::render::specimen;
@@ -31,6 +31,8 @@ use downpour_shaders::{
 };
 use downpour_sim::collision::{CollisionFrame, CollisionTexel};
 use downpour_sim::enter::EnterRegion;
+use downpour_sim::field::EyeDrop;
+use downpour_sim::field::frame::{FieldClass, FieldFrame, ShelterFrame};
 use downpour_sim::step::{StepEvent, StepFrame};
 use downpour_sim::volume::{VolumeEye, VolumeFrustum};
 use downpour_specimen::gpu::{CameraUniform, LampUniform, SpecimenUniform, StreakUniform};
@@ -96,8 +98,16 @@ fn hosts() -> Vec<Host> {
             camera, capture_right, capture_size, capture_up, capture_last,
             capture_forward, capture_texel, form, mask_size, unused, light_terms, streak_samples,
             streak_color, glints, atlas),
-        host!(ProjectDrop as "ProjectDrop" in &render::rain::PROJECT,
-            offset, diameter, velocity, id, present, unused),
+        host!(EyeDrop as "EyeDrop" in &sim::field::EYE_DROP,
+            offset, diameter, velocity, id, present, speed, unused),
+        host!(FieldClass as "FieldClass" in &sim::field::FIELD,
+            seed, edge, period, first_node, first_threshold, portions, first_column, columns, counts, eye_column,
+            eye_in_column, eye_periods, heights, drift, reach, middle),
+        host!(FieldFrame as "FieldFrame" in &sim::field::FIELD,
+            sides, swept, velocity, half_shutter, turning, nearest, per_diameter, farthest, seconds, fraction,
+            is_before, classes, columns, room),
+        host!(ShelterFrame as "ShelterFrame" in &sim::field::SHELTER,
+            eye, half_shutter, low, since_cut, high, cuts, room, unused_1, unused_2, unused_3),
         host!(ProjectFrame as "ProjectFrame" in &render::rain::PROJECT,
             camera, eye_velocity, shutter, turning, aperture, amplitudes, inverse_focus, streaks, seed, ticks,
             time_offset, count, room, is_fading, small_are_round, medium, has_axes, unused),

@@ -10,7 +10,7 @@ use downpour_tests::signature::all_functions;
 use downpour_tests::sources::rust_files;
 
 /// WGSL functions whose work a Rust function of another name does, and where. Kernel-level cases compare the results.
-const ELSEWHERE: [(&[&str], &str); 8] = [
+const ELSEWHERE: [(&[&str], &str); 10] = [
     (
         &[
             "puddle_is_finite",
@@ -33,6 +33,19 @@ const ELSEWHERE: [(&[&str], &str); 8] = [
         ],
         "the GPU steps tiles with a halo in workgroup memory, the CPU rows in lanes (downpour_lattice::puddle::step)",
     ),
+    (
+        &[
+            "field_carried",
+            "field_chain",
+            "field_less",
+            "field_meets",
+            "field_product",
+            "field_shows",
+            "field_turned",
+        ],
+        "the CPU computes in f64 and in wide integers, in the world (downpour_sim::field, drift and view)",
+    ),
+    (&["shelter_carried"], "downpour_sim::drift"),
     (&["bvh_hit"], "downpour_bvh::bvh_nearest returns an option in place of a distance below 0"),
     (&["enter_find", "enter_region"], "downpour_sim::region has the boxes as values, the GPU as rows"),
     (&["mask_model_sample"], "part of mask_model_texel in downpour_mask::model"),

@@ -80,7 +80,6 @@ pub use list::Rain;
 pub use masks::DropMasks;
 pub use medium::{MediumOptions, PanePlane, RainMedium};
 pub use profiles::StreakProfiles;
-pub use project::ProjectDrop;
 pub use streak::DropsDrop;
 pub use streak_lookup::StreakTable;
 pub use streak_path::StreakPath;

@@ -1,14 +1,15 @@
 //! Displacement of drops by a uniform wind, by their terminal speed.
 
 use downpour_drop::fall_speed::relaxation;
+use downpour_shaders::sim::field::{FIELD_DRIFT, FIELD_DRIFT_SPEED};
 use downpour_wind::UniformWind;
 use glam::DVec3;
 
 /// Maximum terminal speed of a drop, m/s.
-const MAX_SPEED_M_S: f64 = 12.0;
+const MAX_SPEED_M_S: f64 = FIELD_DRIFT_SPEED as f64;
 
 /// Number of intervals of the table.
-const INTERVALS: usize = 48;
+const INTERVALS: usize = FIELD_DRIFT as usize;
 
 /// Motion of drops by the wind up to a time. It is linear between the speeds of the table, so that a drop's velocity
 /// is the rate of change of its position.
@@ -29,6 +30,16 @@ impl Drift {
             [joined(across.displacement, along.displacement), joined(across.velocity, along.velocity)]
         };
         Self { table: (0..=INTERVALS).map(entry).collect() }
+    }
+
+    /// Displacements and velocities by terminal speed, from 0 to 12 m/s.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = &[DVec3; 2]> {
+        self.table.iter()
+    }
+
+    /// Displacement of a drop of a middle speed, m.
+    pub(crate) fn middle(&self) -> DVec3 {
+        self.of(0.5 * MAX_SPEED_M_S)[0]
     }
 
     /// Displacement since time 0, m, and velocity due to the wind, m/s, of a drop with a terminal speed, m/s.

@@ -1,6 +1,6 @@
 //! Drops in the form that a picture needs.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::resolved::Resolved;
 
@@ -54,6 +54,46 @@ impl FallingDrop {
     pub fn seen_s(&self) -> f32 {
         let [begin, end] = self.present_s;
         if end < 0.0 { end } else { begin.max(0.0) }
+    }
+}
+
+/// Numbers beyond these are as good as infinite, s: shaders have no infinities.
+const ALWAYS_S: f32 = downpour_shaders::sim::field::FIELD_ALWAYS;
+
+/// A drop relative to the eye. The same layout as `EyeDrop` in WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct EyeDrop {
+    /// Position at the time of the picture, or where it would be then, m.
+    pub offset: [f32; 3],
+    /// Volume-equivalent diameter, m; 0 for an empty place in a list.
+    pub diameter: f32,
+    /// Velocity, m/s.
+    pub velocity: [f32; 3],
+    /// Id in 32 bits, from which its oscillation is drawn.
+    pub id: u32,
+    /// Part of the exposure in which it exists, s from the picture's time.
+    pub present: [f32; 2],
+    /// Terminal speed, m/s; 0 if it is not known.
+    pub speed: f32,
+    /// 0.
+    pub unused: u32,
+}
+
+impl EyeDrop {
+    /// A drop that is seen from `eye` (in f64, so that drops far from the origin keep their places).
+    #[must_use]
+    pub fn new(drop: &FallingDrop, eye: DVec3) -> Self {
+        let moved = Vec3::from(drop.velocity) * drop.seen_s();
+        Self {
+            offset: ((drop.position - eye).as_vec3() - moved).into(),
+            diameter: drop.diameter,
+            velocity: drop.velocity,
+            id: drop.id as u32 ^ (drop.id >> 32) as u32,
+            present: drop.present_s.map(|time| time.clamp(-ALWAYS_S, ALWAYS_S)),
+            speed: 0.0,
+            unused: 0,
+        }
     }
 }
 

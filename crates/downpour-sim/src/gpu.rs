@@ -2,8 +2,10 @@
 
 pub mod collision;
 mod error;
+mod field;
 mod simulation;
 
 pub use collision::GpuCollisionMap;
 pub use error::GpuSimError;
+pub use field::{FieldOnGpu, FieldPass, FieldPipeline, ObstaclesOnGpu};
 pub use simulation::{GpuSimulation, GpuStepInput};

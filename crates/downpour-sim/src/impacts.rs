@@ -217,7 +217,7 @@ impl RainField {
                 let position = obstacles.origin + (from + velocity * hit.distance).as_dvec3();
                 let within = position.cmpge(bounds.low).all() && position.cmplt(bounds.high).all();
                 let start = ways.at_begin(drop, speed) - obstacles.origin;
-                if !(within && paths.is_open(start.as_vec3(), start, speed, velocity)) {
+                if !(within && paths.shelter_is_open(start.as_vec3(), start, speed, velocity)) {
                     return None;
                 }
                 let normal = surfaces.normal(&hit, velocity);

@@ -6,15 +6,10 @@ use downpour_math::rng::rng_draw;
 /// Maximum mean of a single draw: `exp(-mean)` keeps its digits.
 const MAX_MEAN: f64 = 16.0;
 
-/// Draws a Poisson number of the given mean for a key. A larger mean gives no smaller number for the same key: heavier
-/// rain adds drops and moves none.
+/// Draws a Poisson number of the given mean for a key and a step of time. A larger mean gives no smaller number for the same key:
+/// heavier rain adds drops and moves none.
 ///
 /// Means above [`MAX_MEAN`] are the sum of independent portions.
-pub(crate) fn poisson(mean: f64, seed: [u32; 2], dimension: u32) -> u32 {
-    poisson_at(mean, seed, 0, dimension)
-}
-
-/// Draws a Poisson number for a step of time.
 pub(crate) fn poisson_at(mean: f64, seed: [u32; 2], step: u32, dimension: u32) -> u32 {
     let mut rest = mean;
     let mut count = 0;
@@ -53,7 +48,7 @@ mod tests {
             let n = 20_000;
             let (mut sum, mut square) = (0.0, 0.0);
             for k in 0..n {
-                let x = f64::from(poisson(mean, [k, 9], 3));
+                let x = f64::from(poisson_at(mean, [k, 9], 0, 3));
                 sum += x;
                 square += x * x;
             }
@@ -70,7 +65,7 @@ mod tests {
     #[test]
     fn a_heavier_rain_adds_drops() {
         for key in 0..1000 {
-            let counts = [0.5, 3.0, 15.0, 17.0, 60.0].map(|mean| poisson(mean, [key, 1], 0));
+            let counts = [0.5, 3.0, 15.0, 17.0, 60.0].map(|mean| poisson_at(mean, [key, 1], 0, 0));
             assert!(counts.is_sorted(), "{counts:?}");
         }
     }

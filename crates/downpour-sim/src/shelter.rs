@@ -14,6 +14,7 @@
 
 use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_nearest};
 use downpour_drop::fall_speed::TerminalSpeed;
+use downpour_shaders::sim::field::{SHELTER_CARRIED, SHELTER_CLEAR, SHELTER_CUT};
 use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -22,13 +23,13 @@ use crate::drift::Drift;
 use crate::falling::FallingDrop;
 
 /// Interval at which a path is divided, s.
-const CUT_S: f64 = 0.25;
+pub(crate) const CUT_S: f64 = SHELTER_CUT as f64;
 
 /// Maximum time for which a path is followed back, s; slower drops count as coming from the sky.
 const MAX_BACK_S: f64 = 120.0;
 
 /// Distance from a surface below which a drop counts as on it, m.
-const CLEAR_M: f32 = 1.0e-4;
+const CLEAR_M: f32 = SHELTER_CLEAR;
 
 /// Maximum number of holes on a path to the sky: a path through more counts as open.
 const MAX_HOLES: u32 = 64;
@@ -79,9 +80,7 @@ impl<'a> SkyPaths<'a> {
         let root = obstacles.nodes.first().filter(|_| !obstacles.triangles.is_empty())?;
         let (low, high) = (Vec3::from(root.low), Vec3::from(root.high));
         let last_cut_s = (open_s / CUT_S).floor() * CUT_S;
-        // Slow drops are near the eye and rare; they determine how far back the wind is needed.
-        let longest = ((f64::from(high.y) - deepest).max(0.0) / slowest.max(0.05)).min(MAX_BACK_S);
-        let cuts = if wind.is_steady() { 0 } else { (longest / CUT_S).ceil() as usize + 1 };
+        let cuts = number_of_cuts(wind, f64::from(high.y) - deepest, slowest);
         let cut = |k: usize| Drift::new(wind, last_cut_s - k as f64 * CUT_S);
         let cuts = (0..cuts).into_par_iter().map(cut).collect();
         Some(Self { obstacles, low, high, open: Drift::new(wind, open_s), open_s, cuts, last_cut_s })
@@ -94,20 +93,20 @@ impl<'a> SkyPaths<'a> {
 
     /// True if nothing is between the sky and `from`, which is near `at`, the position of a drop of a terminal speed
     /// at the time; its velocity is for a steady wind. Positions are relative to the obstacles' origin.
-    pub(crate) fn is_open(&self, mut from: Vec3, at: DVec3, speed: f64, velocity: Vec3) -> bool {
+    pub(crate) fn shelter_is_open(&self, mut from: Vec3, at: DVec3, speed: f64, velocity: Vec3) -> bool {
         if self.cuts.is_empty() {
-            return clear(self.obstacles, from, (-velocity).normalize_or(Vec3::Y), f32::MAX);
+            return shelter_clear(self.obstacles, from, (-velocity).normalize_or(Vec3::Y), f32::MAX);
         }
         let displacement = self.open.of(speed)[0];
         for (k, cut) in self.cuts.iter().enumerate() {
-            if from.y > self.high.y || !self.could_meet(from, speed) {
+            if from.y > self.high.y || !self.shelter_could_meet(from, speed) {
                 return true;
             }
             let age = self.open_s - (self.last_cut_s - k as f64 * CUT_S);
             let to = (at - (displacement - cut.of(speed)[0]) + DVec3::Y * (speed * age)).as_vec3();
             let way = to - from;
             let length = way.length();
-            if length > 0.0 && !clear(self.obstacles, from, way / length, length) {
+            if length > 0.0 && !shelter_clear(self.obstacles, from, way / length, length) {
                 return false;
             }
             from = to;
@@ -116,11 +115,18 @@ impl<'a> SkyPaths<'a> {
     }
 
     /// True if a drop beside all obstacles could have come from them: nothing is carried by more than 60 m/s.
-    fn could_meet(&self, from: Vec3, speed: f64) -> bool {
+    fn shelter_could_meet(&self, from: Vec3, speed: f64) -> bool {
         let (low, high) = (self.low, self.high);
-        let reach = (high.y - from.y).max(0.0) * (60.0 / speed.max(0.1)) as f32;
+        let reach = (high.y - from.y).max(0.0) * (f64::from(SHELTER_CARRIED) / speed.max(0.1)) as f32;
         from.x > low.x - reach && from.x < high.x + reach && from.z > low.z - reach && from.z < high.z + reach
     }
+}
+
+/// Number of quarters of a second that paths are followed back, up to a height, m, above the lowest drop.
+pub(crate) fn number_of_cuts(wind: &UniformWind, height: f64, slowest: f64) -> usize {
+    // Slow drops are near the eye and rare; they determine how far back the wind is needed.
+    let longest = (height.max(0.0) / slowest.max(0.05)).min(MAX_BACK_S);
+    if wind.is_steady() { 0 } else { (longest / CUT_S).ceil() as usize + 1 }
 }
 
 /// Keeps the drops that nothing has stopped when the shutter opens, half of the exposure before the picture's time. The
@@ -145,7 +151,7 @@ pub(crate) fn keep_open(
         // As it is drawn, and as it has moved.
         let from = here.as_vec3() - velocity * half as f32;
         let back = picture.of(speed)[0] - paths.drift().of(speed)[0] - DVec3::Y * (speed * half);
-        if !paths.is_open(from, here - back, speed, velocity) {
+        if !paths.shelter_is_open(from, here - back, speed, velocity) {
             return None;
         }
         let met = (shutter_s > 0.0).then(|| met(obstacles, from, velocity, shutter_s as f32)).flatten();
@@ -171,7 +177,7 @@ pub(crate) fn met(obstacles: &Obstacles<'_>, from: Vec3, velocity: Vec3, time_s:
 }
 
 /// True if nothing is hit within a distance.
-fn clear(obstacles: &Obstacles<'_>, from: Vec3, direction: Vec3, distance: f32) -> bool {
+fn shelter_clear(obstacles: &Obstacles<'_>, from: Vec3, direction: Vec3, distance: f32) -> bool {
     let far = distance.min(downpour_shaders::bvh::BVH_FAR);
     first_solid(obstacles, from, direction, CLEAR_M, far).is_none()
 }

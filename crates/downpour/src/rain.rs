@@ -6,15 +6,17 @@ mod textures;
 
 use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::oscillation::{Amplitudes, Fluids};
-use downpour_gpu::{BufferPool, BufferSource as _, Gpu, wgpu};
+use downpour_gpu::{BufferPool, Gpu, wgpu};
 use downpour_render::camera::{EyeMotion, Viewpoint};
 use downpour_render::gpu::{FallingOnGpu, HostPipeline, PlateOnGpu, RAIN_BUFFERS, RainOnGpu, RainPipeline};
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::light::LightSource;
 use downpour_render::rain::{
-    DropMasks, Exposure, MediumOptions, ProjectDrop, Rain as PictureRain, RainMedium, RainOptions,
+    DropMasks, Exposure, MediumOptions, Rain as PictureRain, RainMedium, RainOptions,
 };
 use downpour_sim::field::{RainField, VisibleDrops};
+use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, ObstaclesOnGpu};
+use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use downpour_trace::builder::{MeshPart, SceneBuilder};
@@ -23,7 +25,7 @@ use downpour_trace::gpu::SceneOnGpu;
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky_light::SkyLight;
 use downpour_trace::stage::{MAX_LIGHTS, MAX_TRIANGLES, view_of};
-use glam::{Affine3A, DVec3};
+use glam::{Affine3A, DVec3, Vec3};
 
 use crate::shower::mean_velocity;
 
@@ -49,8 +51,11 @@ pub struct RainView {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct RainStats {
-    /// Drops in the view that are drawn one by one.
-    pub drops: usize,
+    /// Drops that there is room for to be drawn one by one: a quarter more than are expected. How many there are, the device alone
+    /// knows ([`Rain::drops`] counts them on the CPU).
+    pub room: u32,
+    /// Columns of air that are searched for them.
+    pub columns: u32,
     /// Least diameter of these on the picture, pixels; smaller ones are an extinction and a light of their own.
     pub least_pixels: f64,
     /// Buffers that were created so far, in all frames: after the first frame of a size there are hardly any more.
@@ -63,8 +68,8 @@ pub struct RainStats {
 /// command encoder, and blends the rain into the color texture: refracted and lit drops and streaks, hidden by what the depth
 /// texture shows, and the extinction and the light of all smaller drops. It neither waits for the device nor reads from it.
 ///
-/// Drops are found and sorted into tiles on the CPU, the same for the same seed and time; everything else is the device's work.
-/// Buffers stay from frame to frame. Submit the encoder before the next call of `render` of the same `Rain`: its buffers are
+/// The device finds the drops, the same for the same seed and time as on the CPU, sorts them into tiles and draws them; the CPU
+/// writes the frame's numbers, some kilobytes. Buffers stay from frame to frame. Submit the encoder before the next call of `render` of the same `Rain`: its buffers are
 /// written anew then. Two views in one submission take two `Rain`s.
 #[derive(Debug)]
 pub struct Rain {
@@ -72,6 +77,10 @@ pub struct Rain {
     settings: RainSettings,
     sizes: DropSizeDistribution,
     field: RainField,
+    fields: FieldPipeline,
+    field_on_gpu: FieldOnGpu,
+    /// Drops whose lists the device can bind.
+    most_drops: u32,
     masks: DropMasks,
     masks_on_gpu: RainOnGpu,
     /// Obstacles and lamps.
@@ -97,8 +106,12 @@ impl Rain {
         let masks = DropMasks::in_air(&settings.air)?;
         let (sizes, field) = falling(&settings)?;
         let rains = RainPipeline::new(&gpu)?;
+        let fields = FieldPipeline::new(&gpu)?;
         let scene = scene_of(&[])?;
         Ok(Self {
+            most_drops: rains.most_drops(),
+            field_on_gpu: fields.upload(&field)?,
+            fields,
             masks_on_gpu: rains.upload(&masks)?,
             scene_on_gpu: SceneOnGpu::new(&gpu, &scene, None)?,
             host: HostPipeline::new(&gpu)?,
@@ -124,8 +137,9 @@ impl Rain {
     /// # Errors
     /// [`RainError`] for a setting outside its range; the old settings stay.
     pub fn set_settings(&mut self, settings: RainSettings) -> Result<(), RainError> {
-        (self.sizes, self.field) = falling(&settings)?;
-        self.settings = settings;
+        let (sizes, field) = falling(&settings)?;
+        self.field_on_gpu = self.fields.upload(&field)?;
+        (self.sizes, self.field, self.settings) = (sizes, field, settings);
         Ok(())
     }
 
@@ -146,9 +160,7 @@ impl Rain {
     /// # Errors
     /// [`RainError`] for a view outside its ranges.
     pub fn drops(&self, view: &RainView, size: [u32; 2]) -> Result<VisibleDrops, RainError> {
-        let depth = [self.settings.near_m, self.settings.far_m];
-        let seen = view_of(&view.camera, DVec3::ZERO, size, depth, view.shutter_s, &view.motion)?;
-        let seen = View { max_drops: self.settings.max_drops, ..seen };
+        let seen = self.view(view, size)?;
         let obstacles = Obstacles {
             nodes: &self.scene.nodes,
             triangles: &self.scene.triangles,
@@ -171,17 +183,28 @@ impl Rain {
         let size = textures.check()?;
         settings::check_view(view)?;
         let camera = view.camera.camera(size, 0)?;
-        let visible = self.drops(view, size)?;
+        let seen = self.view(view, size)?;
         self.set_lights(textures.lights)?;
-        let options = self.options(view, &visible)?;
         let eye = view.camera.eye.as_dvec3();
+        self.pool.begin_frame();
+        let [nodes, triangles] = self.scene_on_gpu.obstacles();
+        let bounds = self.scene.nodes.first().filter(|_| !self.scene.triangles.is_empty());
+        let obstacles = ObstaclesOnGpu {
+            nodes,
+            triangles,
+            bounds: bounds.map(|root| [Vec3::from(root.low), Vec3::from(root.high)]),
+            origin: DVec3::ZERO,
+        };
+        let on_gpu = (&self.field, &mut self.field_on_gpu);
+        let found =
+            self.fields.prepare(&self.pool, on_gpu, &obstacles, &seen, view.time_s, self.most_drops)?;
+        let options = self.options(view, found.resolved())?;
         let rain = PictureRain::new(&camera, eye, &[], &self.masks, &options);
         let frame = RenderFrame::new(&self.scene, &view.camera, size, 1, 0, 0)?;
         let lighting = SceneView { data: &self.scene, frame: &frame };
         let lights = [rain.lights(&lighting, &self.masks)?, rain.streak_lights(&lighting, &self.masks)?];
 
         let pool = &self.pool;
-        pool.begin_frame();
         let lighting = self.scene_on_gpu.lighting_of(pool, &frame, &self.scene)?;
         let environment = self.rains.environment(pool, &rain)?;
         let plate_frame = HostPlateFrame {
@@ -195,14 +218,11 @@ impl Rain {
         let made =
             self.host.prepare(pool, &textures.on_gpu(), &plate_frame, &environment_frame, &environment)?;
         let plate = PlateOnGpu { pixels: made.pixels(), environment: &environment, lighting: &lighting };
-        let falling: Vec<ProjectDrop> =
-            visible.drops.iter().map(|drop| ProjectDrop::new(drop, eye)).collect();
-        let uploaded: &[_] = if falling.is_empty() { &[ProjectDrop::default()] } else { &falling };
-        let uploaded = pool.storage("falling drops", uploaded)?;
-        let falling = FallingOnGpu { drops: &uploaded, count: falling.len() as u32 };
+        let falling = FallingOnGpu { drops: found.drops(), count: found.room() };
         let masks = (&self.masks_on_gpu, &self.masks);
         let pass = self.rains.prepare_falling(pool, &plate, masks, (&rain, &options), &lights, falling)?;
         let mut dispatches = made.dispatches();
+        dispatches.extend(found.dispatches());
         dispatches.extend(pass.project());
         dispatches.extend(pass.environment());
         dispatches.extend(pass.lamps());
@@ -221,10 +241,18 @@ impl Rain {
         let blend = HostBlendFrame { width: size[0], scale: 1.0 / textures.radiance_scale, unused: [0; 2] };
         self.host.encode_blend(pool, encoder, textures.color, pass.layer_buffer(), &blend)?;
         Ok(RainStats {
-            drops: visible.drops.len(),
-            least_pixels: visible.resolved.least_pixels,
+            room: found.room(),
+            columns: found.columns(),
+            least_pixels: found.resolved().least_pixels,
             buffers_made: pool.made(),
         })
+    }
+
+    fn view(&self, view: &RainView, size: [u32; 2]) -> Result<View, RainError> {
+        let depth = [self.settings.near_m, self.settings.far_m];
+        let seen = view_of(&view.camera, DVec3::ZERO, size, depth, view.shutter_s, &view.motion)?;
+        // Room for a quarter more is kept.
+        Ok(View { max_drops: self.settings.max_drops.min(self.most_drops / 5 * 4), ..seen })
     }
 
     fn set_lights(&mut self, lights: &[LightSource]) -> Result<(), RainError> {
@@ -239,12 +267,12 @@ impl Rain {
         Ok(())
     }
 
-    fn options(&self, view: &RainView, visible: &VisibleDrops) -> Result<RainOptions, RainError> {
+    fn options(&self, view: &RainView, resolved: &Resolved) -> Result<RainOptions, RainError> {
         let settings = &self.settings;
         let velocity = mean_velocity(&self.sizes, settings.wind.air(), view.time_s);
         let medium = MediumOptions { velocity, ..MediumOptions::default() };
         Ok(RainOptions {
-            medium: RainMedium::new(&self.sizes, &visible.resolved, &self.masks, &medium)?,
+            medium: RainMedium::new(&self.sizes, resolved, &self.masks, &medium)?,
             exposure: Exposure {
                 shutter_s: view.shutter_s,
                 time_s: view.time_s,

@@ -8,6 +8,7 @@ use crate::common::{OPS, PACKING};
 use crate::drop::oscillation::OSCILLATION;
 use crate::drop::shape::SHAPE;
 use crate::mask::WOBBLE;
+use crate::sim::field::EYE_DROP;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
@@ -400,7 +401,7 @@ pub static DROPS: Module = Module {
 pub static PROJECT: Module = Module {
     path: "render/project.wgsl",
     wgsl: include_str!("../../wgsl/render/project.wgsl"),
-    uses: &[&OPS, &RAIN_CONSTANTS, &PROJECT_TABLES, &CAMERA, &OSCILLATION, &STREAK, &DROP_GLINT],
+    uses: &[&OPS, &EYE_DROP, &RAIN_CONSTANTS, &PROJECT_TABLES, &CAMERA, &OSCILLATION, &STREAK, &DROP_GLINT],
 };
 
 /// Profiles of streaks in the streak radiance table. Twin: `downpour_render::rain::profiles`.

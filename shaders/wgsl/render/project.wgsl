@@ -6,19 +6,6 @@
 // time (oscillation.wgsl).
 // Twin: downpour_render::rain::project.
 
-// A drop relative to the eye.
-struct ProjectDrop {
-    // At the time of the picture, or where it would be then, m.
-    offset: vec3f,
-    diameter: f32,
-    // m/s.
-    velocity: vec3f,
-    id: u32,
-    // When it is there, s from the time of the picture.
-    present: vec2f,
-    unused: vec2u,
-}
-
 struct ProjectFrame {
     camera: RenderCamera,
     // Velocity of the eye, m/s.
@@ -96,7 +83,7 @@ struct ProjectShown {
 }
 
 @group(0) @binding(0) var<uniform> project_frame: ProjectFrame;
-@group(0) @binding(1) var<storage, read> project_drops: array<ProjectDrop>;
+@group(0) @binding(1) var<storage, read> project_drops: array<EyeDrop>;
 // Of the masks: half extents by diameter; areas, then ovals by diameter and elevation; then the shapes of profiles.wgsl.
 @group(0) @binding(2) var<storage, read> project_masks: array<f32>;
 // Frequencies of both modes in units of 2^-16 Hz, by the bits of the diameter.
@@ -146,13 +133,13 @@ fn project_seen(present: vec2f) -> f32 {
 }
 
 // Position relative to the eye at a time relative to the picture's, s.
-fn project_position(drop: ProjectDrop, time: f32) -> vec3f {
+fn project_position(drop: EyeDrop, time: f32) -> vec3f {
     let moved = drop.offset + (drop.velocity - project_frame.eye_velocity) * time;
     return project_turned(moved, project_frame.turning * -time);
 }
 
 // The path of a drop whose middle is at `middle`.
-fn project_path(drop: ProjectDrop, middle: vec3f, present: vec2f) -> ProjectPath {
+fn project_path(drop: EyeDrop, middle: vec3f, present: vec2f) -> ProjectPath {
     let radius = 0.5 * drop.diameter;
     let distance = sqrt(dot(middle, middle));
     let towards = middle / distance;
@@ -206,7 +193,7 @@ fn project_frequency(diameter: f32) -> vec2u {
 }
 
 // The oscillation of a drop in a part of the exposure.
-fn project_modes(drop: ProjectDrop, towards: vec3f, part: vec2f) -> ProjectModes {
+fn project_modes(drop: EyeDrop, towards: vec3f, part: vec2f) -> ProjectModes {
     let amplitudes = project_frame.amplitudes;
     let is_still = amplitudes.x == 0.0 && amplitudes.y == 0.0;
     if is_still || drop.diameter < PROJECT_OSCILLATES_MIN || drop.diameter > PROJECT_OSCILLATES_MAX {
@@ -301,7 +288,7 @@ fn project_grid(width: f32, moves: bool) -> u32 {
 }
 
 // A drop on the picture; its reach is below 0 where it is on none.
-fn project_drop(drop: ProjectDrop) -> ProjectShown {
+fn project_drop(drop: EyeDrop) -> ProjectShown {
     var shown: ProjectShown;
     shown.drop.reach = -1.0;
     let camera = project_frame.camera;
@@ -380,7 +367,7 @@ fn project_drop(drop: ProjectDrop) -> ProjectShown {
 }
 
 // The row of the light of lamps on a drop: where it is seen, and its radius; 0 where it is not shown.
-fn project_row(drop: ProjectDrop, shown: ProjectShown) -> vec4f {
+fn project_row(drop: EyeDrop, shown: ProjectShown) -> vec4f {
     if shown.drop.reach <= 0.0 {
         return vec4f(0.0);
     }

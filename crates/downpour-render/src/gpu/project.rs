@@ -17,7 +17,7 @@ const PROFILES: [&[u32]; 4] = [&[4, 8], &[0, 1, 4], &[0, 1, 2, 3, 4, 5, 6, 7, 8]
 /// Byte of the workgroups of the light among those of all jobs.
 const LIGHT_GROUPS: u64 = 16;
 
-/// Falling drops on the device: [`ProjectDrop`](crate::rain::project::ProjectDrop).
+/// Falling drops on the device: [`EyeDrop`](downpour_sim::field::EyeDrop).
 #[derive(Clone, Copy, Debug)]
 pub struct FallingOnGpu<'a> {
     /// The drops.
@@ -212,7 +212,7 @@ impl ProjectPipeline {
     #[doc(hidden)]
     pub fn run(
         &self,
-        drops: &[crate::rain::ProjectDrop],
+        drops: &[downpour_sim::field::EyeDrop],
         masks: &crate::rain::DropMasks,
         frames: (&ProjectFrame, &ProfilesFrame),
         options: &RainOptions,

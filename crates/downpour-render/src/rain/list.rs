@@ -1,7 +1,7 @@
 //! The drops of a picture, with all that the shaders read of it.
 
 use downpour_shaders::render::rain::PROJECT_NO_CLASS;
-use downpour_sim::field::FallingDrop;
+use downpour_sim::field::{EyeDrop, FallingDrop};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -10,7 +10,7 @@ use super::environment::EnvironmentFrame;
 use super::light::{DropLightForm, DropLightOptions, DropLights};
 use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::profiles::StreakProfiles;
-use super::project::{ProjectDrop, Projected, Projector, project_axis, project_class, project_row};
+use super::project::{Projected, Projector, project_axis, project_class, project_row};
 use super::streak::DropsDrop;
 use super::tiles::tiles_within;
 use super::{DropMasks, RainOptions};
@@ -66,7 +66,7 @@ impl Rain {
             .par_iter()
             .enumerate()
             .filter_map(|(k, drop)| {
-                let placed = ProjectDrop::new(drop, eye);
+                let placed = EyeDrop::new(drop, eye);
                 let Projected { drop, velocity } = projector.project_drop(&placed)?;
                 pixels(&drop, size)?;
                 Some(Shown { given: k as u32, drop, velocity, row: project_row(camera.eye, &placed) })

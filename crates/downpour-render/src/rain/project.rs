@@ -13,8 +13,8 @@ use downpour_shaders::render::rain::{
     PROJECT_NARROW, PROJECT_NARROW_SAMPLES, PROJECT_NO_CLASS, PROJECT_OSCILLATES_MAX, PROJECT_OSCILLATES_MIN,
     PROJECT_SMALL, PROJECT_STILL, PROJECT_THIN, PROJECT_WIDE_SAMPLES, STREAK_TURN,
 };
-use downpour_sim::field::FallingDrop;
-use glam::{DVec3, Vec2, Vec3};
+use downpour_sim::field::EyeDrop;
+use glam::{Vec2, Vec3};
 
 use super::exposure::{StreakSamples, TemporalResponse};
 use super::glint::drop_glint_right;
@@ -26,45 +26,8 @@ use crate::camera::{Camera, MAX_EXPOSURE_S};
 /// Bits of a diameter between two entries of the frequencies.
 const FREQUENCY_STEP: u32 = 1 << 16;
 
-/// Numbers beyond these are as good as infinite, s: the shader has no infinities.
-const ALWAYS_S: f32 = 1.0e30;
-
 /// Numbers of drops for an atlas: single precision has all integers below 2^24.
 const AXIS_IDS: u32 = 0x00ff_ffff;
-
-/// A drop relative to the eye. The same layout as `ProjectDrop` in WGSL.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct ProjectDrop {
-    /// Position at the time of the picture, or where it would be then, m.
-    pub offset: [f32; 3],
-    /// Diameter, m.
-    pub diameter: f32,
-    /// Velocity, m/s.
-    pub velocity: [f32; 3],
-    /// Id in 32 bits, from which its oscillation is drawn.
-    pub id: u32,
-    /// When it is there, s from the time of the picture.
-    pub present: [f32; 2],
-    /// 0.
-    pub unused: [u32; 2],
-}
-
-impl ProjectDrop {
-    /// A drop that is seen from `eye` (in f64, so that drops far from the origin keep their places).
-    #[must_use]
-    pub fn new(drop: &FallingDrop, eye: DVec3) -> Self {
-        let moved = Vec3::from(drop.velocity) * drop.seen_s();
-        Self {
-            offset: ((drop.position - eye).as_vec3() - moved).into(),
-            diameter: drop.diameter,
-            velocity: drop.velocity,
-            id: drop.id as u32 ^ (drop.id >> 32) as u32,
-            present: drop.present_s.map(|time| time.clamp(-ALWAYS_S, ALWAYS_S)),
-            unused: [0; 2],
-        }
-    }
-}
 
 /// Uniforms of the kernel. The same layout as `ProjectFrame` in WGSL.
 #[repr(C)]
@@ -222,7 +185,7 @@ pub fn project_grid(width: f32, moves: bool) -> u32 {
 
 /// The row of the light of lamps on a drop: where it is seen, and its radius.
 #[must_use]
-pub fn project_row(eye: Vec3, drop: &ProjectDrop) -> [f32; 4] {
+pub fn project_row(eye: Vec3, drop: &EyeDrop) -> [f32; 4] {
     let seen = Vec3::from(drop.offset) + Vec3::from(drop.velocity) * project_seen(drop.present);
     (eye + seen).extend(0.5 * drop.diameter).to_array()
 }
@@ -293,13 +256,13 @@ impl<'a> Projector<'a> {
     }
 
     /// Position relative to the eye at a time relative to the picture's, s.
-    fn project_position(&self, drop: &ProjectDrop, time: f32) -> Vec3 {
+    fn project_position(&self, drop: &EyeDrop, time: f32) -> Vec3 {
         let velocity = Vec3::from(drop.velocity) - self.frame.eye_velocity;
         project_turned(Vec3::from(drop.offset) + velocity * time, self.frame.turning * -time)
     }
 
     /// The path of a drop whose middle is at `middle`; `None` if too little of it is there to be seen.
-    fn project_path(&self, drop: &ProjectDrop, middle: Vec3, present: [f32; 2]) -> Option<ProjectPath> {
+    fn project_path(&self, drop: &EyeDrop, middle: Vec3, present: [f32; 2]) -> Option<ProjectPath> {
         let radius = 0.5 * drop.diameter;
         let distance = middle.length();
         let towards = middle / distance;
@@ -352,7 +315,7 @@ impl<'a> Projector<'a> {
     }
 
     /// The oscillation of a drop in a part of the exposure.
-    fn project_modes(&self, drop: &ProjectDrop, towards: Vec3, part: [f32; 2]) -> ProjectModes {
+    fn project_modes(&self, drop: &EyeDrop, towards: Vec3, part: [f32; 2]) -> ProjectModes {
         let (frame, oscillating) = (&self.frame, PROJECT_OSCILLATES_MIN..=PROJECT_OSCILLATES_MAX);
         if frame.amplitudes == [0.0; 2] || !oscillating.contains(&drop.diameter) {
             return ProjectModes::default();
@@ -381,7 +344,7 @@ impl<'a> Projector<'a> {
 
     /// A drop on the picture; `None` where it is on none.
     #[must_use]
-    pub fn project_drop(&self, drop: &ProjectDrop) -> Option<Projected> {
+    pub fn project_drop(&self, drop: &EyeDrop) -> Option<Projected> {
         let frame = &self.frame;
         let camera = &frame.camera;
         let present = project_present(drop.present, frame.shutter);

@@ -238,6 +238,12 @@ impl SceneOnGpu {
         Ok(LightingOnGpu { buffers: [frame, nodes, triangles, corners, table, texels] })
     }
 
+    /// Nodes and triangles of the scene's bounding volume hierarchy (`downpour_bvh::Bvh`).
+    #[must_use]
+    pub fn obstacles(&self) -> [&wgpu::Buffer; 2] {
+        [&self.nodes, &self.triangles]
+    }
+
     /// Buffers that the kernel that traces the scene binds, in order.
     pub(super) fn buffers<'a>(
         &'a self,

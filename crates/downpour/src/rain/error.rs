@@ -6,6 +6,7 @@ use downpour_mask::MaskError;
 use downpour_math::OutOfRange;
 use downpour_render::RenderError;
 use downpour_sim::SimError;
+use downpour_sim::gpu::GpuSimError;
 
 /// Reason why a frame has no rain. Nothing was recorded that blends into the host's color texture.
 #[derive(Debug, thiserror::Error)]
@@ -52,4 +53,7 @@ pub enum RainError {
     /// The device refused, is lost or has no memory left.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// The device cannot find the drops.
+    #[error(transparent)]
+    GpuSim(#[from] GpuSimError),
 }

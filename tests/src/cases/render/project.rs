@@ -15,13 +15,14 @@ use downpour_render::rain::project::{
     project_row, project_seen, project_turned,
 };
 use downpour_render::rain::{
-    DropMasks, DropsDrop, Exposure, ProjectDrop, RainOptions, StreakPath, StreakSamples, TemporalResponse,
+    DropMasks, DropsDrop, Exposure, RainOptions, StreakPath, StreakSamples, TemporalResponse,
 };
 use downpour_shaders::Kernel;
 use downpour_shaders::render::rain::{
     PROFILES, PROFILES_CLEAR_KERNEL, PROFILES_FINISH_KERNEL, PROFILES_LEVELS, PROFILES_MEASURE_KERNEL,
     PROFILES_PLACE_KERNEL, PROJECT, PROJECT_KERNEL,
 };
+use downpour_sim::field::EyeDrop;
 use glam::Vec3;
 
 use crate::Domain::{Below, Made, OneOf, Uniform, Unit3};
@@ -186,12 +187,12 @@ fn camera_words(random: [u32; 4]) -> Vec<u32> {
 }
 
 /// Drops about the picture: more of them near, of all sizes; some land or start during the exposure.
-fn drops() -> Vec<ProjectDrop> {
+fn drops() -> Vec<EyeDrop> {
     let one = |k| {
         let [a, b, c, d] = rng_draw([3, 4], k, 0, 0).map(rng_unit);
         let [e, f, g, h] = rng_draw([3, 4], k, 1, 0).map(rng_unit);
         let distance = 0.1 + 12.0 * c * c;
-        ProjectDrop {
+        EyeDrop {
             offset: [(2.4 * a - 1.0) * distance, 1.3 * (b - 0.5) * distance, -distance],
             diameter: 0.3e-3 + 5.7e-3 * d * d,
             velocity: [2.0 * e - 1.0, -2.0 - 7.0 * d, 0.5 * f],
@@ -201,7 +202,8 @@ fn drops() -> Vec<ProjectDrop> {
                 1 => [0.02 * (h - 0.5), 1.0e30],
                 _ => [-1.0e30, 1.0e30],
             },
-            unused: [0; 2],
+            speed: 0.0,
+            unused: 0,
         }
     };
     (0..COUNT).map(one).collect()

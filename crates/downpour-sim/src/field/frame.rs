@@ -1,0 +1,219 @@
+//! What a GPU needs to find the drops of a picture. The structs have the layout of those in `shaders/wgsl/sim/field.wgsl` and
+//! `shaders/wgsl/sim/shelter.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+use downpour_shaders::sim::field::{FIELD_RADIUS, FIELD_SIDES, FIELD_THRESHOLDS};
+use glam::{DVec3, Vec3};
+
+use super::{Class, RainField, check_time};
+use crate::SimError;
+use crate::drift::Drift;
+use crate::field::chain::FieldTime;
+use crate::resolved::Resolved;
+use crate::view::View;
+
+/// Columns of a class that a picture may show.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct FieldClass {
+    /// Seed of the class.
+    pub seed: [u32; 2],
+    /// Edge of a column, m.
+    pub edge: f32,
+    /// Period along the vertical, m.
+    pub period: f32,
+    /// First node of its sizes.
+    pub first_node: u32,
+    /// First of its two rows of thresholds.
+    pub first_threshold: u32,
+    /// Whole portions of the number of chains.
+    pub portions: u32,
+    /// First invocation of its columns.
+    pub first_column: u32,
+    /// First column along x and z.
+    pub columns: [i32; 2],
+    /// Number of columns along x and z.
+    pub counts: [u32; 2],
+    /// Column in which the eye is; the drift is taken off.
+    pub eye_column: [i32; 2],
+    /// Position of the eye in it.
+    pub eye_in_column: [f32; 2],
+    /// Periods to the height of the eye: whole ones, and a fraction in units of 2^-32.
+    pub eye_periods: [u32; 2],
+    /// Lowest and highest drops of interest, relative to the eye, m.
+    pub heights: [f32; 2],
+    /// Middle of the drift along x and z, m.
+    pub drift: [f32; 2],
+    /// Radius of the part of a column within these heights with all margins, m.
+    pub reach: f32,
+    /// Its middle height, m.
+    pub middle: f32,
+}
+
+/// Uniforms of the search for the drops of a picture.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct FieldFrame {
+    /// Outward normals of the pyramid of the picture.
+    pub sides: [[f32; 4]; FIELD_SIDES as usize],
+    /// Those of all that the camera sees during the exposure.
+    pub swept: [[f32; 4]; FIELD_SIDES as usize],
+    /// Velocity of the eye, m/s.
+    pub velocity: Vec3,
+    /// Half the exposure time, s.
+    pub half_shutter: f32,
+    /// Axis of the camera's rotation, with its angular speed as length, rad/s.
+    pub turning: Vec3,
+    /// Least distance of a drop, m.
+    pub nearest: f32,
+    /// Distance up to which a drop is resolved, by its diameter.
+    pub per_diameter: f32,
+    /// Largest distance of a drop, m.
+    pub farthest: f32,
+    /// Time ([`FieldTime`]).
+    pub seconds: u32,
+    /// See `seconds`.
+    pub fraction: u32,
+    /// See `seconds`.
+    pub is_before: u32,
+    /// Number of classes.
+    pub classes: u32,
+    /// Number of columns of all classes.
+    pub columns: u32,
+    /// Room for drops.
+    pub room: u32,
+}
+
+/// Uniforms of the search for what obstacles stop.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct ShelterFrame {
+    /// Position of the eye relative to the obstacles, m.
+    pub eye: Vec3,
+    /// Half the exposure time, s.
+    pub half_shutter: f32,
+    /// Lower corner of the bounds of all obstacles.
+    pub low: Vec3,
+    /// Time from the last whole quarter of a second to the opening of the shutter, s.
+    pub since_cut: f32,
+    /// Upper corner of these bounds.
+    pub high: Vec3,
+    /// Number of quarters of a second that paths are followed back; 0 in a steady wind.
+    pub cuts: u32,
+    /// Places in the list.
+    pub room: u32,
+    /// 0.
+    pub unused_1: u32,
+    /// 0.
+    pub unused_2: u32,
+    /// 0.
+    pub unused_3: u32,
+}
+
+/// Drops of a picture, as a GPU is asked for them.
+#[derive(Clone, Debug)]
+pub(crate) struct FieldQuery {
+    pub(crate) frame: FieldFrame,
+    pub(crate) classes: Vec<FieldClass>,
+    /// By terminal speed: drift, less that of the middle speed, m; velocity due to the wind, m/s.
+    pub(crate) drift: Vec<[f32; 4]>,
+    pub(crate) resolved: Resolved,
+    /// Terminal speed of the slowest drop, m/s, and height of the lowest, m.
+    pub(crate) slowest: f64,
+    pub(crate) deepest: f64,
+}
+
+/// Room beyond what is expected: a fifth for drops beside the picture that move into it, and for chance.
+const ROOM: f64 = 1.25;
+const SPARE_ROOM: f64 = 4096.0;
+
+impl RainField {
+    /// The question for the drops of a picture; at most `most` drops have room.
+    ///
+    /// # Errors
+    /// As [`RainField::visible`].
+    pub(crate) fn query(&self, view: &View, time_s: f64, most: u32) -> Result<FieldQuery, SimError> {
+        view.check()?;
+        check_time(time_s)?;
+        let least_pixels = self.affordable(view);
+        let drift = Drift::new(&self.wind, time_s);
+        let base = drift.middle();
+        let (mut classes, mut columns, mut expected) = (Vec::new(), 0u32, 0.0);
+        let (mut slowest, mut deepest) = (f64::INFINITY, f64::INFINITY);
+        for (k, class) in (0u32..).zip(&self.classes) {
+            let range = view.range(class.largest, least_pixels);
+            if range < view.near {
+                continue;
+            }
+            let mut row = class.row(view, range, &drift, base);
+            row.first_node = k * self.nodes_of_class();
+            row.first_threshold = k * 2 * FIELD_THRESHOLDS;
+            row.first_column = columns;
+            columns = columns.saturating_add(row.counts[0].saturating_mul(row.counts[1]));
+            expected += class.density * view.volume(range);
+            slowest = slowest.min(class.speeds[0]);
+            deepest = deepest.min(view.eye.y + f64::from(row.heights[0]));
+            classes.push(row);
+        }
+        let time = FieldTime::new(time_s);
+        let normals = |sides: [DVec3; 5]| sides.map(|side| side.as_vec3().extend(0.0).to_array());
+        let frame = FieldFrame {
+            sides: normals(view.sides()),
+            swept: normals(view.swept_sides()),
+            velocity: view.velocity.as_vec3(),
+            half_shutter: (0.5 * view.shutter_s) as f32,
+            turning: view.turning.as_vec3(),
+            nearest: view.near as f32,
+            per_diameter: (1.0 / (view.pixel_angle * least_pixels).max(1.0e-12)) as f32,
+            farthest: view.far as f32,
+            seconds: time.seconds,
+            fraction: time.fraction,
+            is_before: time.is_before,
+            classes: classes.len() as u32,
+            columns,
+            room: ((expected * ROOM + SPARE_ROOM) as u32).min(most).max(1),
+        };
+        let table = drift
+            .entries()
+            .flat_map(|[moved, wind]| [*moved - base, *wind].map(|v| v.as_vec3().extend(0.0).to_array()));
+        let (drift, resolved) = (table.collect(), Resolved::of(view, least_pixels));
+        Ok(FieldQuery { frame, classes, drift, resolved, slowest, deepest })
+    }
+
+    /// Number of nodes of the sizes of each class.
+    pub(crate) fn nodes_of_class(&self) -> u32 {
+        self.classes.first().map_or(0, |class| class.sizes.nodes.len() as u32)
+    }
+}
+
+impl Class {
+    /// The columns of a class that a picture may show up to a distance; `base` is taken off the drift.
+    fn row(&self, view: &View, range: f64, drift: &Drift, base: DVec3) -> FieldClass {
+        let margin = self.half_way(view, drift) + f64::from(FIELD_RADIUS) * self.largest;
+        let bounds = view.bounds(range, margin);
+        let [xs, zs] = self.columns(&bounds, drift);
+        let [least, most] = drift.span(self.speeds[0], self.speeds[1]);
+        let (carried, spread) = (least.midpoint(most) - base, 0.5 * (most - least).length());
+        let half = (bounds.high.y - bounds.low.y) * 0.5;
+        let radius = (0.5 * self.edge * self.edge + half * half).sqrt() + spread;
+        let eye = view.eye - base;
+        let at = [eye.x / self.edge, eye.z / self.edge];
+        let periods = (eye.y / self.period * 4_294_967_296.0).round() as i64 as u64;
+        FieldClass {
+            seed: self.seed,
+            edge: self.edge as f32,
+            period: self.period as f32,
+            portions: self.count.portions,
+            columns: [*xs.start() as i32, *zs.start() as i32],
+            counts: [xs, zs].map(|range| (range.end() - range.start() + 1) as u32),
+            eye_column: at.map(|at| at.floor() as i32),
+            eye_in_column: at.map(|at| (at - at.floor()) as f32),
+            eye_periods: [(periods >> 32) as u32, periods as u32],
+            heights: [bounds.low.y - view.eye.y, bounds.high.y - view.eye.y].map(|height| height as f32),
+            drift: [carried.x as f32, carried.z as f32],
+            reach: (radius + margin) as f32,
+            middle: ((bounds.low.y + bounds.high.y) * 0.5 - view.eye.y) as f32,
+            ..FieldClass::default()
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! Drops of a rain in closed form on a GPU: those that [`RainField::visible_among`] lists on the CPU.
+
+use std::collections::BTreeMap;
+
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_shaders::sim::field::{FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_KERNEL};
+use glam::{DVec3, Vec3};
+
+use super::GpuSimError;
+use crate::drift::Drift;
+use crate::field::frame::{FieldClass, FieldQuery, ShelterFrame};
+use crate::field::{EyeDrop, RainField};
+use crate::resolved::Resolved;
+use crate::shelter::{CUT_S, number_of_cuts};
+use crate::view::View;
+
+/// Workgroups along a row: fewer than every device allows.
+const ALONG: u32 = 1 << 15;
+
+/// Obstacles on the device: the nodes and triangles of a `downpour_bvh::Bvh`, without holes.
+#[derive(Clone, Copy, Debug)]
+pub struct ObstaclesOnGpu<'a> {
+    /// Nodes; at least one.
+    pub nodes: &'a wgpu::Buffer,
+    /// Triangles; at least one.
+    pub triangles: &'a wgpu::Buffer,
+    /// Bounds of all, m, relative to `origin`; `None` without obstacles.
+    pub bounds: Option<[Vec3; 2]>,
+    /// Origin, m.
+    pub origin: DVec3,
+}
+
+/// The pipelines of the closed form.
+#[derive(Clone, Debug)]
+pub struct FieldPipeline {
+    gpu: Gpu,
+    clear: ComputeKernel,
+    find: ComputeKernel,
+    shelter: ComputeKernel,
+}
+
+/// A rain on the device.
+#[derive(Clone, Debug)]
+pub struct FieldOnGpu {
+    nodes: wgpu::Buffer,
+    thresholds: wgpu::Buffer,
+    /// Drift of drops up to whole quarters of a second, by their numbers.
+    cuts: BTreeMap<i64, Drift>,
+}
+
+/// The search for the drops of a picture, ready to be made.
+#[derive(Debug)]
+pub struct FieldPass<'a> {
+    pipeline: &'a FieldPipeline,
+    clear: (wgpu::BindGroup, [u32; 3]),
+    find: Option<(wgpu::BindGroup, [u32; 3])>,
+    shelter: Option<(wgpu::BindGroup, [u32; 3])>,
+    drops: wgpu::Buffer,
+    found: wgpu::Buffer,
+    room: u32,
+    resolved: Resolved,
+    columns: u32,
+}
+
+fn groups(count: u32) -> [u32; 3] {
+    let groups = count.div_ceil(64).max(1);
+    [groups.min(ALONG), groups.div_ceil(ALONG), 1]
+}
+
+/// A buffer has at least one element.
+fn storage<T: bytemuck::Pod + Default>(
+    buffers: &impl BufferSource,
+    label: &'static str,
+    data: &[T],
+) -> Result<wgpu::Buffer, GpuError> {
+    let one = [T::default()];
+    buffers.storage(label, if data.is_empty() { &one } else { data })
+}
+
+impl FieldPipeline {
+    /// Makes the pipelines.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
+        Ok(Self {
+            gpu: gpu.clone(),
+            clear: kernel(&FIELD_CLEAR_KERNEL)?,
+            find: kernel(&FIELD_FIND_KERNEL)?,
+            shelter: kernel(&SHELTER_KERNEL)?,
+        })
+    }
+
+    /// Brings a rain to the device.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn upload(&self, field: &RainField) -> Result<FieldOnGpu, GpuError> {
+        let nodes: Vec<[u32; 2]> =
+            field.classes.iter().flat_map(|class| class.sizes.nodes.iter().copied()).collect();
+        let rows = field.classes.iter().flat_map(|class| class.count.thresholds.iter().flatten());
+        let thresholds: Vec<[u32; 2]> = rows.map(|&word| [(word >> 32) as u32, word as u32]).collect();
+        Ok(FieldOnGpu {
+            nodes: storage(&self.gpu, "sizes of drops", &nodes)?,
+            thresholds: storage(&self.gpu, "numbers of chains", &thresholds)?,
+            cuts: BTreeMap::new(),
+        })
+    }
+
+    /// Makes ready to find the drops of a picture at a time in seconds, at most `most`; `on` is that of `field`.
+    ///
+    /// # Errors
+    /// As [`RainField::visible`]; or what the GPU says.
+    pub fn prepare(
+        &self,
+        buffers: &impl BufferSource,
+        (field, on): (&RainField, &mut FieldOnGpu),
+        obstacles: &ObstaclesOnGpu<'_>,
+        view: &View,
+        time_s: f64,
+        most: u32,
+    ) -> Result<FieldPass<'_>, GpuSimError> {
+        let query = field.query(view, time_s, most)?;
+        let gpu = &self.gpu;
+        let usage = wgpu::BufferUsages::STORAGE;
+        let room = query.frame.room;
+        let drops = buffers.buffer("falling drops", u64::from(room) * size_of::<EyeDrop>() as u64, usage)?;
+        let found = buffers.buffer("number of drops", 8, usage)?;
+        let clear = self.clear.bind_at(gpu, [(5, &drops), (6, &found)])?;
+        let places = (drops.size() / size_of::<EyeDrop>() as u64) as u32;
+        let mut find = None;
+        if query.frame.columns > 0 {
+            let uniform = buffers.uniform("field frame", &query.frame)?;
+            let classes = storage::<FieldClass>(buffers, "classes of the field", &query.classes)?;
+            let drift = storage(buffers, "drift of drops", &query.drift)?;
+            let bound = [&uniform, &classes, &on.nodes, &on.thresholds, &drift, &drops, &found];
+            find = Some((self.find.bind(gpu, &bound)?, groups(query.frame.columns)));
+        }
+        let mut shelter = None;
+        if let Some(bounds) = obstacles.bounds {
+            let (frame, drift) = shelter_frame(field, on, &query, (obstacles, bounds), view, time_s);
+            let uniform = buffers.uniform("shelter frame", &frame)?;
+            let drift = storage(buffers, "drift of paths", &drift)?;
+            let bound = [&uniform, obstacles.nodes, obstacles.triangles, &drops, &drift];
+            shelter = Some((self.shelter.bind(gpu, &bound)?, groups(room)));
+        }
+        Ok(FieldPass {
+            pipeline: self,
+            clear: (clear, groups(places)),
+            find,
+            shelter,
+            drops,
+            found,
+            room,
+            resolved: query.resolved,
+            columns: query.frame.columns,
+        })
+    }
+}
+
+/// The frame of the search for what obstacles stop, and the drift of paths relative to that up to the picture's time.
+fn shelter_frame(
+    field: &RainField,
+    on: &mut FieldOnGpu,
+    query: &FieldQuery,
+    (obstacles, [low, high]): (&ObstaclesOnGpu<'_>, [Vec3; 2]),
+    view: &View,
+    time_s: f64,
+) -> (ShelterFrame, Vec<[f32; 4]>) {
+    let half = 0.5 * view.shutter_s;
+    let open_s = time_s - half;
+    let last = (open_s / CUT_S).floor();
+    let height = f64::from(high.y) + obstacles.origin.y - query.deepest;
+    let cuts = number_of_cuts(&field.wind, height, query.slowest) as i64;
+    let numbers = last as i64 - cuts + 1..=last as i64;
+    on.cuts.retain(|number, _| numbers.contains(number));
+    for number in numbers.clone() {
+        on.cuts.entry(number).or_insert_with(|| Drift::new(&field.wind, number as f64 * CUT_S));
+    }
+    let now = Drift::new(&field.wind, time_s);
+    let open = Drift::new(&field.wind, open_s);
+    let row = |drift: &Drift| -> Vec<[f32; 4]> {
+        let pairs = drift.entries().zip(now.entries());
+        pairs.map(|(then, now)| (then[0] - now[0]).as_vec3().extend(0.0).to_array()).collect()
+    };
+    let mut drift = row(&open);
+    drift.extend(numbers.rev().filter_map(|number| on.cuts.get(&number)).flat_map(row));
+    let frame = ShelterFrame {
+        eye: (view.eye - obstacles.origin).as_vec3(),
+        half_shutter: half as f32,
+        low,
+        since_cut: (open_s - last * CUT_S) as f32,
+        high,
+        cuts: cuts as u32,
+        room: query.frame.room,
+        unused_1: 0,
+        unused_2: 0,
+        unused_3: 0,
+    };
+    (frame, drift)
+}
+
+impl FieldPass<'_> {
+    /// The dispatches, in this order.
+    #[must_use]
+    pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
+        let FieldPipeline { clear, find, shelter, .. } = self.pipeline;
+        let mut all = vec![clear.dispatch(&self.clear.0, self.clear.1)];
+        all.extend(self.find.as_ref().map(|(bindings, groups)| find.dispatch(bindings, *groups)));
+        all.extend(self.shelter.as_ref().map(|(bindings, groups)| shelter.dispatch(bindings, *groups)));
+        all
+    }
+
+    /// The drops on the device ([`EyeDrop`]), in any order, with empty places between them.
+    #[must_use]
+    pub fn drops(&self) -> &wgpu::Buffer {
+        &self.drops
+    }
+
+    /// Places for drops.
+    #[must_use]
+    pub fn room(&self) -> u32 {
+        self.room
+    }
+
+    /// Columns that are searched.
+    #[must_use]
+    pub fn columns(&self) -> u32 {
+        self.columns
+    }
+
+    /// Limits of the list.
+    #[must_use]
+    pub fn resolved(&self) -> &Resolved {
+        &self.resolved
+    }
+
+    /// Reads the drops, and how many were found before obstacles stopped some of them, and how many were looked at.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn read(&self) -> Result<(Vec<EyeDrop>, [u32; 2]), GpuError> {
+        let gpu = &self.pipeline.gpu;
+        let mut drops = gpu.read::<EyeDrop>(&self.drops)?;
+        drops.retain(|drop| drop.diameter > 0.0);
+        let found = gpu.read::<u32>(&self.found)?;
+        Ok((drops, [found[0], found[1]]))
+    }
+}

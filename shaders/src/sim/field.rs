@@ -1,0 +1,79 @@
+//! Rain in closed form. Twin: `downpour_sim::field`.
+
+use crate::bvh::BVH;
+use crate::common::RNG;
+use crate::drop::distribution::DISTRIBUTION;
+use crate::{Kernel, Module};
+
+/// Every module of this file.
+pub const MODULES: &[&Module] = &[&EYE_DROP, &FIELD_CONSTANTS, &FIELD, &SHELTER];
+
+/// Every kernel of this file.
+pub const KERNELS: &[&Kernel] = &[&FIELD_CLEAR_KERNEL, &FIELD_FIND_KERNEL, &SHELTER_KERNEL];
+
+shared_constants! {
+    /// Constants of the closed form.
+    FIELD_CONSTANTS at "sim/field_constants" {
+        /// Dimension of the random numbers of a column's number of chains.
+        FIELD_CHAIN_COUNT: u32 = 8200;
+        /// Dimension of those of a chain.
+        FIELD_CHAIN: u32 = 8201;
+        /// Dimension of those of a drop.
+        FIELD_PLACE: u32 = 8202;
+        /// Mean of a whole portion of a Poisson number.
+        FIELD_PORTION_MEAN: u32 = 16;
+        /// Thresholds of a portion: beyond, no probability of 64 bits is left.
+        FIELD_THRESHOLDS: u32 = 96;
+        /// Unit of a diameter, m: 2^-30.
+        FIELD_DIAMETER_STEP: f32 = 9.313225746154785e-10;
+        /// Unit of a rate of fall, periods per second: 2^-29.
+        FIELD_RATE_STEP: f32 = 1.862645149230957e-9;
+        /// Unit of a fraction of a period: 2^-32.
+        FIELD_FRACTION_STEP: f32 = 2.3283064365386963e-10;
+        /// Intervals of the table of drift.
+        FIELD_DRIFT: u32 = 48;
+        /// Terminal speed, m/s, at the end of the table of drift.
+        FIELD_DRIFT_SPEED: f32 = 12.0;
+        /// Sides of the pyramid of a picture, and the plane behind the eye.
+        FIELD_SIDES: u32 = 5;
+        /// Radius of a drop relative to its diameter, including its oscillation.
+        FIELD_RADIUS: f32 = 0.6;
+        /// As good as infinite, s.
+        FIELD_ALWAYS: f32 = 1.0e30;
+        /// Distance from a surface below which a drop counts as on it, m.
+        SHELTER_CLEAR: f32 = 1.0e-4;
+        /// Interval at which a path is divided, s.
+        SHELTER_CUT: f32 = 0.25;
+        /// Greatest speed, m/s, at which anything is carried.
+        SHELTER_CARRIED: f32 = 60.0;
+    }
+}
+
+/// A drop relative to the eye. Host type: `downpour_sim::field::EyeDrop`.
+pub static EYE_DROP: Module =
+    Module { path: "sim/eye_drop.wgsl", wgsl: include_str!("../../wgsl/sim/eye_drop.wgsl"), uses: &[] };
+
+/// Drops of a rain before an eye. Twin: `downpour_sim::field`.
+pub static FIELD: Module = Module {
+    path: "sim/field.wgsl",
+    wgsl: include_str!("../../wgsl/sim/field.wgsl"),
+    uses: &[&FIELD_CONSTANTS, &EYE_DROP, &RNG, &DISTRIBUTION],
+};
+
+/// Drops that nothing has stopped. Twin: `downpour_sim::shelter`.
+pub static SHELTER: Module = Module {
+    path: "sim/shelter.wgsl",
+    wgsl: include_str!("../../wgsl/sim/shelter.wgsl"),
+    uses: &[&FIELD_CONSTANTS, &EYE_DROP, &BVH],
+};
+
+/// One invocation per place in the list.
+pub static FIELD_CLEAR_KERNEL: Kernel =
+    Kernel { entry: "main_field_clear", module: &FIELD, workgroup: [64, 1, 1] };
+
+/// One invocation per column.
+pub static FIELD_FIND_KERNEL: Kernel =
+    Kernel { entry: "main_field_find", module: &FIELD, workgroup: [64, 1, 1] };
+
+/// One invocation per place in the list.
+pub static SHELTER_KERNEL: Kernel = Kernel { entry: "main_shelter", module: &SHELTER, workgroup: [64, 1, 1] };

@@ -1,0 +1,283 @@
+// Drops of a rain in closed form that a picture can resolve.
+// Method: diameters are divided into classes, a class has square columns, a column holds chains, and the drops of a chain follow each
+// other at the period of the class (downpour_sim::field). Each column that the picture may show is one invocation.
+// What decides which drops there are is done in integers, the same on every device: the number of chains (a Poisson number, by
+// cumulative probabilities of 64 bits), the diameter (in units of 2^-30 m) and the rate of fall (in units of 2^-29 periods per
+// second) of a chain, and how far it has fallen (whole periods, and a fraction of 32 bits), at any time. Only then, relative to the
+// eye, positions are f32.
+// Twin: downpour_sim::field.
+
+struct FieldClass {
+    seed: vec2u,
+    // Edge of a column and period along the vertical, m.
+    edge: f32,
+    period: f32,
+    // First node of its sizes, first of its two rows of thresholds, and whole portions of the number of chains.
+    first_node: u32,
+    first_threshold: u32,
+    portions: u32,
+    // First invocation of its columns.
+    first_column: u32,
+    // First column along x and z, and number of them.
+    columns: vec2i,
+    counts: vec2u,
+    // Column in which the eye is, and position in it; the drift is taken off.
+    eye_column: vec2i,
+    eye_in_column: vec2f,
+    // Periods to the height of the eye: whole ones, and a fraction in units of 2^-32.
+    eye_periods: vec2u,
+    // Lowest and highest drops of interest, relative to the eye, m.
+    heights: vec2f,
+    // Middle of the drift along x and z, m.
+    drift: vec2f,
+    // Radius of the part of a column within these heights with all margins, and its middle height, m.
+    reach: f32,
+    middle: f32,
+}
+
+struct FieldFrame {
+    // Outward normals of the pyramid of the picture, and of all that the camera sees during the exposure.
+    sides: array<vec4f, FIELD_SIDES>,
+    swept: array<vec4f, FIELD_SIDES>,
+    // Velocity of the eye, m/s.
+    velocity: vec3f,
+    // Half the exposure time, s.
+    half_shutter: f32,
+    // Axis of the camera's rotation, with its angular speed as length, rad/s.
+    turning: vec3f,
+    // Least distance of a drop, m.
+    nearest: f32,
+    // Distance up to which a drop is resolved: by its diameter, and in any case, m.
+    per_diameter: f32,
+    farthest: f32,
+    // Time (FieldTime).
+    seconds: u32,
+    fraction: u32,
+    is_before: u32,
+    // Classes, all their columns, and room for drops.
+    classes: u32,
+    columns: u32,
+    room: u32,
+}
+
+@group(0) @binding(0) var<uniform> field_frame: FieldFrame;
+@group(0) @binding(1) var<storage, read> field_classes: array<FieldClass>;
+// Diameter and rate of fall at the nodes of each class.
+@group(0) @binding(2) var<storage, read> field_nodes: array<vec2u>;
+// Cumulative probabilities, the high word first: FIELD_THRESHOLDS for a whole portion, and as many for the rest, for each class.
+@group(0) @binding(3) var<storage, read> field_thresholds: array<vec2u>;
+// By terminal speed the drift of drops, less what is taken off, m, and their velocity due to the wind, m/s.
+@group(0) @binding(4) var<storage, read> field_drift: array<vec4f>;
+@group(0) @binding(5) var<storage, read_write> field_drops: array<EyeDrop>;
+// Drops that were found, which may be more than there is room for; and drops that were looked at.
+@group(0) @binding(6) var<storage, read_write> field_found: array<atomic<u32>, 2>;
+
+// Drift and velocity of a drop of some speed.
+struct FieldCarried {
+    drift: vec3f,
+    wind: vec3f,
+}
+
+// Number of thresholds of a row below a number of two words, the high one first.
+fn field_reached(first: u32, word: vec2u) -> u32 {
+    var low = 0u;
+    var high = FIELD_THRESHOLDS;
+    while low < high {
+        let middle = (low + high) / 2u;
+        let threshold = field_thresholds[first + middle];
+        if threshold.x < word.x || (threshold.x == word.x && threshold.y < word.y) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+// Number of chains of a column.
+fn field_count(key: vec2u, first: u32, portions: u32) -> u32 {
+    var count = 0u;
+    for (var portion = 0u; portion <= portions; portion += 1u) {
+        let word = rng_draw(key, portion, 0u, FIELD_CHAIN_COUNT);
+        count += field_reached(first + select(0u, FIELD_THRESHOLDS, portion == portions), word.xy);
+    }
+    return count;
+}
+
+// A part of a number, in units of 2^-16, rounded down in two pieces.
+fn field_part(whole: u32, part: u32) -> u32 {
+    return (whole >> 16u) * part + (((whole & 0xffffu) * part) >> 16u);
+}
+
+// A number between two others, by a fraction in units of 2^-16.
+fn field_between(a: u32, b: u32, part: u32) -> u32 {
+    if b >= a {
+        return a + field_part(b - a, part);
+    }
+    return a - field_part(a - b, part);
+}
+
+// Fraction of the distance from a node of the sizes to the next, in units of 2^-16.
+fn field_fraction(word: u32) -> u32 {
+    // Exact: the fraction has no more bits than a number of f32.
+    return u32(distribution_table_position(word).fraction * 65536.0);
+}
+
+// Diameter and rate of fall of a chain, by a random word.
+fn field_size(first: u32, word: u32) -> vec2u {
+    let node = first + distribution_table_position(word).index;
+    let part = field_fraction(word);
+    let a = field_nodes[node];
+    let b = field_nodes[node + 1u];
+    return vec2u(field_between(a.x, b.x, part), field_between(a.y, b.y, part));
+}
+
+// The product of two numbers: low and high word.
+fn field_product(a: u32, b: u32) -> vec2u {
+    let low = (a & 0xffffu) * (b & 0xffffu);
+    let cross = (a >> 16u) * (b & 0xffffu);
+    let middle = (a & 0xffffu) * (b >> 16u) + (low >> 16u) + (cross & 0xffffu);
+    return vec2u(a * b, (a >> 16u) * (b >> 16u) + (cross >> 16u) + (middle >> 16u));
+}
+
+// Periods that a chain has fallen at the time of the picture: whole ones, and a fraction in units of 2^-32.
+fn field_fallen(rate: u32, seconds: u32, fraction: u32, is_before: u32) -> vec2u {
+    // Three words, in units of 2^-61 periods.
+    let a = field_product(rate, fraction);
+    let b = field_product(rate, seconds);
+    let second = a.y + b.x;
+    let third = b.y + select(0u, 1u, second < a.y);
+    let fallen = vec2u((second >> 29u) | (third << 3u), (a.x >> 29u) | (second << 3u));
+    if is_before == 1u {
+        return vec2u(~fallen.x + select(0u, 1u, fallen.y == 0u), ~fallen.y + 1u);
+    }
+    return fallen;
+}
+
+// Difference of two numbers of two words, the high one first.
+fn field_less(a: vec2u, b: vec2u) -> vec2u {
+    return vec2u(a.x - b.x - select(0u, 1u, a.y < b.y), a.y - b.y);
+}
+
+// A vector turned about an axis by the axis's length, in radians.
+fn field_turned(v: vec3f, axis: vec3f) -> vec3f {
+    let angle = sqrt(dot(axis, axis));
+    if angle < 1.0e-9 {
+        return v;
+    }
+    let unit = axis / angle;
+    return v * cos(angle) + cross(unit, v) * sin(angle) + unit * (dot(unit, v) * (1.0 - cos(angle)));
+}
+
+// Drift and velocity of drops of a terminal speed: linear between the entries.
+fn field_carried(speed: f32) -> FieldCarried {
+    let at = clamp(speed * (f32(FIELD_DRIFT) / FIELD_DRIFT_SPEED), 0.0, f32(FIELD_DRIFT));
+    let low = min(u32(at), FIELD_DRIFT - 1u);
+    let part = at - f32(low);
+    let drift = field_drift[2u * low].xyz * (1.0 - part) + field_drift[2u * low + 2u].xyz * part;
+    let wind = field_drift[2u * low + 1u].xyz * (1.0 - part) + field_drift[2u * low + 3u].xyz * part;
+    return FieldCarried(drift, wind);
+}
+
+// True if the path of a drop touches the picture, and it is between the least distance and that at which it is resolved.
+fn field_shows(drop: EyeDrop) -> bool {
+    let distance = sqrt(dot(drop.offset, drop.offset));
+    let range = min(drop.diameter * field_frame.per_diameter, field_frame.farthest);
+    if distance < field_frame.nearest || distance > range {
+        return false;
+    }
+    let half_time = field_frame.half_shutter;
+    let moved = (drop.velocity - field_frame.velocity) * half_time;
+    let begin = field_turned(drop.offset - moved, field_frame.turning * half_time);
+    let end = field_turned(drop.offset + moved, field_frame.turning * -half_time);
+    let radius = FIELD_RADIUS * drop.diameter;
+    for (var k = 0u; k < FIELD_SIDES; k += 1u) {
+        let side = field_frame.sides[k].xyz;
+        if min(dot(side, begin), dot(side, end)) > radius {
+            return false;
+        }
+    }
+    return true;
+}
+
+// True if a column of a class may hold drops of the picture.
+fn field_meets(kind: FieldClass, column: vec2i) -> bool {
+    let aside = (vec2f(column - kind.eye_column) + 0.5 - kind.eye_in_column) * kind.edge + kind.drift;
+    let offset = vec3f(aside.x, kind.middle, aside.y);
+    for (var k = 0u; k < FIELD_SIDES; k += 1u) {
+        if dot(field_frame.swept[k].xyz, offset) > kind.reach {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Lists the drops of a chain.
+fn field_chain(kind: FieldClass, column: vec2i, key: vec2u, index: u32) {
+    let words = rng_draw(key, index, 0u, FIELD_CHAIN);
+    let size = field_size(kind.first_node, words.x);
+    let speed = f32(size.y) * FIELD_RATE_STEP * kind.period;
+    let carried = field_carried(speed);
+    let fallen = field_fallen(size.y, field_frame.seconds, field_frame.fraction, field_frame.is_before);
+    // Height of the drop 0 above the eye, in periods.
+    let above = field_less(field_less(vec2u(0u, words.y), fallen), kind.eye_periods);
+    let part = f32(above.y >> 8u) * (FIELD_FRACTION_STEP * 256.0);
+    let heights = (kind.heights - carried.drift.y) / kind.period - part;
+    for (var k = i32(ceil(heights.x)); k <= i32(floor(heights.y)); k += 1) {
+        let number = u32(k) - above.x;
+        let place = rng_draw(key, index, number, FIELD_PLACE);
+        let in_column = (vec2f(place.xy >> vec2u(8u)) + 0.5) * (FIELD_FRACTION_STEP * 256.0);
+        let aside = (vec2f(column - kind.eye_column) + (in_column - kind.eye_in_column)) * kind.edge;
+        let drop = EyeDrop(
+            vec3f(aside.x, (f32(k) + part) * kind.period, aside.y) + carried.drift,
+            f32(size.x) * FIELD_DIAMETER_STEP,
+            carried.wind - vec3f(0.0, speed, 0.0),
+            place.z ^ place.w,
+            vec2f(-FIELD_ALWAYS, FIELD_ALWAYS),
+            speed,
+            0u,
+        );
+        atomicAdd(&field_found[1], 1u);
+        if field_shows(drop) {
+            let slot = atomicAdd(&field_found[0], 1u);
+            if slot < field_frame.room {
+                field_drops[slot] = drop;
+            }
+        }
+    }
+}
+
+@compute @workgroup_size(64, 1, 1)
+fn main_field_clear(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let index = id.y * groups.x * 64u + id.x;
+    if index < 2u {
+        atomicStore(&field_found[index], 0u);
+    }
+    if index < arrayLength(&field_drops) {
+        field_drops[index].diameter = 0.0;
+    }
+}
+
+@compute @workgroup_size(64, 1, 1)
+fn main_field_find(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let index = id.y * groups.x * 64u + id.x;
+    if index >= field_frame.columns {
+        return;
+    }
+    var number = 0u;
+    while number + 1u < field_frame.classes && index >= field_classes[number + 1u].first_column {
+        number += 1u;
+    }
+    let kind = field_classes[number];
+    let place = index - kind.first_column;
+    let column = kind.columns + vec2i(vec2u(place / kind.counts.y, place % kind.counts.y));
+    if !field_meets(kind, column) {
+        return;
+    }
+    let words = rng_pcg4d(vec4u(vec2u(column), kind.seed));
+    let key = vec2u(words.x ^ words.z, words.y ^ words.w);
+    let count = field_count(key, kind.first_threshold, kind.portions);
+    for (var chain = 0u; chain < count; chain += 1u) {
+        field_chain(kind, column, key, chain);
+    }
+}

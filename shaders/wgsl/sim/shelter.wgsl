@@ -1,0 +1,104 @@
+// Drops of a rain in closed form that obstacles have not stopped when the shutter opens; those that are stopped during the exposure get
+// the time.
+// Method: the path of a drop is followed backwards from the drop to above all obstacles. In a steady wind it is one straight line;
+// else it is divided at whole quarters of a second. During the exposure it is straight, as it is drawn.
+// Twin: downpour_sim::shelter.
+
+struct ShelterFrame {
+    // Position of the eye relative to the obstacles, m.
+    eye: vec3f,
+    // Half the exposure time, s.
+    half_shutter: f32,
+    // Bounds of all obstacles.
+    low: vec3f,
+    // Time from the last whole quarter of a second to the opening of the shutter, s.
+    since_cut: f32,
+    high: vec3f,
+    // Number of quarters of a second that paths are followed back; 0 in a steady wind.
+    cuts: u32,
+    // Places in the list.
+    room: u32,
+    unused_1: u32,
+    unused_2: u32,
+    unused_3: u32,
+}
+
+@group(0) @binding(0) var<uniform> shelter_frame: ShelterFrame;
+@group(0) @binding(3) var<storage, read_write> shelter_drops: array<EyeDrop>;
+// By terminal speed, relative to the drift up to the time of the picture: the drift up to the opening of the shutter, then up to
+// each whole quarter of a second before, m.
+@group(0) @binding(4) var<storage, read> shelter_drift: array<vec4f>;
+
+// True if nothing is hit within a distance.
+fn shelter_clear(start: vec3f, direction: vec3f, distance: f32) -> bool {
+    return bvh_hit(start, direction, SHELTER_CLEAR, min(distance, BVH_FAR)).distance < 0.0;
+}
+
+// Drift of drops of a terminal speed: row 0 up to the opening of the shutter, others up to the quarters before.
+fn shelter_carried(row: u32, speed: f32) -> vec3f {
+    let at = clamp(speed * (f32(FIELD_DRIFT) / FIELD_DRIFT_SPEED), 0.0, f32(FIELD_DRIFT));
+    let low = min(u32(at), FIELD_DRIFT - 1u);
+    let part = at - f32(low);
+    let first = row * (FIELD_DRIFT + 1u) + low;
+    return shelter_drift[first].xyz * (1.0 - part) + shelter_drift[first + 1u].xyz * part;
+}
+
+// True if a drop beside all obstacles could have come from them.
+fn shelter_could_meet(position: vec3f, speed: f32) -> bool {
+    let reach = max(shelter_frame.high.y - position.y, 0.0) * (SHELTER_CARRIED / max(speed, 0.1));
+    let low = shelter_frame.low;
+    let high = shelter_frame.high;
+    return position.x > low.x - reach && position.x < high.x + reach && position.z > low.z - reach
+        && position.z < high.z + reach;
+}
+
+// True if nothing is between the sky and `start`, which is near `at`, the position of a drop when the shutter opens.
+fn shelter_is_open(start: vec3f, at: vec3f, speed: f32, velocity: vec3f) -> bool {
+    if shelter_frame.cuts == 0u {
+        let length = sqrt(dot(velocity, velocity));
+        let back = select(vec3f(0.0, 1.0, 0.0), -velocity / max(length, 1.0e-30), length > 0.0);
+        return shelter_clear(start, back, BVH_FAR);
+    }
+    var position = start;
+    let displacement = shelter_carried(0u, speed);
+    for (var cut = 0u; cut < shelter_frame.cuts; cut += 1u) {
+        if position.y > shelter_frame.high.y || !shelter_could_meet(position, speed) {
+            return true;
+        }
+        let age = shelter_frame.since_cut + f32(cut) * SHELTER_CUT;
+        let carried = displacement - shelter_carried(cut + 1u, speed);
+        let next = at - carried + vec3f(0.0, speed * age, 0.0);
+        let way = next - position;
+        let length = sqrt(dot(way, way));
+        if length > 0.0 && !shelter_clear(position, way / length, length) {
+            return false;
+        }
+        position = next;
+    }
+    return true;
+}
+
+@compute @workgroup_size(64, 1, 1)
+fn main_shelter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let index = id.y * groups.x * 64u + id.x;
+    if index >= shelter_frame.room || shelter_drops[index].diameter <= 0.0 {
+        return;
+    }
+    let drop = shelter_drops[index];
+    let half_time = shelter_frame.half_shutter;
+    let here = shelter_frame.eye + drop.offset;
+    // As it is drawn, and as it has moved.
+    let start = here - drop.velocity * half_time;
+    let at = here + shelter_carried(0u, drop.speed) + vec3f(0.0, drop.speed * half_time, 0.0);
+    if !shelter_is_open(start, at, drop.speed, drop.velocity) {
+        shelter_drops[index].diameter = 0.0;
+        return;
+    }
+    if half_time > 0.0 {
+        let step = 2.0 * half_time;
+        let met = bvh_hit(start, drop.velocity, 0.0, step);
+        if met.distance >= 0.0 {
+            shelter_drops[index].present.y = met.distance - half_time;
+        }
+    }
+}

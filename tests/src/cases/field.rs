@@ -1,0 +1,200 @@
+//! `shaders/wgsl/sim/{field,shelter}.wgsl` against `downpour_sim::field` and `downpour_sim::shelter`.
+
+use std::collections::BTreeMap;
+
+use downpour_bvh::Bvh;
+use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+use downpour_gpu::{Gpu, GpuError};
+use downpour_shaders::Kernel;
+use downpour_shaders::sim::field::{FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_KERNEL};
+use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
+use downpour_sim::field::{EyeDrop, RainField};
+use downpour_sim::gpu::{FieldPipeline, GpuSimError, ObstaclesOnGpu};
+use downpour_sim::shelter::Obstacles;
+use downpour_sim::view::View;
+use downpour_wind::{Gusts, Keyed, UniformWind, Wind, WindPart};
+use glam::{DVec3, Vec3};
+
+use crate::Domain::{AnyWord, Below, Made};
+use crate::compare::{Cpu, Gpu as FromGpu};
+use crate::function::Run;
+use crate::signature::WordKind;
+use crate::words::IntoWords as _;
+use crate::{FunctionCase, KernelCase, Tol};
+
+/// A number below 2^30.
+fn number(random: [u32; 4]) -> Vec<u32> {
+    vec![random[0] >> (2 + random[1] % 24)]
+}
+
+/// A time up to a million seconds.
+fn time(random: [u32; 4]) -> Vec<u32> {
+    vec![random[0] % 1_000_001, random[1], random[2] % 2]
+}
+
+/// The cases.
+#[must_use]
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let exact = Tol::exact("integers throughout");
+    vec![
+        FunctionCase::new("field_part", &FIELD, &[AnyWord, Below(1 << 16)], exact, |a| {
+            field_part(a.u32(), a.u32()).words()
+        }),
+        FunctionCase::new(
+            "field_between",
+            &FIELD,
+            &[Made(number), Made(number), Below(1 << 16)],
+            exact,
+            |a| field_between(a.u32(), a.u32(), a.u32()).words(),
+        ),
+        FunctionCase::new("field_fraction", &FIELD, &[AnyWord], exact, |a| field_fraction(a.u32()).words()),
+        FunctionCase::new("field_fallen", &FIELD, &[AnyWord, Made(time)], exact, |a| {
+            let rate = a.u32();
+            let [seconds, fraction, is_before] = a.u32s();
+            field_fallen(rate, FieldTime { seconds, fraction, is_before }).words()
+        }),
+        FunctionCase::new("field_product", &FIELD, &[AnyWord, AnyWord], exact, |a| {
+            let product = u64::from(a.u32()) * u64::from(a.u32());
+            [product as u32, (product >> 32) as u32].words()
+        }),
+        FunctionCase::new("field_less", &FIELD, &[AnyWord, AnyWord, AnyWord, AnyWord], exact, |a| {
+            let mut long = || u64::from(a.u32()) << 32 | u64::from(a.u32());
+            let first = long();
+            let difference = first.wrapping_sub(long());
+            [(difference >> 32) as u32, difference as u32].words()
+        }),
+    ]
+}
+
+fn uniform(speed: &Keyed<f64>, gusts: Option<Gusts>) -> UniformWind {
+    let part = WindPart::uniform(speed, &DVec3::new(1.0, 0.1, 0.4).into()).expect("in range");
+    Wind::new(vec![part], gusts, None).expect("in range").uniform().expect("in range")
+}
+
+/// A roof, and a step that drops meet while the shutter is open.
+fn obstacles() -> Bvh {
+    let quad = |height: f32, [left, right]: [f32; 2], [far, near]: [f32; 2]| {
+        let corner = |x, z| [x, height, z];
+        let [a, b, c, d] = [corner(left, far), corner(right, far), corner(right, near), corner(left, near)];
+        [[a, b, c], [a, c, d]]
+    };
+    let all = [quad(3.0, [-2.0, 2.0], [-6.0, -2.0]), quad(0.9, [-6.0, 6.0], [-9.0, 0.0])];
+    Bvh::new(&all.concat())
+}
+
+/// What is special about a picture.
+#[derive(Clone, Copy, Debug)]
+struct Kind {
+    wind: fn() -> UniformWind,
+    time_s: f64,
+    shutter_s: f64,
+    far: bool,
+}
+
+fn case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
+    let sizes = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 60.0).expect("a rain");
+    let field = RainField::new(&sizes, 12).expect("a field").with_wind((kind.wind)());
+    let origin = if kind.far { DVec3::new(51_234.5, 20.0, -987_654.25) } else { DVec3::ZERO };
+    let view = View {
+        eye: origin + DVec3::new(0.3, 1.5, 3.0),
+        far: 14.0,
+        shutter_s: kind.shutter_s,
+        velocity: DVec3::new(0.4, 0.0, -3.0),
+        turning: DVec3::new(0.1, 0.8, 0.0),
+        ..View::default()
+    };
+    let bvh = obstacles();
+    let on_cpu = Obstacles { nodes: &bvh.nodes, triangles: &bvh.triangles, holes: None, origin };
+    let visible = field.visible_among(&on_cpu, &view, kind.time_s).expect("in range");
+    let root = bvh.nodes[0];
+    let nodes = gpu.storage_buffer("nodes", &bvh.nodes)?;
+    let triangles = gpu.storage_buffer("triangles", &bvh.triangles)?;
+    let bounds = Some([Vec3::from(root.low), Vec3::from(root.high)]);
+    let obstacles = ObstaclesOnGpu { nodes: &nodes, triangles: &triangles, bounds, origin };
+    let pipeline = FieldPipeline::new(gpu)?;
+    let mut on_gpu = pipeline.upload(&field)?;
+    let of_gpu = |error| match error {
+        GpuSimError::Gpu(error) => error,
+        other => panic!("{other}"),
+    };
+    let most = 1 << 20;
+    let pass =
+        pipeline.prepare(gpu, (&field, &mut on_gpu), &obstacles, &view, kind.time_s, most).map_err(of_gpu)?;
+    gpu.submit(&pass.dispatches())?;
+    gpu.submit(&pass.dispatches())?;
+    let (drops, [found, tried]) = pass.read()?;
+    assert!(found >= drops.len() as u32 && found <= pass.room() && tried > found, "{found} of {tried}");
+    assert!(visible.drops.len() > 3000 && drops.len() > 3000, "{} drops", drops.len());
+    // Ids of 32 bits are those of several drops now and then.
+    let key = |drop: &EyeDrop| (drop.id, drop.diameter.to_bits());
+    let mut others: BTreeMap<(u32, u32), EyeDrop> = drops.iter().map(|drop| (key(drop), *drop)).collect();
+    let words = |drop: &EyeDrop| {
+        let [x, y, z] = drop.offset;
+        let [u, v, w] = drop.velocity;
+        // The end of the exposure is in view, or it is the end of time.
+        let until = if drop.present[1] > 1.0e3 { 1.0 } else { drop.present[1] };
+        [1.0, x, y, z, u, v, w, drop.diameter, until].map(f32::to_bits)
+    };
+    let nothing = [0.0f32; 9].map(f32::to_bits);
+    let (mut cpu, mut gpu_words) = (Vec::new(), Vec::new());
+    for drop in &visible.drops {
+        let drop = EyeDrop::new(drop, view.eye);
+        cpu.extend(words(&drop));
+        gpu_words.extend(others.remove(&key(&drop)).as_ref().map_or(nothing, words));
+    }
+    // What only the device has.
+    for drop in others.values() {
+        cpu.extend(nothing);
+        gpu_words.extend(words(drop));
+    }
+    Ok(Run {
+        arguments: (0..(cpu.len() / 9) as u32).map(|k| vec![k]).collect(),
+        cpu: Cpu(cpu),
+        gpu: FromGpu(gpu_words),
+        kinds: vec![WordKind::Float],
+    })
+}
+
+fn steady() -> UniformWind {
+    uniform(&Keyed::from(6.0), None)
+}
+
+fn gusty() -> UniformWind {
+    let speed = Keyed::new(vec![(0.0, 3.0), (4.0, 9.0), (20.0, 6.0)]).expect("in range");
+    uniform(&speed, Some(Gusts::default()))
+}
+
+fn still() -> UniformWind {
+    uniform(&Keyed::from(0.0), None)
+}
+
+/// The cases.
+#[must_use]
+pub(super) fn kernels() -> Vec<KernelCase> {
+    const OTHERS: &[&Kernel] = &[&FIELD_CLEAR_KERNEL, &SHELTER_KERNEL];
+    let of = |name, run| KernelCase {
+        name,
+        kernel: &FIELD_FIND_KERNEL,
+        with: OTHERS,
+        overrides: &[],
+        text: None,
+        // The same drops, but for those at the edge of the picture, of what is resolved, or of an obstacle.
+        tol: Tol::absolute(6.0e-5, "meters: f32 up to 14 m, and a drift up to 100 m; drops at an edge")
+            .with_outliers(2.0e-3),
+        run,
+    };
+    vec![
+        of("main_field_find: steady wind", |gpu| {
+            case(gpu, Kind { wind: steady, time_s: 7.125, shutter_s: 1.0 / 60.0, far: false })
+        }),
+        of("main_field_find: gusts", |gpu| {
+            case(gpu, Kind { wind: gusty, time_s: 11.3, shutter_s: 1.0 / 60.0, far: false })
+        }),
+        of("main_field_find: frozen, far away and late", |gpu| {
+            case(gpu, Kind { wind: still, time_s: 987_654.321, shutter_s: 0.0, far: true })
+        }),
+        of("main_field_find: before time 0", |gpu| {
+            case(gpu, Kind { wind: steady, time_s: -3.4, shutter_s: 0.02, far: true })
+        }),
+    ]
+}
