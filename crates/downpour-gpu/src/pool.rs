@@ -29,6 +29,11 @@ pub trait BufferSource {
     /// Device and queue of the buffers.
     fn gpu(&self) -> &Gpu;
 
+    /// Writes the beginning of a buffer, before whatever is submitted next.
+    fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
+        self.gpu().write(buffer, bytes);
+    }
+
     /// Returns a storage buffer that begins with `data`.
     ///
     /// # Errors
@@ -36,7 +41,7 @@ pub trait BufferSource {
     fn storage<T: Pod>(&self, label: &'static str, data: &[T]) -> Result<wgpu::Buffer, GpuError> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let buffer = self.buffer(label, bytes.len() as u64, wgpu::BufferUsages::STORAGE)?;
-        self.gpu().write(&buffer, bytes);
+        self.write(&buffer, bytes);
         Ok(buffer)
     }
 
@@ -47,7 +52,7 @@ pub trait BufferSource {
     fn uniform<T: Pod>(&self, label: &'static str, value: &T) -> Result<wgpu::Buffer, GpuError> {
         let bytes = bytemuck::bytes_of(value);
         let buffer = self.buffer(label, bytes.len() as u64, wgpu::BufferUsages::UNIFORM)?;
-        self.gpu().write(&buffer, bytes);
+        self.write(&buffer, bytes);
         Ok(buffer)
     }
 }
@@ -87,6 +92,8 @@ struct Kept {
     used: HashMap<&'static str, usize>,
     /// Buffers that were created.
     made: u64,
+    /// Bytes that were written in the current frame.
+    written: u64,
 }
 
 impl BufferPool {
@@ -105,7 +112,15 @@ impl BufferPool {
 
     /// Begins a frame: all buffers may be used again.
     pub fn begin_frame(&self) {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner).used.clear();
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.used.clear();
+        kept.written = 0;
+    }
+
+    /// Number of bytes that were written in the current frame.
+    #[must_use]
+    pub fn written(&self) -> u64 {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).written
     }
 
     /// Number of buffers that were created so far.
@@ -153,6 +168,11 @@ impl BufferSource for BufferPool {
         };
         kept.used.insert(label, nth + 1);
         Ok(buffer)
+    }
+
+    fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).written += bytes.len() as u64;
+        self.gpu.write(buffer, bytes);
     }
 
     fn gpu(&self) -> &Gpu {

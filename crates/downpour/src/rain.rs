@@ -27,7 +27,7 @@ use downpour_trace::sky_light::SkyLight;
 use downpour_trace::stage::{MAX_LIGHTS, MAX_TRIANGLES, view_of};
 use glam::{Affine3A, DVec3, Vec3};
 
-use crate::shower::mean_velocity;
+use crate::shower::fall_speed;
 
 pub use downpour_render::host::DepthRange;
 pub use error::RainError;
@@ -60,6 +60,8 @@ pub struct RainStats {
     pub least_pixels: f64,
     /// Buffers that were created so far, in all frames: after the first frame of a size there are hardly any more.
     pub buffers_made: u64,
+    /// Bytes that were written to the device for this frame.
+    pub bytes_uploaded: u64,
 }
 
 /// Rain for a host application, drawn on the host's device.
@@ -81,6 +83,12 @@ pub struct Rain {
     field_on_gpu: FieldOnGpu,
     /// Drops whose lists the device can bind.
     most_drops: u32,
+    /// Speed of a drop of the effective diameter, m/s.
+    fall_speed: f64,
+    /// The drops that are not drawn one by one, for the limits of the last frame.
+    medium: Option<(Resolved, RainMedium)>,
+    /// Frequencies of the drops' oscillation.
+    frequencies: wgpu::Buffer,
     masks: DropMasks,
     masks_on_gpu: RainOnGpu,
     /// Obstacles and lamps.
@@ -110,6 +118,9 @@ impl Rain {
         let scene = scene_of(&[])?;
         Ok(Self {
             most_drops: rains.most_drops(),
+            fall_speed: fall_speed(&sizes),
+            medium: None,
+            frequencies: rains.frequencies(&Fluids::in_air(&settings.air))?,
             field_on_gpu: fields.upload(&field)?,
             fields,
             masks_on_gpu: rains.upload(&masks)?,
@@ -139,6 +150,8 @@ impl Rain {
     pub fn set_settings(&mut self, settings: RainSettings) -> Result<(), RainError> {
         let (sizes, field) = falling(&settings)?;
         self.field_on_gpu = self.fields.upload(&field)?;
+        self.frequencies = self.rains.frequencies(&Fluids::in_air(&settings.air))?;
+        (self.fall_speed, self.medium) = (fall_speed(&sizes), None);
         (self.sizes, self.field, self.settings) = (sizes, field, settings);
         Ok(())
     }
@@ -198,7 +211,9 @@ impl Rain {
         let on_gpu = (&self.field, &mut self.field_on_gpu);
         let found =
             self.fields.prepare(&self.pool, on_gpu, &obstacles, &seen, view.time_s, self.most_drops)?;
-        let options = self.options(view, found.resolved())?;
+        let medium = self.medium(found.resolved())?;
+        self.medium = Some((*found.resolved(), medium));
+        let options = self.options(view, medium);
         let rain = PictureRain::new(&camera, eye, &[], &self.masks, &options);
         let frame = RenderFrame::new(&self.scene, &view.camera, size, 1, 0, 0)?;
         let lighting = SceneView { data: &self.scene, frame: &frame };
@@ -218,7 +233,8 @@ impl Rain {
         let made =
             self.host.prepare(pool, &textures.on_gpu(), &plate_frame, &environment_frame, &environment)?;
         let plate = PlateOnGpu { pixels: made.pixels(), environment: &environment, lighting: &lighting };
-        let falling = FallingOnGpu { drops: found.drops(), count: found.room() };
+        let falling =
+            FallingOnGpu { drops: found.drops(), count: found.room(), frequencies: &self.frequencies };
         let masks = (&self.masks_on_gpu, &self.masks);
         let pass = self.rains.prepare_falling(pool, &plate, masks, (&rain, &options), &lights, falling)?;
         let mut dispatches = made.dispatches();
@@ -245,6 +261,7 @@ impl Rain {
             columns: found.columns(),
             least_pixels: found.resolved().least_pixels,
             buffers_made: pool.made(),
+            bytes_uploaded: pool.written(),
         })
     }
 
@@ -267,12 +284,19 @@ impl Rain {
         Ok(())
     }
 
-    fn options(&self, view: &RainView, resolved: &Resolved) -> Result<RainOptions, RainError> {
+    /// The drops that are not drawn one by one.
+    fn medium(&self, resolved: &Resolved) -> Result<RainMedium, RainError> {
+        match self.medium.filter(|(of, _)| of == resolved) {
+            Some((_, medium)) => Ok(medium),
+            None => Ok(RainMedium::new(&self.sizes, resolved, &self.masks, &MediumOptions::default())?),
+        }
+    }
+
+    fn options(&self, view: &RainView, medium: RainMedium) -> RainOptions {
         let settings = &self.settings;
-        let velocity = mean_velocity(&self.sizes, settings.wind.air(), view.time_s);
-        let medium = MediumOptions { velocity, ..MediumOptions::default() };
-        Ok(RainOptions {
-            medium: RainMedium::new(&self.sizes, resolved, &self.masks, &medium)?,
+        let velocity = settings.wind.air().velocity(view.time_s) - DVec3::Y * self.fall_speed;
+        RainOptions {
+            medium: medium.with_velocity(velocity.as_vec3()),
             exposure: Exposure {
                 shutter_s: view.shutter_s,
                 time_s: view.time_s,
@@ -283,7 +307,7 @@ impl Rain {
                 ..Exposure::default()
             },
             ..RainOptions::default()
-        })
+        }
     }
 }
 

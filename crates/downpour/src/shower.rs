@@ -12,7 +12,7 @@ use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
 use downpour_weather::{Rain, RainDrag, RainExtinction, RainVolume, Weather};
 use downpour_wind::{UniformWind, WindField};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use downpour_render::glass::pane_plane;
 use downpour_render::rain::{DropMasks, MediumOptions, RainMedium};
@@ -144,7 +144,7 @@ impl Shower {
                 RainExtinction::Total => ExtinctionEfficiency::Total,
                 _ => ExtinctionEfficiency::Camera,
             },
-            velocity: mean_velocity(&self.law, self.weather.wind.air(), time_s),
+            velocity: (self.weather.wind.air().velocity(time_s) - DVec3::Y * fall_speed(&self.law)).as_vec3(),
             origin: stage.origin,
             pane: pane_plane(&self.weather, &stage.viewpoint)?,
         };
@@ -164,11 +164,10 @@ impl Shower {
     }
 }
 
-/// Velocity, m/s, of drops of the effective diameter of a rain, at a time in a uniform wind.
-pub(crate) fn mean_velocity(sizes: &DropSizeDistribution, wind: &UniformWind, time_s: f64) -> Vec3 {
+/// Terminal speed, m/s, of drops of the effective diameter of a rain.
+pub(crate) fn fall_speed(sizes: &DropSizeDistribution) -> f64 {
     let speeds = TerminalSpeed::new(sizes.options().fall_speed, &sizes.options().air);
-    let speed = speeds.at(sizes.effective_diameter()).unwrap_or_default();
-    (wind.velocity(time_s) - DVec3::Y * speed).as_vec3()
+    speeds.at(sizes.effective_diameter()).unwrap_or_default()
 }
 
 /// Rain in closed form.

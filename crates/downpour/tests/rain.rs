@@ -296,6 +296,7 @@ fn frames_repeat_to_the_bit_and_make_no_buffers() {
         let stats = made(&mut rain, 3.0 + f64::from(k) / 60.0);
         assert!(stats.room > 100 && stats.columns > 100, "{stats:?}");
         assert_eq!(stats.buffers_made, begun, "frame {k}");
+        assert!(stats.bytes_uploaded < 64 << 10, "{} bytes", stats.bytes_uploaded);
     }
     for _ in 0..3 {
         assert!(host.rain(&mut rain, &view(), 6.0, &[lamp]).unwrap() == first, "a frame differs from itself");

@@ -1,5 +1,6 @@
 //! Drops put on a picture by a GPU: what [`Rain`](crate::rain::Rain) makes of its drops on the CPU.
 
+use downpour_drop::oscillation::Fluids;
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::render::rain::{
     PROFILES_CLEAR_KERNEL, PROFILES_FINISH_KERNEL, PROFILES_MEASURE_KERNEL, PROFILES_PLACE_KERNEL,
@@ -7,9 +8,11 @@ use downpour_shaders::render::rain::{
 };
 
 use super::rain::groups;
+#[cfg(feature = "parity")]
+use crate::rain::RainOptions;
 use crate::rain::profiles::{ProfilesFrame, StreakProfiles};
 use crate::rain::project::{ProjectFrame, project_frequencies};
-use crate::rain::{DropsDrop, RainOptions, StreakPath};
+use crate::rain::{DropsDrop, StreakPath};
 
 /// Bindings of the kernels of the profiles.
 const PROFILES: [&[u32]; 4] = [&[4, 8], &[0, 1, 4], &[0, 1, 2, 3, 4, 5, 6, 7, 8], &[0, 4, 6, 7, 9, 10]];
@@ -24,6 +27,8 @@ pub struct FallingOnGpu<'a> {
     pub drops: &'a wgpu::Buffer,
     /// Number of drops.
     pub count: u32,
+    /// Frequencies of their oscillation ([`RainPipeline::frequencies`](super::RainPipeline::frequencies)).
+    pub frequencies: &'a wgpu::Buffer,
 }
 
 /// The pipelines that put drops on a picture.
@@ -111,6 +116,11 @@ impl ProjectPipeline {
         })
     }
 
+    /// Brings the frequencies of drops in some fluids to the device.
+    pub(super) fn frequencies(&self, fluids: &Fluids) -> Result<wgpu::Buffer, GpuError> {
+        self.gpu.storage_buffer("frequencies of drops", &project_frequencies(fluids))
+    }
+
     /// Makes ready to put drops on a picture; `masks` are the tables of the masks ([`DropMasks::tables`](crate::rain::DropMasks::tables)), and `classes` those of a
     /// rain without drops.
     ///
@@ -123,7 +133,6 @@ impl ProjectPipeline {
         masks: &wgpu::Buffer,
         frames: (&ProjectFrame, &ProfilesFrame),
         classes: &StreakProfiles,
-        options: &RainOptions,
     ) -> Result<(ProjectPass<'_>, ListOnGpu, StreaksOnGpu), GpuError> {
         let (project, profiles) = frames;
         let storage = wgpu::BufferUsages::STORAGE;
@@ -134,9 +143,7 @@ impl ProjectPipeline {
         let list = words("drops", room, size_of::<DropsDrop>())?;
         let rows = words("positions of drops", room * (1 + project.has_axes), 16)?;
         let uniform = buffers.uniform("project frame", project)?;
-        let frequencies =
-            buffers.storage("frequencies of drops", &project_frequencies(&options.exposure.fluids))?;
-        let bound = [&uniform, falling.drops, masks, &frequencies, &list, &rows];
+        let bound = [&uniform, falling.drops, masks, falling.frequencies, &list, &rows];
         let by_drop = groups(room.div_ceil(64));
         let of_project = (self.project.bind(&self.gpu, &bound)?, by_drop);
 
@@ -219,7 +226,8 @@ impl ProjectPipeline {
     ) -> Result<ProjectFound, GpuError> {
         let gpu = &self.gpu;
         let falling = gpu.storage_buffer("falling drops", drops)?;
-        let falling = FallingOnGpu { drops: &falling, count: drops.len() as u32 };
+        let frequencies = self.frequencies(&options.exposure.fluids)?;
+        let falling = FallingOnGpu { drops: &falling, count: drops.len() as u32, frequencies: &frequencies };
         let tables = gpu.storage_buffer("tables of masks", masks.tables())?;
         let classes = StreakProfiles::new(
             &mut [],
@@ -228,7 +236,7 @@ impl ProjectPipeline {
             &options.exposure,
             downpour_shaders::render::rain::PROJECT_NO_CLASS,
         );
-        let (pass, made, streaks) = self.prepare(gpu, falling, &tables, frames, &classes, options)?;
+        let (pass, made, streaks) = self.prepare(gpu, falling, &tables, frames, &classes)?;
         gpu.submit(&pass.dispatches())?;
         gpu.submit(&pass.dispatches())?;
         Ok(ProjectFound {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use downpour_drop::oscillation::Fluids;
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_math::pyramid::PyramidLevel;
 use downpour_shaders::common::PYRAMID_KERNEL;
@@ -121,6 +122,14 @@ impl RainPipeline {
         })
     }
 
+    /// Brings the frequencies of the oscillation of drops in some fluids to the device.
+    ///
+    /// # Errors
+    /// As [`RainPipeline::upload`].
+    pub fn frequencies(&self, fluids: &Fluids) -> Result<wgpu::Buffer, GpuError> {
+        self.project.frequencies(fluids)
+    }
+
     /// Brings the masks to the device, if they are not those that `before` has there.
     ///
     /// # Errors
@@ -187,7 +196,7 @@ impl RainPipeline {
             .with_room(MAX_RAYS / 2, MAX_ENTRIES / 2);
         let frames = (&project, &profiles);
         let (pass, drops, streaks) =
-            self.project.prepare(buffers, falling, &masks.tables, frames, &rain.profiles, options)?;
+            self.project.prepare(buffers, falling, &masks.tables, frames, &rain.profiles)?;
         let lamps = |lights, rows, count| {
             self.lamps.prepare_rows(buffers, plate.lighting, &masks.light, lights, rows, count)
         };

@@ -142,17 +142,23 @@ impl RainMedium {
             weight += unresolved;
             row += unresolved * f64::from(masks.project_lookup(diameter as f32, 0.0).index[0]);
         }
-        let from = -options.velocity;
-        Ok(Self {
+        let made = Self {
             depths: depths.map(|depth| depth as f32),
             all: all as f32,
             flatness: (above / all - 1.0) as f32,
-            rise: from.try_normalize().unwrap_or(Vec3::Y),
+            rise: Vec3::Y,
             region: relative_to(resolved.region, options.origin),
             row: if weight > 0.0 { (row / weight) as f32 } else { 0.0 },
             rate_mm_h,
             pane: options.pane,
-        })
+        };
+        Ok(made.with_velocity(options.velocity))
+    }
+
+    /// The same medium of drops with another mean velocity, m/s.
+    #[must_use]
+    pub fn with_velocity(self, velocity: Vec3) -> Self {
+        Self { rise: (-velocity).try_normalize().unwrap_or(Vec3::Y), ..self }
     }
 
     /// Extinction of all drops, drawn or not, for level rays, 1/m.
