@@ -82,6 +82,8 @@ pub struct BufferPool {
     gpu: Gpu,
     /// Least size of the buffers of some labels, bytes.
     room: HashMap<&'static str, u64>,
+    /// Labels whose buffers are not kept.
+    given_away: Vec<&'static str>,
     kept: Mutex<Kept>,
 }
 
@@ -100,13 +102,20 @@ impl BufferPool {
     /// Creates a pool without buffers.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Self {
-        Self { gpu: gpu.clone(), room: HashMap::new(), kept: Mutex::default() }
+        Self { gpu: gpu.clone(), room: HashMap::new(), given_away: Vec::new(), kept: Mutex::default() }
     }
 
     /// Sets the least size, bytes, of the storage buffers of labels whose contents change much from frame to frame.
     #[must_use]
     pub fn with_room(mut self, room: &[(&'static str, u64)]) -> Self {
         self.room.extend(room.iter().copied());
+        self
+    }
+
+    /// Sets labels whose buffers are created anew each time, since they are needed longer than for the frame.
+    #[must_use]
+    pub fn with_given_away(mut self, labels: &[&'static str]) -> Self {
+        self.given_away.extend(labels);
         self
     }
 
@@ -151,6 +160,10 @@ impl BufferSource for BufferPool {
         usage: wgpu::BufferUsages,
     ) -> Result<wgpu::Buffer, GpuError> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.given_away.contains(&label) {
+            kept.made += 1;
+            return self.gpu.empty_buffer(label, bytes, usage);
+        }
         let nth = kept.used.get(label).copied().unwrap_or_default();
         let known = kept.buffers.get(label).and_then(|buffers| buffers.get(nth));
         let buffer = match known.filter(|known| known.size() >= bytes && known.usage().contains(usage)) {

@@ -6,6 +6,7 @@ use downpour_math::rng::rng_draw;
 
 use crate::RenderError;
 use crate::plate::Plate;
+use crate::rain::list::nearest_first;
 use crate::rain::{DropMasks, Rain, RainOptions};
 
 /// Dimension of the random numbers of a picture's seed.
@@ -84,6 +85,17 @@ impl Picture {
             surroundings,
             through_glass: None,
             passes,
+        }
+    }
+
+    /// The picture with the drops that a device has seen: for each that was given its distance, m; 0 where the scene hides all of it,
+    /// below 0 where it is not on the picture.
+    #[must_use]
+    pub fn with_seen(self, distances: &[f32]) -> Self {
+        Self {
+            drops_on_screen: distances.iter().filter(|at| **at >= 0.0).count(),
+            drawn: nearest_first(distances),
+            ..self
         }
     }
 

@@ -31,7 +31,11 @@ pub(crate) mod glint;
 #[doc(hidden)]
 pub mod glint;
 pub mod light;
-mod list;
+#[cfg(not(feature = "parity"))]
+pub(crate) mod list;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod list;
 #[doc(hidden)]
 pub mod masks;
 pub mod medium;

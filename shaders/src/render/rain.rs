@@ -53,6 +53,7 @@ pub const KERNELS: &[&Kernel] = &[
     &TILES_SCAN_KERNEL,
     &TILES_PLACE_KERNEL,
     &TILES_SORT_KERNEL,
+    &TILES_SEEN_KERNEL,
     &DROPS_KERNEL,
 ];
 
@@ -456,6 +457,10 @@ pub static TILES_SCAN_KERNEL: Kernel =
 /// One invocation per drop.
 pub static TILES_PLACE_KERNEL: Kernel =
     Kernel { entry: "main_tiles_place", module: &TILES, workgroup: [64, 1, 1] };
+
+/// One invocation per drop.
+pub static TILES_SEEN_KERNEL: Kernel =
+    Kernel { entry: "main_tiles_seen", module: &TILES, workgroup: [64, 1, 1] };
 
 /// One workgroup per tile of the smallest edge.
 pub static TILES_SORT_KERNEL: Kernel =

@@ -23,6 +23,11 @@ struct TilesFrame {
 @group(0) @binding(2) var<storage, read_write> tiles_counts: array<atomic<u32>>;
 @group(0) @binding(3) var<storage, read_write> tiles_lists: array<u32>;
 
+// A picture without rain: radiance and distance.
+@group(0) @binding(4) var<storage, read> tiles_plate: array<vec4f>;
+// For each drop its distance, m; 0 where the scene hides all of it, below 0 where it is not on the picture.
+@group(0) @binding(5) var<storage, read_write> tiles_seen: array<f32>;
+
 var<workgroup> tiles_sums: array<atomic<u32>, TILES_EDGES>;
 var<workgroup> tiles_totals: array<u32, TILES_SCAN>;
 // Sort keys: the bits of the distance, and the index of the drop.
@@ -298,4 +303,25 @@ fn main_tiles_sort(
             tiles_lists[list.x + k] = tiles_keys[k].y;
         }
     }
+}
+
+@compute @workgroup_size(64, 1, 1)
+fn main_tiles_seen(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let index = id.y * groups.x * 64u + id.x;
+    if index >= tiles_frame.count {
+        return;
+    }
+    let drop = tiles_drops[index];
+    let rows = tiles_rows(drop, 1u, tiles_frame.size);
+    let end = drop.first.x + drop.way.x;
+    let columns = tiles_within(min(drop.first.x, end) - drop.reach, max(drop.first.x, end) + drop.reach, tiles_frame.size.x);
+    var seen = select(0.0, -1.0, rows.x > rows.y);
+    for (var row = rows.x; row <= rows.y && seen == 0.0; row += 1u) {
+        for (var column = columns.x; column <= columns.y && seen == 0.0; column += 1u) {
+            if drop.nearest < tiles_plate[row * tiles_frame.size.x + column].w {
+                seen = drop.nearest;
+            }
+        }
+    }
+    tiles_seen[index] = seen;
 }

@@ -226,7 +226,8 @@ impl RainPipeline {
         let pixels = u64::from(picture[0]) * u64::from(picture[1]);
         let layer = buffers.buffer("rain", pixels * 16, storage)?;
         let frame = buffers.uniform("drops frame", &rain.frame)?;
-        let tiles = self.tiles.prepare(buffers, &drops.list, &TilesFrame::new(picture, drops.count))?;
+        let tiles =
+            self.tiles.prepare(buffers, &drops.list, clean, &TilesFrame::new(picture, drops.count))?;
         let [rays, entries] = drops.room.map(|count| u64::from(count.max(1)));
         let table = buffers.buffer("streak radiance", entries * 16, storage)?;
         let rays = buffers.buffer("rays of streaks", rays * size_of::<StreakRay>() as u64, storage)?;
@@ -302,6 +303,19 @@ impl RainPass<'_> {
             .iter()
             .map(|(bindings, n)| self.pipeline.pyramid.dispatch(bindings, [*n, *n, 1]))
             .collect()
+    }
+
+    /// Finds which drops the plate does not hide: after [`RainPass::project`].
+    #[must_use]
+    pub fn seen(&self) -> Dispatch<'_> {
+        self.tiles.seen()
+    }
+
+    /// For each drop its distance, m; 0 where the plate hides all of it, below 0 where it is not on the picture; and the number of
+    /// drops.
+    #[must_use]
+    pub fn distances(&self) -> (&wgpu::Buffer, u32) {
+        self.tiles.distances()
     }
 
     /// Reads the drops; those that are not on the picture have no reach.

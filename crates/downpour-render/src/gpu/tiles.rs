@@ -4,7 +4,7 @@ use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
 use downpour_shaders::Kernel;
 use downpour_shaders::render::rain::{
     TILES_CLEAR_KERNEL, TILES_COUNT_KERNEL, TILES_HEAD, TILES_MEASURE_KERNEL, TILES_PLACE_KERNEL,
-    TILES_SCAN_KERNEL, TILES_SORT_KERNEL,
+    TILES_SCAN_KERNEL, TILES_SEEN_KERNEL, TILES_SORT_KERNEL,
 };
 
 use super::rain::groups;
@@ -28,6 +28,7 @@ const BINDINGS: [&[u32]; 6] = [&[2], &[0, 1, 2], &[0, 1, 2], &[0, 2, 3], &[0, 1,
 pub struct TilesPipeline {
     gpu: Gpu,
     kernels: Vec<ComputeKernel>,
+    seen: ComputeKernel,
 }
 
 /// The lists of a picture, ready to be made.
@@ -35,6 +36,9 @@ pub struct TilesPipeline {
 pub struct TilesPass<'a> {
     pipeline: &'a TilesPipeline,
     bound: Vec<(wgpu::BindGroup, [u32; 3])>,
+    of_seen: (wgpu::BindGroup, [u32; 3]),
+    seen: wgpu::Buffer,
+    count: u32,
     lists: wgpu::Buffer,
 }
 
@@ -45,10 +49,14 @@ impl TilesPipeline {
     /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let kernels = KERNELS.iter().map(|kernel| ComputeKernel::new(gpu, kernel, &[]));
-        Ok(Self { gpu: gpu.clone(), kernels: kernels.collect::<Result<_, _>>()? })
+        Ok(Self {
+            gpu: gpu.clone(),
+            kernels: kernels.collect::<Result<_, _>>()?,
+            seen: ComputeKernel::new(gpu, &TILES_SEEN_KERNEL, &[])?,
+        })
     }
 
-    /// Makes ready to list drops ([`DropsDrop`](crate::rain::DropsDrop)) that are on the device.
+    /// Makes ready to list drops ([`DropsDrop`](crate::rain::DropsDrop)) that are on the device, before a plate (radiance and distance).
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] if the lists are larger than the device allows, or what else the GPU says.
@@ -56,6 +64,7 @@ impl TilesPipeline {
         &self,
         buffers: &impl BufferSource,
         drops: &wgpu::Buffer,
+        plate: &wgpu::Buffer,
         frame: &TilesFrame,
     ) -> Result<TilesPass<'_>, GpuError> {
         let storage = wgpu::BufferUsages::STORAGE;
@@ -78,9 +87,11 @@ impl TilesPipeline {
             let bound = bindings.iter().map(|&k| (k, all[k as usize]));
             Ok((kernel.bind_at(&self.gpu, bound)?, groups))
         };
+        let seen = buffers.buffer("distances of drops", u64::from(frame.count.max(1)) * 4, storage)?;
+        let of_seen = self.seen.bind_at(&self.gpu, [(0, &uniform), (1, drops), (4, plate), (5, &seen)])?;
         let bound = self.kernels.iter().zip(BINDINGS).zip(of_kernel).map(bind);
         let bound = bound.collect::<Result<_, GpuError>>()?;
-        Ok(TilesPass { pipeline: self, bound, lists })
+        Ok(TilesPass { pipeline: self, bound, of_seen: (of_seen, by_drop), seen, count: frame.count, lists })
     }
 }
 
@@ -90,6 +101,18 @@ impl TilesPass<'_> {
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
         let kernels = self.pipeline.kernels.iter();
         kernels.zip(&self.bound).map(|(kernel, (bound, groups))| kernel.dispatch(bound, *groups)).collect()
+    }
+
+    /// Finds for each drop its distance, m; 0 where the plate hides all of it, below 0 where it is not on the picture.
+    #[must_use]
+    pub fn seen(&self) -> Dispatch<'_> {
+        self.pipeline.seen.dispatch(&self.of_seen.0, self.of_seen.1)
+    }
+
+    /// These distances on the device, and their number.
+    #[must_use]
+    pub fn distances(&self) -> (&wgpu::Buffer, u32) {
+        (&self.seen, self.count)
     }
 
     /// The lists on the device ([`TileLists::words`](crate::rain::tiles::TileLists::words)).

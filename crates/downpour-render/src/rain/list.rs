@@ -131,26 +131,40 @@ impl Rain {
         MediumLight::new(&self.medium, &self.frame.camera, lights, self.light.form)
     }
 
-    /// For each drop that was given and is not hidden altogether by the scene, its place among those given.
+    /// For each drop that was given and is not hidden altogether by the scene, its place among those given, nearest first.
     #[must_use]
     pub fn drawn(&self, clean: &[[f32; 4]]) -> Vec<u32> {
-        let size = self.frame.camera.size();
-        let width = size[0] as usize;
-        let seen = |drop: &DropsDrop| {
-            pixels(drop, size).is_some_and(|[left, right, top, bottom]| {
-                (top as usize..=bottom as usize).any(|row| {
-                    let row = &clean[row * width..(row + 1) * width];
-                    row[left as usize..=right as usize].iter().any(|pixel| drop.nearest < pixel[3])
-                })
-            })
-        };
-        let all = self.list.iter().zip(&self.given);
-        all.filter(|(drop, _)| seen(drop)).map(|(_, &k)| k).collect()
+        let seen = self.list.par_iter().map(|drop| seen(drop, clean, self.frame.camera.size()));
+        let seen: Vec<f32> = seen.collect();
+        nearest_first(&seen).into_iter().map(|k| self.given[k as usize]).collect()
     }
+}
+
+/// Distance of a drop, m; 0 where the scene of a picture hides all of it, below 0 where it is not on the picture.
+#[must_use]
+pub fn seen(drop: &DropsDrop, clean: &[[f32; 4]], size: [u32; 2]) -> f32 {
+    let Some([left, right, top, bottom]) = pixels(drop, size) else { return -1.0 };
+    let width = size[0] as usize;
+    let is_seen = (top as usize..=bottom as usize).any(|row| {
+        let row = &clean[row * width..(row + 1) * width];
+        row[left as usize..=right as usize].iter().any(|pixel| drop.nearest < pixel[3])
+    });
+    if is_seen { drop.nearest } else { 0.0 }
+}
+
+/// The places of the distances above 0, in the order of these.
+#[must_use]
+pub fn nearest_first(distances: &[f32]) -> Vec<u32> {
+    let mut all: Vec<(f32, u32)> = distances.iter().copied().zip(0..).filter(|(at, _)| *at > 0.0).collect();
+    all.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    all.into_iter().map(|(_, place)| place).collect()
 }
 
 /// The pixels that a drop may touch: first and last column, first and last row; `None` where it touches none.
 fn pixels(drop: &DropsDrop, [width, height]: [u32; 2]) -> Option<[u32; 4]> {
+    if drop.reach <= 0.0 {
+        return None;
+    }
     let (from, way) = (Vec2::from(drop.first), Vec2::from(drop.way));
     let (low, high) = (from.min(from + way) - drop.reach, from.max(from + way) + drop.reach);
     let [left, right] = tiles_within(low.x, high.x, width)?;

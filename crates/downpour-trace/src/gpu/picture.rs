@@ -2,13 +2,14 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use downpour_gpu::{Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferPool, BufferSource as _, Gpu, GpuError, wgpu};
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_RAYS;
-use downpour_sim::field::FallingDrop;
+use downpour_sim::field::{EyeDrop, FallingDrop};
+use rayon::prelude::*;
 
 use downpour_render::RenderError;
 use downpour_render::camera::Viewpoint;
-use downpour_render::gpu::{BehindGlass, RainOnGpu, RainPipeline};
+use downpour_render::gpu::{BehindGlass, FallingOnGpu, RainOnGpu, RainPipeline};
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::{DropMasks, Rain};
 
@@ -29,12 +30,17 @@ pub enum GpuPictureError {
     Gpu(#[from] GpuError),
 }
 
+/// Labels of the buffers that a picture keeps.
+const GIVEN_AWAY: [&str; 2] = ["rain", "distances of drops"];
+
 /// Pipelines that render pictures.
 #[derive(Clone, Debug)]
 pub struct PictureRenderer {
     gpu: Gpu,
     scene: ScenePipeline,
     rain: RainPipeline,
+    /// Locked for as long as a picture is drawn.
+    pool: Arc<Mutex<BufferPool>>,
     /// The scene and the masks of the last picture.
     uploaded: Arc<Mutex<Option<(SceneOnGpu, RainOnGpu)>>>,
 }
@@ -49,6 +55,8 @@ impl PictureRenderer {
             gpu: gpu.clone(),
             scene: ScenePipeline::new(gpu)?,
             rain: RainPipeline::new(gpu)?,
+            // A picture may be read after the next one is begun.
+            pool: Arc::new(Mutex::new(BufferPool::new(gpu).with_given_away(&GIVEN_AWAY))),
             uploaded: Arc::default(),
         })
     }
@@ -97,13 +105,31 @@ impl PictureRenderer {
         let clean = timed(&mut passes, "scene", || self.scene.draw(&uploaded.0, &frame))?;
         let eye = viewpoint.eye.as_dvec3();
         let camera = frame.camera;
-        let rain = timed(&mut passes, "binning", || Rain::new(&camera, eye, drops, masks, &options.rain));
+        // The drops are put on the picture by the device.
+        let rain = Rain::new(&camera, eye, &[], masks, &options.rain);
+        let pool = &*self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.begin_frame();
+        let (falling, frequencies) = timed(&mut passes, "drops to the device", || {
+            let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
+            // A buffer has at least one element.
+            let falling: &[_] = if falling.is_empty() { &[EyeDrop::default()] } else { &falling };
+            let frequencies = self.rain.frequencies(&options.rain.exposure.fluids)?;
+            Ok::<_, GpuError>((pool.storage("falling drops", falling)?, frequencies))
+        })?;
+        let count = drops.len() as u32;
+        let falling = FallingOnGpu { drops: &falling, count, frequencies: &frequencies };
         let view = SceneView { data: scene, frame: &frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
         let plate = self.scene.plate(&uploaded.0, &frame, &self.rain, &rain)?;
-        let pass = self.rain.prepare(&self.gpu, &plate.of(&clean), &uploaded.1, &rain, &lights)?;
+        let of_masks = (&uploaded.1, masks);
+        let of_rain = (&rain, &options.rain);
+        let pass = self.rain.prepare_falling(pool, &plate.of(&clean), of_masks, of_rain, &lights, falling)?;
         timed(&mut passes, "capture", || {
             self.gpu.submit(&plate.dispatches(&pass))?;
+            self.gpu.wait()
+        })?;
+        timed(&mut passes, "projection", || {
+            self.gpu.submit(&pass.project())?;
             self.gpu.wait()
         })?;
         timed(&mut passes, "lamps", || {
@@ -123,13 +149,23 @@ impl PictureRenderer {
         })?;
         timed(&mut passes, "drops", || {
             self.gpu.submit(&pass.drops())?;
+            self.gpu.submit(&[pass.seen()])?;
             self.gpu.wait()
         })?;
         let layer = pass.layer_buffer().clone();
         let environment = plate.of(&clean).environment.clone();
+        let distances = pass.distances().0.clone();
         drop(pass);
-        Ok(PictureOnGpu { gpu: self.gpu.clone(), rain, clean, layer, environment, passes })
+        let seen = Seen { distances, count: drops.len() };
+        Ok(PictureOnGpu { gpu: self.gpu.clone(), rain, seen, clean, layer, environment, passes })
     }
+}
+
+/// Distances of drops on the device.
+#[derive(Debug)]
+struct Seen {
+    distances: wgpu::Buffer,
+    count: usize,
 }
 
 /// A picture on the device, in layers.
@@ -137,6 +173,7 @@ impl PictureRenderer {
 pub struct PictureOnGpu {
     gpu: Gpu,
     rain: Rain,
+    seen: Seen,
     clean: wgpu::Buffer,
     layer: wgpu::Buffer,
     environment: wgpu::Buffer,
@@ -156,11 +193,18 @@ impl PictureOnGpu {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn read(self) -> Result<Picture, GpuError> {
-        let Self { gpu, rain, clean, layer, environment, mut passes } = self;
-        let (clean, layer, environment) = timed(&mut passes, "readback", || {
-            Ok::<_, GpuError>((gpu.read::<[f32; 4]>(&clean)?, gpu.read(&layer)?, gpu.read(&environment)?))
+        let Self { gpu, rain, seen, clean, layer, environment, mut passes } = self;
+        let (mut distances, clean, layer, environment) = timed(&mut passes, "readback", || {
+            let distances = gpu.read::<f32>(&seen.distances)?;
+            Ok::<_, GpuError>((
+                distances,
+                gpu.read::<[f32; 4]>(&clean)?,
+                gpu.read(&layer)?,
+                gpu.read(&environment)?,
+            ))
         })?;
-        Ok(Picture::new(&rain, clean, layer, environment, passes))
+        distances.truncate(seen.count);
+        Ok(Picture::new(&rain, clean, layer, environment, passes).with_seen(&distances))
     }
 }
 

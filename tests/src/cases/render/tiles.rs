@@ -4,13 +4,14 @@ use downpour_gpu::{Gpu, GpuError};
 use downpour_math::rng::rng_draw;
 use downpour_render::gpu::tiles::TilesPipeline;
 use downpour_render::rain::DropsDrop;
+use downpour_render::rain::list::seen;
 use downpour_render::rain::tiles::{
     TileLists, TilesFrame, tiles_bound, tiles_columns, tiles_rows, tiles_within,
 };
 use downpour_shaders::Kernel;
 use downpour_shaders::render::rain::{
     TILES, TILES_CLEAR_KERNEL, TILES_COUNT_KERNEL, TILES_MEASURE_KERNEL, TILES_PLACE_KERNEL,
-    TILES_SCAN_KERNEL, TILES_SORT_KERNEL,
+    TILES_SCAN_KERNEL, TILES_SEEN_KERNEL, TILES_SORT_KERNEL,
 };
 
 use crate::Domain::{Below, Made, OneOf, Uniform};
@@ -121,7 +122,8 @@ fn case(gpu: &Gpu, count: u32, room: Option<u32>) -> Result<Run, GpuError> {
         frame.room = room.unwrap_or(frame.room);
         let lists = TileLists::with_room(&drops, SIZE, frame.room).words();
         let list = gpu.storage_buffer("drops", &drops)?;
-        let pass = pipeline.prepare(gpu, &list, &frame)?;
+        let plate = gpu.storage_buffer("plate", &[[0.0f32; 4]])?;
+        let pass = pipeline.prepare(gpu, &list, &plate, &frame)?;
         gpu.submit(&pass.dispatches())?;
         gpu.submit(&pass.dispatches())?;
         let words = pass.read()?;
@@ -134,6 +136,29 @@ fn case(gpu: &Gpu, count: u32, room: Option<u32>) -> Result<Run, GpuError> {
         cpu: Cpu(cpu),
         gpu: FromGpu(found),
         kinds: vec![WordKind::Integer],
+    })
+}
+
+/// Which drops a picture shows whose distances differ from pixel to pixel.
+fn seen_case(gpu: &Gpu) -> Result<Run, GpuError> {
+    let drops: Vec<DropsDrop> = (0..900).map(|k| drop(rng_draw([8, 5], k, 0, 0))).collect();
+    let pixel = |k| [0.0, 0.0, 0.0, rng_draw([9, 5], k / 40, 0, 0).map(|word| word % 64)[0] as f32];
+    let clean: Vec<[f32; 4]> = (0..SIZE[0] * SIZE[1]).map(pixel).collect();
+    let distances: Vec<f32> = drops.iter().map(|drop| seen(drop, &clean, SIZE)).collect();
+    for kind in [|at: f32| at > 0.0, |at| at == 0.0, |at| at < 0.0] {
+        assert!(distances.iter().filter(|at| kind(**at)).count() > 20);
+    }
+    let pipeline = TilesPipeline::new(gpu)?;
+    let (list, plate) = (gpu.storage_buffer("drops", &drops)?, gpu.storage_buffer("plate", &clean)?);
+    let pass = pipeline.prepare(gpu, &list, &plate, &TilesFrame::new(SIZE, 900))?;
+    gpu.submit(&[pass.seen()])?;
+    let found = gpu.read::<f32>(pass.distances().0)?;
+    let words = |all: &[f32]| all.iter().map(|at| at.to_bits()).collect();
+    Ok(Run {
+        arguments: (0..900).map(|k| vec![k]).collect(),
+        cpu: Cpu(words(&distances)),
+        gpu: FromGpu(words(&found)),
+        kinds: vec![WordKind::Float],
     })
 }
 
@@ -162,5 +187,6 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         of("main_tiles_sort (larger tiles, long lists)", |gpu| case(gpu, 4500, Some(20_000))),
         of("main_tiles_sort (one list)", |gpu| case(gpu, 3000, Some(3000))),
         of("main_tiles_sort (two drops)", |gpu| case(gpu, 2, None)),
+        KernelCase::new("main_tiles_seen", &TILES_SEEN_KERNEL, exact, seen_case),
     ]
 }
