@@ -71,8 +71,9 @@ pub struct RainStats {
 /// texture shows, and the extinction and the light of all smaller drops. It neither waits for the device nor reads from it.
 ///
 /// The device finds the drops, the same for the same seed and time as on the CPU, sorts them into tiles and draws them; the CPU
-/// writes the frame's numbers, some kilobytes. Buffers stay from frame to frame. Submit the encoder before the next call of `render` of the same `Rain`: its buffers are
-/// written anew then. Two views in one submission take two `Rain`s.
+/// writes the frame's numbers, some kilobytes, and in gusts above obstacles the wind of the last minutes, some hundred. Buffers stay
+/// from frame to frame. Submit the encoder before the next call of `render` of the same `Rain`: its buffers are written anew then.
+/// Two views in one submission take two `Rain`s.
 #[derive(Debug)]
 pub struct Rain {
     gpu: Gpu,
