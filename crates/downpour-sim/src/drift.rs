@@ -33,11 +33,13 @@ impl Drift {
     }
 
     /// Displacements and velocities by terminal speed, from 0 to 12 m/s.
+    #[cfg(feature = "wgpu")]
     pub(crate) fn entries(&self) -> impl Iterator<Item = &[DVec3; 2]> {
         self.table.iter()
     }
 
     /// Displacement of a drop of a middle speed, m.
+    #[cfg(feature = "wgpu")]
     pub(crate) fn middle(&self) -> DVec3 {
         self.of(0.5 * MAX_SPEED_M_S)[0]
     }

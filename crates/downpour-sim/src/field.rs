@@ -24,6 +24,7 @@
 
 #[doc(hidden)]
 pub mod chain;
+#[cfg(feature = "wgpu")]
 #[doc(hidden)]
 pub mod frame;
 

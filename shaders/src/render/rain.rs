@@ -136,8 +136,6 @@ shared_constants! {
         PROFILES_SHAPES_BEGIN: u32 = 522;
         /// Workgroups along a row: fewer than every device allows.
         PROFILES_ALONG: u32 = 32768;
-        /// pi.
-        PROFILES_PI: f32 = 3.1415927;
         /// Samples along an edge of the mask of a drop below a pixel.
         DROPS_SMALL_GRID: u32 = 3;
         /// Form of refraction: the direction of the refracted light is looked up.

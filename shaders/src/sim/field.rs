@@ -25,11 +25,11 @@ shared_constants! {
         /// Thresholds of a portion: beyond, no probability of 64 bits is left.
         FIELD_THRESHOLDS: u32 = 96;
         /// Unit of a diameter, m: 2^-30.
-        FIELD_DIAMETER_STEP: f32 = 9.313225746154785e-10;
+        FIELD_DIAMETER_STEP: f32 = 9.313226e-10;
         /// Unit of a rate of fall, periods per second: 2^-29.
-        FIELD_RATE_STEP: f32 = 1.862645149230957e-9;
+        FIELD_RATE_STEP: f32 = 1.8626451e-9;
         /// Unit of a fraction of a period: 2^-32.
-        FIELD_FRACTION_STEP: f32 = 2.3283064365386963e-10;
+        FIELD_FRACTION_STEP: f32 = 2.3283064e-10;
         /// Intervals of the table of drift.
         FIELD_DRIFT: u32 = 48;
         /// Terminal speed, m/s, at the end of the table of drift.

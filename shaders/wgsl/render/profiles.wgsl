@@ -4,6 +4,8 @@
 // loop. Places are given in any order: what a profile holds does not depend on where it is.
 // Twin: downpour_render::rain::profiles.
 
+const PROFILES_PI: f32 = 3.1415927;
+
 struct ProfilesFrame {
     // Drops.
     count: u32,

@@ -142,6 +142,14 @@ mod tests {
     use downpour_drop::air::Air;
     use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw, SampledBy};
     use downpour_drop::fall_speed::FallSpeedModel;
+    use downpour_shaders::sim::field::FIELD_FRACTION_STEP;
+
+    #[test]
+    fn units_are_powers_of_two() {
+        let power = |exponent: u32| f32::from_bits((127 - exponent) << 23);
+        let units = [FIELD_DIAMETER_STEP, FIELD_RATE_STEP, FIELD_FRACTION_STEP];
+        assert_eq!(units, [power(30), power(29), power(32)]);
+    }
 
     #[test]
     fn numbers_of_chains_are_poisson_numbers() {

@@ -363,9 +363,7 @@ fn described(
     // Places follow each other without a gap.
     let follow = |mut places: Vec<[u32; 2]>, first: u32| {
         places.sort_unstable();
-        places
-            .iter()
-            .fold(Some(first), |next, &[at, size]| next.filter(|&next| next == at).map(|_| at + size))
+        places.iter().try_fold(first, |next, &[at, size]| (next == at).then_some(at + size))
     };
     let of = |path: &StreakPath| profiles_room([path.rows, path.columns, path.profile_rows, path.fine]);
     let rays = paths.iter().map(|path| [path.first_ray, of(path)[0]]).collect();
