@@ -14,8 +14,8 @@ use crate::resolved::Resolved;
 use crate::shelter::{CUT_S, number_of_cuts};
 use crate::view::View;
 
-/// Workgroups along a row: fewer than every device allows.
-const ALONG: u32 = 1 << 15;
+/// Workgroups along a row: fewer than every device allows, and so few that tests have several rows.
+const ALONG: u32 = 128;
 
 /// Obstacles on the device: the nodes and triangles of a `downpour_bvh::Bvh`, without holes.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +64,9 @@ pub struct FieldPass<'a> {
 
 fn groups(count: u32) -> [u32; 3] {
     let groups = count.div_ceil(64).max(1);
-    [groups.min(ALONG), groups.div_ceil(ALONG), 1]
+    // Rows become longer where there would be too many.
+    let along = ALONG.max(groups.div_ceil(1 << 15));
+    [groups.min(along), groups.div_ceil(along), 1]
 }
 
 /// A buffer has at least one element.

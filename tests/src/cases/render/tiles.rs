@@ -21,7 +21,9 @@ use crate::signature::WordKind;
 use crate::words::IntoWords as _;
 use crate::{FunctionCase, KernelCase, Tol};
 
-const SIZE: [u32; 2] = [157, 91];
+/// Pictures that whole tiles cover, and that they do not.
+const SIZES: [[u32; 2]; 2] = [[317, 201], [320, 192]];
+const SIZE: [u32; 2] = SIZES[0];
 
 /// Words of a drop.
 const WORDS: usize = size_of::<DropsDrop>() / 4;
@@ -40,6 +42,7 @@ fn drop(random: [u32; 4]) -> DropsDrop {
         reach: match d % 16 {
             0 => -1.0,
             1 => eighths(d >> 8, 48),
+            2 => 200.0,
             _ => eighths(d >> 8, 4),
         },
         // So few distances that many are equal.
@@ -55,7 +58,7 @@ fn drop_words(random: [u32; 4]) -> Vec<u32> {
 
 /// A number of columns or rows.
 fn count(random: [u32; 4]) -> Vec<u32> {
-    vec![1 + random[0] % 157]
+    vec![1 + random[0] % 320]
 }
 
 /// An edge of tiles.
@@ -63,8 +66,8 @@ fn edge(random: [u32; 4]) -> Vec<u32> {
     vec![8 << (random[0] % 5)]
 }
 
-fn size_words(_: [u32; 4]) -> Vec<u32> {
-    SIZE.to_vec()
+fn size_words(random: [u32; 4]) -> Vec<u32> {
+    SIZES[random[0] as usize % 2].to_vec()
 }
 
 /// First and last as the shader has them.
@@ -112,15 +115,20 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     ]
 }
 
-/// The lists of so many drops, with room for so many entries, in three pictures: the second and third find what the one before left.
-fn case(gpu: &Gpu, count: u32, room: Option<u32>) -> Result<Run, GpuError> {
+/// The lists of drops of three pictures: the second and third find what the one before left.
+fn lists(
+    gpu: &Gpu,
+    size: [u32; 2],
+    room: Option<u32>,
+    drops: fn(u32) -> Vec<DropsDrop>,
+) -> Result<Run, GpuError> {
     let pipeline = TilesPipeline::new(gpu)?;
     let (mut cpu, mut found) = (Vec::new(), Vec::new());
     for seed in 0..3 {
-        let drops: Vec<DropsDrop> = (0..count).map(|k| drop(rng_draw([seed, 5], k, 0, 0))).collect();
-        let mut frame = TilesFrame::new(SIZE, count);
+        let drops = drops(seed);
+        let mut frame = TilesFrame::new(size, drops.len() as u32);
         frame.room = room.unwrap_or(frame.room);
-        let lists = TileLists::with_room(&drops, SIZE, frame.room).words();
+        let lists = TileLists::with_room(&drops, size, frame.room).words();
         let list = gpu.storage_buffer("drops", &drops)?;
         let plate = gpu.storage_buffer("plate", &[[0.0f32; 4]])?;
         let pass = pipeline.prepare(gpu, &list, &plate, &frame)?;
@@ -139,9 +147,22 @@ fn case(gpu: &Gpu, count: u32, room: Option<u32>) -> Result<Run, GpuError> {
     })
 }
 
+fn random_drops<const COUNT: u32>(seed: u32) -> Vec<DropsDrop> {
+    (0..COUNT).map(|k| drop(rng_draw([seed, 5], k, 0, 0))).collect()
+}
+
+/// 2^14 drops of which each covers all of 2^18 tiles: their number is 2^32, which 32 bits hold as 0.
+fn everywhere(seed: u32) -> Vec<DropsDrop> {
+    let one = |k| DropsDrop { first: [2048.0; 2], reach: 3000.0, ..drop(rng_draw([seed, 6], k, 0, 0)) };
+    (0..1 << 14).map(one).collect()
+}
+
+/// Drops that are looked for: more than one row of workgroups has.
+const SEEN: u32 = 9000;
+
 /// Which drops a picture shows whose distances differ from pixel to pixel.
 fn seen_case(gpu: &Gpu) -> Result<Run, GpuError> {
-    let drops: Vec<DropsDrop> = (0..900).map(|k| drop(rng_draw([8, 5], k, 0, 0))).collect();
+    let drops: Vec<DropsDrop> = (0..SEEN).map(|k| drop(rng_draw([8, 5], k, 0, 0))).collect();
     let pixel = |k| [0.0, 0.0, 0.0, rng_draw([9, 5], k / 40, 0, 0).map(|word| word % 64)[0] as f32];
     let clean: Vec<[f32; 4]> = (0..SIZE[0] * SIZE[1]).map(pixel).collect();
     let distances: Vec<f32> = drops.iter().map(|drop| seen(drop, &clean, SIZE)).collect();
@@ -150,12 +171,12 @@ fn seen_case(gpu: &Gpu) -> Result<Run, GpuError> {
     }
     let pipeline = TilesPipeline::new(gpu)?;
     let (list, plate) = (gpu.storage_buffer("drops", &drops)?, gpu.storage_buffer("plate", &clean)?);
-    let pass = pipeline.prepare(gpu, &list, &plate, &TilesFrame::new(SIZE, 900))?;
+    let pass = pipeline.prepare(gpu, &list, &plate, &TilesFrame::new(SIZE, SEEN))?;
     gpu.submit(&[pass.seen()])?;
     let found = gpu.read::<f32>(pass.distances().0)?;
     let words = |all: &[f32]| all.iter().map(|at| at.to_bits()).collect();
     Ok(Run {
-        arguments: (0..900).map(|k| vec![k]).collect(),
+        arguments: (0..SEEN).map(|k| vec![k]).collect(),
         cpu: Cpu(words(&distances)),
         gpu: FromGpu(words(&found)),
         kinds: vec![WordKind::Float],
@@ -183,10 +204,16 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         run,
     };
     vec![
-        of("main_tiles_sort (tiles of 8 pixels)", |gpu| case(gpu, 700, None)),
-        of("main_tiles_sort (larger tiles, long lists)", |gpu| case(gpu, 4500, Some(20_000))),
-        of("main_tiles_sort (one list)", |gpu| case(gpu, 3000, Some(3000))),
-        of("main_tiles_sort (two drops)", |gpu| case(gpu, 2, None)),
+        of("main_tiles_sort (tiles of 8 pixels)", |gpu| lists(gpu, SIZES[0], None, random_drops::<9000>)),
+        of("main_tiles_sort (larger tiles, long lists)", |gpu| {
+            lists(gpu, SIZES[1], Some(60_000), random_drops::<6000>)
+        }),
+        of("main_tiles_sort (one list)", |gpu| lists(gpu, SIZES[1], Some(9000), random_drops::<9000>)),
+        of("main_tiles_sort (two drops)", |gpu| lists(gpu, SIZES[0], None, random_drops::<2>)),
+        of("main_tiles_sort (whole tiles)", |gpu| lists(gpu, SIZES[1], None, random_drops::<700>)),
+        of("main_tiles_sort (more than 32 bits hold)", |gpu| {
+            lists(gpu, [4096; 2], Some(1 << 14), everywhere)
+        }),
         KernelCase::new("main_tiles_seen", &TILES_SEEN_KERNEL, exact, seen_case),
     ]
 }
