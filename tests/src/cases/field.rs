@@ -1,14 +1,14 @@
 //! `shaders/wgsl/sim/{field,shelter}.wgsl` against `downpour_sim::field` and `downpour_sim::shelter`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use downpour_bvh::Bvh;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
-use downpour_gpu::{Gpu, GpuError};
+use downpour_gpu::{BufferPool, Gpu, GpuError};
 use downpour_shaders::Kernel;
 use downpour_shaders::sim::field::{FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_KERNEL};
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
-use downpour_sim::field::{EyeDrop, RainField};
+use downpour_sim::field::{EyeDrop, FallingDrop, RainField};
 use downpour_sim::gpu::{FieldPipeline, GpuSimError, ObstaclesOnGpu};
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
@@ -91,7 +91,21 @@ struct Kind {
     far: bool,
 }
 
-fn case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
+/// Drops of a picture, as the CPU and the device find them.
+struct Found {
+    /// On the CPU, those that obstacles have stopped as well, and whether they are open.
+    all: Vec<(EyeDrop, bool)>,
+    /// On the CPU, those that are open.
+    open: Vec<EyeDrop>,
+    /// On the device, by id and diameter: ids of 32 bits are those of several drops now and then.
+    gpu: BTreeMap<(u32, u32), EyeDrop>,
+}
+
+fn key(drop: &EyeDrop) -> (u32, u32) {
+    (drop.id, drop.diameter.to_bits())
+}
+
+fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
     let sizes = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 60.0).expect("a rain");
     let field = RainField::new(&sizes, 12).expect("a field").with_wind((kind.wind)());
     let origin = if kind.far { DVec3::new(51_234.5, 20.0, -987_654.25) } else { DVec3::ZERO };
@@ -105,7 +119,12 @@ fn case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     };
     let bvh = obstacles();
     let on_cpu = Obstacles { nodes: &bvh.nodes, triangles: &bvh.triangles, holes: None, origin };
-    let visible = field.visible_among(&on_cpu, &view, kind.time_s).expect("in range");
+    let listed = |drops: Vec<FallingDrop>| -> Vec<EyeDrop> {
+        drops.iter().map(|drop| EyeDrop::new(drop, view.eye)).collect()
+    };
+    let all = listed(field.visible(&view, kind.time_s).expect("in range").drops);
+    let open = listed(field.visible_among(&on_cpu, &view, kind.time_s).expect("in range").drops);
+    let ids: BTreeSet<(u32, u32)> = open.iter().map(key).collect();
     let root = bvh.nodes[0];
     let nodes = gpu.storage_buffer("nodes", &bvh.nodes)?;
     let triangles = gpu.storage_buffer("triangles", &bvh.triangles)?;
@@ -124,35 +143,72 @@ fn case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     gpu.submit(&pass.dispatches())?;
     let (drops, [found, tried]) = pass.read()?;
     assert!(found >= drops.len() as u32 && found <= pass.room() && tried > found, "{found} of {tried}");
-    assert!(visible.drops.len() > 3000 && drops.len() > 3000, "{} drops", drops.len());
-    // Ids of 32 bits are those of several drops now and then.
-    let key = |drop: &EyeDrop| (drop.id, drop.diameter.to_bits());
-    let mut others: BTreeMap<(u32, u32), EyeDrop> = drops.iter().map(|drop| (key(drop), *drop)).collect();
+    assert!(open.len() > 3000 && drops.len() > 3000, "{} drops", drops.len());
+    Ok(Found {
+        all: all.into_iter().map(|drop| (drop, ids.contains(&key(&drop)))).collect(),
+        open,
+        gpu: drops.iter().map(|drop| (key(drop), *drop)).collect(),
+    })
+}
+
+fn run(words: usize, cpu: Vec<u32>, gpu: Vec<u32>) -> Run {
+    Run {
+        arguments: (0..(cpu.len() / words) as u32).map(|k| vec![k]).collect(),
+        cpu: Cpu(cpu),
+        gpu: FromGpu(gpu),
+        kinds: vec![WordKind::Float],
+    }
+}
+
+/// The open drops of both sides.
+fn case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
+    let Found { open, gpu: mut others, .. } = found(gpu, kind)?;
     let words = |drop: &EyeDrop| {
         let [x, y, z] = drop.offset;
         let [u, v, w] = drop.velocity;
-        // The end of the exposure is in view, or it is the end of time.
-        let until = if drop.present[1] > 1.0e3 { 1.0 } else { drop.present[1] };
-        [1.0, x, y, z, u, v, w, drop.diameter, until].map(f32::to_bits)
+        [1.0, x, y, z, u, v, w, drop.diameter * 1.0e3].map(f32::to_bits)
     };
-    let nothing = [0.0f32; 9].map(f32::to_bits);
+    let nothing = [0.0f32; 8].map(f32::to_bits);
     let (mut cpu, mut gpu_words) = (Vec::new(), Vec::new());
-    for drop in &visible.drops {
-        let drop = EyeDrop::new(drop, view.eye);
-        cpu.extend(words(&drop));
-        gpu_words.extend(others.remove(&key(&drop)).as_ref().map_or(nothing, words));
+    for drop in &open {
+        cpu.extend(words(drop));
+        gpu_words.extend(others.remove(&key(drop)).as_ref().map_or(nothing, words));
     }
     // What only the device has.
     for drop in others.values() {
         cpu.extend(nothing);
         gpu_words.extend(words(drop));
     }
-    Ok(Run {
-        arguments: (0..(cpu.len() / 9) as u32).map(|k| vec![k]).collect(),
-        cpu: Cpu(cpu),
-        gpu: FromGpu(gpu_words),
-        kinds: vec![WordKind::Float],
-    })
+    Ok(run(8, cpu, gpu_words))
+}
+
+/// Whether drops that the CPU finds stopped are stopped, and an equal number of others that are not.
+fn stopped_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
+    let Found { all, gpu, .. } = found(gpu, kind)?;
+    let stopped: Vec<&EyeDrop> = all.iter().filter(|(_, open)| !open).map(|(drop, _)| drop).collect();
+    assert!(stopped.len() > 1000, "{} drops are stopped", stopped.len());
+    // Below the roof's height, where there is something to be decided.
+    let low = all.iter().filter(|(drop, open)| *open && drop.offset[1] < 1.5).map(|(drop, _)| drop);
+    let chosen: Vec<&EyeDrop> = stopped.iter().copied().zip(low).flat_map(|(a, b)| [a, b]).collect();
+    assert!(chosen.len() > 2000, "{} drops", chosen.len());
+    let open: BTreeSet<(u32, u32)> =
+        all.iter().filter(|(_, open)| *open).map(|(drop, _)| key(drop)).collect();
+    let flag = |is: bool| f32::from(u8::from(is)).to_bits();
+    let cpu = chosen.iter().map(|drop| flag(open.contains(&key(drop)))).collect();
+    let found = chosen.iter().map(|drop| flag(gpu.contains_key(&key(drop)))).collect();
+    Ok(run(1, cpu, found))
+}
+
+/// When drops are stopped while the shutter is open, ms.
+fn landing_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
+    let Found { open, gpu, .. } = found(gpu, kind)?;
+    let time = |drop: &EyeDrop| if drop.present[1] > 1.0e3 { 1.0e3 } else { 1.0e3 * drop.present[1] };
+    let both = |drop: &EyeDrop| gpu.get(&key(drop)).map(|other| [time(drop), time(other)]);
+    let lands = |times: &[f32; 2]| times.iter().any(|&at| at < 1.0e3);
+    let times: Vec<[f32; 2]> = open.iter().filter_map(both).filter(lands).collect();
+    assert!(times.len() > 30, "{} drops land", times.len());
+    let side = |k: usize| times.iter().map(|pair| pair[k].to_bits()).collect();
+    Ok(run(1, side(0), side(1)))
 }
 
 fn steady() -> UniformWind {
@@ -183,6 +239,11 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             .with_outliers(2.0e-3),
         run,
     };
+    let shelter = |name, run| {
+        let tol =
+            Tol::absolute(0.02, "flags, and ms of drops that meet a plane; paths at an edge may differ");
+        KernelCase::new(name, &SHELTER_KERNEL, tol.with_outliers(4.0e-3), run)
+    };
     vec![
         of("main_field_find: steady wind", |gpu| {
             case(gpu, Kind { wind: steady, time_s: 7.125, shutter_s: 1.0 / 60.0, far: false })
@@ -195,6 +256,15 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         }),
         of("main_field_find: before time 0", |gpu| {
             case(gpu, Kind { wind: steady, time_s: -3.4, shutter_s: 0.02, far: true })
+        }),
+        shelter("main_shelter: steady wind", |gpu| {
+            stopped_case(gpu, Kind { wind: steady, time_s: 7.125, shutter_s: 1.0 / 60.0, far: true })
+        }),
+        shelter("main_shelter: gusts", |gpu| {
+            stopped_case(gpu, Kind { wind: gusty, time_s: 11.3, shutter_s: 1.0 / 60.0, far: false })
+        }),
+        shelter("main_shelter: landing", |gpu| {
+            landing_case(gpu, Kind { wind: gusty, time_s: 11.3, shutter_s: 0.1, far: false })
         }),
     ]
 }

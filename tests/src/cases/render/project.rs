@@ -328,19 +328,19 @@ fn profiles_case(
     let paths = rays.iter().map(|job| job[0] + 1).max().unwrap_or(0) as usize;
     let cpu = described(&made.paths, &made.ray_jobs, &made.light_jobs, &list, profiles.first_entry);
     let gpu_words = described(&found.paths[..paths], rays, parts, &found.list, profiles.first_entry);
-    let rest = |classes: &[StreakPath], rows: Vec<[f32; 4]>, groups: [u32; 4]| {
-        let mut words: Vec<u32> = classes.iter().map(|class| class.rows).collect();
+    let rest = |classes: &[StreakPath], rows: Vec<[f32; 4]>, groups: [u32; 6]| {
+        let mut words: Vec<u32> = classes.iter().map(|class| (class.rows as f32).to_bits()).collect();
         let mut rows: Vec<[u32; 4]> = rows.iter().map(|row| row.map(f32::to_bits)).collect();
         rows.sort_unstable();
         words.extend(rows.iter().flatten());
-        words.extend(groups);
+        words.extend(groups.map(|n| (n as f32).to_bits()));
         words
     };
     let streaks = made.paths.iter().map(|path| found.rows[path.drop as usize]).collect();
     let [a, b] = [made.ray_jobs.len(), made.light_jobs.len()].map(|n| profiles_groups_of(n as u32));
-    let found_groups = [found.groups[0], found.groups[1], found.groups[4], found.groups[5]];
+    let found_groups = [0, 1, 2, 4, 5, 6].map(|k| found.groups[k]);
     let mut cpu = cpu;
-    cpu.extend(rest(&made.classes, streaks, [a[0], a[1], b[0], b[1]]));
+    cpu.extend(rest(&made.classes, streaks, [a[0], a[1], 1, b[0], b[1], 1]));
     let mut gpu_words = gpu_words;
     let streaks: Vec<[f32; 4]> = found.streaks.iter().copied().filter(|row| row[3] > 0.0).collect();
     gpu_words.extend(rest(&found.classes, streaks, found_groups));

@@ -115,16 +115,16 @@ pub(super) fn functions() -> Vec<FunctionCase> {
     ]
 }
 
-/// The lists of drops of three pictures: the second and third find what the one before left.
+/// The lists of drops of pictures, each made twice: the second time finds what the first one left.
 fn lists(
     gpu: &Gpu,
     size: [u32; 2],
     room: Option<u32>,
-    drops: fn(u32) -> Vec<DropsDrop>,
+    (pictures, drops): (u32, fn(u32) -> Vec<DropsDrop>),
 ) -> Result<Run, GpuError> {
     let pipeline = TilesPipeline::new(gpu)?;
     let (mut cpu, mut found) = (Vec::new(), Vec::new());
-    for seed in 0..3 {
+    for seed in 0..pictures {
         let drops = drops(seed);
         let mut frame = TilesFrame::new(size, drops.len() as u32);
         frame.room = room.unwrap_or(frame.room);
@@ -204,15 +204,17 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         run,
     };
     vec![
-        of("main_tiles_sort (tiles of 8 pixels)", |gpu| lists(gpu, SIZES[0], None, random_drops::<9000>)),
-        of("main_tiles_sort (larger tiles, long lists)", |gpu| {
-            lists(gpu, SIZES[1], Some(60_000), random_drops::<6000>)
+        of("main_tiles_sort (tiles of 8 pixels)", |gpu| {
+            lists(gpu, SIZES[0], None, (2, random_drops::<9000>))
         }),
-        of("main_tiles_sort (one list)", |gpu| lists(gpu, SIZES[1], Some(9000), random_drops::<9000>)),
-        of("main_tiles_sort (two drops)", |gpu| lists(gpu, SIZES[0], None, random_drops::<2>)),
-        of("main_tiles_sort (whole tiles)", |gpu| lists(gpu, SIZES[1], None, random_drops::<700>)),
+        of("main_tiles_sort (larger tiles, long lists)", |gpu| {
+            lists(gpu, SIZES[1], Some(60_000), (2, random_drops::<6000>))
+        }),
+        of("main_tiles_sort (one list)", |gpu| lists(gpu, SIZES[1], Some(9000), (2, random_drops::<9000>))),
+        of("main_tiles_sort (two drops)", |gpu| lists(gpu, SIZES[0], None, (2, random_drops::<2>))),
+        of("main_tiles_sort (whole tiles)", |gpu| lists(gpu, SIZES[1], None, (2, random_drops::<700>))),
         of("main_tiles_sort (more than 32 bits hold)", |gpu| {
-            lists(gpu, [4096; 2], Some(1 << 14), everywhere)
+            lists(gpu, [4096; 2], Some(1 << 14), (1, everywhere))
         }),
         KernelCase::new("main_tiles_seen", &TILES_SEEN_KERNEL, exact, seen_case),
     ]
