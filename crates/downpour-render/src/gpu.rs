@@ -19,4 +19,4 @@ pub use host::{HostPass, HostPipeline, HostTextures};
 pub use medium::{MediumPass, MediumPipeline};
 pub use plate::{LightingOnGpu, PlateOnGpu};
 pub use project::{FallingOnGpu, ProjectPass, ProjectPipeline};
-pub use rain::{RAIN_BUFFERS, RainOnGpu, RainPass, RainPipeline};
+pub use rain::{RainOnGpu, RainPass, RainPipeline};

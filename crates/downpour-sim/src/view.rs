@@ -136,6 +136,20 @@ impl View {
         4.0 * self.half_width * self.half_height * range * range * range / 3.0
     }
 
+    /// Upper bound of the volume, m^3, of what comes into the picture during the exposure up to a distance: the pyramid of all that
+    /// the turning camera sees, with a margin, within the ball of that distance.
+    #[cfg(feature = "wgpu")]
+    pub(crate) fn swept_volume(&self, range: f64, margin: f64) -> f64 {
+        let [wide, high] = self.swept_half();
+        let inner = 4.0 * wide * high * range * range * range / 3.0;
+        let sides =
+            2.0 * range * range * (wide * (1.0 + high * high).sqrt() + high * (1.0 + wide * wide).sqrt());
+        let base = 4.0 * wide * high * range * range;
+        let ball = 4.0 / 3.0 * std::f64::consts::PI * range * range * range;
+        // A convex body that moves by twice the margin sweeps its outline across the way, at most half its surface.
+        (inner + (sides + base) * margin).min(ball)
+    }
+
     /// Box around the picture up to a distance, with a margin. Wide pictures are cut to the sphere of that distance.
     pub(crate) fn bounds(&self, range: f64, margin: f64) -> Bounds {
         let (mut low, mut high) = (self.eye, self.eye);

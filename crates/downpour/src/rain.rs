@@ -8,7 +8,7 @@ use downpour_drop::distribution::{DistributionOptions, DropSizeDistribution};
 use downpour_drop::oscillation::{Amplitudes, Fluids};
 use downpour_gpu::{BufferPool, Gpu, wgpu};
 use downpour_render::camera::{EyeMotion, Viewpoint};
-use downpour_render::gpu::{FallingOnGpu, HostPipeline, PlateOnGpu, RAIN_BUFFERS, RainOnGpu, RainPipeline};
+use downpour_render::gpu::{FallingOnGpu, HostPipeline, PlateOnGpu, RainOnGpu, RainPipeline};
 use downpour_render::host::{HostBlendFrame, HostEnvironmentFrame, HostPlateFrame};
 use downpour_render::light::LightSource;
 use downpour_render::rain::{
@@ -127,7 +127,7 @@ impl Rain {
             masks_on_gpu: rains.upload(&masks)?,
             scene_on_gpu: SceneOnGpu::new(&gpu, &scene, None)?,
             host: HostPipeline::new(&gpu)?,
-            pool: BufferPool::new(&gpu).with_room(&RAIN_BUFFERS),
+            pool: BufferPool::new(&gpu),
             gpu,
             settings,
             sizes,

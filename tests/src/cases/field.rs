@@ -136,10 +136,17 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
         GpuSimError::Gpu(error) => error,
         other => panic!("{other}"),
     };
-    let most = 1 << 20;
-    let pass =
-        pipeline.prepare(gpu, (&field, &mut on_gpu), &obstacles, &view, kind.time_s, most).map_err(of_gpu)?;
-    gpu.submit(&pass.dispatches())?;
+    // What a picture with more drops leaves in the same buffers must not show.
+    let (pool, most) = (BufferPool::new(gpu), 1 << 20);
+    let more = View { far: 16.0, velocity: DVec3::ZERO, ..view };
+    let before = pipeline
+        .prepare(&pool, (&field, &mut on_gpu), &obstacles, &more, kind.time_s + 0.3, most)
+        .map_err(of_gpu)?;
+    gpu.submit(&before.dispatches())?;
+    pool.begin_frame();
+    let pass = pipeline
+        .prepare(&pool, (&field, &mut on_gpu), &obstacles, &view, kind.time_s, most)
+        .map_err(of_gpu)?;
     gpu.submit(&pass.dispatches())?;
     let (drops, [found, tried]) = pass.read()?;
     assert!(found >= drops.len() as u32 && found <= pass.room() && tried > found, "{found} of {tried}");

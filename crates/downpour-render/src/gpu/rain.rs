@@ -67,10 +67,6 @@ pub struct RainPass<'a> {
     layer: wgpu::Buffer,
 }
 
-/// Least sizes, bytes, for a [`BufferPool`](downpour_gpu::BufferPool): a drop before the lens has a thousand times the rays of
-/// one farther off.
-pub const RAIN_BUFFERS: [(&str, u64); 2] = [("rays of streaks", 32 << 20), ("streak radiance", 32 << 20)];
-
 /// Jobs along a row of workgroups: fewer than every device allows, and so few that tests have several rows.
 const ALONG: u32 = 128;
 

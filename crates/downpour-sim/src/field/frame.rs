@@ -123,9 +123,12 @@ pub(crate) struct FieldQuery {
     pub(crate) deepest: f64,
 }
 
-/// Room beyond what is expected: a fifth for drops beside the picture that move into it, and for chance.
+/// Room beyond what is expected, for chance and for classes of few drops.
 const ROOM: f64 = 1.25;
 const SPARE_ROOM: f64 = 4096.0;
+
+/// Drops of so many pixels are so rare that there is room for them.
+const MAX_LEAST_PIXELS: f64 = 1.0e4;
 
 impl RainField {
     /// The question for the drops of a picture; at most `most` drops have room.
@@ -135,10 +138,26 @@ impl RainField {
     pub(crate) fn query(&self, view: &View, time_s: f64, most: u32) -> Result<FieldQuery, SimError> {
         view.check()?;
         check_time(time_s)?;
-        let least_pixels = self.affordable(view);
         let drift = Drift::new(&self.wind, time_s);
         let base = drift.middle();
-        let (mut classes, mut columns, mut expected) = (Vec::new(), 0u32, 0.0);
+        let room = |least_pixels: f64| {
+            let expected = |class: &Class| {
+                let range = view.range(class.largest, least_pixels);
+                let is_seen = range >= view.near;
+                if is_seen {
+                    class.density * view.swept_volume(range, class.half_way(view, &drift))
+                } else {
+                    0.0
+                }
+            };
+            self.classes.iter().map(expected).sum::<f64>() * ROOM + SPARE_ROOM
+        };
+        let mut least_pixels = self.affordable(view);
+        // 3 % at a time, as in what is affordable, until the drops that move into the picture have room as well.
+        while room(least_pixels) > f64::from(most) && least_pixels < MAX_LEAST_PIXELS {
+            least_pixels = (least_pixels * 1.03).max(1.0e-3);
+        }
+        let (mut classes, mut columns) = (Vec::new(), 0u32);
         let (mut slowest, mut deepest) = (f64::INFINITY, f64::INFINITY);
         for (k, class) in (0u32..).zip(&self.classes) {
             let range = view.range(class.largest, least_pixels);
@@ -150,7 +169,6 @@ impl RainField {
             row.first_threshold = k * 2 * FIELD_THRESHOLDS;
             row.first_column = columns;
             columns = columns.saturating_add(row.counts[0].saturating_mul(row.counts[1]));
-            expected += class.density * view.volume(range);
             slowest = slowest.min(class.speeds[0]);
             deepest = deepest.min(view.eye.y + f64::from(row.heights[0]));
             classes.push(row);
@@ -171,7 +189,7 @@ impl RainField {
             is_before: time.is_before,
             classes: classes.len() as u32,
             columns,
-            room: ((expected * ROOM + SPARE_ROOM) as u32).min(most).max(1),
+            room: (room(least_pixels) as u32).min(most).max(1),
         };
         let table = drift
             .entries()
@@ -214,6 +232,34 @@ impl Class {
             reach: (radius + margin) as f32,
             middle: ((bounds.low.y + bounds.high.y) * 0.5 - view.eye.y) as f32,
             ..FieldClass::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
+
+    #[test]
+    fn there_is_room_for_all_drops_however_the_camera_moves() {
+        let rain = DropSizeDistribution::new(DropSizeLaw::MarshallPalmer1948, 300.0).unwrap();
+        let field = RainField::new(&rain, 3).unwrap();
+        let still = View { far: 20.0, ..View::default() };
+        let fast = View { shutter_s: 1.0 / 30.0, velocity: DVec3::new(80.0, 0.0, -30.0), ..still };
+        let turning = View { shutter_s: 1.0 / 24.0, turning: DVec3::new(0.0, 12.0, 1.0), ..still };
+        let long = View { shutter_s: 0.25, least_pixels: 1.0, ..still };
+        let narrow = View { half_width: 0.02, half_height: 0.01, pixel_angle: 2.0e-5, far: 50.0, ..fast };
+        for view in [still, fast, turning, long, narrow] {
+            let found = field.visible(&view, 5.0).unwrap().drops.len();
+            let room = field.query(&view, 5.0, u32::MAX).unwrap().frame.room;
+            assert!(found > 100 && (found as u32) < room, "{found} drops, room for {room}: {view:?}");
+            assert!(room < 8 * found as u32 + 8192, "{found} drops, room for {room}: {view:?}");
+            // Where there is less room, fewer drops are resolved.
+            let few = field.query(&view, 5.0, 10_000).unwrap();
+            let resolved = View { least_pixels: few.resolved.least_pixels, ..view };
+            let found = field.visible(&resolved, 5.0).unwrap().drops.len();
+            assert!(found as u32 <= few.frame.room && few.frame.room <= 10_000, "{found} drops: {view:?}");
         }
     }
 }
