@@ -3,7 +3,8 @@
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&OPS, &PACKING_CONSTANTS, &PACKING, &PYRAMID, &RNG_CONSTANTS, &RNG];
+pub const MODULES: &[&Module] =
+    &[&INVOCATION, &OPS, &PACKING_CONSTANTS, &PACKING, &PYRAMID, &RNG_CONSTANTS, &RNG];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&PYRAMID_KERNEL];
@@ -11,6 +12,13 @@ pub const KERNELS: &[&Kernel] = &[&PYRAMID_KERNEL];
 /// Tests and small functions on scalars. Twin: `downpour_math::ops`.
 pub static OPS: Module =
     Module { path: "common/ops.wgsl", wgsl: include_str!("../wgsl/common/ops.wgsl"), uses: &[] };
+
+/// Invocations of several rows of workgroups. Twin: `downpour_gpu::invocation_index`.
+pub static INVOCATION: Module = Module {
+    path: "common/invocation.wgsl",
+    wgsl: include_str!("../wgsl/common/invocation.wgsl"),
+    uses: &[],
+};
 
 /// Counter-based random numbers. Twin: `downpour_math::rng`.
 pub static RNG: Module = Module {

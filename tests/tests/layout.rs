@@ -110,7 +110,7 @@ fn hosts() -> Vec<Host> {
             eye, half_shutter, low, since_cut, high, cuts, room, unused_1, unused_2, unused_3),
         host!(ProjectFrame as "ProjectFrame" in &render::rain::PROJECT,
             camera, eye_velocity, shutter, turning, aperture, amplitudes, inverse_focus, streaks, seed, ticks,
-            time_offset, count, room, is_fading, small_are_round, medium, has_axes, unused),
+            time_offset, count, room, is_fading, small_are_round, has_axes, unused_1, unused),
         host!(ProfilesFrame as "ProfilesFrame" in &render::rain::PROFILES,
             count, max_rays, max_entries, first_entry, seed, amplitudes, medium, unused_1, unused_2, unused_3),
         host!(TilesFrame as "TilesFrame" in &render::rain::TILES, size, count, room),

@@ -29,14 +29,18 @@ mod error;
 mod kernel;
 mod pool;
 mod readback;
+mod sequence;
 pub mod timing;
+mod workgroups;
 
 pub use adapter::{AdapterChoice, AdapterDescription};
 pub use context::{Gpu, GpuOptions, LimitSet};
 pub use error::GpuError;
 pub use kernel::{ComputeKernel, Dispatch};
 pub use pool::{BufferPool, BufferSource};
+pub use sequence::{KernelSequence, SequencePass};
 pub use wgpu;
+pub use workgroups::{invocation_index, workgroups};
 
 /// Compiles the examples of the README as doctests.
 #[cfg(doctest)]

@@ -34,13 +34,14 @@ pub trait BufferSource {
         self.gpu().write(buffer, bytes);
     }
 
-    /// Returns a storage buffer that begins with `data`.
+    /// Returns a storage buffer that begins with `data`; it has room for one element at least, as a binding needs it.
     ///
     /// # Errors
     /// As [`BufferSource::buffer`].
     fn storage<T: Pod>(&self, label: &'static str, data: &[T]) -> Result<wgpu::Buffer, GpuError> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
-        let buffer = self.buffer(label, bytes.len() as u64, wgpu::BufferUsages::STORAGE)?;
+        let buffer =
+            self.buffer(label, bytes.len().max(size_of::<T>()) as u64, wgpu::BufferUsages::STORAGE)?;
         self.write(&buffer, bytes);
         Ok(buffer)
     }
@@ -80,8 +81,6 @@ impl BufferSource for Gpu {
 #[derive(Debug)]
 pub struct BufferPool {
     gpu: Gpu,
-    /// Least size of the buffers of some labels, bytes.
-    room: HashMap<&'static str, u64>,
     /// Labels whose buffers are not kept.
     given_away: Vec<&'static str>,
     kept: Mutex<Kept>,
@@ -102,14 +101,7 @@ impl BufferPool {
     /// Creates a pool without buffers.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Self {
-        Self { gpu: gpu.clone(), room: HashMap::new(), given_away: Vec::new(), kept: Mutex::default() }
-    }
-
-    /// Sets the least size, bytes, of the storage buffers of labels whose contents change much from frame to frame.
-    #[must_use]
-    pub fn with_room(mut self, room: &[(&'static str, u64)]) -> Self {
-        self.room.extend(room.iter().copied());
-        self
+        Self { gpu: gpu.clone(), given_away: Vec::new(), kept: Mutex::default() }
     }
 
     /// Sets labels whose buffers are created anew each time, since they are needed longer than for the frame.
@@ -139,15 +131,14 @@ impl BufferPool {
     }
 
     /// Size of a new buffer: with room to grow, as far as the device allows.
-    fn roomy(&self, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> u64 {
+    fn roomy(&self, bytes: u64, usage: wgpu::BufferUsages) -> u64 {
         if usage.contains(wgpu::BufferUsages::UNIFORM) {
             return bytes;
         }
         let limits = self.gpu.device().limits();
         let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         let room = if bytes < SMALL { bytes } else { bytes / 4 };
-        let least = self.room.get(label).copied().unwrap_or(MIN_BYTES);
-        let wanted = (bytes + room).max(least).next_multiple_of(256);
+        let wanted = (bytes + room).max(MIN_BYTES).next_multiple_of(256);
         if wanted <= most { wanted } else { bytes }
     }
 }
@@ -169,7 +160,7 @@ impl BufferSource for BufferPool {
         let buffer = match known.filter(|known| known.size() >= bytes && known.usage().contains(usage)) {
             Some(known) => known.clone(),
             None => {
-                let made = self.gpu.empty_buffer(label, self.roomy(label, bytes, usage), usage)?;
+                let made = self.gpu.empty_buffer(label, self.roomy(bytes, usage), usage)?;
                 let buffers = kept.buffers.entry(label).or_default();
                 match buffers.get_mut(nth) {
                     Some(place) => *place = made.clone(),

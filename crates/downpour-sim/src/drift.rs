@@ -11,6 +11,15 @@ const MAX_SPEED_M_S: f64 = FIELD_DRIFT_SPEED as f64;
 /// Number of intervals of the table.
 const INTERVALS: usize = FIELD_DRIFT as usize;
 
+/// Position of a terminal speed, m/s, in the table: the entry below, and the fraction of the distance to the next. Twin of the function
+/// of this name in `shaders/wgsl/sim/drift.wgsl`.
+#[must_use]
+pub fn drift_position(speed: f64) -> (usize, f64) {
+    let position = (speed * (INTERVALS as f64 / MAX_SPEED_M_S)).clamp(0.0, INTERVALS as f64);
+    let lower = (position as usize).min(INTERVALS - 1);
+    (lower, position - lower as f64)
+}
+
 /// Motion of drops by the wind up to a time. It is linear between the speeds of the table, so that a drop's velocity
 /// is the rate of change of its position.
 #[derive(Clone, Debug)]
@@ -46,9 +55,7 @@ impl Drift {
 
     /// Displacement since time 0, m, and velocity due to the wind, m/s, of a drop with a terminal speed, m/s.
     pub(crate) fn of(&self, speed: f64) -> [DVec3; 2] {
-        let position = (speed * (INTERVALS as f64 / MAX_SPEED_M_S)).clamp(0.0, INTERVALS as f64);
-        let lower = (position as usize).min(INTERVALS - 1);
-        let fraction = position - lower as f64;
+        let (lower, fraction) = drift_position(speed);
         match self.table.get(lower..lower + 2) {
             Some(&[a, b]) => [a[0].lerp(b[0], fraction), a[1].lerp(b[1], fraction)],
             _ => [DVec3::ZERO; 2],

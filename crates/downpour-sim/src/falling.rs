@@ -1,5 +1,6 @@
 //! Drops in the form that a picture needs.
 
+use downpour_math::ops;
 use glam::{DVec3, Vec3};
 
 use crate::resolved::Resolved;
@@ -95,6 +96,27 @@ impl EyeDrop {
             unused: 0,
         }
     }
+
+    /// Position relative to an eye that moves and turns, at a time relative to the picture's, s. Twin of the function of this name in
+    /// `shaders/wgsl/sim/eye_drop.wgsl`.
+    #[must_use]
+    pub fn eye_drop_position(&self, velocity: Vec3, turning: Vec3, time: f32) -> Vec3 {
+        let moved = Vec3::from(self.offset) + (Vec3::from(self.velocity) - velocity) * time;
+        eye_drop_turned(moved, turning * -time)
+    }
+}
+
+/// A vector turned about an axis by the axis's length, in radians.
+#[doc(hidden)]
+#[must_use]
+pub fn eye_drop_turned(v: Vec3, axis: Vec3) -> Vec3 {
+    let angle = axis.length();
+    if angle < 1.0e-9 {
+        return v;
+    }
+    let unit = axis / angle;
+    let (sine, cosine) = (ops::sin(angle), ops::cos(angle));
+    v * cosine + unit.cross(v) * sine + unit * (unit.dot(v) * (1.0 - cosine))
 }
 
 /// The drops that a camera can resolve.

@@ -42,6 +42,10 @@ use rayon::prelude::*;
 use self::chain::{ChainCount, ChainSizes, FieldTime, field_fallen};
 use crate::SimError;
 use crate::drift::Drift;
+#[doc(hidden)]
+pub use crate::drift::drift_position;
+#[doc(hidden)]
+pub use crate::falling::eye_drop_turned;
 pub use crate::falling::{DropKind, EyeDrop, FallingDrop, VisibleDrops};
 use crate::resolved::Resolved;
 use crate::shelter::{Obstacles, keep_open};

@@ -4,7 +4,7 @@ use super::camera::CAMERA;
 use super::drop_light::{DROP_GLINT, DROP_LIGHT_CONSTANTS};
 use super::medium::MEDIUM;
 use crate::atlas::ATLAS;
-use crate::common::{OPS, PACKING};
+use crate::common::{INVOCATION, OPS, PACKING};
 use crate::drop::oscillation::OSCILLATION;
 use crate::drop::shape::SHAPE;
 use crate::mask::WOBBLE;
@@ -400,21 +400,31 @@ pub static DROPS: Module = Module {
 pub static PROJECT: Module = Module {
     path: "render/project.wgsl",
     wgsl: include_str!("../../wgsl/render/project.wgsl"),
-    uses: &[&OPS, &EYE_DROP, &RAIN_CONSTANTS, &PROJECT_TABLES, &CAMERA, &OSCILLATION, &STREAK, &DROP_GLINT],
+    uses: &[
+        &INVOCATION,
+        &OPS,
+        &EYE_DROP,
+        &RAIN_CONSTANTS,
+        &PROJECT_TABLES,
+        &CAMERA,
+        &OSCILLATION,
+        &STREAK,
+        &DROP_GLINT,
+    ],
 };
 
 /// Profiles of streaks in the streak radiance table. Twin: `downpour_render::rain::profiles`.
 pub static PROFILES: Module = Module {
     path: "render/profiles.wgsl",
     wgsl: include_str!("../../wgsl/render/profiles.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &PROFILES_TABLES, &OSCILLATION, &SHAPE, &STREAK, &STREAK_PATH],
+    uses: &[&INVOCATION, &RAIN_CONSTANTS, &PROFILES_TABLES, &OSCILLATION, &SHAPE, &STREAK, &STREAK_PATH],
 };
 
 /// Lists of drops for the tiles of a picture. Twin: `downpour_render::rain::tiles`.
 pub static TILES: Module = Module {
     path: "render/tiles.wgsl",
     wgsl: include_str!("../../wgsl/render/tiles.wgsl"),
-    uses: &[&RAIN_CONSTANTS, &OSCILLATION, &STREAK],
+    uses: &[&INVOCATION, &RAIN_CONSTANTS, &OSCILLATION, &STREAK],
 };
 
 /// One invocation per place in the list.

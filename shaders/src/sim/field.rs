@@ -1,12 +1,12 @@
 //! Rain in closed form. Twin: `downpour_sim::field`.
 
 use crate::bvh::BVH;
-use crate::common::RNG;
+use crate::common::{INVOCATION, RNG};
 use crate::drop::distribution::DISTRIBUTION;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&EYE_DROP, &FIELD_CONSTANTS, &FIELD, &SHELTER];
+pub const MODULES: &[&Module] = &[&EYE_DROP, &FIELD_CONSTANTS, &DRIFT, &FIELD, &SHELTER];
 
 /// Every kernel of this file.
 pub const KERNELS: &[&Kernel] = &[&FIELD_CLEAR_KERNEL, &FIELD_FIND_KERNEL, &SHELTER_KERNEL];
@@ -49,22 +49,29 @@ shared_constants! {
     }
 }
 
-/// A drop relative to the eye. Host type: `downpour_sim::field::EyeDrop`.
+/// A drop relative to the eye. Twin: `downpour_sim::field::EyeDrop`.
 pub static EYE_DROP: Module =
     Module { path: "sim/eye_drop.wgsl", wgsl: include_str!("../../wgsl/sim/eye_drop.wgsl"), uses: &[] };
+
+/// Drift of drops by terminal speed. Twin: `downpour_sim::drift`.
+pub static DRIFT: Module = Module {
+    path: "sim/drift.wgsl",
+    wgsl: include_str!("../../wgsl/sim/drift.wgsl"),
+    uses: &[&FIELD_CONSTANTS],
+};
 
 /// Drops of a rain before an eye. Twin: `downpour_sim::field`.
 pub static FIELD: Module = Module {
     path: "sim/field.wgsl",
     wgsl: include_str!("../../wgsl/sim/field.wgsl"),
-    uses: &[&FIELD_CONSTANTS, &EYE_DROP, &RNG, &DISTRIBUTION],
+    uses: &[&FIELD_CONSTANTS, &EYE_DROP, &DRIFT, &INVOCATION, &RNG, &DISTRIBUTION],
 };
 
 /// Drops that nothing has stopped. Twin: `downpour_sim::shelter`.
 pub static SHELTER: Module = Module {
     path: "sim/shelter.wgsl",
     wgsl: include_str!("../../wgsl/sim/shelter.wgsl"),
-    uses: &[&FIELD_CONSTANTS, &EYE_DROP, &BVH],
+    uses: &[&FIELD_CONSTANTS, &EYE_DROP, &DRIFT, &INVOCATION, &BVH],
 };
 
 /// One invocation per place in the list.

@@ -154,7 +154,7 @@ fn main_profiles_measure(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) local: u32,
 ) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index < profiles_frame.count {
         let drop = profiles_list[index];
         if profiles_is_mean(drop) {
@@ -181,7 +181,7 @@ fn main_profiles_measure(
 
 @compute @workgroup_size(64, 1, 1)
 fn main_profiles_place(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index >= profiles_frame.count {
         return;
     }

@@ -34,10 +34,9 @@ struct ProjectFrame {
     is_fading: u32,
     // 1 if drops of the smallest diameter look the same from everywhere.
     small_are_round: u32,
-    // Class of the drops that are not drawn one by one; PROJECT_NO_CLASS: there is none.
-    medium: u32,
     // 1 if drops have an axis in project_rows, for an atlas.
     has_axes: u32,
+    unused_1: u32,
     unused: vec2u,
 }
 
@@ -92,16 +91,6 @@ struct ProjectShown {
 // Position relative to the scene's origin and radius, m, as drop_light.wgsl reads it; then, for an atlas, the axes and ids.
 @group(0) @binding(5) var<storage, read_write> project_rows: array<vec4f>;
 
-// A vector turned about an axis by the axis's length, in radians.
-fn project_turned(v: vec3f, axis: vec3f) -> vec3f {
-    let angle = sqrt(dot(axis, axis));
-    if angle < 1.0e-9 {
-        return v;
-    }
-    let unit = axis / angle;
-    return v * cos(angle) + cross(unit, v) * sin(angle) + unit * (dot(unit, v) * (1.0 - cos(angle)));
-}
-
 // The fraction of a path from `start` to `end` on which it is at least `least`; begin above end: none of it.
 fn project_ahead(start: f32, end: f32, least: f32) -> vec2f {
     let begins = start >= least;
@@ -134,8 +123,7 @@ fn project_seen(present: vec2f) -> f32 {
 
 // Position relative to the eye at a time relative to the picture's, s.
 fn project_position(drop: EyeDrop, time: f32) -> vec3f {
-    let moved = drop.offset + (drop.velocity - project_frame.eye_velocity) * time;
-    return project_turned(moved, project_frame.turning * -time);
+    return eye_drop_position(drop, project_frame.eye_velocity, project_frame.turning, time);
 }
 
 // The path of a drop whose middle is at `middle`.
@@ -385,7 +373,7 @@ fn project_axis(shown: ProjectShown) -> vec4f {
 
 @compute @workgroup_size(64, 1, 1)
 fn main_project(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index >= project_frame.room {
         return;
     }

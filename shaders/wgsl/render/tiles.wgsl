@@ -131,7 +131,7 @@ fn main_tiles_clear(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(num_workgroups) groups: vec3u,
 ) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index < arrayLength(&tiles_counts) {
         atomicStore(&tiles_counts[index], 0u);
     }
@@ -143,7 +143,7 @@ fn main_tiles_measure(
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) local: u32,
 ) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index < tiles_frame.count {
         let drop = tiles_drops[index];
         for (var k = 0u; k < TILES_EDGES; k += 1u) {
@@ -166,7 +166,7 @@ fn main_tiles_count(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(num_workgroups) groups: vec3u,
 ) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index >= tiles_frame.count {
         return;
     }
@@ -223,7 +223,7 @@ fn main_tiles_place(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(num_workgroups) groups: vec3u,
 ) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index >= tiles_frame.count {
         return;
     }
@@ -307,7 +307,7 @@ fn main_tiles_sort(
 
 @compute @workgroup_size(64, 1, 1)
 fn main_tiles_seen(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index >= tiles_frame.count {
         return;
     }

@@ -1,5 +1,5 @@
 // A drop relative to the eye.
-// Host type: downpour_sim::field::EyeDrop.
+// Twin: downpour_sim::field::EyeDrop.
 
 struct EyeDrop {
     // At the time of the picture, or where it would be then, m.
@@ -15,4 +15,19 @@ struct EyeDrop {
     // Terminal speed, m/s.
     speed: f32,
     unused: u32,
+}
+
+// A vector turned about an axis by the axis's length, in radians.
+fn eye_drop_turned(v: vec3f, axis: vec3f) -> vec3f {
+    let angle = sqrt(dot(axis, axis));
+    if angle < 1.0e-9 {
+        return v;
+    }
+    let unit = axis / angle;
+    return v * cos(angle) + cross(unit, v) * sin(angle) + unit * (dot(unit, v) * (1.0 - cos(angle)));
+}
+
+// Position relative to an eye that moves and turns, at a time relative to the picture's, s.
+fn eye_drop_position(drop: EyeDrop, velocity: vec3f, turning: vec3f, time: f32) -> vec3f {
+    return eye_drop_turned(drop.offset + (drop.velocity - velocity) * time, turning * -time);
 }

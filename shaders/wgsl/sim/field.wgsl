@@ -159,21 +159,11 @@ fn field_less(a: vec2u, b: vec2u) -> vec2u {
     return vec2u(a.x - b.x - select(0u, 1u, a.y < b.y), a.y - b.y);
 }
 
-// A vector turned about an axis by the axis's length, in radians.
-fn field_turned(v: vec3f, axis: vec3f) -> vec3f {
-    let angle = sqrt(dot(axis, axis));
-    if angle < 1.0e-9 {
-        return v;
-    }
-    let unit = axis / angle;
-    return v * cos(angle) + cross(unit, v) * sin(angle) + unit * (dot(unit, v) * (1.0 - cos(angle)));
-}
-
 // Drift and velocity of drops of a terminal speed: linear between the entries.
 fn field_carried(speed: f32) -> FieldCarried {
-    let at = clamp(speed * (f32(FIELD_DRIFT) / FIELD_DRIFT_SPEED), 0.0, f32(FIELD_DRIFT));
-    let low = min(u32(at), FIELD_DRIFT - 1u);
-    let part = at - f32(low);
+    let position = drift_position(speed);
+    let low = u32(position.x);
+    let part = position.y;
     let drift = field_drift[2u * low].xyz * (1.0 - part) + field_drift[2u * low + 2u].xyz * part;
     let wind = field_drift[2u * low + 1u].xyz * (1.0 - part) + field_drift[2u * low + 3u].xyz * part;
     return FieldCarried(drift, wind);
@@ -187,9 +177,8 @@ fn field_shows(drop: EyeDrop) -> bool {
         return false;
     }
     let half_time = field_frame.half_shutter;
-    let moved = (drop.velocity - field_frame.velocity) * half_time;
-    let begin = field_turned(drop.offset - moved, field_frame.turning * half_time);
-    let end = field_turned(drop.offset + moved, field_frame.turning * -half_time);
+    let begin = eye_drop_position(drop, field_frame.velocity, field_frame.turning, -half_time);
+    let end = eye_drop_position(drop, field_frame.velocity, field_frame.turning, half_time);
     let radius = FIELD_RADIUS * drop.diameter;
     for (var k = 0u; k < FIELD_SIDES; k += 1u) {
         let side = field_frame.sides[k].xyz;
@@ -249,7 +238,7 @@ fn field_chain(kind: FieldClass, column: vec2i, key: vec2u, index: u32) {
 
 @compute @workgroup_size(64, 1, 1)
 fn main_field_clear(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index < 2u {
         atomicStore(&field_found[index], 0u);
     }
@@ -260,7 +249,7 @@ fn main_field_clear(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
 
 @compute @workgroup_size(64, 1, 1)
 fn main_field_find(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index >= field_frame.columns {
         return;
     }

@@ -36,10 +36,9 @@ fn shelter_clear(start: vec3f, direction: vec3f, distance: f32) -> bool {
 
 // Drift of drops of a terminal speed: row 0 up to the opening of the shutter, others up to the quarters before.
 fn shelter_carried(row: u32, speed: f32) -> vec3f {
-    let at = clamp(speed * (f32(FIELD_DRIFT) / FIELD_DRIFT_SPEED), 0.0, f32(FIELD_DRIFT));
-    let low = min(u32(at), FIELD_DRIFT - 1u);
-    let part = at - f32(low);
-    let first = row * (FIELD_DRIFT + 1u) + low;
+    let position = drift_position(speed);
+    let part = position.y;
+    let first = row * (FIELD_DRIFT + 1u) + u32(position.x);
     return shelter_drift[first].xyz * (1.0 - part) + shelter_drift[first + 1u].xyz * part;
 }
 
@@ -80,7 +79,7 @@ fn shelter_is_open(start: vec3f, at: vec3f, speed: f32, velocity: vec3f) -> bool
 
 @compute @workgroup_size(64, 1, 1)
 fn main_shelter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.y * groups.x * 64u + id.x;
+    let index = invocation_index(id, groups);
     if index >= shelter_frame.room || shelter_drops[index].diameter <= 0.0 {
         return;
     }

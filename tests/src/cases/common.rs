@@ -1,6 +1,6 @@
 //! `shaders/wgsl/common` against `downpour-math`.
 
-use downpour_gpu::{ComputeKernel, Gpu, GpuError};
+use downpour_gpu::{ComputeKernel, Gpu, GpuError, invocation_index};
 use downpour_math::pyramid::{PyramidLevel, PyramidRounding, pyramid_append, pyramid_levels};
 use downpour_math::{ops, packing, rng};
 use downpour_shaders::common;
@@ -32,6 +32,9 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             INTEGERS,
             |a| ops::ops_is_finite(a.f32()).words(),
         ),
+        FunctionCase::new("invocation_index", &common::INVOCATION, &[AnyWord; 6], INTEGERS, |a| {
+            invocation_index(a.u32s(), a.u32s()).words()
+        }),
         FunctionCase::new("rng_pcg4d_stir", &common::RNG, &words4, INTEGERS, |a| {
             rng::rng_pcg4d_stir(a.u32s()).words()
         }),

@@ -6,16 +6,18 @@ use downpour_bvh::Bvh;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_gpu::{BufferPool, Gpu, GpuError};
 use downpour_shaders::Kernel;
-use downpour_shaders::sim::field::{FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_KERNEL};
+use downpour_shaders::sim::field::{
+    DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_KERNEL,
+};
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
-use downpour_sim::field::{EyeDrop, FallingDrop, RainField};
+use downpour_sim::field::{EyeDrop, FallingDrop, RainField, drift_position, eye_drop_turned};
 use downpour_sim::gpu::{FieldPipeline, GpuSimError, ObstaclesOnGpu};
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
 use downpour_wind::{Gusts, Keyed, UniformWind, Wind, WindPart};
 use glam::{DVec3, Vec3};
 
-use crate::Domain::{AnyWord, Below, Made};
+use crate::Domain::{AnyWord, Below, Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -36,7 +38,29 @@ fn time(random: [u32; 4]) -> Vec<u32> {
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
     let exact = Tol::exact("integers throughout");
+    let axis = [Uniform(-2.0, 2.0), Uniform(-2.0, 2.0), Uniform(-2.0, 2.0)];
     vec![
+        FunctionCase::new(
+            "eye_drop_turned",
+            &EYE_DROP,
+            &[Unit3, axis[0], axis[1], axis[2]],
+            Tol::absolute(4.0e-3, "sines and cosines (2^-11) of up to 3.5 radians, three terms"),
+            |a| eye_drop_turned(Vec3::from(a.f32s()), Vec3::from(a.f32s())).to_array().words(),
+        ),
+        FunctionCase::new(
+            "drift_position",
+            &DRIFT,
+            &[Uniform(-1.0, 14.0)],
+            Tol::absolute(
+                2.0e-5,
+                "products with an entry's distance, up to 64, of which the CPU has more digits",
+            )
+            .with_outliers(1.0e-4),
+            |a| {
+                let (lower, fraction) = drift_position(a.f32().into());
+                [lower as f32, fraction as f32].words()
+            },
+        ),
         FunctionCase::new("field_part", &FIELD, &[AnyWord, Below(1 << 16)], exact, |a| {
             field_part(a.u32(), a.u32()).words()
         }),
@@ -243,7 +267,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         text: None,
         // The same drops, but for those at the edge of the picture, of what is resolved, or of an obstacle.
         tol: Tol::absolute(6.0e-5, "meters: f32 up to 14 m, and a drift up to 100 m; drops at an edge")
-            .with_outliers(2.0e-3),
+            .with_outliers(1.0e-4),
         run,
     };
     let shelter = |name, run| {

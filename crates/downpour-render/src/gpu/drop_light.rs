@@ -59,9 +59,7 @@ impl DropLightPipeline {
         lights: &DropLights<'_>,
         drops: &[[f32; 4]],
     ) -> Result<DropLightPass<'a>, GpuError> {
-        // A buffer has at least one element.
-        let list: &[_] = if drops.is_empty() { &[[0.0; 4]] } else { drops };
-        let list = buffers.storage("positions of drops", list)?;
+        let list = buffers.storage("positions of drops", drops)?;
         self.prepare_rows(buffers, lighting, table, lights, &list, lights.count(drops) as u32)
     }
 

@@ -1,21 +1,28 @@
 //! Drops put on a picture by a GPU: what [`Rain`](crate::rain::Rain) makes of its drops on the CPU.
 
 use downpour_drop::oscillation::Fluids;
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{
+    BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, KernelSequence, SequencePass, wgpu, workgroups,
+};
+use downpour_shaders::Kernel;
 use downpour_shaders::render::rain::{
     PROFILES_CLEAR_KERNEL, PROFILES_FINISH_KERNEL, PROFILES_MEASURE_KERNEL, PROFILES_PLACE_KERNEL,
     PROFILES_STATE, PROJECT_KERNEL,
 };
 
-use super::rain::groups;
 #[cfg(feature = "parity")]
 use crate::rain::RainOptions;
 use crate::rain::profiles::{ProfilesFrame, StreakProfiles};
 use crate::rain::project::{ProjectFrame, project_frequencies};
 use crate::rain::{DropsDrop, StreakPath};
 
-/// Bindings of the kernels of the profiles.
-const PROFILES: [&[u32]; 4] = [&[4, 8], &[0, 1, 4], &[0, 1, 2, 3, 4, 5, 6, 7, 8], &[0, 4, 6, 7, 9, 10]];
+/// Kernels of the profiles in the order in which they run, with their bindings.
+const PROFILES: [(&Kernel, &[u32]); 4] = [
+    (&PROFILES_CLEAR_KERNEL, &[4, 8]),
+    (&PROFILES_MEASURE_KERNEL, &[0, 1, 4]),
+    (&PROFILES_PLACE_KERNEL, &[0, 1, 2, 3, 4, 5, 6, 7, 8]),
+    (&PROFILES_FINISH_KERNEL, &[0, 4, 6, 7, 9, 10]),
+];
 
 /// Byte of the workgroups of the light among those of all jobs.
 const LIGHT_GROUPS: u64 = 16;
@@ -36,7 +43,7 @@ pub struct FallingOnGpu<'a> {
 pub struct ProjectPipeline {
     gpu: Gpu,
     project: ComputeKernel,
-    profiles: [ComputeKernel; 4],
+    profiles: KernelSequence,
 }
 
 /// Drops of a picture on the device, and the streaks among them that have a profile.
@@ -81,7 +88,7 @@ impl JobGroups {
         bindings: &'a wgpu::BindGroup,
     ) -> Option<Dispatch<'a>> {
         match self {
-            Self::Given(jobs) => (jobs[kind] > 0).then(|| kernel.dispatch(bindings, groups(jobs[kind]))),
+            Self::Given(jobs) => (jobs[kind] > 0).then(|| kernel.dispatch(bindings, workgroups(jobs[kind]))),
             Self::Found(groups) => {
                 Some(kernel.dispatch_indirect(bindings, groups, LIGHT_GROUPS * kind as u64))
             }
@@ -94,7 +101,7 @@ impl JobGroups {
 pub struct ProjectPass<'a> {
     pipeline: &'a ProjectPipeline,
     project: (wgpu::BindGroup, [u32; 3]),
-    profiles: Vec<(wgpu::BindGroup, [u32; 3])>,
+    profiles: SequencePass<'a>,
 }
 
 impl ProjectPipeline {
@@ -103,16 +110,10 @@ impl ProjectPipeline {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernel = |kernel| ComputeKernel::new(gpu, kernel, &[]);
         Ok(Self {
             gpu: gpu.clone(),
-            project: kernel(&PROJECT_KERNEL)?,
-            profiles: [
-                kernel(&PROFILES_CLEAR_KERNEL)?,
-                kernel(&PROFILES_MEASURE_KERNEL)?,
-                kernel(&PROFILES_PLACE_KERNEL)?,
-                kernel(&PROFILES_FINISH_KERNEL)?,
-            ],
+            project: ComputeKernel::new(gpu, &PROJECT_KERNEL, &[])?,
+            profiles: KernelSequence::new(gpu, &PROFILES)?,
         })
     }
 
@@ -144,7 +145,7 @@ impl ProjectPipeline {
         let rows = words("positions of drops", room * (1 + project.has_axes), 16)?;
         let uniform = buffers.uniform("project frame", project)?;
         let bound = [&uniform, falling.drops, masks, falling.frequencies, &list, &rows];
-        let by_drop = groups(room.div_ceil(64));
+        let by_drop = workgroups(room.div_ceil(64));
         let of_project = (self.project.bind(&self.gpu, &bound)?, by_drop);
 
         let uniform = buffers.uniform("profiles frame", profiles)?;
@@ -160,14 +161,8 @@ impl ProjectPipeline {
             buffers.buffer("groups of jobs", 2 * LIGHT_GROUPS, storage | wgpu::BufferUsages::INDIRECT)?;
         let all =
             [&uniform, &list, &rows, masks, &state, &paths, &jobs[0], &jobs[1], &streaks, &classes, &found];
-        let clear = groups((streaks.size() / 16).div_ceil(64) as u32);
-        let groups_of = [clear, by_drop, by_drop, [1; 3]];
-        let bind = |((kernel, bindings), groups): ((&ComputeKernel, &[u32]), [u32; 3])| {
-            let bound = bindings.iter().map(|&k| (k, all[k as usize]));
-            Ok((kernel.bind_at(&self.gpu, bound)?, groups))
-        };
-        let of_profiles = self.profiles.iter().zip(PROFILES).zip(groups_of).map(bind);
-        let of_profiles = of_profiles.collect::<Result<_, GpuError>>()?;
+        let clear = workgroups((streaks.size() / 16).div_ceil(64) as u32);
+        let of_profiles = self.profiles.bind(&all, &[clear, by_drop, by_drop, [1; 3]])?;
         let made = ListOnGpu {
             count: room,
             list,
@@ -187,12 +182,8 @@ impl ProjectPass<'_> {
     /// The dispatches, in this order.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
-        let pipeline = self.pipeline;
-        let first = pipeline.project.dispatch(&self.project.0, self.project.1);
-        let others = pipeline.profiles.iter().zip(&self.profiles);
-        std::iter::once(first)
-            .chain(others.map(|(kernel, (bound, groups))| kernel.dispatch(bound, *groups)))
-            .collect()
+        let first = self.pipeline.project.dispatch(&self.project.0, self.project.1);
+        std::iter::once(first).chain(self.profiles.dispatches()).collect()
     }
 }
 

@@ -19,7 +19,7 @@ use crate::rain::light::{DropLightTable, DropLights};
 use crate::rain::profiles::{MAX_ENTRIES, MAX_RAYS, ProfilesFrame};
 use crate::rain::project::ProjectFrame;
 use crate::rain::tiles::TilesFrame;
-use crate::rain::{DropMasks, DropsDrop, Rain, RainOptions, StreakPath, StreakRay};
+use crate::rain::{DropMasks, DropsDrop, Rain, RainOptions, StreakRay};
 
 /// The pipelines of drops: made once, used for any number of pictures.
 #[derive(Clone, Debug)]
@@ -61,20 +61,9 @@ pub struct RainPass<'a> {
     lamps: [DropLightPass<'a>; 2],
     medium: MediumPass<'a>,
     drops: wgpu::BindGroup,
-    list: wgpu::Buffer,
     texels: wgpu::Buffer,
     table: wgpu::Buffer,
     layer: wgpu::Buffer,
-}
-
-/// Jobs along a row of workgroups: fewer than every device allows, and so few that tests have several rows.
-const ALONG: u32 = 128;
-
-/// Workgroups for so many jobs: no dimension has more than every device allows.
-pub(super) fn groups(jobs: u32) -> [u32; 3] {
-    // Rows become longer where there would be too many.
-    let along = ALONG.max(jobs.div_ceil(1 << 15));
-    [jobs.min(along), jobs.div_ceil(along), 1]
 }
 
 impl RainPipeline {
@@ -190,7 +179,7 @@ impl RainPipeline {
     ) -> Result<RainPass<'a>, GpuError> {
         let (masks, of_masks) = masks;
         let project = ProjectFrame::new(&rain.frame.camera, of_masks, options, falling.count);
-        let profiles = ProfilesFrame::new(&options.exposure, project.room, project.medium)
+        let profiles = ProfilesFrame::new(&options.exposure, project.room, options.medium.class())
             .with_room(MAX_RAYS / 2, MAX_ENTRIES / 2);
         let frames = (&project, &profiles);
         let (pass, drops, streaks) =
@@ -260,7 +249,6 @@ impl RainPipeline {
             lamps,
             medium,
             drops: shown,
-            list: drops.list,
             texels,
             table,
             layer,
@@ -275,10 +263,10 @@ fn upload_list(buffers: &impl BufferSource, rain: &Rain) -> Result<ListOnGpu, Gp
     let headed = |jobs: &[[u32; 2]]| [&[[jobs.len() as u32, 0]], jobs].concat();
     Ok(ListOnGpu {
         count: rain.list.len() as u32,
-        list: buffers.storage("drops", not_empty(&rain.list, &[DropsDrop::default()]))?,
-        rows: buffers.storage("positions of drops", not_empty(&rain.rows, &[[0.0; 4]]))?,
+        list: buffers.storage("drops", &rain.list)?,
+        rows: buffers.storage("positions of drops", &rain.rows)?,
         classes: (buffers.storage("classes of drops", &made.classes)?, made.classes.len() as u32),
-        paths: buffers.storage("paths of streaks", not_empty(&made.paths, &[StreakPath::default()]))?,
+        paths: buffers.storage("paths of streaks", &made.paths)?,
         jobs: [
             buffers.storage("rows of rays", &headed(&made.ray_jobs))?,
             buffers.storage("columns of profiles", &headed(&made.light_jobs))?,
@@ -286,11 +274,6 @@ fn upload_list(buffers: &impl BufferSource, rain: &Rain) -> Result<ListOnGpu, Gp
         groups: JobGroups::Given([made.ray_jobs.len() as u32, made.light_jobs.len() as u32]),
         room: [made.rays, made.entries],
     })
-}
-
-/// A buffer has at least one element.
-fn not_empty<'a, T>(all: &'a [T], one: &'a [T]) -> &'a [T] {
-    if all.is_empty() { one } else { all }
 }
 
 impl RainPass<'_> {
@@ -314,22 +297,6 @@ impl RainPass<'_> {
     #[must_use]
     pub fn distances(&self) -> (&wgpu::Buffer, u32) {
         self.tiles.distances()
-    }
-
-    /// Reads the drops; those that are not on the picture have no reach.
-    ///
-    /// # Errors
-    /// Returns the error of the GPU.
-    pub fn list(&self) -> Result<Vec<DropsDrop>, GpuError> {
-        self.pipeline.gpu.read(&self.list)
-    }
-
-    /// Reads the lists of drops for the tiles of the picture, as the twin has them ([`TileLists::words`](crate::rain::tiles::TileLists::words)).
-    ///
-    /// # Errors
-    /// Returns the error of the GPU.
-    pub fn tile_lists(&self) -> Result<Vec<u32>, GpuError> {
-        self.tiles.read()
     }
 
     /// The light of lamps on the drops and on the streaks, in this order.

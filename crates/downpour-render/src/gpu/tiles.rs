@@ -1,33 +1,31 @@
 //! Lists of drops for the tiles of a picture on a GPU: what [`TileLists`](crate::rain::tiles::TileLists) makes on the CPU.
 
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{
+    BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, KernelSequence, SequencePass, wgpu, workgroups,
+};
 use downpour_shaders::Kernel;
 use downpour_shaders::render::rain::{
     TILES_CLEAR_KERNEL, TILES_COUNT_KERNEL, TILES_HEAD, TILES_MEASURE_KERNEL, TILES_PLACE_KERNEL,
     TILES_SCAN_KERNEL, TILES_SEEN_KERNEL, TILES_SORT_KERNEL,
 };
 
-use super::rain::groups;
 use crate::rain::tiles::TilesFrame;
 
-/// Kernels in the order in which they run.
-const KERNELS: [&Kernel; 6] = [
-    &TILES_CLEAR_KERNEL,
-    &TILES_MEASURE_KERNEL,
-    &TILES_COUNT_KERNEL,
-    &TILES_SCAN_KERNEL,
-    &TILES_PLACE_KERNEL,
-    &TILES_SORT_KERNEL,
+/// Kernels in the order in which they run, with their bindings.
+const KERNELS: [(&Kernel, &[u32]); 6] = [
+    (&TILES_CLEAR_KERNEL, &[2]),
+    (&TILES_MEASURE_KERNEL, &[0, 1, 2]),
+    (&TILES_COUNT_KERNEL, &[0, 1, 2]),
+    (&TILES_SCAN_KERNEL, &[0, 2, 3]),
+    (&TILES_PLACE_KERNEL, &[0, 1, 2, 3]),
+    (&TILES_SORT_KERNEL, &[0, 1, 3]),
 ];
-
-/// Bindings of each of them.
-const BINDINGS: [&[u32]; 6] = [&[2], &[0, 1, 2], &[0, 1, 2], &[0, 2, 3], &[0, 1, 2, 3], &[0, 1, 3]];
 
 /// The pipelines of the lists.
 #[derive(Clone, Debug)]
 pub struct TilesPipeline {
     gpu: Gpu,
-    kernels: Vec<ComputeKernel>,
+    lists: KernelSequence,
     seen: ComputeKernel,
 }
 
@@ -35,7 +33,7 @@ pub struct TilesPipeline {
 #[derive(Debug)]
 pub struct TilesPass<'a> {
     pipeline: &'a TilesPipeline,
-    bound: Vec<(wgpu::BindGroup, [u32; 3])>,
+    passes: SequencePass<'a>,
     of_seen: (wgpu::BindGroup, [u32; 3]),
     seen: wgpu::Buffer,
     count: u32,
@@ -48,10 +46,9 @@ impl TilesPipeline {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let kernels = KERNELS.iter().map(|kernel| ComputeKernel::new(gpu, kernel, &[]));
         Ok(Self {
             gpu: gpu.clone(),
-            kernels: kernels.collect::<Result<_, _>>()?,
+            lists: KernelSequence::new(gpu, &KERNELS)?,
             seen: ComputeKernel::new(gpu, &TILES_SEEN_KERNEL, &[])?,
         })
     }
@@ -74,24 +71,12 @@ impl TilesPipeline {
         let lists = buffers.buffer("tiles of drops", words * 4, storage)?;
         let uniform = buffers.uniform("tiles frame", frame)?;
         let all = [&uniform, drops, &counts, &lists];
-        let by_drop = groups(frame.count.div_ceil(64).max(1));
-        let of_kernel = [
-            groups((counts.size() / 4).div_ceil(64) as u32),
-            by_drop,
-            by_drop,
-            [1; 3],
-            by_drop,
-            groups(tiles),
-        ];
-        let bind = |((kernel, bindings), groups): ((&ComputeKernel, &[u32]), [u32; 3])| {
-            let bound = bindings.iter().map(|&k| (k, all[k as usize]));
-            Ok((kernel.bind_at(&self.gpu, bound)?, groups))
-        };
+        let by_drop = workgroups(frame.count.div_ceil(64).max(1));
+        let clear = workgroups((counts.size() / 4).div_ceil(64) as u32);
+        let passes = self.lists.bind(&all, &[clear, by_drop, by_drop, [1; 3], by_drop, workgroups(tiles)])?;
         let seen = buffers.buffer("distances of drops", u64::from(frame.count.max(1)) * 4, storage)?;
         let of_seen = self.seen.bind_at(&self.gpu, [(0, &uniform), (1, drops), (4, plate), (5, &seen)])?;
-        let bound = self.kernels.iter().zip(BINDINGS).zip(of_kernel).map(bind);
-        let bound = bound.collect::<Result<_, GpuError>>()?;
-        Ok(TilesPass { pipeline: self, bound, of_seen: (of_seen, by_drop), seen, count: frame.count, lists })
+        Ok(TilesPass { pipeline: self, passes, of_seen: (of_seen, by_drop), seen, count: frame.count, lists })
     }
 }
 
@@ -99,8 +84,7 @@ impl TilesPass<'_> {
     /// The dispatches, in this order.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
-        let kernels = self.pipeline.kernels.iter();
-        kernels.zip(&self.bound).map(|(kernel, (bound, groups))| kernel.dispatch(bound, *groups)).collect()
+        self.passes.dispatches()
     }
 
     /// Finds for each drop its distance, m; 0 where the plate hides all of it, below 0 where it is not on the picture.

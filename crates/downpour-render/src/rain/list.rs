@@ -1,6 +1,5 @@
 //! The drops of a picture, with all that the shaders read of it.
 
-use downpour_shaders::render::rain::PROJECT_NO_CLASS;
 use downpour_sim::field::{EyeDrop, FallingDrop};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -10,7 +9,7 @@ use super::environment::EnvironmentFrame;
 use super::light::{DropLightForm, DropLightOptions, DropLights};
 use super::medium::{MediumFrame, MediumLight, lamps_of};
 use super::profiles::StreakProfiles;
-use super::project::{Projected, Projector, project_axis, project_class, project_row};
+use super::project::{Projected, Projector, project_axis, project_row};
 use super::streak::DropsDrop;
 use super::tiles::tiles_within;
 use super::{DropMasks, RainOptions};
@@ -61,21 +60,11 @@ impl Rain {
     ) -> Self {
         let environment = EnvironmentFrame::new(camera, options);
         let size = camera.size();
-        let projector = Projector::new(camera, masks, options);
-        let shown: Vec<Shown> = drops
-            .par_iter()
-            .enumerate()
-            .filter_map(|(k, drop)| {
-                let placed = EyeDrop::new(drop, eye);
-                let Projected { drop, velocity } = projector.project_drop(&placed)?;
-                pixels(&drop, size)?;
-                Some(Shown { given: k as u32, drop, velocity, row: project_row(camera.eye, &placed) })
-            })
-            .collect();
+        let shown = shown(camera, eye, drops, masks, options);
         let mut list: Vec<DropsDrop> = shown.iter().map(|shown| shown.drop).collect();
         let mut rows: Vec<[f32; 4]> = shown.iter().map(|shown| shown.row).collect();
         let radii: Vec<f32> = rows.iter().map(|row| row[3]).collect();
-        let medium = options.medium.row().map_or(PROJECT_NO_CLASS, project_class);
+        let medium = options.medium.class();
         let profiles = StreakProfiles::new(&mut list, &radii, masks, &options.exposure, medium);
         if options.light.form == DropLightForm::Atlas {
             rows.extend(shown.iter().map(|shown| project_axis(shown.velocity, shown.drop.id)));
@@ -138,6 +127,28 @@ impl Rain {
         let seen: Vec<f32> = seen.collect();
         nearest_first(&seen).into_iter().map(|k| self.given[k as usize]).collect()
     }
+}
+
+/// The drops that are on a picture.
+fn shown(
+    camera: &Camera,
+    eye: DVec3,
+    drops: &[FallingDrop],
+    masks: &DropMasks,
+    options: &RainOptions,
+) -> Vec<Shown> {
+    // The tables of a projector are not made for a picture whose drops the device projects.
+    if drops.is_empty() {
+        return Vec::new();
+    }
+    let (projector, size) = (Projector::new(camera, masks, options), camera.size());
+    let project = |(k, drop): (usize, &FallingDrop)| {
+        let placed = EyeDrop::new(drop, eye);
+        let Projected { drop, velocity } = projector.project_drop(&placed)?;
+        pixels(&drop, size)?;
+        Some(Shown { given: k as u32, drop, velocity, row: project_row(camera.eye, &placed) })
+    };
+    drops.par_iter().enumerate().filter_map(project).collect()
 }
 
 /// Distance of a drop, m; 0 where the scene of a picture hides all of it, below 0 where it is not on the picture.

@@ -21,10 +21,12 @@ use downpour_drop::DropError;
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::render::medium::{MEDIUM_NEAR, MEDIUM_QUARTERS, MEDIUM_SKY_REACH};
+use downpour_shaders::render::rain::PROJECT_NO_CLASS;
 use downpour_sim::resolved::{Region, Resolved};
 use glam::{DVec3, Vec3};
 
 use super::DropMasks;
+use super::project::project_class;
 pub use frame::MediumFrame;
 pub use light::MediumLight;
 pub(super) use light::lamps_of;
@@ -185,9 +187,10 @@ impl RainMedium {
         self.rate_mm_h
     }
 
-    /// Mean row of the masks' diameters of unresolved drops.
-    pub(super) fn row(&self) -> Option<f32> {
-        (self.all > 0.0).then_some(self.row)
+    /// Class of the masks' diameters whose mean radiance unresolved drops have; `PROJECT_NO_CLASS` without rain.
+    #[must_use]
+    pub fn class(&self) -> u32 {
+        if self.all > 0.0 { project_class(self.row) } else { PROJECT_NO_CLASS }
     }
 }
 

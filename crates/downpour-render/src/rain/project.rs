@@ -10,8 +10,8 @@ use downpour_math::rng::seed_words;
 use downpour_shaders::drop::oscillation::DROP_OSCILLATION_TICK;
 use downpour_shaders::render::rain::{
     DROPS_LOOP, DROPS_STILL, DROPS_TABLE, PROJECT_CLASS_ROWS, PROJECT_FIRST_BITS, PROJECT_LAST_BITS,
-    PROJECT_NARROW, PROJECT_NARROW_SAMPLES, PROJECT_NO_CLASS, PROJECT_OSCILLATES_MAX, PROJECT_OSCILLATES_MIN,
-    PROJECT_SMALL, PROJECT_STILL, PROJECT_THIN, PROJECT_WIDE_SAMPLES, STREAK_TURN,
+    PROJECT_NARROW, PROJECT_NARROW_SAMPLES, PROJECT_OSCILLATES_MAX, PROJECT_OSCILLATES_MIN, PROJECT_SMALL,
+    PROJECT_STILL, PROJECT_THIN, PROJECT_WIDE_SAMPLES, STREAK_TURN,
 };
 use downpour_sim::field::EyeDrop;
 use glam::{Vec2, Vec3};
@@ -63,10 +63,10 @@ pub struct ProjectFrame {
     pub is_fading: u32,
     /// 1 if drops of the smallest diameter look the same from everywhere.
     pub small_are_round: u32,
-    /// Class of the drops that are not drawn one by one; `PROJECT_NO_CLASS`: there is none.
-    pub medium: u32,
     /// 1 if drops have axes, for an atlas.
     pub has_axes: u32,
+    /// 0.
+    pub unused_1: u32,
     /// 0.
     pub unused: [u32; 2],
 }
@@ -97,8 +97,8 @@ impl ProjectFrame {
             room: count,
             is_fading: u32::from(exposure.response == TemporalResponse::Fading),
             small_are_round: u32::from(masks.small_are_round()),
-            medium: options.medium.row().map_or(PROJECT_NO_CLASS, project_class),
             has_axes: u32::from(options.light.form == DropLightForm::Atlas),
+            unused_1: 0,
             unused: [0; 2],
         }
     }
@@ -115,18 +115,6 @@ pub fn project_frequencies(fluids: &Fluids) -> Vec<[u32; 2]> {
         [units(2), units(3)].map(|hertz| (hertz * 65536.0) as u32)
     };
     (0..=(PROJECT_LAST_BITS + 1 - PROJECT_FIRST_BITS) / FREQUENCY_STEP).map(entry).collect()
-}
-
-/// A vector turned about an axis by the axis's length, in radians.
-#[must_use]
-pub fn project_turned(v: Vec3, axis: Vec3) -> Vec3 {
-    let angle = axis.length();
-    if angle < 1.0e-9 {
-        return v;
-    }
-    let unit = axis / angle;
-    let (sine, cosine) = (ops::sin(angle), ops::cos(angle));
-    v * cosine + unit.cross(v) * sine + unit * (unit.dot(v) * (1.0 - cosine))
 }
 
 /// The fraction of a path from `start` to `end` on which it is at least `least`; begin above end: none of it.
@@ -257,8 +245,7 @@ impl<'a> Projector<'a> {
 
     /// Position relative to the eye at a time relative to the picture's, s.
     fn project_position(&self, drop: &EyeDrop, time: f32) -> Vec3 {
-        let velocity = Vec3::from(drop.velocity) - self.frame.eye_velocity;
-        project_turned(Vec3::from(drop.offset) + velocity * time, self.frame.turning * -time)
+        drop.eye_drop_position(self.frame.eye_velocity, self.frame.turning, time)
     }
 
     /// The path of a drop whose middle is at `middle`; `None` if too little of it is there to be seen.

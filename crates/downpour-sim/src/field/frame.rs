@@ -117,6 +117,8 @@ pub(crate) struct FieldQuery {
     pub(crate) classes: Vec<FieldClass>,
     /// By terminal speed: drift, less that of the middle speed, m; velocity due to the wind, m/s.
     pub(crate) drift: Vec<[f32; 4]>,
+    /// The whole drift.
+    pub(crate) now: Drift,
     pub(crate) resolved: Resolved,
     /// Terminal speed of the slowest drop, m/s, and height of the lowest, m.
     pub(crate) slowest: f64,
@@ -191,11 +193,12 @@ impl RainField {
             columns,
             room: (room(least_pixels) as u32).min(most).max(1),
         };
-        let table = drift
+        let now = drift;
+        let table = now
             .entries()
             .flat_map(|[moved, wind]| [*moved - base, *wind].map(|v| v.as_vec3().extend(0.0).to_array()));
         let (drift, resolved) = (table.collect(), Resolved::of(view, least_pixels));
-        Ok(FieldQuery { frame, classes, drift, resolved, slowest, deepest })
+        Ok(FieldQuery { frame, classes, drift, now, resolved, slowest, deepest })
     }
 
     /// Number of nodes of the sizes of each class.

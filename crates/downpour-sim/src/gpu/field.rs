@@ -2,20 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups};
 use downpour_shaders::sim::field::{FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_KERNEL};
 use glam::{DVec3, Vec3};
 
 use super::GpuSimError;
 use crate::drift::Drift;
-use crate::field::frame::{FieldClass, FieldQuery, ShelterFrame};
+use crate::field::frame::{FieldQuery, ShelterFrame};
 use crate::field::{EyeDrop, RainField};
 use crate::resolved::Resolved;
 use crate::shelter::{CUT_S, number_of_cuts};
 use crate::view::View;
-
-/// Workgroups along a row: fewer than every device allows, and so few that tests have several rows.
-const ALONG: u32 = 128;
 
 /// Obstacles on the device: the nodes and triangles of a `downpour_bvh::Bvh`, without holes.
 #[derive(Clone, Copy, Debug)]
@@ -62,21 +59,9 @@ pub struct FieldPass<'a> {
     columns: u32,
 }
 
-fn groups(count: u32) -> [u32; 3] {
-    let groups = count.div_ceil(64).max(1);
-    // Rows become longer where there would be too many.
-    let along = ALONG.max(groups.div_ceil(1 << 15));
-    [groups.min(along), groups.div_ceil(along), 1]
-}
-
-/// A buffer has at least one element.
-fn storage<T: bytemuck::Pod + Default>(
-    buffers: &impl BufferSource,
-    label: &'static str,
-    data: &[T],
-) -> Result<wgpu::Buffer, GpuError> {
-    let one = [T::default()];
-    buffers.storage(label, if data.is_empty() { &one } else { data })
+/// Workgroups of so many invocations, one at least.
+fn by_invocation(count: u32) -> [u32; 3] {
+    workgroups(count.div_ceil(64).max(1))
 }
 
 impl FieldPipeline {
@@ -104,8 +89,8 @@ impl FieldPipeline {
         let rows = field.classes.iter().flat_map(|class| class.count.thresholds.iter().flatten());
         let thresholds: Vec<[u32; 2]> = rows.map(|&word| [(word >> 32) as u32, word as u32]).collect();
         Ok(FieldOnGpu {
-            nodes: storage(&self.gpu, "sizes of drops", &nodes)?,
-            thresholds: storage(&self.gpu, "numbers of chains", &thresholds)?,
+            nodes: BufferSource::storage(&self.gpu, "sizes of drops", &nodes)?,
+            thresholds: BufferSource::storage(&self.gpu, "numbers of chains", &thresholds)?,
             cuts: BTreeMap::new(),
         })
     }
@@ -134,22 +119,22 @@ impl FieldPipeline {
         let mut find = None;
         if query.frame.columns > 0 {
             let uniform = buffers.uniform("field frame", &query.frame)?;
-            let classes = storage::<FieldClass>(buffers, "classes of the field", &query.classes)?;
-            let drift = storage(buffers, "drift of drops", &query.drift)?;
+            let classes = buffers.storage("classes of the field", &query.classes)?;
+            let drift = buffers.storage("drift of drops", &query.drift)?;
             let bound = [&uniform, &classes, &on.nodes, &on.thresholds, &drift, &drops, &found];
-            find = Some((self.find.bind(gpu, &bound)?, groups(query.frame.columns)));
+            find = Some((self.find.bind(gpu, &bound)?, by_invocation(query.frame.columns)));
         }
         let mut shelter = None;
         if let Some(bounds) = obstacles.bounds {
             let (frame, drift) = shelter_frame(field, on, &query, (obstacles, bounds), view, time_s);
             let uniform = buffers.uniform("shelter frame", &frame)?;
-            let drift = storage(buffers, "drift of paths", &drift)?;
+            let drift = buffers.storage("drift of paths", &drift)?;
             let bound = [&uniform, obstacles.nodes, obstacles.triangles, &drops, &drift];
-            shelter = Some((self.shelter.bind(gpu, &bound)?, groups(room)));
+            shelter = Some((self.shelter.bind(gpu, &bound)?, by_invocation(room)));
         }
         Ok(FieldPass {
             pipeline: self,
-            clear: (clear, groups(places)),
+            clear: (clear, by_invocation(places)),
             find,
             shelter,
             drops,
@@ -180,10 +165,9 @@ fn shelter_frame(
     for number in numbers.clone() {
         on.cuts.entry(number).or_insert_with(|| Drift::new(&field.wind, number as f64 * CUT_S));
     }
-    let now = Drift::new(&field.wind, time_s);
     let open = Drift::new(&field.wind, open_s);
     let row = |drift: &Drift| -> Vec<[f32; 4]> {
-        let pairs = drift.entries().zip(now.entries());
+        let pairs = drift.entries().zip(query.now.entries());
         pairs.map(|(then, now)| (then[0] - now[0]).as_vec3().extend(0.0).to_array()).collect()
     };
     let mut drift = row(&open);

@@ -111,10 +111,8 @@ impl PictureRenderer {
         pool.begin_frame();
         let (falling, frequencies) = timed(&mut passes, "drops to the device", || {
             let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
-            // A buffer has at least one element.
-            let falling: &[_] = if falling.is_empty() { &[EyeDrop::default()] } else { &falling };
             let frequencies = self.rain.frequencies(&options.rain.exposure.fluids)?;
-            Ok::<_, GpuError>((pool.storage("falling drops", falling)?, frequencies))
+            Ok::<_, GpuError>((pool.storage("falling drops", &falling)?, frequencies))
         })?;
         let count = drops.len() as u32;
         let falling = FallingOnGpu { drops: &falling, count, frequencies: &frequencies };

@@ -12,7 +12,7 @@ use downpour_render::rain::profiles::{
 };
 use downpour_render::rain::project::{
     ProjectFrame, Projector, project_ahead, project_axis, project_class, project_grid, project_present,
-    project_row, project_seen, project_turned,
+    project_row, project_seen,
 };
 use downpour_render::rain::{
     DropMasks, DropsDrop, Exposure, RainOptions, StreakPath, StreakSamples, TemporalResponse,
@@ -25,7 +25,7 @@ use downpour_shaders::render::rain::{
 use downpour_sim::field::EyeDrop;
 use glam::Vec3;
 
-use crate::Domain::{Below, Made, OneOf, Uniform, Unit3};
+use crate::Domain::{Below, Made, OneOf, Uniform};
 use crate::compare::{Cpu, Gpu as FromGpu};
 use crate::function::Run;
 use crate::signature::WordKind;
@@ -76,16 +76,8 @@ fn drop(words: [u32; WORDS]) -> DropsDrop {
 #[must_use]
 pub(super) fn functions() -> Vec<FunctionCase> {
     let exact = Tol::exact("integers and comparisons");
-    let axis = [Uniform(-2.0, 2.0), Uniform(-2.0, 2.0), Uniform(-2.0, 2.0)];
     let flag = |name, twin| FunctionCase::new(name, &PROFILES, &[Made(streak_words)], exact, twin);
     vec![
-        FunctionCase::new(
-            "project_turned",
-            &PROJECT,
-            &[Unit3, axis[0], axis[1], axis[2]],
-            Tol::absolute(4.0e-3, "sines and cosines (2^-11) of up to 3.5 radians, three terms"),
-            |a| project_turned(Vec3::from(a.f32s()), Vec3::from(a.f32s())).to_array().words(),
-        ),
         FunctionCase::new(
             "project_ahead",
             &PROJECT,
@@ -253,7 +245,7 @@ fn project_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     let mut frame = ProjectFrame::new(&camera, &masks, &options, COUNT);
     // Some places stay empty.
     frame.room += 70;
-    let profiles = ProfilesFrame::new(&options.exposure, frame.room, frame.medium);
+    let profiles = ProfilesFrame::new(&options.exposure, frame.room, options.medium.class());
     let found = ProjectPipeline::new(gpu)?.run(&drops, &masks, (&frame, &profiles), &options)?;
     let projector = Projector::new(&camera, &masks, &options);
     let mut list = Vec::new();
@@ -305,8 +297,8 @@ fn profiles_case(
 ) -> Result<Run, GpuError> {
     let masks = DropMasks::trace(1.333).expect("masks");
     let (camera, options, drops) = (camera(), options(Kind::Streaks), drops());
-    let frame = ProjectFrame { medium: 2, ..ProjectFrame::new(&camera, &masks, &options, COUNT) };
-    let mut profiles = ProfilesFrame::new(&options.exposure, frame.room, frame.medium);
+    let frame = ProjectFrame::new(&camera, &masks, &options, COUNT);
+    let mut profiles = ProfilesFrame::new(&options.exposure, frame.room, 2);
     if let Some([rays, entries]) = room {
         profiles = profiles.with_room(rays, entries);
     }
