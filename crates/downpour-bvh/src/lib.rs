@@ -1,8 +1,8 @@
 //! A bounding volume hierarchy over triangles, and the nearest hit of a ray.
 //!
 //! The hierarchy is built by the surface area heuristic with 16 bins per axis (I. Wald, "On fast construction of
-//! SAH-based bounding volume hierarchies", 2007). Nodes are stored depth first; leaves refer to a reordered list
-//! of triangles. The build depends on the triangles only, so the same mesh gives the same tree.
+//! SAH-based bounding volume hierarchies", 2007). The two children of a node are neighbors in memory, so that a ray
+//! meets both with one access; leaves refer to a reordered list of triangles. The build depends on the triangles only, so the same mesh gives the same tree.
 //!
 //! Twin of the traversal in `shaders/wgsl/bvh/bvh.wgsl`.
 
@@ -19,14 +19,14 @@ const BINS: usize = 16;
 /// Barycentric slack: a ray through a shared edge must not slip between the two triangles.
 const EDGE_SLACK: f32 = downpour_shaders::bvh::BVH_EDGE_SLACK;
 
-/// A node. An inner node has its first child right after it and the second at `link`; a leaf has `count` triangles
+/// A node. An inner node has its children at `link`, which is even, and right after it; a leaf has `count` triangles
 /// from index `link` on. The same layout as `BvhNode` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct BvhNode {
     /// Lower corner of the bounding box.
     pub low: [f32; 3],
-    /// Index of the second child, or of the first triangle.
+    /// Index of the first child, or of the first triangle.
     pub link: u32,
     /// Upper corner of the bounding box.
     pub high: [f32; 3],
@@ -68,7 +68,7 @@ pub struct Hit {
 /// Bounding volume hierarchy over triangles.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    /// Nodes, the root first.
+    /// Nodes, the root first; node 1 is empty, so that pairs of children begin at multiples of 64 bytes.
     pub nodes: Vec<BvhNode>,
     /// Triangles in the order of the leaves.
     pub triangles: Vec<BvhTriangle>,
@@ -121,8 +121,9 @@ impl Bvh {
                 Item { bounds, middle, index }
             })
             .collect();
-        let mut nodes = Vec::with_capacity(2 * items.len() / LEAF + 1);
-        build(&mut items, 0, 0, &mut nodes);
+        let mut nodes = Vec::with_capacity(2 * items.len() / LEAF + 2);
+        nodes.push(EMPTY);
+        build(&mut items, 0, 0, 0, &mut nodes);
         let triangles = items
             .iter()
             .map(|item| {
@@ -160,17 +161,17 @@ pub fn bvh_nearest(
     let inverse = bvh_inverse(direction);
     let mut best: Option<Hit> = None;
     let mut limit = farthest;
-    let mut stack = [0u32; BVH_STACK as usize];
+    // Nodes to be visited, and where the ray enters them.
+    let mut stack = [(0u32, 0.0f32); BVH_STACK as usize];
     let mut depth = 0;
-    let mut at = 0u32;
-    if bvh_enter(&nodes[0], origin, inverse, limit) >= BVH_FAR {
+    let mut node = &nodes[0];
+    if bvh_enter(node, origin, inverse, limit) >= BVH_FAR {
         return None;
     }
     loop {
-        let node = &nodes[at as usize];
         if node.count == 0 {
             // The nearer child first: its triangles may hide the other.
-            let (left, right) = (at + 1, node.link);
+            let (left, right) = (node.link, node.link + 1);
             let to_left = bvh_enter(&nodes[left as usize], origin, inverse, limit);
             let to_right = bvh_enter(&nodes[right as usize], origin, inverse, limit);
             let (near, far, to_near, to_far) = if to_right < to_left {
@@ -180,10 +181,10 @@ pub fn bvh_nearest(
             };
             if to_near < BVH_FAR {
                 if to_far < BVH_FAR {
-                    stack[depth] = far;
+                    stack[depth] = (far, to_far);
                     depth += 1;
                 }
-                at = near;
+                node = &nodes[near as usize];
                 continue;
             }
         } else {
@@ -201,8 +202,9 @@ pub fn bvh_nearest(
                 return best;
             }
             depth -= 1;
-            at = stack[depth];
-            if bvh_enter(&nodes[at as usize], origin, inverse, limit) < BVH_FAR {
+            let (far, enter) = stack[depth];
+            if bvh_is_before(enter, limit) {
+                node = &nodes[far as usize];
                 break;
             }
         }
@@ -229,8 +231,14 @@ pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32
     let (near, far) = (a.min(b), a.max(b));
     let enter = greater(greater(near.x, near.y), greater(near.z, 0.0));
     let leave = less(less(far.x, far.y), less(far.z, limit));
-    // Rounding may swap the two by a few units in the last place.
-    if enter <= leave * 1.000_001 + 1.0e-7 { enter } else { BVH_FAR }
+    if bvh_is_before(enter, leave) { enter } else { BVH_FAR }
+}
+
+/// True if a ray enters a box before a distance: rounding may swap the two by a few units in the last place.
+#[inline(always)]
+#[must_use]
+pub fn bvh_is_before(enter: f32, distance: f32) -> bool {
+    enter <= distance * 1.000_001 + 1.0e-7
 }
 
 /// Distance, and barycentric weights of the second and third corner, of the ray's intersection with the plane of
@@ -249,11 +257,13 @@ pub fn bvh_triangle(triangle: &BvhTriangle, origin: [f32; 3], direction: [f32; 3
     if inside { [dot(triangle.edge_2, q) * inverse, u, v] } else { [-1.0, 0.0, 0.0] }
 }
 
-/// Adds the subtree over `items`, which start at index `first` of the whole list.
-fn build(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<BvhNode>) {
+/// A node that holds nothing.
+const EMPTY: BvhNode = BvhNode { low: [0.0; 3], link: 0, high: [0.0; 3], count: 0 };
+
+/// Makes node `at` the root of the subtree over `items`, which start at index `first` of the whole list.
+fn build(items: &mut [Item], first: usize, at: usize, depth: usize, nodes: &mut Vec<BvhNode>) {
     let bounds = items.iter().fold(Bounds::NONE, |b, item| b.union(item.bounds));
-    let at = nodes.len();
-    nodes.push(BvhNode { low: bounds.low, link: first as u32, high: bounds.high, count: items.len() as u32 });
+    nodes[at] = BvhNode { low: bounds.low, link: first as u32, high: bounds.high, count: items.len() as u32 };
     // The stack of the traversal holds one node per level.
     let deepest = depth + 2 >= BVH_STACK as usize;
     let cut = match () {
@@ -263,11 +273,12 @@ fn build(items: &mut [Item], first: usize, depth: usize, nodes: &mut Vec<BvhNode
         () => split(items).or_else(|| halve(items)),
     };
     let Some(split) = cut else { return };
-    nodes[at].count = 0;
+    let child = nodes.len().next_multiple_of(2);
+    nodes.resize(child + 2, EMPTY);
+    (nodes[at].count, nodes[at].link) = (0, child as u32);
     let (left, right) = items.split_at_mut(split);
-    build(left, first, depth + 1, nodes);
-    nodes[at].link = nodes.len() as u32;
-    build(right, first + split, depth + 1, nodes);
+    build(left, first, child, depth + 1, nodes);
+    build(right, first + split, child + 1, depth + 1, nodes);
 }
 
 /// Reorders `items` and returns the split index.
@@ -389,6 +400,24 @@ mod tests {
             }
         }
         assert!(seen.iter().all(|&n| n == 1));
+    }
+
+    /// Children are pairs, each in the box of its parent, and all nodes but the root and node 1 are a child once.
+    #[test]
+    fn children_are_neighbors() {
+        let bvh = Bvh::new(&soup(1000));
+        let mut parents = vec![0; bvh.nodes.len()];
+        for node in [&bvh.nodes[0]].into_iter().chain(&bvh.nodes[2..]).filter(|node| node.count == 0) {
+            assert_eq!(node.link % 2, 0);
+            let pair = node.link as usize..node.link as usize + 2;
+            for (parents, child) in parents[pair.clone()].iter_mut().zip(&bvh.nodes[pair]) {
+                *parents += 1;
+                assert!((0..3).all(|k| node.low[k] <= child.low[k] && child.high[k] <= node.high[k]));
+            }
+        }
+        assert_eq!(parents[..2], [0, 0]);
+        assert!(parents[2..].iter().all(|&n| n == 1));
+        assert_eq!(Bvh::new(&soup(3)).nodes.len(), 1);
     }
 
     /// Large triangles among small ones, as in a scene, do not end in large leaves.

@@ -126,6 +126,8 @@ impl ExitCode for PaneError {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Render(error) => error.exit_code(),
+            #[cfg(feature = "gpu")]
+            Self::Gpu(error) => error.exit_code(),
             _ => INPUT,
         }
     }

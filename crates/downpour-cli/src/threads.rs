@@ -33,13 +33,21 @@ fn waiting(count: usize) -> Vec<Sender<ThreadBuilder>> {
             break;
         }
         let (send, receive) = channel::<ThreadBuilder>();
+        let (started, is_started) = channel();
         let body = move || {
+            // The system gives a thread an arena of its own for what it allocates first: only then the room is known that is left
+            // for the next one.
+            drop(std::hint::black_box(vec![0u8; 64]));
+            let _ = started.send(());
             if let Ok(part) = receive.recv() {
                 part.run();
             }
         };
         match thread::Builder::new().name(format!("worker {number}")).spawn(body) {
-            Ok(_) => ready.push(send),
+            Ok(_) => {
+                let _ = is_started.recv();
+                ready.push(send);
+            }
             Err(_) => break,
         }
     }

@@ -185,30 +185,41 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::create`]; [`GpuError::OverLimit`] if a dispatch has more workgroups than the device allows.
     pub fn submit(&self, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
+        self.submit_pass(dispatches, None)?;
+        Ok(())
+    }
+
+    /// Submits the dispatches as one pass, which may write timestamps.
+    pub(crate) fn submit_pass(
+        &self,
+        dispatches: &[Dispatch<'_>],
+        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) -> Result<wgpu::SubmissionIndex, GpuError> {
         for dispatch in dispatches {
             dispatch.check(&self.device.limits())?;
         }
         let commands = self.create("a command buffer", 0, |device| {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             {
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+                let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
+                let mut pass = encoder.begin_compute_pass(&descriptor);
                 for dispatch in dispatches {
                     dispatch.encode_in(&mut pass);
                 }
             }
             encoder.finish()
         })?;
-        self.submit_commands(commands);
-        Ok(())
+        Ok(self.submit_commands(commands))
     }
 
     /// Submits recorded commands, and destroys the device if the options ask for it.
-    pub(crate) fn submit_commands(&self, commands: wgpu::CommandBuffer) {
-        self.queue.submit([commands]);
+    pub(crate) fn submit_commands(&self, commands: wgpu::CommandBuffer) -> wgpu::SubmissionIndex {
+        let submitted = self.queue.submit([commands]);
         let done = self.health.submissions.fetch_add(1, Ordering::Relaxed) + 1;
         if self.health.lose_after == Some(done) {
             self.device.destroy();
         }
+        submitted
     }
 
     /// Waits until all submitted work is done.
@@ -216,10 +227,20 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Hung`] after the timeout, [`GpuError::Lost`], or the error of an earlier call.
     pub fn wait(&self) -> Result<(), GpuError> {
-        let poll = wgpu::PollType::Wait { submission_index: None, timeout: Some(self.timeout) };
+        self.wait_until(None)
+    }
+
+    /// Waits until a submission is done; `None` is the last one.
+    pub(crate) fn wait_until(&self, submission: Option<wgpu::SubmissionIndex>) -> Result<(), GpuError> {
+        let poll = wgpu::PollType::Wait { submission_index: submission.clone(), timeout: Some(self.timeout) };
         match self.device.poll(poll) {
             Ok(_) => self.check(),
             Err(wgpu::PollError::Timeout) => Err(GpuError::Hung { waited: self.timeout }),
+            // A lost device takes no submission; what it has lost is known after the ones before.
+            Err(_) if submission.is_some() => {
+                self.wait()?;
+                Err(GpuError::Lost { reason: "a submission failed".to_owned() })
+            }
             Err(error) => {
                 Err(GpuError::Refused { what: "waiting".to_owned(), reason: one_line(&error.to_string()) })
             }

@@ -1,6 +1,7 @@
 //! Readback from the device, which detects loss, hangs and late errors.
 
 use std::sync::mpsc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use bytemuck::Pod;
@@ -12,6 +13,120 @@ use crate::{Gpu, GpuError};
 /// Time that a callback may stay with another thread after the device is done.
 const CALLBACK: Duration = Duration::from_secs(5);
 
+/// Buffers that are kept: those of some frames.
+const MOST_FREE: usize = 32;
+
+/// Buffers through which a host reads, kept for the next time.
+#[derive(Clone, Debug, Default)]
+pub struct ReadbackPool {
+    free: Arc<Mutex<Vec<wgpu::Buffer>>>,
+}
+
+/// Buffers on their way to the host.
+#[derive(Debug)]
+pub struct Readback {
+    gpu: Gpu,
+    pool: ReadbackPool,
+    staging: Vec<Option<Staging>>,
+    submission: wgpu::SubmissionIndex,
+}
+
+/// Copy of a buffer that the host can map.
+#[derive(Debug)]
+struct Staging {
+    buffer: wgpu::Buffer,
+    bytes: u64,
+    mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+impl ReadbackPool {
+    /// Begins to read the whole of some buffers as they are after the work that was submitted so far. Does not wait: later work may
+    /// write them.
+    ///
+    /// # Errors
+    /// As [`Gpu::create`].
+    pub fn begin(&self, gpu: &Gpu, buffers: &[&wgpu::Buffer]) -> Result<Readback, GpuError> {
+        let staging = buffers.iter().map(|buffer| self.staging(gpu, buffer.size()));
+        let staging: Vec<wgpu::Buffer> = staging.collect::<Result<_, _>>()?;
+        let commands = gpu.create("a readback", 0, |device| {
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            for (buffer, staging) in buffers.iter().zip(&staging) {
+                encoder.copy_buffer_to_buffer(buffer, 0, staging, 0, buffer.size());
+            }
+            encoder.finish()
+        })?;
+        let submission = gpu.submit_commands(commands);
+        let mapped = |(buffer, bytes): (wgpu::Buffer, u64)| {
+            let (sender, mapped) = mpsc::channel();
+            buffer.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
+                // The receiver is gone only if nobody reads.
+                let _ = sender.send(result);
+            });
+            Some(Staging { buffer, bytes, mapped })
+        };
+        let sizes = buffers.iter().map(|buffer| buffer.size());
+        let staging = staging.into_iter().zip(sizes).map(mapped).collect();
+        Ok(Readback { gpu: gpu.clone(), pool: self.clone(), staging, submission })
+    }
+
+    /// A buffer of a size: one that is free and not twice as large, or a new one.
+    fn staging(&self, gpu: &Gpu, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
+        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let fits = |buffer: &wgpu::Buffer| (bytes..=2 * bytes.max(1 << 12)).contains(&buffer.size());
+        if let Some(place) = free.iter().position(fits) {
+            return Ok(free.swap_remove(place));
+        }
+        drop(free);
+        gpu.create("a readback buffer", bytes, |device| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size: bytes,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        })
+    }
+}
+
+impl Readback {
+    /// Waits until the copies are there.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`], [`GpuError::Hung`], [`GpuError::OutOfMemory`] or [`GpuError::Refused`].
+    pub fn wait(&self) -> Result<(), GpuError> {
+        self.gpu.wait_until(Some(self.submission.clone()))
+    }
+
+    /// Contents of the n-th buffer. Bytes after the last complete `T` are ignored. Each is taken once.
+    ///
+    /// # Errors
+    /// As [`Readback::wait`]; [`GpuError::Refused`] if there is none, or if it was taken.
+    pub fn take<T: Pod>(&mut self, n: usize) -> Result<Vec<T>, GpuError> {
+        self.wait()?;
+        let refused = |reason: String| GpuError::Refused { what: "a readback".to_owned(), reason };
+        let staging = self.staging.get_mut(n).and_then(Option::take);
+        let staging = staging.ok_or_else(|| refused(format!("buffer {n} is not there, or was taken")))?;
+        // Another thread that waits on the same device may have received the callback and not yet called it.
+        // On a caller's device loss is detected here: its lost-device callback belongs to the caller.
+        if !matches!(staging.mapped.recv_timeout(CALLBACK), Ok(Ok(()))) {
+            self.gpu.check()?;
+            return Err(GpuError::Lost { reason: "a readback failed".to_owned() });
+        }
+        let view = staging.buffer.get_mapped_range(..staging.bytes);
+        let view = view.map_err(|error| refused(one_line(&error.to_string())))?;
+        let whole = view.len() / size_of::<T>().max(1) * size_of::<T>();
+        let values = bytemuck::pod_collect_to_vec(&view[..whole]);
+        drop(view);
+        staging.buffer.unmap();
+        let mut free = self.pool.free.lock().unwrap_or_else(PoisonError::into_inner);
+        if free.len() >= MOST_FREE {
+            free.remove(0);
+        }
+        free.push(staging.buffer);
+        Ok(values)
+    }
+}
+
 impl Gpu {
     /// Waits for all submitted work and reads the whole of `buffer`. Bytes after the last complete `T` are ignored.
     ///
@@ -20,46 +135,6 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Lost`], [`GpuError::Hung`], [`GpuError::OutOfMemory`] or [`GpuError::Refused`].
     pub fn read<T: Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
-        let size = buffer.size();
-        let staging = self.create("a readback buffer", size, |device| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("readback"),
-                size,
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        })?;
-        let commands = self.create("a readback", size, |device| {
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
-            encoder.finish()
-        })?;
-        self.submit_commands(commands);
-        self.read_mapped(&staging)
-    }
-
-    /// Maps a staging buffer, waits, and copies its contents.
-    pub(crate) fn read_mapped<T: Pod>(&self, staging: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
-        let (sender, receiver) = mpsc::channel();
-        staging.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only if the wait below has failed.
-            let _ = sender.send(result);
-        });
-        self.wait()?;
-        // Another thread that waits on the same device may have received the callback and not yet called it.
-        // On a caller's device loss is detected here: its lost-device callback belongs to the caller.
-        if !matches!(receiver.recv_timeout(CALLBACK), Ok(Ok(()))) {
-            self.check()?;
-            return Err(GpuError::Lost { reason: "a readback failed".to_owned() });
-        }
-        let view = staging.get_mapped_range(..).map_err(|error| GpuError::Refused {
-            what: "a readback".to_owned(),
-            reason: one_line(&error.to_string()),
-        })?;
-        let whole = view.len() / size_of::<T>().max(1) * size_of::<T>();
-        let values = bytemuck::pod_collect_to_vec(&view[..whole]);
-        drop(view);
-        staging.unmap();
-        Ok(values)
+        ReadbackPool::default().begin(self, &[buffer])?.take(0)
     }
 }

@@ -23,6 +23,7 @@ mod plan;
 mod rain;
 mod settle;
 mod smooth;
+mod state;
 mod surface;
 mod totals;
 mod transfer;
@@ -39,13 +40,14 @@ pub use contact::GlassContact;
 pub use error::GlassError;
 pub use lattice::Glass;
 pub use options::{GlassAir, GlassOptions, GlassRain, GlassTexture, GlassTrail, GlassWetting};
+pub use state::GlassState;
 pub use totals::GlassTotals;
 pub use wiper::{GlassWiper, GlassWiperKey, GlassWiperMotion, GlassWornBand};
 
 /// Parts that the GPU version shares with the CPU version.
 #[cfg(feature = "wgpu")]
 pub(crate) mod host {
-    pub(crate) use super::lattice::{free_cell, poured_units};
+    pub(crate) use super::lattice::{free_cell, poured_units, wetness};
     pub(crate) use super::plan::{Plan, Ticks};
     pub(crate) use super::surface::surface;
 }

@@ -18,6 +18,7 @@
 mod drops;
 mod error;
 mod frame;
+mod lattice;
 #[cfg(not(feature = "parity"))]
 pub(crate) mod light;
 #[cfg(feature = "parity")]
@@ -36,6 +37,7 @@ pub mod water;
 
 pub use error::PaneError;
 pub use frame::{GlassPicture, GlassPictureFrame};
+pub use lattice::PaneLattice;
 pub use light::GlassPictureLight;
 pub use meet::glass_picture_spline;
 pub use pane::{WetPane, pane_plane};

@@ -4,8 +4,11 @@
 //! ones are compressed and lose saturation toward white. Exposure is a factor of 2 per stop; automatic exposure puts
 //! the logarithmic mean of the picture at middle gray.
 
+use std::sync::LazyLock;
+
 use downpour_math::ops;
 use glam::Vec3;
+use rayon::prelude::*;
 
 const START: f32 = 0.8 - 0.04;
 const DESATURATION: f32 = 0.15;
@@ -63,12 +66,34 @@ pub fn tone_automatic_exposure(pixels: &[[f32; 4]]) -> f32 {
     (GRAY / mean).clamp(1.0 / 65_536.0, 65_536.0)
 }
 
+/// For each value but 0 the least linear number that [`tone_srgb`] turns into it, as bits: numbers above 0 have the order of their
+/// bits. A picture has millions of numbers, and a power of each would take longer than its rain.
+static STEPS: LazyLock<[u32; 255]> = LazyLock::new(|| {
+    std::array::from_fn(|k| {
+        let (mut below, mut at) = (0.0f32.to_bits(), 1.0f32.to_bits());
+        while at - below > 1 {
+            let middle = below + (at - below) / 2;
+            if usize::from(tone_srgb(f32::from_bits(middle))) > k { at = middle } else { below = middle }
+        }
+        at
+    })
+});
+
+/// What [`tone_srgb`] makes of a linear number.
+fn encoded(linear: f32, steps: &[u32; 255]) -> u8 {
+    // A number that is none becomes 0, as there, and 0 has no sign.
+    let bits = (linear.clamp(0.0, 1.0).max(0.0) + 0.0).to_bits();
+    steps.partition_point(|&step| step <= bits) as u8
+}
+
 /// Converts linear radiance to an 8-bit picture.
 #[must_use]
-pub fn tone_picture(pixels: &[[f32; 4]], exposure: f32) -> Vec<[u8; 3]> {
+pub fn tone_picture(pixels: &[[f32; 3]], exposure: f32) -> Vec<[u8; 3]> {
+    let steps = &*STEPS;
     pixels
-        .iter()
-        .map(|&[r, g, b, _]| tone_neutral(Vec3::new(r, g, b) * exposure).to_array().map(tone_srgb))
+        .par_iter()
+        .with_min_len(4096)
+        .map(|&pixel| tone_neutral(Vec3::from(pixel) * exposure).to_array().map(|v| encoded(v, steps)))
         .collect()
 }
 
@@ -90,6 +115,15 @@ mod tests {
         let exposure = tone_automatic_exposure(&[[4.0, 4.0, 4.0, 0.0]; 10]);
         assert!((exposure - 0.045).abs() < 1.0e-4, "{exposure}");
         assert_eq!(tone_automatic_exposure(&[]), 1.0);
+    }
+
+    #[test]
+    fn a_picture_has_the_values_of_the_transfer_function() {
+        let numbers = (0..=200_000u32).map(|k| f32::from_bits(k.wrapping_mul(0x0000_54ab) % 0x4000_0000));
+        let special = [-0.0, -1.0, 0.003_130_8, 1.0, 1.000_000_1, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        for linear in numbers.chain(special) {
+            assert_eq!(encoded(linear, &STEPS), tone_srgb(linear), "{linear:e}");
+        }
     }
 
     #[test]

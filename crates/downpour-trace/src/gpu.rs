@@ -4,6 +4,6 @@ mod picture;
 mod plate;
 mod scene;
 
-pub use picture::{GpuPictureError, PictureRenderer};
+pub use picture::{GpuPictureError, PictureOnGpu, PictureReadback, PictureRenderer};
 pub use plate::ScenePlate;
 pub use scene::{SceneOnGpu, ScenePass, ScenePipeline};

@@ -10,25 +10,24 @@ use glam::{Vec2, Vec4};
 use crate::data::SceneData;
 use crate::material::RenderSlot;
 
-/// A coordinate brought into the texture: the index of a texel along an edge of `n`.
+/// Two neighbors, the `i`-th and the next, brought into the texture: indices of texels along an edge of `n`. Integers are divided
+/// once: that is slow.
 #[must_use]
-pub fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> i32 {
-    if repeats {
-        return ((i % n) + n) % n;
+pub fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> [i32; 2] {
+    if repeats || mirrors {
+        let period = if repeats { n } else { 2 * n };
+        let rest = i % period;
+        let at = if rest < 0 { rest + period } else { rest };
+        let both = [at, if at + 1 == period { 0 } else { at + 1 }];
+        return if repeats { both } else { both.map(|at| at.min(2 * n - 1 - at)) };
     }
-    if mirrors {
-        let period = ((i % (2 * n)) + 2 * n) % (2 * n);
-        return period.min(2 * n - 1 - period);
-    }
-    i.clamp(0, n - 1)
+    [i, i + 1].map(|i| i.clamp(0, n - 1))
 }
 
 impl SceneData {
-    /// One texel of a level, linear.
-    fn texture_texel(&self, first: u32, width: i32, height: i32, x: i32, y: i32, flags: u32) -> Vec4 {
-        let u = texture_wrap(x, width, flags & SCENE_REPEAT_U != 0, flags & SCENE_MIRROR_U != 0);
-        let v = texture_wrap(y, height, flags & SCENE_REPEAT_V != 0, flags & SCENE_MIRROR_V != 0);
-        let [r, g, b, a] = self.texels[first as usize + (v * width + u) as usize].to_le_bytes();
+    /// One texel, linear.
+    fn texture_texel(&self, index: u32, flags: u32) -> Vec4 {
+        let [r, g, b, a] = self.texels[index as usize].to_le_bytes();
         let texel = Vec4::new(r.into(), g.into(), b.into(), a.into()) / 255.0;
         if flags & SCENE_ROOTED != 0 {
             return Vec4::new(texel.x * texel.x, texel.y * texel.y, texel.z * texel.z, texel.w);
@@ -42,9 +41,13 @@ impl SceneData {
         let y = uv.y * height as f32 - 0.5;
         let (fx, fy) = (x - x.floor(), y - y.floor());
         let (ix, iy) = (x.floor() as i32, y.floor() as i32);
-        let at = |x: i32, y: i32| self.texture_texel(first, width, height, x, y, flags);
-        let top = at(ix, iy) * (1.0 - fx) + at(ix + 1, iy) * fx;
-        let bottom = at(ix, iy + 1) * (1.0 - fx) + at(ix + 1, iy + 1) * fx;
+        let u = texture_wrap(ix, width, flags & SCENE_REPEAT_U != 0, flags & SCENE_MIRROR_U != 0);
+        let v = texture_wrap(iy, height, flags & SCENE_REPEAT_V != 0, flags & SCENE_MIRROR_V != 0);
+        let mixed = |v: i32| {
+            let [left, right] = u.map(|u| self.texture_texel(first + (v * width + u) as u32, flags));
+            left * (1.0 - fx) + right * fx
+        };
+        let [top, bottom] = v.map(mixed);
         top * (1.0 - fy) + bottom * fy
     }
 

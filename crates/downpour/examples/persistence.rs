@@ -88,7 +88,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let masks = [masks.clone(), masks.with_atlas(&StreakAtlas::load(Path::new("assets/streaks"))?)];
     let scene = scenes.upload(&stage.data)?;
     let uploaded = [rains.upload(&masks[0])?, rains.upload(&masks[1])?];
-    let drawn = scenes.prepare(&scene, &frame)?;
+    let drawn = scenes.prepare(&gpu, &scene, &frame)?;
     println!("scene by rays, one sample, one ray to the sky: {:.3} ms", time(&gpu, &drawn.dispatches())?);
     let clean = drawn.picture().clone();
     let bench = Bench { gpu: &gpu, stage: &stage, frame, masks, scenes, rains, scene, uploaded, clean };
@@ -197,7 +197,7 @@ impl Bench<'_> {
         let binning = ms(start.elapsed());
         let view = SceneView { data: &self.stage.data, frame: &self.frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
-        let plate = self.scenes.plate(&self.scene, &self.frame, &self.rains, &rain)?;
+        let plate = self.scenes.plate(self.gpu, &self.scene, &self.frame, &self.rains, &rain)?;
         let pass = self.rains.prepare(self.gpu, &plate.of(&self.clean), uploaded, &rain, &lights)?;
         let capture = time(self.gpu, &plate.dispatches(&pass))?;
         let lamps = time(self.gpu, &pass.lamps())?;

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let frame = RenderFrame::new(&stage.data, &stage.viewpoint, [1024, 768], 1, 1, 0)?;
     let (scene, uploaded) = (scenes.upload(&stage.data)?, rains.upload(&masks)?);
-    let drawn = scenes.prepare(&scene, &frame)?;
+    let drawn = scenes.prepare(&gpu, &scene, &frame)?;
     println!(
         "scene by rays, 1024 x 768, one sample, one ray to the sky: {:.3} ms",
         time(&gpu, &drawn.dispatches())?
@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let binning = ms(start.elapsed());
             let view = SceneView { data: &stage.data, frame: &frame };
             let lights = [rain.lights(&view, &masks)?, rain.streak_lights(&view, &masks)?];
-            let plate = scenes.plate(&scene, &frame, &rains, &rain)?;
+            let plate = scenes.plate(&gpu, &scene, &frame, &rains, &rain)?;
             let pass = rains.prepare(&gpu, &plate.of(drawn.picture()), &uploaded, &rain, &lights)?;
             let capture = time(&gpu, &plate.dispatches(&pass))?;
             let shown = time(&gpu, &pass.drops())?;

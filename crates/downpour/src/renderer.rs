@@ -13,7 +13,7 @@ use crate::shower::{MovingEye, MovingScenery, Scenery, Shower, Still};
 use downpour_atlas::{StreakAtlas, StreakPick};
 use downpour_render::camera::check_size;
 use downpour_render::glass::WetPane;
-use downpour_render::picture::{Picture, PictureOptions, noise_seed};
+use downpour_render::picture::{PictureOptions, noise_seed};
 use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::{DropMasks, EnvironmentFrame, Exposure, RainMedium, RainOptions, RefractionForm};
 use downpour_scene::Budget;
@@ -28,9 +28,9 @@ use downpour_trace::wet_ground::WetGround;
 use downpour_weather::{CameraPath, Loaded, StreakLook, Weather};
 
 pub use computer::{Backend, Computer, Device};
-use computer::{Drawer, Through};
+use computer::{Drawer, Painted, Through};
 pub use error::RendererError;
-pub use frame::Frame;
+pub use frame::{Frame, PendingFrame};
 pub use source::Source;
 
 /// Options of frames.
@@ -217,30 +217,48 @@ impl Renderer {
         time_s: f64,
         told: &mut dyn FnMut(Progress),
     ) -> Result<Frame, RendererError> {
+        self.begin_frame_with(time_s, told)?.finish()
+    }
+
+    /// Begins the frame of a time in seconds: on a GPU it is finished while the next ones are begun, on another thread if need be.
+    /// The first frame is finished here, since the others take their exposure from it.
+    ///
+    /// # Errors
+    /// As [`Renderer::frame`].
+    pub fn begin_frame(&mut self, time_s: f64) -> Result<PendingFrame, RendererError> {
+        self.begin_frame_with(time_s, &mut |_| {})
+    }
+
+    /// The same for who wants to know how far it is.
+    ///
+    /// # Errors
+    /// As [`Renderer::frame`].
+    pub fn begin_frame_with(
+        &mut self,
+        time_s: f64,
+        told: &mut dyn FnMut(Progress),
+    ) -> Result<PendingFrame, RendererError> {
         let begin = Instant::now();
         let stage = self.wet(time_s, told)?;
         let (drops, measured_rate_mm_h) = self.rain(&stage, time_s, self.options.measure, told)?;
         let medium = self.shower.medium(&stage, &drops, &self.masks, time_s)?;
         told(Progress { what: "drawing", parts: [0; 2] });
         let options = self.picture_options(&stage, time_s, medium);
-        let picture = match self.draw(&stage, &drops, &options) {
+        // The first picture says whether the device can draw it, and how bright all are.
+        let waits = self.drawn == 0 || self.exposure.is_none();
+        let picture = match self.draw(&stage, &drops, &options, waits) {
             Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
-                self.draw(&stage, &drops, &options)?
+                self.draw(&stage, &drops, &options, waits)?
             }
             drawn => drawn?,
         };
         self.drawn += 1;
-        let exposure = *self.exposure.get_or_insert_with(|| stage.exposure(&picture.clean));
-        Ok(Frame {
-            time_s,
-            triangles: stage.triangles,
-            picture,
-            drops,
-            medium,
-            measured_rate_mm_h,
-            exposure,
-            frame_ms: begin.elapsed().as_secs_f64() * 1.0e3,
-        })
+        let exposure = match (self.exposure, picture.done()) {
+            (None, Some(picture)) => *self.exposure.insert(stage.exposure(&picture.clean)),
+            (exposure, _) => exposure.unwrap_or(1.0),
+        };
+        let triangles = stage.triangles;
+        Ok(PendingFrame { picture, begin, time_s, triangles, drops, medium, measured_rate_mm_h, exposure })
     }
 
     /// Lets the rain go on past a time in seconds without a frame: what later frames depend on is as if there had been one.
@@ -280,7 +298,7 @@ impl Renderer {
             None => {
                 let first_s = self.options.first_s.min(time_s);
                 Water {
-                    pane: WetPane::new(&self.weather, &self.first.viewpoint, first_s)?,
+                    pane: self.drawer.pane(&self.weather, &self.first.viewpoint, first_s)?,
                     ground: WetGround::new(&self.weather, &self.loaded, &self.first, first_s)?,
                     time_s,
                 }
@@ -351,16 +369,18 @@ impl Renderer {
         self.options.refraction.unwrap_or_else(|| self.weather.rain.refraction.into())
     }
 
-    /// Draws a frame, seen through the pane if there is one.
+    /// Draws a frame, seen through the pane if there is one, and waits for it if asked to.
     fn draw(
         &self,
         stage: &Stage,
         drops: &VisibleDrops,
         options: &PictureOptions,
-    ) -> Result<Picture, RendererError> {
+        waits: bool,
+    ) -> Result<Painted, RendererError> {
         let pane = self.water.as_ref().and_then(|water| water.pane.as_ref());
         let through = pane.map(|pane| through(pane, stage, options)).transpose()?;
-        self.drawer.paint(stage, &drops.drops, &self.masks, options, through.as_ref())
+        let painted = self.drawer.paint(stage, &drops.drops, &self.masks, options, through.as_ref())?;
+        if waits { Ok(Painted::Done(painted.finish()?)) } else { Ok(painted) }
     }
 }
 

@@ -3,7 +3,7 @@
 
 struct BvhNode {
     low: vec3f,
-    // Index of the second child of an inner node (the first is right after it), or of the first triangle of a leaf.
+    // Index of the first child of an inner node (the second is right after it), or of the first triangle of a leaf.
     link: u32,
     high: vec3f,
     // Number of triangles of a leaf; 0 for an inner node.
@@ -37,8 +37,12 @@ fn bvh_enter(node: BvhNode, origin: vec3f, inverse: vec3f, limit: f32) -> f32 {
     let far = max(a, b);
     let enter = max(max(near.x, near.y), max(near.z, 0.0));
     let leave = min(min(far.x, far.y), min(far.z, limit));
-    // Rounding may swap the two by a few units in the last place.
-    return select(BVH_FAR, enter, enter <= leave * 1.000001 + 1.0e-7);
+    return select(BVH_FAR, enter, bvh_is_before(enter, leave));
+}
+
+// True if a ray enters a box before a distance: rounding may swap the two by a few units in the last place.
+fn bvh_is_before(enter: f32, distance: f32) -> bool {
+    return enter <= distance * 1.000001 + 1.0e-7;
 }
 
 // Distance, and barycentric weights of the second and third corner, of the ray's intersection with the plane of
@@ -72,32 +76,37 @@ fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhH
     let inverse = bvh_inverse(direction);
     var best = BvhHit(-1.0, 0u, 0.0, 0.0);
     var limit = farthest;
+    // Nodes to be visited, and where the ray enters them.
     var stack: array<u32, BVH_STACK>;
+    var enters: array<f32, BVH_STACK>;
     var depth = 0u;
-    var at = 0u;
+    var link = bvh_nodes[0].link;
+    var count = bvh_nodes[0].count;
     if bvh_enter(bvh_nodes[0], origin, inverse, limit) >= BVH_FAR {
         return best;
     }
     // Each node is visited once at most, so this ends.
     loop {
-        let node = bvh_nodes[at];
-        if node.count == 0u {
+        if count == 0u {
             // The nearer child first: its triangles may hide the other.
-            let to_left = bvh_enter(bvh_nodes[at + 1u], origin, inverse, limit);
-            let to_right = bvh_enter(bvh_nodes[node.link], origin, inverse, limit);
+            let left = bvh_nodes[link];
+            let right = bvh_nodes[link + 1u];
+            let to_left = bvh_enter(left, origin, inverse, limit);
+            let to_right = bvh_enter(right, origin, inverse, limit);
             let swap = to_right < to_left;
-            let far = select(node.link, at + 1u, swap);
             if min(to_left, to_right) < BVH_FAR {
                 if max(to_left, to_right) < BVH_FAR {
-                    stack[depth] = far;
+                    stack[depth] = link + select(1u, 0u, swap);
+                    enters[depth] = max(to_left, to_right);
                     depth += 1u;
                 }
-                at = select(at + 1u, node.link, swap);
+                link = select(left.link, right.link, swap);
+                count = select(left.count, right.count, swap);
                 continue;
             }
         } else {
-            for (var k = 0u; k < node.count; k += 1u) {
-                let triangle = bvh_triangles[node.link + k];
+            for (var k = 0u; k < count; k += 1u) {
+                let triangle = bvh_triangles[link + k];
                 let hit = bvh_triangle(triangle, origin, direction);
                 if hit.x > nearest && hit.x < limit {
                     limit = hit.x;
@@ -109,12 +118,13 @@ fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhH
         var found = false;
         while depth > 0u && !found {
             depth -= 1u;
-            at = stack[depth];
-            found = bvh_enter(bvh_nodes[at], origin, inverse, limit) < BVH_FAR;
+            found = bvh_is_before(enters[depth], limit);
         }
         if !found {
             break;
         }
+        link = bvh_nodes[stack[depth]].link;
+        count = bvh_nodes[stack[depth]].count;
     }
     return best;
 }

@@ -3,23 +3,22 @@
 // and flags; width, height, first texel and number of levels. Levels follow each other, each half as large.
 // Twin: downpour_trace::texture.
 
-// A coordinate brought into the texture: the index of a texel along an edge of n.
-fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> i32 {
-    if repeats {
-        return ((i % n) + n) % n;
+// Two neighbors, the i-th and the next, brought into the texture: indices of texels along an edge of n. Integers are divided
+// once: that is slow.
+fn texture_wrap(i: i32, n: i32, repeats: bool, mirrors: bool) -> vec2i {
+    if repeats || mirrors {
+        let period = select(2 * n, n, repeats);
+        let rest = i % period;
+        let at = select(rest, rest + period, rest < 0);
+        let both = vec2i(at, select(at + 1, 0, at + 1 == period));
+        return select(min(both, vec2i(2 * n - 1) - both), both, repeats);
     }
-    if mirrors {
-        let period = ((i % (2 * n)) + 2 * n) % (2 * n);
-        return min(period, 2 * n - 1 - period);
-    }
-    return clamp(i, 0, n - 1);
+    return clamp(vec2i(i, i + 1), vec2i(0), vec2i(n - 1));
 }
 
-// One texel of a level, linear.
-fn texture_texel(first: u32, width: i32, height: i32, x: i32, y: i32, flags: u32) -> vec4f {
-    let u = texture_wrap(x, width, (flags & SCENE_REPEAT_U) != 0u, (flags & SCENE_MIRROR_U) != 0u);
-    let v = texture_wrap(y, height, (flags & SCENE_REPEAT_V) != 0u, (flags & SCENE_MIRROR_V) != 0u);
-    let texel = unpack4x8unorm(render_texels[first + u32(v * width + u)]);
+// One texel, linear.
+fn texture_texel(index: u32, flags: u32) -> vec4f {
+    let texel = unpack4x8unorm(render_texels[index]);
     if (flags & SCENE_ROOTED) != 0u {
         return vec4f(texel.rgb * texel.rgb, texel.a);
     }
@@ -34,10 +33,13 @@ fn texture_level(first: u32, width: i32, height: i32, uv: vec2f, flags: u32) -> 
     let fy = y - floor(y);
     let ix = i32(floor(x));
     let iy = i32(floor(y));
-    let a = texture_texel(first, width, height, ix, iy, flags);
-    let b = texture_texel(first, width, height, ix + 1, iy, flags);
-    let c = texture_texel(first, width, height, ix, iy + 1, flags);
-    let d = texture_texel(first, width, height, ix + 1, iy + 1, flags);
+    let u = vec2u(texture_wrap(ix, width, (flags & SCENE_REPEAT_U) != 0u, (flags & SCENE_MIRROR_U) != 0u));
+    let v = vec2u(texture_wrap(iy, height, (flags & SCENE_REPEAT_V) != 0u, (flags & SCENE_MIRROR_V) != 0u));
+    let rows = vec2u(first) + v * u32(width);
+    let a = texture_texel(rows.x + u.x, flags);
+    let b = texture_texel(rows.x + u.y, flags);
+    let c = texture_texel(rows.y + u.x, flags);
+    let d = texture_texel(rows.y + u.y, flags);
     let top = a * (1.0 - fx) + b * fx;
     let bottom = c * (1.0 - fx) + d * fx;
     return top * (1.0 - fy) + bottom * fy;

@@ -59,15 +59,15 @@ fn collision_map_walk(origin: vec3f, direction: vec3f, keep: u32) -> CollisionMa
         }
         if node.count == 0u {
             // The nearer child first: its triangles may make the other unnecessary.
-            let to_left = bvh_enter(bvh_nodes[at + 1u], origin, inverse, limit);
-            let to_right = bvh_enter(bvh_nodes[node.link], origin, inverse, limit);
+            let to_left = bvh_enter(bvh_nodes[node.link], origin, inverse, limit);
+            let to_right = bvh_enter(bvh_nodes[node.link + 1u], origin, inverse, limit);
             let swap = to_right < to_left;
             if max(to_left, to_right) < BVH_FAR {
-                stack[depth] = select(node.link, at + 1u, swap);
+                stack[depth] = node.link + select(1u, 0u, swap);
                 depth += 1u;
             }
             if min(to_left, to_right) < BVH_FAR {
-                stack[depth] = select(at + 1u, node.link, swap);
+                stack[depth] = node.link + select(0u, 1u, swap);
                 depth += 1u;
             }
             continue;

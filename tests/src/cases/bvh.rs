@@ -1,6 +1,6 @@
 //! `shaders/wgsl/bvh` against `downpour-bvh`.
 
-use downpour_bvh::{BvhNode, BvhTriangle, bvh_enter, bvh_inverse, bvh_triangle};
+use downpour_bvh::{BvhNode, BvhTriangle, bvh_enter, bvh_inverse, bvh_is_before, bvh_triangle};
 use downpour_math::rng::rng_unit;
 use downpour_shaders::bvh::BVH;
 
@@ -46,6 +46,16 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 let count = a.u32();
                 bvh_enter(&BvhNode { low, link, high, count }, a.f32s(), a.f32s(), a.f32()).words()
             },
+        ),
+        FunctionCase::new(
+            "bvh_is_before",
+            &BVH,
+            &[
+                OneOf(&[0.0, 0.99e-7, 1.01e-7, 0.5, 1.000_000_5, 1.000_003, 1.01, 999.9, 1000.002]),
+                OneOf(&[0.0, 0.5, 1.0, 1000.0]),
+            ],
+            Tol::exact("a comparison of numbers that no rounding swaps"),
+            |a| u32::from(bvh_is_before(a.f32(), a.f32())).words(),
         ),
         FunctionCase::new(
             "bvh_triangle",

@@ -202,7 +202,7 @@ fn masks_case(
     let uploaded = scenes.upload(scene)?;
     let clean_buffer = gpu.storage_buffer("clean", clean)?;
     let lights = &both[0];
-    let plate = scenes.plate(&uploaded, frame, &rains, rain)?;
+    let plate = scenes.plate(gpu, &uploaded, frame, &rains, rain)?;
     let pass = rains.prepare(gpu, &plate.of(&clean_buffer), &rains.upload(masks)?, rain, &both)?;
     let table = || {
         kept(&format!("{key} table"), || {

@@ -100,7 +100,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::exact("integers are exact"),
             |a| {
                 let (i, n) = (a.u32() as i32, a.u32() as i32);
-                (texture_wrap(i, n, a.u32() != 0, a.u32() != 0) as u32).words()
+                texture_wrap(i, n, a.u32() != 0, a.u32() != 0).map(|i| i as u32).words()
             },
         ),
         FunctionCase::new(

@@ -214,7 +214,7 @@ fn pane(input: &Input, stage: &Stage, first_s: f64) -> Result<(Vec<Entry>, u64),
             0,
         ));
     };
-    let options = wet.glass().options();
+    let options = wet.lattice().options();
     let [columns, rows] = options.size;
     let [width, height] = wet.size_m();
     let per_minute = options.landings()? * width * height * 60.0;
@@ -225,7 +225,7 @@ fn pane(input: &Input, stage: &Stage, first_s: f64) -> Result<(Vec<Entry>, u64),
         Entry::new("pane_height_m", "its height", Datum::Computed(height, 4), "m"),
         Entry::new("pane_drops", "drops that land on it", Datum::Computed(per_minute, 4), "per minute"),
         count("pane_wipers", "its wipers", options.wipers.len()),
-        Entry::new("pane_tick_ms", "its tick", Datum::Computed(wet.glass().tick_s() * 1.0e3, 4), "ms"),
+        Entry::new("pane_tick_ms", "its tick", Datum::Computed(wet.lattice().tick_s() * 1.0e3, 4), "ms"),
         Entry::new("pane_mib", "its memory", Datum::Computed(mebibytes(bytes), 3), "MiB"),
     ];
     Ok((entries, bytes))

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use downpour::render::rain::RefractionForm;
 use downpour::scene::Budget;
-use downpour::{Frame, Renderer, RendererOptions};
+use downpour::{Frame, PendingFrame, Renderer, RendererOptions};
 
 use super::input::{Input, InputArguments, say_missing};
 use super::streaks::StreaksArgument;
@@ -169,15 +169,30 @@ impl RenderArguments {
 
     /// Renders a frame, with progress for long ones. A GPU that hangs ends the process: dropping its device would wait.
     fn frame(&self, renderer: &mut Renderer, time_s: f64, interrupt: &Interrupt) -> Result<Frame, Failure> {
+        self.finish_frame(self.begin_frame(renderer, time_s, interrupt)?, interrupt)
+    }
+
+    /// Begins a frame.
+    fn begin_frame(
+        &self,
+        renderer: &mut Renderer,
+        time_s: f64,
+        interrupt: &Interrupt,
+    ) -> Result<PendingFrame, Failure> {
         let backend = renderer.computer().backend;
         let mut frame_progress = FrameProgress::new(self.quiet);
-        let made = renderer.frame_with(time_s, &mut |progress| frame_progress.tell(progress));
+        let begun = renderer.begin_frame_with(time_s, &mut |progress| frame_progress.tell(progress));
         drop(frame_progress);
-        let frame = made.map_err(|error| renderer_failure(error, interrupt))?;
+        let frame = begun.map_err(|error| renderer_failure(error, interrupt))?;
         if renderer.computer().backend != backend {
             self.say_fallback(renderer);
         }
         Ok(frame)
+    }
+
+    /// Waits for a frame.
+    fn finish_frame(&self, frame: PendingFrame, interrupt: &Interrupt) -> Result<Frame, Failure> {
+        frame.finish().map_err(|error| renderer_failure(error, interrupt))
     }
 
     /// Prints the reason why the CPU draws instead of a GPU, if it does.
@@ -215,14 +230,27 @@ impl RenderArguments {
 
 /// Checks that the memory for a picture is available. An allocation that fails later on would abort the process.
 fn reserve([width, height]: [u32; 2]) -> Result<(), Failure> {
-    let bytes = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(BYTES_PER_PIXEL);
-    let mut room: Vec<u8> = Vec::new();
-    if usize::try_from(bytes).is_ok_and(|bytes| room.try_reserve_exact(bytes).is_ok()) {
+    if has_room([width, height], 1) {
         return Ok(());
     }
-    let found = format!("{width} x {height} pixels: {} MiB of memory are needed", bytes >> 20);
+    let needed = memory([width, height], 1) >> 20;
+    let found = format!("{width} x {height} pixels: {needed} MiB of memory are needed");
     Err(Failure::new(
         LIMIT,
         format!("{found}; allowed: the memory of this machine (a smaller --size needs less)"),
     ))
+}
+
+/// Memory, bytes, of so many pictures at a time.
+fn memory([width, height]: [u32; 2], pictures: u64) -> u64 {
+    u64::from(width)
+        .saturating_mul(u64::from(height))
+        .saturating_mul(BYTES_PER_PIXEL)
+        .saturating_mul(pictures)
+}
+
+/// True if the memory of so many pictures at a time is available.
+fn has_room(size: [u32; 2], pictures: u64) -> bool {
+    let mut room: Vec<u8> = Vec::new();
+    usize::try_from(memory(size, pictures)).is_ok_and(|bytes| room.try_reserve_exact(bytes).is_ok())
 }

@@ -143,7 +143,7 @@ impl SpecimenArguments {
             Format::Png => {
                 let pixels: Vec<[f32; 4]> = image.pixels.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
                 let exposure = tone_automatic_exposure(&pixels);
-                write_png(image.width, image.height, &tone_picture(&pixels, exposure))?
+                write_png(image.width, image.height, &tone_picture(&image.pixels, exposure))?
             }
         };
         file.publish(&bytes, interrupt)?;

@@ -6,9 +6,11 @@ use glam::Vec3;
 
 use super::cells::{Cells, Tick, load};
 use super::error::GlassError;
+use super::frame::GlassFrame;
 use super::motion::{glass_motion_unpack, glass_motion_wetness};
 use super::options::{GlassAir, GlassOptions, GlassRain};
 use super::plan::Plan;
+use super::state::GlassState;
 use super::totals::{Counters, GlassTotals};
 use super::{height, normal, smooth, surface};
 
@@ -148,10 +150,18 @@ impl Glass {
     /// Wetness of each cell where water has passed, 0 to 255.
     #[must_use]
     pub fn traversal(&self) -> Vec<u8> {
-        let frame = self.plan.frame();
-        let of =
-            |i: u32| glass_motion_wetness(frame.first_clock, load(&self.cells.wet, i), frame.wet_life) as u8;
+        let of = |i: u32| wetness(self.plan.frame(), load(&self.cells.wet, i));
         (0..self.cells.wet.len() as u32).map(of).collect()
+    }
+
+    /// The water on the pane now.
+    #[must_use]
+    pub fn state(&self) -> GlassState {
+        GlassState {
+            mass: self.cells.mass.clone(),
+            motion: self.cells.motion.clone(),
+            traversal: self.traversal(),
+        }
     }
 
     /// Water balance, to the unit.
@@ -195,6 +205,11 @@ impl Glass {
             && scratch.into_iter().all(|w| w.load(std::sync::atomic::Ordering::Relaxed) == 0)
             && self.totals().lost() == 0
     }
+}
+
+/// Wetness of a cell where water has passed, 0 to 255, by the clock of the last time.
+pub(crate) fn wetness(frame: &GlassFrame, last: u32) -> u8 {
+    glass_motion_wetness(frame.first_clock, last, frame.wet_life) as u8
 }
 
 /// Index of a cell that can hold water.

@@ -1,13 +1,13 @@
 //! Pane on a GPU, with the same bits as [`Glass`](crate::glass::Glass) on the CPU.
 
-use downpour_gpu::{ComputeKernel, Gpu, GpuError, wgpu};
+use downpour_gpu::{ComputeKernel, Gpu, GpuError, ReadbackPool, wgpu};
 use downpour_shaders::lattice::glass as shaders;
 use glam::{Vec2, Vec3};
 
 use crate::glass::blade::GlassBlade;
 use crate::glass::frame::GlassFrame;
-use crate::glass::host::{Plan, Ticks, free_cell, poured_units, surface};
-use crate::glass::{GlassAir, GlassError, GlassOptions, GlassRain, GlassTotals};
+use crate::glass::host::{Plan, Ticks, free_cell, poured_units, surface, wetness};
+use crate::glass::{GlassAir, GlassError, GlassOptions, GlassRain, GlassState, GlassTotals};
 
 /// Ticks per submission: a submission must stay far below the time after which a driver resets.
 const TICKS: u32 = 64;
@@ -75,6 +75,7 @@ pub struct GpuGlass {
     bindings: Bindings,
     surface: Vec<u32>,
     poured: u64,
+    readbacks: ReadbackPool,
 }
 
 impl GpuGlass {
@@ -99,7 +100,16 @@ impl GpuGlass {
         };
         let buffers = Buffers::new(gpu, &plan, &surface)?;
         let bindings = Bindings::new(gpu, &kernels, &buffers)?;
-        Ok(Self { gpu: gpu.clone(), plan, kernels, buffers, bindings, surface, poured: 0 })
+        Ok(Self {
+            gpu: gpu.clone(),
+            plan,
+            kernels,
+            buffers,
+            bindings,
+            surface,
+            poured: 0,
+            readbacks: ReadbackPool::default(),
+        })
     }
 
     /// Advances the pane by `dt_s` seconds, as [`Glass::step`](crate::glass::Glass::step); submits the work without
@@ -116,6 +126,25 @@ impl GpuGlass {
             first += count;
         }
         Ok(())
+    }
+
+    /// Waits until all that was submitted is done.
+    ///
+    /// # Errors
+    /// Errors of the GPU.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        self.gpu.wait()
+    }
+
+    /// The water on the pane now. It waits for the device.
+    ///
+    /// # Errors
+    /// Errors of the GPU.
+    pub fn state(&self) -> Result<GlassState, GpuError> {
+        let Buffers { mass, motion, wet, .. } = &self.buffers;
+        let mut read = self.readbacks.begin(&self.gpu, &[mass, motion, wet])?;
+        let traversal = read.take::<u32>(2)?.into_iter().map(|last| wetness(self.plan.frame(), last));
+        Ok(GlassState { traversal: traversal.collect(), mass: read.take(0)?, motion: read.take(1)? })
     }
 
     fn submit(&self, ticks: &Ticks, first: u32, count: u32) -> Result<(), GpuError> {

@@ -8,7 +8,7 @@ use downpour_lattice::glass::height::glass_height_stretch;
 use downpour_lattice::glass::motion::{
     glass_motion_length, glass_motion_octant, glass_motion_offset, glass_motion_unpack,
 };
-use downpour_lattice::glass::{Glass, GlassError, GlassOptions};
+use downpour_lattice::glass::{Glass, GlassError, GlassOptions, GlassState};
 use downpour_math::ops::f64 as ops;
 use downpour_math::rng::{rng_draw, rng_unit, seed_words};
 use glam::{DVec2, IVec2};
@@ -58,8 +58,7 @@ struct Common<'a> {
 ///
 /// # Errors
 /// [`GlassError::Rain`] if water at the pane's temperature is not known.
-pub(super) fn binned(glass: &Glass, above: u32) -> Result<Binned, GlassError> {
-    let options = glass.options();
+pub(super) fn binned(options: &GlassOptions, state: &GlassState, above: u32) -> Result<Binned, GlassError> {
     let common = Common {
         options,
         seed: seed_words(options.seed ^ 0x70616e65),
@@ -67,7 +66,7 @@ pub(super) fn binned(glass: &Glass, above: u32) -> Result<Binned, GlassError> {
         tension: water::surface_tension(options.temperature_c)?,
         air_density: options.rain.air.density(),
     };
-    let cells = glass.mass().iter().zip(glass.motion()).enumerate();
+    let cells = state.mass.iter().zip(&state.motion).enumerate();
     let drops: Vec<GlassPictureDrop> = cells
         .filter(|(_, (mass, _))| **mass != 0)
         .map(|(index, (&mass, motion))| common.drop(index as u32, mass, *motion))

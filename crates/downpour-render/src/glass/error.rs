@@ -5,7 +5,7 @@ use downpour_lattice::glass::GlassError;
 use crate::RenderError;
 
 /// Error of a pane of glass.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PaneError {
     /// The options of the lattice are invalid.
@@ -14,6 +14,10 @@ pub enum PaneError {
     /// The camera is invalid.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The GPU that holds the lattice failed.
+    #[cfg(feature = "wgpu")]
+    #[error(transparent)]
+    Gpu(#[from] downpour_gpu::GpuError),
     /// The camera does not look through the pane.
     #[error(
         "glass: a pane tilted by {tilt_deg:.1} degrees is seen edge on or from outside by a camera that looks {pitch_deg:.1} \

@@ -1,9 +1,10 @@
 //! The pane of a weather, from picture to picture.
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 use downpour_drop::optics::water_index_in_air;
-use downpour_lattice::glass::{Glass, GlassError};
+use downpour_lattice::glass::{GlassOptions, GlassState};
 use downpour_math::ops::f64 as ops;
 use downpour_shaders::render::glass::{
     GLASS_PICTURE_EXACT, GLASS_PICTURE_GLASS, GLASS_PICTURE_SCENE, GLASS_PICTURE_TATARCHUK,
@@ -11,9 +12,10 @@ use downpour_shaders::render::glass::{
 use downpour_weather::{Pane, PaneFocus, PaneFresnel, PaneShadow, Rain, Weather};
 use glam::DVec3;
 
-use super::drops::binned;
+use super::drops::{Binned, binned};
 use super::error::PaneError;
 use super::frame::{GlassPicture, GlassPictureFrame, levels, samples};
+use super::lattice::PaneLattice;
 use super::light::{GlassPictureLight, sources};
 use super::shade::{PaneShade, PaneShadows};
 use crate::camera::{Camera, PictureEdge, Viewpoint};
@@ -45,7 +47,9 @@ pub struct WetPane {
     water: f64,
     /// Rows of the lattice above what is seen of it.
     above: u32,
-    glass: Glass,
+    lattice: PaneLattice,
+    /// The water on it, until it is stepped.
+    state: OnceLock<GlassState>,
 }
 
 impl WetPane {
@@ -55,36 +59,61 @@ impl WetPane {
     /// # Errors
     /// [`PaneError`] if the pane cannot be what is asked for, or the camera does not look through it.
     pub fn new(weather: &Weather, viewpoint: &Viewpoint, first_s: f64) -> Result<Option<Self>, PaneError> {
+        Self::with(weather, viewpoint, first_s, &|options| Ok(PaneLattice::on_cpu(options)?))
+    }
+
+    /// The same with its lattice on a GPU.
+    ///
+    /// # Errors
+    /// As [`WetPane::new`], or what the GPU says.
+    #[cfg(feature = "wgpu")]
+    pub fn on_gpu(
+        gpu: &downpour_gpu::Gpu,
+        weather: &Weather,
+        viewpoint: &Viewpoint,
+        first_s: f64,
+    ) -> Result<Option<Self>, PaneError> {
+        Self::with(weather, viewpoint, first_s, &|options| PaneLattice::on_gpu(gpu, options))
+    }
+
+    fn with(
+        weather: &Weather,
+        viewpoint: &Viewpoint,
+        first_s: f64,
+        lattice: &dyn Fn(&GlassOptions) -> Result<PaneLattice, PaneError>,
+    ) -> Result<Option<Self>, PaneError> {
         let Some(pane) = &weather.glass else { return Ok(None) };
         let position = PanePosition::new(pane, viewpoint)?;
         let size = pane.size.unwrap_or_else(|| position.shown(viewpoint, weather.size));
         let begin_s = first_s - pane.before;
-        let mut glass = Glass::new(&pane.options(size, &weather.rain, begin_s))?;
+        let mut lattice = lattice(&pane.options(size, &weather.rain, begin_s))?;
         let (rain, air) = pane.weather(&weather.rain, pane.speed.at(begin_s));
-        glass.set_weather(&rain, &air)?;
+        lattice.set_weather(&rain, &air)?;
         let water = water_index_in_air(SODIUM_M, &weather.rain.air).unwrap_or(WATER_INDEX);
         let above = pane.rows_above(size);
-        Ok(Some(Self { pane: pane.clone(), rain: weather.rain, size, begin_s, water, above, glass }))
+        let (pane, rain, state) = (pane.clone(), weather.rain, OnceLock::new());
+        Ok(Some(Self { pane, rain, size, begin_s, water, above, lattice, state }))
     }
 
     /// Steps rain and wipers to a time in seconds. The drops do not depend on how the time is divided.
     ///
     /// # Errors
-    /// [`GlassError`], as the lattice's step.
-    pub fn advance(&mut self, time_s: f64) -> Result<(), GlassError> {
-        let tick = self.glass.tick_s();
+    /// As [`PaneLattice::step`].
+    pub fn advance(&mut self, time_s: f64) -> Result<(), PaneError> {
+        let tick = self.lattice.tick_s();
         let until = ((time_s - self.begin_s) / tick + 1.0e-6).floor().max(0.0) as u64;
         let every = (WEATHER_S / tick).ceil().max(1.0) as u64;
         let moves = self.pane.speed.keys().len() > 1;
-        while self.glass.ticks() < until {
-            let done = self.glass.ticks();
+        while self.lattice.ticks() < until {
+            self.state = OnceLock::new();
+            let done = self.lattice.ticks();
             if moves && done.is_multiple_of(every) {
                 let speed = self.pane.speed.at(self.begin_s + done as f64 * tick);
                 let (rain, air) = self.pane.weather(&self.rain, speed);
-                self.glass.set_weather(&rain, &air)?;
+                self.lattice.set_weather(&rain, &air)?;
             }
             let count = (every - done % every).min(until - done);
-            self.glass.step(count as f64 * tick)?;
+            self.lattice.step(count as f64 * tick)?;
         }
         Ok(())
     }
@@ -92,13 +121,25 @@ impl WetPane {
     /// Time that rain and wipers have been stepped to, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.begin_s + self.glass.ticks() as f64 * self.glass.tick_s()
+        self.begin_s + self.lattice.ticks() as f64 * self.lattice.tick_s()
     }
 
-    /// Lattice of the drops.
+    /// Lattice of the drops on it.
     #[must_use]
-    pub fn glass(&self) -> &Glass {
-        &self.glass
+    pub fn lattice(&self) -> &PaneLattice {
+        &self.lattice
+    }
+
+    /// The water on the pane now.
+    ///
+    /// # Errors
+    /// As [`PaneLattice::state`].
+    pub fn state(&self) -> Result<&GlassState, PaneError> {
+        if let Some(state) = self.state.get() {
+            return Ok(state);
+        }
+        let state = self.lattice.state()?;
+        Ok(self.state.get_or_init(|| state))
     }
 
     /// Width and height of the pane, m.
@@ -127,21 +168,25 @@ impl WetPane {
     /// Returns the shadows of the drops now on the pane; `None` if shadows are off.
     ///
     /// # Errors
-    /// [`PaneError::Glass`] if the drops are more than bins can hold.
+    /// [`PaneError::Glass`] if the drops are more than bins can hold; what the GPU says.
     pub fn shade(&self) -> Result<Option<PaneShade>, PaneError> {
         let form = match self.pane.shadows {
             PaneShadow::Lens => PaneShadows::Lens,
             PaneShadow::Tatarchuk2006 => PaneShadows::Tatarchuk2006,
             PaneShadow::None => return Ok(None),
         };
-        let drops = binned(&self.glass, self.above)?.drops;
+        let drops = self.binned()?.drops;
         Ok(Some(PaneShade::new(self.size, &drops, form, self.highlight_radius(), self.water as f32)))
+    }
+
+    fn binned(&self) -> Result<Binned, PaneError> {
+        Ok(binned(self.lattice.options(), self.state()?, self.above)?)
     }
 
     /// Radius, m, of the disks of drops from which on they are bright.
     fn highlight_radius(&self) -> f32 {
         let diameter = self.pane.highlight;
-        self.glass.options().contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32
+        self.lattice.options().contact.radius(PI / 6.0 * diameter * diameter * diameter) as f32
     }
 
     /// Returns the pane in its present state, in front of a picture of `grid` samples along an edge of a pixel.
@@ -158,10 +203,10 @@ impl WetPane {
         environment_texels: usize,
     ) -> Result<GlassPicture, PaneError> {
         let position = PanePosition::new(&self.pane, viewpoint)?;
-        let binned = binned(&self.glass, self.above)?;
+        let binned = self.binned()?;
         let [width, height] = self.size;
         let corner = position.corner(self.size);
-        let options = self.glass.options();
+        let options = self.lattice.options();
         let vector = |v: DVec3| v.as_vec3().to_array();
         let (levels, last) = levels(camera.size());
         // (4 n^2 - 1) / 3 texels in all levels of n x n.
@@ -170,7 +215,7 @@ impl WetPane {
         let lens_points = samples(grid, lens);
         let [columns, rows] = options.size;
         let hidden = (columns * self.above) as usize;
-        let wet = self.glass.traversal().split_off(hidden);
+        let wet = self.state()?.traversal.get(hidden..).unwrap_or_default();
         let lights = sources(lighting, camera.eye);
         let word = |bytes: &[u8]| {
             bytes.iter().enumerate().fold(0u32, |word, (k, &byte)| word | (u32::from(byte) << (8 * k)))

@@ -93,15 +93,16 @@ pub fn collision_map_walk(
         }
         if node.count == 0 {
             // The nearer child first: its triangles may make the other unnecessary.
-            let to_left = bvh_enter(&nodes[at as usize + 1], from, inverse, limit);
-            let to_right = bvh_enter(&nodes[node.link as usize], from, inverse, limit);
+            let [left, right] = [node.link, node.link + 1];
+            let to_left = bvh_enter(&nodes[left as usize], from, inverse, limit);
+            let to_right = bvh_enter(&nodes[right as usize], from, inverse, limit);
             let swap = to_right < to_left;
             if to_left.max(to_right) < BVH_FAR {
-                stack[depth] = if swap { at + 1 } else { node.link };
+                stack[depth] = if swap { left } else { right };
                 depth += 1;
             }
             if to_left.min(to_right) < BVH_FAR {
-                stack[depth] = if swap { node.link } else { at + 1 };
+                stack[depth] = if swap { right } else { left };
                 depth += 1;
             }
             continue;

@@ -45,7 +45,7 @@ impl SpecimenTableRenderer {
             let clean = self.gpu.storage_buffer("background of a streak", &streak.clean)?;
             let view = streak.view();
             let lights = [streak.lights(&view)?, streak.streak_lights(&view)?];
-            let plate = self.scenes.plate(&scene, &streak.frame, &self.rains, &streak.rain)?;
+            let plate = self.scenes.plate(&self.gpu, &scene, &streak.frame, &self.rains, &streak.rain)?;
             let pass = self.rains.prepare(&self.gpu, &plate.of(&clean), &masks, &streak.rain, &lights)?;
             let environment = plate.dispatches(&pass);
             for dispatches in [environment, pass.lamps(), pass.streaks(), pass.drops()] {

@@ -1,8 +1,11 @@
 //! A whole picture on a GPU.
 
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
-use downpour_gpu::{BufferPool, BufferSource as _, Gpu, GpuError, wgpu};
+use downpour_gpu::{
+    BufferPool, BufferSource as _, FramePasses, FrameTimes, Gpu, GpuError, Readback, ReadbackPool, wgpu,
+};
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_RAYS;
 use downpour_sim::field::{EyeDrop, FallingDrop};
 use rayon::prelude::*;
@@ -10,7 +13,7 @@ use rayon::prelude::*;
 use downpour_render::RenderError;
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::{BehindGlass, FallingOnGpu, RainOnGpu, RainPipeline};
-use downpour_render::picture::{Picture, PictureOptions, timed};
+use downpour_render::picture::{Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
 
 use super::scene::{SceneOnGpu, ScenePipeline};
@@ -31,7 +34,10 @@ pub enum GpuPictureError {
 }
 
 /// Labels of the buffers that a picture keeps.
-const GIVEN_AWAY: [&str; 2] = ["rain", "distances of drops"];
+const GIVEN_AWAY: [&str; 4] = ["picture", "rain", "environment map", "distances of drops"];
+
+/// Room for passes that are timed by the device.
+const MAX_PASSES: u32 = 32;
 
 /// Pipelines that render pictures.
 #[derive(Clone, Debug)]
@@ -41,6 +47,9 @@ pub struct PictureRenderer {
     rain: RainPipeline,
     /// Locked for as long as a picture is drawn.
     pool: Arc<Mutex<BufferPool>>,
+    readbacks: ReadbackPool,
+    /// Time of a sample of the last picture that was read, ms.
+    pace: Arc<Mutex<Option<f64>>>,
     /// The scene and the masks of the last picture.
     uploaded: Arc<Mutex<Option<(SceneOnGpu, RainOnGpu)>>>,
 }
@@ -57,6 +66,8 @@ impl PictureRenderer {
             rain: RainPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
             pool: Arc::new(Mutex::new(BufferPool::new(gpu).with_given_away(&GIVEN_AWAY))),
+            readbacks: ReadbackPool::default(),
+            pace: Arc::default(),
             uploaded: Arc::default(),
         })
     }
@@ -92,8 +103,8 @@ impl PictureRenderer {
         if self.gpu.adapter().is_software() {
             check_turns(&frame)?;
         }
-        let mut passes = Vec::new();
-        let uploaded = timed(&mut passes, "upload", || {
+        let mut passes = FramePasses::new(&self.gpu, MAX_PASSES)?;
+        let uploaded = passes.host("upload", || {
             let mut last = self.uploaded.lock().unwrap_or_else(PoisonError::into_inner);
             // What the scene shares with that of the last picture is on the device, and so are its masks.
             let scene = self.scene.upload_after(scene, last.as_ref().map(|(scene, _)| scene))?;
@@ -102,14 +113,18 @@ impl PictureRenderer {
             drop(last);
             Ok::<_, GpuError>((scene, masks))
         })?;
-        let clean = timed(&mut passes, "scene", || self.scene.draw(&uploaded.0, &frame))?;
+        let pool = &*self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.begin_frame();
+        let pace = *self.pace.lock().unwrap_or_else(PoisonError::into_inner);
+        let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace)?;
+        passes.run_each("scene", &traced.rays())?;
+        passes.run_each("skylight", &traced.filters())?;
+        let clean = traced.picture().clone();
         let eye = viewpoint.eye.as_dvec3();
         let camera = frame.camera;
         // The drops are put on the picture by the device.
         let rain = Rain::new(&camera, eye, &[], masks, &options.rain);
-        let pool = &*self.pool.lock().unwrap_or_else(PoisonError::into_inner);
-        pool.begin_frame();
-        let (falling, frequencies) = timed(&mut passes, "drops to the device", || {
+        let (falling, frequencies) = passes.host("drops to the device", || {
             let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
             let frequencies = self.rain.frequencies(&options.rain.exposure.fluids)?;
             Ok::<_, GpuError>((pool.storage("falling drops", &falling)?, frequencies))
@@ -118,65 +133,73 @@ impl PictureRenderer {
         let falling = FallingOnGpu { drops: &falling, count, frequencies: &frequencies };
         let view = SceneView { data: scene, frame: &frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
-        let plate = self.scene.plate(&uploaded.0, &frame, &self.rain, &rain)?;
+        let plate = self.scene.plate(pool, &uploaded.0, &frame, &self.rain, &rain)?;
         let of_masks = (&uploaded.1, masks);
         let of_rain = (&rain, &options.rain);
         let pass = self.rain.prepare_falling(pool, &plate.of(&clean), of_masks, of_rain, &lights, falling)?;
-        timed(&mut passes, "capture", || {
-            self.gpu.submit(&plate.dispatches(&pass))?;
-            self.gpu.wait()
-        })?;
-        timed(&mut passes, "projection", || {
-            self.gpu.submit(&pass.project())?;
-            self.gpu.wait()
-        })?;
-        timed(&mut passes, "lamps", || {
-            self.gpu.submit(&pass.lamps())?;
-            self.gpu.wait()
-        })?;
-        timed(&mut passes, "streaks", || {
-            self.gpu.submit(&pass.streaks())?;
-            self.gpu.wait()
-        })?;
-        timed(&mut passes, "unresolved", || {
-            for dispatch in pass.medium() {
-                self.gpu.submit(&[dispatch])?;
-                self.gpu.wait()?;
-            }
-            Ok::<_, GpuError>(())
-        })?;
-        timed(&mut passes, "drops", || {
-            self.gpu.submit(&pass.drops())?;
-            self.gpu.submit(&[pass.seen()])?;
-            self.gpu.wait()
-        })?;
+        passes.run("capture", &plate.dispatches(&pass))?;
+        passes.run("projection", &pass.project())?;
+        passes.run("lamps", &pass.lamps())?;
+        passes.run("streaks", &pass.streaks())?;
+        passes.run_each("unresolved", &pass.medium())?;
+        let mut drawn = pass.drops();
+        drawn.push(pass.seen());
+        passes.run("drops", &drawn)?;
         let layer = pass.layer_buffer().clone();
         let environment = plate.of(&clean).environment.clone();
         let distances = pass.distances().0.clone();
         drop(pass);
-        let seen = Seen { distances, count: drops.len() };
-        Ok(PictureOnGpu { gpu: self.gpu.clone(), rain, seen, clean, layer, environment, passes })
+        let (times, ticks) = passes.end()?;
+        Ok(PictureOnGpu {
+            gpu: self.gpu.clone(),
+            readbacks: self.readbacks.clone(),
+            pace: Arc::clone(&self.pace),
+            samples: f64::from(frame.grid * frame.grid) * f64::from(camera.width) * f64::from(camera.height),
+            rain,
+            count: drops.len(),
+            distances,
+            clean,
+            layer,
+            environment,
+            times,
+            ticks,
+            passes: Vec::new(),
+        })
     }
-}
-
-/// Distances of drops on the device.
-#[derive(Debug)]
-struct Seen {
-    distances: wgpu::Buffer,
-    count: usize,
 }
 
 /// A picture on the device, in layers.
 #[derive(Debug)]
 pub struct PictureOnGpu {
     gpu: Gpu,
+    readbacks: ReadbackPool,
+    pace: Arc<Mutex<Option<f64>>>,
+    samples: f64,
     rain: Rain,
-    seen: Seen,
+    /// Drops that were given.
+    count: usize,
+    distances: wgpu::Buffer,
     clean: wgpu::Buffer,
     layer: wgpu::Buffer,
     environment: wgpu::Buffer,
-    /// Passes in order, with the time of each in ms.
+    times: FrameTimes,
+    ticks: Option<wgpu::Buffer>,
+    /// Further passes after those that drew it, with the time of each in ms.
     pub passes: Vec<(&'static str, f64)>,
+}
+
+/// A picture on its way from the device.
+#[derive(Debug)]
+pub struct PictureReadback {
+    pace: Arc<Mutex<Option<f64>>>,
+    /// Samples of the scene.
+    samples: f64,
+    rain: Rain,
+    count: usize,
+    read: Readback,
+    times: FrameTimes,
+    has_ticks: bool,
+    passes: Vec<(&'static str, f64)>,
 }
 
 impl PictureOnGpu {
@@ -186,22 +209,46 @@ impl PictureOnGpu {
         BehindGlass { plate: &self.clean, rain: &self.layer, environment: &self.environment }
     }
 
+    /// Begins to read the picture back, without waiting for the device.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn begin_read(self) -> Result<PictureReadback, GpuError> {
+        let Self { pace, samples, rain, count, times, passes, .. } = self;
+        let mut buffers = vec![&self.distances, &self.clean, &self.layer, &self.environment];
+        buffers.extend(&self.ticks);
+        let read = self.readbacks.begin(&self.gpu, &buffers)?;
+        let has_ticks = self.ticks.is_some();
+        Ok(PictureReadback { pace, samples, rain, count, read, times, has_ticks, passes })
+    }
+
     /// Reads the picture back.
     ///
     /// # Errors
     /// Returns the error of the GPU.
     pub fn read(self) -> Result<Picture, GpuError> {
-        let Self { gpu, rain, seen, clean, layer, environment, mut passes } = self;
-        let (mut distances, clean, layer, environment) = timed(&mut passes, "readback", || {
-            let distances = gpu.read::<f32>(&seen.distances)?;
-            Ok::<_, GpuError>((
-                distances,
-                gpu.read::<[f32; 4]>(&clean)?,
-                gpu.read(&layer)?,
-                gpu.read(&environment)?,
-            ))
-        })?;
-        distances.truncate(seen.count);
+        self.begin_read()?.finish()
+    }
+}
+
+impl PictureReadback {
+    /// Waits for the picture.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn finish(self) -> Result<Picture, GpuError> {
+        let Self { pace, samples, rain, count, mut read, times, has_ticks, passes: others } = self;
+        read.wait()?;
+        let begin = Instant::now();
+        let mut distances = read.take::<f32>(0)?;
+        distances.truncate(count);
+        let [clean, layer, environment] = [read.take(1)?, read.take(2)?, read.take(3)?];
+        let mut passes = times.read(&if has_ticks { read.take(4)? } else { Vec::new() });
+        if has_ticks && let Some((_, ms)) = passes.iter().find(|(name, _)| *name == "scene") {
+            *pace.lock().unwrap_or_else(PoisonError::into_inner) = Some(ms / samples);
+        }
+        passes.extend(others);
+        passes.push(("readback", begin.elapsed().as_secs_f64() * 1.0e3));
         Ok(Picture::new(&rain, clean, layer, environment, passes).with_seen(&distances))
     }
 }

@@ -1,6 +1,6 @@
 //! The plate of a scene on the device, for rain.
 
-use downpour_gpu::{ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, GpuError, wgpu};
 use downpour_render::gpu::{LightingOnGpu, PlateOnGpu, RainPass, RainPipeline};
 use downpour_render::rain::Rain;
 
@@ -20,26 +20,26 @@ pub struct ScenePlate<'a> {
 }
 
 impl ScenePipeline {
-    /// Prepares what `rain` needs of a scene besides its picture; `frame` is that of the picture.
+    /// Prepares what `rain` needs of a scene besides its picture, with buffers from `buffers`; `frame` is that of the picture.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].
     pub fn plate(
         &self,
+        buffers: &impl BufferSource,
         scene: &SceneOnGpu,
         frame: &RenderFrame,
         rains: &RainPipeline,
         rain: &Rain,
     ) -> Result<ScenePlate<'_>, GpuError> {
-        let gpu: &Gpu = self.gpu();
-        let environment = rains.environment(gpu, rain)?;
+        let environment = rains.environment(buffers, rain)?;
         let of_map = environment_frame(frame, &rain.environment);
-        let uniform = gpu.uniform_buffer("frame of the environment map", &of_map)?;
+        let uniform = buffers.uniform("frame of the environment map", &of_map)?;
         // An environment map has no filter: nothing is written there.
-        let nothing = gpu.storage_buffer("no light of the sky", &[TraceAmbient::default()])?;
+        let nothing = buffers.storage("no light of the sky", &[TraceAmbient::default()])?;
         let tracer = self.tracer(&of_map)?;
-        let bindings = tracer.bind(gpu, &scene.buffers(&uniform, &environment, &nothing))?;
-        let lighting = scene.lighting(gpu, frame)?;
+        let bindings = tracer.bind(self.gpu(), &scene.buffers(&uniform, &environment, &nothing))?;
+        let lighting = scene.lighting(buffers, frame)?;
         Ok(ScenePlate { tracer, bindings, groups: of_map.camera.width.div_ceil(8), environment, lighting })
     }
 }

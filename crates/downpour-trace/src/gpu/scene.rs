@@ -10,8 +10,12 @@ use downpour_render::gpu::LightingOnGpu;
 use crate::data::{RenderFrame, SceneData};
 use crate::trace::TraceAmbient;
 
-/// Most pixels of a dispatch: a submission must stay far below the time after which a driver resets.
+/// Pixels of a dispatch on a device whose speed is not known: a submission must stay far below the time after which a driver resets.
 const PIXELS_PER_DISPATCH: u32 = 1 << 17;
+
+/// Time of a dispatch on a device whose speed is known, ms. A fast device has all pixels in one: short dispatches leave it idle at the
+/// end of each.
+const DISPATCH_MS: f64 = 60.0;
 
 /// Pipeline that traces scenes.
 #[derive(Clone, Debug)]
@@ -90,28 +94,54 @@ impl ScenePipeline {
     /// # Errors
     /// As [`ScenePipeline::upload`].
     pub fn picture(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<Vec<[f32; 4]>, GpuError> {
-        self.gpu.read(&self.draw(scene, frame)?)
+        let pass = self.prepare(&self.gpu, scene, frame)?;
+        for band in pass.dispatches() {
+            self.gpu.submit(&[band])?;
+            // One submission at a time: software drivers queue without end.
+            self.gpu.wait()?;
+        }
+        self.gpu.read(&pass.picture)
     }
 
-    /// Prepares a frame of a scene.
+    /// Prepares a frame of a scene, with buffers from `buffers`.
     ///
     /// # Errors
     /// As [`ScenePipeline::upload`].
-    pub fn prepare(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<ScenePass<'_>, GpuError> {
+    pub fn prepare(
+        &self,
+        buffers: &impl BufferSource,
+        scene: &SceneOnGpu,
+        frame: &RenderFrame,
+    ) -> Result<ScenePass<'_>, GpuError> {
+        self.prepare_paced(buffers, scene, frame, None)
+    }
+
+    /// The same on a device that took so long for a sample of a like frame, ms.
+    pub(super) fn prepare_paced(
+        &self,
+        buffers: &impl BufferSource,
+        scene: &SceneOnGpu,
+        frame: &RenderFrame,
+        sample_ms: Option<f64>,
+    ) -> Result<ScenePass<'_>, GpuError> {
         let pixels = u64::from(frame.camera.width) * u64::from(frame.camera.height);
-        let picture = self.gpu.empty_buffer("picture", pixels * 16, wgpu::BufferUsages::STORAGE)?;
+        let storage = wgpu::BufferUsages::STORAGE;
+        let picture = buffers.buffer("picture", pixels * 16, storage)?;
         let bytes = pixels * size_of::<TraceAmbient>() as u64;
-        let gather = self.gpu.empty_buffer("light of the sky", bytes, wgpu::BufferUsages::STORAGE)?;
-        let rows = (PIXELS_PER_DISPATCH / frame.camera.width.max(1)).max(8).next_multiple_of(8);
+        let gather = buffers.buffer("light of the sky", bytes, storage)?;
+        let samples = f64::from(frame.grid * frame.grid);
+        let paced = sample_ms.map_or(0, |ms| (DISPATCH_MS / (ms * samples).max(1.0e-9)) as u32);
+        let rows = paced.max(PIXELS_PER_DISPATCH) / frame.camera.width.max(1);
+        let rows = rows.clamp(8, frame.camera.height.max(8)).next_multiple_of(8);
         let tracer = self.tracer(frame)?;
-        let means = || self.gpu.empty_buffer("means of light", pixels * 32, wgpu::BufferUsages::STORAGE);
+        let means = || buffers.buffer("means of light", pixels * 32, storage);
         let means = [means()?, means()?];
         let (mut bands, mut filters) = (Vec::new(), Vec::new());
         for skylight_pass in 0..=SKYLIGHT_PASSES {
             let [from, to] = [&means[(skylight_pass as usize + 1) % 2], &means[skylight_pass as usize % 2]];
             for first_row in (0..frame.camera.height).step_by(rows as usize) {
                 let frame = RenderFrame { first_row, skylight_pass, ..*frame };
-                let uniform = self.gpu.uniform_buffer("frame", &frame)?;
+                let uniform = buffers.uniform("frame", &frame)?;
                 let groups = [
                     frame.camera.width.div_ceil(8),
                     rows.min(frame.camera.height - first_row).div_ceil(8),
@@ -132,17 +162,6 @@ impl ScenePipeline {
     pub(super) fn gpu(&self) -> &Gpu {
         &self.gpu
     }
-
-    /// The picture, left on the device.
-    pub(super) fn draw(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<wgpu::Buffer, GpuError> {
-        let pass = self.prepare(scene, frame)?;
-        for band in pass.dispatches() {
-            self.gpu.submit(&[band])?;
-            // One submission at a time: software drivers queue without end.
-            self.gpu.wait()?;
-        }
-        Ok(pass.picture)
-    }
 }
 
 /// The kernel that traces scenes: with what they have not, it would be slower for all.
@@ -162,15 +181,23 @@ pub struct ScenePass<'a> {
 }
 
 impl ScenePass<'_> {
-    /// Returns the dispatches, one band of rows each: first those that trace, then those that filter.
+    /// The dispatches, one band of rows each: first those that trace, then those that filter.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
-        let traced = self.bands.iter().map(|band| (self.tracer, band));
-        let filtered = self.filters.iter().map(|band| (&self.pipeline.skylight, band));
-        traced
-            .chain(filtered)
-            .map(|(kernel, (bindings, groups))| kernel.dispatch(bindings, *groups))
-            .collect()
+        [self.rays(), self.filters()].concat()
+    }
+
+    /// Those that trace.
+    #[must_use]
+    pub fn rays(&self) -> Vec<Dispatch<'_>> {
+        self.bands.iter().map(|(bound, groups)| self.tracer.dispatch(bound, *groups)).collect()
+    }
+
+    /// Those that filter the light of the sky, after them.
+    #[must_use]
+    pub fn filters(&self) -> Vec<Dispatch<'_>> {
+        let kernel = &self.pipeline.skylight;
+        self.filters.iter().map(|(bound, groups)| kernel.dispatch(bound, *groups)).collect()
     }
 
     /// The picture on the device: radiance and nearest distance, rows from the top.

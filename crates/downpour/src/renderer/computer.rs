@@ -1,11 +1,13 @@
 //! Devices that draw frames: a GPU with its pipelines, or the CPU.
 
-use downpour_render::glass::GlassPicture;
+use downpour_render::camera::Viewpoint;
+use downpour_render::glass::{GlassPicture, WetPane};
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::DropMasks;
 use downpour_sim::field::FallingDrop;
 use downpour_trace::picture::render_picture;
 use downpour_trace::stage::Stage;
+use downpour_weather::Weather;
 
 use super::RendererError;
 
@@ -106,6 +108,37 @@ struct OnGpu {
     glass: std::cell::OnceCell<downpour_render::gpu::GlassRenderer>,
 }
 
+/// A picture, which may be on its way from the device.
+#[derive(Debug)]
+pub(super) enum Painted {
+    Done(Picture),
+    #[cfg(feature = "wgpu")]
+    OnItsWay {
+        read: Box<downpour_trace::gpu::PictureReadback>,
+        through_glass: Option<Vec<[f32; 3]>>,
+    },
+}
+
+impl Painted {
+    /// The picture, if it is there.
+    pub(super) fn done(&self) -> Option<&Picture> {
+        match self {
+            Self::Done(picture) => Some(picture),
+            #[cfg(feature = "wgpu")]
+            Self::OnItsWay { .. } => None,
+        }
+    }
+
+    /// Waits for the picture.
+    pub(super) fn finish(self) -> Result<Picture, RendererError> {
+        match self {
+            Self::Done(picture) => Ok(picture),
+            #[cfg(feature = "wgpu")]
+            Self::OnItsWay { read, through_glass } => Ok(Picture { through_glass, ..read.finish()? }),
+        }
+    }
+}
+
 /// Pane that a frame is seen through.
 pub(super) struct Through {
     pub(super) glass: GlassPicture,
@@ -171,6 +204,23 @@ impl Drawer {
         may
     }
 
+    /// The dry pane of a weather: on the GPU, where that is faster and has room for it, with the same bits.
+    pub(super) fn pane(
+        &self,
+        weather: &Weather,
+        viewpoint: &Viewpoint,
+        first_s: f64,
+    ) -> Result<Option<WetPane>, RendererError> {
+        #[cfg(feature = "wgpu")]
+        if let Some(OnGpu { gpu, .. }) = self.on_gpu.as_ref().filter(|on| !on.gpu.adapter().is_software()) {
+            let made = WetPane::on_gpu(gpu, weather, viewpoint, first_s).map_err(RendererError::from);
+            if !made.as_ref().is_err_and(RendererError::is_too_much_for_gpu) {
+                return made;
+            }
+        }
+        Ok(WetPane::new(weather, viewpoint, first_s)?)
+    }
+
     /// Draws a frame, seen through a pane if there is one.
     pub(super) fn paint(
         &self,
@@ -179,7 +229,7 @@ impl Drawer {
         masks: &DropMasks,
         options: &PictureOptions,
         through: Option<&Through>,
-    ) -> Result<Picture, RendererError> {
+    ) -> Result<Painted, RendererError> {
         let drops = stage.place(drops);
         #[cfg(feature = "wgpu")]
         if let Some(on_gpu) = &self.on_gpu {
@@ -192,7 +242,7 @@ impl Drawer {
             let seen = timed(&mut picture.passes, "glass", || glass.through(&behind, environment));
             picture.through_glass = Some(seen);
         }
-        Ok(picture)
+        Ok(Painted::Done(picture))
     }
 }
 
@@ -205,10 +255,12 @@ impl OnGpu {
         masks: &DropMasks,
         options: &PictureOptions,
         through: Option<&Through>,
-    ) -> Result<Picture, RendererError> {
+    ) -> Result<Painted, RendererError> {
         use downpour_render::gpu::BehindGlass;
         let mut drawn = self.renderer.draw(&stage.data, &stage.viewpoint, drops, masks, options)?;
-        let Some(Through { glass, environment }) = through else { return Ok(drawn.read()?) };
+        let Some(Through { glass, environment }) = through else {
+            return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
+        };
         let begin = std::time::Instant::now();
         let uploaded = environment
             .as_ref()
@@ -218,9 +270,7 @@ impl OnGpu {
         let environment = uploaded.as_ref().unwrap_or(behind.environment);
         let seen = self.pane()?.through(glass, &BehindGlass { environment, ..behind })?;
         drawn.passes.push(("glass", begin.elapsed().as_secs_f64() * 1.0e3));
-        let mut picture = drawn.read()?;
-        picture.through_glass = Some(seen);
-        Ok(picture)
+        Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: Some(seen) })
     }
 
     /// The pipelines of panes.

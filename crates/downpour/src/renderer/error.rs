@@ -88,7 +88,9 @@ impl RendererError {
     pub fn gpu(&self) -> Option<&downpour_gpu::GpuError> {
         use downpour_trace::gpu::GpuPictureError;
         match self {
-            Self::Gpu(error) | Self::Picture(GpuPictureError::Gpu(error)) => Some(error),
+            Self::Gpu(error)
+            | Self::Picture(GpuPictureError::Gpu(error))
+            | Self::Pane(PaneError::Gpu(error)) => Some(error),
             _ => None,
         }
     }

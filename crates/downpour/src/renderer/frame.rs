@@ -1,6 +1,7 @@
 //! A frame that was made.
 
 use std::path::Path;
+use std::time::Instant;
 
 use downpour_render::file::{write_exr, write_exr_layers, write_png};
 use downpour_render::picture::Picture;
@@ -9,6 +10,7 @@ use downpour_render::tone::tone_picture;
 use downpour_sim::field::VisibleDrops;
 
 use super::RendererError;
+use super::computer::Painted;
 
 /// A frame, in layers, with the drops in it.
 #[derive(Clone, Debug)]
@@ -28,8 +30,41 @@ pub struct Frame {
     pub exposure: f32,
     /// Triangles of the scene, all copies counted.
     pub triangles: usize,
-    /// Time that it took, from the rain to the last pass, ms.
+    /// Time from its begin until its picture was at hand, ms; other frames may have been begun meanwhile.
     pub frame_ms: f64,
+}
+
+/// A frame that was begun: its picture may still be on the device.
+#[derive(Debug)]
+pub struct PendingFrame {
+    pub(super) picture: Painted,
+    pub(super) begin: Instant,
+    pub(super) time_s: f64,
+    pub(super) triangles: usize,
+    pub(super) drops: VisibleDrops,
+    pub(super) medium: RainMedium,
+    pub(super) measured_rate_mm_h: Option<f64>,
+    pub(super) exposure: f32,
+}
+
+impl PendingFrame {
+    /// Waits for the frame.
+    ///
+    /// # Errors
+    /// [`RendererError`]: what the GPU says.
+    pub fn finish(self) -> Result<Frame, RendererError> {
+        let picture = self.picture.finish()?;
+        Ok(Frame {
+            time_s: self.time_s,
+            picture,
+            drops: self.drops,
+            medium: self.medium,
+            measured_rate_mm_h: self.measured_rate_mm_h,
+            exposure: self.exposure,
+            triangles: self.triangles,
+            frame_ms: self.begin.elapsed().as_secs_f64() * 1.0e3,
+        })
+    }
 }
 
 impl Frame {
@@ -48,8 +83,7 @@ impl Frame {
     /// The picture to look at, sRGB, rows from the top.
     #[must_use]
     pub fn pixels(&self) -> Vec<[u8; 3]> {
-        let pixels: Vec<[f32; 4]> = self.radiance().iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
-        tone_picture(&pixels, self.exposure)
+        tone_picture(&self.radiance(), self.exposure)
     }
 
     /// The bytes of a PNG of [`Frame::pixels`].

@@ -4,26 +4,32 @@
 //! of all frames is that of the first one: separate exposures would flicker.
 
 mod finish;
+mod flight;
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use downpour::trace::stage::LATEST_S;
 use downpour::weather::Weather;
-use downpour::{Computer, Frame, Renderer, RendererError};
-use serde_json::Value;
+use downpour::{Computer, PendingFrame, Renderer};
 
-use super::RenderArguments;
+use self::flight::{Encoded, Flight, most_in_flight};
 use super::frames::Frames;
 use super::job::{Job, atlas_digest, digest, scene_digest};
 use super::journal::{Journal, Record};
 use super::outputs::Format;
 use super::paths::ClipPaths;
 use super::report;
+use super::{RenderArguments, has_room};
 use crate::failure::{Failure, INPUT};
 use crate::interrupt::Interrupt;
 use crate::output::remove_leftovers;
 use crate::progress::{Progress, doing};
+
+/// Time after which a frame is published before the next one is begun.
+const LONG: Duration = Duration::from_secs(2);
 
 /// Makes a clip.
 ///
@@ -100,12 +106,6 @@ impl From<Failure> for Stopped {
     }
 }
 
-impl From<RendererError> for Stopped {
-    fn from(error: RendererError) -> Self {
-        Self::Failed(error.into())
-    }
-}
-
 impl Clip<'_> {
     /// Renders the missing frames. Returns their number.
     fn make(&self, renderer: &mut Renderer) -> Result<(Journal, u32), Failure> {
@@ -148,22 +148,92 @@ impl Clip<'_> {
             remove_leftovers(drops.folder());
         }
         renderer.set_exposure(self.exposure(journal));
-        let mut progress = Progress::new("frame", missing, self.arguments.quiet);
-        for number in self.frames.numbers() {
-            if kept.contains(&number) {
-                // The next frame starts from the state after this one.
-                renderer.pass(self.time_s(number))?;
-                continue;
+        let made = self.make_frames(renderer, journal, &kept, missing);
+        made.inspect_err(|stopped| {
+            if matches!(stopped, Stopped::Failed(_)) {
+                self.print_resume_hint(journal);
             }
-            let made = self.make_frame(number, renderer, journal);
-            made.inspect_err(|stopped| {
-                if matches!(stopped, Stopped::Failed(_)) {
-                    self.print_resume_hint(journal);
-                }
-            })?;
-            progress.step();
-        }
+        })?;
         Ok(missing)
+    }
+
+    /// Makes the frames that are not `kept`, several at a time, and publishes them in order.
+    fn make_frames(
+        &self,
+        renderer: &mut Renderer,
+        journal: &mut Journal,
+        kept: &BTreeSet<u32>,
+        missing: u32,
+    ) -> Result<(), Stopped> {
+        let mut progress = Progress::new("frame", missing, self.arguments.quiet);
+        // Of a clip on the CPU after a GPU the first frame says so before any is in flight.
+        let size = self.weather.size;
+        let most = most_in_flight(size, rayon::current_num_threads(), |frames| has_room(size, frames));
+        let backend = renderer.computer().backend;
+        thread::scope(|scope| {
+            let computer = renderer.computer().clone();
+            let encode = move |frame: PendingFrame| self.encode(frame, &computer);
+            let mut flight = Flight::new(scope, most, encode);
+            let mut publish = |landed: Option<(u32, _)>, journal: &mut Journal| match landed {
+                Some((number, encoded)) => {
+                    self.publish(number, encoded?, journal)?;
+                    progress.step();
+                    Ok(true)
+                }
+                None => Ok::<_, Failure>(false),
+            };
+            for number in self.frames.numbers() {
+                let begin = Instant::now();
+                let begun = if kept.contains(&number) {
+                    // The next frame starts from the state after this one.
+                    renderer.pass(self.time_s(number)).map(|()| None).map_err(Failure::from)
+                } else {
+                    while flight.is_full() || flight.has_landed() {
+                        publish(flight.land(), journal)?;
+                    }
+                    self.arguments.begin_frame(renderer, self.time_s(number), self.interrupt).map(Some)
+                };
+                if renderer.computer().backend != backend {
+                    return Err(Stopped::OnGpu);
+                }
+                match begun {
+                    Ok(None) => {}
+                    Ok(Some(frame)) => {
+                        self.expose(renderer, journal)?;
+                        flight.push(number, frame);
+                        // There is little to gain where a frame takes long, and more to lose.
+                        while begin.elapsed() > LONG && publish(flight.land(), journal)? {}
+                    }
+                    Err(error) => {
+                        // What was begun before it is not lost.
+                        while publish(flight.land(), journal)? {}
+                        return Err(error.into());
+                    }
+                }
+            }
+            while publish(flight.land(), journal)? {}
+            Ok(())
+        })
+    }
+
+    /// The files of a frame.
+    fn encode(&self, frame: PendingFrame, computer: &Computer) -> Result<Encoded, Failure> {
+        let frame = self.arguments.finish_frame(frame, self.interrupt)?;
+        Ok(Encoded {
+            picture: self.arguments.encode(self.paths.format, &frame)?,
+            drops: self.paths.drops.is_some().then(|| report::drops(&frame)),
+            stats: report::stats(&frame, computer, &self.weather.rain),
+        })
+    }
+
+    /// Notes the exposure of a clip's first frame, which all others have.
+    fn expose(&self, renderer: &Renderer, journal: &mut Journal) -> Result<(), Failure> {
+        match renderer.exposure() {
+            Some(exposure) if self.paths.format == Format::Png && journal.exposure().is_none() => {
+                journal.expose(exposure, self.interrupt)
+            }
+            _ => Ok(()),
+        }
     }
 
     fn time_s(&self, number: u32) -> f64 {
@@ -200,48 +270,26 @@ impl Clip<'_> {
         Ok(kept)
     }
 
-    fn make_frame(&self, number: u32, renderer: &mut Renderer, journal: &mut Journal) -> Result<(), Stopped> {
-        let backend = renderer.computer().backend;
-        let frame = self.arguments.frame(renderer, self.time_s(number), self.interrupt)?;
-        if renderer.computer().backend != backend {
-            return Err(Stopped::OnGpu);
-        }
-        if self.paths.format == Format::Png && journal.exposure().is_none() {
-            journal.expose(frame.exposure, self.interrupt)?;
-        }
-        let stats = report::stats(&frame, renderer.computer(), &self.weather.rain);
-        let list = self.paths.drops.is_some().then(|| report::drops(&frame));
-        let bytes = self.arguments.encode(self.paths.format, &frame)?;
-        drop::<Frame>(frame);
-        Ok(self.publish(number, &bytes, list.as_deref(), stats, journal)?)
-    }
-
     /// Exposure of the whole clip, once its first frame exists. Linear radiance is not exposed.
     fn exposure(&self, journal: &Journal) -> Option<f32> {
         if self.paths.format == Format::Exr { Some(1.0) } else { journal.exposure() }
     }
 
     /// Publishes a frame: the journal first, so that every file with a frame's name is listed there; the picture last.
-    fn publish(
-        &self,
-        number: u32,
-        picture: &[u8],
-        list: Option<&str>,
-        stats: Value,
-        journal: &mut Journal,
-    ) -> Result<(), Failure> {
+    fn publish(&self, number: u32, encoded: Encoded, journal: &mut Journal) -> Result<(), Failure> {
+        let Encoded { picture, drops: list, stats } = encoded;
         let known = journal.frame(number);
         let listed = known.is_some_and(|record| record.drops.is_some());
         let file = self.paths.picture(number, journal.overwrites() || known.is_some())?;
         let list_file = self.paths.list(number, journal.overwrites() || listed)?;
         // A list that this run does not write stays listed.
         let before = known.and_then(|record| record.drops.clone());
-        let drops = list.map(|list| digest(list.as_bytes())).or(before);
-        journal.record(number, Record { picture: digest(picture), drops, stats }, self.interrupt)?;
+        let drops = list.as_ref().map(|list| digest(list.as_bytes())).or(before);
+        journal.record(number, Record { picture: digest(&picture), drops, stats }, self.interrupt)?;
         if let (Some(file), Some(list)) = (list_file, list) {
             file.publish_among_many(list.as_bytes(), self.interrupt)?;
         }
-        file.publish_among_many(picture, self.interrupt)
+        file.publish_among_many(&picture, self.interrupt)
     }
 
     /// Parameters that the frames depend on. Not their number: a clip can be extended.

@@ -1,0 +1,162 @@
+//! Passes of a frame, submitted one after the other, with the time of each.
+
+use std::time::Instant;
+
+use crate::{Dispatch, Gpu, GpuError};
+
+/// Submissions after which the host waits, so that what hangs is found: far more than a frame of usual size has.
+const WAIT_EVERY: usize = 256;
+
+/// Passes of a frame, with the time of each by the device's clock. On a device without one, and on software drivers, whose clock says
+/// nothing and which queue without end, the host waits for each submission and measures by its own clock.
+#[derive(Debug)]
+pub struct FramePasses {
+    gpu: Gpu,
+    clock: Option<Clock>,
+    times: Vec<(&'static str, PassEnd)>,
+}
+
+/// Timestamps of passes: begin and end of the n-th are the queries 2 n and 2 n + 1.
+#[derive(Debug)]
+struct Clock {
+    queries: wgpu::QuerySet,
+    ticks: wgpu::Buffer,
+    most: u32,
+}
+
+/// Time of a pass.
+#[derive(Clone, Copy, Debug)]
+enum PassEnd {
+    /// By the host's clock, ms.
+    Host(f64),
+    /// By the n-th pair of timestamps.
+    Device(u32),
+}
+
+/// Times of passes that the device may not have ended yet.
+#[derive(Debug)]
+pub struct FrameTimes {
+    times: Vec<(&'static str, PassEnd)>,
+    /// Nanoseconds of a tick.
+    period: f64,
+}
+
+impl FramePasses {
+    /// Creates room for the timestamps of `most` passes; further ones are waited for.
+    ///
+    /// # Errors
+    /// As [`Gpu::create`].
+    pub fn new(gpu: &Gpu, most: u32) -> Result<Self, GpuError> {
+        let adapter = gpu.adapter();
+        let clock = if adapter.timestamps && !adapter.is_software() {
+            let queries = gpu.create("timestamp queries", u64::from(16 * most), |device| {
+                device.create_query_set(&wgpu::QuerySetDescriptor {
+                    label: Some("times of passes"),
+                    ty: wgpu::QueryType::Timestamp,
+                    count: 2 * most,
+                })
+            })?;
+            let usage = wgpu::BufferUsages::QUERY_RESOLVE;
+            Some(Clock {
+                queries,
+                ticks: gpu.empty_buffer("times of passes", u64::from(16 * most), usage)?,
+                most,
+            })
+        } else {
+            None
+        };
+        Ok(Self { gpu: gpu.clone(), clock, times: Vec::new() })
+    }
+
+    /// Notes the time of other work, ms.
+    pub fn note(&mut self, name: &'static str, ms: f64) {
+        self.times.push((name, PassEnd::Host(ms)));
+    }
+
+    /// Runs work of the host and notes its time.
+    pub fn host<T>(&mut self, name: &'static str, work: impl FnOnce() -> T) -> T {
+        let begin = Instant::now();
+        let made = work();
+        self.note(name, begin.elapsed().as_secs_f64() * 1.0e3);
+        made
+    }
+
+    /// Submits a pass.
+    ///
+    /// # Errors
+    /// As [`Gpu::submit`] and [`Gpu::wait`].
+    pub fn run(&mut self, name: &'static str, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
+        self.run_parts(name, &[dispatches])
+    }
+
+    /// Submits a pass, each dispatch by itself: drivers reset a device that is busy with one submission for too long.
+    ///
+    /// # Errors
+    /// As [`FramePasses::run`].
+    pub fn run_each(&mut self, name: &'static str, dispatches: &[Dispatch<'_>]) -> Result<(), GpuError> {
+        let parts: Vec<&[Dispatch<'_>]> = dispatches.chunks(1).collect();
+        self.run_parts(name, &parts)
+    }
+
+    fn run_parts(&mut self, name: &'static str, parts: &[&[Dispatch<'_>]]) -> Result<(), GpuError> {
+        let used = self.times.iter().filter(|(_, end)| matches!(end, PassEnd::Device(_))).count() as u32;
+        let Some(clock) = self.clock.as_ref().filter(|clock| used < clock.most && !parts.is_empty()) else {
+            let begin = Instant::now();
+            for part in parts {
+                self.gpu.submit(part)?;
+                self.gpu.wait()?;
+            }
+            self.note(name, begin.elapsed().as_secs_f64() * 1.0e3);
+            return Ok(());
+        };
+        for (k, part) in parts.iter().enumerate() {
+            let (is_first, is_last) = (k == 0, k + 1 == parts.len());
+            let writes = (is_first || is_last).then_some(wgpu::ComputePassTimestampWrites {
+                query_set: &clock.queries,
+                beginning_of_pass_write_index: is_first.then_some(2 * used),
+                end_of_pass_write_index: is_last.then_some(2 * used + 1),
+            });
+            self.gpu.submit_pass(part, writes)?;
+            if k % WAIT_EVERY == WAIT_EVERY - 1 {
+                self.gpu.wait()?;
+            }
+        }
+        self.times.push((name, PassEnd::Device(used)));
+        Ok(())
+    }
+
+    /// Ends the passes. The buffer, of a device with a clock, holds its ticks for [`FrameTimes::read`] as soon as the device is done.
+    ///
+    /// # Errors
+    /// As [`Gpu::create`].
+    pub fn end(self) -> Result<(FrameTimes, Option<wgpu::Buffer>), GpuError> {
+        let Self { gpu, clock, times } = self;
+        let used = times.iter().filter(|(_, end)| matches!(end, PassEnd::Device(_))).count() as u32;
+        let mut ticks = None;
+        if let Some(clock) = clock.filter(|_| used > 0) {
+            let commands = gpu.create("times of passes", 0, |device| {
+                let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                encoder.resolve_query_set(&clock.queries, 0..2 * used, &clock.ticks, 0);
+                encoder.finish()
+            })?;
+            gpu.submit_commands(commands);
+            ticks = Some(clock.ticks);
+        }
+        Ok((FrameTimes { times, period: gpu.queue().get_timestamp_period().into() }, ticks))
+    }
+}
+
+impl FrameTimes {
+    /// Names of the passes in order, with the time of each, ms; `ticks` are those that the device has counted.
+    #[must_use]
+    pub fn read(&self, ticks: &[u64]) -> Vec<(&'static str, f64)> {
+        let ms = |end: PassEnd| match end {
+            PassEnd::Host(ms) => ms,
+            PassEnd::Device(n) => {
+                let [begin, end] = [0, 1].map(|k| ticks.get(2 * n as usize + k).copied().unwrap_or_default());
+                end.saturating_sub(begin) as f64 * self.period * 1.0e-6
+            }
+        };
+        self.times.iter().map(|&(name, end)| (name, ms(end))).collect()
+    }
+}
