@@ -231,8 +231,9 @@ impl Gpu {
     }
 
     /// Waits until a submission is done; `None` is the last one.
-    pub(crate) fn wait_until(&self, submission: Option<wgpu::SubmissionIndex>) -> Result<(), GpuError> {
-        let poll = wgpu::PollType::Wait { submission_index: submission.clone(), timeout: Some(self.timeout) };
+    pub(crate) fn wait_until(&self, submission: Option<&wgpu::SubmissionIndex>) -> Result<(), GpuError> {
+        let poll =
+            wgpu::PollType::Wait { submission_index: submission.cloned(), timeout: Some(self.timeout) };
         match self.device.poll(poll) {
             Ok(_) => self.check(),
             Err(wgpu::PollError::Timeout) => Err(GpuError::Hung { waited: self.timeout }),

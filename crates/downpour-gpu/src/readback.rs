@@ -94,7 +94,7 @@ impl Readback {
     /// # Errors
     /// [`GpuError::Lost`], [`GpuError::Hung`], [`GpuError::OutOfMemory`] or [`GpuError::Refused`].
     pub fn wait(&self) -> Result<(), GpuError> {
-        self.gpu.wait_until(Some(self.submission.clone()))
+        self.gpu.wait_until(Some(&self.submission))
     }
 
     /// Contents of the n-th buffer. Bytes after the last complete `T` are ignored. Each is taken once.

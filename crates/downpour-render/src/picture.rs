@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use downpour_math::rng::rng_draw;
+use rayon::prelude::*;
 
 use crate::RenderError;
 use crate::plate::Plate;
@@ -111,8 +112,13 @@ impl Picture {
         if let Some(seen) = &self.through_glass {
             return seen.clone();
         }
-        through_rain(&self.clean, &self.rain).collect()
+        let behind = self.clean.par_iter().zip(&self.rain).with_min_len(4096);
+        behind.map(|(&clean, &rain)| without_distance(compose_pixel(clean, rain))).collect()
     }
+}
+
+fn without_distance([r, g, b, _]: [f32; 4]) -> [f32; 3] {
+    [r, g, b]
 }
 
 /// Radiance of a scene through the rain before it, pixel by pixel: `clean * transmittance + rain`.
@@ -120,10 +126,7 @@ pub fn through_rain<'a>(
     clean: &'a [[f32; 4]],
     rain: &'a [[f32; 4]],
 ) -> impl Iterator<Item = [f32; 3]> + use<'a> {
-    clean.iter().zip(rain).map(|(&clean, &rain)| {
-        let [r, g, b, _] = compose_pixel(clean, rain);
-        [r, g, b]
-    })
+    clean.iter().zip(rain).map(|(&clean, &rain)| without_distance(compose_pixel(clean, rain)))
 }
 
 /// A pixel of a plate (radiance and distance) through the rain (radiance and transmittance): the radiance that is seen, and the

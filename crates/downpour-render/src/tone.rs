@@ -66,34 +66,50 @@ pub fn tone_automatic_exposure(pixels: &[[f32; 4]]) -> f32 {
     (GRAY / mean).clamp(1.0 / 65_536.0, 65_536.0)
 }
 
-/// For each value but 0 the least linear number that [`tone_srgb`] turns into it, as bits: numbers above 0 have the order of their
-/// bits. A picture has millions of numbers, and a power of each would take longer than its rain.
-static STEPS: LazyLock<[u32; 255]> = LazyLock::new(|| {
-    std::array::from_fn(|k| {
+/// What [`tone_srgb`] makes of linear numbers, by their bits: numbers above 0 have the order of their bits. A picture has millions of
+/// numbers, and a power of each would take longer than its rain.
+struct Encoded {
+    /// For each value but 0 the least number that becomes it.
+    steps: [u32; 255],
+    /// The value of the least number with these upper 16 bits.
+    first: Vec<u8>,
+}
+
+static ENCODED: LazyLock<Encoded> = LazyLock::new(|| {
+    let step = |k: usize| {
         let (mut below, mut at) = (0.0f32.to_bits(), 1.0f32.to_bits());
         while at - below > 1 {
             let middle = below + (at - below) / 2;
             if usize::from(tone_srgb(f32::from_bits(middle))) > k { at = middle } else { below = middle }
         }
         at
-    })
+    };
+    let steps = std::array::from_fn(step);
+    let first = |upper: u32| steps.partition_point(|&step| step <= upper << 16) as u8;
+    Encoded { steps, first: (0..=1.0f32.to_bits() >> 16).map(first).collect() }
 });
 
-/// What [`tone_srgb`] makes of a linear number.
-fn encoded(linear: f32, steps: &[u32; 255]) -> u8 {
-    // A number that is none becomes 0, as there, and 0 has no sign.
-    let bits = (linear.clamp(0.0, 1.0).max(0.0) + 0.0).to_bits();
-    steps.partition_point(|&step| step <= bits) as u8
+impl Encoded {
+    /// What [`tone_srgb`] makes of a linear number.
+    fn of(&self, linear: f32) -> u8 {
+        // A number that is none becomes 0, as there, and 0 has no sign.
+        let bits = (linear.clamp(0.0, 1.0).max(0.0) + 0.0).to_bits();
+        let mut value = self.first[(bits >> 16) as usize];
+        while self.steps.get(usize::from(value)).is_some_and(|&step| step <= bits) {
+            value += 1;
+        }
+        value
+    }
 }
 
 /// Converts linear radiance to an 8-bit picture.
 #[must_use]
 pub fn tone_picture(pixels: &[[f32; 3]], exposure: f32) -> Vec<[u8; 3]> {
-    let steps = &*STEPS;
+    let encoded = &*ENCODED;
     pixels
         .par_iter()
         .with_min_len(4096)
-        .map(|&pixel| tone_neutral(Vec3::from(pixel) * exposure).to_array().map(|v| encoded(v, steps)))
+        .map(|&pixel| tone_neutral(Vec3::from(pixel) * exposure).to_array().map(|v| encoded.of(v)))
         .collect()
 }
 
@@ -122,7 +138,7 @@ mod tests {
         let numbers = (0..=200_000u32).map(|k| f32::from_bits(k.wrapping_mul(0x0000_54ab) % 0x4000_0000));
         let special = [-0.0, -1.0, 0.003_130_8, 1.0, 1.000_000_1, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
         for linear in numbers.chain(special) {
-            assert_eq!(encoded(linear, &STEPS), tone_srgb(linear), "{linear:e}");
+            assert_eq!(ENCODED.of(linear), tone_srgb(linear), "{linear:e}");
         }
     }
 

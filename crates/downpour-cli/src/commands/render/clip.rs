@@ -8,14 +8,14 @@ mod flight;
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::sync::mpsc::{channel, sync_channel};
 use std::thread;
-use std::time::{Duration, Instant};
 
 use downpour::trace::stage::LATEST_S;
 use downpour::weather::Weather;
 use downpour::{Computer, PendingFrame, Renderer};
 
-use self::flight::{Encoded, Flight, most_in_flight};
+use self::flight::{Encoded, Flying, most_in_flight, take_off};
 use super::frames::Frames;
 use super::job::{Job, atlas_digest, digest, scene_digest};
 use super::journal::{Journal, Record};
@@ -23,13 +23,10 @@ use super::outputs::Format;
 use super::paths::ClipPaths;
 use super::report;
 use super::{RenderArguments, has_room};
-use crate::failure::{Failure, INPUT};
+use crate::failure::{Failure, INPUT, LIMIT, OTHER};
 use crate::interrupt::Interrupt;
 use crate::output::remove_leftovers;
 use crate::progress::{Progress, doing};
-
-/// Time after which a frame is published before the next one is begun.
-const LONG: Duration = Duration::from_secs(2);
 
 /// Makes a clip.
 ///
@@ -166,74 +163,79 @@ impl Clip<'_> {
         missing: u32,
     ) -> Result<(), Stopped> {
         let mut progress = Progress::new("frame", missing, self.arguments.quiet);
-        // Of a clip on the CPU after a GPU the first frame says so before any is in flight.
         let size = self.weather.size;
         let most = most_in_flight(size, rayon::current_num_threads(), |frames| has_room(size, frames));
-        let backend = renderer.computer().backend;
+        let computer = renderer.computer().clone();
         thread::scope(|scope| {
-            let computer = renderer.computer().clone();
-            let encode = move |frame: PendingFrame| self.encode(frame, &computer);
-            let mut flight = Flight::new(scope, most, encode);
-            let mut publish = |landed: Option<(u32, _)>, journal: &mut Journal| match landed {
-                Some((number, encoded)) => {
-                    self.publish(number, encoded?, journal)?;
+            // Frames land in the order in which they were begun; a frame waits to take off while too many are in flight.
+            let (begun, landing) = sync_channel::<(u32, Flying<'_>)>(most.saturating_sub(1));
+            let (exposures, exposure) = channel();
+            let publish = move || {
+                for (number, flying) in landing {
+                    if let Ok(exposure) = exposure.try_recv() {
+                        journal.expose(exposure, self.interrupt)?;
+                    }
+                    self.publish(number, flying.land()?, journal)?;
                     progress.step();
-                    Ok(true)
                 }
-                None => Ok::<_, Failure>(false),
+                Ok::<_, Failure>(())
             };
+            let mut exposed = self.paths.format != Format::Png || renderer.exposure().is_some();
+            let publisher = thread::Builder::new().name("publisher".to_owned()).spawn_scoped(scope, publish);
+            let publisher = publisher.map_err(|error| Failure::new(LIMIT, format!("a thread: {error}")))?;
+            let mut stopped = None;
             for number in self.frames.numbers() {
-                let begin = Instant::now();
-                let begun = if kept.contains(&number) {
+                let frame = if kept.contains(&number) {
                     // The next frame starts from the state after this one.
                     renderer.pass(self.time_s(number)).map(|()| None).map_err(Failure::from)
                 } else {
-                    while flight.is_full() || flight.has_landed() {
-                        publish(flight.land(), journal)?;
-                    }
                     self.arguments.begin_frame(renderer, self.time_s(number), self.interrupt).map(Some)
                 };
-                if renderer.computer().backend != backend {
-                    return Err(Stopped::OnGpu);
+                if renderer.computer().backend != computer.backend {
+                    stopped = Some(Stopped::OnGpu);
+                    break;
                 }
-                match begun {
+                match frame {
                     Ok(None) => {}
                     Ok(Some(frame)) => {
-                        self.expose(renderer, journal)?;
-                        flight.push(number, frame);
-                        // There is little to gain where a frame takes long, and more to lose.
-                        while begin.elapsed() > LONG && publish(flight.land(), journal)? {}
+                        if let Some(exposure) = renderer.exposure().filter(|_| !exposed) {
+                            exposed = exposures.send(exposure).is_ok();
+                        }
+                        let computer = &computer;
+                        let flying = take_off(scope, frame, move |frame| self.encode(frame, computer));
+                        // It ends only when the publisher has failed.
+                        if begun.send((number, flying)).is_err() {
+                            break;
+                        }
                     }
                     Err(error) => {
-                        // What was begun before it is not lost.
-                        while publish(flight.land(), journal)? {}
-                        return Err(error.into());
+                        stopped = Some(error.into());
+                        break;
                     }
                 }
             }
-            while publish(flight.land(), journal)? {}
-            Ok(())
+            // What was begun is not lost.
+            drop(begun);
+            match publisher.join() {
+                Ok(published) => published?,
+                Err(_) => {
+                    return Err(Failure::new(OTHER, "the thread that publishes frames has ended").into());
+                }
+            }
+            stopped.map_or(Ok(()), Err)
         })
     }
 
     /// The files of a frame.
     fn encode(&self, frame: PendingFrame, computer: &Computer) -> Result<Encoded, Failure> {
         let frame = self.arguments.finish_frame(frame, self.interrupt)?;
+        let picture = self.arguments.encode(self.paths.format, &frame)?;
         Ok(Encoded {
-            picture: self.arguments.encode(self.paths.format, &frame)?,
+            digest: digest(&picture),
+            picture,
             drops: self.paths.drops.is_some().then(|| report::drops(&frame)),
             stats: report::stats(&frame, computer, &self.weather.rain),
         })
-    }
-
-    /// Notes the exposure of a clip's first frame, which all others have.
-    fn expose(&self, renderer: &Renderer, journal: &mut Journal) -> Result<(), Failure> {
-        match renderer.exposure() {
-            Some(exposure) if self.paths.format == Format::Png && journal.exposure().is_none() => {
-                journal.expose(exposure, self.interrupt)
-            }
-            _ => Ok(()),
-        }
     }
 
     fn time_s(&self, number: u32) -> f64 {
@@ -277,7 +279,7 @@ impl Clip<'_> {
 
     /// Publishes a frame: the journal first, so that every file with a frame's name is listed there; the picture last.
     fn publish(&self, number: u32, encoded: Encoded, journal: &mut Journal) -> Result<(), Failure> {
-        let Encoded { picture, drops: list, stats } = encoded;
+        let Encoded { picture, digest: of_picture, drops: list, stats } = encoded;
         let known = journal.frame(number);
         let listed = known.is_some_and(|record| record.drops.is_some());
         let file = self.paths.picture(number, journal.overwrites() || known.is_some())?;
@@ -285,7 +287,7 @@ impl Clip<'_> {
         // A list that this run does not write stays listed.
         let before = known.and_then(|record| record.drops.clone());
         let drops = list.as_ref().map(|list| digest(list.as_bytes())).or(before);
-        journal.record(number, Record { picture: digest(&picture), drops, stats }, self.interrupt)?;
+        journal.record(number, Record { picture: of_picture, drops, stats }, self.interrupt)?;
         if let (Some(file), Some(list)) = (list_file, list) {
             file.publish_among_many(list.as_bytes(), self.interrupt)?;
         }

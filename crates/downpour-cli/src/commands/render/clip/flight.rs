@@ -1,6 +1,5 @@
 //! Frames in flight: other threads wait for their pictures and encode them while the next ones are begun.
 
-use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, Scope, ScopedJoinHandle};
 
@@ -18,22 +17,16 @@ const MAX_FRAMES: u64 = 8;
 /// Files of a frame, and its entry in `--stats`.
 pub(super) struct Encoded {
     pub(super) picture: Vec<u8>,
+    /// Digest of the picture.
+    pub(super) digest: String,
     pub(super) drops: Option<String>,
     pub(super) stats: Value,
 }
 
 /// A frame that is being finished: on another thread, or, where none could start, by now.
-enum Flying<'scope> {
+pub(super) enum Flying<'scope> {
     There(ScopedJoinHandle<'scope, Result<Encoded, Failure>>),
     Here(Box<Result<Encoded, Failure>>),
-}
-
-/// Frames that were begun, in order.
-pub(super) struct Flight<'scope, 'env, F> {
-    scope: &'scope Scope<'scope, 'env>,
-    encode: F,
-    most: usize,
-    frames: VecDeque<(u32, Flying<'scope>)>,
 }
 
 /// Number of frames of a size that may be in flight on so many threads, as far as there is memory for them and for the next one.
@@ -47,49 +40,32 @@ pub(super) fn most_in_flight(
     (2..=most).rev().find(|&frames| has_room(frames as u64 + 1)).unwrap_or(1)
 }
 
-impl<'scope, 'env, F> Flight<'scope, 'env, F>
+/// Starts to finish a frame on another thread, or finishes it here if none can start.
+pub(super) fn take_off<'scope, F>(
+    scope: &'scope Scope<'scope, '_>,
+    frame: PendingFrame,
+    encode: F,
+) -> Flying<'scope>
 where
     F: Fn(PendingFrame) -> Result<Encoded, Failure> + Clone + Send + 'scope,
 {
-    /// Nothing in flight; at most `most` frames will be.
-    pub(super) fn new(scope: &'scope Scope<'scope, 'env>, most: usize, encode: F) -> Self {
-        Self { scope, encode, most, frames: VecDeque::new() }
+    // A thread that cannot start must not take the frame with it.
+    let frame = Arc::new(Mutex::new(Some(frame)));
+    let (there, taken) = (encode.clone(), Arc::clone(&frame));
+    let body = move || finish(&taken, &there);
+    match thread::Builder::new().name("encoder".to_owned()).spawn_scoped(scope, body) {
+        Ok(thread) => Flying::There(thread),
+        Err(_) => Flying::Here(Box::new(finish(&frame, &encode))),
     }
+}
 
-    /// Takes a frame up.
-    pub(super) fn push(&mut self, number: u32, frame: PendingFrame) {
-        // A thread that cannot start must not take the frame with it.
-        let frame = Arc::new(Mutex::new(Some(frame)));
-        let (encode, taken) = (self.encode.clone(), Arc::clone(&frame));
-        let body = move || finish(&taken, &encode);
-        let flying = match thread::Builder::new().name("encoder".to_owned()).spawn_scoped(self.scope, body) {
-            Ok(thread) => Flying::There(thread),
-            Err(_) => Flying::Here(Box::new(finish(&frame, &self.encode))),
-        };
-        self.frames.push_back((number, flying));
-    }
-
-    /// True if the next frame may only be begun after another one has landed.
-    pub(super) fn is_full(&self) -> bool {
-        self.frames.len() >= self.most
-    }
-
-    /// True if the first frame of those that were begun is there.
-    pub(super) fn has_landed(&self) -> bool {
-        self.frames.front().is_some_and(|(_, flying)| match flying {
-            Flying::There(thread) => thread.is_finished(),
-            Flying::Here(_) => true,
-        })
-    }
-
-    /// Waits for the first frame of those that were begun; `None` if there is none.
-    pub(super) fn land(&mut self) -> Option<(u32, Result<Encoded, Failure>)> {
-        let (number, flying) = self.frames.pop_front()?;
-        let encoded = match flying {
+impl Flying<'_> {
+    /// Waits for the frame.
+    pub(super) fn land(self) -> Result<Encoded, Failure> {
+        match self {
             Flying::There(thread) => thread.join().unwrap_or_else(|_| Err(ended())),
             Flying::Here(encoded) => *encoded,
-        };
-        Some((number, encoded))
+        }
     }
 }
 
