@@ -7,7 +7,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
 use downpour_drop::DropShape;
-use downpour_gpu::{AdapterChoice, ComputeKernel, Gpu, GpuError, GpuOptions, LimitSet, wgpu};
+use downpour_gpu::{
+    AdapterChoice, ComputeKernel, FramePasses, Gpu, GpuError, GpuOptions, LimitSet, ReadbackPool, wgpu,
+};
 use downpour_mask::gpu::{GpuMaskError, GpuTracer};
 use downpour_mask::{Mask, MaskOptions};
 use downpour_tests::adapter;
@@ -25,8 +27,10 @@ fn main() -> ExitCode {
         eprintln!("{}", adapter::missing(&error));
         return ExitCode::FAILURE;
     }
-    let tests: [Test; 11] = [
+    let tests: [Test; 13] = [
         ("what_is_written_is_read", what_is_written_is_read),
+        ("a_readback_is_of_the_time_when_it_began", a_readback_is_of_the_time_when_it_began),
+        ("passes_of_a_frame_have_times", passes_of_a_frame_have_times),
         ("limits_are_checked_first", limits_are_checked_first),
         ("a_lost_device_gives_nothing", a_lost_device_gives_nothing),
         ("loss_is_seen_at_any_submission", loss_is_seen_at_any_submission),
@@ -71,6 +75,66 @@ fn what_is_written_is_read() -> Outcome {
     let empty = gpu.storage_buffer::<f32>("nothing", &[])?;
     check(gpu.read::<f32>(&empty)?.len() == 1, "an empty buffer has the smallest size there is")
 }
+
+/// Buffers that are written again after a readback was begun, and staging buffers that are used again, on other threads.
+fn a_readback_is_of_the_time_when_it_began() -> Outcome {
+    let gpu = adapter::open()?;
+    let pool = ReadbackPool::default();
+    let (a, b) = (gpu.storage_buffer("a", &[0u32; 1000])?, gpu.storage_buffer("b", &[0u32; 7])?);
+    let mut begun = Vec::new();
+    for k in 0..5u32 {
+        gpu.queue().write_buffer(&a, 0, bytemuck::cast_slice(&[k; 1000]));
+        gpu.queue().write_buffer(&b, 0, bytemuck::cast_slice(&[100 + k; 7]));
+        begun.push((k, pool.begin(&gpu, &[&a, &b])?));
+        if k == 2 {
+            let (_, mut first) = begun.remove(0);
+            check(first.take::<u32>(0)? == [0; 1000] && first.take::<u32>(1)? == [100; 7], "the first")?;
+        }
+    }
+    let readers = begun.into_iter().map(|(k, mut read)| {
+        std::thread::spawn(move || -> Result<(), String> {
+            let (b, a) = (read.take::<u32>(1), read.take::<u32>(0));
+            let (a, b) = (a.map_err(|error| error.to_string())?, b.map_err(|error| error.to_string())?);
+            if a != [k; 1000] || b != [100 + k; 7] {
+                return Err(format!("readback {k}: {} and {}", a[0], b[0]));
+            }
+            match (read.take::<u32>(0), read.take::<u32>(2)) {
+                (Err(GpuError::Refused { .. }), Err(GpuError::Refused { .. })) => Ok(()),
+                other => Err(format!("{other:?}")),
+            }
+        })
+    });
+    for reader in readers.collect::<Vec<_>>() {
+        reader.join().map_err(|_| "a reader panicked")??;
+    }
+    Ok(())
+}
+
+/// Each pass has its name and a time, in order, whether the device has a clock or the host waits; passes beyond the room are waited for.
+fn passes_of_a_frame_have_times() -> Outcome {
+    let gpu = adapter::open()?;
+    let kernel = ComputeKernel::from_source(&gpu, "main", COUNT, &[])?;
+    let counts = gpu.storage_buffer("counts", &[0u32; 256])?;
+    let bound = kernel.bind(&gpu, &[&counts])?;
+    let one = kernel.dispatch(&bound, [4, 1, 1]);
+    let mut passes = FramePasses::new(&gpu, 2)?;
+    passes.host("host", || ());
+    passes.run("first", &[one, one])?;
+    passes.run_each("each", &vec![one; 300])?;
+    passes.run("beyond", &[one])?;
+    let (times, ticks) = passes.end()?;
+    let ticks = ticks.map(|ticks| gpu.read::<u64>(&ticks)).transpose()?.unwrap_or_default();
+    let times = times.read(&ticks);
+    let names: Vec<&str> = times.iter().map(|(name, _)| *name).collect();
+    check(names == ["host", "first", "each", "beyond"], format!("{names:?}"))?;
+    let whole = times.iter().all(|(_, ms)| ms.is_finite() && (0.0..1.0e4).contains(ms));
+    check(whole && times[2].1 > 0.0, format!("{times:?}"))?;
+    check(gpu.read::<u32>(&counts)? == [303; 256], "each dispatch ran once")
+}
+
+/// Adds 1 to each word.
+const COUNT: &str = "@group(0) @binding(0) var<storage, read_write> counts: array<u32>;
+@compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3u) { counts[id.x] += 1u; }";
 
 fn limits_are_checked_first() -> Outcome {
     let gpu = adapter::open()?;

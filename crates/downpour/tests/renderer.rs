@@ -52,6 +52,33 @@ fn bits(renderer: &mut Renderer, time_s: f64) -> Vec<[u32; 3]> {
     renderer.frame(time_s).unwrap().radiance().iter().map(|pixel| pixel.map(f32::to_bits)).collect()
 }
 
+/// Frames that are finished late, on another thread and in another order, are those that are made one by one; the first one, which
+/// sets the exposure, is there at once.
+#[test]
+fn frames_may_be_finished_while_others_are_begun() {
+    let times = [0.0, 0.04, 0.08];
+    let mut one_by_one = opened(OPEN);
+    let expected = times.map(|time_s| bits(&mut one_by_one, time_s));
+    let mut renderer = opened(OPEN);
+    let begun = times.map(|time_s| renderer.begin_frame(time_s).unwrap());
+    assert_eq!(renderer.exposure(), one_by_one.exposure());
+    let finish = |frame: downpour::PendingFrame| {
+        let frame = frame.finish().unwrap();
+        let radiance: Vec<[u32; 3]> = frame.radiance().iter().map(|pixel| pixel.map(f32::to_bits)).collect();
+        (frame.time_s, frame.exposure, radiance)
+    };
+    let mut finished: Vec<_> = std::thread::scope(|scope| {
+        let threads: Vec<_> = begun.into_iter().rev().map(|frame| scope.spawn(|| finish(frame))).collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    finished.reverse();
+    for ((frame, time_s), expected) in finished.into_iter().zip(times).zip(expected) {
+        assert_eq!((frame.0, Some(frame.1)), (time_s, one_by_one.exposure()));
+        assert!(frame.2 == expected, "frame of {time_s} s");
+    }
+    assert!(renderer.begin_frame(f64::NAN).is_err());
+}
+
 #[test]
 fn a_weather_file_becomes_a_picture() {
     let mut renderer = opened(OPEN);
