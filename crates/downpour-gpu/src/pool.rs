@@ -13,6 +13,9 @@ const MIN_BYTES: u64 = 256 << 10;
 /// Buffers below this size, bytes, get as much room again as they need; larger ones a quarter.
 const SMALL: u64 = 4 << 20;
 
+/// Buffers of a label that are kept after they were given back.
+const MOST_RETURNED: usize = 4;
+
 /// Maker of buffers: a [`Gpu`], which creates each anew, or a [`BufferPool`], which keeps them for the next frame.
 pub trait BufferSource {
     /// Returns a buffer of `bytes` bytes or more with `usage` and both copy usages. Its contents are not defined.
@@ -81,7 +84,7 @@ impl BufferSource for Gpu {
 #[derive(Debug)]
 pub struct BufferPool {
     gpu: Gpu,
-    /// Labels whose buffers are not kept.
+    /// Labels whose buffers are kept only when they are given back.
     given_away: Vec<&'static str>,
     kept: Mutex<Kept>,
 }
@@ -91,6 +94,8 @@ struct Kept {
     buffers: HashMap<&'static str, Vec<wgpu::Buffer>>,
     /// Buffers of each label that the current frame has.
     used: HashMap<&'static str, usize>,
+    /// Buffers that were given back.
+    returned: HashMap<&'static str, Vec<wgpu::Buffer>>,
     /// Buffers that were created.
     made: u64,
     /// Bytes that were written in the current frame.
@@ -104,11 +109,20 @@ impl BufferPool {
         Self { gpu: gpu.clone(), given_away: Vec::new(), kept: Mutex::default() }
     }
 
-    /// Sets labels whose buffers are created anew each time, since they are needed longer than for the frame.
+    /// Sets labels whose buffers are needed longer than for the frame: they are used again only after [`BufferPool::give_back`].
     #[must_use]
     pub fn with_given_away(mut self, labels: &[&'static str]) -> Self {
         self.given_away.extend(labels);
         self
+    }
+
+    /// Gives back a buffer of a label of [`BufferPool::with_given_away`]: all work that uses it has been submitted.
+    pub fn give_back(&self, label: &'static str, buffer: wgpu::Buffer) {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let returned = kept.returned.entry(label).or_default();
+        if returned.len() < MOST_RETURNED {
+            returned.push(buffer);
+        }
     }
 
     /// Begins a frame: all buffers may be used again.
@@ -152,6 +166,13 @@ impl BufferSource for BufferPool {
     ) -> Result<wgpu::Buffer, GpuError> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if self.given_away.contains(&label) {
+            let size = bytes.max(4).next_multiple_of(4);
+            let returned = kept.returned.entry(label).or_default();
+            // Those of another size are of pictures of another size: of no use any more.
+            returned.retain(|known| known.size() == size && known.usage().contains(usage));
+            if let Some(known) = returned.pop() {
+                return Ok(known);
+            }
             kept.made += 1;
             return self.gpu.empty_buffer(label, bytes, usage);
         }
@@ -192,6 +213,26 @@ mod tests {
     fn noop() -> Gpu {
         let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
         Gpu::on_device(device, queue)
+    }
+
+    #[test]
+    fn buffers_that_are_given_away_are_used_again_when_they_come_back() {
+        let pool = BufferPool::new(&noop()).with_given_away(&["picture"]);
+        let storage = wgpu::BufferUsages::STORAGE;
+        let picture = |bytes| {
+            pool.begin_frame();
+            pool.buffer("picture", bytes, storage).unwrap()
+        };
+        let (first, second) = (picture(64), picture(64));
+        assert_ne!(first, second);
+        assert_eq!(pool.made(), 2);
+        pool.give_back("picture", first.clone());
+        assert_eq!(picture(64), first);
+        assert_eq!(pool.made(), 2);
+        pool.give_back("picture", second);
+        assert_eq!(picture(128).size(), 128);
+        assert_eq!(pool.made(), 3);
+        assert_ne!(picture(64), first);
     }
 
     #[test]

@@ -65,6 +65,17 @@ pub struct Picture {
     pub through_glass: Option<Vec<[f32; 3]>>,
     /// The passes in their order, with the milliseconds that each took.
     pub passes: Vec<(&'static str, f64)>,
+    /// Use of the device that drew it; `None` on the CPU.
+    pub device: Option<DeviceUse>,
+}
+
+/// Use of a device for one picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DeviceUse {
+    /// Bytes that were written to it.
+    pub bytes_uploaded: u64,
+    /// Buffers that were created.
+    pub buffers_made: u64,
 }
 
 impl Picture {
@@ -86,6 +97,7 @@ impl Picture {
             surroundings,
             through_glass: None,
             passes,
+            device: None,
         }
     }
 

@@ -258,7 +258,18 @@ impl Renderer {
             (exposure, _) => exposure.unwrap_or(1.0),
         };
         let triangles = stage.triangles;
-        Ok(PendingFrame { picture, begin, time_s, triangles, drops, medium, measured_rate_mm_h, exposure })
+        let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;
+        Ok(PendingFrame {
+            picture,
+            begin,
+            begin_ms,
+            time_s,
+            triangles,
+            drops,
+            medium,
+            measured_rate_mm_h,
+            exposure,
+        })
     }
 
     /// Lets the rain go on past a time in seconds without a frame: what later frames depend on is as if there had been one.

@@ -21,6 +21,9 @@ const KERNELS: [(&Kernel, &[u32]); 6] = [
     (&TILES_SORT_KERNEL, &[0, 1, 3]),
 ];
 
+/// Room for distances of drops is a multiple of this.
+const SEEN_STEP: u32 = 1 << 14;
+
 /// The pipelines of the lists.
 #[derive(Clone, Debug)]
 pub struct TilesPipeline {
@@ -74,7 +77,9 @@ impl TilesPipeline {
         let by_drop = workgroups(frame.count.div_ceil(64).max(1));
         let clear = workgroups((counts.size() / 4).div_ceil(64) as u32);
         let passes = self.lists.bind(&all, &[clear, by_drop, by_drop, [1; 3], by_drop, workgroups(tiles)])?;
-        let seen = buffers.buffer("distances of drops", u64::from(frame.count.max(1)) * 4, storage)?;
+        // In steps, so that frames of about as many drops have buffers of one size.
+        let seen = u64::from(frame.count.max(1).next_multiple_of(SEEN_STEP));
+        let seen = buffers.buffer("distances of drops", seen * 4, storage)?;
         let of_seen = self.seen.bind_at(&self.gpu, [(0, &uniform), (1, drops), (4, plate), (5, &seen)])?;
         Ok(TilesPass { pipeline: self, passes, of_seen: (of_seen, by_drop), seen, count: frame.count, lists })
     }
@@ -93,7 +98,7 @@ impl TilesPass<'_> {
         self.pipeline.seen.dispatch(&self.of_seen.0, self.of_seen.1)
     }
 
-    /// These distances on the device, and their number.
+    /// These distances on the device, with room behind them, and their number.
     #[must_use]
     pub fn distances(&self) -> (&wgpu::Buffer, u32) {
         (&self.seen, self.count)

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
+use downpour_drop::oscillation::Fluids;
 use downpour_gpu::{
     BufferPool, BufferSource as _, FramePasses, FrameTimes, Gpu, GpuError, Readback, ReadbackPool, wgpu,
 };
@@ -13,7 +14,7 @@ use rayon::prelude::*;
 use downpour_render::RenderError;
 use downpour_render::camera::Viewpoint;
 use downpour_render::gpu::{BehindGlass, FallingOnGpu, RainOnGpu, RainPipeline};
-use downpour_render::picture::{Picture, PictureOptions};
+use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
 
 use super::scene::{SceneOnGpu, ScenePipeline};
@@ -45,9 +46,12 @@ pub struct PictureRenderer {
     gpu: Gpu,
     scene: ScenePipeline,
     rain: RainPipeline,
-    /// Locked for as long as a picture is drawn.
-    pool: Arc<Mutex<BufferPool>>,
+    pool: Arc<BufferPool>,
+    /// Locked for as long as a picture is drawn with the pool's buffers.
+    drawing: Arc<Mutex<()>>,
     readbacks: ReadbackPool,
+    /// Frequencies of the drops of the last picture, and their fluids.
+    frequencies: Arc<Mutex<Option<(Fluids, wgpu::Buffer)>>>,
     /// Time of a sample of the last picture that was read, ms.
     pace: Arc<Mutex<Option<f64>>>,
     /// The scene and the masks of the last picture.
@@ -65,8 +69,10 @@ impl PictureRenderer {
             scene: ScenePipeline::new(gpu)?,
             rain: RainPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
-            pool: Arc::new(Mutex::new(BufferPool::new(gpu).with_given_away(&GIVEN_AWAY))),
+            pool: Arc::new(BufferPool::new(gpu).with_given_away(&GIVEN_AWAY)),
+            drawing: Arc::default(),
             readbacks: ReadbackPool::default(),
+            frequencies: Arc::default(),
             pace: Arc::default(),
             uploaded: Arc::default(),
         })
@@ -113,8 +119,10 @@ impl PictureRenderer {
             drop(last);
             Ok::<_, GpuError>((scene, masks))
         })?;
-        let pool = &*self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        let _drawing = self.drawing.lock().unwrap_or_else(PoisonError::into_inner);
+        let pool = &*self.pool;
         pool.begin_frame();
+        let made_before = pool.made();
         let pace = *self.pace.lock().unwrap_or_else(PoisonError::into_inner);
         let traced = self.scene.prepare_paced(pool, &uploaded.0, &frame, pace)?;
         passes.run_each("scene", &traced.rays())?;
@@ -126,7 +134,7 @@ impl PictureRenderer {
         let rain = Rain::new(&camera, eye, &[], masks, &options.rain);
         let (falling, frequencies) = passes.host("drops to the device", || {
             let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
-            let frequencies = self.rain.frequencies(&options.rain.exposure.fluids)?;
+            let frequencies = self.frequencies(&options.rain.exposure.fluids)?;
             Ok::<_, GpuError>((pool.storage("falling drops", &falling)?, frequencies))
         })?;
         let count = drops.len() as u32;
@@ -150,9 +158,11 @@ impl PictureRenderer {
         let distances = pass.distances().0.clone();
         drop(pass);
         let (times, ticks) = passes.end()?;
+        let device = DeviceUse { bytes_uploaded: pool.written(), buffers_made: pool.made() - made_before };
         Ok(PictureOnGpu {
             gpu: self.gpu.clone(),
             readbacks: self.readbacks.clone(),
+            pool: Arc::clone(&self.pool),
             pace: Arc::clone(&self.pace),
             samples: f64::from(frame.grid * frame.grid) * f64::from(camera.width) * f64::from(camera.height),
             rain,
@@ -163,8 +173,18 @@ impl PictureRenderer {
             environment,
             times,
             ticks,
+            device,
             passes: Vec::new(),
         })
+    }
+
+    /// Frequencies of drops in some fluids on the device: those of the last picture, if they are the same.
+    fn frequencies(&self, fluids: &Fluids) -> Result<wgpu::Buffer, GpuError> {
+        let mut last = self.frequencies.lock().unwrap_or_else(PoisonError::into_inner);
+        match last.as_ref().filter(|(known, _)| known == fluids) {
+            Some((_, buffer)) => Ok(buffer.clone()),
+            None => Ok(last.insert((*fluids, self.rain.frequencies(fluids)?)).1.clone()),
+        }
     }
 }
 
@@ -172,6 +192,7 @@ impl PictureRenderer {
 #[derive(Debug)]
 pub struct PictureOnGpu {
     gpu: Gpu,
+    pool: Arc<BufferPool>,
     readbacks: ReadbackPool,
     pace: Arc<Mutex<Option<f64>>>,
     samples: f64,
@@ -184,6 +205,7 @@ pub struct PictureOnGpu {
     environment: wgpu::Buffer,
     times: FrameTimes,
     ticks: Option<wgpu::Buffer>,
+    device: DeviceUse,
     /// Further passes after those that drew it, with the time of each in ms.
     pub passes: Vec<(&'static str, f64)>,
 }
@@ -199,6 +221,7 @@ pub struct PictureReadback {
     read: Readback,
     times: FrameTimes,
     has_ticks: bool,
+    device: DeviceUse,
     passes: Vec<(&'static str, f64)>,
 }
 
@@ -214,12 +237,17 @@ impl PictureOnGpu {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn begin_read(self) -> Result<PictureReadback, GpuError> {
-        let Self { pace, samples, rain, count, times, passes, .. } = self;
+        let Self { pool, pace, samples, rain, count, times, passes, device, .. } = self;
         let mut buffers = vec![&self.distances, &self.clean, &self.layer, &self.environment];
         buffers.extend(&self.ticks);
         let read = self.readbacks.begin(&self.gpu, &buffers)?;
         let has_ticks = self.ticks.is_some();
-        Ok(PictureReadback { pace, samples, rain, count, read, times, has_ticks, passes })
+        // What writes them next is submitted after the copies.
+        let layers = [self.clean, self.layer, self.environment, self.distances];
+        for (label, buffer) in GIVEN_AWAY.into_iter().zip(layers) {
+            pool.give_back(label, buffer);
+        }
+        Ok(PictureReadback { pace, samples, rain, count, read, times, has_ticks, device, passes })
     }
 
     /// Reads the picture back.
@@ -237,7 +265,7 @@ impl PictureReadback {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn finish(self) -> Result<Picture, GpuError> {
-        let Self { pace, samples, rain, count, mut read, times, has_ticks, passes: others } = self;
+        let Self { pace, samples, rain, count, mut read, times, has_ticks, device, passes: others } = self;
         read.wait()?;
         let begin = Instant::now();
         let mut distances = read.take::<f32>(0)?;
@@ -249,7 +277,8 @@ impl PictureReadback {
         }
         passes.extend(others);
         passes.push(("readback", begin.elapsed().as_secs_f64() * 1.0e3));
-        Ok(Picture::new(&rain, clean, layer, environment, passes).with_seen(&distances))
+        let picture = Picture::new(&rain, clean, layer, environment, passes).with_seen(&distances);
+        Ok(Picture { device: Some(device), ..picture })
     }
 }
 

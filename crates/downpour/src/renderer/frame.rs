@@ -30,6 +30,8 @@ pub struct Frame {
     pub exposure: f32,
     /// Triangles of the scene, all copies counted.
     pub triangles: usize,
+    /// Time until it was on its way, ms: of a GPU, all that its host does for it in the thread that asked for it.
+    pub begin_ms: f64,
     /// Time from its begin until its picture was at hand, ms; other frames may have been begun meanwhile.
     pub frame_ms: f64,
 }
@@ -39,6 +41,7 @@ pub struct Frame {
 pub struct PendingFrame {
     pub(super) picture: Painted,
     pub(super) begin: Instant,
+    pub(super) begin_ms: f64,
     pub(super) time_s: f64,
     pub(super) triangles: usize,
     pub(super) drops: VisibleDrops,
@@ -62,6 +65,7 @@ impl PendingFrame {
             measured_rate_mm_h: self.measured_rate_mm_h,
             exposure: self.exposure,
             triangles: self.triangles,
+            begin_ms: self.begin_ms,
             frame_ms: self.begin.elapsed().as_secs_f64() * 1.0e3,
         })
     }

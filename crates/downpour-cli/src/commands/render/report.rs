@@ -16,7 +16,7 @@ pub(super) fn stats(frame: &Frame, computer: &Computer, rain: &Rain) -> Value {
     for (name, ms) in &picture.passes {
         passes.insert((*name).to_owned(), number(*ms));
     }
-    json!({
+    let mut stats = json!({
         "adapter": computer.adapter,
         "backend": computer.backend,
         "width": picture.size[0],
@@ -33,9 +33,15 @@ pub(super) fn stats(frame: &Frame, computer: &Computer, rain: &Rain) -> Value {
         "time_s": number(frame.time_s),
         "seed": rain.seed,
         "triangles": frame.triangles,
+        "begin_ms": number(frame.begin_ms),
         "frame_ms": number(frame.frame_ms),
         "passes": Value::Object(passes),
-    })
+    });
+    if let Some(device) = picture.device {
+        stats["bytes_uploaded"] = json!(device.bytes_uploaded);
+        stats["buffers_made"] = json!(device.buffers_made);
+    }
+    stats
 }
 
 /// The text of `--stats`.
@@ -54,15 +60,23 @@ pub(super) struct ClipStats {
 }
 
 /// Keys whose value in a clip is the mean of its frames; `time_s` is that of the first.
-const MEANS: [&str; 5] =
-    ["drops_simulated", "drops_drawn", "drops_on_screen", "measured_rate_mm_h", "frame_ms"];
+const MEANS: [&str; 8] = [
+    "drops_simulated",
+    "drops_drawn",
+    "drops_on_screen",
+    "measured_rate_mm_h",
+    "begin_ms",
+    "frame_ms",
+    "bytes_uploaded",
+    "buffers_made",
+];
 
 /// Statistics of a clip: the keys of a picture, with counts, the measured rate and times as means of the
 /// frames, and `frames` with the statistics of each.
 pub(super) fn clip_stats(frames: &[(u32, &Value)], totals: &ClipStats) -> Value {
     let Some((_, Value::Object(first))) = frames.first() else { return Value::Null };
     let mut clip = first.clone();
-    for key in MEANS {
+    for key in MEANS.into_iter().filter(|key| first.contains_key(*key)) {
         clip.insert(key.to_owned(), mean(frames.iter().map(|(_, frame)| &frame[key])));
     }
     let passes = first.get("passes").and_then(Value::as_object).cloned().unwrap_or_default();
