@@ -51,7 +51,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             "bvh_is_before",
             &BVH,
             &[
-                OneOf(&[0.0, 0.99e-7, 1.01e-7, 0.5, 1.000_000_5, 1.000_003, 1.01, 999.9, 1000.002]),
+                OneOf(&[0.0, 0.99e-7, 1.0e-7, 1.01e-7, 0.5, 1.000_000_5, 1.000_003, 1.01, 999.9, 1000.002]),
                 OneOf(&[0.0, 0.5, 1.0, 1000.0]),
             ],
             Tol::exact("a comparison of numbers that no rounding swaps"),
