@@ -2,7 +2,8 @@
 //!
 //! The hierarchy is built by the surface area heuristic with 16 bins per axis (I. Wald, "On fast construction of
 //! SAH-based bounding volume hierarchies", 2007). The two children of a node are neighbors in memory, so that a ray
-//! meets both with one access; leaves refer to a reordered list of triangles. The build depends on the triangles only, so the same mesh gives the same tree.
+//! meets both with one access; leaves refer to a reordered list of triangles. The build depends on the triangles only, so
+//! the same mesh gives the same tree.
 //!
 //! Twin of the traversal in `shaders/wgsl/bvh/bvh.wgsl`.
 

@@ -43,7 +43,7 @@ pub use pool::{BufferPool, BufferSource};
 pub use readback::{Readback, ReadbackPool};
 pub use sequence::{KernelSequence, SequencePass};
 pub use wgpu;
-pub use workgroups::{invocation_index, workgroups};
+pub use workgroups::{invocation_index, workgroups, workgroups_for};
 
 /// Compiles the examples of the README as doctests.
 #[cfg(doctest)]

@@ -22,6 +22,8 @@ struct Clock {
     queries: wgpu::QuerySet,
     ticks: wgpu::Buffer,
     most: u32,
+    /// Passes that have timestamps.
+    used: u32,
 }
 
 /// Time of a pass.
@@ -61,6 +63,7 @@ impl FramePasses {
                 queries,
                 ticks: gpu.empty_buffer("times of passes", u64::from(16 * most), usage)?,
                 most,
+                used: 0,
             })
         } else {
             None
@@ -69,7 +72,7 @@ impl FramePasses {
     }
 
     /// Notes the time of other work, ms.
-    pub fn note(&mut self, name: &'static str, ms: f64) {
+    fn note(&mut self, name: &'static str, ms: f64) {
         self.times.push((name, PassEnd::Host(ms)));
     }
 
@@ -99,8 +102,8 @@ impl FramePasses {
     }
 
     fn run_parts(&mut self, name: &'static str, parts: &[&[Dispatch<'_>]]) -> Result<(), GpuError> {
-        let used = self.times.iter().filter(|(_, end)| matches!(end, PassEnd::Device(_))).count() as u32;
-        let Some(clock) = self.clock.as_ref().filter(|clock| used < clock.most && !parts.is_empty()) else {
+        let Some(clock) = self.clock.as_mut().filter(|clock| clock.used < clock.most && !parts.is_empty())
+        else {
             let begin = Instant::now();
             for part in parts {
                 self.gpu.submit(part)?;
@@ -109,6 +112,8 @@ impl FramePasses {
             self.note(name, begin.elapsed().as_secs_f64() * 1.0e3);
             return Ok(());
         };
+        let used = clock.used;
+        clock.used += 1;
         for (k, part) in parts.iter().enumerate() {
             let (is_first, is_last) = (k == 0, k + 1 == parts.len());
             let writes = (is_first || is_last).then_some(wgpu::ComputePassTimestampWrites {
@@ -131,12 +136,11 @@ impl FramePasses {
     /// As [`Gpu::create`].
     pub fn end(self) -> Result<(FrameTimes, Option<wgpu::Buffer>), GpuError> {
         let Self { gpu, clock, times } = self;
-        let used = times.iter().filter(|(_, end)| matches!(end, PassEnd::Device(_))).count() as u32;
         let mut ticks = None;
-        if let Some(clock) = clock.filter(|_| used > 0) {
+        if let Some(clock) = clock.filter(|clock| clock.used > 0) {
             let commands = gpu.create("times of passes", 0, |device| {
                 let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                encoder.resolve_query_set(&clock.queries, 0..2 * used, &clock.ticks, 0);
+                encoder.resolve_query_set(&clock.queries, 0..2 * clock.used, &clock.ticks, 0);
                 encoder.finish()
             })?;
             gpu.submit_commands(commands);

@@ -11,6 +11,12 @@ pub fn workgroups(count: u32) -> [u32; 3] {
     [count.min(along), count.div_ceil(along), 1]
 }
 
+/// Dispatch of workgroups of 64 for so many invocations, one workgroup at least: [`invocation_index`] numbers them.
+#[must_use]
+pub fn workgroups_for(invocations: u32) -> [u32; 3] {
+    workgroups(invocations.div_ceil(64).max(1))
+}
+
 /// Number of an invocation among all of a dispatch of rows of workgroups of 64, by its global id and the number of workgroups. Twin
 /// of the function of this name in `shaders/wgsl/common/invocation.wgsl`.
 #[must_use]

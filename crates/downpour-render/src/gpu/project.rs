@@ -3,6 +3,7 @@
 use downpour_drop::oscillation::Fluids;
 use downpour_gpu::{
     BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, KernelSequence, SequencePass, wgpu, workgroups,
+    workgroups_for,
 };
 use downpour_shaders::Kernel;
 use downpour_shaders::render::rain::{
@@ -145,7 +146,7 @@ impl ProjectPipeline {
         let rows = words("positions of drops", room * (1 + project.has_axes), 16)?;
         let uniform = buffers.uniform("project frame", project)?;
         let bound = [&uniform, falling.drops, masks, falling.frequencies, &list, &rows];
-        let by_drop = workgroups(room.div_ceil(64));
+        let by_drop = workgroups_for(room);
         let of_project = (self.project.bind(&self.gpu, &bound)?, by_drop);
 
         let uniform = buffers.uniform("profiles frame", profiles)?;
@@ -161,7 +162,7 @@ impl ProjectPipeline {
             buffers.buffer("groups of jobs", 2 * LIGHT_GROUPS, storage | wgpu::BufferUsages::INDIRECT)?;
         let all =
             [&uniform, &list, &rows, masks, &state, &paths, &jobs[0], &jobs[1], &streaks, &classes, &found];
-        let clear = workgroups((streaks.size() / 16).div_ceil(64) as u32);
+        let clear = workgroups_for((streaks.size() / 16) as u32);
         let of_profiles = self.profiles.bind(&all, &[clear, by_drop, by_drop, [1; 3]])?;
         let made = ListOnGpu {
             count: room,

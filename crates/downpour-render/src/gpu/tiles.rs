@@ -2,6 +2,7 @@
 
 use downpour_gpu::{
     BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, KernelSequence, SequencePass, wgpu, workgroups,
+    workgroups_for,
 };
 use downpour_shaders::Kernel;
 use downpour_shaders::render::rain::{
@@ -74,8 +75,8 @@ impl TilesPipeline {
         let lists = buffers.buffer("tiles of drops", words * 4, storage)?;
         let uniform = buffers.uniform("tiles frame", frame)?;
         let all = [&uniform, drops, &counts, &lists];
-        let by_drop = workgroups(frame.count.div_ceil(64).max(1));
-        let clear = workgroups((counts.size() / 4).div_ceil(64) as u32);
+        let by_drop = workgroups_for(frame.count);
+        let clear = workgroups_for((counts.size() / 4) as u32);
         let passes = self.lists.bind(&all, &[clear, by_drop, by_drop, [1; 3], by_drop, workgroups(tiles)])?;
         // In steps, so that frames of about as many drops have buffers of one size.
         let seen = u64::from(frame.count.max(1).next_multiple_of(SEEN_STEP));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups_for};
 use downpour_shaders::sim::field::{FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_KERNEL};
 use glam::{DVec3, Vec3};
 
@@ -57,11 +57,6 @@ pub struct FieldPass<'a> {
     room: u32,
     resolved: Resolved,
     columns: u32,
-}
-
-/// Workgroups of so many invocations, one at least.
-fn by_invocation(count: u32) -> [u32; 3] {
-    workgroups(count.div_ceil(64).max(1))
 }
 
 impl FieldPipeline {
@@ -122,7 +117,7 @@ impl FieldPipeline {
             let classes = buffers.storage("classes of the field", &query.classes)?;
             let drift = buffers.storage("drift of drops", &query.drift)?;
             let bound = [&uniform, &classes, &on.nodes, &on.thresholds, &drift, &drops, &found];
-            find = Some((self.find.bind(gpu, &bound)?, by_invocation(query.frame.columns)));
+            find = Some((self.find.bind(gpu, &bound)?, workgroups_for(query.frame.columns)));
         }
         let mut shelter = None;
         if let Some(bounds) = obstacles.bounds {
@@ -130,11 +125,11 @@ impl FieldPipeline {
             let uniform = buffers.uniform("shelter frame", &frame)?;
             let drift = buffers.storage("drift of paths", &drift)?;
             let bound = [&uniform, obstacles.nodes, obstacles.triangles, &drops, &drift];
-            shelter = Some((self.shelter.bind(gpu, &bound)?, by_invocation(room)));
+            shelter = Some((self.shelter.bind(gpu, &bound)?, workgroups_for(room)));
         }
         Ok(FieldPass {
             pipeline: self,
-            clear: (clear, by_invocation(places)),
+            clear: (clear, workgroups_for(places)),
             find,
             shelter,
             drops,

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu};
+use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, FramePasses, Gpu, GpuError, wgpu};
 use downpour_shaders::render::scene::{SKYLIGHT_KERNEL, SKYLIGHT_PASSES, TRACE_KERNEL};
 
 use downpour_render::gpu::LightingOnGpu;
@@ -95,11 +95,7 @@ impl ScenePipeline {
     /// As [`ScenePipeline::upload`].
     pub fn picture(&self, scene: &SceneOnGpu, frame: &RenderFrame) -> Result<Vec<[f32; 4]>, GpuError> {
         let pass = self.prepare(&self.gpu, scene, frame)?;
-        for band in pass.dispatches() {
-            self.gpu.submit(&[band])?;
-            // One submission at a time: software drivers queue without end.
-            self.gpu.wait()?;
-        }
+        FramePasses::new(&self.gpu, 1)?.run_each("scene", &pass.dispatches())?;
         self.gpu.read(&pass.picture)
     }
 
