@@ -8,7 +8,7 @@ mod flight;
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::sync::mpsc::{channel, sync_channel};
+use std::sync::mpsc::sync_channel;
 use std::thread;
 
 use downpour::trace::stage::LATEST_S;
@@ -168,11 +168,14 @@ impl Clip<'_> {
         let computer = renderer.computer().clone();
         thread::scope(|scope| {
             // Frames land in the order in which they were begun; a frame waits to take off while too many are in flight.
-            let (begun, landing) = sync_channel::<(u32, Flying<'_>)>(most.saturating_sub(1));
-            let (exposures, exposure) = channel();
+            let (begun, landing) = sync_channel::<(u32, Option<f32>, Flying<'_>)>(most - 1);
             let publish = move || {
-                for (number, flying) in landing {
-                    if let Ok(exposure) = exposure.try_recv() {
+                for (number, exposure, flying) in landing {
+                    // All frames have the exposure of the first one. Linear radiance is not exposed.
+                    if let Some(exposure) = exposure
+                        && self.paths.format == Format::Png
+                        && journal.exposure().is_none()
+                    {
                         journal.expose(exposure, self.interrupt)?;
                     }
                     self.publish(number, flying.land()?, journal)?;
@@ -180,7 +183,6 @@ impl Clip<'_> {
                 }
                 Ok::<_, Failure>(())
             };
-            let mut exposed = self.paths.format != Format::Png || renderer.exposure().is_some();
             let publisher = thread::Builder::new().name("publisher".to_owned()).spawn_scoped(scope, publish);
             let publisher = publisher.map_err(|error| Failure::new(LIMIT, format!("a thread: {error}")))?;
             let mut stopped = None;
@@ -198,13 +200,10 @@ impl Clip<'_> {
                 match frame {
                     Ok(None) => {}
                     Ok(Some(frame)) => {
-                        if let Some(exposure) = renderer.exposure().filter(|_| !exposed) {
-                            exposed = exposures.send(exposure).is_ok();
-                        }
                         let computer = &computer;
                         let flying = take_off(scope, frame, move |frame| self.encode(frame, computer));
                         // It ends only when the publisher has failed.
-                        if begun.send((number, flying)).is_err() {
+                        if begun.send((number, renderer.exposure(), flying)).is_err() {
                             break;
                         }
                     }
