@@ -190,9 +190,11 @@ pub(crate) fn wet_surface(dry: &Surface, wetness: f32, along: Vec3, relief: &Wet
     let patchy = dry.porosity * WET_PATCH * (4.0 * filled).min(1.0);
     let film = (level - relief.height * patchy).clamp(0.0, 1.0);
     let reflectance = wet_reflectance(dry.normal_reflectance);
-    // A metal shines as it is through the film.
+    // Of a narrow lobe and a wide one the narrow one is seen. A metal shines as it is through the film.
     let strongest = dry.normal_reflectance.max_element();
-    let coated = film * (1.0 - ((strongest - WET_DIELECTRIC) / (WET_METAL - WET_DIELECTRIC)).clamp(0.0, 1.0));
+    let bare = (1.0 - film) * (1.0 - film) * (1.0 - film);
+    let coated =
+        (1.0 - bare) * (1.0 - ((strongest - WET_DIELECTRIC) / (WET_METAL - WET_DIELECTRIC)).clamp(0.0, 1.0));
     let smooth_alpha = WET_SMOOTH_ALPHA + (WET_POROUS_ALPHA - WET_SMOOTH_ALPHA) * dry.porosity;
     let coat = (smooth_alpha * smooth_alpha + relief.variance * dry.porosity).sqrt();
     let alpha = dry.roughness * dry.roughness;
@@ -209,7 +211,7 @@ pub(crate) fn wet_surface(dry: &Surface, wetness: f32, along: Vec3, relief: &Wet
         diffuse: dry.diffuse + (puddle_water_albedo(dry.diffuse) - dry.diffuse) * soaked,
         normal_reflectance: dry.normal_reflectance + (reflectance - dry.normal_reflectance) * film,
         roughness: (alpha + (coat.min(alpha) - alpha) * coated).sqrt(),
-        film,
+        film: 1.0 - bare,
         normal,
         ..*dry
     }

@@ -14,7 +14,7 @@ shared_constants! {
         /// Rows of the table before those of the coat's reflectance.
         WET_HEAD_ROWS: u32 = 3;
         /// Steps of the roughness in the table of the coat's reflectance.
-        WET_COAT_STEPS: u32 = 8;
+        WET_COAT_STEPS: u32 = 16;
         /// Cosines per roughness, two in a row: the squares of even steps.
         WET_COAT_COSINES: u32 = 32;
         /// Rows per roughness: cosines, then the mean.

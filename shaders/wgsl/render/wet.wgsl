@@ -132,14 +132,15 @@ fn wet_surface(dry: Surface, wetness: f32, along: vec3f, relief: WetRelief) -> S
     surface.diffuse = dry.diffuse + (puddle_water_albedo(dry.diffuse) - dry.diffuse) * soaked;
     let reflectance = wet_reflectance(dry.normal_reflectance);
     surface.normal_reflectance = dry.normal_reflectance + (reflectance - dry.normal_reflectance) * film;
-    // A metal shines as it is through the film.
+    // Of a narrow lobe and a wide one the narrow one is seen. A metal shines as it is through the film.
     let strongest = max(dry.normal_reflectance.x, max(dry.normal_reflectance.y, dry.normal_reflectance.z));
-    let coated = film * (1.0 - clamp((strongest - WET_DIELECTRIC) / (WET_METAL - WET_DIELECTRIC), 0.0, 1.0));
+    let bare = (1.0 - film) * (1.0 - film) * (1.0 - film);
+    let coated = (1.0 - bare) * (1.0 - clamp((strongest - WET_DIELECTRIC) / (WET_METAL - WET_DIELECTRIC), 0.0, 1.0));
     let smooth_alpha = WET_SMOOTH_ALPHA + (WET_POROUS_ALPHA - WET_SMOOTH_ALPHA) * dry.porosity;
     let coat = sqrt(smooth_alpha * smooth_alpha + relief.variance * dry.porosity);
     let alpha = dry.roughness * dry.roughness;
     surface.roughness = sqrt(alpha + (min(coat, alpha) - alpha) * coated);
-    surface.film = film;
+    surface.film = 1.0 - bare;
     // The film's own relief, along the surface.
     let across = relief.slope - dry.normal * dot(relief.slope, dry.normal);
     var normal = dry.normal - across * (film * dry.porosity);
