@@ -76,6 +76,8 @@ shared_constants! {
         SKYLIGHT_SLACK: f32 = 0.002;
         /// Half the square of the angle, in alphas, at which a neighbor's gloss no longer counts.
         SKYLIGHT_LOBE: f32 = 2.0;
+        /// Difference of two roughnesses, over the larger, from which glosses are not the same in a wet scene.
+        SKYLIGHT_FILM: f32 = 0.35;
         /// Pixels between the means of which the first wider mean is taken: as far as the weights of a window reach, so that
         /// they add up to the same everywhere.
         SKYLIGHT_STEP: u32 = 4;
