@@ -95,6 +95,6 @@ mod tests {
             serde_json::from_str(r#"{"extras": {"a": 1e300, "porosity": 0.5}, "b": {"extras": [1e300]}}"#)
                 .unwrap();
         settle(&mut value).unwrap();
-        assert_eq!(value.to_string(), r#"{"b":{},"extras":{"porosity":0.5}}"#);
+        assert_eq!(value.to_string(), r#"{"extras":{"porosity":0.5},"b":{}}"#);
     }
 }
