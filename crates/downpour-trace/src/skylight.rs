@@ -10,7 +10,8 @@
 //! as it mirrors the same direction, within the lobe.
 
 use downpour_shaders::render::scene::{
-    SKYLIGHT_FILM, SKYLIGHT_LOBE, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
+    SKYLIGHT_FILM, SKYLIGHT_FILM_EDGE, SKYLIGHT_LOBE, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS,
+    SKYLIGHT_STEP,
 };
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -54,7 +55,8 @@ pub fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
 /// Agreement of the roughness of two glosses, 0 to 1: a film and the dry surface beside it mirror different things.
 #[must_use]
 pub fn skylight_film(own: f32, other: f32) -> f32 {
-    (1.0 - (own - other).abs() / (SKYLIGHT_FILM * own.max(other)).max(1.0e-6)).max(0.0)
+    let apart = (own - other).abs() / own.max(other).max(1.0e-6);
+    ((SKYLIGHT_FILM - apart) / SKYLIGHT_FILM_EDGE).clamp(0.0, 1.0)
 }
 
 /// Weight of another pixel in the mean of a pixel: the degree to which both show one surface, 0 to 1. `wet`: of a scene that the rain

@@ -77,7 +77,9 @@ shared_constants! {
         /// Half the square of the angle, in alphas, at which a neighbor's gloss no longer counts.
         SKYLIGHT_LOBE: f32 = 2.0;
         /// Difference of two roughnesses, over the larger, from which glosses are not the same in a wet scene.
-        SKYLIGHT_FILM: f32 = 0.35;
+        SKYLIGHT_FILM: f32 = 0.6;
+        /// Part of that difference over which they cease to be.
+        SKYLIGHT_FILM_EDGE: f32 = 0.2;
         /// Pixels between the means of which the first wider mean is taken: as far as the weights of a window reach, so that
         /// they add up to the same everywhere.
         SKYLIGHT_STEP: u32 = 4;

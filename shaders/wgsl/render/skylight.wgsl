@@ -56,7 +56,8 @@ fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
 
 // Agreement of the roughness of two glosses, 0 to 1: a film and the dry surface beside it mirror different things.
 fn skylight_film(own: f32, other: f32) -> f32 {
-    return max(1.0 - abs(own - other) / max(SKYLIGHT_FILM * max(own, other), 1.0e-6), 0.0);
+    let apart = abs(own - other) / max(max(own, other), 1.0e-6);
+    return clamp((SKYLIGHT_FILM - apart) / SKYLIGHT_FILM_EDGE, 0.0, 1.0);
 }
 
 // Degree to which two pixels show the same surface, 0 to 1.
