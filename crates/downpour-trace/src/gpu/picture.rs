@@ -353,7 +353,9 @@ fn check_turns(frame: &RenderFrame) -> Result<(), GpuError> {
     let [grid, sky, lights] = [frame.grid, frame.sky_rays, frame.light_count].map(u64::from);
     // Water adds what it mirrors, lit by a lamp each.
     let mirrored = if frame.puddle_count > 0 { 2 * sky.max(u64::from(PUDDLE_WATER_RAYS)) } else { 0 };
-    let rays = 1 + lights + 2 * sky + mirrored;
+    // On what is wet, each surface asks whether the rain reaches it.
+    let exposed = if frame.wetness > 0 { 2 + 2 * sky + mirrored } else { 0 };
+    let rays = 1 + lights + 2 * sky + mirrored + exposed;
     let needed = grid * grid * (rays * TURNS_PER_RAY + 2 * lights * (1 + sky));
     if needed <= MAX_LOOP_ITERATIONS {
         return Ok(());
