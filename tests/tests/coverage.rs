@@ -64,7 +64,8 @@ fn names_carry_their_stem() {
         for line in module.wgsl.lines() {
             let Some(rest) = line.strip_prefix("fn ") else { continue };
             let name = rest.split('(').next().unwrap_or_default();
-            let fits = name.starts_with(&format!("{stem}_"))
+            let fits = name == stem
+                || name.starts_with(&format!("{stem}_"))
                 || name.starts_with(&format!("{folder}_{stem}_"))
                 || name == format!("main_{stem}")
                 || name.starts_with(&format!("main_{stem}_"))

@@ -53,6 +53,15 @@ pub struct BvhTriangle {
     pub padding_2: u32,
 }
 
+impl BvhTriangle {
+    /// The three corners.
+    #[must_use]
+    pub fn corners(&self) -> [[f32; 3]; 3] {
+        let to = |edge: [f32; 3]| std::array::from_fn(|k| self.corner[k] + edge[k]);
+        [self.corner, to(self.edge_1), to(self.edge_2)]
+    }
+}
+
 /// Intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
@@ -75,7 +84,7 @@ pub struct Bvh {
     pub triangles: Vec<BvhTriangle>,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 struct Bounds {
     low: [f32; 3],
     high: [f32; 3],
@@ -93,6 +102,13 @@ impl Bounds {
 
     fn union(self, other: Self) -> Self {
         self.with(other.low).with(other.high)
+    }
+
+    /// What two boxes share, which may be flat.
+    fn common(self, other: &Self) -> Option<Self> {
+        let low: [f32; 3] = std::array::from_fn(|k| self.low[k].max(other.low[k]));
+        let high: [f32; 3] = std::array::from_fn(|k| self.high[k].min(other.high[k]));
+        (0..3).all(|k| low[k] <= high[k]).then_some(Self { low, high })
     }
 
     /// Half of the surface area; 0 for an empty box.
@@ -210,6 +226,42 @@ pub fn bvh_nearest(
             }
         }
     }
+}
+
+/// Corners, the lower first, of a box that holds all of the triangles that lies in the box between `low` and `high`, and itself lies in
+/// it; `None` if that is nothing.
+#[must_use]
+pub fn bvh_bounds_within(
+    nodes: &[BvhNode],
+    triangles: &[BvhTriangle],
+    low: [f32; 3],
+    high: [f32; 3],
+) -> Option<[[f32; 3]; 2]> {
+    let whole = Bounds { low, high };
+    let mut found = Bounds::NONE;
+    let mut stack = vec![0];
+    while let Some(index) = stack.pop() {
+        let Some(node) = nodes.get(index) else { continue };
+        let bounds = Bounds { low: node.low, high: node.high };
+        let Some(common) = bounds.common(&whole) else { continue };
+        if found.common(&common) == Some(common) {
+            continue;
+        }
+        if node.count == 0 && common == bounds {
+            found = found.union(bounds);
+        } else if node.count == 0 {
+            stack.extend([node.link as usize, node.link as usize + 1]);
+        } else {
+            for triangle in &triangles[node.link as usize..(node.link + node.count) as usize] {
+                let [a, b, c] = triangle.corners();
+                let bounds = Bounds::NONE.with(a).with(b).with(c);
+                if let Some(common) = bounds.common(&whole) {
+                    found = found.union(common);
+                }
+            }
+        }
+    }
+    found.low[0].is_finite().then_some([found.low, found.high])
 }
 
 /// Inverse of a direction, without infinities: a zero component is replaced by a tiny one.
@@ -419,6 +471,42 @@ mod tests {
         assert_eq!(parents[..2], [0, 0]);
         assert!(parents[2..].iter().all(|&n| n == 1));
         assert_eq!(Bvh::new(&soup(3)).nodes.len(), 1);
+    }
+
+    /// The bounds of what lies in a box hold the parts of all triangles in it, and are not larger than those of their own bounds.
+    #[test]
+    fn bounds_within_a_box_hold_what_is_in_it() {
+        let bvh = Bvh::new(&soup(800));
+        let mut empty = 0;
+        for i in 0..400 {
+            let a = rng_draw([7, 8], i, 0, 0).map(rng_unit);
+            let b = rng_draw([7, 8], i, 1, 0).map(rng_unit);
+            let low: [f32; 3] = std::array::from_fn(|k| a[k] * 5.0 - 0.5);
+            let high: [f32; 3] = std::array::from_fn(|k| low[k] + b[k] * b[k]);
+            let found = bvh_bounds_within(&bvh.nodes, &bvh.triangles, low, high);
+            let mut expected = Bounds::NONE;
+            for corners in bvh.triangles.iter().map(BvhTriangle::corners) {
+                let whole: [[f32; 2]; 3] = std::array::from_fn(|k| {
+                    let along = corners.map(|corner| corner[k]);
+                    let (first, last) =
+                        (along.iter().copied().reduce(f32::min), along.iter().copied().reduce(f32::max));
+                    [first.unwrap().max(low[k]), last.unwrap().min(high[k])]
+                });
+                if whole.iter().all(|[low, high]| low <= high) {
+                    expected = expected.with(whole.map(|x| x[0])).with(whole.map(|x| x[1]));
+                }
+            }
+            empty += u32::from(found.is_none());
+            assert_eq!(found.is_some(), expected.low[0].is_finite(), "box {i}");
+            for (found, expected) in found.iter().flatten().zip([expected.low, expected.high]) {
+                assert!(
+                    (0..3).all(|k| (found[k] - expected[k]).abs() < 1.0e-5),
+                    "box {i}: {found:?} {expected:?}"
+                );
+            }
+        }
+        assert!((20..380).contains(&empty), "{empty} empty boxes");
+        assert_eq!(bvh_bounds_within(&Bvh::new(&[]).nodes, &[], [-1.0; 3], [1.0; 3]), None);
     }
 
     /// Large triangles among small ones, as in a scene, do not end in large leaves.

@@ -322,17 +322,17 @@ impl RainField {
 
     /// Collects the results of `make` for the drops of a class within bounds at a time; `make` also gets their
     /// terminal speeds.
-    pub(crate) fn gathered<T: Send>(
+    pub(crate) fn gathered<T>(
         &self,
         class: &Class,
         bounds: &Bounds,
         time_s: f64,
         drift: &Drift,
-        make: impl Fn(&FallingDrop, f64) -> Option<T> + Sync,
+        make: impl Fn(&FallingDrop, f64) -> Option<T>,
     ) -> Vec<T> {
         let [xs, zs] = class.columns(bounds, drift);
-        let of_row = |ix: i64| {
-            let mut made = Vec::new();
+        let mut made = Vec::new();
+        for ix in xs {
             for iz in zs.clone() {
                 self.drops_of_column(class, [ix, iz], bounds, time_s, drift, |drop, speed| {
                     let at = drop.position;
@@ -341,10 +341,8 @@ impl RainField {
                     }
                 });
             }
-            made
-        };
-        let rows: Vec<Vec<T>> = xs.into_par_iter().map(of_row).collect();
-        rows.into_iter().flatten().collect()
+        }
+        made
     }
 
     /// Passes on the drops of a column whose height is within the bounds, with their terminal speeds.

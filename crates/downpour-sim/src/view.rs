@@ -76,6 +76,19 @@ pub(crate) struct Bounds {
     pub(crate) high: DVec3,
 }
 
+impl Bounds {
+    /// Box that holds two boxes.
+    pub(crate) fn union(&self, other: &Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Box that two boxes share; `None` if that has no volume.
+    pub(crate) fn common(&self, other: &Self) -> Option<Self> {
+        let (low, high) = (self.low.max(other.low), self.high.min(other.high));
+        low.cmplt(high).all().then_some(Self { low, high })
+    }
+}
+
 impl View {
     /// # Errors
     /// [`SimError::OutOfRange`] if a number is not finite or the view is degenerate.

@@ -6,6 +6,7 @@ use downpour_bvh::Bvh;
 use downpour_drop::air::Air;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_drop::fall_speed::{FallSpeedModel, terminal_speed};
+use downpour_math::rng::{rng_draw, rng_unit};
 use downpour_sim::field::{DropKind, FallingDrop, RainField};
 use downpour_sim::impacts::Impact;
 use downpour_sim::shelter::Obstacles;
@@ -292,4 +293,83 @@ fn what_is_out_of_range_is_refused() {
     let nothing = Obstacles { nodes: &[], triangles: &[], holes: None, origin: DVec3::ZERO };
     let impacts = rain.impacts(&nothing, DVec3::ZERO, DVec3::ONE, [0.0, 1.0], 0.0);
     assert!(impacts.expect("in range").is_empty());
+}
+
+/// Ground, and slanted and upright triangles all about.
+fn rubble() -> Bvh {
+    let mut corners =
+        quad([[-20.0, 0.0, -20.0], [-20.0, 0.0, 20.0], [20.0, 0.0, 20.0], [20.0, 0.0, -20.0]]).to_vec();
+    for k in 0..120u32 {
+        let [x, y, z, turn] = rng_draw([3, 4], k, 0, 0).map(rng_unit);
+        let at = Vec3::new(10.0 * x - 5.0, 6.0 * y, 10.0 * z - 5.0);
+        let (a, b) = (Vec3::new(turn - 0.5, 0.8 * x, 0.6 - y), Vec3::new(0.7 * z, 1.2 - y, turn));
+        corners.push([at, at + a, at + b].map(Vec3::into));
+    }
+    Bvh::new(&corners)
+}
+
+/// The impacts of a box are those of its halves, its quarters and so on: also where what is hit crosses their sides.
+#[test]
+fn a_box_has_the_impacts_of_its_parts() {
+    let bvh = rubble();
+    let field = rain(gusty());
+    let (low, high) = (DVec3::new(-4.3, -0.2, -4.7), DVec3::new(4.9, 6.8, 4.1));
+    let found = |low, high| {
+        let impacts = field.impacts(&obstacles(&bvh), low, high, [3.0, 3.6], 0.4e-3).expect("in range");
+        impacts.iter().map(|impact| impact.id).collect::<Vec<u64>>()
+    };
+    let mut whole = found(low, high);
+    let mut parts = Vec::new();
+    let [xs, ys, zs] = [0, 1, 2].map(|k| {
+        let cut = |share: f64| low[k] + (high[k] - low[k]) * share;
+        [[low[k], cut(0.31)], [cut(0.31), cut(0.77)], [cut(0.77), high[k]]]
+    });
+    for x in xs {
+        for y in ys {
+            for z in zs {
+                parts.extend(found(DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1])));
+            }
+        }
+    }
+    whole.sort_unstable();
+    parts.sort_unstable();
+    assert!(whole.len() > 3000, "{}", whole.len());
+    assert_eq!(whole, parts);
+}
+
+/// What a narrow picture shows of droplets is what a wide one shows there.
+#[test]
+fn a_narrow_picture_has_the_droplets_of_a_wide_one() {
+    let bvh = rubble();
+    let field = rain(gusty());
+    let bounce = Bounce { fraction: 1.0, size: 0.5, ..Bounce::default() };
+    let wide = View {
+        eye: DVec3::new(0.4, 1.1, 6.5),
+        half_width: 1.5,
+        half_height: 1.5,
+        far: 4.0,
+        shutter_s: 0.02,
+        ..View::default()
+    };
+    let narrow = View { half_width: 0.4, half_height: 0.2, ..wide };
+    let of = |view: &View| -> BTreeMap<u64, FallingDrop> {
+        let drops = field.bounced(&obstacles(&bvh), view, 0.2, 7.3, &bounce).expect("in range");
+        drops.into_iter().map(|drop| (drop.id, drop)).collect()
+    };
+    let (wide_drops, narrow_drops) = (of(&wide), of(&narrow));
+    assert!(narrow_drops.iter().all(|(id, drop)| wide_drops.get(id) == Some(drop)));
+    // Those whose middles are inside.
+    let inside = |drop: &&FallingDrop| {
+        let at = drop.position - wide.eye;
+        let (x, y, z) = (at.dot(wide.right), at.dot(wide.up), at.dot(wide.forward));
+        z > 0.0 && x.abs() < narrow.half_width * z && y.abs() < narrow.half_height * z
+    };
+    let expected: Vec<&FallingDrop> = wide_drops.values().filter(inside).collect();
+    assert!(
+        expected.len() > 100 && expected.len() * 2 < wide_drops.len(),
+        "{} of {}",
+        expected.len(),
+        wide_drops.len()
+    );
+    assert!(expected.iter().all(|drop| narrow_drops.contains_key(&drop.id)));
 }

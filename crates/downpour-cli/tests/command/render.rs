@@ -123,9 +123,17 @@ fn layers_add_up_to_the_picture() {
     assert!(most > 0.5 && most < 1.0, "{most}");
     let touched = through.iter().filter(|t| **t < most - 0.01).count();
     assert!(touched > 20 && touched < through.len() * 9 / 10, "{touched} pixels with drops");
-    let other_sky = storm(&["render", "--layers", "--rate", "0", "-o", "rain.exr"]).run().succeeded();
-    let dry = channels(&other_sky.file("rain.exr"));
-    assert_eq!(dry["clean.G"], layers["clean.G"], "the scene behind does not depend on the rain");
+    let shown = |rate: &str, keys: &str| {
+        let run = storm(&["render", "--layers", "--rate", rate, "-o", "rain.exr"]);
+        channels(&run.with_file("storm.toml", weather(keys)).run().succeeded().file("rain.exr"))
+    };
+    let dry = shown("0", "");
+    let kept_dry = shown("100", "[wetness]\nenabled = false\n");
+    assert!(
+        dry["clean.G"] == kept_dry["clean.G"],
+        "the scene behind does not depend on the rain but for its wetness"
+    );
+    assert!(dry["clean.G"] != layers["clean.G"], "the ground is wet");
     // Left of the tetrahedron, in the last row, the ray hits the floor.
     let depth = &layers["depth.Z"];
     let [width, height] = SIZE.map(|edge| edge as usize);

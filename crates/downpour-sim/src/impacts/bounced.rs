@@ -1,0 +1,246 @@
+//! Droplets that rebound from impacts.
+
+use downpour_drop::fall_speed::relaxation;
+use downpour_math::ops::f64 as ops;
+use downpour_math::rng::{rng_draw, rng_unit};
+use downpour_shaders::sim::step::{STEP_CLEAR, VOLUME_RADIUS};
+use glam::DVec3;
+
+use super::{Impact, MAX_SPAN_S, Surfaces};
+use crate::SimError;
+use crate::drift::Drift;
+use crate::falling::{DropKind, FallingDrop};
+use crate::field::{Class, RainField, check_time};
+use crate::motion::motion_bounce;
+use crate::options::Bounce;
+use crate::shelter::{Obstacles, met};
+use crate::view::{Bounds, View, within};
+
+/// Interval at which the path of a droplet is divided, s.
+const FINE_S: f64 = 1.0 / 60.0;
+
+/// Approximate span of time in which impacts of droplets are searched at once, s.
+const SLICE_S: f64 = 1.0;
+
+/// Dimension of the random numbers of rebounds.
+const CHANCE: u32 = 8203;
+
+/// Difference between the id of a drop and that of its droplet.
+const DROPLET: u64 = 0x9e37_79b9_7f4a_7c15;
+
+impl RainField {
+    /// Droplets that rebound from impacts, as a picture shows them at a time in seconds.
+    ///
+    /// The rebound of an impact is random, the same for any picture. A droplet starts at the impact with the remaining
+    /// velocity, follows the wind according to its size, and is gone when it hits a surface or after its maximum time.
+    ///
+    /// # Errors
+    /// [`SimError::OutOfRange`] for an invalid view, or a time beyond [`MAX_TIME_S`](crate::field::MAX_TIME_S).
+    pub fn bounced(
+        &self,
+        obstacles: &Obstacles<'_>,
+        view: &View,
+        least_pixels: f64,
+        time_s: f64,
+        bounce: &Bounce,
+    ) -> Result<Vec<FallingDrop>, SimError> {
+        view.check()?;
+        check_time(time_s)?;
+        if bounce.fraction <= 0.0 {
+            return Ok(Vec::new());
+        }
+        let half = 0.5 * view.shutter_s;
+        let longest = f64::from(bounce.max_time_s).min(MAX_SPAN_S - view.shutter_s);
+        let sent_up = |id: u64| {
+            let [chance, ..] = rng_draw([id as u32, (id >> 32) as u32], 0, 0, CHANCE).map(rng_unit);
+            chance < bounce.fraction
+        };
+        let sides = view.sides();
+        let swept_sides = view.swept_sides();
+        // In slices of time: within one, the wind has displaced all droplets similarly.
+        let span = longest + view.shutter_s;
+        let slices = (span / SLICE_S).ceil().max(1.0);
+        let surfaces = Surfaces::new(obstacles);
+        let mut impacts = Vec::new();
+        for slice in 0..slices as u32 {
+            let ages = [slice, slice + 1].map(|k| f64::from(k) * span / slices - half);
+            let travels = Travels::new(self, time_s, ages);
+            let origins = |class: &Class| {
+                let origins = travels.origins(self, class, view, least_pixels, bounce)?;
+                Some((origins.bounds, move |place: &Bounds| origins.may_be_in(place, view, &swept_sides)))
+            };
+            let span = [time_s - ages[1], time_s - ages[0]];
+            impacts.extend(self.impacts_of(&surfaces, span, origins, sent_up)?);
+        }
+        let shown = impacts.iter().filter_map(|impact| {
+            let droplet = Droplet::of(self, impact, bounce)?;
+            let age = time_s - impact.time_s;
+            // A droplet that starts later in the exposure is listed as if it had always moved.
+            let (position, velocity) = if age > 0.0 {
+                droplet.at(age)
+            } else {
+                (droplet.start + droplet.leaves * age, droplet.leaves)
+            };
+            let range = view.range(droplet.diameter, least_pixels);
+            let radius = f64::from(VOLUME_RADIUS) * droplet.diameter;
+            let part = [-age, longest - age];
+            if part[1] < -half || !view.shows(&sides, position, velocity, radius, range, part) {
+                return None;
+            }
+            let stopped = droplet.stopped(obstacles, (age + half).min(longest)).map(|after| after - age);
+            let until = stopped.unwrap_or(longest - age);
+            let mut drop = FallingDrop {
+                position,
+                velocity: velocity.as_vec3().to_array(),
+                diameter: droplet.diameter as f32,
+                id: impact.id ^ DROPLET,
+                kind: DropKind::Bounced,
+                present_s: [-age, until].map(|time| time as f32),
+            };
+            drop.position += velocity * f64::from(drop.seen_s());
+            (until > -half).then_some(drop)
+        });
+        Ok(shown.collect())
+    }
+}
+
+/// Displacement of droplets of some age.
+struct Travels {
+    /// Ages, s, the smaller not below 0.
+    ages: [f64; 2],
+    /// Drift of drops up to the picture's time, and up to the start of the oldest and the youngest.
+    drifts: [Drift; 3],
+}
+
+impl Travels {
+    fn new(field: &RainField, time_s: f64, ages: [f64; 2]) -> Self {
+        let ages = ages.map(|age| age.max(0.0));
+        let at = |age: f64| Drift::new(&field.wind, time_s - age);
+        Self { ages, drifts: [at(0.0), at(ages[1]), at(ages[0])] }
+    }
+
+    /// Origins of droplets that a picture shows, of the drops of a class.
+    fn origins(
+        &self,
+        field: &RainField,
+        class: &Class,
+        view: &View,
+        least_pixels: f64,
+        bounce: &Bounce,
+    ) -> Option<Origins> {
+        let size = f64::from(bounce.size);
+        let range = view.range(class.largest * size, least_pixels);
+        if range < view.near {
+            return None;
+        }
+        let speeds = [class.speeds[0] * 0.2 * size, field.speed.at(class.largest * size).unwrap_or(0.0)];
+        let [now, oldest, youngest] = &self.drifts;
+        // Displacement by the wind of a drop that has always followed it.
+        let carried = speeds
+            .iter()
+            .flat_map(|&speed| [oldest, youngest].map(|then| now.of(speed)[0] - then.of(speed)[0]));
+        let (low, high) = carried
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), way| (low.min(way), high.max(way)));
+        // The rebounding part of the drop's velocity, and the initial slip of a drop of another size.
+        let wind = oldest.of(class.speeds[1])[1].length().max(now.of(class.speeds[1])[1].length());
+        let leaves = f64::from(bounce.restitution.max(1.0 - bounce.grip)) * (class.speeds[1] + wind) + wind;
+        let slowed = relaxation(speeds[1]).horizontal_s;
+        let own = leaves * slowed.min(self.ages[1]);
+        let margin = 0.5 * view.shutter_s * (leaves + wind) + class.largest;
+        let seen = view.bounds(range, margin);
+        let way = Bounds {
+            low: low - DVec3::splat(own) - DVec3::Y * (speeds[1] * self.ages[1]),
+            high: high + DVec3::splat(own),
+        };
+        let bounds = Bounds { low: seen.low - way.high, high: seen.high - way.low };
+        Some(Origins { bounds, way, range, margin })
+    }
+}
+
+/// Where the droplets of a class that a picture shows come from.
+struct Origins {
+    bounds: Bounds,
+    /// Bounds of the droplets' ways.
+    way: Bounds,
+    /// Maximum distance from the eye, m.
+    range: f64,
+    /// Distance, m, that a droplet moves in half the exposure.
+    margin: f64,
+}
+
+impl Origins {
+    /// False if no droplet that starts in a box gets into the picture's pyramid, given by its sides.
+    fn may_be_in(&self, place: &Bounds, view: &View, sides: &[DVec3; 5]) -> bool {
+        let (low, high) = (place.low + self.way.low, place.high + self.way.high);
+        let radius = 0.5 * (high - low).length() + self.margin;
+        let offset = low.midpoint(high) - view.eye;
+        offset.length() - radius <= self.range && within(sides, offset, radius)
+    }
+}
+
+/// A droplet after its rebound.
+struct Droplet<'a> {
+    field: &'a RainField,
+    start: DVec3,
+    /// Initial velocity, m/s.
+    leaves: DVec3,
+    diameter: f64,
+    speed: f64,
+    begin_s: f64,
+    /// State at the start of a droplet that has always followed the wind: displacement of the air and velocity.
+    follows: [DVec3; 2],
+}
+
+impl<'a> Droplet<'a> {
+    fn of(field: &'a RainField, impact: &Impact, bounce: &Bounce) -> Option<Self> {
+        let leaves =
+            motion_bounce(impact.velocity, impact.normal, bounce.restitution, bounce.grip).as_dvec3();
+        let diameter = f64::from(impact.diameter) * f64::from(bounce.size);
+        let speed = field.speed.at(diameter).ok()?;
+        let start = impact.position + impact.normal.as_dvec3() * f64::from(STEP_CLEAR);
+        let begin_s = impact.time_s;
+        let mut droplet = Self { field, start, leaves, diameter, speed, begin_s, follows: [DVec3::ZERO; 2] };
+        droplet.follows = droplet.followed(0.0);
+        Some(droplet)
+    }
+
+    /// Motion, up to an age after the impact, of a drop of its size that has always followed the wind.
+    fn followed(&self, age_s: f64) -> [DVec3; 2] {
+        let at = self.field.wind.prepared(self.begin_s + age_s);
+        let relaxation = relaxation(self.speed);
+        let across = at.followed(relaxation.horizontal_s);
+        let along = at.followed(relaxation.vertical_s);
+        let joined = |a: DVec3, b: DVec3| DVec3::new(a.x, b.y, a.z);
+        let fall = DVec3::Y * self.speed;
+        [
+            joined(across.displacement, along.displacement) - fall * age_s,
+            joined(across.velocity, along.velocity) - fall,
+        ]
+    }
+
+    /// Position and velocity at an age: the initial slip decays, along the fall twice as fast as across it.
+    fn at(&self, age_s: f64) -> (DVec3, DVec3) {
+        let relaxation = relaxation(self.speed);
+        let times = DVec3::new(relaxation.horizontal_s, relaxation.vertical_s, relaxation.horizontal_s)
+            .max(DVec3::splat(1.0e-9));
+        let left = DVec3::from_array((-age_s / times).to_array().map(ops::exp));
+        let slip = self.leaves - self.follows[1];
+        let [carried, velocity] = self.followed(age_s);
+        (self.start + carried - self.follows[0] + slip * times * (1.0 - left), velocity + slip * left)
+    }
+
+    /// Age at which it hits something, up to an age.
+    fn stopped(&self, obstacles: &Obstacles<'_>, age_s: f64) -> Option<f64> {
+        let steps = (age_s / FINE_S).ceil().max(0.0) as u32;
+        let mut from = self.start - obstacles.origin;
+        for step in 1..=steps {
+            let to = self.at(f64::from(step) * FINE_S).0 - obstacles.origin;
+            let velocity = ((to - from) / FINE_S).as_vec3();
+            if let Some(hit) = met(obstacles, from.as_vec3(), velocity, FINE_S as f32) {
+                return Some(f64::from(step - 1) * FINE_S + f64::from(hit.distance));
+            }
+            from = to;
+        }
+        None
+    }
+}
