@@ -71,14 +71,16 @@ fn bvh_inverse(direction: vec3f) -> vec3f {
     return vec3f(1.0) / steep;
 }
 
+// Nodes that are still to be visited, and where the ray enters them. Of the invocation: a variable of the function would be filled with
+// zeros for each ray.
+var<private> bvh_stack: array<u32, BVH_STACK>;
+var<private> bvh_enters: array<f32, BVH_STACK>;
+
 // Nearest hit along the ray that is farther than `nearest` and nearer than `farthest`.
 fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhHit {
     let inverse = bvh_inverse(direction);
     var best = BvhHit(-1.0, 0u, 0.0, 0.0);
     var limit = farthest;
-    // Nodes to be visited, and where the ray enters them.
-    var stack: array<u32, BVH_STACK>;
-    var enters: array<f32, BVH_STACK>;
     var depth = 0u;
     var link = bvh_nodes[0].link;
     var count = bvh_nodes[0].count;
@@ -96,8 +98,8 @@ fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhH
             let swap = to_right < to_left;
             if min(to_left, to_right) < BVH_FAR {
                 if max(to_left, to_right) < BVH_FAR {
-                    stack[depth] = link + select(1u, 0u, swap);
-                    enters[depth] = max(to_left, to_right);
+                    bvh_stack[depth] = link + select(1u, 0u, swap);
+                    bvh_enters[depth] = max(to_left, to_right);
                     depth += 1u;
                 }
                 link = select(left.link, right.link, swap);
@@ -118,13 +120,13 @@ fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhH
         var found = false;
         while depth > 0u && !found {
             depth -= 1u;
-            found = bvh_is_before(enters[depth], limit);
+            found = bvh_is_before(bvh_enters[depth], limit);
         }
         if !found {
             break;
         }
-        link = bvh_nodes[stack[depth]].link;
-        count = bvh_nodes[stack[depth]].count;
+        link = bvh_nodes[bvh_stack[depth]].link;
+        count = bvh_nodes[bvh_stack[depth]].count;
     }
     return best;
 }
