@@ -11,7 +11,7 @@ use downpour_street::{Street, StreetSettings, puddle_mask, textures};
 use crate::run;
 
 /// The most bytes that the street may take.
-const BUDGET: usize = 17_000_000;
+const BUDGET: usize = 15_000_000;
 /// The most triangles of the street, with all copies.
 const MAX_TRIANGLES: usize = 400_000;
 /// The most texels of all textures, of four bytes each.

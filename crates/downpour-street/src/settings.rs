@@ -83,8 +83,8 @@ impl Default for StreetSettings {
             age: 0.5,
             lamps: LampEra::Lantern,
             lamp_spacing_m: 11.0,
-            furniture: 0.6,
-            cars: 0.3,
+            furniture: 0.75,
+            cars: 0.45,
             shops: 0.5,
             lit_windows: 0.42,
         }

@@ -180,8 +180,8 @@ fn houses(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
     let rows: [(f32, f32, f32, f32); 4] = [
         (-half, 0.0, 90.0, length),
         (half, -length, -90.0, length),
-        (-reach, far, 0.0, 2.0 * reach),
-        (reach, near, 180.0, 2.0 * reach),
+        (-half - 2.5, far, 0.0, 2.0 * half + 5.0),
+        (half + 2.5, near, 180.0, 2.0 * half + 5.0),
     ];
     // Plain walls close the lanes: no view from the street reaches them.
     let mut walls = Mesh::default();
@@ -189,7 +189,11 @@ fn houses(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
         for [from, to] in [[far, -length], [0.0, near]] {
             let x = side * (reach + 0.3);
             let (low, high) = (Vec3::new(x - 0.3, -0.2, from - 0.5), Vec3::new(x + 0.3, 13.0, to + 0.5));
-            walls.cuboid(tinted(Material::Plaster, [0.5, 0.46, 0.40]), low, high, 0);
+            let paint = tinted(Material::Plaster, [0.5, 0.46, 0.40]);
+            walls.cuboid(paint, low, high, 0);
+            let z = if from < -length { far } else { near };
+            let (a, b) = (side * (half + 2.5), side * (reach + 0.5));
+            walls.cuboid(paint, Vec3::new(a.min(b), -0.2, z - 0.3), Vec3::new(a.max(b), 12.0, z + 0.3), 0);
         }
     }
     plan.copies.insert("walls".to_owned(), (walls, vec![Placement::default()]));
@@ -253,7 +257,7 @@ fn cars(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) -> Vec<Park
     let x = ground.half_road - half[0] - 0.12;
     for side in [1.0f32, -1.0] {
         // Narrow streets have cars on one side.
-        if side < 0.0 && ground.half_road < 2.9 {
+        if side < 0.0 && ground.half_road < 3.3 {
             continue;
         }
         let mut z = -dice.range(3.2, 7.0);
@@ -287,10 +291,10 @@ fn furnish(settings: &StreetSettings, ground: &Ground, cars: &[ParkedCar], plan:
         while z > -ground.length + 1.5 {
             if dice.chance(density) {
                 let put = |x: f32, turn: f32| Placement::new(side * x, height(x), z, facing + turn);
-                match dice.below(9) {
+                match dice.below(11) {
                     0 => plan.place("bin", furniture::bin, put(curb, 0.0)),
                     1 => plan.place("sign post", furniture::sign_post, put(curb - 0.1, 90.0 * side)),
-                    2 | 3 if ground.pavement > 2.2 => {
+                    2 | 3 | 9 | 10 if ground.pavement > 2.2 => {
                         let spin = dice.range(0.0, 360.0);
                         let at = wall - 0.25;
                         plan.place("table", furniture::table, put(at, spin));
@@ -315,7 +319,7 @@ fn furnish(settings: &StreetSettings, ground: &Ground, cars: &[ParkedCar], plan:
                     }
                 }
             }
-            z -= dice.range(2.6, 5.2);
+            z -= dice.range(1.9, 3.6);
         }
     }
     let _ = cars;

@@ -59,18 +59,18 @@ pub(crate) fn slabs() -> Tile {
         (edge, hash(column, row as i32, 41), hash(column, row as i32, 42))
     };
     let joint = |u: f32, v: f32| {
-        let ragged = fractal(u, v, [60, 60], 2, 43) * 4.0e-3;
-        smooth(0.0025 + ragged, 0.006 + ragged, slab(u, v).0)
+        let ragged = fractal(u, v, [60, 60], 2, 43) * 5.0e-3;
+        smooth(0.004 + ragged, 0.009 + ragged, slab(u, v).0)
     };
     let color = Raster::new(SIZE, SIZE, |u, v| {
         let (edge, tone, hue) = slab(u, v);
         let speckle = fractal(u, v, [220, 220], 2, 44);
         let stain = smooth(0.52, 0.8, fractal(u, v, [6, 6], 5, 45));
-        let bare = mix3([0.27, 0.265, 0.25], [0.33, 0.315, 0.285], hue);
-        let shade = mix(0.82, 1.1, tone) * mix(0.86, 1.14, speckle) * mix(1.0, 0.84, stain);
+        let bare = mix3([0.25, 0.245, 0.235], [0.31, 0.295, 0.265], hue);
+        let shade = mix(0.68, 1.1, tone) * mix(0.86, 1.14, speckle) * mix(1.0, 0.84, stain);
         let dirt = mix(0.8, 1.0, smooth(0.0, 0.05, edge));
         let top = bare.map(|c| c * shade * dirt);
-        let [r, g, b] = mix3([0.06, 0.056, 0.047], top, joint(u, v));
+        let [r, g, b] = mix3([0.045, 0.042, 0.035], top, joint(u, v));
         [r, g, b, 1.0]
     });
     let height = Raster::gray(SIZE, SIZE, |u, v| {
@@ -128,12 +128,12 @@ pub(super) fn setts() -> Tile {
         let (edge, _, tone, hue) = sett(u, v);
         let grain = mix(0.78, 1.22, fractal(u, v, [150, 150], 2, 54));
         const STONES: [[f32; 3]; 6] = [
-            [0.225, 0.222, 0.215],
-            [0.185, 0.192, 0.205],
-            [0.255, 0.230, 0.195],
-            [0.205, 0.180, 0.160],
-            [0.150, 0.150, 0.152],
-            [0.270, 0.262, 0.245],
+            [0.165, 0.163, 0.160],
+            [0.142, 0.146, 0.152],
+            [0.182, 0.172, 0.156],
+            [0.150, 0.139, 0.128],
+            [0.112, 0.112, 0.113],
+            [0.198, 0.194, 0.186],
         ];
         let base = STONES[((hue * 6.0) as usize).min(5)];
         let worn = mix(0.82, 1.06, smooth(0.004, 0.03, edge));
