@@ -61,6 +61,7 @@ pub fn modules() -> impl Iterator<Item = &'static Module> {
         render::scene::MODULES,
         render::specimen::MODULES,
         render::table::MODULES,
+        render::wet::MODULES,
         sim::collision::MODULES,
         sim::enter::MODULES,
         sim::field::MODULES,

@@ -14,3 +14,4 @@ pub mod scatter;
 pub mod scene;
 pub mod specimen;
 pub mod table;
+pub mod wet;

@@ -18,6 +18,7 @@ mod rain;
 mod render;
 mod scene;
 mod step;
+mod wet;
 mod wind;
 
 use crate::{FunctionCase, KernelCase};
@@ -43,6 +44,7 @@ pub fn functions() -> Vec<FunctionCase> {
         render::functions(),
         scene::functions(),
         step::functions(),
+        wet::functions(),
         wind::functions(),
     ]
     .into_iter()
@@ -70,6 +72,7 @@ pub fn kernels() -> Vec<KernelCase> {
         render::kernels(),
         scene::kernels(),
         step::kernels(),
+        wet::kernels(),
         wind::kernels(),
     ]
     .into_iter()

@@ -253,6 +253,7 @@ mod gpu {
             match self {
                 Self::Render(error) => error.exit_code(),
                 Self::Gpu(error) => error.exit_code(),
+                Self::NoRoom { .. } => LIMIT,
                 _ => INPUT,
             }
         }

@@ -1,8 +1,8 @@
 //! Physics of a raindrop and of rain.
 //!
 //! One drop: its [`shape`] and [`axis_ratio`], its [`mesh`], its [`fall_speed`], its [`oscillation`], its
-//! [`optics`]. Many drops: their size [`distribution`], computed from a rain rate. The media: [`water`] and
-//! [`air`].
+//! [`optics`]. Many drops: their size [`distribution`], computed from a rain rate, and the [`wetness`] of what they fall on. The
+//! media: [`water`] and [`air`].
 //!
 //! Units are SI: meters, seconds, kilograms, radians, pascals; temperatures in degrees Celsius where the name says
 //! `_c`, rain rates in millimeters per hour where it says `_mm_h`. A diameter is that of the sphere of the same
@@ -30,6 +30,7 @@ pub mod optics;
 pub mod oscillation;
 pub mod shape;
 pub mod water;
+pub mod wetness;
 
 pub use error::DropError;
 pub use mesh::DropMesh;

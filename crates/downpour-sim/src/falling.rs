@@ -71,14 +71,14 @@ pub struct EyeDrop {
     pub diameter: f32,
     /// Velocity, m/s.
     pub velocity: [f32; 3],
-    /// Id in 32 bits, from which its oscillation is drawn.
+    /// Both halves of its id, one over the other: 32 bits from which its oscillation is drawn.
     pub id: u32,
     /// Part of the exposure in which it exists, s from the picture's time.
     pub present: [f32; 2],
     /// Terminal speed, m/s; 0 if it is not known.
     pub speed: f32,
-    /// 0.
-    pub unused: u32,
+    /// Lower half of its id.
+    pub id_low: u32,
 }
 
 impl EyeDrop {
@@ -93,8 +93,25 @@ impl EyeDrop {
             id: drop.id as u32 ^ (drop.id >> 32) as u32,
             present: drop.present_s.map(|time| time.clamp(-ALWAYS_S, ALWAYS_S)),
             speed: 0.0,
-            unused: 0,
+            id_low: drop.id as u32,
         }
+    }
+
+    /// The drop in the world, as `eye` sees it: what [`EyeDrop::new`] has made of it, to the digits of f32.
+    #[must_use]
+    pub fn to_falling(&self, eye: DVec3, kind: DropKind) -> FallingDrop {
+        let mut drop = FallingDrop {
+            position: eye + Vec3::from(self.offset).as_dvec3(),
+            velocity: self.velocity,
+            diameter: self.diameter,
+            id: u64::from(self.id ^ self.id_low) << 32 | u64::from(self.id_low),
+            kind,
+            present_s: self
+                .present
+                .map(|time| if time.abs() < ALWAYS_S { time } else { time * f32::INFINITY }),
+        };
+        drop.position += (Vec3::from(self.velocity) * drop.seen_s()).as_dvec3();
+        drop
     }
 
     /// Position relative to an eye that moves and turns, at a time relative to the picture's, s. Twin of the function of this name in

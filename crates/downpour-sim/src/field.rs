@@ -27,6 +27,7 @@ pub mod chain;
 #[cfg(feature = "wgpu")]
 #[doc(hidden)]
 pub mod frame;
+mod room;
 
 use downpour_drop::distribution::{DropSizeDistribution, SampledBy};
 use downpour_drop::fall_speed::TerminalSpeed;

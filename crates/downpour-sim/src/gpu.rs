@@ -7,5 +7,5 @@ mod simulation;
 
 pub use collision::GpuCollisionMap;
 pub use error::GpuSimError;
-pub use field::{FieldOnGpu, FieldPass, FieldPipeline, ObstaclesOnGpu};
+pub use field::{FieldOnGpu, FieldPass, FieldPipeline, FieldSearch, HolesOnGpu, ObstaclesOnGpu};
 pub use simulation::{GpuSimulation, GpuStepInput};

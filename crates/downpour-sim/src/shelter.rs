@@ -14,7 +14,7 @@
 
 use downpour_bvh::{BvhNode, BvhTriangle, Hit, bvh_nearest};
 use downpour_drop::fall_speed::TerminalSpeed;
-use downpour_shaders::sim::field::{SHELTER_CARRIED, SHELTER_CLEAR, SHELTER_CUT};
+use downpour_shaders::sim::field::{SHELTER_CARRIED, SHELTER_CLEAR, SHELTER_CUT, SHELTER_HOLES};
 use downpour_wind::UniformWind;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -30,9 +30,6 @@ const MAX_BACK_S: f64 = 120.0;
 
 /// Distance from a surface below which a drop counts as on it, m.
 const CLEAR_M: f32 = SHELTER_CLEAR;
-
-/// Maximum number of holes on a path to the sky: a path through more counts as open.
-const MAX_HOLES: u32 = 64;
 
 /// Holes in triangles of the list, as by the alpha of a texture.
 pub trait Holes: std::fmt::Debug + Sync {
@@ -173,20 +170,20 @@ fn speed(law: &TerminalSpeed, drop: &FallingDrop) -> f64 {
 
 /// First hit at a velocity within a time; the hit's distance is a time, s.
 pub(crate) fn met(obstacles: &Obstacles<'_>, from: Vec3, velocity: Vec3, time_s: f32) -> Option<Hit> {
-    first_solid(obstacles, from, velocity, 0.0, time_s)
+    shelter_hit(obstacles, from, velocity, 0.0, time_s)
 }
 
 /// True if nothing is hit within a distance.
 fn shelter_clear(obstacles: &Obstacles<'_>, from: Vec3, direction: Vec3, distance: f32) -> bool {
     let far = distance.min(downpour_shaders::bvh::BVH_FAR);
-    first_solid(obstacles, from, direction, CLEAR_M, far).is_none()
+    shelter_hit(obstacles, from, direction, CLEAR_M, far).is_none()
 }
 
 /// Nearest hit that is not a hole, at a distance from `near` to `far` times the length of `way`.
-fn first_solid(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, mut near: f32, far: f32) -> Option<Hit> {
+fn shelter_hit(obstacles: &Obstacles<'_>, from: Vec3, way: Vec3, mut near: f32, far: f32) -> Option<Hit> {
     let (origin, direction) = (from.to_array(), way.to_array());
     let step = CLEAR_M / way.length().max(CLEAR_M);
-    for _ in 0..MAX_HOLES {
+    for _ in 0..SHELTER_HOLES {
         let hit = bvh_nearest(obstacles.nodes, obstacles.triangles, origin, direction, near, far)?;
         if !obstacles.holes.is_some_and(|holes| holes.is_hole(&hit)) {
             return Some(hit);

@@ -138,7 +138,6 @@ impl View {
 
     /// Upper bound of the volume, m^3, of what comes into the picture during the exposure up to a distance: the pyramid of all that
     /// the turning camera sees, with a margin, within the ball of that distance.
-    #[cfg(feature = "wgpu")]
     pub(crate) fn swept_volume(&self, range: f64, margin: f64) -> f64 {
         let [wide, high] = self.swept_half();
         let inner = 4.0 * wide * high * range * range * range / 3.0;

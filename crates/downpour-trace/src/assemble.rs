@@ -108,6 +108,7 @@ impl SceneBuilder {
                 | if material.unlit { SCENE_UNLIT } else { 0 },
             transmission: material.transmission,
             ior: material.ior,
+            porosity: material.porosity,
             maps,
         })
     }

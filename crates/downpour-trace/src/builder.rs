@@ -174,6 +174,7 @@ impl SceneBuilder {
             puddles: 0,
             puddle_count: 0,
             pane: 0,
+            wetness: 0,
             sky: Arc::new(sky.texels.clone()),
             sky_levels: sky.levels,
             sky_irradiance: sky.irradiance,

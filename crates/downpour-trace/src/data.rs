@@ -65,8 +65,8 @@ pub struct RenderFrame {
     pub pane: u32,
     /// Pass of the means over neighboring pixels.
     pub skylight_pass: u32,
-    /// 0.
-    pub unused_1: u32,
+    /// Row of the table where the wetness of surfaces begins; 0: all is dry.
+    pub wetness: u32,
     /// 0.
     pub unused_2: u32,
     /// Width, height and first texel of each level of the sky.
@@ -84,7 +84,7 @@ pub struct SceneData {
     pub triangles: Arc<Vec<BvhTriangle>>,
     /// Three corners per triangle.
     pub corners: Arc<Vec<RenderCorner>>,
-    /// Materials, texture slots, lights, puddles and a pane, as rows.
+    /// Materials, texture slots, lights, wetness, puddles and a pane, as rows.
     pub table: Vec<[u32; 4]>,
     /// Texels of all levels of all textures.
     pub texels: Arc<Vec<u32>>,
@@ -100,6 +100,8 @@ pub struct SceneData {
     pub puddle_count: u32,
     /// Row where the pane that casts shadows begins; 0: no pane.
     pub pane: u32,
+    /// Row where the wetness of surfaces begins; 0: all is dry.
+    pub wetness: u32,
     /// Texels of all levels of the sky.
     pub sky: Arc<Vec<[f32; 4]>>,
     /// Width, height and first texel of each level of the sky.
@@ -123,14 +125,15 @@ impl SceneData {
         Light::light_load(&rows)
     }
 
-    /// Sets the lights, in place of those that are there; puddles and a pane, which come after them in the table, are removed.
+    /// Sets the lights, in place of those that are there; wetness, puddles and a pane, which come after them in the table, are
+    /// removed.
     pub fn set_lights(&mut self, lights: &[LightSource]) {
         self.table.truncate(self.lights as usize);
         for light in lights {
             self.table.extend(light.rows());
         }
         self.light_count = lights.len() as u32;
-        (self.puddles, self.puddle_count, self.pane) = (0, 0, 0);
+        (self.puddles, self.puddle_count, self.pane, self.wetness) = (0, 0, 0, 0);
     }
 
     /// Gives light `index` an angular radius, in radians: that of the disk that drops show of it. Without one it is the sun's.
@@ -176,7 +179,7 @@ impl RenderFrame {
             puddle_count: scene.puddle_count,
             pane: scene.pane,
             skylight_pass: 0,
-            unused_1: 0,
+            wetness: scene.wetness,
             unused_2: 0,
             sky_levels: scene.sky_levels,
             sky_irradiance: scene.sky_irradiance,

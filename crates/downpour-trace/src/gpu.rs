@@ -1,9 +1,11 @@
 //! Scenes on a GPU: the same rays as on the CPU, from the same buffers.
 
+mod falling;
 mod picture;
 mod plate;
 mod scene;
 
+pub use falling::{FieldDrops, FoundDrops, PictureDrops};
 pub use picture::{GpuPictureError, PictureOnGpu, PictureReadback, PictureRenderer};
 pub use plate::ScenePlate;
 pub use scene::{SceneOnGpu, ScenePass, ScenePipeline};

@@ -4,7 +4,7 @@
 //! - [`scene`], [`path`], [`scatter`], [`surface`], [`texture`], [`sky`], [`brdf`], `gpu`: what a ray of the camera sees, and the
 //!   light that comes there; [`skylight`] filters it;
 //! - [`capture`]: radiance from every direction around the eye, for the drops;
-//! - [`puddle`], [`wet_ground`]: water that stands on the ground; [`pane_shadow`]: the light through a wet pane;
+//! - [`wet`]: surfaces that rain has made wet; [`puddle`], [`wet_ground`]: water that stands on the ground; [`pane_shadow`]: the light through a wet pane;
 //! - [`stage`]: the scene and the eye of a weather at a time;
 //! - [`picture`]: the plate of a scene, and the rain of [`downpour_render`] before it.
 
@@ -66,6 +66,11 @@ mod trace;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod trace;
+#[cfg(not(feature = "parity"))]
+mod wet;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod wet;
 pub mod wet_ground;
 
 pub use builder::{MeshPart, SceneBuilder};
@@ -77,6 +82,7 @@ pub use puddle::{PuddleError, PuddleLook, PuddleMap};
 pub use scene::SceneView;
 pub use sky_light::SkyLight;
 pub use stage::{Stage, StageError};
+pub use wet::SceneWetness;
 pub use wet_ground::WetGround;
 
 /// The examples of the README, as tests.

@@ -31,6 +31,8 @@ pub struct MaterialLook {
     pub transmission: f32,
     /// Refractive index.
     pub ior: f32,
+    /// Fraction of the surface that soaks up rain and darkens; `None`: by roughness and metalness.
+    pub porosity: Option<f32>,
     /// Slots of base color, metallic-roughness, normal, emission, occlusion, transmission.
     pub maps: [Option<u32>; 6],
 }
@@ -49,6 +51,7 @@ impl Default for MaterialLook {
             flags: 0,
             transmission: 0.0,
             ior: 1.5,
+            porosity: None,
             maps: [None; 6],
         }
     }
@@ -63,7 +66,12 @@ impl MaterialLook {
             bits(self.base_color),
             bits([r, g, b, self.metallic]),
             bits([self.roughness, self.normal_scale, self.occlusion_strength, self.alpha_cutoff]),
-            [self.flags, self.transmission.to_bits(), self.ior.to_bits(), 0],
+            [
+                self.flags,
+                self.transmission.to_bits(),
+                self.ior.to_bits(),
+                self.porosity.unwrap_or(-1.0).to_bits(),
+            ],
             [map(0), map(1), map(2), map(3)],
             [map(4), map(5), SCENE_NONE, SCENE_NONE],
         ]
@@ -124,6 +132,8 @@ pub struct RenderMaterial {
     pub transmission: f32,
     /// Refractive index.
     pub ior: f32,
+    /// Porosity; below 0: by the roughness.
+    pub porosity: f32,
     /// Rows of the slots of base color, metallic-roughness, normal and emission; `SCENE_NONE` for none.
     pub maps: [u32; 4],
     /// Rows of the slots of occlusion and transmission.
@@ -152,7 +162,7 @@ impl SceneData {
         let rows = &self.table[first..first + MATERIAL_ROWS];
         let numbers = |k: usize| Vec4::from(rows[k].map(f32::from_bits));
         let (glow, look) = (numbers(1), numbers(2));
-        let [flags, transmission, ior, _] = rows[3];
+        let [flags, transmission, ior, porosity] = rows[3];
         RenderMaterial {
             base: numbers(0),
             emission: glow.truncate(),
@@ -164,6 +174,7 @@ impl SceneData {
             flags,
             transmission: f32::from_bits(transmission),
             ior: f32::from_bits(ior),
+            porosity: f32::from_bits(porosity),
             maps: rows[4],
             more: [rows[5][0], rows[5][1]],
         }

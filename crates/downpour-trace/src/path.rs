@@ -33,6 +33,7 @@ use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
 };
 use downpour_shaders::render::scene::{SCENE_FAR, SCENE_LAYERS, SCENE_NONE, SCENE_UNLIT, SKYLIGHT_SLACK};
+use downpour_shaders::render::wet::WET_FAR;
 use glam::{Vec2, Vec3};
 
 use crate::brdf::brdf_fresnel;
@@ -40,6 +41,7 @@ use crate::scatter::{ScatterRay, scatter_chance, scatter_draw, scatter_mirror};
 use crate::scene::SceneView;
 use crate::scene::water::{PuddleWater, puddle_water_above, puddle_water_refracted};
 use crate::surface::Surface;
+use crate::wet::{wet_relief, wet_surface};
 pub use downpour_render::path_lattice::{path_lattice_numbers, path_lattice_words};
 use draw::{path_onward, path_replaced, path_water_fraction, path_water_ray};
 pub(crate) use plan::path_max;
@@ -220,12 +222,21 @@ impl SceneView<'_> {
         // Water that the ray has come through, and whether it has met nothing since.
         let mut water: Option<PathWater> = None;
         let mut under = false;
+        let wet = (frame.wetness > 0).then(|| data.wet_load());
         for layer in 0..SCENE_LAYERS {
             let Some(hit) = data.surface_hit(start, towards, near, BVH_FAR) else {
                 path.radiance += throughput * data.sky_level(0, towards);
                 return path;
             };
             let mut found = data.surface_at(&hit, start, towards, cone);
+            if let (false, Some(wet)) = (under, &wet) {
+                let wetness = self.wet_exposure(&found, wet);
+                if wetness > 0.0 {
+                    let footprint = cone * hit.distance / (-found.facet.dot(towards)).max(0.02).sqrt();
+                    let relief = wet_relief(found.position + wet.shift, footprint);
+                    found = wet_surface(&found, wetness, towards, &relief);
+                }
+            }
             let mut material = data.corners[hit.triangle as usize * 3].material;
             let mut distance = hit.distance;
             let mut depth = Vec2::ZERO;
@@ -381,7 +392,15 @@ impl SceneView<'_> {
                     light = light.path_accumulated(&ray, beyond, of_shown);
                     break;
                 };
-                let found = data.surface_at(&hit, from, ray.along, ray.width);
+                let mut found = data.surface_at(&hit, from, ray.along, ray.width);
+                if frame.wetness > 0 && bounce == 0 && !under {
+                    let wet = data.wet_load();
+                    let wetness = self.wet_exposure(&found, &wet);
+                    if wetness > 0.0 {
+                        let relief = wet_relief(found.position + wet.shift, WET_FAR);
+                        found = wet_surface(&found, wetness, ray.along, &relief);
+                    }
+                }
                 let mut found = path_secondary(&found, ray.roughness);
                 let lamps = if ray.roughness < PATH_SECONDARY_ROUGHNESS { PATH_MIRROR_LAMPS } else { 1 };
                 let standoff = hit.distance * ray.width * 0.5;
@@ -466,7 +485,7 @@ impl SceneView<'_> {
                 fraction /= PATH_CANDIDATES as f32;
             }
         }
-        let mut ray = scatter_draw(at, view, gloss, chance, a, b, fraction);
+        let mut ray = scatter_draw(self.data, at, view, gloss, chance, [a, b], fraction);
         ray.diffuse *= weight;
         ray.mirror *= weight;
         ray

@@ -18,6 +18,7 @@ use crate::brdf::{
     brdf_distribution, brdf_environment, brdf_fresnel, brdf_visibility, brdf_visible_density,
     brdf_visible_normal,
 };
+use crate::data::SceneData;
 use crate::surface::Surface;
 
 /// A ray that looks for light.
@@ -84,13 +85,15 @@ pub fn scatter_gloss(normal_reflectance: Vec3, roughness: f32, cosine: f32, shar
 
 /// A ray of a surface: of its gloss where `a` is below `chance`, else of its diffuse base. `view` points to the viewer,
 /// `gloss` is what the weight of the gloss is divided by, `fraction` the part of all rays that this is.
+///
+/// Under a film, light goes in and comes out as [`wet`](crate::wet) says.
 pub(crate) fn scatter_draw(
+    data: &SceneData,
     surface: &Surface,
     view: Vec3,
     gloss: Vec3,
     chance: f32,
-    a: f32,
-    b: f32,
+    [a, b]: [f32; 2],
     fraction: f32,
 ) -> ScatterRay {
     let normal = surface.normal;
@@ -128,6 +131,10 @@ pub(crate) fn scatter_draw(
     ray.width = (SCATTER_DISK * fraction / density).sqrt().min(SCATTER_MAX_WIDTH);
     if chance < 1.0 {
         ray.diffuse = (Vec3::ONE - fresnel) * (cosine / density);
+        if surface.film > 0.0 {
+            let under = data.wet_out(surface, cosine_view) * data.wet_in(surface, cosine);
+            ray.diffuse += (under - Vec3::ONE + fresnel) * (surface.film * cosine / density);
+        }
     }
     if chance > 0.0 {
         let lobe =
@@ -164,6 +171,8 @@ pub fn scatter_chance(body: Vec3, gloss: Vec3) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::builder::SceneBuilder;
+    use crate::sky_light::SkyLight;
     use downpour_math::ops::f64 as exact;
     use glam::DVec3;
 
@@ -181,6 +190,8 @@ mod tests {
             transmission: 0.0,
             emission: Vec3::ZERO,
             bend: 0.0,
+            porosity: 0.0,
+            film: 0.0,
         }
     }
 
@@ -223,6 +234,7 @@ mod tests {
             (0.3, 0.5, 0.7, 0.15),
         ] {
             let surface = surface(diffuse, f0, roughness);
+            let data = SceneBuilder::new().build(&SkyLight::new(1, 1, &[[1.0; 3]]));
             let view = Vec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
             let expected =
                 quadrature(diffuse.into(), f0.into(), roughness.into(), cosine.into()).map(|v| v as f32);
@@ -232,7 +244,7 @@ mod tests {
                     for j in 0..n {
                         let (a, b) =
                             ((f32::from(i) + 0.5) / f32::from(n), (f32::from(j) + 0.5) / f32::from(n));
-                        let ray = scatter_draw(&surface, view, Vec3::ONE, chance, a, b, 1.0);
+                        let ray = scatter_draw(&data, &surface, view, Vec3::ONE, chance, [a, b], 1.0);
                         if ray.along.x > 0.0 {
                             sums[0] += diffuse * ray.diffuse.x;
                             sums[1] += ray.mirror.x;

@@ -10,7 +10,8 @@
 //! as it mirrors the same direction, within the lobe.
 
 use downpour_shaders::render::scene::{
-    SKYLIGHT_LOBE, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS, SKYLIGHT_STEP,
+    SKYLIGHT_FILM, SKYLIGHT_FILM_EDGE, SKYLIGHT_LOBE, SKYLIGHT_NOISE, SKYLIGHT_PASSES, SKYLIGHT_RADIUS,
+    SKYLIGHT_STEP,
 };
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -51,8 +52,16 @@ pub fn skylight_lobe(cosine: f32, roughness: f32) -> f32 {
     (1.0 - (1.0 - cosine) / (SKYLIGHT_LOBE * alpha * alpha).max(1.0e-7)).max(0.0)
 }
 
-/// Weight of another pixel in the mean of a pixel: the degree to which both show one surface, 0 to 1.
-fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
+/// Agreement of the roughness of two glosses, 0 to 1: a film and the dry surface beside it mirror different things.
+#[must_use]
+pub fn skylight_film(own: f32, other: f32) -> f32 {
+    let apart = (own - other).abs() / own.max(other).max(1.0e-6);
+    ((SKYLIGHT_FILM - apart) / SKYLIGHT_FILM_EDGE).clamp(0.0, 1.0)
+}
+
+/// Weight of another pixel in the mean of a pixel: the degree to which both show one surface, 0 to 1. `wet`: of a scene that the rain
+/// has made wet.
+fn skylight_same(own: &SkylightSlot, other: &SkylightSlot, wet: bool) -> f32 {
     if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
         return 0.0;
     }
@@ -60,6 +69,11 @@ fn skylight_same(own: &SkylightSlot, other: &SkylightSlot) -> f32 {
     let near = (1.0 - off / own.slack).max(0.0);
     let cosine = own.direction.dot(other.direction);
     if own.roughness > 0.0 {
+        if wet {
+            return skylight_lobe(cosine, own.roughness)
+                * near
+                * skylight_film(own.roughness, other.roughness);
+        }
         return skylight_lobe(cosine, own.roughness) * near;
     }
     let agrees = cosine.max(0.0);
@@ -79,6 +93,8 @@ struct Pixels<'a> {
     width: u32,
     height: u32,
     slots: &'a [[SkylightSlot; 2]],
+    /// True if the rain has made surfaces wet.
+    wet: bool,
 }
 
 impl SceneView<'_> {
@@ -90,7 +106,8 @@ impl SceneView<'_> {
             .map(|pixel| [&pixel.base, &pixel.mirror].map(|slot| skylight_slot(slot, eye)))
             .collect();
         let (width, height) = (self.frame.camera.width, self.frame.camera.height);
-        let pixels = &Pixels { width, height, slots: &slots };
+        let wet = self.frame.wetness > 0;
+        let pixels = &Pixels { width, height, slots: &slots, wet };
         let all = |of: &(dyn Fn(u32, u32, usize) -> Vec4 + Sync)| -> Vec<[Vec4; 2]> {
             (0..height)
                 .into_par_iter()
@@ -137,7 +154,7 @@ impl Pixels<'_> {
                 let other = index(column, row);
                 let mut counts = skylight_hat(x, column) * skylight_hat(y, row);
                 if row != y || column != x {
-                    counts *= skylight_same(own, &self.slots[other][slot]);
+                    counts *= skylight_same(own, &self.slots[other][slot], self.wet);
                 }
                 if counts > 0.0 {
                     let light = self.slots[other][slot].light;
@@ -178,7 +195,8 @@ impl Pixels<'_> {
             let other = ((row - step) * self.width + column - step) as usize;
             let its = means[other][slot];
             let kernel = if k % 2 == 0 { 1.0 } else { 2.0 };
-            let counts = kernel * skylight_same(own, &self.slots[other][slot]) * skylight_alike(mean, its);
+            let counts =
+                kernel * skylight_same(own, &self.slots[other][slot], self.wet) * skylight_alike(mean, its);
             sum += its.truncate() * counts;
             variance += its.w * counts * counts;
             weight += counts;

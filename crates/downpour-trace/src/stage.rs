@@ -24,6 +24,7 @@ use glam::{DVec3, Vec3};
 
 use crate::builder::SceneBuilder;
 use crate::data::SceneData;
+use crate::wet::SceneWetness;
 use downpour_render::RenderError;
 use downpour_render::camera::{EyeMotion, MAX_EXPOSURE_S, PictureEdge, Viewpoint, check_size};
 use downpour_render::light::LightSource;
@@ -112,6 +113,7 @@ impl Stage {
         if let Some(sun) = loaded.sun {
             data.set_light_radius(data.light_count - 1, sun.angular_radius);
         }
+        data.set_wetness(SceneWetness::of(weather, time_s, origin).as_ref());
         let fov =
             weather.camera.fov.unwrap_or_else(|| seen.as_ref().map_or(weather::FOV_RAD, |seen| seen.fov));
         let (camera, viewpoint) = match &seen {
@@ -146,7 +148,9 @@ impl Stage {
     /// [`StageError::TooFar`] over 1 km from what the buffers are relative to; as [`Viewpoint::axes`].
     pub fn seen_at(&self, weather: &Weather, loaded: &Loaded, time_s: f64) -> Result<Self, StageError> {
         let Some(seen) = CameraView::of(weather, loaded, &posed(loaded, time_s), time_s) else {
-            return Ok(self.clone());
+            let mut stage = self.clone();
+            stage.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
+            return Ok(stage);
         };
         let distance_m = (seen.eye - self.origin).abs().max_element();
         if distance_m > NEAR_ORIGIN_M {
@@ -154,7 +158,9 @@ impl Stage {
         }
         let viewpoint = seen.viewpoint(weather.camera.fov.unwrap_or(seen.fov), self.origin);
         viewpoint.axes()?;
-        Ok(Self { viewpoint, motion: motion(weather, loaded, time_s), ..self.clone() })
+        let mut stage = Self { viewpoint, motion: motion(weather, loaded, time_s), ..self.clone() };
+        stage.data.set_wetness(SceneWetness::of(weather, time_s, self.origin).as_ref());
+        Ok(stage)
     }
 
     /// The part of space that the picture shows, in the world, for [`RainField`](downpour_sim::field::RainField).

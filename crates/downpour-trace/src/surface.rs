@@ -4,7 +4,8 @@
 use downpour_bvh::{Hit, bvh_nearest};
 use downpour_math::ops;
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_OPEN,
+    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_DENSE, SURFACE_OPEN,
+    SURFACE_POROUS,
 };
 use downpour_sim::shelter::Holes;
 use glam::{Vec3, Vec4};
@@ -39,6 +40,10 @@ pub struct Surface {
     pub emission: Vec3,
     /// Curvature, 1/m: how much the normal turns per meter.
     pub bend: f32,
+    /// Fraction that soaks up rain and darkens.
+    pub porosity: f32,
+    /// Fraction that a film of water covers.
+    pub film: f32,
 }
 
 /// Rain falls through what is not seen: where a masked material is below its cutoff, or one that is blended has no alpha. Where
@@ -47,6 +52,20 @@ impl Holes for SceneData {
     fn is_hole(&self, hit: &Hit) -> bool {
         self.surface_is_open(hit)
     }
+}
+
+/// Fraction of a surface that soaks up rain: its material's own where that is not below 0; else rough stone, plaster and cloth do,
+/// metal, smooth paint and leaves do not.
+#[must_use]
+pub fn surface_porosity(own: f32, flags: u32, roughness: f32, metallic: f32) -> f32 {
+    if own >= 0.0 {
+        return own.min(1.0);
+    }
+    if flags & SCENE_MASKED != 0 {
+        return 0.0;
+    }
+    let x = ((roughness - SURFACE_DENSE) / (SURFACE_POROUS - SURFACE_DENSE)).clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x) * (1.0 - metallic)
 }
 
 impl SceneData {
@@ -199,6 +218,8 @@ impl SceneData {
             transmission: transmission.clamp(0.0, 1.0) * (1.0 - metallic),
             emission,
             bend: self.surface_bend(hit),
+            porosity: surface_porosity(material.porosity, flags, roughness, metallic),
+            film: 0.0,
         }
     }
 }

@@ -7,11 +7,14 @@
 use downpour_math::packing::{
     packing_octahedral_decode, packing_octahedral_encode, packing_pack_snorm, packing_unpack_snorm,
 };
-use downpour_shaders::render::scene::{SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE, TRACE_SAME_NORMAL};
+use downpour_shaders::render::scene::{
+    SCENE_FAR, SCENE_OCTAHEDRAL, SCENE_PICTURE, SKYLIGHT_FILM, TRACE_SAME_NORMAL,
+};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::capture::{capture_direction, capture_sky, capture_suns};
+use crate::data::RenderFrame;
 use crate::path::{PathSlot, ViewPath, path_lattice_words, path_max};
 use crate::scene::SceneView;
 use downpour_render::halves::{pack, unpack};
@@ -95,10 +98,25 @@ struct TraceSum {
 impl TraceSum {
     const NONE: Self = Self { slot: PathSlot::NONE, weight: 0.0 };
 
+    /// True if the gloss of a sample of a wet scene and that of the sum are of a film and of what is dry.
+    fn trace_apart(&self, sample: &PathSlot, frame: &RenderFrame) -> bool {
+        let (own, other) = (self.slot.roughness, sample.roughness);
+        frame.wetness > 0 && own.min(other) > 0.0 && (own - other).abs() > SKYLIGHT_FILM * own.max(other)
+    }
+
     /// The sum with a sample. Where it is, is where the first sample is that has some.
-    fn trace_add(&self, sample: &PathSlot) -> Self {
+    fn trace_add(&self, sample: &PathSlot, frame: &RenderFrame) -> Self {
         if sample.slack <= 0.0 {
             return *self;
+        }
+        if self.weight > 0.0 && self.trace_apart(sample, frame) {
+            // What a film shows is seen; what is dry beside it shows little.
+            let factor = self.slot.factor + sample.factor;
+            if sample.roughness < self.slot.roughness {
+                let weight = path_max(sample.factor).max(1.0e-6);
+                return Self { slot: PathSlot { light: sample.light * weight, factor, ..*sample }, weight };
+            }
+            return Self { slot: PathSlot { factor, ..self.slot }, weight: self.weight };
         }
         let first = if self.weight > 0.0 { self.slot } else { *sample };
         // Light of a sample on another surface is not kept apart: it is taken to be the same.
@@ -159,8 +177,8 @@ impl SceneView<'_> {
             let random = path_lattice_words(self.frame.camera.seed, x, y, index);
             let path = self.path_trace(eye, direction, self.frame.camera.pixel_angle, random, &last);
             sum += if is_picture { path.radiance } else { path.path_radiance() };
-            base = base.trace_add(&path.base);
-            mirror = mirror.trace_add(&path.mirror);
+            base = base.trace_add(&path.base, self.frame);
+            mirror = mirror.trace_add(&path.mirror, self.frame);
             nearest = nearest.min(path.distance);
             count += 1;
             let both_sky = path.distance >= SCENE_FAR && last.distance >= SCENE_FAR;

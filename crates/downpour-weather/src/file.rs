@@ -9,6 +9,7 @@ use super::quantity::{Exactly, Whole};
 use super::rain::{Rain, RainTable};
 use super::sky::{Sky, SkyTable, SunSource, SunTable};
 use super::streaks::StreaksTable;
+use super::wetness::{Wetness, WetnessTable};
 use super::wind::{self, GustsTable, TurbulenceTable, WindFieldTable, WindTable};
 use super::{Camera, MAX_LIGHTS, MAX_MODELS, MAX_PUDDLES, Weather, camera::CameraTable};
 use downpour_scene::error::{SceneError, quoted};
@@ -35,6 +36,7 @@ struct Tables {
     streaks: StreaksTable,
     glass: Option<GlassTable>,
     puddle: Vec<PuddleTable>,
+    wetness: WetnessTable,
     output: OutputTable,
 }
 
@@ -67,6 +69,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     puddle::check_all(&puddles, &positions)?;
     Ok(Weather {
         name: String::new(),
+        wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
         rain,
         drop_model,

@@ -34,6 +34,7 @@ mod quantity;
 mod rain;
 mod sky;
 mod streaks;
+mod wetness;
 mod wind;
 mod words;
 
@@ -56,6 +57,7 @@ pub use rain::{
 };
 pub use sky::{Sky, SkySource, SunSource};
 pub use streaks::{StreakLook, Streaks};
+pub use wetness::{RAINED_S, Wetness, WetnessAt};
 pub use wind::WindBox;
 
 /// Maximum size of a weather file, in bytes: 4 MiB.
@@ -125,6 +127,8 @@ pub struct Weather {
     pub glass: Option<Pane>,
     /// Water on the ground, in the order of the file.
     pub puddles: Vec<Puddle>,
+    /// Wetness of the surfaces.
+    pub wetness: Wetness,
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
 }
@@ -145,6 +149,7 @@ impl Default for Weather {
             streaks: Streaks::default(),
             glass: None,
             puddles: Vec::new(),
+            wetness: Wetness::default(),
             size: [1280, 720],
         }
     }

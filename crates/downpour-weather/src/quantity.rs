@@ -98,6 +98,10 @@ ranges! {
     DryingMmH: 0.0, 100.0, "0 to 100 mm/h";
     PivotM: -20.0, 20.0, "-20 to 20 m";
     BladeM: 0.0, 20.0, "0 to 20 m";
+    WetS: 0.0, 1e6, "0 to 1e6 s";
+    RainedMm: 0.0, 1000.0, "0 to 1000 mm";
+    StorageMm: 0.01, 10.0, "0.01 to 10 mm";
+    DryingS: 1.0, 1e7, "1 to 1e7 s";
     PeriodS: 0.1, 1e6, "0.1 to 1e6 s";
 }
 

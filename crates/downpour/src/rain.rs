@@ -15,7 +15,7 @@ use downpour_render::rain::{
     DropMasks, Exposure, MediumOptions, Rain as PictureRain, RainMedium, RainOptions,
 };
 use downpour_sim::field::{RainField, VisibleDrops};
-use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, ObstaclesOnGpu};
+use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, FieldSearch, ObstaclesOnGpu};
 use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::view::View;
@@ -206,12 +206,19 @@ impl Rain {
         let obstacles = ObstaclesOnGpu {
             nodes,
             triangles,
+            holes: None,
             bounds: bounds.map(|root| [Vec3::from(root.low), Vec3::from(root.high)]),
             origin: DVec3::ZERO,
         };
         let on_gpu = (&self.field, &mut self.field_on_gpu);
-        let found =
-            self.fields.prepare(&self.pool, on_gpu, &obstacles, &seen, view.time_s, self.most_drops)?;
+        let search = FieldSearch {
+            view: &seen,
+            time_s: view.time_s,
+            max_room: self.most_drops,
+            pane: None,
+            known: &[],
+        };
+        let found = self.fields.prepare(&self.pool, on_gpu, &obstacles, &search)?;
         let medium = self.medium(found.resolved())?;
         self.medium = Some((*found.resolved(), medium));
         let options = self.options(view, medium);
@@ -235,7 +242,7 @@ impl Rain {
             self.host.prepare(pool, &textures.on_gpu(), &plate_frame, &environment_frame, &environment)?;
         let plate = PlateOnGpu { pixels: made.pixels(), environment: &environment, lighting: &lighting };
         let falling =
-            FallingOnGpu { drops: found.drops(), count: found.room(), frequencies: &self.frequencies };
+            FallingOnGpu { drops: found.drops(), count: found.places(), frequencies: &self.frequencies };
         let masks = (&self.masks_on_gpu, &self.masks);
         let pass = self.rains.prepare_falling(pool, &plate, masks, (&rain, &options), &lights, falling)?;
         let mut dispatches = made.dispatches();

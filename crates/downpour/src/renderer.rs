@@ -1,8 +1,11 @@
 //! A weather file in, frames out: one pipeline for a picture, a clip, a window and a program of your own.
 
 mod computer;
+mod drops;
 mod error;
 mod frame;
+#[cfg(feature = "wgpu")]
+mod on_gpu;
 mod shower_of_model;
 mod source;
 
@@ -18,7 +21,6 @@ use downpour_render::rain::light::{DropLightForm, DropLightOptions};
 use downpour_render::rain::{DropMasks, EnvironmentFrame, Exposure, RainMedium, RainOptions, RefractionForm};
 use downpour_scene::Budget;
 use downpour_scene::scene::Scene;
-use downpour_sim::field::VisibleDrops;
 use downpour_trace::capture::trace_environment;
 use downpour_trace::data::RenderFrame;
 use downpour_trace::pane_shadow::{is_lit_through, set_pane};
@@ -29,6 +31,7 @@ use downpour_weather::{CameraPath, Loaded, StreakLook, Weather};
 
 pub use computer::{Backend, Computer, Device};
 use computer::{Drawer, Painted, Through};
+use drops::Drops;
 pub use error::RendererError;
 pub use frame::{Frame, PendingFrame};
 pub use source::Source;
@@ -240,14 +243,19 @@ impl Renderer {
     ) -> Result<PendingFrame, RendererError> {
         let begin = Instant::now();
         let stage = self.wet(time_s, told)?;
-        let (drops, measured_rate_mm_h) = self.rain(&stage, time_s, self.options.measure, told)?;
-        let medium = self.shower.medium(&stage, &drops, &self.masks, time_s)?;
+        let mut drops = self.drops(&stage, time_s, told)?;
+        let measured = || self.shower.measured_rate_mm_h(&stage, time_s);
+        let measured_rate_mm_h = self.options.measure.then(measured).transpose()?;
         told(Progress { what: "drawing", parts: [0; 2] });
-        let options = self.picture_options(&stage, time_s, medium);
         // The first picture says whether the device can draw it, and how bright all are.
         let waits = self.drawn == 0 || self.exposure.is_none();
+        let mut medium = self.shower.medium(&stage, drops.resolved(), &self.masks, time_s)?;
+        let options = self.picture_options(&stage, time_s, medium);
         let picture = match self.draw(&stage, &drops, &options, waits) {
             Err(error) if self.drawn == 0 && self.drawer.falls_back(&error) => {
+                drops = self.drops(&stage, time_s, told)?;
+                medium = self.shower.medium(&stage, drops.resolved(), &self.masks, time_s)?;
+                let options = self.picture_options(&stage, time_s, medium);
                 self.draw(&stage, &drops, &options, waits)?
             }
             drawn => drawn?,
@@ -286,7 +294,7 @@ impl Renderer {
         }
         if !self.shower.can_seek() {
             let stage = self.stage(time_s)?;
-            self.rain(&stage, time_s, false, &mut |_| {})?;
+            self.drops(&stage, time_s, &mut |_| {})?;
         }
         Ok(())
     }
@@ -341,19 +349,21 @@ impl Renderer {
         Ok(stage)
     }
 
-    /// The drops of a time, and the rate that they were measured to have.
-    fn rain(
+    /// The drops of a time, or what the device is asked for that finds them.
+    fn drops(
         &mut self,
         stage: &Stage,
         time_s: f64,
-        measure: bool,
         told: &mut dyn FnMut(Progress),
-    ) -> Result<(VisibleDrops, Option<f64>), RendererError> {
+    ) -> Result<Drops, RendererError> {
+        if let Some(max_room) = self.drawer.max_drops()
+            && let Some(view) = self.shower.view_at(stage, time_s, max_room)?
+        {
+            return Ok(Drops::OfDevice(Box::new(view)));
+        }
         let scenery = scenery(&self.first, &self.weather, &self.loaded);
         let mut passed = |done, all| told(Progress { what: "rain: step", parts: [done, all] });
-        let drops = self.shower.at(&*scenery, stage, time_s, &mut passed)?;
-        let measured = || self.shower.measured_rate_mm_h(stage, time_s);
-        Ok((drops, measure.then(measured).transpose()?))
+        Ok(Drops::Listed(self.shower.at(&*scenery, stage, time_s, &mut passed)?))
     }
 
     fn picture_options(&self, stage: &Stage, time_s: f64, medium: RainMedium) -> PictureOptions {
@@ -384,14 +394,14 @@ impl Renderer {
     fn draw(
         &self,
         stage: &Stage,
-        drops: &VisibleDrops,
+        drops: &Drops,
         options: &PictureOptions,
         waits: bool,
     ) -> Result<Painted, RendererError> {
         let pane = self.water.as_ref().and_then(|water| water.pane.as_ref());
         let through = pane.map(|pane| through(pane, stage, options)).transpose()?;
-        let painted = self.drawer.paint(stage, &drops.drops, &self.masks, options, through.as_ref())?;
-        if waits { Ok(Painted::Done(painted.finish()?)) } else { Ok(painted) }
+        let painted = self.drawer.paint(stage, drops, &self.masks, options, through.as_ref())?;
+        if waits { painted.wait() } else { Ok(painted) }
     }
 }
 

@@ -4,9 +4,12 @@ mod error;
 mod scenery;
 mod stepped;
 
+use std::sync::Arc;
+
 use downpour_drop::distribution::{DropSizeDistribution, ExtinctionEfficiency};
 use downpour_drop::fall_speed::TerminalSpeed;
-use downpour_sim::field::{RainField, VisibleDrops};
+use downpour_sim::field::{EyeDrop, FallingDrop, RainField, VisibleDrops};
+use downpour_sim::resolved::Resolved;
 use downpour_sim::shelter::Obstacles;
 use downpour_sim::simulation::Bounce;
 use downpour_sim::view::View;
@@ -15,7 +18,7 @@ use downpour_wind::{UniformWind, WindField};
 use glam::DVec3;
 
 use downpour_render::glass::pane_plane;
-use downpour_render::rain::{DropMasks, MediumOptions, RainMedium};
+use downpour_render::rain::{DropMasks, MediumOptions, PanePlane, RainMedium};
 use downpour_trace::stage::Stage;
 pub use error::ShowerError;
 pub use scenery::{MovingEye, MovingScenery, Scenery, Still};
@@ -24,8 +27,25 @@ use stepped::Stepped;
 /// Method by which the drops are found.
 #[derive(Clone, Debug)]
 enum Form {
-    Closed(Box<RainField>),
+    Closed(Arc<RainField>),
     Stepped(Box<Stepped>),
+}
+
+/// The part of a rain in closed form that a picture shows, for a device that finds its drops.
+#[derive(Clone, Debug)]
+pub struct ShowerView {
+    /// The rain.
+    pub field: Arc<RainField>,
+    /// Time of the picture, s.
+    pub time_s: f64,
+    /// The picture, in the world.
+    pub view: View,
+    /// Limits of the list of drops.
+    pub resolved: Resolved,
+    /// The pane before the eye: there is no rain on the eye's side.
+    pub pane: Option<PanePlane>,
+    /// Droplets that rebound, in the world: these are found already.
+    pub droplets: Vec<FallingDrop>,
 }
 
 /// The rain of a weather.
@@ -91,12 +111,7 @@ impl Shower {
         let mut visible = match &mut self.form {
             Form::Closed(field) => {
                 let view = View { max_drops: self.weather.rain.max_drops, ..stage.view()? };
-                let obstacles = Obstacles {
-                    nodes: &stage.data.nodes,
-                    triangles: &stage.data.triangles,
-                    holes: Some(&stage.data),
-                    origin: stage.origin,
-                };
+                let obstacles = obstacles(stage);
                 let mut visible = field.visible_among(&obstacles, &view, time_s)?;
                 let least = visible.resolved.least_pixels;
                 visible.drops.extend(field.bounced(&obstacles, &view, least, time_s, &self.bounce)?);
@@ -106,10 +121,34 @@ impl Shower {
         };
         // A pane keeps the rain outside.
         if let Some(pane) = pane_plane(&self.weather, &stage.viewpoint)? {
-            let eye = stage.view()?.eye;
-            visible.drops.retain(|drop| !pane.is_before((drop.position - eye).as_vec3()));
+            keep_outside(&mut visible.drops, &pane, stage.view()?.eye);
         }
         Ok(visible)
+    }
+
+    /// What a device is asked for that finds the drops of [`Shower::at`] and has room for `max_room`; `None` for rain that is not in
+    /// closed form.
+    ///
+    /// # Errors
+    /// As [`Shower::at`].
+    pub fn view_at(
+        &self,
+        stage: &Stage,
+        time_s: f64,
+        max_room: u32,
+    ) -> Result<Option<ShowerView>, ShowerError> {
+        let Form::Closed(field) = &self.form else { return Ok(None) };
+        // Room for a quarter more is kept.
+        let max_drops = self.weather.rain.max_drops.min(max_room / 5 * 4);
+        let view = View { max_drops, ..stage.view()? };
+        let resolved = field.resolved(&view, time_s, max_room)?;
+        let least = resolved.least_pixels;
+        let mut droplets = field.bounced(&obstacles(stage), &view, least, time_s, &self.bounce)?;
+        let pane = pane_plane(&self.weather, &stage.viewpoint)?;
+        if let Some(pane) = &pane {
+            keep_outside(&mut droplets, pane, view.eye);
+        }
+        Ok(Some(ShowerView { field: Arc::clone(field), time_s, view, resolved, pane, droplets }))
     }
 
     /// The wind that the drops feel at a time in seconds, in its cells and relative to the stage's origin: none blows in
@@ -128,14 +167,14 @@ impl Shower {
         }
     }
 
-    /// The drops that were not listed for a picture at a time in seconds: `visible` is what [`Shower::at`] gave.
+    /// The drops that were not listed for a picture at a time in seconds: `resolved` has the limits of the list.
     ///
     /// # Errors
     /// As [`Shower::at`].
     pub fn medium(
         &self,
         stage: &Stage,
-        visible: &VisibleDrops,
+        resolved: &Resolved,
         masks: &DropMasks,
         time_s: f64,
     ) -> Result<RainMedium, ShowerError> {
@@ -148,7 +187,7 @@ impl Shower {
             origin: stage.origin,
             pane: pane_plane(&self.weather, &stage.viewpoint)?,
         };
-        Ok(RainMedium::new(&self.law, &visible.resolved, masks, &options)?)
+        Ok(RainMedium::new(&self.law, resolved, masks, &options)?)
     }
 
     /// The rate, mm/h, of the drops about the eye (in closed form) or in the simulated volume, with those that something
@@ -164,6 +203,21 @@ impl Shower {
     }
 }
 
+/// What stops drops in a scene.
+fn obstacles(stage: &Stage) -> Obstacles<'_> {
+    Obstacles {
+        nodes: &stage.data.nodes,
+        triangles: &stage.data.triangles,
+        holes: Some(&stage.data),
+        origin: stage.origin,
+    }
+}
+
+/// Removes the drops that would be on the eye's side of a pane at the time of the picture.
+fn keep_outside(drops: &mut Vec<FallingDrop>, pane: &PanePlane, eye: DVec3) {
+    drops.retain(|drop| !pane.is_before(EyeDrop::new(drop, eye).offset.into()));
+}
+
 /// Terminal speed, m/s, of drops of the effective diameter of a rain.
 pub(crate) fn fall_speed(sizes: &DropSizeDistribution) -> f64 {
     let speeds = TerminalSpeed::new(sizes.options().fall_speed, &sizes.options().air);
@@ -172,7 +226,7 @@ pub(crate) fn fall_speed(sizes: &DropSizeDistribution) -> f64 {
 
 /// Rain in closed form.
 fn closed(law: &DropSizeDistribution, rain: &Rain, wind: UniformWind) -> Result<Form, ShowerError> {
-    Ok(Form::Closed(Box::new(RainField::new(law, rain.seed)?.with_wind(wind))))
+    Ok(Form::Closed(Arc::new(RainField::new(law, rain.seed)?.with_wind(wind))))
 }
 
 /// Bounce of drops that meet a surface.

@@ -4,6 +4,7 @@ use super::puddle_water::PUDDLE_WATER;
 use super::scatter::SCATTER;
 use super::scene::{DATA, SCENE, SKY, SURFACE};
 use super::table::PUDDLE;
+use super::wet::WET;
 use crate::Module;
 use crate::common::RNG;
 use crate::drop::optics::OPTICS;
@@ -101,5 +102,6 @@ pub static PATH: Module = Module {
         &PUDDLE,
         &PUDDLE_WATER,
         &OPTICS,
+        &WET,
     ],
 };

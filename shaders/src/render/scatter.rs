@@ -2,6 +2,7 @@
 
 use super::brdf::BRDF;
 use super::scene::SURFACE;
+use super::wet::WET;
 use crate::Module;
 use crate::common::PACKING;
 
@@ -26,5 +27,5 @@ shared_constants! {
 pub static SCATTER: Module = Module {
     path: "render/scatter.wgsl",
     wgsl: include_str!("../../wgsl/render/scatter.wgsl"),
-    uses: &[&SCATTER_CONSTANTS, &BRDF, &SURFACE, &PACKING],
+    uses: &[&SCATTER_CONSTANTS, &BRDF, &SURFACE, &WET, &PACKING],
 };

@@ -8,6 +8,7 @@ use super::pane_shadow::PANE_SHADOW;
 use super::path::PATH;
 use super::puddle_water::PUDDLE_WATER;
 use super::table::{LIGHT, MATERIAL};
+use super::wet::WET;
 use crate::bvh::BVH;
 use crate::common::PACKING;
 use crate::drop::optics::OPTICS;
@@ -41,6 +42,10 @@ shared_constants! {
         SURFACE_OPEN: f32 = 0.002;
         /// Material flag: the base color is what is seen, without light.
         SCENE_UNLIT: u32 = 8;
+        /// Roughness up to which a surface has no pores.
+        SURFACE_DENSE: f32 = 0.45;
+        /// Roughness from which a surface is porous all over.
+        SURFACE_POROUS: f32 = 0.8;
         /// Texture flag: texels are square roots of linear colors.
         SCENE_ROOTED: u32 = 1;
         /// Texture flag: repeats in u.
@@ -71,6 +76,10 @@ shared_constants! {
         SKYLIGHT_SLACK: f32 = 0.002;
         /// Half the square of the angle, in alphas, at which a neighbor's gloss no longer counts.
         SKYLIGHT_LOBE: f32 = 2.0;
+        /// Difference of two roughnesses, over the larger, from which glosses are not the same in a wet scene.
+        SKYLIGHT_FILM: f32 = 0.6;
+        /// Part of that difference over which they cease to be.
+        SKYLIGHT_FILM_EDGE: f32 = 0.2;
         /// Pixels between the means of which the first wider mean is taken: as far as the weights of a window reach, so that
         /// they add up to the same everywhere.
         SKYLIGHT_STEP: u32 = 4;
@@ -124,7 +133,7 @@ pub static SURFACE: Module = Module {
 pub static SCENE: Module = Module {
     path: "render/scene.wgsl",
     wgsl: include_str!("../../wgsl/render/scene.wgsl"),
-    uses: &[&DATA, &LIGHT, &MATERIAL, &SURFACE, &BRDF, &OPTICS, &PANE_SHADOW, &PUDDLE_WATER],
+    uses: &[&DATA, &LIGHT, &MATERIAL, &SURFACE, &BRDF, &OPTICS, &PANE_SHADOW, &PUDDLE_WATER, &WET],
 };
 
 /// Pixels of the picture and of the capture. Twin: `downpour_trace::trace`.

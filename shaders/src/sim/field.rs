@@ -3,13 +3,24 @@
 use crate::bvh::BVH;
 use crate::common::{INVOCATION, RNG};
 use crate::drop::distribution::DISTRIBUTION;
+use crate::render::scene::SURFACE;
 use crate::{Kernel, Module};
 
 /// Every module of this file.
-pub const MODULES: &[&Module] = &[&EYE_DROP, &FIELD_CONSTANTS, &DRIFT, &FIELD, &SHELTER];
+pub const MODULES: &[&Module] = &[
+    &EYE_DROP,
+    &FIELD_CONSTANTS,
+    &DRIFT,
+    &FIELD,
+    &SHELTER_HIT,
+    &SHELTER,
+    &SHELTER_HIT_HOLES,
+    &SHELTER_AMONG_HOLES,
+];
 
 /// Every kernel of this file.
-pub const KERNELS: &[&Kernel] = &[&FIELD_CLEAR_KERNEL, &FIELD_FIND_KERNEL, &SHELTER_KERNEL];
+pub const KERNELS: &[&Kernel] =
+    &[&FIELD_CLEAR_KERNEL, &FIELD_FIND_KERNEL, &SHELTER_KERNEL, &SHELTER_AMONG_HOLES_KERNEL];
 
 shared_constants! {
     /// Constants of the closed form.
@@ -46,6 +57,8 @@ shared_constants! {
         SHELTER_CUT: f32 = 0.25;
         /// Greatest speed, m/s, at which anything is carried.
         SHELTER_CARRIED: f32 = 60.0;
+        /// Holes on the path of a drop: one through more counts as open.
+        SHELTER_HOLES: u32 = 64;
     }
 }
 
@@ -67,12 +80,30 @@ pub static FIELD: Module = Module {
     uses: &[&FIELD_CONSTANTS, &EYE_DROP, &DRIFT, &INVOCATION, &RNG, &DISTRIBUTION],
 };
 
+/// Hits among triangles. Twin: `downpour_sim::shelter`.
+pub static SHELTER_HIT: Module = Module {
+    path: "sim/shelter_hit.wgsl",
+    wgsl: include_str!("../../wgsl/sim/shelter_hit.wgsl"),
+    uses: &[&BVH],
+};
+
+/// Hits among triangles with holes. Twin: `downpour_sim::shelter`.
+pub static SHELTER_HIT_HOLES: Module = Module {
+    path: "sim/holes/shelter_hit.wgsl",
+    wgsl: include_str!("../../wgsl/sim/holes/shelter_hit.wgsl"),
+    uses: &[&FIELD_CONSTANTS, &BVH, &SURFACE],
+};
+
 /// Drops that nothing has stopped. Twin: `downpour_sim::shelter`.
 pub static SHELTER: Module = Module {
     path: "sim/shelter.wgsl",
     wgsl: include_str!("../../wgsl/sim/shelter.wgsl"),
-    uses: &[&FIELD_CONSTANTS, &EYE_DROP, &DRIFT, &INVOCATION, &BVH],
+    uses: &[&FIELD_CONSTANTS, &EYE_DROP, &DRIFT, &INVOCATION, &BVH, &SHELTER_HIT],
 };
+
+/// The same among triangles with holes.
+pub static SHELTER_AMONG_HOLES: Module =
+    Module { uses: &[&FIELD_CONSTANTS, &EYE_DROP, &DRIFT, &INVOCATION, &BVH, &SHELTER_HIT_HOLES], ..SHELTER };
 
 /// One invocation per place in the list.
 pub static FIELD_CLEAR_KERNEL: Kernel =
@@ -84,3 +115,7 @@ pub static FIELD_FIND_KERNEL: Kernel =
 
 /// One invocation per place in the list.
 pub static SHELTER_KERNEL: Kernel = Kernel { entry: "main_shelter", module: &SHELTER, workgroup: [64, 1, 1] };
+
+/// One invocation per place in the list.
+pub static SHELTER_AMONG_HOLES_KERNEL: Kernel =
+    Kernel { entry: "main_shelter", module: &SHELTER_AMONG_HOLES, workgroup: [64, 1, 1] };

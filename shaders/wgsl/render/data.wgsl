@@ -28,7 +28,8 @@ struct RenderFrame {
     pane: u32,
     // Pass of the means over neighboring pixels.
     skylight_pass: u32,
-    unused_1: u32,
+    // Row of the table where the wetness of surfaces begins; 0: all is dry.
+    wetness: u32,
     unused_2: u32,
     // Width, height and first texel of each level of the sky.
     sky_levels: array<vec4u, SCENE_SKY_LEVELS>,

@@ -1,5 +1,6 @@
 // Materials and textures. Rows of a material in the table: base color; emission and metalness; roughness, strength of normals and of
-// occlusion, cutoff; flags, transmission and index of refraction; texture slots. Rows of a slot: 2 x 2 transform; offset, set of
+// occlusion, cutoff; flags, transmission, index of refraction and
+// porosity; texture slots. Rows of a slot: 2 x 2 transform; offset, set of
 // coordinates and flags; width, height, first texel and levels.
 // Twin: downpour_trace::material.
 
@@ -19,6 +20,8 @@ struct RenderMaterial {
     // Fraction of light that passes a thin dielectric.
     transmission: f32,
     ior: f32,
+    // Porosity; below 0: by the roughness.
+    porosity: f32,
     // Slots of base color, metallic-roughness, normal and emission, then of occlusion and transmission; SCENE_NONE for none.
     maps: vec4u,
     more: vec2u,
@@ -44,9 +47,9 @@ fn material_load(index: u32) -> RenderMaterial {
     let glow = bitcast<vec4f>(render_table[row + 1u]);
     let look = bitcast<vec4f>(render_table[row + 2u]);
     let through = render_table[row + 3u];
-    let optics = bitcast<vec2f>(through.yz);
+    let optics = bitcast<vec3f>(through.yzw);
     return RenderMaterial(
-        base, glow.rgb, glow.w, look.x, look.y, look.z, look.w, through.x, optics.x, optics.y,
+        base, glow.rgb, glow.w, look.x, look.y, look.z, look.w, through.x, optics.x, optics.y, optics.z,
         render_table[row + 4u], render_table[row + 5u].xy,
     );
 }

@@ -135,7 +135,12 @@ fn path_plan(surface: Surface, view: vec3f, footprint: f32, told: bool, free: bo
     // Neighboring pixels mirror directions as far apart as this.
     let spread = 2.0 * surface.bend * footprint / max(cosine, 0.2);
     let sharp = surface.roughness < PATH_SHARP;
-    let gloss = scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
+    var gloss = scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
+    if WET_SURFACES && surface.film > 0.0 {
+        // What is above a film is open to the sky.
+        let coat = wet_coat(surface.normal_reflectance, surface.roughness, cosine, false);
+        gloss += (coat - gloss) * surface.film;
+    }
     let body = path_albedo(surface);
     let rays = render_frame.sky_rays;
     let drawn = told && free && !sharp && rays > 0u;
@@ -165,7 +170,7 @@ fn path_water_surface(start: vec3f, along: vec3f, distance: f32, ripple: vec3f) 
     // Beckmann's alpha squared is the variance of the slope.
     let roughness = clamp(sqrt(sqrt(ripple.z)), 0.0, 1.0);
     let position = start + along * distance;
-    return Surface(position, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0);
+    return Surface(position, 1.0, normal, roughness, up, 1.0, none, 0u, vec3f(PUDDLE_WATER_NORMAL), 0.0, none, 0.0, 0.0, 0.0);
 }
 
 // A ray that water mirrors: drawn from its ripples. Its weight is Fresnel's.
@@ -194,6 +199,7 @@ fn path_submerged(surface: Surface, clear: f32, scattering_albedo: vec3f) -> Sur
     wet.diffuse = puddle_water_albedo(surface.diffuse * clear + scattering_albedo * (1.0 - clear));
     wet.normal_reflectance = puddle_water_reflectance(surface.normal_reflectance) * clear;
     wet.emission = surface.emission * clear;
+    wet.film = 0.0;
     return wet;
 }
 
@@ -205,6 +211,7 @@ fn path_secondary(surface: Surface, roughness: f32) -> Surface {
         seen.diffuse = surface.diffuse + surface.normal_reflectance - gloss;
         seen.normal_reflectance = gloss;
         seen.roughness = 1.0;
+        seen.film = 0.0;
     }
     return seen;
 }
@@ -327,6 +334,10 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
     var clear = 1.0;
     var level = 0.0;
     var under = false;
+    var wet = RenderWet();
+    if WET_SURFACES {
+        wet = wet_load();
+    }
     for (var layer = 0u; layer < SCENE_LAYERS; layer += 1u) {
         // Turn 0 meets the surface; the others are rays that look for its light. One text for all of them: a shader holds
         // the hierarchy's walk and the materials once.
@@ -397,6 +408,17 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     break;
                 }
                 var found = surface_at(hit, from_position, ray.along, ray.width);
+                var wetness = 0.0;
+                if WET_SURFACES && bounce == 0u && !under {
+                    wetness = wet_exposure(found, wet);
+                }
+                if WET_SURFACES && wetness > 0.0 {
+                    var footprint = WET_FAR;
+                    if turn == 0u {
+                        footprint = ray.width * hit.distance / sqrt(max(-dot(found.facet, ray.along), 0.02));
+                    }
+                    found = wet_surface(found, wetness, ray.along, wet_relief(found.position + wet.shift, footprint));
+                }
                 // All lamps for the first surface; for others, some sampled lamps.
                 var lamps = 0u;
                 var standoff = 0.0;

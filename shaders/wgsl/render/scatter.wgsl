@@ -90,6 +90,10 @@ fn scatter_draw(
     ray.width = min(sqrt(SCATTER_DISK * fraction / density), SCATTER_MAX_WIDTH);
     if chance < 1.0 {
         ray.diffuse = (vec3f(1.0) - fresnel) * (cosine / density);
+        if WET_SURFACES && surface.film > 0.0 {
+            let under = wet_out(surface, cosine_view) * wet_in(surface, cosine);
+            ray.diffuse += (under - vec3f(1.0) + fresnel) * (surface.film * cosine / density);
+        }
     }
     if chance > 0.0 {
         let lobe = brdf_distribution(alpha, cosine_half) * brdf_visibility(alpha, cosine_view, cosine) * cosine;

@@ -96,14 +96,22 @@ fn scene_arrival(index: u32, surface: Surface, standoff: f32, under: vec2f) -> S
 }
 
 // Light of one lamp on a surface, toward the viewer, if nothing is between them.
-fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival) -> vec3f {
+// `out`: wet_out toward the viewer, of a surface with a film.
+fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f) -> vec3f {
     if dot(surface.facet, light.direction) <= 0.0 {
         return vec3f(0.0);
     }
     let alpha = max(surface.roughness * surface.roughness, SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS);
-    return light.irradiance * brdf_direct(
-        surface.diffuse * light.diffuse, surface.normal_reflectance, alpha, surface.normal, view, light.direction,
-    );
+    var base = surface.diffuse * light.diffuse;
+    var under = vec3f(0.0);
+    if WET_SURFACES && surface.film > 0.0 {
+        let cosine = max(dot(surface.normal, light.direction), 0.0);
+        under = base * out * wet_in(surface, cosine) * (surface.film * cosine);
+        base *= 1.0 - surface.film;
+    }
+    return light.irradiance * (under + brdf_direct(
+        base, surface.normal_reflectance, alpha, surface.normal, view, light.direction,
+    ));
 }
 
 // Light of lamps and sun on a surface, toward the viewer. With `draws` of 0, or of at least as many as there are, all lamps
@@ -117,11 +125,15 @@ fn scene_direct(surface: Surface, view: vec3f, draws: u32, chance: f32, standoff
     var run = 0.0;
     var next = 0.0;
     var step = 0.0;
+    var out = vec3f(1.0);
+    if WET_SURFACES && surface.film > 0.0 {
+        out = wet_out(surface, max(dot(surface.normal, view), BRDF_GRAZING));
+    }
     // First what all give together, then the rays.
     for (var k = 0u; k < 2u * count; k += 1u) {
         let index = k % count;
         let arrival = scene_arrival(index, surface, standoff, under);
-        let lit = scene_lamp(surface, view, arrival);
+        let lit = scene_lamp(surface, view, arrival, out);
         let fraction = light_weight(lit);
         if k < count {
             total += fraction;

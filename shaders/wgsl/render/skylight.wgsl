@@ -54,6 +54,12 @@ fn skylight_slot(pixel: u32, slot: u32) -> SkylightSlot {
     return SkylightSlot(found.light, found.slack, normal, found.roughness, found.normal, found.position);
 }
 
+// Agreement of the roughness of two glosses, 0 to 1: a film and the dry surface beside it mirror different things.
+fn skylight_film(own: f32, other: f32) -> f32 {
+    let apart = abs(own - other) / max(max(own, other), 1.0e-6);
+    return clamp((SKYLIGHT_FILM - apart) / SKYLIGHT_FILM_EDGE, 0.0, 1.0);
+}
+
 // Degree to which two pixels show the same surface, 0 to 1.
 fn skylight_same(own: SkylightSlot, other: SkylightSlot) -> f32 {
     if other.slack <= 0.0 || (own.roughness > 0.0) != (other.roughness > 0.0) {
@@ -63,6 +69,9 @@ fn skylight_same(own: SkylightSlot, other: SkylightSlot) -> f32 {
     let near = max(1.0 - off / own.slack, 0.0);
     let cosine = dot(own.direction, other.direction);
     if own.roughness > 0.0 {
+        if render_frame.wetness > 0u {
+            return skylight_lobe(cosine, own.roughness) * near * skylight_film(own.roughness, other.roughness);
+        }
         return skylight_lobe(cosine, own.roughness) * near;
     }
     let agrees = max(cosine, 0.0);

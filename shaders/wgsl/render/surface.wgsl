@@ -25,6 +25,10 @@ struct Surface {
     emission: vec3f,
     // Curvature, 1/m: how much the normal turns per meter.
     bend: f32,
+    // Fraction that soaks up rain and darkens.
+    porosity: f32,
+    // Fraction that a film of water covers.
+    film: f32,
 }
 
 // A texture of a material's row, or white.
@@ -116,6 +120,19 @@ fn surface_bend(hit: SurfaceHit) -> f32 {
     return sqrt(turned / max(length, 1.0e-20));
 }
 
+// Fraction of a surface that soaks up rain: its material's own where that is not below 0; else rough stone, plaster and cloth do,
+// metal, smooth paint and leaves do not.
+fn surface_porosity(own: f32, flags: u32, roughness: f32, metallic: f32) -> f32 {
+    if own >= 0.0 {
+        return min(own, 1.0);
+    }
+    if (flags & SCENE_MASKED) != 0u {
+        return 0.0;
+    }
+    let x = clamp((roughness - SURFACE_DENSE) / (SURFACE_POROUS - SURFACE_DENSE), 0.0, 1.0);
+    return x * x * (3.0 - 2.0 * x) * (1.0 - metallic);
+}
+
 // Everything that shading needs at a hit.
 fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Surface {
     let first = hit.triangle * 3u;
@@ -179,5 +196,7 @@ fn surface_at(hit: SurfaceHit, origin: vec3f, direction: vec3f, cone: f32) -> Su
         clamp(transmission, 0.0, 1.0) * (1.0 - metallic),
         emission,
         surface_bend(hit),
+        surface_porosity(material.porosity, flags, roughness, metallic),
+        0.0,
     );
 }

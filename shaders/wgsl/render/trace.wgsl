@@ -68,6 +68,14 @@ fn trace_unpack(slot: TraceSlot) -> PathSlot {
     );
 }
 
+// True if the gloss of a sample of a wet scene and that of the sum are of a film and of what is dry.
+fn trace_apart(sum: TraceSum, sample: PathSlot) -> bool {
+    if render_frame.wetness == 0u || min(sum.slot.roughness, sample.roughness) <= 0.0 {
+        return false;
+    }
+    return abs(sum.slot.roughness - sample.roughness) > SKYLIGHT_FILM * max(sum.slot.roughness, sample.roughness);
+}
+
 // The sum with a sample. Where it is, is where the first sample is that has some.
 fn trace_add(sum: TraceSum, sample: PathSlot) -> TraceSum {
     if sample.slack <= 0.0 {
@@ -79,6 +87,16 @@ fn trace_add(sum: TraceSum, sample: PathSlot) -> TraceSum {
         next.slot = sample;
         next.slot.light = before.light;
         next.slot.factor = before.factor;
+    } else if trace_apart(sum, sample) {
+        // What a film shows is seen; what is dry beside it shows little.
+        next.slot.factor += sample.factor;
+        if sample.roughness < sum.slot.roughness {
+            next.weight = max(path_max(sample.factor), 1.0e-6);
+            next.slot = sample;
+            next.slot.light = sample.light * next.weight;
+            next.slot.factor = sum.slot.factor + sample.factor;
+        }
+        return next;
     }
     // Light of a sample on another surface is not kept apart: it is taken to be the same.
     let off = abs(dot(next.slot.normal, sample.position - next.slot.position));

@@ -8,13 +8,14 @@ struct EyeDrop {
     diameter: f32,
     // m/s.
     velocity: vec3f,
-    // Its id in 32 bits.
+    // Both halves of its id, one over the other: 32 bits from which its oscillation is drawn.
     id: u32,
     // When it is there, s from the time of the picture.
     present: vec2f,
     // Terminal speed, m/s.
     speed: f32,
-    unused: u32,
+    // Lower half of its id.
+    id_low: u32,
 }
 
 // A vector turned about an axis by the axis's length, in radians.

@@ -58,6 +58,13 @@ struct FieldFrame {
     classes: u32,
     columns: u32,
     room: u32,
+    // A pane before the eye: its unit normal, away from the eye, and its distance, m; 0 for none.
+    pane: vec4f,
+    // Places of the list before the first that is searched for.
+    first: u32,
+    unused_1: u32,
+    unused_2: u32,
+    unused_3: u32,
 }
 
 @group(0) @binding(0) var<uniform> field_frame: FieldFrame;
@@ -169,11 +176,15 @@ fn field_carried(speed: f32) -> FieldCarried {
     return FieldCarried(drift, wind);
 }
 
-// True if the path of a drop touches the picture, and it is between the least distance and that at which it is resolved.
+// True if the path of a drop touches the picture, it is between the least distance and that at which it is resolved, and beyond the
+// pane if there is one.
 fn field_shows(drop: EyeDrop) -> bool {
     let distance = sqrt(dot(drop.offset, drop.offset));
     let range = min(drop.diameter * field_frame.per_diameter, field_frame.farthest);
     if distance < field_frame.nearest || distance > range {
+        return false;
+    }
+    if dot(field_frame.pane.xyz, drop.offset) < field_frame.pane.w {
         return false;
     }
     let half_time = field_frame.half_shutter;
@@ -224,13 +235,13 @@ fn field_chain(kind: FieldClass, column: vec2i, key: vec2u, index: u32) {
             place.z ^ place.w,
             vec2f(-FIELD_ALWAYS, FIELD_ALWAYS),
             speed,
-            0u,
+            place.w,
         );
         atomicAdd(&field_found[1], 1u);
         if field_shows(drop) {
             let slot = atomicAdd(&field_found[0], 1u);
             if slot < field_frame.room {
-                field_drops[slot] = drop;
+                field_drops[field_frame.first + slot] = drop;
             }
         }
     }
@@ -242,8 +253,8 @@ fn main_field_clear(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     if index < 2u {
         atomicStore(&field_found[index], 0u);
     }
-    if index < arrayLength(&field_drops) {
-        field_drops[index].diameter = 0.0;
+    if index < field_frame.room {
+        field_drops[field_frame.first + index].diameter = 0.0;
     }
 }
 

@@ -2,6 +2,7 @@
 // the time.
 // Method: the path of a drop is followed backwards from the drop to above all obstacles. In a steady wind it is one straight line;
 // else it is divided at whole quarters of a second. During the exposure it is straight, as it is drawn.
+// What stops drops is asked of `shelter_hit`, of which there are two: among triangles, and among triangles with holes.
 // Twin: downpour_sim::shelter.
 
 struct ShelterFrame {
@@ -16,22 +17,22 @@ struct ShelterFrame {
     high: vec3f,
     // Number of quarters of a second that paths are followed back; 0 in a steady wind.
     cuts: u32,
-    // Places in the list.
+    // Places of the list that are asked for, and the first of them.
     room: u32,
+    first: u32,
     unused_1: u32,
     unused_2: u32,
-    unused_3: u32,
 }
 
-@group(0) @binding(0) var<uniform> shelter_frame: ShelterFrame;
-@group(0) @binding(3) var<storage, read_write> shelter_drops: array<EyeDrop>;
+@group(0) @binding(6) var<uniform> shelter_frame: ShelterFrame;
+@group(0) @binding(7) var<storage, read_write> shelter_drops: array<EyeDrop>;
 // By terminal speed, relative to the drift up to the time of the picture: the drift up to the opening of the shutter, then up to
 // each whole quarter of a second before, m.
-@group(0) @binding(4) var<storage, read> shelter_drift: array<vec4f>;
+@group(0) @binding(8) var<storage, read> shelter_drift: array<vec4f>;
 
 // True if nothing is hit within a distance.
 fn shelter_clear(start: vec3f, direction: vec3f, distance: f32) -> bool {
-    return bvh_hit(start, direction, SHELTER_CLEAR, min(distance, BVH_FAR)).distance < 0.0;
+    return shelter_hit(start, direction, SHELTER_CLEAR, min(distance, BVH_FAR)) < 0.0;
 }
 
 // Drift of drops of a terminal speed: row 0 up to the opening of the shutter, others up to the quarters before.
@@ -79,8 +80,9 @@ fn shelter_is_open(start: vec3f, at: vec3f, speed: f32, velocity: vec3f) -> bool
 
 @compute @workgroup_size(64, 1, 1)
 fn main_shelter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = invocation_index(id, groups);
-    if index >= shelter_frame.room || shelter_drops[index].diameter <= 0.0 {
+    let number = invocation_index(id, groups);
+    let index = shelter_frame.first + number;
+    if number >= shelter_frame.room || shelter_drops[index].diameter <= 0.0 {
         return;
     }
     let drop = shelter_drops[index];
@@ -94,10 +96,9 @@ fn main_shelter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         return;
     }
     if half_time > 0.0 {
-        let step = 2.0 * half_time;
-        let met = bvh_hit(start, drop.velocity, 0.0, step);
-        if met.distance >= 0.0 {
-            shelter_drops[index].present.y = met.distance - half_time;
+        let met = shelter_hit(start, drop.velocity, 0.0, 2.0 * half_time);
+        if met >= 0.0 {
+            shelter_drops[index].present.y = met - half_time;
         }
     }
 }

@@ -1,21 +1,28 @@
-//! `shaders/wgsl/sim/{field,shelter}.wgsl` against `downpour_sim::field` and `downpour_sim::shelter`.
+//! `shaders/wgsl/sim/{field,shelter,shelter_hit}.wgsl` against `downpour_sim::field` and `downpour_sim::shelter`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use downpour_bvh::Bvh;
 use downpour_drop::distribution::{DropSizeDistribution, DropSizeLaw};
 use downpour_gpu::{BufferPool, Gpu, GpuError};
+use downpour_math::rng::rng_pcg4d;
+use downpour_render::camera::Viewpoint;
 use downpour_shaders::Kernel;
+use downpour_shaders::render::scene::{SCENE_DOUBLE_SIDED, SCENE_MASKED};
 use downpour_shaders::sim::field::{
-    DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_KERNEL,
+    DRIFT, EYE_DROP, FIELD, FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
 };
 use downpour_sim::field::chain::{FieldTime, field_between, field_fallen, field_fraction, field_part};
 use downpour_sim::field::{EyeDrop, FallingDrop, RainField, drift_position, eye_drop_turned};
-use downpour_sim::gpu::{FieldPipeline, GpuSimError, ObstaclesOnGpu};
-use downpour_sim::shelter::Obstacles;
+use downpour_sim::gpu::{FieldPipeline, FieldSearch, GpuSimError, HolesOnGpu, ObstaclesOnGpu};
+use downpour_sim::shelter::{Holes, Obstacles};
 use downpour_sim::view::View;
+use downpour_trace::builder::{MeshPart, SceneBuilder};
+use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::gpu::ScenePipeline;
+use downpour_trace::material::{MaterialLook, TextureUse};
+use downpour_trace::sky_light::SkyLight;
 use downpour_wind::{Gusts, Keyed, UniformWind, Wind, WindPart};
-use glam::{DVec3, Vec3};
+use glam::{Affine3A, DVec3, Vec3};
 
 use crate::Domain::{AnyWord, Below, Made, Uniform, Unit3};
 use crate::compare::{Cpu, Gpu as FromGpu};
@@ -95,15 +102,53 @@ fn uniform(speed: &Keyed<f64>, gusts: Option<Gusts>) -> UniformWind {
     Wind::new(vec![part], gusts, None).expect("in range").uniform().expect("in range")
 }
 
-/// A roof, and a step that drops meet while the shutter is open.
-fn obstacles() -> Bvh {
-    let quad = |height: f32, [left, right]: [f32; 2], [far, near]: [f32; 2]| {
+/// A roof, and a step that drops meet while the shutter is open; with holes in the roof if they are wanted.
+fn obstacles(has_holes: bool) -> SceneData {
+    let mut builder = SceneBuilder::new();
+    // Holes of half a meter, one texel each.
+    let alpha = |k: u32| if rng_pcg4d([k, 3, 5, 7])[0] & 1 == 0 { 255 } else { 0 };
+    let texels: Vec<[u8; 4]> = (0..64).map(|k| [255, 255, 255, alpha(k)]).collect();
+    let leaves = builder.texture(8, 8, &texels, TextureUse::Color);
+    let leaves = builder.add_slot(leaves);
+    let looks = [
+        MaterialLook::default(),
+        MaterialLook {
+            flags: SCENE_MASKED | SCENE_DOUBLE_SIDED,
+            maps: [Some(leaves), None, None, None, None, None],
+            ..MaterialLook::default()
+        },
+    ];
+    let [solid, leaves] = looks.map(|look| builder.add_material(look));
+    let mut quad = |height: f32, [left, right]: [f32; 2], [far, near]: [f32; 2], material: u32| {
         let corner = |x, z| [x, height, z];
-        let [a, b, c, d] = [corner(left, far), corner(right, far), corner(right, near), corner(left, near)];
-        [[a, b, c], [a, c, d]]
+        let positions = [corner(left, far), corner(right, far), corner(right, near), corner(left, near)];
+        let part = MeshPart {
+            positions: &positions,
+            normals: None,
+            tangents: None,
+            uvs: [Some(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), None],
+            colors: None,
+            indices: &[0, 1, 2, 0, 2, 3],
+            material,
+        };
+        builder.add_mesh(&part, &Affine3A::IDENTITY);
     };
-    let all = [quad(3.0, [-2.0, 2.0], [-6.0, -2.0]), quad(0.9, [-6.0, 6.0], [-9.0, 0.0])];
-    Bvh::new(&all.concat())
+    let roof = if has_holes { leaves } else { solid };
+    quad(3.0, [-2.0, 2.0], [-6.0, -2.0], roof);
+    if has_holes {
+        // Two on a path.
+        quad(2.6, [-2.5, 1.5], [-5.5, -1.5], leaves);
+    }
+    quad(0.9, [-6.0, 6.0], [-9.0, 0.0], solid);
+    builder.build(&SkyLight::uniform([1.0; 3]))
+}
+
+/// A pane half a meter before the eye.
+const PANE: [f32; 4] = [0.0, 0.6, -0.8, 0.5];
+
+/// Drops that are known before the search.
+fn known() -> [EyeDrop; 3] {
+    [1, 2, 3].map(|id| EyeDrop { diameter: 1.0e-3, id, offset: [0.0, 0.0, -2.0], ..EyeDrop::default() })
 }
 
 /// What is special about a picture.
@@ -113,6 +158,12 @@ struct Kind {
     time_s: f64,
     shutter_s: f64,
     far: bool,
+    has_holes: bool,
+    pane: Option<[f32; 4]>,
+}
+
+fn kind(wind: fn() -> UniformWind, time_s: f64, shutter_s: f64) -> Kind {
+    Kind { wind, time_s, shutter_s, far: false, has_holes: false, pane: None }
 }
 
 /// Drops of a picture, as the CPU and the device find them.
@@ -141,19 +192,25 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
         turning: DVec3::new(0.1, 0.8, 0.0),
         ..View::default()
     };
-    let bvh = obstacles();
-    let on_cpu = Obstacles { nodes: &bvh.nodes, triangles: &bvh.triangles, holes: None, origin };
+    let scene = obstacles(kind.has_holes);
+    let holes = kind.has_holes.then_some(&scene as &dyn Holes);
+    let on_cpu = Obstacles { nodes: &scene.nodes, triangles: &scene.triangles, holes, origin };
+    let [x, y, z, distance] = kind.pane.unwrap_or_default();
+    let is_outside = |drop: &EyeDrop| Vec3::new(x, y, z).dot(drop.offset.into()) >= distance;
     let listed = |drops: Vec<FallingDrop>| -> Vec<EyeDrop> {
-        drops.iter().map(|drop| EyeDrop::new(drop, view.eye)).collect()
+        drops.iter().map(|drop| EyeDrop::new(drop, view.eye)).filter(is_outside).collect()
     };
     let all = listed(field.visible(&view, kind.time_s).expect("in range").drops);
     let open = listed(field.visible_among(&on_cpu, &view, kind.time_s).expect("in range").drops);
     let ids: BTreeSet<(u32, u32)> = open.iter().map(key).collect();
-    let root = bvh.nodes[0];
-    let nodes = gpu.storage_buffer("nodes", &bvh.nodes)?;
-    let triangles = gpu.storage_buffer("triangles", &bvh.triangles)?;
+    let root = scene.nodes[0];
+    let viewpoint = Viewpoint { eye: Vec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y: 0.9 };
+    let frame = RenderFrame::new(&scene, &viewpoint, [8, 8], 1, 0, 0).expect("a frame");
+    let lighting = ScenePipeline::new(gpu)?.upload(&scene)?.lighting(gpu, &frame)?;
+    let [_, nodes, triangles, corners, table, texels] = &lighting.buffers;
     let bounds = Some([Vec3::from(root.low), Vec3::from(root.high)]);
-    let obstacles = ObstaclesOnGpu { nodes: &nodes, triangles: &triangles, bounds, origin };
+    let holes = kind.has_holes.then_some(HolesOnGpu { corners, table, texels });
+    let obstacles = ObstaclesOnGpu { nodes, triangles, holes, bounds, origin };
     let pipeline = FieldPipeline::new(gpu)?;
     let mut on_gpu = pipeline.upload(&field)?;
     let of_gpu = |error| match error {
@@ -163,17 +220,26 @@ fn found(gpu: &Gpu, kind: Kind) -> Result<Found, GpuError> {
     // What a picture with more drops leaves in the same buffers must not show.
     let (pool, most) = (BufferPool::new(gpu), 1 << 20);
     let more = View { far: 16.0, velocity: DVec3::ZERO, ..view };
-    let before = pipeline
-        .prepare(&pool, (&field, &mut on_gpu), &obstacles, &more, kind.time_s + 0.3, most)
-        .map_err(of_gpu)?;
+    let search =
+        FieldSearch { view: &more, time_s: kind.time_s + 0.3, max_room: most, pane: None, known: &[] };
+    let before = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search).map_err(of_gpu)?;
     gpu.submit(&before.dispatches())?;
     pool.begin_frame();
-    let pass = pipeline
-        .prepare(&pool, (&field, &mut on_gpu), &obstacles, &view, kind.time_s, most)
-        .map_err(of_gpu)?;
+    let known = known();
+    let search =
+        FieldSearch { view: &view, time_s: kind.time_s, max_room: most, pane: kind.pane, known: &known };
+    let pass = pipeline.prepare(&pool, (&field, &mut on_gpu), &obstacles, &search).map_err(of_gpu)?;
     gpu.submit(&pass.dispatches())?;
-    let (drops, [found, tried]) = pass.read()?;
-    assert!(found >= drops.len() as u32 && found <= pass.room() && tried > found, "{found} of {tried}");
+    let (mut drops, [found, tried]) = pass.read()?;
+    assert_eq!(drops[..3], known, "known drops stay where they are");
+    drops.drain(..3);
+    assert!(
+        found >= drops.len() as u32
+            && found <= pass.room()
+            && pass.places() == pass.room() + 3
+            && tried > found,
+        "{found} of {tried}"
+    );
     assert!(open.len() > 3000 && drops.len() > 3000, "{} drops", drops.len());
     Ok(Found {
         all: all.into_iter().map(|drop| (drop, ids.contains(&key(&drop)))).collect(),
@@ -218,7 +284,7 @@ fn stopped_case(gpu: &Gpu, kind: Kind) -> Result<Run, GpuError> {
     let Found { all, gpu, .. } = found(gpu, kind)?;
     let stopped: Vec<&EyeDrop> = all.iter().filter(|(_, open)| !open).map(|(drop, _)| drop).collect();
     assert!(stopped.len() > 1000, "{} drops are stopped", stopped.len());
-    // Below the roof's height, where there is something to be decided.
+    // Below the roofs' height, where there is something to be decided.
     let low = all.iter().filter(|(drop, open)| *open && drop.offset[1] < 1.5).map(|(drop, _)| drop);
     let chosen: Vec<&EyeDrop> = stopped.iter().copied().zip(low).flat_map(|(a, b)| [a, b]).collect();
     assert!(chosen.len() > 2000, "{} drops", chosen.len());
@@ -270,32 +336,36 @@ pub(super) fn kernels() -> Vec<KernelCase> {
             .with_outliers(1.0e-4),
         run,
     };
-    let shelter = |name, run| {
+    let among = |kernel, name, run| {
         let tol =
             Tol::absolute(0.02, "flags, and ms of drops that meet a plane; paths at an edge may differ");
-        KernelCase::new(name, &SHELTER_KERNEL, tol.with_outliers(4.0e-3), run)
+        KernelCase::new(name, kernel, tol.with_outliers(4.0e-3), run)
     };
+    let shelter = |name, run| among(&SHELTER_KERNEL, name, run);
+    let leaves = |name, run| among(&SHELTER_AMONG_HOLES_KERNEL, name, run);
     vec![
-        of("main_field_find: steady wind", |gpu| {
-            case(gpu, Kind { wind: steady, time_s: 7.125, shutter_s: 1.0 / 60.0, far: false })
-        }),
-        of("main_field_find: gusts", |gpu| {
-            case(gpu, Kind { wind: gusty, time_s: 11.3, shutter_s: 1.0 / 60.0, far: false })
-        }),
+        of("main_field_find: steady wind", |gpu| case(gpu, kind(steady, 7.125, 1.0 / 60.0))),
+        of("main_field_find: gusts", |gpu| case(gpu, kind(gusty, 11.3, 1.0 / 60.0))),
         of("main_field_find: frozen, far away and late", |gpu| {
-            case(gpu, Kind { wind: still, time_s: 987_654.321, shutter_s: 0.0, far: true })
+            case(gpu, Kind { far: true, ..kind(still, 987_654.321, 0.0) })
         }),
-        of("main_field_find: before time 0", |gpu| {
-            case(gpu, Kind { wind: steady, time_s: -3.4, shutter_s: 0.02, far: true })
-        }),
+        of("main_field_find: before time 0", |gpu| case(gpu, Kind { far: true, ..kind(steady, -3.4, 0.02) })),
         shelter("main_shelter: steady wind", |gpu| {
-            stopped_case(gpu, Kind { wind: steady, time_s: 7.125, shutter_s: 1.0 / 60.0, far: true })
+            stopped_case(gpu, Kind { far: true, ..kind(steady, 7.125, 1.0 / 60.0) })
         }),
-        shelter("main_shelter: gusts", |gpu| {
-            stopped_case(gpu, Kind { wind: gusty, time_s: 11.3, shutter_s: 1.0 / 60.0, far: false })
+        shelter("main_shelter: gusts", |gpu| stopped_case(gpu, kind(gusty, 11.3, 1.0 / 60.0))),
+        shelter("main_shelter: landing", |gpu| landing_case(gpu, kind(gusty, 11.3, 0.1))),
+        of("main_field_find: behind a pane", |gpu| {
+            case(gpu, Kind { pane: Some(PANE), ..kind(gusty, 11.3, 1.0 / 60.0) })
         }),
-        shelter("main_shelter: landing", |gpu| {
-            landing_case(gpu, Kind { wind: gusty, time_s: 11.3, shutter_s: 0.1, far: false })
+        leaves("main_shelter: holes, steady wind", |gpu| {
+            stopped_case(gpu, Kind { far: true, has_holes: true, ..kind(steady, 7.125, 1.0 / 60.0) })
+        }),
+        leaves("main_shelter: holes, gusts", |gpu| {
+            stopped_case(gpu, Kind { has_holes: true, ..kind(gusty, 11.3, 1.0 / 60.0) })
+        }),
+        leaves("main_shelter: holes, landing", |gpu| {
+            landing_case(gpu, Kind { has_holes: true, ..kind(gusty, 11.3, 0.1) })
         }),
     ]
 }

@@ -26,7 +26,7 @@ use downpour_trace::scatter::{
 use downpour_trace::scene::SceneView;
 use downpour_trace::sky::sky_coordinates;
 use downpour_trace::sky_light::SkyLight;
-use downpour_trace::skylight::{skylight_hat, skylight_lobe};
+use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe};
 use downpour_trace::texture::texture_wrap;
 use glam::{Affine3A, Vec3};
 
@@ -188,6 +188,9 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::absolute(1.0e-4, "a difference of cosines near 1, over the fourth power of 0.3"),
             |a| skylight_lobe(a.f32(), a.f32()).words(),
         ),
+        FunctionCase::new("skylight_film", &SKYLIGHT, &[fraction, fraction], FORMULA, |a| {
+            skylight_film(a.f32(), a.f32()).words()
+        }),
         FunctionCase::new(
             "skylight_hat",
             &SKYLIGHT,
@@ -333,7 +336,7 @@ pub(super) fn kernels() -> Vec<KernelCase> {
         name,
         kernel: &TRACE_KERNEL,
         with: &[],
-        overrides: &[("SCENE_PANE", 0.0), ("SCENE_WET", 0.0)],
+        overrides: &[("SCENE_PANE", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 0.0)],
         text: None,
         tol: PICTURE,
         run,

@@ -188,7 +188,10 @@ fn water(input: &Input, stage: &Stage) -> Result<Vec<Entry>, Failure> {
         ground.iter().flat_map(WetGround::maps).map(|map| f64::from(of(map))).sum::<f64>()
     };
     let deepest = ground.iter().flat_map(WetGround::maps).map(PuddleMap::deepest_m).fold(0.0, f32::max);
+    let weather = &input.weather;
+    let wetness = weather.wetness.at(&weather.rain, 0.0).map_or(0.0, |at| at.level());
     Ok(vec![
+        Entry::new("wetness", "wetness of level ground in the rain", Datum::Computed(wetness, 3), ""),
         count("puddles", "rectangles with puddles", input.weather.puddles.len()),
         Entry::new("puddle_area_m2", "area under water", Datum::Computed(sum(PuddleMap::area_m2), 4), "m^2"),
         Entry::new(

@@ -42,6 +42,8 @@ pub struct Material {
     pub transmission_texture: Option<TextureRef>,
     /// Index of refraction; 1 or more, or 0 for a surface that reflects all light as the extension allows.
     pub ior: f32,
+    /// Fraction that soaks up rain, in [0, 1]: `porosity` of the material's `extras`. `None`: by roughness and metalness.
+    pub porosity: Option<f32>,
 }
 
 /// Meaning of the alpha of the base color.
@@ -107,6 +109,7 @@ impl Default for Material {
             transmission: 0.0,
             transmission_texture: None,
             ior: 1.5,
+            porosity: None,
         }
     }
 }

@@ -205,6 +205,12 @@ fn rows() -> Vec<Row> {
             "emissiveStrength: -1",
         ),
         (
+            "/materials",
+            json!([{"extras": {"porosity": "wet"}}]),
+            2,
+            "materials[0].extras.porosity: \"wet\"; allowed: a number",
+        ),
+        (
             "/textures",
             json!([{"source": 0}]),
             2,

@@ -40,7 +40,8 @@ fn every_factor_is_read() {
             "KHR_materials_transmission": {"transmissionFactor": 0.875},
             "KHR_materials_unlit": {},
             "KHR_materials_clearcoat": {"clearcoatFactor": 1}
-        }
+        },
+        "extras": {"porosity": 0.375, "note": "kept by nobody"}
     })));
     let material = &scene.materials[0];
     assert_eq!((material.base_color, material.metallic), (Vec4::new(0.1, 0.2, 0.3, 0.4), 0.5));
@@ -48,6 +49,7 @@ fn every_factor_is_read() {
     assert_eq!((material.alpha_mode, material.double_sided), (AlphaMode::Mask { cutoff: 0.75 }, true));
     assert_eq!((material.ior, material.transmission, material.unlit), (1.333, 0.875, true));
     assert_eq!((material.occlusion_strength, material.name.as_str()), (0.5, "glass"));
+    assert_eq!(material.porosity, Some(0.375));
     warned(&scene, "\"KHR_materials_clearcoat\" is not read");
     let plain = good(&textured(&json!({})));
     assert_eq!(plain.materials[0], Material::default());

@@ -82,6 +82,16 @@ pub struct FieldFrame {
     pub columns: u32,
     /// Room for drops.
     pub room: u32,
+    /// Pane before the eye: its unit normal, away from the eye, and its distance, m; 0 for none.
+    pub pane: [f32; 4],
+    /// Places of the list before the first that is searched for.
+    pub first: u32,
+    /// 0.
+    pub unused_1: u32,
+    /// 0.
+    pub unused_2: u32,
+    /// 0.
+    pub unused_3: u32,
 }
 
 /// Uniforms of the search for what obstacles stop.
@@ -100,14 +110,14 @@ pub struct ShelterFrame {
     pub high: Vec3,
     /// Number of quarters of a second that paths are followed back; 0 in a steady wind.
     pub cuts: u32,
-    /// Places in the list.
+    /// Places of the list that are asked for.
     pub room: u32,
+    /// First of them.
+    pub first: u32,
     /// 0.
     pub unused_1: u32,
     /// 0.
     pub unused_2: u32,
-    /// 0.
-    pub unused_3: u32,
 }
 
 /// Drops of a picture, as a GPU is asked for them.
@@ -125,40 +135,17 @@ pub(crate) struct FieldQuery {
     pub(crate) deepest: f64,
 }
 
-/// Room beyond what is expected, for chance and for classes of few drops.
-const ROOM: f64 = 1.25;
-const SPARE_ROOM: f64 = 4096.0;
-
-/// Drops of so many pixels are so rare that there is room for them.
-const MAX_LEAST_PIXELS: f64 = 1.0e4;
-
 impl RainField {
-    /// The question for the drops of a picture; at most `most` drops have room.
+    /// The question for the drops of a picture; at most `max_room` drops have room.
     ///
     /// # Errors
     /// As [`RainField::visible`].
-    pub(crate) fn query(&self, view: &View, time_s: f64, most: u32) -> Result<FieldQuery, SimError> {
+    pub(crate) fn query(&self, view: &View, time_s: f64, max_room: u32) -> Result<FieldQuery, SimError> {
         view.check()?;
         check_time(time_s)?;
         let drift = Drift::new(&self.wind, time_s);
         let base = drift.middle();
-        let room = |least_pixels: f64| {
-            let expected = |class: &Class| {
-                let range = view.range(class.largest, least_pixels);
-                let is_seen = range >= view.near;
-                if is_seen {
-                    class.density * view.swept_volume(range, class.half_way(view, &drift))
-                } else {
-                    0.0
-                }
-            };
-            self.classes.iter().map(expected).sum::<f64>() * ROOM + SPARE_ROOM
-        };
-        let mut least_pixels = self.affordable(view);
-        // 3 % at a time, as in what is affordable, until the drops that move into the picture have room as well.
-        while room(least_pixels) > f64::from(most) && least_pixels < MAX_LEAST_PIXELS {
-            least_pixels = (least_pixels * 1.03).max(1.0e-3);
-        }
+        let [least_pixels, room] = self.roomy(view, &drift, max_room);
         let (mut classes, mut columns) = (Vec::new(), 0u32);
         let (mut slowest, mut deepest) = (f64::INFINITY, f64::INFINITY);
         for (k, class) in (0u32..).zip(&self.classes) {
@@ -191,7 +178,8 @@ impl RainField {
             is_before: time.is_before,
             classes: classes.len() as u32,
             columns,
-            room: (room(least_pixels) as u32).min(most).max(1),
+            room: (room as u32).min(max_room).max(1),
+            ..FieldFrame::zeroed()
         };
         let now = drift;
         let table = now

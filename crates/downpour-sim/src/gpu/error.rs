@@ -5,8 +5,7 @@ use downpour_gpu::GpuError;
 use crate::SimError;
 
 /// Error of a simulation on a GPU.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum GpuSimError {
     /// The simulation is not valid.
     #[error(transparent)]

@@ -1,9 +1,12 @@
 //! Drops of a rain in closed form on a GPU: those that [`RainField::visible_among`] lists on the CPU.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use downpour_gpu::{BufferSource, ComputeKernel, Dispatch, Gpu, GpuError, wgpu, workgroups_for};
-use downpour_shaders::sim::field::{FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_KERNEL};
+use downpour_shaders::sim::field::{
+    FIELD_CLEAR_KERNEL, FIELD_FIND_KERNEL, SHELTER_AMONG_HOLES_KERNEL, SHELTER_KERNEL,
+};
 use glam::{DVec3, Vec3};
 
 use super::GpuSimError;
@@ -14,18 +17,50 @@ use crate::resolved::Resolved;
 use crate::shelter::{CUT_S, number_of_cuts};
 use crate::view::View;
 
-/// Obstacles on the device: the nodes and triangles of a `downpour_bvh::Bvh`, without holes.
+/// Obstacles on the device: the nodes and triangles of a `downpour_bvh::Bvh`.
 #[derive(Clone, Copy, Debug)]
 pub struct ObstaclesOnGpu<'a> {
     /// Nodes; at least one.
     pub nodes: &'a wgpu::Buffer,
     /// Triangles; at least one.
     pub triangles: &'a wgpu::Buffer,
+    /// Their holes; `None` without any.
+    pub holes: Option<HolesOnGpu<'a>>,
     /// Bounds of all, m, relative to `origin`; `None` without obstacles.
     pub bounds: Option<[Vec3; 2]>,
     /// Origin, m.
     pub origin: DVec3,
 }
+
+/// Holes of triangles on the device, as painted leaves have them: the buffers of a scene, in the layout of
+/// `shaders/wgsl/render/data.wgsl`.
+#[derive(Clone, Copy, Debug)]
+pub struct HolesOnGpu<'a> {
+    /// Corners of the triangles.
+    pub corners: &'a wgpu::Buffer,
+    /// Materials and textures.
+    pub table: &'a wgpu::Buffer,
+    /// Texels.
+    pub texels: &'a wgpu::Buffer,
+}
+
+/// A search for the drops of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldSearch<'a> {
+    /// The picture.
+    pub view: &'a View,
+    /// Its time, s.
+    pub time_s: f64,
+    /// Drops that may have room.
+    pub max_room: u32,
+    /// A pane before the eye: its unit normal, away from the eye, and its distance, m; drops on the eye's side are not listed.
+    pub pane: Option<[f32; 4]>,
+    /// Drops that are known already, at the beginning of the list: droplets that rebound.
+    pub known: &'a [EyeDrop],
+}
+
+/// Lists that differ by less than so many drops have buffers of one size.
+const LIST_STEP: u32 = 1 << 14;
 
 /// The pipelines of the closed form.
 #[derive(Clone, Debug)]
@@ -34,6 +69,8 @@ pub struct FieldPipeline {
     clear: ComputeKernel,
     find: ComputeKernel,
     shelter: ComputeKernel,
+    /// Made for the first obstacles with holes.
+    among_holes: OnceLock<ComputeKernel>,
 }
 
 /// A rain on the device.
@@ -51,9 +88,10 @@ pub struct FieldPass<'a> {
     pipeline: &'a FieldPipeline,
     clear: (wgpu::BindGroup, [u32; 3]),
     find: Option<(wgpu::BindGroup, [u32; 3])>,
-    shelter: Option<(wgpu::BindGroup, [u32; 3])>,
+    shelter: Option<(&'a ComputeKernel, wgpu::BindGroup, [u32; 3])>,
     drops: wgpu::Buffer,
     found: wgpu::Buffer,
+    known: u32,
     room: u32,
     resolved: Resolved,
     columns: u32,
@@ -71,6 +109,7 @@ impl FieldPipeline {
             clear: kernel(&FIELD_CLEAR_KERNEL)?,
             find: kernel(&FIELD_FIND_KERNEL)?,
             shelter: kernel(&SHELTER_KERNEL)?,
+            among_holes: OnceLock::new(),
         })
     }
 
@@ -90,7 +129,7 @@ impl FieldPipeline {
         })
     }
 
-    /// Makes ready to find the drops of a picture at a time in seconds, at most `most`; `on` is that of `field`.
+    /// Makes ready to find the drops of a picture; `on` is that of `field`.
     ///
     /// # Errors
     /// As [`RainField::visible`]; or what the GPU says.
@@ -99,21 +138,22 @@ impl FieldPipeline {
         buffers: &impl BufferSource,
         (field, on): (&RainField, &mut FieldOnGpu),
         obstacles: &ObstaclesOnGpu<'_>,
-        view: &View,
-        time_s: f64,
-        most: u32,
+        search: &FieldSearch<'_>,
     ) -> Result<FieldPass<'_>, GpuSimError> {
-        let query = field.query(view, time_s, most)?;
+        let mut query = field.query(search.view, search.time_s, search.max_room)?;
         let gpu = &self.gpu;
         let usage = wgpu::BufferUsages::STORAGE;
-        let room = query.frame.room;
-        let drops = buffers.buffer("falling drops", u64::from(room) * size_of::<EyeDrop>() as u64, usage)?;
+        let (known, room) = (search.known.len() as u32, query.frame.room);
+        query.frame.first = known;
+        query.frame.pane = search.pane.unwrap_or_default();
+        let places = u64::from((known + room).next_multiple_of(LIST_STEP));
+        let drops = buffers.buffer("falling drops", places * size_of::<EyeDrop>() as u64, usage)?;
+        buffers.write(&drops, bytemuck::cast_slice(search.known));
         let found = buffers.buffer("number of drops", 8, usage)?;
-        let clear = self.clear.bind_at(gpu, [(5, &drops), (6, &found)])?;
-        let places = (drops.size() / size_of::<EyeDrop>() as u64) as u32;
+        let uniform = buffers.uniform("field frame", &query.frame)?;
+        let clear = self.clear.bind_at(gpu, [(0, &uniform), (5, &drops), (6, &found)])?;
         let mut find = None;
         if query.frame.columns > 0 {
-            let uniform = buffers.uniform("field frame", &query.frame)?;
             let classes = buffers.storage("classes of the field", &query.classes)?;
             let drift = buffers.storage("drift of drops", &query.drift)?;
             let bound = [&uniform, &classes, &on.nodes, &on.thresholds, &drift, &drops, &found];
@@ -121,23 +161,41 @@ impl FieldPipeline {
         }
         let mut shelter = None;
         if let Some(bounds) = obstacles.bounds {
-            let (frame, drift) = shelter_frame(field, on, &query, (obstacles, bounds), view, time_s);
+            let (frame, drift) = shelter_frame(field, on, &query, (obstacles, bounds), search);
             let uniform = buffers.uniform("shelter frame", &frame)?;
             let drift = buffers.storage("drift of paths", &drift)?;
-            let bound = [&uniform, obstacles.nodes, obstacles.triangles, &drops, &drift];
-            shelter = Some((self.shelter.bind(gpu, &bound)?, workgroups_for(room)));
+            let mut bound = vec![(1, obstacles.nodes), (2, obstacles.triangles)];
+            if let Some(HolesOnGpu { corners, table, texels }) = obstacles.holes {
+                bound.extend([(3, corners), (4, table), (5, texels)]);
+            }
+            bound.extend([(6, &uniform), (7, &drops), (8, &drift)]);
+            let kernel = self.shelter(obstacles.holes.is_some())?;
+            shelter = Some((kernel, kernel.bind_at(gpu, bound)?, workgroups_for(room)));
         }
         Ok(FieldPass {
             pipeline: self,
-            clear: (clear, workgroups_for(places)),
+            clear: (clear, workgroups_for(room)),
             find,
             shelter,
             drops,
             found,
+            known,
             room,
             resolved: query.resolved,
             columns: query.frame.columns,
         })
+    }
+
+    /// The kernel that asks for obstacles, with holes or without.
+    fn shelter(&self, has_holes: bool) -> Result<&ComputeKernel, GpuError> {
+        if !has_holes {
+            return Ok(&self.shelter);
+        }
+        if let Some(kernel) = self.among_holes.get() {
+            return Ok(kernel);
+        }
+        let made = ComputeKernel::new(&self.gpu, &SHELTER_AMONG_HOLES_KERNEL, &[])?;
+        Ok(self.among_holes.get_or_init(|| made))
     }
 }
 
@@ -147,11 +205,11 @@ fn shelter_frame(
     on: &mut FieldOnGpu,
     query: &FieldQuery,
     (obstacles, [low, high]): (&ObstaclesOnGpu<'_>, [Vec3; 2]),
-    view: &View,
-    time_s: f64,
+    search: &FieldSearch<'_>,
 ) -> (ShelterFrame, Vec<[f32; 4]>) {
+    let view = search.view;
     let half = 0.5 * view.shutter_s;
-    let open_s = time_s - half;
+    let open_s = search.time_s - half;
     let last = (open_s / CUT_S).floor();
     let height = f64::from(high.y) + obstacles.origin.y - query.deepest;
     let cuts = number_of_cuts(&field.wind, height, query.slowest) as i64;
@@ -175,9 +233,9 @@ fn shelter_frame(
         high,
         cuts: cuts as u32,
         room: query.frame.room,
+        first: query.frame.first,
         unused_1: 0,
         unused_2: 0,
-        unused_3: 0,
     };
     (frame, drift)
 }
@@ -186,23 +244,39 @@ impl FieldPass<'_> {
     /// The dispatches, in this order.
     #[must_use]
     pub fn dispatches(&self) -> Vec<Dispatch<'_>> {
-        let FieldPipeline { clear, find, shelter, .. } = self.pipeline;
+        let FieldPipeline { clear, find, .. } = self.pipeline;
         let mut all = vec![clear.dispatch(&self.clear.0, self.clear.1)];
         all.extend(self.find.as_ref().map(|(bindings, groups)| find.dispatch(bindings, *groups)));
-        all.extend(self.shelter.as_ref().map(|(bindings, groups)| shelter.dispatch(bindings, *groups)));
+        all.extend(
+            self.shelter.as_ref().map(|(kernel, bindings, groups)| kernel.dispatch(bindings, *groups)),
+        );
         all
     }
 
-    /// The drops on the device ([`EyeDrop`]), in any order, with empty places between them.
+    /// The drops on the device ([`EyeDrop`]): those that were known, and then the others in any order, with empty places between
+    /// them.
     #[must_use]
     pub fn drops(&self) -> &wgpu::Buffer {
         &self.drops
     }
 
-    /// Places for drops.
+    /// Places of that list.
+    #[must_use]
+    pub fn places(&self) -> u32 {
+        self.known + self.room
+    }
+
+    /// Room for drops that are found.
     #[must_use]
     pub fn room(&self) -> u32 {
         self.room
+    }
+
+    /// Two numbers on the device: drops that were found before obstacles stopped some of them, of which those beyond the room are
+    /// lost; and drops that were looked at.
+    #[must_use]
+    pub fn counts(&self) -> &wgpu::Buffer {
+        &self.found
     }
 
     /// Columns that are searched.
@@ -224,6 +298,7 @@ impl FieldPass<'_> {
     pub fn read(&self) -> Result<(Vec<EyeDrop>, [u32; 2]), GpuError> {
         let gpu = &self.pipeline.gpu;
         let mut drops = gpu.read::<EyeDrop>(&self.drops)?;
+        drops.truncate(self.places() as usize);
         drops.retain(|drop| drop.diameter > 0.0);
         let found = gpu.read::<u32>(&self.found)?;
         Ok((drops, [found[0], found[1]]))

@@ -8,7 +8,9 @@ use downpour_gpu::{
     BufferPool, BufferSource as _, FramePasses, FrameTimes, Gpu, GpuError, Readback, ReadbackPool, wgpu,
 };
 use downpour_shaders::render::puddle_water::PUDDLE_WATER_RAYS;
-use downpour_sim::field::{EyeDrop, FallingDrop};
+use downpour_sim::SimError;
+use downpour_sim::field::{EyeDrop, FallingDrop, RainField};
+use downpour_sim::gpu::{FieldOnGpu, FieldPipeline, GpuSimError};
 use rayon::prelude::*;
 
 use downpour_render::RenderError;
@@ -17,6 +19,7 @@ use downpour_render::gpu::{BehindGlass, FallingOnGpu, RainOnGpu, RainPipeline};
 use downpour_render::picture::{DeviceUse, Picture, PictureOptions};
 use downpour_render::rain::{DropMasks, Rain};
 
+use super::falling::{FoundDrops, FoundReadback, PictureDrops};
 use super::scene::{SceneOnGpu, ScenePipeline};
 use crate::data::{RenderFrame, SceneData};
 use crate::picture::picture_frame;
@@ -32,6 +35,28 @@ pub enum GpuPictureError {
     /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// The view of the rain is invalid.
+    #[error(transparent)]
+    Sim(#[from] SimError),
+    /// There are more drops than were expected.
+    #[error(
+        "{found} drops are before the picture, and there is room for {room}: set a smaller [rain] max_drops"
+    )]
+    NoRoom {
+        /// Drops that were found.
+        found: u32,
+        /// Drops that have room.
+        room: u32,
+    },
+}
+
+impl From<GpuSimError> for GpuPictureError {
+    fn from(error: GpuSimError) -> Self {
+        match error {
+            GpuSimError::Sim(error) => Self::Sim(error),
+            GpuSimError::Gpu(error) => Self::Gpu(error),
+        }
+    }
 }
 
 /// Labels of the buffers that a picture keeps.
@@ -46,6 +71,7 @@ pub struct PictureRenderer {
     gpu: Gpu,
     scene: ScenePipeline,
     rain: RainPipeline,
+    fields: FieldPipeline,
     pool: Arc<BufferPool>,
     /// Locked for as long as a picture is drawn with the pool's buffers.
     drawing: Arc<Mutex<()>>,
@@ -68,6 +94,7 @@ impl PictureRenderer {
             gpu: gpu.clone(),
             scene: ScenePipeline::new(gpu)?,
             rain: RainPipeline::new(gpu)?,
+            fields: FieldPipeline::new(gpu)?,
             // A picture may be read after the next one is begun.
             pool: Arc::new(BufferPool::new(gpu).with_given_away(&GIVEN_AWAY)),
             drawing: Arc::default(),
@@ -90,7 +117,21 @@ impl PictureRenderer {
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<Picture, GpuPictureError> {
-        Ok(self.draw(scene, viewpoint, drops, masks, options)?.read()?)
+        self.draw(scene, viewpoint, PictureDrops::Listed(drops), masks, options)?.read()
+    }
+
+    /// Drops whose lists the device can bind.
+    #[must_use]
+    pub fn max_drops(&self) -> u32 {
+        self.rain.most_drops()
+    }
+
+    /// Brings a rain in closed form to the device.
+    ///
+    /// # Errors
+    /// Returns the error of the GPU.
+    pub fn upload_field(&self, field: &RainField) -> Result<FieldOnGpu, GpuError> {
+        self.fields.upload(field)
     }
 
     /// Renders a picture and leaves it on the device.
@@ -101,7 +142,7 @@ impl PictureRenderer {
         &self,
         scene: &SceneData,
         viewpoint: &Viewpoint,
-        drops: &[FallingDrop],
+        drops: PictureDrops<'_>,
         masks: &DropMasks,
         options: &PictureOptions,
     ) -> Result<PictureOnGpu, GpuPictureError> {
@@ -132,20 +173,28 @@ impl PictureRenderer {
         let camera = frame.camera;
         // The drops are put on the picture by the device.
         let rain = Rain::new(&camera, eye, &[], masks, &options.rain);
-        let (falling, frequencies) = passes.host("drops to the device", || {
-            let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
-            let frequencies = self.frequencies(&options.rain.exposure.fluids)?;
-            Ok::<_, GpuError>((pool.storage("falling drops", &falling)?, frequencies))
+        let plate = self.scene.plate(pool, &uploaded.0, &frame, &self.rain, &rain)?;
+        let (falling, count, search) = passes.host("drops to the device", || match drops {
+            PictureDrops::Listed(drops) => {
+                let falling: Vec<EyeDrop> = drops.par_iter().map(|drop| EyeDrop::new(drop, eye)).collect();
+                Ok((pool.storage("falling drops", &falling)?, drops.len() as u32, None))
+            }
+            PictureDrops::Field(mut drops) => {
+                let search = drops.prepare(&self.fields, pool, scene, plate.lighting())?;
+                Ok::<_, GpuPictureError>((search.drops().clone(), search.places(), Some(search)))
+            }
         })?;
-        let count = drops.len() as u32;
+        let frequencies = self.frequencies(&options.rain.exposure.fluids)?;
         let falling = FallingOnGpu { drops: &falling, count, frequencies: &frequencies };
         let view = SceneView { data: scene, frame: &frame };
         let lights = [rain.lights(&view, masks)?, rain.streak_lights(&view, masks)?];
-        let plate = self.scene.plate(pool, &uploaded.0, &frame, &self.rain, &rain)?;
         let of_masks = (&uploaded.1, masks);
         let of_rain = (&rain, &options.rain);
         let pass = self.rain.prepare_falling(pool, &plate.of(&clean), of_masks, of_rain, &lights, falling)?;
         passes.run("capture", &plate.dispatches(&pass))?;
+        if let Some(search) = &search {
+            passes.run("search", &search.dispatches())?;
+        }
         passes.run("projection", &pass.project())?;
         passes.run("lamps", &pass.lamps())?;
         passes.run("streaks", &pass.streaks())?;
@@ -158,6 +207,9 @@ impl PictureRenderer {
         let distances = pass.distances().0.clone();
         drop(pass);
         let (times, ticks) = passes.end()?;
+        // The next picture may write the list.
+        let found =
+            search.map(|search| FoundReadback::begin(&self.gpu, &self.readbacks, &search)).transpose()?;
         let device = DeviceUse { bytes_uploaded: pool.written(), buffers_made: pool.made() - made_before };
         Ok(PictureOnGpu {
             gpu: self.gpu.clone(),
@@ -166,7 +218,8 @@ impl PictureRenderer {
             pace: Arc::clone(&self.pace),
             samples: f64::from(frame.grid * frame.grid) * f64::from(camera.width) * f64::from(camera.height),
             rain,
-            count: drops.len(),
+            count: count as usize,
+            found,
             distances,
             clean,
             layer,
@@ -197,8 +250,10 @@ pub struct PictureOnGpu {
     pace: Arc<Mutex<Option<f64>>>,
     samples: f64,
     rain: Rain,
-    /// Drops that were given.
+    /// Places of the list of drops.
     count: usize,
+    /// The list, if the device has made it.
+    found: Option<FoundReadback>,
     distances: wgpu::Buffer,
     clean: wgpu::Buffer,
     layer: wgpu::Buffer,
@@ -218,6 +273,7 @@ pub struct PictureReadback {
     samples: f64,
     rain: Rain,
     count: usize,
+    found: Option<FoundReadback>,
     read: Readback,
     times: FrameTimes,
     has_ticks: bool,
@@ -237,7 +293,7 @@ impl PictureOnGpu {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn begin_read(self) -> Result<PictureReadback, GpuError> {
-        let Self { pool, pace, samples, rain, count, times, passes, device, .. } = self;
+        let Self { pool, pace, samples, rain, count, found, times, passes, device, .. } = self;
         let mut buffers = vec![&self.distances, &self.clean, &self.layer, &self.environment];
         buffers.extend(&self.ticks);
         let read = self.readbacks.begin(&self.gpu, &buffers)?;
@@ -247,29 +303,32 @@ impl PictureOnGpu {
         for (label, buffer) in GIVEN_AWAY.into_iter().zip(layers) {
             pool.give_back(label, buffer);
         }
-        Ok(PictureReadback { pace, samples, rain, count, read, times, has_ticks, device, passes })
+        Ok(PictureReadback { pace, samples, rain, count, found, read, times, has_ticks, device, passes })
     }
 
     /// Reads the picture back.
     ///
     /// # Errors
-    /// Returns the error of the GPU.
-    pub fn read(self) -> Result<Picture, GpuError> {
-        self.begin_read()?.finish()
+    /// As [`PictureReadback::finish`].
+    pub fn read(self) -> Result<Picture, GpuPictureError> {
+        Ok(self.begin_read()?.finish()?.0)
     }
 }
 
 impl PictureReadback {
-    /// Waits for the picture.
+    /// Waits for the picture, and for the drops that the device has found, if it did: [`Picture::drawn`] has their places among
+    /// these.
     ///
     /// # Errors
-    /// Returns the error of the GPU.
-    pub fn finish(self) -> Result<Picture, GpuError> {
-        let Self { pace, samples, rain, count, mut read, times, has_ticks, device, passes: others } = self;
+    /// [`GpuPictureError::NoRoom`] if there were more of them than expected, or what the GPU says.
+    pub fn finish(self) -> Result<(Picture, Option<FoundDrops>), GpuPictureError> {
+        let Self { pace, samples, rain, count, found, mut read, times, has_ticks, device, passes: others } =
+            self;
         read.wait()?;
         let begin = Instant::now();
         let mut distances = read.take::<f32>(0)?;
         distances.truncate(count);
+        let found = found.map(|found| found.finish(&mut distances)).transpose()?;
         let [clean, layer, environment] = [read.take(1)?, read.take(2)?, read.take(3)?];
         let mut passes = times.read(&if has_ticks { read.take(4)? } else { Vec::new() });
         if has_ticks && let Some((_, ms)) = passes.iter().find(|(name, _)| *name == "scene") {
@@ -278,7 +337,7 @@ impl PictureReadback {
         passes.extend(others);
         passes.push(("readback", begin.elapsed().as_secs_f64() * 1.0e3));
         let picture = Picture::new(&rain, clean, layer, environment, passes).with_seen(&distances);
-        Ok(Picture { device: Some(device), ..picture })
+        Ok((Picture { device: Some(device), ..picture }, found))
     }
 }
 
@@ -294,7 +353,9 @@ fn check_turns(frame: &RenderFrame) -> Result<(), GpuError> {
     let [grid, sky, lights] = [frame.grid, frame.sky_rays, frame.light_count].map(u64::from);
     // Water adds what it mirrors, lit by a lamp each.
     let mirrored = if frame.puddle_count > 0 { 2 * sky.max(u64::from(PUDDLE_WATER_RAYS)) } else { 0 };
-    let rays = 1 + lights + 2 * sky + mirrored;
+    // On what is wet, each surface asks whether the rain reaches it.
+    let exposed = if frame.wetness > 0 { 2 + 2 * sky + mirrored } else { 0 };
+    let rays = 1 + lights + 2 * sky + mirrored + exposed;
     let needed = grid * grid * (rays * TURNS_PER_RAY + 2 * lights * (1 + sky));
     if needed <= MAX_LOOP_ITERATIONS {
         return Ok(());

@@ -51,6 +51,11 @@ impl ScenePlate<'_> {
         PlateOnGpu { pixels, environment: &self.environment, lighting: &self.lighting }
     }
 
+    /// Lamps and obstacles.
+    pub(super) fn lighting(&self) -> &LightingOnGpu {
+        &self.lighting
+    }
+
     /// Dispatches that trace the environment map, with its coarser levels.
     #[must_use]
     pub fn dispatches<'a>(&'a self, pass: &'a RainPass<'_>) -> Vec<Dispatch<'a>> {

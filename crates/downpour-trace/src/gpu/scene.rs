@@ -21,9 +21,8 @@ const DISPATCH_MS: f64 = 60.0;
 #[derive(Clone, Debug)]
 pub struct ScenePipeline {
     gpu: Gpu,
-    plain: ComputeKernel,
-    /// Made for the first scene that has them: puddles, a pane that throws shadows, both.
-    others: [OnceLock<ComputeKernel>; 3],
+    /// By what a scene has: [`SceneParts`]. Made for the first scene that has it.
+    tracers: [OnceLock<ComputeKernel>; SceneParts::COUNT],
     skylight: ComputeKernel,
 }
 
@@ -46,25 +45,24 @@ impl ScenePipeline {
     /// # Errors
     /// Returns the error of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let plain = tracer(gpu, false, false)?;
+        let tracers: [OnceLock<ComputeKernel>; SceneParts::COUNT] = Default::default();
+        let plain = SceneParts::default();
+        tracers[plain.index()].get_or_init({
+            let made = tracer(gpu, plain)?;
+            || made
+        });
         let skylight = ComputeKernel::new(gpu, &SKYLIGHT_KERNEL, &[])?;
-        Ok(Self { gpu: gpu.clone(), plain, others: Default::default(), skylight })
+        Ok(Self { gpu: gpu.clone(), tracers, skylight })
     }
 
-    /// The kernel that traces a frame: with puddles and a pane's shadows, or without.
+    /// The kernel that traces a frame, with what the scene has and without what it has not.
     pub(super) fn tracer(&self, frame: &RenderFrame) -> Result<&ComputeKernel, GpuError> {
-        let (wet, paned) = (frame.puddle_count > 0, frame.pane > 0);
-        let [of_wet, of_paned, of_both] = &self.others;
-        let cell = match (wet, paned) {
-            (false, false) => return Ok(&self.plain),
-            (true, false) => of_wet,
-            (false, true) => of_paned,
-            (true, true) => of_both,
-        };
+        let parts = SceneParts::of(frame);
+        let cell = &self.tracers[parts.index()];
         if let Some(kernel) = cell.get() {
             return Ok(kernel);
         }
-        let made = tracer(&self.gpu, wet, paned)?;
+        let made = tracer(&self.gpu, parts)?;
         Ok(cell.get_or_init(|| made))
     }
 
@@ -160,10 +158,37 @@ impl ScenePipeline {
     }
 }
 
+/// Parts of a scene that slow down the kernel for all others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct SceneParts {
+    has_puddles: bool,
+    has_pane: bool,
+    is_wet: bool,
+}
+
+impl SceneParts {
+    /// Number of combinations.
+    const COUNT: usize = 8;
+
+    fn of(frame: &RenderFrame) -> Self {
+        Self { has_puddles: frame.puddle_count > 0, has_pane: frame.pane > 0, is_wet: frame.wetness > 0 }
+    }
+
+    /// Index of the combination, below [`SceneParts::COUNT`].
+    fn index(self) -> usize {
+        usize::from(self.has_puddles) | usize::from(self.has_pane) << 1 | usize::from(self.is_wet) << 2
+    }
+}
+
 /// The kernel that traces scenes: with what they have not, it would be slower for all.
-fn tracer(gpu: &Gpu, wet: bool, paned: bool) -> Result<ComputeKernel, GpuError> {
+fn tracer(gpu: &Gpu, parts: SceneParts) -> Result<ComputeKernel, GpuError> {
     let number = |on: bool| if on { 1.0 } else { 0.0 };
-    ComputeKernel::new(gpu, &TRACE_KERNEL, &[("SCENE_WET", number(wet)), ("SCENE_PANE", number(paned))])
+    let overrides = [
+        ("SCENE_WET", number(parts.has_puddles)),
+        ("SCENE_PANE", number(parts.has_pane)),
+        ("WET_SURFACES", number(parts.is_wet)),
+    ];
+    ComputeKernel::new(gpu, &TRACE_KERNEL, &overrides)
 }
 
 /// A frame of a scene, ready to be drawn.

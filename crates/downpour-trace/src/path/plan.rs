@@ -91,6 +91,8 @@ pub(super) fn path_water_surface(start: Vec3, along: Vec3, distance: f32, ripple
         transmission: 0.0,
         emission: Vec3::ZERO,
         bend: 0.0,
+        porosity: 0.0,
+        film: 0.0,
     }
 }
 
@@ -100,6 +102,7 @@ pub(super) fn path_submerged(surface: &Surface, clear: f32, scattering_albedo: V
         diffuse: puddle_water_albedo(surface.diffuse * clear + scattering_albedo * (1.0 - clear)),
         normal_reflectance: puddle_water_reflectance(surface.normal_reflectance) * clear,
         emission: surface.emission * clear,
+        film: 0.0,
         ..*surface
     }
 }
@@ -114,6 +117,7 @@ pub(super) fn path_secondary(surface: &Surface, roughness: f32) -> Surface {
         diffuse: surface.diffuse + surface.normal_reflectance - gloss,
         normal_reflectance: gloss,
         roughness: 1.0,
+        film: 0.0,
         ..*surface
     }
 }
@@ -133,8 +137,13 @@ impl SceneView<'_> {
         // Neighboring pixels mirror directions as far apart as this.
         let spread = 2.0 * surface.bend * footprint / cosine.max(0.2);
         let sharp = surface.roughness < PATH_SHARP;
-        let gloss =
+        let mut gloss =
             scatter_gloss(surface.normal_reflectance, surface.roughness, cosine, sharp) * surface.occlusion;
+        if surface.film > 0.0 {
+            // What is above a film is open to the sky.
+            let coat = self.data.wet_coat(surface.normal_reflectance, surface.roughness, cosine, false);
+            gloss += (coat - gloss) * surface.film;
+        }
         let body = path_albedo(surface);
         let rays = self.frame.sky_rays;
         let drawn = told && free && !sharp && rays > 0;

@@ -4,6 +4,7 @@ use downpour_drop::optics::optics_fresnel;
 use downpour_render::light::{Light, light_weight};
 use downpour_render::plate::Lighting;
 use downpour_shaders::bvh::BVH_FAR;
+use downpour_shaders::render::brdf::BRDF_GRAZING;
 use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OUTSIDE};
 use downpour_shaders::render::scene::{SCENE_BLENDED, SCENE_LAYERS, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS};
 use glam::{Vec2, Vec3};
@@ -104,14 +105,21 @@ impl SceneView<'_> {
     }
 
     /// Light of one lamp on a surface, toward the viewer, if nothing is between them.
-    fn scene_lamp(&self, surface: &Surface, view: Vec3, light: &SceneArrival) -> Vec3 {
+    /// `out`: [`SceneData::wet_out`](crate::data::SceneData) toward the viewer, of a surface with a film.
+    fn scene_lamp(&self, surface: &Surface, view: Vec3, light: &SceneArrival, out: Vec3) -> Vec3 {
         if surface.facet.dot(light.direction) <= 0.0 {
             return Vec3::ZERO;
         }
         let alpha = (surface.roughness * surface.roughness).max(SCENE_MIN_ROUGHNESS * SCENE_MIN_ROUGHNESS);
         let (diffuse, normal_reflectance) = (surface.diffuse * light.diffuse, surface.normal_reflectance);
+        let (mut base, mut under) = (diffuse, Vec3::ZERO);
+        if surface.film > 0.0 {
+            let cosine = surface.normal.dot(light.direction).max(0.0);
+            under = base * out * self.data.wet_in(surface, cosine) * (surface.film * cosine);
+            base *= 1.0 - surface.film;
+        }
         light.irradiance
-            * brdf_direct(diffuse, normal_reflectance, alpha, surface.normal, view, light.direction)
+            * (under + brdf_direct(base, normal_reflectance, alpha, surface.normal, view, light.direction))
     }
 
     /// Light of lamps and sun on a surface, toward the viewer. With `draws` of 0, or of at least as many as there are, all
@@ -129,16 +137,20 @@ impl SceneView<'_> {
         let count = self.frame.light_count;
         let few = draws > 0 && draws < count;
         let (mut sum, mut total) = (Vec3::ZERO, 0.0);
+        let mut out = Vec3::ONE;
+        if surface.film > 0.0 {
+            out = self.data.wet_out(surface, surface.normal.dot(view).max(BRDF_GRAZING));
+        }
         for k in 0..count {
             let arrival = self.scene_arrival(k, surface, standoff, under);
-            total += light_weight(self.scene_lamp(surface, view, &arrival));
+            total += light_weight(self.scene_lamp(surface, view, &arrival, out));
         }
         // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
         let step = total / draws.max(1) as f32;
         let (mut run, mut next) = (0.0, chance * step);
         for k in 0..count {
             let arrival = self.scene_arrival(k, surface, standoff, under);
-            let lit = self.scene_lamp(surface, view, &arrival);
+            let lit = self.scene_lamp(surface, view, &arrival, out);
             let fraction = light_weight(lit);
             run += fraction;
             let mut weight = 1.0;

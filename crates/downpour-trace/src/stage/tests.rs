@@ -119,7 +119,8 @@ fn lamps_and_the_sun_have_the_unit_of_the_sky() {
     all.sun = Some(Sun { direction, irradiance_rgb: [10.0, 20.0, 30.0], angular_radius: 0.005 });
     let found = stage(&Weather::default(), &all);
     assert_eq!((found.data.light_count, found.lamps), (2, 1));
-    let rows = found.data.table[found.data.lights as usize..].to_vec();
+    // The wetness comes after them.
+    let rows = found.data.table[found.data.lights as usize..found.data.wetness as usize].to_vec();
     let number = |row: usize, k: usize| f32::from_bits(rows[row][k]);
     let pi = std::f32::consts::PI;
     assert!((number(2, 0) - 100.0 / pi).abs() < 1.0e-4, "{}", number(2, 0));
@@ -190,4 +191,23 @@ fn exposure_is_of_what_is_lit() {
     weather.camera.exposure_ev = 2.0;
     assert!((stage(&weather, &loaded(Scene::default())).exposure(&half) / exposure - 4.0).abs() < 1.0e-5);
     assert_eq!(stage(&Weather::default(), &loaded(Scene::default())).exposure(&[[0.0; 4]; 4]), 1.0);
+}
+
+/// A stage that is seen at another time is as wet as one that is made for it, and dry if the weather says so.
+#[test]
+fn wetness_is_that_of_the_time() {
+    let mut weather = Weather::default();
+    weather.wetness.rained_m = Some(0.0);
+    let all = loaded(scene(vec![node(None, Vec3::ZERO)]));
+    let at = |time_s: f64| Stage::new(&weather, &all, time_s).expect("a stage").data.table;
+    let first = Stage::new(&weather, &all, 0.0).expect("a stage");
+    assert_eq!(first.data.wetness, 0, "nothing has fallen yet");
+    let later = first.seen_at(&weather, &all, 60.0).expect("a stage");
+    assert_eq!(later.data.table, at(60.0));
+    let latest = later.seen_at(&weather, &all, 90.0).expect("a stage");
+    assert_eq!(latest.data.table, at(90.0));
+    assert_ne!(at(60.0), at(90.0));
+    assert_eq!(latest.seen_at(&weather, &all, 0.0).expect("a stage").data.table, first.data.table);
+    weather.wetness.is_enabled = false;
+    assert_eq!(Stage::new(&weather, &all, 60.0).expect("a stage").data.wetness, 0);
 }

@@ -4,12 +4,14 @@ use downpour_render::camera::Viewpoint;
 use downpour_render::glass::{GlassPicture, WetPane};
 use downpour_render::picture::{Picture, PictureOptions, timed};
 use downpour_render::rain::DropMasks;
-use downpour_sim::field::FallingDrop;
 use downpour_trace::picture::render_picture;
 use downpour_trace::stage::Stage;
 use downpour_weather::Weather;
 
 use super::RendererError;
+use super::drops::{Drops, Found};
+#[cfg(feature = "wgpu")]
+use super::on_gpu::OnGpu;
 
 /// Choice of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -100,18 +102,10 @@ pub(super) struct Drawer {
     on_gpu: Option<OnGpu>,
 }
 
-#[cfg(feature = "wgpu")]
-struct OnGpu {
-    gpu: downpour_gpu::Gpu,
-    renderer: downpour_trace::gpu::PictureRenderer,
-    /// Made for the first frame that is seen through a pane.
-    glass: std::cell::OnceCell<downpour_render::gpu::GlassRenderer>,
-}
-
 /// A picture, which may be on its way from the device.
 #[derive(Debug)]
 pub(super) enum Painted {
-    Done(Picture),
+    Done(Box<(Picture, Option<Found>)>),
     #[cfg(feature = "wgpu")]
     OnItsWay {
         read: Box<downpour_trace::gpu::PictureReadback>,
@@ -123,19 +117,28 @@ impl Painted {
     /// The picture, if it is there.
     pub(super) fn done(&self) -> Option<&Picture> {
         match self {
-            Self::Done(picture) => Some(picture),
+            Self::Done(done) => Some(&done.0),
             #[cfg(feature = "wgpu")]
             Self::OnItsWay { .. } => None,
         }
     }
 
-    /// Waits for the picture.
-    pub(super) fn finish(self) -> Result<Picture, RendererError> {
+    /// Waits for the picture, and for the drops that a device has found.
+    pub(super) fn finish(self) -> Result<(Picture, Option<Found>), RendererError> {
         match self {
-            Self::Done(picture) => Ok(picture),
+            Self::Done(done) => Ok(*done),
             #[cfg(feature = "wgpu")]
-            Self::OnItsWay { read, through_glass } => Ok(Picture { through_glass, ..read.finish()? }),
+            Self::OnItsWay { read, through_glass } => {
+                let (picture, found) = read.finish()?;
+                let found = found.map(|found| Found { drops: found.drops, simulated: found.simulated });
+                Ok((Picture { through_glass, ..picture }, found))
+            }
         }
+    }
+
+    /// The same picture, which is there.
+    pub(super) fn wait(self) -> Result<Self, RendererError> {
+        Ok(Self::Done(Box::new(self.finish()?)))
     }
 }
 
@@ -167,7 +170,7 @@ impl Drawer {
             let mut drawer = Self { computer, falls_back: device.falls_back, on_gpu: None };
             match renderer {
                 Ok(renderer) => {
-                    drawer.on_gpu = Some(OnGpu { gpu, renderer, glass: std::cell::OnceCell::new() });
+                    drawer.on_gpu = Some(OnGpu::new(gpu, renderer));
                 }
                 Err(error) => {
                     let error = error.into();
@@ -212,8 +215,9 @@ impl Drawer {
         first_s: f64,
     ) -> Result<Option<WetPane>, RendererError> {
         #[cfg(feature = "wgpu")]
-        if let Some(OnGpu { gpu, .. }) = self.on_gpu.as_ref().filter(|on| !on.gpu.adapter().is_software()) {
-            let made = WetPane::on_gpu(gpu, weather, viewpoint, first_s).map_err(RendererError::from);
+        if let Some(on_gpu) = self.on_gpu.as_ref().filter(|on| !on.gpu().adapter().is_software()) {
+            let made =
+                WetPane::on_gpu(on_gpu.gpu(), weather, viewpoint, first_s).map_err(RendererError::from);
             if !made.as_ref().is_err_and(RendererError::is_too_much_for_gpu) {
                 return made;
             }
@@ -221,20 +225,33 @@ impl Drawer {
         Ok(WetPane::new(weather, viewpoint, first_s)?)
     }
 
+    /// Drops that the device has room for, if it finds the drops of rain in closed form itself.
+    pub(super) fn max_drops(&self) -> Option<u32> {
+        #[cfg(feature = "wgpu")]
+        {
+            self.on_gpu.as_ref().map(OnGpu::max_drops)
+        }
+        #[cfg(not(feature = "wgpu"))]
+        None
+    }
+
     /// Draws a frame, seen through a pane if there is one.
     pub(super) fn paint(
         &self,
         stage: &Stage,
-        drops: &[FallingDrop],
+        drops: &Drops,
         masks: &DropMasks,
         options: &PictureOptions,
         through: Option<&Through>,
     ) -> Result<Painted, RendererError> {
-        let drops = stage.place(drops);
         #[cfg(feature = "wgpu")]
         if let Some(on_gpu) = &self.on_gpu {
-            return on_gpu.paint(stage, &drops, masks, options, through);
+            return on_gpu.paint(stage, drops, masks, options, through);
         }
+        let drops = match drops {
+            Drops::Listed(drops) => stage.place(&drops.drops),
+            Drops::OfDevice(shown) => stage.place(&shown.droplets),
+        };
         let mut picture = render_picture(&stage.data, &stage.viewpoint, &drops, masks, options)?;
         if let Some(Through { glass, environment }) = through {
             let environment = environment.as_ref().unwrap_or(&picture.surroundings);
@@ -242,44 +259,7 @@ impl Drawer {
             let seen = timed(&mut picture.passes, "glass", || glass.through(&behind, environment));
             picture.through_glass = Some(seen);
         }
-        Ok(Painted::Done(picture))
-    }
-}
-
-#[cfg(feature = "wgpu")]
-impl OnGpu {
-    fn paint(
-        &self,
-        stage: &Stage,
-        drops: &[FallingDrop],
-        masks: &DropMasks,
-        options: &PictureOptions,
-        through: Option<&Through>,
-    ) -> Result<Painted, RendererError> {
-        use downpour_render::gpu::BehindGlass;
-        let mut drawn = self.renderer.draw(&stage.data, &stage.viewpoint, drops, masks, options)?;
-        let Some(Through { glass, environment }) = through else {
-            return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
-        };
-        let begin = std::time::Instant::now();
-        let uploaded = environment
-            .as_ref()
-            .map(|texels| self.gpu.storage_buffer("environment map of a pane", texels))
-            .transpose()?;
-        let behind = drawn.behind_glass();
-        let environment = uploaded.as_ref().unwrap_or(behind.environment);
-        let seen = self.pane()?.through(glass, &BehindGlass { environment, ..behind })?;
-        drawn.passes.push(("glass", begin.elapsed().as_secs_f64() * 1.0e3));
-        Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: Some(seen) })
-    }
-
-    /// The pipelines of panes.
-    fn pane(&self) -> Result<&downpour_render::gpu::GlassRenderer, RendererError> {
-        if let Some(renderer) = self.glass.get() {
-            return Ok(renderer);
-        }
-        let made = downpour_render::gpu::GlassRenderer::new(&self.gpu)?;
-        Ok(self.glass.get_or_init(|| made))
+        Ok(Painted::Done(Box::new((picture, None))))
     }
 }
 

@@ -11,6 +11,7 @@ use downpour_sim::field::VisibleDrops;
 
 use super::RendererError;
 use super::computer::Painted;
+use super::drops::Drops;
 
 /// A frame, in layers, with the drops in it.
 #[derive(Clone, Debug)]
@@ -44,7 +45,7 @@ pub struct PendingFrame {
     pub(super) begin_ms: f64,
     pub(super) time_s: f64,
     pub(super) triangles: usize,
-    pub(super) drops: VisibleDrops,
+    pub(super) drops: Drops,
     pub(super) medium: RainMedium,
     pub(super) measured_rate_mm_h: Option<f64>,
     pub(super) exposure: f32,
@@ -56,11 +57,11 @@ impl PendingFrame {
     /// # Errors
     /// [`RendererError`]: what the GPU says.
     pub fn finish(self) -> Result<Frame, RendererError> {
-        let picture = self.picture.finish()?;
+        let (picture, found) = self.picture.finish()?;
         Ok(Frame {
             time_s: self.time_s,
             picture,
-            drops: self.drops,
+            drops: self.drops.with(found),
             medium: self.medium,
             measured_rate_mm_h: self.measured_rate_mm_h,
             exposure: self.exposure,

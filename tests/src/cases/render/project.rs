@@ -197,7 +197,7 @@ fn drops() -> Vec<EyeDrop> {
                 _ => [-1.0e30, 1.0e30],
             },
             speed: 0.0,
-            unused: 0,
+            id_low: 0,
         }
     };
     (0..COUNT).map(one).collect()

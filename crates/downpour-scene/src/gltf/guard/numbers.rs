@@ -2,11 +2,15 @@
 //!
 //! JSON knows no kinds of number. The typed reader takes `1.0` for no index although the specification does,
 //! and makes an infinity of 1e39 without a word. Here whole numbers become integers, and a number beyond the
-//! range of `f32` is an error. `extras` may hold anything, mean nothing to us, and are taken out.
+//! range of `f32` is an error. `extras` may hold anything and are taken out, but for the `porosity` of a
+//! material's, which is read.
 
 use super::spot::{Trail, shown};
 use crate::error::SceneError;
 use serde_json::{Number, Value};
+
+/// Member of a material's extras that is read.
+const POROSITY: &str = "porosity";
 
 /// Whole numbers up to here are exact in `f64`: 2^53.
 const EXACT: f64 = 9_007_199_254_740_992.0;
@@ -38,7 +42,15 @@ fn settle_at(value: &mut Value, trail: &Trail<'_>) -> Result<(), SceneError> {
         }
         // The parser has bounded the depth of this recursion.
         Value::Object(members) => {
-            members.retain(|key, _| key != "extras");
+            members.retain(|key, member| {
+                // All else in extras means nothing to us.
+                if key == "extras"
+                    && let Value::Object(own) = member
+                {
+                    own.retain(|key, _| key == POROSITY);
+                }
+                key != "extras" || member.get(POROSITY).is_some()
+            });
             members.iter_mut().try_for_each(|(key, member)| settle_at(member, &trail.key(key)))
         }
         Value::Null | Value::Bool(_) | Value::String(_) => Ok(()),
@@ -79,5 +91,10 @@ mod tests {
         value["b"] = 3.4e38.into();
         settle(&mut value).unwrap();
         assert_eq!(value.to_string(), r#"{"b":3.4e+38}"#);
+        let mut value: Value =
+            serde_json::from_str(r#"{"extras": {"a": 1e300, "porosity": 0.5}, "b": {"extras": [1e300]}}"#)
+                .unwrap();
+        settle(&mut value).unwrap();
+        assert_eq!(value.to_string(), r#"{"extras":{"porosity":0.5},"b":{}}"#);
     }
 }

@@ -46,6 +46,11 @@ fn one(spot: &Spot<'_>, textures: &mut Textures, warnings: &mut Warnings) -> Res
     material.emissive = fields::fractions(spot, "emissiveFactor", [0.0; 3], warnings)?.into();
     material.alpha_mode = alpha_mode(spot)?;
     material.double_sided = fields::flag(spot, "doubleSided")?;
+    if let Some(extras) = spot.get("extras")?
+        && extras.get("porosity")?.is_some()
+    {
+        material.porosity = Some(fields::fraction(&extras, "porosity", 0.0, warnings)?);
+    }
     if let Some(extensions) = spot.get("extensions")? {
         self::extensions(&mut material, &extensions, textures, warnings)?;
     }

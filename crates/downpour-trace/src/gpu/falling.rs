@@ -1,0 +1,106 @@
+//! Drops of a picture on a GPU: those of a list, or those that the device finds in a rain.
+
+use downpour_gpu::{Gpu, GpuError, Readback, ReadbackPool, wgpu};
+use downpour_render::gpu::LightingOnGpu;
+use downpour_sim::field::{EyeDrop, FallingDrop, RainField};
+use downpour_sim::gpu::{FieldOnGpu, FieldPass, FieldPipeline, FieldSearch, HolesOnGpu, ObstaclesOnGpu};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::GpuPictureError;
+use crate::data::SceneData;
+
+/// Drops of a picture.
+#[derive(Debug)]
+pub enum PictureDrops<'a> {
+    /// These, relative to the scene's origin.
+    Listed(&'a [FallingDrop]),
+    /// Those of a rain in closed form, which the device finds.
+    Field(FieldDrops<'a>),
+}
+
+/// A rain in closed form before a picture.
+#[derive(Debug)]
+pub struct FieldDrops<'a> {
+    /// The rain.
+    pub field: &'a RainField,
+    /// The same on the device ([`PictureRenderer::upload_field`](super::PictureRenderer::upload_field)).
+    pub on_gpu: &'a mut FieldOnGpu,
+    /// The part of it that the picture shows, in the world.
+    pub search: FieldSearch<'a>,
+    /// Origin of the scene in the world, m.
+    pub origin: DVec3,
+}
+
+/// Drops that the device has found for a picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FoundDrops {
+    /// The drops that nothing has stopped, in the order of their ids, with their place in [`FieldSearch::known`] if they were known.
+    pub drops: Vec<(EyeDrop, Option<u32>)>,
+    /// Number of drops that were looked at.
+    pub simulated: u64,
+}
+
+/// Found drops on their way from the device.
+#[derive(Debug)]
+pub(super) struct FoundReadback {
+    read: Readback,
+    places: u32,
+    known: u32,
+    room: u32,
+}
+
+impl FieldDrops<'_> {
+    /// Makes ready to find the drops.
+    pub(super) fn prepare<'a>(
+        &mut self,
+        pipeline: &'a FieldPipeline,
+        buffers: &impl downpour_gpu::BufferSource,
+        scene: &SceneData,
+        lighting: &LightingOnGpu,
+    ) -> Result<FieldPass<'a>, GpuPictureError> {
+        let [_, nodes, triangles, corners, table, texels] = &lighting.buffers;
+        let root = scene.nodes.first().filter(|_| !scene.triangles.is_empty());
+        let obstacles = ObstaclesOnGpu {
+            nodes,
+            triangles,
+            holes: Some(HolesOnGpu { corners, table, texels }),
+            bounds: root.map(|root| [Vec3::from(root.low), Vec3::from(root.high)]),
+            origin: self.origin,
+        };
+        Ok(pipeline.prepare(buffers, (self.field, self.on_gpu), &obstacles, &self.search)?)
+    }
+}
+
+impl FoundReadback {
+    /// Begins to read what a pass has found.
+    pub(super) fn begin(gpu: &Gpu, pool: &ReadbackPool, pass: &FieldPass<'_>) -> Result<Self, GpuError> {
+        let buffers: [&wgpu::Buffer; 2] = [pass.drops(), pass.counts()];
+        let (places, room) = (pass.places(), pass.room());
+        Ok(Self { read: pool.begin(gpu, &buffers)?, places, known: places - room, room })
+    }
+
+    /// Waits for the drops; `distances` of all places become those of the drops that are left.
+    pub(super) fn finish(mut self, distances: &mut Vec<f32>) -> Result<FoundDrops, GpuPictureError> {
+        self.read.wait()?;
+        let drops = self.read.take::<EyeDrop>(0)?;
+        let counts = self.read.take::<u32>(1)?;
+        let [found, simulated] = [0, 1].map(|k| counts.get(k).copied().unwrap_or_default());
+        if found > self.room {
+            return Err(GpuPictureError::NoRoom { found, room: self.room });
+        }
+        let mut places: Vec<u32> = (0..self.places.min(drops.len() as u32))
+            .filter(|&place| drops[place as usize].diameter > 0.0)
+            .collect();
+        // The device lists them in any order.
+        let key = |&place: &u32| {
+            let EyeDrop { id, id_low, diameter, .. } = drops[place as usize];
+            (id ^ id_low, id_low, diameter.to_bits(), place)
+        };
+        places.par_sort_unstable_by_key(key);
+        *distances = places.iter().filter_map(|&place| distances.get(place as usize).copied()).collect();
+        let known = |place: u32| (place < self.known).then_some(place);
+        let drops = places.iter().map(|&place| (drops[place as usize], known(place))).collect();
+        Ok(FoundDrops { drops, simulated: simulated.into() })
+    }
+}

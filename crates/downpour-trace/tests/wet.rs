@@ -1,0 +1,343 @@
+//! Surfaces that rain has made wet: energy, darkness, roofs, and what the film mirrors.
+
+use downpour_math::ops::f64 as exact;
+use downpour_render::camera::Viewpoint;
+use downpour_render::light::LightSource;
+use downpour_trace::SceneWetness;
+use downpour_trace::builder::{MeshPart, SceneBuilder};
+use downpour_trace::data::{RenderFrame, SceneData};
+use downpour_trace::material::MaterialLook;
+use downpour_trace::scene::SceneView;
+use downpour_trace::sky_light::SkyLight;
+use downpour_weather::WetnessAt;
+use glam::{Affine3A, DVec3, Vec3};
+
+type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
+
+/// Wet through and through, by rain that falls straight down.
+const SOAKED: SceneWetness = SceneWetness {
+    at: WetnessAt { before: 30.0, kept: 1.0, since: 0.0 },
+    towards: Vec3::Y,
+    shift: Vec3::ZERO,
+};
+
+fn look(albedo: f32, roughness: f32, porosity: f32) -> MaterialLook {
+    MaterialLook {
+        base_color: [albedo, albedo, albedo, 1.0],
+        roughness,
+        porosity: Some(porosity),
+        ..MaterialLook::default()
+    }
+}
+
+/// A square by its middle and half its edges; its front is toward their cross product.
+fn square(builder: &mut SceneBuilder, material: u32, middle: Vec3, across: Vec3, along: Vec3) {
+    let positions = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+        .map(|(x, y)| (middle + across * x + along * y).to_array());
+    let part = MeshPart {
+        positions: &positions,
+        normals: None,
+        tangents: None,
+        uvs: [None, None],
+        colors: None,
+        indices: &[0, 1, 2, 0, 2, 3],
+        material,
+    };
+    builder.add_mesh(&part, &Affine3A::IDENTITY);
+}
+
+fn ground(look: MaterialLook) -> SceneBuilder {
+    let mut builder = SceneBuilder::new();
+    let material = builder.add_material(look);
+    square(&mut builder, material, Vec3::ZERO, Vec3::Z * 60.0, Vec3::X * 60.0);
+    builder
+}
+
+/// A picture from an eye toward a point.
+fn picture(
+    scene: &SceneData,
+    eye: Vec3,
+    at: Vec3,
+    fov_y: f32,
+    size: [u32; 2],
+    sky_rays: u32,
+) -> Outcome<Vec<[f32; 4]>> {
+    let up = if (at - eye).normalize().y.abs() > 0.99 { Vec3::X } else { Vec3::Y };
+    let view = Viewpoint { eye, forward: at - eye, up, fov_y };
+    let frame = RenderFrame::new(scene, &view, size, 1, sky_rays, 5)?;
+    Ok(SceneView { data: scene, frame: &frame }.picture())
+}
+
+fn mean(picture: &[[f32; 4]]) -> f64 {
+    picture.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / picture.len() as f64
+}
+
+/// Where an eye sees a ground at an angle from the normal.
+fn seen_at(degrees: f64) -> Vec3 {
+    let angle = degrees.to_radians();
+    Vec3::new(exact::sin(angle) as f32, exact::cos(angle) as f32, 0.0) * 3.0
+}
+
+/// White ground under an even sky gives back all light, at any angle, wet or half wet, smooth or porous.
+#[test]
+fn a_wet_white_ground_is_white() -> Outcome {
+    for porosity in [0.0, 1.0] {
+        let mut scene = ground(look(1.0, 0.85, porosity)).build(&SkyLight::uniform([1.0; 3]));
+        for wetness in [SOAKED, SceneWetness { at: WetnessAt { before: 1.2, ..SOAKED.at }, ..SOAKED }] {
+            scene.set_wetness(Some(&wetness));
+            for degrees in [5.0, 30.0, 50.0, 65.0, 75.0, 82.0] {
+                let found = mean(&picture(&scene, seen_at(degrees), Vec3::ZERO, 0.05, [24, 24], 24)?);
+                // What is not covered by the film keeps the law of dry surfaces, which gives back a little more or less.
+                let allowed = if wetness == SOAKED { 5.0e-3 } else { 3.0e-2 };
+                assert!((found - 1.0).abs() < allowed, "{porosity} {wetness:?} {degrees}: {found}");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Fraction of diffuse light that an interface of index n reflects from outside: Fresnel's equations over the hemisphere.
+fn outside(n: f64) -> f64 {
+    let steps = 200_000u32;
+    let sum: f64 = (0..steps)
+        .map(|k| {
+            let cosine = (f64::from(k) + 0.5) / f64::from(steps);
+            let inner = (1.0 - (1.0 - cosine * cosine) / (n * n)).sqrt();
+            let across = (cosine - n * inner) / (cosine + n * inner);
+            let along = (n * cosine - inner) / (n * cosine + inner);
+            (across * across + along * along) * cosine
+        })
+        .sum();
+    sum / f64::from(steps)
+}
+
+/// J. Lekner and M. Dorf 1988: a surface that absorbs `a` of the light each time, under water of index n: of the light that goes in,
+/// `p = 1 - (1 - R) / n^2` is thrown back to it each time. It absorbs `(1 - R) a / (1 - p (1 - a))` of what falls on it, and the
+/// rest goes back, of which R has never been inside. The same light under an even sky, seen from above with the reflection at
+/// normal incidence `r` in the place of R on the way out.
+#[test]
+fn porous_ground_is_as_dark_as_lekner_and_dorf_say() -> Outcome {
+    let n = 1.333f64;
+    let back = outside(n);
+    let inside = 1.0 - (1.0 - back) / (n * n);
+    for dry in [0.05, 0.12, 0.2, 0.4, 0.7] {
+        let absorbed = (1.0 - back) * (1.0 - dry) / (1.0 - inside * dry);
+        // All that comes out of the water, over all directions; and toward an eye above it, where it reflects less.
+        let diffuse = 1.0 - back - absorbed;
+        let of = |a: f64, b: f64| ((a - b) / (a + b)) * ((a - b) / (a + b));
+        // Gloss: of air and water, and of water and the base, whose index is 1.5; and the tops of the grains, of 15 % of the
+        // surface, which stand out of the film.
+        let both = of(n, 1.0) + (1.0 - of(n, 1.0)) * (1.0 - of(n, 1.0)) * of(1.5, n);
+        let gloss = 0.85 * both + 0.15 * of(1.5, 1.0);
+        let expected = diffuse / (1.0 - back) * (1.0 - gloss) + gloss;
+        let mut scene = ground(look(dry as f32, 0.85, 1.0)).build(&SkyLight::uniform([1.0; 3]));
+        scene.set_wetness(Some(&SOAKED));
+        let found = mean(&picture(&scene, Vec3::Y * 3.0, Vec3::ZERO, 0.05, [24, 24], 24)?);
+        assert!((found / expected - 1.0).abs() < 0.03, "{dry}: {found}, {expected}");
+        // Paint is not darker: what it has lost to the inside of its own surface it has lost when dry, too.
+        let mut paint = ground(look(dry as f32, 0.85, 0.0)).build(&SkyLight::uniform([1.0; 3]));
+        paint.set_wetness(Some(&SOAKED));
+        let found = mean(&picture(&paint, Vec3::Y * 3.0, Vec3::ZERO, 0.05, [24, 24], 24)?);
+        let expected = dry * (1.0 - both) + both;
+        assert!((found / expected - 1.0).abs() < 0.03, "paint of {dry}: {found}, {expected}");
+    }
+    Ok(())
+}
+
+/// A ground under a lamp straight above: light goes in at 1 - r and comes out at 1 - r, thrown back in between.
+#[test]
+fn lamps_light_what_is_under_the_film() -> Outcome {
+    let n = 1.333f64;
+    let normal = ((n - 1.0) / (n + 1.0)) * ((n - 1.0) / (n + 1.0));
+    let back = outside(n);
+    let inside = 1.0 - (1.0 - back) / (n * n);
+    let mut builder = ground(look(0.3, 0.85, 1.0));
+    builder.add_light(LightSource::Directional { direction: Vec3::NEG_Y, irradiance: Vec3::splat(10.0) });
+    let mut scene = builder.build(&SkyLight::uniform([0.0; 3]));
+    scene.set_wetness(Some(&SOAKED));
+    // From 45 degrees: away from the lamp's own image.
+    let found = mean(&picture(&scene, seen_at(45.0), Vec3::ZERO, 0.05, [16, 16], 0)?);
+    let cosine = exact::cos(45.0f64.to_radians());
+    let inner = (1.0 - (1.0 - cosine * cosine) / (n * n)).sqrt();
+    let across = (cosine - n * inner) / (cosine + n * inner);
+    let along = (n * cosine - inner) / (n * cosine + inner);
+    let out = 1.0 - 0.5 * (across * across + along * along);
+    let expected = 10.0 / std::f64::consts::PI * (1.0 - normal) * out / (n * n) * 0.3 / (1.0 - inside * 0.3);
+    assert!((found / expected - 1.0).abs() < 0.03, "{found}, {expected}");
+    Ok(())
+}
+
+/// Under a roof 3 m high it is exactly as dry as without rain, but for 10 cm along its edge; in the open it is wet.
+#[test]
+fn nothing_is_wet_under_a_roof() -> Outcome {
+    let build = || {
+        let mut builder = ground(look(0.4, 0.85, 1.0));
+        let roof = builder.add_material(look(0.0, 1.0, 0.0));
+        square(&mut builder, roof, Vec3::new(-10.0, 3.0, 0.0), Vec3::Z * 40.0, Vec3::X * 10.0);
+        builder.build(&SkyLight::uniform([1.0; 3]))
+    };
+    let dry = build();
+    let mut wet = build();
+    wet.set_wetness(Some(&SOAKED));
+    let mut edge = [f32::MAX, f32::MIN];
+    // Columns of 5 mm across the roof's edge, at x = 0, seen from beneath it; without rays, so that the light is the same all over.
+    for k in -100..100i16 {
+        let x = f32::from(k) * 5.0e-3;
+        let [before, after] = [&dry, &wet].map(|scene| {
+            let at = Vec3::new(x, 0.0, 0.1);
+            picture(scene, at + Vec3::Y * 1.5, at, 0.002, [1, 24], 0)
+        });
+        let changed = before?.iter().zip(after?).filter(|(a, b)| **a != *b).count();
+        if changed > 0 {
+            edge[0] = edge[0].min(x);
+        }
+        if changed < 24 {
+            edge[1] = edge[1].max(x);
+        }
+        if x <= -0.05 {
+            assert_eq!(changed, 0, "wet {x} m under the roof");
+        }
+        if x >= 0.05 {
+            assert_eq!(changed, 24, "dry {x} m outside of the roof");
+        }
+    }
+    assert!(edge[1] - edge[0] < 0.1 && edge[0] < edge[1], "{edge:?}");
+    Ok(())
+}
+
+/// A wall meets the rain that the wind brings, and none without wind; rain from behind leaves it dry.
+#[test]
+fn walls_are_wet_toward_the_wind() -> Outcome {
+    let mut builder = SceneBuilder::new();
+    let wall = builder.add_material(look(0.4, 0.85, 1.0));
+    // It faces +X.
+    square(&mut builder, wall, Vec3::ZERO, Vec3::Y * 5.0, Vec3::Z * 5.0);
+    let mut scene = builder.build(&SkyLight::uniform([1.0; 3]));
+    let seen = |scene: &SceneData| -> Outcome<f64> {
+        Ok(mean(&picture(scene, Vec3::X * 3.0, Vec3::ZERO, 0.05, [8, 8], 0)?))
+    };
+    let dry = seen(&scene)?;
+    let at = WetnessAt { before: 0.5, kept: 1.0, since: 0.0 };
+    let mut last = dry;
+    for (wind, changes) in [(-0.5, false), (0.0, false), (0.2, true), (0.6, true)] {
+        let towards = Vec3::new(wind, 1.0, 0.0).normalize();
+        scene.set_wetness(Some(&SceneWetness { at, towards, shift: Vec3::ZERO }));
+        let found = seen(&scene)?;
+        assert_eq!(found < last, changes, "{wind}: {found}, {last}");
+        if !changes {
+            assert_eq!(found, dry, "{wind}");
+        }
+        last = found;
+    }
+    Ok(())
+}
+
+/// A scene without wetness, and one that was wet and is dry again, are the same to the bit.
+#[test]
+fn a_dry_scene_is_the_same_to_the_bit() -> Outcome {
+    let mut builder = ground(look(0.4, 0.85, 1.0));
+    builder.add_light(LightSource::Point { position: Vec3::Y * 2.0, intensity: Vec3::ONE, range: 0.0 });
+    let mut scene = builder.build(&SkyLight::uniform([1.0; 3]));
+    let table = scene.table.clone();
+    let shot = |scene: &SceneData| picture(scene, Vec3::new(1.0, 1.5, 2.0), Vec3::ZERO, 0.8, [24, 16], 1);
+    let dry = shot(&scene)?;
+    scene.set_wetness(Some(&SOAKED));
+    let wet = shot(&scene)?;
+    assert_ne!(dry, wet);
+    // In place, for another time.
+    let rows = scene.table.len();
+    let half = SceneWetness { at: WetnessAt { before: 0.3, ..SOAKED.at }, ..SOAKED };
+    scene.set_wetness(Some(&half));
+    assert_eq!(scene.table.len(), rows);
+    assert_ne!(shot(&scene)?, wet);
+    scene.set_wetness(Some(&SOAKED));
+    assert_eq!(shot(&scene)?, wet);
+    scene.set_wetness(None);
+    assert_eq!(scene.table, table);
+    assert_eq!(shot(&scene)?, dry);
+    // Wet with nothing that has fallen: as dry.
+    scene.set_wetness(Some(&SceneWetness { at: WetnessAt { before: 0.0, ..SOAKED.at }, ..SOAKED }));
+    assert_eq!(shot(&scene)?, dry);
+    Ok(())
+}
+
+/// A red sign 2 m over wet ground has its image 2 m beneath it, stretched toward the viewer, in its color; on dry ground there is none.
+#[test]
+fn a_red_sign_has_its_image_in_wet_ground() -> Outcome {
+    let mut builder = ground(look(0.05, 0.85, 1.0));
+    let sign = builder.add_material(MaterialLook { emission: [40.0, 4.0, 2.0], ..look(0.0, 1.0, 0.0) });
+    // It faces the eye, which is at +Z.
+    square(&mut builder, sign, Vec3::new(0.0, 2.0, 0.0), Vec3::X * 0.4, Vec3::Y * 0.2);
+    let mut scene = builder.build(&SkyLight::uniform([0.02; 3]));
+    let (eye, size) = (Vec3::new(0.0, 1.5, 12.0), [48, 96]);
+    // Down over the ground between the eye and the sign.
+    let shot = |scene: &SceneData| picture(scene, eye, Vec3::new(0.0, 0.0, 6.0), 0.4, size, 2);
+    let column = |picture: &[[f32; 4]], channel: usize| -> Vec<f64> {
+        let width = size[0] as usize;
+        let of_row = |row: &[[f32; 4]]| row.iter().map(|pixel| f64::from(pixel[channel])).sum::<f64>();
+        picture.chunks(width).map(of_row).collect()
+    };
+    let dry = shot(&scene)?;
+    scene.set_wetness(Some(&SOAKED));
+    let wet = shot(&scene)?;
+    let [red, green, blue] = [0, 1, 2].map(|channel| {
+        let wet = column(&wet, channel);
+        // The sky has no part in the image.
+        let least = wet.iter().copied().fold(f64::MAX, f64::min);
+        wet.into_iter().map(|light| light - least).collect::<Vec<_>>()
+    });
+    let sum = |light: &[f64]| light.iter().sum::<f64>();
+    assert!(sum(&red) > 6.0 * sum(&green) && sum(&green) > 1.2 * sum(&blue), "hue");
+    // Light that microfacets mirror toward the eye, row by row, by the law of GGX in double precision.
+    let expected: Vec<f64> = (0..size[1]).map(|row| film_image(below(f64::from(row), size[1]))).collect();
+    let peak = |light: &[f64]| {
+        let most = light.iter().copied().fold(0.0, f64::max);
+        let half: Vec<usize> = (0..light.len()).filter(|&k| light[k] > 0.5 * most).collect();
+        let middle = half.iter().sum::<usize>() as f64 / half.len() as f64;
+        (below(middle, size[1]), half.len() as f64 * 0.4 / f64::from(size[1]))
+    };
+    let ((at, long), (expected_at, expected_long)) = (peak(&red), peak(&expected));
+    assert!((at - expected_at).abs() < 0.02, "{at}, {expected_at}");
+    assert!((long / expected_long - 1.0).abs() < 0.15, "{long}, {expected_long}");
+    // The mirror image of the sign is 2 m under the ground, 12 m away, and 0.4 m high: the film's is longer, toward the horizon and the eye.
+    let mirrored = exact::atan2(1.5 + 2.0, 12.0);
+    assert!((at - mirrored).abs() < 0.06 && long > 2.0 * 0.4 / 12.0, "{at}, {mirrored}, {long}");
+    assert!(sum(&column(&dry, 0)) < 0.7 * sum(&column(&wet, 0)), "the dry ground shows it as well");
+    Ok(())
+}
+
+/// Angle below the horizon of a row of a picture of `rows` rows, 0.4 rad high, from 1.5 m over a ground whose middle is 6 m away.
+fn below(row: f64, rows: u32) -> f64 {
+    let up = exact::tan(0.2) * (1.0 - 2.0 * (row + 0.5) / f64::from(rows));
+    exact::atan2(1.5, 6.0) - exact::atan2(up, 1.0)
+}
+
+/// Light of the sign of the test above in a film whose relief is not resolved, along the middle of the picture.
+fn film_image(below: f64) -> f64 {
+    // Alpha: 0.05, and three octaves of slopes of 0.04 times a mean square of 0.883 (of two components of value noise).
+    let a2 = 0.05f64 * 0.05 + 3.0 * 0.04 * 0.04 * 0.883;
+    let away = 1.5 / exact::tan(below);
+    let view = DVec3::new(0.0, exact::sin(below), exact::cos(below));
+    let (mut sum, steps) = (0.0, 40);
+    for i in 0..steps {
+        for j in 0..steps {
+            let part = |k: i32| (f64::from(k) + 0.5) / f64::from(steps) * 2.0 - 1.0;
+            let to = DVec3::new(0.4 * part(i), 2.0 + 0.2 * part(j), away - 12.0);
+            let square = to.length_squared();
+            let light = to.normalize();
+            let half = (view + light).normalize();
+            let narrow = half.y * half.y * (a2 - 1.0) + 1.0;
+            let d = a2 / (std::f64::consts::PI * narrow * narrow);
+            let smith = |c: f64, other: f64| other * (c * c * (1.0 - a2) + a2).sqrt();
+            let visibility = 0.5 / (smith(view.y, light.y) + smith(light.y, view.y));
+            let cosine = view.dot(half);
+            let inner = (1.0 - (1.0 - cosine * cosine) / (1.333 * 1.333)).sqrt();
+            let across = (cosine - 1.333 * inner) / (cosine + 1.333 * inner);
+            let along = (1.333 * cosine - inner) / (1.333 * cosine + inner);
+            let fresnel = 0.5 * (across * across + along * along);
+            // The sign faces +Z.
+            sum += fresnel * d * visibility * light.y * (-light.z).max(0.0) / square;
+        }
+    }
+    sum
+}

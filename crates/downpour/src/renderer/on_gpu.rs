@@ -1,0 +1,113 @@
+//! Frames drawn by a GPU.
+
+use std::cell::{OnceCell, RefCell};
+use std::sync::Arc;
+use std::time::Instant;
+
+use downpour_gpu::Gpu;
+use downpour_render::gpu::{BehindGlass, GlassRenderer};
+use downpour_render::picture::PictureOptions;
+use downpour_render::rain::DropMasks;
+use downpour_sim::field::{EyeDrop, RainField};
+use downpour_sim::gpu::{FieldOnGpu, FieldSearch};
+use downpour_trace::gpu::{FieldDrops, PictureDrops, PictureOnGpu, PictureRenderer};
+use downpour_trace::stage::Stage;
+
+use super::RendererError;
+use super::computer::{Painted, Through};
+use super::drops::Drops;
+use crate::shower::ShowerView;
+
+/// A GPU with its pipelines.
+pub(super) struct OnGpu {
+    gpu: Gpu,
+    renderer: PictureRenderer,
+    /// Made for the first frame that is seen through a pane.
+    glass: OnceCell<GlassRenderer>,
+    /// The rain in closed form of the last frame, and the same on the device.
+    field: RefCell<Option<(Arc<RainField>, FieldOnGpu)>>,
+}
+
+impl OnGpu {
+    pub(super) fn new(gpu: Gpu, renderer: PictureRenderer) -> Self {
+        Self { gpu, renderer, glass: OnceCell::new(), field: RefCell::default() }
+    }
+
+    pub(super) fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Drops that have room on the device.
+    pub(super) fn max_drops(&self) -> u32 {
+        self.renderer.max_drops()
+    }
+
+    /// Draws a frame, seen through a pane if there is one.
+    pub(super) fn paint(
+        &self,
+        stage: &Stage,
+        drops: &Drops,
+        masks: &DropMasks,
+        options: &PictureOptions,
+        through: Option<&Through>,
+    ) -> Result<Painted, RendererError> {
+        let mut drawn = match drops {
+            Drops::Listed(drops) => {
+                let drops = stage.place(&drops.drops);
+                let drops = PictureDrops::Listed(&drops);
+                self.renderer.draw(&stage.data, &stage.viewpoint, drops, masks, options)?
+            }
+            Drops::OfDevice(shown) => self.draw(stage, shown, masks, options)?,
+        };
+        let Some(Through { glass, environment }) = through else {
+            return Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: None });
+        };
+        let begin = Instant::now();
+        let uploaded = environment
+            .as_ref()
+            .map(|texels| self.gpu.storage_buffer("environment map of a pane", texels))
+            .transpose()?;
+        let behind = drawn.behind_glass();
+        let environment = uploaded.as_ref().unwrap_or(behind.environment);
+        let seen = self.pane()?.through(glass, &BehindGlass { environment, ..behind })?;
+        drawn.passes.push(("glass", begin.elapsed().as_secs_f64() * 1.0e3));
+        Ok(Painted::OnItsWay { read: Box::new(drawn.begin_read()?), through_glass: Some(seen) })
+    }
+
+    /// Draws a frame whose drops the device finds.
+    fn draw(
+        &self,
+        stage: &Stage,
+        shown: &ShowerView,
+        masks: &DropMasks,
+        options: &PictureOptions,
+    ) -> Result<PictureOnGpu, RendererError> {
+        let mut field = self.field.borrow_mut();
+        let kept = field.take().filter(|(known, _)| Arc::ptr_eq(known, &shown.field));
+        let kept = match kept {
+            Some(kept) => kept,
+            None => (Arc::clone(&shown.field), self.renderer.upload_field(&shown.field)?),
+        };
+        let (rain, on_gpu) = field.insert(kept);
+        let known: Vec<EyeDrop> =
+            shown.droplets.iter().map(|drop| EyeDrop::new(drop, shown.view.eye)).collect();
+        let search = FieldSearch {
+            view: &shown.view,
+            time_s: shown.time_s,
+            max_room: self.renderer.max_drops(),
+            pane: shown.pane.map(|pane| pane.outward.extend(pane.distance).to_array()),
+            known: &known,
+        };
+        let drops = PictureDrops::Field(FieldDrops { field: rain, on_gpu, search, origin: stage.origin });
+        Ok(self.renderer.draw(&stage.data, &stage.viewpoint, drops, masks, options)?)
+    }
+
+    /// The pipelines of panes.
+    fn pane(&self) -> Result<&GlassRenderer, RendererError> {
+        if let Some(renderer) = self.glass.get() {
+            return Ok(renderer);
+        }
+        let made = GlassRenderer::new(&self.gpu)?;
+        Ok(self.glass.get_or_init(|| made))
+    }
+}

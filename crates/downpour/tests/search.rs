@@ -1,0 +1,104 @@
+//! Drops that a device finds for a frame, against those that the CPU finds.
+#![cfg(feature = "wgpu")]
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::Path;
+
+use downpour::gpu::{AdapterChoice, Gpu};
+use downpour::scene::Budget;
+use downpour::sim::field::{DropKind, FallingDrop};
+use downpour::weather::CameraPose;
+use downpour::{Device, Frame, Renderer, RendererOptions, Source};
+use glam::DVec3;
+
+/// A street with trees whose leaves have holes, in gusts that carry drops past the houses.
+const STREET: &str = "assets/scenes/plain/day.toml";
+
+/// The same through a window.
+const WINDOW: &str = "assets/scenes/plain/window.toml";
+
+/// The frame of a time in seconds of a weather file of the project, small.
+fn frame(file: &str, device: Device, time_s: f64) -> Result<Frame, Box<dyn Error>> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file);
+    let mut source = Source::read(&path, &[], &mut Budget::default())?;
+    source.weather.size = [320, 180];
+    source.weather.rain.rate_mm_h = 500.0;
+    // Droplets as large as drops, so that some are near enough.
+    (source.weather.rain.bounce.fraction, source.weather.rain.bounce.size) = (0.5, 1.0);
+    if let Some(glass) = &mut source.weather.glass {
+        // Its water does not matter here.
+        (glass.before, glass.cell) = (0.0, 5.0e-3);
+    }
+    let options = RendererOptions { samples: 1, sky_rays: 0, first_s: time_s, ..RendererOptions::default() };
+    let mut renderer = Renderer::new(source.weather, source.loaded, options, device)?;
+    if file == STREET {
+        // Low, so that droplets are near.
+        let position = DVec3::new(0.9, 0.35, 9.0);
+        renderer.set_camera(CameraPose { position, forward: DVec3::NEG_Z })?;
+    }
+    Ok(renderer.frame(time_s)?)
+}
+
+fn by_id(frame: &Frame) -> BTreeMap<u64, FallingDrop> {
+    frame.drops.drops.iter().map(|drop| (drop.id, *drop)).collect()
+}
+
+/// Of a thousand drops all but a few, at the edge of the picture or of a leaf, are found by both, where and as they are.
+#[test]
+fn a_device_finds_the_drops_of_the_cpu() -> Result<(), Box<dyn Error>> {
+    let gpu = Gpu::open(&AdapterChoice::Auto)?;
+    for (file, time_s) in [(STREET, 3.75), (WINDOW, 1.25)] {
+        let on_cpu = frame(file, Device::cpu(), time_s)?;
+        let on_gpu = frame(file, Device::gpu(gpu.clone(), false), time_s)?;
+        assert_eq!(on_gpu.drops.resolved, on_cpu.drops.resolved);
+        let (cpu, device) = (by_id(&on_cpu), by_id(&on_gpu));
+        assert!(cpu.len() > 500, "{file}: {} drops", cpu.len());
+        let missing = cpu.keys().filter(|id| !device.contains_key(id)).count();
+        let added = device.keys().filter(|id| !cpu.contains_key(id)).count();
+        assert!(
+            missing + added <= cpu.len() / 300,
+            "{file}: of {} {missing} missing, {added} more",
+            cpu.len()
+        );
+        let kinds = |kind: DropKind| device.values().filter(|drop| drop.kind == kind).count();
+        assert!(
+            file != STREET || kinds(DropKind::Bounced) > 20,
+            "{file}: {} droplets",
+            kinds(DropKind::Bounced)
+        );
+        for (id, drop) in &cpu {
+            let Some(other) = device.get(id) else { continue };
+            let apart = (drop.position - other.position).length();
+            assert!(apart < 2.0e-4, "{file}: drop {id} is {apart} m off");
+            assert_eq!((drop.kind, drop.diameter.to_bits()), (other.kind, other.diameter.to_bits()));
+            let part = |drop: &FallingDrop| drop.present_s.map(f32::is_finite);
+            assert_eq!(part(drop), part(other), "{file}: drop {id}");
+        }
+        // The drops that are drawn, by their places in the list, nearest first.
+        let count = on_gpu.drops.drops.len();
+        assert!(on_gpu.picture.drawn.iter().all(|&place| (place as usize) < count));
+        let ids = |frame: &Frame| -> Vec<u64> {
+            frame.picture.drawn.iter().map(|&place| frame.drops.drops[place as usize].id).collect()
+        };
+        let (drawn, expected) = (ids(&on_gpu), ids(&on_cpu));
+        let both = drawn.iter().filter(|id| expected.contains(id)).count();
+        assert!(
+            both * 300 >= expected.len() * 299 && drawn.len().abs_diff(expected.len()) * 300 <= drawn.len()
+        );
+    }
+    Ok(())
+}
+
+/// The device lists drops in any order: nothing of a frame depends on it.
+#[test]
+fn a_frame_has_the_same_bits_each_time() -> Result<(), Box<dyn Error>> {
+    let gpu = Gpu::open(&AdapterChoice::Auto)?;
+    let first = frame(STREET, Device::gpu(gpu.clone(), false), 3.75)?;
+    for _ in 0..3 {
+        let again = frame(STREET, Device::gpu(gpu.clone(), false), 3.75)?;
+        assert!(again.picture.rain == first.picture.rain && again.picture.clean == first.picture.clean);
+        assert!(again.drops == first.drops && again.picture.drawn == first.picture.drawn);
+    }
+    Ok(())
+}

@@ -1,0 +1,124 @@
+//! `shaders/wgsl/render/wet.wgsl` against `downpour_trace::wet`.
+
+use downpour_gpu::{Gpu, GpuError};
+use downpour_shaders::render::scene::{SURFACE, TRACE_KERNEL};
+use downpour_shaders::render::wet::WET;
+use downpour_trace::SceneWetness;
+use downpour_trace::surface::surface_porosity;
+use downpour_trace::wet::{wet_arrival, wet_corner, wet_fraction, wet_noise, wet_reflectance, wet_relief};
+use downpour_weather::WetnessAt;
+use glam::Vec3;
+
+use super::scene::{picture, scene};
+use crate::Domain::{AnyWord, Below, Uniform, Unit3};
+use crate::function::Run;
+use crate::words::{Args, IntoWords as _};
+use crate::{FunctionCase, KernelCase, Tol};
+
+fn vec3(args: &mut Args<'_>) -> Vec3 {
+    Vec3::from(args.f32s())
+}
+
+const NOISE: Tol =
+    Tol::absolute(2.0e-4, "a sum of 8 products of numbers up to 2; a cell's edge is continuous")
+        .with_outliers(1.0e-3);
+
+/// The cases.
+pub(super) fn functions() -> Vec<FunctionCase> {
+    let fraction = Uniform(0.0, 1.0);
+    let place = Uniform(-40.0, 40.0);
+    vec![
+        FunctionCase::new(
+            "wet_fraction",
+            &WET,
+            &[Uniform(0.0, 12.0), fraction, Uniform(0.0, 4.0), Uniform(0.0, 4.0)],
+            Tol::absolute(2.0e-5, "exponentials (3 + 2|x| ulp) of numbers up to 48, below 1"),
+            |a| wet_fraction(a.f32(), a.f32(), a.f32(), a.f32()).words(),
+        ),
+        FunctionCase::new(
+            "wet_corner",
+            &WET,
+            &[AnyWord, AnyWord, AnyWord, AnyWord],
+            Tol::exact("integers, and a product with a power of 2"),
+            |a| {
+                let cell = a.u32s::<3>().map(|word| word as i32);
+                wet_corner(cell, a.u32()).words()
+            },
+        ),
+        FunctionCase::new("wet_noise", &WET, &[place, place, place, Below(9)], NOISE, |a| {
+            wet_noise(vec3(a), a.u32()).to_array().words()
+        }),
+        FunctionCase::new(
+            "wet_relief",
+            &WET,
+            &[fraction, fraction, fraction, Uniform(0.0, 0.05)],
+            Tol::absolute(
+                1.0e-3,
+                "noise at a position over a cell of 3 mm, whose quotient (2.5 ulp) is up to 333",
+            )
+            .with_outliers(1.0e-3),
+            |a| {
+                let relief = wet_relief(vec3(a), a.f32());
+                let [x, y, z] = relief.slope.to_array();
+                [x, y, z, relief.height, relief.variance].words()
+            },
+        ),
+        FunctionCase::new("wet_arrival", &WET, &[Unit3, fraction, fraction, fraction], NOISE, |a| {
+            wet_arrival(vec3(a), vec3(a)).to_array().words()
+        }),
+        FunctionCase::new(
+            "wet_reflectance",
+            &WET,
+            &[fraction, fraction, fraction],
+            Tol::relative(2.0e-3, 1.0e-5, "a difference of refractive indices, and 1 - root(0.98), cancel"),
+            |a| wet_reflectance(vec3(a)).to_array().words(),
+        ),
+        FunctionCase::new(
+            "surface_porosity",
+            &SURFACE,
+            &[Uniform(-1.0, 1.5), Below(4), fraction, fraction],
+            Tol::absolute(1.0e-6, "products of numbers up to 3"),
+            |a| surface_porosity(a.f32(), a.u32(), a.f32(), a.f32()).words(),
+        ),
+    ]
+}
+
+const PICTURE: Tol = Tol::relative(
+    3.0e-3,
+    3.0e-3,
+    "sums over rays; a ray at an edge, the sky's atan2 (4096 ulp), and the rain's edge may fall on either side",
+)
+.with_outliers(6.0e-3);
+
+/// The cases.
+pub(super) fn kernels() -> Vec<KernelCase> {
+    let case = |name, run| KernelCase {
+        name,
+        kernel: &TRACE_KERNEL,
+        with: &[],
+        overrides: &[("SCENE_PANE", 0.0), ("SCENE_WET", 0.0), ("WET_SURFACES", 1.0)],
+        text: None,
+        tol: PICTURE,
+        run,
+    };
+    vec![
+        case("main_trace: wet surfaces from near", case_near),
+        case("main_trace: wet surfaces under the sky alone", case_far),
+    ]
+}
+
+/// The scene of the other cases in a rain that comes aslant.
+fn case(gpu: &Gpu, eye: Vec3, sky_rays: u32, at: WetnessAt) -> Result<Run, GpuError> {
+    let mut scene = scene();
+    let towards = Vec3::new(0.35, 1.0, 0.5).normalize();
+    scene.set_wetness(Some(&SceneWetness { at, towards, shift: Vec3::new(3.0, 0.0, 5.0) }));
+    picture(gpu, &scene, eye, sky_rays)
+}
+
+fn case_near(gpu: &Gpu) -> Result<Run, GpuError> {
+    case(gpu, Vec3::new(0.6, 1.0, 2.6), 2, WetnessAt { before: 0.8, kept: 0.7, since: 0.3 })
+}
+
+fn case_far(gpu: &Gpu) -> Result<Run, GpuError> {
+    case(gpu, Vec3::new(-3.0, 3.0, 6.0), 0, WetnessAt { before: 6.0, kept: 1.0, since: 0.0 })
+}
