@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use downpour_tests::sources::rust_files;
 
 /// The layer of each crate, as in ARCHITECTURE.md: a crate names those of lower layers alone.
-const LAYERS: [(&str, u32); 18] = [
+const LAYERS: [(&str, u32); 19] = [
     ("downpour-shaders", 0),
     ("downpour-math", 1),
     ("downpour-gpu", 2),
@@ -21,6 +21,7 @@ const LAYERS: [(&str, u32); 18] = [
     ("downpour-atlas", 4),
     ("downpour-scene", 4),
     ("downpour-sim", 4),
+    ("downpour-street", 4),
     ("downpour-weather", 5),
     ("downpour-render", 6),
     ("downpour-trace", 7),

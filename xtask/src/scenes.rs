@@ -1,28 +1,21 @@
 //! `cargo xtask scenes`: the street of `assets/scenes/street`, made by code, byte for byte the same each time.
 
-mod car;
-mod furniture;
-mod gltf;
-mod ground;
-mod house;
-mod material;
-mod mesh;
-mod model;
-mod noise;
-mod raster;
 mod skies;
 mod sky;
-mod street;
-mod textures;
 mod weather;
 
 use std::path::{Path, PathBuf};
 
+use downpour_street::{Street, StreetSettings, puddle_mask, textures};
+
 use crate::run;
-use model::Model;
 
 /// The most bytes that the street may take.
-const BUDGET: usize = 4_000_000;
+const BUDGET: usize = 15_000_000;
+/// The most triangles of the street, with all copies.
+const MAX_TRIANGLES: usize = 400_000;
+/// The most texels of all textures, of four bytes each.
+const MAX_TEXELS: usize = 25 << 20;
 
 type Asset = (String, Vec<u8>);
 
@@ -30,31 +23,34 @@ fn folder() -> PathBuf {
     run::root().join("assets/scenes/street")
 }
 
-fn models() -> Vec<Model> {
-    vec![
-        street::street(),
-        car::car(),
-        furniture::lamp(),
-        furniture::tree(),
-        furniture::bench(),
-        furniture::bollard(),
-        furniture::bin_and_sign(),
-        furniture::window_frame(),
-    ]
+/// The street that is shipped.
+fn street() -> Result<Street, String> {
+    Street::generate(&StreetSettings::default()).map_err(|error| error.to_string())
 }
 
 /// Every file of the folder.
 fn make() -> Result<Vec<Asset>, String> {
-    let mut assets = Vec::new();
-    for model in models() {
-        assets.extend(
-            gltf::files(&model).into_iter().map(|file| (format!("models/{}", file.name), file.bytes)),
-        );
+    let street = street()?;
+    if street.triangle_count() > MAX_TRIANGLES {
+        return Err(format!(
+            "the street has {} triangles, more than {MAX_TRIANGLES}",
+            street.triangle_count()
+        ));
     }
-    for file in textures::make()? {
+    let mut assets = Vec::new();
+    for file in street.to_gltf("street").into_iter().chain(Street::window_opening().to_gltf("window")) {
+        assets.push((format!("models/{}", file.name), file.bytes));
+    }
+    let mut texels = 0;
+    for file in textures().map_err(|error| error.to_string())? {
+        texels += file.texel_count;
         assets.push((format!("models/textures/{}", file.name), file.bytes));
     }
-    assets.push(("pavement_puddle.png".to_owned(), textures::puddle_mask()?));
+    if texels > MAX_TEXELS {
+        return Err(format!("textures have {texels} texels, more than {MAX_TEXELS}"));
+    }
+    let mask = puddle_mask().map_err(|error| error.to_string())?;
+    assets.push(("pavement_puddle.png".to_owned(), mask));
     assets.extend(weather::make().into_iter().map(|file| (file.name.to_owned(), file.text.into_bytes())));
     let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
     if bytes > BUDGET {
@@ -68,9 +64,17 @@ pub(crate) use skies::run as skies;
 
 /// Writes the folder.
 pub(crate) fn write() -> Result<(), String> {
-    for model in models() {
-        println!("{:>9} triangles  {}", model.triangle_count(), model.name);
+    let street = street()?;
+    let mut sorts: std::collections::BTreeMap<String, [usize; 2]> = std::collections::BTreeMap::new();
+    for piece in street.pieces() {
+        let sort = piece.name.split([' ', '{']).next().unwrap_or_default();
+        let count = sorts.entry(sort.to_owned()).or_default();
+        *count = [count[0] + piece.triangle_count(), count[1] + piece.copies.len()];
     }
+    for (sort, [triangles, copies]) in sorts {
+        println!("{triangles:>9} triangles  {copies:>4} x {sort}");
+    }
+    println!("{:>9} triangles", street.triangle_count());
     let (folder, assets) = (folder(), make()?);
     for (name, bytes) in &assets {
         let path = folder.join(name);

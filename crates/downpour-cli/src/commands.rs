@@ -11,6 +11,7 @@ mod rain;
 mod render;
 mod specimen;
 mod streaks;
+mod street;
 mod wind;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -31,6 +32,7 @@ pub(crate) enum Command {
     Specimen(specimen::SpecimenArguments),
     Wind(wind::WindArguments),
     Lattice(lattice::LatticeArguments),
+    Street(street::StreetArguments),
     Adapters(adapters::AdaptersArguments),
 }
 
@@ -45,6 +47,7 @@ impl Command {
             Self::Specimen(arguments) => arguments.run(interrupt),
             Self::Wind(arguments) => arguments.run(interrupt),
             Self::Lattice(arguments) => arguments.run(interrupt),
+            Self::Street(arguments) => arguments.run(interrupt),
             Self::Adapters(arguments) => arguments.run(),
         }
     }

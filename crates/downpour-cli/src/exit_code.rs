@@ -12,6 +12,7 @@ use downpour::scene::SceneError;
 use downpour::shower::ShowerError;
 use downpour::sim::SimError;
 use downpour::specimen::SpecimenError;
+use downpour::street::StreetError;
 use downpour::trace::puddle::PuddleError;
 use downpour::trace::stage::StageError;
 use downpour::wind::WindError;
@@ -136,6 +137,15 @@ impl ExitCode for PaneError {
 impl ExitCode for PuddleError {
     fn exit_code(&self) -> u8 {
         INPUT
+    }
+}
+
+impl ExitCode for StreetError {
+    fn exit_code(&self) -> u8 {
+        match self {
+            Self::Setting { .. } => INPUT,
+            Self::Texture { .. } => OTHER,
+        }
     }
 }
 

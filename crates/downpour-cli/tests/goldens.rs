@@ -99,7 +99,7 @@ fn kept(golden: &Golden) -> PathBuf {
 fn made(golden: &Golden, backend: &[&str]) -> Result<Vec<u8>, Failed> {
     let text = |path: PathBuf| path.to_string_lossy().into_owned();
     let weather = text(root("tests/goldens/weather").join(format!("{}.toml", golden.weather)));
-    let (street, atlas) = (text(root("assets/scenes/street")), text(root("assets/streaks")));
+    let (street, atlas) = (text(root("assets/scenes/plain")), text(root("assets/streaks")));
     let fixed = ["render", &weather, "--asset-root", &street, "--streaks", &atlas, "-q", "-o", golden.output];
     let ended = Downpour::new(&[&fixed, golden.options, backend].concat()).run();
     if ended.code == Some(0) { Ok(ended.file(golden.file)) } else { Err(ended.stderr.into()) }

@@ -123,7 +123,7 @@ fn painted() -> serde_json::Value {
 
 /// A file of the street's models.
 fn model(name: &str) -> Vec<u8> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/street/models");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/plain/models");
     fs::read(format!("{folder}/{name}")).expect("a model of the street")
 }
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 /// A model of the street.
 fn file(name: &str) -> TriangleModel {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/street/models");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/plain/models");
     let path = std::path::Path::new(folder).join(name);
     let model = read_triangles(&path, &mut Budget::default()).unwrap_or_else(|error| panic!("{error}"));
     check(&model);

@@ -360,7 +360,7 @@ fn random_ways_are_stopped_as_exact_rays_are() {
 /// A house of the street with its neighbors' walls, its shop and its awning.
 #[test]
 fn a_roof_of_the_street_does_not_leak() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/street/models/street.gltf");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes/plain/models/street.gltf");
     let mut budget = downpour_scene::Budget::default();
     let model = downpour_scene::gltf::read_triangles(path.as_ref(), &mut budget).unwrap();
     let middle = at(-10.5, 0.0, -9.25);

@@ -82,6 +82,7 @@ pub use downpour_scene as scene;
 pub use downpour_shaders as shaders;
 pub use downpour_sim as sim;
 pub use downpour_specimen as specimen;
+pub use downpour_street as street;
 pub use downpour_trace as trace;
 pub use downpour_weather as weather;
 pub use downpour_wind as wind;

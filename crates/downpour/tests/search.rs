@@ -13,10 +13,10 @@ use downpour::{Device, Frame, Renderer, RendererOptions, Source};
 use glam::DVec3;
 
 /// A street with trees whose leaves have holes, in gusts that carry drops past the houses.
-const STREET: &str = "assets/scenes/street/day.toml";
+const STREET: &str = "assets/scenes/plain/day.toml";
 
 /// The same through a window.
-const WINDOW: &str = "assets/scenes/street/window.toml";
+const WINDOW: &str = "assets/scenes/plain/window.toml";
 
 /// The frame of a time in seconds of a weather file of the project, small.
 fn frame(file: &str, device: Device, time_s: f64) -> Result<Frame, Box<dyn Error>> {

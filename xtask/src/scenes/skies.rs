@@ -1,4 +1,4 @@
-//! `cargo xtask scenes skies`: the maps of `assets/skies`, captures of the street from its middle.
+//! `cargo xtask scenes skies`: the maps of `assets/skies`, captures of the plain street (`assets/scenes/plain`) from its middle.
 //!
 //! A capture is six square pictures of the dry street by `downpour render --backend cpu`, resampled into an equirectangular map. For rays
 //! that miss the scene under a clear sky, the map has the sun's disk as well. The CPU's pictures are the same bytes on every machine, and
@@ -11,7 +11,6 @@ use exr::prelude::{FlatSamples, ReadChannels as _, ReadLayers as _, read};
 use image::codecs::hdr::HdrEncoder;
 
 use super::sky::{ClearSky, SUN_RADIUS};
-use super::weather;
 use crate::run;
 
 /// Size of a map.
@@ -99,7 +98,7 @@ struct Face {
 
 impl Capture {
     fn make(&self, program: &Path) -> Result<Vec<u8>, String> {
-        let street = run::root().join("assets/scenes/street");
+        let street = run::root().join("assets/scenes/plain");
         let made = run::root().join("target/skies");
         std::fs::create_dir_all(&made).map_err(|error| format!("{}: {error}", made.display()))?;
         if let Some(sky) = &self.sky {
@@ -112,7 +111,7 @@ impl Capture {
                 .into_iter()
                 .enumerate()
         {
-            let weather = self.weather(yaw, pitch);
+            let weather = self.weather(&street, yaw, pitch)?;
             let (file, out) = (made.join("face.toml"), made.join(format!("{}_{number}.exr", self.name)));
             std::fs::write(&file, weather).map_err(|error| format!("{}: {error}", file.display()))?;
             render(program, &file, &out, &[&street, &made])?;
@@ -130,7 +129,7 @@ impl Capture {
     }
 
     /// The dry street from the camera.
-    fn weather(&self, yaw: f64, pitch: f64) -> String {
+    fn weather(&self, street: &Path, yaw: f64, pitch: f64) -> Result<String, String> {
         let [x, y, z] = self.eye;
         let camera =
             format!("position_m = [{x}, {y}, {z}]\nyaw_deg = {yaw}\npitch_deg = {pitch}\nfov_deg = 90\n");
@@ -145,8 +144,19 @@ impl Capture {
                  illuminance_lux = {lux}\ncolor = {color:?}\n"
             )
         });
-        weather::dry(self.is_night, sky.as_deref(), &camera, [EDGE; 2])
+        dry(&street.join(if self.is_night { "night.toml" } else { "day.toml" }), sky.as_deref(), &camera)
     }
+}
+
+/// The models and the sky of a weather file, without rain, with a camera and perhaps another sky.
+fn dry(file: &Path, sky: Option<&str>, camera: &str) -> Result<String, String> {
+    let text = std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let models = text.split("\n[rain]").next().unwrap_or_default();
+    let own =
+        text.split("\n[sky]").nth(1).and_then(|rest| rest.split("\n[camera]").next()).unwrap_or_default();
+    let sky = sky.map_or_else(|| format!("\n[sky]{own}"), str::to_owned);
+    let rain = "\n[rain]\nrate_mm_h = 0\nseed = 49\n";
+    Ok(format!("{models}{rain}{sky}\n[camera]\n{camera}\n[output]\nsize = [{EDGE}, {EDGE}]\n"))
 }
 
 fn render(program: &Path, weather: &Path, out: &Path, roots: &[&Path]) -> Result<(), String> {

@@ -33,6 +33,7 @@ mod scenes;
 #[cfg(unix)]
 mod signals;
 mod specimen;
+mod street;
 mod wind;
 #[cfg(all(feature = "gpu", target_os = "linux"))]
 mod without_gpu;

@@ -37,7 +37,7 @@ fn the_figures_of_papers_are_weather_files() {
     // Streets take a second to load, and all files have one of a few: each of those once, with a file that has it, and all files
     // before a floor.
     let mut streets: Vec<String> = Vec::new();
-    let root = assets("scenes/street");
+    let root = assets("scenes/plain");
     for file in &files {
         let text = std::fs::read_to_string(file).unwrap();
         let run = Downpour::new(&["check", "w.toml", "--json"]).with_file("floor.gltf", model());

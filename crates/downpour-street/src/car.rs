@@ -1,0 +1,335 @@
+//! A hatchback of 4.2 x 1.76 x 1.46 m: a body drawn over stations from nose to tail, wheels, lamps.
+//!
+//! The car stands on y = 0 and looks along +z.
+
+use glam::{Vec2, Vec3};
+
+use crate::material::Material;
+use crate::mesh::{BELOW, Mesh, plain, tinted};
+use crate::noise::{mix, smooth};
+
+/// Axles, front and rear, and radius of the wheels.
+const AXLES_M: [f32; 2] = [1.30, -1.25];
+const WHEEL_M: f32 = 0.315;
+/// Radius of the arches over them.
+const ARCH_M: f32 = 0.385;
+/// Ends of the body.
+const NOSE_M: f32 = 2.10;
+const TAIL_M: f32 = -2.08;
+
+/// Half the length and half the width of the body.
+pub(crate) const HALF_LENGTH_M: f32 = 2.14;
+pub(crate) const HALF_WIDTH_M: f32 = 0.88;
+
+/// Colors of the paint, linear.
+pub(crate) const PAINTS: [[f32; 3]; 6] = [
+    [0.33, 0.34, 0.35],
+    [0.035, 0.052, 0.085],
+    [0.17, 0.016, 0.014],
+    [0.58, 0.575, 0.55],
+    [0.028, 0.029, 0.031],
+    [0.10, 0.135, 0.12],
+];
+
+/// Smooth function through points with rising arguments: cubic, with slopes of central differences.
+fn through(points: &[[f32; 2]], x: f32) -> f32 {
+    let after = points.iter().position(|p| p[0] >= x).unwrap_or(points.len() - 1).max(1);
+    let at = |k: usize| points[k.min(points.len() - 1)];
+    let (a, b, c, d) = (at(after.saturating_sub(2)), at(after - 1), at(after), at(after + 1));
+    let t = ((x - b[0]) / (c[0] - b[0])).clamp(0.0, 1.0);
+    let wide = c[0] - b[0];
+    let slope = |p: [f32; 2], q: [f32; 2]| if q[0] > p[0] { (q[1] - p[1]) / (q[0] - p[0]) } else { 0.0 };
+    // Limited, so that the curve does not swing beyond its points.
+    let own = slope(b, c);
+    let limit = |s: f32| if s * own <= 0.0 { 0.0 } else { s.clamp(-3.0 * own.abs(), 3.0 * own.abs()) };
+    let (m0, m1) = (limit(slope(a, c)) * wide, limit(slope(b, d)) * wide);
+    let (t2, t3) = (t * t, t * t * t);
+    (2.0 * t3 - 3.0 * t2 + 1.0) * b[1]
+        + (t3 - 2.0 * t2 + t) * m0
+        + (3.0 * t2 - 2.0 * t3) * c[1]
+        + (t3 - t2) * m1
+}
+
+/// Height of the outline in the middle of the car.
+fn top(z: f32) -> f32 {
+    through(
+        &[
+            [-2.08, 0.90],
+            [-2.02, 1.02],
+            [-1.92, 1.08],
+            [-1.62, 1.30],
+            [-1.45, 1.385],
+            [-1.1, 1.43],
+            [-0.6, 1.455],
+            [-0.1, 1.455],
+            [0.22, 1.42],
+            [0.45, 1.32],
+            [0.8, 1.11],
+            [1.02, 0.975],
+            [1.15, 0.945],
+            [1.5, 0.885],
+            [1.85, 0.80],
+            [2.0, 0.73],
+            [2.10, 0.60],
+        ],
+        z,
+    )
+}
+
+/// Height of the lower edge of the windows.
+fn belt(z: f32) -> f32 {
+    through(&[[-2.08, 0.88], [-1.5, 0.985], [0.0, 0.935], [1.0, 0.90], [1.6, 0.82], [2.1, 0.56]], z)
+}
+
+/// Half the width at the widest line.
+fn half_width(z: f32) -> f32 {
+    let nose = smooth(1.25, 2.25, z);
+    let tail = smooth(-1.4, -2.3, z);
+    HALF_WIDTH_M * (1.0 - 0.30 * nose * nose * nose - 0.17 * tail * tail * tail)
+}
+
+/// Lower edge of the body: sills, bumpers and arches.
+fn low(z: f32) -> f32 {
+    let sill = mix(0.21, 0.27, smooth(1.7, 2.1, z).max(smooth(-1.7, -2.05, z)));
+    AXLES_M
+        .iter()
+        .map(|axle| {
+            let d = z - axle;
+            if d.abs() < ARCH_M { WHEEL_M - 0.01 + (ARCH_M * ARCH_M - d * d).sqrt() } else { sill }
+        })
+        .fold(sill, f32::max)
+}
+
+/// Points of a cross-section from the lower edge to the middle of the roof.
+const POINTS: usize = 14;
+/// First and last point of the side window.
+const GLASS_FROM: usize = 7;
+const GLASS_TO: usize = 9;
+
+fn section(z: f32, k: usize) -> Vec3 {
+    let (w, y0, belt, top) = (half_width(z), low(z), belt(z).min(top(z) - 0.01), top(z));
+    let shoulder = mix(y0, belt, 0.80);
+    // The cabin narrows upwards.
+    let cabin = (top - belt).max(0.0);
+    let lean = 0.42 * cabin;
+    let roof = (w - 0.085 - lean).max(w * 0.55);
+    let point = match k {
+        0 => [w - 0.045, y0],
+        1 => [w - 0.012, y0 + 0.05 * smooth(0.0, 0.3, belt - y0)],
+        2 => [w, mix(y0, belt, 0.42)],
+        3 => [w + 0.006, mix(y0, belt, 0.62)],
+        4 => [w, shoulder],
+        5 => [w - 0.022, mix(shoulder, belt, 0.6)],
+        6 => [w - 0.055, belt],
+        7 => [w - 0.075 - 0.05 * lean, belt + 0.10 * cabin],
+        8 => [mix(w - 0.075, roof, 0.55), belt + 0.55 * cabin],
+        9 => [roof + 0.012, belt + 0.86 * cabin],
+        10 => [roof - 0.03, belt + 0.945 * cabin],
+        11 => [roof * 0.86, belt + 0.975 * cabin + 0.004],
+        12 => [roof * 0.5, top - 0.006 * smooth(0.0, 0.1, cabin)],
+        _ => [0.0, top],
+    };
+    Vec3::new(point[0], point[1], z)
+}
+
+/// Positions of door edges: dark gaps.
+const GAPS_M: [f32; 3] = [0.93, -0.16, -1.02];
+/// Pillars between the windows: middle and half-width.
+const PILLARS_M: [[f32; 2]; 2] = [[-0.16, 0.05], [-1.12, 0.06]];
+
+fn stations() -> Vec<f32> {
+    let mut all: Vec<f32> = (0..=30).map(|k| mix(TAIL_M, NOSE_M, k as f32 / 30.0)).collect();
+    for gap in GAPS_M {
+        all.extend([gap - 0.004, gap + 0.004]);
+    }
+    for [middle, half] in PILLARS_M {
+        all.extend([middle - half, middle + half]);
+    }
+    for axle in AXLES_M {
+        all.extend([-1.0, -0.92, -0.7, -0.4, 0.4, 0.7, 0.92, 1.0].map(|t| axle + t * ARCH_M));
+        all.extend([axle - ARCH_M - 0.003, axle + ARCH_M + 0.003]);
+    }
+    all.extend([0.25, 0.96, 1.02, -1.45, -1.93, -1.66, 1.70, 2.03, 2.075, -1.80, -2.055]);
+    all.sort_by(f32::total_cmp);
+    all.dedup_by(|a, b| (*a - *b).abs() < 2.5e-3);
+    all
+}
+
+/// Material of a cell of the body.
+fn skin(z: f32, k: usize) -> Material {
+    let is_windscreen = (0.25..0.97).contains(&z);
+    let is_hatch = (-1.93..-1.45).contains(&z);
+    let is_gap = GAPS_M.iter().any(|gap| (z - gap).abs() < 0.004);
+    let is_pillar = PILLARS_M.iter().any(|[middle, half]| (z - middle).abs() < *half);
+    match k {
+        3..=5 if (1.70..2.03).contains(&z) => Material::Headlight,
+        3..=5 if z < -1.80 => Material::TailLight,
+        0 => Material::Trim,
+        1..=5 if is_gap => Material::Trim,
+        GLASS_FROM..GLASS_TO if (-1.55..0.62).contains(&z) => {
+            if is_pillar {
+                Material::Trim
+            } else {
+                Material::CarGlass
+            }
+        }
+        11.. if is_windscreen || is_hatch => Material::CarGlass,
+        _ => Material::CarPaint,
+    }
+}
+
+fn body(mesh: &mut Mesh) {
+    let stations = stations();
+    let rows = stations.len() - 1;
+    for side in [1.0, -1.0] {
+        let flip = Vec3::new(side, 1.0, 1.0);
+        mesh.grid(
+            [POINTS - 1, rows],
+            |i, j| {
+                // On the left the rows run the other way, so that the front stays outside.
+                let z = if side > 0.0 { stations[rows - j] } else { stations[j] };
+                let p = section(z, i);
+                (p * flip, Vec2::new(z, p.y), Vec3::ONE)
+            },
+            |i, j| {
+                let (a, b) = if side > 0.0 { (rows - j, rows - j - 1) } else { (j, j + 1) };
+                Some(skin((stations[a] + stations[b]) * 0.5, i))
+            },
+        );
+    }
+    for (z, front) in [(NOSE_M, true), (TAIL_M, false)] {
+        for k in 0..POINTS - 1 {
+            let (a, b) = (section(z, k), section(z, k + 1));
+            let m = |p: Vec3| Vec3::new(-p.x, p.y, p.z);
+            let paint = plain(if k < 2 { Material::Trim } else { Material::CarPaint });
+            let corners = [m(a), a, b, m(b)];
+            let [p, q, r, s] = corners;
+            mesh.quad(paint, if front { corners } else { [q, p, s, r] });
+        }
+    }
+    // Nothing is seen through the arches.
+    mesh.block(plain(Material::Trim), [-0.72, 0.22, -1.75], [1.44, 0.45, 3.40]);
+}
+
+fn wheel(mesh: &mut Mesh, x: f32, z: f32) {
+    let out = x.signum();
+    let mut wheel = Mesh::default();
+    // Turned about the vertical, then laid on its side.
+    let (r, half) = (WHEEL_M, 0.10);
+    let tire = [
+        [0.20, half - 0.012],
+        [0.235, half],
+        [r - 0.03, half],
+        [r, half - 0.035],
+        [r, -half + 0.035],
+        [r - 0.03, -half],
+    ];
+    let mut up: Vec<[f32; 2]> = tire.to_vec();
+    up.reverse();
+    wheel.lathe(plain(Material::Rubber), Vec3::ZERO, &up, 16);
+    wheel.lathe(
+        plain(Material::Alloy),
+        Vec3::ZERO,
+        &[[0.205, half - 0.014], [0.19, half - 0.04], [0.165, half - 0.055]],
+        20,
+    );
+    wheel.lathe(
+        tinted(Material::Trim, [0.5; 3]),
+        Vec3::ZERO,
+        &[[0.166, half - 0.075], [0.0, half - 0.08]],
+        20,
+    );
+    wheel.lathe(
+        plain(Material::Alloy),
+        Vec3::ZERO,
+        &[[0.05, half - 0.08], [0.045, half - 0.03], [0.0, half - 0.025]],
+        12,
+    );
+    for spoke in 0..5 {
+        let mut one = Mesh::default();
+        one.cuboid(
+            plain(Material::Alloy),
+            Vec3::new(0.03, half - 0.08, -0.022),
+            Vec3::new(0.18, half - 0.038, 0.022),
+            BELOW,
+        );
+        wheel.add(&one, [0.0; 3], 72.0 * spoke as f32);
+    }
+    for part in wheel.parts.values_mut() {
+        for vertex in &mut part.vertices {
+            let lay = |v: Vec3| Vec3::new(v.y * out, -v.x * out, v.z);
+            vertex.position = lay(vertex.position) + Vec3::new(x, WHEEL_M, z);
+            vertex.normal = lay(vertex.normal);
+        }
+    }
+    mesh.add(&wheel, [0.0; 3], 0.0);
+}
+
+fn fittings(mesh: &mut Mesh) {
+    for side in [-1.0f32, 1.0] {
+        let x = side;
+        for z in AXLES_M {
+            wheel(mesh, x * 0.765, z);
+        }
+        // The lamps extend around the corners onto nose and tail.
+        let mut cluster = |material: Material, y: [f32; 2], x: [f32; 2], z: f32| {
+            let (a, b) = (x[0] * side, x[1] * side);
+            let (low, high) = (Vec3::new(a.min(b), y[0], z - 0.012), Vec3::new(a.max(b), y[1], z + 0.012));
+            mesh.cuboid(plain(material), low, high, 0);
+        };
+        cluster(Material::TailLight, [0.735, 0.875], [0.40, 0.715], TAIL_M);
+        cluster(Material::Headlight, [0.475, 0.555], [0.33, 0.60], NOSE_M);
+        // Mirrors.
+        let p = Vec3::new(x * 0.93, 0.985, 0.66);
+        mesh.block(plain(Material::CarPaint), [p.x - 0.085, p.y - 0.055, p.z - 0.05], [0.17, 0.115, 0.10]);
+        mesh.block(plain(Material::Trim), [p.x.min(x * 0.80), p.y - 0.04, p.z - 0.02], [0.13, 0.03, 0.05]);
+        // Door handles.
+        for z in [0.02, -0.86] {
+            mesh.block(plain(Material::Trim), [x * 0.875 - 0.012, 0.79, z - 0.09], [0.024, 0.022, 0.18]);
+        }
+    }
+    // Grille and lower intake, plates, wipers' cowl.
+    mesh.block(plain(Material::Trim), [-0.30, 0.485, 2.02], [0.60, 0.06, 0.09]);
+    mesh.block(plain(Material::Trim), [-0.50, 0.30, 2.00], [1.00, 0.13, 0.105]);
+    mesh.block(plain(Material::Plate), [-0.26, 0.385, 2.10], [0.52, 0.11, 0.02]);
+    mesh.block(plain(Material::Plate), [-0.26, 0.60, -2.10], [0.52, 0.11, 0.02]);
+    mesh.block(plain(Material::Trim), [-0.62, 0.30, -2.095], [1.24, 0.12, 0.05]);
+}
+
+/// The car in one of [`PAINTS`].
+pub(crate) fn car(paint: usize) -> Mesh {
+    let mut mesh = Mesh::default();
+    body(&mut mesh);
+    fittings(&mut mesh);
+    if let Some(part) = mesh.parts.get_mut(&Material::CarPaint) {
+        for vertex in &mut part.vertices {
+            // Dust of the road on the lower parts.
+            let dust = 1.0 - smooth(0.2, 0.55, vertex.position.y);
+            let color = Vec3::from(PAINTS[paint % PAINTS.len()]);
+            vertex.tint = color.lerp(Vec3::new(0.16, 0.145, 0.12), 0.45 * dust);
+        }
+    }
+    mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_car_has_the_size_of_one() {
+        let mesh = car(0);
+        let mut low = Vec3::MAX;
+        let mut high = Vec3::MIN;
+        for part in mesh.parts.values() {
+            for vertex in &part.vertices {
+                low = low.min(vertex.position);
+                high = high.max(vertex.position);
+            }
+        }
+        let size = high - low;
+        assert!((4.1..4.3).contains(&size.z) && (1.7..2.1).contains(&size.x), "{size}");
+        assert!((1.4..1.5).contains(&size.y) && low.y.abs() < 0.01, "{low} {size}");
+        assert!(mesh.triangle_count() < 8000, "{}", mesh.triangle_count());
+    }
+}

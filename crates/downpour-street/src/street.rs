@@ -1,0 +1,341 @@
+//! Plan of the street: positions of houses, lamps, cars and furniture.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+
+use crate::car;
+use crate::dice::Dice;
+use crate::error::StreetError;
+use crate::furniture;
+use crate::ground::{Ground, Hollow, LANE_M, LANE_REACH_M};
+use crate::house::{DEPTH_M, House, HouseKind, WindowDesign, draw, window};
+use crate::material::Material;
+use crate::mesh::{Mesh, tinted, turn};
+use crate::model::{Lamp, Piece, Placement};
+use crate::settings::StreetSettings;
+
+/// A parked car: x and z of its middle, meters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParkedCar {
+    /// x and z of its middle, meters.
+    pub center_m: [f32; 2],
+    /// Half its width and length, meters.
+    pub half_size_m: [f32; 2],
+}
+
+/// Triangles that shine at night, as one number for each material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmissiveSurface {
+    /// The material.
+    pub material: Material,
+    /// Area of all its copies, m^2.
+    pub area_m2: f32,
+}
+
+/// A street.
+#[derive(Clone, Debug)]
+pub struct Street {
+    settings: StreetSettings,
+    pieces: Vec<Piece>,
+    lamps: Vec<Lamp>,
+    hollows: Vec<Hollow>,
+    cars: Vec<ParkedCar>,
+}
+
+impl Street {
+    /// Makes the street of some settings: the same bytes for the same settings on every machine.
+    ///
+    /// # Errors
+    /// [`StreetError::Setting`] for a number out of its range.
+    pub fn generate(settings: &StreetSettings) -> Result<Self, StreetError> {
+        settings.check("settings")?;
+        let ground = Ground::new(settings);
+        let mut plan = Plan::default();
+        plan.copies.insert("ground".to_owned(), (ground.mesh(), vec![Placement::default()]));
+        houses(settings, &ground, &mut plan);
+        lamps(settings, &ground, &mut plan);
+        let cars = cars(settings, &ground, &mut plan);
+        furnish(settings, &ground, &cars, &mut plan);
+        let mut pieces: Vec<Piece> =
+            plan.copies.into_iter().map(|(name, (mesh, copies))| Piece { name, mesh, copies }).collect();
+        for piece in &mut pieces {
+            piece.mesh.clean();
+        }
+        pieces.retain(|piece| !piece.mesh.parts.is_empty());
+        Ok(Self { settings: settings.clone(), pieces, lamps: plan.lamps, hollows: ground.hollows, cars })
+    }
+
+    /// The opening of a window as a room sees it, 1.1 x 1.14 m: jambs, head, sill and the wall around; its pane would be at z = 0, the
+    /// room at z > 0.
+    #[must_use]
+    pub fn window_opening() -> Self {
+        let mut mesh = furniture::window_opening();
+        mesh.clean();
+        Self {
+            settings: StreetSettings::default(),
+            pieces: vec![Piece::single("window", mesh)],
+            lamps: Vec::new(),
+            hollows: Vec::new(),
+            cars: Vec::new(),
+        }
+    }
+
+    /// The settings that it was made with.
+    #[must_use]
+    pub fn settings(&self) -> &StreetSettings {
+        &self.settings
+    }
+
+    /// Meshes with their copies.
+    #[must_use]
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// Lamps that burn at night.
+    #[must_use]
+    pub fn lamps(&self) -> &[Lamp] {
+        &self.lamps
+    }
+
+    /// Hollows of the carriageway, where water would stand.
+    #[must_use]
+    pub fn hollows(&self) -> &[Hollow] {
+        &self.hollows
+    }
+
+    /// Parked cars.
+    #[must_use]
+    pub fn cars(&self) -> &[ParkedCar] {
+        &self.cars
+    }
+
+    /// Triangles of all copies.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.pieces.iter().map(Piece::triangle_count).sum()
+    }
+
+    /// Surfaces that shine at night.
+    #[must_use]
+    pub fn emissive_surfaces(&self) -> Vec<EmissiveSurface> {
+        let mut areas: BTreeMap<Material, f32> = BTreeMap::new();
+        for piece in &self.pieces {
+            for (&material, part) in piece.mesh.parts.iter().filter(|(material, _)| material.is_emissive()) {
+                let corner = |k: u32| part.vertices[k as usize].position;
+                let area: f32 = part
+                    .indices
+                    .chunks_exact(3)
+                    .map(|t| (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0])).length() / 2.0)
+                    .sum();
+                *areas.entry(material).or_default() += area * piece.copies.len() as f32;
+            }
+        }
+        areas.into_iter().map(|(material, area_m2)| EmissiveSurface { material, area_m2 }).collect()
+    }
+}
+
+/// Meshes by name with their copies, and lamps.
+#[derive(Default)]
+struct Plan {
+    copies: BTreeMap<String, (Mesh, Vec<Placement>)>,
+    lamps: Vec<Lamp>,
+}
+
+impl Plan {
+    /// Places a copy of a mesh that is made when it is first needed.
+    fn place(&mut self, name: &str, make: impl FnOnce() -> Mesh, at: Placement) {
+        self.copies.entry(name.to_owned()).or_insert_with(|| (make(), Vec::new())).1.push(at);
+    }
+
+    /// Adds a lamp of a copy.
+    fn light(&mut self, lamp: &Lamp, at: Placement) {
+        let direction = lamp.direction.map(|d| at.turned(d.into()).to_array());
+        let position = (at.turned(lamp.position.into()) + Vec3::from(at.position)).to_array();
+        self.lamps.push(Lamp { position, direction, ..*lamp });
+    }
+}
+
+impl Placement {
+    fn turned(self, v: Vec3) -> Vec3 {
+        let (c, s) = turn(self.turn_deg);
+        Vec3::new(c * v.x + s * v.z, v.y, -s * v.x + c * v.z)
+    }
+}
+
+/// Widths that fill a length.
+fn widths(dice: &mut Dice, length: f32) -> Vec<f32> {
+    let count = (length / 7.6).round().max(1.0) as usize;
+    let drawn: Vec<f32> = (0..count).map(|_| dice.range(5.6, 9.6)).collect();
+    let sum: f32 = drawn.iter().sum();
+    drawn.into_iter().map(|width| width * length / sum).collect()
+}
+
+fn houses(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
+    let (half, length, reach) = (ground.half_street(), ground.length, ground.reach());
+    let near = 2.0 * ground.pavement + LANE_M;
+    let far = ground.far_front();
+    // Corner of the left end of each row, its turn, its length.
+    let rows: [(f32, f32, f32, f32); 4] = [
+        (-half, 0.0, 90.0, length),
+        (half, -length, -90.0, length),
+        (-half - 2.5, far, 0.0, 2.0 * half + 5.0),
+        (half + 2.5, near, 180.0, 2.0 * half + 5.0),
+    ];
+    // Plain walls close the lanes: no view from the street reaches them.
+    let mut walls = Mesh::default();
+    for side in [-1.0f32, 1.0] {
+        for [from, to] in [[far, -length], [0.0, near]] {
+            let x = side * (reach + 0.3);
+            let (low, high) = (Vec3::new(x - 0.3, -0.2, from - 0.5), Vec3::new(x + 0.3, 13.0, to + 0.5));
+            let paint = tinted(Material::Plaster, [0.5, 0.46, 0.40]);
+            walls.cuboid(paint, low, high, 0);
+            let z = if from < -length { far } else { near };
+            let (a, b) = (side * (half + 2.5), side * (reach + 0.5));
+            walls.cuboid(paint, Vec3::new(a.min(b), -0.2, z - 0.3), Vec3::new(a.max(b), 12.0, z + 0.3), 0);
+        }
+    }
+    plan.copies.insert("walls".to_owned(), (walls, vec![Placement::default()]));
+    let mut stream = 0;
+    for (row, (x, z, turn_deg, length)) in rows.into_iter().enumerate() {
+        let mut dice = Dice::new(settings.seed, 300 + row as u32);
+        let mut along = 0.0;
+        let mut neighbor: Option<HouseKind> = None;
+        for width in widths(&mut dice, length) {
+            stream += 1;
+            let (house, kind): (House, HouseKind) =
+                draw(settings, stream, width, ground.front_height(), neighbor);
+            neighbor = Some(kind);
+            let built = house.build();
+            let origin = Placement::new(x, 0.0, z, turn_deg);
+            let at = |p: Vec3| {
+                let p = origin.turned(p + Vec3::X * along) + Vec3::from(origin.position);
+                Placement::new(p.x, p.y, p.z, turn_deg)
+            };
+            let place = at(Vec3::ZERO);
+            plan.place(&format!("house {stream}"), || built.mesh, place);
+            for placed in &built.windows {
+                let design: WindowDesign = placed.design;
+                plan.place(&format!("window {design:?}"), || window(design), at(placed.corner));
+            }
+            for lamp in &built.lamps {
+                plan.light(lamp, place);
+            }
+            along += width;
+        }
+    }
+    const { assert!(DEPTH_M <= LANE_REACH_M) };
+}
+
+fn lamps(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) {
+    let mut dice = Dice::new(settings.seed, 201);
+    let x = ground.half_road + 0.42;
+    let y = ground.pavement_height(x) - 0.02;
+    let mut side = if dice.chance(0.5) { 1.0 } else { -1.0 };
+    let mut z = -dice.range(3.0, 6.0);
+    let era = settings.lamps;
+    while z > -ground.length + 1.0 {
+        let at = Placement::new(side * x, y, z, if side > 0.0 { 180.0 } else { 0.0 });
+        plan.place("lamp", || furniture::lamp(era).0, at);
+        plan.light(&furniture::lamp(era).1, at);
+        side = -side;
+        z -= settings.lamp_spacing_m * dice.range(0.92, 1.08);
+    }
+    // A lantern on a wall at each corner.
+    for (side, z) in [(1.0, -1.2), (-1.0, -ground.length + 1.2), (-1.0, -1.6), (1.0, -ground.length + 1.6)] {
+        let at = Placement::new(side * ground.half_street(), 3.1, z, if side > 0.0 { 180.0 } else { 0.0 });
+        plan.place("wall lamp", || furniture::wall_lamp().0, at);
+        plan.light(&furniture::wall_lamp().1, at);
+    }
+}
+
+fn cars(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) -> Vec<ParkedCar> {
+    let mut dice = Dice::new(settings.seed, 202);
+    let half = [car::HALF_WIDTH_M + 0.14, car::HALF_LENGTH_M];
+    let mut cars = Vec::new();
+    let x = ground.half_road - half[0] - 0.12;
+    for side in [1.0f32, -1.0] {
+        // Narrow streets have cars on one side.
+        if side < 0.0 && ground.half_road < 3.3 {
+            continue;
+        }
+        let mut z = -dice.range(3.2, 7.0);
+        while z > -ground.length + 3.0 {
+            if dice.chance(settings.cars) {
+                let paint = dice.below(car::PAINTS.len());
+                let slant = dice.range(-0.9, 0.9);
+                let turn_deg = if (side > 0.0) == dice.chance(0.85) { 180.0 } else { 0.0 };
+                let at =
+                    Placement::new(side * x, ground.road_height(x * side, z) - 0.004, z, turn_deg + slant);
+                plan.place(&format!("car {paint}"), || car::car(paint), at);
+                cars.push(ParkedCar { center_m: [side * x, z], half_size_m: half });
+                z -= 2.0 * half[1] + dice.range(0.7, 1.5);
+            } else {
+                z -= dice.range(3.0, 6.0);
+            }
+        }
+    }
+    cars
+}
+
+fn furnish(settings: &StreetSettings, ground: &Ground, cars: &[ParkedCar], plan: &mut Plan) {
+    let mut dice = Dice::new(settings.seed, 203);
+    let density = settings.furniture;
+    let curb = ground.half_road + 0.45;
+    let wall = ground.half_street() - 0.55;
+    let height = |x: f32| ground.pavement_height(x);
+    for side in [-1.0f32, 1.0] {
+        let facing = if side > 0.0 { -90.0 } else { 90.0 };
+        let mut z = -dice.range(1.5, 4.0);
+        while z > -ground.length + 1.5 {
+            if dice.chance(density) {
+                let put = |x: f32, turn: f32| Placement::new(side * x, height(x), z, facing + turn);
+                match dice.below(11) {
+                    0 => plan.place("bin", furniture::bin, put(curb, 0.0)),
+                    1 => plan.place("sign post", furniture::sign_post, put(curb - 0.1, 90.0 * side)),
+                    2 | 3 | 9 | 10 if ground.pavement > 2.2 => {
+                        let spin = dice.range(0.0, 360.0);
+                        let at = wall - 0.25;
+                        plan.place("table", furniture::table, put(at, spin));
+                        for k in 0..2 {
+                            let angle = dice.range(-14.0, 14.0) + 180.0 * k as f32;
+                            let dz = if k == 0 { 0.62 } else { -0.62 };
+                            let chair = Placement::new(side * at, height(at), z + dz, angle + 180.0);
+                            plan.place("chair", furniture::chair, chair);
+                        }
+                    }
+                    4 => plan.place("bicycle", furniture::bicycle, put(wall + 0.25, 90.0)),
+                    5 if ground.pavement > 2.6 => {
+                        plan.place("tree", furniture::tree, put(curb + 0.25, dice.range(0.0, 360.0)))
+                    }
+                    6 => plan.place("bench", furniture::bench, put(wall, 0.0)),
+                    7 => plan.place("planter", furniture::planter, put(wall + 0.1, 0.0)),
+                    _ => {
+                        for k in 0..3 {
+                            let at = Placement::new(side * curb, height(curb), z + 1.3 * k as f32 - 1.3, 0.0);
+                            plan.place("bollard", furniture::bollard, at);
+                        }
+                    }
+                }
+            }
+            z -= dice.range(1.9, 3.6);
+        }
+    }
+    let _ = cars;
+    // Wires across the street, from house to house.
+    let mut wires = Mesh::default();
+    let mut z = -dice.range(6.0, 12.0);
+    while z > -ground.length {
+        let half = ground.half_street();
+        let (a, b) = (
+            Vec3::new(-half, dice.range(6.8, 7.8), z),
+            Vec3::new(half, dice.range(6.8, 7.8), z + dice.range(-2.0, 2.0)),
+        );
+        furniture::wire(&mut wires, a, b, dice.range(0.2, 0.45));
+        z -= dice.range(9.0, 18.0);
+    }
+    if !wires.parts.is_empty() {
+        plan.copies.insert("wires".to_owned(), (wires, vec![Placement::default()]));
+    }
+}

@@ -1,0 +1,187 @@
+//! Many streets are valid: numbers, triangles, cars, hollows, and files that the project's own reader takes.
+
+use std::collections::BTreeMap;
+
+use downpour_scene::Budget;
+use downpour_scene::gltf::read_triangles;
+use downpour_street::{
+    LampEra, MAX_CARRIAGEWAY_M, MAX_PAVEMENT_M, MIN_CARRIAGEWAY_M, MIN_LENGTH_M, MIN_PAVEMENT_M, Material, Mesh, Part,
+    Paving, Street, StreetError, StreetSettings, TimeOfDay,
+};
+use glam::Vec3;
+
+/// Number of streets.
+const SEEDS: u64 = 40;
+
+/// Settings of a short street that differ with its seed.
+fn settings(seed: u64) -> StreetSettings {
+    let between = |low: f32, high: f32, n: u64| low + (high - low) * ((seed * 7 + n * 3) % 11) as f32 / 10.0;
+    StreetSettings {
+        seed,
+        length_m: MIN_LENGTH_M + (seed % 3) as f32 * 6.0,
+        carriageway_m: between(MIN_CARRIAGEWAY_M, MAX_CARRIAGEWAY_M, 1),
+        pavement_m: between(MIN_PAVEMENT_M, MAX_PAVEMENT_M, 2),
+        paving: if seed.is_multiple_of(2) { Paving::Cobbles } else { Paving::Asphalt },
+        age: between(0.0, 1.0, 3),
+        lamps: [LampEra::Lantern, LampEra::Sodium, LampEra::Led][seed as usize % 3],
+        lamp_spacing_m: between(6.0, 60.0, 4),
+        furniture: between(0.0, 1.0, 5),
+        cars: between(0.0, 1.0, 6),
+        shops: between(0.0, 1.0, 7),
+        lit_windows: between(0.0, 1.0, 8),
+    }
+}
+
+fn corners(part: &Part, triangle: &[u32]) -> [Vec3; 3] {
+    [0, 1, 2].map(|k| part.vertices[triangle[k] as usize].position)
+}
+
+fn check_mesh(name: &str, mesh: &Mesh) {
+    for (material, part) in &mesh.parts {
+        assert!(!part.indices.is_empty() && part.indices.len().is_multiple_of(3), "{name} {material:?}");
+        for vertex in &part.vertices {
+            assert!(vertex.position.is_finite() && vertex.position.abs().max_element() < 1000.0, "{name} {material:?}");
+            assert!((vertex.normal.length() - 1.0).abs() < 1e-3, "{name} {material:?} {}", vertex.normal);
+            assert!(vertex.uv.is_finite() && vertex.uv.abs().max_element() < 2000.0, "{name} {material:?}");
+            assert!(vertex.tint.min_element() >= 0.0 && vertex.tint.max_element() <= 1.0, "{name} {material:?}");
+        }
+        for triangle in part.indices.chunks_exact(3) {
+            assert!(triangle.iter().all(|&k| (k as usize) < part.vertices.len()), "{name} {material:?}");
+            let [a, b, c] = corners(part, triangle);
+            assert!((b - a).cross(c - a).length() > 5e-7, "{name} {material:?} {a} {b} {c}");
+        }
+    }
+}
+
+#[test]
+fn many_streets_are_valid() {
+    for seed in 0..SEEDS {
+        let settings = settings(seed);
+        let street = Street::generate(&settings).unwrap();
+        for piece in street.pieces() {
+            assert!(!piece.copies.is_empty(), "{seed} {}", piece.name);
+            check_mesh(&format!("street {seed}, {}", piece.name), &piece.mesh);
+        }
+        for lamp in street.lamps() {
+            assert!(lamp.intensity_cd > 0.0 && lamp.position[1] > 1.0 && lamp.position[1] < 9.0, "{seed} {lamp:?}");
+        }
+        assert!(street.triangle_count() > 20_000, "{seed}");
+        // Cars stand between the curbs, and not in each other.
+        let cars = street.cars();
+        for (k, car) in cars.iter().enumerate() {
+            assert!(car.center_m[0].abs() + car.half_size_m[0] < settings.carriageway_m / 2.0, "{seed} {car:?}");
+            for other in &cars[k + 1..] {
+                let apart = |n: usize| (car.center_m[n] - other.center_m[n]).abs() - car.half_size_m[n] - other.half_size_m[n];
+                assert!(apart(0) > 0.0 || apart(1) > 0.0, "{seed} {car:?} {other:?}");
+            }
+        }
+    }
+}
+
+/// Heights of the carriageway by their x and z, from the mesh itself.
+fn lowest_around(street: &Street, center: [f32; 2], from: f32, to: f32) -> f32 {
+    let ground = street.pieces().iter().find(|piece| piece.name == "ground").unwrap();
+    let mut sum = (0.0, 0);
+    for material in [Material::Setts, Material::Asphalt] {
+        for vertex in ground.mesh.parts.get(&material).map_or(&[][..], |part| &part.vertices) {
+            let (x, z) = (vertex.position.x - center[0], vertex.position.z - center[1]);
+            if (from..to).contains(&(x * x + z * z).sqrt()) {
+                sum = (sum.0 + vertex.position.y, sum.1 + 1);
+            }
+        }
+    }
+    assert!(sum.1 > 0, "no ground at {center:?}");
+    sum.0 / sum.1 as f32
+}
+
+#[test]
+fn hollows_are_below_their_surroundings() {
+    for seed in 0..6 {
+        let street = Street::generate(&StreetSettings { age: 0.3, ..settings(seed) }).unwrap();
+        assert!(street.hollows().len() >= 2, "{seed}");
+        for hollow in street.hollows() {
+            let reach = hollow.radii_m[0].max(hollow.radii_m[1]);
+            let middle = lowest_around(&street, hollow.center_m, 0.0, 0.35);
+            let around = lowest_around(&street, hollow.center_m, 1.3 * reach, 1.3 * reach + 0.5);
+            assert!(middle < around, "{seed} {hollow:?}: {middle} in {around}");
+        }
+    }
+}
+
+/// Volume inside a closed surface, positive if its faces look outwards (divergence theorem), and its open edges.
+fn closed(mesh: &Mesh, material: Material) -> (f32, usize) {
+    let part = &mesh.parts[&material];
+    let key = |p: Vec3| (p * 1e4).round().to_array().map(|v| v as i32);
+    let (mut volume, mut edges) = (0.0, BTreeMap::new());
+    for triangle in part.indices.chunks_exact(3) {
+        let [a, b, c] = corners(part, triangle);
+        volume += a.dot(b.cross(c)) / 6.0;
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *edges.entry((key(from), key(to))).or_insert(0) += 1;
+            *edges.entry((key(to), key(from))).or_insert(0) -= 1;
+        }
+    }
+    (volume, edges.values().filter(|&&count| count != 0).count())
+}
+
+#[test]
+fn boxes_of_benches_are_closed_and_look_outwards() {
+    let street = (0..SEEDS)
+        .map(|seed| Street::generate(&StreetSettings { furniture: 1.0, ..settings(seed) }).unwrap())
+        .find(|street| street.pieces().iter().any(|piece| piece.name == "bench"))
+        .unwrap();
+    let bench = street.pieces().iter().find(|piece| piece.name == "bench").unwrap();
+    let (volume, open) = closed(&bench.mesh, Material::Wood);
+    // Four planks of 1.7 x 0.088 x 0.032 m and three of 1.7 x 0.03 x 0.09 m.
+    assert!((volume - (4.0 * 1.7 * 0.088 * 0.032 + 3.0 * 1.7 * 0.03 * 0.09)).abs() < 1e-4, "{volume}");
+    assert_eq!(open, 0);
+}
+
+#[test]
+fn the_reader_takes_the_files_without_complaint() {
+    let folder = tempfile::tempdir().unwrap();
+    for seed in [1, 4] {
+        let street = Street::generate(&settings(seed)).unwrap();
+        for time in [TimeOfDay::Day, TimeOfDay::Night] {
+            let path = folder.path().join(format!("{seed}_{time:?}.glb"));
+            std::fs::write(&path, street.to_glb(time).unwrap()).unwrap();
+            let model = read_triangles(&path, &mut Budget::default()).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(model.indices.len(), street.triangle_count());
+            assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+        }
+    }
+}
+
+#[test]
+fn the_same_settings_give_the_same_bytes() {
+    let bytes = |seed| Street::generate(&settings(seed)).unwrap().to_gltf("s");
+    let (one, again, other) = (bytes(5), bytes(5), bytes(6));
+    assert_eq!(one.len(), 3);
+    for (a, b) in one.iter().zip(&again) {
+        assert!(a.name == b.name && a.bytes == b.bytes, "{}", a.name);
+    }
+    assert_ne!(one[0].bytes, other[0].bytes);
+}
+
+#[test]
+fn windows_shine_as_often_as_they_should() {
+    let area = |lit_windows: f32| {
+        let street = Street::generate(&StreetSettings { lit_windows, ..settings(2) }).unwrap();
+        let lit = |material: &Material| matches!(material, Material::Room(_));
+        let surfaces = street.emissive_surfaces();
+        surfaces.iter().filter(|surface| lit(&surface.material)).map(|surface| surface.area_m2).sum::<f32>()
+    };
+    assert_eq!(area(0.0), 0.0);
+    assert!(area(0.3) > 10.0 && area(0.9) > 1.5 * area(0.3));
+}
+
+#[test]
+fn lengths_beyond_the_ends_are_refused() {
+    for length_m in [10.0, 2000.0, f32::NAN, f32::INFINITY] {
+        let error = Street::generate(&StreetSettings { length_m, ..StreetSettings::default() }).unwrap_err();
+        let StreetError::Setting { key, allowed, .. } = error else { panic!("{error}") };
+        assert_eq!((key.as_str(), allowed.as_str()), ("length_m", "20 to 500"));
+    }
+    let longest = Street::generate(&StreetSettings { length_m: 500.0, ..StreetSettings::default() }).unwrap();
+    assert!(longest.triangle_count() < 3_000_000, "{}", longest.triangle_count());
+}
