@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use crate::material::Material;
 use crate::mesh::{BEHIND, Mesh, Vertex, plain, tinted};
 use crate::model::Lamp;
-use crate::noise::{hash, mix};
+use crate::noise::{fractal, hash, mix, mix3, smooth};
 use crate::settings::LampEra;
 
 /// Paint of cast iron.
@@ -177,7 +177,6 @@ pub(crate) fn tree() -> Mesh {
         })
         .collect();
     mesh.tube(bark, &trunk, 9);
-    let mut id = 0;
     for limb in 0..11 {
         let t = mix(0.42, 0.97, limb as f32 / 10.0);
         let at = trunk[(t * 8.0) as usize]
@@ -193,14 +192,31 @@ pub(crate) fn tree() -> Mesh {
             })
             .collect();
         mesh.tube(bark, &path, 5);
-        for (k, &(center, _)) in path.iter().enumerate().skip(1) {
-            for card in 0..if k == 1 { 2 } else { 3 } {
-                id += 1;
-                let jitter =
-                    Vec3::new(random(id + 100) - 0.5, random(id + 200) - 0.35, random(id + 300) - 0.5) * 0.55;
-                spray(&mut mesh, center + jitter, mix(0.66, 0.98, random(id + 400)), id * 7 + card);
-            }
-        }
+    }
+    // Leaves in a crown that is denser outside, where light reaches them.
+    for id in 0..CROWN_SPRAYS {
+        let r = |n: i32| hash(id, n, 403);
+        let around = 2.399_963 * id as f32 + 0.5 * r(0);
+        let height = 2.0 * (id as f32 + r(1)) / CROWN_SPRAYS as f32 - 1.0;
+        let (c, s) = (ops::cos(around), ops::sin(around));
+        let flat = (1.0 - height * height).max(0.0).sqrt();
+        let lump = mix(
+            0.72,
+            1.12,
+            fractal(
+                around.rem_euclid(std::f32::consts::TAU) / std::f32::consts::TAU,
+                0.5 * height + 0.5,
+                [5, 4],
+                2,
+                404,
+            ),
+        );
+        // Narrower above, flat below.
+        let tall = if height > 0.0 { 1.75 } else { 1.25 };
+        let depth = lump * mix(0.45, 1.0, r(2).sqrt());
+        let wide = mix(1.55, 1.25, height * 0.5 + 0.5);
+        let center = CROWN_M + Vec3::new(wide * flat * c, tall * height, wide * flat * s) * depth;
+        spray(&mut mesh, CROWN_M, center, mix(0.42, 0.66, r(3)), depth, id);
     }
     // A bed in the pavement with an iron rim.
     mesh.block(plain(Material::Soil), [-0.55, -0.05, -0.55], [1.1, 0.055, 1.1]);
@@ -216,32 +232,40 @@ pub(crate) fn tree() -> Mesh {
     mesh
 }
 
-/// A card with a spray of leaves, tilted at random; its normals point out of the crown, for soft shading.
-fn spray(mesh: &mut Mesh, center: Vec3, size: f32, id: i32) {
+/// Cards of a crown.
+const CROWN_SPRAYS: i32 = 540;
+
+/// Middle of a crown above the tree's foot.
+const CROWN_M: Vec3 = Vec3::new(0.0, 3.75, 0.0);
+
+/// A card with a spray of leaves around a crown's middle, tilted at random; `depth`: distance from that middle as a part of that of its outside. Normals
+/// point out of the crown, for soft shading; leaves inside and below get less light.
+fn spray(mesh: &mut Mesh, middle: Vec3, center: Vec3, size: f32, depth: f32, id: i32) {
     let r = |n: i32| hash(id, n, 411);
     let around = r(0) * std::f32::consts::TAU;
-    let lean = mix(-0.9, 0.9, r(1));
+    let lean = mix(-1.1, 1.1, r(1));
     let (c, s) = (ops::cos(around), ops::sin(around));
     let right = Vec3::new(c, 0.0, s);
     let forward = Vec3::new(-s, 0.0, c);
     let up = Vec3::Y * ops::cos(lean) + forward * ops::sin(lean);
-    let crown = Vec3::new(0.0, 3.6, 0.0);
-    let out = (center - crown).normalize_or_zero();
-    let shade = mix(0.62, 1.0, r(2)) * mix(0.75, 1.0, ((center.y - 2.2) / 3.0).clamp(0.0, 1.0));
+    let shade = mix(0.85, 1.0, r(2))
+        * mix(0.62, 1.0, smooth(0.35, 1.0, depth))
+        * mix(0.85, 1.0, smooth(-1.2, 0.6, center.y - middle.y));
+    // From a fresh to a tired green.
+    let tint = mix3([1.0, 1.0, 1.0], [0.98, 0.84, 0.9], r(3)).map(|c| c * shade);
     let part = mesh.part(Material::Leaf);
     let first = part.vertices.len() as u32;
-    // Six corners around the spray: less empty area than a square.
-    for k in 0..6 {
-        let angle = k as f32 / 3.0 * std::f32::consts::PI;
-        let (x, y) = (0.5 * ops::cos(angle), 0.5 * ops::sin(angle));
+    for (x, y) in [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)] {
+        let position = center + (right * x + up * y) * size;
+        let out = (position - middle).normalize_or_zero() + Vec3::Y * 0.3;
         part.vertices.push(Vertex {
-            position: center + (right * x + up * y) * size,
-            normal: (out + Vec3::Y * 0.35).normalize_or_zero(),
+            position,
+            normal: out.normalize_or_zero(),
             uv: Vec2::new(x + 0.5, 0.5 - y),
-            tint: Vec3::splat(shade),
+            tint: Vec3::from(tint),
         });
     }
-    part.indices.extend([0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5].map(|k| first + k));
+    part.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
 }
 
 /// A bench of planks on iron feet, 1.7 m wide, its front along +z.
@@ -467,7 +491,7 @@ pub(crate) fn planter() -> Mesh {
         let r = |n: i32| hash(k, n, 431);
         let (turn, out) = (r(0) * std::f32::consts::TAU, 0.26 * r(1).sqrt());
         let center = Vec3::new(out * ops::cos(turn), 0.62 + 0.55 * r(2), out * ops::sin(turn));
-        spray(&mut mesh, center, 0.36, 900 + k);
+        spray(&mut mesh, Vec3::Y * 0.8, center, 0.3, 0.6 + out, 900 + k);
     }
     mesh
 }

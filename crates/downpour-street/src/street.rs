@@ -307,7 +307,7 @@ fn furnish(settings: &StreetSettings, ground: &Ground, cars: &[ParkedCar], plan:
                     }
                     4 => plan.place("bicycle", furniture::bicycle, put(wall + 0.25, 90.0)),
                     5 if ground.pavement > 2.6 => {
-                        plan.place("tree", furniture::tree, put(curb + 0.25, dice.range(0.0, 360.0)))
+                        plan.place("tree", furniture::tree, put(curb + 0.25, dice.range(0.0, 360.0)));
                     }
                     6 => plan.place("bench", furniture::bench, put(wall, 0.0)),
                     7 => plan.place("planter", furniture::planter, put(wall + 0.1, 0.0)),

@@ -10,7 +10,7 @@ const HEAD: &str = "# Written by `cargo xtask scenes`; where everything comes fr
 const SIZE: &str = "\n[output]\nsize = [800, 450]\n";
 const DAY_SKY: &str = "\n[sky]\nzenith_color = [2300, 2450, 2650]\n";
 const DUSK_SKY: &str = "\n[sky]\nzenith_color = [3.2, 4.1, 6.4]\n";
-const NIGHT_SKY: &str = "\n[sky]\nzenith_color = [0.03, 0.036, 0.055]\n";
+const NIGHT_SKY: &str = "\n[sky]\nzenith_color = [0.042, 0.038, 0.040]\n";
 const STORM_SKY: &str = "\n[sky]\nzenith_color = [420, 470, 540]\n";
 /// A sun at 11 degrees, below the edge of the clouds, along the street; 127.5 klx exp(-0.21 / sin h), tinted.
 const LOW_SUN: &str = "\n[sky]\nzenith_color = [900, 1000, 1180]\n\n[sun]\nazimuth_deg = 62\nelevation_deg = 24\n\
@@ -55,7 +55,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
             "night.toml",
             "An old street at night in heavy rain: lanterns, lit windows, shops.",
             night.clone(),
-            &[&rain(60), NIGHT_SKY, &along(-1.6), SIZE],
+            &[&rain(60), NIGHT_SKY, &along(-2.3), SIZE],
         ),
         file(
             "dusk.toml",
@@ -88,7 +88,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
             &[
                 &rain(25),
                 NIGHT_SKY,
-                &camera([-1.0, 1.15, -16.0], [0.4, 0.3, -27.0], 46.0, -1.6),
+                &camera([-1.0, 1.15, -16.0], [0.4, 0.3, -27.0], 46.0, -2.2),
                 SIZE,
                 "\n# The road model has hollows; the relief is that of a road of ISO 8608 class B.\n[[puddle]]\n\
                  position_m = [0, 0.05, -30]\nsize_m = [6.1, 26]\nfill = 0.9\nseed = 3\ncell_mm = 30\n\
@@ -106,7 +106,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
             &[
                 &rain(25),
                 NIGHT_SKY,
-                &camera([-5.67, 2.82, -22.0], [-5.0, 2.62, -22.0], 58.0, -1.6),
+                &camera([-5.67, 2.82, -22.0], [-5.0, 2.62, -22.0], 58.0, -2.2),
                 SIZE,
                 "\n[glass]\ndistance_m = 0.6992\nsize_m = [1.16, 0.72]\ncell_mm = 1.2\nspeed_m_s = 4\nbefore_s = 40\n\
                  focus = \"glass\"\naperture_mm = 4\n",
@@ -119,7 +119,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
             &[
                 &rain(25),
                 NIGHT_SKY,
-                &camera([-0.3, 1.2, -5.0], [0.1, 1.6, -34.0], 42.0, -1.6),
+                &camera([-0.3, 1.2, -5.0], [0.1, 1.6, -34.0], 42.0, -2.2),
                 SIZE,
                 "\n[glass]\ndistance_m = 0.34\ntilt_deg = 60\nsize_m = [0.5, 0.37]\ncell_mm = 0.85\nspeed_m_s = 8\n\
                  focus = \"glass\"\naperture_mm = 6\nbefore_s = 60.45\n[[glass.wiper]]\npivot_m = [0.25, 0.41]\nlength_m = 0.36\n\

@@ -6,7 +6,7 @@ use crate::noise::{fractal, hash, mix, mix3, smooth};
 use crate::raster::Raster;
 
 /// Leaves of a spray.
-const LEAVES: i32 = 190;
+const LEAVES: i32 = 62;
 
 /// Color of a leaf at a point of the spray, if one is there: the topmost.
 fn leaf(u: f32, v: f32) -> Option<([f32; 3], f32)> {
@@ -14,13 +14,13 @@ fn leaf(u: f32, v: f32) -> Option<([f32; 3], f32)> {
         let r = |n: i32| hash(k, n, 141);
         // Leaves are around the middle, denser inside.
         let turn = r(0) * std::f32::consts::TAU;
-        let reach = 0.41 * r(1).sqrt();
+        let reach = 0.40 * r(1).sqrt();
         let (cx, cy) = (0.5 + reach * ops::cos(turn), 0.5 + reach * ops::sin(turn));
         let lean = turn + (r(2) - 0.5) * 2.2;
         let (c, s) = (ops::cos(lean), ops::sin(lean));
         let (dx, dy) = (u - cx, v - cy);
         let (along, across) = (dx * c + dy * s, -dx * s + dy * c);
-        let length = mix(0.085, 0.125, r(3));
+        let length = mix(0.15, 0.22, r(3));
         let t = along / length + 0.5;
         if !(0.0..1.0).contains(&t) {
             return None;
@@ -30,9 +30,9 @@ fn leaf(u: f32, v: f32) -> Option<([f32; 3], f32)> {
         if across.abs() > half {
             return None;
         }
-        let vein = 1.0 - smooth(0.0, 0.006, across.abs()) * 0.9;
-        let green = mix3([0.055, 0.115, 0.022], [0.10, 0.16, 0.035], r(4));
-        let old = mix3(green, [0.17, 0.15, 0.03], smooth(0.8, 1.0, r(5)) * 0.7);
+        let vein = 1.0 - smooth(0.0, 0.008, across.abs()) * 0.9;
+        let green = mix3([0.050, 0.088, 0.026], [0.088, 0.125, 0.040], r(4));
+        let old = mix3(green, [0.14, 0.13, 0.04], smooth(0.8, 1.0, r(5)) * 0.7);
         Some((old.map(|c| c * mix(0.72, 1.15, r(6)) * (1.0 + 0.35 * vein)), 1.0))
     })
 }
@@ -41,7 +41,7 @@ fn leaf(u: f32, v: f32) -> Option<([f32; 3], f32)> {
 pub(crate) fn leaves() -> Raster {
     Raster::new(256, 256, |u, v| match leaf(u, v) {
         Some(([r, g, b], a)) => [r, g, b, a],
-        None => [0.07, 0.12, 0.025, 0.0],
+        None => [0.068, 0.106, 0.033, 0.0],
     })
 }
 
