@@ -1,13 +1,14 @@
 //! Street furniture: lamps, trees, benches, bollards, bins, signs; and the window of a room.
 
 use downpour_math::ops;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use crate::material::Material;
-use crate::mesh::{BEHIND, Mesh, Vertex, plain, tinted};
+use crate::mesh::{BEHIND, Mesh, plain, tinted};
 use crate::model::Lamp;
 use crate::noise::{hash, mix};
 use crate::settings::LampEra;
+use crate::tree;
 
 /// Paint of cast iron.
 const IRON: [f32; 3] = [0.028, 0.032, 0.030];
@@ -101,7 +102,7 @@ fn lantern_post() -> (Mesh, Lamp) {
         position: [0.0, 3.10, 0.0],
         direction: None,
         cone_deg: [0.0; 2],
-        color: [1.0, 0.74, 0.43],
+        color: [1.0, 0.80, 0.56],
         intensity_cd: 210.0,
         range_m: 24.0,
     };
@@ -127,8 +128,8 @@ pub(crate) fn wall_lamp() -> (Mesh, Lamp) {
         position: [0.74, 0.22, 0.0],
         direction: None,
         cone_deg: [0.0; 2],
-        color: [1.0, 0.72, 0.41],
-        intensity_cd: 130.0,
+        color: [1.0, 0.80, 0.56],
+        intensity_cd: 60.0,
         range_m: 16.0,
     };
     (mesh, lamp)
@@ -159,89 +160,6 @@ fn arm_post(color: [f32; 3], intensity_cd: f32, head_m: f32) -> (Mesh, Lamp) {
         range_m: 24.0,
     };
     (mesh, lamp)
-}
-
-/// A young lime tree, 5.5 m high, its leaves as sprays on cards.
-pub(crate) fn tree() -> Mesh {
-    let mut mesh = Mesh::default();
-    let bark = plain(Material::Bark);
-    let random = |n: i32| hash(n, 0, 401);
-    let trunk: Vec<(Vec3, f32)> = (0..=8)
-        .map(|k| {
-            let t = k as f32 / 8.0;
-            let sway = Vec3::new(0.10 * ops::sin(3.1 * t), 0.0, 0.07 * ops::sin(4.3 * t + 1.0));
-            (
-                sway + Vec3::Y * (4.6 * t - 0.1),
-                mix(0.095, 0.022, t) + 0.05 * (1.0 - t) * (1.0 - t) * (1.0 - t),
-            )
-        })
-        .collect();
-    mesh.tube(bark, &trunk, 9);
-    let mut id = 0;
-    for limb in 0..11 {
-        let t = mix(0.42, 0.97, limb as f32 / 10.0);
-        let at = trunk[(t * 8.0) as usize]
-            .0
-            .lerp(trunk[(t * 8.0) as usize + usize::from(t < 1.0)].0, (t * 8.0).fract());
-        let around = limb as f32 * 2.4 + random(limb);
-        let reach = mix(1.25, 0.55, (t - 0.42) / 0.55) * mix(0.85, 1.15, random(limb + 20));
-        let out = Vec3::new(ops::cos(around), 0.0, ops::sin(around));
-        let path: Vec<(Vec3, f32)> = (0..=4)
-            .map(|k| {
-                let s = k as f32 / 4.0;
-                (at + out * reach * s + Vec3::Y * (0.75 * s - 0.18 * s * s), mix(0.035, 0.008, s))
-            })
-            .collect();
-        mesh.tube(bark, &path, 5);
-        for (k, &(center, _)) in path.iter().enumerate().skip(1) {
-            for card in 0..if k == 1 { 2 } else { 3 } {
-                id += 1;
-                let jitter =
-                    Vec3::new(random(id + 100) - 0.5, random(id + 200) - 0.35, random(id + 300) - 0.5) * 0.55;
-                spray(&mut mesh, center + jitter, mix(0.66, 0.98, random(id + 400)), id * 7 + card);
-            }
-        }
-    }
-    // A bed in the pavement with an iron rim.
-    mesh.block(plain(Material::Soil), [-0.55, -0.05, -0.55], [1.1, 0.055, 1.1]);
-    let rim = tinted(Material::Iron, [0.06, 0.055, 0.05]);
-    for [x, z, w, d] in [
-        [-0.6, -0.6, 1.2, 0.06],
-        [-0.6, 0.54, 1.2, 0.06],
-        [-0.6, -0.54, 0.06, 1.08],
-        [0.54, -0.54, 0.06, 1.08],
-    ] {
-        mesh.block(rim, [x, -0.05, z], [w, 0.062, d]);
-    }
-    mesh
-}
-
-/// A card with a spray of leaves, tilted at random; its normals point out of the crown, for soft shading.
-fn spray(mesh: &mut Mesh, center: Vec3, size: f32, id: i32) {
-    let r = |n: i32| hash(id, n, 411);
-    let around = r(0) * std::f32::consts::TAU;
-    let lean = mix(-0.9, 0.9, r(1));
-    let (c, s) = (ops::cos(around), ops::sin(around));
-    let right = Vec3::new(c, 0.0, s);
-    let forward = Vec3::new(-s, 0.0, c);
-    let up = Vec3::Y * ops::cos(lean) + forward * ops::sin(lean);
-    let crown = Vec3::new(0.0, 3.6, 0.0);
-    let out = (center - crown).normalize_or_zero();
-    let shade = mix(0.62, 1.0, r(2)) * mix(0.75, 1.0, ((center.y - 2.2) / 3.0).clamp(0.0, 1.0));
-    let part = mesh.part(Material::Leaf);
-    let first = part.vertices.len() as u32;
-    // Six corners around the spray: less empty area than a square.
-    for k in 0..6 {
-        let angle = k as f32 / 3.0 * std::f32::consts::PI;
-        let (x, y) = (0.5 * ops::cos(angle), 0.5 * ops::sin(angle));
-        part.vertices.push(Vertex {
-            position: center + (right * x + up * y) * size,
-            normal: (out + Vec3::Y * 0.35).normalize_or_zero(),
-            uv: Vec2::new(x + 0.5, 0.5 - y),
-            tint: Vec3::splat(shade),
-        });
-    }
-    part.indices.extend([0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5].map(|k| first + k));
 }
 
 /// A bench of planks on iron feet, 1.7 m wide, its front along +z.
@@ -463,11 +381,13 @@ pub(crate) fn planter() -> Mesh {
     mesh.block(wood, [-0.24, 0.03, -0.24], [0.48, 0.44, 0.48]);
     mesh.block(wood, [-0.26, 0.44, -0.26], [0.52, 0.05, 0.52]);
     mesh.block(plain(Material::Soil), [-0.22, 0.44, -0.22], [0.44, 0.055, 0.44]);
-    for k in 0..26 {
+    let middle = Vec3::new(0.0, 0.75, 0.0);
+    for k in 0..110 {
         let r = |n: i32| hash(k, n, 431);
-        let (turn, out) = (r(0) * std::f32::consts::TAU, 0.26 * r(1).sqrt());
-        let center = Vec3::new(out * ops::cos(turn), 0.62 + 0.55 * r(2), out * ops::sin(turn));
-        spray(&mut mesh, center, 0.36, 900 + k);
+        let (turn, out) = (r(0) * std::f32::consts::TAU, 0.27 * r(1).sqrt());
+        let center = Vec3::new(out * ops::cos(turn), 0.54 + 0.55 * r(2), out * ops::sin(turn));
+        let tint = Vec3::new(0.62, 0.80, 0.72) * mix(0.6, 1.0, 3.0 * out);
+        tree::card(&mut mesh, center, 0.19, (center - middle).normalize_or_zero(), tint, 9000 + k);
     }
     mesh
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use downpour_scene::Budget;
 use downpour_scene::gltf::read_triangles;
 use downpour_street::{
-    LampEra, MAX_CARRIAGEWAY_M, MAX_PAVEMENT_M, MIN_CARRIAGEWAY_M, MIN_LENGTH_M, MIN_PAVEMENT_M, Material, Mesh, Part,
-    Paving, Street, StreetError, StreetSettings, TimeOfDay,
+    LampEra, MAX_CARRIAGEWAY_M, MAX_PAVEMENT_M, MIN_CARRIAGEWAY_M, MIN_LENGTH_M, MIN_PAVEMENT_M, Material,
+    Mesh, Part, Paving, Street, StreetError, StreetSettings, TimeOfDay,
 };
 use glam::Vec3;
 
@@ -40,10 +40,16 @@ fn check_mesh(name: &str, mesh: &Mesh) {
     for (material, part) in &mesh.parts {
         assert!(!part.indices.is_empty() && part.indices.len().is_multiple_of(3), "{name} {material:?}");
         for vertex in &part.vertices {
-            assert!(vertex.position.is_finite() && vertex.position.abs().max_element() < 1000.0, "{name} {material:?}");
+            assert!(
+                vertex.position.is_finite() && vertex.position.abs().max_element() < 1000.0,
+                "{name} {material:?}"
+            );
             assert!((vertex.normal.length() - 1.0).abs() < 1e-3, "{name} {material:?} {}", vertex.normal);
             assert!(vertex.uv.is_finite() && vertex.uv.abs().max_element() < 2000.0, "{name} {material:?}");
-            assert!(vertex.tint.min_element() >= 0.0 && vertex.tint.max_element() <= 1.0, "{name} {material:?}");
+            assert!(
+                vertex.tint.min_element() >= 0.0 && vertex.tint.max_element() <= 1.0,
+                "{name} {material:?}"
+            );
         }
         for triangle in part.indices.chunks_exact(3) {
             assert!(triangle.iter().all(|&k| (k as usize) < part.vertices.len()), "{name} {material:?}");
@@ -63,15 +69,23 @@ fn many_streets_are_valid() {
             check_mesh(&format!("street {seed}, {}", piece.name), &piece.mesh);
         }
         for lamp in street.lamps() {
-            assert!(lamp.intensity_cd > 0.0 && lamp.position[1] > 1.0 && lamp.position[1] < 9.0, "{seed} {lamp:?}");
+            assert!(
+                lamp.intensity_cd > 0.0 && lamp.position[1] > 1.0 && lamp.position[1] < 9.0,
+                "{seed} {lamp:?}"
+            );
         }
         assert!(street.triangle_count() > 20_000, "{seed}");
         // Cars stand between the curbs, and not in each other.
         let cars = street.cars();
         for (k, car) in cars.iter().enumerate() {
-            assert!(car.center_m[0].abs() + car.half_size_m[0] < settings.carriageway_m / 2.0, "{seed} {car:?}");
+            assert!(
+                car.center_m[0].abs() + car.half_size_m[0] < settings.carriageway_m / 2.0,
+                "{seed} {car:?}"
+            );
             for other in &cars[k + 1..] {
-                let apart = |n: usize| (car.center_m[n] - other.center_m[n]).abs() - car.half_size_m[n] - other.half_size_m[n];
+                let apart = |n: usize| {
+                    (car.center_m[n] - other.center_m[n]).abs() - car.half_size_m[n] - other.half_size_m[n]
+                };
                 assert!(apart(0) > 0.0 || apart(1) > 0.0, "{seed} {car:?} {other:?}");
             }
         }
@@ -80,7 +94,7 @@ fn many_streets_are_valid() {
 
 /// Heights of the carriageway by their x and z, from the mesh itself.
 fn lowest_around(street: &Street, center: [f32; 2], from: f32, to: f32) -> f32 {
-    let ground = street.pieces().iter().find(|piece| piece.name == "ground").unwrap();
+    let ground = street.pieces().iter().find(|piece| piece.name == "ground").expect("ground");
     let mut sum = (0.0, 0);
     for material in [Material::Setts, Material::Asphalt] {
         for vertex in ground.mesh.parts.get(&material).map_or(&[][..], |part| &part.vertices) {
@@ -145,7 +159,8 @@ fn the_reader_takes_the_files_without_complaint() {
         for time in [TimeOfDay::Day, TimeOfDay::Night] {
             let path = folder.path().join(format!("{seed}_{time:?}.glb"));
             std::fs::write(&path, street.to_glb(time).unwrap()).unwrap();
-            let model = read_triangles(&path, &mut Budget::default()).unwrap_or_else(|error| panic!("{error}"));
+            let model =
+                read_triangles(&path, &mut Budget::default()).unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(model.indices.len(), street.triangle_count());
             assert!(model.warnings.is_empty(), "{:?}", model.warnings);
         }

@@ -87,7 +87,6 @@ pub(super) fn carriageway(ground: &Ground, mesh: &mut Mesh) {
 pub(super) fn lane(ground: &Ground, mesh: &mut Mesh, is_far: bool) {
     let curb = if is_far { -(ground.length + ground.pavement) } else { ground.pavement + LANE_M };
     let (near, far) = (curb - GUTTER_M, curb - LANE_M + GUTTER_M);
-    let (near, far) = if is_far { (near, far) } else { (near, far) };
     let reach = ground.reach() + 0.5;
     let columns = (reach * 2.0) as usize;
     mesh.grid(

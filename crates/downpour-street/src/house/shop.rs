@@ -188,7 +188,7 @@ fn awning(mesh: &mut Mesh, [a, b]: [f32; 2], low: f32, stripes: [[f32; 3]; 2]) {
 fn room(mesh: &mut Mesh, seed: u32, [left, right]: [f32; 2], low: f32, is_open: bool, lamps: &mut Vec<Lamp>) {
     let (front, back, top) = (-0.2, -ROOM_M, low + GLASS_M + 0.1);
     let p = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
-    let wall = tinted(Material::Goods, [0.62, 0.57, 0.47]);
+    let wall = tinted(Material::Goods, [0.36, 0.30, 0.23]);
     let floor = tinted(Material::Wood, [0.36, 0.25, 0.16]);
     let y = low + 0.02;
     mesh.quad(floor, [p(left, y, front), p(right, y, front), p(right, y, back), p(left, y, back)]);
@@ -261,8 +261,8 @@ fn room(mesh: &mut Mesh, seed: u32, [left, right]: [f32; 2], low: f32, is_open: 
         position: [mix(left, right, 0.5), top - 0.13, -1.3],
         direction: None,
         cone_deg: [0.0; 2],
-        color: [1.0, 0.76, 0.47],
-        intensity_cd: 240.0,
+        color: [1.0, 0.80, 0.56],
+        intensity_cd: mix(45.0, 110.0, random(9001)),
         range_m: 8.0,
     });
     const { assert!(ROOM_M < DEPTH_M) };
