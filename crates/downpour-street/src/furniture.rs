@@ -102,7 +102,7 @@ fn lantern_post() -> (Mesh, Lamp) {
         position: [0.0, 3.10, 0.0],
         direction: None,
         cone_deg: [0.0; 2],
-        color: [1.0, 0.80, 0.56],
+        color: [1.0, 0.84, 0.63],
         intensity_cd: 210.0,
         range_m: 24.0,
     };
@@ -128,7 +128,7 @@ pub(crate) fn wall_lamp() -> (Mesh, Lamp) {
         position: [0.74, 0.22, 0.0],
         direction: None,
         cone_deg: [0.0; 2],
-        color: [1.0, 0.80, 0.56],
+        color: [1.0, 0.84, 0.63],
         intensity_cd: 60.0,
         range_m: 16.0,
     };

@@ -202,7 +202,7 @@ impl Material {
             if is_night && cd_m2 > 0.0 { Look { emission: Some((color, cd_m2)), ..look } } else { look }
         };
         // 2700 to 3000 K as the camera at about 4000 K shows it.
-        const WARM: [f64; 3] = [1.0, 0.80, 0.56];
+        const WARM: [f64; 3] = [1.0, 0.84, 0.63];
         let rough = |mut look: Look, name: &'static str| {
             look.maps.roughness = Some(name);
             look

@@ -49,7 +49,7 @@ pub(crate) fn tree() -> Mesh {
         let from = trunk[(2.0 + 5.0 * smooth(2.2, 5.2, tip.y - 0.5)) as usize].0;
         let bend = from.lerp(tip, 0.55) - Vec3::Y * 0.12;
         if twig % 4 == 0 {
-            mesh.tube(bark, &[(from, 0.026), (bend, 0.014), (tip, 0.004)], 4);
+            mesh.tube(bark, &[(from, 0.018), (bend, 0.010), (tip, 0.004)], 4);
         }
         let along = (tip - bend).normalize_or_zero();
         let hue = Vec3::new(mix(0.62, 0.98, r(3)), mix(0.78, 0.94, r(4)), mix(0.60, 1.0, r(5)));

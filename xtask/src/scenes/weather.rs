@@ -13,7 +13,7 @@ const SIZE: &str = "\n[output]\nsize = [800, 450]\n";
 const DAY_SKY: &str = "\n[sky]\nzenith_color = [2300, 2450, 2650]\n";
 const DUSK_SKY: &str = "\n[sky]\nzenith_color = [3.2, 4.1, 6.4]\n";
 /// Clouds over a city that lights them from below.
-const NIGHT_SKY: &str = "\n[sky]\nzenith_color = [0.044, 0.040, 0.037]\n";
+const NIGHT_SKY: &str = "\n[sky]\nzenith_color = [0.036, 0.034, 0.033]\n";
 /// Exposure at night, stops: black stays black, and lit windows keep their color.
 const NIGHT_EV: f32 = -2.1;
 /// The most hollows with a puddle.
