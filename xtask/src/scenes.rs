@@ -51,7 +51,9 @@ fn make() -> Result<Vec<Asset>, String> {
     }
     let mask = puddle_mask().map_err(|error| error.to_string())?;
     assets.push(("pavement_puddle.png".to_owned(), mask));
-    assets.extend(weather::make().into_iter().map(|file| (file.name.to_owned(), file.text.into_bytes())));
+    assets.extend(
+        weather::make(&street).into_iter().map(|file| (file.name.to_owned(), file.text.into_bytes())),
+    );
     let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
     if bytes > BUDGET {
         return Err(format!("the street takes {bytes} bytes, more than {BUDGET}"));
@@ -146,4 +148,15 @@ fn strangers(folder: &Path, assets: &[Asset]) -> Result<Vec<String>, String> {
     }
     found.sort();
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    /// `make` refuses a street beyond its limits of bytes, triangles and texels.
+    #[test]
+    fn the_street_keeps_its_limits() {
+        let assets = super::make().expect("a street within its limits");
+        let bytes: usize = assets.iter().map(|(_, bytes)| bytes.len()).sum();
+        assert!(bytes > 1_000_000 && bytes <= 15_000_000, "{bytes}");
+    }
 }

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use crate::material::Material;
 use crate::mesh::{BELOW, Mesh, plain, tinted};
-use crate::noise::{mix, smooth};
+use crate::noise::{hash, mix, smooth};
 
 /// Axles, front and rear, and radius of the wheels.
 const AXLES_M: [f32; 2] = [1.30, -1.25];
@@ -23,7 +23,7 @@ pub(crate) const HALF_WIDTH_M: f32 = 0.88;
 
 /// Colors of the paint, linear.
 pub(crate) const PAINTS: [[f32; 3]; 6] = [
-    [0.33, 0.34, 0.35],
+    [0.19, 0.20, 0.21],
     [0.035, 0.052, 0.085],
     [0.17, 0.016, 0.014],
     [0.58, 0.575, 0.55],
@@ -265,7 +265,69 @@ fn wheel(mesh: &mut Mesh, x: f32, z: f32) {
     mesh.add(&wheel, [0.0; 3], 0.0);
 }
 
-fn fittings(mesh: &mut Mesh) {
+/// The housing of a mirror, rounded, its glass to the rear.
+fn mirror(mesh: &mut Mesh, center: Vec3) {
+    let mut one = Mesh::default();
+    let housing =
+        [[0.071, -0.035], [0.078, -0.015], [0.076, 0.012], [0.063, 0.042], [0.036, 0.062], [0.0, 0.068]];
+    one.lathe(plain(Material::CarPaint), Vec3::ZERO, &housing, 14);
+    one.lathe(plain(Material::Trim), Vec3::ZERO, &[[0.062, -0.032], [0.071, -0.035]], 14);
+    one.lathe(plain(Material::Alloy), Vec3::ZERO, &[[0.0, -0.031], [0.062, -0.032]], 14);
+    // Turned to look ahead, and made wider.
+    let wide = Vec3::new(1.38, 0.82, 1.0);
+    for part in one.parts.values_mut() {
+        for vertex in &mut part.vertices {
+            let lay = |v: Vec3| Vec3::new(v.x, -v.z, v.y);
+            vertex.position = lay(vertex.position) * wide + center;
+            vertex.normal = (lay(vertex.normal) / wide).normalize_or_zero();
+        }
+    }
+    mesh.add(&one, [0.0; 3], 0.0);
+}
+
+/// Strokes of characters as on a plate, by seven segments: from x, y to x, y, in units of half a width and half a height.
+const STROKES: [[f32; 4]; 7] = [
+    [-1.0, 1.0, 1.0, 1.0],
+    [1.0, 0.0, 1.0, 1.0],
+    [1.0, -1.0, 1.0, 0.0],
+    [-1.0, -1.0, 1.0, -1.0],
+    [-1.0, -1.0, -1.0, 0.0],
+    [-1.0, 0.0, -1.0, 1.0],
+    [-1.0, 0.0, 1.0, 0.0],
+];
+/// Segments of the digits, of A, C, E, F, H, L, P and U.
+const CHARACTERS: [u8; 18] = [
+    0x3F, 0x06, 0x5B, 0x4F, 0x66, 0x6D, 0x7D, 0x07, 0x7F, 0x6F, 0x77, 0x39, 0x79, 0x71, 0x76, 0x38, 0x73,
+    0x3E,
+];
+
+/// Characters and the blue field of a number plate that looks along `facing` in z.
+fn plate(mesh: &mut Mesh, center: Vec3, facing: f32, number: u32) {
+    let mut stroke = |material, tint, x: [f32; 2], y: [f32; 2]| {
+        let p = |x: f32, y: f32| center + Vec3::new(x * facing, y, 0.0);
+        mesh.quad(tinted(material, tint), [p(x[0], y[0]), p(x[1], y[0]), p(x[1], y[1]), p(x[0], y[1])]);
+    };
+    stroke(Material::Goods, [0.012, 0.04, 0.22], [-0.26, -0.22], [-0.055, 0.055]);
+    for place in 0..7 {
+        let random = hash(place, number as i32, 441);
+        // Two letters, three digits, two letters.
+        let is_letter = !(2..5).contains(&place);
+        let k = if is_letter { 10 + (random * 8.0) as usize } else { (random * 10.0) as usize };
+        let x = -0.185
+            + 0.058 * place as f32
+            + if is_letter { 0.0 } else { 0.01 }
+            + if place > 4 { 0.02 } else { 0.0 };
+        for (bit, [x0, y0, x1, y1]) in STROKES.into_iter().enumerate() {
+            if CHARACTERS[k] >> bit & 1 == 1 {
+                let (w, h, t) = (0.017, 0.033, 0.005);
+                let (xs, ys) = ([x + x0 * w - t, x + x1 * w + t], [y0 * h - t, y1 * h + t]);
+                stroke(Material::Trim, [1.0; 3], xs, ys);
+            }
+        }
+    }
+}
+
+fn fittings(mesh: &mut Mesh, number: u32) {
     for side in [-1.0f32, 1.0] {
         let x = side;
         for z in AXLES_M {
@@ -280,9 +342,29 @@ fn fittings(mesh: &mut Mesh) {
         cluster(Material::TailLight, [0.735, 0.875], [0.40, 0.715], TAIL_M);
         cluster(Material::Headlight, [0.475, 0.555], [0.33, 0.60], NOSE_M);
         // Mirrors.
-        let p = Vec3::new(x * 0.93, 0.985, 0.66);
-        mesh.block(plain(Material::CarPaint), [p.x - 0.085, p.y - 0.055, p.z - 0.05], [0.17, 0.115, 0.10]);
-        mesh.block(plain(Material::Trim), [p.x.min(x * 0.80), p.y - 0.04, p.z - 0.02], [0.13, 0.03, 0.05]);
+        mirror(mesh, Vec3::new(x * 0.935, 0.995, 0.64));
+        mesh.bar(
+            plain(Material::Trim),
+            Vec3::new(x * 0.79, 0.925, 0.68),
+            Vec3::new(x * 0.88, 0.965, 0.67),
+            0.035,
+        );
+        // A strip along the doors.
+        mesh.block(plain(Material::Trim), [x * 0.874 - 0.016, 0.50, -0.84], [0.032, 0.045, 1.72]);
+        // Tail lamps: a reversing lamp, a direction indicator, bars between.
+        let mut lamp = |paint, x: [f32; 2], y: [f32; 2], out: f32| {
+            let (a, b, z) = (x[0] * side, x[1] * side, TAIL_M - 0.012);
+            let (low, high) = (Vec3::new(a.min(b), y[0], z - out), Vec3::new(a.max(b), y[1], z + 0.01));
+            mesh.cuboid(paint, low, high, 0);
+        };
+        lamp(tinted(Material::Goods, [0.30, 0.31, 0.31]), [0.42, 0.50], [0.745, 0.795], 0.004);
+        lamp(tinted(Material::Goods, [0.32, 0.10, 0.012]), [0.52, 0.70], [0.745, 0.795], 0.004);
+        lamp(plain(Material::Trim), [0.40, 0.715], [0.798, 0.806], 0.006);
+        lamp(plain(Material::Trim), [0.508, 0.513], [0.735, 0.875], 0.006);
+        for k in 0..4 {
+            let y = 0.816 + 0.014 * k as f32;
+            lamp(plain(Material::TailLight), [0.42, 0.70], [y, y + 0.008], 0.008);
+        }
         // Door handles.
         for z in [0.02, -0.86] {
             mesh.block(plain(Material::Trim), [x * 0.875 - 0.012, 0.79, z - 0.09], [0.024, 0.022, 0.18]);
@@ -293,6 +375,8 @@ fn fittings(mesh: &mut Mesh) {
     mesh.block(plain(Material::Trim), [-0.50, 0.30, 2.00], [1.00, 0.13, 0.105]);
     mesh.block(plain(Material::Plate), [-0.26, 0.385, 2.10], [0.52, 0.11, 0.02]);
     mesh.block(plain(Material::Plate), [-0.26, 0.60, -2.10], [0.52, 0.11, 0.02]);
+    plate(mesh, Vec3::new(0.0, 0.44, 2.1215), 1.0, number);
+    plate(mesh, Vec3::new(0.0, 0.655, -2.1015), -1.0, number);
     mesh.block(plain(Material::Trim), [-0.62, 0.30, -2.095], [1.24, 0.12, 0.05]);
 }
 
@@ -300,7 +384,7 @@ fn fittings(mesh: &mut Mesh) {
 pub(crate) fn car(paint: usize) -> Mesh {
     let mut mesh = Mesh::default();
     body(&mut mesh);
-    fittings(&mut mesh);
+    fittings(&mut mesh, paint as u32);
     if let Some(part) = mesh.parts.get_mut(&Material::CarPaint) {
         for vertex in &mut part.vertices {
             // Dust of the road on the lower parts.

@@ -1,13 +1,14 @@
 //! Street furniture: lamps, trees, benches, bollards, bins, signs; and the window of a room.
 
 use downpour_math::ops;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use crate::material::Material;
-use crate::mesh::{BEHIND, Mesh, Vertex, plain, tinted};
+use crate::mesh::{BEHIND, Mesh, plain, tinted};
 use crate::model::Lamp;
 use crate::noise::{fractal, hash, mix, mix3, smooth};
 use crate::settings::LampEra;
+use crate::tree;
 
 /// Paint of cast iron.
 const IRON: [f32; 3] = [0.028, 0.032, 0.030];
@@ -101,7 +102,7 @@ fn lantern_post() -> (Mesh, Lamp) {
         position: [0.0, 3.10, 0.0],
         direction: None,
         cone_deg: [0.0; 2],
-        color: [1.0, 0.74, 0.43],
+        color: [1.0, 0.84, 0.63],
         intensity_cd: 210.0,
         range_m: 24.0,
     };
@@ -127,8 +128,8 @@ pub(crate) fn wall_lamp() -> (Mesh, Lamp) {
         position: [0.74, 0.22, 0.0],
         direction: None,
         cone_deg: [0.0; 2],
-        color: [1.0, 0.72, 0.41],
-        intensity_cd: 130.0,
+        color: [1.0, 0.84, 0.63],
+        intensity_cd: 60.0,
         range_m: 16.0,
     };
     (mesh, lamp)
@@ -159,113 +160,6 @@ fn arm_post(color: [f32; 3], intensity_cd: f32, head_m: f32) -> (Mesh, Lamp) {
         range_m: 24.0,
     };
     (mesh, lamp)
-}
-
-/// A young lime tree, 5.5 m high, its leaves as sprays on cards.
-pub(crate) fn tree() -> Mesh {
-    let mut mesh = Mesh::default();
-    let bark = plain(Material::Bark);
-    let random = |n: i32| hash(n, 0, 401);
-    let trunk: Vec<(Vec3, f32)> = (0..=8)
-        .map(|k| {
-            let t = k as f32 / 8.0;
-            let sway = Vec3::new(0.10 * ops::sin(3.1 * t), 0.0, 0.07 * ops::sin(4.3 * t + 1.0));
-            (
-                sway + Vec3::Y * (4.6 * t - 0.1),
-                mix(0.095, 0.022, t) + 0.05 * (1.0 - t) * (1.0 - t) * (1.0 - t),
-            )
-        })
-        .collect();
-    mesh.tube(bark, &trunk, 9);
-    for limb in 0..11 {
-        let t = mix(0.42, 0.97, limb as f32 / 10.0);
-        let at = trunk[(t * 8.0) as usize]
-            .0
-            .lerp(trunk[(t * 8.0) as usize + usize::from(t < 1.0)].0, (t * 8.0).fract());
-        let around = limb as f32 * 2.4 + random(limb);
-        let reach = mix(1.25, 0.55, (t - 0.42) / 0.55) * mix(0.85, 1.15, random(limb + 20));
-        let out = Vec3::new(ops::cos(around), 0.0, ops::sin(around));
-        let path: Vec<(Vec3, f32)> = (0..=4)
-            .map(|k| {
-                let s = k as f32 / 4.0;
-                (at + out * reach * s + Vec3::Y * (0.75 * s - 0.18 * s * s), mix(0.035, 0.008, s))
-            })
-            .collect();
-        mesh.tube(bark, &path, 5);
-    }
-    // Leaves in a crown that is denser outside, where light reaches them.
-    for id in 0..CROWN_SPRAYS {
-        let r = |n: i32| hash(id, n, 403);
-        let around = 2.399_963 * id as f32 + 0.5 * r(0);
-        let height = 2.0 * (id as f32 + r(1)) / CROWN_SPRAYS as f32 - 1.0;
-        let (c, s) = (ops::cos(around), ops::sin(around));
-        let flat = (1.0 - height * height).max(0.0).sqrt();
-        let lump = mix(
-            0.72,
-            1.12,
-            fractal(
-                around.rem_euclid(std::f32::consts::TAU) / std::f32::consts::TAU,
-                0.5 * height + 0.5,
-                [5, 4],
-                2,
-                404,
-            ),
-        );
-        // Narrower above, flat below.
-        let tall = if height > 0.0 { 1.75 } else { 1.25 };
-        let depth = lump * mix(0.45, 1.0, r(2).sqrt());
-        let wide = mix(1.55, 1.25, height * 0.5 + 0.5);
-        let center = CROWN_M + Vec3::new(wide * flat * c, tall * height, wide * flat * s) * depth;
-        spray(&mut mesh, CROWN_M, center, mix(0.42, 0.66, r(3)), depth, id);
-    }
-    // A bed in the pavement with an iron rim.
-    mesh.block(plain(Material::Soil), [-0.55, -0.05, -0.55], [1.1, 0.055, 1.1]);
-    let rim = tinted(Material::Iron, [0.06, 0.055, 0.05]);
-    for [x, z, w, d] in [
-        [-0.6, -0.6, 1.2, 0.06],
-        [-0.6, 0.54, 1.2, 0.06],
-        [-0.6, -0.54, 0.06, 1.08],
-        [0.54, -0.54, 0.06, 1.08],
-    ] {
-        mesh.block(rim, [x, -0.05, z], [w, 0.062, d]);
-    }
-    mesh
-}
-
-/// Cards of a crown.
-const CROWN_SPRAYS: i32 = 540;
-
-/// Middle of a crown above the tree's foot.
-const CROWN_M: Vec3 = Vec3::new(0.0, 3.75, 0.0);
-
-/// A card with a spray of leaves around a crown's middle, tilted at random; `depth`: distance from that middle as a part of that of its outside. Normals
-/// point out of the crown, for soft shading; leaves inside and below get less light.
-fn spray(mesh: &mut Mesh, middle: Vec3, center: Vec3, size: f32, depth: f32, id: i32) {
-    let r = |n: i32| hash(id, n, 411);
-    let around = r(0) * std::f32::consts::TAU;
-    let lean = mix(-1.1, 1.1, r(1));
-    let (c, s) = (ops::cos(around), ops::sin(around));
-    let right = Vec3::new(c, 0.0, s);
-    let forward = Vec3::new(-s, 0.0, c);
-    let up = Vec3::Y * ops::cos(lean) + forward * ops::sin(lean);
-    let shade = mix(0.85, 1.0, r(2))
-        * mix(0.62, 1.0, smooth(0.35, 1.0, depth))
-        * mix(0.85, 1.0, smooth(-1.2, 0.6, center.y - middle.y));
-    // From a fresh to a tired green.
-    let tint = mix3([1.0, 1.0, 1.0], [0.98, 0.84, 0.9], r(3)).map(|c| c * shade);
-    let part = mesh.part(Material::Leaf);
-    let first = part.vertices.len() as u32;
-    for (x, y) in [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)] {
-        let position = center + (right * x + up * y) * size;
-        let out = (position - middle).normalize_or_zero() + Vec3::Y * 0.3;
-        part.vertices.push(Vertex {
-            position,
-            normal: out.normalize_or_zero(),
-            uv: Vec2::new(x + 0.5, 0.5 - y),
-            tint: Vec3::from(tint),
-        });
-    }
-    part.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
 }
 
 /// A bench of planks on iron feet, 1.7 m wide, its front along +z.
@@ -487,11 +381,13 @@ pub(crate) fn planter() -> Mesh {
     mesh.block(wood, [-0.24, 0.03, -0.24], [0.48, 0.44, 0.48]);
     mesh.block(wood, [-0.26, 0.44, -0.26], [0.52, 0.05, 0.52]);
     mesh.block(plain(Material::Soil), [-0.22, 0.44, -0.22], [0.44, 0.055, 0.44]);
-    for k in 0..26 {
+    let middle = Vec3::new(0.0, 0.75, 0.0);
+    for k in 0..110 {
         let r = |n: i32| hash(k, n, 431);
-        let (turn, out) = (r(0) * std::f32::consts::TAU, 0.26 * r(1).sqrt());
-        let center = Vec3::new(out * ops::cos(turn), 0.62 + 0.55 * r(2), out * ops::sin(turn));
-        spray(&mut mesh, Vec3::Y * 0.8, center, 0.3, 0.6 + out, 900 + k);
+        let (turn, out) = (r(0) * std::f32::consts::TAU, 0.27 * r(1).sqrt());
+        let center = Vec3::new(out * ops::cos(turn), 0.54 + 0.55 * r(2), out * ops::sin(turn));
+        let tint = Vec3::new(0.62, 0.80, 0.72) * mix(0.6, 1.0, 3.0 * out);
+        tree::card(&mut mesh, center, 0.19, (center - middle).normalize_or_zero(), tint, 9000 + k);
     }
     mesh
 }

@@ -26,6 +26,8 @@ const GUTTER_M: f32 = 0.3;
 const CROWN_M: f32 = 0.08;
 /// Height of the curbs.
 const CURB_HEIGHT_M: f32 = 0.12;
+/// Fall of the pavements toward the road.
+pub(crate) const PAVEMENT_FALL: f32 = 0.02;
 /// Width of a curb stone.
 const CURB_M: f32 = 0.17;
 
@@ -136,7 +138,7 @@ impl Ground {
 
     /// Height of the pavement at a distance from the middle of the street.
     pub(crate) fn pavement_height(&self, x: f32) -> f32 {
-        CURB_HEIGHT_M + 0.02 * (x.abs() - self.half_road - CURB_M).max(0.0)
+        CURB_HEIGHT_M + PAVEMENT_FALL * (x.abs() - self.half_road - CURB_M).max(0.0)
     }
 
     /// Height of the pavement before the houses.

@@ -15,6 +15,7 @@ mod raster;
 mod settings;
 mod street;
 mod textures;
+mod tree;
 
 pub use error::StreetError;
 pub use gltf::{File, TimeOfDay};

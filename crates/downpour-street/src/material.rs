@@ -87,19 +87,20 @@ pub enum Material {
     Plate,
 }
 
-/// Light of a room: color of its brightest part, and its radiance, cd/m^2: walls at 60 to 200 lux, curtains before them.
+/// Light of a room: color of its brightest part, and its radiance, cd/m^2: walls at 10 to 80 lux, curtains before them;
+/// lamps of 2400 to 5000 K as the camera at about 4000 K shows them, and a television.
 const ROOM_LIGHT: [([f64; 3], f64); ROOM_LIGHTS as usize] = [
     ([0.0; 3], 0.0),
-    ([1.0, 0.66, 0.34], 26.0),
-    ([1.0, 0.58, 0.26], 15.0),
-    ([1.0, 0.74, 0.44], 40.0),
-    ([1.0, 0.50, 0.20], 8.0),
-    ([1.0, 0.83, 0.62], 30.0),
-    ([0.62, 0.78, 1.0], 6.0),
-    ([1.0, 0.70, 0.40], 19.0),
+    ([1.0, 0.66, 0.36], 9.0),
+    ([1.0, 0.58, 0.27], 4.5),
+    ([1.0, 0.76, 0.50], 13.0),
+    ([1.0, 0.52, 0.22], 2.4),
+    ([1.0, 0.88, 0.72], 7.0),
+    ([0.42, 0.62, 1.0], 1.4),
+    ([0.88, 0.94, 1.0], 5.5),
 ];
 /// A shop's luminous ceiling panels.
-const SHOP_CD_M2: f64 = 900.0;
+const SHOP_CD_M2: f64 = 220.0;
 /// The glass of a street lamp.
 const LAMP_CD_M2: f64 = 2_600.0;
 /// The glass of a dipped headlight beside its beam.
@@ -201,7 +202,7 @@ impl Material {
             if is_night && cd_m2 > 0.0 { Look { emission: Some((color, cd_m2)), ..look } } else { look }
         };
         // 2700 to 3000 K as the camera at about 4000 K shows it.
-        const WARM: [f64; 3] = [1.0, 0.76, 0.47];
+        const WARM: [f64; 3] = [1.0, 0.84, 0.63];
         let rough = |mut look: Look, name: &'static str| {
             look.maps.roughness = Some(name);
             look
@@ -276,7 +277,7 @@ impl Material {
             Self::Alloy => Look { metallic: 1.0, ..look([0.50, 0.50, 0.51], 0.35) },
             Self::Headlight => look([0.16, 0.165, 0.17], 0.12),
             Self::HeadlightLit => glow(look([0.50, 0.52, 0.53], 0.08), [1.0, 0.93, 0.82], HEADLIGHT_CD_M2),
-            Self::TailLight => look([0.22, 0.012, 0.010], 0.12),
+            Self::TailLight => look([0.10, 0.007, 0.007], 0.10),
             Self::TailLightLit => glow(look([0.22, 0.012, 0.010], 0.12), [1.0, 0.03, 0.02], TAIL_LIGHT_CD_M2),
             Self::Plate => look([0.62, 0.62, 0.58], 0.45),
         }

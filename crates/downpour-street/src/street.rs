@@ -8,12 +8,13 @@ use crate::car;
 use crate::dice::Dice;
 use crate::error::StreetError;
 use crate::furniture;
-use crate::ground::{Ground, Hollow, LANE_M, LANE_REACH_M};
+use crate::ground::{Ground, Hollow, LANE_M, LANE_REACH_M, PAVEMENT_FALL};
 use crate::house::{DEPTH_M, House, HouseKind, WindowDesign, draw, window};
 use crate::material::Material;
 use crate::mesh::{Mesh, tinted, turn};
 use crate::model::{Lamp, Piece, Placement};
 use crate::settings::StreetSettings;
+use crate::tree;
 
 /// A parked car: x and z of its middle, meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -254,6 +255,7 @@ fn cars(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) -> Vec<Park
     let mut dice = Dice::new(settings.seed, 202);
     let half = [car::HALF_WIDTH_M + 0.14, car::HALF_LENGTH_M];
     let mut cars = Vec::new();
+    let mut last = None;
     let x = ground.half_road - half[0] - 0.12;
     for side in [1.0f32, -1.0] {
         // Narrow streets have cars on one side.
@@ -263,7 +265,10 @@ fn cars(settings: &StreetSettings, ground: &Ground, plan: &mut Plan) -> Vec<Park
         let mut z = -dice.range(3.2, 7.0);
         while z > -ground.length + 3.0 {
             if dice.chance(settings.cars) {
-                let paint = dice.below(car::PAINTS.len());
+                let drawn = dice.below(car::PAINTS.len());
+                // No two neighbors have the same color.
+                let paint = if last == Some(drawn) { (drawn + 1) % car::PAINTS.len() } else { drawn };
+                last = Some(paint);
                 let slant = dice.range(-0.9, 0.9);
                 let turn_deg = if (side > 0.0) == dice.chance(0.85) { 180.0 } else { 0.0 };
                 let at =
@@ -307,7 +312,12 @@ fn furnish(settings: &StreetSettings, ground: &Ground, cars: &[ParkedCar], plan:
                     }
                     4 => plan.place("bicycle", furniture::bicycle, put(wall + 0.25, 90.0)),
                     5 if ground.pavement > 2.6 => {
-                        plan.place("tree", furniture::tree, put(curb + 0.25, dice.range(0.0, 360.0)));
+                        let x = curb + 0.40;
+                        plan.place("tree", tree::tree, put(x, dice.range(0.0, 360.0)));
+                        // Along +x the pavement rises, away from the road.
+                        let flat =
+                            Placement::new(side * x, height(x), z, if side > 0.0 { 0.0 } else { 180.0 });
+                        plan.place("grate", || tree::grate(PAVEMENT_FALL), flat);
                     }
                     6 => plan.place("bench", furniture::bench, put(wall, 0.0)),
                     7 => plan.place("planter", furniture::planter, put(wall + 0.1, 0.0)),

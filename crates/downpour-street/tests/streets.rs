@@ -92,14 +92,14 @@ fn many_streets_are_valid() {
     }
 }
 
-/// Heights of the carriageway by their x and z, from the mesh itself.
-fn lowest_around(street: &Street, center: [f32; 2], from: f32, to: f32) -> f32 {
-    let ground = street.pieces().iter().find(|piece| piece.name == "ground").expect("the ground");
+/// Mean height of the carriageway within 0.4 m of a line along the street, from the mesh itself, at distances along it from a point.
+fn mean_height(street: &Street, center: [f32; 2], from: f32, to: f32) -> f32 {
+    let ground = street.pieces().iter().find(|piece| piece.name == "ground").expect("ground");
     let mut sum = (0.0, 0);
     for material in [Material::Setts, Material::Asphalt] {
         for vertex in ground.mesh.parts.get(&material).map_or(&[][..], |part| &part.vertices) {
             let (x, z) = (vertex.position.x - center[0], vertex.position.z - center[1]);
-            if (from..to).contains(&(x * x + z * z).sqrt()) {
+            if x.abs() < 0.4 && (from..to).contains(&z.abs()) {
                 sum = (sum.0 + vertex.position.y, sum.1 + 1);
             }
         }
@@ -108,16 +108,42 @@ fn lowest_around(street: &Street, center: [f32; 2], from: f32, to: f32) -> f32 {
     sum.0 / sum.1 as f32
 }
 
+/// Along the street the crown has no slope: what is lower there is the hollow. At its ends the street is flatter.
 #[test]
 fn hollows_are_below_their_surroundings() {
     for seed in 0..6 {
-        let street = Street::generate(&StreetSettings { age: 0.3, ..settings(seed) }).unwrap();
+        let settings = StreetSettings { age: 0.3, ..settings(seed) };
+        let street = Street::generate(&settings).unwrap();
         assert!(street.hollows().len() >= 2, "{seed}");
-        for hollow in street.hollows() {
-            let reach = hollow.radii_m[0].max(hollow.radii_m[1]);
-            let middle = lowest_around(&street, hollow.center_m, 0.0, 0.35);
-            let around = lowest_around(&street, hollow.center_m, 1.3 * reach, 1.3 * reach + 0.5);
+        let inside = |z: f32| z < -7.0 && z > 7.0 - settings.length_m;
+        for hollow in street.hollows().iter().filter(|hollow| inside(hollow.center_m[1])) {
+            let reach = hollow.radii_m[1];
+            let middle = mean_height(&street, hollow.center_m, 0.0, 0.35);
+            let around = mean_height(&street, hollow.center_m, 1.5 * reach, 1.5 * reach + 0.5);
             assert!(middle < around, "{seed} {hollow:?}: {middle} in {around}");
+        }
+    }
+}
+
+/// The texture on each wall and on the ground has the size of its tile: meters of surface for each unit of its coordinates.
+#[test]
+fn textures_have_their_scale() {
+    let street = Street::generate(&settings(3)).unwrap();
+    for material in
+        [Material::Brick, Material::BrickPale, Material::Plaster, Material::Slabs, Material::Asphalt]
+    {
+        let (mut surface, mut picture) = (0.0, 0.0);
+        for part in street.pieces().iter().filter_map(|piece| piece.mesh.parts.get(&material)) {
+            for triangle in part.indices.chunks_exact(3) {
+                let [a, b, c] = corners(part, triangle);
+                let [p, q, r] = [0, 1, 2].map(|k| part.vertices[triangle[k] as usize].uv);
+                surface += (b - a).cross(c - a).length();
+                picture += (q - p).perp_dot(r - p).abs();
+            }
+        }
+        if surface > 0.0 {
+            let tile_m = (surface / picture).sqrt();
+            assert!((0.8..1.25).contains(&(tile_m / material.tile_m())), "{material:?} {tile_m}");
         }
     }
 }

@@ -1,4 +1,6 @@
-//! The weather files of the street: one model by day or by night, eight looks.
+//! The weather files of the street: one model by day or by night, nine looks.
+
+use downpour_street::Street;
 
 /// A weather file on its way to disk.
 pub(super) struct WeatherFile {
@@ -10,7 +12,12 @@ const HEAD: &str = "# Written by `cargo xtask scenes`; where everything comes fr
 const SIZE: &str = "\n[output]\nsize = [800, 450]\n";
 const DAY_SKY: &str = "\n[sky]\nzenith_color = [2300, 2450, 2650]\n";
 const DUSK_SKY: &str = "\n[sky]\nzenith_color = [3.2, 4.1, 6.4]\n";
-const NIGHT_SKY: &str = "\n[sky]\nzenith_color = [0.042, 0.038, 0.040]\n";
+/// Clouds over a city that lights them from below.
+const NIGHT_SKY: &str = "\n[sky]\nzenith_color = [0.036, 0.034, 0.033]\n";
+/// Exposure at night, stops: black stays black, and lit windows keep their color.
+const NIGHT_EV: f32 = -2.1;
+/// The most hollows with a puddle.
+const PUDDLES: usize = 12;
 const STORM_SKY: &str = "\n[sky]\nzenith_color = [420, 470, 540]\n";
 /// A sun at 11 degrees, below the edge of the clouds, along the street; 127.5 klx exp(-0.21 / sin h), tinted.
 const LOW_SUN: &str = "\n[sky]\nzenith_color = [900, 1000, 1180]\n\n[sun]\nazimuth_deg = 62\nelevation_deg = 24\n\
@@ -37,8 +44,31 @@ fn along(exposure_ev: f32) -> String {
     camera([-1.2, 1.6, -6.0], [0.6, 2.5, -30.0], 50.0, exposure_ev)
 }
 
+/// A walk of 24 m at 1.2 m/s in the middle of the street.
+fn walk(exposure_ev: f32) -> String {
+    format!(
+        "\n[camera]\n# Keys: time, s, and place, m.\nposition_m = [[0, [-1.2, 1.6, -6]], [10, [-0.9, 1.62, -18]], [20, [-0.5, 1.6, -30]]]\n\
+         look_at_m = [[0, [0.6, 2.5, -30]], [10, [0.9, 2.3, -42]], [20, [0.2, 2.4, -54]]]\nfov_deg = 50\nshutter_s = 0.0167\n\
+         exposure_ev = {exposure_ev}\n"
+    )
+}
+
+/// Puddles in the hollows of the street beyond a place along it, the nearest first, and one painted on the pavement.
+fn puddles(street: &Street, from_z: f32) -> String {
+    let mut text = String::from("\n# The hollows of the model; the relief is that of even setts.\n");
+    let ahead = street.hollows().iter().filter(|hollow| hollow.center_m[1] < from_z);
+    for (seed, hollow) in ahead.take(PUDDLES).enumerate() {
+        let ([x, z], [a, b]) = (hollow.center_m, hollow.radii_m.map(|radius| 2.8 * radius));
+        text += &format!(
+            "[[puddle]]\nposition_m = [{x:.2}, 0.05, {z:.2}]\nsize_m = [{a:.2}, {b:.2}]\nfill = 0.9\nrelief_mm = 1.2\n\
+             seed = {seed}\ncell_mm = 25\n\n"
+        );
+    }
+    text + "[[puddle]]\nposition_m = [4.4, 0.15, -24]\nsize_m = [1.3, 4]\nmask = \"pavement_puddle.png\"\ndepth_mm = 12\n"
+}
+
 /// Makes all of them.
-pub(super) fn make() -> Vec<WeatherFile> {
+pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
     let file = |name, title: &str, model: String, rest: &[&str]| WeatherFile {
         name,
         text: format!("# {title}\n{HEAD}{model}{}", rest.concat()),
@@ -55,13 +85,19 @@ pub(super) fn make() -> Vec<WeatherFile> {
             "night.toml",
             "An old street at night in heavy rain: lanterns, lit windows, shops.",
             night.clone(),
-            &[&rain(60), NIGHT_SKY, &along(-2.3), SIZE],
+            &[&rain(60), NIGHT_SKY, &along(NIGHT_EV), SIZE],
+        ),
+        file(
+            "walk.toml",
+            "A walk through the street at night, 20 s, for clips: render --frames.",
+            night.clone(),
+            &[&rain(60), NIGHT_SKY, &walk(NIGHT_EV), SIZE],
         ),
         file(
             "dusk.toml",
             "The street at dusk in rain: windows and lanterns are lit, the sky is still blue.",
             night.clone(),
-            &[&rain(30), DUSK_SKY, &along(-1.2), SIZE],
+            &[&rain(30), DUSK_SKY, &along(-1.8), SIZE],
         ),
         file(
             "storm.toml",
@@ -83,16 +119,14 @@ pub(super) fn make() -> Vec<WeatherFile> {
         ),
         file(
             "puddles.toml",
-            "The street at night: puddles in the hollows of the road and along the curbs, and one painted on the pavement.",
+            "The street at night: puddles in the hollows of the road, and one painted on the pavement.",
             night.clone(),
             &[
                 &rain(25),
                 NIGHT_SKY,
-                &camera([-1.0, 1.15, -16.0], [0.4, 0.3, -27.0], 46.0, -2.2),
+                &camera([-1.0, 1.15, -16.0], [0.4, 0.3, -27.0], 46.0, NIGHT_EV),
                 SIZE,
-                "\n# The road model has hollows; the relief is that of a road of ISO 8608 class B.\n[[puddle]]\n\
-                 position_m = [0, 0.05, -30]\nsize_m = [6.1, 26]\nfill = 0.9\nseed = 3\ncell_mm = 30\n\
-                 \n[[puddle]]\nposition_m = [4.4, 0.15, -24]\nsize_m = [1.3, 4]\nmask = \"pavement_puddle.png\"\ndepth_mm = 12\n",
+                &puddles(street, -17.0),
             ],
         ),
         file(
@@ -106,7 +140,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
             &[
                 &rain(25),
                 NIGHT_SKY,
-                &camera([-5.67, 2.82, -22.0], [-5.0, 2.62, -22.0], 58.0, -2.2),
+                &camera([-5.67, 2.82, -22.0], [-5.0, 2.62, -22.0], 58.0, NIGHT_EV),
                 SIZE,
                 "\n[glass]\ndistance_m = 0.6992\nsize_m = [1.16, 0.72]\ncell_mm = 1.2\nspeed_m_s = 4\nbefore_s = 40\n\
                  focus = \"glass\"\naperture_mm = 4\n",
@@ -119,7 +153,7 @@ pub(super) fn make() -> Vec<WeatherFile> {
             &[
                 &rain(25),
                 NIGHT_SKY,
-                &camera([-0.3, 1.2, -5.0], [0.1, 1.6, -34.0], 42.0, -2.2),
+                &camera([-0.3, 1.2, -5.0], [0.1, 1.6, -34.0], 42.0, NIGHT_EV),
                 SIZE,
                 "\n[glass]\ndistance_m = 0.34\ntilt_deg = 60\nsize_m = [0.5, 0.37]\ncell_mm = 0.85\nspeed_m_s = 8\n\
                  focus = \"glass\"\naperture_mm = 6\nbefore_s = 60.45\n[[glass.wiper]]\npivot_m = [0.25, 0.41]\nlength_m = 0.36\n\
@@ -133,13 +167,20 @@ pub(super) fn make() -> Vec<WeatherFile> {
 mod tests {
     use super::*;
     use downpour_scene::Budget;
+    use downpour_street::StreetSettings;
     use downpour_weather::Weather;
 
     #[test]
     fn every_file_is_a_weather_with_the_lens_of_an_eye() {
         let folder = tempfile::tempdir().expect("a folder");
-        let files = make();
-        assert_eq!(files.len(), 8);
+        let street = Street::generate(&StreetSettings::default()).expect("a street");
+        let files = make(&street);
+        assert_eq!(files.len(), 9);
+        std::fs::write(
+            folder.path().join("pavement_puddle.png"),
+            downpour_street::puddle_mask().expect("a mask"),
+        )
+        .expect("written");
         for file in files {
             let path = folder.path().join(file.name);
             std::fs::write(&path, &file.text).expect("written");

@@ -9,7 +9,7 @@ use crate::noise::{hash, mix};
 use crate::textures::{CURTAINS, VIEWS};
 
 /// A cell of the picture of rooms as corners, from the lower left.
-fn cell(number: u32) -> [Vec2; 4] {
+pub(super) fn cell(number: u32) -> [Vec2; 4] {
     let (x, y) = ((number % 4) as f32, (number / 4) as f32);
     [[0.02, 0.98], [0.98, 0.98], [0.98, 0.02], [0.02, 0.02]].map(|[a, b]| Vec2::new(x + a, y + b) / 4.0)
 }

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::{Built, DEPTH_M, House, Opening, Shop, door};
 use crate::material::Material;
-use crate::mesh::{BEHIND, BELOW, LEFT, Mesh, plain, tinted};
+use crate::mesh::{BEHIND, BELOW, LEFT, Mesh, Paint, plain, tinted};
 use crate::model::Lamp;
 use crate::noise::{hash, mix};
 use crate::textures::SIGNS;
@@ -188,13 +188,19 @@ fn awning(mesh: &mut Mesh, [a, b]: [f32; 2], low: f32, stripes: [[f32; 3]; 2]) {
 fn room(mesh: &mut Mesh, seed: u32, [left, right]: [f32; 2], low: f32, is_open: bool, lamps: &mut Vec<Lamp>) {
     let (front, back, top) = (-0.2, -ROOM_M, low + GLASS_M + 0.1);
     let p = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
-    let wall = tinted(Material::Goods, [0.40, 0.34, 0.26]);
+    let wall = tinted(Material::Goods, [0.36, 0.30, 0.23]);
     let floor = tinted(Material::Wood, [0.36, 0.25, 0.16]);
     let y = low + 0.02;
     mesh.quad(floor, [p(left, y, front), p(right, y, front), p(right, y, back), p(left, y, back)]);
     mesh.quad(wall, [p(left, low, back), p(right, low, back), p(right, top, back), p(left, top, back)]);
-    mesh.quad(wall, [p(left, low, front), p(left, low, back), p(left, top, back), p(left, top, front)]);
-    mesh.quad(wall, [p(right, low, back), p(right, low, front), p(right, top, front), p(right, top, back)]);
+    // Shelves along the sides are painted.
+    let middle = mix(front, back, 0.5);
+    let shelves = Paint { material: Material::Room(0), tint: Vec3::splat(0.8) };
+    for (z0, z1, view) in [(front, middle, 1), (middle, back, 5)] {
+        let q = |x: f32, z0: f32, z1: f32| [p(x, low, z0), p(x, low, z1), p(x, top, z1), p(x, top, z0)];
+        mesh.quad_uv(shelves, q(left, z0, z1), super::room::cell(view));
+        mesh.quad_uv(shelves, q(right, z1, z0), super::room::cell(6 - view));
+    }
     mesh.quad(wall, [p(left, top, front), p(left, top, back), p(right, top, back), p(right, top, front)]);
     let wood = tinted(Material::Wood, [0.33, 0.21, 0.12]);
     let random = |n: i32| hash(n, seed as i32, 351);
@@ -261,8 +267,8 @@ fn room(mesh: &mut Mesh, seed: u32, [left, right]: [f32; 2], low: f32, is_open: 
         position: [mix(left, right, 0.5), top - 0.13, -1.3],
         direction: None,
         cone_deg: [0.0; 2],
-        color: [1.0, 0.76, 0.47],
-        intensity_cd: 130.0,
+        color: [1.0, 0.84, 0.63],
+        intensity_cd: mix(45.0, 110.0, random(9001)),
         range_m: 8.0,
     });
     const { assert!(ROOM_M < DEPTH_M) };

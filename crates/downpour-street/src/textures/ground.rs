@@ -66,7 +66,7 @@ pub(crate) fn slabs() -> Tile {
         let (edge, tone, hue) = slab(u, v);
         let speckle = fractal(u, v, [220, 220], 2, 44);
         let stain = smooth(0.52, 0.8, fractal(u, v, [6, 6], 5, 45));
-        let bare = mix3([0.26, 0.255, 0.245], [0.32, 0.305, 0.275], hue);
+        let bare = mix3([0.262, 0.256, 0.246], [0.322, 0.307, 0.278], hue);
         let shade = mix(0.68, 1.1, tone) * mix(0.86, 1.14, speckle) * mix(1.0, 0.84, stain);
         let dirt = mix(0.8, 1.0, smooth(0.0, 0.05, edge));
         let top = bare.map(|c| c * shade * dirt);

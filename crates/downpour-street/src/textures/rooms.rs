@@ -10,13 +10,16 @@ pub(crate) const VIEWS: u32 = 8;
 /// Curtains in the picture of curtains, side by side.
 pub(crate) const CURTAINS: u32 = 4;
 
+/// Texels along each edge of the pictures of rooms.
+const SIZE: u32 = 768;
+
 /// Colors of wall papers.
 const WALLS: [[f32; 3]; 4] = [[0.62, 0.55, 0.43], [0.50, 0.53, 0.47], [0.66, 0.63, 0.58], [0.52, 0.40, 0.33]];
 
 /// A box in a view: from x, to x, from y, to y, color.
 type Thing = ([f32; 4], [f32; 3]);
 
-/// Pictures, shelves and cupboards of a view.
+/// Pictures, shelves, cupboards and people of a view.
 fn things(view: u32) -> Vec<Thing> {
     let r = |n: i32| hash(view as i32, n, 132);
     let wood = mix3([0.22, 0.13, 0.07], [0.40, 0.30, 0.2], r(1));
@@ -29,19 +32,41 @@ fn things(view: u32) -> Vec<Thing> {
             all.push(([0.05, 0.5, 0.70, 1.0], wood));
         }
         1 => {
-            all.push(([x, x + 0.34, 0.16, 1.0], wood));
-            for row in 0..4 {
-                let y = 0.20 + 0.2 * row as f32;
-                all.push((
-                    [x + 0.03, x + 0.31, y, y + 0.16],
-                    mix3([0.10, 0.06, 0.04], [0.4, 0.3, 0.22], r(9 + row)),
-                ));
+            // A wall of shelves, filled.
+            all.push(([0.03, 0.97, 0.10, 1.0], wood.map(|c| 0.55 * c)));
+            for row in 0..5 {
+                let y = 0.115 + 0.176 * row as f32;
+                all.push(([0.03, 0.97, y + 0.155, y + 0.176], wood));
+                let mut left = 0.05;
+                let mut k = 100 * row;
+                while left < 0.92 {
+                    k += 5;
+                    let wide = mix(0.018, 0.085, r(k) * r(k));
+                    if r(k + 1) > 0.14 {
+                        let tall = mix(0.05, 0.145, r(k + 2));
+                        let gray = mix(0.03, 0.62, r(k + 3) * r(k + 3));
+                        let color = mix3([1.25, 0.85, 0.55], [0.75, 1.0, 1.05], r(k + 4)).map(|c| c * gray);
+                        let right = (left + wide).min(0.955);
+                        all.push(([left, right, y + 0.155 - tall, y + 0.155], color));
+                    }
+                    left += wide + 0.004;
+                }
             }
         }
         2 => {
             all.push(([x, x + 0.30, 0.12, 1.0], wood.map(|c| c * 1.4)));
             all.push(([x + 0.04, x + 0.26, 0.18, 0.5], wood.map(|c| c * 1.15)));
             all.push(([x + 0.04, x + 0.26, 0.56, 0.94], wood.map(|c| c * 1.15)));
+            if view > 3 {
+                // Somebody stands before the wall.
+                let (dark, skin) = ([0.05, 0.055, 0.07], [0.16, 0.10, 0.075]);
+                let at = if x > 0.4 { x - 0.18 } else { x + 0.42 };
+                all.push(([at - 0.075, at + 0.075, 0.50, 1.0], dark));
+                all.push(([at - 0.055, at + 0.055, 0.475, 0.50], dark));
+                all.push(([at - 0.018, at + 0.018, 0.44, 0.475], skin));
+                all.push(([at - 0.033, at + 0.033, 0.355, 0.45], skin));
+                all.push(([at - 0.036, at + 0.036, 0.335, 0.38], [0.04, 0.03, 0.02]));
+            }
         }
         _ => {
             all.push(([x, x + 0.12, 0.25, 0.42], [0.55, 0.5, 0.4]));
@@ -59,7 +84,7 @@ fn cell(u: f32, v: f32) -> (u32, f32, f32) {
 }
 
 /// Albedo of walls and things.
-fn albedo(u: f32, v: f32) -> [f32; 3] {
+fn albedo(views: &[Vec<Thing>], u: f32, v: f32) -> [f32; 3] {
     let (number, x, y) = cell(u, v);
     match number {
         0..VIEWS => {
@@ -69,11 +94,11 @@ fn albedo(u: f32, v: f32) -> [f32; 3] {
             } else {
                 wall.map(|c| c * mix(0.94, 1.04, fractal(x, y, [8, 8], 2, 131)))
             };
-            let found = things(number)
-                .into_iter()
+            let found = views[number as usize]
+                .iter()
                 .rev()
                 .find(|([x0, x1, y0, y1], _)| (*x0..*x1).contains(&x) && (*y0..*y1).contains(&y));
-            found.map_or(base, |(_, color)| color)
+            found.map_or(base, |(_, color)| *color)
         }
         8..12 => WALLS[number as usize % 4].map(|c| c * mix(0.9, 1.0, fractal(x, y, [3, 3], 3, 133))),
         12..14 => [0.72, 0.71, 0.68],
@@ -83,15 +108,17 @@ fn albedo(u: f32, v: f32) -> [f32; 3] {
 
 /// Reflectance by day.
 pub(super) fn by_day() -> Raster {
-    Raster::new(512, 512, |u, v| {
-        let [r, g, b] = albedo(u, v);
+    let views: Vec<Vec<Thing>> = (0..VIEWS).map(things).collect();
+    Raster::new(SIZE, SIZE, |u, v| {
+        let [r, g, b] = albedo(&views, u, v);
         [r, g, b, 1.0]
     })
 }
 
 /// Radiance with the room's light on, relative to the brightest.
 pub(super) fn lit() -> Raster {
-    Raster::new(512, 512, |u, v| {
+    let views: Vec<Vec<Thing>> = (0..VIEWS).map(things).collect();
+    Raster::new(SIZE, SIZE, |u, v| {
         let (number, x, y) = cell(u, v);
         let middle = 1.0 - (2.0 * x - 1.0) * (2.0 * x - 1.0);
         let light = match number {
@@ -105,7 +132,7 @@ pub(super) fn lit() -> Raster {
             12..14 => mix(0.55, 1.0, middle),
             _ => 0.55,
         };
-        let [r, g, b] = albedo(u, v).map(|c| (1.35 * c * light).min(1.0));
+        let [r, g, b] = albedo(&views, u, v).map(|c| (1.35 * c * light).min(1.0));
         [r, g, b, 1.0]
     })
 }
