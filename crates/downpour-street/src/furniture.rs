@@ -6,7 +6,7 @@ use glam::Vec3;
 use crate::material::Material;
 use crate::mesh::{BEHIND, Mesh, plain, tinted};
 use crate::model::Lamp;
-use crate::noise::{fractal, hash, mix, mix3, smooth};
+use crate::noise::{hash, mix};
 use crate::settings::LampEra;
 use crate::tree;
 
