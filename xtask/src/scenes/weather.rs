@@ -107,7 +107,7 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
                 &rain(150),
                 STORM_SKY,
                 "\n[[wind]]\nuniform = { speed_m_s = 9, towards_deg = 80 }\n",
-                &along(0.2),
+                &along(-0.9),
                 SIZE,
             ],
         ),
