@@ -97,7 +97,7 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
             "dusk.toml",
             "The street at dusk in rain: windows and lanterns are lit, the sky is still blue.",
             night.clone(),
-            &[&rain(30), DUSK_SKY, &along(-1.8), SIZE],
+            &[&rain(30), DUSK_SKY, &along(-1.3), SIZE],
         ),
         file(
             "storm.toml",
