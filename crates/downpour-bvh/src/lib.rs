@@ -182,15 +182,15 @@ pub fn bvh_nearest(
     let mut stack = [(0u32, 0.0f32); BVH_STACK as usize];
     let mut depth = 0;
     let mut node = &nodes[0];
-    if bvh_enter(node, origin, inverse, limit) >= BVH_FAR {
+    if bvh_enter(node, origin, inverse, nearest, limit) >= BVH_FAR {
         return None;
     }
     loop {
         if node.count == 0 {
             // The nearer child first: its triangles may hide the other.
             let (left, right) = (node.link, node.link + 1);
-            let to_left = bvh_enter(&nodes[left as usize], origin, inverse, limit);
-            let to_right = bvh_enter(&nodes[right as usize], origin, inverse, limit);
+            let to_left = bvh_enter(&nodes[left as usize], origin, inverse, nearest, limit);
+            let to_right = bvh_enter(&nodes[right as usize], origin, inverse, nearest, limit);
             let (near, far, to_near, to_far) = if to_right < to_left {
                 (right, left, to_right, to_left)
             } else {
@@ -270,10 +270,10 @@ pub fn bvh_inverse(direction: [f32; 3]) -> [f32; 3] {
     direction.map(|d| 1.0 / if d.abs() > 1.0e-20 { d } else { 1.0e-20 })
 }
 
-/// Distance at which the ray enters the box of `node`, if it is below `limit`; `BVH_FAR` otherwise.
+/// Distance, `nearest` at least, at which the ray is in the box of `node`, if it is below `limit`; `BVH_FAR` otherwise.
 #[inline(always)]
 #[must_use]
-pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32) -> f32 {
+pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], nearest: f32, limit: f32) -> f32 {
     // SIMD vectors: this test dominates the time of a picture.
     let (origin, inverse) = (Vec3A::from(origin), Vec3A::from(inverse));
     let a = (Vec3A::from(node.low) - origin) * inverse;
@@ -282,7 +282,7 @@ pub fn bvh_enter(node: &BvhNode, origin: [f32; 3], inverse: [f32; 3], limit: f32
     let greater = |a: f32, b: f32| if a > b { a } else { b };
     let less = |a: f32, b: f32| if a < b { a } else { b };
     let (near, far) = (a.min(b), a.max(b));
-    let enter = greater(greater(near.x, near.y), greater(near.z, 0.0));
+    let enter = greater(greater(near.x, near.y), greater(near.z, nearest));
     let leave = less(less(far.x, far.y), less(far.z, limit));
     if bvh_is_before(enter, leave) { enter } else { BVH_FAR }
 }

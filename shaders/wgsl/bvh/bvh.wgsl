@@ -29,13 +29,13 @@ struct BvhHit {
 @group(0) @binding(1) var<storage, read> bvh_nodes: array<BvhNode>;
 @group(0) @binding(2) var<storage, read> bvh_triangles: array<BvhTriangle>;
 
-// Distance at which the ray enters the box of a node, if it is below `limit`; BVH_FAR otherwise.
-fn bvh_enter(node: BvhNode, origin: vec3f, inverse: vec3f, limit: f32) -> f32 {
+// Distance, `nearest` at least, at which the ray is in the box of a node, if it is below `limit`; BVH_FAR otherwise.
+fn bvh_enter(node: BvhNode, origin: vec3f, inverse: vec3f, nearest: f32, limit: f32) -> f32 {
     let a = (node.low - origin) * inverse;
     let b = (node.high - origin) * inverse;
     let near = min(a, b);
     let far = max(a, b);
-    let enter = max(max(near.x, near.y), max(near.z, 0.0));
+    let enter = max(max(near.x, near.y), max(near.z, nearest));
     let leave = min(min(far.x, far.y), min(far.z, limit));
     return select(BVH_FAR, enter, bvh_is_before(enter, leave));
 }
@@ -84,7 +84,7 @@ fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhH
     var depth = 0u;
     var link = bvh_nodes[0].link;
     var count = bvh_nodes[0].count;
-    if bvh_enter(bvh_nodes[0], origin, inverse, limit) >= BVH_FAR {
+    if bvh_enter(bvh_nodes[0], origin, inverse, nearest, limit) >= BVH_FAR {
         return best;
     }
     // Each node is visited once at most, so this ends.
@@ -93,8 +93,8 @@ fn bvh_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> BvhH
             // The nearer child first: its triangles may hide the other.
             let left = bvh_nodes[link];
             let right = bvh_nodes[link + 1u];
-            let to_left = bvh_enter(left, origin, inverse, limit);
-            let to_right = bvh_enter(right, origin, inverse, limit);
+            let to_left = bvh_enter(left, origin, inverse, nearest, limit);
+            let to_right = bvh_enter(right, origin, inverse, nearest, limit);
             let swap = to_right < to_left;
             if min(to_left, to_right) < BVH_FAR {
                 if max(to_left, to_right) < BVH_FAR {

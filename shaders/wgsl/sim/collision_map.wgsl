@@ -54,13 +54,13 @@ fn collision_map_walk(origin: vec3f, direction: vec3f, keep: u32) -> CollisionMa
         depth -= 1u;
         let at = stack[depth];
         let node = bvh_nodes[at];
-        if bvh_enter(node, origin, inverse, limit) >= BVH_FAR {
+        if bvh_enter(node, origin, inverse, 0.0, limit) >= BVH_FAR {
             continue;
         }
         if node.count == 0u {
             // The nearer child first: its triangles may make the other unnecessary.
-            let to_left = bvh_enter(bvh_nodes[node.link], origin, inverse, limit);
-            let to_right = bvh_enter(bvh_nodes[node.link + 1u], origin, inverse, limit);
+            let to_left = bvh_enter(bvh_nodes[node.link], origin, inverse, 0.0, limit);
+            let to_right = bvh_enter(bvh_nodes[node.link + 1u], origin, inverse, 0.0, limit);
             let swap = to_right < to_left;
             if max(to_left, to_right) < BVH_FAR {
                 stack[depth] = node.link + select(1u, 0u, swap);

@@ -31,6 +31,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                     let d: [f32; 3] = std::array::from_fn(|k| rng_unit(r[k]) - 0.5);
                     bvh_inverse(d).map(f32::to_bits).to_vec()
                 }),
+                OneOf(&[0.0, 0.0, 1.0e-4, 0.3]),
                 OneOf(&[0.5, 2.0, 3.0e38]),
             ],
             Tol::relative(
@@ -44,7 +45,7 @@ pub(super) fn functions() -> Vec<FunctionCase> {
                 let link = a.u32();
                 let high = a.f32s();
                 let count = a.u32();
-                bvh_enter(&BvhNode { low, link, high, count }, a.f32s(), a.f32s(), a.f32()).words()
+                bvh_enter(&BvhNode { low, link, high, count }, a.f32s(), a.f32s(), a.f32(), a.f32()).words()
             },
         ),
         FunctionCase::new(

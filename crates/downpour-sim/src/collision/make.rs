@@ -88,14 +88,14 @@ pub fn collision_map_walk(
         depth -= 1;
         let at = stack[depth];
         let node = &nodes[at as usize];
-        if bvh_enter(node, from, inverse, limit) >= BVH_FAR {
+        if bvh_enter(node, from, inverse, 0.0, limit) >= BVH_FAR {
             continue;
         }
         if node.count == 0 {
             // The nearer child first: its triangles may make the other unnecessary.
             let [left, right] = [node.link, node.link + 1];
-            let to_left = bvh_enter(&nodes[left as usize], from, inverse, limit);
-            let to_right = bvh_enter(&nodes[right as usize], from, inverse, limit);
+            let to_left = bvh_enter(&nodes[left as usize], from, inverse, 0.0, limit);
+            let to_right = bvh_enter(&nodes[right as usize], from, inverse, 0.0, limit);
             let swap = to_right < to_left;
             if to_left.max(to_right) < BVH_FAR {
                 stack[depth] = if swap { left } else { right };
