@@ -175,21 +175,6 @@ pub fn bvh_nearest(
     nearest: f32,
     farthest: f32,
 ) -> Option<Hit> {
-    bvh_nearest_where(nodes, triangles, origin, direction, [nearest, farthest], |_| true)
-}
-
-/// Nearest hit along the ray, farther than the first of two distances and nearer than the second, of those that count: a hit in a hole
-/// does not.
-#[inline]
-#[must_use]
-pub fn bvh_nearest_where(
-    nodes: &[BvhNode],
-    triangles: &[BvhTriangle],
-    origin: [f32; 3],
-    direction: [f32; 3],
-    [nearest, farthest]: [f32; 2],
-    counts: impl Fn(&Hit) -> bool,
-) -> Option<Hit> {
     let inverse = bvh_inverse(direction);
     let mut best: Option<Hit> = None;
     let mut limit = farthest;
@@ -223,11 +208,8 @@ pub fn bvh_nearest_where(
             for triangle in &triangles[node.link as usize..(node.link + node.count) as usize] {
                 let [distance, u, v] = bvh_triangle(triangle, origin, direction);
                 if distance > nearest && distance < limit {
-                    let hit = Hit { distance, triangle: triangle.index, u, v };
-                    if counts(&hit) {
-                        limit = distance;
-                        best = Some(hit);
-                    }
+                    limit = distance;
+                    best = Some(Hit { distance, triangle: triangle.index, u, v });
                 }
             }
         }
@@ -455,31 +437,6 @@ mod tests {
             hits += u32::from(found.is_some());
         }
         assert!(hits > 300, "only {hits} rays hit anything");
-    }
-
-    /// Hits that do not count are passed by.
-    #[test]
-    fn what_counts_is_that_of_brute_force() {
-        let bvh = Bvh::new(&soup(800));
-        let mut hits = 0;
-        for i in 0..2000 {
-            let a = rng_draw([5, 6], i, 0, 0).map(rng_unit);
-            let b = rng_draw([5, 6], i, 1, 0).map(rng_unit);
-            let origin: [f32; 3] = std::array::from_fn(|k| a[k] * 6.0 - 1.0);
-            let direction: [f32; 3] = std::array::from_fn(|k| b[k] - 0.5);
-            let brute = bvh
-                .triangles
-                .iter()
-                .map(|t| bvh_triangle(t, origin, direction))
-                .filter(|[distance, u, _]| *distance > 1.0e-4 && *u > 0.4)
-                .min_by(|x, y| x[0].total_cmp(&y[0]));
-            let counts = |hit: &Hit| hit.u > 0.4;
-            let found =
-                bvh_nearest_where(&bvh.nodes, &bvh.triangles, origin, direction, [1.0e-4, BVH_FAR], counts);
-            assert_eq!(found.map(|h| h.distance), brute.map(|h| h[0]), "ray {i}");
-            hits += u32::from(found.is_some());
-        }
-        assert!(hits > 100, "{hits}");
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! Surface that a ray finds: the nearest triangle that is not a hole, and its material there. Twin of
 //! `shaders/wgsl/render/surface.wgsl`.
 
-use downpour_bvh::{Hit, bvh_nearest_where};
+use downpour_bvh::{Hit, bvh_nearest};
 use downpour_math::ops;
 use downpour_shaders::render::scene::{
-    SCENE_BLENDED, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_DENSE, SURFACE_OPEN, SURFACE_POROUS,
+    SCENE_BLENDED, SCENE_LAYERS, SCENE_MASKED, SCENE_NONE, SCENE_UNLIT, SURFACE_DENSE, SURFACE_OPEN,
+    SURFACE_POROUS,
 };
 use downpour_sim::shelter::Holes;
 use glam::{Vec3, Vec4};
@@ -101,13 +102,26 @@ impl SceneData {
         self.surface_alpha(&material, hit) < least
     }
 
-    /// Returns the nearest surface farther than `nearest` and nearer than `farthest`. Holes are none: where a masked material is below
-    /// its cutoff, or one that is blended has no alpha.
+    /// Returns the nearest surface up to a distance. Holes are skipped: where a masked material is below its cutoff, or one
+    /// that is blended has no alpha. Twelve holes in a row end the ray.
     #[must_use]
     pub fn surface_hit(&self, origin: Vec3, direction: Vec3, nearest: f32, farthest: f32) -> Option<Hit> {
-        let is_closed = |hit: &Hit| !self.surface_is_open(hit);
-        let (origin, direction) = (origin.into(), direction.into());
-        bvh_nearest_where(&self.nodes, &self.triangles, origin, direction, [nearest, farthest], is_closed)
+        let mut from_distance = nearest;
+        for _ in 0..SCENE_LAYERS {
+            let hit = bvh_nearest(
+                &self.nodes,
+                &self.triangles,
+                origin.into(),
+                direction.into(),
+                from_distance,
+                farthest,
+            )?;
+            if !self.surface_is_open(&hit) {
+                return Some(hit);
+            }
+            from_distance = hit.distance + nearest;
+        }
+        None
     }
 
     /// Texture coordinates at a hit.

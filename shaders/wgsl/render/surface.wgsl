@@ -55,62 +55,22 @@ fn surface_is_open(hit: SurfaceHit) -> bool {
     return surface_alpha(material, hit) < least;
 }
 
-// Returns the nearest surface farther than `nearest` and nearer than `farthest`. Holes are none: where a masked material is below its
-// cutoff, or one that is blended has no alpha. The walk of bvh_hit, which asks of each triangle whether it has a hole there.
+// Returns the nearest surface up to a distance. Holes are skipped: where a masked material is below its cutoff, or one that is
+// blended has no alpha. Twelve holes in a row end the ray.
 fn surface_hit(origin: vec3f, direction: vec3f, nearest: f32, farthest: f32) -> SurfaceHit {
-    let inverse = bvh_inverse(direction);
-    var best = SurfaceHit(-1.0, 0u, 0.0, 0.0);
-    var limit = farthest;
-    var depth = 0u;
-    var link = bvh_nodes[0].link;
-    var count = bvh_nodes[0].count;
-    if bvh_enter(bvh_nodes[0], origin, inverse, nearest, limit) >= BVH_FAR {
-        return best;
-    }
-    // Each node is visited once at most, so this ends.
-    loop {
-        if count == 0u {
-            let left = bvh_nodes[link];
-            let right = bvh_nodes[link + 1u];
-            let to_left = bvh_enter(left, origin, inverse, nearest, limit);
-            let to_right = bvh_enter(right, origin, inverse, nearest, limit);
-            let swap = to_right < to_left;
-            if min(to_left, to_right) < BVH_FAR {
-                if max(to_left, to_right) < BVH_FAR {
-                    bvh_stack[depth] = link + select(1u, 0u, swap);
-                    bvh_enters[depth] = max(to_left, to_right);
-                    depth += 1u;
-                }
-                link = select(left.link, right.link, swap);
-                count = select(left.count, right.count, swap);
-                continue;
-            }
-        } else {
-            for (var k = 0u; k < count; k += 1u) {
-                let triangle = bvh_triangles[link + k];
-                let hit = bvh_triangle(triangle, origin, direction);
-                if hit.x > nearest && hit.x < limit {
-                    let found = SurfaceHit(hit.x, triangle.index, hit.y, hit.z);
-                    if !surface_is_open(found) {
-                        limit = hit.x;
-                        best = found;
-                    }
-                }
-            }
-        }
-        // The next stacked node that is nearer than the current hit.
-        var found = false;
-        while depth > 0u && !found {
-            depth -= 1u;
-            found = bvh_is_before(bvh_enters[depth], limit);
-        }
-        if !found {
+    var from_distance = nearest;
+    for (var k = 0u; k < SCENE_LAYERS; k += 1u) {
+        let hit = bvh_hit(origin, direction, from_distance, farthest);
+        if hit.distance < 0.0 {
             break;
         }
-        link = bvh_nodes[bvh_stack[depth]].link;
-        count = bvh_nodes[bvh_stack[depth]].count;
+        let found = SurfaceHit(hit.distance, hit.triangle, hit.u, hit.v);
+        if !surface_is_open(found) {
+            return found;
+        }
+        from_distance = hit.distance + nearest;
     }
-    return best;
+    return SurfaceHit(-1.0, 0u, 0.0, 0.0);
 }
 
 // Texture coordinates at a hit.

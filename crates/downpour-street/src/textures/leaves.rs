@@ -68,7 +68,7 @@ pub(crate) fn bark() -> Raster {
 mod tests {
     use super::*;
 
-    /// A ray tests each hole that it passes: a cluster must not be mostly air, nor a full square.
+    /// Rays pass a dozen holes: a cluster must not be mostly air, nor a full square.
     #[test]
     fn a_cluster_covers_a_third_of_its_card() {
         let n = 64;
