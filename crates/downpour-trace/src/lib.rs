@@ -4,6 +4,7 @@
 //! - [`scene`], [`path`], [`scatter`], [`surface`], [`texture`], [`sky`], [`brdf`], `gpu`: what a ray of the camera sees, and the
 //!   light that comes there; [`skylight`] filters it;
 //! - [`capture`]: radiance from every direction around the eye, for the drops;
+//! - [`emitter`]: surfaces that shine, as lights;
 //! - [`wet`]: surfaces that rain has made wet; [`puddle`], [`wet_ground`]: water that stands on the ground; [`pane_shadow`]: the light through a wet pane;
 //! - [`stage`]: the scene and the eye of a weather at a time;
 //! - [`picture`]: the plate of a scene, and the rain of [`downpour_render`] before it.
@@ -22,6 +23,11 @@ pub mod brdf;
 pub mod builder;
 pub mod capture;
 pub mod data;
+#[cfg(not(feature = "parity"))]
+mod emitter;
+#[cfg(feature = "parity")]
+#[doc(hidden)]
+pub mod emitter;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 pub mod material;
