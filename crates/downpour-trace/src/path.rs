@@ -25,11 +25,12 @@ mod draw;
 mod plan;
 
 use downpour_math::ops;
+use downpour_render::light::light_weight;
 use downpour_shaders::bvh::BVH_FAR;
 use downpour_shaders::render::path::{
     PATH_BETWEEN, PATH_BOUNCES, PATH_CANDIDATES, PATH_CURVED, PATH_CURVED_FRACTION, PATH_CURVED_PART,
-    PATH_LATER_FRACTION, PATH_MIRROR_LAMPS, PATH_OPEN, PATH_OTHER, PATH_PLAIN_GLOSS, PATH_SAME_FACET,
-    PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
+    PATH_LATER_FRACTION, PATH_MIRROR_LAMPS, PATH_OCCLUSION, PATH_OPEN, PATH_OTHER, PATH_PLAIN_GLOSS,
+    PATH_SAME_FACET, PATH_SAME_PLANE, PATH_SECONDARY_ROUGHNESS, PATH_SHINES,
 };
 use downpour_shaders::render::puddle_water::{
     PUDDLE_WATER_DOWN, PUDDLE_WATER_MATERIAL, PUDDLE_WATER_RAYS, PUDDLE_WATER_RIPPLED,
@@ -180,8 +181,10 @@ struct PathWater {
 struct PathMeeting {
     surface: Surface,
     direct: Vec3,
-    /// Light of surfaces that shine, on its diffuse base, over pi.
+    /// Light of surfaces that shine, and of lamps with soft shadows, on its diffuse base, over pi.
     glow: Vec3,
+    /// Part of that light that the relief of the surface leaves.
+    relief: f32,
     /// True if a lamp is hidden in part.
     is_soft: bool,
     plan: PathPlan,
@@ -286,18 +289,23 @@ impl SceneView<'_> {
             }
             near = hit.distance + frame.nearest;
             let unlit = found.flags & SCENE_UNLIT != 0;
-            let (mut direct, mut glow, mut is_soft) = (found.diffuse, Vec3::ZERO, false);
+            let (mut direct, mut glow, mut is_soft, mut relief) = (found.diffuse, Vec3::ZERO, false, 1.0);
             if !unlit {
                 let is_lamp = found.flags & SCENE_LAMP_GLASS != 0;
                 // Drops are lit by lamps on their own.
                 let left_out = is_lamp && frame.projection != SCENE_PICTURE && frame.suns_out > 0;
                 // The lattice has few points along its third axis: each pixel is somewhere between them.
+                // Of lamps no means over neighbors are taken, where a lattice would be seen.
                 let [x, y, z, w] = path_lattice_numbers(random, 0, 0, 0, 1);
-                let numbers = [x, y, (w + z * PATH_BETWEEN).fract(), w];
-                let asked = SceneAsked { draws: 0, numbers, standoff: 0.0, under: depth, is_first: true };
+                let numbers = [x, y, (w + z * PATH_BETWEEN).fract(), z];
+                let footprint = Some(cone * hit.distance);
+                let asked = SceneAsked { draws: 0, numbers, standoff: 0.0, under: depth, footprint };
                 let lamplight = self.scene_direct(&found, -towards, &asked);
                 direct = if left_out { Vec3::ZERO } else { found.emission } + lamplight.lit;
-                (glow, is_soft) = (lamplight.glow, lamplight.is_soft);
+                // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
+                (glow, is_soft) = (lamplight.glow / found.occlusion.max(PATH_OCCLUSION), lamplight.is_soft);
+                let rest = light_weight(data.sky_irradiance(found.normal)).max(1.0e-9);
+                relief = (rest + lamplight.relief_light) / (rest + lamplight.flat_light);
             }
             let told = path.base.slack == 0.0 && path_cover(&found) == 1.0 && found.transmission == 0.0;
             let free = path.mirror.slack == 0.0;
@@ -322,7 +330,7 @@ impl SceneView<'_> {
             let from_eye = found.position - origin;
             let slack = from_eye.dot(from_eye).sqrt() * (cone * 2.0 + SKYLIGHT_SLACK);
             let ripple = if met.is_some() { water.map(|water| water.ripple) } else { None };
-            let meeting = PathMeeting { surface: found, direct, glow, is_soft, plan, told, slack };
+            let meeting = PathMeeting { surface: found, direct, glow, relief, is_soft, plan, told, slack };
             let light = self.path_light(&meeting, towards, cone, random, ripple, under);
             if let (Some(_), Some(water)) = (met, &mut water) {
                 throughput *= path.path_show_water(&meeting, &light, water.ripple, towards, throughput);
@@ -441,7 +449,7 @@ impl SceneView<'_> {
                         numbers: [x, y, z, w],
                         standoff,
                         under: Vec2::ZERO,
-                        is_first: false,
+                        footprint: None,
                     };
                     lit = self.scene_direct(&found, -ray.along, &asked).lit;
                 }
@@ -534,7 +542,7 @@ impl SceneView<'_> {
         layer: u32,
         throughput: Vec3,
     ) {
-        let PathMeeting { surface, direct, glow, is_soft, mut plan, told, slack } = *meeting;
+        let PathMeeting { surface, direct, glow, relief, is_soft, mut plan, told, slack } = *meeting;
         let cover = path_cover(&surface);
         path.radiance += throughput * direct * cover;
         if surface.flags & SCENE_UNLIT != 0 {
@@ -553,10 +561,11 @@ impl SceneView<'_> {
             mirror = self.data.sky_cone(mirrored, scatter_mirror(&surface, -towards).width);
         } else if plan.mirrors == 0 && plan.chance == 0.0 {
             // Too faint to trace rays for it.
+            base -= glow * plan.gloss / (plan.body + plan.gloss).max(Vec3::splat(1.0e-9));
             plan.body += plan.gloss;
             plan.gloss = Vec3::ZERO;
         }
-        let of_base = throughput * plan.body * cover;
+        let of_base = throughput * plan.body * (cover * relief);
         let of_gloss = throughput * plan.gloss * cover;
         let slot = PathSlot { slack, position: surface.position, ..PathSlot::NONE };
         if told {

@@ -72,6 +72,8 @@ shared_constants! {
         PATH_SECONDARY_MAX_SPECULAR: f32 = 0.05;
         /// Roughness of a gloss from which what shines is drawn as a light and not met by rays.
         PATH_SHINES: f32 = 0.6;
+        /// Minimum occlusion of a material that is taken back from light of lamps.
+        PATH_OCCLUSION: f32 = 0.05;
         /// Makes other numbers of those of a ray.
         PATH_OTHER: f32 = 61.0;
         /// Lamps that are drawn for all where a mirror shows a surface.

@@ -75,6 +75,12 @@ shared_constants! {
         SCENE_LAMP_BITS: u32 = 2;
         /// Part of what all lamps would give from which one has as many rays; others have one.
         SCENE_LARGE_LAMP: f32 = 0.1;
+        /// Part of the way to a lamp where things are taken to stand that throw its shadows.
+        SCENE_SHADOW_PART: f32 = 0.25;
+        /// Maximum distance of these, m.
+        SCENE_SHADOW_M: f32 = 5.0;
+        /// Width of a shadow's edge up to which it is sharp, in pixels; from twice that on, means over neighbors are taken of it.
+        SCENE_SHARP_PIXELS: f32 = 4.0;
         /// Minimum cosine of the angle of view for the image of a lamp.
         SCENE_MIN_COSINE: f32 = 0.05;
         /// Difference of what two rays toward a lamp let through up to which all do the same.

@@ -349,6 +349,8 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
         // Light of surfaces that shine, on its diffuse base, over pi, and whether lamps are hidden in part.
         var glow = vec3f(0.0);
         var soft = false;
+        // Part of that light that the relief of the surface leaves.
+        var relief = 1.0;
         var told = false;
         var slack = 0.0;
         var of_water = false;
@@ -488,13 +490,19 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                     if turn == 0u {
                         // The lattice has few points along its third axis: each pixel is somewhere between them.
                         let first = path_lattice_numbers(random, 0u, 0u, 0u, 1u);
-                        chances = vec4f(first.xy, fract(first.w + first.z * PATH_BETWEEN), first.w);
+                        // Of lamps no means over neighbors are taken, where a lattice would be seen.
+                        chances = vec4f(first.xy, fract(first.w + first.z * PATH_BETWEEN), first.z);
                     }
-                    let lamplight = scene_direct(found, -ray.along, lamps, chances, standoff, depth, turn == 0u);
+                    let lamplight = scene_direct(
+                        found, -ray.along, lamps, chances, standoff, depth, turn == 0u, cone * hit.distance,
+                    );
                     lit = emission + lamplight.lit;
                     if turn == 0u {
-                        glow = lamplight.glow;
+                        // What is told apart goes with the rest of the light on the diffuse base, which has the material's occlusion.
+                        glow = lamplight.glow / max(found.occlusion, PATH_OCCLUSION);
                         soft = lamplight.is_soft;
+                        let rest = max(light_weight(sky_irradiance(found.normal)), 1.0e-9);
+                        relief = (rest + lamplight.relief_light) / (rest + lamplight.flat_light);
                     }
                 }
                 if turn == 0u {
@@ -602,10 +610,11 @@ fn path_trace(origin: vec3f, direction: vec3f, cone: f32, random: vec4u, last: V
                 mirror = sky_cone(mirrored, scatter_mirror(surface, -towards).width);
             } else if plan.mirrors == 0u && plan.chance == 0.0 {
                 // Too faint to trace rays for it.
+                base -= glow * plan.gloss / max(plan.body + plan.gloss, vec3f(1.0e-9));
                 plan.body += plan.gloss;
                 plan.gloss = vec3f(0.0);
             }
-            let of_base = throughput * plan.body * cover;
+            let of_base = throughput * plan.body * (cover * relief);
             let of_gloss = throughput * plan.gloss * cover;
             if told {
                 path.base = PathSlot(base, slack, of_base, 0.0, surface.normal, surface.position);

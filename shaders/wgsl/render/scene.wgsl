@@ -30,9 +30,12 @@ struct SceneArrival {
 struct SceneDirect {
     // Toward the viewer.
     lit: vec3f,
-    // Of surfaces that shine, on the diffuse base, over pi, if it is asked for apart.
+    // On the diffuse base, over pi: of surfaces that shine, and of lamps with soft shadows. Means over neighbors are taken of it.
     glow: vec3f,
-    // True if a lamp is hidden in part.
+    // What lamps of the latter give if nothing hides them: to the facet, and to the surface with its relief.
+    flat_light: f32,
+    relief_light: f32,
+    // True if another lamp is hidden in part.
     is_soft: bool,
 }
 
@@ -134,6 +137,13 @@ fn scene_lamp(surface: Surface, view: vec3f, light: SceneArrival, out: vec3f, se
     ));
 }
 
+// Part of the light of a lamp whose shadows are wide on the picture, 0 to 1: as if what throws them stood a part of the way to it.
+fn scene_softness(distance: f32, spread: f32, footprint: f32) -> f32 {
+    let away = min(distance * SCENE_SHADOW_PART, SCENE_SHADOW_M);
+    let width = 2.0 * spread * away / max(footprint, 1.0e-9);
+    return clamp((width - SCENE_SHARP_PIXELS) / SCENE_SHARP_PIXELS, 0.0, 1.0);
+}
+
 // Radiance of the disks of suns that the picture shows in a direction.
 fn scene_suns(direction: vec3f) -> vec3f {
     var sum = vec3f(0.0);
@@ -216,12 +226,12 @@ fn scene_disk(numbers: vec2f, k: u32) -> vec2f {
 // Light of lamps, sun, and surfaces that shine on a surface. With `draws` of 0, or of at least as many as there are, all lamps
 // are asked whether something hides them; else so many are drawn by what each would give (`numbers.w` in [0, 1)), for all of
 // them. A place of a surface that shines is drawn with the first three numbers, and is one of the lamps. `is_first`: the surface
-// is what the camera sees: its light of surfaces that shine is told apart, and rays of its gloss see them. `standoff` and `under`:
-// scene_arrival.
+// is what the camera sees: light without hard shadows is told apart, and rays of its gloss see what shines. `footprint`: width of
+// the pixel there, m. `standoff` and `under`: scene_arrival.
 fn scene_direct(
-    surface: Surface, view: vec3f, draws: u32, numbers: vec4f, standoff: f32, under: vec2f, is_first: bool,
+    surface: Surface, view: vec3f, draws: u32, numbers: vec4f, standoff: f32, under: vec2f, is_first: bool, footprint: f32,
 ) -> SceneDirect {
-    var result = SceneDirect(vec3f(0.0), vec3f(0.0), false);
+    var result = SceneDirect(vec3f(0.0), vec3f(0.0), 0.0, 0.0, false);
     var count = render_frame.light_count;
     var place = RenderLight();
     if SCENE_SHINES && render_frame.emitters > 0u {
@@ -250,14 +260,29 @@ fn scene_direct(
         var arrival = scene_arrival(lamp, surface, select(standoff, 0.0, is_area), under);
         // The ray ends before the surface that shines.
         arrival.distance -= select(0.0, 4.0 * render_frame.nearest, is_area);
-        let apart = SCENE_SHINES && is_first && is_area;
-        var lit = vec3f(0.0);
-        if apart {
-            lit = scene_glow(surface, view, arrival, out);
-        } else {
-            lit = scene_lamp(surface, view, arrival, out, glossy && lamp.kind == SCENE_LIGHT_BODY);
+        var soft = 0.0;
+        if is_first {
+            soft = select(scene_softness(arrival.distance, arrival.spread, footprint), 1.0, is_area);
         }
-        let fraction = light_weight(lit);
+        // The part that is told apart, with the facet's normal in place of the relief's.
+        var glow = vec3f(0.0);
+        var relief = vec3f(0.0);
+        var bare = surface;
+        if soft > 0.0 {
+            relief = scene_glow(surface, view, arrival, out) * soft;
+            glow = relief;
+            if !is_area {
+                var level = surface;
+                level.normal = surface.facet;
+                glow = scene_glow(level, view, arrival, out) * soft;
+            }
+            bare.diffuse *= 1.0 - soft;
+        }
+        var lit = vec3f(0.0);
+        if !(is_first && is_area) {
+            lit = scene_lamp(bare, view, arrival, out, glossy && lamp.kind == SCENE_LIGHT_BODY);
+        }
+        let fraction = light_weight(lit) + light_weight(glow);
         if k < count {
             total += fraction;
             continue;
@@ -279,21 +304,23 @@ fn scene_direct(
         } else if fraction <= total * SCENE_MIN_LAMP {
             continue;
         }
-        // Each lamp has places of its own.
-        let place_numbers = fract(numbers.xy + f32(index) * vec2f(0.7548777, 0.5698403));
+        // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
+        let digits = fract(numbers.w * vec2f(61.0, 3571.0));
+        let place_numbers = fract(digits + f32(index) * vec2f(0.7548777, 0.5698403));
         // One ray to a lamp that gives little: its noise is little, too.
-        let is_large = !few && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
+        let is_large = !few && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
         let shadow = scene_shadow(arrival, place_numbers, select(1u, SCENE_LAMP_RAYS, is_large));
         var fraction_of_pane = 1.0;
         if SCENE_PANE {
             fraction_of_pane = pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
         }
-        let light = lit * shadow.xyz * (fraction_of_pane * weight);
+        let passes = shadow.xyz * (fraction_of_pane * weight);
         result.is_soft = result.is_soft || shadow.w > 0.0;
-        if apart {
-            result.glow += light;
-        } else {
-            result.lit += light;
+        result.lit += lit * passes;
+        result.glow += glow * passes;
+        if !is_area {
+            result.flat_light += light_weight(glow);
+            result.relief_light += light_weight(relief);
         }
     }
     return result;

@@ -24,7 +24,7 @@ use downpour_trace::path::path_lattice_numbers;
 use downpour_trace::scatter::{
     scatter_above, scatter_alpha, scatter_chance, scatter_gloss, scatter_hemisphere, scatter_tangent,
 };
-use downpour_trace::scene::{SceneView, scene_alpha, scene_disk};
+use downpour_trace::scene::{SceneView, scene_alpha, scene_disk, scene_softness};
 use downpour_trace::sky::sky_coordinates;
 use downpour_trace::sky_light::SkyLight;
 use downpour_trace::skylight::{skylight_film, skylight_hat, skylight_lobe};
@@ -149,6 +149,13 @@ pub(super) fn functions() -> Vec<FunctionCase> {
         FunctionCase::new("scene_alpha", &SCENE, &[fraction, fraction, Uniform(-0.2, 1.0)], FORMULA, |a| {
             scene_alpha(a.f32(), a.f32(), a.f32()).words()
         }),
+        FunctionCase::new(
+            "scene_softness",
+            &SCENE,
+            &[Uniform(0.0, 30.0), Uniform(0.0, 0.1), Uniform(0.001, 0.1)],
+            Tol::absolute(1.0e-5, "products and a quotient (2.5 ulp) of numbers up to 10"),
+            |a| scene_softness(a.f32(), a.f32(), a.f32()).words(),
+        ),
         FunctionCase::new(
             "scene_disk",
             &SCENE,

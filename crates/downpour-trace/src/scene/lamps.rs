@@ -12,7 +12,7 @@ use downpour_shaders::render::puddle_water::{PUDDLE_WATER_INDEX, PUDDLE_WATER_OU
 use downpour_shaders::render::scene::{
     SCENE_BLENDED, SCENE_FAR, SCENE_LAMP_BITS, SCENE_LAMP_GLASS, SCENE_LAMP_RAYS, SCENE_LARGE_LAMP,
     SCENE_LAYERS, SCENE_LIGHT_AREA, SCENE_LIGHT_BODY, SCENE_MIN_COSINE, SCENE_MIN_LAMP, SCENE_MIN_ROUGHNESS,
-    SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_BODY,
+    SCENE_PICTURE, SCENE_SAME_SHADOW, SCENE_SEEN_BODY, SCENE_SHADOW_M, SCENE_SHADOW_PART, SCENE_SHARP_PIXELS,
 };
 use glam::{Vec2, Vec3};
 
@@ -52,8 +52,19 @@ pub(crate) struct SceneAsked {
     /// Standoff and depth of water: see [`SceneView::scene_arrival`].
     pub(crate) standoff: f32,
     pub(crate) under: Vec2,
-    /// True for the surface that the camera sees: its light of surfaces that shine is told apart, and rays of its gloss see them.
-    pub(crate) is_first: bool,
+    /// Width of the pixel, m, on the surface that the camera sees: light without hard shadows is told apart, and rays of its gloss
+    /// see what shines. `None` for other surfaces.
+    pub(crate) footprint: Option<f32>,
+}
+
+/// What one lamp gives if nothing hides it.
+struct SceneShare {
+    arrival: SceneArrival,
+    lit: Vec3,
+    glow: Vec3,
+    relief: Vec3,
+    soft: f32,
+    is_area: bool,
 }
 
 /// Light of lamps, and of surfaces that shine, at a surface.
@@ -61,9 +72,12 @@ pub(crate) struct SceneAsked {
 pub(crate) struct SceneDirect {
     /// Toward the viewer.
     pub(crate) lit: Vec3,
-    /// Of surfaces that shine, on the diffuse base, over pi, if it is asked for apart.
+    /// On the diffuse base, over pi: of surfaces that shine, and of lamps with soft shadows. Means over neighbors are taken of it.
     pub(crate) glow: Vec3,
-    /// True if a lamp is hidden in part.
+    /// What lamps of the latter give if nothing hides them: to the facet, and to the surface with its relief.
+    pub(crate) flat_light: f32,
+    pub(crate) relief_light: f32,
+    /// True if another lamp is hidden in part.
     pub(crate) is_soft: bool,
 }
 
@@ -223,7 +237,8 @@ impl SceneView<'_> {
 
     /// Light of lamps, sun, and surfaces that shine on a surface, toward the viewer.
     pub(crate) fn scene_direct(&self, surface: &Surface, view: Vec3, asked: &SceneAsked) -> SceneDirect {
-        let &SceneAsked { draws, numbers, standoff, under, is_first } = asked;
+        let &SceneAsked { draws, numbers, standoff, under, footprint } = asked;
+        let is_first = footprint.is_some();
         let lights = self.frame.light_count;
         let mut count = lights;
         let mut place = Light::default();
@@ -234,7 +249,13 @@ impl SceneView<'_> {
         }
         let few = draws > 0 && draws < count;
         let glossy = is_first && self.frame.sky_rays > 0 && surface.roughness < SCENE_SEEN_BODY;
-        let mut result = SceneDirect { lit: Vec3::ZERO, glow: Vec3::ZERO, is_soft: false };
+        let mut result = SceneDirect {
+            lit: Vec3::ZERO,
+            glow: Vec3::ZERO,
+            flat_light: 0.0,
+            relief_light: 0.0,
+            is_soft: false,
+        };
         let mut out = Vec3::ONE;
         if surface.film > 0.0 {
             out = self.data.wet_out(surface, surface.normal.dot(view).max(BRDF_GRAZING));
@@ -246,24 +267,41 @@ impl SceneView<'_> {
             let mut arrival = self.scene_arrival(&lamp, surface, if is_area { 0.0 } else { standoff }, under);
             // The ray ends before the surface that shines.
             arrival.distance -= if is_area { 4.0 * self.frame.nearest } else { 0.0 };
-            let apart = is_first && is_area;
-            let lit = if apart {
-                self.scene_glow(surface, view, &arrival, out)
-            } else {
-                self.scene_lamp(surface, view, &arrival, out, glossy && lamp.kind == SCENE_LIGHT_BODY)
+            let soft = match footprint {
+                Some(_) if is_area => 1.0,
+                Some(footprint) => scene_softness(arrival.distance, arrival.spread, footprint),
+                None => 0.0,
             };
-            (arrival, lit, apart)
+            // The part that is told apart, with the facet's normal in place of the relief's.
+            let (mut glow, mut relief) = (Vec3::ZERO, Vec3::ZERO);
+            let mut bare = *surface;
+            if soft > 0.0 {
+                relief = self.scene_glow(surface, view, &arrival, out) * soft;
+                glow = relief;
+                if !is_area {
+                    let level = Surface { normal: surface.facet, ..*surface };
+                    glow = self.scene_glow(&level, view, &arrival, out) * soft;
+                }
+                bare.diffuse *= 1.0 - soft;
+            }
+            let mut lit = Vec3::ZERO;
+            if !(is_first && is_area) {
+                let seen = glossy && lamp.kind == SCENE_LIGHT_BODY;
+                lit = self.scene_lamp(&bare, view, &arrival, out, seen);
+            }
+            SceneShare { arrival, lit, glow, relief, soft, is_area }
         };
         let mut total = 0.0;
         for index in 0..count {
-            total += light_weight(of(index).1);
+            let share = of(index);
+            total += light_weight(share.lit) + light_weight(share.glow);
         }
         // Positions at equal steps along what all give together: the lamps that they fall on are drawn.
         let step = total / draws.max(1) as f32;
         let (mut run, mut next) = (0.0, numbers[3] * step);
         for index in 0..count {
-            let (arrival, lit, apart) = of(index);
-            let fraction = light_weight(lit);
+            let SceneShare { arrival, lit, glow, relief, soft, is_area } = of(index);
+            let fraction = light_weight(lit) + light_weight(glow);
             run += fraction;
             let mut weight = 1.0;
             if few {
@@ -276,25 +314,35 @@ impl SceneView<'_> {
             } else if fraction <= total * SCENE_MIN_LAMP {
                 continue;
             }
-            // Each lamp has places of its own.
-            let place_numbers = [(numbers[0], 0.754_877_7), (numbers[1], 0.569_840_3)]
-                .map(|(number, turn)| (number + index as f32 * turn).fract());
+            // Each lamp has places of its own; they come from other digits of the number that draws a lamp.
+            let place_numbers = [(61.0, 0.754_877_7), (3571.0, 0.569_840_3)]
+                .map(|(digits, turn)| ((numbers[3] * digits).fract() + index as f32 * turn).fract());
             // One ray to a lamp that gives little: its noise is little, too.
-            let is_large = !few && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
+            let is_large = !few && soft < 1.0 && arrival.spread > 0.0 && fraction > total * SCENE_LARGE_LAMP;
             let rays = if is_large { SCENE_LAMP_RAYS } else { 1 };
             let (visible, is_soft) = self.scene_shadow(&arrival, place_numbers, rays);
             let pane =
                 self.pane_shadow_fraction(arrival.start, arrival.along, arrival.distance, arrival.spread);
-            let light = lit * visible * (pane * weight);
+            let passes = visible * (pane * weight);
             result.is_soft |= is_soft;
-            if apart {
-                result.glow += light;
-            } else {
-                result.lit += light;
+            result.lit += lit * passes;
+            result.glow += glow * passes;
+            if !is_area {
+                result.flat_light += light_weight(glow);
+                result.relief_light += light_weight(relief);
             }
         }
         result
     }
+}
+
+/// Part of the light of a lamp at a distance, m, with a disk of a half angle, whose shadows are wide on the picture, 0 to 1: as if what
+/// throws them stood a part of the way to it.
+#[must_use]
+pub fn scene_softness(distance: f32, spread: f32, footprint: f32) -> f32 {
+    let away = (distance * SCENE_SHADOW_PART).min(SCENE_SHADOW_M);
+    let width = 2.0 * spread * away / footprint.max(1.0e-9);
+    ((width - SCENE_SHARP_PIXELS) / SCENE_SHARP_PIXELS).clamp(0.0, 1.0)
 }
 
 /// Alpha of the lobe in which a surface shows a disk of a half angle: that of a mirror is as bright as the disk. Seen at a
