@@ -50,7 +50,7 @@ pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
 pub use lamps::Lamp;
 pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
-pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleShape};
+pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};
 pub use rain::{
     RAIN_BOX_M, Rain, RainBounce, RainCylinder, RainDrag, RainDropLight, RainDropShape, RainExtinction,
     RainRefraction, RainVolume,
