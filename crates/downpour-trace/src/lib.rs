@@ -7,6 +7,7 @@
 //! - [`emitter`]: surfaces that shine, as lights;
 //! - [`wet`]: surfaces that rain has made wet; [`puddle`], [`wet_ground`]: water that stands on the ground; [`pane_shadow`]: the light through a wet pane;
 //! - [`stage`]: the scene and the eye of a weather at a time;
+//! - [`truth`]: what the pixels of a picture show, in numbers;
 //! - [`picture`]: the plate of a scene, and the rain of [`downpour_render`] before it.
 
 #![cfg_attr(
@@ -72,6 +73,7 @@ mod trace;
 #[cfg(feature = "parity")]
 #[doc(hidden)]
 pub mod trace;
+pub mod truth;
 #[cfg(not(feature = "parity"))]
 mod wet;
 #[cfg(feature = "parity")]

@@ -58,7 +58,9 @@ fn rain_fills_by_default() {
         fill
     };
     assert_eq!(with(""), PuddleFill::Rain { seepage: 0.0 });
-    let PuddleFill::Rain { seepage } = with("fill = \"rain\"\nseepage_mm_h = 3.6") else { panic!("not by rain") };
+    let PuddleFill::Rain { seepage } = with("fill = \"rain\"\nseepage_mm_h = 3.6") else {
+        panic!("not by rain")
+    };
     assert!((seepage - 1.0e-6).abs() < 1.0e-15);
     assert_eq!((with("fill = 0"), with("fill = 1")), (PuddleFill::Part(0.0), PuddleFill::Part(1.0)));
 }
