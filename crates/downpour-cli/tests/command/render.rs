@@ -126,16 +126,19 @@ fn the_truth_about_a_pixel_is_that_of_its_drop() {
         assert!((distance - away).abs() < 0.02 * away + 0.08, "{distance} of {away} m");
         assert!(alpha[k] < 1.05 - through[k], "{k}: {} of {}", alpha[k], through[k]);
     }
-    // Where drops take much of the light, a drop is told that takes a good part of it.
-    let open = through.iter().fold(0.0f32, |most, &t| most.max(t));
-    let dark: Vec<usize> = (0..alpha.len()).filter(|&k| through[k] < 0.9 * open).collect();
-    let told = dark.iter().filter(|&&k| alpha[k] > 0.3 * (1.0 - through[k] / open)).count();
-    assert!(dark.len() > 10 && told * 10 > dark.len() * 9, "{told} of {}", dark.len());
     let [wetness, water, depth] = ["wetness.Y", "water.depth_mm", "depth.Z"].map(|name| &layers[name]);
+    // Of neighbors before the same ground, the one whose drop takes more light lets less through.
+    let is_alike = |k: &usize| (depth[*k] / depth[k + 1] - 1.0).abs() < 0.02;
+    let is_apart = |k: &usize| (alpha[*k] - alpha[k + 1]).abs() > 0.006;
+    let pairs: Vec<usize> = (0..alpha.len() - 1).filter(is_alike).filter(is_apart).collect();
+    let agrees = |&&k: &&usize| (alpha[k] > alpha[k + 1]) == (through[k] < through[k + 1]);
+    let agreeing = pairs.iter().filter(agrees).count();
+    assert!(pairs.len() > 100 && agreeing * 10 > pairs.len() * 9, "{agreeing} of {}", pairs.len());
     for k in 0..wetness.len() {
         assert!((0.0..=1.0).contains(&wetness[k]) && (depth[k] < 1.0e30 || wetness[k] + water[k] == 0.0));
     }
-    assert!(wetness.iter().any(|&w| (w - 0.75).abs() < 1.0e-3), "{wetness:?}");
+    // Smooth floor stores a quarter of what porous ground does: it is wetter than that.
+    assert!(wetness.iter().any(|&w| w > 0.9));
     assert!(water.iter().any(|&w| (w - 20.0).abs() < 0.1));
     assert!(layers["motion.X"].iter().chain(&layers["motion.Y"]).all(|&pace| pace == 0.0));
 }
