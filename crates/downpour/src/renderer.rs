@@ -3,6 +3,7 @@
 mod computer;
 mod drops;
 mod error;
+mod flash;
 mod frame;
 #[cfg(feature = "wgpu")]
 mod on_gpu;
@@ -95,6 +96,21 @@ struct Water {
     pane: Option<WetPane>,
     ground: Option<WetGround>,
     time_s: f64,
+}
+
+impl Water {
+    /// Puts the water on the ground of a stage, and what the pane does to light that falls through it.
+    fn lay(&self, stage: &mut Stage) -> Result<(), RendererError> {
+        if let Some(ground) = &self.ground {
+            ground.lay(stage);
+        }
+        if let Some(pane) = &self.pane
+            && is_lit_through(pane, stage)
+        {
+            set_pane(pane, stage)?;
+        }
+        Ok(())
+    }
 }
 
 impl Renderer {
@@ -265,10 +281,12 @@ impl Renderer {
             (None, Some(picture)) => *self.exposure.insert(stage.exposure(&picture.clean)),
             (exposure, _) => exposure.unwrap_or(1.0),
         };
+        let flashes = self.flashes(time_s, &drops, told)?;
         let triangles = stage.triangles;
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         Ok(PendingFrame {
             picture,
+            flashes,
             begin,
             begin_ms,
             time_s,
@@ -338,14 +356,11 @@ impl Renderer {
         let water = self.water_at(time_s)?;
         if let Some(ground) = &mut water.ground {
             ground.advance(time_s)?;
-            ground.lay(&mut stage);
         }
         if let Some(pane) = &mut water.pane {
             rain_on(pane, time_s, told)?;
-            if is_lit_through(pane, &stage) {
-                set_pane(pane, &mut stage)?;
-            }
         }
+        water.lay(&mut stage)?;
         Ok(stage)
     }
 
