@@ -36,7 +36,7 @@ impl Golden {
 }
 
 /// All of them.
-const GOLDENS: [Golden; 14] = [
+const GOLDENS: [Golden; 15] = [
     Golden::picture("day"),
     Golden {
         name: "day_layers",
@@ -55,6 +55,7 @@ const GOLDENS: [Golden; 14] = [
         ..Golden::picture("night")
     },
     Golden::picture("focus"),
+    Golden::picture("lightning"),
     Golden::picture("puddles"),
     Golden::picture("windshield"),
     Golden::picture("window"),

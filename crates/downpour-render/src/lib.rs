@@ -4,7 +4,7 @@
 //! - [`plate`]: what rain asks of a picture, wherever it comes from; [`camera`], [`light`];
 //! - [`rain`]: drops, streaks, unresolved drops and the light of lamps on them; [`picture`] puts the layers together;
 //! - [`glass`]: rain on a pane before the camera, and the picture through it;
-//! - [`tone`] and [`mod@file`]: from radiance to a file;
+//! - [`tone`] and [`mod@file`]: from radiance to a file; [`flashing`]: flashes of a clip, counted on its pixels;
 //! - [`wind_picture`]: a wind as colors and streaks.
 
 #![cfg_attr(
@@ -15,6 +15,7 @@
 pub mod camera;
 mod error;
 pub mod file;
+pub mod flashing;
 pub mod glass;
 #[cfg(feature = "wgpu")]
 pub mod gpu;

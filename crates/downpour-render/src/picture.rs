@@ -112,6 +112,23 @@ impl Picture {
         }
     }
 
+    /// Adds a picture of the same scene in other light, which has drops of its own: radiance adds up, and what is transmitted stays
+    /// that of this picture.
+    pub fn add_light(&mut self, other: &Self) {
+        let pixels = self.clean.iter_mut().zip(&mut self.rain).zip(other.clean.iter().zip(&other.rain));
+        for ((clean, rain), (light, drops)) in pixels {
+            for k in 0..3 {
+                rain[k] += drops[k] + light[k] * (drops[3] - rain[3]);
+                clean[k] += light[k];
+            }
+        }
+        if let (Some(seen), Some(light)) = (&mut self.through_glass, &other.through_glass) {
+            for (seen, light) in seen.iter_mut().zip(light) {
+                *seen = std::array::from_fn(|k| seen[k] + light[k]);
+            }
+        }
+    }
+
     /// The scene through the rain with its distances: what stands behind a pane of glass.
     #[must_use]
     pub fn behind_glass(&self) -> Vec<[f32; 4]> {

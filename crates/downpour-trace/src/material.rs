@@ -1,6 +1,6 @@
 //! Materials and textures as rows of the scene's table. Twin of `shaders/wgsl/render/material.wgsl`.
 
-use downpour_shaders::render::scene::{SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_SLOT_ROWS};
+use downpour_shaders::render::scene::{SCENE_MATERIAL_ROWS, SCENE_NONE, SCENE_SLOT_ROWS, SCENE_UNLIT};
 use glam::{Vec3, Vec4};
 
 use crate::data::SceneData;
@@ -177,6 +177,17 @@ impl SceneData {
             porosity: f32::from_bits(porosity),
             maps: rows[4],
             more: [rows[5][0], rows[5][1]],
+        }
+    }
+
+    /// Sets the emission of all materials to 0, and unlit ones, which show their base color by no light, to black.
+    pub(crate) fn remove_emission(&mut self) {
+        let (materials, _) = self.table[..self.slots as usize].as_chunks_mut::<MATERIAL_ROWS>();
+        for [base, glow, _, state, ..] in materials {
+            glow[..3].fill(0);
+            if state[0] & SCENE_UNLIT != 0 {
+                base[..3].fill(0);
+            }
         }
     }
 

@@ -8,6 +8,7 @@
 
 mod error;
 mod eye;
+mod flash;
 mod framing;
 mod sky;
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::fault::Positions;
 use super::glass::GlassTable;
 use super::lamps::{Lamp, LampTable};
+use super::lightning::{FlashTable, Lightning, LightningTable, MAX_FLASHES};
 use super::models::{Model, ModelTable};
 use super::puddle::{self, Puddle, PuddleTable};
 use super::quantity::{Exactly, Whole};
@@ -29,6 +30,8 @@ struct Tables {
     camera: CameraTable,
     model: Vec<ModelTable>,
     light: Vec<LampTable>,
+    flash: Vec<FlashTable>,
+    lightning: LightningTable,
     wind: Vec<WindTable>,
     gusts: Option<GustsTable>,
     turbulence: Option<TurbulenceTable>,
@@ -53,6 +56,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     for (key, count, most) in [
         ("model", tables.model.len(), MAX_MODELS),
         ("light", tables.light.len(), MAX_LIGHTS),
+        ("flash", tables.flash.len(), MAX_FLASHES),
         ("puddle", tables.puddle.len(), MAX_PUDDLES),
         ("wind", tables.wind.len(), downpour_wind::WIND_PARTS),
     ] {
@@ -70,6 +74,7 @@ pub(super) fn parse(text: &str) -> Result<Weather, SceneError> {
     Ok(Weather {
         name: String::new(),
         wetness: Wetness::checked(&tables.wetness, &rain, &positions)?,
+        lightning: Lightning::checked(&tables.lightning, &tables.flash, rain.seed, &positions)?,
         glass: tables.glass.map(|glass| glass.checked(&rain, &positions)).transpose()?,
         rain,
         drop_model,

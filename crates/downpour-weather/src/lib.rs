@@ -27,6 +27,7 @@ mod fault;
 mod file;
 mod glass;
 mod lamps;
+mod lightning;
 mod load;
 mod models;
 mod puddle;
@@ -48,6 +49,10 @@ pub use camera::{Camera, CameraPath, CameraPose, FAR_M, FOV_RAD, NEAR_M, Observe
 pub use downpour_scene::uri::RelativePath;
 pub use glass::{Pane, PaneFocus, PaneFresnel, PaneShadow};
 pub use lamps::Lamp;
+pub use lightning::{
+    Flash, FlashExposure, FlashLight, Lightning, MAX_FLASHES, MAX_STROKES, MAX_STROKES_PER_SECOND, Storm,
+    Stroke, StrokePulse,
+};
 pub use load::{Loaded, Roots, load};
 pub use models::{Model, Repeat};
 pub use puddle::{MAX_ALL_PUDDLE_CELLS, MAX_PUDDLE_CELLS, Puddle, PuddleFill, PuddleShape};
@@ -117,6 +122,8 @@ pub struct Weather {
     pub models: Vec<Model>,
     /// Lamps, in the order of the file.
     pub lights: Vec<Lamp>,
+    /// Lightning.
+    pub lightning: Lightning,
     /// Wind: parts, gusts, turbulence.
     pub wind: Wind,
     /// Box of cells in which a non-uniform wind is computed.
@@ -144,6 +151,7 @@ impl Default for Weather {
             camera: Camera::default(),
             models: Vec::new(),
             lights: Vec::new(),
+            lightning: Lightning::default(),
             wind: Wind::default(),
             wind_box: WindBox::default(),
             streaks: Streaks::default(),

@@ -105,6 +105,12 @@ ranges! {
     StorageMm: 0.01, 10.0, "0.01 to 10 mm";
     DryingS: 1.0, 1e7, "1 to 1e7 s";
     PeriodS: 0.1, 1e6, "0.1 to 1e6 s";
+    RiseMs: 0.0, 100.0, "0 to 100 ms";
+    FlashMs: 0.1, 1000.0, "0.1 to 1000 ms";
+    StrokeKey: 0.0, 10_000.0, "0 to 10000 ms, and a factor of 0 to 1";
+    FlashesPerMinute: 0.0, 600.0, "0 to 600 flashes per minute";
+    FlashM: 100.0, 1e5, "100 to 1e5 m";
+    Clouds: 0.0, 10.0, "0 to 10";
 }
 
 /// A number within a range.

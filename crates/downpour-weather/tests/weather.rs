@@ -109,6 +109,28 @@ range_m = 9.5
 [[light]]
 directional = { direction = [0, 0, 8], color = [0, 0, 1], illuminance_lux = 2 }
 
+[[flash]]
+time_s = 2.5
+azimuth_deg = 0
+elevation_deg = 90
+illuminance_lux = 1000
+color = [0.5, 0.5, 1]
+rise_ms = 1
+decay_ms = 25
+strokes = [[0, 0.5], [40, 0.25]]
+clouds = 2
+
+[lightning]
+enabled = true
+limit = false
+per_minute = 12
+seed = 18446744073709551615
+distance_m = [200, 300]
+azimuth_deg = [-180, 0]
+brightness = 3
+clouds = 1
+color = [1, 1, 0]
+
 [output]
 size = [1, 16384]
 "#;
@@ -212,6 +234,22 @@ fn an_empty_file_is_the_default() {
         let key = line.split('=').next().unwrap().trim();
         assert!(table.contains(&format!("`{key}`")), "{key} is not in the table");
     }
+}
+
+#[test]
+fn every_key_of_lightning_arrives_in_si() {
+    let lightning = parse(ALL).unwrap().lightning;
+    assert!(!lightning.is_limited());
+    let flash = &lightning.flashes()[0];
+    assert_eq!((flash.time_s, flash.rise_s, flash.clouds, flash.color), (2.5, 0.001, 2.0, [0.5, 0.5, 1.0]));
+    assert_eq!(flash.towards[1], 1.0);
+    let strokes: Vec<_> = flash.strokes.iter().map(|s| (s.after_s, s.illuminance_lux, s.decay_s)).collect();
+    assert_eq!(strokes, [(0.0, 500.0, 0.025), (0.04, 250.0, 0.025)]);
+    let storm = lightning.storm().unwrap();
+    assert_eq!((storm.per_minute, storm.seed, storm.distance_m), (12.0, u64::MAX, [200.0, 300.0]));
+    assert_eq!((storm.azimuth, storm.brightness), ([-std::f64::consts::PI, 0.0], 3.0));
+    assert_eq!((storm.clouds, storm.color), (1.0, [1.0, 1.0, 0.0]));
+    assert!(parse("").unwrap().lightning.is_limited());
 }
 
 #[test]
@@ -423,7 +461,7 @@ fn t11_keys_are_known_and_stand_once() {
     says(
         "[rian]\nrate_mm_h = 5",
         "line 1, column 2: rian: unknown key \"rian\", perhaps rain; allowed: rain, sky, sun, camera, model, light, \
-         wind, gusts, turbulence, wind_field, streaks, glass, puddle, wetness, output",
+         flash, lightning, wind, gusts, turbulence, wind_field, streaks, glass, puddle, wetness, output",
     );
     refused("[camera]\nfov_rad = 1", 2, "unknown key \"fov_rad\", perhaps fov_deg;");
     refused("[camera]\nshutter_s = 1.5", 2, "0 to 1 s");

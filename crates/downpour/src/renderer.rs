@@ -3,6 +3,7 @@
 mod computer;
 mod drops;
 mod error;
+mod flash;
 mod frame;
 #[cfg(feature = "wgpu")]
 mod on_gpu;
@@ -109,6 +110,21 @@ struct Water {
     pane: Option<WetPane>,
     ground: Option<WetGround>,
     time_s: f64,
+}
+
+impl Water {
+    /// Puts the water on the ground of a stage, and what the pane does to light that falls through it.
+    fn lay(&self, stage: &mut Stage) -> Result<(), RendererError> {
+        if let Some(ground) = &self.ground {
+            ground.lay(stage);
+        }
+        if let Some(pane) = &self.pane
+            && is_lit_through(pane, stage)
+        {
+            set_pane(pane, stage)?;
+        }
+        Ok(())
+    }
 }
 
 impl Renderer {
@@ -279,6 +295,7 @@ impl Renderer {
             (None, Some(picture)) => *self.exposure.insert(stage.exposure(&picture.clean)),
             (exposure, _) => exposure.unwrap_or(1.0),
         };
+        let flashes = self.flashes(time_s, &drops, told)?;
         let triangles = stage.triangles;
         let truth = self.options.truth.then(|| {
             let options = self.picture_options(&stage, time_s, medium.clone());
@@ -287,6 +304,7 @@ impl Renderer {
         let begin_ms = begin.elapsed().as_secs_f64() * 1.0e3;
         Ok(PendingFrame {
             picture,
+            flashes,
             begin,
             begin_ms,
             time_s,
@@ -357,14 +375,11 @@ impl Renderer {
         let water = self.water_at(time_s)?;
         if let Some(ground) = &mut water.ground {
             ground.advance(time_s)?;
-            ground.lay(&mut stage);
         }
         if let Some(pane) = &mut water.pane {
             rain_on(pane, time_s, told)?;
-            if is_lit_through(pane, &stage) {
-                set_pane(pane, &mut stage)?;
-            }
         }
+        water.lay(&mut stage)?;
         Ok(stage)
     }
 

@@ -19,6 +19,9 @@ const NIGHT_EV: f32 = -2.1;
 /// The most hollows with a puddle.
 const PUDDLES: usize = 12;
 const STORM_SKY: &str = "\n[sky]\nzenith_color = [420, 470, 540]\n";
+/// Near and strong flashes: by day the light of a common stroke hardly shows. The first one, of three strokes, is at 0.53 s.
+const LIGHTNING: &str =
+    "\n[lightning]\nper_minute = 20\nseed = 14\ndistance_m = [500, 1500]\nbrightness = 20\n";
 /// A sun at 11 degrees, below the edge of the clouds, along the street; 127.5 klx exp(-0.21 / sin h), tinted.
 const LOW_SUN: &str = "\n[sky]\nzenith_color = [900, 1000, 1180]\n\n[sun]\nazimuth_deg = 62\nelevation_deg = 24\n\
                        illuminance_lux = 60000\ncolor = [1, 0.84, 0.62]\n";
@@ -101,12 +104,13 @@ pub(super) fn make(street: &Street) -> Vec<WeatherFile> {
         ),
         file(
             "storm.toml",
-            "The street in a storm: a dark sky, a cloudburst that a wind drives along it.",
+            "The street in a storm: a dark sky, a cloudburst that a wind drives along it, lightning.",
             model(false, ""),
             &[
                 &rain(150),
                 STORM_SKY,
                 "\n[[wind]]\nuniform = { speed_m_s = 9, towards_deg = 80 }\n",
+                LIGHTNING,
                 &along(-0.9),
                 SIZE,
             ],

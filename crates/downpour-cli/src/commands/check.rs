@@ -100,6 +100,9 @@ fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
         Observer::Camera => "camera".to_owned(),
         Observer::Eye => "eye".to_owned(),
     };
+    let lightning = &input.weather.lightning;
+    let strokes = lightning.flashes().iter().map(|flash| flash.strokes.len()).sum();
+    let per_minute = lightning.storm().map_or(0.0, |storm| storm.per_minute);
     vec![
         count("triangles", "triangles", stage.triangles),
         count("instances", "instances of meshes", stage.instances),
@@ -112,6 +115,9 @@ fn scene(input: &Input, stage: &Stage) -> Vec<Entry> {
             "MiB",
         ),
         count("lights", "lamps", stage.lamps),
+        count("flash_strokes", "strokes of lightning by hand", strokes),
+        count("flash_strokes_left_out", "those that the limit of flashing leaves out", lightning.left_out()),
+        Entry::new("flashes_per_minute", "flashes from a seed", Computed(per_minute, 4), "1/min"),
         count("animations", "movements", scene.animations.len()),
         Entry::new("animations_playing", "those that play", Datum::words(&playing), ""),
         count("cameras", "cameras of the scene", scene.cameras.len()),

@@ -44,6 +44,8 @@ pub struct Frame {
 #[derive(Debug)]
 pub struct PendingFrame {
     pub(super) picture: Painted,
+    /// The same in the light of lightning alone.
+    pub(super) flashes: Vec<Painted>,
     pub(super) begin: Instant,
     pub(super) begin_ms: f64,
     pub(super) time_s: f64,
@@ -61,9 +63,14 @@ impl PendingFrame {
     /// # Errors
     /// [`RendererError`]: what the GPU says.
     pub fn finish(self) -> Result<Frame, RendererError> {
-        let (picture, found) = self.picture.finish()?;
+        let (mut picture, found) = self.picture.finish()?;
         let drops = self.drops.with(found);
         let truth = self.truth.map(|of| of.find(&picture, &drops)).transpose()?;
+        for flash in self.flashes {
+            let (flash, _) = flash.finish()?;
+            picture.add_light(&flash);
+            picture.passes.push(("flash", flash.passes.iter().map(|(_, ms)| ms).sum()));
+        }
         Ok(Frame {
             time_s: self.time_s,
             picture,

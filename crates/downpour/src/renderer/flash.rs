@@ -1,0 +1,87 @@
+//! Lightning in a frame: a picture of its own for each part of the exposure in which flashes shine.
+//!
+//! Light adds up, also over time: what the shutter sees is the picture without flashes, and that of the flashes alone with the
+//! shutter open for as long as they shine. The exposure of pictures is that without flashes.
+
+use downpour_render::rain::{Exposure, TemporalResponse};
+use downpour_sim::field::{EyeDrop, FallingDrop, VisibleDrops};
+use downpour_trace::stage::Stage;
+use downpour_weather::{FlashExposure, Observer};
+
+use super::computer::Painted;
+use super::drops::Drops;
+use super::{Progress, Renderer, RendererError};
+
+impl Renderer {
+    /// The frame of a time in the light of its flashes alone, in parts; none without lightning. `drops` are those of the frame.
+    pub(super) fn flashes(
+        &mut self,
+        time_s: f64,
+        drops: &Drops,
+        told: &mut dyn FnMut(Progress),
+    ) -> Result<Vec<Painted>, RendererError> {
+        let half_s = 0.5 * self.weather.camera.shutter;
+        let fades = self.weather.camera.observer == Observer::Eye;
+        let parts = self.weather.lightning.exposure(time_s - half_s, time_s + half_s, fades);
+        if parts.is_empty() {
+            return Ok(Vec::new());
+        }
+        told(Progress { what: "lightning", parts: [0; 2] });
+        let stage = self.stage(time_s)?;
+        parts.iter().map(|part| self.flash(&stage, time_s, drops, part)).collect()
+    }
+
+    /// A part of the exposure in which flashes shine.
+    fn flash(
+        &self,
+        stage: &Stage,
+        time_s: f64,
+        drops: &Drops,
+        part: &FlashExposure,
+    ) -> Result<Painted, RendererError> {
+        let mut stage = stage.in_flash(&self.weather, time_s, &part.lights);
+        if let Some(water) = &self.water {
+            water.lay(&mut stage)?;
+        }
+        let [begin_s, end_s] = part.lit_s;
+        let later_s = 0.5 * (begin_s + end_s) - time_s;
+        stage.shutter_s = end_s - begin_s;
+        let drops = match drops {
+            Drops::Listed(drops) => Drops::Listed(later(drops, &stage, later_s)),
+            Drops::OfDevice(shown) => {
+                // The picture has the eye of the frame, and drops relative to it.
+                let mut moved = stage.clone();
+                moved.viewpoint.eye += moved.motion.velocity * later_s as f32;
+                let max_room = self.drawer.max_drops().unwrap_or(u32::MAX);
+                let view = self.shower.view_at(&moved, time_s + later_s, max_room)?;
+                Drops::OfDevice(view.map_or_else(|| shown.clone(), Box::new))
+            }
+        };
+        let medium = self.shower.medium(&stage, drops.resolved(), &self.masks, time_s + later_s)?;
+        let mut options = self.picture_options(&stage, time_s, medium);
+        options.rain.exposure = Exposure {
+            shutter_s: stage.shutter_s,
+            time_s: time_s + later_s,
+            response: TemporalResponse::Shutter,
+            ..options.rain.exposure
+        };
+        self.draw(&stage, &drops, &options, false)
+    }
+}
+
+/// Drops so many seconds later, as the eye of a stage sees them that moves with them meanwhile.
+fn later(drops: &VisibleDrops, stage: &Stage, later_s: f64) -> VisibleDrops {
+    let eye = stage.origin + stage.viewpoint.eye.as_dvec3();
+    let motion = stage.motion;
+    let moved = |drop: &FallingDrop| {
+        let before = EyeDrop::new(drop, eye);
+        let offset = before.eye_drop_position(motion.velocity, motion.turning, later_s as f32);
+        let after = EyeDrop {
+            offset: offset.into(),
+            present: before.present.map(|time| time - later_s as f32),
+            ..before
+        };
+        after.to_falling(eye, drop.kind)
+    };
+    VisibleDrops { drops: drops.drops.iter().map(moved).collect(), ..drops.clone() }
+}
