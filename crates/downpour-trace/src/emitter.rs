@@ -3,16 +3,14 @@
 //! A place on one of the triangles that shine is drawn for all of them. A tree of spheres around the triangles says what each
 //! half may give: its power over the square of the distance, times the cosine at the surface as far as it is known
 //! (A. Conty Estevez, C. Kulla, Proc. ACM Comput. Graph. Interact. Tech. 1(2), 2018). The place is uniform over the triangle; its
-//! light is what it emits there, over the density with which it was drawn. So the mean is the light of all that shine, each
+//! light is the triangle's mean emission over the density with which it was drawn. So the mean is the light of all that shine, each
 //! counted once, however many there are.
 //!
-//! Limits: within an eighth of a triangle's width its light does not grow; both sides shine, as both are seen; colors of a texture
-//! are means over an eighth of the triangle.
+//! Limits: within an eighth of a triangle's width its light does not grow; both sides shine, as both are seen; the pattern of a texture
+//! on one triangle is not thrown on what it lights.
 
 mod tree;
 
-use downpour_bvh::Hit;
-use downpour_math::ops;
 use downpour_render::light::Light;
 use downpour_shaders::render::scene::{
     EMITTER_DEPTH, EMITTER_GRAZING, EMITTER_NEAR, EMITTER_NEAREST, EMITTER_WORDS, SCENE_LIGHT_AREA,
@@ -33,8 +31,8 @@ pub struct EmitterNode {
     pub power: f32,
     /// First of the two children, or the triangle.
     pub next: u32,
-    /// True for a triangle.
-    pub is_leaf: bool,
+    /// Of a triangle: fractions of its emission that are red and green, 12 bits each, and bit 31. 0 for a pair of nodes.
+    pub color: u32,
     /// Area of the triangle times its mean opacity.
     pub area: f32,
 }
@@ -53,6 +51,14 @@ pub fn emitter_weight(offset: Vec3, square: f32, power: f32, normal: Vec3) -> f3
     power * cosine / from_center.max(square.max(EMITTER_NEAREST))
 }
 
+/// Fractions of the emission of a triangle that are red, green and blue.
+#[must_use]
+pub fn emitter_color(color: u32) -> Vec3 {
+    let red = (color & 4095) as f32 / 4095.0;
+    let green = (color >> 12 & 4095) as f32 / 4095.0;
+    Vec3::new(red, green, (1.0 - red - green).max(0.0))
+}
+
 impl SceneData {
     /// Reads a node.
     fn emitter_load(&self, index: u32) -> EmitterNode {
@@ -64,7 +70,7 @@ impl SceneData {
             square: number(3),
             power: number(4),
             next: words[5],
-            is_leaf: words[6] == 1,
+            color: words[6],
             area: number(7),
         }
     }
@@ -76,7 +82,7 @@ impl SceneData {
         let mut node = self.emitter_load(0);
         let (mut probability, mut rest) = (1.0, numbers[2]);
         for _ in 0..EMITTER_DEPTH {
-            if node.is_leaf {
+            if node.color != 0 {
                 break;
             }
             let [left, right] = [node.next, node.next + 1].map(|index| self.emitter_load(index));
@@ -97,31 +103,18 @@ impl SceneData {
                 node = right;
             }
         }
-        if !node.is_leaf {
+        if node.color == 0 {
             return light;
         }
         let triangle = &self.triangles[node.next as usize];
         let edge = numbers[0].sqrt();
-        let hit =
-            Hit { distance: 0.0, triangle: node.next, u: edge * (1.0 - numbers[1]), v: edge * numbers[1] };
-        let geometric = self.surface_edges(&hit);
-        light.position = Vec3::from(triangle.corner)
-            + Vec3::from(triangle.edge_1) * hit.u
-            + Vec3::from(triangle.edge_2) * hit.v;
+        let (u, v) = (edge * (1.0 - numbers[1]), edge * numbers[1]);
+        let (edge_1, edge_2) = (Vec3::from(triangle.edge_1), Vec3::from(triangle.edge_2));
+        let geometric = edge_1.cross(edge_2);
+        light.position = Vec3::from(triangle.corner) + edge_1 * u + edge_2 * v;
         light.axis = geometric / geometric.dot(geometric).sqrt().max(1.0e-20);
-        // The mean of an eighth of the triangle's edges.
-        let emission = self.surface_emission(&hit, self.emitter_spread(&hit));
-        light.color = emission * (node.area / (probability * std::f32::consts::PI));
+        light.color = emitter_color(node.color) * (node.power / (probability * std::f32::consts::PI));
         light.radius = (node.area * EMITTER_NEAR).sqrt();
         light
-    }
-
-    /// Logarithm to base 2 of an eighth of the width of a triangle in units of texture coordinates.
-    fn emitter_spread(&self, hit: &Hit) -> f32 {
-        let corners = self.corners_of(hit);
-        let uv = |k: usize| [corners[k].uv[0], corners[k].uv[1]];
-        let [a, b, c] = [uv(0), uv(1), uv(2)];
-        let (bx, by, cx, cy) = (b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]);
-        0.5 * ops::log2((bx * cy - by * cx).abs().max(1.0e-20)) - 3.0
     }
 }

@@ -170,7 +170,7 @@ pub static SURFACE: Module = Module {
 pub static EMITTER: Module = Module {
     path: "render/emitter.wgsl",
     wgsl: include_str!("../../wgsl/render/emitter.wgsl"),
-    uses: &[&DATA, &LIGHT, &MATERIAL, &SURFACE, &BVH],
+    uses: &[&DATA, &LIGHT, &BVH],
 };
 
 /// The light of lamps in a scene. Twin: `downpour_trace::scene`.

@@ -1,6 +1,6 @@
 // Surfaces that shine, as lights: a place on one of them is drawn for all, by what each may give.
 // A tree of spheres is in the words behind the texels, 8 for each node: center and square of the radius; power, first of two
-// children or triangle, 1 for a triangle, and its area times its opacity.
+// children or triangle, color and mark of a triangle, and its area times its opacity.
 // Twin: downpour_trace::emitter, where the method is described.
 
 // A node of the tree.
@@ -12,7 +12,8 @@ struct EmitterNode {
     power: f32,
     // First of the two children, or the triangle.
     next: u32,
-    is_leaf: bool,
+    // Of a triangle: fractions of its emission that are red and green, 12 bits each, and bit 31.
+    color: u32,
     // Area of the triangle times its mean opacity.
     area: f32,
 }
@@ -25,7 +26,7 @@ fn emitter_load(index: u32) -> EmitterNode {
     ));
     return EmitterNode(
         sphere.xyz, sphere.w, bitcast<f32>(render_texels[first + 4u]), render_texels[first + 5u],
-        render_texels[first + 6u] == 1u, bitcast<f32>(render_texels[first + 7u]),
+        render_texels[first + 6u], bitcast<f32>(render_texels[first + 7u]),
     );
 }
 
@@ -52,7 +53,7 @@ fn emitter_draw(position: vec3f, normal: vec3f, numbers: vec3f) -> RenderLight {
     var node = emitter_load(0u);
     var probability = 1.0;
     var rest = numbers.z;
-    for (var k = 0u; k < EMITTER_DEPTH && !node.is_leaf; k += 1u) {
+    for (var k = 0u; k < EMITTER_DEPTH && node.color == 0u; k += 1u) {
         let left = emitter_load(node.next);
         let right = emitter_load(node.next + 1u);
         let of_left = emitter_weight(left.center - position, left.square, left.power, normal);
@@ -72,27 +73,24 @@ fn emitter_draw(position: vec3f, normal: vec3f, numbers: vec3f) -> RenderLight {
             node = right;
         }
     }
-    if !node.is_leaf {
+    if node.color == 0u {
         return light;
     }
     let triangle = bvh_triangles[node.next];
     let edge = sqrt(numbers.x);
-    let hit = SurfaceHit(0.0, node.next, edge * (1.0 - numbers.y), edge * numbers.y);
-    let geometric = surface_edges(hit);
-    light.position = triangle.corner + triangle.edge_1 * hit.u + triangle.edge_2 * hit.v;
+    let u = edge * (1.0 - numbers.y);
+    let v = edge * numbers.y;
+    let geometric = cross(triangle.edge_1, triangle.edge_2);
+    light.position = triangle.corner + triangle.edge_1 * u + triangle.edge_2 * v;
     light.axis = geometric / max(sqrt(dot(geometric, geometric)), 1.0e-20);
-    // The mean of an eighth of the triangle's edges.
-    let emission = surface_emission(hit, emitter_spread(hit));
-    light.color = emission * (node.area / (probability * 3.1415927));
+    light.color = emitter_color(node.color) * (node.power / (probability * 3.1415927));
     light.radius = sqrt(node.area * EMITTER_NEAR);
     return light;
 }
 
-// Logarithm to base 2 of an eighth of the width of a triangle in units of texture coordinates.
-fn emitter_spread(hit: SurfaceHit) -> f32 {
-    let first = hit.triangle * 3u;
-    let a = render_corners[first].uv.xy;
-    let b = render_corners[first + 1u].uv.xy - a;
-    let c = render_corners[first + 2u].uv.xy - a;
-    return 0.5 * log2(max(abs(b.x * c.y - b.y * c.x), 1.0e-20)) - 3.0;
+// Fractions of the emission of a triangle that are red, green and blue.
+fn emitter_color(color: u32) -> vec3f {
+    let red = f32(color & 4095u) / 4095.0;
+    let green = f32(color >> 12u & 4095u) / 4095.0;
+    return vec3f(red, green, max(1.0 - red - green, 0.0));
 }

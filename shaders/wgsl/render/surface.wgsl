@@ -45,12 +45,6 @@ fn surface_alpha(material: RenderMaterial, hit: SurfaceHit) -> f32 {
         * surface_texture(material.maps.x, surface_uv(hit), -20.0).a * surface_color(hit).a;
 }
 
-// Emitted radiance at a hit; `spread`: texture_sample.
-fn surface_emission(hit: SurfaceHit, spread: f32) -> vec3f {
-    let material = material_load(render_corners[hit.triangle * 3u].material);
-    return material.emission * surface_texture(material.maps.w, surface_uv(hit), spread).rgb;
-}
-
 // True if there is a hole at a hit.
 fn surface_is_open(hit: SurfaceHit) -> bool {
     let material = material_load(render_corners[hit.triangle * 3u].material);

@@ -17,7 +17,7 @@ use downpour_trace::brdf::{
 };
 use downpour_trace::builder::{MeshPart, SceneBuilder};
 use downpour_trace::data::{RenderFrame, SceneData};
-use downpour_trace::emitter::emitter_weight;
+use downpour_trace::emitter::{emitter_color, emitter_weight};
 use downpour_trace::gpu::ScenePipeline;
 use downpour_trace::material::{MaterialLook, TextureUse};
 use downpour_trace::path::path_lattice_numbers;
@@ -146,6 +146,9 @@ pub(super) fn functions() -> Vec<FunctionCase> {
             Tol::relative(1.0e-4, 1.0e-4, "a height that cancels at the horizon").with_outliers(1.0e-3),
             |a| emitter_weight(vec3(a), a.f32(), a.f32(), vec3(a)).words(),
         ),
+        FunctionCase::new("emitter_color", &EMITTER, &[AnyWord], FORMULA, |a| {
+            emitter_color(a.u32()).to_array().words()
+        }),
         FunctionCase::new("scene_alpha", &SCENE, &[fraction, fraction, Uniform(-0.2, 1.0)], FORMULA, |a| {
             scene_alpha(a.f32(), a.f32(), a.f32()).words()
         }),

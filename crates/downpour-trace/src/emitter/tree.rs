@@ -1,9 +1,10 @@
 //! The tree over the triangles that shine.
 
 use downpour_bvh::Hit;
+use downpour_math::ops;
 use downpour_render::light::light_weight;
 use downpour_shaders::render::scene::{EMITTER_WORDS, SCENE_BLENDED, SCENE_MASKED};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::EmitterNode;
@@ -12,9 +13,6 @@ use crate::data::SceneData;
 /// Places of a triangle where its emission is looked up, barycentric.
 const PLACES: [[f32; 2]; 7] =
     [[0.333, 0.333], [0.1, 0.1], [0.8, 0.1], [0.1, 0.8], [0.45, 0.45], [0.1, 0.45], [0.45, 0.1]];
-
-/// Fraction of a material's emission that a triangle has at least for the tree: a lit spot may lie between the places.
-const LEAST_EMISSION: f32 = 0.01;
 
 /// Maximum number of triangles in the tree: of more, those that give most.
 const MAX_EMITTERS: usize = 1 << 18;
@@ -26,16 +24,25 @@ struct Emitter {
     low: Vec3,
     high: Vec3,
     power: f32,
+    color: u32,
     area: f32,
 }
 
 /// Mean emission over a triangle, and its area, m^2.
 pub(crate) fn mean_emission(data: &SceneData, triangle: u32) -> (Vec3, f32) {
     let hit = |[u, v]: [f32; 2]| Hit { distance: 0.0, triangle, u, v };
-    let spread = data.emitter_spread(&hit(PLACES[0])) + 1.5;
+    let spread = spread(data, triangle);
     let sum: Vec3 = PLACES.iter().map(|&place| data.surface_emission(&hit(place), spread)).sum();
     let edges = data.surface_edges(&hit(PLACES[0]));
     (sum / PLACES.len() as f32, 0.5 * edges.length())
+}
+
+/// Logarithm to base 2 of a third of the width of a triangle in units of texture coordinates.
+fn spread(data: &SceneData, triangle: u32) -> f32 {
+    let first = triangle as usize * 3;
+    let [a, b, c] =
+        [0, 1, 2].map(|k| Vec2::new(data.corners[first + k].uv[0], data.corners[first + k].uv[1]));
+    0.5 * ops::log2((b - a).perp_dot(c - a).abs().max(1.0e-20)) - 1.5
 }
 
 /// The words of the tree over `triangles` of a scene; empty if none of them shines.
@@ -66,7 +73,7 @@ pub(crate) fn words(data: &SceneData, triangles: &[u32]) -> Vec<u32> {
     for node in &nodes {
         words
             .extend([node.center.x, node.center.y, node.center.z, node.square, node.power].map(f32::to_bits));
-        words.extend([node.next, u32::from(node.is_leaf), node.area.to_bits()]);
+        words.extend([node.next, node.color, node.area.to_bits()]);
     }
     words
 }
@@ -83,14 +90,17 @@ fn emitter(data: &SceneData, triangle: u32) -> Option<Emitter> {
     if material.flags & (SCENE_MASKED | SCENE_BLENDED) != 0 {
         cover = PLACES.iter().map(|&place| opacity(place)).sum::<f32>() / PLACES.len() as f32;
     }
-    let power = light_weight(emission).max(LEAST_EMISSION * light_weight(material.emission)) * area * cover;
+    let weight = light_weight(emission);
+    let power = weight * area * cover;
     if !(power > 0.0 && power.is_finite()) {
         return None;
     }
     let corners = data.triangles[triangle as usize].corners().map(Vec3::from);
     let low = corners[0].min(corners[1]).min(corners[2]);
     let high = corners[0].max(corners[1]).max(corners[2]);
-    Some(Emitter { triangle, low, high, power, area: area * cover })
+    let part = |part: f32| (part / weight * 4095.0 + 0.5) as u32;
+    let color = part(emission.x) | part(emission.y) << 12 | 1 << 31;
+    Some(Emitter { triangle, low, high, power, color, area: area * cover })
 }
 
 fn leaf(emitter: &Emitter) -> EmitterNode {
@@ -99,7 +109,7 @@ fn leaf(emitter: &Emitter) -> EmitterNode {
         square: 0.25 * (emitter.high - emitter.low).length_squared(),
         power: emitter.power,
         next: emitter.triangle,
-        is_leaf: true,
+        color: emitter.color,
         area: emitter.area,
     }
 }
@@ -113,7 +123,7 @@ fn branch(emitters: &[Emitter], next: u32) -> EmitterNode {
         square: 0.25 * (high - low).length_squared(),
         power: power as f32,
         next,
-        is_leaf: false,
+        color: 0,
         area: 0.0,
     }
 }
