@@ -70,11 +70,11 @@ shared_constants! {
         /// Largest half angle of a lamp's disk, radians: from within its sphere.
         LIGHT_LARGEST_SPREAD: f32 = 1.5;
         /// Rays toward a lamp with a size that gives much.
-        SCENE_LAMP_RAYS: u32 = 4;
+        SCENE_LAMP_RAYS: u32 = 2;
         /// Bits of their numbers.
-        SCENE_LAMP_BITS: u32 = 2;
+        SCENE_LAMP_BITS: u32 = 1;
         /// Part of what all lamps would give from which one has as many rays; others have one.
-        SCENE_LARGE_LAMP: f32 = 0.1;
+        SCENE_LARGE_LAMP: f32 = 0.25;
         /// Part of the way to a lamp where things are taken to stand that throw its shadows.
         SCENE_SHADOW_PART: f32 = 0.25;
         /// Maximum distance of these, m.
